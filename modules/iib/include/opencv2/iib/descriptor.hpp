@@ -1,0 +1,176 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_DESCRIPTOR_HPP
+#define OPENCV_IIB_DESCRIPTOR_HPP
+
+#include "opencv2/features2d.hpp"
+
+namespace cv {
+namespace iib {
+
+//! @addtogroup iib
+//! @{
+
+/** @brief Illumination-insensitive binary (IIB) descriptor @cite Lin2023IIB.
+
+Each keypoint has a region of support (ROS): a square with centre KeyPoint::pt and side
+`scaleFactor * KeyPoint::size`, in pixels. Level g = 1..G (the granularity) cuts it into a grid of
+2^g x 2^g cells, whose edges are the real positions rounded to whole pixels. Four sibling cells make
+a *quad*, and a mapping turns their four mean values into bits, in each image channel. Light changes
+the values, but seldom the order among neighbours.
+
+A ROS side under 2^G pixels is raised to 2^G, so that no cell is empty. Pixels outside the image do
+not count; a quad of which one cell lies outside as a whole is taken as four equal means.
+
+**Bits.** Levels come coarse first, each padded with zeros to a whole byte, bit 0 of byte 0 first. So
+the descriptor of granularity G-1 is a prefix of the one of G. Within a level the order is, outermost
+first:
+ 1. channels in groups of four, in the order of #Channel, extra channels last;
+ 2. with `overlap`, the offset of the 2x2 windows: (0,0), (0,1), (1,0), (1,1) cells in (y,x);
+ 3. the row of quads;
+ 4. the bit of the mapping (cells count top left, top right, bottom left, bottom right);
+ 5. the column of quads;
+ 6. the channel within the group.
+
+With a selection (see setSelection) the order within a level is: the bit of the mapping, then the
+chosen quads in the order given.
+
+The descriptors are CV_8U and compared with NORM_HAMMING. The same input gives the same bits for
+every instruction set, thread count and build. One object may serve several threads as long as none
+changes its parameters.
+ */
+class CV_EXPORTS_W IIBDescriptorExtractor : public Feature2D
+{
+public:
+    //! Image channels (paper, "Choice of Image Data Channels"), to be or-ed.
+    enum Channel
+    {
+        CHANNEL_GRAD_X = 1,         //!< |gx|, horizontal gradient magnitude, Sobel 3x3
+        CHANNEL_GRAD_Y = 2,         //!< |gy|, vertical gradient magnitude
+        CHANNEL_ORIENTATION = 4,    //!< gradient orientation atan2(-gy, gx), 0 to 360 degrees in 1024 steps
+        CHANNEL_INTENSITY = 8,      //!< grey value
+        CHANNEL_SIGNED_GRAD_X = 16, //!< gx (not in the paper)
+        CHANNEL_SIGNED_GRAD_Y = 32, //!< gy (not in the paper)
+        CHANNELS_DEFAULT = 15       //!< the paper's four
+    };
+
+    //! From the four cell means x of a quad to bits (paper, "Binary Bit Formulation").
+    enum Mapping
+    {
+        MAPPING_MEAN,     //!< 4 bits: x_i > mean(x), equation (1)
+        MAPPING_MAX,      //!< 4 bits: x_i = max(x)
+        MAPPING_MIN,      //!< 4 bits: x_i = min(x)
+        MAPPING_QUARTILE, //!< 8 bits: the quarter of [min(x), max(x)] that x_i is in, equation (2); high bit first
+        MAPPING_SORT,     //!< 8 bits: the rank of x_i, ties by cell index; high bit first
+        MAPPING_HAAR,     //!< 3 bits: left > right, top > bottom, main diagonal > other diagonal
+        MAPPING_PAIRWISE  //!< 4 bits: x_0 > x_1, x_1 > x_3, x_3 > x_2, x_2 > x_0, around the quad
+    };
+
+    //! What becomes of a keypoint whose ROS leaves the image.
+    enum Border
+    {
+        BORDER_CLAMP, //!< it stays; only pixels of the image count
+        BORDER_DROP   //!< it is removed, as Feature2D::compute documents
+    };
+
+    /** @brief Creates an extractor.
+
+    @param scaleFactor side of the ROS in units of KeyPoint::size, > 0; see scaleFactorFor.
+    @param granularity number of levels G, 1 to 6.
+    @param channels a sum of #Channel values; may be 0 if there are extra channels.
+    @param mapping one of #Mapping.
+    @param overlap slide the 2x2 window of cells by one cell instead of two: (2^g - 1)^2 quads a level.
+    @param useOrientation turn ROS and gradients by KeyPoint::angle (degrees, clockwise in the image;
+    -1 means upright).
+    @param extraChannels number of maps of the image's size that computeWithChannels is given, 0 to 16.
+    @throws cv::Exception (StsBadArg or StsOutOfRange) for a value outside these ranges.
+     */
+    CV_WRAP static Ptr<IIBDescriptorExtractor> create(
+            float scaleFactor = 2.f, int granularity = 4,
+            int channels = IIBDescriptorExtractor::CHANNELS_DEFAULT,
+            int mapping = IIBDescriptorExtractor::MAPPING_MEAN, bool overlap = false,
+            bool useOrientation = false, int extraChannels = 0);
+
+    /** @brief Scale factor for a detector's keypoints (paper, "Experiments Combined with Feature Detectors").
+
+    @param detectorName as in OpenCV's class names, any case, with or without "Feature2D.": AKAZE 12, ORB 2,
+    BRISK 4, SIFT 20, KAZE 20, SURF 4, FAST and AGAST 64/7, GFTT 64/3, MSER 2, SimpleBlob 4.
+    @throws cv::Exception (StsBadArg) with the known names for any other.
+     */
+    CV_WRAP static float scaleFactorFor(const String& detectorName);
+    //! @overload
+    static float scaleFactorFor(const Ptr<Feature2D>& detector);
+
+    //! Bytes of each level, coarse first; levels without a bit (by a selection) are left out.
+    //! Their sum is descriptorSize().
+    CV_WRAP virtual std::vector<int> levelSizes() const = 0;
+
+    using Feature2D::compute;
+    /** @brief Describes keypoints with the image and with further maps of it, such as depth or labels.
+
+    @param image 8U, 16U or 32F with 1, 3 (BGR) or 4 (BGRA) channels. Float values are cut into 65535
+    steps between the image's own minimum and maximum.
+    @param extraChannels as many single-channel maps as getExtraChannels(), each of the image's size, 8U,
+    16U or 32F. A cell's value is the mean of the map.
+    @param keypoints their order is kept; none is removed but by #BORDER_DROP.
+    @param descriptors keypoints.size() x descriptorSize(), CV_8U. Empty if the image or the keypoints are.
+    @throws cv::Exception for a wrong type, size or number of maps, for pixels that are NaN or infinite,
+    and for keypoints with a NaN or infinite coordinate or a size that is not positive.
+     */
+    CV_WRAP_AS(computeWithChannels) virtual void compute(
+            InputArray image, InputArrayOfArrays extraChannels,
+            CV_OUT CV_IN_OUT std::vector<KeyPoint>& keypoints, OutputArray descriptors) = 0;
+
+    CV_WRAP virtual void setScaleFactor(float scaleFactor) = 0;
+    CV_WRAP virtual float getScaleFactor() const = 0;
+
+    //! Changing granularity, channels, overlap or mapping, or the number of extra channels, ends a selection.
+    CV_WRAP virtual void setGranularity(int granularity) = 0;
+    CV_WRAP virtual int getGranularity() const = 0;
+
+    CV_WRAP virtual void setChannels(int channels) = 0;
+    CV_WRAP virtual int getChannels() const = 0;
+
+    CV_WRAP virtual void setMapping(int mapping) = 0;
+    CV_WRAP virtual int getMapping() const = 0;
+
+    CV_WRAP virtual void setOverlap(bool overlap) = 0;
+    CV_WRAP virtual bool getOverlap() const = 0;
+
+    CV_WRAP virtual void setUseOrientation(bool useOrientation) = 0;
+    CV_WRAP virtual bool getUseOrientation() const = 0;
+
+    CV_WRAP virtual void setExtraChannels(int extraChannels) = 0;
+    CV_WRAP virtual int getExtraChannels() const = 0;
+
+    //! One of #Border; BORDER_CLAMP by default.
+    CV_WRAP virtual void setBorder(int border) = 0;
+    CV_WRAP virtual int getBorder() const = 0;
+
+    //! The detector behind detect and detectAndCompute; ORB by default. It does not change the scale factor.
+    CV_WRAP virtual void setDetector(const Ptr<Feature2D>& detector) = 0;
+    CV_WRAP virtual Ptr<Feature2D> getDetector() const = 0;
+
+    /** @brief Restricts the descriptor to chosen quads (paper, "Reduction of the IIB Descriptor Size").
+
+    @param quads CV_32S, a row a quad: level g (1..G, not descending), channel (its place among the channels
+    in use, extra channels last), row and column of the quad's top left cell in the level's grid
+    (0..2^g - 2; odd positions, between siblings, are allowed and need no `overlap`), and a bit mask of the
+    mapping's bits to keep (bit 0 is the first). Empty: all quads again.
+    @throws cv::Exception for another type or shape, levels out of order or values out of range.
+     */
+    CV_WRAP virtual void setSelection(InputArray quads) = 0;
+    //! The chosen quads, as setSelection takes them; empty if there is no selection.
+    CV_WRAP virtual Mat getSelection() const = 0;
+};
+
+typedef IIBDescriptorExtractor IIB;
+
+//! @}
+
+}  // namespace iib
+}  // namespace cv
+
+#endif
