@@ -1,0 +1,160 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_MATCHER_HPP
+#define OPENCV_IIB_MATCHER_HPP
+
+#include "opencv2/features2d.hpp"
+
+namespace cv {
+namespace iib {
+
+//! @addtogroup iib
+//! @{
+
+/** @brief Matcher of binary descriptors by Hamming distance, from coarse to fine (paper, section "Fast
+Hierarchical Matching") @cite Lin2023IIB.
+
+It stands in for `cv::BFMatcher(cv::NORM_HAMMING, crossCheck)` with any binary descriptor whose bytes are
+ordered in levels, the coarse ones first: IIB (IIBDescriptorExtractor::levelSizes), or others when told
+where to look first (ORB: {8, 24}; any descriptor at all: its size as the only level).
+
+All that cv::DescriptorMatcher offers works here, in any combination: several train images, masks (CV_8UC1,
+queries x train rows, one an image, or an empty one for "all allowed"), `k`, radius, `crossCheck`,
+`compactResult`. Where BFMatcher does otherwise:
+ - results are in the order of distance, then image, then train index; that order decides ties;
+ - train images without rows are skipped; without any train rows the rows of the result are empty;
+ - `k` is met over all the images together, not up to the smallest image's rows;
+ - `compactResult` drops every query without a match, whatever the reason;
+ - rows and images are limited by memory alone, which holds the packed codes (levels padded to 8 bytes)
+   and the results. As in every DescriptorMatcher, the matrices added are referred to as well
+   (getTrainDescriptors), but their values are copied: later changes to them have no effect.
+
+**Cross-check.** With `crossCheck`, a pair is reported only if each is among the `k` nearest of the other,
+among the pairs that masks and mode allow, over all images; for k = 1 that is the mutual nearest neighbour.
+The ties of a train descriptor go to the lowest query index. In radiusMatch it changes nothing: what is
+within a radius of the query has the query within that radius.
+
+**Modes.**
+ - #EXACT: what brute force finds, bit for bit.
+ - #THRESHOLD: the paper's rule. A pair goes on to the next level only while its distance in the current
+   one is at most threshold * bits of that level; pairs that reach the last level are ranked by the
+   distance over all levels. Fast, and it loses whole keypoints in hard scenes.
+ - #ADAPTIVE: a pair goes on to the last level only if its distance over the levels before it is near
+   the least that this query has seen so far. No distance is ever wrong: what may happen is that a
+   neighbour is missed. With a single level it is #EXACT.
+
+**Threads.** Calls run on cv::parallel_for_; results are the same for every number of threads and every
+instruction set. One object may serve several threads as long as none adds descriptors or changes
+parameters.
+
+@throws cv::Exception from every call for descriptors that are not CV_8U or whose columns are not the sum
+of the level sizes, and for masks of a wrong type, size or number.
+ */
+class CV_EXPORTS_W HierarchicalMatcher : public DescriptorMatcher
+{
+public:
+    //! Which pairs are compared to the end.
+    enum Mode
+    {
+        EXACT,     //!< all that could change the result of brute force
+        THRESHOLD, //!< those within the threshold at every level before the last
+        ADAPTIVE   //!< those near the query's best so far in the levels before the last
+    };
+
+    /** @brief Creates a matcher.
+
+    @param levelSizes bytes of each level, coarse first, each > 0; their sum is the descriptors' width.
+    @param mode one of #Mode.
+    @param threshold of #THRESHOLD, for every level, 0 to 1.
+    @param crossCheck report only pairs that are among each other's nearest.
+    @throws cv::Exception (StsBadArg or StsOutOfRange) for a value outside these ranges.
+     */
+    CV_WRAP static Ptr<HierarchicalMatcher> create(
+            const std::vector<int>& levelSizes, int mode = HierarchicalMatcher::EXACT,
+            float threshold = 0.35f, bool crossCheck = false);
+
+    //! Bytes of each level, coarse first.
+    CV_WRAP virtual std::vector<int> levelSizes() const = 0;
+
+    CV_WRAP virtual void setMode(int mode) = 0;
+    CV_WRAP virtual int getMode() const = 0;
+
+    /** @brief Sets the thresholds of #THRESHOLD, each 0 to 1, in parts of the level's bits.
+
+    @param thresholds one for every level but the last, which has no level after it; or a single one for
+    all of them.
+     */
+    CV_WRAP virtual void setThresholds(const std::vector<float>& thresholds) = 0;
+    //! One for every level but the last.
+    CV_WRAP virtual std::vector<float> getThresholds() const = 0;
+
+    CV_WRAP virtual void setCrossCheck(bool crossCheck) = 0;
+    CV_WRAP virtual bool getCrossCheck() const = 0;
+
+    /** @brief Ratio test inside match, knnMatch and knnMatchArrays, over the same pairs as the search.
+
+    @param maxRatio in (0, 1]. A query keeps its matches only if its least distance is less than maxRatio
+    times its second least; a query with a single candidate keeps it. 1, the default, turns the test off.
+     */
+    CV_WRAP virtual void setMaxRatio(float maxRatio) = 0;
+    CV_WRAP virtual float getMaxRatio() const = 0;
+
+    /** @brief knnMatch with matrices for results: in Python many times faster than lists of DMatch.
+
+    @param queryDescriptors queries x descriptor size, CV_8U.
+    @param indices queries x k, CV_32S: row of the train descriptor in its image, nearest first; -1 where
+    there is none.
+    @param distances queries x k, CV_32S: Hamming distance in bits; -1 where there is none.
+    @param k number of neighbours, > 0.
+    @param masks as in knnMatch.
+    @param imageIndices queries x k, CV_32S: the train image; -1 where there is none.
+     */
+    CV_WRAP virtual void knnMatchArrays(
+            InputArray queryDescriptors, OutputArray indices, OutputArray distances, int k = 1,
+            InputArrayOfArrays masks = noArray(), OutputArray imageIndices = noArray()) const = 0;
+
+    /** @overload
+    @param queryDescriptors queries x descriptor size, CV_8U.
+    @param trainDescriptors train rows x descriptor size, CV_8U, used instead of those added.
+    @param indices queries x k, CV_32S.
+    @param distances queries x k, CV_32S.
+    @param k number of neighbours, > 0.
+    @param mask queries x train rows, CV_8UC1, or empty.
+     */
+    CV_WRAP virtual void knnMatchArrays(
+            InputArray queryDescriptors, InputArray trainDescriptors, OutputArray indices,
+            OutputArray distances, int k = 1, InputArray mask = noArray()) const = 0;
+
+    /** @brief The paper's match cost MC: bits compared / bits that brute force would compare, since
+    resetCost; 0 before any call.
+
+    A pair counts with the bits of the levels it was taken to, as if it had been alone, not with those
+    that a vector of pairs reads together; masked pairs count nowhere. Calls with a train set of their own
+    count as well, since clones with empty train data share the counters. Safe to call from any thread.
+     */
+    CV_WRAP virtual double matchCost() const = 0;
+    CV_WRAP virtual void resetCost() = 0;
+
+    /** @brief Writes level sizes, parameters and all train descriptors to a binary file.
+
+    The file does not depend on the machine: little-endian, with a version and a checksum.
+    @throws cv::Exception if it cannot be written.
+     */
+    CV_WRAP virtual void saveIndex(const String& filename) const = 0;
+
+    /** @brief Reads what saveIndex wrote, by this version of the module or an older one.
+
+    @throws cv::Exception for a file that is missing, truncated, altered, of another kind or of a newer
+    version.
+     */
+    CV_WRAP static Ptr<HierarchicalMatcher> loadIndex(const String& filename);
+};
+
+//! @}
+
+}  // namespace iib
+}  // namespace cv
+
+#endif
