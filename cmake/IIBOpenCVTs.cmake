@@ -1,0 +1,45 @@
+# Target opencv_ts: OpenCV's test framework, which no distribution packages, from OpenCV's source.
+# It is built once for each version, compiler and set of flags, in the user's cache folder.
+if(NOT OPENCV_SOURCE_DIR)
+  execute_process(COMMAND "${PROJECT_SOURCE_DIR}/scripts/opencv_source.sh"
+    OUTPUT_VARIABLE source OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE failed)
+  if(NOT failed)
+    set(OPENCV_SOURCE_DIR "${source}")
+  endif()
+endif()
+if(NOT EXISTS "${OPENCV_SOURCE_DIR}/modules/ts/CMakeLists.txt")
+  message(FATAL_ERROR "The tests need OpenCV ${OpenCV_VERSION}'s source, which apt did not give: "
+    "set -DOPENCV_SOURCE_DIR=<OpenCV source tree>, or -DIIB_BUILD_TESTS=OFF to build without tests.")
+endif()
+
+if(DEFINED ENV{XDG_CACHE_HOME})
+  set(cache "$ENV{XDG_CACHE_HOME}/opencv_iib")
+else()
+  set(cache "$ENV{HOME}/.cache/opencv_iib")
+endif()
+string(REPLACE ";" " " flags "${CMAKE_CXX_FLAGS} ${IIB_FLAGS}")
+file(SHA1 "${PROJECT_SOURCE_DIR}/cmake/ts/CMakeLists.txt" recipe)
+string(SHA1 key "${OPENCV_SOURCE_DIR} ${OpenCV_VERSION} ${CMAKE_CXX_COMPILER} ${CMAKE_CXX_COMPILER_VERSION} ${flags} ${recipe}")
+string(SUBSTRING ${key} 0 12 key)
+set(ts_dir "${cache}/ts-${key}")
+
+file(MAKE_DIRECTORY "${cache}")
+file(LOCK "${ts_dir}.lock" GUARD FILE)
+if(NOT EXISTS "${ts_dir}/libopencv_ts.a")
+  message(STATUS "iib: building opencv_ts in ${ts_dir}")
+  cmake_host_system_information(RESULT cores QUERY NUMBER_OF_LOGICAL_CORES)
+  execute_process(COMMAND "${CMAKE_COMMAND}" -S "${PROJECT_SOURCE_DIR}/cmake/ts" -B "${ts_dir}"
+      "-DOPENCV_SOURCE_DIR=${OPENCV_SOURCE_DIR}" "-DOpenCV_DIR=${OpenCV_DIR}" "-DCMAKE_CXX_FLAGS=${flags}"
+      "-DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}" -DCMAKE_BUILD_TYPE=Release
+    COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
+  execute_process(COMMAND "${CMAKE_COMMAND}" --build "${ts_dir}" --parallel ${cores}
+    COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
+endif()
+file(LOCK "${ts_dir}.lock" RELEASE)
+
+add_library(opencv_ts STATIC IMPORTED)
+set_target_properties(opencv_ts PROPERTIES IMPORTED_LOCATION "${ts_dir}/libopencv_ts.a"
+  INTERFACE_INCLUDE_DIRECTORIES "${OPENCV_SOURCE_DIR}/modules/ts/include;${ts_dir}/stubs")
+find_package(Threads REQUIRED)
+target_link_libraries(opencv_ts INTERFACE
+  opencv_core opencv_imgproc opencv_imgcodecs opencv_videoio opencv_highgui Threads::Threads)

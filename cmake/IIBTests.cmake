@@ -1,0 +1,11 @@
+# opencv_test_iib and opencv_perf_iib on OpenCV's own test framework.
+find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc features2d flann calib3d imgcodecs videoio highgui)
+include(IIBOpenCVTs)
+
+foreach(kind test perf)
+  file(GLOB sources CONFIGURE_DEPENDS "${IIB_DIR}/${kind}/*.cpp" "${IIB_DIR}/${kind}/*.hpp")
+  set(target opencv_${kind}_iib)
+  add_executable(${target} ${sources})
+  target_include_directories(${target} PRIVATE "${IIB_DIR}/${kind}" "${OPENCV_SOURCE_DIR}/modules")
+  target_link_libraries(${target} PRIVATE opencv_iib opencv_ts opencv_calib3d)
+endforeach()

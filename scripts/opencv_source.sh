@@ -1,0 +1,41 @@
+#!/bin/sh
+# Prints the folder of the OpenCV source that belongs to the installed libopencv-core-dev. The first run
+# fetches it from the machine's own apt mirror into the cache; nothing of the system's apt changes.
+set -eu
+
+version=$(dpkg-query -W -f '${source:Version}' libopencv-core-dev 2>/dev/null) || {
+    echo "libopencv-core-dev is not installed as a Debian package" >&2
+    exit 1
+}
+cache="${XDG_CACHE_HOME:-$HOME/.cache}/opencv_iib"
+tree="$cache/opencv-$version"
+mkdir -p "$cache"
+exec 9>"$cache/source.lock"
+flock 9
+
+if [ ! -f "$tree/CMakeLists.txt" ]; then
+    work=$(mktemp -d "$cache/fetch.XXXXXX")
+    trap 'rm -rf "$work"' EXIT
+    mkdir -p "$work/parts" "$work/lists/partial" "$work/tree"
+    # The machine's binary entries, turned into source entries.
+    for list in /etc/apt/sources.list /etc/apt/sources.list.d/*.list; do
+        [ -f "$list" ] && sed -n 's/^deb[[:space:]]/deb-src /p' "$list" >"$work/parts/$(basename "$list" .list).list"
+    done
+    for list in /etc/apt/sources.list.d/*.sources; do
+        [ -f "$list" ] && sed 's/^Types:.*/Types: deb-src/' "$list" >"$work/parts/$(basename "$list")"
+    done
+    apt="-q -o Dir::Etc::SourceList=/dev/null -o Dir::Etc::SourceParts=$work/parts -o Dir::State::Lists=$work/lists
+         -o Dir::Cache=$work -o APT::Sandbox::User=$(id -un)"
+    echo "fetching the source of opencv $version with apt" >&2
+    (
+        cd "$work"
+        apt-get $apt update
+        apt-get $apt source --download-only "opencv=$version"
+        tar -xf opencv_*.orig.tar.* -C tree --strip-components=1
+    ) >"$work/log" 2>&1 || {
+        tail -n 5 "$work/log" >&2
+        exit 1
+    }
+    mv "$work/tree" "$tree"
+fi
+echo "$tree"
