@@ -1,0 +1,42 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "layout.hpp"
+
+namespace cv {
+namespace iib {
+
+static int countBits(int mask)
+{
+    int n = 0;
+    for (; mask; mask &= mask - 1)
+        n++;
+    return n;
+}
+
+int levelBits(const Parameters& p, int level)
+{
+    if (p.selection.empty())
+    {
+        const int side = p.overlap ? (1 << level) - 1 : 1 << (level - 1);  // quads in a row
+        return side * side * p.channelCount() * bitsPerQuad(p.mapping);
+    }
+    int bits = 0;
+    for (int i = 0; i < p.selection.rows; i++)
+        if (p.selection(i, 0) == level)
+            bits += countBits(p.selection(i, 4));
+    return bits;
+}
+
+std::vector<int> levelBytes(const Parameters& p)
+{
+    std::vector<int> bytes;
+    for (int level = 1; level <= p.granularity; level++)
+        if (const int bits = levelBits(p, level))
+            bytes.push_back((bits + 7) / 8);
+    return bytes;
+}
+
+}  // namespace iib
+}  // namespace cv

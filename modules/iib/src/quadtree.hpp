@@ -1,0 +1,51 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_QUADTREE_HPP
+#define OPENCV_IIB_QUADTREE_HPP
+
+#include "parameters.hpp"
+
+namespace cv {
+namespace iib {
+
+/** Region of support of a keypoint and its quadtree of cells (paper, "Local Patch Generation"). Pure
+ geometry, in pixels of the image. */
+struct Ros
+{
+    double x, y, side;  //!< top left corner and side
+
+    Ros(const KeyPoint& keypoint, float scaleFactor, int granularity)
+        : side(std::max((double)scaleFactor * keypoint.size, (double)(1 << granularity)))
+    {
+        x = keypoint.pt.x - side / 2;
+        y = keypoint.pt.y - side / 2;
+    }
+
+    /** Edge k = 0..n of n cells along an axis on which the ROS begins at `start`, clamped to [0, limit].
+     n is a power of two, so that the edges of a level are a subset of those of the next. */
+    int edge(double start, int k, int n, int limit) const
+    {
+        return (int)std::min(std::max(std::floor(start + side / n * k + 0.5), 0.), (double)limit);
+    }
+
+    //! The ROS as whole pixels, cut to the image.
+    Rect inside(Size image) const
+    {
+        const Point a(edge(x, 0, 1, image.width), edge(y, 0, 1, image.height));
+        return Rect(a, Point(edge(x, 1, 1, image.width), edge(y, 1, 1, image.height)));
+    }
+
+    //! Whether no pixel of the ROS lies outside the image.
+    bool isInside(Size image) const
+    {
+        return std::floor(x + 0.5) >= 0 && std::floor(x + side + 0.5) <= image.width
+               && std::floor(y + 0.5) >= 0 && std::floor(y + side + 0.5) <= image.height;
+    }
+};
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

@@ -1,0 +1,31 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_TEST_ORACLE_HPP
+#define OPENCV_IIB_TEST_ORACLE_HPP
+
+#include "opencv2/core.hpp"
+#include "opencv2/features2d.hpp"
+#include "opencv2/iib/descriptor.hpp"
+
+/*
+The descriptor once more, from the paper's equations and the header's words: pixel by pixel, cell by
+cell, bit by bit. The tests ask the library for the same bits.
+*/
+namespace oracle {
+
+//! A channel's value at every pixel.
+typedef cv::Mat_<int> Channel;
+
+//! The channels in use, of a grey image (CV_8U or CV_16U) and of extra maps of these types.
+std::vector<Channel> channelsOf(const cv::iib::IIBDescriptorExtractor& iib, const cv::Mat& grey,
+                                const std::vector<cv::Mat>& extra);
+
+//! keypoints.size() descriptors, for the extractor's parameters; BORDER_CLAMP.
+cv::Mat describe(const cv::iib::IIBDescriptorExtractor& iib, const cv::Mat& grey,
+                 const std::vector<cv::Mat>& extra, const std::vector<cv::KeyPoint>& keypoints);
+
+}  // namespace oracle
+
+#endif
