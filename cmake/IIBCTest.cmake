@@ -1,0 +1,18 @@
+# ctest entries: one for each test suite of opencv_test_iib, once with all instruction sets and once under
+# each pin WIDEST=DISABLED; a smoke run of the perf tests; the consumer of the installation.
+set(suites "${PROJECT_BINARY_DIR}/suites.cmake")
+set(pins "")
+if(IIB_DISPATCH)
+  set(pins AVX2=AVX512-SKX,AVX512-ICL SSE4_2=AVX2,AVX512-SKX,AVX512-ICL
+    baseline=SSE4.1,SSE4.2,AVX,AVX2,AVX512-SKX,AVX512-ICL)
+endif()
+add_custom_command(TARGET opencv_test_iib POST_BUILD
+  COMMAND "${CMAKE_COMMAND}" "-DEXE=$<TARGET_FILE:opencv_test_iib>" "-DOUT=${suites}" "-DPINS=${pins}"
+    -P "${PROJECT_SOURCE_DIR}/cmake/ListSuites.cmake"
+  BYPRODUCTS "${suites}" VERBATIM)
+set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${suites}")
+
+add_test(NAME perf-smoke COMMAND opencv_perf_iib --perf_min_samples=1 --perf_force_samples=1)
+add_test(NAME consumer COMMAND "${CMAKE_COMMAND}" "-DBUILD=${PROJECT_BINARY_DIR}"
+  "-DWORK=${PROJECT_BINARY_DIR}/consumer" "-DCXX=${CMAKE_CXX_COMPILER}" "-DFLAGS=${CMAKE_CXX_FLAGS}"
+  -P "${PROJECT_SOURCE_DIR}/cmake/consumer/test.cmake")

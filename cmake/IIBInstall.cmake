@@ -1,0 +1,22 @@
+# Library, headers, CMake package opencv_iib and opencv_iib.pc. The headers go beside OpenCV's own.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(include_dir "${CMAKE_INSTALL_INCLUDEDIR}/opencv4")
+set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/opencv_iib")
+
+target_include_directories(opencv_iib INTERFACE "$<INSTALL_INTERFACE:${include_dir}>")
+install(TARGETS opencv_iib EXPORT opencv_iib LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+install(DIRECTORY "${IIB_DIR}/include/opencv2" DESTINATION "${include_dir}")
+install(EXPORT opencv_iib FILE opencv_iibTargets.cmake DESTINATION "${package_dir}")
+
+configure_package_config_file(cmake/opencv_iibConfig.cmake.in opencv_iibConfig.cmake
+  INSTALL_DESTINATION "${package_dir}")
+write_basic_package_version_file(opencv_iibConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/opencv_iibConfig.cmake" "${PROJECT_BINARY_DIR}/opencv_iibConfigVersion.cmake"
+  DESTINATION "${package_dir}")
+
+# The prefix is told from the file's own place, so that `cmake --install --prefix` may choose it.
+set(pc_dir "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+file(RELATIVE_PATH pc_to_prefix "/prefix/${pc_dir}" "/prefix")
+configure_file(cmake/opencv_iib.pc.in opencv_iib.pc @ONLY)
+install(FILES "${PROJECT_BINARY_DIR}/opencv_iib.pc" DESTINATION "${pc_dir}")
