@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+# This file is part of OpenCV project.
+# It is subject to the license terms in the LICENSE file found in the top-level directory
+# of this distribution and at http://opencv.org/license.html.
+
+import os
+import tempfile
+import unittest
+
+import cv2
+import numpy as np
+
+
+def noise(seed, shape=(120, 160)):
+    image = np.random.default_rng(seed).integers(0, 256, shape, np.uint8)
+    return cv2.GaussianBlur(image, (5, 5), 0)
+
+
+def grid(size=10.0):
+    return [cv2.KeyPoint(x, y, size) for y in range(0, 120, 20) for x in range(0, 160, 20)]
+
+
+def set_bits(descriptors):
+    return int(np.unpackbits(descriptors).sum())
+
+
+class DescriptorTest(unittest.TestCase):
+
+    def test_compute_returns_keypoints_and_descriptors(self):
+        keypoints, descriptors = cv2.iib.IIBDescriptorExtractor.create().compute(noise(1), grid())
+        self.assertEqual([k.pt for k in keypoints], [k.pt for k in grid()])
+        self.assertEqual(descriptors.shape, (len(keypoints), 170))
+        self.assertEqual(descriptors.dtype, np.uint8)
+
+    def test_detect_and_compute_equals_detect_then_compute(self):
+        iib = cv2.iib.IIBDescriptorExtractor.create()
+        keypoints, descriptors = iib.detectAndCompute(noise(2), None)
+        again = iib.compute(noise(2), iib.detect(noise(2)))
+        self.assertGreater(len(keypoints), 0)
+        self.assertEqual([k.pt for k in keypoints], [k.pt for k in again[0]])
+        np.testing.assert_array_equal(descriptors, again[1])
+
+    def test_layout_and_constants(self):
+        IIB = cv2.iib.IIBDescriptorExtractor
+        iib = IIB.create(granularity=3, mapping=cv2.iib.IIBDescriptorExtractor_MAPPING_HAAR)
+        self.assertEqual(list(iib.levelSizes()), [2, 6, 24])
+        self.assertEqual(iib.descriptorSize(), 32)
+        self.assertEqual(iib.getChannels(), cv2.iib.IIBDescriptorExtractor_CHANNELS_DEFAULT)
+        self.assertAlmostEqual(IIB.scaleFactorFor('AKAZE'), 12)
+
+    def test_extra_channels_change_the_descriptor(self):
+        iib = cv2.iib.IIBDescriptorExtractor.create(extraChannels=1)
+        depth = noise(3).astype(np.float32)
+        _, with_depth = iib.computeWithChannels(noise(1), [depth], grid())
+        _, with_other = iib.computeWithChannels(noise(1), [noise(4)], grid())
+        self.assertEqual(with_depth.shape, with_other.shape)
+        self.assertFalse(np.array_equal(with_depth, with_other))
+
+    def test_light_that_is_linear_changes_no_bit_of_gradients_and_intensity(self):
+        channels = sum(getattr(cv2.iib, 'IIBDescriptorExtractor_CHANNEL_' + name)
+                       for name in ('GRAD_X', 'GRAD_Y', 'INTENSITY'))
+        iib = cv2.iib.IIBDescriptorExtractor.create(channels=channels)
+        image = noise(5).astype(np.float32)
+        _, before = iib.compute(image, grid())
+        _, after = iib.compute(2 * image + 16, grid())
+        self.assertGreater(set_bits(before), 0)
+        np.testing.assert_array_equal(before, after)
+
+    def test_mistakes_raise(self):
+        with self.assertRaises(cv2.error):
+            cv2.iib.IIBDescriptorExtractor.create(granularity=7)
+        with self.assertRaises(cv2.error):
+            cv2.iib.IIBDescriptorExtractor.scaleFactorFor('no such detector')
+
+
+class MatcherTest(unittest.TestCase):
+
+    def setUp(self):
+        rng = np.random.default_rng(6)
+        self.query = rng.integers(0, 256, (50, 170), np.uint8)
+        self.train = rng.integers(0, 256, (70, 170), np.uint8)
+        self.train[10:60] = self.query ^ (rng.random((50, 170)) < 0.1)
+        self.levels = cv2.iib.IIBDescriptorExtractor.create().levelSizes()
+
+    def test_match_equals_brute_force(self):
+        for cross_check in (False, True):
+            matcher = cv2.iib.HierarchicalMatcher.create(self.levels, crossCheck=cross_check)
+            ours = matcher.match(self.query, self.train)
+            theirs = cv2.BFMatcher(cv2.NORM_HAMMING, cross_check).match(self.query, self.train)
+            self.assertEqual([(m.queryIdx, m.trainIdx, m.distance) for m in ours],
+                             [(m.queryIdx, m.trainIdx, m.distance) for m in theirs])
+            self.assertEqual(len(ours), 50)
+
+    def test_arrays_equal_matches(self):
+        matcher = cv2.iib.HierarchicalMatcher.create(self.levels)
+        matches = matcher.knnMatch(self.query, self.train, 3)
+        indices, distances = matcher.knnMatchArrays(self.query, self.train, k=3)[:2]
+        np.testing.assert_array_equal(indices, [[m.trainIdx for m in row] for row in matches])
+        np.testing.assert_array_equal(distances, [[m.distance for m in row] for row in matches])
+
+    def test_index_survives_a_file(self):
+        matcher = cv2.iib.HierarchicalMatcher.create(self.levels)
+        matcher.add([self.train])
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, 'index.bin')
+            matcher.saveIndex(path)
+            loaded = cv2.iib.HierarchicalMatcher.loadIndex(path)
+        self.assertEqual([m.trainIdx for m in loaded.match(self.query)],
+                         [m.trainIdx for m in matcher.match(self.query)])
+
+    def test_match_cost_is_one_for_brute_force_and_less_for_thresholds(self):
+        matcher = cv2.iib.HierarchicalMatcher.create(
+            self.levels, mode=cv2.iib.HierarchicalMatcher_THRESHOLD)
+        matcher.match(self.query, self.train)
+        self.assertTrue(0 < matcher.matchCost() < 1)
+
+
+if __name__ == '__main__':
+    unittest.main()
