@@ -1,0 +1,106 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Matches two images of one scene under different light, with the detector's own descriptor and with IIB,
+// on the same keypoints. Prints a table and writes a picture. scripts/demo.sh calls it.
+
+#include "iib_demo_options.hpp"
+#include "iib_demo_picture.hpp"
+#include "iib_demo_pipeline.hpp"
+
+#include "opencv2/core/utils/logger.hpp"
+#include "opencv2/imgcodecs.hpp"
+
+#include <cstdio>
+
+static cv::Mat readImage(const std::string& path)
+{
+    cv::Mat image = cv::imread(path, cv::IMREAD_COLOR);
+    if (image.empty())
+        throw UserError("cannot read the image " + path);
+    return image;
+}
+
+static void writePicture(const std::string& path, const cv::Mat& picture)
+{
+    bool written = false;
+    try
+    {
+        written = cv::imwrite(path, picture);
+    }
+    catch (const cv::Exception&)
+    {
+        // no encoder for the file name's extension
+    }
+    if (!written)
+        throw UserError("cannot write the picture " + path + " (is it a .png or .jpg in a folder that exists?)");
+}
+
+static void printTable(const Options& options, const Pair& pair, const std::vector<Result>& results)
+{
+    std::printf("%s: %d and %d keypoints, detected in %.1f ms\n\n", options.detector.c_str(),
+                (int)pair.keypoints[0].size(), (int)pair.keypoints[1].size(), pair.detectMs);
+    std::printf("descriptor  bytes  matches  correct  precision  describe ms  match ms  verify ms\n");
+    for (const Result& r : results)
+        std::printf("%-10s  %5d  %7d  %7d  %7.1f %%  %11.1f  %8.1f  %9.1f\n", r.name.c_str(), r.bytes,
+                    (int)r.matches.size(), r.correctCount(), 100 * r.precision(), r.describeMs, r.matchMs,
+                    r.verifyMs);
+    std::printf("\ncorrect: within %g px of %s\npicture: %s\n", MAX_ERROR,
+                options.homography.empty() ? "the homography that MAGSAC finds" : options.homography.c_str(),
+                options.out.c_str());
+}
+
+static void run(const Options& options)
+{
+    Pair pair;
+    for (int i = 0; i < 2; i++)
+        pair.images[i] = readImage(options.images[i]);
+    const cv::Mat H = options.homography.empty() ? cv::Mat() : readHomography(options.homography);
+
+    const Detector detector = createDetector(options.detector);
+    detect(detector, pair);
+    for (int i = 0; i < 2; i++)
+        if (pair.keypoints[i].empty())
+            throw UserError(options.detector + " finds no keypoint in " + options.images[i]);
+
+    std::vector<Result> results;
+    if (detector.describes)
+        results.push_back(matchPair(options.detector, detector.feature, pair, H));
+    results.push_back(matchPair("IIB", createIIB(options), pair, H));
+
+    std::vector<cv::Mat> rows;
+    for (const Result& r : results)
+        rows.push_back(drawResult(pair, r));
+    cv::Mat picture;
+    cv::vconcat(rows, picture);
+    writePicture(options.out, picture);
+    printTable(options, pair, results);
+}
+
+int main(int argc, char** argv)
+{
+    // Messages here are this program's own, one line each.
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    try
+    {
+        Options options;
+        if (!parseOptions(argc, argv, options))
+        {
+            std::printf("%s", USAGE);
+            return 0;
+        }
+        run(options);
+    }
+    catch (const UserError& e)
+    {
+        std::fprintf(stderr, "iib_demo: %s\n", e.what());
+        return 2;
+    }
+    catch (const cv::Exception& e)
+    {
+        std::fprintf(stderr, "iib_demo: %s\n", e.err.c_str());
+        return 1;
+    }
+    return 0;
+}
