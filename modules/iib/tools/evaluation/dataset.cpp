@@ -1,0 +1,192 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "dataset.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "opencv2/core/utils/filesystem.hpp"
+
+namespace iib_tools {
+namespace {
+
+namespace fs = cv::utils::fs;
+
+std::string join(const std::string& folder, const std::string& name) { return fs::join(folder, name); }
+
+std::string baseName(const std::string& path)
+{
+    const size_t end = path.find_last_not_of('/');
+    const size_t slash = path.find_last_of('/', end);
+    return path.substr(slash + 1, end - slash);
+}
+
+std::string folderOf(const std::string& path)
+{
+    const size_t slash = path.find_last_of('/', path.find_last_not_of('/'));
+    return slash == std::string::npos ? "." : path.substr(0, slash);
+}
+
+Kind kindOf(const std::string& sequence)
+{
+    static const std::map<std::string, Kind> oxford = {
+        {"bark", "zoom"}, {"boat", "zoom"}, {"graf", "viewpoint"}, {"wall", "viewpoint"},
+        {"bikes", "blur"}, {"trees", "blur"}, {"ubc", "jpeg"}};
+    const auto known = oxford.find(sequence);
+    if (known != oxford.end())
+        return known->second;
+    return sequence.compare(0, 2, "v_") == 0 ? "viewpoint" : "light";
+}
+
+//! The images `<prefix>k.<extension>` of a folder, by k; empty without k = 1.
+std::map<int, std::string> numberedImages(const std::string& folder, const std::string& prefix)
+{
+    static const std::set<std::string> extensions = {"png", "ppm", "pgm", "jpg", "jpeg", "tif", "tiff"};
+    std::map<int, std::string> images;
+    std::vector<cv::String> files;
+    fs::glob(folder, prefix + "*", files);
+    std::sort(files.begin(), files.end());
+    for (const std::string& file : files)
+    {
+        const std::string name = baseName(file);
+        const size_t dot = name.find('.');
+        if (dot == std::string::npos || !extensions.count(name.substr(dot + 1)))
+            continue;
+        const std::string number = name.substr(prefix.size(), dot - prefix.size());
+        if (number.empty() || number.size() > 6 || number.find_first_not_of("0123456789") != std::string::npos)
+            continue;
+        images.insert(std::make_pair(std::atoi(number.c_str()), file));
+    }
+    return images.count(1) ? images : std::map<int, std::string>();
+}
+
+//! Appends the folder's pairs; false if it is no sequence.
+bool addSequence(const std::string& folder, std::vector<ImagePair>& pairs)
+{
+    bool oxford = false;
+    std::map<int, std::string> images = numberedImages(folder, "");
+    if (images.empty())
+    {
+        images = numberedImages(folder, "img");
+        oxford = true;
+    }
+    if (images.empty())
+        return false;
+
+    ImagePair common;
+    common.set = baseName(folderOf(folder));
+    common.sequence = baseName(folder);
+    common.kind = kindOf(common.sequence);
+    common.referenceFile = images[1];
+    for (const char* extra : {"depth", "labels"})
+        if (fs::exists(join(join(folder, extra), "1.png")))
+            common.extraNames.push_back(extra);
+
+    std::vector<cv::String> homographies;
+    fs::glob(folder, oxford ? "H1to*" : "H_1_*", homographies);
+    for (const auto& image : images)
+    {
+        if (image.first <= 1)
+            continue;
+        ImagePair pair = common;
+        pair.target = std::to_string(image.first);
+        pair.targetFile = image.second;
+        if (!homographies.empty())
+            pair.homographyFile = join(folder, oxford ? "H1to" + pair.target + "p" : "H_1_" + pair.target);
+        pairs.push_back(pair);
+    }
+    return true;
+}
+
+void search(const std::string& folder, int depth, std::vector<ImagePair>& pairs)
+{
+    if (addSequence(folder, pairs) || depth == 0)
+        return;
+    std::vector<cv::String> entries;
+    fs::glob(folder, "*", entries, false, true);
+    std::sort(entries.begin(), entries.end());
+    for (const std::string& entry : entries)
+        if (fs::isDirectory(entry))
+            search(entry, depth - 1, pairs);
+}
+
+std::vector<std::string> fields(std::string line)
+{
+    if (!line.empty() && line.back() == '\r')
+        line.pop_back();
+    std::vector<std::string> out(1);
+    for (char c : line)
+        if (c == ',')
+            out.push_back("");
+        else
+            out.back() += c;
+    return out;
+}
+
+void addList(const std::string& file, std::vector<ImagePair>& pairs)
+{
+    static const std::set<Kind> kinds = {"light", "blur", "jpeg", "viewpoint", "zoom"};
+    const std::vector<std::string> head = {"reference", "target", "homography", "kind"};
+    std::ifstream in(file);
+    std::string line;
+    if (!std::getline(in, line) || fields(line) != head)
+        CV_Error(cv::Error::StsParseError, file + ": a list begins with the line reference,target,homography,kind");
+
+    const std::string folder = folderOf(file);
+    const std::string stem = baseName(file).substr(0, baseName(file).find_last_of('.'));
+    for (int number = 2; std::getline(in, line); number++)
+    {
+        if (line.empty())
+            continue;
+        const std::vector<std::string> f = fields(line);
+        ImagePair pair;
+        pair.set = stem;
+        pair.kind = f.size() == 4 && !f[3].empty() ? f[3] : "light";
+        if (f.size() == 4 && !f[0].empty() && !f[1].empty() && kinds.count(pair.kind))
+        {
+            pair.referenceFile = join(folder, f[0]);
+            pair.targetFile = join(folder, f[1]);
+            pair.homographyFile = f[2].empty() ? "" : join(folder, f[2]);
+            pair.sequence = baseName(folderOf(pair.referenceFile));
+            pair.target = f[1];
+            std::replace(pair.target.begin(), pair.target.end(), '/', '_');
+        }
+        else
+        {
+            pair.target = "line" + std::to_string(number);
+            pair.problem = file + ", line " + std::to_string(number) +
+                           ": not reference,target,homography,kind with a known kind";
+        }
+        pairs.push_back(pair);
+    }
+}
+
+}  // namespace
+
+std::string ImagePair::name() const { return set + "/" + sequence + "/" + target; }
+
+std::vector<ImagePair> findPairs(const std::vector<std::string>& roots)
+{
+    std::vector<ImagePair> pairs;
+    for (const std::string& root : roots)
+    {
+        if (!fs::exists(root))
+            CV_Error(cv::Error::StsObjectNotFound, root + ": no such folder or list file");
+        if (fs::isDirectory(root))
+            search(fs::canonical(root), 4, pairs);
+        else
+            addList(fs::canonical(root), pairs);
+    }
+    std::set<std::string> names;
+    for (const ImagePair& pair : pairs)
+        if (!names.insert(pair.name()).second)
+            CV_Error(cv::Error::StsBadArg, "two pairs are called " + pair.name() + "; rename a folder");
+    return pairs;
+}
+
+}  // namespace iib_tools

@@ -1,0 +1,63 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_TOOLS_DATASET_HPP
+#define IIB_TOOLS_DATASET_HPP
+
+#include <string>
+#include <vector>
+
+#include "opencv2/core.hpp"
+
+namespace iib_tools {
+
+/** What changes between the images of a sequence: "light", "blur", "jpeg", "viewpoint" or "zoom" (with
+rotation). Known for the sequences of Oxford by name and for HPatches by the prefix `v_`; "light" otherwise. */
+typedef std::string Kind;
+
+//! A reference image and a target image of the same scene; files are read by loadPair alone.
+struct ImagePair
+{
+    std::string set;       //!< name of the folder above the sequence, or of the list file
+    std::string sequence;  //!< name of the sequence's folder
+    std::string target;    //!< the target's number, or its file name in a list
+    Kind kind;
+    std::string referenceFile, targetFile;
+    std::string homographyFile;  //!< empty: static camera, identity
+    //! Maps of the image's size that lie beside reference and target: "depth", "labels", in this order.
+    std::vector<std::string> extraNames;
+    std::string problem;  //!< why the pair cannot be used, empty if nothing is known against it
+
+    std::string name() const;  //!< "set/sequence/target", unique in a data set
+};
+
+struct LoadedPair
+{
+    cv::Mat reference, target;                        //!< CV_8UC1
+    cv::Matx33d homography;                           //!< reference to target, pixels
+    std::vector<cv::Mat> referenceExtra, targetExtra; //!< one an ImagePair::extraNames, 8U or 16U
+};
+
+/** Finds all pairs (1, k) below the given folders, up to four levels deep, in the layouts
+ - `1.png`, `H_1_k` (also .ppm, .pgm, .jpg, .tif: HPatches), with `depth/k.png`, `labels/k.png` if any;
+ - `img1.ppm`, `H1to2p` (original Oxford);
+and in list files: a head line `reference,target,homography,kind`, then one pair a line, paths relative to
+the list, the last two fields may be empty (identity, "light").
+Sequences without any H file are of a static camera. The order is by path, numbers by value.
+@throws cv::Exception for a root that does not exist, a list without its head line, or two pairs of the
+same name. */
+std::vector<ImagePair> findPairs(const std::vector<std::string>& roots);
+
+//! @throws cv::Exception, in one line with the file's name, for a broken image or H file.
+LoadedPair loadPair(const ImagePair& pair);
+
+//! Nine finite numbers, row by row, not singular. @throws cv::Exception otherwise.
+cv::Matx33d readHomography(const std::string& file);
+
+//! @throws cv::Exception if the file is no readable image. flags as in cv::imread.
+cv::Mat readImage(const std::string& file, int flags);
+
+}  // namespace iib_tools
+
+#endif

@@ -1,0 +1,133 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "keypoints.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+#include "metrics.hpp"
+#include "opencv2/features2d.hpp"
+
+namespace iib_tools {
+namespace {
+
+bool rosInside(const cv::Point2d& centre, float radius, cv::Size size)
+{
+    return centre.x >= radius && centre.y >= radius && centre.x <= size.width - radius &&
+           centre.y <= size.height - radius;
+}
+
+//! Splits at commas into numbers; empty if a field is none.
+std::vector<float> parseNumbers(const std::string& line)
+{
+    std::vector<float> values;
+    const char* at = line.c_str();
+    for (;;)
+    {
+        char* end = nullptr;
+        const float value = std::strtof(at, &end);
+        if (end == at || !std::isfinite(value))
+            return std::vector<float>();
+        values.push_back(value);
+        if (*end == '\0' || *end == '\r')
+            return values;
+        if (*end != ',')
+            return std::vector<float>();
+        at = end + 1;
+    }
+}
+
+}  // namespace
+
+std::vector<cv::KeyPoint> sampleUniformly(const std::vector<cv::KeyPoint>& keypoints, int count)
+{
+    if (int(keypoints.size()) <= count)
+        return keypoints;
+    std::vector<cv::KeyPoint> sample;
+    for (int i = 0; i < count; i++)
+        sample.push_back(keypoints[size_t(uint64(i) * keypoints.size() / count)]);
+    return sample;
+}
+
+SeedPoints projectSeeds(const std::vector<cv::KeyPoint>& reference, const cv::Matx33d& homography,
+        cv::Size referenceSize, cv::Size targetSize, float radius, int count)
+{
+    std::vector<cv::KeyPoint> visible;
+    for (const cv::KeyPoint& keypoint : reference)
+        if (rosInside(keypoint.pt, radius, referenceSize) &&
+                rosInside(project(homography, keypoint.pt), radius, targetSize))
+            visible.push_back(keypoint);
+
+    SeedPoints seeds;
+    seeds.reference = sampleUniformly(visible, count);
+    for (size_t i = 0; i < seeds.reference.size(); i++)
+    {
+        seeds.reference[i].angle = -1;
+        seeds.reference[i].response = float(i);
+        seeds.target.push_back(seeds.reference[i]);
+        seeds.target[i].pt = project(homography, seeds.reference[i].pt);
+    }
+    return seeds;
+}
+
+std::vector<cv::KeyPoint> fastCorners(const cv::Mat& image)
+{
+    std::vector<cv::KeyPoint> corners;
+    cv::FAST(image, corners, 10, true);
+    return corners;
+}
+
+SeedPoints fastSeeds(const cv::Mat& reference, const cv::Mat& target, const cv::Matx33d& homography,
+        float radius, int count)
+{
+    std::vector<cv::KeyPoint> corners = fastCorners(reference);
+    for (cv::KeyPoint& corner : corners)
+        corner.size = 2 * radius;
+    return projectSeeds(corners, homography, reference.size(), target.size(), radius, count);
+}
+
+void orientByCentroid(const cv::Mat& image, float radius, std::vector<cv::KeyPoint>& keypoints)
+{
+    const int r = cvFloor(radius);
+    for (cv::KeyPoint& keypoint : keypoints)
+    {
+        const cv::Point centre(cvRound(keypoint.pt.x), cvRound(keypoint.pt.y));
+        double mx = 0, my = 0;
+        for (int dy = -r; dy <= r; dy++)
+            for (int dx = -r; dx <= r; dx++)
+            {
+                const cv::Point at(centre.x + dx, centre.y + dy);
+                if (dx * dx + dy * dy > r * r || !cv::Rect(cv::Point(), image.size()).contains(at))
+                    continue;
+                mx += dx * image.at<uchar>(at);
+                my += dy * image.at<uchar>(at);
+            }
+        keypoint.angle = cv::fastAtan2(float(my), float(mx));
+    }
+}
+
+std::vector<cv::KeyPoint> readKeypoints(const std::string& file)
+{
+    std::ifstream in(file);
+    if (!in)
+        CV_Error(cv::Error::StsObjectNotFound, file + ": cannot be read");
+    std::vector<cv::KeyPoint> keypoints;
+    std::string line;
+    for (int number = 1; std::getline(in, line); number++)
+    {
+        const std::vector<float> v = parseNumbers(line);
+        const bool names = number == 1 && line.compare(0, 3, "x,y") == 0;
+        if (names || line.empty())
+            continue;
+        if (v.size() < 3 || v.size() > 5 || v[2] <= 0)
+            CV_Error(cv::Error::StsParseError, file + ", line " + std::to_string(number) +
+                                                       ": not x,y,size[,angle[,response]] with size > 0");
+        keypoints.push_back(cv::KeyPoint(v[0], v[1], v[2], v.size() > 3 ? v[3] : -1.f, v.size() > 4 ? v[4] : 0.f));
+    }
+    return keypoints;
+}
+
+}  // namespace iib_tools

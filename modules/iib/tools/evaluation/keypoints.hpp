@@ -1,0 +1,50 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_TOOLS_KEYPOINTS_HPP
+#define IIB_TOOLS_KEYPOINTS_HPP
+
+#include <string>
+#include <vector>
+
+#include "opencv2/core.hpp"
+#include "opencv2/core/types.hpp"
+
+namespace iib_tools {
+
+//! The same scene points in both images; reference[i] and target[i] belong together.
+struct SeedPoints
+{
+    std::vector<cv::KeyPoint> reference, target;
+};
+
+/** At most `count` keypoints spread uniformly over the list, in its order: element i * size / count. A list
+in raster order, such as FAST's, is thereby sampled uniformly over its corners. */
+std::vector<cv::KeyPoint> sampleUniformly(const std::vector<cv::KeyPoint>& keypoints, int count);
+
+/** Protocol A (paper, "Experiments Using Predefined Feature Points with ROS"): projects the reference's
+points and samples `count` of those whose ROS, a square of side 2 * radius about the centre, lies inside both
+images. Angles become -1, KeyPoint::response the index of the seed, which survives descriptors that drop or
+reorder keypoints. */
+SeedPoints projectSeeds(const std::vector<cv::KeyPoint>& reference, const cv::Matx33d& homography,
+        cv::Size referenceSize, cv::Size targetSize, float radius, int count);
+
+//! FAST corners (size 7) of the whole image in raster order, with the threshold protocol A uses.
+std::vector<cv::KeyPoint> fastCorners(const cv::Mat& image);
+
+//! projectSeeds of the reference's fastCorners, KeyPoint::size 2 * radius: use a scale factor of 1.
+SeedPoints fastSeeds(const cv::Mat& reference, const cv::Mat& target, const cv::Matx33d& homography,
+        float radius, int count);
+
+//! Sets every angle to the direction from the centre to the intensity centroid of a disc, degrees clockwise.
+void orientByCentroid(const cv::Mat& image, float radius, std::vector<cv::KeyPoint>& keypoints);
+
+/** Reads lines `x,y,size,angle,response` (pixels, pixels, degrees or -1); trailing fields may be missing
+(angle -1, response 0), and a first line of names is skipped.
+@throws cv::Exception with file and line for anything else. */
+std::vector<cv::KeyPoint> readKeypoints(const std::string& file);
+
+}  // namespace iib_tools
+
+#endif

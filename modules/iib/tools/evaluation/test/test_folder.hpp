@@ -1,0 +1,46 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_TOOLS_TEST_FOLDER_HPP
+#define IIB_TOOLS_TEST_FOLDER_HPP
+
+#include <fstream>
+#include <string>
+
+#include "opencv2/core/utils/filesystem.hpp"
+#include "opencv2/ts.hpp"
+
+//! A folder of its own for one test, removed with the object.
+class TestFolder
+{
+public:
+    TestFolder() : path_(cv::tempfile()) { cv::utils::fs::createDirectories(path_); }
+    ~TestFolder() { cv::utils::fs::remove_all(path_); }
+    TestFolder(const TestFolder&) = delete;
+    TestFolder& operator=(const TestFolder&) = delete;
+
+    std::string path(const std::string& name) const { return path_ + "/" + name; }
+    void makeFolder(const std::string& name) const { cv::utils::fs::createDirectories(path(name)); }
+    void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
+
+private:
+    std::string path_;
+};
+
+//! The message of the cv::Exception that a statement throws, empty if it throws none.
+template<typename Statement>
+std::string messageOf(Statement statement)
+{
+    try
+    {
+        statement();
+    }
+    catch (const cv::Exception& e)
+    {
+        return e.err;
+    }
+    return "";
+}
+
+#endif

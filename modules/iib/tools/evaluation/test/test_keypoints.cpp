@@ -1,0 +1,85 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../keypoints.hpp"
+#include "opencv2/imgproc.hpp"
+#include "test_folder.hpp"
+
+namespace {
+using namespace iib_tools;
+
+TEST(Keypoints, sampled_uniformly_over_the_list)
+{
+    std::vector<cv::KeyPoint> list;
+    for (int i = 0; i < 10; i++)
+        list.push_back(cv::KeyPoint(float(i), 0, 1));
+    const std::vector<cv::KeyPoint> four = sampleUniformly(list, 4);
+    ASSERT_EQ(4u, four.size());
+    const float expected[] = {0, 2, 5, 7};
+    for (int i = 0; i < 4; i++)
+        EXPECT_EQ(expected[i], four[i].pt.x);
+    EXPECT_EQ(10u, sampleUniformly(list, 11).size());
+}
+
+TEST(Keypoints, seeds_lie_inside_both_images)
+{
+    const std::vector<cv::KeyPoint> corners = {cv::KeyPoint(31, 50, 64), cv::KeyPoint(32, 50, 64),
+        cv::KeyPoint(50, 50, 64), cv::KeyPoint(68, 50, 64), cv::KeyPoint(69, 50, 64)};
+    const cv::Matx33d shift(1, 0, 10, 0, 1, 0, 0, 0, 1);
+    const cv::Size size(100, 100);
+    SeedPoints seeds = projectSeeds(corners, cv::Matx33d::eye(), size, size, 32, 100);
+    EXPECT_EQ(3u, seeds.reference.size());
+    seeds = projectSeeds(corners, shift, size, size, 32, 100);
+    ASSERT_EQ(2u, seeds.reference.size());
+    EXPECT_EQ(42, seeds.target[0].pt.x);
+    EXPECT_EQ(32, seeds.reference[0].pt.x);
+    EXPECT_EQ(1, seeds.target[1].response);
+    EXPECT_EQ(-1, seeds.target[1].angle);
+    EXPECT_EQ(64, seeds.target[1].size);
+}
+
+TEST(Keypoints, fast_seeds_are_as_many_as_asked_and_repeatable)
+{
+    cv::Mat image(300, 400, CV_8UC1);
+    cv::randu(image, 0, 256);
+    const SeedPoints a = fastSeeds(image, image, cv::Matx33d::eye(), 32, 200);
+    const SeedPoints b = fastSeeds(image, image, cv::Matx33d::eye(), 32, 200);
+    ASSERT_EQ(200u, a.reference.size());
+    EXPECT_EQ(64, a.reference[0].size);
+    for (size_t i = 0; i < a.reference.size(); i++)
+        ASSERT_EQ(a.reference[i].pt, b.target[i].pt);
+}
+
+TEST(Keypoints, centroid_angle_turns_with_the_image)
+{
+    cv::Mat image(101, 101, CV_8UC1, cv::Scalar(0));
+    image.colRange(60, 101).setTo(200);
+    std::vector<cv::KeyPoint> centre(1, cv::KeyPoint(50, 50, 64));
+    orientByCentroid(image, 32, centre);
+    EXPECT_NEAR(0, std::remainder(centre[0].angle, 360.f), 0.5);
+    cv::Mat turned;
+    cv::rotate(image, turned, cv::ROTATE_90_CLOCKWISE);
+    orientByCentroid(turned, 32, centre);
+    EXPECT_NEAR(90, centre[0].angle, 0.5);
+}
+
+TEST(Keypoints, read_from_a_file)
+{
+    TestFolder folder;
+    folder.write("k.csv", "x,y,size,angle,response\n1.5,2,7,90,0.5\r\n3,4,8\n");
+    const std::vector<cv::KeyPoint> keypoints = readKeypoints(folder.path("k.csv"));
+    ASSERT_EQ(2u, keypoints.size());
+    EXPECT_EQ(1.5f, keypoints[0].pt.x);
+    EXPECT_EQ(90, keypoints[0].angle);
+    EXPECT_EQ(0.5f, keypoints[0].response);
+    EXPECT_EQ(-1, keypoints[1].angle);
+    for (const char* line : {"1,2", "1,2,0", "1,2,nan", "a,b,c", "1,2,3,4,5,6", "1,2,3,", "1;2;3"})
+    {
+        folder.write("k.csv", std::string("1,2,3\n") + line + "\n");
+        EXPECT_NE(std::string::npos, messageOf([&] { readKeypoints(folder.path("k.csv")); }).find("line 2")) << line;
+    }
+    EXPECT_NE("", messageOf([&] { readKeypoints(folder.path("missing")); }));
+}
+
+}  // namespace
