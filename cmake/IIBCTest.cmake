@@ -1,5 +1,6 @@
 # ctest entries: one for each test suite of opencv_test_iib, once with all instruction sets and once under
-# each pin WIDEST=DISABLED; a smoke run of the perf tests; the consumer of the installation.
+# each pin WIDEST=DISABLED; a smoke run of the perf tests; the
+# consumer of the installation; the demo.
 set(suites "${PROJECT_BINARY_DIR}/suites.cmake")
 set(pins "")
 if(IIB_DISPATCH)
@@ -16,3 +17,7 @@ add_test(NAME perf-smoke COMMAND opencv_perf_iib --perf_min_samples=1 --perf_for
 add_test(NAME consumer COMMAND "${CMAKE_COMMAND}" "-DBUILD=${PROJECT_BINARY_DIR}"
   "-DWORK=${PROJECT_BINARY_DIR}/consumer" "-DCXX=${CMAKE_CXX_COMPILER}" "-DFLAGS=${CMAKE_CXX_FLAGS}"
   -P "${PROJECT_SOURCE_DIR}/cmake/consumer/test.cmake")
+if(TARGET iib_demo)
+  add_test(NAME demo COMMAND "${CMAKE_COMMAND}" "-DDEMO=$<TARGET_FILE:iib_demo>"
+    "-DWORK=${PROJECT_BINARY_DIR}/demo-test" -P "${PROJECT_SOURCE_DIR}/cmake/DemoTest.cmake")
+endif()
