@@ -1,3 +1,4 @@
+# shellcheck shell=sh
 # Shared by the scripts here; sourced, not run. Sets root (the repository) and cache.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -28,7 +29,6 @@ need() {
     fi
     say "installing with apt:$missing"
     $as_root apt-get -q update
-    # shellcheck disable=SC2086
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -y install --no-install-recommends $missing
 }
 

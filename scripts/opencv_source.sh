@@ -28,10 +28,10 @@ if [ ! -f "$tree/CMakeLists.txt" ]; then
          -o Dir::Cache=$work -o APT::Sandbox::User=$(id -un)"
     echo "fetching the source of opencv $version with apt" >&2
     (
-        cd "$work"
-        apt-get $apt update
-        apt-get $apt source --download-only "opencv=$version"
-        tar -xf opencv_*.orig.tar.* -C tree --strip-components=1
+        cd "$work" &&
+            apt-get $apt update &&
+            apt-get $apt source --download-only "opencv=$version" &&
+            tar -xf opencv_*.orig.tar.* -C tree --strip-components=1
     ) >"$work/log" 2>&1 || {
         tail -n 5 "$work/log" >&2
         exit 1
