@@ -24,6 +24,6 @@ for argument in "$@"; do
 done
 if [ $images = 0 ]; then
     pair="$root/modules/iib/tools/synthetic"
-    set -- "$pair/day.png" "$pair/night.png" "$@"
+    set -- "$pair/day.png" "$pair/night.png" --homography "$pair/H_day_night" "$@"
 fi
 exec "$build/iib_demo" "$@"

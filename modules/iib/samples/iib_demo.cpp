@@ -34,21 +34,22 @@ static void writePicture(const std::string& path, const cv::Mat& picture)
         // no encoder for the file name's extension
     }
     if (!written)
-        throw UserError("cannot write the picture " + path + " (is it a .png or .jpg in a folder that exists?)");
+        throw UserError(
+                "cannot write the picture " + path + " (is it a .png or .jpg in a folder that exists?)");
 }
 
 static void printTable(const Options& options, const Pair& pair, const std::vector<Result>& results)
 {
     std::printf("%s: %d and %d keypoints, detected in %.1f ms\n\n", options.detector.c_str(),
-                (int)pair.keypoints[0].size(), (int)pair.keypoints[1].size(), pair.detectMs);
+            (int)pair.keypoints[0].size(), (int)pair.keypoints[1].size(), pair.detectMs);
     std::printf("descriptor  bytes  matches  correct  precision  describe ms  match ms  verify ms\n");
     for (const Result& r : results)
         std::printf("%-10s  %5d  %7d  %7d  %7.1f %%  %11.1f  %8.1f  %9.1f\n", r.name.c_str(), r.bytes,
-                    (int)r.matches.size(), r.correctCount(), 100 * r.precision(), r.describeMs, r.matchMs,
-                    r.verifyMs);
+                (int)r.matches.size(), r.correctCount(), 100 * r.precision(), r.describeMs, r.matchMs,
+                r.verifyMs);
     std::printf("\ncorrect: within %g px of %s\npicture: %s\n", MAX_ERROR,
-                options.homography.empty() ? "the homography that MAGSAC finds" : options.homography.c_str(),
-                options.out.c_str());
+            options.homography.empty() ? "the homography that MAGSAC finds" : options.homography.c_str(),
+            options.out.c_str());
 }
 
 static void run(const Options& options)

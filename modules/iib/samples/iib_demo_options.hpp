@@ -21,7 +21,7 @@ static const char* const USAGE =
         "usage: iib_demo imageA imageB [options]\n"
         "  --detector NAME     FAST, AGAST, ORB (default), BRISK, AKAZE, KAZE, SIFT or GFTT\n"
         "  --granularity G     levels of IIB, 1 to 6 (default 4)\n"
-        "  --homography FILE   3x3 numbers, from A to B, that tell correct matches; else MAGSAC estimates it\n"
+        "  --homography FILE   3x3 numbers, from A to B, to judge by; else MAGSAC estimates it\n"
         "  --out FILE          the picture (default iib_demo.png)\n";
 
 struct Options

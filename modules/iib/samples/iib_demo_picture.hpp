@@ -26,7 +26,8 @@ inline void drawCaption(cv::Mat& canvas, const Result& result)
     const int correct = result.correctCount(), y = CAPTION_HEIGHT - 15;
     int x = writeText(canvas, result.name + ":  ", cv::Point(14, y), INK);
     x = writeText(canvas, cv::format("%d correct", correct), cv::Point(x, y), CORRECT);
-    x = writeText(canvas, cv::format("  %d wrong", (int)result.matches.size() - correct), cv::Point(x, y), WRONG);
+    x = writeText(
+            canvas, cv::format("  %d wrong", (int)result.matches.size() - correct), cv::Point(x, y), WRONG);
     writeText(canvas, cv::format("  precision %.0f %%", 100 * result.precision()), cv::Point(x, y), INK);
 }
 
@@ -39,8 +40,8 @@ inline cv::Mat drawResult(const Pair& pair, const Result& result)
     for (int i = 0; i < 2; i++)
     {
         scale[i] = (double)HALF_WIDTH / pair.images[i].cols;
-        cv::resize(pair.images[i], halves[i], cv::Size(HALF_WIDTH, cvRound(pair.images[i].rows * scale[i])), 0, 0,
-                   cv::INTER_AREA);
+        cv::resize(pair.images[i], halves[i], cv::Size(HALF_WIDTH, cvRound(pair.images[i].rows * scale[i])),
+                0, 0, cv::INTER_AREA);
         height = std::max(height, halves[i].rows);
     }
     cv::Mat canvas(CAPTION_HEIGHT + height, 2 * HALF_WIDTH, CV_8UC3, PAPER);
@@ -63,8 +64,9 @@ inline cv::Mat drawResult(const Pair& pair, const Result& result)
             cv::circle(canvas, from, 2, color, cv::FILLED, cv::LINE_AA);
             cv::circle(canvas, to, 2, color, cv::FILLED, cv::LINE_AA);
         }
-        // Half transparent, or a few hundred lines would hide the images.
-        cv::addWeighted(lines, 0.4, canvas, 0.6, 0, canvas);
+        // Transparent, or a few hundred lines would hide the images.
+        const double opacity = correct ? 0.55 : 0.35;
+        cv::addWeighted(lines, opacity, canvas, 1 - opacity, 0, canvas);
     }
     drawCaption(canvas, result);
     return canvas;

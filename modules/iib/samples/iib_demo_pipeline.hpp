@@ -92,7 +92,8 @@ inline cv::Ptr<cv::DescriptorMatcher> createMatcher(const cv::Ptr<cv::Feature2D>
     if (descriptor->descriptorType() != CV_8U)
         return cv::makePtr<cv::BFMatcher>(descriptor->defaultNorm(), true);
     cv::Ptr<cv::iib::IIB> iib = descriptor.dynamicCast<cv::iib::IIB>();
-    const std::vector<int> levels = iib ? iib->levelSizes() : std::vector<int>(1, descriptor->descriptorSize());
+    const std::vector<int> levels =
+            iib ? iib->levelSizes() : std::vector<int>(1, descriptor->descriptorSize());
     return cv::iib::HierarchicalMatcher::create(levels, cv::iib::HierarchicalMatcher::EXACT, 0.35f, true);
 }
 
@@ -106,7 +107,9 @@ inline void verify(const cv::Mat& H, Result& result)
         b.push_back(result.keypoints[1][m.trainIdx].pt);
     }
     result.correct.assign(a.size(), 0);
-    const cv::Mat model = !H.empty() ? H : a.size() < 4 ? cv::Mat() : cv::findHomography(a, b, cv::USAC_MAGSAC, MAX_ERROR);
+    cv::Mat model = H;
+    if (model.empty() && a.size() >= 4)
+        model = cv::findHomography(a, b, cv::USAC_MAGSAC, MAX_ERROR);
     if (a.empty() || model.empty())
         return;
     cv::perspectiveTransform(a, projected, model);
@@ -114,8 +117,8 @@ inline void verify(const cv::Mat& H, Result& result)
         result.correct[i] = cv::norm(projected[i] - b[i]) <= MAX_ERROR;
 }
 
-inline Result matchPair(const std::string& name, const cv::Ptr<cv::Feature2D>& descriptor, const Pair& pair,
-        const cv::Mat& H)
+inline Result matchPair(
+        const std::string& name, const cv::Ptr<cv::Feature2D>& descriptor, const Pair& pair, const cv::Mat& H)
 {
     Result result;
     result.name = name;
