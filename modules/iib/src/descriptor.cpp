@@ -134,7 +134,7 @@ private:
 void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArrays extraArrays,
                                           std::vector<KeyPoint>& keypoints, OutputArray descriptors)
 {
-    CV_INSTRUMENT_REGION();
+    CV_TRACE_FUNCTION();
 
     const Mat image = imageArray.getMat();
     std::vector<Mat> extra;

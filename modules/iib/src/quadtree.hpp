@@ -14,13 +14,14 @@ namespace iib {
  geometry, in pixels of the image. */
 struct Ros
 {
-    double x, y, side;  //!< top left corner and side
+    double x, y, side;  //!< top left corner and side; pixel i covers [i, i + 1)
 
     Ros(const KeyPoint& keypoint, float scaleFactor, int granularity)
         : side(std::max((double)scaleFactor * keypoint.size, (double)(1 << granularity)))
     {
-        x = keypoint.pt.x - side / 2;
-        y = keypoint.pt.y - side / 2;
+        // KeyPoint::pt counts from the centre of pixel 0
+        x = keypoint.pt.x + 0.5 - side / 2;
+        y = keypoint.pt.y + 0.5 - side / 2;
     }
 
     /** Edge k = 0..n of n cells along an axis on which the ROS begins at `start`, clamped to [0, limit].

@@ -5,6 +5,7 @@
 #include "oracle.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -93,8 +94,8 @@ struct Ros
     Ros(const IIB& iib, const KeyPoint& kp)
         : side(std::max((double)iib.getScaleFactor() * kp.size, (double)(1 << iib.getGranularity())))
     {
-        x = kp.pt.x - side / 2;
-        y = kp.pt.y - side / 2;
+        x = kp.pt.x + 0.5 - side / 2;
+        y = kp.pt.y + 0.5 - side / 2;
     }
 };
 
