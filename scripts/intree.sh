@@ -5,8 +5,10 @@
 
 need $build_packages xz-utils libpng-dev zlib1g-dev python3-dev python3-numpy
 source=$("$root/scripts/opencv_source.sh")
-# A folder for each copy of the repository: CMake caches absolute paths.
-build="$cache/intree-$(echo "$root" | sha1sum | cut -c1-12)"
+# One folder for all copies of the repository: another one's path rebuilds the module alone.
+build="$source.intree"
+exec 8>"$build.lock"
+flock 8
 
 say "building OpenCV with the module in $build (minutes for the first time)"
 # OFF: what Debian's source lacks, then formats and back ends that nothing here reads.
@@ -29,4 +31,9 @@ say "opencv_test_iib, in-tree"
 say "opencv_perf_iib, in-tree, a smoke run"
 "$build/bin/opencv_perf_iib" --perf_min_samples=1 --perf_force_samples=1
 say "cv2.iib"
-PYTHONPATH="$build/lib/python3" /usr/bin/python3 "$root/modules/iib/misc/python/test/test_iib.py" -v
+export PYTHONPATH="$build/lib/python3"
+/usr/bin/python3 "$root/modules/iib/misc/python/test/test_iib.py" -v
+say "the README's Python program, on the demo's pair"
+sed -n '/^```python$/,/^```$/{/^```/!p}' "$root/README.md" >"$build/readme.py"
+pair="$root/modules/iib/tools/synthetic"
+/usr/bin/python3 "$build/readme.py" "$pair/day.png" "$pair/night.png" | grep -x '[1-9][0-9]* mutual matches'

@@ -1,5 +1,5 @@
-# Installs BUILD into a new prefix, builds the README's C++ program against that, by CMake and by pkg-config,
-# and runs it on the demo's pair of images.
+# Installs BUILD into a new prefix, builds the README's C++ against that, by CMake and by pkg-config,
+# and runs its program on the demo's pair of images.
 # cmake -DBUILD=<build folder> -DWORK=<scratch folder> -DCXX=<compiler> -DFLAGS=<flags> -P test.cmake
 file(REMOVE_RECURSE "${WORK}")
 set(prefix "${WORK}/prefix")
@@ -19,10 +19,11 @@ function(run_consumer program)
 endfunction()
 
 file(READ "${root}/README.md" readme)
-if(NOT readme MATCHES "```cpp\n(#include[^`]*)```")
-  message(FATAL_ERROR "README.md shows no C++ program")
+if(NOT readme MATCHES "```cpp\n(#include[^`]*)```.*```cpp\n([^`]*)```")
+  message(FATAL_ERROR "README.md lacks its C++ program or the fragment after it")
 endif()
-file(WRITE "${WORK}/consumer.cpp" "${CMAKE_MATCH_1}")
+file(WRITE "${WORK}/consumer.cpp"
+  "${CMAKE_MATCH_1}\nvoid fragment(const cv::Mat& descriptors)\n{\n${CMAKE_MATCH_2}}\n")
 
 run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${prefix}")
 run("${CMAKE_COMMAND}" -S "${CMAKE_CURRENT_LIST_DIR}" -B "${WORK}/cmake" "-DCMAKE_PREFIX_PATH=${prefix}"
