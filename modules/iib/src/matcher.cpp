@@ -1,0 +1,387 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "precomp.hpp"
+#include "index.hpp"
+#include "index_io.hpp"
+
+#include <atomic>
+
+namespace cv {
+namespace iib {
+
+namespace {
+
+struct Parameters
+{
+    std::vector<int> levelSizes;
+    int mode;
+    std::vector<float> thresholds; // one for each level but the last
+    bool crossCheck;
+    float maxRatio;
+};
+
+void check(const Parameters& p)
+{
+    if (p.levelSizes.empty())
+        CV_Error(Error::StsBadArg, "levelSizes is empty: give the bytes of each level, or the descriptor's size");
+    uint64 width = 0;
+    for (size_t i = 0; i < p.levelSizes.size(); i++)
+    {
+        if (p.levelSizes[i] <= 0)
+            CV_Error_(Error::StsOutOfRange, ("levelSizes[%d] is %d: each has to be > 0", (int)i, p.levelSizes[i]));
+        width += p.levelSizes[i];
+    }
+    if (width > 1 << 20)
+        CV_Error(Error::StsOutOfRange, "levelSizes: descriptors of more than 1 MB are not supported");
+    if (p.mode != HierarchicalMatcher::EXACT && p.mode != HierarchicalMatcher::THRESHOLD &&
+        p.mode != HierarchicalMatcher::ADAPTIVE)
+        CV_Error_(Error::StsBadArg, ("mode is %d: use EXACT, THRESHOLD or ADAPTIVE", p.mode));
+    if (p.thresholds.size() + 1 != p.levelSizes.size())
+        CV_Error_(Error::StsBadArg, ("%d thresholds for %d levels: give one for each level but the last, or a single "
+                                     "one for all", (int)p.thresholds.size(), (int)p.levelSizes.size()));
+    for (size_t i = 0; i < p.thresholds.size(); i++)
+        if (!(p.thresholds[i] >= 0 && p.thresholds[i] <= 1))
+            CV_Error_(Error::StsOutOfRange, ("the threshold is %g: it has to be 0 to 1", p.thresholds[i]));
+    if (!(p.maxRatio > 0 && p.maxRatio <= 1))
+        CV_Error_(Error::StsOutOfRange, ("maxRatio is %g: it has to be above 0 and at most 1", p.maxRatio));
+}
+
+// Shared by an object and its clones without train data, which the calls with two sets make.
+struct Counters
+{
+    Counters() : compared(0), all(0) {}
+    std::atomic<uint64> compared, all;
+};
+
+class HierarchicalMatcherImpl CV_FINAL : public HierarchicalMatcher
+{
+public:
+    explicit HierarchicalMatcherImpl(const Parameters& p)
+        : parameters(p), index(makePtr<HammingIndex>(p.levelSizes)), counters(makePtr<Counters>())
+    {
+    }
+
+    std::vector<int> levelSizes() const CV_OVERRIDE { return parameters.levelSizes; }
+
+    void setMode(int mode) CV_OVERRIDE
+    {
+        Parameters changed = parameters;
+        changed.mode = mode;
+        set(changed);
+    }
+    int getMode() const CV_OVERRIDE { return parameters.mode; }
+
+    void setThresholds(const std::vector<float>& thresholds) CV_OVERRIDE
+    {
+        Parameters changed = parameters;
+        changed.thresholds = thresholds.size() == 1
+            ? std::vector<float>(parameters.levelSizes.size() - 1, thresholds[0]) : thresholds;
+        set(changed);
+    }
+    std::vector<float> getThresholds() const CV_OVERRIDE { return parameters.thresholds; }
+
+    void setCrossCheck(bool crossCheck) CV_OVERRIDE { parameters.crossCheck = crossCheck; }
+    bool getCrossCheck() const CV_OVERRIDE { return parameters.crossCheck; }
+
+    void setMaxRatio(float maxRatio) CV_OVERRIDE
+    {
+        Parameters changed = parameters;
+        changed.maxRatio = maxRatio;
+        set(changed);
+    }
+    float getMaxRatio() const CV_OVERRIDE { return parameters.maxRatio; }
+
+    double matchCost() const CV_OVERRIDE
+    {
+        const uint64 all = counters->all;
+        return all ? (double)counters->compared / (double)all : 0;
+    }
+    void resetCost() CV_OVERRIDE
+    {
+        counters->compared = 0;
+        counters->all = 0;
+    }
+
+    bool isMaskSupported() const CV_OVERRIDE { return true; }
+    void add(InputArrayOfArrays descriptors) CV_OVERRIDE;
+    void clear() CV_OVERRIDE
+    {
+        HierarchicalMatcher::clear();
+        index = makePtr<HammingIndex>(parameters.levelSizes);
+    }
+    Ptr<DescriptorMatcher> clone(bool emptyTrainData) const CV_OVERRIDE;
+
+    using DescriptorMatcher::read;
+    using DescriptorMatcher::write;
+    void read(const FileNode& node) CV_OVERRIDE;
+    void write(FileStorage& fs) const CV_OVERRIDE;
+    String getDefaultName() const CV_OVERRIDE { return "HierarchicalMatcher"; }
+
+    void knnMatchArrays(InputArray queries, OutputArray indices, OutputArray distances, int k,
+                        InputArrayOfArrays masks, OutputArray imageIndices) const CV_OVERRIDE;
+    void knnMatchArrays(InputArray queries, InputArray trains, OutputArray indices, OutputArray distances, int k,
+                        InputArray mask) const CV_OVERRIDE;
+    void saveIndex(const String& filename) const CV_OVERRIDE;
+
+    static Ptr<HierarchicalMatcher> load(const String& filename);
+
+protected:
+    void knnMatchImpl(InputArray queries, std::vector<std::vector<DMatch> >& matches, int k,
+                      InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE;
+    void radiusMatchImpl(InputArray queries, std::vector<std::vector<DMatch> >& matches, float maxDistance,
+                         InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE;
+
+private:
+    void set(const Parameters& changed)
+    {
+        check(changed);
+        parameters = changed;
+    }
+
+    Mat checked(const Mat& descriptors) const;
+    std::vector<Mat> checkedMasks(InputArrayOfArrays masks, int queries) const;
+    SearchPlan plan() const;
+    Neighbours nearest(InputArray queries, int k, InputArrayOfArrays masks) const;
+    void count(const SearchCost& cost) const
+    {
+        counters->compared += cost.compared;
+        counters->all += cost.all;
+    }
+    DMatch match(int query, Neighbour n) const
+    {
+        const size_t image = index->imageOf(indexOf(n));
+        return DMatch(query, (int)(indexOf(n) - index->start(image)), (int)image, (float)distanceOf(n));
+    }
+
+    Parameters parameters;
+    Ptr<HammingIndex> index;
+    Ptr<Counters> counters;
+};
+
+Mat HierarchicalMatcherImpl::checked(const Mat& descriptors) const
+{
+    const int width = index->layout().bytes();
+    if (descriptors.empty())
+        return Mat(0, width, CV_8U);
+    if (descriptors.dims != 2 || descriptors.type() != CV_8U)
+        CV_Error(Error::StsUnsupportedFormat, "Descriptors have to be a matrix of type CV_8U, a row a descriptor");
+    if (descriptors.cols != width)
+        CV_Error_(Error::StsUnmatchedSizes, ("Descriptors have %d columns, but the level sizes add up to %d: create "
+                                             "the matcher with the level sizes of these descriptors",
+                                             descriptors.cols, width));
+    return descriptors;
+}
+
+std::vector<Mat> HierarchicalMatcherImpl::checkedMasks(InputArrayOfArrays masks_, int queries) const
+{
+    std::vector<Mat> masks;
+    masks_.getMatVector(masks);
+    bool any = false;
+    for (size_t i = 0; i < masks.size(); i++)
+        any = any || !masks[i].empty();
+    if (!any)
+        return std::vector<Mat>();
+    if (masks.size() != index->images())
+        CV_Error_(Error::StsBadSize, ("%d masks for %d train images: give one for each, empty for \"all allowed\"",
+                                      (int)masks.size(), (int)index->images()));
+    for (size_t i = 0; i < masks.size(); i++)
+        if (!masks[i].empty() && (masks[i].type() != CV_8UC1 || masks[i].rows != queries ||
+                                  (size_t)masks[i].cols != index->rows(i)))
+            CV_Error_(Error::StsBadMask, ("masks[%d] has to be CV_8UC1 with %d rows (queries) and %d columns (train "
+                                          "rows)", (int)i, queries, (int)index->rows(i)));
+    return masks;
+}
+
+SearchPlan HierarchicalMatcherImpl::plan() const
+{
+    switch (parameters.mode)
+    {
+    case THRESHOLD: return thresholdPlan(index->layout(), parameters.thresholds);
+    case ADAPTIVE: return adaptivePlan(index->layout());
+    default: return exactPlan();
+    }
+}
+
+Neighbours HierarchicalMatcherImpl::nearest(InputArray queries_, int k, InputArrayOfArrays masks) const
+{
+    const Mat queries = checked(queries_.getMat());
+    SearchCost cost;
+    Neighbours found = index->nearest(queries, plan(), k, parameters.crossCheck, parameters.maxRatio,
+                                      checkedMasks(masks, queries.rows), cost);
+    count(cost);
+    return found;
+}
+
+void HierarchicalMatcherImpl::add(InputArrayOfArrays descriptors)
+{
+    std::vector<Mat> images;
+    if (descriptors.isMatVector() || descriptors.isUMatVector())
+        descriptors.getMatVector(images);
+    else
+        images.push_back(descriptors.getMat());
+    for (size_t i = 0; i < images.size(); i++)
+        images[i] = checked(images[i]);
+    for (size_t i = 0; i < images.size(); i++)
+    {
+        index->add(images[i]);
+        trainDescCollection.push_back(images[i]);
+        utrainDescCollection.push_back(UMat()); // checkMasks reads both at the same place
+    }
+}
+
+Ptr<DescriptorMatcher> HierarchicalMatcherImpl::clone(bool emptyTrainData) const
+{
+    Ptr<HierarchicalMatcherImpl> copy = makePtr<HierarchicalMatcherImpl>(parameters);
+    if (emptyTrainData)
+        copy->counters = counters;
+    else
+    {
+        copy->index = makePtr<HammingIndex>(*index);
+        for (size_t i = 0; i < trainDescCollection.size(); i++)
+            copy->trainDescCollection.push_back(trainDescCollection[i].clone());
+        copy->utrainDescCollection.resize(utrainDescCollection.size());
+    }
+    return copy;
+}
+
+// Drops the empty rows that compactResult asks to drop.
+void compact(std::vector<std::vector<DMatch> >& matches)
+{
+    matches.erase(std::remove_if(matches.begin(), matches.end(),
+                                 [](const std::vector<DMatch>& row) { return row.empty(); }), matches.end());
+}
+
+void HierarchicalMatcherImpl::knnMatchImpl(InputArray queries, std::vector<std::vector<DMatch> >& matches, int k,
+                                           InputArrayOfArrays masks, bool compactResult)
+{
+    const Neighbours found = nearest(queries, k, masks);
+    matches.assign(found.rows(), std::vector<DMatch>());
+    for (int query = 0; query < (int)matches.size(); query++)
+        for (int i = 0; i < found.size() && found[query][i] != NO_NEIGHBOUR; i++)
+            matches[query].push_back(match(query, found[query][i]));
+    if (compactResult)
+        compact(matches);
+}
+
+void HierarchicalMatcherImpl::radiusMatchImpl(InputArray queries_, std::vector<std::vector<DMatch> >& matches,
+                                              float maxDistance, InputArrayOfArrays masks, bool compactResult)
+{
+    const Mat queries = checked(queries_.getMat());
+    const HammingLayout& layout = index->layout();
+    const int radius = cvFloor(std::min((double)maxDistance, 8. * layout.bytes()));
+    SearchCost cost;
+    const std::vector<std::vector<Neighbour> > found =
+            index->within(queries, parameters.mode == THRESHOLD ? plan() : radiusPlan(layout, radius), radius,
+                          checkedMasks(masks, queries.rows), cost);
+    count(cost);
+    matches.assign(found.size(), std::vector<DMatch>());
+    for (int query = 0; query < (int)found.size(); query++)
+        for (size_t i = 0; i < found[query].size(); i++)
+            matches[query].push_back(match(query, found[query][i]));
+    if (compactResult)
+        compact(matches);
+}
+
+void HierarchicalMatcherImpl::knnMatchArrays(InputArray queries, OutputArray indices_, OutputArray distances_,
+                                             int k, InputArrayOfArrays masks, OutputArray imageIndices_) const
+{
+    if (k <= 0)
+        CV_Error_(Error::StsOutOfRange, ("k is %d: it has to be > 0", k));
+    const Neighbours found = nearest(queries, k, masks);
+    Mat indices((int)found.rows(), k, CV_32S, Scalar(-1)), distances = indices.clone(), images = indices.clone();
+    for (int query = 0; query < indices.rows; query++)
+        for (int i = 0; i < found.size() && found[query][i] != NO_NEIGHBOUR; i++)
+        {
+            const DMatch m = match(query, found[query][i]);
+            indices.at<int>(query, i) = m.trainIdx;
+            distances.at<int>(query, i) = distanceOf(found[query][i]);
+            images.at<int>(query, i) = m.imgIdx;
+        }
+    indices.copyTo(indices_);
+    distances.copyTo(distances_);
+    if (imageIndices_.needed())
+        images.copyTo(imageIndices_);
+}
+
+void HierarchicalMatcherImpl::knnMatchArrays(InputArray queries, InputArray trains, OutputArray indices,
+                                             OutputArray distances, int k, InputArray mask) const
+{
+    Ptr<DescriptorMatcher> other = clone(true);
+    other->add(trains);
+    other.staticCast<HierarchicalMatcherImpl>()->knnMatchArrays(queries, indices, distances, k,
+                                                                std::vector<Mat>(1, mask.getMat()), noArray());
+}
+
+void HierarchicalMatcherImpl::write(FileStorage& fs) const
+{
+    fs << "levelSizes" << parameters.levelSizes << "mode" << parameters.mode << "thresholds" << parameters.thresholds
+       << "crossCheck" << parameters.crossCheck << "maxRatio" << parameters.maxRatio;
+}
+
+void HierarchicalMatcherImpl::read(const FileNode& node)
+{
+    Parameters p = parameters;
+    if (!node["levelSizes"].empty())
+    {
+        node["levelSizes"] >> p.levelSizes;
+        p.thresholds.assign(std::max(p.levelSizes.size(), (size_t)1) - 1, 0.35f);
+    }
+    cv::read(node["mode"], p.mode, p.mode);
+    if (!node["thresholds"].empty())
+        node["thresholds"] >> p.thresholds;
+    cv::read(node["crossCheck"], p.crossCheck, p.crossCheck);
+    cv::read(node["maxRatio"], p.maxRatio, p.maxRatio);
+    check(p);
+    if (p.levelSizes != parameters.levelSizes)
+    {
+        if (index->rows() > 0)
+            CV_Error(Error::StsBadArg, "Other level sizes cannot be read while there are train descriptors: clear() first");
+        clear();
+        index = makePtr<HammingIndex>(p.levelSizes);
+    }
+    parameters = p;
+}
+
+void HierarchicalMatcherImpl::saveIndex(const String& filename) const
+{
+    IndexFile file;
+    file.levelSizes = parameters.levelSizes;
+    file.mode = parameters.mode;
+    file.crossCheck = parameters.crossCheck;
+    file.maxRatio = parameters.maxRatio;
+    file.thresholds = parameters.thresholds;
+    for (size_t i = 0; i < index->images(); i++)
+        file.images.push_back(index->descriptors(i));
+    writeIndexFile(filename, file);
+}
+
+Ptr<HierarchicalMatcher> HierarchicalMatcherImpl::load(const String& filename)
+{
+    const IndexFile file = readIndexFile(filename);
+    const Parameters p = { file.levelSizes, file.mode, file.thresholds, file.crossCheck, file.maxRatio };
+    check(p);
+    Ptr<HierarchicalMatcherImpl> matcher = makePtr<HierarchicalMatcherImpl>(p);
+    matcher->add(file.images);
+    return matcher;
+}
+
+}  // namespace
+
+Ptr<HierarchicalMatcher> HierarchicalMatcher::create(const std::vector<int>& levelSizes, int mode, float threshold,
+                                                     bool crossCheck)
+{
+    const size_t thresholds = std::max(levelSizes.size(), (size_t)1) - 1;
+    const Parameters p = { levelSizes, mode, std::vector<float>(thresholds, threshold), crossCheck, 1.f };
+    check(p);
+    return makePtr<HierarchicalMatcherImpl>(p);
+}
+
+Ptr<HierarchicalMatcher> HierarchicalMatcher::loadIndex(const String& filename)
+{
+    return HierarchicalMatcherImpl::load(filename);
+}
+
+}  // namespace iib
+}  // namespace cv

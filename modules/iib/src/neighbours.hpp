@@ -1,0 +1,74 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_NEIGHBOURS_HPP
+#define OPENCV_IIB_NEIGHBOURS_HPP
+
+#include "opencv2/core.hpp"
+
+#include <algorithm>
+#include <climits>
+
+namespace cv {
+namespace iib {
+
+//! A neighbour as one number: distance above, index below, so that ties go to the lowest index.
+typedef uint64 Neighbour;
+const int NEIGHBOUR_INDEX_BITS = 40;
+const Neighbour NO_NEIGHBOUR = ~(Neighbour)0;
+
+inline Neighbour neighbour(int distance, size_t index)
+{
+    return (Neighbour)distance << NEIGHBOUR_INDEX_BITS | index;
+}
+inline int distanceOf(Neighbour n) { return (int)(n >> NEIGHBOUR_INDEX_BITS); }
+inline size_t indexOf(Neighbour n) { return (size_t)(n & (((Neighbour)1 << NEIGHBOUR_INDEX_BITS) - 1)); }
+
+//! The k nearest neighbours of each of many codes, in ascending order; NO_NEIGHBOUR where there are fewer.
+class Neighbours
+{
+public:
+    //! `padding` more entries are there for vectors that read below() past the end.
+    Neighbours(size_t rows, int k_, size_t padding = 0)
+        : k(k_), keys(rows * k_, NO_NEIGHBOUR), thresholds(rows + padding, INT_MAX)
+    {
+    }
+
+    int size() const { return k; }
+    size_t rows() const { return keys.size() / k; }
+    Neighbour* operator[](size_t row) { return &keys[row * k]; }
+    const Neighbour* operator[](size_t row) const { return &keys[row * k]; }
+    //! For each row: a new neighbour with a higher index has to be nearer than this.
+    const int* below() const { return thresholds.data(); }
+
+    void insert(size_t row, Neighbour n)
+    {
+        Neighbour* first = (*this)[row];
+        Neighbour* last = first + k - 1;
+        if (n >= *last)
+            return;
+        Neighbour* place = std::upper_bound(first, last, n);
+        std::copy_backward(place, last, last + 1);
+        *place = n;
+        if (*last != NO_NEIGHBOUR)
+            thresholds[row] = distanceOf(*last);
+    }
+
+    void merge(const Neighbours& other)
+    {
+        for (size_t row = 0; row < rows(); row++)
+            for (int i = 0; i < k; i++)
+                insert(row, other[row][i]);
+    }
+
+private:
+    int k;
+    std::vector<Neighbour> keys;
+    std::vector<int> thresholds;
+};
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

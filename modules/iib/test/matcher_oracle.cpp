@@ -1,0 +1,131 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "matcher_oracle.hpp"
+
+namespace opencv_test {
+
+Mat randomDescriptors(uint64 seed, int rows, int bytes)
+{
+    RNG rng(seed), centres(7);
+    Mat base(16, bytes, CV_8U), result(rows, bytes, CV_8U);
+    centres.fill(base, RNG::UNIFORM, 0, 256);
+    for (int i = 0; i < rows; i++)
+    {
+        base.row(rng.uniform(0, base.rows)).copyTo(result.row(i));
+        for (int flips = rng.uniform(0, bytes * 2); flips > 0; flips--)
+            result.at<uchar>(i, rng.uniform(0, bytes)) ^= (uchar)(1 << rng.uniform(0, 8));
+    }
+    return result;
+}
+
+Mat randomMask(uint64 seed, int rows, int cols, double share)
+{
+    RNG rng(seed);
+    Mat values(rows, cols, CV_64F);
+    rng.fill(values, RNG::UNIFORM, 0, 1);
+    return values < share;
+}
+
+int hammingDistance(const uchar* a, const uchar* b, int bytes)
+{
+    int distance = 0;
+    for (int i = 0; i < bytes * 8; i++)
+        distance += (a[i / 8] ^ b[i / 8]) >> i % 8 & 1;
+    return distance;
+}
+
+bool MatcherOracle::passes(const uchar* query, const uchar* train)
+{
+    for (size_t level = 0; level < levelSizes.size(); level++)
+    {
+        const int bits = 8 * levelSizes[level];
+        compared += bits;
+        if (level < thresholds.size() && hammingDistance(query, train, levelSizes[level]) > thresholds[level] * (double)bits)
+            return false;
+        query += levelSizes[level];
+        train += levelSizes[level];
+    }
+    return true;
+}
+
+static bool nearer(const DMatch& a, const DMatch& b)
+{
+    if (a.distance != b.distance)
+        return a.distance < b.distance;
+    return a.imgIdx != b.imgIdx ? a.imgIdx < b.imgIdx : a.trainIdx < b.trainIdx;
+}
+
+Matches MatcherOracle::candidates(const Mat& queries)
+{
+    Matches result(queries.rows);
+    for (int q = 0; q < queries.rows; q++)
+        for (int image = 0; image < (int)images.size(); image++)
+            for (int t = 0; t < images[image].rows; t++)
+            {
+                if (!masks.empty() && !masks[image].empty() && !masks[image].at<uchar>(q, t))
+                    continue;
+                all += 8 * queries.cols;
+                if (passes(queries.ptr(q), images[image].ptr(t)))
+                    result[q].push_back(DMatch(q, t, image, (float)hammingDistance(queries.ptr(q), images[image].ptr(t),
+                                                                                   queries.cols)));
+            }
+    for (size_t q = 0; q < result.size(); q++)
+        std::sort(result[q].begin(), result[q].end(), nearer);
+    return result;
+}
+
+Matches MatcherOracle::knn(const Mat& queries, int k)
+{
+    Matches result = candidates(queries);
+    // For each train descriptor, (distance, query) in ascending order.
+    std::map<std::pair<int, int>, std::vector<std::pair<float, int> > > backwards;
+    for (size_t q = 0; q < result.size(); q++)
+        for (size_t i = 0; i < result[q].size(); i++)
+            backwards[std::make_pair(result[q][i].imgIdx, result[q][i].trainIdx)].push_back(
+                    std::make_pair(result[q][i].distance, (int)q));
+    for (size_t q = 0; q < result.size(); q++)
+    {
+        std::vector<DMatch>& row = result[q];
+        if (maxRatio < 1 && row.size() > 1 && !(row[0].distance < (double)maxRatio * row[1].distance))
+            row.clear();
+        row.resize(std::min(row.size(), (size_t)k));
+        if (crossCheck)
+            row.erase(std::remove_if(row.begin(), row.end(), [&](const DMatch& m) {
+                std::vector<std::pair<float, int> > back = backwards[std::make_pair(m.imgIdx, m.trainIdx)];
+                std::sort(back.begin(), back.end());
+                back.resize(std::min(back.size(), (size_t)k));
+                return std::find(back.begin(), back.end(), std::make_pair(m.distance, (int)q)) == back.end();
+            }), row.end());
+    }
+    return result;
+}
+
+Matches MatcherOracle::radius(const Mat& queries, int radius)
+{
+    Matches result = candidates(queries);
+    for (size_t q = 0; q < result.size(); q++)
+        while (!result[q].empty() && result[q].back().distance > radius)
+            result[q].pop_back();
+    return result;
+}
+
+void expectEqual(const Matches& expected, const Matches& actual)
+{
+    ASSERT_EQ(expected.size(), actual.size());
+    for (size_t q = 0; q < expected.size(); q++)
+    {
+        ASSERT_EQ(expected[q].size(), actual[q].size()) << "query " << q;
+        for (size_t i = 0; i < expected[q].size(); i++)
+        {
+            const DMatch &e = expected[q][i], &a = actual[q][i];
+            ASSERT_EQ(e.distance, a.distance) << "query " << q << ", neighbour " << i;
+            ASSERT_EQ(std::make_pair(e.imgIdx, e.trainIdx), std::make_pair(a.imgIdx, a.trainIdx))
+                    << "query " << q << ", neighbour " << i;
+            ASSERT_EQ(e.queryIdx, a.queryIdx);
+        }
+    }
+}
+
+}  // namespace opencv_test
