@@ -1,0 +1,164 @@
+#!/usr/bin/python3
+"""Renders the synthetic data: pictures under many lights, depth, labels, cameras. See README.md."""
+
+import argparse
+import concurrent.futures
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import zlib
+from collections import namedtuple
+
+import cv2
+import numpy as np
+
+from scenes import LIGHTS, NOISE, NOISE_BY_DAY, SCENES, extrinsics, intrinsics, walk
+
+HERE = pathlib.Path(__file__).resolve().parent
+DEPTH_SCALE = 0.004  # metres a step, as in common.inc
+IMAGE, DEPTH, LABELS = range(3)
+# A ray through the middle of the pixel gives depth and label; a picture is smoothed, without chance.
+OUTPUT = {IMAGE: ["+FN8", "+A0.15", "+AM1", "+R2", "-J"], DEPTH: ["+FN16", "-A"], LABELS: ["+FN8", "-A"]}
+
+
+def povray(scene, mode, light, pose, size):
+    """The rendered array: height x width x 3 for a picture (BGR, 8U), height x width for depth (16U) and labels."""
+    width, height = size
+    declared = dict(zip(("CamX", "CamY", "CamZ", "Yaw", "Pitch"), pose), Mode=mode, Light=LIGHTS[light],
+                    Focal=intrinsics(scene, width, height)[0, 0])
+    with tempfile.TemporaryDirectory() as folder:
+        picture = os.path.join(folder, "frame.png")
+        done = subprocess.run(
+            ["povray", f"+I{HERE / scene}.pov", f"+O{picture}", f"+L{HERE}", "-D", "-GD", "-GR", "-GS", "-GW", "+WT1",
+             f"+W{width}", f"+H{height}", *OUTPUT[mode], f"File_Gamma={'srgb' if mode == IMAGE else '1.0'}",
+             *(f"Declare={name}={value:.9g}" for name, value in declared.items())],
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        rendered = cv2.imread(picture, cv2.IMREAD_UNCHANGED) if done.returncode == 0 else None
+    if rendered is None:
+        why = done.stderr[done.stderr.find("[Parsing"):]
+        raise RuntimeError(f"povray could not render {scene}, {light}:\n{why}")
+    return rendered[..., :3] if mode == IMAGE else (rendered if rendered.ndim == 2 else rendered[..., 0])
+
+
+def sensed(picture, scene, light, frame):
+    """A picture with the noise of a sensor, the same in every run."""
+    random = np.random.default_rng([zlib.crc32(scene.encode()), LIGHTS[light], frame])
+    noise = random.standard_normal(picture.shape) * NOISE.get(light, NOISE_BY_DAY)
+    return np.clip(np.rint(picture + noise), 0, 255).astype(np.uint8)
+
+
+def write(path, array):
+    """Written aside first, so that a file that is there is a whole one and an interrupted run can go on."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    aside = path.with_name("." + path.name)
+    if not cv2.imwrite(str(aside), array):
+        raise RuntimeError(f"cannot write {path}")
+    os.replace(aside, path)
+
+
+def write_camera(path, scene, poses, size):
+    storage = cv2.FileStorage(str(path), cv2.FILE_STORAGE_WRITE)
+    storage.write("image_width", size[0])
+    storage.write("image_height", size[1])
+    storage.write("camera_matrix", intrinsics(scene, *size))
+    storage.writeComment("metres a step of depth/k.png, along the optical axis; 0: nothing there")
+    storage.write("depth_scale", DEPTH_SCALE)
+    storage.writeComment("[R|t] of each picture, world (x right, y down, z forward, metres) to camera")
+    storage.startWriteStruct("poses", cv2.FileNode_SEQ)
+    for pose in poses:
+        storage.write("", extrinsics(pose))
+    storage.endWriteStruct()
+    storage.release()
+
+
+# A file to be rendered, and where else it belongs: light moves nothing, so that depth and labels are of
+# a pose, not of a picture.
+Task = namedtuple("Task", "target scene mode light pose frame copies")
+
+
+def run(task, size):
+    if not task.target.exists():
+        rendered = povray(task.scene, task.mode, task.light, task.pose, size)
+        if task.mode == IMAGE:
+            rendered = sensed(rendered, task.scene, task.light, task.frame)
+        write(task.target, rendered)
+    for copy in task.copies:
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(task.target, copy)
+    return task.target
+
+
+def still(folder, scene, size):
+    """One pose, every light: a sequence 1.png..N.png with the identity for H_1_k."""
+    pose, lights = SCENES[scene].still, SCENES[scene].lights
+    numbers = range(1, len(lights) + 1)
+    for k in numbers[1:]:
+        (folder / f"H_1_{k}").write_text("1 0 0\n0 1 0\n0 0 1\n")
+    (folder / "LIGHTS.txt").write_text("".join(f"{k} {light}\n" for k, light in zip(numbers, lights)))
+    write_camera(folder / "camera.yml", scene, [pose] * len(lights), size)
+    for mode, name in ((DEPTH, "depth"), (LABELS, "labels")):
+        yield Task(folder / name / "1.png", scene, mode, "noon", pose, 0,
+                   [folder / name / f"{k}.png" for k in numbers[1:]])
+    for k, light in zip(numbers, lights):
+        yield Task(folder / f"{k}.png", scene, IMAGE, light, pose, 0, [])
+
+
+def walked(folders, scene, size, frames):
+    """folders: {light: folder}, the same walk under each. The pictures lie in frames/, since they have no H."""
+    poses = walk(SCENES[scene].path, frames)
+    first, *others = folders.values()
+    for light, folder in folders.items():
+        (folder / "LIGHTS.txt").write_text("".join(f"{k} {light}\n" for k in range(1, frames + 1)))
+        write_camera(folder / "camera.yml", scene, poses, size)
+    for k, pose in enumerate(poses, 1):
+        for mode, name in ((DEPTH, "depth"), (LABELS, "labels")):
+            yield Task(first / name / f"{k}.png", scene, mode, "noon", pose, k,
+                       [folder / name / f"{k}.png" for folder in others])
+        for light, folder in folders.items():
+            yield Task(folder / "frames" / f"{k}.png", scene, IMAGE, light, pose, k, [])
+
+
+def plan(out, scenes, frames, path_lights, size):
+    for scene in scenes:
+        folder = out / "lights" / scene
+        folder.mkdir(parents=True, exist_ok=True)
+        yield from still(folder, scene, size)
+    for scene in scenes if frames else []:
+        folders = {light: out / "path" / f"{scene}_{light}" for light in path_lights}
+        for folder in folders.values():
+            folder.mkdir(parents=True, exist_ok=True)
+        yield from walked(folders, scene, size, frames)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("out", type=pathlib.Path, help="folder to render into; what is there is kept")
+    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES), metavar="SCENE",
+                        help=f"some of: {', '.join(SCENES)} (all)")
+    parser.add_argument("--frames", type=int, default=0, help="also render walks of this many frames (0: none)")
+    parser.add_argument("--path-lights", nargs="+", choices=LIGHTS, default=["noon", "dusk", "night", "winter"],
+                        metavar="LIGHT", help="lights of the walks (noon dusk night winter)")
+    parser.add_argument("--size", type=int, nargs=2, default=(640, 480), metavar=("WIDTH", "HEIGHT"))
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="renderings at a time")
+    options = parser.parse_args()
+    if options.frames < 0 or min(options.size) < 16 or options.jobs < 1:
+        parser.error("--frames must be 0 or more, --size 16 or more each way, --jobs 1 or more")
+    if shutil.which("povray") is None:
+        sys.exit("povray is not installed: apt-get install povray")
+
+    tasks = list(plan(options.out, options.scenes, options.frames, options.path_lights, tuple(options.size)))
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        futures = [pool.submit(run, task, tuple(options.size)) for task in tasks]
+        try:
+            for done, future in enumerate(concurrent.futures.as_completed(futures), 1):
+                print(f"[{done}/{len(tasks)}] {future.result()}", flush=True)
+        except (RuntimeError, OSError) as error:
+            pool.shutdown(cancel_futures=True)
+            sys.exit(str(error))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,57 @@
+"""The scenes: where the camera stands, how it walks, and the lights in the order of the pictures."""
+
+from collections import namedtuple
+
+import numpy as np
+
+# Numbers as in lights.inc. The reference, picture 1, is noon.
+LIGHTS = {"noon": 1, "morning": 2, "dusk": 3, "night": 4, "overcast": 5, "fog": 6, "winter": 7, "wet": 8,
+          "snow": 9}
+
+# Standard deviation of the sensor's noise in grey levels: little light, much gain.
+NOISE = {"night": 3.5, "dusk": 2.5, "fog": 2.0}
+NOISE_BY_DAY = 1.2
+
+# A camera stands at x, y, z (metres; x right, y up, z forward) and looks along yaw (degrees from +z
+# towards +x) and pitch (degrees upward), without roll.
+Scene = namedtuple("Scene", "focal still path lights")  # focal length in picture widths
+
+OUTDOOR = ["noon", "morning", "dusk", "night", "overcast", "fog", "winter"]
+
+SCENES = {
+    "street": Scene(0.81, (-0.9, 1.75, 0, 4, 7),
+                    [(-0.9, 1.75, 0, 4, 7), (0.3, 1.7, 7, -9, 8), (1.2, 1.75, 14, -2, 6), (0.2, 1.75, 21, 12, 8)],
+                    OUTDOOR + ["wet"]),
+    "room": Scene(0.70, (1.9, 1.5, 0.4, -20, -7),
+                  [(1.9, 1.5, 0.4, -20, -7), (1.2, 1.5, 0.9, -6, -8), (0.3, 1.5, 1.2, 16, -7), (-0.7, 1.5, 1.6, 30, -9)],
+                  OUTDOOR + ["wet"]),
+    "facade": Scene(0.85, (-2.0, 2.0, 0, 6, 17),
+                    [(-6.0, 2.0, 1, 22, 16), (-2.0, 2.0, 0, 6, 17), (2.0, 2.0, 1, -8, 16), (6.0, 2.0, 2.5, -20, 17)],
+                    OUTDOOR + ["snow"]),
+    "terrain": Scene(0.80, (0, 1.7, 0, 0, 2),
+                     [(0, 1.7, 0, 0, 2), (0.6, 1.7, 6, 8, 2), (0, 1.7, 12, -5, 2), (-0.8, 1.7, 18, -14, 3)],
+                     OUTDOOR + ["snow"]),
+}
+
+
+def walk(waypoints, frames):
+    """frames x 5: poses (x, y, z, yaw, pitch) at equal steps from the first waypoint to the last."""
+    at = np.linspace(0, len(waypoints) - 1, frames)
+    return np.stack([np.interp(at, range(len(waypoints)), column) for column in np.transpose(waypoints)], axis=1)
+
+
+def intrinsics(scene, width, height):
+    """3x3 camera matrix in pixels; pixel centres have whole coordinates, as everywhere in OpenCV."""
+    focal = SCENES[scene].focal * width
+    return np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1.0]])
+
+
+def extrinsics(pose):
+    """3x4 [R|t] from the world (x right, y DOWN, z forward: the scene files' y negated) to the camera."""
+    yaw, pitch = np.radians(pose[3:])
+    forward = np.array([np.sin(yaw) * np.cos(pitch), np.sin(pitch), np.cos(yaw) * np.cos(pitch)])
+    right = np.array([np.cos(yaw), 0, -np.sin(yaw)])
+    down = -np.cross(forward, right)
+    rotation = np.stack([right, down, forward]) * [1, -1, 1]
+    centre = np.asarray(pose[:3]) * [1, -1, 1]
+    return np.hstack([rotation, (-rotation @ centre)[:, None]])

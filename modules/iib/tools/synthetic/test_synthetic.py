@@ -1,0 +1,172 @@
+#!/usr/bin/python3
+"""The renderer against geometry known by construction: depth, labels, cameras, files, repeatability."""
+
+import importlib.util
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+for needed in ("cv2", "numpy", "povray"):
+    if not (shutil.which(needed) or importlib.util.find_spec(needed)):
+        sys.exit(f"{needed} is not installed: nothing can be rendered")
+
+import cv2
+import numpy as np
+
+HERE = pathlib.Path(__file__).resolve().parent
+import render
+import scenes
+
+SIZE = (160, 120)
+WALL, WINDOW, LAMP = 3, 4, 8
+
+
+def setUpModule():
+    scenes.SCENES["plane"] = scenes.Scene(0.8, (0, 1, 0, 0, 0), [], ["noon"])
+
+
+def render_plane(mode, pose):
+    return render.povray("plane", mode, "noon", pose, SIZE)
+
+
+def project(point, pose):
+    """Pixel and depth of a point given in the scene file's axes, by the camera that is written for users."""
+    camera = scenes.extrinsics(pose) @ [point[0], -point[1], point[2], 1]
+    return (scenes.intrinsics("plane", *SIZE) @ camera)[:2] / camera[2], camera[2]
+
+
+class KnownGeometry(unittest.TestCase):
+    poses = [(0, 1, 0, 0, 0), (0.3, 0.7, 1.0, -8.0, -3.0), (-3.0, 2.0, 0.5, 25.0, -9.0)]
+
+    def test_depth_of_a_plane_is_its_distance_along_the_axis(self):
+        for pose in self.poses:
+            depth = render_plane(render.DEPTH, pose)
+            self.assertEqual(depth.dtype, np.uint16)
+            wall = render_plane(render.LABELS, pose) == WALL
+            # the ray of each pixel, cut with z = 10
+            inverse = np.linalg.inv(scenes.intrinsics("plane", *SIZE))
+            x, y = np.meshgrid(range(SIZE[0]), range(SIZE[1]))
+            rays = np.stack([x, y, np.ones_like(x)], axis=-1) @ inverse.T
+            rotation = scenes.extrinsics(pose)[:, :3]
+            expected = (10 - pose[2]) / (rays @ rotation[:, 2])
+            self.assertGreater(wall.sum(), 0.5 * wall.size)
+            error = np.abs(depth * render.DEPTH_SCALE - expected)[wall]
+            self.assertLess(error.max(), render.DEPTH_SCALE)
+
+    def test_a_point_appears_where_the_camera_file_says(self):
+        for pose in self.poses:
+            pixel, distance = project((-2, 1, 6), pose)
+            lamp = render_plane(render.LABELS, pose) == LAMP
+            rows, columns = np.nonzero(lamp)
+            self.assertGreater(len(rows), 0)
+            np.testing.assert_allclose([columns.mean(), rows.mean()], pixel, atol=0.35)
+            nearest = render_plane(render.DEPTH, pose)[lamp].min() * render.DEPTH_SCALE
+            self.assertAlmostEqual(nearest, distance - 0.1, delta=0.015)
+
+    def test_label_areas(self):
+        pose = self.poses[0]
+        labels = render_plane(render.LABELS, pose)
+        self.assertEqual(set(np.unique(labels)), {WALL, WINDOW, LAMP})
+        focal = scenes.intrinsics("plane", *SIZE)[0, 0]
+        # the front of the box, 2 m x 1 m at 9 m, and what the wall leaves of its left side
+        front = 2 * focal / 9 * 1 * focal / 9
+        side = (1 / 9 - 1 / 10) * focal * 0.5 * (1 / 9 + 1 / 10) * focal
+        self.assertAlmostEqual((labels == WINDOW).sum(), front + side, delta=0.03 * front)
+        ball = np.pi * (0.1 * focal) ** 2 / 36
+        self.assertAlmostEqual((labels == LAMP).sum(), ball, delta=3)
+
+    def test_picture_depth_and_labels_are_of_one_pose(self):
+        picture, labels = (render_plane(mode, self.poses[1]) for mode in (render.IMAGE, render.LABELS))
+        self.assertEqual(picture.shape, (SIZE[1], SIZE[0], 3))
+        inside = cv2.erode((labels == WINDOW).astype(np.uint8), np.ones((3, 3))) > 0
+        self.assertEqual(len(np.unique(picture[inside])), 1)
+        self.assertNotEqual(picture[inside][0, 0], picture[5, 5, 0])
+
+
+class Scenes(unittest.TestCase):
+    """Random details come in the same order under every light and in every mode."""
+
+    def test_light_moves_nothing_and_the_sky_has_neither_depth_nor_label(self):
+        for name in ("street", "room", "facade", "terrain"):
+            scene = scenes.SCENES[name]
+            self.assertGreaterEqual(len(scene.lights), 8)
+            self.assertEqual(scene.lights[0], "noon")
+            depth, labels = (render.povray(name, mode, "noon", scene.still, (80, 60))
+                             for mode in (render.DEPTH, render.LABELS))
+            for light in ("night", scene.lights[-1]):
+                np.testing.assert_array_equal(
+                    depth, render.povray(name, render.DEPTH, light, scene.still, (80, 60)), f"{name}, {light}")
+            np.testing.assert_array_equal(depth == 0, labels == 0, name)
+            self.assertGreater(len(np.unique(labels)), 8)
+            self.assertGreater(len(np.unique(depth)), 300)
+
+
+class Cameras(unittest.TestCase):
+    def test_rotations_are_rotations(self):
+        for scene in scenes.SCENES.values():
+            for pose in [scene.still, *scene.path]:
+                rotation = scenes.extrinsics(pose)[:, :3]
+                np.testing.assert_allclose(rotation @ rotation.T, np.eye(3), atol=1e-12)
+                self.assertAlmostEqual(np.linalg.det(rotation), 1)
+
+    def test_a_walk_passes_its_waypoints_at_equal_steps(self):
+        for name in ("street", "room", "facade", "terrain"):
+            path = scenes.SCENES[name].path
+            poses = scenes.walk(path, 4 * (len(path) - 1) + 1)
+            np.testing.assert_allclose(poses[::4], path)
+            np.testing.assert_allclose(poses[2::4], (np.array(path[1:]) + path[:-1]) / 2)
+
+
+class Command(unittest.TestCase):
+    """One scene, 24 x 18 pixels, through the command itself."""
+
+    def render(self, folder, *options):
+        return subprocess.run([sys.executable, HERE / "render.py", folder, "--scenes", "facade", "--size", "24", "18",
+                               "--jobs", "1", *options], capture_output=True, text=True)
+
+    def test_layout_cameras_resuming_and_repeatability(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder)
+            done = self.render(out, "--frames", "2", "--path-lights", "noon", "night")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            still, path = out / "lights" / "facade", out / "path" / "facade_night"
+            lights = [line.split()[1] for line in (still / "LIGHTS.txt").read_text().splitlines()]
+            self.assertEqual(lights[0], "noon")
+            self.assertGreaterEqual(len(set(lights)), 8)
+            first = cv2.imread(str(still / "1.png"))
+            for k in range(2, len(lights) + 1):
+                other = cv2.imread(str(still / f"{k}.png"))
+                self.assertEqual(other.shape, (18, 24, 3))
+                self.assertGreater(np.abs(other.astype(int) - first).mean(), 8, f"{lights[k - 1]} looks like noon")
+                np.testing.assert_array_equal(np.loadtxt(still / f"H_1_{k}"), np.eye(3))
+            for place, count in ((still, len(lights)), (path, 2)):
+                depth = cv2.imread(str(place / "depth" / f"{count}.png"), cv2.IMREAD_UNCHANGED)
+                self.assertEqual((depth.dtype, depth.shape), (np.uint16, (18, 24)))
+                labels = cv2.imread(str(place / "labels" / f"{count}.png"), cv2.IMREAD_UNCHANGED)
+                self.assertEqual((labels.dtype, labels.shape), (np.uint8, (18, 24)))
+                storage = cv2.FileStorage(str(place / "camera.yml"), cv2.FILE_STORAGE_READ)
+                self.assertEqual(storage.getNode("camera_matrix").mat().shape, (3, 3))
+                self.assertAlmostEqual(storage.getNode("depth_scale").real(), render.DEPTH_SCALE)
+                poses = storage.getNode("poses")
+                self.assertEqual(poses.size(), count)
+                self.assertEqual(poses.at(0).mat().shape, (3, 4))
+            # what is missing is rendered again, to the same bytes; what is there is left alone
+            bytes_before = (still / "4.png").read_bytes()
+            (still / "4.png").unlink()
+            stamp = (still / "1.png").stat().st_mtime_ns
+            self.assertEqual(self.render(out).returncode, 0)
+            self.assertEqual((still / "4.png").read_bytes(), bytes_before)
+            self.assertEqual((still / "1.png").stat().st_mtime_ns, stamp)
+
+    def test_a_wrong_option_is_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = self.render(folder, "--size", "8", "8")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("--size", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
