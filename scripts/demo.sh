@@ -6,7 +6,7 @@
 need $build_packages
 build="$root/build-demo"
 {
-    cmake -S "$root" -B "$build" -G Ninja -DIIB_BUILD_TESTS=OFF && cmake --build "$build"
+    cmake -S "$root" -B "$build" -G Ninja -DIIB_BUILD_TESTS=OFF && cmake --build "$build" --target iib_demo
 } >"$build.log" 2>&1 || {
     cat "$build.log" >&2
     exit 1
