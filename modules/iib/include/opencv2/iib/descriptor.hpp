@@ -102,6 +102,8 @@ public:
     CV_WRAP static float scaleFactorFor(const String& detectorName);
     //! @overload
     static float scaleFactorFor(const Ptr<Feature2D>& detector);
+    //! @overload A literal would fit both of the above, since Ptr converts from any pointer.
+    static float scaleFactorFor(const char* detectorName) { return scaleFactorFor(String(detectorName)); }
 
     //! Bytes of each level, coarse first; levels without a bit (by a selection) are left out.
     //! Their sum is descriptorSize().
