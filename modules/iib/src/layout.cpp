@@ -15,13 +15,17 @@ static int countBits(int mask)
     return n;
 }
 
+//! Bits of all quads of one channel at a level.
+static int channelBits(const Parameters& p, int level)
+{
+    const int side = p.overlap ? (1 << level) - 1 : 1 << (level - 1);  // quads in a row
+    return side * side * bitsPerQuad(p.mapping);
+}
+
 int levelBits(const Parameters& p, int level)
 {
     if (p.selection.empty())
-    {
-        const int side = p.overlap ? (1 << level) - 1 : 1 << (level - 1);  // quads in a row
-        return side * side * p.channelCount() * bitsPerQuad(p.mapping);
-    }
+        return channelBits(p, level) * p.channelCount();
     int bits = 0;
     for (int i = 0; i < p.selection.rows; i++)
         if (p.selection(i, 0) == level)
@@ -36,6 +40,14 @@ std::vector<int> levelBytes(const Parameters& p)
         if (const int bits = levelBits(p, level))
             bytes.push_back((bits + 7) / 8);
     return bytes;
+}
+
+int bitOffset(const Parameters& p, int level, int group)
+{
+    int bytes = 0;
+    for (int coarser = 1; coarser < level; coarser++)
+        bytes += (levelBits(p, coarser) + 7) / 8;
+    return 8 * bytes + channelBits(p, level) * GROUP_CHANNELS * group;
 }
 
 }  // namespace iib

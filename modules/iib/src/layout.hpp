@@ -10,11 +10,53 @@
 namespace cv {
 namespace iib {
 
+enum { GROUP_CHANNELS = 4 };  //!< channels that integral images and kernels carry side by side
+
 //! Bits of a level before it is padded to whole bytes; the order of the bits is in descriptor.hpp.
 int levelBits(const Parameters& parameters, int level);
 
 //! Bytes of each level that has any, coarse first.
 std::vector<int> levelBytes(const Parameters& parameters);
+
+//! The place of a group's first bit of a level in the descriptor; without a selection.
+int bitOffset(const Parameters& parameters, int level, int group);
+
+//! Appends bits to a zeroed descriptor, the lowest bit of the lowest byte first.
+class BitWriter
+{
+public:
+    BitWriter(uchar* descriptor, int offset) : next(descriptor + offset / 8), pending(*next), count(offset % 8) {}
+
+    //! The low n bits of `bits`, n = 0..64; higher bits must be zero.
+    void append(uint64 bits, int n)
+    {
+        pending |= bits << count;
+        const int room = 64 - count;
+        if (n < room)
+        {
+            count += n;
+            return;
+        }
+        store(8);
+        pending = room < 64 ? bits >> room : 0;
+        count = n - room;
+    }
+
+    //! Writes the bits still pending; call it once, at the end.
+    void flush() { store((count + 7) / 8); }
+
+private:
+    void store(int bytes)
+    {
+        for (int i = 0; i < bytes; i++)
+            next[i] = (uchar)(pending >> 8 * i);
+        next += bytes;
+    }
+
+    uchar* next;
+    uint64 pending;
+    int count;  //!< bits pending, 0..63
+};
 
 }  // namespace iib
 }  // namespace cv

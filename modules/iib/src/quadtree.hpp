@@ -28,7 +28,8 @@ struct Ros
      n is a power of two, so that the edges of a level are a subset of those of the next. */
     int edge(double start, int k, int n, int limit) const
     {
-        return (int)std::min(std::max(std::floor(start + side / n * k + 0.5), 0.), (double)limit);
+        // after the clamp to positive numbers the cast is a floor
+        return (int)std::min(std::max(start + side / n * k + 0.5, 0.), (double)limit);
     }
 
     //! The ROS as whole pixels, cut to the image.

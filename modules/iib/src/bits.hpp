@@ -1,0 +1,37 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_BITS_HPP
+#define OPENCV_IIB_BITS_HPP
+
+#include <array>
+
+#include "cells.hpp"
+
+namespace cv {
+namespace iib {
+
+/** What makes the sums of a level comparable. With widths w0, w1 and heights h0, h1 of a quad's cells, the
+ mean of cell (i, j) is sum / (w_j h_i), and sum * w_(1-j) * h_(1-i) is that but for a factor common to the
+ four: decisions need no division. */
+struct LevelShape
+{
+    int n;            //!< cells in a row
+    const int* widths;  //!< of the cells in a row, pixels
+    const int* heights;
+    int channels;     //!< of GROUP_CHANNELS, those in use
+    bool overlap;
+};
+
+//! Bits of all quads of a level in the order of descriptor.hpp, items 2 to 6.
+typedef void (*LevelBitsFunc)(const CellGrid<int>& cells, const LevelShape& shape, BitWriter& out);
+LevelBitsFunc getLevelBitsFunc(int mapping);
+
+//! The same where an int is too small for the products.
+void wideLevelBits(int mapping, const CellGrid<double>& cells, const LevelShape& shape, BitWriter& out);
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

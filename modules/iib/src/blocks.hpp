@@ -1,0 +1,29 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_BLOCKS_HPP
+#define OPENCV_IIB_BLOCKS_HPP
+
+#include "precomp.hpp"
+
+namespace cv {
+namespace iib {
+
+//! Keypoints that are described together, from integral images over their common area.
+struct Block
+{
+    Rect area;                   //!< holds all their ROS
+    std::vector<int> keypoints;  //!< indices, by the last row of their ROS
+};
+
+/** Cuts the keypoints into blocks, so that pixels which no ROS touches are left out wherever a straight gap
+ between the ROS allows, and so that no block is much more than 1/workers of all work.
+
+ @param ros the pixels that each keypoint needs, not empty. */
+std::vector<Block> cutBlocks(const std::vector<Rect>& ros, int workers);
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

@@ -1,0 +1,61 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_CELLS_HPP
+#define OPENCV_IIB_CELLS_HPP
+
+#include "integral.hpp"
+
+namespace cv {
+namespace iib {
+
+/** Sums over the cells of one level, n x n cells of GROUP_CHANNELS channels each. The cells in even columns of a
+ row lie side by side, and those in odd columns: the left and right cells of the quads. T is int where four times
+ the largest value to compare fits, else double. */
+template <typename T> class CellGrid
+{
+public:
+    CellGrid() : n(0), step(0) {}
+
+    void create(int cellsInRow)
+    {
+        n = cellsInRow;
+        step = (size_t)(n / 2 + 1) * GROUP_CHANNELS + ROW_PADDING;
+        if (data.size() < 2 * n * step)
+            data.resize(2 * n * step);
+    }
+
+    //! Cells (row, parity), (row, parity + 2), ...; kernels may run ROW_PADDING values over the end.
+    T* row(int r, int parity) { return &data[(2 * r + parity) * step]; }
+    const T* row(int r, int parity) const { return &data[(2 * r + parity) * step]; }
+
+    //! The channels of one cell.
+    const T* cell(int r, int c) const { return row(r, c & 1) + (c >> 1) * GROUP_CHANNELS; }
+    T* cell(int r, int c) { return row(r, c & 1) + (c >> 1) * GROUP_CHANNELS; }
+
+    int size() const { return n; }
+
+private:
+    int n;
+    size_t step;
+    std::vector<T> data;
+};
+
+//! Sums over n x n cells with the given n + 1 edges, in pixels of the image; `scratch` is overwritten.
+template <typename Sum> struct CellSumsFunc
+{
+    typedef void (*Type)(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n,
+                         CellGrid<int>& scratch, CellGrid<int>& cells);
+};
+CellSumsFunc<ushort>::Type getCellSumsFunc(ushort);
+CellSumsFunc<unsigned>::Type getCellSumsFunc(unsigned);
+
+//! Sums of a level from those of the next finer one.
+typedef void (*ParentSumsFunc)(const CellGrid<int>& children, CellGrid<int>& cells);
+ParentSumsFunc getParentSumsFunc();
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

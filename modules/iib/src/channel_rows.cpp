@@ -1,0 +1,88 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "channel_rows.hpp"
+
+namespace cv {
+namespace iib {
+
+namespace {
+
+// Rows of the scratch memory: three of the image in turn, its gradient, the channels.
+enum { IMAGE_ROWS = 3, GRADIENT_X = IMAGE_ROWS, GRADIENT_Y, FIRST_PLANE, SCRATCH_ROWS = FIRST_PLANE + GROUP_CHANNELS };
+
+template <typename Lane> const RowKernels<Lane>& rowKernels();
+template <> const RowKernels<short>& rowKernels<short>() { return shortRowKernels(); }
+template <> const RowKernels<int>& rowKernels<int>() { return intRowKernels(); }
+
+template <typename Lane>
+void widen(const RowKernels<Lane>& kernels, const Mat& map, int y, int x, Lane* out, int width)
+{
+    if (map.depth() == CV_8U)
+        kernels.widen8u(map.ptr<uchar>(y) + x, out, width);
+    else
+        kernels.widen16u(map.ptr<ushort>(y) + x, out, width);
+}
+
+}  // namespace
+
+template <typename Lane>
+ChannelRows<Lane>::ChannelRows(const std::vector<Channel>& channels_, Rect area_, int signedOffset_)
+    : channels(channels_), area(area_), signedOffset((Lane)signedOffset_), kernels(rowKernels<Lane>()),
+      gradientOf(0), step((size_t)area_.width + 2 + ROW_PADDING), scratch(SCRATCH_ROWS * step)
+{
+    for (const Channel& c : channels)
+        if (usesGradient(c))
+            gradientOf = &c.map;
+    for (int& y : read)
+        y = -1;
+    for (int i = 0; i < GROUP_CHANNELS; i++)
+        planes[i] = row(FIRST_PLANE + std::min(i, (int)channels.size() - 1));
+}
+
+template <typename Lane> void ChannelRows<Lane>::computeGradient(int y)
+{
+    const Lane* around[3];
+    for (int i = 0; i < 3; i++)
+    {
+        // pixels beyond the image repeat its border, as Sobel's BORDER_REPLICATE
+        const int imageY = std::min(std::max(y + i - 1, 0), gradientOf->rows - 1);
+        Lane* out = row(imageY % IMAGE_ROWS);
+        around[i] = out;
+        if (read[imageY % IMAGE_ROWS] == imageY)
+            continue;
+        read[imageY % IMAGE_ROWS] = imageY;
+        widen(kernels, *gradientOf, imageY, area.x, out + 1, area.width);
+        const int left = std::max(area.x - 1, 0), right = std::min(area.x + area.width, gradientOf->cols - 1);
+        widen(kernels, *gradientOf, imageY, left, out, 1);
+        widen(kernels, *gradientOf, imageY, right, out + area.width + 1, 1);
+    }
+    kernels.gradient(around[0], around[1], around[2], row(GRADIENT_X), row(GRADIENT_Y), area.width);
+}
+
+template <typename Lane> void ChannelRows<Lane>::compute(int y)
+{
+    if (gradientOf)
+        computeGradient(y);
+    const Lane *gx = row(GRADIENT_X), *gy = row(GRADIENT_Y);
+    for (size_t i = 0; i < channels.size(); i++)
+    {
+        Lane* out = row(FIRST_PLANE + (int)i);
+        switch (channels[i].kind)
+        {
+        case IIB::CHANNEL_GRAD_X: kernels.absolute(gx, out, area.width); break;
+        case IIB::CHANNEL_GRAD_Y: kernels.absolute(gy, out, area.width); break;
+        case IIB::CHANNEL_ORIENTATION: kernels.orientation(gx, gy, out, area.width); break;
+        case IIB::CHANNEL_SIGNED_GRAD_X: kernels.add(gx, signedOffset, out, area.width); break;
+        case IIB::CHANNEL_SIGNED_GRAD_Y: kernels.add(gy, signedOffset, out, area.width); break;
+        default: widen(kernels, channels[i].map, y, area.x, out, area.width); break;
+        }
+    }
+}
+
+template class ChannelRows<short>;
+template class ChannelRows<int>;
+
+}  // namespace iib
+}  // namespace cv

@@ -1,0 +1,87 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_INTEGRAL_HPP
+#define OPENCV_IIB_INTEGRAL_HPP
+
+#include "channel_rows.hpp"
+
+namespace cv {
+namespace iib {
+
+/** What a reader sees of integral images of GROUP_CHANNELS channels, side by side in each pixel: the last rows,
+ in a ring. Sums are modulo 2^16 (Sum = ushort) or 2^32 (unsigned): a cell's sum, as the difference of its
+ corners, is right if it is below that, however large the image. */
+template <typename Sum> struct IntegralRows
+{
+    const Sum* data;
+    size_t step;  //!< elements from row to row
+    int mask;     //!< rows of the ring - 1
+    Point origin; //!< in the image
+
+    //! Sums over the image's rows [origin.y, y), left of the pixels x, x + 1, ...
+    const Sum* at(int y, int x) const { return data + (y & mask) * step + (size_t)(x - origin.x) * GROUP_CHANNELS; }
+};
+
+//! From a row of each channel: out = above + sums along the row; both begin left of the first pixel, with 0.
+template <typename Lane, typename Sum> struct SumRowFunc
+{
+    typedef void (*Type)(const Lane* const planes[GROUP_CHANNELS], int width, const Sum* above, Sum* out);
+};
+SumRowFunc<short, ushort>::Type getSumRowFunc(short, ushort);
+SumRowFunc<short, unsigned>::Type getSumRowFunc(short, unsigned);
+SumRowFunc<int, unsigned>::Type getSumRowFunc(int, unsigned);
+
+//! Bytes of a row of the ring, for a rectangle of this width.
+size_t integralRowBytes(int width, size_t bytesPerSum);
+
+/** Makes the rows, from the top of a rectangle of the image to its bottom. The ring stays in the cache while the
+ keypoints that it holds are described. */
+template <typename Lane, typename Sum> class IntegralBand
+{
+public:
+    //! @param channels 1 to 4, whose maps outlive the band.
+    //! @param rows how many rows, the newest included, a reader looks at.
+    IntegralBand(const std::vector<Channel>& channels, Rect area, int rows)
+        : channelRows(channels, area, maxGradient(channels)), width(area.width), done(area.y),
+          sumRow(getSumRowFunc(Lane(), Sum()))
+    {
+        int ringRows = 2;
+        while (ringRows < rows)
+            ringRows *= 2;
+        view.step = integralRowBytes(area.width, sizeof(Sum)) / sizeof(Sum);
+        view.mask = ringRows - 1;
+        view.origin = area.tl();
+        ring.resize(ringRows * view.step);  // zeros: the row above the first, and the left edge of all
+        view.data = ring.data();
+    }
+
+    //! Adds the image's rows up to and without y, area.y <= y <= area.y + area.height.
+    void advance(int y)
+    {
+        for (; done < y; done++)
+        {
+            channelRows.compute(done);
+            const Lane* planes[GROUP_CHANNELS];
+            for (int i = 0; i < GROUP_CHANNELS; i++)
+                planes[i] = channelRows.plane(i);
+            sumRow(planes, width, &ring[(done & view.mask) * view.step], &ring[((done + 1) & view.mask) * view.step]);
+        }
+    }
+
+    const IntegralRows<Sum>& rows() const { return view; }
+
+private:
+    ChannelRows<Lane> channelRows;
+    const int width;
+    int done;  //!< rows of the image above this one are in the newest row
+    const typename SumRowFunc<Lane, Sum>::Type sumRow;
+    std::vector<Sum> ring;
+    IntegralRows<Sum> view;
+};
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

@@ -1,0 +1,115 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "opencv2/core/hal/intrin.hpp"
+
+#include "integral.hpp"
+
+namespace cv {
+namespace iib {
+
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+SumRowFunc<short, ushort>::Type getSumRowFunc(short, ushort);
+SumRowFunc<short, unsigned>::Type getSumRowFunc(short, unsigned);
+SumRowFunc<int, unsigned>::Type getSumRowFunc(int, unsigned);
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+namespace {
+
+//! Four 16-bit channels of a pixel are one 64-bit lane: adds to each pixel those before it in the vector.
+inline v_uint16 prefixSum(v_uint16 v)
+{
+    v = v_add_wrap(v, v_reinterpret_as_u16(v_rotate_left<1>(v_reinterpret_as_u64(v))));
+#if CV_SIMD_WIDTH > 16
+    v = v_add_wrap(v, v_reinterpret_as_u16(v_rotate_left<2>(v_reinterpret_as_u64(v))));
+#endif
+#if CV_SIMD_WIDTH > 32
+    v = v_add_wrap(v, v_reinterpret_as_u16(v_rotate_left<4>(v_reinterpret_as_u64(v))));
+#endif
+    return v;
+}
+
+//! The last pixel in the places of all; universal intrinsics have this for 128 bits only.
+inline v_uint16 lastPixel(const v_uint16& v)
+{
+#if CV_SIMD_WIDTH == 64
+    return v_uint16(_mm512_permutexvar_epi64(_mm512_set1_epi64(7), v.val));
+#elif CV_SIMD_WIDTH == 32
+    return v_uint16(_mm256_permute4x64_epi64(v.val, 0xff));
+#else
+    return v_combine_high(v, v);
+#endif
+}
+
+//! v_uint16::nlanes pixels of four channels, side by side.
+inline void interleave(const short* const planes[GROUP_CHANNELS], int x, v_uint16 pixels[4])
+{
+    v_uint16 a0, a1, b0, b1;
+    v_zip(v_reinterpret_as_u16(vx_load(planes[0] + x)), v_reinterpret_as_u16(vx_load(planes[1] + x)), a0, a1);
+    v_zip(v_reinterpret_as_u16(vx_load(planes[2] + x)), v_reinterpret_as_u16(vx_load(planes[3] + x)), b0, b1);
+    v_uint32 p0, p1, p2, p3;
+    v_zip(v_reinterpret_as_u32(a0), v_reinterpret_as_u32(b0), p0, p1);
+    v_zip(v_reinterpret_as_u32(a1), v_reinterpret_as_u32(b1), p2, p3);
+    pixels[0] = v_reinterpret_as_u16(p0);
+    pixels[1] = v_reinterpret_as_u16(p1);
+    pixels[2] = v_reinterpret_as_u16(p2);
+    pixels[3] = v_reinterpret_as_u16(p3);
+}
+
+void sumRow16(const short* const planes[GROUP_CHANNELS], int width, const ushort* above, ushort* out)
+{
+    const int step = v_uint16::nlanes;
+    v_uint16 carry = vx_setzero_u16();
+    for (int x = 0; x < width; x += step)
+    {
+        v_uint16 pixels[4];
+        interleave(planes, x, pixels);
+        for (int i = 0; i < 4; i++)
+        {
+            const int at = (x + i * (step / 4) + 1) * GROUP_CHANNELS;
+            const v_uint16 sum = v_add_wrap(prefixSum(pixels[i]), carry);
+            v_store(out + at, v_add_wrap(sum, vx_load(above + at)));
+            carry = lastPixel(sum);
+        }
+    }
+}
+
+//! A pixel is one 128-bit vector here, on every machine.
+template <typename Lane>
+void sumRow32(const Lane* const planes[GROUP_CHANNELS], int width, const unsigned* above, unsigned* out)
+{
+    v_uint32x4 sum = v_setzero_u32();
+    for (int x = 0; x < width; x++)
+    {
+        sum = sum + v_uint32x4((unsigned)planes[0][x], (unsigned)planes[1][x], (unsigned)planes[2][x],
+                               (unsigned)planes[3][x]);
+        v_store(out + 4 * (x + 1), sum + v_load(above + 4 * (x + 1)));
+    }
+}
+
+}  // namespace
+
+SumRowFunc<short, ushort>::Type getSumRowFunc(short, ushort)
+{
+    return sumRow16;
+}
+
+SumRowFunc<short, unsigned>::Type getSumRowFunc(short, unsigned)
+{
+    return sumRow32<short>;
+}
+
+SumRowFunc<int, unsigned>::Type getSumRowFunc(int, unsigned)
+{
+    return sumRow32<int>;
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+
+}  // namespace iib
+}  // namespace cv

@@ -1,0 +1,52 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_KEYPOINT_BITS_HPP
+#define OPENCV_IIB_KEYPOINT_BITS_HPP
+
+#include "bits.hpp"
+
+namespace cv {
+namespace iib {
+
+/** From the sums over the finest cells of a keypoint to its bits, level by level. Holds the memory that one
+ thread uses again for each keypoint. */
+class KeyPointBits
+{
+public:
+    //! @param group which four of the channels; @param channels how many of them are in use.
+    KeyPointBits(const Parameters& parameters, int group, int channels);
+
+    //! Cells in a row at the finest level.
+    int size() const { return 1 << granularity; }
+
+    //! Where the sums over the finest cells go, if none exceeds UINT_MAX.
+    CellGrid<int>& finestCells() { return sums[granularity]; }
+    //! Where they go else.
+    CellGrid<double>& finestWideCells() { return wideSums[granularity]; }
+
+    /** Writes the bits of all levels into a zeroed descriptor.
+     @param xEdges, yEdges size() + 1 edges of the finest cells in each direction, in pixels or samples.
+     @param maxValue the largest value that was summed.
+     @param wide whether the sums are in finestWideCells(). */
+    void write(const int* xEdges, const int* yEdges, int maxValue, bool wide, uchar* descriptor);
+
+private:
+    int measure(int level, const int* edges, std::vector<int>& lengths, bool& equal) const;
+    bool fits(int level, const int* xEdges, const int* yEdges, int maxValue);
+
+    const int granularity, mapping, channels;
+    const bool overlap;
+    const LevelBitsFunc levelBits;
+    const ParentSumsFunc parentSums;
+    std::vector<int> offsets;  //!< of the group's first bit of each level
+    std::vector<CellGrid<int> > sums;
+    std::vector<CellGrid<double> > wideSums;
+    std::vector<int> widths, heights;  //!< of the cells of the level at hand
+};
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

@@ -1,0 +1,134 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "test_precomp.hpp"
+
+#include "oracle.hpp"
+
+namespace opencv_test { namespace {
+
+using cv::iib::IIB;
+
+//! Blurred noise: gradients of all sizes, flat places too.
+Mat texture(Size size, int depth, int seed)
+{
+    RNG rng(seed);
+    Mat m(size, depth);
+    rng.fill(m, RNG::UNIFORM, 0, depth == CV_8U ? 256 : 65536);
+    if (size.width > 16 && size.height > 16)
+    {
+        GaussianBlur(m, m, Size(5, 5), 1.2);
+        m(Rect(size.width / 4, size.height / 4, size.width / 3, size.height / 3)) = 77;
+    }
+    return m;
+}
+
+//! Keypoints in and around an image, of all sizes and directions.
+std::vector<KeyPoint> scatter(Size size, int count, float smallest, float largest, int seed)
+{
+    RNG rng(seed);
+    std::vector<KeyPoint> keypoints;
+    for (int i = 0; i < count; i++)
+    {
+        const float x = rng.uniform(-0.2f, 1.2f) * size.width, y = rng.uniform(-0.2f, 1.2f) * size.height;
+        const float angle = i % 5 ? rng.uniform(0.f, 360.f) : -1.f;
+        keypoints.push_back(KeyPoint(x, y, rng.uniform(smallest, largest), angle));
+    }
+    for (int i = 0; i < count / 4; i++)
+        keypoints[i].pt = Point2f((float)cvRound(keypoints[i].pt.x), (float)cvRound(keypoints[i].pt.y));
+    return keypoints;
+}
+
+void expectOracle(IIB& iib, const Mat& image, const std::vector<Mat>& extra, std::vector<KeyPoint> keypoints,
+                  const String& what)
+{
+    const Mat expected = oracle::describe(iib, image, extra, keypoints);
+    Mat descriptors;
+    iib.compute(image, extra, keypoints, descriptors);
+    ASSERT_EQ(expected.size(), descriptors.size()) << what;
+    for (int i = 0; i < expected.rows; i++)
+        ASSERT_EQ(0, cvtest::norm(expected.row(i), descriptors.row(i), NORM_HAMMING))
+            << what << ", keypoint " << i << " at " << keypoints[i].pt << " size " << keypoints[i].size << " angle "
+            << keypoints[i].angle;
+}
+
+typedef testing::TestWithParam<int> IIB_Bits_Mapping;
+
+TEST_P(IIB_Bits_Mapping, as_the_equations)
+{
+    const Mat image = texture(Size(150, 131), CV_8U, 1);
+    for (int granularity = 1; granularity <= 6; granularity++)
+        for (int overlap = 0; overlap < 2; overlap++)
+        {
+            const Ptr<IIB> iib = IIB::create(2.f, granularity, IIB::CHANNELS_DEFAULT, GetParam(), overlap != 0);
+            expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 12, 1.f, 60.f, granularity),
+                         format("G %d overlap %d", granularity, overlap));
+        }
+}
+
+INSTANTIATE_TEST_CASE_P(/**/, IIB_Bits_Mapping, testing::Range((int)IIB::MAPPING_MEAN, (int)IIB::MAPPING_PAIRWISE + 1));
+
+TEST(IIB_Bits, every_set_of_channels)
+{
+    const Mat image = texture(Size(101, 97), CV_8U, 2);
+    for (int channels = 1; channels < 64; channels++)
+    {
+        const Ptr<IIB> iib = IIB::create(1.f, 3, channels);
+        expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 10, 8.f, 70.f, channels),
+                     format("channels %d", channels));
+    }
+}
+
+TEST(IIB_Bits, extra_channels_of_any_depth)
+{
+    for (int depth = 0; depth < 2; depth++)
+        for (int count = 1; count <= 6; count++)
+        {
+            const Mat image = texture(Size(90, 83), depth ? CV_16U : CV_8U, 3);
+            std::vector<Mat> extra;
+            for (int i = 0; i < count; i++)
+                extra.push_back(texture(image.size(), i % 2 ? CV_16U : CV_8U, 10 + i));
+            for (int channels = 0; channels < 16; channels += 5)
+            {
+                const Ptr<IIB> iib = IIB::create(1.f, 4, channels, IIB::MAPPING_HAAR, false, false, count);
+                expectOracle(*iib, image, extra, scatter(image.size(), 10, 10.f, 90.f, count),
+                             format("depth %d channels %d extra %d", depth, channels, count));
+            }
+        }
+}
+
+TEST(IIB_Bits, sixteen_bit_images)
+{
+    const Mat image = texture(Size(300, 280), CV_16U, 4);
+    for (int mapping = 0; mapping <= IIB::MAPPING_PAIRWISE; mapping++)
+    {
+        const Ptr<IIB> iib = IIB::create(1.f, 4, 63, mapping);
+        expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 10, 10.f, 400.f, mapping),
+                     format("mapping %d", mapping));
+    }
+}
+
+TEST(IIB_Bits, images_of_every_width)
+{
+    const Ptr<IIB> iib = IIB::create(1.f, 3);
+    for (int width = 1; width < 140; width++)
+    {
+        const Mat image = texture(Size(width, 1 + width % 23), CV_8U, width);
+        expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 6, 4.f, 50.f, width),
+                     format("width %d", width));
+    }
+}
+
+TEST(IIB_Bits, large_regions_of_support)
+{
+    const Mat image = texture(Size(700, 640), CV_8U, 5);
+    for (int granularity = 1; granularity <= 5; granularity += 2)
+    {
+        const Ptr<IIB> iib = IIB::create(1.f, granularity, 63);
+        expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 6, 100.f, 900.f, granularity),
+                     format("G %d", granularity));
+    }
+}
+
+}}  // namespace
