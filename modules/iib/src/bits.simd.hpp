@@ -18,78 +18,99 @@ LevelBitsFunc getLevelBitsFunc(int mapping);
 
 namespace {
 
-enum { WORD = 64, MAX_WORDS = (1 << (MAX_GRANULARITY - 1)) * GROUP_CHANNELS / WORD, MAX_PLANES = 8 };
+// Quads and channels that are mapped at a time, whatever the width of a vector, and their comparisons.
+enum { CHUNK = 16, CHUNK_VECTORS = CHUNK / v_int32::nlanes };
 
-//! The bits of a row of quads, a plane for each bit of the mapping.
-struct RowBits
+//! A vector whose comparisons are bits, a bit a lane.
+struct Lanes
 {
-    uint64 planes[MAX_PLANES][MAX_WORDS];
+    v_int32 v;
 
-    //! Takes the comparisons of a vector of quads and channels.
-    struct Put
-    {
-        RowBits& row;
-        int lane;  //!< first one in the row
-
-        void operator()(int plane, const v_int32& comparison) const
-        {
-            const uint64 bits = (uint64)(unsigned)v_signmask(comparison) << lane % WORD;
-            uint64& word = row.planes[plane][lane / WORD];
-            word = lane % WORD == 0 ? bits : word | bits;
-        }
-    };
+    Lanes() {}
+    Lanes(const v_int32& vector) : v(vector) {}
 };
 
-/* Squeezes the channels in use together, out of each group of four lanes. Neighbouring fields of `channels` bits
- are merged, then neighbouring pairs, and so on. */
-inline uint64 dropLanes(uint64 word, int channels)
+inline Lanes operator+(const Lanes& a, const Lanes& b) { return a.v + b.v; }
+inline Lanes operator-(const Lanes& a, const Lanes& b) { return a.v - b.v; }
+inline Lanes v_min(const Lanes& a, const Lanes& b) { return cv::v_min(a.v, b.v); }
+inline Lanes v_max(const Lanes& a, const Lanes& b) { return cv::v_max(a.v, b.v); }
+
+#if CV_SIMD_WIDTH == 64
+// Universal intrinsics turn the mask of a comparison into a vector and that into a mask again.
+inline unsigned operator>(const Lanes& a, const Lanes& b) { return _mm512_cmpgt_epi32_mask(a.v.val, b.v.val); }
+inline unsigned operator>=(const Lanes& a, const Lanes& b) { return _mm512_cmpge_epi32_mask(a.v.val, b.v.val); }
+inline unsigned operator==(const Lanes& a, const Lanes& b) { return _mm512_cmpeq_epi32_mask(a.v.val, b.v.val); }
+#else
+inline unsigned operator>(const Lanes& a, const Lanes& b) { return (unsigned)v_signmask(a.v > b.v); }
+inline unsigned operator>=(const Lanes& a, const Lanes& b) { return (unsigned)v_signmask(a.v >= b.v); }
+inline unsigned operator==(const Lanes& a, const Lanes& b) { return (unsigned)v_signmask(a.v == b.v); }
+#endif
+
+enum { MAX_QUADS = 1 << (MAX_GRANULARITY - 1), MAX_LANES = MAX_QUADS * GROUP_CHANNELS, MAX_PLANES = 8 };
+
+//! A row of quads: a bit for each quad and channel, in a plane for each bit of the mapping.
+struct RowBits
 {
-    uint64 field = (1u << channels) - 1;
-    int width = channels, distance = GROUP_CHANNELS;
-    for (int i = distance; i < WORD; i *= 2)
-        field |= field << i;
-    word &= field;
-    for (; distance < WORD; distance *= 2, width *= 2)
+    ushort planes[MAX_PLANES][MAX_LANES / CHUNK];
+};
+
+//! Collects the comparisons of a chunk.
+struct Put
+{
+    unsigned* chunk;
+    int lane;
+
+    void operator()(int plane, unsigned bits) const { chunk[plane] |= bits << lane; }
+};
+
+/* Squeezes the channels in use together, out of each group of four lanes: neighbouring fields of `channels` bits
+ are merged, then neighbouring pairs, and so on. */
+inline unsigned dropLanes(unsigned chunk, int channels)
+{
+    switch (channels)
     {
-        // the lower field of each pair stays, the upper moves down next to it
-        uint64 low = width < WORD ? ((uint64)1 << width) - 1 : ~(uint64)0;
-        for (int i = 2 * distance; i < WORD; i *= 2)
-            low |= low << i;
-        word = (word & low) | (word >> (distance - width) & low << width);
+    case 1:
+        chunk &= 0x1111;
+        chunk = (chunk | chunk >> 3) & 0x0303;
+        return (chunk | chunk >> 6) & 0x000f;
+    case 2:
+        chunk &= 0x3333;
+        chunk = (chunk | chunk >> 2) & 0x0f0f;
+        return (chunk | chunk >> 4) & 0x00ff;
+    case 3:
+        chunk &= 0x7777;
+        chunk = (chunk & 0x0707) | (chunk >> 1 & 0x3838);
+        return (chunk & 0x003f) | (chunk >> 2 & 0x0fc0);
+    default: return chunk;
     }
-    return word;
 }
 
 void append(const RowBits& row, int planes, int quads, int channels, BitWriter& out)
 {
-    const int lanes = quads * GROUP_CHANNELS;
+    const int chunkQuads = CHUNK / GROUP_CHANNELS;
     for (int plane = 0; plane < planes; plane++)
-        for (int first = 0; first < lanes; first += WORD)
+        for (int first = 0; first < quads; first += chunkQuads)
         {
-            const int count = std::min<int>(lanes - first, WORD);
-            uint64 word = row.planes[plane][first / WORD];
-            if (count < WORD)
-                word &= ((uint64)1 << count) - 1;
-            if (channels < GROUP_CHANNELS)
-                word = dropLanes(word, channels);
-            out.append(word, count / GROUP_CHANNELS * channels);
+            const int count = std::min(quads - first, chunkQuads) * channels;
+            const unsigned bits = dropLanes(row.planes[plane][first / chunkQuads], channels);
+            out.append(bits & ((1u << count) - 1), count);
         }
 }
 
 //! Weights of the left and right cells of a row of quads (see LevelShape), repeated for the channels.
 struct ColumnWeights
 {
-    int left[MAX_WORDS * WORD], right[MAX_WORDS * WORD];
-    bool trivial;
+    int left[MAX_LANES], right[MAX_LANES];
+    bool equal;  //!< whether all weights are 1
 
-    ColumnWeights(const int* widths, int quads) : trivial(true)
+    ColumnWeights(const int* widths, int quads) : equal(true)
     {
         for (int q = 0; q < quads; q++)
         {
-            const bool equal = widths[2 * q] == widths[2 * q + 1];
-            trivial = trivial && equal;
-            v_store(left + q * GROUP_CHANNELS, v_setall_s32(equal ? 1 : widths[2 * q + 1]));
-            v_store(right + q * GROUP_CHANNELS, v_setall_s32(equal ? 1 : widths[2 * q]));
+            const int l = widths[2 * q], r = widths[2 * q + 1];
+            equal = equal && l == r;
+            v_store(left + q * GROUP_CHANNELS, v_setall_s32(l == r ? 1 : r));
+            v_store(right + q * GROUP_CHANNELS, v_setall_s32(l == r ? 1 : l));
         }
     }
 };
@@ -99,37 +120,44 @@ template <typename Mapping>
 void windowBits(const CellGrid<int>& cells, const LevelShape& shape, int dy, int dx, BitWriter& out)
 {
     const int rows = (shape.n - dy) / 2, quads = (shape.n - dx) / 2;
-    const ColumnWeights weights(shape.widths + dx, quads);
+    const ColumnWeights columns(shape.widths + dx, quads);
     RowBits bits;
     for (int r = dy; r < dy + 2 * rows; r += 2)
     {
-        const int *topLeft = cells.row(r, dx), *bottomLeft = cells.row(r + 1, dx);
         // right of an odd column comes the next even one
-        const int *topRight = cells.row(r, 1 - dx) + dx * GROUP_CHANNELS;
-        const int *bottomRight = cells.row(r + 1, 1 - dx) + dx * GROUP_CHANNELS;
+        const int *topLeft = cells.row(r, dx), *topRight = cells.row(r, 1 - dx) + dx * GROUP_CHANNELS;
+        const int *bottomLeft = cells.row(r + 1, dx), *bottomRight = cells.row(r + 1, 1 - dx) + dx * GROUP_CHANNELS;
         const bool equalHeights = shape.heights[r] == shape.heights[r + 1];
         const v_int32 topWeight = vx_setall_s32(shape.heights[r + 1]), bottomWeight = vx_setall_s32(shape.heights[r]);
-        for (int i = 0; i < quads * GROUP_CHANNELS; i += v_int32::nlanes)
+        for (int first = 0; first < quads * GROUP_CHANNELS; first += CHUNK)
         {
-            v_int32 x[4] = { vx_load(topLeft + i), vx_load(topRight + i), vx_load(bottomLeft + i),
-                             vx_load(bottomRight + i) };
-            if (!weights.trivial)
+            unsigned chunk[Mapping::BITS] = {};
+            for (int lane = 0; lane < CHUNK; lane += v_int32::nlanes)
             {
-                const v_int32 left = vx_load(weights.left + i), right = vx_load(weights.right + i);
-                x[0] = x[0] * left;
-                x[1] = x[1] * right;
-                x[2] = x[2] * left;
-                x[3] = x[3] * right;
+                const int i = first + lane;
+                v_int32 a = vx_load(topLeft + i), b = vx_load(topRight + i);
+                v_int32 c = vx_load(bottomLeft + i), d = vx_load(bottomRight + i);
+                if (!columns.equal)
+                {
+                    const v_int32 left = vx_load(columns.left + i), right = vx_load(columns.right + i);
+                    a = a * left;
+                    b = b * right;
+                    c = c * left;
+                    d = d * right;
+                }
+                if (!equalHeights)
+                {
+                    a = a * topWeight;
+                    b = b * topWeight;
+                    c = c * bottomWeight;
+                    d = d * bottomWeight;
+                }
+                const Lanes x[4] = { a, b, c, d };
+                const Put put = { chunk, lane };
+                Mapping::map(x, put);
             }
-            if (!equalHeights)
-            {
-                x[0] = x[0] * topWeight;
-                x[1] = x[1] * topWeight;
-                x[2] = x[2] * bottomWeight;
-                x[3] = x[3] * bottomWeight;
-            }
-            const RowBits::Put put = { bits, i };
-            Mapping::map(x, put);
+            for (int plane = 0; plane < Mapping::BITS; plane++)
+                bits.planes[plane][first / CHUNK] = (ushort)chunk[plane];
         }
         append(bits, Mapping::BITS, quads, shape.channels, out);
     }

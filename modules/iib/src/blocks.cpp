@@ -84,6 +84,8 @@ void cutStrips(const std::vector<Rect>& ros, const Block& block, int strips, std
 
 std::vector<Block> cutBlocks(const std::vector<Rect>& ros, int workers)
 {
+    if (ros.empty())
+        return std::vector<Block>();
     Indices all(ros.size());
     std::iota(all.begin(), all.end(), 0);
     std::vector<Indices> parts;
@@ -94,11 +96,11 @@ std::vector<Block> cutBlocks(const std::vector<Rect>& ros, int workers)
     for (const Indices& part : parts)
     {
         whole.push_back(makeBlock(ros, part));
-        pixels += whole.back().area.area();
+        pixels += (double)whole.back().area.width * whole.back().area.height;
     }
     std::vector<Block> blocks;
     for (const Block& block : whole)
-        cutStrips(ros, block, std::max(cvRound(block.area.area() * workers / pixels), 1), blocks);
+        cutStrips(ros, block, std::max(cvRound((double)block.area.width * block.area.height * workers / pixels), 1), blocks);
     return blocks;
 }
 

@@ -35,6 +35,7 @@ public:
     T* cell(int r, int c) { return row(r, c & 1) + (c >> 1) * GROUP_CHANNELS; }
 
     int size() const { return n; }
+    size_t rowStep() const { return 2 * step; }
 
 private:
     int n;

@@ -36,19 +36,21 @@ void cellSums(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdge
     for (int r = 0; r <= n; r++)
         corners[r] = rows.at(yEdges[r], rows.origin.x);
     columns.create(n);
+    cells.create(n);
+    const size_t step = columns.rowStep();
     for (int c = 0; c <= n; c++)
     {
         const size_t x = (size_t)(xEdges[c] - rows.origin.x) * GROUP_CHANNELS;
+        int* out = columns.cell(0, c);
         v_int32x4 above = loadCorner(corners[0] + x);
-        for (int r = 0; r < n; r++)
+        for (int r = 0; r < n; r++, out += step)
         {
             const v_int32x4 below = loadCorner(corners[r + 1] + x);
-            v_store(columns.cell(r, c), below - above);
+            v_store(out, below - above);
             above = below;
         }
     }
 
-    cells.create(n);
     for (int r = 0; r < n; r++)
     {
         const int *even = columns.row(r, 0), *odd = columns.row(r, 1);
@@ -62,20 +64,42 @@ void cellSums(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdge
     }
 }
 
+//! The four channels of neighbouring cells, in turn to the even and odd columns.
+inline void splitColumns(const v_int32& a, const v_int32& b, v_int32& even, v_int32& odd)
+{
+#if CV_SIMD_WIDTH == 64
+    even = v_int32(_mm512_shuffle_i32x4(a.val, b.val, 0x88));
+    odd = v_int32(_mm512_shuffle_i32x4(a.val, b.val, 0xdd));
+#elif CV_SIMD_WIDTH == 32
+    even = v_int32(_mm256_permute2x128_si256(a.val, b.val, 0x20));
+    odd = v_int32(_mm256_permute2x128_si256(a.val, b.val, 0x31));
+#else
+    even = a;
+    odd = b;
+#endif
+}
+
 void parentSums(const CellGrid<int>& children, CellGrid<int>& cells)
 {
-    const int n = children.size() / 2;
+    const int n = children.size() / 2, lanes = v_int32::nlanes;
     cells.create(n);
-    AutoBuffer<int, 256> line(n * GROUP_CHANNELS + ROW_PADDING);
     for (int r = 0; r < n; r++)
     {
         const int *topLeft = children.row(2 * r, 0), *topRight = children.row(2 * r, 1);
         const int *bottomLeft = children.row(2 * r + 1, 0), *bottomRight = children.row(2 * r + 1, 1);
-        for (int i = 0; i < n * GROUP_CHANNELS; i += v_int32::nlanes)
-            v_store(line.data() + i, (vx_load(topLeft + i) + vx_load(topRight + i))
-                                         + (vx_load(bottomLeft + i) + vx_load(bottomRight + i)));
-        for (int c = 0; c < n; c++)
-            v_store(cells.cell(r, c), v_load(line.data() + c * GROUP_CHANNELS));
+        int *even = cells.row(r, 0), *odd = cells.row(r, 1);
+        for (int i = 0; i < n * GROUP_CHANNELS; i += 2 * lanes)
+        {
+            const int j = i + lanes;
+            const v_int32 first = (vx_load(topLeft + i) + vx_load(topRight + i))
+                                  + (vx_load(bottomLeft + i) + vx_load(bottomRight + i));
+            const v_int32 second = (vx_load(topLeft + j) + vx_load(topRight + j))
+                                   + (vx_load(bottomLeft + j) + vx_load(bottomRight + j));
+            v_int32 evens, odds;
+            splitColumns(first, second, evens, odds);
+            v_store(even + i / 2, evens);
+            v_store(odd + i / 2, odds);
+        }
     }
 }
 

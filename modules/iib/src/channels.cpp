@@ -20,6 +20,14 @@ std::vector<Channel> channelsInUse(const Parameters& p, const Mat& image, const 
     return channels;
 }
 
+bool isDeep(const std::vector<Channel>& channels)
+{
+    for (const Channel& c : channels)
+        if (c.map.depth() == CV_16U)
+            return true;
+    return false;
+}
+
 int maxGradient(const std::vector<Channel>& channels)
 {
     for (const Channel& c : channels)

@@ -32,6 +32,9 @@ inline bool usesGradient(const Channel& channel)
     return channel.kind != 0 && channel.kind != IIB::CHANNEL_INTENSITY;
 }
 
+//! Whether any map has 16 bits.
+bool isDeep(const std::vector<Channel>& channels);
+
 //! Largest absolute Sobel response of the image behind these channels; 0 if none needs its gradient.
 int maxGradient(const std::vector<Channel>& channels);
 

@@ -5,6 +5,7 @@
 #include "describe.hpp"
 
 #include "input.hpp"
+#include "turned.hpp"
 #include "upright.hpp"
 
 namespace cv {
@@ -12,15 +13,40 @@ namespace iib {
 
 namespace {
 
-//! The pixels of the image that a ROS needs: at least one, so that a ROS outside the image has a place too.
-Rect neededPixels(const Ros& ros, Size image)
+typedef std::vector<int> Indices;
+
+//! Keypoints and the pixels that they need.
+struct Part
 {
-    Rect r = ros.inside(image);
-    r.x = std::min(r.x, image.width - 1);
-    r.y = std::min(r.y, image.height - 1);
-    r.width = std::max(r.width, 1);
-    r.height = std::max(r.height, 1);
-    return r;
+    Indices keypoints;
+    std::vector<Rect> pixels;
+
+    void add(int keypoint, Rect r)
+    {
+        keypoints.push_back(keypoint);
+        pixels.push_back(r);
+    }
+
+    //! Blocks whose keypoints are indices of the whole image's.
+    std::vector<Block> blocks() const
+    {
+        std::vector<Block> b = cutBlocks(pixels, getNumThreads());
+        for (Block& block : b)
+            for (int& k : block.keypoints)
+                k = keypoints[k];
+        return b;
+    }
+};
+
+void describeUprightBlock(const Parameters& p, const std::vector<Channel>& channels, const Block& block,
+                          const std::vector<Ros>& ros, Mat& descriptors)
+{
+    for (size_t first = 0; first < channels.size(); first += GROUP_CHANNELS)
+    {
+        const size_t end = std::min(first + GROUP_CHANNELS, channels.size());
+        const std::vector<Channel> group(channels.begin() + first, channels.begin() + end);
+        describeUpright(p, group, (int)first / GROUP_CHANNELS, block, ros, descriptors);
+    }
 }
 
 }  // namespace
@@ -29,11 +55,15 @@ void describe(const Parameters& p, const Mat& image, const std::vector<Mat>& ext
               const std::vector<KeyPoint>& keypoints, Mat& descriptors)
 {
     std::vector<Ros> ros;
-    std::vector<Rect> needed;
+    Part upright, turned;
     for (const KeyPoint& kp : keypoints)
     {
+        const int k = (int)ros.size();
         ros.push_back(Ros(kp, p.scaleFactor, p.granularity));
-        needed.push_back(neededPixels(ros.back(), image.size()));
+        if (p.useOrientation && kp.angle >= 0)
+            turned.add(k, turnedPixels(ros[k], kp, image.size()));
+        else
+            upright.add(k, ros[k].pixels(image.size()));
     }
 
     const Rect whole(Point(), image.size());
@@ -43,16 +73,15 @@ void describe(const Parameters& p, const Mat& image, const std::vector<Mat>& ext
     const std::vector<Channel> channels = channelsInUse(p, integerMap(image, whole), maps);
 
     descriptors = Scalar::all(0);
-    const std::vector<Block> blocks = cutBlocks(needed, getNumThreads());
-    parallel_for_(Range(0, (int)blocks.size()), [&](const Range& range)
+    const std::vector<Block> uprightBlocks = upright.blocks(), turnedBlocks = turned.blocks();
+    const int uprightCount = (int)uprightBlocks.size();
+    parallel_for_(Range(0, uprightCount + (int)turnedBlocks.size()), [&](const Range& range)
     {
         for (int b = range.start; b < range.end; b++)
-            for (size_t first = 0; first < channels.size(); first += GROUP_CHANNELS)
-            {
-                const size_t end = std::min(first + GROUP_CHANNELS, channels.size());
-                const std::vector<Channel> group(channels.begin() + first, channels.begin() + end);
-                describeUpright(p, group, (int)first / GROUP_CHANNELS, blocks[b], ros, descriptors);
-            }
+            if (b < uprightCount)
+                describeUprightBlock(p, channels, uprightBlocks[b], ros, descriptors);
+            else
+                describeTurned(p, channels, turnedBlocks[b - uprightCount], ros, keypoints, descriptors);
     });
 }
 

@@ -33,50 +33,62 @@ void wideParentSums(const CellGrid<double>& children, CellGrid<double>& cells)
 KeyPointBits::KeyPointBits(const Parameters& p, int group, int channels_)
     : granularity(p.granularity), mapping(p.mapping), channels(channels_), overlap(p.overlap),
       levelBits(getLevelBitsFunc(p.mapping)), parentSums(getParentSumsFunc()), offsets(p.granularity + 1),
-      sums(p.granularity + 1), wideSums(p.granularity + 1), widths(size()), heights(size())
+      sums(p.granularity + 1), wideSums(p.granularity + 1)
 {
     for (int level = 1; level <= granularity; level++)
         offsets[level] = bitOffset(p, level, group);
 }
 
-//! The lengths of a level's cells along one axis; returns the largest.
-int KeyPointBits::measure(int level, const int* edges, std::vector<int>& lengths, bool& equal) const
+void KeyPointBits::Axis::place(const int* edges, int n)
 {
-    const int step = 1 << (granularity - level);
-    int largest = 0;
-    equal = true;
-    for (int i = 0; i < 1 << level; i++)
-    {
-        lengths[i] = edges[(i + 1) * step] - edges[i * step];
-        equal = equal && lengths[i] == lengths[0];
-        largest = std::max(largest, lengths[i]);
-    }
-    return largest;
+    for (int i = 0; i < n; i++)
+        lengths[i] = edges[i + 1] - edges[i];
+    measure(n);
 }
 
-//! Measures a level's cells; whether four times each weighted sum fits an int.
-bool KeyPointBits::fits(int level, const int* xEdges, const int* yEdges, int maxValue)
+void KeyPointBits::Axis::coarsen(int n)
 {
-    bool equalWidths, equalHeights;
-    const double width = measure(level, xEdges, widths, equalWidths);
-    const double height = measure(level, yEdges, heights, equalHeights);
-    return 4. * maxValue * width * height * (equalWidths ? 1 : width) * (equalHeights ? 1 : height) <= INT_MAX;
+    for (int i = 0; i < n; i++)
+        lengths[i] = lengths[2 * i] + lengths[2 * i + 1];
+    measure(n);
+}
+
+void KeyPointBits::Axis::measure(int n)
+{
+    int smallest = lengths[0];
+    largest = lengths[0];
+    for (int i = 1; i < n; i++)
+    {
+        smallest = std::min(smallest, lengths[i]);
+        largest = std::max(largest, lengths[i]);
+    }
+    weight = smallest == largest ? 1 : largest;
 }
 
 void KeyPointBits::write(const int* xEdges, const int* yEdges, int maxValue, bool wide, uchar* descriptor)
 {
+    x.place(xEdges, size());
+    y.place(yEdges, size());
     for (int level = granularity; level >= 1; level--)
     {
-        const bool tooLarge = !fits(level, xEdges, yEdges, maxValue);
-        if (level < granularity && wide)
-            wideParentSums(wideSums[level + 1], wideSums[level]);
-        else if (level < granularity)
-            parentSums(sums[level + 1], sums[level]);
-        if (tooLarge && !wide)
+        const int n = 1 << level;
+        if (level < granularity)
+        {
+            x.coarsen(n);
+            y.coarsen(n);
+            if (wide)
+                wideParentSums(wideSums[level + 1], wideSums[level]);
+            else
+                parentSums(sums[level + 1], sums[level]);
+        }
+        // four times the largest weighted sum must fit an int
+        if (!wide && 4. * maxValue * x.largest * y.largest * x.weight * y.weight > INT_MAX)
+        {
             widen(sums[level], wideSums[level]);
-        wide = wide || tooLarge;
+            wide = true;
+        }
 
-        const LevelShape shape = { 1 << level, widths.data(), heights.data(), channels, overlap };
+        const LevelShape shape = { n, x.lengths, y.lengths, channels, overlap };
         BitWriter out(descriptor, offsets[level]);
         if (wide)
             wideLevelBits(mapping, wideSums[level], shape, out);

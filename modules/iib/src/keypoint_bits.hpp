@@ -33,8 +33,18 @@ public:
     void write(const int* xEdges, const int* yEdges, int maxValue, bool wide, uchar* descriptor);
 
 private:
-    int measure(int level, const int* edges, std::vector<int>& lengths, bool& equal) const;
-    bool fits(int level, const int* xEdges, const int* yEdges, int maxValue);
+    //! The cells of the level at hand along one axis.
+    struct Axis
+    {
+        int lengths[1 << MAX_GRANULARITY];
+        int largest, weight;  //!< the largest length, and the largest factor that makes siblings comparable
+
+        void place(const int* edges, int n);
+        void coarsen(int n);
+
+    private:
+        void measure(int n);
+    };
 
     const int granularity, mapping, channels;
     const bool overlap;
@@ -43,7 +53,7 @@ private:
     std::vector<int> offsets;  //!< of the group's first bit of each level
     std::vector<CellGrid<int> > sums;
     std::vector<CellGrid<double> > wideSums;
-    std::vector<int> widths, heights;  //!< of the cells of the level at hand
+    Axis x, y;
 };
 
 }  // namespace iib

@@ -31,28 +31,24 @@ public:
     void append(uint64 bits, int n)
     {
         pending |= bits << count;
-        const int room = 64 - count;
-        if (n < room)
-        {
-            count += n;
+        count += n;
+        if (count < 64)
             return;
-        }
-        store(8);
-        pending = room < 64 ? bits >> room : 0;
-        count = n - room;
+        for (int i = 0; i < 8; i++)  // a single store, where the machine is little-endian
+            next[i] = (uchar)(pending >> 8 * i);
+        next += 8;
+        count -= 64;
+        pending = count ? bits >> (n - count) : 0;
     }
 
     //! Writes the bits still pending; call it once, at the end.
-    void flush() { store((count + 7) / 8); }
-
-private:
-    void store(int bytes)
+    void flush()
     {
-        for (int i = 0; i < bytes; i++)
+        for (int i = 0; i < (count + 7) / 8; i++)
             next[i] = (uchar)(pending >> 8 * i);
-        next += bytes;
     }
 
+private:
     uchar* next;
     uint64 pending;
     int count;  //!< bits pending, 0..63

@@ -16,12 +16,12 @@ struct Ros
 {
     double x, y, side;  //!< top left corner and side; pixel i covers [i, i + 1)
 
+    //! KeyPoint::pt counts from the centre of pixel 0.
+    Ros(Point2f centre, double side_) : x(centre.x + 0.5 - side_ / 2), y(centre.y + 0.5 - side_ / 2), side(side_) {}
+
     Ros(const KeyPoint& keypoint, float scaleFactor, int granularity)
-        : side(std::max((double)scaleFactor * keypoint.size, (double)(1 << granularity)))
+        : Ros(keypoint.pt, std::max((double)scaleFactor * keypoint.size, (double)(1 << granularity)))
     {
-        // KeyPoint::pt counts from the centre of pixel 0
-        x = keypoint.pt.x + 0.5 - side / 2;
-        y = keypoint.pt.y + 0.5 - side / 2;
     }
 
     /** Edge k = 0..n of n cells along an axis on which the ROS begins at `start`, clamped to [0, limit].
@@ -32,11 +32,12 @@ struct Ros
         return (int)std::min(std::max(start + side / n * k + 0.5, 0.), (double)limit);
     }
 
-    //! The ROS as whole pixels, cut to the image.
-    Rect inside(Size image) const
+    //! Pixels of the image that hold the part of the ROS inside it; one of the border if there is none.
+    Rect pixels(Size image) const
     {
-        const Point a(edge(x, 0, 1, image.width), edge(y, 0, 1, image.height));
-        return Rect(a, Point(edge(x, 1, 1, image.width), edge(y, 1, 1, image.height)));
+        const Point a(edge(x, 0, 1, image.width - 1), edge(y, 0, 1, image.height - 1));
+        const Point b(edge(x, 1, 1, image.width), edge(y, 1, 1, image.height));
+        return Rect(a, Point(std::max(b.x, a.x + 1), std::max(b.y, a.y + 1)));
     }
 
     //! Whether no pixel of the ROS lies outside the image.

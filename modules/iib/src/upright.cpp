@@ -71,7 +71,7 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
 
     int rows = 0;
     for (int k : block.keypoints)
-        rows = std::max(rows, ros[k].inside(image).height + 1);
+        rows = std::max(rows, ros[k].pixels(image).height + 1);
     IntegralBand<Lane, Sum> band(channels, block.area, rows);
 
     for (int k : block.keypoints)
@@ -110,10 +110,7 @@ bool sumsAreShort(const Parameters& p, int largest, const Block& block, const st
 void describeUpright(const Parameters& p, const std::vector<Channel>& channels, int group, const Block& block,
                      const std::vector<Ros>& ros, Mat& descriptors)
 {
-    bool deep = false;
-    for (const Channel& c : channels)
-        deep = deep || c.map.depth() == CV_16U;
-    if (deep)
+    if (isDeep(channels))
         describeBlock<int, unsigned>(p, channels, group, block, ros, descriptors);
     else if (sumsAreShort(p, maxValue(channels, maxGradient(channels)), block, ros))
         describeBlock<short, ushort>(p, channels, group, block, ros, descriptors);

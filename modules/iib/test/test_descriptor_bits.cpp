@@ -131,4 +131,20 @@ TEST(IIB_Bits, large_regions_of_support)
     }
 }
 
+TEST(IIB_Bits, turned_regions_of_support)
+{
+    for (int depth = 0; depth < 2; depth++)
+        for (int granularity = 1; granularity <= 6; granularity++)
+        {
+            const Mat image = texture(Size(200, 180), depth ? CV_16U : CV_8U, 6);
+            const std::vector<Mat> extra(2, texture(image.size(), CV_8U, 7));
+            const Ptr<IIB> iib = IIB::create(1.f, granularity, 63, granularity, granularity % 2 == 0, true, 2);
+            expectOracle(*iib, image, extra, scatter(image.size(), 10, 8.f, 200.f, granularity),
+                         format("depth %d G %d", depth, granularity));
+            iib->setChannels(0);
+            expectOracle(*iib, image, extra, scatter(image.size(), 5, 8.f, 200.f, granularity),
+                         format("depth %d G %d, extra channels alone", depth, granularity));
+        }
+}
+
 }}  // namespace

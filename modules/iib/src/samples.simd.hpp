@@ -1,0 +1,150 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "opencv2/core/hal/intrin.hpp"
+
+#include "orientation.hpp"
+#include "samples.hpp"
+
+namespace cv {
+namespace iib {
+
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+const SampleKernels<short>& shortSampleKernels();
+const SampleKernels<int>& intSampleKernels();
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+namespace {
+
+// The compiler makes vectors of the plain loops, with this file's instruction set.
+
+void sampleIndices(const SampleGrid& g, int sub, int* index)
+{
+    const int n = g.n, cells = n / sub;
+    for (int dy = 0; dy < sub; dy++)
+        for (int dx = 0; dx < sub; dx++)
+            for (int row = 0; row < cells; row++)
+            {
+                const int v = 2 * (row * sub + dy) + 1 - n;
+                const int startX = g.fracX - v * g.stepY, startY = g.fracY + v * g.stepX;
+                for (int parity = 0; parity < 2; parity++)
+                {
+                    const int first = 2 * (parity * sub + dx) + 1 - n;
+                    for (int i = 0; i < cells / 2; i++)
+                    {
+                        const int u = first + 4 * sub * i;
+                        const int x = g.x + ((startX + u * g.stepX) >> 17), y = g.y + ((startY + u * g.stepY) >> 17);
+                        const int insideX = std::min(std::max(x, 0), g.image.width - 1);
+                        const int insideY = std::min(std::max(y, 0), g.image.height - 1);
+                        index[i] = (insideY - g.area.y) * g.area.width + insideX - g.area.x;
+                    }
+                    index += cells / 2;
+                }
+            }
+}
+
+void deinterleave(const short* p, v_int16 v[GROUP_CHANNELS])
+{
+    v_load_deinterleave(p, v[0], v[1], v[2], v[3]);
+}
+
+void deinterleave(const int* p, v_int32 v[GROUP_CHANNELS])
+{
+    v_load_deinterleave(p, v[0], v[1], v[2], v[3]);
+}
+
+inline v_int16 vectorOf(short) { return vx_setzero_s16(); }
+inline v_int32 vectorOf(int) { return vx_setzero_s32(); }
+
+//! count must be a multiple of the vector.
+template <typename Lane>
+void gatherPixels(const Lane* pixels, const int* index, int count, Lane* const planes[GROUP_CHANNELS])
+{
+    typedef decltype(vectorOf(Lane())) V;
+    const int lanes = V::nlanes;
+    Lane chunk[GROUP_CHANNELS * V::nlanes];
+    for (int i = 0; i < count; i += lanes)
+    {
+        for (int j = 0; j < lanes; j++)
+            memcpy(chunk + j * GROUP_CHANNELS, pixels + (size_t)index[i + j] * GROUP_CHANNELS,
+                   GROUP_CHANNELS * sizeof(Lane));
+        V v[GROUP_CHANNELS];
+        deinterleave(chunk, v);
+        for (int c = 0; c < GROUP_CHANNELS; c++)
+            v_store(planes[c] + i, v[c]);
+    }
+}
+
+template <typename Lane> void rotateGradients(Lane* gx, Lane* gy, int count, int cosine, int sine)
+{
+    for (int i = 0; i < count; i++)
+    {
+        const int x = gx[i], y = gy[i];
+        gx[i] = (Lane)((cosine * x + sine * y + 2048) >> 12);
+        gy[i] = (Lane)((cosine * y - sine * x + 2048) >> 12);
+    }
+}
+
+template <typename Lane> void turnOrientations(Lane* steps, int count, int turn)
+{
+    for (int i = 0; i < count; i++)
+        steps[i] = (Lane)((steps[i] + turn) & (ORIENTATION_STEPS - 1));
+}
+
+inline v_int32x4 loadFour(const short* p) { return v_load_expand(p); }
+inline v_int32x4 loadFour(const int* p) { return v_load(p); }
+
+template <typename Lane>
+void sumCells(const Lane* const planes[GROUP_CHANNELS], int n, int sub, CellGrid<int>& cells)
+{
+    const int side = n / sub, count = side * side;
+    cells.create(side);
+    for (int row = 0; row < side; row++)
+        for (int parity = 0; parity < 2; parity++)
+        {
+            const int start = (2 * row + parity) * (side / 2);
+            for (int i = 0; i < side / 2; i += 4)
+            {
+                v_int32x4 sums[GROUP_CHANNELS], out[GROUP_CHANNELS];
+                for (int c = 0; c < GROUP_CHANNELS; c++)
+                {
+                    const Lane* p = planes[c] + start + i;
+                    sums[c] = loadFour(p);
+                    for (int s = 1; s < sub * sub; s++)
+                        sums[c] = sums[c] + loadFour(p + s * count);
+                }
+                v_transpose4x4(sums[0], sums[1], sums[2], sums[3], out[0], out[1], out[2], out[3]);
+                for (int j = 0; j < 4; j++)
+                    v_store(cells.row(row, parity) + (i + j) * GROUP_CHANNELS, out[j]);
+            }
+        }
+}
+
+template <typename Lane> const SampleKernels<Lane>& kernels()
+{
+    static const SampleKernels<Lane> k = { sampleIndices, gatherPixels<Lane>, rotateGradients<Lane>,
+                                           turnOrientations<Lane>, sumCells<Lane> };
+    return k;
+}
+
+}  // namespace
+
+const SampleKernels<short>& shortSampleKernels()
+{
+    return kernels<short>();
+}
+
+const SampleKernels<int>& intSampleKernels()
+{
+    return kernels<int>();
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+
+}  // namespace iib
+}  // namespace cv
