@@ -15,5 +15,10 @@ LevelBitsFunc getLevelBitsFunc(int mapping)
     CV_CPU_DISPATCH(getLevelBitsFunc, (mapping), CV_CPU_DISPATCH_MODES_ALL);
 }
 
+SelectedBitsFunc getSelectedBitsFunc(int mapping)
+{
+    CV_CPU_DISPATCH(getSelectedBitsFunc, (mapping), CV_CPU_DISPATCH_MODES_ALL);
+}
+
 }  // namespace iib
 }  // namespace cv

@@ -5,9 +5,8 @@
 #ifndef OPENCV_IIB_BITS_HPP
 #define OPENCV_IIB_BITS_HPP
 
-#include <array>
-
 #include "cells.hpp"
+#include "selection.hpp"
 
 namespace cv {
 namespace iib {
@@ -28,8 +27,16 @@ struct LevelShape
 typedef void (*LevelBitsFunc)(const CellGrid<int>& cells, const LevelShape& shape, BitWriter& out);
 LevelBitsFunc getLevelBitsFunc(int mapping);
 
-//! The same where an int is too small for the products.
+//! The comparisons of some quads in planes of `words` words, a plane for each bit of the mapping and a bit for each
+//! channel of each quad.
+typedef void (*SelectedBitsFunc)(const CellGrid<int>& cells, const LevelShape& shape,
+                                 const std::vector<QuadPlace>& quads, int words, uint64* planes);
+SelectedBitsFunc getSelectedBitsFunc(int mapping);
+
+//! The same two where an int is too small for the products.
 void wideLevelBits(int mapping, const CellGrid<double>& cells, const LevelShape& shape, BitWriter& out);
+void wideSelectedBits(int mapping, const CellGrid<double>& cells, const LevelShape& shape,
+                      const std::vector<QuadPlace>& quads, int words, uint64* planes);
 
 }  // namespace iib
 }  // namespace cv

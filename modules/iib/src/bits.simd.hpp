@@ -13,6 +13,7 @@ namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 LevelBitsFunc getLevelBitsFunc(int mapping);
+SelectedBitsFunc getSelectedBitsFunc(int mapping);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -170,20 +171,82 @@ template <typename Mapping> void levelBits(const CellGrid<int>& cells, const Lev
             windowBits<Mapping>(cells, shape, dy, dx, out);
 }
 
+//! Brings the chosen quads together, cell by cell, already weighted.
+void gatherQuads(const CellGrid<int>& cells, const LevelShape& shape, const QuadPlace* quads, int count,
+                 int gathered[4][CHUNK])
+{
+    for (int q = 0; q < count; q++)
+    {
+        const int row = quads[q].row, col = quads[q].col;
+        const int left = shape.widths[col], right = shape.widths[col + 1];
+        const int top = shape.heights[row], bottom = shape.heights[row + 1];
+        v_int32x4 x[4] = { v_load(cells.cell(row, col)), v_load(cells.cell(row, col + 1)),
+                           v_load(cells.cell(row + 1, col)), v_load(cells.cell(row + 1, col + 1)) };
+        if (left != right)
+        {
+            const v_int32x4 l = v_setall_s32(right), r = v_setall_s32(left);
+            x[0] = x[0] * l;
+            x[1] = x[1] * r;
+            x[2] = x[2] * l;
+            x[3] = x[3] * r;
+        }
+        if (top != bottom)
+        {
+            const v_int32x4 t = v_setall_s32(bottom), b = v_setall_s32(top);
+            x[0] = x[0] * t;
+            x[1] = x[1] * t;
+            x[2] = x[2] * b;
+            x[3] = x[3] * b;
+        }
+        for (int i = 0; i < 4; i++)
+            v_store(gathered[i] + q * GROUP_CHANNELS, x[i]);
+    }
+}
+
+template <typename Mapping>
+void selectedBits(const CellGrid<int>& cells, const LevelShape& shape, const std::vector<QuadPlace>& quads, int words,
+                  uint64* planes)
+{
+    const int chunkQuads = CHUNK / GROUP_CHANNELS, wordChunks = 64 / CHUNK, count = (int)quads.size();
+    std::fill(planes, planes + words * Mapping::BITS, (uint64)0);
+    int gathered[4][CHUNK] = {};
+    for (int first = 0; first < count; first += chunkQuads)
+    {
+        gatherQuads(cells, shape, &quads[first], std::min(chunkQuads, count - first), gathered);
+        unsigned chunk[Mapping::BITS] = {};
+        for (int lane = 0; lane < CHUNK; lane += v_int32::nlanes)
+        {
+            const Lanes x[4] = { vx_load(gathered[0] + lane), vx_load(gathered[1] + lane), vx_load(gathered[2] + lane),
+                                 vx_load(gathered[3] + lane) };
+            const Put put = { chunk, lane };
+            Mapping::map(x, put);
+        }
+        const int index = first / chunkQuads;
+        for (int plane = 0; plane < Mapping::BITS; plane++)
+            planes[plane * words + index / wordChunks] |= (uint64)chunk[plane] << index % wordChunks * CHUNK;
+    }
+}
+
+struct LevelBits
+{
+    template <typename Mapping> LevelBitsFunc visit() const { return levelBits<Mapping>; }
+};
+
+struct SelectedBits
+{
+    template <typename Mapping> SelectedBitsFunc visit() const { return selectedBits<Mapping>; }
+};
+
 }  // namespace
 
 LevelBitsFunc getLevelBitsFunc(int mapping)
 {
-    switch (mapping)
-    {
-    case IIB::MAPPING_MAX: return levelBits<MaxMapping>;
-    case IIB::MAPPING_MIN: return levelBits<MinMapping>;
-    case IIB::MAPPING_QUARTILE: return levelBits<QuartileMapping>;
-    case IIB::MAPPING_SORT: return levelBits<SortMapping>;
-    case IIB::MAPPING_HAAR: return levelBits<HaarMapping>;
-    case IIB::MAPPING_PAIRWISE: return levelBits<PairwiseMapping>;
-    default: return levelBits<MeanMapping>;
-    }
+    return visitMapping(mapping, LevelBits());
+}
+
+SelectedBitsFunc getSelectedBitsFunc(int mapping)
+{
+    return visitMapping(mapping, SelectedBits());
 }
 
 #endif

@@ -32,11 +32,35 @@ void wideParentSums(const CellGrid<double>& children, CellGrid<double>& cells)
 
 KeyPointBits::KeyPointBits(const Parameters& p, int group, int channels_)
     : granularity(p.granularity), mapping(p.mapping), channels(channels_), overlap(p.overlap),
-      levelBits(getLevelBitsFunc(p.mapping)), parentSums(getParentSumsFunc()), offsets(p.granularity + 1),
+      levelBits(getLevelBitsFunc(p.mapping)), selectedBits(getSelectedBitsFunc(p.mapping)), parentSums(getParentSumsFunc()), offsets(p.granularity + 1),
       sums(p.granularity + 1), wideSums(p.granularity + 1)
 {
     for (int level = 1; level <= granularity; level++)
         offsets[level] = bitOffset(p, level, group);
+    if (p.selection.empty())
+        return;
+    selection.resize(granularity + 1);
+    size_t words = 0;
+    for (int level = 1; level <= granularity; level++)
+    {
+        selection[level] = SelectedQuads(p, level, group);
+        words = std::max(words, (size_t)selection[level].words());
+    }
+    planes.resize(words * bitsPerQuad(mapping));
+}
+
+void KeyPointBits::writeSelected(int level, const LevelShape& shape, bool wide, uchar* descriptor)
+{
+    const SelectedQuads& chosen = selection[level];
+    if (chosen.places().empty())
+        return;
+    if (wide)
+        wideSelectedBits(mapping, wideSums[level], shape, chosen.places(), chosen.words(), planes.data());
+    else
+        selectedBits(sums[level], shape, chosen.places(), chosen.words(), planes.data());
+    BitWriter out(descriptor, offsets[level]);
+    chosen.append(planes.data(), out);
+    out.flush();
 }
 
 void KeyPointBits::Axis::place(const int* edges, int n)
@@ -89,6 +113,11 @@ void KeyPointBits::write(const int* xEdges, const int* yEdges, int maxValue, boo
         }
 
         const LevelShape shape = { n, x.lengths, y.lengths, channels, overlap };
+        if (!selection.empty())
+        {
+            writeSelected(level, shape, wide, descriptor);
+            continue;
+        }
         BitWriter out(descriptor, offsets[level]);
         if (wide)
             wideLevelBits(mapping, wideSums[level], shape, out);

@@ -33,6 +33,8 @@ public:
     void write(const int* xEdges, const int* yEdges, int maxValue, bool wide, uchar* descriptor);
 
 private:
+    void writeSelected(int level, const LevelShape& shape, bool wide, uchar* descriptor);
+
     //! The cells of the level at hand along one axis.
     struct Axis
     {
@@ -49,8 +51,11 @@ private:
     const int granularity, mapping, channels;
     const bool overlap;
     const LevelBitsFunc levelBits;
+    const SelectedBitsFunc selectedBits;
     const ParentSumsFunc parentSums;
     std::vector<int> offsets;  //!< of the group's first bit of each level
+    std::vector<SelectedQuads> selection;  //!< of each level; empty if all quads are in use
+    std::vector<uint64> planes;
     std::vector<CellGrid<int> > sums;
     std::vector<CellGrid<double> > wideSums;
     Axis x, y;

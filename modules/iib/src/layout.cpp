@@ -22,15 +22,21 @@ static int channelBits(const Parameters& p, int level)
     return side * side * bitsPerQuad(p.mapping);
 }
 
-int levelBits(const Parameters& p, int level)
+//! Bits of a level that the channels before `end` make.
+static int bitsBefore(const Parameters& p, int level, int end)
 {
     if (p.selection.empty())
-        return channelBits(p, level) * p.channelCount();
+        return channelBits(p, level) * end;
     int bits = 0;
     for (int i = 0; i < p.selection.rows; i++)
-        if (p.selection(i, 0) == level)
+        if (p.selection(i, 0) == level && p.selection(i, 1) < end)
             bits += countBits(p.selection(i, 4));
     return bits;
+}
+
+int levelBits(const Parameters& p, int level)
+{
+    return bitsBefore(p, level, p.channelCount());
 }
 
 std::vector<int> levelBytes(const Parameters& p)
@@ -47,7 +53,7 @@ int bitOffset(const Parameters& p, int level, int group)
     int bytes = 0;
     for (int coarser = 1; coarser < level; coarser++)
         bytes += (levelBits(p, coarser) + 7) / 8;
-    return 8 * bytes + channelBits(p, level) * GROUP_CHANNELS * group;
+    return 8 * bytes + bitsBefore(p, level, GROUP_CHANNELS * group);
 }
 
 }  // namespace iib

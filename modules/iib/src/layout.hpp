@@ -5,6 +5,8 @@
 #ifndef OPENCV_IIB_LAYOUT_HPP
 #define OPENCV_IIB_LAYOUT_HPP
 
+#include <array>
+
 #include "parameters.hpp"
 
 namespace cv {
@@ -18,7 +20,7 @@ int levelBits(const Parameters& parameters, int level);
 //! Bytes of each level that has any, coarse first.
 std::vector<int> levelBytes(const Parameters& parameters);
 
-//! The place of a group's first bit of a level in the descriptor; without a selection.
+//! The place of a group's first bit of a level in the descriptor.
 int bitOffset(const Parameters& parameters, int level, int group);
 
 //! Appends bits to a zeroed descriptor, the lowest bit of the lowest byte first.

@@ -4,6 +4,9 @@
 
 #include "parameters.hpp"
 
+#include <array>
+#include <set>
+
 namespace cv {
 namespace iib {
 
@@ -16,6 +19,7 @@ static void require(bool ok, int code, const String& message)
 static void checkSelection(const Parameters& p)
 {
     int last = 1;
+    std::set<std::array<int, 4> > seen;
     for (int i = 0; i < p.selection.rows; i++)
     {
         const int* quad = p.selection[i];
@@ -30,6 +34,8 @@ static void checkSelection(const Parameters& p)
                 where + format("cell (%d, %d) is not in 0..%d", row, col, end));
         require(bits > 0 && bits < 1 << bitsPerQuad(p.mapping), Error::StsOutOfRange,
                 where + format("bit mask %d is not in 1..%d", bits, (1 << bitsPerQuad(p.mapping)) - 1));
+        const std::array<int, 4> place = { { level, channel, row, col } };
+        require(seen.insert(place).second, Error::StsBadArg, where + "the quad was given before");
         last = level;
     }
 }

@@ -12,61 +12,87 @@ namespace {
 
 enum { MAX_BITS = (1 << (MAX_GRANULARITY - 1)) * GROUP_CHANNELS };
 
-//! A row's bits, a plane for each bit of the mapping.
-struct Put
+//! Maps one channel of one quad; put(bit, value) takes the bits.
+template <typename Mapping, typename Put>
+void mapQuad(const CellGrid<double>& cells, const LevelShape& shape, int row, int col, int channel, const Put& put)
 {
-    std::array<std::array<bool, MAX_BITS>, 8>& planes;
-    int index;
+    const double left = shape.widths[col + 1], right = shape.widths[col];
+    const double top = shape.heights[row + 1], bottom = shape.heights[row];
+    const double x[4] = { cells.cell(row, col)[channel] * (left * top), cells.cell(row, col + 1)[channel] * (right * top),
+                          cells.cell(row + 1, col)[channel] * (left * bottom),
+                          cells.cell(row + 1, col + 1)[channel] * (right * bottom) };
+    Mapping::map(x, put);
+}
 
-    void operator()(int plane, bool bit) const { planes[plane][index] = bit; }
-};
-
+//! Quads whose top left cells are in rows dy, dy + 2, ... and columns dx, dx + 2, ...
 template <typename Mapping>
 void windowBits(const CellGrid<double>& cells, const LevelShape& shape, int dy, int dx, BitWriter& out)
 {
-    std::array<std::array<bool, MAX_BITS>, 8> planes;
-    for (int r = dy; r + 1 < shape.n; r += 2)
+    bool planes[Mapping::BITS][MAX_BITS];
+    for (int row = dy; row + 1 < shape.n; row += 2)
     {
         int count = 0;
-        for (int c = dx; c + 1 < shape.n; c += 2)
-            for (int channel = 0; channel < shape.channels; channel++)
-            {
-                const double left = shape.widths[c + 1], right = shape.widths[c];
-                const double top = shape.heights[r + 1], bottom = shape.heights[r];
-                const double x[4] = { cells.cell(r, c)[channel] * (left * top),
-                                      cells.cell(r, c + 1)[channel] * (right * top),
-                                      cells.cell(r + 1, c)[channel] * (left * bottom),
-                                      cells.cell(r + 1, c + 1)[channel] * (right * bottom) };
-                const Put put = { planes, count++ };
-                Mapping::map(x, put);
-            }
+        for (int col = dx; col + 1 < shape.n; col += 2)
+            for (int channel = 0; channel < shape.channels; channel++, count++)
+                mapQuad<Mapping>(cells, shape, row, col, channel, [&](int plane, bool bit)
+                {
+                    planes[plane][count] = bit;
+                });
         for (int plane = 0; plane < Mapping::BITS; plane++)
             for (int i = 0; i < count; i++)
                 out.append(planes[plane][i], 1);
     }
 }
 
-template <typename Mapping> void levelBits(const CellGrid<double>& cells, const LevelShape& shape, BitWriter& out)
+struct LevelBits
 {
-    for (int dy = 0; dy <= (int)shape.overlap; dy++)
-        for (int dx = 0; dx <= (int)shape.overlap; dx++)
-            windowBits<Mapping>(cells, shape, dy, dx, out);
-}
+    const CellGrid<double>& cells;
+    const LevelShape& shape;
+    BitWriter& out;
+
+    template <typename Mapping> void visit() const
+    {
+        for (int dy = 0; dy <= (int)shape.overlap; dy++)
+            for (int dx = 0; dx <= (int)shape.overlap; dx++)
+                windowBits<Mapping>(cells, shape, dy, dx, out);
+    }
+};
+
+struct SelectedBits
+{
+    const CellGrid<double>& cells;
+    const LevelShape& shape;
+    const std::vector<QuadPlace>& quads;
+    const int words;
+    uint64* const planes;
+
+    template <typename Mapping> void visit() const
+    {
+        std::fill(planes, planes + words * Mapping::BITS, (uint64)0);
+        for (size_t lane = 0; lane < quads.size() * GROUP_CHANNELS; lane++)
+        {
+            const QuadPlace& quad = quads[lane / GROUP_CHANNELS];
+            mapQuad<Mapping>(cells, shape, quad.row, quad.col, lane % GROUP_CHANNELS, [&](int plane, bool bit)
+            {
+                planes[plane * words + lane / 64] |= (uint64)bit << lane % 64;
+            });
+        }
+    }
+};
 
 }  // namespace
 
 void wideLevelBits(int mapping, const CellGrid<double>& cells, const LevelShape& shape, BitWriter& out)
 {
-    switch (mapping)
-    {
-    case IIB::MAPPING_MEAN: return levelBits<MeanMapping>(cells, shape, out);
-    case IIB::MAPPING_MAX: return levelBits<MaxMapping>(cells, shape, out);
-    case IIB::MAPPING_MIN: return levelBits<MinMapping>(cells, shape, out);
-    case IIB::MAPPING_QUARTILE: return levelBits<QuartileMapping>(cells, shape, out);
-    case IIB::MAPPING_SORT: return levelBits<SortMapping>(cells, shape, out);
-    case IIB::MAPPING_HAAR: return levelBits<HaarMapping>(cells, shape, out);
-    default: return levelBits<PairwiseMapping>(cells, shape, out);
-    }
+    const LevelBits visitor = { cells, shape, out };
+    visitMapping(mapping, visitor);
+}
+
+void wideSelectedBits(int mapping, const CellGrid<double>& cells, const LevelShape& shape,
+                      const std::vector<QuadPlace>& quads, int words, uint64* planes)
+{
+    const SelectedBits visitor = { cells, shape, quads, words, planes };
+    visitMapping(mapping, visitor);
 }
 
 }  // namespace iib

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "../src/orientation.hpp"
 
@@ -250,12 +251,20 @@ std::vector<bool> levelBits(const IIB& iib, const Cells& cells, int channels, in
 
 std::vector<bool> selectedBits(const IIB& iib, const Cells& cells, const Mat_<int>& selection, int level)
 {
-    std::vector<bool> bits;
-    for (int bit = 0; bit < 8; bit++)
-        for (int i = 0; i < selection.rows; i++)
+    // group of channels, bit, row, column, channel: the order of the header
+    std::map<std::array<int, 5>, bool> bits;
+    for (int i = 0; i < selection.rows; i++)
+        for (int bit = 0; bit < 8; bit++)
             if (selection(i, 0) == level && (selection(i, 4) >> bit & 1))
-                bits.push_back(quadBits(iib, cells, selection(i, 1), level, selection(i, 2), selection(i, 3))[bit]);
-    return bits;
+            {
+                const int channel = selection(i, 1), row = selection(i, 2), col = selection(i, 3);
+                const std::array<int, 5> place = { { channel / 4, bit, row, col, channel } };
+                bits[place] = quadBits(iib, cells, channel, level, row, col)[bit];
+            }
+    std::vector<bool> result;
+    for (const auto& b : bits)
+        result.push_back(b.second);
+    return result;
 }
 
 void appendLevel(std::vector<uchar>& bytes, const std::vector<bool>& bits)

@@ -131,6 +131,36 @@ TEST(IIB_Bits, large_regions_of_support)
     }
 }
 
+TEST(IIB_Bits, selections)
+{
+    const Mat image = texture(Size(300, 280), CV_8U, 8);
+    for (int mapping = 0; mapping <= IIB::MAPPING_PAIRWISE; mapping++)
+        for (int count = 1; count < 400; count *= 3)
+        {
+            const Ptr<IIB> iib = IIB::create(1.f, 5, 63, mapping);
+            const int bits = mapping == IIB::MAPPING_HAAR ? 3 : mapping == IIB::MAPPING_QUARTILE || mapping == IIB::MAPPING_SORT ? 8 : 4;
+            RNG rng(count);
+            std::set<std::vector<int> > quads;
+            for (int i = 0; i < count; i++)
+            {
+                const int level = rng.uniform(1, 6), end = (1 << level) - 1;
+                const int quad[] = { level, rng.uniform(0, 6), rng.uniform(0, end), rng.uniform(0, end) };
+                quads.insert(std::vector<int>(quad, quad + 4));
+            }
+            Mat_<int> selection;
+            for (const std::vector<int>& quad : quads)
+            {
+                Mat_<int> row(1, 5);
+                std::copy(quad.begin(), quad.end(), row.begin());
+                row(0, 4) = rng.uniform(1, 1 << bits);
+                selection.push_back(row);
+            }
+            iib->setSelection(selection);
+            expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 10, 10.f, 400.f, mapping),
+                         format("mapping %d, %d quads", mapping, selection.rows));
+        }
+}
+
 TEST(IIB_Bits, turned_regions_of_support)
 {
     for (int depth = 0; depth < 2; depth++)

@@ -34,8 +34,8 @@ first:
  5. the column of quads;
  6. the channel within the group.
 
-With a selection (see setSelection) the order within a level is: the bit of the mapping, then the
-chosen quads in the order given.
+With a selection (see setSelection) the order is the same, without 2: the chosen quads of a level and a
+group of channels by the bit of the mapping, then by row, column and channel, in whatever order they were given.
 
 The descriptors are CV_8U and compared with NORM_HAMMING. The same input gives the same bits for
 every instruction set, thread count and build. One object may serve several threads as long as none
@@ -157,7 +157,7 @@ public:
 
     /** @brief Restricts the descriptor to chosen quads (paper, "Reduction of the IIB Descriptor Size").
 
-    @param quads CV_32S, a row a quad: level g (1..G, not descending), channel (its place among the channels
+    @param quads CV_32S, a row a quad, each at most once: level g (1..G, not descending), channel (its place among the channels
     in use, extra channels last), row and column of the quad's top left cell in the level's grid
     (0..2^g - 2; odd positions, between siblings, are allowed and need no `overlap`), and a bit mask of the
     mapping's bits to keep (bit 0 is the first). Empty: all quads again.
