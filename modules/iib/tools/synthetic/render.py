@@ -25,15 +25,16 @@ OUTPUT = {IMAGE: ["+FN8", "+A0.15", "+AM1", "+R2", "-J"], DEPTH: ["+FN16", "-A"]
 
 
 def povray(scene, mode, light, pose, size):
-    """The rendered array: height x width x 3 for a picture (BGR, 8U), height x width for depth (16U) and labels."""
+    """height x width x 3, BGR, 8U for a picture; height x width, 16U for depth and 8U for labels."""
     width, height = size
     declared = dict(zip(("CamX", "CamY", "CamZ", "Yaw", "Pitch"), pose), Mode=mode, Light=LIGHTS[light],
                     Focal=intrinsics(scene, width, height)[0, 0])
     with tempfile.TemporaryDirectory() as folder:
         picture = os.path.join(folder, "frame.png")
         done = subprocess.run(
-            ["povray", f"+I{HERE / scene}.pov", f"+O{picture}", f"+L{HERE}", "-D", "-GD", "-GR", "-GS", "-GW", "+WT1",
-             f"+W{width}", f"+H{height}", *OUTPUT[mode], f"File_Gamma={'srgb' if mode == IMAGE else '1.0'}",
+            ["povray", f"+I{HERE / scene}.pov", f"+O{picture}", f"+L{HERE}", f"+W{width}", f"+H{height}",
+             "+WT1", "-D", "-GD", "-GR", "-GS", "-GW", *OUTPUT[mode],
+             f"File_Gamma={'srgb' if mode == IMAGE else '1.0'}",
              *(f"Declare={name}={value:.9g}" for name, value in declared.items())],
             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         rendered = cv2.imread(picture, cv2.IMREAD_UNCHANGED) if done.returncode == 0 else None
@@ -60,7 +61,8 @@ def write(path, array):
 
 
 def write_camera(path, scene, poses, size):
-    storage = cv2.FileStorage(str(path), cv2.FILE_STORAGE_WRITE)
+    """The camera file; one that is there must say the same, or old and new pictures would be mixed."""
+    storage = cv2.FileStorage(path.name, cv2.FILE_STORAGE_WRITE | cv2.FILE_STORAGE_MEMORY)
     storage.write("image_width", size[0])
     storage.write("image_height", size[1])
     storage.write("camera_matrix", intrinsics(scene, *size))
@@ -71,7 +73,10 @@ def write_camera(path, scene, poses, size):
     for pose in poses:
         storage.write("", extrinsics(pose))
     storage.endWriteStruct()
-    storage.release()
+    text = storage.releaseAndGetString()
+    if path.exists() and path.read_text() != text:
+        raise RuntimeError(f"{path} is of another size or walk: choose another folder")
+    path.write_text(text)
 
 
 # A file to be rendered, and where else it belongs: light moves nothing, so that depth and labels are of
@@ -107,7 +112,7 @@ def still(folder, scene, size):
 
 
 def walked(folders, scene, size, frames):
-    """folders: {light: folder}, the same walk under each. The pictures lie in frames/, since they have no H."""
+    """folders: {light: folder}, the same walk under each. Pictures lie in frames/, since they have no H."""
     poses = walk(SCENES[scene].path, frames)
     first, *others = folders.values()
     for light, folder in folders.items():
@@ -133,14 +138,27 @@ def plan(out, scenes, frames, path_lights, size):
         yield from walked(folders, scene, size, frames)
 
 
+def render_all(tasks, size, jobs):
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        try:
+            futures = [pool.submit(run, task, size) for task in tasks]
+            for done, future in enumerate(concurrent.futures.as_completed(futures), 1):
+                print(f"[{done}/{len(tasks)}] {future.result()}", flush=True)
+        except BaseException:  # Ctrl-C as well: what waits is dropped, what runs is finished
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=pathlib.Path, help="folder to render into; what is there is kept")
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES), metavar="SCENE",
                         help=f"some of: {', '.join(SCENES)} (all)")
-    parser.add_argument("--frames", type=int, default=0, help="also render walks of this many frames (0: none)")
-    parser.add_argument("--path-lights", nargs="+", choices=LIGHTS, default=["noon", "dusk", "night", "winter"],
-                        metavar="LIGHT", help="lights of the walks (noon dusk night winter)")
+    parser.add_argument("--frames", type=int, default=0,
+                        help="also render walks of this many frames (0: none)")
+    parser.add_argument("--path-lights", nargs="+", choices=LIGHTS, metavar="LIGHT",
+                        default=["noon", "dusk", "night", "winter"],
+                        help="lights of the walks (noon dusk night winter)")
     parser.add_argument("--size", type=int, nargs=2, default=(640, 480), metavar=("WIDTH", "HEIGHT"))
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="renderings at a time")
     options = parser.parse_args()
@@ -149,16 +167,13 @@ def main():
     if shutil.which("povray") is None:
         sys.exit("povray is not installed: apt-get install povray")
 
-    tasks = list(plan(options.out, options.scenes, options.frames, options.path_lights, tuple(options.size)))
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        futures = [pool.submit(run, task, tuple(options.size)) for task in tasks]
-        try:
-            for done, future in enumerate(concurrent.futures.as_completed(futures), 1):
-                print(f"[{done}/{len(tasks)}] {future.result()}", flush=True)
-        except (RuntimeError, OSError) as error:
-            pool.shutdown(cancel_futures=True)
-            sys.exit(str(error))
+    size = tuple(options.size)
+    tasks = list(plan(options.out, options.scenes, options.frames, options.path_lights, size))
+    render_all(tasks, size, options.jobs)
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except (RuntimeError, OSError) as error:
+        sys.exit(str(error))

@@ -28,7 +28,8 @@
                         gradient y scale Tall
                         color_map {
                             [0.10 rgb Tint] [0.10 rgb Band] [0.14 rgb Band] [0.14 rgb Tint]
-                            [0.55 rgb 0.8 * Tint] [0.55 rgb Band] [0.75 rgb 0.8 * Band] [0.75 rgb Tint] [0.9 rgb Tint]
+                            [0.55 rgb 0.8 * Tint] [0.55 rgb Band] [0.75 rgb 0.8 * Band] [0.75 rgb Tint]
+                            [0.9 rgb Tint]
                             [0.9 rgb Band] [0.92 rgb Band] [0.92 rgb Tint]
                         }
                     }
@@ -74,12 +75,14 @@
                 #local C = AnyTint(0.3, 0.95);
                 pigment {
                     #switch (Kind)
-                        #case (0) gradient y turbulence 0.25 scale 1.3 * Tall translate -0.65 * Tall * y #break
+                        #case (0) gradient y turbulence 0.25 scale 1.3 * Tall
+                        translate -0.65 * Tall * y #break
                         #case (1) crackle scale 0.12 translate X #break
                         #case (2) bozo turbulence 0.8 scale 0.15 translate X #break
                         #case (3) leopard turbulence 0.3 scale 0.03 #break
                     #end
-                    color_map { [0.1 rgb A] [0.3 rgb B] [0.35 rgb C] [0.5 rgb A] [0.6 rgb C] [0.62 rgb B] [0.9 rgb C] }
+                    color_map { [0.1 rgb A] [0.3 rgb B] [0.35 rgb C] [0.5 rgb A] [0.6 rgb C] [0.62 rgb B]
+                        [0.9 rgb C] }
                 }
             })
         }
@@ -92,7 +95,8 @@
     union {
         box { <-0.21, 0.43, -0.21>, <0.21, 0.47, 0.21> }
         #for (I, 0, 1) #for (J, 0, 1)
-            cylinder { <-0.18 + 0.36 * I, 0, -0.18 + 0.36 * J>, <-0.18 + 0.36 * I, 0.43 + 0.5 * J, -0.18 + 0.4 * J>, 0.02 }
+            cylinder { <-0.18 + 0.36 * I, 0, -0.18 + 0.36 * J>,
+                <-0.18 + 0.36 * I, 0.43 + 0.5 * J, -0.18 + 0.4 * J>, 0.02 }
         #end #end
         #for (I, 0, 3) box { <-0.19, 0.58 + 0.09 * I, 0.19>, <0.19, 0.63 + 0.09 * I, 0.215> } #end
         Surface(FURNITURE, WoodTexture(<0.45, 0.28, 0.14>, X))
@@ -113,7 +117,8 @@
         cone {
             0, 0.6 * Size, 0.9 * Size * y, 0.35 * Size open no_shadow
             Surface(LAMP, texture {
-                pigment { radial frequency 24 color_map { [0 rgb <0.8, 0.65, 0.4>] [1 rgb <0.6, 0.45, 0.25>] } }
+                pigment { radial frequency 24 color_map { [0 rgb <0.8, 0.65, 0.4>] [1 rgb <0.6, 0.45, 0.25>] }
+                    }
                 finish { emission LampsOn * <1.6, 1.3, 0.8> }
             })
         }

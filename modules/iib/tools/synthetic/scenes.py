@@ -9,7 +9,7 @@ LIGHTS = {"noon": 1, "morning": 2, "dusk": 3, "night": 4, "overcast": 5, "fog": 
           "snow": 9}
 
 # Standard deviation of the sensor's noise in grey levels: little light, much gain.
-NOISE = {"night": 3.5, "dusk": 2.5, "fog": 2.0}
+NOISE = {"night": 6.0, "dusk": 4.0, "fog": 3.0, "wet": 2.0}
 NOISE_BY_DAY = 1.2
 
 # A camera stands at x, y, z (metres; x right, y up, z forward) and looks along yaw (degrees from +z
@@ -20,13 +20,16 @@ OUTDOOR = ["noon", "morning", "dusk", "night", "overcast", "fog", "winter"]
 
 SCENES = {
     "street": Scene(0.81, (-0.9, 1.75, 0, 4, 7),
-                    [(-0.9, 1.75, 0, 4, 7), (0.3, 1.7, 7, -9, 8), (1.2, 1.75, 14, -2, 6), (0.2, 1.75, 21, 12, 8)],
+                    [(-0.9, 1.75, 0, 4, 7), (0.3, 1.7, 7, -9, 8), (1.2, 1.75, 14, -2, 6),
+                     (0.2, 1.75, 21, 12, 8)],
                     OUTDOOR + ["wet"]),
     "room": Scene(0.70, (1.9, 1.5, 0.4, -20, -7),
-                  [(1.9, 1.5, 0.4, -20, -7), (1.2, 1.5, 0.9, -6, -8), (0.3, 1.5, 1.2, 16, -7), (-0.7, 1.5, 1.6, 30, -9)],
+                  [(1.9, 1.5, 0.4, -20, -7), (1.2, 1.5, 0.9, -6, -8), (0.3, 1.5, 1.2, 16, -7),
+                   (-0.7, 1.5, 1.6, 30, -9)],
                   OUTDOOR + ["wet"]),
     "facade": Scene(0.85, (-2.0, 2.0, 0, 6, 17),
-                    [(-6.0, 2.0, 1, 22, 16), (-2.0, 2.0, 0, 6, 17), (2.0, 2.0, 1, -8, 16), (6.0, 2.0, 2.5, -20, 17)],
+                    [(-6.0, 2.0, 1, 22, 16), (-2.0, 2.0, 0, 6, 17), (2.0, 2.0, 1, -8, 16),
+                     (6.0, 2.0, 2.5, -20, 17)],
                     OUTDOOR + ["snow"]),
     "terrain": Scene(0.80, (0, 1.7, 0, 0, 2),
                      [(0, 1.7, 0, 0, 2), (0.6, 1.7, 6, 8, 2), (0, 1.7, 12, -5, 2), (-0.8, 1.7, 18, -14, 3)],
@@ -37,7 +40,8 @@ SCENES = {
 def walk(waypoints, frames):
     """frames x 5: poses (x, y, z, yaw, pitch) at equal steps from the first waypoint to the last."""
     at = np.linspace(0, len(waypoints) - 1, frames)
-    return np.stack([np.interp(at, range(len(waypoints)), column) for column in np.transpose(waypoints)], axis=1)
+    columns = [np.interp(at, range(len(waypoints)), column) for column in np.transpose(waypoints)]
+    return np.stack(columns, axis=1)
 
 
 def intrinsics(scene, width, height):

@@ -11,7 +11,8 @@
 #declare HalfStreet = 5.2;
 
 // A house on the left (Side -1) or right (Side 1), its near corner at Z.
-#macro House(Side, Z, Width, Floors, Columns, FloorHeight, Wall, Trim, Frame, Tint, Shutter, Name, Lit, Setback)
+#macro House(Side, Z, Width, Floors, Columns, FloorHeight, Wall, Trim, Frame, Tint, Shutter, Name, Lit,
+    Setback)
     union {
         Facade(Width, Floors, Columns, 3.3, FloorHeight, Wall, Trim, Frame, Shutter, Lit)
         Shop(Width, 3.3, Name, Wall, Tint, int(Lit + 0.65))
@@ -54,7 +55,8 @@
     union {
         cylinder { <0, 0, 0>, <1.1, 0, 0>, 0.02 Surface(SIGN, MetalTexture(0.1)) }
         box { <0.2, -0.75, -0.03>, <1.05, -0.05, 0.03> Surface(SIGN, PaintTexture(Tint, Z)) }
-        text { internal 2 Name 0.1, 0 scale <0.3, 0.42, 1> translate <0.28, -0.5, -0.05> Surface(SIGN, GlowTexture(<0.9, 0.85, 0.7>, 0.3 * LampsOn)) }
+        text { internal 2 Name 0.1, 0 scale <0.3, 0.42, 1> translate <0.28, -0.5, -0.05>
+            Surface(SIGN, GlowTexture(<0.9, 0.85, 0.7>, 0.3 * LampsOn)) }
         #if (Side > 0) translate -1.15 * x #end
         translate <Side * HalfStreet, 3.9, Z>
     }
@@ -121,7 +123,8 @@
                     pigment {
                         gradient y scale Any(0.3, 0.9)
                         pigment_map {
-                            [0.35 bozo turbulence 0.4 scale 0.12 translate I color_map { [0.45 rgb Paper] [0.5 rgb Ink] }]
+                            [0.35 bozo turbulence 0.4 scale 0.12 translate I
+                                color_map { [0.45 rgb Paper] [0.5 rgb Ink] }]
                             [0.4 rgb Paper]
                             [0.5 gradient y scale 0.07 color_map { [0.5 rgb Paper] [0.5 rgb Ink] }]
                             [0.9 cells scale 0.09 color_map { [0 rgb Paper] [1 rgb Ink] }]

@@ -9,11 +9,14 @@
 // Height field of 200 m x 200 m in front of the camera, made by a pattern; the path along x = 0 is level.
 #declare Side = 200;
 #declare Rise = 46;
-#declare Rough = function { pigment { granite scale 1.1 translate <3.3, 1.7, 5.1> color_map { [0 rgb 0] [1 rgb 1] } } }
-#declare Folds = function { pigment { bozo scale 0.22 translate <8, 1, 2> color_map { [0 rgb 0] [1 rgb 1] } } }
+#declare Rough = function {
+    pigment { granite scale 1.1 translate <3.3, 1.7, 5.1> color_map { [0 rgb 0] [1 rgb 1] } } }
+#declare Folds = function { pigment { bozo scale 0.22 translate <8, 1, 2> color_map { [0 rgb 0] [1 rgb 1] } }
+    }
 #declare Steps = function { pigment { wrinkles scale 0.07 translate 4.4 color_map { [0 rgb 0] [1 rgb 1] } } }
 #declare Valley = function(u, v) {
-    min(1, 0.9 * pow(min(1, max(0, abs(u - 0.5 - 0.02 * sin(9 * v - 0.4)) - 0.012) * 3.2), 1.5) + 0.55 * pow(v, 3))
+    min(1, 0.9 * pow(min(1, max(0, abs(u - 0.5 - 0.02 * sin(9 * v - 0.4)) - 0.012) * 3.2),
+        1.5) + 0.55 * pow(v, 3))
 }
 #declare Height = function(u, v) {
     Valley(u, v) * (0.30 + 0.45 * Folds(u, v, 0).red + 0.20 * Rough(u, v, 0).red + 0.09 * Steps(u, v, 0).red)
@@ -37,8 +40,12 @@
     pigment {
         pigment_pattern { bozo turbulence 0.6 scale 5 }
         pigment_map {
-            [0.3 granite scale 0.8 color_map { [0 rgb <0.05, 0.08, 0.02>] [0.5 rgb <0.16, 0.23, 0.06>] [1 rgb <0.33, 0.33, 0.13>] }]
-            [0.7 granite scale 0.5 color_map { [0 rgb <0.09, 0.08, 0.03>] [0.5 rgb <0.30, 0.27, 0.11>] [1 rgb <0.45, 0.40, 0.20>] }]
+            [0.3 granite scale 0.8
+                color_map { [0 rgb <0.05, 0.08, 0.02>] [0.5 rgb <0.16, 0.23, 0.06>]
+                    [1 rgb <0.33, 0.33, 0.13>] }]
+            [0.7 granite scale 0.5
+                color_map { [0 rgb <0.09, 0.08, 0.03>] [0.5 rgb <0.30, 0.27, 0.11>]
+                    [1 rgb <0.45, 0.40, 0.20>] }]
         }
     }
     normal { granite 1.0 scale 0.4 }

@@ -97,8 +97,8 @@ class Scenes(unittest.TestCase):
             depth, labels = (render.povray(name, mode, "noon", scene.still, (80, 60))
                              for mode in (render.DEPTH, render.LABELS))
             for light in ("night", scene.lights[-1]):
-                np.testing.assert_array_equal(
-                    depth, render.povray(name, render.DEPTH, light, scene.still, (80, 60)), f"{name}, {light}")
+                again = render.povray(name, render.DEPTH, light, scene.still, (80, 60))
+                np.testing.assert_array_equal(depth, again, f"{name}, {light}")
             np.testing.assert_array_equal(depth == 0, labels == 0, name)
             self.assertGreater(len(np.unique(labels)), 8)
             self.assertGreater(len(np.unique(depth)), 300)
@@ -124,8 +124,8 @@ class Command(unittest.TestCase):
     """One scene, 24 x 18 pixels, through the command itself."""
 
     def render(self, folder, *options):
-        return subprocess.run([sys.executable, HERE / "render.py", folder, "--scenes", "facade", "--size", "24", "18",
-                               "--jobs", "1", *options], capture_output=True, text=True)
+        return subprocess.run([sys.executable, HERE / "render.py", folder, "--scenes", "facade",
+                               "--size", "24", "18", "--jobs", "1", *options], capture_output=True, text=True)
 
     def test_layout_cameras_resuming_and_repeatability(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -140,7 +140,8 @@ class Command(unittest.TestCase):
             for k in range(2, len(lights) + 1):
                 other = cv2.imread(str(still / f"{k}.png"))
                 self.assertEqual(other.shape, (18, 24, 3))
-                self.assertGreater(np.abs(other.astype(int) - first).mean(), 8, f"{lights[k - 1]} looks like noon")
+                difference = np.abs(other.astype(int) - first).mean()
+                self.assertGreater(difference, 8, f"{lights[k - 1]} looks like noon")
                 np.testing.assert_array_equal(np.loadtxt(still / f"H_1_{k}"), np.eye(3))
             for place, count in ((still, len(lights)), (path, 2)):
                 depth = cv2.imread(str(place / "depth" / f"{count}.png"), cv2.IMREAD_UNCHANGED)
@@ -160,6 +161,11 @@ class Command(unittest.TestCase):
             self.assertEqual(self.render(out).returncode, 0)
             self.assertEqual((still / "4.png").read_bytes(), bytes_before)
             self.assertEqual((still / "1.png").stat().st_mtime_ns, stamp)
+            # but not to another size, which would mix two sets in one folder
+            mixed = self.render(out, "--size", "32", "24")
+            self.assertEqual(mixed.returncode, 1)
+            self.assertIn("choose another folder", mixed.stderr)
+            self.assertNotIn("Traceback", mixed.stderr)
 
     def test_a_wrong_option_is_told(self):
         with tempfile.TemporaryDirectory() as folder:
