@@ -103,10 +103,25 @@ public:
 
     /** @brief knnMatch with matrices for results: in Python many times faster than lists of DMatch.
 
+    It stands before the overload for the train set added, since Python takes the first that fits: the
+    train descriptors would fit an output as well.
+
     @param queryDescriptors queries x descriptor size, CV_8U.
+    @param trainDescriptors train rows x descriptor size, CV_8U, used instead of those added.
     @param indices queries x k, CV_32S: row of the train descriptor in its image, nearest first; -1 where
     there is none.
     @param distances queries x k, CV_32S: Hamming distance in bits; -1 where there is none.
+    @param k number of neighbours, > 0.
+    @param mask queries x train rows, CV_8UC1, or empty.
+     */
+    CV_WRAP virtual void knnMatchArrays(
+            InputArray queryDescriptors, InputArray trainDescriptors, OutputArray indices,
+            OutputArray distances, int k = 1, InputArray mask = noArray()) const = 0;
+
+    /** @overload
+    @param queryDescriptors queries x descriptor size, CV_8U.
+    @param indices queries x k, CV_32S.
+    @param distances queries x k, CV_32S.
     @param k number of neighbours, > 0.
     @param masks as in knnMatch.
     @param imageIndices queries x k, CV_32S: the train image; -1 where there is none.
@@ -114,18 +129,6 @@ public:
     CV_WRAP virtual void knnMatchArrays(
             InputArray queryDescriptors, OutputArray indices, OutputArray distances, int k = 1,
             InputArrayOfArrays masks = noArray(), OutputArray imageIndices = noArray()) const = 0;
-
-    /** @overload
-    @param queryDescriptors queries x descriptor size, CV_8U.
-    @param trainDescriptors train rows x descriptor size, CV_8U, used instead of those added.
-    @param indices queries x k, CV_32S.
-    @param distances queries x k, CV_32S.
-    @param k number of neighbours, > 0.
-    @param mask queries x train rows, CV_8UC1, or empty.
-     */
-    CV_WRAP virtual void knnMatchArrays(
-            InputArray queryDescriptors, InputArray trainDescriptors, OutputArray indices,
-            OutputArray distances, int k = 1, InputArray mask = noArray()) const = 0;
 
     /** @brief The paper's match cost MC: bits compared / bits that brute force would compare, since
     resetCost; 0 before any call.

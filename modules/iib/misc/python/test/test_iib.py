@@ -97,6 +97,11 @@ class MatcherTest(unittest.TestCase):
         indices, distances = matcher.knnMatchArrays(self.query, self.train, k=3)[:2]
         np.testing.assert_array_equal(indices, [[m.trainIdx for m in row] for row in matches])
         np.testing.assert_array_equal(distances, [[m.distance for m in row] for row in matches])
+        matcher.add([self.train])
+        added = matcher.knnMatchArrays(self.query, k=3)
+        np.testing.assert_array_equal(added[0], indices)
+        np.testing.assert_array_equal(added[1], distances)
+        np.testing.assert_array_equal(added[2], np.zeros_like(indices))
 
     def test_index_survives_a_file(self):
         matcher = cv2.iib.HierarchicalMatcher.create(self.levels)
