@@ -4,6 +4,7 @@
 
 #include "keypoints.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -73,17 +74,24 @@ SeedPoints projectSeeds(const std::vector<cv::KeyPoint>& reference, const cv::Ma
     return seeds;
 }
 
-std::vector<cv::KeyPoint> fastCorners(const cv::Mat& image)
+std::vector<cv::KeyPoint> fastCorners(const cv::Mat& image, float radius, int count)
 {
     std::vector<cv::KeyPoint> corners;
-    cv::FAST(image, corners, 10, true);
+    for (int threshold = 20; threshold > 0; threshold /= 2)
+    {
+        cv::FAST(image, corners, threshold, true);
+        const auto inside = std::count_if(corners.begin(), corners.end(),
+                [&](const cv::KeyPoint& k) { return rosInside(k.pt, radius, image.size()); });
+        if (inside >= count)
+            break;
+    }
     return corners;
 }
 
 SeedPoints fastSeeds(const cv::Mat& reference, const cv::Mat& target, const cv::Matx33d& homography,
         float radius, int count)
 {
-    std::vector<cv::KeyPoint> corners = fastCorners(reference);
+    std::vector<cv::KeyPoint> corners = fastCorners(reference, radius, count);
     for (cv::KeyPoint& corner : corners)
         corner.size = 2 * radius;
     return projectSeeds(corners, homography, reference.size(), target.size(), radius, count);

@@ -19,8 +19,8 @@ struct SeedPoints
     std::vector<cv::KeyPoint> reference, target;
 };
 
-/** At most `count` keypoints spread uniformly over the list, in its order: element i * size / count. A list
-in raster order, such as FAST's, is thereby sampled uniformly over its corners. */
+/** At most `count` keypoints spread evenly over the list, in its order: elements i * size / count. Of corners in
+raster order, as FAST gives them, every one has the same chance, and all parts of the image have their share. */
 std::vector<cv::KeyPoint> sampleUniformly(const std::vector<cv::KeyPoint>& keypoints, int count);
 
 /** Protocol A (paper, "Experiments Using Predefined Feature Points with ROS"): projects the reference's
@@ -30,8 +30,9 @@ reorder keypoints. */
 SeedPoints projectSeeds(const std::vector<cv::KeyPoint>& reference, const cv::Matx33d& homography,
         cv::Size referenceSize, cv::Size targetSize, float radius, int count);
 
-//! FAST corners (size 7) of the whole image in raster order, with the threshold protocol A uses.
-std::vector<cv::KeyPoint> fastCorners(const cv::Mat& image);
+/** FAST corners (size 7) in raster order. The threshold is 20 and is halved while fewer than `count` corners have
+their ROS inside the image, so that dark images give their points, too. */
+std::vector<cv::KeyPoint> fastCorners(const cv::Mat& image, float radius, int count);
 
 //! projectSeeds of the reference's fastCorners, KeyPoint::size 2 * radius: use a scale factor of 1.
 SeedPoints fastSeeds(const cv::Mat& reference, const cv::Mat& target, const cv::Matx33d& homography,

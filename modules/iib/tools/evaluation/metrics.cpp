@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "opencv2/features2d.hpp"
+#include "opencv2/iib.hpp"
 
 namespace iib_tools {
 namespace {
@@ -57,7 +58,12 @@ MeanScores meanScores(const std::vector<Counts>& pairs)
 std::vector<cv::DMatch> mutualMatches(const cv::Mat& query, const cv::Mat& train, int norm)
 {
     std::vector<cv::DMatch> matches;
-    if (!query.empty() && !train.empty())
+    if (query.empty() || train.empty())
+        return matches;
+    if (norm == cv::NORM_HAMMING)
+        cv::iib::HierarchicalMatcher::create({query.cols}, cv::iib::HierarchicalMatcher::EXACT, 0, true)
+                ->match(query, train, matches);
+    else
         cv::BFMatcher(norm, true).match(query, train, matches);
     return matches;
 }
@@ -91,6 +97,15 @@ std::vector<bool> correctByLocation(const std::vector<cv::DMatch>& matches,
         correct.push_back(
                 projectionError(homography, reference[m.queryIdx].pt, target[m.trainIdx].pt) <= tolerance);
     return correct;
+}
+
+Counts countsOf(const std::vector<bool>& correct, int correspondences)
+{
+    Counts counts;
+    counts.correct = int(std::count(correct.begin(), correct.end(), true));
+    counts.putative = int(correct.size());
+    counts.correspondences = correspondences;
+    return counts;
 }
 
 bool correspond(const cv::KeyPoint& reference, const cv::KeyPoint& target, const cv::Matx33d& homography,

@@ -32,7 +32,7 @@ struct MeanScores
 };
 MeanScores meanScores(const std::vector<Counts>& pairs);
 
-//! Pairs of rows that are each other's nearest, by brute force; norm as DescriptorMatcher's.
+//! Pairs of rows that are each other's nearest; norm as BFMatcher's, whose matches these are.
 std::vector<cv::DMatch> mutualMatches(const cv::Mat& query, const cv::Mat& train, int norm);
 
 //! Where the homography takes a point, in pixels; infinite if it goes through infinity.
@@ -48,6 +48,9 @@ double localScale(const cv::Matx33d& homography, const cv::Point2d& point);
 std::vector<bool> correctByLocation(const std::vector<cv::DMatch>& matches,
         const std::vector<cv::KeyPoint>& reference, const std::vector<cv::KeyPoint>& target,
         const cv::Matx33d& homography, double tolerance);
+
+//! Counts of matches judged as `correct`, one element a match.
+Counts countsOf(const std::vector<bool>& correct, int correspondences);
 
 /** Whether two regions correspond: centres within tolerance pixels in the target, and the overlap error of
 the regions (1 - intersection / union, the reference's one projected, compared as circles about one centre)

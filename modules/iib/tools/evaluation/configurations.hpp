@@ -1,0 +1,59 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_TOOLS_CONFIGURATIONS_HPP
+#define IIB_TOOLS_CONFIGURATIONS_HPP
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "opencv2/features2d.hpp"
+
+namespace iib_tools {
+
+const float SEED_RADIUS = 32;  //!< pixels; half the side of protocol A's ROS
+const float DEEP_RADIUS = 64;  //!< the same around keypoints of deep detectors
+
+//! A descriptor with its parameters, under the name that result files carry.
+struct Configuration
+{
+    std::string name;
+    std::function<cv::Ptr<cv::Feature2D>()> create;  //!< throws if this OpenCV lacks it
+    float seedSize;         //!< KeyPoint::size at which it looks at the ROS of radius SEED_RADIUS
+    std::string seeds;      //!< detector of the seed points: "FAST", or "AKAZE", "KAZE" that need their own
+    std::vector<std::string> extraNames;  //!< maps it is given besides the image
+    bool oriented;          //!< whether keypoints get an angle (robustness only)
+};
+
+//! All tables of the paper on IIB: channels, mappings, overlap, granularity, extra channels.
+std::vector<Configuration> iibConfigurations();
+
+//! The other descriptors that this OpenCV has, with the parameters OpenCV recommends, upright.
+std::vector<Configuration> peerConfigurations();
+
+//! Default IIB, upright and oriented, and ORB and SIFT for comparison.
+std::vector<Configuration> robustnessConfigurations();
+
+//! An IIB extractor as IIBDescriptorExtractor::save wrote it, selection included; named by its file.
+Configuration savedConfiguration(const std::string& file);
+
+//! Default IIB with the given scale factor.
+cv::Ptr<cv::Feature2D> defaultIIB(float scaleFactor);
+
+//! Descriptors of the keypoints that a configuration keeps; KeyPoint::response tells which those are.
+struct Description
+{
+    std::vector<cv::KeyPoint> keypoints;
+    cv::Mat descriptors;
+};
+Description describe(const Configuration& configuration, const cv::Mat& image,
+        const std::vector<cv::Mat>& extras, const std::vector<cv::KeyPoint>& keypoints);
+
+//! Bytes of a descriptor.
+int descriptorBytes(const cv::Feature2D& feature);
+
+}  // namespace iib_tools
+
+#endif

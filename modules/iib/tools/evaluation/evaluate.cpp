@@ -1,0 +1,94 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+#include "experiments.hpp"
+#include "opencv2/core/utils/filesystem.hpp"
+#include "tasks.hpp"
+
+namespace iib_tools {
+namespace {
+
+struct Experiment
+{
+    const char* name;
+    int (*run)(const Options&, const std::vector<ImagePair>&);
+};
+
+const Experiment EXPERIMENTS[] = {{"protocol_a", protocolA}, {"protocol_b", protocolB},
+    {"matching", matchingStudy}, {"robustness", robustness}, {"cost", cost}, {"pictures", pictures}};
+
+//! Results of other settings must not be mixed with these.
+void checkSettings(const Options& options)
+{
+    const std::string file = options.out + "/settings.txt";
+    const std::string settings = "points " + std::to_string(options.points) + "\ntolerance " +
+                                 std::to_string(options.tolerance) + "\nopencv " + CV_VERSION + "\n";
+    std::ifstream in(file);
+    const std::string found((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    if (!found.empty() && found != settings)
+        CV_Error(cv::Error::StsBadArg, file + " tells of other settings: choose another output folder");
+    in.close();
+    std::ofstream out(file);
+    out << settings;
+    if (!out.flush())
+        CV_Error(cv::Error::StsError, file + ": cannot be written");
+}
+
+//! The pairs whose files can be read; the others are told, one line each.
+std::vector<ImagePair> readablePairs(const std::vector<ImagePair>& pairs)
+{
+    std::vector<char> good(pairs.size(), false);
+    std::vector<Task> tasks;
+    for (size_t i = 0; i < pairs.size(); i++)
+        tasks.push_back({pairs[i].name(), [&, i] {
+                             loadPair(pairs[i]);
+                             good[i] = true;
+                         }});
+    runTasks("reading", tasks);
+    std::vector<ImagePair> readable;
+    for (size_t i = 0; i < pairs.size(); i++)
+        if (good[i])
+            readable.push_back(pairs[i]);
+    return readable;
+}
+
+}  // namespace
+
+std::vector<std::string> experimentNames()
+{
+    std::vector<std::string> names;
+    for (const Experiment& e : EXPERIMENTS)
+        names.push_back(e.name);
+    return names;
+}
+
+int evaluate(const Options& options)
+{
+    const std::vector<std::string> known = experimentNames();
+    for (const std::string& name : options.experiments)
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            CV_Error(cv::Error::StsBadArg, "unknown experiment " + name);
+    const std::vector<ImagePair> pairs = findPairs(options.roots);
+    if (pairs.empty())
+        CV_Error(cv::Error::StsObjectNotFound, "no image sequences found; the layouts are in dataset.hpp");
+    cv::utils::fs::createDirectories(options.out);
+    checkSettings(options);
+
+    const std::vector<ImagePair> readable = readablePairs(pairs);
+    int skipped = int(pairs.size() - readable.size());
+    for (const Experiment& e : EXPERIMENTS)
+        if (options.experiments.empty() ||
+                std::find(options.experiments.begin(), options.experiments.end(), e.name) != options.experiments.end())
+            skipped += e.run(options, readable);
+    std::cerr << "evaluated " << readable.size() << " of " << pairs.size() << " image pairs, skipped " << skipped
+              << " pieces of work" << std::endl;
+    return skipped;
+}
+
+}  // namespace iib_tools

@@ -1,0 +1,111 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "configurations.hpp"
+#include "opencv2/opencv_modules.hpp"
+#ifdef HAVE_OPENCV_XFEATURES2D
+#include "opencv2/xfeatures2d.hpp"
+#endif
+
+namespace iib_tools {
+namespace {
+
+typedef cv::Ptr<cv::Feature2D> Feature;
+
+Configuration peer(const std::string& name, float seedSize, const std::function<Feature()>& create,
+        const std::string& seeds = "FAST")
+{
+    Configuration c;
+    c.name = name;
+    c.create = create;
+    c.seedSize = seedSize;
+    c.seeds = seeds;
+    c.oriented = false;
+    return c;
+}
+
+Configuration akaze(int bits)
+{
+    return peer("AKAZE-" + std::to_string(bits ? bits : 486), 0, [bits]() -> Feature {
+        return cv::AKAZE::create(cv::AKAZE::DESCRIPTOR_MLDB_UPRIGHT, bits);
+    }, "AKAZE");
+}
+
+#ifdef HAVE_OPENCV_XFEATURES2D
+void addXfeatures2d(std::vector<Configuration>& peers)
+{
+    using namespace cv::xfeatures2d;
+    const float side = 2 * SEED_RADIUS;
+    for (int bytes : {16, 32, 64})
+    {
+        peers.push_back(peer("BRIEF-" + std::to_string(8 * bytes), side,
+                [bytes]() -> Feature { return BriefDescriptorExtractor::create(bytes); }));
+        peers.push_back(peer("LATCH-" + std::to_string(8 * bytes), side,
+                [bytes]() -> Feature { return LATCH::create(bytes, false); }));
+    }
+    // A pattern of 22 px about keypoints of size 7.
+    peers.push_back(peer("FREAK", 7 * SEED_RADIUS / 22, []() -> Feature { return FREAK::create(false); }));
+    const int boost[][2] = {{64, BoostDesc::BINBOOST_64}, {128, BoostDesc::BINBOOST_128},
+        {256, BoostDesc::BINBOOST_256}};
+    for (const auto& b : boost)
+    {
+        const int type = b[1];
+        peers.push_back(peer("BOOST-" + std::to_string(b[0]), side,
+                [type]() -> Feature { return BoostDesc::create(type, true, 1.f); }));
+    }
+#if CV_VERSION_MAJOR > 4 || (CV_VERSION_MAJOR == 4 && (CV_VERSION_MINOR > 5 || \
+        (CV_VERSION_MINOR == 5 && CV_VERSION_REVISION >= 1)))
+    peers.push_back(peer("BEBLID-256", side,
+            []() -> Feature { return BEBLID::create(1.f, BEBLID::SIZE_256_BITS); }));
+    peers.push_back(peer("BEBLID-512", side,
+            []() -> Feature { return BEBLID::create(1.f, BEBLID::SIZE_512_BITS); }));
+#endif
+#if CV_VERSION_MAJOR > 4 || (CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR >= 6)
+    peers.push_back(peer("TEBLID-256", side,
+            []() -> Feature { return TEBLID::create(1.f, TEBLID::SIZE_256_BITS); }));
+    peers.push_back(peer("TEBLID-512", side,
+            []() -> Feature { return TEBLID::create(1.f, TEBLID::SIZE_512_BITS); }));
+#endif
+    // The window is 20 times 1.2 / 9 of the size.
+    peers.push_back(peer("SURF", side * 9 / 24,
+            []() -> Feature { return SURF::create(100, 4, 3, false, true); }));
+}
+#endif
+
+bool isAvailable(const Configuration& c)
+{
+    try
+    {
+        return !c.create().empty();
+    }
+    catch (const cv::Exception&)  // the module was built without it, as SURF without NONFREE
+    {
+        return false;
+    }
+}
+
+}  // namespace
+
+std::vector<Configuration> peerConfigurations()
+{
+    std::vector<Configuration> all = {
+        // Its patch is 31 px whatever the size.
+        peer("ORB", 31, []() -> Feature { return cv::ORB::create(); }),
+        // A pattern of 9.2 px about keypoints of size 7.2.
+        peer("BRISK", SEED_RADIUS * 7.2f / 9.2f, []() -> Feature { return cv::BRISK::create(); }),
+        // Four bins of 1.5 sizes each.
+        peer("SIFT", 2 * SEED_RADIUS / 6, []() -> Feature { return cv::SIFT::create(); }),
+        akaze(128), akaze(256), akaze(0),
+        peer("KAZE", 0, []() -> Feature { return cv::KAZE::create(false, true); }, "KAZE")};
+#ifdef HAVE_OPENCV_XFEATURES2D
+    addXfeatures2d(all);
+#endif
+    std::vector<Configuration> available;
+    for (const Configuration& c : all)
+        if (isAvailable(c))
+            available.push_back(c);
+    return available;
+}
+
+}  // namespace iib_tools

@@ -1,0 +1,92 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include <algorithm>
+
+#include "experiments.hpp"
+#include "results.hpp"
+#include "seeded.hpp"
+#include "tasks.hpp"
+
+namespace iib_tools {
+namespace {
+
+//! The maps a configuration takes, in its order.
+void selectExtras(const Configuration& configuration, const ImagePair& pair, const LoadedPair& loaded,
+        SeededPair& seeded)
+{
+    seeded.referenceExtra.clear();
+    seeded.targetExtra.clear();
+    for (const std::string& wanted : configuration.extraNames)
+        for (size_t i = 0; i < pair.extraNames.size(); i++)
+            if (pair.extraNames[i] == wanted)
+            {
+                seeded.referenceExtra.push_back(loaded.referenceExtra[i]);
+                seeded.targetExtra.push_back(loaded.targetExtra[i]);
+            }
+}
+
+bool hasExtras(const Configuration& configuration, const ImagePair& pair)
+{
+    for (const std::string& wanted : configuration.extraNames)
+        if (std::find(pair.extraNames.begin(), pair.extraNames.end(), wanted) == pair.extraNames.end())
+            return false;
+    return true;
+}
+
+void evaluatePair(const Options& options, const ImagePair& pair,
+        const std::vector<Configuration>& configurations, ResultTable& table)
+{
+    const LoadedPair loaded = loadPair(pair);
+    SeededPair seeded;
+    seeded.reference = loaded.reference;
+    seeded.target = loaded.target;
+    seeded.homography = loaded.homography;
+    SeedSource source(loaded.reference, options.points);
+    for (const Configuration& c : configurations)
+    {
+        selectExtras(c, pair, loaded, seeded);
+        seeded.seeds = source.seeds(c, loaded.target.size(), loaded.homography);
+        const Counts n = matchSeeds(c, seeded, options.tolerance).counts;
+        table.append({pair.set, pair.sequence, pair.target, c.name, pair.kind,
+            std::to_string(descriptorBytes(*c.create())), std::to_string(n.correct), std::to_string(n.putative),
+            std::to_string(n.correspondences), text(precision(n)), text(recall(n))});
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> protocolAColumns()
+{
+    return {"set", "sequence", "target", "configuration", "kind", "bytes", "correct", "putative", "correspondences",
+        "precision", "recall"};
+}
+
+int protocolA(const Options& options, const std::vector<ImagePair>& pairs)
+{
+    std::vector<Configuration> all = iibConfigurations();
+    for (const std::string& file : options.saved)
+        all.push_back(savedConfiguration(file));
+    for (const Configuration& peer : peerConfigurations())
+        all.push_back(peer);
+
+    ResultTable table(options.out + "/protocol_a.csv", protocolAColumns(), 4);
+    std::vector<Task> tasks;
+    for (const ImagePair& pair : pairs)
+    {
+        std::vector<Configuration> missing;
+        for (const Configuration& c : all)
+            if (hasExtras(c, pair) && !table.has({pair.set, pair.sequence, pair.target, c.name}))
+                missing.push_back(c);
+        if (!missing.empty())
+            tasks.push_back({pair.name(), [&options, &table, pair, missing] {
+                                 evaluatePair(options, pair, missing, table);
+                             }});
+    }
+    const int skipped = runTasks("protocol A", tasks);
+    table.finish();
+    return skipped;
+}
+
+}  // namespace iib_tools

@@ -1,0 +1,98 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "results.hpp"
+
+#include <cstdio>
+#include <fstream>
+
+#include "opencv2/core.hpp"
+
+namespace iib_tools {
+namespace {
+
+std::string joinFields(const Fields& fields)
+{
+    std::string line;
+    for (size_t i = 0; i < fields.size(); i++)
+        line += (i ? "," : "") + fields[i];
+    return line + "\n";
+}
+
+Fields splitFields(const std::string& line)
+{
+    Fields fields(1);
+    for (char c : line)
+        if (c == ',')
+            fields.push_back("");
+        else
+            fields.back() += c;
+    return fields;
+}
+
+}  // namespace
+
+std::vector<Fields> readRows(const std::string& file, const Fields& columns)
+{
+    std::vector<Fields> rows;
+    std::ifstream in(file);
+    std::string line;
+    if (std::getline(in, line) && splitFields(line) != columns)
+        CV_Error(cv::Error::StsParseError, file + ": has other columns; move it away or choose another folder");
+    while (std::getline(in, line) && !in.eof())  // a whole line ends in a line end
+        rows.push_back(splitFields(line));
+    for (const Fields& row : rows)
+        if (row.size() != columns.size())
+            CV_Error(cv::Error::StsParseError, file + ": a row has " + std::to_string(row.size()) + " fields");
+    return rows;
+}
+
+ResultTable::ResultTable(const std::string& file, const Fields& columns, size_t keys)
+    : file_(file), columns_(columns), keys_(keys)
+{
+    for (const Fields& row : readRows(file, columns))
+        rows_[Fields(row.begin(), row.begin() + keys)] = row;
+    write();
+}
+
+bool ResultTable::has(const Fields& key) const
+{
+    std::lock_guard<std::mutex> lock(mutex_);
+    return rows_.count(key) > 0;
+}
+
+void ResultTable::append(const Fields& row)
+{
+    CV_Assert(row.size() == columns_.size());
+    std::lock_guard<std::mutex> lock(mutex_);
+    rows_[Fields(row.begin(), row.begin() + keys_)] = row;
+    std::ofstream(file_, std::ios::app) << joinFields(row);
+}
+
+void ResultTable::finish()
+{
+    std::lock_guard<std::mutex> lock(mutex_);
+    write();
+}
+
+void ResultTable::write() const
+{
+    const std::string draft = file_ + ".new";
+    std::ofstream out(draft);
+    out << joinFields(columns_);
+    for (const auto& row : rows_)
+        out << joinFields(row.second);
+    out.close();
+    if (!out || std::rename(draft.c_str(), file_.c_str()) != 0)
+        CV_Error(cv::Error::StsError, file_ + ": cannot be written");
+}
+
+std::string text(double value)
+{
+    char buffer[32];
+    std::snprintf(buffer, sizeof(buffer), "%.6g", value);
+    return buffer;
+}
+
+}  // namespace iib_tools

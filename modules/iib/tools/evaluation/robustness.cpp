@@ -1,0 +1,108 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include <set>
+
+#include "experiments.hpp"
+#include "opencv2/imgproc.hpp"
+#include "results.hpp"
+#include "seeded.hpp"
+#include "tasks.hpp"
+
+namespace iib_tools {
+namespace {
+
+//! A change of the view made from the reference itself, about its centre.
+struct Warp
+{
+    std::string kind;
+    double amount;  //!< degrees, or factor
+};
+
+std::vector<Warp> warps()
+{
+    std::vector<Warp> all;
+    for (int degrees : {5, 10, 15, 30, 45, 90, 135, 180})
+        all.push_back({"turn", double(degrees)});
+    for (double factor : {0.5, 0.7, 0.85, 1.2, 1.4, 2.0})
+        all.push_back({"scale", factor});
+    return all;
+}
+
+SeededPair warpedPair(const cv::Mat& reference, const Warp& warp)
+{
+    const cv::Point2f centre(float(reference.cols - 1) / 2, float(reference.rows - 1) / 2);
+    const bool turn = warp.kind == "turn";
+    const cv::Mat affine = cv::getRotationMatrix2D(centre, turn ? warp.amount : 0, turn ? 1 : warp.amount);
+    SeededPair pair;
+    pair.reference = reference;
+    // Smaller images are averaged, larger ones interpolated, as a camera's lens and sensor would do.
+    cv::Mat source = reference;
+    if (!turn && warp.amount < 1)
+        cv::GaussianBlur(reference, source, cv::Size(), 0.5 / warp.amount);
+    cv::warpAffine(source, pair.target, affine, reference.size(), cv::INTER_CUBIC, cv::BORDER_REFLECT_101);
+    pair.homography = cv::Matx33d::eye();
+    for (int y = 0; y < 2; y++)
+        for (int x = 0; x < 3; x++)
+            pair.homography(y, x) = affine.at<double>(y, x);
+    return pair;
+}
+
+void evaluatePair(const Options& options, SeededPair pair, const Fields& key, ResultTable& table)
+{
+    SeedSource source(pair.reference, options.points);
+    for (const Configuration& c : robustnessConfigurations())
+    {
+        pair.seeds = source.seeds(c, pair.target.size(), pair.homography);
+        const Counts n = matchSeeds(c, pair, options.tolerance).counts;
+        Fields row = key;
+        for (const std::string& field : {c.name, std::to_string(n.correct), std::to_string(n.putative),
+                     std::to_string(n.correspondences), text(precision(n)), text(recall(n))})
+            row.push_back(field);
+        table.append(row);
+    }
+}
+
+}  // namespace
+
+int robustness(const Options& options, const std::vector<ImagePair>& pairs)
+{
+    ResultTable table(options.out + "/robustness.csv", {"set", "sequence", "target", "kind", "configuration",
+        "correct", "putative", "correspondences", "precision", "recall"}, 5);
+    const std::string last = robustnessConfigurations().back().name;
+    std::vector<Task> tasks;
+    std::set<std::string> turned;  // one sequence a set
+    for (const ImagePair& pair : pairs)
+    {
+        if (pair.kind != "light")
+        {
+            const Fields key = {pair.set, pair.sequence, pair.target, pair.kind};
+            if (!table.has({pair.set, pair.sequence, pair.target, pair.kind, last}))
+                tasks.push_back({pair.name(), [&options, &table, pair, key] {
+                                     const LoadedPair loaded = loadPair(pair);
+                                     SeededPair seeded;
+                                     seeded.reference = loaded.reference;
+                                     seeded.target = loaded.target;
+                                     seeded.homography = loaded.homography;
+                                     evaluatePair(options, seeded, key, table);
+                                 }});
+        }
+        if (!turned.insert(pair.set).second)
+            continue;
+        for (const Warp& warp : warps())
+        {
+            const Fields key = {pair.set, pair.sequence, text(warp.amount), warp.kind};
+            if (!table.has({key[0], key[1], key[2], key[3], last}))
+                tasks.push_back({pair.set + "/" + pair.sequence + " " + warp.kind, [&options, &table, pair, warp, key] {
+                                     const SeededPair seeded = warpedPair(loadPair(pair).reference, warp);
+                                     evaluatePair(options, seeded, key, table);
+                                 }});
+        }
+    }
+    const int skipped = runTasks("robustness", tasks);
+    table.finish();
+    return skipped;
+}
+
+}  // namespace iib_tools
