@@ -98,6 +98,12 @@ void append(const RowBits& row, int planes, int quads, int channels, BitWriter& 
         }
 }
 
+inline void storeChunk(unsigned chunk, uchar* out)
+{
+    out[0] = (uchar)chunk;
+    out[1] = (uchar)(chunk >> 8);
+}
+
 //! Weights of the left and right cells of a row of quads (see LevelShape), repeated for the channels.
 struct ColumnWeights
 {
@@ -123,6 +129,11 @@ void windowBits(const CellGrid<int>& cells, const LevelShape& shape, int dy, int
     const int rows = (shape.n - dy) / 2, quads = (shape.n - dx) / 2;
     const ColumnWeights columns(shape.widths + dx, quads);
     RowBits bits;
+    // Where a row fills whole chunks, its bits need no shifting.
+    const int chunks = (quads * GROUP_CHANNELS + CHUNK - 1) / CHUNK;
+    uchar* whole = 0;
+    if (shape.channels == GROUP_CHANNELS && chunks * CHUNK == quads * GROUP_CHANNELS)
+        whole = out.reserve(rows * Mapping::BITS * chunks * (CHUNK / 8));
     for (int r = dy; r < dy + 2 * rows; r += 2)
     {
         // right of an odd column comes the next even one
@@ -158,9 +169,15 @@ void windowBits(const CellGrid<int>& cells, const LevelShape& shape, int dy, int
                 Mapping::map(x, put);
             }
             for (int plane = 0; plane < Mapping::BITS; plane++)
-                bits.planes[plane][first / CHUNK] = (ushort)chunk[plane];
+                if (whole)
+                    storeChunk(chunk[plane], whole + (plane * chunks + first / CHUNK) * (CHUNK / 8));
+                else
+                    bits.planes[plane][first / CHUNK] = (ushort)chunk[plane];
         }
-        append(bits, Mapping::BITS, quads, shape.channels, out);
+        if (whole)
+            whole += Mapping::BITS * chunks * (CHUNK / 8);
+        else
+            append(bits, Mapping::BITS, quads, shape.channels, out);
     }
 }
 

@@ -18,24 +18,36 @@ Range extent(const Rect& r, bool vertical)
     return vertical ? Range(r.y, r.y + r.height) : Range(r.x, r.x + r.width);
 }
 
-//! Splits at gaps along one axis.
-std::vector<Indices> splitAtGaps(const std::vector<Rect>& ros, Indices keypoints, bool vertical)
+//! Splits at gaps along one axis. Linear in the keypoints and in the axis.
+std::vector<Indices> splitAtGaps(const std::vector<Rect>& ros, const Indices& keypoints, bool vertical)
 {
-    std::sort(keypoints.begin(), keypoints.end(), [&](int a, int b)
-    {
-        return extent(ros[a], vertical).start < extent(ros[b], vertical).start;
-    });
-    std::vector<Indices> parts;
-    int end = INT_MIN;
+    Range all(INT_MAX, INT_MIN);
     for (int k : keypoints)
     {
         const Range e = extent(ros[k], vertical);
-        if (e.start > end)
-            parts.push_back(Indices());
-        parts.back().push_back(k);
-        end = std::max(end, e.end);
+        all.start = std::min(all.start, e.start);
+        all.end = std::max(all.end, e.end);
     }
-    return parts;
+    std::vector<int> part(all.size() + 1, 0);  // first what begins less what ends here, then which part it is
+    for (int k : keypoints)
+    {
+        const Range e = extent(ros[k], vertical);
+        part[e.start - all.start]++;
+        part[e.end - all.start]--;
+    }
+    int open = 0, parts = 0;
+    for (int& p : part)
+    {
+        open += p;
+        p = parts;
+        parts += open == 0;
+    }
+    std::vector<Indices> pieces(parts);
+    for (int k : keypoints)
+        pieces[part[extent(ros[k], vertical).start - all.start]].push_back(k);
+    pieces.erase(std::remove_if(pieces.begin(), pieces.end(), [](const Indices& p) { return p.empty(); }),
+                 pieces.end());
+    return pieces;
 }
 
 //! Splits along both axes in turn until there is no gap left.
@@ -52,17 +64,22 @@ void splitRecursively(const std::vector<Rect>& ros, const Indices& keypoints, bo
         splitRecursively(ros, piece, !vertical, pieces.size() > 1, parts);
 }
 
-Block makeBlock(const std::vector<Rect>& ros, Indices keypoints)
+Block makeBlock(const std::vector<Rect>& ros, const Indices& keypoints)
 {
-    std::sort(keypoints.begin(), keypoints.end(), [&](int a, int b)
-    {
-        return ros[a].br().y != ros[b].br().y ? ros[a].br().y < ros[b].br().y : ros[a].x < ros[b].x;
-    });
-    Block block;
-    block.area = ros[keypoints[0]];
+    Block block = { ros[keypoints[0]], 0, Indices(keypoints.size()) };
     for (int k : keypoints)
+    {
         block.area |= ros[k];
-    block.keypoints = keypoints;
+        block.rows = std::max(block.rows, ros[k].height);
+    }
+    // counting sort
+    std::vector<int> place(block.area.height + 2, 0);
+    for (int k : keypoints)
+        place[ros[k].br().y - block.area.y + 1]++;
+    for (size_t i = 1; i < place.size(); i++)
+        place[i] += place[i - 1];
+    for (int k : keypoints)
+        block.keypoints[place[ros[k].br().y - block.area.y]++] = k;
     return block;
 }
 

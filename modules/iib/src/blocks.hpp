@@ -14,6 +14,7 @@ namespace iib {
 struct Block
 {
     Rect area;                   //!< holds all their ROS
+    int rows;                    //!< of the highest ROS
     std::vector<int> keypoints;  //!< indices, by the last row of their ROS
 };
 

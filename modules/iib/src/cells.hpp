@@ -22,8 +22,8 @@ public:
     {
         n = cellsInRow;
         step = (size_t)(n / 2 + 1) * GROUP_CHANNELS + ROW_PADDING;
-        if (data.size() < 2 * n * step)
-            data.resize(2 * n * step);
+        if (data.size() < 2 * (n + 1) * step)  // a row more, for the corners of cells
+            data.resize(2 * (n + 1) * step);
     }
 
     //! Cells (row, parity), (row, parity + 2), ...; kernels may run ROW_PADDING values over the end.
@@ -35,7 +35,6 @@ public:
     T* cell(int r, int c) { return row(r, c & 1) + (c >> 1) * GROUP_CHANNELS; }
 
     int size() const { return n; }
-    size_t rowStep() const { return 2 * step; }
 
 private:
     int n;
@@ -47,7 +46,7 @@ private:
 template <typename Sum> struct CellSumsFunc
 {
     typedef void (*Type)(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n,
-                         CellGrid<int>& scratch, CellGrid<int>& cells);
+                         CellGrid<Sum>& scratch, CellGrid<int>& cells);
 };
 CellSumsFunc<ushort>::Type getCellSumsFunc(ushort);
 CellSumsFunc<unsigned>::Type getCellSumsFunc(unsigned);

@@ -19,47 +19,60 @@ ParentSumsFunc getParentSumsFunc();
 
 namespace {
 
-//! All channels of a corner.
-inline v_int32x4 loadCorner(const ushort* p) { return v_reinterpret_as_s32(v_load_expand(p)); }
-inline v_int32x4 loadCorner(const unsigned* p) { return v_reinterpret_as_s32(v_load(p)); }
+inline v_uint16 load(const ushort* p) { return vx_load(p); }
+inline v_uint32 load(const unsigned* p) { return vx_load(p); }
 
-//! Undoes the borrow of a difference of sums modulo 2^16.
-inline v_int32 modulo(const v_int32& v, ushort) { return v & vx_setall_s32(0xffff); }
-inline v_int32 modulo(const v_int32& v, unsigned) { return v; }
+// Differences modulo 2^16 or 2^32, as the sums.
+inline v_uint16 subtract(const v_uint16& a, const v_uint16& b) { return v_sub_wrap(a, b); }
+inline v_uint32 subtract(const v_uint32& a, const v_uint32& b) { return a - b; }
 
+inline void storeWide(int* out, const v_uint16& v)
+{
+    v_uint32 low, high;
+    v_expand(v, low, high);
+    v_store(out, v_reinterpret_as_s32(low));
+    v_store(out + v_uint32::nlanes, v_reinterpret_as_s32(high));
+}
+
+inline void storeWide(int* out, const v_uint32& v)
+{
+    v_store(out, v_reinterpret_as_s32(v));
+}
+
+/* The corners are brought together first, those of even and of odd columns apart, so that all further work is on
+ whole vectors. */
 template <typename Sum>
-void cellSums(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<int>& columns,
+void cellSums(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& corners,
               CellGrid<int>& cells)
 {
-    // Differences down the columns of corners first, so that the corner above stays in a register.
-    AutoBuffer<const Sum*, 65> corners(n + 1);
-    for (int r = 0; r <= n; r++)
-        corners[r] = rows.at(yEdges[r], rows.origin.x);
-    columns.create(n);
+    corners.create(n);
     cells.create(n);
-    const size_t step = columns.rowStep();
+    AutoBuffer<int, 65> offsets(n + 1);
     for (int c = 0; c <= n; c++)
+        offsets[c] = (xEdges[c] - rows.origin.x) * GROUP_CHANNELS;
+    for (int r = 0; r <= n; r++)
     {
-        const size_t x = (size_t)(xEdges[c] - rows.origin.x) * GROUP_CHANNELS;
-        int* out = columns.cell(0, c);
-        v_int32x4 above = loadCorner(corners[0] + x);
-        for (int r = 0; r < n; r++, out += step)
+        const Sum* from = rows.at(yEdges[r], rows.origin.x);
+        Sum *even = corners.row(r, 0), *odd = corners.row(r, 1);
+        for (int c = 0; c < n; c += 2)
         {
-            const v_int32x4 below = loadCorner(corners[r + 1] + x);
-            v_store(out, below - above);
-            above = below;
+            memcpy(even + c / 2 * GROUP_CHANNELS, from + offsets[c], GROUP_CHANNELS * sizeof(Sum));
+            memcpy(odd + c / 2 * GROUP_CHANNELS, from + offsets[c + 1], GROUP_CHANNELS * sizeof(Sum));
         }
+        memcpy(even + n / 2 * GROUP_CHANNELS, from + offsets[n], GROUP_CHANNELS * sizeof(Sum));
     }
 
     for (int r = 0; r < n; r++)
     {
-        const int *even = columns.row(r, 0), *odd = columns.row(r, 1);
+        const Sum *even0 = corners.row(r, 0), *even1 = corners.row(r + 1, 0);
+        const Sum *odd0 = corners.row(r, 1), *odd1 = corners.row(r + 1, 1);
         int *left = cells.row(r, 0), *right = cells.row(r, 1);
-        for (int i = 0; i < n / 2 * GROUP_CHANNELS; i += v_int32::nlanes)
+        for (int i = 0; i < n / 2 * GROUP_CHANNELS; i += CV_SIMD_WIDTH / (int)sizeof(Sum))
         {
-            const v_int32 middle = vx_load(odd + i);
-            v_store(left + i, modulo(middle - vx_load(even + i), Sum()));
-            v_store(right + i, modulo(vx_load(even + i + GROUP_CHANNELS) - middle, Sum()));
+            const int next = i + GROUP_CHANNELS;
+            const auto middle = subtract(load(odd1 + i), load(odd0 + i));
+            storeWide(left + i, subtract(middle, subtract(load(even1 + i), load(even0 + i))));
+            storeWide(right + i, subtract(subtract(load(even1 + next), load(even0 + next)), middle));
         }
     }
 }

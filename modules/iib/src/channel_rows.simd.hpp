@@ -95,6 +95,15 @@ template <typename Lane> void addRow(const Lane* in, Lane addend, Lane* out, int
         out[x] = (Lane)(in[x] + addend);
 }
 
+void widenRow(const uchar* in, short* out, int width)
+{
+    int x = 0;
+    for (; x <= width - v_int16::nlanes; x += v_int16::nlanes)
+        v_store(out + x, v_reinterpret_as_s16(vx_load_expand(in + x)));
+    for (; x < width; x++)
+        out[x] = in[x];
+}
+
 template <typename Pixel, typename Lane> void widenRow(const Pixel* in, Lane* out, int width)
 {
     for (int x = 0; x < width; x++)
@@ -104,7 +113,7 @@ template <typename Pixel, typename Lane> void widenRow(const Pixel* in, Lane* ou
 template <typename Lane> const RowKernels<Lane>& kernels()
 {
     static const RowKernels<Lane> k = { gradientRow<Lane>, orientationRow<Lane>, absoluteRow<Lane>, addRow<Lane>,
-                                        widenRow<uchar, Lane>, widenRow<ushort, Lane> };
+                                        widenRow, widenRow };
     return k;
 }
 

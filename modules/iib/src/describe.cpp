@@ -72,7 +72,6 @@ void describe(const Parameters& p, const Mat& image, const std::vector<Mat>& ext
         maps.push_back(integerMap(m, whole));
     const std::vector<Channel> channels = channelsInUse(p, integerMap(image, whole), maps);
 
-    descriptors = Scalar::all(0);
     const std::vector<Block> uprightBlocks = upright.blocks(), turnedBlocks = turned.blocks();
     const int uprightCount = (int)uprightBlocks.size();
     parallel_for_(Range(0, uprightCount + (int)turnedBlocks.size()), [&](const Range& range)

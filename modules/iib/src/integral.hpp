@@ -53,7 +53,10 @@ public:
         view.step = integralRowBytes(area.width, sizeof(Sum)) / sizeof(Sum);
         view.mask = ringRows - 1;
         view.origin = area.tl();
-        ring.resize(ringRows * view.step);  // zeros: the row above the first, and the left edge of all
+        ring.allocate(ringRows * view.step);
+        std::fill(row(done), row(done) + view.step, (Sum)0);  // nothing is above the first row
+        for (int i = 0; i < ringRows; i++)
+            std::fill(row(i), row(i) + GROUP_CHANNELS, (Sum)0);  // nor left of the first pixel
         view.data = ring.data();
     }
 
@@ -66,18 +69,20 @@ public:
             const Lane* planes[GROUP_CHANNELS];
             for (int i = 0; i < GROUP_CHANNELS; i++)
                 planes[i] = channelRows.plane(i);
-            sumRow(planes, width, &ring[(done & view.mask) * view.step], &ring[((done + 1) & view.mask) * view.step]);
+            sumRow(planes, width, row(done), row(done + 1));
         }
     }
 
     const IntegralRows<Sum>& rows() const { return view; }
 
 private:
+    Sum* row(int y) { return ring.data() + (y & view.mask) * view.step; }
+
     ChannelRows<Lane> channelRows;
     const int width;
     int done;  //!< rows of the image above this one are in the newest row
     const typename SumRowFunc<Lane, Sum>::Type sumRow;
-    std::vector<Sum> ring;
+    AutoBuffer<Sum> ring;
     IntegralRows<Sum> view;
 };
 

@@ -63,30 +63,25 @@ void KeyPointBits::writeSelected(int level, const LevelShape& shape, bool wide, 
     out.flush();
 }
 
-void KeyPointBits::Axis::place(const int* edges, int n)
+void KeyPointBits::Axis::place(const int* edges, int n_)
 {
+    n = n_;
     for (int i = 0; i < n; i++)
         lengths[i] = edges[i + 1] - edges[i];
-    measure(n);
 }
 
-void KeyPointBits::Axis::coarsen(int n)
+void KeyPointBits::Axis::coarsen()
 {
+    n /= 2;
     for (int i = 0; i < n; i++)
         lengths[i] = lengths[2 * i] + lengths[2 * i + 1];
-    measure(n);
 }
 
-void KeyPointBits::Axis::measure(int n)
+double KeyPointBits::Axis::largestProduct() const
 {
-    int smallest = lengths[0];
-    largest = lengths[0];
-    for (int i = 1; i < n; i++)
-    {
-        smallest = std::min(smallest, lengths[i]);
-        largest = std::max(largest, lengths[i]);
-    }
-    weight = smallest == largest ? 1 : largest;
+    const int smallest = *std::min_element(lengths, lengths + n);
+    const double largest = *std::max_element(lengths, lengths + n);
+    return smallest == largest ? largest : largest * largest;
 }
 
 void KeyPointBits::write(const int* xEdges, const int* yEdges, int maxValue, bool wide, uchar* descriptor)
@@ -98,15 +93,15 @@ void KeyPointBits::write(const int* xEdges, const int* yEdges, int maxValue, boo
         const int n = 1 << level;
         if (level < granularity)
         {
-            x.coarsen(n);
-            y.coarsen(n);
+            x.coarsen();
+            y.coarsen();
             if (wide)
                 wideParentSums(wideSums[level + 1], wideSums[level]);
             else
                 parentSums(sums[level + 1], sums[level]);
         }
         // four times the largest weighted sum must fit an int
-        if (!wide && 4. * maxValue * x.largest * y.largest * x.weight * y.weight > INT_MAX)
+        if (!wide && 4. * maxValue * x.largestProduct() * y.largestProduct() > INT_MAX)
         {
             widen(sums[level], wideSums[level]);
             wide = true;

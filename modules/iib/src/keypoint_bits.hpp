@@ -26,7 +26,7 @@ public:
     //! Where they go else.
     CellGrid<double>& finestWideCells() { return wideSums[granularity]; }
 
-    /** Writes the bits of all levels into a zeroed descriptor.
+    /** Writes the bits of all levels into a descriptor; the groups before have written theirs.
      @param xEdges, yEdges size() + 1 edges of the finest cells in each direction, in pixels or samples.
      @param maxValue the largest value that was summed.
      @param wide whether the sums are in finestWideCells(). */
@@ -38,14 +38,12 @@ private:
     //! The cells of the level at hand along one axis.
     struct Axis
     {
-        int lengths[1 << MAX_GRANULARITY];
-        int largest, weight;  //!< the largest length, and the largest factor that makes siblings comparable
+        int n, lengths[1 << MAX_GRANULARITY];
 
-        void place(const int* edges, int n);
-        void coarsen(int n);
-
-    private:
-        void measure(int n);
+        void place(const int* edges, int cells);
+        void coarsen();
+        //! The largest length, times the largest factor that makes siblings comparable.
+        double largestProduct() const;
     };
 
     const int granularity, mapping, channels;

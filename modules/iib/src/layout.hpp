@@ -6,6 +6,7 @@
 #define OPENCV_IIB_LAYOUT_HPP
 
 #include <array>
+#include <cstring>
 
 #include "parameters.hpp"
 
@@ -23,11 +24,15 @@ std::vector<int> levelBytes(const Parameters& parameters);
 //! The place of a group's first bit of a level in the descriptor.
 int bitOffset(const Parameters& parameters, int level, int group);
 
-//! Appends bits to a zeroed descriptor, the lowest bit of the lowest byte first.
+//! Appends bits to a descriptor, the lowest bit of the lowest byte first. Writes only bytes that get bits.
 class BitWriter
 {
 public:
-    BitWriter(uchar* descriptor, int offset) : next(descriptor + offset / 8), pending(*next), count(offset % 8) {}
+    //! Bits of the first byte below the offset are kept.
+    BitWriter(uchar* descriptor, int offset)
+        : next(descriptor + offset / 8), pending(offset % 8 ? *next : 0), count(offset % 8)
+    {
+    }
 
     //! The low n bits of `bits`, n = 0..64; higher bits must be zero.
     void append(uint64 bits, int n)
@@ -36,21 +41,35 @@ public:
         count += n;
         if (count < 64)
             return;
-        for (int i = 0; i < 8; i++)  // a single store, where the machine is little-endian
-            next[i] = (uchar)(pending >> 8 * i);
+        store(8);
         next += 8;
         count -= 64;
         pending = count ? bits >> (n - count) : 0;
     }
 
-    //! Writes the bits still pending; call it once, at the end.
-    void flush()
+    //! Room for n whole bytes, or null if the bits so far end within a byte. Nothing is pending at the start.
+    uchar* reserve(int n)
     {
-        for (int i = 0; i < (count + 7) / 8; i++)
-            next[i] = (uchar)(pending >> 8 * i);
+        if (count != 0)
+            return 0;
+        next += n;
+        return next - n;
     }
 
+    //! Writes the bits still pending; call it once, at the end.
+    void flush() { store((count + 7) / 8); }
+
 private:
+    void store(int bytes)
+    {
+#ifdef WORDS_BIGENDIAN
+        for (int i = 0; i < bytes; i++)
+            next[i] = (uchar)(pending >> 8 * i);
+#else
+        memcpy(next, &pending, bytes);
+#endif
+    }
+
     uchar* next;
     uint64 pending;
     int count;  //!< bits pending, 0..63

@@ -24,27 +24,38 @@ struct Ros
     {
     }
 
-    /** Edge k = 0..n of n cells along an axis on which the ROS begins at `start`, clamped to [0, limit].
-     n is a power of two, so that the edges of a level are a subset of those of the next. */
-    int edge(double start, int k, int n, int limit) const
+    /** The n + 1 edges of n cells along an axis on which the ROS begins at `start`, clamped to [0, limit]. n is a
+     power of two, so that the edges of a level are a subset of those of the next. */
+    void edges(double start, int n, int limit, int* out) const
     {
-        // after the clamp to positive numbers the cast is a floor
-        return (int)std::min(std::max(start + side / n * k + 0.5, 0.), (double)limit);
+        const double step = side / n;
+        for (int k = 0; k <= n; k++)
+            out[k] = pixel(start + step * k, limit);
     }
 
     //! Pixels of the image that hold the part of the ROS inside it; one of the border if there is none.
     Rect pixels(Size image) const
     {
-        const Point a(edge(x, 0, 1, image.width - 1), edge(y, 0, 1, image.height - 1));
-        const Point b(edge(x, 1, 1, image.width), edge(y, 1, 1, image.height));
+        const Point a(pixel(x, image.width - 1), pixel(y, image.height - 1));
+        const Point b(pixel(x + side, image.width), pixel(y + side, image.height));
         return Rect(a, Point(std::max(b.x, a.x + 1), std::max(b.y, a.y + 1)));
     }
+
+    //! A bound of the length of n cells in a row.
+    double longestCell(int n) const { return std::ceil(side / n); }
 
     //! Whether no pixel of the ROS lies outside the image.
     bool isInside(Size image) const
     {
         return std::floor(x + 0.5) >= 0 && std::floor(x + side + 0.5) <= image.width
                && std::floor(y + 0.5) >= 0 && std::floor(y + side + 0.5) <= image.height;
+    }
+
+private:
+    //! The edge of pixels nearest to a position, in [0, limit]: on positive numbers the cast is a floor.
+    static int pixel(double position, int limit)
+    {
+        return (int)std::min(std::max(position + 0.5, 0.), (double)limit);
     }
 };
 

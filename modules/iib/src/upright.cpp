@@ -21,13 +21,11 @@ struct Edges
     {
         x.resize(n + 1);
         y.resize(n + 1);
-        for (int k = 0; k <= n; k++)
-        {
-            x[k] = ros.edge(ros.x, k, n, image.width);
-            y[k] = ros.edge(ros.y, k, n, image.height);
-        }
+        ros.edges(ros.x, n, image.width, x.data());
+        ros.edges(ros.y, n, image.height, y.data());
     }
 
+    //! The most pixels that a cell has.
     double largestCell() const { return (double)largestStep(x) * largestStep(y); }
 
 private:
@@ -66,42 +64,47 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
     const typename CellSumsFunc<Sum>::Type cellSums = getCellSumsFunc(Sum());
     KeyPointBits bits(p, group, (int)channels.size());
     const int n = bits.size();
-    CellGrid<int> scratch, fine;
+    CellGrid<Sum> scratch;
+    CellGrid<int> fine;
     Edges edges, fineEdges;
 
-    int rows = 0;
-    for (int k : block.keypoints)
-        rows = std::max(rows, ros[k].pixels(image).height + 1);
-    IntegralBand<Lane, Sum> band(channels, block.area, rows);
+    IntegralBand<Lane, Sum> band(channels, block.area, block.rows + 1);
 
+    // Neighbours in the block may lie far apart in memory.
+    std::vector<Ros> local;
     for (int k : block.keypoints)
+        local.push_back(ros[k]);
+
+    const double largestSum = (Sum)~(Sum)0;
+    for (size_t i = 0; i < local.size(); i++)
     {
-        edges.place(ros[k], n, image);
+        uchar* descriptor = descriptors.ptr(block.keypoints[i]);
+        edges.place(local[i], n, image);
         band.advance(std::max(edges.y[n], block.area.y));
-
+        const double cell = local[i].longestCell(n);
+        if (largest * cell * cell <= largestSum)
+        {
+            cellSums(band.rows(), edges.x.data(), edges.y.data(), n, scratch, bits.finestCells());
+            bits.write(edges.x.data(), edges.y.data(), largest, false, descriptor);
+            continue;
+        }
         // Cells whose sums could exceed a Sum are put together from smaller ones.
         int fineSize = n;
-        fineEdges.x.clear();
-        while (largest * (fineSize == n ? edges : fineEdges).largestCell() > (Sum)~(Sum)0)
-            fineEdges.place(ros[k], fineSize *= 2, image);
-        if (fineSize == n)
-            cellSums(band.rows(), edges.x.data(), edges.y.data(), n, scratch, bits.finestCells());
-        else
-        {
-            cellSums(band.rows(), fineEdges.x.data(), fineEdges.y.data(), fineSize, scratch, fine);
-            gather(fine, bits.finestWideCells(), n);
-        }
-        bits.write(edges.x.data(), edges.y.data(), largest, fineSize != n, descriptors.ptr(k));
+        do
+            fineEdges.place(local[i], fineSize *= 2, image);
+        while (largest * fineEdges.largestCell() > largestSum);
+        cellSums(band.rows(), fineEdges.x.data(), fineEdges.y.data(), fineSize, scratch, fine);
+        gather(fine, bits.finestWideCells(), n);
+        bits.write(edges.x.data(), edges.y.data(), largest, true, descriptor);
     }
 }
 
 //! Whether 16 bits hold the sums over the finest cells of all keypoints.
 bool sumsAreShort(const Parameters& p, int largest, const Block& block, const std::vector<Ros>& ros)
 {
-    double side = 0;
+    double cell = 0;
     for (int k : block.keypoints)
-        side = std::max(side, ros[k].side);
-    const double cell = std::ceil(side / (1 << p.granularity));
+        cell = std::max(cell, ros[k].longestCell(1 << p.granularity));
     return largest * cell * cell <= USHRT_MAX;
 }
 
