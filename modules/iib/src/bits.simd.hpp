@@ -33,6 +33,7 @@ struct Lanes
 
 inline Lanes operator+(const Lanes& a, const Lanes& b) { return a.v + b.v; }
 inline Lanes operator-(const Lanes& a, const Lanes& b) { return a.v - b.v; }
+inline Lanes operator<<(const Lanes& a, int bits) { return a.v << bits; }
 inline Lanes v_min(const Lanes& a, const Lanes& b) { return cv::v_min(a.v, b.v); }
 inline Lanes v_max(const Lanes& a, const Lanes& b) { return cv::v_max(a.v, b.v); }
 

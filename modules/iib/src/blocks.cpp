@@ -64,22 +64,33 @@ void splitRecursively(const std::vector<Rect>& ros, const Indices& keypoints, bo
         splitRecursively(ros, piece, !vertical, pieces.size() > 1, parts);
 }
 
+//! Stable, linear sort of indices by keys in [0, keyCount).
+template <typename Key> void countingSort(Indices& indices, int keyCount, const Key& key)
+{
+    std::vector<int> place(keyCount + 1, 0);
+    for (int i : indices)
+        place[key(i) + 1]++;
+    for (int k = 0; k < keyCount; k++)
+        place[k + 1] += place[k];
+    Indices sorted(indices.size());
+    for (int i : indices)
+        sorted[place[key(i)]++] = i;
+    indices.swap(sorted);
+}
+
 Block makeBlock(const std::vector<Rect>& ros, const Indices& keypoints)
 {
-    Block block = { ros[keypoints[0]], 0, Indices(keypoints.size()) };
+    Block block = { ros[keypoints[0]], 0, keypoints };
     for (int k : keypoints)
     {
         block.area |= ros[k];
         block.rows = std::max(block.rows, ros[k].height);
     }
-    // counting sort
-    std::vector<int> place(block.area.height + 2, 0);
-    for (int k : keypoints)
-        place[ros[k].br().y - block.area.y + 1]++;
-    for (size_t i = 1; i < place.size(); i++)
-        place[i] += place[i - 1];
-    for (int k : keypoints)
-        block.keypoints[place[ros[k].br().y - block.area.y]++] = k;
+    countingSort(block.keypoints, block.area.width, [&](int k) { return ros[k].x - block.area.x; });
+    countingSort(block.keypoints, block.area.height / Block::BAND_ROWS + 2, [&](int k)
+    {
+        return (ros[k].br().y - block.area.y + Block::BAND_ROWS - 1) / Block::BAND_ROWS;
+    });
     return block;
 }
 

@@ -15,7 +15,16 @@ struct Block
 {
     Rect area;                   //!< holds all their ROS
     int rows;                    //!< of the highest ROS
-    std::vector<int> keypoints;  //!< indices, by the last row of their ROS
+    std::vector<int> keypoints;  //!< indices, by the band in which their ROS ends, then from left to right
+
+    enum { BAND_ROWS = 8 };  //!< neighbours in a band find each other's sums in the cache
+
+    //! The end of the band in which row `end` of the image, exclusive, is the last.
+    int bandEnd(int end) const
+    {
+        const int bands = (end - area.y + BAND_ROWS - 1) / BAND_ROWS;
+        return std::min(area.y + bands * BAND_ROWS, area.y + area.height);
+    }
 };
 
 /** Cuts the keypoints into blocks, so that pixels which no ROS touches are left out wherever a straight gap

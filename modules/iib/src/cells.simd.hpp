@@ -50,9 +50,11 @@ void cellSums(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdge
     AutoBuffer<int, 65> offsets(n + 1);
     for (int c = 0; c <= n; c++)
         offsets[c] = (xEdges[c] - rows.origin.x) * GROUP_CHANNELS;
+    const int first = (yEdges[0] - rows.origin.y) % rows.count;
     for (int r = 0; r <= n; r++)
     {
-        const Sum* from = rows.at(yEdges[r], rows.origin.x);
+        const int place = first + yEdges[r] - yEdges[0];
+        const Sum* from = rows.data + (place < rows.count ? place : place - rows.count) * rows.step;
         Sum *even = corners.row(r, 0), *odd = corners.row(r, 1);
         for (int c = 0; c < n; c += 2)
         {

@@ -16,12 +16,12 @@ namespace iib {
 template <typename Sum> struct IntegralRows
 {
     const Sum* data;
-    size_t step;  //!< elements from row to row
-    int mask;     //!< rows of the ring - 1
-    Point origin; //!< in the image
+    size_t step;   //!< elements from row to row
+    int count;     //!< rows in the ring
+    Point origin;  //!< in the image
 
-    //! Sums over the image's rows [origin.y, y), left of the pixels x, x + 1, ...
-    const Sum* at(int y, int x) const { return data + (y & mask) * step + (size_t)(x - origin.x) * GROUP_CHANNELS; }
+    /* Row (y - origin.y) % count has the sums over the image's rows [origin.y, y), left of the pixels origin.x,
+     origin.x + 1, ... */
 };
 
 //! From a row of each channel: out = above + sums along the row; both begin left of the first pixel, with 0.
@@ -47,16 +47,13 @@ public:
         : channelRows(channels, area, maxGradient(channels)), width(area.width), done(area.y),
           sumRow(getSumRowFunc(Lane(), Sum()))
     {
-        int ringRows = 2;
-        while (ringRows < rows)
-            ringRows *= 2;
         view.step = integralRowBytes(area.width, sizeof(Sum)) / sizeof(Sum);
-        view.mask = ringRows - 1;
+        view.count = rows;
         view.origin = area.tl();
-        ring.allocate(ringRows * view.step);
+        ring.allocate(rows * view.step);
         std::fill(row(done), row(done) + view.step, (Sum)0);  // nothing is above the first row
-        for (int i = 0; i < ringRows; i++)
-            std::fill(row(i), row(i) + GROUP_CHANNELS, (Sum)0);  // nor left of the first pixel
+        for (int i = 0; i < rows; i++)
+            std::fill(row(done + i), row(done + i) + GROUP_CHANNELS, (Sum)0);  // nor left of the first pixel
         view.data = ring.data();
     }
 
@@ -76,7 +73,7 @@ public:
     const IntegralRows<Sum>& rows() const { return view; }
 
 private:
-    Sum* row(int y) { return ring.data() + (y & view.mask) * view.step; }
+    Sum* row(int y) { return ring.data() + (y - view.origin.y) % view.count * view.step; }
 
     ChannelRows<Lane> channelRows;
     const int width;

@@ -18,6 +18,9 @@ template <typename V> inline V greatest(const V& a, const V& b) { return v_max(a
 template <> inline double least(const double& a, const double& b) { return std::min(a, b); }
 template <> inline double greatest(const double& a, const double& b) { return std::max(a, b); }
 
+template <typename V> inline V fourTimes(const V& v) { return v << 2; }
+template <> inline double fourTimes(const double& v) { return 4 * v; }
+
 //! Equation (1): x_i > mean(x), as 4 x_i > sum(x).
 struct MeanMapping
 {
@@ -27,10 +30,7 @@ struct MeanMapping
     {
         const V sum = (x[0] + x[1]) + (x[2] + x[3]);
         for (int i = 0; i < 4; i++)
-        {
-            const V twice = x[i] + x[i];
-            put(i, twice + twice > sum);
-        }
+            put(i, fourTimes(x[i]) > sum);
     }
 };
 
@@ -70,7 +70,7 @@ struct QuartileMapping
         const V twice = range + range;
         for (int i = 0; i < 4; i++)
         {
-            const V a = x[i] - bottom, a2 = a + a, a4 = a2 + a2;
+            const V a4 = fourTimes(V(x[i] - bottom));
             // thresholds passed: 0 to 3, in binary
             put(2 * i, a4 > twice);
             put(2 * i + 1, (a4 > range) ^ (a4 > twice) ^ (a4 > twice + range));

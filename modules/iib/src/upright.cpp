@@ -68,7 +68,7 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
     CellGrid<int> fine;
     Edges edges, fineEdges;
 
-    IntegralBand<Lane, Sum> band(channels, block.area, block.rows + 1);
+    IntegralBand<Lane, Sum> band(channels, block.area, block.rows + Block::BAND_ROWS + 1);
 
     // Neighbours in the block may lie far apart in memory.
     std::vector<Ros> local;
@@ -80,7 +80,7 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
     {
         uchar* descriptor = descriptors.ptr(block.keypoints[i]);
         edges.place(local[i], n, image);
-        band.advance(std::max(edges.y[n], block.area.y));
+        band.advance(block.bandEnd(std::max(edges.y[n], block.area.y)));
         const double cell = local[i].longestCell(n);
         if (largest * cell * cell <= largestSum)
         {
