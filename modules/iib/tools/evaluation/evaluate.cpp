@@ -76,7 +76,7 @@ int evaluate(const Options& options)
             CV_Error(cv::Error::StsBadArg, "unknown experiment " + name);
     const std::vector<ImagePair> pairs = findPairs(options.roots);
     if (pairs.empty())
-        CV_Error(cv::Error::StsObjectNotFound, "no image sequences found; the layouts are in dataset.hpp");
+        CV_Error(cv::Error::StsObjectNotFound, "no image sequences found; the README of tools/evaluation tells the layouts");
     cv::utils::fs::createDirectories(options.out);
     checkSettings(options);
 

@@ -28,6 +28,7 @@ struct Options
 /** Each experiment appends to `<out>/<name>.csv` what is not there yet.
 @return the number of pairs that were skipped because something was broken. */
 int protocolA(const Options& options, const std::vector<ImagePair>& pairs);
+//! Of pairs whose light changes, as the paper's.
 int protocolB(const Options& options, const std::vector<ImagePair>& pairs);
 int matchingStudy(const Options& options, const std::vector<ImagePair>& pairs);
 int robustness(const Options& options, const std::vector<ImagePair>& pairs);

@@ -6,12 +6,13 @@
 #include <iostream>
 
 #include "experiments.hpp"
+#include "opencv2/core/utils/logger.hpp"
 
 namespace {
 
 const char* const USAGE =
         "usage: iib_evaluation --out FOLDER [options] DATA...\n"
-        "  DATA               folder of image sequences, or a list file (layouts: dataset.hpp)\n"
+        "  DATA               folder of image sequences, or a list file (layouts: README.md beside the source)\n"
         "  --out FOLDER       for the results; a run that was interrupted goes on there\n"
         "  --only NAME        protocol_a, protocol_b, matching, robustness, cost or pictures; may be repeated\n"
         "  --points N         keypoints an image, 1000\n"
@@ -87,7 +88,7 @@ iib_tools::Options parse(int argc, char** argv)
     return options;
 }
 
-//! OpenCV writes every exception to stderr before it throws; here they are told once, in one line.
+//! OpenCV writes every exception, and what it cannot read, to stderr; here they are told once, in one line.
 int quiet(int, const char*, const char*, const char*, int, void*) { return 0; }
 
 }  // namespace
@@ -95,6 +96,7 @@ int quiet(int, const char*, const char*, const char*, int, void*) { return 0; }
 int main(int argc, char** argv)
 {
     cv::redirectError(quiet);
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
     try
     {
         iib_tools::evaluate(parse(argc, argv));

@@ -54,19 +54,14 @@ void addXfeatures2d(std::vector<Configuration>& peers)
         peers.push_back(peer("BOOST-" + std::to_string(b[0]), side,
                 [type]() -> Feature { return BoostDesc::create(type, true, 1.f); }));
     }
-#if CV_VERSION_MAJOR > 4 || (CV_VERSION_MAJOR == 4 && (CV_VERSION_MINOR > 5 || \
-        (CV_VERSION_MINOR == 5 && CV_VERSION_REVISION >= 1)))
     peers.push_back(peer("BEBLID-256", side,
             []() -> Feature { return BEBLID::create(1.f, BEBLID::SIZE_256_BITS); }));
     peers.push_back(peer("BEBLID-512", side,
             []() -> Feature { return BEBLID::create(1.f, BEBLID::SIZE_512_BITS); }));
-#endif
-#if CV_VERSION_MAJOR > 4 || (CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR >= 6)
     peers.push_back(peer("TEBLID-256", side,
             []() -> Feature { return TEBLID::create(1.f, TEBLID::SIZE_256_BITS); }));
     peers.push_back(peer("TEBLID-512", side,
             []() -> Feature { return TEBLID::create(1.f, TEBLID::SIZE_512_BITS); }));
-#endif
     // The window is 20 times 1.2 / 9 of the size.
     peers.push_back(peer("SURF", side * 9 / 24,
             []() -> Feature { return SURF::create(100, 4, 3, false, true); }));

@@ -118,7 +118,7 @@ int protocolB(const Options& options, const std::vector<ImagePair>& pairs)
     {
         std::vector<Detector> missing;
         for (const Detector& d : all)
-            if (!table.has({pair.set, pair.sequence, pair.target, d.name, "IIB"}))
+            if (pair.kind == "light" && !table.has({pair.set, pair.sequence, pair.target, d.name, "IIB"}))
                 missing.push_back(d);
         if (!missing.empty())
             tasks.push_back({pair.name(), [&options, &table, pair, missing] {

@@ -4,6 +4,7 @@
 
 """SVG figures, as text that stands in an HTML page."""
 import io
+import math
 
 import matplotlib
 matplotlib.use("Agg")
@@ -26,13 +27,18 @@ def svg(figure):
 
 def size_against_recall(rows):
     """Each configuration's mAR over the bytes of a descriptor."""
-    figure, axes = plt.subplots(figsize=(9, 5))
-    for (name,), members in group(rows, "configuration").items():
+    figure, axes = plt.subplots(figsize=(9, 5.5))
+    points = [(int(members[0]["bytes"]), scores(members)[1], name)
+              for (name,), members in group(rows, "configuration").items()]
+    labels = {}  # sizes that share a column: heights taken by labels
+    for size, recall, name in sorted(points, key=lambda p: -p[1]):
         ours = name.startswith("IIB")
-        size, recall = int(members[0]["bytes"]), scores(members)[1]
-        axes.plot(size, recall, "o" if ours else "s", color=IIB_COLOUR if ours else OTHER_COLOUR, markersize=5)
-        axes.annotate(name.replace("IIB ", "") if ours else name, (size, recall), fontsize=7,
-                      xytext=(4, 3), textcoords="offset points")
+        axes.plot(size, recall, "o" if ours else "s", color=IIB_COLOUR if ours else OTHER_COLOUR, markersize=4)
+        column = labels.setdefault(round(2 * math.log2(size)), [])
+        height = min([recall] + [taken - 0.022 for taken in column])
+        column.append(height)
+        axes.annotate(name.replace("IIB ", "") if ours else name, (size, height), fontsize=7, va="center",
+                      xytext=(5, 0), textcoords="offset points")
     axes.set_xscale("log", base=2)
     ticks = [8, 16, 32, 64, 128, 256, 512]
     axes.set_xticks(ticks, [str(t) for t in ticks])

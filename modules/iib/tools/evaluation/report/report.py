@@ -109,9 +109,8 @@ def protocol_a(rows):
 
 
 def protocol_b(rows):
-    light = [r for r in rows if r["kind"] == "light"]
     lines = []
-    for (detector, descriptor), members in group(light, "detector", "descriptor").items():
+    for (detector, descriptor), members in group(rows, "detector", "descriptor").items():
         map_, mar, pairs = scores(members)
         lines.append([html.escape("%s + %s" % (detector, descriptor)), members[0]["bytes"],
                       "%.0f" % mean(int(r["correct"]) for r in members), cell(map_), cell(mar), str(pairs)])
@@ -120,7 +119,7 @@ def protocol_b(rows):
             "paper's scale factors. Two points correspond within the tolerance and with an overlap error of their "
             "sizes below 50 %. Compare the paper's figures fig_performance_with_detector_real and _virtual.</p>"
             + table(["detector + descriptor", "bytes", "correct matches", "mAP", "mAR", "pairs"], lines)
-            + plots.detector_curves(light))
+            + plots.detector_curves(rows))
 
 
 def matching(rows):
@@ -152,8 +151,8 @@ def cost(rows):
               cell(float(r["milliseconds"]) / reference, 2) if reference else "",
               cell(float(r["microseconds_per_further_keypoint"]), 2)
               if r["microseconds_per_further_keypoint"] else ""] for r in rows]
-    return ('<h2 id="c">Cost</h2><p class="note">One image of 1280 x 720, one thread, all descriptors interleaved in one '
-            "run, medians. Read the ratios; the milliseconds are of one machine.</p>"
+    return ('<h2 id="c">Cost</h2><p class="note">One image of %s, one thread, all descriptors interleaved in one '
+            "run, medians. Read the ratios; the milliseconds are of one machine.</p>" % rows[0]["image"]
             + table(["descriptor", "bytes", "keypoints", "ms in all", "ratio to ORB", "&micro;s a further keypoint"],
                     lines) + plots.costs(rows))
 

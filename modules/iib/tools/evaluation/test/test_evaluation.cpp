@@ -145,7 +145,9 @@ TEST_F(EvaluationTest, keypoints_from_files)
             list += std::to_string(x) + "," + std::to_string(y) + ",5\n";
     folder.write("points/set/still/1.csv", list);
     folder.write("points/set/still/2.csv", list);
-    EXPECT_EQ(1, evaluate(options));  // v_shift has no such files
+    write("still/3.png", cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
+    write("still/depth/3.png", cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
+    EXPECT_EQ(1, evaluate(options));  // the third image has no such file
     EXPECT_NE(std::string::npos, contents(options.out + "/protocol_b.csv").find("set,still,2,file,IIB,light,170,"));
 }
 
