@@ -52,6 +52,7 @@ private:
 //! Where a scan may give a pair up.
 struct HammingStop
 {
+    enum { NO_MAX = 1 << 28 };
     int steps;    //!< after so many steps, more than at the stop before
     int levelMax; //!< the most bits that may differ since the stop before
     int margin;   //!< if >= 0, the most that may differ in all is the query's least so far plus this

@@ -55,6 +55,18 @@ inline Counts total(const Partial& x)
 }
 #endif
 
+inline int countLanes(int lanes)
+{
+#if CV_POPCNT
+    return _mm_popcnt_u32(lanes);
+#else
+    int count = 0;
+    for (; lanes; lanes &= lanes - 1)
+        count++;
+    return count;
+#endif
+}
+
 // A step's full adder: returns the carry, turns the parity into the next.
 inline Words addStep(Words& parity, const Words& train0, const Words& query0, const Words& train1, const Words& query1)
 {
@@ -75,7 +87,7 @@ template<int Q> struct Tile
 {
     enum { SIZE = Q * VECTORS };
     Words parity[SIZE];
-    Counts carries[SIZE];
+    Counts carries[SIZE], before[SIZE]; // before: the distance at the stop before
 
     // Compares steps 0 to `to`.
     CV_ALWAYS_INLINE void start(const unsigned* query, const unsigned* group, size_t words, int to)
@@ -127,12 +139,46 @@ template<int Q> struct Tile
     }
 };
 
+//! A query's comparison with a group, put aside at a stop.
+struct Pending
+{
+    enum { SIZE = 4 * LANES }; // whole cache lines
+    int *state, *query, *group, *alive;
+
+    explicit Pending(int* memory)
+        : state(memory), query(memory + 3 * LANES), group(query + 1), alive(query + 2) {}
+
+    template<int Q> CV_ALWAYS_INLINE void store(const Tile<Q>& tile, int q) const
+    {
+        for (int v = 0; v < VECTORS; v++)
+        {
+            const int i = q * VECTORS + v;
+            v_store(state + v * WIDTH, v_reinterpret_as_s32(tile.parity[i]));
+            v_store(state + LANES + v * WIDTH, tile.carries[i]);
+            v_store(state + 2 * LANES + v * WIDTH, tile.before[i]);
+        }
+    }
+    CV_ALWAYS_INLINE void load(Tile<1>& tile) const
+    {
+        for (int v = 0; v < VECTORS; v++)
+        {
+            tile.parity[v] = v_reinterpret_as_u32(vx_load(state + v * WIDTH));
+            tile.carries[v] = vx_load(state + LANES + v * WIDTH);
+            tile.before[v] = vx_load(state + 2 * LANES + v * WIDTH);
+        }
+    }
+};
+
 class Scanner
 {
 public:
-    explicit Scanner(const HammingScan& s) : scan(s), words(1 + 2 * s.steps), alive(s.stopCount * WIDTH)
+    explicit Scanner(const HammingScan& s)
+        : scan(s), words(1 + 2 * s.steps), together(0), memory((size_t)QUERIES * s.groups * Pending::SIZE + LANES),
+          places(alignPtr(memory.data(), LANES * sizeof(int)))
     {
-        std::fill(alive.begin(), alive.end(), 0u);
+        // The first stops, one soon after the other, are for whole tiles: hardly any tile ends there.
+        while (together < scan.stopCount && (together == 0 || stepsAt(together) - stepsAt(together - 1) <= 2))
+            together++;
     }
 
     void run()
@@ -142,147 +188,196 @@ public:
             row<QUERIES>(q);
         for (; q < scan.queryCount; q++)
             row<1>(q);
-        for (int i = 0; i < scan.stopCount * WIDTH; i++)
-            scan.passed[i / WIDTH] += alive[i];
     }
 
 private:
+    // Stop by stop over all groups, so that each loop does one thing: what survives a stop is put aside.
     template<int Q> void row(int query)
     {
+        int pending = 0;
         for (int group = 0; group < scan.groups; group++)
-            compare<Q>(query, group);
+            compare<Q>(query, group, pending);
+        for (int stop = together; stop <= scan.stopCount && pending > 0; stop++)
+            pending = resume(stop, pending);
     }
 
-    template<int Q> CV_ALWAYS_INLINE void compare(int query, int group)
+    template<int Q> CV_ALWAYS_INLINE void compare(int query, int group, int& pending)
     {
-        const unsigned* queryCode = scan.queries + query * words;
-        const unsigned* groupCode = scan.trains + group * words * LANES;
         Tile<Q> tile;
-        tile.start(queryCode, groupCode, words, scan.stopCount ? scan.stops[0].steps : scan.steps);
+        tile.start(queryCode(query), groupCode(group), words, stepsAt(0));
         if (scan.stopCount == 0)
         {
             report(tile, query, group);
             return;
         }
+        int alive[Q];
+        for (int q = 0; q < Q; q++)
+            alive[q] = existing(query + q, group);
+        for (int i = 0; i < Tile<Q>::SIZE; i++)
+            tile.before[i] = vx_setzero_s32();
+        for (int stop = 0; stop < together; stop++)
+        {
+            if (stop > 0)
+                tile.advance(queryCode(query), groupCode(group), words, stepsAt(stop - 1), stepsAt(stop));
+            keep(tile, query, stop, alive);
+        }
         for (int q = 0; q < Q; q++)
         {
-            Tile<1> single;
-            for (int v = 0; v < VECTORS; v++)
-            {
-                single.parity[v] = tile.parity[q * VECTORS + v];
-                single.carries[v] = tile.carries[q * VECTORS + v];
-            }
-            descend(single, query + q, group);
+            if (!alive[q])
+                continue;
+            const Pending place(places + (size_t)pending * Pending::SIZE);
+            place.store(tile, q);
+            *place.query = query + q;
+            *place.group = group;
+            *place.alive = alive[q];
+            pending++;
         }
     }
 
-    // From the first stop to the end, with one query.
-    void descend(Tile<1>& t, int query, int group)
+    // Takes all that is pending to a stop, or to the end after the last; returns how many are left.
+    int resume(int stop, int pending)
     {
-        const unsigned* queryCode = scan.queries + query * words;
-        const unsigned* groupCode = scan.trains + group * words * LANES;
-        Counts dead[VECTORS], before[VECTORS], distance[VECTORS]; // dead: negative
-        for (int v = 0; v < VECTORS; v++)
+        int left = 0;
+        for (int i = 0; i < pending; i++)
         {
-            dead[v] = missing(query, group * LANES + v * WIDTH);
-            before[v] = vx_setzero_s32();
-        }
-        for (int i = 0; i < scan.stopCount; i++)
-        {
-            const HammingStop& stop = scan.stops[i];
-            if (i > 0)
-                t.advance(queryCode, groupCode, words, scan.stops[i - 1].steps, stop.steps);
-            t.distances(distance);
-            for (int v = 0; v < VECTORS; v++)
+            const Pending from(places + (size_t)i * Pending::SIZE), to(places + (size_t)left * Pending::SIZE);
+            const int query = *from.query, group = *from.group;
+            int alive = *from.alive;
+            Tile<1> tile;
+            from.load(tile);
+            tile.advance(queryCode(query), groupCode(group), words, stepsAt(stop - 1), stepsAt(stop));
+            if (stop == scan.stopCount)
             {
-                dead[v] = dead[v] | (vx_setall_s32(stop.levelMax) - (distance[v] - before[v]));
-                before[v] = distance[v];
+                report(tile, query, group, alive);
+                continue;
             }
-            int& limit = scan.limits[query * scan.stopCount + i];
-            if (stop.margin >= 0)
-                limit = std::min(limit, least(distance, dead, limit - stop.margin) + stop.margin);
-            Counts allDead = vx_setall_s32(-1);
-            for (int v = 0; v < VECTORS; v++)
-            {
-                dead[v] = dead[v] | (vx_setall_s32(limit) - distance[v]);
-                allDead = allDead & dead[v];
-                unsigned* counter = &alive[i * WIDTH];
-                v_store(counter, vx_load(counter) + v_shr<31>(v_reinterpret_as_u32(~dead[v])));
-            }
-            if (v_check_all(allDead))
-                return;
+            keep(tile, query, stop, &alive);
+            to.store(tile, 0);
+            *to.query = query;
+            *to.group = group;
+            *to.alive = alive;
+            left += alive != 0;
         }
-        t.advance(queryCode, groupCode, words, scan.stops[scan.stopCount - 1].steps, scan.steps);
-        t.distances(distance);
-        for (int v = 0; v < VECTORS; v++)
-        {
-            const int train = group * LANES + v * WIDTH;
-            found(query, train, distance[v], beyond(query, train, distance[v]) & ~dead[v]);
-        }
+        return left;
     }
 
-    template<int Q> CV_ALWAYS_INLINE void report(const Tile<Q>& t, int query, int group)
+    // Applies a stop to the lanes alive.
+    template<int Q> CV_ALWAYS_INLINE void keep(Tile<Q>& tile, int query, int stop, int* alive)
     {
-        const int size = Tile<Q>::SIZE;
-        Counts distance[size], near[size], any = vx_setzero_s32();
-        t.distances(distance);
-        for (int i = 0; i < size; i++)
+        Counts distance[Tile<Q>::SIZE];
+        tile.distances(distance);
+        int* limits = scan.limits + query * scan.stopCount + stop;
+        if (scan.stops[stop].margin >= 0)
+            for (int q = 0; q < Q; q++)
+                lower(limits[q * scan.stopCount], distance + q * VECTORS, alive[q], scan.stops[stop].margin);
+        const Counts levelMax = vx_setall_s32(scan.stops[stop].levelMax);
+        int above[Q], pairs = 0;
+        for (int q = 0; q < Q; q++)
+            above[q] = 0;
+        for (int i = 0; i < Tile<Q>::SIZE; i++)
         {
-            near[i] = beyond(query + i / VECTORS, group * LANES + i % VECTORS * WIDTH, distance[i]);
-            any = any | near[i];
+            const Counts most = v_min(tile.before[i] + levelMax, vx_setall_s32(limits[i / VECTORS * scan.stopCount]));
+            above[i / VECTORS] |= v_signmask(most - distance[i]) << i % VECTORS * WIDTH;
+        }
+        for (int q = 0; q < Q; q++)
+            pairs += countLanes(alive[q] &= ~above[q]);
+        for (int i = 0; i < Tile<Q>::SIZE; i++)
+            tile.before[i] = distance[i];
+        scan.passed[stop] += pairs;
+    }
+
+    // Brings a limit down to the least distance of the lanes alive plus a margin.
+    static CV_ALWAYS_INLINE void lower(int& limit, const Counts* distance, int alive, int margin)
+    {
+        int below = 0;
+        for (int v = 0; v < VECTORS; v++)
+            below |= v_signmask(distance[v] - vx_setall_s32(limit - margin)) << v * WIDTH;
+        if (below & alive)
+            limit = least(distance, below & alive) + margin;
+    }
+
+    static int least(const Counts* distance, int lanes)
+    {
+        int distances[LANES], result = INT_MAX;
+        for (int v = 0; v < VECTORS; v++)
+            v_store(distances + v * WIDTH, distance[v]);
+        for (; lanes; lanes &= lanes - 1)
+            result = std::min(result, distances[trailingZeros32(lanes)]);
+        return result;
+    }
+
+    template<int Q> CV_ALWAYS_INLINE void report(const Tile<Q>& tile, int query, int group) const
+    {
+        Counts distance[Tile<Q>::SIZE], beyonds[Tile<Q>::SIZE], any = vx_setzero_s32();
+        tile.distances(distance);
+        for (int i = 0; i < Tile<Q>::SIZE; i++)
+        {
+            beyonds[i] = beyond(query + i / VECTORS, group, i % VECTORS, distance[i]);
+            any = any | beyonds[i];
         }
         if (!v_check_any(any))
             return;
-        for (int i = 0; i < size; i++)
-            if (v_check_any(near[i]))
-            {
-                const int q = query + i / VECTORS, train = group * LANES + i % VECTORS * WIDTH;
-                found(q, train, distance[i], near[i] & ~missing(q, train));
-            }
+        for (int q = 0; q < Q; q++)
+            found(query + q, group, distance + q * VECTORS, beyonds + q * VECTORS, existing(query + q, group));
+    }
+
+    void report(const Tile<1>& tile, int query, int group, int alive) const
+    {
+        Counts distance[VECTORS], beyonds[VECTORS];
+        tile.distances(distance);
+        for (int v = 0; v < VECTORS; v++)
+            beyonds[v] = beyond(query, group, v, distance[v]);
+        found(query, group, distance, beyonds, alive);
     }
 
     // Negative where a distance is small enough to be found.
-    Counts beyond(int query, int train, const Counts& distance) const
+    CV_ALWAYS_INLINE Counts beyond(int query, int group, int v, const Counts& distance) const
     {
-        return distance - v_max(vx_setall_s32(scan.queryBelow[query]), vx_load(scan.trainBelow + train));
+        const int* trainBelow = scan.trainBelow + group * LANES + v * WIDTH;
+        return distance - v_max(vx_setall_s32(scan.queryBelow[query]), vx_load(trainBelow));
     }
 
-    // Negative where the pair does not exist.
-    Counts missing(int query, int train) const
+    void found(int query, int group, const Counts* distance, const Counts* beyonds, int lanes) const
     {
-        if (!scan.allowed)
-            return vx_setzero_s32();
-        const uchar* allowed = scan.allowed + (size_t)query * scan.groups * LANES + train;
-        return v_reinterpret_as_s32(vx_load_expand_q(allowed)) - vx_setall_s32(1);
-    }
-
-    static int least(const Counts* distance, const Counts* dead, int below)
-    {
-        Counts any = vx_setzero_s32();
+        int distances[LANES];
+        int near = 0;
         for (int v = 0; v < VECTORS; v++)
-            any = any | ((distance[v] - vx_setall_s32(below)) & ~dead[v]);
-        if (!v_check_any(any))
-            return below;
-        Counts result = vx_setall_s32(below);
-        for (int v = 0; v < VECTORS; v++)
-            result = v_min(result, v_select(dead[v] < vx_setzero_s32(), result, distance[v]));
-        return v_reduce_min(result);
-    }
-
-    void found(int query, int train, const Counts& distance, const Counts& near) const
-    {
-        int distances[WIDTH];
-        v_store(distances, distance);
-        for (int lanes = v_signmask(near); lanes; lanes &= lanes - 1)
+        {
+            v_store(distances + v * WIDTH, distance[v]);
+            near |= v_signmask(beyonds[v]) << v * WIDTH;
+        }
+        for (lanes &= near; lanes; lanes &= lanes - 1)
         {
             const int lane = trailingZeros32(lanes);
-            scan.sink->found(query, train + lane, distances[lane]);
+            scan.sink->found(query, group * LANES + lane, distances[lane]);
         }
     }
 
+    // The lanes whose pairs exist.
+    CV_ALWAYS_INLINE int existing(int query, int group) const
+    {
+        int lanes = (1 << LANES) - 1;
+        if (!scan.allowed)
+            return lanes;
+        const uchar* allowed = scan.allowed + ((size_t)query * scan.groups + group) * LANES;
+        for (int v = 0; v < VECTORS; v++)
+        {
+            const Counts missing = v_reinterpret_as_s32(vx_load_expand_q(allowed + v * WIDTH)) - vx_setall_s32(1);
+            lanes &= ~(v_signmask(missing) << v * WIDTH);
+        }
+        return lanes;
+    }
+
+    // Steps compared at a stop, or in all after the last.
+    int stepsAt(int stop) const { return stop < scan.stopCount ? scan.stops[stop].steps : scan.steps; }
+    const unsigned* queryCode(int query) const { return scan.queries + query * words; }
+    const unsigned* groupCode(int group) const { return scan.trains + group * words * LANES; }
+
     const HammingScan& scan;
     const size_t words;
-    std::vector<unsigned> alive; // stop by stop, lane by lane: the pairs that went on
+    int together; // stops at which tiles stay whole
+    AutoBuffer<int> memory;
+    int* places;
 };
 
 }  // namespace

@@ -22,6 +22,12 @@ struct Parameters
     float maxRatio;
 };
 
+void checkThreshold(float threshold)
+{
+    if (!(threshold >= 0 && threshold <= 1))
+        CV_Error_(Error::StsOutOfRange, ("the threshold is %g: it has to be 0 to 1", threshold));
+}
+
 void check(const Parameters& p)
 {
     if (p.levelSizes.empty())
@@ -42,8 +48,7 @@ void check(const Parameters& p)
         CV_Error_(Error::StsBadArg, ("%d thresholds for %d levels: give one for each level but the last, or a single "
                                      "one for all", (int)p.thresholds.size(), (int)p.levelSizes.size()));
     for (size_t i = 0; i < p.thresholds.size(); i++)
-        if (!(p.thresholds[i] >= 0 && p.thresholds[i] <= 1))
-            CV_Error_(Error::StsOutOfRange, ("the threshold is %g: it has to be 0 to 1", p.thresholds[i]));
+        checkThreshold(p.thresholds[i]);
     if (!(p.maxRatio > 0 && p.maxRatio <= 1))
         CV_Error_(Error::StsOutOfRange, ("maxRatio is %g: it has to be above 0 and at most 1", p.maxRatio));
 }
@@ -221,8 +226,9 @@ void HierarchicalMatcherImpl::add(InputArrayOfArrays descriptors)
         descriptors.getMatVector(images);
     else
         images.push_back(descriptors.getMat());
+    const bool mapped = descriptors.isUMat() || descriptors.isUMatVector(); // such views must not outlive the call
     for (size_t i = 0; i < images.size(); i++)
-        images[i] = checked(images[i]);
+        images[i] = mapped ? checked(images[i]).clone() : checked(images[i]);
     for (size_t i = 0; i < images.size(); i++)
     {
         index->add(images[i]);
@@ -372,6 +378,7 @@ Ptr<HierarchicalMatcher> HierarchicalMatcherImpl::load(const String& filename)
 Ptr<HierarchicalMatcher> HierarchicalMatcher::create(const std::vector<int>& levelSizes, int mode, float threshold,
                                                      bool crossCheck)
 {
+    checkThreshold(threshold);
     const size_t thresholds = std::max(levelSizes.size(), (size_t)1) - 1;
     const Parameters p = { levelSizes, mode, std::vector<float>(thresholds, threshold), crossCheck, 1.f };
     check(p);

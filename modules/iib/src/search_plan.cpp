@@ -10,7 +10,7 @@ namespace iib {
 
 static HammingStop stopAt(int steps)
 {
-    const HammingStop stop = { steps, INT_MAX, -1 };
+    const HammingStop stop = { steps, HammingStop::NO_MAX, -1 };
     return stop;
 }
 
@@ -36,22 +36,21 @@ SearchPlan thresholdPlan(const HammingLayout& layout, const std::vector<float>& 
     return plan;
 }
 
-// Random differences of n bits spread by sqrt(n) / 2: margins of about 3, 2 and 1 such spreads. The first
-// stop comes after all levels but the last; the last level, most of the bits, is cut twice more.
+// Random differences of n bits spread by sqrt(n) / 2: margins of 1.6 and 1 such spreads. The levels before the
+// last are too few bits to tell on a hard pair, so the first stop takes a quarter of the last one with them.
 SearchPlan adaptivePlan(const HammingLayout& layout)
 {
     SearchPlan plan;
     if (layout.levels() == 1)
         return plan;
     const int coarse = layout.end(layout.levels() - 2), fine = layout.steps() - coarse;
-    const int places[] = { coarse, coarse + fine / 4, coarse + fine / 2 };
-    const double margins[] = { 1.5, 1.0, 0.55 };
-    for (int i = 0; i < 3; i++)
-        if (i == 0 || places[i] > plan.stops.back().steps)
-        {
-            plan.stops.push_back(stopAt(places[i]));
-            plan.stops.back().margin = cvRound(margins[i] * std::sqrt((double)layout.bits(places[i])));
-        }
+    const int places[] = { coarse + fine / 4, coarse + fine / 2 };
+    const double margins[] = { 0.8, 0.5 };
+    for (int i = 0; i < 2; i++)
+    {
+        plan.stops.push_back(stopAt(places[i]));
+        plan.stops.back().margin = cvRound(margins[i] * std::sqrt((double)layout.bits(places[i])));
+    }
     plan.limits.assign(plan.stops.size(), INT_MAX);
     return plan;
 }
