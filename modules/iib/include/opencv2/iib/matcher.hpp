@@ -41,9 +41,10 @@ within a radius of the query has the query within that radius.
  - #THRESHOLD: the paper's rule. A pair goes on to the next level only while its distance in the current
    one is at most threshold * bits of that level; pairs that reach the last level are ranked by the
    distance over all levels. Fast, and it loses whole keypoints in hard scenes.
- - #ADAPTIVE: a pair goes on to the last level only if its distance over the levels before it is near
-   the least that this query has seen so far. No distance is ever wrong: what may happen is that a
-   neighbour is missed. With a single level it is #EXACT.
+ - #ADAPTIVE: a pair is compared to the end only if, after a quarter and after half of the last level, its
+   distance is within 1.6 and 1 standard deviations of random bits of the least that this query has seen so
+   far. No distance is ever wrong; what may happen is that a neighbour is missed, so nothing is promised for
+   a single query. With a single level it is #EXACT, and so is radiusMatch.
 
 **Threads.** Calls run on cv::parallel_for_; results are the same for every number of threads and every
 instruction set. One object may serve several threads as long as none adds descriptors or changes
@@ -60,7 +61,7 @@ public:
     {
         EXACT,     //!< all that could change the result of brute force
         THRESHOLD, //!< those within the threshold at every level before the last
-        ADAPTIVE   //!< those near the query's best so far in the levels before the last
+        ADAPTIVE   //!< those near the query's best so far, on the way through the last level
     };
 
     /** @brief Creates a matcher.
