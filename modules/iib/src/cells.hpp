@@ -5,6 +5,7 @@
 #ifndef OPENCV_IIB_CELLS_HPP
 #define OPENCV_IIB_CELLS_HPP
 
+#include "aligned_buffer.hpp"
 #include "integral.hpp"
 
 namespace cv {
@@ -21,14 +22,13 @@ public:
     void create(int cellsInRow)
     {
         n = cellsInRow;
-        step = (size_t)(n / 2 + 1) * GROUP_CHANNELS + ROW_PADDING;
-        if (data.size() < 2 * (n + 1) * step)  // a row more, for the corners of cells
-            data.resize(2 * (n + 1) * step);
+        step = wholeLines<T>((size_t)(n / 2 + 1) * GROUP_CHANNELS + ROW_PADDING);
+        values.allocate(2 * (n + 1) * step);  // a row more, for the corners of cells
     }
 
     //! Cells (row, parity), (row, parity + 2), ...; kernels may run ROW_PADDING values over the end.
-    T* row(int r, int parity) { return &data[(2 * r + parity) * step]; }
-    const T* row(int r, int parity) const { return &data[(2 * r + parity) * step]; }
+    T* row(int r, int parity) { return values.data() + (2 * r + parity) * step; }
+    const T* row(int r, int parity) const { return values.data() + (2 * r + parity) * step; }
 
     //! The channels of one cell.
     const T* cell(int r, int c) const { return row(r, c & 1) + (c >> 1) * GROUP_CHANNELS; }
@@ -39,7 +39,7 @@ public:
 private:
     int n;
     size_t step;
-    std::vector<T> data;
+    AlignedBuffer<T> values;
 };
 
 //! Sums over n x n cells with the given n + 1 edges, in pixels of the image; `scratch` is overwritten.

@@ -26,6 +26,18 @@ inline v_uint32 load(const unsigned* p) { return vx_load(p); }
 inline v_uint16 subtract(const v_uint16& a, const v_uint16& b) { return v_sub_wrap(a, b); }
 inline v_uint32 subtract(const v_uint32& a, const v_uint32& b) { return a - b; }
 
+//! Two corners that are neighbours in a row of the grid; few wide stores, since all are read again as vectors.
+inline void copyPair(const ushort* a, const ushort* b, ushort* out)
+{
+    v_store(out, v_load_halves(a, b));
+}
+
+inline void copyPair(const unsigned* a, const unsigned* b, unsigned* out)
+{
+    v_store(out, v_load(a));
+    v_store(out + GROUP_CHANNELS, v_load(b));
+}
+
 inline void storeWide(int* out, const v_uint16& v)
 {
     v_uint32 low, high;
@@ -47,19 +59,19 @@ void cellSums(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdge
 {
     corners.create(n);
     cells.create(n);
-    AutoBuffer<int, 65> offsets(n + 1);
-    for (int c = 0; c <= n; c++)
-        offsets[c] = (xEdges[c] - rows.origin.x) * GROUP_CHANNELS;
+    AutoBuffer<int, 68> offsets(n + 4);
+    for (int c = 0; c < n + 4; c++)
+        offsets[c] = (xEdges[std::min(c, n)] - rows.origin.x) * GROUP_CHANNELS;
     const int first = (yEdges[0] - rows.origin.y) % rows.count;
     for (int r = 0; r <= n; r++)
     {
         const int place = first + yEdges[r] - yEdges[0];
         const Sum* from = rows.data + (place < rows.count ? place : place - rows.count) * rows.step;
         Sum *even = corners.row(r, 0), *odd = corners.row(r, 1);
-        for (int c = 0; c < n; c += 2)
+        for (int c = 0; c < n; c += 4)  // beyond the last column the offsets repeat
         {
-            memcpy(even + c / 2 * GROUP_CHANNELS, from + offsets[c], GROUP_CHANNELS * sizeof(Sum));
-            memcpy(odd + c / 2 * GROUP_CHANNELS, from + offsets[c + 1], GROUP_CHANNELS * sizeof(Sum));
+            copyPair(from + offsets[c], from + offsets[c + 2], even + c / 2 * GROUP_CHANNELS);
+            copyPair(from + offsets[c + 1], from + offsets[c + 3], odd + c / 2 * GROUP_CHANNELS);
         }
         memcpy(even + n / 2 * GROUP_CHANNELS, from + offsets[n], GROUP_CHANNELS * sizeof(Sum));
     }
@@ -98,20 +110,21 @@ void parentSums(const CellGrid<int>& children, CellGrid<int>& cells)
 {
     const int n = children.size() / 2, lanes = v_int32::nlanes;
     cells.create(n);
-    for (int r = 0; r < n; r++)
+    const size_t parity = children.row(0, 1) - children.row(0, 0), row = children.row(1, 0) - children.row(0, 0);
+    const int* in = children.row(0, 0);
+    for (int r = 0; r < n; r++, in += 2 * row)
     {
-        const int *topLeft = children.row(2 * r, 0), *topRight = children.row(2 * r, 1);
-        const int *bottomLeft = children.row(2 * r + 1, 0), *bottomRight = children.row(2 * r + 1, 1);
         int *even = cells.row(r, 0), *odd = cells.row(r, 1);
         for (int i = 0; i < n * GROUP_CHANNELS; i += 2 * lanes)
         {
-            const int j = i + lanes;
-            const v_int32 first = (vx_load(topLeft + i) + vx_load(topRight + i))
-                                  + (vx_load(bottomLeft + i) + vx_load(bottomRight + i));
-            const v_int32 second = (vx_load(topLeft + j) + vx_load(topRight + j))
-                                   + (vx_load(bottomLeft + j) + vx_load(bottomRight + j));
+            v_int32 sums[2];
+            for (int j = 0; j < 2; j++)
+            {
+                const int* p = in + i + j * lanes;
+                sums[j] = (vx_load(p) + vx_load(p + parity)) + (vx_load(p + row) + vx_load(p + row + parity));
+            }
             v_int32 evens, odds;
-            splitColumns(first, second, evens, odds);
+            splitColumns(sums[0], sums[1], evens, odds);
             v_store(even + i / 2, evens);
             v_store(odd + i / 2, odds);
         }

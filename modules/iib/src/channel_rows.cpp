@@ -30,7 +30,7 @@ void widen(const RowKernels<Lane>& kernels, const Mat& map, int y, int x, Lane* 
 template <typename Lane>
 ChannelRows<Lane>::ChannelRows(const std::vector<Channel>& channels_, Rect area_, int signedOffset_)
     : channels(channels_), area(area_), signedOffset((Lane)signedOffset_), kernels(rowKernels<Lane>()),
-      gradientOf(0), step((size_t)area_.width + 2 + ROW_PADDING), scratch(SCRATCH_ROWS * step)
+      gradientOf(0), step(wholeLines<Lane>((size_t)area_.width + 2 + ROW_PADDING)), scratch(SCRATCH_ROWS * step)
 {
     for (const Channel& c : channels)
         if (usesGradient(c))

@@ -5,6 +5,7 @@
 #ifndef OPENCV_IIB_CHANNEL_ROWS_HPP
 #define OPENCV_IIB_CHANNEL_ROWS_HPP
 
+#include "aligned_buffer.hpp"
 #include "channels.hpp"
 
 namespace cv {
@@ -47,7 +48,7 @@ public:
 
 private:
     void computeGradient(int y);
-    Lane* row(int i) { return &scratch[i * step]; }
+    Lane* row(int i) { return scratch.data() + i * step; }
 
     const std::vector<Channel> channels;
     const Rect area;
@@ -56,7 +57,7 @@ private:
     const Mat* gradientOf;  //!< the image, or null if no channel needs its gradient
     int read[3];            //!< which row of the image each of the first three scratch rows holds
     size_t step;
-    std::vector<Lane> scratch;
+    AlignedBuffer<Lane> scratch;
     const Lane* planes[GROUP_CHANNELS];
 };
 

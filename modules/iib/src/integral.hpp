@@ -5,6 +5,7 @@
 #ifndef OPENCV_IIB_INTEGRAL_HPP
 #define OPENCV_IIB_INTEGRAL_HPP
 
+#include "aligned_buffer.hpp"
 #include "channel_rows.hpp"
 
 namespace cv {
@@ -50,11 +51,13 @@ public:
         view.step = integralRowBytes(area.width, sizeof(Sum)) / sizeof(Sum);
         view.count = rows;
         view.origin = area.tl();
-        ring.allocate(rows * view.step);
+        ring.allocate(rows * view.step + CACHE_LINE / sizeof(Sum));
+        // Pixels begin on a cache line, behind the zeros to their left.
+        begin = ring.data() + CACHE_LINE / sizeof(Sum) - GROUP_CHANNELS;
+        view.data = begin;
         std::fill(row(done), row(done) + view.step, (Sum)0);  // nothing is above the first row
         for (int i = 0; i < rows; i++)
             std::fill(row(done + i), row(done + i) + GROUP_CHANNELS, (Sum)0);  // nor left of the first pixel
-        view.data = ring.data();
     }
 
     //! Adds the image's rows up to and without y, area.y <= y <= area.y + area.height.
@@ -73,13 +76,14 @@ public:
     const IntegralRows<Sum>& rows() const { return view; }
 
 private:
-    Sum* row(int y) { return ring.data() + (y - view.origin.y) % view.count * view.step; }
+    Sum* row(int y) { return begin + (y - view.origin.y) % view.count * view.step; }
 
     ChannelRows<Lane> channelRows;
     const int width;
     int done;  //!< rows of the image above this one are in the newest row
     const typename SumRowFunc<Lane, Sum>::Type sumRow;
-    AutoBuffer<Sum> ring;
+    AlignedBuffer<Sum> ring;
+    Sum* begin;
     IntegralRows<Sum> view;
 };
 

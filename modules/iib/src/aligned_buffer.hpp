@@ -1,0 +1,60 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_ALIGNED_BUFFER_HPP
+#define OPENCV_IIB_ALIGNED_BUFFER_HPP
+
+#include "precomp.hpp"
+
+namespace cv {
+namespace iib {
+
+enum { CACHE_LINE = 64 };
+
+//! n rounded up to fill whole cache lines of T.
+template <typename T> inline size_t wholeLines(size_t n)
+{
+    return (n * sizeof(T) + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE / sizeof(T);
+}
+
+/** Values that begin on a cache line: the widest vectors then never cross one, which would halve their speed.
+ Not initialized; moved but not copied. */
+template <typename T> class AlignedBuffer
+{
+public:
+    AlignedBuffer() : values(0), capacity(0) {}
+    explicit AlignedBuffer(size_t n) : AlignedBuffer() { allocate(n); }
+    AlignedBuffer(AlignedBuffer&& other) : values(other.values), capacity(other.capacity)
+    {
+        other.values = 0;
+        other.capacity = 0;
+    }
+    ~AlignedBuffer() { fastFree(values); }
+    AlignedBuffer(const AlignedBuffer&) = delete;
+    AlignedBuffer& operator=(const AlignedBuffer&) = delete;
+
+    //! Room for at least n values; what was there is lost if that is more than before.
+    void allocate(size_t n)
+    {
+        if (n <= capacity)
+            return;
+        fastFree(values);
+        values = 0;
+        capacity = 0;
+        values = static_cast<T*>(fastMalloc(n * sizeof(T) + CACHE_LINE));
+        capacity = n;
+    }
+
+    T* data() { return alignPtr(values, CACHE_LINE); }
+    const T* data() const { return alignPtr(values, CACHE_LINE); }
+
+private:
+    T* values;
+    size_t capacity;
+};
+
+}  // namespace iib
+}  // namespace cv
+
+#endif
