@@ -1,0 +1,46 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "perf_precomp.hpp"
+
+namespace opencv_test {
+namespace {
+
+enum { PEER_ORB = -1, OVERLAP = 100, GRANULARITY_5, ORIENTED };
+CV_ENUM(Descriptor, PEER_ORB, IIB::MAPPING_MEAN, IIB::MAPPING_MAX, IIB::MAPPING_MIN, IIB::MAPPING_QUARTILE,
+        IIB::MAPPING_SORT, IIB::MAPPING_HAAR, IIB::MAPPING_PAIRWISE, OVERLAP, GRANULARITY_5, ORIENTED)
+
+Ptr<Feature2D> createDescriptor(int descriptor)
+{
+    switch (descriptor)
+    {
+    case PEER_ORB: return ORB::create();
+    case OVERLAP: return IIB::create(2.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, true);
+    case GRANULARITY_5: return IIB::create(2.f, 5);
+    case ORIENTED: return IIB::create(2.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, true);
+    default: return IIB::create(2.f, 4, IIB::CHANNELS_DEFAULT, descriptor);
+    }
+}
+
+typedef perf::TestBaseWithParam<tuple<Descriptor, int> > IIB_Compute; // descriptor, keypoints
+
+PERF_TEST_P(IIB_Compute, hd, testing::Combine(Descriptor::all(), testing::Values(1000, 5000)))
+{
+    Mat image(720, 1280, CV_8U);
+    randu(image, 0, 256);
+    GaussianBlur(image, image, Size(5, 5), 1.);
+    RNG& rng = theRNG();
+    std::vector<KeyPoint> keypoints;
+    for (int i = 0; i < get<1>(GetParam()); i++)
+        keypoints.push_back(KeyPoint((float)rng.uniform(32, 1248), (float)rng.uniform(32, 688), 31.f,
+                                     rng.uniform(0.f, 360.f)));
+    const Ptr<Feature2D> descriptor = createDescriptor(get<0>(GetParam()));
+    setNumThreads(1);
+    Mat descriptors;
+    TEST_CYCLE() descriptor->compute(image, keypoints, descriptors);
+    SANITY_CHECK_NOTHING();
+}
+
+}
+}  // namespace

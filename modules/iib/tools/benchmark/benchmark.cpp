@@ -1,0 +1,176 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// What a descriptor costs beside cv::ORB on the same keypoints, in one run: prints a table, writes JSON.
+
+#include "opencv2/core.hpp"
+#include "opencv2/core/utility.hpp"
+#include "opencv2/iib.hpp"
+#include "opencv2/imgproc.hpp"
+
+#include <cstdio>
+#include <functional>
+
+using namespace cv;
+using cv::iib::IIB;
+
+namespace {
+
+const Size IMAGE_SIZE(1280, 720);
+enum { FEW = 1000, MANY = 5000 };
+
+//! A grey image with corners everywhere: blurred noise at two scales.
+Mat cornerImage(Size size)
+{
+    RNG rng(1);
+    Mat fine(size, CV_8U), coarse(size / 8, CV_8U), image;
+    rng.fill(fine, RNG::UNIFORM, 0, 256);
+    rng.fill(coarse, RNG::UNIFORM, 0, 256);
+    GaussianBlur(fine, fine, Size(5, 5), 1.);
+    resize(coarse, coarse, size, 0, 0, INTER_CUBIC);
+    addWeighted(fine, 0.5, coarse, 0.5, 0, image);
+    return image;
+}
+
+//! FAST corners, spread over the image, with ORB's size, away from the border, where ORB would drop them.
+std::vector<KeyPoint> corners(const Mat& image, size_t count)
+{
+    std::vector<KeyPoint> all, chosen;
+    FAST(image, all, 5);
+    RNG rng(2);
+    for (size_t i = all.size(); i > 1; i--)
+        std::swap(all[i - 1], all[rng.uniform(0, (int)i)]);
+    const Rect inside(32, 32, image.cols - 64, image.rows - 64);
+    for (size_t i = 0; i < all.size() && chosen.size() < count; i++)
+        if (inside.contains(all[i].pt))
+        {
+            chosen.push_back(all[i]);
+            chosen.back().size = 31;
+            chosen.back().angle = rng.uniform(0.f, 360.f);
+        }
+    return chosen;
+}
+
+struct Row
+{
+    String name;
+    std::function<void(std::vector<KeyPoint>&, Mat&)> compute;
+    int threads;
+    double milliseconds[2];  //!< for FEW and MANY keypoints, least of all rounds
+};
+
+Row rowOf(const String& name, const Ptr<IIB>& iib, const Mat& image, const std::vector<Mat>& extra = std::vector<Mat>(),
+          int threads = 1)
+{
+    const Row row = { name, [=](std::vector<KeyPoint>& k, Mat& d) { iib->compute(image, extra, k, d); }, threads,
+                      { DBL_MAX, DBL_MAX } };
+    return row;
+}
+
+std::vector<Row> allRows(const Mat& image)
+{
+    const Ptr<ORB> orb = ORB::create();
+    const Row peer = { "cv::ORB", [=](std::vector<KeyPoint>& k, Mat& d) { orb->compute(image, k, d); }, 1,
+                       { DBL_MAX, DBL_MAX } };
+    const std::vector<Mat> extra(2, image);
+    const int all = IIB::CHANNELS_DEFAULT;
+    return std::vector<Row>{
+        peer,
+        rowOf("default", IIB::create(), image),
+        rowOf("granularity 5", IIB::create(2.f, 5), image),
+        rowOf("overlap", IIB::create(2.f, 4, all, IIB::MAPPING_MEAN, true), image),
+        rowOf("MAX", IIB::create(2.f, 4, all, IIB::MAPPING_MAX), image),
+        rowOf("QUARTILE", IIB::create(2.f, 4, all, IIB::MAPPING_QUARTILE), image),
+        rowOf("SORT", IIB::create(2.f, 4, all, IIB::MAPPING_SORT), image),
+        rowOf("HAAR", IIB::create(2.f, 4, all, IIB::MAPPING_HAAR), image),
+        rowOf("PAIRWISE", IIB::create(2.f, 4, all, IIB::MAPPING_PAIRWISE), image),
+        rowOf("2 extra channels", IIB::create(2.f, 4, all, IIB::MAPPING_MEAN, false, false, 2), image, extra),
+        rowOf("useOrientation", IIB::create(2.f, 4, all, IIB::MAPPING_MEAN, false, true), image),
+        rowOf("default, 2 threads", IIB::create(), image, std::vector<Mat>(), 2),
+    };
+}
+
+//! The rounds go through all rows, so that a slow moment of the machine meets them alike.
+void measure(std::vector<Row>& rows, const std::vector<KeyPoint> keypoints[2], int rounds)
+{
+    Mat descriptors;
+    for (int round = 0; round < rounds; round++)
+        for (Row& row : rows)
+            for (int i = 0; i < 2; i++)
+            {
+                setNumThreads(row.threads);
+                std::vector<KeyPoint> k = keypoints[i];
+                TickMeter meter;
+                meter.start();
+                row.compute(k, descriptors);
+                meter.stop();
+                row.milliseconds[i] = std::min(row.milliseconds[i], meter.getTimeMilli());
+            }
+}
+
+//! Microseconds that one more keypoint costs.
+double marginal(const Row& row)
+{
+    return (row.milliseconds[1] - row.milliseconds[0]) * 1000 / (MANY - FEW);
+}
+
+void print(const std::vector<Row>& rows)
+{
+    printf("OpenCV %s, %s\n", CV_VERSION, getCPUFeaturesLine().c_str());
+    printf("%d x %d grey; ms for %d keypoints, us a keypoint more; ratios to the first row\n\n", IMAGE_SIZE.width,
+           IMAGE_SIZE.height, FEW);
+    printf("%-22s %8s %8s %10s %8s\n", "", "ms", "ratio", "us/keypoint", "ratio");
+    for (const Row& row : rows)
+        printf("%-22s %8.3f %8.2f %10.3f %8.2f\n", row.name.c_str(), row.milliseconds[0],
+               row.milliseconds[0] / rows[0].milliseconds[0], marginal(row), marginal(row) / marginal(rows[0]));
+}
+
+void write(const std::vector<Row>& rows, const String& file)
+{
+    FileStorage fs(file, FileStorage::WRITE);
+    if (!fs.isOpened())
+        CV_Error(Error::StsError, "cannot write " + file);
+    fs << "opencv" << CV_VERSION << "cpu" << getCPUFeaturesLine() << "width" << IMAGE_SIZE.width << "height"
+       << IMAGE_SIZE.height << "keypoints" << "[" << (int)FEW << (int)MANY << "]" << "rows" << "[";
+    for (const Row& row : rows)
+        fs << "{" << "name" << row.name << "threads" << row.threads << "milliseconds" << "[" << row.milliseconds[0]
+           << row.milliseconds[1] << "]" << "}";
+    fs << "]";
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    const CommandLineParser args(argc, argv, "{help h||prints this}"
+                                             "{rounds|100|repetitions, of which the fastest counts}"
+                                             "{json|iib_benchmark.json|file to write}");
+    if (args.has("help"))
+    {
+        args.printMessage();
+        return 0;
+    }
+    const int rounds = args.get<int>("rounds");
+    if (!args.check() || rounds < 1)
+    {
+        fprintf(stderr, "iib_benchmark: --rounds takes a whole number from 1\n");
+        return 2;
+    }
+    try
+    {
+        const Mat image = cornerImage(IMAGE_SIZE);
+        const std::vector<KeyPoint> keypoints[2] = { corners(image, FEW), corners(image, MANY) };
+        CV_Assert(keypoints[1].size() == MANY);
+        std::vector<Row> rows = allRows(image);
+        measure(rows, keypoints, rounds);
+        print(rows);
+        write(rows, args.get<String>("json"));
+    }
+    catch (const cv::Exception& e)
+    {
+        fprintf(stderr, "iib_benchmark: %s\n", e.err.c_str());
+        return 2;
+    }
+    return 0;
+}
