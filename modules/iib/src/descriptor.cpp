@@ -172,7 +172,16 @@ void IIBDescriptorExtractor_Impl::write(FileStorage& fs) const
        << "mapping" << p.mapping << "overlap" << p.overlap << "useOrientation" << p.useOrientation
        << "extraChannels" << p.extraChannels << "border" << p.border;
     if (!p.selection.empty())
-        fs << "selection" << "[:" << std::vector<int>(p.selection.begin(), p.selection.end()) << "]";
+        fs << "selection" << std::vector<int>(p.selection.begin(), p.selection.end());
+}
+
+//! A number that is missing keeps its value.
+template <typename T> void readNumber(const FileNode& fn, const char* name, T& value)
+{
+    const FileNode number = fn[name];
+    if (!number.empty() && !number.isInt() && !number.isReal())
+        CV_Error(Error::StsParseError, format("%s is not a number", name));
+    cv::read(number, value, value);
 }
 
 void IIBDescriptorExtractor_Impl::read(const FileNode& fn)
@@ -181,21 +190,20 @@ void IIBDescriptorExtractor_Impl::read(const FileNode& fn)
     cv::read(fn["format"], format, 0);
     if (format != 1)
         CV_Error(Error::StsParseError, "the node holds no IIB parameters of format 1");
-    Parameters r;
-    cv::read(fn["scaleFactor"], r.scaleFactor, p.scaleFactor);
-    cv::read(fn["granularity"], r.granularity, p.granularity);
-    cv::read(fn["channels"], r.channels, p.channels);
-    cv::read(fn["mapping"], r.mapping, p.mapping);
-    cv::read(fn["overlap"], r.overlap, p.overlap);
-    cv::read(fn["useOrientation"], r.useOrientation, p.useOrientation);
-    cv::read(fn["extraChannels"], r.extraChannels, p.extraChannels);
-    cv::read(fn["border"], r.border, p.border);
+    Parameters r = p;
+    readNumber(fn, "scaleFactor", r.scaleFactor);
+    readNumber(fn, "granularity", r.granularity);
+    readNumber(fn, "channels", r.channels);
+    readNumber(fn, "mapping", r.mapping);
+    readNumber(fn, "overlap", r.overlap);
+    readNumber(fn, "useOrientation", r.useOrientation);
+    readNumber(fn, "extraChannels", r.extraChannels);
+    readNumber(fn, "border", r.border);
     std::vector<int> quads;
     fn["selection"] >> quads;
     if (quads.size() % 5 != 0)
         CV_Error(Error::StsParseError, "the selection's length is no multiple of 5 numbers");
-    if (!quads.empty())
-        r.selection = Mat_<int>(Mat(quads, true).reshape(1, (int)quads.size() / 5));
+    r.selection = quads.empty() ? Mat_<int>() : Mat_<int>(Mat(quads, true).reshape(1, (int)quads.size() / 5));
     replace(r);
 }
 
