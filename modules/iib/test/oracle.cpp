@@ -17,6 +17,21 @@ namespace oracle {
 using namespace cv;
 typedef cv::iib::IIBDescriptorExtractor IIB;
 
+int orientation(int gx, int gy)
+{
+    const float a = (float)std::abs(gx), b = (float)std::abs(gy);
+    const float t = std::min(a, b) / std::max(std::max(a, b), 1.f), t2 = t * t;
+    int steps = cvRound(((cv::iib::ATAN_C * t2 + cv::iib::ATAN_B) * t2 + cv::iib::ATAN_A) * t);
+    const int turn = cv::iib::ORIENTATION_STEPS;
+    if (b > a)
+        steps = turn / 4 - steps;
+    if (gx < 0)
+        steps = turn / 2 - steps;
+    if (gy > 0)
+        steps = turn - steps;
+    return steps % turn;
+}
+
 namespace {
 
 int at(const Mat& m, int y, int x)
@@ -36,23 +51,6 @@ int gradY(const Mat& m, int y, int x)
 {
     return at(m, y + 1, x - 1) + 2 * at(m, y + 1, x) + at(m, y + 1, x + 1)
            - at(m, y - 1, x - 1) - 2 * at(m, y - 1, x) - at(m, y - 1, x + 1);
-}
-
-//! atan2(-gy, gx) in ORIENTATION_STEPS a turn, with the library's polynomial; test_orientation.cpp
-//! compares the polynomial with std::atan2.
-int orientation(int gx, int gy)
-{
-    const float a = (float)std::abs(gx), b = (float)std::abs(gy);
-    const float t = std::min(a, b) / std::max(std::max(a, b), 1.f), t2 = t * t;
-    int steps = cvRound(((cv::iib::ATAN_C * t2 + cv::iib::ATAN_B) * t2 + cv::iib::ATAN_A) * t);
-    const int turn = cv::iib::ORIENTATION_STEPS;
-    if (b > a)
-        steps = turn / 4 - steps;
-    if (gx < 0)
-        steps = turn / 2 - steps;
-    if (gy > 0)
-        steps = turn - steps;
-    return steps % turn;
 }
 
 //! The values of all channels in use at one pixel, given its gradient.

@@ -18,6 +18,10 @@ namespace oracle {
 //! A channel's value at every pixel.
 typedef cv::Mat_<int> Channel;
 
+//! atan2(-gy, gx) in ORIENTATION_STEPS a turn, with the library's polynomial; test_orientation.cpp compares it
+//! with std::atan2.
+int orientation(int gx, int gy);
+
 //! The channels in use, of a grey image (CV_8U or CV_16U) and of extra maps of these types.
 std::vector<Channel> channelsOf(const cv::iib::IIBDescriptorExtractor& iib, const cv::Mat& grey,
                                 const std::vector<cv::Mat>& extra);

@@ -2,43 +2,10 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "test_precomp.hpp"
-
 #include "oracle.hpp"
+#include "test_images.hpp"
 
 namespace opencv_test { namespace {
-
-using cv::iib::IIB;
-
-//! Blurred noise: gradients of all sizes, flat places too.
-Mat texture(Size size, int depth, int seed)
-{
-    RNG rng(seed);
-    Mat m(size, depth);
-    rng.fill(m, RNG::UNIFORM, 0, depth == CV_8U ? 256 : 65536);
-    if (size.width > 16 && size.height > 16)
-    {
-        GaussianBlur(m, m, Size(5, 5), 1.2);
-        m(Rect(size.width / 4, size.height / 4, size.width / 3, size.height / 3)) = 77;
-    }
-    return m;
-}
-
-//! Keypoints in and around an image, of all sizes and directions.
-std::vector<KeyPoint> scatter(Size size, int count, float smallest, float largest, int seed)
-{
-    RNG rng(seed);
-    std::vector<KeyPoint> keypoints;
-    for (int i = 0; i < count; i++)
-    {
-        const float x = rng.uniform(-0.2f, 1.2f) * size.width, y = rng.uniform(-0.2f, 1.2f) * size.height;
-        const float angle = i % 5 ? rng.uniform(0.f, 360.f) : -1.f;
-        keypoints.push_back(KeyPoint(x, y, rng.uniform(smallest, largest), angle));
-    }
-    for (int i = 0; i < count / 4; i++)
-        keypoints[i].pt = Point2f((float)cvRound(keypoints[i].pt.x), (float)cvRound(keypoints[i].pt.y));
-    return keypoints;
-}
 
 void expectOracle(IIB& iib, const Mat& image, const std::vector<Mat>& extra, std::vector<KeyPoint> keypoints,
                   const String& what)
