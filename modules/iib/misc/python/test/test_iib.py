@@ -66,11 +66,54 @@ class DescriptorTest(unittest.TestCase):
         self.assertGreater(set_bits(before), 0)
         np.testing.assert_array_equal(before, after)
 
+    def test_selection_is_a_numpy_array(self):
+        iib = cv2.iib.IIBDescriptorExtractor.create()
+        _, whole = iib.compute(noise(6), grid())
+        # level 1 has one quad: all channels, all bits
+        quads = np.array([[1, channel, 0, 0, 15] for channel in range(4)], np.int32)
+        iib.setSelection(quads)
+        np.testing.assert_array_equal(iib.getSelection(), quads)
+        self.assertEqual(list(iib.levelSizes()), [2])
+        _, coarse = iib.compute(noise(6), grid())
+        np.testing.assert_array_equal(coarse, whole[:, :2])
+
+    def test_parameters_survive_a_file(self):
+        iib = cv2.iib.IIBDescriptorExtractor.create(
+            scaleFactor=3.5, granularity=3, channels=51, mapping=cv2.iib.IIBDescriptorExtractor_MAPPING_PAIRWISE,
+            useOrientation=True)
+        iib.setSelection(np.array([[1, 0, 0, 0, 5], [3, 3, 6, 1, 8]], np.int32))
+        loaded = cv2.iib.IIBDescriptorExtractor.create()
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, 'iib.yml')
+            iib.write(path)
+            loaded.read(path)
+        for name in ('ScaleFactor', 'Granularity', 'Channels', 'Mapping', 'Overlap', 'UseOrientation',
+                     'ExtraChannels', 'Border'):
+            self.assertEqual(getattr(iib, 'get' + name)(), getattr(loaded, 'get' + name)(), name)
+        np.testing.assert_array_equal(iib.getSelection(), loaded.getSelection())
+        np.testing.assert_array_equal(iib.compute(noise(7), grid())[1], loaded.compute(noise(7), grid())[1])
+
+    def test_border_drop_returns_the_keypoints_that_are_left(self):
+        iib = cv2.iib.IIBDescriptorExtractor.create()
+        iib.setBorder(cv2.iib.IIBDescriptorExtractor_BORDER_DROP)
+        keypoints, descriptors = iib.compute(noise(8), grid())
+        self.assertEqual([k.pt for k in keypoints],
+                         [k.pt for k in grid() if 9 <= k.pt[0] < 150 and 9 <= k.pt[1] < 110])
+        self.assertEqual(len(descriptors), len(keypoints))
+
     def test_mistakes_raise(self):
-        with self.assertRaises(cv2.error):
-            cv2.iib.IIBDescriptorExtractor.create(granularity=7)
-        with self.assertRaises(cv2.error):
-            cv2.iib.IIBDescriptorExtractor.scaleFactorFor('no such detector')
+        IIB = cv2.iib.IIBDescriptorExtractor
+        nan = np.full((50, 60), np.nan, np.float32)
+        for culprit, call in (
+                ('granularity is 7', lambda: IIB.create(granularity=7)),
+                ('no such detector', lambda: IIB.scaleFactorFor('no such detector')),
+                ('selection', lambda: IIB.create().setSelection(np.zeros((1, 5), np.float32))),
+                ('the image is NaN', lambda: IIB.create().compute(nan, grid())),
+                ('type CV_64FC1', lambda: IIB.create().compute(nan.astype(np.float64), grid())),
+                ('extra channel', lambda: IIB.create(extraChannels=1).compute(noise(9), grid())),
+                ('keypoint 0', lambda: IIB.create().compute(noise(9), [cv2.KeyPoint(3, 3, 0)]))):
+            with self.assertRaisesRegex(cv2.error, culprit):
+                call()
 
 
 class MatcherTest(unittest.TestCase):
