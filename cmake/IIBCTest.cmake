@@ -1,6 +1,5 @@
 # ctest entries: one for each test suite of opencv_test_iib, once with all instruction sets and once under
-# each pin WIDEST=DISABLED; a smoke run of the perf tests; the
-# consumer of the installation; the demo.
+# each pin WIDEST=DISABLED; a smoke run of the perf tests; the consumer of the installation; the demo.
 set(suites "${PROJECT_BINARY_DIR}/suites.cmake")
 set(pins "")
 if(IIB_DISPATCH)
@@ -16,6 +15,7 @@ set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${suites}")
 add_test(NAME perf-smoke COMMAND opencv_perf_iib --perf_min_samples=1 --perf_force_samples=1)
 add_test(NAME consumer COMMAND "${CMAKE_COMMAND}" "-DBUILD=${PROJECT_BINARY_DIR}"
   "-DWORK=${PROJECT_BINARY_DIR}/consumer" "-DCXX=${CMAKE_CXX_COMPILER}" "-DFLAGS=${CMAKE_CXX_FLAGS}"
+  "-DGENERATOR=${CMAKE_GENERATOR}"
   -P "${PROJECT_SOURCE_DIR}/cmake/consumer/test.cmake")
 if(TARGET iib_demo)
   add_test(NAME demo COMMAND "${CMAKE_COMMAND}" "-DDEMO=$<TARGET_FILE:iib_demo>"

@@ -28,7 +28,8 @@ file(LOCK "${ts_dir}.lock" GUARD FILE)
 if(NOT EXISTS "${ts_dir}/libopencv_ts.a")
   message(STATUS "iib: building opencv_ts in ${ts_dir}")
   cmake_host_system_information(RESULT cores QUERY NUMBER_OF_LOGICAL_CORES)
-  execute_process(COMMAND "${CMAKE_COMMAND}" -S "${PROJECT_SOURCE_DIR}/cmake/ts" -B "${ts_dir}"
+  file(REMOVE_RECURSE "${ts_dir}")
+  execute_process(COMMAND "${CMAKE_COMMAND}" -G "${CMAKE_GENERATOR}" -S "${PROJECT_SOURCE_DIR}/cmake/ts" -B "${ts_dir}"
       "-DOPENCV_SOURCE_DIR=${OPENCV_SOURCE_DIR}" "-DOpenCV_DIR=${OpenCV_DIR}" "-DCMAKE_CXX_FLAGS=${flags}"
       "-DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}" -DCMAKE_BUILD_TYPE=Release
     COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)

@@ -1,6 +1,7 @@
 # Installs BUILD into a new prefix, builds the README's C++ against that, by CMake and by pkg-config,
 # and runs its program on the demo's pair of images.
-# cmake -DBUILD=<build folder> -DWORK=<scratch folder> -DCXX=<compiler> -DFLAGS=<flags> -P test.cmake
+# cmake -DBUILD=<build folder> -DWORK=<scratch folder> -DCXX=<compiler> -DFLAGS=<flags>
+#   -DGENERATOR=<CMake generator> -P test.cmake
 file(REMOVE_RECURSE "${WORK}")
 set(prefix "${WORK}/prefix")
 get_filename_component(root "${CMAKE_CURRENT_LIST_DIR}/../.." ABSOLUTE)
@@ -26,7 +27,7 @@ file(WRITE "${WORK}/consumer.cpp"
   "${CMAKE_MATCH_1}\nvoid fragment(const cv::Mat& descriptors)\n{\n${CMAKE_MATCH_2}}\n")
 
 run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${prefix}")
-run("${CMAKE_COMMAND}" -S "${CMAKE_CURRENT_LIST_DIR}" -B "${WORK}/cmake" "-DCMAKE_PREFIX_PATH=${prefix}"
+run("${CMAKE_COMMAND}" -G "${GENERATOR}" -S "${CMAKE_CURRENT_LIST_DIR}" -B "${WORK}/cmake" "-DCMAKE_PREFIX_PATH=${prefix}"
   "-DCMAKE_CXX_COMPILER=${CXX}" "-DCMAKE_CXX_FLAGS=${FLAGS}" "-DCONSUMER=${WORK}/consumer.cpp")
 run("${CMAKE_COMMAND}" --build "${WORK}/cmake")
 run_consumer("${WORK}/cmake/consumer")
