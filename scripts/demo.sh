@@ -5,6 +5,7 @@
 
 need $build_packages
 build="$root/build-demo"
+say "building the demo in $build"
 {
     cmake -S "$root" -B "$build" -G Ninja -DIIB_BUILD_TESTS=OFF && cmake --build "$build" --target iib_demo
 } >"$build.log" 2>&1 || {
