@@ -111,7 +111,7 @@ void search(const std::string& folder, int depth, std::vector<ImagePair>& pairs)
     fs::glob(folder, "*", entries, false, true);
     std::sort(entries.begin(), entries.end());
     for (const std::string& entry : entries)
-        if (fs::isDirectory(entry))
+        if (fs::isDirectory(entry) && baseName(entry) != "frames")  // a walk of tools/synthetic: the camera moves
             search(entry, depth - 1, pairs);
 }
 

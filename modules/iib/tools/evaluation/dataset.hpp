@@ -44,7 +44,7 @@ struct LoadedPair
  - `img1.ppm`, `H1to2p` (original Oxford);
 and in list files: a head line `reference,target,homography,kind`, then one pair a line, paths relative to
 the list, the last two fields may be empty (identity, "light").
-Sequences without any H file are of a static camera. The order is by path, numbers by value.
+Sequences without any H file are of a static camera; folders called `frames` (walks) are left out. The order is by path, numbers by value.
 @throws cv::Exception for a root that does not exist, a list without its head line, or two pairs of the
 same name. */
 std::vector<ImagePair> findPairs(const std::vector<std::string>& roots);

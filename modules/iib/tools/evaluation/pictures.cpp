@@ -19,7 +19,7 @@ namespace iib_tools {
 namespace {
 
 const int WIDTH = 640;      // of a picture, pixels
-const size_t LINES = 150;   // matches drawn at most
+const size_t LINES = 60;    // matches drawn at most
 
 struct Choice
 {

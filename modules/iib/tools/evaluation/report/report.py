@@ -109,25 +109,36 @@ def protocol_a(rows):
 
 
 def protocol_b(rows):
-    lines = []
-    for (detector, descriptor), members in group(rows, "detector", "descriptor").items():
-        map_, mar, pairs = scores(members)
-        lines.append([html.escape("%s + %s" % (detector, descriptor)), members[0]["bytes"],
-                      "%.0f" % mean(int(r["correct"]) for r in members), cell(map_), cell(mar), str(pairs)])
-    return ('<h2 id="b">With detectors (protocol B)</h2><p class="note">The strongest points of each detector in both '
-            "images, upright; its own descriptor (ORB's for FAST and AGAST) against IIB on the same points, with the "
-            "paper's scale factors. Two points correspond within the tolerance and with an overlap error of their "
-            "sizes below 50 %. Compare the paper's figures fig_performance_with_detector_real and _virtual.</p>"
-            + table(["detector + descriptor", "bytes", "correct matches", "mAP", "mAR", "pairs"], lines)
-            + plots.detector_curves(rows))
+    out = ['<h2 id="b">With detectors (protocol B)</h2><p class="note">The strongest points of each detector in both '
+           "images, upright; its own descriptor (ORB's for FAST and AGAST) against IIB on the same points, with the "
+           "paper's scale factors. Two points correspond within the tolerance and with an overlap error of their "
+           "sizes below 50 %. Compare the paper's figures fig_performance_with_detector_real and _virtual.</p>"]
+    for name in ("natural", "synthetic"):
+        members = [r for r in rows if domain(r) == name]
+        if not members:
+            continue
+        lines = [[html.escape("%s + %s" % key), m[0]["bytes"], "%.0f" % mean(int(r["correct"]) for r in m),
+                  cell(scores(m)[0]), cell(scores(m)[1]), str(len(m))]
+                 for key, m in group(members, "detector", "descriptor").items()]
+        out.append("<h3>%s images</h3>" % name.capitalize())
+        out.append(table(["detector + descriptor", "bytes", "correct matches", "mAP", "mAR", "pairs"], lines))
+        out.append(plots.detector_curves(members))
+    return "\n".join(out)
 
 
 def matching(rows):
-    lines = [[name, cell(scores(m)[0]), cell(scores(m)[1]), cell(mean(float(r["cost"]) for r in m))]
-             for (name,), m in group(rows, "matcher").items()]
-    return ('<h2 id="m">Hierarchical matching</h2><p class="note">Default IIB, protocol A. H-t-x: a pair goes on to the '
-            "next level within x of the bits of each (paper, figure fig_H_matching). MC: bits compared, in parts of "
-            "brute force.</p>" + table(["matcher", "mAP", "mAR", "MC"], lines) + plots.matching(rows))
+    out = ['<h2 id="m">Hierarchical matching</h2><p class="note">Default IIB, protocol A. H-t-x: a pair goes on to the '
+           "next level within x of the bits of each (paper, figure fig_H_matching). MC: bits compared, in parts of "
+           "brute force.</p>"]
+    for name in ("natural", "synthetic"):
+        members = [r for r in rows if domain(r) == name]
+        if not members:
+            continue
+        lines = [[matcher, cell(scores(m)[0]), cell(scores(m)[1]), cell(mean(float(r["cost"]) for r in m))]
+                 for (matcher,), m in group(members, "matcher").items()]
+        out.append("<h3>%s images</h3>" % name.capitalize())
+        out.append(table(["matcher", "mAP", "mAR", "MC"], lines) + plots.matching(members))
+    return "\n".join(out)
 
 
 def robustness(rows):

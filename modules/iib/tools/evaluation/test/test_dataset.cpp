@@ -41,6 +41,9 @@ TEST(Dataset, static_camera_with_extra_maps)
 {
     TestFolder folder;
     folder.makeFolder("room/depth");
+    folder.makeFolder("walk/frames");
+    writeImage(folder, "walk/frames/1.png");
+    writeImage(folder, "walk/frames/2.png");
     for (const char* name : {"room/1.png", "room/2.png", "room/depth/1.png", "room/depth/2.png"})
         writeImage(folder, name);
     std::vector<ImagePair> pairs = findPairs({folder.path("")});
