@@ -129,7 +129,7 @@ def protocol_b(rows):
 def matching(rows):
     out = ['<h2 id="m">Hierarchical matching</h2><p class="note">Default IIB, protocol A. H-t-x: a pair goes on to the '
            "next level within x of the bits of each (paper, figure fig_H_matching). MC: bits compared, in parts of "
-           "brute force.</p>"]
+           "brute force. A pair without a match has precision 0.</p>"]
     for name in ("natural", "synthetic"):
         members = [r for r in rows if domain(r) == name]
         if not members:
@@ -163,7 +163,7 @@ def cost(rows):
               cell(float(r["microseconds_per_further_keypoint"]), 2)
               if r["microseconds_per_further_keypoint"] else ""] for r in rows]
     return ('<h2 id="c">Cost</h2><p class="note">One image of %s, one thread, all descriptors interleaved in one '
-            "run, medians. Read the ratios; the milliseconds are of one machine.</p>" % rows[0]["image"]
+            "run, minima. Read the ratios; the milliseconds are of one machine.</p>" % rows[0]["image"]
             + table(["descriptor", "bytes", "keypoints", "ms in all", "ratio to ORB", "&micro;s a further keypoint"],
                     lines) + plots.costs(rows))
 

@@ -116,6 +116,11 @@ TEST(DeepKeypoints, another_network_is_refused)
                                       onnx::value("image", {1, 5, 8, 8}), {onnx::value("features", {1, 1, 8, 8})}));
     EXPECT_NE(std::string::npos,
             messageOf([&] { DeepDetector detector(folder.path("five.onnx")); }).find("no keypoint network"));
+    folder.write("map.onnx", onnx::model({convolution("map", "w", 8, 8, 0)},
+                                     {onnx::tensor("w", {2, 1, 8, 8}, std::vector<float>(128, 1.f))},
+                                     onnx::value("image", {1, 1, 64, 64}), {onnx::value("map", {1, 2, 8, 8})}));
+    EXPECT_NE(std::string::npos,
+            messageOf([&] { DeepDetector detector(folder.path("map.onnx")); }).find("no keypoint network"));
 }
 
 }  // namespace
