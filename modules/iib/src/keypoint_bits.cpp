@@ -84,7 +84,16 @@ double KeyPointBits::Axis::largestProduct() const
     return smallest == largest ? largest : largest * largest;
 }
 
-void KeyPointBits::write(const int* xEdges, const int* yEdges, int maxValue, bool wide, uchar* descriptor)
+//! Whether four times the largest weighted sum of the level at hand fits an int.
+bool KeyPointBits::fitsInt(int maxValue, double longest) const
+{
+    const double limit = INT_MAX / (4. * maxValue), area = longest * longest;
+    // seldom does the quick bound, with all weights as large as can be, not do
+    return area * area <= limit || x.largestProduct() * y.largestProduct() <= limit;
+}
+
+void KeyPointBits::write(const int* xEdges, const int* yEdges, double longestCell, int maxValue, bool wide,
+                         uchar* descriptor)
 {
     x.place(xEdges, size());
     y.place(yEdges, size());
@@ -100,8 +109,7 @@ void KeyPointBits::write(const int* xEdges, const int* yEdges, int maxValue, boo
             else
                 parentSums(sums[level + 1], sums[level]);
         }
-        // four times the largest weighted sum must fit an int
-        if (!wide && 4. * maxValue * x.largestProduct() * y.largestProduct() > INT_MAX)
+        if (!wide && !fitsInt(maxValue, longestCell * (size() >> level)))
         {
             widen(sums[level], wideSums[level]);
             wide = true;

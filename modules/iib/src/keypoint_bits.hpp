@@ -28,11 +28,13 @@ public:
 
     /** Writes the bits of all levels into a descriptor; the groups before have written theirs.
      @param xEdges, yEdges size() + 1 edges of the finest cells in each direction, in pixels or samples.
+     @param longestCell a bound of the difference of neighbouring edges.
      @param maxValue the largest value that was summed.
      @param wide whether the sums are in finestWideCells(). */
-    void write(const int* xEdges, const int* yEdges, int maxValue, bool wide, uchar* descriptor);
+    void write(const int* xEdges, const int* yEdges, double longestCell, int maxValue, bool wide, uchar* descriptor);
 
 private:
+    bool fitsInt(int maxValue, double longest) const;
     void writeSelected(int level, const LevelShape& shape, bool wide, uchar* descriptor);
 
     //! The cells of the level at hand along one axis.

@@ -201,7 +201,8 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, co
             }
             for (size_t i = 0; i < edges.size(); i++)
                 edges[i] = (int)i * (grid.n / bits.size());
-            bits.write(edges.data(), edges.data(), maxValue(group, gradient), false, descriptors.ptr(k));
+            bits.write(edges.data(), edges.data(), grid.n / bits.size(), maxValue(group, gradient), false,
+                       descriptors.ptr(k));
         }
     }
 }

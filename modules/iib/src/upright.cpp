@@ -85,7 +85,7 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
         if (largest * cell * cell <= largestSum)
         {
             cellSums(band.rows(), edges.x.data(), edges.y.data(), n, scratch, bits.finestCells());
-            bits.write(edges.x.data(), edges.y.data(), largest, false, descriptor);
+            bits.write(edges.x.data(), edges.y.data(), cell, largest, false, descriptor);
             continue;
         }
         // Cells whose sums could exceed a Sum are put together from smaller ones.
@@ -95,7 +95,7 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
         while (largest * fineEdges.largestCell() > largestSum);
         cellSums(band.rows(), fineEdges.x.data(), fineEdges.y.data(), fineSize, scratch, fine);
         gather(fine, bits.finestWideCells(), n);
-        bits.write(edges.x.data(), edges.y.data(), largest, true, descriptor);
+        bits.write(edges.x.data(), edges.y.data(), cell, largest, true, descriptor);
     }
 }
 
