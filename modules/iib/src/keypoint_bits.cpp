@@ -87,9 +87,9 @@ double KeyPointBits::Axis::largestProduct() const
 //! Whether four times the largest weighted sum of the level at hand fits an int.
 bool KeyPointBits::fitsInt(int maxValue, double longest) const
 {
-    const double limit = INT_MAX / (4. * maxValue), area = longest * longest;
+    const double value = 4. * maxValue, area = longest * longest;
     // seldom does the quick bound, with all weights as large as can be, not do
-    return area * area <= limit || x.largestProduct() * y.largestProduct() <= limit;
+    return value * area * area <= INT_MAX || value * x.largestProduct() * y.largestProduct() <= INT_MAX;
 }
 
 void KeyPointBits::write(const int* xEdges, const int* yEdges, double longestCell, int maxValue, bool wide,
