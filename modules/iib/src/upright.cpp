@@ -25,10 +25,26 @@ struct Edges
         ros.edges(ros.y, n, image.height, y.data());
     }
 
+    /** Cuts each cell of another grid into parts x parts. They are made of pixels of the image, not of the ROS, which
+     may be so much larger that any number of its parts is needed to cut the image once. */
+    void split(const Edges& grid, int parts)
+    {
+        split(grid.x, parts, x);
+        split(grid.y, parts, y);
+    }
+
     //! The most pixels that a cell has.
     double largestCell() const { return (double)largestStep(x) * largestStep(y); }
 
 private:
+    static void split(const std::vector<int>& edges, int parts, std::vector<int>& out)
+    {
+        out.assign(1, edges[0]);
+        for (size_t i = 1; i < edges.size(); i++)
+            for (int k = 1; k <= parts; k++)
+                out.push_back(edges[i - 1] + (int)((int64)(edges[i] - edges[i - 1]) * k / parts));
+    }
+
     static int largestStep(const std::vector<int>& edges)
     {
         int largest = 0;
@@ -89,11 +105,11 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
             continue;
         }
         // Cells whose sums could exceed a Sum are put together from smaller ones.
-        int fineSize = n;
+        int parts = 1;
         do
-            fineEdges.place(local[i], fineSize *= 2, image);
+            fineEdges.split(edges, parts *= 2);
         while (largest * fineEdges.largestCell() > largestSum);
-        cellSums(band.rows(), fineEdges.x.data(), fineEdges.y.data(), fineSize, scratch, fine);
+        cellSums(band.rows(), fineEdges.x.data(), fineEdges.y.data(), n * parts, scratch, fine);
         gather(fine, bits.finestWideCells(), n);
         bits.write(edges.x.data(), edges.y.data(), cell, largest, true, descriptor);
     }
