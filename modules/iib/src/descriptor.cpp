@@ -138,14 +138,18 @@ void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArr
 
     const Mat image = imageArray.getMat();
     std::vector<Mat> extra;
-    if (!extraArrays.empty())
+    if (extraArrays.isMat() || extraArrays.isUMat())
+        extra.push_back(extraArrays.getMat());  // not its rows
+    else if (!extraArrays.empty())
         extraArrays.getMatVector(extra);
     checkKeyPoints(keypoints);
-    if (!image.empty())
+    if (image.empty())
     {
-        checkImage(image);
-        checkExtraChannels(extra, p.extraChannels, image.size());
+        descriptors.release();
+        return;
     }
+    checkImage(image);
+    checkExtraChannels(extra, p.extraChannels, image.size());
 
     if (p.border == BORDER_DROP)
     {
@@ -155,7 +159,7 @@ void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArr
             return !Ros(kp, params.scaleFactor, params.granularity).isInside(image.size());
         }), keypoints.end());
     }
-    if (image.empty() || keypoints.empty())
+    if (keypoints.empty())
     {
         descriptors.release();
         return;

@@ -32,8 +32,8 @@ template <typename Lane> struct SampleKernels
     void (*gather)(const Lane* pixels, const int* index, int count, Lane* const planes[GROUP_CHANNELS]);
     //! Turns gradients by an angle given in 2^-12: x' = c x + s y, y' = c y - s x, rounded.
     void (*rotate)(Lane* gx, Lane* gy, int count, int cosine, int sine);
-    //! steps = (steps + turn) modulo ORIENTATION_STEPS
-    void (*turn)(Lane* steps, int count, int turn);
+    //! steps = (steps + turn) modulo ORIENTATION_STEPS, but 0 where there is no gradient, as upright.
+    void (*turn)(const Lane* gx, const Lane* gy, Lane* steps, int count, int turn);
     //! Sums over cells; n / sub cells in a row.
     void (*sum)(const Lane* const planes[GROUP_CHANNELS], int n, int sub, CellGrid<int>& cells);
 };

@@ -88,10 +88,11 @@ template <typename Lane> void rotateGradients(Lane* gx, Lane* gy, int count, int
     }
 }
 
-template <typename Lane> void turnOrientations(Lane* steps, int count, int turn)
+template <typename Lane>
+void turnOrientations(const Lane* gx, const Lane* gy, Lane* steps, int count, int turn)
 {
     for (int i = 0; i < count; i++)
-        steps[i] = (Lane)((steps[i] + turn) & (ORIENTATION_STEPS - 1));
+        steps[i] = (Lane)((gx[i] | gy[i]) == 0 ? 0 : (steps[i] + turn) & (ORIENTATION_STEPS - 1));
 }
 
 inline v_int32x4 loadFour(const short* p) { return v_load_expand(p); }

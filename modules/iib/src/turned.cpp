@@ -117,9 +117,10 @@ public:
         if (hasImage)
         {
             const double radians = angle * CV_PI / 180;
+            kernels.turn(planes[0].data(), planes[1].data(), planes[2].data(), count,
+                         cvRound(angle * ORIENTATION_STEPS / 360));
             kernels.rotate(planes[0].data(), planes[1].data(), count, cvRound(std::cos(radians) * 4096),
                            cvRound(std::sin(radians) * 4096));
-            kernels.turn(planes[2].data(), count, cvRound(angle * ORIENTATION_STEPS / 360));
         }
     }
 

@@ -146,7 +146,8 @@ struct Turned
                 const int gx = gradX(grey, y, x), gy = gradY(grey, y, x);
                 const int turnedX = (cosine * gx + sine * gy + 2048) >> 12;
                 const int turnedY = (cosine * gy - sine * gx + 2048) >> 12;
-                const int turnedO = (orientation(gx, gy) + turn) & (cv::iib::ORIENTATION_STEPS - 1);
+                const bool flat = gx == 0 && gy == 0;
+                const int turnedO = flat ? 0 : (orientation(gx, gy) + turn) & (cv::iib::ORIENTATION_STEPS - 1);
                 const std::vector<int> all = valuesOf(iib.getChannels(), grey, turnedX, turnedY, turnedO, extra, y, x);
                 while (values.size() < all.size())
                     values.push_back(Channel(samples, samples));

@@ -74,14 +74,14 @@ const Golden GOLDEN[] = {{"default", 0x7c4943b59e478a06, nothing, CV_8UC1},
                     i.setChannels(0);
                 },
                 CV_8UC1},
-        {"orientation of keypoints", 0xe54d3ea7ecff8693, [](IIB& i) { i.setUseOrientation(true); }, CV_8UC1},
+        {"orientation of keypoints", 0xc9b6b569adef32d3, [](IIB& i) { i.setUseOrientation(true); }, CV_8UC1},
         {"16U", 0x3a73cd0cc49a4d35, nothing, CV_16UC1},
-        {"16U, orientation of keypoints", 0xe6c6e8e642681f86, [](IIB& i) { i.setUseOrientation(true); },
+        {"16U, orientation of keypoints", 0x244c6a56586d3caa, [](IIB& i) { i.setUseOrientation(true); },
                 CV_16UC1},
         {"32F", 0xe2fae45b47d39a52, nothing, CV_32FC1}, {"8U colour", 0x5f19de037522b744, nothing, CV_8UC3},
         {"32F colour", 0x5dbab4a1ac078b99, nothing, CV_32FC3},
         {"selection", 0xd93b58181873777a, someQuads, CV_8UC1},
-        {"selection, orientation of keypoints", 0x5765b374b12f626c, turnedQuads, CV_8UC1}};
+        {"selection, orientation of keypoints", 0xd981a2fe769a5c06, turnedQuads, CV_8UC1}};
 
 //! FNV-1a, 64 bits.
 uint64 hashOf(const Mat& m)

@@ -25,7 +25,8 @@ A ROS side under 2^G pixels is raised to 2^G, so that no cell is empty. Pixels o
 not count; a quad of which one cell lies outside as a whole is taken as four equal means.
 
 **Bits.** Levels come coarse first, each padded with zeros to a whole byte, bit 0 of byte 0 first. So
-the descriptor of granularity G-1 is a prefix of the one of G. Within a level the order is, outermost
+the descriptor of granularity G-1 is a prefix of the one of G, unless the ROS is so small that G raises it
+(a turned one at G = 6: 64 pixels or less). Within a level the order is, outermost
 first:
  1. channels in groups of four, in the order of #Channel, extra channels last;
  2. with `overlap`, the offset of the 2x2 windows: (0,0), (0,1), (1,0), (1,1) cells in (y,x);
