@@ -1,0 +1,117 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "candidates.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+
+namespace iib_tools {
+namespace {
+
+using cv::iib::IIB;
+
+const int CHANNEL_GROUP = 4;  // the order of bits in a descriptor, see IIBDescriptorExtractor
+
+int countBits(int mask)
+{
+    int n = 0;
+    for (; mask; mask &= mask - 1)
+        n++;
+    return n;
+}
+
+int bitsPerQuad(int mapping)
+{
+    // level 3 of one channel has 16 quads
+    return IIB::create(1.f, 3, IIB::CHANNEL_GRAD_X, mapping)->levelSizes()[2] * 8 / 16;
+}
+
+//! In the order of a descriptor's bits, so that a quad's place is that of its bits.
+cv::Mat_<int> allQuads(const PoolParameters& p, int mask)
+{
+    cv::Mat_<int> quads(0, 5);
+    const int step = p.overlap ? 1 : 2;
+    const int channels = countBits(p.channels);
+    for (int level = 1; level <= p.granularity; level++)
+        for (int group = 0; group < channels; group += CHANNEL_GROUP)
+            for (int row = 0; row + 1 < 1 << level; row += step)
+                for (int column = 0; column + 1 < 1 << level; column += step)
+                    for (int channel = group; channel < std::min(group + CHANNEL_GROUP, channels); channel++)
+                        quads.push_back(cv::Mat_<int>({level, channel, row, column, mask}).reshape(1, 1));
+    return quads;
+}
+
+}  // namespace
+
+bool CandidatePool::areNeighbours(const Candidate& a, const Candidate& b) const
+{
+    const int *p = quads[a.quad], *q = quads[b.quad];
+    return a.mask == b.mask && p[0] == q[0] && p[1] == q[1] && std::abs(p[2] - q[2]) <= 1 &&
+           std::abs(p[3] - q[3]) <= 1;
+}
+
+CandidatePool makePool(const PoolParameters& p)
+{
+    CandidatePool pool;
+    pool.extractor = IIB::create(p.scale, p.granularity, p.channels, p.mapping);
+    const int bits = bitsPerQuad(p.mapping);
+    pool.quads = allQuads(p, (1 << bits) - 1);
+    pool.extractor->setSelection(pool.quads);
+
+    int start = 0;  // bit at which a run of quads of one level and one group of channels begins
+    for (int first = 0; first < pool.quads.rows;)
+    {
+        const int level = pool.quads(first, 0), group = pool.quads(first, 1) / CHANNEL_GROUP;
+        if (group == 0)
+            start = (start + 7) / 8 * 8;
+        int last = first;
+        while (last < pool.quads.rows && pool.quads(last, 0) == level &&
+                pool.quads(last, 1) / CHANNEL_GROUP == group)
+            last++;
+        for (int quad = first; quad < last; quad++)
+        {
+            Candidate whole = {quad, (1 << bits) - 1, {}};
+            for (int bit = 0; bit < bits; bit++)
+            {
+                const int position = start + bit * (last - first) + quad - first;
+                whole.positions.push_back(position);
+                if (!p.wholeQuads)
+                    pool.candidates.push_back({quad, 1 << bit, {position}});
+            }
+            if (p.wholeQuads)
+                pool.candidates.push_back(whole);
+        }
+        start += (last - first) * bits;
+        first = last;
+    }
+    return pool;
+}
+
+cv::Mat_<int> selectionOf(const CandidatePool& pool, const std::vector<int>& chosen)
+{
+    std::map<int, int> masks;
+    for (int i : chosen)
+        masks[pool.candidates[i].quad] |= pool.candidates[i].mask;
+    cv::Mat_<int> rows(0, 5);
+    for (const std::pair<const int, int>& quad : masks)
+    {
+        cv::Mat_<int> row = pool.quads.row(quad.first).clone();
+        row(4) = quad.second;
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+cv::Ptr<IIB> selectedExtractor(const CandidatePool& pool, const std::vector<int>& chosen)
+{
+    const cv::Ptr<IIB> extractor =
+            IIB::create(pool.extractor->getScaleFactor(), pool.extractor->getGranularity(),
+                    pool.extractor->getChannels(), pool.extractor->getMapping());
+    extractor->setSelection(selectionOf(pool, chosen));
+    return extractor;
+}
+
+}  // namespace iib_tools

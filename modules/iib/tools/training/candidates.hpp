@@ -1,0 +1,55 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_TOOLS_CANDIDATES_HPP
+#define IIB_TOOLS_CANDIDATES_HPP
+
+#include <vector>
+
+#include "opencv2/iib.hpp"
+
+namespace iib_tools {
+
+//! What a selection is drawn from.
+struct PoolParameters
+{
+    int channels, mapping, granularity;  //!< as in IIBDescriptorExtractor::create
+    float scale;      //!< side of the ROS in units of KeyPoint::size, which is the ROS of protocol A
+    bool overlap;     //!< quads at odd positions too
+    bool wholeQuads;  //!< quads are chosen with all their bits, as in the paper; otherwise bit by bit
+};
+
+//! The smallest thing that is chosen or not: a quad, or one bit of a quad.
+struct Candidate
+{
+    int quad;                    //!< row of CandidatePool::quads
+    int mask;                    //!< its bits, as in setSelection
+    std::vector<int> positions;  //!< the same bits in a descriptor of the pool
+};
+
+//! All quads of an extractor, described at once.
+struct CandidatePool
+{
+    cv::Mat_<int> quads;  //!< all of them, as setSelection takes them
+    cv::Ptr<cv::iib::IIBDescriptorExtractor> extractor;  //!< with all of them selected
+    std::vector<Candidate> candidates;                   //!< by level, then by place
+
+    int bitsPerCandidate() const { return int(candidates[0].positions.size()); }
+    int level(const Candidate& candidate) const { return quads(candidate.quad, 0); }
+    //! Same level, channel and bits, and the quads touch or overlap: such bits repeat each other.
+    bool areNeighbours(const Candidate& a, const Candidate& b) const;
+};
+
+CandidatePool makePool(const PoolParameters& parameters);
+
+//! The rows for setSelection, by level, channel and place, the chosen bits of a quad in one mask.
+cv::Mat_<int> selectionOf(const CandidatePool& pool, const std::vector<int>& chosen);
+
+//! The pool's extractor with that selection.
+cv::Ptr<cv::iib::IIBDescriptorExtractor> selectedExtractor(const CandidatePool& pool,
+        const std::vector<int>& chosen);
+
+}  // namespace iib_tools
+
+#endif

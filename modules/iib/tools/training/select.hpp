@@ -1,0 +1,47 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_TOOLS_SELECT_HPP
+#define IIB_TOOLS_SELECT_HPP
+
+#include <vector>
+
+#include "candidates.hpp"
+#include "samples.hpp"
+
+namespace iib_tools {
+
+/** Grows a selection for mutual matching. An anchor point at distance d0 from its partner and d1..d15 from
+its nearest other points of the same image is matched right with probability
+p = 1 / (1 + sum exp((d0 - dk) / T)), T = sqrt(bits) / 4; what is lost is 2 - 2 sqrt(p), which does not care
+much for hopeless points. Each step draws fresh anchors, finds the points that the bits chosen so far confuse
+them with, and takes those candidates along which the loss falls fastest, never two neighbours in one step.
+
+The growth does not depend on where it ends, so one serves several sizes.
+
+@param bits sizes, ascending.
+@return for every size, candidates of that many bits in all at most, every level a whole number of bytes.
+@throws cv::Exception if the pairs are too few or the pool has too few bits. */
+std::vector<std::vector<int>> selectGreedily(const CandidatePool& pool, const std::vector<DescribedPair>& pairs,
+        const std::vector<int>& bits, uint64 seed, const Progress& progress);
+
+/** As in the paper (section "Reduction of the IIB Descriptor Size"): discrete AdaBoost on partners against as
+many pairs of other points; a weak learner is a candidate, which says "same" up to some Hamming distance; no
+candidate is taken twice. Parameters, return value and exceptions as above. */
+std::vector<std::vector<int>> selectByAdaBoost(const CandidatePool& pool,
+        const std::vector<DescribedPair>& pairs, const std::vector<int>& bits, uint64 seed,
+        const Progress& progress);
+
+//! Numbers of candidates for sizes in bits. @throws cv::Exception unless they ascend within the pool.
+std::vector<int> candidateCounts(const CandidatePool& pool, const std::vector<int>& bits);
+
+/** Makes every level a whole number of bytes, so that no bit is padding: levels are rounded and then keep or
+gain the candidates with the largest benefit. `benefit` is one number a candidate of the pool; those that are not chosen need a
+positive one. */
+std::vector<int> fillBytes(const CandidatePool& pool, const std::vector<int>& chosen,
+        const std::vector<double>& benefit, int bits);
+
+}  // namespace iib_tools
+
+#endif
