@@ -30,7 +30,8 @@ Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::createPreset(int preset, flo
     const LearnedSelection& p = PRESETS[preset];
     const Ptr<IIBDescriptorExtractor> extractor = create(p.scale * scaleFactor, p.granularity, p.channels, p.mapping);
     Mat_<int> selection(p.count, 5);
-    std::copy(p.quads[0], p.quads[0] + p.count * 5, selection.begin());
+    for (int i = 0; i < p.count; i++)
+        std::copy(p.quads[i], p.quads[i] + 5, selection[i]);
     extractor->setSelection(selection);
     return extractor;
 }
