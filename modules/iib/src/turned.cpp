@@ -31,13 +31,19 @@ int samplesInRow(const Ros& ros, int granularity)
     return ros.side <= 64 && granularity <= 5 ? 32 : 64;
 }
 
+//! The angle less its whole turns, exact: of a huge one, rounding to integers would depend on the machine.
+float withinTurn(float angle)
+{
+    return std::fmod(angle, 360.f);
+}
+
 SampleGrid gridOf(const Ros& ros, const KeyPoint& kp, int granularity, Size image, Rect area)
 {
     SampleGrid g;
     g.n = samplesInRow(ros, granularity);
     g.image = image;
     g.area = area;
-    const double radians = kp.angle * CV_PI / 180, spacing = std::min(ros.side, LARGEST_SIDE) / g.n;
+    const double radians = withinTurn(kp.angle) * CV_PI / 180, spacing = std::min(ros.side, LARGEST_SIDE) / g.n;
     g.stepX = cvRound(std::cos(radians) * spacing * 65536);
     g.stepY = cvRound(std::sin(radians) * spacing * 65536);
     const double far = 1 << 29;  // beyond any image
@@ -116,6 +122,7 @@ public:
         }
         if (hasImage)
         {
+            angle = withinTurn(angle);
             const double radians = angle * CV_PI / 180;
             kernels.turn(planes[0].data(), planes[1].data(), planes[2].data(), count,
                          cvRound(angle * ORIENTATION_STEPS / 360));

@@ -144,5 +144,19 @@ TEST(IIB_Property, whole_turns_change_nothing)
     EXPECT_EQ(0, differingBits(expected, describe(*iib, image, keypoints)));
 }
 
+TEST(IIB_Property, angles_beyond_integers_are_turns_as_well)
+{
+    const Mat image = texture(SIZE, CV_8U, 11);
+    std::vector<KeyPoint> keypoints = scatter(SIZE, 40, 20.f, 60.f, 12), reduced;
+    const Ptr<IIB> iib = IIB::create(1.f, 4, ALL_CHANNELS, IIB::MAPPING_MEAN, false, true);
+    for (KeyPoint& kp : keypoints)
+    {
+        kp.angle = std::ldexp(std::abs(kp.angle) + 1, 40 + (int)reduced.size());
+        reduced.push_back(kp);
+        reduced.back().angle = std::fmod(kp.angle, 360.f);
+    }
+    EXPECT_EQ(0, differingBits(describe(*iib, image, reduced), describe(*iib, image, keypoints)));
+}
+
 }  // namespace
 }  // namespace opencv_test
