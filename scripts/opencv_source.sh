@@ -30,7 +30,7 @@ if [ ! -f "$tree/CMakeLists.txt" ]; then
     (
         cd "$work" &&
             apt-get $apt update &&
-            apt-get $apt source --download-only "opencv=$version" &&
+            apt-get $apt source --download-only --tar-only "opencv=$version" &&
             tar -xf opencv_*.orig.tar.* -C tree --strip-components=1
     ) >"$work/log" 2>&1 || {
         tail -n 5 "$work/log" >&2
