@@ -62,8 +62,12 @@ function(iib_add_dispatched_file target src_dir name)
     set(features ${IIB_${isa}_FEATURES})
     list(TRANSFORM features REPLACE "(.+)" "CV_CPU_COMPILE_\\1=1")
     # GCC takes the undefined halves in its own AVX-512 headers for uninitialized variables (GCC bug 105593).
+    set(quiet "")
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+      set(quiet "-Wno-uninitialized -Wno-maybe-uninitialized")
+    endif()
     set_source_files_properties("${file}" PROPERTIES
-      COMPILE_FLAGS "${IIB_${isa}_FLAGS} -Wno-uninitialized -Wno-maybe-uninitialized"
+      COMPILE_FLAGS "${IIB_${isa}_FLAGS} ${quiet}"
       COMPILE_DEFINITIONS "CV_CPU_DISPATCH_MODE=${isa};${features}")
     target_sources(${target} PRIVATE "${file}")
     string(APPEND declarations "#define CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN namespace opt_${isa} {

@@ -9,3 +9,9 @@ foreach(kind test perf)
   target_include_directories(${target} PRIVATE "${IIB_DIR}/${kind}" "${OPENCV_SOURCE_DIR}/modules")
   target_link_libraries(${target} PRIVATE opencv_iib opencv_ts opencv_calib3d)
 endforeach()
+
+# The naive oracles are not under test; sanitized, they would take most of the time.
+if(IIB_SANITIZE)
+  set_source_files_properties("${IIB_DIR}/test/oracle.cpp" "${IIB_DIR}/test/matcher_oracle.cpp"
+    PROPERTIES COMPILE_OPTIONS -fno-sanitize=all)
+endif()
