@@ -86,10 +86,12 @@ static bool passesRatio(const Neighbour* row, float maxRatio)
 Neighbours HammingIndex::nearest(const Mat& queries, const SearchPlan& plan, int k, bool mutual, float maxRatio,
                                  const std::vector<Mat>& masks, SearchCost& cost) const
 {
+    // Each direction has as many neighbours as the other side has codes, at most.
+    const int backK = std::min(k, std::max(queries.rows, 1));
     k = (int)std::min((size_t)k, std::max(rows(), (size_t)1));
     const bool ratio = maxRatio < 1;
     Neighbours forQueries(queries.rows, std::max(k, ratio ? 2 : 1));
-    Neighbours forTrains(mutual ? rows() : 0, std::min(k, std::max(queries.rows, 1)), LANES);
+    Neighbours forTrains(mutual ? rows() : 0, backK, LANES);
     const Sweep sweep(*this, codes, queries, plan, masks);
     cost = sweep.nearest(forQueries, mutual ? &forTrains : 0);
 

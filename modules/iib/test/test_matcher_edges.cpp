@@ -192,6 +192,21 @@ TEST(IIB_MatcherEdges, cross_check_with_compact_result)
 }
 
 // opencv#17771
+// Found by fuzzing: the train descriptors had no more than as many neighbours as there were of themselves.
+TEST(IIB_MatcherEdges, cross_check_with_more_neighbours_than_trains)
+{
+    MatcherOracle oracle;
+    oracle.levelSizes = LEVELS;
+    oracle.images = { ladder(7, 3) };
+    oracle.crossCheck = true;
+    const Ptr<HierarchicalMatcher> matcher = matcherOf(oracle.images);
+    matcher->setCrossCheck(true);
+    Matches matches;
+    matcher->knnMatch(ladder(0, 20), matches, 16);
+    expectEqual(oracle.knn(ladder(0, 20), 16), matches);
+    EXPECT_EQ(3u, matches[8].size());
+}
+
 TEST(IIB_MatcherEdges, umat_queries_trains_and_masks)
 {
     const Mat train = ladder(0, 20), queries = ladder(3, 4);
