@@ -23,19 +23,37 @@ size_t HammingIndex::imageOf(size_t row) const
     return std::upper_bound(starts.begin(), starts.end(), row) - starts.begin() - 1;
 }
 
+// Not by Mat::resize: when memory lacks, it leaves the matrix larger than its memory.
+void HammingIndex::grow(int groups)
+{
+    const int before = codes.rows;
+    if (groups == before)
+        return;
+    Size whole;
+    Point offset;
+    if (before > 0)
+        codes.locateROI(whole, offset);
+    if (groups > whole.height)
+    {
+        Mat larger(std::max(groups, (int)std::min((int64)before * 3 / 2, (int64)INT_MAX)), format.words() * LANES, CV_32S);
+        if (before > 0)
+            codes.copyTo(larger.rowRange(0, before));
+        codes = larger.rowRange(0, groups);
+    }
+    else
+        codes.adjustROI(0, groups - before, 0, 0);
+    std::fill(codes.ptr<unsigned>(before), codes.ptr<unsigned>(before) + (size_t)(groups - before) * codes.cols, 0u);
+}
+
 void HammingIndex::add(const Mat& descriptors)
 {
     const size_t end = rows() + descriptors.rows, groups = (end + LANES - 1) / LANES;
     CV_Assert(groups <= INT_MAX && end < (size_t)1 << NEIGHBOUR_INDEX_BITS);
-    if (codes.empty())
-        codes.create(0, format.words() * LANES, CV_32S);
-    if (groups > (size_t)codes.rows)
-    {
-        if (codes.rows > 0)
-            codes.reserve(std::max(groups, (size_t)codes.rows * 3 / 2));
-        codes.resize(groups, Scalar(0));
-    }
+    // Whatever needs memory comes before the first change.
     std::vector<unsigned> code(format.words());
+    if (starts.size() == starts.capacity())
+        starts.reserve(2 * starts.size());
+    grow((int)groups);
     for (int i = 0; i < descriptors.rows; i++)
     {
         const size_t row = rows() + i;

@@ -49,7 +49,7 @@ public:
     size_t imageOf(size_t row) const;
     size_t start(size_t image) const { return starts[image]; }
 
-    //! Adds an image's descriptors: CV_8U, layout().bytes() columns, any number of rows.
+    //! Adds an image's descriptors: CV_8U, layout().bytes() columns, any number of rows. Changes nothing if it throws.
     void add(const Mat& descriptors);
     //! An image's descriptors as they were added.
     Mat descriptors(size_t image) const;
@@ -66,6 +66,8 @@ public:
 
 private:
     HammingIndex& operator=(const HammingIndex&);
+    //! Makes codes have that many rows; the new ones are zeros. Changes nothing if it throws.
+    void grow(int groups);
 
     const HammingLayout format;
     std::vector<size_t> starts; //!< first row of each image, and the number of all rows

@@ -139,10 +139,10 @@ protected:
                          InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE;
 
 private:
-    void set(const Parameters& changed)
+    void set(Parameters changed)
     {
         check(changed);
-        parameters = changed;
+        std::swap(parameters, changed); // which cannot fail half-way
     }
 
     Mat checked(const Mat& descriptors) const;
@@ -231,9 +231,19 @@ void HierarchicalMatcherImpl::add(InputArrayOfArrays descriptors)
         images[i] = mapped ? checked(images[i]).clone() : checked(images[i]);
     for (size_t i = 0; i < images.size(); i++)
     {
-        index->add(images[i]);
-        trainDescCollection.push_back(images[i]);
-        utrainDescCollection.push_back(UMat()); // checkMasks reads both at the same place
+        const size_t before = trainDescCollection.size();
+        try
+        {
+            trainDescCollection.push_back(images[i]);
+            utrainDescCollection.push_back(UMat()); // checkMasks reads both at the same place
+            index->add(images[i]);
+        }
+        catch (...) // out of memory: lists and index stay of one length
+        {
+            trainDescCollection.resize(before);
+            utrainDescCollection.resize(before);
+            throw;
+        }
     }
 }
 
@@ -344,10 +354,10 @@ void HierarchicalMatcherImpl::read(const FileNode& node)
     {
         if (index->rows() > 0)
             CV_Error(Error::StsBadArg, "Other level sizes cannot be read while there are train descriptors: clear() first");
-        clear();
         index = makePtr<HammingIndex>(p.levelSizes);
+        HierarchicalMatcher::clear();
     }
-    parameters = p;
+    std::swap(parameters, p);
 }
 
 void HierarchicalMatcherImpl::saveIndex(const String& filename) const

@@ -1,0 +1,238 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Every allocation of the library, and of OpenCV beneath it, fails in turn: the call that needed it throws, and the
+// object goes on as if it had not been called. Exit code 1 and a line for what does not hold.
+
+#include "opencv2/iib.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <new>
+#include <stdexcept>
+
+namespace {
+
+// One thread allocates, so that plain numbers do.
+bool armed = false, failOn = false;  // failOn: all later ones fail as well
+long untilFailure = 0, failed = 0;
+
+bool failNow()
+{
+    if (!armed || (failed > 0 && !failOn) || untilFailure-- > 0)
+        return false;
+    failed++;
+    return true;
+}
+
+}  // namespace
+
+// The dynamic linker prefers these to those of the libraries.
+void* operator new(std::size_t size)
+{
+    void* memory = failNow() ? 0 : std::malloc(size + (size == 0));
+    if (!memory)
+        throw std::bad_alloc();
+    return memory;
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+
+//! cv::fastMalloc's.
+extern "C" int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept
+{
+    *memory = failNow() ? 0 : aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+    return *memory ? 0 : ENOMEM;
+}
+
+namespace {
+
+using namespace cv;
+using cv::iib::HierarchicalMatcher;
+using cv::iib::IIB;
+
+void require(bool condition, const std::string& what)
+{
+    if (!condition)
+        throw std::logic_error(what);
+}
+
+/** Calls `step` with its first allocation failing, then its second and so on, up to none; after each, `check` looks
+ whether all is as before. Once with one failure, and once with all allocations failing from there. */
+void failEachAllocation(const std::string& what, const std::function<void()>& step, const std::function<void()>& check)
+{
+    step();  // what is made once for all
+    int failures = 0;
+    for (const bool on : { false, true })
+        for (long n = 0;; n++)
+        {
+            bool thrown = false;
+            failOn = on;
+            untilFailure = n;
+            failed = 0;
+            try
+            {
+                armed = true;
+                step();
+            }
+            catch (const std::bad_alloc&)
+            {
+                thrown = true;
+            }
+            catch (const cv::Exception& e)
+            {
+                thrown = e.code == Error::StsNoMem;
+            }
+            armed = false;
+            check();
+            if (failed == 0)
+                break;
+            require(thrown, what + ": no exception of lacking memory, allocation " + std::to_string(n));
+            failures++;
+        }
+    std::printf("%s: %d failures\n", what.c_str(), failures);
+    require(failures > 0, what + ": nothing was allocated");
+}
+
+bool equal(const Mat& a, const Mat& b)
+{
+    return a.size() == b.size() && (a.empty() || norm(a, b, NORM_INF) == 0);
+}
+
+void describe(const std::string& what, const Ptr<IIB>& iib, int type)
+{
+    Mat image(150, 200, type);
+    RNG(1).fill(image, RNG::UNIFORM, 0, 256);
+    const std::vector<Mat> extra(iib->getExtraChannels(), Mat(image.size(), CV_16U, Scalar(7)));
+    std::vector<KeyPoint> given;
+    for (int i = 0; i < 12; i++)
+        given.push_back(KeyPoint(15.f * i, 11.f * i, 5.f + 2 * i, i % 3 ? 29.f * i : -1.f));
+    Mat expected;
+    std::vector<KeyPoint> keypoints = given;
+    iib->compute(image, extra, keypoints, expected);
+
+    const auto compute = [&] {
+        std::vector<KeyPoint> k = given;
+        Mat descriptors;
+        iib->compute(image, extra, k, descriptors);
+        require(equal(expected, descriptors), what + ": other descriptors");
+    };
+    failEachAllocation(what, compute, compute);
+}
+
+void changeExtractor()
+{
+    const Ptr<IIB> iib = IIB::createPreset(IIB::PRESET_TINY);
+    const Mat first = iib->getSelection(), second = first.rowRange(0, first.rows / 2).clone();
+    failEachAllocation("setSelection", [&] { iib->setSelection(second); }, [&] {
+        const Mat now = iib->getSelection();
+        require(equal(now, first) || equal(now, second), "setSelection: a third selection");
+        iib->setSelection(first);
+    });
+}
+
+typedef std::vector<std::vector<DMatch> > Matches;
+
+double hash(const Matches& matches)
+{
+    double sum = 0;
+    for (const std::vector<DMatch>& row : matches)
+        for (const DMatch& m : row)
+            sum = sum * 0.999 + m.distance + 3 * m.trainIdx + 7 * m.queryIdx + 11 * m.imgIdx;
+    return sum;
+}
+
+void match(const std::string& what, const HierarchicalMatcher& matcher, const std::function<void(Matches&)>& call)
+{
+    Matches matches;
+    call(matches);
+    const double expected = hash(matches);
+    const auto again = [&] {
+        Matches found;
+        call(found);
+        require(hash(found) == expected, what + ": other matches");
+    };
+    failEachAllocation(what, again, again);
+    require(matcher.getTrainDescriptors().size() == 1, what + ": other train descriptors");
+}
+
+void matchAll()
+{
+    Mat train(300, 42, CV_8U), queries(70, 42, CV_8U);
+    RNG(2).fill(train, RNG::UNIFORM, 0, 256);
+    RNG(3).fill(queries, RNG::UNIFORM, 0, 256);
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({ 2, 8, 32 }, HierarchicalMatcher::EXACT, 0.35f, true);
+    matcher->add(train);
+    match("knnMatch", *matcher, [&](Matches& m) { matcher->knnMatch(queries, m, 3); });
+    match("radiusMatch", *matcher, [&](Matches& m) { matcher->radiusMatch(queries, m, 150); });
+    match("knnMatch of two sets", *matcher, [&](Matches& m) { matcher->knnMatch(queries, train, m, 2); });
+    match("knnMatch of a clone", *matcher, [&](Matches& m) { matcher->clone()->knnMatch(queries, m, 2); });
+    const String file = tempfile(".iib");
+    match("saveIndex and loadIndex", *matcher, [&](Matches& m) {
+        matcher->saveIndex(file);
+        HierarchicalMatcher::loadIndex(file)->knnMatch(queries, m, 2);
+    });
+    std::remove(file.c_str());
+}
+
+void addToMatcher()
+{
+    const std::vector<int> levels = { 2, 8 };
+    Mat train(1200, 10, CV_8U);
+    RNG(4).fill(train, RNG::UNIFORM, 0, 256);
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(levels);
+    failEachAllocation("add", [&] { matcher->add(train); }, [&] {
+        std::vector<DMatch> matches;
+        const size_t images = matcher->getTrainDescriptors().size();
+        matcher->match(train.row(1100), matches, std::vector<Mat>(images));
+        require(matches.size() == std::min(images, (size_t)1), "add: the index does not fit the descriptors");
+        if (images > 0)
+            require(matches[0].trainIdx == 1100 && matches[0].imgIdx == 0 && matches[0].distance == 0, "add: other match");
+        if (images > 3)
+            matcher->clear();
+    });
+}
+
+void changeMatcher()
+{
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({ 2, 8 });
+    FileStorage fs("%YAML:1.0\n---\nlevelSizes: [ 4, 8, 16 ]\nmode: 1\nthresholds: [ 0.5, 0.25 ]\n",
+                   FileStorage::READ | FileStorage::MEMORY);
+    failEachAllocation("read", [&] { matcher->read(fs.root()); }, [&] {
+        const bool changed = matcher->levelSizes().size() == 3;
+        require(matcher->getThresholds().size() == (changed ? 2u : 1u) &&
+                matcher->getMode() == (changed ? HierarchicalMatcher::THRESHOLD : HierarchicalMatcher::EXACT),
+                "read: half of the parameters");
+        std::vector<DMatch> matches;
+        matcher->match(Mat(1, changed ? 28 : 10, CV_8U, Scalar(0)), Mat(1, changed ? 28 : 10, CV_8U, Scalar(0)), matches);
+        require(matches.size() == 1, "read: other matches");
+    });
+}
+
+}  // namespace
+
+int main()
+{
+    setNumThreads(1);  // a thread pool's own allocations are not this library's
+    try
+    {
+        describe("compute", IIB::create(), CV_8UC1);
+        describe("compute, colour", IIB::create(), CV_8UC3);
+        describe("compute, 32F", IIB::create(), CV_32FC1);
+        describe("compute, turned", IIB::create(2.f, 5, 63, IIB::MAPPING_SORT, true, true), CV_16UC1);
+        describe("compute, extra channels", IIB::create(2.f, 4, 15, IIB::MAPPING_HAAR, false, false, 3), CV_8UC1);
+        describe("compute, selection", IIB::createPreset(IIB::PRESET_TINY), CV_8UC1);
+        changeExtractor();
+        matchAll();
+        addToMatcher();
+        changeMatcher();
+    }
+    catch (const std::exception& e)
+    {
+        std::fprintf(stderr, "%s\n", e.what());
+        return 1;
+    }
+    return 0;
+}
