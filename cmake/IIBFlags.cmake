@@ -6,11 +6,18 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 # A fused multiply-add rounds once instead of twice and would change bits of the descriptor.
 set(IIB_FLAGS -ffp-contract=off)
 
-# For example -DIIB_SANITIZE=address,undefined or -DIIB_SANITIZE=thread.
+# For example address,undefined or thread, or fuzzer,address,undefined: then modules/iib/fuzz is for libFuzzer.
 set(IIB_SANITIZE "" CACHE STRING "Argument of -fsanitize=, empty for none")
+set(IIB_FUZZ OFF)
 if(IIB_SANITIZE)
-  list(APPEND IIB_FLAGS -fsanitize=${IIB_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
-  add_link_options(-fsanitize=${IIB_SANITIZE})
+  string(REPLACE "," ";" sanitizers "${IIB_SANITIZE}")
+  if("fuzzer" IN_LIST sanitizers)
+    set(IIB_FUZZ ON)
+    list(TRANSFORM sanitizers REPLACE "^fuzzer$" "fuzzer-no-link")
+  endif()
+  list(JOIN sanitizers "," sanitizers)
+  list(APPEND IIB_FLAGS -fsanitize=${sanitizers} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
+  add_link_options(-fsanitize=${sanitizers})
 endif()
 
 add_compile_options(${IIB_FLAGS} -Wall -Wextra -Wshadow -Wmissing-declarations)

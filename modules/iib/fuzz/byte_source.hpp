@@ -1,0 +1,75 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_FUZZ_BYTE_SOURCE_HPP
+#define OPENCV_IIB_FUZZ_BYTE_SOURCE_HPP
+
+#include "opencv2/core.hpp"
+
+#include <cfloat>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+
+//! A target, which libFuzzer calls with one input after the other.
+extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size);
+
+//! Ends the run, with the input kept, if the library broke a promise.
+#define FUZZ_CHECK(condition) \
+    do \
+    { \
+        if (!(condition)) \
+        { \
+            std::fprintf(stderr, "%s:%d: %s does not hold\n", __FILE__, __LINE__, #condition); \
+            std::abort(); \
+        } \
+    } while (0)
+
+//! Turns the fuzzer's bytes into arguments; zeros follow the last byte.
+class ByteSource
+{
+public:
+    ByteSource(const uchar* data, size_t size) : next(data), end(data + size) {}
+
+    template <typename T> T take()
+    {
+        T value = T();
+        const size_t size = std::min(sizeof(T), left());
+        if (size > 0)
+            std::memcpy(&value, next, size);
+        next += size;
+        return value;
+    }
+
+    size_t left() const { return (size_t)(end - next); }
+    bool flag() { return (take<uchar>() & 1) != 0; }
+
+    //! lo..hi, at most 65,536 of them.
+    int between(int lo, int hi)
+    {
+        const int count = hi - lo + 1;
+        return lo + (count <= 256 ? (int)take<uchar>() : (int)take<ushort>()) % count;
+    }
+
+    //! Everyday numbers, and those that break code.
+    float number()
+    {
+        static const float special[] = { 0.f, -0.f, -1.f, 1e-30f, FLT_MIN / 2, 1e9f, -1e9f, 2147483648.f, 1e20f,
+                                         FLT_MAX, -FLT_MAX, std::numeric_limits<float>::infinity(),
+                                         -std::numeric_limits<float>::infinity(),
+                                         std::numeric_limits<float>::quiet_NaN() };
+        const int kind = take<uchar>();
+        if (kind < 200)
+            return (float)take<short>() / 64;
+        if (kind < 240)
+            return special[kind % (int)(sizeof(special) / sizeof(special[0]))];
+        return take<float>();
+    }
+
+private:
+    const uchar *next, *end;
+};
+
+#endif

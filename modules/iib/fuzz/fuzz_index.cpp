@@ -1,0 +1,64 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// HierarchicalMatcher::loadIndex on any bytes, with a right checksum in half of the runs: a cv::Exception, or an
+// index that works and is the same when saved and loaded again.
+
+#include "byte_source.hpp"
+#include "file.hpp"
+
+#include "opencv2/iib.hpp"
+
+namespace {
+
+using namespace cv;
+using cv::iib::HierarchicalMatcher;
+
+//! Appends what index_io.hpp ends a file with: FNV-1a of all before, little-endian.
+std::string withChecksum(std::string bytes)
+{
+    uint64 hash = CV_BIG_UINT(0xcbf29ce484222325);
+    for (const char byte : bytes)
+        hash = (hash ^ (uchar)byte) * CV_BIG_UINT(0x100000001b3);
+    for (int i = 0; i < 8; i++)
+        bytes += (char)(hash >> 8 * i);
+    return bytes;
+}
+
+void checkIndex(const Ptr<HierarchicalMatcher>& matcher)
+{
+    const ScratchFile copy;
+    matcher->saveIndex(copy.name);
+    const Ptr<HierarchicalMatcher> again = HierarchicalMatcher::loadIndex(copy.name);
+    FUZZ_CHECK(matcher->levelSizes() == again->levelSizes() && matcher->getThresholds() == again->getThresholds());
+    FUZZ_CHECK(matcher->getMode() == again->getMode() && matcher->getMaxRatio() == again->getMaxRatio());
+    const std::vector<Mat> images = matcher->getTrainDescriptors(), copies = again->getTrainDescriptors();
+    FUZZ_CHECK(images.size() == copies.size());
+    for (size_t i = 0; i < images.size(); i++)
+        FUZZ_CHECK(images[i].size() == copies[i].size() &&
+                   (images[i].empty() || norm(images[i], copies[i], NORM_INF) == 0));
+    std::vector<std::vector<DMatch> > matches;
+    for (const Mat& image : images)
+        if (image.total() < 4096)
+            matcher->knnMatch(image, matches, 2);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
+{
+    setNumThreads(1);
+    const bool honest = size > 0 && (data[0] & 1) != 0;
+    const std::string bytes = size > 0 ? std::string((const char*)data + 1, size - 1) : std::string();
+    static const ScratchFile file;
+    file.write(honest ? withChecksum(bytes) : bytes);
+    try
+    {
+        checkIndex(HierarchicalMatcher::loadIndex(file.name));
+    }
+    catch (const cv::Exception&)
+    {
+    }
+    return 0;
+}

@@ -1,0 +1,120 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Parameters through FileStorage, selections included: any tree of names and values is refused by a cv::Exception
+// and changes nothing, or is read and written back alike. The tree is built by OpenCV's writer, since its parser of
+// text is not this module's.
+
+#include "byte_source.hpp"
+
+#include "opencv2/iib.hpp"
+
+namespace {
+
+using namespace cv;
+using cv::iib::HierarchicalMatcher;
+using cv::iib::IIB;
+
+const char* const NAMES[] = { "format", "scaleFactor", "granularity", "channels", "mapping", "overlap",
+                              "useOrientation", "extraChannels", "border", "selection", "levelSizes", "mode",
+                              "thresholds", "crossCheck", "maxRatio", "other" };
+
+//! A number, mostly a small one.
+int takeInt(ByteSource& in)
+{
+    return in.between(0, 15) == 15 ? in.take<int>() : in.between(-1, 17);
+}
+
+void writeValue(ByteSource& in, FileStorage& fs, int depth)
+{
+    const int kind = in.between(0, 9);
+    if (kind < 4)
+        fs << takeInt(in);
+    else if (kind < 6)
+        fs << in.number();
+    else if (kind == 6)
+        fs << (in.flag() ? "text" : "1");
+    else
+    {
+        fs << (kind == 9 && depth < 3 ? "{" : "[");
+        for (int i = in.between(0, 12); i > 0; i--)
+            if (kind == 9 && depth < 3)
+            {
+                fs << format("n%d", i);
+                writeValue(in, fs, depth + 1);
+            }
+            else if (kind == 8 && depth < 3)
+                writeValue(in, fs, depth + 1);
+            else
+                fs << takeInt(in);
+        fs << (kind == 9 && depth < 3 ? "}" : "]");
+    }
+}
+
+String takeTree(ByteSource& in)
+{
+    FileStorage fs(".yml", FileStorage::WRITE | FileStorage::MEMORY);
+    fs << "object" << "{";
+    const int names = (int)(sizeof(NAMES) / sizeof(NAMES[0]));
+    if (in.between(0, 3) > 0)
+        fs << NAMES[0] << 1;
+    int name = 1;
+    for (int count = in.between(0, names); count > 0 && name < names; count--, name += 1 + in.between(0, 1))
+    {
+        fs << NAMES[name];
+        writeValue(in, fs, 0);
+    }
+    fs << "}";
+    return fs.releaseAndGetString();
+}
+
+template <typename T> String written(const T& object)
+{
+    FileStorage fs(".yml", FileStorage::WRITE | FileStorage::MEMORY);
+    fs << "object" << "{";
+    object.write(fs);
+    fs << "}";
+    return fs.releaseAndGetString();
+}
+
+template <typename T> void read(T& object, const FileNode& node)
+{
+    const String before = written(object);
+    try
+    {
+        object.read(node);
+    }
+    catch (const cv::Exception&)
+    {
+        FUZZ_CHECK(written(object) == before);
+        return;
+    }
+    const String after = written(object);
+    const FileStorage again(after, FileStorage::READ | FileStorage::MEMORY);
+    object.read(again["object"]);
+    FUZZ_CHECK(written(object) == after);
+}
+
+void run(ByteSource& in)
+{
+    const FileStorage fs(takeTree(in), FileStorage::READ | FileStorage::MEMORY);
+    const FileNode node = in.between(0, 15) == 15 ? fs["object"]["selection"] : fs["object"];
+    read(*IIB::create(), node);
+    read(*HierarchicalMatcher::create(std::vector<int>(1, 4)), node);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
+{
+    ByteSource in(data, size);
+    try
+    {
+        run(in);
+    }
+    catch (const cv::Exception&)
+    {
+    }
+    return 0;
+}
