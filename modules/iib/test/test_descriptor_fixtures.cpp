@@ -31,11 +31,20 @@ Ptr<IIB> extractorFor(const Ptr<Feature2D>& detector)
             IIB::scaleFactorFor(detector), 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, true);
 }
 
+//! What the fixture wants: an object up to OpenCV 4.6, what makes it in later versions.
+struct Given
+{
+    Ptr<Feature2D> object;
+    operator Ptr<Feature2D>() const { return object; }
+    Ptr<Feature2D> operator()() const { return object; }
+};
+
 String_FeatureDetector_DescriptorExtractor_Float_t pairedWith(
         const Ptr<Feature2D>& detector, float minInliers)
 {
-    const Ptr<DescriptorExtractor> extractor = extractorFor(detector);
-    return make_tuple("cv/features2d/tsukuba.png", detector, extractor, minInliers);
+    const Given given = {detector}, extractor = {extractorFor(detector)};
+    return String_FeatureDetector_DescriptorExtractor_Float_t(
+            "cv/features2d/tsukuba.png", given, extractor, minInliers);
 }
 
 INSTANTIATE_TEST_CASE_P(IIB, DescriptorRotationInvariance,

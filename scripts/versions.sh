@@ -1,0 +1,29 @@
+#!/bin/sh
+# Builds and tests the module, stand-alone and in-tree, with the OpenCV of other Debian releases, each in a root
+# of its own in the cache: scripts/versions.sh [suite...], by default trixie (OpenCV 4.10). Needs root.
+. "$(dirname "$0")/lib.sh"
+
+[ "$(id -u)" = 0 ] || {
+    echo "a root of another release can only be made and entered as root" >&2
+    exit 1
+}
+need debootstrap
+[ $# -gt 0 ] || set -- trixie
+for suite in "$@"; do
+    base="$cache/debian-$suite"
+    if [ ! -f "$base/etc/debian_version" ]; then
+        say "making $base"
+        rm -rf "$base.new"
+        debootstrap --variant=minbase --include=ca-certificates "$suite" "$base.new" >"$cache/debian-$suite.log"
+        mv "$base.new" "$base"
+    fi
+    say "copying the working tree into $base"
+    rm -rf "$base/root/opencv_iib"
+    mkdir -p "$base/root/opencv_iib"
+    git -C "$root" ls-files -z --cached --others --exclude-standard | tar -C "$root" --null -T - -c | tar -C "$base/root/opencv_iib" -x
+    # A mount namespace of its own, so that nothing stays mounted.
+    unshare --mount sh -c 'mount -t proc proc "$1/proc" && exec chroot "$1" /usr/bin/env -i HOME=/root \
+        PATH=/usr/sbin:/usr/bin:/sbin:/bin sh -c "cd /root/opencv_iib && scripts/test.sh && scripts/intree.sh"' \
+        sh "$base"
+    say "$suite: passed"
+done
