@@ -1,5 +1,8 @@
 # ctest entries: one for each test suite of opencv_test_iib, once with all instruction sets and once under
 # each pin WIDEST=DISABLED; a smoke run of the perf tests; the consumer of the installation; the demo.
+if(CMAKE_CROSSCOMPILING)
+  return()  # scripts/arm64.sh runs the test program in an emulator
+endif()
 set(suites "${PROJECT_BINARY_DIR}/suites.cmake")
 set(pins "")
 if(IIB_DISPATCH)
