@@ -24,3 +24,20 @@ if(TARGET iib_demo)
   add_test(NAME demo COMMAND "${CMAKE_COMMAND}" "-DDEMO=$<TARGET_FILE:iib_demo>"
     "-DWORK=${PROJECT_BINARY_DIR}/demo-test" -P "${PROJECT_SOURCE_DIR}/cmake/DemoTest.cmake")
 endif()
+
+set(compilers "${CMAKE_CXX_COMPILER}")
+foreach(name g++ clang++)
+  find_program(IIB_${name} ${name})
+  if(IIB_${name})
+    list(APPEND compilers "${IIB_${name}}")
+  endif()
+endforeach()
+list(REMOVE_DUPLICATES compilers)
+add_test(NAME headers COMMAND "${CMAKE_COMMAND}" "-DCOMPILERS=${compilers}" "-DINCLUDE=${IIB_DIR}/include"
+  "-DOPENCV_INCLUDE=${OpenCV_INCLUDE_DIRS}" -P "${PROJECT_SOURCE_DIR}/cmake/HeaderTest.cmake")
+# Sanitizers add symbols of their own.
+if(UNIX AND NOT APPLE AND NOT IIB_SANITIZE)
+  add_test(NAME symbols COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib>" "-DNM=${CMAKE_NM}"
+    "-DREADELF=${CMAKE_READELF}" "-DVERSION=${PROJECT_VERSION}" "-DCHANGELOG=${PROJECT_SOURCE_DIR}/CHANGELOG.md"
+    -P "${PROJECT_SOURCE_DIR}/cmake/SymbolTest.cmake")
+endif()

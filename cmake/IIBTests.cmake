@@ -10,6 +10,9 @@ foreach(kind test perf)
   target_link_libraries(${target} PRIVATE opencv_iib opencv_ts opencv_calib3d)
 endforeach()
 
+# Suites of internals link what the library does not show.
+target_sources(opencv_test_iib PRIVATE "$<FILTER:$<TARGET_OBJECTS:opencv_iib>,INCLUDE,hamming>")
+
 # The naive oracles are not under test; sanitized, they would take most of the time.
 if(IIB_SANITIZE)
   set_source_files_properties("${IIB_DIR}/test/oracle.cpp" "${IIB_DIR}/test/matcher_oracle.cpp"

@@ -1,0 +1,21 @@
+# Compiles each public header alone, as C++11 and C++20, with every compiler at hand, and accepts no warning.
+# cmake -DCOMPILERS=<list> -DINCLUDE=<this module's folder> -DOPENCV_INCLUDE=<list> -P HeaderTest.cmake
+file(GLOB_RECURSE headers RELATIVE "${INCLUDE}" "${INCLUDE}/*.hpp")
+list(LENGTH headers count)
+if(count EQUAL 0)
+  message(FATAL_ERROR "no headers below ${INCLUDE}")
+endif()
+list(TRANSFORM OPENCV_INCLUDE PREPEND "-isystem;")
+foreach(compiler IN LISTS COMPILERS)
+  foreach(standard 11 20)
+    foreach(header IN LISTS headers)
+      execute_process(
+        COMMAND "${compiler}" -std=c++${standard} -Wall -Wextra -Wpedantic -Wshadow -Werror -fsyntax-only -x c++
+          "-I${INCLUDE}" ${OPENCV_INCLUDE} -include "${header}" /dev/null
+        RESULT_VARIABLE failed ERROR_VARIABLE errors)
+      if(failed)
+        message(SEND_ERROR "${header}, ${compiler}, C++${standard}:\n${errors}")
+      endif()
+    endforeach()
+  endforeach()
+endforeach()
