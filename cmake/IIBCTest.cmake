@@ -41,3 +41,9 @@ if(UNIX AND NOT APPLE AND NOT IIB_SANITIZE)
     "-DREADELF=${CMAKE_READELF}" "-DVERSION=${PROJECT_VERSION}" "-DCHANGELOG=${PROJECT_SOURCE_DIR}/CHANGELOG.md"
     -P "${PROJECT_SOURCE_DIR}/cmake/SymbolTest.cmake")
 endif()
+# It rewrites the headers of the oldest version; later ones bring the new spelling themselves.
+if(OpenCV_VERSION VERSION_LESS 4.7)
+  add_test(NAME newer-opencv COMMAND "${CMAKE_COMMAND}" "-DCXX=${CMAKE_CXX_COMPILER}" "-DSOURCES=${IIB_DIR}/src"
+    "-DINCLUDE=${IIB_DIR}/include" "-DOPENCV_INCLUDE=${OpenCV_INCLUDE_DIRS}" "-DDISPATCH=${PROJECT_BINARY_DIR}/dispatch"
+    "-DWORK=${PROJECT_BINARY_DIR}/newer-opencv" -P "${PROJECT_SOURCE_DIR}/cmake/NewerOpenCVTest.cmake")
+endif()

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "opencv2/core/hal/intrin.hpp"
+#include "intrinsics.hpp"
 
 #include "bits.hpp"
 #include "mappings.hpp"
@@ -20,7 +20,7 @@ SelectedBitsFunc getSelectedBitsFunc(int mapping);
 namespace {
 
 // Quads and channels that are mapped at a time, whatever the width of a vector, and their comparisons.
-enum { CHUNK = 16, CHUNK_VECTORS = CHUNK / v_int32::nlanes };
+enum { CHUNK = 16, CHUNK_VECTORS = CHUNK / VTraits<v_int32>::max_nlanes };
 
 //! A vector whose comparisons are bits, a bit a lane.
 struct Lanes
@@ -145,7 +145,7 @@ void windowBits(const CellGrid<int>& cells, const LevelShape& shape, int dy, int
         for (int first = 0; first < quads * GROUP_CHANNELS; first += CHUNK)
         {
             unsigned chunk[Mapping::BITS] = {};
-            for (int lane = 0; lane < CHUNK; lane += v_int32::nlanes)
+            for (int lane = 0; lane < CHUNK; lane += VTraits<v_int32>::max_nlanes)
             {
                 const int i = first + lane;
                 v_int32 a = vx_load(topLeft + i), b = vx_load(topRight + i);
@@ -232,7 +232,7 @@ void selectedBits(const CellGrid<int>& cells, const LevelShape& shape, const std
     {
         gatherQuads(cells, shape, &quads[first], std::min(chunkQuads, count - first), gathered);
         unsigned chunk[Mapping::BITS] = {};
-        for (int lane = 0; lane < CHUNK; lane += v_int32::nlanes)
+        for (int lane = 0; lane < CHUNK; lane += VTraits<v_int32>::max_nlanes)
         {
             const Lanes x[4] = { vx_load(gathered[0] + lane), vx_load(gathered[1] + lane), vx_load(gathered[2] + lane),
                                  vx_load(gathered[3] + lane) };

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "opencv2/core/hal/intrin.hpp"
+#include "intrinsics.hpp"
 
 #include "cells.hpp"
 
@@ -43,7 +43,7 @@ inline void storeWide(int* out, const v_uint16& v)
     v_uint32 low, high;
     v_expand(v, low, high);
     v_store(out, v_reinterpret_as_s32(low));
-    v_store(out + v_uint32::nlanes, v_reinterpret_as_s32(high));
+    v_store(out + VTraits<v_uint32>::max_nlanes, v_reinterpret_as_s32(high));
 }
 
 inline void storeWide(int* out, const v_uint32& v)
@@ -108,7 +108,7 @@ inline void splitColumns(const v_int32& a, const v_int32& b, v_int32& even, v_in
 
 void parentSums(const CellGrid<int>& children, CellGrid<int>& cells)
 {
-    const int n = children.size() / 2, lanes = v_int32::nlanes;
+    const int n = children.size() / 2, lanes = VTraits<v_int32>::max_nlanes;
     cells.create(n);
     const size_t parity = children.row(0, 1) - children.row(0, 0), row = children.row(1, 0) - children.row(0, 0);
     const int* in = children.row(0, 0);

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "opencv2/core/hal/intrin.hpp"
+#include "intrinsics.hpp"
 
 #include "channel_rows.hpp"
 #include "orientation.hpp"
@@ -36,7 +36,7 @@ template <typename Lane>
 void gradientRow(const Lane* above, const Lane* middle, const Lane* below, Lane* gx, Lane* gy, int width)
 {
     typedef decltype(setAll(Lane())) V;
-    for (int x = 0; x < width; x += V::nlanes)
+    for (int x = 0; x < width; x += VTraits<V>::max_nlanes)
     {
         const V a0 = vx_load(above + x), a1 = vx_load(above + x + 1), a2 = vx_load(above + x + 2);
         const V m0 = vx_load(middle + x), m2 = vx_load(middle + x + 2);
@@ -69,7 +69,7 @@ template <typename Lane> void orientationRow(const Lane* gxRow, const Lane* gyRo
     const V zero = setAll((Lane)0), one = setAll((Lane)1);
     const V quarter = setAll((Lane)(ORIENTATION_STEPS / 4)), half = setAll((Lane)(ORIENTATION_STEPS / 2));
     const V turn = setAll((Lane)ORIENTATION_STEPS), mask = setAll((Lane)(ORIENTATION_STEPS - 1));
-    for (int x = 0; x < width; x += V::nlanes)
+    for (int x = 0; x < width; x += VTraits<V>::max_nlanes)
     {
         const V gx = vx_load(gxRow + x), gy = vx_load(gyRow + x);
         const V ax = absolute(gx), ay = absolute(gy);
@@ -98,7 +98,7 @@ template <typename Lane> void addRow(const Lane* in, Lane addend, Lane* out, int
 void widenRow(const uchar* in, short* out, int width)
 {
     int x = 0;
-    for (; x <= width - v_int16::nlanes; x += v_int16::nlanes)
+    for (; x <= width - VTraits<v_int16>::max_nlanes; x += VTraits<v_int16>::max_nlanes)
         v_store(out + x, v_reinterpret_as_s16(vx_load_expand(in + x)));
     for (; x < width; x++)
         out[x] = in[x];

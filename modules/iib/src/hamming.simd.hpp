@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "hamming.hpp"
-#include "opencv2/core/hal/intrin.hpp"
+#include "intrinsics.hpp"
 
 namespace cv {
 namespace iib {
@@ -18,7 +18,7 @@ namespace {
 
 typedef v_uint32 Words;
 typedef v_int32 Counts;
-const int LANES = HammingLayout::LANES, WIDTH = Words::nlanes, VECTORS = LANES / WIDTH;
+const int LANES = HammingLayout::LANES, WIDTH = VTraits<Words>::max_nlanes, VECTORS = LANES / WIDTH;
 
 // Queries compared at once with a group: as many as the registers hold.
 #if CV_SIMD_WIDTH == 64

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "opencv2/core/hal/intrin.hpp"
+#include "intrinsics.hpp"
 
 #include "integral.hpp"
 
@@ -55,7 +55,7 @@ inline v_uint16 lastPixel(const v_uint16& v)
 #endif
 }
 
-//! v_uint16::nlanes pixels of four channels, side by side.
+//! A vector (v_uint16) of pixels of four channels, side by side.
 inline void interleave(const short* const planes[GROUP_CHANNELS], int x, v_uint16 pixels[4])
 {
     v_uint16 a0, a1, b0, b1;
@@ -72,7 +72,7 @@ inline void interleave(const short* const planes[GROUP_CHANNELS], int x, v_uint1
 
 void sumRow16(const short* const planes[GROUP_CHANNELS], int width, const ushort* above, ushort* out)
 {
-    const int step = v_uint16::nlanes;
+    const int step = VTraits<v_uint16>::max_nlanes;
     v_uint16 carry = vx_setzero_u16();
     for (int x = 0; x < width; x += step)
     {

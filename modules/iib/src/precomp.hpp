@@ -7,7 +7,6 @@
 
 #include "opencv2/core.hpp"
 #include "opencv2/core/utility.hpp"
-#include "opencv2/features2d.hpp"
 #include "opencv2/iib.hpp"
 
 #endif

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "opencv2/core/hal/intrin.hpp"
+#include "intrinsics.hpp"
 
 #include "orientation.hpp"
 #include "samples.hpp"
@@ -64,8 +64,8 @@ template <typename Lane>
 void gatherPixels(const Lane* pixels, const int* index, int count, Lane* const planes[GROUP_CHANNELS])
 {
     typedef decltype(vectorOf(Lane())) V;
-    const int lanes = V::nlanes;
-    Lane chunk[GROUP_CHANNELS * V::nlanes];
+    const int lanes = VTraits<V>::max_nlanes;
+    Lane chunk[GROUP_CHANNELS * VTraits<V>::max_nlanes];
     for (int i = 0; i < count; i += lanes)
     {
         for (int j = 0; j < lanes; j++)

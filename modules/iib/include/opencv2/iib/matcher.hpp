@@ -5,7 +5,7 @@
 #ifndef OPENCV_IIB_MATCHER_HPP
 #define OPENCV_IIB_MATCHER_HPP
 
-#include "opencv2/features2d.hpp"
+#include "opencv2/iib/features.hpp"
 
 namespace cv {
 namespace iib {
