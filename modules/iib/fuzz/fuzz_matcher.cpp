@@ -85,14 +85,12 @@ std::vector<Mat> takeMasks(ByteSource& in, const std::vector<Mat>& images, int q
 
 bool areValid(const std::vector<Mat>& masks, const std::vector<Mat>& images, int queries)
 {
-    bool any = false, fit = masks.size() == images.size();
+    if (!masks.empty() && masks.size() != images.size())
+        return false;
     for (size_t i = 0; i < masks.size(); i++)
-        if (!masks[i].empty())
-        {
-            any = true;
-            fit = fit && masks[i].type() == CV_8UC1 && masks[i].size() == Size(images[i].rows, queries);
-        }
-    return !any || fit;
+        if (!masks[i].empty() && (masks[i].type() != CV_8UC1 || masks[i].size() != Size(images[i].rows, queries)))
+            return false;
+    return true;
 }
 
 Ptr<HierarchicalMatcher> takeMatcher(ByteSource& in, MatcherOracle& oracle)
