@@ -23,14 +23,15 @@ template <typename T> inline size_t wholeLines(size_t n)
 template <typename T> class AlignedBuffer
 {
 public:
-    AlignedBuffer() : values(0), capacity(0) {}
+    AlignedBuffer() : memory(0), values(0), capacity(0) {}
     explicit AlignedBuffer(size_t n) : AlignedBuffer() { allocate(n); }
-    AlignedBuffer(AlignedBuffer&& other) : values(other.values), capacity(other.capacity)
+    AlignedBuffer(AlignedBuffer&& other) : AlignedBuffer()
     {
-        other.values = 0;
-        other.capacity = 0;
+        std::swap(memory, other.memory);
+        std::swap(values, other.values);
+        std::swap(capacity, other.capacity);
     }
-    ~AlignedBuffer() { fastFree(values); }
+    ~AlignedBuffer() { fastFree(memory); }
     AlignedBuffer(const AlignedBuffer&) = delete;
     AlignedBuffer& operator=(const AlignedBuffer&) = delete;
 
@@ -39,17 +40,19 @@ public:
     {
         if (n <= capacity)
             return;
-        fastFree(values);
-        values = 0;
+        fastFree(memory);
+        memory = 0;
         capacity = 0;
-        values = static_cast<T*>(fastMalloc(n * sizeof(T) + CACHE_LINE));
+        memory = fastMalloc(n * sizeof(T) + CACHE_LINE);
+        values = alignPtr(static_cast<T*>(memory), CACHE_LINE);
         capacity = n;
     }
 
-    T* data() { return alignPtr(values, CACHE_LINE); }
-    const T* data() const { return alignPtr(values, CACHE_LINE); }
+    T* data() { return values; }
+    const T* data() const { return values; }
 
 private:
+    void* memory;
     T* values;
     size_t capacity;
 };

@@ -10,14 +10,14 @@
 namespace cv {
 namespace iib {
 
-LevelBitsFunc getLevelBitsFunc(int mapping)
+BitsKernels<ushort> getBitsKernels(int mapping, ushort cell)
 {
-    CV_CPU_DISPATCH(getLevelBitsFunc, (mapping), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(getBitsKernels, (mapping, cell), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-SelectedBitsFunc getSelectedBitsFunc(int mapping)
+BitsKernels<unsigned> getBitsKernels(int mapping, unsigned cell)
 {
-    CV_CPU_DISPATCH(getSelectedBitsFunc, (mapping), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(getBitsKernels, (mapping, cell), CV_CPU_DISPATCH_MODES_ALL);
 }
 
 }  // namespace iib

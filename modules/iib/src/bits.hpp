@@ -23,17 +23,25 @@ struct LevelShape
     bool overlap;
 };
 
-//! Bits of all quads of a level in the order of descriptor.hpp, items 2 to 6.
-typedef void (*LevelBitsFunc)(const CellGrid<int>& cells, const LevelShape& shape, BitWriter& out);
-LevelBitsFunc getLevelBitsFunc(int mapping);
+/* Kernels on the sums of a level, Cell = ushort or unsigned. */
+template <typename Cell> struct BitsKernels
+{
+    /** Bits of all quads of a level in the order of descriptor.hpp, items 2 to 6.
+     @param parents gets the sums of the next coarser level. */
+    void (*levelBits)(const CellGrid<Cell>& cells, const LevelShape& shape, CellGrid<unsigned>& parents, BitWriter& out);
 
-//! The comparisons of some quads in planes of `words` words, a plane for each bit of the mapping and a bit for each
-//! channel of each quad.
-typedef void (*SelectedBitsFunc)(const CellGrid<int>& cells, const LevelShape& shape,
-                                 const std::vector<QuadPlace>& quads, int words, uint64* planes);
-SelectedBitsFunc getSelectedBitsFunc(int mapping);
+    //! The comparisons of some quads in planes of `words` words, a plane for each bit of the mapping and a bit for
+    //! each channel of each quad.
+    void (*selectedBits)(const CellGrid<Cell>& cells, const LevelShape& shape, const std::vector<QuadPlace>& quads,
+                         int words, uint64* planes);
 
-//! The same two where an int is too small for the products.
+    //! Sums of the next coarser level.
+    void (*parentSums)(const CellGrid<Cell>& cells, CellGrid<unsigned>& parents);
+};
+BitsKernels<ushort> getBitsKernels(int mapping, ushort);
+BitsKernels<unsigned> getBitsKernels(int mapping, unsigned);
+
+//! The bits where an int is too small for the products.
 void wideLevelBits(int mapping, const CellGrid<double>& cells, const LevelShape& shape, BitWriter& out);
 void wideSelectedBits(int mapping, const CellGrid<double>& cells, const LevelShape& shape,
                       const std::vector<QuadPlace>& quads, int words, uint64* planes);

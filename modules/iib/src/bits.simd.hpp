@@ -12,8 +12,8 @@ namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-LevelBitsFunc getLevelBitsFunc(int mapping);
-SelectedBitsFunc getSelectedBitsFunc(int mapping);
+BitsKernels<ushort> getBitsKernels(int mapping, ushort);
+BitsKernels<unsigned> getBitsKernels(int mapping, unsigned);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -34,6 +34,7 @@ struct Lanes
 inline Lanes operator+(const Lanes& a, const Lanes& b) { return a.v + b.v; }
 inline Lanes operator-(const Lanes& a, const Lanes& b) { return a.v - b.v; }
 inline Lanes operator<<(const Lanes& a, int bits) { return a.v << bits; }
+inline Lanes operator>>(const Lanes& a, int bits) { return a.v >> bits; }
 inline Lanes v_min(const Lanes& a, const Lanes& b) { return cv::v_min(a.v, b.v); }
 inline Lanes v_max(const Lanes& a, const Lanes& b) { return cv::v_max(a.v, b.v); }
 
@@ -99,6 +100,89 @@ void append(const RowBits& row, int planes, int quads, int channels, BitWriter& 
         }
 }
 
+inline v_int32 loadCells(const ushort* p) { return v_reinterpret_as_s32(vx_load_expand(p)); }
+inline v_int32 loadCells(const unsigned* p) { return v_reinterpret_as_s32(vx_load(p)); }
+inline v_int32x4 loadCell(const ushort* p) { return v_reinterpret_as_s32(v_load_expand(p)); }
+inline v_int32x4 loadCell(const unsigned* p) { return v_reinterpret_as_s32(v_load(p)); }
+
+//! The cells of the quads of a row, and of the rows after it.
+template <typename Cell> class QuadRows
+{
+public:
+    //! Begins with quads whose top left cells are in row dy and columns dx, dx + 2, ...
+    QuadRows(const CellGrid<Cell>& cells, int dy, int dx)
+        : left(cells.row(dy, dx)), right(cells.row(dy, 1 - dx) + dx * GROUP_CHANNELS),  // next to odd is even
+          step(cells.rowStep())
+    {
+    }
+
+    //! The four cells of the quads from value i of a row on.
+    void load(int i, v_int32 x[4]) const
+    {
+        x[0] = loadCells(left + i);
+        x[1] = loadCells(right + i);
+        x[2] = loadCells(left + i + step);
+        x[3] = loadCells(right + i + step);
+    }
+
+    void next()
+    {
+        left += 2 * step;
+        right += 2 * step;
+    }
+
+private:
+    const Cell *left, *right;
+    const size_t step;
+};
+
+//! Where the sums over quads go, row by row: the cells of the next coarser level.
+class ParentRows
+{
+public:
+    ParentRows(CellGrid<unsigned>& parents) : even(parents.row(0, 0)), odd(parents.row(0, 1)), step(parents.rowStep()) {}
+
+    //! The quads from value i of the row on.
+    void store(const v_int32 x[4], int i) const
+    {
+        v_uint32 sums = v_reinterpret_as_u32((x[0] + x[1]) + (x[2] + x[3]));
+#if CV_SIMD_WIDTH == 16
+        v_store((i / GROUP_CHANNELS % 2 ? odd : even) + i / (2 * GROUP_CHANNELS) * GROUP_CHANNELS, sums);
+#else
+#if CV_SIMD_WIDTH == 64
+        sums = v_uint32(_mm512_shuffle_i32x4(sums.val, sums.val, 0xd8));  // quads 0, 2, 1, 3
+#endif
+        v_store_low(even + i / 2, sums);
+        v_store_high(odd + i / 2, sums);
+#endif
+    }
+
+    void next()
+    {
+        even += step;
+        odd += step;
+    }
+
+private:
+    unsigned *even, *odd;
+    const size_t step;
+};
+
+template <typename Cell> void parentSums(const CellGrid<Cell>& cells, CellGrid<unsigned>& parents)
+{
+    const int n = cells.size() / 2;
+    parents.create(n);
+    QuadRows<Cell> quads(cells, 0, 0);
+    ParentRows sums(parents);
+    for (int r = 0; r < n; r++, quads.next(), sums.next())
+        for (int i = 0; i < n * GROUP_CHANNELS; i += v_int32::nlanes)
+        {
+            v_int32 x[4];
+            quads.load(i, x);
+            sums.store(x, i);
+        }
+}
+
 inline void storeChunk(unsigned chunk, uchar* out)
 {
     out[0] = (uchar)chunk;
@@ -123,74 +207,85 @@ struct ColumnWeights
     }
 };
 
-//! Quads whose top left cells are in rows dy, dy + 2, ... and columns dx, dx + 2, ...
-template <typename Mapping>
-void windowBits(const CellGrid<int>& cells, const LevelShape& shape, int dy, int dx, BitWriter& out)
+/* Quads whose top left cells are in rows dy, dy + 2, ... and columns dx, dx + 2, ... WITH_PARENTS also sums the cells
+ of the next coarser level, which takes dx = dy = 0. */
+template <typename Mapping, bool WITH_PARENTS, typename Cell>
+void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int dy, int dx, CellGrid<unsigned>& parents,
+                BitWriter& out)
 {
-    const int rows = (shape.n - dy) / 2, quads = (shape.n - dx) / 2;
+    const int rowCount = (shape.n - dy) / 2, quads = (shape.n - dx) / 2, lanes = quads * GROUP_CHANNELS;
     const ColumnWeights columns(shape.widths + dx, quads);
+    const bool equalWidths = columns.equal;
+    const int* heights = shape.heights + dy;
+    QuadRows<Cell> rows(cells, dy, dx);
+    ParentRows sums(parents);
     RowBits bits;
     // Where a row fills whole chunks, its bits need no shifting.
-    const int chunks = (quads * GROUP_CHANNELS + CHUNK - 1) / CHUNK;
+    const int planeBytes = lanes / 8;
     uchar* whole = 0;
-    if (shape.channels == GROUP_CHANNELS && chunks * CHUNK == quads * GROUP_CHANNELS)
-        whole = out.reserve(rows * Mapping::BITS * chunks * (CHUNK / 8));
-    for (int r = dy; r < dy + 2 * rows; r += 2)
+    if (shape.channels == GROUP_CHANNELS && lanes % CHUNK == 0)
+        whole = out.reserve(rowCount * Mapping::BITS * planeBytes);
+    for (int r = 0; r < rowCount; r++, heights += 2, rows.next(), sums.next())
     {
-        // right of an odd column comes the next even one
-        const int *topLeft = cells.row(r, dx), *topRight = cells.row(r, 1 - dx) + dx * GROUP_CHANNELS;
-        const int *bottomLeft = cells.row(r + 1, dx), *bottomRight = cells.row(r + 1, 1 - dx) + dx * GROUP_CHANNELS;
-        const bool equalHeights = shape.heights[r] == shape.heights[r + 1];
-        const v_int32 topWeight = vx_setall_s32(shape.heights[r + 1]), bottomWeight = vx_setall_s32(shape.heights[r]);
-        for (int first = 0; first < quads * GROUP_CHANNELS; first += CHUNK)
+        const bool equalHeights = heights[0] == heights[1];
+        const v_int32 topWeight = vx_setall_s32(heights[1]), bottomWeight = vx_setall_s32(heights[0]);
+        for (int first = 0; first < lanes; first += CHUNK)
         {
             unsigned chunk[Mapping::BITS] = {};
             for (int lane = 0; lane < CHUNK; lane += VTraits<v_int32>::max_nlanes)
             {
                 const int i = first + lane;
-                v_int32 a = vx_load(topLeft + i), b = vx_load(topRight + i);
-                v_int32 c = vx_load(bottomLeft + i), d = vx_load(bottomRight + i);
-                if (!columns.equal)
+                v_int32 x[4];
+                rows.load(i, x);
+                if (WITH_PARENTS)
+                    sums.store(x, i);
+                if (!equalWidths)
                 {
                     const v_int32 left = vx_load(columns.left + i), right = vx_load(columns.right + i);
-                    a = a * left;
-                    b = b * right;
-                    c = c * left;
-                    d = d * right;
+                    x[0] = x[0] * left;
+                    x[1] = x[1] * right;
+                    x[2] = x[2] * left;
+                    x[3] = x[3] * right;
                 }
                 if (!equalHeights)
                 {
-                    a = a * topWeight;
-                    b = b * topWeight;
-                    c = c * bottomWeight;
-                    d = d * bottomWeight;
+                    x[0] = x[0] * topWeight;
+                    x[1] = x[1] * topWeight;
+                    x[2] = x[2] * bottomWeight;
+                    x[3] = x[3] * bottomWeight;
                 }
-                const Lanes x[4] = { a, b, c, d };
+                const Lanes weighted[4] = { x[0], x[1], x[2], x[3] };
                 const Put put = { chunk, lane };
-                Mapping::map(x, put);
+                Mapping::map(weighted, put);
             }
             for (int plane = 0; plane < Mapping::BITS; plane++)
                 if (whole)
-                    storeChunk(chunk[plane], whole + (plane * chunks + first / CHUNK) * (CHUNK / 8));
+                    storeChunk(chunk[plane], whole + plane * planeBytes + first / 8);
                 else
                     bits.planes[plane][first / CHUNK] = (ushort)chunk[plane];
         }
         if (whole)
-            whole += Mapping::BITS * chunks * (CHUNK / 8);
+            whole += Mapping::BITS * planeBytes;
         else
             append(bits, Mapping::BITS, quads, shape.channels, out);
     }
 }
 
-template <typename Mapping> void levelBits(const CellGrid<int>& cells, const LevelShape& shape, BitWriter& out)
+template <typename Mapping, typename Cell>
+void levelBits(const CellGrid<Cell>& cells, const LevelShape& shape, CellGrid<unsigned>& parents, BitWriter& out)
 {
-    for (int dy = 0; dy <= (int)shape.overlap; dy++)
-        for (int dx = 0; dx <= (int)shape.overlap; dx++)
-            windowBits<Mapping>(cells, shape, dy, dx, out);
+    parents.create(shape.n / 2);
+    windowBits<Mapping, true>(cells, shape, 0, 0, parents, out);
+    if (!shape.overlap)
+        return;
+    windowBits<Mapping, false>(cells, shape, 0, 1, parents, out);
+    windowBits<Mapping, false>(cells, shape, 1, 0, parents, out);
+    windowBits<Mapping, false>(cells, shape, 1, 1, parents, out);
 }
 
 //! Brings the chosen quads together, cell by cell, already weighted.
-void gatherQuads(const CellGrid<int>& cells, const LevelShape& shape, const QuadPlace* quads, int count,
+template <typename Cell>
+void gatherQuads(const CellGrid<Cell>& cells, const LevelShape& shape, const QuadPlace* quads, int count,
                  int gathered[4][CHUNK])
 {
     for (int q = 0; q < count; q++)
@@ -198,8 +293,8 @@ void gatherQuads(const CellGrid<int>& cells, const LevelShape& shape, const Quad
         const int row = quads[q].row, col = quads[q].col;
         const int left = shape.widths[col], right = shape.widths[col + 1];
         const int top = shape.heights[row], bottom = shape.heights[row + 1];
-        v_int32x4 x[4] = { v_load(cells.cell(row, col)), v_load(cells.cell(row, col + 1)),
-                           v_load(cells.cell(row + 1, col)), v_load(cells.cell(row + 1, col + 1)) };
+        v_int32x4 x[4] = { loadCell(cells.cell(row, col)), loadCell(cells.cell(row, col + 1)),
+                           loadCell(cells.cell(row + 1, col)), loadCell(cells.cell(row + 1, col + 1)) };
         if (left != right)
         {
             const v_int32x4 l = v_setall_s32(right), r = v_setall_s32(left);
@@ -221,9 +316,9 @@ void gatherQuads(const CellGrid<int>& cells, const LevelShape& shape, const Quad
     }
 }
 
-template <typename Mapping>
-void selectedBits(const CellGrid<int>& cells, const LevelShape& shape, const std::vector<QuadPlace>& quads, int words,
-                  uint64* planes)
+template <typename Mapping, typename Cell>
+void selectedBits(const CellGrid<Cell>& cells, const LevelShape& shape, const std::vector<QuadPlace>& quads,
+                  int words, uint64* planes)
 {
     const int chunkQuads = CHUNK / GROUP_CHANNELS, wordChunks = 64 / CHUNK, count = (int)quads.size();
     std::fill(planes, planes + words * Mapping::BITS, (uint64)0);
@@ -245,26 +340,25 @@ void selectedBits(const CellGrid<int>& cells, const LevelShape& shape, const std
     }
 }
 
-struct LevelBits
+template <typename Cell> struct Kernels
 {
-    template <typename Mapping> LevelBitsFunc visit() const { return levelBits<Mapping>; }
-};
-
-struct SelectedBits
-{
-    template <typename Mapping> SelectedBitsFunc visit() const { return selectedBits<Mapping>; }
+    template <typename Mapping> BitsKernels<Cell> visit() const
+    {
+        const BitsKernels<Cell> k = { levelBits<Mapping, Cell>, selectedBits<Mapping, Cell>, parentSums<Cell> };
+        return k;
+    }
 };
 
 }  // namespace
 
-LevelBitsFunc getLevelBitsFunc(int mapping)
+BitsKernels<ushort> getBitsKernels(int mapping, ushort)
 {
-    return visitMapping(mapping, LevelBits());
+    return visitMapping(mapping, Kernels<ushort>());
 }
 
-SelectedBitsFunc getSelectedBitsFunc(int mapping)
+BitsKernels<unsigned> getBitsKernels(int mapping, unsigned)
 {
-    return visitMapping(mapping, SelectedBits());
+    return visitMapping(mapping, Kernels<unsigned>());
 }
 
 #endif

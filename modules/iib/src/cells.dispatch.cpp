@@ -20,10 +20,5 @@ CellSumsFunc<unsigned>::Type getCellSumsFunc(unsigned sum)
     CV_CPU_DISPATCH(getCellSumsFunc, (sum), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-ParentSumsFunc getParentSumsFunc()
-{
-    CV_CPU_DISPATCH(getParentSumsFunc, (), CV_CPU_DISPATCH_MODES_ALL);
-}
-
 }  // namespace iib
 }  // namespace cv

@@ -12,8 +12,8 @@ namespace cv {
 namespace iib {
 
 /** Sums over the cells of one level, n x n cells of GROUP_CHANNELS channels each. The cells in even columns of a
- row lie side by side, and those in odd columns: the left and right cells of the quads. T is int where four times
- the largest value to compare fits, else double. */
+ row lie side by side, and those in odd columns: the left and right cells of the quads. T is ushort or unsigned, as
+ the sums in integral images, or double where an unsigned is too small. */
 template <typename T> class CellGrid
 {
 public:
@@ -22,11 +22,11 @@ public:
     void create(int cellsInRow)
     {
         n = cellsInRow;
-        step = wholeLines<T>((size_t)(n / 2 + 1) * GROUP_CHANNELS + ROW_PADDING);
+        step = wholeLines<T>((size_t)n / 2 * GROUP_CHANNELS + CACHE_LINE / sizeof(T));
         values.allocate(2 * (n + 1) * step);  // a row more, for the corners of cells
     }
 
-    //! Cells (row, parity), (row, parity + 2), ...; kernels may run ROW_PADDING values over the end.
+    //! Cells (row, parity), (row, parity + 2), ...; kernels may run a vector over the end, with one cell skipped.
     T* row(int r, int parity) { return values.data() + (2 * r + parity) * step; }
     const T* row(int r, int parity) const { return values.data() + (2 * r + parity) * step; }
 
@@ -36,24 +36,23 @@ public:
 
     int size() const { return n; }
 
+    //! From a row to the next one, in values.
+    size_t rowStep() const { return 2 * step; }
+
 private:
     int n;
     size_t step;
     AlignedBuffer<T> values;
 };
 
-//! Sums over n x n cells with the given n + 1 edges, in pixels of the image; `scratch` is overwritten.
+//! Sums over n x n cells with the given n + 1 edges, in pixels of the image; `corners` is overwritten.
 template <typename Sum> struct CellSumsFunc
 {
     typedef void (*Type)(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n,
-                         CellGrid<Sum>& scratch, CellGrid<int>& cells);
+                         CellGrid<Sum>& corners, CellGrid<Sum>& cells);
 };
 CellSumsFunc<ushort>::Type getCellSumsFunc(ushort);
 CellSumsFunc<unsigned>::Type getCellSumsFunc(unsigned);
-
-//! Sums of a level from those of the next finer one.
-typedef void (*ParentSumsFunc)(const CellGrid<int>& children, CellGrid<int>& cells);
-ParentSumsFunc getParentSumsFunc();
 
 }  // namespace iib
 }  // namespace cv

@@ -13,7 +13,6 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 CellSumsFunc<ushort>::Type getCellSumsFunc(ushort);
 CellSumsFunc<unsigned>::Type getCellSumsFunc(unsigned);
-ParentSumsFunc getParentSumsFunc();
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -38,97 +37,80 @@ inline void copyPair(const unsigned* a, const unsigned* b, unsigned* out)
     v_store(out + GROUP_CHANNELS, v_load(b));
 }
 
-inline void storeWide(int* out, const v_uint16& v)
+//! Brings ROWS rows of corners together; several at a time, since their offsets are the same.
+template <int ROWS, typename Sum>
+inline void gatherCorners(const Sum* const from[ROWS], const int* offsets, int n, Sum* even, Sum* odd, size_t step)
 {
-    v_uint32 low, high;
-    v_expand(v, low, high);
-    v_store(out, v_reinterpret_as_s32(low));
-    v_store(out + VTraits<v_uint32>::max_nlanes, v_reinterpret_as_s32(high));
+    for (int c = 0; c < n; c += 4)  // beyond the last column the offsets repeat
+    {
+        const int o0 = offsets[c], o1 = offsets[c + 1], o2 = offsets[c + 2], o3 = offsets[c + 3];
+        const int at = c / 2 * GROUP_CHANNELS;
+        for (int i = 0; i < ROWS; i++)
+        {
+            copyPair(from[i] + o0, from[i] + o2, even + i * step + at);
+            copyPair(from[i] + o1, from[i] + o3, odd + i * step + at);
+        }
+    }
+    for (int i = 0; i < ROWS; i++)
+        memcpy(even + i * step + n / 2 * GROUP_CHANNELS, from[i] + offsets[n], GROUP_CHANNELS * sizeof(Sum));
 }
 
-inline void storeWide(int* out, const v_uint32& v)
+//! Cells from their corners, a vector of columns after the other.
+template <typename Sum> void subtractCorners(const CellGrid<Sum>& corners, CellGrid<Sum>& cells)
 {
-    v_store(out, v_reinterpret_as_s32(v));
+    const int n = cells.size(), lanes = CV_SIMD_WIDTH / (int)sizeof(Sum);
+    const size_t step = corners.rowStep();
+    for (int i = 0; i < n / 2 * GROUP_CHANNELS; i += lanes)
+    {
+        // Differences along row 0 of corners, then those along each next row less those before.
+        const Sum *evens = corners.row(0, 0) + i, *odds = corners.row(0, 1) + i;
+        Sum *lefts = cells.row(0, 0) + i, *rights = cells.row(0, 1) + i;
+        auto odd = load(odds), left = subtract(odd, load(evens)), right = subtract(load(evens + GROUP_CHANNELS), odd);
+        for (int r = 0; r < n; r++, lefts += step, rights += step)
+        {
+            evens += step;
+            odds += step;
+            odd = load(odds);
+            const auto nextLeft = subtract(odd, load(evens)), nextRight = subtract(load(evens + GROUP_CHANNELS), odd);
+            v_store(lefts, subtract(nextLeft, left));
+            v_store(rights, subtract(nextRight, right));
+            left = nextLeft;
+            right = nextRight;
+        }
+    }
 }
 
 /* The corners are brought together first, those of even and of odd columns apart, so that all further work is on
  whole vectors. */
 template <typename Sum>
 void cellSums(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& corners,
-              CellGrid<int>& cells)
+              CellGrid<Sum>& cells)
 {
     corners.create(n);
     cells.create(n);
     AutoBuffer<int, 68> offsets(n + 4);
-    for (int c = 0; c < n + 4; c++)
-        offsets[c] = (xEdges[std::min(c, n)] - rows.origin.x) * GROUP_CHANNELS;
-    const int first = (yEdges[0] - rows.origin.y) % rows.count;
-    for (int r = 0; r <= n; r++)
+    for (int c = 0; c <= n; c++)
+        offsets[c] = (xEdges[c] - rows.origin.x) * GROUP_CHANNELS;
+    for (int c = n + 1; c < n + 4; c++)
+        offsets[c] = offsets[n];
+    const int first = (yEdges[0] - rows.origin.y) % rows.count - yEdges[0], count = rows.count;
+    const Sum* const data = rows.data;
+    const size_t rowStep = rows.step;
+    const auto row = [=](int r)
     {
-        const int place = first + yEdges[r] - yEdges[0];
-        const Sum* from = rows.data + (place < rows.count ? place : place - rows.count) * rows.step;
-        Sum *even = corners.row(r, 0), *odd = corners.row(r, 1);
-        for (int c = 0; c < n; c += 4)  // beyond the last column the offsets repeat
-        {
-            copyPair(from + offsets[c], from + offsets[c + 2], even + c / 2 * GROUP_CHANNELS);
-            copyPair(from + offsets[c + 1], from + offsets[c + 3], odd + c / 2 * GROUP_CHANNELS);
-        }
-        memcpy(even + n / 2 * GROUP_CHANNELS, from + offsets[n], GROUP_CHANNELS * sizeof(Sum));
-    }
-
-    for (int r = 0; r < n; r++)
+        const int place = first + yEdges[r];
+        return data + (place < count ? place : place - count) * rowStep;
+    };
+    Sum *even = corners.row(0, 0), *odd = corners.row(0, 1);
+    const size_t step = corners.rowStep();
+    const Sum* top[1] = { row(0) };
+    gatherCorners<1>(top, offsets.data(), n, even, odd, step);
+    for (int r = 1; r <= n; r += 2)
     {
-        const Sum *even0 = corners.row(r, 0), *even1 = corners.row(r + 1, 0);
-        const Sum *odd0 = corners.row(r, 1), *odd1 = corners.row(r + 1, 1);
-        int *left = cells.row(r, 0), *right = cells.row(r, 1);
-        for (int i = 0; i < n / 2 * GROUP_CHANNELS; i += CV_SIMD_WIDTH / (int)sizeof(Sum))
-        {
-            const int next = i + GROUP_CHANNELS;
-            const auto middle = subtract(load(odd1 + i), load(odd0 + i));
-            storeWide(left + i, subtract(middle, subtract(load(even1 + i), load(even0 + i))));
-            storeWide(right + i, subtract(subtract(load(even1 + next), load(even0 + next)), middle));
-        }
+        const Sum* from[2] = { row(r), row(r + 1) };
+        gatherCorners<2>(from, offsets.data(), n, even + r * step, odd + r * step, step);
     }
-}
-
-//! The four channels of neighbouring cells, in turn to the even and odd columns.
-inline void splitColumns(const v_int32& a, const v_int32& b, v_int32& even, v_int32& odd)
-{
-#if CV_SIMD_WIDTH == 64
-    even = v_int32(_mm512_shuffle_i32x4(a.val, b.val, 0x88));
-    odd = v_int32(_mm512_shuffle_i32x4(a.val, b.val, 0xdd));
-#elif CV_SIMD_WIDTH == 32
-    even = v_int32(_mm256_permute2x128_si256(a.val, b.val, 0x20));
-    odd = v_int32(_mm256_permute2x128_si256(a.val, b.val, 0x31));
-#else
-    even = a;
-    odd = b;
-#endif
-}
-
-void parentSums(const CellGrid<int>& children, CellGrid<int>& cells)
-{
-    const int n = children.size() / 2, lanes = VTraits<v_int32>::max_nlanes;
-    cells.create(n);
-    const size_t parity = children.row(0, 1) - children.row(0, 0), row = children.row(1, 0) - children.row(0, 0);
-    const int* in = children.row(0, 0);
-    for (int r = 0; r < n; r++, in += 2 * row)
-    {
-        int *even = cells.row(r, 0), *odd = cells.row(r, 1);
-        for (int i = 0; i < n * GROUP_CHANNELS; i += 2 * lanes)
-        {
-            v_int32 sums[2];
-            for (int j = 0; j < 2; j++)
-            {
-                const int* p = in + i + j * lanes;
-                sums[j] = (vx_load(p) + vx_load(p + parity)) + (vx_load(p + row) + vx_load(p + row + parity));
-            }
-            v_int32 evens, odds;
-            splitColumns(sums[0], sums[1], evens, odds);
-            v_store(even + i / 2, evens);
-            v_store(odd + i / 2, odds);
-        }
-    }
+    subtractCorners(corners, cells);
 }
 
 }  // namespace
@@ -141,11 +123,6 @@ CellSumsFunc<ushort>::Type getCellSumsFunc(ushort)
 CellSumsFunc<unsigned>::Type getCellSumsFunc(unsigned)
 {
     return cellSums<unsigned>;
-}
-
-ParentSumsFunc getParentSumsFunc()
-{
-    return parentSums;
 }
 
 #endif

@@ -9,13 +9,13 @@ namespace iib {
 
 namespace {
 
-void widen(const CellGrid<int>& cells, CellGrid<double>& wide)
+template <typename Cell> void widen(const CellGrid<Cell>& cells, CellGrid<double>& wide)
 {
     wide.create(cells.size());
     for (int r = 0; r < cells.size(); r++)
         for (int c = 0; c < cells.size(); c++)
             for (int i = 0; i < GROUP_CHANNELS; i++)
-                wide.cell(r, c)[i] = (unsigned)cells.cell(r, c)[i];
+                wide.cell(r, c)[i] = cells.cell(r, c)[i];
 }
 
 void wideParentSums(const CellGrid<double>& children, CellGrid<double>& cells)
@@ -32,8 +32,8 @@ void wideParentSums(const CellGrid<double>& children, CellGrid<double>& cells)
 
 KeyPointBits::KeyPointBits(const Parameters& p, int group, int channels_)
     : granularity(p.granularity), mapping(p.mapping), channels(channels_), overlap(p.overlap),
-      levelBits(getLevelBitsFunc(p.mapping)), selectedBits(getSelectedBitsFunc(p.mapping)), parentSums(getParentSumsFunc()), offsets(p.granularity + 1),
-      sums(p.granularity + 1), wideSums(p.granularity + 1)
+      shortKernels(getBitsKernels(p.mapping, ushort())), longKernels(getBitsKernels(p.mapping, unsigned())),
+      offsets(p.granularity + 1), sums(p.granularity + 1), wideSums(p.granularity + 1)
 {
     for (int level = 1; level <= granularity; level++)
         offsets[level] = bitOffset(p, level, group);
@@ -47,20 +47,6 @@ KeyPointBits::KeyPointBits(const Parameters& p, int group, int channels_)
         words = std::max(words, (size_t)selection[level].words());
     }
     planes.resize(words * bitsPerQuad(mapping));
-}
-
-void KeyPointBits::writeSelected(int level, const LevelShape& shape, bool wide, uchar* descriptor)
-{
-    const SelectedQuads& chosen = selection[level];
-    if (chosen.places().empty())
-        return;
-    if (wide)
-        wideSelectedBits(mapping, wideSums[level], shape, chosen.places(), chosen.words(), planes.data());
-    else
-        selectedBits(sums[level], shape, chosen.places(), chosen.words(), planes.data());
-    BitWriter out(descriptor, offsets[level]);
-    chosen.append(planes.data(), out);
-    out.flush();
 }
 
 void KeyPointBits::Axis::place(const int* edges, int n_)
@@ -85,50 +71,71 @@ double KeyPointBits::Axis::largestProduct() const
 }
 
 //! Whether four times the largest weighted sum of the level at hand fits an int.
-bool KeyPointBits::fitsInt(int maxValue, double longest) const
+bool KeyPointBits::fitsInt(double value, double longest) const
 {
-    const double value = 4. * maxValue, area = longest * longest;
+    const double area = longest * longest;
     // seldom does the quick bound, with all weights as large as can be, not do
     return value * area * area <= INT_MAX || value * x.largestProduct() * y.largestProduct() <= INT_MAX;
 }
 
-void KeyPointBits::write(const int* xEdges, const int* yEdges, double longestCell, int maxValue, bool wide,
-                         uchar* descriptor)
+LevelShape KeyPointBits::shape() const
 {
-    x.place(xEdges, size());
-    y.place(yEdges, size());
-    for (int level = granularity; level >= 1; level--)
-    {
-        const int n = 1 << level;
-        if (level < granularity)
-        {
-            x.coarsen();
-            y.coarsen();
-            if (wide)
-                wideParentSums(wideSums[level + 1], wideSums[level]);
-            else
-                parentSums(sums[level + 1], sums[level]);
-        }
-        if (!wide && !fitsInt(maxValue, longestCell * (size() >> level)))
-        {
-            widen(sums[level], wideSums[level]);
-            wide = true;
-        }
-
-        const LevelShape shape = { n, x.lengths, y.lengths, channels, overlap };
-        if (!selection.empty())
-        {
-            writeSelected(level, shape, wide, descriptor);
-            continue;
-        }
-        BitWriter out(descriptor, offsets[level]);
-        if (wide)
-            wideLevelBits(mapping, wideSums[level], shape, out);
-        else
-            levelBits(sums[level], shape, out);
-        out.flush();
-    }
+    const LevelShape s = { x.n, x.lengths, y.lengths, channels, overlap };
+    return s;
 }
+
+template <> const BitsKernels<ushort>& KeyPointBits::kernels<ushort>() const { return shortKernels; }
+template <> const BitsKernels<unsigned>& KeyPointBits::kernels<unsigned>() const { return longKernels; }
+
+template <typename Cell>
+void KeyPointBits::writeFrom(int level, const CellGrid<Cell>& cells, double value, double longest, uchar* descriptor)
+{
+    if (!fitsInt(value, longest))
+    {
+        widen(cells, wideSums[level]);
+        return writeFrom(level, wideSums[level], value, longest, descriptor);
+    }
+    const BitsKernels<Cell>& k = kernels<Cell>();
+    BitWriter out(descriptor, offsets[level]);
+    if (selection.empty())
+        k.levelBits(cells, shape(), sums[level - 1], out);
+    else
+    {
+        const SelectedQuads& chosen = selection[level];
+        k.selectedBits(cells, shape(), chosen.places(), chosen.words(), planes.data());
+        chosen.append(planes.data(), out);
+        k.parentSums(cells, sums[level - 1]);
+    }
+    out.flush();
+    if (level == 1)
+        return;
+    x.coarsen();
+    y.coarsen();
+    writeFrom(level - 1, sums[level - 1], value, 2 * longest, descriptor);
+}
+
+void KeyPointBits::writeFrom(int level, const CellGrid<double>& cells, double value, double longest, uchar* descriptor)
+{
+    BitWriter out(descriptor, offsets[level]);
+    if (selection.empty())
+        wideLevelBits(mapping, cells, shape(), out);
+    else
+    {
+        const SelectedQuads& chosen = selection[level];
+        wideSelectedBits(mapping, cells, shape(), chosen.places(), chosen.words(), planes.data());
+        chosen.append(planes.data(), out);
+    }
+    out.flush();
+    if (level == 1)
+        return;
+    x.coarsen();
+    y.coarsen();
+    wideParentSums(cells, wideSums[level - 1]);
+    writeFrom(level - 1, wideSums[level - 1], value, 2 * longest, descriptor);
+}
+
+template void KeyPointBits::writeFrom(int, const CellGrid<ushort>&, double, double, uchar*);
+template void KeyPointBits::writeFrom(int, const CellGrid<unsigned>&, double, double, uchar*);
 
 }  // namespace iib
 }  // namespace cv

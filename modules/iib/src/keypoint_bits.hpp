@@ -21,21 +21,31 @@ public:
     //! Cells in a row at the finest level.
     int size() const { return 1 << granularity; }
 
-    //! Where the sums over the finest cells go, if none exceeds UINT_MAX.
-    CellGrid<int>& finestCells() { return sums[granularity]; }
-    //! Where they go else.
-    CellGrid<double>& finestWideCells() { return wideSums[granularity]; }
+    //! Where the sums over the finest cells go, for Cell = ushort, unsigned or double: the first that holds them.
+    template <typename Cell> CellGrid<Cell>& finestCells();
 
-    /** Writes the bits of all levels into a descriptor; the groups before have written theirs.
+    /** Writes the bits of all levels into a descriptor; the groups before have written theirs. The sums are in
+     finestCells<Cell>().
      @param xEdges, yEdges size() + 1 edges of the finest cells in each direction, in pixels or samples.
      @param longestCell a bound of the difference of neighbouring edges.
-     @param maxValue the largest value that was summed.
-     @param wide whether the sums are in finestWideCells(). */
-    void write(const int* xEdges, const int* yEdges, double longestCell, int maxValue, bool wide, uchar* descriptor);
+     @param maxValue the largest value that was summed. */
+    template <typename Cell>
+    void write(const int* xEdges, const int* yEdges, double longestCell, int maxValue, uchar* descriptor)
+    {
+        x.place(xEdges, size());
+        y.place(yEdges, size());
+        writeFrom(granularity, finestCells<Cell>(), 4. * maxValue, longestCell, descriptor);
+    }
 
 private:
-    bool fitsInt(int maxValue, double longest) const;
-    void writeSelected(int level, const LevelShape& shape, bool wide, uchar* descriptor);
+    /** Writes a level and, from the sums of its cells, all coarser ones.
+     @param value four times the largest that was summed. @param longest a bound of the lengths of this level's cells. */
+    template <typename Cell>
+    void writeFrom(int level, const CellGrid<Cell>& cells, double value, double longest, uchar* descriptor);
+    void writeFrom(int level, const CellGrid<double>& cells, double value, double longest, uchar* descriptor);
+    bool fitsInt(double value, double longest) const;
+    LevelShape shape() const;
+    template <typename Cell> const BitsKernels<Cell>& kernels() const;
 
     //! The cells of the level at hand along one axis.
     struct Axis
@@ -50,16 +60,20 @@ private:
 
     const int granularity, mapping, channels;
     const bool overlap;
-    const LevelBitsFunc levelBits;
-    const SelectedBitsFunc selectedBits;
-    const ParentSumsFunc parentSums;
+    const BitsKernels<ushort> shortKernels;
+    const BitsKernels<unsigned> longKernels;
     std::vector<int> offsets;  //!< of the group's first bit of each level
     std::vector<SelectedQuads> selection;  //!< of each level; empty if all quads are in use
     std::vector<uint64> planes;
-    std::vector<CellGrid<int> > sums;
+    CellGrid<ushort> shortSums;  //!< of the finest level
+    std::vector<CellGrid<unsigned> > sums;
     std::vector<CellGrid<double> > wideSums;
     Axis x, y;
 };
+
+template <> inline CellGrid<ushort>& KeyPointBits::finestCells<ushort>() { return shortSums; }
+template <> inline CellGrid<unsigned>& KeyPointBits::finestCells<unsigned>() { return sums[granularity]; }
+template <> inline CellGrid<double>& KeyPointBits::finestCells<double>() { return wideSums[granularity]; }
 
 }  // namespace iib
 }  // namespace cv

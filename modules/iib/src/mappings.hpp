@@ -21,16 +21,20 @@ template <> inline double greatest(const double& a, const double& b) { return st
 template <typename V> inline V fourTimes(const V& v) { return v << 2; }
 template <> inline double fourTimes(const double& v) { return 4 * v; }
 
-//! Equation (1): x_i > mean(x), as 4 x_i > sum(x).
+//! Rounded down for vectors of whole numbers, than which a whole number is greater if it is than the quarter itself.
+template <typename V> inline V quarter(const V& v) { return v >> 2; }
+template <> inline double quarter(const double& v) { return v / 4; }
+
+//! Equation (1): x_i > mean(x).
 struct MeanMapping
 {
     enum { BITS = 4 };
 
     template <typename V, typename Put> static void map(const V x[4], const Put& put)
     {
-        const V sum = (x[0] + x[1]) + (x[2] + x[3]);
+        const V mean = quarter(V((x[0] + x[1]) + (x[2] + x[3])));
         for (int i = 0; i < 4; i++)
-            put(i, fourTimes(x[i]) > sum);
+            put(i, x[i] > mean);
     }
 };
 

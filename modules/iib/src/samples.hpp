@@ -35,7 +35,7 @@ template <typename Lane> struct SampleKernels
     //! steps = (steps + turn) modulo ORIENTATION_STEPS, but 0 where there is no gradient, as upright.
     void (*turn)(const Lane* gx, const Lane* gy, Lane* steps, int count, int turn);
     //! Sums over cells; n / sub cells in a row.
-    void (*sum)(const Lane* const planes[GROUP_CHANNELS], int n, int sub, CellGrid<int>& cells);
+    void (*sum)(const Lane* const planes[GROUP_CHANNELS], int n, int sub, CellGrid<unsigned>& cells);
 };
 
 const SampleKernels<short>& shortSampleKernels();

@@ -99,7 +99,7 @@ inline v_int32x4 loadFour(const short* p) { return v_load_expand(p); }
 inline v_int32x4 loadFour(const int* p) { return v_load(p); }
 
 template <typename Lane>
-void sumCells(const Lane* const planes[GROUP_CHANNELS], int n, int sub, CellGrid<int>& cells)
+void sumCells(const Lane* const planes[GROUP_CHANNELS], int n, int sub, CellGrid<unsigned>& cells)
 {
     const int side = n / sub, count = side * side;
     cells.create(side);
@@ -119,7 +119,7 @@ void sumCells(const Lane* const planes[GROUP_CHANNELS], int n, int sub, CellGrid
                 }
                 v_transpose4x4(sums[0], sums[1], sums[2], sums[3], out[0], out[1], out[2], out[3]);
                 for (int j = 0; j < 4; j++)
-                    v_store(cells.row(row, parity) + (i + j) * GROUP_CHANNELS, out[j]);
+                    v_store(cells.row(row, parity) + (i + j) * GROUP_CHANNELS, v_reinterpret_as_u32(out[j]));
             }
         }
 }

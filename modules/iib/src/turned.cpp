@@ -132,7 +132,7 @@ public:
     }
 
     //! The sums over cells of the group of channels that begins at `first`.
-    void sum(const RowKernels<Lane>& rowKernels, const SampleGrid& grid, int sub, size_t first, CellGrid<int>& cells)
+    void sum(const RowKernels<Lane>& rowKernels, const SampleGrid& grid, int sub, size_t first, CellGrid<unsigned>& cells)
     {
         const Lane* out[GROUP_CHANNELS];
         for (size_t i = 0; i < GROUP_CHANNELS; i++)
@@ -178,8 +178,8 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, co
                    const RowKernels<Lane>& rowKernels, Mat& descriptors)
 {
     Sampler<Lane> sampler(channels, block.area);
-    const ParentSumsFunc parentSums = getParentSumsFunc();
-    CellGrid<int> cells[2];
+    const auto parentSums = getBitsKernels(p.mapping, unsigned()).parentSums;
+    CellGrid<unsigned> cells[2];
     const Size image = channels[0].map.size();
 
     for (size_t first = 0; first < channels.size(); first += GROUP_CHANNELS)
@@ -198,19 +198,19 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, co
             // Two by two samples a cell, whose sum fits 16 bits, unless the cells are fewer.
             const int sub = bits.size() == grid.n ? 1 : 2;
             sampler.sample(grid, sub, keypoints[k].angle);
-            CellGrid<int>* finest = grid.n / sub == bits.size() ? &bits.finestCells() : &cells[0];
+            CellGrid<unsigned>* finest = grid.n / sub == bits.size() ? &bits.finestCells<unsigned>() : &cells[0];
             sampler.sum(rowKernels, grid, sub, first, *finest);
             while (finest->size() > bits.size())
             {
-                CellGrid<int>* parent = finest->size() == 2 * bits.size() ? &bits.finestCells()
+                CellGrid<unsigned>* parent = finest->size() == 2 * bits.size() ? &bits.finestCells<unsigned>()
                                                                           : &cells[finest == &cells[0]];
                 parentSums(*finest, *parent);
                 finest = parent;
             }
             for (size_t i = 0; i < edges.size(); i++)
                 edges[i] = (int)i * (grid.n / bits.size());
-            bits.write(edges.data(), edges.data(), grid.n / bits.size(), maxValue(group, gradient), false,
-                       descriptors.ptr(k));
+            bits.write<unsigned>(edges.data(), edges.data(), grid.n / bits.size(), maxValue(group, gradient),
+                                 descriptors.ptr(k));
         }
     }
 }

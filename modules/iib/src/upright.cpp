@@ -55,7 +55,7 @@ private:
 };
 
 //! Sums of a grid from those of a finer one.
-void gather(const CellGrid<int>& fine, CellGrid<double>& coarse, int n)
+template <typename Sum> void gather(const CellGrid<Sum>& fine, CellGrid<double>& coarse, int n)
 {
     coarse.create(n);
     const int step = fine.size() / n;
@@ -66,7 +66,7 @@ void gather(const CellGrid<int>& fine, CellGrid<double>& coarse, int n)
                 double sum = 0;
                 for (int y = 0; y < step; y++)
                     for (int x = 0; x < step; x++)
-                        sum += (unsigned)fine.cell(r * step + y, c * step + x)[i];
+                        sum += fine.cell(r * step + y, c * step + x)[i];
                 coarse.cell(r, c)[i] = sum;
             }
 }
@@ -80,8 +80,7 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
     const typename CellSumsFunc<Sum>::Type cellSums = getCellSumsFunc(Sum());
     KeyPointBits bits(p, group, (int)channels.size());
     const int n = bits.size();
-    CellGrid<Sum> scratch;
-    CellGrid<int> fine;
+    CellGrid<Sum> corners, fine;
     Edges edges, fineEdges;
 
     IntegralBand<Lane, Sum> band(channels, block.area, block.rows + Block::BAND_ROWS + 1);
@@ -100,8 +99,8 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
         const double cell = local[i].longestCell(n);
         if (largest * cell * cell <= largestSum)
         {
-            cellSums(band.rows(), edges.x.data(), edges.y.data(), n, scratch, bits.finestCells());
-            bits.write(edges.x.data(), edges.y.data(), cell, largest, false, descriptor);
+            cellSums(band.rows(), edges.x.data(), edges.y.data(), n, corners, bits.finestCells<Sum>());
+            bits.write<Sum>(edges.x.data(), edges.y.data(), cell, largest, descriptor);
             continue;
         }
         // Cells whose sums could exceed a Sum are put together from smaller ones.
@@ -109,9 +108,9 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
         do
             fineEdges.split(edges, parts *= 2);
         while (largest * fineEdges.largestCell() > largestSum);
-        cellSums(band.rows(), fineEdges.x.data(), fineEdges.y.data(), n * parts, scratch, fine);
-        gather(fine, bits.finestWideCells(), n);
-        bits.write(edges.x.data(), edges.y.data(), cell, largest, true, descriptor);
+        cellSums(band.rows(), fineEdges.x.data(), fineEdges.y.data(), n * parts, corners, fine);
+        gather(fine, bits.finestCells<double>(), n);
+        bits.write<double>(edges.x.data(), edges.y.data(), cell, largest, descriptor);
     }
 }
 
