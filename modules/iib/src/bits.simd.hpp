@@ -23,47 +23,40 @@ namespace {
 enum { CHUNK = 16, CHUNK_VECTORS = CHUNK / VTraits<v_int32>::max_nlanes };
 
 //! A vector whose comparisons are bits, a bit a lane.
-struct Lanes
+template <typename V> struct Lanes
 {
-    v_int32 v;
+    V v;
 
     Lanes() {}
-    Lanes(const v_int32& vector) : v(vector) {}
+    Lanes(const V& vector) : v(vector) {}
 };
 
-inline Lanes operator+(const Lanes& a, const Lanes& b) { return a.v + b.v; }
-inline Lanes operator-(const Lanes& a, const Lanes& b) { return a.v - b.v; }
-inline Lanes operator<<(const Lanes& a, int bits) { return a.v << bits; }
-inline Lanes operator>>(const Lanes& a, int bits) { return a.v >> bits; }
-inline Lanes v_min(const Lanes& a, const Lanes& b) { return cv::v_min(a.v, b.v); }
-inline Lanes v_max(const Lanes& a, const Lanes& b) { return cv::v_max(a.v, b.v); }
+template <typename V> inline Lanes<V> operator+(const Lanes<V>& a, const Lanes<V>& b) { return a.v + b.v; }
+template <typename V> inline Lanes<V> operator-(const Lanes<V>& a, const Lanes<V>& b) { return a.v - b.v; }
+template <typename V> inline Lanes<V> operator<<(const Lanes<V>& a, int bits) { return a.v << bits; }
+template <typename V> inline Lanes<V> operator>>(const Lanes<V>& a, int bits) { return a.v >> bits; }
+template <typename V> inline Lanes<V> v_min(const Lanes<V>& a, const Lanes<V>& b) { return cv::v_min(a.v, b.v); }
+template <typename V> inline Lanes<V> v_max(const Lanes<V>& a, const Lanes<V>& b) { return cv::v_max(a.v, b.v); }
+template <typename V> inline unsigned operator>(const Lanes<V>& a, const Lanes<V>& b) { return (unsigned)v_signmask(a.v > b.v); }
+template <typename V> inline unsigned operator>=(const Lanes<V>& a, const Lanes<V>& b) { return (unsigned)v_signmask(a.v >= b.v); }
+template <typename V> inline unsigned operator==(const Lanes<V>& a, const Lanes<V>& b) { return (unsigned)v_signmask(a.v == b.v); }
 
 #if CV_SIMD_WIDTH == 64
 // Universal intrinsics turn the mask of a comparison into a vector and that into a mask again.
-inline unsigned operator>(const Lanes& a, const Lanes& b) { return _mm512_cmpgt_epi32_mask(a.v.val, b.v.val); }
-inline unsigned operator>=(const Lanes& a, const Lanes& b) { return _mm512_cmpge_epi32_mask(a.v.val, b.v.val); }
-inline unsigned operator==(const Lanes& a, const Lanes& b) { return _mm512_cmpeq_epi32_mask(a.v.val, b.v.val); }
-#else
-inline unsigned operator>(const Lanes& a, const Lanes& b) { return (unsigned)v_signmask(a.v > b.v); }
-inline unsigned operator>=(const Lanes& a, const Lanes& b) { return (unsigned)v_signmask(a.v >= b.v); }
-inline unsigned operator==(const Lanes& a, const Lanes& b) { return (unsigned)v_signmask(a.v == b.v); }
+inline unsigned operator>(const Lanes<v_int32>& a, const Lanes<v_int32>& b) { return _mm512_cmpgt_epi32_mask(a.v.val, b.v.val); }
+inline unsigned operator>=(const Lanes<v_int32>& a, const Lanes<v_int32>& b) { return _mm512_cmpge_epi32_mask(a.v.val, b.v.val); }
+inline unsigned operator==(const Lanes<v_int32>& a, const Lanes<v_int32>& b) { return _mm512_cmpeq_epi32_mask(a.v.val, b.v.val); }
 #endif
 
-enum { MAX_QUADS = 1 << (MAX_GRANULARITY - 1), MAX_LANES = MAX_QUADS * GROUP_CHANNELS, MAX_PLANES = 8 };
+enum { MAX_QUADS = 1 << (MAX_GRANULARITY - 1), MAX_LANES = MAX_QUADS * GROUP_CHANNELS };
 
-//! A row of quads: a bit for each quad and channel, in a plane for each bit of the mapping.
-struct RowBits
+//! Collects comparisons, from a lane on.
+template <typename Word> struct Put
 {
-    ushort planes[MAX_PLANES][MAX_LANES / CHUNK];
-};
+    Word* planes;
+    int step, lane;
 
-//! Collects the comparisons of a chunk.
-struct Put
-{
-    unsigned* chunk;
-    int lane;
-
-    void operator()(int plane, unsigned bits) const { chunk[plane] |= bits << lane; }
+    void operator()(int plane, unsigned bits) const { planes[plane * step] |= (Word)bits << lane; }
 };
 
 /* Squeezes the channels in use together, out of each group of four lanes: neighbouring fields of `channels` bits
@@ -88,41 +81,28 @@ inline unsigned dropLanes(unsigned chunk, int channels)
     }
 }
 
-void append(const RowBits& row, int planes, int quads, int channels, BitWriter& out)
-{
-    const int chunkQuads = CHUNK / GROUP_CHANNELS;
-    for (int plane = 0; plane < planes; plane++)
-        for (int first = 0; first < quads; first += chunkQuads)
-        {
-            const int count = std::min(quads - first, chunkQuads) * channels;
-            const unsigned bits = dropLanes(row.planes[plane][first / chunkQuads], channels);
-            out.append(bits & ((1u << count) - 1), count);
-        }
-}
-
 inline v_int32 loadCells(const ushort* p) { return v_reinterpret_as_s32(vx_load_expand(p)); }
 inline v_int32 loadCells(const unsigned* p) { return v_reinterpret_as_s32(vx_load(p)); }
 inline v_int32x4 loadCell(const ushort* p) { return v_reinterpret_as_s32(v_load_expand(p)); }
 inline v_int32x4 loadCell(const unsigned* p) { return v_reinterpret_as_s32(v_load(p)); }
 
-//! The cells of the quads of a row, and of the rows after it.
+//! The cells of a chunk of quads, and of those in the rows below it.
 template <typename Cell> class QuadRows
 {
 public:
-    //! Begins with quads whose top left cells are in row dy and columns dx, dx + 2, ...
-    QuadRows(const CellGrid<Cell>& cells, int dy, int dx)
-        : left(cells.row(dy, dx)), right(cells.row(dy, 1 - dx) + dx * GROUP_CHANNELS),  // next to odd is even
-          step(cells.rowStep())
+    //! Begins with quads whose top left cells are in row dy and columns dx, dx + 2, ..., at value `first` of the row.
+    QuadRows(const CellGrid<Cell>& cells, int dy, int dx, int first)
+        : left(cells.row(dy, dx) + first), right(cells.row(dy, 1 - dx) + dx * GROUP_CHANNELS + first),
+          step(cells.rowStep())  // next to an odd column is an even one
     {
     }
 
-    //! The four cells of the quads from value i of a row on.
-    void load(int i, v_int32 x[4]) const
+    void load(int lane, v_int32 x[4]) const
     {
-        x[0] = loadCells(left + i);
-        x[1] = loadCells(right + i);
-        x[2] = loadCells(left + i + step);
-        x[3] = loadCells(right + i + step);
+        x[0] = loadCells(left + lane);
+        x[1] = loadCells(right + lane);
+        x[2] = loadCells(left + step + lane);
+        x[3] = loadCells(right + step + lane);
     }
 
     void next()
@@ -136,24 +116,26 @@ private:
     const size_t step;
 };
 
-//! Where the sums over quads go, row by row: the cells of the next coarser level.
+//! Where the sums over such quads go: the cells of the next coarser level.
 class ParentRows
 {
 public:
-    ParentRows(CellGrid<unsigned>& parents) : even(parents.row(0, 0)), odd(parents.row(0, 1)), step(parents.rowStep()) {}
+    ParentRows(CellGrid<unsigned>& parents, int first)
+        : even(parents.row(0, 0) + first / 2), odd(parents.row(0, 1) + first / 2), step(parents.rowStep())
+    {
+    }
 
-    //! The quads from value i of the row on.
-    void store(const v_int32 x[4], int i) const
+    void store(int lane, const v_int32 x[4]) const
     {
         v_uint32 sums = v_reinterpret_as_u32((x[0] + x[1]) + (x[2] + x[3]));
 #if CV_SIMD_WIDTH == 16
-        v_store((i / GROUP_CHANNELS % 2 ? odd : even) + i / (2 * GROUP_CHANNELS) * GROUP_CHANNELS, sums);
+        v_store((lane / GROUP_CHANNELS % 2 ? odd : even) + lane / (2 * GROUP_CHANNELS) * GROUP_CHANNELS, sums);
 #else
 #if CV_SIMD_WIDTH == 64
         sums = v_uint32(_mm512_shuffle_i32x4(sums.val, sums.val, 0xd8));  // quads 0, 2, 1, 3
 #endif
-        v_store_low(even + i / 2, sums);
-        v_store_high(odd + i / 2, sums);
+        v_store_low(even + lane / 2, sums);
+        v_store_high(odd + lane / 2, sums);
 #endif
     }
 
@@ -172,103 +154,201 @@ template <typename Cell> void parentSums(const CellGrid<Cell>& cells, CellGrid<u
 {
     const int n = cells.size() / 2;
     parents.create(n);
-    QuadRows<Cell> quads(cells, 0, 0);
-    ParentRows sums(parents);
-    for (int r = 0; r < n; r++, quads.next(), sums.next())
-        for (int i = 0; i < n * GROUP_CHANNELS; i += v_int32::nlanes)
-        {
-            v_int32 x[4];
-            quads.load(i, x);
-            sums.store(x, i);
-        }
-}
-
-inline void storeChunk(unsigned chunk, uchar* out)
-{
-    out[0] = (uchar)chunk;
-    out[1] = (uchar)(chunk >> 8);
+    for (int first = 0; first < n * GROUP_CHANNELS; first += CHUNK)
+    {
+        QuadRows<Cell> quads(cells, 0, 0, first);
+        ParentRows sums(parents, first);
+        for (int r = 0; r < n; r++, quads.next(), sums.next())
+            for (int lane = 0; lane < CHUNK; lane += v_int32::nlanes)
+            {
+                v_int32 x[4];
+                quads.load(lane, x);
+                sums.store(lane, x);
+            }
+    }
 }
 
 //! Weights of the left and right cells of a row of quads (see LevelShape), repeated for the channels.
 struct ColumnWeights
 {
-    int left[MAX_LANES], right[MAX_LANES];
+    int CV_DECL_ALIGNED(CACHE_LINE) left[MAX_LANES];
+    int CV_DECL_ALIGNED(CACHE_LINE) right[MAX_LANES];
     bool equal;  //!< whether all weights are 1
 
-    ColumnWeights(const int* widths, int quads) : equal(true)
+    ColumnWeights(const int* widths, int quads)
     {
-        for (int q = 0; q < quads; q++)
+        const v_int32x4 one = v_setall_s32(1);
+        int difference = 0;
+        for (int q = 0; q < quads; q++)  // without a branch, which none could predict
         {
-            const int l = widths[2 * q], r = widths[2 * q + 1];
-            equal = equal && l == r;
-            v_store(left + q * GROUP_CHANNELS, v_setall_s32(l == r ? 1 : r));
-            v_store(right + q * GROUP_CHANNELS, v_setall_s32(l == r ? 1 : l));
+            const v_int32x4 l = v_setall_s32(widths[2 * q]), r = v_setall_s32(widths[2 * q + 1]), same = l == r;
+            difference |= widths[2 * q] ^ widths[2 * q + 1];
+            v_store(left + q * GROUP_CHANNELS, v_select(same, one, r));
+            v_store(right + q * GROUP_CHANNELS, v_select(same, one, l));
         }
+        equal = difference == 0;
     }
 };
 
-/* Quads whose top left cells are in rows dy, dy + 2, ... and columns dx, dx + 2, ... WITH_PARENTS also sums the cells
- of the next coarser level, which takes dx = dy = 0. */
+//! Where the bits of a chunk go, two bytes for each plane.
+struct PlaneRows
+{
+    uchar* first;
+    size_t plane, row;  //!< from a plane or row to the next one, in bytes
+
+    void store(int p, unsigned chunk) const
+    {
+        first[p * plane] = (uchar)chunk;
+        first[p * plane + 1] = (uchar)(chunk >> 8);
+    }
+};
+
+//! A chunk of quads and all those below it. WITH_PARENTS also stores the sums over quads.
+template <typename Mapping, bool WITH_PARENTS, typename Cell>
+inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, int first, const int* heights, int rows,
+                       ParentRows sums, PlaneRows out)
+{
+    v_int32 left[CHUNK_VECTORS], right[CHUNK_VECTORS];
+    for (int i = 0; i < CHUNK_VECTORS; i++)
+    {
+        left[i] = vx_load(columns.left + first + i * v_int32::nlanes);
+        right[i] = vx_load(columns.right + first + i * v_int32::nlanes);
+    }
+    const bool equalWidths = columns.equal;
+    for (int r = 0; r < rows; r++)
+    {
+        const int top = heights[2 * r + 1], bottom = heights[2 * r];
+        unsigned chunk[Mapping::BITS] = {};
+        for (int i = 0; i < CHUNK_VECTORS; i++)
+        {
+            v_int32 x[4];
+            quads.load(i * v_int32::nlanes, x);
+            if (WITH_PARENTS)
+                sums.store(i * v_int32::nlanes, x);
+            if (!equalWidths)
+            {
+                x[0] = x[0] * left[i];
+                x[1] = x[1] * right[i];
+                x[2] = x[2] * left[i];
+                x[3] = x[3] * right[i];
+            }
+            if (top != bottom)
+            {
+                const v_int32 t = vx_setall_s32(top), b = vx_setall_s32(bottom);
+                x[0] = x[0] * t;
+                x[1] = x[1] * t;
+                x[2] = x[2] * b;
+                x[3] = x[3] * b;
+            }
+            const Lanes<v_int32> weighted[4] = { x[0], x[1], x[2], x[3] };
+            const Put<unsigned> put = { chunk, 1, i * v_int32::nlanes };
+            Mapping::map(weighted, put);
+        }
+        for (int plane = 0; plane < Mapping::BITS; plane++)
+            out.store(plane, chunk[plane]);
+        quads.next();
+        sums.next();
+        out.first += out.row;
+    }
+}
+
+//! Appends a row of planes, each of quads whose channels have a lane each.
+inline void append(const PlaneRows& row, int planes, int quads, int channels, BitWriter& out)
+{
+    const int chunkQuads = CHUNK / GROUP_CHANNELS;
+    for (int plane = 0; plane < planes; plane++)
+        for (int first = 0; first < quads; first += chunkQuads)
+        {
+            const uchar* p = row.first + plane * row.plane + first / 2;
+            const int count = std::min(quads - first, chunkQuads) * channels;
+            out.append(dropLanes(p[0] | p[1] << 8, channels) & ((1u << count) - 1), count);
+        }
+}
+
+//! The cells of one quad, a lane each for the channels.
+template <typename Cell> class Quad
+{
+public:
+    Quad(const CellGrid<Cell>& cells, int row_, int col_) : row(row_), col(col_)
+    {
+        for (int i = 0; i < 4; i++)
+            x[i] = loadCell(cells.cell(row + i / 2, col + i % 2));
+    }
+
+    v_uint32x4 sum() const { return v_reinterpret_as_u32((x[0] + x[1]) + (x[2] + x[3])); }
+
+    //! Weighted as LevelShape tells.
+    template <typename Mapping, typename P> void map(const LevelShape& shape, const P& put) const
+    {
+        const int left = shape.widths[col], right = shape.widths[col + 1];
+        const int top = shape.heights[row], bottom = shape.heights[row + 1];
+        const int l = left == right ? 1 : right, r = left == right ? 1 : left;
+        const int t = top == bottom ? 1 : bottom, b = top == bottom ? 1 : top;
+        const Lanes<v_int32x4> weighted[4] = { x[0] * v_setall_s32(l * t), x[1] * v_setall_s32(r * t),
+                                               x[2] * v_setall_s32(l * b), x[3] * v_setall_s32(r * b) };
+        Mapping::map(weighted, put);
+    }
+
+private:
+    const int row, col;
+    v_int32x4 x[4];
+};
+
+//! As windowBits, for rows of less than a chunk.
+template <typename Mapping, bool WITH_PARENTS, typename Cell>
+void narrowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int dy, int dx, CellGrid<unsigned>& parents,
+                BitWriter& out)
+{
+    BitWriter writer = out;  // a copy that no store of a byte can change stays in registers
+    for (int row = dy; row + 1 < shape.n; row += 2)
+    {
+        unsigned planes[Mapping::BITS] = {};
+        int lane = 0;
+        for (int col = dx; col + 1 < shape.n; col += 2, lane += GROUP_CHANNELS)
+        {
+            const Quad<Cell> quad(cells, row, col);
+            if (WITH_PARENTS)
+                v_store(parents.cell(row / 2, col / 2), quad.sum());
+            const Put<unsigned> put = { planes, 1, lane };
+            quad.template map<Mapping>(shape, put);
+        }
+        for (int plane = 0; plane < Mapping::BITS; plane++)
+            writer.append(dropLanes(planes[plane], shape.channels), lane / GROUP_CHANNELS * shape.channels);
+    }
+    out = writer;
+}
+
+//! Quads whose top left cells are in rows dy, dy + 2, ... and columns dx, dx + 2, ...
 template <typename Mapping, bool WITH_PARENTS, typename Cell>
 void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int dy, int dx, CellGrid<unsigned>& parents,
                 BitWriter& out)
 {
-    const int rowCount = (shape.n - dy) / 2, quads = (shape.n - dx) / 2, lanes = quads * GROUP_CHANNELS;
-    const ColumnWeights columns(shape.widths + dx, quads);
-    const bool equalWidths = columns.equal;
-    const int* heights = shape.heights + dy;
-    QuadRows<Cell> rows(cells, dy, dx);
-    ParentRows sums(parents);
-    RowBits bits;
+    const int rows = (shape.n - dy) / 2, quads = (shape.n - dx) / 2, lanes = quads * GROUP_CHANNELS;
+    if (lanes < CHUNK)
+        return narrowBits<Mapping, WITH_PARENTS>(cells, shape, dy, dx, parents, out);
+    const ColumnWeights weights(shape.widths + dx, quads);
     // Where a row fills whole chunks, its bits need no shifting.
-    const int planeBytes = lanes / 8;
-    uchar* whole = 0;
+    uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8], *whole = 0;
     if (shape.channels == GROUP_CHANNELS && lanes % CHUNK == 0)
-        whole = out.reserve(rowCount * Mapping::BITS * planeBytes);
-    for (int r = 0; r < rowCount; r++, heights += 2, rows.next(), sums.next())
+        whole = out.reserve(rows * Mapping::BITS * lanes / 8);
+    PlaneRows planes;
+    planes.first = whole ? whole : buffer;
+    planes.plane = (lanes + CHUNK - 1) / CHUNK * (CHUNK / 8);
+    planes.row = Mapping::BITS * planes.plane;
+    for (int first = 0; first < lanes; first += CHUNK)
     {
-        const bool equalHeights = heights[0] == heights[1];
-        const v_int32 topWeight = vx_setall_s32(heights[1]), bottomWeight = vx_setall_s32(heights[0]);
-        for (int first = 0; first < lanes; first += CHUNK)
-        {
-            unsigned chunk[Mapping::BITS] = {};
-            for (int lane = 0; lane < CHUNK; lane += VTraits<v_int32>::max_nlanes)
-            {
-                const int i = first + lane;
-                v_int32 x[4];
-                rows.load(i, x);
-                if (WITH_PARENTS)
-                    sums.store(x, i);
-                if (!equalWidths)
-                {
-                    const v_int32 left = vx_load(columns.left + i), right = vx_load(columns.right + i);
-                    x[0] = x[0] * left;
-                    x[1] = x[1] * right;
-                    x[2] = x[2] * left;
-                    x[3] = x[3] * right;
-                }
-                if (!equalHeights)
-                {
-                    x[0] = x[0] * topWeight;
-                    x[1] = x[1] * topWeight;
-                    x[2] = x[2] * bottomWeight;
-                    x[3] = x[3] * bottomWeight;
-                }
-                const Lanes weighted[4] = { x[0], x[1], x[2], x[3] };
-                const Put put = { chunk, lane };
-                Mapping::map(weighted, put);
-            }
-            for (int plane = 0; plane < Mapping::BITS; plane++)
-                if (whole)
-                    storeChunk(chunk[plane], whole + plane * planeBytes + first / 8);
-                else
-                    bits.planes[plane][first / CHUNK] = (ushort)chunk[plane];
-        }
-        if (whole)
-            whole += Mapping::BITS * planeBytes;
-        else
-            append(bits, Mapping::BITS, quads, shape.channels, out);
+        PlaneRows columns = planes;
+        columns.first += first / 8;
+        columnBits<Mapping, WITH_PARENTS>(QuadRows<Cell>(cells, dy, dx, first),
+                                          weights, first, shape.heights + dy, rows, ParentRows(parents, first),
+                                          columns);
     }
+    if (whole)
+        return;
+    BitWriter writer = out;  // a copy that no store of a byte can change stays in registers
+    for (int r = 0; r < rows; r++, planes.first += planes.row)
+        append(planes, Mapping::BITS, quads, shape.channels, writer);
+    out = writer;
 }
 
 template <typename Mapping, typename Cell>
@@ -283,60 +363,17 @@ void levelBits(const CellGrid<Cell>& cells, const LevelShape& shape, CellGrid<un
     windowBits<Mapping, false>(cells, shape, 1, 1, parents, out);
 }
 
-//! Brings the chosen quads together, cell by cell, already weighted.
-template <typename Cell>
-void gatherQuads(const CellGrid<Cell>& cells, const LevelShape& shape, const QuadPlace* quads, int count,
-                 int gathered[4][CHUNK])
-{
-    for (int q = 0; q < count; q++)
-    {
-        const int row = quads[q].row, col = quads[q].col;
-        const int left = shape.widths[col], right = shape.widths[col + 1];
-        const int top = shape.heights[row], bottom = shape.heights[row + 1];
-        v_int32x4 x[4] = { loadCell(cells.cell(row, col)), loadCell(cells.cell(row, col + 1)),
-                           loadCell(cells.cell(row + 1, col)), loadCell(cells.cell(row + 1, col + 1)) };
-        if (left != right)
-        {
-            const v_int32x4 l = v_setall_s32(right), r = v_setall_s32(left);
-            x[0] = x[0] * l;
-            x[1] = x[1] * r;
-            x[2] = x[2] * l;
-            x[3] = x[3] * r;
-        }
-        if (top != bottom)
-        {
-            const v_int32x4 t = v_setall_s32(bottom), b = v_setall_s32(top);
-            x[0] = x[0] * t;
-            x[1] = x[1] * t;
-            x[2] = x[2] * b;
-            x[3] = x[3] * b;
-        }
-        for (int i = 0; i < 4; i++)
-            v_store(gathered[i] + q * GROUP_CHANNELS, x[i]);
-    }
-}
-
 template <typename Mapping, typename Cell>
 void selectedBits(const CellGrid<Cell>& cells, const LevelShape& shape, const std::vector<QuadPlace>& quads,
                   int words, uint64* planes)
 {
-    const int chunkQuads = CHUNK / GROUP_CHANNELS, wordChunks = 64 / CHUNK, count = (int)quads.size();
     std::fill(planes, planes + words * Mapping::BITS, (uint64)0);
-    int gathered[4][CHUNK] = {};
-    for (int first = 0; first < count; first += chunkQuads)
+    const int count = (int)quads.size();
+    for (int q = 0; q < count; q++)
     {
-        gatherQuads(cells, shape, &quads[first], std::min(chunkQuads, count - first), gathered);
-        unsigned chunk[Mapping::BITS] = {};
-        for (int lane = 0; lane < CHUNK; lane += VTraits<v_int32>::max_nlanes)
-        {
-            const Lanes x[4] = { vx_load(gathered[0] + lane), vx_load(gathered[1] + lane), vx_load(gathered[2] + lane),
-                                 vx_load(gathered[3] + lane) };
-            const Put put = { chunk, lane };
-            Mapping::map(x, put);
-        }
-        const int index = first / chunkQuads;
-        for (int plane = 0; plane < Mapping::BITS; plane++)
-            planes[plane * words + index / wordChunks] |= (uint64)chunk[plane] << index % wordChunks * CHUNK;
+        const Put<uint64> put = { planes + q / SelectedQuads::WORD_QUADS, words,
+                                  q % SelectedQuads::WORD_QUADS * GROUP_CHANNELS };
+        Quad<Cell>(cells, quads[q].row, quads[q].col).template map<Mapping>(shape, put);
     }
 }
 

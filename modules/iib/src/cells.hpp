@@ -45,11 +45,11 @@ private:
     AlignedBuffer<T> values;
 };
 
-//! Sums over n x n cells with the given n + 1 edges, in pixels of the image; `corners` is overwritten.
+//! Sums over n x n cells with the given n + 1 edges, in pixels of the image.
 template <typename Sum> struct CellSumsFunc
 {
     typedef void (*Type)(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n,
-                         CellGrid<Sum>& corners, CellGrid<Sum>& cells);
+                         CellGrid<Sum>& cells);
 };
 CellSumsFunc<ushort>::Type getCellSumsFunc(ushort);
 CellSumsFunc<unsigned>::Type getCellSumsFunc(unsigned);

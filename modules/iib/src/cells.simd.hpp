@@ -25,92 +25,117 @@ inline v_uint32 load(const unsigned* p) { return vx_load(p); }
 inline v_uint16 subtract(const v_uint16& a, const v_uint16& b) { return v_sub_wrap(a, b); }
 inline v_uint32 subtract(const v_uint32& a, const v_uint32& b) { return a - b; }
 
-//! Two corners that are neighbours in a row of the grid; few wide stores, since all are read again as vectors.
-inline void copyPair(const ushort* a, const ushort* b, ushort* out)
+inline v_uint16x8 loadCorner(const ushort* corner) { return v_load_low(corner); }
+inline v_uint32x4 loadCorner(const unsigned* corner) { return v_load(corner); }
+
+// What 128 bits hold of a row of corners: two corners or one.
+inline v_uint16x8 loadCorners(const ushort* row, const size_t* offsets)
 {
-    v_store(out, v_load_halves(a, b));
+    return v_load_halves(row + offsets[0], row + offsets[1]);
 }
 
-inline void copyPair(const unsigned* a, const unsigned* b, unsigned* out)
+inline v_uint32x4 loadCorners(const unsigned* row, const size_t* offsets)
 {
-    v_store(out, v_load(a));
-    v_store(out + GROUP_CHANNELS, v_load(b));
+    return v_load(row + offsets[0]);
 }
 
-//! Brings ROWS rows of corners together; several at a time, since their offsets are the same.
-template <int ROWS, typename Sum>
-inline void gatherCorners(const Sum* const from[ROWS], const int* offsets, int n, Sum* even, Sum* odd, size_t step)
+//! As many corners as make a vector; not v_lut_quads, since gather instructions are slow on many machines.
+template <typename V, typename Sum> inline V gatherCorners(const Sum* row, const size_t* offsets)
 {
-    for (int c = 0; c < n; c += 4)  // beyond the last column the offsets repeat
+#if CV_SIMD_WIDTH == 16
+    return loadCorners(row, offsets);
+#else
+    const int n = 16 / (GROUP_CHANNELS * (int)sizeof(Sum));
+    const __m256i low = _mm256_inserti128_si256(_mm256_castsi128_si256(loadCorners(row, offsets).val),
+                                                loadCorners(row, offsets + n).val, 1);
+#if CV_SIMD_WIDTH == 32
+    return V(low);
+#else
+    const __m256i high = _mm256_inserti128_si256(_mm256_castsi128_si256(loadCorners(row, offsets + 2 * n).val),
+                                                 loadCorners(row, offsets + 3 * n).val, 1);
+    return V(_mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1));
+#endif
+#endif
+}
+
+//! The corners after the first one of a vector, and one more.
+template <typename Sum, typename V> inline V nextCorners(const V& corners, const Sum* more)
+{
+#if CV_SIMD_WIDTH == 64
+    // v_rotate_right makes a slower instruction of this
+    const int words = GROUP_CHANNELS * (int)sizeof(Sum) / 8;
+    return V(_mm512_alignr_epi64(_mm512_castsi128_si512(loadCorner(more).val), corners.val, words));
+#elif CV_SIMD_WIDTH == 32
+    return v_rotate_right<GROUP_CHANNELS>(corners, V(_mm256_castsi128_si256(loadCorner(more).val)));
+#else
+    return v_rotate_right<GROUP_CHANNELS>(corners, loadCorner(more));
+#endif
+}
+
+//! From a row of corners: their differences, which are sums over a row of left and of right cells and all above.
+template <typename V> struct RowSums
+{
+    V left, right;
+
+    template <typename Sum> RowSums(const Sum* row, const size_t* even, const size_t* odd)
     {
-        const int o0 = offsets[c], o1 = offsets[c + 1], o2 = offsets[c + 2], o3 = offsets[c + 3];
-        const int at = c / 2 * GROUP_CHANNELS;
-        for (int i = 0; i < ROWS; i++)
-        {
-            copyPair(from[i] + o0, from[i] + o2, even + i * step + at);
-            copyPair(from[i] + o1, from[i] + o3, odd + i * step + at);
-        }
+        const V e = gatherCorners<V>(row, even), o = gatherCorners<V>(row, odd);
+        left = subtract(o, e);
+        right = subtract(nextCorners(e, row + even[V::nlanes / GROUP_CHANNELS]), o);
     }
-    for (int i = 0; i < ROWS; i++)
-        memcpy(even + i * step + n / 2 * GROUP_CHANNELS, from[i] + offsets[n], GROUP_CHANNELS * sizeof(Sum));
-}
+};
 
-//! Cells from their corners, a vector of columns after the other.
-template <typename Sum> void subtractCorners(const CellGrid<Sum>& corners, CellGrid<Sum>& cells)
+//! The row of the ring that ends above row y of the image.
+template <typename Sum> class RowFinder
 {
-    const int n = cells.size(), lanes = CV_SIMD_WIDTH / (int)sizeof(Sum);
-    const size_t step = corners.rowStep();
-    for (int i = 0; i < n / 2 * GROUP_CHANNELS; i += lanes)
+public:
+    RowFinder(const IntegralRows<Sum>& rows, int top)
+        : data(rows.data), step(rows.step), count(rows.count), shift((top - rows.origin.y) % count - top)
     {
-        // Differences along row 0 of corners, then those along each next row less those before.
-        const Sum *evens = corners.row(0, 0) + i, *odds = corners.row(0, 1) + i;
-        Sum *lefts = cells.row(0, 0) + i, *rights = cells.row(0, 1) + i;
-        auto odd = load(odds), left = subtract(odd, load(evens)), right = subtract(load(evens + GROUP_CHANNELS), odd);
-        for (int r = 0; r < n; r++, lefts += step, rights += step)
-        {
-            evens += step;
-            odds += step;
-            odd = load(odds);
-            const auto nextLeft = subtract(odd, load(evens)), nextRight = subtract(load(evens + GROUP_CHANNELS), odd);
-            v_store(lefts, subtract(nextLeft, left));
-            v_store(rights, subtract(nextRight, right));
-            left = nextLeft;
-            right = nextRight;
-        }
     }
-}
 
-/* The corners are brought together first, those of even and of odd columns apart, so that all further work is on
- whole vectors. */
+    const Sum* operator()(int y) const
+    {
+        const int place = y + shift;
+        return data + (place < count ? place : place - count) * step;
+    }
+
+private:
+    const Sum* const data;
+    const size_t step;
+    const int count, shift;
+};
+
 template <typename Sum>
-void cellSums(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& corners,
-              CellGrid<Sum>& cells)
+void cellSums(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells)
 {
-    corners.create(n);
-    cells.create(n);
-    AutoBuffer<int, 68> offsets(n + 4);
-    for (int c = 0; c <= n; c++)
-        offsets[c] = (xEdges[c] - rows.origin.x) * GROUP_CHANNELS;
-    for (int c = n + 1; c < n + 4; c++)
-        offsets[c] = offsets[n];
-    const int first = (yEdges[0] - rows.origin.y) % rows.count - yEdges[0], count = rows.count;
-    const Sum* const data = rows.data;
-    const size_t rowStep = rows.step;
-    const auto row = [=](int r)
+    typedef decltype(load((const Sum*)0)) V;
+    const int corners = V::nlanes / GROUP_CHANNELS, half = n / 2 + corners;
+    AutoBuffer<size_t, 128> offsets(2 * half);
+    size_t *even = offsets.data(), *odd = even + half;
+    for (int i = 0; i < n / 2; i++)
     {
-        const int place = first + yEdges[r];
-        return data + (place < count ? place : place - count) * rowStep;
-    };
-    Sum *even = corners.row(0, 0), *odd = corners.row(0, 1);
-    const size_t step = corners.rowStep();
-    const Sum* top[1] = { row(0) };
-    gatherCorners<1>(top, offsets.data(), n, even, odd, step);
-    for (int r = 1; r <= n; r += 2)
-    {
-        const Sum* from[2] = { row(r), row(r + 1) };
-        gatherCorners<2>(from, offsets.data(), n, even + r * step, odd + r * step, step);
+        even[i] = (size_t)(xEdges[2 * i] - rows.origin.x) * GROUP_CHANNELS;
+        odd[i] = (size_t)(xEdges[2 * i + 1] - rows.origin.x) * GROUP_CHANNELS;
     }
-    subtractCorners(corners, cells);
+    for (int i = n / 2; i < half; i++)  // beyond the last column the last edge is repeated
+        even[i] = odd[i] = (size_t)(xEdges[n] - rows.origin.x) * GROUP_CHANNELS;
+
+    cells.create(n);
+    const size_t step = cells.rowStep();
+    const RowFinder<Sum> row(rows, yEdges[0]);
+    for (int c = 0; c < n / 2; c += corners)
+    {
+        Sum *left = cells.row(0, 0) + c * GROUP_CHANNELS, *right = cells.row(0, 1) + c * GROUP_CHANNELS;
+        RowSums<V> above(row(yEdges[0]), even + c, odd + c);
+        for (int r = 1; r <= n; r++, left += step, right += step)
+        {
+            const RowSums<V> below(row(yEdges[r]), even + c, odd + c);
+            v_store(left, subtract(below.left, above.left));
+            v_store(right, subtract(below.right, above.right));
+            above = below;
+        }
+    }
 }
 
 }  // namespace

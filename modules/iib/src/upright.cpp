@@ -80,7 +80,7 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
     const typename CellSumsFunc<Sum>::Type cellSums = getCellSumsFunc(Sum());
     KeyPointBits bits(p, group, (int)channels.size());
     const int n = bits.size();
-    CellGrid<Sum> corners, fine;
+    CellGrid<Sum> fine;
     Edges edges, fineEdges;
 
     IntegralBand<Lane, Sum> band(channels, block.area, block.rows + Block::BAND_ROWS + 1);
@@ -99,7 +99,7 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
         const double cell = local[i].longestCell(n);
         if (largest * cell * cell <= largestSum)
         {
-            cellSums(band.rows(), edges.x.data(), edges.y.data(), n, corners, bits.finestCells<Sum>());
+            cellSums(band.rows(), edges.x.data(), edges.y.data(), n, bits.finestCells<Sum>());
             bits.write<Sum>(edges.x.data(), edges.y.data(), cell, largest, descriptor);
             continue;
         }
@@ -108,7 +108,7 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
         do
             fineEdges.split(edges, parts *= 2);
         while (largest * fineEdges.largestCell() > largestSum);
-        cellSums(band.rows(), fineEdges.x.data(), fineEdges.y.data(), n * parts, corners, fine);
+        cellSums(band.rows(), fineEdges.x.data(), fineEdges.y.data(), n * parts, fine);
         gather(fine, bits.finestCells<double>(), n);
         bits.write<double>(edges.x.data(), edges.y.data(), cell, largest, descriptor);
     }
