@@ -55,28 +55,37 @@ inline v_int32 octantSteps(const v_int32& lo, const v_int32& hi)
     return v_round(((c * t2 + b) * t2 + a) * t);
 }
 
+//! Even and odd lanes apart, which takes no shuffle; lanes are 0 or greater.
 inline v_int16 octantSteps(const v_int16& lo, const v_int16& hi)
 {
-    v_int32 lo0, lo1, hi0, hi1;
-    v_expand(lo, lo0, lo1);
-    v_expand(hi, hi0, hi1);
-    return v_pack(octantSteps(lo0, hi0), octantSteps(lo1, hi1));
+    const v_int32 low = vx_setall_s32(0xffff), lo2 = v_reinterpret_as_s32(lo), hi2 = v_reinterpret_as_s32(hi);
+    const v_int32 even = octantSteps(lo2 & low, hi2 & low), odd = octantSteps(lo2 >> 16, hi2 >> 16);
+    return v_reinterpret_as_s16(even | (odd << 16));
+}
+
+//! -1 where v is negative, else 0: cheaper than a comparison, which AVX-512 makes a mask that it must turn back.
+inline v_int16 negative(const v_int16& v) { return v >> 15; }
+inline v_int32 negative(const v_int32& v) { return v >> 31; }
+
+//! `whole` - steps where `mask` is -1, steps where it is 0; as steps ^ -1 is -steps - 1.
+template <typename V> inline V mirror(const V& steps, const V& mask, const V& wholeAndOne)
+{
+    return (steps ^ mask) + (mask & wholeAndOne);
 }
 
 template <typename Lane> void orientationRow(const Lane* gxRow, const Lane* gyRow, Lane* steps, int width)
 {
     typedef decltype(setAll(Lane())) V;
-    const V zero = setAll((Lane)0), one = setAll((Lane)1);
-    const V quarter = setAll((Lane)(ORIENTATION_STEPS / 4)), half = setAll((Lane)(ORIENTATION_STEPS / 2));
-    const V turn = setAll((Lane)ORIENTATION_STEPS), mask = setAll((Lane)(ORIENTATION_STEPS - 1));
-    for (int x = 0; x < width; x += VTraits<V>::max_nlanes)
+    const V zero = setAll((Lane)0), one = setAll((Lane)1), mask = setAll((Lane)(ORIENTATION_STEPS - 1));
+    const V quarter = setAll((Lane)(ORIENTATION_STEPS / 4 + 1)), half = setAll((Lane)(ORIENTATION_STEPS / 2 + 1));
+    for (int x = 0; x < width; x += V::nlanes)
     {
         const V gx = vx_load(gxRow + x), gy = vx_load(gyRow + x);
         const V ax = absolute(gx), ay = absolute(gy);
         V s = octantSteps(v_min(ax, ay), v_max(v_max(ax, ay), one));
-        s = v_select(ay > ax, quarter - s, s);
-        s = v_select(gx < zero, half - s, s);
-        s = v_select(gy > zero, turn - s, s);
+        s = mirror(s, negative(ax - ay), quarter);
+        s = mirror(s, negative(gx), half);
+        s = mirror(s, negative(zero - gy), one);  // of a whole turn, which the mask takes away
         v_store(steps + x, s & mask);
     }
 }

@@ -19,28 +19,29 @@ SumRowFunc<int, unsigned>::Type getSumRowFunc(int, unsigned);
 
 namespace {
 
-//! Four 16-bit channels of a pixel are one 64-bit lane: moves pixels up by n, zeros following.
-template <int n> inline v_uint16 shiftPixels(const v_uint16& v)
+//! Adds to each value those before it in its group of four. No sum exceeds 16 bits.
+inline v_uint16 sumsOfFour(const v_uint16& plane)
 {
+    v_uint64 v = v_reinterpret_as_u64(plane);
 #if CV_SIMD_WIDTH == 64
-    // v_rotate_left makes a slower instruction of this
-    return v_uint16(_mm512_alignr_epi64(v.val, _mm512_setzero_si512(), 8 - n));
+    v = v_uint64(_mm512_mullo_epi64(v.val, _mm512_set1_epi64(0x0001000100010001)));
 #else
-    return v_reinterpret_as_u16(v_rotate_left<n>(v_reinterpret_as_u64(v)));
+    v = v + (v << 16);
+    v = v + (v << 32);
 #endif
+    return v_reinterpret_as_u16(v);
 }
 
-//! Adds to each pixel those before it in the vector.
-inline v_uint16 prefixSum(v_uint16 v)
+// Four 16-bit channels of a pixel are one 64-bit lane below.
+
+//! From sums over each four pixels to sums over the vector.
+inline v_uint16 sumsOfVector(const v_uint16& v)
 {
-    v = v_add_wrap(v, shiftPixels<1>(v));
-#if CV_SIMD_WIDTH > 16
-    v = v_add_wrap(v, shiftPixels<2>(v));
-#endif
-#if CV_SIMD_WIDTH > 32
-    v = v_add_wrap(v, shiftPixels<4>(v));
-#endif
+#if CV_SIMD_WIDTH == 64
+    return v_uint16(_mm512_add_epi16(v.val, _mm512_maskz_permutexvar_epi64(0xf0, _mm512_set1_epi64(3), v.val)));
+#else
     return v;
+#endif
 }
 
 //! The last pixel in the places of all; universal intrinsics have this for 128 bits only.
@@ -55,12 +56,18 @@ inline v_uint16 lastPixel(const v_uint16& v)
 #endif
 }
 
-//! A vector (v_uint16) of pixels of four channels, side by side.
+//! The plane's sums over each four pixels, from pixel x on.
+inline v_uint16 loadSums(const short* plane, int x)
+{
+    return sumsOfFour(v_reinterpret_as_u16(vx_load(plane + x)));
+}
+
+//! v_uint16::nlanes pixels of four channels, side by side.
 inline void interleave(const short* const planes[GROUP_CHANNELS], int x, v_uint16 pixels[4])
 {
     v_uint16 a0, a1, b0, b1;
-    v_zip(v_reinterpret_as_u16(vx_load(planes[0] + x)), v_reinterpret_as_u16(vx_load(planes[1] + x)), a0, a1);
-    v_zip(v_reinterpret_as_u16(vx_load(planes[2] + x)), v_reinterpret_as_u16(vx_load(planes[3] + x)), b0, b1);
+    v_zip(loadSums(planes[0], x), loadSums(planes[1], x), a0, a1);
+    v_zip(loadSums(planes[2], x), loadSums(planes[3], x), b0, b1);
     v_uint32 p0, p1, p2, p3;
     v_zip(v_reinterpret_as_u32(a0), v_reinterpret_as_u32(b0), p0, p1);
     v_zip(v_reinterpret_as_u32(a1), v_reinterpret_as_u32(b1), p2, p3);
@@ -72,7 +79,7 @@ inline void interleave(const short* const planes[GROUP_CHANNELS], int x, v_uint1
 
 void sumRow16(const short* const planes[GROUP_CHANNELS], int width, const ushort* above, ushort* out)
 {
-    const int step = VTraits<v_uint16>::max_nlanes;
+    const int step = v_uint16::nlanes, pixelsInVector = step / GROUP_CHANNELS;
     v_uint16 carry = vx_setzero_u16();
     for (int x = 0; x < width; x += step)
     {
@@ -80,10 +87,11 @@ void sumRow16(const short* const planes[GROUP_CHANNELS], int width, const ushort
         interleave(planes, x, pixels);
         for (int i = 0; i < 4; i++)
         {
-            const int at = (x + i * (step / 4) + 1) * GROUP_CHANNELS;
-            const v_uint16 sum = v_add_wrap(prefixSum(pixels[i]), carry);
-            v_store(out + at, v_add_wrap(sum, vx_load(above + at)));
-            carry = lastPixel(sum);
+            const int at = (x + i * pixelsInVector + 1) * GROUP_CHANNELS;
+            const v_uint16 sums = sumsOfVector(pixels[i]);
+            v_store(out + at, v_add_wrap(v_add_wrap(sums, carry), vx_load(above + at)));
+            if ((i + 1) * pixelsInVector % 4 == 0)
+                carry = v_add_wrap(carry, lastPixel(sums));
         }
     }
 }
