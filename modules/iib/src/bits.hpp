@@ -11,16 +11,35 @@
 namespace cv {
 namespace iib {
 
+//! The cells of a level along one axis: between every `step`-th of the finest cells' edges.
+struct Axis
+{
+    const int* edges;
+    int step;
+
+    int length(int i) const { return edges[(i + 1) * step] - edges[i * step]; }
+};
+
 /** What makes the sums of a level comparable. With widths w0, w1 and heights h0, h1 of a quad's cells, the
  mean of cell (i, j) is sum / (w_j h_i), and sum * w_(1-j) * h_(1-i) is that but for a factor common to the
  four: decisions need no division. */
 struct LevelShape
 {
-    int n;            //!< cells in a row
-    const int* widths;  //!< of the cells in a row, pixels
-    const int* heights;
-    int channels;     //!< of GROUP_CHANNELS, those in use
+    int n;  //!< cells in a row
+    Axis x, y;
+    int channels;  //!< of GROUP_CHANNELS, those in use
     bool overlap;
+};
+
+//! The factors of neighbouring cells along an axis, 1 if they are equally long.
+struct Weights
+{
+    int first, second;
+
+    //! @param a, b lengths of the first and second cell.
+    Weights(int a, int b) : first(a == b ? 1 : b), second(a == b ? 1 : a) {}
+    //! Of cells i and i + 1.
+    Weights(const Axis& axis, int i) : Weights(axis.length(i), axis.length(i + 1)) {}
 };
 
 /* Kernels on the sums of a level, Cell = ushort or unsigned. */

@@ -175,18 +175,18 @@ struct ColumnWeights
     int CV_DECL_ALIGNED(CACHE_LINE) right[MAX_LANES];
     bool equal;  //!< whether all weights are 1
 
-    ColumnWeights(const int* widths, int quads)
+    //! @param dx the first of the columns.
+    ColumnWeights(const Axis& axis, int dx, int quads)
     {
-        const v_int32x4 one = v_setall_s32(1);
-        int difference = 0;
-        for (int q = 0; q < quads; q++)  // without a branch, which none could predict
+        int others = 0;
+        for (int q = 0; q < quads; q++)
         {
-            const v_int32x4 l = v_setall_s32(widths[2 * q]), r = v_setall_s32(widths[2 * q + 1]), same = l == r;
-            difference |= widths[2 * q] ^ widths[2 * q + 1];
-            v_store(left + q * GROUP_CHANNELS, v_select(same, one, r));
-            v_store(right + q * GROUP_CHANNELS, v_select(same, one, l));
+            const Weights w(axis, dx + 2 * q);
+            others |= (w.first ^ 1) | (w.second ^ 1);
+            v_store(left + q * GROUP_CHANNELS, v_setall_s32(w.first));
+            v_store(right + q * GROUP_CHANNELS, v_setall_s32(w.second));
         }
-        equal = difference == 0;
+        equal = others == 0;
     }
 };
 
@@ -196,16 +196,12 @@ struct PlaneRows
     uchar* first;
     size_t plane, row;  //!< from a plane or row to the next one, in bytes
 
-    void store(int p, unsigned chunk) const
-    {
-        first[p * plane] = (uchar)chunk;
-        first[p * plane + 1] = (uchar)(chunk >> 8);
-    }
+    void store(int p, unsigned chunk) const { storeBytes(chunk, CHUNK / 8, first + p * plane); }
 };
 
 //! A chunk of quads and all those below it. WITH_PARENTS also stores the sums over quads.
 template <typename Mapping, bool WITH_PARENTS, typename Cell>
-inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, int first, const int* heights, int rows,
+inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, int first, const int* edges, int step, int rows,
                        ParentRows sums, PlaneRows out)
 {
     v_int32 left[CHUNK_VECTORS], right[CHUNK_VECTORS];
@@ -217,7 +213,8 @@ inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, int f
     const bool equalWidths = columns.equal;
     for (int r = 0; r < rows; r++)
     {
-        const int top = heights[2 * r + 1], bottom = heights[2 * r];
+        const Weights heights(edges[step] - edges[0], edges[2 * step] - edges[step]);
+        edges += 2 * step;
         unsigned chunk[Mapping::BITS] = {};
         for (int i = 0; i < CHUNK_VECTORS; i++)
         {
@@ -232,9 +229,9 @@ inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, int f
                 x[2] = x[2] * left[i];
                 x[3] = x[3] * right[i];
             }
-            if (top != bottom)
+            if (heights.first != heights.second)
             {
-                const v_int32 t = vx_setall_s32(top), b = vx_setall_s32(bottom);
+                const v_int32 t = vx_setall_s32(heights.first), b = vx_setall_s32(heights.second);
                 x[0] = x[0] * t;
                 x[1] = x[1] * t;
                 x[2] = x[2] * b;
@@ -280,12 +277,11 @@ public:
     //! Weighted as LevelShape tells.
     template <typename Mapping, typename P> void map(const LevelShape& shape, const P& put) const
     {
-        const int left = shape.widths[col], right = shape.widths[col + 1];
-        const int top = shape.heights[row], bottom = shape.heights[row + 1];
-        const int l = left == right ? 1 : right, r = left == right ? 1 : left;
-        const int t = top == bottom ? 1 : bottom, b = top == bottom ? 1 : top;
-        const Lanes<v_int32x4> weighted[4] = { x[0] * v_setall_s32(l * t), x[1] * v_setall_s32(r * t),
-                                               x[2] * v_setall_s32(l * b), x[3] * v_setall_s32(r * b) };
+        const Weights w(shape.x, col), h(shape.y, row);
+        const Lanes<v_int32x4> weighted[4] = { x[0] * v_setall_s32(w.first * h.first),
+                                               x[1] * v_setall_s32(w.second * h.first),
+                                               x[2] * v_setall_s32(w.first * h.second),
+                                               x[3] * v_setall_s32(w.second * h.second) };
         Mapping::map(weighted, put);
     }
 
@@ -326,7 +322,7 @@ void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int dy, in
     const int rows = (shape.n - dy) / 2, quads = (shape.n - dx) / 2, lanes = quads * GROUP_CHANNELS;
     if (lanes < CHUNK)
         return narrowBits<Mapping, WITH_PARENTS>(cells, shape, dy, dx, parents, out);
-    const ColumnWeights weights(shape.widths + dx, quads);
+    const ColumnWeights weights(shape.x, dx, quads);
     // Where a row fills whole chunks, its bits need no shifting.
     uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8], *whole = 0;
     if (shape.channels == GROUP_CHANNELS && lanes % CHUNK == 0)
@@ -340,8 +336,8 @@ void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int dy, in
         PlaneRows columns = planes;
         columns.first += first / 8;
         columnBits<Mapping, WITH_PARENTS>(QuadRows<Cell>(cells, dy, dx, first),
-                                          weights, first, shape.heights + dy, rows, ParentRows(parents, first),
-                                          columns);
+                                          weights, first, shape.y.edges + dy * shape.y.step, shape.y.step, rows,
+                                          ParentRows(parents, first), columns);
     }
     if (whole)
         return;

@@ -165,9 +165,9 @@ void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArr
         return;
     }
 
-    Mat result((int)keypoints.size(), descriptorSize(), CV_8U);
+    descriptors.create((int)keypoints.size(), descriptorSize(), CV_8U);
+    Mat result = descriptors.getMat();
     describe(p, image, extra, keypoints, result);
-    descriptors.assign(result);
 }
 
 void IIBDescriptorExtractor_Impl::write(FileStorage& fs) const

@@ -28,6 +28,36 @@ void wideParentSums(const CellGrid<double>& children, CellGrid<double>& cells)
                                       + (children.cell(2 * r + 1, 2 * c)[i] + children.cell(2 * r + 1, 2 * c + 1)[i]);
 }
 
+//! The largest length, times the largest factor that makes siblings comparable.
+double largestProduct(const Axis& axis, int n)
+{
+    int smallest = INT_MAX, largest = 0;
+    for (int i = 0; i < n; i++)
+    {
+        smallest = std::min(smallest, axis.length(i));
+        largest = std::max(largest, axis.length(i));
+    }
+    return smallest == largest ? largest : (double)largest * largest;
+}
+
+//! Whether four times the largest weighted sum of the level at hand fits an int.
+bool fitsInt(const LevelShape& shape, double value, double longest)
+{
+    const double area = longest * longest;
+    // seldom does the quick bound, with all weights as large as can be, not do
+    return value * area * area <= INT_MAX
+           || value * largestProduct(shape.x, shape.n) * largestProduct(shape.y, shape.n) <= INT_MAX;
+}
+
+LevelShape coarser(const LevelShape& shape)
+{
+    LevelShape c = shape;
+    c.n /= 2;
+    c.x.step *= 2;
+    c.y.step *= 2;
+    return c;
+}
+
 }  // namespace
 
 KeyPointBits::KeyPointBits(const Parameters& p, int group, int channels_)
@@ -49,93 +79,56 @@ KeyPointBits::KeyPointBits(const Parameters& p, int group, int channels_)
     planes.resize(words * bitsPerQuad(mapping));
 }
 
-void KeyPointBits::Axis::place(const int* edges, int n_)
-{
-    n = n_;
-    for (int i = 0; i < n; i++)
-        lengths[i] = edges[i + 1] - edges[i];
-}
-
-void KeyPointBits::Axis::coarsen()
-{
-    n /= 2;
-    for (int i = 0; i < n; i++)
-        lengths[i] = lengths[2 * i] + lengths[2 * i + 1];
-}
-
-double KeyPointBits::Axis::largestProduct() const
-{
-    const int smallest = *std::min_element(lengths, lengths + n);
-    const double largest = *std::max_element(lengths, lengths + n);
-    return smallest == largest ? largest : largest * largest;
-}
-
-//! Whether four times the largest weighted sum of the level at hand fits an int.
-bool KeyPointBits::fitsInt(double value, double longest) const
-{
-    const double area = longest * longest;
-    // seldom does the quick bound, with all weights as large as can be, not do
-    return value * area * area <= INT_MAX || value * x.largestProduct() * y.largestProduct() <= INT_MAX;
-}
-
-LevelShape KeyPointBits::shape() const
-{
-    const LevelShape s = { x.n, x.lengths, y.lengths, channels, overlap };
-    return s;
-}
-
 template <> const BitsKernels<ushort>& KeyPointBits::kernels<ushort>() const { return shortKernels; }
 template <> const BitsKernels<unsigned>& KeyPointBits::kernels<unsigned>() const { return longKernels; }
 
 template <typename Cell>
-void KeyPointBits::writeFrom(int level, const CellGrid<Cell>& cells, double value, double longest, uchar* descriptor)
+void KeyPointBits::writeFrom(int level, const CellGrid<Cell>& cells, const LevelShape& shape, double value,
+                             double longest, uchar* descriptor)
 {
-    if (!fitsInt(value, longest))
+    if (!fitsInt(shape, value, longest))
     {
         widen(cells, wideSums[level]);
-        return writeFrom(level, wideSums[level], value, longest, descriptor);
+        return writeFrom(level, wideSums[level], shape, value, longest, descriptor);
     }
     const BitsKernels<Cell>& k = kernels<Cell>();
     BitWriter out(descriptor, offsets[level]);
     if (selection.empty())
-        k.levelBits(cells, shape(), sums[level - 1], out);
+        k.levelBits(cells, shape, sums[level - 1], out);
     else
     {
         const SelectedQuads& chosen = selection[level];
-        k.selectedBits(cells, shape(), chosen.places(), chosen.words(), planes.data());
+        k.selectedBits(cells, shape, chosen.places(), chosen.words(), planes.data());
         chosen.append(planes.data(), out);
         k.parentSums(cells, sums[level - 1]);
     }
     out.flush();
     if (level == 1)
         return;
-    x.coarsen();
-    y.coarsen();
-    writeFrom(level - 1, sums[level - 1], value, 2 * longest, descriptor);
+    writeFrom(level - 1, sums[level - 1], coarser(shape), value, 2 * longest, descriptor);
 }
 
-void KeyPointBits::writeFrom(int level, const CellGrid<double>& cells, double value, double longest, uchar* descriptor)
+void KeyPointBits::writeFrom(int level, const CellGrid<double>& cells, const LevelShape& shape, double value,
+                             double longest, uchar* descriptor)
 {
     BitWriter out(descriptor, offsets[level]);
     if (selection.empty())
-        wideLevelBits(mapping, cells, shape(), out);
+        wideLevelBits(mapping, cells, shape, out);
     else
     {
         const SelectedQuads& chosen = selection[level];
-        wideSelectedBits(mapping, cells, shape(), chosen.places(), chosen.words(), planes.data());
+        wideSelectedBits(mapping, cells, shape, chosen.places(), chosen.words(), planes.data());
         chosen.append(planes.data(), out);
     }
     out.flush();
     if (level == 1)
         return;
-    x.coarsen();
-    y.coarsen();
     wideParentSums(cells, wideSums[level - 1]);
-    writeFrom(level - 1, wideSums[level - 1], value, 2 * longest, descriptor);
+    writeFrom(level - 1, wideSums[level - 1], coarser(shape), value, 2 * longest, descriptor);
 }
 
-template void KeyPointBits::writeFrom(int, const CellGrid<ushort>&, double, double, uchar*);
-template void KeyPointBits::writeFrom(int, const CellGrid<unsigned>&, double, double, uchar*);
+template void KeyPointBits::writeFrom(int, const CellGrid<ushort>&, const LevelShape&, double, double, uchar*);
+template void KeyPointBits::writeFrom(int, const CellGrid<unsigned>&, const LevelShape&, double, double, uchar*);
 
 }  // namespace iib
 }  // namespace cv

@@ -32,31 +32,19 @@ public:
     template <typename Cell>
     void write(const int* xEdges, const int* yEdges, double longestCell, int maxValue, uchar* descriptor)
     {
-        x.place(xEdges, size());
-        y.place(yEdges, size());
-        writeFrom(granularity, finestCells<Cell>(), 4. * maxValue, longestCell, descriptor);
+        const LevelShape shape = { size(), { xEdges, 1 }, { yEdges, 1 }, channels, overlap };
+        writeFrom(granularity, finestCells<Cell>(), shape, 4. * maxValue, longestCell, descriptor);
     }
 
 private:
     /** Writes a level and, from the sums of its cells, all coarser ones.
      @param value four times the largest that was summed. @param longest a bound of the lengths of this level's cells. */
     template <typename Cell>
-    void writeFrom(int level, const CellGrid<Cell>& cells, double value, double longest, uchar* descriptor);
-    void writeFrom(int level, const CellGrid<double>& cells, double value, double longest, uchar* descriptor);
-    bool fitsInt(double value, double longest) const;
-    LevelShape shape() const;
+    void writeFrom(int level, const CellGrid<Cell>& cells, const LevelShape& shape, double value, double longest,
+                   uchar* descriptor);
+    void writeFrom(int level, const CellGrid<double>& cells, const LevelShape& shape, double value, double longest,
+                   uchar* descriptor);
     template <typename Cell> const BitsKernels<Cell>& kernels() const;
-
-    //! The cells of the level at hand along one axis.
-    struct Axis
-    {
-        int n, lengths[1 << MAX_GRANULARITY];
-
-        void place(const int* edges, int cells);
-        void coarsen();
-        //! The largest length, times the largest factor that makes siblings comparable.
-        double largestProduct() const;
-    };
 
     const int granularity, mapping, channels;
     const bool overlap;
@@ -68,7 +56,6 @@ private:
     CellGrid<ushort> shortSums;  //!< of the finest level
     std::vector<CellGrid<unsigned> > sums;
     std::vector<CellGrid<double> > wideSums;
-    Axis x, y;
 };
 
 template <> inline CellGrid<ushort>& KeyPointBits::finestCells<ushort>() { return shortSums; }

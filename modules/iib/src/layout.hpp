@@ -24,6 +24,17 @@ std::vector<int> levelBytes(const Parameters& parameters);
 //! The place of a group's first bit of a level in the descriptor.
 int bitOffset(const Parameters& parameters, int level, int group);
 
+//! Stores the lowest bytes of a word, the lowest first.
+inline void storeBytes(uint64 word, int bytes, uchar* out)
+{
+#ifdef WORDS_BIGENDIAN
+    for (int i = 0; i < bytes; i++)
+        out[i] = (uchar)(word >> 8 * i);
+#else
+    memcpy(out, &word, bytes);
+#endif
+}
+
 //! Appends bits to a descriptor, the lowest bit of the lowest byte first. Writes only bytes that get bits.
 class BitWriter
 {
@@ -41,7 +52,7 @@ public:
         count += n;
         if (count < 64)
             return;
-        store(8);
+        storeBytes(pending, 8, next);
         next += 8;
         count -= 64;
         pending = count ? bits >> (n - count) : 0;
@@ -57,19 +68,13 @@ public:
     }
 
     //! Writes the bits still pending; call it once, at the end.
-    void flush() { store((count + 7) / 8); }
-
-private:
-    void store(int bytes)
+    void flush()
     {
-#ifdef WORDS_BIGENDIAN
-        for (int i = 0; i < bytes; i++)
-            next[i] = (uchar)(pending >> 8 * i);
-#else
-        memcpy(next, &pending, bytes);
-#endif
+        if (count != 0)
+            storeBytes(pending, (count + 7) / 8, next);
     }
 
+private:
     uchar* next;
     uint64 pending;
     int count;  //!< bits pending, 0..63

@@ -16,12 +16,12 @@ enum { MAX_BITS = (1 << (MAX_GRANULARITY - 1)) * GROUP_CHANNELS };
 template <typename Mapping, typename Put>
 void mapQuad(const CellGrid<double>& cells, const LevelShape& shape, int row, int col, int channel, const Put& put)
 {
-    const double left = shape.widths[col + 1], right = shape.widths[col];
-    const double top = shape.heights[row + 1], bottom = shape.heights[row];
-    const double x[4] = { cells.cell(row, col)[channel] * (left * top), cells.cell(row, col + 1)[channel] * (right * top),
-                          cells.cell(row + 1, col)[channel] * (left * bottom),
-                          cells.cell(row + 1, col + 1)[channel] * (right * bottom) };
-    Mapping::map(x, put);
+    const Weights x(shape.x, col), y(shape.y, row);
+    const double weighted[4] = { cells.cell(row, col)[channel] * ((double)x.first * y.first),
+                                 cells.cell(row, col + 1)[channel] * ((double)x.second * y.first),
+                                 cells.cell(row + 1, col)[channel] * ((double)x.first * y.second),
+                                 cells.cell(row + 1, col + 1)[channel] * ((double)x.second * y.second) };
+    Mapping::map(weighted, put);
 }
 
 //! Quads whose top left cells are in rows dy, dy + 2, ... and columns dx, dx + 2, ...
