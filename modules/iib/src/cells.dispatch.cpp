@@ -10,6 +10,11 @@
 namespace cv {
 namespace iib {
 
+CellEdgesFunc getCellEdgesFunc()
+{
+    CV_CPU_DISPATCH(getCellEdgesFunc, (), CV_CPU_DISPATCH_MODES_ALL);
+}
+
 CellSumsFunc<ushort>::Type getCellSumsFunc(ushort sum)
 {
     CV_CPU_DISPATCH(getCellSumsFunc, (sum), CV_CPU_DISPATCH_MODES_ALL);

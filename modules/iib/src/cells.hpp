@@ -45,6 +45,10 @@ private:
     AlignedBuffer<T> values;
 };
 
+//! The n + 1 edges of the n cells in a row of a ROS that begins at `start`, clamped to [0, limit] (see quadtree.hpp).
+typedef void (*CellEdgesFunc)(double start, double side, int n, int limit, int* edges);
+CellEdgesFunc getCellEdgesFunc();
+
 //! Sums over n x n cells with the given n + 1 edges, in pixels of the image.
 template <typename Sum> struct CellSumsFunc
 {

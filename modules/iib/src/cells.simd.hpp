@@ -5,18 +5,29 @@
 #include "intrinsics.hpp"
 
 #include "cells.hpp"
+#include "quadtree.hpp"
 
 namespace cv {
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
+CellEdgesFunc getCellEdgesFunc();
 CellSumsFunc<ushort>::Type getCellSumsFunc(ushort);
 CellSumsFunc<unsigned>::Type getCellSumsFunc(unsigned);
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
+
+/* n is a power of two, so that the edges of a level are a subset of those of the next. The compiler makes vectors of
+ the loop, with this file's instruction set. */
+void cellEdges(double start, double side, int n, int limit, int* edges)
+{
+    const double step = side / n;
+    for (int k = 0; k <= n; k++)
+        edges[k] = edgeAt(start + step * k, limit);
+}
 
 inline v_uint16 load(const ushort* p) { return vx_load(p); }
 inline v_uint32 load(const unsigned* p) { return vx_load(p); }
@@ -28,10 +39,10 @@ inline v_uint32 subtract(const v_uint32& a, const v_uint32& b) { return a - b; }
 inline v_uint16x8 loadCorner(const ushort* corner) { return v_load_low(corner); }
 inline v_uint32x4 loadCorner(const unsigned* corner) { return v_load(corner); }
 
-// What 128 bits hold of a row of corners: two corners or one.
+// What 128 bits hold of every other corner of a row: two corners or one.
 inline v_uint16x8 loadCorners(const ushort* row, const size_t* offsets)
 {
-    return v_load_halves(row + offsets[0], row + offsets[1]);
+    return v_load_halves(row + offsets[0], row + offsets[2]);
 }
 
 inline v_uint32x4 loadCorners(const unsigned* row, const size_t* offsets)
@@ -39,13 +50,13 @@ inline v_uint32x4 loadCorners(const unsigned* row, const size_t* offsets)
     return v_load(row + offsets[0]);
 }
 
-//! As many corners as make a vector; not v_lut_quads, since gather instructions are slow on many machines.
+//! As many corners as make a vector, of every other column; not v_lut_quads, since gather instructions are slow on many machines.
 template <typename V, typename Sum> inline V gatherCorners(const Sum* row, const size_t* offsets)
 {
 #if CV_SIMD_WIDTH == 16
     return loadCorners(row, offsets);
 #else
-    const int n = 16 / (GROUP_CHANNELS * (int)sizeof(Sum));
+    const int n = 2 * 16 / (GROUP_CHANNELS * (int)sizeof(Sum));  // columns
     const __m256i low = _mm256_inserti128_si256(_mm256_castsi128_si256(loadCorners(row, offsets).val),
                                                 loadCorners(row, offsets + n).val, 1);
 #if CV_SIMD_WIDTH == 32
@@ -77,11 +88,11 @@ template <typename V> struct RowSums
 {
     V left, right;
 
-    template <typename Sum> RowSums(const Sum* row, const size_t* even, const size_t* odd)
+    template <typename Sum> RowSums(const Sum* row, const size_t* offsets)
     {
-        const V e = gatherCorners<V>(row, even), o = gatherCorners<V>(row, odd);
-        left = subtract(o, e);
-        right = subtract(nextCorners(e, row + even[V::nlanes / GROUP_CHANNELS]), o);
+        const V even = gatherCorners<V>(row, offsets), odd = gatherCorners<V>(row, offsets + 1);
+        left = subtract(odd, even);
+        right = subtract(nextCorners(even, row + offsets[2 * V::nlanes / GROUP_CHANNELS]), odd);
     }
 };
 
@@ -110,27 +121,23 @@ template <typename Sum>
 void cellSums(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells)
 {
     typedef decltype(load((const Sum*)0)) V;
-    const int corners = V::nlanes / GROUP_CHANNELS, half = n / 2 + corners;
-    AutoBuffer<size_t, 128> offsets(2 * half);
-    size_t *even = offsets.data(), *odd = even + half;
-    for (int i = 0; i < n / 2; i++)
-    {
-        even[i] = (size_t)(xEdges[2 * i] - rows.origin.x) * GROUP_CHANNELS;
-        odd[i] = (size_t)(xEdges[2 * i + 1] - rows.origin.x) * GROUP_CHANNELS;
-    }
-    for (int i = n / 2; i < half; i++)  // beyond the last column the last edge is repeated
-        even[i] = odd[i] = (size_t)(xEdges[n] - rows.origin.x) * GROUP_CHANNELS;
+    const int columns = 2 * V::nlanes / GROUP_CHANNELS;
+    AutoBuffer<size_t, 128> offsets(n + 1 + columns);
+    for (int c = 0; c <= n; c++)
+        offsets[c] = (size_t)(xEdges[c] - rows.origin.x) * GROUP_CHANNELS;
+    for (int c = n + 1; c <= n + columns; c++)  // beyond the last column the last edge is repeated
+        offsets[c] = offsets[n];
 
     cells.create(n);
     const size_t step = cells.rowStep();
     const RowFinder<Sum> row(rows, yEdges[0]);
-    for (int c = 0; c < n / 2; c += corners)
+    for (int c = 0; c < n; c += columns)
     {
-        Sum *left = cells.row(0, 0) + c * GROUP_CHANNELS, *right = cells.row(0, 1) + c * GROUP_CHANNELS;
-        RowSums<V> above(row(yEdges[0]), even + c, odd + c);
+        Sum *left = cells.row(0, 0) + c / 2 * GROUP_CHANNELS, *right = cells.row(0, 1) + c / 2 * GROUP_CHANNELS;
+        RowSums<V> above(row(yEdges[0]), offsets.data() + c);
         for (int r = 1; r <= n; r++, left += step, right += step)
         {
-            const RowSums<V> below(row(yEdges[r]), even + c, odd + c);
+            const RowSums<V> below(row(yEdges[r]), offsets.data() + c);
             v_store(left, subtract(below.left, above.left));
             v_store(right, subtract(below.right, above.right));
             above = below;
@@ -139,6 +146,11 @@ void cellSums(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdge
 }
 
 }  // namespace
+
+CellEdgesFunc getCellEdgesFunc()
+{
+    return cellEdges;
+}
 
 CellSumsFunc<ushort>::Type getCellSumsFunc(ushort)
 {

@@ -55,6 +55,7 @@ void describe(const Parameters& p, const Mat& image, const std::vector<Mat>& ext
               const std::vector<KeyPoint>& keypoints, Mat& descriptors)
 {
     std::vector<Ros> ros;
+    ros.reserve(keypoints.size());
     Part upright, turned;
     for (const KeyPoint& kp : keypoints)
     {

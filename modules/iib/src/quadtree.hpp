@@ -10,6 +10,12 @@
 namespace cv {
 namespace iib {
 
+//! The edge of pixels nearest to a position, in [0, limit]: on positive numbers the cast is a floor.
+static inline int edgeAt(double position, int limit)
+{
+    return (int)std::min(std::max(position + 0.5, 0.), (double)limit);
+}
+
 /** Region of support of a keypoint and its quadtree of cells (paper, "Local Patch Generation"). Pure
  geometry, in pixels of the image. */
 struct Ros
@@ -24,20 +30,11 @@ struct Ros
     {
     }
 
-    /** The n + 1 edges of n cells along an axis on which the ROS begins at `start`, clamped to [0, limit]. n is a
-     power of two, so that the edges of a level are a subset of those of the next. */
-    void edges(double start, int n, int limit, int* out) const
-    {
-        const double step = side / n;
-        for (int k = 0; k <= n; k++)
-            out[k] = pixel(start + step * k, limit);
-    }
-
     //! Pixels of the image that hold the part of the ROS inside it; one of the border if there is none.
     Rect pixels(Size image) const
     {
-        const Point a(pixel(x, image.width - 1), pixel(y, image.height - 1));
-        const Point b(pixel(x + side, image.width), pixel(y + side, image.height));
+        const Point a(edgeAt(x, image.width - 1), edgeAt(y, image.height - 1));
+        const Point b(edgeAt(x + side, image.width), edgeAt(y + side, image.height));
         return Rect(a, Point(std::max(b.x, a.x + 1), std::max(b.y, a.y + 1)));
     }
 
@@ -49,13 +46,6 @@ struct Ros
     {
         return std::floor(x + 0.5) >= 0 && std::floor(x + side + 0.5) <= image.width
                && std::floor(y + 0.5) >= 0 && std::floor(y + side + 0.5) <= image.height;
-    }
-
-private:
-    //! The edge of pixels nearest to a position, in [0, limit]: on positive numbers the cast is a floor.
-    static int pixel(double position, int limit)
-    {
-        return (int)std::min(std::max(position + 0.5, 0.), (double)limit);
     }
 };
 

@@ -17,14 +17,6 @@ struct Edges
 {
     std::vector<int> x, y;
 
-    void place(const Ros& ros, int n, Size image)
-    {
-        x.resize(n + 1);
-        y.resize(n + 1);
-        ros.edges(ros.x, n, image.width, x.data());
-        ros.edges(ros.y, n, image.height, y.data());
-    }
-
     /** Cuts each cell of another grid into parts x parts. They are made of pixels of the image, not of the ROS, which
      may be so much larger that any number of its parts is needed to cut the image once. */
     void split(const Edges& grid, int parts)
@@ -79,9 +71,12 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
     const int largest = maxValue(channels, maxGradient(channels));
     const typename CellSumsFunc<Sum>::Type cellSums = getCellSumsFunc(Sum());
     KeyPointBits bits(p, group, (int)channels.size());
+    const CellEdgesFunc cellEdges = getCellEdgesFunc();
     const int n = bits.size();
     CellGrid<Sum> fine;
     Edges edges, fineEdges;
+    edges.x.resize(n + 1);
+    edges.y.resize(n + 1);
 
     IntegralBand<Lane, Sum> band(channels, block.area, block.rows + Block::BAND_ROWS + 1);
 
@@ -94,7 +89,8 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
     for (size_t i = 0; i < local.size(); i++)
     {
         uchar* descriptor = descriptors.ptr(block.keypoints[i]);
-        edges.place(local[i], n, image);
+        cellEdges(local[i].x, local[i].side, n, image.width, edges.x.data());
+        cellEdges(local[i].y, local[i].side, n, image.height, edges.y.data());
         band.advance(block.bandEnd(std::max(edges.y[n], block.area.y)));
         const double cell = local[i].longestCell(n);
         if (largest * cell * cell <= largestSum)
