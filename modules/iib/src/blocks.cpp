@@ -78,58 +78,65 @@ template <typename Key> void countingSort(Indices& indices, int keyCount, const 
     indices.swap(sorted);
 }
 
-Block makeBlock(const std::vector<Rect>& ros, const Indices& keypoints)
+Rect unionOf(const std::vector<Rect>& ros, const Indices& keypoints)
 {
-    Block block = { ros[keypoints[0]], 0, keypoints };
+    Rect area = ros[keypoints[0]];
+    for (int k : keypoints)
+        area |= ros[k];
+    return area;
+}
+
+//! Cuts a block across its longer side, where fewer ROS are cut, into parts of equal area, by the centres of the ROS.
+void cutStrips(const std::vector<Rect>& ros, const Indices& keypoints, Rect area, int strips, std::vector<Indices>& blocks)
+{
+    const bool vertical = area.height > area.width;
+    const Range whole = extent(area, vertical);
+    std::vector<Indices> parts(strips);
     for (int k : keypoints)
     {
-        block.area |= ros[k];
-        block.rows = std::max(block.rows, ros[k].height);
+        const Range e = extent(ros[k], vertical);
+        const int centre = e.start + e.size() / 2 - whole.start;
+        parts[(int)((int64)centre * strips / whole.size())].push_back(k);
     }
+    for (const Indices& part : parts)
+        if (!part.empty())
+            blocks.push_back(part);
+}
+
+}  // namespace
+
+std::vector<Indices> cutBlocks(const std::vector<Rect>& ros, int workers)
+{
+    if (ros.empty())
+        return std::vector<Indices>();
+    Indices all(ros.size());
+    std::iota(all.begin(), all.end(), 0);
+    std::vector<Indices> parts, blocks;
+    splitRecursively(ros, all, true, true, parts);
+
+    std::vector<Rect> areas;
+    double pixels = 0;
+    for (const Indices& part : parts)
+    {
+        areas.push_back(unionOf(ros, part));
+        pixels += (double)areas.back().width * areas.back().height;
+    }
+    for (size_t i = 0; i < parts.size(); i++)
+        cutStrips(ros, parts[i], areas[i], std::max(cvRound((double)areas[i].width * areas[i].height * workers / pixels), 1), blocks);
+    return blocks;
+}
+
+Block makeBlock(const std::vector<Rect>& ros, const Indices& keypoints)
+{
+    Block block = { unionOf(ros, keypoints), 0, keypoints };
+    for (int k : keypoints)
+        block.rows = std::max(block.rows, ros[k].height);
     countingSort(block.keypoints, block.area.width, [&](int k) { return ros[k].x - block.area.x; });
     countingSort(block.keypoints, block.area.height / Block::BAND_ROWS + 2, [&](int k)
     {
         return (ros[k].br().y - block.area.y + Block::BAND_ROWS - 1) / Block::BAND_ROWS;
     });
     return block;
-}
-
-//! Cuts a block into strips of equal height, by the centres of the ROS.
-void cutStrips(const std::vector<Rect>& ros, const Block& block, int strips, std::vector<Block>& blocks)
-{
-    std::vector<Indices> parts(strips);
-    for (int k : block.keypoints)
-    {
-        const int y = ros[k].y + ros[k].height / 2 - block.area.y;
-        parts[(int)((int64)y * strips / block.area.height)].push_back(k);
-    }
-    for (const Indices& part : parts)
-        if (!part.empty())
-            blocks.push_back(makeBlock(ros, part));
-}
-
-}  // namespace
-
-std::vector<Block> cutBlocks(const std::vector<Rect>& ros, int workers)
-{
-    if (ros.empty())
-        return std::vector<Block>();
-    Indices all(ros.size());
-    std::iota(all.begin(), all.end(), 0);
-    std::vector<Indices> parts;
-    splitRecursively(ros, all, true, true, parts);
-
-    std::vector<Block> whole;
-    double pixels = 0;
-    for (const Indices& part : parts)
-    {
-        whole.push_back(makeBlock(ros, part));
-        pixels += (double)whole.back().area.width * whole.back().area.height;
-    }
-    std::vector<Block> blocks;
-    for (const Block& block : whole)
-        cutStrips(ros, block, std::max(cvRound((double)block.area.width * block.area.height * workers / pixels), 1), blocks);
-    return blocks;
 }
 
 }  // namespace iib

@@ -27,11 +27,15 @@ struct Block
     }
 };
 
-/** Cuts the keypoints into blocks, so that pixels which no ROS touches are left out wherever a straight gap
- between the ROS allows, and so that no block is much more than 1/workers of all work.
+/** Cuts keypoints into those that are described together, so that pixels which no ROS touches are left out wherever a
+ straight gap between the ROS allows, and so that none has much more than 1/workers of all pixels.
 
- @param ros the pixels that each keypoint needs, not empty. */
-std::vector<Block> cutBlocks(const std::vector<Rect>& ros, int workers);
+ @param ros the pixels that each keypoint needs, not empty.
+ @return indices of the keypoints of each block. */
+std::vector<std::vector<int> > cutBlocks(const std::vector<Rect>& ros, int workers);
+
+//! @param keypoints indices, one or more.
+Block makeBlock(const std::vector<Rect>& ros, const std::vector<int>& keypoints);
 
 }  // namespace iib
 }  // namespace cv

@@ -21,19 +21,24 @@ struct Part
     Indices keypoints;
     std::vector<Rect> pixels;
 
+    void reserve(size_t n)
+    {
+        keypoints.reserve(n);
+        pixels.reserve(n);
+    }
+
     void add(int keypoint, Rect r)
     {
         keypoints.push_back(keypoint);
         pixels.push_back(r);
     }
 
-    //! Blocks whose keypoints are indices of the whole image's.
-    std::vector<Block> blocks() const
+    //! A block whose keypoints are indices of the whole image's.
+    Block block(const Indices& part) const
     {
-        std::vector<Block> b = cutBlocks(pixels, getNumThreads());
-        for (Block& block : b)
-            for (int& k : block.keypoints)
-                k = keypoints[k];
+        Block b = makeBlock(pixels, part);
+        for (int& k : b.keypoints)
+            k = keypoints[k];
         return b;
     }
 };
@@ -57,6 +62,7 @@ void describe(const Parameters& p, const Mat& image, const std::vector<Mat>& ext
     std::vector<Ros> ros;
     ros.reserve(keypoints.size());
     Part upright, turned;
+    upright.reserve(keypoints.size());
     for (const KeyPoint& kp : keypoints)
     {
         const int k = (int)ros.size();
@@ -73,15 +79,16 @@ void describe(const Parameters& p, const Mat& image, const std::vector<Mat>& ext
         maps.push_back(integerMap(m, whole));
     const std::vector<Channel> channels = channelsInUse(p, integerMap(image, whole), maps);
 
-    const std::vector<Block> uprightBlocks = upright.blocks(), turnedBlocks = turned.blocks();
-    const int uprightCount = (int)uprightBlocks.size();
-    parallel_for_(Range(0, uprightCount + (int)turnedBlocks.size()), [&](const Range& range)
+    const std::vector<Indices> uprightParts = cutBlocks(upright.pixels, getNumThreads());
+    const std::vector<Indices> turnedParts = cutBlocks(turned.pixels, getNumThreads());
+    const int uprightCount = (int)uprightParts.size();
+    parallel_for_(Range(0, uprightCount + (int)turnedParts.size()), [&](const Range& range)
     {
         for (int b = range.start; b < range.end; b++)
             if (b < uprightCount)
-                describeUprightBlock(p, channels, uprightBlocks[b], ros, descriptors);
+                describeUprightBlock(p, channels, upright.block(uprightParts[b]), ros, descriptors);
             else
-                describeTurned(p, channels, turnedBlocks[b - uprightCount], ros, keypoints, descriptors);
+                describeTurned(p, channels, turned.block(turnedParts[b - uprightCount]), ros, keypoints, descriptors);
     });
 }
 
