@@ -37,9 +37,11 @@ struct Weights
     int first, second;
 
     //! @param a, b lengths of the first and second cell.
-    Weights(int a, int b) : first(a == b ? 1 : b), second(a == b ? 1 : a) {}
+    CV_ALWAYS_INLINE Weights(int a, int b) : first(a == b ? 1 : b), second(a == b ? 1 : a) {}
     //! Of cells i and i + 1.
-    Weights(const Axis& axis, int i) : Weights(axis.length(i), axis.length(i + 1)) {}
+    CV_ALWAYS_INLINE Weights(const Axis& axis, int i) : Weights(axis.length(i), axis.length(i + 1)) {}
+
+    bool equal() const { return first == second; }
 };
 
 /* Kernels on the sums of a level, Cell = ushort or unsigned. */

@@ -168,25 +168,38 @@ template <typename Cell> void parentSums(const CellGrid<Cell>& cells, CellGrid<u
     }
 }
 
-//! Weights of the left and right cells of a row of quads (see LevelShape), repeated for the channels.
+/* Four numbers, each repeated for the channels of a quad, as a chunk. Not by way of memory, where what was stored in
+ parts could not be read whole until all stores before it are done. */
+inline void repeatForChannels(int a, int b, int c, int d, v_int32 chunk[CHUNK_VECTORS])
+{
+#if CV_SIMD_WIDTH == 64
+    const __m512i quads = _mm512_castsi128_si512(_mm_setr_epi32(a, b, c, d));
+    chunk[0] = v_int32(_mm512_permutexvar_epi32(_mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3), quads));
+#elif CV_SIMD_WIDTH == 32
+    chunk[0] = v_int32(_mm256_setr_m128i(_mm_set1_epi32(a), _mm_set1_epi32(b)));
+    chunk[1] = v_int32(_mm256_setr_m128i(_mm_set1_epi32(c), _mm_set1_epi32(d)));
+#else
+    chunk[0] = v_setall_s32(a);
+    chunk[1] = v_setall_s32(b);
+    chunk[2] = v_setall_s32(c);
+    chunk[3] = v_setall_s32(d);
+#endif
+}
+
+//! Weights of the left and right cells of a chunk of quads.
 struct ColumnWeights
 {
-    int CV_DECL_ALIGNED(CACHE_LINE) left[MAX_LANES];
-    int CV_DECL_ALIGNED(CACHE_LINE) right[MAX_LANES];
+    v_int32 left[CHUNK_VECTORS], right[CHUNK_VECTORS];
     bool equal;  //!< whether all weights are 1
 
-    //! @param dx the first of the columns.
-    ColumnWeights(const Axis& axis, int dx, int quads)
+    //! @param first column; @param quads how many there are from it on, which may not fill the chunk.
+    CV_ALWAYS_INLINE ColumnWeights(const Axis& axis, int first, int quads)
     {
-        int others = 0;
-        for (int q = 0; q < quads; q++)
-        {
-            const Weights w(axis, dx + 2 * q);
-            others |= (w.first ^ 1) | (w.second ^ 1);
-            v_store(left + q * GROUP_CHANNELS, v_setall_s32(w.first));
-            v_store(right + q * GROUP_CHANNELS, v_setall_s32(w.second));
-        }
-        equal = others == 0;
+        const Weights a(axis, first), b(axis, first + 2 * std::min(1, quads - 1));
+        const Weights c(axis, first + 2 * std::min(2, quads - 1)), d(axis, first + 2 * std::min(3, quads - 1));
+        repeatForChannels(a.first, b.first, c.first, d.first, left);
+        repeatForChannels(a.second, b.second, c.second, d.second, right);
+        equal = a.equal() & b.equal() & c.equal() & d.equal();
     }
 };
 
@@ -201,16 +214,9 @@ struct PlaneRows
 
 //! A chunk of quads and all those below it. WITH_PARENTS also stores the sums over quads.
 template <typename Mapping, bool WITH_PARENTS, typename Cell>
-inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, int first, const int* edges, int step, int rows,
+inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const int* edges, int step, int rows,
                        ParentRows sums, PlaneRows out)
 {
-    v_int32 left[CHUNK_VECTORS], right[CHUNK_VECTORS];
-    for (int i = 0; i < CHUNK_VECTORS; i++)
-    {
-        left[i] = vx_load(columns.left + first + i * v_int32::nlanes);
-        right[i] = vx_load(columns.right + first + i * v_int32::nlanes);
-    }
-    const bool equalWidths = columns.equal;
     for (int r = 0; r < rows; r++)
     {
         const Weights heights(edges[step] - edges[0], edges[2 * step] - edges[step]);
@@ -222,14 +228,14 @@ inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, int f
             quads.load(i * v_int32::nlanes, x);
             if (WITH_PARENTS)
                 sums.store(i * v_int32::nlanes, x);
-            if (!equalWidths)
+            if (!columns.equal)
             {
-                x[0] = x[0] * left[i];
-                x[1] = x[1] * right[i];
-                x[2] = x[2] * left[i];
-                x[3] = x[3] * right[i];
+                x[0] = x[0] * columns.left[i];
+                x[1] = x[1] * columns.right[i];
+                x[2] = x[2] * columns.left[i];
+                x[3] = x[3] * columns.right[i];
             }
-            if (heights.first != heights.second)
+            if (!heights.equal())
             {
                 const v_int32 t = vx_setall_s32(heights.first), b = vx_setall_s32(heights.second);
                 x[0] = x[0] * t;
@@ -322,7 +328,6 @@ void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int dy, in
     const int rows = (shape.n - dy) / 2, quads = (shape.n - dx) / 2, lanes = quads * GROUP_CHANNELS;
     if (lanes < CHUNK)
         return narrowBits<Mapping, WITH_PARENTS>(cells, shape, dy, dx, parents, out);
-    const ColumnWeights weights(shape.x, dx, quads);
     // Where a row fills whole chunks, its bits need no shifting.
     uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8], *whole = 0;
     if (shape.channels == GROUP_CHANNELS && lanes % CHUNK == 0)
@@ -336,7 +341,8 @@ void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int dy, in
         PlaneRows columns = planes;
         columns.first += first / 8;
         columnBits<Mapping, WITH_PARENTS>(QuadRows<Cell>(cells, dy, dx, first),
-                                          weights, first, shape.y.edges + dy * shape.y.step, shape.y.step, rows,
+                                          ColumnWeights(shape.x, dx + first / 2, quads - first / GROUP_CHANNELS),
+                                          shape.y.edges + dy * shape.y.step, shape.y.step, rows,
                                           ParentRows(parents, first), columns);
     }
     if (whole)
