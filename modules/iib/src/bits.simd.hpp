@@ -20,7 +20,7 @@ BitsKernels<unsigned> getBitsKernels(int mapping, unsigned);
 namespace {
 
 // Quads and channels that are mapped at a time, whatever the width of a vector, and their comparisons.
-enum { CHUNK = 16, CHUNK_VECTORS = CHUNK / VTraits<v_int32>::max_nlanes };
+enum { CHUNK = 16, LANES = VTraits<v_int32>::max_nlanes, CHUNK_VECTORS = CHUNK / LANES };
 
 //! A vector whose comparisons are bits, a bit a lane.
 template <typename V> struct Lanes
@@ -159,7 +159,7 @@ template <typename Cell> void parentSums(const CellGrid<Cell>& cells, CellGrid<u
         QuadRows<Cell> quads(cells, 0, 0, first);
         ParentRows sums(parents, first);
         for (int r = 0; r < n; r++, quads.next(), sums.next())
-            for (int lane = 0; lane < CHUNK; lane += v_int32::nlanes)
+            for (int lane = 0; lane < CHUNK; lane += LANES)
             {
                 v_int32 x[4];
                 quads.load(lane, x);
@@ -225,9 +225,9 @@ inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const
         for (int i = 0; i < CHUNK_VECTORS; i++)
         {
             v_int32 x[4];
-            quads.load(i * v_int32::nlanes, x);
+            quads.load(i * LANES, x);
             if (WITH_PARENTS)
-                sums.store(i * v_int32::nlanes, x);
+                sums.store(i * LANES, x);
             if (!columns.equal)
             {
                 x[0] = x[0] * columns.left[i];
@@ -244,7 +244,7 @@ inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const
                 x[3] = x[3] * b;
             }
             const Lanes<v_int32> weighted[4] = { x[0], x[1], x[2], x[3] };
-            const Put<unsigned> put = { chunk, 1, i * v_int32::nlanes };
+            const Put<unsigned> put = { chunk, 1, i * LANES };
             Mapping::map(weighted, put);
         }
         for (int plane = 0; plane < Mapping::BITS; plane++)

@@ -92,7 +92,7 @@ template <typename V> struct RowSums
     {
         const V even = gatherCorners<V>(row, offsets), odd = gatherCorners<V>(row, offsets + 1);
         left = subtract(odd, even);
-        right = subtract(nextCorners(even, row + offsets[2 * V::nlanes / GROUP_CHANNELS]), odd);
+        right = subtract(nextCorners(even, row + offsets[2 * VTraits<V>::max_nlanes / GROUP_CHANNELS]), odd);
     }
 };
 
@@ -121,7 +121,7 @@ template <typename Sum>
 void cellSums(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells)
 {
     typedef decltype(load((const Sum*)0)) V;
-    const int columns = 2 * V::nlanes / GROUP_CHANNELS;
+    const int columns = 2 * VTraits<V>::max_nlanes / GROUP_CHANNELS;
     AutoBuffer<size_t, 128> offsets(n + 1 + columns);
     for (int c = 0; c <= n; c++)
         offsets[c] = (size_t)(xEdges[c] - rows.origin.x) * GROUP_CHANNELS;

@@ -78,7 +78,7 @@ template <typename Lane> void orientationRow(const Lane* gxRow, const Lane* gyRo
     typedef decltype(setAll(Lane())) V;
     const V zero = setAll((Lane)0), one = setAll((Lane)1), mask = setAll((Lane)(ORIENTATION_STEPS - 1));
     const V quarter = setAll((Lane)(ORIENTATION_STEPS / 4 + 1)), half = setAll((Lane)(ORIENTATION_STEPS / 2 + 1));
-    for (int x = 0; x < width; x += V::nlanes)
+    for (int x = 0; x < width; x += VTraits<V>::max_nlanes)
     {
         const V gx = vx_load(gxRow + x), gy = vx_load(gyRow + x);
         const V ax = absolute(gx), ay = absolute(gy);

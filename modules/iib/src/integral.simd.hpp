@@ -62,7 +62,7 @@ inline v_uint16 loadSums(const short* plane, int x)
     return sumsOfFour(v_reinterpret_as_u16(vx_load(plane + x)));
 }
 
-//! v_uint16::nlanes pixels of four channels, side by side.
+//! A vector (v_uint16) of pixels of four channels, side by side.
 inline void interleave(const short* const planes[GROUP_CHANNELS], int x, v_uint16 pixels[4])
 {
     v_uint16 a0, a1, b0, b1;
@@ -79,7 +79,7 @@ inline void interleave(const short* const planes[GROUP_CHANNELS], int x, v_uint1
 
 void sumRow16(const short* const planes[GROUP_CHANNELS], int width, const ushort* above, ushort* out)
 {
-    const int step = v_uint16::nlanes, pixelsInVector = step / GROUP_CHANNELS;
+    const int step = VTraits<v_uint16>::max_nlanes, pixelsInVector = step / GROUP_CHANNELS;
     v_uint16 carry = vx_setzero_u16();
     for (int x = 0; x < width; x += step)
     {
