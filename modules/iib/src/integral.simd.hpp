@@ -56,6 +56,17 @@ inline v_uint16 lastPixel(const v_uint16& v)
 #endif
 }
 
+inline v_uint32 lastPixel(const v_uint32& v)
+{
+#if CV_SIMD_WIDTH == 64
+    return v_uint32(_mm512_shuffle_i32x4(v.val, v.val, 0xff));
+#elif CV_SIMD_WIDTH == 32
+    return v_uint32(_mm256_permute2x128_si256(v.val, v.val, 0x11));
+#else
+    return v;
+#endif
+}
+
 //! The plane's sums over each four pixels, from pixel x on.
 inline v_uint16 loadSums(const short* plane, int x)
 {
@@ -96,9 +107,31 @@ void sumRow16(const short* const planes[GROUP_CHANNELS], int width, const ushort
     }
 }
 
-//! A pixel is one 128-bit vector here, on every machine.
-template <typename Lane>
-void sumRow32(const Lane* const planes[GROUP_CHANNELS], int width, const unsigned* above, unsigned* out)
+void sumRow32(const short* const planes[GROUP_CHANNELS], int width, const unsigned* above, unsigned* out)
+{
+    const int step = VTraits<v_uint16>::max_nlanes, pixelsInVector = step / GROUP_CHANNELS / 2;
+    v_uint32 carry = vx_setzero_u32();
+    for (int x = 0; x < width; x += step)
+    {
+        v_uint16 pixels[4];
+        interleave(planes, x, pixels);
+        for (int i = 0; i < 8; i += 2)
+        {
+            v_uint32 sums[2];
+            v_expand(pixels[i / 2], sums[0], sums[1]);
+            for (int j = 0; j < 2; j++)
+            {
+                const int at = (x + (i + j) * pixelsInVector + 1) * GROUP_CHANNELS;
+                v_store(out + at, sums[j] + carry + vx_load(above + at));
+                if ((i + j + 1) * pixelsInVector % 4 == 0)
+                    carry = carry + lastPixel(sums[j]);
+            }
+        }
+    }
+}
+
+//! Of deep images, whose sums over four pixels exceed 16 bits. A pixel is one 128-bit vector here, on every machine.
+void sumDeepRow(const int* const planes[GROUP_CHANNELS], int width, const unsigned* above, unsigned* out)
 {
     v_uint32x4 sum = v_setzero_u32();
     for (int x = 0; x < width; x++)
@@ -118,12 +151,12 @@ SumRowFunc<short, ushort>::Type getSumRowFunc(short, ushort)
 
 SumRowFunc<short, unsigned>::Type getSumRowFunc(short, unsigned)
 {
-    return sumRow32<short>;
+    return sumRow32;
 }
 
 SumRowFunc<int, unsigned>::Type getSumRowFunc(int, unsigned)
 {
-    return sumRow32<int>;
+    return sumDeepRow;
 }
 
 #endif
