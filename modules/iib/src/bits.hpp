@@ -29,6 +29,9 @@ struct LevelShape
     Axis x, y;
     int channels;  //!< of GROUP_CHANNELS, those in use
     bool overlap;
+    const ChosenBits* chosen;  //!< of each window, or null: the bits of all quads are in use
+
+    bool uses(int window) const { return chosen ? !chosen[window].none() : overlap || window == 0; }
 };
 
 //! The factors of neighbouring cells along an axis, 1 if they are equally long.
@@ -47,16 +50,11 @@ struct Weights
 /* Kernels on the sums of a level, Cell = ushort or unsigned. */
 template <typename Cell> struct BitsKernels
 {
-    /** Bits of all quads of a level in the order of descriptor.hpp, items 2 to 6.
+    /** Bits of a level in the order of descriptor.hpp.
      @param parents gets the sums of the next coarser level. */
     void (*levelBits)(const CellGrid<Cell>& cells, const LevelShape& shape, CellGrid<unsigned>& parents, BitWriter& out);
 
-    //! The comparisons of some quads in planes of `words` words, a plane for each bit of the mapping and a bit for
-    //! each channel of each quad.
-    void (*selectedBits)(const CellGrid<Cell>& cells, const LevelShape& shape, const std::vector<QuadPlace>& quads,
-                         int words, uint64* planes);
-
-    //! Sums of the next coarser level.
+    //! The sums alone.
     void (*parentSums)(const CellGrid<Cell>& cells, CellGrid<unsigned>& parents);
 };
 BitsKernels<ushort> getBitsKernels(int mapping, ushort);
@@ -64,8 +62,6 @@ BitsKernels<unsigned> getBitsKernels(int mapping, unsigned);
 
 //! The bits where an int is too small for the products.
 void wideLevelBits(int mapping, const CellGrid<double>& cells, const LevelShape& shape, BitWriter& out);
-void wideSelectedBits(int mapping, const CellGrid<double>& cells, const LevelShape& shape,
-                      const std::vector<QuadPlace>& quads, int words, uint64* planes);
 
 }  // namespace iib
 }  // namespace cv

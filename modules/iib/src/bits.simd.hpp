@@ -20,7 +20,7 @@ BitsKernels<unsigned> getBitsKernels(int mapping, unsigned);
 namespace {
 
 // Quads and channels that are mapped at a time, whatever the width of a vector, and their comparisons.
-enum { CHUNK = 16, LANES = VTraits<v_int32>::max_nlanes, CHUNK_VECTORS = CHUNK / LANES };
+enum { CHUNK = Window::CHUNK, LANES = VTraits<v_int32>::max_nlanes, CHUNK_VECTORS = CHUNK / LANES };
 
 //! A vector whose comparisons are bits, a bit a lane.
 template <typename V> struct Lanes
@@ -51,12 +51,12 @@ inline unsigned operator==(const Lanes<v_int32>& a, const Lanes<v_int32>& b) { r
 enum { MAX_QUADS = 1 << (MAX_GRANULARITY - 1), MAX_LANES = MAX_QUADS * GROUP_CHANNELS };
 
 //! Collects comparisons, from a lane on.
-template <typename Word> struct Put
+struct Put
 {
-    Word* planes;
-    int step, lane;
+    unsigned* planes;
+    int lane;
 
-    void operator()(int plane, unsigned bits) const { planes[plane * step] |= (Word)bits << lane; }
+    void operator()(int plane, unsigned bits) const { planes[plane] |= bits << lane; }
 };
 
 /* Squeezes the channels in use together, out of each group of four lanes: neighbouring fields of `channels` bits
@@ -244,7 +244,7 @@ inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const
                 x[3] = x[3] * b;
             }
             const Lanes<v_int32> weighted[4] = { x[0], x[1], x[2], x[3] };
-            const Put<unsigned> put = { chunk, 1, i * LANES };
+            const Put put = { chunk, i * LANES };
             Mapping::map(weighted, put);
         }
         for (int plane = 0; plane < Mapping::BITS; plane++)
@@ -255,17 +255,20 @@ inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const
     }
 }
 
-//! Appends a row of planes, each of quads whose channels have a lane each.
-inline void append(const PlaneRows& row, int planes, int quads, int channels, BitWriter& out)
+//! Appends the comparisons of all quads of a window.
+inline void append(PlaneRows planes, const Window& window, int bits, int channels, BitWriter& out)
 {
+    BitWriter writer = out;  // a copy that no store of a byte can change stays in registers
     const int chunkQuads = CHUNK / GROUP_CHANNELS;
-    for (int plane = 0; plane < planes; plane++)
-        for (int first = 0; first < quads; first += chunkQuads)
-        {
-            const uchar* p = row.first + plane * row.plane + first / 2;
-            const int count = std::min(quads - first, chunkQuads) * channels;
-            out.append(dropLanes(p[0] | p[1] << 8, channels) & ((1u << count) - 1), count);
-        }
+    for (int r = 0; r < window.rows; r++, planes.first += planes.row)
+        for (int plane = 0; plane < bits; plane++)
+            for (int first = 0; first < window.quads; first += chunkQuads)
+            {
+                const uchar* p = planes.first + plane * planes.plane + first / 2;
+                const int count = std::min(window.quads - first, chunkQuads) * channels;
+                writer.append(dropLanes(p[0] | p[1] << 8, channels) & ((1u << count) - 1), count);
+            }
+    out = writer;
 }
 
 //! The cells of one quad, a lane each for the channels.
@@ -296,94 +299,80 @@ private:
     v_int32x4 x[4];
 };
 
-//! As windowBits, for rows of less than a chunk.
+//! The comparisons of rows of quads of less than a chunk.
 template <typename Mapping, bool WITH_PARENTS, typename Cell>
-void narrowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int dy, int dx, CellGrid<unsigned>& parents,
-                BitWriter& out)
+void narrowComparisons(const CellGrid<Cell>& cells, const LevelShape& shape, const Window& window,
+                       CellGrid<unsigned>& parents, PlaneRows out)
 {
-    BitWriter writer = out;  // a copy that no store of a byte can change stays in registers
-    for (int row = dy; row + 1 < shape.n; row += 2)
+    for (int r = 0; r < window.rows; r++, out.first += out.row)
     {
         unsigned planes[Mapping::BITS] = {};
-        int lane = 0;
-        for (int col = dx; col + 1 < shape.n; col += 2, lane += GROUP_CHANNELS)
+        for (int q = 0; q < window.quads; q++)
         {
-            const Quad<Cell> quad(cells, row, col);
+            const Quad<Cell> quad(cells, window.dy + 2 * r, window.dx + 2 * q);
             if (WITH_PARENTS)
-                v_store(parents.cell(row / 2, col / 2), quad.sum());
-            const Put<unsigned> put = { planes, 1, lane };
+                v_store(parents.cell(r, q), quad.sum());
+            const Put put = { planes, q * GROUP_CHANNELS };
             quad.template map<Mapping>(shape, put);
         }
         for (int plane = 0; plane < Mapping::BITS; plane++)
-            writer.append(dropLanes(planes[plane], shape.channels), lane / GROUP_CHANNELS * shape.channels);
+            out.store(plane, planes[plane]);
     }
-    out = writer;
 }
 
-//! Quads whose top left cells are in rows dy, dy + 2, ... and columns dx, dx + 2, ...
+//! The comparisons of a window.
 template <typename Mapping, bool WITH_PARENTS, typename Cell>
-void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int dy, int dx, CellGrid<unsigned>& parents,
+void comparisons(const CellGrid<Cell>& cells, const LevelShape& shape, const Window& window,
+                 CellGrid<unsigned>& parents, PlaneRows out)
+{
+    if (window.lanes() < CHUNK)
+        return narrowComparisons<Mapping, WITH_PARENTS>(cells, shape, window, parents, out);
+    const int* edges = shape.y.edges + window.dy * shape.y.step;
+    for (int first = 0; first < window.lanes(); first += CHUNK, out.first += CHUNK / 8)
+        columnBits<Mapping, WITH_PARENTS>(
+            QuadRows<Cell>(cells, window.dy, window.dx, first),
+            ColumnWeights(shape.x, window.dx + first / 2, window.quads - first / GROUP_CHANNELS), edges, shape.y.step,
+            window.rows, ParentRows(parents, first), out);
+}
+
+template <typename Mapping, bool WITH_PARENTS, typename Cell>
+void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int index, CellGrid<unsigned>& parents,
                 BitWriter& out)
 {
-    const int rows = (shape.n - dy) / 2, quads = (shape.n - dx) / 2, lanes = quads * GROUP_CHANNELS;
-    if (lanes < CHUNK)
-        return narrowBits<Mapping, WITH_PARENTS>(cells, shape, dy, dx, parents, out);
-    // Where a row fills whole chunks, its bits need no shifting.
+    const Window window(shape.n, index);
+    const int rowBytes = Mapping::BITS * window.planeBytes();
     uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8], *whole = 0;
-    if (shape.channels == GROUP_CHANNELS && lanes % CHUNK == 0)
-        whole = out.reserve(rows * Mapping::BITS * lanes / 8);
-    PlaneRows planes;
-    planes.first = whole ? whole : buffer;
-    planes.plane = (lanes + CHUNK - 1) / CHUNK * (CHUNK / 8);
-    planes.row = Mapping::BITS * planes.plane;
-    for (int first = 0; first < lanes; first += CHUNK)
-    {
-        PlaneRows columns = planes;
-        columns.first += first / 8;
-        columnBits<Mapping, WITH_PARENTS>(QuadRows<Cell>(cells, dy, dx, first),
-                                          ColumnWeights(shape.x, dx + first / 2, quads - first / GROUP_CHANNELS),
-                                          shape.y.edges + dy * shape.y.step, shape.y.step, rows,
-                                          ParentRows(parents, first), columns);
-    }
-    if (whole)
-        return;
-    BitWriter writer = out;  // a copy that no store of a byte can change stays in registers
-    for (int r = 0; r < rows; r++, planes.first += planes.row)
-        append(planes, Mapping::BITS, quads, shape.channels, writer);
-    out = writer;
+    // Where all bits are in use and a row fills whole chunks, they need no shifting.
+    if (!shape.chosen && shape.channels == GROUP_CHANNELS && window.lanes() % CHUNK == 0)
+        whole = out.reserve(window.rows * rowBytes);
+    const PlaneRows planes = { whole ? whole : buffer, (size_t)window.planeBytes(), (size_t)rowBytes };
+    comparisons<Mapping, WITH_PARENTS>(cells, shape, window, parents, planes);
+    if (shape.chosen)
+        shape.chosen[index].append(buffer, out);
+    else if (!whole)
+        append(planes, window, Mapping::BITS, shape.channels, out);
 }
 
 template <typename Mapping, typename Cell>
 void levelBits(const CellGrid<Cell>& cells, const LevelShape& shape, CellGrid<unsigned>& parents, BitWriter& out)
 {
-    parents.create(shape.n / 2);
-    windowBits<Mapping, true>(cells, shape, 0, 0, parents, out);
-    if (!shape.overlap)
-        return;
-    windowBits<Mapping, false>(cells, shape, 0, 1, parents, out);
-    windowBits<Mapping, false>(cells, shape, 1, 0, parents, out);
-    windowBits<Mapping, false>(cells, shape, 1, 1, parents, out);
-}
-
-template <typename Mapping, typename Cell>
-void selectedBits(const CellGrid<Cell>& cells, const LevelShape& shape, const std::vector<QuadPlace>& quads,
-                  int words, uint64* planes)
-{
-    std::fill(planes, planes + words * Mapping::BITS, (uint64)0);
-    const int count = (int)quads.size();
-    for (int q = 0; q < count; q++)
+    if (shape.uses(0))
     {
-        const Put<uint64> put = { planes + q / SelectedQuads::WORD_QUADS, words,
-                                  q % SelectedQuads::WORD_QUADS * GROUP_CHANNELS };
-        Quad<Cell>(cells, quads[q].row, quads[q].col).template map<Mapping>(shape, put);
+        parents.create(shape.n / 2);
+        windowBits<Mapping, true>(cells, shape, 0, parents, out);
     }
+    else
+        parentSums(cells, parents);
+    for (int i = 1; i < Window::COUNT; i++)
+        if (shape.uses(i))
+            windowBits<Mapping, false>(cells, shape, i, parents, out);
 }
 
 template <typename Cell> struct Kernels
 {
     template <typename Mapping> BitsKernels<Cell> visit() const
     {
-        const BitsKernels<Cell> k = { levelBits<Mapping, Cell>, selectedBits<Mapping, Cell>, parentSums<Cell> };
+        const BitsKernels<Cell> k = { levelBits<Mapping, Cell>, parentSums<Cell> };
         return k;
     }
 };

@@ -49,34 +49,29 @@ bool fitsInt(const LevelShape& shape, double value, double longest)
            || value * largestProduct(shape.x, shape.n) * largestProduct(shape.y, shape.n) <= INT_MAX;
 }
 
-LevelShape coarser(const LevelShape& shape)
-{
-    LevelShape c = shape;
-    c.n /= 2;
-    c.x.step *= 2;
-    c.y.step *= 2;
-    return c;
-}
-
 }  // namespace
 
 KeyPointBits::KeyPointBits(const Parameters& p, int group, int channels_)
-    : granularity(p.granularity), mapping(p.mapping), channels(channels_), overlap(p.overlap),
+    : granularity(finestLevel(p)), mapping(p.mapping), channels(channels_), overlap(p.overlap),
       shortKernels(getBitsKernels(p.mapping, ushort())), longKernels(getBitsKernels(p.mapping, unsigned())),
-      offsets(p.granularity + 1), sums(p.granularity + 1), wideSums(p.granularity + 1)
+      offsets(granularity + 1), sums(granularity + 1), wideSums(granularity + 1)
 {
     for (int level = 1; level <= granularity; level++)
         offsets[level] = bitOffset(p, level, group);
     if (p.selection.empty())
         return;
-    selection.resize(granularity + 1);
-    size_t words = 0;
+    chosen.resize(granularity + 1);
     for (int level = 1; level <= granularity; level++)
-    {
-        selection[level] = SelectedQuads(p, level, group);
-        words = std::max(words, (size_t)selection[level].words());
-    }
-    planes.resize(words * bitsPerQuad(mapping));
+        for (int window = 0; window < Window::COUNT; window++)
+            chosen[level].push_back(ChosenBits(p, level, group, window));
+}
+
+LevelShape KeyPointBits::shapeOf(int level, const int* xEdges, const int* yEdges) const
+{
+    const int step = 1 << (granularity - level);
+    const LevelShape shape = { 1 << level, { xEdges, step }, { yEdges, step }, channels, overlap,
+                               chosen.empty() ? 0 : chosen[level].data() };
+    return shape;
 }
 
 template <> const BitsKernels<ushort>& KeyPointBits::kernels<ushort>() const { return shortKernels; }
@@ -91,40 +86,23 @@ void KeyPointBits::writeFrom(int level, const CellGrid<Cell>& cells, const Level
         widen(cells, wideSums[level]);
         return writeFrom(level, wideSums[level], shape, value, longest, descriptor);
     }
-    const BitsKernels<Cell>& k = kernels<Cell>();
     BitWriter out(descriptor, offsets[level]);
-    if (selection.empty())
-        k.levelBits(cells, shape, sums[level - 1], out);
-    else
-    {
-        const SelectedQuads& chosen = selection[level];
-        k.selectedBits(cells, shape, chosen.places(), chosen.words(), planes.data());
-        chosen.append(planes.data(), out);
-        k.parentSums(cells, sums[level - 1]);
-    }
+    kernels<Cell>().levelBits(cells, shape, sums[level - 1], out);
     out.flush();
-    if (level == 1)
-        return;
-    writeFrom(level - 1, sums[level - 1], coarser(shape), value, 2 * longest, descriptor);
+    if (level > 1)
+        writeFrom(level - 1, sums[level - 1], shapeOf(level - 1, shape.x.edges, shape.y.edges), value, 2 * longest, descriptor);
 }
 
 void KeyPointBits::writeFrom(int level, const CellGrid<double>& cells, const LevelShape& shape, double value,
                              double longest, uchar* descriptor)
 {
     BitWriter out(descriptor, offsets[level]);
-    if (selection.empty())
-        wideLevelBits(mapping, cells, shape, out);
-    else
-    {
-        const SelectedQuads& chosen = selection[level];
-        wideSelectedBits(mapping, cells, shape, chosen.places(), chosen.words(), planes.data());
-        chosen.append(planes.data(), out);
-    }
+    wideLevelBits(mapping, cells, shape, out);
     out.flush();
     if (level == 1)
         return;
     wideParentSums(cells, wideSums[level - 1]);
-    writeFrom(level - 1, wideSums[level - 1], coarser(shape), value, 2 * longest, descriptor);
+    writeFrom(level - 1, wideSums[level - 1], shapeOf(level - 1, shape.x.edges, shape.y.edges), value, 2 * longest, descriptor);
 }
 
 template void KeyPointBits::writeFrom(int, const CellGrid<ushort>&, const LevelShape&, double, double, uchar*);

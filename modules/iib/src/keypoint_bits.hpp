@@ -18,7 +18,7 @@ public:
     //! @param group which four of the channels; @param channels how many of them are in use.
     KeyPointBits(const Parameters& parameters, int group, int channels);
 
-    //! Cells in a row at the finest level.
+    //! Cells in a row at the finest level that has bits.
     int size() const { return 1 << granularity; }
 
     //! Where the sums over the finest cells go, for Cell = ushort, unsigned or double: the first that holds them.
@@ -32,8 +32,8 @@ public:
     template <typename Cell>
     void write(const int* xEdges, const int* yEdges, double longestCell, int maxValue, uchar* descriptor)
     {
-        const LevelShape shape = { size(), { xEdges, 1 }, { yEdges, 1 }, channels, overlap };
-        writeFrom(granularity, finestCells<Cell>(), shape, 4. * maxValue, longestCell, descriptor);
+        writeFrom(granularity, finestCells<Cell>(), shapeOf(granularity, xEdges, yEdges), 4. * maxValue, longestCell,
+                  descriptor);
     }
 
 private:
@@ -44,6 +44,7 @@ private:
                    uchar* descriptor);
     void writeFrom(int level, const CellGrid<double>& cells, const LevelShape& shape, double value, double longest,
                    uchar* descriptor);
+    LevelShape shapeOf(int level, const int* xEdges, const int* yEdges) const;
     template <typename Cell> const BitsKernels<Cell>& kernels() const;
 
     const int granularity, mapping, channels;
@@ -51,8 +52,7 @@ private:
     const BitsKernels<ushort> shortKernels;
     const BitsKernels<unsigned> longKernels;
     std::vector<int> offsets;  //!< of the group's first bit of each level
-    std::vector<SelectedQuads> selection;  //!< of each level; empty if all quads are in use
-    std::vector<uint64> planes;
+    std::vector<std::vector<ChosenBits> > chosen;  //!< of the windows of each level; empty if all quads are in use
     CellGrid<ushort> shortSums;  //!< of the finest level
     std::vector<CellGrid<unsigned> > sums;
     std::vector<CellGrid<double> > wideSums;

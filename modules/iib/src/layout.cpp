@@ -48,6 +48,11 @@ std::vector<int> levelBytes(const Parameters& p)
     return bytes;
 }
 
+int finestLevel(const Parameters& p)
+{
+    return p.selection.empty() ? p.granularity : p.selection(p.selection.rows - 1, 0);  // levels do not descend
+}
+
 int bitOffset(const Parameters& p, int level, int group)
 {
     int bytes = 0;

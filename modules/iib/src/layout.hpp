@@ -21,6 +21,9 @@ int levelBits(const Parameters& parameters, int level);
 //! Bytes of each level that has any, coarse first.
 std::vector<int> levelBytes(const Parameters& parameters);
 
+//! The finest level that has any bit.
+int finestLevel(const Parameters& parameters);
+
 //! The place of a group's first bit of a level in the descriptor.
 int bitOffset(const Parameters& parameters, int level, int group);
 
@@ -33,6 +36,19 @@ inline void storeBytes(uint64 word, int bytes, uchar* out)
 #else
     memcpy(out, &word, bytes);
 #endif
+}
+
+//! Eight bytes, the lowest first.
+inline uint64 loadWord(const uchar* in)
+{
+    uint64 word = 0;
+#ifdef WORDS_BIGENDIAN
+    for (int i = 0; i < 8; i++)
+        word |= (uint64)in[i] << 8 * i;
+#else
+    memcpy(&word, in, 8);
+#endif
+    return word;
 }
 
 //! Appends bits to a descriptor, the lowest bit of the lowest byte first. Writes only bytes that get bits.

@@ -4,14 +4,12 @@
 
 #include "selection.hpp"
 
-#include <map>
-
 namespace cv {
 namespace iib {
 
 /* A parallel suffix: moves[i] holds the bits that go 2^i places down, after the moves before it.
  See H. S. Warren, Hacker's Delight, section 7-4 ("compress"). */
-SelectedQuads::Compressor::Compressor(uint64 mask_) : mask(mask_), count(0)
+ChosenBits::Compressor::Compressor(uint64 mask_) : mask(mask_), count(0)
 {
     for (uint64 m = mask; m; m &= m - 1)
         count++;
@@ -27,7 +25,7 @@ SelectedQuads::Compressor::Compressor(uint64 mask_) : mask(mask_), count(0)
     }
 }
 
-uint64 SelectedQuads::Compressor::operator()(uint64 bits) const
+uint64 ChosenBits::Compressor::operator()(uint64 bits) const
 {
     bits &= mask;
     for (int i = 0; i < 6; i++)
@@ -38,40 +36,32 @@ uint64 SelectedQuads::Compressor::operator()(uint64 bits) const
     return bits;
 }
 
-SelectedQuads::SelectedQuads(const Parameters& p, int level, int group)
+ChosenBits::ChosenBits(const Parameters& p, int level, int group, int window)
 {
-    // Row by row of places, what each of the group's channels keeps.
-    typedef std::array<int, GROUP_CHANNELS> Masks;
-    std::map<std::pair<int, int>, Masks> chosen;
+    const Window w(1 << level, window);
+    const int planes = bitsPerQuad(p.mapping), planeBits = 8 * w.planeBytes();
+    std::vector<uint64> masks((w.rows * planes * planeBits + 63) / 64, 0);
     for (int i = 0; i < p.selection.rows; i++)
     {
         const int* quad = p.selection[i];
-        if (quad[0] == level && quad[1] / GROUP_CHANNELS == group)
-            chosen.insert(std::make_pair(std::make_pair(quad[2], quad[3]), Masks())).first->second[quad[1] % GROUP_CHANNELS]
-                |= quad[4];
-    }
-
-    std::vector<Masks> masks;
-    for (const auto& place : chosen)
-    {
-        quads.push_back(QuadPlace{ place.first.first, place.first.second });
-        masks.push_back(place.second);
-    }
-    for (int plane = 0; plane < bitsPerQuad(p.mapping); plane++)
-        for (size_t first = 0; first < masks.size(); first += WORD_QUADS)
+        const int channel = quad[1], row = quad[2], col = quad[3];
+        if (quad[0] != level || channel / GROUP_CHANNELS != group || row % 2 != w.dy || col % 2 != w.dx)
+            continue;
+        for (int plane = 0; plane < planes; plane++)
         {
-            uint64 word = 0;
-            for (size_t q = first; q < std::min(first + WORD_QUADS, masks.size()); q++)
-                for (int c = 0; c < GROUP_CHANNELS; c++)
-                    word |= (uint64)(masks[q][c] >> plane & 1) << ((q - first) * GROUP_CHANNELS + c);
-            compressors.push_back(Compressor(word));
+            const int bit = (row / 2 * planes + plane) * planeBits + col / 2 * GROUP_CHANNELS + channel % GROUP_CHANNELS;
+            masks[bit / 64] |= (uint64)(quad[4] >> plane & 1) << bit % 64;
         }
+    }
+    for (size_t i = 0; i < masks.size(); i++)
+        if (masks[i])
+            words.push_back(Word{ 8 * i, Compressor(masks[i]) });
 }
 
-void SelectedQuads::append(const uint64* planes, BitWriter& out) const
+void ChosenBits::append(const uchar* comparisons, BitWriter& out) const
 {
-    for (size_t i = 0; i < compressors.size(); i++)
-        out.append(compressors[i](planes[i]), compressors[i].count);
+    for (const Word& word : words)
+        out.append(word.compressor(loadWord(comparisons + word.byte)), word.compressor.count);
 }
 
 }  // namespace iib

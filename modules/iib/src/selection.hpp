@@ -10,29 +10,33 @@
 namespace cv {
 namespace iib {
 
-//! The quad whose top left cell is (row, col).
-struct QuadPlace
+/** A window on a level: the quads whose top left cells are in rows dy, dy + 2, ... and columns dx, dx + 2, ... Their
+ comparisons lie in memory row by row, and in a row plane by plane, of which there is one for each bit of the mapping; a
+ plane has GROUP_CHANNELS bits for each quad, and is made of whole chunks. */
+struct Window
 {
-    int row, col;
+    int dy, dx, rows, quads;
+
+    enum { COUNT = 4, CHUNK = 16 };
+
+    //! @param i 0 to COUNT - 1, which of those on n x n cells; but for the first they are there with overlap only.
+    Window(int n, int i) : dy(i / 2), dx(i % 2), rows((n - dy) / 2), quads((n - dx) / 2) {}
+
+    int lanes() const { return quads * GROUP_CHANNELS; }
+    int planeBytes() const { return (lanes() + CHUNK - 1) / CHUNK * (CHUNK / 8); }
 };
 
-/** The chosen quads of one level and group of channels (paper, "Reduction of the IIB Descriptor Size"). All
- channels of a place are compared, a lane each, sixteen places to a word; then the chosen bits are kept. */
-class SelectedQuads
+//! The chosen bits of a window (paper, "Reduction of the IIB Descriptor Size").
+class ChosenBits
 {
 public:
-    SelectedQuads() {}
-    SelectedQuads(const Parameters& parameters, int level, int group);
+    //! @param group which four of the channels.
+    ChosenBits(const Parameters& parameters, int level, int group, int window);
 
-    const std::vector<QuadPlace>& places() const { return quads; }
+    bool none() const { return words.empty(); }
 
-    //! Words of a plane, of which there is one for each bit of the mapping.
-    int words() const { return (int)(quads.size() + WORD_QUADS - 1) / WORD_QUADS; }
-
-    //! Appends the chosen bits of planes of `words()` words each.
-    void append(const uint64* planes, BitWriter& out) const;
-
-    enum { WORD_QUADS = 64 / GROUP_CHANNELS };
+    //! Appends them, in their order.
+    void append(const uchar* comparisons, BitWriter& out) const;
 
 private:
     //! Moves the bits of a mask together, to the low end.
@@ -41,12 +45,18 @@ private:
         uint64 mask, moves[6];
         int count;
 
-        explicit Compressor(uint64 mask = 0);
+        explicit Compressor(uint64 mask);
         uint64 operator()(uint64 bits) const;
     };
 
-    std::vector<QuadPlace> quads;
-    std::vector<Compressor> compressors;  //!< of each word of each plane
+    //! Eight bytes of the comparisons of which any bit is chosen.
+    struct Word
+    {
+        size_t byte;
+        Compressor compressor;
+    };
+
+    std::vector<Word> words;
 };
 
 }  // namespace iib

@@ -115,7 +115,7 @@ bool sumsAreShort(const Parameters& p, int largest, const Block& block, const st
 {
     double cell = 0;
     for (int k : block.keypoints)
-        cell = std::max(cell, ros[k].longestCell(1 << p.granularity));
+        cell = std::max(cell, ros[k].longestCell(1 << finestLevel(p)));
     return largest * cell * cell <= USHRT_MAX;
 }
 

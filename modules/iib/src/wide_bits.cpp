@@ -10,8 +10,6 @@ namespace iib {
 
 namespace {
 
-enum { MAX_BITS = (1 << (MAX_GRANULARITY - 1)) * GROUP_CHANNELS };
-
 //! Maps one channel of one quad; put(bit, value) takes the bits.
 template <typename Mapping, typename Put>
 void mapQuad(const CellGrid<double>& cells, const LevelShape& shape, int row, int col, int channel, const Put& put)
@@ -24,26 +22,6 @@ void mapQuad(const CellGrid<double>& cells, const LevelShape& shape, int row, in
     Mapping::map(weighted, put);
 }
 
-//! Quads whose top left cells are in rows dy, dy + 2, ... and columns dx, dx + 2, ...
-template <typename Mapping>
-void windowBits(const CellGrid<double>& cells, const LevelShape& shape, int dy, int dx, BitWriter& out)
-{
-    bool planes[Mapping::BITS][MAX_BITS];
-    for (int row = dy; row + 1 < shape.n; row += 2)
-    {
-        int count = 0;
-        for (int col = dx; col + 1 < shape.n; col += 2)
-            for (int channel = 0; channel < shape.channels; channel++, count++)
-                mapQuad<Mapping>(cells, shape, row, col, channel, [&](int plane, bool bit)
-                {
-                    planes[plane][count] = bit;
-                });
-        for (int plane = 0; plane < Mapping::BITS; plane++)
-            for (int i = 0; i < count; i++)
-                out.append(planes[plane][i], 1);
-    }
-}
-
 struct LevelBits
 {
     const CellGrid<double>& cells;
@@ -52,31 +30,31 @@ struct LevelBits
 
     template <typename Mapping> void visit() const
     {
-        for (int dy = 0; dy <= (int)shape.overlap; dy++)
-            for (int dx = 0; dx <= (int)shape.overlap; dx++)
-                windowBits<Mapping>(cells, shape, dy, dx, out);
+        for (int i = 0; i < Window::COUNT; i++)
+            if (shape.uses(i))
+                windowBits<Mapping>(i);
     }
-};
 
-struct SelectedBits
-{
-    const CellGrid<double>& cells;
-    const LevelShape& shape;
-    const std::vector<QuadPlace>& quads;
-    const int words;
-    uint64* const planes;
-
-    template <typename Mapping> void visit() const
+private:
+    template <typename Mapping> void windowBits(int index) const
     {
-        std::fill(planes, planes + words * Mapping::BITS, (uint64)0);
-        for (size_t lane = 0; lane < quads.size() * GROUP_CHANNELS; lane++)
-        {
-            const QuadPlace& quad = quads[lane / GROUP_CHANNELS];
-            mapQuad<Mapping>(cells, shape, quad.row, quad.col, lane % GROUP_CHANNELS, [&](int plane, bool bit)
-            {
-                planes[plane * words + lane / 64] |= (uint64)bit << lane % 64;
-            });
-        }
+        const Window window(shape.n, index);
+        const int planeBits = 8 * window.planeBytes();
+        std::vector<uchar> planes(window.rows * Mapping::BITS * window.planeBytes() + 8, 0);
+        for (int r = 0; r < window.rows; r++)
+            for (int lane = 0; lane < window.lanes(); lane++)
+                mapQuad<Mapping>(cells, shape, window.dy + 2 * r, window.dx + lane / GROUP_CHANNELS * 2,
+                                 lane % GROUP_CHANNELS, [&](int plane, bool bit)
+                {
+                    const int at = (r * Mapping::BITS + plane) * planeBits + lane;
+                    planes[at / 8] |= (uchar)(bit << at % 8);
+                });
+        if (shape.chosen)
+            return shape.chosen[index].append(planes.data(), out);
+        for (int plane = 0; plane < window.rows * Mapping::BITS; plane++)
+            for (int lane = 0; lane < window.lanes(); lane++)
+                if (lane % GROUP_CHANNELS < shape.channels)
+                    out.append(planes[(plane * planeBits + lane) / 8] >> lane % 8 & 1, 1);
     }
 };
 
@@ -85,13 +63,6 @@ struct SelectedBits
 void wideLevelBits(int mapping, const CellGrid<double>& cells, const LevelShape& shape, BitWriter& out)
 {
     const LevelBits visitor = { cells, shape, out };
-    visitMapping(mapping, visitor);
-}
-
-void wideSelectedBits(int mapping, const CellGrid<double>& cells, const LevelShape& shape,
-                      const std::vector<QuadPlace>& quads, int words, uint64* planes)
-{
-    const SelectedBits visitor = { cells, shape, quads, words, planes };
     visitMapping(mapping, visitor);
 }
 

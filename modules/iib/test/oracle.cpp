@@ -250,14 +250,14 @@ std::vector<bool> levelBits(const IIB& iib, const Cells& cells, int channels, in
 
 std::vector<bool> selectedBits(const IIB& iib, const Cells& cells, const Mat_<int>& selection, int level)
 {
-    // group of channels, bit, row, column, channel: the order of the header
-    std::map<std::array<int, 5>, bool> bits;
+    // group of channels, window, row, bit, column, channel: the order of the header
+    std::map<std::array<int, 6>, bool> bits;
     for (int i = 0; i < selection.rows; i++)
         for (int bit = 0; bit < 8; bit++)
             if (selection(i, 0) == level && (selection(i, 4) >> bit & 1))
             {
                 const int channel = selection(i, 1), row = selection(i, 2), col = selection(i, 3);
-                const std::array<int, 5> place = { { channel / 4, bit, row, col, channel } };
+                const std::array<int, 6> place = { { channel / 4, row % 2 * 2 + col % 2, row, bit, col, channel } };
                 bits[place] = quadBits(iib, cells, channel, level, row, col)[bit];
             }
     std::vector<bool> result;

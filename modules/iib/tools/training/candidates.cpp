@@ -33,15 +33,21 @@ int bitsPerQuad(int mapping)
 cv::Mat_<int> allQuads(const PoolParameters& p, int mask)
 {
     cv::Mat_<int> quads(0, 5);
-    const int step = p.overlap ? 1 : 2;
     const int channels = countBits(p.channels);
     for (int level = 1; level <= p.granularity; level++)
         for (int group = 0; group < channels; group += CHANNEL_GROUP)
-            for (int row = 0; row + 1 < 1 << level; row += step)
-                for (int column = 0; column + 1 < 1 << level; column += step)
-                    for (int channel = group; channel < std::min(group + CHANNEL_GROUP, channels); channel++)
-                        quads.push_back(cv::Mat_<int>({level, channel, row, column, mask}).reshape(1, 1));
+            for (int window = 0; window < (p.overlap ? 4 : 1); window++)
+                for (int row = window / 2; row + 1 < 1 << level; row += 2)
+                    for (int column = window % 2; column + 1 < 1 << level; column += 2)
+                        for (int channel = group; channel < std::min(group + CHANNEL_GROUP, channels); channel++)
+                            quads.push_back(cv::Mat_<int>({level, channel, row, column, mask}).reshape(1, 1));
     return quads;
+}
+
+//! Whether the bits of two quads of a level are in one row of planes.
+bool inOneRow(const int* p, const int* q)
+{
+    return p[0] == q[0] && p[1] / CHANNEL_GROUP == q[1] / CHANNEL_GROUP && p[2] == q[2] && p[3] % 2 == q[3] % 2;
 }
 
 }  // namespace
@@ -61,15 +67,13 @@ CandidatePool makePool(const PoolParameters& p)
     pool.quads = allQuads(p, (1 << bits) - 1);
     pool.extractor->setSelection(pool.quads);
 
-    int start = 0;  // bit at which a run of quads of one level and one group of channels begins
+    int start = 0;  // bit at which a row of planes begins
     for (int first = 0; first < pool.quads.rows;)
     {
-        const int level = pool.quads(first, 0), group = pool.quads(first, 1) / CHANNEL_GROUP;
-        if (group == 0)
-            start = (start + 7) / 8 * 8;
+        if (first > 0 && pool.quads(first, 0) != pool.quads(first - 1, 0))
+            start = (start + 7) / 8 * 8;  // levels begin with a byte
         int last = first;
-        while (last < pool.quads.rows && pool.quads(last, 0) == level &&
-                pool.quads(last, 1) / CHANNEL_GROUP == group)
+        while (last < pool.quads.rows && inOneRow(pool.quads[first], pool.quads[last]))
             last++;
         for (int quad = first; quad < last; quad++)
         {

@@ -35,8 +35,8 @@ first:
  5. the column of quads;
  6. the channel within the group.
 
-With a selection (see setSelection) the order is the same, without 2: the chosen quads of a level and a
-group of channels by the bit of the mapping, then by row, column and channel, in whatever order they were given.
+With a selection (see setSelection) the order is the same, whatever that of the selection, and the bits that were not
+chosen are left out; quads in odd rows or columns belong to the windows of 2.
 
 The descriptors are CV_8U and compared with NORM_HAMMING. The same input gives the same bits for
 every instruction set, thread count and build. One object may serve several threads as long as none
