@@ -3,182 +3,42 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "hamming.hpp"
-#include "intrinsics.hpp"
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+#include "hamming_lanes.simd.hpp"
+#include "hamming_rows.simd.hpp"
+#if !CV_AVX512_ICL && (CV_SSSE3 || (CV_NEON && defined __aarch64__))
+#include "hamming_tables.simd.hpp"
+#else
+#include "hamming_adders.simd.hpp"
+#endif
+#endif
 
 namespace cv {
 namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 void hammingScan(const HammingScan& scan);
+HammingPacking hammingPacking();
 const char* hammingInstructionSet();
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
 
-typedef v_uint32 Words;
-typedef v_int32 Counts;
-const int LANES = HammingLayout::LANES, WIDTH = VTraits<Words>::max_nlanes, VECTORS = LANES / WIDTH;
-
-// Queries compared at once with a group: as many as the registers hold.
-#if CV_SIMD_WIDTH == 64
-const int QUERIES = 4;
-#elif CV_SIMD_WIDTH == 32
-const int QUERIES = 2;
-#else
-const int QUERIES = 1;
-#endif
-
-// Bit counts of words, in a form that is cheap to compute; up to MOST may be added before total().
-const int MOST = 31;
-#if CV_AVX512_ICL
-typedef v_uint32 Partial;
-inline Partial noBits() { return vx_setzero_u32(); }
-inline Partial countBits(const Words& x) { return v_popcount(x); }
-inline Counts total(const Partial& x) { return v_reinterpret_as_s32(x); }
-#else
-typedef v_uint8 Partial;
-inline Partial noBits() { return vx_setzero_u8(); }
-inline Partial countBits(const Words& x)
-{
-#if CV_SSSE3 && CV_SIMD_WIDTH == 16
-    const __m128i table = _mm_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4), low = _mm_set1_epi8(15);
-    return v_uint8(_mm_add_epi8(_mm_shuffle_epi8(table, _mm_and_si128(x.val, low)),
-                                _mm_shuffle_epi8(table, _mm_and_si128(_mm_srli_epi16(x.val, 4), low))));
-#else
-    return v_popcount(v_reinterpret_as_u8(x));
-#endif
-}
-inline Counts total(const Partial& x)
-{
-    return v_reinterpret_as_s32(v_dotprod_expand(x, vx_setall_u8(1)));
-}
-#endif
-
-inline int countLanes(int lanes)
-{
-#if CV_POPCNT
-    return _mm_popcnt_u32(lanes);
-#else
-    int count = 0;
-    for (; lanes; lanes &= lanes - 1)
-        count++;
-    return count;
-#endif
-}
-
-// A step's full adder: returns the carry, turns the parity into the next.
-inline Words addStep(Words& parity, const Words& train0, const Words& query0, const Words& train1, const Words& query1)
-{
-    const Words before = parity, x = train0 ^ query0;
-#if CV_AVX512_SKX
-    parity = Words(_mm512_ternarylogic_epi32(before.val, train1.val, query1.val, 0x96)); // xor of the three
-    return Words(_mm512_ternarylogic_epi32(before.val, x.val, parity.val, 0x74));
-#else
-    const Words y = train1 ^ query1;
-    parity = before ^ y;
-    return before ^ (x & ~y);
-#endif
-}
-
-//! Q queries against a group, compared up to some step. Its loops run over all vectors in one go, so that
-//! compilers unroll them and keep everything in registers.
-template<int Q> struct Tile
-{
-    enum { SIZE = Q * VECTORS };
-    Words parity[SIZE];
-    Counts carries[SIZE], before[SIZE]; // before: the distance at the stop before
-
-    // Compares steps 0 to `to`.
-    CV_ALWAYS_INLINE void start(const unsigned* query, const unsigned* group, size_t words, int to)
-    {
-        for (int i = 0; i < SIZE; i++)
-            parity[i] = vx_load(group + i % VECTORS * WIDTH) ^ vx_setall_u32(query[i / VECTORS * words]);
-        const int first = std::min(to, MOST);
-        Partial partial[SIZE];
-        addSteps(partial, query, group, words, 0, first);
-        for (int i = 0; i < SIZE; i++)
-            carries[i] = total(partial[i]);
-        advance(query, group, words, first, to);
-    }
-
-    // Compares steps `from` to `to`.
-    CV_ALWAYS_INLINE void advance(const unsigned* query, const unsigned* group, size_t words, int from, int to)
-    {
-        while (from < to)
-        {
-            const int next = std::min(from + MOST, to);
-            Partial partial[SIZE];
-            addSteps(partial, query, group, words, from, next);
-            for (int i = 0; i < SIZE; i++)
-                carries[i] += total(partial[i]);
-            from = next;
-        }
-    }
-
-    CV_ALWAYS_INLINE void addSteps(Partial* partial, const unsigned* query, const unsigned* group, size_t words,
-                                   int from, int to)
-    {
-        for (int i = 0; i < SIZE; i++)
-            partial[i] = noBits();
-        for (; from < to; from++)
-            for (int i = 0; i < SIZE; i++)
-            {
-                const unsigned* q = query + i / VECTORS * words + 1 + 2 * from;
-                const unsigned* t = group + i % VECTORS * WIDTH + (1 + 2 * from) * LANES;
-                const Words carry =
-                        addStep(parity[i], vx_load(t), vx_setall_u32(q[0]), vx_load(t + LANES), vx_setall_u32(q[1]));
-                partial[i] += countBits(carry);
-            }
-    }
-
-    CV_ALWAYS_INLINE void distances(Counts* result) const
-    {
-        for (int i = 0; i < SIZE; i++)
-            result[i] = carries[i] + carries[i] + total(countBits(parity[i]));
-    }
-};
-
-//! A query's comparison with a group, put aside at a stop.
-struct Pending
-{
-    enum { SIZE = 4 * LANES }; // whole cache lines
-    int *state, *query, *group, *alive;
-
-    explicit Pending(int* memory)
-        : state(memory), query(memory + 3 * LANES), group(query + 1), alive(query + 2) {}
-
-    template<int Q> CV_ALWAYS_INLINE void store(const Tile<Q>& tile, int q) const
-    {
-        for (int v = 0; v < VECTORS; v++)
-        {
-            const int i = q * VECTORS + v;
-            v_store(state + v * WIDTH, v_reinterpret_as_s32(tile.parity[i]));
-            v_store(state + LANES + v * WIDTH, tile.carries[i]);
-            v_store(state + 2 * LANES + v * WIDTH, tile.before[i]);
-        }
-    }
-    CV_ALWAYS_INLINE void load(Tile<1>& tile) const
-    {
-        for (int v = 0; v < VECTORS; v++)
-        {
-            tile.parity[v] = v_reinterpret_as_u32(vx_load(state + v * WIDTH));
-            tile.carries[v] = vx_load(state + LANES + v * WIDTH);
-            tile.before[v] = vx_load(state + 2 * LANES + v * WIDTH);
-        }
-    }
-};
-
 class Scanner
 {
 public:
     explicit Scanner(const HammingScan& s)
-        : scan(s), words(1 + 2 * s.steps), together(0), memory((size_t)QUERIES * s.groups * Pending::SIZE + LANES),
-          places(alignPtr(memory.data(), LANES * sizeof(int)))
+        : scan(s), layout(*s.layout), queries(layout), queryRow(layout, partAt(0) + 1, 1), trainRows(layout, partAt(0) + 1, s.stopCount ? s.groups * LANES : 0)
     {
-        // The first stops, one soon after the other, are for whole tiles: hardly any tile ends there.
-        while (together < scan.stopCount && (together == 0 || stepsAt(together) - stepsAt(together - 1) <= 2))
-            together++;
+        for (int stop = 0; stop <= s.stopCount; stop++)
+            words.push_back(layout.end(partAt(stop)));
+        if (s.stopCount > 0)
+        {
+            distances.allocate((size_t)QUERIES * s.groups * LANES);
+            shortlists.allocate((size_t)QUERIES * (s.groups + 1) * LANES); // storeLanes() needs more than fits
+        }
     }
 
     void run()
@@ -191,123 +51,24 @@ public:
     }
 
 private:
-    // Stop by stop over all groups, so that each loop does one thing: what survives a stop is put aside.
+    enum { NEVER = INT_MAX };
+
+    //! Some queries against all groups.
     template<int Q> void row(int query)
     {
-        int pending = 0;
-        for (int group = 0; group < scan.groups; group++)
-            compare<Q>(query, group, pending);
-        for (int stop = together; stop <= scan.stopCount && pending > 0; stop++)
-            pending = resume(stop, pending);
+        for (int q = 0; q < Q; q++)
+            queries.set(q, plainQuery(query + q));
+        if (scan.stopCount > 0)
+            compareByParts<Q>(query);
+        else
+            for (int group = 0; group < scan.groups; group++)
+                compare<Q>(query, group);
     }
 
-    template<int Q> CV_ALWAYS_INLINE void compare(int query, int group, int& pending)
+    template<int Q> CV_ALWAYS_INLINE void compare(int query, int group)
     {
         Tile<Q> tile;
-        tile.start(queryCode(query), groupCode(group), words, stepsAt(0));
-        if (scan.stopCount == 0)
-        {
-            report(tile, query, group);
-            return;
-        }
-        int alive[Q];
-        for (int q = 0; q < Q; q++)
-            alive[q] = existing(query + q, group);
-        for (int i = 0; i < Tile<Q>::SIZE; i++)
-            tile.before[i] = vx_setzero_s32();
-        for (int stop = 0; stop < together; stop++)
-        {
-            if (stop > 0)
-                tile.advance(queryCode(query), groupCode(group), words, stepsAt(stop - 1), stepsAt(stop));
-            keep(tile, query, stop, alive);
-        }
-        for (int q = 0; q < Q; q++)
-        {
-            if (!alive[q])
-                continue;
-            const Pending place(places + (size_t)pending * Pending::SIZE);
-            place.store(tile, q);
-            *place.query = query + q;
-            *place.group = group;
-            *place.alive = alive[q];
-            pending++;
-        }
-    }
-
-    // Takes all that is pending to a stop, or to the end after the last; returns how many are left.
-    int resume(int stop, int pending)
-    {
-        int left = 0;
-        for (int i = 0; i < pending; i++)
-        {
-            const Pending from(places + (size_t)i * Pending::SIZE), to(places + (size_t)left * Pending::SIZE);
-            const int query = *from.query, group = *from.group;
-            int alive = *from.alive;
-            Tile<1> tile;
-            from.load(tile);
-            tile.advance(queryCode(query), groupCode(group), words, stepsAt(stop - 1), stepsAt(stop));
-            if (stop == scan.stopCount)
-            {
-                report(tile, query, group, alive);
-                continue;
-            }
-            keep(tile, query, stop, &alive);
-            to.store(tile, 0);
-            *to.query = query;
-            *to.group = group;
-            *to.alive = alive;
-            left += alive != 0;
-        }
-        return left;
-    }
-
-    // Applies a stop to the lanes alive.
-    template<int Q> CV_ALWAYS_INLINE void keep(Tile<Q>& tile, int query, int stop, int* alive)
-    {
-        Counts distance[Tile<Q>::SIZE];
-        tile.distances(distance);
-        int* limits = scan.limits + query * scan.stopCount + stop;
-        if (scan.stops[stop].margin >= 0)
-            for (int q = 0; q < Q; q++)
-                lower(limits[q * scan.stopCount], distance + q * VECTORS, alive[q], scan.stops[stop].margin);
-        const Counts levelMax = vx_setall_s32(scan.stops[stop].levelMax);
-        int above[Q], pairs = 0;
-        for (int q = 0; q < Q; q++)
-            above[q] = 0;
-        for (int i = 0; i < Tile<Q>::SIZE; i++)
-        {
-            const Counts most = v_min(tile.before[i] + levelMax, vx_setall_s32(limits[i / VECTORS * scan.stopCount]));
-            above[i / VECTORS] |= v_signmask(most - distance[i]) << i % VECTORS * WIDTH;
-        }
-        for (int q = 0; q < Q; q++)
-            pairs += countLanes(alive[q] &= ~above[q]);
-        for (int i = 0; i < Tile<Q>::SIZE; i++)
-            tile.before[i] = distance[i];
-        scan.passed[stop] += pairs;
-    }
-
-    // Brings a limit down to the least distance of the lanes alive plus a margin.
-    static CV_ALWAYS_INLINE void lower(int& limit, const Counts* distance, int alive, int margin)
-    {
-        int below = 0;
-        for (int v = 0; v < VECTORS; v++)
-            below |= v_signmask(distance[v] - vx_setall_s32(limit - margin)) << v * WIDTH;
-        if (below & alive)
-            limit = least(distance, below & alive) + margin;
-    }
-
-    static int least(const Counts* distance, int lanes)
-    {
-        int distances[LANES], result = INT_MAX;
-        for (int v = 0; v < VECTORS; v++)
-            v_store(distances + v * WIDTH, distance[v]);
-        for (; lanes; lanes &= lanes - 1)
-            result = std::min(result, distances[trailingZeros32(lanes)]);
-        return result;
-    }
-
-    template<int Q> CV_ALWAYS_INLINE void report(const Tile<Q>& tile, int query, int group) const
-    {
+        tile.start(queries, codes(group), layout.words());
         Counts distance[Tile<Q>::SIZE], beyonds[Tile<Q>::SIZE], any = vx_setzero_s32();
         tile.distances(distance);
         for (int i = 0; i < Tile<Q>::SIZE; i++)
@@ -318,66 +79,242 @@ private:
         if (!v_check_any(any))
             return;
         for (int q = 0; q < Q; q++)
-            found(query + q, group, distance + q * VECTORS, beyonds + q * VECTORS, existing(query + q, group));
+            report(query + q, group, distance + q * VECTORS, beyonds + q * VECTORS);
     }
 
-    void report(const Tile<1>& tile, int query, int group, int alive) const
+    //! All pairs together up to a stop; then those that pass one by one, or all to the next stop if they are many.
+    template<int Q> void compareByParts(int query)
     {
-        Counts distance[VECTORS], beyonds[VECTORS];
-        tile.distances(distance);
-        for (int v = 0; v < VECTORS; v++)
-            beyonds[v] = beyond(query, group, v, distance[v]);
-        found(query, group, distance, beyonds, alive);
+        // Two stops in one go if the second comes soon after the first, where hardly any tile would end.
+        int stop = scan.stopCount > 1 && words[1] - words[0] <= 4 ? 1 : 0;
+        if (stop == 0)
+            compareTo<Q, 1>(query, stop);
+        else
+            compareTo<Q, 2>(query, stop);
+        for (; stop < scan.stopCount; compareTo<Q, 0>(query, ++stop))
+        {
+            int counts[Q], pairs = 0;
+            select<Q>(query, stop, counts);
+            for (int q = 0; q < Q; q++)
+                pairs += counts[q];
+            scan.passed[stop] += pairs;
+            if (pairs * 8 > scan.groups * words[stop + 1] * Q)
+                continue;
+            for (int q = 0; q < Q; q++)
+                finish(query + q, q, counts[q], stop);
+            return;
+        }
+        for (int q = 0; q < Q; q++)
+            for (int group = 0; group < scan.groups; group++)
+            {
+                Counts distance[VECTORS], beyonds[VECTORS];
+                for (int v = 0; v < VECTORS; v++)
+                {
+                    distance[v] = vx_load(distancesOf(q) + group * LANES + v * WIDTH);
+                    beyonds[v] = beyond(query + q, group, v, distance[v]);
+                }
+                report(query + q, group, distance, beyonds);
+            }
     }
 
-    // Negative where a distance is small enough to be found.
+    //! Writes the distances up to a stop, NEVER for pairs that ended on the way. STOPS is the number of stops up to
+    //! there if those that passed at the ones before are to be counted, else 0.
+    template<int Q, int STOPS> void compareTo(int query, int stop)
+    {
+        const int groups = scan.groups, first = words[0], second = words[1];
+        const size_t step = layout.words() * LANES;
+        const unsigned* group = scan.trains;
+        int *results = distances.data(), *const end = results + groups * LANES;
+        Counts gone = vx_setzero_s32(), minima[Q];
+        for (int q = 0; q < Q; q++)
+            minima[q] = vx_setall_s32(NEVER);
+        for (int g = 0; results != end; results += LANES, group += step, g++)
+        {
+            Tile<Q> tile;
+            Counts distance[Tile<Q>::SIZE], before[Tile<Q>::SIZE], room[Tile<Q>::SIZE];
+            for (int i = 0; i < Tile<Q>::SIZE; i++)
+            {
+                before[i] = vx_setzero_s32();
+                room[i] = missing(query + i / VECTORS, g, i % VECTORS);
+            }
+            tile.start(queries, group, first);
+            tile.distances(distance);
+            if (STOPS == 2)
+            {
+                endPairs<Q>(0, 0, distance, before, room);
+                for (int i = 0; i < Tile<Q>::SIZE; i++)
+                    gone += room[i] >> 31;
+                tile.advance(queries, group, first, second);
+                tile.distances(distance);
+                endPairs<Q>(1, 0, distance, before, room);
+            }
+            if (STOPS == 0)
+            {
+                for (int i = 0; i < stop; i++)
+                {
+                    endPairs<Q>(i, scan.limits ? scan.limits + query : 0, distance, before, room);
+                    tile.advance(queries, group, words[i], words[i + 1]);
+                    tile.distances(distance);
+                }
+                if (stop < scan.stopCount)
+                    endPairs<Q>(stop, 0, distance, before, room);
+            }
+            for (int i = 0; i < Tile<Q>::SIZE; i++)
+            {
+                if (STOPS != 1 || scan.allowed)
+                    distance[i] = v_select(room[i] < vx_setzero_s32(), vx_setall_s32(NEVER), distance[i]);
+                v_store(results + i / VECTORS * groups * LANES + i % VECTORS * WIDTH, distance[i]);
+                if (STOPS == 1)
+                    minima[i / VECTORS] = v_min(minima[i / VECTORS], distance[i]);
+            }
+        }
+        if (STOPS == 1)
+            for (int q = 0; q < Q; q++)
+                least[q] = v_reduce_min(minima[q]);
+        if (STOPS == 2)
+            scan.passed[0] += Q * groups * LANES + v_reduce_sum(gone);
+    }
+
+    //! Makes the room negative of the pairs that are not to go on at a stop.
+    template<int Q>
+    CV_ALWAYS_INLINE void endPairs(int stop, const int* limits, const Counts* distance, Counts* before, Counts* room) const
+    {
+        const Counts most = vx_setall_s32(scan.stops[stop].most);
+        for (int i = 0; i < Tile<Q>::SIZE; i++)
+        {
+            room[i] = room[i] | (before[i] + most - distance[i]);
+            if (limits)
+                room[i] = room[i] | (vx_setall_s32(limits[i / VECTORS]) - distance[i]);
+            before[i] = distance[i];
+        }
+    }
+
+    //! Lists the pairs of each query that go on.
+    template<int Q> void select(int query, int stop, int* counts)
+    {
+        const int size = scan.groups * LANES;
+        const int* distance[Q];
+        int *list[Q], limits[Q];
+        for (int q = 0; q < Q; q++)
+        {
+            distance[q] = distancesOf(q);
+            list[q] = shortlist(q);
+            limits[q] = lowerLimit(query + q, q, stop);
+        }
+        for (int i = 0; i < size; i += LANES)
+        {
+            Counts trains[VECTORS];
+            for (int v = 0; v < VECTORS; v++)
+                trains[v] = laneNumbers() + vx_setall_s32(i + v * WIDTH);
+            for (int q = 0; q < Q; q++)
+            {
+                Counts room[VECTORS];
+                for (int v = 0; v < VECTORS; v++)
+                    room[v] = vx_setall_s32(limits[q]) - vx_load(distance[q] + i + v * WIDTH);
+                const int lanes = ((1 << LANES) - 1) & ~negativeLanes(room);
+                storeLanes(list[q], trains, lanes);
+                list[q] += countLanes(lanes);
+            }
+        }
+        for (int q = 0; q < Q; q++)
+            counts[q] = (int)(list[q] - shortlist(q));
+    }
+
+    //! The most that may differ at the stop.
+    int lowerLimit(int query, int q, int stop)
+    {
+        const int most = stop == 0 ? scan.stops[0].most : NEVER - 1; // which was not looked at, or was
+        if (!scan.limits)
+            return most;
+        int& limit = scan.limits[query];
+        if (scan.margin >= 0)
+            limit = std::min(limit, std::min(least[q], NEVER - scan.margin) + scan.margin);
+        return std::min(limit, most);
+    }
+
+    //! Takes the pairs of a list one by one through the stops that follow.
+    void finish(int query, int q, int count, int stop)
+    {
+        if (count > 0)
+            queryRow.set(0, plainQuery(query));
+        for (; stop < scan.stopCount && count > 0; stop++)
+        {
+            if (stop + 1 < scan.stopCount)
+                scan.passed[stop + 1] += count = advance(q, count, stop);
+            else
+                advance(q, count, stop);
+        }
+        const int *list = shortlist(q), *distance = distancesOf(q), *queryBelow = scan.queryBelow + query;
+        const int* trainBelow = scan.trainBelow;
+        for (int i = 0; i < count; i++)
+            if (distance[list[i]] < std::max(*queryBelow, trainBelow[list[i]]))
+                scan.sink->found(query, list[i], distance[list[i]]);
+    }
+
+    //! Compares the pairs of a list to the stop after a stop; returns how many are left.
+    int advance(int q, int count, int stop)
+    {
+        const int from = partAt(stop), to = partAt(stop + 1), most = stop + 1 < scan.stopCount ? scan.stops[stop + 1].most : NEVER;
+        const int size = queryRow.count(from, to);
+        const uint64* query = queryRow.after(from, 0);
+        int *list = shortlist(q), *distance = distancesOf(q), left = 0;
+        for (int i = 0; i < count; i++)
+        {
+            const int train = list[i];
+            trainRows.require(train, scan.trains);
+            const int more = countDifferences(query, trainRows.after(from, train), size);
+            distance[train] += more;
+            list[left] = train;
+            left += more <= most;
+        }
+        return left;
+    }
+
+    //! Negative where a distance is small enough to be found.
     CV_ALWAYS_INLINE Counts beyond(int query, int group, int v, const Counts& distance) const
     {
         const int* trainBelow = scan.trainBelow + group * LANES + v * WIDTH;
         return distance - v_max(vx_setall_s32(scan.queryBelow[query]), vx_load(trainBelow));
     }
 
-    void found(int query, int group, const Counts* distance, const Counts* beyonds, int lanes) const
+    void report(int query, int group, const Counts* distance, const Counts* beyonds) const
     {
-        int distances[LANES];
-        int near = 0;
+        int lanes = negativeLanes(beyonds);
+        if (!lanes)
+            return;
+        Counts absent[VECTORS];
         for (int v = 0; v < VECTORS; v++)
-        {
-            v_store(distances + v * WIDTH, distance[v]);
-            near |= v_signmask(beyonds[v]) << v * WIDTH;
-        }
-        for (lanes &= near; lanes; lanes &= lanes - 1)
-        {
-            const int lane = trailingZeros32(lanes);
-            scan.sink->found(query, group * LANES + lane, distances[lane]);
-        }
+            absent[v] = missing(query, group, v);
+        lanes &= ~negativeLanes(absent);
+        int near[LANES];
+        storeLanes(near, distance, lanes);
+        for (int i = 0; lanes; lanes &= lanes - 1)
+            scan.sink->found(query, group * LANES + trailingZeros32(lanes), near[i++]);
     }
 
-    // The lanes whose pairs exist.
-    CV_ALWAYS_INLINE int existing(int query, int group) const
+    //! All bits of the lanes whose pairs do not exist.
+    CV_ALWAYS_INLINE Counts missing(int query, int group, int v) const
     {
-        int lanes = (1 << LANES) - 1;
         if (!scan.allowed)
-            return lanes;
+            return vx_setzero_s32();
         const uchar* allowed = scan.allowed + ((size_t)query * scan.groups + group) * LANES;
-        for (int v = 0; v < VECTORS; v++)
-        {
-            const Counts missing = v_reinterpret_as_s32(vx_load_expand_q(allowed + v * WIDTH)) - vx_setall_s32(1);
-            lanes &= ~(v_signmask(missing) << v * WIDTH);
-        }
-        return lanes;
+        return v_reinterpret_as_s32(vx_load_expand_q(allowed + v * WIDTH)) == vx_setzero_s32();
     }
 
-    // Steps compared at a stop, or in all after the last.
-    int stepsAt(int stop) const { return stop < scan.stopCount ? scan.stops[stop].steps : scan.steps; }
-    const unsigned* queryCode(int query) const { return scan.queries + query * words; }
-    const unsigned* groupCode(int group) const { return scan.trains + group * words * LANES; }
+    //! The part that ends at a stop, or the last one after the last stop.
+    int partAt(int stop) const { return stop < scan.stopCount ? scan.stops[stop].part : layout.parts() - 1; }
+    const unsigned* codes(int group) const { return scan.trains + (size_t)group * layout.words() * LANES; }
+    const unsigned* plainQuery(int query) const { return scan.queries + (size_t)query * layout.words(); }
+    int* distancesOf(int q) { return distances.data() + (size_t)q * scan.groups * LANES; }
+    int* shortlist(int q) { return shortlists.data() + (size_t)q * (scan.groups + 1) * LANES; }
 
     const HammingScan& scan;
-    const size_t words;
-    int together; // stops at which tiles stay whole
-    AutoBuffer<int> memory;
-    int* places;
+    const HammingLayout& layout;
+    TileQueries queries;
+    Rows queryRow, trainRows;
+    std::vector<int> words; // up to each stop, and in all
+    AlignedBuffer<int> distances, shortlists; // of a row's pairs
+    int least[QUERIES]; // of the distances
 };
 
 }  // namespace
@@ -385,6 +322,11 @@ private:
 void hammingScan(const HammingScan& scan)
 {
     Scanner(scan).run();
+}
+
+HammingPacking hammingPacking()
+{
+    return PACKING;
 }
 
 const char* hammingInstructionSet()

@@ -11,7 +11,7 @@ namespace iib {
 
 static const int LANES = HammingLayout::LANES;
 
-HammingIndex::HammingIndex(const std::vector<int>& levelSizes) : format(levelSizes), starts(1, 0) {}
+HammingIndex::HammingIndex(const std::vector<int>& levelSizes) : format(levelSizes, hammingPacking()), starts(1, 0) {}
 
 HammingIndex::HammingIndex(const HammingIndex& other)
     : format(other.format), starts(other.starts), codes(other.codes.clone())
@@ -57,10 +57,8 @@ void HammingIndex::add(const Mat& descriptors)
     for (int i = 0; i < descriptors.rows; i++)
     {
         const size_t row = rows() + i;
-        format.pack(descriptors.ptr(i), code.data());
-        unsigned* lane = codes.ptr<unsigned>((int)(row / LANES)) + row % LANES;
-        for (size_t w = 0; w < code.size(); w++)
-            lane[w * LANES] = code[w];
+        format.arrange(descriptors.ptr(i), code.data());
+        format.store(code.data(), codes.ptr<unsigned>((int)(row / LANES)), row % LANES);
     }
     starts.push_back(end);
 }
@@ -68,14 +66,12 @@ void HammingIndex::add(const Mat& descriptors)
 Mat HammingIndex::descriptors(size_t image) const
 {
     Mat result((int)rows(image), format.bytes(), CV_8U);
-    std::vector<unsigned> code(format.words());
+    AutoBuffer<unsigned> plain(format.words());
     for (int i = 0; i < result.rows; i++)
     {
         const size_t row = starts[image] + i;
-        const unsigned* lane = codes.ptr<unsigned>((int)(row / LANES)) + row % LANES;
-        for (size_t w = 0; w < code.size(); w++)
-            code[w] = lane[w * LANES];
-        format.unpack(code.data(), result.ptr(i));
+        format.fetch(codes.ptr<unsigned>((int)(row / LANES)), row % LANES, plain.data());
+        format.restore(plain.data(), result.ptr(i));
     }
     return result;
 }

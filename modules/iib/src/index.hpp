@@ -22,7 +22,10 @@ struct SearchCost
 struct SearchPlan
 {
     std::vector<HammingStop> stops;
-    std::vector<int> limits; //!< for each stop, the most that may differ in all, to begin with
+    int limit;  //!< with a single stop, the most bits that may differ there
+    int margin; //!< if >= 0, the limit of a query comes down to its least difference there plus this
+
+    SearchPlan() : limit(INT_MAX), margin(-1) {}
 };
 
 //! Every pair is compared to the end.

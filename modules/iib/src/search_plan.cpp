@@ -8,10 +8,16 @@
 namespace cv {
 namespace iib {
 
-static HammingStop stopAt(int steps)
+static void addStop(SearchPlan& plan, int part, int most = HammingStop::NO_MAX)
 {
-    const HammingStop stop = { steps, HammingStop::NO_MAX, -1 };
-    return stop;
+    const HammingStop stop = { part, most };
+    plan.stops.push_back(stop);
+}
+
+//! Random differences of n bits spread by sqrt(n) / 2 around n / 2.
+static double spread(int bits)
+{
+    return std::sqrt((double)bits) / 2;
 }
 
 SearchPlan exactPlan()
@@ -19,39 +25,38 @@ SearchPlan exactPlan()
     return SearchPlan();
 }
 
+// One stop, where most pairs are beyond the radius; none where they hardly ever are.
 SearchPlan radiusPlan(const HammingLayout& layout, int radius)
 {
     SearchPlan plan;
-    for (int level = 0; level + 1 < layout.levels(); level++)
-        plan.stops.push_back(stopAt(layout.end(level)));
-    plan.limits.assign(plan.stops.size(), radius);
+    plan.limit = radius;
+    for (int part = 0, bits = 0; part + 1 < layout.parts() && plan.stops.empty(); part++)
+    {
+        bits += layout.bits(part);
+        if (radius < bits / 2 - 4 * spread(bits))
+            addStop(plan, part);
+    }
     return plan;
 }
 
 SearchPlan thresholdPlan(const HammingLayout& layout, const std::vector<float>& thresholds)
 {
-    SearchPlan plan = radiusPlan(layout, INT_MAX);
-    for (size_t level = 0; level < plan.stops.size(); level++)
-        plan.stops[level].levelMax = cvFloor((double)thresholds[level] * 8 * layout.levelSizes()[level]);
+    SearchPlan plan;
+    for (int level = 0; level + 1 < layout.levels(); level++)
+        addStop(plan, level, cvFloor((double)thresholds[level] * 8 * layout.levelSizes()[level]));
     return plan;
 }
 
-// Random differences of n bits spread by sqrt(n) / 2: margins of 1.6 and 1 such spreads. The levels before the
-// last are too few bits to tell on a hard pair, so the first stop takes a quarter of the last one with them.
 SearchPlan adaptivePlan(const HammingLayout& layout)
 {
     SearchPlan plan;
-    if (layout.levels() == 1)
+    int bits = 0;
+    for (int part = 0; part + 1 < layout.parts(); part++)
+        bits += layout.bits(part);
+    if (bits == 0)
         return plan;
-    const int coarse = layout.end(layout.levels() - 2), fine = layout.steps() - coarse;
-    const int places[] = { coarse + fine / 4, coarse + fine / 2 };
-    const double margins[] = { 0.8, 0.5 };
-    for (int i = 0; i < 2; i++)
-    {
-        plan.stops.push_back(stopAt(places[i]));
-        plan.stops.back().margin = cvRound(margins[i] * std::sqrt((double)layout.bits(places[i])));
-    }
-    plan.limits.assign(plan.stops.size(), INT_MAX);
+    addStop(plan, layout.parts() - 2);
+    plan.margin = cvRound(1.75 * spread(bits));
     return plan;
 }
 

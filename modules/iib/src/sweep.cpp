@@ -12,7 +12,7 @@ namespace iib {
 
 static const int LANES = HammingLayout::LANES;
 // Both packed blocks together stay in a second-level cache of 512 KB with the default descriptor.
-static const int BLOCK_QUERIES = 512, BLOCK_GROUPS = 64;
+static const int BLOCK_QUERIES = 4096, BLOCK_GROUPS = 128;
 
 namespace {
 
@@ -114,23 +114,20 @@ void Sweep::split(int parts, const std::function<SearchCost(int, int)>& body, Se
 
 SearchCost Sweep::run(int from, int to, SweepSink& sink) const
 {
-    const int words = index.layout().words(), stops = (int)plan.stops.size();
-    std::vector<unsigned> packed((size_t)std::min(to - from, BLOCK_QUERIES) * words);
+    const HammingLayout& layout = index.layout();
+    std::vector<unsigned> plain((size_t)std::min(to - from, BLOCK_QUERIES) * layout.words());
     SearchCost cost;
     for (; from < to; from += BLOCK_QUERIES)
     {
         const int end = std::min(from + BLOCK_QUERIES, to);
-        std::vector<int> limits((size_t)(end - from) * stops);
         for (int i = from; i < end; i++)
-        {
-            index.layout().pack(queries.ptr(i), &packed[(size_t)(i - from) * words]);
-            std::copy(plan.limits.begin(), plan.limits.end(), limits.begin() + (size_t)(i - from) * stops);
-        }
+            layout.arrange(queries.ptr(i), &plain[(size_t)(i - from) * layout.words()]);
+        std::vector<int> limits(end - from, plan.limit);
         for (int group = 0; group < codes.rows; group += BLOCK_GROUPS)
         {
             sink.moveTo(from, (size_t)group * LANES);
             const SearchCost work = block(from, end, group, std::min(BLOCK_GROUPS, codes.rows - group),
-                                          packed.data(), limits.data(), sink);
+                                          plain.data(), limits.data(), sink);
             cost.compared += work.compared;
             cost.all += work.all;
         }
@@ -138,7 +135,7 @@ SearchCost Sweep::run(int from, int to, SweepSink& sink) const
     return cost;
 }
 
-SearchCost Sweep::block(int from, int to, int group, int groups, const unsigned* packed, int* limits,
+SearchCost Sweep::block(int from, int to, int group, int groups, const unsigned* plain, int* limits,
                         SweepSink& sink) const
 {
     const HammingLayout& layout = index.layout();
@@ -153,16 +150,17 @@ SearchCost Sweep::block(int from, int to, int group, int groups, const unsigned*
     std::vector<int64> passed(plan.stops.size(), 0);
 
     HammingScan scan;
-    scan.steps = layout.steps();
-    scan.queries = packed;
+    scan.layout = &layout;
+    scan.queries = plain;
     scan.queryCount = to - from;
     scan.trains = codes.ptr<unsigned>(group);
     scan.groups = groups;
     scan.allowed = allowed.empty() ? 0 : allowed.data();
     scan.stops = plan.stops.data();
     scan.stopCount = (int)plan.stops.size();
-    scan.limits = limits;
     scan.passed = passed.data();
+    scan.limits = plan.stops.size() == 1 ? limits : 0;
+    scan.margin = plan.margin;
     scan.queryBelow = sink.queryBelow();
     scan.trainBelow = sink.trainBelow();
     scan.sink = &sink;
@@ -170,12 +168,12 @@ SearchCost Sweep::block(int from, int to, int group, int groups, const unsigned*
 
     SearchCost cost;
     cost.all = (uint64)pairs * 8 * layout.bytes();
-    int before = 0;
-    for (size_t i = 0; i <= passed.size(); i++)
+    uint64 alive = pairs;
+    for (int part = 0, stop = 0; part < layout.parts(); part++)
     {
-        const int bits = layout.bits(i < passed.size() ? plan.stops[i].steps : layout.steps());
-        cost.compared += (i == 0 ? (uint64)pairs : (uint64)passed[i - 1]) * (bits - before);
-        before = bits;
+        cost.compared += alive * layout.bits(part);
+        if (stop < scan.stopCount && plan.stops[stop].part == part)
+            alive = passed[stop++];
     }
     return cost;
 }

@@ -44,7 +44,7 @@ public:
 private:
     //! Queries `from` to `to` against all.
     SearchCost run(int from, int to, SweepSink& sink) const;
-    SearchCost block(int from, int to, int group, int groups, const unsigned* packed, int* limits,
+    SearchCost block(int from, int to, int group, int groups, const unsigned* plain, int* limits,
                      SweepSink& sink) const;
     //! Fills the flags of existing pairs and returns their number.
     size_t allow(int from, int to, size_t firstRow, size_t count, uchar* allowed) const;

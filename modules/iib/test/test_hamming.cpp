@@ -8,79 +8,206 @@
 namespace opencv_test {
 namespace {
 
+typedef std::vector<int> Levels;
+typedef std::map<std::pair<int, int>, int> Distances; // of (query, train code)
+
 struct AllPairs : public HammingSink
 {
-    std::map<std::pair<int, int>, int> distances;
+    Distances distances;
     void found(int query, int train, int distance) CV_OVERRIDE
     {
-        EXPECT_TRUE(distances.insert(std::make_pair(std::make_pair(query, train), distance)).second);
+        const Distances::const_iterator next = distances.lower_bound(std::make_pair(query, train));
+        EXPECT_TRUE(next == distances.end() || next->first.first > query) << "train codes not in ascending order";
+        distances[std::make_pair(query, train)] = distance;
     }
 };
 
-typedef std::vector<int> Levels;
-
-TEST(IIB_Hamming, layout_comes_back_and_ends_levels_at_steps)
+//! Everything a scan needs, and the naive distances.
+struct ScanData
 {
-    for (const Levels& levels : { Levels{ 1 }, Levels{ 2, 8, 32, 128 }, Levels{ 8, 24 }, Levels{ 3, 5, 7 }, Levels{ 4 } })
+    HammingLayout layout;
+    Mat queries, trains;
+    std::vector<unsigned> plainQueries, plainTrains, groups;
+    std::vector<int64> passed;
+    std::vector<int> queryBelow, trainBelow;
+
+    ScanData(const Levels& levels, int queryCount, int rows)
+        : layout(levels, hammingPacking()), queries(randomDescriptors(1, queryCount, layout.bytes())),
+          trains(randomDescriptors(2, rows, layout.bytes())), plainQueries(queryCount * layout.words()),
+          plainTrains(rows * layout.words()), groups(rows * layout.words()), queryBelow(queryCount, INT_MAX),
+          trainBelow(rows, 0)
     {
-        const HammingLayout layout(levels);
-        const Mat descriptor = randomDescriptors(1, 1, layout.bytes());
-        std::vector<unsigned> code(layout.words());
-        Mat back(1, layout.bytes(), CV_8U);
-        layout.pack(descriptor.ptr(), code.data());
-        layout.unpack(code.data(), back.ptr());
-        EXPECT_EQ(0, cvtest::norm(descriptor, back, NORM_INF));
-        int bits = 0;
-        for (int i = 0; i < layout.levels(); i++)
-            EXPECT_EQ(bits += 8 * levels[i], layout.bits(layout.end(i)));
+        CV_Assert(rows % HammingLayout::LANES == 0);
+        for (int i = 0; i < queryCount; i++)
+            layout.arrange(queries.ptr(i), &plainQueries[i * layout.words()]);
+        for (int i = 0; i < rows; i++)
+        {
+            const int group = i / HammingLayout::LANES * HammingLayout::LANES;
+            std::vector<unsigned> code(layout.words());
+            layout.arrange(trains.ptr(i), code.data());
+            std::copy(code.begin(), code.end(), plainTrains.begin() + i * layout.words());
+            layout.store(code.data(), &groups[group * layout.words()], i % HammingLayout::LANES);
+        }
     }
-    EXPECT_EQ(43, HammingLayout(Levels{ 2, 8, 32, 128 }).words());
-    EXPECT_EQ(336 + 9 * 64, HammingLayout(Levels{ 2, 8, 32, 128 }).bits(5 + 9));
+
+    HammingScan scan(const std::vector<HammingStop>& stops, HammingSink& sink)
+    {
+        passed.assign(stops.size(), 0);
+        HammingScan scan = HammingScan();
+        scan.layout = &layout;
+        scan.queries = plainQueries.data();
+        scan.queryCount = queries.rows;
+        scan.trains = groups.data();
+        scan.groups = trains.rows / HammingLayout::LANES;
+        scan.stops = stops.data();
+        scan.stopCount = (int)stops.size();
+        scan.passed = passed.data();
+        scan.margin = -1;
+        scan.queryBelow = queryBelow.data();
+        scan.trainBelow = trainBelow.data();
+        scan.sink = &sink;
+        return scan;
+    }
+
+    //! Bits that differ up to the end of a part.
+    int distance(int query, int train, int part) const
+    {
+        return hammingDistance((const uchar*)&plainQueries[query * layout.words()],
+                               (const uchar*)&plainTrains[train * layout.words()], layout.end(part) * 4);
+    }
+};
+
+TEST(IIB_Hamming, layout_comes_back)
+{
+    for (HammingPacking packing : { PACKING_ADDERS, PACKING_TABLES })
+        for (const Levels& levels : { Levels{ 1 }, Levels{ 2, 8, 32, 128 }, Levels{ 8, 24 }, Levels{ 3, 5, 7 }, Levels{ 4 } })
+        {
+            const HammingLayout layout(levels, packing);
+            const Mat descriptor = randomDescriptors(1, 1, layout.bytes());
+            std::vector<unsigned> group(HammingLayout::LANES * layout.words()), plain(layout.words());
+            Mat back(1, layout.bytes(), CV_8U, Scalar(0));
+            layout.arrange(descriptor.ptr(), plain.data());
+            layout.store(plain.data(), group.data(), 5);
+            std::fill(plain.begin(), plain.end(), 0u);
+            layout.fetch(group.data(), 5, plain.data());
+            layout.restore(plain.data(), back.ptr());
+            EXPECT_EQ(0, cvtest::norm(descriptor, back, NORM_INF));
+            int bits = 0;
+            for (int part = 0; part < layout.parts(); part++)
+                bits += layout.bits(part);
+            EXPECT_EQ(8 * layout.bytes(), bits);
+            for (int level = 0; level + 1 < layout.levels(); level++)
+                EXPECT_EQ(8 * levels[level], layout.bits(level));
+        }
 }
 
-// The whole kernel against a loop over bits: every number of steps, chunks of more than 31 included, queries
-// that do and do not fill a tile, one group and several.
+TEST(IIB_Hamming, last_level_begins_with_every_fourth_word)
+{
+    const HammingLayout layout({ 2, 32 }, PACKING_TABLES);
+    ASSERT_EQ(3, layout.parts());
+    EXPECT_EQ(64, layout.bits(1));
+    Mat descriptor(1, 34, CV_8U, Scalar(0));
+    descriptor.colRange(2 + 16, 2 + 20).setTo(255); // word 4 of the last level
+    std::vector<unsigned> plain(layout.words());
+    layout.arrange(descriptor.ptr(), plain.data());
+    EXPECT_EQ((std::vector<unsigned>{ 0, 0, ~0u, 0, 0, 0, 0, 0, 0 }), plain);
+}
+
+// The whole kernel against a loop over bits: every number of words, more than fit a vector of bytes included,
+// queries that do and do not fill a tile, one group and several.
 TEST(IIB_Hamming, scan_as_the_naive_loop)
 {
     for (int bytes : { 1, 4, 5, 12, 31, 32, 64, 170, 248, 252, 256, 260, 682, 1000 })
         for (int queryCount : { 1, 2, 3, 4, 5, 8, 9 })
         {
-            const HammingLayout layout(Levels(1, bytes));
-            const int groups = 1 + queryCount % 3, rows = groups * HammingLayout::LANES;
-            const Mat queries = randomDescriptors(1, queryCount, bytes), trains = randomDescriptors(2, rows, bytes);
-            std::vector<unsigned> code(layout.words()), packed, blocks((size_t)rows * layout.words());
-            for (int i = 0; i < queryCount; i++)
-            {
-                layout.pack(queries.ptr(i), code.data());
-                packed.insert(packed.end(), code.begin(), code.end());
-            }
-            for (int i = 0; i < rows; i++)
-            {
-                layout.pack(trains.ptr(i), code.data());
-                for (int w = 0; w < layout.words(); w++)
-                    blocks[((i / 16) * layout.words() + w) * 16 + i % 16] = code[w];
-            }
-            const std::vector<int> queryBelow(queryCount, bytes * 4), trainBelow(rows, 0);
+            ScanData data(Levels(1, bytes), queryCount, (1 + queryCount % 3) * HammingLayout::LANES);
+            std::fill(data.queryBelow.begin(), data.queryBelow.end(), bytes * 4);
+            data.trainBelow[3] = bytes * 8 + 1;
             AllPairs sink;
-            HammingScan scan = HammingScan();
-            scan.steps = layout.steps();
-            scan.queries = packed.data();
-            scan.queryCount = queryCount;
-            scan.trains = blocks.data();
-            scan.groups = groups;
-            scan.queryBelow = queryBelow.data();
-            scan.trainBelow = trainBelow.data();
-            scan.sink = &sink;
-            hammingScan(scan);
+            hammingScan(data.scan(std::vector<HammingStop>(), sink));
+            Distances expected;
             for (int q = 0; q < queryCount; q++)
-                for (int t = 0; t < rows; t++)
+                for (int t = 0; t < data.trains.rows; t++)
                 {
-                    const int distance = hammingDistance(queries.ptr(q), trains.ptr(t), bytes);
-                    const auto found = sink.distances.find(std::make_pair(q, t));
-                    ASSERT_EQ(distance < bytes * 4, found != sink.distances.end());
-                    ASSERT_TRUE(found == sink.distances.end() || found->second == distance);
+                    const int distance = hammingDistance(data.queries.ptr(q), data.trains.ptr(t), bytes);
+                    if (distance < bytes * 4 || t == 3)
+                        expected[std::make_pair(q, t)] = distance;
                 }
+            ASSERT_EQ(expected, sink.distances) << bytes << " bytes, " << queryCount << " queries";
         }
+}
+
+// Levels that end one soon after the other and far apart, bounds that hardly any pair and that most pairs pass.
+TEST(IIB_Hamming, stops_as_the_naive_loop)
+{
+    for (const Levels& levels : { Levels{ 2, 8, 32, 128 }, Levels{ 16, 48 }, Levels{ 40, 40, 40 } })
+        for (int share : { 0, 10, 25, 35, 50, 100 })
+            for (int masked = 0; masked < 2; masked++)
+            {
+                SCOPED_TRACE(format("%d levels, %d %% of the bits, masked %d", (int)levels.size(), share, masked));
+                ScanData data(levels, 9, 6 * HammingLayout::LANES);
+                std::vector<HammingStop> stops;
+                for (int level = 0; level + 1 < (int)levels.size(); level++)
+                    stops.push_back(HammingStop{ level, levels[level] * 8 * share / 100 });
+                const Mat mask = randomMask(3, data.queries.rows, data.trains.rows, 0.7);
+                AllPairs sink;
+                HammingScan scan = data.scan(stops, sink);
+                scan.allowed = masked ? mask.data : 0;
+                hammingScan(scan);
+                Distances expected;
+                std::vector<int64> passed(stops.size(), 0);
+                for (int q = 0; q < data.queries.rows; q++)
+                    for (int t = 0; t < data.trains.rows; t++)
+                    {
+                        size_t stop = 0;
+                        if (masked && !mask.at<uchar>(q, t))
+                            continue;
+                        for (int before = 0; stop < stops.size(); stop++)
+                        {
+                            const int distance = data.distance(q, t, stops[stop].part);
+                            if (distance - before > stops[stop].most)
+                                break;
+                            before = distance;
+                            passed[stop]++;
+                        }
+                        if (stop == stops.size())
+                            expected[std::make_pair(q, t)] = data.distance(q, t, data.layout.parts() - 1);
+                    }
+                EXPECT_EQ(expected, sink.distances);
+                EXPECT_EQ(passed, data.passed);
+            }
+}
+
+// A single stop with limits, as they are and lowered by a margin.
+TEST(IIB_Hamming, limits_as_the_naive_loop)
+{
+    for (int margin : { -1, 0, 10, 40, 400 })
+    {
+        SCOPED_TRACE(margin);
+        ScanData data({ 2, 8, 32, 128 }, 7, 8 * HammingLayout::LANES);
+        const std::vector<HammingStop> stops(1, HammingStop{ 3, HammingStop::NO_MAX });
+        std::vector<int> limits(data.queries.rows), expectedLimits;
+        for (size_t q = 0; q < limits.size(); q++)
+            limits[q] = 60 + 60 * (int)q;
+        expectedLimits = limits;
+        AllPairs sink;
+        HammingScan scan = data.scan(stops, sink);
+        scan.limits = limits.data();
+        scan.margin = margin;
+        hammingScan(scan);
+        Distances expected;
+        for (int q = 0; q < data.queries.rows; q++)
+        {
+            for (int t = 0; margin >= 0 && t < data.trains.rows; t++)
+                expectedLimits[q] = std::min(expectedLimits[q], data.distance(q, t, 3) + margin);
+            for (int t = 0; t < data.trains.rows; t++)
+                if (data.distance(q, t, 3) <= expectedLimits[q])
+                    expected[std::make_pair(q, t)] = data.distance(q, t, 4);
+        }
+        EXPECT_EQ(expected, sink.distances);
+        EXPECT_EQ(expectedLimits, limits);
+        EXPECT_EQ((int64)expected.size(), data.passed[0]);
+    }
 }
 
 // Pinned by OPENCV_CPU_DISABLE, the kernel must be the best one of what is left.

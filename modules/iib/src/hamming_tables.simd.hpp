@@ -1,0 +1,179 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Comparison of codes packed as PACKING_TABLES, for instruction sets that look bytes up in registers faster than
+// they count bits. Included by hamming.simd.hpp.
+
+namespace cv {
+namespace iib {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+namespace {
+
+const HammingPacking PACKING = PACKING_TABLES;
+const int QUERIES = 4;
+
+// A vector takes POSITIONS bytes of each of the LANES codes.
+typedef v_uint8 Bytes;
+const int BYTES = VTraits<Bytes>::max_nlanes, POSITIONS = BYTES / LANES;
+
+//! Picks values out of tables of 16, a table for each 16 bytes of the vector.
+inline Bytes lookUp(const Bytes& table, const Bytes& index)
+{
+#if CV_AVX512_SKX
+    return Bytes(_mm512_shuffle_epi8(table.val, index.val));
+#elif CV_AVX2
+    return Bytes(_mm256_shuffle_epi8(table.val, index.val));
+#elif CV_SSSE3
+    return Bytes(_mm_shuffle_epi8(table.val, index.val));
+#else
+    return Bytes(vqtbl1q_u8(table.val, index.val));
+#endif
+}
+
+inline Bytes lowHalves(const Bytes& x) { return x & vx_setall_u8(15); }
+inline Bytes highHalves(const Bytes& x) { return lowHalves(v_reinterpret_as_u8(v_reinterpret_as_u16(x) >> 4)); }
+
+struct HalfDistances
+{
+    uchar of[16][16];
+    HalfDistances()
+    {
+        for (int i = 0; i < 256; i++)
+            of[i / 16][i % 16] = (uchar)countLanes(i / 16 ^ i % 16);
+    }
+};
+
+/** The queries that are compared at once, as tables: for each half byte of a train code its distance to the query's.
+ Two queries share a table, one in the low and one in the high halves of its bytes. A vector's tables are those of
+ its low half bytes, then those of its high ones. */
+class TileQueries
+{
+public:
+    explicit TileQueries(const HammingLayout& l)
+        : layout(l), tables(QUERIES / 2 * pairSize())
+    {
+        for (int pair = 0; pair < QUERIES / 2; pair++)
+            pairs[pair] = tables.data() + pair * pairSize();
+    }
+
+    void set(int i, const unsigned* plain)
+    {
+        uchar* table = pairs[i / 2];
+        for (int from = 0; from < 4 * layout.words(); from += POSITIONS)
+            for (int shift = 0; shift < 8; shift += 4)
+                for (int p = from; p < from + POSITIONS; p++, table += 16)
+                    add(table, ((const uchar*)plain)[p] >> shift & 15, i % 2);
+    }
+    //! The tables of two queries.
+    const uchar* operator[](int pair) const { return pairs[pair]; }
+
+private:
+    size_t pairSize() const { return (size_t)layout.words() * 4 * 2 * 16; }
+
+    //! Writes the distances of a half byte to all others, or puts them into the high halves of what is there.
+    static void add(uchar* table, int half, bool second)
+    {
+        static const HalfDistances distances;
+        const v_uint8x16 d = v_load(distances.of[half]);
+        v_store(table, second ? v_load(table) | v_reinterpret_as_u8(v_reinterpret_as_u16(d) << 4) : d);
+    }
+
+    const HammingLayout& layout;
+    AlignedBuffer<uchar> tables;
+    uchar* pairs[QUERIES / 2];
+};
+
+//! Q queries against a group, compared up to some word.
+template<int Q> class Tile
+{
+public:
+    enum { SIZE = Q * VECTORS };
+
+    //! Compares words 0 to `to`.
+    CV_ALWAYS_INLINE void start(const TileQueries& queries, const unsigned* group, int to)
+    {
+        for (int i = 0; i < SIZE; i++)
+            counts[i] = vx_setzero_s32();
+        advance(queries, group, 0, to);
+    }
+
+    //! Compares words `from` to `to`.
+    CV_ALWAYS_INLINE void advance(const TileQueries& queries, const unsigned* group, int from, int to)
+    {
+        const int MOST = 30; // vectors that add up in bytes: 31 times 8 at most
+        int v = from * 4 / POSITIONS;
+        for (const int end = to * 4 / POSITIONS; v < end;)
+        {
+            const int next = std::min(v + MOST, end);
+            Bytes sums[Q];
+            for (int q = 0; q < Q; q++)
+                sums[q] = vx_setzero_u8();
+            for (; v + 3 <= next; v += 3)
+                addUp<3>(sums, queries, group, v);
+            for (; v < next; v++)
+                addUp<1>(sums, queries, group, v);
+            for (int q = 0; q < Q; q++)
+                widen(sums[q], counts + q * VECTORS);
+        }
+    }
+
+    CV_ALWAYS_INLINE void distances(Counts* result) const
+    {
+        for (int i = 0; i < SIZE; i++)
+            result[i] = counts[i];
+    }
+
+private:
+    // Half bytes hold the distances of three half bytes at most, which makes 12.
+    template<int N> CV_ALWAYS_INLINE void addUp(Bytes* sums, const TileQueries& queries, const unsigned* group, int v)
+    {
+        Bytes code[N];
+        for (int n = 0; n < N; n++)
+            code[n] = vx_load((const uchar*)group + (v + n) * BYTES);
+        for (int half = 0; half < 2; half++)
+        {
+            Bytes index[N];
+            for (int n = 0; n < N; n++)
+                index[n] = half ? highHalves(code[n]) : lowHalves(code[n]);
+            for (int q = 0; q < Q; q += 2)
+            {
+                const uchar* tables = queries[q / 2] + (2 * v + half) * BYTES;
+                Bytes both = lookUp(vx_load(tables), index[0]);
+                for (int n = 1; n < N; n++)
+                    both += lookUp(vx_load(tables + 2 * n * BYTES), index[n]);
+                sums[q] += lowHalves(both);
+                if (q + 1 < Q)
+                    sums[q + 1] += highHalves(both);
+            }
+        }
+    }
+
+    // The positions of a vector come together.
+    static CV_ALWAYS_INLINE void widen(const Bytes& sums, Counts* counts)
+    {
+        v_uint16 a, b;
+        v_expand(sums, a, b);
+#if CV_SIMD_WIDTH > 16
+        addWide(a + b, counts);
+#else
+        addWide(a, counts);
+        addWide(b, counts + 2);
+#endif
+    }
+
+    static CV_ALWAYS_INLINE void addWide(const v_uint16& sums, Counts* counts)
+    {
+        v_uint32 a, b;
+        v_expand(sums, a, b);
+        counts[0] += v_reinterpret_as_s32(a);
+        counts[CV_SIMD_WIDTH > 32 ? 0 : 1] += v_reinterpret_as_s32(b);
+    }
+
+    Counts counts[SIZE];
+};
+
+}  // namespace
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}  // namespace iib
+}  // namespace cv
