@@ -6,7 +6,7 @@ endif()
 set(suites "${PROJECT_BINARY_DIR}/suites.cmake")
 set(pins "")
 if(IIB_DISPATCH)
-  set(pins AVX2=AVX512-SKX,AVX512-ICL SSE4_2=AVX2,AVX512-SKX,AVX512-ICL
+  set(pins AVX512_SKX=AVX512-ICL AVX2=AVX512-SKX,AVX512-ICL SSE4_2=AVX2,AVX512-SKX,AVX512-ICL
     baseline=SSE4.1,SSE4.2,AVX,AVX2,AVX512-SKX,AVX512-ICL)
 endif()
 add_custom_command(TARGET opencv_test_iib POST_BUILD
