@@ -169,7 +169,9 @@ void run(ByteSource& in)
     if (thrown)
         return;
 
-    const bool exact = matcher->getMode() != HierarchicalMatcher::ADAPTIVE || oracle.levelSizes.size() == 1;
+    // ADAPTIVE has nothing to go by in a single small level
+    const bool exact = matcher->getMode() != HierarchicalMatcher::ADAPTIVE ||
+                       (oracle.levelSizes.size() == 1 && width <= 4);
     const bool cheap = (double)queries.rows * (double)trains * width < 200000;
     if (cheap && exact)
     {
