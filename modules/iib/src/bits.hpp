@@ -56,8 +56,10 @@ template <typename Cell> struct BitsKernels
 
     //! The sums alone.
     void (*parentSums)(const CellGrid<Cell>& cells, CellGrid<unsigned>& parents);
+
+    const char* instructionSet;  //!< for which they were compiled
 };
-BitsKernels<ushort> getBitsKernels(int mapping, ushort);
+CV_EXPORTS BitsKernels<ushort> getBitsKernels(int mapping, ushort);
 BitsKernels<unsigned> getBitsKernels(int mapping, unsigned);
 
 //! The bits where an int is too small for the products.

@@ -368,14 +368,23 @@ void levelBits(const CellGrid<Cell>& cells, const LevelShape& shape, CellGrid<un
             windowBits<Mapping, false>(cells, shape, i, parents, out);
 }
 
+#ifdef CV_CPU_DISPATCH_MODE
+#define IIB_INSTRUCTION_SET CVAUX_STR(CV_CPU_DISPATCH_MODE)
+#else
+#define IIB_INSTRUCTION_SET "baseline"
+#endif
+
 template <typename Cell> struct Kernels
 {
     template <typename Mapping> BitsKernels<Cell> visit() const
     {
-        const BitsKernels<Cell> k = { levelBits<Mapping, Cell>, parentSums<Cell> };
+        const BitsKernels<Cell> k = { levelBits<Mapping, Cell>, parentSums<Cell>,
+                                      IIB_INSTRUCTION_SET };
         return k;
     }
 };
+
+#undef IIB_INSTRUCTION_SET
 
 }  // namespace
 

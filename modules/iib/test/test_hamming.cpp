@@ -210,22 +210,5 @@ TEST(IIB_Hamming, limits_as_the_naive_loop)
     }
 }
 
-// Pinned by OPENCV_CPU_DISABLE, the kernel must be the best one of what is left.
-TEST(IIB_Hamming, runs_on_the_widest_instruction_set_left)
-{
-    const String running = hammingInstructionSet();
-    std::cout << "[          ] Hamming kernel: " << running << std::endl;
-#if defined(__x86_64__) || defined(_M_X64)
-    String widest = "baseline";
-    if (checkHardwareSupport(CPU_SSE4_2) && checkHardwareSupport(CPU_POPCNT))
-        widest = "SSE4_2";
-    if (widest != "baseline" && checkHardwareSupport(CPU_AVX2) && checkHardwareSupport(CPU_FMA3))
-        widest = "AVX2";
-    if (widest == "AVX2" && checkHardwareSupport(CPU_AVX512_SKX))
-        widest = checkHardwareSupport(CPU_AVX512_ICL) ? "AVX512_ICL" : "AVX512_SKX";
-    EXPECT_EQ(widest, running);
-#endif
-}
-
 }  // namespace
 }  // namespace opencv_test
