@@ -255,19 +255,31 @@ inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const
     }
 }
 
+//! Appends a plane, `lanes` bits of which those of the channels in use are wanted.
+inline void append(const uchar* plane, int lanes, int channels, BitWriter& out)
+{
+    if (channels == GROUP_CHANNELS)
+        for (int first = 0; first < lanes; first += 64)
+        {
+            const int count = std::min(lanes - first, 64);
+            out.append(loadWord(plane + first / 8) & ~(uint64)0 >> (64 - count), count);
+        }
+    else
+        for (int first = 0; first < lanes; first += CHUNK)
+        {
+            const int count = std::min(lanes - first, (int)CHUNK) / GROUP_CHANNELS * channels;
+            const uchar* p = plane + first / 8;
+            out.append(dropLanes(p[0] | p[1] << 8, channels) & ((1u << count) - 1), count);
+        }
+}
+
 //! Appends the comparisons of all quads of a window.
 inline void append(PlaneRows planes, const Window& window, int bits, int channels, BitWriter& out)
 {
     BitWriter writer = out;  // a copy that no store of a byte can change stays in registers
-    const int chunkQuads = CHUNK / GROUP_CHANNELS;
     for (int r = 0; r < window.rows; r++, planes.first += planes.row)
         for (int plane = 0; plane < bits; plane++)
-            for (int first = 0; first < window.quads; first += chunkQuads)
-            {
-                const uchar* p = planes.first + plane * planes.plane + first / 2;
-                const int count = std::min(window.quads - first, chunkQuads) * channels;
-                writer.append(dropLanes(p[0] | p[1] << 8, channels) & ((1u << count) - 1), count);
-            }
+            append(planes.first + plane * planes.plane, window.lanes(), channels, writer);
     out = writer;
 }
 
@@ -341,7 +353,7 @@ void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int index,
 {
     const Window window(shape.n, index);
     const int rowBytes = Mapping::BITS * window.planeBytes();
-    uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8], *whole = 0;
+    uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8 + 8], *whole = 0;  // words are read beyond the last plane
     // Where all bits are in use and a row fills whole chunks, they need no shifting.
     if (!shape.chosen && shape.channels == GROUP_CHANNELS && window.lanes() % CHUNK == 0)
         whole = out.reserve(window.rows * rowBytes);

@@ -4,53 +4,23 @@
 
 // What a descriptor costs beside cv::ORB on the same keypoints, in one run: prints a table, writes JSON.
 
-#include "opencv2/core.hpp"
+#include "scaling.hpp"
+#include "scene.hpp"
+
 #include "opencv2/core/utility.hpp"
 #include "opencv2/iib.hpp"
-#include "opencv2/imgproc.hpp"
 
 #include <cstdio>
 #include <functional>
 
 using namespace cv;
 using cv::iib::IIB;
+using namespace iib_tools;
 
 namespace {
 
 const Size IMAGE_SIZE(1280, 720);
 enum { FEW = 1000, MANY = 5000 };
-
-//! A grey image with corners everywhere: blurred noise at two scales.
-Mat cornerImage(Size size)
-{
-    RNG rng(1);
-    Mat fine(size, CV_8U), coarse(size / 8, CV_8U), image;
-    rng.fill(fine, RNG::UNIFORM, 0, 256);
-    rng.fill(coarse, RNG::UNIFORM, 0, 256);
-    GaussianBlur(fine, fine, Size(5, 5), 1.);
-    resize(coarse, coarse, size, 0, 0, INTER_CUBIC);
-    addWeighted(fine, 0.5, coarse, 0.5, 0, image);
-    return image;
-}
-
-//! FAST corners, spread over the image, with ORB's size, away from the border, where ORB would drop them.
-std::vector<KeyPoint> corners(const Mat& image, size_t count)
-{
-    std::vector<KeyPoint> all, chosen;
-    FAST(image, all, 5);
-    RNG rng(2);
-    for (size_t i = all.size(); i > 1; i--)
-        std::swap(all[i - 1], all[rng.uniform(0, (int)i)]);
-    const Rect inside(32, 32, image.cols - 64, image.rows - 64);
-    for (size_t i = 0; i < all.size() && chosen.size() < count; i++)
-        if (inside.contains(all[i].pt))
-        {
-            chosen.push_back(all[i]);
-            chosen.back().size = 31;
-            chosen.back().angle = rng.uniform(0.f, 360.f);
-        }
-    return chosen;
-}
 
 struct Row
 {
@@ -109,6 +79,20 @@ void measure(std::vector<Row>& rows, const std::vector<KeyPoint> keypoints[2], i
             }
 }
 
+//! How much slower the run was whose figures are in a file, for example under OPENCV_CPU_DISABLE.
+void printAgainst(const std::vector<Row>& rows, const String& file)
+{
+    const FileStorage fs(file, FileStorage::READ);
+    if (!fs.isOpened())
+        CV_Error(Error::StsError, "cannot read " + file);
+    printf("\ntimes of %s\n%s\nover those above, %d keypoints\n\n", file.c_str(),
+           ((String)fs["cpu"]).c_str(), FEW);
+    for (const FileNode& other : fs["rows"])
+        for (const Row& row : rows)
+            if (row.name == (String)other["name"])
+                printf("%-22s %8.2f\n", row.name.c_str(), (double)other["milliseconds"][0] / row.milliseconds[0]);
+}
+
 //! Microseconds that one more keypoint costs.
 double marginal(const Row& row)
 {
@@ -126,7 +110,7 @@ void print(const std::vector<Row>& rows)
                row.milliseconds[0] / rows[0].milliseconds[0], marginal(row), marginal(row) / marginal(rows[0]));
 }
 
-void write(const std::vector<Row>& rows, const String& file)
+void write(const std::vector<Row>& rows, const Scaling& scaling, const String& file)
 {
     FileStorage fs(file, FileStorage::WRITE);
     if (!fs.isOpened())
@@ -137,6 +121,7 @@ void write(const std::vector<Row>& rows, const String& file)
         fs << "{" << "name" << row.name << "threads" << row.threads << "milliseconds" << "[" << row.milliseconds[0]
            << row.milliseconds[1] << "]" << "}";
     fs << "]";
+    scaling.write(fs);
 }
 
 }  // namespace
@@ -145,7 +130,8 @@ int main(int argc, char** argv)
 {
     const CommandLineParser args(argc, argv, "{help h||prints this}"
                                              "{rounds|100|repetitions, of which the fastest counts}"
-                                             "{json|iib_benchmark.json|file to write}");
+                                             "{json|iib_benchmark.json|file to write}"
+                                             "{against||file of another run, to be compared with}");
     if (args.has("help"))
     {
         args.printMessage();
@@ -165,7 +151,11 @@ int main(int argc, char** argv)
         std::vector<Row> rows = allRows(image);
         measure(rows, keypoints, rounds);
         print(rows);
-        write(rows, args.get<String>("json"));
+        const Scaling scaling = measureScaling(rounds);
+        scaling.print();
+        write(rows, scaling, args.get<String>("json"));
+        if (args.has("against"))
+            printAgainst(rows, args.get<String>("against"));
     }
     catch (const cv::Exception& e)
     {

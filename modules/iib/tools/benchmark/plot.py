@@ -1,0 +1,34 @@
+#!/usr/bin/python3
+"""Draws how the time to describe grows with pixels and keypoints: plot.py iib_benchmark.json picture.svg"""
+import json
+import sys
+
+import matplotlib
+
+matplotlib.use("svg")
+import matplotlib.pyplot as plt  # noqa: E402 (the backend comes first)
+
+
+def draw(axis, xs, points, label):
+    axis.plot(xs, [p["milliseconds"] for p in points], marker="o")
+    axis.set_xlim(left=0)
+    axis.set_ylim(bottom=0)
+    axis.set_xlabel(label)
+    axis.set_ylabel("ms")
+    axis.grid(True, linewidth=0.4)
+
+
+def main(source, picture):
+    with open(source, encoding="utf-8") as file:
+        data = json.load(file)
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.2))
+    draw(left, [p["megapixels"] for p in data["pixels"]], data["pixels"],
+         f"megapixels ({data['pixels'][0]['keypoints']} keypoints)")
+    draw(right, [p["keypoints"] for p in data["more_keypoints"]], data["more_keypoints"],
+         f"keypoints ({data['more_keypoints'][0]['megapixels']:.2f} megapixels)")
+    figure.tight_layout()
+    figure.savefig(picture, metadata={"Date": None})
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

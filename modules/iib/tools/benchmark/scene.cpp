@@ -1,0 +1,44 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "scene.hpp"
+
+#include "opencv2/features2d.hpp"
+#include "opencv2/imgproc.hpp"
+
+using namespace cv;
+
+namespace iib_tools {
+
+Mat cornerImage(Size size)
+{
+    RNG rng(1);
+    Mat fine(size, CV_8U), coarse(size / 8, CV_8U), image;
+    rng.fill(fine, RNG::UNIFORM, 0, 256);
+    rng.fill(coarse, RNG::UNIFORM, 0, 256);
+    GaussianBlur(fine, fine, Size(5, 5), 1.);
+    resize(coarse, coarse, size, 0, 0, INTER_CUBIC);
+    addWeighted(fine, 0.5, coarse, 0.5, 0, image);
+    return image;
+}
+
+std::vector<KeyPoint> corners(const Mat& image, size_t count)
+{
+    std::vector<KeyPoint> all, chosen;
+    FAST(image, all, 5);
+    RNG rng(2);
+    for (size_t i = all.size(); i > 1; i--)
+        std::swap(all[i - 1], all[rng.uniform(0, (int)i)]);
+    const Rect inside(32, 32, image.cols - 64, image.rows - 64);
+    for (size_t i = 0; i < all.size() && chosen.size() < count; i++)
+        if (inside.contains(all[i].pt))
+        {
+            chosen.push_back(all[i]);
+            chosen.back().size = 31;
+            chosen.back().angle = rng.uniform(0.f, 360.f);
+        }
+    return chosen;
+}
+
+}  // namespace iib_tools
