@@ -19,9 +19,11 @@ struct Pair
         levels = iib->levelSizes();
         const char* root = getenv("OPENCV_TEST_DATA_PATH");
         const String folder = String(root ? root : "") + "/illumination/iib_demo/scene/";
-        const Mat first = imread(folder + "1.png", IMREAD_GRAYSCALE), second = imread(folder + "2.png", IMREAD_GRAYSCALE);
+        const Mat first = imread(folder + "1.png", IMREAD_GRAYSCALE);
+        const Mat second = imread(folder + "2.png", IMREAD_GRAYSCALE);
         if (first.empty() || second.empty())
         {
+            std::cout << "[          ] No iib_demo below OPENCV_TEST_DATA_PATH: RANDOM descriptors\n";
             queries.create(10000, 170, CV_8U);
             trains.create(10000, 170, CV_8U);
             randu(queries, 0, 256);
@@ -44,7 +46,8 @@ struct Pair
 };
 
 enum { BRUTE_FORCE = -1 };
-CV_ENUM(Method, BRUTE_FORCE, HierarchicalMatcher::EXACT, HierarchicalMatcher::THRESHOLD, HierarchicalMatcher::ADAPTIVE)
+CV_ENUM(Method, BRUTE_FORCE, HierarchicalMatcher::EXACT, HierarchicalMatcher::THRESHOLD,
+        HierarchicalMatcher::ADAPTIVE)
 
 Ptr<DescriptorMatcher> createMatcher(int method, const std::vector<int>& levels, bool crossCheck)
 {
@@ -68,7 +71,8 @@ PERF_TEST_P(IIB_Match, match_10000, testing::Combine(Method::all(), testing::Boo
 
 typedef perf::TestBaseWithParam<Method> IIB_MatchTwo;
 
-PERF_TEST_P(IIB_MatchTwo, two_nearest_with_ratio, testing::Values((int)BRUTE_FORCE, (int)HierarchicalMatcher::EXACT))
+PERF_TEST_P(IIB_MatchTwo, two_nearest_with_ratio, testing::Values(
+        (int)BRUTE_FORCE, (int)HierarchicalMatcher::EXACT))
 {
     const Pair& pair = Pair::get();
     const Ptr<DescriptorMatcher> matcher = createMatcher(GetParam(), pair.levels, false);
@@ -87,8 +91,10 @@ PERF_TEST_P(IIB_MatchShort, match_10000, testing::Combine(
         testing::Values((int)BRUTE_FORCE, (int)HierarchicalMatcher::EXACT), testing::Values(32, 64)))
 {
     const int bytes = get<1>(GetParam());
-    const Mat queries = Pair::get().queries.colRange(0, bytes).clone(), trains = Pair::get().trains.colRange(0, bytes).clone();
-    const Ptr<DescriptorMatcher> matcher = createMatcher(get<0>(GetParam()), std::vector<int>(1, bytes), false);
+    const Mat queries = Pair::get().queries.colRange(0, bytes).clone();
+    const Mat trains = Pair::get().trains.colRange(0, bytes).clone();
+    const Ptr<DescriptorMatcher> matcher =
+            createMatcher(get<0>(GetParam()), std::vector<int>(1, bytes), false);
     setNumThreads(1);
     std::vector<DMatch> matches;
     declare.time(60);

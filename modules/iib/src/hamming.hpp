@@ -10,7 +10,7 @@
 namespace cv {
 namespace iib {
 
-//! Where a scan may give a pair up: after a part, which is not the last, and comes after that of the stop before.
+//! Where a scan may give a pair up: after a part, not the last one, and later than that of the stop before.
 struct HammingStop
 {
     enum { NO_MAX = 1 << 28 };

@@ -12,6 +12,8 @@
 #else
 #include "hamming_adders.simd.hpp"
 #endif
+#include "hamming_scanner.simd.hpp"
+#include "hamming_parts.simd.hpp"
 #endif
 
 namespace cv {
@@ -26,302 +28,23 @@ const char* hammingInstructionSet();
 
 namespace {
 
-class Scanner
+template<class S> void scanAll(S&& scanner, int queryCount)
 {
-public:
-    explicit Scanner(const HammingScan& s)
-        : scan(s), layout(*s.layout), queries(layout), queryRow(layout, partAt(0) + 1, 1), trainRows(layout, partAt(0) + 1, s.stopCount ? s.groups * LANES : 0)
-    {
-        for (int stop = 0; stop <= s.stopCount; stop++)
-            words.push_back(layout.end(partAt(stop)));
-        if (s.stopCount > 0)
-        {
-            distances.allocate((size_t)QUERIES * s.groups * LANES);
-            shortlists.allocate((size_t)QUERIES * (s.groups + 1) * LANES); // storeLanes() needs more than fits
-        }
-    }
-
-    void run()
-    {
-        int q = 0;
-        for (; q + QUERIES <= scan.queryCount; q += QUERIES)
-            row<QUERIES>(q);
-        for (; q < scan.queryCount; q++)
-            row<1>(q);
-    }
-
-private:
-    enum { NEVER = INT_MAX };
-
-    //! Some queries against all groups.
-    template<int Q> void row(int query)
-    {
-        for (int q = 0; q < Q; q++)
-            queries.set(q, plainQuery(query + q));
-        if (scan.stopCount > 0)
-            compareByParts<Q>(query);
-        else
-            for (int group = 0; group < scan.groups; group++)
-                compare<Q>(query, group);
-    }
-
-    template<int Q> CV_ALWAYS_INLINE void compare(int query, int group)
-    {
-        Tile<Q> tile;
-        tile.start(queries, codes(group), layout.words());
-        Counts distance[Tile<Q>::SIZE], beyonds[Tile<Q>::SIZE], any = vx_setzero_s32();
-        tile.distances(distance);
-        for (int i = 0; i < Tile<Q>::SIZE; i++)
-        {
-            beyonds[i] = beyond(query + i / VECTORS, group, i % VECTORS, distance[i]);
-            any = any | beyonds[i];
-        }
-        if (!v_check_any(any))
-            return;
-        for (int q = 0; q < Q; q++)
-            report(query + q, group, distance + q * VECTORS, beyonds + q * VECTORS);
-    }
-
-    //! All pairs together up to a stop; then those that pass one by one, or all to the next stop if they are many.
-    template<int Q> void compareByParts(int query)
-    {
-        // Two stops in one go if the second comes soon after the first, where hardly any tile would end.
-        int stop = scan.stopCount > 1 && words[1] - words[0] <= 4 ? 1 : 0;
-        if (stop == 0)
-            compareTo<Q, 1>(query, stop);
-        else
-            compareTo<Q, 2>(query, stop);
-        for (; stop < scan.stopCount; compareTo<Q, 0>(query, ++stop))
-        {
-            int counts[Q], pairs = 0;
-            select<Q>(query, stop, counts);
-            for (int q = 0; q < Q; q++)
-                pairs += counts[q];
-            scan.passed[stop] += pairs;
-            if (pairs * 8 > scan.groups * words[stop + 1] * Q)
-                continue;
-            for (int q = 0; q < Q; q++)
-                finish(query + q, q, counts[q], stop);
-            return;
-        }
-        for (int q = 0; q < Q; q++)
-            for (int group = 0; group < scan.groups; group++)
-            {
-                Counts distance[VECTORS], beyonds[VECTORS];
-                for (int v = 0; v < VECTORS; v++)
-                {
-                    distance[v] = vx_load(distancesOf(q) + group * LANES + v * WIDTH);
-                    beyonds[v] = beyond(query + q, group, v, distance[v]);
-                }
-                report(query + q, group, distance, beyonds);
-            }
-    }
-
-    //! Writes the distances up to a stop, NEVER for pairs that ended on the way. STOPS is the number of stops up to
-    //! there if those that passed at the ones before are to be counted, else 0.
-    template<int Q, int STOPS> void compareTo(int query, int stop)
-    {
-        const int groups = scan.groups, first = words[0], second = words[1];
-        const size_t step = layout.words() * LANES;
-        const unsigned* group = scan.trains;
-        int *results = distances.data(), *const end = results + groups * LANES;
-        Counts gone = vx_setzero_s32(), minima[Q];
-        for (int q = 0; q < Q; q++)
-            minima[q] = vx_setall_s32(NEVER);
-        for (int g = 0; results != end; results += LANES, group += step, g++)
-        {
-            Tile<Q> tile;
-            Counts distance[Tile<Q>::SIZE], before[Tile<Q>::SIZE], room[Tile<Q>::SIZE];
-            for (int i = 0; i < Tile<Q>::SIZE; i++)
-            {
-                before[i] = vx_setzero_s32();
-                room[i] = missing(query + i / VECTORS, g, i % VECTORS);
-            }
-            tile.start(queries, group, first);
-            tile.distances(distance);
-            if (STOPS == 2)
-            {
-                endPairs<Q>(0, 0, distance, before, room);
-                for (int i = 0; i < Tile<Q>::SIZE; i++)
-                    gone += room[i] >> 31;
-                tile.advance(queries, group, first, second);
-                tile.distances(distance);
-                endPairs<Q>(1, 0, distance, before, room);
-            }
-            if (STOPS == 0)
-            {
-                for (int i = 0; i < stop; i++)
-                {
-                    endPairs<Q>(i, scan.limits ? scan.limits + query : 0, distance, before, room);
-                    tile.advance(queries, group, words[i], words[i + 1]);
-                    tile.distances(distance);
-                }
-                if (stop < scan.stopCount)
-                    endPairs<Q>(stop, 0, distance, before, room);
-            }
-            for (int i = 0; i < Tile<Q>::SIZE; i++)
-            {
-                if (STOPS != 1 || scan.allowed)
-                    distance[i] = v_select(room[i] < vx_setzero_s32(), vx_setall_s32(NEVER), distance[i]);
-                v_store(results + i / VECTORS * groups * LANES + i % VECTORS * WIDTH, distance[i]);
-                if (STOPS == 1)
-                    minima[i / VECTORS] = v_min(minima[i / VECTORS], distance[i]);
-            }
-        }
-        if (STOPS == 1)
-            for (int q = 0; q < Q; q++)
-                least[q] = v_reduce_min(minima[q]);
-        if (STOPS == 2)
-            scan.passed[0] += Q * groups * LANES + v_reduce_sum(gone);
-    }
-
-    //! Makes the room negative of the pairs that are not to go on at a stop.
-    template<int Q>
-    CV_ALWAYS_INLINE void endPairs(int stop, const int* limits, const Counts* distance, Counts* before, Counts* room) const
-    {
-        const Counts most = vx_setall_s32(scan.stops[stop].most);
-        for (int i = 0; i < Tile<Q>::SIZE; i++)
-        {
-            room[i] = room[i] | (before[i] + most - distance[i]);
-            if (limits)
-                room[i] = room[i] | (vx_setall_s32(limits[i / VECTORS]) - distance[i]);
-            before[i] = distance[i];
-        }
-    }
-
-    //! Lists the pairs of each query that go on.
-    template<int Q> void select(int query, int stop, int* counts)
-    {
-        const int size = scan.groups * LANES;
-        const int* distance[Q];
-        int *list[Q], limits[Q];
-        for (int q = 0; q < Q; q++)
-        {
-            distance[q] = distancesOf(q);
-            list[q] = shortlist(q);
-            limits[q] = lowerLimit(query + q, q, stop);
-        }
-        for (int i = 0; i < size; i += LANES)
-        {
-            Counts trains[VECTORS];
-            for (int v = 0; v < VECTORS; v++)
-                trains[v] = laneNumbers() + vx_setall_s32(i + v * WIDTH);
-            for (int q = 0; q < Q; q++)
-            {
-                Counts room[VECTORS];
-                for (int v = 0; v < VECTORS; v++)
-                    room[v] = vx_setall_s32(limits[q]) - vx_load(distance[q] + i + v * WIDTH);
-                const int lanes = ((1 << LANES) - 1) & ~negativeLanes(room);
-                storeLanes(list[q], trains, lanes);
-                list[q] += countLanes(lanes);
-            }
-        }
-        for (int q = 0; q < Q; q++)
-            counts[q] = (int)(list[q] - shortlist(q));
-    }
-
-    //! The most that may differ at the stop.
-    int lowerLimit(int query, int q, int stop)
-    {
-        const int most = stop == 0 ? scan.stops[0].most : NEVER - 1; // which was not looked at, or was
-        if (!scan.limits)
-            return most;
-        int& limit = scan.limits[query];
-        if (scan.margin >= 0)
-            limit = std::min(limit, std::min(least[q], NEVER - scan.margin) + scan.margin);
-        return std::min(limit, most);
-    }
-
-    //! Takes the pairs of a list one by one through the stops that follow.
-    void finish(int query, int q, int count, int stop)
-    {
-        if (count > 0)
-            queryRow.set(0, plainQuery(query));
-        for (; stop < scan.stopCount && count > 0; stop++)
-        {
-            if (stop + 1 < scan.stopCount)
-                scan.passed[stop + 1] += count = advance(q, count, stop);
-            else
-                advance(q, count, stop);
-        }
-        const int *list = shortlist(q), *distance = distancesOf(q), *queryBelow = scan.queryBelow + query;
-        const int* trainBelow = scan.trainBelow;
-        for (int i = 0; i < count; i++)
-            if (distance[list[i]] < std::max(*queryBelow, trainBelow[list[i]]))
-                scan.sink->found(query, list[i], distance[list[i]]);
-    }
-
-    //! Compares the pairs of a list to the stop after a stop; returns how many are left.
-    int advance(int q, int count, int stop)
-    {
-        const int from = partAt(stop), to = partAt(stop + 1), most = stop + 1 < scan.stopCount ? scan.stops[stop + 1].most : NEVER;
-        const int size = queryRow.count(from, to);
-        const uint64* query = queryRow.after(from, 0);
-        int *list = shortlist(q), *distance = distancesOf(q), left = 0;
-        for (int i = 0; i < count; i++)
-        {
-            const int train = list[i];
-            trainRows.require(train, scan.trains);
-            const int more = countDifferences(query, trainRows.after(from, train), size);
-            distance[train] += more;
-            list[left] = train;
-            left += more <= most;
-        }
-        return left;
-    }
-
-    //! Negative where a distance is small enough to be found.
-    CV_ALWAYS_INLINE Counts beyond(int query, int group, int v, const Counts& distance) const
-    {
-        const int* trainBelow = scan.trainBelow + group * LANES + v * WIDTH;
-        return distance - v_max(vx_setall_s32(scan.queryBelow[query]), vx_load(trainBelow));
-    }
-
-    void report(int query, int group, const Counts* distance, const Counts* beyonds) const
-    {
-        int lanes = negativeLanes(beyonds);
-        if (!lanes)
-            return;
-        Counts absent[VECTORS];
-        for (int v = 0; v < VECTORS; v++)
-            absent[v] = missing(query, group, v);
-        lanes &= ~negativeLanes(absent);
-        int near[LANES];
-        storeLanes(near, distance, lanes);
-        for (int i = 0; lanes; lanes &= lanes - 1)
-            scan.sink->found(query, group * LANES + trailingZeros32(lanes), near[i++]);
-    }
-
-    //! All bits of the lanes whose pairs do not exist.
-    CV_ALWAYS_INLINE Counts missing(int query, int group, int v) const
-    {
-        if (!scan.allowed)
-            return vx_setzero_s32();
-        const uchar* allowed = scan.allowed + ((size_t)query * scan.groups + group) * LANES;
-        return v_reinterpret_as_s32(vx_load_expand_q(allowed + v * WIDTH)) == vx_setzero_s32();
-    }
-
-    //! The part that ends at a stop, or the last one after the last stop.
-    int partAt(int stop) const { return stop < scan.stopCount ? scan.stops[stop].part : layout.parts() - 1; }
-    const unsigned* codes(int group) const { return scan.trains + (size_t)group * layout.words() * LANES; }
-    const unsigned* plainQuery(int query) const { return scan.queries + (size_t)query * layout.words(); }
-    int* distancesOf(int q) { return distances.data() + (size_t)q * scan.groups * LANES; }
-    int* shortlist(int q) { return shortlists.data() + (size_t)q * (scan.groups + 1) * LANES; }
-
-    const HammingScan& scan;
-    const HammingLayout& layout;
-    TileQueries queries;
-    Rows queryRow, trainRows;
-    std::vector<int> words; // up to each stop, and in all
-    AlignedBuffer<int> distances, shortlists; // of a row's pairs
-    int least[QUERIES]; // of the distances
-};
+    int q = 0;
+    for (; q + QUERIES <= queryCount; q += QUERIES)
+        scanner.template row<QUERIES>(q);
+    for (; q < queryCount; q++)
+        scanner.template row<1>(q);
+}
 
 }  // namespace
 
 void hammingScan(const HammingScan& scan)
 {
-    Scanner(scan).run();
+    if (scan.stopCount > 0)
+        scanAll(PartScanner(scan), scan.queryCount);
+    else
+        scanAll(FullScanner(scan), scan.queryCount);
 }
 
 HammingPacking hammingPacking()

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Comparison of codes packed as PACKING_ADDERS, for instruction sets that count the bits of a word fast, or that
-// have no tables in registers. Included by hamming.simd.hpp.
+// Comparison of codes packed as PACKING_ADDERS, for instruction sets that count the bits of a word
+// fast, or that have no tables in registers. Included by hamming.simd.hpp.
 
 namespace cv {
 namespace iib {
@@ -30,7 +30,8 @@ inline Counts total(const Partial& x) { return v_reinterpret_as_s32(v_dotprod_ex
 #endif
 
 // A full adder: returns the carry, turns the parity into the next.
-inline Words addStep(Words& parity, const Words& train0, const Words& query0, const Words& train1, const Words& query1)
+inline Words addStep(Words& parity, const Words& train0, const Words& query0, const Words& train1,
+                     const Words& query1)
 {
     const Words before = parity, x = train0 ^ query0;
 #if CV_AVX512_SKX
@@ -106,7 +107,8 @@ public:
     }
 
 private:
-    CV_ALWAYS_INLINE void addSteps(Partial* partial, const TileQueries& queries, const unsigned* group, int from, int to)
+    CV_ALWAYS_INLINE void addSteps(Partial* partial, const TileQueries& queries, const unsigned* group, int from,
+                                   int to)
     {
         Words chain[SIZE]; // a copy, which compilers keep in registers
         Partial sum[SIZE];
@@ -123,8 +125,8 @@ private:
             {
                 const unsigned* q = query[i / VECTORS] + from;
                 const unsigned* t = group + i % VECTORS * WIDTH + from * LANES;
-                const Words carry =
-                        addStep(chain[i], vx_load(t), vx_setall_u32(q[0]), vx_load(t + LANES), vx_setall_u32(q[1]));
+                const Words carry = addStep(chain[i], vx_load(t), vx_setall_u32(q[0]), vx_load(t + LANES),
+                                            vx_setall_u32(q[1]));
                 sum[i] += countBits(carry);
             }
         for (int i = 0; i < SIZE; i++)

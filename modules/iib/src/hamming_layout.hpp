@@ -14,18 +14,18 @@ namespace iib {
 enum HammingPacking
 {
     /** Words combined so that half as many population counts do. With c the plain words, word 0 is c[0], then
-    follow c[0] ^ ... ^ c[2k] ^ c[2k + 1] and c[2k + 1] ^ c[2k + 2]. The differences of two such codes are just what
-    a chain of full adders needs for parity and carry, and
+    follow c[0] ^ ... ^ c[2k] ^ c[2k + 1] and c[2k + 1] ^ c[2k + 2]. The differences of two such codes are just
+    what a chain of full adders needs for parity and carry, and
         Hamming distance = popcount(parity) + 2 * sum of popcount(carry). */
     PACKING_ADDERS,
     //! Plain bytes, whose distances are looked up in tables of the query's.
     PACKING_TABLES
 };
 
-/** Where the bits of a descriptor lie in a code of words of 32 bits, and codes in a group of LANES, side by side.
+/** Where the bits of a descriptor lie in a code of words of 32 bits, and codes side by side in a group of LANES.
 
-A code has a part for each level, filled up with zeros to whole words. Only the last level has two: every fourth of
-its words, a sample that tells much more than its beginning would, and the rest. */
+A code has a part for each level, filled up with zeros to whole words. Only the last level has two: every
+fourth of its words, a sample that tells much more than its beginning would, and the rest. */
 class CV_EXPORTS HammingLayout
 {
 public:

@@ -42,14 +42,16 @@ inline int countDifferences(const uint64* a, const uint64* b, int words)
 }
 #endif
 
-//! Parts of codes, from one on, each in whole vectors filled up with zeros, to compare single pairs part by part.
+//! Parts of codes, from one on, each filled up with zeros to whole vectors, to compare pairs part by part.
 class Rows
 {
 public:
-    Rows(const HammingLayout& l, int first_, int rows) : layout(l), first(first_), plain(l.words()), known(rows, 0)
+    Rows(const HammingLayout& l, int first_, int rows)
+        : layout(l), first(first_), plain(l.words()), known(rows, 0)
     {
-        for (int part = 0; part <= layout.parts(); part++)
-            starts.push_back(part <= first ? 0 : starts[part - 1] + (int)alignSize((size(part - 1) + 1) / 2, ROW_WORDS));
+        starts.assign(first + 1, 0);
+        for (int part = first; part < layout.parts(); part++)
+            starts.push_back(starts[part] + (int)alignSize((size(part) + 1) / 2, ROW_WORDS));
         step = starts.back();
         words.allocate((size_t)rows * step);
     }
@@ -63,9 +65,9 @@ public:
     {
         for (int part = first; part < layout.parts(); part++)
         {
-            unsigned* to = (unsigned*)(start(row) + starts[part]);
-            const unsigned* end = std::copy(code + layout.end(part) - size(part), code + layout.end(part), to);
-            std::fill((unsigned*)end, (unsigned*)(start(row) + starts[part + 1]), 0u);
+            const unsigned* end = code + layout.end(part);
+            unsigned* filled = std::copy(end - size(part), end, (unsigned*)(start(row) + starts[part]));
+            std::fill(filled, (unsigned*)(start(row) + starts[part + 1]), 0u);
         }
         known[row] = 1;
     }

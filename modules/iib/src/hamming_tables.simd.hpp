@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Comparison of codes packed as PACKING_TABLES, for instruction sets that look bytes up in registers faster than
-// they count bits. Included by hamming.simd.hpp.
+// Comparison of codes packed as PACKING_TABLES, for instruction sets that look bytes up in registers
+// faster than they count bits. Included by hamming.simd.hpp.
 
 namespace cv {
 namespace iib {
@@ -32,7 +32,10 @@ inline Bytes lookUp(const Bytes& table, const Bytes& index)
 }
 
 inline Bytes lowHalves(const Bytes& x) { return x & vx_setall_u8(15); }
-inline Bytes highHalves(const Bytes& x) { return lowHalves(v_reinterpret_as_u8(v_reinterpret_as_u16(x) >> 4)); }
+inline Bytes highHalves(const Bytes& x)
+{
+    return lowHalves(v_reinterpret_as_u8(v_reinterpret_as_u16(x) >> 4));
+}
 
 struct HalfDistances
 {
@@ -44,9 +47,9 @@ struct HalfDistances
     }
 };
 
-/** The queries that are compared at once, as tables: for each half byte of a train code its distance to the query's.
- Two queries share a table, one in the low and one in the high halves of its bytes. A vector's tables are those of
- its low half bytes, then those of its high ones. */
+/** The queries that are compared at once, as tables: for each half byte of a train code its distance to the
+ query's. Two queries share a table, one in the low and one in the high halves of its bytes. A vector's tables are
+ those of its low half bytes, then those of its high ones. */
 class TileQueries
 {
 public:
@@ -126,7 +129,8 @@ public:
 
 private:
     // Half bytes hold the distances of three half bytes at most, which makes 12.
-    template<int N> CV_ALWAYS_INLINE void addUp(Bytes* sums, const TileQueries& queries, const unsigned* group, int v)
+    template<int N>
+    CV_ALWAYS_INLINE void addUp(Bytes* sums, const TileQueries& queries, const unsigned* group, int v)
     {
         Bytes code[N];
         for (int n = 0; n < N; n++)

@@ -5,6 +5,7 @@
 #include "precomp.hpp"
 #include "index.hpp"
 #include "index_io.hpp"
+#include "matcher_parameters.hpp"
 
 #include <atomic>
 
@@ -12,46 +13,6 @@ namespace cv {
 namespace iib {
 
 namespace {
-
-struct Parameters
-{
-    std::vector<int> levelSizes;
-    int mode;
-    std::vector<float> thresholds; // one for each level but the last
-    bool crossCheck;
-    float maxRatio;
-};
-
-void checkThreshold(float threshold)
-{
-    if (!(threshold >= 0 && threshold <= 1))
-        CV_Error_(Error::StsOutOfRange, ("the threshold is %g: it has to be 0 to 1", threshold));
-}
-
-void check(const Parameters& p)
-{
-    if (p.levelSizes.empty())
-        CV_Error(Error::StsBadArg, "levelSizes is empty: give the bytes of each level, or the descriptor's size");
-    uint64 width = 0;
-    for (size_t i = 0; i < p.levelSizes.size(); i++)
-    {
-        if (p.levelSizes[i] <= 0)
-            CV_Error_(Error::StsOutOfRange, ("levelSizes[%d] is %d: each has to be > 0", (int)i, p.levelSizes[i]));
-        width += p.levelSizes[i];
-    }
-    if (width > 1 << 20)
-        CV_Error(Error::StsOutOfRange, "levelSizes: descriptors of more than 1 MB are not supported");
-    if (p.mode != HierarchicalMatcher::EXACT && p.mode != HierarchicalMatcher::THRESHOLD &&
-        p.mode != HierarchicalMatcher::ADAPTIVE)
-        CV_Error_(Error::StsBadArg, ("mode is %d: use EXACT, THRESHOLD or ADAPTIVE", p.mode));
-    if (p.thresholds.size() + 1 != p.levelSizes.size())
-        CV_Error_(Error::StsBadArg, ("%d thresholds for %d levels: give one for each level but the last, or a single "
-                                     "one for all", (int)p.thresholds.size(), (int)p.levelSizes.size()));
-    for (size_t i = 0; i < p.thresholds.size(); i++)
-        checkThreshold(p.thresholds[i]);
-    if (!(p.maxRatio > 0 && p.maxRatio <= 1))
-        CV_Error_(Error::StsOutOfRange, ("maxRatio is %g: it has to be above 0 and at most 1", p.maxRatio));
-}
 
 // Shared by an object and its clones without train data, which the calls with two sets make.
 struct Counters
@@ -63,7 +24,7 @@ struct Counters
 class HierarchicalMatcherImpl CV_FINAL : public HierarchicalMatcher
 {
 public:
-    explicit HierarchicalMatcherImpl(const Parameters& p)
+    explicit HierarchicalMatcherImpl(const MatcherParameters& p)
         : parameters(p), index(makePtr<HammingIndex>(p.levelSizes)), counters(makePtr<Counters>())
     {
     }
@@ -72,7 +33,7 @@ public:
 
     void setMode(int mode) CV_OVERRIDE
     {
-        Parameters changed = parameters;
+        MatcherParameters changed = parameters;
         changed.mode = mode;
         set(changed);
     }
@@ -80,7 +41,7 @@ public:
 
     void setThresholds(const std::vector<float>& thresholds) CV_OVERRIDE
     {
-        Parameters changed = parameters;
+        MatcherParameters changed = parameters;
         changed.thresholds = thresholds.size() == 1
             ? std::vector<float>(parameters.levelSizes.size() - 1, thresholds[0]) : thresholds;
         set(changed);
@@ -92,7 +53,7 @@ public:
 
     void setMaxRatio(float maxRatio) CV_OVERRIDE
     {
-        Parameters changed = parameters;
+        MatcherParameters changed = parameters;
         changed.maxRatio = maxRatio;
         set(changed);
     }
@@ -139,7 +100,7 @@ protected:
                          InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE;
 
 private:
-    void set(Parameters changed)
+    void set(MatcherParameters changed)
     {
         check(changed);
         std::swap(parameters, changed); // which cannot fail half-way
@@ -160,7 +121,7 @@ private:
         return DMatch(query, (int)(indexOf(n) - index->start(image)), (int)image, (float)distanceOf(n));
     }
 
-    Parameters parameters;
+    MatcherParameters parameters;
     Ptr<HammingIndex> index;
     Ptr<Counters> counters;
 };
@@ -338,7 +299,7 @@ void HierarchicalMatcherImpl::write(FileStorage& fs) const
 
 void HierarchicalMatcherImpl::read(const FileNode& node)
 {
-    Parameters p = parameters;
+    MatcherParameters p = parameters;
     if (!node["levelSizes"].empty())
     {
         node["levelSizes"] >> p.levelSizes;
@@ -376,7 +337,7 @@ void HierarchicalMatcherImpl::saveIndex(const String& filename) const
 Ptr<HierarchicalMatcher> HierarchicalMatcherImpl::load(const String& filename)
 {
     const IndexFile file = readIndexFile(filename);
-    const Parameters p = { file.levelSizes, file.mode, file.thresholds, file.crossCheck, file.maxRatio };
+    const MatcherParameters p = { file.levelSizes, file.mode, file.thresholds, file.crossCheck, file.maxRatio };
     check(p);
     Ptr<HierarchicalMatcherImpl> matcher = makePtr<HierarchicalMatcherImpl>(p);
     matcher->add(file.images);
@@ -390,7 +351,7 @@ Ptr<HierarchicalMatcher> HierarchicalMatcher::create(const std::vector<int>& lev
 {
     checkThreshold(threshold);
     const size_t thresholds = std::max(levelSizes.size(), (size_t)1) - 1;
-    const Parameters p = { levelSizes, mode, std::vector<float>(thresholds, threshold), crossCheck, 1.f };
+    const MatcherParameters p = { levelSizes, mode, std::vector<float>(thresholds, threshold), crossCheck, 1.f };
     check(p);
     return makePtr<HierarchicalMatcherImpl>(p);
 }

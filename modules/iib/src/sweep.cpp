@@ -24,7 +24,10 @@ public:
     {
     }
     const int* queryBelow() const CV_OVERRIDE { return forQueries.below() + firstQuery; }
-    const int* trainBelow() const CV_OVERRIDE { return forTrains ? forTrains->below() + firstTrain : never.data(); }
+    const int* trainBelow() const CV_OVERRIDE
+    {
+        return forTrains ? forTrains->below() + firstTrain : never.data();
+    }
     void found(int query, int train, int distance) CV_OVERRIDE
     {
         forQueries.insert(firstQuery + query, neighbour(distance, firstTrain + train));
@@ -71,8 +74,7 @@ SearchCost Sweep::nearest(Neighbours& forQueries, Neighbours* forTrains) const
     std::mutex lock;
     // In the other direction each part has neighbours of its own, merged by their order, so that the result
     // does not depend on who comes first. Few parts, since each starts anew to learn what is near.
-    const int most = (queries.rows + BLOCK_QUERIES - 1) / BLOCK_QUERIES;
-    split(forTrains ? getNumThreads() : std::max(most, getNumThreads()), [&](int from, int to) {
+    split(forTrains ? getNumThreads() : evenParts(), [&](int from, int to) {
         if (!forTrains)
         {
             NearestSink sink(forQueries, 0);
@@ -91,12 +93,17 @@ SearchCost Sweep::nearest(Neighbours& forQueries, Neighbours* forTrains) const
 SearchCost Sweep::within(int radius, std::vector<std::vector<Neighbour> >& result) const
 {
     SearchCost cost;
-    const int most = (queries.rows + BLOCK_QUERIES - 1) / BLOCK_QUERIES;
-    split(std::max(most, getNumThreads()), [&](int from, int to) {
+    split(evenParts(), [&](int from, int to) {
         RadiusSink sink(radius, result);
         return run(from, to, sink);
     }, cost);
     return cost;
+}
+
+int Sweep::evenParts() const
+{
+    const int blocks = (queries.rows + BLOCK_QUERIES - 1) / BLOCK_QUERIES, threads = getNumThreads();
+    return std::max((blocks + threads - 1) / threads, 2) * threads;
 }
 
 void Sweep::split(int parts, const std::function<SearchCost(int, int)>& body, SearchCost& cost) const

@@ -48,6 +48,8 @@ private:
                      SweepSink& sink) const;
     //! Fills the flags of existing pairs and returns their number.
     size_t allow(int from, int to, size_t firstRow, size_t count, uchar* allowed) const;
+    //! Some parts for each thread, so that all are done at about the same time.
+    int evenParts() const;
     //! Cuts the queries in parts for threads.
     void split(int parts, const std::function<SearchCost(int, int)>& body, SearchCost& cost) const;
 

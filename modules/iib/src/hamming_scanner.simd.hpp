@@ -1,0 +1,99 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// What all scans share. Included by hamming.simd.hpp.
+
+namespace cv {
+namespace iib {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+namespace {
+
+class Scanner
+{
+public:
+    explicit Scanner(const HammingScan& s) : scan(s), layout(*s.layout), queries(layout) {}
+
+protected:
+    template<int Q> void setQueries(int query)
+    {
+        for (int q = 0; q < Q; q++)
+            queries.set(q, plainQuery(query + q));
+    }
+
+    //! Negative where a distance is small enough to be found.
+    CV_ALWAYS_INLINE Counts beyond(int query, int group, int v, const Counts& distance) const
+    {
+        const int* trainBelow = scan.trainBelow + group * LANES + v * WIDTH;
+        return distance - v_max(vx_setall_s32(scan.queryBelow[query]), vx_load(trainBelow));
+    }
+
+    void report(int query, int group, const Counts* distance, const Counts* beyonds) const
+    {
+        int lanes = negativeLanes(beyonds);
+        if (!lanes)
+            return;
+        Counts absent[VECTORS];
+        for (int v = 0; v < VECTORS; v++)
+            absent[v] = missing(query, group, v);
+        lanes &= ~negativeLanes(absent);
+        int near[LANES];
+        storeLanes(near, distance, lanes);
+        for (int i = 0; lanes; lanes &= lanes - 1)
+            scan.sink->found(query, group * LANES + trailingZeros32(lanes), near[i++]);
+    }
+
+    //! All bits of the lanes whose pairs do not exist.
+    CV_ALWAYS_INLINE Counts missing(int query, int group, int v) const
+    {
+        if (!scan.allowed)
+            return vx_setzero_s32();
+        const uchar* allowed = scan.allowed + ((size_t)query * scan.groups + group) * LANES;
+        return v_reinterpret_as_s32(vx_load_expand_q(allowed + v * WIDTH)) == vx_setzero_s32();
+    }
+
+    const unsigned* codes(int group) const { return scan.trains + (size_t)group * layout.words() * LANES; }
+    const unsigned* plainQuery(int query) const { return scan.queries + (size_t)query * layout.words(); }
+
+    const HammingScan& scan;
+    const HammingLayout& layout;
+    TileQueries queries;
+};
+
+//! Every pair to the end.
+class FullScanner : public Scanner
+{
+public:
+    explicit FullScanner(const HammingScan& s) : Scanner(s) {}
+
+    //! Some queries against all groups.
+    template<int Q> void row(int query)
+    {
+        setQueries<Q>(query);
+        for (int group = 0; group < scan.groups; group++)
+            compare<Q>(query, group);
+    }
+
+private:
+    template<int Q> CV_ALWAYS_INLINE void compare(int query, int group)
+    {
+        Tile<Q> tile;
+        tile.start(queries, codes(group), layout.words());
+        Counts distance[Tile<Q>::SIZE], beyonds[Tile<Q>::SIZE], any = vx_setzero_s32();
+        tile.distances(distance);
+        for (int i = 0; i < Tile<Q>::SIZE; i++)
+        {
+            beyonds[i] = beyond(query + i / VECTORS, group, i % VECTORS, distance[i]);
+            any = any | beyonds[i];
+        }
+        if (!v_check_any(any))
+            return;
+        for (int q = 0; q < Q; q++)
+            report(query + q, group, distance + q * VECTORS, beyonds + q * VECTORS);
+    }
+};
+
+}  // namespace
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}  // namespace iib
+}  // namespace cv
