@@ -13,7 +13,7 @@ struct LearnedSelection
 {
     float scale;  // of the ROS, against the scale factor that the user gives
     int granularity, channels, mapping;
-    const uchar (*quads)[5];
+    const uchar (*quads)[5];  // null: all of them
     int count;
 };
 
@@ -29,10 +29,13 @@ Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::createPreset(int preset, flo
                                           presets - 1));
     const LearnedSelection& p = PRESETS[preset];
     const Ptr<IIBDescriptorExtractor> extractor = create(p.scale * scaleFactor, p.granularity, p.channels, p.mapping);
-    Mat_<int> selection(p.count, 5);
-    for (int i = 0; i < p.count; i++)
-        std::copy(p.quads[i], p.quads[i] + 5, selection[i]);
-    extractor->setSelection(selection);
+    if (p.quads)
+    {
+        Mat_<int> selection(p.count, 5);
+        for (int i = 0; i < p.count; i++)
+            std::copy(p.quads[i], p.quads[i] + 5, selection[i]);
+        extractor->setSelection(selection);
+    }
     return extractor;
 }
 

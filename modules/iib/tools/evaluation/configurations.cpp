@@ -61,6 +61,21 @@ Configuration withOverlap()
     return iib("IIB overlap", p);
 }
 
+Configuration withPreset(const std::string& name, int preset)
+{
+    Configuration c = iib("IIB " + name, Parameters());
+    c.create = [preset]() -> cv::Ptr<cv::Feature2D> { return IIB::createPreset(preset, 1.f); };
+    return c;
+}
+
+std::vector<Configuration> presets()
+{
+    return {withPreset("S128", IIB::PRESET_S128), withPreset("S256", IIB::PRESET_S256),
+        withPreset("S512", IIB::PRESET_S512), withPreset("ACCURATE", IIB::PRESET_ACCURATE),
+        withPreset("COMPACT", IIB::PRESET_COMPACT), withPreset("TINY", IIB::PRESET_TINY),
+        withPreset("BALANCED", IIB::PRESET_BALANCED)};
+}
+
 Configuration onPointsOf(Configuration c, const std::string& detector)
 {
     c.name += " on " + detector + " points";
@@ -75,7 +90,7 @@ std::vector<Configuration> iibConfigurations()
     const int x = IIB::CHANNEL_GRAD_X, y = IIB::CHANNEL_GRAD_Y, o = IIB::CHANNEL_ORIENTATION,
               i = IIB::CHANNEL_INTENSITY;
     const Configuration standard = iib("IIB", Parameters());
-    return {standard, withChannels("IIB y", y), withChannels("IIB x", x), withChannels("IIB i", i),
+    std::vector<Configuration> all = {standard, withChannels("IIB y", y), withChannels("IIB x", x), withChannels("IIB i", i),
         withChannels("IIB o", o), withChannels("IIB o+i", o | i), withChannels("IIB x+y", x | y),
         withChannels("IIB x+y+i", x | y | i), withChannels("IIB x+y+o", x | y | o),
         withMapping("IIB max", IIB::MAPPING_MAX), withMapping("IIB min", IIB::MAPPING_MIN),
@@ -85,6 +100,9 @@ std::vector<Configuration> iibConfigurations()
         iib("IIB +depth", Parameters(), {"depth"}), iib("IIB +labels", Parameters(), {"labels"}),
         iib("IIB +depth+labels", Parameters(), {"depth", "labels"}), onPointsOf(standard, "AKAZE"),
         onPointsOf(standard, "KAZE")};
+    const std::vector<Configuration> learned = presets();
+    all.insert(all.end(), learned.begin(), learned.end());
+    return all;
 }
 
 std::vector<Configuration> robustnessConfigurations()
@@ -96,7 +114,8 @@ std::vector<Configuration> robustnessConfigurations()
     oriented.create = []() -> cv::Ptr<cv::Feature2D> {
         return IIB::create(1.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, true);
     };
-    std::vector<Configuration> all = {upright, oriented};
+    std::vector<Configuration> all = presets();
+    all.insert(all.begin(), {upright, oriented});
     for (const Configuration& peer : peerConfigurations())
         if (peer.name == "ORB" || peer.name == "SIFT")
         {

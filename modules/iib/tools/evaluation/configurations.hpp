@@ -27,13 +27,13 @@ struct Configuration
     bool oriented;          //!< whether keypoints get an angle (robustness only)
 };
 
-//! All tables of the paper on IIB: channels, mappings, overlap, granularity, extra channels.
+//! All tables of the paper on IIB: channels, mappings, overlap, granularity, extra channels; and the presets.
 std::vector<Configuration> iibConfigurations();
 
 //! The other descriptors that this OpenCV has, with the parameters OpenCV recommends, upright.
 std::vector<Configuration> peerConfigurations();
 
-//! Default IIB, upright and oriented, and ORB and SIFT for comparison.
+//! Default IIB, upright and oriented, the presets, and ORB and SIFT for comparison.
 std::vector<Configuration> robustnessConfigurations();
 
 //! An IIB extractor as IIBDescriptorExtractor::save wrote it, selection included; named by its file.

@@ -49,10 +49,20 @@ SeededPair warpedPair(const cv::Mat& reference, const Warp& warp)
     return pair;
 }
 
+//! Those that the table does not have yet.
+std::vector<Configuration> missing(const Fields& key, const ResultTable& table)
+{
+    std::vector<Configuration> rest;
+    for (const Configuration& c : robustnessConfigurations())
+        if (!table.has({key[0], key[1], key[2], key[3], c.name}))
+            rest.push_back(c);
+    return rest;
+}
+
 void evaluatePair(const Options& options, SeededPair pair, const Fields& key, ResultTable& table)
 {
     SeedSource source(pair.reference, options.points);
-    for (const Configuration& c : robustnessConfigurations())
+    for (const Configuration& c : missing(key, table))
     {
         pair.seeds = source.seeds(c, pair.target.size(), pair.homography);
         const Counts n = matchSeeds(c, pair, options.tolerance).counts;
@@ -70,7 +80,6 @@ int robustness(const Options& options, const std::vector<ImagePair>& pairs)
 {
     ResultTable table(options.out + "/robustness.csv", {"set", "sequence", "target", "kind", "configuration",
         "correct", "putative", "correspondences", "precision", "recall"}, 5);
-    const std::string last = robustnessConfigurations().back().name;
     std::vector<Task> tasks;
     std::set<std::string> turned;  // one sequence a set
     for (const ImagePair& pair : pairs)
@@ -78,7 +87,7 @@ int robustness(const Options& options, const std::vector<ImagePair>& pairs)
         if (pair.kind != "light")
         {
             const Fields key = {pair.set, pair.sequence, pair.target, pair.kind};
-            if (!table.has({pair.set, pair.sequence, pair.target, pair.kind, last}))
+            if (!missing(key, table).empty())
                 tasks.push_back({pair.name(), [&options, &table, pair, key] {
                                      const LoadedPair loaded = loadPair(pair);
                                      SeededPair seeded;
@@ -93,7 +102,7 @@ int robustness(const Options& options, const std::vector<ImagePair>& pairs)
         for (const Warp& warp : warps())
         {
             const Fields key = {pair.set, pair.sequence, text(warp.amount), warp.kind};
-            if (!table.has({key[0], key[1], key[2], key[3], last}))
+            if (!missing(key, table).empty())
                 tasks.push_back({pair.set + "/" + pair.sequence + " " + warp.kind, [&options, &table, pair, warp, key] {
                                      const SeededPair seeded = warpedPair(loadPair(pair).reference, warp);
                                      evaluatePair(options, seeded, key, table);

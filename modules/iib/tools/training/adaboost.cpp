@@ -53,7 +53,9 @@ struct Weak
     double error;  // weighted, of all samples
 };
 
-Weak bestThreshold(const Samples& samples, const std::vector<double>& weights, int candidate)
+/* A learner that says the same of all samples is none: where partners weigh less than others, "other" throughout errs
+ seldom, and would let in any candidate, the worst too. */
+Weak bestThreshold(const Samples& samples, const std::vector<double>& weights, int candidate, int bits)
 {
     double same[MOST_BITS + 1] = {}, other[MOST_BITS + 1] = {};
     const uchar* distances = samples.distances[candidate];
@@ -62,8 +64,8 @@ Weak bestThreshold(const Samples& samples, const std::vector<double>& weights, i
     double error = 0;
     for (double weight : same)
         error += weight;
-    Weak best = {candidate, -1, error};  // "other" throughout
-    for (int threshold = 0; threshold < MOST_BITS; threshold++)
+    Weak best = {candidate, -1, 2};
+    for (int threshold = 0; threshold < bits; threshold++)
     {
         error += other[threshold] - same[threshold];
         if (error < best.error)
@@ -84,11 +86,10 @@ void reweigh(const Samples& samples, const Weak& weak, std::vector<double>& weig
 
 }  // namespace
 
-std::vector<std::vector<int>> selectByAdaBoost(const CandidatePool& pool,
-        const std::vector<DescribedPair>& pairs, const std::vector<int>& bits, uint64 seed,
-        const Progress& progress)
+std::vector<int> selectByAdaBoost(const CandidatePool& pool, const std::vector<DescribedPair>& pairs, int bits,
+        uint64 seed, const Progress& progress)
 {
-    const std::vector<int> wanted = candidateCounts(pool, bits);
+    const int wanted = candidateCount(pool, bits);
     if (pairs.empty())
         CV_Error(cv::Error::StsBadArg, "no pair has enough points to train on");
     const Samples samples = drawSamples(pool, pairs, seed);
@@ -96,29 +97,24 @@ std::vector<std::vector<int>> selectByAdaBoost(const CandidatePool& pool,
     std::vector<double> weights(samples.count, 1. / samples.count), benefit(all);
     std::vector<bool> isChosen(all);
     std::vector<int> chosen;
-    std::vector<std::vector<int>> selections;
-    while (selections.size() < wanted.size())
+    for (;;)
     {
         Weak best = {-1, -1, 2};
         for (int c = 0; c < all; c++)
             if (!isChosen[c])
             {
-                const Weak weak = bestThreshold(samples, weights, c);
+                const Weak weak = bestThreshold(samples, weights, c, pool.bitsPerCandidate());
                 benefit[c] = 0.5 - weak.error;
                 if (weak.error < best.error)
                     best = weak;
             }
-        if (int(chosen.size()) == wanted[selections.size()])
-        {
-            selections.push_back(fillBytes(pool, chosen, benefit, bits[selections.size()]));
-            continue;
-        }
+        if (int(chosen.size()) == wanted)
+            return fillBytes(pool, chosen, benefit, bits);
         reweigh(samples, best, weights);
         isChosen[best.candidate] = true;
         chosen.push_back(best.candidate);
-        progress(int(chosen.size()), wanted.back());
+        progress(int(chosen.size()), wanted);
     }
-    return selections;
 }
 
 }  // namespace iib_tools

@@ -50,18 +50,13 @@ Levels roundLevels(const Levels& wanted, const Levels& available, int step, int 
 
 }  // namespace
 
-std::vector<int> candidateCounts(const CandidatePool& pool, const std::vector<int>& bits)
+int candidateCount(const CandidatePool& pool, int bits)
 {
-    std::vector<int> counts;
-    for (int size : bits)
-    {
-        const int least = counts.empty() ? 1 : counts.back(), most = int(pool.candidates.size());
-        counts.push_back(size / pool.bitsPerCandidate());
-        if (counts.back() < least || counts.back() > most)
-            CV_Error(cv::Error::StsOutOfRange, cv::format("%d bits are not %d to %d candidates of %d bits", size,
-                    least, most, pool.bitsPerCandidate()));
-    }
-    return counts;
+    const int count = bits / pool.bitsPerCandidate(), most = int(pool.candidates.size());
+    if (count < 1 || count > most)
+        CV_Error(cv::Error::StsOutOfRange, cv::format("%d bits are not 1 to %d candidates of %d bits", bits, most,
+                pool.bitsPerCandidate()));
+    return count;
 }
 
 std::vector<int> fillBytes(const CandidatePool& pool, const std::vector<int>& chosen,

@@ -161,26 +161,21 @@ void addBest(const CandidatePool& pool, const std::vector<double>& benefits, int
 
 }  // namespace
 
-std::vector<std::vector<int>> selectGreedily(const CandidatePool& pool, const std::vector<DescribedPair>& pairs,
-        const std::vector<int>& bits, uint64 seed, const Progress& progress)
+std::vector<int> selectGreedily(const CandidatePool& pool, const std::vector<DescribedPair>& pairs, int bits,
+        uint64 seed, const Progress& progress)
 {
-    const std::vector<int> wanted = candidateCounts(pool, bits);
+    const int wanted = candidateCount(pool, bits);
     Growth growth(pool, pairs, seed);
     std::vector<bool> isChosen(pool.candidates.size());
     std::vector<int> chosen;
-    std::vector<std::vector<int>> selections;
-    for (size_t i = 0; i < wanted.size(); i++)
+    while (int(chosen.size()) < wanted)
     {
-        while (int(chosen.size()) < wanted[i])
-        {
-            // a twelfth at a time: the more bits there are, the less each step changes the distances
-            const int count = std::min(std::max(1, int(chosen.size()) / 12), wanted[i] - int(chosen.size()));
-            addBest(pool, growth.benefits(chosen), count, isChosen, chosen);
-            progress(int(chosen.size()), wanted.back());
-        }
-        selections.push_back(fillBytes(pool, chosen, growth.benefits(chosen), bits[i]));
+        // a twelfth at a time: the more bits there are, the less each step changes the distances
+        const int count = std::min(std::max(1, int(chosen.size()) / 12), wanted - int(chosen.size()));
+        addBest(pool, growth.benefits(chosen), count, isChosen, chosen);
+        progress(int(chosen.size()), wanted);
     }
-    return selections;
+    return fillBytes(pool, chosen, growth.benefits(chosen), bits);
 }
 
 }  // namespace iib_tools

@@ -12,20 +12,22 @@ std::vector<Recipe> presetRecipes()
     const int gradients = IIB::CHANNEL_GRAD_X + IIB::CHANNEL_GRAD_Y + IIB::CHANNEL_SIGNED_GRAD_X +
                           IIB::CHANNEL_SIGNED_GRAD_Y;
     const int values = IIB::CHANNEL_GRAD_X + IIB::CHANNEL_GRAD_Y + IIB::CHANNEL_INTENSITY;
-    const PoolParameters paper = {IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, 4, 1.f, false, false};
-    // a wider ROS pays while the camera stands still
-    const PoolParameters still = {gradients, IIB::MAPPING_HAAR, 4, 1.5f, true, false};
+    // the default's quads but those of the orientation, whose bits are seldom worth what it costs to compute
+    const PoolParameters paper = {values, IIB::MAPPING_MEAN, 4, 1.f, false, false};
+    // a wider ROS pays while the camera stands still; at 1.25 sums over its cells still have 16 bits
+    const PoolParameters still = {gradients, IIB::MAPPING_HAAR, 4, 1.25f, false, false};
+    PoolParameters accurate = still;
+    accurate.mapping = IIB::MAPPING_PAIRWISE;
     const PoolParameters moving = {values, IIB::MAPPING_HAAR, 4, 1.f, true, false};
     return {
-        {{"S128", "S256", "S512"}, {128, 256, 512}, paper, 0., false, 12},
-        {{"TINY", "COMPACT", "ACCURATE"}, {256, 512, 1360}, still, 0., false, 12},
-        {{"BALANCED"}, {512}, moving, 0.7, false, 12},
+        {"S128", 128, paper, 0., false, 12},
+        {"S256", 256, paper, 0., false, 12},
+        {"S512", 512, paper, 0., false, 12},
+        {"ACCURATE", 0, accurate, 0., false, 12},
+        {"COMPACT", 512, still, 0., false, 12},
+        {"TINY", 256, still, 0., false, 12},
+        {"BALANCED", 512, moving, 0.7, false, 24},
     };
-}
-
-std::vector<std::string> presetNames()
-{
-    return {"S128", "S256", "S512", "ACCURATE", "COMPACT", "TINY", "BALANCED"};
 }
 
 }  // namespace iib_tools

@@ -20,21 +20,28 @@ std::set<std::string> sceneNames(const std::vector<ImagePair>& pairs)
     return names;
 }
 
+std::string tableRows(const cv::Mat_<int>& quads)
+{
+    std::string text;
+    for (int row = 0; row < quads.rows; row++)
+        text += (row % 7 == 0 ? "\n    " : " ") + cv::format("{%d,%d,%d,%d,%d},", quads(row, 0), quads(row, 1),
+                quads(row, 2), quads(row, 3), quads(row, 4));
+    return text;
+}
+
 }  // namespace
 
-NamedExtractors train(const Recipe& recipe, const std::vector<ImagePair>& pairs, uint64 seed,
+cv::Ptr<IIB> train(const Recipe& recipe, const std::vector<ImagePair>& pairs, uint64 seed,
         const Progress& progress)
 {
+    if (recipe.bits == 0)
+        return IIB::create(recipe.pool.scale, recipe.pool.granularity, recipe.pool.channels, recipe.pool.mapping);
     const CandidatePool pool = makePool(recipe.pool);
     const std::vector<DescribedPair> described = describeForTraining(
             pairs, pool.extractor, recipe.pairsPerScene, recipe.warpShare, seed, progress);
-    const std::vector<std::vector<int>> selections = recipe.adaBoost
+    return selectedExtractor(pool, recipe.adaBoost
             ? selectByAdaBoost(pool, described, recipe.bits, seed, progress)
-            : selectGreedily(pool, described, recipe.bits, seed, progress);
-    NamedExtractors result;
-    for (size_t i = 0; i < selections.size(); i++)
-        result[recipe.names[i]] = selectedExtractor(pool, selections[i]);
-    return result;
+            : selectGreedily(pool, described, recipe.bits, seed, progress));
 }
 
 MeanScores judge(const std::vector<ImagePair>& pairs, const cv::Ptr<cv::Feature2D>& extractor,
@@ -68,7 +75,7 @@ std::vector<ImagePair> foldOf(const std::vector<ImagePair>& pairs, int fold, int
     return result;
 }
 
-std::string presetsHeader(const NamedExtractors& presets, const std::string& command,
+std::string presetsHeader(const std::vector<NamedExtractor>& presets, const std::string& command,
         const std::vector<ImagePair>& pairs, uint64 seed)
 {
     std::ostringstream out;
@@ -82,18 +89,15 @@ std::string presetsHeader(const NamedExtractors& presets, const std::string& com
     out << "// A row a quad: level, channel, row, column, bit mask.\n\n";
 
     std::ostringstream table;
-    for (const std::string& name : presetNames())
+    for (const NamedExtractor& preset : presets)
     {
-        const cv::Ptr<IIB> preset = presets.at(name);
-        const cv::Mat_<int> quads = preset->getSelection();
-        out << "static const uchar " << name << "_QUADS[][5] = {";
-        for (int row = 0; row < quads.rows; row++)
-            out << (row % 7 == 0 ? "\n    " : " ") << cv::format("{%d,%d,%d,%d,%d},", quads(row, 0),
-                    quads(row, 1), quads(row, 2), quads(row, 3), quads(row, 4));
-        out << "\n};\n\n";
-        table << cv::format("    {%.2ff, %d, %d, %d, %s_QUADS, %d},\n", preset->getScaleFactor(),
-                preset->getGranularity(), preset->getChannels(), preset->getMapping(),
-                name.c_str(), quads.rows);
+        const cv::Mat_<int> quads = preset.extractor->getSelection();
+        const std::string array = quads.empty() ? "nullptr" : preset.name + "_QUADS";
+        if (!quads.empty())
+            out << "static const uchar " << array << "[][5] = {" << tableRows(quads) << "\n};\n\n";
+        table << cv::format("    {%.2ff, %d, %d, %d, %s, %d},  // %s\n", preset.extractor->getScaleFactor(),
+                preset.extractor->getGranularity(), preset.extractor->getChannels(),
+                preset.extractor->getMapping(), array.c_str(), quads.rows, preset.name.c_str());
     }
     out << "static const LearnedSelection PRESETS[] = {\n" << table.str() << "};\n";
     return out.str();

@@ -17,23 +17,18 @@ namespace iib_tools {
 //! All that decides a selection but the images and the seed.
 struct Recipe
 {
-    std::vector<std::string> names;  //!< of the selections, smallest first
-    std::vector<int> bits;           //!< their sizes
+    std::string name;
+    int bits;          //!< 0: all quads at even positions, there is nothing to learn
     PoolParameters pool;
     double warpShare;  //!< of the training pairs, see describeForTraining
     bool adaBoost;     //!< selectByAdaBoost instead of selectGreedily
     int pairsPerScene;
 };
 
-typedef std::map<std::string, cv::Ptr<cv::iib::IIBDescriptorExtractor>> NamedExtractors;
-
-//! How the built-in presets are made.
+//! How the built-in presets are made, in the order of IIBDescriptorExtractor::Preset.
 std::vector<Recipe> presetRecipes();
-//! Their names in the order of IIBDescriptorExtractor::Preset.
-std::vector<std::string> presetNames();
-
 //! Trains on all pairs given. Progress counts the pairs described, then the candidates chosen.
-NamedExtractors train(const Recipe& recipe, const std::vector<ImagePair>& pairs,
+cv::Ptr<cv::iib::IIBDescriptorExtractor> train(const Recipe& recipe, const std::vector<ImagePair>& pairs,
         uint64 seed, const Progress& progress);
 
 //! mAP and mAR of protocol A, means over the pairs.
@@ -43,8 +38,14 @@ MeanScores judge(const std::vector<ImagePair>& pairs, const cv::Ptr<cv::Feature2
 //! The pairs whose scene is (or, if `inside` is false, is not) number fold, fold + folds, ... in order.
 std::vector<ImagePair> foldOf(const std::vector<ImagePair>& pairs, int fold, int folds, bool inside);
 
+struct NamedExtractor
+{
+    std::string name;
+    cv::Ptr<cv::iib::IIBDescriptorExtractor> extractor;
+};
+
 //! The C++ header of the built-in presets; the command, the pairs' scenes and the seed go into its head.
-std::string presetsHeader(const NamedExtractors& presets, const std::string& command,
+std::string presetsHeader(const std::vector<NamedExtractor>& presets, const std::string& command,
         const std::vector<ImagePair>& pairs, uint64 seed);
 
 }  // namespace iib_tools

@@ -19,7 +19,7 @@ const char* const KEYS =
         "{mapping    | 5      | IIBDescriptorExtractor::Mapping; 0 MEAN, 5 HAAR }"
         "{granularity| 4      | levels }"
         "{scale      | 1      | side of the ROS in units of 64 pixels }"
-        "{aligned    |        | quads at even positions only, as without overlap }"
+        "{overlap    |        | quads at odd positions too }"
         "{quads      |        | choose whole quads, as in the paper, instead of bits }"
         "{adaboost   |        | plain AdaBoost, as in the paper }"
         "{warp       | 0      | part of the pairs whose target is turned, scaled and tilted }"
@@ -41,8 +41,8 @@ void crossValidate(const Recipe& recipe, const std::vector<ImagePair>& pairs, in
     for (int fold = 0; fold < folds; fold++)
     {
         const std::vector<ImagePair> unseen = foldOf(pairs, fold, folds, true);
-        const NamedExtractors learned = train(recipe, foldOf(pairs, fold, folds, false), seed, show("training"));
-        const MeanScores scores = judge(unseen, learned.begin()->second, show("judging"));
+        const cv::Ptr<cv::iib::IIB> learned = train(recipe, foldOf(pairs, fold, folds, false), seed, show("training"));
+        const MeanScores scores = judge(unseen, learned, show("judging"));
         map += scores.map * double(unseen.size()) / double(pairs.size());
         mar += scores.mar * double(unseen.size()) / double(pairs.size());
     }
@@ -51,21 +51,18 @@ void crossValidate(const Recipe& recipe, const std::vector<ImagePair>& pairs, in
 
 void writePresets(const std::string& file, const std::vector<ImagePair>& pairs, uint64 seed)
 {
-    NamedExtractors presets;
+    std::vector<NamedExtractor> presets;
     for (const Recipe& recipe : presetRecipes())
-    {
-        const NamedExtractors learned = train(recipe, pairs, seed, show(recipe.names.back()));
-        presets.insert(learned.begin(), learned.end());
-    }
+        presets.push_back({recipe.name, train(recipe, pairs, seed, show(recipe.name))});
     std::ofstream(file) << presetsHeader(
             presets, cv::format("scripts/train.sh --presets --seed=%d", int(seed)), pairs, seed);
 }
 
 int run(const cv::CommandLineParser& args, const std::vector<std::string>& roots)
 {
-    const Recipe recipe = {{"selection"}, {args.get<int>("bits")},
+    const Recipe recipe = {"selection", args.get<int>("bits"),
         {args.get<int>("channels"), args.get<int>("mapping"), args.get<int>("granularity"),
-            args.get<float>("scale"), !args.has("aligned"), args.has("quads")},
+            args.get<float>("scale"), args.has("overlap"), args.has("quads")},
         args.get<double>("warp"), args.has("adaboost"), args.get<int>("pairs")};
     const uint64 seed = uint64(args.get<int>("seed"));
     const int folds = args.get<int>("folds");
@@ -87,7 +84,7 @@ int run(const cv::CommandLineParser& args, const std::vector<std::string>& roots
     if (!header.empty())
         writePresets(header, pairs, seed);
     else if (!out.empty())
-        train(recipe, pairs, seed, show("training")).at("selection")->save(out);
+        train(recipe, pairs, seed, show("training"))->save(out);
     return 0;
 }
 

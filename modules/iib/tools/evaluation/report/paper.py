@@ -51,6 +51,9 @@ LEARNED = {
     "IIB": (0.9157, 0.8005, 0.9173, 0.7556),
 }
 
+# Beyond the paper: the default and IIBDescriptorExtractor::createPreset
+PRESETS = ("IIB", "IIB S128", "IIB S256", "IIB S512", "IIB ACCURATE", "IIB COMPACT", "IIB TINY", "IIB BALANCED")
+
 # Table "binary_comparsion" (as its label is spelled); float descriptors and TEBLID are not in it
 PEERS = {
     "IIB": (0.9187, 0.8041, 0.9210, 0.7655),

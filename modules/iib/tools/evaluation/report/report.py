@@ -108,6 +108,29 @@ def protocol_a(rows):
     return "\n".join(out)
 
 
+def presets(rows, warped, costs):
+    """The presets beside the default: changed light, moved cameras, turns of the image, time."""
+    chosen = [r for r in rows if r["configuration"] in paper.PRESETS]
+    columns = [("changed light, natural", [r for r in chosen if r["kind"] == "light" and domain(r) == "natural"]),
+               ("synthetic", [r for r in chosen if r["kind"] == "light" and domain(r) == "synthetic"])]
+    columns += [(name, [r for r in chosen if r["sequence"] == name]) for name in ("wall", "graf")]
+    columns += [("turned by %d&deg;" % angle, [r for r in warped if r["kind"] == "turn" and r["target"] == str(angle)])
+                for angle in (5, 10, 15)]
+    columns = [(title, group(members, "configuration")) for title, members in columns if members]
+    time = {r["configuration"]: float(r["milliseconds"]) for r in costs}
+    lines = []
+    for name in paper.PRESETS:
+        of_preset = [r for r in chosen if r["configuration"] == name]
+        if of_preset:
+            lines.append([html.escape(name), of_preset[0]["bytes"]] +
+                         ["%.3f / %.3f" % scores(by_name[(name,)])[:2] if (name,) in by_name else ""
+                          for _, by_name in columns] +
+                         [cell(time[name] / time["IIB"], 2) if name in time and "IIB" in time else ""])
+    return ('<h2 id="s">Presets</h2><p class="note">Protocol A, upright: mAP / mAR. Time: all keypoints of the largest '
+            "image, in parts of the default's; see Cost.</p>"
+            + table(["preset", "bytes"] + [title for title, _ in columns] + ["time"], lines, "IIB"))
+
+
 def protocol_b(rows):
     out = ['<h2 id="b">With detectors (protocol B)</h2><p class="note">The strongest points of each detector in both '
            "images, upright; its own descriptor (ORB's for FAST and AGAST) against IIB on the same points, with the "
@@ -142,6 +165,7 @@ def matching(rows):
 
 
 def robustness(rows):
+    rows = [r for r in rows if r["configuration"] not in paper.PRESETS or r["configuration"] in ("IIB", "IIB BALANCED")]
     names = list(dict.fromkeys(r["configuration"] for r in rows))
     lines = []
     for (kind, sequence), members in group([r for r in rows if r["kind"] not in ("turn", "scale")],
@@ -189,11 +213,14 @@ def main():
     parser.add_argument("--no-pictures", action="store_true", help="leave photographs out of the page")
     arguments = parser.parse_args()
     sections = []
+    tables = {name: read(arguments.results, name)
+              for name in ("protocol_a", "protocol_b", "matching", "robustness", "cost")}
     for name, make in (("protocol_a", protocol_a), ("protocol_b", protocol_b), ("matching", matching),
                        ("robustness", robustness), ("cost", cost)):
-        rows = read(arguments.results, name)
-        if rows:
-            sections.append(make(rows))
+        if tables[name]:
+            sections.append(make(tables[name]))
+        if name == "protocol_a" and tables[name]:
+            sections.append(presets(tables[name], tables["robustness"], tables["cost"]))
     pictures = [] if arguments.no_pictures else read(arguments.results, "pictures")
     if pictures:
         sections.append(gallery(pictures, arguments.results))
@@ -205,7 +232,8 @@ def main():
     with open(page, "w") as file:
         file.write('<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><meta name="viewport" '
                    'content="width=device-width"><title>IIB evaluation</title><style>%s</style></head><body>'
-                   "<h1>Evaluation of the IIB descriptor</h1><nav><a href='#a'>Predefined points</a><a href='#b'>"
+                   "<h1>Evaluation of the IIB descriptor</h1><nav><a href='#a'>Predefined points</a><a href='#s'>Presets</a>"
+                   "<a href='#b'>"
                    "Detectors</a><a href='#m'>Matching</a><a href='#r'>Robustness</a><a href='#c'>Cost</a>%s</nav>"
                    "<p class=note>Settings: %s. Written by scripts/evaluate.sh from the CSV files beside this page."
                    "</p>%s</body></html>\n"

@@ -25,8 +25,11 @@ with open(os.path.join(results, "protocol_a.csv")) as file:
     light = [r for r in csv.DictReader(file) if r["configuration"] == "IIB" and r["kind"] == "light"]
 mar = sum(float(r["recall"]) for r in light) / len(light)
 assert "mAR <b>%.3f</b> over %d image pairs" % (mar, len(light)) in text
-for section in "abmrcp":
+for section in "asbmrcp":
     assert 'id="%s"' % section in text, section
+presets = text[text.index('id="s"'):text.index('id="b"')]
+for name in ("S128", "S256", "S512", "ACCURATE", "COMPACT", "TINY", "BALANCED"):
+    assert re.search(r"<td>IIB %s</td><td>\d+</td>(<td>[\d.]+ / [\d.]+</td>)+<td>[\d.]+</td>" % name, presets), name
 assert text.count("<svg") >= 7, text.count("<svg")
 assert "data:image/jpeg;base64," in text
 assert not re.search(r'(src|href)="?(https?:|/|\.\.)', text.replace("xlink:href", "")), "not self-contained"

@@ -109,12 +109,16 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
 
 TEST_F(EvaluationTest, an_interrupted_run_goes_on_to_the_same_result)
 {
-    options.experiments = {"protocol_a"};
-    evaluate(options);
-    const std::string file = options.out + "/protocol_a.csv", whole = contents(file);
-    std::ofstream(file) << whole.substr(0, whole.size() / 2);
-    evaluate(options);
-    EXPECT_EQ(whole, contents(file));
+    for (const std::string experiment : {"robustness", "protocol_a"})
+    {
+        options.experiments = {experiment};
+        evaluate(options);
+        const std::string file = options.out + "/" + experiment + ".csv", whole = contents(file);
+        std::ofstream(file) << whole.substr(0, whole.size() / 2);
+        evaluate(options);
+        EXPECT_EQ(whole, contents(file)) << experiment;
+    }
+    const std::string whole = contents(options.out + "/protocol_a.csv");
 
     const int threads = cv::getNumThreads();
     cv::setNumThreads(1);
