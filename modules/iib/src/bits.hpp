@@ -52,7 +52,8 @@ template <typename Cell> struct BitsKernels
 {
     /** Bits of a level in the order of descriptor.hpp.
      @param parents gets the sums of the next coarser level. */
-    void (*levelBits)(const CellGrid<Cell>& cells, const LevelShape& shape, CellGrid<unsigned>& parents, BitWriter& out);
+    void (*levelBits)(const CellGrid<Cell>& cells, const LevelShape& shape, CellGrid<unsigned>& parents,
+                      BitWriter& out);
 
     //! The sums alone.
     void (*parentSums)(const CellGrid<Cell>& cells, CellGrid<unsigned>& parents);

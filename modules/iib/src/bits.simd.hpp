@@ -2,10 +2,14 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "intrinsics.hpp"
-
 #include "bits.hpp"
 #include "mappings.hpp"
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+#include "bits_lanes.simd.hpp"
+#include "bits_quads.simd.hpp"
+#include "bits_planes.simd.hpp"
+#endif
 
 namespace cv {
 namespace iib {
@@ -19,136 +23,7 @@ BitsKernels<unsigned> getBitsKernels(int mapping, unsigned);
 
 namespace {
 
-// Quads and channels that are mapped at a time, whatever the width of a vector, and their comparisons.
-enum { CHUNK = Window::CHUNK, LANES = VTraits<v_int32>::max_nlanes, CHUNK_VECTORS = CHUNK / LANES };
-
-//! A vector whose comparisons are bits, a bit a lane.
-template <typename V> struct Lanes
-{
-    V v;
-
-    Lanes() {}
-    Lanes(const V& vector) : v(vector) {}
-};
-
-template <typename V> inline Lanes<V> operator+(const Lanes<V>& a, const Lanes<V>& b) { return a.v + b.v; }
-template <typename V> inline Lanes<V> operator-(const Lanes<V>& a, const Lanes<V>& b) { return a.v - b.v; }
-template <typename V> inline Lanes<V> operator<<(const Lanes<V>& a, int bits) { return a.v << bits; }
-template <typename V> inline Lanes<V> operator>>(const Lanes<V>& a, int bits) { return a.v >> bits; }
-template <typename V> inline Lanes<V> v_min(const Lanes<V>& a, const Lanes<V>& b) { return cv::v_min(a.v, b.v); }
-template <typename V> inline Lanes<V> v_max(const Lanes<V>& a, const Lanes<V>& b) { return cv::v_max(a.v, b.v); }
-template <typename V> inline unsigned operator>(const Lanes<V>& a, const Lanes<V>& b) { return (unsigned)v_signmask(a.v > b.v); }
-template <typename V> inline unsigned operator>=(const Lanes<V>& a, const Lanes<V>& b) { return (unsigned)v_signmask(a.v >= b.v); }
-template <typename V> inline unsigned operator==(const Lanes<V>& a, const Lanes<V>& b) { return (unsigned)v_signmask(a.v == b.v); }
-
-#if CV_SIMD_WIDTH == 64
-// Universal intrinsics turn the mask of a comparison into a vector and that into a mask again.
-inline unsigned operator>(const Lanes<v_int32>& a, const Lanes<v_int32>& b) { return _mm512_cmpgt_epi32_mask(a.v.val, b.v.val); }
-inline unsigned operator>=(const Lanes<v_int32>& a, const Lanes<v_int32>& b) { return _mm512_cmpge_epi32_mask(a.v.val, b.v.val); }
-inline unsigned operator==(const Lanes<v_int32>& a, const Lanes<v_int32>& b) { return _mm512_cmpeq_epi32_mask(a.v.val, b.v.val); }
-#endif
-
 enum { MAX_QUADS = 1 << (MAX_GRANULARITY - 1), MAX_LANES = MAX_QUADS * GROUP_CHANNELS };
-
-//! Collects comparisons, from a lane on.
-struct Put
-{
-    unsigned* planes;
-    int lane;
-
-    void operator()(int plane, unsigned bits) const { planes[plane] |= bits << lane; }
-};
-
-/* Squeezes the channels in use together, out of each group of four lanes: neighbouring fields of `channels` bits
- are merged, then neighbouring pairs, and so on. */
-inline unsigned dropLanes(unsigned chunk, int channels)
-{
-    switch (channels)
-    {
-    case 1:
-        chunk &= 0x1111;
-        chunk = (chunk | chunk >> 3) & 0x0303;
-        return (chunk | chunk >> 6) & 0x000f;
-    case 2:
-        chunk &= 0x3333;
-        chunk = (chunk | chunk >> 2) & 0x0f0f;
-        return (chunk | chunk >> 4) & 0x00ff;
-    case 3:
-        chunk &= 0x7777;
-        chunk = (chunk & 0x0707) | (chunk >> 1 & 0x3838);
-        return (chunk & 0x003f) | (chunk >> 2 & 0x0fc0);
-    default: return chunk;
-    }
-}
-
-inline v_int32 loadCells(const ushort* p) { return v_reinterpret_as_s32(vx_load_expand(p)); }
-inline v_int32 loadCells(const unsigned* p) { return v_reinterpret_as_s32(vx_load(p)); }
-inline v_int32x4 loadCell(const ushort* p) { return v_reinterpret_as_s32(v_load_expand(p)); }
-inline v_int32x4 loadCell(const unsigned* p) { return v_reinterpret_as_s32(v_load(p)); }
-
-//! The cells of a chunk of quads, and of those in the rows below it.
-template <typename Cell> class QuadRows
-{
-public:
-    //! Begins with quads whose top left cells are in row dy and columns dx, dx + 2, ..., at value `first` of the row.
-    QuadRows(const CellGrid<Cell>& cells, int dy, int dx, int first)
-        : left(cells.row(dy, dx) + first), right(cells.row(dy, 1 - dx) + dx * GROUP_CHANNELS + first),
-          step(cells.rowStep())  // next to an odd column is an even one
-    {
-    }
-
-    void load(int lane, v_int32 x[4]) const
-    {
-        x[0] = loadCells(left + lane);
-        x[1] = loadCells(right + lane);
-        x[2] = loadCells(left + step + lane);
-        x[3] = loadCells(right + step + lane);
-    }
-
-    void next()
-    {
-        left += 2 * step;
-        right += 2 * step;
-    }
-
-private:
-    const Cell *left, *right;
-    const size_t step;
-};
-
-//! Where the sums over such quads go: the cells of the next coarser level.
-class ParentRows
-{
-public:
-    ParentRows(CellGrid<unsigned>& parents, int first)
-        : even(parents.row(0, 0) + first / 2), odd(parents.row(0, 1) + first / 2), step(parents.rowStep())
-    {
-    }
-
-    void store(int lane, const v_int32 x[4]) const
-    {
-        v_uint32 sums = v_reinterpret_as_u32((x[0] + x[1]) + (x[2] + x[3]));
-#if CV_SIMD_WIDTH == 16
-        v_store((lane / GROUP_CHANNELS % 2 ? odd : even) + lane / (2 * GROUP_CHANNELS) * GROUP_CHANNELS, sums);
-#else
-#if CV_SIMD_WIDTH == 64
-        sums = v_uint32(_mm512_shuffle_i32x4(sums.val, sums.val, 0xd8));  // quads 0, 2, 1, 3
-#endif
-        v_store_low(even + lane / 2, sums);
-        v_store_high(odd + lane / 2, sums);
-#endif
-    }
-
-    void next()
-    {
-        even += step;
-        odd += step;
-    }
-
-private:
-    unsigned *even, *odd;
-    const size_t step;
-};
 
 template <typename Cell> void parentSums(const CellGrid<Cell>& cells, CellGrid<unsigned>& parents)
 {
@@ -168,54 +43,10 @@ template <typename Cell> void parentSums(const CellGrid<Cell>& cells, CellGrid<u
     }
 }
 
-/* Four numbers, each repeated for the channels of a quad, as a chunk. Not by way of memory, where what was stored in
- parts could not be read whole until all stores before it are done. */
-inline void repeatForChannels(int a, int b, int c, int d, v_int32 chunk[CHUNK_VECTORS])
-{
-#if CV_SIMD_WIDTH == 64
-    const __m512i quads = _mm512_castsi128_si512(_mm_setr_epi32(a, b, c, d));
-    chunk[0] = v_int32(_mm512_permutexvar_epi32(_mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3), quads));
-#elif CV_SIMD_WIDTH == 32
-    chunk[0] = v_int32(_mm256_setr_m128i(_mm_set1_epi32(a), _mm_set1_epi32(b)));
-    chunk[1] = v_int32(_mm256_setr_m128i(_mm_set1_epi32(c), _mm_set1_epi32(d)));
-#else
-    chunk[0] = v_setall_s32(a);
-    chunk[1] = v_setall_s32(b);
-    chunk[2] = v_setall_s32(c);
-    chunk[3] = v_setall_s32(d);
-#endif
-}
-
-//! Weights of the left and right cells of a chunk of quads.
-struct ColumnWeights
-{
-    v_int32 left[CHUNK_VECTORS], right[CHUNK_VECTORS];
-    bool equal;  //!< whether all weights are 1
-
-    //! @param first column; @param quads how many there are from it on, which may not fill the chunk.
-    CV_ALWAYS_INLINE ColumnWeights(const Axis& axis, int first, int quads)
-    {
-        const Weights a(axis, first), b(axis, first + 2 * std::min(1, quads - 1));
-        const Weights c(axis, first + 2 * std::min(2, quads - 1)), d(axis, first + 2 * std::min(3, quads - 1));
-        repeatForChannels(a.first, b.first, c.first, d.first, left);
-        repeatForChannels(a.second, b.second, c.second, d.second, right);
-        equal = a.equal() & b.equal() & c.equal() & d.equal();
-    }
-};
-
-//! Where the bits of a chunk go, two bytes for each plane.
-struct PlaneRows
-{
-    uchar* first;
-    size_t plane, row;  //!< from a plane or row to the next one, in bytes
-
-    void store(int p, unsigned chunk) const { storeBytes(chunk, CHUNK / 8, first + p * plane); }
-};
-
 //! A chunk of quads and all those below it. WITH_PARENTS also stores the sums over quads.
 template <typename Mapping, bool WITH_PARENTS, typename Cell>
-inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const int* edges, int step, int rows,
-                       ParentRows sums, PlaneRows out)
+inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const int* edges, int step,
+                       int rows, ParentRows sums, PlaneRows out)
 {
     for (int r = 0; r < rows; r++)
     {
@@ -254,62 +85,6 @@ inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const
         out.first += out.row;
     }
 }
-
-//! Appends a plane, `lanes` bits of which those of the channels in use are wanted.
-inline void append(const uchar* plane, int lanes, int channels, BitWriter& out)
-{
-    if (channels == GROUP_CHANNELS)
-        for (int first = 0; first < lanes; first += 64)
-        {
-            const int count = std::min(lanes - first, 64);
-            out.append(loadWord(plane + first / 8) & ~(uint64)0 >> (64 - count), count);
-        }
-    else
-        for (int first = 0; first < lanes; first += CHUNK)
-        {
-            const int count = std::min(lanes - first, (int)CHUNK) / GROUP_CHANNELS * channels;
-            const uchar* p = plane + first / 8;
-            out.append(dropLanes(p[0] | p[1] << 8, channels) & ((1u << count) - 1), count);
-        }
-}
-
-//! Appends the comparisons of all quads of a window.
-inline void append(PlaneRows planes, const Window& window, int bits, int channels, BitWriter& out)
-{
-    BitWriter writer = out;  // a copy that no store of a byte can change stays in registers
-    for (int r = 0; r < window.rows; r++, planes.first += planes.row)
-        for (int plane = 0; plane < bits; plane++)
-            append(planes.first + plane * planes.plane, window.lanes(), channels, writer);
-    out = writer;
-}
-
-//! The cells of one quad, a lane each for the channels.
-template <typename Cell> class Quad
-{
-public:
-    Quad(const CellGrid<Cell>& cells, int row_, int col_) : row(row_), col(col_)
-    {
-        for (int i = 0; i < 4; i++)
-            x[i] = loadCell(cells.cell(row + i / 2, col + i % 2));
-    }
-
-    v_uint32x4 sum() const { return v_reinterpret_as_u32((x[0] + x[1]) + (x[2] + x[3])); }
-
-    //! Weighted as LevelShape tells.
-    template <typename Mapping, typename P> void map(const LevelShape& shape, const P& put) const
-    {
-        const Weights w(shape.x, col), h(shape.y, row);
-        const Lanes<v_int32x4> weighted[4] = { x[0] * v_setall_s32(w.first * h.first),
-                                               x[1] * v_setall_s32(w.second * h.first),
-                                               x[2] * v_setall_s32(w.first * h.second),
-                                               x[3] * v_setall_s32(w.second * h.second) };
-        Mapping::map(weighted, put);
-    }
-
-private:
-    const int row, col;
-    v_int32x4 x[4];
-};
 
 //! The comparisons of rows of quads of less than a chunk.
 template <typename Mapping, bool WITH_PARENTS, typename Cell>
@@ -353,7 +128,8 @@ void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int index,
 {
     const Window window(shape.n, index);
     const int rowBytes = Mapping::BITS * window.planeBytes();
-    uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8 + 8], *whole = 0;  // words are read beyond the last plane
+    // words are read beyond the last plane
+    uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8 + 8], *whole = 0;
     // Where all bits are in use and a row fills whole chunks, they need no shifting.
     if (!shape.chosen && shape.channels == GROUP_CHANNELS && window.lanes() % CHUNK == 0)
         whole = out.reserve(window.rows * rowBytes);

@@ -87,7 +87,8 @@ Rect unionOf(const std::vector<Rect>& ros, const Indices& keypoints)
 }
 
 //! Cuts a block across its longer side, where fewer ROS are cut, into parts of equal area, by the centres of the ROS.
-void cutStrips(const std::vector<Rect>& ros, const Indices& keypoints, Rect area, int strips, std::vector<Indices>& blocks)
+void cutStrips(const std::vector<Rect>& ros, const Indices& keypoints, Rect area, int strips,
+               std::vector<Indices>& blocks)
 {
     const bool vertical = area.height > area.width;
     const Range whole = extent(area, vertical);
@@ -122,7 +123,10 @@ std::vector<Indices> cutBlocks(const std::vector<Rect>& ros, int workers)
         pixels += (double)areas.back().width * areas.back().height;
     }
     for (size_t i = 0; i < parts.size(); i++)
-        cutStrips(ros, parts[i], areas[i], std::max(cvRound((double)areas[i].width * areas[i].height * workers / pixels), 1), blocks);
+    {
+        const double share = (double)areas[i].width * areas[i].height / pixels;
+        cutStrips(ros, parts[i], areas[i], std::max(cvRound(share * workers), 1), blocks);
+    }
     return blocks;
 }
 

@@ -50,7 +50,8 @@ inline v_uint32x4 loadCorners(const unsigned* row, const size_t* offsets)
     return v_load(row + offsets[0]);
 }
 
-//! As many corners as make a vector, of every other column; not v_lut_quads, since gather instructions are slow on many machines.
+//! As many corners as make a vector, of every other column. Not v_lut_quads: gather instructions are slow on many
+//! machines.
 template <typename V, typename Sum> inline V gatherCorners(const Sum* row, const size_t* offsets)
 {
 #if CV_SIMD_WIDTH == 16

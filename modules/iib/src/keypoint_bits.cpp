@@ -90,7 +90,8 @@ void KeyPointBits::writeFrom(int level, const CellGrid<Cell>& cells, const Level
     kernels<Cell>().levelBits(cells, shape, sums[level - 1], out);
     out.flush();
     if (level > 1)
-        writeFrom(level - 1, sums[level - 1], shapeOf(level - 1, shape.x.edges, shape.y.edges), value, 2 * longest, descriptor);
+        writeFrom(level - 1, sums[level - 1], shapeOf(level - 1, shape.x.edges, shape.y.edges), value, 2 * longest,
+                  descriptor);
 }
 
 void KeyPointBits::writeFrom(int level, const CellGrid<double>& cells, const LevelShape& shape, double value,
@@ -102,7 +103,8 @@ void KeyPointBits::writeFrom(int level, const CellGrid<double>& cells, const Lev
     if (level == 1)
         return;
     wideParentSums(cells, wideSums[level - 1]);
-    writeFrom(level - 1, wideSums[level - 1], shapeOf(level - 1, shape.x.edges, shape.y.edges), value, 2 * longest, descriptor);
+    writeFrom(level - 1, wideSums[level - 1], shapeOf(level - 1, shape.x.edges, shape.y.edges), value, 2 * longest,
+                  descriptor);
 }
 
 template void KeyPointBits::writeFrom(int, const CellGrid<ushort>&, const LevelShape&, double, double, uchar*);

@@ -11,7 +11,8 @@ namespace cv {
 namespace iib {
 
 /* Mappings f(x) of the four cell means of a quad to bits (paper, "Binary Bit Formulation"). They are written
- once for numbers and for vectors: V is double or a vector, and put(bit, b) takes what a comparison of V gives. No value exceeds four times the largest x. */
+ once for numbers and for vectors: V is double or a vector, and put(bit, b) takes what a comparison of V gives.
+ No value exceeds four times the largest x. */
 
 template <typename V> inline V least(const V& a, const V& b) { return v_min(a, b); }
 template <typename V> inline V greatest(const V& a, const V& b) { return v_max(a, b); }

@@ -148,14 +148,15 @@ private:
     {
         const Channel& c = channels[channel];
         const Lane *gx = planes[0].data(), *gy = planes[1].data();
+        const Lane offset = (Lane)maxTurnedGradient(c.map.depth());
         switch (c.kind)
         {
         case IIB::CHANNEL_GRAD_X: rowKernels.absolute(gx, buffer, count); return buffer;
         case IIB::CHANNEL_GRAD_Y: rowKernels.absolute(gy, buffer, count); return buffer;
         case IIB::CHANNEL_ORIENTATION: return planes[2].data();
         case IIB::CHANNEL_INTENSITY: return planes[3].data();
-        case IIB::CHANNEL_SIGNED_GRAD_X: rowKernels.add(gx, (Lane)maxTurnedGradient(c.map.depth()), buffer, count); return buffer;
-        case IIB::CHANNEL_SIGNED_GRAD_Y: rowKernels.add(gy, (Lane)maxTurnedGradient(c.map.depth()), buffer, count); return buffer;
+        case IIB::CHANNEL_SIGNED_GRAD_X: rowKernels.add(gx, offset, buffer, count); return buffer;
+        case IIB::CHANNEL_SIGNED_GRAD_Y: rowKernels.add(gy, offset, buffer, count); return buffer;
         default: break;
         }
         size_t extra = hasImage ? GROUP_CHANNELS : 0;

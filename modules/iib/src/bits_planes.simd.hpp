@@ -1,0 +1,74 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Where comparisons lie in memory, and how they become bits of a descriptor. Included by bits.simd.hpp.
+
+namespace cv {
+namespace iib {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+namespace {
+
+//! Where the bits of a chunk go, two bytes for each plane.
+struct PlaneRows
+{
+    uchar* first;
+    size_t plane, row;  //!< from a plane or row to the next one, in bytes
+
+    void store(int p, unsigned chunk) const { storeBytes(chunk, CHUNK / 8, first + p * plane); }
+};
+
+/* Squeezes the channels in use together, out of each group of four lanes: neighbouring fields of `channels` bits
+ are merged, then neighbouring pairs, and so on. */
+inline unsigned dropLanes(unsigned chunk, int channels)
+{
+    switch (channels)
+    {
+    case 1:
+        chunk &= 0x1111;
+        chunk = (chunk | chunk >> 3) & 0x0303;
+        return (chunk | chunk >> 6) & 0x000f;
+    case 2:
+        chunk &= 0x3333;
+        chunk = (chunk | chunk >> 2) & 0x0f0f;
+        return (chunk | chunk >> 4) & 0x00ff;
+    case 3:
+        chunk &= 0x7777;
+        chunk = (chunk & 0x0707) | (chunk >> 1 & 0x3838);
+        return (chunk & 0x003f) | (chunk >> 2 & 0x0fc0);
+    default: return chunk;
+    }
+}
+
+//! Appends a plane, `lanes` bits of which those of the channels in use are wanted.
+inline void append(const uchar* plane, int lanes, int channels, BitWriter& out)
+{
+    if (channels == GROUP_CHANNELS)
+        for (int first = 0; first < lanes; first += 64)
+        {
+            const int count = std::min(lanes - first, 64);
+            out.append(loadWord(plane + first / 8) & ~(uint64)0 >> (64 - count), count);
+        }
+    else
+        for (int first = 0; first < lanes; first += CHUNK)
+        {
+            const int count = std::min(lanes - first, (int)CHUNK) / GROUP_CHANNELS * channels;
+            const uchar* p = plane + first / 8;
+            out.append(dropLanes(p[0] | p[1] << 8, channels) & ((1u << count) - 1), count);
+        }
+}
+
+//! Appends the comparisons of all quads of a window.
+inline void append(PlaneRows planes, const Window& window, int bits, int channels, BitWriter& out)
+{
+    BitWriter writer = out;  // a copy that no store of a byte can change stays in registers
+    for (int r = 0; r < window.rows; r++, planes.first += planes.row)
+        for (int plane = 0; plane < bits; plane++)
+            append(planes.first + plane * planes.plane, window.lanes(), channels, writer);
+    out = writer;
+}
+
+}  // namespace
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}  // namespace iib
+}  // namespace cv
