@@ -27,7 +27,7 @@ queries x train rows, one an image, or an empty one for "all allowed"), `k`, rad
  - train images without rows are skipped; without any train rows the rows of the result are empty;
  - `k` is met over all the images together, not up to the smallest image's rows;
  - `compactResult` drops every query without a match, whatever the reason;
- - rows and images are limited by memory alone, which holds the packed codes (levels padded to 8 bytes)
+ - rows and images are limited by memory alone, which holds the packed codes (levels padded to 4 or 8 bytes)
    and the results. As in every DescriptorMatcher, the matrices added are referred to as well
    (getTrainDescriptors), but their values are copied: later changes to them have no effect.
 
