@@ -52,6 +52,7 @@ LEARNED = {
 }
 
 # Beyond the paper: the default and IIBDescriptorExtractor::createPreset
+TRAINED_ON = ("tilde_webcam", "amos_daynight")  # sets that the presets know
 PRESETS = ("IIB", "IIB S128", "IIB S256", "IIB S512", "IIB ACCURATE", "IIB COMPACT", "IIB TINY", "IIB BALANCED")
 
 # Table "binary_comparsion" (as its label is spelled); float descriptors and TEBLID are not in it
