@@ -71,18 +71,25 @@ template <typename V, typename Sum> inline V gatherCorners(const Sum* row, const
 }
 
 //! The corners after the first one of a vector, and one more.
-template <typename Sum, typename V> inline V nextCorners(const V& corners, const Sum* more)
+#if CV_SIMD_WIDTH == 16
+inline v_uint16 nextCorners(const v_uint16& corners, const ushort* more)
+{
+    return v_rotate_right<GROUP_CHANNELS>(corners, loadCorner(more));
+}
+
+inline v_uint32 nextCorners(const v_uint32&, const unsigned* more) { return loadCorner(more); }
+#else
+template <typename V, typename Sum> inline V nextCorners(const V& corners, const Sum* more)
 {
 #if CV_SIMD_WIDTH == 64
     // v_rotate_right makes a slower instruction of this
     const int words = GROUP_CHANNELS * (int)sizeof(Sum) / 8;
     return V(_mm512_alignr_epi64(_mm512_castsi128_si512(loadCorner(more).val), corners.val, words));
-#elif CV_SIMD_WIDTH == 32
-    return v_rotate_right<GROUP_CHANNELS>(corners, V(_mm256_castsi128_si256(loadCorner(more).val)));
 #else
-    return v_rotate_right<GROUP_CHANNELS>(corners, loadCorner(more));
+    return v_rotate_right<GROUP_CHANNELS>(corners, V(_mm256_castsi128_si256(loadCorner(more).val)));
 #endif
 }
+#endif
 
 //! From a row of corners: their differences, which are sums over a row of left and of right cells and all above.
 template <typename V> struct RowSums
