@@ -114,5 +114,19 @@ TEST(IIB_MatcherFile, parameters_through_file_storage)
     EXPECT_EQ(0.75f, other->getMaxRatio());
 }
 
+// Parameters as the first version wrote them.
+TEST(IIB_MatcherFile, first_parameters_stay_readable)
+{
+    const FileStorage in("%YAML:1.0\n---\nlevelSizes: [ 8, 24 ]\nmode: 2\nthresholds: [ 3.0000001192092896e-01 ]\n"
+                         "crossCheck: 1\nmaxRatio: 7.5000000000000000e-01\n", FileStorage::READ | FileStorage::MEMORY);
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({ 4 });
+    matcher->read(in.root());
+    EXPECT_EQ((std::vector<int>{ 8, 24 }), matcher->levelSizes());
+    EXPECT_EQ(HierarchicalMatcher::ADAPTIVE, matcher->getMode());
+    EXPECT_EQ(std::vector<float>(1, 0.3f), matcher->getThresholds());
+    EXPECT_TRUE(matcher->getCrossCheck());
+    EXPECT_EQ(0.75f, matcher->getMaxRatio());
+}
+
 }  // namespace
 }  // namespace opencv_test
