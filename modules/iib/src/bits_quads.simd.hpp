@@ -112,7 +112,7 @@ struct ColumnWeights
         const Weights c(axis, first + 2 * std::min(2, quads - 1)), d(axis, first + 2 * std::min(3, quads - 1));
         repeatForChannels(a.first, b.first, c.first, d.first, left);
         repeatForChannels(a.second, b.second, c.second, d.second, right);
-        equal = a.equal() & b.equal() & c.equal() & d.equal();
+        equal = ((a.first ^ a.second) | (b.first ^ b.second) | (c.first ^ c.second) | (d.first ^ d.second)) == 0;
     }
 };
 

@@ -12,6 +12,7 @@ import matplotlib.pyplot as plt  # noqa: E402 (the backend comes first)
 def draw(axis, xs, points, label):
     axis.plot(xs, [p["milliseconds"] for p in points], marker="o")
     axis.set_xlim(left=0)
+    axis.locator_params(axis="x", nbins=6)
     axis.set_ylim(bottom=0)
     axis.set_xlabel(label)
     axis.set_ylabel("ms")
