@@ -48,10 +48,14 @@ case "${1:-}" in
     shift
     memcheck "$@"
     ;;
---sanitize=*)
+--sanitize=address,undefined | --sanitize=thread)
     sanitizers=${1#--sanitize=}
     shift
     sanitize "$sanitizers" "$@"
+    ;;
+--sanitize=*)
+    echo "test.sh: $1 is none of --sanitize, --sanitize=address,undefined, --sanitize=thread, --sanitize=valgrind" >&2
+    exit 2
     ;;
 *) run "$root/build" "" "$@" ;;
 esac

@@ -188,13 +188,5 @@ void run(ByteSource& in)
 
 extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
 {
-    ByteSource in(data, size);
-    try
-    {
-        run(in);
-    }
-    catch (const cv::Exception&)
-    {
-    }
-    return 0;
+    return runTarget(run, data, size);
 }
