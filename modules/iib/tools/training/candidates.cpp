@@ -35,12 +35,15 @@ cv::Mat_<int> allQuads(const PoolParameters& p, int mask)
     cv::Mat_<int> quads(0, 5);
     const int channels = countBits(p.channels);
     for (int level = 1; level <= p.granularity; level++)
+    {
+        const int windows = p.windows[std::min(level, int(p.windows.size())) - 1];
         for (int group = 0; group < channels; group += CHANNEL_GROUP)
-            for (int window = 0; window < (p.overlap ? 4 : 1); window++)
-                for (int row = window / 2; row + 1 < 1 << level; row += 2)
+            for (int window = 0; window < 4; window++)
+                for (int row = window / 2; (windows >> window & 1) && row + 1 < 1 << level; row += 2)
                     for (int column = window % 2; column + 1 < 1 << level; column += 2)
                         for (int channel = group; channel < std::min(group + CHANNEL_GROUP, channels); channel++)
                             quads.push_back(cv::Mat_<int>({level, channel, row, column, mask}).reshape(1, 1));
+    }
     return quads;
 }
 
@@ -61,6 +64,8 @@ bool CandidatePool::areNeighbours(const Candidate& a, const Candidate& b) const
 
 CandidatePool makePool(const PoolParameters& p)
 {
+    if (p.windows.empty() || std::any_of(p.windows.begin(), p.windows.end(), [](int w) { return w < 1 || w > 15; }))
+        CV_Error(cv::Error::StsOutOfRange, "where quads begin is a number of 1 to 15 for each level, as 1,15,15");
     CandidatePool pool;
     pool.extractor = IIB::create(p.scale, p.granularity, p.channels, p.mapping);
     const int bits = bitsPerQuad(p.mapping);

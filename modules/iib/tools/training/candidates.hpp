@@ -16,7 +16,9 @@ struct PoolParameters
 {
     int channels, mapping, granularity;  //!< as in IIBDescriptorExtractor::create
     float scale;      //!< side of the ROS in units of KeyPoint::size, which is the ROS of protocol A
-    bool overlap;     //!< quads at odd positions too
+    /** Where a level's quads begin, coarse first, the last number for all finer levels too: a sum of 1 (even rows and
+    columns), 2 (even rows, odd columns), 4 (odd rows, even columns) and 8 (odd rows and columns). */
+    std::vector<int> windows;
     bool wholeQuads;  //!< quads are chosen with all their bits, as in the paper; otherwise bit by bit
 };
 
@@ -41,6 +43,7 @@ struct CandidatePool
     bool areNeighbours(const Candidate& a, const Candidate& b) const;
 };
 
+//! @throws cv::Exception if there are no windows or one is not 1 to 15.
 CandidatePool makePool(const PoolParameters& parameters);
 
 //! The rows for setSelection, by level, channel and place, the chosen bits of a quad in one mask.

@@ -95,7 +95,7 @@ std::string presetsHeader(const std::vector<NamedExtractor>& presets, const std:
         const std::string array = quads.empty() ? "nullptr" : preset.name + "_QUADS";
         if (!quads.empty())
             out << "static const uchar " << array << "[][5] = {" << tableRows(quads) << "\n};\n\n";
-        table << cv::format("    {%.2ff, %d, %d, %d, %s, %d},  // %s\n", preset.extractor->getScaleFactor(),
+        table << cv::format("    {%.3ff, %d, %d, %d, %s, %d},  // %s\n", preset.extractor->getScaleFactor(),
                 preset.extractor->getGranularity(), preset.extractor->getChannels(),
                 preset.extractor->getMapping(), array.c_str(), quads.rows, preset.name.c_str());
     }

@@ -2,8 +2,10 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <sstream>
 
 #include "opencv2/core/utility.hpp"
 #include "recipe.hpp"
@@ -19,7 +21,8 @@ const char* const KEYS =
         "{mapping    | 5      | IIBDescriptorExtractor::Mapping; 0 MEAN, 5 HAAR }"
         "{granularity| 4      | levels }"
         "{scale      | 1      | side of the ROS in units of 64 pixels }"
-        "{overlap    |        | quads at odd positions too }"
+        "{windows    | 1      | where quads begin, for each level, coarse first, the last for all finer ones: a sum of "
+                               "1 even rows and columns, 2 odd columns, 4 odd rows, 8 both odd; 15 all }"
         "{quads      |        | choose whole quads, as in the paper, instead of bits }"
         "{adaboost   |        | plain AdaBoost, as in the paper }"
         "{warp       | 0      | part of the pairs whose target is turned, scaled and tilted }"
@@ -60,9 +63,13 @@ void writePresets(const std::string& file, const std::vector<ImagePair>& pairs, 
 
 int run(const cv::CommandLineParser& args, const std::vector<std::string>& roots)
 {
+    std::vector<int> windows;
+    std::istringstream list(args.get<std::string>("windows"));
+    for (std::string number; std::getline(list, number, ',');)
+        windows.push_back(std::atoi(number.c_str()));
     const Recipe recipe = {"selection", args.get<int>("bits"),
         {args.get<int>("channels"), args.get<int>("mapping"), args.get<int>("granularity"),
-            args.get<float>("scale"), args.has("overlap"), args.has("quads")},
+            args.get<float>("scale"), windows, args.has("quads")},
         args.get<double>("warp"), args.has("adaboost"), args.get<int>("pairs")};
     const uint64 seed = uint64(args.get<int>("seed"));
     const int folds = args.get<int>("folds");

@@ -37,7 +37,7 @@ protected:
     static Recipe recipe(bool wholeQuads, bool adaBoost)
     {
         const int channels = IIB::CHANNEL_GRAD_X + IIB::CHANNEL_GRAD_Y + IIB::CHANNEL_SIGNED_GRAD_X;
-        return {"test", 24, {channels, IIB::MAPPING_HAAR, 3, 1.f, true, wholeQuads}, 0., adaBoost, 3};
+        return {"test", 24, {channels, IIB::MAPPING_HAAR, 3, 1.f, {15}, wholeQuads}, 0., adaBoost, 3};
     }
 
     static void ignore(int, int) {}
@@ -124,11 +124,31 @@ TEST_F(Training, pool_bits_are_those_of_its_candidates)
     }
 }
 
+TEST_F(Training, quads_begin_only_where_they_may)
+{
+    PoolParameters parameters = recipe(false, false).pool;
+    parameters.windows = {1, 9, 4};
+    const cv::Mat_<int> quads = makePool(parameters).quads;
+    int count[4][4] = {};  // levels, windows
+    for (int i = 0; i < quads.rows; i++)
+        count[quads(i, 0)][quads(i, 2) % 2 * 2 + quads(i, 3) % 2]++;
+    const int channels = 3, expected[4][4] = {{}, {1}, {4, 0, 0, 1}, {0, 0, 12, 0}};
+    for (int level = 1; level <= 3; level++)
+        for (int window = 0; window < 4; window++)
+            EXPECT_EQ(channels * expected[level][window], count[level][window]) << level << ", " << window;
+}
+
 TEST_F(Training, impossible_wishes_are_refused)
 {
     Recipe tooLong = recipe(false, false);
     tooLong.bits = 100000;
     EXPECT_THROW(train(tooLong, pairs, 1, ignore), cv::Exception);
+    for (const std::vector<int>& windows : {std::vector<int>(), {0}, {1, 16}})
+    {
+        Recipe nowhere = recipe(false, false);
+        nowhere.pool.windows = windows;
+        EXPECT_THROW(train(nowhere, pairs, 1, ignore), cv::Exception);
+    }
     EXPECT_THROW(train(recipe(false, false), {}, 1, ignore), cv::Exception);
     EXPECT_THROW(train(recipe(false, true), {}, 1, ignore), cv::Exception);
 }
