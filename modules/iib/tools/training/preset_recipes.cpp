@@ -13,12 +13,14 @@ std::vector<Recipe> presetRecipes()
                           IIB::CHANNEL_SIGNED_GRAD_Y;
     const int values = IIB::CHANNEL_GRAD_X + IIB::CHANNEL_GRAD_Y + IIB::CHANNEL_INTENSITY;
     // the default's quads but those of the orientation, whose bits are seldom worth what it costs to compute
-    const PoolParameters paper = {values, IIB::MAPPING_MEAN, 4, 1.f, false, false};
+    const PoolParameters paper = {values, IIB::MAPPING_MEAN, 4, 1.f, {1}, false};
     // a wider ROS pays while the camera stands still; at 1.25 sums over its cells still have 16 bits
-    const PoolParameters still = {gradients, IIB::MAPPING_HAAR, 4, 1.25f, false, false};
+    const PoolParameters still = {gradients, IIB::MAPPING_HAAR, 4, 1.25f, {1}, false};
     PoolParameters accurate = still;
     accurate.mapping = IIB::MAPPING_PAIRWISE;
-    const PoolParameters moving = {values, IIB::MAPPING_HAAR, 4, 1.f, true, false};
+    // coarse quads stand a moved camera: level 2 begins them at every cell; a fourth channel costs next to nothing
+    const PoolParameters moving = {
+        values + IIB::CHANNEL_SIGNED_GRAD_Y, IIB::MAPPING_MEAN, 4, 1.125f, {1, 15, 1}, false};
     return {
         {"S128", 128, paper, 0., false, 12},
         {"S256", 256, paper, 0., false, 12},
@@ -26,7 +28,7 @@ std::vector<Recipe> presetRecipes()
         {"ACCURATE", 0, accurate, 0., false, 12},
         {"COMPACT", 512, still, 0., false, 12},
         {"TINY", 256, still, 0., false, 12},
-        {"BALANCED", 512, moving, 0.7, false, 24},
+        {"BALANCED", 512, moving, 0.85, false, 24},
     };
 }
 
