@@ -29,78 +29,74 @@ void cellEdges(double start, double side, int n, int limit, int* edges)
         edges[k] = edgeAt(start + step * k, limit);
 }
 
-inline v_uint16 load(const ushort* p) { return vx_load(p); }
-inline v_uint32 load(const unsigned* p) { return vx_load(p); }
+/* Half a 512-bit vector at most: the offsets of a whole one are too many for the registers. */
+#if CV_SIMD_WIDTH == 16
+template <typename Sum> struct CornersOf { typedef v_uint16x8 Vector; };
+template <> struct CornersOf<unsigned> { typedef v_uint32x4 Vector; };
+#else
+template <typename Sum> struct CornersOf { typedef v_uint16x16 Vector; };
+template <> struct CornersOf<unsigned> { typedef v_uint32x8 Vector; };
+#endif
 
 // Differences modulo 2^16 or 2^32, as the sums.
-inline v_uint16 subtract(const v_uint16& a, const v_uint16& b) { return v_sub_wrap(a, b); }
-inline v_uint32 subtract(const v_uint32& a, const v_uint32& b) { return a - b; }
+template <typename V> inline V subtract(const V& a, const V& b) { return a - b; }
+inline v_uint16x8 subtract(const v_uint16x8& a, const v_uint16x8& b) { return v_sub_wrap(a, b); }
+#if CV_SIMD_WIDTH != 16
+inline v_uint16x16 subtract(const v_uint16x16& a, const v_uint16x16& b) { return v_sub_wrap(a, b); }
+#endif
 
 inline v_uint16x8 loadCorner(const ushort* corner) { return v_load_low(corner); }
 inline v_uint32x4 loadCorner(const unsigned* corner) { return v_load(corner); }
 
-// What 128 bits hold of every other corner of a row: two corners or one.
-inline v_uint16x8 loadCorners(const ushort* row, const size_t* offsets)
-{
-    return v_load_halves(row + offsets[0], row + offsets[2]);
-}
-
-inline v_uint32x4 loadCorners(const unsigned* row, const size_t* offsets)
-{
-    return v_load(row + offsets[0]);
-}
-
-//! As many corners as make a vector, of every other column. Not v_lut_quads: gather instructions are slow on many
-//! machines.
-template <typename V, typename Sum> inline V gatherCorners(const Sum* row, const size_t* offsets)
-{
+/* As many corners as make a vector, of every other column, and those after the first one of a vector, and one more.
+ Not v_lut_quads: gather instructions are slow on many machines. */
 #if CV_SIMD_WIDTH == 16
-    return loadCorners(row, offsets);
-#else
-    const int n = 2 * 16 / (GROUP_CHANNELS * (int)sizeof(Sum));  // columns
-    const __m256i low = _mm256_inserti128_si256(_mm256_castsi128_si256(loadCorners(row, offsets).val),
-                                                loadCorners(row, offsets + n).val, 1);
-#if CV_SIMD_WIDTH == 32
-    return V(low);
-#else
-    const __m256i high = _mm256_inserti128_si256(_mm256_castsi128_si256(loadCorners(row, offsets + 2 * n).val),
-                                                 loadCorners(row, offsets + 3 * n).val, 1);
-    return V(_mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1));
-#endif
-#endif
-}
+inline v_uint16x8 loadCorners(const ushort* row, const size_t* at) { return v_load_halves(row + at[0], row + at[2]); }
+inline v_uint32x4 loadCorners(const unsigned* row, const size_t* at) { return v_load(row + at[0]); }
 
-//! The corners after the first one of a vector, and one more.
-#if CV_SIMD_WIDTH == 16
-inline v_uint16 nextCorners(const v_uint16& corners, const ushort* more)
+inline v_uint16x8 nextCorners(const v_uint16x8& corners, const ushort* more)
 {
     return v_rotate_right<GROUP_CHANNELS>(corners, loadCorner(more));
 }
 
-inline v_uint32 nextCorners(const v_uint32&, const unsigned* more) { return loadCorner(more); }
+inline v_uint32x4 nextCorners(const v_uint32x4&, const unsigned* more) { return loadCorner(more); }
 #else
+inline __m128i loadTwo(const ushort* first, const ushort* second)
+{
+    return _mm_castpd_si128(_mm_loadh_pd(_mm_load_sd((const double*)first), (const double*)second));
+}
+
+inline v_uint16x16 loadCorners(const ushort* row, const size_t* at)
+{
+    return v_uint16x16(_mm256_setr_m128i(loadTwo(row + at[0], row + at[2]), loadTwo(row + at[4], row + at[6])));
+}
+
+inline v_uint32x8 loadCorners(const unsigned* row, const size_t* at)
+{
+    return v_uint32x8(_mm256_setr_m128i(loadCorner(row + at[0]).val, loadCorner(row + at[2]).val));
+}
+
 template <typename V, typename Sum> inline V nextCorners(const V& corners, const Sum* more)
 {
+    const __m256i next = _mm256_castsi128_si256(loadCorner(more).val);
 #if CV_SIMD_WIDTH == 64
-    // v_rotate_right makes a slower instruction of this
-    const int words = GROUP_CHANNELS * (int)sizeof(Sum) / 8;
-    return V(_mm512_alignr_epi64(_mm512_castsi128_si512(loadCorner(more).val), corners.val, words));
+    return V(_mm256_alignr_epi64(next, corners.val, GROUP_CHANNELS * (int)sizeof(Sum) / 8));
 #else
-    return v_rotate_right<GROUP_CHANNELS>(corners, V(_mm256_castsi128_si256(loadCorner(more).val)));
+    return v_rotate_right<GROUP_CHANNELS>(corners, V(next));
 #endif
 }
 #endif
 
-//! From a row of corners: their differences, which are sums over a row of left and of right cells and all above.
+/* From a row of corners: their differences, which are sums over a row of left and of right cells and all above. */
 template <typename V> struct RowSums
 {
     V left, right;
 
-    template <typename Sum> RowSums(const Sum* row, const size_t* offsets)
+    template <typename Sum, size_t N> CV_ALWAYS_INLINE RowSums(const Sum* row, const size_t (&at)[N])
     {
-        const V even = gatherCorners<V>(row, offsets), odd = gatherCorners<V>(row, offsets + 1);
+        const V even = loadCorners(row, at), odd = loadCorners(row, at + 1);
         left = subtract(odd, even);
-        right = subtract(nextCorners(even, row + offsets[2 * VTraits<V>::max_nlanes / GROUP_CHANNELS]), odd);
+        right = subtract(nextCorners(even, row + at[N - 1]), odd);
     }
 };
 
@@ -128,26 +124,28 @@ private:
 template <typename Sum>
 void cellSums(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells)
 {
-    typedef decltype(load((const Sum*)0)) V;
-    const int columns = 2 * VTraits<V>::max_nlanes / GROUP_CHANNELS;
-    AutoBuffer<size_t, 128> offsets(n + 1 + columns);
-    for (int c = 0; c <= n; c++)
-        offsets[c] = (size_t)(xEdges[c] - rows.origin.x) * GROUP_CHANNELS;
-    for (int c = n + 1; c <= n + columns; c++)  // beyond the last column the last edge is repeated
-        offsets[c] = offsets[n];
+    typedef typename CornersOf<Sum>::Vector V;
+    enum { COLUMNS = 2 * VTraits<V>::max_nlanes / GROUP_CHANNELS };
+    const RowFinder<Sum> row(rows, yEdges[0]);
+    AutoBuffer<const Sum*, 64> lines(n + 1);
+    for (int r = 0; r <= n; r++)
+        lines[r] = row(yEdges[r]);
 
     cells.create(n);
-    const size_t step = cells.rowStep();
-    const RowFinder<Sum> row(rows, yEdges[0]);
-    for (int c = 0; c < n; c += columns)
+    const size_t step = cells.row(0, 1) - cells.row(0, 0);
+    for (int c = 0; c < n; c += COLUMNS)
     {
-        Sum *left = cells.row(0, 0) + c / 2 * GROUP_CHANNELS, *right = cells.row(0, 1) + c / 2 * GROUP_CHANNELS;
-        RowSums<V> above(row(yEdges[0]), offsets.data() + c);
-        for (int r = 1; r <= n; r++, left += step, right += step)
+        size_t at[COLUMNS + 1];
+        for (int i = 0; i <= COLUMNS; i++)  // beyond the last column the last edge is repeated
+            at[i] = (size_t)(xEdges[std::min(c + i, n)] - rows.origin.x) * GROUP_CHANNELS;
+        Sum* out = cells.row(0, 0) + c / 2 * GROUP_CHANNELS;
+        RowSums<V> above(lines[0], at);
+        for (const Sum *const *line = lines.data() + 1, *const *end = line + n; line != end; line++)
         {
-            const RowSums<V> below(row(yEdges[r]), offsets.data() + c);
-            v_store(left, subtract(below.left, above.left));
-            v_store(right, subtract(below.right, above.right));
+            const RowSums<V> below(*line, at);
+            v_store(out, subtract(below.left, above.left));
+            v_store(out + step, subtract(below.right, above.right));
+            out += 2 * step;
             above = below;
         }
     }
