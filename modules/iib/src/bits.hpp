@@ -17,7 +17,10 @@ struct Axis
     const int* edges;
     int step;
 
-    int length(int i) const { return edges[(i + 1) * step] - edges[i * step]; }
+    //! Before cell i.
+    int edge(int i) const { return edges[i * step]; }
+
+    int length(int i) const { return edge(i + 1) - edge(i); }
 };
 
 /** What makes the sums of a level comparable. With widths w0, w1 and heights h0, h1 of a quad's cells, the

@@ -44,9 +44,9 @@ template <typename Cell> void parentSums(const CellGrid<Cell>& cells, CellGrid<u
 }
 
 //! A chunk of quads and all those below it. WITH_PARENTS also stores the sums over quads.
-template <typename Mapping, bool WITH_PARENTS, typename Cell>
+template <typename Mapping, bool WITH_PARENTS, typename Cell, typename Out>
 inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const int* edges, int step,
-                       int rows, ParentRows sums, PlaneRows out)
+                       int rows, ParentRows sums, Out out)
 {
     for (int r = 0; r < rows; r++)
     {
@@ -82,44 +82,22 @@ inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const
             out.store(plane, chunk[plane]);
         quads.next();
         sums.next();
-        out.first += out.row;
-    }
-}
-
-//! The comparisons of rows of quads of less than a chunk.
-template <typename Mapping, bool WITH_PARENTS, typename Cell>
-void narrowComparisons(const CellGrid<Cell>& cells, const LevelShape& shape, const Window& window,
-                       CellGrid<unsigned>& parents, PlaneRows out)
-{
-    for (int r = 0; r < window.rows; r++, out.first += out.row)
-    {
-        unsigned planes[Mapping::BITS] = {};
-        for (int q = 0; q < window.quads; q++)
-        {
-            const Quad<Cell> quad(cells, window.dy + 2 * r, window.dx + 2 * q);
-            if (WITH_PARENTS)
-                v_store(parents.cell(r, q), quad.sum());
-            const Put put = { planes, q * GROUP_CHANNELS };
-            quad.template map<Mapping>(shape, put);
-        }
-        for (int plane = 0; plane < Mapping::BITS; plane++)
-            out.store(plane, planes[plane]);
+        out.nextRow();
     }
 }
 
 //! The comparisons of a window.
-template <typename Mapping, bool WITH_PARENTS, typename Cell>
+template <typename Mapping, bool WITH_PARENTS, typename Cell, typename Out>
 void comparisons(const CellGrid<Cell>& cells, const LevelShape& shape, const Window& window,
-                 CellGrid<unsigned>& parents, PlaneRows out)
+                 CellGrid<unsigned>& parents, Out out)
 {
-    if (window.lanes() < CHUNK)
-        return narrowComparisons<Mapping, WITH_PARENTS>(cells, shape, window, parents, out);
     const int* edges = shape.y.edges + window.dy * shape.y.step;
-    for (int first = 0; first < window.lanes(); first += CHUNK, out.first += CHUNK / 8)
-        columnBits<Mapping, WITH_PARENTS>(
-            QuadRows<Cell>(cells, window.dy, window.dx, first),
-            ColumnWeights(shape.x, window.dx + first / 2, window.quads - first / GROUP_CHANNELS), edges, shape.y.step,
-            window.rows, ParentRows(parents, first), out);
+    for (int first = 0; first < window.lanes(); first += CHUNK, out.nextChunk())
+    {
+        const ColumnWeights columns(shape.x, window.dx + first / 2, window.quads - first / GROUP_CHANNELS);
+        columnBits<Mapping, WITH_PARENTS>(QuadRows<Cell>(cells, window.dy, window.dx, first), columns, edges,
+                                          shape.y.step, window.rows, ParentRows(parents, first), out);
+    }
 }
 
 template <typename Mapping, bool WITH_PARENTS, typename Cell>
@@ -127,6 +105,9 @@ void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int index,
                 BitWriter& out)
 {
     const Window window(shape.n, index);
+    if (window.lanes() < CHUNK && !shape.chosen)
+        return comparisons<Mapping, WITH_PARENTS>(cells, shape, window, parents,
+                                                  ShortRowWriter(out, window.lanes(), shape.channels));
     const int rowBytes = Mapping::BITS * window.planeBytes();
     // words are read beyond the last plane
     uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8 + 8], *whole = 0;

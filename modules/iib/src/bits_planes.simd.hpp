@@ -16,6 +16,8 @@ struct PlaneRows
     size_t plane, row;  //!< from a plane or row to the next one, in bytes
 
     void store(int p, unsigned chunk) const { storeBytes(chunk, CHUNK / 8, first + p * plane); }
+    void nextRow() { first += row; }
+    void nextChunk() { first += CHUNK / 8; }
 };
 
 /* Squeezes the channels in use together, out of each group of four lanes: neighbouring fields of `channels` bits
@@ -40,6 +42,13 @@ inline unsigned dropLanes(unsigned chunk, int channels)
     }
 }
 
+//! Appends the lowest `lanes` bits of a chunk but for those of channels that are not in use.
+inline void appendChunk(unsigned chunk, int lanes, int channels, BitWriter& out)
+{
+    const int count = lanes / GROUP_CHANNELS * channels;
+    out.append(dropLanes(chunk, channels) & ((1u << count) - 1), count);
+}
+
 //! Appends a plane, `lanes` bits of which those of the channels in use are wanted.
 inline void append(const uchar* plane, int lanes, int channels, BitWriter& out)
 {
@@ -52,9 +61,8 @@ inline void append(const uchar* plane, int lanes, int channels, BitWriter& out)
     else
         for (int first = 0; first < lanes; first += CHUNK)
         {
-            const int count = std::min(lanes - first, (int)CHUNK) / GROUP_CHANNELS * channels;
             const uchar* p = plane + first / 8;
-            out.append(dropLanes(p[0] | p[1] << 8, channels) & ((1u << count) - 1), count);
+            appendChunk(p[0] | p[1] << 8, std::min(lanes - first, (int)CHUNK), channels, out);
         }
 }
 
@@ -67,6 +75,22 @@ inline void append(PlaneRows planes, const Window& window, int bits, int channel
             append(planes.first + plane * planes.plane, window.lanes(), channels, writer);
     out = writer;
 }
+
+/* Where the bits of rows shorter than a chunk go, one plane after another: not by way of memory, where bytes that were
+ just stored could not be read as part of a longer word until the store is done. */
+class ShortRowWriter
+{
+public:
+    ShortRowWriter(BitWriter& out_, int lanes_, int channels_) : out(out_), lanes(lanes_), channels(channels_) {}
+
+    void store(int, unsigned chunk) { appendChunk(chunk, lanes, channels, out); }
+    void nextRow() {}
+    void nextChunk() {}
+
+private:
+    BitWriter& out;
+    const int lanes, channels;
+};
 
 }  // namespace
 CV_CPU_OPTIMIZATION_NAMESPACE_END

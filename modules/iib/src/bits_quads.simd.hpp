@@ -13,8 +13,6 @@ namespace {
 
 inline v_int32 loadCells(const ushort* p) { return v_reinterpret_as_s32(vx_load_expand(p)); }
 inline v_int32 loadCells(const unsigned* p) { return v_reinterpret_as_s32(vx_load(p)); }
-inline v_int32x4 loadCell(const ushort* p) { return v_reinterpret_as_s32(v_load_expand(p)); }
-inline v_int32x4 loadCell(const unsigned* p) { return v_reinterpret_as_s32(v_load(p)); }
 
 //! The cells of a chunk of quads, and of those in the rows below it.
 template <typename Cell> class QuadRows
@@ -82,66 +80,69 @@ private:
 
 /* Four numbers, each repeated for the channels of a quad, as a chunk. Not by way of memory, where what was stored in
  parts could not be read whole until all stores before it are done. */
-inline void repeatForChannels(int a, int b, int c, int d, v_int32 chunk[CHUNK_VECTORS])
+inline void repeatForChannels(const v_int32x4& n, v_int32 chunk[CHUNK_VECTORS])
 {
 #if CV_SIMD_WIDTH == 64
-    const __m512i quads = _mm512_castsi128_si512(_mm_setr_epi32(a, b, c, d));
     const __m512i places = _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
-    chunk[0] = v_int32(_mm512_permutexvar_epi32(places, quads));
+    chunk[0] = v_int32(_mm512_permutexvar_epi32(places, _mm512_castsi128_si512(n.val)));
 #elif CV_SIMD_WIDTH == 32
-    chunk[0] = v_int32(_mm256_setr_m128i(_mm_set1_epi32(a), _mm_set1_epi32(b)));
-    chunk[1] = v_int32(_mm256_setr_m128i(_mm_set1_epi32(c), _mm_set1_epi32(d)));
+    const __m256i twice = _mm256_broadcastsi128_si256(n.val);
+    chunk[0] = v_int32(_mm256_permutevar8x32_epi32(twice, _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1)));
+    chunk[1] = v_int32(_mm256_permutevar8x32_epi32(twice, _mm256_setr_epi32(2, 2, 2, 2, 3, 3, 3, 3)));
 #else
-    chunk[0] = v_setall_s32(a);
-    chunk[1] = v_setall_s32(b);
-    chunk[2] = v_setall_s32(c);
-    chunk[3] = v_setall_s32(d);
+    chunk[0] = v_broadcast_element<0>(n);
+    chunk[1] = v_broadcast_element<1>(n);
+    chunk[2] = v_broadcast_element<2>(n);
+    chunk[3] = v_broadcast_element<3>(n);
 #endif
 }
 
-//! Weights of the left and right cells of a chunk of quads.
+//! Weights of a chunk of quads along a row.
 struct ColumnWeights
 {
     v_int32 left[CHUNK_VECTORS], right[CHUNK_VECTORS];
     bool equal;  //!< whether all weights are 1
 
-    //! @param first column; @param quads how many there are from it on, which may not fill the chunk.
-    CV_ALWAYS_INLINE ColumnWeights(const Axis& axis, int first, int quads)
+    //! @param x first column; @param quads how many there are from it on, which may not fill the chunk.
+    CV_ALWAYS_INLINE ColumnWeights(const Axis& axis, int x, int quads)
     {
-        const Weights a(axis, first), b(axis, first + 2 * std::min(1, quads - 1));
-        const Weights c(axis, first + 2 * std::min(2, quads - 1)), d(axis, first + 2 * std::min(3, quads - 1));
-        repeatForChannels(a.first, b.first, c.first, d.first, left);
-        repeatForChannels(a.second, b.second, c.second, d.second, right);
-        equal = ((a.first ^ a.second) | (b.first ^ b.second) | (c.first ^ c.second) | (d.first ^ d.second)) == 0;
+        const int b = x + 2 * std::min(1, quads - 1), c = x + 2 * std::min(2, quads - 1);
+        const int d = x + 2 * std::min(3, quads - 1);
+        const v_int32x4 begin(axis.edge(x), axis.edge(b), axis.edge(c), axis.edge(d));
+        const v_int32x4 middle(axis.edge(x + 1), axis.edge(b + 1), axis.edge(c + 1), axis.edge(d + 1));
+        const v_int32x4 end(axis.edge(x + 2), axis.edge(b + 2), axis.edge(c + 2), axis.edge(d + 2));
+        const v_int32x4 lefts = middle - begin, rights = end - middle, same = lefts == rights;
+        repeatForChannels(v_select(same, v_setall_s32(1), rights), left);
+        repeatForChannels(v_select(same, v_setall_s32(1), lefts), right);
+        equal = v_check_all(same);
     }
 };
 
-//! The cells of one quad, a lane each for the channels.
-template <typename Cell> class Quad
+//! Weights of a chunk of quads along an axis: of their left and right cells, or of the upper and lower ones.
+struct ChunkWeights
 {
-public:
-    Quad(const CellGrid<Cell>& cells, int row_, int col_) : row(row_), col(col_)
+    v_int32 first[CHUNK_VECTORS], second[CHUNK_VECTORS];
+    bool equal;  //!< whether all are 1
+
+    //! @param a, b, c, d the first cells of the quads.
+    CV_ALWAYS_INLINE ChunkWeights(const Axis& axis, int a, int b, int c, int d)
     {
-        for (int i = 0; i < 4; i++)
-            x[i] = loadCell(cells.cell(row + i / 2, col + i % 2));
+        const v_int32x4 begin(axis.edge(a), axis.edge(b), axis.edge(c), axis.edge(d));
+        const v_int32x4 middle(axis.edge(a + 1), axis.edge(b + 1), axis.edge(c + 1), axis.edge(d + 1));
+        const v_int32x4 end(axis.edge(a + 2), axis.edge(b + 2), axis.edge(c + 2), axis.edge(d + 2));
+        const v_int32x4 one = v_setall_s32(1), lengths[2] = { middle - begin, end - middle };
+        const v_int32x4 same = lengths[0] == lengths[1];
+        repeatForChannels(v_select(same, one, lengths[1]), first);
+        repeatForChannels(v_select(same, one, lengths[0]), second);
+        equal = v_check_all(same);
     }
 
-    v_uint32x4 sum() const { return v_reinterpret_as_u32((x[0] + x[1]) + (x[2] + x[3])); }
-
-    //! Weighted as LevelShape tells.
-    template <typename Mapping, typename P> void map(const LevelShape& shape, const P& put) const
+    //! Of the quads from column x on, `quads` of them, which may not fill the chunk.
+    CV_ALWAYS_INLINE static ChunkWeights ofColumns(const Axis& axis, int x, int quads)
     {
-        const Weights w(shape.x, col), h(shape.y, row);
-        const Lanes<v_int32x4> weighted[4] = { x[0] * v_setall_s32(w.first * h.first),
-                                               x[1] * v_setall_s32(w.second * h.first),
-                                               x[2] * v_setall_s32(w.first * h.second),
-                                               x[3] * v_setall_s32(w.second * h.second) };
-        Mapping::map(weighted, put);
+        return ChunkWeights(axis, x, x + 2 * std::min(1, quads - 1), x + 2 * std::min(2, quads - 1),
+                            x + 2 * std::min(3, quads - 1));
     }
-
-private:
-    const int row, col;
-    v_int32x4 x[4];
 };
 
 }  // namespace
