@@ -78,11 +78,9 @@ inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const
             const Put put = { chunk, i * LANES };
             Mapping::map(weighted, put);
         }
-        for (int plane = 0; plane < Mapping::BITS; plane++)
-            out.store(plane, chunk[plane]);
+        out.template storeRow<Mapping::BITS>(chunk);
         quads.next();
         sums.next();
-        out.nextRow();
     }
 }
 

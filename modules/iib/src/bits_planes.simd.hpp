@@ -15,8 +15,14 @@ struct PlaneRows
     uchar* first;
     size_t plane, row;  //!< from a plane or row to the next one, in bytes
 
-    void store(int p, unsigned chunk) const { storeBytes(chunk, CHUNK / 8, first + p * plane); }
-    void nextRow() { first += row; }
+    //! A chunk of each plane of a row.
+    template <int PLANES> void storeRow(const unsigned chunks[PLANES])
+    {
+        for (int p = 0; p < PLANES; p++)
+            storeBytes(chunks[p], CHUNK / 8, first + p * plane);
+        first += row;
+    }
+
     void nextChunk() { first += CHUNK / 8; }
 };
 
@@ -83,8 +89,14 @@ class ShortRowWriter
 public:
     ShortRowWriter(BitWriter& out_, int lanes_, int channels_) : out(out_), lanes(lanes_), channels(channels_) {}
 
-    void store(int, unsigned chunk) { appendChunk(chunk, lanes, channels, out); }
-    void nextRow() {}
+    template <int PLANES> void storeRow(const unsigned chunks[PLANES])
+    {
+        BitWriter writer = out;  // a copy that no store of a byte can change stays in registers
+        for (int p = 0; p < PLANES; p++)
+            appendChunk(chunks[p], lanes, channels, writer);
+        out = writer;
+    }
+
     void nextChunk() {}
 
 private:

@@ -42,6 +42,8 @@ std::vector<Indices> splitAtGaps(const std::vector<Rect>& ros, const Indices& ke
         p = parts;
         parts += open == 0;
     }
+    if (parts == 1)
+        return std::vector<Indices>(1, keypoints);
     std::vector<Indices> pieces(parts);
     for (int k : keypoints)
         pieces[part[extent(ros[k], vertical).start - all.start]].push_back(k);
@@ -80,16 +82,25 @@ template <typename Key> void countingSort(Indices& indices, int keyCount, const 
 
 Rect unionOf(const std::vector<Rect>& ros, const Indices& keypoints)
 {
-    Rect area = ros[keypoints[0]];
+    Point begin = ros[keypoints[0]].tl(), end = ros[keypoints[0]].br();
     for (int k : keypoints)
-        area |= ros[k];
-    return area;
+    {
+        const Rect& r = ros[k];
+        begin = Point(std::min(begin.x, r.x), std::min(begin.y, r.y));
+        end = Point(std::max(end.x, r.x + r.width), std::max(end.y, r.y + r.height));
+    }
+    return Rect(begin, end);
 }
 
 //! Cuts a block across its longer side, where fewer ROS are cut, into parts of equal area, by the centres of the ROS.
 void cutStrips(const std::vector<Rect>& ros, const Indices& keypoints, Rect area, int strips,
                std::vector<Indices>& blocks)
 {
+    if (strips == 1)
+    {
+        blocks.push_back(keypoints);
+        return;
+    }
     const bool vertical = area.height > area.width;
     const Range whole = extent(area, vertical);
     std::vector<Indices> parts(strips);

@@ -16,6 +16,12 @@ static inline int edgeAt(double position, int limit)
     return (int)std::min(std::max(position + 0.5, 0.), (double)limit);
 }
 
+//! A bound of the lengths of the n cells in a row of a ROS.
+static inline double longestCell(double side, int n)
+{
+    return std::ceil(side / n);
+}
+
 /** Region of support of a keypoint and its quadtree of cells (paper, "Local Patch Generation"). Pure
  geometry, in pixels of the image. */
 struct Ros
@@ -37,9 +43,6 @@ struct Ros
         const Point b(edgeAt(x + side, image.width), edgeAt(y + side, image.height));
         return Rect(a, Point(std::max(b.x, a.x + 1), std::max(b.y, a.y + 1)));
     }
-
-    //! A bound of the length of n cells in a row.
-    double longestCell(int n) const { return std::ceil(side / n); }
 
     //! Whether no pixel of the ROS lies outside the image.
     bool isInside(Size image) const

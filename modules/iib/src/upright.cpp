@@ -82,6 +82,7 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
 
     // Neighbours in the block may lie far apart in memory.
     std::vector<Ros> local;
+    local.reserve(block.keypoints.size());
     for (int k : block.keypoints)
         local.push_back(ros[k]);
 
@@ -92,7 +93,7 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
         cellEdges(local[i].x, local[i].side, n, image.width, edges.x.data());
         cellEdges(local[i].y, local[i].side, n, image.height, edges.y.data());
         band.advance(block.bandEnd(std::max(edges.y[n], block.area.y)));
-        const double cell = local[i].longestCell(n);
+        const double cell = longestCell(local[i].side, n);
         if (largest * cell * cell <= largestSum)
         {
             cellSums(band.rows(), edges.x.data(), edges.y.data(), n, bits.finestCells<Sum>());
@@ -113,9 +114,10 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
 //! Whether 16 bits hold the sums over the finest cells of all keypoints.
 bool sumsAreShort(const Parameters& p, int largest, const Block& block, const std::vector<Ros>& ros)
 {
-    double cell = 0;
+    double side = 0;
     for (int k : block.keypoints)
-        cell = std::max(cell, ros[k].longestCell(1 << finestLevel(p)));
+        side = std::max(side, ros[k].side);
+    const double cell = longestCell(side, 1 << finestLevel(p));
     return largest * cell * cell <= USHRT_MAX;
 }
 
