@@ -115,7 +115,7 @@ void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int index,
     const PlaneRows planes = { whole ? whole : buffer, (size_t)window.planeBytes(), (size_t)rowBytes };
     comparisons<Mapping, WITH_PARENTS>(cells, shape, window, parents, planes);
     if (shape.chosen)
-        shape.chosen[index].append(buffer, out);
+        appendChosen(shape.chosen[index], buffer, out);
     else if (!whole)
         append(planes, window, Mapping::BITS, shape.channels, out);
 }

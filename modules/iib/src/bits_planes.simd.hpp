@@ -18,8 +18,13 @@ struct PlaneRows
     //! A chunk of each plane of a row.
     template <int PLANES> void storeRow(const unsigned chunks[PLANES])
     {
-        for (int p = 0; p < PLANES; p++)
-            storeBytes(chunks[p], CHUNK / 8, first + p * plane);
+        if (PLANES % 4 == 0 && plane == CHUNK / 8)  // whole words, as they may soon be read
+            for (int p = 0; p + 3 < PLANES; p += 4)
+                storeBytes(chunks[p] | chunks[p + 1] << 16 | (uint64)(chunks[p + 2] | chunks[p + 3] << 16) << 32, 8,
+                           first + p * plane);
+        else
+            for (int p = 0; p < PLANES; p++)
+                storeBytes(chunks[p], CHUNK / 8, first + p * plane);
         first += row;
     }
 
@@ -103,6 +108,26 @@ private:
     BitWriter& out;
     const int lanes, channels;
 };
+
+#if CV_SIMD_WIDTH == 64 && (defined __x86_64__ || defined _M_X64)
+/* Appends the chosen bits of a window. Processors with AVX-512 have a fast instruction that moves bits together; among
+ those with AVX2 are some where it is slower than doing it step by step. */
+#ifdef __GNUC__
+__attribute__((target("bmi2")))
+#endif
+inline void appendChosen(const ChosenBits& chosen, const uchar* comparisons, BitWriter& out)
+{
+    BitWriter writer = out;  // a copy that no store of a byte can change stays in registers
+    for (const ChosenBits::Word& word : chosen.chosenWords())
+        writer.append(_pext_u64(loadWord(comparisons + word.byte), word.compressor.mask), word.compressor.count);
+    out = writer;
+}
+#else
+inline void appendChosen(const ChosenBits& chosen, const uchar* comparisons, BitWriter& out)
+{
+    chosen.append(comparisons, out);
+}
+#endif
 
 }  // namespace
 CV_CPU_OPTIMIZATION_NAMESPACE_END

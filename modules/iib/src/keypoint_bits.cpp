@@ -28,8 +28,8 @@ void wideParentSums(const CellGrid<double>& children, CellGrid<double>& cells)
                                       + (children.cell(2 * r + 1, 2 * c)[i] + children.cell(2 * r + 1, 2 * c + 1)[i]);
 }
 
-//! The largest length, times the largest factor that makes siblings comparable.
-double largestProduct(const Axis& axis, int n)
+//! The largest factor that makes siblings comparable.
+double largestWeight(const Axis& axis, int n)
 {
     int smallest = INT_MAX, largest = 0;
     for (int i = 0; i < n; i++)
@@ -37,16 +37,27 @@ double largestProduct(const Axis& axis, int n)
         smallest = std::min(smallest, axis.length(i));
         largest = std::max(largest, axis.length(i));
     }
-    return smallest == largest ? largest : (double)largest * largest;
+    return smallest == largest ? 1 : largest;
+}
+
+template <typename Cell> Cell largestSum(const CellGrid<Cell>& cells)
+{
+    Cell largest = 0;
+    for (int r = 0; r < cells.size(); r++)
+        for (int parity = 0; parity < 2; parity++)
+            for (int i = 0; i < cells.size() / 2 * GROUP_CHANNELS; i++)
+                largest = std::max(largest, cells.row(r, parity)[i]);
+    return largest;
 }
 
 //! Whether four times the largest weighted sum of the level at hand fits an int.
-bool fitsInt(const LevelShape& shape, double value, double longest)
+template <typename Cell>
+bool fitsInt(const CellGrid<Cell>& cells, const LevelShape& shape, double value, double longest)
 {
     const double area = longest * longest;
-    // seldom does the quick bound, with all weights as large as can be, not do
+    // seldom does the quick bound, with all values and weights as large as can be, not do
     return value * area * area <= INT_MAX
-           || value * largestProduct(shape.x, shape.n) * largestProduct(shape.y, shape.n) <= INT_MAX;
+           || 4. * largestSum(cells) * largestWeight(shape.x, shape.n) * largestWeight(shape.y, shape.n) <= INT_MAX;
 }
 
 }  // namespace
@@ -81,7 +92,7 @@ template <typename Cell>
 void KeyPointBits::writeFrom(int level, const CellGrid<Cell>& cells, const LevelShape& shape, double value,
                              double longest, uchar* descriptor)
 {
-    if (!fitsInt(shape, value, longest))
+    if (!fitsInt(cells, shape, value, longest))
     {
         widen(cells, wideSums[level]);
         return writeFrom(level, wideSums[level], shape, value, longest, descriptor);

@@ -58,11 +58,5 @@ ChosenBits::ChosenBits(const Parameters& p, int level, int group, int window)
             words.push_back(Word{ 8 * i, Compressor(masks[i]) });
 }
 
-void ChosenBits::append(const uchar* comparisons, BitWriter& out) const
-{
-    for (const Word& word : words)
-        out.append(word.compressor(loadWord(comparisons + word.byte)), word.compressor.count);
-}
-
 }  // namespace iib
 }  // namespace cv

@@ -35,10 +35,6 @@ public:
 
     bool none() const { return words.empty(); }
 
-    //! Appends them, in their order.
-    void append(const uchar* comparisons, BitWriter& out) const;
-
-private:
     //! Moves the bits of a mask together, to the low end.
     struct Compressor
     {
@@ -56,6 +52,16 @@ private:
         Compressor compressor;
     };
 
+    const std::vector<Word>& chosenWords() const { return words; }
+
+    //! Appends them, in their order.
+    void append(const uchar* comparisons, BitWriter& out) const
+    {
+        for (const Word& word : words)
+            out.append(word.compressor(loadWord(comparisons + word.byte)), word.compressor.count);
+    }
+
+private:
     std::vector<Word> words;
 };
 

@@ -40,7 +40,8 @@ private:
     {
         const Window window(shape.n, index);
         const int planeBits = 8 * window.planeBytes();
-        std::vector<uchar> planes(window.rows * Mapping::BITS * window.planeBytes() + 8, 0);
+        AutoBuffer<uchar> planes(window.rows * Mapping::BITS * window.planeBytes() + 8);
+        std::fill_n(planes.data(), planes.size(), (uchar)0);
         for (int r = 0; r < window.rows; r++)
             for (int lane = 0; lane < window.lanes(); lane++)
                 mapQuad<Mapping>(cells, shape, window.dy + 2 * r, window.dx + lane / GROUP_CHANNELS * 2,
