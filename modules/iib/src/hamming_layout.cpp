@@ -8,7 +8,7 @@
 namespace cv {
 namespace iib {
 
-static const int LANES = HammingLayout::LANES, WORD = 4, SAMPLE = 4; // one word in SAMPLE
+static const int WORD = 4, SAMPLE = 4;  // one word in SAMPLE
 
 HammingLayout::HammingLayout(const std::vector<int>& levelSizes, HammingPacking packing_)
     : sizes(levelSizes), width(0), packing(packing_)
