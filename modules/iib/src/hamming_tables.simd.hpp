@@ -91,7 +91,7 @@ private:
 template<int Q> class Tile
 {
 public:
-    enum { SIZE = Q * VECTORS };
+    enum { SIZE = Q * VECTORS, PAIRS = (Q + 1) / 2 };
 
     //! Compares words 0 to `to`.
     CV_ALWAYS_INLINE void start(const TileQueries& queries, const unsigned* group, int to)
@@ -109,15 +109,23 @@ public:
         for (const int end = to * 4 / POSITIONS; v < end;)
         {
             const int next = std::min(v + MOST, end);
-            Bytes sums[Q];
-            for (int q = 0; q < Q; q++)
-                sums[q] = vx_setzero_u8();
+            Bytes low[PAIRS];
+            v_uint16 high[PAIRS];
+            for (int pair = 0; pair < PAIRS; pair++)
+            {
+                low[pair] = vx_setzero_u8();
+                high[pair] = vx_setzero_u16();
+            }
             for (; v + 3 <= next; v += 3)
-                addUp<3>(sums, queries, group, v);
+                addUp<3>(low, high, queries, group, v);
             for (; v < next; v++)
-                addUp<1>(sums, queries, group, v);
-            for (int q = 0; q < Q; q++)
-                widen(sums[q], counts + q * VECTORS);
+                addUp<1>(low, high, queries, group, v);
+            for (int pair = 0; pair < PAIRS; pair++)
+            {
+                widen(low[pair], counts + 2 * pair * VECTORS);
+                if (2 * pair + 1 < Q)
+                    widen(highSums(low[pair], high[pair]), counts + (2 * pair + 1) * VECTORS);
+            }
         }
     }
 
@@ -130,7 +138,8 @@ public:
 private:
     // Half bytes hold the distances of three half bytes at most, which makes 12.
     template<int N>
-    CV_ALWAYS_INLINE void addUp(Bytes* sums, const TileQueries& queries, const unsigned* group, int v)
+    static CV_ALWAYS_INLINE void addUp(Bytes* low, v_uint16* high, const TileQueries& queries,
+                                       const unsigned* group, int v)
     {
         Bytes code[N];
         for (int n = 0; n < N; n++)
@@ -140,17 +149,24 @@ private:
             Bytes index[N];
             for (int n = 0; n < N; n++)
                 index[n] = half ? highHalves(code[n]) : lowHalves(code[n]);
-            for (int q = 0; q < Q; q += 2)
+            for (int pair = 0; pair < PAIRS; pair++)
             {
-                const uchar* tables = queries[q / 2] + (2 * v + half) * BYTES;
+                const uchar* tables = queries[pair] + (2 * v + half) * BYTES;
                 Bytes both = lookUp(vx_load(tables), index[0]);
                 for (int n = 1; n < N; n++)
                     both += lookUp(vx_load(tables + 2 * n * BYTES), index[n]);
-                sums[q] += lowHalves(both);
-                if (q + 1 < Q)
-                    sums[q + 1] += highHalves(both);
+                low[pair] += lowHalves(both);
+                if (2 * pair + 1 < Q)
+                    high[pair] = v_add_wrap(high[pair], v_reinterpret_as_u16(both) >> 4);
             }
         }
+    }
+
+    // High halves add up shifted but not masked, which is cheaper: 16 times the low half of each second byte came
+    // with them, and goes in one go. Modulo 2^16 nothing is lost, since the sums themselves fit in bytes.
+    static CV_ALWAYS_INLINE Bytes highSums(const Bytes& low, const v_uint16& high)
+    {
+        return v_reinterpret_as_u8(v_sub_wrap(high, (v_reinterpret_as_u16(low) >> 8) << 4));
     }
 
     // The positions of a vector come together.
