@@ -144,22 +144,23 @@ private:
         Bytes code[N];
         for (int n = 0; n < N; n++)
             code[n] = vx_load((const uchar*)group + (v + n) * BYTES);
-        for (int half = 0; half < 2; half++)
+        Bytes index[2][N];
+        for (int n = 0; n < N; n++)
         {
-            Bytes index[N];
-            for (int n = 0; n < N; n++)
-                index[n] = half ? highHalves(code[n]) : lowHalves(code[n]);
-            for (int pair = 0; pair < PAIRS; pair++)
+            index[0][n] = lowHalves(code[n]);
+            index[1][n] = highHalves(code[n]);
+        }
+        for (int pair = 0; pair < PAIRS; pair++)
+            for (int half = 0; half < 2; half++)
             {
                 const uchar* tables = queries[pair] + (2 * v + half) * BYTES;
-                Bytes both = lookUp(vx_load(tables), index[0]);
+                Bytes both = lookUp(vx_load(tables), index[half][0]);
                 for (int n = 1; n < N; n++)
-                    both += lookUp(vx_load(tables + 2 * n * BYTES), index[n]);
+                    both += lookUp(vx_load(tables + 2 * n * BYTES), index[half][n]);
                 low[pair] += lowHalves(both);
                 if (2 * pair + 1 < Q)
                     high[pair] = v_add_wrap(high[pair], v_reinterpret_as_u16(both) >> 4);
             }
-        }
     }
 
     // High halves add up shifted but not masked, which is cheaper: 16 times the low half of each second byte came
