@@ -62,24 +62,30 @@ public:
 
     void set(int i, const unsigned* plain)
     {
-        uchar* table = pairs[i / 2];
-        for (int from = 0; from < 4 * layout.words(); from += POSITIONS)
-            for (int shift = 0; shift < 8; shift += 4)
-                for (int p = from; p < from + POSITIONS; p++, table += 16)
-                    add(table, ((const uchar*)plain)[p] >> shift & 15, i % 2);
+        if (i % 2 == 0)
+            fill<false>(pairs[i / 2], (const uchar*)plain);
+        else
+            fill<true>(pairs[i / 2], (const uchar*)plain);
     }
+
     //! The tables of two queries.
     const uchar* operator[](int pair) const { return pairs[pair]; }
 
 private:
     size_t pairSize() const { return (size_t)layout.words() * 4 * 2 * 16; }
 
-    //! Writes the distances of a half byte to all others, or puts them into the high halves of what is there.
-    static void add(uchar* table, int half, bool second)
+    //! Writes the distances of each half byte to all others, or puts them into the high halves of what is there.
+    template<bool SECOND> void fill(uchar* table, const uchar* code)
     {
         static const HalfDistances distances;
-        const v_uint8x16 d = v_load(distances.of[half]);
-        v_store(table, second ? v_load(table) | v_reinterpret_as_u8(v_reinterpret_as_u16(d) << 4) : d);
+        const uchar(&of)[16][16] = distances.of;
+        for (int from = 0; from < 4 * layout.words(); from += POSITIONS)
+            for (int shift = 0; shift < 8; shift += 4)
+                for (int p = from; p < from + POSITIONS; p++, table += 16)
+                {
+                    const v_uint8x16 d = v_load(of[code[p] >> shift & 15]);
+                    v_store(table, SECOND ? v_load(table) | v_reinterpret_as_u8(v_reinterpret_as_u16(d) << 4) : d);
+                }
     }
 
     const HammingLayout& layout;
