@@ -38,6 +38,9 @@ struct ScanData
           trainBelow(rows, 0)
     {
         CV_Assert(rows % HammingLayout::LANES == 0);
+        // All bits differ, for two queries that may share tables: what adds up in bytes is as large as can be.
+        queries.rowRange(0, std::min(queryCount, 2)).setTo(255);
+        trains.row(3).setTo(0);
         for (int i = 0; i < queryCount; i++)
             layout.arrange(queries.ptr(i), &plainQueries[i * layout.words()]);
         for (int i = 0; i < rows; i++)
