@@ -5,6 +5,7 @@
 #include "precomp.hpp"
 #include "index.hpp"
 #include "index_io.hpp"
+#include "matcher_input.hpp"
 #include "matcher_parameters.hpp"
 
 #include <atomic>
@@ -106,8 +107,7 @@ private:
         std::swap(parameters, changed); // which cannot fail half-way
     }
 
-    Mat checked(const Mat& descriptors) const;
-    std::vector<Mat> checkedMasks(InputArrayOfArrays masks, int queries) const;
+    Mat checked(const Mat& descriptors) const { return checkedDescriptors(descriptors, index->layout().bytes()); }
     SearchPlan plan() const;
     Neighbours nearest(InputArray queries, int k, InputArrayOfArrays masks) const;
     void count(const SearchCost& cost) const
@@ -126,40 +126,6 @@ private:
     Ptr<Counters> counters;
 };
 
-Mat HierarchicalMatcherImpl::checked(const Mat& descriptors) const
-{
-    const int width = index->layout().bytes();
-    if (descriptors.empty())
-        return Mat(0, width, CV_8U);
-    if (descriptors.dims != 2 || descriptors.type() != CV_8U)
-        CV_Error(Error::StsUnsupportedFormat, "Descriptors have to be a matrix of type CV_8U, a row a descriptor");
-    if (descriptors.cols != width)
-        CV_Error_(Error::StsUnmatchedSizes, ("Descriptors have %d columns, but the level sizes add up to %d: create "
-                                             "the matcher with the level sizes of these descriptors",
-                                             descriptors.cols, width));
-    return descriptors;
-}
-
-std::vector<Mat> HierarchicalMatcherImpl::checkedMasks(InputArrayOfArrays masks_, int queries) const
-{
-    std::vector<Mat> masks;
-    masks_.getMatVector(masks);
-    bool any = false;
-    for (size_t i = 0; i < masks.size(); i++)
-        any = any || !masks[i].empty();
-    if (!any)
-        return std::vector<Mat>();
-    if (masks.size() != index->images())
-        CV_Error_(Error::StsBadSize, ("%d masks for %d train images: give one for each, empty for \"all allowed\"",
-                                      (int)masks.size(), (int)index->images()));
-    for (size_t i = 0; i < masks.size(); i++)
-        if (!masks[i].empty() && (masks[i].type() != CV_8UC1 || masks[i].rows != queries ||
-                                  (size_t)masks[i].cols != index->rows(i)))
-            CV_Error_(Error::StsBadMask, ("masks[%d] has to be CV_8UC1 with %d rows (queries) and %d columns (train "
-                                          "rows)", (int)i, queries, (int)index->rows(i)));
-    return masks;
-}
-
 SearchPlan HierarchicalMatcherImpl::plan() const
 {
     switch (parameters.mode)
@@ -175,7 +141,7 @@ Neighbours HierarchicalMatcherImpl::nearest(InputArray queries_, int k, InputArr
     const Mat queries = checked(queries_.getMat());
     SearchCost cost;
     Neighbours found = index->nearest(queries, plan(), k, parameters.crossCheck, parameters.maxRatio,
-                                      checkedMasks(masks, queries.rows), cost);
+                                      checkedMasks(masks, queries.rows, *index), cost);
     count(cost);
     return found;
 }
@@ -251,7 +217,7 @@ void HierarchicalMatcherImpl::radiusMatchImpl(InputArray queries_, std::vector<s
     SearchCost cost;
     const std::vector<std::vector<Neighbour> > found =
             index->within(queries, parameters.mode == THRESHOLD ? plan() : radiusPlan(layout, radius), radius,
-                          checkedMasks(masks, queries.rows), cost);
+                          checkedMasks(masks, queries.rows, *index), cost);
     count(cost);
     matches.assign(found.size(), std::vector<DMatch>());
     for (int query = 0; query < (int)found.size(); query++)
@@ -293,24 +259,12 @@ void HierarchicalMatcherImpl::knnMatchArrays(InputArray queries, InputArray trai
 
 void HierarchicalMatcherImpl::write(FileStorage& fs) const
 {
-    fs << "levelSizes" << parameters.levelSizes << "mode" << parameters.mode << "thresholds" << parameters.thresholds
-       << "crossCheck" << parameters.crossCheck << "maxRatio" << parameters.maxRatio;
+    writeParameters(fs, parameters);
 }
 
 void HierarchicalMatcherImpl::read(const FileNode& node)
 {
-    MatcherParameters p = parameters;
-    if (!node["levelSizes"].empty())
-    {
-        node["levelSizes"] >> p.levelSizes;
-        p.thresholds.assign(std::max(p.levelSizes.size(), (size_t)1) - 1, 0.35f);
-    }
-    cv::read(node["mode"], p.mode, p.mode);
-    if (!node["thresholds"].empty())
-        node["thresholds"] >> p.thresholds;
-    cv::read(node["crossCheck"], p.crossCheck, p.crossCheck);
-    cv::read(node["maxRatio"], p.maxRatio, p.maxRatio);
-    check(p);
+    MatcherParameters p = readParameters(node, parameters);
     if (p.levelSizes != parameters.levelSizes)
     {
         if (index->rows() > 0)

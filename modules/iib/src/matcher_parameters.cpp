@@ -39,5 +39,28 @@ void check(const MatcherParameters& p)
         CV_Error_(Error::StsOutOfRange, ("maxRatio is %g: it has to be above 0 and at most 1", p.maxRatio));
 }
 
+void writeParameters(FileStorage& fs, const MatcherParameters& p)
+{
+    fs << "levelSizes" << p.levelSizes << "mode" << p.mode << "thresholds" << p.thresholds << "crossCheck"
+       << p.crossCheck << "maxRatio" << p.maxRatio;
+}
+
+MatcherParameters readParameters(const FileNode& node, const MatcherParameters& before)
+{
+    MatcherParameters p = before;
+    if (!node["levelSizes"].empty())
+    {
+        node["levelSizes"] >> p.levelSizes;
+        p.thresholds.assign(std::max(p.levelSizes.size(), (size_t)1) - 1, 0.35f);
+    }
+    cv::read(node["mode"], p.mode, p.mode);
+    if (!node["thresholds"].empty())
+        node["thresholds"] >> p.thresholds;
+    cv::read(node["crossCheck"], p.crossCheck, p.crossCheck);
+    cv::read(node["maxRatio"], p.maxRatio, p.maxRatio);
+    check(p);
+    return p;
+}
+
 }  // namespace iib
 }  // namespace cv

@@ -23,6 +23,10 @@ struct MatcherParameters
 void checkThreshold(float threshold);
 void check(const MatcherParameters& p);
 
+void writeParameters(FileStorage& fs, const MatcherParameters& p);
+//! Those of a node; what it does not have stays as it was.
+MatcherParameters readParameters(const FileNode& node, const MatcherParameters& before);
+
 }  // namespace iib
 }  // namespace cv
 
