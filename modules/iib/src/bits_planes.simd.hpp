@@ -20,7 +20,8 @@ struct PlaneRows
     {
         if (PLANES % 4 == 0 && plane == CHUNK / 8)  // whole words, as they may soon be read
             for (int p = 0; p + 3 < PLANES; p += 4)
-                storeBytes(chunks[p] | chunks[p + 1] << 16 | (uint64)(chunks[p + 2] | chunks[p + 3] << 16) << 32, 8,
+                storeBytes((uint64)(ushort)chunks[p] | (uint64)(ushort)chunks[p + 1] << 16
+                           | (uint64)(ushort)chunks[p + 2] << 32 | (uint64)(ushort)chunks[p + 3] << 48, 8,
                            first + p * plane);
         else
             for (int p = 0; p < PLANES; p++)
