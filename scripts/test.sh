@@ -20,6 +20,7 @@ run() {
 sanitize() {
     sanitizers=$1
     shift
+    export TSAN_OPTIONS="suppressions=$root/cmake/sanitizer/threads.supp"
     # Not what compiles or times: those tests see nothing more in an instrumented build.
     # Little optimization, since instrumented code takes long to compile.
     run "$root/build-$(echo "$sanitizers" | tr , -)" "-E perf-smoke|headers|newer-opencv|consumer|synthetic" \
