@@ -40,13 +40,14 @@ double largestWeight(const Axis& axis, int n)
     return smallest == largest ? 1 : largest;
 }
 
-template <typename Cell> Cell largestSum(const CellGrid<Cell>& cells)
+//! Of the channels in use: the others hold nothing.
+template <typename Cell> Cell largestSum(const CellGrid<Cell>& cells, int channels)
 {
     Cell largest = 0;
     for (int r = 0; r < cells.size(); r++)
-        for (int parity = 0; parity < 2; parity++)
-            for (int i = 0; i < cells.size() / 2 * GROUP_CHANNELS; i++)
-                largest = std::max(largest, cells.row(r, parity)[i]);
+        for (int c = 0; c < cells.size(); c++)
+            for (int i = 0; i < channels; i++)
+                largest = std::max(largest, cells.cell(r, c)[i]);
     return largest;
 }
 
@@ -57,7 +58,8 @@ bool fitsInt(const CellGrid<Cell>& cells, const LevelShape& shape, double value,
     const double area = longest * longest;
     // seldom does the quick bound, with all values and weights as large as can be, not do
     return value * area * area <= INT_MAX
-           || 4. * largestSum(cells) * largestWeight(shape.x, shape.n) * largestWeight(shape.y, shape.n) <= INT_MAX;
+           || 4. * largestSum(cells, shape.channels) * largestWeight(shape.x, shape.n)
+                  * largestWeight(shape.y, shape.n) <= INT_MAX;
 }
 
 }  // namespace
