@@ -118,33 +118,6 @@ struct ColumnWeights
     }
 };
 
-//! Weights of a chunk of quads along an axis: of their left and right cells, or of the upper and lower ones.
-struct ChunkWeights
-{
-    v_int32 first[CHUNK_VECTORS], second[CHUNK_VECTORS];
-    bool equal;  //!< whether all are 1
-
-    //! @param a, b, c, d the first cells of the quads.
-    CV_ALWAYS_INLINE ChunkWeights(const Axis& axis, int a, int b, int c, int d)
-    {
-        const v_int32x4 begin(axis.edge(a), axis.edge(b), axis.edge(c), axis.edge(d));
-        const v_int32x4 middle(axis.edge(a + 1), axis.edge(b + 1), axis.edge(c + 1), axis.edge(d + 1));
-        const v_int32x4 end(axis.edge(a + 2), axis.edge(b + 2), axis.edge(c + 2), axis.edge(d + 2));
-        const v_int32x4 one = v_setall_s32(1), lengths[2] = { middle - begin, end - middle };
-        const v_int32x4 same = lengths[0] == lengths[1];
-        repeatForChannels(v_select(same, one, lengths[1]), first);
-        repeatForChannels(v_select(same, one, lengths[0]), second);
-        equal = v_check_all(same);
-    }
-
-    //! Of the quads from column x on, `quads` of them, which may not fill the chunk.
-    CV_ALWAYS_INLINE static ChunkWeights ofColumns(const Axis& axis, int x, int quads)
-    {
-        return ChunkWeights(axis, x, x + 2 * std::min(1, quads - 1), x + 2 * std::min(2, quads - 1),
-                            x + 2 * std::min(3, quads - 1));
-    }
-};
-
 }  // namespace
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 }  // namespace iib
