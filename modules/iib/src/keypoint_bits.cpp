@@ -51,15 +51,15 @@ template <typename Cell> Cell largestSum(const CellGrid<Cell>& cells, int channe
     return largest;
 }
 
-//! Whether four times the largest weighted sum of the level at hand fits an int.
+//! Whether four times the largest weighted sum of the level at hand fits an int: by ever dearer bounds.
 template <typename Cell>
 bool fitsInt(const CellGrid<Cell>& cells, const LevelShape& shape, double value, double longest)
 {
     const double area = longest * longest;
-    // seldom does the quick bound, with all values and weights as large as can be, not do
-    return value * area * area <= INT_MAX
-           || 4. * largestSum(cells, shape.channels) * largestWeight(shape.x, shape.n)
-                  * largestWeight(shape.y, shape.n) <= INT_MAX;
+    if (value * area * area <= INT_MAX)
+        return true;
+    const double weight = (double)largestWeight(shape.x, shape.n) * largestWeight(shape.y, shape.n);
+    return value * area * weight <= INT_MAX || 4. * largestSum(cells, shape.channels) * weight <= INT_MAX;
 }
 
 }  // namespace
