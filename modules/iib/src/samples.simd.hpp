@@ -95,8 +95,47 @@ void turnOrientations(const Lane* gx, const Lane* gy, Lane* steps, int count, in
         steps[i] = (Lane)((gx[i] | gy[i]) == 0 ? 0 : (steps[i] + turn) & (ORIENTATION_STEPS - 1));
 }
 
-inline v_int32x4 loadFour(const short* p) { return v_load_expand(p); }
-inline v_int32x4 loadFour(const int* p) { return v_load(p); }
+/* Sums over eight cells side by side: of `samples` values each, `step` apart, in a plane for each channel. The sums of
+ shorts fit shorts, see describeTurned. */
+void sumEightCells(const short* const planes[GROUP_CHANNELS], int start, int samples, int step, unsigned* out)
+{
+    v_int16x8 sums[GROUP_CHANNELS];
+    for (int c = 0; c < GROUP_CHANNELS; c++)
+    {
+        sums[c] = v_load(planes[c] + start);
+        for (int s = 1; s < samples; s++)
+            sums[c] = sums[c] + v_load(planes[c] + start + s * step);
+    }
+    v_int16x8 even[2], odd[2], pairs[4];  // even and odd channels of half the cells; all channels of two cells
+    v_zip(sums[0], sums[2], even[0], even[1]);
+    v_zip(sums[1], sums[3], odd[0], odd[1]);
+    for (int half = 0; half < 2; half++)
+        v_zip(even[half], odd[half], pairs[2 * half], pairs[2 * half + 1]);
+    for (int i = 0; i < 4; i++)
+    {
+        v_int32x4 first, second;
+        v_expand(pairs[i], first, second);
+        v_store(out + 2 * i * GROUP_CHANNELS, v_reinterpret_as_u32(first));
+        v_store(out + (2 * i + 1) * GROUP_CHANNELS, v_reinterpret_as_u32(second));
+    }
+}
+
+void sumEightCells(const int* const planes[GROUP_CHANNELS], int start, int samples, int step, unsigned* out)
+{
+    for (int half = 0; half < 8; half += 4)
+    {
+        v_int32x4 sums[GROUP_CHANNELS], cells[4];
+        for (int c = 0; c < GROUP_CHANNELS; c++)
+        {
+            sums[c] = v_load(planes[c] + start + half);
+            for (int s = 1; s < samples; s++)
+                sums[c] = sums[c] + v_load(planes[c] + start + half + s * step);
+        }
+        v_transpose4x4(sums[0], sums[1], sums[2], sums[3], cells[0], cells[1], cells[2], cells[3]);
+        for (int i = 0; i < 4; i++)
+            v_store(out + (half + i) * GROUP_CHANNELS, v_reinterpret_as_u32(cells[i]));
+    }
+}
 
 template <typename Lane>
 void sumCells(const Lane* const planes[GROUP_CHANNELS], int n, int sub, CellGrid<unsigned>& cells)
@@ -107,20 +146,8 @@ void sumCells(const Lane* const planes[GROUP_CHANNELS], int n, int sub, CellGrid
         for (int parity = 0; parity < 2; parity++)
         {
             const int start = (2 * row + parity) * (side / 2);
-            for (int i = 0; i < side / 2; i += 4)
-            {
-                v_int32x4 sums[GROUP_CHANNELS], out[GROUP_CHANNELS];
-                for (int c = 0; c < GROUP_CHANNELS; c++)
-                {
-                    const Lane* p = planes[c] + start + i;
-                    sums[c] = loadFour(p);
-                    for (int s = 1; s < sub * sub; s++)
-                        sums[c] = sums[c] + loadFour(p + s * count);
-                }
-                v_transpose4x4(sums[0], sums[1], sums[2], sums[3], out[0], out[1], out[2], out[3]);
-                for (int j = 0; j < 4; j++)
-                    v_store(cells.row(row, parity) + (i + j) * GROUP_CHANNELS, v_reinterpret_as_u32(out[j]));
-            }
+            for (int i = 0; i < side / 2; i += 8)
+                sumEightCells(planes, start + i, sub * sub, count, cells.row(row, parity) + i * GROUP_CHANNELS);
         }
 }
 
