@@ -29,12 +29,13 @@ struct Axis
 struct LevelShape
 {
     int n;  //!< cells in a row
+    int offset;  //!< of its first bit in the descriptor
     Axis x, y;
     int channels;  //!< of GROUP_CHANNELS, those in use
-    bool overlap;
+    int windows;  //!< a bit for each that is in use
     const ChosenBits* chosen;  //!< of each window, or null: the bits of all quads are in use
 
-    bool uses(int window) const { return chosen ? !chosen[window].none() : overlap || window == 0; }
+    bool uses(int window) const { return windows >> window & 1; }
 };
 
 //! The factors of neighbouring cells along an axis, 1 if they are equally long.
@@ -53,10 +54,11 @@ struct Weights
 /* Kernels on the sums of a level, Cell = ushort or unsigned. */
 template <typename Cell> struct BitsKernels
 {
-    /** Bits of a level in the order of descriptor.hpp.
-     @param parents gets the sums of the next coarser level. */
-    void (*levelBits)(const CellGrid<Cell>& cells, const LevelShape& shape, CellGrid<unsigned>& parents,
-                      BitWriter& out);
+    /** Bits of the levels from `finest` down to `coarsest`, in the order of descriptor.hpp.
+     @param cells of the finest one. @param shapes of each level.
+     @param sums of each level: gets those of the coarser ones, down to coarsest - 1. Their grids have been created. */
+    void (*levelBits)(const CellGrid<Cell>& cells, const LevelShape shapes[], int finest, int coarsest,
+                      CellGrid<unsigned> sums[], uchar* descriptor);
 
     //! The sums alone.
     void (*parentSums)(const CellGrid<Cell>& cells, CellGrid<unsigned>& parents);

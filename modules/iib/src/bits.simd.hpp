@@ -59,13 +59,11 @@ inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const
             quads.load(i * LANES, x);
             if (WITH_PARENTS)
                 sums.store(i * LANES, x);
-            if (!columns.equal)
-            {
-                x[0] = x[0] * columns.left[i];
-                x[1] = x[1] * columns.right[i];
-                x[2] = x[2] * columns.left[i];
-                x[3] = x[3] * columns.right[i];
-            }
+            // the columns of a chunk are seldom equally long, the two rows often
+            x[0] = x[0] * columns.left[i];
+            x[1] = x[1] * columns.right[i];
+            x[2] = x[2] * columns.left[i];
+            x[3] = x[3] * columns.right[i];
             if (!heights.equal())
             {
                 const v_int32 t = vx_setall_s32(heights.first), b = vx_setall_s32(heights.second);
@@ -92,7 +90,7 @@ void comparisons(const CellGrid<Cell>& cells, const LevelShape& shape, const Win
     const int* edges = shape.y.edges + window.dy * shape.y.step;
     for (int first = 0; first < window.lanes(); first += CHUNK, out.nextChunk())
     {
-        const ColumnWeights columns(shape.x, window.dx + first / 2, window.quads - first / GROUP_CHANNELS);
+        const ColumnWeights columns(shape.x, window.dx + first / 2);
         columnBits<Mapping, WITH_PARENTS>(QuadRows<Cell>(cells, window.dy, window.dx, first), columns, edges,
                                           shape.y.step, window.rows, ParentRows(parents, first), out);
     }
@@ -121,18 +119,26 @@ void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int index,
 }
 
 template <typename Mapping, typename Cell>
-void levelBits(const CellGrid<Cell>& cells, const LevelShape& shape, CellGrid<unsigned>& parents, BitWriter& out)
+void levelBits(const CellGrid<Cell>& cells, const LevelShape& shape, CellGrid<unsigned>& parents, uchar* descriptor)
 {
+    BitWriter out(descriptor, shape.offset);
     if (shape.uses(0))
-    {
-        parents.create(shape.n / 2);
         windowBits<Mapping, true>(cells, shape, 0, parents, out);
-    }
     else
         parentSums(cells, parents);
-    for (int i = 1; i < Window::COUNT; i++)
+    for (int i = 1; shape.windows >> i; i++)
         if (shape.uses(i))
             windowBits<Mapping, false>(cells, shape, i, parents, out);
+    out.flush();
+}
+
+template <typename Mapping, typename Cell>
+void levelsBits(const CellGrid<Cell>& cells, const LevelShape shapes[], int finest, int coarsest,
+                CellGrid<unsigned> sums[], uchar* descriptor)
+{
+    levelBits<Mapping>(cells, shapes[finest], sums[finest - 1], descriptor);
+    for (int level = finest - 1; level >= coarsest; level--)
+        levelBits<Mapping>(sums[level], shapes[level], sums[level - 1], descriptor);
 }
 
 #ifdef CV_CPU_DISPATCH_MODE
@@ -145,7 +151,7 @@ template <typename Cell> struct Kernels
 {
     template <typename Mapping> BitsKernels<Cell> visit() const
     {
-        const BitsKernels<Cell> k = { levelBits<Mapping, Cell>, parentSums<Cell>,
+        const BitsKernels<Cell> k = { levelsBits<Mapping, Cell>, parentSums<Cell>,
                                       IIB_INSTRUCTION_SET };
         return k;
     }

@@ -93,21 +93,29 @@ inline void append(PlaneRows planes, const Window& window, int bits, int channel
 class ShortRowWriter
 {
 public:
-    ShortRowWriter(BitWriter& out_, int lanes_, int channels_) : out(out_), lanes(lanes_), channels(channels_) {}
+    ShortRowWriter(BitWriter& out_, int lanes, int channels_)
+        : out(out_), channels(channels_), count(lanes / GROUP_CHANNELS * channels), mask((1u << count) - 1)
+    {
+    }
 
     template <int PLANES> void storeRow(const unsigned chunks[PLANES])
     {
-        BitWriter writer = out;  // a copy that no store of a byte can change stays in registers
-        for (int p = 0; p < PLANES; p++)
-            appendChunk(chunks[p], lanes, channels, writer);
-        out = writer;
+        enum { TOGETHER = PLANES % 4 == 0 ? 4 : PLANES };  // planes, of twelve bits at most, that fit a word
+        for (int p = 0; p < PLANES; p += TOGETHER)
+        {
+            uint64 bits = 0;
+            for (int i = 0; i < TOGETHER; i++)
+                bits |= (uint64)(dropLanes(chunks[p + i], channels) & mask) << i * count;
+            out.append(bits, TOGETHER * count);
+        }
     }
 
     void nextChunk() {}
 
 private:
     BitWriter& out;
-    const int lanes, channels;
+    const int channels, count;
+    const unsigned mask;
 };
 
 #if CV_SIMD_WIDTH == 64 && (defined __x86_64__ || defined _M_X64)

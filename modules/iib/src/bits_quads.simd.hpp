@@ -101,20 +101,17 @@ inline void repeatForChannels(const v_int32x4& n, v_int32 chunk[CHUNK_VECTORS])
 struct ColumnWeights
 {
     v_int32 left[CHUNK_VECTORS], right[CHUNK_VECTORS];
-    bool equal;  //!< whether all weights are 1
 
-    //! @param x first column; @param quads how many there are from it on, which may not fill the chunk.
-    CV_ALWAYS_INLINE ColumnWeights(const Axis& axis, int x, int quads)
+    //! @param x the first column.
+    CV_ALWAYS_INLINE ColumnWeights(const Axis& axis, int x)
     {
-        const int b = x + 2 * std::min(1, quads - 1), c = x + 2 * std::min(2, quads - 1);
-        const int d = x + 2 * std::min(3, quads - 1);
-        const v_int32x4 begin(axis.edge(x), axis.edge(b), axis.edge(c), axis.edge(d));
-        const v_int32x4 middle(axis.edge(x + 1), axis.edge(b + 1), axis.edge(c + 1), axis.edge(d + 1));
-        const v_int32x4 end(axis.edge(x + 2), axis.edge(b + 2), axis.edge(c + 2), axis.edge(d + 2));
+        const int* const e = axis.edges + x * axis.step;
+        const int s = axis.step;
+        const v_int32x4 begin(e[0], e[2 * s], e[4 * s], e[6 * s]), end(e[2 * s], e[4 * s], e[6 * s], e[8 * s]);
+        const v_int32x4 middle(e[s], e[3 * s], e[5 * s], e[7 * s]);
         const v_int32x4 lefts = middle - begin, rights = end - middle, same = lefts == rights;
         repeatForChannels(v_select(same, v_setall_s32(1), rights), left);
         repeatForChannels(v_select(same, v_setall_s32(1), lefts), right);
-        equal = v_check_all(same);
     }
 };
 

@@ -7,6 +7,7 @@
 
 #include "aligned_buffer.hpp"
 #include "integral.hpp"
+#include "quadtree.hpp"
 
 namespace cv {
 namespace iib {
@@ -45,11 +46,15 @@ private:
     AlignedBuffer<T> values;
 };
 
-//! The n + 1 edges of the n cells in a row of a ROS that begins at `start`, clamped to [0, limit] (see quadtree.hpp).
-typedef void (*CellEdgesFunc)(double start, double side, int n, int limit, int* edges);
+//! The n + 1 edges of n columns, and the last one again: kernels run over the end, by up to 7 columns of any level.
+inline int paddedEdges(int n) { return n + 1 + 7 * (n / 2); }
+
+/** The edges of the n x n cells of a ROS, clamped to the image (see quadtree.hpp).
+ @param x gets paddedEdges(n); @param y gets n + 1. */
+typedef void (*CellEdgesFunc)(const Ros& ros, int n, Size image, int* x, int* y);
 CellEdgesFunc getCellEdgesFunc();
 
-//! Sums over n x n cells with the given n + 1 edges, in pixels of the image.
+//! Sums over n x n cells with the given edges, paddedEdges(n) and n + 1 of them, in pixels of the image.
 template <typename Sum> struct CellSumsFunc
 {
     typedef void (*Type)(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n,

@@ -22,11 +22,18 @@ namespace {
 
 /* n is a power of two, so that the edges of a level are a subset of those of the next. The compiler makes vectors of
  the loop, with this file's instruction set. */
-void cellEdges(double start, double side, int n, int limit, int* edges)
+void cellEdges(const Ros& ros, int n, Size image, int* x, int* y)
 {
-    const double step = side / n;
-    for (int k = 0; k <= n; k++)
-        edges[k] = edgeAt(start + step * k, limit);
+    const double step = ros.side / n;
+    for (int k = 0; k < n; k++)
+    {
+        x[k] = edgeAt(ros.x + step * k, image.width);
+        y[k] = edgeAt(ros.y + step * k, image.height);
+    }
+    x[n] = edgeAt(ros.x + step * n, image.width);
+    y[n] = edgeAt(ros.y + step * n, image.height);
+    for (int k = n + 1; k < paddedEdges(n); k++)
+        x[k] = x[n];
 }
 
 /* Half a 512-bit vector at most: the offsets of a whole one are too many for the registers. */
@@ -127,20 +134,20 @@ void cellSums(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdge
     typedef typename CornersOf<Sum>::Vector V;
     enum { COLUMNS = 2 * VTraits<V>::max_nlanes / GROUP_CHANNELS };
     const RowFinder<Sum> row(rows, yEdges[0]);
-    AutoBuffer<const Sum*, 64> lines(n + 1);
-    for (int r = 0; r <= n; r++)
-        lines[r] = row(yEdges[r]);
+    AutoBuffer<const Sum*, 64> lines(n);
+    for (int r = 0; r < n; r++)
+        lines[r] = row(yEdges[r + 1]);
 
     cells.create(n);
     const size_t step = cells.row(0, 1) - cells.row(0, 0);
     for (int c = 0; c < n; c += COLUMNS)
     {
         size_t at[COLUMNS + 1];
-        for (int i = 0; i <= COLUMNS; i++)  // beyond the last column the last edge is repeated
-            at[i] = (size_t)(xEdges[std::min(c + i, n)] - rows.origin.x) * GROUP_CHANNELS;
+        for (int i = 0; i <= COLUMNS; i++)
+            at[i] = (size_t)(xEdges[c + i] - rows.origin.x) * GROUP_CHANNELS;
         Sum* out = cells.row(0, 0) + c / 2 * GROUP_CHANNELS;
-        RowSums<V> above(lines[0], at);
-        for (const Sum *const *line = lines.data() + 1, *const *end = line + n; line != end; line++)
+        RowSums<V> above(row(yEdges[0]), at);
+        for (const Sum *const *line = lines.data(), *const *end = line + n; line != end; line++)
         {
             const RowSums<V> below(*line, at);
             v_store(out, subtract(below.left, above.left));

@@ -51,77 +51,90 @@ template <typename Cell> Cell largestSum(const CellGrid<Cell>& cells, int channe
     return largest;
 }
 
-//! Whether four times the largest weighted sum of the level at hand fits an int: by ever dearer bounds.
-template <typename Cell>
-bool fitsInt(const CellGrid<Cell>& cells, const LevelShape& shape, double value, double longest)
+double largestWeight(const LevelShape& shape)
+{
+    return largestWeight(shape.x, shape.n) * largestWeight(shape.y, shape.n);
+}
+
+//! Whether four times the largest weighted sum of a level fits an int, whatever the sums are.
+bool alwaysFitsInt(const LevelShape& shape, double value, double longest)
 {
     const double area = longest * longest;
-    if (value * area * area <= INT_MAX)
-        return true;
-    const double weight = (double)largestWeight(shape.x, shape.n) * largestWeight(shape.y, shape.n);
-    return value * area * weight <= INT_MAX || 4. * largestSum(cells, shape.channels) * weight <= INT_MAX;
+    return value * area * area <= INT_MAX || value * area * largestWeight(shape) <= INT_MAX;
+}
+
+//! The same for the sums at hand.
+template <typename Cell> bool fitsInt(const CellGrid<Cell>& cells, const LevelShape& shape)
+{
+    return 4. * largestSum(cells, shape.channels) * largestWeight(shape) <= INT_MAX;
 }
 
 }  // namespace
 
-KeyPointBits::KeyPointBits(const Parameters& p, int group, int channels_)
-    : granularity(finestLevel(p)), mapping(p.mapping), channels(channels_), overlap(p.overlap),
-      shortKernels(getBitsKernels(p.mapping, ushort())), longKernels(getBitsKernels(p.mapping, unsigned())),
-      offsets(granularity + 1), sums(granularity + 1), wideSums(granularity + 1)
+KeyPointBits::KeyPointBits(const Parameters& p, int group, int channels)
+    : granularity(finestLevel(p)), mapping(p.mapping), shortKernels(getBitsKernels(p.mapping, ushort())),
+      longKernels(getBitsKernels(p.mapping, unsigned())), x(paddedEdges(size())), y(size() + 1), chosen(granularity + 1),
+      shapes(granularity + 1), sums(granularity + 1), wideSums(granularity + 1)
 {
+    sums[0].create(1);
     for (int level = 1; level <= granularity; level++)
-        offsets[level] = bitOffset(p, level, group);
-    if (p.selection.empty())
-        return;
-    chosen.resize(granularity + 1);
-    for (int level = 1; level <= granularity; level++)
-        for (int window = 0; window < Window::COUNT; window++)
-            chosen[level].push_back(ChosenBits(p, level, group, window));
-}
-
-LevelShape KeyPointBits::shapeOf(int level, const int* xEdges, const int* yEdges) const
-{
-    const int step = 1 << (granularity - level);
-    const LevelShape shape = { 1 << level, { xEdges, step }, { yEdges, step }, channels, overlap,
-                               chosen.empty() ? 0 : chosen[level].data() };
-    return shape;
+    {
+        int windows = p.overlap ? (1 << Window::COUNT) - 1 : 1;
+        if (!p.selection.empty())
+        {
+            windows = 0;
+            for (int window = 0; window < Window::COUNT; window++)
+            {
+                chosen[level].push_back(ChosenBits(p, level, group, window));
+                windows |= !chosen[level][window].none() << window;
+            }
+        }
+        const int step = 1 << (granularity - level);
+        const LevelShape shape = { 1 << level, bitOffset(p, level, group), { x.data(), step }, { y.data(), step },
+                                   channels, windows, p.selection.empty() ? 0 : chosen[level].data() };
+        shapes[level] = shape;
+        sums[level].create(shape.n);
+    }
 }
 
 template <> const BitsKernels<ushort>& KeyPointBits::kernels<ushort>() const { return shortKernels; }
 template <> const BitsKernels<unsigned>& KeyPointBits::kernels<unsigned>() const { return longKernels; }
 
 template <typename Cell>
-void KeyPointBits::writeFrom(int level, const CellGrid<Cell>& cells, const LevelShape& shape, double value,
-                             double longest, uchar* descriptor)
+void KeyPointBits::writeFrom(int level, const CellGrid<Cell>& cells, double value, double longest, uchar* descriptor)
 {
-    if (!fitsInt(cells, shape, value, longest))
+    int coarsest = level + 1;
+    for (double l = longest; coarsest > 1 && alwaysFitsInt(shapes[coarsest - 1], value, l); l *= 2)
+        coarsest--;
+    if (coarsest > level && !fitsInt(cells, shapes[level]))
     {
         widen(cells, wideSums[level]);
-        return writeFrom(level, wideSums[level], shape, value, longest, descriptor);
+        return writeFrom(level, wideSums[level], descriptor);
     }
-    BitWriter out(descriptor, offsets[level]);
-    kernels<Cell>().levelBits(cells, shape, sums[level - 1], out);
-    out.flush();
-    if (level > 1)
-        writeFrom(level - 1, sums[level - 1], shapeOf(level - 1, shape.x.edges, shape.y.edges), value, 2 * longest,
-                  descriptor);
+    coarsest = std::min(coarsest, level);
+    kernels<Cell>().levelBits(cells, shapes.data(), level, coarsest, sums.data(), descriptor);
+    if (coarsest > 1)
+        writeFrom(coarsest - 1, sums[coarsest - 1], value, longest * (2 << (level - coarsest)), descriptor);
 }
 
-void KeyPointBits::writeFrom(int level, const CellGrid<double>& cells, const LevelShape& shape, double value,
-                             double longest, uchar* descriptor)
+void KeyPointBits::writeFrom(int level, const CellGrid<double>& cells, uchar* descriptor)
 {
-    BitWriter out(descriptor, offsets[level]);
-    wideLevelBits(mapping, cells, shape, out);
+    BitWriter out(descriptor, shapes[level].offset);
+    wideLevelBits(mapping, cells, shapes[level], out);
     out.flush();
     if (level == 1)
         return;
     wideParentSums(cells, wideSums[level - 1]);
-    writeFrom(level - 1, wideSums[level - 1], shapeOf(level - 1, shape.x.edges, shape.y.edges), value, 2 * longest,
-                  descriptor);
+    writeFrom(level - 1, wideSums[level - 1], descriptor);
 }
 
-template void KeyPointBits::writeFrom(int, const CellGrid<ushort>&, const LevelShape&, double, double, uchar*);
-template void KeyPointBits::writeFrom(int, const CellGrid<unsigned>&, const LevelShape&, double, double, uchar*);
+template <> void KeyPointBits::write<double>(double, int, uchar* descriptor)
+{
+    writeFrom(granularity, wideSums[granularity], descriptor);
+}
+
+template void KeyPointBits::writeFrom(int, const CellGrid<ushort>&, double, double, uchar*);
+template void KeyPointBits::writeFrom(int, const CellGrid<unsigned>&, double, double, uchar*);
 
 }  // namespace iib
 }  // namespace cv

@@ -24,35 +24,34 @@ public:
     //! Where the sums over the finest cells go, for Cell = ushort, unsigned or double: the first that holds them.
     template <typename Cell> CellGrid<Cell>& finestCells();
 
+    //! Where the edges of the finest cells go, paddedEdges(size()) and size() + 1 of them, in pixels or samples.
+    int* xEdges() { return x.data(); }
+    int* yEdges() { return y.data(); }
+
     /** Writes the bits of all levels into a descriptor; the groups before have written theirs. The sums are in
-     finestCells<Cell>().
-     @param xEdges, yEdges size() + 1 edges of the finest cells in each direction, in pixels or samples.
+     finestCells<Cell>(), the edges in xEdges() and yEdges().
      @param longestCell a bound of the difference of neighbouring edges.
      @param maxValue the largest value that was summed. */
-    template <typename Cell>
-    void write(const int* xEdges, const int* yEdges, double longestCell, int maxValue, uchar* descriptor)
+    template <typename Cell> void write(double longestCell, int maxValue, uchar* descriptor)
     {
-        writeFrom(granularity, finestCells<Cell>(), shapeOf(granularity, xEdges, yEdges), 4. * maxValue, longestCell,
-                  descriptor);
+        writeFrom(granularity, finestCells<Cell>(), 4. * maxValue, longestCell, descriptor);
     }
 
 private:
-    /** Writes a level and, from the sums of its cells, all coarser ones.
+    /** Writes a level and, from the sums of its cells, all coarser ones: in one call of a kernel as many as surely fit
+     its integers.
      @param value four times the largest that was summed. @param longest a bound of the lengths of this level's cells. */
     template <typename Cell>
-    void writeFrom(int level, const CellGrid<Cell>& cells, const LevelShape& shape, double value, double longest,
-                   uchar* descriptor);
-    void writeFrom(int level, const CellGrid<double>& cells, const LevelShape& shape, double value, double longest,
-                   uchar* descriptor);
-    LevelShape shapeOf(int level, const int* xEdges, const int* yEdges) const;
+    void writeFrom(int level, const CellGrid<Cell>& cells, double value, double longest, uchar* descriptor);
+    void writeFrom(int level, const CellGrid<double>& cells, uchar* descriptor);
     template <typename Cell> const BitsKernels<Cell>& kernels() const;
 
-    const int granularity, mapping, channels;
-    const bool overlap;
+    const int granularity, mapping;
     const BitsKernels<ushort> shortKernels;
     const BitsKernels<unsigned> longKernels;
-    std::vector<int> offsets;  //!< of the group's first bit of each level
+    std::vector<int> x, y;  //!< edges
     std::vector<std::vector<ChosenBits> > chosen;  //!< of the windows of each level; empty if all quads are in use
+    std::vector<LevelShape> shapes;  //!< of each level
     CellGrid<ushort> shortSums;  //!< of the finest level
     std::vector<CellGrid<unsigned> > sums;
     std::vector<CellGrid<double> > wideSums;
@@ -61,6 +60,7 @@ private:
 template <> inline CellGrid<ushort>& KeyPointBits::finestCells<ushort>() { return shortSums; }
 template <> inline CellGrid<unsigned>& KeyPointBits::finestCells<unsigned>() { return sums[granularity]; }
 template <> inline CellGrid<double>& KeyPointBits::finestCells<double>() { return wideSums[granularity]; }
+template <> void KeyPointBits::write<double>(double longestCell, int maxValue, uchar* descriptor);
 
 }  // namespace iib
 }  // namespace cv

@@ -86,8 +86,8 @@ public:
     //! Writes the bits still pending; call it once, at the end.
     void flush()
     {
-        if (count != 0)
-            storeBytes(pending, (count + 7) / 8, next);
+        for (; count > 0; count -= 8, pending >>= 8)
+            *next++ = (uchar)pending;
     }
 
 private:

@@ -41,7 +41,7 @@ struct Ros
     {
         const Point a(edgeAt(x, image.width - 1), edgeAt(y, image.height - 1));
         const Point b(edgeAt(x + side, image.width), edgeAt(y + side, image.height));
-        return Rect(a, Point(std::max(b.x, a.x + 1), std::max(b.y, a.y + 1)));
+        return Rect(a.x, a.y, std::max(b.x - a.x, 1), std::max(b.y - a.y, 1));
     }
 
     //! Whether no pixel of the ROS lies outside the image.

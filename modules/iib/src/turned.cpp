@@ -192,7 +192,6 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, co
             if (usesGradient(c))
                 gradient = maxTurnedGradient(c.map.depth());
         KeyPointBits bits(p, (int)first / GROUP_CHANNELS, (int)group.size());
-        std::vector<int> edges(bits.size() + 1);
         for (int k : block.keypoints)
         {
             const SampleGrid grid = gridOf(ros[k], keypoints[k], p.granularity, image, block.area);
@@ -208,10 +207,11 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, co
                 parentSums(*finest, *parent);
                 finest = parent;
             }
-            for (size_t i = 0; i < edges.size(); i++)
-                edges[i] = (int)i * (grid.n / bits.size());
-            bits.write<unsigned>(edges.data(), edges.data(), grid.n / bits.size(), maxValue(group, gradient),
-                                 descriptors.ptr(k));
+            const int cell = grid.n / bits.size();
+            for (int i = 0; i < paddedEdges(bits.size()); i++)
+                bits.xEdges()[i] = std::min(i, bits.size()) * cell;
+            std::copy_n(bits.xEdges(), bits.size() + 1, bits.yEdges());
+            bits.write<unsigned>(cell, maxValue(group, gradient), descriptors.ptr(k));
         }
     }
 }

@@ -12,29 +12,29 @@ namespace iib {
 
 namespace {
 
-//! The edges of n x n cells of a ROS.
-struct Edges
+/* Edges that cut each cell of another grid into parts x parts. They are made of pixels of the image, not of the ROS,
+ which may be so much larger that any number of its parts is needed to cut the image once. */
+struct FineEdges
 {
     std::vector<int> x, y;
 
-    /** Cuts each cell of another grid into parts x parts. They are made of pixels of the image, not of the ROS, which
-     may be so much larger that any number of its parts is needed to cut the image once. */
-    void split(const Edges& grid, int parts)
+    FineEdges(const int* xEdges, const int* yEdges, int n, int parts)
+        : x(split(xEdges, n, parts)), y(split(yEdges, n, parts))
     {
-        split(grid.x, parts, x);
-        split(grid.y, parts, y);
     }
 
     //! The most pixels that a cell has.
     double largestCell() const { return (double)largestStep(x) * largestStep(y); }
 
 private:
-    static void split(const std::vector<int>& edges, int parts, std::vector<int>& out)
+    static std::vector<int> split(const int* edges, int n, int parts)
     {
-        out.assign(1, edges[0]);
-        for (size_t i = 1; i < edges.size(); i++)
+        std::vector<int> out(1, edges[0]);
+        for (int i = 1; i <= n; i++)
             for (int k = 1; k <= parts; k++)
                 out.push_back(edges[i - 1] + (int)((int64)(edges[i] - edges[i - 1]) * k / parts));
+        out.resize(paddedEdges(n * parts), out.back());
+        return out;
     }
 
     static int largestStep(const std::vector<int>& edges)
@@ -74,10 +74,7 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
     const CellEdgesFunc cellEdges = getCellEdgesFunc();
     const int n = bits.size();
     CellGrid<Sum> fine;
-    Edges edges, fineEdges;
-    edges.x.resize(n + 1);
-    edges.y.resize(n + 1);
-
+    const int *const xEdges = bits.xEdges(), *const yEdges = bits.yEdges();
     IntegralBand<Lane, Sum> band(channels, block.area, block.rows + Block::BAND_ROWS + 1);
 
     // Neighbours in the block may lie far apart in memory.
@@ -90,24 +87,23 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
     for (size_t i = 0; i < local.size(); i++)
     {
         uchar* descriptor = descriptors.ptr(block.keypoints[i]);
-        cellEdges(local[i].x, local[i].side, n, image.width, edges.x.data());
-        cellEdges(local[i].y, local[i].side, n, image.height, edges.y.data());
-        band.advance(block.bandEnd(std::max(edges.y[n], block.area.y)));
+        cellEdges(local[i], n, image, bits.xEdges(), bits.yEdges());
+        band.advance(block.bandEnd(std::max(yEdges[n], block.area.y)));
         const double cell = longestCell(local[i].side, n);
         if (largest * cell * cell <= largestSum)
         {
-            cellSums(band.rows(), edges.x.data(), edges.y.data(), n, bits.finestCells<Sum>());
-            bits.write<Sum>(edges.x.data(), edges.y.data(), cell, largest, descriptor);
+            cellSums(band.rows(), xEdges, yEdges, n, bits.finestCells<Sum>());
+            bits.write<Sum>(cell, largest, descriptor);
             continue;
         }
         // Cells whose sums could exceed a Sum are put together from smaller ones.
-        int parts = 1;
-        do
-            fineEdges.split(edges, parts *= 2);
-        while (largest * fineEdges.largestCell() > largestSum);
-        cellSums(band.rows(), fineEdges.x.data(), fineEdges.y.data(), n * parts, fine);
+        int parts = 2;
+        while (largest * FineEdges(xEdges, yEdges, n, parts).largestCell() > largestSum)
+            parts *= 2;
+        const FineEdges edges(xEdges, yEdges, n, parts);
+        cellSums(band.rows(), edges.x.data(), edges.y.data(), n * parts, fine);
         gather(fine, bits.finestCells<double>(), n);
-        bits.write<double>(edges.x.data(), edges.y.data(), cell, largest, descriptor);
+        bits.write<double>(cell, largest, descriptor);
     }
 }
 
