@@ -44,7 +44,7 @@ struct HammingScan
     int margin;    //!< if >= 0, limits come down to the query's least difference so far plus this
 
     const int* queryBelow; //!< a pair is found if its distance is below this of its query
-    const int* trainBelow; //!< or below this of its train code
+    const int* trainBelow; //!< or below this of its train code; may be null
     HammingSink* sink;
 };
 

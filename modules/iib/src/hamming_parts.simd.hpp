@@ -192,7 +192,7 @@ private:
         const int *list = shortlist(q), *distance = distancesOf(q), *queryBelow = scan.queryBelow + query;
         const int* trainBelow = scan.trainBelow;
         for (int i = 0; i < count; i++)
-            if (distance[list[i]] < std::max(*queryBelow, trainBelow[list[i]]))
+            if (distance[list[i]] < *queryBelow || (trainBelow && distance[list[i]] < trainBelow[list[i]]))
                 scan.sink->found(query, list[i], distance[list[i]]);
     }
 

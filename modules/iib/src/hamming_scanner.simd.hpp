@@ -24,8 +24,10 @@ protected:
     //! Negative where a distance is small enough to be found.
     CV_ALWAYS_INLINE Counts beyond(int query, int group, int v, const Counts& distance) const
     {
-        const int* trainBelow = scan.trainBelow + group * LANES + v * WIDTH;
-        return distance - v_max(vx_setall_s32(scan.queryBelow[query]), vx_load(trainBelow));
+        Counts below = vx_setall_s32(scan.queryBelow[query]);
+        if (scan.trainBelow)
+            below = v_max(below, vx_load(scan.trainBelow + group * LANES + v * WIDTH));
+        return distance - below;
     }
 
     void report(int query, int group, const Counts* distance, const Counts* beyonds) const
@@ -64,7 +66,12 @@ protected:
 class FullScanner : public Scanner
 {
 public:
-    explicit FullScanner(const HammingScan& s) : Scanner(s) {}
+    explicit FullScanner(const HammingScan& s) : Scanner(s), early(layout.words())
+    {
+        // In both directions some pair is nearly always near enough; PACKING_ADDERS wants an odd number.
+        if (!s.trainBelow && layout.words() > 16)
+            early = layout.words() * 7 / 10 | 1;
+    }
 
     //! Some queries against all groups.
     template<int Q> void row(int query)
@@ -78,19 +85,34 @@ private:
     template<int Q> CV_ALWAYS_INLINE void compare(int query, int group)
     {
         Tile<Q> tile;
-        tile.start(queries, codes(group), layout.words());
-        Counts distance[Tile<Q>::SIZE], beyonds[Tile<Q>::SIZE], any = vx_setzero_s32();
+        Counts distance[Tile<Q>::SIZE], beyonds[Tile<Q>::SIZE];
+        tile.start(queries, codes(group), early);
+        if (!anyNear<Q>(tile, query, group, distance, beyonds))
+            return;
+        if (early < layout.words())
+        {
+            tile.advance(queries, codes(group), early, layout.words());
+            if (!anyNear<Q>(tile, query, group, distance, beyonds))
+                return;
+        }
+        for (int q = 0; q < Q; q++)
+            report(query + q, group, distance + q * VECTORS, beyonds + q * VECTORS);
+    }
+
+    template<int Q>
+    CV_ALWAYS_INLINE bool anyNear(const Tile<Q>& tile, int query, int group, Counts* distance, Counts* beyonds) const
+    {
+        Counts any = vx_setzero_s32();
         tile.distances(distance);
         for (int i = 0; i < Tile<Q>::SIZE; i++)
         {
             beyonds[i] = beyond(query + i / VECTORS, group, i % VECTORS, distance[i]);
             any = any | beyonds[i];
         }
-        if (!v_check_any(any))
-            return;
-        for (int q = 0; q < Q; q++)
-            report(query + q, group, distance + q * VECTORS, beyonds + q * VECTORS);
+        return v_check_any(any);
     }
+
+    int early; // words after which a tile is left if no pair is near enough so far: distances only grow
 };
 
 }  // namespace

@@ -20,13 +20,13 @@ class NearestSink CV_FINAL : public SweepSink
 {
 public:
     NearestSink(Neighbours& forQueries_, Neighbours* forTrains_)
-        : forQueries(forQueries_), forTrains(forTrains_), never(BLOCK_GROUPS * LANES, 0)
+        : forQueries(forQueries_), forTrains(forTrains_)
     {
     }
     const int* queryBelow() const CV_OVERRIDE { return forQueries.below() + firstQuery; }
     const int* trainBelow() const CV_OVERRIDE
     {
-        return forTrains ? forTrains->below() + firstTrain : never.data();
+        return forTrains ? forTrains->below() + firstTrain : 0;
     }
     void found(int query, int train, int distance) CV_OVERRIDE
     {
@@ -38,18 +38,17 @@ public:
 private:
     Neighbours& forQueries;
     Neighbours* forTrains;
-    const std::vector<int> never;
 };
 
 class RadiusSink CV_FINAL : public SweepSink
 {
 public:
     RadiusSink(int radius, std::vector<std::vector<Neighbour> >& result_)
-        : result(result_), below(BLOCK_QUERIES, radius + 1), never(BLOCK_GROUPS * LANES, 0)
+        : result(result_), below(BLOCK_QUERIES, radius + 1)
     {
     }
     const int* queryBelow() const CV_OVERRIDE { return below.data(); }
-    const int* trainBelow() const CV_OVERRIDE { return never.data(); }
+    const int* trainBelow() const CV_OVERRIDE { return 0; }
     void found(int query, int train, int distance) CV_OVERRIDE
     {
         result[firstQuery + query].push_back(neighbour(distance, firstTrain + train));
@@ -57,7 +56,7 @@ public:
 
 private:
     std::vector<std::vector<Neighbour> >& result;
-    const std::vector<int> below, never;
+    const std::vector<int> below;
 };
 
 }  // namespace

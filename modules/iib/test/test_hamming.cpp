@@ -41,6 +41,7 @@ struct ScanData
         // All bits differ, for two queries that may share tables: what adds up in bytes is as large as can be.
         queries.rowRange(0, std::min(queryCount, 2)).setTo(255);
         trains.row(3).setTo(0);
+        trains.row(7).setTo(255);
         for (int i = 0; i < queryCount; i++)
             layout.arrange(queries.ptr(i), &plainQueries[i * layout.words()]);
         for (int i = 0; i < rows; i++)
@@ -117,27 +118,34 @@ TEST(IIB_Hamming, last_level_begins_with_every_fourth_word)
 }
 
 // The whole kernel against a loop over bits: every number of words, more than fit a vector of bytes included,
-// queries that do and do not fill a tile, one group and several.
+// queries that do and do not fill a tile, one group and several; bounds that about half the pairs are within, and that
+// hardly any is, so that tiles are left early.
 TEST(IIB_Hamming, scan_as_the_naive_loop)
 {
-    for (int bytes : { 1, 4, 5, 12, 31, 32, 64, 170, 248, 252, 256, 260, 682, 1000 })
+    for (int bytes : { 1, 4, 5, 12, 31, 32, 64, 68, 170, 248, 252, 256, 260, 682, 1000 })
         for (int queryCount : { 1, 2, 3, 4, 5, 8, 9 })
-        {
-            ScanData data(Levels(1, bytes), queryCount, (1 + queryCount % 3) * HammingLayout::LANES);
-            std::fill(data.queryBelow.begin(), data.queryBelow.end(), bytes * 4);
-            data.trainBelow[3] = bytes * 8 + 1;
-            AllPairs sink;
-            hammingScan(data.scan(std::vector<HammingStop>(), sink));
-            Distances expected;
-            for (int q = 0; q < queryCount; q++)
-                for (int t = 0; t < data.trains.rows; t++)
+            for (int below : { bytes * 4, bytes * 2 })
+                for (bool bothDirections : { false, true })
                 {
-                    const int distance = hammingDistance(data.queries.ptr(q), data.trains.ptr(t), bytes);
-                    if (distance < bytes * 4 || t == 3)
-                        expected[std::make_pair(q, t)] = distance;
+                    ScanData data(Levels(1, bytes), queryCount, (1 + queryCount % 3) * HammingLayout::LANES);
+                    std::fill(data.queryBelow.begin(), data.queryBelow.end(), below);
+                    data.trainBelow[3] = bytes * 8 + 1;
+                    AllPairs sink;
+                    HammingScan scan = data.scan(std::vector<HammingStop>(), sink);
+                    if (!bothDirections)
+                        scan.trainBelow = 0;
+                    hammingScan(scan);
+                    Distances expected;
+                    for (int q = 0; q < queryCount; q++)
+                        for (int t = 0; t < data.trains.rows; t++)
+                        {
+                            const int distance = hammingDistance(data.queries.ptr(q), data.trains.ptr(t), bytes);
+                            if (distance < below || (bothDirections && t == 3))
+                                expected[std::make_pair(q, t)] = distance;
+                        }
+                    ASSERT_EQ(expected, sink.distances) << bytes << " bytes, " << queryCount << " queries, below "
+                                                        << below << ", both directions " << bothDirections;
                 }
-            ASSERT_EQ(expected, sink.distances) << bytes << " bytes, " << queryCount << " queries";
-        }
 }
 
 // Levels that end one soon after the other and far apart, bounds that hardly any pair and that most pairs pass.
