@@ -58,5 +58,9 @@ case "${1:-}" in
     echo "test.sh: $1 is none of --sanitize, --sanitize=address,undefined, --sanitize=thread, --sanitize=valgrind" >&2
     exit 2
     ;;
-*) run "$root/build" "" "$@" ;;
+*)
+    # the synthetic data and the evaluation's report are tested where these are
+    need povray python3-opencv python3-matplotlib
+    run "$root/build" "" "$@"
+    ;;
 esac
