@@ -2,7 +2,7 @@
 # cmake -DDEMO=<program> -DWORK=<scratch folder> -P DemoTest.cmake
 file(REMOVE_RECURSE "${WORK}")
 file(MAKE_DIRECTORY "${WORK}")
-set(synthetic "${CMAKE_CURRENT_LIST_DIR}/../modules/iib/tools/synthetic")
+set(synthetic "${CMAKE_CURRENT_LIST_DIR}/../tools/synthetic")
 set(pair "${synthetic}/day.png" "${synthetic}/night.png")
 set(picture --out "${WORK}/picture.png")
 

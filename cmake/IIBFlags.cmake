@@ -6,7 +6,7 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 # A fused multiply-add rounds once instead of twice and would change bits of the descriptor.
 set(IIB_FLAGS -ffp-contract=off)
 
-# For example address,undefined or thread, or fuzzer,address,undefined: then modules/iib/fuzz is for libFuzzer.
+# For example address,undefined or thread, or fuzzer,address,undefined: then fuzz is for libFuzzer.
 set(IIB_SANITIZE "" CACHE STRING "Argument of -fsanitize=, empty for none")
 set(IIB_FUZZ OFF)
 if(IIB_SANITIZE)

@@ -3,7 +3,7 @@ find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc features2d flann calib3
 include(IIBOpenCVTs)
 
 foreach(kind test perf)
-  file(GLOB sources CONFIGURE_DEPENDS "${IIB_DIR}/${kind}/*.cpp" "${IIB_DIR}/${kind}/*.hpp")
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${IIB_DIR}/${kind}/*.cpp" "${IIB_DIR}/${kind}/*.hpp")
   set(target opencv_${kind}_iib)
   add_executable(${target} ${sources})
   target_include_directories(${target} PRIVATE "${IIB_DIR}/${kind}" "${OPENCV_SOURCE_DIR}/modules")
@@ -11,10 +11,10 @@ foreach(kind test perf)
 endforeach()
 
 # Suites of internals link what the library does not show.
-target_sources(opencv_test_iib PRIVATE "$<FILTER:$<TARGET_OBJECTS:opencv_iib>,INCLUDE,/(hamming.*|bits|selection|parameters)[.]>")
+target_sources(opencv_test_iib PRIVATE "$<FILTER:$<TARGET_OBJECTS:opencv_iib>,INCLUDE,/(matcher/kernels/.*|descriptor/(kernels/.*|selection|parameters))[.]>")
 
 # The naive oracles are not under test; sanitized, they would take most of the time.
 if(IIB_SANITIZE)
-  set_source_files_properties("${IIB_DIR}/test/oracle.cpp" "${IIB_DIR}/test/matcher_oracle.cpp"
+  set_source_files_properties("${IIB_DIR}/test/support/descriptor_oracle.cpp" "${IIB_DIR}/test/support/matcher_oracle.cpp"
     PROPERTIES COMPILE_OPTIONS -fno-sanitize=all)
 endif()

@@ -24,7 +24,7 @@ for argument in "$@"; do
     esac
 done
 if [ $images = 0 ]; then
-    pair="$root/modules/iib/tools/synthetic"
+    pair="$root/tools/synthetic"
     set -- "$pair/day.png" "$pair/night.png" --homography "$pair/H_day_night" "$@"
 fi
 exec "$build/iib_demo" "$@"

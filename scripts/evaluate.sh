@@ -21,5 +21,5 @@ log="$root/build-tools.log"
     cmake --build "$root/build-tools" --target iib_evaluation; } >"$log" 2>&1 || { tail -n 30 "$log"; exit 1; }
 
 "$root/build-tools/tools/evaluation/iib_evaluation" --out "$out" "$@"
-page=$(/usr/bin/python3 "$root/modules/iib/tools/evaluation/report/report.py" $pictures "$out")
+page=$(/usr/bin/python3 "$root/tools/evaluation/report/report.py" $pictures "$out")
 say "results and page: $page"

@@ -1,8 +1,8 @@
 #!/bin/sh
 # Fuzzes the library with clang's libFuzzer, address and undefined-behaviour sanitizers:
-# scripts/fuzz.sh [-s SECONDS] [TARGET...]. By default every target of modules/iib/fuzz, 60 seconds each. What is
+# scripts/fuzz.sh [-s SECONDS] [TARGET...]. By default every target of fuzz, 60 seconds each. What is
 # found on the way stays in build-fuzz/corpus and makes the next run start further on; an input that fails is
-# kept in build-fuzz/failures and belongs into modules/iib/fuzz/corpus, with a test, once the defect is mended.
+# kept in build-fuzz/failures and belongs into fuzz/corpus, with a test, once the defect is mended.
 . "$(dirname "$0")/lib.sh"
 
 seconds=60
@@ -25,7 +25,7 @@ failed=""
 for target in "$@"; do
     program="$build/fuzz/iib_fuzz_$target"
     found="$build/corpus/$target"
-    seeds="$root/modules/iib/fuzz/corpus/$target"
+    seeds="$root/fuzz/corpus/$target"
     mkdir -p "$found"
     say "$target, $seconds s"
     LLVM_PROFILE_FILE=/dev/null "$program" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=4096 -max_len=1024 -print_final_stats=1 \

@@ -35,5 +35,5 @@ export PYTHONPATH="$build/lib/python3"
 /usr/bin/python3 "$root/modules/iib/misc/python/test/test_iib.py" -v
 say "the README's Python program, on the demo's pair"
 sed -n '/^```python$/,/^```$/{/^```/!p}' "$root/README.md" >"$build/readme.py"
-pair="$root/modules/iib/tools/synthetic"
+pair="$root/tools/synthetic"
 /usr/bin/python3 "$build/readme.py" "$pair/day.png" "$pair/night.png" | grep -x '[1-9][0-9]* mutual matches'

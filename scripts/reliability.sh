@@ -35,9 +35,9 @@ for step in "$@"; do
         cmake -S "$root" -B "$root/build" -G Ninja
         cmake --build "$root/build" --target iib_load iib_failing_memory
         for load in keypoints codes pixels threads; do
-            "$root/build/tools/load/iib_load" $load
+            "$root/build/tools/stress/iib_load" $load
         done
-        "$root/build/tools/load/iib_failing_memory"
+        "$root/build/tools/stress/iib_failing_memory"
         ;;
     fuzz) "$root/scripts/fuzz.sh" -s 600 ;;
     versions) "$root/scripts/versions.sh" ;;

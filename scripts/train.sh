@@ -12,7 +12,7 @@ case "${1:-}" in
 --presets)
     shift
     data="${OPENCV_TEST_DATA_PATH:?the folder that holds illumination/}/illumination"
-    exec "$root/build/tools/training/iib_train" --presets="$root/modules/iib/src/presets.generated.hpp" "$@" \
+    exec "$root/build/tools/training/iib_train" --presets="$root/modules/iib/src/descriptor/presets.generated.hpp" "$@" \
         "$data/tilde_webcam" "$data/amos_daynight"
     ;;
 *) exec "$root/build/tools/training/iib_train" "$@" ;;

@@ -5,7 +5,7 @@
 file(REMOVE_RECURSE "${WORK}")
 set(prefix "${WORK}/prefix")
 get_filename_component(root "${CMAKE_CURRENT_LIST_DIR}/../.." ABSOLUTE)
-set(pair "${root}/modules/iib/tools/synthetic/day.png" "${root}/modules/iib/tools/synthetic/night.png")
+set(pair "${root}/tools/synthetic/day.png" "${root}/tools/synthetic/night.png")
 
 function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)

@@ -3,8 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "test_precomp.hpp"
-#include "../src/bits.hpp"
-#include "../src/hamming.hpp"
+#include "../src/descriptor/kernels/bits.hpp"
+#include "../src/matcher/kernels/hamming.hpp"
 
 namespace opencv_test {
 namespace {

@@ -1,0 +1,202 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// HierarchicalMatcher with any level sizes, train images, masks, k, radius and mode: a cv::Exception, or what the
+// naive oracle finds.
+
+#include "byte_source.hpp"
+#include "support/matcher_oracle.hpp"
+
+#include <numeric>
+
+namespace {
+
+using namespace cv;
+using namespace opencv_test;
+using cv::iib::HierarchicalMatcher;
+
+bool equal(const Matches& a, const Matches& b)
+{
+    if (a.size() != b.size())
+        return false;
+    for (size_t q = 0; q < a.size(); q++)
+    {
+        if (a[q].size() != b[q].size())
+            return false;
+        for (size_t i = 0; i < a[q].size(); i++)
+            if (a[q][i].distance != b[q][i].distance || a[q][i].queryIdx != b[q][i].queryIdx ||
+                a[q][i].imgIdx != b[q][i].imgIdx || a[q][i].trainIdx != b[q][i].trainIdx)
+                return false;
+    }
+    return true;
+}
+
+//! ADAPTIVE may miss neighbours; what it reports is right and in order.
+bool isPartOf(const Matches& some, const MatcherOracle& oracle, const Mat& queries, size_t k)
+{
+    for (const std::vector<DMatch>& row : some)
+    {
+        for (size_t i = 0; i < row.size(); i++)
+        {
+            const DMatch& m = row[i];
+            const Mat& image = oracle.images[m.imgIdx];
+            if (m.distance != hammingDistance(queries.ptr(m.queryIdx), image.ptr(m.trainIdx), queries.cols) ||
+                (i > 0 && row[i - 1].distance > m.distance))
+                return false;
+            if (!oracle.masks.empty() && !oracle.masks[m.imgIdx].empty() &&
+                !oracle.masks[m.imgIdx].at<uchar>(m.queryIdx, m.trainIdx))
+                return false;
+        }
+        if (row.size() > k)
+            return false;
+    }
+    return true;
+}
+
+int takeRows(ByteSource& in)
+{
+    // beyond a group of 16 codes, and now and then beyond a block of 1024 trains or 512 queries
+    const int kind = in.between(0, 31);
+    return kind == 31 ? in.between(500, 1100) : in.between(0, kind < 16 ? 20 : 70);
+}
+
+Mat takeDescriptors(ByteSource& in, int bytes)
+{
+    Mat descriptors = randomDescriptors(in.take<ushort>(), takeRows(in), bytes);
+    for (int i = in.between(0, 4); i > 0 && !descriptors.empty(); i--)
+        descriptors.at<uchar>(in.between(0, descriptors.rows - 1), in.between(0, bytes - 1)) = in.take<uchar>();
+    return descriptors;
+}
+
+std::vector<Mat> takeMasks(ByteSource& in, const std::vector<Mat>& images, int queries)
+{
+    std::vector<Mat> masks;
+    const bool wrong = in.between(0, 15) == 15;
+    for (size_t i = 0; i < images.size() + wrong * in.between(0, 1); i++)
+    {
+        const int rows = queries + wrong * in.between(0, 1), cols = i < images.size() ? images[i].rows : 1;
+        masks.push_back(in.flag() || rows * cols == 0 ? Mat() : randomMask(in.take<uchar>(), rows, cols, in.between(0, 10) / 10.));
+        if (wrong && in.flag())
+            masks.back().convertTo(masks.back(), CV_32S);
+    }
+    return masks;
+}
+
+bool areValid(const std::vector<Mat>& masks, const std::vector<Mat>& images, int queries)
+{
+    if (!masks.empty() && masks.size() != images.size())
+        return false;
+    for (size_t i = 0; i < masks.size(); i++)
+        if (!masks[i].empty() && (masks[i].type() != CV_8UC1 || masks[i].size() != Size(images[i].rows, queries)))
+            return false;
+    return true;
+}
+
+Ptr<HierarchicalMatcher> takeMatcher(ByteSource& in, MatcherOracle& oracle)
+{
+    const bool wild = in.between(0, 7) == 7;
+    for (int i = in.between(1 - wild, 4); i > 0; i--)
+        oracle.levelSizes.push_back(in.between(1 - 2 * wild, in.flag() ? 70 : 9));
+    const int mode = in.between(-wild, 2 + wild);
+    oracle.crossCheck = in.flag();
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(oracle.levelSizes, mode,
+            wild ? in.number() : in.between(0, 64) / 64.f, oracle.crossCheck);
+    if (in.flag())
+    {
+        std::vector<float> thresholds;
+        for (size_t i = wild; i < oracle.levelSizes.size(); i++)
+            thresholds.push_back(wild ? in.number() : in.between(0, 64) / 64.f);
+        if (thresholds.size() > 1)
+            thresholds.pop_back();
+        if (!thresholds.empty())
+            matcher->setThresholds(thresholds);
+    }
+    oracle.maxRatio = wild ? in.number() : in.between(1, 16) / 16.f;
+    matcher->setMaxRatio(oracle.maxRatio);
+    if (mode == HierarchicalMatcher::THRESHOLD)
+        oracle.thresholds = matcher->getThresholds();
+    return matcher;
+}
+
+void checkRadius(HierarchicalMatcher& matcher, const Mat& queries, float radius, MatcherOracle& oracle)
+{
+    Matches found(3);
+    matcher.radiusMatch(queries, found, radius, oracle.masks);
+    // also for a radius that is no number
+    const double largest = 8. * queries.cols;
+    FUZZ_CHECK(equal(oracle.radius(queries, radius >= 0 ? cvFloor(std::min((double)radius, largest)) : -1), found));
+}
+
+void run(ByteSource& in)
+{
+    MatcherOracle oracle;
+    const Ptr<HierarchicalMatcher> matcher = takeMatcher(in, oracle);
+    const int width = std::accumulate(oracle.levelSizes.begin(), oracle.levelSizes.end(), 0);
+    const Mat queries = takeDescriptors(in, width);
+    size_t trains = 0;
+    for (int i = in.between(0, 4); i > 0; i--)
+    {
+        oracle.images.push_back(takeDescriptors(in, width));
+        trains += oracle.images.back().rows;
+        if (in.flag())
+            matcher->add(oracle.images.back());
+        else
+            matcher->add(std::vector<Mat>(1, oracle.images.back()));
+    }
+    if (in.flag())
+        oracle.masks = takeMasks(in, oracle.images, queries.rows);
+    // all neighbours: the time for that grows with their number squared
+    const bool all = in.between(0, 15) == 15 && (double)queries.rows * (double)trains < 50000;
+    const int k = all ? INT_MAX : in.between(1, 20);
+    const float radius = in.number();
+    const bool compact = in.flag(), wrongWidth = in.between(0, 31) == 31;
+    setNumThreads(in.between(1, 4));
+
+    Matches found(2), again;
+    bool thrown = false;
+    try
+    {
+        matcher->knnMatch(wrongWidth ? Mat(3, width + 1, CV_8U, Scalar(1)) : queries, found, k, oracle.masks, compact);
+    }
+    catch (const cv::Exception&)
+    {
+        thrown = true;
+    }
+    if (queries.empty() || trains == 0)
+        return;  // DescriptorMatcher has returned before asking
+    FUZZ_CHECK(thrown == (wrongWidth || !areValid(oracle.masks, oracle.images, queries.rows)));
+    if (thrown)
+        return;
+
+    // ADAPTIVE has nothing to go by in a single small level
+    const bool exact = matcher->getMode() != HierarchicalMatcher::ADAPTIVE ||
+                       (oracle.levelSizes.size() == 1 && width <= 4);
+    const bool cheap = (double)queries.rows * (double)trains * width < 200000;
+    if (cheap && exact)
+    {
+        Matches expected = oracle.knn(queries, k);
+        if (compact)
+            expected.erase(std::remove_if(expected.begin(), expected.end(), [](const std::vector<DMatch>& row)
+            {
+                return row.empty();
+            }), expected.end());
+        FUZZ_CHECK(equal(expected, found));
+    }
+    FUZZ_CHECK(isPartOf(found, oracle, queries, k));
+    const double cost = matcher->matchCost();
+    FUZZ_CHECK(cost >= 0 && cost <= 1);
+    if (cheap && radius != 0)
+        checkRadius(*matcher, queries, radius, oracle);
+
+    setNumThreads(in.between(1, 4));
+    matcher->clone(false)->knnMatch(queries, again, k, oracle.masks, compact);
+    FUZZ_CHECK(equal(found, again));
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
+{
+    return runTarget(run, data, size);
+}

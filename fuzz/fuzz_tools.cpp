@@ -1,0 +1,54 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// The readers of the evaluation: homographies, keypoint lists, lists of pairs. Any text gives a cv::Exception or
+// what the headers promise.
+
+#include "byte_source.hpp"
+#include "common/dataset.hpp"
+#include "file.hpp"
+#include "common/keypoints.hpp"
+
+#include <cmath>
+
+namespace {
+
+using namespace iib_tools;
+
+void readAs(int kind, const std::string& file)
+{
+    if (kind == 0)
+    {
+        const cv::Matx33d H = readHomography(file);
+        for (const double value : H.val)
+            FUZZ_CHECK(std::isfinite(value));
+        FUZZ_CHECK(cv::determinant(H) != 0);
+    }
+    else if (kind == 1)
+    {
+        for (const cv::KeyPoint& kp : readKeypoints(file))
+            FUZZ_CHECK(std::isfinite(kp.pt.x) && std::isfinite(kp.pt.y) && std::isfinite(kp.size) && kp.size > 0 &&
+                       std::isfinite(kp.angle) && std::isfinite(kp.response));
+    }
+    else
+        for (const ImagePair& pair : findPairs(std::vector<std::string>(1, file)))
+            FUZZ_CHECK(!pair.problem.empty() || (!pair.referenceFile.empty() && !pair.targetFile.empty()));
+}
+
+}  // namespace
+
+//! The first byte chooses the reader, '0' to '2'.
+extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
+{
+    static const ScratchFile file(".csv");
+    file.write(size > 0 ? std::string((const char*)data + 1, size - 1) : std::string());
+    try
+    {
+        readAs(size > 0 ? data[0] % 3 : 0, file.name);
+    }
+    catch (const cv::Exception&)
+    {
+    }
+    return 0;
+}

@@ -1,0 +1,63 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_ALIGNED_BUFFER_HPP
+#define OPENCV_IIB_ALIGNED_BUFFER_HPP
+
+#include "../precomp.hpp"
+
+namespace cv {
+namespace iib {
+
+enum { CACHE_LINE = 64 };
+
+//! n rounded up to fill whole cache lines of T.
+template <typename T> inline size_t wholeLines(size_t n)
+{
+    return (n * sizeof(T) + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE / sizeof(T);
+}
+
+/** Values that begin on a cache line: the widest vectors then never cross one, which would halve their speed.
+ Not initialized; moved but not copied. */
+template <typename T> class AlignedBuffer
+{
+public:
+    AlignedBuffer() : memory(0), values(0), capacity(0) {}
+    explicit AlignedBuffer(size_t n) : AlignedBuffer() { allocate(n); }
+    AlignedBuffer(AlignedBuffer&& other) : AlignedBuffer()
+    {
+        std::swap(memory, other.memory);
+        std::swap(values, other.values);
+        std::swap(capacity, other.capacity);
+    }
+    ~AlignedBuffer() { fastFree(memory); }
+    AlignedBuffer(const AlignedBuffer&) = delete;
+    AlignedBuffer& operator=(const AlignedBuffer&) = delete;
+
+    //! Room for at least n values; what was there is lost if that is more than before.
+    void allocate(size_t n)
+    {
+        if (n <= capacity)
+            return;
+        fastFree(memory);
+        memory = 0;
+        capacity = 0;
+        memory = fastMalloc(n * sizeof(T) + CACHE_LINE);
+        values = alignPtr(static_cast<T*>(memory), CACHE_LINE);
+        capacity = n;
+    }
+
+    T* data() { return values; }
+    const T* data() const { return values; }
+
+private:
+    void* memory;
+    T* values;
+    size_t capacity;
+};
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

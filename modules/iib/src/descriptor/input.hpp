@@ -1,0 +1,32 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_INPUT_HPP
+#define OPENCV_IIB_INPUT_HPP
+
+#include "../precomp.hpp"
+
+namespace cv {
+namespace iib {
+
+/* What users pass, checked, as single-channel integer maps (CV_8U or CV_16U), on which all later decisions
+ are exact. */
+
+//! Throws unless the image is 8U, 16U or 32F with 1, 3 or 4 channels and finite.
+void checkImage(const Mat& image);
+
+//! Throws unless there are `expected` single-channel maps of the image's size, 8U, 16U or 32F and finite.
+void checkExtraChannels(const std::vector<Mat>& maps, int expected, Size imageSize);
+
+//! Throws unless position and size of every keypoint are finite and the size is positive.
+void checkKeyPoints(const std::vector<KeyPoint>& keypoints);
+
+/** The part `area` of an image as a grey map. 8U and 16U stay what they are; 32F is cut into 65535 steps
+ between the minimum and maximum of the whole image, so that a gain and an offset change nothing. */
+Mat integerMap(const Mat& image, Rect area);
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

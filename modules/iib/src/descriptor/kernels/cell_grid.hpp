@@ -1,0 +1,69 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_CELLS_HPP
+#define OPENCV_IIB_CELLS_HPP
+
+#include "../../common/aligned_buffer.hpp"
+#include "integral.hpp"
+#include "../support_region.hpp"
+
+namespace cv {
+namespace iib {
+
+/** Sums over the cells of one level, n x n cells of GROUP_CHANNELS channels each. The cells in even columns of a
+ row lie side by side, and those in odd columns: the left and right cells of the quads. T is ushort or unsigned, as
+ the sums in integral images, or double where an unsigned is too small. */
+template <typename T> class CellGrid
+{
+public:
+    CellGrid() : n(0), step(0) {}
+
+    void create(int cellsInRow)
+    {
+        n = cellsInRow;
+        step = wholeLines<T>((size_t)n / 2 * GROUP_CHANNELS + CACHE_LINE / sizeof(T));
+        values.allocate(2 * (n + 1) * step);  // a row more, for the corners of cells
+    }
+
+    //! Cells (row, parity), (row, parity + 2), ...; kernels may run a vector over the end, with one cell skipped.
+    T* row(int r, int parity) { return values.data() + (2 * r + parity) * step; }
+    const T* row(int r, int parity) const { return values.data() + (2 * r + parity) * step; }
+
+    //! The channels of one cell.
+    const T* cell(int r, int c) const { return row(r, c & 1) + (c >> 1) * GROUP_CHANNELS; }
+    T* cell(int r, int c) { return row(r, c & 1) + (c >> 1) * GROUP_CHANNELS; }
+
+    int size() const { return n; }
+
+    //! From a row to the next one, in values.
+    size_t rowStep() const { return 2 * step; }
+
+private:
+    int n;
+    size_t step;
+    AlignedBuffer<T> values;
+};
+
+//! The n + 1 edges of n columns, and the last one again: kernels run over the end, by up to 7 columns of any level.
+inline int paddedEdges(int n) { return n + 1 + 7 * (n / 2); }
+
+/** The edges of the n x n cells of a ROS, clamped to the image (see quadtree.hpp).
+ @param x gets paddedEdges(n); @param y gets n + 1. */
+typedef void (*CellEdgesFunc)(const Ros& ros, int n, Size image, int* x, int* y);
+CellEdgesFunc getCellEdgesFunc();
+
+//! Sums over n x n cells with the given edges, paddedEdges(n) and n + 1 of them, in pixels of the image.
+template <typename Sum> struct CellSumsFunc
+{
+    typedef void (*Type)(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n,
+                         CellGrid<Sum>& cells);
+};
+CellSumsFunc<ushort>::Type getCellSumsFunc(ushort);
+CellSumsFunc<unsigned>::Type getCellSumsFunc(unsigned);
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

@@ -1,0 +1,146 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../../common/simd.hpp"
+
+#include "../channel_rows.hpp"
+#include "orientation.hpp"
+
+namespace cv {
+namespace iib {
+
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+const RowKernels<short>& shortRowKernels();
+const RowKernels<int>& intRowKernels();
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+namespace {
+
+inline v_int16 absolute(const v_int16& v)
+{
+    return v_reinterpret_as_s16(v_abs(v));
+}
+
+inline v_int32 absolute(const v_int32& v)
+{
+    return v_reinterpret_as_s32(v_abs(v));
+}
+
+inline v_int16 setAll(short v) { return vx_setall_s16(v); }
+inline v_int32 setAll(int v) { return vx_setall_s32(v); }
+
+template <typename Lane>
+void gradientRow(const Lane* above, const Lane* middle, const Lane* below, Lane* gx, Lane* gy, int width)
+{
+    typedef decltype(setAll(Lane())) V;
+    for (int x = 0; x < width; x += VTraits<V>::max_nlanes)
+    {
+        const V a0 = vx_load(above + x), a1 = vx_load(above + x + 1), a2 = vx_load(above + x + 2);
+        const V m0 = vx_load(middle + x), m2 = vx_load(middle + x + 2);
+        const V b0 = vx_load(below + x), b1 = vx_load(below + x + 1), b2 = vx_load(below + x + 2);
+        const V dm = m2 - m0, d0 = b0 - a0, d1 = b1 - a1, d2 = b2 - a2;
+        v_store(gx + x, ((a2 - a0) + (b2 - b0)) + (dm + dm));
+        v_store(gy + x, (d0 + d2) + (d1 + d1));
+    }
+}
+
+//! ORIENTATION_STEPS / 8 steps for equal sides; lo <= hi, hi > 0.
+inline v_int32 octantSteps(const v_int32& lo, const v_int32& hi)
+{
+    const v_float32 t = v_cvt_f32(lo) / v_cvt_f32(hi), t2 = t * t;
+    const v_float32 a = vx_setall_f32(ATAN_A), b = vx_setall_f32(ATAN_B), c = vx_setall_f32(ATAN_C);
+    return v_round(((c * t2 + b) * t2 + a) * t);
+}
+
+//! Even and odd lanes apart, which takes no shuffle; lanes are 0 or greater.
+inline v_int16 octantSteps(const v_int16& lo, const v_int16& hi)
+{
+    const v_int32 low = vx_setall_s32(0xffff), lo2 = v_reinterpret_as_s32(lo), hi2 = v_reinterpret_as_s32(hi);
+    const v_int32 even = octantSteps(lo2 & low, hi2 & low), odd = octantSteps(lo2 >> 16, hi2 >> 16);
+    return v_reinterpret_as_s16(even | (odd << 16));
+}
+
+//! -1 where v is negative, else 0: cheaper than a comparison, which AVX-512 makes a mask that it must turn back.
+inline v_int16 negative(const v_int16& v) { return v >> 15; }
+inline v_int32 negative(const v_int32& v) { return v >> 31; }
+
+//! `whole` - steps where `mask` is -1, steps where it is 0; as steps ^ -1 is -steps - 1.
+template <typename V> inline V mirror(const V& steps, const V& mask, const V& wholeAndOne)
+{
+    return (steps ^ mask) + (mask & wholeAndOne);
+}
+
+template <typename Lane> void orientationRow(const Lane* gxRow, const Lane* gyRow, Lane* steps, int width)
+{
+    typedef decltype(setAll(Lane())) V;
+    const V zero = setAll((Lane)0), one = setAll((Lane)1), mask = setAll((Lane)(ORIENTATION_STEPS - 1));
+    const V quarter = setAll((Lane)(ORIENTATION_STEPS / 4 + 1)), half = setAll((Lane)(ORIENTATION_STEPS / 2 + 1));
+    for (int x = 0; x < width; x += VTraits<V>::max_nlanes)
+    {
+        const V gx = vx_load(gxRow + x), gy = vx_load(gyRow + x);
+        const V ax = absolute(gx), ay = absolute(gy);
+        V s = octantSteps(v_min(ax, ay), v_max(v_max(ax, ay), one));
+        s = mirror(s, negative(ax - ay), quarter);
+        s = mirror(s, negative(gx), half);
+        s = mirror(s, negative(zero - gy), one);  // of a whole turn, which the mask takes away
+        v_store(steps + x, s & mask);
+    }
+}
+
+// The rest is left to the compiler, which has this file's instruction set too.
+
+template <typename Lane> void absoluteRow(const Lane* in, Lane* out, int width)
+{
+    for (int x = 0; x < width; x++)
+        out[x] = (Lane)(in[x] < 0 ? -in[x] : in[x]);
+}
+
+template <typename Lane> void addRow(const Lane* in, Lane addend, Lane* out, int width)
+{
+    for (int x = 0; x < width; x++)
+        out[x] = (Lane)(in[x] + addend);
+}
+
+void widenRow(const uchar* in, short* out, int width)
+{
+    int x = 0;
+    for (; x <= width - VTraits<v_int16>::max_nlanes; x += VTraits<v_int16>::max_nlanes)
+        v_store(out + x, v_reinterpret_as_s16(vx_load_expand(in + x)));
+    for (; x < width; x++)
+        out[x] = in[x];
+}
+
+template <typename Pixel, typename Lane> void widenRow(const Pixel* in, Lane* out, int width)
+{
+    for (int x = 0; x < width; x++)
+        out[x] = (Lane)in[x];
+}
+
+template <typename Lane> const RowKernels<Lane>& kernels()
+{
+    static const RowKernels<Lane> k = { gradientRow<Lane>, orientationRow<Lane>, absoluteRow<Lane>, addRow<Lane>,
+                                        widenRow, widenRow };
+    return k;
+}
+
+}  // namespace
+
+const RowKernels<short>& shortRowKernels()
+{
+    return kernels<short>();
+}
+
+const RowKernels<int>& intRowKernels()
+{
+    return kernels<int>();
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+
+}  // namespace iib
+}  // namespace cv

@@ -1,0 +1,164 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../../common/simd.hpp"
+
+#include "integral.hpp"
+
+namespace cv {
+namespace iib {
+
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+SumRowFunc<short, ushort>::Type getSumRowFunc(short, ushort);
+SumRowFunc<short, unsigned>::Type getSumRowFunc(short, unsigned);
+SumRowFunc<int, unsigned>::Type getSumRowFunc(int, unsigned);
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+namespace {
+
+//! Adds to each value those before it in its group of four. No sum exceeds 16 bits.
+inline v_uint16 sumsOfFour(const v_uint16& plane)
+{
+#if CV_SIMD_WIDTH == 64
+    return v_uint16(_mm512_mullo_epi64(plane.val, _mm512_set1_epi64(0x0001000100010001)));
+#else
+    // Added in 16 bits: valgrind takes a whole 64-bit sum for undefined where the last pixels of four are.
+    const v_uint16 two = v_add_wrap(plane, v_reinterpret_as_u16(v_reinterpret_as_u64(plane) << 16));
+    return v_add_wrap(two, v_reinterpret_as_u16(v_reinterpret_as_u64(two) << 32));
+#endif
+}
+
+//! From sums over each four pixels to sums over the vector.
+inline v_uint16 sumsOfVector(const v_uint16& v)
+{
+#if CV_SIMD_WIDTH == 64
+    return v_uint16(_mm512_add_epi16(v.val, _mm512_maskz_permutexvar_epi64(0xf0, _mm512_set1_epi64(3), v.val)));
+#else
+    return v;
+#endif
+}
+
+//! The last pixel in the places of all; universal intrinsics have this for 128 bits only.
+inline v_uint16 lastPixel(const v_uint16& v)
+{
+#if CV_SIMD_WIDTH == 64
+    return v_uint16(_mm512_permutexvar_epi64(_mm512_set1_epi64(7), v.val));
+#elif CV_SIMD_WIDTH == 32
+    return v_uint16(_mm256_permute4x64_epi64(v.val, 0xff));
+#else
+    return v_combine_high(v, v);
+#endif
+}
+
+inline v_uint32 lastPixel(const v_uint32& v)
+{
+#if CV_SIMD_WIDTH == 64
+    return v_uint32(_mm512_shuffle_i32x4(v.val, v.val, 0xff));
+#elif CV_SIMD_WIDTH == 32
+    return v_uint32(_mm256_permute2x128_si256(v.val, v.val, 0x11));
+#else
+    return v;
+#endif
+}
+
+//! The plane's sums over each four pixels, from pixel x on.
+inline v_uint16 loadSums(const short* plane, int x)
+{
+    return sumsOfFour(v_reinterpret_as_u16(vx_load(plane + x)));
+}
+
+//! A vector (v_uint16) of pixels of four channels, side by side.
+inline void interleave(const short* const planes[GROUP_CHANNELS], int x, v_uint16 pixels[4])
+{
+    v_uint16 a0, a1, b0, b1;
+    v_zip(loadSums(planes[0], x), loadSums(planes[1], x), a0, a1);
+    v_zip(loadSums(planes[2], x), loadSums(planes[3], x), b0, b1);
+    v_uint32 p0, p1, p2, p3;
+    v_zip(v_reinterpret_as_u32(a0), v_reinterpret_as_u32(b0), p0, p1);
+    v_zip(v_reinterpret_as_u32(a1), v_reinterpret_as_u32(b1), p2, p3);
+    pixels[0] = v_reinterpret_as_u16(p0);
+    pixels[1] = v_reinterpret_as_u16(p1);
+    pixels[2] = v_reinterpret_as_u16(p2);
+    pixels[3] = v_reinterpret_as_u16(p3);
+}
+
+void sumRow16(const short* const planes[GROUP_CHANNELS], int width, const ushort* above, ushort* out)
+{
+    const int step = VTraits<v_uint16>::max_nlanes, pixelsInVector = step / GROUP_CHANNELS;
+    v_uint16 carry = vx_setzero_u16();
+    for (int x = 0; x < width; x += step)
+    {
+        v_uint16 pixels[4];
+        interleave(planes, x, pixels);
+        for (int i = 0; i < 4; i++)
+        {
+            const int at = (x + i * pixelsInVector + 1) * GROUP_CHANNELS;
+            const v_uint16 sums = sumsOfVector(pixels[i]);
+            v_store(out + at, v_add_wrap(v_add_wrap(sums, carry), vx_load(above + at)));
+            if ((i + 1) * pixelsInVector % 4 == 0)
+                carry = v_add_wrap(carry, lastPixel(sums));
+        }
+    }
+}
+
+void sumRow32(const short* const planes[GROUP_CHANNELS], int width, const unsigned* above, unsigned* out)
+{
+    const int step = VTraits<v_uint16>::max_nlanes, pixelsInVector = step / GROUP_CHANNELS / 2;
+    v_uint32 carry = vx_setzero_u32();
+    for (int x = 0; x < width; x += step)
+    {
+        v_uint16 pixels[4];
+        interleave(planes, x, pixels);
+        for (int i = 0; i < 8; i += 2)
+        {
+            v_uint32 sums[2];
+            v_expand(pixels[i / 2], sums[0], sums[1]);
+            for (int j = 0; j < 2; j++)
+            {
+                const int at = (x + (i + j) * pixelsInVector + 1) * GROUP_CHANNELS;
+                v_store(out + at, sums[j] + carry + vx_load(above + at));
+                if ((i + j + 1) * pixelsInVector % 4 == 0)
+                    carry = carry + lastPixel(sums[j]);
+            }
+        }
+    }
+}
+
+//! Of deep images, whose sums over four pixels exceed 16 bits. A pixel is one 128-bit vector here, on every machine.
+void sumDeepRow(const int* const planes[GROUP_CHANNELS], int width, const unsigned* above, unsigned* out)
+{
+    v_uint32x4 sum = v_setzero_u32();
+    for (int x = 0; x < width; x++)
+    {
+        sum = sum + v_uint32x4((unsigned)planes[0][x], (unsigned)planes[1][x], (unsigned)planes[2][x],
+                               (unsigned)planes[3][x]);
+        v_store(out + 4 * (x + 1), sum + v_load(above + 4 * (x + 1)));
+    }
+}
+
+}  // namespace
+
+SumRowFunc<short, ushort>::Type getSumRowFunc(short, ushort)
+{
+    return sumRow16;
+}
+
+SumRowFunc<short, unsigned>::Type getSumRowFunc(short, unsigned)
+{
+    return sumRow32;
+}
+
+SumRowFunc<int, unsigned>::Type getSumRowFunc(int, unsigned)
+{
+    return sumDeepRow;
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+
+}  // namespace iib
+}  // namespace cv

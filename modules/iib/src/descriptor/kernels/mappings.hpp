@@ -1,0 +1,155 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_MAPPINGS_HPP
+#define OPENCV_IIB_MAPPINGS_HPP
+
+#include "../../precomp.hpp"
+
+namespace cv {
+namespace iib {
+
+/* Mappings f(x) of the four cell means of a quad to bits (paper, "Binary Bit Formulation"). They are written
+ once for numbers and for vectors: V is double or a vector, and put(bit, b) takes what a comparison of V gives.
+ No value exceeds four times the largest x. */
+
+template <typename V> inline V least(const V& a, const V& b) { return v_min(a, b); }
+template <typename V> inline V greatest(const V& a, const V& b) { return v_max(a, b); }
+template <> inline double least(const double& a, const double& b) { return std::min(a, b); }
+template <> inline double greatest(const double& a, const double& b) { return std::max(a, b); }
+
+template <typename V> inline V fourTimes(const V& v) { return v << 2; }
+template <> inline double fourTimes(const double& v) { return 4 * v; }
+
+//! Rounded down for vectors of whole numbers, than which a whole number is greater if it is than the quarter itself.
+template <typename V> inline V quarter(const V& v) { return v >> 2; }
+template <> inline double quarter(const double& v) { return v / 4; }
+
+//! Equation (1): x_i > mean(x).
+struct MeanMapping
+{
+    enum { BITS = 4 };
+
+    template <typename V, typename Put> static void map(const V x[4], const Put& put)
+    {
+        const V mean = quarter(V((x[0] + x[1]) + (x[2] + x[3])));
+        for (int i = 0; i < 4; i++)
+            put(i, x[i] > mean);
+    }
+};
+
+struct MaxMapping
+{
+    enum { BITS = 4 };
+
+    template <typename V, typename Put> static void map(const V x[4], const Put& put)
+    {
+        const V top = greatest(greatest(x[0], x[1]), greatest(x[2], x[3]));
+        for (int i = 0; i < 4; i++)
+            put(i, x[i] == top);
+    }
+};
+
+struct MinMapping
+{
+    enum { BITS = 4 };
+
+    template <typename V, typename Put> static void map(const V x[4], const Put& put)
+    {
+        const V bottom = least(least(x[0], x[1]), least(x[2], x[3]));
+        for (int i = 0; i < 4; i++)
+            put(i, x[i] == bottom);
+    }
+};
+
+//! Equation (2), with x - min(x) and R = max(x) - min(x) both four times as large.
+struct QuartileMapping
+{
+    enum { BITS = 8 };
+
+    template <typename V, typename Put> static void map(const V x[4], const Put& put)
+    {
+        const V bottom = least(least(x[0], x[1]), least(x[2], x[3]));
+        const V range = greatest(greatest(x[0], x[1]), greatest(x[2], x[3])) - bottom;
+        const V twice = range + range;
+        for (int i = 0; i < 4; i++)
+        {
+            const V a4 = fourTimes(V(x[i] - bottom));
+            // thresholds passed: 0 to 3, in binary
+            put(2 * i, a4 > twice);
+            put(2 * i + 1, (a4 > range) ^ (a4 > twice) ^ (a4 > twice + range));
+        }
+    }
+};
+
+//! The rank of x_i, 0 the smallest; among equals the lower index ranks lower.
+struct SortMapping
+{
+    enum { BITS = 8 };
+
+    template <typename V, typename Put> static void map(const V x[4], const Put& put)
+    {
+        for (int i = 0; i < 4; i++)
+        {
+            const int j = (i + 1) & 3, k = (i + 2) & 3, l = (i + 3) & 3;
+            const auto a = ranksAfter(x, i, j), b = ranksAfter(x, i, k), c = ranksAfter(x, i, l);
+            put(2 * i, (a & b) | (c & (a ^ b)));
+            put(2 * i + 1, a ^ b ^ c);
+        }
+    }
+
+private:
+    template <typename V> static auto ranksAfter(const V x[4], int i, int j) -> decltype(x[0] > x[0])
+    {
+        return i < j ? x[i] > x[j] : x[i] >= x[j];
+    }
+};
+
+//! Left > right, top > bottom, main > other diagonal.
+struct HaarMapping
+{
+    enum { BITS = 3 };
+
+    template <typename V, typename Put> static void map(const V x[4], const Put& put)
+    {
+        put(0, x[0] + x[2] > x[1] + x[3]);
+        put(1, x[0] + x[1] > x[2] + x[3]);
+        put(2, x[0] + x[3] > x[1] + x[2]);
+    }
+};
+
+//! Each cell > the next, around the quad.
+struct PairwiseMapping
+{
+    enum { BITS = 4 };
+
+    template <typename V, typename Put> static void map(const V x[4], const Put& put)
+    {
+        put(0, x[0] > x[1]);
+        put(1, x[1] > x[3]);
+        put(2, x[3] > x[2]);
+        put(3, x[2] > x[0]);
+    }
+};
+
+//! visitor.visit<M>() with the type M of a mapping.
+template <typename Visitor> inline auto visitMapping(int mapping, const Visitor& visitor)
+    -> decltype(visitor.template visit<MeanMapping>())
+{
+    switch (mapping)
+    {
+    case IIB::MAPPING_MAX: return visitor.template visit<MaxMapping>();
+    case IIB::MAPPING_MIN: return visitor.template visit<MinMapping>();
+    case IIB::MAPPING_QUARTILE: return visitor.template visit<QuartileMapping>();
+    case IIB::MAPPING_SORT: return visitor.template visit<SortMapping>();
+    case IIB::MAPPING_HAAR: return visitor.template visit<HaarMapping>();
+    case IIB::MAPPING_PAIRWISE: return visitor.template visit<PairwiseMapping>();
+    default: return visitor.template visit<MeanMapping>();
+    }
+}
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

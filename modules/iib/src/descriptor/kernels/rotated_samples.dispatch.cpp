@@ -1,0 +1,24 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../../precomp.hpp"
+
+#include "rotated_samples.simd.hpp"
+#include "descriptor/kernels/rotated_samples.simd_declarations.hpp"
+
+namespace cv {
+namespace iib {
+
+const SampleKernels<short>& shortSampleKernels()
+{
+    CV_CPU_DISPATCH(shortSampleKernels, (), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+const SampleKernels<int>& intSampleKernels()
+{
+    CV_CPU_DISPATCH(intSampleKernels, (), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+}  // namespace iib
+}  // namespace cv

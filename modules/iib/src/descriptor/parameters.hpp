@@ -1,0 +1,41 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_PARAMETERS_HPP
+#define OPENCV_IIB_PARAMETERS_HPP
+
+#include "../precomp.hpp"
+
+namespace cv {
+namespace iib {
+
+enum { MAX_GRANULARITY = 6, MAX_EXTRA_CHANNELS = 16, ALL_CHANNELS = 63 };
+
+//! What create() is given; setters go through check() before anything changes.
+struct Parameters
+{
+    float scaleFactor;
+    int granularity;
+    int channels;
+    int mapping;
+    bool overlap;
+    bool useOrientation;
+    int extraChannels;
+    int border;
+    Mat_<int> selection;  //!< as IIBDescriptorExtractor::setSelection takes it; empty: all quads
+
+    //! Throws a cv::Exception that names the parameter and its range.
+    void check() const;
+
+    //! Image channels in use and extra channels.
+    int channelCount() const;
+};
+
+//! Bits that a mapping makes of one quad.
+int bitsPerQuad(int mapping);
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

@@ -1,0 +1,58 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../precomp.hpp"
+
+namespace cv {
+namespace iib {
+
+namespace {
+
+struct DetectorScale
+{
+    const char* name;
+    float scaleFactor;
+};
+
+/* Paper, "Experiments Combined with Feature Detectors", for AKAZE to SURF. FAST, AGAST (size 7) and GFTT
+ (size 3) find corners of one size: a ROS of 64 pixels, as in "Predefined Feature Points". The sizes of MSER
+ and SimpleBlob are the diameters of regions; the ROS takes in their surroundings. */
+const DetectorScale detectorScales[] = {
+    { "akaze", 12.f }, { "orb", 2.f }, { "brisk", 4.f }, { "sift", 20.f }, { "kaze", 20.f }, { "surf", 4.f },
+    { "fast", 64.f / 7 }, { "agast", 64.f / 7 }, { "gftt", 64.f / 3 }, { "mser", 2.f }, { "simpleblob", 4.f }
+};
+
+}  // namespace
+
+float IIBDescriptorExtractor::scaleFactorFor(const String& detectorName)
+{
+    String name;
+    for (size_t i = 0; i < detectorName.size(); i++)
+        name += (char)tolower((unsigned char)detectorName[i]);
+    name = name.substr(name.rfind('.') == String::npos ? 0 : name.rfind('.') + 1);
+    // Algorithm names of OpenCV that are not the short name
+    if (name == "fastfeaturedetector" || name == "agastfeaturedetector" || name == "gfttdetector"
+        || name == "simpleblobdetector")
+        name = name.substr(0, name.find(name[0] == 'g' || name[0] == 's' ? "detector" : "featuredetector"));
+
+    String known;
+    for (const DetectorScale& d : detectorScales)
+    {
+        if (name == d.name)
+            return d.scaleFactor;
+        known += String(known.empty() ? "" : ", ") + d.name;
+    }
+    CV_Error(Error::StsBadArg, "no scale factor is known for the detector \"" + detectorName + "\", only for " + known
+                               + "; give create() the ROS side divided by KeyPoint::size");
+}
+
+float IIBDescriptorExtractor::scaleFactorFor(const Ptr<Feature2D>& detector)
+{
+    if (!detector)
+        CV_Error(Error::StsNullPtr, "the detector is null");
+    return scaleFactorFor(detector->getDefaultName());
+}
+
+}  // namespace iib
+}  // namespace cv

@@ -1,0 +1,22 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_MATCHER_INPUT_HPP
+#define OPENCV_IIB_MATCHER_INPUT_HPP
+
+#include "packed_codes.hpp"
+
+namespace cv {
+namespace iib {
+
+//! The descriptors if they are of `width` bytes each, 0 x width if there are none; throws otherwise.
+Mat checkedDescriptors(const Mat& descriptors, int width);
+
+//! A mask for each image of the index, or none if all are empty; throws where one does not fit.
+std::vector<Mat> checkedMasks(InputArrayOfArrays masks, int queries, const HammingIndex& index);
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

@@ -1,0 +1,63 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// What both packings of codes share. Included by hamming.simd.hpp.
+
+#include "../../common/simd.hpp"
+
+namespace cv {
+namespace iib {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+namespace {
+
+typedef v_uint32 Words;
+typedef v_int32 Counts;
+const int LANES = HammingLayout::LANES, WIDTH = VTraits<Words>::max_nlanes, VECTORS = LANES / WIDTH;
+
+//! 0, 1, 2, ... over the lanes of a vector.
+inline Counts laneNumbers()
+{
+    static const int NUMBERS[LANES] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 };
+    return vx_load(NUMBERS);
+}
+
+inline int countLanes(int lanes)
+{
+#if CV_POPCNT
+    return _mm_popcnt_u32(lanes);
+#else
+    int count = 0;
+    for (; lanes; lanes &= lanes - 1)
+        count++;
+    return count;
+#endif
+}
+
+//! The lanes with a negative value.
+CV_ALWAYS_INLINE int negativeLanes(const Counts* values)
+{
+    int lanes = 0;
+    for (int v = 0; v < VECTORS; v++)
+        lanes |= v_signmask(values[v]) << v * WIDTH;
+    return lanes;
+}
+
+//! Writes the values of some lanes, and may write LANES values whatever their number.
+CV_ALWAYS_INLINE void storeLanes(int* to, const Counts* values, int lanes)
+{
+#if CV_AVX512_SKX
+    v_store(to, Counts(_mm512_maskz_compress_epi32((__mmask16)lanes, values[0].val)));
+#else
+    int all[LANES];
+    for (int v = 0; v < VECTORS; v++)
+        v_store(all + v * WIDTH, values[v]);
+    for (; lanes; lanes &= lanes - 1)
+        *to++ = all[trailingZeros32(lanes)];
+#endif
+}
+
+}  // namespace
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}  // namespace iib
+}  // namespace cv

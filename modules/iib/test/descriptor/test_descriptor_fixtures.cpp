@@ -1,0 +1,109 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/descriptor_oracle.hpp"
+#include "../support/test_images.hpp"
+
+#include <fstream>
+
+namespace opencv_test {
+namespace {
+
+/* The core's fixtures read their image by name from OpenCV's own test data, which few machines have. This imread
+ hides cv::imread from them: where there is no such file, they get a drawn scene. */
+Mat imread(const std::string& name)
+{
+    return std::ifstream(name.c_str()) ? cv::imread(name) : scene(Size(400, 320), 1);
+}
+
+}  // namespace
+}  // namespace opencv_test
+
+#include "features2d/test/test_descriptors_invariance.impl.hpp"
+
+namespace opencv_test {
+namespace {
+
+Ptr<IIB> extractorFor(const Ptr<Feature2D>& detector)
+{
+    return IIB::create(
+            IIB::scaleFactorFor(detector), 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, true);
+}
+
+//! What the fixture wants: an object up to OpenCV 4.6, what makes it in later versions.
+struct Given
+{
+    Ptr<Feature2D> object;
+    operator Ptr<Feature2D>() const { return object; }
+    Ptr<Feature2D> operator()() const { return object; }
+};
+
+String_FeatureDetector_DescriptorExtractor_Float_t pairedWith(
+        const Ptr<Feature2D>& detector, float minInliers)
+{
+    const Given given = {detector}, extractor = {extractorFor(detector)};
+    return String_FeatureDetector_DescriptorExtractor_Float_t(
+            "cv/features2d/tsukuba.png", given, extractor, minInliers);
+}
+
+INSTANTIATE_TEST_CASE_P(IIB, DescriptorRotationInvariance,
+        testing::Values(pairedWith(ORB::create(), 0.98f), pairedWith(SIFT::create(400), 0.98f),
+                pairedWith(KAZE::create(false, false, 0.005f), 0.98f)));
+
+INSTANTIATE_TEST_CASE_P(IIB, DescriptorScaleInvariance,
+        testing::Values(pairedWith(ORB::create(), 0.98f), pairedWith(SIFT::create(400), 0.98f),
+                pairedWith(KAZE::create(false, false, 0.005f), 0.98f)));
+
+const std::string FEATURES2D_DIR = "cv/features2d",
+                  DESCRIPTOR_DIR = FEATURES2D_DIR + "/descriptor_extractors";
+const std::string IMAGE_FILENAME = "tsukuba.png";
+
+}  // namespace
+}  // namespace opencv_test
+
+#include "features2d/test/test_descriptors_regression.impl.hpp"
+
+namespace opencv_test {
+namespace {
+
+//! The reference comes from the oracle instead of a file, which the fixture would write where it is missing.
+class RegressionTest : public CV_DescriptorExtractorTest<Hamming>
+{
+public:
+    explicit RegressionTest(const Ptr<IIB>& extractor)
+        : CV_DescriptorExtractorTest<Hamming>("descriptor-iib", 0, extractor), iib(extractor)
+    {
+    }
+
+    void emptyData() { emptyDataTest(); }
+
+    Mat readDescriptors() CV_OVERRIDE
+    {
+        const std::string data = ts->get_data_path() + FEATURES2D_DIR + "/";
+        Mat grey;
+        cvtColor(imread(data + IMAGE_FILENAME), grey, COLOR_BGR2GRAY);
+        std::vector<KeyPoint> keypoints;
+        FileStorage fs(data + "keypoints.xml.gz", FileStorage::READ);
+        read(fs.getFirstTopLevelNode(), keypoints);
+        return oracle::describe(*iib, grey, std::vector<Mat>(), keypoints);
+    }
+
+private:
+    Ptr<IIB> iib;
+};
+
+TEST(IIB_Fixtures, empty_data)
+{
+    RegressionTest(IIB::create()).emptyData();
+}
+
+TEST(IIB_Fixtures, regression)
+{
+    cvtest::findDataFile("cv/features2d/keypoints.xml.gz", false);
+    cvtest::findDataFile("cv/features2d/tsukuba.png", false);
+    RegressionTest(IIB::create()).safe_run();
+}
+
+}  // namespace
+}  // namespace opencv_test

@@ -1,0 +1,143 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/test_images.hpp"
+
+/* The exact bits, which no build, machine or later version may change without a new major version: descriptors in
+ files would no longer match. A test that fails prints its line of the table. All lines:
+
+    opencv_test_iib --gtest_filter='IIB_Golden*' | grep '^ *{ "'
+
+ The images and keypoints are made of integers alone (test_images.cpp). */
+namespace opencv_test {
+namespace {
+
+struct Golden
+{
+    const char* name;
+    uint64 hash;
+    void (*set)(IIB& iib);
+    int type;
+};
+
+void nothing(IIB&) {}
+
+void someQuads(IIB& iib)
+{
+    Mat_<int> quads;
+    for (int level = 1; level <= 4; level++)
+        for (int i = 0; i < 6; i++)
+        {
+            const int n = (1 << level) - 1;
+            const Mat_<int> quad = (Mat_<int>(1, 5) << level, (i + level) % 4, i * 5 % n, i / n, 1 + i * 2);
+            if (i < 1 || level > 1)
+                quads.push_back(quad);
+        }
+    iib.setSelection(quads);
+}
+
+void turnedQuads(IIB& iib)
+{
+    someQuads(iib);
+    iib.setUseOrientation(true);
+}
+
+const Golden GOLDEN[] = {{"default", 0x7c4943b59e478a06, nothing, CV_8UC1},
+        {"mapping max", 0x40d0d530ef404756, [](IIB& i) { i.setMapping(IIB::MAPPING_MAX); }, CV_8UC1},
+        {"mapping min", 0xcecf80374d6189d5, [](IIB& i) { i.setMapping(IIB::MAPPING_MIN); }, CV_8UC1},
+        {"mapping quartile", 0x012bfe1b74cbb35c, [](IIB& i) { i.setMapping(IIB::MAPPING_QUARTILE); },
+                CV_8UC1},
+        {"mapping sort", 0x2c9dffdd4a509c8f, [](IIB& i) { i.setMapping(IIB::MAPPING_SORT); }, CV_8UC1},
+        {"mapping haar", 0x0c7717b926942607, [](IIB& i) { i.setMapping(IIB::MAPPING_HAAR); }, CV_8UC1},
+        {"mapping pairwise", 0xcd3c1fb23c418b3a, [](IIB& i) { i.setMapping(IIB::MAPPING_PAIRWISE); },
+                CV_8UC1},
+        {"gradient x", 0x9bf9c215914d0cc5, [](IIB& i) { i.setChannels(IIB::CHANNEL_GRAD_X); }, CV_8UC1},
+        {"gradient y", 0xb7821168e4920a80, [](IIB& i) { i.setChannels(IIB::CHANNEL_GRAD_Y); }, CV_8UC1},
+        {"orientation", 0x1257bf40469fba74, [](IIB& i) { i.setChannels(IIB::CHANNEL_ORIENTATION); }, CV_8UC1},
+        {"intensity", 0x5ccb1e57398af58b, [](IIB& i) { i.setChannels(IIB::CHANNEL_INTENSITY); }, CV_8UC1},
+        {"signed gradient x", 0x515a05677ff21834, [](IIB& i) { i.setChannels(IIB::CHANNEL_SIGNED_GRAD_X); },
+                CV_8UC1},
+        {"signed gradient y", 0xb3d9120c4f31769f, [](IIB& i) { i.setChannels(IIB::CHANNEL_SIGNED_GRAD_Y); },
+                CV_8UC1},
+        {"all channels", 0x7533fec7ca149e12, [](IIB& i) { i.setChannels(63); }, CV_8UC1},
+        {"overlap", 0x00d9099cf996758a, [](IIB& i) { i.setOverlap(true); }, CV_8UC1},
+        {"granularity 1", 0xde85d223b5ebe44c, [](IIB& i) { i.setGranularity(1); }, CV_8UC1},
+        {"granularity 2", 0x2b3e3b7e2247a78b, [](IIB& i) { i.setGranularity(2); }, CV_8UC1},
+        {"granularity 3", 0x76c690f21057f720, [](IIB& i) { i.setGranularity(3); }, CV_8UC1},
+        {"granularity 5", 0x335d65f21031895e, [](IIB& i) { i.setGranularity(5); }, CV_8UC1},
+        {"granularity 6", 0xc8b98b604530e595, [](IIB& i) { i.setGranularity(6); }, CV_8UC1},
+        {"extra channels", 0x3ad673a19c71489b, [](IIB& i) { i.setExtraChannels(3); }, CV_8UC1},
+        {"extra channels alone", 0x2384ba4913fccf32,
+                [](IIB& i) {
+                    i.setExtraChannels(5);
+                    i.setChannels(0);
+                },
+                CV_8UC1},
+        {"orientation of keypoints", 0xc9b6b569adef32d3, [](IIB& i) { i.setUseOrientation(true); }, CV_8UC1},
+        {"16U", 0x3a73cd0cc49a4d35, nothing, CV_16UC1},
+        {"16U, orientation of keypoints", 0x244c6a56586d3caa, [](IIB& i) { i.setUseOrientation(true); },
+                CV_16UC1},
+        {"32F", 0xe2fae45b47d39a52, nothing, CV_32FC1}, {"8U colour", 0x5f19de037522b744, nothing, CV_8UC3},
+        {"32F colour", 0x5dbab4a1ac078b99, nothing, CV_32FC3},
+        {"selection", 0x4b159b8d342f9f70, someQuads, CV_8UC1},
+        {"selection, orientation of keypoints", 0x6358ca80c16b3c4b, turnedQuads, CV_8UC1}};
+
+//! FNV-1a, 64 bits.
+uint64 hashOf(const Mat& m)
+{
+    uint64 hash = CV_BIG_UINT(14695981039346656037);
+    for (int y = 0; y < m.rows; y++)
+        for (int x = 0; x < m.cols; x++)
+            hash = (hash ^ m.at<uchar>(y, x)) * CV_BIG_UINT(1099511628211);
+    return hash;
+}
+
+Mat image(Size size, int type)
+{
+    const int channels = CV_MAT_CN(type), depth = CV_MAT_DEPTH(type);
+    Mat m = texture(Size(size.width * channels, size.height), depth == CV_8U ? CV_8U : CV_16U, 1);
+    if (depth == CV_32F)
+        m.convertTo(m, CV_32F, 1. / 4096, -3);  // exact
+    return m.reshape(channels);
+}
+
+class IIB_Golden : public testing::TestWithParam<Golden>
+{
+};
+
+TEST_P(IIB_Golden, bits)
+{
+    const Golden golden = GetParam();
+    const Size size(320, 240);
+    const Ptr<IIB> iib = IIB::create(2.f);
+    golden.set(*iib);
+    std::vector<Mat> extra;
+    for (int i = 0; i < iib->getExtraChannels(); i++)
+        extra.push_back(texture(size, i % 2 ? CV_16U : CV_8U, 100 + i));
+    std::vector<KeyPoint> keypoints = scatter(size, 500, 3.f, 40.f, 2);
+    keypoints.push_back(KeyPoint(160, 120, 300));
+    const uint64 hash = hashOf(describe(*iib, image(size, golden.type), keypoints, extra));
+    EXPECT_EQ(golden.hash, hash);
+    if (golden.hash != hash)
+        std::cout << format("    { \"%s\", 0x%016llx,\n", golden.name, (unsigned long long)hash);
+}
+
+void PrintTo(const Golden& golden, std::ostream* os)
+{
+    *os << golden.name;
+}
+
+String nameOf(const testing::TestParamInfo<Golden>& info)
+{
+    String name = info.param.name;
+    for (char& c : name)
+        if (!isalnum(c))
+            c = '_';
+    return name;
+}
+
+INSTANTIATE_TEST_CASE_P(/**/, IIB_Golden, testing::ValuesIn(GOLDEN), nameOf);
+
+}  // namespace
+}  // namespace opencv_test

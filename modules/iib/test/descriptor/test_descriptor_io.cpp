@@ -1,0 +1,123 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/test_images.hpp"
+
+namespace opencv_test {
+namespace {
+
+void expectSame(const IIB& expected, const IIB& actual)
+{
+    EXPECT_EQ(expected.getScaleFactor(), actual.getScaleFactor());
+    EXPECT_EQ(expected.getGranularity(), actual.getGranularity());
+    EXPECT_EQ(expected.getChannels(), actual.getChannels());
+    EXPECT_EQ(expected.getMapping(), actual.getMapping());
+    EXPECT_EQ(expected.getOverlap(), actual.getOverlap());
+    EXPECT_EQ(expected.getUseOrientation(), actual.getUseOrientation());
+    EXPECT_EQ(expected.getExtraChannels(), actual.getExtraChannels());
+    EXPECT_EQ(expected.getBorder(), actual.getBorder());
+    ASSERT_EQ(expected.getSelection().size(), actual.getSelection().size());
+    EXPECT_TRUE(expected.getSelection().empty() ||
+                cvtest::norm(expected.getSelection(), actual.getSelection(), NORM_INF) == 0);
+}
+
+Mat_<int> someQuads()
+{
+    return (Mat_<int>(3, 5) << 1, 2, 0, 0, 255, 3, 0, 5, 6, 9, 3, 3, 0, 2, 64);
+}
+
+//! No parameter has its default value.
+Ptr<IIB> unusual()
+{
+    const Ptr<IIB> iib = IIB::create(64.f / 7, 5, 35, IIB::MAPPING_SORT, true, true, 3);
+    iib->setBorder(IIB::BORDER_DROP);
+    iib->setSelection(someQuads());
+    return iib;
+}
+
+TEST(IIB_IO, file_holds_every_parameter)
+{
+    const Ptr<IIB> plain = IIB::create();
+    for (const Ptr<IIB>& iib : {unusual(), plain})
+        for (const char* extension : {".yml", ".xml", ".json"})
+        {
+            const String file = cv::tempfile(extension);
+            iib->save(file);
+            const Ptr<IIB> loaded = Algorithm::load<IIB>(file);
+            ASSERT_FALSE(!loaded);
+            expectSame(*iib, *loaded);
+
+            // Feature2D's own pair, read over an object that is not new
+            static_cast<const Feature2D&>(*iib).write(file);
+            const Ptr<IIB> other = iib == plain ? unusual() : IIB::create(1.f, 2);
+            static_cast<Feature2D&>(*other).read(file);
+            expectSame(*iib, *other);
+            remove(file.c_str());
+        }
+}
+
+TEST(IIB_IO, loaded_object_describes_alike)
+{
+    Ptr<IIB> iib = unusual();
+    iib->setExtraChannels(0);  // which ends the selection
+    const Mat quad = (Mat_<int>(1, 5) << 4, 2, 7, 7, 129);
+    iib->setSelection(quad);
+    FileStorage fs(".yml", FileStorage::WRITE | FileStorage::MEMORY);
+    fs << "iib"
+       << "{";
+    iib->write(fs);
+    fs << "}";
+    const Ptr<IIB> loaded = Algorithm::loadFromString<IIB>(fs.releaseAndGetString());
+    const Mat image = texture(Size(200, 180), CV_8U, 1);
+    std::vector<KeyPoint> a = scatter(image.size(), 50, 2.f, 9.f, 2), b = a;
+    Mat expected, actual;
+    iib->compute(image, a, expected);
+    loaded->compute(image, b, actual);
+    expectSameKeyPoints(a, b);
+    EXPECT_EQ(0, differingBits(expected, actual));
+}
+
+//! As format 1 was written first: later versions must read it.
+const char FORMAT_1[] =
+        "%YAML:1.0\n---\nIIB:\n   format: 1\n   scaleFactor: 9.1428575515747070e+00\n   granularity: 5\n"
+        "   channels: 35\n   mapping: 4\n   overlap: 1\n   useOrientation: 1\n   extraChannels: 3\n"
+        "   border: 1\n   selection: [ 1, 2, 0, 0, 255, 3, 0, 5, 6, 9, 3, 3, 0, 2, 64 ]\n";
+
+TEST(IIB_IO, format_1_is_read)
+{
+    const Ptr<IIB> iib = Algorithm::loadFromString<IIB>(FORMAT_1);
+    ASSERT_FALSE(!iib);
+    expectSame(*unusual(), *iib);
+}
+
+TEST(IIB_IO, foreign_and_damaged_nodes_throw_and_change_nothing)
+{
+    const Ptr<IIB> iib = unusual();
+    EXPECT_THROW(iib->read(FileNode()), cv::Exception);
+    const String good = FORMAT_1;
+    const char* replacements[][2] = {{"format: 1", "format: 2"}, {"format: 1", "formal: 1"},
+            {"format: 1", "format: one"}, {"scaleFactor: 9", "scaleFactor: -9"},
+            {"scaleFactor: 9", "scaleFactor: .NaN # 9"}, {"scaleFactor: 9", "scaleFactor: large # 9"},
+            {"granularity: 5", "granularity: 9"}, {"granularity: 5", "granularity: five"},
+            {"granularity: 5", "granularity: 2"}, {"channels: 35", "channels: 64"},
+            {"mapping: 4", "mapping: SORT"}, {"overlap: 1", "overlap: yes"},
+            {"useOrientation: 1", "useOrientation: [ 1 ]"}, {"extraChannels: 3", "extraChannels: 17"},
+            {"border: 1", "border: 2"}, {"[ 1, 2,", "[ 1,"}, {"[ 1, 2,", "[ 1, 99,"},
+            {"[ 1, 2,", "[ 1, two,"}};
+    for (const auto& r : replacements)
+    {
+        String damaged = good;
+        const size_t at = damaged.find(r[0]);
+        ASSERT_NE(String::npos, at);
+        damaged.replace(at, strlen(r[0]), r[1]);
+        EXPECT_THROW(Algorithm::loadFromString<IIB>(damaged), cv::Exception) << r[1];
+        const FileStorage fs(damaged, FileStorage::READ | FileStorage::MEMORY);
+        EXPECT_THROW(iib->read(fs["IIB"]), cv::Exception) << r[1];
+        expectSame(*unusual(), *iib);
+    }
+    EXPECT_THROW(Algorithm::loadFromString<IIB>("%YAML:1.0\n---\nBRISK:\n   threshold: 30\n"), cv::Exception);
+}
+
+}  // namespace
+}  // namespace opencv_test

@@ -1,0 +1,174 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/descriptor_oracle.hpp"
+#include "../support/test_images.hpp"
+
+namespace opencv_test {
+namespace {
+
+const Size SIZE(180, 160);
+
+TEST(IIB_KeyPoints, order_number_and_fields_are_kept)
+{
+    std::vector<KeyPoint> keypoints = scatter(SIZE, 200, 8.f, 90.f, 1);
+    for (size_t i = 0; i < keypoints.size(); i++)
+    {
+        keypoints[i].octave = (int)i * 77777;
+        keypoints[i].class_id = -(int)i;
+        keypoints[i].response = i * 0.5f;
+    }
+    keypoints.push_back(keypoints[7]);  // twice the same is no mistake
+    const Mat image = texture(SIZE, CV_8U, 2);
+    const Ptr<IIB> iib = IIB::create(1.f);
+    const Mat descriptors = describe(*iib, image, keypoints);
+    EXPECT_EQ(0, differingBits(descriptors.row(7), descriptors.row(200)));
+    // each row is that of its keypoint alone
+    for (int i = 0; i < 200; i += 11)
+        EXPECT_EQ(0, differingBits(descriptors.row(i),
+                             describe(*iib, image, std::vector<KeyPoint>(1, keypoints[i]))));
+}
+
+TEST(IIB_KeyPoints, border_drop_removes_those_whose_ros_leaves_the_image)
+{
+    const Mat image = texture(SIZE, CV_8U, 3);
+    std::vector<KeyPoint> keypoints = scatter(SIZE, 200, 8.f, 90.f, 4);
+    // a ROS of 40 pixels on an odd number of pixels on either side: the first and last places that fit
+    for (float x : {19.f, 19.5f, 160.f, 159.5f, 18.5f, 18.f, 160.5f, 161.f})
+        keypoints.push_back(KeyPoint(x, 80, 20));
+    const Ptr<IIB> iib = IIB::create(2.f);
+    EXPECT_EQ(IIB::BORDER_CLAMP, iib->getBorder());
+    const Mat all = describe(*iib, image, keypoints);
+
+    std::vector<KeyPoint> inside;
+    Mat expected;
+    for (size_t i = 0; i < keypoints.size(); i++)
+    {
+        const KeyPoint& kp = keypoints[i];
+        const double side = std::max(2. * kp.size, 16.);
+        // the first and last pixel, which count from the centre of pixel 0
+        const double left = std::floor(kp.pt.x + 1 - side / 2), top = std::floor(kp.pt.y + 1 - side / 2);
+        const double right = std::floor(kp.pt.x + 1 + side / 2), bottom = std::floor(kp.pt.y + 1 + side / 2);
+        if (left < 0 || top < 0 || right > SIZE.width || bottom > SIZE.height)
+            continue;
+        inside.push_back(kp);
+        expected.push_back(all.row((int)i));
+    }
+    ASSERT_GT(inside.size(), 10u);
+    ASSERT_EQ(159.5f, inside.back().pt.x);
+
+    iib->setBorder(IIB::BORDER_DROP);
+    Mat descriptors;
+    iib->compute(image, keypoints, descriptors);
+    expectSameKeyPoints(inside, keypoints);
+    EXPECT_EQ(0, differingBits(expected, descriptors));
+    EXPECT_EQ(0, differingBits(expected, describe(*iib, image, inside)));
+
+    std::vector<KeyPoint> outside(3, KeyPoint(2, 2, 30));
+    iib->compute(image, outside, descriptors);
+    EXPECT_TRUE(outside.empty());
+    EXPECT_TRUE(descriptors.empty());
+}
+
+TEST(IIB_KeyPoints, nothing_to_describe_releases_the_output)
+{
+    const Ptr<IIB> iib = IIB::create();
+    std::vector<KeyPoint> keypoints(2, KeyPoint(20, 20, 10)), none;
+    Mat descriptors(3, 4, CV_32F, Scalar(1));
+    iib->compute(Mat(), keypoints, descriptors);
+    EXPECT_TRUE(descriptors.empty());
+    EXPECT_EQ(2u, keypoints.size());
+    descriptors.create(3, 4, CV_32F);
+    iib->compute(texture(SIZE, CV_8U, 5), none, descriptors);
+    EXPECT_TRUE(descriptors.empty());
+    UMat udescriptors(3, 4, CV_32F);
+    iib->compute(UMat(), keypoints, udescriptors);
+    EXPECT_TRUE(udescriptors.empty());
+}
+
+TEST(IIB_KeyPoints, small_ros_is_raised)
+{
+    const Mat image = texture(SIZE, CV_8U, 6);
+    for (int granularity = 1; granularity <= 6; granularity++)
+        for (int turned = 0; turned < 2; turned++)
+        {
+            const Ptr<IIB> iib = IIB::create(0.5f, granularity, 15, IIB::MAPPING_MEAN, false, turned != 0);
+            std::vector<KeyPoint> keypoints = scatter(SIZE, 20, 8.f, 9.f, 7);
+            const float smallest = 2.f * (1 << granularity);
+            for (KeyPoint& kp : keypoints)
+                kp.size = smallest;
+            const Mat expected = describe(*iib, image, keypoints);
+            for (float size : {smallest / 2, 1.f, 1e-3f, FLT_MIN})
+            {
+                for (KeyPoint& kp : keypoints)
+                    kp.size = size;
+                EXPECT_EQ(0, differingBits(expected, describe(*iib, image, keypoints))) << size;
+            }
+            for (KeyPoint& kp : keypoints)
+                kp.size = smallest * 1.5f;
+            EXPECT_NE(0, differingBits(expected, describe(*iib, image, keypoints)));
+        }
+}
+
+TEST(IIB_KeyPoints, far_outside_the_image_all_means_are_equal)
+{
+    const Mat image = texture(SIZE, CV_8U, 8);
+    std::vector<KeyPoint> keypoints;
+    for (float far : {1e3f, 1e6f, 3e9f, 1e20f, FLT_MAX})
+        for (int i = 0; i < 8; i++)
+            keypoints.push_back(KeyPoint(i & 1 ? far : -far, i & 2 ? far : 80.f, i & 4 ? 40.f : 1.f));
+    const Ptr<IIB> iib = IIB::create();
+    EXPECT_EQ(0, countNonZero(describe(*iib, image, keypoints)));
+    iib->setMapping(IIB::MAPPING_MAX);
+    EXPECT_EQ(0, countNonZero(describe(*iib, image, keypoints) != 255));
+
+    // turned ones see the border's pixels alone
+    iib->setUseOrientation(true);
+    iib->setMapping(IIB::MAPPING_MEAN);
+    iib->setChannels(IIB::CHANNEL_INTENSITY);
+    for (KeyPoint& kp : keypoints)
+    {
+        kp.angle = 33;
+        kp.pt.y = kp.pt.x;
+    }
+    EXPECT_EQ(0, countNonZero(describe(*iib, image, keypoints)));
+}
+
+TEST(IIB_KeyPoints, huge_sizes)
+{
+    const Ptr<IIB> iib = IIB::create(2.f, 1, 63, IIB::MAPPING_QUARTILE);
+    for (int depth : {CV_8U, CV_16U})
+    {
+        const Mat image = texture(Size(120, 100), depth, 9);
+        std::vector<KeyPoint> keypoints;
+        for (float size : {500.f, 4000.f, 1e5f, 1e7f, 3e9f, 1e20f, FLT_MAX / 2})
+            for (int i = 0; i < 4; i++)
+                keypoints.push_back(KeyPoint(10.f + 30 * i, 80.f - 20 * i, size));
+        for (int granularity = 1; granularity <= 6; granularity++)
+        {
+            iib->setGranularity(granularity);
+            iib->setUseOrientation(false);
+            EXPECT_EQ(0, differingBits(oracle::describe(*iib, image, std::vector<Mat>(), keypoints),
+                                 describe(*iib, image, keypoints)));
+            std::vector<KeyPoint> turned = keypoints;
+            for (KeyPoint& kp : turned)
+                kp.angle = 200;
+            iib->setUseOrientation(true);
+            EXPECT_EQ(0, differingBits(oracle::describe(*iib, image, std::vector<Mat>(), turned),
+                                 describe(*iib, image, turned)));
+        }
+    }
+}
+
+TEST(IIB_KeyPoints, images_of_one_pixel)
+{
+    const Mat image(1, 1, CV_8U, Scalar(9));
+    const Ptr<IIB> iib = IIB::create(1.f, 4, 63, IIB::MAPPING_MEAN, false, true);
+    const std::vector<KeyPoint> keypoints = {
+            KeyPoint(0, 0, 5), KeyPoint(0, 0, 500, 45), KeyPoint(3, 3, 1, 0)};
+    EXPECT_EQ(0, countNonZero(describe(*iib, image, keypoints)));
+}
+
+}  // namespace
+}  // namespace opencv_test

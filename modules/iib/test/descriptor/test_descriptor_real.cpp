@@ -1,0 +1,131 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/test_images.hpp"
+
+#include <fstream>
+
+/* Real images, below OPENCV_TEST_DATA_PATH: illumination/<set>/<sequence>. They belong to their authors and are not
+ part of the project; without them these tests skip. */
+namespace opencv_test {
+namespace {
+
+Mat readImage(const String& sequence, int number, int flags)
+{
+    const String name = "illumination/" + sequence + format("/%d.png", number);
+    const Mat image = imread(cvtest::findDataFile(name, false), flags);
+    EXPECT_FALSE(image.empty()) << sequence << " " << number;
+    return image;
+}
+
+std::ifstream openText(const String& name)
+{
+    return std::ifstream(cvtest::findDataFile("illumination/" + name, false).c_str());
+}
+
+//! The paper's seed points; they count from 1.
+std::vector<KeyPoint> readKeyPoints(const String& name)
+{
+    std::ifstream file = openText(name);
+    std::vector<KeyPoint> keypoints;
+    std::string line;
+    std::getline(file, line);
+    EXPECT_EQ("x,y,size,angle", line);
+    KeyPoint kp;
+    char comma;
+    while (file >> kp.pt.x >> comma >> kp.pt.y >> comma >> kp.size >> comma >> kp.angle)
+        keypoints.push_back(kp);
+    return keypoints;
+}
+
+Matx33d readHomography(const String& name)
+{
+    std::ifstream file = openText(name);
+    Matx33d h;
+    for (double& v : h.val)
+        file >> v;
+    EXPECT_FALSE(file.fail()) << name;
+    return h;
+}
+
+std::vector<DMatch> mutualMatches(const Mat& a, const Mat& b)
+{
+    std::vector<DMatch> matches;
+    BFMatcher(NORM_HAMMING, true).match(a, b, matches);
+    return matches;
+}
+
+/* The paper's own code finds 808 and 574 of 1000; that is the bar. Measured here: 809 and 577 (colour), 811 and 588
+ (grey, whose rounding differs from cvtColor's). */
+TEST(IIB_Real, paper_scene)
+{
+    const String sequence = "iib_demo/scene";
+    const Ptr<IIB> iib = IIB::create(1.f);
+    const std::vector<KeyPoint> keypoints = readKeyPoints(sequence + "/keypoints.csv");
+    ASSERT_EQ(1000u, keypoints.size());
+    for (int flags : {(int)IMREAD_COLOR, (int)IMREAD_GRAYSCALE})
+    {
+        const Mat reference = describe(*iib, readImage(sequence, 1, flags), keypoints);
+        for (int k = 2; k <= 3; k++)
+        {
+            int correct = 0;
+            for (const DMatch& m :
+                    mutualMatches(reference, describe(*iib, readImage(sequence, k, flags), keypoints)))
+                correct += m.queryIdx == m.trainIdx;
+            std::cout << format("[          ] 1 - %d: %d correct\n", k, correct);
+            EXPECT_GE(correct, k == 2 ? 808 : 574);
+        }
+    }
+}
+
+struct Score
+{
+    int correct, matches;
+
+    double precision() const { return (double)correct / matches; }
+};
+
+//! Matches whose error under h is at most 3 pixels.
+Score scoreOf(const Mat& a, const Mat& b, const std::vector<KeyPoint>& pointsA,
+        const std::vector<KeyPoint>& pointsB, const Matx33d& h)
+{
+    Score score = Score();
+    for (const DMatch& m : mutualMatches(a, b))
+    {
+        const Point2d p = pointsA[m.queryIdx].pt, q = pointsB[m.trainIdx].pt;
+        const Vec3d projected = h * Vec3d(p.x, p.y, 1);
+        score.matches++;
+        score.correct +=
+                std::hypot(projected[0] / projected[2] - q.x, projected[1] / projected[2] - q.y) <= 3;
+    }
+    return score;
+}
+
+TEST(IIB_Real, leuven_with_orb_keypoints)
+{
+    const String sequence = "oxford_affine/leuven";
+    const Ptr<ORB> orb = ORB::create(2000);
+    const Ptr<IIB> iib = IIB::create(IIB::scaleFactorFor(orb));
+    std::vector<KeyPoint> keypoints[6];
+    Mat own[6], ours[6];
+    for (int k = 0; k < 6; k++)
+    {
+        const Mat image = readImage(sequence, k + 1, IMREAD_GRAYSCALE);
+        orb->detectAndCompute(image, noArray(), keypoints[k], own[k]);
+        ours[k] = describe(*iib, image, keypoints[k]);
+    }
+    for (int k = 1; k < 6; k++)
+    {
+        const Matx33d h = readHomography(sequence + format("/H_1_%d", k + 1));
+        const Score orbScore = scoreOf(own[0], own[k], keypoints[0], keypoints[k], h);
+        const Score iibScore = scoreOf(ours[0], ours[k], keypoints[0], keypoints[k], h);
+        std::cout << format("[          ] 1 - %d: ORB %d of %d, IIB %d of %d correct\n", k + 1,
+                orbScore.correct, orbScore.matches, iibScore.correct, iibScore.matches);
+        EXPECT_GT(iibScore.correct, orbScore.correct);
+        EXPECT_GT(iibScore.precision(), orbScore.precision());
+    }
+}
+
+}  // namespace
+}  // namespace opencv_test

@@ -1,0 +1,163 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../test_precomp.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <numeric>
+
+#include "opencv2/imgcodecs.hpp"
+
+namespace opencv_test { namespace {
+
+struct PresetCase
+{
+    int preset;
+    const char* name;
+    int bytes;
+    double map, mar;    // on changed light, see meanScores
+};
+
+std::ostream& operator<<(std::ostream& out, const PresetCase& c) { return out << c.name; }
+
+//! Protocol A (paper, "Experiments Using Predefined Feature Points with ROS"): counts of one pair.
+struct Counts { int correct, putative, points; };
+
+Counts matchPair(const Ptr<IIB>& iib, const std::string& folder, int target, int fastThreshold)
+{
+    const Mat image1 = imread(folder + "/1.png", IMREAD_GRAYSCALE);
+    const Mat image2 = imread(folder + format("/%d.png", target), IMREAD_GRAYSCALE);
+    Matx33d h = Matx33d::eye();
+    std::ifstream file(folder + format("/H_1_%d", target));
+    for (int i = 0; i < 9 && file; i++)
+        file >> h.val[i];
+
+    const float radius = 32;
+    const auto inside = [&](Point2f p, Size size) {
+        return p.x >= radius && p.y >= radius && p.x <= size.width - radius && p.y <= size.height - radius;
+    };
+    std::vector<KeyPoint> corners, points1, points2;
+    for (int threshold = fastThreshold; threshold > 0; threshold /= 2)
+    {
+        FAST(image1, corners, threshold, true);
+        corners.erase(std::remove_if(corners.begin(), corners.end(), [&](const KeyPoint& corner)
+        {
+            return !inside(corner.pt, image1.size());
+        }), corners.end());
+        if (corners.size() >= 1000)
+            break;
+    }
+    for (const KeyPoint& corner : corners)
+    {
+        const Vec3d q = h * Vec3d(corner.pt.x, corner.pt.y, 1);
+        const Point2f there(float(q[0] / q[2]), float(q[1] / q[2]));
+        if (inside(there, image2.size()))
+        {
+            points1.push_back(KeyPoint(corner.pt, 2 * radius));
+            points2.push_back(KeyPoint(there, 2 * radius));
+        }
+    }
+    std::vector<KeyPoint> sample1, sample2;
+    const size_t count = std::min(points1.size(), size_t(1000));
+    for (size_t i = 0; i < count; i++)
+    {
+        sample1.push_back(points1[i * points1.size() / count]);
+        sample2.push_back(points2[i * points2.size() / count]);
+    }
+
+    Mat descriptors1, descriptors2;
+    iib->compute(image1, sample1, descriptors1);
+    iib->compute(image2, sample2, descriptors2);
+    std::vector<DMatch> matches;
+    BFMatcher(NORM_HAMMING, true).match(descriptors1, descriptors2, matches);
+    Counts counts = {0, int(matches.size()), int(count)};
+    for (const DMatch& match : matches)
+        counts.correct += cv::norm(sample2[match.queryIdx].pt - sample2[match.trainIdx].pt) <= 3;
+    return counts;
+}
+
+/** mAP and mAR over the targets of the sequences; empty if the data is not there.
+ @param fastThreshold where corners are sought first; lower ones follow until there are enough. */
+std::vector<double> meanScores(const Ptr<IIB>& iib, const std::vector<std::string>& sequences, int lastTarget,
+                               int fastThreshold = 20)
+{
+    const char* data = std::getenv("OPENCV_TEST_DATA_PATH");
+    if (!data || !std::ifstream(data + std::string("/illumination/") + sequences[0] + "/1.png"))
+        return std::vector<double>();
+    std::vector<double> sum(2);
+    for (const std::string& sequence : sequences)
+        for (int target = 2; target <= lastTarget; target++)
+        {
+            const Counts counts = matchPair(iib, data + std::string("/illumination/") + sequence, target,
+                                            fastThreshold);
+            const double pairs = double(sequences.size()) * (lastTarget - 1);
+            sum[0] += counts.correct / std::max(1., double(counts.putative)) / pairs;
+            sum[1] += counts.correct / std::max(1., double(counts.points)) / pairs;
+        }
+    return sum;
+}
+
+typedef testing::TestWithParam<PresetCase> IIBPresets;
+
+TEST_P(IIBPresets, size)
+{
+    const Ptr<IIB> iib = IIB::createPreset(GetParam().preset);
+    EXPECT_EQ(GetParam().bytes, iib->descriptorSize());
+    const std::vector<int> levels = iib->levelSizes();
+    EXPECT_EQ(GetParam().bytes, std::accumulate(levels.begin(), levels.end(), 0));
+    EXPECT_GE(levels.size(), 2u) << "something to reject on from coarse to fine";
+    EXPECT_EQ(GetParam().preset == IIB::PRESET_ACCURATE, iib->getSelection().empty()) << "it has all quads";
+}
+
+TEST_P(IIBPresets, scale_factor_is_proportional)
+{
+    const float one = IIB::createPreset(GetParam().preset, 1.f)->getScaleFactor();
+    EXPECT_FLOAT_EQ(5 * one, IIB::createPreset(GetParam().preset, 5.f)->getScaleFactor());
+}
+
+TEST_P(IIBPresets, accuracy_on_changed_light)
+{
+    const std::vector<double> scores = meanScores(IIB::createPreset(GetParam().preset, 1.f),
+            {"photometric_stereo/frog"}, 8);
+    if (scores.empty())
+        throw SkipTestException("no OPENCV_TEST_DATA_PATH/illumination");
+    EXPECT_GE(scores[0], GetParam().map);
+    EXPECT_GE(scores[1], GetParam().mar);
+}
+
+// measured with the selections of src/descriptor/presets.generated.hpp on a sequence they were not trained on, less 0.005
+INSTANTIATE_TEST_CASE_P(All, IIBPresets, testing::Values(
+    PresetCase{IIB::PRESET_S128, "S128", 16, 0.765, 0.462},
+    PresetCase{IIB::PRESET_S256, "S256", 32, 0.859, 0.593},
+    PresetCase{IIB::PRESET_S512, "S512", 64, 0.924, 0.714},
+    PresetCase{IIB::PRESET_ACCURATE, "ACCURATE", 170, 0.969, 0.893},
+    PresetCase{IIB::PRESET_COMPACT, "COMPACT", 64, 0.954, 0.841},
+    PresetCase{IIB::PRESET_TINY, "TINY", 32, 0.920, 0.757},
+    PresetCase{IIB::PRESET_BALANCED, "BALANCED", 64, 0.865, 0.612}));
+
+TEST(IIBPreset, balanced_stands_a_moved_camera)
+{
+    const Ptr<IIB> balanced = IIB::createPreset(IIB::PRESET_BALANCED, 1.f);
+    for (int fastThreshold : {20, 10})
+    {
+        const std::vector<double> wall = meanScores(balanced, {"oxford_affine/wall"}, 6, fastThreshold);
+        const std::vector<double> graf = meanScores(balanced, {"oxford_affine/graf"}, 6, fastThreshold);
+        if (wall.empty())
+            throw SkipTestException("no OPENCV_TEST_DATA_PATH/illumination");
+        EXPECT_GE(wall[0], 0.84) << fastThreshold;
+        EXPECT_GE(wall[1], 0.69) << fastThreshold;
+        EXPECT_GE(graf[0], 0.25) << fastThreshold;
+        EXPECT_GE(graf[1], 0.10) << fastThreshold;
+    }
+}
+
+TEST(IIBPreset, unknown_preset_is_refused)
+{
+    EXPECT_THROW(IIB::createPreset(-1), cv::Exception);
+    EXPECT_THROW(IIB::createPreset(7), cv::Exception);
+    EXPECT_THROW(IIB::createPreset(IIB::PRESET_TINY, 0.f), cv::Exception);
+}
+
+}}  // namespace

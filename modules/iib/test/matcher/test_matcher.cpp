@@ -1,0 +1,115 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/matcher_oracle.hpp"
+
+namespace opencv_test {
+namespace {
+
+// A descriptor's width cut into levels: coarse ones of 1/8 and 1/4, the rest last.
+std::vector<int> levelsOf(int bytes)
+{
+    std::vector<int> levels;
+    if (bytes >= 8)
+    {
+        levels.push_back(bytes / 8);
+        levels.push_back(bytes / 4);
+        bytes -= bytes / 8 + bytes / 4;
+    }
+    levels.push_back(bytes);
+    return levels;
+}
+
+typedef testing::TestWithParam<std::tuple<int, int> > IIB_Matcher_Sizes; // train rows, bytes
+
+TEST_P(IIB_Matcher_Sizes, as_BFMatcher)
+{
+    const int rows = std::get<0>(GetParam()), bytes = std::get<1>(GetParam());
+    const Mat train = randomDescriptors(1, rows, bytes), queries = randomDescriptors(2, rows > 100 ? 61 : rows, bytes);
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(levelsOf(bytes));
+    if (rows == 0)
+    {
+        Matches matches(1);
+        matcher->knnMatch(randomDescriptors(2, 5, bytes), train, matches, 2);
+        expectEqual(Matches(5), matches);
+        return;
+    }
+    Matches expected, actual;
+    const Mat mask = randomMask(3, queries.rows, train.rows, 0.6);
+    for (int k = 1; k <= 3; k++)
+    {
+        expected.clear(); // BFMatcher appends
+        BFMatcher(NORM_HAMMING).knnMatch(queries, train, expected, k);
+        matcher->knnMatch(queries, train, actual, k);
+        expectEqual(expected, actual);
+        expected.clear();
+        BFMatcher(NORM_HAMMING).knnMatch(queries, train, expected, k, mask, true);
+        matcher->knnMatch(queries, train, actual, k, mask, true);
+        expectEqual(expected, actual);
+    }
+    for (int radius = 1; radius < bytes * 8; radius = radius * 3 + 1)
+    {
+        expected.clear();
+        BFMatcher(NORM_HAMMING).radiusMatch(queries, train, expected, (float)radius);
+        matcher->radiusMatch(queries, train, actual, (float)radius);
+        ASSERT_EQ(expected.size(), actual.size());
+        for (size_t q = 0; q < expected.size(); q++)
+            EXPECT_EQ(expected[q].size(), actual[q].size());
+    }
+    std::vector<DMatch> mutual, found;
+    BFMatcher(NORM_HAMMING, true).match(queries, train, mutual);
+    matcher->setCrossCheck(true);
+    matcher->match(queries, train, found);
+    expectEqual(Matches(1, mutual), Matches(1, found));
+}
+
+INSTANTIATE_TEST_CASE_P(/**/, IIB_Matcher_Sizes,
+        testing::Combine(testing::Values(0, 1, 7, 8, 9, 63, 64, 65, 1000),
+                         testing::Values(1, 2, 10, 32, 43, 61, 64, 170, 682)));
+
+// Several images, one of them empty, with everything at once.
+TEST(IIB_Matcher, all_together_as_the_oracle)
+{
+    MatcherOracle oracle;
+    oracle.levelSizes = { 2, 8, 32 };
+    const int rows[] = { 70, 0, 1, 37, 200 };
+    for (int i = 0; i < 5; i++)
+        oracle.images.push_back(randomDescriptors(10 + i, rows[i], 42));
+    const Mat queries = randomDescriptors(20, 90, 42);
+    std::vector<Mat> masks;
+    for (int i = 0; i < 5; i++)
+        masks.push_back(i == 1 || i == 2 ? Mat() : randomMask(30 + i, queries.rows, rows[i], 0.5));
+
+    for (int k : { 1, 2, 5, 400 })
+        for (int bits = 0; bits < 16; bits++)
+        {
+            SCOPED_TRACE(format("k %d, setting %d", k, bits));
+            const bool threshold = (bits & 8) != 0;
+            oracle.crossCheck = (bits & 1) != 0;
+            oracle.masks = bits & 2 ? masks : std::vector<Mat>();
+            oracle.maxRatio = bits & 4 ? 0.8f : 1.f;
+            oracle.thresholds = threshold ? std::vector<float>(2, 0.35f) : std::vector<float>();
+            const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(
+                    oracle.levelSizes, threshold ? HierarchicalMatcher::THRESHOLD : HierarchicalMatcher::EXACT, 0.35f,
+                    oracle.crossCheck);
+            matcher->setMaxRatio(oracle.maxRatio);
+            matcher->add(oracle.images);
+            Matches actual;
+            matcher->knnMatch(queries, actual, k, oracle.masks);
+            oracle.compared = oracle.all = 0;
+            expectEqual(oracle.knn(queries, k), actual);
+            EXPECT_EQ(oracle.compared / oracle.all, matcher->matchCost());
+
+            if (k != 1)
+                continue;
+            for (float radius : { 0.5f, 20.f, 60.9f, 1e9f })
+            {
+                matcher->radiusMatch(queries, actual, radius, oracle.masks);
+                expectEqual(oracle.radius(queries, (int)std::min(radius, 1e6f)), actual);
+            }
+        }
+}
+
+}  // namespace
+}  // namespace opencv_test

@@ -1,0 +1,283 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/matcher_oracle.hpp"
+
+namespace opencv_test {
+namespace {
+
+// The edge cases of DescriptorMatcher in which BFMatcher fails or surprises, and its core's own tests in their
+// Hamming form.
+
+const int BYTES = 42;
+const std::vector<int> LEVELS = { 2, 8, 32 };
+
+Ptr<HierarchicalMatcher> matcherOf(const std::vector<Mat>& images)
+{
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(LEVELS);
+    matcher->add(images);
+    return matcher;
+}
+
+// Descriptor i has its first i bits set: the distance between two is the difference of their numbers.
+Mat ladder(int first, int rows)
+{
+    Mat result(rows, BYTES, CV_8U, Scalar(0));
+    for (int i = 0; i < rows; i++)
+        for (int bit = 0; bit < first + i; bit++)
+            result.at<uchar>(i, bit / 8) |= (uchar)(1 << bit % 8);
+    return result;
+}
+
+TEST(IIB_MatcherEdges, more_neighbours_asked_for_than_there_are)
+{
+    Matches matches;
+    matcherOf({ ladder(0, 3) })->knnMatch(ladder(1, 2), matches, INT_MAX);
+    ASSERT_EQ(2u, matches.size());
+    EXPECT_EQ(3u, matches[0].size());
+}
+
+TEST(IIB_MatcherEdges, ties_go_to_the_first_image_and_lowest_index)
+{
+    Matches matches;
+    matcherOf({ ladder(9, 1), ladder(5, 1), ladder(5, 1), ladder(4, 3) })->knnMatch(ladder(5, 1), matches, 3);
+    ASSERT_EQ(3u, matches[0].size());
+    for (int i = 0; i < 3; i++)
+    {
+        EXPECT_EQ(0, matches[0][i].distance);
+        EXPECT_EQ(i + 1, matches[0][i].imgIdx);
+        EXPECT_EQ(i == 2 ? 1 : 0, matches[0][i].trainIdx);
+    }
+}
+
+TEST(IIB_MatcherEdges, train_set_empty)
+{
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(LEVELS);
+    std::vector<DMatch> best(3);
+    matcher->match(ladder(0, 5), Mat(), best);
+    EXPECT_TRUE(best.empty());
+    Matches matches(7);
+    matcher->radiusMatch(ladder(0, 5), Mat(0, BYTES, CV_8U), matches, 10);
+    expectEqual(Matches(5), matches);
+    matcher->knnMatch(ladder(0, 5), Mat(), matches, 2, noArray(), true);
+    expectEqual(Matches(), matches);
+    Mat indices, distances;
+    matcher->knnMatchArrays(ladder(0, 5), Mat(), indices, distances, 2);
+    EXPECT_EQ(0, cvtest::norm(indices, Mat(5, 2, CV_32S, Scalar(-1)), NORM_INF));
+}
+
+TEST(IIB_MatcherEdges, empty_image_among_several_is_skipped)
+{
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({ Mat(), ladder(10, 1), Mat(0, BYTES, CV_8U), ladder(0, 1), Mat() });
+    std::vector<DMatch> matches;
+    matcher->match(ladder(1, 1), matches);
+    ASSERT_EQ(1u, matches.size());
+    EXPECT_EQ(3, matches[0].imgIdx);
+    std::vector<Mat> masks(5);
+    masks[0] = Mat(1, 3, CV_8U, Scalar(1)); // a mask for an image without rows cannot fit
+    EXPECT_THROW(matcher->match(ladder(1, 1), matches, masks), cv::Exception);
+    masks[0] = Mat();
+    masks[3] = Mat(1, 1, CV_8U, Scalar(0));
+    matcher->match(ladder(1, 1), matches, masks);
+    ASSERT_EQ(1u, matches.size());
+    EXPECT_EQ(1, matches[0].imgIdx);
+}
+
+// opencv#4600
+TEST(IIB_MatcherEdges, small_image_does_not_limit_k)
+{
+    Matches matches;
+    matcherOf({ ladder(0, 7), ladder(100, 1) })->knnMatch(ladder(0, 4), matches, 3);
+    for (size_t q = 0; q < matches.size(); q++)
+        EXPECT_EQ(3u, matches[q].size());
+}
+
+TEST(IIB_MatcherEdges, compact_result_drops_rows_without_a_match)
+{
+    Matches matches;
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({ ladder(0, 3) });
+    matcher->radiusMatch(ladder(1, 300), matches, 4, noArray(), true);
+    ASSERT_EQ(6u, matches.size()); // queries 1 to 6 are within 4 of 0, 1 or 2
+    for (size_t q = 0; q < matches.size(); q++)
+        EXPECT_FALSE(matches[q].empty());
+}
+
+TEST(IIB_MatcherEdges, radius_includes_its_bound_and_zero_throws)
+{
+    Matches matches;
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({ ladder(0, 50) });
+    matcher->radiusMatch(ladder(20, 1), matches, 3.f);
+    EXPECT_EQ(7u, matches[0].size());
+    matcher->radiusMatch(ladder(20, 1), matches, 2.9f);
+    EXPECT_EQ(5u, matches[0].size());
+    EXPECT_THROW(matcher->radiusMatch(ladder(20, 1), matches, 0.f), cv::Exception);
+}
+
+// opencv#22398
+TEST(IIB_MatcherEdges, second_call_does_not_append)
+{
+    Matches matches;
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({ ladder(0, 9) });
+    for (int i = 0; i < 2; i++)
+    {
+        matcher->knnMatch(ladder(0, 5), matches, 2);
+        EXPECT_EQ(5u, matches.size());
+    }
+}
+
+// More rows than BFMatcher's 262,144 an image, more images than its 8,191.
+TEST(IIB_MatcherEdges, no_limit_on_rows_and_images)
+{
+    const int rows = 300001;
+    Mat many(rows, 4, CV_8U);
+    for (int i = 0; i < rows; i++)
+        for (int byte = 0; byte < 4; byte++)
+            many.at<uchar>(i, byte) = (uchar)(i >> 8 * byte);
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(std::vector<int>(1, 4));
+    matcher->add(many);
+    std::vector<DMatch> matches;
+    matcher->match(many.rowRange(rows - 3, rows), matches);
+    ASSERT_EQ(3u, matches.size());
+    EXPECT_EQ(rows - 1, matches[2].trainIdx);
+    matcher->clear();
+    for (int i = 0; i < 9000; i++)
+        matcher->add(many.row(i));
+    matcher->match(many.row(8999), matches);
+    EXPECT_EQ(8999, matches[0].imgIdx);
+    EXPECT_EQ(0, matches[0].trainIdx);
+}
+
+// The core's matcher test: two add()s, local trainIdx, imgIdx; masks that shift the result by one.
+TEST(IIB_MatcherEdges, two_images_with_masks)
+{
+    const Mat train = ladder(0, 60), queries = ladder(0, 30);
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(LEVELS);
+    matcher->add(train.rowRange(0, 25));
+    matcher->add(train.rowRange(25, 60));
+    std::vector<DMatch> matches;
+    matcher->match(queries, matches);
+    for (int q = 0; q < 30; q++)
+    {
+        EXPECT_EQ(0, matches[q].distance);
+        EXPECT_EQ(q < 25 ? 0 : 1, matches[q].imgIdx);
+        EXPECT_EQ(q < 25 ? q : q - 25, matches[q].trainIdx);
+    }
+    // Without itself and all below, the nearest is the next.
+    std::vector<Mat> masks = { Mat(30, 25, CV_8U, Scalar(0)), Mat(30, 35, CV_8U, Scalar(0)) };
+    for (int q = 0; q < 30; q++)
+        for (int t = q + 1; t < 60; t++)
+            (t < 25 ? masks[0].at<uchar>(q, t) : masks[1].at<uchar>(q, t - 25)) = 255;
+    matcher->match(queries, matches, masks);
+    for (int q = 0; q < 30; q++)
+    {
+        EXPECT_EQ(1, matches[q].distance);
+        EXPECT_EQ(q + 1, matches[q].trainIdx + 25 * matches[q].imgIdx);
+    }
+}
+
+// opencv#11855
+TEST(IIB_MatcherEdges, cross_check_with_compact_result)
+{
+    const Mat trains = (Mat_<uchar>(2, 3) << 1, 1, 0, 1, 1, 1), queries = (Mat_<uchar>(2, 3) << 1, 1, 1, 0, 0, 0);
+    const Ptr<HierarchicalMatcher> matcher =
+            HierarchicalMatcher::create(std::vector<int>(1, 3), HierarchicalMatcher::EXACT, 0.35f, true);
+    Matches matches;
+    matcher->knnMatch(queries, trains, matches, 1, noArray(), true);
+    ASSERT_EQ(1u, matches.size());
+    EXPECT_EQ(1, matches[0][0].trainIdx);
+    matcher->knnMatch(trains, queries, matches, 1);
+    EXPECT_EQ(2u, matches.size());
+    EXPECT_TRUE(matches[0].empty());
+}
+
+// opencv#17771
+// Found by fuzzing: the train descriptors had no more than as many neighbours as there were of themselves.
+TEST(IIB_MatcherEdges, cross_check_with_more_neighbours_than_trains)
+{
+    MatcherOracle oracle;
+    oracle.levelSizes = LEVELS;
+    oracle.images = { ladder(7, 3) };
+    oracle.crossCheck = true;
+    const Ptr<HierarchicalMatcher> matcher = matcherOf(oracle.images);
+    matcher->setCrossCheck(true);
+    Matches matches;
+    matcher->knnMatch(ladder(0, 20), matches, 16);
+    expectEqual(oracle.knn(ladder(0, 20), 16), matches);
+    EXPECT_EQ(3u, matches[8].size());
+}
+
+TEST(IIB_MatcherEdges, umat_queries_trains_and_masks)
+{
+    const Mat train = ladder(0, 20), queries = ladder(3, 4);
+    const Mat mask = randomMask(1, 4, 20, 0.5);
+    Matches expected, actual;
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(LEVELS);
+    matcher->knnMatch(queries, train, expected, 2, mask);
+    UMat deviceQueries, deviceTrain, deviceMask;
+    queries.copyTo(deviceQueries);
+    train.copyTo(deviceTrain);
+    mask.copyTo(deviceMask);
+    matcher->knnMatch(deviceQueries, deviceTrain, actual, 2, deviceMask);
+    expectEqual(expected, actual);
+    matcher->add(std::vector<UMat>(1, deviceTrain));
+    deviceTrain.release();
+    matcher->knnMatch(queries, actual, 2, std::vector<Mat>(1, mask));
+    expectEqual(expected, actual);
+}
+
+TEST(IIB_MatcherEdges, views_and_later_changes_of_the_matrices)
+{
+    Mat train = ladder(0, 20), wide(20, BYTES + 30, CV_8U, Scalar(255));
+    train.copyTo(wide.colRange(7, 7 + BYTES));
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({ wide.colRange(7, 7 + BYTES) });
+    wide.setTo(0);
+    std::vector<DMatch> matches;
+    matcher->match(train, matches);
+    for (int i = 0; i < 20; i++)
+        EXPECT_EQ(i, matches[i].trainIdx);
+}
+
+TEST(IIB_MatcherEdges, clone_keeps_parameters_and_copies_data)
+{
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({ ladder(0, 5) });
+    matcher->setMode(HierarchicalMatcher::THRESHOLD);
+    matcher->setThresholds({ 0.1f, 0.2f });
+    matcher->setCrossCheck(true);
+    matcher->setMaxRatio(0.5f);
+    for (bool empty : { false, true })
+    {
+        const Ptr<HierarchicalMatcher> copy = matcher->clone(empty).dynamicCast<HierarchicalMatcher>();
+        EXPECT_EQ(HierarchicalMatcher::THRESHOLD, copy->getMode());
+        EXPECT_EQ((std::vector<float>{ 0.1f, 0.2f }), copy->getThresholds());
+        EXPECT_TRUE(copy->getCrossCheck());
+        EXPECT_EQ(0.5f, copy->getMaxRatio());
+        EXPECT_EQ(empty, copy->empty());
+        copy->add(ladder(50, 3));
+    }
+    EXPECT_EQ(1u, matcher->getTrainDescriptors().size());
+}
+
+TEST(IIB_MatcherEdges, bad_input_throws)
+{
+    std::vector<DMatch> matches;
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({ ladder(0, 5) });
+    EXPECT_THROW(matcher->match(Mat(3, BYTES - 1, CV_8U, Scalar(0)), matches), cv::Exception);
+    EXPECT_THROW(matcher->match(Mat(3, BYTES, CV_32F, Scalar(0)), matches), cv::Exception);
+    EXPECT_THROW(matcher->add(Mat(3, BYTES + 1, CV_8U, Scalar(0))), cv::Exception);
+    EXPECT_EQ(1u, matcher->getTrainDescriptors().size());
+    EXPECT_THROW(matcher->match(ladder(0, 2), matches, std::vector<Mat>(1, Mat(2, 4, CV_8U, Scalar(1)))), cv::Exception);
+    EXPECT_THROW(matcher->match(ladder(0, 2), matches, std::vector<Mat>(1, Mat(2, 5, CV_32S, Scalar(1)))), cv::Exception);
+    Mat indices, distances;
+    EXPECT_THROW(matcher->knnMatchArrays(ladder(0, 2), indices, distances, 0), cv::Exception);
+    EXPECT_THROW(matcher->setMode(3), cv::Exception);
+    EXPECT_THROW(matcher->setThresholds({ 0.1f, 0.2f, 0.3f }), cv::Exception);
+    EXPECT_THROW(matcher->setThresholds({ 1.5f }), cv::Exception);
+    EXPECT_THROW(matcher->setMaxRatio(0), cv::Exception);
+    EXPECT_THROW(HierarchicalMatcher::create(std::vector<int>()), cv::Exception);
+    EXPECT_THROW(HierarchicalMatcher::create({ 8, 0 }), cv::Exception);
+    EXPECT_THROW(HierarchicalMatcher::create({ 32 }, HierarchicalMatcher::THRESHOLD, -1.f), cv::Exception);
+}
+
+}  // namespace
+}  // namespace opencv_test

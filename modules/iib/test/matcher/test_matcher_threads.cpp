@@ -1,0 +1,88 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/matcher_oracle.hpp"
+
+#include <thread>
+
+namespace opencv_test {
+namespace {
+
+const std::vector<int> LEVELS = { 2, 8, 32 };
+
+typedef testing::TestWithParam<int> IIB_Matcher_Threads; // mode
+
+TEST_P(IIB_Matcher_Threads, same_result_for_every_number)
+{
+    const Mat train = randomDescriptors(1, 1300, 42), queries = randomDescriptors(2, 1100, 42);
+    const int before = getNumThreads();
+    for (bool crossCheck : { false, true })
+    {
+        Matches expected, nearby;
+        double cost = 0;
+        for (int threads : { 1, 2, 8 })
+        {
+            setNumThreads(threads);
+            const Ptr<HierarchicalMatcher> matcher =
+                    HierarchicalMatcher::create(LEVELS, GetParam(), 0.35f, crossCheck);
+            Matches matches, within;
+            matcher->knnMatch(queries, train, matches, 2);
+            matcher->radiusMatch(queries, train, within, 30);
+            if (threads == 1)
+            {
+                expected = matches;
+                nearby = within;
+                cost = matcher->matchCost();
+            }
+            expectEqual(expected, matches);
+            expectEqual(nearby, within);
+            EXPECT_EQ(cost, matcher->matchCost());
+        }
+    }
+    setNumThreads(before);
+}
+
+// Each thread asks in its own way; the answers are those that it gets alone.
+TEST_P(IIB_Matcher_Threads, one_object_serves_many)
+{
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(LEVELS, GetParam(), 0.35f, true);
+    matcher->add(std::vector<Mat>{ randomDescriptors(1, 500, 42), randomDescriptors(3, 300, 42) });
+    const Mat queries = randomDescriptors(2, 300, 42);
+    const std::vector<Mat> masks = { randomMask(4, 300, 500, 0.5), Mat() };
+    const auto ask = [&](size_t thread) {
+        Matches matches;
+        switch (thread % 4)
+        {
+        case 0: matcher->knnMatch(queries, matches, 2); break;
+        case 1: matcher->knnMatch(queries, matches, 1, masks, true); break;
+        case 2: matcher->radiusMatch(queries, matches, 40); break;
+        default:
+            Mat indices, distances;
+            matcher->knnMatchArrays(queries, indices, distances, 2);
+            for (int q = 0; q < indices.rows; q++)
+                matches.push_back(std::vector<DMatch>(1, DMatch(q, indices.at<int>(q), (float)distances.at<int>(q))));
+        }
+        return matches;
+    };
+    std::vector<Matches> results(8);
+    std::vector<std::thread> threads;
+    for (size_t i = 0; i < results.size(); i++)
+        threads.push_back(std::thread([&, i] {
+            for (int repeat = 0; repeat < 3; repeat++)
+            {
+                results[i] = ask(i);
+                matcher->matchCost();
+            }
+        }));
+    for (size_t i = 0; i < threads.size(); i++)
+        threads[i].join();
+    for (size_t i = 0; i < results.size(); i++)
+        expectEqual(ask(i), results[i]);
+}
+
+INSTANTIATE_TEST_CASE_P(/**/, IIB_Matcher_Threads, testing::Values((int)HierarchicalMatcher::EXACT,
+        (int)HierarchicalMatcher::THRESHOLD, (int)HierarchicalMatcher::ADAPTIVE));
+
+}  // namespace
+}  // namespace opencv_test

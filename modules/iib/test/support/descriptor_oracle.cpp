@@ -1,0 +1,324 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "descriptor_oracle.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "../../src/descriptor/kernels/orientation.hpp"
+
+namespace oracle {
+
+using namespace cv;
+typedef cv::iib::IIBDescriptorExtractor IIB;
+
+int orientation(int gx, int gy)
+{
+    const float a = (float)std::abs(gx), b = (float)std::abs(gy);
+    const float t = std::min(a, b) / std::max(std::max(a, b), 1.f), t2 = t * t;
+    int steps = cvRound(((cv::iib::ATAN_C * t2 + cv::iib::ATAN_B) * t2 + cv::iib::ATAN_A) * t);
+    const int turn = cv::iib::ORIENTATION_STEPS;
+    if (b > a)
+        steps = turn / 4 - steps;
+    if (gx < 0)
+        steps = turn / 2 - steps;
+    if (gy > 0)
+        steps = turn - steps;
+    return steps % turn;
+}
+
+namespace {
+
+int at(const Mat& m, int y, int x)
+{
+    y = std::min(std::max(y, 0), m.rows - 1);
+    x = std::min(std::max(x, 0), m.cols - 1);
+    return m.depth() == CV_8U ? m.at<uchar>(y, x) : m.at<ushort>(y, x);
+}
+
+int gradX(const Mat& m, int y, int x)
+{
+    return at(m, y - 1, x + 1) + 2 * at(m, y, x + 1) + at(m, y + 1, x + 1)
+           - at(m, y - 1, x - 1) - 2 * at(m, y, x - 1) - at(m, y + 1, x - 1);
+}
+
+int gradY(const Mat& m, int y, int x)
+{
+    return at(m, y + 1, x - 1) + 2 * at(m, y + 1, x) + at(m, y + 1, x + 1)
+           - at(m, y - 1, x - 1) - 2 * at(m, y - 1, x) - at(m, y - 1, x + 1);
+}
+
+//! The values of all channels in use at one pixel, given its gradient.
+std::vector<int> valuesOf(int enabled, const Mat& grey, int gx, int gy, int steps, const std::vector<Mat>& extra,
+                          int y, int x)
+{
+    const int offset = grey.depth() == CV_8U ? 6 * 255 : 6 * 65535;  // keeps signed gradients positive
+    std::vector<int> v;
+    if (enabled & IIB::CHANNEL_GRAD_X)
+        v.push_back(std::abs(gx));
+    if (enabled & IIB::CHANNEL_GRAD_Y)
+        v.push_back(std::abs(gy));
+    if (enabled & IIB::CHANNEL_ORIENTATION)
+        v.push_back(steps);
+    if (enabled & IIB::CHANNEL_INTENSITY)
+        v.push_back(at(grey, y, x));
+    if (enabled & IIB::CHANNEL_SIGNED_GRAD_X)
+        v.push_back(gx + offset);
+    if (enabled & IIB::CHANNEL_SIGNED_GRAD_Y)
+        v.push_back(gy + offset);
+    for (size_t i = 0; i < extra.size(); i++)
+        v.push_back(at(extra[i], y, x));
+    return v;
+}
+
+//! One channel's sum and number of pixels in a cell.
+struct Cell
+{
+    int64 sum, count;
+};
+typedef std::array<Cell, 4> Quad;
+
+//! Cell (row, col) of a grid of n x n.
+typedef std::function<Cell(int channel, int n, int row, int col)> Cells;
+
+struct Ros
+{
+    double x, y, side;
+
+    Ros(const IIB& iib, const KeyPoint& kp)
+        : side(std::max((double)iib.getScaleFactor() * kp.size, (double)(1 << iib.getGranularity())))
+    {
+        x = kp.pt.x + 0.5 - side / 2;
+        y = kp.pt.y + 0.5 - side / 2;
+    }
+};
+
+int edge(double start, double side, int k, int n, int limit)
+{
+    return (int)std::min(std::max(std::floor(start + side / n * k + 0.5), 0.), (double)limit);
+}
+
+Cell uprightCell(const Channel& c, const Ros& r, int n, int row, int col)
+{
+    const int x0 = edge(r.x, r.side, col, n, c.cols), x1 = edge(r.x, r.side, col + 1, n, c.cols);
+    const int y0 = edge(r.y, r.side, row, n, c.rows), y1 = edge(r.y, r.side, row + 1, n, c.rows);
+    Cell cell = { 0, (int64)(x1 - x0) * (y1 - y0) };
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++)
+            cell.sum += c(y, x);
+    return cell;
+}
+
+int64 clampTo(int64 v, int limit)
+{
+    return std::min<int64>(std::max<int64>(v, 0), limit - 1);
+}
+
+//! ROS and gradients turned by the keypoint's angle: nearest pixels on a grid of samples x samples.
+struct Turned
+{
+    int samples;
+    std::vector<Channel> values;
+
+    Turned(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra, const KeyPoint& kp)
+    {
+        const Ros ros(iib, kp);
+        samples = ros.side <= 64 && iib.getGranularity() <= 5 ? 32 : 64;
+        const double radians = kp.angle * CV_PI / 180, spacing = std::min(ros.side, 16384.) / samples;
+        const int64 stepX = cvRound(std::cos(radians) * spacing * 65536);
+        const int64 stepY = cvRound(std::sin(radians) * spacing * 65536);
+        const int cosine = cvRound(std::cos(radians) * 4096), sine = cvRound(std::sin(radians) * 4096);
+        const int turn = cvRound(kp.angle * cv::iib::ORIENTATION_STEPS / 360);
+        const int64 x0 = (int64)std::floor(kp.pt.x * 131072. + 65536.5);
+        const int64 y0 = (int64)std::floor(kp.pt.y * 131072. + 65536.5);
+
+        for (int row = 0; row < samples; row++)
+            for (int col = 0; col < samples; col++)
+            {
+                const int u = 2 * col + 1 - samples, v = 2 * row + 1 - samples;
+                const int x = (int)clampTo((x0 + u * stepX - v * stepY) >> 17, grey.cols);
+                const int y = (int)clampTo((y0 + u * stepY + v * stepX) >> 17, grey.rows);
+                const int gx = gradX(grey, y, x), gy = gradY(grey, y, x);
+                const int turnedX = (cosine * gx + sine * gy + 2048) >> 12;
+                const int turnedY = (cosine * gy - sine * gx + 2048) >> 12;
+                const bool flat = gx == 0 && gy == 0;
+                const int turnedO = flat ? 0 : (orientation(gx, gy) + turn) & (cv::iib::ORIENTATION_STEPS - 1);
+                const std::vector<int> all = valuesOf(iib.getChannels(), grey, turnedX, turnedY, turnedO, extra, y, x);
+                while (values.size() < all.size())
+                    values.push_back(Channel(samples, samples));
+                for (size_t c = 0; c < all.size(); c++)
+                    values[c](row, col) = all[c];
+            }
+    }
+
+    Cell cell(int c, int n, int row, int col) const
+    {
+        const int side = samples / n;
+        const Rect r(col * side, row * side, side, side);
+        Cell result = { (int64)sum(values[c](r))[0], r.area() };
+        return result;
+    }
+};
+
+/* mean_i = sum_i / count_i. With widths w0, w1 and heights h0, h1 the counts are w0 h0, w1 h0, w0 h1,
+ w1 h1, so count_i * count_(3-i) is the same for all i, and sum_i * count_(3-i) is mean_i but for a
+ factor common to the four. */
+std::array<int64, 4> comparable(const Quad& q)
+{
+    std::array<int64, 4> x = {};
+    for (int i = 0; i < 4; i++)
+        x[i] = q[i].sum * q[3 - i].count;
+    return x;
+}
+
+//! Paper, "Binary Bit Formulation".
+std::vector<bool> mapQuad(int mapping, const std::array<int64, 4>& x)
+{
+    std::vector<bool> bits;
+    const int64 sum = x[0] + x[1] + x[2] + x[3];
+    const int64 lo = *std::min_element(x.begin(), x.end()), hi = *std::max_element(x.begin(), x.end());
+    for (int i = 0; i < 4; i++)
+    {
+        int code = 0;
+        switch (mapping)
+        {
+        case IIB::MAPPING_MEAN: bits.push_back(4 * x[i] > sum); break;
+        case IIB::MAPPING_MAX: bits.push_back(x[i] == hi); break;
+        case IIB::MAPPING_MIN: bits.push_back(x[i] == lo); break;
+        case IIB::MAPPING_QUARTILE:
+            code = 4 * (x[i] - lo) > 3 * (hi - lo) ? 3 : 2 * (x[i] - lo) > hi - lo ? 2 : 4 * (x[i] - lo) > hi - lo;
+            bits.push_back((code & 2) != 0);
+            bits.push_back((code & 1) != 0);
+            break;
+        case IIB::MAPPING_SORT:
+            for (int j = 0; j < 4; j++)
+                code += x[j] < x[i] || (x[j] == x[i] && j < i);
+            bits.push_back((code & 2) != 0);
+            bits.push_back((code & 1) != 0);
+            break;
+        }
+    }
+    if (mapping == IIB::MAPPING_HAAR)
+    {
+        bits.push_back(x[0] + x[2] > x[1] + x[3]);
+        bits.push_back(x[0] + x[1] > x[2] + x[3]);
+        bits.push_back(x[0] + x[3] > x[1] + x[2]);
+    }
+    if (mapping == IIB::MAPPING_PAIRWISE)
+    {
+        bits.push_back(x[0] > x[1]);
+        bits.push_back(x[1] > x[3]);
+        bits.push_back(x[3] > x[2]);
+        bits.push_back(x[2] > x[0]);
+    }
+    return bits;
+}
+
+std::vector<bool> quadBits(const IIB& iib, const Cells& cells, int channel, int level, int row, int col)
+{
+    const int n = 1 << level;
+    const Quad q = { { cells(channel, n, row, col), cells(channel, n, row, col + 1),
+                       cells(channel, n, row + 1, col), cells(channel, n, row + 1, col + 1) } };
+    return mapQuad(iib.getMapping(), comparable(q));
+}
+
+//! The bits of all quads of a level, in the order the header gives.
+std::vector<bool> levelBits(const IIB& iib, const Cells& cells, int channels, int level)
+{
+    std::vector<bool> bits;
+    const int n = 1 << level;
+    for (int group = 0; group < channels; group += 4)
+        for (int dy = 0; dy <= (int)iib.getOverlap(); dy++)
+            for (int dx = 0; dx <= (int)iib.getOverlap(); dx++)
+                for (int row = dy; row + 1 < n; row += 2)
+                {
+                    std::vector<std::vector<bool> > quads;
+                    for (int col = dx; col + 1 < n; col += 2)
+                        for (int c = group; c < std::min(group + 4, channels); c++)
+                            quads.push_back(quadBits(iib, cells, c, level, row, col));
+                    for (size_t bit = 0; !quads.empty() && bit < quads[0].size(); bit++)
+                        for (size_t i = 0; i < quads.size(); i++)
+                            bits.push_back(quads[i][bit]);
+                }
+    return bits;
+}
+
+std::vector<bool> selectedBits(const IIB& iib, const Cells& cells, const Mat_<int>& selection, int level)
+{
+    // group of channels, window, row, bit, column, channel: the order of the header
+    std::map<std::array<int, 6>, bool> bits;
+    for (int i = 0; i < selection.rows; i++)
+        for (int bit = 0; bit < 8; bit++)
+            if (selection(i, 0) == level && (selection(i, 4) >> bit & 1))
+            {
+                const int channel = selection(i, 1), row = selection(i, 2), col = selection(i, 3);
+                const std::array<int, 6> place = { { channel / 4, row % 2 * 2 + col % 2, row, bit, col, channel } };
+                bits[place] = quadBits(iib, cells, channel, level, row, col)[bit];
+            }
+    std::vector<bool> result;
+    for (const auto& b : bits)
+        result.push_back(b.second);
+    return result;
+}
+
+void appendLevel(std::vector<uchar>& bytes, const std::vector<bool>& bits)
+{
+    const size_t start = bytes.size();
+    bytes.resize(start + (bits.size() + 7) / 8, 0);
+    for (size_t i = 0; i < bits.size(); i++)
+        bytes[start + i / 8] |= (uchar)((int)bits[i] << i % 8);
+}
+
+Cells cellsOf(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra, const std::vector<Channel>& channels,
+              const KeyPoint& kp)
+{
+    if (iib.getUseOrientation() && kp.angle >= 0)
+    {
+        const Turned turned(iib, grey, extra, kp);
+        return [turned](int c, int n, int row, int col) { return turned.cell(c, n, row, col); };
+    }
+    const Ros ros(iib, kp);
+    return [ros, &channels](int c, int n, int row, int col) { return uprightCell(channels[c], ros, n, row, col); };
+}
+
+}  // namespace
+
+std::vector<Channel> channelsOf(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra)
+{
+    std::vector<Channel> channels;
+    for (int y = 0; y < grey.rows; y++)
+        for (int x = 0; x < grey.cols; x++)
+        {
+            const int gx = gradX(grey, y, x), gy = gradY(grey, y, x);
+            const std::vector<int> v = valuesOf(iib.getChannels(), grey, gx, gy, orientation(gx, gy), extra, y, x);
+            while (channels.size() < v.size())
+                channels.push_back(Channel(grey.size()));
+            for (size_t c = 0; c < v.size(); c++)
+                channels[c](y, x) = v[c];
+        }
+    return channels;
+}
+
+Mat describe(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra, const std::vector<KeyPoint>& keypoints)
+{
+    const std::vector<Channel> channels = channelsOf(iib, grey, extra);
+    const Mat_<int> selection = iib.getSelection();
+    Mat descriptors;
+    for (size_t k = 0; k < keypoints.size(); k++)
+    {
+        const Cells cells = cellsOf(iib, grey, extra, channels, keypoints[k]);
+        std::vector<uchar> bytes;
+        for (int level = 1; level <= iib.getGranularity(); level++)
+            appendLevel(bytes, selection.empty() ? levelBits(iib, cells, (int)channels.size(), level)
+                                                 : selectedBits(iib, cells, selection, level));
+        descriptors.push_back(Mat(bytes).reshape(1, 1).clone());
+    }
+    return descriptors;
+}
+
+}  // namespace oracle

@@ -1,0 +1,45 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_TEST_MATCHER_ORACLE_HPP
+#define OPENCV_IIB_TEST_MATCHER_ORACLE_HPP
+
+#include "../test_precomp.hpp"
+
+namespace opencv_test {
+
+typedef std::vector<std::vector<DMatch> > Matches;
+
+//! Random descriptors in clusters, so that there are near ones, equal ones and ties.
+Mat randomDescriptors(uint64 seed, int rows, int bytes);
+
+//! CV_8UC1 of 0 and 255, about `share` of them set.
+Mat randomMask(uint64 seed, int rows, int cols, double share);
+
+int hammingDistance(const uchar* a, const uchar* b, int bytes);
+
+//! Matching as the header defines it, pair by pair.
+struct MatcherOracle
+{
+    std::vector<Mat> images, masks;
+    std::vector<int> levelSizes;
+    std::vector<float> thresholds; //!< of the paper's rule; empty: all pairs count
+    bool crossCheck;
+    float maxRatio;
+    double compared, all; //!< bits, after a call
+
+    MatcherOracle() : crossCheck(false), maxRatio(1), compared(0), all(0) {}
+    Matches knn(const Mat& queries, int k);
+    Matches radius(const Mat& queries, int radius);
+
+private:
+    Matches candidates(const Mat& queries);
+    bool passes(const uchar* query, const uchar* train);
+};
+
+void expectEqual(const Matches& expected, const Matches& actual);
+
+}  // namespace opencv_test
+
+#endif

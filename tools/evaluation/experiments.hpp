@@ -1,0 +1,52 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_TOOLS_EXPERIMENTS_HPP
+#define IIB_TOOLS_EXPERIMENTS_HPP
+
+#include <string>
+#include <vector>
+
+#include "common/dataset.hpp"
+
+namespace iib_tools {
+
+struct Options
+{
+    std::vector<std::string> roots;  //!< folders of sequences and list files
+    std::string out;                 //!< folder of the results, made if need be
+    int points = 1000;               //!< keypoints an image
+    double tolerance = 3;            //!< pixels
+    int worst = 5;                   //!< worst and best pairs a set to draw; 0: no pictures
+    std::vector<std::string> experiments;  //!< names of experiments to run; empty: all
+    std::vector<std::string> saved;        //!< files of saved IIB extractors to compare
+    std::string keypoints;           //!< folder of keypoint files <set>/<sequence>/<image>.csv, or empty
+    std::string network;             //!< ONNX file of a keypoint detector, or empty
+};
+
+/** Each experiment appends to `<out>/<name>.csv` what is not there yet.
+@return the number of pairs that were skipped because something was broken. */
+int protocolA(const Options& options, const std::vector<ImagePair>& pairs);
+//! Of pairs whose light changes, as the paper's.
+int protocolB(const Options& options, const std::vector<ImagePair>& pairs);
+int matchingStudy(const Options& options, const std::vector<ImagePair>& pairs);
+int robustness(const Options& options, const std::vector<ImagePair>& pairs);
+int cost(const Options& options, const std::vector<ImagePair>& pairs);
+//! Pictures of the worst and best pairs of each set, by recall in `<out>/protocol_a.csv`.
+int pictures(const Options& options, const std::vector<ImagePair>& pairs);
+
+//! Columns of `<out>/protocol_a.csv`.
+std::vector<std::string> protocolAColumns();
+
+//! Names of the experiments in the order in which evaluate runs them.
+std::vector<std::string> experimentNames();
+
+/** Runs the experiments. @return how many tasks were skipped.
+@throws cv::Exception if there is nothing to evaluate, an experiment is unknown, or the folder holds results
+of other settings. */
+int evaluate(const Options& options);
+
+}  // namespace iib_tools
+
+#endif

@@ -1,0 +1,201 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include "../experiments.hpp"
+#include "../results.hpp"
+#include "../tasks.hpp"
+#include "opencv2/imgcodecs.hpp"
+#include "opencv2/imgproc.hpp"
+#include "common/test/test_folder.hpp"
+
+namespace {
+using namespace iib_tools;
+
+std::string contents(const std::string& file)
+{
+    std::ifstream in(file);
+    return std::string((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+}
+
+//! Two sequences of random blocks under changing light: a still camera with depth, and one that shifts.
+class EvaluationTest : public ::testing::Test
+{
+protected:
+    void SetUp() CV_OVERRIDE
+    {
+        cv::RNG rng(7);
+        cv::Mat scene(240, 320, CV_8UC1, cv::Scalar(90));
+        for (int i = 0; i < 900; i++)
+        {
+            const cv::Point corner(rng.uniform(0, 320), rng.uniform(0, 240));
+            const cv::Size size(rng.uniform(4, 26), rng.uniform(4, 26));
+            cv::rectangle(scene, cv::Rect(corner, size), cv::Scalar(rng.uniform(20, 230)), -1);
+        }
+        folder.makeFolder("data/set/still/depth");
+        folder.makeFolder("data/set/v_shift");
+        cv::Mat dark, noise(scene.size(), CV_8UC1), shifted, shift = (cv::Mat_<double>(2, 3) << 1, 0, 9, 0, 1, -4);
+        rng.fill(noise, cv::RNG::UNIFORM, 0, 12);
+        scene.convertTo(dark, CV_8U, 0.1, 10);
+        dark += noise;
+        cv::Mat depth;
+        cv::resize(scene, depth, scene.size());
+        write("still/1.png", scene);
+        write("still/2.png", dark);
+        write("still/depth/1.png", depth);
+        write("still/depth/2.png", depth);
+        cv::warpAffine(dark, shifted, shift, dark.size());
+        write("v_shift/1.png", scene);
+        write("v_shift/2.png", shifted);
+        folder.write("data/set/v_shift/H_1_2", "1 0 9 0 1 -4 0 0 1");
+
+        options.roots = {folder.path("data")};
+        options.out = folder.path("results");
+        options.points = 200;
+    }
+
+    void write(const std::string& name, const cv::Mat& image)
+    {
+        ASSERT_TRUE(cv::imwrite(folder.path("data/set/" + name), image));
+    }
+
+    std::vector<Fields> protocolARows() const
+    {
+        return readRows(options.out + "/protocol_a.csv", protocolAColumns());
+    }
+
+    double recallOf(const std::string& target, const std::string& configuration) const
+    {
+        for (const Fields& row : protocolARows())
+            if (row[1] == target && row[3] == configuration)
+                return std::atof(row[10].c_str());
+        ADD_FAILURE() << "no row of " << target << ", " << configuration;
+        return -1;
+    }
+
+    TestFolder folder;
+    Options options;
+};
+
+TEST_F(EvaluationTest, whole_run_and_its_repetition)
+{
+    if (const char* kept = std::getenv("IIB_EVALUATION_RESULTS"))  // for the test of the report
+    {
+        options.out = kept;
+        cv::utils::fs::remove_all(kept);
+    }
+    EXPECT_EQ(0, evaluate(options));
+    EXPECT_GT(recallOf("still", "IIB"), 0.9);
+    EXPECT_GT(recallOf("v_shift", "IIB"), 0.9);
+    EXPECT_GT(recallOf("still", "IIB"), recallOf("still", "IIB g2"));
+    EXPECT_GT(recallOf("still", "IIB +depth"), 0.9);
+
+    const std::vector<std::string> tables = {"protocol_a", "protocol_b", "matching", "robustness", "cost", "pictures"};
+    std::vector<std::string> first;
+    for (const std::string& name : tables)
+        first.push_back(contents(options.out + "/" + name + ".csv"));
+    EXPECT_EQ(0, evaluate(options));  // nothing is left to do, and nothing changes
+    for (size_t i = 0; i < tables.size(); i++)
+        EXPECT_EQ(first[i], contents(options.out + "/" + tables[i] + ".csv")) << tables[i];
+    EXPECT_FALSE(cv::imread(options.out + "/pictures/set_still_2.jpg").empty());
+
+    options.points = 100;
+    EXPECT_NE(std::string::npos, messageOf([&] { evaluate(options); }).find("settings"));
+}
+
+TEST_F(EvaluationTest, an_interrupted_run_goes_on_to_the_same_result)
+{
+    for (const std::string experiment : {"robustness", "protocol_a"})
+    {
+        options.experiments = {experiment};
+        evaluate(options);
+        const std::string file = options.out + "/" + experiment + ".csv", whole = contents(file);
+        std::ofstream(file) << whole.substr(0, whole.size() / 2);
+        evaluate(options);
+        EXPECT_EQ(whole, contents(file)) << experiment;
+    }
+    const std::string whole = contents(options.out + "/protocol_a.csv");
+
+    const int threads = cv::getNumThreads();
+    cv::setNumThreads(1);
+    options.out = folder.path("serial");
+    evaluate(options);
+    cv::setNumThreads(threads);
+    EXPECT_EQ(whole, contents(options.out + "/protocol_a.csv"));
+}
+
+TEST_F(EvaluationTest, broken_files_are_counted_and_the_rest_goes_on)
+{
+    folder.write("data/set/still/3.png", "no image");
+    folder.write("data/set/v_shift/3.png", "no image");
+    folder.write("data/set/v_shift/H_1_3", "1 2 3");
+    options.experiments = {"protocol_a"};
+    EXPECT_EQ(2, evaluate(options));
+    EXPECT_GT(recallOf("still", "IIB"), 0.9);
+}
+
+TEST_F(EvaluationTest, keypoints_from_files)
+{
+    options.experiments = {"protocol_b"};
+    options.keypoints = folder.path("points");
+    folder.makeFolder("points/set/still");
+    std::string list = "x,y,size\n";
+    for (int y = 40; y < 200; y += 16)
+        for (int x = 40; x < 280; x += 16)
+            list += std::to_string(x) + "," + std::to_string(y) + ",5\n";
+    folder.write("points/set/still/1.csv", list);
+    folder.write("points/set/still/2.csv", list);
+    write("still/3.png", cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
+    write("still/depth/3.png", cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
+    EXPECT_EQ(1, evaluate(options));  // the third image has no such file
+    const std::string table = contents(options.out + "/protocol_b.csv"), row = "set,still,2,file,IIB,light,170,";
+    const size_t at = table.find(row);
+    ASSERT_NE(std::string::npos, at);
+    EXPECT_GT(std::atoi(table.c_str() + at + row.size()), 100);  // correct matches of 150 points
+}
+
+TEST_F(EvaluationTest, mistakes_are_told)
+{
+    options.experiments = {"protocol_c"};
+    EXPECT_NE(std::string::npos, messageOf([&] { evaluate(options); }).find("protocol_c"));
+    options.experiments.clear();
+    folder.makeFolder("empty");
+    options.roots = {folder.path("empty")};
+    EXPECT_NE(std::string::npos, messageOf([&] { evaluate(options); }).find("no image sequences"));
+}
+
+TEST(Results, a_line_cut_short_is_left_out)
+{
+    TestFolder folder;
+    folder.makeFolder("");
+    folder.write("t.csv", "a,b\n1,2\n3,4");
+    EXPECT_EQ(std::vector<Fields>({{"1", "2"}}), readRows(folder.path("t.csv"), {"a", "b"}));
+    ResultTable table(folder.path("t.csv"), {"a", "b"}, 1);
+    EXPECT_TRUE(table.has({"1"}));
+    EXPECT_FALSE(table.has({"3"}));
+    table.append({"0", "5"});
+    EXPECT_EQ("a,b\n1,2\n0,5\n", contents(folder.path("t.csv")));
+    table.finish();
+    EXPECT_EQ("a,b\n0,5\n1,2\n", contents(folder.path("t.csv")));
+    EXPECT_NE("", messageOf([&] { ResultTable(folder.path("t.csv"), {"a", "c"}, 1); }));
+}
+
+TEST(Tasks, a_failure_is_counted_and_the_others_run)
+{
+    std::vector<int> done(9, 0);
+    std::vector<Task> tasks;
+    for (size_t i = 0; i < done.size(); i++)
+        tasks.push_back({"task", [&done, i] {
+                             if (i % 4 == 1)
+                                 CV_Error(cv::Error::StsError, "broken");
+                             done[i] = 1;
+                         }});
+    EXPECT_EQ(2, runTasks("test", tasks));
+    EXPECT_EQ(std::vector<int>({1, 0, 1, 1, 1, 0, 1, 1, 1}), done);
+}
+
+}  // namespace

@@ -1,0 +1,53 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_TOOLS_RECIPE_HPP
+#define IIB_TOOLS_RECIPE_HPP
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/metrics.hpp"
+#include "select.hpp"
+
+namespace iib_tools {
+
+//! All that decides a selection but the images and the seed.
+struct Recipe
+{
+    std::string name;
+    int bits;          //!< 0: all quads at even positions, there is nothing to learn
+    PoolParameters pool;
+    double warpShare;  //!< of the training pairs, see describeForTraining
+    bool adaBoost;     //!< selectByAdaBoost instead of selectGreedily
+    int pairsPerScene;
+};
+
+//! How the built-in presets are made, in the order of IIBDescriptorExtractor::Preset.
+std::vector<Recipe> presetRecipes();
+//! Trains on all pairs given. Progress counts the pairs described, then the candidates chosen.
+cv::Ptr<cv::iib::IIBDescriptorExtractor> train(const Recipe& recipe, const std::vector<ImagePair>& pairs,
+        uint64 seed, const Progress& progress);
+
+//! mAP and mAR of protocol A, means over the pairs.
+MeanScores judge(const std::vector<ImagePair>& pairs, const cv::Ptr<cv::Feature2D>& extractor,
+        const Progress& progress);
+
+//! The pairs whose scene is (or, if `inside` is false, is not) number fold, fold + folds, ... in order.
+std::vector<ImagePair> foldOf(const std::vector<ImagePair>& pairs, int fold, int folds, bool inside);
+
+struct NamedExtractor
+{
+    std::string name;
+    cv::Ptr<cv::iib::IIBDescriptorExtractor> extractor;
+};
+
+//! The C++ header of the built-in presets; the command, the pairs' scenes and the seed go into its head.
+std::string presetsHeader(const std::vector<NamedExtractor>& presets, const std::string& command,
+        const std::vector<ImagePair>& pairs, uint64 seed);
+
+}  // namespace iib_tools
+
+#endif

@@ -1,0 +1,137 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "samples.hpp"
+
+#include <cmath>
+#include <map>
+
+#include "common/keypoints.hpp"
+#include "opencv2/imgproc.hpp"
+
+namespace iib_tools {
+namespace {
+
+const float RADIUS = 32;
+const int POINTS = 1000, FEWEST_POINTS = 100;
+const double SAME_LIGHT = 0.4;  // of the warped pairs
+
+cv::Matx33d rotation(double radians)
+{
+    const double c = std::cos(radians), s = std::sin(radians);
+    return cv::Matx33d(c, -s, 0, s, c, 0, 0, 0, 1);
+}
+
+double logUniform(cv::RNG& rng, double low, double high)
+{
+    return std::exp(rng.uniform(std::log(low), std::log(high)));
+}
+
+std::string sceneOf(const ImagePair& pair) { return pair.set + "/" + pair.sequence; }
+
+//! Any two images of a scene, one time in three the reference and a target.
+LoadedPair drawPair(const std::vector<ImagePair>& scene, cv::RNG& rng)
+{
+    const int first = rng.uniform(0, int(scene.size())), second = rng.uniform(0, int(scene.size()));
+    LoadedPair pair = loadPair(scene[second]);
+    if (first != second && rng.uniform(0, 3) != 0)
+    {
+        const LoadedPair other = loadPair(scene[first]);
+        pair.reference = other.target;
+        pair.homography = pair.homography * other.homography.inv();
+    }
+    return pair;
+}
+
+void mirror(LoadedPair& pair)
+{
+    cv::flip(pair.reference, pair.reference, 1);
+    cv::flip(pair.target, pair.target, 1);
+    const cv::Matx33d flipReference(-1, 0, pair.reference.cols - 1., 0, 1, 0, 0, 0, 1);
+    const cv::Matx33d flipTarget(-1, 0, pair.target.cols - 1., 0, 1, 0, 0, 0, 1);
+    pair.homography = flipTarget * pair.homography * flipReference;
+}
+
+void makeSelfPair(LoadedPair& pair)
+{
+    pair.target = pair.reference;
+    pair.homography = cv::Matx33d::eye();
+}
+
+void warpTarget(LoadedPair& pair, cv::RNG& rng)
+{
+    const double angle = rng.uniform(-20., 20.) * CV_PI / 180, scale = logUniform(rng, 0.7, 1.4);
+    const double tilt = std::sqrt(logUniform(rng, 1 / 2., 2.)), tiltAxis = rng.uniform(0., CV_PI);
+    const double x = pair.target.cols / 2., y = pair.target.rows / 2.;
+    const cv::Matx33d toCentre(1, 0, -x, 0, 1, -y, 0, 0, 1), back(1, 0, x, 0, 1, y, 0, 0, 1);
+    const cv::Matx33d stretch(tilt * scale, 0, 0, 0, scale / tilt, 0, 0, 0, 1);
+    const cv::Matx33d warp = back * rotation(tiltAxis) * stretch * rotation(angle - tiltAxis) * toCentre;
+
+    cv::Mat source = pair.target.clone();  // it may share the reference's pixels
+    if (scale < 1)  // against aliasing
+        cv::GaussianBlur(source, source, cv::Size(), 0.4 / scale);
+    cv::Mat warped;
+    cv::warpPerspective(source, warped, warp, source.size(), cv::INTER_LINEAR, cv::BORDER_REFLECT);
+    pair.target = warped;
+    pair.homography = warp * pair.homography;
+}
+
+DescribedPair describe(const std::string& scene, const LoadedPair& pair,
+        const cv::Ptr<cv::Feature2D>& extractor)
+{
+    SeedPoints seeds = fastSeeds(pair.reference, pair.target, pair.homography, RADIUS, POINTS);
+    DescribedPair described;
+    described.scene = scene;
+    cv::KeyPoint::convert(seeds.target, described.points);
+    extractor->compute(pair.reference, seeds.reference, described.reference);
+    extractor->compute(pair.target, seeds.target, described.target);
+    return described;
+}
+
+}  // namespace
+
+std::vector<DescribedPair> describeForTraining(const std::vector<ImagePair>& pairs,
+        const cv::Ptr<cv::Feature2D>& extractor, int pairsPerScene, double warpShare, uint64 seed,
+        const Progress& progress)
+{
+    std::map<std::string, std::vector<ImagePair>> scenes;
+    for (const ImagePair& pair : pairs)
+        scenes[sceneOf(pair)].push_back(pair);
+
+    cv::RNG rng(seed);
+    std::vector<DescribedPair> described;
+    int done = 0;
+    for (const auto& scene : scenes)
+        for (int i = 0; i < pairsPerScene; i++)
+        {
+            LoadedPair pair = drawPair(scene.second, rng);
+            if (rng.uniform(0, 2) == 1)
+                mirror(pair);
+            if (rng.uniform(0., 1.) < warpShare)
+            {
+                if (rng.uniform(0., 1.) < SAME_LIGHT)
+                    makeSelfPair(pair);
+                warpTarget(pair, rng);
+            }
+            described.push_back(describe(scene.first, pair, extractor));
+            if (int(described.back().points.size()) < FEWEST_POINTS)
+                described.pop_back();
+            progress(++done, int(scenes.size()) * pairsPerScene);
+        }
+    return described;
+}
+
+std::vector<DescribedPair> describeForTest(const std::vector<ImagePair>& pairs,
+        const cv::Ptr<cv::Feature2D>& extractor, const Progress& progress)
+{
+    std::vector<DescribedPair> described;
+    for (const ImagePair& info : pairs)
+    {
+        described.push_back(describe(sceneOf(info), loadPair(info), extractor));
+        progress(int(described.size()), int(pairs.size()));
+    }
+    return described;
+}
+
+}  // namespace iib_tools

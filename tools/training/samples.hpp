@@ -1,0 +1,42 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_TOOLS_SAMPLES_HPP
+#define IIB_TOOLS_SAMPLES_HPP
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/dataset.hpp"
+#include "opencv2/features2d.hpp"
+
+namespace iib_tools {
+
+//! The same points in two images of a scene: row i of both, described with a whole candidate pool.
+struct DescribedPair
+{
+    std::string scene;                //!< "set/sequence"
+    std::vector<cv::Point2f> points;  //!< in the target, pixels; points nearer than 3 px are the same
+    cv::Mat reference, target;        //!< CV_8U, a row a point
+};
+
+//! Called with the work done so far and the whole of it.
+typedef std::function<void(int done, int all)> Progress;
+
+/** The points of protocol A (up to 1000 FAST corners a pair, ROS of radius 32) of `pairsPerScene` random pairs
+of images of every scene, half of them mirrored, so that scenes count the same and left is like right. A part
+`warpShare` of the targets is turned by up to 20 degrees, scaled by 0.7 to 1.4 and tilted by up to 2, about
+the centre; two in five of these are of one image and its own warp, without a change of light. Pairs with fewer than 100 points are left out. */
+std::vector<DescribedPair> describeForTraining(const std::vector<ImagePair>& pairs,
+        const cv::Ptr<cv::Feature2D>& extractor, int pairsPerScene, double warpShare, uint64 seed,
+        const Progress& progress);
+
+//! All pairs as they are, for judging.
+std::vector<DescribedPair> describeForTest(const std::vector<ImagePair>& pairs,
+        const cv::Ptr<cv::Feature2D>& extractor, const Progress& progress);
+
+}  // namespace iib_tools
+
+#endif
