@@ -33,11 +33,11 @@ for step in "$@"; do
     sanitize) "$root/scripts/test.sh" --sanitize ;;
     load)
         cmake -S "$root" -B "$root/build" -G Ninja
-        cmake --build "$root/build" --target iib_load iib_failing_memory
+        cmake --build "$root/build" --target iib_stress iib_fault_injection
         for load in keypoints codes pixels threads; do
-            "$root/build/tools/stress/iib_load" $load
+            "$root/build/tools/stress/iib_stress" $load
         done
-        "$root/build/tools/stress/iib_failing_memory"
+        "$root/build/tools/stress/iib_fault_injection"
         ;;
     fuzz) "$root/scripts/fuzz.sh" -s 600 ;;
     versions) "$root/scripts/versions.sh" ;;

@@ -4,7 +4,7 @@
 
 #include "stress.hpp"
 
-namespace iib_load {
+namespace iib_stress {
 
 using namespace cv;
 using cv::iib::IIB;
@@ -61,4 +61,4 @@ void largeImages(int megapixels)
         }
 }
 
-}  // namespace iib_load
+}  // namespace iib_stress

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <thread>
 
-namespace iib_load {
+namespace iib_stress {
 
 using namespace cv;
 using cv::iib::HierarchicalMatcher;
@@ -93,4 +93,4 @@ void manyThreads(int seconds)
     require(late < early * 1.05 + 16, "memory grows");
 }
 
-}  // namespace iib_load
+}  // namespace iib_stress

@@ -3,10 +3,10 @@
 // of this distribution and at http://opencv.org/license.html.
 
 // The library under load, each result compared with one got the easy way:
-//   iib_load keypoints [COUNT]   many keypoints on one image
-//   iib_load codes [COUNT]       many train descriptors
-//   iib_load pixels [MEGAPIXELS] large images of every type
-//   iib_load threads [SECONDS]   24 threads that share one extractor and one matcher
+//   iib_stress keypoints [COUNT]   many keypoints on one image
+//   iib_stress codes [COUNT]       many train descriptors
+//   iib_stress pixels [MEGAPIXELS] large images of every type
+//   iib_stress threads [SECONDS]   24 threads that share one extractor and one matcher
 // Prints time and memory; exit code 1 and a line for what does not hold.
 
 #include "stress.hpp"
@@ -16,7 +16,7 @@
 #include <fstream>
 #include <stdexcept>
 
-namespace iib_load {
+namespace iib_stress {
 
 using namespace cv;
 using cv::iib::IIB;
@@ -73,11 +73,11 @@ Mat describe(IIB& iib, const Mat& image, std::vector<KeyPoint> keypoints)
 
 bool equal(const Mat& a, const Mat& b) { return a.size() == b.size() && norm(a, b, NORM_INF) == 0; }
 
-}  // namespace iib_load
+}  // namespace iib_stress
 
 int main(int argc, char** argv)
 {
-    using namespace iib_load;
+    using namespace iib_stress;
     const std::string what = argc > 1 ? argv[1] : "";
     const int amount = argc > 2 ? std::atoi(argv[2]) : 0;
     try
@@ -92,7 +92,7 @@ int main(int argc, char** argv)
             manyThreads(amount > 0 ? amount : 120);
         else
         {
-            std::fprintf(stderr, "iib_load keypoints|codes|pixels|threads [AMOUNT]\n");
+            std::fprintf(stderr, "iib_stress keypoints|codes|pixels|threads [AMOUNT]\n");
             return 2;
         }
     }

@@ -9,7 +9,7 @@
 
 #include <string>
 
-namespace iib_load {
+namespace iib_stress {
 
 //! @throws std::logic_error
 void require(bool condition, const char* what);
@@ -41,6 +41,6 @@ void largeImages(int megapixels);
 void manyCodes(int count);
 void manyThreads(int seconds);
 
-}  // namespace iib_load
+}  // namespace iib_stress
 
 #endif

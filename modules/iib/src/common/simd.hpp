@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_INTRINSICS_HPP
-#define OPENCV_IIB_INTRINSICS_HPP
+#ifndef OPENCV_IIB_COMMON_SIMD_HPP
+#define OPENCV_IIB_COMMON_SIMD_HPP
 
 #include "opencv2/core/version.hpp"
 #include "opencv2/core/hal/intrin.hpp"

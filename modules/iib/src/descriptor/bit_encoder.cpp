@@ -71,7 +71,7 @@ template <typename Cell> bool fitsInt(const CellGrid<Cell>& cells, const LevelSh
 
 }  // namespace
 
-KeyPointBits::KeyPointBits(const Parameters& p, int group, int channels)
+BitEncoder::BitEncoder(const Parameters& p, int group, int channels)
     : granularity(finestLevel(p)), mapping(p.mapping), shortKernels(getBitsKernels(p.mapping, ushort())),
       longKernels(getBitsKernels(p.mapping, unsigned())), x(paddedEdges(size())), y(size() + 1), chosen(granularity + 1),
       shapes(granularity + 1), sums(granularity + 1), wideSums(granularity + 1)
@@ -79,14 +79,14 @@ KeyPointBits::KeyPointBits(const Parameters& p, int group, int channels)
     sums[0].create(1);
     for (int level = 1; level <= granularity; level++)
     {
-        int windows = p.overlap ? (1 << Window::COUNT) - 1 : 1;
+        int windows = p.overlap ? (1 << QuadPhase::COUNT) - 1 : 1;
         if (!p.selection.empty())
         {
             windows = 0;
-            for (int window = 0; window < Window::COUNT; window++)
+            for (int phase = 0; phase < QuadPhase::COUNT; phase++)
             {
-                chosen[level].push_back(ChosenBits(p, level, group, window));
-                windows |= !chosen[level][window].none() << window;
+                chosen[level].push_back(ChosenBits(p, level, group, phase));
+                windows |= !chosen[level][phase].none() << phase;
             }
         }
         const int step = 1 << (granularity - level);
@@ -97,11 +97,11 @@ KeyPointBits::KeyPointBits(const Parameters& p, int group, int channels)
     }
 }
 
-template <> const BitsKernels<ushort>& KeyPointBits::kernels<ushort>() const { return shortKernels; }
-template <> const BitsKernels<unsigned>& KeyPointBits::kernels<unsigned>() const { return longKernels; }
+template <> const BitsKernels<ushort>& BitEncoder::kernels<ushort>() const { return shortKernels; }
+template <> const BitsKernels<unsigned>& BitEncoder::kernels<unsigned>() const { return longKernels; }
 
 template <typename Cell>
-void KeyPointBits::writeFrom(int level, const CellGrid<Cell>& cells, double value, double longest, uchar* descriptor)
+void BitEncoder::writeFrom(int level, const CellGrid<Cell>& cells, double value, double longest, uchar* descriptor)
 {
     int coarsest = level + 1;
     for (double l = longest; coarsest > 1 && alwaysFitsInt(shapes[coarsest - 1], value, l); l *= 2)
@@ -117,7 +117,7 @@ void KeyPointBits::writeFrom(int level, const CellGrid<Cell>& cells, double valu
         writeFrom(coarsest - 1, sums[coarsest - 1], value, longest * (2 << (level - coarsest)), descriptor);
 }
 
-void KeyPointBits::writeFrom(int level, const CellGrid<double>& cells, uchar* descriptor)
+void BitEncoder::writeFrom(int level, const CellGrid<double>& cells, uchar* descriptor)
 {
     BitWriter out(descriptor, shapes[level].offset);
     wideLevelBits(mapping, cells, shapes[level], out);
@@ -128,13 +128,13 @@ void KeyPointBits::writeFrom(int level, const CellGrid<double>& cells, uchar* de
     writeFrom(level - 1, wideSums[level - 1], descriptor);
 }
 
-template <> void KeyPointBits::write<double>(double, int, uchar* descriptor)
+template <> void BitEncoder::write<double>(double, int, uchar* descriptor)
 {
     writeFrom(granularity, wideSums[granularity], descriptor);
 }
 
-template void KeyPointBits::writeFrom(int, const CellGrid<ushort>&, double, double, uchar*);
-template void KeyPointBits::writeFrom(int, const CellGrid<unsigned>&, double, double, uchar*);
+template void BitEncoder::writeFrom(int, const CellGrid<ushort>&, double, double, uchar*);
+template void BitEncoder::writeFrom(int, const CellGrid<unsigned>&, double, double, uchar*);
 
 }  // namespace iib
 }  // namespace cv

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_KEYPOINT_BITS_HPP
-#define OPENCV_IIB_KEYPOINT_BITS_HPP
+#ifndef OPENCV_IIB_DESCRIPTOR_BIT_ENCODER_HPP
+#define OPENCV_IIB_DESCRIPTOR_BIT_ENCODER_HPP
 
 #include "kernels/bits.hpp"
 
@@ -12,11 +12,11 @@ namespace iib {
 
 /** From the sums over the finest cells of a keypoint to its bits, level by level. Holds the memory that one
  thread uses again for each keypoint. */
-class KeyPointBits
+class BitEncoder
 {
 public:
     //! @param group which four of the channels; @param channels how many of them are in use.
-    KeyPointBits(const Parameters& parameters, int group, int channels);
+    BitEncoder(const Parameters& parameters, int group, int channels);
 
     //! Cells in a row at the finest level that has bits.
     int size() const { return 1 << granularity; }
@@ -57,10 +57,10 @@ private:
     std::vector<CellGrid<double> > wideSums;
 };
 
-template <> inline CellGrid<ushort>& KeyPointBits::finestCells<ushort>() { return shortSums; }
-template <> inline CellGrid<unsigned>& KeyPointBits::finestCells<unsigned>() { return sums[granularity]; }
-template <> inline CellGrid<double>& KeyPointBits::finestCells<double>() { return wideSums[granularity]; }
-template <> void KeyPointBits::write<double>(double longestCell, int maxValue, uchar* descriptor);
+template <> inline CellGrid<ushort>& BitEncoder::finestCells<ushort>() { return shortSums; }
+template <> inline CellGrid<unsigned>& BitEncoder::finestCells<unsigned>() { return sums[granularity]; }
+template <> inline CellGrid<double>& BitEncoder::finestCells<double>() { return wideSums[granularity]; }
+template <> void BitEncoder::write<double>(double longestCell, int maxValue, uchar* descriptor);
 
 }  // namespace iib
 }  // namespace cv

@@ -12,12 +12,12 @@ namespace {
 // Rows of the scratch memory: three of the image in turn, its gradient, the channels.
 enum { IMAGE_ROWS = 3, GRADIENT_X = IMAGE_ROWS, GRADIENT_Y, FIRST_PLANE, SCRATCH_ROWS = FIRST_PLANE + GROUP_CHANNELS };
 
-template <typename Lane> const RowKernels<Lane>& rowKernels();
+template <typename T> const RowKernels<T>& rowKernels();
 template <> const RowKernels<short>& rowKernels<short>() { return shortRowKernels(); }
 template <> const RowKernels<int>& rowKernels<int>() { return intRowKernels(); }
 
-template <typename Lane>
-void widen(const RowKernels<Lane>& kernels, const Mat& map, int y, int x, Lane* out, int width)
+template <typename T>
+void widen(const RowKernels<T>& kernels, const Mat& map, int y, int x, T* out, int width)
 {
     if (map.depth() == CV_8U)
         kernels.widen8u(map.ptr<uchar>(y) + x, out, width);
@@ -27,10 +27,10 @@ void widen(const RowKernels<Lane>& kernels, const Mat& map, int y, int x, Lane* 
 
 }  // namespace
 
-template <typename Lane>
-ChannelRows<Lane>::ChannelRows(const std::vector<Channel>& channels_, Rect area_, int signedOffset_)
-    : channels(channels_), area(area_), signedOffset((Lane)signedOffset_), kernels(rowKernels<Lane>()),
-      gradientOf(0), step(wholeLines<Lane>((size_t)area_.width + 2 + ROW_PADDING)), scratch(SCRATCH_ROWS * step)
+template <typename T>
+ChannelRows<T>::ChannelRows(const std::vector<Channel>& channels_, Rect area_, int signedOffset_)
+    : channels(channels_), area(area_), signedOffset((T)signedOffset_), kernels(rowKernels<T>()),
+      gradientOf(0), step(wholeLines<T>((size_t)area_.width + 2 + ROW_PADDING)), scratch(SCRATCH_ROWS * step)
 {
     for (const Channel& c : channels)
         if (usesGradient(c))
@@ -41,14 +41,14 @@ ChannelRows<Lane>::ChannelRows(const std::vector<Channel>& channels_, Rect area_
         planes[i] = row(FIRST_PLANE + std::min(i, (int)channels.size() - 1));
 }
 
-template <typename Lane> void ChannelRows<Lane>::computeGradient(int y)
+template <typename T> void ChannelRows<T>::computeGradient(int y)
 {
-    const Lane* around[3];
+    const T* around[3];
     for (int i = 0; i < 3; i++)
     {
         // pixels beyond the image repeat its border, as Sobel's BORDER_REPLICATE
         const int imageY = std::min(std::max(y + i - 1, 0), gradientOf->rows - 1);
-        Lane* out = row(imageY % IMAGE_ROWS);
+        T* out = row(imageY % IMAGE_ROWS);
         around[i] = out;
         if (read[imageY % IMAGE_ROWS] == imageY)
             continue;
@@ -61,14 +61,14 @@ template <typename Lane> void ChannelRows<Lane>::computeGradient(int y)
     kernels.gradient(around[0], around[1], around[2], row(GRADIENT_X), row(GRADIENT_Y), area.width);
 }
 
-template <typename Lane> void ChannelRows<Lane>::compute(int y)
+template <typename T> void ChannelRows<T>::compute(int y)
 {
     if (gradientOf)
         computeGradient(y);
-    const Lane *gx = row(GRADIENT_X), *gy = row(GRADIENT_Y);
+    const T *gx = row(GRADIENT_X), *gy = row(GRADIENT_Y);
     for (size_t i = 0; i < channels.size(); i++)
     {
-        Lane* out = row(FIRST_PLANE + (int)i);
+        T* out = row(FIRST_PLANE + (int)i);
         switch (channels[i].kind)
         {
         case IIB::CHANNEL_GRAD_X: kernels.absolute(gx, out, area.width); break;

@@ -44,13 +44,13 @@ struct Part
 };
 
 void describeUprightBlock(const Parameters& p, const std::vector<Channel>& channels, const Block& block,
-                          const std::vector<Ros>& ros, Mat& descriptors)
+                          const std::vector<SupportRegion>& region, Mat& descriptors)
 {
     for (size_t first = 0; first < channels.size(); first += GROUP_CHANNELS)
     {
         const size_t end = std::min(first + GROUP_CHANNELS, channels.size());
         const std::vector<Channel> group(channels.begin() + first, channels.begin() + end);
-        describeUpright(p, group, (int)first / GROUP_CHANNELS, block, ros, descriptors);
+        describeUpright(p, group, (int)first / GROUP_CHANNELS, block, region, descriptors);
     }
 }
 
@@ -59,18 +59,18 @@ void describeUprightBlock(const Parameters& p, const std::vector<Channel>& chann
 void describe(const Parameters& p, const Mat& image, const std::vector<Mat>& extra,
               const std::vector<KeyPoint>& keypoints, Mat& descriptors)
 {
-    std::vector<Ros> ros;
-    ros.reserve(keypoints.size());
+    std::vector<SupportRegion> region;
+    region.reserve(keypoints.size());
     Part upright, turned;
     upright.reserve(keypoints.size());
     for (const KeyPoint& kp : keypoints)
     {
-        const int k = (int)ros.size();
-        ros.push_back(Ros(kp, p.scaleFactor, p.granularity));
+        const int k = (int)region.size();
+        region.push_back(SupportRegion(kp, p.scaleFactor, p.granularity));
         if (p.useOrientation && kp.angle >= 0)
-            turned.add(k, turnedPixels(ros[k], kp, image.size()));
+            turned.add(k, turnedPixels(region[k], kp, image.size()));
         else
-            upright.add(k, ros[k].pixels(image.size()));
+            upright.add(k, region[k].pixels(image.size()));
     }
 
     const Rect whole(Point(), image.size());
@@ -86,9 +86,9 @@ void describe(const Parameters& p, const Mat& image, const std::vector<Mat>& ext
     {
         for (int b = range.start; b < range.end; b++)
             if (b < uprightCount)
-                describeUprightBlock(p, channels, upright.block(uprightParts[b]), ros, descriptors);
+                describeUprightBlock(p, channels, upright.block(uprightParts[b]), region, descriptors);
             else
-                describeTurned(p, channels, turned.block(turnedParts[b - uprightCount]), ros, keypoints, descriptors);
+                describeTurned(p, channels, turned.block(turnedParts[b - uprightCount]), region, keypoints, descriptors);
     });
 }
 

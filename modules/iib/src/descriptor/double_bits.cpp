@@ -30,7 +30,7 @@ struct LevelBits
 
     template <typename Mapping> void visit() const
     {
-        for (int i = 0; i < Window::COUNT; i++)
+        for (int i = 0; i < QuadPhase::COUNT; i++)
             if (shape.uses(i))
                 windowBits<Mapping>(i);
     }
@@ -38,13 +38,13 @@ struct LevelBits
 private:
     template <typename Mapping> void windowBits(int index) const
     {
-        const Window window(shape.n, index);
-        const int planeBits = 8 * window.planeBytes();
-        AutoBuffer<uchar> planes(window.rows * Mapping::BITS * window.planeBytes() + 8);
+        const QuadPhase phase(shape.n, index);
+        const int planeBits = 8 * phase.planeBytes();
+        AutoBuffer<uchar> planes(phase.rows * Mapping::BITS * phase.planeBytes() + 8);
         std::fill_n(planes.data(), planes.size(), (uchar)0);
-        for (int r = 0; r < window.rows; r++)
-            for (int lane = 0; lane < window.lanes(); lane++)
-                mapQuad<Mapping>(cells, shape, window.dy + 2 * r, window.dx + lane / GROUP_CHANNELS * 2,
+        for (int r = 0; r < phase.rows; r++)
+            for (int lane = 0; lane < phase.lanes(); lane++)
+                mapQuad<Mapping>(cells, shape, phase.dy + 2 * r, phase.dx + lane / GROUP_CHANNELS * 2,
                                  lane % GROUP_CHANNELS, [&](int plane, bool bit)
                 {
                     const int at = (r * Mapping::BITS + plane) * planeBits + lane;
@@ -52,8 +52,8 @@ private:
                 });
         if (shape.chosen)
             return shape.chosen[index].append(planes.data(), out);
-        for (int plane = 0; plane < window.rows * Mapping::BITS; plane++)
-            for (int lane = 0; lane < window.lanes(); lane++)
+        for (int plane = 0; plane < phase.rows * Mapping::BITS; plane++)
+            for (int lane = 0; lane < phase.lanes(); lane++)
                 if (lane % GROUP_CHANNELS < shape.channels)
                     out.append(planes[(plane * planeBits + lane) / 8] >> lane % 8 & 1, 1);
     }

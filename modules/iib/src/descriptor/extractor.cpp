@@ -156,7 +156,7 @@ void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArr
         const Parameters& params = p;
         keypoints.erase(std::remove_if(keypoints.begin(), keypoints.end(), [&](const KeyPoint& kp)
         {
-            return !Ros(kp, params.scaleFactor, params.granularity).isInside(image.size());
+            return !SupportRegion(kp, params.scaleFactor, params.granularity).isInside(image.size());
         }), keypoints.end());
     }
     if (keypoints.empty())

@@ -22,13 +22,13 @@ int maxTurnedGradient(int depth)
     return 6 * maxPixel(depth);
 }
 
-template <typename Lane> const SampleKernels<Lane>& sampleKernels();
-template <> const SampleKernels<short>& sampleKernels<short>() { return shortSampleKernels(); }
-template <> const SampleKernels<int>& sampleKernels<int>() { return intSampleKernels(); }
+template <typename T> const RotatedSampleKernels<T>& sampleKernels();
+template <> const RotatedSampleKernels<short>& sampleKernels<short>() { return shortRotatedSampleKernels(); }
+template <> const RotatedSampleKernels<int>& sampleKernels<int>() { return intRotatedSampleKernels(); }
 
-int samplesInRow(const Ros& ros, int granularity)
+int samplesInRow(const SupportRegion& region, int granularity)
 {
-    return ros.side <= 64 && granularity <= 5 ? 32 : 64;
+    return region.side <= 64 && granularity <= 5 ? 32 : 64;
 }
 
 //! The angle less its whole turns, exact: of a huge one, rounding to integers would depend on the machine.
@@ -37,13 +37,13 @@ float withinTurn(float angle)
     return std::fmod(angle, 360.f);
 }
 
-SampleGrid gridOf(const Ros& ros, const KeyPoint& kp, int granularity, Size image, Rect area)
+SampleGrid gridOf(const SupportRegion& region, const KeyPoint& kp, int granularity, Size image, Rect area)
 {
     SampleGrid g;
-    g.n = samplesInRow(ros, granularity);
+    g.n = samplesInRow(region, granularity);
     g.image = image;
     g.area = area;
-    const double radians = withinTurn(kp.angle) * CV_PI / 180, spacing = std::min(ros.side, LARGEST_SIDE) / g.n;
+    const double radians = withinTurn(kp.angle) * CV_PI / 180, spacing = std::min(region.side, LARGEST_SIDE) / g.n;
     g.stepX = cvRound(std::cos(radians) * spacing * 65536);
     g.stepY = cvRound(std::sin(radians) * spacing * 65536);
     const double far = 1 << 29;  // beyond any image
@@ -57,13 +57,13 @@ SampleGrid gridOf(const Ros& ros, const KeyPoint& kp, int granularity, Size imag
 }
 
 //! Four channels side by side in each pixel of an area, to be sampled anywhere.
-template <typename Lane> class PixelPack
+template <typename T> class PixelPack
 {
 public:
     PixelPack(const std::vector<Channel>& channels, Rect area) : pixels((size_t)area.area() * GROUP_CHANNELS)
     {
-        ChannelRows<Lane> rows(channels, area, 0);
-        Lane* out = pixels.data();
+        ChannelRows<T> rows(channels, area, 0);
+        T* out = pixels.data();
         for (int y = area.y; y < area.y + area.height; y++)
         {
             rows.compute(y);
@@ -73,18 +73,18 @@ public:
         }
     }
 
-    const Lane* data() const { return pixels.data(); }
+    const T* data() const { return pixels.data(); }
 
 private:
-    std::vector<Lane> pixels;
+    std::vector<T> pixels;
 };
 
 //! All that the channels of one block are made of, and the samples of one keypoint.
-template <typename Lane> class Sampler
+template <typename T> class Sampler
 {
 public:
     Sampler(const std::vector<Channel>& channels_, Rect area)
-        : channels(channels_), kernels(sampleKernels<Lane>()), index(MAX_SAMPLES)
+        : channels(channels_), kernels(sampleKernels<T>()), index(MAX_SAMPLES)
     {
         // The image's pack holds what its channels are made of; extra maps follow, four to a pack.
         std::vector<Channel> source;
@@ -101,12 +101,12 @@ public:
             if (c.kind == 0)
                 source.push_back(c);
         for (size_t i = 0; i < source.size(); i += GROUP_CHANNELS)
-            packs.push_back(PixelPack<Lane>(std::vector<Channel>(source.begin() + i, source.begin()
+            packs.push_back(PixelPack<T>(std::vector<Channel>(source.begin() + i, source.begin()
                             + std::min(i + GROUP_CHANNELS, source.size())), area));
         planes.resize(packs.size() * GROUP_CHANNELS);
-        for (std::vector<Lane>& plane : planes)
+        for (std::vector<T>& plane : planes)
             plane.resize(MAX_SAMPLES + ROW_PADDING);
-        derived.assign(GROUP_CHANNELS, std::vector<Lane>(MAX_SAMPLES + ROW_PADDING));
+        derived.assign(GROUP_CHANNELS, std::vector<T>(MAX_SAMPLES + ROW_PADDING));
     }
 
     void sample(const SampleGrid& grid, int sub, float angle)
@@ -115,7 +115,7 @@ public:
         kernels.indices(grid, sub, index.data());
         for (size_t i = 0; i < packs.size(); i++)
         {
-            Lane* out[GROUP_CHANNELS];
+            T* out[GROUP_CHANNELS];
             for (int c = 0; c < GROUP_CHANNELS; c++)
                 out[c] = planes[i * GROUP_CHANNELS + c].data();
             kernels.gather(packs[i].data(), index.data(), count, out);
@@ -132,9 +132,9 @@ public:
     }
 
     //! The sums over cells of the group of channels that begins at `first`.
-    void sum(const RowKernels<Lane>& rowKernels, const SampleGrid& grid, int sub, size_t first, CellGrid<unsigned>& cells)
+    void sum(const RowKernels<T>& rowKernels, const SampleGrid& grid, int sub, size_t first, CellGrid<unsigned>& cells)
     {
-        const Lane* out[GROUP_CHANNELS];
+        const T* out[GROUP_CHANNELS];
         for (size_t i = 0; i < GROUP_CHANNELS; i++)
             out[i] = values(rowKernels, std::min(first + i, channels.size() - 1), grid.n * grid.n, derived[i].data());
         kernels.sum(out, grid.n, sub, cells);
@@ -144,11 +144,11 @@ private:
     enum { MAX_SAMPLES = 64 * 64 };
 
     //! The samples of a channel; `buffer` if they are not at hand already.
-    const Lane* values(const RowKernels<Lane>& rowKernels, size_t channel, int count, Lane* buffer) const
+    const T* values(const RowKernels<T>& rowKernels, size_t channel, int count, T* buffer) const
     {
         const Channel& c = channels[channel];
-        const Lane *gx = planes[0].data(), *gy = planes[1].data();
-        const Lane offset = (Lane)maxTurnedGradient(c.map.depth());
+        const T *gx = planes[0].data(), *gy = planes[1].data();
+        const T offset = (T)maxTurnedGradient(c.map.depth());
         switch (c.kind)
         {
         case IIB::CHANNEL_GRAD_X: rowKernels.absolute(gx, buffer, count); return buffer;
@@ -166,19 +166,19 @@ private:
     }
 
     const std::vector<Channel>& channels;
-    const SampleKernels<Lane>& kernels;
+    const RotatedSampleKernels<T>& kernels;
     bool hasImage;
-    std::vector<PixelPack<Lane> > packs;
-    std::vector<std::vector<Lane> > planes, derived;
+    std::vector<PixelPack<T> > packs;
+    std::vector<std::vector<T> > planes, derived;
     std::vector<int> index;
 };
 
-template <typename Lane>
+template <typename T>
 void describeBlock(const Parameters& p, const std::vector<Channel>& channels, const Block& block,
-                   const std::vector<Ros>& ros, const std::vector<KeyPoint>& keypoints,
-                   const RowKernels<Lane>& rowKernels, Mat& descriptors)
+                   const std::vector<SupportRegion>& region, const std::vector<KeyPoint>& keypoints,
+                   const RowKernels<T>& rowKernels, Mat& descriptors)
 {
-    Sampler<Lane> sampler(channels, block.area);
+    Sampler<T> sampler(channels, block.area);
     const auto parentSums = getBitsKernels(p.mapping, unsigned()).parentSums;
     CellGrid<unsigned> cells[2];
     const Size image = channels[0].map.size();
@@ -191,10 +191,10 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, co
         for (const Channel& c : group)
             if (usesGradient(c))
                 gradient = maxTurnedGradient(c.map.depth());
-        KeyPointBits bits(p, (int)first / GROUP_CHANNELS, (int)group.size());
+        BitEncoder bits(p, (int)first / GROUP_CHANNELS, (int)group.size());
         for (int k : block.keypoints)
         {
-            const SampleGrid grid = gridOf(ros[k], keypoints[k], p.granularity, image, block.area);
+            const SampleGrid grid = gridOf(region[k], keypoints[k], p.granularity, image, block.area);
             // Two by two samples a cell, whose sum fits 16 bits, unless the cells are fewer.
             const int sub = bits.size() == grid.n ? 1 : 2;
             sampler.sample(grid, sub, keypoints[k].angle);
@@ -218,20 +218,20 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, co
 
 }  // namespace
 
-Rect turnedPixels(const Ros& ros, const KeyPoint& kp, Size image)
+Rect turnedPixels(const SupportRegion& region, const KeyPoint& kp, Size image)
 {
     // Half the diagonal, and a pixel for each rounding.
-    const double reach = std::min(ros.side, LARGEST_SIDE) * 0.7072 + 2;
-    return Ros(kp.pt, 2 * reach).pixels(image);
+    const double reach = std::min(region.side, LARGEST_SIDE) * 0.7072 + 2;
+    return SupportRegion(kp.pt, 2 * reach).pixels(image);
 }
 
 void describeTurned(const Parameters& p, const std::vector<Channel>& channels, const Block& block,
-                    const std::vector<Ros>& ros, const std::vector<KeyPoint>& keypoints, Mat& descriptors)
+                    const std::vector<SupportRegion>& region, const std::vector<KeyPoint>& keypoints, Mat& descriptors)
 {
     if (isDeep(channels))
-        describeBlock<int>(p, channels, block, ros, keypoints, intRowKernels(), descriptors);
+        describeBlock<int>(p, channels, block, region, keypoints, intRowKernels(), descriptors);
     else
-        describeBlock<short>(p, channels, block, ros, keypoints, shortRowKernels(), descriptors);
+        describeBlock<short>(p, channels, block, region, keypoints, shortRowKernels(), descriptors);
 }
 
 }  // namespace iib

@@ -36,9 +36,9 @@ uint64 ChosenBits::Compressor::operator()(uint64 bits) const
     return bits;
 }
 
-ChosenBits::ChosenBits(const Parameters& p, int level, int group, int window)
+ChosenBits::ChosenBits(const Parameters& p, int level, int group, int phase)
 {
-    const Window w(1 << level, window);
+    const QuadPhase w(1 << level, phase);
     const int planes = bitsPerQuad(p.mapping), planeBits = 8 * w.planeBytes();
     std::vector<uint64> masks((w.rows * planes * planeBits + 63) / 64, 0);
     for (int i = 0; i < p.selection.rows; i++)

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_QUADTREE_HPP
-#define OPENCV_IIB_QUADTREE_HPP
+#ifndef OPENCV_IIB_DESCRIPTOR_SUPPORT_REGION_HPP
+#define OPENCV_IIB_DESCRIPTOR_SUPPORT_REGION_HPP
 
 #include "parameters.hpp"
 
@@ -16,7 +16,7 @@ static inline int edgeAt(double position, int limit)
     return (int)std::min(std::max(position + 0.5, 0.), (double)limit);
 }
 
-//! A bound of the lengths of the n cells in a row of a ROS.
+//! A bound of the lengths of the n cells in a row of a support region.
 static inline double longestCell(double side, int n)
 {
     return std::ceil(side / n);
@@ -24,19 +24,19 @@ static inline double longestCell(double side, int n)
 
 /** Region of support of a keypoint and its quadtree of cells (paper, "Local Patch Generation"). Pure
  geometry, in pixels of the image. */
-struct Ros
+struct SupportRegion
 {
     double x, y, side;  //!< top left corner and side; pixel i covers [i, i + 1)
 
     //! KeyPoint::pt counts from the centre of pixel 0.
-    Ros(Point2f centre, double side_) : x(centre.x + 0.5 - side_ / 2), y(centre.y + 0.5 - side_ / 2), side(side_) {}
+    SupportRegion(Point2f centre, double side_) : x(centre.x + 0.5 - side_ / 2), y(centre.y + 0.5 - side_ / 2), side(side_) {}
 
-    Ros(const KeyPoint& keypoint, float scaleFactor, int granularity)
-        : Ros(keypoint.pt, std::max((double)scaleFactor * keypoint.size, (double)(1 << granularity)))
+    SupportRegion(const KeyPoint& keypoint, float scaleFactor, int granularity)
+        : SupportRegion(keypoint.pt, std::max((double)scaleFactor * keypoint.size, (double)(1 << granularity)))
     {
     }
 
-    //! Pixels of the image that hold the part of the ROS inside it; one of the border if there is none.
+    //! Pixels of the image that hold the part of the support region inside it; one of the border if there is none.
     Rect pixels(Size image) const
     {
         const Point a(edgeAt(x, image.width - 1), edgeAt(y, image.height - 1));
@@ -44,7 +44,7 @@ struct Ros
         return Rect(a.x, a.y, std::max(b.x - a.x, 1), std::max(b.y - a.y, 1));
     }
 
-    //! Whether no pixel of the ROS lies outside the image.
+    //! Whether no pixel of the support region lies outside the image.
     bool isInside(Size image) const
     {
         return std::floor(x + 0.5) >= 0 && std::floor(x + side + 0.5) <= image.width

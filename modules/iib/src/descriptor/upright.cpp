@@ -12,7 +12,7 @@ namespace iib {
 
 namespace {
 
-/* Edges that cut each cell of another grid into parts x parts. They are made of pixels of the image, not of the ROS,
+/* Edges that cut each cell of another grid into parts x parts. They are made of pixels of the image, not of the support region,
  which may be so much larger that any number of its parts is needed to cut the image once. */
 struct FineEdges
 {
@@ -63,25 +63,25 @@ template <typename Sum> void gather(const CellGrid<Sum>& fine, CellGrid<double>&
             }
 }
 
-template <typename Lane, typename Sum>
+template <typename T, typename Sum>
 void describeBlock(const Parameters& p, const std::vector<Channel>& channels, int group, const Block& block,
-                   const std::vector<Ros>& ros, Mat& descriptors)
+                   const std::vector<SupportRegion>& region, Mat& descriptors)
 {
     const Size image = channels[0].map.size();
     const int largest = maxValue(channels, maxGradient(channels));
     const typename CellSumsFunc<Sum>::Type cellSums = getCellSumsFunc(Sum());
-    KeyPointBits bits(p, group, (int)channels.size());
+    BitEncoder bits(p, group, (int)channels.size());
     const CellEdgesFunc cellEdges = getCellEdgesFunc();
     const int n = bits.size();
     CellGrid<Sum> fine;
     const int *const xEdges = bits.xEdges(), *const yEdges = bits.yEdges();
-    IntegralBand<Lane, Sum> band(channels, block.area, block.rows + Block::BAND_ROWS + 1);
+    IntegralBand<T, Sum> band(channels, block.area, block.rows + Block::BAND_ROWS + 1);
 
     // Neighbours in the block may lie far apart in memory.
-    std::vector<Ros> local;
+    std::vector<SupportRegion> local;
     local.reserve(block.keypoints.size());
     for (int k : block.keypoints)
-        local.push_back(ros[k]);
+        local.push_back(region[k]);
 
     const double largestSum = (Sum)~(Sum)0;
     for (size_t i = 0; i < local.size(); i++)
@@ -108,11 +108,11 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
 }
 
 //! Whether 16 bits hold the sums over the finest cells of all keypoints.
-bool sumsAreShort(const Parameters& p, int largest, const Block& block, const std::vector<Ros>& ros)
+bool sumsAreShort(const Parameters& p, int largest, const Block& block, const std::vector<SupportRegion>& region)
 {
     double side = 0;
     for (int k : block.keypoints)
-        side = std::max(side, ros[k].side);
+        side = std::max(side, region[k].side);
     const double cell = longestCell(side, 1 << finestLevel(p));
     return largest * cell * cell <= USHRT_MAX;
 }
@@ -120,14 +120,14 @@ bool sumsAreShort(const Parameters& p, int largest, const Block& block, const st
 }  // namespace
 
 void describeUpright(const Parameters& p, const std::vector<Channel>& channels, int group, const Block& block,
-                     const std::vector<Ros>& ros, Mat& descriptors)
+                     const std::vector<SupportRegion>& region, Mat& descriptors)
 {
     if (isDeep(channels))
-        describeBlock<int, unsigned>(p, channels, group, block, ros, descriptors);
-    else if (sumsAreShort(p, maxValue(channels, maxGradient(channels)), block, ros))
-        describeBlock<short, ushort>(p, channels, group, block, ros, descriptors);
+        describeBlock<int, unsigned>(p, channels, group, block, region, descriptors);
+    else if (sumsAreShort(p, maxValue(channels, maxGradient(channels)), block, region))
+        describeBlock<short, ushort>(p, channels, group, block, region, descriptors);
     else
-        describeBlock<short, unsigned>(p, channels, group, block, ros, descriptors);
+        describeBlock<short, unsigned>(p, channels, group, block, region, descriptors);
 }
 
 }  // namespace iib

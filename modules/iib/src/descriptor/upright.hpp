@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_UPRIGHT_HPP
-#define OPENCV_IIB_UPRIGHT_HPP
+#ifndef OPENCV_IIB_DESCRIPTOR_UPRIGHT_HPP
+#define OPENCV_IIB_DESCRIPTOR_UPRIGHT_HPP
 
 #include "keypoint_batches.hpp"
 #include "channels.hpp"
@@ -12,14 +12,14 @@
 namespace cv {
 namespace iib {
 
-/** The bits that one group of channels gives to the keypoints of a block, their ROS upright.
+/** The bits that one group of channels gives to the keypoints of a block, their support region upright.
 
 @param channels 1 to GROUP_CHANNELS.
 @param group which four of the descriptor's channels they are.
-@param ros of all keypoints of the image.
+@param region of all keypoints of the image.
 @param descriptors rows for all keypoints of the image. */
 void describeUpright(const Parameters& parameters, const std::vector<Channel>& channels, int group,
-                     const Block& block, const std::vector<Ros>& ros, Mat& descriptors);
+                     const Block& block, const std::vector<SupportRegion>& regions, Mat& descriptors);
 
 }  // namespace iib
 }  // namespace cv

@@ -10,16 +10,16 @@
 namespace cv {
 namespace iib {
 
-static const int LANES = HammingLayout::LANES;
+static const int CODES_PER_BLOCK = CodeLayout::CODES_PER_BLOCK;
 // Both packed blocks together stay in a second-level cache of 512 KB with the default descriptor.
 static const int BLOCK_QUERIES = 4096, BLOCK_GROUPS = 128;
 
 namespace {
 
-class NearestSink CV_FINAL : public SweepSink
+class NearestSink CV_FINAL : public BlockSink
 {
 public:
-    NearestSink(Neighbours& forQueries_, Neighbours* forTrains_)
+    NearestSink(KnnTable& forQueries_, KnnTable* forTrains_)
         : forQueries(forQueries_), forTrains(forTrains_)
     {
     }
@@ -30,20 +30,20 @@ public:
     }
     void found(int query, int train, int distance) CV_OVERRIDE
     {
-        forQueries.insert(firstQuery + query, neighbour(distance, firstTrain + train));
+        forQueries.insert(firstQuery + query, matchKey(distance, firstTrain + train));
         if (forTrains)
-            forTrains->insert(firstTrain + train, neighbour(distance, firstQuery + query));
+            forTrains->insert(firstTrain + train, matchKey(distance, firstQuery + query));
     }
 
 private:
-    Neighbours& forQueries;
-    Neighbours* forTrains;
+    KnnTable& forQueries;
+    KnnTable* forTrains;
 };
 
-class RadiusSink CV_FINAL : public SweepSink
+class RadiusSink CV_FINAL : public BlockSink
 {
 public:
-    RadiusSink(int radius, std::vector<std::vector<Neighbour> >& result_)
+    RadiusSink(int radius, std::vector<std::vector<MatchKey> >& result_)
         : result(result_), below(BLOCK_QUERIES, radius + 1)
     {
     }
@@ -51,23 +51,23 @@ public:
     const int* trainBelow() const CV_OVERRIDE { return 0; }
     void found(int query, int train, int distance) CV_OVERRIDE
     {
-        result[firstQuery + query].push_back(neighbour(distance, firstTrain + train));
+        result[firstQuery + query].push_back(matchKey(distance, firstTrain + train));
     }
 
 private:
-    std::vector<std::vector<Neighbour> >& result;
+    std::vector<std::vector<MatchKey> >& result;
     const std::vector<int> below;
 };
 
 }  // namespace
 
-Sweep::Sweep(const HammingIndex& index_, const Mat& codes_, const Mat& queries_, const SearchPlan& plan_,
+BlockedSearch::BlockedSearch(const PackedCodes& index_, const Mat& codes_, const Mat& queries_, const PruningPolicy& plan_,
              const std::vector<Mat>& masks_)
     : index(index_), codes(codes_), queries(queries_), plan(plan_), masks(masks_)
 {
 }
 
-SearchCost Sweep::nearest(Neighbours& forQueries, Neighbours* forTrains) const
+SearchCost BlockedSearch::nearest(KnnTable& forQueries, KnnTable* forTrains) const
 {
     SearchCost cost;
     std::mutex lock;
@@ -79,7 +79,7 @@ SearchCost Sweep::nearest(Neighbours& forQueries, Neighbours* forTrains) const
             NearestSink sink(forQueries, 0);
             return run(from, to, sink);
         }
-        Neighbours part(forTrains->rows(), forTrains->size(), LANES);
+        KnnTable part(forTrains->rows(), forTrains->size(), CODES_PER_BLOCK);
         NearestSink sink(forQueries, &part);
         const SearchCost work = run(from, to, sink);
         std::lock_guard<std::mutex> guard(lock);
@@ -89,7 +89,7 @@ SearchCost Sweep::nearest(Neighbours& forQueries, Neighbours* forTrains) const
     return cost;
 }
 
-SearchCost Sweep::within(int radius, std::vector<std::vector<Neighbour> >& result) const
+SearchCost BlockedSearch::within(int radius, std::vector<std::vector<MatchKey> >& result) const
 {
     SearchCost cost;
     split(evenParts(), [&](int from, int to) {
@@ -99,13 +99,13 @@ SearchCost Sweep::within(int radius, std::vector<std::vector<Neighbour> >& resul
     return cost;
 }
 
-int Sweep::evenParts() const
+int BlockedSearch::evenParts() const
 {
     const int blocks = (queries.rows + BLOCK_QUERIES - 1) / BLOCK_QUERIES, threads = getNumThreads();
     return std::max((blocks + threads - 1) / threads, 2) * threads;
 }
 
-void Sweep::split(int parts, const std::function<SearchCost(int, int)>& body, SearchCost& cost) const
+void BlockedSearch::split(int parts, const std::function<SearchCost(int, int)>& body, SearchCost& cost) const
 {
     const int size = std::max((queries.rows + parts - 1) / parts, 4); // a tile's queries
     parts = (queries.rows + size - 1) / size;
@@ -118,9 +118,9 @@ void Sweep::split(int parts, const std::function<SearchCost(int, int)>& body, Se
     }, parts);
 }
 
-SearchCost Sweep::run(int from, int to, SweepSink& sink) const
+SearchCost BlockedSearch::run(int from, int to, BlockSink& sink) const
 {
-    const HammingLayout& layout = index.layout();
+    const CodeLayout& layout = index.layout();
     std::vector<unsigned> plain((size_t)std::min(to - from, BLOCK_QUERIES) * layout.words());
     SearchCost cost;
     for (; from < to; from += BLOCK_QUERIES)
@@ -131,7 +131,7 @@ SearchCost Sweep::run(int from, int to, SweepSink& sink) const
         std::vector<int> limits(end - from, plan.limit);
         for (int group = 0; group < codes.rows; group += BLOCK_GROUPS)
         {
-            sink.moveTo(from, (size_t)group * LANES);
+            sink.moveTo(from, (size_t)group * CODES_PER_BLOCK);
             const SearchCost work = block(from, end, group, std::min(BLOCK_GROUPS, codes.rows - group),
                                           plain.data(), limits.data(), sink);
             cost.compared += work.compared;
@@ -141,16 +141,16 @@ SearchCost Sweep::run(int from, int to, SweepSink& sink) const
     return cost;
 }
 
-SearchCost Sweep::block(int from, int to, int group, int groups, const unsigned* plain, int* limits,
-                        SweepSink& sink) const
+SearchCost BlockedSearch::block(int from, int to, int group, int groups, const unsigned* plain, int* limits,
+                        BlockSink& sink) const
 {
-    const HammingLayout& layout = index.layout();
-    const size_t row = (size_t)group * LANES, count = std::min(index.rows() - row, (size_t)groups * LANES);
+    const CodeLayout& layout = index.layout();
+    const size_t row = (size_t)group * CODES_PER_BLOCK, count = std::min(index.rows() - row, (size_t)groups * CODES_PER_BLOCK);
     std::vector<uchar> allowed;
     size_t pairs = (to - from) * count;
-    if (!masks.empty() || count < (size_t)groups * LANES)
+    if (!masks.empty() || count < (size_t)groups * CODES_PER_BLOCK)
     {
-        allowed.assign((size_t)(to - from) * groups * LANES, 0);
+        allowed.assign((size_t)(to - from) * groups * CODES_PER_BLOCK, 0);
         pairs = allow(from, to, row, count, allowed.data());
     }
     std::vector<int64> passed(plan.stops.size(), 0);
@@ -184,9 +184,9 @@ SearchCost Sweep::block(int from, int to, int group, int groups, const unsigned*
     return cost;
 }
 
-size_t Sweep::allow(int from, int to, size_t firstRow, size_t count, uchar* allowed) const
+size_t BlockedSearch::allow(int from, int to, size_t firstRow, size_t count, uchar* allowed) const
 {
-    const size_t stride = (count + LANES - 1) / LANES * LANES, end = firstRow + count;
+    const size_t stride = (count + CODES_PER_BLOCK - 1) / CODES_PER_BLOCK * CODES_PER_BLOCK, end = firstRow + count;
     size_t pairs = 0;
     for (size_t row = firstRow; row < end;)
     {

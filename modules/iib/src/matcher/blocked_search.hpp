@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_SWEEP_HPP
-#define OPENCV_IIB_SWEEP_HPP
+#ifndef OPENCV_IIB_MATCHER_BLOCKED_SEARCH_HPP
+#define OPENCV_IIB_MATCHER_BLOCKED_SEARCH_HPP
 
 #include "packed_codes.hpp"
 
@@ -13,10 +13,10 @@ namespace cv {
 namespace iib {
 
 //! Takes what a sweep finds, and says how near a pair has to be.
-class SweepSink : public HammingSink
+class BlockSink : public HammingSink
 {
 public:
-    SweepSink() : firstQuery(0), firstTrain(0) {}
+    BlockSink() : firstQuery(0), firstTrain(0) {}
     //! The scans that follow count from here.
     void moveTo(size_t query, size_t train)
     {
@@ -31,21 +31,21 @@ protected:
 };
 
 //! One pass over all pairs of queries and an index's train codes, in blocks that stay in cache.
-class Sweep
+class BlockedSearch
 {
 public:
-    Sweep(const HammingIndex& index, const Mat& codes, const Mat& queries, const SearchPlan& plan,
+    BlockedSearch(const PackedCodes& index, const Mat& codes, const Mat& queries, const PruningPolicy& plan,
           const std::vector<Mat>& masks);
 
     //! forTrains is null when nobody asks for the other direction.
-    SearchCost nearest(Neighbours& forQueries, Neighbours* forTrains) const;
-    SearchCost within(int radius, std::vector<std::vector<Neighbour> >& result) const;
+    SearchCost nearest(KnnTable& forQueries, KnnTable* forTrains) const;
+    SearchCost within(int radius, std::vector<std::vector<MatchKey> >& result) const;
 
 private:
     //! Queries `from` to `to` against all.
-    SearchCost run(int from, int to, SweepSink& sink) const;
+    SearchCost run(int from, int to, BlockSink& sink) const;
     SearchCost block(int from, int to, int group, int groups, const unsigned* plain, int* limits,
-                     SweepSink& sink) const;
+                     BlockSink& sink) const;
     //! Fills the flags of existing pairs and returns their number.
     size_t allow(int from, int to, size_t firstRow, size_t count, uchar* allowed) const;
     //! Some parts for each thread, so that all are done at about the same time.
@@ -53,9 +53,9 @@ private:
     //! Cuts the queries in parts for threads.
     void split(int parts, const std::function<SearchCost(int, int)>& body, SearchCost& cost) const;
 
-    const HammingIndex& index;
+    const PackedCodes& index;
     const Mat &codes, &queries;
-    const SearchPlan& plan;
+    const PruningPolicy& plan;
     const std::vector<Mat>& masks;
 };
 

@@ -16,10 +16,10 @@ namespace {
 const char MAGIC[] = "IIBINDEX";
 const unsigned VERSION = 1;
 
-class Hash
+class Fnv1a
 {
 public:
-    Hash() : state(0xcbf29ce484222325ull) {}
+    Fnv1a() : state(0xcbf29ce484222325ull) {}
     void add(const char* data, size_t size)
     {
         for (size_t i = 0; i < size; i++)
@@ -64,7 +64,7 @@ public:
 private:
     String name;
     std::ofstream stream;
-    Hash hash;
+    Fnv1a hash;
 };
 
 class Reader
@@ -126,7 +126,7 @@ private:
     String name;
     std::ifstream stream;
     uint64 left;
-    Hash hash;
+    Fnv1a hash;
 };
 
 }  // namespace

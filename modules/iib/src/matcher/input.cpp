@@ -21,7 +21,7 @@ Mat checkedDescriptors(const Mat& descriptors, int width)
     return descriptors;
 }
 
-std::vector<Mat> checkedMasks(InputArrayOfArrays masks_, int queries, const HammingIndex& index)
+std::vector<Mat> checkedMasks(InputArrayOfArrays masks_, int queries, const PackedCodes& index)
 {
     std::vector<Mat> masks;
     masks_.getMatVector(masks);

@@ -14,7 +14,7 @@ namespace iib {
 Mat checkedDescriptors(const Mat& descriptors, int width);
 
 //! A mask for each image of the index, or none if all are empty; throws where one does not fit.
-std::vector<Mat> checkedMasks(InputArrayOfArrays masks, int queries, const HammingIndex& index);
+std::vector<Mat> checkedMasks(InputArrayOfArrays masks, int queries, const PackedCodes& index);
 
 }  // namespace iib
 }  // namespace cv

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_NEIGHBOURS_HPP
-#define OPENCV_IIB_NEIGHBOURS_HPP
+#ifndef OPENCV_IIB_MATCHER_KNN_TABLE_HPP
+#define OPENCV_IIB_MATCHER_KNN_TABLE_HPP
 
 #include "opencv2/core.hpp"
 
@@ -14,48 +14,48 @@ namespace cv {
 namespace iib {
 
 //! A neighbour as one number: distance above, index below, so that ties go to the lowest index.
-typedef uint64 Neighbour;
-const int NEIGHBOUR_INDEX_BITS = 40;
-const Neighbour NO_NEIGHBOUR = ~(Neighbour)0;
+typedef uint64 MatchKey;
+const int INDEX_BITS = 40;
+const MatchKey NO_MATCH = ~(MatchKey)0;
 
-inline Neighbour neighbour(int distance, size_t index)
+inline MatchKey matchKey(int distance, size_t index)
 {
-    return (Neighbour)distance << NEIGHBOUR_INDEX_BITS | index;
+    return (MatchKey)distance << INDEX_BITS | index;
 }
-inline int distanceOf(Neighbour n) { return (int)(n >> NEIGHBOUR_INDEX_BITS); }
-inline size_t indexOf(Neighbour n) { return (size_t)(n & (((Neighbour)1 << NEIGHBOUR_INDEX_BITS) - 1)); }
+inline int distanceOf(MatchKey n) { return (int)(n >> INDEX_BITS); }
+inline size_t indexOf(MatchKey n) { return (size_t)(n & (((MatchKey)1 << INDEX_BITS) - 1)); }
 
-//! The k nearest neighbours of each of many codes, in ascending order; NO_NEIGHBOUR where there are fewer.
-class Neighbours
+//! The k nearest neighbours of each of many codes, in ascending order; NO_MATCH where there are fewer.
+class KnnTable
 {
 public:
     //! `padding` more entries are there for vectors that read below() past the end.
-    Neighbours(size_t rows, int k_, size_t padding = 0)
-        : k(k_), keys(rows * k_, NO_NEIGHBOUR), thresholds(rows + padding, INT_MAX)
+    KnnTable(size_t rows, int k_, size_t padding = 0)
+        : k(k_), keys(rows * k_, NO_MATCH), thresholds(rows + padding, INT_MAX)
     {
     }
 
     int size() const { return k; }
     size_t rows() const { return keys.size() / k; }
-    Neighbour* operator[](size_t row) { return &keys[row * k]; }
-    const Neighbour* operator[](size_t row) const { return &keys[row * k]; }
+    MatchKey* operator[](size_t row) { return &keys[row * k]; }
+    const MatchKey* operator[](size_t row) const { return &keys[row * k]; }
     //! For each row: a new neighbour with a higher index has to be nearer than this.
     const int* below() const { return thresholds.data(); }
 
-    void insert(size_t row, Neighbour n)
+    void insert(size_t row, MatchKey n)
     {
-        Neighbour* first = (*this)[row];
-        Neighbour* last = first + k - 1;
+        MatchKey* first = (*this)[row];
+        MatchKey* last = first + k - 1;
         if (n >= *last)
             return;
-        Neighbour* place = std::upper_bound(first, last, n);
+        MatchKey* place = std::upper_bound(first, last, n);
         std::copy_backward(place, last, last + 1);
         *place = n;
-        if (*last != NO_NEIGHBOUR)
+        if (*last != NO_MATCH)
             thresholds[row] = distanceOf(*last);
     }
 
-    void merge(const Neighbours& other)
+    void merge(const KnnTable& other)
     {
         for (size_t row = 0; row < rows(); row++)
             for (int i = 0; i < k; i++)
@@ -64,7 +64,7 @@ public:
 
 private:
     int k;
-    std::vector<Neighbour> keys;
+    std::vector<MatchKey> keys;
     std::vector<int> thresholds;
 };
 

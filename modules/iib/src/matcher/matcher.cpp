@@ -26,7 +26,7 @@ class HierarchicalMatcherImpl CV_FINAL : public HierarchicalMatcher
 {
 public:
     explicit HierarchicalMatcherImpl(const MatcherParameters& p)
-        : parameters(p), index(makePtr<HammingIndex>(p.levelSizes)), counters(makePtr<Counters>())
+        : parameters(p), index(makePtr<PackedCodes>(p.levelSizes)), counters(makePtr<Counters>())
     {
     }
 
@@ -76,7 +76,7 @@ public:
     void clear() CV_OVERRIDE
     {
         HierarchicalMatcher::clear();
-        index = makePtr<HammingIndex>(parameters.levelSizes);
+        index = makePtr<PackedCodes>(parameters.levelSizes);
     }
     Ptr<DescriptorMatcher> clone(bool emptyTrainData) const CV_OVERRIDE;
 
@@ -108,25 +108,25 @@ private:
     }
 
     Mat checked(const Mat& descriptors) const { return checkedDescriptors(descriptors, index->layout().bytes()); }
-    SearchPlan plan() const;
-    Neighbours nearest(InputArray queries, int k, InputArrayOfArrays masks) const;
+    PruningPolicy plan() const;
+    KnnTable nearest(InputArray queries, int k, InputArrayOfArrays masks) const;
     void count(const SearchCost& cost) const
     {
         counters->compared += cost.compared;
         counters->all += cost.all;
     }
-    DMatch match(int query, Neighbour n) const
+    DMatch match(int query, MatchKey n) const
     {
         const size_t image = index->imageOf(indexOf(n));
         return DMatch(query, (int)(indexOf(n) - index->start(image)), (int)image, (float)distanceOf(n));
     }
 
     MatcherParameters parameters;
-    Ptr<HammingIndex> index;
+    Ptr<PackedCodes> index;
     Ptr<Counters> counters;
 };
 
-SearchPlan HierarchicalMatcherImpl::plan() const
+PruningPolicy HierarchicalMatcherImpl::plan() const
 {
     switch (parameters.mode)
     {
@@ -136,11 +136,11 @@ SearchPlan HierarchicalMatcherImpl::plan() const
     }
 }
 
-Neighbours HierarchicalMatcherImpl::nearest(InputArray queries_, int k, InputArrayOfArrays masks) const
+KnnTable HierarchicalMatcherImpl::nearest(InputArray queries_, int k, InputArrayOfArrays masks) const
 {
     const Mat queries = checked(queries_.getMat());
     SearchCost cost;
-    Neighbours found = index->nearest(queries, plan(), k, parameters.crossCheck, parameters.maxRatio,
+    KnnTable found = index->nearest(queries, plan(), k, parameters.crossCheck, parameters.maxRatio,
                                       checkedMasks(masks, queries.rows, *index), cost);
     count(cost);
     return found;
@@ -181,7 +181,7 @@ Ptr<DescriptorMatcher> HierarchicalMatcherImpl::clone(bool emptyTrainData) const
         copy->counters = counters;
     else
     {
-        copy->index = makePtr<HammingIndex>(*index);
+        copy->index = makePtr<PackedCodes>(*index);
         for (size_t i = 0; i < trainDescCollection.size(); i++)
             copy->trainDescCollection.push_back(trainDescCollection[i].clone());
         copy->utrainDescCollection.resize(utrainDescCollection.size());
@@ -199,10 +199,10 @@ void compact(std::vector<std::vector<DMatch> >& matches)
 void HierarchicalMatcherImpl::knnMatchImpl(InputArray queries, std::vector<std::vector<DMatch> >& matches, int k,
                                            InputArrayOfArrays masks, bool compactResult)
 {
-    const Neighbours found = nearest(queries, k, masks);
+    const KnnTable found = nearest(queries, k, masks);
     matches.assign(found.rows(), std::vector<DMatch>());
     for (int query = 0; query < (int)matches.size(); query++)
-        for (int i = 0; i < found.size() && found[query][i] != NO_NEIGHBOUR; i++)
+        for (int i = 0; i < found.size() && found[query][i] != NO_MATCH; i++)
             matches[query].push_back(match(query, found[query][i]));
     if (compactResult)
         compact(matches);
@@ -212,10 +212,10 @@ void HierarchicalMatcherImpl::radiusMatchImpl(InputArray queries_, std::vector<s
                                               float maxDistance, InputArrayOfArrays masks, bool compactResult)
 {
     const Mat queries = checked(queries_.getMat());
-    const HammingLayout& layout = index->layout();
+    const CodeLayout& layout = index->layout();
     const int radius = cvFloor(std::min((double)maxDistance, 8. * layout.bytes()));
     SearchCost cost;
-    const std::vector<std::vector<Neighbour> > found =
+    const std::vector<std::vector<MatchKey> > found =
             index->within(queries, parameters.mode == THRESHOLD ? plan() : radiusPlan(layout, radius), radius,
                           checkedMasks(masks, queries.rows, *index), cost);
     count(cost);
@@ -232,10 +232,10 @@ void HierarchicalMatcherImpl::knnMatchArrays(InputArray queries, OutputArray ind
 {
     if (k <= 0)
         CV_Error_(Error::StsOutOfRange, ("k is %d: it has to be > 0", k));
-    const Neighbours found = nearest(queries, k, masks);
+    const KnnTable found = nearest(queries, k, masks);
     Mat indices((int)found.rows(), k, CV_32S, Scalar(-1)), distances = indices.clone(), images = indices.clone();
     for (int query = 0; query < indices.rows; query++)
-        for (int i = 0; i < found.size() && found[query][i] != NO_NEIGHBOUR; i++)
+        for (int i = 0; i < found.size() && found[query][i] != NO_MATCH; i++)
         {
             const DMatch m = match(query, found[query][i]);
             indices.at<int>(query, i) = m.trainIdx;
@@ -269,7 +269,7 @@ void HierarchicalMatcherImpl::read(const FileNode& node)
     {
         if (index->rows() > 0)
             CV_Error(Error::StsBadArg, "Other level sizes cannot be read while there are train descriptors: clear() first");
-        index = makePtr<HammingIndex>(p.levelSizes);
+        index = makePtr<PackedCodes>(p.levelSizes);
         HierarchicalMatcher::clear();
     }
     std::swap(parameters, p);

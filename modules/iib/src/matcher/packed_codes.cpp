@@ -9,22 +9,22 @@
 namespace cv {
 namespace iib {
 
-static const int LANES = HammingLayout::LANES;
+static const int CODES_PER_BLOCK = CodeLayout::CODES_PER_BLOCK;
 
-HammingIndex::HammingIndex(const std::vector<int>& levelSizes) : format(levelSizes, hammingPacking()), starts(1, 0) {}
+PackedCodes::PackedCodes(const std::vector<int>& levelSizes) : format(levelSizes, hammingPacking()), starts(1, 0) {}
 
-HammingIndex::HammingIndex(const HammingIndex& other)
+PackedCodes::PackedCodes(const PackedCodes& other)
     : format(other.format), starts(other.starts), codes(other.codes.clone())
 {
 }
 
-size_t HammingIndex::imageOf(size_t row) const
+size_t PackedCodes::imageOf(size_t row) const
 {
     return std::upper_bound(starts.begin(), starts.end(), row) - starts.begin() - 1;
 }
 
 // Not by Mat::resize: when memory lacks, it leaves the matrix larger than its memory.
-void HammingIndex::grow(int groups)
+void PackedCodes::grow(int groups)
 {
     const int before = codes.rows;
     if (groups == before)
@@ -35,7 +35,7 @@ void HammingIndex::grow(int groups)
         codes.locateROI(whole, offset);
     if (groups > whole.height)
     {
-        Mat larger(std::max(groups, (int)std::min((int64)before * 3 / 2, (int64)INT_MAX)), format.words() * LANES, CV_32S);
+        Mat larger(std::max(groups, (int)std::min((int64)before * 3 / 2, (int64)INT_MAX)), format.words() * CODES_PER_BLOCK, CV_32S);
         if (before > 0)
             codes.copyTo(larger.rowRange(0, before));
         codes = larger.rowRange(0, groups);
@@ -45,10 +45,10 @@ void HammingIndex::grow(int groups)
     std::fill(codes.ptr<unsigned>(before), codes.ptr<unsigned>(before) + (size_t)(groups - before) * codes.cols, 0u);
 }
 
-void HammingIndex::add(const Mat& descriptors)
+void PackedCodes::add(const Mat& descriptors)
 {
-    const size_t end = rows() + descriptors.rows, groups = (end + LANES - 1) / LANES;
-    CV_Assert(groups <= INT_MAX && end < (size_t)1 << NEIGHBOUR_INDEX_BITS);
+    const size_t end = rows() + descriptors.rows, groups = (end + CODES_PER_BLOCK - 1) / CODES_PER_BLOCK;
+    CV_Assert(groups <= INT_MAX && end < (size_t)1 << INDEX_BITS);
     // Whatever needs memory comes before the first change.
     std::vector<unsigned> code(format.words());
     if (starts.size() == starts.capacity())
@@ -58,58 +58,58 @@ void HammingIndex::add(const Mat& descriptors)
     {
         const size_t row = rows() + i;
         format.arrange(descriptors.ptr(i), code.data());
-        format.store(code.data(), codes.ptr<unsigned>((int)(row / LANES)), row % LANES);
+        format.store(code.data(), codes.ptr<unsigned>((int)(row / CODES_PER_BLOCK)), row % CODES_PER_BLOCK);
     }
     starts.push_back(end);
 }
 
-Mat HammingIndex::descriptors(size_t image) const
+Mat PackedCodes::descriptors(size_t image) const
 {
     Mat result((int)rows(image), format.bytes(), CV_8U);
     AutoBuffer<unsigned> plain(format.words());
     for (int i = 0; i < result.rows; i++)
     {
         const size_t row = starts[image] + i;
-        format.fetch(codes.ptr<unsigned>((int)(row / LANES)), row % LANES, plain.data());
+        format.fetch(codes.ptr<unsigned>((int)(row / CODES_PER_BLOCK)), row % CODES_PER_BLOCK, plain.data());
         format.restore(plain.data(), result.ptr(i));
     }
     return result;
 }
 
 // Leaves the pairs that are among the nearest in both directions.
-static void keepMutual(Neighbours& forQueries, const Neighbours& forTrains)
+static void keepMutual(KnnTable& forQueries, const KnnTable& forTrains)
 {
     for (size_t query = 0; query < forQueries.rows(); query++)
     {
-        Neighbour *first = forQueries[query], *last = first + forQueries.size();
-        Neighbour* end = std::remove_if(first, last, [&](Neighbour n) {
-            if (n == NO_NEIGHBOUR)
+        MatchKey *first = forQueries[query], *last = first + forQueries.size();
+        MatchKey* end = std::remove_if(first, last, [&](MatchKey n) {
+            if (n == NO_MATCH)
                 return true;
-            const Neighbour* back = forTrains[indexOf(n)];
-            return !std::binary_search(back, back + forTrains.size(), neighbour(distanceOf(n), query));
+            const MatchKey* back = forTrains[indexOf(n)];
+            return !std::binary_search(back, back + forTrains.size(), matchKey(distanceOf(n), query));
         });
-        std::fill(end, last, NO_NEIGHBOUR);
+        std::fill(end, last, NO_MATCH);
     }
 }
 
-static bool passesRatio(const Neighbour* row, float maxRatio)
+static bool passesRatio(const MatchKey* row, float maxRatio)
 {
-    return row[1] == NO_NEIGHBOUR || distanceOf(row[0]) < (double)maxRatio * distanceOf(row[1]);
+    return row[1] == NO_MATCH || distanceOf(row[0]) < (double)maxRatio * distanceOf(row[1]);
 }
 
-Neighbours HammingIndex::nearest(const Mat& queries, const SearchPlan& plan, int k, bool mutual, float maxRatio,
+KnnTable PackedCodes::nearest(const Mat& queries, const PruningPolicy& plan, int k, bool mutual, float maxRatio,
                                  const std::vector<Mat>& masks, SearchCost& cost) const
 {
     // Each direction has as many neighbours as the other side has codes, at most.
     const int backK = std::min(k, std::max(queries.rows, 1));
     k = (int)std::min((size_t)k, std::max(rows(), (size_t)1));
     const bool ratio = maxRatio < 1;
-    Neighbours forQueries(queries.rows, std::max(k, ratio ? 2 : 1));
-    Neighbours forTrains(mutual ? rows() : 0, backK, LANES);
-    const Sweep sweep(*this, codes, queries, plan, masks);
+    KnnTable forQueries(queries.rows, std::max(k, ratio ? 2 : 1));
+    KnnTable forTrains(mutual ? rows() : 0, backK, CODES_PER_BLOCK);
+    const BlockedSearch sweep(*this, codes, queries, plan, masks);
     cost = sweep.nearest(forQueries, mutual ? &forTrains : 0);
 
-    Neighbours result(queries.rows, k);
+    KnnTable result(queries.rows, k);
     for (int query = 0; query < queries.rows; query++)
         if (!ratio || passesRatio(forQueries[query], maxRatio))
             std::copy(forQueries[query], forQueries[query] + k, result[query]);
@@ -118,11 +118,11 @@ Neighbours HammingIndex::nearest(const Mat& queries, const SearchPlan& plan, int
     return result;
 }
 
-std::vector<std::vector<Neighbour> > HammingIndex::within(const Mat& queries, const SearchPlan& plan, int radius,
+std::vector<std::vector<MatchKey> > PackedCodes::within(const Mat& queries, const PruningPolicy& plan, int radius,
                                                           const std::vector<Mat>& masks, SearchCost& cost) const
 {
-    std::vector<std::vector<Neighbour> > result(queries.rows);
-    const Sweep sweep(*this, codes, queries, plan, masks);
+    std::vector<std::vector<MatchKey> > result(queries.rows);
+    const BlockedSearch sweep(*this, codes, queries, plan, masks);
     cost = sweep.within(radius, result);
     for (size_t query = 0; query < result.size(); query++)
         std::sort(result[query].begin(), result[query].end());

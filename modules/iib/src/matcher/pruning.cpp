@@ -8,9 +8,9 @@
 namespace cv {
 namespace iib {
 
-static void addStop(SearchPlan& plan, int part, int most = HammingStop::NO_MAX)
+static void addStop(PruningPolicy& plan, int part, int most = PruneStage::NO_MAX)
 {
-    const HammingStop stop = { part, most };
+    const PruneStage stop = { part, most };
     plan.stops.push_back(stop);
 }
 
@@ -20,15 +20,15 @@ static double spread(int bits)
     return std::sqrt((double)bits) / 2;
 }
 
-SearchPlan exactPlan()
+PruningPolicy exactPlan()
 {
-    return SearchPlan();
+    return PruningPolicy();
 }
 
 // One stop, where most pairs are beyond the radius; none where they hardly ever are.
-SearchPlan radiusPlan(const HammingLayout& layout, int radius)
+PruningPolicy radiusPlan(const CodeLayout& layout, int radius)
 {
-    SearchPlan plan;
+    PruningPolicy plan;
     plan.limit = radius;
     for (int part = 0, bits = 0; part + 1 < layout.parts() && plan.stops.empty(); part++)
     {
@@ -39,17 +39,17 @@ SearchPlan radiusPlan(const HammingLayout& layout, int radius)
     return plan;
 }
 
-SearchPlan thresholdPlan(const HammingLayout& layout, const std::vector<float>& thresholds)
+PruningPolicy thresholdPlan(const CodeLayout& layout, const std::vector<float>& thresholds)
 {
-    SearchPlan plan;
+    PruningPolicy plan;
     for (int level = 0; level + 1 < layout.levels(); level++)
         addStop(plan, level, cvFloor((double)thresholds[level] * 8 * layout.levelSizes()[level]));
     return plan;
 }
 
-SearchPlan adaptivePlan(const HammingLayout& layout)
+PruningPolicy adaptivePlan(const CodeLayout& layout)
 {
-    SearchPlan plan;
+    PruningPolicy plan;
     int bits = 0;
     for (int part = 0; part + 1 < layout.parts(); part++)
         bits += layout.bits(part);

@@ -25,7 +25,7 @@ struct AllPairs : public HammingSink
 //! Everything a scan needs, and the naive distances.
 struct ScanData
 {
-    HammingLayout layout;
+    CodeLayout layout;
     Mat queries, trains;
     std::vector<unsigned> plainQueries, plainTrains, groups;
     std::vector<int64> passed;
@@ -37,7 +37,7 @@ struct ScanData
           plainTrains(rows * layout.words()), groups(rows * layout.words()), queryBelow(queryCount, INT_MAX),
           trainBelow(rows, 0)
     {
-        CV_Assert(rows % HammingLayout::LANES == 0);
+        CV_Assert(rows % CodeLayout::CODES_PER_BLOCK == 0);
         // All bits differ, for two queries that may share tables: what adds up in bytes is as large as can be.
         queries.rowRange(0, std::min(queryCount, 2)).setTo(255);
         trains.row(3).setTo(0);
@@ -46,15 +46,15 @@ struct ScanData
             layout.arrange(queries.ptr(i), &plainQueries[i * layout.words()]);
         for (int i = 0; i < rows; i++)
         {
-            const int group = i / HammingLayout::LANES * HammingLayout::LANES;
+            const int group = i / CodeLayout::CODES_PER_BLOCK * CodeLayout::CODES_PER_BLOCK;
             std::vector<unsigned> code(layout.words());
             layout.arrange(trains.ptr(i), code.data());
             std::copy(code.begin(), code.end(), plainTrains.begin() + i * layout.words());
-            layout.store(code.data(), &groups[group * layout.words()], i % HammingLayout::LANES);
+            layout.store(code.data(), &groups[group * layout.words()], i % CodeLayout::CODES_PER_BLOCK);
         }
     }
 
-    HammingScan scan(const std::vector<HammingStop>& stops, HammingSink& sink)
+    HammingScan scan(const std::vector<PruneStage>& stops, HammingSink& sink)
     {
         passed.assign(stops.size(), 0);
         HammingScan scan = HammingScan();
@@ -62,7 +62,7 @@ struct ScanData
         scan.queries = plainQueries.data();
         scan.queryCount = queries.rows;
         scan.trains = groups.data();
-        scan.groups = trains.rows / HammingLayout::LANES;
+        scan.groups = trains.rows / CodeLayout::CODES_PER_BLOCK;
         scan.stops = stops.data();
         scan.stopCount = (int)stops.size();
         scan.passed = passed.data();
@@ -83,12 +83,12 @@ struct ScanData
 
 TEST(IIB_Hamming, layout_comes_back)
 {
-    for (HammingPacking packing : { PACKING_ADDERS, PACKING_TABLES })
+    for (CodePacking packing : { PACKING_ADDERS, PACKING_TABLES })
         for (const Levels& levels : { Levels{ 1 }, Levels{ 2, 8, 32, 128 }, Levels{ 8, 24 }, Levels{ 3, 5, 7 }, Levels{ 4 } })
         {
-            const HammingLayout layout(levels, packing);
+            const CodeLayout layout(levels, packing);
             const Mat descriptor = randomDescriptors(1, 1, layout.bytes());
-            std::vector<unsigned> group(HammingLayout::LANES * layout.words()), plain(layout.words());
+            std::vector<unsigned> group(CodeLayout::CODES_PER_BLOCK * layout.words()), plain(layout.words());
             Mat back(1, layout.bytes(), CV_8U, Scalar(0));
             layout.arrange(descriptor.ptr(), plain.data());
             layout.store(plain.data(), group.data(), 5);
@@ -107,7 +107,7 @@ TEST(IIB_Hamming, layout_comes_back)
 
 TEST(IIB_Hamming, last_level_begins_with_every_fourth_word)
 {
-    const HammingLayout layout({ 2, 32 }, PACKING_TABLES);
+    const CodeLayout layout({ 2, 32 }, PACKING_TABLES);
     ASSERT_EQ(3, layout.parts());
     EXPECT_EQ(64, layout.bits(1));
     Mat descriptor(1, 34, CV_8U, Scalar(0));
@@ -127,11 +127,11 @@ TEST(IIB_Hamming, scan_as_the_naive_loop)
             for (int below : { bytes * 4, bytes * 2 })
                 for (bool bothDirections : { false, true })
                 {
-                    ScanData data(Levels(1, bytes), queryCount, (1 + queryCount % 3) * HammingLayout::LANES);
+                    ScanData data(Levels(1, bytes), queryCount, (1 + queryCount % 3) * CodeLayout::CODES_PER_BLOCK);
                     std::fill(data.queryBelow.begin(), data.queryBelow.end(), below);
                     data.trainBelow[3] = bytes * 8 + 1;
                     AllPairs sink;
-                    HammingScan scan = data.scan(std::vector<HammingStop>(), sink);
+                    HammingScan scan = data.scan(std::vector<PruneStage>(), sink);
                     if (!bothDirections)
                         scan.trainBelow = 0;
                     hammingScan(scan);
@@ -156,10 +156,10 @@ TEST(IIB_Hamming, stops_as_the_naive_loop)
             for (int masked = 0; masked < 2; masked++)
             {
                 SCOPED_TRACE(format("%d levels, %d %% of the bits, masked %d", (int)levels.size(), share, masked));
-                ScanData data(levels, 9, 6 * HammingLayout::LANES);
-                std::vector<HammingStop> stops;
+                ScanData data(levels, 9, 6 * CodeLayout::CODES_PER_BLOCK);
+                std::vector<PruneStage> stops;
                 for (int level = 0; level + 1 < (int)levels.size(); level++)
-                    stops.push_back(HammingStop{ level, levels[level] * 8 * share / 100 });
+                    stops.push_back(PruneStage{ level, levels[level] * 8 * share / 100 });
                 const Mat mask = randomMask(3, data.queries.rows, data.trains.rows, 0.7);
                 AllPairs sink;
                 HammingScan scan = data.scan(stops, sink);
@@ -195,8 +195,8 @@ TEST(IIB_Hamming, limits_as_the_naive_loop)
     for (int margin : { -1, 0, 10, 40, 400 })
     {
         SCOPED_TRACE(margin);
-        ScanData data({ 2, 8, 32, 128 }, 7, 8 * HammingLayout::LANES);
-        const std::vector<HammingStop> stops(1, HammingStop{ 3, HammingStop::NO_MAX });
+        ScanData data({ 2, 8, 32, 128 }, 7, 8 * CodeLayout::CODES_PER_BLOCK);
+        const std::vector<PruneStage> stops(1, PruneStage{ 3, PruneStage::NO_MAX });
         std::vector<int> limits(data.queries.rows), expectedLimits;
         for (size_t q = 0; q < limits.size(); q++)
             limits[q] = 60 + 60 * (int)q;

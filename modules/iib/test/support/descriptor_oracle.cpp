@@ -86,11 +86,11 @@ typedef std::array<Cell, 4> Quad;
 //! Cell (row, col) of a grid of n x n.
 typedef std::function<Cell(int channel, int n, int row, int col)> Cells;
 
-struct Ros
+struct SupportRegion
 {
     double x, y, side;
 
-    Ros(const IIB& iib, const KeyPoint& kp)
+    SupportRegion(const IIB& iib, const KeyPoint& kp)
         : side(std::max((double)iib.getScaleFactor() * kp.size, (double)(1 << iib.getGranularity())))
     {
         x = kp.pt.x + 0.5 - side / 2;
@@ -103,7 +103,7 @@ int edge(double start, double side, int k, int n, int limit)
     return (int)std::min(std::max(std::floor(start + side / n * k + 0.5), 0.), (double)limit);
 }
 
-Cell uprightCell(const Channel& c, const Ros& r, int n, int row, int col)
+Cell uprightCell(const Channel& c, const SupportRegion& r, int n, int row, int col)
 {
     const int x0 = edge(r.x, r.side, col, n, c.cols), x1 = edge(r.x, r.side, col + 1, n, c.cols);
     const int y0 = edge(r.y, r.side, row, n, c.rows), y1 = edge(r.y, r.side, row + 1, n, c.rows);
@@ -119,7 +119,7 @@ int64 clampTo(int64 v, int limit)
     return std::min<int64>(std::max<int64>(v, 0), limit - 1);
 }
 
-//! ROS and gradients turned by the keypoint's angle: nearest pixels on a grid of samples x samples.
+//! support region and gradients turned by the keypoint's angle: nearest pixels on a grid of samples x samples.
 struct Turned
 {
     int samples;
@@ -127,9 +127,9 @@ struct Turned
 
     Turned(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra, const KeyPoint& kp)
     {
-        const Ros ros(iib, kp);
-        samples = ros.side <= 64 && iib.getGranularity() <= 5 ? 32 : 64;
-        const double radians = kp.angle * CV_PI / 180, spacing = std::min(ros.side, 16384.) / samples;
+        const SupportRegion region(iib, kp);
+        samples = region.side <= 64 && iib.getGranularity() <= 5 ? 32 : 64;
+        const double radians = kp.angle * CV_PI / 180, spacing = std::min(region.side, 16384.) / samples;
         const int64 stepX = cvRound(std::cos(radians) * spacing * 65536);
         const int64 stepY = cvRound(std::sin(radians) * spacing * 65536);
         const int cosine = cvRound(std::cos(radians) * 4096), sine = cvRound(std::sin(radians) * 4096);
@@ -282,8 +282,8 @@ Cells cellsOf(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra, co
         const Turned turned(iib, grey, extra, kp);
         return [turned](int c, int n, int row, int col) { return turned.cell(c, n, row, col); };
     }
-    const Ros ros(iib, kp);
-    return [ros, &channels](int c, int n, int row, int col) { return uprightCell(channels[c], ros, n, row, col); };
+    const SupportRegion region(iib, kp);
+    return [region, &channels](int c, int n, int row, int col) { return uprightCell(channels[c], region, n, row, col); };
 }
 
 }  // namespace

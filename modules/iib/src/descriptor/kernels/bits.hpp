@@ -33,9 +33,9 @@ struct LevelShape
     Axis x, y;
     int channels;  //!< of GROUP_CHANNELS, those in use
     int windows;  //!< a bit for each that is in use
-    const ChosenBits* chosen;  //!< of each window, or null: the bits of all quads are in use
+    const ChosenBits* chosen;  //!< of each phase, or null: the bits of all quads are in use
 
-    bool uses(int window) const { return windows >> window & 1; }
+    bool uses(int phase) const { return windows >> phase & 1; }
 };
 
 //! The factors of neighbouring cells along an axis, 1 if they are equally long.

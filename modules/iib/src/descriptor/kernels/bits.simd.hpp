@@ -82,17 +82,17 @@ inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const
     }
 }
 
-//! The comparisons of a window.
+//! The comparisons of a phase.
 template <typename Mapping, bool WITH_PARENTS, typename Cell, typename Out>
-void comparisons(const CellGrid<Cell>& cells, const LevelShape& shape, const Window& window,
+void comparisons(const CellGrid<Cell>& cells, const LevelShape& shape, const QuadPhase& phase,
                  CellGrid<unsigned>& parents, Out out)
 {
-    const int* edges = shape.y.edges + window.dy * shape.y.step;
-    for (int first = 0; first < window.lanes(); first += CHUNK, out.nextChunk())
+    const int* edges = shape.y.edges + phase.dy * shape.y.step;
+    for (int first = 0; first < phase.lanes(); first += CHUNK, out.nextChunk())
     {
-        const ColumnWeights columns(shape.x, window.dx + first / 2);
-        columnBits<Mapping, WITH_PARENTS>(QuadRows<Cell>(cells, window.dy, window.dx, first), columns, edges,
-                                          shape.y.step, window.rows, ParentRows(parents, first), out);
+        const ColumnWeights columns(shape.x, phase.dx + first / 2);
+        columnBits<Mapping, WITH_PARENTS>(QuadRows<Cell>(cells, phase.dy, phase.dx, first), columns, edges,
+                                          shape.y.step, phase.rows, ParentRows(parents, first), out);
     }
 }
 
@@ -100,22 +100,22 @@ template <typename Mapping, bool WITH_PARENTS, typename Cell>
 void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int index, CellGrid<unsigned>& parents,
                 BitWriter& out)
 {
-    const Window window(shape.n, index);
-    if (window.lanes() < CHUNK && !shape.chosen)
-        return comparisons<Mapping, WITH_PARENTS>(cells, shape, window, parents,
-                                                  ShortRowWriter(out, window.lanes(), shape.channels));
-    const int rowBytes = Mapping::BITS * window.planeBytes();
+    const QuadPhase phase(shape.n, index);
+    if (phase.lanes() < CHUNK && !shape.chosen)
+        return comparisons<Mapping, WITH_PARENTS>(cells, shape, phase, parents,
+                                                  ShortRowWriter(out, phase.lanes(), shape.channels));
+    const int rowBytes = Mapping::BITS * phase.planeBytes();
     // words are read beyond the last plane
     uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8 + 8], *whole = 0;
     // Where all bits are in use and a row fills whole chunks, they need no shifting.
-    if (!shape.chosen && shape.channels == GROUP_CHANNELS && window.lanes() % CHUNK == 0)
-        whole = out.reserve(window.rows * rowBytes);
-    const PlaneRows planes = { whole ? whole : buffer, (size_t)window.planeBytes(), (size_t)rowBytes };
-    comparisons<Mapping, WITH_PARENTS>(cells, shape, window, parents, planes);
+    if (!shape.chosen && shape.channels == GROUP_CHANNELS && phase.lanes() % CHUNK == 0)
+        whole = out.reserve(phase.rows * rowBytes);
+    const PlaneRows planes = { whole ? whole : buffer, (size_t)phase.planeBytes(), (size_t)rowBytes };
+    comparisons<Mapping, WITH_PARENTS>(cells, shape, phase, parents, planes);
     if (shape.chosen)
         appendChosen(shape.chosen[index], buffer, out);
     else if (!whole)
-        append(planes, window, Mapping::BITS, shape.channels, out);
+        append(planes, phase, Mapping::BITS, shape.channels, out);
 }
 
 template <typename Mapping, typename Cell>

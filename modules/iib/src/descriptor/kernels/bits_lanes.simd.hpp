@@ -13,7 +13,7 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
 // Quads and channels that are mapped at a time, whatever the width of a vector, and their comparisons.
-enum { CHUNK = Window::CHUNK, LANES = VTraits<v_int32>::max_nlanes, CHUNK_VECTORS = CHUNK / LANES };
+enum { CHUNK = QuadPhase::CHUNK, LANES = VTraits<v_int32>::max_nlanes, CHUNK_VECTORS = CHUNK / LANES };
 
 //! A vector whose comparisons are bits, a bit a lane.
 template <typename V> struct Lanes

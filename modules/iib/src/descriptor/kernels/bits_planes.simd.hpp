@@ -78,13 +78,13 @@ inline void append(const uchar* plane, int lanes, int channels, BitWriter& out)
         }
 }
 
-//! Appends the comparisons of all quads of a window.
-inline void append(PlaneRows planes, const Window& window, int bits, int channels, BitWriter& out)
+//! Appends the comparisons of all quads of a phase.
+inline void append(PlaneRows planes, const QuadPhase& phase, int bits, int channels, BitWriter& out)
 {
     BitWriter writer = out;  // a copy that no store of a byte can change stays in registers
-    for (int r = 0; r < window.rows; r++, planes.first += planes.row)
+    for (int r = 0; r < phase.rows; r++, planes.first += planes.row)
         for (int plane = 0; plane < bits; plane++)
-            append(planes.first + plane * planes.plane, window.lanes(), channels, writer);
+            append(planes.first + plane * planes.plane, phase.lanes(), channels, writer);
     out = writer;
 }
 
@@ -119,7 +119,7 @@ private:
 };
 
 #if CV_SIMD_WIDTH == 64 && (defined __x86_64__ || defined _M_X64)
-/* Appends the chosen bits of a window. Processors with AVX-512 have a fast instruction that moves bits together; among
+/* Appends the chosen bits of a phase. Processors with AVX-512 have a fast instruction that moves bits together; among
  those with AVX2 are some where it is slower than doing it step by step. */
 #ifdef __GNUC__
 __attribute__((target("bmi2")))

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_CELLS_HPP
-#define OPENCV_IIB_CELLS_HPP
+#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_CELL_GRID_HPP
+#define OPENCV_IIB_DESCRIPTOR_KERNELS_CELL_GRID_HPP
 
 #include "../../common/aligned_buffer.hpp"
 #include "integral.hpp"
@@ -49,9 +49,9 @@ private:
 //! The n + 1 edges of n columns, and the last one again: kernels run over the end, by up to 7 columns of any level.
 inline int paddedEdges(int n) { return n + 1 + 7 * (n / 2); }
 
-/** The edges of the n x n cells of a ROS, clamped to the image (see quadtree.hpp).
+/** The edges of the n x n cells of a support region, clamped to the image (see support_region.hpp).
  @param x gets paddedEdges(n); @param y gets n + 1. */
-typedef void (*CellEdgesFunc)(const Ros& ros, int n, Size image, int* x, int* y);
+typedef void (*CellEdgesFunc)(const SupportRegion& region, int n, Size image, int* x, int* y);
 CellEdgesFunc getCellEdgesFunc();
 
 //! Sums over n x n cells with the given edges, paddedEdges(n) and n + 1 of them, in pixels of the image.

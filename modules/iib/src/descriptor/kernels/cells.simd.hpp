@@ -22,16 +22,16 @@ namespace {
 
 /* n is a power of two, so that the edges of a level are a subset of those of the next. The compiler makes vectors of
  the loop, with this file's instruction set. */
-void cellEdges(const Ros& ros, int n, Size image, int* x, int* y)
+void cellEdges(const SupportRegion& region, int n, Size image, int* x, int* y)
 {
-    const double step = ros.side / n;
+    const double step = region.side / n;
     for (int k = 0; k < n; k++)
     {
-        x[k] = edgeAt(ros.x + step * k, image.width);
-        y[k] = edgeAt(ros.y + step * k, image.height);
+        x[k] = edgeAt(region.x + step * k, image.width);
+        y[k] = edgeAt(region.y + step * k, image.height);
     }
-    x[n] = edgeAt(ros.x + step * n, image.width);
-    y[n] = edgeAt(ros.y + step * n, image.height);
+    x[n] = edgeAt(region.x + step * n, image.width);
+    y[n] = edgeAt(region.y + step * n, image.height);
     for (int k = n + 1; k < paddedEdges(n); k++)
         x[k] = x[n];
 }

@@ -32,10 +32,10 @@ inline v_int32 absolute(const v_int32& v)
 inline v_int16 setAll(short v) { return vx_setall_s16(v); }
 inline v_int32 setAll(int v) { return vx_setall_s32(v); }
 
-template <typename Lane>
-void gradientRow(const Lane* above, const Lane* middle, const Lane* below, Lane* gx, Lane* gy, int width)
+template <typename T>
+void gradientRow(const T* above, const T* middle, const T* below, T* gx, T* gy, int width)
 {
-    typedef decltype(setAll(Lane())) V;
+    typedef decltype(setAll(T())) V;
     for (int x = 0; x < width; x += VTraits<V>::max_nlanes)
     {
         const V a0 = vx_load(above + x), a1 = vx_load(above + x + 1), a2 = vx_load(above + x + 2);
@@ -73,11 +73,11 @@ template <typename V> inline V mirror(const V& steps, const V& mask, const V& wh
     return (steps ^ mask) + (mask & wholeAndOne);
 }
 
-template <typename Lane> void orientationRow(const Lane* gxRow, const Lane* gyRow, Lane* steps, int width)
+template <typename T> void orientationRow(const T* gxRow, const T* gyRow, T* steps, int width)
 {
-    typedef decltype(setAll(Lane())) V;
-    const V zero = setAll((Lane)0), one = setAll((Lane)1), mask = setAll((Lane)(ORIENTATION_STEPS - 1));
-    const V quarter = setAll((Lane)(ORIENTATION_STEPS / 4 + 1)), half = setAll((Lane)(ORIENTATION_STEPS / 2 + 1));
+    typedef decltype(setAll(T())) V;
+    const V zero = setAll((T)0), one = setAll((T)1), mask = setAll((T)(ORIENTATION_STEPS - 1));
+    const V quarter = setAll((T)(ORIENTATION_STEPS / 4 + 1)), half = setAll((T)(ORIENTATION_STEPS / 2 + 1));
     for (int x = 0; x < width; x += VTraits<V>::max_nlanes)
     {
         const V gx = vx_load(gxRow + x), gy = vx_load(gyRow + x);
@@ -92,16 +92,16 @@ template <typename Lane> void orientationRow(const Lane* gxRow, const Lane* gyRo
 
 // The rest is left to the compiler, which has this file's instruction set too.
 
-template <typename Lane> void absoluteRow(const Lane* in, Lane* out, int width)
+template <typename T> void absoluteRow(const T* in, T* out, int width)
 {
     for (int x = 0; x < width; x++)
-        out[x] = (Lane)(in[x] < 0 ? -in[x] : in[x]);
+        out[x] = (T)(in[x] < 0 ? -in[x] : in[x]);
 }
 
-template <typename Lane> void addRow(const Lane* in, Lane addend, Lane* out, int width)
+template <typename T> void addRow(const T* in, T addend, T* out, int width)
 {
     for (int x = 0; x < width; x++)
-        out[x] = (Lane)(in[x] + addend);
+        out[x] = (T)(in[x] + addend);
 }
 
 void widenRow(const uchar* in, short* out, int width)
@@ -113,15 +113,15 @@ void widenRow(const uchar* in, short* out, int width)
         out[x] = in[x];
 }
 
-template <typename Pixel, typename Lane> void widenRow(const Pixel* in, Lane* out, int width)
+template <typename Pixel, typename T> void widenRow(const Pixel* in, T* out, int width)
 {
     for (int x = 0; x < width; x++)
-        out[x] = (Lane)in[x];
+        out[x] = (T)in[x];
 }
 
-template <typename Lane> const RowKernels<Lane>& kernels()
+template <typename T> const RowKernels<T>& kernels()
 {
-    static const RowKernels<Lane> k = { gradientRow<Lane>, orientationRow<Lane>, absoluteRow<Lane>, addRow<Lane>,
+    static const RowKernels<T> k = { gradientRow<T>, orientationRow<T>, absoluteRow<T>, addRow<T>,
                                         widenRow, widenRow };
     return k;
 }

@@ -26,9 +26,9 @@ template <typename Sum> struct IntegralRows
 };
 
 //! From a row of each channel: out = above + sums along the row; both begin left of the first pixel, with 0.
-template <typename Lane, typename Sum> struct SumRowFunc
+template <typename T, typename Sum> struct SumRowFunc
 {
-    typedef void (*Type)(const Lane* const planes[GROUP_CHANNELS], int width, const Sum* above, Sum* out);
+    typedef void (*Type)(const T* const planes[GROUP_CHANNELS], int width, const Sum* above, Sum* out);
 };
 SumRowFunc<short, ushort>::Type getSumRowFunc(short, ushort);
 SumRowFunc<short, unsigned>::Type getSumRowFunc(short, unsigned);
@@ -39,14 +39,14 @@ size_t integralRowBytes(int width, size_t bytesPerSum);
 
 /** Makes the rows, from the top of a rectangle of the image to its bottom. The ring stays in the cache while the
  keypoints that it holds are described. */
-template <typename Lane, typename Sum> class IntegralBand
+template <typename T, typename Sum> class IntegralBand
 {
 public:
     //! @param channels 1 to 4, whose maps outlive the band.
     //! @param rows how many rows, the newest included, a reader looks at.
     IntegralBand(const std::vector<Channel>& channels, Rect area, int rows)
         : channelRows(channels, area, maxGradient(channels)), width(area.width), done(area.y),
-          sumRow(getSumRowFunc(Lane(), Sum()))
+          sumRow(getSumRowFunc(T(), Sum()))
     {
         view.step = integralRowBytes(area.width, sizeof(Sum)) / sizeof(Sum);
         view.count = rows;
@@ -66,7 +66,7 @@ public:
         for (; done < y; done++)
         {
             channelRows.compute(done);
-            const Lane* planes[GROUP_CHANNELS];
+            const T* planes[GROUP_CHANNELS];
             for (int i = 0; i < GROUP_CHANNELS; i++)
                 planes[i] = channelRows.plane(i);
             sumRow(planes, width, row(done), row(done + 1));
@@ -78,10 +78,10 @@ public:
 private:
     Sum* row(int y) { return begin + (y - view.origin.y) % view.count * view.step; }
 
-    ChannelRows<Lane> channelRows;
+    ChannelRows<T> channelRows;
     const int width;
     int done;  //!< rows of the image above this one are in the newest row
-    const typename SumRowFunc<Lane, Sum>::Type sumRow;
+    const typename SumRowFunc<T, Sum>::Type sumRow;
     AlignedBuffer<Sum> ring;
     Sum* begin;
     IntegralRows<Sum> view;

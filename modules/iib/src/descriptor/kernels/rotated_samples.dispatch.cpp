@@ -10,14 +10,14 @@
 namespace cv {
 namespace iib {
 
-const SampleKernels<short>& shortSampleKernels()
+const RotatedSampleKernels<short>& shortRotatedSampleKernels()
 {
-    CV_CPU_DISPATCH(shortSampleKernels, (), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(shortRotatedSampleKernels, (), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-const SampleKernels<int>& intSampleKernels()
+const RotatedSampleKernels<int>& intRotatedSampleKernels()
 {
-    CV_CPU_DISPATCH(intSampleKernels, (), CV_CPU_DISPATCH_MODES_ALL);
+    CV_CPU_DISPATCH(intRotatedSampleKernels, (), CV_CPU_DISPATCH_MODES_ALL);
 }
 
 }  // namespace iib

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_SAMPLES_HPP
-#define OPENCV_IIB_SAMPLES_HPP
+#ifndef OPENCV_IIB_ROTATED_SAMPLES_HPP
+#define OPENCV_IIB_ROTATED_SAMPLES_HPP
 
 #include "cell_grid.hpp"
 
@@ -24,22 +24,22 @@ struct SampleGrid
 
 /* Points are ordered for sums over cells of `sub` x `sub` points: first by the place within the cell, then by the
  cell's row, the parity of its column, and the column, as in a CellGrid. */
-template <typename Lane> struct SampleKernels
+template <typename T> struct RotatedSampleKernels
 {
     //! The indices in `area`, row by row, of the grid's n * n points.
     void (*indices)(const SampleGrid& grid, int sub, int* index);
     //! Reads pixels of GROUP_CHANNELS values into as many planes.
-    void (*gather)(const Lane* pixels, const int* index, int count, Lane* const planes[GROUP_CHANNELS]);
+    void (*gather)(const T* pixels, const int* index, int count, T* const planes[GROUP_CHANNELS]);
     //! Turns gradients by an angle given in 2^-12: x' = c x + s y, y' = c y - s x, rounded.
-    void (*rotate)(Lane* gx, Lane* gy, int count, int cosine, int sine);
+    void (*rotate)(T* gx, T* gy, int count, int cosine, int sine);
     //! steps = (steps + turn) modulo ORIENTATION_STEPS, but 0 where there is no gradient, as upright.
-    void (*turn)(const Lane* gx, const Lane* gy, Lane* steps, int count, int turn);
+    void (*turn)(const T* gx, const T* gy, T* steps, int count, int turn);
     //! Sums over cells; n / sub cells in a row.
-    void (*sum)(const Lane* const planes[GROUP_CHANNELS], int n, int sub, CellGrid<unsigned>& cells);
+    void (*sum)(const T* const planes[GROUP_CHANNELS], int n, int sub, CellGrid<unsigned>& cells);
 };
 
-const SampleKernels<short>& shortSampleKernels();
-const SampleKernels<int>& intSampleKernels();
+const RotatedSampleKernels<short>& shortRotatedSampleKernels();
+const RotatedSampleKernels<int>& intRotatedSampleKernels();
 
 }  // namespace iib
 }  // namespace cv

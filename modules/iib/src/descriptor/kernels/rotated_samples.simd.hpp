@@ -12,8 +12,8 @@ namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-const SampleKernels<short>& shortSampleKernels();
-const SampleKernels<int>& intSampleKernels();
+const RotatedSampleKernels<short>& shortRotatedSampleKernels();
+const RotatedSampleKernels<int>& intRotatedSampleKernels();
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -60,17 +60,17 @@ inline v_int16 vectorOf(short) { return vx_setzero_s16(); }
 inline v_int32 vectorOf(int) { return vx_setzero_s32(); }
 
 //! count must be a multiple of the vector.
-template <typename Lane>
-void gatherPixels(const Lane* pixels, const int* index, int count, Lane* const planes[GROUP_CHANNELS])
+template <typename T>
+void gatherPixels(const T* pixels, const int* index, int count, T* const planes[GROUP_CHANNELS])
 {
-    typedef decltype(vectorOf(Lane())) V;
+    typedef decltype(vectorOf(T())) V;
     const int lanes = VTraits<V>::max_nlanes;
-    Lane chunk[GROUP_CHANNELS * VTraits<V>::max_nlanes];
+    T chunk[GROUP_CHANNELS * VTraits<V>::max_nlanes];
     for (int i = 0; i < count; i += lanes)
     {
         for (int j = 0; j < lanes; j++)
             memcpy(chunk + j * GROUP_CHANNELS, pixels + (size_t)index[i + j] * GROUP_CHANNELS,
-                   GROUP_CHANNELS * sizeof(Lane));
+                   GROUP_CHANNELS * sizeof(T));
         V v[GROUP_CHANNELS];
         deinterleave(chunk, v);
         for (int c = 0; c < GROUP_CHANNELS; c++)
@@ -78,21 +78,21 @@ void gatherPixels(const Lane* pixels, const int* index, int count, Lane* const p
     }
 }
 
-template <typename Lane> void rotateGradients(Lane* gx, Lane* gy, int count, int cosine, int sine)
+template <typename T> void rotateGradients(T* gx, T* gy, int count, int cosine, int sine)
 {
     for (int i = 0; i < count; i++)
     {
         const int x = gx[i], y = gy[i];
-        gx[i] = (Lane)((cosine * x + sine * y + 2048) >> 12);
-        gy[i] = (Lane)((cosine * y - sine * x + 2048) >> 12);
+        gx[i] = (T)((cosine * x + sine * y + 2048) >> 12);
+        gy[i] = (T)((cosine * y - sine * x + 2048) >> 12);
     }
 }
 
-template <typename Lane>
-void turnOrientations(const Lane* gx, const Lane* gy, Lane* steps, int count, int turn)
+template <typename T>
+void turnOrientations(const T* gx, const T* gy, T* steps, int count, int turn)
 {
     for (int i = 0; i < count; i++)
-        steps[i] = (Lane)((gx[i] | gy[i]) == 0 ? 0 : (steps[i] + turn) & (ORIENTATION_STEPS - 1));
+        steps[i] = (T)((gx[i] | gy[i]) == 0 ? 0 : (steps[i] + turn) & (ORIENTATION_STEPS - 1));
 }
 
 /* Sums over eight cells side by side: of `samples` values each, `step` apart, in a plane for each channel. The sums of
@@ -137,8 +137,8 @@ void sumEightCells(const int* const planes[GROUP_CHANNELS], int start, int sampl
     }
 }
 
-template <typename Lane>
-void sumCells(const Lane* const planes[GROUP_CHANNELS], int n, int sub, CellGrid<unsigned>& cells)
+template <typename T>
+void sumCells(const T* const planes[GROUP_CHANNELS], int n, int sub, CellGrid<unsigned>& cells)
 {
     const int side = n / sub, count = side * side;
     cells.create(side);
@@ -151,21 +151,21 @@ void sumCells(const Lane* const planes[GROUP_CHANNELS], int n, int sub, CellGrid
         }
 }
 
-template <typename Lane> const SampleKernels<Lane>& kernels()
+template <typename T> const RotatedSampleKernels<T>& kernels()
 {
-    static const SampleKernels<Lane> k = { sampleIndices, gatherPixels<Lane>, rotateGradients<Lane>,
-                                           turnOrientations<Lane>, sumCells<Lane> };
+    static const RotatedSampleKernels<T> k = { sampleIndices, gatherPixels<T>, rotateGradients<T>,
+                                           turnOrientations<T>, sumCells<T> };
     return k;
 }
 
 }  // namespace
 
-const SampleKernels<short>& shortSampleKernels()
+const RotatedSampleKernels<short>& shortRotatedSampleKernels()
 {
     return kernels<short>();
 }
 
-const SampleKernels<int>& intSampleKernels()
+const RotatedSampleKernels<int>& intRotatedSampleKernels()
 {
     return kernels<int>();
 }

@@ -10,7 +10,7 @@ namespace iib {
 
 static const int WORD = 4, SAMPLE = 4;  // one word in SAMPLE
 
-HammingLayout::HammingLayout(const std::vector<int>& levelSizes, HammingPacking packing_)
+CodeLayout::CodeLayout(const std::vector<int>& levelSizes, CodePacking packing_)
     : sizes(levelSizes), width(0), packing(packing_)
 {
     for (int level = 0; level < levels(); level++)
@@ -37,7 +37,7 @@ HammingLayout::HammingLayout(const std::vector<int>& levelSizes, HammingPacking 
     }
 }
 
-void HammingLayout::arrange(const uchar* descriptor, unsigned* plain) const
+void CodeLayout::arrange(const uchar* descriptor, unsigned* plain) const
 {
     for (int i = 0; i < words(); i++)
         if (places[i].bytes == WORD)
@@ -50,14 +50,14 @@ void HammingLayout::arrange(const uchar* descriptor, unsigned* plain) const
         }
 }
 
-void HammingLayout::restore(const unsigned* plain, uchar* descriptor) const
+void CodeLayout::restore(const unsigned* plain, uchar* descriptor) const
 {
     for (int i = 0; i < words(); i++)
         for (int b = 0; b < places[i].bytes; b++)
             descriptor[places[i].from + b] = ((const uchar*)(plain + i))[b];
 }
 
-void HammingLayout::pack(unsigned* code) const
+void CodeLayout::pack(unsigned* code) const
 {
     if (packing == PACKING_TABLES)
         return;
@@ -71,29 +71,29 @@ void HammingLayout::pack(unsigned* code) const
     }
 }
 
-void HammingLayout::store(unsigned* code, unsigned* group, int lane) const
+void CodeLayout::store(unsigned* code, unsigned* group, int lane) const
 {
     pack(code);
     if (packing == PACKING_ADDERS)
         for (int i = 0; i < words(); i++)
-            group[i * LANES + lane] = code[i];
+            group[i * CODES_PER_BLOCK + lane] = code[i];
     else
         for (int i = 0; i < words() * WORD; i++)
-            ((uchar*)group)[i * LANES + lane] = ((const uchar*)code)[i];
+            ((uchar*)group)[i * CODES_PER_BLOCK + lane] = ((const uchar*)code)[i];
 }
 
-void HammingLayout::fetch(const unsigned* group, int lane, unsigned* plain) const
+void CodeLayout::fetch(const unsigned* group, int lane, unsigned* plain) const
 {
     if (packing == PACKING_TABLES)
     {
         for (int i = 0; i < words() * WORD; i++)
-            ((uchar*)plain)[i] = ((const uchar*)group)[i * LANES + lane];
+            ((uchar*)plain)[i] = ((const uchar*)group)[i * CODES_PER_BLOCK + lane];
         return;
     }
     unsigned parity = plain[0] = group[lane];
     for (int i = 1; i < words(); i += 2)
     {
-        const unsigned first = group[i * LANES + lane], second = group[(i + 1) * LANES + lane];
+        const unsigned first = group[i * CODES_PER_BLOCK + lane], second = group[(i + 1) * CODES_PER_BLOCK + lane];
         plain[i] = parity ^ first;
         plain[i + 1] = plain[i] ^ second;
         parity ^= second;

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_HAMMING_LAYOUT_HPP
-#define OPENCV_IIB_HAMMING_LAYOUT_HPP
+#ifndef OPENCV_IIB_MATCHER_KERNELS_CODE_LAYOUT_HPP
+#define OPENCV_IIB_MATCHER_KERNELS_CODE_LAYOUT_HPP
 
 #include "opencv2/core.hpp"
 
@@ -11,7 +11,7 @@ namespace cv {
 namespace iib {
 
 //! How codes are kept so that a kernel compares one query with many of them at once.
-enum HammingPacking
+enum CodePacking
 {
     /** Words combined so that half as many population counts do. With c the plain words, word 0 is c[0], then
     follow c[0] ^ ... ^ c[2k] ^ c[2k + 1] and c[2k + 1] ^ c[2k + 2]. The differences of two such codes are just
@@ -22,17 +22,17 @@ enum HammingPacking
     PACKING_TABLES
 };
 
-/** Where the bits of a descriptor lie in a code of words of 32 bits, and codes side by side in a group of LANES.
+/** Where the bits of a descriptor lie in a code of words of 32 bits, and codes side by side in a group of CODES_PER_BLOCK.
 
 A code has a part for each level, filled up with zeros to whole words. Only the last level has two: every
 fourth of its words, a sample that tells much more than its beginning would, and the rest. */
-class CV_EXPORTS HammingLayout
+class CV_EXPORTS CodeLayout
 {
 public:
-    enum { LANES = 16 };
+    enum { CODES_PER_BLOCK = 16 };
 
     //! Sizes of the levels in bytes, coarse first.
-    HammingLayout(const std::vector<int>& levelSizes, HammingPacking packing);
+    CodeLayout(const std::vector<int>& levelSizes, CodePacking packing);
 
     const std::vector<int>& levelSizes() const { return sizes; }
     int levels() const { return (int)sizes.size(); }
@@ -53,7 +53,7 @@ public:
 
     //! From plain words to packed ones, in place.
     void pack(unsigned* code) const;
-    //! Packs plain words, in place, and puts them into a lane of a group of LANES * words() words.
+    //! Packs plain words, in place, and puts them into a lane of a group of CODES_PER_BLOCK * words() words.
     void store(unsigned* plain, unsigned* group, int lane) const;
     //! Gets its plain words.
     void fetch(const unsigned* group, int lane, unsigned* plain) const;
@@ -68,7 +68,7 @@ private:
     std::vector<int> sizes, ends, partBits;
     std::vector<Place> places; // of each word
     int width;
-    HammingPacking packing;
+    CodePacking packing;
 };
 
 }  // namespace iib

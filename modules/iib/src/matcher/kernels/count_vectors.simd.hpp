@@ -13,12 +13,12 @@ namespace {
 
 typedef v_uint32 Words;
 typedef v_int32 Counts;
-const int LANES = HammingLayout::LANES, WIDTH = VTraits<Words>::max_nlanes, VECTORS = LANES / WIDTH;
+const int CODES_PER_BLOCK = CodeLayout::CODES_PER_BLOCK, WIDTH = VTraits<Words>::max_nlanes, VECTORS = CODES_PER_BLOCK / WIDTH;
 
 //! 0, 1, 2, ... over the lanes of a vector.
 inline Counts laneNumbers()
 {
-    static const int NUMBERS[LANES] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 };
+    static const int NUMBERS[CODES_PER_BLOCK] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 };
     return vx_load(NUMBERS);
 }
 
@@ -43,13 +43,13 @@ CV_ALWAYS_INLINE int negativeLanes(const Counts* values)
     return lanes;
 }
 
-//! Writes the values of some lanes, and may write LANES values whatever their number.
+//! Writes the values of some lanes, and may write CODES_PER_BLOCK values whatever their number.
 CV_ALWAYS_INLINE void storeLanes(int* to, const Counts* values, int lanes)
 {
 #if CV_AVX512_SKX
     v_store(to, Counts(_mm512_maskz_compress_epi32((__mmask16)lanes, values[0].val)));
 #else
-    int all[LANES];
+    int all[CODES_PER_BLOCK];
     for (int v = 0; v < VECTORS; v++)
         v_store(all + v * WIDTH, values[v]);
     for (; lanes; lanes &= lanes - 1)

@@ -16,7 +16,7 @@ void hammingScan(const HammingScan& scan)
     CV_CPU_DISPATCH(hammingScan, (scan), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-HammingPacking hammingPacking()
+CodePacking hammingPacking()
 {
     CV_CPU_DISPATCH(hammingPacking, (), CV_CPU_DISPATCH_MODES_ALL);
 }

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_HAMMING_HPP
-#define OPENCV_IIB_HAMMING_HPP
+#ifndef OPENCV_IIB_MATCHER_KERNELS_HAMMING_HPP
+#define OPENCV_IIB_MATCHER_KERNELS_HAMMING_HPP
 
 #include "code_layout.hpp"
 
@@ -11,7 +11,7 @@ namespace cv {
 namespace iib {
 
 //! Where a scan may give a pair up: after a part, not the last one, and later than that of the stop before.
-struct HammingStop
+struct PruneStage
 {
     enum { NO_MAX = 1 << 28 };
     int part;
@@ -30,14 +30,14 @@ public:
 //! All pairs of some queries with some groups of train codes.
 struct HammingScan
 {
-    const HammingLayout* layout;
+    const CodeLayout* layout;
     const unsigned* queries; //!< plain words, one code after the other
     int queryCount;
     const unsigned* trains; //!< packed in groups
     int groups;
-    const uchar* allowed; //!< queryCount x groups * LANES, 0 for pairs that do not exist; null: all do
+    const uchar* allowed; //!< queryCount x groups * CODES_PER_BLOCK, 0 for pairs that do not exist; null: all do
 
-    const HammingStop* stops;
+    const PruneStage* stops;
     int stopCount;
     int64* passed; //!< stopCount: adds up the pairs that went on at the stop
     int* limits;   //!< null, or with a single stop: for each query the most bits that may differ there
@@ -53,7 +53,7 @@ struct HammingScan
 CV_EXPORTS void hammingScan(const HammingScan& scan);
 
 //! What the scan wants its train codes packed as.
-CV_EXPORTS HammingPacking hammingPacking();
+CV_EXPORTS CodePacking hammingPacking();
 
 //! Name of the instruction set that hammingScan uses.
 CV_EXPORTS const char* hammingInstructionSet();

@@ -21,7 +21,7 @@ namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 void hammingScan(const HammingScan& scan);
-HammingPacking hammingPacking();
+CodePacking hammingPacking();
 const char* hammingInstructionSet();
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
@@ -42,12 +42,12 @@ template<class S> void scanAll(S&& scanner, int queryCount)
 void hammingScan(const HammingScan& scan)
 {
     if (scan.stopCount > 0)
-        scanAll(PartScanner(scan), scan.queryCount);
+        scanAll(PrunedScanner(scan), scan.queryCount);
     else
         scanAll(FullScanner(scan), scan.queryCount);
 }
 
-HammingPacking hammingPacking()
+CodePacking hammingPacking()
 {
     return PACKING;
 }

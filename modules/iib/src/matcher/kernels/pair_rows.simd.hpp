@@ -46,7 +46,7 @@ inline int countDifferences(const uint64* a, const uint64* b, int words)
 class Rows
 {
 public:
-    Rows(const HammingLayout& l, int first_, int rows)
+    Rows(const CodeLayout& l, int first_, int rows)
         : layout(l), first(first_), plain(l.words()), known(rows, 0)
     {
         starts.assign(first + 1, 0);
@@ -76,7 +76,7 @@ public:
     {
         if (known[row])
             return;
-        layout.fetch(groups + (size_t)row / LANES * LANES * layout.words(), row % LANES, plain.data());
+        layout.fetch(groups + (size_t)row / CODES_PER_BLOCK * CODES_PER_BLOCK * layout.words(), row % CODES_PER_BLOCK, plain.data());
         set(row, plain.data());
     }
 
@@ -84,7 +84,7 @@ private:
     int size(int part) const { return layout.end(part) - (part ? layout.end(part - 1) : 0); }
     uint64* start(int row) const { return const_cast<uint64*>(words.data()) + (size_t)row * step; }
 
-    const HammingLayout& layout;
+    const CodeLayout& layout;
     const int first;
     AutoBuffer<unsigned> plain;
     std::vector<int> starts;

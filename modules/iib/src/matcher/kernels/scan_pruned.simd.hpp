@@ -9,16 +9,16 @@ namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
-class PartScanner : public Scanner
+class PrunedScanner : public Scanner
 {
 public:
-    explicit PartScanner(const HammingScan& s)
-        : Scanner(s), queryRow(layout, partAt(0) + 1, 1), trainRows(layout, partAt(0) + 1, s.groups * LANES)
+    explicit PrunedScanner(const HammingScan& s)
+        : Scanner(s), queryRow(layout, partAt(0) + 1, 1), trainRows(layout, partAt(0) + 1, s.groups * CODES_PER_BLOCK)
     {
         for (int stop = 0; stop <= s.stopCount; stop++)
             words.push_back(layout.end(partAt(stop)));
-        distances.allocate((size_t)QUERIES * s.groups * LANES);
-        shortlists.allocate((size_t)QUERIES * (s.groups + 1) * LANES); // storeLanes() needs more than fits
+        distances.allocate((size_t)QUERIES * s.groups * CODES_PER_BLOCK);
+        shortlists.allocate((size_t)QUERIES * (s.groups + 1) * CODES_PER_BLOCK); // storeLanes() needs more than fits
     }
 
     //! Some queries against all groups: all pairs together up to a stop; then those that pass one by one, or all
@@ -51,7 +51,7 @@ public:
                 Counts distance[VECTORS], beyonds[VECTORS];
                 for (int v = 0; v < VECTORS; v++)
                 {
-                    distance[v] = vx_load(distancesOf(q) + group * LANES + v * WIDTH);
+                    distance[v] = vx_load(distancesOf(q) + group * CODES_PER_BLOCK + v * WIDTH);
                     beyonds[v] = beyond(query + q, group, v, distance[v]);
                 }
                 report(query + q, group, distance, beyonds);
@@ -66,13 +66,13 @@ private:
     template<int Q, int STOPS> void compareTo(int query, int stop)
     {
         const int groups = scan.groups, first = words[0], second = words[1];
-        const size_t step = layout.words() * LANES;
+        const size_t step = layout.words() * CODES_PER_BLOCK;
         const unsigned* group = scan.trains;
-        int *results = distances.data(), *const end = results + groups * LANES;
+        int *results = distances.data(), *const end = results + groups * CODES_PER_BLOCK;
         Counts gone = vx_setzero_s32(), minima[Q];
         for (int q = 0; q < Q; q++)
             minima[q] = vx_setall_s32(NEVER);
-        for (int g = 0; results != end; results += LANES, group += step, g++)
+        for (int g = 0; results != end; results += CODES_PER_BLOCK, group += step, g++)
         {
             Tile<Q> tile;
             Counts distance[Tile<Q>::SIZE], before[Tile<Q>::SIZE], room[Tile<Q>::SIZE];
@@ -107,7 +107,7 @@ private:
             {
                 if (STOPS != 1 || scan.allowed)
                     distance[i] = v_select(room[i] < vx_setzero_s32(), vx_setall_s32(NEVER), distance[i]);
-                v_store(results + i / VECTORS * groups * LANES + i % VECTORS * WIDTH, distance[i]);
+                v_store(results + i / VECTORS * groups * CODES_PER_BLOCK + i % VECTORS * WIDTH, distance[i]);
                 if (STOPS == 1)
                     minima[i / VECTORS] = v_min(minima[i / VECTORS], distance[i]);
             }
@@ -116,7 +116,7 @@ private:
             for (int q = 0; q < Q; q++)
                 least[q] = v_reduce_min(minima[q]);
         if (STOPS == 2)
-            scan.passed[0] += Q * groups * LANES + v_reduce_sum(gone);
+            scan.passed[0] += Q * groups * CODES_PER_BLOCK + v_reduce_sum(gone);
     }
 
     //! Makes the room negative of the pairs that are not to go on at a stop.
@@ -137,7 +137,7 @@ private:
     //! Lists the pairs of each query that go on.
     template<int Q> void select(int query, int stop, int* counts)
     {
-        const int size = scan.groups * LANES;
+        const int size = scan.groups * CODES_PER_BLOCK;
         const int* distance[Q];
         int *list[Q], limits[Q];
         for (int q = 0; q < Q; q++)
@@ -146,7 +146,7 @@ private:
             list[q] = shortlist(q);
             limits[q] = lowerLimit(query + q, q, stop);
         }
-        for (int i = 0; i < size; i += LANES)
+        for (int i = 0; i < size; i += CODES_PER_BLOCK)
         {
             Counts trains[VECTORS];
             for (int v = 0; v < VECTORS; v++)
@@ -156,7 +156,7 @@ private:
                 Counts room[VECTORS];
                 for (int v = 0; v < VECTORS; v++)
                     room[v] = vx_setall_s32(limits[q]) - vx_load(distance[q] + i + v * WIDTH);
-                const int lanes = ((1 << LANES) - 1) & ~negativeLanes(room);
+                const int lanes = ((1 << CODES_PER_BLOCK) - 1) & ~negativeLanes(room);
                 storeLanes(list[q], trains, lanes);
                 list[q] += countLanes(lanes);
             }
@@ -218,8 +218,8 @@ private:
 
     //! The part that ends at a stop, or the last one after the last stop.
     int partAt(int stop) const { return stop < scan.stopCount ? scan.stops[stop].part : layout.parts() - 1; }
-    int* distancesOf(int q) { return distances.data() + (size_t)q * scan.groups * LANES; }
-    int* shortlist(int q) { return shortlists.data() + (size_t)q * (scan.groups + 1) * LANES; }
+    int* distancesOf(int q) { return distances.data() + (size_t)q * scan.groups * CODES_PER_BLOCK; }
+    int* shortlist(int q) { return shortlists.data() + (size_t)q * (scan.groups + 1) * CODES_PER_BLOCK; }
 
     Rows queryRow, trainRows;
     std::vector<int> words; // up to each stop, and in all

@@ -26,7 +26,7 @@ protected:
     {
         Counts below = vx_setall_s32(scan.queryBelow[query]);
         if (scan.trainBelow)
-            below = v_max(below, vx_load(scan.trainBelow + group * LANES + v * WIDTH));
+            below = v_max(below, vx_load(scan.trainBelow + group * CODES_PER_BLOCK + v * WIDTH));
         return distance - below;
     }
 
@@ -39,10 +39,10 @@ protected:
         for (int v = 0; v < VECTORS; v++)
             absent[v] = missing(query, group, v);
         lanes &= ~negativeLanes(absent);
-        int near[LANES];
+        int near[CODES_PER_BLOCK];
         storeLanes(near, distance, lanes);
         for (int i = 0; lanes; lanes &= lanes - 1)
-            scan.sink->found(query, group * LANES + trailingZeros32(lanes), near[i++]);
+            scan.sink->found(query, group * CODES_PER_BLOCK + trailingZeros32(lanes), near[i++]);
     }
 
     //! All bits of the lanes whose pairs do not exist.
@@ -50,15 +50,15 @@ protected:
     {
         if (!scan.allowed)
             return vx_setzero_s32();
-        const uchar* allowed = scan.allowed + ((size_t)query * scan.groups + group) * LANES;
+        const uchar* allowed = scan.allowed + ((size_t)query * scan.groups + group) * CODES_PER_BLOCK;
         return v_reinterpret_as_s32(vx_load_expand_q(allowed + v * WIDTH)) == vx_setzero_s32();
     }
 
-    const unsigned* codes(int group) const { return scan.trains + (size_t)group * layout.words() * LANES; }
+    const unsigned* codes(int group) const { return scan.trains + (size_t)group * layout.words() * CODES_PER_BLOCK; }
     const unsigned* plainQuery(int query) const { return scan.queries + (size_t)query * layout.words(); }
 
     const HammingScan& scan;
-    const HammingLayout& layout;
+    const CodeLayout& layout;
     TileQueries queries;
 };
 

@@ -10,7 +10,7 @@ namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
-const HammingPacking PACKING = PACKING_ADDERS;
+const CodePacking PACKING = PACKING_ADDERS;
 
 // Queries compared at once with a group: as many as the registers hold.
 const int QUERIES = CV_SIMD_WIDTH == 64 ? 4 : CV_SIMD_WIDTH == 32 ? 2 : 1;
@@ -48,7 +48,7 @@ inline Words addStep(Words& parity, const Words& train0, const Words& query0, co
 class TileQueries
 {
 public:
-    explicit TileQueries(const HammingLayout& l) : layout(l), memory(QUERIES * l.words())
+    explicit TileQueries(const CodeLayout& l) : layout(l), memory(QUERIES * l.words())
     {
         for (int i = 0; i < QUERIES; i++)
             codes[i] = memory.data() + i * l.words();
@@ -61,7 +61,7 @@ public:
     const unsigned* operator[](int i) const { return codes[i]; }
 
 private:
-    const HammingLayout& layout;
+    const CodeLayout& layout;
     AutoBuffer<unsigned> memory;
     unsigned* codes[QUERIES];
 };
@@ -124,8 +124,8 @@ private:
             for (int i = 0; i < SIZE; i++)
             {
                 const unsigned* q = query[i / VECTORS] + from;
-                const unsigned* t = group + i % VECTORS * WIDTH + from * LANES;
-                const Words carry = addStep(chain[i], vx_load(t), vx_setall_u32(q[0]), vx_load(t + LANES),
+                const unsigned* t = group + i % VECTORS * WIDTH + from * CODES_PER_BLOCK;
+                const Words carry = addStep(chain[i], vx_load(t), vx_setall_u32(q[0]), vx_load(t + CODES_PER_BLOCK),
                                             vx_setall_u32(q[1]));
                 sum[i] += countBits(carry);
             }

@@ -10,12 +10,12 @@ namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
-const HammingPacking PACKING = PACKING_TABLES;
+const CodePacking PACKING = PACKING_TABLES;
 const int QUERIES = 4;
 
-// A vector takes POSITIONS bytes of each of the LANES codes.
+// A vector takes POSITIONS bytes of each of the CODES_PER_BLOCK codes.
 typedef v_uint8 Bytes;
-const int BYTES = VTraits<Bytes>::max_nlanes, POSITIONS = BYTES / LANES;
+const int BYTES = VTraits<Bytes>::max_nlanes, POSITIONS = BYTES / CODES_PER_BLOCK;
 
 //! Picks values out of tables of 16, a table for each 16 bytes of the vector.
 inline Bytes lookUp(const Bytes& table, const Bytes& index)
@@ -53,7 +53,7 @@ struct HalfDistances
 class TileQueries
 {
 public:
-    explicit TileQueries(const HammingLayout& l)
+    explicit TileQueries(const CodeLayout& l)
         : layout(l), tables(QUERIES / 2 * pairSize())
     {
         for (int pair = 0; pair < QUERIES / 2; pair++)
@@ -88,7 +88,7 @@ private:
                 }
     }
 
-    const HammingLayout& layout;
+    const CodeLayout& layout;
     AlignedBuffer<uchar> tables;
     uchar* pairs[QUERIES / 2];
 };
