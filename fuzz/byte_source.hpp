@@ -17,14 +17,14 @@
 extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size);
 
 //! Ends the run, with the input kept, if the library broke a promise.
-#define FUZZ_CHECK(condition) \
-    do \
-    { \
-        if (!(condition)) \
-        { \
-            std::fprintf(stderr, "%s:%d: %s does not hold\n", __FILE__, __LINE__, #condition); \
-            std::abort(); \
-        } \
+#define FUZZ_CHECK(condition)                                                                                \
+    do                                                                                                       \
+    {                                                                                                        \
+        if (!(condition))                                                                                    \
+        {                                                                                                    \
+            std::fprintf(stderr, "%s:%d: %s does not hold\n", __FILE__, __LINE__, #condition);               \
+            std::abort();                                                                                    \
+        }                                                                                                    \
     } while (0)
 
 //! Turns the fuzzer's bytes into arguments; zeros follow the last byte.
@@ -56,10 +56,9 @@ public:
     //! Everyday numbers, and those that break code.
     float number()
     {
-        static const float special[] = { 0.f, -0.f, -1.f, 1e-30f, FLT_MIN / 2, 1e9f, -1e9f, 2147483648.f, 1e20f,
-                                         FLT_MAX, -FLT_MAX, std::numeric_limits<float>::infinity(),
-                                         -std::numeric_limits<float>::infinity(),
-                                         std::numeric_limits<float>::quiet_NaN() };
+        static const float special[] = {0.f, -0.f, -1.f, 1e-30f, FLT_MIN / 2, 1e9f, -1e9f, 2147483648.f,
+                1e20f, FLT_MAX, -FLT_MAX, std::numeric_limits<float>::infinity(),
+                -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()};
         const int kind = take<uchar>();
         if (kind < 200)
             return (float)take<short>() / 64;

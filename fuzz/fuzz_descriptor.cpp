@@ -25,7 +25,8 @@ Mat takeImage(ByteSource& in, Size size, int depth, int channels)
     const int kind = in.between(0, 7);
     RNG rng(in.take<ushort>());
     if (kind < 3)
-        rng.fill(image, RNG::UNIFORM, depth == CV_8S || depth == CV_16S ? -100 : 0, depth % 8 < 2 ? 256 : 65536);
+        rng.fill(image, RNG::UNIFORM, depth == CV_8S || depth == CV_16S ? -100 : 0,
+                depth % 8 < 2 ? 256 : 65536);
     else if (kind < 5)
         for (int y = 0; y < image.rows; y++)
             image.row(y).setTo(Scalar::all(kind == 3 ? y * 7 % 256 : (y & 1) * 65535));
@@ -33,7 +34,8 @@ Mat takeImage(ByteSource& in, Size size, int depth, int channels)
         image.setTo(Scalar::all(kind == 5 ? 0 : 65535));
     if (depth == CV_32F && in.between(0, 3) == 0)
         for (int i = in.between(0, 3); i > 0 && !image.empty(); i--)
-            image.ptr<float>(in.between(0, size.height - 1))[in.between(0, size.width * channels - 1)] = in.number();
+            image.ptr<float>(in.between(0, size.height - 1))[in.between(0, size.width * channels - 1)] =
+                    in.number();
     // A view into a larger matrix: rows lie apart.
     if (!in.flag() || image.empty())
         return image;
@@ -77,8 +79,8 @@ Ptr<IIB> takeExtractor(ByteSource& in)
         {
             level = std::min(level + (in.between(0, 3) == 0), iib->getGranularity());
             const int side = (1 << level) - 2;
-            const Mat_<int> quad = (Mat_<int>(1, 5) << level, in.between(-wild, 5), in.between(-wild, side + wild),
-                                    in.between(-wild, side), in.between(1 - wild, 15));
+            const Mat_<int> quad = (Mat_<int>(1, 5) << level, in.between(-wild, 5),
+                    in.between(-wild, side + wild), in.between(-wild, side), in.between(1 - wild, 15));
             quad.copyTo(quads.row(i));
         }
         iib->setSelection(quads);
@@ -108,15 +110,17 @@ bool isMap(const Mat& m)
 }
 
 //! Whether the header allows these arguments.
-bool areValid(const IIB& iib, const Mat& image, const std::vector<Mat>& extra, const std::vector<KeyPoint>& keypoints)
+bool areValid(const IIB& iib, const Mat& image, const std::vector<Mat>& extra,
+        const std::vector<KeyPoint>& keypoints)
 {
     for (const KeyPoint& kp : keypoints)
-        if (!std::isfinite(kp.pt.x) || !std::isfinite(kp.pt.y) || !std::isfinite(kp.size) || !std::isfinite(kp.angle) ||
-            kp.size <= 0)
+        if (!std::isfinite(kp.pt.x) || !std::isfinite(kp.pt.y) || !std::isfinite(kp.size) ||
+                !std::isfinite(kp.angle) || kp.size <= 0)
             return false;
     if (image.empty())
         return true;
-    if (!isMap(image) || image.channels() == 2 || image.channels() > 4 || (int)extra.size() != iib.getExtraChannels())
+    if (!isMap(image) || image.channels() == 2 || image.channels() > 4 ||
+            (int)extra.size() != iib.getExtraChannels())
         return false;
     for (const Mat& m : extra)
         if (!isMap(m) || m.size() != image.size())
@@ -125,9 +129,10 @@ bool areValid(const IIB& iib, const Mat& image, const std::vector<Mat>& extra, c
 }
 
 void checkAgainstOracle(const IIB& iib, const Mat& image, const std::vector<Mat>& extra,
-                        const std::vector<KeyPoint>& keypoints, const Mat& descriptors)
+        const std::vector<KeyPoint>& keypoints, const Mat& descriptors)
 {
-    bool cheap = image.channels() == 1 && image.depth() != CV_32F && image.total() <= 64 * 64 && keypoints.size() <= 8;
+    bool cheap = image.channels() == 1 && image.depth() != CV_32F && image.total() <= 64 * 64 &&
+                 keypoints.size() <= 8;
     for (const Mat& m : extra)
         cheap = cheap && m.depth() != CV_32F;
     if (!cheap)
@@ -144,7 +149,7 @@ void run(ByteSource& in)
 
     const Size size = takeSize(in);
     const bool odd = in.between(0, 15) == 15;  // a type that is refused
-    const int depths[] = { CV_8U, CV_8U, CV_16U, CV_32F }, channels[] = { 1, 1, 3, 4 };
+    const int depths[] = {CV_8U, CV_8U, CV_16U, CV_32F}, channels[] = {1, 1, 3, 4};
     const int depth = odd ? in.between(0, 7) : depths[in.between(0, 3)];
     const Mat image = takeImage(in, size, depth, odd ? in.between(1, 4) : channels[in.between(0, 3)]);
     std::vector<Mat> extra;
@@ -173,7 +178,8 @@ void run(ByteSource& in)
         FUZZ_CHECK(descriptors.empty());
         return;
     }
-    FUZZ_CHECK(descriptors.type() == CV_8U && descriptors.size() == Size(iib->descriptorSize(), (int)keypoints.size()));
+    FUZZ_CHECK(descriptors.type() == CV_8U &&
+               descriptors.size() == Size(iib->descriptorSize(), (int)keypoints.size()));
     checkAgainstOracle(*iib, image, extra, keypoints, descriptors);
 
     // Other memory, another cut of the work, the same bits.
@@ -186,7 +192,4 @@ void run(ByteSource& in)
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
-{
-    return runTarget(run, data, size);
-}
+extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size) { return runTarget(run, data, size); }

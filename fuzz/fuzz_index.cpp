@@ -31,14 +31,15 @@ void checkIndex(const Ptr<HierarchicalMatcher>& matcher)
     const ScratchFile copy;
     matcher->saveIndex(copy.name);
     const Ptr<HierarchicalMatcher> again = HierarchicalMatcher::loadIndex(copy.name);
-    FUZZ_CHECK(matcher->levelSizes() == again->levelSizes() && matcher->getThresholds() == again->getThresholds());
+    FUZZ_CHECK(matcher->levelSizes() == again->levelSizes() &&
+               matcher->getThresholds() == again->getThresholds());
     FUZZ_CHECK(matcher->getMode() == again->getMode() && matcher->getMaxRatio() == again->getMaxRatio());
     const std::vector<Mat> images = matcher->getTrainDescriptors(), copies = again->getTrainDescriptors();
     FUZZ_CHECK(images.size() == copies.size());
     for (size_t i = 0; i < images.size(); i++)
         FUZZ_CHECK(images[i].size() == copies[i].size() &&
                    (images[i].empty() || norm(images[i], copies[i], NORM_INF) == 0));
-    std::vector<std::vector<DMatch> > matches;
+    std::vector<std::vector<DMatch>> matches;
     for (const Mat& image : images)
         if (image.total() < 4096)
             matcher->knnMatch(image, matches, 2);

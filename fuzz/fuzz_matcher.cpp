@@ -26,7 +26,7 @@ bool equal(const Matches& a, const Matches& b)
             return false;
         for (size_t i = 0; i < a[q].size(); i++)
             if (a[q][i].distance != b[q][i].distance || a[q][i].queryIdx != b[q][i].queryIdx ||
-                a[q][i].imgIdx != b[q][i].imgIdx || a[q][i].trainIdx != b[q][i].trainIdx)
+                    a[q][i].imgIdx != b[q][i].imgIdx || a[q][i].trainIdx != b[q][i].trainIdx)
                 return false;
     }
     return true;
@@ -42,10 +42,10 @@ bool isPartOf(const Matches& some, const MatcherOracle& oracle, const Mat& queri
             const DMatch& m = row[i];
             const Mat& image = oracle.images[m.imgIdx];
             if (m.distance != hammingDistance(queries.ptr(m.queryIdx), image.ptr(m.trainIdx), queries.cols) ||
-                (i > 0 && row[i - 1].distance > m.distance))
+                    (i > 0 && row[i - 1].distance > m.distance))
                 return false;
             if (!oracle.masks.empty() && !oracle.masks[m.imgIdx].empty() &&
-                !oracle.masks[m.imgIdx].at<uchar>(m.queryIdx, m.trainIdx))
+                    !oracle.masks[m.imgIdx].at<uchar>(m.queryIdx, m.trainIdx))
                 return false;
         }
         if (row.size() > k)
@@ -65,7 +65,8 @@ Mat takeDescriptors(ByteSource& in, int bytes)
 {
     Mat descriptors = randomDescriptors(in.take<ushort>(), takeRows(in), bytes);
     for (int i = in.between(0, 4); i > 0 && !descriptors.empty(); i--)
-        descriptors.at<uchar>(in.between(0, descriptors.rows - 1), in.between(0, bytes - 1)) = in.take<uchar>();
+        descriptors.at<uchar>(in.between(0, descriptors.rows - 1), in.between(0, bytes - 1)) =
+                in.take<uchar>();
     return descriptors;
 }
 
@@ -76,7 +77,9 @@ std::vector<Mat> takeMasks(ByteSource& in, const std::vector<Mat>& images, int q
     for (size_t i = 0; i < images.size() + wrong * in.between(0, 1); i++)
     {
         const int rows = queries + wrong * in.between(0, 1), cols = i < images.size() ? images[i].rows : 1;
-        masks.push_back(in.flag() || rows * cols == 0 ? Mat() : randomMask(in.take<uchar>(), rows, cols, in.between(0, 10) / 10.));
+        masks.push_back(in.flag() || rows * cols == 0
+                                ? Mat()
+                                : randomMask(in.take<uchar>(), rows, cols, in.between(0, 10) / 10.));
         if (wrong && in.flag())
             masks.back().convertTo(masks.back(), CV_32S);
     }
@@ -88,7 +91,8 @@ bool areValid(const std::vector<Mat>& masks, const std::vector<Mat>& images, int
     if (!masks.empty() && masks.size() != images.size())
         return false;
     for (size_t i = 0; i < masks.size(); i++)
-        if (!masks[i].empty() && (masks[i].type() != CV_8UC1 || masks[i].size() != Size(images[i].rows, queries)))
+        if (!masks[i].empty() &&
+                (masks[i].type() != CV_8UC1 || masks[i].size() != Size(images[i].rows, queries)))
             return false;
     return true;
 }
@@ -100,8 +104,8 @@ Ptr<HierarchicalMatcher> takeMatcher(ByteSource& in, MatcherOracle& oracle)
         oracle.levelSizes.push_back(in.between(1 - 2 * wild, in.flag() ? 70 : 9));
     const int mode = in.between(-wild, 2 + wild);
     oracle.crossCheck = in.flag();
-    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(oracle.levelSizes, mode,
-            wild ? in.number() : in.between(0, 64) / 64.f, oracle.crossCheck);
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(
+            oracle.levelSizes, mode, wild ? in.number() : in.between(0, 64) / 64.f, oracle.crossCheck);
     if (in.flag())
     {
         std::vector<float> thresholds;
@@ -125,7 +129,8 @@ void checkRadius(HierarchicalMatcher& matcher, const Mat& queries, float radius,
     matcher.radiusMatch(queries, found, radius, oracle.masks);
     // also for a radius that is no number
     const double largest = 8. * queries.cols;
-    FUZZ_CHECK(equal(oracle.radius(queries, radius >= 0 ? cvFloor(std::min((double)radius, largest)) : -1), found));
+    FUZZ_CHECK(equal(
+            oracle.radius(queries, radius >= 0 ? cvFloor(std::min((double)radius, largest)) : -1), found));
 }
 
 void run(ByteSource& in)
@@ -157,7 +162,8 @@ void run(ByteSource& in)
     bool thrown = false;
     try
     {
-        matcher->knnMatch(wrongWidth ? Mat(3, width + 1, CV_8U, Scalar(1)) : queries, found, k, oracle.masks, compact);
+        matcher->knnMatch(
+                wrongWidth ? Mat(3, width + 1, CV_8U, Scalar(1)) : queries, found, k, oracle.masks, compact);
     }
     catch (const cv::Exception&)
     {
@@ -177,10 +183,9 @@ void run(ByteSource& in)
     {
         Matches expected = oracle.knn(queries, k);
         if (compact)
-            expected.erase(std::remove_if(expected.begin(), expected.end(), [](const std::vector<DMatch>& row)
-            {
-                return row.empty();
-            }), expected.end());
+            expected.erase(std::remove_if(expected.begin(), expected.end(),
+                                   [](const std::vector<DMatch>& row) { return row.empty(); }),
+                    expected.end());
         FUZZ_CHECK(equal(expected, found));
     }
     FUZZ_CHECK(isPartOf(found, oracle, queries, k));
@@ -196,7 +201,4 @@ void run(ByteSource& in)
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
-{
-    return runTarget(run, data, size);
-}
+extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size) { return runTarget(run, data, size); }

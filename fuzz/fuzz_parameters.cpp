@@ -16,15 +16,12 @@ using namespace cv;
 using cv::iib::HierarchicalMatcher;
 using cv::iib::IIB;
 
-const char* const NAMES[] = { "format", "scaleFactor", "granularity", "channels", "mapping", "overlap",
-                              "useOrientation", "extraChannels", "border", "selection", "levelSizes", "mode",
-                              "thresholds", "crossCheck", "maxRatio", "other" };
+const char* const NAMES[] = {"format", "scaleFactor", "granularity", "channels", "mapping", "overlap",
+        "useOrientation", "extraChannels", "border", "selection", "levelSizes", "mode", "thresholds",
+        "crossCheck", "maxRatio", "other"};
 
 //! A number, mostly a small one.
-int takeInt(ByteSource& in)
-{
-    return in.between(0, 15) == 15 ? in.take<int>() : in.between(-1, 17);
-}
+int takeInt(ByteSource& in) { return in.between(0, 15) == 15 ? in.take<int>() : in.between(-1, 17); }
 
 void writeValue(ByteSource& in, FileStorage& fs, int depth)
 {
@@ -55,7 +52,8 @@ void writeValue(ByteSource& in, FileStorage& fs, int depth)
 String takeTree(ByteSource& in)
 {
     FileStorage fs(".yml", FileStorage::WRITE | FileStorage::MEMORY);
-    fs << "object" << "{";
+    fs << "object"
+       << "{";
     const int names = (int)(sizeof(NAMES) / sizeof(NAMES[0]));
     if (in.between(0, 3) > 0)
         fs << NAMES[0] << 1;
@@ -72,7 +70,8 @@ String takeTree(ByteSource& in)
 template <typename T> String written(const T& object)
 {
     FileStorage fs(".yml", FileStorage::WRITE | FileStorage::MEMORY);
-    fs << "object" << "{";
+    fs << "object"
+       << "{";
     object.write(fs);
     fs << "}";
     return fs.releaseAndGetString();
@@ -106,7 +105,4 @@ void run(ByteSource& in)
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
-{
-    return runTarget(run, data, size);
-}
+extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size) { return runTarget(run, data, size); }

@@ -28,8 +28,8 @@ void readAs(int kind, const std::string& file)
     else if (kind == 1)
     {
         for (const cv::KeyPoint& kp : readKeypoints(file))
-            FUZZ_CHECK(std::isfinite(kp.pt.x) && std::isfinite(kp.pt.y) && std::isfinite(kp.size) && kp.size > 0 &&
-                       std::isfinite(kp.angle) && std::isfinite(kp.response));
+            FUZZ_CHECK(std::isfinite(kp.pt.x) && std::isfinite(kp.pt.y) && std::isfinite(kp.size) &&
+                       kp.size > 0 && std::isfinite(kp.angle) && std::isfinite(kp.response));
     }
     else
         for (const ImagePair& pair : findPairs(std::vector<std::string>(1, file)))

@@ -35,10 +35,7 @@ public:
     }
     int getThreadNum() const CV_OVERRIDE { return threadNumber(); }
     int getNumThreads() const CV_OVERRIDE { return threads; }
-    int setNumThreads(int count) CV_OVERRIDE
-    {
-        return threads.exchange(count > 0 ? count : 4);
-    }
+    int setNumThreads(int count) CV_OVERRIDE { return threads.exchange(count > 0 ? count : 4); }
     const char* getName() const CV_OVERRIDE { return "plain threads"; }
 
 private:

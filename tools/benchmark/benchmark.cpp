@@ -20,7 +20,11 @@ using namespace iib_tools;
 namespace {
 
 const Size IMAGE_SIZE(1280, 720);
-enum { FEW = 1000, MANY = 5000 };
+enum
+{
+    FEW = 1000,
+    MANY = 5000
+};
 
 struct Row
 {
@@ -30,34 +34,35 @@ struct Row
     double milliseconds[2];  //!< for FEW and MANY keypoints, least of all rounds
 };
 
-Row rowOf(const String& name, const Ptr<IIB>& iib, const Mat& image, const std::vector<Mat>& extra = std::vector<Mat>(),
-          int threads = 1)
+Row rowOf(const String& name, const Ptr<IIB>& iib, const Mat& image,
+        const std::vector<Mat>& extra = std::vector<Mat>(), int threads = 1)
 {
-    const Row row = { name, [=](std::vector<KeyPoint>& k, Mat& d) { iib->compute(image, extra, k, d); }, threads,
-                      { DBL_MAX, DBL_MAX } };
+    const Row row = {name, [=](std::vector<KeyPoint>& k, Mat& d) { iib->compute(image, extra, k, d); },
+            threads, {DBL_MAX, DBL_MAX}};
     return row;
 }
 
 std::vector<Row> allRows(const Mat& image)
 {
     const Ptr<ORB> orb = ORB::create();
-    const Row peer = { "cv::ORB", [=](std::vector<KeyPoint>& k, Mat& d) { orb->compute(image, k, d); }, 1,
-                       { DBL_MAX, DBL_MAX } };
+    const Row peer = {"cv::ORB", [=](std::vector<KeyPoint>& k, Mat& d) { orb->compute(image, k, d); }, 1,
+            {DBL_MAX, DBL_MAX}};
     const std::vector<Mat> extra(2, image);
     const int all = IIB::CHANNELS_DEFAULT;
     return std::vector<Row>{
-        peer,
-        rowOf("default", IIB::create(), image),
-        rowOf("granularity 5", IIB::create(2.f, 5), image),
-        rowOf("overlap", IIB::create(2.f, 4, all, IIB::MAPPING_MEAN, true), image),
-        rowOf("MAX", IIB::create(2.f, 4, all, IIB::MAPPING_MAX), image),
-        rowOf("QUARTILE", IIB::create(2.f, 4, all, IIB::MAPPING_QUARTILE), image),
-        rowOf("SORT", IIB::create(2.f, 4, all, IIB::MAPPING_SORT), image),
-        rowOf("HAAR", IIB::create(2.f, 4, all, IIB::MAPPING_HAAR), image),
-        rowOf("PAIRWISE", IIB::create(2.f, 4, all, IIB::MAPPING_PAIRWISE), image),
-        rowOf("2 extra channels", IIB::create(2.f, 4, all, IIB::MAPPING_MEAN, false, false, 2), image, extra),
-        rowOf("useOrientation", IIB::create(2.f, 4, all, IIB::MAPPING_MEAN, false, true), image),
-        rowOf("default, 2 threads", IIB::create(), image, std::vector<Mat>(), 2),
+            peer,
+            rowOf("default", IIB::create(), image),
+            rowOf("granularity 5", IIB::create(2.f, 5), image),
+            rowOf("overlap", IIB::create(2.f, 4, all, IIB::MAPPING_MEAN, true), image),
+            rowOf("MAX", IIB::create(2.f, 4, all, IIB::MAPPING_MAX), image),
+            rowOf("QUARTILE", IIB::create(2.f, 4, all, IIB::MAPPING_QUARTILE), image),
+            rowOf("SORT", IIB::create(2.f, 4, all, IIB::MAPPING_SORT), image),
+            rowOf("HAAR", IIB::create(2.f, 4, all, IIB::MAPPING_HAAR), image),
+            rowOf("PAIRWISE", IIB::create(2.f, 4, all, IIB::MAPPING_PAIRWISE), image),
+            rowOf("2 extra channels", IIB::create(2.f, 4, all, IIB::MAPPING_MEAN, false, false, 2), image,
+                    extra),
+            rowOf("useOrientation", IIB::create(2.f, 4, all, IIB::MAPPING_MEAN, false, true), image),
+            rowOf("default, 2 threads", IIB::create(), image, std::vector<Mat>(), 2),
     };
 }
 
@@ -71,7 +76,8 @@ void measure(std::vector<Row>& rows, const std::vector<KeyPoint> keypoints[2], i
             {
                 setNumThreads(row.threads);
                 std::vector<KeyPoint> k = keypoints[i];
-                row.compute(k, descriptors);  // not timed: threads are started and have memory, as in a long run
+                row.compute(
+                        k, descriptors);  // not timed: threads are started and have memory, as in a long run
                 TickMeter meter;
                 meter.start();
                 row.compute(k, descriptors);
@@ -86,29 +92,28 @@ void printAgainst(const std::vector<Row>& rows, const String& file)
     const FileStorage fs(file, FileStorage::READ);
     if (!fs.isOpened())
         CV_Error(Error::StsError, "cannot read " + file);
-    printf("\ntimes of %s\n%s\nover those above, %d keypoints\n\n", file.c_str(),
-           ((String)fs["cpu"]).c_str(), FEW);
+    printf("\ntimes of %s\n%s\nover those above, %d keypoints\n\n", file.c_str(), ((String)fs["cpu"]).c_str(),
+            FEW);
     for (const FileNode& other : fs["rows"])
         for (const Row& row : rows)
             if (row.name == (String)other["name"])
-                printf("%-22s %8.2f\n", row.name.c_str(), (double)other["milliseconds"][0] / row.milliseconds[0]);
+                printf("%-22s %8.2f\n", row.name.c_str(),
+                        (double)other["milliseconds"][0] / row.milliseconds[0]);
 }
 
 //! Microseconds that one more keypoint costs.
-double marginal(const Row& row)
-{
-    return (row.milliseconds[1] - row.milliseconds[0]) * 1000 / (MANY - FEW);
-}
+double marginal(const Row& row) { return (row.milliseconds[1] - row.milliseconds[0]) * 1000 / (MANY - FEW); }
 
 void print(const std::vector<Row>& rows)
 {
     printf("OpenCV %s, %s\n", CV_VERSION, getCPUFeaturesLine().c_str());
-    printf("%d x %d grey; ms for %d keypoints, us a keypoint more; ratios to the first row\n\n", IMAGE_SIZE.width,
-           IMAGE_SIZE.height, FEW);
+    printf("%d x %d grey; ms for %d keypoints, us a keypoint more; ratios to the first row\n\n",
+            IMAGE_SIZE.width, IMAGE_SIZE.height, FEW);
     printf("%-22s %8s %8s %10s %8s\n", "", "ms", "ratio", "us/keypoint", "ratio");
     for (const Row& row : rows)
         printf("%-22s %8.3f %8.2f %10.3f %8.2f\n", row.name.c_str(), row.milliseconds[0],
-               row.milliseconds[0] / rows[0].milliseconds[0], marginal(row), marginal(row) / marginal(rows[0]));
+                row.milliseconds[0] / rows[0].milliseconds[0], marginal(row),
+                marginal(row) / marginal(rows[0]));
 }
 
 void write(const std::vector<Row>& rows, const Scaling& scaling, const String& file)
@@ -117,10 +122,15 @@ void write(const std::vector<Row>& rows, const Scaling& scaling, const String& f
     if (!fs.isOpened())
         CV_Error(Error::StsError, "cannot write " + file);
     fs << "opencv" << CV_VERSION << "cpu" << getCPUFeaturesLine() << "width" << IMAGE_SIZE.width << "height"
-       << IMAGE_SIZE.height << "keypoints" << "[" << (int)FEW << (int)MANY << "]" << "rows" << "[";
+       << IMAGE_SIZE.height << "keypoints"
+       << "[" << (int)FEW << (int)MANY << "]"
+       << "rows"
+       << "[";
     for (const Row& row : rows)
-        fs << "{" << "name" << row.name << "threads" << row.threads << "milliseconds" << "[" << row.milliseconds[0]
-           << row.milliseconds[1] << "]" << "}";
+        fs << "{"
+           << "name" << row.name << "threads" << row.threads << "milliseconds"
+           << "[" << row.milliseconds[0] << row.milliseconds[1] << "]"
+           << "}";
     fs << "]";
     scaling.write(fs);
 }
@@ -129,10 +139,11 @@ void write(const std::vector<Row>& rows, const Scaling& scaling, const String& f
 
 int main(int argc, char** argv)
 {
-    const CommandLineParser args(argc, argv, "{help h||prints this}"
-                                             "{rounds|100|repetitions, of which the fastest counts}"
-                                             "{json|iib_benchmark.json|file to write}"
-                                             "{against||file of another run, to be compared with}");
+    const CommandLineParser args(argc, argv,
+            "{help h||prints this}"
+            "{rounds|100|repetitions, of which the fastest counts}"
+            "{json|iib_benchmark.json|file to write}"
+            "{against||file of another run, to be compared with}");
     if (args.has("help"))
     {
         args.printMessage();
@@ -147,7 +158,7 @@ int main(int argc, char** argv)
     try
     {
         const Mat image = cornerImage(IMAGE_SIZE);
-        const std::vector<KeyPoint> keypoints[2] = { corners(image, FEW), corners(image, MANY) };
+        const std::vector<KeyPoint> keypoints[2] = {corners(image, FEW), corners(image, MANY)};
         CV_Assert(keypoints[1].size() == MANY);
         std::vector<Row> rows = allRows(image);
         measure(rows, keypoints, rounds);

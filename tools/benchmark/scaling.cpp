@@ -44,7 +44,7 @@ std::vector<KeyPoint> scattered(Rect area, int count)
     std::vector<KeyPoint> keypoints;
     for (int i = 0; i < count; i++)
         keypoints.push_back(KeyPoint((float)rng.uniform(area.x + 32, area.br().x - 32),
-                                     (float)rng.uniform(area.y + 32, area.br().y - 32), 31.f));
+                (float)rng.uniform(area.y + 32, area.br().y - 32), 31.f));
     return keypoints;
 }
 
@@ -61,7 +61,7 @@ void measure(const std::vector<Task>& tasks, int rounds)
     Mat descriptors;
     for (const Task& task : tasks)
     {
-        const Scaling::Point begun = { megapixels(task.image), (int)task.keypoints.size(), DBL_MAX };
+        const Scaling::Point begun = {megapixels(task.image), (int)task.keypoints.size(), DBL_MAX};
         *task.result = begun;
     }
     for (int round = 0; round < rounds; round++)
@@ -94,7 +94,8 @@ void write(FileStorage& fs, const String& name, const std::vector<Scaling::Point
 {
     fs << name << "[";
     for (const Scaling::Point& p : points)
-        fs << "{" << "megapixels" << p.megapixels << "keypoints" << p.keypoints << "milliseconds" << p.milliseconds
+        fs << "{"
+           << "megapixels" << p.megapixels << "keypoints" << p.keypoints << "milliseconds" << p.milliseconds
            << "}";
     fs << "]";
 }
@@ -113,26 +114,27 @@ Scaling measureScaling(int rounds)
     const Mat large = cornerImage(LARGE);
     s.bytesPerPixel = bytesPerPixel(large);
 
-    const double sides[] = { 0.125, 0.25, 0.375, 0.5, 0.75, 1 };
-    const int counts[] = { 1000, 2000, 4000, 8000, 16000 };
+    const double sides[] = {0.125, 0.25, 0.375, 0.5, 0.75, 1};
+    const int counts[] = {1000, 2000, 4000, 8000, 16000};
     s.pixels.resize(sizeof(sides) / sizeof(sides[0]));
     s.keypoints.resize(sizeof(counts) / sizeof(counts[0]));
     std::vector<Task> tasks;
     for (size_t i = 0; i < s.pixels.size(); i++)
     {
-        const Mat image = large(Rect(0, 0, cvRound(LARGE.width * sides[i]), cvRound(LARGE.height * sides[i])));
-        tasks.push_back(Task{ image, scattered(Rect(Point(), image.size()), 1000), &s.pixels[i] });
+        const Mat image =
+                large(Rect(0, 0, cvRound(LARGE.width * sides[i]), cvRound(LARGE.height * sides[i])));
+        tasks.push_back(Task{image, scattered(Rect(Point(), image.size()), 1000), &s.pixels[i]});
     }
     const Mat small = large(Rect(0, 0, 1280, 720));
     for (size_t i = 0; i < s.keypoints.size(); i++)
-        tasks.push_back(Task{ small, scattered(Rect(Point(), small.size()), counts[i]), &s.keypoints[i] });
+        tasks.push_back(Task{small, scattered(Rect(Point(), small.size()), counts[i]), &s.keypoints[i]});
 
     const Rect crop(2400, 1600, 1000, 1000);
     std::vector<KeyPoint> inCrop = scattered(Rect(Point(), crop.size()), 20), inLarge = inCrop;
     for (KeyPoint& kp : inLarge)
         kp.pt += Point2f(crop.tl());
-    tasks.push_back(Task{ large(crop).clone(), inCrop, &s.crop });
-    tasks.push_back(Task{ large, inLarge, &s.around });
+    tasks.push_back(Task{large(crop).clone(), inCrop, &s.crop});
+    tasks.push_back(Task{large, inLarge, &s.around});
     measure(tasks, rounds);
     return s;
 }
@@ -144,7 +146,8 @@ void Scaling::print() const
         iib_tools::print(p);
     for (const Point& p : keypoints)
         iib_tools::print(p);
-    printf("The same keypoints on a crop and on the whole: ratio %.2f\n", around.milliseconds / crop.milliseconds);
+    printf("The same keypoints on a crop and on the whole: ratio %.2f\n",
+            around.milliseconds / crop.milliseconds);
     iib_tools::print(crop);
     iib_tools::print(around);
     printf("Peak of memory beyond image and descriptors: %.2f bytes a pixel\n", bytesPerPixel);
@@ -154,7 +157,7 @@ void Scaling::write(FileStorage& fs) const
 {
     iib_tools::write(fs, "pixels", pixels);
     iib_tools::write(fs, "more_keypoints", keypoints);
-    iib_tools::write(fs, "crop_and_whole", { crop, around });
+    iib_tools::write(fs, "crop_and_whole", {crop, around});
     fs << "bytes_per_pixel" << bytesPerPixel;
 }
 

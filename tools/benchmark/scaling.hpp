@@ -22,7 +22,7 @@ struct Scaling
     std::vector<Point> pixels;     //!< 1000 keypoints on ever larger images
     std::vector<Point> keypoints;  //!< ever more keypoints on one image
     Point crop, around;            //!< the same 20 keypoints on a crop and on the whole large image
-    double bytesPerPixel;          //!< peak of memory beyond image and descriptors, all pixels touched; 0 if unknown
+    double bytesPerPixel;  //!< peak of memory beyond image and descriptors, all pixels touched; 0 if unknown
 
     void print() const;
     void write(cv::FileStorage& fs) const;

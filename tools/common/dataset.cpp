@@ -34,9 +34,9 @@ std::string folderOf(const std::string& path)
 
 Kind kindOf(const std::string& sequence)
 {
-    static const std::map<std::string, Kind> oxford = {
-        {"bark", "zoom"}, {"boat", "zoom"}, {"graf", "viewpoint"}, {"wall", "viewpoint"},
-        {"bikes", "blur"}, {"trees", "blur"}, {"ubc", "jpeg"}};
+    static const std::map<std::string, Kind> oxford = {{"bark", "zoom"}, {"boat", "zoom"},
+            {"graf", "viewpoint"}, {"wall", "viewpoint"}, {"bikes", "blur"}, {"trees", "blur"},
+            {"ubc", "jpeg"}};
     const auto known = oxford.find(sequence);
     if (known != oxford.end())
         return known->second;
@@ -58,7 +58,8 @@ std::map<int, std::string> numberedImages(const std::string& folder, const std::
         if (dot == std::string::npos || !extensions.count(name.substr(dot + 1)))
             continue;
         const std::string number = name.substr(prefix.size(), dot - prefix.size());
-        if (number.empty() || number.size() > 6 || number.find_first_not_of("0123456789") != std::string::npos)
+        if (number.empty() || number.size() > 6 ||
+                number.find_first_not_of("0123456789") != std::string::npos)
             continue;
         images.insert(std::make_pair(std::atoi(number.c_str()), file));
     }
@@ -111,7 +112,8 @@ void search(const std::string& folder, int depth, std::vector<ImagePair>& pairs)
     fs::glob(folder, "*", entries, false, true);
     std::sort(entries.begin(), entries.end());
     for (const std::string& entry : entries)
-        if (fs::isDirectory(entry) && baseName(entry) != "frames")  // a walk of tools/synthetic: the camera moves
+        if (fs::isDirectory(entry) &&
+                baseName(entry) != "frames")  // a walk of tools/synthetic: the camera moves
             search(entry, depth - 1, pairs);
 }
 
@@ -135,7 +137,8 @@ void addList(const std::string& file, std::vector<ImagePair>& pairs)
     std::ifstream in(file);
     std::string line;
     if (!std::getline(in, line) || fields(line) != head)
-        CV_Error(cv::Error::StsParseError, file + ": a list begins with the line reference,target,homography,kind");
+        CV_Error(cv::Error::StsParseError,
+                file + ": a list begins with the line reference,target,homography,kind");
 
     const std::string folder = folderOf(file);
     const std::string stem = baseName(file).substr(0, baseName(file).find_last_of('.'));

@@ -34,9 +34,9 @@ struct ImagePair
 
 struct LoadedPair
 {
-    cv::Mat reference, target;                        //!< CV_8UC1
-    cv::Matx33d homography;                           //!< reference to target, pixels
-    std::vector<cv::Mat> referenceExtra, targetExtra; //!< one an ImagePair::extraNames, 8U or 16U
+    cv::Mat reference, target;                         //!< CV_8UC1
+    cv::Matx33d homography;                            //!< reference to target, pixels
+    std::vector<cv::Mat> referenceExtra, targetExtra;  //!< one an ImagePair::extraNames, 8U or 16U
 };
 
 /** Finds all pairs (1, k) below the given folders, up to four levels deep, in the layouts

@@ -133,7 +133,8 @@ std::vector<cv::KeyPoint> readKeypoints(const std::string& file)
         if (v.size() < 3 || v.size() > 5 || v[2] <= 0)
             CV_Error(cv::Error::StsParseError, file + ", line " + std::to_string(number) +
                                                        ": not x,y,size[,angle[,response]] with size > 0");
-        keypoints.push_back(cv::KeyPoint(v[0], v[1], v[2], v.size() > 3 ? v[3] : -1.f, v.size() > 4 ? v[4] : 0.f));
+        keypoints.push_back(
+                cv::KeyPoint(v[0], v[1], v[2], v.size() > 3 ? v[3] : -1.f, v.size() > 4 ? v[4] : 0.f));
     }
     return keypoints;
 }

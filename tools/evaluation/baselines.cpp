@@ -27,9 +27,10 @@ Configuration peer(const std::string& name, float seedSize, const std::function<
 
 Configuration akaze(int bits)
 {
-    return peer("AKAZE-" + std::to_string(bits ? bits : 486), 0, [bits]() -> Feature {
-        return cv::AKAZE::create(cv::AKAZE::DESCRIPTOR_MLDB_UPRIGHT, bits);
-    }, "AKAZE");
+    return peer(
+            "AKAZE-" + std::to_string(bits ? bits : 486), 0,
+            [bits]() -> Feature { return cv::AKAZE::create(cv::AKAZE::DESCRIPTOR_MLDB_UPRIGHT, bits); },
+            "AKAZE");
 }
 
 #ifdef HAVE_OPENCV_XFEATURES2D
@@ -46,25 +47,25 @@ void addXfeatures2d(std::vector<Configuration>& peers)
     }
     // A pattern of 22 px about keypoints of size 7.
     peers.push_back(peer("FREAK", 7 * SEED_RADIUS / 22, []() -> Feature { return FREAK::create(false); }));
-    const int boost[][2] = {{64, BoostDesc::BINBOOST_64}, {128, BoostDesc::BINBOOST_128},
-        {256, BoostDesc::BINBOOST_256}};
+    const int boost[][2] = {
+            {64, BoostDesc::BINBOOST_64}, {128, BoostDesc::BINBOOST_128}, {256, BoostDesc::BINBOOST_256}};
     for (const auto& b : boost)
     {
         const int type = b[1];
         peers.push_back(peer("BOOST-" + std::to_string(b[0]), side,
                 [type]() -> Feature { return BoostDesc::create(type, true, 1.f); }));
     }
-    peers.push_back(peer("BEBLID-256", side,
-            []() -> Feature { return BEBLID::create(1.f, BEBLID::SIZE_256_BITS); }));
-    peers.push_back(peer("BEBLID-512", side,
-            []() -> Feature { return BEBLID::create(1.f, BEBLID::SIZE_512_BITS); }));
-    peers.push_back(peer("TEBLID-256", side,
-            []() -> Feature { return TEBLID::create(1.f, TEBLID::SIZE_256_BITS); }));
-    peers.push_back(peer("TEBLID-512", side,
-            []() -> Feature { return TEBLID::create(1.f, TEBLID::SIZE_512_BITS); }));
+    peers.push_back(
+            peer("BEBLID-256", side, []() -> Feature { return BEBLID::create(1.f, BEBLID::SIZE_256_BITS); }));
+    peers.push_back(
+            peer("BEBLID-512", side, []() -> Feature { return BEBLID::create(1.f, BEBLID::SIZE_512_BITS); }));
+    peers.push_back(
+            peer("TEBLID-256", side, []() -> Feature { return TEBLID::create(1.f, TEBLID::SIZE_256_BITS); }));
+    peers.push_back(
+            peer("TEBLID-512", side, []() -> Feature { return TEBLID::create(1.f, TEBLID::SIZE_512_BITS); }));
     // The window is 20 times 1.2 / 9 of the size.
-    peers.push_back(peer("SURF", side * 9 / 24,
-            []() -> Feature { return SURF::create(100, 4, 3, false, true); }));
+    peers.push_back(
+            peer("SURF", side * 9 / 24, []() -> Feature { return SURF::create(100, 4, 3, false, true); }));
 }
 #endif
 
@@ -84,15 +85,15 @@ bool isAvailable(const Configuration& c)
 
 std::vector<Configuration> peerConfigurations()
 {
-    std::vector<Configuration> all = {
-        // Its patch is 31 px whatever the size.
-        peer("ORB", 31, []() -> Feature { return cv::ORB::create(); }),
-        // A pattern of 9.2 px about keypoints of size 7.2.
-        peer("BRISK", SEED_RADIUS * 7.2f / 9.2f, []() -> Feature { return cv::BRISK::create(); }),
-        // Four bins of 1.5 sizes each.
-        peer("SIFT", 2 * SEED_RADIUS / 6, []() -> Feature { return cv::SIFT::create(); }),
-        akaze(128), akaze(256), akaze(0),
-        peer("KAZE", 0, []() -> Feature { return cv::KAZE::create(false, true); }, "KAZE")};
+    std::vector<Configuration> all = {// Its patch is 31 px whatever the size.
+            peer("ORB", 31, []() -> Feature { return cv::ORB::create(); }),
+            // A pattern of 9.2 px about keypoints of size 7.2.
+            peer("BRISK", SEED_RADIUS * 7.2f / 9.2f, []() -> Feature { return cv::BRISK::create(); }),
+            // Four bins of 1.5 sizes each.
+            peer("SIFT", 2 * SEED_RADIUS / 6, []() -> Feature { return cv::SIFT::create(); }), akaze(128),
+            akaze(256), akaze(0),
+            peer(
+                    "KAZE", 0, []() -> Feature { return cv::KAZE::create(false, true); }, "KAZE")};
 #ifdef HAVE_OPENCV_XFEATURES2D
     addXfeatures2d(all);
 #endif

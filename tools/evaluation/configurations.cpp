@@ -71,9 +71,9 @@ Configuration withPreset(const std::string& name, int preset)
 std::vector<Configuration> presets()
 {
     return {withPreset("S128", IIB::PRESET_S128), withPreset("S256", IIB::PRESET_S256),
-        withPreset("S512", IIB::PRESET_S512), withPreset("ACCURATE", IIB::PRESET_ACCURATE),
-        withPreset("COMPACT", IIB::PRESET_COMPACT), withPreset("TINY", IIB::PRESET_TINY),
-        withPreset("BALANCED", IIB::PRESET_BALANCED)};
+            withPreset("S512", IIB::PRESET_S512), withPreset("ACCURATE", IIB::PRESET_ACCURATE),
+            withPreset("COMPACT", IIB::PRESET_COMPACT), withPreset("TINY", IIB::PRESET_TINY),
+            withPreset("BALANCED", IIB::PRESET_BALANCED)};
 }
 
 Configuration onPointsOf(Configuration c, const std::string& detector)
@@ -90,16 +90,17 @@ std::vector<Configuration> iibConfigurations()
     const int x = IIB::CHANNEL_GRAD_X, y = IIB::CHANNEL_GRAD_Y, o = IIB::CHANNEL_ORIENTATION,
               i = IIB::CHANNEL_INTENSITY;
     const Configuration standard = iib("IIB", Parameters());
-    std::vector<Configuration> all = {standard, withChannels("IIB y", y), withChannels("IIB x", x), withChannels("IIB i", i),
-        withChannels("IIB o", o), withChannels("IIB o+i", o | i), withChannels("IIB x+y", x | y),
-        withChannels("IIB x+y+i", x | y | i), withChannels("IIB x+y+o", x | y | o),
-        withMapping("IIB max", IIB::MAPPING_MAX), withMapping("IIB min", IIB::MAPPING_MIN),
-        withMapping("IIB quartile", IIB::MAPPING_QUARTILE), withMapping("IIB sort", IIB::MAPPING_SORT),
-        withMapping("IIB haar", IIB::MAPPING_HAAR), withMapping("IIB pairwise", IIB::MAPPING_PAIRWISE),
-        withOverlap(), withGranularity(2), withGranularity(3), withGranularity(5),
-        iib("IIB +depth", Parameters(), {"depth"}), iib("IIB +labels", Parameters(), {"labels"}),
-        iib("IIB +depth+labels", Parameters(), {"depth", "labels"}), onPointsOf(standard, "AKAZE"),
-        onPointsOf(standard, "KAZE")};
+    std::vector<Configuration> all = {standard, withChannels("IIB y", y), withChannels("IIB x", x),
+            withChannels("IIB i", i), withChannels("IIB o", o), withChannels("IIB o+i", o | i),
+            withChannels("IIB x+y", x | y), withChannels("IIB x+y+i", x | y | i),
+            withChannels("IIB x+y+o", x | y | o), withMapping("IIB max", IIB::MAPPING_MAX),
+            withMapping("IIB min", IIB::MAPPING_MIN), withMapping("IIB quartile", IIB::MAPPING_QUARTILE),
+            withMapping("IIB sort", IIB::MAPPING_SORT), withMapping("IIB haar", IIB::MAPPING_HAAR),
+            withMapping("IIB pairwise", IIB::MAPPING_PAIRWISE), withOverlap(), withGranularity(2),
+            withGranularity(3), withGranularity(5), iib("IIB +depth", Parameters(), {"depth"}),
+            iib("IIB +labels", Parameters(), {"labels"}),
+            iib("IIB +depth+labels", Parameters(), {"depth", "labels"}), onPointsOf(standard, "AKAZE"),
+            onPointsOf(standard, "KAZE")};
     const std::vector<Configuration> learned = presets();
     all.insert(all.end(), learned.begin(), learned.end());
     return all;

@@ -21,10 +21,10 @@ struct Configuration
 {
     std::string name;
     std::function<cv::Ptr<cv::Feature2D>()> create;  //!< throws if this OpenCV lacks it
-    float seedSize;         //!< KeyPoint::size at which it looks at the ROS of radius SEED_RADIUS
-    std::string seeds;      //!< detector of the seed points: "FAST", or "AKAZE", "KAZE" that need their own
+    float seedSize;     //!< KeyPoint::size at which it looks at the ROS of radius SEED_RADIUS
+    std::string seeds;  //!< detector of the seed points: "FAST", or "AKAZE", "KAZE" that need their own
     std::vector<std::string> extraNames;  //!< maps it is given besides the image
-    bool oriented;          //!< whether keypoints get an angle (robustness only)
+    bool oriented;                        //!< whether keypoints get an angle (robustness only)
 };
 
 //! All tables of the paper on IIB: channels, mappings, overlap, granularity, extra channels; and the presets.

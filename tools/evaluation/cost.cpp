@@ -14,9 +14,9 @@ namespace iib_tools {
 namespace {
 
 const int REPETITIONS = 40;
-const int FEWEST = 3;        // for descriptors that take longer than
-const double SLOW = 50;      // milliseconds
-const int MORE = 5;  // times as many keypoints, for the cost of a further one
+const int FEWEST = 3;    // for descriptors that take longer than
+const double SLOW = 50;  // milliseconds
+const int MORE = 5;      // times as many keypoints, for the cost of a further one
 
 struct Subject
 {
@@ -25,8 +25,8 @@ struct Subject
     std::vector<double> few, many;  // milliseconds
 };
 
-double milliseconds(const Configuration& configuration, const cv::Mat& image, std::vector<cv::KeyPoint> keypoints,
-        int count)
+double milliseconds(const Configuration& configuration, const cv::Mat& image,
+        std::vector<cv::KeyPoint> keypoints, int count)
 {
     keypoints.resize(std::min(keypoints.size(), size_t(count)));
     const cv::Ptr<cv::Feature2D> feature = configuration.create();
@@ -51,7 +51,8 @@ cv::Mat largestReference(const std::vector<ImagePair>& pairs)
 //! The least disturbed of the repetitions.
 double least(const std::vector<double>& values) { return *std::min_element(values.begin(), values.end()); }
 
-void measure(const cv::Mat& image, int count, const std::vector<Configuration>& configurations, ResultTable& table)
+void measure(
+        const cv::Mat& image, int count, const std::vector<Configuration>& configurations, ResultTable& table)
 {
     SeedSource source(image, MORE * count);
     std::vector<Subject> subjects;
@@ -76,8 +77,8 @@ void measure(const cv::Mat& image, int count, const std::vector<Configuration>& 
         const int few = std::min(int(s.keypoints.size()), count);
         const int more = int(s.keypoints.size()) - few;
         table.append({s.configuration.name, std::to_string(descriptorBytes(*s.configuration.create())),
-            std::to_string(image.cols) + "x" + std::to_string(image.rows), std::to_string(few), text(least(s.few)),
-            more > 0 ? text((least(s.many) - least(s.few)) / more * 1e3) : ""});
+                std::to_string(image.cols) + "x" + std::to_string(image.rows), std::to_string(few),
+                text(least(s.few)), more > 0 ? text((least(s.many) - least(s.few)) / more * 1e3) : ""});
     }
 }
 
@@ -92,7 +93,9 @@ int cost(const Options& options, const std::vector<ImagePair>& pairs)
     for (const Configuration& peer : peerConfigurations())
         all.push_back(peer);
     ResultTable table(options.out + "/cost.csv",
-            {"configuration", "bytes", "image", "keypoints", "milliseconds", "microseconds_per_further_keypoint"}, 1);
+            {"configuration", "bytes", "image", "keypoints", "milliseconds",
+                    "microseconds_per_further_keypoint"},
+            1);
     bool complete = true;
     for (const Configuration& c : all)
         complete = complete && table.has({c.name});
@@ -101,9 +104,8 @@ int cost(const Options& options, const std::vector<ImagePair>& pairs)
 
     const int threads = cv::getNumThreads();
     cv::setNumThreads(1);
-    const int skipped = runTasks("cost", {{"largest image", [&] {
-                                               measure(largestReference(pairs), options.points, all, table);
-                                           }}});
+    const int skipped = runTasks("cost",
+            {{"largest image", [&] { measure(largestReference(pairs), options.points, all, table); }}});
     cv::setNumThreads(threads);
     table.finish();
     return skipped;

@@ -12,8 +12,8 @@
 namespace iib_tools {
 namespace {
 
-const int MULTIPLE = 32;    // networks that pool five times want it of width and height
-const int SEPARATION = 4;   // pixels between maxima of a score map
+const int MULTIPLE = 32;   // networks that pool five times want it of width and height
+const int SEPARATION = 4;  // pixels between maxima of a score map
 
 //! What the outputs hold; empty where the network does not give it.
 struct Outputs

@@ -65,8 +65,8 @@ void compare(const Fields& key, const std::string& kind, const DetectedPair& pai
     const Counts n = countsOf(correct, pair.correspondences);
     Fields row = key;
     for (const std::string& field : {kind, std::to_string(reference.bytes), std::to_string(n.correct),
-                 std::to_string(n.putative), std::to_string(n.correspondences), text(precision(n)), text(recall(n)),
-                 curveText(matchCurve(matches, correct, thresholds(reference)))})
+                 std::to_string(n.putative), std::to_string(n.correspondences), text(precision(n)),
+                 text(recall(n)), curveText(matchCurve(matches, correct, thresholds(reference)))})
         row.push_back(field);
     table.append(row);
 }
@@ -82,7 +82,8 @@ Described withIIB(const cv::Mat& image, const Detector& detector, std::vector<cv
 
 Described ofDetection(const Detection& detection)
 {
-    return {detection.descriptors, detection.norm, int(detection.descriptors.cols * detection.descriptors.elemSize())};
+    return {detection.descriptors, detection.norm,
+            int(detection.descriptors.cols * detection.descriptors.elemSize())};
 }
 
 void evaluatePair(const Options& options, const ImagePair& pair, const std::vector<Detector>& detectors,
@@ -94,7 +95,7 @@ void evaluatePair(const Options& options, const ImagePair& pair, const std::vect
         const Detection a = detector.detect(loaded.reference, pair, pair.referenceFile);
         const Detection b = detector.detect(loaded.target, pair, pair.targetFile);
         const DetectedPair detected = {a.keypoints, b.keypoints, loaded.homography,
-            countCorrespondences(a.keypoints, b.keypoints, loaded.homography, options.tolerance)};
+                countCorrespondences(a.keypoints, b.keypoints, loaded.homography, options.tolerance)};
         const Fields key = {pair.set, pair.sequence, pair.target, detector.name};
         Fields own = key, iib = key;
         own.push_back(detector.descriptor);
@@ -111,8 +112,10 @@ void evaluatePair(const Options& options, const ImagePair& pair, const std::vect
 int protocolB(const Options& options, const std::vector<ImagePair>& pairs)
 {
     const std::vector<Detector> all = detectors(options);
-    ResultTable table(options.out + "/protocol_b.csv", {"set", "sequence", "target", "detector", "descriptor", "kind",
-        "bytes", "correct", "putative", "correspondences", "precision", "recall", "curve"}, 5);
+    ResultTable table(options.out + "/protocol_b.csv",
+            {"set", "sequence", "target", "detector", "descriptor", "kind", "bytes", "correct", "putative",
+                    "correspondences", "precision", "recall", "curve"},
+            5);
     std::vector<Task> tasks;
     for (const ImagePair& pair : pairs)
     {
@@ -121,9 +124,8 @@ int protocolB(const Options& options, const std::vector<ImagePair>& pairs)
             if (pair.kind == "light" && !table.has({pair.set, pair.sequence, pair.target, d.name, "IIB"}))
                 missing.push_back(d);
         if (!missing.empty())
-            tasks.push_back({pair.name(), [&options, &table, pair, missing] {
-                                 evaluatePair(options, pair, missing, table);
-                             }});
+            tasks.push_back({pair.name(),
+                    [&options, &table, pair, missing] { evaluatePair(options, pair, missing, table); }});
     }
     const int skipped = runTasks("protocol B", tasks);
     table.finish();

@@ -22,15 +22,17 @@ void selectStrongest(std::vector<cv::KeyPoint>& keypoints, int count)
     for (cv::KeyPoint& keypoint : keypoints)
         keypoint.angle = 0;
     cv::KeyPointsFilter::removeDuplicated(keypoints);
-    const auto order = [](const cv::KeyPoint& k) { return std::make_tuple(-k.response, k.pt.y, k.pt.x, k.size); };
+    const auto order = [](const cv::KeyPoint& k) {
+        return std::make_tuple(-k.response, k.pt.y, k.pt.x, k.size);
+    };
     std::stable_sort(keypoints.begin(), keypoints.end(),
             [&](const cv::KeyPoint& a, const cv::KeyPoint& b) { return order(a) < order(b); });
     keypoints.resize(std::min(keypoints.size(), size_t(count)));
 }
 
 //! The descriptor may drop keypoints; IIB is then given the same ones.
-Detector classic(const std::string& name, const std::string& descriptorName, const std::function<Feature()>& detector,
-        const std::function<Feature()>& descriptor, int count)
+Detector classic(const std::string& name, const std::string& descriptorName,
+        const std::function<Feature()>& detector, const std::function<Feature()>& descriptor, int count)
 {
     const auto detect = [=](const cv::Mat& image, const ImagePair&, const std::string&) {
         Detection d;
@@ -91,13 +93,19 @@ std::vector<Detector> detectors(const Options& options)
     const auto orb = [count]() -> Feature { return cv::ORB::create(count); };
     const auto akaze = []() -> Feature { return cv::AKAZE::create(cv::AKAZE::DESCRIPTOR_MLDB_UPRIGHT); };
     std::vector<Detector> all = {
-        classic("FAST", "ORB", []() -> Feature { return cv::FastFeatureDetector::create(); }, orb, count),
-        classic("AGAST", "ORB", []() -> Feature { return cv::AgastFeatureDetector::create(); }, orb, count),
-        classic("ORB", orb, count),
-        classic("BRISK", []() -> Feature { return cv::BRISK::create(); }, count),
-        classic("AKAZE", akaze, count),
-        classic("KAZE", []() -> Feature { return cv::KAZE::create(false, true); }, count),
-        classic("SIFT", []() -> Feature { return cv::SIFT::create(); }, count)};
+            classic(
+                    "FAST", "ORB", []() -> Feature { return cv::FastFeatureDetector::create(); }, orb, count),
+            classic(
+                    "AGAST", "ORB", []() -> Feature { return cv::AgastFeatureDetector::create(); }, orb,
+                    count),
+            classic("ORB", orb, count),
+            classic(
+                    "BRISK", []() -> Feature { return cv::BRISK::create(); }, count),
+            classic("AKAZE", akaze, count),
+            classic(
+                    "KAZE", []() -> Feature { return cv::KAZE::create(false, true); }, count),
+            classic(
+                    "SIFT", []() -> Feature { return cv::SIFT::create(); }, count)};
     for (const Configuration& peer : peerConfigurations())
         if (peer.name == "SURF")
             all.push_back(classic("SURF", peer.create, count));

@@ -21,7 +21,7 @@ struct Experiment
 };
 
 const Experiment EXPERIMENTS[] = {{"protocol_a", protocolA}, {"protocol_b", protocolB},
-    {"matching", matchingStudy}, {"robustness", robustness}, {"cost", cost}, {"pictures", pictures}};
+        {"matching", matchingStudy}, {"robustness", robustness}, {"cost", cost}, {"pictures", pictures}};
 
 //! Results of other settings must not be mixed with these.
 void checkSettings(const Options& options)
@@ -76,18 +76,19 @@ int evaluate(const Options& options)
             CV_Error(cv::Error::StsBadArg, "unknown experiment " + name);
     const std::vector<ImagePair> pairs = findPairs(options.roots);
     if (pairs.empty())
-        CV_Error(cv::Error::StsObjectNotFound, "no image sequences found; the README of tools/evaluation tells the layouts");
+        CV_Error(cv::Error::StsObjectNotFound,
+                "no image sequences found; the README of tools/evaluation tells the layouts");
     cv::utils::fs::createDirectories(options.out);
     checkSettings(options);
 
     const std::vector<ImagePair> readable = readablePairs(pairs);
     int skipped = int(pairs.size() - readable.size());
     for (const Experiment& e : EXPERIMENTS)
-        if (options.experiments.empty() ||
-                std::find(options.experiments.begin(), options.experiments.end(), e.name) != options.experiments.end())
+        if (options.experiments.empty() || std::find(options.experiments.begin(), options.experiments.end(),
+                                                   e.name) != options.experiments.end())
             skipped += e.run(options, readable);
-    std::cerr << "evaluated " << readable.size() << " of " << pairs.size() << " image pairs, skipped " << skipped
-              << " pieces of work" << std::endl;
+    std::cerr << "evaluated " << readable.size() << " of " << pairs.size() << " image pairs, skipped "
+              << skipped << " pieces of work" << std::endl;
     return skipped;
 }
 

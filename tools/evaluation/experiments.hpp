@@ -14,15 +14,15 @@ namespace iib_tools {
 
 struct Options
 {
-    std::vector<std::string> roots;  //!< folders of sequences and list files
-    std::string out;                 //!< folder of the results, made if need be
-    int points = 1000;               //!< keypoints an image
-    double tolerance = 3;            //!< pixels
-    int worst = 5;                   //!< worst and best pairs a set to draw; 0: no pictures
+    std::vector<std::string> roots;        //!< folders of sequences and list files
+    std::string out;                       //!< folder of the results, made if need be
+    int points = 1000;                     //!< keypoints an image
+    double tolerance = 3;                  //!< pixels
+    int worst = 5;                         //!< worst and best pairs a set to draw; 0: no pictures
     std::vector<std::string> experiments;  //!< names of experiments to run; empty: all
     std::vector<std::string> saved;        //!< files of saved IIB extractors to compare
-    std::string keypoints;           //!< folder of keypoint files <set>/<sequence>/<image>.csv, or empty
-    std::string network;             //!< ONNX file of a keypoint detector, or empty
+    std::string keypoints;  //!< folder of keypoint files <set>/<sequence>/<image>.csv, or empty
+    std::string network;    //!< ONNX file of a keypoint detector, or empty
 };
 
 /** Each experiment appends to `<out>/<name>.csv` what is not there yet.

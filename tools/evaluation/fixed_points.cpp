@@ -50,8 +50,9 @@ void evaluatePair(const Options& options, const ImagePair& pair,
         seeded.seeds = source.seeds(c, loaded.target.size(), loaded.homography);
         const Counts n = matchSeeds(c, seeded, options.tolerance).counts;
         table.append({pair.set, pair.sequence, pair.target, c.name, pair.kind,
-            std::to_string(descriptorBytes(*c.create())), std::to_string(n.correct), std::to_string(n.putative),
-            std::to_string(n.correspondences), text(precision(n)), text(recall(n))});
+                std::to_string(descriptorBytes(*c.create())), std::to_string(n.correct),
+                std::to_string(n.putative), std::to_string(n.correspondences), text(precision(n)),
+                text(recall(n))});
     }
 }
 
@@ -59,8 +60,8 @@ void evaluatePair(const Options& options, const ImagePair& pair,
 
 std::vector<std::string> protocolAColumns()
 {
-    return {"set", "sequence", "target", "configuration", "kind", "bytes", "correct", "putative", "correspondences",
-        "precision", "recall"};
+    return {"set", "sequence", "target", "configuration", "kind", "bytes", "correct", "putative",
+            "correspondences", "precision", "recall"};
 }
 
 int protocolA(const Options& options, const std::vector<ImagePair>& pairs)
@@ -80,9 +81,8 @@ int protocolA(const Options& options, const std::vector<ImagePair>& pairs)
             if (hasExtras(c, pair) && !table.has({pair.set, pair.sequence, pair.target, c.name}))
                 missing.push_back(c);
         if (!missing.empty())
-            tasks.push_back({pair.name(), [&options, &table, pair, missing] {
-                                 evaluatePair(options, pair, missing, table);
-                             }});
+            tasks.push_back({pair.name(),
+                    [&options, &table, pair, missing] { evaluatePair(options, pair, missing, table); }});
     }
     const int skipped = runTasks("protocol A", tasks);
     table.finish();

@@ -12,14 +12,17 @@ namespace {
 
 const char* const USAGE =
         "usage: iib_evaluation --out FOLDER [options] DATA...\n"
-        "  DATA               folder of image sequences, or a list file (layouts: README.md beside the source)\n"
+        "  DATA               folder of image sequences, or a list file (layouts: README.md beside the "
+        "source)\n"
         "  --out FOLDER       for the results; a run that was interrupted goes on there\n"
-        "  --only NAME        protocol_a, protocol_b, matching, robustness, cost or pictures; may be repeated\n"
+        "  --only NAME        protocol_a, protocol_b, matching, robustness, cost or pictures; may be "
+        "repeated\n"
         "  --points N         keypoints an image, 1000\n"
         "  --tolerance PX     of a correct match, 3\n"
         "  --threads N        all processors\n"
         "  --no-pictures      no pictures of the worst and best pairs\n"
-        "  --descriptor FILE  an extractor saved by IIBDescriptorExtractor::save, to compare; may be repeated\n"
+        "  --descriptor FILE  an extractor saved by IIBDescriptorExtractor::save, to compare; may be "
+        "repeated\n"
         "  --keypoints FOLDER keypoints <set>/<sequence>/<image>.csv of a detector: x,y,size,angle,response\n"
         "  --network FILE     ONNX network of a keypoint detector, such as SuperPoint or ALIKE\n";
 

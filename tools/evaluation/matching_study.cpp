@@ -26,7 +26,7 @@ struct Matcher
 std::vector<Matcher> matchers()
 {
     std::vector<Matcher> all = {
-        {"EXACT", HierarchicalMatcher::EXACT, 0}, {"ADAPTIVE", HierarchicalMatcher::ADAPTIVE, 0}};
+            {"EXACT", HierarchicalMatcher::EXACT, 0}, {"ADAPTIVE", HierarchicalMatcher::ADAPTIVE, 0}};
     for (int percent = 20; percent <= 50; percent += 5)
     {
         char name[16];
@@ -52,12 +52,12 @@ void evaluatePair(const Options& options, const ImagePair& pair, ResultTable& ta
         std::vector<cv::DMatch> matches;
         if (!query.descriptors.empty())
             matcher->match(query.descriptors, train.descriptors, matches);
-        const Counts n = countsOf(
-                correctByLocation(matches, query.keypoints, train.keypoints, loaded.homography, options.tolerance),
+        const Counts n = countsOf(correctByLocation(matches, query.keypoints, train.keypoints,
+                                          loaded.homography, options.tolerance),
                 int(seeds.reference.size()));
         table.append({pair.set, pair.sequence, pair.target, m.name, std::to_string(n.correct),
-            std::to_string(n.putative), std::to_string(n.correspondences), text(precision(n)), text(recall(n)),
-            text(matcher->matchCost())});
+                std::to_string(n.putative), std::to_string(n.correspondences), text(precision(n)),
+                text(recall(n)), text(matcher->matchCost())});
     }
 }
 
@@ -65,11 +65,14 @@ void evaluatePair(const Options& options, const ImagePair& pair, ResultTable& ta
 
 int matchingStudy(const Options& options, const std::vector<ImagePair>& pairs)
 {
-    ResultTable table(options.out + "/matching.csv", {"set", "sequence", "target", "matcher", "correct", "putative",
-        "correspondences", "precision", "recall", "cost"}, 4);
+    ResultTable table(options.out + "/matching.csv",
+            {"set", "sequence", "target", "matcher", "correct", "putative", "correspondences", "precision",
+                    "recall", "cost"},
+            4);
     std::vector<Task> tasks;
     for (const ImagePair& pair : pairs)
-        if (pair.kind == "light" && !table.has({pair.set, pair.sequence, pair.target, matchers().back().name}))
+        if (pair.kind == "light" &&
+                !table.has({pair.set, pair.sequence, pair.target, matchers().back().name}))
             tasks.push_back({pair.name(), [&options, &table, pair] { evaluatePair(options, pair, table); }});
     const int skipped = runTasks("hierarchical matching", tasks);
     table.finish();

@@ -18,8 +18,8 @@
 namespace iib_tools {
 namespace {
 
-const int WIDTH = 640;      // of a picture, pixels
-const size_t LINES = 60;    // matches drawn at most
+const int WIDTH = 640;    // of a picture, pixels
+const size_t LINES = 60;  // matches drawn at most
 
 struct Choice
 {
@@ -38,7 +38,8 @@ std::vector<Choice> choose(const std::vector<Fields>& rows, int count)
     for (auto& set : sets)
     {
         std::vector<Choice>& all = set.second;
-        std::stable_sort(all.begin(), all.end(), [](const Choice& a, const Choice& b) { return a.recall < b.recall; });
+        std::stable_sort(
+                all.begin(), all.end(), [](const Choice& a, const Choice& b) { return a.recall < b.recall; });
         const int n = int(all.size());
         for (int i = 0; i < n; i++)
         {
@@ -66,7 +67,8 @@ cv::Mat draw(const LoadedPair& loaded, const SeededMatches& m)
     for (size_t i = 0; i < m.matches.size(); i += step)
     {
         const cv::Point2f a = m.reference.keypoints[m.matches[i].queryIdx].pt * scale;
-        const cv::Point2f b = m.target.keypoints[m.matches[i].trainIdx].pt * scale + cv::Point2f(float(left.cols), 0);
+        const cv::Point2f b =
+                m.target.keypoints[m.matches[i].trainIdx].pt * scale + cv::Point2f(float(left.cols), 0);
         const cv::Scalar colour = m.correct[i] ? cv::Scalar(90, 200, 40) : cv::Scalar(40, 60, 230);
         cv::line(picture, a, b, colour, 1, cv::LINE_AA);
     }
@@ -81,13 +83,14 @@ void drawPair(const Options& options, const ImagePair& pair, const Choice& choic
     seeded.reference = loaded.reference;
     seeded.target = loaded.target;
     seeded.homography = loaded.homography;
-    seeded.seeds = SeedSource(loaded.reference, options.points).seeds(iib, loaded.target.size(), loaded.homography);
+    seeded.seeds =
+            SeedSource(loaded.reference, options.points).seeds(iib, loaded.target.size(), loaded.homography);
     const SeededMatches m = matchSeeds(iib, seeded, options.tolerance);
     const std::string file = "pictures/" + pair.set + "_" + pair.sequence + "_" + pair.target + ".jpg";
     if (!cv::imwrite(options.out + "/" + file, draw(loaded, m), {cv::IMWRITE_JPEG_QUALITY, 75}))
         CV_Error(cv::Error::StsError, file + ": cannot be written");
     table.append({pair.set, choice.rank, pair.sequence, pair.target, std::to_string(m.counts.correct),
-        std::to_string(m.counts.putative), std::to_string(m.counts.correspondences), file});
+            std::to_string(m.counts.putative), std::to_string(m.counts.correspondences), file});
 }
 
 }  // namespace
@@ -99,19 +102,22 @@ int pictures(const Options& options, const std::vector<ImagePair>& pairs)
     cv::utils::fs::createDirectories(options.out + "/pictures");
     const std::string file = options.out + "/pictures.csv";
     std::remove(file.c_str());  // the ranks may have changed
-    ResultTable table(file, {"set", "rank", "sequence", "target", "correct", "putative", "correspondences", "file"}, 2);
+    ResultTable table(
+            file, {"set", "rank", "sequence", "target", "correct", "putative", "correspondences", "file"}, 2);
     std::map<std::string, ImagePair> byName;
     for (const ImagePair& pair : pairs)
         byName[pair.name()] = pair;
 
     std::vector<Task> tasks;
-    for (const Choice& choice : choose(readRows(options.out + "/protocol_a.csv", protocolAColumns()), options.worst))
+    for (const Choice& choice :
+            choose(readRows(options.out + "/protocol_a.csv", protocolAColumns()), options.worst))
     {
         const auto found = byName.find(choice.name);
         if (found == byName.end())
             continue;
         const ImagePair pair = found->second;
-        tasks.push_back({choice.name, [&options, &table, pair, choice] { drawPair(options, pair, choice, table); }});
+        tasks.push_back(
+                {choice.name, [&options, &table, pair, choice] { drawPair(options, pair, choice, table); }});
     }
     const int skipped = runTasks("pictures", tasks);
     table.finish();

@@ -39,12 +39,14 @@ std::vector<Fields> readRows(const std::string& file, const Fields& columns)
     std::ifstream in(file);
     std::string line;
     if (std::getline(in, line) && splitFields(line) != columns)
-        CV_Error(cv::Error::StsParseError, file + ": has other columns; move it away or choose another folder");
+        CV_Error(cv::Error::StsParseError,
+                file + ": has other columns; move it away or choose another folder");
     while (std::getline(in, line) && !in.eof())  // a whole line ends in a line end
         rows.push_back(splitFields(line));
     for (const Fields& row : rows)
         if (row.size() != columns.size())
-            CV_Error(cv::Error::StsParseError, file + ": a row has " + std::to_string(row.size()) + " fields");
+            CV_Error(
+                    cv::Error::StsParseError, file + ": a row has " + std::to_string(row.size()) + " fields");
     return rows;
 }
 

@@ -78,8 +78,10 @@ void evaluatePair(const Options& options, SeededPair pair, const Fields& key, Re
 
 int robustness(const Options& options, const std::vector<ImagePair>& pairs)
 {
-    ResultTable table(options.out + "/robustness.csv", {"set", "sequence", "target", "kind", "configuration",
-        "correct", "putative", "correspondences", "precision", "recall"}, 5);
+    ResultTable table(options.out + "/robustness.csv",
+            {"set", "sequence", "target", "kind", "configuration", "correct", "putative", "correspondences",
+                    "precision", "recall"},
+            5);
     std::vector<Task> tasks;
     std::set<std::string> turned;  // one sequence a set
     for (const ImagePair& pair : pairs)
@@ -103,10 +105,11 @@ int robustness(const Options& options, const std::vector<ImagePair>& pairs)
         {
             const Fields key = {pair.set, pair.sequence, text(warp.amount), warp.kind};
             if (!missing(key, table).empty())
-                tasks.push_back({pair.set + "/" + pair.sequence + " " + warp.kind, [&options, &table, pair, warp, key] {
-                                     const SeededPair seeded = warpedPair(loadPair(pair).reference, warp);
-                                     evaluatePair(options, seeded, key, table);
-                                 }});
+                tasks.push_back({pair.set + "/" + pair.sequence + " " + warp.kind,
+                        [&options, &table, pair, warp, key] {
+                            const SeededPair seeded = warpedPair(loadPair(pair).reference, warp);
+                            evaluatePair(options, seeded, key, table);
+                        }});
         }
     }
     const int skipped = runTasks("robustness", tasks);

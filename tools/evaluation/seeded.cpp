@@ -28,12 +28,13 @@ std::vector<cv::KeyPoint> detectSeeds(const std::string& name, const cv::Mat& im
 
 }  // namespace
 
-SeedPoints SeedSource::seeds(const Configuration& configuration, cv::Size targetSize,
-        const cv::Matx33d& homography)
+SeedPoints SeedSource::seeds(
+        const Configuration& configuration, cv::Size targetSize, const cv::Matx33d& homography)
 {
     auto found = points_.find(configuration.seeds);
     if (found == points_.end())
-        found = points_.emplace(configuration.seeds, detectSeeds(configuration.seeds, reference_, count_)).first;
+        found = points_.emplace(configuration.seeds, detectSeeds(configuration.seeds, reference_, count_))
+                        .first;
     std::vector<cv::KeyPoint> points = found->second;
     if (configuration.seedSize > 0)
         for (cv::KeyPoint& point : points)
@@ -52,8 +53,10 @@ SeededMatches matchSeeds(const Configuration& configuration, const SeededPair& p
     SeededMatches m;
     m.reference = describe(configuration, pair.reference, pair.referenceExtra, seeds.reference);
     m.target = describe(configuration, pair.target, pair.targetExtra, seeds.target);
-    m.matches = mutualMatches(m.reference.descriptors, m.target.descriptors, configuration.create()->defaultNorm());
-    m.correct = correctByLocation(m.matches, m.reference.keypoints, m.target.keypoints, pair.homography, tolerance);
+    m.matches = mutualMatches(
+            m.reference.descriptors, m.target.descriptors, configuration.create()->defaultNorm());
+    m.correct = correctByLocation(
+            m.matches, m.reference.keypoints, m.target.keypoints, pair.homography, tolerance);
     m.counts = countsOf(m.correct, int(pair.seeds.reference.size()));
     return m;
 }

@@ -61,11 +61,12 @@ void require(bool condition, const std::string& what)
 
 /** Calls `step` with its first allocation failing, then its second and so on, up to none; after each, `check` looks
  whether all is as before. Once with one failure, and once with all allocations failing from there. */
-void failEachAllocation(const std::string& what, const std::function<void()>& step, const std::function<void()>& check)
+void failEachAllocation(
+        const std::string& what, const std::function<void()>& step, const std::function<void()>& check)
 {
     step();  // what is made once for all
     int failures = 0;
-    for (const bool on : { false, true })
+    for (const bool on : {false, true})
         for (long n = 0;; n++)
         {
             bool thrown = false;
@@ -126,14 +127,16 @@ void changeExtractor()
 {
     const Ptr<IIB> iib = IIB::createPreset(IIB::PRESET_TINY);
     const Mat first = iib->getSelection(), second = first.rowRange(0, first.rows / 2).clone();
-    failEachAllocation("setSelection", [&] { iib->setSelection(second); }, [&] {
-        const Mat now = iib->getSelection();
-        require(equal(now, first) || equal(now, second), "setSelection: a third selection");
-        iib->setSelection(first);
-    });
+    failEachAllocation(
+            "setSelection", [&] { iib->setSelection(second); },
+            [&] {
+                const Mat now = iib->getSelection();
+                require(equal(now, first) || equal(now, second), "setSelection: a third selection");
+                iib->setSelection(first);
+            });
 }
 
-typedef std::vector<std::vector<DMatch> > Matches;
+typedef std::vector<std::vector<DMatch>> Matches;
 
 double hash(const Matches& matches)
 {
@@ -144,7 +147,8 @@ double hash(const Matches& matches)
     return sum;
 }
 
-void match(const std::string& what, const HierarchicalMatcher& matcher, const std::function<void(Matches&)>& call)
+void match(const std::string& what, const HierarchicalMatcher& matcher,
+        const std::function<void(Matches&)>& call)
 {
     Matches matches;
     call(matches);
@@ -163,7 +167,8 @@ void matchAll()
     Mat train(300, 42, CV_8U), queries(70, 42, CV_8U);
     RNG(2).fill(train, RNG::UNIFORM, 0, 256);
     RNG(3).fill(queries, RNG::UNIFORM, 0, 256);
-    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({ 2, 8, 32 }, HierarchicalMatcher::EXACT, 0.35f, true);
+    const Ptr<HierarchicalMatcher> matcher =
+            HierarchicalMatcher::create({2, 8, 32}, HierarchicalMatcher::EXACT, 0.35f, true);
     matcher->add(train);
     match("knnMatch", *matcher, [&](Matches& m) { matcher->knnMatch(queries, m, 3); });
     match("radiusMatch", *matcher, [&](Matches& m) { matcher->radiusMatch(queries, m, 150); });
@@ -179,36 +184,44 @@ void matchAll()
 
 void addToMatcher()
 {
-    const std::vector<int> levels = { 2, 8 };
+    const std::vector<int> levels = {2, 8};
     Mat train(1200, 10, CV_8U);
     RNG(4).fill(train, RNG::UNIFORM, 0, 256);
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(levels);
-    failEachAllocation("add", [&] { matcher->add(train); }, [&] {
-        std::vector<DMatch> matches;
-        const size_t images = matcher->getTrainDescriptors().size();
-        matcher->match(train.row(1100), matches, std::vector<Mat>(images));
-        require(matches.size() == std::min(images, (size_t)1), "add: the index does not fit the descriptors");
-        if (images > 0)
-            require(matches[0].trainIdx == 1100 && matches[0].imgIdx == 0 && matches[0].distance == 0, "add: other match");
-        if (images > 3)
-            matcher->clear();
-    });
+    failEachAllocation(
+            "add", [&] { matcher->add(train); },
+            [&] {
+                std::vector<DMatch> matches;
+                const size_t images = matcher->getTrainDescriptors().size();
+                matcher->match(train.row(1100), matches, std::vector<Mat>(images));
+                require(matches.size() == std::min(images, (size_t)1),
+                        "add: the index does not fit the descriptors");
+                if (images > 0)
+                    require(matches[0].trainIdx == 1100 && matches[0].imgIdx == 0 && matches[0].distance == 0,
+                            "add: other match");
+                if (images > 3)
+                    matcher->clear();
+            });
 }
 
 void changeMatcher()
 {
-    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({ 2, 8 });
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({2, 8});
     FileStorage fs("%YAML:1.0\n---\nlevelSizes: [ 4, 8, 16 ]\nmode: 1\nthresholds: [ 0.5, 0.25 ]\n",
-                   FileStorage::READ | FileStorage::MEMORY);
-    failEachAllocation("read", [&] { matcher->read(fs.root()); }, [&] {
-        const bool changed = matcher->levelSizes().size() == 3;
-        require(matcher->getThresholds().size() == (changed ? 2u : 1u) &&
-                matcher->getMode() == (changed ? HierarchicalMatcher::THRESHOLD : HierarchicalMatcher::EXACT),
-                "read: half of the parameters");
-        std::vector<DMatch> matches;
-        matcher->match(Mat(1, changed ? 28 : 10, CV_8U, Scalar(0)), Mat(1, changed ? 28 : 10, CV_8U, Scalar(0)), matches);
-        require(matches.size() == 1, "read: other matches");
-    });
+            FileStorage::READ | FileStorage::MEMORY);
+    failEachAllocation(
+            "read", [&] { matcher->read(fs.root()); },
+            [&] {
+                const bool changed = matcher->levelSizes().size() == 3;
+                require(matcher->getThresholds().size() == (changed ? 2u : 1u) &&
+                                matcher->getMode() == (changed ? HierarchicalMatcher::THRESHOLD
+                                                               : HierarchicalMatcher::EXACT),
+                        "read: half of the parameters");
+                std::vector<DMatch> matches;
+                matcher->match(Mat(1, changed ? 28 : 10, CV_8U, Scalar(0)),
+                        Mat(1, changed ? 28 : 10, CV_8U, Scalar(0)), matches);
+                require(matches.size() == 1, "read: other matches");
+            });
 }
 
 }  // namespace
@@ -222,7 +235,8 @@ int main()
         describe("compute, colour", IIB::create(), CV_8UC3);
         describe("compute, 32F", IIB::create(), CV_32FC1);
         describe("compute, turned", IIB::create(2.f, 5, 63, IIB::MAPPING_SORT, true, true), CV_16UC1);
-        describe("compute, extra channels", IIB::create(2.f, 4, 15, IIB::MAPPING_HAAR, false, false, 3), CV_8UC1);
+        describe("compute, extra channels", IIB::create(2.f, 4, 15, IIB::MAPPING_HAAR, false, false, 3),
+                CV_8UC1);
         describe("compute, selection", IIB::createPreset(IIB::PRESET_TINY), CV_8UC1);
         changeExtractor();
         matchAll();

@@ -29,7 +29,7 @@ void manyCodes(int count)
     const Mat train = noise(Size(170, count), CV_8U, 1);
     Mat queries = noise(Size(170, 20), CV_8U, 2);
     train.row(count - 1).copyTo(queries.row(7));
-    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({ 2, 8, 32, 128 });
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({2, 8, 32, 128});
     {
         const Report report(format("%d train descriptors added", count));
         matcher->add(train);
@@ -43,8 +43,10 @@ void manyCodes(int count)
     for (const DMatch& m : matches)
         for (int t = 0; t < count; t++)
         {
-            const int d = m.queryIdx % 5 ? (int)m.distance : distance(queries.ptr(m.queryIdx), train.ptr(t), train.cols);
-            require(d > m.distance || (d == m.distance && (m.queryIdx % 5 || t >= m.trainIdx)), "a nearer one is missed");
+            const int d = m.queryIdx % 5 ? (int)m.distance
+                                         : distance(queries.ptr(m.queryIdx), train.ptr(t), train.cols);
+            require(d > m.distance || (d == m.distance && (m.queryIdx % 5 || t >= m.trainIdx)),
+                    "a nearer one is missed");
         }
 }
 
@@ -53,7 +55,8 @@ void manyThreads(int seconds)
     const Mat image = noise(Size(320, 240), CV_8U, 1);
     const std::vector<KeyPoint> keypoints = scatter(image.size(), 200);
     const Ptr<IIB> iib = IIB::create(1.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, true);
-    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(iib->levelSizes(), HierarchicalMatcher::EXACT, 0.35f, true);
+    const Ptr<HierarchicalMatcher> matcher =
+            HierarchicalMatcher::create(iib->levelSizes(), HierarchicalMatcher::EXACT, 0.35f, true);
     setNumThreads(1);
     const Mat expected = describe(*iib, image, keypoints);
     matcher->add(expected);
@@ -88,7 +91,7 @@ void manyThreads(int seconds)
     for (std::thread& thread : threads)
         thread.join();
     std::printf("24 threads, %d s: %d rounds, memory %.1f MB after a fifth, %.1f MB at the end\n", seconds,
-                (int)rounds, early, late);
+            (int)rounds, early, late);
     require(!wrong, "a thread got another result than one alone");
     require(late < early * 1.05 + 16, "memory grows");
 }

@@ -40,7 +40,7 @@ double memory(const std::string& name)
 Report::~Report()
 {
     std::printf("%s: %.2f s, memory %.0f MB, at its highest %.0f MB\n", what.c_str(),
-                (double)(cv::getTickCount() - start) / cv::getTickFrequency(), memory("VmRSS"), memory("VmHWM"));
+            (double)(cv::getTickCount() - start) / cv::getTickFrequency(), memory("VmRSS"), memory("VmHWM"));
     std::fflush(stdout);
 }
 
@@ -57,8 +57,8 @@ std::vector<KeyPoint> scatter(Size size, int count)
     RNG rng(1);
     std::vector<KeyPoint> keypoints;
     for (int i = 0; i < count; i++)
-        keypoints.push_back(KeyPoint(rng.uniform(0.f, (float)size.width), rng.uniform(0.f, (float)size.height),
-                                     rng.uniform(8.f, 64.f), rng.uniform(0.f, 360.f)));
+        keypoints.push_back(KeyPoint(rng.uniform(0.f, (float)size.width),
+                rng.uniform(0.f, (float)size.height), rng.uniform(8.f, 64.f), rng.uniform(0.f, 360.f)));
     return keypoints;
 }
 

@@ -40,7 +40,8 @@ Samples drawSamples(const CandidatePool& pool, const std::vector<DescribedPair>&
         {
             uchar distance = 0;
             for (int position : pool.candidates[c].positions)
-                distance += uchar((rows[s].first[position / 8] ^ rows[s].second[position / 8]) >> position % 8 & 1);
+                distance += uchar(
+                        (rows[s].first[position / 8] ^ rows[s].second[position / 8]) >> position % 8 & 1);
             samples.distances(int(c), s) = distance;
         }
     return samples;
@@ -86,8 +87,8 @@ void reweigh(const Samples& samples, const Weak& weak, std::vector<double>& weig
 
 }  // namespace
 
-std::vector<int> selectByAdaBoost(const CandidatePool& pool, const std::vector<DescribedPair>& pairs, int bits,
-        uint64 seed, const Progress& progress)
+std::vector<int> selectByAdaBoost(const CandidatePool& pool, const std::vector<DescribedPair>& pairs,
+        int bits, uint64 seed, const Progress& progress)
 {
     const int wanted = candidateCount(pool, bits);
     if (pairs.empty())

@@ -41,7 +41,8 @@ cv::Mat_<int> allQuads(const PoolParameters& p, int mask)
             for (int window = 0; window < 4; window++)
                 for (int row = window / 2; (windows >> window & 1) && row + 1 < 1 << level; row += 2)
                     for (int column = window % 2; column + 1 < 1 << level; column += 2)
-                        for (int channel = group; channel < std::min(group + CHANNEL_GROUP, channels); channel++)
+                        for (int channel = group; channel < std::min(group + CHANNEL_GROUP, channels);
+                                channel++)
                             quads.push_back(cv::Mat_<int>({level, channel, row, column, mask}).reshape(1, 1));
     }
     return quads;
@@ -50,7 +51,8 @@ cv::Mat_<int> allQuads(const PoolParameters& p, int mask)
 //! Whether the bits of two quads of a level are in one row of planes.
 bool inOneRow(const int* p, const int* q)
 {
-    return p[0] == q[0] && p[1] / CHANNEL_GROUP == q[1] / CHANNEL_GROUP && p[2] == q[2] && p[3] % 2 == q[3] % 2;
+    return p[0] == q[0] && p[1] / CHANNEL_GROUP == q[1] / CHANNEL_GROUP && p[2] == q[2] &&
+           p[3] % 2 == q[3] % 2;
 }
 
 }  // namespace
@@ -64,8 +66,10 @@ bool CandidatePool::areNeighbours(const Candidate& a, const Candidate& b) const
 
 CandidatePool makePool(const PoolParameters& p)
 {
-    if (p.windows.empty() || std::any_of(p.windows.begin(), p.windows.end(), [](int w) { return w < 1 || w > 15; }))
-        CV_Error(cv::Error::StsOutOfRange, "where quads begin is a number of 1 to 15 for each level, as 1,15,15");
+    if (p.windows.empty() ||
+            std::any_of(p.windows.begin(), p.windows.end(), [](int w) { return w < 1 || w > 15; }))
+        CV_Error(cv::Error::StsOutOfRange,
+                "where quads begin is a number of 1 to 15 for each level, as 1,15,15");
     CandidatePool pool;
     pool.extractor = IIB::create(p.scale, p.granularity, p.channels, p.mapping);
     const int bits = bitsPerQuad(p.mapping);
@@ -116,9 +120,8 @@ cv::Mat_<int> selectionOf(const CandidatePool& pool, const std::vector<int>& cho
 
 cv::Ptr<IIB> selectedExtractor(const CandidatePool& pool, const std::vector<int>& chosen)
 {
-    const cv::Ptr<IIB> extractor =
-            IIB::create(pool.extractor->getScaleFactor(), pool.extractor->getGranularity(),
-                    pool.extractor->getChannels(), pool.extractor->getMapping());
+    const cv::Ptr<IIB> extractor = IIB::create(pool.extractor->getScaleFactor(),
+            pool.extractor->getGranularity(), pool.extractor->getChannels(), pool.extractor->getMapping());
     extractor->setSelection(selectionOf(pool, chosen));
     return extractor;
 }

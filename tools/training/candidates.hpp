@@ -15,7 +15,7 @@ namespace iib_tools {
 struct PoolParameters
 {
     int channels, mapping, granularity;  //!< as in IIBDescriptorExtractor::create
-    float scale;      //!< side of the ROS in units of KeyPoint::size, which is the ROS of protocol A
+    float scale;  //!< side of the ROS in units of KeyPoint::size, which is the ROS of protocol A
     /** Where a level's quads begin, coarse first, the last number for all finer levels too: a sum of 1 (even rows and
     columns), 2 (even rows, odd columns), 4 (odd rows, even columns) and 8 (odd rows and columns). */
     std::vector<int> windows;
@@ -33,7 +33,7 @@ struct Candidate
 //! All quads of an extractor, described at once.
 struct CandidatePool
 {
-    cv::Mat_<int> quads;  //!< all of them, as setSelection takes them
+    cv::Mat_<int> quads;                                 //!< all of them, as setSelection takes them
     cv::Ptr<cv::iib::IIBDescriptorExtractor> extractor;  //!< with all of them selected
     std::vector<Candidate> candidates;                   //!< by level, then by place
 
@@ -50,8 +50,8 @@ CandidatePool makePool(const PoolParameters& parameters);
 cv::Mat_<int> selectionOf(const CandidatePool& pool, const std::vector<int>& chosen);
 
 //! The pool's extractor with that selection.
-cv::Ptr<cv::iib::IIBDescriptorExtractor> selectedExtractor(const CandidatePool& pool,
-        const std::vector<int>& chosen);
+cv::Ptr<cv::iib::IIBDescriptorExtractor> selectedExtractor(
+        const CandidatePool& pool, const std::vector<int>& chosen);
 
 }  // namespace iib_tools
 

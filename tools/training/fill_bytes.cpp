@@ -54,8 +54,8 @@ int candidateCount(const CandidatePool& pool, int bits)
 {
     const int count = bits / pool.bitsPerCandidate(), most = int(pool.candidates.size());
     if (count < 1 || count > most)
-        CV_Error(cv::Error::StsOutOfRange, cv::format("%d bits are not 1 to %d candidates of %d bits", bits, most,
-                pool.bitsPerCandidate()));
+        CV_Error(cv::Error::StsOutOfRange, cv::format("%d bits are not 1 to %d candidates of %d bits", bits,
+                                                   most, pool.bitsPerCandidate()));
     return count;
 }
 
@@ -76,9 +76,8 @@ std::vector<int> fillBytes(const CandidatePool& pool, const std::vector<int>& ch
     // the chosen ones first, then the others, each by benefit
     std::vector<int> order(pool.candidates.size()), filled;
     std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-        return isChosen[a] != isChosen[b] ? isChosen[a] : benefit[a] > benefit[b];
-    });
+    std::stable_sort(order.begin(), order.end(),
+            [&](int a, int b) { return isChosen[a] != isChosen[b] ? isChosen[a] : benefit[a] > benefit[b]; });
     for (int i : order)
         if (left[pool.level(pool.candidates[i])]-- > 0)
             filled.push_back(i);

@@ -90,7 +90,8 @@ private:
     void addPair(const DescribedPair& pair, const std::vector<int>& positions, float temperature)
     {
         const bool forth = rng.uniform(0, 2) == 0;
-        const cv::Mat &from = forth ? pair.reference : pair.target, &to = forth ? pair.target : pair.reference;
+        const cv::Mat &from = forth ? pair.reference : pair.target,
+                      &to = forth ? pair.target : pair.reference;
         std::vector<int> anchors(ANCHORS_A_PAIR);
         cv::Mat anchorRows;
         for (int& anchor : anchors)

@@ -20,15 +20,15 @@ std::vector<Recipe> presetRecipes()
     accurate.mapping = IIB::MAPPING_PAIRWISE;
     // coarse quads stand a moved camera: level 2 begins them at every cell; a fourth channel costs next to nothing
     const PoolParameters moving = {
-        values + IIB::CHANNEL_SIGNED_GRAD_Y, IIB::MAPPING_MEAN, 4, 1.125f, {1, 15, 1}, false};
+            values + IIB::CHANNEL_SIGNED_GRAD_Y, IIB::MAPPING_MEAN, 4, 1.125f, {1, 15, 1}, false};
     return {
-        {"S128", 128, paper, 0., false, 12},
-        {"S256", 256, paper, 0., false, 12},
-        {"S512", 512, paper, 0., false, 12},
-        {"ACCURATE", 0, accurate, 0., false, 12},
-        {"COMPACT", 512, still, 0., false, 12},
-        {"TINY", 256, still, 0., false, 12},
-        {"BALANCED", 512, moving, 0.85, false, 24},
+            {"S128", 128, paper, 0., false, 12},
+            {"S256", 256, paper, 0., false, 12},
+            {"S512", 512, paper, 0., false, 12},
+            {"ACCURATE", 0, accurate, 0., false, 12},
+            {"COMPACT", 512, still, 0., false, 12},
+            {"TINY", 256, still, 0., false, 12},
+            {"BALANCED", 512, moving, 0.85, false, 24},
     };
 }
 

@@ -24,24 +24,26 @@ std::string tableRows(const cv::Mat_<int>& quads)
 {
     std::string text;
     for (int row = 0; row < quads.rows; row++)
-        text += (row % 7 == 0 ? "\n    " : " ") + cv::format("{%d,%d,%d,%d,%d},", quads(row, 0), quads(row, 1),
-                quads(row, 2), quads(row, 3), quads(row, 4));
+        text += (row % 7 == 0 ? "\n    " : " ") + cv::format("{%d,%d,%d,%d,%d},", quads(row, 0),
+                                                          quads(row, 1), quads(row, 2), quads(row, 3),
+                                                          quads(row, 4));
     return text;
 }
 
 }  // namespace
 
-cv::Ptr<IIB> train(const Recipe& recipe, const std::vector<ImagePair>& pairs, uint64 seed,
-        const Progress& progress)
+cv::Ptr<IIB> train(
+        const Recipe& recipe, const std::vector<ImagePair>& pairs, uint64 seed, const Progress& progress)
 {
     if (recipe.bits == 0)
-        return IIB::create(recipe.pool.scale, recipe.pool.granularity, recipe.pool.channels, recipe.pool.mapping);
+        return IIB::create(
+                recipe.pool.scale, recipe.pool.granularity, recipe.pool.channels, recipe.pool.mapping);
     const CandidatePool pool = makePool(recipe.pool);
     const std::vector<DescribedPair> described = describeForTraining(
             pairs, pool.extractor, recipe.pairsPerScene, recipe.warpShare, seed, progress);
     return selectedExtractor(pool, recipe.adaBoost
-            ? selectByAdaBoost(pool, described, recipe.bits, seed, progress)
-            : selectGreedily(pool, described, recipe.bits, seed, progress));
+                                           ? selectByAdaBoost(pool, described, recipe.bits, seed, progress)
+                                           : selectGreedily(pool, described, recipe.bits, seed, progress));
 }
 
 MeanScores judge(const std::vector<ImagePair>& pairs, const cv::Ptr<cv::Feature2D>& extractor,

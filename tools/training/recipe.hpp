@@ -18,7 +18,7 @@ namespace iib_tools {
 struct Recipe
 {
     std::string name;
-    int bits;          //!< 0: all quads at even positions, there is nothing to learn
+    int bits;  //!< 0: all quads at even positions, there is nothing to learn
     PoolParameters pool;
     double warpShare;  //!< of the training pairs, see describeForTraining
     bool adaBoost;     //!< selectByAdaBoost instead of selectGreedily
@@ -28,8 +28,8 @@ struct Recipe
 //! How the built-in presets are made, in the order of IIBDescriptorExtractor::Preset.
 std::vector<Recipe> presetRecipes();
 //! Trains on all pairs given. Progress counts the pairs described, then the candidates chosen.
-cv::Ptr<cv::iib::IIBDescriptorExtractor> train(const Recipe& recipe, const std::vector<ImagePair>& pairs,
-        uint64 seed, const Progress& progress);
+cv::Ptr<cv::iib::IIBDescriptorExtractor> train(
+        const Recipe& recipe, const std::vector<ImagePair>& pairs, uint64 seed, const Progress& progress);
 
 //! mAP and mAR of protocol A, means over the pairs.
 MeanScores judge(const std::vector<ImagePair>& pairs, const cv::Ptr<cv::Feature2D>& extractor,

@@ -69,7 +69,7 @@ void warpTarget(LoadedPair& pair, cv::RNG& rng)
     const cv::Matx33d warp = back * rotation(tiltAxis) * stretch * rotation(angle - tiltAxis) * toCentre;
 
     cv::Mat source = pair.target.clone();  // it may share the reference's pixels
-    if (scale < 1)  // against aliasing
+    if (scale < 1)                         // against aliasing
         cv::GaussianBlur(source, source, cv::Size(), 0.4 / scale);
     cv::Mat warped;
     cv::warpPerspective(source, warped, warp, source.size(), cv::INTER_LINEAR, cv::BORDER_REFLECT);
@@ -77,8 +77,8 @@ void warpTarget(LoadedPair& pair, cv::RNG& rng)
     pair.homography = warp * pair.homography;
 }
 
-DescribedPair describe(const std::string& scene, const LoadedPair& pair,
-        const cv::Ptr<cv::Feature2D>& extractor)
+DescribedPair describe(
+        const std::string& scene, const LoadedPair& pair, const cv::Ptr<cv::Feature2D>& extractor)
 {
     SeedPoints seeds = fastSeeds(pair.reference, pair.target, pair.homography, RADIUS, POINTS);
     DescribedPair described;

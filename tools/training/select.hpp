@@ -27,8 +27,8 @@ std::vector<int> selectGreedily(const CandidatePool& pool, const std::vector<Des
 /** As in the paper (section "Reduction of the IIB Descriptor Size"): discrete AdaBoost on partners against as
 many pairs of other points; a weak learner is a candidate, which says "same" up to some Hamming distance; no
 candidate is taken twice. Parameters, return value and exceptions as above. */
-std::vector<int> selectByAdaBoost(const CandidatePool& pool, const std::vector<DescribedPair>& pairs, int bits,
-        uint64 seed, const Progress& progress);
+std::vector<int> selectByAdaBoost(const CandidatePool& pool, const std::vector<DescribedPair>& pairs,
+        int bits, uint64 seed, const Progress& progress);
 
 //! Number of candidates for a size in bits. @throws cv::Exception if the pool has fewer, or it is none.
 int candidateCount(const CandidatePool& pool, int bits);

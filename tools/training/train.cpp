@@ -21,8 +21,9 @@ const char* const KEYS =
         "{mapping    | 5      | IIBDescriptorExtractor::Mapping; 0 MEAN, 5 HAAR }"
         "{granularity| 4      | levels }"
         "{scale      | 1      | side of the ROS in units of 64 pixels }"
-        "{windows    | 1      | where quads begin, for each level, coarse first, the last for all finer ones: a sum of "
-                               "1 even rows and columns, 2 odd columns, 4 odd rows, 8 both odd; 15 all }"
+        "{windows    | 1      | where quads begin, for each level, coarse first, the last for all finer "
+        "ones: a sum of "
+        "1 even rows and columns, 2 odd columns, 4 odd rows, 8 both odd; 15 all }"
         "{quads      |        | choose whole quads, as in the paper, instead of bits }"
         "{adaboost   |        | plain AdaBoost, as in the paper }"
         "{warp       | 0      | part of the pairs whose target is turned, scaled and tilted }"
@@ -44,7 +45,8 @@ void crossValidate(const Recipe& recipe, const std::vector<ImagePair>& pairs, in
     for (int fold = 0; fold < folds; fold++)
     {
         const std::vector<ImagePair> unseen = foldOf(pairs, fold, folds, true);
-        const cv::Ptr<cv::iib::IIB> learned = train(recipe, foldOf(pairs, fold, folds, false), seed, show("training"));
+        const cv::Ptr<cv::iib::IIB> learned =
+                train(recipe, foldOf(pairs, fold, folds, false), seed, show("training"));
         const MeanScores scores = judge(unseen, learned, show("judging"));
         map += scores.map * double(unseen.size()) / double(pairs.size());
         mar += scores.mar * double(unseen.size()) / double(pairs.size());
@@ -68,9 +70,9 @@ int run(const cv::CommandLineParser& args, const std::vector<std::string>& roots
     for (std::string number; std::getline(list, number, ',');)
         windows.push_back(std::atoi(number.c_str()));
     const Recipe recipe = {"selection", args.get<int>("bits"),
-        {args.get<int>("channels"), args.get<int>("mapping"), args.get<int>("granularity"),
-            args.get<float>("scale"), windows, args.has("quads")},
-        args.get<double>("warp"), args.has("adaboost"), args.get<int>("pairs")};
+            {args.get<int>("channels"), args.get<int>("mapping"), args.get<int>("granularity"),
+                    args.get<float>("scale"), windows, args.has("quads")},
+            args.get<double>("warp"), args.has("adaboost"), args.get<int>("pairs")};
     const uint64 seed = uint64(args.get<int>("seed"));
     const int folds = args.get<int>("folds");
     const std::string header = args.get<std::string>("presets"), out = args.get<std::string>("out");

@@ -7,7 +7,13 @@
 namespace opencv_test {
 namespace {
 
-enum { PEER_ORB = -1, OVERLAP = 100, GRANULARITY_5, ORIENTED };
+enum
+{
+    PEER_ORB = -1,
+    OVERLAP = 100,
+    GRANULARITY_5,
+    ORIENTED
+};
 CV_ENUM(Descriptor, PEER_ORB, IIB::MAPPING_MEAN, IIB::MAPPING_MAX, IIB::MAPPING_MIN, IIB::MAPPING_QUARTILE,
         IIB::MAPPING_SORT, IIB::MAPPING_HAAR, IIB::MAPPING_PAIRWISE, OVERLAP, GRANULARITY_5, ORIENTED)
 
@@ -23,7 +29,7 @@ Ptr<Feature2D> createDescriptor(int descriptor)
     }
 }
 
-typedef perf::TestBaseWithParam<tuple<Descriptor, int> > IIB_Compute; // descriptor, keypoints
+typedef perf::TestBaseWithParam<tuple<Descriptor, int>> IIB_Compute;  // descriptor, keypoints
 
 PERF_TEST_P(IIB_Compute, hd, testing::Combine(Descriptor::all(), testing::Values(1000, 5000)))
 {
@@ -33,8 +39,8 @@ PERF_TEST_P(IIB_Compute, hd, testing::Combine(Descriptor::all(), testing::Values
     RNG& rng = theRNG();
     std::vector<KeyPoint> keypoints;
     for (int i = 0; i < get<1>(GetParam()); i++)
-        keypoints.push_back(KeyPoint((float)rng.uniform(32, 1248), (float)rng.uniform(32, 688), 31.f,
-                                     rng.uniform(0.f, 360.f)));
+        keypoints.push_back(KeyPoint(
+                (float)rng.uniform(32, 1248), (float)rng.uniform(32, 688), 31.f, rng.uniform(0.f, 360.f)));
     const Ptr<Feature2D> descriptor = createDescriptor(get<0>(GetParam()));
     setNumThreads(1);
     Mat descriptors;
@@ -42,5 +48,5 @@ PERF_TEST_P(IIB_Compute, hd, testing::Combine(Descriptor::all(), testing::Values
     SANITY_CHECK_NOTHING();
 }
 
-}
 }  // namespace
+}  // namespace opencv_test

@@ -45,7 +45,10 @@ struct Pair
     }
 };
 
-enum { BRUTE_FORCE = -1 };
+enum
+{
+    BRUTE_FORCE = -1
+};
 CV_ENUM(Method, BRUTE_FORCE, HierarchicalMatcher::EXACT, HierarchicalMatcher::THRESHOLD,
         HierarchicalMatcher::ADAPTIVE)
 
@@ -56,7 +59,7 @@ Ptr<DescriptorMatcher> createMatcher(int method, const std::vector<int>& levels,
     return HierarchicalMatcher::create(levels, method, 0.35f, crossCheck);
 }
 
-typedef perf::TestBaseWithParam<tuple<Method, bool, int> > IIB_Match; // method, crossCheck, threads
+typedef perf::TestBaseWithParam<tuple<Method, bool, int>> IIB_Match;  // method, crossCheck, threads
 
 PERF_TEST_P(IIB_Match, match_10000, testing::Combine(Method::all(), testing::Bool(), testing::Values(1, 2)))
 {
@@ -71,24 +74,25 @@ PERF_TEST_P(IIB_Match, match_10000, testing::Combine(Method::all(), testing::Boo
 
 typedef perf::TestBaseWithParam<Method> IIB_MatchTwo;
 
-PERF_TEST_P(IIB_MatchTwo, two_nearest_with_ratio, testing::Values(
-        (int)BRUTE_FORCE, (int)HierarchicalMatcher::EXACT))
+PERF_TEST_P(IIB_MatchTwo, two_nearest_with_ratio,
+        testing::Values((int)BRUTE_FORCE, (int)HierarchicalMatcher::EXACT))
 {
     const Pair& pair = Pair::get();
     const Ptr<DescriptorMatcher> matcher = createMatcher(GetParam(), pair.levels, false);
     if (GetParam() != BRUTE_FORCE)
         matcher.dynamicCast<HierarchicalMatcher>()->setMaxRatio(0.8f);
     setNumThreads(1);
-    std::vector<std::vector<DMatch> > matches;
+    std::vector<std::vector<DMatch>> matches;
     declare.time(60);
     TEST_CYCLE() matcher->knnMatch(pair.queries, pair.trains, matches, 2);
     SANITY_CHECK_NOTHING();
 }
 
-typedef perf::TestBaseWithParam<tuple<Method, int> > IIB_MatchShort; // method, bytes
+typedef perf::TestBaseWithParam<tuple<Method, int>> IIB_MatchShort;  // method, bytes
 
-PERF_TEST_P(IIB_MatchShort, match_10000, testing::Combine(
-        testing::Values((int)BRUTE_FORCE, (int)HierarchicalMatcher::EXACT), testing::Values(32, 64)))
+PERF_TEST_P(IIB_MatchShort, match_10000,
+        testing::Combine(
+                testing::Values((int)BRUTE_FORCE, (int)HierarchicalMatcher::EXACT), testing::Values(32, 64)))
 {
     const int bytes = get<1>(GetParam());
     const Mat queries = Pair::get().queries.colRange(0, bytes).clone();

@@ -39,8 +39,8 @@ TEST(IIB_InstructionSets, pins_work)
     const char* const disabled = getenv("OPENCV_CPU_DISABLE");
     if (!disabled)
         return;
-    const std::pair<const char*, int> sets[] = { { "AVX512-ICL", CPU_AVX512_ICL }, { "AVX512-SKX", CPU_AVX512_SKX },
-                                                 { "AVX2", CPU_AVX2 }, { "SSE4.2", CPU_SSE4_2 } };
+    const std::pair<const char*, int> sets[] = {{"AVX512-ICL", CPU_AVX512_ICL},
+            {"AVX512-SKX", CPU_AVX512_SKX}, {"AVX2", CPU_AVX2}, {"SSE4.2", CPU_SSE4_2}};
     for (const auto& set : sets)
     {
         const bool pinned = String(disabled).find(set.first) != String::npos;

@@ -116,8 +116,8 @@ TEST(Dataset, homography_files)
         const char* text;
         bool good;
     } cases[] = {{SHIFT, true}, {"1 0 0 0 1 0 0 0", false}, {"1 0 0 0 1 0 0 0 1 7", false},
-        {"1 0 0 0 x 0 0 0 1", false}, {"nan 0 0 0 1 0 0 0 1", false}, {"1 2 3 2 4 6 0 0 1", false},
-        {"0 0 0 0 0 0 0 0 0", false}, {"", false}, {"0.05 0 4000 0 0.05 4000 0 0 1", true}};
+            {"1 0 0 0 x 0 0 0 1", false}, {"nan 0 0 0 1 0 0 0 1", false}, {"1 2 3 2 4 6 0 0 1", false},
+            {"0 0 0 0 0 0 0 0 0", false}, {"", false}, {"0.05 0 4000 0 0.05 4000 0 0 1", true}};
     for (const auto& c : cases)
     {
         folder.write("H", c.text);

@@ -29,8 +29,7 @@ private:
 };
 
 //! The message of the cv::Exception that a statement throws, empty if it throws none.
-template<typename Statement>
-std::string messageOf(Statement statement)
+template <typename Statement> std::string messageOf(Statement statement)
 {
     try
     {

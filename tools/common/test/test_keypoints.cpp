@@ -25,7 +25,7 @@ TEST(Keypoints, sampled_uniformly_over_the_list)
 TEST(Keypoints, seeds_lie_inside_both_images)
 {
     const std::vector<cv::KeyPoint> corners = {cv::KeyPoint(31, 50, 64), cv::KeyPoint(32, 50, 64, -1, 3),
-        cv::KeyPoint(50, 50, 64, -1, 2), cv::KeyPoint(68, 50, 64, -1, 1), cv::KeyPoint(69, 50, 64)};
+            cv::KeyPoint(50, 50, 64, -1, 2), cv::KeyPoint(68, 50, 64, -1, 1), cv::KeyPoint(69, 50, 64)};
     const cv::Matx33d shift(1, 0, 10, 0, 1, 0, 0, 0, 1);
     const cv::Size size(100, 100);
     SeedPoints seeds = projectSeeds(corners, cv::Matx33d::eye(), size, size, 32, 100);
@@ -82,7 +82,8 @@ TEST(Keypoints, read_from_a_file)
     for (const char* line : {"1,2", "1,2,0", "1,2,nan", "a,b,c", "1,2,3,4,5,6", "1,2,3,", "1;2;3"})
     {
         folder.write("k.csv", std::string("1,2,3\n") + line + "\n");
-        EXPECT_NE(std::string::npos, messageOf([&] { readKeypoints(folder.path("k.csv")); }).find("line 2")) << line;
+        EXPECT_NE(std::string::npos, messageOf([&] { readKeypoints(folder.path("k.csv")); }).find("line 2"))
+                << line;
     }
     EXPECT_NE("", messageOf([&] { readKeypoints(folder.path("missing")); }));
 }

@@ -82,7 +82,8 @@ TEST(Metrics, correct_within_the_tolerance_of_the_projection)
     const std::vector<cv::KeyPoint> reference = {point(0, 0), point(50, 50)};
     const std::vector<cv::KeyPoint> target = {point(10, 3), point(60, 53.1f)};
     const std::vector<cv::DMatch> matches = {cv::DMatch(0, 0, 1), cv::DMatch(1, 1, 1), cv::DMatch(0, 1, 1)};
-    EXPECT_EQ(std::vector<bool>({true, false, false}), correctByLocation(matches, reference, target, shift, 3));
+    EXPECT_EQ(
+            std::vector<bool>({true, false, false}), correctByLocation(matches, reference, target, shift, 3));
 }
 
 TEST(Metrics, regions_correspond_by_location_and_size)

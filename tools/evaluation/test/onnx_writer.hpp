@@ -27,7 +27,8 @@ inline std::string bytes(int field, const std::string& content)
 }
 
 //! TensorProto of floats.
-inline std::string tensor(const std::string& name, const std::vector<int>& shape, const std::vector<float>& values)
+inline std::string tensor(
+        const std::string& name, const std::vector<int>& shape, const std::vector<float>& values)
 {
     std::string out;
     for (int n : shape)
@@ -61,8 +62,8 @@ inline std::string integers(const std::string& name, const std::vector<int>& val
     return out;
 }
 
-inline std::string node(const std::string& type, const std::vector<std::string>& inputs, const std::string& output,
-        const std::vector<std::string>& attributes)
+inline std::string node(const std::string& type, const std::vector<std::string>& inputs,
+        const std::string& output, const std::vector<std::string>& attributes)
 {
     std::string out;
     for (const std::string& input : inputs)

@@ -14,8 +14,9 @@ using namespace iib_tools;
 //! A convolution of the network's input.
 std::string convolution(const std::string& name, const std::string& weights, int kernel, int stride, int pad)
 {
-    return onnx::node("Conv", {"image", weights}, name, {onnx::integers("kernel_shape", {kernel, kernel}),
-        onnx::integers("strides", {stride, stride}), onnx::integers("pads", {pad, pad, pad, pad})});
+    return onnx::node("Conv", {"image", weights}, name,
+            {onnx::integers("kernel_shape", {kernel, kernel}), onnx::integers("strides", {stride, stride}),
+                    onnx::integers("pads", {pad, pad, pad, pad})});
 }
 
 //! An image of bright dots, in the order of their brightness.
@@ -42,10 +43,11 @@ TEST(DeepKeypoints, heatmap_and_descriptor_map)
     // Scores: the image itself. Descriptors: the sum over cells of 8 x 8, and twice that.
     std::vector<float> sums(2 * 64, 1.f);
     std::fill(sums.begin() + 64, sums.end(), 2.f);
-    folder.write("heat.onnx", onnx::model({convolution("scores", "one", 1, 1, 0), convolution("map", "sums", 8, 8, 0)},
-                                      {onnx::tensor("one", {1, 1, 1, 1}, {1}), onnx::tensor("sums", {2, 1, 8, 8}, sums)},
-                                      onnx::value("image", {1, 1, 64, 64}),
-                                      {onnx::value("scores", {1, 1, 64, 64}), onnx::value("map", {1, 2, 8, 8})}));
+    folder.write("heat.onnx",
+            onnx::model({convolution("scores", "one", 1, 1, 0), convolution("map", "sums", 8, 8, 0)},
+                    {onnx::tensor("one", {1, 1, 1, 1}, {1}), onnx::tensor("sums", {2, 1, 8, 8}, sums)},
+                    onnx::value("image", {1, 1, 64, 64}),
+                    {onnx::value("scores", {1, 1, 64, 64}), onnx::value("map", {1, 2, 8, 8})}));
     DeepDetector detector(folder.path("heat.onnx"));
     EXPECT_TRUE(detector.hasDescriptors());
     const DeepKeypoints found = detector.detect(dots(DOTS), 10);
@@ -66,9 +68,9 @@ TEST(DeepKeypoints, superpoint_logits)
     std::vector<float> pick(65 * 64, 0.f);
     for (int c = 0; c < 64; c++)
         pick[c * 64 + c] = 20.f;
-    folder.write("super.onnx", onnx::model({convolution("semi", "pick", 8, 8, 0)},
-                                       {onnx::tensor("pick", {65, 1, 8, 8}, pick)},
-                                       onnx::value("image", {1, 1, 64, 64}), {onnx::value("semi", {1, 65, 8, 8})}));
+    folder.write("super.onnx",
+            onnx::model({convolution("semi", "pick", 8, 8, 0)}, {onnx::tensor("pick", {65, 1, 8, 8}, pick)},
+                    onnx::value("image", {1, 1, 64, 64}), {onnx::value("semi", {1, 65, 8, 8})}));
     DeepDetector detector(folder.path("super.onnx"));
     EXPECT_FALSE(detector.hasDescriptors());
     expectAt(DOTS, detector.detect(dots(DOTS), 3).keypoints);
@@ -79,10 +81,10 @@ TEST(DeepKeypoints, keypoint_list_in_colour)
     TestFolder folder;
     // Convolutions of three channels with zero weights leave their biases: the points and their scores.
     const auto list = [](const std::string& name, const std::string& bias, const std::string& shape) {
-        return std::vector<std::string>({onnx::node("Conv", {"image", bias + "_weights", bias}, name + "_conv",
-                                                 {onnx::integers("kernel_shape", {1, 1})}),
-            onnx::node("GlobalAveragePool", {name + "_conv"}, name + "_mean", {}),
-            onnx::node("Reshape", {name + "_mean", shape}, name, {})});
+        return std::vector<std::string>({onnx::node("Conv", {"image", bias + "_weights", bias},
+                                                 name + "_conv", {onnx::integers("kernel_shape", {1, 1})}),
+                onnx::node("GlobalAveragePool", {name + "_conv"}, name + "_mean", {}),
+                onnx::node("Reshape", {name + "_mean", shape}, name, {})});
     };
     std::vector<std::string> nodes = list("keypoints", "points", "three_by_two");
     for (const std::string& n : list("confidence", "scores", "three_by_one"))
@@ -91,10 +93,11 @@ TEST(DeepKeypoints, keypoint_list_in_colour)
         return onnx::tensor(name, {outputs, 3, 1, 1}, std::vector<float>(size_t(outputs) * 3, 0.f));
     };
     folder.write("list.onnx",
-            onnx::model(nodes, {zeros("points_weights", 6), zeros("scores_weights", 3),
-                                onnx::tensor("points", {6}, {-1, -1, 0, 0, 0.5f, -0.5f}),
-                                onnx::tensor("scores", {3}, {0.1f, 0.9f, 0.5f}),
-                                onnx::shape("three_by_two", 3, 2), onnx::shape("three_by_one", 3, 1)},
+            onnx::model(nodes,
+                    {zeros("points_weights", 6), zeros("scores_weights", 3),
+                            onnx::tensor("points", {6}, {-1, -1, 0, 0, 0.5f, -0.5f}),
+                            onnx::tensor("scores", {3}, {0.1f, 0.9f, 0.5f}),
+                            onnx::shape("three_by_two", 3, 2), onnx::shape("three_by_one", 3, 1)},
                     onnx::value("image", {1, 3, 64, 64}),
                     {onnx::value("keypoints", {3, 2}), onnx::value("confidence", {3, 1})}));
     DeepDetector detector(folder.path("list.onnx"));
@@ -111,14 +114,16 @@ TEST(DeepKeypoints, another_network_is_refused)
     TestFolder folder;
     folder.write("broken.onnx", "no network");
     EXPECT_NE("", messageOf([&] { DeepDetector detector(folder.path("broken.onnx")); }));
-    folder.write("five.onnx", onnx::model({convolution("features", "w", 1, 1, 0)},
-                                      {onnx::tensor("w", {1, 5, 1, 1}, std::vector<float>(5, 1.f))},
-                                      onnx::value("image", {1, 5, 8, 8}), {onnx::value("features", {1, 1, 8, 8})}));
+    folder.write("five.onnx",
+            onnx::model({convolution("features", "w", 1, 1, 0)},
+                    {onnx::tensor("w", {1, 5, 1, 1}, std::vector<float>(5, 1.f))},
+                    onnx::value("image", {1, 5, 8, 8}), {onnx::value("features", {1, 1, 8, 8})}));
     EXPECT_NE(std::string::npos,
             messageOf([&] { DeepDetector detector(folder.path("five.onnx")); }).find("no keypoint network"));
-    folder.write("map.onnx", onnx::model({convolution("map", "w", 8, 8, 0)},
-                                     {onnx::tensor("w", {2, 1, 8, 8}, std::vector<float>(128, 1.f))},
-                                     onnx::value("image", {1, 1, 64, 64}), {onnx::value("map", {1, 2, 8, 8})}));
+    folder.write(
+            "map.onnx", onnx::model({convolution("map", "w", 8, 8, 0)},
+                                {onnx::tensor("w", {2, 1, 8, 8}, std::vector<float>(128, 1.f))},
+                                onnx::value("image", {1, 1, 64, 64}), {onnx::value("map", {1, 2, 8, 8})}));
     EXPECT_NE(std::string::npos,
             messageOf([&] { DeepDetector detector(folder.path("map.onnx")); }).find("no keypoint network"));
 }

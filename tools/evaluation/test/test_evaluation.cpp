@@ -38,7 +38,8 @@ protected:
         }
         folder.makeFolder("data/set/still/depth");
         folder.makeFolder("data/set/v_shift");
-        cv::Mat dark, noise(scene.size(), CV_8UC1), shifted, shift = (cv::Mat_<double>(2, 3) << 1, 0, 9, 0, 1, -4);
+        cv::Mat dark, noise(scene.size(), CV_8UC1), shifted,
+                shift = (cv::Mat_<double>(2, 3) << 1, 0, 9, 0, 1, -4);
         rng.fill(noise, cv::RNG::UNIFORM, 0, 12);
         scene.convertTo(dark, CV_8U, 0.1, 10);
         dark += noise;
@@ -94,7 +95,8 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
     EXPECT_GT(recallOf("still", "IIB"), recallOf("still", "IIB g2"));
     EXPECT_GT(recallOf("still", "IIB +depth"), 0.9);
 
-    const std::vector<std::string> tables = {"protocol_a", "protocol_b", "matching", "robustness", "cost", "pictures"};
+    const std::vector<std::string> tables = {
+            "protocol_a", "protocol_b", "matching", "robustness", "cost", "pictures"};
     std::vector<std::string> first;
     for (const std::string& name : tables)
         first.push_back(contents(options.out + "/" + name + ".csv"));
@@ -152,7 +154,8 @@ TEST_F(EvaluationTest, keypoints_from_files)
     write("still/3.png", cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
     write("still/depth/3.png", cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
     EXPECT_EQ(1, evaluate(options));  // the third image has no such file
-    const std::string table = contents(options.out + "/protocol_b.csv"), row = "set,still,2,file,IIB,light,170,";
+    const std::string table = contents(options.out + "/protocol_b.csv"),
+                      row = "set,still,2,file,IIB,light,170,";
     const size_t at = table.find(row);
     ASSERT_NE(std::string::npos, at);
     EXPECT_GT(std::atoi(table.c_str() + at + row.size()), 100);  // correct matches of 150 points

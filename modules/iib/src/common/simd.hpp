@@ -18,24 +18,27 @@ CV_CPU_OPTIMIZATION_HAL_NAMESPACE_BEGIN
 #if CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 7
 template <typename V> struct VTraits
 {
-    enum { max_nlanes = V::nlanes };
+    enum
+    {
+        max_nlanes = V::nlanes
+    };
 };
 #endif
 
-#define IIB_VECTOR_OPERATOR(op, function) \
-    template <typename V> inline auto operator op(const V& a, const V& b)->decltype(function(a, b)) \
-    { \
-        return function(a, b); \
+#define IIB_VECTOR_OPERATOR(op, function)                                                                    \
+    template <typename V> inline auto operator op(const V& a, const V& b)->decltype(function(a, b))          \
+    {                                                                                                        \
+        return function(a, b);                                                                               \
     }
-#define IIB_VECTOR_ASSIGNMENT(op, function) \
-    template <typename V> inline auto operator op(V& a, const V& b)->decltype(a = function(a, b)) \
-    { \
-        return a = function(a, b); \
+#define IIB_VECTOR_ASSIGNMENT(op, function)                                                                  \
+    template <typename V> inline auto operator op(V& a, const V& b)->decltype(a = function(a, b))            \
+    {                                                                                                        \
+        return a = function(a, b);                                                                           \
     }
-#define IIB_VECTOR_SHIFT(op, function) \
-    template <typename V> inline auto operator op(const V& a, int bits)->decltype(function(a, bits)) \
-    { \
-        return function(a, bits); \
+#define IIB_VECTOR_SHIFT(op, function)                                                                       \
+    template <typename V> inline auto operator op(const V& a, int bits)->decltype(function(a, bits))         \
+    {                                                                                                        \
+        return function(a, bits);                                                                            \
     }
 
 IIB_VECTOR_OPERATOR(+, v_add)
@@ -59,10 +62,7 @@ IIB_VECTOR_ASSIGNMENT(^=, v_xor)
 IIB_VECTOR_SHIFT(<<, v_shl)
 IIB_VECTOR_SHIFT(>>, v_shr)
 
-template <typename V> inline auto operator~(const V& a)->decltype(v_not(a))
-{
-    return v_not(a);
-}
+template <typename V> inline auto operator~(const V& a) -> decltype(v_not(a)) { return v_not(a); }
 
 #undef IIB_VECTOR_OPERATOR
 #undef IIB_VECTOR_ASSIGNMENT

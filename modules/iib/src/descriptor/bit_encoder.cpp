@@ -24,8 +24,9 @@ void wideParentSums(const CellGrid<double>& children, CellGrid<double>& cells)
     for (int r = 0; r < cells.size(); r++)
         for (int c = 0; c < cells.size(); c++)
             for (int i = 0; i < GROUP_CHANNELS; i++)
-                cells.cell(r, c)[i] = (children.cell(2 * r, 2 * c)[i] + children.cell(2 * r, 2 * c + 1)[i])
-                                      + (children.cell(2 * r + 1, 2 * c)[i] + children.cell(2 * r + 1, 2 * c + 1)[i]);
+                cells.cell(r, c)[i] =
+                        (children.cell(2 * r, 2 * c)[i] + children.cell(2 * r, 2 * c + 1)[i]) +
+                        (children.cell(2 * r + 1, 2 * c)[i] + children.cell(2 * r + 1, 2 * c + 1)[i]);
 }
 
 //! The largest factor that makes siblings comparable.
@@ -73,8 +74,8 @@ template <typename Cell> bool fitsInt(const CellGrid<Cell>& cells, const LevelSh
 
 BitEncoder::BitEncoder(const Parameters& p, int group, int channels)
     : granularity(finestLevel(p)), mapping(p.mapping), shortKernels(getBitsKernels(p.mapping, ushort())),
-      longKernels(getBitsKernels(p.mapping, unsigned())), x(paddedEdges(size())), y(size() + 1), chosen(granularity + 1),
-      shapes(granularity + 1), sums(granularity + 1), wideSums(granularity + 1)
+      longKernels(getBitsKernels(p.mapping, unsigned())), x(paddedEdges(size())), y(size() + 1),
+      chosen(granularity + 1), shapes(granularity + 1), sums(granularity + 1), wideSums(granularity + 1)
 {
     sums[0].create(1);
     for (int level = 1; level <= granularity; level++)
@@ -90,8 +91,8 @@ BitEncoder::BitEncoder(const Parameters& p, int group, int channels)
             }
         }
         const int step = 1 << (granularity - level);
-        const LevelShape shape = { 1 << level, bitOffset(p, level, group), { x.data(), step }, { y.data(), step },
-                                   channels, windows, p.selection.empty() ? 0 : chosen[level].data() };
+        const LevelShape shape = {1 << level, bitOffset(p, level, group), {x.data(), step}, {y.data(), step},
+                channels, windows, p.selection.empty() ? 0 : chosen[level].data()};
         shapes[level] = shape;
         sums[level].create(shape.n);
     }
@@ -101,7 +102,8 @@ template <> const BitsKernels<ushort>& BitEncoder::kernels<ushort>() const { ret
 template <> const BitsKernels<unsigned>& BitEncoder::kernels<unsigned>() const { return longKernels; }
 
 template <typename Cell>
-void BitEncoder::writeFrom(int level, const CellGrid<Cell>& cells, double value, double longest, uchar* descriptor)
+void BitEncoder::writeFrom(
+        int level, const CellGrid<Cell>& cells, double value, double longest, uchar* descriptor)
 {
     int coarsest = level + 1;
     for (double l = longest; coarsest > 1 && alwaysFitsInt(shapes[coarsest - 1], value, l); l *= 2)

@@ -50,11 +50,12 @@ private:
     const BitsKernels<ushort> shortKernels;
     const BitsKernels<unsigned> longKernels;
     std::vector<int> x, y;  //!< edges
-    std::vector<std::vector<ChosenBits> > chosen;  //!< of the windows of each level; empty if all quads are in use
+    std::vector<std::vector<ChosenBits>>
+            chosen;                  //!< of the windows of each level; empty if all quads are in use
     std::vector<LevelShape> shapes;  //!< of each level
-    CellGrid<ushort> shortSums;  //!< of the finest level
-    std::vector<CellGrid<unsigned> > sums;
-    std::vector<CellGrid<double> > wideSums;
+    CellGrid<ushort> shortSums;      //!< of the finest level
+    std::vector<CellGrid<unsigned>> sums;
+    std::vector<CellGrid<double>> wideSums;
 };
 
 template <> inline CellGrid<ushort>& BitEncoder::finestCells<ushort>() { return shortSums; }

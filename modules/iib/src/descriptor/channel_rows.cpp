@@ -10,7 +10,14 @@ namespace iib {
 namespace {
 
 // Rows of the scratch memory: three of the image in turn, its gradient, the channels.
-enum { IMAGE_ROWS = 3, GRADIENT_X = IMAGE_ROWS, GRADIENT_Y, FIRST_PLANE, SCRATCH_ROWS = FIRST_PLANE + GROUP_CHANNELS };
+enum
+{
+    IMAGE_ROWS = 3,
+    GRADIENT_X = IMAGE_ROWS,
+    GRADIENT_Y,
+    FIRST_PLANE,
+    SCRATCH_ROWS = FIRST_PLANE + GROUP_CHANNELS
+};
 
 template <typename T> const RowKernels<T>& rowKernels();
 template <> const RowKernels<short>& rowKernels<short>() { return shortRowKernels(); }

@@ -12,7 +12,10 @@ namespace cv {
 namespace iib {
 
 /* Kernels may read and write up to this many values past the end of a row. */
-enum { ROW_PADDING = 64 };
+enum
+{
+    ROW_PADDING = 64
+};
 
 /* What a row of pixels goes through. T is short for 8-bit images, int for 16-bit ones. Rows begin anywhere;
  those read or written have ROW_PADDING values more than `width`. */

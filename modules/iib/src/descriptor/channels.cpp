@@ -14,9 +14,9 @@ std::vector<Channel> channelsInUse(const Parameters& p, const Mat& image, const 
     std::vector<Channel> channels;
     for (int kind = 1; kind <= ALL_CHANNELS; kind <<= 1)
         if (p.channels & kind)
-            channels.push_back(Channel{ kind, image });
+            channels.push_back(Channel{kind, image});
     for (const Mat& map : extra)
-        channels.push_back(Channel{ 0, map });
+        channels.push_back(Channel{0, map});
     return channels;
 }
 

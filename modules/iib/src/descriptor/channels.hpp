@@ -18,13 +18,11 @@ struct Channel
 };
 
 //! The channels in use, in the order of the descriptor.
-std::vector<Channel> channelsInUse(const Parameters& parameters, const Mat& image, const std::vector<Mat>& extra);
+std::vector<Channel> channelsInUse(
+        const Parameters& parameters, const Mat& image, const std::vector<Mat>& extra);
 
 //! Largest pixel value of CV_8U or CV_16U.
-inline int maxPixel(int depth)
-{
-    return depth == CV_8U ? 255 : 65535;
-}
+inline int maxPixel(int depth) { return depth == CV_8U ? 255 : 65535; }
 
 //! Whether the channel is computed from the image's gradient.
 inline bool usesGradient(const Channel& channel)

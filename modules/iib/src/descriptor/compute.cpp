@@ -44,7 +44,7 @@ struct Part
 };
 
 void describeUprightBlock(const Parameters& p, const std::vector<Channel>& channels, const Block& block,
-                          const std::vector<SupportRegion>& region, Mat& descriptors)
+        const std::vector<SupportRegion>& region, Mat& descriptors)
 {
     for (size_t first = 0; first < channels.size(); first += GROUP_CHANNELS)
     {
@@ -57,7 +57,7 @@ void describeUprightBlock(const Parameters& p, const std::vector<Channel>& chann
 }  // namespace
 
 void describe(const Parameters& p, const Mat& image, const std::vector<Mat>& extra,
-              const std::vector<KeyPoint>& keypoints, Mat& descriptors)
+        const std::vector<KeyPoint>& keypoints, Mat& descriptors)
 {
     std::vector<SupportRegion> region;
     region.reserve(keypoints.size());
@@ -82,13 +82,13 @@ void describe(const Parameters& p, const Mat& image, const std::vector<Mat>& ext
     const std::vector<Indices> uprightParts = cutBlocks(upright.pixels, getNumThreads());
     const std::vector<Indices> turnedParts = cutBlocks(turned.pixels, getNumThreads());
     const int uprightCount = (int)uprightParts.size();
-    parallel_for_(Range(0, uprightCount + (int)turnedParts.size()), [&](const Range& range)
-    {
+    parallel_for_(Range(0, uprightCount + (int)turnedParts.size()), [&](const Range& range) {
         for (int b = range.start; b < range.end; b++)
             if (b < uprightCount)
                 describeUprightBlock(p, channels, upright.block(uprightParts[b]), region, descriptors);
             else
-                describeTurned(p, channels, turned.block(turnedParts[b - uprightCount]), region, keypoints, descriptors);
+                describeTurned(p, channels, turned.block(turnedParts[b - uprightCount]), region, keypoints,
+                        descriptors);
     });
 }
 

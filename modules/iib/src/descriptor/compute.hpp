@@ -16,7 +16,7 @@ namespace iib {
 @param descriptors keypoints.size() rows of sum(levelBytes(parameters)), CV_8U, allocated.
  */
 void describe(const Parameters& parameters, const Mat& image, const std::vector<Mat>& extra,
-              const std::vector<KeyPoint>& keypoints, Mat& descriptors);
+        const std::vector<KeyPoint>& keypoints, Mat& descriptors);
 
 }  // namespace iib
 }  // namespace cv

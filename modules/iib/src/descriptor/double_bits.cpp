@@ -12,13 +12,14 @@ namespace {
 
 //! Maps one channel of one quad; put(bit, value) takes the bits.
 template <typename Mapping, typename Put>
-void mapQuad(const CellGrid<double>& cells, const LevelShape& shape, int row, int col, int channel, const Put& put)
+void mapQuad(
+        const CellGrid<double>& cells, const LevelShape& shape, int row, int col, int channel, const Put& put)
 {
     const Weights x(shape.x, col), y(shape.y, row);
-    const double weighted[4] = { cells.cell(row, col)[channel] * ((double)x.first * y.first),
-                                 cells.cell(row, col + 1)[channel] * ((double)x.second * y.first),
-                                 cells.cell(row + 1, col)[channel] * ((double)x.first * y.second),
-                                 cells.cell(row + 1, col + 1)[channel] * ((double)x.second * y.second) };
+    const double weighted[4] = {cells.cell(row, col)[channel] * ((double)x.first * y.first),
+            cells.cell(row, col + 1)[channel] * ((double)x.second * y.first),
+            cells.cell(row + 1, col)[channel] * ((double)x.first * y.second),
+            cells.cell(row + 1, col + 1)[channel] * ((double)x.second * y.second)};
     Mapping::map(weighted, put);
 }
 
@@ -45,11 +46,10 @@ private:
         for (int r = 0; r < phase.rows; r++)
             for (int lane = 0; lane < phase.lanes(); lane++)
                 mapQuad<Mapping>(cells, shape, phase.dy + 2 * r, phase.dx + lane / GROUP_CHANNELS * 2,
-                                 lane % GROUP_CHANNELS, [&](int plane, bool bit)
-                {
-                    const int at = (r * Mapping::BITS + plane) * planeBits + lane;
-                    planes[at / 8] |= (uchar)(bit << at % 8);
-                });
+                        lane % GROUP_CHANNELS, [&](int plane, bool bit) {
+                            const int at = (r * Mapping::BITS + plane) * planeBits + lane;
+                            planes[at / 8] |= (uchar)(bit << at % 8);
+                        });
         if (shape.chosen)
             return shape.chosen[index].append(planes.data(), out);
         for (int plane = 0; plane < phase.rows * Mapping::BITS; plane++)
@@ -63,7 +63,7 @@ private:
 
 void wideLevelBits(int mapping, const CellGrid<double>& cells, const LevelShape& shape, BitWriter& out)
 {
-    const LevelBits visitor = { cells, shape, out };
+    const LevelBits visitor = {cells, shape, out};
     visitMapping(mapping, visitor);
 }
 

@@ -19,7 +19,8 @@ namespace {
 class IIBDescriptorExtractor_Impl CV_FINAL : public IIBDescriptorExtractor
 {
 public:
-    explicit IIBDescriptorExtractor_Impl(const Parameters& parameters) : p(parameters), detector(ORB::create())
+    explicit IIBDescriptorExtractor_Impl(const Parameters& parameters)
+        : p(parameters), detector(ORB::create())
     {
         p.check();
     }
@@ -30,10 +31,10 @@ public:
     }
 
     void compute(InputArray image, InputArrayOfArrays extraChannels, std::vector<KeyPoint>& keypoints,
-                 OutputArray descriptors) CV_OVERRIDE;
+            OutputArray descriptors) CV_OVERRIDE;
 
     void detectAndCompute(InputArray image, InputArray mask, std::vector<KeyPoint>& keypoints,
-                          OutputArray descriptors, bool useProvidedKeypoints) CV_OVERRIDE
+            OutputArray descriptors, bool useProvidedKeypoints) CV_OVERRIDE
     {
         if (!useProvidedKeypoints)
             detector->detect(image, keypoints, mask);
@@ -80,8 +81,9 @@ public:
     {
         const Mat q = quads.getMat();
         if (!q.empty() && (q.type() != CV_32S || q.dims != 2 || q.cols != 5))
-            CV_Error(Error::StsBadArg, "a selection is CV_32S with 5 columns (level, channel, row, column, bits), not "
-                                       + typeToString(q.type()) + format(" with %d", q.cols));
+            CV_Error(Error::StsBadArg,
+                    "a selection is CV_32S with 5 columns (level, channel, row, column, bits), not " +
+                            typeToString(q.type()) + format(" with %d", q.cols));
         Parameters changed = p;
         changed.selection = q.empty() ? Mat_<int>() : Mat_<int>(q.clone());
         replace(changed);
@@ -98,7 +100,8 @@ public:
         // a node's name may not hold the dot of getDefaultName()
         FileStorage fs(filename, FileStorage::WRITE);
         CV_Assert(fs.isOpened());
-        fs << "IIB" << "{";
+        fs << "IIB"
+           << "{";
         write(fs);
         fs << "}";
     }
@@ -132,7 +135,7 @@ private:
 };
 
 void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArrays extraArrays,
-                                          std::vector<KeyPoint>& keypoints, OutputArray descriptors)
+        std::vector<KeyPoint>& keypoints, OutputArray descriptors)
 {
     CV_TRACE_FUNCTION();
 
@@ -154,10 +157,12 @@ void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArr
     if (p.border == BORDER_DROP)
     {
         const Parameters& params = p;
-        keypoints.erase(std::remove_if(keypoints.begin(), keypoints.end(), [&](const KeyPoint& kp)
-        {
-            return !SupportRegion(kp, params.scaleFactor, params.granularity).isInside(image.size());
-        }), keypoints.end());
+        keypoints.erase(std::remove_if(keypoints.begin(), keypoints.end(),
+                                [&](const KeyPoint& kp) {
+                                    return !SupportRegion(kp, params.scaleFactor, params.granularity)
+                                                    .isInside(image.size());
+                                }),
+                keypoints.end());
     }
     if (keypoints.empty())
     {
@@ -172,9 +177,9 @@ void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArr
 
 void IIBDescriptorExtractor_Impl::write(FileStorage& fs) const
 {
-    fs << "format" << 1 << "scaleFactor" << p.scaleFactor << "granularity" << p.granularity << "channels" << p.channels
-       << "mapping" << p.mapping << "overlap" << p.overlap << "useOrientation" << p.useOrientation
-       << "extraChannels" << p.extraChannels << "border" << p.border;
+    fs << "format" << 1 << "scaleFactor" << p.scaleFactor << "granularity" << p.granularity << "channels"
+       << p.channels << "mapping" << p.mapping << "overlap" << p.overlap << "useOrientation"
+       << p.useOrientation << "extraChannels" << p.extraChannels << "border" << p.border;
     if (!p.selection.empty())
         fs << "selection" << std::vector<int>(p.selection.begin(), p.selection.end());
 }
@@ -214,11 +219,10 @@ void IIBDescriptorExtractor_Impl::read(const FileNode& fn)
 }  // namespace
 
 Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::create(float scaleFactor, int granularity, int channels,
-                                                           int mapping, bool overlap, bool useOrientation,
-                                                           int extraChannels)
+        int mapping, bool overlap, bool useOrientation, int extraChannels)
 {
-    const Parameters p = { scaleFactor, granularity, channels, mapping, overlap, useOrientation, extraChannels,
-                           BORDER_CLAMP, Mat_<int>() };
+    const Parameters p = {scaleFactor, granularity, channels, mapping, overlap, useOrientation, extraChannels,
+            BORDER_CLAMP, Mat_<int>()};
     return makePtr<IIBDescriptorExtractor_Impl>(p);
 }
 

@@ -12,19 +12,21 @@ namespace iib {
 static void checkPixels(const Mat& m, const String& what)
 {
     if (m.depth() != CV_8U && m.depth() != CV_16U && m.depth() != CV_32F)
-        CV_Error(Error::StsUnsupportedFormat, what + " has type " + typeToString(m.type())
-                                              + "; convert it to 8U, 16U or 32F");
+        CV_Error(Error::StsUnsupportedFormat,
+                what + " has type " + typeToString(m.type()) + "; convert it to 8U, 16U or 32F");
     Point bad;
     if (m.depth() == CV_32F && !checkRange(m, true, &bad))
-        CV_Error(Error::StsBadArg, what + format(" is NaN or infinite at (%d, %d); replace such pixels (patchNaNs)",
-                                                 bad.x, bad.y));
+        CV_Error(Error::StsBadArg,
+                what + format(" is NaN or infinite at (%d, %d); replace such pixels (patchNaNs)", bad.x,
+                               bad.y));
 }
 
 void checkImage(const Mat& image)
 {
     if (image.dims > 2 || (image.channels() != 1 && image.channels() != 3 && image.channels() != 4))
-        CV_Error(Error::StsBadArg, format("the image has %d dimensions and %d channels; it must have 2 and 1, 3 or 4",
-                                          image.dims, image.channels()));
+        CV_Error(Error::StsBadArg,
+                format("the image has %d dimensions and %d channels; it must have 2 and 1, 3 or 4",
+                        image.dims, image.channels()));
     checkPixels(image, "the image");
 }
 
@@ -33,15 +35,16 @@ void checkExtraChannels(const std::vector<Mat>& maps, int expected, Size imageSi
     if ((int)maps.size() != expected)
         CV_Error(Error::StsBadArg, format("%d extra channels were given to an extractor of %d; "
                                           "pass them to computeWithChannels or change setExtraChannels",
-                                          (int)maps.size(), expected));
+                                           (int)maps.size(), expected));
     for (size_t i = 0; i < maps.size(); i++)
     {
         const String what = format("extra channel %d", (int)i);
         if (maps[i].dims > 2 || maps[i].channels() != 1)
             CV_Error(Error::StsBadArg, what + format(" has %d channels; it must have 1", maps[i].channels()));
         if (maps[i].size() != imageSize)
-            CV_Error(Error::StsUnmatchedSizes, what + format(" is %d x %d; the image is %d x %d", maps[i].cols,
-                                                             maps[i].rows, imageSize.width, imageSize.height));
+            CV_Error(Error::StsUnmatchedSizes,
+                    what + format(" is %d x %d; the image is %d x %d", maps[i].cols, maps[i].rows,
+                                   imageSize.width, imageSize.height));
         checkPixels(maps[i], what);
     }
 }
@@ -52,11 +55,12 @@ void checkKeyPoints(const std::vector<KeyPoint>& keypoints)
     {
         const KeyPoint& kp = keypoints[i];
         // written so that NaN fails
-        if (!(std::abs(kp.pt.x) <= FLT_MAX && std::abs(kp.pt.y) <= FLT_MAX && std::abs(kp.angle) <= FLT_MAX
-              && kp.size > 0 && kp.size <= FLT_MAX))
-            CV_Error(Error::StsBadArg, format("keypoint %d is at (%g, %g) with size %g and angle %g; all must be "
-                                              "finite and the size positive", (int)i, kp.pt.x, kp.pt.y, kp.size,
-                                              kp.angle));
+        if (!(std::abs(kp.pt.x) <= FLT_MAX && std::abs(kp.pt.y) <= FLT_MAX && std::abs(kp.angle) <= FLT_MAX &&
+                    kp.size > 0 && kp.size <= FLT_MAX))
+            CV_Error(Error::StsBadArg,
+                    format("keypoint %d is at (%g, %g) with size %g and angle %g; all must be "
+                           "finite and the size positive",
+                            (int)i, kp.pt.x, kp.pt.y, kp.size, kp.angle));
     }
 }
 

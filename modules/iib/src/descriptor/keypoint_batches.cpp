@@ -48,13 +48,13 @@ std::vector<Indices> splitAtGaps(const std::vector<Rect>& region, const Indices&
     for (int k : keypoints)
         pieces[part[extent(region[k], vertical).start - all.start]].push_back(k);
     pieces.erase(std::remove_if(pieces.begin(), pieces.end(), [](const Indices& p) { return p.empty(); }),
-                 pieces.end());
+            pieces.end());
     return pieces;
 }
 
 //! Splits along both axes in turn until there is no gap left.
-void splitRecursively(const std::vector<Rect>& region, const Indices& keypoints, bool vertical, bool otherAxisSplit,
-                      std::vector<Indices>& parts)
+void splitRecursively(const std::vector<Rect>& region, const Indices& keypoints, bool vertical,
+        bool otherAxisSplit, std::vector<Indices>& parts)
 {
     const std::vector<Indices> pieces = splitAtGaps(region, keypoints, vertical);
     if (pieces.size() == 1 && !otherAxisSplit)
@@ -94,7 +94,7 @@ Rect unionOf(const std::vector<Rect>& region, const Indices& keypoints)
 
 //! Cuts a block across its longer side, where fewer support region are cut, into parts of equal area, by the centres of the support region.
 void cutStrips(const std::vector<Rect>& region, const Indices& keypoints, Rect area, int strips,
-               std::vector<Indices>& blocks)
+        std::vector<Indices>& blocks)
 {
     if (strips == 1)
     {
@@ -143,12 +143,11 @@ std::vector<Indices> cutBlocks(const std::vector<Rect>& region, int workers)
 
 Block makeBlock(const std::vector<Rect>& region, const Indices& keypoints)
 {
-    Block block = { unionOf(region, keypoints), 0, keypoints };
+    Block block = {unionOf(region, keypoints), 0, keypoints};
     for (int k : keypoints)
         block.rows = std::max(block.rows, region[k].height);
     countingSort(block.keypoints, block.area.width, [&](int k) { return region[k].x - block.area.x; });
-    countingSort(block.keypoints, block.area.height / Block::BAND_ROWS + 2, [&](int k)
-    {
+    countingSort(block.keypoints, block.area.height / Block::BAND_ROWS + 2, [&](int k) {
         return (region[k].br().y - block.area.y + Block::BAND_ROWS - 1) / Block::BAND_ROWS;
     });
     return block;

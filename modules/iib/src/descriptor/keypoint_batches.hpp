@@ -13,11 +13,15 @@ namespace iib {
 //! Keypoints that are described together, from integral images over their common area.
 struct Block
 {
-    Rect area;                   //!< holds all their support region
-    int rows;                    //!< of the highest support region
-    std::vector<int> keypoints;  //!< indices, by the band in which their support region ends, then from left to right
+    Rect area;  //!< holds all their support region
+    int rows;   //!< of the highest support region
+    std::vector<int>
+            keypoints;  //!< indices, by the band in which their support region ends, then from left to right
 
-    enum { BAND_ROWS = 8 };  //!< neighbours in a band find each other's sums in the cache
+    enum
+    {
+        BAND_ROWS = 8
+    };  //!< neighbours in a band find each other's sums in the cache
 
     //! The end of the band in which row `end` of the image, exclusive, is the last.
     int bandEnd(int end) const
@@ -32,7 +36,7 @@ struct Block
 
  @param region the pixels that each keypoint needs, not empty.
  @return indices of the keypoints of each block. */
-std::vector<std::vector<int> > cutBlocks(const std::vector<Rect>& region, int workers);
+std::vector<std::vector<int>> cutBlocks(const std::vector<Rect>& region, int workers);
 
 //! @param keypoints indices, one or more.
 Block makeBlock(const std::vector<Rect>& region, const std::vector<int>& keypoints);

@@ -34,10 +34,7 @@ static int bitsBefore(const Parameters& p, int level, int end)
     return bits;
 }
 
-int levelBits(const Parameters& p, int level)
-{
-    return bitsBefore(p, level, p.channelCount());
-}
+int levelBits(const Parameters& p, int level) { return bitsBefore(p, level, p.channelCount()); }
 
 std::vector<int> levelBytes(const Parameters& p)
 {
@@ -50,7 +47,8 @@ std::vector<int> levelBytes(const Parameters& p)
 
 int finestLevel(const Parameters& p)
 {
-    return p.selection.empty() ? p.granularity : p.selection(p.selection.rows - 1, 0);  // levels do not descend
+    return p.selection.empty() ? p.granularity
+                               : p.selection(p.selection.rows - 1, 0);  // levels do not descend
 }
 
 int bitOffset(const Parameters& p, int level, int group)

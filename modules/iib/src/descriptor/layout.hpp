@@ -13,7 +13,10 @@
 namespace cv {
 namespace iib {
 
-enum { GROUP_CHANNELS = 4 };  //!< channels that integral images and kernels carry side by side
+enum
+{
+    GROUP_CHANNELS = 4
+};  //!< channels that integral images and kernels carry side by side
 
 //! Bits of a level before it is padded to whole bytes; the order of the bits is in descriptor.hpp.
 int levelBits(const Parameters& parameters, int level);

@@ -19,14 +19,15 @@ static void require(bool ok, int code, const String& message)
 static void checkSelection(const Parameters& p)
 {
     int last = 1;
-    std::set<std::array<int, 4> > seen;
+    std::set<std::array<int, 4>> seen;
     for (int i = 0; i < p.selection.rows; i++)
     {
         const int* quad = p.selection[i];
         const int level = quad[0], channel = quad[1], row = quad[2], col = quad[3], bits = quad[4];
         const String where = format("selection, row %d: ", i);
         require(level >= last && level <= p.granularity, Error::StsOutOfRange,
-                where + format("level %d is not in %d..%d (levels must not descend)", level, last, p.granularity));
+                where + format("level %d is not in %d..%d (levels must not descend)", level, last,
+                                p.granularity));
         require(channel >= 0 && channel < p.channelCount(), Error::StsOutOfRange,
                 where + format("channel %d is not in 0..%d", channel, p.channelCount() - 1));
         const int end = (1 << level) - 2;
@@ -34,7 +35,7 @@ static void checkSelection(const Parameters& p)
                 where + format("cell (%d, %d) is not in 0..%d", row, col, end));
         require(bits > 0 && bits < 1 << bitsPerQuad(p.mapping), Error::StsOutOfRange,
                 where + format("bit mask %d is not in 1..%d", bits, (1 << bitsPerQuad(p.mapping)) - 1));
-        const std::array<int, 4> place = { { level, channel, row, col } };
+        const std::array<int, 4> place = {{level, channel, row, col}};
         require(seen.insert(place).second, Error::StsBadArg, where + "the quad was given before");
         last = level;
     }

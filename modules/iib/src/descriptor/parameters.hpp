@@ -10,7 +10,12 @@
 namespace cv {
 namespace iib {
 
-enum { MAX_GRANULARITY = 6, MAX_EXTRA_CHANNELS = 16, ALL_CHANNELS = 63 };
+enum
+{
+    MAX_GRANULARITY = 6,
+    MAX_EXTRA_CHANNELS = 16,
+    ALL_CHANNELS = 63
+};
 
 //! What create() is given; setters go through check() before anything changes.
 struct Parameters

@@ -25,10 +25,11 @@ Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::createPreset(int preset, flo
 {
     const int presets = int(sizeof(PRESETS) / sizeof(PRESETS[0]));
     if (preset < 0 || preset >= presets)
-        CV_Error(Error::StsBadArg, format("preset is %d; it must be one of the PRESET_ values, 0 to %d", preset,
-                                          presets - 1));
+        CV_Error(Error::StsBadArg,
+                format("preset is %d; it must be one of the PRESET_ values, 0 to %d", preset, presets - 1));
     const LearnedSelection& p = PRESETS[preset];
-    const Ptr<IIBDescriptorExtractor> extractor = create(p.scale * scaleFactor, p.granularity, p.channels, p.mapping);
+    const Ptr<IIBDescriptorExtractor> extractor =
+            create(p.scale * scaleFactor, p.granularity, p.channels, p.mapping);
     if (p.quads)
     {
         Mat_<int> selection(p.count, 5);

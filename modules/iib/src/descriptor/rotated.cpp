@@ -17,10 +17,7 @@ namespace {
 const double LARGEST_SIDE = 16384;  // so that a point's offset fits 32 bits
 
 //! A sine may add the two components of a gradient.
-int maxTurnedGradient(int depth)
-{
-    return 6 * maxPixel(depth);
-}
+int maxTurnedGradient(int depth) { return 6 * maxPixel(depth); }
 
 template <typename T> const RotatedSampleKernels<T>& sampleKernels();
 template <> const RotatedSampleKernels<short>& sampleKernels<short>() { return shortRotatedSampleKernels(); }
@@ -32,10 +29,7 @@ int samplesInRow(const SupportRegion& region, int granularity)
 }
 
 //! The angle less its whole turns, exact: of a huge one, rounding to integers would depend on the machine.
-float withinTurn(float angle)
-{
-    return std::fmod(angle, 360.f);
-}
+float withinTurn(float angle) { return std::fmod(angle, 360.f); }
 
 SampleGrid gridOf(const SupportRegion& region, const KeyPoint& kp, int granularity, Size image, Rect area)
 {
@@ -43,7 +37,8 @@ SampleGrid gridOf(const SupportRegion& region, const KeyPoint& kp, int granulari
     g.n = samplesInRow(region, granularity);
     g.image = image;
     g.area = area;
-    const double radians = withinTurn(kp.angle) * CV_PI / 180, spacing = std::min(region.side, LARGEST_SIDE) / g.n;
+    const double radians = withinTurn(kp.angle) * CV_PI / 180,
+                 spacing = std::min(region.side, LARGEST_SIDE) / g.n;
     g.stepX = cvRound(std::cos(radians) * spacing * 65536);
     g.stepY = cvRound(std::sin(radians) * spacing * 65536);
     const double far = 1 << 29;  // beyond any image
@@ -91,18 +86,20 @@ public:
         for (const Channel& c : channels)
             if (c.kind != 0 && source.empty())
             {
-                const int kinds[] = { IIB::CHANNEL_SIGNED_GRAD_X, IIB::CHANNEL_SIGNED_GRAD_Y, IIB::CHANNEL_ORIENTATION,
-                                      IIB::CHANNEL_INTENSITY };
+                const int kinds[] = {IIB::CHANNEL_SIGNED_GRAD_X, IIB::CHANNEL_SIGNED_GRAD_Y,
+                        IIB::CHANNEL_ORIENTATION, IIB::CHANNEL_INTENSITY};
                 for (int kind : kinds)
-                    source.push_back(Channel{ kind, c.map });
+                    source.push_back(Channel{kind, c.map});
             }
         hasImage = !source.empty();
         for (const Channel& c : channels)
             if (c.kind == 0)
                 source.push_back(c);
         for (size_t i = 0; i < source.size(); i += GROUP_CHANNELS)
-            packs.push_back(PixelPack<T>(std::vector<Channel>(source.begin() + i, source.begin()
-                            + std::min(i + GROUP_CHANNELS, source.size())), area));
+            packs.push_back(
+                    PixelPack<T>(std::vector<Channel>(source.begin() + i,
+                                         source.begin() + std::min(i + GROUP_CHANNELS, source.size())),
+                            area));
         planes.resize(packs.size() * GROUP_CHANNELS);
         for (std::vector<T>& plane : planes)
             plane.resize(MAX_SAMPLES + ROW_PADDING);
@@ -125,23 +122,28 @@ public:
             angle = withinTurn(angle);
             const double radians = angle * CV_PI / 180;
             kernels.turn(planes[0].data(), planes[1].data(), planes[2].data(), count,
-                         cvRound(angle * ORIENTATION_STEPS / 360));
+                    cvRound(angle * ORIENTATION_STEPS / 360));
             kernels.rotate(planes[0].data(), planes[1].data(), count, cvRound(std::cos(radians) * 4096),
-                           cvRound(std::sin(radians) * 4096));
+                    cvRound(std::sin(radians) * 4096));
         }
     }
 
     //! The sums over cells of the group of channels that begins at `first`.
-    void sum(const RowKernels<T>& rowKernels, const SampleGrid& grid, int sub, size_t first, CellGrid<unsigned>& cells)
+    void sum(const RowKernels<T>& rowKernels, const SampleGrid& grid, int sub, size_t first,
+            CellGrid<unsigned>& cells)
     {
         const T* out[GROUP_CHANNELS];
         for (size_t i = 0; i < GROUP_CHANNELS; i++)
-            out[i] = values(rowKernels, std::min(first + i, channels.size() - 1), grid.n * grid.n, derived[i].data());
+            out[i] = values(
+                    rowKernels, std::min(first + i, channels.size() - 1), grid.n * grid.n, derived[i].data());
         kernels.sum(out, grid.n, sub, cells);
     }
 
 private:
-    enum { MAX_SAMPLES = 64 * 64 };
+    enum
+    {
+        MAX_SAMPLES = 64 * 64
+    };
 
     //! The samples of a channel; `buffer` if they are not at hand already.
     const T* values(const RowKernels<T>& rowKernels, size_t channel, int count, T* buffer) const
@@ -168,15 +170,15 @@ private:
     const std::vector<Channel>& channels;
     const RotatedSampleKernels<T>& kernels;
     bool hasImage;
-    std::vector<PixelPack<T> > packs;
-    std::vector<std::vector<T> > planes, derived;
+    std::vector<PixelPack<T>> packs;
+    std::vector<std::vector<T>> planes, derived;
     std::vector<int> index;
 };
 
 template <typename T>
 void describeBlock(const Parameters& p, const std::vector<Channel>& channels, const Block& block,
-                   const std::vector<SupportRegion>& region, const std::vector<KeyPoint>& keypoints,
-                   const RowKernels<T>& rowKernels, Mat& descriptors)
+        const std::vector<SupportRegion>& region, const std::vector<KeyPoint>& keypoints,
+        const RowKernels<T>& rowKernels, Mat& descriptors)
 {
     Sampler<T> sampler(channels, block.area);
     const auto parentSums = getBitsKernels(p.mapping, unsigned()).parentSums;
@@ -186,7 +188,7 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, co
     for (size_t first = 0; first < channels.size(); first += GROUP_CHANNELS)
     {
         const std::vector<Channel> group(channels.begin() + first,
-                                         channels.begin() + std::min(first + GROUP_CHANNELS, channels.size()));
+                channels.begin() + std::min(first + GROUP_CHANNELS, channels.size()));
         int gradient = 0;
         for (const Channel& c : group)
             if (usesGradient(c))
@@ -198,12 +200,13 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, co
             // Two by two samples a cell, whose sum fits 16 bits, unless the cells are fewer.
             const int sub = bits.size() == grid.n ? 1 : 2;
             sampler.sample(grid, sub, keypoints[k].angle);
-            CellGrid<unsigned>* finest = grid.n / sub == bits.size() ? &bits.finestCells<unsigned>() : &cells[0];
+            CellGrid<unsigned>* finest =
+                    grid.n / sub == bits.size() ? &bits.finestCells<unsigned>() : &cells[0];
             sampler.sum(rowKernels, grid, sub, first, *finest);
             while (finest->size() > bits.size())
             {
                 CellGrid<unsigned>* parent = finest->size() == 2 * bits.size() ? &bits.finestCells<unsigned>()
-                                                                          : &cells[finest == &cells[0]];
+                                                                               : &cells[finest == &cells[0]];
                 parentSums(*finest, *parent);
                 finest = parent;
             }
@@ -226,7 +229,7 @@ Rect turnedPixels(const SupportRegion& region, const KeyPoint& kp, Size image)
 }
 
 void describeTurned(const Parameters& p, const std::vector<Channel>& channels, const Block& block,
-                    const std::vector<SupportRegion>& region, const std::vector<KeyPoint>& keypoints, Mat& descriptors)
+        const std::vector<SupportRegion>& region, const std::vector<KeyPoint>& keypoints, Mat& descriptors)
 {
     if (isDeep(channels))
         describeBlock<int>(p, channels, block, region, keypoints, intRowKernels(), descriptors);

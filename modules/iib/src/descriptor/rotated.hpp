@@ -22,7 +22,7 @@ Rect turnedPixels(const SupportRegion& region, const KeyPoint& keypoint, Size im
  @param channels all channels of the descriptor.
  @param region, keypoints of the whole image; as are the rows of descriptors. */
 void describeTurned(const Parameters& parameters, const std::vector<Channel>& channels, const Block& block,
-                    const std::vector<SupportRegion>& regions, const std::vector<KeyPoint>& keypoints, Mat& descriptors);
+        const std::vector<SupportRegion>& regions, const std::vector<KeyPoint>& keypoints, Mat& descriptors);
 
 }  // namespace iib
 }  // namespace cv

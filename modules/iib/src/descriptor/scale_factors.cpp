@@ -18,10 +18,9 @@ struct DetectorScale
 /* Paper, "Experiments Combined with Feature Detectors", for AKAZE to SURF. FAST, AGAST (size 7) and GFTT
  (size 3) find corners of one size: a ROS of 64 pixels, as in "Predefined Feature Points". The sizes of MSER
  and SimpleBlob are the diameters of regions; the region takes in their surroundings. */
-const DetectorScale detectorScales[] = {
-    { "akaze", 12.f }, { "orb", 2.f }, { "brisk", 4.f }, { "sift", 20.f }, { "kaze", 20.f }, { "surf", 4.f },
-    { "fast", 64.f / 7 }, { "agast", 64.f / 7 }, { "gftt", 64.f / 3 }, { "mser", 2.f }, { "simpleblob", 4.f }
-};
+const DetectorScale detectorScales[] = {{"akaze", 12.f}, {"orb", 2.f}, {"brisk", 4.f}, {"sift", 20.f},
+        {"kaze", 20.f}, {"surf", 4.f}, {"fast", 64.f / 7}, {"agast", 64.f / 7}, {"gftt", 64.f / 3},
+        {"mser", 2.f}, {"simpleblob", 4.f}};
 
 }  // namespace
 
@@ -32,8 +31,8 @@ float IIBDescriptorExtractor::scaleFactorFor(const String& detectorName)
         name += (char)tolower((unsigned char)detectorName[i]);
     name = name.substr(name.rfind('.') == String::npos ? 0 : name.rfind('.') + 1);
     // Algorithm names of OpenCV that are not the short name
-    if (name == "fastfeaturedetector" || name == "agastfeaturedetector" || name == "gfttdetector"
-        || name == "simpleblobdetector")
+    if (name == "fastfeaturedetector" || name == "agastfeaturedetector" || name == "gfttdetector" ||
+            name == "simpleblobdetector")
         name = name.substr(0, name.find(name[0] == 'g' || name[0] == 's' ? "detector" : "featuredetector"));
 
     String known;
@@ -43,8 +42,9 @@ float IIBDescriptorExtractor::scaleFactorFor(const String& detectorName)
             return d.scaleFactor;
         known += String(known.empty() ? "" : ", ") + d.name;
     }
-    CV_Error(Error::StsBadArg, "no scale factor is known for the detector \"" + detectorName + "\", only for " + known
-                               + "; give create() the region side divided by KeyPoint::size");
+    CV_Error(Error::StsBadArg, "no scale factor is known for the detector \"" + detectorName +
+                                       "\", only for " + known +
+                                       "; give create() the region side divided by KeyPoint::size");
 }
 
 float IIBDescriptorExtractor::scaleFactorFor(const Ptr<Feature2D>& detector)

@@ -49,13 +49,14 @@ ChosenBits::ChosenBits(const Parameters& p, int level, int group, int phase)
             continue;
         for (int plane = 0; plane < planes; plane++)
         {
-            const int bit = (row / 2 * planes + plane) * planeBits + col / 2 * GROUP_CHANNELS + channel % GROUP_CHANNELS;
+            const int bit = (row / 2 * planes + plane) * planeBits + col / 2 * GROUP_CHANNELS +
+                            channel % GROUP_CHANNELS;
             masks[bit / 64] |= (uint64)(quad[4] >> plane & 1) << bit % 64;
         }
     }
     for (size_t i = 0; i < masks.size(); i++)
         if (masks[i])
-            words.push_back(Word{ 8 * i, Compressor(masks[i]) });
+            words.push_back(Word{8 * i, Compressor(masks[i])});
 }
 
 }  // namespace iib

@@ -17,10 +17,7 @@ static inline int edgeAt(double position, int limit)
 }
 
 //! A bound of the lengths of the n cells in a row of a support region.
-static inline double longestCell(double side, int n)
-{
-    return std::ceil(side / n);
-}
+static inline double longestCell(double side, int n) { return std::ceil(side / n); }
 
 /** Region of support of a keypoint and its quadtree of cells (paper, "Local Patch Generation"). Pure
  geometry, in pixels of the image. */
@@ -29,10 +26,14 @@ struct SupportRegion
     double x, y, side;  //!< top left corner and side; pixel i covers [i, i + 1)
 
     //! KeyPoint::pt counts from the centre of pixel 0.
-    SupportRegion(Point2f centre, double side_) : x(centre.x + 0.5 - side_ / 2), y(centre.y + 0.5 - side_ / 2), side(side_) {}
+    SupportRegion(Point2f centre, double side_)
+        : x(centre.x + 0.5 - side_ / 2), y(centre.y + 0.5 - side_ / 2), side(side_)
+    {
+    }
 
     SupportRegion(const KeyPoint& keypoint, float scaleFactor, int granularity)
-        : SupportRegion(keypoint.pt, std::max((double)scaleFactor * keypoint.size, (double)(1 << granularity)))
+        : SupportRegion(
+                  keypoint.pt, std::max((double)scaleFactor * keypoint.size, (double)(1 << granularity)))
     {
     }
 
@@ -47,8 +48,8 @@ struct SupportRegion
     //! Whether no pixel of the support region lies outside the image.
     bool isInside(Size image) const
     {
-        return std::floor(x + 0.5) >= 0 && std::floor(x + side + 0.5) <= image.width
-               && std::floor(y + 0.5) >= 0 && std::floor(y + side + 0.5) <= image.height;
+        return std::floor(x + 0.5) >= 0 && std::floor(x + side + 0.5) <= image.width &&
+               std::floor(y + 0.5) >= 0 && std::floor(y + side + 0.5) <= image.height;
     }
 };
 

@@ -65,7 +65,7 @@ template <typename Sum> void gather(const CellGrid<Sum>& fine, CellGrid<double>&
 
 template <typename T, typename Sum>
 void describeBlock(const Parameters& p, const std::vector<Channel>& channels, int group, const Block& block,
-                   const std::vector<SupportRegion>& region, Mat& descriptors)
+        const std::vector<SupportRegion>& region, Mat& descriptors)
 {
     const Size image = channels[0].map.size();
     const int largest = maxValue(channels, maxGradient(channels));
@@ -83,7 +83,7 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
     for (int k : block.keypoints)
         local.push_back(region[k]);
 
-    const double largestSum = (Sum)~(Sum)0;
+    const double largestSum = (Sum) ~(Sum)0;
     for (size_t i = 0; i < local.size(); i++)
     {
         uchar* descriptor = descriptors.ptr(block.keypoints[i]);
@@ -108,7 +108,8 @@ void describeBlock(const Parameters& p, const std::vector<Channel>& channels, in
 }
 
 //! Whether 16 bits hold the sums over the finest cells of all keypoints.
-bool sumsAreShort(const Parameters& p, int largest, const Block& block, const std::vector<SupportRegion>& region)
+bool sumsAreShort(
+        const Parameters& p, int largest, const Block& block, const std::vector<SupportRegion>& region)
 {
     double side = 0;
     for (int k : block.keypoints)
@@ -120,7 +121,7 @@ bool sumsAreShort(const Parameters& p, int largest, const Block& block, const st
 }  // namespace
 
 void describeUpright(const Parameters& p, const std::vector<Channel>& channels, int group, const Block& block,
-                     const std::vector<SupportRegion>& region, Mat& descriptors)
+        const std::vector<SupportRegion>& region, Mat& descriptors)
 {
     if (isDeep(channels))
         describeBlock<int, unsigned>(p, channels, group, block, region, descriptors);

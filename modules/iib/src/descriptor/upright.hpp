@@ -19,7 +19,7 @@ namespace iib {
 @param region of all keypoints of the image.
 @param descriptors rows for all keypoints of the image. */
 void describeUpright(const Parameters& parameters, const std::vector<Channel>& channels, int group,
-                     const Block& block, const std::vector<SupportRegion>& regions, Mat& descriptors);
+        const Block& block, const std::vector<SupportRegion>& regions, Mat& descriptors);
 
 }  // namespace iib
 }  // namespace cv

@@ -19,15 +19,11 @@ namespace {
 class NearestSink CV_FINAL : public BlockSink
 {
 public:
-    NearestSink(KnnTable& forQueries_, KnnTable* forTrains_)
-        : forQueries(forQueries_), forTrains(forTrains_)
+    NearestSink(KnnTable& forQueries_, KnnTable* forTrains_) : forQueries(forQueries_), forTrains(forTrains_)
     {
     }
     const int* queryBelow() const CV_OVERRIDE { return forQueries.below() + firstQuery; }
-    const int* trainBelow() const CV_OVERRIDE
-    {
-        return forTrains ? forTrains->below() + firstTrain : 0;
-    }
+    const int* trainBelow() const CV_OVERRIDE { return forTrains ? forTrains->below() + firstTrain : 0; }
     void found(int query, int train, int distance) CV_OVERRIDE
     {
         forQueries.insert(firstQuery + query, matchKey(distance, firstTrain + train));
@@ -43,7 +39,7 @@ private:
 class RadiusSink CV_FINAL : public BlockSink
 {
 public:
-    RadiusSink(int radius, std::vector<std::vector<MatchKey> >& result_)
+    RadiusSink(int radius, std::vector<std::vector<MatchKey>>& result_)
         : result(result_), below(BLOCK_QUERIES, radius + 1)
     {
     }
@@ -55,14 +51,14 @@ public:
     }
 
 private:
-    std::vector<std::vector<MatchKey> >& result;
+    std::vector<std::vector<MatchKey>>& result;
     const std::vector<int> below;
 };
 
 }  // namespace
 
-BlockedSearch::BlockedSearch(const PackedCodes& index_, const Mat& codes_, const Mat& queries_, const PruningPolicy& plan_,
-             const std::vector<Mat>& masks_)
+BlockedSearch::BlockedSearch(const PackedCodes& index_, const Mat& codes_, const Mat& queries_,
+        const PruningPolicy& plan_, const std::vector<Mat>& masks_)
     : index(index_), codes(codes_), queries(queries_), plan(plan_), masks(masks_)
 {
 }
@@ -73,29 +69,35 @@ SearchCost BlockedSearch::nearest(KnnTable& forQueries, KnnTable* forTrains) con
     std::mutex lock;
     // In the other direction each part has neighbours of its own, merged by their order, so that the result
     // does not depend on who comes first. Few parts, since each starts anew to learn what is near.
-    split(forTrains ? getNumThreads() : evenParts(), [&](int from, int to) {
-        if (!forTrains)
-        {
-            NearestSink sink(forQueries, 0);
-            return run(from, to, sink);
-        }
-        KnnTable part(forTrains->rows(), forTrains->size(), CODES_PER_BLOCK);
-        NearestSink sink(forQueries, &part);
-        const SearchCost work = run(from, to, sink);
-        std::lock_guard<std::mutex> guard(lock);
-        forTrains->merge(part);
-        return work;
-    }, cost);
+    split(
+            forTrains ? getNumThreads() : evenParts(),
+            [&](int from, int to) {
+                if (!forTrains)
+                {
+                    NearestSink sink(forQueries, 0);
+                    return run(from, to, sink);
+                }
+                KnnTable part(forTrains->rows(), forTrains->size(), CODES_PER_BLOCK);
+                NearestSink sink(forQueries, &part);
+                const SearchCost work = run(from, to, sink);
+                std::lock_guard<std::mutex> guard(lock);
+                forTrains->merge(part);
+                return work;
+            },
+            cost);
     return cost;
 }
 
-SearchCost BlockedSearch::within(int radius, std::vector<std::vector<MatchKey> >& result) const
+SearchCost BlockedSearch::within(int radius, std::vector<std::vector<MatchKey>>& result) const
 {
     SearchCost cost;
-    split(evenParts(), [&](int from, int to) {
-        RadiusSink sink(radius, result);
-        return run(from, to, sink);
-    }, cost);
+    split(
+            evenParts(),
+            [&](int from, int to) {
+                RadiusSink sink(radius, result);
+                return run(from, to, sink);
+            },
+            cost);
     return cost;
 }
 
@@ -107,15 +109,18 @@ int BlockedSearch::evenParts() const
 
 void BlockedSearch::split(int parts, const std::function<SearchCost(int, int)>& body, SearchCost& cost) const
 {
-    const int size = std::max((queries.rows + parts - 1) / parts, 4); // a tile's queries
+    const int size = std::max((queries.rows + parts - 1) / parts, 4);  // a tile's queries
     parts = (queries.rows + size - 1) / size;
     std::mutex lock;
-    parallel_for_(Range(0, parts), [&](const Range& range) {
-        const SearchCost work = body(range.start * size, std::min(range.end * size, queries.rows));
-        std::lock_guard<std::mutex> guard(lock);
-        cost.compared += work.compared;
-        cost.all += work.all;
-    }, parts);
+    parallel_for_(
+            Range(0, parts),
+            [&](const Range& range) {
+                const SearchCost work = body(range.start * size, std::min(range.end * size, queries.rows));
+                std::lock_guard<std::mutex> guard(lock);
+                cost.compared += work.compared;
+                cost.all += work.all;
+            },
+            parts);
 }
 
 SearchCost BlockedSearch::run(int from, int to, BlockSink& sink) const
@@ -133,7 +138,7 @@ SearchCost BlockedSearch::run(int from, int to, BlockSink& sink) const
         {
             sink.moveTo(from, (size_t)group * CODES_PER_BLOCK);
             const SearchCost work = block(from, end, group, std::min(BLOCK_GROUPS, codes.rows - group),
-                                          plain.data(), limits.data(), sink);
+                    plain.data(), limits.data(), sink);
             cost.compared += work.compared;
             cost.all += work.all;
         }
@@ -141,11 +146,12 @@ SearchCost BlockedSearch::run(int from, int to, BlockSink& sink) const
     return cost;
 }
 
-SearchCost BlockedSearch::block(int from, int to, int group, int groups, const unsigned* plain, int* limits,
-                        BlockSink& sink) const
+SearchCost BlockedSearch::block(
+        int from, int to, int group, int groups, const unsigned* plain, int* limits, BlockSink& sink) const
 {
     const CodeLayout& layout = index.layout();
-    const size_t row = (size_t)group * CODES_PER_BLOCK, count = std::min(index.rows() - row, (size_t)groups * CODES_PER_BLOCK);
+    const size_t row = (size_t)group * CODES_PER_BLOCK,
+                 count = std::min(index.rows() - row, (size_t)groups * CODES_PER_BLOCK);
     std::vector<uchar> allowed;
     size_t pairs = (to - from) * count;
     if (!masks.empty() || count < (size_t)groups * CODES_PER_BLOCK)
@@ -186,7 +192,8 @@ SearchCost BlockedSearch::block(int from, int to, int group, int groups, const u
 
 size_t BlockedSearch::allow(int from, int to, size_t firstRow, size_t count, uchar* allowed) const
 {
-    const size_t stride = (count + CODES_PER_BLOCK - 1) / CODES_PER_BLOCK * CODES_PER_BLOCK, end = firstRow + count;
+    const size_t stride = (count + CODES_PER_BLOCK - 1) / CODES_PER_BLOCK * CODES_PER_BLOCK,
+                 end = firstRow + count;
     size_t pairs = 0;
     for (size_t row = firstRow; row < end;)
     {

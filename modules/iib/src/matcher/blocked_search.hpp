@@ -35,17 +35,17 @@ class BlockedSearch
 {
 public:
     BlockedSearch(const PackedCodes& index, const Mat& codes, const Mat& queries, const PruningPolicy& plan,
-          const std::vector<Mat>& masks);
+            const std::vector<Mat>& masks);
 
     //! forTrains is null when nobody asks for the other direction.
     SearchCost nearest(KnnTable& forQueries, KnnTable* forTrains) const;
-    SearchCost within(int radius, std::vector<std::vector<MatchKey> >& result) const;
+    SearchCost within(int radius, std::vector<std::vector<MatchKey>>& result) const;
 
 private:
     //! Queries `from` to `to` against all.
     SearchCost run(int from, int to, BlockSink& sink) const;
     SearchCost block(int from, int to, int group, int groups, const unsigned* plain, int* limits,
-                     BlockSink& sink) const;
+            BlockSink& sink) const;
     //! Fills the flags of existing pairs and returns their number.
     size_t allow(int from, int to, size_t firstRow, size_t count, uchar* allowed) const;
     //! Some parts for each thread, so that all are done at about the same time.

@@ -58,7 +58,8 @@ public:
         number(hash.value(), 8);
         stream.close();
         if (!stream)
-            CV_Error(Error::StsError, "Cannot write " + name + ": check the folder, its rights and the free space");
+            CV_Error(Error::StsError,
+                    "Cannot write " + name + ": check the folder, its rights and the free space");
     }
 
 private:
@@ -70,7 +71,8 @@ private:
 class Reader
 {
 public:
-    explicit Reader(const String& filename) : name(filename), stream(filename.c_str(), std::ios::binary), left(0)
+    explicit Reader(const String& filename)
+        : name(filename), stream(filename.c_str(), std::ios::binary), left(0)
     {
         stream.seekg(0, std::ios::end);
         const std::streamoff size = stream.tellg();

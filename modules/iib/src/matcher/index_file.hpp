@@ -17,8 +17,8 @@ struct IndexFile
     int mode;
     bool crossCheck;
     float maxRatio;
-    std::vector<float> thresholds; //!< one for each level but the last
-    std::vector<Mat> images;       //!< CV_8U descriptors, as many columns as the sum of levelSizes
+    std::vector<float> thresholds;  //!< one for each level but the last
+    std::vector<Mat> images;        //!< CV_8U descriptors, as many columns as the sum of levelSizes
 };
 
 /** Format 1, all numbers little-endian: "IIBINDEX"; u32: version, number of levels, each level's bytes, mode,

@@ -13,11 +13,13 @@ Mat checkedDescriptors(const Mat& descriptors, int width)
     if (descriptors.empty())
         return Mat(0, width, CV_8U);
     if (descriptors.dims != 2 || descriptors.type() != CV_8U)
-        CV_Error(Error::StsUnsupportedFormat, "Descriptors have to be a matrix of type CV_8U, a row a descriptor");
+        CV_Error(Error::StsUnsupportedFormat,
+                "Descriptors have to be a matrix of type CV_8U, a row a descriptor");
     if (descriptors.cols != width)
-        CV_Error_(Error::StsUnmatchedSizes, ("Descriptors have %d columns, but the level sizes add up to %d: create "
-                                             "the matcher with the level sizes of these descriptors",
-                                             descriptors.cols, width));
+        CV_Error_(Error::StsUnmatchedSizes,
+                ("Descriptors have %d columns, but the level sizes add up to %d: create "
+                 "the matcher with the level sizes of these descriptors",
+                        descriptors.cols, width));
     return descriptors;
 }
 
@@ -31,13 +33,16 @@ std::vector<Mat> checkedMasks(InputArrayOfArrays masks_, int queries, const Pack
     if (!any)
         return std::vector<Mat>();
     if (masks.size() != index.images())
-        CV_Error_(Error::StsBadSize, ("%d masks for %d train images: give one for each, empty for \"all allowed\"",
-                                      (int)masks.size(), (int)index.images()));
+        CV_Error_(Error::StsBadSize,
+                ("%d masks for %d train images: give one for each, empty for \"all allowed\"",
+                        (int)masks.size(), (int)index.images()));
     for (size_t i = 0; i < masks.size(); i++)
         if (!masks[i].empty() && (masks[i].type() != CV_8UC1 || masks[i].rows != queries ||
-                                  (size_t)masks[i].cols != index.rows(i)))
-            CV_Error_(Error::StsBadMask, ("masks[%d] has to be CV_8UC1 with %d rows (queries) and %d columns (train "
-                                          "rows)", (int)i, queries, (int)index.rows(i)));
+                                         (size_t)masks[i].cols != index.rows(i)))
+            CV_Error_(Error::StsBadMask,
+                    ("masks[%d] has to be CV_8UC1 with %d rows (queries) and %d columns (train "
+                     "rows)",
+                            (int)i, queries, (int)index.rows(i)));
     return masks;
 }
 

@@ -18,10 +18,7 @@ typedef uint64 MatchKey;
 const int INDEX_BITS = 40;
 const MatchKey NO_MATCH = ~(MatchKey)0;
 
-inline MatchKey matchKey(int distance, size_t index)
-{
-    return (MatchKey)distance << INDEX_BITS | index;
-}
+inline MatchKey matchKey(int distance, size_t index) { return (MatchKey)distance << INDEX_BITS | index; }
 inline int distanceOf(MatchKey n) { return (int)(n >> INDEX_BITS); }
 inline size_t indexOf(MatchKey n) { return (size_t)(n & (((MatchKey)1 << INDEX_BITS) - 1)); }
 

@@ -44,7 +44,8 @@ public:
     {
         MatcherParameters changed = parameters;
         changed.thresholds = thresholds.size() == 1
-            ? std::vector<float>(parameters.levelSizes.size() - 1, thresholds[0]) : thresholds;
+                                     ? std::vector<float>(parameters.levelSizes.size() - 1, thresholds[0])
+                                     : thresholds;
         set(changed);
     }
     std::vector<float> getThresholds() const CV_OVERRIDE { return parameters.thresholds; }
@@ -87,27 +88,30 @@ public:
     String getDefaultName() const CV_OVERRIDE { return "HierarchicalMatcher"; }
 
     void knnMatchArrays(InputArray queries, OutputArray indices, OutputArray distances, int k,
-                        InputArrayOfArrays masks, OutputArray imageIndices) const CV_OVERRIDE;
-    void knnMatchArrays(InputArray queries, InputArray trains, OutputArray indices, OutputArray distances, int k,
-                        InputArray mask) const CV_OVERRIDE;
+            InputArrayOfArrays masks, OutputArray imageIndices) const CV_OVERRIDE;
+    void knnMatchArrays(InputArray queries, InputArray trains, OutputArray indices, OutputArray distances,
+            int k, InputArray mask) const CV_OVERRIDE;
     void saveIndex(const String& filename) const CV_OVERRIDE;
 
     static Ptr<HierarchicalMatcher> load(const String& filename);
 
 protected:
-    void knnMatchImpl(InputArray queries, std::vector<std::vector<DMatch> >& matches, int k,
-                      InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE;
-    void radiusMatchImpl(InputArray queries, std::vector<std::vector<DMatch> >& matches, float maxDistance,
-                         InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE;
+    void knnMatchImpl(InputArray queries, std::vector<std::vector<DMatch>>& matches, int k,
+            InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE;
+    void radiusMatchImpl(InputArray queries, std::vector<std::vector<DMatch>>& matches, float maxDistance,
+            InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE;
 
 private:
     void set(MatcherParameters changed)
     {
         check(changed);
-        std::swap(parameters, changed); // which cannot fail half-way
+        std::swap(parameters, changed);  // which cannot fail half-way
     }
 
-    Mat checked(const Mat& descriptors) const { return checkedDescriptors(descriptors, index->layout().bytes()); }
+    Mat checked(const Mat& descriptors) const
+    {
+        return checkedDescriptors(descriptors, index->layout().bytes());
+    }
     PruningPolicy plan() const;
     KnnTable nearest(InputArray queries, int k, InputArrayOfArrays masks) const;
     void count(const SearchCost& cost) const
@@ -141,7 +145,7 @@ KnnTable HierarchicalMatcherImpl::nearest(InputArray queries_, int k, InputArray
     const Mat queries = checked(queries_.getMat());
     SearchCost cost;
     KnnTable found = index->nearest(queries, plan(), k, parameters.crossCheck, parameters.maxRatio,
-                                      checkedMasks(masks, queries.rows, *index), cost);
+            checkedMasks(masks, queries.rows, *index), cost);
     count(cost);
     return found;
 }
@@ -153,7 +157,8 @@ void HierarchicalMatcherImpl::add(InputArrayOfArrays descriptors)
         descriptors.getMatVector(images);
     else
         images.push_back(descriptors.getMat());
-    const bool mapped = descriptors.isUMat() || descriptors.isUMatVector(); // such views must not outlive the call
+    const bool mapped =
+            descriptors.isUMat() || descriptors.isUMatVector();  // such views must not outlive the call
     for (size_t i = 0; i < images.size(); i++)
         images[i] = mapped ? checked(images[i]).clone() : checked(images[i]);
     for (size_t i = 0; i < images.size(); i++)
@@ -162,10 +167,10 @@ void HierarchicalMatcherImpl::add(InputArrayOfArrays descriptors)
         try
         {
             trainDescCollection.push_back(images[i]);
-            utrainDescCollection.push_back(UMat()); // checkMasks reads both at the same place
+            utrainDescCollection.push_back(UMat());  // checkMasks reads both at the same place
             index->add(images[i]);
         }
-        catch (...) // out of memory: lists and index stay of one length
+        catch (...)  // out of memory: lists and index stay of one length
         {
             trainDescCollection.resize(before);
             utrainDescCollection.resize(before);
@@ -190,14 +195,15 @@ Ptr<DescriptorMatcher> HierarchicalMatcherImpl::clone(bool emptyTrainData) const
 }
 
 // Drops the empty rows that compactResult asks to drop.
-void compact(std::vector<std::vector<DMatch> >& matches)
+void compact(std::vector<std::vector<DMatch>>& matches)
 {
     matches.erase(std::remove_if(matches.begin(), matches.end(),
-                                 [](const std::vector<DMatch>& row) { return row.empty(); }), matches.end());
+                          [](const std::vector<DMatch>& row) { return row.empty(); }),
+            matches.end());
 }
 
-void HierarchicalMatcherImpl::knnMatchImpl(InputArray queries, std::vector<std::vector<DMatch> >& matches, int k,
-                                           InputArrayOfArrays masks, bool compactResult)
+void HierarchicalMatcherImpl::knnMatchImpl(InputArray queries, std::vector<std::vector<DMatch>>& matches,
+        int k, InputArrayOfArrays masks, bool compactResult)
 {
     const KnnTable found = nearest(queries, k, masks);
     matches.assign(found.rows(), std::vector<DMatch>());
@@ -208,16 +214,16 @@ void HierarchicalMatcherImpl::knnMatchImpl(InputArray queries, std::vector<std::
         compact(matches);
 }
 
-void HierarchicalMatcherImpl::radiusMatchImpl(InputArray queries_, std::vector<std::vector<DMatch> >& matches,
-                                              float maxDistance, InputArrayOfArrays masks, bool compactResult)
+void HierarchicalMatcherImpl::radiusMatchImpl(InputArray queries_, std::vector<std::vector<DMatch>>& matches,
+        float maxDistance, InputArrayOfArrays masks, bool compactResult)
 {
     const Mat queries = checked(queries_.getMat());
     const CodeLayout& layout = index->layout();
     const int radius = cvFloor(std::min((double)maxDistance, 8. * layout.bytes()));
     SearchCost cost;
-    const std::vector<std::vector<MatchKey> > found =
+    const std::vector<std::vector<MatchKey>> found =
             index->within(queries, parameters.mode == THRESHOLD ? plan() : radiusPlan(layout, radius), radius,
-                          checkedMasks(masks, queries.rows, *index), cost);
+                    checkedMasks(masks, queries.rows, *index), cost);
     count(cost);
     matches.assign(found.size(), std::vector<DMatch>());
     for (int query = 0; query < (int)found.size(); query++)
@@ -228,12 +234,13 @@ void HierarchicalMatcherImpl::radiusMatchImpl(InputArray queries_, std::vector<s
 }
 
 void HierarchicalMatcherImpl::knnMatchArrays(InputArray queries, OutputArray indices_, OutputArray distances_,
-                                             int k, InputArrayOfArrays masks, OutputArray imageIndices_) const
+        int k, InputArrayOfArrays masks, OutputArray imageIndices_) const
 {
     if (k <= 0)
         CV_Error_(Error::StsOutOfRange, ("k is %d: it has to be > 0", k));
     const KnnTable found = nearest(queries, k, masks);
-    Mat indices((int)found.rows(), k, CV_32S, Scalar(-1)), distances = indices.clone(), images = indices.clone();
+    Mat indices((int)found.rows(), k, CV_32S, Scalar(-1)), distances = indices.clone(),
+                                                           images = indices.clone();
     for (int query = 0; query < indices.rows; query++)
         for (int i = 0; i < found.size() && found[query][i] != NO_MATCH; i++)
         {
@@ -249,18 +256,15 @@ void HierarchicalMatcherImpl::knnMatchArrays(InputArray queries, OutputArray ind
 }
 
 void HierarchicalMatcherImpl::knnMatchArrays(InputArray queries, InputArray trains, OutputArray indices,
-                                             OutputArray distances, int k, InputArray mask) const
+        OutputArray distances, int k, InputArray mask) const
 {
     Ptr<DescriptorMatcher> other = clone(true);
     other->add(trains);
-    other.staticCast<HierarchicalMatcherImpl>()->knnMatchArrays(queries, indices, distances, k,
-                                                                std::vector<Mat>(1, mask.getMat()), noArray());
+    other.staticCast<HierarchicalMatcherImpl>()->knnMatchArrays(
+            queries, indices, distances, k, std::vector<Mat>(1, mask.getMat()), noArray());
 }
 
-void HierarchicalMatcherImpl::write(FileStorage& fs) const
-{
-    writeParameters(fs, parameters);
-}
+void HierarchicalMatcherImpl::write(FileStorage& fs) const { writeParameters(fs, parameters); }
 
 void HierarchicalMatcherImpl::read(const FileNode& node)
 {
@@ -268,7 +272,8 @@ void HierarchicalMatcherImpl::read(const FileNode& node)
     if (p.levelSizes != parameters.levelSizes)
     {
         if (index->rows() > 0)
-            CV_Error(Error::StsBadArg, "Other level sizes cannot be read while there are train descriptors: clear() first");
+            CV_Error(Error::StsBadArg,
+                    "Other level sizes cannot be read while there are train descriptors: clear() first");
         index = makePtr<PackedCodes>(p.levelSizes);
         HierarchicalMatcher::clear();
     }
@@ -291,7 +296,7 @@ void HierarchicalMatcherImpl::saveIndex(const String& filename) const
 Ptr<HierarchicalMatcher> HierarchicalMatcherImpl::load(const String& filename)
 {
     const IndexFile file = readIndexFile(filename);
-    const MatcherParameters p = { file.levelSizes, file.mode, file.thresholds, file.crossCheck, file.maxRatio };
+    const MatcherParameters p = {file.levelSizes, file.mode, file.thresholds, file.crossCheck, file.maxRatio};
     check(p);
     Ptr<HierarchicalMatcherImpl> matcher = makePtr<HierarchicalMatcherImpl>(p);
     matcher->add(file.images);
@@ -300,12 +305,13 @@ Ptr<HierarchicalMatcher> HierarchicalMatcherImpl::load(const String& filename)
 
 }  // namespace
 
-Ptr<HierarchicalMatcher> HierarchicalMatcher::create(const std::vector<int>& levelSizes, int mode, float threshold,
-                                                     bool crossCheck)
+Ptr<HierarchicalMatcher> HierarchicalMatcher::create(
+        const std::vector<int>& levelSizes, int mode, float threshold, bool crossCheck)
 {
     checkThreshold(threshold);
     const size_t thresholds = std::max(levelSizes.size(), (size_t)1) - 1;
-    const MatcherParameters p = { levelSizes, mode, std::vector<float>(thresholds, threshold), crossCheck, 1.f };
+    const MatcherParameters p = {
+            levelSizes, mode, std::vector<float>(thresholds, threshold), crossCheck, 1.f};
     check(p);
     return makePtr<HierarchicalMatcherImpl>(p);
 }

@@ -11,7 +11,10 @@ namespace iib {
 
 static const int CODES_PER_BLOCK = CodeLayout::CODES_PER_BLOCK;
 
-PackedCodes::PackedCodes(const std::vector<int>& levelSizes) : format(levelSizes, hammingPacking()), starts(1, 0) {}
+PackedCodes::PackedCodes(const std::vector<int>& levelSizes)
+    : format(levelSizes, hammingPacking()), starts(1, 0)
+{
+}
 
 PackedCodes::PackedCodes(const PackedCodes& other)
     : format(other.format), starts(other.starts), codes(other.codes.clone())
@@ -35,14 +38,16 @@ void PackedCodes::grow(int groups)
         codes.locateROI(whole, offset);
     if (groups > whole.height)
     {
-        Mat larger(std::max(groups, (int)std::min((int64)before * 3 / 2, (int64)INT_MAX)), format.words() * CODES_PER_BLOCK, CV_32S);
+        Mat larger(std::max(groups, (int)std::min((int64)before * 3 / 2, (int64)INT_MAX)),
+                format.words() * CODES_PER_BLOCK, CV_32S);
         if (before > 0)
             codes.copyTo(larger.rowRange(0, before));
         codes = larger.rowRange(0, groups);
     }
     else
         codes.adjustROI(0, groups - before, 0, 0);
-    std::fill(codes.ptr<unsigned>(before), codes.ptr<unsigned>(before) + (size_t)(groups - before) * codes.cols, 0u);
+    std::fill(codes.ptr<unsigned>(before),
+            codes.ptr<unsigned>(before) + (size_t)(groups - before) * codes.cols, 0u);
 }
 
 void PackedCodes::add(const Mat& descriptors)
@@ -97,8 +102,8 @@ static bool passesRatio(const MatchKey* row, float maxRatio)
     return row[1] == NO_MATCH || distanceOf(row[0]) < (double)maxRatio * distanceOf(row[1]);
 }
 
-KnnTable PackedCodes::nearest(const Mat& queries, const PruningPolicy& plan, int k, bool mutual, float maxRatio,
-                                 const std::vector<Mat>& masks, SearchCost& cost) const
+KnnTable PackedCodes::nearest(const Mat& queries, const PruningPolicy& plan, int k, bool mutual,
+        float maxRatio, const std::vector<Mat>& masks, SearchCost& cost) const
 {
     // Each direction has as many neighbours as the other side has codes, at most.
     const int backK = std::min(k, std::max(queries.rows, 1));
@@ -118,10 +123,10 @@ KnnTable PackedCodes::nearest(const Mat& queries, const PruningPolicy& plan, int
     return result;
 }
 
-std::vector<std::vector<MatchKey> > PackedCodes::within(const Mat& queries, const PruningPolicy& plan, int radius,
-                                                          const std::vector<Mat>& masks, SearchCost& cost) const
+std::vector<std::vector<MatchKey>> PackedCodes::within(const Mat& queries, const PruningPolicy& plan,
+        int radius, const std::vector<Mat>& masks, SearchCost& cost) const
 {
-    std::vector<std::vector<MatchKey> > result(queries.rows);
+    std::vector<std::vector<MatchKey>> result(queries.rows);
     const BlockedSearch sweep(*this, codes, queries, plan, masks);
     cost = sweep.within(radius, result);
     for (size_t query = 0; query < result.size(); query++)

@@ -22,8 +22,8 @@ struct SearchCost
 struct PruningPolicy
 {
     std::vector<PruneStage> stops;
-    int limit;  //!< with a single stop, the most bits that may differ there
-    int margin; //!< if >= 0, the limit of a query comes down to its least difference there plus this
+    int limit;   //!< with a single stop, the most bits that may differ there
+    int margin;  //!< if >= 0, the limit of a query comes down to its least difference there plus this
 
     PruningPolicy() : limit(INT_MAX), margin(-1) {}
 };
@@ -61,11 +61,11 @@ public:
     directions. A row stays empty unless its least distance is below maxRatio times the second, if that is
     under 1. Masks: none, or one for each image, empty or queries x rows(image). */
     KnnTable nearest(const Mat& queries, const PruningPolicy& plan, int k, bool mutual, float maxRatio,
-                       const std::vector<Mat>& masks, SearchCost& cost) const;
+            const std::vector<Mat>& masks, SearchCost& cost) const;
 
     //! Finds all within a radius, in ascending order for each query.
-    std::vector<std::vector<MatchKey> > within(const Mat& queries, const PruningPolicy& plan, int radius,
-                                                const std::vector<Mat>& masks, SearchCost& cost) const;
+    std::vector<std::vector<MatchKey>> within(const Mat& queries, const PruningPolicy& plan, int radius,
+            const std::vector<Mat>& masks, SearchCost& cost) const;
 
 private:
     PackedCodes& operator=(const PackedCodes&);
@@ -73,8 +73,8 @@ private:
     void grow(int groups);
 
     const CodeLayout format;
-    std::vector<size_t> starts; //!< first row of each image, and the number of all rows
-    Mat codes;                  //!< a row a group: aligned, and grown without copying every time
+    std::vector<size_t> starts;  //!< first row of each image, and the number of all rows
+    Mat codes;                   //!< a row a group: aligned, and grown without copying every time
 };
 
 }  // namespace iib

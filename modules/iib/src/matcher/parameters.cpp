@@ -17,22 +17,26 @@ void checkThreshold(float threshold)
 void check(const MatcherParameters& p)
 {
     if (p.levelSizes.empty())
-        CV_Error(Error::StsBadArg, "levelSizes is empty: give the bytes of each level, or the descriptor's size");
+        CV_Error(Error::StsBadArg,
+                "levelSizes is empty: give the bytes of each level, or the descriptor's size");
     uint64 width = 0;
     for (size_t i = 0; i < p.levelSizes.size(); i++)
     {
         if (p.levelSizes[i] <= 0)
-            CV_Error_(Error::StsOutOfRange, ("levelSizes[%d] is %d: each has to be > 0", (int)i, p.levelSizes[i]));
+            CV_Error_(Error::StsOutOfRange,
+                    ("levelSizes[%d] is %d: each has to be > 0", (int)i, p.levelSizes[i]));
         width += p.levelSizes[i];
     }
     if (width > 1 << 20)
         CV_Error(Error::StsOutOfRange, "levelSizes: descriptors of more than 1 MB are not supported");
     if (p.mode != HierarchicalMatcher::EXACT && p.mode != HierarchicalMatcher::THRESHOLD &&
-        p.mode != HierarchicalMatcher::ADAPTIVE)
+            p.mode != HierarchicalMatcher::ADAPTIVE)
         CV_Error_(Error::StsBadArg, ("mode is %d: use EXACT, THRESHOLD or ADAPTIVE", p.mode));
     if (p.thresholds.size() + 1 != p.levelSizes.size())
-        CV_Error_(Error::StsBadArg, ("%d thresholds for %d levels: give one for each level but the last, or a single "
-                                     "one for all", (int)p.thresholds.size(), (int)p.levelSizes.size()));
+        CV_Error_(Error::StsBadArg,
+                ("%d thresholds for %d levels: give one for each level but the last, or a single "
+                 "one for all",
+                        (int)p.thresholds.size(), (int)p.levelSizes.size()));
     for (size_t i = 0; i < p.thresholds.size(); i++)
         checkThreshold(p.thresholds[i]);
     if (!(p.maxRatio > 0 && p.maxRatio <= 1))

@@ -14,7 +14,7 @@ struct MatcherParameters
 {
     std::vector<int> levelSizes;
     int mode;
-    std::vector<float> thresholds; // one for each level but the last
+    std::vector<float> thresholds;  // one for each level but the last
     bool crossCheck;
     float maxRatio;
 };

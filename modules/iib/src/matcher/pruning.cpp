@@ -10,20 +10,14 @@ namespace iib {
 
 static void addStop(PruningPolicy& plan, int part, int most = PruneStage::NO_MAX)
 {
-    const PruneStage stop = { part, most };
+    const PruneStage stop = {part, most};
     plan.stops.push_back(stop);
 }
 
 //! Random differences of n bits spread by sqrt(n) / 2 around n / 2.
-static double spread(int bits)
-{
-    return std::sqrt((double)bits) / 2;
-}
+static double spread(int bits) { return std::sqrt((double)bits) / 2; }
 
-PruningPolicy exactPlan()
-{
-    return PruningPolicy();
-}
+PruningPolicy exactPlan() { return PruningPolicy(); }
 
 // One stop, where most pairs are beyond the radius; none where they hardly ever are.
 PruningPolicy radiusPlan(const CodeLayout& layout, int radius)

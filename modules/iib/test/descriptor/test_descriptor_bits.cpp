@@ -5,10 +5,11 @@
 #include "../support/descriptor_oracle.hpp"
 #include "../support/test_images.hpp"
 
-namespace opencv_test { namespace {
+namespace opencv_test {
+namespace {
 
 void expectOracle(IIB& iib, const Mat& image, const std::vector<Mat>& extra, std::vector<KeyPoint> keypoints,
-                  const String& what)
+        const String& what)
 {
     const Mat expected = oracle::describe(iib, image, extra, keypoints);
     Mat descriptors;
@@ -16,8 +17,8 @@ void expectOracle(IIB& iib, const Mat& image, const std::vector<Mat>& extra, std
     ASSERT_EQ(expected.size(), descriptors.size()) << what;
     for (int i = 0; i < expected.rows; i++)
         ASSERT_EQ(0, cvtest::norm(expected.row(i), descriptors.row(i), NORM_HAMMING))
-            << what << ", keypoint " << i << " at " << keypoints[i].pt << " size " << keypoints[i].size << " angle "
-            << keypoints[i].angle;
+                << what << ", keypoint " << i << " at " << keypoints[i].pt << " size " << keypoints[i].size
+                << " angle " << keypoints[i].angle;
 }
 
 typedef testing::TestWithParam<int> IIB_Bits_Mapping;
@@ -28,13 +29,15 @@ TEST_P(IIB_Bits_Mapping, as_the_equations)
     for (int granularity = 1; granularity <= 6; granularity++)
         for (int overlap = 0; overlap < 2; overlap++)
         {
-            const Ptr<IIB> iib = IIB::create(2.f, granularity, IIB::CHANNELS_DEFAULT, GetParam(), overlap != 0);
+            const Ptr<IIB> iib =
+                    IIB::create(2.f, granularity, IIB::CHANNELS_DEFAULT, GetParam(), overlap != 0);
             expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 12, 1.f, 60.f, granularity),
-                         format("G %d overlap %d", granularity, overlap));
+                    format("G %d overlap %d", granularity, overlap));
         }
 }
 
-INSTANTIATE_TEST_CASE_P(/**/, IIB_Bits_Mapping, testing::Range((int)IIB::MAPPING_MEAN, (int)IIB::MAPPING_PAIRWISE + 1));
+INSTANTIATE_TEST_CASE_P(
+        /**/, IIB_Bits_Mapping, testing::Range((int)IIB::MAPPING_MEAN, (int)IIB::MAPPING_PAIRWISE + 1));
 
 TEST(IIB_Bits, every_set_of_channels)
 {
@@ -43,7 +46,7 @@ TEST(IIB_Bits, every_set_of_channels)
     {
         const Ptr<IIB> iib = IIB::create(1.f, 3, channels);
         expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 10, 8.f, 70.f, channels),
-                     format("channels %d", channels));
+                format("channels %d", channels));
     }
 }
 
@@ -60,7 +63,7 @@ TEST(IIB_Bits, extra_channels_of_any_depth)
             {
                 const Ptr<IIB> iib = IIB::create(1.f, 4, channels, IIB::MAPPING_HAAR, false, false, count);
                 expectOracle(*iib, image, extra, scatter(image.size(), 10, 10.f, 90.f, count),
-                             format("depth %d channels %d extra %d", depth, channels, count));
+                        format("depth %d channels %d extra %d", depth, channels, count));
             }
         }
 }
@@ -72,7 +75,7 @@ TEST(IIB_Bits, sixteen_bit_images)
     {
         const Ptr<IIB> iib = IIB::create(1.f, 4, 63, mapping);
         expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 10, 10.f, 400.f, mapping),
-                     format("mapping %d", mapping));
+                format("mapping %d", mapping));
     }
 }
 
@@ -83,7 +86,7 @@ TEST(IIB_Bits, images_of_every_width)
     {
         const Mat image = texture(Size(width, 1 + width % 23), CV_8U, width);
         expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 6, 4.f, 50.f, width),
-                     format("width %d", width));
+                format("width %d", width));
     }
 }
 
@@ -94,7 +97,7 @@ TEST(IIB_Bits, large_regions_of_support)
     {
         const Ptr<IIB> iib = IIB::create(1.f, granularity, 63);
         expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 6, 100.f, 900.f, granularity),
-                     format("G %d", granularity));
+                format("G %d", granularity));
     }
 }
 
@@ -105,13 +108,15 @@ TEST(IIB_Bits, selections)
         for (int count = 1; count < 400; count *= 3)
         {
             const Ptr<IIB> iib = IIB::create(1.f, 5, 63, mapping);
-            const int bits = mapping == IIB::MAPPING_HAAR ? 3 : mapping == IIB::MAPPING_QUARTILE || mapping == IIB::MAPPING_SORT ? 8 : 4;
+            const int bits = mapping == IIB::MAPPING_HAAR                                       ? 3
+                             : mapping == IIB::MAPPING_QUARTILE || mapping == IIB::MAPPING_SORT ? 8
+                                                                                                : 4;
             RNG rng(count);
-            std::set<std::vector<int> > quads;
+            std::set<std::vector<int>> quads;
             for (int i = 0; i < count; i++)
             {
                 const int level = rng.uniform(1, 6), end = (1 << level) - 1;
-                const int quad[] = { level, rng.uniform(0, 6), rng.uniform(0, end), rng.uniform(0, end) };
+                const int quad[] = {level, rng.uniform(0, 6), rng.uniform(0, end), rng.uniform(0, end)};
                 quads.insert(std::vector<int>(quad, quad + 4));
             }
             Mat_<int> selection;
@@ -124,7 +129,7 @@ TEST(IIB_Bits, selections)
             }
             iib->setSelection(selection);
             expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 10, 10.f, 400.f, mapping),
-                         format("mapping %d, %d quads", mapping, selection.rows));
+                    format("mapping %d, %d quads", mapping, selection.rows));
         }
 }
 
@@ -135,13 +140,15 @@ TEST(IIB_Bits, turned_regions_of_support)
         {
             const Mat image = texture(Size(200, 180), depth ? CV_16U : CV_8U, 6);
             const std::vector<Mat> extra(2, texture(image.size(), CV_8U, 7));
-            const Ptr<IIB> iib = IIB::create(1.f, granularity, 63, granularity, granularity % 2 == 0, true, 2);
+            const Ptr<IIB> iib =
+                    IIB::create(1.f, granularity, 63, granularity, granularity % 2 == 0, true, 2);
             expectOracle(*iib, image, extra, scatter(image.size(), 10, 8.f, 200.f, granularity),
-                         format("depth %d G %d", depth, granularity));
+                    format("depth %d G %d", depth, granularity));
             iib->setChannels(0);
             expectOracle(*iib, image, extra, scatter(image.size(), 5, 8.f, 200.f, granularity),
-                         format("depth %d G %d, extra channels alone", depth, granularity));
+                    format("depth %d G %d, extra channels alone", depth, granularity));
         }
 }
 
-}}  // namespace
+}  // namespace
+}  // namespace opencv_test

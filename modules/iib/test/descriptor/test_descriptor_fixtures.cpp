@@ -93,10 +93,7 @@ private:
     Ptr<IIB> iib;
 };
 
-TEST(IIB_Fixtures, empty_data)
-{
-    RegressionTest(IIB::create()).emptyData();
-}
+TEST(IIB_Fixtures, empty_data) { RegressionTest(IIB::create()).emptyData(); }
 
 TEST(IIB_Fixtures, regression)
 {

@@ -123,10 +123,7 @@ TEST_P(IIB_Golden, bits)
         std::cout << format("    { \"%s\", 0x%016llx,\n", golden.name, (unsigned long long)hash);
 }
 
-void PrintTo(const Golden& golden, std::ostream* os)
-{
-    *os << golden.name;
-}
+void PrintTo(const Golden& golden, std::ostream* os) { *os << golden.name; }
 
 String nameOf(const testing::TestParamInfo<Golden>& info)
 {

@@ -15,10 +15,7 @@ struct DetectorCase
     int minCorrect;  //!< about two thirds of what was measured
 };
 
-template <typename T> Ptr<Feature2D> make()
-{
-    return T::create();
-}
+template <typename T> Ptr<Feature2D> make() { return T::create(); }
 
 const DetectorCase DETECTORS[] = {{"FAST", make<FastFeatureDetector>, 64.f / 7, 220},
         {"AGAST", make<AgastFeatureDetector>, 64.f / 7, 215}, {"ORB", make<ORB>, 2, 185},
@@ -62,15 +59,9 @@ TEST_P(IIB_Detectors, detect_compute_and_match)
     EXPECT_GE(correct, 0.8 * matches.size());
 }
 
-void PrintTo(const DetectorCase& p, std::ostream* os)
-{
-    *os << p.name;
-}
+void PrintTo(const DetectorCase& p, std::ostream* os) { *os << p.name; }
 
-String detectorName(const testing::TestParamInfo<DetectorCase>& info)
-{
-    return info.param.name;
-}
+String detectorName(const testing::TestParamInfo<DetectorCase>& info) { return info.param.name; }
 
 INSTANTIATE_TEST_CASE_P(/**/, IIB_Detectors, testing::ValuesIn(DETECTORS), detectorName);
 

@@ -10,20 +10,24 @@
 
 #include "opencv2/imgcodecs.hpp"
 
-namespace opencv_test { namespace {
+namespace opencv_test {
+namespace {
 
 struct PresetCase
 {
     int preset;
     const char* name;
     int bytes;
-    double map, mar;    // on changed light, see meanScores
+    double map, mar;  // on changed light, see meanScores
 };
 
 std::ostream& operator<<(std::ostream& out, const PresetCase& c) { return out << c.name; }
 
 //! Protocol A (paper, "Experiments Using Predefined Feature Points with ROS"): counts of one pair.
-struct Counts { int correct, putative, points; };
+struct Counts
+{
+    int correct, putative, points;
+};
 
 Counts matchPair(const Ptr<IIB>& iib, const std::string& folder, int target, int fastThreshold)
 {
@@ -42,10 +46,9 @@ Counts matchPair(const Ptr<IIB>& iib, const std::string& folder, int target, int
     for (int threshold = fastThreshold; threshold > 0; threshold /= 2)
     {
         FAST(image1, corners, threshold, true);
-        corners.erase(std::remove_if(corners.begin(), corners.end(), [&](const KeyPoint& corner)
-        {
-            return !inside(corner.pt, image1.size());
-        }), corners.end());
+        corners.erase(std::remove_if(corners.begin(), corners.end(),
+                              [&](const KeyPoint& corner) { return !inside(corner.pt, image1.size()); }),
+                corners.end());
         if (corners.size() >= 1000)
             break;
     }
@@ -81,7 +84,7 @@ Counts matchPair(const Ptr<IIB>& iib, const std::string& folder, int target, int
 /** mAP and mAR over the targets of the sequences; empty if the data is not there.
  @param fastThreshold where corners are sought first; lower ones follow until there are enough. */
 std::vector<double> meanScores(const Ptr<IIB>& iib, const std::vector<std::string>& sequences, int lastTarget,
-                               int fastThreshold = 20)
+        int fastThreshold = 20)
 {
     const char* data = std::getenv("OPENCV_TEST_DATA_PATH");
     if (!data || !std::ifstream(data + std::string("/illumination/") + sequences[0] + "/1.png"))
@@ -90,8 +93,8 @@ std::vector<double> meanScores(const Ptr<IIB>& iib, const std::vector<std::strin
     for (const std::string& sequence : sequences)
         for (int target = 2; target <= lastTarget; target++)
         {
-            const Counts counts = matchPair(iib, data + std::string("/illumination/") + sequence, target,
-                                            fastThreshold);
+            const Counts counts =
+                    matchPair(iib, data + std::string("/illumination/") + sequence, target, fastThreshold);
             const double pairs = double(sequences.size()) * (lastTarget - 1);
             sum[0] += counts.correct / std::max(1., double(counts.putative)) / pairs;
             sum[1] += counts.correct / std::max(1., double(counts.points)) / pairs;
@@ -119,8 +122,8 @@ TEST_P(IIBPresets, scale_factor_is_proportional)
 
 TEST_P(IIBPresets, accuracy_on_changed_light)
 {
-    const std::vector<double> scores = meanScores(IIB::createPreset(GetParam().preset, 1.f),
-            {"photometric_stereo/frog"}, 8);
+    const std::vector<double> scores =
+            meanScores(IIB::createPreset(GetParam().preset, 1.f), {"photometric_stereo/frog"}, 8);
     if (scores.empty())
         throw SkipTestException("no OPENCV_TEST_DATA_PATH/illumination");
     EXPECT_GE(scores[0], GetParam().map);
@@ -128,14 +131,14 @@ TEST_P(IIBPresets, accuracy_on_changed_light)
 }
 
 // measured with the selections of src/descriptor/presets.generated.hpp on a sequence they were not trained on, less 0.005
-INSTANTIATE_TEST_CASE_P(All, IIBPresets, testing::Values(
-    PresetCase{IIB::PRESET_S128, "S128", 16, 0.765, 0.462},
-    PresetCase{IIB::PRESET_S256, "S256", 32, 0.859, 0.593},
-    PresetCase{IIB::PRESET_S512, "S512", 64, 0.924, 0.714},
-    PresetCase{IIB::PRESET_ACCURATE, "ACCURATE", 170, 0.969, 0.893},
-    PresetCase{IIB::PRESET_COMPACT, "COMPACT", 64, 0.954, 0.841},
-    PresetCase{IIB::PRESET_TINY, "TINY", 32, 0.920, 0.757},
-    PresetCase{IIB::PRESET_BALANCED, "BALANCED", 64, 0.865, 0.612}));
+INSTANTIATE_TEST_CASE_P(All, IIBPresets,
+        testing::Values(PresetCase{IIB::PRESET_S128, "S128", 16, 0.765, 0.462},
+                PresetCase{IIB::PRESET_S256, "S256", 32, 0.859, 0.593},
+                PresetCase{IIB::PRESET_S512, "S512", 64, 0.924, 0.714},
+                PresetCase{IIB::PRESET_ACCURATE, "ACCURATE", 170, 0.969, 0.893},
+                PresetCase{IIB::PRESET_COMPACT, "COMPACT", 64, 0.954, 0.841},
+                PresetCase{IIB::PRESET_TINY, "TINY", 32, 0.920, 0.757},
+                PresetCase{IIB::PRESET_BALANCED, "BALANCED", 64, 0.865, 0.612}));
 
 TEST(IIBPreset, balanced_stands_a_moved_camera)
 {
@@ -160,4 +163,5 @@ TEST(IIBPreset, unknown_preset_is_refused)
     EXPECT_THROW(IIB::createPreset(IIB::PRESET_TINY, 0.f), cv::Exception);
 }
 
-}}  // namespace
+}  // namespace
+}  // namespace opencv_test

@@ -9,7 +9,7 @@ namespace opencv_test {
 namespace {
 
 typedef std::vector<int> Levels;
-typedef std::map<std::pair<int, int>, int> Distances; // of (query, train code)
+typedef std::map<std::pair<int, int>, int> Distances;  // of (query, train code)
 
 struct AllPairs : public HammingSink
 {
@@ -17,7 +17,8 @@ struct AllPairs : public HammingSink
     void found(int query, int train, int distance) CV_OVERRIDE
     {
         const Distances::const_iterator next = distances.lower_bound(std::make_pair(query, train));
-        EXPECT_TRUE(next == distances.end() || next->first.first > query) << "train codes not in ascending order";
+        EXPECT_TRUE(next == distances.end() || next->first.first > query)
+                << "train codes not in ascending order";
         distances[std::make_pair(query, train)] = distance;
     }
 };
@@ -77,14 +78,15 @@ struct ScanData
     int distance(int query, int train, int part) const
     {
         return hammingDistance((const uchar*)&plainQueries[query * layout.words()],
-                               (const uchar*)&plainTrains[train * layout.words()], layout.end(part) * 4);
+                (const uchar*)&plainTrains[train * layout.words()], layout.end(part) * 4);
     }
 };
 
 TEST(IIB_Hamming, layout_comes_back)
 {
-    for (CodePacking packing : { PACKING_ADDERS, PACKING_TABLES })
-        for (const Levels& levels : { Levels{ 1 }, Levels{ 2, 8, 32, 128 }, Levels{ 8, 24 }, Levels{ 3, 5, 7 }, Levels{ 4 } })
+    for (CodePacking packing : {PACKING_ADDERS, PACKING_TABLES})
+        for (const Levels& levels :
+                {Levels{1}, Levels{2, 8, 32, 128}, Levels{8, 24}, Levels{3, 5, 7}, Levels{4}})
         {
             const CodeLayout layout(levels, packing);
             const Mat descriptor = randomDescriptors(1, 1, layout.bytes());
@@ -107,14 +109,14 @@ TEST(IIB_Hamming, layout_comes_back)
 
 TEST(IIB_Hamming, last_level_begins_with_every_fourth_word)
 {
-    const CodeLayout layout({ 2, 32 }, PACKING_TABLES);
+    const CodeLayout layout({2, 32}, PACKING_TABLES);
     ASSERT_EQ(3, layout.parts());
     EXPECT_EQ(64, layout.bits(1));
     Mat descriptor(1, 34, CV_8U, Scalar(0));
-    descriptor.colRange(2 + 16, 2 + 20).setTo(255); // word 4 of the last level
+    descriptor.colRange(2 + 16, 2 + 20).setTo(255);  // word 4 of the last level
     std::vector<unsigned> plain(layout.words());
     layout.arrange(descriptor.ptr(), plain.data());
-    EXPECT_EQ((std::vector<unsigned>{ 0, 0, ~0u, 0, 0, 0, 0, 0, 0 }), plain);
+    EXPECT_EQ((std::vector<unsigned>{0, 0, ~0u, 0, 0, 0, 0, 0, 0}), plain);
 }
 
 // The whole kernel against a loop over bits: every number of words, more than fit a vector of bytes included,
@@ -122,12 +124,13 @@ TEST(IIB_Hamming, last_level_begins_with_every_fourth_word)
 // hardly any is, so that tiles are left early.
 TEST(IIB_Hamming, scan_as_the_naive_loop)
 {
-    for (int bytes : { 1, 4, 5, 12, 31, 32, 64, 68, 170, 248, 252, 256, 260, 682, 1000 })
-        for (int queryCount : { 1, 2, 3, 4, 5, 8, 9 })
-            for (int below : { bytes * 4, bytes * 2 })
-                for (bool bothDirections : { false, true })
+    for (int bytes : {1, 4, 5, 12, 31, 32, 64, 68, 170, 248, 252, 256, 260, 682, 1000})
+        for (int queryCount : {1, 2, 3, 4, 5, 8, 9})
+            for (int below : {bytes * 4, bytes * 2})
+                for (bool bothDirections : {false, true})
                 {
-                    ScanData data(Levels(1, bytes), queryCount, (1 + queryCount % 3) * CodeLayout::CODES_PER_BLOCK);
+                    ScanData data(
+                            Levels(1, bytes), queryCount, (1 + queryCount % 3) * CodeLayout::CODES_PER_BLOCK);
                     std::fill(data.queryBelow.begin(), data.queryBelow.end(), below);
                     data.trainBelow[3] = bytes * 8 + 1;
                     AllPairs sink;
@@ -139,27 +142,30 @@ TEST(IIB_Hamming, scan_as_the_naive_loop)
                     for (int q = 0; q < queryCount; q++)
                         for (int t = 0; t < data.trains.rows; t++)
                         {
-                            const int distance = hammingDistance(data.queries.ptr(q), data.trains.ptr(t), bytes);
+                            const int distance =
+                                    hammingDistance(data.queries.ptr(q), data.trains.ptr(t), bytes);
                             if (distance < below || (bothDirections && t == 3))
                                 expected[std::make_pair(q, t)] = distance;
                         }
-                    ASSERT_EQ(expected, sink.distances) << bytes << " bytes, " << queryCount << " queries, below "
-                                                        << below << ", both directions " << bothDirections;
+                    ASSERT_EQ(expected, sink.distances)
+                            << bytes << " bytes, " << queryCount << " queries, below " << below
+                            << ", both directions " << bothDirections;
                 }
 }
 
 // Levels that end one soon after the other and far apart, bounds that hardly any pair and that most pairs pass.
 TEST(IIB_Hamming, stops_as_the_naive_loop)
 {
-    for (const Levels& levels : { Levels{ 2, 8, 32, 128 }, Levels{ 16, 48 }, Levels{ 40, 40, 40 } })
-        for (int share : { 0, 10, 25, 35, 50, 100 })
+    for (const Levels& levels : {Levels{2, 8, 32, 128}, Levels{16, 48}, Levels{40, 40, 40}})
+        for (int share : {0, 10, 25, 35, 50, 100})
             for (int masked = 0; masked < 2; masked++)
             {
-                SCOPED_TRACE(format("%d levels, %d %% of the bits, masked %d", (int)levels.size(), share, masked));
+                SCOPED_TRACE(
+                        format("%d levels, %d %% of the bits, masked %d", (int)levels.size(), share, masked));
                 ScanData data(levels, 9, 6 * CodeLayout::CODES_PER_BLOCK);
                 std::vector<PruneStage> stops;
                 for (int level = 0; level + 1 < (int)levels.size(); level++)
-                    stops.push_back(PruneStage{ level, levels[level] * 8 * share / 100 });
+                    stops.push_back(PruneStage{level, levels[level] * 8 * share / 100});
                 const Mat mask = randomMask(3, data.queries.rows, data.trains.rows, 0.7);
                 AllPairs sink;
                 HammingScan scan = data.scan(stops, sink);
@@ -192,11 +198,11 @@ TEST(IIB_Hamming, stops_as_the_naive_loop)
 // A single stop with limits, as they are and lowered by a margin.
 TEST(IIB_Hamming, limits_as_the_naive_loop)
 {
-    for (int margin : { -1, 0, 10, 40, 400 })
+    for (int margin : {-1, 0, 10, 40, 400})
     {
         SCOPED_TRACE(margin);
-        ScanData data({ 2, 8, 32, 128 }, 7, 8 * CodeLayout::CODES_PER_BLOCK);
-        const std::vector<PruneStage> stops(1, PruneStage{ 3, PruneStage::NO_MAX });
+        ScanData data({2, 8, 32, 128}, 7, 8 * CodeLayout::CODES_PER_BLOCK);
+        const std::vector<PruneStage> stops(1, PruneStage{3, PruneStage::NO_MAX});
         std::vector<int> limits(data.queries.rows), expectedLimits;
         for (size_t q = 0; q < limits.size(); q++)
             limits[q] = 60 + 60 * (int)q;

@@ -21,12 +21,13 @@ std::vector<int> levelsOf(int bytes)
     return levels;
 }
 
-typedef testing::TestWithParam<std::tuple<int, int> > IIB_Matcher_Sizes; // train rows, bytes
+typedef testing::TestWithParam<std::tuple<int, int>> IIB_Matcher_Sizes;  // train rows, bytes
 
 TEST_P(IIB_Matcher_Sizes, as_BFMatcher)
 {
     const int rows = std::get<0>(GetParam()), bytes = std::get<1>(GetParam());
-    const Mat train = randomDescriptors(1, rows, bytes), queries = randomDescriptors(2, rows > 100 ? 61 : rows, bytes);
+    const Mat train = randomDescriptors(1, rows, bytes),
+              queries = randomDescriptors(2, rows > 100 ? 61 : rows, bytes);
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(levelsOf(bytes));
     if (rows == 0)
     {
@@ -39,7 +40,7 @@ TEST_P(IIB_Matcher_Sizes, as_BFMatcher)
     const Mat mask = randomMask(3, queries.rows, train.rows, 0.6);
     for (int k = 1; k <= 3; k++)
     {
-        expected.clear(); // BFMatcher appends
+        expected.clear();  // BFMatcher appends
         BFMatcher(NORM_HAMMING).knnMatch(queries, train, expected, k);
         matcher->knnMatch(queries, train, actual, k);
         expectEqual(expected, actual);
@@ -66,14 +67,14 @@ TEST_P(IIB_Matcher_Sizes, as_BFMatcher)
 
 INSTANTIATE_TEST_CASE_P(/**/, IIB_Matcher_Sizes,
         testing::Combine(testing::Values(0, 1, 7, 8, 9, 63, 64, 65, 1000),
-                         testing::Values(1, 2, 10, 32, 43, 61, 64, 170, 682)));
+                testing::Values(1, 2, 10, 32, 43, 61, 64, 170, 682)));
 
 // Several images, one of them empty, with everything at once.
 TEST(IIB_Matcher, all_together_as_the_oracle)
 {
     MatcherOracle oracle;
-    oracle.levelSizes = { 2, 8, 32 };
-    const int rows[] = { 70, 0, 1, 37, 200 };
+    oracle.levelSizes = {2, 8, 32};
+    const int rows[] = {70, 0, 1, 37, 200};
     for (int i = 0; i < 5; i++)
         oracle.images.push_back(randomDescriptors(10 + i, rows[i], 42));
     const Mat queries = randomDescriptors(20, 90, 42);
@@ -81,7 +82,7 @@ TEST(IIB_Matcher, all_together_as_the_oracle)
     for (int i = 0; i < 5; i++)
         masks.push_back(i == 1 || i == 2 ? Mat() : randomMask(30 + i, queries.rows, rows[i], 0.5));
 
-    for (int k : { 1, 2, 5, 400 })
+    for (int k : {1, 2, 5, 400})
         for (int bits = 0; bits < 16; bits++)
         {
             SCOPED_TRACE(format("k %d, setting %d", k, bits));
@@ -90,8 +91,8 @@ TEST(IIB_Matcher, all_together_as_the_oracle)
             oracle.masks = bits & 2 ? masks : std::vector<Mat>();
             oracle.maxRatio = bits & 4 ? 0.8f : 1.f;
             oracle.thresholds = threshold ? std::vector<float>(2, 0.35f) : std::vector<float>();
-            const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(
-                    oracle.levelSizes, threshold ? HierarchicalMatcher::THRESHOLD : HierarchicalMatcher::EXACT, 0.35f,
+            const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(oracle.levelSizes,
+                    threshold ? HierarchicalMatcher::THRESHOLD : HierarchicalMatcher::EXACT, 0.35f,
                     oracle.crossCheck);
             matcher->setMaxRatio(oracle.maxRatio);
             matcher->add(oracle.images);
@@ -103,7 +104,7 @@ TEST(IIB_Matcher, all_together_as_the_oracle)
 
             if (k != 1)
                 continue;
-            for (float radius : { 0.5f, 20.f, 60.9f, 1e9f })
+            for (float radius : {0.5f, 20.f, 60.9f, 1e9f})
             {
                 matcher->radiusMatch(queries, actual, radius, oracle.masks);
                 expectEqual(oracle.radius(queries, (int)std::min(radius, 1e6f)), actual);

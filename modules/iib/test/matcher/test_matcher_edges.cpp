@@ -11,7 +11,7 @@ namespace {
 // Hamming form.
 
 const int BYTES = 42;
-const std::vector<int> LEVELS = { 2, 8, 32 };
+const std::vector<int> LEVELS = {2, 8, 32};
 
 Ptr<HierarchicalMatcher> matcherOf(const std::vector<Mat>& images)
 {
@@ -33,7 +33,7 @@ Mat ladder(int first, int rows)
 TEST(IIB_MatcherEdges, more_neighbours_asked_for_than_there_are)
 {
     Matches matches;
-    matcherOf({ ladder(0, 3) })->knnMatch(ladder(1, 2), matches, INT_MAX);
+    matcherOf({ladder(0, 3)})->knnMatch(ladder(1, 2), matches, INT_MAX);
     ASSERT_EQ(2u, matches.size());
     EXPECT_EQ(3u, matches[0].size());
 }
@@ -41,7 +41,7 @@ TEST(IIB_MatcherEdges, more_neighbours_asked_for_than_there_are)
 TEST(IIB_MatcherEdges, ties_go_to_the_first_image_and_lowest_index)
 {
     Matches matches;
-    matcherOf({ ladder(9, 1), ladder(5, 1), ladder(5, 1), ladder(4, 3) })->knnMatch(ladder(5, 1), matches, 3);
+    matcherOf({ladder(9, 1), ladder(5, 1), ladder(5, 1), ladder(4, 3)})->knnMatch(ladder(5, 1), matches, 3);
     ASSERT_EQ(3u, matches[0].size());
     for (int i = 0; i < 3; i++)
     {
@@ -69,13 +69,14 @@ TEST(IIB_MatcherEdges, train_set_empty)
 
 TEST(IIB_MatcherEdges, empty_image_among_several_is_skipped)
 {
-    const Ptr<HierarchicalMatcher> matcher = matcherOf({ Mat(), ladder(10, 1), Mat(0, BYTES, CV_8U), ladder(0, 1), Mat() });
+    const Ptr<HierarchicalMatcher> matcher =
+            matcherOf({Mat(), ladder(10, 1), Mat(0, BYTES, CV_8U), ladder(0, 1), Mat()});
     std::vector<DMatch> matches;
     matcher->match(ladder(1, 1), matches);
     ASSERT_EQ(1u, matches.size());
     EXPECT_EQ(3, matches[0].imgIdx);
     std::vector<Mat> masks(5);
-    masks[0] = Mat(1, 3, CV_8U, Scalar(1)); // a mask for an image without rows cannot fit
+    masks[0] = Mat(1, 3, CV_8U, Scalar(1));  // a mask for an image without rows cannot fit
     EXPECT_THROW(matcher->match(ladder(1, 1), matches, masks), cv::Exception);
     masks[0] = Mat();
     masks[3] = Mat(1, 1, CV_8U, Scalar(0));
@@ -88,7 +89,7 @@ TEST(IIB_MatcherEdges, empty_image_among_several_is_skipped)
 TEST(IIB_MatcherEdges, small_image_does_not_limit_k)
 {
     Matches matches;
-    matcherOf({ ladder(0, 7), ladder(100, 1) })->knnMatch(ladder(0, 4), matches, 3);
+    matcherOf({ladder(0, 7), ladder(100, 1)})->knnMatch(ladder(0, 4), matches, 3);
     for (size_t q = 0; q < matches.size(); q++)
         EXPECT_EQ(3u, matches[q].size());
 }
@@ -96,9 +97,9 @@ TEST(IIB_MatcherEdges, small_image_does_not_limit_k)
 TEST(IIB_MatcherEdges, compact_result_drops_rows_without_a_match)
 {
     Matches matches;
-    const Ptr<HierarchicalMatcher> matcher = matcherOf({ ladder(0, 3) });
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({ladder(0, 3)});
     matcher->radiusMatch(ladder(1, 300), matches, 4, noArray(), true);
-    ASSERT_EQ(6u, matches.size()); // queries 1 to 6 are within 4 of 0, 1 or 2
+    ASSERT_EQ(6u, matches.size());  // queries 1 to 6 are within 4 of 0, 1 or 2
     for (size_t q = 0; q < matches.size(); q++)
         EXPECT_FALSE(matches[q].empty());
 }
@@ -106,7 +107,7 @@ TEST(IIB_MatcherEdges, compact_result_drops_rows_without_a_match)
 TEST(IIB_MatcherEdges, radius_includes_its_bound_and_zero_throws)
 {
     Matches matches;
-    const Ptr<HierarchicalMatcher> matcher = matcherOf({ ladder(0, 50) });
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({ladder(0, 50)});
     matcher->radiusMatch(ladder(20, 1), matches, 3.f);
     EXPECT_EQ(7u, matches[0].size());
     matcher->radiusMatch(ladder(20, 1), matches, 2.9f);
@@ -118,7 +119,7 @@ TEST(IIB_MatcherEdges, radius_includes_its_bound_and_zero_throws)
 TEST(IIB_MatcherEdges, second_call_does_not_append)
 {
     Matches matches;
-    const Ptr<HierarchicalMatcher> matcher = matcherOf({ ladder(0, 9) });
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({ladder(0, 9)});
     for (int i = 0; i < 2; i++)
     {
         matcher->knnMatch(ladder(0, 5), matches, 2);
@@ -164,7 +165,7 @@ TEST(IIB_MatcherEdges, two_images_with_masks)
         EXPECT_EQ(q < 25 ? q : q - 25, matches[q].trainIdx);
     }
     // Without itself and all below, the nearest is the next.
-    std::vector<Mat> masks = { Mat(30, 25, CV_8U, Scalar(0)), Mat(30, 35, CV_8U, Scalar(0)) };
+    std::vector<Mat> masks = {Mat(30, 25, CV_8U, Scalar(0)), Mat(30, 35, CV_8U, Scalar(0))};
     for (int q = 0; q < 30; q++)
         for (int t = q + 1; t < 60; t++)
             (t < 25 ? masks[0].at<uchar>(q, t) : masks[1].at<uchar>(q, t - 25)) = 255;
@@ -179,7 +180,8 @@ TEST(IIB_MatcherEdges, two_images_with_masks)
 // opencv#11855
 TEST(IIB_MatcherEdges, cross_check_with_compact_result)
 {
-    const Mat trains = (Mat_<uchar>(2, 3) << 1, 1, 0, 1, 1, 1), queries = (Mat_<uchar>(2, 3) << 1, 1, 1, 0, 0, 0);
+    const Mat trains = (Mat_<uchar>(2, 3) << 1, 1, 0, 1, 1, 1),
+              queries = (Mat_<uchar>(2, 3) << 1, 1, 1, 0, 0, 0);
     const Ptr<HierarchicalMatcher> matcher =
             HierarchicalMatcher::create(std::vector<int>(1, 3), HierarchicalMatcher::EXACT, 0.35f, true);
     Matches matches;
@@ -197,7 +199,7 @@ TEST(IIB_MatcherEdges, cross_check_with_more_neighbours_than_trains)
 {
     MatcherOracle oracle;
     oracle.levelSizes = LEVELS;
-    oracle.images = { ladder(7, 3) };
+    oracle.images = {ladder(7, 3)};
     oracle.crossCheck = true;
     const Ptr<HierarchicalMatcher> matcher = matcherOf(oracle.images);
     matcher->setCrossCheck(true);
@@ -230,7 +232,7 @@ TEST(IIB_MatcherEdges, views_and_later_changes_of_the_matrices)
 {
     Mat train = ladder(0, 20), wide(20, BYTES + 30, CV_8U, Scalar(255));
     train.copyTo(wide.colRange(7, 7 + BYTES));
-    const Ptr<HierarchicalMatcher> matcher = matcherOf({ wide.colRange(7, 7 + BYTES) });
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({wide.colRange(7, 7 + BYTES)});
     wide.setTo(0);
     std::vector<DMatch> matches;
     matcher->match(train, matches);
@@ -240,16 +242,16 @@ TEST(IIB_MatcherEdges, views_and_later_changes_of_the_matrices)
 
 TEST(IIB_MatcherEdges, clone_keeps_parameters_and_copies_data)
 {
-    const Ptr<HierarchicalMatcher> matcher = matcherOf({ ladder(0, 5) });
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({ladder(0, 5)});
     matcher->setMode(HierarchicalMatcher::THRESHOLD);
-    matcher->setThresholds({ 0.1f, 0.2f });
+    matcher->setThresholds({0.1f, 0.2f});
     matcher->setCrossCheck(true);
     matcher->setMaxRatio(0.5f);
-    for (bool empty : { false, true })
+    for (bool empty : {false, true})
     {
         const Ptr<HierarchicalMatcher> copy = matcher->clone(empty).dynamicCast<HierarchicalMatcher>();
         EXPECT_EQ(HierarchicalMatcher::THRESHOLD, copy->getMode());
-        EXPECT_EQ((std::vector<float>{ 0.1f, 0.2f }), copy->getThresholds());
+        EXPECT_EQ((std::vector<float>{0.1f, 0.2f}), copy->getThresholds());
         EXPECT_TRUE(copy->getCrossCheck());
         EXPECT_EQ(0.5f, copy->getMaxRatio());
         EXPECT_EQ(empty, copy->empty());
@@ -261,22 +263,24 @@ TEST(IIB_MatcherEdges, clone_keeps_parameters_and_copies_data)
 TEST(IIB_MatcherEdges, bad_input_throws)
 {
     std::vector<DMatch> matches;
-    const Ptr<HierarchicalMatcher> matcher = matcherOf({ ladder(0, 5) });
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({ladder(0, 5)});
     EXPECT_THROW(matcher->match(Mat(3, BYTES - 1, CV_8U, Scalar(0)), matches), cv::Exception);
     EXPECT_THROW(matcher->match(Mat(3, BYTES, CV_32F, Scalar(0)), matches), cv::Exception);
     EXPECT_THROW(matcher->add(Mat(3, BYTES + 1, CV_8U, Scalar(0))), cv::Exception);
     EXPECT_EQ(1u, matcher->getTrainDescriptors().size());
-    EXPECT_THROW(matcher->match(ladder(0, 2), matches, std::vector<Mat>(1, Mat(2, 4, CV_8U, Scalar(1)))), cv::Exception);
-    EXPECT_THROW(matcher->match(ladder(0, 2), matches, std::vector<Mat>(1, Mat(2, 5, CV_32S, Scalar(1)))), cv::Exception);
+    EXPECT_THROW(matcher->match(ladder(0, 2), matches, std::vector<Mat>(1, Mat(2, 4, CV_8U, Scalar(1)))),
+            cv::Exception);
+    EXPECT_THROW(matcher->match(ladder(0, 2), matches, std::vector<Mat>(1, Mat(2, 5, CV_32S, Scalar(1)))),
+            cv::Exception);
     Mat indices, distances;
     EXPECT_THROW(matcher->knnMatchArrays(ladder(0, 2), indices, distances, 0), cv::Exception);
     EXPECT_THROW(matcher->setMode(3), cv::Exception);
-    EXPECT_THROW(matcher->setThresholds({ 0.1f, 0.2f, 0.3f }), cv::Exception);
-    EXPECT_THROW(matcher->setThresholds({ 1.5f }), cv::Exception);
+    EXPECT_THROW(matcher->setThresholds({0.1f, 0.2f, 0.3f}), cv::Exception);
+    EXPECT_THROW(matcher->setThresholds({1.5f}), cv::Exception);
     EXPECT_THROW(matcher->setMaxRatio(0), cv::Exception);
     EXPECT_THROW(HierarchicalMatcher::create(std::vector<int>()), cv::Exception);
-    EXPECT_THROW(HierarchicalMatcher::create({ 8, 0 }), cv::Exception);
-    EXPECT_THROW(HierarchicalMatcher::create({ 32 }, HierarchicalMatcher::THRESHOLD, -1.f), cv::Exception);
+    EXPECT_THROW(HierarchicalMatcher::create({8, 0}), cv::Exception);
+    EXPECT_THROW(HierarchicalMatcher::create({32}, HierarchicalMatcher::THRESHOLD, -1.f), cv::Exception);
 }
 
 }  // namespace

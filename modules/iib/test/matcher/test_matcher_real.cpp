@@ -17,7 +17,7 @@ struct RealPair
 
     RealPair(int second, size_t count)
     {
-        const Mat images[] = { read(1), read(second) };
+        const Mat images[] = {read(1), read(second)};
         std::vector<KeyPoint> all;
         FAST(images[0], all, 1);
         for (size_t i = 0; i < count; i++)
@@ -31,7 +31,7 @@ struct RealPair
     static Mat read(int number)
     {
         return imread(cvtest::findDataFile(format("illumination/iib_demo/scene/%d.png", number), false),
-                      IMREAD_GRAYSCALE);
+                IMREAD_GRAYSCALE);
     }
 
     //! The train code found for each query within 3 pixels, -1 where there is none.
@@ -75,7 +75,7 @@ TEST(IIB_Real, threshold_is_the_papers_rule)
     MatcherOracle oracle;
     oracle.levelSizes = pair.levels;
     oracle.images.push_back(pair.trains);
-    for (float threshold : { 0.25f, 0.35f, 0.45f, 0.6f })
+    for (float threshold : {0.25f, 0.35f, 0.45f, 0.6f})
     {
         oracle.thresholds.assign(3, threshold);
         oracle.compared = oracle.all = 0;
@@ -95,14 +95,14 @@ TEST(IIB_Real, threshold_is_the_papers_rule)
 // What the header says of ADAPTIVE, on both pairs; its bound was tuned on other images.
 TEST(IIB_Real, adaptive_keeps_the_correct_matches)
 {
-    for (int second : { 2, 3 })
-        for (bool crossCheck : { false, true })
+    for (int second : {2, 3})
+        for (bool crossCheck : {false, true})
         {
             const RealPair pair(second, 10000);
             const std::vector<int> exact = pair.correct(
                     HierarchicalMatcher::create(pair.levels, HierarchicalMatcher::EXACT, 0.35f, crossCheck));
-            const Ptr<HierarchicalMatcher> matcher =
-                    HierarchicalMatcher::create(pair.levels, HierarchicalMatcher::ADAPTIVE, 0.35f, crossCheck);
+            const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(
+                    pair.levels, HierarchicalMatcher::ADAPTIVE, 0.35f, crossCheck);
             const std::vector<int> adaptive = pair.correct(matcher);
             int all = 0, kept = 0;
             for (size_t i = 0; i < exact.size(); i++)
@@ -110,8 +110,8 @@ TEST(IIB_Real, adaptive_keeps_the_correct_matches)
                 all += exact[i] >= 0;
                 kept += exact[i] >= 0 && adaptive[i] == exact[i];
             }
-            std::cout << format("[          ] 1 - %d, cross-check %d: %d of %d, MC %.3f\n", second, crossCheck, kept,
-                                all, matcher->matchCost());
+            std::cout << format("[          ] 1 - %d, cross-check %d: %d of %d, MC %.3f\n", second,
+                    crossCheck, kept, all, matcher->matchCost());
             EXPECT_GE(kept, 0.98 * all);
             EXPECT_LE(matcher->matchCost(), 0.5);
         }

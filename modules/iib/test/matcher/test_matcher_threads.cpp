@@ -9,19 +9,19 @@
 namespace opencv_test {
 namespace {
 
-const std::vector<int> LEVELS = { 2, 8, 32 };
+const std::vector<int> LEVELS = {2, 8, 32};
 
-typedef testing::TestWithParam<int> IIB_Matcher_Threads; // mode
+typedef testing::TestWithParam<int> IIB_Matcher_Threads;  // mode
 
 TEST_P(IIB_Matcher_Threads, same_result_for_every_number)
 {
     const Mat train = randomDescriptors(1, 1300, 42), queries = randomDescriptors(2, 1100, 42);
     const int before = getNumThreads();
-    for (bool crossCheck : { false, true })
+    for (bool crossCheck : {false, true})
     {
         Matches expected, nearby;
         double cost = 0;
-        for (int threads : { 1, 2, 8 })
+        for (int threads : {1, 2, 8})
         {
             setNumThreads(threads);
             const Ptr<HierarchicalMatcher> matcher =
@@ -47,9 +47,9 @@ TEST_P(IIB_Matcher_Threads, same_result_for_every_number)
 TEST_P(IIB_Matcher_Threads, one_object_serves_many)
 {
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(LEVELS, GetParam(), 0.35f, true);
-    matcher->add(std::vector<Mat>{ randomDescriptors(1, 500, 42), randomDescriptors(3, 300, 42) });
+    matcher->add(std::vector<Mat>{randomDescriptors(1, 500, 42), randomDescriptors(3, 300, 42)});
     const Mat queries = randomDescriptors(2, 300, 42);
-    const std::vector<Mat> masks = { randomMask(4, 300, 500, 0.5), Mat() };
+    const std::vector<Mat> masks = {randomMask(4, 300, 500, 0.5), Mat()};
     const auto ask = [&](size_t thread) {
         Matches matches;
         switch (thread % 4)
@@ -61,7 +61,8 @@ TEST_P(IIB_Matcher_Threads, one_object_serves_many)
             Mat indices, distances;
             matcher->knnMatchArrays(queries, indices, distances, 2);
             for (int q = 0; q < indices.rows; q++)
-                matches.push_back(std::vector<DMatch>(1, DMatch(q, indices.at<int>(q), (float)distances.at<int>(q))));
+                matches.push_back(
+                        std::vector<DMatch>(1, DMatch(q, indices.at<int>(q), (float)distances.at<int>(q))));
         }
         return matches;
     };
@@ -81,8 +82,9 @@ TEST_P(IIB_Matcher_Threads, one_object_serves_many)
         expectEqual(ask(i), results[i]);
 }
 
-INSTANTIATE_TEST_CASE_P(/**/, IIB_Matcher_Threads, testing::Values((int)HierarchicalMatcher::EXACT,
-        (int)HierarchicalMatcher::THRESHOLD, (int)HierarchicalMatcher::ADAPTIVE));
+INSTANTIATE_TEST_CASE_P(/**/, IIB_Matcher_Threads,
+        testing::Values((int)HierarchicalMatcher::EXACT, (int)HierarchicalMatcher::THRESHOLD,
+                (int)HierarchicalMatcher::ADAPTIVE));
 
 }  // namespace
 }  // namespace opencv_test

@@ -43,19 +43,19 @@ int at(const Mat& m, int y, int x)
 
 int gradX(const Mat& m, int y, int x)
 {
-    return at(m, y - 1, x + 1) + 2 * at(m, y, x + 1) + at(m, y + 1, x + 1)
-           - at(m, y - 1, x - 1) - 2 * at(m, y, x - 1) - at(m, y + 1, x - 1);
+    return at(m, y - 1, x + 1) + 2 * at(m, y, x + 1) + at(m, y + 1, x + 1) - at(m, y - 1, x - 1) -
+           2 * at(m, y, x - 1) - at(m, y + 1, x - 1);
 }
 
 int gradY(const Mat& m, int y, int x)
 {
-    return at(m, y + 1, x - 1) + 2 * at(m, y + 1, x) + at(m, y + 1, x + 1)
-           - at(m, y - 1, x - 1) - 2 * at(m, y - 1, x) - at(m, y - 1, x + 1);
+    return at(m, y + 1, x - 1) + 2 * at(m, y + 1, x) + at(m, y + 1, x + 1) - at(m, y - 1, x - 1) -
+           2 * at(m, y - 1, x) - at(m, y - 1, x + 1);
 }
 
 //! The values of all channels in use at one pixel, given its gradient.
-std::vector<int> valuesOf(int enabled, const Mat& grey, int gx, int gy, int steps, const std::vector<Mat>& extra,
-                          int y, int x)
+std::vector<int> valuesOf(
+        int enabled, const Mat& grey, int gx, int gy, int steps, const std::vector<Mat>& extra, int y, int x)
 {
     const int offset = grey.depth() == CV_8U ? 6 * 255 : 6 * 65535;  // keeps signed gradients positive
     std::vector<int> v;
@@ -107,17 +107,14 @@ Cell uprightCell(const Channel& c, const SupportRegion& r, int n, int row, int c
 {
     const int x0 = edge(r.x, r.side, col, n, c.cols), x1 = edge(r.x, r.side, col + 1, n, c.cols);
     const int y0 = edge(r.y, r.side, row, n, c.rows), y1 = edge(r.y, r.side, row + 1, n, c.rows);
-    Cell cell = { 0, (int64)(x1 - x0) * (y1 - y0) };
+    Cell cell = {0, (int64)(x1 - x0) * (y1 - y0)};
     for (int y = y0; y < y1; y++)
         for (int x = x0; x < x1; x++)
             cell.sum += c(y, x);
     return cell;
 }
 
-int64 clampTo(int64 v, int limit)
-{
-    return std::min<int64>(std::max<int64>(v, 0), limit - 1);
-}
+int64 clampTo(int64 v, int limit) { return std::min<int64>(std::max<int64>(v, 0), limit - 1); }
 
 //! support region and gradients turned by the keypoint's angle: nearest pixels on a grid of samples x samples.
 struct Turned
@@ -147,8 +144,10 @@ struct Turned
                 const int turnedX = (cosine * gx + sine * gy + 2048) >> 12;
                 const int turnedY = (cosine * gy - sine * gx + 2048) >> 12;
                 const bool flat = gx == 0 && gy == 0;
-                const int turnedO = flat ? 0 : (orientation(gx, gy) + turn) & (cv::iib::ORIENTATION_STEPS - 1);
-                const std::vector<int> all = valuesOf(iib.getChannels(), grey, turnedX, turnedY, turnedO, extra, y, x);
+                const int turnedO =
+                        flat ? 0 : (orientation(gx, gy) + turn) & (cv::iib::ORIENTATION_STEPS - 1);
+                const std::vector<int> all =
+                        valuesOf(iib.getChannels(), grey, turnedX, turnedY, turnedO, extra, y, x);
                 while (values.size() < all.size())
                     values.push_back(Channel(samples, samples));
                 for (size_t c = 0; c < all.size(); c++)
@@ -160,7 +159,7 @@ struct Turned
     {
         const int side = samples / n;
         const Rect r(col * side, row * side, side, side);
-        Cell result = { (int64)sum(values[c](r))[0], r.area() };
+        Cell result = {(int64)sum(values[c](r))[0], r.area()};
         return result;
     }
 };
@@ -191,7 +190,9 @@ std::vector<bool> mapQuad(int mapping, const std::array<int64, 4>& x)
         case IIB::MAPPING_MAX: bits.push_back(x[i] == hi); break;
         case IIB::MAPPING_MIN: bits.push_back(x[i] == lo); break;
         case IIB::MAPPING_QUARTILE:
-            code = 4 * (x[i] - lo) > 3 * (hi - lo) ? 3 : 2 * (x[i] - lo) > hi - lo ? 2 : 4 * (x[i] - lo) > hi - lo;
+            code = 4 * (x[i] - lo) > 3 * (hi - lo) ? 3
+                   : 2 * (x[i] - lo) > hi - lo     ? 2
+                                                   : 4 * (x[i] - lo) > hi - lo;
             bits.push_back((code & 2) != 0);
             bits.push_back((code & 1) != 0);
             break;
@@ -222,8 +223,8 @@ std::vector<bool> mapQuad(int mapping, const std::array<int64, 4>& x)
 std::vector<bool> quadBits(const IIB& iib, const Cells& cells, int channel, int level, int row, int col)
 {
     const int n = 1 << level;
-    const Quad q = { { cells(channel, n, row, col), cells(channel, n, row, col + 1),
-                       cells(channel, n, row + 1, col), cells(channel, n, row + 1, col + 1) } };
+    const Quad q = {{cells(channel, n, row, col), cells(channel, n, row, col + 1),
+            cells(channel, n, row + 1, col), cells(channel, n, row + 1, col + 1)}};
     return mapQuad(iib.getMapping(), comparable(q));
 }
 
@@ -237,7 +238,7 @@ std::vector<bool> levelBits(const IIB& iib, const Cells& cells, int channels, in
             for (int dx = 0; dx <= (int)iib.getOverlap(); dx++)
                 for (int row = dy; row + 1 < n; row += 2)
                 {
-                    std::vector<std::vector<bool> > quads;
+                    std::vector<std::vector<bool>> quads;
                     for (int col = dx; col + 1 < n; col += 2)
                         for (int c = group; c < std::min(group + 4, channels); c++)
                             quads.push_back(quadBits(iib, cells, c, level, row, col));
@@ -257,7 +258,8 @@ std::vector<bool> selectedBits(const IIB& iib, const Cells& cells, const Mat_<in
             if (selection(i, 0) == level && (selection(i, 4) >> bit & 1))
             {
                 const int channel = selection(i, 1), row = selection(i, 2), col = selection(i, 3);
-                const std::array<int, 6> place = { { channel / 4, row % 2 * 2 + col % 2, row, bit, col, channel } };
+                const std::array<int, 6> place = {
+                        {channel / 4, row % 2 * 2 + col % 2, row, bit, col, channel}};
                 bits[place] = quadBits(iib, cells, channel, level, row, col)[bit];
             }
     std::vector<bool> result;
@@ -274,8 +276,8 @@ void appendLevel(std::vector<uchar>& bytes, const std::vector<bool>& bits)
         bytes[start + i / 8] |= (uchar)((int)bits[i] << i % 8);
 }
 
-Cells cellsOf(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra, const std::vector<Channel>& channels,
-              const KeyPoint& kp)
+Cells cellsOf(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra,
+        const std::vector<Channel>& channels, const KeyPoint& kp)
 {
     if (iib.getUseOrientation() && kp.angle >= 0)
     {
@@ -283,7 +285,8 @@ Cells cellsOf(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra, co
         return [turned](int c, int n, int row, int col) { return turned.cell(c, n, row, col); };
     }
     const SupportRegion region(iib, kp);
-    return [region, &channels](int c, int n, int row, int col) { return uprightCell(channels[c], region, n, row, col); };
+    return [region, &channels](
+                   int c, int n, int row, int col) { return uprightCell(channels[c], region, n, row, col); };
 }
 
 }  // namespace
@@ -295,7 +298,8 @@ std::vector<Channel> channelsOf(const IIB& iib, const Mat& grey, const std::vect
         for (int x = 0; x < grey.cols; x++)
         {
             const int gx = gradX(grey, y, x), gy = gradY(grey, y, x);
-            const std::vector<int> v = valuesOf(iib.getChannels(), grey, gx, gy, orientation(gx, gy), extra, y, x);
+            const std::vector<int> v =
+                    valuesOf(iib.getChannels(), grey, gx, gy, orientation(gx, gy), extra, y, x);
             while (channels.size() < v.size())
                 channels.push_back(Channel(grey.size()));
             for (size_t c = 0; c < v.size(); c++)
@@ -304,7 +308,8 @@ std::vector<Channel> channelsOf(const IIB& iib, const Mat& grey, const std::vect
     return channels;
 }
 
-Mat describe(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra, const std::vector<KeyPoint>& keypoints)
+Mat describe(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra,
+        const std::vector<KeyPoint>& keypoints)
 {
     const std::vector<Channel> channels = channelsOf(iib, grey, extra);
     const Mat_<int> selection = iib.getSelection();

@@ -42,7 +42,8 @@ bool MatcherOracle::passes(const uchar* query, const uchar* train)
     {
         const int bits = 8 * levelSizes[level];
         compared += bits;
-        if (level < thresholds.size() && hammingDistance(query, train, levelSizes[level]) > thresholds[level] * (double)bits)
+        if (level < thresholds.size() &&
+                hammingDistance(query, train, levelSizes[level]) > thresholds[level] * (double)bits)
             return false;
         query += levelSizes[level];
         train += levelSizes[level];
@@ -68,8 +69,8 @@ Matches MatcherOracle::candidates(const Mat& queries)
                     continue;
                 all += 8 * queries.cols;
                 if (passes(queries.ptr(q), images[image].ptr(t)))
-                    result[q].push_back(DMatch(q, t, image, (float)hammingDistance(queries.ptr(q), images[image].ptr(t),
-                                                                                   queries.cols)));
+                    result[q].push_back(DMatch(q, t, image,
+                            (float)hammingDistance(queries.ptr(q), images[image].ptr(t), queries.cols)));
             }
     for (size_t q = 0; q < result.size(); q++)
         std::sort(result[q].begin(), result[q].end(), nearer);
@@ -80,7 +81,7 @@ Matches MatcherOracle::knn(const Mat& queries, int k)
 {
     Matches result = candidates(queries);
     // For each train descriptor, (distance, query) in ascending order.
-    std::map<std::pair<int, int>, std::vector<std::pair<float, int> > > backwards;
+    std::map<std::pair<int, int>, std::vector<std::pair<float, int>>> backwards;
     for (size_t q = 0; q < result.size(); q++)
         for (size_t i = 0; i < result[q].size(); i++)
             backwards[std::make_pair(result[q][i].imgIdx, result[q][i].trainIdx)].push_back(
@@ -92,12 +93,16 @@ Matches MatcherOracle::knn(const Mat& queries, int k)
             row.clear();
         row.resize(std::min(row.size(), (size_t)k));
         if (crossCheck)
-            row.erase(std::remove_if(row.begin(), row.end(), [&](const DMatch& m) {
-                std::vector<std::pair<float, int> > back = backwards[std::make_pair(m.imgIdx, m.trainIdx)];
-                std::sort(back.begin(), back.end());
-                back.resize(std::min(back.size(), (size_t)k));
-                return std::find(back.begin(), back.end(), std::make_pair(m.distance, (int)q)) == back.end();
-            }), row.end());
+            row.erase(std::remove_if(row.begin(), row.end(),
+                              [&](const DMatch& m) {
+                                  std::vector<std::pair<float, int>> back =
+                                          backwards[std::make_pair(m.imgIdx, m.trainIdx)];
+                                  std::sort(back.begin(), back.end());
+                                  back.resize(std::min(back.size(), (size_t)k));
+                                  return std::find(back.begin(), back.end(),
+                                                 std::make_pair(m.distance, (int)q)) == back.end();
+                              }),
+                    row.end());
     }
     return result;
 }

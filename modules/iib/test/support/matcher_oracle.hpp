@@ -9,7 +9,7 @@
 
 namespace opencv_test {
 
-typedef std::vector<std::vector<DMatch> > Matches;
+typedef std::vector<std::vector<DMatch>> Matches;
 
 //! Random descriptors in clusters, so that there are near ones, equal ones and ties.
 Mat randomDescriptors(uint64 seed, int rows, int bytes);
@@ -24,10 +24,10 @@ struct MatcherOracle
 {
     std::vector<Mat> images, masks;
     std::vector<int> levelSizes;
-    std::vector<float> thresholds; //!< of the paper's rule; empty: all pairs count
+    std::vector<float> thresholds;  //!< of the paper's rule; empty: all pairs count
     bool crossCheck;
     float maxRatio;
-    double compared, all; //!< bits, after a call
+    double compared, all;  //!< bits, after a call
 
     MatcherOracle() : crossCheck(false), maxRatio(1), compared(0), all(0) {}
     Matches knn(const Mat& queries, int k);

@@ -48,22 +48,22 @@ public:
     //! Image channels (paper, "Choice of Image Data Channels"), to be or-ed.
     enum Channel
     {
-        CHANNEL_GRAD_X = 1,         //!< |gx|, horizontal gradient magnitude, Sobel 3x3
-        CHANNEL_GRAD_Y = 2,         //!< |gy|, vertical gradient magnitude
-        CHANNEL_ORIENTATION = 4,    //!< gradient orientation atan2(-gy, gx), 0 to 360 degrees in 1024 steps
-        CHANNEL_INTENSITY = 8,      //!< grey value
-        CHANNEL_SIGNED_GRAD_X = 16, //!< gx (not in the paper)
-        CHANNEL_SIGNED_GRAD_Y = 32, //!< gy (not in the paper)
-        CHANNELS_DEFAULT = 15       //!< the paper's four
+        CHANNEL_GRAD_X = 1,          //!< |gx|, horizontal gradient magnitude, Sobel 3x3
+        CHANNEL_GRAD_Y = 2,          //!< |gy|, vertical gradient magnitude
+        CHANNEL_ORIENTATION = 4,     //!< gradient orientation atan2(-gy, gx), 0 to 360 degrees in 1024 steps
+        CHANNEL_INTENSITY = 8,       //!< grey value
+        CHANNEL_SIGNED_GRAD_X = 16,  //!< gx (not in the paper)
+        CHANNEL_SIGNED_GRAD_Y = 32,  //!< gy (not in the paper)
+        CHANNELS_DEFAULT = 15        //!< the paper's four
     };
 
     //! From the four cell means x of a quad to bits (paper, "Binary Bit Formulation").
     enum Mapping
     {
-        MAPPING_MEAN,     //!< 4 bits: x_i > mean(x), equation (1)
-        MAPPING_MAX,      //!< 4 bits: x_i = max(x)
-        MAPPING_MIN,      //!< 4 bits: x_i = min(x)
-        MAPPING_QUARTILE, //!< 8 bits: the quarter of [min(x), max(x)] that x_i is in, equation (2); high bit first
+        MAPPING_MEAN,  //!< 4 bits: x_i > mean(x), equation (1)
+        MAPPING_MAX,   //!< 4 bits: x_i = max(x)
+        MAPPING_MIN,   //!< 4 bits: x_i = min(x)
+        MAPPING_QUARTILE,  //!< 8 bits: the quarter of [min(x), max(x)] that x_i is in, equation (2); high bit first
         MAPPING_SORT,     //!< 8 bits: the rank of x_i, ties by cell index; high bit first
         MAPPING_HAAR,     //!< 3 bits: left > right, top > bottom, main diagonal > other diagonal
         MAPPING_PAIRWISE  //!< 4 bits: x_0 > x_1, x_1 > x_3, x_3 > x_2, x_2 > x_0, around the quad
@@ -72,8 +72,8 @@ public:
     //! What becomes of a keypoint whose ROS leaves the image.
     enum Border
     {
-        BORDER_CLAMP, //!< it stays; only pixels of the image count
-        BORDER_DROP   //!< it is removed, as Feature2D::compute documents
+        BORDER_CLAMP,  //!< it stays; only pixels of the image count
+        BORDER_DROP    //!< it is removed, as Feature2D::compute documents
     };
 
     /** @brief Creates an extractor.
@@ -88,8 +88,7 @@ public:
     @param extraChannels number of maps of the image's size that computeWithChannels is given, 0 to 16.
     @throws cv::Exception (StsBadArg or StsOutOfRange) for a value outside these ranges.
      */
-    CV_WRAP static Ptr<IIBDescriptorExtractor> create(
-            float scaleFactor = 2.f, int granularity = 4,
+    CV_WRAP static Ptr<IIBDescriptorExtractor> create(float scaleFactor = 2.f, int granularity = 4,
             int channels = IIBDescriptorExtractor::CHANNELS_DEFAULT,
             int mapping = IIBDescriptorExtractor::MAPPING_MEAN, bool overlap = false,
             bool useOrientation = false, int extraChannels = 0);
@@ -98,13 +97,13 @@ public:
     were not trained on; the default of 170 bytes has 0.978 / 0.903 there. */
     enum Preset
     {
-        PRESET_S128,     //!< 16 bytes of the default's bits (paper, "Reduction of the IIB Descriptor Size"): 0.902 / 0.748
-        PRESET_S256,     //!< 32 bytes of the default's bits: 0.948 / 0.824
-        PRESET_S512,     //!< 64 bytes of the default's bits: 0.973 / 0.878
-        PRESET_ACCURATE, //!< 170 bytes, a ROS 1.25 times as wide, all quads: 0.988 / 0.946
-        PRESET_COMPACT,  //!< 64 bytes, a ROS 1.25 times as wide: 0.982 / 0.918
-        PRESET_TINY,     //!< 32 bytes, a ROS 1.25 times as wide: 0.969 / 0.878
-        PRESET_BALANCED  //!< 64 bytes, for cameras that move, a ROS 1.125 times as wide: 0.949 / 0.827
+        PRESET_S128,  //!< 16 bytes of the default's bits (paper, "Reduction of the IIB Descriptor Size"): 0.902 / 0.748
+        PRESET_S256,      //!< 32 bytes of the default's bits: 0.948 / 0.824
+        PRESET_S512,      //!< 64 bytes of the default's bits: 0.973 / 0.878
+        PRESET_ACCURATE,  //!< 170 bytes, a ROS 1.25 times as wide, all quads: 0.988 / 0.946
+        PRESET_COMPACT,   //!< 64 bytes, a ROS 1.25 times as wide: 0.982 / 0.918
+        PRESET_TINY,      //!< 32 bytes, a ROS 1.25 times as wide: 0.969 / 0.878
+        PRESET_BALANCED   //!< 64 bytes, for cameras that move, a ROS 1.125 times as wide: 0.949 / 0.827
     };
 
     /** @brief Creates an extractor with a selection that comes with the library.
@@ -147,8 +146,8 @@ public:
     @throws cv::Exception for a wrong type, size or number of maps, for pixels that are NaN or infinite,
     and for keypoints with a NaN or infinite coordinate or a size that is not positive.
      */
-    CV_WRAP_AS(computeWithChannels) virtual void compute(
-            InputArray image, InputArrayOfArrays extraChannels,
+    CV_WRAP_AS(computeWithChannels)
+    virtual void compute(InputArray image, InputArrayOfArrays extraChannels,
             CV_OUT CV_IN_OUT std::vector<KeyPoint>& keypoints, OutputArray descriptors) = 0;
 
     CV_WRAP virtual void setScaleFactor(float scaleFactor) = 0;

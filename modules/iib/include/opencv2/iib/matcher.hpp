@@ -61,9 +61,9 @@ public:
     //! Which pairs are compared to the end.
     enum Mode
     {
-        EXACT,     //!< all that could change the result of brute force
-        THRESHOLD, //!< those within the threshold at every level before the last
-        ADAPTIVE   //!< those near the query's best so far before the most of the last level
+        EXACT,      //!< all that could change the result of brute force
+        THRESHOLD,  //!< those within the threshold at every level before the last
+        ADAPTIVE    //!< those near the query's best so far before the most of the last level
     };
 
     /** @brief Creates a matcher.
@@ -74,9 +74,8 @@ public:
     @param crossCheck report only pairs that are among each other's nearest.
     @throws cv::Exception (StsBadArg or StsOutOfRange) for a value outside these ranges.
      */
-    CV_WRAP static Ptr<HierarchicalMatcher> create(
-            const std::vector<int>& levelSizes, int mode = HierarchicalMatcher::EXACT,
-            float threshold = 0.35f, bool crossCheck = false);
+    CV_WRAP static Ptr<HierarchicalMatcher> create(const std::vector<int>& levelSizes,
+            int mode = HierarchicalMatcher::EXACT, float threshold = 0.35f, bool crossCheck = false);
 
     //! Bytes of each level, coarse first.
     CV_WRAP virtual std::vector<int> levelSizes() const = 0;
@@ -117,9 +116,8 @@ public:
     @param k number of neighbours, > 0.
     @param mask queries x train rows, CV_8UC1, or empty.
      */
-    CV_WRAP virtual void knnMatchArrays(
-            InputArray queryDescriptors, InputArray trainDescriptors, OutputArray indices,
-            OutputArray distances, int k = 1, InputArray mask = noArray()) const = 0;
+    CV_WRAP virtual void knnMatchArrays(InputArray queryDescriptors, InputArray trainDescriptors,
+            OutputArray indices, OutputArray distances, int k = 1, InputArray mask = noArray()) const = 0;
 
     /** @overload
     @param queryDescriptors queries x descriptor size, CV_8U.
@@ -129,9 +127,9 @@ public:
     @param masks as in knnMatch.
     @param imageIndices queries x k, CV_32S: the train image; -1 where there is none.
      */
-    CV_WRAP virtual void knnMatchArrays(
-            InputArray queryDescriptors, OutputArray indices, OutputArray distances, int k = 1,
-            InputArrayOfArrays masks = noArray(), OutputArray imageIndices = noArray()) const = 0;
+    CV_WRAP virtual void knnMatchArrays(InputArray queryDescriptors, OutputArray indices,
+            OutputArray distances, int k = 1, InputArrayOfArrays masks = noArray(),
+            OutputArray imageIndices = noArray()) const = 0;
 
     /** @brief The paper's match cost MC: bits compared / bits that brute force would compare, since
     resetCost; 0 before any call.

@@ -28,11 +28,11 @@ struct Axis
  four: decisions need no division. */
 struct LevelShape
 {
-    int n;  //!< cells in a row
+    int n;       //!< cells in a row
     int offset;  //!< of its first bit in the descriptor
     Axis x, y;
-    int channels;  //!< of GROUP_CHANNELS, those in use
-    int windows;  //!< a bit for each that is in use
+    int channels;              //!< of GROUP_CHANNELS, those in use
+    int windows;               //!< a bit for each that is in use
     const ChosenBits* chosen;  //!< of each phase, or null: the bits of all quads are in use
 
     bool uses(int phase) const { return windows >> phase & 1; }
@@ -58,7 +58,7 @@ template <typename Cell> struct BitsKernels
      @param cells of the finest one. @param shapes of each level.
      @param sums of each level: gets those of the coarser ones, down to coarsest - 1. Their grids have been created. */
     void (*levelBits)(const CellGrid<Cell>& cells, const LevelShape shapes[], int finest, int coarsest,
-                      CellGrid<unsigned> sums[], uchar* descriptor);
+            CellGrid<unsigned> sums[], uchar* descriptor);
 
     //! The sums alone.
     void (*parentSums)(const CellGrid<Cell>& cells, CellGrid<unsigned>& parents);

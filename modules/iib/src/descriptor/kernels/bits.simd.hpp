@@ -23,7 +23,11 @@ BitsKernels<unsigned> getBitsKernels(int mapping, unsigned);
 
 namespace {
 
-enum { MAX_QUADS = 1 << (MAX_GRANULARITY - 1), MAX_LANES = MAX_QUADS * GROUP_CHANNELS };
+enum
+{
+    MAX_QUADS = 1 << (MAX_GRANULARITY - 1),
+    MAX_LANES = MAX_QUADS * GROUP_CHANNELS
+};
 
 template <typename Cell> void parentSums(const CellGrid<Cell>& cells, CellGrid<unsigned>& parents)
 {
@@ -46,7 +50,7 @@ template <typename Cell> void parentSums(const CellGrid<Cell>& cells, CellGrid<u
 //! A chunk of quads and all those below it. WITH_PARENTS also stores the sums over quads.
 template <typename Mapping, bool WITH_PARENTS, typename Cell, typename Out>
 inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const int* edges, int step,
-                       int rows, ParentRows sums, Out out)
+        int rows, ParentRows sums, Out out)
 {
     for (int r = 0; r < rows; r++)
     {
@@ -72,8 +76,8 @@ inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const
                 x[2] = x[2] * b;
                 x[3] = x[3] * b;
             }
-            const Lanes<v_int32> weighted[4] = { x[0], x[1], x[2], x[3] };
-            const Put put = { chunk, i * LANES };
+            const Lanes<v_int32> weighted[4] = {x[0], x[1], x[2], x[3]};
+            const Put put = {chunk, i * LANES};
             Mapping::map(weighted, put);
         }
         out.template storeRow<Mapping::BITS>(chunk);
@@ -85,32 +89,32 @@ inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const
 //! The comparisons of a phase.
 template <typename Mapping, bool WITH_PARENTS, typename Cell, typename Out>
 void comparisons(const CellGrid<Cell>& cells, const LevelShape& shape, const QuadPhase& phase,
-                 CellGrid<unsigned>& parents, Out out)
+        CellGrid<unsigned>& parents, Out out)
 {
     const int* edges = shape.y.edges + phase.dy * shape.y.step;
     for (int first = 0; first < phase.lanes(); first += CHUNK, out.nextChunk())
     {
         const ColumnWeights columns(shape.x, phase.dx + first / 2);
         columnBits<Mapping, WITH_PARENTS>(QuadRows<Cell>(cells, phase.dy, phase.dx, first), columns, edges,
-                                          shape.y.step, phase.rows, ParentRows(parents, first), out);
+                shape.y.step, phase.rows, ParentRows(parents, first), out);
     }
 }
 
 template <typename Mapping, bool WITH_PARENTS, typename Cell>
 void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int index, CellGrid<unsigned>& parents,
-                BitWriter& out)
+        BitWriter& out)
 {
     const QuadPhase phase(shape.n, index);
     if (phase.lanes() < CHUNK && !shape.chosen)
-        return comparisons<Mapping, WITH_PARENTS>(cells, shape, phase, parents,
-                                                  ShortRowWriter(out, phase.lanes(), shape.channels));
+        return comparisons<Mapping, WITH_PARENTS>(
+                cells, shape, phase, parents, ShortRowWriter(out, phase.lanes(), shape.channels));
     const int rowBytes = Mapping::BITS * phase.planeBytes();
     // words are read beyond the last plane
     uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8 + 8], *whole = 0;
     // Where all bits are in use and a row fills whole chunks, they need no shifting.
     if (!shape.chosen && shape.channels == GROUP_CHANNELS && phase.lanes() % CHUNK == 0)
         whole = out.reserve(phase.rows * rowBytes);
-    const PlaneRows planes = { whole ? whole : buffer, (size_t)phase.planeBytes(), (size_t)rowBytes };
+    const PlaneRows planes = {whole ? whole : buffer, (size_t)phase.planeBytes(), (size_t)rowBytes};
     comparisons<Mapping, WITH_PARENTS>(cells, shape, phase, parents, planes);
     if (shape.chosen)
         appendChosen(shape.chosen[index], buffer, out);
@@ -119,7 +123,8 @@ void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int index,
 }
 
 template <typename Mapping, typename Cell>
-void levelBits(const CellGrid<Cell>& cells, const LevelShape& shape, CellGrid<unsigned>& parents, uchar* descriptor)
+void levelBits(
+        const CellGrid<Cell>& cells, const LevelShape& shape, CellGrid<unsigned>& parents, uchar* descriptor)
 {
     BitWriter out(descriptor, shape.offset);
     if (shape.uses(0))
@@ -134,7 +139,7 @@ void levelBits(const CellGrid<Cell>& cells, const LevelShape& shape, CellGrid<un
 
 template <typename Mapping, typename Cell>
 void levelsBits(const CellGrid<Cell>& cells, const LevelShape shapes[], int finest, int coarsest,
-                CellGrid<unsigned> sums[], uchar* descriptor)
+        CellGrid<unsigned> sums[], uchar* descriptor)
 {
     levelBits<Mapping>(cells, shapes[finest], sums[finest - 1], descriptor);
     for (int level = finest - 1; level >= coarsest; level--)
@@ -151,8 +156,7 @@ template <typename Cell> struct Kernels
 {
     template <typename Mapping> BitsKernels<Cell> visit() const
     {
-        const BitsKernels<Cell> k = { levelsBits<Mapping, Cell>, parentSums<Cell>,
-                                      IIB_INSTRUCTION_SET };
+        const BitsKernels<Cell> k = {levelsBits<Mapping, Cell>, parentSums<Cell>, IIB_INSTRUCTION_SET};
         return k;
     }
 };
@@ -161,10 +165,7 @@ template <typename Cell> struct Kernels
 
 }  // namespace
 
-BitsKernels<ushort> getBitsKernels(int mapping, ushort)
-{
-    return visitMapping(mapping, Kernels<ushort>());
-}
+BitsKernels<ushort> getBitsKernels(int mapping, ushort) { return visitMapping(mapping, Kernels<ushort>()); }
 
 BitsKernels<unsigned> getBitsKernels(int mapping, unsigned)
 {

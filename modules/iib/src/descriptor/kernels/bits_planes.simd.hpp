@@ -20,9 +20,9 @@ struct PlaneRows
     {
         if (PLANES % 4 == 0 && plane == CHUNK / 8)  // whole words, as they may soon be read
             for (int p = 0; p + 3 < PLANES; p += 4)
-                storeBytes((uint64)(ushort)chunks[p] | (uint64)(ushort)chunks[p + 1] << 16
-                           | (uint64)(ushort)chunks[p + 2] << 32 | (uint64)(ushort)chunks[p + 3] << 48, 8,
-                           first + p * plane);
+                storeBytes((uint64)(ushort)chunks[p] | (uint64)(ushort)chunks[p + 1] << 16 |
+                                   (uint64)(ushort)chunks[p + 2] << 32 | (uint64)(ushort)chunks[p + 3] << 48,
+                        8, first + p * plane);
         else
             for (int p = 0; p < PLANES; p++)
                 storeBytes(chunks[p], CHUNK / 8, first + p * plane);
@@ -100,7 +100,10 @@ public:
 
     template <int PLANES> void storeRow(const unsigned chunks[PLANES])
     {
-        enum { TOGETHER = PLANES % 4 == 0 ? 4 : PLANES };  // planes, of twelve bits at most, that fit a word
+        enum
+        {
+            TOGETHER = PLANES % 4 == 0 ? 4 : PLANES
+        };  // planes, of twelve bits at most, that fit a word
         for (int p = 0; p < PLANES; p += TOGETHER)
         {
             uint64 bits = 0;
@@ -124,11 +127,13 @@ private:
 #ifdef __GNUC__
 __attribute__((target("bmi2")))
 #endif
-inline void appendChosen(const ChosenBits& chosen, const uchar* comparisons, BitWriter& out)
+inline void
+appendChosen(const ChosenBits& chosen, const uchar* comparisons, BitWriter& out)
 {
     BitWriter writer = out;  // a copy that no store of a byte can change stays in registers
     for (const ChosenBits::Word& word : chosen.chosenWords())
-        writer.append(_pext_u64(loadWord(comparisons + word.byte), word.compressor.mask), word.compressor.count);
+        writer.append(
+                _pext_u64(loadWord(comparisons + word.byte), word.compressor.mask), word.compressor.count);
     out = writer;
 }
 #else

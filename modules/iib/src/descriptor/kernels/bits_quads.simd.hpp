@@ -57,7 +57,8 @@ public:
     {
         v_uint32 sums = v_reinterpret_as_u32((x[0] + x[1]) + (x[2] + x[3]));
 #if CV_SIMD_WIDTH == 16
-        v_store((lane / GROUP_CHANNELS % 2 ? odd : even) + lane / (2 * GROUP_CHANNELS) * GROUP_CHANNELS, sums);
+        v_store((lane / GROUP_CHANNELS % 2 ? odd : even) + lane / (2 * GROUP_CHANNELS) * GROUP_CHANNELS,
+                sums);
 #else
 #if CV_SIMD_WIDTH == 64
         sums = v_uint32(_mm512_shuffle_i32x4(sums.val, sums.val, 0xd8));  // quads 0, 2, 1, 3
@@ -107,7 +108,8 @@ struct ColumnWeights
     {
         const int* const e = axis.edges + x * axis.step;
         const int s = axis.step;
-        const v_int32x4 begin(e[0], e[2 * s], e[4 * s], e[6 * s]), end(e[2 * s], e[4 * s], e[6 * s], e[8 * s]);
+        const v_int32x4 begin(e[0], e[2 * s], e[4 * s], e[6 * s]),
+                end(e[2 * s], e[4 * s], e[6 * s], e[8 * s]);
         const v_int32x4 middle(e[s], e[3 * s], e[5 * s], e[7 * s]);
         const v_int32x4 lefts = middle - begin, rights = end - middle, same = lefts == rights;
         repeatForChannels(v_select(same, v_setall_s32(1), rights), left);

@@ -57,8 +57,8 @@ CellEdgesFunc getCellEdgesFunc();
 //! Sums over n x n cells with the given edges, paddedEdges(n) and n + 1 of them, in pixels of the image.
 template <typename Sum> struct CellSumsFunc
 {
-    typedef void (*Type)(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n,
-                         CellGrid<Sum>& cells);
+    typedef void (*Type)(
+            const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells);
 };
 CellSumsFunc<ushort>::Type getCellSumsFunc(ushort);
 CellSumsFunc<unsigned>::Type getCellSumsFunc(unsigned);

@@ -10,10 +10,7 @@
 namespace cv {
 namespace iib {
 
-CellEdgesFunc getCellEdgesFunc()
-{
-    CV_CPU_DISPATCH(getCellEdgesFunc, (), CV_CPU_DISPATCH_MODES_ALL);
-}
+CellEdgesFunc getCellEdgesFunc() { CV_CPU_DISPATCH(getCellEdgesFunc, (), CV_CPU_DISPATCH_MODES_ALL); }
 
 CellSumsFunc<ushort>::Type getCellSumsFunc(ushort sum)
 {

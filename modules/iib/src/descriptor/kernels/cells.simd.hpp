@@ -38,11 +38,23 @@ void cellEdges(const SupportRegion& region, int n, Size image, int* x, int* y)
 
 /* Half a 512-bit vector at most: the offsets of a whole one are too many for the registers. */
 #if CV_SIMD_WIDTH == 16
-template <typename Sum> struct CornersOf { typedef v_uint16x8 Vector; };
-template <> struct CornersOf<unsigned> { typedef v_uint32x4 Vector; };
+template <typename Sum> struct CornersOf
+{
+    typedef v_uint16x8 Vector;
+};
+template <> struct CornersOf<unsigned>
+{
+    typedef v_uint32x4 Vector;
+};
 #else
-template <typename Sum> struct CornersOf { typedef v_uint16x16 Vector; };
-template <> struct CornersOf<unsigned> { typedef v_uint32x8 Vector; };
+template <typename Sum> struct CornersOf
+{
+    typedef v_uint16x16 Vector;
+};
+template <> struct CornersOf<unsigned>
+{
+    typedef v_uint32x8 Vector;
+};
 #endif
 
 // Differences modulo 2^16 or 2^32, as the sums.
@@ -58,7 +70,10 @@ inline v_uint32x4 loadCorner(const unsigned* corner) { return v_load(corner); }
 /* As many corners as make a vector, of every other column, and those after the first one of a vector, and one more.
  Not v_lut_quads: gather instructions are slow on many machines. */
 #if CV_SIMD_WIDTH == 16
-inline v_uint16x8 loadCorners(const ushort* row, const size_t* at) { return v_load_halves(row + at[0], row + at[2]); }
+inline v_uint16x8 loadCorners(const ushort* row, const size_t* at)
+{
+    return v_load_halves(row + at[0], row + at[2]);
+}
 inline v_uint32x4 loadCorners(const unsigned* row, const size_t* at) { return v_load(row + at[0]); }
 
 inline v_uint16x8 nextCorners(const v_uint16x8& corners, const ushort* more)
@@ -75,7 +90,8 @@ inline __m128i loadTwo(const ushort* first, const ushort* second)
 
 inline v_uint16x16 loadCorners(const ushort* row, const size_t* at)
 {
-    return v_uint16x16(_mm256_setr_m128i(loadTwo(row + at[0], row + at[2]), loadTwo(row + at[4], row + at[6])));
+    return v_uint16x16(
+            _mm256_setr_m128i(loadTwo(row + at[0], row + at[2]), loadTwo(row + at[4], row + at[6])));
 }
 
 inline v_uint32x8 loadCorners(const unsigned* row, const size_t* at)
@@ -129,10 +145,14 @@ private:
 };
 
 template <typename Sum>
-void cellSums(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells)
+void cellSums(
+        const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells)
 {
     typedef typename CornersOf<Sum>::Vector V;
-    enum { COLUMNS = 2 * VTraits<V>::max_nlanes / GROUP_CHANNELS };
+    enum
+    {
+        COLUMNS = 2 * VTraits<V>::max_nlanes / GROUP_CHANNELS
+    };
     const RowFinder<Sum> row(rows, yEdges[0]);
     AutoBuffer<const Sum*, 64> lines(n);
     for (int r = 0; r < n; r++)
@@ -160,20 +180,11 @@ void cellSums(const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdge
 
 }  // namespace
 
-CellEdgesFunc getCellEdgesFunc()
-{
-    return cellEdges;
-}
+CellEdgesFunc getCellEdgesFunc() { return cellEdges; }
 
-CellSumsFunc<ushort>::Type getCellSumsFunc(ushort)
-{
-    return cellSums<ushort>;
-}
+CellSumsFunc<ushort>::Type getCellSumsFunc(ushort) { return cellSums<ushort>; }
 
-CellSumsFunc<unsigned>::Type getCellSumsFunc(unsigned)
-{
-    return cellSums<unsigned>;
-}
+CellSumsFunc<unsigned>::Type getCellSumsFunc(unsigned) { return cellSums<unsigned>; }
 
 #endif
 

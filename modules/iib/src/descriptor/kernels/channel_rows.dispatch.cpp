@@ -15,10 +15,7 @@ const RowKernels<short>& shortRowKernels()
     CV_CPU_DISPATCH(shortRowKernels, (), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-const RowKernels<int>& intRowKernels()
-{
-    CV_CPU_DISPATCH(intRowKernels, (), CV_CPU_DISPATCH_MODES_ALL);
-}
+const RowKernels<int>& intRowKernels() { CV_CPU_DISPATCH(intRowKernels, (), CV_CPU_DISPATCH_MODES_ALL); }
 
 }  // namespace iib
 }  // namespace cv

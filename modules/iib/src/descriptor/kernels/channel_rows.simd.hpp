@@ -19,15 +19,9 @@ const RowKernels<int>& intRowKernels();
 
 namespace {
 
-inline v_int16 absolute(const v_int16& v)
-{
-    return v_reinterpret_as_s16(v_abs(v));
-}
+inline v_int16 absolute(const v_int16& v) { return v_reinterpret_as_s16(v_abs(v)); }
 
-inline v_int32 absolute(const v_int32& v)
-{
-    return v_reinterpret_as_s32(v_abs(v));
-}
+inline v_int32 absolute(const v_int32& v) { return v_reinterpret_as_s32(v_abs(v)); }
 
 inline v_int16 setAll(short v) { return vx_setall_s16(v); }
 inline v_int32 setAll(int v) { return vx_setall_s32(v); }
@@ -121,22 +115,16 @@ template <typename Pixel, typename T> void widenRow(const Pixel* in, T* out, int
 
 template <typename T> const RowKernels<T>& kernels()
 {
-    static const RowKernels<T> k = { gradientRow<T>, orientationRow<T>, absoluteRow<T>, addRow<T>,
-                                        widenRow, widenRow };
+    static const RowKernels<T> k = {
+            gradientRow<T>, orientationRow<T>, absoluteRow<T>, addRow<T>, widenRow, widenRow};
     return k;
 }
 
 }  // namespace
 
-const RowKernels<short>& shortRowKernels()
-{
-    return kernels<short>();
-}
+const RowKernels<short>& shortRowKernels() { return kernels<short>(); }
 
-const RowKernels<int>& intRowKernels()
-{
-    return kernels<int>();
-}
+const RowKernels<int>& intRowKernels() { return kernels<int>(); }
 
 #endif
 

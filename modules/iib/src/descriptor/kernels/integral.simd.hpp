@@ -35,7 +35,8 @@ inline v_uint16 sumsOfFour(const v_uint16& plane)
 inline v_uint16 sumsOfVector(const v_uint16& v)
 {
 #if CV_SIMD_WIDTH == 64
-    return v_uint16(_mm512_add_epi16(v.val, _mm512_maskz_permutexvar_epi64(0xf0, _mm512_set1_epi64(3), v.val)));
+    return v_uint16(
+            _mm512_add_epi16(v.val, _mm512_maskz_permutexvar_epi64(0xf0, _mm512_set1_epi64(3), v.val)));
 #else
     return v;
 #endif
@@ -134,27 +135,18 @@ void sumDeepRow(const int* const planes[GROUP_CHANNELS], int width, const unsign
     for (int x = 0; x < width; x++)
     {
         sum = sum + v_uint32x4((unsigned)planes[0][x], (unsigned)planes[1][x], (unsigned)planes[2][x],
-                               (unsigned)planes[3][x]);
+                            (unsigned)planes[3][x]);
         v_store(out + 4 * (x + 1), sum + v_load(above + 4 * (x + 1)));
     }
 }
 
 }  // namespace
 
-SumRowFunc<short, ushort>::Type getSumRowFunc(short, ushort)
-{
-    return sumRow16;
-}
+SumRowFunc<short, ushort>::Type getSumRowFunc(short, ushort) { return sumRow16; }
 
-SumRowFunc<short, unsigned>::Type getSumRowFunc(short, unsigned)
-{
-    return sumRow32;
-}
+SumRowFunc<short, unsigned>::Type getSumRowFunc(short, unsigned) { return sumRow32; }
 
-SumRowFunc<int, unsigned>::Type getSumRowFunc(int, unsigned)
-{
-    return sumDeepRow;
-}
+SumRowFunc<int, unsigned>::Type getSumRowFunc(int, unsigned) { return sumDeepRow; }
 
 #endif
 

@@ -29,7 +29,10 @@ template <> inline double quarter(const double& v) { return v / 4; }
 //! Equation (1): x_i > mean(x).
 struct MeanMapping
 {
-    enum { BITS = 4 };
+    enum
+    {
+        BITS = 4
+    };
 
     template <typename V, typename Put> static void map(const V x[4], const Put& put)
     {
@@ -41,7 +44,10 @@ struct MeanMapping
 
 struct MaxMapping
 {
-    enum { BITS = 4 };
+    enum
+    {
+        BITS = 4
+    };
 
     template <typename V, typename Put> static void map(const V x[4], const Put& put)
     {
@@ -53,7 +59,10 @@ struct MaxMapping
 
 struct MinMapping
 {
-    enum { BITS = 4 };
+    enum
+    {
+        BITS = 4
+    };
 
     template <typename V, typename Put> static void map(const V x[4], const Put& put)
     {
@@ -66,7 +75,10 @@ struct MinMapping
 //! Equation (2), with x - min(x) and R = max(x) - min(x) both four times as large.
 struct QuartileMapping
 {
-    enum { BITS = 8 };
+    enum
+    {
+        BITS = 8
+    };
 
     template <typename V, typename Put> static void map(const V x[4], const Put& put)
     {
@@ -86,7 +98,10 @@ struct QuartileMapping
 //! The rank of x_i, 0 the smallest; among equals the lower index ranks lower.
 struct SortMapping
 {
-    enum { BITS = 8 };
+    enum
+    {
+        BITS = 8
+    };
 
     template <typename V, typename Put> static void map(const V x[4], const Put& put)
     {
@@ -109,7 +124,10 @@ private:
 //! Left > right, top > bottom, main > other diagonal.
 struct HaarMapping
 {
-    enum { BITS = 3 };
+    enum
+    {
+        BITS = 3
+    };
 
     template <typename V, typename Put> static void map(const V x[4], const Put& put)
     {
@@ -122,7 +140,10 @@ struct HaarMapping
 //! Each cell > the next, around the quad.
 struct PairwiseMapping
 {
-    enum { BITS = 4 };
+    enum
+    {
+        BITS = 4
+    };
 
     template <typename V, typename Put> static void map(const V x[4], const Put& put)
     {
@@ -134,8 +155,9 @@ struct PairwiseMapping
 };
 
 //! visitor.visit<M>() with the type M of a mapping.
-template <typename Visitor> inline auto visitMapping(int mapping, const Visitor& visitor)
-    -> decltype(visitor.template visit<MeanMapping>())
+template <typename Visitor>
+inline auto visitMapping(int mapping, const Visitor& visitor)
+        -> decltype(visitor.template visit<MeanMapping>())
 {
     switch (mapping)
     {

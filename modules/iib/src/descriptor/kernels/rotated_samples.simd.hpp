@@ -36,7 +36,8 @@ void sampleIndices(const SampleGrid& g, int sub, int* index)
                     for (int i = 0; i < cells / 2; i++)
                     {
                         const int u = first + 4 * sub * i;
-                        const int x = g.x + ((startX + u * g.stepX) >> 17), y = g.y + ((startY + u * g.stepY) >> 17);
+                        const int x = g.x + ((startX + u * g.stepX) >> 17),
+                                  y = g.y + ((startY + u * g.stepY) >> 17);
                         const int insideX = std::min(std::max(x, 0), g.image.width - 1);
                         const int insideY = std::min(std::max(y, 0), g.image.height - 1);
                         index[i] = (insideY - g.area.y) * g.area.width + insideX - g.area.x;
@@ -51,10 +52,7 @@ void deinterleave(const short* p, v_int16 v[GROUP_CHANNELS])
     v_load_deinterleave(p, v[0], v[1], v[2], v[3]);
 }
 
-void deinterleave(const int* p, v_int32 v[GROUP_CHANNELS])
-{
-    v_load_deinterleave(p, v[0], v[1], v[2], v[3]);
-}
+void deinterleave(const int* p, v_int32 v[GROUP_CHANNELS]) { v_load_deinterleave(p, v[0], v[1], v[2], v[3]); }
 
 inline v_int16 vectorOf(short) { return vx_setzero_s16(); }
 inline v_int32 vectorOf(int) { return vx_setzero_s32(); }
@@ -70,7 +68,7 @@ void gatherPixels(const T* pixels, const int* index, int count, T* const planes[
     {
         for (int j = 0; j < lanes; j++)
             memcpy(chunk + j * GROUP_CHANNELS, pixels + (size_t)index[i + j] * GROUP_CHANNELS,
-                   GROUP_CHANNELS * sizeof(T));
+                    GROUP_CHANNELS * sizeof(T));
         V v[GROUP_CHANNELS];
         deinterleave(chunk, v);
         for (int c = 0; c < GROUP_CHANNELS; c++)
@@ -88,8 +86,7 @@ template <typename T> void rotateGradients(T* gx, T* gy, int count, int cosine, 
     }
 }
 
-template <typename T>
-void turnOrientations(const T* gx, const T* gy, T* steps, int count, int turn)
+template <typename T> void turnOrientations(const T* gx, const T* gy, T* steps, int count, int turn)
 {
     for (int i = 0; i < count; i++)
         steps[i] = (T)((gx[i] | gy[i]) == 0 ? 0 : (steps[i] + turn) & (ORIENTATION_STEPS - 1));
@@ -106,7 +103,8 @@ void sumEightCells(const short* const planes[GROUP_CHANNELS], int start, int sam
         for (int s = 1; s < samples; s++)
             sums[c] = sums[c] + v_load(planes[c] + start + s * step);
     }
-    v_int16x8 even[2], odd[2], pairs[4];  // even and odd channels of half the cells; all channels of two cells
+    v_int16x8 even[2], odd[2],
+            pairs[4];  // even and odd channels of half the cells; all channels of two cells
     v_zip(sums[0], sums[2], even[0], even[1]);
     v_zip(sums[1], sums[3], odd[0], odd[1]);
     for (int half = 0; half < 2; half++)
@@ -147,28 +145,23 @@ void sumCells(const T* const planes[GROUP_CHANNELS], int n, int sub, CellGrid<un
         {
             const int start = (2 * row + parity) * (side / 2);
             for (int i = 0; i < side / 2; i += 8)
-                sumEightCells(planes, start + i, sub * sub, count, cells.row(row, parity) + i * GROUP_CHANNELS);
+                sumEightCells(
+                        planes, start + i, sub * sub, count, cells.row(row, parity) + i * GROUP_CHANNELS);
         }
 }
 
 template <typename T> const RotatedSampleKernels<T>& kernels()
 {
-    static const RotatedSampleKernels<T> k = { sampleIndices, gatherPixels<T>, rotateGradients<T>,
-                                           turnOrientations<T>, sumCells<T> };
+    static const RotatedSampleKernels<T> k = {
+            sampleIndices, gatherPixels<T>, rotateGradients<T>, turnOrientations<T>, sumCells<T>};
     return k;
 }
 
 }  // namespace
 
-const RotatedSampleKernels<short>& shortRotatedSampleKernels()
-{
-    return kernels<short>();
-}
+const RotatedSampleKernels<short>& shortRotatedSampleKernels() { return kernels<short>(); }
 
-const RotatedSampleKernels<int>& intRotatedSampleKernels()
-{
-    return kernels<int>();
-}
+const RotatedSampleKernels<int>& intRotatedSampleKernels() { return kernels<int>(); }
 
 #endif
 

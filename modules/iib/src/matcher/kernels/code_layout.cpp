@@ -23,11 +23,11 @@ CodeLayout::CodeLayout(const std::vector<int>& levelSizes, CodePacking packing_)
             for (int i = 0; i < size; i += WORD)
                 if (!split || (i / WORD % SAMPLE == 0) == (part == 0))
                 {
-                    const Place place = { width + i, std::min(size - i, WORD) };
+                    const Place place = {width + i, std::min(size - i, WORD)};
                     places.push_back(place);
                     bits += 8 * place.bytes;
                 }
-            const Place filling = { 0, 0 };
+            const Place filling = {0, 0};
             if (packing == PACKING_ADDERS && places.size() % 2 == 0)
                 places.push_back(filling);
             ends.push_back((int)places.size());
@@ -93,7 +93,8 @@ void CodeLayout::fetch(const unsigned* group, int lane, unsigned* plain) const
     unsigned parity = plain[0] = group[lane];
     for (int i = 1; i < words(); i += 2)
     {
-        const unsigned first = group[i * CODES_PER_BLOCK + lane], second = group[(i + 1) * CODES_PER_BLOCK + lane];
+        const unsigned first = group[i * CODES_PER_BLOCK + lane],
+                       second = group[(i + 1) * CODES_PER_BLOCK + lane];
         plain[i] = parity ^ first;
         plain[i + 1] = plain[i] ^ second;
         parity ^= second;

@@ -29,7 +29,10 @@ fourth of its words, a sample that tells much more than its beginning would, and
 class CV_EXPORTS CodeLayout
 {
 public:
-    enum { CODES_PER_BLOCK = 16 };
+    enum
+    {
+        CODES_PER_BLOCK = 16
+    };
 
     //! Sizes of the levels in bytes, coarse first.
     CodeLayout(const std::vector<int>& levelSizes, CodePacking packing);
@@ -66,7 +69,7 @@ private:
     };
 
     std::vector<int> sizes, ends, partBits;
-    std::vector<Place> places; // of each word
+    std::vector<Place> places;  // of each word
     int width;
     CodePacking packing;
 };

@@ -13,12 +13,13 @@ namespace {
 
 typedef v_uint32 Words;
 typedef v_int32 Counts;
-const int CODES_PER_BLOCK = CodeLayout::CODES_PER_BLOCK, WIDTH = VTraits<Words>::max_nlanes, VECTORS = CODES_PER_BLOCK / WIDTH;
+const int CODES_PER_BLOCK = CodeLayout::CODES_PER_BLOCK, WIDTH = VTraits<Words>::max_nlanes,
+          VECTORS = CODES_PER_BLOCK / WIDTH;
 
 //! 0, 1, 2, ... over the lanes of a vector.
 inline Counts laneNumbers()
 {
-    static const int NUMBERS[CODES_PER_BLOCK] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 };
+    static const int NUMBERS[CODES_PER_BLOCK] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     return vx_load(NUMBERS);
 }
 

@@ -13,9 +13,12 @@ namespace iib {
 //! Where a scan may give a pair up: after a part, not the last one, and later than that of the stop before.
 struct PruneStage
 {
-    enum { NO_MAX = 1 << 28 };
+    enum
+    {
+        NO_MAX = 1 << 28
+    };
     int part;
-    int most; //!< bits that may differ since the stop before
+    int most;  //!< bits that may differ since the stop before
 };
 
 //! Receives the pairs that a scan found to be near enough.
@@ -31,20 +34,21 @@ public:
 struct HammingScan
 {
     const CodeLayout* layout;
-    const unsigned* queries; //!< plain words, one code after the other
+    const unsigned* queries;  //!< plain words, one code after the other
     int queryCount;
-    const unsigned* trains; //!< packed in groups
+    const unsigned* trains;  //!< packed in groups
     int groups;
-    const uchar* allowed; //!< queryCount x groups * CODES_PER_BLOCK, 0 for pairs that do not exist; null: all do
+    const uchar*
+            allowed;  //!< queryCount x groups * CODES_PER_BLOCK, 0 for pairs that do not exist; null: all do
 
     const PruneStage* stops;
     int stopCount;
-    int64* passed; //!< stopCount: adds up the pairs that went on at the stop
-    int* limits;   //!< null, or with a single stop: for each query the most bits that may differ there
-    int margin;    //!< if >= 0, limits come down to the query's least difference so far plus this
+    int64* passed;  //!< stopCount: adds up the pairs that went on at the stop
+    int* limits;    //!< null, or with a single stop: for each query the most bits that may differ there
+    int margin;     //!< if >= 0, limits come down to the query's least difference so far plus this
 
-    const int* queryBelow; //!< a pair is found if its distance is below this of its query
-    const int* trainBelow; //!< or below this of its train code; may be null
+    const int* queryBelow;  //!< a pair is found if its distance is below this of its query
+    const int* trainBelow;  //!< or below this of its train code; may be null
     HammingSink* sink;
 };
 

@@ -28,7 +28,7 @@ const char* hammingInstructionSet();
 
 namespace {
 
-template<class S> void scanAll(S&& scanner, int queryCount)
+template <class S> void scanAll(S&& scanner, int queryCount)
 {
     int q = 0;
     for (; q + QUERIES <= queryCount; q += QUERIES)
@@ -47,10 +47,7 @@ void hammingScan(const HammingScan& scan)
         scanAll(FullScanner(scan), scan.queryCount);
 }
 
-CodePacking hammingPacking()
-{
-    return PACKING;
-}
+CodePacking hammingPacking() { return PACKING; }
 
 const char* hammingInstructionSet()
 {

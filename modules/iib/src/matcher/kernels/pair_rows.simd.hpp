@@ -76,7 +76,8 @@ public:
     {
         if (known[row])
             return;
-        layout.fetch(groups + (size_t)row / CODES_PER_BLOCK * CODES_PER_BLOCK * layout.words(), row % CODES_PER_BLOCK, plain.data());
+        layout.fetch(groups + (size_t)row / CODES_PER_BLOCK * CODES_PER_BLOCK * layout.words(),
+                row % CODES_PER_BLOCK, plain.data());
         set(row, plain.data());
     }
 

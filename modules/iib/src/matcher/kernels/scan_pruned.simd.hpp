@@ -13,17 +13,19 @@ class PrunedScanner : public Scanner
 {
 public:
     explicit PrunedScanner(const HammingScan& s)
-        : Scanner(s), queryRow(layout, partAt(0) + 1, 1), trainRows(layout, partAt(0) + 1, s.groups * CODES_PER_BLOCK)
+        : Scanner(s), queryRow(layout, partAt(0) + 1, 1),
+          trainRows(layout, partAt(0) + 1, s.groups * CODES_PER_BLOCK)
     {
         for (int stop = 0; stop <= s.stopCount; stop++)
             words.push_back(layout.end(partAt(stop)));
         distances.allocate((size_t)QUERIES * s.groups * CODES_PER_BLOCK);
-        shortlists.allocate((size_t)QUERIES * (s.groups + 1) * CODES_PER_BLOCK); // storeLanes() needs more than fits
+        shortlists.allocate(
+                (size_t)QUERIES * (s.groups + 1) * CODES_PER_BLOCK);  // storeLanes() needs more than fits
     }
 
     //! Some queries against all groups: all pairs together up to a stop; then those that pass one by one, or all
     //! to the next stop if they are many.
-    template<int Q> void row(int query)
+    template <int Q> void row(int query)
     {
         setQueries<Q>(query);
         // Two stops in one go if the second comes soon after the first, where hardly any tile would end.
@@ -59,11 +61,14 @@ public:
     }
 
 private:
-    enum { NEVER = INT_MAX };
+    enum
+    {
+        NEVER = INT_MAX
+    };
 
     //! Writes the distances up to a stop, NEVER for pairs that ended on the way. STOPS is the number of stops up
     //! to there if those that passed at the ones before are to be counted, else 0.
-    template<int Q, int STOPS> void compareTo(int query, int stop)
+    template <int Q, int STOPS> void compareTo(int query, int stop)
     {
         const int groups = scan.groups, first = words[0], second = words[1];
         const size_t step = layout.words() * CODES_PER_BLOCK;
@@ -120,9 +125,9 @@ private:
     }
 
     //! Makes the room negative of the pairs that are not to go on at a stop.
-    template<int Q>
-    CV_ALWAYS_INLINE void endPairs(int stop, const int* limits, const Counts* distance, Counts* before,
-                                   Counts* room) const
+    template <int Q>
+    CV_ALWAYS_INLINE void endPairs(
+            int stop, const int* limits, const Counts* distance, Counts* before, Counts* room) const
     {
         const Counts most = vx_setall_s32(scan.stops[stop].most);
         for (int i = 0; i < Tile<Q>::SIZE; i++)
@@ -135,7 +140,7 @@ private:
     }
 
     //! Lists the pairs of each query that go on.
-    template<int Q> void select(int query, int stop, int* counts)
+    template <int Q> void select(int query, int stop, int* counts)
     {
         const int size = scan.groups * CODES_PER_BLOCK;
         const int* distance[Q];
@@ -168,7 +173,7 @@ private:
     //! The most that may differ at the stop.
     int lowerLimit(int query, int q, int stop)
     {
-        const int most = stop == 0 ? scan.stops[0].most : NEVER - 1; // which was not looked at, or was
+        const int most = stop == 0 ? scan.stops[0].most : NEVER - 1;  // which was not looked at, or was
         if (!scan.limits)
             return most;
         int& limit = scan.limits[query];
@@ -222,9 +227,9 @@ private:
     int* shortlist(int q) { return shortlists.data() + (size_t)q * (scan.groups + 1) * CODES_PER_BLOCK; }
 
     Rows queryRow, trainRows;
-    std::vector<int> words; // up to each stop, and in all
-    AlignedBuffer<int> distances, shortlists; // of a row's pairs
-    int least[QUERIES]; // of the distances
+    std::vector<int> words;                    // up to each stop, and in all
+    AlignedBuffer<int> distances, shortlists;  // of a row's pairs
+    int least[QUERIES];                        // of the distances
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ public:
     explicit Scanner(const HammingScan& s) : scan(s), layout(*s.layout), queries(layout) {}
 
 protected:
-    template<int Q> void setQueries(int query)
+    template <int Q> void setQueries(int query)
     {
         for (int q = 0; q < Q; q++)
             queries.set(q, plainQuery(query + q));
@@ -54,7 +54,10 @@ protected:
         return v_reinterpret_as_s32(vx_load_expand_q(allowed + v * WIDTH)) == vx_setzero_s32();
     }
 
-    const unsigned* codes(int group) const { return scan.trains + (size_t)group * layout.words() * CODES_PER_BLOCK; }
+    const unsigned* codes(int group) const
+    {
+        return scan.trains + (size_t)group * layout.words() * CODES_PER_BLOCK;
+    }
     const unsigned* plainQuery(int query) const { return scan.queries + (size_t)query * layout.words(); }
 
     const HammingScan& scan;
@@ -74,7 +77,7 @@ public:
     }
 
     //! Some queries against all groups.
-    template<int Q> void row(int query)
+    template <int Q> void row(int query)
     {
         setQueries<Q>(query);
         // Looking is given up where too few tiles end: it costs about a sixth of what each of them saves.
@@ -84,7 +87,7 @@ public:
 
 private:
     //! Returns whether the tile ended after `end` words, before the last.
-    template<int Q> CV_ALWAYS_INLINE bool compare(int query, int group, int end)
+    template <int Q> CV_ALWAYS_INLINE bool compare(int query, int group, int end)
     {
         Tile<Q> tile;
         Counts distance[Tile<Q>::SIZE], beyonds[Tile<Q>::SIZE];
@@ -102,8 +105,9 @@ private:
         return false;
     }
 
-    template<int Q>
-    CV_ALWAYS_INLINE bool anyNear(const Tile<Q>& tile, int query, int group, Counts* distance, Counts* beyonds) const
+    template <int Q>
+    CV_ALWAYS_INLINE bool anyNear(
+            const Tile<Q>& tile, int query, int group, Counts* distance, Counts* beyonds) const
     {
         Counts any = vx_setzero_s32();
         tile.distances(distance);
@@ -115,7 +119,7 @@ private:
         return v_check_any(any);
     }
 
-    int early; // words after which a tile is left if no pair is near enough so far: distances only grow
+    int early;  // words after which a tile is left if no pair is near enough so far: distances only grow
 };
 
 }  // namespace

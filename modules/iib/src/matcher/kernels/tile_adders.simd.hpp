@@ -30,12 +30,12 @@ inline Counts total(const Partial& x) { return v_reinterpret_as_s32(v_dotprod_ex
 #endif
 
 // A full adder: returns the carry, turns the parity into the next.
-inline Words addStep(Words& parity, const Words& train0, const Words& query0, const Words& train1,
-                     const Words& query1)
+inline Words addStep(
+        Words& parity, const Words& train0, const Words& query0, const Words& train1, const Words& query1)
 {
     const Words before = parity, x = train0 ^ query0;
 #if CV_AVX512_SKX
-    parity = Words(_mm512_ternarylogic_epi32(before.val, train1.val, query1.val, 0x96)); // xor of the three
+    parity = Words(_mm512_ternarylogic_epi32(before.val, train1.val, query1.val, 0x96));  // xor of the three
     return Words(_mm512_ternarylogic_epi32(before.val, x.val, parity.val, 0x74));
 #else
     const Words y = train1 ^ query1;
@@ -68,10 +68,13 @@ private:
 
 //! Q queries against a group, compared up to some word. Its loops run over all vectors in one go, so that
 //! compilers unroll them and keep everything in registers.
-template<int Q> class Tile
+template <int Q> class Tile
 {
 public:
-    enum { SIZE = Q * VECTORS };
+    enum
+    {
+        SIZE = Q * VECTORS
+    };
 
     //! Compares words 0 to `to`.
     CV_ALWAYS_INLINE void start(const TileQueries& queries, const unsigned* group, int to)
@@ -107,10 +110,10 @@ public:
     }
 
 private:
-    CV_ALWAYS_INLINE void addSteps(Partial* partial, const TileQueries& queries, const unsigned* group, int from,
-                                   int to)
+    CV_ALWAYS_INLINE void addSteps(
+            Partial* partial, const TileQueries& queries, const unsigned* group, int from, int to)
     {
-        Words chain[SIZE]; // a copy, which compilers keep in registers
+        Words chain[SIZE];  // a copy, which compilers keep in registers
         Partial sum[SIZE];
         const unsigned* query[Q];
         for (int q = 0; q < Q; q++)
@@ -125,8 +128,8 @@ private:
             {
                 const unsigned* q = query[i / VECTORS] + from;
                 const unsigned* t = group + i % VECTORS * WIDTH + from * CODES_PER_BLOCK;
-                const Words carry = addStep(chain[i], vx_load(t), vx_setall_u32(q[0]), vx_load(t + CODES_PER_BLOCK),
-                                            vx_setall_u32(q[1]));
+                const Words carry = addStep(chain[i], vx_load(t), vx_setall_u32(q[0]),
+                        vx_load(t + CODES_PER_BLOCK), vx_setall_u32(q[1]));
                 sum[i] += countBits(carry);
             }
         for (int i = 0; i < SIZE; i++)

@@ -53,8 +53,7 @@ struct HalfDistances
 class TileQueries
 {
 public:
-    explicit TileQueries(const CodeLayout& l)
-        : layout(l), tables(QUERIES / 2 * pairSize())
+    explicit TileQueries(const CodeLayout& l) : layout(l), tables(QUERIES / 2 * pairSize())
     {
         for (int pair = 0; pair < QUERIES / 2; pair++)
             pairs[pair] = tables.data() + pair * pairSize();
@@ -75,7 +74,7 @@ private:
     size_t pairSize() const { return (size_t)layout.words() * 4 * 2 * 16; }
 
     //! Writes the distances of each half byte to all others, or puts them into the high halves of what is there.
-    template<bool SECOND> void fill(uchar* table, const uchar* code)
+    template <bool SECOND> void fill(uchar* table, const uchar* code)
     {
         static const HalfDistances distances;
         const uchar(&of)[16][16] = distances.of;
@@ -84,7 +83,8 @@ private:
                 for (int p = from; p < from + POSITIONS; p++, table += 16)
                 {
                     const v_uint8x16 d = v_load(of[code[p] >> shift & 15]);
-                    v_store(table, SECOND ? v_load(table) | v_reinterpret_as_u8(v_reinterpret_as_u16(d) << 4) : d);
+                    v_store(table,
+                            SECOND ? v_load(table) | v_reinterpret_as_u8(v_reinterpret_as_u16(d) << 4) : d);
                 }
     }
 
@@ -94,10 +94,14 @@ private:
 };
 
 //! Q queries against a group, compared up to some word.
-template<int Q> class Tile
+template <int Q> class Tile
 {
 public:
-    enum { SIZE = Q * VECTORS, PAIRS = (Q + 1) / 2 };
+    enum
+    {
+        SIZE = Q * VECTORS,
+        PAIRS = (Q + 1) / 2
+    };
 
     //! Compares words 0 to `to`.
     CV_ALWAYS_INLINE void start(const TileQueries& queries, const unsigned* group, int to)
@@ -110,7 +114,7 @@ public:
     //! Compares words `from` to `to`.
     CV_ALWAYS_INLINE void advance(const TileQueries& queries, const unsigned* group, int from, int to)
     {
-        const int MOST = 30; // vectors that add up in bytes: 31 times 8 at most
+        const int MOST = 30;  // vectors that add up in bytes: 31 times 8 at most
         int v = from * 4 / POSITIONS;
         for (const int end = to * 4 / POSITIONS; v < end;)
         {
@@ -143,9 +147,9 @@ public:
 
 private:
     // Half bytes hold the distances of three half bytes at most, which makes 12.
-    template<int N>
-    static CV_ALWAYS_INLINE void addUp(Bytes* low, v_uint16* high, const TileQueries& queries,
-                                       const unsigned* group, int v)
+    template <int N>
+    static CV_ALWAYS_INLINE void addUp(
+            Bytes* low, v_uint16* high, const TileQueries& queries, const unsigned* group, int v)
     {
         Bytes code[N];
         for (int n = 0; n < N; n++)
