@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "test_precomp.hpp"
-#include "../src/descriptor/kernels/bits.hpp"
+#include "../src/descriptor/kernels/kernels.hpp"
 #include "../src/matcher/kernels/hamming.hpp"
 
 namespace opencv_test {
@@ -24,7 +24,7 @@ String widestInstructionSet()
 #if defined(__x86_64__) || defined(_M_X64)
 TEST(IIB_InstructionSets, descriptor_runs_on_the_widest)
 {
-    EXPECT_EQ(widestInstructionSet(), getBitsKernels(IIB::MAPPING_MEAN, ushort()).instructionSet);
+    EXPECT_EQ(widestInstructionSet(), descriptorKernels().instructionSet);
 }
 
 TEST(IIB_InstructionSets, matcher_runs_on_the_widest)

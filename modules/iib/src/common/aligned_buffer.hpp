@@ -60,6 +60,21 @@ private:
     size_t capacity;
 };
 
+//! Memory that one thread uses again and again, for values of any type. What was there is lost with each use.
+class ScratchMemory
+{
+public:
+    //! Room for n values, not initialized, from the beginning of a cache line on.
+    template <typename T> T* get(size_t n)
+    {
+        bytes.allocate(n * sizeof(T));
+        return reinterpret_cast<T*>(bytes.data());
+    }
+
+private:
+    AlignedBuffer<uchar> bytes;
+};
+
 }  // namespace iib
 }  // namespace cv
 

@@ -6,6 +6,14 @@
 #define OPENCV_IIB_COMMON_SIMD_HPP
 
 #include "opencv2/core/version.hpp"
+
+// Vectors of unknown length (RVV) cannot be members or elements of arrays, and only x86 has its own primitives
+// for wide vectors: elsewhere a vector has 128 bits.
+#if defined __riscv_vector
+#define CV_FORCE_SIMD128_CPP
+#elif defined __loongarch_asx
+#define CV__SIMD_FORCE_WIDTH 128
+#endif
 #include "opencv2/core/hal/intrin.hpp"
 
 /* OpenCV's universal intrinsics as all versions from 4.6 on have them: vectors with operators, and VTraits, whose
@@ -67,6 +75,293 @@ template <typename V> inline auto operator~(const V& a) -> decltype(v_not(a)) { 
 #undef IIB_VECTOR_OPERATOR
 #undef IIB_VECTOR_ASSIGNMENT
 #undef IIB_VECTOR_SHIFT
+
+/* All raw intrinsics of the library, as named primitives: for instruction sets that have a better way, and otherwise in
+ universal intrinsics. */
+
+//! A bit for each lane where the comparison holds. OpenCV's way turns AVX-512's masks into vectors and back.
+#if CV_AVX512_SKX
+inline unsigned greaterMask(const v_int32& a, const v_int32& b)
+{
+    return _mm512_cmpgt_epi32_mask(a.val, b.val);
+}
+inline unsigned greaterEqualMask(const v_int32& a, const v_int32& b)
+{
+    return _mm512_cmpge_epi32_mask(a.val, b.val);
+}
+inline unsigned equalMask(const v_int32& a, const v_int32& b)
+{
+    return _mm512_cmpeq_epi32_mask(a.val, b.val);
+}
+#else
+inline unsigned greaterMask(const v_int32& a, const v_int32& b) { return (unsigned)v_signmask(a > b); }
+inline unsigned greaterEqualMask(const v_int32& a, const v_int32& b) { return (unsigned)v_signmask(a >= b); }
+inline unsigned equalMask(const v_int32& a, const v_int32& b) { return (unsigned)v_signmask(a == b); }
+#endif
+
+/* Quotients, roots and nearest integers as IEEE 754 says. On ARMv7 the vectors' first two are estimates, and v_round rounds
+ halves up; scalars are exact there. */
+#if CV_NEON && !defined __aarch64__ && !defined _M_ARM64
+inline v_float32 exactQuotient(const v_float32& a, const v_float32& b)
+{
+    float x[4], y[4];
+    v_store(x, a);
+    v_store(y, b);
+    return v_float32(x[0] / y[0], x[1] / y[1], x[2] / y[2], x[3] / y[3]);
+}
+inline v_int32 nearestInt(const v_float32& v)
+{
+    float x[4];
+    v_store(x, v);
+    return v_int32(cvRound(x[0]), cvRound(x[1]), cvRound(x[2]), cvRound(x[3]));
+}
+inline v_float32 exactRoot(const v_float32& v)
+{
+    float x[4];
+    v_store(x, v);
+    return v_float32(std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3]));
+}
+#else
+inline v_float32 exactQuotient(const v_float32& a, const v_float32& b) { return a / b; }
+template <typename V> inline auto nearestInt(const V& v) -> decltype(v_round(v)) { return v_round(v); }
+template <typename V> inline V exactRoot(const V& v) { return v_sqrt(v); }
+#endif
+
+//! Adds to each value those before it in its group of four, modulo 2^16.
+inline v_uint16 prefixSumsOfFour(const v_uint16& v)
+{
+#if CV_AVX512_SKX
+    return v_uint16(_mm512_mullo_epi64(v.val, _mm512_set1_epi64(0x0001000100010001)));
+#else
+    // Added in 16 bits: valgrind takes a whole 64-bit sum for undefined where the last pixels of four are.
+    const v_uint16 two = v_add_wrap(v, v_reinterpret_as_u16(v_reinterpret_as_u64(v) << 16));
+    return v_add_wrap(two, v_reinterpret_as_u16(v_reinterpret_as_u64(two) << 32));
+#endif
+}
+
+//! Where a vector has more than four 64-bit elements, adds the fourth to those after it, in 16-bit lanes.
+inline v_uint16 addFourthToUpper(const v_uint16& v)
+{
+#if CV_AVX512_SKX
+    return v_uint16(
+            _mm512_add_epi16(v.val, _mm512_maskz_permutexvar_epi64(0xf0, _mm512_set1_epi64(3), v.val)));
+#else
+    return v;
+#endif
+}
+
+//! The last four values in the places of all; universal intrinsics have this for 128 bits only.
+inline v_uint16 repeatLastFour(const v_uint16& v)
+{
+#if CV_AVX512_SKX
+    return v_uint16(_mm512_permutexvar_epi64(_mm512_set1_epi64(7), v.val));
+#elif CV_AVX2
+    return v_uint16(_mm256_permute4x64_epi64(v.val, 0xff));
+#else
+    return v_combine_high(v, v);
+#endif
+}
+
+inline v_uint32 repeatLastFour(const v_uint32& v)
+{
+#if CV_AVX512_SKX
+    return v_uint32(_mm512_shuffle_i32x4(v.val, v.val, 0xff));
+#elif CV_AVX2
+    return v_uint32(_mm256_permute2x128_si256(v.val, v.val, 0x11));
+#else
+    return v;
+#endif
+}
+
+//! Stores groups of four values, every other one to `even` and to `odd`; a vector of one group, number i, to either.
+inline void storeAlternately(unsigned* even, unsigned* odd, int i, const v_uint32& v)
+{
+#if CV_AVX512_SKX
+    const v_uint32 sorted(_mm512_shuffle_i32x4(v.val, v.val, 0xd8));  // groups 0, 2, 1, 3
+    v_store_low(even + 2 * i, sorted);
+    v_store_high(odd + 2 * i, sorted);
+#elif CV_AVX2
+    v_store_low(even + 2 * i, v);
+    v_store_high(odd + 2 * i, v);
+#else
+    v_store((i % 2 ? odd : even) + i / 2 * 4, v);
+#endif
+}
+
+/* Four numbers, each repeated four times, as 16 / v_int32 lanes vectors. Not by way of memory, where what was stored in
+ parts could not be read whole until all stores before it are done. */
+inline void repeatEachFourTimes(const v_int32x4& n, v_int32 out[])
+{
+#if CV_AVX512_SKX
+    const __m512i places = _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
+    out[0] = v_int32(_mm512_permutexvar_epi32(places, _mm512_castsi128_si512(n.val)));
+#elif CV_AVX2
+    const __m256i twice = _mm256_broadcastsi128_si256(n.val);
+    out[0] = v_int32(_mm256_permutevar8x32_epi32(twice, _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1)));
+    out[1] = v_int32(_mm256_permutevar8x32_epi32(twice, _mm256_setr_epi32(2, 2, 2, 2, 3, 3, 3, 3)));
+#else
+    out[0] = v_broadcast_element<0>(n);
+    out[1] = v_broadcast_element<1>(n);
+    out[2] = v_broadcast_element<2>(n);
+    out[3] = v_broadcast_element<3>(n);
+#endif
+}
+
+/* Groups of four values from several places side by side, and a vector of them moved on by one group. A vector of 256
+ bits at most: the offsets of a whole 512-bit one are too many for the registers. Not v_lut_quads: gather instructions
+ are slow on many machines. */
+#if CV_AVX2
+typedef v_uint16x16 v_groups16;
+typedef v_uint32x8 v_groups32;
+
+inline __m128i twoGroups(const ushort* first, const ushort* second)
+{
+    return _mm_castpd_si128(_mm_loadh_pd(_mm_load_sd((const double*)first), (const double*)second));
+}
+
+//! Four places: row + at[0], at[2], at[4], at[6].
+inline v_groups16 loadGroups(const ushort* row, const size_t* at)
+{
+    const __m128i low = twoGroups(row + at[0], row + at[2]), high = twoGroups(row + at[4], row + at[6]);
+    return v_groups16(_mm256_inserti128_si256(_mm256_castsi128_si256(low), high, 1));
+}
+
+//! Two places: row + at[0], at[2].
+inline v_groups32 loadGroups(const unsigned* row, const size_t* at)
+{
+    const __m256i low = _mm256_castsi128_si256(v_load(row + at[0]).val);
+    return v_groups32(_mm256_inserti128_si256(low, v_load(row + at[2]).val, 1));
+}
+
+//! Without the first group, and with the one at `more` behind the last.
+inline v_groups16 nextGroups(const v_groups16& v, const ushort* more)
+{
+    const __m256i next = _mm256_castsi128_si256(v_load_low(more).val);
+#if CV_AVX512_SKX
+    return v_groups16(_mm256_alignr_epi64(next, v.val, 1));
+#else
+    return v_rotate_right<4>(v, v_groups16(next));
+#endif
+}
+
+inline v_groups32 nextGroups(const v_groups32& v, const unsigned* more)
+{
+    const __m256i next = _mm256_castsi128_si256(v_load(more).val);
+#if CV_AVX512_SKX
+    return v_groups32(_mm256_alignr_epi64(next, v.val, 2));
+#else
+    return v_rotate_right<4>(v, v_groups32(next));
+#endif
+}
+
+inline v_groups16 subtractModulo(const v_groups16& a, const v_groups16& b) { return v_sub_wrap(a, b); }
+inline v_groups32 subtractModulo(const v_groups32& a, const v_groups32& b) { return a - b; }
+#else
+typedef v_uint16x8 v_groups16;
+typedef v_uint32x4 v_groups32;
+
+//! Two places: row + at[0], at[2].
+inline v_groups16 loadGroups(const ushort* row, const size_t* at)
+{
+    return v_load_halves(row + at[0], row + at[2]);
+}
+
+//! One place: row + at[0].
+inline v_groups32 loadGroups(const unsigned* row, const size_t* at) { return v_load(row + at[0]); }
+
+//! Without the first group, and with the one at `more` behind the last.
+inline v_groups16 nextGroups(const v_groups16& v, const ushort* more)
+{
+    return v_rotate_right<4>(v, v_groups16(v_load_low(more)));
+}
+
+inline v_groups32 nextGroups(const v_groups32&, const unsigned* more) { return v_load(more); }
+
+inline v_groups16 subtractModulo(const v_groups16& a, const v_groups16& b) { return v_sub_wrap(a, b); }
+inline v_groups32 subtractModulo(const v_groups32& a, const v_groups32& b) { return a - b; }
+#endif
+
+/* Pixels of four values from anywhere: loadPixels() loads as many as v_samples has lanes, at
+ these indices, and takes their values apart. */
+#if CV_AVX2
+typedef v_int32x8 v_samples;
+
+inline v_samples v_load_samples(const int* p) { return v256_load(p); }
+inline v_samples v_setall_samples(int v) { return v256_setall_s32(v); }
+
+inline void loadPixels(
+        const short* pixels, const int* i, v_samples& a, v_samples& b, v_samples& c, v_samples& d)
+{
+    const ushort* const p = reinterpret_cast<const ushort*>(pixels);
+    __m256i even = _mm256_castsi128_si256(twoGroups(p + (size_t)4 * i[0], p + (size_t)4 * i[1]));
+    __m256i odd = _mm256_castsi128_si256(twoGroups(p + (size_t)4 * i[2], p + (size_t)4 * i[3]));
+    even = _mm256_inserti128_si256(even, twoGroups(p + (size_t)4 * i[4], p + (size_t)4 * i[5]), 1);
+    odd = _mm256_inserti128_si256(odd, twoGroups(p + (size_t)4 * i[6], p + (size_t)4 * i[7]), 1);
+    // pairs of values: the first two of each pixel, and the last two
+    const __m256 e = _mm256_castsi256_ps(even), o = _mm256_castsi256_ps(odd);
+    const __m256i first = _mm256_castps_si256(_mm256_shuffle_ps(e, o, 0x88));
+    const __m256i last = _mm256_castps_si256(_mm256_shuffle_ps(e, o, 0xdd));
+    a = v_samples(_mm256_srai_epi32(_mm256_slli_epi32(first, 16), 16));
+    b = v_samples(_mm256_srai_epi32(first, 16));
+    c = v_samples(_mm256_srai_epi32(_mm256_slli_epi32(last, 16), 16));
+    d = v_samples(_mm256_srai_epi32(last, 16));
+}
+
+inline void loadPixels(
+        const int* pixels, const int* i, v_samples& a, v_samples& b, v_samples& c, v_samples& d)
+{
+    v_int32x4 v[4], low[4], high[4];
+    for (int k = 0; k < 4; k++)
+        v[k] = v_load(pixels + (size_t)4 * i[k]);
+    v_transpose4x4(v[0], v[1], v[2], v[3], low[0], low[1], low[2], low[3]);
+    for (int k = 0; k < 4; k++)
+        v[k] = v_load(pixels + (size_t)4 * i[4 + k]);
+    v_transpose4x4(v[0], v[1], v[2], v[3], high[0], high[1], high[2], high[3]);
+    v_samples* const out[] = {&a, &b, &c, &d};
+    for (int k = 0; k < 4; k++)
+        *out[k] = v_samples(_mm256_inserti128_si256(_mm256_castsi128_si256(low[k].val), high[k].val, 1));
+}
+#else
+typedef v_int32x4 v_samples;
+
+inline v_samples v_load_samples(const int* p) { return v_load(p); }
+inline v_samples v_setall_samples(int v) { return v_setall_s32(v); }
+
+inline v_int32x4 loadPixel(const short* p) { return v_load_expand(p); }
+inline v_int32x4 loadPixel(const int* p) { return v_load(p); }
+
+template <typename T>
+inline void loadPixels(const T* pixels, const int* i, v_samples& a, v_samples& b, v_samples& c, v_samples& d)
+{
+    v_int32x4 v0 = loadPixel(pixels + (size_t)4 * i[0]), v1 = loadPixel(pixels + (size_t)4 * i[1]),
+              v2 = loadPixel(pixels + (size_t)4 * i[2]), v3 = loadPixel(pixels + (size_t)4 * i[3]);
+    v_transpose4x4(v0, v1, v2, v3, a, b, c, d);
+}
+#endif
+
+//! Products of values and a factor that fit 16 bits; `factor` comes from sampleFactor(). Whole 32-bit products are slow.
+inline v_samples sampleFactor(short factor) { return v_setall_samples((int)(ushort)factor); }
+inline v_samples sampleFactor(int factor) { return v_setall_samples(factor); }
+inline v_samples multiplySamples(const v_samples& v, const v_samples& factor, short)
+{
+    return v_dotprod(v_reinterpret_as_s16(v), v_reinterpret_as_s16(factor));
+}
+inline v_samples multiplySamples(const v_samples& v, const v_samples& factor, int) { return v * factor; }
+
+/* Moves the bits of a mask together, to the low end. Processors with AVX-512 have a fast instruction for it; among those
+ with AVX2 are some where it is slower than a dozen shifts. */
+#if CV_AVX512_SKX && (defined __x86_64__ || defined _M_X64)
+#define IIB_HAS_FAST_BIT_COMPRESS 1
+#ifdef __GNUC__
+#define IIB_TARGET_BIT_COMPRESS __attribute__((target("bmi2")))
+#else
+#define IIB_TARGET_BIT_COMPRESS
+#endif
+IIB_TARGET_BIT_COMPRESS inline uint64 compressBits(uint64 bits, uint64 mask) { return _pext_u64(bits, mask); }
+#else
+#define IIB_HAS_FAST_BIT_COMPRESS 0
+#define IIB_TARGET_BIT_COMPRESS
+#endif
 
 CV_CPU_OPTIMIZATION_HAL_NAMESPACE_END
 

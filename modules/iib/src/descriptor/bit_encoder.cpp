@@ -4,6 +4,8 @@
 
 #include "bit_encoder.hpp"
 
+#include "double_bits.hpp"
+
 namespace cv {
 namespace iib {
 
@@ -18,7 +20,7 @@ template <typename Cell> void widen(const CellGrid<Cell>& cells, CellGrid<double
                 wide.cell(r, c)[i] = cells.cell(r, c)[i];
 }
 
-void wideParentSums(const CellGrid<double>& children, CellGrid<double>& cells)
+void doubleParentSums(const CellGrid<double>& children, CellGrid<double>& cells)
 {
     cells.create(children.size() / 2);
     for (int r = 0; r < cells.size(); r++)
@@ -52,91 +54,78 @@ template <typename Cell> Cell largestSum(const CellGrid<Cell>& cells, int channe
     return largest;
 }
 
-double largestWeight(const LevelShape& shape)
+double largestWeight(const LevelShape& shape, const CellEdges& edges)
 {
-    return largestWeight(shape.x, shape.n) * largestWeight(shape.y, shape.n);
+    const Axis x = {edges.x, shape.step}, y = {edges.y, shape.step};
+    return largestWeight(x, shape.n) * largestWeight(y, shape.n);
 }
 
 //! Whether four times the largest weighted sum of a level fits an int, whatever the sums are.
-bool alwaysFitsInt(const LevelShape& shape, double value, double longest)
+bool alwaysFitsInt(const LevelShape& shape, const CellEdges& edges, double value, double longest)
 {
     const double area = longest * longest;
-    return value * area * area <= INT_MAX || value * area * largestWeight(shape) <= INT_MAX;
-}
-
-//! The same for the sums at hand.
-template <typename Cell> bool fitsInt(const CellGrid<Cell>& cells, const LevelShape& shape)
-{
-    return 4. * largestSum(cells, shape.channels) * largestWeight(shape) <= INT_MAX;
+    return value * area * area <= INT_MAX || value * area * largestWeight(shape, edges) <= INT_MAX;
 }
 
 }  // namespace
 
-BitEncoder::BitEncoder(const Parameters& p, int group, int channels)
-    : granularity(finestLevel(p)), mapping(p.mapping), shortKernels(getBitsKernels(p.mapping, ushort())),
-      longKernels(getBitsKernels(p.mapping, unsigned())), x(paddedEdges(size())), y(size() + 1),
-      chosen(granularity + 1), shapes(granularity + 1), sums(granularity + 1), wideSums(granularity + 1)
+BitEncoder::BitEncoder(
+        const DescriptorPlan& plan_, const ChannelGroup& group_, int maxValue, Workspace& workspace_)
+    : plan(plan_), group(group_), value(4. * maxValue), workspace(workspace_)
 {
-    sums[0].create(1);
-    for (int level = 1; level <= granularity; level++)
-    {
-        int windows = p.overlap ? (1 << QuadPhase::COUNT) - 1 : 1;
-        if (!p.selection.empty())
-        {
-            windows = 0;
-            for (int phase = 0; phase < QuadPhase::COUNT; phase++)
-            {
-                chosen[level].push_back(ChosenBits(p, level, group, phase));
-                windows |= !chosen[level][phase].none() << phase;
-            }
-        }
-        const int step = 1 << (granularity - level);
-        const LevelShape shape = {1 << level, bitOffset(p, level, group), {x.data(), step}, {y.data(), step},
-                channels, windows, p.selection.empty() ? 0 : chosen[level].data()};
-        shapes[level] = shape;
-        sums[level].create(shape.n);
-    }
+    for (int level = 0; level < plan.finest; level++)
+        workspace.sums[level].create(1 << level);
 }
 
-template <> const BitsKernels<ushort>& BitEncoder::kernels<ushort>() const { return shortKernels; }
-template <> const BitsKernels<unsigned>& BitEncoder::kernels<unsigned>() const { return longKernels; }
-
-template <typename Cell>
-void BitEncoder::writeFrom(
-        int level, const CellGrid<Cell>& cells, double value, double longest, uchar* descriptor)
+template <typename Sum>
+void BitEncoder::writeFrom(int level, const CellGrid<Sum>& cells, const CellEdges& edges, double longest,
+        uchar* descriptor) const
 {
+    const LevelShape* const shapes = group.levels.data();
     int coarsest = level + 1;
-    for (double l = longest; coarsest > 1 && alwaysFitsInt(shapes[coarsest - 1], value, l); l *= 2)
+    for (double l = longest; coarsest > 1 && alwaysFitsInt(shapes[coarsest - 1], edges, value, l); l *= 2)
         coarsest--;
-    if (coarsest > level && !fitsInt(cells, shapes[level]))
+    const BitsKernels<Sum>& kernels = plan.kernels.sums<Sum>().bits[plan.parameters.mapping];
+    if (coarsest > level)
     {
-        widen(cells, wideSums[level]);
-        return writeFrom(level, wideSums[level], descriptor);
+        const double weight = largestWeight(shapes[level], edges);
+        // Centred sums have signs, and differences up to twice as large. Before, they must fit an int with a bit to spare.
+        if (value * longest * longest <= 2. * INT_MAX &&
+                8. * kernels.centre(cells, shapes[level], edges, workspace.centred) * weight <= INT_MAX)
+        {
+            plan.kernels.sums<unsigned>().bits[plan.parameters.mapping].levelBits(
+                    workspace.centred, shapes, edges, level, level, workspace.sums, descriptor);
+            if (level == 1)
+                return;
+            kernels.parentSums(cells, workspace.sums[level - 1]);
+            return writeFrom(level - 1, workspace.sums[level - 1], edges, 2 * longest, descriptor);
+        }
+        if (4. * largestSum(cells, group.count) * weight > INT_MAX)
+        {
+            widen(cells, workspace.doubleSums[level]);
+            return writeFrom(level, workspace.doubleSums[level], edges, longest, descriptor);
+        }
     }
     coarsest = std::min(coarsest, level);
-    kernels<Cell>().levelBits(cells, shapes.data(), level, coarsest, sums.data(), descriptor);
+    kernels.levelBits(cells, shapes, edges, level, coarsest, workspace.sums, descriptor);
     if (coarsest > 1)
-        writeFrom(coarsest - 1, sums[coarsest - 1], value, longest * (2 << (level - coarsest)), descriptor);
+        writeFrom(coarsest - 1, workspace.sums[coarsest - 1], edges, longest * (2 << (level - coarsest)),
+                descriptor);
 }
 
-void BitEncoder::writeFrom(int level, const CellGrid<double>& cells, uchar* descriptor)
+template <>
+void BitEncoder::writeFrom(int level, const CellGrid<double>& cells, const CellEdges& edges, double longest,
+        uchar* descriptor) const
 {
-    BitWriter out(descriptor, shapes[level].offset);
-    wideLevelBits(mapping, cells, shapes[level], out);
-    out.flush();
+    doubleLevelBits(plan.parameters.mapping, cells, group.levels[level], edges, descriptor);
     if (level == 1)
         return;
-    wideParentSums(cells, wideSums[level - 1]);
-    writeFrom(level - 1, wideSums[level - 1], descriptor);
+    doubleParentSums(cells, workspace.doubleSums[level - 1]);
+    writeFrom(level - 1, workspace.doubleSums[level - 1], edges, longest, descriptor);
 }
 
-template <> void BitEncoder::write<double>(double, int, uchar* descriptor)
-{
-    writeFrom(granularity, wideSums[granularity], descriptor);
-}
-
-template void BitEncoder::writeFrom(int, const CellGrid<ushort>&, double, double, uchar*);
-template void BitEncoder::writeFrom(int, const CellGrid<unsigned>&, double, double, uchar*);
+template void BitEncoder::writeFrom(int, const CellGrid<ushort>&, const CellEdges&, double, uchar*) const;
+template void BitEncoder::writeFrom(int, const CellGrid<unsigned>&, const CellEdges&, double, uchar*) const;
 
 }  // namespace iib
 }  // namespace cv

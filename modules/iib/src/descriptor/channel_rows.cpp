@@ -19,10 +19,6 @@ enum
     SCRATCH_ROWS = FIRST_PLANE + GROUP_CHANNELS
 };
 
-template <typename T> const RowKernels<T>& rowKernels();
-template <> const RowKernels<short>& rowKernels<short>() { return shortRowKernels(); }
-template <> const RowKernels<int>& rowKernels<int>() { return intRowKernels(); }
-
 template <typename T>
 void widen(const RowKernels<T>& kernels, const Mat& map, int y, int x, T* out, int width)
 {
@@ -35,9 +31,14 @@ void widen(const RowKernels<T>& kernels, const Mat& map, int y, int x, T* out, i
 }  // namespace
 
 template <typename T>
-ChannelRows<T>::ChannelRows(const std::vector<Channel>& channels_, Rect area_, int signedOffset_)
-    : channels(channels_), area(area_), signedOffset((T)signedOffset_), kernels(rowKernels<T>()),
-      gradientOf(0), step(wholeLines<T>((size_t)area_.width + 2 + ROW_PADDING)), scratch(SCRATCH_ROWS * step)
+ChannelRows<T>::ChannelRows(const std::vector<Channel>& channels_, Rect area_, int signedOffset_,
+        const RowKernels<T>& kernels_, ScratchMemory& memory)
+    : channels(channels_), area(area_),
+      source(reflectedRange(area_.x, area_.x + area_.width, channels_[0].map.cols)),
+      origin(std::min(area_.x, source.start)), signedOffset((T)signedOffset_), kernels(kernels_),
+      gradientOf(0),
+      step(wholeLines<T>((size_t)std::max(area_.x + area_.width, source.end) - origin + 2 + ROW_PADDING)),
+      scratch(memory.get<T>(SCRATCH_ROWS * step))
 {
     for (const Channel& c : channels)
         if (usesGradient(c))
@@ -45,7 +46,7 @@ ChannelRows<T>::ChannelRows(const std::vector<Channel>& channels_, Rect area_, i
     for (int& y : read)
         y = -1;
     for (int i = 0; i < GROUP_CHANNELS; i++)
-        planes[i] = row(FIRST_PLANE + std::min(i, (int)channels.size() - 1));
+        planes[i] = row(FIRST_PLANE + std::min(i, (int)channels.size() - 1)) + (area.x - origin);
 }
 
 template <typename T> void ChannelRows<T>::computeGradient(int y)
@@ -60,31 +61,44 @@ template <typename T> void ChannelRows<T>::computeGradient(int y)
         if (read[imageY % IMAGE_ROWS] == imageY)
             continue;
         read[imageY % IMAGE_ROWS] = imageY;
-        widen(kernels, *gradientOf, imageY, area.x, out + 1, area.width);
-        const int left = std::max(area.x - 1, 0), right = std::min(area.x + area.width, gradientOf->cols - 1);
+        widen(kernels, *gradientOf, imageY, source.start, out + 1, source.size());
+        const int left = std::max(source.start - 1, 0), right = std::min(source.end, gradientOf->cols - 1);
         widen(kernels, *gradientOf, imageY, left, out, 1);
-        widen(kernels, *gradientOf, imageY, right, out + area.width + 1, 1);
+        widen(kernels, *gradientOf, imageY, right, out + source.size() + 1, 1);
     }
-    kernels.gradient(around[0], around[1], around[2], row(GRADIENT_X), row(GRADIENT_Y), area.width);
+    kernels.gradient(around[0], around[1], around[2], row(GRADIENT_X), row(GRADIENT_Y), source.size());
+}
+
+//! Fills what lies beside the image.
+template <typename T> void ChannelRows<T>::reflect(T* out) const
+{
+    const int width = channels[0].map.cols, end = area.x + area.width;
+    for (int x = area.x; x < std::min(end, 0); x++)
+        out[x - origin] = out[reflected(x, width) - origin];
+    for (int x = std::max(area.x, width); x < end; x++)
+        out[x - origin] = out[reflected(x, width) - origin];
 }
 
 template <typename T> void ChannelRows<T>::compute(int y)
 {
+    y = reflected(y, channels[0].map.rows);
     if (gradientOf)
         computeGradient(y);
     const T *gx = row(GRADIENT_X), *gy = row(GRADIENT_Y);
+    const int width = source.size();
     for (size_t i = 0; i < channels.size(); i++)
     {
-        T* out = row(FIRST_PLANE + (int)i);
+        T* const out = row(FIRST_PLANE + (int)i) + (source.start - origin);
         switch (channels[i].kind)
         {
-        case IIB::CHANNEL_GRAD_X: kernels.absolute(gx, out, area.width); break;
-        case IIB::CHANNEL_GRAD_Y: kernels.absolute(gy, out, area.width); break;
-        case IIB::CHANNEL_ORIENTATION: kernels.orientation(gx, gy, out, area.width); break;
-        case IIB::CHANNEL_SIGNED_GRAD_X: kernels.add(gx, signedOffset, out, area.width); break;
-        case IIB::CHANNEL_SIGNED_GRAD_Y: kernels.add(gy, signedOffset, out, area.width); break;
-        default: widen(kernels, channels[i].map, y, area.x, out, area.width); break;
+        case IIB::CHANNEL_GRAD_X: kernels.absolute(gx, out, width); break;
+        case IIB::CHANNEL_GRAD_Y: kernels.absolute(gy, out, width); break;
+        case IIB::CHANNEL_ORIENTATION: kernels.orientation(gx, gy, out, width); break;
+        case IIB::CHANNEL_SIGNED_GRAD_X: kernels.add(gx, signedOffset, out, width); break;
+        case IIB::CHANNEL_SIGNED_GRAD_Y: kernels.add(gy, signedOffset, out, width); break;
+        default: widen(kernels, channels[i].map, y, source.start, out, width); break;
         }
+        reflect(row(FIRST_PLANE + (int)i));
     }
 }
 

@@ -20,7 +20,7 @@ std::vector<Channel> channelsInUse(const Parameters& p, const Mat& image, const 
     return channels;
 }
 
-bool isDeep(const std::vector<Channel>& channels)
+bool is16Bit(const std::vector<Channel>& channels)
 {
     for (const Channel& c : channels)
         if (c.map.depth() == CV_16U)
@@ -36,11 +36,12 @@ int maxGradient(const std::vector<Channel>& channels)
     return 0;
 }
 
-int maxValue(const std::vector<Channel>& channels, int gradient)
+int maxValue(const Channel* channels, int count, int gradient)
 {
     int largest = 0;
-    for (const Channel& c : channels)
+    for (int i = 0; i < count; i++)
     {
+        const Channel& c = channels[i];
         int value = gradient;
         if (!usesGradient(c))
             value = maxPixel(c.map.depth());

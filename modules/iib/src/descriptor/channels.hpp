@@ -31,14 +31,19 @@ inline bool usesGradient(const Channel& channel)
 }
 
 //! Whether any map has 16 bits.
-bool isDeep(const std::vector<Channel>& channels);
+bool is16Bit(const std::vector<Channel>& channels);
 
 //! Largest absolute Sobel response of the image behind these channels; 0 if none needs its gradient.
 int maxGradient(const std::vector<Channel>& channels);
 
 /** The largest value of some channels, where no gradient exceeds `gradient`. Signed gradients have it added,
  which changes no comparison and keeps them positive. */
-int maxValue(const std::vector<Channel>& channels, int gradient);
+int maxValue(const Channel* channels, int count, int gradient);
+
+inline int maxValue(const std::vector<Channel>& channels, int gradient)
+{
+    return maxValue(channels.data(), (int)channels.size(), gradient);
+}
 
 }  // namespace iib
 }  // namespace cv

@@ -4,6 +4,9 @@
 
 #include "compute.hpp"
 
+#include <array>
+#include <map>
+
 #include "input.hpp"
 #include "rotated.hpp"
 #include "upright.hpp"
@@ -15,8 +18,8 @@ namespace {
 
 typedef std::vector<int> Indices;
 
-//! Keypoints and the pixels that they need.
-struct Part
+//! Keypoints that are described in the same way, and the pixels that they need.
+struct Subset
 {
     Indices keypoints;
     std::vector<Rect> pixels;
@@ -33,62 +36,104 @@ struct Part
         pixels.push_back(r);
     }
 
-    //! A block whose keypoints are indices of the whole image's.
-    Block block(const Indices& part) const
+    //! A batch whose keypoints are indices of the whole image's.
+    KeyPointBatch batch(const Indices& members) const
     {
-        Block b = makeBlock(pixels, part);
+        KeyPointBatch b = makeBatch(pixels, members);
         for (int& k : b.keypoints)
             k = keypoints[k];
         return b;
     }
 };
 
-void describeUprightBlock(const Parameters& p, const std::vector<Channel>& channels, const Block& block,
-        const std::vector<SupportRegion>& region, Mat& descriptors)
+bool isRotated(const Parameters& p, const KeyPoint& keypoint)
 {
-    for (size_t first = 0; first < channels.size(); first += GROUP_CHANNELS)
+    if (p.orientation == IIB::ORIENTATION_GRADIENT)
+        return p.channels != 0;
+    return p.orientation == IIB::ORIENTATION_KEYPOINT && keypoint.angle >= 0;
+}
+
+//! The channels of an image, all of them and in groups.
+struct ImageChannels
+{
+    std::vector<Channel> all;
+    std::vector<std::vector<Channel>> groups;
+
+    ImageChannels(const DescriptorPlan& plan, const Mat& image, const std::vector<Mat>& extra)
     {
-        const size_t end = std::min(first + GROUP_CHANNELS, channels.size());
-        const std::vector<Channel> group(channels.begin() + first, channels.begin() + end);
-        describeUpright(p, group, (int)first / GROUP_CHANNELS, block, region, descriptors);
+        const Rect whole(Point(), image.size());
+        std::vector<Mat> maps;
+        for (const Mat& m : extra)
+            maps.push_back(integerMap(m, whole));
+        all = channelsInUse(plan.parameters, integerMap(image, whole), maps);
+        for (const ChannelGroup& g : plan.groups)
+            groups.push_back(std::vector<Channel>(all.begin() + g.first, all.begin() + g.first + g.count));
     }
+};
+
+//! How many earlier keypoints have the same position and size.
+std::vector<int> ranksOf(const std::vector<KeyPoint>& keypoints)
+{
+    std::map<std::array<float, 3>, int> seen;
+    std::vector<int> ranks;
+    ranks.reserve(keypoints.size());
+    for (const KeyPoint& kp : keypoints)
+        ranks.push_back(seen[{{kp.pt.x, kp.pt.y, kp.size}}]++);
+    return ranks;
 }
 
 }  // namespace
 
-void describe(const Parameters& p, const Mat& image, const std::vector<Mat>& extra,
+bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image)
+{
+    const Parameters& p = plan.parameters;
+    const SupportRegion region(keypoint, p.scaleFactor, p.granularity);
+    if (!isRotated(p, keypoint))
+        return region.isInside(image);
+    // an angle that is not known yet may be the one that reaches farthest
+    const float angle = p.orientation == IIB::ORIENTATION_GRADIENT ? 45.f : keypoint.angle;
+    return rotatedIsInside(region, keypoint.pt, angle, image);
+}
+
+void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Mat>& extra,
         const std::vector<KeyPoint>& keypoints, Mat& descriptors)
 {
-    std::vector<SupportRegion> region;
-    region.reserve(keypoints.size());
-    Part upright, turned;
+    const Parameters& p = plan.parameters;
+    std::vector<SupportRegion> regions;
+    regions.reserve(keypoints.size());
+    Subset upright, rotated;
     upright.reserve(keypoints.size());
     for (const KeyPoint& kp : keypoints)
     {
-        const int k = (int)region.size();
-        region.push_back(SupportRegion(kp, p.scaleFactor, p.granularity));
-        if (p.useOrientation && kp.angle >= 0)
-            turned.add(k, turnedPixels(region[k], kp, image.size()));
+        const int k = (int)regions.size();
+        regions.push_back(SupportRegion(kp, p.scaleFactor, p.granularity));
+        if (isRotated(p, kp))
+            rotated.add(k, rotatedPixels(regions[k], kp.pt, p.border, image.size()));
         else
-            upright.add(k, region[k].pixels(image.size()));
+            upright.add(k, regions[k].pixels(regions[k].bounds(image.size(), p.border)));
     }
 
-    const Rect whole(Point(), image.size());
-    std::vector<Mat> maps;
-    for (const Mat& m : extra)
-        maps.push_back(integerMap(m, whole));
-    const std::vector<Channel> channels = channelsInUse(p, integerMap(image, whole), maps);
-
-    const std::vector<Indices> uprightParts = cutBlocks(upright.pixels, getNumThreads());
-    const std::vector<Indices> turnedParts = cutBlocks(turned.pixels, getNumThreads());
-    const int uprightCount = (int)uprightParts.size();
-    parallel_for_(Range(0, uprightCount + (int)turnedParts.size()), [&](const Range& range) {
+    const std::vector<int> ranks =
+            p.orientation == IIB::ORIENTATION_GRADIENT ? ranksOf(keypoints) : std::vector<int>();
+    const ImageChannels channels(plan, image, extra);
+    const std::vector<Indices> uprightBatches = cutBatches(upright.pixels, getNumThreads());
+    const std::vector<Indices> rotatedBatches = cutBatches(rotated.pixels, getNumThreads());
+    const int uprightCount = (int)uprightBatches.size();
+    WorkspacePool pool;
+    parallel_for_(Range(0, uprightCount + (int)rotatedBatches.size()), [&](const Range& range) {
+        std::unique_ptr<Workspace> workspace = pool.borrow();
         for (int b = range.start; b < range.end; b++)
             if (b < uprightCount)
-                describeUprightBlock(p, channels, upright.block(uprightParts[b]), region, descriptors);
+            {
+                const KeyPointBatch batch = upright.batch(uprightBatches[b]);
+                for (size_t g = 0; g < plan.groups.size(); g++)
+                    describeUpright(plan, plan.groups[g], channels.groups[g], batch, regions, *workspace,
+                            descriptors);
+            }
             else
-                describeTurned(p, channels, turned.block(turnedParts[b - uprightCount]), region, keypoints,
-                        descriptors);
+                describeRotated(plan, channels.all, rotated.batch(rotatedBatches[b - uprightCount]), regions,
+                        keypoints, ranks, *workspace, descriptors);
+        pool.giveBack(std::move(workspace));
     });
 }
 

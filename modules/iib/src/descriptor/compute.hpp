@@ -5,17 +5,20 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_COMPUTE_HPP
 #define OPENCV_IIB_DESCRIPTOR_COMPUTE_HPP
 
-#include "parameters.hpp"
+#include "plan.hpp"
 
 namespace cv {
 namespace iib {
 
+//! Whether the keypoint's support region, upright or rotated, lies inside the image.
+bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image);
+
 /** Describes keypoints (paper, algorithm 1). All arguments have passed their checks.
 
 @param extra maps of the image's size.
-@param descriptors keypoints.size() rows of sum(levelBytes(parameters)), CV_8U, allocated.
+@param descriptors keypoints.size() rows of plan.bytes, CV_8U, allocated.
  */
-void describe(const Parameters& parameters, const Mat& image, const std::vector<Mat>& extra,
+void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Mat>& extra,
         const std::vector<KeyPoint>& keypoints, Mat& descriptors);
 
 }  // namespace iib

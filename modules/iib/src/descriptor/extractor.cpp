@@ -4,10 +4,7 @@
 
 #include "compute.hpp"
 #include "input.hpp"
-#include "layout.hpp"
 #include "support_region.hpp"
-
-#include <numeric>
 
 #include "opencv2/core/utils/trace.hpp"
 
@@ -20,9 +17,8 @@ class IIBDescriptorExtractor_Impl CV_FINAL : public IIBDescriptorExtractor
 {
 public:
     explicit IIBDescriptorExtractor_Impl(const Parameters& parameters)
-        : p(parameters), detector(ORB::create())
+        : p(parameters), plan(planOf(parameters)), detector(ORB::create())
     {
-        p.check();
     }
 
     void compute(InputArray image, std::vector<KeyPoint>& keypoints, OutputArray descriptors) CV_OVERRIDE
@@ -42,12 +38,8 @@ public:
             compute(image, keypoints, descriptors);
     }
 
-    std::vector<int> levelSizes() const CV_OVERRIDE { return levelBytes(p); }
-    int descriptorSize() const CV_OVERRIDE
-    {
-        const std::vector<int> bytes = levelBytes(p);
-        return std::accumulate(bytes.begin(), bytes.end(), 0);
-    }
+    std::vector<int> levelSizes() const CV_OVERRIDE { return plan->levelBytes; }
+    int descriptorSize() const CV_OVERRIDE { return plan->bytes; }
     int descriptorType() const CV_OVERRIDE { return CV_8U; }
     int defaultNorm() const CV_OVERRIDE { return NORM_HAMMING; }
     bool empty() const CV_OVERRIDE { return false; }
@@ -62,8 +54,13 @@ public:
     int getMapping() const CV_OVERRIDE { return p.mapping; }
     void setOverlap(bool value) CV_OVERRIDE { setShape(&Parameters::overlap, value); }
     bool getOverlap() const CV_OVERRIDE { return p.overlap; }
-    void setUseOrientation(bool value) CV_OVERRIDE { set(&Parameters::useOrientation, value); }
-    bool getUseOrientation() const CV_OVERRIDE { return p.useOrientation; }
+    void setUseOrientation(bool value) CV_OVERRIDE
+    {
+        setOrientation(value ? ORIENTATION_KEYPOINT : ORIENTATION_NONE);
+    }
+    bool getUseOrientation() const CV_OVERRIDE { return p.orientation != ORIENTATION_NONE; }
+    void setOrientation(int value) CV_OVERRIDE { set(&Parameters::orientation, value); }
+    int getOrientation() const CV_OVERRIDE { return p.orientation; }
     void setExtraChannels(int value) CV_OVERRIDE { setShape(&Parameters::extraChannels, value); }
     int getExtraChannels() const CV_OVERRIDE { return p.extraChannels; }
     void setBorder(int value) CV_OVERRIDE { set(&Parameters::border, value); }
@@ -73,6 +70,9 @@ public:
     {
         if (!value)
             CV_Error(Error::StsNullPtr, "the detector is null");
+        if (usesDetector(value, this))
+            CV_Error(Error::StsBadArg, "the extractor cannot be its own detector; give it one that finds "
+                                       "keypoints, such as ORB");
         detector = value;
     }
     Ptr<Feature2D> getDetector() const CV_OVERRIDE { return detector; }
@@ -100,16 +100,32 @@ public:
         // a node's name may not hold the dot of getDefaultName()
         FileStorage fs(filename, FileStorage::WRITE);
         CV_Assert(fs.isOpened());
-        fs << "IIB"
-           << "{";
         write(fs);
-        fs << "}";
     }
 
 private:
+    //! Whether calls to `feature` would come back to `extractor`, through any number of extractors.
+    static bool usesDetector(const Ptr<Feature2D>& feature, const Feature2D* extractor)
+    {
+        const Feature2D* f = feature.get();
+        while (f && f != extractor)
+        {
+            const IIBDescriptorExtractor_Impl* const other =
+                    dynamic_cast<const IIBDescriptorExtractor_Impl*>(f);
+            f = other ? other->detector.get() : 0;
+        }
+        return f == extractor;
+    }
+
+    static Ptr<const DescriptorPlan> planOf(const Parameters& parameters)
+    {
+        parameters.check();
+        return makePtr<const DescriptorPlan>(parameters);
+    }
+
     void replace(const Parameters& changed)
     {
-        changed.check();
+        plan = planOf(changed);
         p = changed;
     }
 
@@ -131,8 +147,12 @@ private:
     }
 
     Parameters p;
+    Ptr<const DescriptorPlan> plan;  //!< of p
     Ptr<Feature2D> detector;
 };
+
+//! Whether two matrices share memory: compute(image, keypoints, image) is legal.
+bool overlap(const Mat& a, const Mat& b) { return a.datastart < b.dataend && b.datastart < a.dataend; }
 
 void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArrays extraArrays,
         std::vector<KeyPoint>& keypoints, OutputArray descriptors)
@@ -155,15 +175,9 @@ void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArr
     checkExtraChannels(extra, p.extraChannels, image.size());
 
     if (p.border == BORDER_DROP)
-    {
-        const Parameters& params = p;
         keypoints.erase(std::remove_if(keypoints.begin(), keypoints.end(),
-                                [&](const KeyPoint& kp) {
-                                    return !SupportRegion(kp, params.scaleFactor, params.granularity)
-                                                    .isInside(image.size());
-                                }),
+                                [&](const KeyPoint& kp) { return !isInside(*plan, kp, image.size()); }),
                 keypoints.end());
-    }
     if (keypoints.empty())
     {
         descriptors.release();
@@ -172,47 +186,105 @@ void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArr
 
     descriptors.create((int)keypoints.size(), descriptorSize(), CV_8U);
     Mat result = descriptors.getMat();
-    describe(p, image, extra, keypoints, result);
+    bool overwrites = overlap(result, image);
+    for (const Mat& map : extra)
+        overwrites = overwrites || overlap(result, map);
+    Mat rows = overwrites ? Mat(result.size(), CV_8U) : result;
+    describe(*plan, image, extra, keypoints, rows);
+    if (overwrites)
+        rows.copyTo(result);
 }
 
 void IIBDescriptorExtractor_Impl::write(FileStorage& fs) const
 {
-    fs << "format" << 1 << "scaleFactor" << p.scaleFactor << "granularity" << p.granularity << "channels"
-       << p.channels << "mapping" << p.mapping << "overlap" << p.overlap << "useOrientation"
-       << p.useOrientation << "extraChannels" << p.extraChannels << "border" << p.border;
+    // One node, which is then the first of a file: Algorithm::load() reads what Feature2D::write(file) wrote.
+    fs << "IIB"
+       << "{"
+       << "format" << 1 << "scaleFactor" << p.scaleFactor << "granularity" << p.granularity << "channels"
+       << p.channels << "mapping" << p.mapping << "overlap" << p.overlap << "useOrientation" << p.orientation
+       << "extraChannels" << p.extraChannels << "border" << p.border;
     if (!p.selection.empty())
         fs << "selection" << std::vector<int>(p.selection.begin(), p.selection.end());
+    fs << "}";
 }
+
+String describeNode(const FileNode& node)
+{
+    if (node.empty())
+        return "nothing";
+    if (node.isInt() || node.isReal())
+        return format("%.17g", (double)node);
+    if (node.isString())
+        return "\"" + (String)node + "\"";
+    return node.isSeq() ? "a sequence" : "a map";
+}
+
+bool holds(double number, float) { return std::abs(number) <= FLT_MAX; }
+bool holds(double number, int) { return number == std::floor(number) && std::abs(number) <= INT_MAX; }
+bool holds(double number, bool) { return number == 0 || number == 1; }
+
+const char* expected(float) { return "a number"; }
+const char* expected(int) { return "a whole number"; }
+const char* expected(bool) { return "0 or 1"; }
 
 //! A number that is missing keeps its value.
-template <typename T> void readNumber(const FileNode& fn, const char* name, T& value)
+template <typename T> void readNumber(const FileNode& node, const char* name, T& value)
 {
-    const FileNode number = fn[name];
-    if (!number.empty() && !number.isInt() && !number.isReal())
-        CV_Error(Error::StsParseError, format("%s is not a number", name));
-    cv::read(number, value, value);
+    const FileNode number = node[name];
+    if (number.empty())
+        return;
+    if (!(number.isInt() || number.isReal()) || !holds((double)number, T()))
+        CV_Error(Error::StsParseError,
+                format("%s is %s; it must be %s", name, describeNode(number).c_str(), expected(T())));
+    value = (T)(double)number;
 }
 
-void IIBDescriptorExtractor_Impl::read(const FileNode& fn)
+Mat_<int> readSelection(const FileNode& node)
 {
+    if (node.empty())
+        return Mat_<int>();
+    if (!node.isSeq() || node.size() % 5 != 0)
+        CV_Error(Error::StsParseError,
+                format("the selection is %s of %d; it must be a sequence of rows of 5 whole numbers",
+                        describeNode(node).c_str(), (int)node.size()));
+    Mat_<int> quads((int)node.size() / 5, 5);
+    int i = 0;
+    for (const FileNode& number : node)
+    {
+        if (!number.isInt())
+            CV_Error(Error::StsParseError,
+                    format("number %d of the selection is %s; it must be a whole number", i,
+                            describeNode(number).c_str()));
+        quads(i / 5, i % 5) = (int)number;
+        i++;
+    }
+    return quads;
+}
+
+void IIBDescriptorExtractor_Impl::read(const FileNode& node)
+{
+    // The node that write() made, or what holds it: the root of a file, or a node around it.
+    const FileNode inner = node.isMap() ? node["IIB"] : FileNode();
+    const FileNode fn = inner.isMap() ? inner : node;
+    const FileNode version = fn.isMap() ? fn["format"] : FileNode();
+    if (version.empty())
+        CV_Error(Error::StsParseError, "the node holds no IIB parameters: it is " + describeNode(node) +
+                                               " without a format; give it the node that write() wrote");
     int format = 0;
-    cv::read(fn["format"], format, 0);
+    readNumber(fn, "format", format);
     if (format != 1)
-        CV_Error(Error::StsParseError, "the node holds no IIB parameters of format 1");
+        CV_Error(Error::StsParseError,
+                cv::format("the node has format %d; this version reads IIB parameters of format 1", format));
     Parameters r = p;
     readNumber(fn, "scaleFactor", r.scaleFactor);
     readNumber(fn, "granularity", r.granularity);
     readNumber(fn, "channels", r.channels);
     readNumber(fn, "mapping", r.mapping);
     readNumber(fn, "overlap", r.overlap);
-    readNumber(fn, "useOrientation", r.useOrientation);
+    readNumber(fn, "useOrientation", r.orientation);  // 0 and 1 once were false and true
     readNumber(fn, "extraChannels", r.extraChannels);
     readNumber(fn, "border", r.border);
-    std::vector<int> quads;
-    fn["selection"] >> quads;
-    if (quads.size() % 5 != 0)
-        CV_Error(Error::StsParseError, "the selection's length is no multiple of 5 numbers");
-    r.selection = quads.empty() ? Mat_<int>() : Mat_<int>(Mat(quads, true).reshape(1, (int)quads.size() / 5));
+    r.selection = readSelection(fn["selection"]);
     replace(r);
 }
 
@@ -221,8 +293,9 @@ void IIBDescriptorExtractor_Impl::read(const FileNode& fn)
 Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::create(float scaleFactor, int granularity, int channels,
         int mapping, bool overlap, bool useOrientation, int extraChannels)
 {
-    const Parameters p = {scaleFactor, granularity, channels, mapping, overlap, useOrientation, extraChannels,
-            BORDER_CLAMP, Mat_<int>()};
+    const Parameters p = {scaleFactor, granularity, channels, mapping, overlap,
+            useOrientation ? ORIENTATION_KEYPOINT : ORIENTATION_NONE, extraChannels, BORDER_REFLECT,
+            Mat_<int>()};
     return makePtr<IIBDescriptorExtractor_Impl>(p);
 }
 

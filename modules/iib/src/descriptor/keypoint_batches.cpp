@@ -19,22 +19,24 @@ Range extent(const Rect& r, bool vertical)
 }
 
 //! Splits at gaps along one axis. Linear in the keypoints and in the axis.
-std::vector<Indices> splitAtGaps(const std::vector<Rect>& region, const Indices& keypoints, bool vertical)
+std::vector<Indices> splitAtGaps(
+        const std::vector<Rect>& regions, const Indices& keypoints, bool vertical, int64& visits)
 {
     Range all(INT_MAX, INT_MIN);
     for (int k : keypoints)
     {
-        const Range e = extent(region[k], vertical);
+        const Range e = extent(regions[k], vertical);
         all.start = std::min(all.start, e.start);
         all.end = std::max(all.end, e.end);
     }
     std::vector<int> part(all.size() + 1, 0);  // first what begins less what ends here, then which part it is
     for (int k : keypoints)
     {
-        const Range e = extent(region[k], vertical);
+        const Range e = extent(regions[k], vertical);
         part[e.start - all.start]++;
         part[e.end - all.start]--;
     }
+    visits += 3 * (int64)keypoints.size() + all.size();
     int open = 0, parts = 0;
     for (int& p : part)
     {
@@ -46,24 +48,31 @@ std::vector<Indices> splitAtGaps(const std::vector<Rect>& region, const Indices&
         return std::vector<Indices>(1, keypoints);
     std::vector<Indices> pieces(parts);
     for (int k : keypoints)
-        pieces[part[extent(region[k], vertical).start - all.start]].push_back(k);
+        pieces[part[extent(regions[k], vertical).start - all.start]].push_back(k);
     pieces.erase(std::remove_if(pieces.begin(), pieces.end(), [](const Indices& p) { return p.empty(); }),
             pieces.end());
     return pieces;
 }
 
-//! Splits along both axes in turn until there is no gap left.
-void splitRecursively(const std::vector<Rect>& region, const Indices& keypoints, bool vertical,
-        bool otherAxisSplit, std::vector<Indices>& parts)
+//! Splits along both axes in turn until there is no gap left or enough rounds have passed.
+std::vector<Indices> splitInRounds(const std::vector<Rect>& regions, int64& visits)
 {
-    const std::vector<Indices> pieces = splitAtGaps(region, keypoints, vertical);
-    if (pieces.size() == 1 && !otherAxisSplit)
+    std::vector<Indices> parts(1, Indices(regions.size()));
+    std::iota(parts[0].begin(), parts[0].end(), 0);
+    bool lastSplit = true;  // whether the round before did
+    for (int round = 0; round < MAX_CUTS; round++)
     {
-        parts.push_back(keypoints);
-        return;
+        std::vector<Indices> next;
+        for (const Indices& part : parts)
+            for (Indices& piece : splitAtGaps(regions, part, round % 2 == 0, visits))
+                next.push_back(std::move(piece));
+        const bool split = next.size() > parts.size();
+        parts.swap(next);
+        if (!split && !lastSplit)
+            break;
+        lastSplit = split;
     }
-    for (const Indices& piece : pieces)
-        splitRecursively(region, piece, !vertical, pieces.size() > 1, parts);
+    return parts;
 }
 
 //! Stable, linear sort of indices by keys in [0, keyCount).
@@ -80,25 +89,25 @@ template <typename Key> void countingSort(Indices& indices, int keyCount, const 
     indices.swap(sorted);
 }
 
-Rect unionOf(const std::vector<Rect>& region, const Indices& keypoints)
+Rect unionOf(const std::vector<Rect>& regions, const Indices& keypoints)
 {
-    Point begin = region[keypoints[0]].tl(), end = region[keypoints[0]].br();
+    Point begin = regions[keypoints[0]].tl(), end = regions[keypoints[0]].br();
     for (int k : keypoints)
     {
-        const Rect& r = region[k];
+        const Rect& r = regions[k];
         begin = Point(std::min(begin.x, r.x), std::min(begin.y, r.y));
         end = Point(std::max(end.x, r.x + r.width), std::max(end.y, r.y + r.height));
     }
     return Rect(begin, end);
 }
 
-//! Cuts a block across its longer side, where fewer support region are cut, into parts of equal area, by the centres of the support region.
-void cutStrips(const std::vector<Rect>& region, const Indices& keypoints, Rect area, int strips,
-        std::vector<Indices>& blocks)
+//! Cuts keypoints across the longer side of their area, where fewer regions are cut, into strips of equal height or width.
+void cutStrips(const std::vector<Rect>& regions, const Indices& keypoints, Rect area, int strips,
+        std::vector<Indices>& batches)
 {
     if (strips == 1)
     {
-        blocks.push_back(keypoints);
+        batches.push_back(keypoints);
         return;
     }
     const bool vertical = area.height > area.width;
@@ -106,51 +115,52 @@ void cutStrips(const std::vector<Rect>& region, const Indices& keypoints, Rect a
     std::vector<Indices> parts(strips);
     for (int k : keypoints)
     {
-        const Range e = extent(region[k], vertical);
+        const Range e = extent(regions[k], vertical);
         const int centre = e.start + e.size() / 2 - whole.start;
         parts[(int)((int64)centre * strips / whole.size())].push_back(k);
     }
     for (const Indices& part : parts)
         if (!part.empty())
-            blocks.push_back(part);
+            batches.push_back(part);
 }
 
 }  // namespace
 
-std::vector<Indices> cutBlocks(const std::vector<Rect>& region, int workers)
+std::vector<Indices> cutBatches(const std::vector<Rect>& regions, int workers, int64* visits)
 {
-    if (region.empty())
+    if (regions.empty())
         return std::vector<Indices>();
-    Indices all(region.size());
-    std::iota(all.begin(), all.end(), 0);
-    std::vector<Indices> parts, blocks;
-    splitRecursively(region, all, true, true, parts);
+    int64 count = 0;
+    const std::vector<Indices> parts = splitInRounds(regions, count);
+    if (visits)
+        *visits = count;
+    std::vector<Indices> batches;
 
     std::vector<Rect> areas;
     double pixels = 0;
     for (const Indices& part : parts)
     {
-        areas.push_back(unionOf(region, part));
+        areas.push_back(unionOf(regions, part));
         pixels += (double)areas.back().width * areas.back().height;
     }
     for (size_t i = 0; i < parts.size(); i++)
     {
         const double share = (double)areas[i].width * areas[i].height / pixels;
-        cutStrips(region, parts[i], areas[i], std::max(cvRound(share * workers), 1), blocks);
+        cutStrips(regions, parts[i], areas[i], std::max(cvRound(share * workers), 1), batches);
     }
-    return blocks;
+    return batches;
 }
 
-Block makeBlock(const std::vector<Rect>& region, const Indices& keypoints)
+KeyPointBatch makeBatch(const std::vector<Rect>& regions, const Indices& keypoints)
 {
-    Block block = {unionOf(region, keypoints), 0, keypoints};
+    KeyPointBatch batch = {unionOf(regions, keypoints), 0, keypoints};
     for (int k : keypoints)
-        block.rows = std::max(block.rows, region[k].height);
-    countingSort(block.keypoints, block.area.width, [&](int k) { return region[k].x - block.area.x; });
-    countingSort(block.keypoints, block.area.height / Block::BAND_ROWS + 2, [&](int k) {
-        return (region[k].br().y - block.area.y + Block::BAND_ROWS - 1) / Block::BAND_ROWS;
+        batch.rows = std::max(batch.rows, regions[k].height);
+    countingSort(batch.keypoints, batch.area.width, [&](int k) { return regions[k].x - batch.area.x; });
+    countingSort(batch.keypoints, batch.area.height / KeyPointBatch::BAND_ROWS + 2, [&](int k) {
+        return (regions[k].br().y - batch.area.y + KeyPointBatch::BAND_ROWS - 1) / KeyPointBatch::BAND_ROWS;
     });
-    return block;
+    return batch;
 }
 
 }  // namespace iib

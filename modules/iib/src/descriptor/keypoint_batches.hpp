@@ -11,12 +11,11 @@ namespace cv {
 namespace iib {
 
 //! Keypoints that are described together, from integral images over their common area.
-struct Block
+struct KeyPointBatch
 {
-    Rect area;  //!< holds all their support region
-    int rows;   //!< of the highest support region
-    std::vector<int>
-            keypoints;  //!< indices, by the band in which their support region ends, then from left to right
+    Rect area;                   //!< holds all their regions
+    int rows;                    //!< of the highest region
+    std::vector<int> keypoints;  //!< indices, by the band in which their region ends, then from left to right
 
     enum
     {
@@ -31,15 +30,23 @@ struct Block
     }
 };
 
-/** Cuts keypoints into those that are described together, so that pixels which no support region touches are left out wherever a
- straight gap between the ROS allows, and so that none has much more than 1/workers of all pixels.
+//! How often keypoints are cut at gaps, along both axes in turn. What peels off one at a time would take long.
+enum
+{
+    MAX_CUTS = 8
+};
 
- @param region the pixels that each keypoint needs, not empty.
- @return indices of the keypoints of each block. */
-std::vector<std::vector<int>> cutBlocks(const std::vector<Rect>& region, int workers);
+/** Cuts keypoints into those that are described together, so that pixels which no region touches are left out where a
+ straight gap between the regions allows, in up to MAX_CUTS rounds, and so that none has much more than 1/workers of all
+ pixels. Takes time linear in the keypoints and in the pixels of the image at most.
+
+ @param regions the pixels that each keypoint needs, not empty.
+ @param visits if not null, gets the number of keypoints and of positions along an axis that were looked at.
+ @return indices of the keypoints of each batch. */
+std::vector<std::vector<int>> cutBatches(const std::vector<Rect>& regions, int workers, int64* visits = 0);
 
 //! @param keypoints indices, one or more.
-Block makeBlock(const std::vector<Rect>& region, const std::vector<int>& keypoints);
+KeyPointBatch makeBatch(const std::vector<Rect>& regions, const std::vector<int>& keypoints);
 
 }  // namespace iib
 }  // namespace cv

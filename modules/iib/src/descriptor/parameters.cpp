@@ -73,8 +73,11 @@ void Parameters::check() const
     require(extraChannels >= 0 && extraChannels <= MAX_EXTRA_CHANNELS, Error::StsOutOfRange,
             format("extraChannels is %d; it must be 0 to %d", extraChannels, MAX_EXTRA_CHANNELS));
     require(channelCount() > 0, Error::StsBadArg, "there are neither channels nor extraChannels to describe");
-    require(border == IIB::BORDER_CLAMP || border == IIB::BORDER_DROP, Error::StsBadArg,
-            format("border is %d; it must be BORDER_CLAMP or BORDER_DROP", border));
+    require(border >= IIB::BORDER_CLAMP && border <= IIB::BORDER_REFLECT, Error::StsBadArg,
+            format("border is %d; it must be one of the BORDER_ values", border));
+    require(orientation >= IIB::ORIENTATION_NONE && orientation <= IIB::ORIENTATION_GRADIENT,
+            Error::StsBadArg,
+            format("orientation is %d; it must be one of the ORIENTATION_ values", orientation));
     checkSelection(*this);
 }
 

@@ -6,13 +6,13 @@
 #define OPENCV_IIB_DESCRIPTOR_PARAMETERS_HPP
 
 #include "../precomp.hpp"
+#include "kernels/cell_grid.hpp"
 
 namespace cv {
 namespace iib {
 
 enum
 {
-    MAX_GRANULARITY = 6,
     MAX_EXTRA_CHANNELS = 16,
     ALL_CHANNELS = 63
 };
@@ -25,7 +25,7 @@ struct Parameters
     int channels;
     int mapping;
     bool overlap;
-    bool useOrientation;
+    int orientation;
     int extraChannels;
     int border;
     Mat_<int> selection;  //!< as IIBDescriptorExtractor::setSelection takes it; empty: all quads

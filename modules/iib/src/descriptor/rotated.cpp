@@ -4,10 +4,12 @@
 
 #include "rotated.hpp"
 
-#include "channel_rows.hpp"
-#include "bit_encoder.hpp"
+#include <numeric>
+
+#include "gradient_orientation.hpp"
 #include "kernels/orientation.hpp"
-#include "kernels/rotated_samples.hpp"
+#include "pixel_band.hpp"
+#include "rotation.hpp"
 
 namespace cv {
 namespace iib {
@@ -17,33 +19,33 @@ namespace {
 const double LARGEST_SIDE = 16384;  // so that a point's offset fits 32 bits
 
 //! A sine may add the two components of a gradient.
-int maxTurnedGradient(int depth) { return 6 * maxPixel(depth); }
-
-template <typename T> const RotatedSampleKernels<T>& sampleKernels();
-template <> const RotatedSampleKernels<short>& sampleKernels<short>() { return shortRotatedSampleKernels(); }
-template <> const RotatedSampleKernels<int>& sampleKernels<int>() { return intRotatedSampleKernels(); }
+int maxRotatedGradient(int depth) { return 6 * maxPixel(depth); }
 
 int samplesInRow(const SupportRegion& region, int granularity)
 {
     return region.side <= 64 && granularity <= 5 ? 32 : 64;
 }
 
-//! The angle less its whole turns, exact: of a huge one, rounding to integers would depend on the machine.
-float withinTurn(float angle) { return std::fmod(angle, 360.f); }
+//! A square of any angle that holds the region's, and a pixel for each rounding.
+SupportRegion circumscribed(const SupportRegion& region, Point2f centre)
+{
+    return SupportRegion(centre, 2 * (std::min(region.side, LARGEST_SIDE) * 0.7072 + 2));
+}
 
-SampleGrid gridOf(const SupportRegion& region, const KeyPoint& kp, int granularity, Size image, Rect area)
+SampleGrid gridOf(const SupportRegion& region, Point2f centre, const Rotation& rotation, int n, int sub,
+        int border, Size image)
 {
     SampleGrid g;
-    g.n = samplesInRow(region, granularity);
+    g.n = n;
+    g.sub = sub;
     g.image = image;
-    g.area = area;
-    const double radians = withinTurn(kp.angle) * CV_PI / 180,
-                 spacing = std::min(region.side, LARGEST_SIDE) / g.n;
-    g.stepX = cvRound(std::cos(radians) * spacing * 65536);
-    g.stepY = cvRound(std::sin(radians) * spacing * 65536);
+    g.reflect = circumscribed(region, centre).bounds(image, border).size() != image;
+    const double spacing = std::min(region.side, LARGEST_SIDE) / g.n;
+    g.stepX = cvRound(rotation.cosine * spacing * 65536);
+    g.stepY = cvRound(rotation.sine * spacing * 65536);
     const double far = 1 << 29;  // beyond any image
-    const int64 x = (int64)std::floor(std::min(std::max((double)kp.pt.x, -far), far) * 131072 + 65536.5);
-    const int64 y = (int64)std::floor(std::min(std::max((double)kp.pt.y, -far), far) * 131072 + 65536.5);
+    const int64 x = (int64)std::floor(std::min(std::max((double)centre.x, -far), far) * 131072 + 65536.5);
+    const int64 y = (int64)std::floor(std::min(std::max((double)centre.y, -far), far) * 131072 + 65536.5);
     g.x = (int)(x >> 17);
     g.y = (int)(y >> 17);
     g.fracX = (int)(x & 131071);
@@ -51,190 +53,314 @@ SampleGrid gridOf(const SupportRegion& region, const KeyPoint& kp, int granulari
     return g;
 }
 
-//! Four channels side by side in each pixel of an area, to be sampled anywhere.
-template <typename T> class PixelPack
+//! Edges of n x n cells of the same size.
+CellEdges equalEdges(int n, int cell)
+{
+    CellEdges edges;
+    for (int i = 0; i < paddedEdges(n); i++)
+        edges.x[i] = std::min(i, n) * cell;
+    std::copy_n(edges.x, n + 1, edges.y);
+    return edges;
+}
+
+/** What the channels of a descriptor are sampled from, GROUP_CHANNELS values to a pixel: what the image's channels are
+ made of comes first, extra maps follow. */
+struct SampledChannels
+{
+    bool hasImage;
+    std::vector<std::vector<Channel>> packs;
+    std::vector<int> planeOf;  //!< of each channel, in the planes of sums
+
+    explicit SampledChannels(const std::vector<Channel>& channels) : hasImage(false)
+    {
+        std::vector<Channel> maps;
+        for (const Channel& c : channels)
+        {
+            int plane = 0;
+            while (c.kind >> plane > 1)
+                plane++;
+            planeOf.push_back(c.kind == 0 ? -1 - (int)maps.size() : plane);
+            if (c.kind == 0)
+                maps.push_back(c);
+            else if (!hasImage)
+            {
+                hasImage = true;
+                const int kinds[] = {IIB::CHANNEL_SIGNED_GRAD_X, IIB::CHANNEL_SIGNED_GRAD_Y,
+                        IIB::CHANNEL_ORIENTATION, IIB::CHANNEL_INTENSITY};
+                packs.push_back(std::vector<Channel>());
+                for (int kind : kinds)
+                    packs[0].push_back(Channel{kind, c.map});
+            }
+        }
+        for (int& plane : planeOf)
+            if (plane < 0)
+                plane = imagePlanes() - 1 - plane;
+        for (size_t i = 0; i < maps.size(); i += GROUP_CHANNELS)
+            packs.push_back(std::vector<Channel>(
+                    maps.begin() + i, maps.begin() + std::min(i + GROUP_CHANNELS, maps.size())));
+    }
+
+    int imagePlanes() const { return hasImage ? (int)IMAGE_PLANES : 0; }
+    int planes() const { return imagePlanes() + GROUP_CHANNELS * ((int)packs.size() - hasImage); }
+};
+
+//! One channel's values at a sample: pixels beyond the image repeat its border.
+template <typename Pixel> struct Neighbourhood
+{
+    const Mat& map;
+    int x0, x1, x2, y;
+
+    Neighbourhood(const Mat& map_, int x, int y_)
+        : map(map_), x0(std::max(x - 1, 0)), x1(x), x2(std::min(x + 1, map_.cols - 1)), y(y_)
+    {
+    }
+
+    int centre() const { return map.ptr<Pixel>(y)[x1]; }
+
+    //! Sobel 3x3.
+    void gradient(int& gx, int& gy) const
+    {
+        const Pixel *a = map.ptr<Pixel>(std::max(y - 1, 0)), *m = map.ptr<Pixel>(y),
+                    *b = map.ptr<Pixel>(std::min(y + 1, map.rows - 1));
+        gx = (a[x2] - a[x0]) + 2 * (m[x2] - m[x0]) + (b[x2] - b[x0]);
+        gy = (b[x0] - a[x0]) + 2 * (b[x1] - a[x1]) + (b[x2] - a[x2]);
+    }
+};
+
+/** The samples of one keypoint read from the maps themselves, as pixels in the order of the places. For grids that touch
+ few pixels of the area that they span. */
+template <typename T> class SparsePixels
 {
 public:
-    PixelPack(const std::vector<Channel>& channels, Rect area) : pixels((size_t)area.area() * GROUP_CHANNELS)
+    SparsePixels(const RowKernels<T>& kernels_, ScratchMemory& memory)
+        : kernels(kernels_), values(memory.get<T>((size_t)(MAX_SAMPLES + ROW_PADDING) * 2 * GROUP_CHANNELS))
     {
-        ChannelRows<T> rows(channels, area, 0);
-        T* out = pixels.data();
-        for (int y = area.y; y < area.y + area.height; y++)
+    }
+
+    //! @param x, y places in the maps, `count` of them. @return as many pixels of GROUP_CHANNELS values.
+    const T* read(const std::vector<Channel>& pack, const int* x, const int* y, int count)
+    {
+        for (int i = 0; i < (int)pack.size(); i++)
+            if (pack[i].kind != IIB::CHANNEL_SIGNED_GRAD_Y && pack[i].kind != IIB::CHANNEL_ORIENTATION)
+            {
+                if (pack[i].map.depth() == CV_8U)
+                    readPlane<uchar>(pack[i], x, y, count, i);
+                else
+                    readPlane<ushort>(pack[i], x, y, count, i);
+            }
+        if (pack[0].kind != 0)
+            kernels.orientation(plane(0), plane(1), plane(2), count);
+        const T* planes[GROUP_CHANNELS];
+        for (int i = 0; i < GROUP_CHANNELS; i++)
+            planes[i] = plane(std::min(i, (int)pack.size() - 1));
+        kernels.interleave(planes, plane(GROUP_CHANNELS), count);
+        return plane(GROUP_CHANNELS);
+    }
+
+private:
+    T* plane(int i) { return values + (size_t)i * (MAX_SAMPLES + ROW_PADDING); }
+
+    //! A channel; with the horizontal gradient comes the vertical one, as the next plane.
+    template <typename Pixel>
+    void readPlane(const Channel& c, const int* x, const int* y, int count, int index)
+    {
+        for (int s = 0; s < count; s++)
         {
-            rows.compute(y);
-            for (int x = 0; x < area.width; x++)
-                for (int i = 0; i < GROUP_CHANNELS; i++)
-                    *out++ = rows.plane(i)[x];
+            const Neighbourhood<Pixel> around(c.map, x[s], y[s]);
+            if (usesGradient(c))
+            {
+                int gx, gy;
+                around.gradient(gx, gy);
+                plane(index)[s] = (T)gx;
+                plane(index + 1)[s] = (T)gy;
+            }
+            else
+                plane(index)[s] = (T)around.centre();
         }
     }
 
-    const T* data() const { return pixels.data(); }
-
-private:
-    std::vector<T> pixels;
+    const RowKernels<T>& kernels;
+    T* const values;
 };
 
-//! All that the channels of one block are made of, and the samples of one keypoint.
+//! The sums over cells of one keypoint after another.
 template <typename T> class Sampler
 {
 public:
-    Sampler(const std::vector<Channel>& channels_, Rect area)
-        : channels(channels_), kernels(sampleKernels<T>()), index(MAX_SAMPLES)
+    Sampler(const DescriptorPlan& plan_, const std::vector<Channel>& channels_, Workspace& workspace_)
+        : plan(plan_), channels(channels_), sampled(channels_), workspace(workspace_),
+          kernels(plan_.kernels.pixels<T>().rotated),
+          sums(workspace_.planes.get<int>((size_t)sampled.planes() * MAX_SAMPLES))
     {
-        // The image's pack holds what its channels are made of; extra maps follow, four to a pack.
-        std::vector<Channel> source;
-        for (const Channel& c : channels)
-            if (c.kind != 0 && source.empty())
-            {
-                const int kinds[] = {IIB::CHANNEL_SIGNED_GRAD_X, IIB::CHANNEL_SIGNED_GRAD_Y,
-                        IIB::CHANNEL_ORIENTATION, IIB::CHANNEL_INTENSITY};
-                for (int kind : kinds)
-                    source.push_back(Channel{kind, c.map});
-            }
-        hasImage = !source.empty();
-        for (const Channel& c : channels)
-            if (c.kind == 0)
-                source.push_back(c);
-        for (size_t i = 0; i < source.size(); i += GROUP_CHANNELS)
-            packs.push_back(
-                    PixelPack<T>(std::vector<Channel>(source.begin() + i,
-                                         source.begin() + std::min(i + GROUP_CHANNELS, source.size())),
-                            area));
-        planes.resize(packs.size() * GROUP_CHANNELS);
-        for (std::vector<T>& plane : planes)
-            plane.resize(MAX_SAMPLES + ROW_PADDING);
-        derived.assign(GROUP_CHANNELS, std::vector<T>(MAX_SAMPLES + ROW_PADDING));
     }
 
-    void sample(const SampleGrid& grid, int sub, float angle)
+    const std::vector<std::vector<Channel>>& packs() const { return sampled.packs; }
+
+    //! All planes of sums. @param pixelsOf a function from the number of a pack to its pixels.
+    template <typename Pixels>
+    void sum(const SampleGrid& grid, const int* index, const Rotation& rotation, const Pixels& pixelsOf)
     {
-        const int count = grid.n * grid.n;
-        kernels.indices(grid, sub, index.data());
-        for (size_t i = 0; i < packs.size(); i++)
+        const GradientRotation turn = {
+                cvRound(rotation.cosine * 4096), cvRound(rotation.sine * 4096), rotation.steps};
+        int* planes[IMAGE_PLANES];
+        int next = 0;
+        for (size_t i = 0; i < packs().size(); i++)
         {
-            T* out[GROUP_CHANNELS];
-            for (int c = 0; c < GROUP_CHANNELS; c++)
-                out[c] = planes[i * GROUP_CHANNELS + c].data();
-            kernels.gather(packs[i].data(), index.data(), count, out);
-        }
-        if (hasImage)
-        {
-            angle = withinTurn(angle);
-            const double radians = angle * CV_PI / 180;
-            kernels.turn(planes[0].data(), planes[1].data(), planes[2].data(), count,
-                    cvRound(angle * ORIENTATION_STEPS / 360));
-            kernels.rotate(planes[0].data(), planes[1].data(), count, cvRound(std::cos(radians) * 4096),
-                    cvRound(std::sin(radians) * 4096));
+            const bool image = sampled.hasImage && i == 0;
+            const int count = image ? (int)IMAGE_PLANES : (int)GROUP_CHANNELS;
+            for (int p = 0; p < count; p++)
+                planes[p] = plane(next++);
+            if (image)
+                kernels.imageSums(pixelsOf(i), index, grid.cells(), grid.sub * grid.sub, turn, planes);
+            else
+                kernels.mapSums(pixelsOf(i), index, grid.cells(), grid.sub * grid.sub, planes);
         }
     }
 
-    //! The sums over cells of the group of channels that begins at `first`.
-    void sum(const RowKernels<T>& rowKernels, const SampleGrid& grid, int sub, size_t first,
-            CellGrid<unsigned>& cells)
+    //! The bits of all groups of channels.
+    void write(const SampleGrid& grid, uchar* descriptor)
     {
-        const T* out[GROUP_CHANNELS];
-        for (size_t i = 0; i < GROUP_CHANNELS; i++)
-            out[i] = values(
-                    rowKernels, std::min(first + i, channels.size() - 1), grid.n * grid.n, derived[i].data());
-        kernels.sum(out, grid.n, sub, cells);
+        const int n = plan.cellsInRow(), cell = grid.n / n;
+        const CellEdges edges = equalEdges(n, cell);
+        const auto parentSums = plan.kernels.sums<unsigned>().bits[plan.parameters.mapping].parentSums;
+        for (const ChannelGroup& group : plan.groups)
+        {
+            CellGrid<unsigned>* cells[2] = {&workspace.cells, &workspace.parentCells};
+            const int largest = interleave(group, grid, *cells[0]);
+            for (; cells[0]->size() > n; std::swap(cells[0], cells[1]))
+                parentSums(*cells[0], *cells[1]);
+            BitEncoder(plan, group, largest, workspace.encoder).write(*cells[0], edges, cell, descriptor);
+        }
     }
 
 private:
-    enum
-    {
-        MAX_SAMPLES = 64 * 64
-    };
+    int* plane(int i) { return sums + (size_t)i * MAX_SAMPLES; }
 
-    //! The samples of a channel; `buffer` if they are not at hand already.
-    const T* values(const RowKernels<T>& rowKernels, size_t channel, int count, T* buffer) const
+    //! @return the largest value of the group's channels.
+    int interleave(const ChannelGroup& group, const SampleGrid& grid, CellGrid<unsigned>& cells)
     {
-        const Channel& c = channels[channel];
-        const T *gx = planes[0].data(), *gy = planes[1].data();
-        const T offset = (T)maxTurnedGradient(c.map.depth());
-        switch (c.kind)
+        const int* planes[GROUP_CHANNELS];
+        int addends[GROUP_CHANNELS], gradient = 0;
+        for (int i = 0; i < GROUP_CHANNELS; i++)
         {
-        case IIB::CHANNEL_GRAD_X: rowKernels.absolute(gx, buffer, count); return buffer;
-        case IIB::CHANNEL_GRAD_Y: rowKernels.absolute(gy, buffer, count); return buffer;
-        case IIB::CHANNEL_ORIENTATION: return planes[2].data();
-        case IIB::CHANNEL_INTENSITY: return planes[3].data();
-        case IIB::CHANNEL_SIGNED_GRAD_X: rowKernels.add(gx, offset, buffer, count); return buffer;
-        case IIB::CHANNEL_SIGNED_GRAD_Y: rowKernels.add(gy, offset, buffer, count); return buffer;
-        default: break;
+            const int c = group.first + std::min(i, group.count - 1);
+            planes[i] = plane(sampled.planeOf[c]);
+            const int kind = channels[c].kind;
+            const bool isSigned = kind == IIB::CHANNEL_SIGNED_GRAD_X || kind == IIB::CHANNEL_SIGNED_GRAD_Y;
+            const int largest = maxRotatedGradient(channels[c].map.depth());
+            addends[i] = isSigned ? largest * grid.sub * grid.sub : 0;
+            if (usesGradient(channels[c]))
+                gradient = largest;
         }
-        size_t extra = hasImage ? GROUP_CHANNELS : 0;
-        for (size_t i = 0; i < channel; i++)
-            extra += channels[i].kind == 0;
-        return planes[extra].data();
+        kernels.interleave(planes, addends, grid.cells(), cells);
+        return maxValue(&channels[group.first], group.count, gradient);
     }
 
+    const DescriptorPlan& plan;
     const std::vector<Channel>& channels;
+    const SampledChannels sampled;
+    Workspace& workspace;
     const RotatedSampleKernels<T>& kernels;
-    bool hasImage;
-    std::vector<PixelPack<T>> packs;
-    std::vector<std::vector<T>> planes, derived;
-    std::vector<int> index;
+    int* const sums;
 };
 
-template <typename T>
-void describeBlock(const Parameters& p, const std::vector<Channel>& channels, const Block& block,
-        const std::vector<SupportRegion>& region, const std::vector<KeyPoint>& keypoints,
-        const RowKernels<T>& rowKernels, Mat& descriptors)
+/* A row of pixels costs about a sixteenth of what as many samples cost that are read one by one. The limit keeps memory
+ and indices small: a few large regions may span billions of pixels. */
+bool isSparse(const KeyPointBatch& batch, double pixelsKept)
 {
-    Sampler<T> sampler(channels, block.area);
-    const auto parentSums = getBitsKernels(p.mapping, unsigned()).parentSums;
-    CellGrid<unsigned> cells[2];
-    const Size image = channels[0].map.size();
+    const double samples = (double)batch.keypoints.size() * MAX_SAMPLES;
+    return (double)batch.area.width * batch.area.height > 16 * samples || pixelsKept > 1 << 24;
+}
 
-    for (size_t first = 0; first < channels.size(); first += GROUP_CHANNELS)
+template <typename T>
+void describeBatch(const DescriptorPlan& plan, const std::vector<Channel>& channels,
+        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions,
+        const std::vector<KeyPoint>& keypoints, const std::vector<int>& ranks, Workspace& workspace,
+        Mat& descriptors)
+{
+    const Size image = channels[0].map.size();
+    const PixelKernels<T>& kernels = plan.kernels.pixels<T>();
+    const int rows = batch.rows + KeyPointBatch::BAND_ROWS;
+    const bool sparse = isSparse(batch, PixelBand<T>::pixelsKept(batch.area, rows));
+    Sampler<T> sampler(plan, channels, workspace);
+    SparsePixels<T> sparsePixels(kernels.rows, workspace.sparsePixels);
+    std::vector<PixelBand<T>> bands;
+    if (!sparse)
+        for (size_t i = 0; i < sampler.packs().size(); i++)
+            bands.push_back(PixelBand<T>(sampler.packs()[i], batch.area, rows, kernels.rows,
+                    workspace.sourceRows[i], workspace.sourcePixels[i]));
+    int index[MAX_SAMPLES], x[MAX_SAMPLES], y[MAX_SAMPLES];
+    if (sparse)
+        std::iota(index, index + MAX_SAMPLES, 0);
+
+    const auto locate = [&](const SampleGrid& grid) {
+        if (sparse)
+            kernels.rotated.places(grid, x, y);
+        else
+            kernels.rotated.indices(grid, bands[0].origin(), bands[0].step(), index);
+    };
+    const auto pixelsOf = [&](size_t pack, const SampleGrid& grid) {
+        return sparse ? sparsePixels.read(sampler.packs()[pack], x, y, grid.n * grid.n) : bands[pack].data();
+    };
+
+    const Parameters& p = plan.parameters;
+    for (int k : batch.keypoints)
     {
-        const std::vector<Channel> group(channels.begin() + first,
-                channels.begin() + std::min(first + GROUP_CHANNELS, channels.size()));
-        int gradient = 0;
-        for (const Channel& c : group)
-            if (usesGradient(c))
-                gradient = maxTurnedGradient(c.map.depth());
-        BitEncoder bits(p, (int)first / GROUP_CHANNELS, (int)group.size());
-        for (int k : block.keypoints)
+        const Point2f centre = keypoints[k].pt;
+        if (!sparse)
         {
-            const SampleGrid grid = gridOf(region[k], keypoints[k], p.granularity, image, block.area);
-            // Two by two samples a cell, whose sum fits 16 bits, unless the cells are fewer.
-            const int sub = bits.size() == grid.n ? 1 : 2;
-            sampler.sample(grid, sub, keypoints[k].angle);
-            CellGrid<unsigned>* finest =
-                    grid.n / sub == bits.size() ? &bits.finestCells<unsigned>() : &cells[0];
-            sampler.sum(rowKernels, grid, sub, first, *finest);
-            while (finest->size() > bits.size())
-            {
-                CellGrid<unsigned>* parent = finest->size() == 2 * bits.size() ? &bits.finestCells<unsigned>()
-                                                                               : &cells[finest == &cells[0]];
-                parentSums(*finest, *parent);
-                finest = parent;
-            }
-            const int cell = grid.n / bits.size();
-            for (int i = 0; i < paddedEdges(bits.size()); i++)
-                bits.xEdges()[i] = std::min(i, bits.size()) * cell;
-            std::copy_n(bits.xEdges(), bits.size() + 1, bits.yEdges());
-            bits.write<unsigned>(cell, maxValue(group, gradient), descriptors.ptr(k));
+            const int end = batch.bandEnd(rotatedPixels(regions[k], centre, p.border, image).br().y);
+            for (PixelBand<T>& band : bands)
+                band.advance(end);
         }
+        float angle = keypoints[k].angle;
+        if (p.orientation == IIB::ORIENTATION_GRADIENT)
+        {
+            const SampleGrid grid =
+                    gridOf(regions[k], centre, Rotation(0), ORIENTATION_SAMPLES, 1, p.border, image);
+            locate(grid);
+            angle = prevailingAngle(kernels.rotated, pixelsOf(0, grid), index, ranks[k]);
+        }
+        const Rotation rotation(angle);
+        const int n = samplesInRow(regions[k], p.granularity);
+        // Two by two samples a cell, unless the cells are fewer.
+        const int sub = plan.cellsInRow() == n ? 1 : 2;
+        const SampleGrid grid = gridOf(regions[k], centre, rotation, n, sub, p.border, image);
+        locate(grid);
+        sampler.sum(grid, index, rotation, [&](size_t pack) { return pixelsOf(pack, grid); });
+        sampler.write(grid, descriptors.ptr(k));
     }
 }
 
 }  // namespace
 
-Rect turnedPixels(const SupportRegion& region, const KeyPoint& kp, Size image)
+Rect rotatedPixels(const SupportRegion& region, Point2f centre, int border, Size image)
 {
-    // Half the diagonal, and a pixel for each rounding.
-    const double reach = std::min(region.side, LARGEST_SIDE) * 0.7072 + 2;
-    return SupportRegion(kp.pt, 2 * reach).pixels(image);
+    const SupportRegion square = circumscribed(region, centre);
+    const Rect r = square.pixels(square.bounds(image, border));
+    const Range x = reflectedRange(r.x, r.x + r.width, image.width),
+                y = reflectedRange(r.y, r.y + r.height, image.height);
+    return Rect(x.start, y.start, x.size(), y.size());
 }
 
-void describeTurned(const Parameters& p, const std::vector<Channel>& channels, const Block& block,
-        const std::vector<SupportRegion>& region, const std::vector<KeyPoint>& keypoints, Mat& descriptors)
+bool rotatedIsInside(const SupportRegion& region, Point2f centre, float angle, Size image)
 {
-    if (isDeep(channels))
-        describeBlock<int>(p, channels, block, region, keypoints, intRowKernels(), descriptors);
+    const Rotation rotation(angle);
+    const double half = std::min(region.side, LARGEST_SIDE) / 2;
+    const double reach = half * (std::abs(rotation.cosine) + std::abs(rotation.sine));
+    const double x = centre.x + 0.5, y = centre.y + 0.5;
+    return x - reach >= 0 && x + reach <= image.width && y - reach >= 0 && y + reach <= image.height;
+}
+
+void describeRotated(const DescriptorPlan& plan, const std::vector<Channel>& channels,
+        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions,
+        const std::vector<KeyPoint>& keypoints, const std::vector<int>& ranks, Workspace& workspace,
+        Mat& descriptors)
+{
+    if (is16Bit(channels))
+        describeBatch<int>(plan, channels, batch, regions, keypoints, ranks, workspace, descriptors);
     else
-        describeBlock<short>(p, channels, block, region, keypoints, shortRowKernels(), descriptors);
+        describeBatch<short>(plan, channels, batch, regions, keypoints, ranks, workspace, descriptors);
 }
 
 }  // namespace iib

@@ -5,24 +5,31 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_ROTATED_HPP
 #define OPENCV_IIB_DESCRIPTOR_ROTATED_HPP
 
-#include "keypoint_batches.hpp"
 #include "channels.hpp"
+#include "keypoint_batches.hpp"
 #include "support_region.hpp"
+#include "workspace.hpp"
 
 namespace cv {
 namespace iib {
 
-/* A support region turned by the keypoint's angle cannot use integral images, since |gx| does not turn with it. It is
- sampled on a grid of points instead, and the gradient is turned at each. */
+/* A region rotated by the keypoint's angle cannot use integral images, since |gx| does not rotate with it. It is sampled
+ on a grid of points instead, and the gradient is rotated at each. */
 
-//! The pixels of the image that a turned support region may sample, at least one.
-Rect turnedPixels(const SupportRegion& region, const KeyPoint& keypoint, Size image);
+//! The pixels of the image that a region may sample at any angle, at least one.
+Rect rotatedPixels(const SupportRegion& region, Point2f centre, int border, Size image);
 
-/** The bits of the keypoints of a block, all of whose angles are >= 0.
+//! Whether no corner of a rotated region, and so no sample, lies outside the image.
+bool rotatedIsInside(const SupportRegion& region, Point2f centre, float angle, Size image);
+
+/** The bits of the keypoints of a batch, all of whose angles are >= 0 or, by ORIENTATION_GRADIENT, found here.
  @param channels all channels of the descriptor.
- @param region, keypoints of the whole image; as are the rows of descriptors. */
-void describeTurned(const Parameters& parameters, const std::vector<Channel>& channels, const Block& block,
-        const std::vector<SupportRegion>& regions, const std::vector<KeyPoint>& keypoints, Mat& descriptors);
+ @param regions, keypoints of the whole image; as are the rows of descriptors.
+ @param ranks which peak of the gradients' directions each keypoint gets; only ORIENTATION_GRADIENT needs them. */
+void describeRotated(const DescriptorPlan& plan, const std::vector<Channel>& channels,
+        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions,
+        const std::vector<KeyPoint>& keypoints, const std::vector<int>& ranks, Workspace& workspace,
+        Mat& descriptors);
 
 }  // namespace iib
 }  // namespace cv

@@ -10,12 +10,6 @@
 namespace cv {
 namespace iib {
 
-//! The edge of pixels nearest to a position, in [0, limit]: on positive numbers the cast is a floor.
-static inline int edgeAt(double position, int limit)
-{
-    return (int)std::min(std::max(position + 0.5, 0.), (double)limit);
-}
-
 //! A bound of the lengths of the n cells in a row of a support region.
 static inline double longestCell(double side, int n) { return std::ceil(side / n); }
 
@@ -37,21 +31,55 @@ struct SupportRegion
     {
     }
 
-    //! Pixels of the image that hold the part of the support region inside it; one of the border if there is none.
-    Rect pixels(Size image) const
+    //! Pixels that hold the part of the region inside some bounds; one of their border if there is none.
+    Rect pixels(Rect bounds) const
     {
-        const Point a(edgeAt(x, image.width - 1), edgeAt(y, image.height - 1));
-        const Point b(edgeAt(x + side, image.width), edgeAt(y + side, image.height));
+        const Point first = bounds.tl(), end = bounds.br();
+        const Point a(edgeAt(x, first.x, end.x - 1), edgeAt(y, first.y, end.y - 1));
+        const Point b(edgeAt(x + side, first.x, end.x), edgeAt(y + side, first.y, end.y));
         return Rect(a.x, a.y, std::max(b.x - a.x, 1), std::max(b.y - a.y, 1));
     }
 
-    //! Whether no pixel of the support region lies outside the image.
+    /** The pixels that count: those of the image, unless the region leaves it under BORDER_REFLECT. Then the image,
+     reflected once at each side, has three times as many in a row and in a column, less those of the border. */
+    Rect bounds(Size image, int border) const
+    {
+        if (border != IIB::BORDER_REFLECT || isInside(image))
+            return Rect(Point(), image);
+        return Rect(1 - image.width, 1 - image.height, 3 * image.width - 2, 3 * image.height - 2);
+    }
+
+    //! Whether no pixel of the upright region lies outside the image.
     bool isInside(Size image) const
     {
         return std::floor(x + 0.5) >= 0 && std::floor(x + side + 0.5) <= image.width &&
                std::floor(y + 0.5) >= 0 && std::floor(y + side + 0.5) <= image.height;
     }
 };
+
+//! The place in [0, size) of a pixel that BORDER_REFLECT_101 brings there at the first reflection or the second.
+static inline int reflected(int place, int size)
+{
+    const int folded = std::abs(place);
+    return std::max(std::min(folded, 2 * (size - 1) - folded), 0);
+}
+
+//! Pixels of a row (or column) of `size` pixels that hold all those of [begin, end), some of which may be reflected.
+static inline Range reflectedRange(int begin, int end, int size)
+{
+    int first = begin, last = end;
+    if (begin < 0)
+    {
+        first = 0;
+        last = std::max(end, 1 - begin);
+    }
+    if (end > size)
+    {
+        first = std::min(first, 2 * size - 1 - end);
+        last = size;
+    }
+    return Range(std::max(first, 0), std::min(last, size));
+}
 
 }  // namespace iib
 }  // namespace cv

@@ -4,22 +4,21 @@
 
 #include "upright.hpp"
 
-#include "kernels/integral.hpp"
-#include "bit_encoder.hpp"
+#include "integral_band.hpp"
 
 namespace cv {
 namespace iib {
 
 namespace {
 
-/* Edges that cut each cell of another grid into parts x parts. They are made of pixels of the image, not of the support region,
+/* Edges that cut each cell of another grid into parts x parts. They are made of pixels of the image, not of the region,
  which may be so much larger that any number of its parts is needed to cut the image once. */
 struct FineEdges
 {
     std::vector<int> x, y;
 
-    FineEdges(const int* xEdges, const int* yEdges, int n, int parts)
-        : x(split(xEdges, n, parts)), y(split(yEdges, n, parts))
+    FineEdges(const CellEdges& edges, int n, int parts)
+        : x(split(edges.x, n, parts)), y(split(edges.y, n, parts))
     {
     }
 
@@ -63,72 +62,84 @@ template <typename Sum> void gather(const CellGrid<Sum>& fine, CellGrid<double>&
             }
 }
 
+template <typename Sum> CellGrid<Sum>& cellsOf(Workspace& workspace);
+template <> CellGrid<ushort>& cellsOf(Workspace& workspace) { return workspace.shortCells; }
+template <> CellGrid<unsigned>& cellsOf(Workspace& workspace) { return workspace.cells; }
+
+//! Cells whose sums could exceed a Sum are put together from smaller ones.
+template <typename Sum>
+const CellGrid<double>& largeCellSums(const SumKernels<Sum>& kernels, const IntegralRows<Sum>& rows,
+        const CellEdges& edges, int n, double largestPixel, Workspace& workspace)
+{
+    const double largestSum = std::numeric_limits<Sum>::max();
+    int parts = 2;
+    while (largestPixel * FineEdges(edges, n, parts).largestCell() > largestSum)
+        parts *= 2;
+    const FineEdges fine(edges, n, parts);
+    CellGrid<Sum>& fineCells = cellsOf<Sum>(workspace);
+    kernels.cells(rows, fine.x.data(), fine.y.data(), n * parts, fineCells);
+    gather(fineCells, workspace.doubleCells, n);
+    return workspace.doubleCells;
+}
+
 template <typename T, typename Sum>
-void describeBlock(const Parameters& p, const std::vector<Channel>& channels, int group, const Block& block,
-        const std::vector<SupportRegion>& region, Mat& descriptors)
+void describeBatch(const DescriptorPlan& plan, const ChannelGroup& group,
+        const std::vector<Channel>& channels, const KeyPointBatch& batch,
+        const std::vector<SupportRegion>& regions, Workspace& workspace, Mat& descriptors)
 {
     const Size image = channels[0].map.size();
-    const int largest = maxValue(channels, maxGradient(channels));
-    const typename CellSumsFunc<Sum>::Type cellSums = getCellSumsFunc(Sum());
-    BitEncoder bits(p, group, (int)channels.size());
-    const CellEdgesFunc cellEdges = getCellEdgesFunc();
-    const int n = bits.size();
-    CellGrid<Sum> fine;
-    const int *const xEdges = bits.xEdges(), *const yEdges = bits.yEdges();
-    IntegralBand<T, Sum> band(channels, block.area, block.rows + Block::BAND_ROWS + 1);
+    const int n = plan.cellsInRow(), largest = maxValue(channels, maxGradient(channels));
+    const SumKernels<Sum>& kernels = plan.kernels.sums<Sum>();
+    const double largestSum = std::numeric_limits<Sum>::max();
+    CellGrid<Sum>& cells = cellsOf<Sum>(workspace);
+    const BitEncoder encoder(plan, group, largest, workspace.encoder);
+    IntegralBand<T, Sum> band(channels, batch.area, batch.rows + KeyPointBatch::BAND_ROWS + 1, plan.kernels,
+            workspace.channelRows, workspace.integralRing);
+    CellEdges edges;
 
-    // Neighbours in the block may lie far apart in memory.
-    std::vector<SupportRegion> local;
-    local.reserve(block.keypoints.size());
-    for (int k : block.keypoints)
-        local.push_back(region[k]);
-
-    const double largestSum = (Sum) ~(Sum)0;
-    for (size_t i = 0; i < local.size(); i++)
+    for (int k : batch.keypoints)
     {
-        uchar* descriptor = descriptors.ptr(block.keypoints[i]);
-        cellEdges(local[i], n, image, bits.xEdges(), bits.yEdges());
-        band.advance(block.bandEnd(std::max(yEdges[n], block.area.y)));
-        const double cell = longestCell(local[i].side, n);
+        const SupportRegion region = regions[k];
+        uchar* descriptor = descriptors.ptr(k);
+        plan.kernels.cellEdges(Point2d(region.x, region.y), region.side, n,
+                region.bounds(image, plan.parameters.border), edges);
+        band.advance(batch.bandEnd(std::max(edges.y[n], batch.area.y)));
+        const double cell = longestCell(region.side, n);
         if (largest * cell * cell <= largestSum)
         {
-            cellSums(band.rows(), xEdges, yEdges, n, bits.finestCells<Sum>());
-            bits.write<Sum>(cell, largest, descriptor);
-            continue;
+            kernels.cells(band.rows(), edges.x, edges.y, n, cells);
+            encoder.write(cells, edges, cell, descriptor);
         }
-        // Cells whose sums could exceed a Sum are put together from smaller ones.
-        int parts = 2;
-        while (largest * FineEdges(xEdges, yEdges, n, parts).largestCell() > largestSum)
-            parts *= 2;
-        const FineEdges edges(xEdges, yEdges, n, parts);
-        cellSums(band.rows(), edges.x.data(), edges.y.data(), n * parts, fine);
-        gather(fine, bits.finestCells<double>(), n);
-        bits.write<double>(cell, largest, descriptor);
+        else
+            encoder.write(largeCellSums(kernels, band.rows(), edges, n, largest, workspace), edges, cell,
+                    descriptor);
     }
 }
 
 //! Whether 16 bits hold the sums over the finest cells of all keypoints.
 bool sumsAreShort(
-        const Parameters& p, int largest, const Block& block, const std::vector<SupportRegion>& region)
+        int largest, const KeyPointBatch& batch, const std::vector<SupportRegion>& regions, int cellsInRow)
 {
     double side = 0;
-    for (int k : block.keypoints)
-        side = std::max(side, region[k].side);
-    const double cell = longestCell(side, 1 << finestLevel(p));
+    for (int k : batch.keypoints)
+        side = std::max(side, regions[k].side);
+    const double cell = longestCell(side, cellsInRow);
     return largest * cell * cell <= USHRT_MAX;
 }
 
 }  // namespace
 
-void describeUpright(const Parameters& p, const std::vector<Channel>& channels, int group, const Block& block,
-        const std::vector<SupportRegion>& region, Mat& descriptors)
+void describeUpright(const DescriptorPlan& plan, const ChannelGroup& group,
+        const std::vector<Channel>& channels, const KeyPointBatch& batch,
+        const std::vector<SupportRegion>& regions, Workspace& workspace, Mat& descriptors)
 {
-    if (isDeep(channels))
-        describeBlock<int, unsigned>(p, channels, group, block, region, descriptors);
-    else if (sumsAreShort(p, maxValue(channels, maxGradient(channels)), block, region))
-        describeBlock<short, ushort>(p, channels, group, block, region, descriptors);
+    const int largest = maxValue(channels, maxGradient(channels));
+    if (is16Bit(channels))
+        describeBatch<int, unsigned>(plan, group, channels, batch, regions, workspace, descriptors);
+    else if (sumsAreShort(largest, batch, regions, plan.cellsInRow()))
+        describeBatch<short, ushort>(plan, group, channels, batch, regions, workspace, descriptors);
     else
-        describeBlock<short, unsigned>(p, channels, group, block, region, descriptors);
+        describeBatch<short, unsigned>(plan, group, channels, batch, regions, workspace, descriptors);
 }
 
 }  // namespace iib

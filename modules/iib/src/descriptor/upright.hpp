@@ -5,21 +5,22 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_UPRIGHT_HPP
 #define OPENCV_IIB_DESCRIPTOR_UPRIGHT_HPP
 
-#include "keypoint_batches.hpp"
 #include "channels.hpp"
+#include "keypoint_batches.hpp"
 #include "support_region.hpp"
+#include "workspace.hpp"
 
 namespace cv {
 namespace iib {
 
-/** The bits that one group of channels gives to the keypoints of a block, their support region upright.
+/** The bits that one group of channels gives to the keypoints of a batch, their regions upright.
 
-@param channels 1 to GROUP_CHANNELS.
-@param group which four of the descriptor's channels they are.
-@param region of all keypoints of the image.
+@param channels those of the group.
+@param regions of all keypoints of the image.
 @param descriptors rows for all keypoints of the image. */
-void describeUpright(const Parameters& parameters, const std::vector<Channel>& channels, int group,
-        const Block& block, const std::vector<SupportRegion>& regions, Mat& descriptors);
+void describeUpright(const DescriptorPlan& plan, const ChannelGroup& group,
+        const std::vector<Channel>& channels, const KeyPointBatch& batch,
+        const std::vector<SupportRegion>& regions, Workspace& workspace, Mat& descriptors);
 
 }  // namespace iib
 }  // namespace cv

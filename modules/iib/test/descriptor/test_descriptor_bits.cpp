@@ -101,6 +101,23 @@ TEST(IIB_Bits, large_regions_of_support)
     }
 }
 
+// Regions at which products of level 1 or 2 just leave 32 bits: sums are centred there, or doubles take over.
+TEST(IIB_Bits, sums_at_the_edge_of_32_bits)
+{
+    for (int mapping = IIB::MAPPING_MEAN; mapping <= IIB::MAPPING_PAIRWISE; mapping++)
+        for (int depth : {CV_8U, CV_16U})
+        {
+            Mat image = texture(Size(260, 240), depth, mapping);
+            image.colRange(130, 260).setTo(0);  // centred sums of both signs, as large as they get
+            const Ptr<IIB> iib = IIB::create(1.f, 3, 63, mapping);
+            std::vector<KeyPoint> keypoints;
+            for (float size : {13.f, 27.f, 45.f, 67.f, 81.f, 103.f, 133.f, 201.f})
+                for (int i = 0; i < 3; i++)
+                    keypoints.push_back(KeyPoint(100.25f + 30 * i, 90.75f + 20 * i, size));
+            expectOracle(*iib, image, std::vector<Mat>(), keypoints, format("mapping %d", mapping));
+        }
+}
+
 TEST(IIB_Bits, selections)
 {
     const Mat image = texture(Size(300, 280), CV_8U, 8);

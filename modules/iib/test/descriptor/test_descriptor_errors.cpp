@@ -104,9 +104,20 @@ TEST(IIB_Errors, detectors_without_a_scale_factor)
 {
     for (const char* name : {"", "HARRIS", "ORB2", "Feature2D."})
         expectError(Error::StsBadArg, "akaze, orb, brisk", [=] { IIB::scaleFactorFor(name); });
+    expectError(Error::StsNullPtr, "name is null", [] { IIB::scaleFactorFor((const char*)0); });
     expectError(Error::StsNullPtr, "the detector is null", [] { IIB::scaleFactorFor(Ptr<Feature2D>()); });
     expectError(
             Error::StsBadArg, "Feature2D.IIB", [] { IIB::scaleFactorFor(Ptr<Feature2D>(IIB::create())); });
+}
+
+// detect() would come back to itself and overflow the stack.
+TEST(IIB_Errors, no_extractor_detects_by_itself)
+{
+    const Ptr<IIB> a = IIB::create(), b = IIB::create();
+    expectError(Error::StsBadArg, "its own detector", [=] { a->setDetector(a); });
+    b->setDetector(a);
+    expectError(Error::StsBadArg, "its own detector", [=] { a->setDetector(b); });
+    EXPECT_NE(a->getDetector(), Ptr<Feature2D>(b));
 }
 
 }  // namespace

@@ -49,11 +49,13 @@ String_FeatureDetector_DescriptorExtractor_Float_t pairedWith(
 
 INSTANTIATE_TEST_CASE_P(IIB, DescriptorRotationInvariance,
         testing::Values(pairedWith(ORB::create(), 0.98f), pairedWith(SIFT::create(400), 0.98f),
-                pairedWith(KAZE::create(false, false, 0.005f), 0.98f)));
+                pairedWith(KAZE::create(false, false, 0.005f), 0.98f), pairedWith(BRISK::create(), 0.98f),
+                pairedWith(AKAZE::create(), 0.98f)));
 
 INSTANTIATE_TEST_CASE_P(IIB, DescriptorScaleInvariance,
         testing::Values(pairedWith(ORB::create(), 0.98f), pairedWith(SIFT::create(400), 0.98f),
-                pairedWith(KAZE::create(false, false, 0.005f), 0.98f)));
+                pairedWith(KAZE::create(false, false, 0.005f), 0.98f), pairedWith(BRISK::create(), 0.8f),
+                pairedWith(AKAZE::create(), 0.8f)));
 
 const std::string FEATURES2D_DIR = "cv/features2d",
                   DESCRIPTOR_DIR = FEATURES2D_DIR + "/descriptor_extractors";

@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/test_images.hpp"
+#include "../../src/common/fnv1a.hpp"
 
 /* The exact bits, which no build, machine or later version may change without a new major version: descriptors in
  files would no longer match. A test that fails prints its line of the table. All lines:
@@ -16,7 +17,7 @@ namespace {
 struct Golden
 {
     const char* name;
-    uint64 hash;
+    uint64 clamped, reflected;  //!< with each #Border that keeps all keypoints
     void (*set)(IIB& iib);
     int type;
 };
@@ -43,54 +44,69 @@ void turnedQuads(IIB& iib)
     iib.setUseOrientation(true);
 }
 
-const Golden GOLDEN[] = {{"default", 0x7c4943b59e478a06, nothing, CV_8UC1},
-        {"mapping max", 0x40d0d530ef404756, [](IIB& i) { i.setMapping(IIB::MAPPING_MAX); }, CV_8UC1},
-        {"mapping min", 0xcecf80374d6189d5, [](IIB& i) { i.setMapping(IIB::MAPPING_MIN); }, CV_8UC1},
-        {"mapping quartile", 0x012bfe1b74cbb35c, [](IIB& i) { i.setMapping(IIB::MAPPING_QUARTILE); },
+const Golden GOLDEN[] = {{"default", 0x7c4943b59e478a06, 0x2e989fe2274d8bf2, nothing, CV_8UC1},
+        {"mapping max", 0x40d0d530ef404756, 0x6f1e2f008211b314,
+                [](IIB& i) { i.setMapping(IIB::MAPPING_MAX); }, CV_8UC1},
+        {"mapping min", 0xcecf80374d6189d5, 0x1166efbb3e6630fe,
+                [](IIB& i) { i.setMapping(IIB::MAPPING_MIN); }, CV_8UC1},
+        {"mapping quartile", 0x012bfe1b74cbb35c, 0x1abdc4b0d0b8ac66,
+                [](IIB& i) { i.setMapping(IIB::MAPPING_QUARTILE); }, CV_8UC1},
+        {"mapping sort", 0x2c9dffdd4a509c8f, 0x6518c482f51ed635,
+                [](IIB& i) { i.setMapping(IIB::MAPPING_SORT); }, CV_8UC1},
+        {"mapping haar", 0x0c7717b926942607, 0x98ff44bc0e4ebbd9,
+                [](IIB& i) { i.setMapping(IIB::MAPPING_HAAR); }, CV_8UC1},
+        {"mapping pairwise", 0xcd3c1fb23c418b3a, 0x7eed83a5daee609b,
+                [](IIB& i) { i.setMapping(IIB::MAPPING_PAIRWISE); }, CV_8UC1},
+        {"gradient x", 0x9bf9c215914d0cc5, 0xc11d46de728f8b7c,
+                [](IIB& i) { i.setChannels(IIB::CHANNEL_GRAD_X); }, CV_8UC1},
+        {"gradient y", 0xb7821168e4920a80, 0x2716add01922d585,
+                [](IIB& i) { i.setChannels(IIB::CHANNEL_GRAD_Y); }, CV_8UC1},
+        {"orientation", 0x1257bf40469fba74, 0xa490c5b82813dace,
+                [](IIB& i) { i.setChannels(IIB::CHANNEL_ORIENTATION); }, CV_8UC1},
+        {"intensity", 0x5ccb1e57398af58b, 0xcd05d999878cc505,
+                [](IIB& i) { i.setChannels(IIB::CHANNEL_INTENSITY); }, CV_8UC1},
+        {"signed gradient x", 0x515a05677ff21834, 0x921175f76b8a16aa,
+                [](IIB& i) { i.setChannels(IIB::CHANNEL_SIGNED_GRAD_X); }, CV_8UC1},
+        {"signed gradient y", 0xb3d9120c4f31769f, 0x874380f23165ad56,
+                [](IIB& i) { i.setChannels(IIB::CHANNEL_SIGNED_GRAD_Y); }, CV_8UC1},
+        {"all channels", 0x7533fec7ca149e12, 0xba5b3811ad475236, [](IIB& i) { i.setChannels(63); }, CV_8UC1},
+        {"overlap", 0x00d9099cf996758a, 0xb6fd87a0cae57e55, [](IIB& i) { i.setOverlap(true); }, CV_8UC1},
+        {"granularity 1", 0xde85d223b5ebe44c, 0x4798df25809b6a14, [](IIB& i) { i.setGranularity(1); },
                 CV_8UC1},
-        {"mapping sort", 0x2c9dffdd4a509c8f, [](IIB& i) { i.setMapping(IIB::MAPPING_SORT); }, CV_8UC1},
-        {"mapping haar", 0x0c7717b926942607, [](IIB& i) { i.setMapping(IIB::MAPPING_HAAR); }, CV_8UC1},
-        {"mapping pairwise", 0xcd3c1fb23c418b3a, [](IIB& i) { i.setMapping(IIB::MAPPING_PAIRWISE); },
+        {"granularity 2", 0x2b3e3b7e2247a78b, 0xe5f6c202dde19d6f, [](IIB& i) { i.setGranularity(2); },
                 CV_8UC1},
-        {"gradient x", 0x9bf9c215914d0cc5, [](IIB& i) { i.setChannels(IIB::CHANNEL_GRAD_X); }, CV_8UC1},
-        {"gradient y", 0xb7821168e4920a80, [](IIB& i) { i.setChannels(IIB::CHANNEL_GRAD_Y); }, CV_8UC1},
-        {"orientation", 0x1257bf40469fba74, [](IIB& i) { i.setChannels(IIB::CHANNEL_ORIENTATION); }, CV_8UC1},
-        {"intensity", 0x5ccb1e57398af58b, [](IIB& i) { i.setChannels(IIB::CHANNEL_INTENSITY); }, CV_8UC1},
-        {"signed gradient x", 0x515a05677ff21834, [](IIB& i) { i.setChannels(IIB::CHANNEL_SIGNED_GRAD_X); },
+        {"granularity 3", 0x76c690f21057f720, 0x9c9d12c8f749de7c, [](IIB& i) { i.setGranularity(3); },
                 CV_8UC1},
-        {"signed gradient y", 0xb3d9120c4f31769f, [](IIB& i) { i.setChannels(IIB::CHANNEL_SIGNED_GRAD_Y); },
+        {"granularity 5", 0x335d65f21031895e, 0x14a38de43d3cffd2, [](IIB& i) { i.setGranularity(5); },
                 CV_8UC1},
-        {"all channels", 0x7533fec7ca149e12, [](IIB& i) { i.setChannels(63); }, CV_8UC1},
-        {"overlap", 0x00d9099cf996758a, [](IIB& i) { i.setOverlap(true); }, CV_8UC1},
-        {"granularity 1", 0xde85d223b5ebe44c, [](IIB& i) { i.setGranularity(1); }, CV_8UC1},
-        {"granularity 2", 0x2b3e3b7e2247a78b, [](IIB& i) { i.setGranularity(2); }, CV_8UC1},
-        {"granularity 3", 0x76c690f21057f720, [](IIB& i) { i.setGranularity(3); }, CV_8UC1},
-        {"granularity 5", 0x335d65f21031895e, [](IIB& i) { i.setGranularity(5); }, CV_8UC1},
-        {"granularity 6", 0xc8b98b604530e595, [](IIB& i) { i.setGranularity(6); }, CV_8UC1},
-        {"extra channels", 0x3ad673a19c71489b, [](IIB& i) { i.setExtraChannels(3); }, CV_8UC1},
-        {"extra channels alone", 0x2384ba4913fccf32,
+        {"granularity 6", 0xc8b98b604530e595, 0x469d9af574fa958b, [](IIB& i) { i.setGranularity(6); },
+                CV_8UC1},
+        {"extra channels", 0x3ad673a19c71489b, 0xd050ead518708479, [](IIB& i) { i.setExtraChannels(3); },
+                CV_8UC1},
+        {"extra channels alone", 0x2384ba4913fccf32, 0x46edd4bcef271ae3,
                 [](IIB& i) {
                     i.setExtraChannels(5);
                     i.setChannels(0);
                 },
                 CV_8UC1},
-        {"orientation of keypoints", 0xc9b6b569adef32d3, [](IIB& i) { i.setUseOrientation(true); }, CV_8UC1},
-        {"16U", 0x3a73cd0cc49a4d35, nothing, CV_16UC1},
-        {"16U, orientation of keypoints", 0x244c6a56586d3caa, [](IIB& i) { i.setUseOrientation(true); },
-                CV_16UC1},
-        {"32F", 0xe2fae45b47d39a52, nothing, CV_32FC1}, {"8U colour", 0x5f19de037522b744, nothing, CV_8UC3},
-        {"32F colour", 0x5dbab4a1ac078b99, nothing, CV_32FC3},
-        {"selection", 0x4b159b8d342f9f70, someQuads, CV_8UC1},
-        {"selection, orientation of keypoints", 0x6358ca80c16b3c4b, turnedQuads, CV_8UC1}};
+        {"orientation of keypoints", 0xc9b6b569adef32d3, 0xcf5d28d3a6d3c3cf,
+                [](IIB& i) { i.setUseOrientation(true); }, CV_8UC1},
+        {"16U", 0x3a73cd0cc49a4d35, 0xacd8eaffd184a7b8, nothing, CV_16UC1},
+        {"16U, orientation of keypoints", 0x244c6a56586d3caa, 0xed9b15a2a6529935,
+                [](IIB& i) { i.setUseOrientation(true); }, CV_16UC1},
+        {"32F", 0xe2fae45b47d39a52, 0xf7c8c748aa6ac915, nothing, CV_32FC1},
+        {"8U colour", 0x5f19de037522b744, 0xb45d221b4e67cc73, nothing, CV_8UC3},
+        {"32F colour", 0x5dbab4a1ac078b99, 0x2f0bca6c2417e44b, nothing, CV_32FC3},
+        {"selection", 0x4b159b8d342f9f70, 0xf4dddd863a1c586a, someQuads, CV_8UC1},
+        {"selection, orientation of keypoints", 0x6358ca80c16b3c4b, 0x1660dccffba8e262, turnedQuads,
+                CV_8UC1}};
 
-//! FNV-1a, 64 bits.
 uint64 hashOf(const Mat& m)
 {
-    uint64 hash = CV_BIG_UINT(14695981039346656037);
+    cv::iib::Fnv1a hash;
     for (int y = 0; y < m.rows; y++)
-        for (int x = 0; x < m.cols; x++)
-            hash = (hash ^ m.at<uchar>(y, x)) * CV_BIG_UINT(1099511628211);
-    return hash;
+        hash.add(m.ptr(y), (size_t)m.cols);
+    return hash.value();
 }
 
 Mat image(Size size, int type)
@@ -117,10 +133,15 @@ TEST_P(IIB_Golden, bits)
         extra.push_back(texture(size, i % 2 ? CV_16U : CV_8U, 100 + i));
     std::vector<KeyPoint> keypoints = scatter(size, 500, 3.f, 40.f, 2);
     keypoints.push_back(KeyPoint(160, 120, 300));
-    const uint64 hash = hashOf(describe(*iib, image(size, golden.type), keypoints, extra));
-    EXPECT_EQ(golden.hash, hash);
-    if (golden.hash != hash)
-        std::cout << format("    { \"%s\", 0x%016llx,\n", golden.name, (unsigned long long)hash);
+    iib->setBorder(IIB::BORDER_CLAMP);
+    const uint64 clamped = hashOf(describe(*iib, image(size, golden.type), keypoints, extra));
+    iib->setBorder(IIB::BORDER_REFLECT);
+    const uint64 reflected = hashOf(describe(*iib, image(size, golden.type), keypoints, extra));
+    EXPECT_EQ(golden.clamped, clamped);
+    EXPECT_EQ(golden.reflected, reflected);
+    if (golden.clamped != clamped || golden.reflected != reflected)
+        std::cout << format("    { \"%s\", 0x%016llx, 0x%016llx,\n", golden.name, (unsigned long long)clamped,
+                (unsigned long long)reflected);
 }
 
 void PrintTo(const Golden& golden, std::ostream* os) { *os << golden.name; }

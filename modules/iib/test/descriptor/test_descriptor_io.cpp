@@ -50,6 +50,14 @@ TEST(IIB_IO, file_holds_every_parameter)
             const Ptr<IIB> other = iib == plain ? unusual() : IIB::create(1.f, 2);
             static_cast<Feature2D&>(*other).read(file);
             expectSame(*iib, *other);
+            // what one pair wrote, the other reads
+            const Ptr<IIB> crossed = Algorithm::load<IIB>(file);
+            ASSERT_FALSE(!crossed);
+            expectSame(*iib, *crossed);
+            iib->save(file);
+            const Ptr<IIB> again = iib == plain ? unusual() : IIB::create(1.f, 2);
+            static_cast<Feature2D&>(*again).read(file);
+            expectSame(*iib, *again);
             remove(file.c_str());
         }
 }
@@ -100,8 +108,10 @@ TEST(IIB_IO, foreign_and_damaged_nodes_throw_and_change_nothing)
             {"granularity: 5", "granularity: 2"}, {"channels: 35", "channels: 64"},
             {"mapping: 4", "mapping: SORT"}, {"overlap: 1", "overlap: yes"},
             {"useOrientation: 1", "useOrientation: [ 1 ]"}, {"extraChannels: 3", "extraChannels: 17"},
-            {"border: 1", "border: 2"}, {"[ 1, 2,", "[ 1,"}, {"[ 1, 2,", "[ 1, 99,"},
-            {"[ 1, 2,", "[ 1, two,"}};
+            {"border: 1", "border: 3"}, {"[ 1, 2,", "[ 1,"}, {"[ 1, 2,", "[ 1, 99,"},
+            {"[ 1, 2,", "[ 1, two,"}, {"granularity: 5", "granularity: 3.6"}, {"format: 1", "format: 1.2"},
+            {"overlap: 1", "overlap: 2"}, {"overlap: 1", "overlap: \"false\""}, {"[ 1, 2,", "[ 1, 2.5,"},
+            {"[ 1, 2, 0, 0, 255, 3, 0, 5, 6, 9, 3, 3, 0, 2, 64 ]", "7"}};
     for (const auto& r : replacements)
     {
         String damaged = good;

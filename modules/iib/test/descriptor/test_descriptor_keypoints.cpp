@@ -34,11 +34,11 @@ TEST(IIB_KeyPoints, border_drop_removes_those_whose_ros_leaves_the_image)
 {
     const Mat image = texture(SIZE, CV_8U, 3);
     std::vector<KeyPoint> keypoints = scatter(SIZE, 200, 8.f, 90.f, 4);
-    // a support region of 40 pixels on an odd number of pixels on either side: the first and last places that fit
+    // a ROS of 40 pixels on an odd number of pixels on either side: the first and last places that fit
     for (float x : {19.f, 19.5f, 160.f, 159.5f, 18.5f, 18.f, 160.5f, 161.f})
         keypoints.push_back(KeyPoint(x, 80, 20));
     const Ptr<IIB> iib = IIB::create(2.f);
-    EXPECT_EQ(IIB::BORDER_CLAMP, iib->getBorder());
+    EXPECT_EQ(IIB::BORDER_REFLECT, iib->getBorder());
     const Mat all = describe(*iib, image, keypoints);
 
     std::vector<KeyPoint> inside;

@@ -82,7 +82,7 @@ void expectParameterError(int code, const String& culprit, const Create& create,
     EXPECT_EQ(5, iib->getChannels());
     EXPECT_EQ(IIB::MAPPING_HAAR, iib->getMapping());
     EXPECT_EQ(2, iib->getExtraChannels());
-    EXPECT_EQ(IIB::BORDER_CLAMP, iib->getBorder());
+    EXPECT_EQ(IIB::BORDER_REFLECT, iib->getBorder());
     EXPECT_EQ(1, iib->getSelection().rows);
     EXPECT_EQ(1, iib->descriptorSize());
 }
@@ -110,9 +110,13 @@ TEST(IIB_Parameters, mistakes_throw_and_change_nothing)
                 Error::StsOutOfRange, format("extraChannels is %d", value),
                 [=] { IIB::create(2.f, 4, 15, 0, false, false, value); },
                 [=](IIB& iib) { iib.setExtraChannels(value); });
-    for (int value : {-1, 2})
+    for (int value : {-1, 3})
+    {
         expectError(
                 Error::StsBadArg, format("border is %d", value), [=] { IIB::create()->setBorder(value); });
+        expectError(Error::StsBadArg, format("orientation is %d", value),
+                [=] { IIB::create()->setOrientation(value); });
+    }
     expectError(Error::StsBadArg, "neither channels nor extraChannels", [] { IIB::create(2.f, 4, 0); });
     expectError(
             Error::StsBadArg, "neither channels nor extraChannels", [] { IIB::create()->setChannels(0); });

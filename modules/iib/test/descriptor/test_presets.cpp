@@ -130,7 +130,7 @@ TEST_P(IIBPresets, accuracy_on_changed_light)
     EXPECT_GE(scores[1], GetParam().mar);
 }
 
-// measured with the selections of src/descriptor/presets.generated.hpp on a sequence they were not trained on, less 0.005
+// measured with the selections of src/presets.generated.hpp on a sequence they were not trained on, less 0.005
 INSTANTIATE_TEST_CASE_P(All, IIBPresets,
         testing::Values(PresetCase{IIB::PRESET_S128, "S128", 16, 0.765, 0.462},
                 PresetCase{IIB::PRESET_S256, "S256", 32, 0.859, 0.593},

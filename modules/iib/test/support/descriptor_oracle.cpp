@@ -98,48 +98,108 @@ struct SupportRegion
     }
 };
 
-int edge(double start, double side, int k, int n, int limit)
+//! An edge among pixels that count: [0, limit), or also once their reflections on both sides.
+int edge(double start, double side, int k, int n, int limit, bool reflect)
 {
-    return (int)std::min(std::max(std::floor(start + side / n * k + 0.5), 0.), (double)limit);
+    const double least = reflect ? 1 - limit : 0, most = reflect ? 2 * limit - 1 : limit;
+    return (int)std::min(std::max(std::floor(start + side / n * k + 0.5), least), most);
 }
 
-Cell uprightCell(const Channel& c, const SupportRegion& r, int n, int row, int col)
+//! BORDER_REFLECT_101, which is never needed more than twice; what is further is the first pixel.
+int64 reflectTo(int64 v, int limit)
 {
-    const int x0 = edge(r.x, r.side, col, n, c.cols), x1 = edge(r.x, r.side, col + 1, n, c.cols);
-    const int y0 = edge(r.y, r.side, row, n, c.rows), y1 = edge(r.y, r.side, row + 1, n, c.rows);
+    v = std::abs(v);
+    return std::max<int64>(std::min<int64>(v, 2 * (limit - 1) - v), 0);
+}
+
+Cell uprightCell(const Channel& c, const SupportRegion& r, int n, int row, int col, bool reflect)
+{
+    const int x0 = edge(r.x, r.side, col, n, c.cols, reflect),
+              x1 = edge(r.x, r.side, col + 1, n, c.cols, reflect);
+    const int y0 = edge(r.y, r.side, row, n, c.rows, reflect),
+              y1 = edge(r.y, r.side, row + 1, n, c.rows, reflect);
     Cell cell = {0, (int64)(x1 - x0) * (y1 - y0)};
     for (int y = y0; y < y1; y++)
         for (int x = x0; x < x1; x++)
-            cell.sum += c(y, x);
+            cell.sum += c((int)reflectTo(y, c.rows), (int)reflectTo(x, c.cols));
     return cell;
 }
 
 int64 clampTo(int64 v, int limit) { return std::min<int64>(std::max<int64>(v, 0), limit - 1); }
 
-//! support region and gradients turned by the keypoint's angle: nearest pixels on a grid of samples x samples.
+//! Centre of a grid of points, in 2^-17 pixels; pixel 0 begins at 0.
+int64 fixedPoint(float centre) { return (int64)std::floor(centre * 131072. + 65536.5); }
+
+int insideOf(const IIB& iib, int64 place, int limit)
+{
+    return (int)(iib.getBorder() == IIB::BORDER_REFLECT ? reflectTo(place, limit) : clampTo(place, limit));
+}
+
+//! A peak of the gradients' directions in a circle, 64 bins weighted by magnitude and a Gaussian, smoothed.
+float prevailingAngle(const IIB& iib, const Mat& grey, const KeyPoint& kp, size_t rank)
+{
+    const int samples = 32, bins = 64;
+    const int64 step = cvRound(std::min(SupportRegion(iib, kp).side, 16384.) / samples * 65536);
+    std::vector<int64> histogram(bins, 0);
+    for (int row = 0; row < samples; row++)
+        for (int col = 0; col < samples; col++)
+        {
+            const int u = 2 * col + 1 - samples, v = 2 * row + 1 - samples;
+            const double dx = (double)u / samples, dy = (double)v / samples;
+            if (dx * dx + dy * dy > 1)
+                continue;
+            const int x = insideOf(iib, (fixedPoint(kp.pt.x) + u * step) >> 17, grey.cols);
+            const int y = insideOf(iib, (fixedPoint(kp.pt.y) + v * step) >> 17, grey.rows);
+            const int weight = cvRound(32 * std::exp(-2 * dx * dx)) * cvRound(32 * std::exp(-2 * dy * dy));
+            const float gx = (float)gradX(grey, y, x), gy = (float)gradY(grey, y, x);
+            histogram[orientation((int)gx, (int)gy) / 16] +=
+                    cvRound(std::sqrt(gx * gx + gy * gy) * (float)weight);
+        }
+    for (int pass = 0; pass < 7; pass++)
+    {
+        const std::vector<int64> h = histogram;
+        for (int i = 0; i < bins; i++)
+            histogram[i] = h[(i + bins - 1) % bins] + 2 * h[i] + h[(i + 1) % bins];
+    }
+    std::vector<std::pair<int64, int>> peaks;  // highest first, the lower bin first
+    for (int i = 0; i < bins; i++)
+        if (histogram[i] > histogram[(i + bins - 1) % bins] && histogram[i] >= histogram[(i + 1) % bins])
+            peaks.push_back(std::make_pair(-histogram[i], i));
+    if (peaks.empty())
+        return 0;
+    std::sort(peaks.begin(), peaks.end());
+    const int best = peaks[std::min(rank, peaks.size() - 1)].second;
+    const int64 left = histogram[(best + bins - 1) % bins], right = histogram[(best + 1) % bins];
+    const int64 curvature = left - 2 * histogram[best] + right;
+    const double top = curvature ? 0.5 * (double)(left - right) / (double)curvature : 0;
+    const double turns = (best + top + 15 / 32.) / bins;
+    const float angle = (float)(360 * (turns <= 0 ? -turns : 1 - turns));
+    return angle < 360 ? angle : 0;
+}
+
+//! ROS and gradients turned by an angle: nearest pixels on a grid of samples x samples.
 struct Turned
 {
     int samples;
     std::vector<Channel> values;
 
-    Turned(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra, const KeyPoint& kp)
+    Turned(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra, const KeyPoint& kp, float angle)
     {
-        const SupportRegion region(iib, kp);
-        samples = region.side <= 64 && iib.getGranularity() <= 5 ? 32 : 64;
-        const double radians = kp.angle * CV_PI / 180, spacing = std::min(region.side, 16384.) / samples;
+        const SupportRegion ros(iib, kp);
+        samples = ros.side <= 64 && iib.getGranularity() <= 5 ? 32 : 64;
+        const double radians = angle * CV_PI / 180, spacing = std::min(ros.side, 16384.) / samples;
         const int64 stepX = cvRound(std::cos(radians) * spacing * 65536);
         const int64 stepY = cvRound(std::sin(radians) * spacing * 65536);
         const int cosine = cvRound(std::cos(radians) * 4096), sine = cvRound(std::sin(radians) * 4096);
-        const int turn = cvRound(kp.angle * cv::iib::ORIENTATION_STEPS / 360);
-        const int64 x0 = (int64)std::floor(kp.pt.x * 131072. + 65536.5);
-        const int64 y0 = (int64)std::floor(kp.pt.y * 131072. + 65536.5);
+        const int turn = cvRound(angle * cv::iib::ORIENTATION_STEPS / 360);
+        const int64 x0 = fixedPoint(kp.pt.x), y0 = fixedPoint(kp.pt.y);
 
         for (int row = 0; row < samples; row++)
             for (int col = 0; col < samples; col++)
             {
                 const int u = 2 * col + 1 - samples, v = 2 * row + 1 - samples;
-                const int x = (int)clampTo((x0 + u * stepX - v * stepY) >> 17, grey.cols);
-                const int y = (int)clampTo((y0 + u * stepY + v * stepX) >> 17, grey.rows);
+                const int x = insideOf(iib, (x0 + u * stepX - v * stepY) >> 17, grey.cols);
+                const int y = insideOf(iib, (y0 + u * stepY + v * stepX) >> 17, grey.rows);
                 const int gx = gradX(grey, y, x), gy = gradY(grey, y, x);
                 const int turnedX = (cosine * gx + sine * gy + 2048) >> 12;
                 const int turnedY = (cosine * gy - sine * gx + 2048) >> 12;
@@ -277,16 +337,19 @@ void appendLevel(std::vector<uchar>& bytes, const std::vector<bool>& bits)
 }
 
 Cells cellsOf(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra,
-        const std::vector<Channel>& channels, const KeyPoint& kp)
+        const std::vector<Channel>& channels, const KeyPoint& kp, size_t rank)
 {
-    if (iib.getUseOrientation() && kp.angle >= 0)
+    const bool gradient = iib.getOrientation() == IIB::ORIENTATION_GRADIENT && iib.getChannels() != 0;
+    if (gradient || (iib.getOrientation() == IIB::ORIENTATION_KEYPOINT && kp.angle >= 0))
     {
-        const Turned turned(iib, grey, extra, kp);
+        const Turned turned(iib, grey, extra, kp, gradient ? prevailingAngle(iib, grey, kp, rank) : kp.angle);
         return [turned](int c, int n, int row, int col) { return turned.cell(c, n, row, col); };
     }
-    const SupportRegion region(iib, kp);
-    return [region, &channels](
-                   int c, int n, int row, int col) { return uprightCell(channels[c], region, n, row, col); };
+    const SupportRegion ros(iib, kp);
+    const bool reflect = iib.getBorder() == IIB::BORDER_REFLECT;
+    return [ros, reflect, &channels](int c, int n, int row, int col) {
+        return uprightCell(channels[c], ros, n, row, col, reflect);
+    };
 }
 
 }  // namespace
@@ -316,7 +379,12 @@ Mat describe(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra,
     Mat descriptors;
     for (size_t k = 0; k < keypoints.size(); k++)
     {
-        const Cells cells = cellsOf(iib, grey, extra, channels, keypoints[k]);
+        // of keypoints at the same place, the next one gets the next peak
+        const size_t rank =
+                std::count_if(keypoints.begin(), keypoints.begin() + k, [&](const KeyPoint& other) {
+                    return other.pt == keypoints[k].pt && other.size == keypoints[k].size;
+                });
+        const Cells cells = cellsOf(iib, grey, extra, channels, keypoints[k], rank);
         std::vector<uchar> bytes;
         for (int level = 1; level <= iib.getGranularity(); level++)
             appendLevel(bytes, selection.empty() ? levelBits(iib, cells, (int)channels.size(), level)

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_TEST_ORACLE_HPP
-#define OPENCV_IIB_TEST_ORACLE_HPP
+#ifndef OPENCV_IIB_TEST_SUPPORT_DESCRIPTOR_ORACLE_HPP
+#define OPENCV_IIB_TEST_SUPPORT_DESCRIPTOR_ORACLE_HPP
 
 #include "opencv2/core.hpp"
 #include "opencv2/features2d.hpp"
@@ -26,7 +26,7 @@ int orientation(int gx, int gy);
 std::vector<Channel> channelsOf(
         const cv::iib::IIBDescriptorExtractor& iib, const cv::Mat& grey, const std::vector<cv::Mat>& extra);
 
-//! keypoints.size() descriptors, for the extractor's parameters; BORDER_CLAMP.
+//! keypoints.size() descriptors, for the extractor's parameters but BORDER_DROP.
 cv::Mat describe(const cv::iib::IIBDescriptorExtractor& iib, const cv::Mat& grey,
         const std::vector<cv::Mat>& extra, const std::vector<cv::KeyPoint>& keypoints);
 

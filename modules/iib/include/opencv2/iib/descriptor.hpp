@@ -21,12 +21,12 @@ Each keypoint has a region of support (ROS): a square with centre KeyPoint::pt a
 a *quad*, and a mapping turns their four mean values into bits, in each image channel. Light changes
 the values, but seldom the order among neighbours.
 
-A ROS side under 2^G pixels is raised to 2^G, so that no cell is empty. Pixels outside the image do
-not count; a quad of which one cell lies outside as a whole is taken as four equal means.
+A ROS side under 2^G pixels is raised to 2^G, so that no cell is empty. What of it lies outside the image is told by
+#Border; a quad of which one cell holds no pixel at all is taken as four equal means.
 
 **Bits.** Levels come coarse first, each padded with zeros to a whole byte, bit 0 of byte 0 first. So
 the descriptor of granularity G-1 is a prefix of the one of G, unless the ROS is so small that G raises it
-(a turned one at G = 6: 64 pixels or less). Within a level the order is, outermost
+(a rotated one at G = 6: 64 pixels or less). Within a level the order is, outermost
 first:
  1. channels in groups of four, in the order of #Channel, extra channels last;
  2. with `overlap`, the offset of the 2x2 windows: (0,0), (0,1), (1,0), (1,1) cells in (y,x);
@@ -40,7 +40,7 @@ chosen are left out; quads in odd rows or columns belong to the windows of 2.
 
 The descriptors are CV_8U and compared with NORM_HAMMING. The same input gives the same bits for
 every instruction set, thread count and build. One object may serve several threads as long as none
-changes its parameters.
+changes its parameters. As everywhere in OpenCV, cv::setNumThreads is not to be called meanwhile.
  */
 class CV_EXPORTS_W IIBDescriptorExtractor : public Feature2D
 {
@@ -69,11 +69,21 @@ public:
         MAPPING_PAIRWISE  //!< 4 bits: x_0 > x_1, x_1 > x_3, x_3 > x_2, x_2 > x_0, around the quad
     };
 
-    //! What becomes of a keypoint whose ROS leaves the image.
+    //! What becomes of a keypoint whose ROS leaves the image. Inside, all give the same bits.
     enum Border
     {
-        BORDER_CLAMP,  //!< it stays; only pixels of the image count
-        BORDER_DROP    //!< it is removed, as Feature2D::compute documents
+        BORDER_CLAMP,  //!< it stays; only pixels of the image count (of a rotated ROS, those of the border repeat)
+        BORDER_DROP,  //!< it is removed, as Feature2D::compute documents; a rotated ROS counts as rotated, by
+                      //!< #ORIENTATION_GRADIENT at any angle
+        BORDER_REFLECT  //!< it stays; the channels are reflected once at the image's border (BORDER_REFLECT_101)
+    };
+
+    //! How ROS and gradients are rotated.
+    enum Orientation
+    {
+        ORIENTATION_NONE,  //!< not at all: the best where cameras stay upright
+        ORIENTATION_KEYPOINT,  //!< by KeyPoint::angle, in degrees, clockwise in the image; a negative one means upright
+        ORIENTATION_GRADIENT  //!< by the direction that prevails among the gradients in the ROS, see setOrientation
     };
 
     /** @brief Creates an extractor.
@@ -83,8 +93,8 @@ public:
     @param channels a sum of #Channel values; may be 0 if there are extra channels.
     @param mapping one of #Mapping.
     @param overlap slide the 2x2 window of cells by one cell instead of two: (2^g - 1)^2 quads a level.
-    @param useOrientation turn ROS and gradients by KeyPoint::angle (degrees, clockwise in the image;
-    -1 means upright).
+    @param useOrientation rotate ROS and gradients by KeyPoint::angle (degrees, clockwise in the image;
+    -1 means upright), see setUseOrientation.
     @param extraChannels number of maps of the image's size that computeWithChannels is given, 0 to 16.
     @throws cv::Exception (StsBadArg or StsOutOfRange) for a value outside these ranges.
      */
@@ -142,9 +152,11 @@ public:
     @param extraChannels as many single-channel maps as getExtraChannels(), each of the image's size, 8U,
     16U or 32F. A cell's value is the mean of the map.
     @param keypoints their order is kept; none is removed but by #BORDER_DROP.
-    @param descriptors keypoints.size() x descriptorSize(), CV_8U. Empty if the image or the keypoints are.
+    @param descriptors keypoints.size() x descriptorSize(), CV_8U. Empty if the image or the keypoints are. It may
+    be the image or one of the maps, which it then replaces.
     @throws cv::Exception for a wrong type, size or number of maps, for pixels that are NaN or infinite,
-    and for keypoints with a NaN or infinite coordinate or a size that is not positive.
+    and for keypoints with a NaN or infinite coordinate or a size that is not positive: such a keypoint has no region,
+    and to leave it out would break the correspondence of keypoints and rows that the caller counts on.
      */
     CV_WRAP_AS(computeWithChannels)
     virtual void compute(InputArray image, InputArrayOfArrays extraChannels,
@@ -166,17 +178,41 @@ public:
     CV_WRAP virtual void setOverlap(bool overlap) = 0;
     CV_WRAP virtual bool getOverlap() const = 0;
 
+    //! true: #ORIENTATION_KEYPOINT, false: #ORIENTATION_NONE.
     CV_WRAP virtual void setUseOrientation(bool useOrientation) = 0;
+    //! Whether there is any orientation but #ORIENTATION_NONE.
     CV_WRAP virtual bool getUseOrientation() const = 0;
+
+    /** @brief Sets how ROS and gradients are rotated: one of #Orientation, #ORIENTATION_NONE by default.
+
+    Rotation costs matches by changed light, since the angles change with the light as well. So where cameras stay
+    upright, none is best. Where they turn, the best angles are those that do not come from the image: set
+    KeyPoint::angle to the direction of gravity (from an IMU), or to the angle that estimateRotation finds between two
+    images, and use #ORIENTATION_KEYPOINT.
+
+    #ORIENTATION_GRADIENT ignores KeyPoint::angle and leaves it as it is. The angle is the peak of a smoothed histogram
+    of the directions of gradients in the circle within the ROS, weighted by their magnitudes and by a Gaussian of half
+    the radius. Of keypoints with the same position and size (as SIFT finds them, one for each direction) the second
+    gets the second highest peak, and so on. A descriptor of extra channels alone stays upright.
+
+    Sums over upright rectangles do not rotate with a ROS, so a rotated one is sampled: on a grid of 32 x 32 points if
+    its side is at most 64 pixels and granularity at most 5, else of 64 x 64, at the nearest pixel of each, where the
+    gradient is rotated. So angle 0 does not give the bits of angle -1: one counts samples, the other all pixels.
+    A point outside the image takes the pixel that #BORDER_REFLECT reflects there, or with #BORDER_CLAMP the nearest
+    pixel of the border: the edge of the image crosses rotated cells at an angle, and cells with different numbers of
+    samples would no longer be comparable without a division. A side of more than 16384 pixels is cut to that. */
+    CV_WRAP virtual void setOrientation(int mode) = 0;
+    CV_WRAP virtual int getOrientation() const = 0;
 
     CV_WRAP virtual void setExtraChannels(int extraChannels) = 0;
     CV_WRAP virtual int getExtraChannels() const = 0;
 
-    //! One of #Border; BORDER_CLAMP by default.
+    //! One of #Border; BORDER_REFLECT by default.
     CV_WRAP virtual void setBorder(int border) = 0;
     CV_WRAP virtual int getBorder() const = 0;
 
-    //! The detector behind detect and detectAndCompute; ORB by default. It does not change the scale factor.
+    //! The detector behind detect and detectAndCompute; ORB by default. It does not change the scale factor. Throws if
+    //! it is null, or is this extractor or leads back to it.
     CV_WRAP virtual void setDetector(const Ptr<Feature2D>& detector) = 0;
     CV_WRAP virtual Ptr<Feature2D> getDetector() const = 0;
 

@@ -2,24 +2,18 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "bits.hpp"
-#include "mappings.hpp"
+#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_BITS_SIMD_HPP
+#define OPENCV_IIB_DESCRIPTOR_KERNELS_BITS_SIMD_HPP
 
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-#include "bits_lanes.simd.hpp"
-#include "bits_quads.simd.hpp"
 #include "bits_planes.simd.hpp"
-#endif
+#include "bits_quads.simd.hpp"
+#include "kernels.hpp"
+#include "mappings.hpp"
 
 namespace cv {
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
-BitsKernels<ushort> getBitsKernels(int mapping, ushort);
-BitsKernels<unsigned> getBitsKernels(int mapping, unsigned);
-
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
 
@@ -45,6 +39,34 @@ template <typename Cell> void parentSums(const CellGrid<Cell>& cells, CellGrid<u
                 sums.store(lane, x);
             }
     }
+}
+
+inline v_int32x4 loadCell(const ushort* p) { return v_reinterpret_as_s32(v_load_expand(p)); }
+inline v_int32x4 loadCell(const unsigned* p) { return v_reinterpret_as_s32(v_load(p)); }
+
+template <typename Cell>
+int centre(const CellGrid<Cell>& cells, const LevelShape& shape, const CellEdges& edges,
+        CellGrid<unsigned>& centred)
+{
+    const int n = shape.n;
+    const Axis x = {edges.x, shape.step}, y = {edges.y, shape.step};
+    const float area = (float)(x.edge(n) - x.edge(0)) * (float)(y.edge(n) - y.edge(0));
+    v_float32x4 total = v_setzero_f32();
+    for (int r = 0; r < n; r++)
+        for (int c = 0; c < n; c++)
+            total += v_cvt_f32(loadCell(cells.cell(r, c)));
+    // any number would do: its rounding changes no bit
+    const v_int32x4 mean = v_round(total * v_setall_f32(area > 0 ? 1 / area : 0));
+    v_uint32x4 largest = v_setzero_u32();
+    centred.create(n);
+    for (int r = 0; r < n; r++)
+        for (int c = 0; c < n; c++)
+        {
+            const v_int32x4 v = loadCell(cells.cell(r, c)) - mean * v_setall_s32(x.length(c) * y.length(r));
+            v_store(centred.cell(r, c), v_reinterpret_as_u32(v));
+            largest = v_max(largest, v_abs(v));
+        }
+    return (int)v_reduce_max(largest);
 }
 
 //! A chunk of quads and all those below it. WITH_PARENTS also stores the sums over quads.
@@ -88,93 +110,83 @@ inline void columnBits(QuadRows<Cell> quads, const ColumnWeights& columns, const
 
 //! The comparisons of a phase.
 template <typename Mapping, bool WITH_PARENTS, typename Cell, typename Out>
-void comparisons(const CellGrid<Cell>& cells, const LevelShape& shape, const QuadPhase& phase,
-        CellGrid<unsigned>& parents, Out out)
+void comparisons(const CellGrid<Cell>& cells, const LevelShape& shape, const CellEdges& edges,
+        const QuadPhase& phase, CellGrid<unsigned>& parents, Out out)
 {
-    const int* edges = shape.y.edges + phase.dy * shape.y.step;
+    const Axis x = {edges.x, shape.step};
+    const int* const rowEdges = edges.y + phase.dy * shape.step;
     for (int first = 0; first < phase.lanes(); first += CHUNK, out.nextChunk())
     {
-        const ColumnWeights columns(shape.x, phase.dx + first / 2);
-        columnBits<Mapping, WITH_PARENTS>(QuadRows<Cell>(cells, phase.dy, phase.dx, first), columns, edges,
-                shape.y.step, phase.rows, ParentRows(parents, first), out);
+        const ColumnWeights columns(x, phase.dx + first / 2);
+        columnBits<Mapping, WITH_PARENTS>(QuadRows<Cell>(cells, phase.dy, phase.dx, first), columns, rowEdges,
+                shape.step, phase.rows, ParentRows(parents, first), out);
     }
 }
 
 template <typename Mapping, bool WITH_PARENTS, typename Cell>
-void windowBits(const CellGrid<Cell>& cells, const LevelShape& shape, int index, CellGrid<unsigned>& parents,
-        BitWriter& out)
+void phaseBits(const CellGrid<Cell>& cells, const LevelShape& shape, const CellEdges& edges, int index,
+        CellGrid<unsigned>& parents, BitAppender& out)
 {
     const QuadPhase phase(shape.n, index);
-    if (phase.lanes() < CHUNK && !shape.chosen)
+    if (phase.lanes() < CHUNK && shape.chosen.empty())
         return comparisons<Mapping, WITH_PARENTS>(
-                cells, shape, phase, parents, ShortRowWriter(out, phase.lanes(), shape.channels));
+                cells, shape, edges, phase, parents, ShortRowWriter(out, phase.lanes(), shape.channels));
     const int rowBytes = Mapping::BITS * phase.planeBytes();
     // words are read beyond the last plane
     uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8 + 8], *whole = 0;
     // Where all bits are in use and a row fills whole chunks, they need no shifting.
-    if (!shape.chosen && shape.channels == GROUP_CHANNELS && phase.lanes() % CHUNK == 0)
+    if (shape.chosen.empty() && shape.channels == GROUP_CHANNELS && phase.lanes() % CHUNK == 0)
         whole = out.reserve(phase.rows * rowBytes);
     const PlaneRows planes = {whole ? whole : buffer, (size_t)phase.planeBytes(), (size_t)rowBytes};
-    comparisons<Mapping, WITH_PARENTS>(cells, shape, phase, parents, planes);
-    if (shape.chosen)
+    comparisons<Mapping, WITH_PARENTS>(cells, shape, edges, phase, parents, planes);
+    if (!shape.chosen.empty())
         appendChosen(shape.chosen[index], buffer, out);
     else if (!whole)
         append(planes, phase, Mapping::BITS, shape.channels, out);
 }
 
 template <typename Mapping, typename Cell>
-void levelBits(
-        const CellGrid<Cell>& cells, const LevelShape& shape, CellGrid<unsigned>& parents, uchar* descriptor)
+void levelBits(const CellGrid<Cell>& cells, const LevelShape& shape, const CellEdges& edges,
+        CellGrid<unsigned>& parents, uchar* descriptor)
 {
     BitWriter out(descriptor, shape.offset);
     if (shape.uses(0))
-        windowBits<Mapping, true>(cells, shape, 0, parents, out);
+        phaseBits<Mapping, true>(cells, shape, edges, 0, parents, out);
     else
         parentSums(cells, parents);
-    for (int i = 1; shape.windows >> i; i++)
+    for (int i = 1; shape.phases >> i; i++)
         if (shape.uses(i))
-            windowBits<Mapping, false>(cells, shape, i, parents, out);
-    out.flush();
+            phaseBits<Mapping, false>(cells, shape, edges, i, parents, out);
 }
 
 template <typename Mapping, typename Cell>
-void levelsBits(const CellGrid<Cell>& cells, const LevelShape shapes[], int finest, int coarsest,
-        CellGrid<unsigned> sums[], uchar* descriptor)
+void levelsBits(const CellGrid<Cell>& cells, const LevelShape shapes[], const CellEdges& edges, int finest,
+        int coarsest, CellGrid<unsigned> sums[], uchar* descriptor)
 {
-    levelBits<Mapping>(cells, shapes[finest], sums[finest - 1], descriptor);
+    levelBits<Mapping>(cells, shapes[finest], edges, sums[finest - 1], descriptor);
     for (int level = finest - 1; level >= coarsest; level--)
-        levelBits<Mapping>(sums[level], shapes[level], sums[level - 1], descriptor);
+        levelBits<Mapping>(sums[level], shapes[level], edges, sums[level - 1], descriptor);
 }
 
-#ifdef CV_CPU_DISPATCH_MODE
-#define IIB_INSTRUCTION_SET CVAUX_STR(CV_CPU_DISPATCH_MODE)
-#else
-#define IIB_INSTRUCTION_SET "baseline"
-#endif
-
-template <typename Cell> struct Kernels
+template <typename Cell> struct BitsKernelsOf
 {
     template <typename Mapping> BitsKernels<Cell> visit() const
     {
-        const BitsKernels<Cell> k = {levelsBits<Mapping, Cell>, parentSums<Cell>, IIB_INSTRUCTION_SET};
+        const BitsKernels<Cell> k = {levelsBits<Mapping, Cell>, parentSums<Cell>, centre<Cell>};
         return k;
     }
 };
 
-#undef IIB_INSTRUCTION_SET
-
-}  // namespace
-
-BitsKernels<ushort> getBitsKernels(int mapping, ushort) { return visitMapping(mapping, Kernels<ushort>()); }
-
-BitsKernels<unsigned> getBitsKernels(int mapping, unsigned)
+template <typename Cell> BitsKernels<Cell> bitsKernels(int mapping)
 {
-    return visitMapping(mapping, Kernels<unsigned>());
+    return visitMapping(mapping, BitsKernelsOf<Cell>());
 }
 
-#endif
+}  // namespace
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
 }  // namespace iib
 }  // namespace cv
+
+#endif

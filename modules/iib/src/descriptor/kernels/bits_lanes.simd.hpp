@@ -2,14 +2,19 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Vectors whose comparisons are bits. Included by bits.simd.hpp.
+#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_BITS_LANES_SIMD_HPP
+#define OPENCV_IIB_DESCRIPTOR_KERNELS_BITS_LANES_SIMD_HPP
+
+// Vectors whose comparisons are bits.
 
 #include "../../common/simd.hpp"
-#include "../selection.hpp"
+#include "quads.hpp"
 
 namespace cv {
 namespace iib {
+
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
 namespace {
 
 // Quads and channels that are mapped at a time, whatever the width of a vector, and their comparisons.
@@ -42,28 +47,12 @@ template <typename V> inline Lanes<V> v_max(const Lanes<V>& a, const Lanes<V>& b
     return cv::v_max(a.v, b.v);
 }
 
-#define IIB_COMPARISON(op)                                                                                   \
-    template <typename V> inline unsigned operator op(const Lanes<V>& a, const Lanes<V>& b)                  \
-    {                                                                                                        \
-        return (unsigned)v_signmask(a.v op b.v);                                                             \
-    }
-IIB_COMPARISON(>)
-IIB_COMPARISON(>=)
-IIB_COMPARISON(==)
-#undef IIB_COMPARISON
-
-#if CV_SIMD_WIDTH == 64
-// Universal intrinsics turn the mask of a comparison into a vector and that into a mask again.
-#define IIB_MASK_COMPARISON(op, function)                                                                    \
-    inline unsigned operator op(const Lanes<v_int32>& a, const Lanes<v_int32>& b)                            \
-    {                                                                                                        \
-        return function(a.v.val, b.v.val);                                                                   \
-    }
-IIB_MASK_COMPARISON(>, _mm512_cmpgt_epi32_mask)
-IIB_MASK_COMPARISON(>=, _mm512_cmpge_epi32_mask)
-IIB_MASK_COMPARISON(==, _mm512_cmpeq_epi32_mask)
-#undef IIB_MASK_COMPARISON
-#endif
+inline unsigned operator>(const Lanes<v_int32>& a, const Lanes<v_int32>& b) { return greaterMask(a.v, b.v); }
+inline unsigned operator>=(const Lanes<v_int32>& a, const Lanes<v_int32>& b)
+{
+    return greaterEqualMask(a.v, b.v);
+}
+inline unsigned operator==(const Lanes<v_int32>& a, const Lanes<v_int32>& b) { return equalMask(a.v, b.v); }
 
 //! Collects comparisons, from a lane on.
 struct Put
@@ -75,6 +64,10 @@ struct Put
 };
 
 }  // namespace
+
 CV_CPU_OPTIMIZATION_NAMESPACE_END
+
 }  // namespace iib
 }  // namespace cv
+
+#endif

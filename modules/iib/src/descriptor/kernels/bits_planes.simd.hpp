@@ -2,11 +2,18 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Where comparisons lie in memory, and how they become bits of a descriptor. Included by bits.simd.hpp.
+#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_BITS_PLANES_SIMD_HPP
+#define OPENCV_IIB_DESCRIPTOR_KERNELS_BITS_PLANES_SIMD_HPP
+
+// Where comparisons lie in memory, and how they become bits of a descriptor.
+
+#include "bits_lanes.simd.hpp"
 
 namespace cv {
 namespace iib {
+
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
 namespace {
 
 //! Where the bits of a chunk go, two bytes for each plane.
@@ -55,14 +62,14 @@ inline unsigned dropLanes(unsigned chunk, int channels)
 }
 
 //! Appends the lowest `lanes` bits of a chunk but for those of channels that are not in use.
-inline void appendChunk(unsigned chunk, int lanes, int channels, BitWriter& out)
+inline void appendChunk(unsigned chunk, int lanes, int channels, BitAppender& out)
 {
     const int count = lanes / GROUP_CHANNELS * channels;
     out.append(dropLanes(chunk, channels) & ((1u << count) - 1), count);
 }
 
 //! Appends a plane, `lanes` bits of which those of the channels in use are wanted.
-inline void append(const uchar* plane, int lanes, int channels, BitWriter& out)
+inline void append(const uchar* plane, int lanes, int channels, BitAppender& out)
 {
     if (channels == GROUP_CHANNELS)
         for (int first = 0; first < lanes; first += 64)
@@ -79,9 +86,9 @@ inline void append(const uchar* plane, int lanes, int channels, BitWriter& out)
 }
 
 //! Appends the comparisons of all quads of a phase.
-inline void append(PlaneRows planes, const QuadPhase& phase, int bits, int channels, BitWriter& out)
+inline void append(PlaneRows planes, const QuadPhase& phase, int bits, int channels, BitAppender& out)
 {
-    BitWriter writer = out;  // a copy that no store of a byte can change stays in registers
+    BitAppender writer = out;  // a copy that no store of a byte can change stays in registers
     for (int r = 0; r < phase.rows; r++, planes.first += planes.row)
         for (int plane = 0; plane < bits; plane++)
             append(planes.first + plane * planes.plane, phase.lanes(), channels, writer);
@@ -93,7 +100,7 @@ inline void append(PlaneRows planes, const QuadPhase& phase, int bits, int chann
 class ShortRowWriter
 {
 public:
-    ShortRowWriter(BitWriter& out_, int lanes, int channels_)
+    ShortRowWriter(BitAppender& out_, int lanes, int channels_)
         : out(out_), channels(channels_), count(lanes / GROUP_CHANNELS * channels), mask((1u << count) - 1)
     {
     }
@@ -116,34 +123,31 @@ public:
     void nextChunk() {}
 
 private:
-    BitWriter& out;
+    BitAppender& out;
     const int channels, count;
     const unsigned mask;
 };
 
-#if CV_SIMD_WIDTH == 64 && (defined __x86_64__ || defined _M_X64)
-/* Appends the chosen bits of a phase. Processors with AVX-512 have a fast instruction that moves bits together; among
- those with AVX2 are some where it is slower than doing it step by step. */
-#ifdef __GNUC__
-__attribute__((target("bmi2")))
-#endif
-inline void
-appendChosen(const ChosenBits& chosen, const uchar* comparisons, BitWriter& out)
+/* Appends the chosen bits of a phase. */
+IIB_TARGET_BIT_COMPRESS inline void appendChosen(
+        const ChosenBits& chosen, const uchar* comparisons, BitAppender& out)
 {
-    BitWriter writer = out;  // a copy that no store of a byte can change stays in registers
-    for (const ChosenBits::Word& word : chosen.chosenWords())
+#if IIB_HAS_FAST_BIT_COMPRESS
+    BitAppender writer = out;  // a copy that no store of a byte can change stays in registers
+    for (const ChosenBits::Word& word : chosen.words())
         writer.append(
-                _pext_u64(loadWord(comparisons + word.byte), word.compressor.mask), word.compressor.count);
+                compressBits(loadWord(comparisons + word.byte), word.compressor.mask), word.compressor.count);
     out = writer;
-}
 #else
-inline void appendChosen(const ChosenBits& chosen, const uchar* comparisons, BitWriter& out)
-{
     chosen.append(comparisons, out);
-}
 #endif
+}
 
 }  // namespace
+
 CV_CPU_OPTIMIZATION_NAMESPACE_END
+
 }  // namespace iib
 }  // namespace cv
+
+#endif

@@ -2,13 +2,18 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// The cells of quads, their weights and the sums over them. Included by bits.simd.hpp.
+#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_BITS_QUADS_SIMD_HPP
+#define OPENCV_IIB_DESCRIPTOR_KERNELS_BITS_QUADS_SIMD_HPP
 
-#include "bits.hpp"
+// The cells of quads, their weights and the sums over them.
+
+#include "bits_lanes.simd.hpp"
 
 namespace cv {
 namespace iib {
+
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
 namespace {
 
 inline v_int32 loadCells(const ushort* p) { return v_reinterpret_as_s32(vx_load_expand(p)); }
@@ -55,17 +60,8 @@ public:
 
     void store(int lane, const v_int32 x[4]) const
     {
-        v_uint32 sums = v_reinterpret_as_u32((x[0] + x[1]) + (x[2] + x[3]));
-#if CV_SIMD_WIDTH == 16
-        v_store((lane / GROUP_CHANNELS % 2 ? odd : even) + lane / (2 * GROUP_CHANNELS) * GROUP_CHANNELS,
-                sums);
-#else
-#if CV_SIMD_WIDTH == 64
-        sums = v_uint32(_mm512_shuffle_i32x4(sums.val, sums.val, 0xd8));  // quads 0, 2, 1, 3
-#endif
-        v_store_low(even + lane / 2, sums);
-        v_store_high(odd + lane / 2, sums);
-#endif
+        const v_uint32 sums = v_reinterpret_as_u32((x[0] + x[1]) + (x[2] + x[3]));
+        storeAlternately(even, odd, lane / GROUP_CHANNELS, sums);
     }
 
     void next()
@@ -78,25 +74,6 @@ private:
     unsigned *even, *odd;
     const size_t step;
 };
-
-/* Four numbers, each repeated for the channels of a quad, as a chunk. Not by way of memory, where what was stored in
- parts could not be read whole until all stores before it are done. */
-inline void repeatForChannels(const v_int32x4& n, v_int32 chunk[CHUNK_VECTORS])
-{
-#if CV_SIMD_WIDTH == 64
-    const __m512i places = _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
-    chunk[0] = v_int32(_mm512_permutexvar_epi32(places, _mm512_castsi128_si512(n.val)));
-#elif CV_SIMD_WIDTH == 32
-    const __m256i twice = _mm256_broadcastsi128_si256(n.val);
-    chunk[0] = v_int32(_mm256_permutevar8x32_epi32(twice, _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1)));
-    chunk[1] = v_int32(_mm256_permutevar8x32_epi32(twice, _mm256_setr_epi32(2, 2, 2, 2, 3, 3, 3, 3)));
-#else
-    chunk[0] = v_broadcast_element<0>(n);
-    chunk[1] = v_broadcast_element<1>(n);
-    chunk[2] = v_broadcast_element<2>(n);
-    chunk[3] = v_broadcast_element<3>(n);
-#endif
-}
 
 //! Weights of a chunk of quads along a row.
 struct ColumnWeights
@@ -112,12 +89,16 @@ struct ColumnWeights
                 end(e[2 * s], e[4 * s], e[6 * s], e[8 * s]);
         const v_int32x4 middle(e[s], e[3 * s], e[5 * s], e[7 * s]);
         const v_int32x4 lefts = middle - begin, rights = end - middle, same = lefts == rights;
-        repeatForChannels(v_select(same, v_setall_s32(1), rights), left);
-        repeatForChannels(v_select(same, v_setall_s32(1), lefts), right);
+        repeatEachFourTimes(v_select(same, v_setall_s32(1), rights), left);
+        repeatEachFourTimes(v_select(same, v_setall_s32(1), lefts), right);
     }
 };
 
 }  // namespace
+
 CV_CPU_OPTIMIZATION_NAMESPACE_END
+
 }  // namespace iib
 }  // namespace cv
+
+#endif

@@ -6,11 +6,15 @@
 #define OPENCV_IIB_DESCRIPTOR_KERNELS_CELL_GRID_HPP
 
 #include "../../common/aligned_buffer.hpp"
-#include "integral.hpp"
-#include "../support_region.hpp"
 
 namespace cv {
 namespace iib {
+
+enum
+{
+    MAX_GRANULARITY = 6,
+    GROUP_CHANNELS = 4  //!< channels that integral images and kernels carry side by side
+};
 
 /** Sums over the cells of one level, n x n cells of GROUP_CHANNELS channels each. The cells in even columns of a
  row lie side by side, and those in odd columns: the left and right cells of the quads. T is ushort or unsigned, as
@@ -46,22 +50,21 @@ private:
     AlignedBuffer<T> values;
 };
 
-//! The n + 1 edges of n columns, and the last one again: kernels run over the end, by up to 7 columns of any level.
-inline int paddedEdges(int n) { return n + 1 + 7 * (n / 2); }
-
-/** The edges of the n x n cells of a support region, clamped to the image (see support_region.hpp).
- @param x gets paddedEdges(n); @param y gets n + 1. */
-typedef void (*CellEdgesFunc)(const SupportRegion& region, int n, Size image, int* x, int* y);
-CellEdgesFunc getCellEdgesFunc();
-
-//! Sums over n x n cells with the given edges, paddedEdges(n) and n + 1 of them, in pixels of the image.
-template <typename Sum> struct CellSumsFunc
+//! The edge of pixels nearest to a position, in [first, limit]: on positive numbers the cast is a floor.
+static inline int edgeAt(double position, int first, int limit)
 {
-    typedef void (*Type)(
-            const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells);
+    return (int)(std::min(std::max(position + 0.5, (double)first), (double)limit) - first) + first;
+}
+
+//! The n + 1 edges of n columns, and the last one again: kernels run over the end, by up to 7 columns of any level.
+constexpr int paddedEdges(int n) { return n + 1 + 7 * (n / 2); }
+
+//! The edges of the finest cells of a support region, in pixels or samples.
+struct CellEdges
+{
+    int x[paddedEdges(1 << MAX_GRANULARITY)];  //!< paddedEdges(n) of them are in use
+    int y[(1 << MAX_GRANULARITY) + 1];
 };
-CellSumsFunc<ushort>::Type getCellSumsFunc(ushort);
-CellSumsFunc<unsigned>::Type getCellSumsFunc(unsigned);
 
 }  // namespace iib
 }  // namespace cv

@@ -2,124 +2,47 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../../common/simd.hpp"
+#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_CELLS_SIMD_HPP
+#define OPENCV_IIB_DESCRIPTOR_KERNELS_CELLS_SIMD_HPP
 
-#include "cell_grid.hpp"
-#include "../support_region.hpp"
+#include "../../common/simd.hpp"
+#include "kernels.hpp"
 
 namespace cv {
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-CellEdgesFunc getCellEdgesFunc();
-CellSumsFunc<ushort>::Type getCellSumsFunc(ushort);
-CellSumsFunc<unsigned>::Type getCellSumsFunc(unsigned);
-
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-
 namespace {
 
 /* n is a power of two, so that the edges of a level are a subset of those of the next. The compiler makes vectors of
  the loop, with this file's instruction set. */
-void cellEdges(const SupportRegion& region, int n, Size image, int* x, int* y)
+void cellEdges(Point2d corner, double side, int n, Rect bounds, CellEdges& edges)
 {
-    const double step = region.side / n;
+    int *const x = edges.x, *const y = edges.y;
+    const double step = side / n;
+    const Point first = bounds.tl(), end = bounds.br();
     for (int k = 0; k < n; k++)
     {
-        x[k] = edgeAt(region.x + step * k, image.width);
-        y[k] = edgeAt(region.y + step * k, image.height);
+        x[k] = edgeAt(corner.x + step * k, first.x, end.x);
+        y[k] = edgeAt(corner.y + step * k, first.y, end.y);
     }
-    x[n] = edgeAt(region.x + step * n, image.width);
-    y[n] = edgeAt(region.y + step * n, image.height);
+    x[n] = edgeAt(corner.x + step * n, first.x, end.x);
+    y[n] = edgeAt(corner.y + step * n, first.y, end.y);
     for (int k = n + 1; k < paddedEdges(n); k++)
         x[k] = x[n];
 }
 
-/* Half a 512-bit vector at most: the offsets of a whole one are too many for the registers. */
-#if CV_SIMD_WIDTH == 16
-template <typename Sum> struct CornersOf
-{
-    typedef v_uint16x8 Vector;
-};
-template <> struct CornersOf<unsigned>
-{
-    typedef v_uint32x4 Vector;
-};
-#else
-template <typename Sum> struct CornersOf
-{
-    typedef v_uint16x16 Vector;
-};
-template <> struct CornersOf<unsigned>
-{
-    typedef v_uint32x8 Vector;
-};
-#endif
-
-// Differences modulo 2^16 or 2^32, as the sums.
-template <typename V> inline V subtract(const V& a, const V& b) { return a - b; }
-inline v_uint16x8 subtract(const v_uint16x8& a, const v_uint16x8& b) { return v_sub_wrap(a, b); }
-#if CV_SIMD_WIDTH != 16
-inline v_uint16x16 subtract(const v_uint16x16& a, const v_uint16x16& b) { return v_sub_wrap(a, b); }
-#endif
-
-inline v_uint16x8 loadCorner(const ushort* corner) { return v_load_low(corner); }
-inline v_uint32x4 loadCorner(const unsigned* corner) { return v_load(corner); }
-
-/* As many corners as make a vector, of every other column, and those after the first one of a vector, and one more.
- Not v_lut_quads: gather instructions are slow on many machines. */
-#if CV_SIMD_WIDTH == 16
-inline v_uint16x8 loadCorners(const ushort* row, const size_t* at)
-{
-    return v_load_halves(row + at[0], row + at[2]);
-}
-inline v_uint32x4 loadCorners(const unsigned* row, const size_t* at) { return v_load(row + at[0]); }
-
-inline v_uint16x8 nextCorners(const v_uint16x8& corners, const ushort* more)
-{
-    return v_rotate_right<GROUP_CHANNELS>(corners, loadCorner(more));
-}
-
-inline v_uint32x4 nextCorners(const v_uint32x4&, const unsigned* more) { return loadCorner(more); }
-#else
-inline __m128i loadTwo(const ushort* first, const ushort* second)
-{
-    return _mm_castpd_si128(_mm_loadh_pd(_mm_load_sd((const double*)first), (const double*)second));
-}
-
-inline v_uint16x16 loadCorners(const ushort* row, const size_t* at)
-{
-    return v_uint16x16(
-            _mm256_setr_m128i(loadTwo(row + at[0], row + at[2]), loadTwo(row + at[4], row + at[6])));
-}
-
-inline v_uint32x8 loadCorners(const unsigned* row, const size_t* at)
-{
-    return v_uint32x8(_mm256_setr_m128i(loadCorner(row + at[0]).val, loadCorner(row + at[2]).val));
-}
-
-template <typename V, typename Sum> inline V nextCorners(const V& corners, const Sum* more)
-{
-    const __m256i next = _mm256_castsi128_si256(loadCorner(more).val);
-#if CV_SIMD_WIDTH == 64
-    return V(_mm256_alignr_epi64(next, corners.val, GROUP_CHANNELS * (int)sizeof(Sum) / 8));
-#else
-    return v_rotate_right<GROUP_CHANNELS>(corners, V(next));
-#endif
-}
-#endif
-
-/* From a row of corners: their differences, which are sums over a row of left and of right cells and all above. */
+//! Differences of neighbouring corners in a row: the sums over left and right cells and all above them.
 template <typename V> struct RowSums
 {
     V left, right;
 
     template <typename Sum, size_t N> CV_ALWAYS_INLINE RowSums(const Sum* row, const size_t (&at)[N])
     {
-        const V even = loadCorners(row, at), odd = loadCorners(row, at + 1);
-        left = subtract(odd, even);
-        right = subtract(nextCorners(even, row + at[N - 1]), odd);
+        const V even = loadGroups(row, at), odd = loadGroups(row, at + 1);
+        left = subtractModulo(odd, even);
+        right = subtractModulo(nextGroups(even, row + at[N - 1]), odd);
     }
 };
 
@@ -144,11 +67,20 @@ private:
     const int count, shift;
 };
 
+template <typename Sum> struct Groups
+{
+    typedef v_groups16 Vector;
+};
+template <> struct Groups<unsigned>
+{
+    typedef v_groups32 Vector;
+};
+
 template <typename Sum>
 void cellSums(
         const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells)
 {
-    typedef typename CornersOf<Sum>::Vector V;
+    typedef typename Groups<Sum>::Vector V;
     enum
     {
         COLUMNS = 2 * VTraits<V>::max_nlanes / GROUP_CHANNELS
@@ -170,8 +102,8 @@ void cellSums(
         for (const Sum *const *line = lines.data(), *const *end = line + n; line != end; line++)
         {
             const RowSums<V> below(*line, at);
-            v_store(out, subtract(below.left, above.left));
-            v_store(out + step, subtract(below.right, above.right));
+            v_store(out, subtractModulo(below.left, above.left));
+            v_store(out + step, subtractModulo(below.right, above.right));
             out += 2 * step;
             above = below;
         }
@@ -180,15 +112,9 @@ void cellSums(
 
 }  // namespace
 
-CellEdgesFunc getCellEdgesFunc() { return cellEdges; }
-
-CellSumsFunc<ushort>::Type getCellSumsFunc(ushort) { return cellSums<ushort>; }
-
-CellSumsFunc<unsigned>::Type getCellSumsFunc(unsigned) { return cellSums<unsigned>; }
-
-#endif
-
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
 }  // namespace iib
 }  // namespace cv
+
+#endif

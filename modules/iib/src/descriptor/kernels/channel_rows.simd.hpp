@@ -2,20 +2,17 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../../common/simd.hpp"
+#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_CHANNEL_ROWS_SIMD_HPP
+#define OPENCV_IIB_DESCRIPTOR_KERNELS_CHANNEL_ROWS_SIMD_HPP
 
-#include "../channel_rows.hpp"
+#include "../../common/simd.hpp"
+#include "kernels.hpp"
 #include "orientation.hpp"
 
 namespace cv {
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
-const RowKernels<short>& shortRowKernels();
-const RowKernels<int>& intRowKernels();
-
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
 
@@ -44,9 +41,9 @@ void gradientRow(const T* above, const T* middle, const T* below, T* gx, T* gy, 
 //! ORIENTATION_STEPS / 8 steps for equal sides; lo <= hi, hi > 0.
 inline v_int32 octantSteps(const v_int32& lo, const v_int32& hi)
 {
-    const v_float32 t = v_cvt_f32(lo) / v_cvt_f32(hi), t2 = t * t;
+    const v_float32 t = exactQuotient(v_cvt_f32(lo), v_cvt_f32(hi)), t2 = t * t;
     const v_float32 a = vx_setall_f32(ATAN_A), b = vx_setall_f32(ATAN_B), c = vx_setall_f32(ATAN_C);
-    return v_round(((c * t2 + b) * t2 + a) * t);
+    return nearestInt(((c * t2 + b) * t2 + a) * t);
 }
 
 //! Even and odd lanes apart, which takes no shuffle; lanes are 0 or greater.
@@ -113,22 +110,37 @@ template <typename Pixel, typename T> void widenRow(const Pixel* in, T* out, int
         out[x] = (T)in[x];
 }
 
-template <typename T> const RowKernels<T>& kernels()
+inline void storeInterleaved(short* out, const short* const planes[GROUP_CHANNELS], int x)
 {
-    static const RowKernels<T> k = {
-            gradientRow<T>, orientationRow<T>, absoluteRow<T>, addRow<T>, widenRow, widenRow};
+    v_store_interleave(out + GROUP_CHANNELS * x, v_load(planes[0] + x), v_load(planes[1] + x),
+            v_load(planes[2] + x), v_load(planes[3] + x));
+}
+
+inline void storeInterleaved(int* out, const int* const planes[GROUP_CHANNELS], int x)
+{
+    for (int half = x; half < x + 8; half += 4)
+        v_store_interleave(out + GROUP_CHANNELS * half, v_load(planes[0] + half), v_load(planes[1] + half),
+                v_load(planes[2] + half), v_load(planes[3] + half));
+}
+
+template <typename T> void interleaveRow(const T* const planes[GROUP_CHANNELS], T* out, int width)
+{
+    for (int x = 0; x < width; x += 8)
+        storeInterleaved(out, planes, x);
+}
+
+template <typename T> RowKernels<T> rowKernels()
+{
+    const RowKernels<T> k = {gradientRow<T>, orientationRow<T>, absoluteRow<T>, addRow<T>, widenRow, widenRow,
+            interleaveRow<T>};
     return k;
 }
 
 }  // namespace
 
-const RowKernels<short>& shortRowKernels() { return kernels<short>(); }
-
-const RowKernels<int>& intRowKernels() { return kernels<int>(); }
-
-#endif
-
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
 }  // namespace iib
 }  // namespace cv
+
+#endif

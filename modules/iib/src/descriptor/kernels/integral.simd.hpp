@@ -2,73 +2,23 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../../common/simd.hpp"
+#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_INTEGRAL_SIMD_HPP
+#define OPENCV_IIB_DESCRIPTOR_KERNELS_INTEGRAL_SIMD_HPP
 
-#include "integral.hpp"
+#include "../../common/simd.hpp"
+#include "kernels.hpp"
 
 namespace cv {
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-SumRowFunc<short, ushort>::Type getSumRowFunc(short, ushort);
-SumRowFunc<short, unsigned>::Type getSumRowFunc(short, unsigned);
-SumRowFunc<int, unsigned>::Type getSumRowFunc(int, unsigned);
-
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-
 namespace {
-
-//! Adds to each value those before it in its group of four. No sum exceeds 16 bits.
-inline v_uint16 sumsOfFour(const v_uint16& plane)
-{
-#if CV_SIMD_WIDTH == 64
-    return v_uint16(_mm512_mullo_epi64(plane.val, _mm512_set1_epi64(0x0001000100010001)));
-#else
-    // Added in 16 bits: valgrind takes a whole 64-bit sum for undefined where the last pixels of four are.
-    const v_uint16 two = v_add_wrap(plane, v_reinterpret_as_u16(v_reinterpret_as_u64(plane) << 16));
-    return v_add_wrap(two, v_reinterpret_as_u16(v_reinterpret_as_u64(two) << 32));
-#endif
-}
-
-//! From sums over each four pixels to sums over the vector.
-inline v_uint16 sumsOfVector(const v_uint16& v)
-{
-#if CV_SIMD_WIDTH == 64
-    return v_uint16(
-            _mm512_add_epi16(v.val, _mm512_maskz_permutexvar_epi64(0xf0, _mm512_set1_epi64(3), v.val)));
-#else
-    return v;
-#endif
-}
-
-//! The last pixel in the places of all; universal intrinsics have this for 128 bits only.
-inline v_uint16 lastPixel(const v_uint16& v)
-{
-#if CV_SIMD_WIDTH == 64
-    return v_uint16(_mm512_permutexvar_epi64(_mm512_set1_epi64(7), v.val));
-#elif CV_SIMD_WIDTH == 32
-    return v_uint16(_mm256_permute4x64_epi64(v.val, 0xff));
-#else
-    return v_combine_high(v, v);
-#endif
-}
-
-inline v_uint32 lastPixel(const v_uint32& v)
-{
-#if CV_SIMD_WIDTH == 64
-    return v_uint32(_mm512_shuffle_i32x4(v.val, v.val, 0xff));
-#elif CV_SIMD_WIDTH == 32
-    return v_uint32(_mm256_permute2x128_si256(v.val, v.val, 0x11));
-#else
-    return v;
-#endif
-}
 
 //! The plane's sums over each four pixels, from pixel x on.
 inline v_uint16 loadSums(const short* plane, int x)
 {
-    return sumsOfFour(v_reinterpret_as_u16(vx_load(plane + x)));
+    return prefixSumsOfFour(v_reinterpret_as_u16(vx_load(plane + x)));
 }
 
 //! A vector (v_uint16) of pixels of four channels, side by side.
@@ -97,10 +47,10 @@ void sumRow16(const short* const planes[GROUP_CHANNELS], int width, const ushort
         for (int i = 0; i < 4; i++)
         {
             const int at = (x + i * pixelsInVector + 1) * GROUP_CHANNELS;
-            const v_uint16 sums = sumsOfVector(pixels[i]);
+            const v_uint16 sums = addFourthToUpper(pixels[i]);
             v_store(out + at, v_add_wrap(v_add_wrap(sums, carry), vx_load(above + at)));
             if ((i + 1) * pixelsInVector % 4 == 0)
-                carry = v_add_wrap(carry, lastPixel(sums));
+                carry = v_add_wrap(carry, repeatLastFour(sums));
         }
     }
 }
@@ -122,14 +72,14 @@ void sumRow32(const short* const planes[GROUP_CHANNELS], int width, const unsign
                 const int at = (x + (i + j) * pixelsInVector + 1) * GROUP_CHANNELS;
                 v_store(out + at, sums[j] + carry + vx_load(above + at));
                 if ((i + j + 1) * pixelsInVector % 4 == 0)
-                    carry = carry + lastPixel(sums[j]);
+                    carry = carry + repeatLastFour(sums[j]);
             }
         }
     }
 }
 
-//! Of deep images, whose sums over four pixels exceed 16 bits. A pixel is one 128-bit vector here, on every machine.
-void sumDeepRow(const int* const planes[GROUP_CHANNELS], int width, const unsigned* above, unsigned* out)
+//! Of 16-bit images, whose sums over four pixels exceed 16 bits. A pixel is one 128-bit vector here, on every machine.
+void sumRowOf16Bit(const int* const planes[GROUP_CHANNELS], int width, const unsigned* above, unsigned* out)
 {
     v_uint32x4 sum = v_setzero_u32();
     for (int x = 0; x < width; x++)
@@ -142,15 +92,9 @@ void sumDeepRow(const int* const planes[GROUP_CHANNELS], int width, const unsign
 
 }  // namespace
 
-SumRowFunc<short, ushort>::Type getSumRowFunc(short, ushort) { return sumRow16; }
-
-SumRowFunc<short, unsigned>::Type getSumRowFunc(short, unsigned) { return sumRow32; }
-
-SumRowFunc<int, unsigned>::Type getSumRowFunc(int, unsigned) { return sumDeepRow; }
-
-#endif
-
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
 }  // namespace iib
 }  // namespace cv
+
+#endif

@@ -22,7 +22,7 @@ template <> inline double greatest(const double& a, const double& b) { return st
 template <typename V> inline V fourTimes(const V& v) { return v << 2; }
 template <> inline double fourTimes(const double& v) { return 4 * v; }
 
-//! Rounded down for vectors of whole numbers, than which a whole number is greater if it is than the quarter itself.
+//! floor(v / 4) is exact for vectors: for an integer x, x > v / 4 if and only if x > floor(v / 4).
 template <typename V> inline V quarter(const V& v) { return v >> 2; }
 template <> inline double quarter(const double& v) { return v / 4; }
 

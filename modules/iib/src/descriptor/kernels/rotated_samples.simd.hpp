@@ -2,170 +2,211 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../../common/simd.hpp"
+#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_ROTATED_SAMPLES_SIMD_HPP
+#define OPENCV_IIB_DESCRIPTOR_KERNELS_ROTATED_SAMPLES_SIMD_HPP
 
+#include "../../common/simd.hpp"
+#include "kernels.hpp"
 #include "orientation.hpp"
-#include "rotated_samples.hpp"
 
 namespace cv {
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-const RotatedSampleKernels<short>& shortRotatedSampleKernels();
-const RotatedSampleKernels<int>& intRotatedSampleKernels();
-
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-
 namespace {
 
-// The compiler makes vectors of the plain loops, with this file's instruction set.
-
-void sampleIndices(const SampleGrid& g, int sub, int* index)
+//! Takes points as indices of pixels in a window.
+struct IndexWriter
 {
-    const int n = g.n, cells = n / sub;
-    for (int dy = 0; dy < sub; dy++)
-        for (int dx = 0; dx < sub; dx++)
+    const v_samples originX, originY, step;
+    int* out;
+
+    void operator()(const v_samples& x, const v_samples& y)
+    {
+        v_store(out, (y - originY) * step + (x - originX));
+        out += VTraits<v_samples>::max_nlanes;
+    }
+};
+
+struct PlaceWriter
+{
+    int *x, *y;
+
+    void operator()(const v_samples& newX, const v_samples& newY)
+    {
+        v_store(x, newX);
+        v_store(y, newY);
+        x += VTraits<v_samples>::max_nlanes;
+        y += VTraits<v_samples>::max_nlanes;
+    }
+};
+
+//! The place in [0, last] that a place outside gets.
+template <bool reflect> inline v_samples inside(const v_samples& place, const v_samples& last)
+{
+    const v_samples zero = v_setall_samples(0);
+    if (!reflect)
+        return v_min(v_max(place, zero), last);
+    const v_samples folded = v_reinterpret_as_s32(v_abs(place));
+    return v_max(v_min(folded, last + last - folded), zero);
+}
+
+template <bool reflect, typename Writer> void visitPointsInside(const SampleGrid& g, Writer write)
+{
+    const int n = g.n, cells = g.cells(), lanes = VTraits<v_samples>::max_nlanes;
+    const v_samples centreX = v_setall_samples(g.x), centreY = v_setall_samples(g.y);
+    const v_samples right = v_setall_samples(g.image.width - 1),
+                    bottom = v_setall_samples(g.image.height - 1);
+    // along a row, in the order of the points: first by dx, then by the parity of the cell
+    int alongX[MAX_SAMPLES_IN_ROW], alongY[MAX_SAMPLES_IN_ROW];
+    for (int dx = 0, i = 0; dx < g.sub; dx++)
+        for (int parity = 0; parity < 2; parity++)
+            for (int cell = parity; cell < cells; cell += 2, i++)
+            {
+                const int u = 2 * (cell * g.sub + dx) + 1 - n;
+                alongX[i] = g.fracX + u * g.stepX;
+                alongY[i] = g.fracY + u * g.stepY;
+            }
+    for (int dy = 0; dy < g.sub; dy++)
+        for (int dx = 0; dx < g.sub; dx++)
             for (int row = 0; row < cells; row++)
             {
-                const int v = 2 * (row * sub + dy) + 1 - n;
-                const int startX = g.fracX - v * g.stepY, startY = g.fracY + v * g.stepX;
-                for (int parity = 0; parity < 2; parity++)
+                const int v = 2 * (row * g.sub + dy) + 1 - n;
+                const v_samples downX = v_setall_samples(-v * g.stepY), downY = v_setall_samples(v * g.stepX);
+                for (int i = dx * cells; i < (dx + 1) * cells; i += lanes)
                 {
-                    const int first = 2 * (parity * sub + dx) + 1 - n;
-                    for (int i = 0; i < cells / 2; i++)
-                    {
-                        const int u = first + 4 * sub * i;
-                        const int x = g.x + ((startX + u * g.stepX) >> 17),
-                                  y = g.y + ((startY + u * g.stepY) >> 17);
-                        const int insideX = std::min(std::max(x, 0), g.image.width - 1);
-                        const int insideY = std::min(std::max(y, 0), g.image.height - 1);
-                        index[i] = (insideY - g.area.y) * g.area.width + insideX - g.area.x;
-                    }
-                    index += cells / 2;
+                    const v_samples x = centreX + ((v_load_samples(alongX + i) + downX) >> 17);
+                    const v_samples y = centreY + ((v_load_samples(alongY + i) + downY) >> 17);
+                    write(inside<reflect>(x, right), inside<reflect>(y, bottom));
                 }
             }
 }
 
-void deinterleave(const short* p, v_int16 v[GROUP_CHANNELS])
+template <typename Writer> void visitPoints(const SampleGrid& grid, Writer write)
 {
-    v_load_deinterleave(p, v[0], v[1], v[2], v[3]);
+    if (grid.reflect)
+        visitPointsInside<true>(grid, write);
+    else
+        visitPointsInside<false>(grid, write);
 }
 
-void deinterleave(const int* p, v_int32 v[GROUP_CHANNELS]) { v_load_deinterleave(p, v[0], v[1], v[2], v[3]); }
+void samplePlaces(const SampleGrid& grid, int* x, int* y)
+{
+    const PlaceWriter writer = {x, y};
+    visitPoints(grid, writer);
+}
 
-inline v_int16 vectorOf(short) { return vx_setzero_s16(); }
-inline v_int32 vectorOf(int) { return vx_setzero_s32(); }
+void sampleIndices(const SampleGrid& grid, Point origin, int step, int* index)
+{
+    const IndexWriter writer = {
+            v_setall_samples(origin.x), v_setall_samples(origin.y), v_setall_samples(step), index};
+    visitPoints(grid, writer);
+}
 
-//! count must be a multiple of the vector.
 template <typename T>
-void gatherPixels(const T* pixels, const int* index, int count, T* const planes[GROUP_CHANNELS])
+void imageSums(const T* pixels, const int* index, int cells, int samplesInCell,
+        const GradientRotation& rotation, int* const sums[IMAGE_PLANES])
 {
-    typedef decltype(vectorOf(T())) V;
-    const int lanes = VTraits<V>::max_nlanes;
-    T chunk[GROUP_CHANNELS * VTraits<V>::max_nlanes];
-    for (int i = 0; i < count; i += lanes)
+    const int count = cells * cells, lanes = VTraits<v_samples>::max_nlanes;
+    const v_samples cosine = sampleFactor((T)rotation.cosine), sine = sampleFactor((T)rotation.sine);
+    const v_samples half = v_setall_samples(2048);
+    const v_samples turn = v_setall_samples(rotation.steps), mask = v_setall_samples(ORIENTATION_STEPS - 1);
+    const v_samples zero = v_setall_samples(0);
+    for (int cell = 0; cell < count; cell += lanes)
     {
-        for (int j = 0; j < lanes; j++)
-            memcpy(chunk + j * GROUP_CHANNELS, pixels + (size_t)index[i + j] * GROUP_CHANNELS,
-                    GROUP_CHANNELS * sizeof(T));
-        V v[GROUP_CHANNELS];
-        deinterleave(chunk, v);
-        for (int c = 0; c < GROUP_CHANNELS; c++)
-            v_store(planes[c] + i, v[c]);
+        v_samples absX = zero, absY = zero, steps = zero, intensity = zero, sumX = zero, sumY = zero;
+        for (int s = cell; s < count * samplesInCell; s += count)
+        {
+            v_samples gx, gy, own, grey;
+            loadPixels(pixels, index + s, gx, gy, own, grey);
+            steps += ((own + turn) & mask) & ~((gx | gy) == zero);
+            intensity += grey;
+            const v_samples x =
+                    (multiplySamples(gx, cosine, T()) + multiplySamples(gy, sine, T()) + half) >> 12;
+            const v_samples y =
+                    (multiplySamples(gy, cosine, T()) - multiplySamples(gx, sine, T()) + half) >> 12;
+            absX += v_reinterpret_as_s32(v_abs(x));
+            absY += v_reinterpret_as_s32(v_abs(y));
+            sumX += x;
+            sumY += y;
+        }
+        v_store(sums[0] + cell, absX);
+        v_store(sums[1] + cell, absY);
+        v_store(sums[2] + cell, steps);
+        v_store(sums[3] + cell, intensity);
+        v_store(sums[4] + cell, sumX);
+        v_store(sums[5] + cell, sumY);
     }
 }
 
-template <typename T> void rotateGradients(T* gx, T* gy, int count, int cosine, int sine)
+template <typename T>
+void gradientVotes(const T* pixels, const int* index, const int* weights, int count, int* steps, int* votes)
 {
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count; i += VTraits<v_samples>::max_nlanes)
     {
-        const int x = gx[i], y = gy[i];
-        gx[i] = (T)((cosine * x + sine * y + 2048) >> 12);
-        gy[i] = (T)((cosine * y - sine * x + 2048) >> 12);
+        v_samples gx, gy, own, grey;
+        loadPixels(pixels, index + i, gx, gy, own, grey);
+        const auto x = v_cvt_f32(gx), y = v_cvt_f32(gy), weight = v_cvt_f32(v_load_samples(weights + i));
+        v_store(steps + i, own);
+        v_store(votes + i, nearestInt(exactRoot(x * x + y * y) * weight));
     }
 }
 
-template <typename T> void turnOrientations(const T* gx, const T* gy, T* steps, int count, int turn)
+template <typename T>
+void mapSums(const T* pixels, const int* index, int cells, int samplesInCell, int* const sums[GROUP_CHANNELS])
 {
-    for (int i = 0; i < count; i++)
-        steps[i] = (T)((gx[i] | gy[i]) == 0 ? 0 : (steps[i] + turn) & (ORIENTATION_STEPS - 1));
+    const int count = cells * cells, lanes = VTraits<v_samples>::max_nlanes;
+    for (int cell = 0; cell < count; cell += lanes)
+    {
+        v_samples a = v_setall_samples(0), b = a, c = a, d = a;
+        for (int s = cell; s < count * samplesInCell; s += count)
+        {
+            v_samples va, vb, vc, vd;
+            loadPixels(pixels, index + s, va, vb, vc, vd);
+            a += va;
+            b += vb;
+            c += vc;
+            d += vd;
+        }
+        v_store(sums[0] + cell, a);
+        v_store(sums[1] + cell, b);
+        v_store(sums[2] + cell, c);
+        v_store(sums[3] + cell, d);
+    }
 }
 
-/* Sums over eight cells side by side: of `samples` values each, `step` apart, in a plane for each channel. The sums of
- shorts fit shorts, see describeTurned. */
-void sumEightCells(const short* const planes[GROUP_CHANNELS], int start, int samples, int step, unsigned* out)
+void interleaveSums(const int* const sums[GROUP_CHANNELS], const int addends[GROUP_CHANNELS], int cells,
+        CellGrid<unsigned>& grid)
 {
-    v_int16x8 sums[GROUP_CHANNELS];
+    const int half = cells / 2, lanes = VTraits<v_int32x4>::max_nlanes;
+    grid.create(cells);
+    v_int32x4 addend[GROUP_CHANNELS];
     for (int c = 0; c < GROUP_CHANNELS; c++)
-    {
-        sums[c] = v_load(planes[c] + start);
-        for (int s = 1; s < samples; s++)
-            sums[c] = sums[c] + v_load(planes[c] + start + s * step);
-    }
-    v_int16x8 even[2], odd[2],
-            pairs[4];  // even and odd channels of half the cells; all channels of two cells
-    v_zip(sums[0], sums[2], even[0], even[1]);
-    v_zip(sums[1], sums[3], odd[0], odd[1]);
-    for (int half = 0; half < 2; half++)
-        v_zip(even[half], odd[half], pairs[2 * half], pairs[2 * half + 1]);
-    for (int i = 0; i < 4; i++)
-    {
-        v_int32x4 first, second;
-        v_expand(pairs[i], first, second);
-        v_store(out + 2 * i * GROUP_CHANNELS, v_reinterpret_as_u32(first));
-        v_store(out + (2 * i + 1) * GROUP_CHANNELS, v_reinterpret_as_u32(second));
-    }
+        addend[c] = v_setall_s32(addends[c]);
+    for (int row = 0, first = 0; row < cells; row++)
+        for (int parity = 0; parity < 2; parity++, first += half)
+            for (int i = 0; i < half; i += lanes)
+            {
+                v_uint32x4 v[GROUP_CHANNELS];
+                for (int c = 0; c < GROUP_CHANNELS; c++)
+                    v[c] = v_reinterpret_as_u32(v_load(sums[c] + first + i) + addend[c]);
+                v_store_interleave(grid.row(row, parity) + i * GROUP_CHANNELS, v[0], v[1], v[2], v[3]);
+            }
 }
 
-void sumEightCells(const int* const planes[GROUP_CHANNELS], int start, int samples, int step, unsigned* out)
+template <typename T> RotatedSampleKernels<T> rotatedSampleKernels()
 {
-    for (int half = 0; half < 8; half += 4)
-    {
-        v_int32x4 sums[GROUP_CHANNELS], cells[4];
-        for (int c = 0; c < GROUP_CHANNELS; c++)
-        {
-            sums[c] = v_load(planes[c] + start + half);
-            for (int s = 1; s < samples; s++)
-                sums[c] = sums[c] + v_load(planes[c] + start + half + s * step);
-        }
-        v_transpose4x4(sums[0], sums[1], sums[2], sums[3], cells[0], cells[1], cells[2], cells[3]);
-        for (int i = 0; i < 4; i++)
-            v_store(out + (half + i) * GROUP_CHANNELS, v_reinterpret_as_u32(cells[i]));
-    }
-}
-
-template <typename T>
-void sumCells(const T* const planes[GROUP_CHANNELS], int n, int sub, CellGrid<unsigned>& cells)
-{
-    const int side = n / sub, count = side * side;
-    cells.create(side);
-    for (int row = 0; row < side; row++)
-        for (int parity = 0; parity < 2; parity++)
-        {
-            const int start = (2 * row + parity) * (side / 2);
-            for (int i = 0; i < side / 2; i += 8)
-                sumEightCells(
-                        planes, start + i, sub * sub, count, cells.row(row, parity) + i * GROUP_CHANNELS);
-        }
-}
-
-template <typename T> const RotatedSampleKernels<T>& kernels()
-{
-    static const RotatedSampleKernels<T> k = {
-            sampleIndices, gatherPixels<T>, rotateGradients<T>, turnOrientations<T>, sumCells<T>};
+    const RotatedSampleKernels<T> k = {
+            samplePlaces, sampleIndices, imageSums<T>, gradientVotes<T>, mapSums<T>, interleaveSums};
     return k;
 }
 
 }  // namespace
 
-const RotatedSampleKernels<short>& shortRotatedSampleKernels() { return kernels<short>(); }
-
-const RotatedSampleKernels<int>& intRotatedSampleKernels() { return kernels<int>(); }
-
-#endif
-
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
 }  // namespace iib
 }  // namespace cv
+
+#endif

@@ -1,0 +1,105 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_COMMON_BIT_IO_HPP
+#define OPENCV_IIB_COMMON_BIT_IO_HPP
+
+#include <cstring>
+
+#include "../precomp.hpp"
+
+// The compiler's word, not the build's: a generated header may not have been told.
+#if defined __BYTE_ORDER__ && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+#define IIB_BIG_ENDIAN 1
+#else
+#define IIB_BIG_ENDIAN 0
+#endif
+
+namespace cv {
+namespace iib {
+
+//! Stores the lowest bytes of a word, the lowest first.
+inline void storeBytes(uint64 word, int bytes, uchar* out)
+{
+#if IIB_BIG_ENDIAN
+    for (int i = 0; i < bytes; i++)
+        out[i] = (uchar)(word >> 8 * i);
+#else
+    memcpy(out, &word, bytes);
+#endif
+}
+
+//! Eight bytes, the lowest first.
+inline uint64 loadWord(const uchar* in)
+{
+    uint64 word = 0;
+#if IIB_BIG_ENDIAN
+    for (int i = 0; i < 8; i++)
+        word |= (uint64)in[i] << 8 * i;
+#else
+    memcpy(&word, in, 8);
+#endif
+    return word;
+}
+
+/** Appends bits, the lowest bit of the lowest byte first. Keeps those of the last, unfinished word back:
+ a BitWriter writes them when it ends. */
+class BitAppender
+{
+public:
+    //! The low n bits of `bits`, n = 0..64; higher bits must be zero.
+    void append(uint64 bits, int n)
+    {
+        pending |= bits << count;
+        count += n;
+        if (count < 64)
+            return;
+        storeBytes(pending, 8, next);
+        next += 8;
+        count -= 64;
+        pending = count ? bits >> (n - count) : 0;
+    }
+
+    //! Space for n whole bytes; null, and nothing changes, if bits are pending.
+    uchar* reserve(int n)
+    {
+        if (count != 0)
+            return 0;
+        next += n;
+        return next - n;
+    }
+
+protected:
+    BitAppender(uchar* next_, uint64 pending_, int count_) : next(next_), pending(pending_), count(count_) {}
+
+    uchar* next;
+    uint64 pending;
+    int count;  //!< bits pending, 0..63
+};
+
+//! Writes bits into a descriptor from an offset on. Changes only bytes that get bits.
+class BitWriter : public BitAppender
+{
+public:
+    //! Bits of the first byte below the offset are kept.
+    BitWriter(uchar* descriptor, int offset)
+        : BitAppender(descriptor + offset / 8,
+                  offset % 8 ? descriptor[offset / 8] & ((1 << offset % 8) - 1) : 0, offset % 8)
+    {
+    }
+
+    ~BitWriter()
+    {
+        for (; count > 0; count -= 8, pending >>= 8)
+            *next++ = (uchar)pending;
+    }
+
+    BitWriter(const BitWriter&) = delete;
+    BitWriter& operator=(const BitWriter&) = delete;
+};
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

@@ -1,0 +1,189 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_KERNELS_HPP
+#define OPENCV_IIB_DESCRIPTOR_KERNELS_KERNELS_HPP
+
+#include "quads.hpp"
+
+namespace cv {
+namespace iib {
+
+/* What is compiled for each instruction set, as one table of functions. A pixel's value T is short for 8-bit images
+ and int for 16-bit ones; a Sum is ushort or unsigned, modulo 2^16 or 2^32. */
+
+enum
+{
+    ROW_PADDING = 64,  //!< kernels may read and write up to this many values past the end of a row
+    MAPPINGS = IIB::MAPPING_PAIRWISE + 1
+};
+
+//! What a row of pixels goes through. Rows begin anywhere and have ROW_PADDING values more than `width`.
+template <typename T> struct RowKernels
+{
+    //! Sobel 3x3. The three source rows begin one pixel left of gx[0] and end one pixel right of it.
+    void (*gradient)(const T* above, const T* middle, const T* below, T* gx, T* gy, int width);
+    //! atan2(-gy, gx) in ORIENTATION_STEPS a turn.
+    void (*orientation)(const T* gx, const T* gy, T* steps, int width);
+    void (*absolute)(const T* in, T* out, int width);
+    void (*add)(const T* in, T addend, T* out, int width);
+    void (*widen8u)(const uchar* in, T* out, int width);
+    void (*widen16u)(const ushort* in, T* out, int width);
+    //! Four planes side by side.
+    void (*interleave)(const T* const planes[GROUP_CHANNELS], T* out, int width);
+};
+
+/** The nearest pixels to a square grid of points, rotated by an angle. Grid point (row, col) of n x n is at
+ (x, y) + (u stepX - v stepY, u stepY + v stepX) / 2 with u = 2 col + 1 - n and v = 2 row + 1 - n. */
+struct SampleGrid
+{
+    int n;             //!< points in a row
+    int sub;           //!< a cell has sub x sub points
+    int x, y;          //!< pixel that holds the centre
+    int fracX, fracY;  //!< the centre's place in it, in 2^-17 pixels
+    int stepX, stepY;  //!< from point to point along a row, in 2^-16 pixels
+    Size image;        //!< points beyond it get the nearest pixel of its border,
+    bool reflect;      //!< or the one that BORDER_REFLECT_101 brings there
+
+    //! Cells in a row.
+    int cells() const { return n / sub; }
+};
+
+enum
+{
+    MAX_SAMPLES_IN_ROW = 64,  //!< of a grid
+    MAX_SAMPLES = MAX_SAMPLES_IN_ROW * MAX_SAMPLES_IN_ROW,
+    IMAGE_PLANES = 6  //!< the kinds of channels that an image has, in the order of IIB::Channel
+};
+
+//! An angle, in 2^-12, and in ORIENTATION_STEPS a turn.
+struct GradientRotation
+{
+    int cosine, sine, steps;
+};
+
+/* Points are ordered for sums over cells: first by the place within the cell, then by the cell's row, the parity of its
+ column, and the column, as in a CellGrid. Sums are in planes, with cells in the same order. */
+template <typename T> struct RotatedSampleKernels
+{
+    //! The pixels of the image nearest to the points.
+    void (*places)(const SampleGrid& grid, int* x, int* y);
+    //! Their indices in a window, `step` pixels from row to row, that begins at a pixel of the image and holds them all.
+    void (*indices)(const SampleGrid& grid, Point origin, int step, int* index);
+
+    /** Rotates gradients: x' = c x + s y, y' = c y - s x, rounded. The orientation becomes (steps + its own) modulo
+     ORIENTATION_STEPS, but 0 where there is no gradient, as upright.
+     @param pixels gx, gy, orientation and intensity of each pixel.
+     @param sums for each kind of channel; signed gradients without an offset. */
+    void (*imageSums)(const T* pixels, const int* index, int cells, int samplesInCell,
+            const GradientRotation& rotation, int* const sums[IMAGE_PLANES]);
+
+    //! Orientations as they are, and magnitudes of gradients times weights, rounded; of the same pixels.
+    void (*gradientVotes)(
+            const T* pixels, const int* index, const int* weights, int count, int* steps, int* votes);
+
+    //! Sums of four maps as they are.
+    void (*mapSums)(
+            const T* pixels, const int* index, int cells, int samplesInCell, int* const sums[GROUP_CHANNELS]);
+
+    //! Four planes as a grid of cells, each with a number added.
+    void (*interleave)(const int* const sums[GROUP_CHANNELS], const int addends[GROUP_CHANNELS], int cells,
+            CellGrid<unsigned>& grid);
+};
+
+template <typename T> struct PixelKernels
+{
+    RowKernels<T> rows;
+    RotatedSampleKernels<T> rotated;
+};
+
+/** What a reader sees of integral images of GROUP_CHANNELS channels, side by side in each pixel: the last rows,
+ in a ring. A cell's sum, as the difference of its corners, is right if a Sum can hold it, however large the image. */
+template <typename Sum> struct IntegralRows
+{
+    const Sum* data;
+    size_t step;   //!< elements from row to row
+    int count;     //!< rows in the ring
+    Point origin;  //!< in the image
+
+    /* Row (y - origin.y) % count has the sums over the image's rows [origin.y, y), left of the pixels origin.x,
+     origin.x + 1, ... */
+};
+
+//! From a row of each channel: out = above + sums along the row; both begin left of the first pixel, with 0.
+template <typename T, typename Sum> struct SumRowFunc
+{
+    typedef void (*Type)(const T* const planes[GROUP_CHANNELS], int width, const Sum* above, Sum* out);
+};
+
+template <typename Sum> struct BitsKernels
+{
+    /** Bits of the levels from `finest` down to `coarsest`, in the order of descriptor.hpp.
+     @param cells of the finest one. @param shapes of each level.
+     @param sums of each level: gets those of the coarser ones, down to coarsest - 1. Their grids have been created. */
+    void (*levelBits)(const CellGrid<Sum>& cells, const LevelShape shapes[], const CellEdges& edges,
+            int finest, int coarsest, CellGrid<unsigned> sums[], uchar* descriptor);
+
+    //! The sums alone.
+    void (*parentSums)(const CellGrid<Sum>& cells, CellGrid<unsigned>& parents);
+
+    /** Takes c times its pixels from each cell, with c about the mean of a channel over the level: sums become small, and
+     as sum * weight loses the same c * (both widths) * (both heights) in all cells of a quad, no comparison changes.
+     @param cells whose sums, and c times their pixels, fit an int.
+     @param centred gets signed sums. @return the largest absolute one. */
+    int (*centre)(const CellGrid<Sum>& cells, const LevelShape& shape, const CellEdges& edges,
+            CellGrid<unsigned>& centred);
+};
+
+template <typename Sum> struct SumKernels
+{
+    //! Sums over n x n cells with the given edges, paddedEdges(n) and n + 1 of them, in pixels of the image.
+    void (*cells)(
+            const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells);
+    BitsKernels<Sum> bits[MAPPINGS];
+};
+
+struct DescriptorKernels
+{
+    const char* instructionSet;  //!< for which they were compiled
+    PixelKernels<short> shortPixels;
+    PixelKernels<int> intPixels;
+    SumRowFunc<short, ushort>::Type sumShortRow;
+    SumRowFunc<short, unsigned>::Type sumLongRow;
+    SumRowFunc<int, unsigned>::Type sumIntRow;
+    SumKernels<ushort> shortSums;
+    SumKernels<unsigned> longSums;
+
+    //! The edges of n x n cells of a square with this top left corner and side, n a power of two, clamped to bounds.
+    void (*cellEdges)(Point2d corner, double side, int n, Rect bounds, CellEdges& edges);
+
+    template <typename T> const PixelKernels<T>& pixels() const;
+    template <typename Sum> const SumKernels<Sum>& sums() const;
+    template <typename T, typename Sum> typename SumRowFunc<T, Sum>::Type sumRow() const;
+};
+
+template <> inline const PixelKernels<short>& DescriptorKernels::pixels() const { return shortPixels; }
+template <> inline const PixelKernels<int>& DescriptorKernels::pixels() const { return intPixels; }
+template <> inline const SumKernels<ushort>& DescriptorKernels::sums() const { return shortSums; }
+template <> inline const SumKernels<unsigned>& DescriptorKernels::sums() const { return longSums; }
+template <> inline SumRowFunc<short, ushort>::Type DescriptorKernels::sumRow<short, ushort>() const
+{
+    return sumShortRow;
+}
+template <> inline SumRowFunc<short, unsigned>::Type DescriptorKernels::sumRow<short, unsigned>() const
+{
+    return sumLongRow;
+}
+template <> inline SumRowFunc<int, unsigned>::Type DescriptorKernels::sumRow<int, unsigned>() const
+{
+    return sumIntRow;
+}
+
+//! Those for this machine, the fastest that cv::setUseOptimized and OPENCV_CPU_DISABLE allow.
+const DescriptorKernels& descriptorKernels();
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

@@ -1,0 +1,71 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// The one dispatched file of the descriptor: the chapters below are compiled with it for each instruction set.
+
+#include "kernels.hpp"
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+#include "bits.simd.hpp"
+#include "cells.simd.hpp"
+#include "channel_rows.simd.hpp"
+#include "integral.simd.hpp"
+#include "rotated_samples.simd.hpp"
+#endif
+
+namespace cv {
+namespace iib {
+
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+const DescriptorKernels& descriptorKernels();
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+namespace {
+
+#ifdef CV_CPU_DISPATCH_MODE
+#define IIB_INSTRUCTION_SET CVAUX_STR(CV_CPU_DISPATCH_MODE)
+#else
+#define IIB_INSTRUCTION_SET "baseline"
+#endif
+
+DescriptorKernels makeTable()
+{
+    DescriptorKernels k;
+    k.instructionSet = IIB_INSTRUCTION_SET;
+    k.shortPixels.rows = rowKernels<short>();
+    k.shortPixels.rotated = rotatedSampleKernels<short>();
+    k.intPixels.rows = rowKernels<int>();
+    k.intPixels.rotated = rotatedSampleKernels<int>();
+    k.sumShortRow = sumRow16;
+    k.sumLongRow = sumRow32;
+    k.sumIntRow = sumRowOf16Bit;
+    k.cellEdges = cellEdges;
+    k.shortSums.cells = cellSums<ushort>;
+    k.longSums.cells = cellSums<unsigned>;
+    for (int mapping = 0; mapping < MAPPINGS; mapping++)
+    {
+        k.shortSums.bits[mapping] = bitsKernels<ushort>(mapping);
+        k.longSums.bits[mapping] = bitsKernels<unsigned>(mapping);
+    }
+    return k;
+}
+
+#undef IIB_INSTRUCTION_SET
+
+}  // namespace
+
+const DescriptorKernels& descriptorKernels()
+{
+    static const DescriptorKernels table = makeTable();
+    return table;
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+
+}  // namespace iib
+}  // namespace cv

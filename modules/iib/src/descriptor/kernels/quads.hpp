@@ -1,0 +1,115 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_QUADS_HPP
+#define OPENCV_IIB_DESCRIPTOR_KERNELS_QUADS_HPP
+
+#include "../../common/bit_io.hpp"
+#include "cell_grid.hpp"
+
+namespace cv {
+namespace iib {
+
+/** A quarter of the overlapping quads of a level: those whose top left cells are in rows dy, dy + 2, ... and columns
+ dx, dx + 2, ... Their comparisons lie in memory row by row, and in a row plane by plane, of which there is one for
+ each bit of the mapping; a plane has GROUP_CHANNELS bits for each quad, and is made of whole chunks. */
+struct QuadPhase
+{
+    int dy, dx, rows, quads;
+
+    enum
+    {
+        COUNT = 4,
+        CHUNK = 16
+    };
+
+    //! @param i 0 to COUNT - 1, which of those on n x n cells; all but the first exist with overlap only.
+    QuadPhase(int n, int i) : dy(i / 2), dx(i % 2), rows((n - dy) / 2), quads((n - dx) / 2) {}
+
+    int lanes() const { return quads * GROUP_CHANNELS; }
+    int planeBytes() const { return (lanes() + CHUNK - 1) / CHUNK * (CHUNK / 8); }
+};
+
+//! Moves the bits of a mask together, to the low end.
+struct BitCompressor
+{
+    uint64 mask, moves[6];
+    int count;
+
+    explicit BitCompressor(uint64 mask);
+    uint64 operator()(uint64 bits) const;
+};
+
+//! The chosen bits of a phase (paper, "Reduction of the IIB Descriptor Size").
+class ChosenBits
+{
+public:
+    //! Eight bytes of the comparisons of which any bit is chosen.
+    struct Word
+    {
+        size_t byte;
+        BitCompressor compressor;
+    };
+
+    //! @param masks a bit for each comparison of the phase, where the comparison lies in memory.
+    explicit ChosenBits(const std::vector<uint64>& masks);
+
+    bool none() const { return chosen.empty(); }
+    const std::vector<Word>& words() const { return chosen; }
+
+    //! Appends them, in their order.
+    void append(const uchar* comparisons, BitAppender& out) const
+    {
+        for (const Word& word : chosen)
+            out.append(word.compressor(loadWord(comparisons + word.byte)), word.compressor.count);
+    }
+
+private:
+    std::vector<Word> chosen;
+};
+
+//! What the parameters say about a level, for one group of channels.
+struct LevelShape
+{
+    int n;                           //!< cells in a row
+    int step;                        //!< finest cells in a cell of this level, along an axis
+    int offset;                      //!< of its first bit in the descriptor
+    int channels;                    //!< of GROUP_CHANNELS, those in use
+    int phases;                      //!< a bit for each that is in use
+    std::vector<ChosenBits> chosen;  //!< of each phase; empty: the bits of all quads are in use
+
+    bool uses(int phase) const { return phases >> phase & 1; }
+};
+
+//! The cells of a level along one axis: between every `step`-th of the finest cells' edges.
+struct Axis
+{
+    const int* edges;
+    int step;
+
+    //! Before cell i.
+    int edge(int i) const { return edges[i * step]; }
+
+    int length(int i) const { return edge(i + 1) - edge(i); }
+};
+
+/** What makes the sums of a level comparable: the factors of neighbouring cells along an axis, 1 if they are equally
+ long. With widths w0, w1 and heights h0, h1 of a quad's cells, the mean of cell (i, j) is sum / (w_j h_i), and
+ sum * w_(1-j) * h_(1-i) is that but for a factor common to the four: decisions need no division. */
+struct Weights
+{
+    int first, second;
+
+    //! @param a, b lengths of the first and second cell.
+    CV_ALWAYS_INLINE Weights(int a, int b) : first(a == b ? 1 : b), second(a == b ? 1 : a) {}
+    //! Of cells i and i + 1.
+    CV_ALWAYS_INLINE Weights(const Axis& axis, int i) : Weights(axis.length(i), axis.length(i + 1)) {}
+
+    bool equal() const { return first == second; }
+};
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

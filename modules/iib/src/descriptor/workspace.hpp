@@ -1,0 +1,60 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_DESCRIPTOR_WORKSPACE_HPP
+#define OPENCV_IIB_DESCRIPTOR_WORKSPACE_HPP
+
+#include <memory>
+
+#include "bit_encoder.hpp"
+
+namespace cv {
+namespace iib {
+
+//! Memory that one thread uses again for each batch of keypoints. What it holds means nothing between two batches.
+struct Workspace
+{
+    enum
+    {
+        MAX_PACKS = 1 + (MAX_EXTRA_CHANNELS + GROUP_CHANNELS - 1) / GROUP_CHANNELS
+    };
+
+    ScratchMemory channelRows, integralRing;
+    ScratchMemory sourceRows[MAX_PACKS], sourcePixels[MAX_PACKS], sparsePixels,
+            planes;  //!< of rotated regions
+    CellGrid<ushort> shortCells;
+    CellGrid<unsigned> cells, parentCells;
+    CellGrid<double> doubleCells;
+    BitEncoder::Workspace encoder;
+};
+
+//! The workspaces of a call; threads borrow them.
+class WorkspacePool
+{
+public:
+    std::unique_ptr<Workspace> borrow()
+    {
+        AutoLock lock(mutex);
+        if (spare.empty())
+            return std::unique_ptr<Workspace>(new Workspace);
+        std::unique_ptr<Workspace> workspace = std::move(spare.back());
+        spare.pop_back();
+        return workspace;
+    }
+
+    void giveBack(std::unique_ptr<Workspace> workspace)
+    {
+        AutoLock lock(mutex);
+        spare.push_back(std::move(workspace));
+    }
+
+private:
+    Mutex mutex;
+    std::vector<std::unique_ptr<Workspace>> spare;
+};
+
+}  // namespace iib
+}  // namespace cv
+
+#endif
