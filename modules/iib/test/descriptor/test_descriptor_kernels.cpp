@@ -1,0 +1,257 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/test_images.hpp"
+
+#include "../../src/descriptor/kernels/kernels.hpp"
+#include "../../src/descriptor/layout.hpp"
+#include "../../src/descriptor/selection.hpp"
+
+namespace opencv_test {
+namespace {
+
+using namespace cv::iib;
+
+// Naive counterparts of the kernels, for this machine's instruction set; ctest pins the others.
+
+template <typename T> std::vector<T> randomRow(Integers& random, int width, int limit)
+{
+    std::vector<T> row(width + ROW_PADDING);
+    for (T& v : row)
+        v = (T)random.below(limit);
+    return row;
+}
+
+//! A row of sums from the row above, for any width and alignment of the planes.
+template <typename T, typename Sum> void checkSumRow(int limit)
+{
+    Integers random(7);
+    for (int width = 1; width <= 140; width++)
+    {
+        const int shift = width % 3;
+        std::vector<T> planes[GROUP_CHANNELS];
+        const T* begin[GROUP_CHANNELS];
+        for (int c = 0; c < GROUP_CHANNELS; c++)
+        {
+            planes[c] = randomRow<T>(random, width + shift, limit);
+            begin[c] = planes[c].data() + shift;
+        }
+        const size_t values = (size_t)(width + 1 + ROW_PADDING) * GROUP_CHANNELS;
+        AlignedBuffer<Sum> above(values + CACHE_LINE), out(values + CACHE_LINE);
+        Sum* const a = above.data() + CACHE_LINE / sizeof(Sum) - GROUP_CHANNELS;
+        Sum* const o = out.data() + CACHE_LINE / sizeof(Sum) - GROUP_CHANNELS;
+        for (size_t i = 0; i < values; i++)
+            a[i] = i < GROUP_CHANNELS ? 0 : (Sum)random.below(INT_MAX);
+        descriptorKernels().sumRow<T, Sum>()(begin, width, a, o);
+        for (int c = 0; c < GROUP_CHANNELS; c++)
+        {
+            Sum sum = 0;
+            for (int x = 1; x <= width; x++)
+            {
+                sum = (Sum)(sum + begin[c][x - 1]);
+                ASSERT_EQ((Sum)(a[x * GROUP_CHANNELS + c] + sum), o[x * GROUP_CHANNELS + c])
+                        << "width " << width << " x " << x;
+            }
+        }
+    }
+}
+
+TEST(IIB_DescriptorKernels, integral_rows)
+{
+    checkSumRow<short, ushort>(2041);
+    checkSumRow<short, unsigned>(2041);
+    checkSumRow<int, unsigned>(524281);
+}
+
+//! Integral rows in a ring, as the band makes them, of a random map of four channels.
+template <typename Sum> struct Ring
+{
+    Mat_<Vec4i> map;
+    std::vector<Sum> values;
+    IntegralRows<Sum> rows;
+
+    Ring(Rect area, int count, int end, int limit, Integers& random) : map(area.size())
+    {
+        for (Vec4i& v : map)
+            for (int c = 0; c < 4; c++)
+                v[c] = random.below(limit);
+        rows.step = (size_t)(area.width + 1 + ROW_PADDING) * GROUP_CHANNELS;
+        rows.count = count;
+        rows.origin = area.tl();
+        values.assign(rows.step * count, 0);
+        for (int y = std::max(0, end - count + 1); y <= end; y++)
+            for (int x = 0; x <= area.width; x++)
+                for (int c = 0; c < 4; c++)
+                    values[y % count * rows.step + x * 4 + c] = sum(0, 0, x, y, c);
+        rows.data = values.data();
+    }
+
+    Sum sum(int x0, int y0, int x1, int y1, int c) const
+    {
+        Sum total = 0;
+        for (int y = y0; y < y1; y++)
+            for (int x = x0; x < x1; x++)
+                total = (Sum)(total + map(y, x)[c]);
+        return total;
+    }
+};
+
+template <typename Sum> void checkCells(int limit)
+{
+    Integers random(8);
+    const Rect area(11, 5, 90, 70);
+    const Ring<Sum> ring(area, 66, 64, limit, random);
+    for (int n = 2; n <= 64; n *= 2)
+        for (int round = 0; round < 4; round++)
+        {
+            std::vector<int> x(n + 1), y(n + 1);
+            for (int i = 0; i <= n; i++)
+            {
+                x[i] = area.x + random.below(area.width + 1);
+                y[i] = area.y + random.below(65);
+            }
+            std::sort(x.begin(), x.end());
+            std::sort(y.begin(), y.end());
+            x.resize(paddedEdges(n), x[n]);
+            CellGrid<Sum> cells;
+            descriptorKernels().sums<Sum>().cells(ring.rows, x.data(), y.data(), n, cells);
+            CellGrid<unsigned> parents;
+            descriptorKernels().sums<Sum>().bits[0].parentSums(cells, parents);
+            for (int r = 0; r < n; r++)
+                for (int c = 0; c < n; c++)
+                    for (int i = 0; i < 4; i++)
+                        ASSERT_EQ(ring.sum(x[c] - area.x, y[r] - area.y, x[c + 1] - area.x, y[r + 1] - area.y,
+                                          i),
+                                cells.cell(r, c)[i])
+                                << n << ": " << r << ", " << c;
+            for (int r = 0; r < n / 2; r++)
+                for (int c = 0; c < n / 2; c++)
+                    for (int i = 0; i < 4; i++)
+                        ASSERT_EQ((unsigned)cells.cell(2 * r, 2 * c)[i] + cells.cell(2 * r, 2 * c + 1)[i] +
+                                          cells.cell(2 * r + 1, 2 * c)[i] +
+                                          cells.cell(2 * r + 1, 2 * c + 1)[i],
+                                parents.cell(r, c)[i])
+                                << n << ": " << r << ", " << c;
+        }
+}
+
+TEST(IIB_DescriptorKernels, cell_sums)
+{
+    checkCells<ushort>(60);
+    checkCells<unsigned>(1 << 20);
+}
+
+TEST(IIB_DescriptorKernels, cell_edges)
+{
+    Integers random(9);
+    for (int n = 2; n <= 64; n *= 2)
+        for (int round = 0; round < 50; round++)
+        {
+            const Rect bounds = round % 2 ? Rect(0, 0, 100, 80) : Rect(-20, -10, 120, 90);
+            const Point2d corner(random.below(4800) / 32. - 30, random.below(4800) / 32. - 30);
+            const double side = n + random.below(6400) / 32.;
+            CellEdges edges;
+            descriptorKernels().cellEdges(corner, side, n, bounds, edges);
+            for (int i = 0; i < paddedEdges(n); i++)
+            {
+                const double k = std::min(i, n), x = std::floor(corner.x + side / n * k + 0.5);
+                ASSERT_EQ(std::min(std::max(x, (double)bounds.x), 100.), edges.x[i]);
+                if (i <= n)
+                {
+                    const double y = std::floor(corner.y + side / n * k + 0.5);
+                    ASSERT_EQ(std::min(std::max(y, (double)bounds.y), 80.), edges.y[i]);
+                }
+            }
+        }
+}
+
+TEST(IIB_DescriptorKernels, bits_are_written_where_they_belong)
+{
+    Integers random(10);
+    for (int round = 0; round < 300; round++)
+    {
+        const int offset = random.below(40);
+        std::vector<uchar> bytes(200, (uchar)random.below(256)), before = bytes;
+        std::vector<int> bits;
+        {
+            BitWriter out(bytes.data(), offset);
+            for (int i = random.below(20); i > 0; i--)
+            {
+                const int n = random.below(65);
+                uint64 word = 0;
+                for (int b = 0; b < n; b++)
+                {
+                    bits.push_back(random.below(2));
+                    word |= (uint64)bits.back() << b;
+                }
+                out.append(word, n);
+            }
+        }
+        for (int i = 0; i < offset; i++)
+            ASSERT_EQ(before[i / 8] >> i % 8 & 1, bytes[i / 8] >> i % 8 & 1);
+        for (int i = 0; i < (int)bits.size(); i++)
+            ASSERT_EQ(bits[i], bytes[(offset + i) / 8] >> (offset + i) % 8 & 1);
+        const size_t end = bits.empty() ? (offset + 7) / 8 : (offset + bits.size() + 7) / 8;
+        for (size_t i = end; i < bytes.size(); i++)
+            ASSERT_EQ(before[i], bytes[i]);
+    }
+}
+
+TEST(IIB_DescriptorKernels, chosen_bits_are_moved_together)
+{
+    Integers random(11);
+    for (int round = 0; round < 200; round++)
+    {
+        const int words = random.between(1, 6);
+        std::vector<uint64> masks(words), comparisons(words);
+        std::vector<uchar> memory(8 * words), bytes(8 * words + 1, 0);
+        std::vector<int> expected;
+        for (int i = 0; i < 64 * words; i++)
+        {
+            const int chosen = random.below(3) == 0 && i / 64 != 2, bit = random.below(2);
+            masks[i / 64] |= (uint64)chosen << i % 64;
+            memory[i / 8] |= (uchar)(bit << i % 8);
+            if (chosen)
+                expected.push_back(bit);
+        }
+        const ChosenBits chosen(masks);
+        EXPECT_EQ(expected.empty(), chosen.none());
+        {
+            BitWriter out(bytes.data(), 0);
+            chosen.append(memory.data(), out);
+        }
+        for (size_t i = 0; i < expected.size(); i++)
+            ASSERT_EQ(expected[i], bytes[i / 8] >> i % 8 & 1);
+    }
+}
+
+//! Counts the quads of every level, channel by channel.
+TEST(IIB_DescriptorKernels, layout_counts_bits)
+{
+    for (int mapping = 0; mapping < MAPPINGS; mapping++)
+        for (int overlap = 0; overlap < 2; overlap++)
+            for (int extra : {0, 1, 4, 16})
+            {
+                const Parameters p = {
+                        2.f, 6, 63, mapping, overlap != 0, false, extra, IIB::BORDER_CLAMP, Mat_<int>()};
+                const int channels = 6 + extra;
+                int offset = 0;
+                for (int level = 1; level <= 6; level++)
+                {
+                    int quads = 0;
+                    for (int y = 0; y + 1 < 1 << level; y++)
+                        for (int x = 0; x + 1 < 1 << level; x++)
+                            quads += overlap || (x % 2 == 0 && y % 2 == 0);
+                    const int bits = quads * bitsPerQuad(mapping);
+                    EXPECT_EQ(bits * channels, levelBits(p, level));
+                    EXPECT_EQ((bits * channels + 7) / 8, levelBytes(p)[level - 1]);
+                    for (int group = 0; 4 * group < channels; group++)
+                        EXPECT_EQ(offset + 4 * group * bits, bitOffset(p, level, group));
+                    offset += (bits * channels + 7) / 8 * 8;
+                }
+            }
+}
+
+}  // namespace
+}  // namespace opencv_test

@@ -1,0 +1,188 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/test_images.hpp"
+
+#include "../../src/descriptor/keypoint_batches.hpp"
+
+namespace opencv_test {
+namespace {
+
+using cv::iib::KeyPointBatch;
+typedef std::vector<Rect> Regions;
+
+Rect unionOf(const Regions& regions, const std::vector<int>& members)
+{
+    Rect all = regions[members[0]];
+    for (int k : members)
+        all |= regions[k];
+    return all;
+}
+
+//! Every keypoint once, whatever the number of workers.
+void expectPartition(const Regions& regions)
+{
+    for (int workers : {1, 2, 7})
+    {
+        std::vector<int> seen(regions.size(), 0);
+        for (const std::vector<int>& members : cv::iib::cutBatches(regions, workers))
+        {
+            ASSERT_FALSE(members.empty());
+            for (int k : members)
+                seen[k]++;
+        }
+        EXPECT_EQ(std::vector<int>(regions.size(), 1), seen) << workers;
+    }
+}
+
+Regions randomRegions(int count, Size image, int side, int seed)
+{
+    Integers random(seed);
+    Regions regions;
+    for (int i = 0; i < count; i++)
+    {
+        const int w = random.between(1, side + 1), h = random.between(1, side + 1);
+        regions.push_back(Rect(random.below(image.width - w), random.below(image.height - h), w, h));
+    }
+    return regions;
+}
+
+TEST(IIB_KeyPointBatches, every_keypoint_is_in_one_batch)
+{
+    EXPECT_TRUE(cv::iib::cutBatches(Regions(), 2).empty());
+    for (int count : {1, 2, 3, 17, 200})
+        for (int side : {1, 5, 60})
+            expectPartition(randomRegions(count, Size(300, 200), side, count + side));
+}
+
+// Whether any two pieces could still be cut apart by a straight line is asked point by point.
+TEST(IIB_KeyPointBatches, gaps_cut_batches)
+{
+    for (int seed = 0; seed < 50; seed++)
+    {
+        const Regions regions = randomRegions(12, Size(300, 200), 40, seed);
+        for (const std::vector<int>& members : cv::iib::cutBatches(regions, 1))
+        {
+            const Rect all = unionOf(regions, members);
+            for (int x = all.x; x < all.br().x; x++)
+                EXPECT_TRUE(std::any_of(members.begin(), members.end(),
+                        [&](int k) { return regions[k].x <= x && x < regions[k].br().x; }));
+            for (int y = all.y; y < all.br().y; y++)
+                EXPECT_TRUE(std::any_of(members.begin(), members.end(),
+                        [&](int k) { return regions[k].y <= y && y < regions[k].br().y; }));
+        }
+    }
+}
+
+TEST(IIB_KeyPointBatches, batch_holds_its_regions_in_the_order_of_bands)
+{
+    for (int seed = 0; seed < 20; seed++)
+    {
+        const Regions regions = randomRegions(60, Size(300, 200), 50, seed);
+        std::vector<int> members;
+        for (int k = seed % 3; k < 60; k += 2)
+            members.push_back(k);
+        const KeyPointBatch batch = cv::iib::makeBatch(regions, members);
+        EXPECT_EQ(unionOf(regions, members), batch.area);
+        int rows = 0, lastBand = 0, lastX = 0;
+        std::vector<int> sorted = batch.keypoints;
+        for (int k : batch.keypoints)
+        {
+            const Rect& r = regions[k];
+            rows = std::max(rows, r.height);
+            const int end = batch.bandEnd(r.br().y);
+            EXPECT_GE(end, r.br().y);
+            EXPECT_LE(end, std::min(r.br().y + KeyPointBatch::BAND_ROWS - 1, batch.area.br().y));
+            EXPECT_GE(end, lastBand);
+            EXPECT_TRUE(end != lastBand || end == batch.area.br().y || r.x >= lastX);
+            lastBand = end;
+            lastX = r.x;
+        }
+        EXPECT_EQ(rows, batch.rows);
+        std::sort(sorted.begin(), sorted.end());
+        EXPECT_EQ(members, sorted);
+    }
+}
+
+/* Layouts of n regions on an image whose sides grow as the root of n. */
+Regions grid(int n, Size image)
+{
+    const int columns = cvRound(std::sqrt((double)n));
+    Regions regions;
+    for (int i = 0; i < n; i++)
+        regions.push_back(
+                Rect(i % columns * (image.width / columns), i / columns * (image.height / columns), 4, 4));
+    return regions;
+}
+
+//! Bars around what is left, one after another: each cut peels off one.
+Regions spiral(int n, Size image)
+{
+    Rect left(0, 0, image.width, image.height);
+    Regions regions;
+    for (int side = 0; left.width > 12 && left.height > 12; side = (side + 1) % 4)
+    {
+        const bool horizontal = side % 2 == 0;
+        const int length = horizontal ? left.width : left.height;
+        const int count = std::max(1, n * 8 / (image.width + image.height) * length / image.width);
+        for (int i = 0; i < count; i++)  // they overlap, so that only the bar as a whole can be cut off
+        {
+            const int at = length * i / (count + 1), size = length - length * (count - 1) / (count + 1);
+            const int x = side == 1 ? left.br().x - 3 : left.x, y = side == 2 ? left.br().y - 3 : left.y;
+            regions.push_back(horizontal ? Rect(left.x + at, y, size, 3) : Rect(x, left.y + at, 3, size));
+        }
+        left = side == 0   ? Rect(left.x, left.y + 4, left.width, left.height - 4)
+               : side == 1 ? Rect(left.x, left.y, left.width - 4, left.height)
+               : side == 2 ? Rect(left.x, left.y, left.width, left.height - 4)
+                           : Rect(left.x + 4, left.y, left.width - 4, left.height);
+    }
+    return regions;
+}
+
+//! A horizontal bar at the top, a vertical one at the left of what is left, and so on.
+Regions staircase(int n, Size image)
+{
+    const int steps = std::min(image.width, image.height) / 8;
+    Regions regions;
+    for (int s = 0; s < steps; s++)
+    {
+        const int at = 8 * s;
+        for (int i = 0; i < std::max(1, n / steps / 2); i++)
+        {
+            regions.push_back(Rect(at, at, image.width - at, 3));
+            regions.push_back(Rect(at, at + 4, 3, image.height - at - 4));
+        }
+    }
+    return regions;
+}
+
+Regions cluster(int n, Size image) { return randomRegions(n, Size(image.width / 4, image.height / 4), 9, n); }
+
+// Counted work, not time. Both bounds were broken by recursion without a limit: 10.4 s and 2 GB for 202,626 keypoints.
+TEST(IIB_KeyPointBatches, work_and_memory_are_linear_for_every_layout)
+{
+    Regions (*const layouts[])(int, Size) = {grid, spiral, staircase, cluster};
+    for (size_t i = 0; i < 4; i++)
+    {
+        double last = 0;
+        for (int root : {25, 50, 100, 200})
+        {
+            const Size image(20 * root, 20 * root);
+            const Regions regions = layouts[i](root * root, image);
+            int64 visits = 0;
+            double pixels = 0;
+            for (const std::vector<int>& members : cv::iib::cutBatches(regions, 1, &visits))
+                pixels += unionOf(regions, members).area();
+            const double work = (double)visits / (regions.size() + image.area());
+            EXPECT_LE(work, cv::iib::MAX_CUTS * 3) << "layout " << i << ", " << regions.size();
+            EXPECT_LE(pixels, 1.01 * image.area()) << "layout " << i << ", " << regions.size();
+            // four times the keypoints and pixels: at most five times the work
+            EXPECT_TRUE(last == 0 || visits <= 5 * last) << "layout " << i << ", " << regions.size();
+            last = (double)visits;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace opencv_test

@@ -1,0 +1,116 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/descriptor_oracle.hpp"
+#include "../support/test_images.hpp"
+
+#include "../../src/descriptor/rotation.hpp"
+
+#include <memory>
+
+namespace opencv_test {
+namespace {
+
+Ptr<IIB> rotating(int granularity = 4, int channels = IIB::CHANNELS_DEFAULT)
+{
+    return IIB::create(2.f, granularity, channels, IIB::MAPPING_MEAN, false, true);
+}
+
+TEST(IIB_Rotated, sine_and_cosine_are_exact)
+{
+    for (int i = -800; i <= 800; i++)
+    {
+        const float degrees = i * 0.917f;
+        const cv::iib::Rotation r(degrees);
+        EXPECT_NEAR(std::cos(degrees * CV_PI / 180), r.cosine, 1e-14) << degrees;
+        EXPECT_NEAR(std::sin(degrees * CV_PI / 180), r.sine, 1e-14) << degrees;
+    }
+    const double quarters[][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 0}};
+    for (int i = 0; i < 5; i++)
+    {
+        EXPECT_EQ(quarters[i][0], cv::iib::Rotation(90.f * i).cosine);
+        EXPECT_EQ(quarters[i][1], cv::iib::Rotation(90.f * i).sine);
+    }
+    EXPECT_EQ(cv::iib::Rotation(30.f).sine, cv::iib::Rotation(30.f + 360 * 4096).sine);
+}
+
+// What is kept does not depend on anything outside the image; what is removed has a corner there.
+TEST(IIB_Rotated, border_drop_looks_at_the_rotated_region)
+{
+    const Size size(200, 160);
+    const Rect inner(40, 40, size.width - 80, size.height - 80);
+    Mat image = texture(size, CV_8U, 1);
+    const Ptr<IIB> iib = rotating(3, IIB::CHANNEL_INTENSITY);  // a gradient looks one pixel further
+    iib->setBorder(IIB::BORDER_DROP);
+    std::vector<KeyPoint> keypoints;
+    for (int i = 0; i < 400; i++)
+        keypoints.push_back(KeyPoint(i % 20 * 6.f + 2, i / 20 * 4.f + 2, 15.f, i * 7.f));
+    Mat descriptors;
+    std::vector<KeyPoint> kept = keypoints;
+    iib->compute(image(inner), kept, descriptors);
+    ASSERT_GT(kept.size(), 20u);
+    ASSERT_LT(kept.size(), keypoints.size());
+
+    std::vector<KeyPoint> moved = kept;
+    for (KeyPoint& kp : moved)
+        kp.pt += Point2f(inner.tl());
+    EXPECT_EQ(0, differingBits(descriptors, describe(*iib, image, moved)));
+
+    for (const KeyPoint& kp : keypoints)
+    {
+        const double radians = kp.angle * CV_PI / 180,
+                     reach = 15 * (std::abs(std::cos(radians)) + std::abs(std::sin(radians)));
+        const double gap = std::min(std::min(kp.pt.x + 0.5, inner.width - kp.pt.x - 0.5),
+                                   std::min(kp.pt.y + 0.5, inner.height - kp.pt.y - 0.5)) -
+                           reach;
+        if (std::abs(gap) > 1e-3)
+        {
+            const bool found = std::any_of(kept.begin(), kept.end(),
+                    [&](const KeyPoint& k) { return k.pt == kp.pt && k.angle == kp.angle; });
+            EXPECT_EQ(gap > 0, found) << kp.pt << " " << kp.angle;
+        }
+    }
+}
+
+// A grid that spans many pixels is read point by point: the bits are the same, whoever else is described.
+TEST(IIB_Rotated, sparse_and_dense_grids_give_the_same_bits)
+{
+    for (int depth : {CV_8U, CV_16U})
+    {
+        const Mat image = texture(Size(1200, 1000), depth, 3);
+        const std::vector<Mat> extra(5, texture(image.size(), CV_8U, 4));
+        const Ptr<IIB> iib = rotating(4, 63);
+        iib->setExtraChannels(5);
+        std::vector<KeyPoint> keypoints;
+        for (int i = 0; i < 3; i++)
+            keypoints.push_back(KeyPoint(100.f + 450 * i, 900.f - 380 * i, 500.f, 100.f * i + 9));
+        const Mat sparse = describe(*iib, image, keypoints, extra);
+        EXPECT_EQ(0, differingBits(oracle::describe(*iib, image, extra, keypoints), sparse));
+        for (int i = 0; i < 60; i++)
+            keypoints.push_back(keypoints[i % 3]);
+        EXPECT_EQ(0, differingBits(sparse, describe(*iib, image, keypoints, extra).rowRange(0, 3)));
+    }
+}
+
+// A few regions may span more pixels than an int counts. Of the image's 2 GB few pages are ever touched.
+TEST(IIB_Rotated, area_of_more_than_an_int_of_pixels)
+{
+    const int side = 46400;
+    const std::unique_ptr<void, void (*)(void*)> memory(calloc(side, side), free);
+    if (!memory)
+        return;
+    Mat image(side, side, CV_8U, memory.get());
+    randu(image(Rect(8000, 8000, 500, 500)), 0, 256);
+    std::vector<KeyPoint> keypoints;
+    for (int i = 0; i < 6; i++)  // neighbours overlap, and all that is between the first and the last counts
+        keypoints.push_back(KeyPoint(8200.f + 6000 * i, 8200.f + 6000 * i, 8000, 45));
+    const Ptr<IIB> iib = rotating();
+    const Mat all = describe(*iib, image, keypoints);
+    for (int i = 0; i < (int)keypoints.size(); i += 5)
+        EXPECT_EQ(
+                0, differingBits(all.row(i), describe(*iib, image, std::vector<KeyPoint>(1, keypoints[i]))));
+}
+
+}  // namespace
+}  // namespace opencv_test
