@@ -17,10 +17,30 @@ struct DetectorScale
 
 /* Paper, "Experiments Combined with Feature Detectors", for AKAZE to SURF. FAST, AGAST (size 7) and GFTT
  (size 3) find corners of one size: a ROS of 64 pixels, as in "Predefined Feature Points". The sizes of MSER
- and SimpleBlob are the diameters of regions; the region takes in their surroundings. */
+ and SimpleBlob are the diameters of regions; the ROS takes in their surroundings. */
 const DetectorScale detectorScales[] = {{"akaze", 12.f}, {"orb", 2.f}, {"brisk", 4.f}, {"sift", 20.f},
         {"kaze", 20.f}, {"surf", 4.f}, {"fast", 64.f / 7}, {"agast", 64.f / 7}, {"gftt", 64.f / 3},
         {"mser", 2.f}, {"simpleblob", 4.f}};
+
+struct BackendDescriptor
+{
+    const char* name;
+    int bytes, type;
+};
+
+const BackendDescriptor backends[] = {{"SIFT", 128, CV_32F}, {"SIFT", 128, CV_8U}, {"ORB", 32, CV_8U},
+        {"BRISK", 64, CV_8U}, {"AKAZE", 61, CV_8U}};
+
+//! AffineFeature names only itself, but describes as the detector that it wraps.
+String backendOf(const Feature2D& affine)
+{
+    for (const BackendDescriptor& b : backends)
+        if (affine.descriptorSize() == b.bytes && affine.descriptorType() == b.type)
+            return b.name;
+    CV_Error(Error::StsBadArg,
+            "AffineFeature does not tell which detector it wraps; give create() the scale factor of "
+            "that one (see scaleFactorFor) and setDetector() the AffineFeature");
+}
 
 }  // namespace
 
@@ -44,14 +64,33 @@ float IIBDescriptorExtractor::scaleFactorFor(const String& detectorName)
     }
     CV_Error(Error::StsBadArg, "no scale factor is known for the detector \"" + detectorName +
                                        "\", only for " + known +
-                                       "; give create() the region side divided by KeyPoint::size");
+                                       "; give create() the ROS side divided by KeyPoint::size");
+}
+
+float IIBDescriptorExtractor::scaleFactorFor(const char* detectorName)
+{
+    if (!detectorName)
+        CV_Error(Error::StsNullPtr, "the detector's name is null");
+    return scaleFactorFor(String(detectorName));
 }
 
 float IIBDescriptorExtractor::scaleFactorFor(const Ptr<Feature2D>& detector)
 {
     if (!detector)
         CV_Error(Error::StsNullPtr, "the detector is null");
-    return scaleFactorFor(detector->getDefaultName());
+    if (const Ptr<NormalizedDetector> wrapper = detector.dynamicCast<NormalizedDetector>())
+        return scaleFactorFor(wrapper->getDetector());
+    const String name = detector->getDefaultName();
+    return scaleFactorFor(name == "Feature2D.AffineFeature" ? backendOf(*detector) : name);
+}
+
+Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::createFor(const Ptr<Feature2D>& detector, int preset)
+{
+    const float scaleFactor = scaleFactorFor(detector);
+    const Ptr<IIBDescriptorExtractor> extractor =
+            preset == -1 ? create(scaleFactor) : createPreset(preset, scaleFactor);
+    extractor->setDetector(detector);
+    return extractor;
 }
 
 }  // namespace iib

@@ -128,6 +128,16 @@ public:
      */
     CV_WRAP static Ptr<IIBDescriptorExtractor> createPreset(int preset, float scaleFactor = 2.f);
 
+    /** @brief Creates an extractor for a detector's keypoints: with its scale factor, and itself behind detect and
+    detectAndCompute.
+
+    @param detector one that scaleFactorFor knows, also within NormalizedDetector.
+    @param preset one of #Preset, or -1 for the paper's default descriptor (as create).
+    @throws cv::Exception (StsBadArg) for an unknown detector or preset, (StsNullPtr) for no detector. For a detector that
+    is not known use create(scaleFactor), with the side of the ROS by KeyPoint::size as its factor, and setDetector.
+     */
+    CV_WRAP static Ptr<IIBDescriptorExtractor> createFor(const Ptr<Feature2D>& detector, int preset = -1);
+
     /** @brief Scale factor for a detector's keypoints (paper, "Experiments Combined with Feature Detectors").
 
     @param detectorName as in OpenCV's class names, any case, with or without "Feature2D.": AKAZE 12, ORB 2,
@@ -135,10 +145,14 @@ public:
     @throws cv::Exception (StsBadArg) with the known names for any other.
      */
     CV_WRAP static float scaleFactorFor(const String& detectorName);
-    //! @overload
-    static float scaleFactorFor(const Ptr<Feature2D>& detector);
-    //! @overload A literal would fit both of the above, since Ptr converts from any pointer.
-    static float scaleFactorFor(const char* detectorName) { return scaleFactorFor(String(detectorName)); }
+    /** @overload
+    Looks into NormalizedDetector for its detector, and at the descriptors of AffineFeature, which tell ORB, SIFT, BRISK and
+    AKAZE apart.
+    @throws cv::Exception (StsBadArg) for a detector that is not known and (StsNullPtr) for none. */
+    CV_WRAP static float scaleFactorFor(const Ptr<Feature2D>& detector);
+    /** @overload
+    A literal would fit both of the above, since Ptr converts from any pointer. */
+    static float scaleFactorFor(const char* detectorName);
 
     //! Bytes of each level, coarse first; levels without a bit (by a selection) are left out.
     //! Their sum is descriptorSize().

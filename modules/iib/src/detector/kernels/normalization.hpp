@@ -1,0 +1,50 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_DETECTOR_KERNELS_NORMALIZATION_HPP
+#define OPENCV_IIB_DETECTOR_KERNELS_NORMALIZATION_HPP
+
+#include "../../precomp.hpp"
+
+namespace cv {
+namespace iib {
+
+enum
+{
+    NORMALIZATION_PADDING = 64,  //!< values that kernels may read and write on either side of a row
+    GREY_BITS = 7,               //!< pixels, means and differences are grey levels of 0..255 in 2^-7
+    WHITE = 255 << GREY_BITS
+};
+
+/* What local normalization does with rows. A `half` row has half as many values as those it comes from or goes to.
+ All decisions are on integers but gain's, whose square root and quotient IEEE 754 rounds in one way. */
+struct NormalizationKernels
+{
+    //! Grey levels from 8-bit pixels, which have no padding.
+    void (*widen)(const uchar* pixels, short* out, int width);
+    //! Means of 2 x 2 values, rounded.
+    void (*halveShorts)(const short* upper, const short* lower, short* half, int halfWidth);
+    void (*halveInts)(const int* upper, const int* lower, int* half, int halfWidth);
+    //! A quarter of the way from one row to another.
+    void (*interpolate)(const short* from, const short* to, short* out, int width);
+    //! Twice as many values, linearly interpolated; half[-1] and half[halfWidth] are read.
+    void (*upsample)(const short* half, short* out, int halfWidth);
+    //! out = centre + weight / 256 * (before + after - 2 * centre), rounded.
+    void (*blur)(const int* before, const int* centre, const int* after, int weight, int* out, int width);
+    void (*subtract)(const short* pixels, const short* means, short* out, int width);
+    //! Means of the squares of 2 x 2 differences, in 2^-6 squared grey levels.
+    void (*squares)(const short* upper, const short* lower, int* half, int halfWidth);
+    //! 1024 * 40 / (standard deviation + 2).
+    void (*gain)(const int* variance, short* out, int width);
+    //! 128 + difference * gain as 8-bit pixels, which have no padding.
+    void (*scale)(const short* differences, const short* gains, uchar* pixels, int width);
+};
+
+//! The kernels for this machine.
+const NormalizationKernels& normalizationKernels();
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

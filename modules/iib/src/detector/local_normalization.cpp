@@ -1,0 +1,223 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "local_normalization.hpp"
+
+#include "../common/aligned_buffer.hpp"
+#include "kernels/normalization.hpp"
+
+namespace cv {
+namespace iib {
+
+namespace {
+
+//! Rows that begin on a cache line and have NORMALIZATION_PADDING values on either side.
+template <typename T> class Plane
+{
+public:
+    explicit Plane(Size size_)
+        : size(size_), step(wholeLines<T>(size_.width + 1) + 2 * NORMALIZATION_PADDING),
+          values(step * size_.height)
+    {
+    }
+
+    T* row(int y) { return values.data() + step * y + NORMALIZATION_PADDING; }
+    const T* row(int y) const { return values.data() + step * y + NORMALIZATION_PADDING; }
+
+    //! Repeats the ends of a row of `width` values.
+    void extend(int y, int width)
+    {
+        T* r = row(y);
+        r[-1] = r[0];
+        r[width] = r[width - 1];
+    }
+
+    Size size;
+
+private:
+    size_t step;
+    AlignedBuffer<T> values;
+};
+
+template <typename T> using HalveFunc = void (*)(const T* upper, const T* lower, T* half, int halfWidth);
+
+Size halfOf(Size size) { return Size((size.width + 1) / 2, (size.height + 1) / 2); }
+
+//! The blurs at the smallest size: `passes` times (weight, 256 - 2 weight, weight) / 256.
+struct Blurs
+{
+    int levels, passes, weight;
+
+    /* Halving and interpolating between sizes adds 1/4 + 3/4 of a squared pixel of the larger, so that all levels add
+     (4^levels - 1) / 3; a pass adds weight / 128, and weights above 256 / 3 have more than one peak. */
+    explicit Blurs(double sigma) : levels(std::max((int)std::floor(std::log2(sigma)), 1))
+    {
+        const double scale = std::pow(4., levels);
+        const double variance = std::max(sigma * sigma - (scale - 1) / 3, 0.) / scale;
+        passes = cvCeil(variance * 1.5);
+        weight = passes > 0 ? cvRound(128 * variance / passes) : 0;
+    }
+};
+
+class Normalizer
+{
+public:
+    Normalizer(const Mat& grey_, double sigma)
+        : kernels(normalizationKernels()), grey(grey_), blurs(sigma), scratch(Size(grey_.cols + 1, 3)),
+          factor(0)
+    {
+        sizes.push_back(grey.size());
+        for (int i = 0; i < blurs.levels; i++)
+            sizes.push_back(halfOf(sizes.back()));
+        double largest = 255;
+        if (grey.depth() == CV_16U)
+            minMaxIdx(grey, 0, &largest);
+        if (largest > 0)
+            factor = cvRound(WHITE * 65536. / largest);
+    }
+
+    Mat run()
+    {
+        const Plane<short> differences = differencesTo(means());
+        const Plane<short> gains = gainsOf(differences);
+        Mat result(grey.size(), CV_8U);
+        for (int y = 0; y < grey.rows; y++)
+        {
+            upsampleRow(gains, y, scratch.row(0));
+            kernels.scale(differences.row(y), scratch.row(0), result.ptr(y), grey.cols);
+        }
+        return result;
+    }
+
+private:
+    //! Row y of the image, at `out`.
+    void readRow(int y, short* out) const
+    {
+        if (grey.depth() == CV_8U)
+            return kernels.widen(grey.ptr(y), out, grey.cols);
+        const ushort* pixels = grey.ptr<ushort>(y);
+        for (int x = 0; x < grey.cols; x++)
+            out[x] = (short)(((int64)pixels[x] * factor + 32768) >> 16);
+    }
+
+    //! G*I at half the image's size.
+    Plane<short> means()
+    {
+        Plane<short> half(sizes[1]);
+        for (int y = 0; y < half.size.height; y++)
+        {
+            for (int i = 0; i < 2; i++)
+            {
+                readRow(std::min(2 * y + i, grey.rows - 1), scratch.row(i));
+                scratch.extend(i, grey.cols);
+            }
+            kernels.halveShorts(scratch.row(0), scratch.row(1), half.row(y), half.size.width);
+        }
+        Plane<short> smallest = halved(std::move(half), 1, kernels.halveShorts);
+        Plane<int> sums(smallest.size);
+        for (int y = 0; y < sums.size.height; y++)
+            std::copy_n(smallest.row(y), sums.size.width, sums.row(y));
+        blur(sums);
+        for (int y = 0; y < sums.size.height; y++)
+            std::copy_n(sums.row(y), sums.size.width, smallest.row(y));
+        return upsampled(std::move(smallest), blurs.levels);
+    }
+
+    //! I - G*I.
+    Plane<short> differencesTo(const Plane<short>& means)
+    {
+        Plane<short> differences(grey.size());
+        for (int y = 0; y < grey.rows; y++)
+        {
+            readRow(y, scratch.row(0));
+            upsampleRow(means, y, scratch.row(1));
+            kernels.subtract(scratch.row(0), scratch.row(1), differences.row(y), grey.cols);
+            differences.extend(y, grey.cols);
+        }
+        return differences;
+    }
+
+    //! What differences are multiplied by, at half the image's size.
+    Plane<short> gainsOf(const Plane<short>& differences)
+    {
+        Plane<int> half(sizes[1]);
+        for (int y = 0; y < half.size.height; y++)
+            kernels.squares(differences.row(2 * y), differences.row(std::min(2 * y + 1, grey.rows - 1)),
+                    half.row(y), half.size.width);
+        Plane<int> variances = halved(std::move(half), 1, kernels.halveInts);
+        blur(variances);
+        Plane<short> gains(variances.size);
+        for (int y = 0; y < gains.size.height; y++)
+            kernels.gain(variances.row(y), gains.row(y), gains.size.width);
+        return upsampled(std::move(gains), blurs.levels);
+    }
+
+    //! From sizes[level] down to the smallest.
+    template <typename T> Plane<T> halved(Plane<T> plane, int level, HalveFunc<T> halve) const
+    {
+        if (level == blurs.levels)
+            return plane;
+        Plane<T> half(sizes[level + 1]);
+        for (int y = 0; y < plane.size.height; y++)
+            plane.extend(y, plane.size.width);
+        for (int y = 0; y < half.size.height; y++)
+            halve(plane.row(2 * y), plane.row(std::min(2 * y + 1, plane.size.height - 1)), half.row(y),
+                    half.size.width);
+        return halved(std::move(half), level + 1, halve);
+    }
+
+    //! From sizes[level] up to half the image's size.
+    Plane<short> upsampled(Plane<short> plane, int level)
+    {
+        if (level == 1)
+            return plane;
+        Plane<short> larger(sizes[level - 1]);
+        for (int y = 0; y < larger.size.height; y++)
+            upsampleRow(plane, y, larger.row(y));
+        return upsampled(std::move(larger), level - 1);
+    }
+
+    void blur(Plane<int>& plane) const
+    {
+        const Size size = plane.size;
+        Plane<int> out(size);
+        for (int pass = 0; pass < blurs.passes; pass++)
+        {
+            for (int y = 0; y < size.height; y++)
+            {
+                plane.extend(y, size.width);
+                const int* row = plane.row(y);
+                kernels.blur(row - 1, row, row + 1, blurs.weight, out.row(y), size.width);
+            }
+            for (int y = 0; y < size.height; y++)
+                kernels.blur(out.row(std::max(y - 1, 0)), out.row(y),
+                        out.row(std::min(y + 1, size.height - 1)), blurs.weight, plane.row(y), size.width);
+        }
+    }
+
+    //! Row y of twice the plane's size.
+    void upsampleRow(const Plane<short>& half, int y, short* out)
+    {
+        const int width = half.size.width, other = y / 2 + (y % 2 ? 1 : -1);
+        short* between = scratch.row(2);
+        kernels.interpolate(half.row(y / 2), half.row(std::min(std::max(other, 0), half.size.height - 1)),
+                between, width);
+        scratch.extend(2, width);
+        kernels.upsample(between, out, width);
+    }
+
+    const NormalizationKernels& kernels;
+    const Mat& grey;
+    const Blurs blurs;
+    std::vector<Size> sizes;  //!< the image's, half of it, and so on
+    Plane<short> scratch;
+    int64 factor;  //!< of 16-bit pixels, in 2^-16
+};
+
+}  // namespace
+
+Mat normalizeLocally(const Mat& grey, double sigma) { return Normalizer(grey, sigma).run(); }
+
+}  // namespace iib
+}  // namespace cv

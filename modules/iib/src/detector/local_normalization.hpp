@@ -1,0 +1,25 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_DETECTOR_LOCAL_NORMALIZATION_HPP
+#define OPENCV_IIB_DETECTOR_LOCAL_NORMALIZATION_HPP
+
+#include "../precomp.hpp"
+
+namespace cv {
+namespace iib {
+
+/** Local normalization: 128 + 40 (I - G*I) / (sqrt(G*(I - G*I)^2) + 2), as 8-bit pixels.
+
+G, a Gaussian, is made of halvings of the image (means of 2 x 2 pixels), a few short blurs of the smallest, and linear
+interpolation back: of a variance of sigma^2 up to the rounding of a weight.
+
+@param grey CV_8U or CV_16U, one channel, not empty. The largest value of 16-bit pixels counts as 255.
+@param sigma in pixels, 1 to 256. */
+Mat normalizeLocally(const Mat& grey, double sigma);
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

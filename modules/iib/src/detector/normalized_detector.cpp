@@ -1,0 +1,132 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../descriptor/input.hpp"
+#include "local_normalization.hpp"
+
+#include "opencv2/core/utils/trace.hpp"
+#include "opencv2/iib/normalized_detector.hpp"
+
+namespace cv {
+namespace iib {
+
+namespace {
+
+void checkSigma(float sigma)
+{
+    if (!(sigma >= 1 && sigma <= 256))
+        CV_Error(Error::StsOutOfRange, format("sigma is %g; it must be 1 to 256 pixels", sigma));
+}
+
+class NormalizedDetector_Impl CV_FINAL : public NormalizedDetector
+{
+public:
+    NormalizedDetector_Impl(const Ptr<Feature2D>& detector_, float sigma_)
+        : detector(detector_), sigma(sigma_)
+    {
+        if (!detector)
+            CV_Error(Error::StsNullPtr, "the detector is null");
+        checkSigma(sigma);
+    }
+
+    using Feature2D::detect;
+    void detect(InputArray imageArray, std::vector<KeyPoint>& keypoints, InputArray mask) CV_OVERRIDE
+    {
+        CV_TRACE_FUNCTION();
+
+        const Mat image = imageArray.getMat();
+        if (image.empty())
+            return keypoints.clear();
+        checkImage(image);
+        const Mat grey = integerMap(image, Rect(Point(), image.size()));
+        detector->detect(normalizeLocally(grey, sigma), keypoints, mask);
+    }
+
+    using Feature2D::compute;
+    void compute(InputArray image, std::vector<KeyPoint>& keypoints, OutputArray descriptors) CV_OVERRIDE
+    {
+        if (detector->descriptorSize() == 0)
+            CV_Error(Error::StsNotImplemented,
+                    detector->getDefaultName() +
+                            " finds keypoints but does not describe them; describe them with "
+                            "another Feature2D, such as IIBDescriptorExtractor::createFor");
+        detector->compute(image, keypoints, descriptors);
+    }
+
+    void detectAndCompute(InputArray image, InputArray mask, std::vector<KeyPoint>& keypoints,
+            OutputArray descriptors, bool useProvidedKeypoints) CV_OVERRIDE
+    {
+        if (!useProvidedKeypoints)
+            detect(image, keypoints, mask);
+        if (descriptors.needed())
+            compute(image, keypoints, descriptors);
+    }
+
+    int descriptorSize() const CV_OVERRIDE { return detector->descriptorSize(); }
+    int descriptorType() const CV_OVERRIDE { return detector->descriptorType(); }
+    int defaultNorm() const CV_OVERRIDE { return detector->defaultNorm(); }
+    bool empty() const CV_OVERRIDE { return false; }
+
+    Ptr<Feature2D> getDetector() const CV_OVERRIDE { return detector; }
+    void setSigma(float value) CV_OVERRIDE
+    {
+        checkSigma(value);
+        sigma = value;
+    }
+    float getSigma() const CV_OVERRIDE { return sigma; }
+
+    String getDefaultName() const CV_OVERRIDE { return Feature2D::getDefaultName() + ".NormalizedDetector"; }
+
+    using Feature2D::write;
+    void write(FileStorage& fs) const CV_OVERRIDE
+    {
+        fs << "format" << 1 << "sigma" << sigma << "detectorName" << detector->getDefaultName() << "detector"
+           << "{";
+        detector->write(fs);
+        fs << "}";
+    }
+
+    using Feature2D::read;
+    void read(const FileNode& fn) CV_OVERRIDE
+    {
+        int format = 0;
+        cv::read(fn["format"], format, 0);
+        if (format != 1 || !(fn["sigma"].isReal() || fn["sigma"].isInt()))
+            CV_Error(Error::StsParseError, "the node holds no NormalizedDetector parameters of format 1");
+        const float value = (float)fn["sigma"];
+        checkSigma(value);
+        const String name = (String)fn["detectorName"];
+        if (name != detector->getDefaultName())
+            CV_Error(Error::StsParseError, "the node is of a NormalizedDetector with " + name +
+                                                   ", this one has " + detector->getDefaultName() +
+                                                   "; create it with the other first");
+        detector->read(fn["detector"]);
+        sigma = value;
+    }
+
+    void save(const String& filename) const CV_OVERRIDE
+    {
+        // a node's name may not hold the dot of getDefaultName()
+        FileStorage fs(filename, FileStorage::WRITE);
+        CV_Assert(fs.isOpened());
+        fs << "NormalizedDetector"
+           << "{";
+        write(fs);
+        fs << "}";
+    }
+
+private:
+    Ptr<Feature2D> detector;
+    float sigma;
+};
+
+}  // namespace
+
+Ptr<NormalizedDetector> NormalizedDetector::create(const Ptr<Feature2D>& detector, float sigma)
+{
+    return makePtr<NormalizedDetector_Impl>(detector, sigma);
+}
+
+}  // namespace iib
+}  // namespace cv

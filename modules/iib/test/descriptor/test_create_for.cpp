@@ -1,0 +1,88 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/test_errors.hpp"
+#include "../support/test_images.hpp"
+
+namespace opencv_test {
+namespace {
+
+//! A detector that the library does not know.
+class Unknown : public Feature2D
+{
+public:
+    String getDefaultName() const CV_OVERRIDE { return "Feature2D.Unknown"; }
+};
+
+TEST(IIB_CreateFor, detector_factor_and_preset)
+{
+    const std::pair<Ptr<Feature2D>, float> known[] = {{ORB::create(), 2.f}, {AKAZE::create(), 12.f},
+            {SIFT::create(), 20.f}, {KAZE::create(), 20.f}, {BRISK::create(), 4.f},
+            {FastFeatureDetector::create(), 64.f / 7}, {AgastFeatureDetector::create(), 64.f / 7},
+            {GFTTDetector::create(), 64.f / 3}, {MSER::create(), 2.f}, {SimpleBlobDetector::create(), 4.f}};
+    for (const auto& k : known)
+        for (const Ptr<Feature2D>& detector : {k.first, Ptr<Feature2D>(NormalizedDetector::create(k.first)),
+                     Ptr<Feature2D>(NormalizedDetector::create(NormalizedDetector::create(k.first)))})
+        {
+            SCOPED_TRACE(k.first->getDefaultName());
+            EXPECT_FLOAT_EQ(k.second, IIB::scaleFactorFor(detector));
+            const Ptr<IIB> iib = IIB::createFor(detector);
+            EXPECT_EQ(detector, iib->getDetector());
+            EXPECT_FLOAT_EQ(k.second, iib->getScaleFactor());
+            EXPECT_EQ(170, iib->descriptorSize());
+            for (int preset = IIB::PRESET_S128; preset <= IIB::PRESET_BALANCED; preset++)
+            {
+                const Ptr<IIB> expected = IIB::createPreset(preset, k.second),
+                               actual = IIB::createFor(detector, preset);
+                EXPECT_EQ(detector, actual->getDetector());
+                EXPECT_EQ(expected->getScaleFactor(), actual->getScaleFactor());
+                EXPECT_EQ(expected->levelSizes(), actual->levelSizes());
+            }
+        }
+}
+
+TEST(IIB_CreateFor, describes_what_its_detector_finds_on_the_plain_image)
+{
+    const Mat image = relit(scene(Size(320, 240), 3), 4);
+    const Ptr<Feature2D> detector = NormalizedDetector::create(ORB::create(200));
+    const Ptr<IIB> iib = IIB::createFor(detector);
+    std::vector<KeyPoint> expected, keypoints;
+    Mat descriptors;
+    detector->detect(image, expected);
+    iib->detectAndCompute(image, noArray(), keypoints, descriptors);
+    ASSERT_GT(expected.size(), 50u);
+    expectSameKeyPoints(expected, keypoints);
+    EXPECT_EQ(0, differingBits(describe(*IIB::create(2.f), image, expected), descriptors));
+}
+
+TEST(IIB_CreateFor, affine_feature_takes_the_factor_of_its_backend)
+{
+    EXPECT_EQ(20.f, IIB::scaleFactorFor(AffineFeature::create(SIFT::create())));
+    EXPECT_EQ(2.f, IIB::scaleFactorFor(AffineFeature::create(ORB::create())));
+    EXPECT_EQ(4.f, IIB::scaleFactorFor(AffineFeature::create(BRISK::create())));
+    EXPECT_EQ(12.f, IIB::scaleFactorFor(AffineFeature::create(AKAZE::create())));
+    EXPECT_EQ(20.f, IIB::createFor(NormalizedDetector::create(AffineFeature::create(SIFT::create())))
+                            ->getScaleFactor());
+    // 64 floats are KAZE's, SURF's, or those of an AKAZE that describes as KAZE
+    for (const Ptr<Feature2D>& backend :
+            {Ptr<Feature2D>(KAZE::create()), Ptr<Feature2D>(FastFeatureDetector::create())})
+        expectError(Error::StsBadArg, "give create() the scale factor",
+                [&] { IIB::scaleFactorFor(AffineFeature::create(backend)); });
+}
+
+TEST(IIB_CreateFor, errors)
+{
+    expectError(Error::StsNullPtr, "detector is null", [] { IIB::createFor(Ptr<Feature2D>()); });
+    for (const Ptr<Feature2D>& unknown : {Ptr<Feature2D>(makePtr<Unknown>()),
+                 Ptr<Feature2D>(NormalizedDetector::create(makePtr<Unknown>()))})
+        expectError(Error::StsBadArg, "Unknown", [&] { IIB::createFor(unknown); });
+    expectError(Error::StsBadArg, "give create() the ROS side divided by KeyPoint::size",
+            [] { IIB::createFor(makePtr<Unknown>()); });
+    for (int preset : {-2, 1000})
+        expectError(Error::StsBadArg, format("preset is %d", preset),
+                [=] { IIB::createFor(ORB::create(), preset); });
+}
+
+}  // namespace
+}  // namespace opencv_test

@@ -1,0 +1,47 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_TEST_DETECTOR_NORMALIZATION_ORACLE_HPP
+#define OPENCV_IIB_TEST_DETECTOR_NORMALIZATION_ORACLE_HPP
+
+#include "../test_precomp.hpp"
+
+namespace oracle {
+
+//! Local normalization once more, pixel by pixel: of CV_8U or CV_16U, the same integers as the library's.
+cv::Mat normalizeLocally(const cv::Mat& grey, double sigma);
+
+//! Its definition, with Gaussian filters in floats: 128 + 40 (I - G*I) / (sqrt(G*(I - G*I)^2) + 2) of CV_8U.
+cv::Mat normalizeByDefinition(const cv::Mat& grey, double sigma);
+
+}  // namespace oracle
+
+namespace opencv_test {
+
+//! Keeps the image that it is given and finds nothing.
+class CaptureDetector : public Feature2D
+{
+public:
+    using Feature2D::detect;
+    void detect(InputArray image, std::vector<KeyPoint>& keypoints, InputArray) CV_OVERRIDE
+    {
+        image.copyTo(seen);
+        keypoints.clear();
+    }
+
+    Mat seen;
+};
+
+//! What a detector in a NormalizedDetector sees.
+inline Mat normalized(InputArray image, float sigma)
+{
+    const Ptr<CaptureDetector> capture = makePtr<CaptureDetector>();
+    std::vector<KeyPoint> keypoints;
+    NormalizedDetector::create(capture, sigma)->detect(image, keypoints);
+    return capture->seen;
+}
+
+}  // namespace opencv_test
+
+#endif

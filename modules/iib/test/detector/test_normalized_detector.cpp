@@ -1,0 +1,174 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/test_errors.hpp"
+#include "../support/test_images.hpp"
+#include "normalization_oracle.hpp"
+
+namespace opencv_test {
+namespace {
+
+TEST(IIB_NormalizedDetector, finds_the_keypoints_of_the_normalized_image)
+{
+    const Mat image = relit(scene(Size(320, 240), 1), 2);
+    for (const Ptr<Feature2D>& detector : {Ptr<Feature2D>(ORB::create()), Ptr<Feature2D>(AKAZE::create())})
+    {
+        std::vector<KeyPoint> expected, actual, plain;
+        detector->detect(oracle::normalizeLocally(image, 4), expected);
+        const Ptr<NormalizedDetector> normalizedDetector = NormalizedDetector::create(detector);
+        normalizedDetector->detect(image, actual);
+        ASSERT_GT(expected.size(), 50u);
+        expectSameKeyPoints(expected, actual);
+
+        Mat mask = Mat::zeros(image.size(), CV_8U);
+        mask.colRange(0, 150) = 255;
+        detector->detect(oracle::normalizeLocally(image, 4), expected, mask);
+        normalizedDetector->detect(image, actual, mask);
+        ASSERT_GT(expected.size(), 10u);
+        expectSameKeyPoints(expected, actual);
+    }
+}
+
+TEST(IIB_NormalizedDetector, describes_the_plain_image_with_the_detector_inside)
+{
+    const Mat image = relit(scene(Size(320, 240), 1), 2);
+    const Ptr<Feature2D> orb = ORB::create();
+    const Ptr<NormalizedDetector> detector = NormalizedDetector::create(orb, 3.f);
+    EXPECT_EQ(orb->descriptorSize(), detector->descriptorSize());
+    EXPECT_EQ(orb->descriptorType(), detector->descriptorType());
+    EXPECT_EQ(orb->defaultNorm(), detector->defaultNorm());
+    EXPECT_FALSE(detector->empty());
+
+    std::vector<KeyPoint> expected, keypoints;
+    Mat expectedDescriptors, descriptors;
+    detector->detect(image, expected);
+    std::vector<KeyPoint> detected = expected;
+    orb->compute(image, expected, expectedDescriptors);
+    detector->detectAndCompute(image, noArray(), keypoints, descriptors);
+    expectSameKeyPoints(expected, keypoints);
+    EXPECT_EQ(0, differingBits(expectedDescriptors, descriptors));
+
+    keypoints = detected;
+    detector->compute(image, keypoints, descriptors);
+    EXPECT_EQ(0, differingBits(expectedDescriptors, descriptors));
+    keypoints = detected;
+    detector->detectAndCompute(image, noArray(), keypoints, descriptors, true);
+    EXPECT_EQ(0, differingBits(expectedDescriptors, descriptors));
+    detector->detectAndCompute(image, noArray(), keypoints, noArray());
+    expectSameKeyPoints(detected, keypoints);
+}
+
+TEST(IIB_NormalizedDetector, errors)
+{
+    expectError(Error::StsNullPtr, "detector is null", [] { NormalizedDetector::create(Ptr<Feature2D>()); });
+    for (float sigma : {0.f, -4.f, 0.99f, 257.f, NOT_A_NUMBER, ENDLESS})
+    {
+        expectError(Error::StsOutOfRange, "sigma", [&] { NormalizedDetector::create(ORB::create(), sigma); });
+        const Ptr<NormalizedDetector> detector = NormalizedDetector::create(ORB::create());
+        expectError(Error::StsOutOfRange, "sigma", [&] { detector->setSigma(sigma); });
+        EXPECT_EQ(4.f, detector->getSigma());
+    }
+
+    const Ptr<NormalizedDetector> fast = NormalizedDetector::create(FastFeatureDetector::create());
+    std::vector<KeyPoint> keypoints;
+    Mat descriptors;
+    const Mat image = texture(Size(100, 80), CV_8U, 1);
+    fast->detect(image, keypoints);
+    EXPECT_FALSE(keypoints.empty());
+    expectError(Error::StsNotImplemented, "createFor", [&] { fast->compute(image, keypoints, descriptors); });
+    expectError(Error::StsNotImplemented, "createFor",
+            [&] { fast->detectAndCompute(image, noArray(), keypoints, descriptors); });
+    expectError(Error::StsBadArg, "2 channels", [&] { fast->detect(Mat(30, 30, CV_8UC2), keypoints); });
+    expectError(Error::StsUnsupportedFormat, "CV_64F",
+            [&] { fast->detect(Mat::zeros(30, 30, CV_64F), keypoints); });
+    Mat broken = Mat::zeros(30, 30, CV_32F);
+    broken.at<float>(7, 9) = NOT_A_NUMBER;
+    expectError(Error::StsBadArg, "(9, 7)", [&] { fast->detect(broken, keypoints); });
+
+    keypoints.resize(3);
+    fast->detect(Mat(), keypoints);
+    EXPECT_TRUE(keypoints.empty());
+}
+
+TEST(IIB_NormalizedDetector, parameters_and_files)
+{
+    const Ptr<Feature2D> inside = AKAZE::create();
+    inside.dynamicCast<AKAZE>()->setThreshold(0.0003);
+    const Ptr<NormalizedDetector> detector = NormalizedDetector::create(inside, 5.f);
+    EXPECT_EQ(inside, detector->getDetector());
+    detector->setSigma(6.5f);
+    EXPECT_EQ(6.5f, detector->getSigma());
+    EXPECT_EQ("Feature2D.NormalizedDetector", detector->getDefaultName());
+
+    const String file = cv::tempfile(".yml");
+    detector->save(file);
+    const Ptr<AKAZE> akaze = AKAZE::create();
+    const Ptr<NormalizedDetector> copy = NormalizedDetector::create(akaze);
+    FileStorage fs(file, FileStorage::READ);
+    copy->read(fs.getFirstTopLevelNode());
+    EXPECT_EQ(6.5f, copy->getSigma());
+    EXPECT_FLOAT_EQ(0.0003f, (float)akaze->getThreshold());
+    expectError(Error::StsParseError, "AKAZE",
+            [&] { NormalizedDetector::create(ORB::create())->read(fs.getFirstTopLevelNode()); });
+    expectError(Error::StsParseError, "NormalizedDetector", [&] { copy->read(FileNode()); });
+    fs.release();
+    std::remove(file.c_str());
+}
+
+struct DetectorGain
+{
+    Ptr<Feature2D> detector;
+    double gain;  //!< right matches at normalized points by those at plain points, a little less than was measured
+};
+
+int correctMatches(const Ptr<Feature2D>& detector, float scaleFactor, const Mat images[2])
+{
+    const Ptr<IIB> iib = IIB::create(scaleFactor);
+    std::vector<KeyPoint> keypoints[2];
+    Mat descriptors[2];
+    for (int i = 0; i < 2; i++)
+    {
+        detector->detect(images[i], keypoints[i]);
+        KeyPointsFilter::retainBest(keypoints[i], 1000);
+        descriptors[i] = describe(*iib, images[i], keypoints[i]);
+    }
+    std::vector<DMatch> matches;
+    HierarchicalMatcher::create(iib->levelSizes(), HierarchicalMatcher::EXACT, 0.35f, true)
+            ->match(descriptors[0], descriptors[1], matches);
+    int correct = 0;
+    for (const DMatch& m : matches)
+        correct += cv::norm(keypoints[0][m.queryIdx].pt - keypoints[1][m.trainIdx].pt) <= 3;
+    return correct;
+}
+
+// Real images by day and night, below OPENCV_TEST_DATA_PATH; without them the test skips.
+TEST(IIB_NormalizedDetector, right_matches_by_changed_light)
+{
+    const DetectorGain detectors[] = {
+            {AKAZE::create(AKAZE::DESCRIPTOR_MLDB, 0, 3, 0.0003f), 1.05}, {ORB::create(1000), 1.15}};
+    const char* pairs[][2] = {{"amos_daynight/cam01/1.png", "amos_daynight/cam01/4.png"},
+            {"amos_daynight/cam04/1.png", "amos_daynight/cam04/3.png"},
+            {"tilde_webcam/chamonix/1.png", "tilde_webcam/chamonix/5.png"},
+            {"tilde_webcam/courbevoie/1.png", "tilde_webcam/courbevoie/6.png"}};
+    for (const DetectorGain& d : detectors)
+    {
+        const float factor = IIB::scaleFactorFor(d.detector);
+        int plain = 0, normalizedPoints = 0;
+        for (const auto& pair : pairs)
+        {
+            Mat images[2];
+            for (int i = 0; i < 2; i++)
+                images[i] = imread(
+                        cvtest::findDataFile(String("illumination/") + pair[i], false), IMREAD_GRAYSCALE);
+            plain += correctMatches(d.detector, factor, images);
+            normalizedPoints += correctMatches(NormalizedDetector::create(d.detector), factor, images);
+        }
+        std::cout << format("[          ] %s: %d right matches at plain points, %d at normalized ones\n",
+                d.detector->getDefaultName().c_str(), plain, normalizedPoints);
+        EXPECT_GE(normalizedPoints, d.gain * plain);
+    }
+}
+
+}  // namespace
+}  // namespace opencv_test
