@@ -1,0 +1,114 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../precomp.hpp"
+
+#include "opencv2/iib/rotation.hpp"
+
+namespace cv {
+namespace iib {
+
+namespace {
+
+enum
+{
+    BINS = 360,
+    REACH = 4,          //!< a vote counts for the bins this near, less for farther ones
+    MAX_VOTES = 200000  //!< more pairs of matches would not change the result
+};
+
+//! Degrees from 0 to 360.
+double directionOf(Point2d v)
+{
+    const double degrees = std::atan2(v.y, v.x) * 180 / CV_PI;
+    return degrees < 0 ? degrees + 360 : degrees;
+}
+
+//! Votes of angles, whole degrees apart; with the sums of their parts of degrees.
+class Votes
+{
+public:
+    Votes() : counts(BINS), sums(BINS), any(false) {}
+
+    void add(double degrees)
+    {
+        const int bin = std::min((int)degrees, BINS - 1);
+        counts[bin]++;
+        sums[bin] += degrees - bin;
+        any = true;
+    }
+
+    bool empty() const { return !any; }
+
+    //! The mean of the votes around the peak.
+    double peak() const
+    {
+        int best = 0;
+        double most = -1;
+        for (int i = 0; i < BINS; i++)
+        {
+            double score = 0;
+            for (int j = -REACH; j <= REACH; j++)
+                score += (REACH + 1 - std::abs(j)) * counts[(i + j + BINS) % BINS];
+            if (score > most)
+            {
+                most = score;
+                best = i;
+            }
+        }
+        double count = 0, sum = 0;
+        for (int j = -REACH; j <= REACH; j++)
+        {
+            const int bin = (best + j + BINS) % BINS;
+            count += counts[bin];
+            sum += counts[bin] * j + sums[bin];
+        }
+        const double angle = std::fmod(best + sum / count + 360, 360);
+        return angle < 360 ? angle : 0;
+    }
+
+private:
+    std::vector<double> counts, sums;
+    bool any;
+};
+
+}  // namespace
+
+double estimateRotation(const std::vector<KeyPoint>& keypoints1, const std::vector<KeyPoint>& keypoints2,
+        const std::vector<DMatch>& matches)
+{
+    std::vector<Point2d> from, to;
+    for (const DMatch& m : matches)
+    {
+        if (m.queryIdx < 0 || (size_t)m.queryIdx >= keypoints1.size() || m.trainIdx < 0 ||
+                (size_t)m.trainIdx >= keypoints2.size())
+            CV_Error(Error::StsOutOfRange,
+                    format("a match is of keypoints %d and %d; there are %d and %d", m.queryIdx, m.trainIdx,
+                            (int)keypoints1.size(), (int)keypoints2.size()));
+        from.push_back(keypoints1[m.queryIdx].pt);
+        to.push_back(keypoints2[m.trainIdx].pt);
+    }
+    const size_t n = from.size();
+    const size_t offsets = n < 2 ? 0 : std::min(n - 1, std::max(MAX_VOTES / n, (size_t)1));
+    Votes votes;
+    for (size_t k = 1; k <= offsets; k++)
+    {
+        const size_t offset = k * (n - 1) / offsets;
+        for (size_t i = 0; i < n; i++)
+        {
+            const size_t j = (i + offset) % n;
+            const Point2d before = from[j] - from[i], after = to[j] - to[i];
+            if (before == Point2d() || after == Point2d())
+                continue;
+            const double turn = directionOf(after) - directionOf(before);
+            votes.add(turn < 0 ? turn + 360 : turn);
+        }
+    }
+    if (votes.empty())
+        CV_Error(Error::StsBadArg, format("%d matches; a rotation needs two whose positions differ", (int)n));
+    return votes.peak();
+}
+
+}  // namespace iib
+}  // namespace cv
