@@ -72,6 +72,27 @@ PERF_TEST_P(IIB_Match, match_10000, testing::Combine(Method::all(), testing::Boo
     SANITY_CHECK_NOTHING();
 }
 
+// The points of a video frame against those of the last one.
+typedef perf::TestBaseWithParam<tuple<Method, bool, int>> IIB_MatchFrame;  // method, crossCheck, points
+
+PERF_TEST_P(
+        IIB_MatchFrame, match, testing::Combine(Method::all(), testing::Bool(), testing::Values(500, 1000)))
+{
+    const int points = get<2>(GetParam()), step = Pair::get().queries.rows / points;
+    Mat queries, trains;
+    for (int i = 0; i < points; i++)
+    {
+        queries.push_back(Pair::get().queries.row(i * step));
+        trains.push_back(Pair::get().trains.row(i * step));
+    }
+    const Ptr<DescriptorMatcher> matcher =
+            createMatcher(get<0>(GetParam()), Pair::get().levels, get<1>(GetParam()));
+    setNumThreads(1);
+    std::vector<DMatch> matches;
+    TEST_CYCLE() matcher->match(queries, trains, matches);
+    SANITY_CHECK_NOTHING();
+}
+
 typedef perf::TestBaseWithParam<Method> IIB_MatchTwo;
 
 PERF_TEST_P(IIB_MatchTwo, two_nearest_with_ratio,

@@ -6,194 +6,155 @@
 #include "index_file.hpp"
 
 #include <cstring>
-#include <fstream>
 
 namespace cv {
 namespace iib {
 
-namespace {
+static const char MAGIC[] = "IIBINDEX";
+static const size_t MAGIC_SIZE = sizeof(MAGIC) - 1;
+static const unsigned VERSION = 1;
 
-const char MAGIC[] = "IIBINDEX";
-const unsigned VERSION = 1;
-
-class Fnv1a
+IndexWriter::IndexWriter(const String& filename, const IndexHeader& header) : file(filename)
 {
-public:
-    Fnv1a() : state(0xcbf29ce484222325ull) {}
-    void add(const char* data, size_t size)
-    {
-        for (size_t i = 0; i < size; i++)
-            state = (state ^ (uchar)data[i]) * 0x100000001b3ull;
-    }
-    uint64 value() const { return state; }
-
-private:
-    uint64 state;
-};
-
-class Writer
-{
-public:
-    explicit Writer(const String& filename) : name(filename), stream(filename.c_str(), std::ios::binary) {}
-    void bytes(const void* data, size_t size)
-    {
-        hash.add((const char*)data, size);
-        stream.write((const char*)data, size);
-    }
-    void number(uint64 value, int size)
-    {
-        char data[8];
-        for (int i = 0; i < size; i++)
-            data[i] = (char)(value >> 8 * i);
-        bytes(data, size);
-    }
-    void real(float value)
-    {
-        unsigned word;
-        std::memcpy(&word, &value, sizeof(word));
-        number(word, 4);
-    }
-    void finish()
-    {
-        number(hash.value(), 8);
-        stream.close();
-        if (!stream)
-            CV_Error(Error::StsError,
-                    "Cannot write " + name + ": check the folder, its rights and the free space");
-    }
-
-private:
-    String name;
-    std::ofstream stream;
-    Fnv1a hash;
-};
-
-class Reader
-{
-public:
-    explicit Reader(const String& filename)
-        : name(filename), stream(filename.c_str(), std::ios::binary), left(0)
-    {
-        stream.seekg(0, std::ios::end);
-        const std::streamoff size = stream.tellg();
-        stream.seekg(0);
-        if (!stream || size < 0)
-            CV_Error(Error::StsError, "Cannot read " + name);
-        left = (uint64)size;
-    }
-    // Whatever the file claims, no more memory is asked for than it has bytes.
-    void expect(uint64 count, uint64 size)
-    {
-        if (size != 0 && count > left / size)
-            fail("it is truncated or altered");
-    }
-    void bytes(void* data, size_t size)
-    {
-        expect(size, 1);
-        stream.read((char*)data, size);
-        if (!stream)
-            fail("it is truncated");
-        hash.add((const char*)data, size);
-        left -= size;
-    }
-    uint64 number(int size)
-    {
-        uchar data[8];
-        bytes(data, size);
-        uint64 value = 0;
-        for (int i = 0; i < size; i++)
-            value |= (uint64)data[i] << 8 * i;
-        return value;
-    }
-    unsigned word() { return (unsigned)number(4); }
-    float real()
-    {
-        const unsigned bits = word();
-        float value;
-        std::memcpy(&value, &bits, sizeof(value));
-        return value;
-    }
-    void finish()
-    {
-        const uint64 expected = hash.value();
-        if (number(8) != expected || left != 0)
-            fail("it is altered: its checksum does not fit");
-    }
-    void fail(const String& why) const
-    {
-        CV_Error(Error::StsParseError, name + " cannot be read as an index of HierarchicalMatcher: " + why);
-    }
-
-private:
-    String name;
-    std::ifstream stream;
-    uint64 left;
-    Fnv1a hash;
-};
-
-}  // namespace
-
-void writeIndexFile(const String& filename, const IndexFile& file)
-{
-    Writer out(filename);
-    out.bytes(MAGIC, sizeof(MAGIC) - 1);
-    out.number(VERSION, 4);
-    out.number(file.levelSizes.size(), 4);
-    for (size_t i = 0; i < file.levelSizes.size(); i++)
-        out.number(file.levelSizes[i], 4);
-    out.number(file.mode, 4);
-    out.number(file.crossCheck, 4);
-    out.real(file.maxRatio);
-    for (size_t i = 0; i < file.thresholds.size(); i++)
-        out.real(file.thresholds[i]);
-    out.number(file.images.size(), 8);
-    for (size_t i = 0; i < file.images.size(); i++)
-        out.number(file.images[i].rows, 8);
-    for (size_t i = 0; i < file.images.size(); i++)
-        out.bytes(file.images[i].data, file.images[i].total());
-    out.finish();
+    const MatcherParameters& p = header.parameters;
+    bytes(MAGIC, MAGIC_SIZE);
+    number(VERSION, 4);
+    number(p.levelSizes.size(), 4);
+    for (size_t i = 0; i < p.levelSizes.size(); i++)
+        number(p.levelSizes[i], 4);
+    number(p.mode, 4);
+    number(p.crossCheck, 4);
+    real(p.maxRatio);
+    for (size_t i = 0; i < p.thresholds.size(); i++)
+        real(p.thresholds[i]);
+    number(header.rows.size(), 8);
+    for (size_t i = 0; i < header.rows.size(); i++)
+        number(header.rows[i], 8);
 }
 
-IndexFile readIndexFile(const String& filename)
+void IndexWriter::finish()
 {
-    Reader in(filename);
-    char magic[sizeof(MAGIC) - 1];
-    in.bytes(magic, sizeof(magic));
-    if (std::memcmp(magic, MAGIC, sizeof(magic)) != 0)
-        in.fail("it is a file of another kind");
-    const unsigned version = in.word();
-    if (version == 0 || version > VERSION)
-        in.fail(format("its format %u is newer than this library's, %u", version, VERSION));
+    number(hash.value(), 8);
+    file.commit();
+}
 
-    IndexFile file;
-    const unsigned levels = in.word();
-    in.expect(levels, 4);
+void IndexWriter::bytes(const void* data, size_t size)
+{
+    hash.add(data, size);
+    file.write(data, size);
+}
+
+void IndexWriter::number(uint64 value, int size)
+{
+    uchar data[8];
+    for (int i = 0; i < size; i++)
+        data[i] = (uchar)(value >> 8 * i);
+    bytes(data, size);
+}
+
+void IndexWriter::real(float value)
+{
+    unsigned word;
+    std::memcpy(&word, &value, sizeof(word));
+    number(word, 4);
+}
+
+IndexReader::IndexReader(const String& filename)
+    : name(filename), stream(filename.c_str(), std::ios::binary), left(0)
+{
+    stream.seekg(0, std::ios::end);
+    const std::streamoff size = stream.tellg();
+    stream.seekg(0);
+    if (!stream || size < 0)
+        CV_Error(Error::StsError, "Cannot read " + name);
+    left = (uint64)size;
+    readHeader();
+}
+
+void IndexReader::readHeader()
+{
+    char magic[MAGIC_SIZE];
+    bytes(magic, sizeof(magic));
+    if (std::memcmp(magic, MAGIC, sizeof(magic)) != 0)
+        fail("it is a file of another kind");
+    const unsigned version = word();
+    if (version == 0)
+        fail("its format 0 does not exist: it is altered");
+    if (version > VERSION)
+        fail(format("its format %u is newer than this library's, %u", version, VERSION));
+
+    MatcherParameters& p = head.parameters;
+    const unsigned levels = word();
+    expect(levels, 4);
     uint64 width = 0;
     for (unsigned i = 0; i < levels; i++)
     {
-        file.levelSizes.push_back((int)in.word());
-        width += (unsigned)file.levelSizes.back();
+        p.levelSizes.push_back((int)word());
+        width += (unsigned)p.levelSizes.back();
     }
-    file.mode = (int)in.word();
-    file.crossCheck = in.word() != 0;
-    file.maxRatio = in.real();
+    p.mode = (int)word();
+    p.crossCheck = word() != 0;
+    p.maxRatio = real();
     for (unsigned i = 1; i < levels; i++)
-        file.thresholds.push_back(in.real());
-    const uint64 images = in.number(8);
-    in.expect(images, 8);
-    std::vector<uint64> rows((size_t)images);
-    for (size_t i = 0; i < rows.size(); i++)
-        rows[i] = in.number(8);
-    for (size_t i = 0; i < rows.size(); i++)
+        p.thresholds.push_back(real());
+
+    const uint64 images = number(8);
+    expect(images, 8);
+    head.rows.resize((size_t)images);
+    uint64 total = 0;
+    for (size_t i = 0; i < head.rows.size(); i++)
     {
-        in.expect(rows[i], width);
-        if (rows[i] > INT_MAX || width > INT_MAX || (width == 0 && rows[i] > 0))
-            in.fail("its numbers do not make sense");
-        file.images.push_back(Mat((int)rows[i], (int)width, CV_8U));
-        in.bytes(file.images.back().data, file.images.back().total());
+        total += head.rows[i] = number(8);
+        if (head.rows[i] > INT_MAX || width > INT_MAX || (width == 0 && head.rows[i] > 0))
+            fail("its numbers do not make sense");
+        expect(total, width);
     }
-    in.finish();
-    return file;
+}
+
+void IndexReader::finish()
+{
+    const uint64 expected = hash.value();
+    if (number(8) != expected || left != 0)
+        fail("it is altered: its checksum does not fit");
+}
+
+void IndexReader::expect(uint64 count, uint64 size) const
+{
+    if (size != 0 && count > left / size)
+        fail("it is truncated or altered");
+}
+
+void IndexReader::bytes(void* data, size_t size)
+{
+    expect(size, 1);
+    stream.read((char*)data, size);
+    if (!stream)
+        fail("it is truncated");
+    hash.add(data, size);
+    left -= size;
+}
+
+uint64 IndexReader::number(int size)
+{
+    uchar data[8];
+    bytes(data, size);
+    uint64 value = 0;
+    for (int i = 0; i < size; i++)
+        value |= (uint64)data[i] << 8 * i;
+    return value;
+}
+
+float IndexReader::real()
+{
+    const unsigned bits = word();
+    float value;
+    std::memcpy(&value, &bits, sizeof(value));
+    return value;
+}
+
+void IndexReader::fail(const String& why) const
+{
+    CV_Error(Error::StsParseError, name + " cannot be read as an index of HierarchicalMatcher: " + why);
 }
 
 }  // namespace iib

@@ -10,8 +10,15 @@
 namespace cv {
 namespace iib {
 
-//! The descriptors if they are of `width` bytes each, 0 x width if there are none; throws otherwise.
-Mat checkedDescriptors(const Mat& descriptors, int width);
+//! One matrix of descriptors, or several, of one image each.
+std::vector<Mat> imagesOf(InputArrayOfArrays descriptors);
+
+//! Bytes of a descriptor of the first image that has any; 0 if none has.
+int widthOf(const std::vector<Mat>& images);
+
+//! The descriptors if they are of `width` bytes each, 0 x width if there are none; throws otherwise. `byFirstCodes`
+//! tells the error where the width came from: from the codes that came first, or from level sizes.
+Mat checkedDescriptors(const Mat& descriptors, int width, bool byFirstCodes);
 
 //! A mask for each image of the index, or none if all are empty; throws where one does not fit.
 std::vector<Mat> checkedMasks(InputArrayOfArrays masks, int queries, const PackedCodes& index);

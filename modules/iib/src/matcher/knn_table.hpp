@@ -26,9 +26,9 @@ inline size_t indexOf(MatchKey n) { return (size_t)(n & (((MatchKey)1 << INDEX_B
 class KnnTable
 {
 public:
-    //! `padding` more entries are there for vectors that read below() past the end.
+    //! `padding` more entries are there for vectors that read thresholds() past the end.
     KnnTable(size_t rows, int k_, size_t padding = 0)
-        : k(k_), keys(rows * k_, NO_MATCH), thresholds(rows + padding, INT_MAX)
+        : k(k_), keys(rows * k_, NO_MATCH), nearest(rows + padding, INT_MAX)
     {
     }
 
@@ -37,7 +37,8 @@ public:
     MatchKey* operator[](size_t row) { return &keys[row * k]; }
     const MatchKey* operator[](size_t row) const { return &keys[row * k]; }
     //! For each row: a new neighbour with a higher index has to be nearer than this.
-    const int* below() const { return thresholds.data(); }
+    const int* thresholds() const { return nearest.data(); }
+    int* thresholds() { return nearest.data(); }
 
     void insert(size_t row, MatchKey n)
     {
@@ -49,7 +50,7 @@ public:
         std::copy_backward(place, last, last + 1);
         *place = n;
         if (*last != NO_MATCH)
-            thresholds[row] = distanceOf(*last);
+            nearest[row] = distanceOf(*last);
     }
 
     void merge(const KnnTable& other)
@@ -62,7 +63,7 @@ public:
 private:
     int k;
     std::vector<MatchKey> keys;
-    std::vector<int> thresholds;
+    std::vector<int> nearest;  // distance of the k-th
 };
 
 }  // namespace iib

@@ -4,7 +4,7 @@
 
 #include "../precomp.hpp"
 #include "packed_codes.hpp"
-#include "blocked_search.hpp"
+#include "knn_table.hpp"
 
 namespace cv {
 namespace iib {
@@ -12,12 +12,13 @@ namespace iib {
 static const int CODES_PER_BLOCK = CodeLayout::CODES_PER_BLOCK;
 
 PackedCodes::PackedCodes(const std::vector<int>& levelSizes)
-    : format(levelSizes, hammingPacking()), starts(1, 0)
+    : scans(hammingKernels()), format(levelSizes, scans.packing), starts(1, 0), filled(0)
 {
 }
 
 PackedCodes::PackedCodes(const PackedCodes& other)
-    : format(other.format), starts(other.starts), codes(other.codes.clone())
+    : scans(other.scans), format(other.format), starts(other.starts),
+      codes(other.codes.rowRange(0, other.filled).clone()), filled(other.filled)
 {
 }
 
@@ -26,111 +27,83 @@ size_t PackedCodes::imageOf(size_t row) const
     return std::upper_bound(starts.begin(), starts.end(), row) - starts.begin() - 1;
 }
 
-// Not by Mat::resize: when memory lacks, it leaves the matrix larger than its memory.
-void PackedCodes::grow(int groups)
+static int blocksFor(size_t rows)
 {
-    const int before = codes.rows;
-    if (groups == before)
-        return;
-    Size whole;
-    Point offset;
-    if (before > 0)
-        codes.locateROI(whole, offset);
-    if (groups > whole.height)
-    {
-        Mat larger(std::max(groups, (int)std::min((int64)before * 3 / 2, (int64)INT_MAX)),
-                format.words() * CODES_PER_BLOCK, CV_32S);
-        if (before > 0)
-            codes.copyTo(larger.rowRange(0, before));
-        codes = larger.rowRange(0, groups);
-    }
-    else
-        codes.adjustROI(0, groups - before, 0, 0);
-    std::fill(codes.ptr<unsigned>(before),
-            codes.ptr<unsigned>(before) + (size_t)(groups - before) * codes.cols, 0u);
+    const size_t blocks = (rows + CODES_PER_BLOCK - 1) / CODES_PER_BLOCK;
+    CV_Assert(blocks <= INT_MAX && rows < (size_t)1 << INDEX_BITS);
+    return (int)blocks;
+}
+
+void PackedCodes::grow(int blocks)
+{
+    if (blocks > codes.rows)
+        allocate(std::max(blocks, (int)std::min((int64)filled * 3 / 2, (int64)INT_MAX)));
+    if (blocks > filled)
+        codes.rowRange(filled, blocks).setTo(0);
+    filled = blocks;
+}
+
+// Not by Mat::resize: when memory lacks, it leaves the matrix larger than its memory.
+void PackedCodes::allocate(int blocks)
+{
+    Mat larger(blocks, (int)format.blockWords(), CV_32S);
+    if (filled > 0)
+        codes.rowRange(0, filled).copyTo(larger.rowRange(0, filled));
+    codes = larger;
+}
+
+void PackedCodes::reserve(size_t images, size_t rows)
+{
+    starts.reserve(images + 1);
+    if (blocksFor(rows) > codes.rows)
+        allocate(blocksFor(rows));
 }
 
 void PackedCodes::add(const Mat& descriptors)
 {
-    const size_t end = rows() + descriptors.rows, groups = (end + CODES_PER_BLOCK - 1) / CODES_PER_BLOCK;
-    CV_Assert(groups <= INT_MAX && end < (size_t)1 << INDEX_BITS);
     // Whatever needs memory comes before the first change.
-    std::vector<unsigned> code(format.words());
     if (starts.size() == starts.capacity())
         starts.reserve(2 * starts.size());
-    grow((int)groups);
-    for (int i = 0; i < descriptors.rows; i++)
-    {
-        const size_t row = rows() + i;
-        format.arrange(descriptors.ptr(i), code.data());
-        format.store(code.data(), codes.ptr<unsigned>((int)(row / CODES_PER_BLOCK)), row % CODES_PER_BLOCK);
-    }
-    starts.push_back(end);
+    grow(blocksFor(rows() + descriptors.rows));
+    starts.push_back(rows());
+    store(descriptors);
 }
 
-Mat PackedCodes::descriptors(size_t image) const
+void PackedCodes::append(const Mat& descriptors)
 {
-    Mat result((int)rows(image), format.bytes(), CV_8U);
+    CV_Assert(images() > 0);
+    grow(blocksFor(rows() + descriptors.rows));
+    store(descriptors);
+}
+
+void PackedCodes::store(const Mat& descriptors)
+{
+    for (int i = 0; i < descriptors.rows;)
+    {
+        const size_t row = rows() + i;
+        unsigned* const block = codes.ptr<unsigned>((int)(row / CODES_PER_BLOCK));
+        const int lane = (int)(row % CODES_PER_BLOCK);
+        if (lane == 0 && i + CODES_PER_BLOCK <= descriptors.rows)
+        {
+            format.storeBlock(descriptors.ptr(i), descriptors.step, block);
+            i += CODES_PER_BLOCK;
+        }
+        else
+            format.store(descriptors.ptr(i++), block, lane);
+    }
+    starts.back() += descriptors.rows;
+}
+
+Mat PackedCodes::descriptors(size_t image, size_t from, size_t to) const
+{
+    Mat result((int)(to - from), format.bytes(), CV_8U);
     AutoBuffer<unsigned> plain(format.words());
     for (int i = 0; i < result.rows; i++)
     {
-        const size_t row = starts[image] + i;
-        format.fetch(codes.ptr<unsigned>((int)(row / CODES_PER_BLOCK)), row % CODES_PER_BLOCK, plain.data());
+        const size_t row = starts[image] + from + i;
+        format.fetch(block((int)(row / CODES_PER_BLOCK)), (int)(row % CODES_PER_BLOCK), plain.data());
         format.restore(plain.data(), result.ptr(i));
     }
-    return result;
-}
-
-// Leaves the pairs that are among the nearest in both directions.
-static void keepMutual(KnnTable& forQueries, const KnnTable& forTrains)
-{
-    for (size_t query = 0; query < forQueries.rows(); query++)
-    {
-        MatchKey *first = forQueries[query], *last = first + forQueries.size();
-        MatchKey* end = std::remove_if(first, last, [&](MatchKey n) {
-            if (n == NO_MATCH)
-                return true;
-            const MatchKey* back = forTrains[indexOf(n)];
-            return !std::binary_search(back, back + forTrains.size(), matchKey(distanceOf(n), query));
-        });
-        std::fill(end, last, NO_MATCH);
-    }
-}
-
-static bool passesRatio(const MatchKey* row, float maxRatio)
-{
-    return row[1] == NO_MATCH || distanceOf(row[0]) < (double)maxRatio * distanceOf(row[1]);
-}
-
-KnnTable PackedCodes::nearest(const Mat& queries, const PruningPolicy& plan, int k, bool mutual,
-        float maxRatio, const std::vector<Mat>& masks, SearchCost& cost) const
-{
-    // Each direction has as many neighbours as the other side has codes, at most.
-    const int backK = std::min(k, std::max(queries.rows, 1));
-    k = (int)std::min((size_t)k, std::max(rows(), (size_t)1));
-    const bool ratio = maxRatio < 1;
-    KnnTable forQueries(queries.rows, std::max(k, ratio ? 2 : 1));
-    KnnTable forTrains(mutual ? rows() : 0, backK, CODES_PER_BLOCK);
-    const BlockedSearch sweep(*this, codes, queries, plan, masks);
-    cost = sweep.nearest(forQueries, mutual ? &forTrains : 0);
-
-    KnnTable result(queries.rows, k);
-    for (int query = 0; query < queries.rows; query++)
-        if (!ratio || passesRatio(forQueries[query], maxRatio))
-            std::copy(forQueries[query], forQueries[query] + k, result[query]);
-    if (mutual)
-        keepMutual(result, forTrains);
-    return result;
-}
-
-std::vector<std::vector<MatchKey>> PackedCodes::within(const Mat& queries, const PruningPolicy& plan,
-        int radius, const std::vector<Mat>& masks, SearchCost& cost) const
-{
-    std::vector<std::vector<MatchKey>> result(queries.rows);
-    const BlockedSearch sweep(*this, codes, queries, plan, masks);
-    cost = sweep.within(radius, result);
-    for (size_t query = 0; query < result.size(); query++)
-        std::sort(result[query].begin(), result[query].end());
     return result;
 }
 

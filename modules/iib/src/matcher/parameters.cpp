@@ -14,11 +14,15 @@ void checkThreshold(float threshold)
         CV_Error_(Error::StsOutOfRange, ("the threshold is %g: it has to be 0 to 1", threshold));
 }
 
-void check(const MatcherParameters& p)
+void checkLevelSizesGiven(const std::vector<int>& levelSizes)
 {
-    if (p.levelSizes.empty())
+    if (levelSizes.empty())
         CV_Error(Error::StsBadArg,
                 "levelSizes is empty: give the bytes of each level, or the descriptor's size");
+}
+
+void check(const MatcherParameters& p)
+{
     uint64 width = 0;
     for (size_t i = 0; i < p.levelSizes.size(); i++)
     {
@@ -32,7 +36,7 @@ void check(const MatcherParameters& p)
     if (p.mode != HierarchicalMatcher::EXACT && p.mode != HierarchicalMatcher::THRESHOLD &&
             p.mode != HierarchicalMatcher::ADAPTIVE)
         CV_Error_(Error::StsBadArg, ("mode is %d: use EXACT, THRESHOLD or ADAPTIVE", p.mode));
-    if (p.thresholds.size() + 1 != p.levelSizes.size())
+    if (p.thresholds.size() != p.stages())
         CV_Error_(Error::StsBadArg,
                 ("%d thresholds for %d levels: give one for each level but the last, or a single "
                  "one for all",
@@ -41,29 +45,6 @@ void check(const MatcherParameters& p)
         checkThreshold(p.thresholds[i]);
     if (!(p.maxRatio > 0 && p.maxRatio <= 1))
         CV_Error_(Error::StsOutOfRange, ("maxRatio is %g: it has to be above 0 and at most 1", p.maxRatio));
-}
-
-void writeParameters(FileStorage& fs, const MatcherParameters& p)
-{
-    fs << "levelSizes" << p.levelSizes << "mode" << p.mode << "thresholds" << p.thresholds << "crossCheck"
-       << p.crossCheck << "maxRatio" << p.maxRatio;
-}
-
-MatcherParameters readParameters(const FileNode& node, const MatcherParameters& before)
-{
-    MatcherParameters p = before;
-    if (!node["levelSizes"].empty())
-    {
-        node["levelSizes"] >> p.levelSizes;
-        p.thresholds.assign(std::max(p.levelSizes.size(), (size_t)1) - 1, 0.35f);
-    }
-    cv::read(node["mode"], p.mode, p.mode);
-    if (!node["thresholds"].empty())
-        node["thresholds"] >> p.thresholds;
-    cv::read(node["crossCheck"], p.crossCheck, p.crossCheck);
-    cv::read(node["maxRatio"], p.maxRatio, p.maxRatio);
-    check(p);
-    return p;
 }
 
 }  // namespace iib

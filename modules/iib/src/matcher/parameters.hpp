@@ -12,20 +12,26 @@ namespace iib {
 
 struct MatcherParameters
 {
-    std::vector<int> levelSizes;
+    std::vector<int> levelSizes;  //!< empty: a single level, as wide as the first codes
     int mode;
-    std::vector<float> thresholds;  // one for each level but the last
+    std::vector<float> thresholds;  //!< one for each level but the last
     bool crossCheck;
     float maxRatio;
+
+    MatcherParameters() : mode(0), crossCheck(false), maxRatio(1) {}
+    //! How many thresholds there have to be.
+    size_t stages() const { return std::max(levelSizes.size(), (size_t)1) - 1; }
 };
 
 //! Throw a cv::Exception that says what is wrong.
 void checkThreshold(float threshold);
+void checkLevelSizesGiven(const std::vector<int>& levelSizes);
 void check(const MatcherParameters& p);
 
 void writeParameters(FileStorage& fs, const MatcherParameters& p);
-//! Those of a node; what it does not have stays as it was.
-MatcherParameters readParameters(const FileNode& node, const MatcherParameters& before);
+//! Those of a node that writeParameters filled, or of one that holds such a node under `name`, as Algorithm::save
+//! writes it. What the node does not have stays as it was; levelSizes it must have.
+MatcherParameters readParameters(const FileNode& node, const String& name, const MatcherParameters& before);
 
 }  // namespace iib
 }  // namespace cv

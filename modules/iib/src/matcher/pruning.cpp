@@ -3,55 +3,55 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../precomp.hpp"
-#include "packed_codes.hpp"
+#include "pruning.hpp"
 
 namespace cv {
 namespace iib {
 
-static void addStop(PruningPolicy& plan, int part, int most = PruneStage::NO_MAX)
+static void addStage(PruningPolicy& policy, int segment, int most = PruneStage::NO_MAX)
 {
-    const PruneStage stop = {part, most};
-    plan.stops.push_back(stop);
+    const PruneStage stage = {segment, most};
+    policy.stages.push_back(stage);
 }
 
 //! Random differences of n bits spread by sqrt(n) / 2 around n / 2.
 static double spread(int bits) { return std::sqrt((double)bits) / 2; }
 
-PruningPolicy exactPlan() { return PruningPolicy(); }
+PruningPolicy exactPolicy() { return PruningPolicy(); }
 
-// One stop, where most pairs are beyond the radius; none where they hardly ever are.
-PruningPolicy radiusPlan(const CodeLayout& layout, int radius)
+// One stage, where most pairs are beyond the radius; none where they hardly ever are.
+PruningPolicy radiusPolicy(const CodeLayout& layout, int radius)
 {
-    PruningPolicy plan;
-    plan.limit = radius;
-    for (int part = 0, bits = 0; part + 1 < layout.parts() && plan.stops.empty(); part++)
+    PruningPolicy policy;
+    policy.limit = radius;
+    for (int segment = 0, bits = 0; segment + 1 < layout.segments() && policy.stages.empty(); segment++)
     {
-        bits += layout.bits(part);
+        bits += layout.bits(segment);
         if (radius < bits / 2 - 4 * spread(bits))
-            addStop(plan, part);
+            addStage(policy, segment);
     }
-    return plan;
+    return policy;
 }
 
-PruningPolicy thresholdPlan(const CodeLayout& layout, const std::vector<float>& thresholds)
+PruningPolicy thresholdPolicy(const CodeLayout& layout, const std::vector<float>& thresholds)
 {
-    PruningPolicy plan;
+    PruningPolicy policy;
     for (int level = 0; level + 1 < layout.levels(); level++)
-        addStop(plan, level, cvFloor((double)thresholds[level] * 8 * layout.levelSizes()[level]));
-    return plan;
+        addStage(policy, level, cvFloor((double)thresholds[level] * 8 * layout.levelSizes()[level]));
+    return policy;
 }
 
-PruningPolicy adaptivePlan(const CodeLayout& layout)
+PruningPolicy adaptivePolicy(const CodeLayout& layout)
 {
-    PruningPolicy plan;
+    PruningPolicy policy;
     int bits = 0;
-    for (int part = 0; part + 1 < layout.parts(); part++)
-        bits += layout.bits(part);
+    for (int segment = 0; segment + 1 < layout.segments(); segment++)
+        bits += layout.bits(segment);
     if (bits == 0)
-        return plan;
-    addStop(plan, layout.parts() - 2);
-    plan.margin = cvRound(1.75 * spread(bits));
-    return plan;
+        return policy;
+    addStage(policy, layout.segments() - 2);
+    policy.margin = cvRound(1.75 * spread(bits));
+    return policy;
 }
 
 }  // namespace iib

@@ -14,6 +14,10 @@ typedef std::map<std::pair<int, int>, int> Distances;  // of (query, train code)
 struct AllPairs : public HammingSink
 {
     Distances distances;
+    AllPairs(const int* queryThresholds_, const int* trainThresholds_)
+        : HammingSink(queryThresholds_, trainThresholds_)
+    {
+    }
     void found(int query, int train, int distance) CV_OVERRIDE
     {
         const Distances::const_iterator next = distances.lower_bound(std::make_pair(query, train));
@@ -26,19 +30,20 @@ struct AllPairs : public HammingSink
 //! Everything a scan needs, and the naive distances.
 struct ScanData
 {
+    const HammingKernels& kernels;
     CodeLayout layout;
     Mat queries, trains;
-    std::vector<unsigned> plainQueries, plainTrains, groups;
+    std::vector<unsigned> plainQueries, plainTrains, blocks;
     std::vector<int64> passed;
-    std::vector<int> queryBelow, trainBelow;
+    std::vector<int> queryThresholds, trainThresholds;
 
     ScanData(const Levels& levels, int queryCount, int rows)
-        : layout(levels, hammingPacking()), queries(randomDescriptors(1, queryCount, layout.bytes())),
+        : kernels(hammingKernels()), layout(levels, kernels.packing),
+          queries(randomDescriptors(1, queryCount, layout.bytes())),
           trains(randomDescriptors(2, rows, layout.bytes())), plainQueries(queryCount * layout.words()),
-          plainTrains(rows * layout.words()), groups(rows * layout.words()), queryBelow(queryCount, INT_MAX),
-          trainBelow(rows, 0)
+          plainTrains(rows * layout.words()), blocks((rows + 15) / 16 * layout.blockWords()),
+          queryThresholds(queryCount, INT_MAX), trainThresholds((rows + 15) / 16 * 16, 0)
     {
-        CV_Assert(rows % CodeLayout::CODES_PER_BLOCK == 0);
         // All bits differ, for two queries that may share tables: what adds up in bytes is as large as can be.
         queries.rowRange(0, std::min(queryCount, 2)).setTo(255);
         trains.row(3).setTo(0);
@@ -47,38 +52,31 @@ struct ScanData
             layout.arrange(queries.ptr(i), &plainQueries[i * layout.words()]);
         for (int i = 0; i < rows; i++)
         {
-            const int group = i / CodeLayout::CODES_PER_BLOCK * CodeLayout::CODES_PER_BLOCK;
-            std::vector<unsigned> code(layout.words());
-            layout.arrange(trains.ptr(i), code.data());
-            std::copy(code.begin(), code.end(), plainTrains.begin() + i * layout.words());
-            layout.store(code.data(), &groups[group * layout.words()], i % CodeLayout::CODES_PER_BLOCK);
+            layout.arrange(trains.ptr(i), &plainTrains[i * layout.words()]);
+            layout.store(trains.ptr(i), &blocks[i / 16 * layout.blockWords()], i % 16);
         }
     }
 
-    HammingScan scan(const std::vector<PruneStage>& stops, HammingSink& sink)
+    CodePairs pairs() const
     {
-        passed.assign(stops.size(), 0);
-        HammingScan scan = HammingScan();
-        scan.layout = &layout;
-        scan.queries = plainQueries.data();
-        scan.queryCount = queries.rows;
-        scan.trains = groups.data();
-        scan.groups = trains.rows / CodeLayout::CODES_PER_BLOCK;
-        scan.stops = stops.data();
-        scan.stopCount = (int)stops.size();
-        scan.passed = passed.data();
-        scan.margin = -1;
-        scan.queryBelow = queryBelow.data();
-        scan.trainBelow = trainBelow.data();
-        scan.sink = &sink;
-        return scan;
+        return CodePairs(layout, plainQueries.data(), queries.rows, blocks.data(), trains.rows);
     }
 
-    //! Bits that differ up to the end of a part.
-    int distance(int query, int train, int part) const
+    PrunedScan scan(const std::vector<PruneStage>& stages, HammingSink& sink)
+    {
+        passed.assign(stages.size(), 0);
+        PrunedScan result(pairs(), sink);
+        result.stages = stages.data();
+        result.stageCount = (int)stages.size();
+        result.passed = passed.data();
+        return result;
+    }
+
+    //! Bits that differ up to the end of a segment.
+    int distance(int query, int train, int segment) const
     {
         return hammingDistance((const uchar*)&plainQueries[query * layout.words()],
-                (const uchar*)&plainTrains[train * layout.words()], layout.end(part) * 4);
+                (const uchar*)&plainTrains[train * layout.words()], layout.end(segment) * 4);
     }
 };
 
@@ -90,27 +88,43 @@ TEST(IIB_Hamming, layout_comes_back)
         {
             const CodeLayout layout(levels, packing);
             const Mat descriptor = randomDescriptors(1, 1, layout.bytes());
-            std::vector<unsigned> group(CodeLayout::CODES_PER_BLOCK * layout.words()), plain(layout.words());
+            std::vector<unsigned> block(layout.blockWords()), plain(layout.words());
             Mat back(1, layout.bytes(), CV_8U, Scalar(0));
-            layout.arrange(descriptor.ptr(), plain.data());
-            layout.store(plain.data(), group.data(), 5);
-            std::fill(plain.begin(), plain.end(), 0u);
-            layout.fetch(group.data(), 5, plain.data());
+            layout.store(descriptor.ptr(), block.data(), 5);
+            layout.fetch(block.data(), 5, plain.data());
             layout.restore(plain.data(), back.ptr());
             EXPECT_EQ(0, cvtest::norm(descriptor, back, NORM_INF));
             int bits = 0;
-            for (int part = 0; part < layout.parts(); part++)
-                bits += layout.bits(part);
+            for (int segment = 0; segment < layout.segments(); segment++)
+                bits += layout.bits(segment);
             EXPECT_EQ(8 * layout.bytes(), bits);
             for (int level = 0; level + 1 < layout.levels(); level++)
                 EXPECT_EQ(8 * levels[level], layout.bits(level));
         }
 }
 
+// A whole block at once, out of rows that are not continuous, against code by code.
+TEST(IIB_Hamming, blocks_are_stored_as_single_codes)
+{
+    for (CodePacking packing : {PACKING_ADDERS, PACKING_TABLES})
+        for (const Levels& levels :
+                {Levels{1}, Levels{2, 8, 32, 128}, Levels{8, 24}, Levels{3, 5, 7}, Levels{4}})
+        {
+            const CodeLayout layout(levels, packing);
+            const Mat wide = randomDescriptors(1, 16, layout.bytes() + 5),
+                      descriptors = wide.colRange(3, 3 + layout.bytes());
+            std::vector<unsigned> expected(layout.blockWords()), actual(layout.blockWords());
+            for (int i = 0; i < 16; i++)
+                layout.store(descriptors.ptr(i), expected.data(), i);
+            layout.storeBlock(descriptors.ptr(), descriptors.step, actual.data());
+            EXPECT_EQ(expected, actual);
+        }
+}
+
 TEST(IIB_Hamming, last_level_begins_with_every_fourth_word)
 {
     const CodeLayout layout({2, 32}, PACKING_TABLES);
-    ASSERT_EQ(3, layout.parts());
+    ASSERT_EQ(3, layout.segments());
     EXPECT_EQ(64, layout.bits(1));
     Mat descriptor(1, 34, CV_8U, Scalar(0));
     descriptor.colRange(2 + 16, 2 + 20).setTo(255);  // word 4 of the last level
@@ -120,7 +134,7 @@ TEST(IIB_Hamming, last_level_begins_with_every_fourth_word)
 }
 
 // The whole kernel against a loop over bits: every number of words, more than fit a vector of bytes included,
-// queries that do and do not fill a tile, one group and several; bounds that about half the pairs are within, and that
+// queries that do and do not fill a tile, one block and several, the last one full or not; bounds that about half the pairs are within, and that
 // hardly any is, so that tiles are left early.
 TEST(IIB_Hamming, scan_as_the_naive_loop)
 {
@@ -129,15 +143,12 @@ TEST(IIB_Hamming, scan_as_the_naive_loop)
             for (int below : {bytes * 4, bytes * 2})
                 for (bool bothDirections : {false, true})
                 {
-                    ScanData data(
-                            Levels(1, bytes), queryCount, (1 + queryCount % 3) * CodeLayout::CODES_PER_BLOCK);
-                    std::fill(data.queryBelow.begin(), data.queryBelow.end(), below);
-                    data.trainBelow[3] = bytes * 8 + 1;
-                    AllPairs sink;
-                    HammingScan scan = data.scan(std::vector<PruneStage>(), sink);
-                    if (!bothDirections)
-                        scan.trainBelow = 0;
-                    hammingScan(scan);
+                    ScanData data(Levels(1, bytes), queryCount, 16 + queryCount * 5);
+                    std::fill(data.queryThresholds.begin(), data.queryThresholds.end(), below);
+                    data.trainThresholds[3] = bytes * 8 + 1;
+                    AllPairs sink(
+                            data.queryThresholds.data(), bothDirections ? data.trainThresholds.data() : 0);
+                    data.kernels.pruned(data.scan(std::vector<PruneStage>(), sink));
                     Distances expected;
                     for (int q = 0; q < queryCount; q++)
                         for (int t = 0; t < data.trains.rows; t++)
@@ -153,6 +164,56 @@ TEST(IIB_Hamming, scan_as_the_naive_loop)
                 }
 }
 
+// The nearest in both directions, ties included, from what was known before on; without and with masks.
+TEST(IIB_Hamming, nearest_as_the_naive_loop)
+{
+    for (int bytes : {1, 5, 32, 64, 68, 170})
+        for (int rows : {16, 17, 31, 80})
+            for (int queryCount : {1, 4, 5, 9})
+                for (int setting = 0; setting < 8; setting++)
+                {
+                    const bool both = (setting & 1) != 0, masked = (setting & 2) != 0,
+                               before = (setting & 4) != 0;
+                    SCOPED_TRACE(format(
+                            "%d bytes, %d rows, %d queries, setting %d", bytes, rows, queryCount, setting));
+                    const ScanData data(Levels(1, bytes), queryCount, rows);
+                    Mat mask = Mat::ones(queryCount, (rows + 15) / 16 * 16, CV_8U);
+                    if (masked)
+                        mask = randomMask(5, mask.rows, mask.cols, 0.5);
+                    const int start = before ? bytes * 4 : INT_MAX;
+                    std::vector<int> queryBest(queryCount, start), queryIndex(queryCount, -1),
+                            trainBest(mask.cols, start), trainIndex(mask.cols, -1);
+                    std::vector<int> expected[] = {queryBest, queryIndex, trainBest, trainIndex};
+                    for (int q = 0; q < queryCount; q++)
+                        for (int t = 0; t < rows; t++)
+                        {
+                            const int d = hammingDistance(data.queries.ptr(q), data.trains.ptr(t), bytes);
+                            if (!mask.at<uchar>(q, t))
+                                continue;
+                            if (d < expected[0][q])
+                            {
+                                expected[0][q] = d;
+                                expected[1][q] = t;
+                            }
+                            if (both && d < expected[2][t])
+                            {
+                                expected[2][t] = d;
+                                expected[3][t] = q;
+                            }
+                        }
+                    NearestScan scan(data.pairs(), NearestCodes(queryBest.data(), queryIndex.data()));
+                    if (both)
+                        scan.ofTrains = NearestCodes(trainBest.data(), trainIndex.data());
+                    if (masked)
+                        scan.pairs.allowed = mask.data;
+                    data.kernels.nearest(scan);
+                    EXPECT_EQ(expected[0], queryBest);
+                    EXPECT_EQ(expected[1], queryIndex);
+                    EXPECT_EQ(expected[2], trainBest);
+                    EXPECT_EQ(expected[3], trainIndex);
+                }
+}
+
 // Levels that end one soon after the other and far apart, bounds that hardly any pair and that most pairs pass.
 TEST(IIB_Hamming, stops_as_the_naive_loop)
 {
@@ -162,56 +223,58 @@ TEST(IIB_Hamming, stops_as_the_naive_loop)
             {
                 SCOPED_TRACE(
                         format("%d levels, %d %% of the bits, masked %d", (int)levels.size(), share, masked));
-                ScanData data(levels, 9, 6 * CodeLayout::CODES_PER_BLOCK);
-                std::vector<PruneStage> stops;
+                ScanData data(levels, 9, 6 * 16 - 5);
+                std::vector<PruneStage> stages;
                 for (int level = 0; level + 1 < (int)levels.size(); level++)
-                    stops.push_back(PruneStage{level, levels[level] * 8 * share / 100});
-                const Mat mask = randomMask(3, data.queries.rows, data.trains.rows, 0.7);
-                AllPairs sink;
-                HammingScan scan = data.scan(stops, sink);
-                scan.allowed = masked ? mask.data : 0;
-                hammingScan(scan);
+                    stages.push_back(PruneStage{level, levels[level] * 8 * share / 100});
+                const Mat mask = randomMask(3, data.queries.rows, 6 * 16, 0.7);
+                AllPairs sink(data.queryThresholds.data(), data.trainThresholds.data());
+                PrunedScan scan = data.scan(stages, sink);
+                scan.pairs.allowed = masked ? mask.data : 0;
+                data.kernels.pruned(scan);
                 Distances expected;
-                std::vector<int64> passed(stops.size(), 0);
+                std::vector<int64> passed(stages.size(), 0);
                 for (int q = 0; q < data.queries.rows; q++)
                     for (int t = 0; t < data.trains.rows; t++)
                     {
-                        size_t stop = 0;
+                        size_t stage = 0;
                         if (masked && !mask.at<uchar>(q, t))
                             continue;
-                        for (int before = 0; stop < stops.size(); stop++)
+                        for (int before = 0; stage < stages.size(); stage++)
                         {
-                            const int distance = data.distance(q, t, stops[stop].part);
-                            if (distance - before > stops[stop].most)
+                            const int distance = data.distance(q, t, stages[stage].segment);
+                            if (distance - before > stages[stage].most)
                                 break;
                             before = distance;
-                            passed[stop]++;
+                            passed[stage]++;
                         }
-                        if (stop == stops.size())
-                            expected[std::make_pair(q, t)] = data.distance(q, t, data.layout.parts() - 1);
+                        if (stage == stages.size())
+                            expected[std::make_pair(q, t)] = data.distance(q, t, data.layout.segments() - 1);
                     }
                 EXPECT_EQ(expected, sink.distances);
                 EXPECT_EQ(passed, data.passed);
             }
 }
 
-// A single stop with limits, as they are and lowered by a margin.
+// A single stage with limits, as they are and lowered by a margin; limits so low that tiles end early among them.
 TEST(IIB_Hamming, limits_as_the_naive_loop)
 {
-    for (int margin : {-1, 0, 10, 40, 400})
+    for (int setting = 0; setting < 15; setting++)
     {
-        SCOPED_TRACE(margin);
-        ScanData data({2, 8, 32, 128}, 7, 8 * CodeLayout::CODES_PER_BLOCK);
-        const std::vector<PruneStage> stops(1, PruneStage{3, PruneStage::NO_MAX});
+        const int margin = std::vector<int>{-1, 0, 10, 40, 400}[setting % 5],
+                  step = 60 / (1 + setting / 5 * 3);
+        SCOPED_TRACE(format("margin %d, steps of %d", margin, step));
+        ScanData data({2, 8, 32, 128}, 7, 40 * 16 - 3);
+        const std::vector<PruneStage> stages(1, PruneStage{3, PruneStage::NO_MAX});
         std::vector<int> limits(data.queries.rows), expectedLimits;
         for (size_t q = 0; q < limits.size(); q++)
-            limits[q] = 60 + 60 * (int)q;
+            limits[q] = step + step * (int)q;
         expectedLimits = limits;
-        AllPairs sink;
-        HammingScan scan = data.scan(stops, sink);
+        AllPairs sink(data.queryThresholds.data(), data.trainThresholds.data());
+        PrunedScan scan = data.scan(stages, sink);
         scan.limits = limits.data();
         scan.margin = margin;
-        hammingScan(scan);
+        data.kernels.pruned(scan);
         Distances expected;
         for (int q = 0; q < data.queries.rows; q++)
         {

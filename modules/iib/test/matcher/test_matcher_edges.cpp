@@ -240,26 +240,6 @@ TEST(IIB_MatcherEdges, views_and_later_changes_of_the_matrices)
         EXPECT_EQ(i, matches[i].trainIdx);
 }
 
-TEST(IIB_MatcherEdges, clone_keeps_parameters_and_copies_data)
-{
-    const Ptr<HierarchicalMatcher> matcher = matcherOf({ladder(0, 5)});
-    matcher->setMode(HierarchicalMatcher::THRESHOLD);
-    matcher->setThresholds({0.1f, 0.2f});
-    matcher->setCrossCheck(true);
-    matcher->setMaxRatio(0.5f);
-    for (bool empty : {false, true})
-    {
-        const Ptr<HierarchicalMatcher> copy = matcher->clone(empty).dynamicCast<HierarchicalMatcher>();
-        EXPECT_EQ(HierarchicalMatcher::THRESHOLD, copy->getMode());
-        EXPECT_EQ((std::vector<float>{0.1f, 0.2f}), copy->getThresholds());
-        EXPECT_TRUE(copy->getCrossCheck());
-        EXPECT_EQ(0.5f, copy->getMaxRatio());
-        EXPECT_EQ(empty, copy->empty());
-        copy->add(ladder(50, 3));
-    }
-    EXPECT_EQ(1u, matcher->getTrainDescriptors().size());
-}
-
 TEST(IIB_MatcherEdges, bad_input_throws)
 {
     std::vector<DMatch> matches;
@@ -272,6 +252,7 @@ TEST(IIB_MatcherEdges, bad_input_throws)
             cv::Exception);
     EXPECT_THROW(matcher->match(ladder(0, 2), matches, std::vector<Mat>(1, Mat(2, 5, CV_32S, Scalar(1)))),
             cv::Exception);
+    EXPECT_THROW(matcher->match(ladder(0, 2), matches, std::vector<Mat>(2)), cv::Exception);
     Mat indices, distances;
     EXPECT_THROW(matcher->knnMatchArrays(ladder(0, 2), indices, distances, 0), cv::Exception);
     EXPECT_THROW(matcher->setMode(3), cv::Exception);

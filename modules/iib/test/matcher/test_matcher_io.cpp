@@ -3,27 +3,10 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/matcher_oracle.hpp"
-
-#include <fstream>
+#include "../support/temporary_file.hpp"
 
 namespace opencv_test {
 namespace {
-
-struct TemporaryFile
-{
-    String name;
-    TemporaryFile() : name(cv::tempfile(".iib")) {}
-    ~TemporaryFile() { std::remove(name.c_str()); }
-    void write(const std::string& bytes) const
-    {
-        std::ofstream(name.c_str(), std::ios::binary).write(bytes.data(), bytes.size());
-    }
-    std::string read() const
-    {
-        std::ifstream in(name.c_str(), std::ios::binary);
-        return std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-    }
-};
 
 TEST(IIB_MatcherFile, comes_back_whole)
 {

@@ -51,6 +51,60 @@ bool MatcherOracle::passes(const uchar* query, const uchar* train)
     return true;
 }
 
+// What ADAPTIVE compares first: all levels but the last, and every fourth word of four bytes of the last.
+static std::vector<int> sampledBytes(const std::vector<int>& levelSizes)
+{
+    std::vector<int> bytes;
+    int begin = 0;
+    for (size_t level = 0; level < levelSizes.size(); begin += levelSizes[level++])
+        for (int i = 0; i < levelSizes[level]; i++)
+            if (level + 1 < levelSizes.size() || i / 4 % 4 == 0)
+                bytes.push_back(begin + i);
+    return bytes;
+}
+
+// Gives up the pairs whose partial distance is more than 1.75 sigma above the query's least so far, a block of train
+// codes at a time. Masked pairs count in no way.
+void MatcherOracle::keepAdaptive(const Mat& queries, Matches& found)
+{
+    const std::vector<int> bytes = sampledBytes(levelSizes);
+    const int margin = cvRound(1.75 * std::sqrt(8. * bytes.size()) / 2);
+    std::vector<int> starts(1, 0);
+    for (size_t i = 0; i < images.size(); i++)
+        starts.push_back(starts.back() + images[i].rows);
+    compared = all;  // of which the rest of the given up pairs is taken away again
+    for (size_t q = 0; q < found.size(); q++)
+    {
+        std::vector<DMatch> kept;
+        int least = INT_MAX - margin, block = -1;
+        for (size_t i = 0; i < found[q].size();)
+        {
+            std::vector<int> partial;
+            block = (starts[found[q][i].imgIdx] + found[q][i].trainIdx) / adaptiveBlock;
+            size_t end = i;
+            for (; end < found[q].size(); end++)
+            {
+                const DMatch& m = found[q][end];
+                if ((starts[m.imgIdx] + m.trainIdx) / adaptiveBlock != block)
+                    break;
+                int distance = 0;
+                for (int b : bytes)
+                    distance +=
+                            hammingDistance(queries.ptr((int)q) + b, images[m.imgIdx].ptr(m.trainIdx) + b, 1);
+                partial.push_back(distance);
+                least = std::min(least, distance);
+            }
+            for (size_t p = 0; p < partial.size(); p++)
+                if (partial[p] <= least + margin)
+                    kept.push_back(found[q][i + p]);
+                else
+                    compared -= 8. * (queries.cols - (double)bytes.size());
+            i = end;
+        }
+        found[q] = kept;
+    }
+}
+
 static bool nearer(const DMatch& a, const DMatch& b)
 {
     if (a.distance != b.distance)
@@ -72,6 +126,8 @@ Matches MatcherOracle::candidates(const Mat& queries)
                     result[q].push_back(DMatch(q, t, image,
                             (float)hammingDistance(queries.ptr(q), images[image].ptr(t), queries.cols)));
             }
+    if (adaptiveBlock > 0)
+        keepAdaptive(queries, result);
     for (size_t q = 0; q < result.size(); q++)
         std::sort(result[q].begin(), result[q].end(), nearer);
     return result;

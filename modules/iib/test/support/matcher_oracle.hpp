@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_TEST_MATCHER_ORACLE_HPP
-#define OPENCV_IIB_TEST_MATCHER_ORACLE_HPP
+#ifndef OPENCV_IIB_TEST_SUPPORT_MATCHER_ORACLE_HPP
+#define OPENCV_IIB_TEST_SUPPORT_MATCHER_ORACLE_HPP
 
 #include "../test_precomp.hpp"
 
@@ -25,17 +25,19 @@ struct MatcherOracle
     std::vector<Mat> images, masks;
     std::vector<int> levelSizes;
     std::vector<float> thresholds;  //!< of the paper's rule; empty: all pairs count
+    int adaptiveBlock;  //!< ADAPTIVE: train codes that are looked at before any is given up; 0: it is not on
     bool crossCheck;
     float maxRatio;
     double compared, all;  //!< bits, after a call
 
-    MatcherOracle() : crossCheck(false), maxRatio(1), compared(0), all(0) {}
+    MatcherOracle() : adaptiveBlock(0), crossCheck(false), maxRatio(1), compared(0), all(0) {}
     Matches knn(const Mat& queries, int k);
     Matches radius(const Mat& queries, int radius);
 
 private:
     Matches candidates(const Mat& queries);
     bool passes(const uchar* query, const uchar* train);
+    void keepAdaptive(const Mat& queries, Matches& candidates);
 };
 
 void expectEqual(const Matches& expected, const Matches& actual);

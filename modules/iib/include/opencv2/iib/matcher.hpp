@@ -21,15 +21,17 @@ ordered in levels, the coarse ones first: IIB (IIBDescriptorExtractor::levelSize
 where to look first (ORB: {8, 24}; any descriptor at all: its size as the only level).
 
 All that cv::DescriptorMatcher offers works here, in any combination: several train images, masks (CV_8UC1,
-queries x train rows, one an image, or an empty one for "all allowed"), `k`, radius, `crossCheck`,
+queries x train rows, one for each image, or an empty one for "all allowed"), `k`, radius, `crossCheck`,
 `compactResult`. Where BFMatcher does otherwise:
  - results are in the order of distance, then image, then train index; that order decides ties;
- - train images without rows are skipped; without any train rows the rows of the result are empty;
+ - train images without rows are skipped; without any train rows the rows of the result are empty; without queries
+   the result is empty; arguments are checked in any case (through a DescriptorMatcher reference, OpenCV's own calls
+   return before that and leave the caller's old results in place);
  - `k` is met over all the images together, not up to the smallest image's rows;
  - `compactResult` drops every query without a match, whatever the reason;
  - rows and images are limited by memory alone, which holds the packed codes (levels padded to 4 or 8 bytes)
-   and the results. As in every DescriptorMatcher, the matrices added are referred to as well
-   (getTrainDescriptors), but their values are copied: later changes to them have no effect.
+   and the results. The matrices added are copied and not referred to: later changes to them have no effect, and
+   they may be released.
 
 **Cross-check.** With `crossCheck`, a pair is reported only if each is among the `k` nearest of the other,
 among the pairs that masks and mode allow, over all images; for k = 1 that is the mutual nearest neighbour.
@@ -41,16 +43,18 @@ within a radius of the query has the query within that radius.
  - #THRESHOLD: the paper's rule. A pair goes on to the next level only while its distance in the current
    one is at most threshold * bits of that level; pairs that reach the last level are ranked by the
    distance over all levels. Fast, and it loses whole keypoints in hard scenes.
- - #ADAPTIVE: a pair is compared to the end only if in all levels but the last, and in a sample of a quarter
-   of the last one, its distance is within 1.75 standard deviations of random bits of the least that this query
-   has seen so far. No distance is ever wrong, but a neighbour may be missed, the true one as well: nothing is
-   promised for a single query. Of the matches that #EXACT finds rightly (170 bytes, k = 1) it kept 98.8 % between
-   images where they are 73 % of all keypoints and 98.3 % where they are 54 %; the bound was not tuned on these.
+ - #ADAPTIVE: approximate. Stops at 25 % of the last level if the partial distance exceeds the query's best by more
+   than 1.75 sigma (sigma = sqrt(n) / 2 for n bits so far). Distances are exact; neighbours may be missed, and nothing
+   is promised for a single query. Of the right matches of #EXACT (170 bytes, k = 1) it kept 98.8 % between images
+   where they are 73 % of all keypoints and 98.3 % where they are 54 %; the bound was not tuned on these images.
    Descriptors of up to 4 bytes are compared as in #EXACT, and so is radiusMatch.
 
 **Threads.** Calls run on cv::parallel_for_; results are the same for every number of threads and every
 instruction set. One object may serve several threads as long as none adds descriptors or changes
-parameters.
+parameters. As everywhere in OpenCV, cv::setNumThreads is not to be called meanwhile.
+
+**Files.** Algorithm::save and DescriptorMatcher::write store the parameters; Algorithm::load and
+DescriptorMatcher::read take either kind of file. saveIndex stores the train descriptors as well.
 
 @throws cv::Exception from every call for descriptors that are not CV_8U or whose columns are not the sum
 of the level sizes, and for masks of a wrong type, size or number.
@@ -77,8 +81,43 @@ public:
     CV_WRAP static Ptr<HierarchicalMatcher> create(const std::vector<int>& levelSizes,
             int mode = HierarchicalMatcher::EXACT, float threshold = 0.35f, bool crossCheck = false);
 
-    //! Bytes of each level, coarse first.
+    /** @overload
+    #EXACT, for descriptors of any width: they are one level, as wide as the first that are added. After clear(), and in
+    every call with a train set of its own, they may have another width. Enough for #EXACT, where levels matter to
+    matchCost alone; #ADAPTIVE is faster with the real levels.
+     */
+    CV_WRAP static Ptr<HierarchicalMatcher> create();
+
+    //! Bytes of each level, coarse first; empty while create() without level sizes has seen no descriptors.
     CV_WRAP virtual std::vector<int> levelSizes() const = 0;
+
+    /** @brief The train descriptors of each image, unpacked from the codes: CV_8U, rows x descriptor size.
+
+    It hides the base class's, whose matrices are empty here, so that codes are in memory once and not twice.
+     */
+    CV_WRAP virtual std::vector<Mat> getTrainDescriptors() const = 0;
+
+    /** @name Matching
+    As in DescriptorMatcher, whose documentation holds, but old results never survive a call, and arguments are checked
+    also where there is nothing to match. */
+    //! @{
+    CV_WRAP virtual void match(InputArray queryDescriptors, InputArray trainDescriptors,
+            CV_OUT std::vector<DMatch>& matches, InputArray mask = noArray()) const = 0;
+    CV_WRAP virtual void knnMatch(InputArray queryDescriptors, InputArray trainDescriptors,
+            CV_OUT std::vector<std::vector<DMatch>>& matches, int k, InputArray mask = noArray(),
+            bool compactResult = false) const = 0;
+    CV_WRAP virtual void radiusMatch(InputArray queryDescriptors, InputArray trainDescriptors,
+            CV_OUT std::vector<std::vector<DMatch>>& matches, float maxDistance, InputArray mask = noArray(),
+            bool compactResult = false) const = 0;
+    CV_WRAP virtual void match(InputArray queryDescriptors, CV_OUT std::vector<DMatch>& matches,
+            InputArrayOfArrays masks = noArray()) = 0;
+    CV_WRAP virtual void knnMatch(InputArray queryDescriptors,
+            CV_OUT std::vector<std::vector<DMatch>>& matches, int k, InputArrayOfArrays masks = noArray(),
+            bool compactResult = false) = 0;
+    CV_WRAP virtual void radiusMatch(InputArray queryDescriptors,
+            CV_OUT std::vector<std::vector<DMatch>>& matches, float maxDistance,
+            InputArrayOfArrays masks = noArray(), bool compactResult = false) = 0;
+    //! @}
 
     CV_WRAP virtual void setMode(int mode) = 0;
     CV_WRAP virtual int getMode() const = 0;
@@ -98,7 +137,9 @@ public:
     /** @brief Ratio test inside match, knnMatch and knnMatchArrays, over the same pairs as the search.
 
     @param maxRatio in (0, 1]. A query keeps its matches only if its least distance is less than maxRatio
-    times its second least; a query with a single candidate keeps it. 1, the default, turns the test off.
+    times its second least; a query with a single candidate keeps it. 1, the default, turns the test off. The 0.75 to
+    0.8 that suit SIFT throw most right matches of long binary codes away where the view moves: take 0.9 to 0.95, or
+    setCrossCheck instead.
      */
     CV_WRAP virtual void setMaxRatio(float maxRatio) = 0;
     CV_WRAP virtual float getMaxRatio() const = 0;
@@ -144,8 +185,10 @@ public:
 
     /** @brief Writes level sizes, parameters and all train descriptors to a binary file.
 
-    The file does not depend on the machine: little-endian, with a version and a checksum.
-    @throws cv::Exception if it cannot be written.
+    The file does not depend on the machine: little-endian, with a version and a checksum. It is written beside the
+    old one, flushed to the disk and renamed: whatever fails, the old file stays whole, and whoever loads it meanwhile
+    gets the old one or the new one.
+    @throws cv::Exception if it cannot be written, or if neither level sizes nor descriptors were given.
      */
     CV_WRAP virtual void saveIndex(const String& filename) const = 0;
 
@@ -160,6 +203,31 @@ public:
 //! @}
 
 }  // namespace iib
+
+//! @cond IGNORED
+// The general form returns null for an empty object, as a matcher without train descriptors is, and looks for the
+// parameters one level down alone, where DescriptorMatcher::write does not put them.
+template <>
+inline Ptr<iib::HierarchicalMatcher> Algorithm::load<iib::HierarchicalMatcher>(
+        const String& filename, const String& objname)
+{
+    const FileStorage file(filename, FileStorage::READ);
+    const Ptr<iib::HierarchicalMatcher> matcher = iib::HierarchicalMatcher::create();
+    matcher->read(objname.empty() ? file.root() : file[objname]);
+    return matcher;
+}
+
+template <>
+inline Ptr<iib::HierarchicalMatcher> Algorithm::loadFromString<iib::HierarchicalMatcher>(
+        const String& text, const String& objname)
+{
+    const FileStorage file(text, FileStorage::READ + FileStorage::MEMORY);
+    const Ptr<iib::HierarchicalMatcher> matcher = iib::HierarchicalMatcher::create();
+    matcher->read(objname.empty() ? file.root() : file[objname]);
+    return matcher;
+}
+//! @endcond
+
 }  // namespace cv
 
 #endif

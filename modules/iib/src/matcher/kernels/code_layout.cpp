@@ -5,6 +5,8 @@
 #include "../../precomp.hpp"
 #include "code_layout.hpp"
 
+#include <cstring>
+
 namespace cv {
 namespace iib {
 
@@ -17,11 +19,11 @@ CodeLayout::CodeLayout(const std::vector<int>& levelSizes, CodePacking packing_)
     {
         const int size = sizes[level];
         const bool split = level + 1 == levels() && size > WORD;
-        for (int part = 0; part < (split ? 2 : 1); part++)
+        for (int segment = 0; segment < (split ? 2 : 1); segment++)
         {
             int bits = 0;
             for (int i = 0; i < size; i += WORD)
-                if (!split || (i / WORD % SAMPLE == 0) == (part == 0))
+                if (!split || (i / WORD % SAMPLE == 0) == (segment == 0))
                 {
                     const Place place = {width + i, std::min(size - i, WORD)};
                     places.push_back(place);
@@ -31,7 +33,7 @@ CodeLayout::CodeLayout(const std::vector<int>& levelSizes, CodePacking packing_)
             if (packing == PACKING_ADDERS && places.size() % 2 == 0)
                 places.push_back(filling);
             ends.push_back((int)places.size());
-            partBits.push_back(bits);
+            segmentBits.push_back(bits);
         }
         width += size;
     }
@@ -40,13 +42,22 @@ CodeLayout::CodeLayout(const std::vector<int>& levelSizes, CodePacking packing_)
 void CodeLayout::arrange(const uchar* descriptor, unsigned* plain) const
 {
     for (int i = 0; i < words(); i++)
-        if (places[i].bytes == WORD)
-            std::memcpy(plain + i, descriptor + places[i].from, WORD);
-        else
+        gather(i, descriptor, 0, 1, plain + i);
+}
+
+void CodeLayout::gather(int i, const uchar* descriptors, size_t step, int count, unsigned* to) const
+{
+    const Place place = places[i];
+    descriptors += place.from;
+    if (place.bytes == WORD)
+        for (int lane = 0; lane < count; lane++)
+            std::memcpy(to + lane, descriptors + lane * step, WORD);
+    else
+        for (int lane = 0; lane < count; lane++)
         {
-            plain[i] = 0;
-            for (int b = 0; b < places[i].bytes; b++)
-                ((uchar*)(plain + i))[b] = descriptor[places[i].from + b];
+            to[lane] = 0;
+            for (int b = 0; b < place.bytes; b++)
+                ((uchar*)(to + lane))[b] = descriptors[lane * step + b];
         }
 }
 
@@ -57,44 +68,89 @@ void CodeLayout::restore(const unsigned* plain, uchar* descriptor) const
             descriptor[places[i].from + b] = ((const uchar*)(plain + i))[b];
 }
 
-void CodeLayout::pack(unsigned* code) const
+void CodeLayout::pack(const unsigned* plain, unsigned* packed) const
 {
-    if (packing == PACKING_TABLES)
-        return;
-    unsigned parity = code[0];
+    unsigned parity = packed[0] = plain[0];
     for (int i = 1; i < words(); i += 2)
     {
-        const unsigned first = code[i], second = code[i + 1];
-        code[i] = parity ^ first;
-        code[i + 1] = first ^ second;
-        parity ^= code[i + 1];
+        packed[i] = parity ^ plain[i];
+        packed[i + 1] = plain[i] ^ plain[i + 1];
+        parity ^= packed[i + 1];
     }
 }
 
-void CodeLayout::store(unsigned* code, unsigned* group, int lane) const
+void CodeLayout::store(const uchar* descriptor, unsigned* block, int lane) const
 {
-    pack(code);
-    if (packing == PACKING_ADDERS)
+    unsigned first, second, parity;
+    if (packing == PACKING_TABLES)
+    {
         for (int i = 0; i < words(); i++)
-            group[i * CODES_PER_BLOCK + lane] = code[i];
-    else
-        for (int i = 0; i < words() * WORD; i++)
-            ((uchar*)group)[i * CODES_PER_BLOCK + lane] = ((const uchar*)code)[i];
+        {
+            gather(i, descriptor, 0, 1, &first);
+            uchar* to = (uchar*)(block + i * CODES_PER_BLOCK) + lane;
+            for (int b = 0; b < WORD; b++)
+                to[b * CODES_PER_BLOCK] = ((const uchar*)&first)[b];
+        }
+        return;
+    }
+    gather(0, descriptor, 0, 1, &parity);
+    block[lane] = parity;
+    for (int i = 1; i < words(); i += 2)
+    {
+        gather(i, descriptor, 0, 1, &first);
+        gather(i + 1, descriptor, 0, 1, &second);
+        block[i * CODES_PER_BLOCK + lane] = parity ^ first;
+        block[(i + 1) * CODES_PER_BLOCK + lane] = first ^ second;
+        parity ^= first ^ second;
+    }
 }
 
-void CodeLayout::fetch(const unsigned* group, int lane, unsigned* plain) const
+// Its loops run over the lanes, so that compilers make vectors of them.
+void CodeLayout::storeBlock(const uchar* descriptors, size_t step, unsigned* block) const
+{
+    unsigned first[CODES_PER_BLOCK], second[CODES_PER_BLOCK], parity[CODES_PER_BLOCK];
+    if (packing == PACKING_TABLES)
+    {
+        for (int i = 0; i < words(); i++)
+        {
+            gather(i, descriptors, step, CODES_PER_BLOCK, first);
+            uchar* to = (uchar*)(block + i * CODES_PER_BLOCK);
+            for (int b = 0; b < WORD; b++)
+                for (int lane = 0; lane < CODES_PER_BLOCK; lane++)
+                    to[b * CODES_PER_BLOCK + lane] = ((const uchar*)first)[lane * WORD + b];
+        }
+        return;
+    }
+    gather(0, descriptors, step, CODES_PER_BLOCK, parity);
+    std::copy(parity, parity + CODES_PER_BLOCK, block);
+    for (int i = 1; i < words(); i += 2)
+    {
+        gather(i, descriptors, step, CODES_PER_BLOCK, first);
+        gather(i + 1, descriptors, step, CODES_PER_BLOCK, second);
+        unsigned* to = block + i * CODES_PER_BLOCK;
+        for (int lane = 0; lane < CODES_PER_BLOCK; lane++)
+        {
+            to[lane] = parity[lane] ^ first[lane];
+            second[lane] ^= first[lane];
+            to[CODES_PER_BLOCK + lane] = second[lane];
+            parity[lane] ^= second[lane];
+        }
+    }
+}
+
+void CodeLayout::fetch(const unsigned* block, int lane, unsigned* plain) const
 {
     if (packing == PACKING_TABLES)
     {
         for (int i = 0; i < words() * WORD; i++)
-            ((uchar*)plain)[i] = ((const uchar*)group)[i * CODES_PER_BLOCK + lane];
+            ((uchar*)plain)[i] = ((const uchar*)block)[i * CODES_PER_BLOCK + lane];
         return;
     }
-    unsigned parity = plain[0] = group[lane];
+    unsigned parity = plain[0] = block[lane];
     for (int i = 1; i < words(); i += 2)
     {
-        const unsigned first = group[i * CODES_PER_BLOCK + lane],
-                       second = group[(i + 1) * CODES_PER_BLOCK + lane];
+        const unsigned first = block[i * CODES_PER_BLOCK + lane],
+                       second = block[(i + 1) * CODES_PER_BLOCK + lane];
         plain[i] = parity ^ first;
         plain[i + 1] = plain[i] ^ second;
         parity ^= second;

@@ -22,11 +22,15 @@ enum CodePacking
     PACKING_TABLES
 };
 
-/** Where the bits of a descriptor lie in a code of words of 32 bits, and codes side by side in a group of CODES_PER_BLOCK.
+/** Where the bits of a descriptor lie in a code of 32-bit words, and how CODES_PER_BLOCK codes lie side by side in a
+CodeBlock.
 
-A code has a part for each level, filled up with zeros to whole words. Only the last level has two: every
-fourth of its words, a sample that tells much more than its beginning would, and the rest. */
-class CV_EXPORTS CodeLayout
+A code has a segment for each level, filled up with zeros to whole words. Only the last level has two segments:
+every fourth of its words, a sample that tells much more than its beginning would, and the rest.
+
+A CodeBlock has words() * CODES_PER_BLOCK words: word w of code i is at w * CODES_PER_BLOCK + i with PACKING_ADDERS, and
+byte b of code i at byte b * CODES_PER_BLOCK + i with PACKING_TABLES. */
+class CodeLayout
 {
 public:
     enum
@@ -42,24 +46,28 @@ public:
     //! Bytes of a descriptor.
     int bytes() const { return width; }
 
-    int parts() const { return (int)ends.size(); }
-    //! Words up to the end of a part; PACKING_ADDERS makes it odd.
-    int end(int part) const { return ends[part]; }
-    //! Bits of descriptors in a part.
-    int bits(int part) const { return partBits[part]; }
+    int segments() const { return (int)ends.size(); }
+    //! Words up to the end of a segment; PACKING_ADDERS makes it odd.
+    int end(int segment) const { return ends[segment]; }
+    //! Bits of descriptors in a segment.
+    int bits(int segment) const { return segmentBits[segment]; }
     //! Words of a code.
     int words() const { return ends.back(); }
+    //! Words of a CodeBlock.
+    size_t blockWords() const { return (size_t)words() * CODES_PER_BLOCK; }
 
     //! From a descriptor to the plain words of its code, and back.
     void arrange(const uchar* descriptor, unsigned* plain) const;
     void restore(const unsigned* plain, uchar* descriptor) const;
 
-    //! From plain words to packed ones, in place.
-    void pack(unsigned* code) const;
-    //! Packs plain words, in place, and puts them into a lane of a group of CODES_PER_BLOCK * words() words.
-    void store(unsigned* plain, unsigned* group, int lane) const;
-    //! Gets its plain words.
-    void fetch(const unsigned* group, int lane, unsigned* plain) const;
+    //! Packs the words of one code; only with PACKING_ADDERS.
+    void pack(const unsigned* plain, unsigned* packed) const;
+    //! Puts a descriptor into a lane of a CodeBlock.
+    void store(const uchar* descriptor, unsigned* block, int lane) const;
+    //! Fills a whole CodeBlock with CODES_PER_BLOCK descriptors that lie `step` bytes apart.
+    void storeBlock(const uchar* descriptors, size_t step, unsigned* block) const;
+    //! Gets the plain words of a code.
+    void fetch(const unsigned* block, int lane, unsigned* plain) const;
 
 private:
     //! A word's bytes in the descriptor, 1 to 4 of them; none for filling.
@@ -68,7 +76,10 @@ private:
         int from, bytes;
     };
 
-    std::vector<int> sizes, ends, partBits;
+    //! Puts word i of `count` descriptors into consecutive words.
+    void gather(int i, const uchar* descriptors, size_t step, int count, unsigned* to) const;
+
+    std::vector<int> sizes, ends, segmentBits;
     std::vector<Place> places;  // of each word
     int width;
     CodePacking packing;

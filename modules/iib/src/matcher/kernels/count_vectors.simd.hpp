@@ -2,9 +2,13 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// What both packings of codes share. Included by hamming.simd.hpp.
+// Vectors of one value for each code of a CodeBlock, as all chapters of the matcher's kernels use them.
+
+#ifndef OPENCV_IIB_MATCHER_KERNELS_COUNT_VECTORS_SIMD_HPP
+#define OPENCV_IIB_MATCHER_KERNELS_COUNT_VECTORS_SIMD_HPP
 
 #include "../../common/simd.hpp"
+#include "code_layout.hpp"
 
 namespace cv {
 namespace iib {
@@ -14,25 +18,13 @@ namespace {
 typedef v_uint32 Words;
 typedef v_int32 Counts;
 const int CODES_PER_BLOCK = CodeLayout::CODES_PER_BLOCK, WIDTH = VTraits<Words>::max_nlanes,
-          VECTORS = CODES_PER_BLOCK / WIDTH;
+          VECTORS = CODES_PER_BLOCK / WIDTH, ALL_LANES = (1 << CODES_PER_BLOCK) - 1;
 
 //! 0, 1, 2, ... over the lanes of a vector.
 inline Counts laneNumbers()
 {
     static const int NUMBERS[CODES_PER_BLOCK] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     return vx_load(NUMBERS);
-}
-
-inline int countLanes(int lanes)
-{
-#if CV_POPCNT
-    return _mm_popcnt_u32(lanes);
-#else
-    int count = 0;
-    for (; lanes; lanes &= lanes - 1)
-        count++;
-    return count;
-#endif
 }
 
 //! The lanes with a negative value.
@@ -47,8 +39,12 @@ CV_ALWAYS_INLINE int negativeLanes(const Counts* values)
 //! Writes the values of some lanes, and may write CODES_PER_BLOCK values whatever their number.
 CV_ALWAYS_INLINE void storeLanes(int* to, const Counts* values, int lanes)
 {
-#if CV_AVX512_SKX
-    v_store(to, Counts(_mm512_maskz_compress_epi32((__mmask16)lanes, values[0].val)));
+#if IIB_COMPRESSES_LANES
+    for (int v = 0; v < VECTORS; v++, lanes >>= WIDTH)
+    {
+        v_store(to, compressLanes(values[v], lanes));
+        to += countBits((unsigned)lanes & ((1u << WIDTH) - 1));
+    }
 #else
     int all[CODES_PER_BLOCK];
     for (int v = 0; v < VECTORS; v++)
@@ -62,3 +58,5 @@ CV_ALWAYS_INLINE void storeLanes(int* to, const Counts* values, int lanes)
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 }  // namespace iib
 }  // namespace cv
+
+#endif

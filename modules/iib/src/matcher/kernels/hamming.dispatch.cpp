@@ -11,11 +11,7 @@
 namespace cv {
 namespace iib {
 
-void hammingScan(const HammingScan& scan) { CV_CPU_DISPATCH(hammingScan, (scan), CV_CPU_DISPATCH_MODES_ALL); }
-
-CodePacking hammingPacking() { CV_CPU_DISPATCH(hammingPacking, (), CV_CPU_DISPATCH_MODES_ALL); }
-
-const char* hammingInstructionSet() { CV_CPU_DISPATCH(hammingInstructionSet, (), CV_CPU_DISPATCH_MODES_ALL); }
+const HammingKernels& hammingKernels() { CV_CPU_DISPATCH(hammingKernels, (), CV_CPU_DISPATCH_MODES_ALL); }
 
 }  // namespace iib
 }  // namespace cv

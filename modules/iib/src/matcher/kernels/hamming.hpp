@@ -7,60 +7,115 @@
 
 #include "code_layout.hpp"
 
+#include <climits>
+
 namespace cv {
 namespace iib {
 
-//! Where a scan may give a pair up: after a part, not the last one, and later than that of the stop before.
+//! The pairs that a scan compares: some queries with some train codes.
+struct CodePairs
+{
+    CodePairs(const CodeLayout& layout_, const unsigned* queries_, int queryCount_, const unsigned* trains_,
+            int trainCount_)
+        : layout(layout_), queries(queries_), queryCount(queryCount_), trains(trains_),
+          trainCount(trainCount_), allowed(0)
+    {
+    }
+
+    int blocks() const
+    {
+        return (trainCount + CodeLayout::CODES_PER_BLOCK - 1) / CodeLayout::CODES_PER_BLOCK;
+    }
+    //! Train codes and what fills their last block up.
+    int paddedTrains() const { return blocks() * CodeLayout::CODES_PER_BLOCK; }
+
+    const CodeLayout& layout;
+    const unsigned* queries;  //!< plain words, one code after the other
+    int queryCount;
+    const unsigned* trains;  //!< packed, in CodeBlocks
+    int trainCount;
+    const uchar* allowed;  //!< queryCount x paddedTrains(), 0 for pairs that are masked; null: none is
+};
+
+//! The nearest code of the other side for each code: a scan replaces those than which it finds a nearer one.
+struct NearestCodes
+{
+    NearestCodes(int* distances_, int* indices_) : distances(distances_), indices(indices_) {}
+    int* distances;  //!< INT_MAX where there is none so far
+    int* indices;    //!< index in the scan
+};
+
+//! Finds the nearest train code of each query.
+struct NearestScan
+{
+    NearestScan(const CodePairs& pairs_, const NearestCodes& ofQueries_)
+        : pairs(pairs_), ofQueries(ofQueries_), ofTrains(0, 0)
+    {
+    }
+    CodePairs pairs;
+    NearestCodes ofQueries;
+    NearestCodes ofTrains;  //!< of paddedTrains() codes; null: not wanted
+};
+
+//! Takes the pairs that a scan finds, and says how near they have to be.
+class HammingSink
+{
+public:
+    //! A pair is found if its distance is below that of its query, or below that of its train code. The latter
+    //! has room for whole CodeBlocks, or is null.
+    HammingSink(const int* queryThresholds_, const int* trainThresholds_)
+        : queryThresholds(queryThresholds_), trainThresholds(trainThresholds_)
+    {
+    }
+    virtual ~HammingSink() {}
+    //! Indices count from the first of the scan. May lower the thresholds.
+    virtual void found(int query, int train, int distance) = 0;
+
+    const int* const queryThresholds;
+    const int* const trainThresholds;
+};
+
+//! Where a scan may give a pair up: after a segment, not the last one, and later than that of the stage before.
 struct PruneStage
 {
     enum
     {
         NO_MAX = 1 << 28
     };
-    int part;
-    int most;  //!< bits that may differ since the stop before
+    int segment;
+    int most;  //!< bits that may differ since the stage before
 };
 
-//! Receives the pairs that a scan found to be near enough.
-class HammingSink
+//! Finds all pairs that are near enough and that no stage gives up. Without stages, all are compared to the end.
+struct PrunedScan
 {
-public:
-    virtual ~HammingSink() {}
-    //! The train index counts from the scan's first group. May lower the thresholds of the scan.
-    virtual void found(int query, int train, int distance) = 0;
-};
-
-//! All pairs of some queries with some groups of train codes.
-struct HammingScan
-{
-    const CodeLayout* layout;
-    const unsigned* queries;  //!< plain words, one code after the other
-    int queryCount;
-    const unsigned* trains;  //!< packed in groups
-    int groups;
-    const uchar*
-            allowed;  //!< queryCount x groups * CODES_PER_BLOCK, 0 for pairs that do not exist; null: all do
-
-    const PruneStage* stops;
-    int stopCount;
-    int64* passed;  //!< stopCount: adds up the pairs that went on at the stop
-    int* limits;    //!< null, or with a single stop: for each query the most bits that may differ there
+    PrunedScan(const CodePairs& pairs_, HammingSink& sink_)
+        : pairs(pairs_), sink(sink_), stages(0), stageCount(0), passed(0), limits(0), margin(-1)
+    {
+    }
+    CodePairs pairs;
+    HammingSink& sink;
+    const PruneStage* stages;
+    int stageCount;
+    int64* passed;  //!< stageCount: adds up the pairs that went on at the stage
+    int* limits;    //!< null, or with a single stage: for each query the most bits that may differ there
     int margin;     //!< if >= 0, limits come down to the query's least difference so far plus this
-
-    const int* queryBelow;  //!< a pair is found if its distance is below this of its query
-    const int* trainBelow;  //!< or below this of its train code; may be null
-    HammingSink* sink;
 };
 
-//! Scans with the widest instruction set at hand. Train codes come in ascending order for each query, and
-//! queries for each train code. What is found does not depend on the instruction set.
-CV_EXPORTS void hammingScan(const HammingScan& scan);
+/** The scans of one instruction set, and how they want their train codes packed: both belong together.
 
-//! What the scan wants its train codes packed as.
-CV_EXPORTS CodePacking hammingPacking();
+Train codes come in ascending order for each query, and queries for each train code, so that ties go to the lowest
+index. What is found does not depend on the instruction set. */
+struct HammingKernels
+{
+    CodePacking packing;
+    void (*nearest)(const NearestScan& scan);
+    void (*pruned)(const PrunedScan& scan);
+    const char* instructionSet;
+};
 
-//! Name of the instruction set that hammingScan uses.
-CV_EXPORTS const char* hammingInstructionSet();
+//! Those of the widest instruction set at hand. cv::setUseOptimized changes the answer: keep it with the packed codes.
+const HammingKernels& hammingKernels();
 
 }  // namespace iib
 }  // namespace cv

@@ -5,14 +5,7 @@
 #include "hamming.hpp"
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-#include "count_vectors.simd.hpp"
-#include "pair_rows.simd.hpp"
-#if !CV_AVX512_ICL && (CV_SSSE3 || (CV_NEON && defined __aarch64__))
-#include "tile_tables.simd.hpp"
-#else
-#include "tile_adders.simd.hpp"
-#endif
-#include "scanner.simd.hpp"
+#include "scan_full.simd.hpp"
 #include "scan_pruned.simd.hpp"
 #endif
 
@@ -20,9 +13,7 @@ namespace cv {
 namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-void hammingScan(const HammingScan& scan);
-CodePacking hammingPacking();
-const char* hammingInstructionSet();
+const HammingKernels& hammingKernels();
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -37,25 +28,29 @@ template <class S> void scanAll(S&& scanner, int queryCount)
         scanner.template row<1>(q);
 }
 
-}  // namespace
-
-void hammingScan(const HammingScan& scan)
+void scanNearest(const NearestScan& scan)
 {
-    if (scan.stopCount > 0)
-        scanAll(PrunedScanner(scan), scan.queryCount);
-    else
-        scanAll(FullScanner(scan), scan.queryCount);
+    scanAll(FullScanner<NearestCollector>(scan.pairs, NearestCollector(scan)), scan.pairs.queryCount);
 }
 
-CodePacking hammingPacking() { return PACKING; }
+void scanPruned(const PrunedScan& scan)
+{
+    if (scan.stageCount > 0)
+        scanAll(PrunedScanner(scan), scan.pairs.queryCount);
+    else
+        scanAll(FullScanner<SinkCollector>(scan.pairs, SinkCollector(scan.sink)), scan.pairs.queryCount);
+}
 
-const char* hammingInstructionSet()
+}  // namespace
+
+const HammingKernels& hammingKernels()
 {
 #ifdef CV_CPU_DISPATCH_MODE
-    return CVAUX_STR(CV_CPU_DISPATCH_MODE);
+    static const HammingKernels kernels = {PACKING, scanNearest, scanPruned, CVAUX_STR(CV_CPU_DISPATCH_MODE)};
 #else
-    return "baseline";
+    static const HammingKernels kernels = {PACKING, scanNearest, scanPruned, "baseline"};
 #endif
+    return kernels;
 }
 
 #endif

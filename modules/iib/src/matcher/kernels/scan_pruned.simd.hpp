@@ -2,134 +2,178 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Scans with stops, part by part. Included by hamming.simd.hpp.
+#ifndef OPENCV_IIB_MATCHER_KERNELS_SCAN_PRUNED_SIMD_HPP
+#define OPENCV_IIB_MATCHER_KERNELS_SCAN_PRUNED_SIMD_HPP
+
+#include "pair_rows.simd.hpp"
+#include "shortlists.simd.hpp"
+#include "scanner.simd.hpp"
 
 namespace cv {
 namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
-class PrunedScanner : public Scanner
+//! Gives pairs up at the stages of a scan.
+class PrunedScanner : public Scanner<SinkCollector>
 {
 public:
-    explicit PrunedScanner(const HammingScan& s)
-        : Scanner(s), queryRow(layout, partAt(0) + 1, 1),
-          trainRows(layout, partAt(0) + 1, s.groups * CODES_PER_BLOCK)
+    explicit PrunedScanner(const PrunedScan& s)
+        : Scanner(s.pairs, SinkCollector(s.sink)), scan(s), lists(blocks),
+          queryRow(layout, segmentAt(0) + 1, 1), trainRows(layout, segmentAt(0) + 1, s.pairs.paddedTrains())
     {
-        for (int stop = 0; stop <= s.stopCount; stop++)
-            words.push_back(layout.end(partAt(stop)));
-        distances.allocate((size_t)QUERIES * s.groups * CODES_PER_BLOCK);
-        shortlists.allocate(
-                (size_t)QUERIES * (s.groups + 1) * CODES_PER_BLOCK);  // storeLanes() needs more than fits
+        for (int stage = 0; stage <= s.stageCount; stage++)
+            words.push_back(layout.end(segmentAt(stage)));
+        early = s.limits && words[0] > 8 ? words[0] * 3 / 4 | 1 : words[0];
     }
 
-    //! Some queries against all groups: all pairs together up to a stop; then those that pass one by one, or all
-    //! to the next stop if they are many.
+    //! Some queries against all blocks: all pairs together up to a stage; then those that pass one by one, or all
+    //! to the next stage if they are many.
     template <int Q> void row(int query)
     {
         setQueries<Q>(query);
-        // Two stops in one go if the second comes soon after the first, where hardly any tile would end.
-        int stop = scan.stopCount > 1 && words[1] - words[0] <= 4 ? 1 : 0;
-        if (stop == 0)
-            compareTo<Q, 1>(query, stop);
+        // Two stages in one go if the second comes soon after the first, where hardly any tile would end.
+        int stage = scan.stageCount > 1 && words[1] - words[0] <= 4 ? 1 : 0;
+        if (stage == 0)
+            compareToFirst<Q>(query);
         else
-            compareTo<Q, 2>(query, stop);
-        for (; stop < scan.stopCount; compareTo<Q, 0>(query, ++stop))
+            compareToSecond<Q>(query);
+        for (; stage < scan.stageCount; compareTo<Q>(query, ++stage))
         {
-            int counts[Q], pairs = 0;
-            select<Q>(query, stop, counts);
+            int counts[Q], limits[Q], pairCount = 0;
             for (int q = 0; q < Q; q++)
-                pairs += counts[q];
-            scan.passed[stop] += pairs;
-            if (pairs * 8 > scan.groups * words[stop + 1] * Q)
+                limits[q] = lowerLimit(query + q, q, stage);
+            lists.select<Q>(limits, counts);
+            for (int q = 0; q < Q; q++)
+                pairCount += counts[q];
+            scan.passed[stage] += pairCount;
+            if (pairCount * 8 > blocks * words[stage + 1] * Q)
                 continue;
             for (int q = 0; q < Q; q++)
-                finish(query + q, q, counts[q], stop);
+                finish(query + q, q, counts[q], stage);
             return;
         }
         for (int q = 0; q < Q; q++)
-            for (int group = 0; group < scan.groups; group++)
+            for (int block = 0; block < blocks; block++)
             {
-                Counts distance[VECTORS], beyonds[VECTORS];
+                Counts distance[VECTORS], slacks[VECTORS];
                 for (int v = 0; v < VECTORS; v++)
                 {
-                    distance[v] = vx_load(distancesOf(q) + group * CODES_PER_BLOCK + v * WIDTH);
-                    beyonds[v] = beyond(query + q, group, v, distance[v]);
+                    distance[v] = lists.load(q, block, v);
+                    slacks[v] = slack(query + q, block, v, distance[v]);
                 }
-                report(query + q, group, distance, beyonds);
+                collect(query + q, block, distance, slacks);
             }
     }
 
 private:
-    enum
+    //! Writes the distances up to the first stage. With limits, leaves a tile before it once no pair in it can pass.
+    template <int Q> void compareToFirst(int query)
     {
-        NEVER = INT_MAX
-    };
-
-    //! Writes the distances up to a stop, NEVER for pairs that ended on the way. STOPS is the number of stops up
-    //! to there if those that passed at the ones before are to be counted, else 0.
-    template <int Q, int STOPS> void compareTo(int query, int stop)
-    {
-        const int groups = scan.groups, first = words[0], second = words[1];
-        const size_t step = layout.words() * CODES_PER_BLOCK;
-        const unsigned* group = scan.trains;
-        int *results = distances.data(), *const end = results + groups * CODES_PER_BLOCK;
-        Counts gone = vx_setzero_s32(), minima[Q];
+        Counts minima[Q], limits[Q];
         for (int q = 0; q < Q; q++)
+        {
             minima[q] = vx_setall_s32(NEVER);
-        for (int g = 0; results != end; results += CODES_PER_BLOCK, group += step, g++)
+            limits[q] = vx_setall_s32(scan.limits ? scan.limits[query + q] : NEVER);
+        }
+        lists.clear();
+        for (int block = 0, ended = 0; block < blocks; block++)
+        {
+            Tile<Q> tile;
+            Counts distance[Tile<Q>::SIZE];
+            const int end = block <= 8 + 6 * ended ? early : words[0];
+            tile.start(queries, codes(block), end);
+            tile.distances(distance);
+            if (end < words[0])
+            {
+                if (!anyWithin<Q>(distance, limits))
+                {
+                    ended++;
+                    continue;
+                }
+                tile.advance(queries, codes(block), end, words[0]);
+                tile.distances(distance);
+            }
+            const bool incomplete = pairs.allowed || block == blocks - 1;
+            for (int i = 0; i < Tile<Q>::SIZE; i++)
+            {
+                const int q = i / VECTORS, v = i % VECTORS;
+                if (incomplete)
+                    distance[i] = v_select(missing(query + q, block, v) < vx_setzero_s32(),
+                            vx_setall_s32(NEVER), distance[i]);
+                lists.store(q, block, v, distance[i]);
+                minima[q] = v_min(minima[q], distance[i]);
+            }
+            lists.append(block);
+            if (early < words[0] && block % 8 == 0 && scan.margin >= 0)
+                for (int q = 0; q < Q; q++)
+                    limits[q] = v_min(limits[q], vx_setall_s32(plusMargin(v_reduce_min(minima[q]))));
+        }
+        for (int q = 0; q < Q; q++)
+            least[q] = v_reduce_min(minima[q]);
+    }
+
+    //! Writes the distances up to the second stage, and counts the pairs that pass the first.
+    template <int Q> void compareToSecond(int query)
+    {
+        Counts gone = vx_setzero_s32();
+        lists.clear();
+        for (int block = 0; block < blocks; block++)
         {
             Tile<Q> tile;
             Counts distance[Tile<Q>::SIZE], before[Tile<Q>::SIZE], room[Tile<Q>::SIZE];
+            startStages<Q>(tile, query, block, distance, before, room);
+            endPairs<Q>(0, 0, distance, before, room);
             for (int i = 0; i < Tile<Q>::SIZE; i++)
-            {
-                before[i] = vx_setzero_s32();
-                room[i] = missing(query + i / VECTORS, g, i % VECTORS);
-            }
-            tile.start(queries, group, first);
+                gone += room[i] >> 31;
+            tile.advance(queries, codes(block), words[0], words[1]);
             tile.distances(distance);
-            if (STOPS == 2)
-            {
-                endPairs<Q>(0, 0, distance, before, room);
-                for (int i = 0; i < Tile<Q>::SIZE; i++)
-                    gone += room[i] >> 31;
-                tile.advance(queries, group, first, second);
-                tile.distances(distance);
-                endPairs<Q>(1, 0, distance, before, room);
-            }
-            if (STOPS == 0)
-            {
-                for (int i = 0; i < stop; i++)
-                {
-                    endPairs<Q>(i, scan.limits ? scan.limits + query : 0, distance, before, room);
-                    tile.advance(queries, group, words[i], words[i + 1]);
-                    tile.distances(distance);
-                }
-                if (stop < scan.stopCount)
-                    endPairs<Q>(stop, 0, distance, before, room);
-            }
-            for (int i = 0; i < Tile<Q>::SIZE; i++)
-            {
-                if (STOPS != 1 || scan.allowed)
-                    distance[i] = v_select(room[i] < vx_setzero_s32(), vx_setall_s32(NEVER), distance[i]);
-                v_store(results + i / VECTORS * groups * CODES_PER_BLOCK + i % VECTORS * WIDTH, distance[i]);
-                if (STOPS == 1)
-                    minima[i / VECTORS] = v_min(minima[i / VECTORS], distance[i]);
-            }
+            endPairs<Q>(1, 0, distance, before, room);
+            storeRemaining<Q>(block, distance, room);
         }
-        if (STOPS == 1)
-            for (int q = 0; q < Q; q++)
-                least[q] = v_reduce_min(minima[q]);
-        if (STOPS == 2)
-            scan.passed[0] += Q * groups * CODES_PER_BLOCK + v_reduce_sum(gone);
+        scan.passed[0] += Q * blocks * CODES_PER_BLOCK + v_reduce_sum(gone);
     }
 
-    //! Makes the room negative of the pairs that are not to go on at a stop.
+    //! Writes the distances up to any stage, or to the end.
+    template <int Q> void compareTo(int query, int stage)
+    {
+        lists.clear();
+        for (int block = 0; block < blocks; block++)
+        {
+            Tile<Q> tile;
+            Counts distance[Tile<Q>::SIZE], before[Tile<Q>::SIZE], room[Tile<Q>::SIZE];
+            startStages<Q>(tile, query, block, distance, before, room);
+            for (int i = 0; i < stage; i++)
+            {
+                endPairs<Q>(i, scan.limits ? scan.limits + query : 0, distance, before, room);
+                tile.advance(queries, codes(block), words[i], words[i + 1]);
+                tile.distances(distance);
+            }
+            if (stage < scan.stageCount)
+                endPairs<Q>(stage, 0, distance, before, room);
+            storeRemaining<Q>(block, distance, room);
+        }
+    }
+
+    template <int Q>
+    CV_ALWAYS_INLINE void startStages(
+            Tile<Q>& tile, int query, int block, Counts* distance, Counts* before, Counts* room)
+    {
+        for (int i = 0; i < Tile<Q>::SIZE; i++)
+        {
+            before[i] = vx_setzero_s32();
+            room[i] = missing(query + i / VECTORS, block, i % VECTORS);
+        }
+        tile.start(queries, codes(block), words[0]);
+        tile.distances(distance);
+    }
+
+    //! Makes the room negative of the pairs that are not to go on at a stage.
     template <int Q>
     CV_ALWAYS_INLINE void endPairs(
-            int stop, const int* limits, const Counts* distance, Counts* before, Counts* room) const
+            int stage, const int* limits, const Counts* distance, Counts* before, Counts* room) const
     {
-        const Counts most = vx_setall_s32(scan.stops[stop].most);
+        const Counts most = vx_setall_s32(scan.stages[stage].most);
         for (int i = 0; i < Tile<Q>::SIZE; i++)
         {
             room[i] = room[i] | (before[i] + most - distance[i]);
@@ -139,80 +183,87 @@ private:
         }
     }
 
-    //! Lists the pairs of each query that go on.
-    template <int Q> void select(int query, int stop, int* counts)
+    //! NEVER in place of the distances of pairs that ended on the way.
+    template <int Q>
+    CV_ALWAYS_INLINE void storeRemaining(int block, const Counts* distance, const Counts* room)
     {
-        const int size = scan.groups * CODES_PER_BLOCK;
-        const int* distance[Q];
-        int *list[Q], limits[Q];
-        for (int q = 0; q < Q; q++)
-        {
-            distance[q] = distancesOf(q);
-            list[q] = shortlist(q);
-            limits[q] = lowerLimit(query + q, q, stop);
-        }
-        for (int i = 0; i < size; i += CODES_PER_BLOCK)
-        {
-            Counts trains[VECTORS];
-            for (int v = 0; v < VECTORS; v++)
-                trains[v] = laneNumbers() + vx_setall_s32(i + v * WIDTH);
-            for (int q = 0; q < Q; q++)
-            {
-                Counts room[VECTORS];
-                for (int v = 0; v < VECTORS; v++)
-                    room[v] = vx_setall_s32(limits[q]) - vx_load(distance[q] + i + v * WIDTH);
-                const int lanes = ((1 << CODES_PER_BLOCK) - 1) & ~negativeLanes(room);
-                storeLanes(list[q], trains, lanes);
-                list[q] += countLanes(lanes);
-            }
-        }
-        for (int q = 0; q < Q; q++)
-            counts[q] = (int)(list[q] - shortlist(q));
+        for (int i = 0; i < Tile<Q>::SIZE; i++)
+            lists.store(i / VECTORS, block, i % VECTORS,
+                    v_select(room[i] < vx_setzero_s32(), vx_setall_s32(NEVER), distance[i]));
+        lists.append(block);
     }
 
-    //! The most that may differ at the stop.
-    int lowerLimit(int query, int q, int stop)
+    template <int Q> static CV_ALWAYS_INLINE bool anyWithin(const Counts* distance, const Counts* limits)
     {
-        const int most = stop == 0 ? scan.stops[0].most : NEVER - 1;  // which was not looked at, or was
+        Counts beyond = vx_setall_s32(-1);
+        for (int i = 0; i < Tile<Q>::SIZE; i++)
+            beyond = beyond & (limits[i / VECTORS] - distance[i]);
+        return !v_check_all(beyond);
+    }
+
+    //! Negative in the lanes whose pairs do not exist or are masked.
+    CV_ALWAYS_INLINE Counts missing(int query, int block, int v) const
+    {
+        Counts result = vx_setzero_s32();
+        if (block == blocks - 1)
+            result =
+                    vx_setall_s32(pairs.trainCount - 1 - block * CODES_PER_BLOCK - v * WIDTH) - laneNumbers();
+        if (pairs.allowed)
+        {
+            const uchar* allowed = pairs.allowed + ((size_t)query * blocks + block) * CODES_PER_BLOCK;
+            result = result |
+                     (v_reinterpret_as_s32(vx_load_expand_q(allowed + v * WIDTH)) == vx_setzero_s32());
+        }
+        return result;
+    }
+
+    //! The most that may differ at the stage.
+    int lowerLimit(int query, int q, int stage)
+    {
+        // Beyond the first stage, compareToSecond() and compareTo() have looked at it.
+        const int most = stage == 0 ? scan.stages[0].most : NEVER - 1;
         if (!scan.limits)
             return most;
         int& limit = scan.limits[query];
         if (scan.margin >= 0)
-            limit = std::min(limit, std::min(least[q], NEVER - scan.margin) + scan.margin);
+            limit = std::min(limit, plusMargin(least[q]));
         return std::min(limit, most);
     }
+    int plusMargin(int distance) const { return std::min(distance, NEVER - scan.margin) + scan.margin; }
 
-    //! Takes the pairs of a list one by one through the stops that follow.
-    void finish(int query, int q, int count, int stop)
+    //! Takes the pairs of a list one by one through the stages that follow.
+    void finish(int query, int q, int count, int stage)
     {
         if (count > 0)
             queryRow.set(0, plainQuery(query));
-        for (; stop < scan.stopCount && count > 0; stop++)
+        for (; stage < scan.stageCount && count > 0; stage++)
         {
-            if (stop + 1 < scan.stopCount)
-                scan.passed[stop + 1] += count = advance(q, count, stop);
+            if (stage + 1 < scan.stageCount)
+                scan.passed[stage + 1] += count = advance(q, count, stage);
             else
-                advance(q, count, stop);
+                advance(q, count, stage);
         }
-        const int *list = shortlist(q), *distance = distancesOf(q), *queryBelow = scan.queryBelow + query;
-        const int* trainBelow = scan.trainBelow;
+        const int *list = lists.list(q), *distance = lists.distances(q),
+                  *queryThreshold = collector.queryThresholds + query;
+        const int* trainThresholds = collector.trainThresholds;
         for (int i = 0; i < count; i++)
-            if (distance[list[i]] < *queryBelow || (trainBelow && distance[list[i]] < trainBelow[list[i]]))
-                scan.sink->found(query, list[i], distance[list[i]]);
+            if (distance[list[i]] < *queryThreshold ||
+                    (trainThresholds && distance[list[i]] < trainThresholds[list[i]]))
+                scan.sink.found(query, list[i], distance[list[i]]);
     }
 
-    //! Compares the pairs of a list to the stop after a stop; returns how many are left.
-    int advance(int q, int count, int stop)
+    //! Compares the pairs of a list to the stage after a stage; returns how many are left.
+    int advance(int q, int count, int stage)
     {
-        const int from = partAt(stop), to = partAt(stop + 1);
-        const int most = stop + 1 < scan.stopCount ? scan.stops[stop + 1].most : NEVER;
+        const int from = segmentAt(stage), to = segmentAt(stage + 1);
+        const int most = stage + 1 < scan.stageCount ? scan.stages[stage + 1].most : NEVER;
         const int size = queryRow.count(from, to);
         const uint64* query = queryRow.after(from, 0);
-        int *list = shortlist(q), *distance = distancesOf(q), left = 0;
+        int *list = lists.list(q), *distance = lists.distances(q), left = 0;
         for (int i = 0; i < count; i++)
         {
             const int train = list[i];
-            trainRows.require(train, scan.trains);
+            trainRows.require(train, pairs.trains);
             const int more = countDifferences(query, trainRows.after(from, train), size);
             distance[train] += more;
             list[left] = train;
@@ -221,18 +272,23 @@ private:
         return left;
     }
 
-    //! The part that ends at a stop, or the last one after the last stop.
-    int partAt(int stop) const { return stop < scan.stopCount ? scan.stops[stop].part : layout.parts() - 1; }
-    int* distancesOf(int q) { return distances.data() + (size_t)q * scan.groups * CODES_PER_BLOCK; }
-    int* shortlist(int q) { return shortlists.data() + (size_t)q * (scan.groups + 1) * CODES_PER_BLOCK; }
+    //! The segment that ends at a stage, or the last one after the last stage.
+    int segmentAt(int stage) const
+    {
+        return stage < scan.stageCount ? scan.stages[stage].segment : layout.segments() - 1;
+    }
 
-    Rows queryRow, trainRows;
-    std::vector<int> words;                    // up to each stop, and in all
-    AlignedBuffer<int> distances, shortlists;  // of a row's pairs
-    int least[QUERIES];                        // of the distances
+    const PrunedScan& scan;
+    Shortlists lists;
+    PairRows queryRow, trainRows;
+    std::vector<int> words;  // up to each stage, and in all
+    int early;               // words after which a tile is left if no pair in it can pass the first stage
+    int least[QUERIES];      // of the distances at the first stage
 };
 
 }  // namespace
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 }  // namespace iib
 }  // namespace cv
+
+#endif

@@ -2,17 +2,89 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// What all scans share. Included by hamming.simd.hpp.
+// What all scans share: which pairs exist and are near enough, and where found pairs go.
+
+#ifndef OPENCV_IIB_MATCHER_KERNELS_SCANNER_SIMD_HPP
+#define OPENCV_IIB_MATCHER_KERNELS_SCANNER_SIMD_HPP
+
+#include "hamming.hpp"
+#include "tile.simd.hpp"
 
 namespace cv {
 namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
-class Scanner
+//! Hands found pairs to a sink.
+class SinkCollector
 {
 public:
-    explicit Scanner(const HammingScan& s) : scan(s), layout(*s.layout), queries(layout) {}
+    explicit SinkCollector(HammingSink& s)
+        : queryThresholds(s.queryThresholds), trainThresholds(s.trainThresholds), sink(s)
+    {
+    }
+    //! Takes the pairs of a query and of some codes of a block, whose first is `train`.
+    void collect(int query, int train, const Counts* distances, int lanes)
+    {
+        int near[CODES_PER_BLOCK];
+        storeLanes(near, distances, lanes);
+        for (int i = 0; lanes; lanes &= lanes - 1)
+            sink.found(query, train + trailingZeros32(lanes), near[i++]);
+    }
+
+    const int* const queryThresholds;
+    const int* const trainThresholds;
+
+private:
+    HammingSink& sink;
+};
+
+//! Keeps the nearest of each query and, if wanted, of each train code.
+class NearestCollector
+{
+public:
+    explicit NearestCollector(const NearestScan& s)
+        : queryThresholds(s.ofQueries.distances), trainThresholds(s.ofTrains.distances),
+          ofQueries(s.ofQueries), ofTrains(s.ofTrains)
+    {
+    }
+    void collect(int query, int train, const Counts* distances, int lanes)
+    {
+        int near[CODES_PER_BLOCK];
+        for (int v = 0; v < VECTORS; v++)
+            v_store(near + v * WIDTH, distances[v]);
+        for (; lanes; lanes &= lanes - 1)
+        {
+            const int lane = trailingZeros32(lanes);
+            keep(ofQueries, query, near[lane], train + lane);
+            if (trainThresholds)
+                keep(ofTrains, train + lane, near[lane], query);
+        }
+    }
+
+    const int* const queryThresholds;
+    const int* const trainThresholds;
+
+private:
+    static void keep(const NearestCodes& nearest, int i, int distance, int index)
+    {
+        if (distance >= nearest.distances[i])
+            return;
+        nearest.distances[i] = distance;
+        nearest.indices[i] = index;
+    }
+
+    const NearestCodes ofQueries, ofTrains;
+};
+
+template <class Collector> class Scanner
+{
+public:
+    Scanner(const CodePairs& p, const Collector& c)
+        : pairs(p), layout(p.layout), queries(layout), collector(c), blocks(p.blocks()),
+          lastLanes(ALL_LANES >> (p.paddedTrains() - p.trainCount))
+    {
+    }
 
 protected:
     template <int Q> void setQueries(int query)
@@ -22,107 +94,52 @@ protected:
     }
 
     //! Negative where a distance is small enough to be found.
-    CV_ALWAYS_INLINE Counts beyond(int query, int group, int v, const Counts& distance) const
+    CV_ALWAYS_INLINE Counts slack(int query, int block, int v, const Counts& distance) const
     {
-        Counts below = vx_setall_s32(scan.queryBelow[query]);
-        if (scan.trainBelow)
-            below = v_max(below, vx_load(scan.trainBelow + group * CODES_PER_BLOCK + v * WIDTH));
-        return distance - below;
+        Counts threshold = vx_setall_s32(collector.queryThresholds[query]);
+        if (collector.trainThresholds)
+            threshold = v_max(
+                    threshold, vx_load(collector.trainThresholds + block * CODES_PER_BLOCK + v * WIDTH));
+        return distance - threshold;
     }
 
-    void report(int query, int group, const Counts* distance, const Counts* beyonds) const
+    //! Collects the pairs whose slack is negative.
+    void collect(int query, int block, const Counts* distances, const Counts* slacks)
     {
-        int lanes = negativeLanes(beyonds);
+        int lanes = negativeLanes(slacks);
         if (!lanes)
             return;
-        Counts absent[VECTORS];
+        if (pairs.allowed || block == blocks - 1)
+            lanes &= existing(query, block);
+        collector.collect(query, block * CODES_PER_BLOCK, distances, lanes);
+    }
+
+    //! The lanes whose pairs exist and are not masked.
+    int existing(int query, int block) const
+    {
+        const int lanes = block == blocks - 1 ? lastLanes : ALL_LANES;
+        if (!pairs.allowed)
+            return lanes;
+        const uchar* allowed = pairs.allowed + ((size_t)query * blocks + block) * CODES_PER_BLOCK;
+        Counts masked[VECTORS];
         for (int v = 0; v < VECTORS; v++)
-            absent[v] = missing(query, group, v);
-        lanes &= ~negativeLanes(absent);
-        int near[CODES_PER_BLOCK];
-        storeLanes(near, distance, lanes);
-        for (int i = 0; lanes; lanes &= lanes - 1)
-            scan.sink->found(query, group * CODES_PER_BLOCK + trailingZeros32(lanes), near[i++]);
+            masked[v] = v_reinterpret_as_s32(vx_load_expand_q(allowed + v * WIDTH)) == vx_setzero_s32();
+        return lanes & ~negativeLanes(masked);
     }
 
-    //! All bits of the lanes whose pairs do not exist.
-    CV_ALWAYS_INLINE Counts missing(int query, int group, int v) const
-    {
-        if (!scan.allowed)
-            return vx_setzero_s32();
-        const uchar* allowed = scan.allowed + ((size_t)query * scan.groups + group) * CODES_PER_BLOCK;
-        return v_reinterpret_as_s32(vx_load_expand_q(allowed + v * WIDTH)) == vx_setzero_s32();
-    }
+    const unsigned* codes(int block) const { return pairs.trains + block * layout.blockWords(); }
+    const unsigned* plainQuery(int query) const { return pairs.queries + (size_t)query * layout.words(); }
 
-    const unsigned* codes(int group) const
-    {
-        return scan.trains + (size_t)group * layout.words() * CODES_PER_BLOCK;
-    }
-    const unsigned* plainQuery(int query) const { return scan.queries + (size_t)query * layout.words(); }
-
-    const HammingScan& scan;
+    const CodePairs& pairs;
     const CodeLayout& layout;
     TileQueries queries;
-};
-
-//! Every pair to the end, but for tiles whose pairs are all surely too far apart before.
-class FullScanner : public Scanner
-{
-public:
-    explicit FullScanner(const HammingScan& s) : Scanner(s), early(layout.words())
-    {
-        // In both directions some pair is nearly always near enough; PACKING_ADDERS wants an odd number.
-        if (!s.trainBelow && layout.bytes() > 64)
-            early = layout.words() * 7 / 10 | 1;
-    }
-
-    //! Some queries against all groups.
-    template <int Q> void row(int query)
-    {
-        setQueries<Q>(query);
-        // Looking is given up where too few tiles end: it costs about a sixth of what each of them saves.
-        for (int group = 0, ended = 0; group < scan.groups; group++)
-            ended += compare<Q>(query, group, group <= 8 + 6 * ended ? early : layout.words());
-    }
-
-private:
-    //! Returns whether the tile ended after `end` words, before the last.
-    template <int Q> CV_ALWAYS_INLINE bool compare(int query, int group, int end)
-    {
-        Tile<Q> tile;
-        Counts distance[Tile<Q>::SIZE], beyonds[Tile<Q>::SIZE];
-        tile.start(queries, codes(group), end);
-        bool near = anyNear<Q>(tile, query, group, distance, beyonds);
-        if (end < layout.words())
-        {
-            if (!near)
-                return true;
-            tile.advance(queries, codes(group), end, layout.words());
-            near = anyNear<Q>(tile, query, group, distance, beyonds);
-        }
-        for (int q = 0; q < Q && near; q++)
-            report(query + q, group, distance + q * VECTORS, beyonds + q * VECTORS);
-        return false;
-    }
-
-    template <int Q>
-    CV_ALWAYS_INLINE bool anyNear(
-            const Tile<Q>& tile, int query, int group, Counts* distance, Counts* beyonds) const
-    {
-        Counts any = vx_setzero_s32();
-        tile.distances(distance);
-        for (int i = 0; i < Tile<Q>::SIZE; i++)
-        {
-            beyonds[i] = beyond(query + i / VECTORS, group, i % VECTORS, distance[i]);
-            any = any | beyonds[i];
-        }
-        return v_check_any(any);
-    }
-
-    int early;  // words after which a tile is left if no pair is near enough so far: distances only grow
+    Collector collector;
+    const int blocks, lastLanes;
 };
 
 }  // namespace
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 }  // namespace iib
 }  // namespace cv
+
+#endif

@@ -2,8 +2,14 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Comparison of codes packed as PACKING_TABLES, for instruction sets that look bytes up in registers
-// faster than they count bits. Included by hamming.simd.hpp.
+// Comparison of codes packed as PACKING_TABLES, for instruction sets that look bytes up in registers faster than they
+// count bits.
+
+#ifndef OPENCV_IIB_MATCHER_KERNELS_TILE_TABLES_SIMD_HPP
+#define OPENCV_IIB_MATCHER_KERNELS_TILE_TABLES_SIMD_HPP
+
+#include "../../common/aligned_buffer.hpp"
+#include "count_vectors.simd.hpp"
 
 namespace cv {
 namespace iib {
@@ -17,20 +23,6 @@ const int QUERIES = 4;
 typedef v_uint8 Bytes;
 const int BYTES = VTraits<Bytes>::max_nlanes, POSITIONS = BYTES / CODES_PER_BLOCK;
 
-//! Picks values out of tables of 16, a table for each 16 bytes of the vector.
-inline Bytes lookUp(const Bytes& table, const Bytes& index)
-{
-#if CV_AVX512_SKX
-    return Bytes(_mm512_shuffle_epi8(table.val, index.val));
-#elif CV_AVX2
-    return Bytes(_mm256_shuffle_epi8(table.val, index.val));
-#elif CV_SSSE3
-    return Bytes(_mm_shuffle_epi8(table.val, index.val));
-#else
-    return Bytes(vqtbl1q_u8(table.val, index.val));
-#endif
-}
-
 inline Bytes lowHalves(const Bytes& x) { return x & vx_setall_u8(15); }
 inline Bytes highHalves(const Bytes& x)
 {
@@ -43,7 +35,7 @@ struct HalfDistances
     HalfDistances()
     {
         for (int i = 0; i < 256; i++)
-            of[i / 16][i % 16] = (uchar)countLanes(i / 16 ^ i % 16);
+            of[i / 16][i % 16] = (uchar)countBits(i / 16 ^ i % 16);
     }
 };
 
@@ -93,7 +85,7 @@ private:
     uchar* pairs[QUERIES / 2];
 };
 
-//! Q queries against a group, compared up to some word.
+//! Q queries against a CodeBlock, compared up to some word.
 template <int Q> class Tile
 {
 public:
@@ -104,15 +96,15 @@ public:
     };
 
     //! Compares words 0 to `to`.
-    CV_ALWAYS_INLINE void start(const TileQueries& queries, const unsigned* group, int to)
+    CV_ALWAYS_INLINE void start(const TileQueries& queries, const unsigned* block, int to)
     {
         for (int i = 0; i < SIZE; i++)
             counts[i] = vx_setzero_s32();
-        advance(queries, group, 0, to);
+        advance(queries, block, 0, to);
     }
 
     //! Compares words `from` to `to`.
-    CV_ALWAYS_INLINE void advance(const TileQueries& queries, const unsigned* group, int from, int to)
+    CV_ALWAYS_INLINE void advance(const TileQueries& queries, const unsigned* block, int from, int to)
     {
         const int MOST = 30;  // vectors that add up in bytes: 31 times 8 at most
         int v = from * 4 / POSITIONS;
@@ -127,9 +119,9 @@ public:
                 high[pair] = vx_setzero_u16();
             }
             for (; v + 3 <= next; v += 3)
-                addUp<3>(low, high, queries, group, v);
+                addUp<3>(low, high, queries, block, v);
             for (; v < next; v++)
-                addUp<1>(low, high, queries, group, v);
+                addUp<1>(low, high, queries, block, v);
             for (int pair = 0; pair < PAIRS; pair++)
             {
                 widen(low[pair], counts + 2 * pair * VECTORS);
@@ -149,11 +141,11 @@ private:
     // Half bytes hold the distances of three half bytes at most, which makes 12.
     template <int N>
     static CV_ALWAYS_INLINE void addUp(
-            Bytes* low, v_uint16* high, const TileQueries& queries, const unsigned* group, int v)
+            Bytes* low, v_uint16* high, const TileQueries& queries, const unsigned* block, int v)
     {
         Bytes code[N];
         for (int n = 0; n < N; n++)
-            code[n] = vx_load((const uchar*)group + (v + n) * BYTES);
+            code[n] = vx_load((const uchar*)block + (v + n) * BYTES);
         Bytes index[2][N];
         for (int n = 0; n < N; n++)
         {
@@ -164,9 +156,9 @@ private:
             for (int half = 0; half < 2; half++)
             {
                 const uchar* tables = queries[pair] + (2 * v + half) * BYTES;
-                Bytes both = lookUp(vx_load(tables), index[half][0]);
+                Bytes both = lookUp16(vx_load(tables), index[half][0]);
                 for (int n = 1; n < N; n++)
-                    both += lookUp(vx_load(tables + 2 * n * BYTES), index[half][n]);
+                    both += lookUp16(vx_load(tables + 2 * n * BYTES), index[half][n]);
                 low[pair] += lowHalves(both);
                 if (2 * pair + 1 < Q)
                     high[pair] = v_add_wrap(high[pair], v_reinterpret_as_u16(both) >> 4);
@@ -185,12 +177,14 @@ private:
     {
         v_uint16 a, b;
         v_expand(sums, a, b);
-#if CV_SIMD_WIDTH > 16
-        addWide(a + b, counts);
-#else
-        addWide(a, counts);
-        addWide(b, counts + 2);
-#endif
+        // A vector holds the 16 codes at POSITIONS places: one after the other, as many as there are halves and quarters.
+        if (POSITIONS > 1)
+            addWide(a + b, counts);
+        else
+        {
+            addWide(a, counts);
+            addWide(b, counts + VECTORS / 2);
+        }
     }
 
     static CV_ALWAYS_INLINE void addWide(const v_uint16& sums, Counts* counts)
@@ -198,7 +192,7 @@ private:
         v_uint32 a, b;
         v_expand(sums, a, b);
         counts[0] += v_reinterpret_as_s32(a);
-        counts[CV_SIMD_WIDTH > 32 ? 0 : 1] += v_reinterpret_as_s32(b);
+        counts[POSITIONS > 2 ? 0 : 1] += v_reinterpret_as_s32(b);
     }
 
     Counts counts[SIZE];
@@ -208,3 +202,5 @@ private:
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 }  // namespace iib
 }  // namespace cv
+
+#endif

@@ -1,0 +1,81 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_MATCHER_KERNELS_SCAN_FULL_SIMD_HPP
+#define OPENCV_IIB_MATCHER_KERNELS_SCAN_FULL_SIMD_HPP
+
+#include "scanner.simd.hpp"
+
+namespace cv {
+namespace iib {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+namespace {
+
+//! Exhaustive scan; skips the rest of a tile once no pair in it can qualify.
+template <class Collector> class FullScanner : public Scanner<Collector>
+{
+    typedef Scanner<Collector> Base;
+    using Base::codes;
+    using Base::layout;
+
+public:
+    FullScanner(const CodePairs& p, const Collector& c) : Base(p, c), early(layout.words())
+    {
+        // In both directions some pair is nearly always near enough; PACKING_ADDERS wants an odd number.
+        if (!c.trainThresholds && layout.bytes() > 64)
+            early = layout.words() * 7 / 10 | 1;
+    }
+
+    //! Some queries against all blocks.
+    template <int Q> void row(int query)
+    {
+        this->template setQueries<Q>(query);
+        // A look costs about a sixth of what an early end saves: stop looking where too few tiles end early.
+        for (int block = 0, ended = 0; block < Base::blocks; block++)
+            ended += compare<Q>(query, block, block <= 8 + 6 * ended ? early : layout.words());
+    }
+
+private:
+    //! Returns whether the tile ended after `end` words, before the last.
+    template <int Q> CV_ALWAYS_INLINE bool compare(int query, int block, int end)
+    {
+        Tile<Q> tile;
+        Counts distance[Tile<Q>::SIZE], slacks[Tile<Q>::SIZE];
+        tile.start(Base::queries, codes(block), end);
+        bool near = anyNear<Q>(tile, query, block, distance, slacks);
+        if (end < layout.words())
+        {
+            if (!near)
+                return true;
+            tile.advance(Base::queries, codes(block), end, layout.words());
+            near = anyNear<Q>(tile, query, block, distance, slacks);
+        }
+        for (int q = 0; q < Q && near; q++)
+            this->collect(query + q, block, distance + q * VECTORS, slacks + q * VECTORS);
+        return false;
+    }
+
+    template <int Q>
+    CV_ALWAYS_INLINE bool anyNear(
+            const Tile<Q>& tile, int query, int block, Counts* distance, Counts* slacks) const
+    {
+        Counts any = vx_setzero_s32();
+        tile.distances(distance);
+        for (int i = 0; i < Tile<Q>::SIZE; i++)
+        {
+            slacks[i] = this->slack(query + i / VECTORS, block, i % VECTORS, distance[i]);
+            any = any | slacks[i];
+        }
+        return v_check_any(any);
+    }
+
+    int early;  // words after which a tile is left if no pair is near enough so far: distances only grow
+};
+
+}  // namespace
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}  // namespace iib
+}  // namespace cv
+
+#endif

@@ -1,0 +1,71 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../precomp.hpp"
+#include "pair_blocks.hpp"
+
+namespace cv {
+namespace iib {
+
+// Copies the masks of a block of pairs into flags, rows of a whole number of CodeBlocks, and counts the pairs left.
+static size_t fillFlags(const SearchInput& input, const PairBlock& block, std::vector<uchar>& flags)
+{
+    const PackedCodes& trains = input.trains;
+    const size_t step = block.pairs.paddedTrains(), end = block.firstTrain + block.pairs.trainCount;
+    flags.assign(block.pairs.queryCount * step, 0);
+    size_t count = 0;
+    for (size_t row = block.firstTrain; row < end;)
+    {
+        const size_t image = trains.imageOf(row), next = std::min(trains.start(image + 1), end);
+        for (int query = 0; query < block.pairs.queryCount; query++)
+        {
+            uchar* to = flags.data() + query * step + (row - block.firstTrain);
+            if (input.masks[image].empty())
+                std::fill(to, to + (next - row), (uchar)1);
+            else
+            {
+                const uchar* mask =
+                        input.masks[image].ptr(block.firstQuery + query) + (row - trains.start(image));
+                std::copy(mask, mask + (next - row), to);
+            }
+            count += (next - row) - std::count(to, to + (next - row), (uchar)0);
+        }
+        row = next;
+    }
+    return count;
+}
+
+void forEachBlock(
+        const SearchInput& input, int from, int to, const std::function<void(const PairBlock&)>& visit)
+{
+    const PackedCodes& trains = input.trains;
+    const CodeLayout& layout = trains.layout();
+    const size_t rows = trains.rows();
+    std::vector<unsigned> plain((size_t)std::min(to - from, input.blocks.queries) * layout.words());
+    std::vector<uchar> flags;
+    for (int query = from; query < to; query += input.blocks.queries)
+    {
+        const int queryCount = std::min(input.blocks.queries, to - query);
+        for (int i = 0; i < queryCount; i++)
+            layout.arrange(input.queries.ptr(query + i), &plain[(size_t)i * layout.words()]);
+        for (int first = 0; first < trains.blocks(); first += input.blocks.codeBlocks)
+        {
+            const size_t train = (size_t)first * CodeLayout::CODES_PER_BLOCK;
+            const size_t trainCount =
+                    std::min(rows - train, (size_t)input.blocks.codeBlocks * CodeLayout::CODES_PER_BLOCK);
+            PairBlock block = {
+                    CodePairs(layout, plain.data(), queryCount, trains.block(first), (int)trainCount), query,
+                    train, queryCount * trainCount};
+            if (!input.masks.empty())
+            {
+                block.pairCount = fillFlags(input, block, flags);
+                block.pairs.allowed = flags.data();
+            }
+            visit(block);
+        }
+    }
+}
+
+}  // namespace iib
+}  // namespace cv
