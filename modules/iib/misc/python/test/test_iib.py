@@ -134,6 +134,19 @@ class MatcherTest(unittest.TestCase):
                              [(m.queryIdx, m.trainIdx, m.distance) for m in theirs])
             self.assertEqual(len(ours), 50)
 
+    def test_create_without_level_sizes_takes_any_width(self):
+        matcher = cv2.iib.HierarchicalMatcher.create()
+        self.assertEqual(len(matcher.levelSizes()), 0)
+        for width in (170, 32):
+            query, train = self.query[:, :width].copy(), self.train[:, :width].copy()
+            theirs = cv2.BFMatcher(cv2.NORM_HAMMING).match(query, train)
+            self.assertEqual([(m.trainIdx, m.distance) for m in matcher.match(query, train)],
+                             [(m.trainIdx, m.distance) for m in theirs])
+        matcher.add([self.train])
+        self.assertEqual(list(matcher.levelSizes()), [170])
+        self.assertEqual(len(matcher.knnMatch(self.query, 2)), 50)
+        np.testing.assert_array_equal(matcher.getTrainDescriptors()[0], self.train)
+
     def test_arrays_equal_matches(self):
         matcher = cv2.iib.HierarchicalMatcher.create(self.levels)
         matches = matcher.knnMatch(self.query, self.train, 3)

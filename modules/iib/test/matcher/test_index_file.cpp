@@ -1,0 +1,177 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/matcher_oracle.hpp"
+#include "../support/temporary_file.hpp"
+#include "../support/test_errors.hpp"
+
+#include <atomic>
+#include <thread>
+
+#ifdef __linux__
+#include <csignal>
+#include <malloc.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#endif
+
+namespace opencv_test {
+namespace {
+
+Ptr<HierarchicalMatcher> matcherOf(int rows)
+{
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({2, 6});
+    matcher->add(randomDescriptors(1, rows, 8));
+    return matcher;
+}
+
+TEST(IIB_IndexFile, load_never_sees_half_a_file)
+{
+    const TemporaryFile file;
+    matcherOf(3)->saveIndex(file.name);
+    const Ptr<HierarchicalMatcher> large = matcherOf(3000);
+    std::atomic<bool> done(false);
+    std::thread writer([&] {
+        for (int i = 0; i < 50; i++)
+            (i % 2 ? matcherOf(3) : large)->saveIndex(file.name);
+        done = true;
+    });
+    int loads = 0;
+    do
+    {
+        EXPECT_NO_THROW(HierarchicalMatcher::loadIndex(file.name));
+        loads++;
+    } while (!done || loads < 10);
+    writer.join();
+}
+
+TEST(IIB_IndexFile, savers_at_the_same_time_leave_a_whole_file)
+{
+    const TemporaryFile file;
+    std::vector<std::thread> writers;
+    for (int i = 0; i < 4; i++)
+        writers.push_back(std::thread([&, i] { matcherOf(1000 + i)->saveIndex(file.name); }));
+    for (std::thread& writer : writers)
+        writer.join();
+    const int rows = HierarchicalMatcher::loadIndex(file.name)->getTrainDescriptors()[0].rows;
+    EXPECT_TRUE(rows >= 1000 && rows < 1004) << rows;
+}
+
+#ifdef __linux__
+//! No file grows beyond this many bytes, as on a full disk.
+struct FullDisk
+{
+    rlimit before;
+    explicit FullDisk(rlim_t bytes)
+    {
+        getrlimit(RLIMIT_FSIZE, &before);
+        rlimit limit = before;
+        limit.rlim_cur = bytes;
+        signal(SIGXFSZ, SIG_IGN);
+        setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before); }
+};
+
+TEST(IIB_IndexFile, full_disk_keeps_the_old_file)
+{
+    const String folder = cv::tempfile(".folder"), name = folder + "/index.iib";
+    ASSERT_EQ(0, mkdir(folder.c_str(), 0700));
+    matcherOf(40)->saveIndex(name);
+    {
+        const FullDisk full(100);
+        EXPECT_THROW(matcherOf(41)->saveIndex(name), cv::Exception);
+        EXPECT_THROW(matcherOf(1000)->saveIndex(folder + "/new.iib"), cv::Exception);
+    }
+    EXPECT_EQ(40, HierarchicalMatcher::loadIndex(name)->getTrainDescriptors()[0].rows);
+    std::vector<String> files;
+    cv::glob(folder + "/*", files);
+    EXPECT_EQ(std::vector<String>(1, name), files);  // nothing half-written is left
+    std::remove(name.c_str());
+    rmdir(folder.c_str());
+}
+
+TEST(IIB_IndexFile, devices_links_and_rights_stay_what_they_are)
+{
+    if (access("/dev/full", W_OK) == 0)
+    {
+        EXPECT_THROW(matcherOf(40)->saveIndex("/dev/full"), cv::Exception);
+        struct stat device;
+        ASSERT_EQ(0, stat("/dev/full", &device));
+        EXPECT_TRUE(S_ISCHR(device.st_mode));
+    }
+    const TemporaryFile file, link;
+    matcherOf(1)->saveIndex(file.name);
+    ASSERT_EQ(0, chmod(file.name.c_str(), 0640));
+    ASSERT_EQ(0, symlink(file.name.c_str(), link.name.c_str()));
+    matcherOf(2)->saveIndex(link.name);
+    struct stat target, entry;
+    ASSERT_EQ(0, lstat(link.name.c_str(), &entry));
+    EXPECT_TRUE(S_ISLNK(entry.st_mode));
+    ASSERT_EQ(0, stat(file.name.c_str(), &target));
+    EXPECT_EQ(0640u, target.st_mode & 0777u);
+    EXPECT_EQ(2, HierarchicalMatcher::loadIndex(file.name)->getTrainDescriptors()[0].rows);
+}
+#endif
+
+#if defined __GLIBC__ && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 33)
+size_t bytesInUse()
+{
+    const struct mallinfo2 info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+}
+
+// A file of 4 MB took 205 MB. What is left is a matrix header of 96 bytes an image, which DescriptorMatcher needs.
+TEST(IIB_IndexFile, memory_of_empty_images)
+{
+    const TemporaryFile file;
+    const int images = 500000;
+    {
+        const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({2, 6});
+        matcher->add(std::vector<Mat>(images));
+        matcher->saveIndex(file.name);
+    }
+    const size_t before = bytesInUse();
+    const Ptr<HierarchicalMatcher> loaded = HierarchicalMatcher::loadIndex(file.name);
+    EXPECT_LT(bytesInUse() - before, (size_t)images * 130);
+    EXPECT_EQ((size_t)images, loaded->getTrainDescriptors().size());
+}
+
+TEST(IIB_IndexFile, codes_are_held_once)
+{
+    const TemporaryFile file;
+    const int rows = 100000, bytes = 64;
+    const size_t once = (size_t)rows * bytes, start = bytesInUse();
+    Mat codes = randomDescriptors(1, rows, bytes);
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(std::vector<int>(1, bytes));
+    matcher->add(codes);
+    codes.release();
+    EXPECT_LT(bytesInUse() - start, once + once / 4);
+    matcher->saveIndex(file.name);
+    const size_t before = bytesInUse();
+    const Ptr<HierarchicalMatcher> loaded = HierarchicalMatcher::loadIndex(file.name);
+    EXPECT_LT(bytesInUse() - before, once + once / 4);
+    const size_t loadedToo = bytesInUse();
+    const Ptr<DescriptorMatcher> copy = matcher->clone();
+    EXPECT_LT(bytesInUse() - loadedToo, once + once / 4);
+}
+#endif
+
+TEST(IIB_IndexFile, version_0_is_not_called_newer)
+{
+    const TemporaryFile file;
+    matcherOf(1)->saveIndex(file.name);
+    std::string bytes = file.read();
+    bytes[8] = 0;
+    file.write(bytes);
+    expectError(Error::StsParseError, "format 0 does not exist",
+            [&] { HierarchicalMatcher::loadIndex(file.name); });
+    bytes[8] = 2;
+    file.write(bytes);
+    expectError(Error::StsParseError, "newer", [&] { HierarchicalMatcher::loadIndex(file.name); });
+}
+
+}  // namespace
+}  // namespace opencv_test

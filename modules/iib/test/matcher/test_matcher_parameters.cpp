@@ -1,0 +1,87 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/matcher_oracle.hpp"
+#include "../support/temporary_file.hpp"
+#include "../support/test_errors.hpp"
+
+namespace opencv_test {
+namespace {
+
+const String GOOD = "%YAML:1.0\n---\nlevelSizes: [ 8, 24 ]\nmode: 2\nthresholds: [ 3.0000001192092896e-01 ]\n"
+                    "crossCheck: 1\nmaxRatio: 7.5000000000000000e-01\n";
+
+Ptr<HierarchicalMatcher> readText(const String& text)
+{
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({4});
+    matcher->read(FileStorage(text, FileStorage::READ | FileStorage::MEMORY).root());
+    return matcher;
+}
+
+String replaced(const String& from, const String& to)
+{
+    String text = GOOD;
+    const size_t at = text.find(from);
+    CV_Assert(at != String::npos);
+    return text.replace(at, from.size(), to);
+}
+
+TEST(IIB_MatcherParameters, damaged_values_throw_and_are_named)
+{
+    EXPECT_EQ((std::vector<int>{8, 24}), readText(GOOD)->levelSizes());
+    const char* const cases[][3] = {// from, to, what the error names
+            {"crossCheck: 1", "crossCheck: \"false\"", "crossCheck"},
+            {"crossCheck: 1", "crossCheck: 2", "crossCheck"},
+            {"crossCheck: 1", "crossCheck: 0.5", "crossCheck"}, {"[ 8, 24 ]", "{ a: 1 }", "levelSizes"},
+            {"[ 8, 24 ]", "[ 8.4, 24 ]", "levelSizes"}, {"[ 8, 24 ]", "[ 8, many ]", "levelSizes"},
+            {"[ 8, 24 ]", "wide", "levelSizes"}, {"[ 8, 24 ]", "[ 8, -24 ]", "levelSizes"},
+            {"mode: 2", "mode: 1.5", "mode"}, {"mode: 2", "mode: EXACT", "mode"},
+            {"mode: 2", "mode: 3", "mode"}, {"thresholds: [ 3", "thresholds: [ 7, 3", "thresholds"},
+            {"[ 3.0", "[ .Nan, 3.0", "threshold"}, {"[ 3.0000001192092896e-01", "[ 7.0", "threshold"},
+            {"[ 3.0000001192092896e-01 ]", "high", "thresholds"},
+            {"maxRatio: 7.5", "maxRatio: half # 7.5", "maxRatio"},
+            {"maxRatio: 7.5", "maxRatio: [ 1 ] # 7.5", "maxRatio"}};
+    for (const auto& c : cases)
+    {
+        SCOPED_TRACE(c[1]);
+        const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({4});
+        try
+        {
+            matcher->read(FileStorage(replaced(c[0], c[1]), FileStorage::READ | FileStorage::MEMORY).root());
+            ADD_FAILURE() << "no exception";
+        }
+        catch (const cv::Exception& e)
+        {
+            EXPECT_NE(String::npos, e.err.find(c[2])) << e.err;
+        }
+        EXPECT_EQ(std::vector<int>(1, 4), matcher->levelSizes());
+    }
+}
+
+TEST(IIB_MatcherParameters, files_of_others_are_refused)
+{
+    const TemporaryFile file(".yml");
+    BFMatcher(NORM_HAMMING).save(file.name);
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({4});
+    DescriptorMatcher& base = *matcher;
+    EXPECT_THROW(base.read(file.name), cv::Exception);
+    expectError(Error::StsParseError, "octaves",
+            [&] { readText("%YAML:1.0\n---\nthreshold: 30\noctaves: 3\n"); });
+    IIB::create()->save(file.name);
+    EXPECT_THROW(base.read(file.name), cv::Exception);
+    EXPECT_THROW(base.read(String(file.name + ".missing.yml")), cv::Exception);
+    expectError(Error::StsParseError, "nothing", [&] { matcher->read(FileNode()); });
+}
+
+TEST(IIB_MatcherParameters, thresholds_of_one_level_are_checked)
+{
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({4});
+    EXPECT_THROW(matcher->setThresholds({7.f}), cv::Exception);
+    EXPECT_THROW(matcher->setThresholds({NOT_A_NUMBER}), cv::Exception);
+    EXPECT_NO_THROW(matcher->setThresholds({0.5f}));
+    EXPECT_TRUE(matcher->getThresholds().empty());
+}
+
+}  // namespace
+}  // namespace opencv_test
