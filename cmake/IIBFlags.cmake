@@ -3,8 +3,9 @@ set(CMAKE_CXX_STANDARD 11)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 
-# A fused multiply-add rounds once instead of twice and would change bits of the descriptor.
-set(IIB_FLAGS -ffp-contract=off)
+# A fused multiply-add rounds once instead of twice and would change bits of the descriptor; -ffast-math in the user's
+# flags would do so too, and let NaN through all checks.
+set(IIB_FLAGS -fno-fast-math -ffp-contract=off)
 
 # For example address,undefined or thread, or fuzzer,address,undefined: then fuzz is for libFuzzer.
 set(IIB_SANITIZE "" CACHE STRING "Argument of -fsanitize=, empty for none")
@@ -19,5 +20,20 @@ if(IIB_SANITIZE)
   list(APPEND IIB_FLAGS -fsanitize=${argument} -fno-sanitize-recover=all -fno-omit-frame-pointer -g)
   add_link_options(-fsanitize=${argument})
 endif()
+
+# What Debian builds its packages with. FORTIFY_SOURCE needs an optimizing build and gets in the way of sanitizers.
+function(iib_harden target)
+  if(NOT UNIX OR IIB_SANITIZE)
+    return()
+  endif()
+  target_compile_options(${target} PRIVATE -fstack-protector-strong)
+  string(TOUPPER "${CMAKE_BUILD_TYPE}" config)
+  if("${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${config}}" MATCHES "-O[1-9sz]")
+    target_compile_options(${target} PRIVATE -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2)
+  endif()
+  if(NOT APPLE)
+    target_link_options(${target} PRIVATE -Wl,-z,relro,-z,now)
+  endif()
+endfunction()
 
 add_compile_options(${IIB_FLAGS} -Wall -Wextra -Wshadow -Wmissing-declarations)

@@ -15,6 +15,12 @@ write_basic_package_version_file(opencv_iibConfigVersion.cmake COMPATIBILITY Sam
 install(FILES "${PROJECT_BINARY_DIR}/opencv_iibConfig.cmake" "${PROJECT_BINARY_DIR}/opencv_iibConfigVersion.cmake"
   DESTINATION "${package_dir}")
 
+# What is linked by pkg-config finds the library in the prefix itself, unless that is the system's.
+set(pc_rpath "-Wl,-rpath,\${libdir} ")
+if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+  set(pc_rpath "")
+endif()
+math(EXPR next_minor "${OpenCV_VERSION_MINOR} + 1")
 # The prefix is told from the file's own place, so that `cmake --install --prefix` may choose it.
 set(pc_dir "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 file(RELATIVE_PATH pc_to_prefix "/prefix/${pc_dir}" "/prefix")

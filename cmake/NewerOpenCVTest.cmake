@@ -62,7 +62,7 @@ string(REGEX REPLACE "(CV_VERSION_MINOR +)[0-9]+" "\\10" text "${text}")
 file(WRITE "${WORK}/opencv2/core/version.hpp" "${text}")
 
 list(TRANSFORM OPENCV_INCLUDE PREPEND "-isystem;")
-file(GLOB sources "${SOURCES}/*.cpp")
+file(GLOB_RECURSE sources "${SOURCES}/*.cpp")
 foreach(source IN LISTS sources)
   execute_process(
     COMMAND "${CXX}" -std=c++17 -Wall -Wextra -Werror -fsyntax-only -D__OPENCV_BUILD=1 -DCVAPI_EXPORTS

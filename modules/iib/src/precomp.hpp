@@ -5,6 +5,10 @@
 #ifndef OPENCV_IIB_PRECOMP_HPP
 #define OPENCV_IIB_PRECOMP_HPP
 
+#if defined __FAST_MATH__ || (defined __FINITE_MATH_ONLY__ && __FINITE_MATH_ONLY__)
+#error "-ffast-math lets NaN through all checks and changes bits of the descriptor: compile this module with -fno-fast-math"
+#endif
+
 #include "opencv2/core.hpp"
 #include "opencv2/core/utility.hpp"
 #include "opencv2/iib.hpp"

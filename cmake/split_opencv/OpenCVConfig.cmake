@@ -1,0 +1,32 @@
+# OpenCV's CMake package where there are only some of its modules: Debian's libopencv-<module>-dev hold headers and library
+# of one module each, but OpenCVConfig.cmake is part of libopencv-dev, which needs all the others (340 MB more on Debian
+# 12). The components asked for become the targets opencv_<component>, as OpenCV's own package has them.
+find_path(IIB_OPENCV_HEADERS opencv2/core/version.hpp PATH_SUFFIXES opencv4)
+if(NOT IIB_OPENCV_HEADERS)
+  set(OpenCV_FOUND FALSE)
+  set(OpenCV_NOT_FOUND_MESSAGE "install OpenCV 4.6 or newer (on Debian and Ubuntu: libopencv-dev), or set OpenCV_DIR to \
+the folder of its OpenCVConfig.cmake")
+  return()
+endif()
+set(OpenCV_INCLUDE_DIRS "${IIB_OPENCV_HEADERS}")
+file(READ "${IIB_OPENCV_HEADERS}/opencv2/core/version.hpp" version)
+foreach(part MAJOR MINOR REVISION)
+  string(REGEX MATCH "CV_VERSION_${part} +([0-9]+)" unused "${version}")
+  set(OpenCV_VERSION_${part} ${CMAKE_MATCH_1})
+endforeach()
+set(OpenCV_VERSION ${OpenCV_VERSION_MAJOR}.${OpenCV_VERSION_MINOR}.${OpenCV_VERSION_REVISION})
+foreach(component IN LISTS OpenCV_FIND_COMPONENTS)
+  find_library(IIB_OPENCV_${component} opencv_${component})
+  set(OpenCV_${component}_FOUND FALSE)
+  if(IIB_OPENCV_${component})
+    set(OpenCV_${component}_FOUND TRUE)
+    if(NOT TARGET opencv_${component})
+      add_library(opencv_${component} SHARED IMPORTED)
+      set_target_properties(opencv_${component} PROPERTIES IMPORTED_LOCATION "${IIB_OPENCV_${component}}"
+        INTERFACE_INCLUDE_DIRECTORIES "${IIB_OPENCV_HEADERS}")
+    endif()
+  elseif(OpenCV_FIND_REQUIRED_${component})
+    set(OpenCV_FOUND FALSE)
+    set(OpenCV_NOT_FOUND_MESSAGE "there is no OpenCV module ${component}; on Debian and Ubuntu install libopencv-dev")
+  endif()
+endforeach()
