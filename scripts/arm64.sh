@@ -14,11 +14,13 @@ if [ ! -d "$sysroot" ]; then
     trap 'rm -rf "$work"' EXIT
     mkdir -p "$work/lists/partial" "$work/archives/partial" "$work/root/usr/lib" "$work/root/usr/bin"
     : >"$work/status"
-    apt="-q -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o Dir::State::Lists=$work/lists
-         -o Dir::State::status=$work/status -o Dir::Cache=$work -o APT::Sandbox::User=$(id -un)
-         -o Debug::NoLocking=1"
+    apt() {
+        apt-get -q -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o Dir::State::Lists="$work/lists" \
+            -o Dir::State::status="$work/status" -o Dir::Cache="$work" -o APT::Sandbox::User="$(id -un)" \
+            -o Debug::NoLocking=1 "$@"
+    }
     (
-        apt-get $apt update && apt-get $apt -y --no-install-recommends --download-only install libopencv-dev
+        apt update && apt -y --no-install-recommends --download-only install libopencv-dev
     ) >"$work/log" 2>&1 || {
         tail -n 5 "$work/log" >&2
         exit 1
@@ -37,8 +39,7 @@ libraries="$sysroot/usr/lib/aarch64-linux-gnu"
 # Debian selects BLAS and LAPACK by alternatives, which maintainer scripts set.
 path="$libraries:$libraries/blas:$libraries/lapack:$sysroot/usr/lib"
 build="$root/build-arm64"
-say "building in $build"
-cmake -S "$root" -B "$build" -G Ninja -DIIB_BUILD_TOOLS=OFF "-DOpenCV_DIR=$libraries/cmake/opencv4" \
+configure -DIIB_BUILD_TOOLS=OFF "-DOpenCV_DIR=$libraries/cmake/opencv4" \
     -DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64 -DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++ \
     "-DCMAKE_EXE_LINKER_FLAGS=-Wl,-rpath-link,$path" "-DCMAKE_SHARED_LINKER_FLAGS=-Wl,-rpath-link,$path"
 cmake --build "$build" --target opencv_test_iib

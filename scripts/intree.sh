@@ -1,30 +1,74 @@
 #!/bin/sh
-# Builds OpenCV's own source, as the distribution has it, with this module through
-# OPENCV_EXTRA_MODULES_PATH, and runs the tests of C++, of speed (a smoke run) and of Python there.
+# Builds OpenCV's own source with this module through OPENCV_EXTRA_MODULES_PATH, and runs the tests of C++, of speed
+# (a smoke run) and of Python there.
+#   scripts/intree.sh [--source debian|contrib|contrib-5] [options of CMake]
+# debian: the distribution's source of its OpenCV. contrib: the newest OpenCV 4 with opencv_contrib's xfeatures2d,
+# from the source distribution of opencv-contrib-python; contrib-5: the newest OpenCV 5 in the same way.
+# JOBS limits the parallel jobs. The last line tells the build's folder.
 . "$(dirname "$0")/lib.sh"
 
-need $build_packages xz-utils libpng-dev zlib1g-dev python3-dev python3-numpy
-source=$("$root/scripts/opencv_source.sh")
+kind=debian
+case "${1:-}" in
+--source)
+    kind="${2:-}"
+    shift $(($# > 1 ? 2 : 1))
+    ;;
+--source=*)
+    kind="${1#--source=}"
+    shift
+    ;;
+esac
+
+extra_modules="$root/modules"
+list=iib,ts,python3,flann,calib3d
+case "$kind" in
+debian)
+    need $build_packages xz-utils libpng-dev zlib1g-dev python3-dev python3-numpy
+    source=$("$root/scripts/opencv_source.sh")
+    build="$source.intree"
+    # What Debian's source lacks.
+    options="-DWITH_QUIRC=OFF -DWITH_PROTOBUF=OFF -DWITH_ADE=OFF -DWITH_JPEG=OFF"
+    ;;
+contrib | contrib-5)
+    need $build_packages libpng-dev libjpeg-dev zlib1g-dev python3-dev python3-numpy python3-venv
+    major=4
+    [ "$kind" = contrib ] || major=5
+    source=$("$root/scripts/opencv_contrib_source.sh" "$major")
+    build="$source.intree"
+    # Only xfeatures2d of opencv_contrib: CMake looks at every module of a folder that it is given.
+    mkdir -p "$source/chosen"
+    ln -sfn "$source/opencv_contrib/modules/xfeatures2d" "$source/chosen/xfeatures2d"
+    extra_modules="$source/chosen;$extra_modules"
+    list="$list,xfeatures2d,imgcodecs"
+    source="$source/opencv"
+    # Nothing is fetched: without their tables, BoostDesc and VGG throw when they are created.
+    options="-DOPENCV_SKIP_FEATURES2D_DOWNLOADING=ON -DWITH_PROTOBUF=OFF -DWITH_ADE=OFF -DWITH_QUIRC=OFF"
+    options="$options -DWITH_AVIF=OFF -DWITH_OBSENSOR=OFF -DWITH_FLATBUFFERS=OFF -DWITH_OPENCL=OFF"
+    ;;
+*)
+    fail "--source takes debian, contrib or contrib-5, not '$kind'"
+    ;;
+esac
+
 # One folder for all copies of the repository: another one's path rebuilds the module alone.
-build="$source.intree"
 exec 8>"$build.lock"
 flock 8
 
 say "building OpenCV with the module in $build (minutes for the first time)"
-# OFF: what Debian's source lacks, then formats and back ends that nothing here reads.
-# AVX512_ICL (VPOPCNTDQ) is not in OpenCV's default list.
+# OFF: formats and back ends that nothing here reads. AVX512_ICL (VPOPCNTDQ) is not in OpenCV's default list.
+# shellcheck disable=SC2086
 cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-    -DOPENCV_EXTRA_MODULES_PATH="$root/modules" -DBUILD_LIST=iib,ts,python3,flann,calib3d \
+    -DOPENCV_EXTRA_MODULES_PATH="$extra_modules" -DBUILD_LIST="$list" \
     -DPYTHON3_EXECUTABLE=/usr/bin/python3 \
-    -DCPU_DISPATCH="SSE4_1;SSE4_2;AVX;FP16;AVX2;AVX512_SKX;AVX512_ICL" \
-    -DWITH_QUIRC=OFF -DWITH_PROTOBUF=OFF -DWITH_ADE=OFF -DWITH_IPP=OFF -DWITH_ITT=OFF \
-    -DWITH_JPEG=OFF -DWITH_TIFF=OFF -DWITH_WEBP=OFF -DWITH_OPENJPEG=OFF -DWITH_JASPER=OFF -DWITH_OPENEXR=OFF \
+    -DCPU_DISPATCH="SSE4_1;SSE4_2;AVX;FP16;AVX2;AVX512_SKX;AVX512_ICL" $options \
+    -DWITH_IPP=OFF -DWITH_ITT=OFF \
+    -DWITH_TIFF=OFF -DWITH_WEBP=OFF -DWITH_OPENJPEG=OFF -DWITH_JASPER=OFF -DWITH_OPENEXR=OFF \
     -DWITH_GTK=OFF -DWITH_QT=OFF -DWITH_VTK=OFF -DWITH_FFMPEG=OFF -DWITH_GSTREAMER=OFF -DWITH_V4L=OFF \
-    -DWITH_1394=OFF -DWITH_EIGEN=OFF -DWITH_LAPACK=OFF -DWITH_VA=OFF -DBUILD_JAVA=OFF >"$build.log" 2>&1 || {
+    -DWITH_1394=OFF -DWITH_EIGEN=OFF -DWITH_LAPACK=OFF -DWITH_VA=OFF -DBUILD_JAVA=OFF "$@" >"$build.log" 2>&1 || {
     tail -n 30 "$build.log" >&2
     exit 1
 }
-cmake --build "$build" --target opencv_test_iib opencv_perf_iib opencv_python3
+cmake --build "$build" --parallel "${JOBS:-$jobs}" --target opencv_test_iib opencv_perf_iib opencv_python3
 
 say "opencv_test_iib, in-tree"
 "$build/bin/opencv_test_iib"
@@ -37,3 +81,4 @@ say "the README's Python program, on the demo's pair"
 sed -n '/^```python$/,/^```$/{/^```/!p}' "$root/README.md" >"$build/readme.py"
 pair="$root/tools/synthetic"
 /usr/bin/python3 "$build/readme.py" "$pair/day.png" "$pair/night.png" | grep -x '[1-9][0-9]* mutual matches'
+say "done: $build"

@@ -1,11 +1,29 @@
 # shellcheck shell=sh
-# Shared by the scripts here; sourced, not run. Sets root (the repository) and cache.
+# Shared by the scripts here; sourced first, with the script's own arguments. Sets root (the repository), cache, build
+# and jobs, and answers --help with the comment at the head of the script, and what its function more_help prints if
+# it has one, before anything is installed or built.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 cache="${XDG_CACHE_HOME:-$HOME/.cache}/opencv_iib"
 jobs=$(getconf _NPROCESSORS_ONLN)
 
+for argument in "$@"; do
+    case "$argument" in
+    -h | --help)
+        sed -n '2,${/^#/!q;s/^# \{0,1\}//p}' "$0"
+        ! command -v more_help >/dev/null || more_help
+        exit 0
+        ;;
+    esac
+done
+
 say() { echo "== $*"; }
+
+# The user's mistake, in one line.
+fail() {
+    echo "$(basename "$0"): $*" >&2
+    exit 2
+}
 
 # need PACKAGE...: installs those Debian packages that are missing.
 need() {
@@ -29,8 +47,45 @@ need() {
     fi
     say "installing with apt:$missing"
     $as_root apt-get -q update
+    # shellcheck disable=SC2086
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -y install --no-install-recommends $missing
 }
 
 # The stand-alone build of the whole project.
-build_packages="g++ cmake ninja-build pkg-config libopencv-dev"
+compiler_packages="g++ cmake ninja-build"
+build_packages="$compiler_packages pkg-config libopencv-dev"
+# The library and the demo do without libopencv-dev, which brings 47 packages more, see cmake/split_opencv.
+demo_packages="$compiler_packages libopencv-calib3d-dev libopencv-imgcodecs-dev"
+
+# The one build folder of demo, installation, tests and tools, so that the library is compiled once.
+build="$root/build"
+
+# configure CMAKE_ARGUMENT...: says only what a person should read. A folder that exists keeps its generator.
+configure() {
+    [ -f "$build/CMakeCache.txt" ] || set -- -G Ninja "$@"
+    say "configuring $build"
+    cmake -S "$root" -B "$build" --log-level=NOTICE "$@"
+}
+
+# build_library TARGET...: the library and what needs no more than that. A new folder gets neither tests nor tools; one
+# that has them keeps them.
+build_library() {
+    if [ -f "$build/CMakeCache.txt" ]; then
+        configure
+    else
+        configure -DIIB_BUILD_TESTS=OFF -DIIB_BUILD_TOOLS=OFF
+    fi
+    say "building $*"
+    cmake --build "$build" --target "$@"
+}
+
+# build_tools TARGET...: programs of tools/, below $build/tools.
+build_tools() {
+    if [ -f "$build/CMakeCache.txt" ]; then
+        configure -DIIB_BUILD_TOOLS=ON
+    else
+        configure -DIIB_BUILD_TESTS=OFF -DIIB_BUILD_TOOLS=ON
+    fi
+    say "building $*"
+    cmake --build "$build" --target "$@"
+}

@@ -1,13 +1,12 @@
 #!/bin/sh
 # Prints the folder of the OpenCV source that belongs to the installed libopencv-core-dev. The first run
 # fetches it from the machine's own apt mirror into the cache; nothing of the system's apt changes.
-set -eu
+. "$(dirname "$0")/lib.sh"
 
 version=$(dpkg-query -W -f '${source:Version}' libopencv-core-dev 2>/dev/null) || {
     echo "libopencv-core-dev is not installed as a Debian package" >&2
     exit 1
 }
-cache="${XDG_CACHE_HOME:-$HOME/.cache}/opencv_iib"
 tree="$cache/opencv-$version"
 mkdir -p "$cache"
 exec 9>"$cache/source.lock"
@@ -24,13 +23,15 @@ if [ ! -f "$tree/CMakeLists.txt" ]; then
     for list in /etc/apt/sources.list.d/*.sources; do
         [ -f "$list" ] && sed 's/^Types:.*/Types: deb-src/' "$list" >"$work/parts/$(basename "$list")"
     done
-    apt="-q -o Dir::Etc::SourceList=/dev/null -o Dir::Etc::SourceParts=$work/parts -o Dir::State::Lists=$work/lists
-         -o Dir::Cache=$work -o APT::Sandbox::User=$(id -un)"
+    apt() {
+        apt-get -q -o Dir::Etc::SourceList=/dev/null -o Dir::Etc::SourceParts="$work/parts" \
+            -o Dir::State::Lists="$work/lists" -o Dir::Cache="$work" -o APT::Sandbox::User="$(id -un)" "$@"
+    }
     echo "fetching the source of opencv $version with apt" >&2
     (
         cd "$work" &&
-            apt-get $apt update &&
-            apt-get $apt source --download-only --tar-only "opencv=$version" &&
+            apt update &&
+            apt source --download-only --tar-only "opencv=$version" &&
             tar -xf opencv_*.orig.tar.* -C tree --strip-components=1
     ) >"$work/log" 2>&1 || {
         tail -n 5 "$work/log" >&2

@@ -1,44 +1,46 @@
 #!/bin/sh
 # Makes the figures of doc/reliability.md, step by step, on a machine with hours to spare; each step ends with an
-# error if it finds one. scripts/reliability.sh [STEP...], of: bits sanitize load fuzz versions arm64
+# error if it finds one. scripts/reliability.sh [STEP...], of:
+# bits sanitize stress mutation fuzz versions arm64
 . "$(dirname "$0")/lib.sh"
 
 need $build_packages clang xz-utils
-[ $# -gt 0 ] || set -- bits sanitize load fuzz versions arm64
+[ $# -gt 0 ] || set -- bits sanitize stress mutation fuzz versions arm64
 for step in "$@"; do
     say "$step"
     case "$step" in
     bits)
         for compiler in g++ clang++; do
             for level in 0 3; do
-                build="$root/build-$compiler-O$level"
-                cmake -S "$root" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=$compiler -DIIB_BUILD_TOOLS=OFF \
+                folder="$root/build-$compiler-O$level"
+                cmake -S "$root" -B "$folder" -G Ninja -DCMAKE_CXX_COMPILER=$compiler -DIIB_BUILD_TOOLS=OFF \
                     "-DCMAKE_CXX_FLAGS_RELEASE=-O$level" >/dev/null
-                cmake --build "$build" --target opencv_test_iib
+                cmake --build "$folder" --target opencv_test_iib
                 for off in "" AVX512-SKX,AVX512-ICL AVX2,AVX512-SKX,AVX512-ICL \
                     SSE4.1,SSE4.2,AVX,AVX2,AVX512-SKX,AVX512-ICL; do
                     for threads in 1 2 4 8; do
-                        OPENCV_CPU_DISABLE=$off OPENCV_FOR_THREADS_NUM=$threads "$build/opencv_test_iib" \
-                            --gtest_filter='IIB_Golden*' >"$build/golden.log" 2>&1 || {
-                            cat "$build/golden.log"
+                        OPENCV_CPU_DISABLE=$off OPENCV_FOR_THREADS_NUM=$threads "$folder/opencv_test_iib" \
+                            --gtest_filter='IIB_Golden*' >"$folder/golden.log" 2>&1 || {
+                            cat "$folder/golden.log"
                             exit 1
                         }
                         echo "$compiler -O$level, without ${off:-nothing}, $threads threads:" \
-                            "$(tail -n 1 "$build/golden.log")"
+                            "$(tail -n 1 "$folder/golden.log")"
                     done
                 done
             done
         done
         ;;
     sanitize) "$root/scripts/test.sh" --sanitize ;;
-    load)
-        cmake -S "$root" -B "$root/build" -G Ninja
-        cmake --build "$root/build" --target iib_stress iib_fault_injection
-        for load in keypoints codes pixels threads; do
-            "$root/build/tools/stress/iib_stress" $load
+    stress)
+        configure -DIIB_BUILD_TESTS=ON -DIIB_BUILD_TOOLS=ON
+        cmake --build "$build" --target iib_stress iib_fault_injection
+        for stress in keypoints codes pixels threads; do
+            "$build/tools/stress/iib_stress" $stress
         done
-        "$root/build/tools/stress/iib_fault_injection"
+        "$build/tools/stress/iib_fault_injection"
         ;;
+    mutation) "$root/scripts/mutation.sh" ;;
     fuzz) "$root/scripts/fuzz.sh" -s 600 ;;
     versions) "$root/scripts/versions.sh" ;;
     arm64) "$root/scripts/arm64.sh" ;;
