@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// The library under load, each result compared with one got the easy way:
+// The library under stress, each result compared with one got the easy way:
 //   iib_stress keypoints [COUNT]   many keypoints on one image
 //   iib_stress codes [COUNT]       many train descriptors
 //   iib_stress pixels [MEGAPIXELS] large images of every type

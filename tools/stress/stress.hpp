@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef IIB_TOOLS_LOAD_HPP
-#define IIB_TOOLS_LOAD_HPP
+#ifndef IIB_TOOLS_STRESS_HPP
+#define IIB_TOOLS_STRESS_HPP
 
 #include "opencv2/iib.hpp"
 

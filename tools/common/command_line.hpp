@@ -1,0 +1,174 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_TOOLS_COMMAND_LINE_HPP
+#define IIB_TOOLS_COMMAND_LINE_HPP
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "opencv2/core.hpp"
+#include "opencv2/core/utility.hpp"
+
+namespace iib_tools {
+
+/** Options of a program, by cv::CommandLineParser, which lacks what this adds: any number of positional arguments
+between the options, `--name value` beside `--name=value`, options that are repeated, and an error for what it does
+not know. */
+class CommandLine
+{
+public:
+    /** @param keys as cv::CommandLineParser takes them, options only. An empty default makes a switch; every other
+    option takes a value, `<none>` stands for no default. `help` and `h` are added.
+    @throws cv::Exception, code StsBadArg, for an unknown option, a missing or a superfluous value. */
+    CommandLine(int argc, const char* const* argv, const std::string& about, const std::string& keys)
+    {
+        const std::string all = "{help h||prints this}" + keys;
+        const std::map<std::string, Option> options = optionsOf(all);
+        std::vector<std::string> kept(1, argc > 0 ? argv[0] : "");
+        bool optionsOver = false;
+        for (int i = 1; i < argc; i++)
+        {
+            const std::string word = argv[i];
+            if (optionsOver || word.size() < 2 || word[0] != '-')
+            {
+                positional_.push_back(word);
+                continue;
+            }
+            optionsOver = word == "--";
+            if (optionsOver)
+                continue;
+            const size_t equals = word.find('=');
+            const std::string given = word.substr(0, equals);
+            const auto found = options.find(given.substr(given[1] == '-' ? 2 : 1));
+            if (found == options.end())
+                CV_Error(cv::Error::StsBadArg, "unknown option " + given + " (--help lists them)");
+            const Option& option = found->second;
+            std::string value = equals == std::string::npos ? "" : word.substr(equals + 1);
+            if (!option.takesValue && equals != std::string::npos)
+                CV_Error(cv::Error::StsBadArg, "option " + given + " takes no value");
+            if (option.takesValue && equals == std::string::npos && ++i < argc)
+                value = argv[i];
+            if (option.takesValue && value.empty())
+                CV_Error(cv::Error::StsBadArg, "option " + given + " needs a value");
+            values_[option.name].push_back(value);
+            kept.push_back("--" + option.name + (option.takesValue ? "=" + value : ""));
+        }
+        std::vector<const char*> words;
+        for (const std::string& word : kept)
+            words.push_back(word.c_str());
+        parser_ = cv::makePtr<cv::CommandLineParser>(int(words.size()), words.data(), all);
+        parser_->about(about);
+    }
+
+    //! Positional arguments in their order; after `--` everything is one.
+    const std::vector<std::string>& positional() const { return positional_; }
+
+    //! Whether a switch was set, or an option has a value, given or by default.
+    bool has(const std::string& name) const { return parser_->has(name); }
+
+    //! The value of an option, the last one if it is repeated; empty without value and default.
+    std::string text(const std::string& name) const
+    {
+        const auto given = values_.find(name);
+        if (given != values_.end())
+            return given->second.back();
+        return parser_->has(name) ? parser_->get<std::string>(name) : std::string();
+    }
+
+    //! All values of an option that may be repeated, without its default.
+    std::vector<std::string> all(const std::string& name) const
+    {
+        const auto given = values_.find(name);
+        return given == values_.end() ? std::vector<std::string>() : given->second;
+    }
+
+    //! A number from low to high. @throws cv::Exception, code StsBadArg, for anything else.
+    double number(const std::string& name, double low, double high) const
+    {
+        const std::string value = text(name);
+        char* end = nullptr;
+        const double n = std::strtod(value.c_str(), &end);
+        if (value.empty() || *end != '\0' || !(n >= low && n <= high))
+            CV_Error(cv::Error::StsBadArg, cv::format("--%s=%s: not a number from %g to %g", name.c_str(),
+                                                   value.c_str(), low, high));
+        return n;
+    }
+
+    //! A whole number from low to high. @throws cv::Exception, code StsBadArg, for anything else.
+    int whole(const std::string& name, int low, int high) const
+    {
+        const double n = number(name, low, high);
+        if (n != std::floor(n))
+            CV_Error(cv::Error::StsBadArg,
+                    cv::format("--%s=%s: not a whole number", name.c_str(), text(name).c_str()));
+        return int(n);
+    }
+
+    //! What the program does and its options, on the standard output.
+    void printHelp() const { parser_->printMessage(); }
+
+private:
+    struct Option
+    {
+        std::string name;  //!< the first of its names
+        bool takesValue;
+    };
+
+    //! By each name, from `{name other|default|help}...`.
+    static std::map<std::string, Option> optionsOf(const std::string& keys)
+    {
+        std::map<std::string, Option> options;
+        for (size_t at = keys.find('{'); at != std::string::npos; at = keys.find('{', at + 1))
+        {
+            const size_t bar = keys.find('|', at), second = keys.find('|', bar + 1);
+            CV_Assert(bar != std::string::npos && second != std::string::npos);
+            const bool takesValue = keys.find_first_not_of(' ', bar + 1) < second;
+            std::string first;
+            for (size_t from = keys.find_first_not_of(' ', at + 1); from < bar;
+                    from = keys.find_first_not_of(' ', keys.find_first_of(" |", from)))
+            {
+                const std::string name = keys.substr(from, keys.find_first_of(" |", from) - from);
+                first = first.empty() ? name : first;
+                options[name] = {first, takesValue};
+            }
+        }
+        return options;
+    }
+
+    cv::Ptr<cv::CommandLineParser> parser_;
+    std::vector<std::string> positional_;
+    std::map<std::string, std::vector<std::string>> values_;  // by an option's first name
+};
+
+/** The main() of a tool: `--help` prints the help and gives 0; a mistake in the command line is one line on stderr and
+gives 2, any other cv::Exception one line and 1; else what `run` returns.
+@param about what the program does and its positional arguments. */
+inline int runTool(int argc, const char* const* argv, const std::string& about, const std::string& keys,
+        const std::function<int(const CommandLine&)>& run)
+{
+    try
+    {
+        const CommandLine line(argc, argv, about, keys);
+        if (!line.has("help"))
+            return run(line);
+        line.printHelp();
+        return 0;
+    }
+    catch (const cv::Exception& e)
+    {
+        const std::string path = argc > 0 ? argv[0] : "";
+        std::fprintf(stderr, "%s: %s\n", path.substr(path.find_last_of('/') + 1).c_str(), e.err.c_str());
+        return e.code == cv::Error::StsBadArg ? 2 : 1;
+    }
+}
+
+}  // namespace iib_tools
+
+#endif
