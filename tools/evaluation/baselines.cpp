@@ -59,10 +59,12 @@ void addXfeatures2d(std::vector<Configuration>& peers)
             peer("BEBLID-256", side, []() -> Feature { return BEBLID::create(1.f, BEBLID::SIZE_256_BITS); }));
     peers.push_back(
             peer("BEBLID-512", side, []() -> Feature { return BEBLID::create(1.f, BEBLID::SIZE_512_BITS); }));
+#if CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407
     peers.push_back(
             peer("TEBLID-256", side, []() -> Feature { return TEBLID::create(1.f, TEBLID::SIZE_256_BITS); }));
     peers.push_back(
             peer("TEBLID-512", side, []() -> Feature { return TEBLID::create(1.f, TEBLID::SIZE_512_BITS); }));
+#endif
     // The window is 20 times 1.2 / 9 of the size.
     peers.push_back(
             peer("SURF", side * 9 / 24, []() -> Feature { return SURF::create(100, 4, 3, false, true); }));

@@ -82,6 +82,9 @@ int evaluate(const Options& options)
     checkSettings(options);
 
     const std::vector<ImagePair> readable = readablePairs(pairs);
+    if (readable.empty())
+        CV_Error(cv::Error::StsObjectNotFound,
+                "none of the " + std::to_string(pairs.size()) + " image pairs can be read");
     int skipped = int(pairs.size() - readable.size());
     for (const Experiment& e : EXPERIMENTS)
         if (options.experiments.empty() || std::find(options.experiments.begin(), options.experiments.end(),

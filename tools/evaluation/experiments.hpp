@@ -43,8 +43,8 @@ std::vector<std::string> protocolAColumns();
 std::vector<std::string> experimentNames();
 
 /** Runs the experiments. @return how many tasks were skipped.
-@throws cv::Exception if there is nothing to evaluate, an experiment is unknown, or the folder holds results
-of other settings. */
+@throws cv::Exception if there is nothing to evaluate, no image pair can be read, an experiment is unknown, or the folder
+holds results of other settings. */
 int evaluate(const Options& options);
 
 }  // namespace iib_tools

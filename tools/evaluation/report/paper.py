@@ -51,12 +51,8 @@ LEARNED = {
     "IIB": (0.9157, 0.8005, 0.9173, 0.7556),
 }
 
-# Beyond the paper: the default and IIBDescriptorExtractor::createPreset
-TRAINED_ON = ("tilde_webcam", "amos_daynight")  # sets that the presets know
-PRESETS = ("IIB", "IIB S128", "IIB S256", "IIB S512", "IIB ACCURATE", "IIB COMPACT", "IIB TINY", "IIB BALANCED")
-
 # Table "binary_comparsion" (as its label is spelled); float descriptors and TEBLID are not in it
-PEERS = {
+BASELINES = {
     "IIB": (0.9187, 0.8041, 0.9210, 0.7655),
     "IIB x+y": (0.9012, 0.7515, 0.9008, 0.7275),
     "IIB g3": (0.8368, 0.6808, 0.8163, 0.6129),

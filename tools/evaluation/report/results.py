@@ -4,22 +4,35 @@
 
 """Reads the evaluation's CSV files and forms means over image pairs, every pair with the same weight."""
 import csv
+import math
 import os
-from collections import defaultdict
+
+
+# What the evaluation calls otherwise: its files, and kinds of change.
+FILES = {"fixed_points": "protocol_a", "detected_points": "protocol_b"}
+KINDS = {"light": "illumination", "turn": "rotation"}
+
+
+def file_name(name):
+    return FILES.get(name, name) + ".csv"
 
 
 def read(folder, name):
-    """Rows of <folder>/<name>.csv as dictionaries; empty if the experiment has not been run."""
-    path = os.path.join(folder, name + ".csv")
+    """Rows of an experiment's CSV file as dictionaries; empty if it has not been run."""
+    path = os.path.join(folder, file_name(name))
     if not os.path.exists(path):
         return []
     with open(path, newline="") as file:
-        return list(csv.DictReader(file))
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        if "kind" in row:
+            row["kind"] = KINDS.get(row["kind"], row["kind"])
+    return rows
 
 
 def domain(row):
-    """'synthetic' for sets whose name begins so and for what tools/synthetic renders, 'natural' for all others."""
-    return "synthetic" if row["set"].startswith(("synthetic", "lights")) else "natural"
+    """'rendered' for sets whose name begins with synthetic or lights (tools/synthetic), 'natural' for all others."""
+    return "rendered" if row["set"].startswith(("synthetic", "lights")) else "natural"
 
 
 def mean(values):
@@ -27,25 +40,44 @@ def mean(values):
     return sum(values) / len(values) if values else 0.0
 
 
-def scores(rows):
-    """(mAP, mAR, number of pairs) of rows with precision and recall."""
-    return mean(float(r["precision"]) for r in rows), mean(float(r["recall"]) for r in rows), len(rows)
+def interval(values):
+    """Half the width of the 95 % confidence interval of the mean."""
+    values = list(values)
+    if len(values) < 2:
+        return 0.0
+    centre = mean(values)
+    return 1.96 * math.sqrt(sum((v - centre) ** 2 for v in values) / (len(values) - 1) / len(values))
+
+
+def column(rows, name):
+    return [float(r[name]) for r in rows]
 
 
 def group(rows, *columns):
     """Rows by the values of columns, in the order of first appearance."""
-    groups = defaultdict(list)
+    groups = {}
     for row in rows:
-        groups[tuple(row[c] for c in columns)].append(row)
-    return dict(groups)
+        groups.setdefault(tuple(row[c] for c in columns), []).append(row)
+    return groups
 
 
 def curve(rows):
-    """Recall and 1-precision at each threshold, counts summed over the pairs."""
+    """1 - precision and recall at each threshold, counts summed over the pairs, from a hundredth of the matches on."""
     correspondences = sum(int(r["correspondences"]) for r in rows)
     sums = None
     for row in rows:
         points = [tuple(map(int, p.split(":"))) for p in row["curve"].split()]
         sums = points if sums is None else [(a + c, b + d) for (a, b), (c, d) in zip(sums, points)]
-    points = [(1 - c / p, c / correspondences) for c, p in sums or [] if p > 0 and correspondences > 0]
-    return [x for x, _ in points], [y for _, y in points]
+    return [(1 - c / p, c / correspondences) for c, p in sums or [] if p * 100 > sums[-1][1] and correspondences > 0]
+
+
+def area_under_curve(errors, limit):
+    """The share of pairs below an error, averaged over all errors from 0 to the limit."""
+    errors = sorted(errors)
+    area = sum(max(0.0, limit - error) for error in errors)
+    return area / limit / len(errors) if errors else 0.0
+
+
+def mean_accuracy(errors, limits):
+    """The share of pairs whose error is at most a limit, averaged over the limits."""
+    return mean(mean(error <= limit for error in errors) for limit in limits)

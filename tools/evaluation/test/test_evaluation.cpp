@@ -161,6 +161,15 @@ TEST_F(EvaluationTest, keypoints_from_files)
     EXPECT_GT(std::atoi(table.c_str() + at + row.size()), 100);  // correct matches of 150 points
 }
 
+TEST_F(EvaluationTest, no_readable_pair_is_an_error)
+{
+    folder.makeFolder("broken/s");
+    folder.write("broken/s/1.png", "no image");
+    folder.write("broken/s/2.png", "no image");
+    options.roots = {folder.path("broken")};
+    EXPECT_NE(std::string::npos, messageOf([&] { evaluate(options); }).find("none of the 1 image pairs"));
+}
+
 TEST_F(EvaluationTest, mistakes_are_told)
 {
     options.experiments = {"protocol_c"};

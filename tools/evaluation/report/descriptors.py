@@ -1,0 +1,49 @@
+# This file is part of OpenCV project.
+# It is subject to the license terms in the LICENSE file found in the top-level directory
+# of this distribution and at http://opencv.org/license.html.
+
+"""What the page tells of a descriptor besides its results."""
+
+# Sets on whose images the presets of IIB were trained.
+TRAINED_ON = ("tilde_webcam", "amos_daynight")
+
+OPENCV, CONTRIB = "Apache-2.0 (OpenCV)", "Apache-2.0 (opencv_contrib)"
+
+# Name in the results of fixed points: (detected points it is shown with, learned, licence). The table of the page has
+# these in this order, those of them that were measured.
+SHOWN = {
+    "IIB": (("ORB", "IIB"), False, "Apache-2.0"),
+    "IIB ACCURATE": (("ORB", "IIB ACCURATE"), True, "Apache-2.0"),
+    "IIB COMPACT": (("ORB", "IIB COMPACT"), True, "Apache-2.0"),
+    "IIB BALANCED": (("ORB", "IIB BALANCED"), True, "Apache-2.0"),
+    "IIB VIEWPOINT": (("ORB", "IIB VIEWPOINT"), True, "Apache-2.0"),
+    "IIB UNIVERSAL": (("ORB", "IIB UNIVERSAL"), True, "Apache-2.0"),
+    "ORB": (("ORB", "ORB"), True, OPENCV),
+    "BRISK": (("BRISK", "BRISK"), False, OPENCV),
+    "AKAZE-486": (("AKAZE", "AKAZE"), False, OPENCV),
+    "KAZE": (("KAZE", "KAZE"), False, OPENCV),
+    "SIFT": (("SIFT", "SIFT"), False, OPENCV),
+    "BEBLID-256": (None, True, CONTRIB),
+    "BEBLID-256 5x": (None, True, CONTRIB),
+    "BEBLID-512": (("ORB", "BEBLID-512"), True, CONTRIB),
+    "BEBLID-512 5x": (None, True, CONTRIB),
+    "TEBLID-256": (None, True, CONTRIB),
+    "TEBLID-256 5x": (None, True, CONTRIB),
+    "TEBLID-512": (("ORB", "TEBLID-512"), True, CONTRIB),
+    "TEBLID-512 5x": (None, True, CONTRIB),
+    "LATCH-512": (("ORB", "LATCH-512"), True, CONTRIB),
+    "BRIEF-512": (("ORB", "BRIEF-512"), False, CONTRIB),
+    "FREAK": (("ORB", "FREAK"), True, CONTRIB),
+    "DAISY": (None, False, CONTRIB),
+    "LUCID": (None, False, CONTRIB),
+    "BOOST-256": (None, True, CONTRIB),
+    "SURF": (("SURF", "SURF"), False, "patented until 2020, non-free build"),
+}
+
+# The bars at the head of the page.
+HEADLINE = ("IIB", "IIB COMPACT", "SIFT", "KAZE", "AKAZE-486", "BEBLID-512", "TEBLID-512", "LATCH-512", "ORB",
+            "BRIEF-512", "BRISK", "FREAK")
+
+# Those that the tables of moved cameras, blur and scenes compare.
+COMPARED = ("IIB", "IIB COMPACT", "IIB BALANCED", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB", "BRISK", "SIFT", "AKAZE-486",
+            "BEBLID-512", "TEBLID-512", "LATCH-512")
