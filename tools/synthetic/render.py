@@ -24,7 +24,7 @@ IMAGE, DEPTH, LABELS = range(3)
 OUTPUT = {IMAGE: ["+FN8", "+A0.15", "+AM1", "+R2", "-J"], DEPTH: ["+FN16", "-A"], LABELS: ["+FN8", "-A"]}
 
 
-def povray(scene, mode, light, pose, size):
+def povray(scene, mode, light, pose, size, output=None):
     """height x width x 3, BGR, 8U for a picture; height x width, 16U for depth and 8U for labels."""
     width, height = size
     declared = dict(zip(("CamX", "CamY", "CamZ", "Yaw", "Pitch"), pose), Mode=mode, Light=LIGHTS[light],
@@ -33,7 +33,7 @@ def povray(scene, mode, light, pose, size):
         picture = os.path.join(folder, "frame.png")
         done = subprocess.run(
             ["povray", f"+I{HERE / scene}.pov", f"+O{picture}", f"+L{HERE}", f"+W{width}", f"+H{height}",
-             "+WT1", "-D", "-GD", "-GR", "-GS", "-GW", *OUTPUT[mode],
+             "+WT1", "-D", "-GD", "-GR", "-GS", "-GW", *(output or OUTPUT[mode]),
              f"File_Gamma={'srgb' if mode == IMAGE else '1.0'}",
              *(f"Declare={name}={value:.9g}" for name, value in declared.items())],
             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
@@ -138,10 +138,10 @@ def plan(out, scenes, frames, path_lights, size):
         yield from walked(folders, scene, size, frames)
 
 
-def render_all(tasks, size, jobs):
+def render_all(tasks, size, jobs, run_task=run):
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         try:
-            futures = [pool.submit(run, task, size) for task in tasks]
+            futures = [pool.submit(run_task, task, size) for task in tasks]
             for done, future in enumerate(concurrent.futures.as_completed(futures), 1):
                 print(f"[{done}/{len(tasks)}] {future.result()}", flush=True)
         except BaseException:  # Ctrl-C as well: what waits is dropped, what runs is finished

@@ -1,0 +1,167 @@
+#!/usr/bin/python3
+"""Renders data to test visual localization with: the street mapped at noon with depth, then visited under other
+lights on another path, with an IMU. See README.md."""
+
+import argparse
+import pathlib
+import shutil
+import sys
+
+import cv2
+import numpy as np
+
+from render import DEPTH, DEPTH_SCALE, IMAGE, Task, povray, render_all, run, sensed, write
+from scenes import LIGHTS, SCENES, extrinsics, intrinsics, walk
+
+SCENE = "street"
+MAP_LIGHT = "noon"
+QUERY_LIGHTS = ["night", "dusk", "winter", "overcast", "fog", "morning", "wet"]
+DURATION = 14.5  # seconds; at 1.4 m/s a walk as long as the mapped one
+IMU_RATE = 200  # Hz
+GRAVITY = np.array([0, 9.81, 0])  # m/s^2, in the world of `extrinsics`: y points down
+# Noise densities of a good MEMS sensor, as EuRoC's sensor.yaml states them, and constant biases.
+GYRO_NOISE, ACCEL_NOISE = 1.7e-4, 2.0e-3  # rad/s/sqrt(Hz), m/s^2/sqrt(Hz)
+GYRO_BIAS = np.array([0.003, -0.002, 0.004])  # rad/s
+ACCEL_BIAS = np.array([0.03, -0.02, 0.04])  # m/s^2
+
+
+def visit(t):
+    """t: n times in seconds. n x 5 poses (x, y, z, yaw, pitch) as in scenes.py, smooth in time."""
+    def wave(period, phase=0.0):
+        return np.sin(2 * np.pi * t / period + phase)
+    return np.stack([-0.2 + 0.7 * wave(10), 1.65 + 0.03 * wave(0.9), 0.5 + 1.38 * t + 0.1 * wave(4),
+                     1 + 6 * wave(11, 2.5) + 2 * wave(3.7), 6.5 + 1.5 * wave(3.1)], axis=1)
+
+
+def camera_to_world(pose):
+    """4x4 matrix of a pose (x, y, z, yaw, pitch)."""
+    world_to_camera = np.vstack([extrinsics(pose), [0, 0, 0, 1]])
+    return np.linalg.inv(world_to_camera)
+
+
+def quaternion(rotation):
+    """x, y, z, w of a 3x3 rotation under half a turn."""
+    axis = cv2.Rodrigues(rotation)[0].ravel()
+    angle = np.linalg.norm(axis)
+    return np.append(axis * np.sinc(angle / 2 / np.pi) / 2, np.cos(angle / 2))
+
+
+def tum(names, poses):
+    """The poses in TUM's format, camera to world."""
+    lines = ["# name tx ty tz qx qy qz qw"]
+    for name, pose in zip(names, poses):
+        matrix = camera_to_world(pose)
+        lines.append(" ".join([name, *(f"{v:.9g}" for v in (*matrix[:3, 3], *quaternion(matrix[:3, :3])))]))
+    return "\n".join(lines) + "\n"
+
+
+def imu(seed):
+    """Rows of a EuRoC imu.csv: nanoseconds, angular velocity, specific force, in the camera's axes."""
+    step = 1e-4
+    times = np.arange(0, DURATION + 0.5 / IMU_RATE, 1 / IMU_RATE)
+
+    def matrices(at):
+        return np.array([camera_to_world(pose) for pose in visit(at)])
+    before, now, after = matrices(times - step), matrices(times), matrices(times + step)
+    random = np.random.default_rng(seed)
+    rows = []
+    for time, a, b, c in zip(times, before, now, after):
+        turn = cv2.Rodrigues(a[:3, :3].T @ c[:3, :3])[0].ravel() / (2 * step)
+        acceleration = (a[:3, 3] - 2 * b[:3, 3] + c[:3, 3]) / step ** 2
+        force = b[:3, :3].T @ (acceleration - GRAVITY)
+        turn = turn + GYRO_BIAS + random.standard_normal(3) * GYRO_NOISE * np.sqrt(IMU_RATE)
+        force = force + ACCEL_BIAS + random.standard_normal(3) * ACCEL_NOISE * np.sqrt(IMU_RATE)
+        rows.append(",".join([str(round(time * 1e9)), *(f"{v:.9g}" for v in (*turn, *force))]))
+    return "#timestamp [ns],w_x [rad s^-1],w_y,w_z,a_x [m s^-2],a_y,a_z\n" + "\n".join(rows) + "\n"
+
+
+# One ray a pixel takes a third of the time that smoothing does; the blur of a lens stands in for it.
+ONE_RAY, BLUR = ["+FN8", "-A"], 0.6
+
+
+def run_quickly(task, size):
+    if task.mode != IMAGE:
+        return run(task, size)
+    if not task.target.exists():
+        sharp = povray(task.scene, task.mode, task.light, task.pose, size, ONE_RAY)
+        write(task.target, sensed(cv2.GaussianBlur(sharp, (0, 0), BLUR), task.scene, task.light, task.frame))
+    return task.target
+
+
+def write_text(path, text):
+    """Refuses a file that says otherwise, or old and new pictures would be mixed."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if path.exists() and path.read_text() != text:
+        raise RuntimeError(f"{path} is of another size or walk: choose another folder")
+    path.write_text(text)
+
+
+def cameras(size):
+    """COLMAP's cameras.txt, whose pixel centres lie at halves."""
+    matrix = intrinsics(SCENE, *size)
+    return ("# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n"
+            f"1 PINHOLE {size[0]} {size[1]} {matrix[0, 0]:.9g} {matrix[1, 1]:.9g} "
+            f"{matrix[0, 2] + 0.5:.9g} {matrix[1, 2] + 0.5:.9g}\n")
+
+
+def spread(count):
+    """0 .. count - 1, coarse steps first, so that an interrupted run has covered the whole walk."""
+    bits = max(count - 1, 1).bit_length()
+    return [k for k in (int(f"{n:0{bits}b}"[::-1], 2) for n in range(1 << bits)) if k < count]
+
+
+def plan(out, keyframes, queries, lights, size):
+    """The tasks in the order of rendering; also writes the cameras, poses and IMU readings."""
+    poses = walk(SCENES[SCENE].path, keyframes)
+    names = [f"{k:04d}" for k in range(keyframes)]
+    write_text(out / "map" / "cameras.txt", cameras(size))
+    write_text(out / "map" / "poses.txt", tum(names, poses))
+    for name, pose, frame in zip(names, poses, range(keyframes)):
+        yield Task(out / "map" / "images" / f"{name}.png", SCENE, IMAGE, MAP_LIGHT, pose, frame, [])
+        yield Task(out / "map" / "steps" / f"{name}.png", SCENE, DEPTH, MAP_LIGHT, pose, frame, [])
+    times = np.linspace(0, DURATION, queries)
+    poses = visit(times)
+    names = [f"{time:09.6f}" for time in times]
+    for light in lights:
+        write_text(out / light / "cameras.txt", cameras(size))
+        write_text(out / light / "poses.txt", tum(names, poses))
+        write_text(out / light / "imu.csv", imu(LIGHTS[light]))
+    for k in spread(queries):
+        for light in lights:
+            yield Task(out / light / "images" / f"{names[k]}.png", SCENE, IMAGE, light, poses[k], 1000 + k, [])
+
+
+def write_millimetres(out):
+    """map/depth: what `steps` holds, in millimetres; 0 where that is beyond 16 bits."""
+    for path in sorted((out / "map" / "steps").glob("[0-9]*.png")):
+        metres = cv2.imread(str(path), cv2.IMREAD_UNCHANGED) * DEPTH_SCALE
+        millimetres = np.rint(metres * 1000)
+        write(out / "map" / "depth" / path.name, np.where(millimetres <= 65535, millimetres, 0).astype(np.uint16))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("out", type=pathlib.Path, help="folder to render into; what is there is kept")
+    parser.add_argument("--keyframes", type=int, default=16, help="pictures of the map (16: 1.4 m apart)")
+    parser.add_argument("--queries", type=int, default=30, help="pictures a light (30)")
+    parser.add_argument("--lights", nargs="+", choices=LIGHTS, default=QUERY_LIGHTS, metavar="LIGHT")
+    parser.add_argument("--size", type=int, nargs=2, default=(640, 480), metavar=("WIDTH", "HEIGHT"))
+    parser.add_argument("--jobs", type=int, default=2, help="renderings at a time")
+    options = parser.parse_args()
+    if options.keyframes < 2 or options.queries < 2 or min(options.size) < 16 or options.jobs < 1:
+        parser.error("--keyframes and --queries must be 2 or more, --size 16 or more each way, --jobs 1 or more")
+    if shutil.which("povray") is None:
+        sys.exit("povray is not installed: apt-get install povray")
+    size = tuple(options.size)
+    tasks = list(plan(options.out, options.keyframes, options.queries, options.lights, size))
+    mapping = [task for task in tasks if task.target.parent.parent.name == "map"]
+    render_all(mapping, size, options.jobs, run_quickly)
+    write_millimetres(options.out)
+    render_all([task for task in tasks if task.target.parent.parent.name != "map"], size, options.jobs, run_quickly)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (RuntimeError, OSError) as error:
+        sys.exit(str(error))
