@@ -46,6 +46,9 @@ public:
     size_t left() const { return (size_t)(end - next); }
     bool flag() { return (take<uchar>() & 1) != 0; }
 
+    //! Once in n times, n <= 256: for what is worth trying, but takes long.
+    bool rarely(int n) { return between(0, n - 1) == n - 1; }
+
     //! lo..hi, at most 65,536 of them.
     int between(int lo, int hi)
     {

@@ -48,7 +48,7 @@ Mat takeImage(ByteSource& in, Size size, int depth, int channels)
 
 Size takeSize(ByteSource& in)
 {
-    const int largest = in.flag() ? 300 : 40;
+    const int largest = in.rarely(64) ? 300 : 32;
     const int width = in.between(0, largest);
     return Size(width, in.between(0, largest));
 }
@@ -63,8 +63,8 @@ Ptr<IIB> takeExtractor(ByteSource& in)
     Ptr<IIB> iib = IIB::create();
     const int wild = in.between(0, 3) == 3;  // values out of range in a quarter of the runs
     iib->setScaleFactor(wild ? in.number() : 1 + in.between(0, 40) / 8.f);
-    iib->setGranularity(in.between(1 - wild, 6 + wild));
-    iib->setExtraChannels(in.flag() ? in.between(-wild, 16 + wild) : 0);
+    iib->setGranularity(in.between(1 - wild, (in.rarely(32) ? 6 : 3) + wild));
+    iib->setExtraChannels(in.rarely(8) ? in.between(-wild, 16 + wild) : 0);
     iib->setChannels(in.between(1 - wild, 63 + wild));
     iib->setMapping(in.between(-wild, 6 + wild));
     iib->setOverlap(in.flag());
@@ -92,7 +92,7 @@ std::vector<KeyPoint> takeKeyPoints(ByteSource& in, Size size)
 {
     std::vector<KeyPoint> keypoints;
     const bool wild = in.flag();
-    for (int i = in.between(0, 30); i > 0; i--)
+    for (int i = in.between(0, in.rarely(32) ? 30 : 3); i > 0; i--)
     {
         KeyPoint kp;
         kp.pt.x = wild ? in.number() : in.between(-20, size.width + 20) + in.between(0, 3) / 4.f;
@@ -183,7 +183,8 @@ void run(ByteSource& in)
     checkAgainstOracle(*iib, image, extra, keypoints, descriptors);
 
     // Other memory, another cut of the work, the same bits.
-    setNumThreads(in.between(2, 4));
+    if (in.rarely(32))  // new threads take as long as the rest
+        setNumThreads(in.between(2, 4));
     for (Mat& m : extra)
         m = m.clone();
     iib->compute(image.clone(), extra, again, repeated);

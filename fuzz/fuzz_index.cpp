@@ -8,6 +8,7 @@
 #include "byte_source.hpp"
 #include "file.hpp"
 
+#include "../modules/iib/src/common/fnv1a.hpp"
 #include "opencv2/iib.hpp"
 
 namespace {
@@ -15,14 +16,13 @@ namespace {
 using namespace cv;
 using cv::iib::HierarchicalMatcher;
 
-//! Appends what index_io.hpp ends a file with: FNV-1a of all before, little-endian.
+//! Appends what index_file.hpp ends a file with: FNV-1a of all before, little-endian.
 std::string withChecksum(std::string bytes)
 {
-    uint64 hash = CV_BIG_UINT(0xcbf29ce484222325);
-    for (const char byte : bytes)
-        hash = (hash ^ (uchar)byte) * CV_BIG_UINT(0x100000001b3);
+    cv::iib::Fnv1a hash;
+    hash.add(bytes.data(), bytes.size());
     for (int i = 0; i < 8; i++)
-        bytes += (char)(hash >> 8 * i);
+        bytes += (char)(hash.value() >> 8 * i);
     return bytes;
 }
 

@@ -7,6 +7,7 @@
 
 #include "byte_source.hpp"
 #include "support/matcher_oracle.hpp"
+#include "../src/matcher/search_blocks.hpp"
 
 #include <numeric>
 
@@ -56,9 +57,8 @@ bool isPartOf(const Matches& some, const MatcherOracle& oracle, const Mat& queri
 
 int takeRows(ByteSource& in)
 {
-    // beyond a group of 16 codes, and now and then beyond a block of 1024 trains or 512 queries
-    const int kind = in.between(0, 31);
-    return kind == 31 ? in.between(500, 1100) : in.between(0, kind < 16 ? 20 : 70);
+    // beyond a block of 16 codes, and now and then beyond what is compared at a time
+    return in.rarely(128) ? in.between(2000, 4200) : in.between(0, in.rarely(8) ? 70 : 20);
 }
 
 Mat takeDescriptors(ByteSource& in, int bytes)
@@ -118,6 +118,11 @@ Ptr<HierarchicalMatcher> takeMatcher(ByteSource& in, MatcherOracle& oracle)
     }
     oracle.maxRatio = wild ? in.number() : in.between(1, 16) / 16.f;
     matcher->setMaxRatio(oracle.maxRatio);
+    // small blocks, so that the few codes of an input cross their boundaries
+    cv::iib::SearchBlocks blocks;
+    blocks.queries = in.between(1, 40);
+    blocks.codeBlocks = in.between(1, 4);
+    dynamic_cast<cv::iib::BlockedMatcher&>(*matcher).setSearchBlocks(blocks);
     if (mode == HierarchicalMatcher::THRESHOLD)
         oracle.thresholds = matcher->getThresholds();
     return matcher;
@@ -156,7 +161,7 @@ void run(ByteSource& in)
     const int k = all ? INT_MAX : in.between(1, 20);
     const float radius = in.number();
     const bool compact = in.flag(), wrongWidth = in.between(0, 31) == 31;
-    setNumThreads(in.between(1, 4));
+    setNumThreads(in.rarely(32) ? in.between(2, 4) : 1);  // new threads take as long as the rest
 
     Matches found(2), again;
     bool thrown = false;
@@ -194,7 +199,6 @@ void run(ByteSource& in)
     if (cheap && radius != 0)
         checkRadius(*matcher, queries, radius, oracle);
 
-    setNumThreads(in.between(1, 4));
     matcher->clone(false)->knnMatch(queries, again, k, oracle.masks, compact);
     FUZZ_CHECK(equal(found, again));
 }

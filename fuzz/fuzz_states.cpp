@@ -1,0 +1,227 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// Sequences of calls on matchers and their copies, each compared with a model that is searched pair by pair:
+// what is added, copied, cleared, saved, loaded or set must be all that later answers depend on.
+
+#include "byte_source.hpp"
+#include "file.hpp"
+#include "support/matcher_oracle.hpp"
+
+#include <numeric>
+
+namespace {
+
+using namespace cv;
+using namespace opencv_test;
+using cv::iib::HierarchicalMatcher;
+
+//! A matcher and what it should be.
+struct Subject
+{
+    Ptr<HierarchicalMatcher> matcher;
+    MatcherOracle model;
+};
+
+class Session
+{
+public:
+    explicit Session(ByteSource& source) : in(source)
+    {
+        Subject first;
+        for (int i = in.between(1, 3); i > 0; i--)
+            first.model.levelSizes.push_back(in.between(1, in.between(0, 7) ? 6 : 60));
+        first.matcher = HierarchicalMatcher::create(first.model.levelSizes);
+        width = std::accumulate(first.model.levelSizes.begin(), first.model.levelSizes.end(), 0);
+        subjects.push_back(first);
+    }
+
+    void run()
+    {
+        for (int calls = 0; calls < 40 && in.left() > 0; calls++)
+            step(subjects[in.between(0, (int)subjects.size() - 1)]);
+        for (Subject& s : subjects)
+            ask(s);
+        setUseOptimized(true);
+    }
+
+private:
+    void step(Subject& s)
+    {
+        switch (in.between(0, 15))
+        {
+        case 0:
+        case 1:
+        case 2: add(s); break;
+        case 3: refuse(s); break;
+        case 4: clear(s); break;
+        case 5: copy(s, in.flag()); break;
+        case 6: reload(s); break;
+        case 7: reread(s); break;
+        case 8: setUseOptimized(in.flag()); break;
+        case 9: setParameters(s); break;
+        case 10: overwrite(s); break;
+        case 11: askWithTrainSet(s); break;
+        case 12: askWithin(s); break;
+        default: ask(s); break;
+        }
+    }
+
+    Mat takeDescriptors(int bytes)
+    {
+        return randomDescriptors(in.take<uchar>(), in.between(0, in.between(0, 15) ? 9 : 70), bytes);
+    }
+
+    void add(Subject& s)
+    {
+        const Mat codes = takeDescriptors(width);
+        switch (in.between(0, 2))
+        {
+        case 0: s.matcher->add(codes); break;
+        case 1: s.matcher->add(std::vector<Mat>(1, codes)); break;
+        default: {
+            UMat mapped;
+            codes.copyTo(mapped);
+            s.matcher->add(mapped);
+        }
+        }
+        s.model.images.push_back(codes.clone());
+        added.push_back(codes);
+    }
+
+    //! Codes of another width throw and leave everything as it was.
+    void refuse(Subject& s)
+    {
+        bool thrown = false;
+        try
+        {
+            s.matcher->add(Mat(2, width + 1, CV_8U, Scalar(1)));
+        }
+        catch (const cv::Exception&)
+        {
+            thrown = true;
+        }
+        FUZZ_CHECK(thrown);
+    }
+
+    void clear(Subject& s)
+    {
+        s.matcher->clear();
+        s.model.images.clear();
+    }
+
+    void copy(const Subject& s, bool emptyTrainData)
+    {
+        if (subjects.size() >= 4)
+            return;
+        Subject other = s;
+        other.matcher = s.matcher->clone(emptyTrainData).dynamicCast<HierarchicalMatcher>();
+        if (emptyTrainData)
+            other.model.images.clear();
+        subjects.push_back(other);
+    }
+
+    void reload(Subject& s)
+    {
+        static const ScratchFile file;
+        s.matcher->saveIndex(file.name);
+        s.matcher = HierarchicalMatcher::loadIndex(file.name);
+    }
+
+    //! Parameters go through a file into a matcher of the same codes.
+    void reread(Subject& s)
+    {
+        FileStorage out(".yml", FileStorage::WRITE | FileStorage::MEMORY);
+        out << "m"
+            << "{";
+        s.matcher->write(out);
+        out << "}";
+        const FileStorage saved(out.releaseAndGetString(), FileStorage::READ | FileStorage::MEMORY);
+        const Ptr<HierarchicalMatcher> other = HierarchicalMatcher::create(std::vector<int>(1, 3));
+        other->read(saved["m"]);
+        other->add(s.model.images);
+        s.matcher = other;
+    }
+
+    void setParameters(Subject& s)
+    {
+        s.model.crossCheck = in.flag();
+        s.matcher->setCrossCheck(s.model.crossCheck);
+        s.model.maxRatio = in.between(1, 8) / 8.f;
+        s.matcher->setMaxRatio(s.model.maxRatio);
+        const bool threshold = in.flag();
+        s.matcher->setMode(threshold ? HierarchicalMatcher::THRESHOLD : HierarchicalMatcher::EXACT);
+        if (s.model.levelSizes.size() > 1)
+            s.matcher->setThresholds(std::vector<float>(1, in.between(0, 32) / 32.f));
+        s.model.thresholds = threshold ? s.matcher->getThresholds() : std::vector<float>();
+    }
+
+    //! Values are copied when they are added; what becomes of the caller's matrices has no effect.
+    void overwrite(const Subject& s)
+    {
+        for (Mat& m : added)
+            if (!m.empty())
+                m.setTo(in.take<uchar>());
+        const Ptr<DescriptorMatcher> copy = s.matcher->clone(false);
+        for (Mat m : copy->getTrainDescriptors())
+            if (!m.empty())
+                m.setTo(1);
+    }
+
+    void ask(Subject& s)
+    {
+        const Mat queries = takeDescriptors(width);
+        const int k = in.between(1, 4);
+        Matches found(2);
+        s.matcher->knnMatch(queries, found, k);
+        expect(s.model.knn(queries, k), found);
+    }
+
+    void askWithTrainSet(Subject& s)
+    {
+        const Mat queries = takeDescriptors(width);
+        MatcherOracle model = s.model;
+        model.images.assign(1, takeDescriptors(width));
+        Matches found(1);
+        s.matcher->knnMatch(queries, model.images[0], found, 2);
+        expect(model.knn(queries, 2), found);
+    }
+
+    void askWithin(Subject& s)
+    {
+        const Mat queries = takeDescriptors(width);
+        const int radius = in.between(1, 8 * width);
+        Matches found(1);
+        s.matcher->radiusMatch(queries, found, (float)radius);
+        expect(s.model.radius(queries, radius), found);
+    }
+
+    static void expect(const Matches& expected, const Matches& found)
+    {
+        FUZZ_CHECK(expected.size() == found.size());
+        for (size_t q = 0; q < found.size(); q++)
+        {
+            FUZZ_CHECK(expected[q].size() == found[q].size());
+            for (size_t i = 0; i < found[q].size(); i++)
+                FUZZ_CHECK(expected[q][i].distance == found[q][i].distance &&
+                           expected[q][i].imgIdx == found[q][i].imgIdx &&
+                           expected[q][i].trainIdx == found[q][i].trainIdx);
+        }
+    }
+
+    ByteSource& in;
+    int width;
+    std::vector<Subject> subjects;
+    std::vector<Mat> added;  //!< the matrices as their owner sees them
+};
+
+void run(ByteSource& in) { Session(in).run(); }
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
+{
+    setNumThreads(size > 0 && data[0] >= 248 ? 3 : 1);  // new threads take as long as the rest
+    return runTarget(run, data, size);
+}
