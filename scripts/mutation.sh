@@ -1,0 +1,9 @@
+#!/bin/sh
+# Mutation testing: whether the tests notice each of the wrong lines in tools/mutation/mutants.txt; ends with an error
+# if one survives. Takes a build and up to a minute a mutant.
+# scripts/mutation.sh [--only NAME...]
+. "$(dirname "$0")/lib.sh"
+
+# shellcheck disable=SC2086
+need $build_packages python3
+exec python3 "$root/tools/mutation/mutate.py" --source "$root" --work "$cache/mutation" "$@"
