@@ -1,0 +1,23 @@
+#!/usr/bin/env python3
+"""How long it takes to read 10,000 cv2.KeyPoints: by the package, and by a loop in Python; the least of 15 runs."""
+import time
+
+import cv2
+import numpy as np
+
+import opencv_iib
+
+
+def least(function, runs=15):
+    times = []
+    for _ in range(runs):
+        start = time.perf_counter()
+        function()
+        times.append(time.perf_counter() - start)
+    return 1e3 * min(times)
+
+
+keypoints = [cv2.KeyPoint(float(i % 900), float(i % 700), 31., 45., .5, 0, -1) for i in range(10000)]
+print(f'opencv_iib: {least(lambda: opencv_iib.keypoints_to_array(keypoints)):.2f} ms')
+loop = least(lambda: np.array([(*k.pt, k.size, k.angle, k.response, k.octave, k.class_id) for k in keypoints], 'f4'))
+print(f'loop in Python: {loop:.2f} ms')

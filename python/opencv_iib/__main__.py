@@ -1,0 +1,89 @@
+"""python -m opencv_iib: a picture of two matched images, a database for COLMAP, or files for hloc."""
+from __future__ import annotations
+
+import argparse
+import sqlite3
+import sys
+from typing import Optional, Sequence
+
+from opencv_iib.colmap import hloc
+from opencv_iib.colmap.database import CAMERA_MODELS
+from opencv_iib.colmap.features import DETECTORS, FeatureOptions, preset_names
+from opencv_iib.colmap.pipeline import PAIRS, VERIFIERS, Options, build_database
+from opencv_iib.demo import demo
+
+
+def _features(parser: argparse.ArgumentParser, points: int) -> None:
+    parser.add_argument('--detector', default='ORB', choices=DETECTORS, help='a detector of cv2 (%(default)s)')
+    parser.add_argument('--points', type=int, default=points, help='at most so many an image (%(default)s)')
+    parser.add_argument('--preset', default='DEFAULT', choices=sorted(preset_names()), help='descriptor (%(default)s)')
+    parser.add_argument('--orientation', action='store_true', help="turn regions by the keypoints' angles")
+    parser.add_argument('--normalize', action='store_true', help='detect with the local contrast evened out')
+
+
+def _feature_options(arguments: argparse.Namespace) -> FeatureOptions:
+    return FeatureOptions(arguments.detector, arguments.points, arguments.preset, arguments.orientation,
+                          arguments.normalize)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog='python -m opencv_iib', description=__doc__)
+    commands = parser.add_subparsers(dest='command', required=True)
+
+    command = commands.add_parser('demo', help='match two images and write a picture')
+    command.add_argument('image_a')
+    command.add_argument('image_b')
+    command.add_argument('--out', default='opencv_iib_demo.png', help='picture to write (%(default)s)')
+    _features(command, 2000)
+
+    command = commands.add_parser('colmap', help='describe and match a folder, for colmap mapper')
+    command.add_argument('images', help='folder of images')
+    command.add_argument('database', help='file to write; an interrupted run goes on from NAME.partial')
+    _features(command, 4000)
+    command.add_argument('--camera-model', default='SIMPLE_RADIAL', choices=CAMERA_MODELS, help='(%(default)s)')
+    command.add_argument('--focal', type=float, default=0, help='focal length in pixels, instead of EXIF')
+    command.add_argument('--share-cameras', action='store_true', help='one camera for images of one size and focal')
+    command.add_argument('--pairs', default='exhaustive',
+                         help=f'{", ".join(PAIRS)}, or a file with two names a line (%(default)s)')
+    command.add_argument('--neighbours', type=int, default=20, help='of sequential and retrieval (%(default)s)')
+    command.add_argument('--ratio', type=float, default=1, help='ratio test beside the cross-check (%(default)s: none)')
+    command.add_argument('--verify', default='auto', choices=VERIFIERS, help='two-view geometry (%(default)s)')
+    command.add_argument('--workers', type=int, help='threads (one a core)')
+    command.add_argument('--force', action='store_true', help='replace a database that is there')
+
+    command = commands.add_parser('hloc', help="write a database's keypoints and matches as hloc reads them")
+    command.add_argument('database', help='what the command colmap wrote')
+    command.add_argument('features', help='HDF5 file to write')
+    command.add_argument('matches', help='HDF5 file to write')
+    command.add_argument('pairs', help='list of pairs to write')
+    command.add_argument('--force', action='store_true', help='replace files that are there')
+    return parser
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Runs a command; the exit status."""
+    arguments = _parser().parse_args(argv)
+    try:
+        if arguments.command == 'demo':
+            print(demo(arguments.image_a, arguments.image_b, arguments.out, _feature_options(arguments)))
+        elif arguments.command == 'hloc':
+            count = hloc.export(arguments.database, arguments.features, arguments.matches, arguments.pairs,
+                                arguments.force)
+            print(f'{arguments.matches}: {count} pairs')
+        else:
+            options = Options(_feature_options(arguments), arguments.camera_model, arguments.focal,
+                              arguments.share_cameras, arguments.pairs, arguments.neighbours, arguments.ratio,
+                              arguments.verify)
+            counts = build_database(arguments.images, arguments.database, options, arguments.force, arguments.workers)
+            print(f'{arguments.database}: ' + ', '.join(f'{count} {name}' for name, count in counts.items()))
+    except KeyboardInterrupt:
+        print('interrupted; the same command goes on from here', file=sys.stderr)
+        return 130
+    except (OSError, ValueError, RuntimeError, ImportError, sqlite3.Error) as e:
+        print(f'{arguments.command}: {e}', file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

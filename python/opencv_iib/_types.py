@@ -1,0 +1,62 @@
+"""KeyPoint and DMatch: those of cv2 where it is there, plain ones otherwise."""
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+
+class KeyPoint:
+    """A keypoint with the attributes of cv2.KeyPoint; pixels and degrees, angle -1 for none."""
+
+    __slots__ = ('pt', 'size', 'angle', 'response', 'octave', 'class_id')
+
+    def __init__(self, x: float, y: float, size: float, angle: float = -1, response: float = 0,
+                 octave: int = 0, class_id: int = -1) -> None:
+        self.pt = (x, y)
+        self.size = size
+        self.angle = angle
+        self.response = response
+        self.octave = octave
+        self.class_id = class_id
+
+    def __repr__(self) -> str:
+        return f'KeyPoint(pt={self.pt}, size={self.size}, angle={self.angle})'
+
+
+class DMatch:
+    """A match with the attributes of cv2.DMatch; the distance is in bits."""
+
+    __slots__ = ('queryIdx', 'trainIdx', 'imgIdx', 'distance')
+
+    def __init__(self, queryIdx: int, trainIdx: int, imgIdx: int, distance: float) -> None:
+        self.queryIdx = queryIdx
+        self.trainIdx = trainIdx
+        self.imgIdx = imgIdx
+        self.distance = distance
+
+    def __lt__(self, other: 'DMatch') -> bool:
+        return self.distance < other.distance
+
+    def __repr__(self) -> str:
+        return (f'DMatch(queryIdx={self.queryIdx}, trainIdx={self.trainIdx}, imgIdx={self.imgIdx}, '
+                f'distance={self.distance})')
+
+
+@functools.lru_cache(maxsize=None)
+def _cv2() -> Any:
+    # Not at import: it takes longer than all of this package, and many use arrays alone.
+    try:
+        import cv2
+    except ImportError:
+        return None
+    return cv2
+
+
+def keypoint_type() -> Any:
+    cv2 = _cv2()
+    return cv2.KeyPoint if cv2 else KeyPoint
+
+
+def match_type() -> Any:
+    cv2 = _cv2()
+    return cv2.DMatch if cv2 else DMatch

@@ -1,0 +1,219 @@
+"""COLMAP's database file: the schema of COLMAP 3.8, which every later version upgrades when it opens it.
+
+While it is made it is called ``NAME.partial`` and has tables of its own, for the codes, for failures and for the
+settings; finish() drops them and moves the file to its name in one step.
+"""
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import sqlite3
+from typing import Any, Iterator, Optional
+
+import numpy as np
+
+SCHEMA_VERSION = 3800
+MAX_IMAGE_ID = 2147483647
+
+SCHEMA = '''
+CREATE TABLE IF NOT EXISTS cameras (camera_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, model INTEGER NOT NULL,
+  width INTEGER NOT NULL, height INTEGER NOT NULL, params BLOB, prior_focal_length INTEGER NOT NULL);
+CREATE TABLE IF NOT EXISTS images (image_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, name TEXT NOT NULL UNIQUE,
+  camera_id INTEGER NOT NULL, prior_qw REAL, prior_qx REAL, prior_qy REAL, prior_qz REAL, prior_tx REAL,
+  prior_ty REAL, prior_tz REAL,
+  CONSTRAINT image_id_check CHECK(image_id >= 0 and image_id < 2147483647),
+  FOREIGN KEY(camera_id) REFERENCES cameras(camera_id));
+CREATE UNIQUE INDEX IF NOT EXISTS index_name ON images(name);
+CREATE TABLE IF NOT EXISTS keypoints (image_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER NOT NULL,
+  cols INTEGER NOT NULL, data BLOB, FOREIGN KEY(image_id) REFERENCES images(image_id) ON DELETE CASCADE);
+CREATE TABLE IF NOT EXISTS descriptors (image_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER NOT NULL,
+  cols INTEGER NOT NULL, data BLOB, FOREIGN KEY(image_id) REFERENCES images(image_id) ON DELETE CASCADE);
+CREATE TABLE IF NOT EXISTS matches (pair_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER NOT NULL,
+  cols INTEGER NOT NULL, data BLOB);
+CREATE TABLE IF NOT EXISTS two_view_geometries (pair_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER NOT NULL,
+  cols INTEGER NOT NULL, data BLOB, config INTEGER NOT NULL, F BLOB, E BLOB, H BLOB, qvec BLOB, tvec BLOB);
+CREATE TABLE IF NOT EXISTS iib_codes (image_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER NOT NULL,
+  cols INTEGER NOT NULL, data BLOB);
+CREATE TABLE IF NOT EXISTS iib_failures (name TEXT PRIMARY KEY NOT NULL, reason TEXT NOT NULL);
+CREATE TABLE IF NOT EXISTS iib_settings (settings TEXT NOT NULL);
+'''
+
+#: COLMAP's camera models that a prior focal length alone fills: number, parameters after the focal length(s).
+CAMERA_MODELS = {'SIMPLE_PINHOLE': (0, 1, 0), 'PINHOLE': (1, 2, 0), 'SIMPLE_RADIAL': (2, 1, 1), 'RADIAL': (3, 1, 2),
+                 'OPENCV': (4, 2, 4)}
+
+UNCALIBRATED = 3  # COLMAP's TwoViewGeometry::UNCALIBRATED
+
+
+class SettingsChanged(Exception):
+    """The unfinished database was begun with other settings."""
+
+
+def remove_partial(path: str) -> None:
+    """Removes the unfinished database of `path`."""
+    for suffix in ('', '-wal', '-shm'):
+        if os.path.exists(f'{path}.partial{suffix}'):
+            os.unlink(f'{path}.partial{suffix}')
+
+
+def pair_id(a: int, b: int) -> int:
+    """COLMAP's number of a pair; images are numbered from 1."""
+    return min(a, b) * MAX_IMAGE_ID + max(a, b)
+
+
+def _array(row: Any, dtype: Any) -> np.ndarray:
+    return np.frombuffer(row[2], dtype).reshape(row[0], row[1])
+
+
+class Database:
+    """A database in the making. One thread writes; load_codes() and load_keypoints() are for that thread too."""
+
+    def __init__(self, path: str, settings: dict[str, Any]) -> None:
+        """Opens ``path.partial``, new or as an interrupted run left it.
+
+        :raises SettingsChanged: if that run had other settings.
+        """
+        self.path = path
+        self.partial = path + '.partial'
+        self._db = sqlite3.connect(self.partial, isolation_level=None)
+        self._db.execute('PRAGMA journal_mode=WAL')
+        self._db.execute('PRAGMA synchronous=NORMAL')
+        self._db.executescript(SCHEMA)
+        self._db.execute(f'PRAGMA user_version={SCHEMA_VERSION}')
+        text = json.dumps(settings, sort_keys=True)
+        row = self._db.execute('SELECT settings FROM iib_settings').fetchone()
+        if row is None:
+            self._db.execute('INSERT INTO iib_settings VALUES (?)', (text,))
+        elif row[0] != text:
+            self._db.close()
+            raise SettingsChanged(f'{self.partial} was begun with other settings: {row[0]}')
+
+    def __enter__(self) -> Database:
+        return self
+
+    def __exit__(self, *exc: Any) -> None:
+        self.close()
+
+    def close(self) -> None:
+        self._db.close()
+
+    def finish(self) -> None:
+        """Drops what COLMAP does not know and moves the file to its name."""
+        for table in ('iib_codes', 'iib_failures', 'iib_settings'):
+            self._db.execute(f'DROP TABLE {table}')
+        self._db.execute('PRAGMA wal_checkpoint(TRUNCATE)')
+        self._db.execute('PRAGMA journal_mode=DELETE')
+        self._db.execute('VACUUM')
+        self._db.close()
+        with open(self.partial, 'rb') as file:
+            os.fsync(file.fileno())
+        os.replace(self.partial, self.path)
+
+    @contextlib.contextmanager
+    def _transaction(self) -> Iterator[None]:
+        self._db.execute('BEGIN')
+        try:
+            yield
+            self._db.execute('COMMIT')
+        except BaseException:
+            if self._db.in_transaction:  # not after a full disk: SQLite has rolled back then
+                self._db.execute('ROLLBACK')
+            raise
+
+    # Images
+
+    def known(self) -> set[str]:
+        """Names of the images described, and of those that failed."""
+        return {name for name, in self._db.execute('SELECT name FROM images UNION SELECT name FROM iib_failures')}
+
+    def image_ids(self) -> dict[str, int]:
+        return dict(self._db.execute('SELECT name, image_id FROM images ORDER BY name'))
+
+    def failures(self) -> int:
+        count: int = self._db.execute('SELECT COUNT(*) FROM iib_failures').fetchone()[0]
+        return count
+
+    def add_failure(self, name: str, reason: str) -> None:
+        self._db.execute('INSERT OR REPLACE INTO iib_failures VALUES (?, ?)', (name, reason))
+
+    def find_camera(self, model: int, width: int, height: int, params: np.ndarray, prior: bool) -> Optional[int]:
+        row = self._db.execute('SELECT camera_id FROM cameras WHERE model=? AND width=? AND height=? AND params=? AND '
+                               'prior_focal_length=?', (model, width, height, params.tobytes(), int(prior))).fetchone()
+        return None if row is None else int(row[0])
+
+    def add_image(self, name: str, width: int, height: int, model: str, focal: float, prior: bool, shared: bool,
+                  keypoints: np.ndarray, codes: np.ndarray) -> None:
+        """An image with its camera, keypoints and codes, in one transaction.
+
+        :param shared: use a camera that is there already, if it is the same in all.
+        :param keypoints: N x 4 float32: x, y (pixels; the centre of the first pixel is .5), scale, angle (radians).
+        :param codes: N x bytes uint8.
+        """
+        number, focals, others = CAMERA_MODELS[model]
+        params = np.array([focal] * focals + [width / 2, height / 2] + [0] * others, np.float64)
+        with self._transaction():
+            camera = self.find_camera(number, width, height, params, prior) if shared else None
+            if camera is None:
+                camera = self._db.execute(
+                    'INSERT INTO cameras (model, width, height, params, prior_focal_length) VALUES (?, ?, ?, ?, ?)',
+                    (number, width, height, params.tobytes(), int(prior))).lastrowid
+            image = self._db.execute('INSERT INTO images (name, camera_id) VALUES (?, ?)', (name, camera)).lastrowid
+            self._db.execute('INSERT INTO keypoints VALUES (?, ?, ?, ?)',
+                             (image, *keypoints.shape, np.ascontiguousarray(keypoints, np.float32).tobytes()))
+            self._db.execute('INSERT INTO iib_codes VALUES (?, ?, ?, ?)', (image, *codes.shape, codes.tobytes()))
+
+    def load_codes(self, image: int) -> np.ndarray:
+        """N x bytes uint8."""
+        return _array(self._db.execute('SELECT rows, cols, data FROM iib_codes WHERE image_id=?', (image,)).fetchone(),
+                      np.uint8)
+
+    def load_keypoints(self, image: int) -> np.ndarray:
+        """N x 4 float32."""
+        return _array(self._db.execute('SELECT rows, cols, data FROM keypoints WHERE image_id=?', (image,)).fetchone(),
+                      np.float32)
+
+    # Pairs
+
+    def has_pair(self, a: int, b: int) -> bool:
+        return self._db.execute('SELECT 1 FROM matches WHERE pair_id=?', (pair_id(a, b),)).fetchone() is not None
+
+    def pairs(self) -> Iterator[tuple[int, int]]:
+        """Image ids of the pairs that have matches."""
+        for key, in self._db.execute('SELECT pair_id FROM matches WHERE rows > 0 ORDER BY pair_id'):
+            yield divmod(key, MAX_IMAGE_ID)
+
+    def add_pair(self, a: int, b: int, matches: np.ndarray, inliers: Optional[np.ndarray] = None,
+                 fundamental: Optional[np.ndarray] = None) -> None:
+        """Matches of a pair and, if they were verified here, the geometry: one transaction.
+
+        :param matches: M x 2 indices of keypoints of a and b.
+        :param inliers: those of them that agree, M' x 2; None if COLMAP verifies.
+        :param fundamental: 3 x 3, from a to b.
+        """
+        if a > b:
+            a, b, matches = b, a, matches[:, ::-1]
+            inliers = None if inliers is None else inliers[:, ::-1]
+            fundamental = None if fundamental is None else fundamental.T
+        with self._transaction():
+            self._db.execute('INSERT OR REPLACE INTO matches VALUES (?, ?, 2, ?)',
+                             (pair_id(a, b), len(matches), np.ascontiguousarray(matches, np.uint32).tobytes()))
+            if inliers is not None:
+                zero = np.zeros((3, 3))
+                matrix = zero if fundamental is None else np.ascontiguousarray(fundamental, np.float64)
+                self._db.execute('INSERT OR REPLACE INTO two_view_geometries VALUES (?, ?, 2, ?, ?, ?, ?, ?, ?, ?)',
+                                 (pair_id(a, b), len(inliers), np.ascontiguousarray(inliers, np.uint32).tobytes(),
+                                  UNCALIBRATED if len(inliers) else 0, matrix.tobytes(), zero.tobytes(),
+                                  zero.tobytes(), np.array([1., 0, 0, 0]).tobytes(), np.zeros(3).tobytes()))
+
+    def counts(self) -> dict[str, int]:
+        """Images, keypoints, pairs with matches, matches, verified pairs and verified matches."""
+        def one(sql: str) -> int:
+            return int(self._db.execute(sql).fetchone()[0] or 0)
+
+        return {'images': one('SELECT COUNT(*) FROM images'),
+                'keypoints': one('SELECT SUM(rows) FROM keypoints'),
+                'pairs': one('SELECT COUNT(*) FROM matches WHERE rows > 0'),
+                'matches': one('SELECT SUM(rows) FROM matches'),
+                'verified pairs': one('SELECT COUNT(*) FROM two_view_geometries WHERE rows > 0'),
+                'verified matches': one('SELECT SUM(rows) FROM two_view_geometries')}

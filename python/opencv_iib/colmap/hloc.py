@@ -1,0 +1,66 @@
+"""From a COLMAP database to the HDF5 files of hloc (Hierarchical-Localization)."""
+from __future__ import annotations
+
+import os
+import sqlite3
+
+import numpy as np
+
+from opencv_iib.colmap.database import MAX_IMAGE_ID
+
+SHORT = 2 ** 15 - 1  # hloc's own files hold int16; its readers take any integers
+
+
+def _pair(a: str, b: str) -> str:
+    return '/'.join(name.replace('/', '-') for name in (a, b))
+
+
+def export(database: str, features: str, matches: str, pairs: str, force: bool = False) -> int:
+    """Writes keypoints, matches and the list of pairs as hloc's reconstruction and localization read them.
+
+    :param database: what build_database wrote; its verified matches are taken if there are any, else all.
+    :param features: HDF5 to write: for each image ``keypoints`` (N x 2; the centre of the first pixel is 0),
+        ``scores`` (N, ones) and ``image_size`` (width, height).
+    :param matches: HDF5 to write: for each pair ``matches0`` (N; index or -1; int16 up to 32767 keypoints in the
+        second image, int32 above) and ``matching_scores0`` (N).
+    :param pairs: text file to write, two names a line.
+    :return: number of pairs.
+    :raises FileExistsError: for a file that is there, unless force is set.
+    """
+    import h5py  # type: ignore[import-untyped,unused-ignore]
+    for path in (features, matches, pairs):
+        if os.path.exists(path) and not force:
+            raise FileExistsError(f'{path} is there already: remove it, or pass force (--force)')
+    if not os.path.isfile(database):
+        raise FileNotFoundError(f'no database {database}')
+    connection = sqlite3.connect(f'file:{os.path.abspath(database)}?mode=ro', uri=True)
+    try:
+        names, counts = {}, {}
+        with h5py.File(features, 'w') as file:
+            for number, name, width, height in connection.execute(
+                    'SELECT image_id, name, width, height FROM images NATURAL JOIN cameras'):
+                row = connection.execute('SELECT rows, cols, data FROM keypoints WHERE image_id=?',
+                                         (number,)).fetchone()
+                points = np.frombuffer(row[2], np.float32).reshape(row[0], row[1])[:, :2] - np.float32(.5)
+                names[number], counts[number] = name, len(points)
+                group = file.create_group(name)
+                group['keypoints'] = points
+                group['scores'] = np.ones(len(points), np.float32)
+                group['image_size'] = np.array([width, height])
+        verified = connection.execute('SELECT COUNT(*) FROM two_view_geometries WHERE rows > 0').fetchone()[0]
+        table = 'two_view_geometries' if verified else 'matches'
+        total = 0
+        with h5py.File(matches, 'w') as file, open(pairs, 'w', encoding='utf-8') as listing:
+            for key, data in connection.execute(f'SELECT pair_id, data FROM {table} WHERE rows > 0'):
+                a, b = divmod(key, MAX_IMAGE_ID)
+                found = np.frombuffer(data, np.uint32).reshape(-1, 2)
+                nearest = np.full(counts[a], -1, np.int16 if counts[b] <= SHORT else np.int32)
+                nearest[found[:, 0]] = found[:, 1]
+                group = file.create_group(_pair(names[a], names[b]))
+                group['matches0'] = nearest
+                group['matching_scores0'] = (nearest >= 0).astype(np.float16)
+                listing.write(f'{names[a]} {names[b]}\n')
+                total += 1
+        return total
+    finally:
+        connection.close()

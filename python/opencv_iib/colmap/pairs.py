@@ -1,0 +1,71 @@
+"""Which pairs of images to match. Pairs are made one by one, so that their number costs no memory."""
+from __future__ import annotations
+
+from typing import Callable, Iterator, Sequence
+
+import numpy as np
+
+from opencv_iib.matcher import HierarchicalMatcher
+
+Pair = tuple[int, int]
+BLOCK = 50  # images of a block: the codes of two blocks are held while its pairs are matched
+
+
+def exhaustive(count: int, block: int = BLOCK) -> Iterator[Pair]:
+    """All pairs of 0..count-1, block by block, so that a cache of 2 * `block` images misses seldom."""
+    for first in range(0, count, block):
+        for second in range(first, count, block):
+            for a in range(first, min(first + block, count)):
+                for b in range(max(second, a + 1), min(second + block, count)):
+                    yield a, b
+
+
+def sequential(count: int, overlap: int) -> Iterator[Pair]:
+    """Each image with the `overlap` that come after it by name."""
+    for a in range(count):
+        for b in range(a + 1, min(a + 1 + overlap, count)):
+            yield a, b
+
+
+def from_file(path: str, numbers: dict[str, int]) -> Iterator[Pair]:
+    """Pairs of a text file with two names a line, as COLMAP and hloc write them; '#' begins a comment.
+
+    :raises ValueError: naming file and line, for a line that is no pair or a name that is no image.
+    """
+    with open(path, encoding='utf-8') as file:
+        for number, line in enumerate(file, 1):
+            names = line.split('#')[0].split()
+            if not names:
+                continue
+            if len(names) != 2:
+                raise ValueError(f'{path}:{number}: two names are needed, not {len(names)}')
+            for name in names:
+                if name not in numbers:
+                    raise ValueError(f'{path}:{number}: no image {name} was described')
+            if names[0] != names[1]:
+                yield numbers[names[0]], numbers[names[1]]
+
+
+def retrieval(count: int, load: Callable[[int], np.ndarray], level_sizes: Sequence[int], neighbours: int,
+              sample: int = 200) -> Iterator[Pair]:
+    """Each image with those that most of its codes vote for.
+
+    Each of the `sample` strongest codes of an image votes for the image of its nearest code among the samples of
+    all others. The samples are held: count * sample * bytes.
+    """
+    matcher = HierarchicalMatcher.create(level_sizes)
+    matcher.add([load(i)[:sample] for i in range(count)])
+    for a in range(count):
+        codes = load(a)[:sample]
+        votes = np.zeros(count, np.int64)
+        if len(codes):
+            # an image's own codes come first, at distance 0
+            images = matcher.knnMatchArrays(codes, k=3)[2]
+            others = np.where(images == a, -1, images)
+            for row in others:
+                found = row[row >= 0]
+                if len(found):
+                    votes[found[0]] += 1
+        for b in np.argsort(-votes, kind='stable')[:neighbours]:
+            if votes[b] > 0:
+                yield min(a, int(b)), max(a, int(b))

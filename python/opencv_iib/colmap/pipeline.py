@@ -1,0 +1,227 @@
+"""From a folder of images to a database for ``colmap mapper``."""
+from __future__ import annotations
+
+import collections
+import concurrent.futures
+import dataclasses
+import os
+import sys
+from typing import Any, Callable, Iterable, Iterator, Optional, TypeVar
+
+import numpy as np
+
+import opencv_iib
+from opencv_iib.colmap import pairs as pair_lists
+from opencv_iib.colmap.database import CAMERA_MODELS, Database, SettingsChanged, remove_partial
+from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
+from opencv_iib.colmap.images import exif_focal_length, find_images, read_grey
+from opencv_iib.colmap.progress import Progress
+from opencv_iib.colmap.verify import colmap_binary, magsac, matches_importer
+from opencv_iib.matcher import HierarchicalMatcher
+
+T = TypeVar('T')
+R = TypeVar('R')
+
+PAIRS = ('exhaustive', 'sequential', 'retrieval')
+VERIFIERS = ('auto', 'colmap', 'magsac', 'none')
+
+
+@dataclasses.dataclass(frozen=True)
+class Options:
+    """What build_database does; the values are those of the command line."""
+
+    features: FeatureOptions = FeatureOptions()
+    camera_model: str = 'SIMPLE_RADIAL'  #: one of database.CAMERA_MODELS
+    focal: float = 0  #: pixels, of all images; 0: by EXIF, else 1.2 times the longer side without prior
+    share_cameras: bool = False  #: one camera for all images of the same size and focal length
+    pairs: str = 'exhaustive'  #: one of PAIRS, or the name of a file with two names a line
+    neighbours: int = 20  #: images that each is paired with (sequential, retrieval)
+    ratio: float = 1  #: ratio test, as HierarchicalMatcher.setMaxRatio; 1: none. Matches are always mutual.
+    verify: str = 'auto'  #: one of VERIFIERS; auto: COLMAP's program if it is there, else MAGSAC
+
+    def check(self) -> None:
+        """:raises ValueError: naming what is wrong, and what there is."""
+        self.features.check()
+        if self.camera_model not in CAMERA_MODELS:
+            raise ValueError(f'no camera model {self.camera_model}: there are {", ".join(CAMERA_MODELS)}')
+        if self.pairs not in PAIRS and not os.path.isfile(self.pairs):
+            raise ValueError(f'pairs: {self.pairs} is neither a file nor one of {", ".join(PAIRS)}')
+        if self.verify not in VERIFIERS:
+            raise ValueError(f'verify is {self.verify}: it has to be one of {", ".join(VERIFIERS)}')
+        if self.verify == 'colmap' and colmap_binary() is None:
+            raise ValueError('verify is colmap, but there is no program colmap: install it, or take magsac')
+        if not 0 < self.ratio <= 1:
+            raise ValueError(f'ratio is {self.ratio}: it has to be in (0, 1]')
+
+
+def in_parallel(function: Callable[[T], R], jobs: Iterable[T], workers: int) -> Iterator[tuple[T, Any]]:
+    """Runs jobs on threads, a few ahead: (job, result or exception), in order, in bounded memory."""
+    with concurrent.futures.ThreadPoolExecutor(workers) as pool:
+        waiting: collections.deque[tuple[T, concurrent.futures.Future[R]]] = collections.deque()
+
+        def first() -> tuple[T, Any]:
+            job, future = waiting.popleft()
+            failed = future.exception()
+            if failed is not None and not isinstance(failed, Exception):
+                raise failed
+            return job, future.result() if failed is None else failed
+        try:
+            for job in jobs:
+                waiting.append((job, pool.submit(function, job)))
+                if len(waiting) >= 2 * workers:
+                    yield first()
+            while waiting:
+                yield first()
+        finally:
+            for _, future in waiting:
+                future.cancel()
+
+
+class _Cache:
+    """The last images' codes and points, `size` of them."""
+
+    def __init__(self, load: Callable[[int], Any], size: int) -> None:
+        self._load, self._size = load, size
+        self._kept: collections.OrderedDict[int, Any] = collections.OrderedDict()
+
+    def __getitem__(self, image: int) -> Any:
+        if image in self._kept:
+            self._kept.move_to_end(image)
+        else:
+            self._kept[image] = self._load(image)
+            if len(self._kept) > self._size:
+                self._kept.popitem(last=False)
+        return self._kept[image]
+
+
+def describe_images(database: Database, folder: str, options: Options, workers: int, log: Callable[[str], None]
+                    ) -> None:
+    """Describes the images that the database does not know. A broken one is a line in `log`, and counted."""
+    features = Features(options.features)
+
+    def describe(name: str) -> tuple[np.ndarray, np.ndarray, int, int, Optional[float]]:
+        path = os.path.join(folder, name)
+        image = read_grey(path)
+        rows, codes = features(image)
+        height, width = image.shape
+        return to_colmap(rows), codes, width, height, options.focal or exif_focal_length(path, width, height)
+
+    names = find_images(folder)
+    known = database.known()
+    progress = Progress('describing', len(names), len(names) - sum(name not in known for name in names))
+    for name, result in in_parallel(describe, (name for name in names if name not in known), workers):
+        if isinstance(result, Exception):
+            reason = str(result).splitlines()[0] if str(result) else type(result).__name__
+            database.add_failure(name, reason)
+            log(f'{name}: {reason}')
+        else:
+            keypoints, codes, width, height, focal = result
+            database.add_image(name, width, height, options.camera_model, focal or 1.2 * max(width, height),
+                               bool(focal), options.share_cameras, keypoints, codes)
+        progress.step()
+    progress.close()
+
+
+def list_pairs(database: Database, options: Options, level_sizes: tuple[int, ...]
+               ) -> tuple[Iterator[tuple[int, int]], Optional[int]]:
+    """Pairs of image ids, and how many there are if that is known."""
+    numbers = database.image_ids()
+    ids = list(numbers.values())
+    count = len(ids)
+    if options.pairs == 'exhaustive':
+        chosen, total = pair_lists.exhaustive(count), count * (count - 1) // 2
+    elif options.pairs == 'sequential':
+        chosen, total = pair_lists.sequential(count, options.neighbours), sum(
+            min(options.neighbours, count - 1 - i) for i in range(count))
+    elif options.pairs == 'retrieval':
+        chosen, total = pair_lists.retrieval(count, lambda i: database.load_codes(ids[i]), level_sizes,
+                                             options.neighbours), None
+    else:
+        return pair_lists.from_file(options.pairs, numbers), None
+    return ((ids[a], ids[b]) for a, b in chosen), total
+
+
+def match_pairs(database: Database, options: Options, level_sizes: tuple[int, ...], verify: str, workers: int) -> None:
+    """Matches, and with magsac verifies, the pairs that the database does not hold."""
+    matcher = HierarchicalMatcher.create(level_sizes, crossCheck=True)
+    matcher.setMaxRatio(options.ratio)
+    images = _Cache(lambda i: (database.load_codes(i), database.load_keypoints(i)[:, :2]), 2 * pair_lists.BLOCK + 2)
+    pairs, total = list_pairs(database, options, level_sizes)
+    progress = Progress('matching', total)
+    begun: set[tuple[int, int]] = set()
+
+    def jobs() -> Iterator[tuple[int, int, Any, Any]]:
+        for a, b in pairs:
+            if database.has_pair(a, b) or (a, b) in begun or (b, a) in begun:
+                progress.step()
+                continue
+            begun.add((a, b))
+            yield a, b, images[a], images[b]
+
+    def match(job: tuple[int, int, Any, Any]) -> tuple[Any, ...]:
+        (codes_a, points_a), (codes_b, points_b) = job[2:]
+        if not len(codes_a) or not len(codes_b):
+            matches = np.empty((0, 2), np.int32)
+        else:
+            nearest = matcher.knnMatchArrays(codes_a, codes_b)[0].ravel()
+            queries = np.flatnonzero(nearest >= 0)
+            matches = np.stack([queries, nearest[queries]], axis=1)
+        if verify != 'magsac':
+            return matches, None, None
+        inliers, matrix = magsac(points_a[matches[:, 0]], points_b[matches[:, 1]])
+        return matches, matches[inliers], matrix
+
+    for (a, b, _, _), result in in_parallel(match, jobs(), workers):
+        if isinstance(result, Exception):
+            raise result
+        database.add_pair(a, b, *result)
+        begun.discard((a, b))
+        progress.step()
+    progress.close()
+
+
+def build_database(images: str, database: str, options: Options = Options(), force: bool = False,
+                   workers: Optional[int] = None, log: Callable[[str], None] = lambda line: print(line, file=sys.stderr)
+                   ) -> dict[str, int]:
+    """Describes and matches the images below a folder and writes COLMAP's database.
+
+    :param images: folder; names in the database are relative to it.
+    :param database: file to write. Until all is done it is ``database.partial``; a call after an interrupted one
+        goes on from there, if the options are the same.
+    :param force: replace a database that is there, and begin anew if an unfinished one had other options.
+    :param workers: threads; None for one a core.
+    :return: counts of images, keypoints, pairs, matches, and of images that failed.
+    :raises FileExistsError: if the database is there and force is not set.
+    :raises ValueError: for options that are none, and for a folder without images.
+    :raises SettingsChanged: if an unfinished database had other options and force is not set.
+    """
+    options.check()
+    if not os.path.isdir(images):
+        raise ValueError(f'{images} is no folder')
+    if os.path.exists(database) and not force:
+        raise FileExistsError(f'{database} is there already: remove it, or pass force (--force)')
+    if not find_images(images):
+        raise ValueError(f'no images below {images}')
+    workers = workers or os.cpu_count() or 1
+    binary = colmap_binary() if options.verify in ('auto', 'colmap') else None
+    verify = options.verify if options.verify != 'auto' else 'colmap' if binary else 'magsac'
+    settings = {**dataclasses.asdict(options), 'verify': verify, 'images': os.path.abspath(images),
+                'version': opencv_iib.__version__}
+    try:
+        target = Database(database, settings)
+    except SettingsChanged:
+        if not force:
+            raise
+        remove_partial(database)
+        target = Database(database, settings)
+    with target:
+        describe_images(target, images, options, workers, log)
+        level_sizes = Features(options.features).level_sizes()
+        match_pairs(target, options, level_sizes, verify, workers)
+        if verify == 'colmap' and binary is not None:
+            log('verifying with colmap matches_importer')
+            names = {number: name for name, number in target.image_ids().items()}
+            matches_importer(binary, target.partial, ((names[a], names[b]) for a, b in target.pairs()))
+        counts = {**target.counts(), 'failed': target.failures()}
+        target.finish()
+    return counts

@@ -1,0 +1,62 @@
+"""Two-view geometry of matches: by COLMAP's own program, or here by MAGSAC."""
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import tempfile
+from typing import Iterable, Optional
+
+import numpy as np
+
+MIN_INLIERS = 15  # COLMAP's
+
+
+def magsac(points_a: np.ndarray, points_b: np.ndarray, threshold: float = 1.5
+           ) -> tuple[np.ndarray, Optional[np.ndarray]]:
+    """Which matches agree with one fundamental matrix, and that matrix (3 x 3; None if there is none).
+
+    :param points_a: M x 2, pixels of the first image.
+    :param points_b: M x 2, of the second.
+    :param threshold: pixels from the epipolar line.
+    """
+    import cv2
+    none = np.zeros(len(points_a), bool)
+    if len(points_a) < MIN_INLIERS:
+        return none, None
+    try:
+        matrix, mask = cv2.findFundamentalMat(np.ascontiguousarray(points_a, np.float64),
+                                              np.ascontiguousarray(points_b, np.float64), cv2.USAC_MAGSAC,
+                                              threshold, .9999, 10000)
+    except cv2.error:  # degenerate points, for some versions
+        return none, None
+    if matrix is None or matrix.shape != (3, 3) or mask is None:
+        return none, None
+    inliers = mask.ravel() > 0
+    return (inliers, matrix) if inliers.sum() >= MIN_INLIERS else (none, None)
+
+
+def colmap_binary() -> Optional[str]:
+    return shutil.which('colmap')
+
+
+def matches_importer(binary: str, database: str, pairs: Iterable[tuple[str, str]]) -> None:
+    """Has COLMAP verify matches that are in the database; it takes those instead of matching anew.
+
+    :raises RuntimeError: with the program's last lines, if it fails.
+    """
+    with tempfile.NamedTemporaryFile('w', suffix='.txt', encoding='utf-8', delete=False) as file:
+        for a, b in pairs:
+            file.write(f'{a} {b}\n')
+    try:
+        usage = subprocess.run([binary, 'matches_importer', '--help'], capture_output=True, text=True,
+                               env={**os.environ, 'QT_QPA_PLATFORM': 'offscreen'}).stdout
+        gpu = 'FeatureMatching' if '--FeatureMatching.use_gpu' in usage else 'SiftMatching'
+        done = subprocess.run([binary, 'matches_importer', '--database_path', database, '--match_list_path', file.name,
+                               '--match_type', 'pairs', f'--{gpu}.use_gpu', '0'],
+                              capture_output=True, text=True, env={**os.environ, 'QT_QPA_PLATFORM': 'offscreen'})
+        if done.returncode:
+            tail = '\n'.join((done.stdout + done.stderr).splitlines()[-5:])
+            raise RuntimeError(f'colmap matches_importer failed:\n{tail}')
+    finally:
+        os.unlink(file.name)

@@ -1,0 +1,42 @@
+"""Two images matched, as a picture."""
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from opencv_iib.colmap.features import FeatureOptions, Features
+from opencv_iib.colmap.images import read_grey
+from opencv_iib.colmap.verify import magsac
+from opencv_iib.keypoints import array_to_keypoints
+from opencv_iib.matcher import HierarchicalMatcher
+
+
+def demo(image_a: str, image_b: str, out: str, options: FeatureOptions = FeatureOptions(points=2000)) -> str:
+    """Matches two images and draws what agrees with one epipolar geometry.
+
+    :param out: picture to write.
+    :return: a line that says how many matches there are.
+    :raises ValueError: for a file that is no image, or one that cannot be written.
+    """
+    import cv2
+    features = Features(options)
+    images, rows, codes = [], [], []
+    for path in (image_a, image_b):
+        try:
+            images.append(read_grey(path))
+        except ValueError as e:
+            raise ValueError(f'{path}: {e}') from None
+        keypoints, descriptors = features(images[-1])
+        rows.append(keypoints)
+        codes.append(descriptors)
+    matcher = HierarchicalMatcher.create(features.level_sizes(), crossCheck=True)
+    matches = matcher.match(codes[0], codes[1])
+    pairs = np.array([(m.queryIdx, m.trainIdx) for m in matches], int).reshape(-1, 2)
+    agree, _ = magsac(rows[0][pairs[:, 0], :2], rows[1][pairs[:, 1], :2])
+    picture: Any = cv2.drawMatches(  # type: ignore[call-overload,unused-ignore]
+        images[0], array_to_keypoints(rows[0]), images[1], array_to_keypoints(rows[1]),
+        [m for m, good in zip(matches, agree) if good], None, flags=2)
+    if not cv2.imwrite(out, picture):
+        raise ValueError(f'{out} cannot be written')
+    return f'{out}: {len(matches)} mutual matches, {int(agree.sum())} agree with one epipolar geometry'

@@ -1,0 +1,285 @@
+"""IIBDescriptorExtractor: the class of cv2.iib, for arrays and for the objects of any cv2."""
+from __future__ import annotations
+
+import copy
+import os
+from typing import Any, TypeVar, Union
+
+import numpy as np
+
+from opencv_iib import _core
+from opencv_iib._arrays import as_array, as_arrays
+from opencv_iib.detectors import MissingDetector, connect, detector_name
+from opencv_iib.keypoints import Keypoints, array_to_keypoints, as_rows
+
+K = TypeVar('K', bound=Keypoints)
+
+
+class IIBDescriptorExtractor:
+    """Illumination-insensitive binary descriptor; names, keywords and bits are those of ``cv2.iib``.
+
+    Images are H x W, H x W x 3 (BGR) or H x W x 4 (BGRA) arrays of uint8, uint16 or float32, of any strides.
+    Keypoints are a sequence of objects like cv2.KeyPoint, of any cv2 or none, or an array with a row a keypoint:
+    N x 3 (x, y, size; pixels), N x 4 (and the angle in degrees, -1 for upright) or N x 7 (and response, octave,
+    class_id). Descriptors are N x ``descriptorSize()`` uint8 arrays for the Hamming distance.
+
+    One object may serve several threads as long as none changes its parameters; the GIL is released meanwhile.
+    Mistakes raise :class:`opencv_iib.error`, a TypeError if an argument is no array at all.
+    """
+
+    CHANNEL_GRAD_X = 1
+    CHANNEL_GRAD_Y = 2
+    CHANNEL_ORIENTATION = 4
+    CHANNEL_INTENSITY = 8
+    CHANNEL_SIGNED_GRAD_X = 16
+    CHANNEL_SIGNED_GRAD_Y = 32
+    CHANNELS_DEFAULT = 15
+
+    MAPPING_MEAN = 0
+    MAPPING_MAX = 1
+    MAPPING_MIN = 2
+    MAPPING_QUARTILE = 3
+    MAPPING_SORT = 4
+    MAPPING_HAAR = 5
+    MAPPING_PAIRWISE = 6
+
+    BORDER_CLAMP = 0
+    BORDER_DROP = 1
+
+    PRESET_S128 = 0
+    PRESET_S256 = 1
+    PRESET_S512 = 2
+    PRESET_ACCURATE = 3
+    PRESET_COMPACT = 4
+    PRESET_TINY = 5
+    PRESET_BALANCED = 6
+
+    def __init__(self, scaleFactor: float = 2.0, granularity: int = 4, channels: int = CHANNELS_DEFAULT,
+                 mapping: int = MAPPING_MEAN, overlap: bool = False, useOrientation: bool = False,
+                 extraChannels: int = 0) -> None:
+        """As :meth:`create`."""
+        self._core = _core.Extractor.create(scaleFactor, granularity, channels, mapping, overlap, useOrientation,
+                                            extraChannels)
+        self._detector: Any = None
+
+    @classmethod
+    def _of(cls, core: _core.Extractor) -> IIBDescriptorExtractor:
+        extractor = cls.__new__(cls)
+        extractor._core = core
+        extractor._detector = None
+        return extractor
+
+    @classmethod
+    def create(cls, scaleFactor: float = 2.0, granularity: int = 4, channels: int = CHANNELS_DEFAULT,
+               mapping: int = MAPPING_MEAN, overlap: bool = False, useOrientation: bool = False,
+               extraChannels: int = 0) -> IIBDescriptorExtractor:
+        """Creates an extractor.
+
+        :param scaleFactor: side of the described square in units of a keypoint's size, > 0; see scaleFactorFor.
+        :param granularity: number of levels, 1 to 6.
+        :param channels: a sum of CHANNEL_ values; may be 0 if there are extra channels.
+        :param mapping: one of MAPPING_.
+        :param overlap: slide the windows of 2 x 2 cells by one cell instead of two.
+        :param useOrientation: turn the square by a keypoint's angle.
+        :param extraChannels: number of maps that computeWithChannels is given, 0 to 16.
+        """
+        return cls._of(_core.Extractor.create(scaleFactor, granularity, channels, mapping, overlap, useOrientation,
+                                              extraChannels))
+
+    @classmethod
+    def createPreset(cls, preset: int, scaleFactor: float = 2.0) -> IIBDescriptorExtractor:
+        """Creates an extractor with a learned selection: one of PRESET_."""
+        return cls._of(_core.Extractor.createPreset(preset, scaleFactor))
+
+    @classmethod
+    def createFor(cls, detector: Any, preset: int = -1) -> IIBDescriptorExtractor:
+        """Creates an extractor for a detector object, of any cv2: with its scale factor, and it detects.
+
+        :param detector: has ``detect(image, mask)``; its ``getDefaultName()`` or its class's name gives the factor.
+        :param preset: one of PRESET_; -1 for the paper's default descriptor.
+        """
+        factor = cls.scaleFactorFor(detector)
+        extractor = cls.create(factor) if preset == -1 else cls.createPreset(preset, factor)
+        extractor.setDetector(detector)
+        return extractor
+
+    @staticmethod
+    def scaleFactorFor(detectorName: Any) -> float:
+        """Scale factor for a detector's keypoints.
+
+        :param detectorName: such as 'ORB' or 'AKAZE', any case, or a detector object.
+        """
+        return _core.Extractor.scaleFactorFor(detector_name(detectorName))
+
+    def compute(self, image: Any, keypoints: K) -> tuple[K, np.ndarray]:
+        """Describes keypoints.
+
+        :return: the keypoints as they were given (those left, if BORDER_DROP removed some), and N x
+            descriptorSize() uint8. Without keypoints, or with an empty image, there are 0 descriptors.
+        """
+        return self.computeWithChannels(image, [], keypoints)
+
+    def computeWithChannels(self, image: Any, extraChannels: Any, keypoints: K) -> tuple[K, np.ndarray]:
+        """Describes keypoints with the image and with further maps of it, such as depth or labels.
+
+        :param extraChannels: getExtraChannels() arrays, each H x W, of uint8, uint16 or float32.
+        :return: as compute.
+        """
+        descriptors, kept = self._core.compute(as_array(image, 'the image'), np.ascontiguousarray(as_rows(keypoints)),
+                                               as_arrays(extraChannels, 'an extra channel'))
+        if kept is None:
+            return keypoints, descriptors
+        indices = kept.ravel()
+        left: Any = keypoints[indices] if isinstance(keypoints, np.ndarray) else [keypoints[i] for i in indices]
+        if isinstance(keypoints, tuple):
+            left = tuple(left)
+        return left, descriptors
+
+    def detect(self, image: Any, mask: Any = None) -> tuple[Any, ...]:
+        """Keypoints of the detector (see setDetector), as cv2.KeyPoint if cv2 is there.
+
+        :param mask: H x W uint8, 0 where nothing is to be found.
+        """
+        allowed = np.empty((0, 0), np.uint8) if mask is None else as_array(mask, 'the mask')
+        return array_to_keypoints(self._core.detect(as_array(image, 'the image'), allowed))
+
+    def detectAndCompute(self, image: Any, mask: Any = None) -> tuple[tuple[Any, ...], np.ndarray]:
+        """detect, then compute."""
+        return self.compute(image, self.detect(image, mask))
+
+    def setDetector(self, detector: Any) -> None:
+        """The detector behind detect: any object with ``detect(image, mask)`` that returns keypoints.
+
+        It gets arrays of its own and may be of a foreign cv2. The scale factor stays as it is; see createFor.
+        """
+        connect(self._core, detector)
+        self._detector = detector
+
+    def getDetector(self) -> Any:
+        """What setDetector was given; None for the default, the ORB of the OpenCV inside."""
+        return self._detector
+
+    def levelSizes(self) -> tuple[int, ...]:
+        """Bytes of each level, coarse first; their sum is descriptorSize()."""
+        return tuple(self._core.levelSizes())
+
+    def descriptorSize(self) -> int:
+        """Bytes of a descriptor."""
+        return self._core.descriptorSize()
+
+    def descriptorType(self) -> int:
+        """CV_8U, which is 0."""
+        return 0
+
+    def defaultNorm(self) -> int:
+        """NORM_HAMMING, which is 6."""
+        return 6
+
+    def empty(self) -> bool:
+        """False: an extractor is always ready."""
+        return False
+
+    def setScaleFactor(self, scaleFactor: float) -> None:
+        self._core.setScaleFactor(scaleFactor)
+
+    def getScaleFactor(self) -> float:
+        return self._core.getScaleFactor()
+
+    def setGranularity(self, granularity: int) -> None:
+        """Number of levels, 1 to 6. Another one ends a selection, as other channels, mapping or overlap do."""
+        self._core.setGranularity(granularity)
+
+    def getGranularity(self) -> int:
+        return self._core.getGranularity()
+
+    def setChannels(self, channels: int) -> None:
+        self._core.setChannels(channels)
+
+    def getChannels(self) -> int:
+        return self._core.getChannels()
+
+    def setMapping(self, mapping: int) -> None:
+        self._core.setMapping(mapping)
+
+    def getMapping(self) -> int:
+        return self._core.getMapping()
+
+    def setOverlap(self, overlap: bool) -> None:
+        self._core.setOverlap(overlap)
+
+    def getOverlap(self) -> bool:
+        return self._core.getOverlap()
+
+    def setUseOrientation(self, useOrientation: bool) -> None:
+        self._core.setUseOrientation(useOrientation)
+
+    def getUseOrientation(self) -> bool:
+        return self._core.getUseOrientation()
+
+    def setExtraChannels(self, extraChannels: int) -> None:
+        self._core.setExtraChannels(extraChannels)
+
+    def getExtraChannels(self) -> int:
+        return self._core.getExtraChannels()
+
+    def setBorder(self, border: int) -> None:
+        """One of BORDER_."""
+        self._core.setBorder(border)
+
+    def getBorder(self) -> int:
+        return self._core.getBorder()
+
+    def setSelection(self, quads: Any) -> None:
+        """Restricts the descriptor to chosen quads.
+
+        :param quads: Q x 5 int32: level, channel, row, column, bits to keep. Empty: all quads again.
+        """
+        self._core.setSelection(as_array(quads, 'the selection'))
+
+    def getSelection(self) -> np.ndarray:
+        """Q x 5 int32, as setSelection takes it; 0 x 5 if there is no selection."""
+        return self._core.getSelection()
+
+    def getDefaultName(self) -> str:
+        return self._core.getDefaultName()
+
+    def save(self, filename: Union[str, os.PathLike[str]]) -> None:
+        """Writes the parameters to a .yml, .xml or .json file, as Algorithm::save does."""
+        self._core.save(os.fspath(filename))
+
+    def write(self, fileName: Union[str, os.PathLike[str]]) -> None:
+        """Writes the parameters to a .yml, .xml or .json file, which read() and C++ read."""
+        self._core.write(os.fspath(fileName))
+
+    def read(self, fileName: Union[str, os.PathLike[str]]) -> None:
+        """Reads what write() or C++ wrote."""
+        self._core.read(os.fspath(fileName))
+
+    def __getstate__(self) -> dict[str, Any]:
+        # A detector of cv2 cannot be pickled; describing, which workers are sent an extractor for, needs none.
+        name = None if self._detector is None else detector_name(self._detector)
+        return {'parameters': self._core.parameters(), 'detector': name}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self._core = _core.Extractor.create(2.0, 4, 15, 0, False, False, 0)
+        self._core.setParameters(state['parameters'])
+        self._detector = None
+        if state['detector'] is not None:
+            self.setDetector(MissingDetector(state['detector']))
+
+    def __copy__(self) -> IIBDescriptorExtractor:
+        twin = type(self).__new__(type(self))
+        twin.__setstate__({'parameters': self._core.parameters(), 'detector': None})
+        if self._detector is not None:
+            twin.setDetector(self._detector)
+        return twin
+
+    def __deepcopy__(self, memo: Any) -> IIBDescriptorExtractor:
+        return copy.copy(self)
+
+    def __repr__(self) -> str:
+        return f'{type(self).__name__}({self.descriptorSize()} bytes, scaleFactor={self.getScaleFactor():g})'
+
+
+#: As in C++.
+IIB = IIBDescriptorExtractor

@@ -1,0 +1,198 @@
+"""HierarchicalMatcher: the class of cv2.iib, on arrays."""
+from __future__ import annotations
+
+import os
+from typing import Any, Optional, Sequence, Union
+
+import numpy as np
+
+from opencv_iib import _core
+from opencv_iib._arrays import as_array, as_arrays
+from opencv_iib._types import match_type
+
+Matches = tuple[tuple[Any, ...], ...]
+
+
+def _masks(masks: Any) -> Optional[list[Optional[np.ndarray]]]:
+    if masks is None:
+        return None
+    if isinstance(masks, np.ndarray):
+        masks = [masks]
+    return [None if mask is None else as_array(mask, 'a mask') for mask in masks]
+
+
+def _descriptors(descriptors: Any) -> np.ndarray:
+    return as_array(descriptors, 'descriptors')
+
+
+class HierarchicalMatcher:
+    """Matcher of binary descriptors by Hamming distance; names, keywords and matches are those of ``cv2.iib``.
+
+    Descriptors are N x bytes uint8 arrays. ``trainDescriptors`` given to a call are searched instead of those added.
+    Matches are cv2.DMatch if cv2 is there, else :class:`opencv_iib.DMatch`. Masks are uint8, queries x train rows, 0
+    where a pair is not allowed. Where distances tie, the lower image and then the lower row comes first.
+
+    Calls run on all cores and release the GIL; one object may serve several threads as long as none adds
+    descriptors or changes parameters. Mistakes raise :class:`opencv_iib.error`.
+    """
+
+    EXACT = 0
+    THRESHOLD = 1
+    ADAPTIVE = 2
+
+    def __init__(self, levelSizes: Sequence[int], mode: int = EXACT, threshold: float = 0.35,
+                 crossCheck: bool = False) -> None:
+        """As :meth:`create`."""
+        self._core = _core.Matcher.create(list(levelSizes), mode, threshold, crossCheck)
+
+    @classmethod
+    def _of(cls, core: _core.Matcher) -> HierarchicalMatcher:
+        matcher = cls.__new__(cls)
+        matcher._core = core
+        return matcher
+
+    @classmethod
+    def create(cls, levelSizes: Sequence[int], mode: int = EXACT, threshold: float = 0.35,
+               crossCheck: bool = False) -> HierarchicalMatcher:
+        """Creates a matcher.
+
+        :param levelSizes: bytes of each level, coarse first; their sum is the descriptors' width.
+        :param mode: EXACT (what brute force finds), THRESHOLD (the paper's rule) or ADAPTIVE (approximate).
+        :param threshold: of THRESHOLD, for every level, 0 to 1.
+        :param crossCheck: report only pairs that are among each other's nearest.
+        """
+        return cls._of(_core.Matcher.create(list(levelSizes), mode, threshold, crossCheck))
+
+    def match(self, queryDescriptors: Any, trainDescriptors: Any = None, mask: Any = None,
+              masks: Any = None) -> tuple[Any, ...]:
+        """The nearest train descriptor of each query that has one, in the order of the queries."""
+        rows = self.knnMatch(queryDescriptors, trainDescriptors, 1, mask, True, masks)
+        return tuple(row[0] for row in rows)
+
+    def knnMatch(self, queryDescriptors: Any, trainDescriptors: Any = None, k: int = 1, mask: Any = None,
+                 compactResult: bool = False, masks: Any = None) -> Matches:
+        """The k nearest of each query, nearest first; with compactResult, without the queries that have none.
+
+        ``knnMatch(queries, k=2)`` searches the descriptors added, ``knnMatch(queries, train, 2)`` those given.
+        """
+        if isinstance(trainDescriptors, (int, np.integer)):  # cv2's order of arguments without a train set
+            return self.knnMatch(queryDescriptors, None, int(trainDescriptors), mask, compactResult, masks)
+        return self._core.knnMatch(_descriptors(queryDescriptors), self._train(trainDescriptors), k,
+                                   _masks(mask if masks is None else masks), compactResult, match_type())
+
+    def radiusMatch(self, queryDescriptors: Any, trainDescriptors: Any = None, maxDistance: float = 0,
+                    mask: Any = None, compactResult: bool = False, masks: Any = None) -> Matches:
+        """All within maxDistance bits of each query, nearest first.
+
+        ``radiusMatch(queries, maxDistance=64)`` searches the descriptors added.
+        """
+        if isinstance(trainDescriptors, (int, float, np.number)):
+            return self.radiusMatch(queryDescriptors, None, float(trainDescriptors), mask, compactResult, masks)
+        return self._core.radiusMatch(_descriptors(queryDescriptors), self._train(trainDescriptors), maxDistance,
+                                      _masks(mask if masks is None else masks), compactResult, match_type())
+
+    def knnMatchArrays(self, queryDescriptors: Any, trainDescriptors: Any = None, k: int = 1,
+                       mask: Any = None, masks: Any = None) -> tuple[np.ndarray, ...]:
+        """knnMatch with arrays for results: many times faster than tuples of DMatch.
+
+        :return: indices and distances, queries x k int32, -1 where there is none; among the descriptors added, the
+            number of the image as well.
+        """
+        return self._core.knnMatchArrays(_descriptors(queryDescriptors), self._train(trainDescriptors), k,
+                                         _masks(mask if masks is None else masks))
+
+    @staticmethod
+    def _train(descriptors: Any) -> Optional[np.ndarray]:
+        return None if descriptors is None else _descriptors(descriptors)
+
+    def add(self, descriptors: Any) -> None:
+        """Adds the descriptors of one image (an array) or of several (a sequence of arrays); they are copied."""
+        self._core.add(as_arrays(descriptors, 'descriptors'))
+
+    def clear(self) -> None:
+        """Forgets all train descriptors."""
+        self._core.clear()
+
+    def empty(self) -> bool:
+        """True without train descriptors."""
+        return self._core.empty()
+
+    def train(self) -> None:
+        """Nothing: the index is ready after add()."""
+
+    def isMaskSupported(self) -> bool:
+        """True."""
+        return True
+
+    def getTrainDescriptors(self) -> tuple[np.ndarray, ...]:
+        """Copies of the descriptors added, an array an image."""
+        return tuple(self._core.trainDescriptors())
+
+    def clone(self, emptyTrainData: bool = False) -> HierarchicalMatcher:
+        """A copy; with emptyTrainData, of the parameters alone."""
+        return self._of(self._core.clone(emptyTrainData))
+
+    def levelSizes(self) -> tuple[int, ...]:
+        """Bytes of each level, coarse first."""
+        return tuple(self._core.levelSizes())
+
+    def setMode(self, mode: int) -> None:
+        """EXACT, THRESHOLD or ADAPTIVE."""
+        self._core.setMode(mode)
+
+    def getMode(self) -> int:
+        return self._core.getMode()
+
+    def setThresholds(self, thresholds: Sequence[float]) -> None:
+        """Of THRESHOLD, 0 to 1: one for every level but the last, or a single one for all."""
+        self._core.setThresholds([float(t) for t in thresholds])
+
+    def getThresholds(self) -> tuple[float, ...]:
+        return tuple(self._core.getThresholds())
+
+    def setCrossCheck(self, crossCheck: bool) -> None:
+        self._core.setCrossCheck(crossCheck)
+
+    def getCrossCheck(self) -> bool:
+        return self._core.getCrossCheck()
+
+    def setMaxRatio(self, maxRatio: float) -> None:
+        """Ratio test in match, knnMatch and knnMatchArrays, in (0, 1]; 1 turns it off."""
+        self._core.setMaxRatio(maxRatio)
+
+    def getMaxRatio(self) -> float:
+        return self._core.getMaxRatio()
+
+    def matchCost(self) -> float:
+        """The paper's MC: bits compared / bits brute force would compare, since resetCost(); 0 before any call."""
+        return self._core.matchCost()
+
+    def resetCost(self) -> None:
+        self._core.resetCost()
+
+    def saveIndex(self, filename: Union[str, os.PathLike[str]]) -> None:
+        """Writes level sizes, parameters and all train descriptors to a binary file, the same as C++ writes."""
+        self._core.saveIndex(os.fspath(filename))
+
+    @classmethod
+    def loadIndex(cls, filename: Union[str, os.PathLike[str]]) -> HierarchicalMatcher:
+        """Reads what saveIndex wrote, here or in C++."""
+        return cls._of(_core.Matcher.loadIndex(os.fspath(filename)))
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {'levelSizes': self.levelSizes(), 'parameters': self._core.parameters(),
+                'descriptors': self.getTrainDescriptors()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self._core = _core.Matcher.create(list(state['levelSizes']), 0, 0.35, False)
+        self._core.setParameters(state['parameters'])
+        self._core.add(list(state['descriptors']))
+
+    def __copy__(self) -> HierarchicalMatcher:
+        return self.clone()
+
+    def __deepcopy__(self, memo: Any) -> HierarchicalMatcher:
+        return self.clone()
+
+    def __repr__(self) -> str:
+        return f'{type(self).__name__}(levelSizes={list(self.levelSizes())})'

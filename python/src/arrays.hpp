@@ -1,0 +1,29 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_PYTHON_ARRAYS_HPP
+#define OPENCV_IIB_PYTHON_ARRAYS_HPP
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include "opencv2/core.hpp"
+
+namespace nb = nanobind;
+
+namespace iib_python {
+
+//! What crosses the border: memory of the caller, C-contiguous and native (opencv_iib/_arrays.py sees to that).
+typedef nb::ndarray<nb::ro, nb::c_contig, nb::device::cpu> Array;
+
+//! A view of an array of 1 (a column), 2 (one channel) or 3 dimensions (channels last). It is empty if the array is.
+//! @throws cv::Exception that names `what` for another number of dimensions or a type that a Mat has not.
+cv::Mat viewOf(const Array& array, const char* what);
+
+//! A numpy array that owns the matrix's memory. The matrix has one channel and is continuous.
+nb::object toNumpy(const cv::Mat& matrix);
+
+}  // namespace iib_python
+
+#endif

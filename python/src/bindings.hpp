@@ -1,0 +1,19 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_PYTHON_BINDINGS_HPP
+#define OPENCV_IIB_PYTHON_BINDINGS_HPP
+
+#include <nanobind/nanobind.h>
+
+namespace iib_python {
+
+// The classes of opencv_iib._core: the C++ objects with arrays and plain values for arguments and results. What users
+// see, with names, keywords and documentation, is opencv_iib/descriptor.py and opencv_iib/matcher.py.
+void bindExtractor(nanobind::module_& m);
+void bindMatcher(nanobind::module_& m);
+
+}  // namespace iib_python
+
+#endif

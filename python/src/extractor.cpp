@@ -1,0 +1,140 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "bindings.hpp"
+#include "foreign_detector.hpp"
+
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+namespace iib_python {
+
+namespace {
+
+typedef cv::iib::IIBDescriptorExtractor Extractor;
+
+std::vector<cv::Mat> viewsOf(const std::vector<Array>& arrays, const char* what)
+{
+    std::vector<cv::Mat> views;
+    for (const Array& array : arrays)
+        views.push_back(viewOf(array, what));
+    return views;
+}
+
+// The descriptors, and which keypoints were kept if not all were.
+nb::tuple compute(Extractor& self, const Array& image, const Array& keypointRows,
+        const std::vector<Array>& extraChannels)
+{
+    const cv::Mat view = viewOf(image, "the image");
+    const std::vector<cv::Mat> extra = viewsOf(extraChannels, "an extra channel");
+    std::vector<cv::KeyPoint> keypoints = toKeyPoints(viewOf(keypointRows, "keypoints"));
+    const size_t given = keypoints.size();
+    cv::Mat descriptors;
+    {
+        nb::gil_scoped_release release;
+        for (size_t i = 0; i < given; i++)
+            keypoints[i].class_id = (int)i;
+        self.compute(view, extra, keypoints, descriptors);
+    }
+    if (descriptors.empty())
+        descriptors.create(0, self.descriptorSize(), CV_8U);
+    if (keypoints.size() == given)
+        return nb::make_tuple(toNumpy(descriptors), nb::none());
+    cv::Mat kept((int)keypoints.size(), 1, CV_32S);
+    for (size_t i = 0; i < keypoints.size(); i++)
+        kept.at<int>((int)i) = keypoints[i].class_id;
+    return nb::make_tuple(toNumpy(descriptors), toNumpy(kept));
+}
+
+nb::object detect(Extractor& self, const Array& image, const Array& mask)
+{
+    const cv::Mat view = viewOf(image, "the image");
+    const cv::Mat allowed = viewOf(mask, "the mask");  // empty: everywhere
+    std::vector<cv::KeyPoint> keypoints;
+    {
+        nb::gil_scoped_release release;
+        if (!view.empty())
+            self.detect(view, keypoints, allowed);
+    }
+    return toNumpy(toRows(keypoints));
+}
+
+std::string parameters(const Extractor& self)
+{
+    cv::FileStorage file(".json", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+    self.write(file);
+    return file.releaseAndGetString();
+}
+
+void setParameters(Extractor& self, const std::string& text)
+{
+    self.read(cv::FileStorage(text, cv::FileStorage::READ | cv::FileStorage::MEMORY).root());
+}
+
+std::shared_ptr<Extractor> create(float scaleFactor, int granularity, int channels, int mapping, bool overlap,
+        bool useOrientation, int extraChannels)
+{
+    return Extractor::create(
+            scaleFactor, granularity, channels, mapping, overlap, useOrientation, extraChannels);
+}
+
+}  // namespace
+
+void bindExtractor(nb::module_& m)
+{
+    nb::class_<Extractor>(m, "Extractor")
+            .def_static("create", &create)
+            .def_static("createPreset",
+                    [](int preset, float scaleFactor) -> std::shared_ptr<Extractor> {
+                        return Extractor::createPreset(preset, scaleFactor);
+                    })
+            .def_static("scaleFactorFor",
+                    [](const std::string& name) { return Extractor::scaleFactorFor(cv::String(name)); })
+            .def("compute", &compute)
+            .def("detect", &detect)
+            .def("setDetector",
+                    [](Extractor& self, nb::callable function, const std::string& name) {
+                        self.setDetector(cv::makePtr<ForeignDetector>(function, name));
+                    })
+            .def("levelSizes", &Extractor::levelSizes)
+            .def("descriptorSize", [](const Extractor& self) { return self.descriptorSize(); })
+            .def("setScaleFactor", &Extractor::setScaleFactor)
+            .def("getScaleFactor", &Extractor::getScaleFactor)
+            .def("setGranularity", &Extractor::setGranularity)
+            .def("getGranularity", &Extractor::getGranularity)
+            .def("setChannels", &Extractor::setChannels)
+            .def("getChannels", &Extractor::getChannels)
+            .def("setMapping", &Extractor::setMapping)
+            .def("getMapping", &Extractor::getMapping)
+            .def("setOverlap", &Extractor::setOverlap)
+            .def("getOverlap", &Extractor::getOverlap)
+            .def("setUseOrientation", &Extractor::setUseOrientation)
+            .def("getUseOrientation", &Extractor::getUseOrientation)
+            .def("setExtraChannels", &Extractor::setExtraChannels)
+            .def("getExtraChannels", &Extractor::getExtraChannels)
+            .def("setBorder", &Extractor::setBorder)
+            .def("getBorder", &Extractor::getBorder)
+            .def("setSelection",
+                    [](Extractor& self, const Array& quads) {
+                        self.setSelection(viewOf(quads, "the selection"));
+                    })
+            .def("getSelection",
+                    [](const Extractor& self) {
+                        const cv::Mat quads = self.getSelection();
+                        return toNumpy(quads.empty() ? cv::Mat(0, 5, CV_32S) : quads);
+                    })
+            .def("getDefaultName", [](const Extractor& self) { return std::string(self.getDefaultName()); })
+            .def("save", [](const Extractor& self, const std::string& file) { self.save(file); })
+            .def("read", [](Extractor& self,
+                                 const std::string& file) { static_cast<cv::Feature2D&>(self).read(file); })
+            .def("write",
+                    [](const Extractor& self, const std::string& file) {
+                        static_cast<const cv::Feature2D&>(self).write(file);
+                    })
+            .def("parameters", &parameters)
+            .def("setParameters", &setParameters);
+}
+
+}  // namespace iib_python

@@ -1,0 +1,204 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "opencv2/iib.hpp"
+
+namespace iib_python {
+
+namespace {
+
+typedef cv::iib::HierarchicalMatcher Matcher;
+typedef std::vector<std::vector<cv::DMatch>> MatchRows;
+
+std::vector<cv::Mat> viewsOf(nb::object arrays, const char* what)
+{
+    std::vector<cv::Mat> views;
+    if (!arrays.is_none())
+        for (nb::handle array : arrays)
+            views.push_back(array.is_none() ? cv::Mat() : viewOf(nb::cast<Array>(array), what));
+    return views;
+}
+
+const char DESCRIPTORS[] = "descriptors", MASK[] = "a mask";
+
+// Descriptors without rows of whatever width: nothing to find.
+cv::Mat descriptorsOf(const Array& array) { return viewOf(array, DESCRIPTORS); }
+
+//! `type(queryIdx, trainIdx, imgIdx, distance)`, in a tuple of tuples.
+nb::object toPython(const MatchRows& rows, nb::handle type)
+{
+    nb::object result = nb::steal(PyTuple_New((Py_ssize_t)rows.size()));
+    if (!result)
+        throw nb::python_error();
+    for (size_t i = 0; i < rows.size(); i++)
+    {
+        nb::object row = nb::steal(PyTuple_New((Py_ssize_t)rows[i].size()));
+        for (size_t k = 0; k < rows[i].size(); k++)
+        {
+            const cv::DMatch& m = rows[i][k];
+            nb::object match = type(m.queryIdx, m.trainIdx, m.imgIdx, m.distance);
+            PyTuple_SetItem(row.ptr(), (Py_ssize_t)k, match.release().ptr());
+        }
+        PyTuple_SetItem(result.ptr(), (Py_ssize_t)i, row.release().ptr());
+    }
+    return result;
+}
+
+// Searches the train set given or, if that is None, those added.
+nb::object knnMatch(Matcher& self, const Array& queries, nb::object train, int k, nb::object masks,
+        bool compact, nb::handle type)
+{
+    const cv::Mat query = descriptorsOf(queries);
+    const cv::Mat other = train.is_none() ? cv::Mat() : descriptorsOf(nb::cast<Array>(train));
+    const std::vector<cv::Mat> allowed = viewsOf(masks, MASK);
+    const bool added = train.is_none();
+    MatchRows rows;
+    {
+        nb::gil_scoped_release release;
+        if (query.empty())
+            rows.clear();
+        else if (added)
+            self.knnMatch(query, rows, k, allowed, compact);
+        else
+            self.knnMatch(query, other, rows, k, allowed.empty() ? cv::Mat() : allowed[0], compact);
+    }
+    return toPython(rows, type);
+}
+
+nb::object radiusMatch(Matcher& self, const Array& queries, nb::object train, float maxDistance,
+        nb::object masks, bool compact, nb::handle type)
+{
+    const cv::Mat query = descriptorsOf(queries);
+    const cv::Mat other = train.is_none() ? cv::Mat() : descriptorsOf(nb::cast<Array>(train));
+    const std::vector<cv::Mat> allowed = viewsOf(masks, MASK);
+    const bool added = train.is_none();
+    MatchRows rows;
+    {
+        nb::gil_scoped_release release;
+        if (query.empty())
+            rows.clear();
+        else if (added)
+            self.radiusMatch(query, rows, maxDistance, allowed, compact);
+        else
+            self.radiusMatch(
+                    query, other, rows, maxDistance, allowed.empty() ? cv::Mat() : allowed[0], compact);
+    }
+    return toPython(rows, type);
+}
+
+nb::tuple knnMatchArrays(Matcher& self, const Array& queries, nb::object train, int k, nb::object masks)
+{
+    const cv::Mat query = descriptorsOf(queries);
+    const cv::Mat other = train.is_none() ? cv::Mat() : descriptorsOf(nb::cast<Array>(train));
+    const std::vector<cv::Mat> allowed = viewsOf(masks, MASK);
+    const bool added = train.is_none();
+    cv::Mat indices, distances, images;
+    {
+        nb::gil_scoped_release release;
+        if (added)
+            self.knnMatchArrays(query, indices, distances, k, allowed, images);
+        else
+            self.knnMatchArrays(
+                    query, other, indices, distances, k, allowed.empty() ? cv::Mat() : allowed[0]);
+    }
+    for (cv::Mat* matrix : {&indices, &distances, &images})
+        if (matrix->empty())
+            matrix->create(0, k, CV_32S);
+    return added ? nb::make_tuple(toNumpy(indices), toNumpy(distances), toNumpy(images))
+                 : nb::make_tuple(toNumpy(indices), toNumpy(distances));
+}
+
+void add(Matcher& self, const std::vector<Array>& arrays)
+{
+    std::vector<cv::Mat> copies;  // the matcher refers to what it is given, and Python may free or change it
+    for (const Array& array : arrays)
+        copies.push_back(descriptorsOf(array).clone());
+    nb::gil_scoped_release release;
+    self.add(copies);
+}
+
+nb::list trainDescriptors(const Matcher& self)
+{
+    nb::list arrays;
+    for (const cv::Mat& descriptors : self.getTrainDescriptors())
+        arrays.append(toNumpy(descriptors.clone()));
+    return arrays;
+}
+
+std::string parameters(const Matcher& self)
+{
+    cv::FileStorage file(".json", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+    self.write(file);
+    return file.releaseAndGetString();
+}
+
+void setParameters(Matcher& self, const std::string& text)
+{
+    self.read(cv::FileStorage(text, cv::FileStorage::READ | cv::FileStorage::MEMORY).root());
+}
+
+std::shared_ptr<Matcher> create(
+        const std::vector<int>& levelSizes, int mode, float threshold, bool crossCheck)
+{
+    return Matcher::create(levelSizes, mode, threshold, crossCheck);
+}
+
+std::shared_ptr<Matcher> loadIndex(const std::string& filename)
+{
+    nb::gil_scoped_release release;
+    return Matcher::loadIndex(filename);
+}
+
+void saveIndex(const Matcher& self, const std::string& filename)
+{
+    nb::gil_scoped_release release;
+    self.saveIndex(filename);
+}
+
+std::shared_ptr<Matcher> clone(const Matcher& self, bool emptyTrainData)
+{
+    return self.clone(emptyTrainData).dynamicCast<Matcher>();
+}
+
+}  // namespace
+
+void bindMatcher(nb::module_& m)
+{
+    nb::class_<Matcher>(m, "Matcher")
+            .def_static("create", &create)
+            .def_static("loadIndex", &loadIndex)
+            .def("saveIndex", &saveIndex)
+            .def("clone", &clone)
+            .def("add", &add)
+            .def("clear", [](Matcher& self) { self.clear(); })
+            .def("empty", [](const Matcher& self) { return self.empty(); })
+            .def("trainDescriptors", &trainDescriptors)
+            .def("knnMatch", &knnMatch, nb::arg(), nb::arg().none(), nb::arg(), nb::arg().none(), nb::arg(),
+                    nb::arg())
+            .def("radiusMatch", &radiusMatch, nb::arg(), nb::arg().none(), nb::arg(), nb::arg().none(),
+                    nb::arg(), nb::arg())
+            .def("knnMatchArrays", &knnMatchArrays, nb::arg(), nb::arg().none(), nb::arg(), nb::arg().none())
+            .def("levelSizes", &Matcher::levelSizes)
+            .def("setMode", &Matcher::setMode)
+            .def("getMode", &Matcher::getMode)
+            .def("setThresholds", &Matcher::setThresholds)
+            .def("getThresholds", &Matcher::getThresholds)
+            .def("setCrossCheck", &Matcher::setCrossCheck)
+            .def("getCrossCheck", &Matcher::getCrossCheck)
+            .def("setMaxRatio", &Matcher::setMaxRatio)
+            .def("getMaxRatio", &Matcher::getMaxRatio)
+            .def("matchCost", &Matcher::matchCost)
+            .def("resetCost", &Matcher::resetCost)
+            .def("parameters", &parameters)
+            .def("setParameters", &setParameters);
+}
+
+}  // namespace iib_python

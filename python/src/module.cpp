@@ -1,0 +1,23 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "bindings.hpp"
+#include "keypoints.hpp"
+
+#include <nanobind/stl/string.h>
+
+namespace nb = nanobind;
+using namespace iib_python;
+
+NB_MODULE(_core, m)
+{
+    nb::exception<cv::Exception>(m, "error");
+    bindExtractor(m);
+    bindMatcher(m);
+
+    m.attr("OPENCV_VERSION") = CV_VERSION;
+    m.def("readKeyPoints", [](nb::sequence keypoints) { return toNumpy(readKeyPoints(keypoints)); });
+    m.def("setNumThreads", [](int threads) { cv::setNumThreads(threads); });
+    m.def("getNumThreads", [] { return cv::getNumThreads(); });
+}

@@ -1,0 +1,79 @@
+"""Images and keypoints made of integers alone, as modules/iib/test/support/test_images.cpp makes them."""
+import re
+from pathlib import Path
+
+import numpy as np
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+
+try:
+    import cv2
+except ImportError:
+    cv2 = None
+
+
+class Integers:
+    """Pseudorandom integers, the same everywhere (SplitMix64)."""
+
+    def __init__(self, seed):
+        self.state = seed
+
+    def below(self, end):
+        mask = (1 << 64) - 1
+        self.state = z = (self.state + 0x9e3779b97f4a7c15) & mask
+        z = ((z ^ z >> 30) * 0xbf58476d1ce4e5b9) & mask
+        z = ((z ^ z >> 27) * 0x94d049bb133111eb) & mask
+        return (z ^ z >> 31) % end
+
+    def between(self, begin, end):
+        return begin + self.below(end - begin)
+
+
+def _blurred(m, axis):
+    padded = np.pad(m, [(2, 2) if a == axis else (0, 0) for a in range(2)], 'edge')
+    size = m.shape[axis]
+    total = sum(weight * np.take(padded, range(i, i + size), axis) for i, weight in enumerate((1, 4, 6, 4, 1)))
+    return (total + 8) // 16
+
+
+def texture(width, height, dtype=np.uint8, seed=1):
+    """Blurred noise with a flat rectangle."""
+    integers = Integers(seed)
+    end = 256 if dtype == np.uint8 else 65536
+    m = np.array([integers.below(end) for _ in range(width * height)], np.int64).reshape(height, width)
+    m = _blurred(_blurred(m, 1), 0)
+    m[height // 4:height // 4 + height // 3, width // 4:width // 4 + width // 3] = 77
+    return m.astype(dtype)
+
+
+def scatter(width, height, count, smallest, largest, seed):
+    """count x 4 float32: x, y, size, angle, in and around an image."""
+    integers = Integers(seed)
+    rows = []
+    for i in range(count):
+        part = 4 if i % 4 else 1
+        x = integers.between(-(width * part // 5), width * part * 6 // 5) / part
+        y = integers.between(-(height * part // 5), height * part * 6 // 5) / part
+        angle = integers.below(360) if i % 5 else -1
+        rows.append((x, y, integers.between(int(smallest * 8), int(largest * 8)) / 8, angle))
+    return np.array(rows, np.float32)
+
+
+def grid(size=10):
+    """48 x 3 float32 keypoints for an image of 160 x 120."""
+    return np.array([(x, y, size) for y in range(0, 120, 20) for x in range(0, 160, 20)], np.float32)
+
+
+def fnv1a(array):
+    """FNV-1a, 64 bits."""
+    value = 14695981039346656037
+    for byte in array.tobytes():
+        value = ((value ^ byte) * 1099511628211) & ((1 << 64) - 1)
+    return value
+
+
+def golden_hashes():
+    """Names and hashes of the C++ golden test; empty outside of a clone."""
+    path = REPOSITORY / 'modules/iib/test/descriptor/test_descriptor_golden.cpp'
+    text = path.read_text() if path.exists() else ''
+    return {name: int(value, 16) for name, value in re.findall(r'\{\s*"([^"]+)", (0x[0-9a-f]{16})', text)}

@@ -1,0 +1,253 @@
+import io
+import os
+import shutil
+import sqlite3
+import struct
+import tempfile
+import unittest
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+from unittest import mock
+
+import numpy as np
+
+from support import cv2, texture
+
+if cv2 is not None:
+    from opencv_iib.__main__ import main
+    from opencv_iib.colmap import FeatureOptions, Options, SettingsChanged, build_database, pipeline
+    from opencv_iib.colmap import pairs as pair_lists
+    from opencv_iib.colmap.database import MAX_IMAGE_ID, Database, pair_id
+    from opencv_iib.colmap.features import to_colmap
+    from opencv_iib.colmap.images import exif_focal_length
+    from opencv_iib.colmap.verify import magsac
+
+try:
+    import h5py
+except ImportError:
+    h5py = None
+try:
+    import pycolmap
+except ImportError:
+    pycolmap = None
+try:
+    import PIL.Image
+except ImportError:
+    PIL = None
+
+FAST = dict(verify='magsac')
+
+
+@unittest.skipIf(cv2 is None, 'no cv2')
+@unittest.skipIf(cv2 is not None and PIL is None, 'no pillow')
+class ColmapTest(unittest.TestCase):
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.images = os.path.join(self.folder.name, 'images')
+        self.database = os.path.join(self.folder.name, 'database.db')
+        os.makedirs(os.path.join(self.images, 'more'))
+        world = cv2.resize(texture(160, 120, seed=3), (640, 480), interpolation=cv2.INTER_CUBIC)
+        for i, name in enumerate(('a.png', 'b.png', 'more/c.png')):
+            cv2.imwrite(os.path.join(self.images, name), world[20 * i:300 + 20 * i, 30 * i:400 + 30 * i])
+        self.lines = []
+
+    def build(self, force=False, **options):
+        features = FeatureOptions(points=options.pop('points', 300))
+        with redirect_stderr(io.StringIO()):
+            return build_database(self.images, self.database, Options(features, **{**FAST, **options}), force,
+                                  workers=2, log=self.lines.append)
+
+    def query(self, sql):
+        connection = sqlite3.connect(self.database)
+        try:
+            return connection.execute(sql).fetchall()
+        finally:
+            connection.close()
+
+    def test_what_is_written(self):
+        counts = self.build()
+        self.assertEqual((counts['images'], counts['pairs'], counts['verified pairs'], counts['failed']), (3, 3, 3, 0))
+        self.assertEqual([name for name, in self.query('SELECT name FROM images ORDER BY name')],
+                         ['a.png', 'b.png', 'more/c.png'])
+        self.assertEqual(self.query('SELECT DISTINCT cols FROM keypoints'), [(4,)])
+        self.assertEqual(self.query('SELECT width, height, prior_focal_length FROM cameras'), [(400, 300, 0)] * 3)
+        params = np.frombuffer(self.query('SELECT params FROM cameras')[0][0])
+        np.testing.assert_allclose(params, [1.2 * 400, 200, 150, 0])
+        self.assertEqual(self.query('PRAGMA user_version'), [(3800,)])
+        self.assertFalse([name for name, in self.query('SELECT name FROM sqlite_master') if name and 'iib' in name])
+        self.assertEqual(os.listdir(self.folder.name).count('database.db.partial'), 0)
+
+    def test_verified_matches_are_the_known_shift(self):
+        self.build()
+        points = {number: np.frombuffer(data, np.float32).reshape(rows, 4)
+                  for number, rows, data in self.query('SELECT image_id, rows, data FROM keypoints')}
+        pair, rows, data = self.query('SELECT pair_id, rows, data FROM two_view_geometries ORDER BY pair_id')[0]
+        self.assertEqual(divmod(pair, MAX_IMAGE_ID), (1, 2))
+        found = np.frombuffer(data, np.uint32).reshape(rows, 2)
+        shift = points[1][found[:, 0], :2] - points[2][found[:, 1], :2]
+        self.assertGreater(rows, 30)
+        self.assertGreater((np.abs(shift - [30, 20]) < 2).all(axis=1).mean(), .8)
+
+    def test_an_existing_database_is_kept(self):
+        Path(self.database).write_bytes(b'precious')
+        with self.assertRaisesRegex(FileExistsError, '--force'):
+            self.build()
+        self.assertEqual(Path(self.database).read_bytes(), b'precious')
+        self.build(force=True)
+        self.assertEqual(self.query('SELECT COUNT(*) FROM images'), [(3,)])
+
+    def test_a_broken_image_is_a_line_and_counted(self):
+        Path(self.images, 'broken.jpg').write_bytes(b'no image')
+        self.assertEqual(self.build()['failed'], 1)
+        self.assertEqual(len(self.lines), 1)
+        self.assertIn('broken.jpg', self.lines[0])
+
+    def test_an_interrupted_run_goes_on(self):
+        real, calls = pipeline.magsac, []
+
+        def interrupt(*arguments):
+            calls.append(1)
+            if len(calls) == 3:
+                raise KeyboardInterrupt
+            return real(*arguments)
+        with mock.patch.object(pipeline, 'magsac', interrupt), self.assertRaises(KeyboardInterrupt):
+            with redirect_stderr(io.StringIO()):
+                build_database(self.images, self.database, Options(FeatureOptions(points=300), **FAST), workers=1)
+        self.assertFalse(os.path.exists(self.database))
+        described, matched = [], []
+        with mock.patch.object(pipeline, 'read_grey', lambda path: described.append(path)), \
+                mock.patch.object(pipeline, 'magsac', lambda *a: matched.append(1) or real(*a)):
+            counts = self.build()
+        self.assertEqual(described, [])
+        self.assertLess(len(matched), 3)
+        self.assertEqual((counts['images'], counts['pairs']), (3, 3))
+
+    def test_other_settings_do_not_go_on_by_accident(self):
+        with mock.patch.object(pipeline, 'match_pairs', side_effect=KeyboardInterrupt), \
+                self.assertRaises(KeyboardInterrupt):
+            self.build()
+        with self.assertRaises(SettingsChanged):
+            self.build(points=200)
+        self.assertEqual(self.build(points=200, force=True)['images'], 3)
+
+    def test_a_full_disk_leaves_the_old_file(self):
+        Path(self.database).write_bytes(b'precious')
+        real = Database.add_image
+
+        def full(database, *arguments):
+            pages = database._db.execute('PRAGMA page_count').fetchone()[0]
+            database._db.execute(f'PRAGMA max_page_count={pages}')
+            real(database, *arguments)
+        with mock.patch.object(Database, 'add_image', full), self.assertRaisesRegex(sqlite3.Error, 'full'):
+            self.build(force=True)
+        self.assertEqual(Path(self.database).read_bytes(), b'precious')
+
+    def test_one_run_equals_any_number_of_workers(self):
+        self.build()
+        one = self.query('SELECT pair_id, data FROM matches ORDER BY pair_id')
+        os.unlink(self.database)
+        with redirect_stderr(io.StringIO()):
+            build_database(self.images, self.database, Options(FeatureOptions(points=300), **FAST), workers=5)
+        self.assertEqual(self.query('SELECT pair_id, data FROM matches ORDER BY pair_id'), one)
+
+    def test_pairs(self):
+        self.assertEqual(sorted(pair_lists.exhaustive(7, 2)), [(a, b) for a in range(7) for b in range(a + 1, 7)])
+        self.assertEqual(list(pair_lists.sequential(4, 2)), [(0, 1), (0, 2), (1, 2), (1, 3), (2, 3)])
+        listing = os.path.join(self.folder.name, 'pairs.txt')
+        Path(listing).write_text('# pairs\na.png more/c.png\n')
+        self.assertEqual(self.build(pairs=listing)['pairs'], 1)
+        Path(listing).write_text('a.png nothing.png\n')
+        with self.assertRaisesRegex(ValueError, 'pairs.txt:1: no image nothing.png'):
+            self.build(pairs=listing, force=True)
+        self.assertEqual(self.build(pairs='retrieval', neighbours=1, force=True)['images'], 3)
+        self.assertIn(self.query('SELECT COUNT(*) FROM matches')[0][0], (2, 3))
+
+    def test_coordinates_and_pair_numbers(self):
+        rows = np.array([[10, 20, 31, 90, 1, 0, -1], [0, 0, 2, -1, 1, 0, -1]], np.float32)
+        np.testing.assert_allclose(to_colmap(rows), [[10.5, 20.5, 15.5, np.pi / 2], [.5, .5, 1, 0]], rtol=1e-6)
+        self.assertEqual(pair_id(1, 2), pair_id(2, 1))
+        self.assertEqual(pair_id(1, 2), 2147483647 + 2)
+
+    def test_pairs_stored_the_other_way_round(self):
+        with Database(self.database, {}) as database:
+            matrix = np.arange(9.).reshape(3, 3)
+            database.add_pair(5, 2, np.array([[1, 7]]), np.array([[1, 7]]), matrix)
+            row = database._db.execute('SELECT data, F FROM two_view_geometries').fetchone()
+            self.assertEqual(list(database.pairs()), [(2, 5)])
+        self.assertEqual(np.frombuffer(row[0], np.uint32).tolist(), [7, 1])
+        np.testing.assert_array_equal(np.frombuffer(row[1]).reshape(3, 3), matrix.T)
+
+    def test_exif(self):
+        path = os.path.join(self.folder.name, 'x.jpg')
+        image = PIL.Image.new('L', (600, 400))
+        # little-endian TIFF: one entry that points to the EXIF directory, and there a focal length of 28 mm
+        exif = b'Exif\0\0II*\0' + struct.pack('<IHHHIIIHHHIHHI', 8, 1, 0x8769, 4, 1, 26, 0, 1, 0xA405, 3, 1, 28, 0, 0)
+        image.save(path, exif=exif)
+        self.assertAlmostEqual(exif_focal_length(path, 600, 400), 28 / 35 * 600)
+        image.save(path)
+        self.assertIsNone(exif_focal_length(path, 600, 400))
+
+    def test_magsac_without_a_geometry(self):
+        inliers, matrix = magsac(np.zeros((3, 2)), np.zeros((3, 2)))
+        self.assertEqual((inliers.tolist(), matrix), ([False] * 3, None))
+        same = np.ones((50, 2))
+        self.assertIn(len(magsac(same, same)[0]), (50,))
+
+    def test_command_line(self):
+        arguments = ['colmap', self.images, self.database, '--points', '200', '--verify', 'magsac', '--workers', '2']
+        for expected in (0, 1):
+            out, err = io.StringIO(), io.StringIO()
+            with redirect_stdout(out), redirect_stderr(err):
+                self.assertEqual(main(arguments), expected)
+        self.assertIn('--force', err.getvalue())
+        for wrong in (['colmap', self.images + '/none', 'x.db'], ['colmap', self.images, 'x.db', '--ratio', '0']):
+            with redirect_stderr(io.StringIO()) as err:
+                self.assertEqual(main(wrong), 1)
+            self.assertEqual(err.getvalue().count('\n'), 1)
+
+    def test_demo(self):
+        out = os.path.join(self.folder.name, 'demo.png')
+        with redirect_stdout(io.StringIO()) as text:
+            self.assertEqual(main(['demo', os.path.join(self.images, 'a.png'), os.path.join(self.images, 'b.png'),
+                                   '--points', '200', '--out', out]), 0)
+        self.assertIn('agree', text.getvalue())
+        self.assertEqual(cv2.imread(out).shape[1], 2 * 400)
+
+    @unittest.skipIf(shutil.which('colmap') is None, 'no program colmap')
+    def test_colmap_verifies(self):
+        counts = self.build(verify='colmap')
+        self.assertEqual((counts['pairs'], counts['verified pairs']), (3, 3))
+        self.assertEqual(self.query('SELECT COUNT(*) FROM descriptors'), [(0,)])
+
+    @unittest.skipIf(pycolmap is None, 'no pycolmap')
+    def test_the_newest_colmap_reads_it(self):
+        counts = self.build()
+        database = pycolmap.Database.open(self.database)
+        try:
+            self.assertEqual((database.num_images(), database.num_keypoints(), database.num_verified_image_pairs()),
+                             (3, counts['keypoints'], 3))
+            self.assertEqual(database.read_camera(1).width, 400)
+        finally:
+            database.close()
+
+    @unittest.skipIf(h5py is None, 'no h5py')
+    def test_hloc(self):
+        self.build()
+        files = [os.path.join(self.folder.name, name) for name in ('features.h5', 'matches.h5', 'pairs.txt')]
+        for expected in (0, 1):
+            with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
+                self.assertEqual(main(['hloc', self.database, *files]), expected)
+        rows, data = self.query('SELECT rows, data FROM keypoints WHERE image_id=1')[0]
+        with h5py.File(files[0]) as features, h5py.File(files[1]) as matches:
+            np.testing.assert_array_equal(features['a.png']['keypoints'][:] + np.float32(.5),
+                                          np.frombuffer(data, np.float32).reshape(rows, 4)[:, :2])
+            nearest = matches['a.png/more-c.png']['matches0']
+            self.assertEqual((nearest.dtype, nearest.shape), (np.int16, (rows,)))
+            self.assertTrue((nearest[:] >= -1).all())
+        self.assertEqual(len(Path(files[2]).read_text().splitlines()), 3)
+
+
+if __name__ == '__main__':
+    unittest.main()

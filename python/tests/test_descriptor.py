@@ -1,0 +1,296 @@
+import copy
+import pickle
+import tempfile
+import threading
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import opencv_iib
+from opencv_iib import IIB
+from support import cv2, fnv1a, golden_hashes, grid, scatter, texture
+
+GOLDEN = {
+    'default': {},
+    'mapping quartile': {'mapping': IIB.MAPPING_QUARTILE},
+    'mapping sort': {'mapping': IIB.MAPPING_SORT},
+    'mapping haar': {'mapping': IIB.MAPPING_HAAR},
+    'all channels': {'channels': 63},
+    'overlap': {'overlap': True},
+    'granularity 5': {'granularity': 5},
+    'extra channels': {'extraChannels': 3},
+    'orientation of keypoints': {'useOrientation': True},
+    '16U': {'dtype': np.uint16},
+    '32F': {'dtype': np.float32},
+    '8U colour': {'colours': 3},
+    '32F colour': {'dtype': np.float32, 'colours': 3},
+}
+
+
+def golden_image(dtype, colours):
+    image = texture(320 * colours, 240, np.uint8 if dtype == np.uint8 else np.uint16)
+    if dtype == np.float32:
+        image = (image / 4096 - 3).astype(np.float32)  # exact
+    return image.reshape(240, 320, colours) if colours > 1 else image
+
+
+class Bits(unittest.TestCase):
+
+    def test_golden_hashes_of_the_cpp_tests(self):
+        hashes = golden_hashes()
+        if not hashes:
+            self.skipTest('the C++ golden test is not beside these tests')
+        keypoints = np.vstack([scatter(320, 240, 500, 3, 40, 2), [[160, 120, 300, -1]]]).astype(np.float32)
+        for name, options in GOLDEN.items():
+            with self.subTest(name):
+                arguments = dict(options)
+                image = golden_image(arguments.pop('dtype', np.uint8), arguments.pop('colours', 1))
+                iib = IIB.create(**arguments)
+                extra = [texture(320, 240, np.uint16 if i % 2 else np.uint8, 100 + i)
+                         for i in range(iib.getExtraChannels())]
+                _, descriptors = iib.computeWithChannels(image, extra, keypoints)
+                self.assertEqual(fnv1a(descriptors), hashes[name])
+
+    def test_in_tree_cv2(self):
+        if cv2 is None or not hasattr(cv2, 'iib'):
+            self.skipTest('this cv2 has no iib')
+        image, keypoints = texture(160, 120), [cv2.KeyPoint(x, y, s) for x, y, s in grid().tolist()]
+        for mapping in range(7):
+            ours = IIB.create(mapping=mapping).compute(image, keypoints)[1]
+            theirs = cv2.iib.IIBDescriptorExtractor.create(mapping=mapping).compute(image, keypoints)[1]
+            np.testing.assert_array_equal(ours, theirs)
+
+
+class Arrays(unittest.TestCase):
+
+    def setUp(self):
+        self.image, self.iib = texture(160, 120), IIB.create()
+        self.expected = self.iib.compute(self.image, grid())[1]
+
+    def check(self, image, keypoints=None):
+        given = grid() if keypoints is None else keypoints
+        kept, descriptors = self.iib.compute(image, given)
+        self.assertIs(kept, given)
+        np.testing.assert_array_equal(descriptors, self.expected)
+
+    def test_shapes(self):
+        self.assertEqual(self.expected.shape, (48, 170))
+        self.assertEqual(self.expected.dtype, np.uint8)
+
+    def test_strided_fortran_read_only_and_big_endian_images(self):
+        wide = np.zeros((240, 320), np.uint8)
+        wide[::2, ::2] = self.image
+        self.check(wide[::2, ::2])
+        self.check(np.asfortranarray(self.image))
+        self.check(self.image[::-1][::-1])
+        locked = self.image.copy()
+        locked.flags.writeable = False
+        self.check(locked)
+        deep = self.image.astype(np.uint16) * 7
+        np.testing.assert_array_equal(self.iib.compute(deep.astype('>u2'), grid())[1],
+                                      self.iib.compute(deep.astype('<u2'), grid())[1])
+
+    def test_the_image_is_not_changed(self):
+        before = self.image.copy()
+        self.iib.compute(self.image, grid())
+        np.testing.assert_array_equal(self.image, before)
+
+    def test_array_interface_and_dlpack(self):
+        class Foreign:
+            __array_interface__ = self.image.__array_interface__
+            keep = self.image
+        self.check(Foreign())
+
+        class Capsule:
+            def __init__(self, array):
+                self.array = array
+
+            def __dlpack__(self, **arguments):
+                return self.array.__dlpack__()
+
+            def __dlpack_device__(self):
+                return self.array.__dlpack_device__()
+        self.check(Capsule(self.image))
+
+    def test_keypoint_arrays(self):
+        rows = grid()
+        self.check(self.image, rows.astype(np.float64))
+        self.check(self.image, np.hstack([rows, np.full((48, 1), -1, np.float32)]))
+        seven = np.zeros((48, 7), np.float32)
+        seven[:, :3], seven[:, 3] = rows, -1
+        self.check(self.image, seven)
+        self.check(self.image, np.asfortranarray(seven))
+
+    def test_keypoint_objects_come_back_themselves(self):
+        keypoints = [opencv_iib.KeyPoint(x, y, size) for x, y, size in grid().tolist()]
+        self.check(self.image, keypoints)
+        self.check(self.image, tuple(keypoints))
+
+    def test_border_drop_gives_back_what_is_left(self):
+        self.iib.setBorder(IIB.BORDER_DROP)
+        inside = [(x, y) for x, y, _ in grid().tolist() if 9 <= x < 150 and 9 <= y < 110]
+        rows, descriptors = self.iib.compute(self.image, grid())
+        self.assertEqual([tuple(r[:2]) for r in rows.tolist()], inside)
+        self.assertEqual(len(descriptors), len(inside))
+        keypoints = [opencv_iib.KeyPoint(x, y, size) for x, y, size in grid().tolist()]
+        left, _ = self.iib.compute(self.image, keypoints)
+        self.assertTrue(all(any(k is l for k in keypoints) for l in left))
+        self.assertEqual([k.pt for k in left], inside)
+
+    def test_nothing_to_describe(self):
+        for keypoints in ([], (), np.empty((0, 7), np.float32)):
+            kept, descriptors = self.iib.compute(self.image, keypoints)
+            self.assertIs(kept, keypoints)
+            self.assertEqual(descriptors.shape, (0, 170))
+        self.assertEqual(self.iib.compute(np.empty((0, 0), np.uint8), grid())[1].shape, (0, 170))
+
+    def test_mistakes_raise_one_clear_exception(self):
+        for culprit, call in (
+                ('granularity is 7', lambda: IIB.create(granularity=7)),
+                ('no such detector', lambda: IIB.scaleFactorFor('no such detector')),
+                ('selection', lambda: self.iib.setSelection(np.zeros((1, 5), np.float32))),
+                ('the image is NaN', lambda: self.iib.compute(np.full((9, 9), np.nan, np.float32), grid())),
+                ('type CV_64FC1', lambda: self.iib.compute(self.image.astype(np.float64), grid())),
+                ('the image: arrays of 64 bits', lambda: self.iib.compute(self.image.astype(np.int64), grid())),
+                ('the image: an array of 2 or 3', lambda: self.iib.compute(np.zeros((2, 2, 2, 2)), grid())),
+                ('extra channel', lambda: IIB.create(extraChannels=1).compute(self.image, grid())),
+                ('keypoint 0', lambda: self.iib.compute(self.image, [opencv_iib.KeyPoint(3, 3, 0)])),
+                ('not of 2', lambda: self.iib.compute(self.image, grid()[:, :2]))):
+            with self.subTest(culprit), self.assertRaisesRegex(opencv_iib.error, culprit):
+                call()
+        for what in ('text', None, object(), [object()]):
+            with self.subTest(what), self.assertRaisesRegex(TypeError, 'the image'):
+                self.iib.compute(what, grid())
+        with self.assertRaises(AttributeError):
+            self.iib.compute(self.image, [object()])
+
+
+class Objects(unittest.TestCase):
+
+    def configured(self):
+        iib = IIB.create(scaleFactor=3.7, granularity=3, channels=51, mapping=IIB.MAPPING_PAIRWISE)
+        iib.setSelection(np.array([[1, 0, 0, 0, 5], [3, 3, 6, 1, 8]], np.int32))
+        iib.setBorder(IIB.BORDER_DROP)
+        return iib
+
+    def expect_same(self, a, b):
+        for name in ('ScaleFactor', 'Granularity', 'Channels', 'Mapping', 'Overlap', 'UseOrientation',
+                     'ExtraChannels', 'Border'):
+            self.assertEqual(getattr(a, 'get' + name)(), getattr(b, 'get' + name)(), name)
+        np.testing.assert_array_equal(a.getSelection(), b.getSelection())
+        image = texture(160, 120)
+        np.testing.assert_array_equal(a.compute(image, grid())[1], b.compute(image, grid())[1])
+
+    def test_pickle_and_copy(self):
+        iib = self.configured()
+        for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
+            self.expect_same(iib, pickle.loads(pickle.dumps(iib, protocol)))
+        self.expect_same(iib, copy.copy(iib))
+        self.expect_same(iib, copy.deepcopy(iib))
+        twin = copy.copy(iib)
+        twin.setGranularity(2)
+        self.assertEqual(iib.getGranularity(), 3)
+
+    def test_presets_pickle(self):
+        for name in dir(IIB):
+            if name.startswith('PRESET_'):
+                iib = IIB.createPreset(getattr(IIB, name), 2)
+                self.expect_same(iib, pickle.loads(pickle.dumps(iib)))
+
+    def test_file(self):
+        iib, other = self.configured(), IIB.create()
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / 'iib.yml'
+            iib.write(path)
+            other.read(path)
+        self.expect_same(iib, other)
+
+    def test_a_pickled_detector_says_that_it_is_missing(self):
+        class Nothing:
+            def detect(self, image, mask):
+                return []
+        iib = IIB.create()
+        iib.setDetector(Nothing())
+        self.assertEqual(iib.detect(texture(60, 60)), ())
+        other = pickle.loads(pickle.dumps(iib))
+        with self.assertRaisesRegex(RuntimeError, 'Nothing was not pickled'):
+            other.detect(texture(60, 60))
+        self.assertEqual(copy.copy(iib).detect(texture(60, 60)), ())
+
+    def test_a_detector_of_python(self):
+        class AKAZE:
+            def detect(self, image, mask):
+                assert image.shape == (60, 80) and mask is None
+                return np.array([[20, 30, 5]], np.float32)
+        iib = IIB.createFor(AKAZE())
+        self.assertEqual(iib.getScaleFactor(), 12)
+        keypoints, descriptors = iib.detectAndCompute(texture(80, 60))
+        self.assertEqual([k.pt for k in keypoints], [(20, 30)])
+        self.assertEqual(descriptors.shape, (1, 170))
+        with self.assertRaisesRegex(TypeError, 'detect'):
+            iib.setDetector(object())
+
+    def test_the_default_detector_needs_no_cv2(self):
+        keypoints, descriptors = IIB.create().detectAndCompute(texture(320, 240))
+        self.assertGreater(len(keypoints), 10)
+        self.assertEqual(len(descriptors), len(keypoints))
+
+    def test_threads_share_an_extractor(self):
+        iib, image = IIB.create(), texture(320, 240)
+        keypoints = scatter(320, 240, 500, 3, 40, 2)
+        expected, found = iib.compute(image, keypoints)[1], [None] * 4
+
+        def work(i):
+            for _ in range(5):
+                found[i] = iib.compute(image, keypoints)[1]
+        threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for descriptors in found:
+            np.testing.assert_array_equal(descriptors, expected)
+
+
+@unittest.skipIf(cv2 is None, 'no cv2')
+class BesideCv2(unittest.TestCase):
+
+    def test_keypoints_of_cv2_come_back_themselves(self):
+        image, keypoints = texture(160, 120), [cv2.KeyPoint(x, y, size) for x, y, size in grid().tolist()]
+        kept, descriptors = IIB.create().compute(image, keypoints)
+        self.assertIs(kept, keypoints)
+        np.testing.assert_array_equal(descriptors, IIB.create().compute(image, grid())[1])
+
+    def test_keypoints_survive_the_array(self):
+        keypoints = cv2.ORB_create(50).detect(texture(320, 240))
+        rows = opencv_iib.keypoints_to_array(keypoints)
+        again = opencv_iib.array_to_keypoints(rows)
+        self.assertEqual(len(again), len(keypoints))
+        for a, b in zip(keypoints, again):
+            self.assertIsInstance(b, cv2.KeyPoint)
+            self.assertEqual((a.pt, a.size, a.angle, a.response, a.octave, a.class_id),
+                             (b.pt, b.size, b.angle, b.response, b.octave, b.class_id))
+
+    def test_create_for_a_detector_of_cv2(self):
+        image = texture(320, 240)
+        for make, factor in ((cv2.ORB_create, 2), (cv2.SIFT_create, 20)):
+            detector = make()
+            iib = IIB.createFor(detector)
+            self.assertEqual(iib.getScaleFactor(), factor)
+            found = iib.detect(image)
+            self.assertEqual([k.pt for k in found], [k.pt for k in detector.detect(image)])
+            self.assertGreater(len(found), 10)
+        mask = np.zeros((240, 320), np.uint8)
+        mask[:, :160] = 255
+        self.assertTrue(all(k.pt[0] < 161 for k in iib.detect(image, mask)))
+
+    def test_errors_are_not_those_of_cv2(self):
+        with self.assertRaises(opencv_iib.error):
+            IIB.create(granularity=9)
+        with self.assertRaises(cv2.error):
+            cv2.ORB_create().detect(np.zeros((3, 3, 7), np.float64))
+
+
+if __name__ == '__main__':
+    unittest.main()

@@ -1,0 +1,168 @@
+import copy
+import pickle
+import tempfile
+import threading
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import opencv_iib
+from opencv_iib import HierarchicalMatcher
+from support import cv2
+
+LEVELS = (2, 8, 32, 128)
+
+
+def brute_force(query, train, k):
+    """Indices and distances, queries x k."""
+    bits = np.unpackbits(query[:, None] ^ train[None], axis=2).sum(axis=2, dtype=np.int32)
+    order = np.argsort(bits, axis=1, kind='stable')[:, :k]
+    return order, np.take_along_axis(bits, order, 1)
+
+
+def keys(rows):
+    return [[(m.queryIdx, m.trainIdx, m.imgIdx, m.distance) for m in row] for row in rows]
+
+
+class MatcherTest(unittest.TestCase):
+
+    def setUp(self):
+        rng = np.random.default_rng(6)
+        self.query = rng.integers(0, 256, (50, 170), np.uint8)
+        self.train = rng.integers(0, 256, (70, 170), np.uint8)
+        self.train[10:60] = self.query ^ (rng.random((50, 170)) < .1)
+        self.matcher = HierarchicalMatcher.create(LEVELS)
+
+    def test_arrays_equal_brute_force(self):
+        indices, distances = self.matcher.knnMatchArrays(self.query, self.train, k=3)
+        expected = brute_force(self.query, self.train, 3)
+        np.testing.assert_array_equal(indices, expected[0])
+        np.testing.assert_array_equal(distances, expected[1])
+        self.assertEqual((indices.dtype, distances.dtype), (np.int32, np.int32))
+
+    def test_the_three_kinds_of_matches_agree(self):
+        indices, distances = brute_force(self.query, self.train, 2)
+        knn = self.matcher.knnMatch(self.query, self.train, 2)
+        self.assertEqual([[(m.trainIdx, m.distance) for m in row] for row in knn],
+                         [list(zip(i, d)) for i, d in zip(indices.tolist(), distances.tolist())])
+        self.assertEqual(keys([self.matcher.match(self.query, self.train)]), [[row[0] for row in keys(knn)]])
+        within = self.matcher.radiusMatch(self.query, self.train, 200)
+        self.assertEqual([[m.trainIdx for m in row] for row in within], [[i] for i in range(10, 60)])
+
+    def test_added_images(self):
+        self.matcher.add([self.train[:30], self.train[30:]])
+        self.assertFalse(self.matcher.empty())
+        indices, distances, images = self.matcher.knnMatchArrays(self.query, k=2)
+        expected = brute_force(self.query, self.train, 2)
+        np.testing.assert_array_equal(indices + 30 * images, expected[0])
+        np.testing.assert_array_equal(distances, expected[1])
+        for rows in (self.matcher.knnMatch(self.query, 2), self.matcher.knnMatch(self.query, k=2)):
+            np.testing.assert_array_equal([[m.trainIdx + 30 * m.imgIdx for m in row] for row in rows], expected[0])
+        self.assertEqual(len(self.matcher.match(self.query)), 50)
+        self.assertEqual([len(d) for d in self.matcher.getTrainDescriptors()], [30, 40])
+        self.matcher.clear()
+        self.assertTrue(self.matcher.empty())
+
+    def test_what_is_added_is_a_copy(self):
+        train = self.train.copy()
+        self.matcher.add(train)
+        train[:] = 0
+        np.testing.assert_array_equal(self.matcher.knnMatchArrays(self.query)[0],
+                                      brute_force(self.query, self.train, 1)[0])
+        np.testing.assert_array_equal(self.matcher.getTrainDescriptors()[0], self.train)
+
+    def test_masks_cross_check_and_ratio(self):
+        mask = np.ones((50, 70), np.uint8)
+        mask[:, 10] = 0
+        indices, _ = self.matcher.knnMatchArrays(self.query, self.train, mask=mask)
+        self.assertTrue((indices != 10).all())
+        np.testing.assert_array_equal(
+            [m.trainIdx for m in self.matcher.match(self.query, self.train, mask)], indices.ravel())
+        self.matcher.setCrossCheck(True)
+        self.matcher.setMaxRatio(.8)
+        matches = self.matcher.match(self.query, self.train)
+        self.assertEqual([(m.queryIdx, m.trainIdx) for m in matches], [(i, i + 10) for i in range(50)])
+
+    def test_strided_and_read_only_descriptors(self):
+        wide = np.zeros((100, 340), np.uint8)
+        wide[::2, ::2] = self.query
+        expected = self.matcher.knnMatchArrays(self.query, self.train, k=2)
+        for query in (wide[::2, ::2], np.asfortranarray(self.query)):
+            for a, b in zip(self.matcher.knnMatchArrays(query, self.train, k=2), expected):
+                np.testing.assert_array_equal(a, b)
+
+    def test_nothing_to_match(self):
+        empty = np.empty((0, 170), np.uint8)
+        self.assertEqual(self.matcher.match(empty, self.train), ())
+        self.assertEqual(self.matcher.knnMatchArrays(empty, self.train, k=2)[0].shape, (0, 2))
+        self.assertTrue((self.matcher.knnMatchArrays(self.query, empty)[0] == -1).all())
+
+    def test_mistakes_raise(self):
+        for call in (lambda: HierarchicalMatcher.create([]),
+                     lambda: HierarchicalMatcher.create(LEVELS, threshold=2),
+                     lambda: self.matcher.match(self.query[:, :9], self.train),
+                     lambda: self.matcher.match(self.query.astype(np.float32), self.train),
+                     lambda: self.matcher.knnMatchArrays(self.query, self.train, k=0),
+                     lambda: self.matcher.match(self.query, self.train, np.ones((3, 3), np.uint8)),
+                     lambda: HierarchicalMatcher.loadIndex('/no such file')):
+            with self.assertRaises(opencv_iib.error):
+                call()
+
+    def expect_same(self, a, b):
+        self.assertEqual((a.levelSizes(), a.getMode(), a.getThresholds(), a.getCrossCheck(), a.getMaxRatio()),
+                         (b.levelSizes(), b.getMode(), b.getThresholds(), b.getCrossCheck(), b.getMaxRatio()))
+        for x, y in zip(a.knnMatchArrays(self.query, k=3), b.knnMatchArrays(self.query, k=3)):
+            np.testing.assert_array_equal(x, y)
+
+    def test_pickle_copy_clone_and_file_keep_the_codes(self):
+        matcher = HierarchicalMatcher.create(LEVELS, HierarchicalMatcher.THRESHOLD, .41, True)
+        matcher.setMaxRatio(.93)
+        matcher.add([self.train[:30], self.train[30:]])
+        self.expect_same(matcher, pickle.loads(pickle.dumps(matcher)))
+        for twin in (copy.copy(matcher), copy.deepcopy(matcher), matcher.clone()):
+            self.expect_same(matcher, twin)
+        self.assertTrue(matcher.clone(True).empty())
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / 'index.bin'
+            matcher.saveIndex(path)
+            self.expect_same(matcher, HierarchicalMatcher.loadIndex(path))
+
+    def test_match_cost(self):
+        self.matcher.match(self.query, self.train)
+        self.assertEqual(self.matcher.matchCost(), 1)
+        self.matcher.resetCost()
+        self.assertEqual(self.matcher.matchCost(), 0)
+        self.matcher.setMode(HierarchicalMatcher.THRESHOLD)
+        self.matcher.match(self.query, self.train)
+        self.assertTrue(0 < self.matcher.matchCost() < 1)
+
+    def test_threads_share_a_matcher(self):
+        self.matcher.add(self.train)
+        expected, found = self.matcher.knnMatchArrays(self.query)[0], [None] * 4
+
+        def work(i):
+            for _ in range(20):
+                found[i] = self.matcher.knnMatchArrays(self.query)[0]
+        threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for indices in found:
+            np.testing.assert_array_equal(indices, expected)
+
+    @unittest.skipIf(cv2 is None, 'no cv2')
+    def test_matches_are_those_of_cv2(self):
+        for cross_check in (False, True):
+            ours = HierarchicalMatcher.create(LEVELS, crossCheck=cross_check).match(self.query, self.train)
+            theirs = cv2.BFMatcher(cv2.NORM_HAMMING, cross_check).match(self.query, self.train)
+            self.assertEqual(keys([ours]), keys([theirs]))
+            self.assertIsInstance(ours[0], cv2.DMatch)
+        points = [cv2.KeyPoint(float(i), 5, 3) for i in range(70)]
+        image = np.zeros((20, 80), np.uint8)
+        self.assertIsNotNone(cv2.drawMatches(image, points, image, points, ours, None))
+
+
+if __name__ == '__main__':
+    unittest.main()

@@ -1,0 +1,65 @@
+"""Everything that the C++ headers offer to Python is there, by the same name and value."""
+import re
+import unittest
+
+import opencv_iib
+from support import REPOSITORY
+
+HEADERS = {'IIBDescriptorExtractor': 'descriptor.hpp', 'HierarchicalMatcher': 'matcher.hpp'}
+
+
+def header(name):
+    path = REPOSITORY / 'modules/iib/include/opencv2/iib' / name
+    if not path.exists():
+        raise unittest.SkipTest('the headers are not beside these tests')
+    text = re.sub(r'/\*.*?\*/', '', path.read_text(), flags=re.S)
+    return re.sub(r'//.*', '', text)
+
+
+def enumerators(text):
+    """Names and values of the enums' members."""
+    for body in re.findall(r'enum \w+\s*\{(.*?)\}', text, re.S):
+        value = -1
+        for member in filter(None, (m.strip() for m in body.split(','))):
+            name, _, given = (part.strip() for part in member.partition('='))
+            value = int(given, 0) if given else value + 1
+            yield name, value
+
+
+class Names(unittest.TestCase):
+
+    def test_constants(self):
+        for owner, file in HEADERS.items():
+            found = dict(enumerators(header(file)))
+            self.assertGreater(len(found), 2)
+            for name, value in found.items():
+                with self.subTest(name):
+                    self.assertEqual(getattr(getattr(opencv_iib, owner), name), value)
+                    self.assertEqual(getattr(opencv_iib, f'{owner}_{name}'), value)
+
+    def test_methods_and_keywords(self):
+        for owner, file in HEADERS.items():
+            text = re.sub(r'\s+', ' ', header(file))
+            calls = re.findall(r'CV_WRAP(?:_AS\((\w+)\))? (?:static |virtual )*[^;{(]*?(\w+)\(([^;{]*)\)(?: const)? ?(?:= 0)?[;{]',
+                               text)
+            self.assertGreater(len(calls), 10)
+            for alias, name, arguments in calls:
+                method = getattr(getattr(opencv_iib, owner), alias or name, None)
+                with self.subTest(alias or name):
+                    self.assertIsNotNone(method)
+                    inputs = re.findall(r'(?:^|, )(?!OutputArray|CV_OUT OutputArray)[^,]*?(\w+)(?: = [^,]*)?(?=,|$)',
+                                        arguments)
+                    keywords = method.__code__.co_varnames if hasattr(method, '__code__') else \
+                        method.__func__.__code__.co_varnames
+                    for keyword in inputs:
+                        self.assertIn(keyword, keywords)
+
+    def test_every_public_name_is_documented(self):
+        for owner in HEADERS:
+            self.assertTrue(getattr(opencv_iib, owner).__doc__)
+        for name in ('compute', 'computeWithChannels', 'detect', 'setDetector', 'levelSizes'):
+            self.assertTrue(getattr(opencv_iib.IIB, name).__doc__, name)
+
+
+if __name__ == '__main__':
+    unittest.main()
