@@ -12,7 +12,7 @@
 static const int HALF_WIDTH = 640;     // of the picture, pixels
 static const int CAPTION_HEIGHT = 44;  // pixels
 // The pair of colours is distinct for colour-blind eyes too.
-static const cv::Scalar CORRECT(150, 220, 60), WRONG(40, 90, 255), PAPER(32, 28, 26), INK(235, 235, 235);
+static const cv::Scalar GOOD(150, 220, 60), OTHER(40, 90, 255), PAPER(32, 28, 26), INK(235, 235, 235);
 
 inline int writeText(cv::Mat& canvas, const std::string& text, cv::Point at, const cv::Scalar& color)
 {
@@ -21,18 +21,24 @@ inline int writeText(cv::Mat& canvas, const std::string& text, cv::Point at, con
     return at.x + cv::getTextSize(text, cv::FONT_HERSHEY_DUPLEX, size, 1, 0).width;
 }
 
-inline void drawCaption(cv::Mat& canvas, const Result& result)
+inline void drawCaption(cv::Mat& canvas, const Result& result, bool homographyGiven)
 {
-    const int correct = result.correctCount(), y = CAPTION_HEIGHT - 15;
+    const int good = result.goodCount(), others = (int)result.matches.size() - good, y = CAPTION_HEIGHT - 15;
     int x = writeText(canvas, result.name + ":  ", cv::Point(14, y), INK);
-    x = writeText(canvas, cv::format("%d correct", correct), cv::Point(x, y), CORRECT);
-    x = writeText(
-            canvas, cv::format("  %d wrong", (int)result.matches.size() - correct), cv::Point(x, y), WRONG);
-    writeText(canvas, cv::format("  precision %.0f %%", 100 * result.precision()), cv::Point(x, y), INK);
+    if (!result.judged)
+    {
+        writeText(canvas, cv::format("%d matches, no homography found", others), cv::Point(x, y), OTHER);
+        return;
+    }
+    x = writeText(canvas, cv::format(homographyGiven ? "%d correct" : "%d consistent", good), cv::Point(x, y),
+            GOOD);
+    x = writeText(canvas, cv::format(homographyGiven ? "  %d wrong" : "  %d others", others), cv::Point(x, y),
+            OTHER);
+    writeText(canvas, cv::format("  %.0f %%", 100 * result.precision()), cv::Point(x, y), INK);
 }
 
-//! Both images side by side under a caption, a line for each match; correct ones lie above wrong ones.
-inline cv::Mat drawResult(const Pair& pair, const Result& result)
+//! Both images side by side under a caption, a line for each match; good ones lie above the others.
+inline cv::Mat drawResult(const Pair& pair, const Result& result, bool homographyGiven)
 {
     cv::Mat halves[2];
     double scale[2];
@@ -48,13 +54,13 @@ inline cv::Mat drawResult(const Pair& pair, const Result& result)
     for (int i = 0; i < 2; i++)
         halves[i].copyTo(canvas(cv::Rect(cv::Point(i * HALF_WIDTH, CAPTION_HEIGHT), halves[i].size())));
 
-    for (int correct = 0; correct < 2; correct++)
+    for (int good = 0; good < 2; good++)
     {
         cv::Mat lines = canvas.clone();
-        const cv::Scalar color = correct ? CORRECT : WRONG;
+        const cv::Scalar color = good ? GOOD : OTHER;
         for (size_t m = 0; m < result.matches.size(); m++)
         {
-            if ((result.correct[m] != 0) != (correct != 0))
+            if ((result.good[m] != 0) != (good != 0))
                 continue;
             const cv::Point2f a = result.keypoints[0][result.matches[m].queryIdx].pt * (float)scale[0];
             const cv::Point2f b = result.keypoints[1][result.matches[m].trainIdx].pt * (float)scale[1];
@@ -65,10 +71,10 @@ inline cv::Mat drawResult(const Pair& pair, const Result& result)
             cv::circle(canvas, to, 2, color, cv::FILLED, cv::LINE_AA);
         }
         // Transparent, or a few hundred lines would hide the images.
-        const double opacity = correct ? 0.55 : 0.35;
+        const double opacity = good ? 0.55 : 0.35;
         cv::addWeighted(lines, opacity, canvas, 1 - opacity, 0, canvas);
     }
-    drawCaption(canvas, result);
+    drawCaption(canvas, result, homographyGiven);
     return canvas;
 }
 

@@ -10,9 +10,18 @@
 #include "opencv2/calib3d.hpp"
 #include "opencv2/core/utility.hpp"
 #include "opencv2/iib.hpp"
+#include "opencv2/opencv_modules.hpp"
+
+#include <map>
+
+#if CV_VERSION_MAJOR >= 5 || defined(HAVE_OPENCV_XFEATURES2D)
+#include "opencv2/xfeatures2d.hpp"
+#endif
 
 static const int MAX_KEYPOINTS = 2000;
 static const double MAX_ERROR = 3;  // pixels, in image B
+// MAGSAC's homography agrees with up to 6 of 20 to 2000 matches drawn at random; fewer than these say nothing.
+static const int MIN_CONSISTENT = 10;
 
 struct Detector
 {
@@ -33,11 +42,12 @@ struct Result
     int bytes = 0;
     std::vector<cv::KeyPoint> keypoints[2];  // a descriptor may reorder or drop some
     std::vector<cv::DMatch> matches;
-    std::vector<uchar> correct;  // one a match
+    bool judged = false;      // there is a homography, given or estimated
+    std::vector<uchar> good;  // one a match: within MAX_ERROR of that homography
     double describeMs = 0, matchMs = 0, verifyMs = 0;
 
-    int correctCount() const { return correct.empty() ? 0 : cv::countNonZero(correct); }
-    double precision() const { return matches.empty() ? 0 : (double)correctCount() / matches.size(); }
+    int goodCount() const { return good.empty() ? 0 : cv::countNonZero(good); }
+    double precision() const { return matches.empty() ? 0 : (double)goodCount() / matches.size(); }
 };
 
 template <typename Step> double milliseconds(const Step& step)
@@ -51,28 +61,51 @@ template <typename Step> double milliseconds(const Step& step)
 
 inline Detector createDetector(const std::string& name)
 {
+#if CV_VERSION_MAJOR >= 5
+    using namespace cv::xfeatures2d;  // where OpenCV 5 has AGAST, AKAZE, BRISK and KAZE
+#endif
+    using namespace cv;
     if (name == "FAST")
-        return Detector{cv::FastFeatureDetector::create(), false};
+        return Detector{FastFeatureDetector::create(), false};
     if (name == "AGAST")
-        return Detector{cv::AgastFeatureDetector::create(), false};
+        return Detector{AgastFeatureDetector::create(), false};
     if (name == "GFTT")
-        return Detector{cv::GFTTDetector::create(MAX_KEYPOINTS), false};
+        return Detector{GFTTDetector::create(MAX_KEYPOINTS), false};
+    if (name == "MSER")
+        return Detector{MSER::create(), false};
+    if (name == "SimpleBlob")
+        return Detector{SimpleBlobDetector::create(), false};
     if (name == "ORB")
-        return Detector{cv::ORB::create(MAX_KEYPOINTS), true};
+        return Detector{ORB::create(MAX_KEYPOINTS), true};
     if (name == "BRISK")
-        return Detector{cv::BRISK::create(), true};
+        return Detector{BRISK::create(), true};
     if (name == "AKAZE")
-        return Detector{cv::AKAZE::create(), true};
+        return Detector{AKAZE::create(), true};
     if (name == "KAZE")
-        return Detector{cv::KAZE::create(), true};
+        return Detector{KAZE::create(), true};
     if (name == "SIFT")
-        return Detector{cv::SIFT::create(MAX_KEYPOINTS), true};
-    throw UserError("--detector takes FAST, AGAST, ORB, BRISK, AKAZE, KAZE, SIFT or GFTT, not " + name);
+        return Detector{SIFT::create(MAX_KEYPOINTS), true};
+#if defined(HAVE_OPENCV_XFEATURES2D) && defined(OPENCV_ENABLE_NONFREE)
+    return Detector{xfeatures2d::SURF::create(), true};
+#else
+    throw UserError("this OpenCV has no SURF, which needs xfeatures2d built with OPENCV_ENABLE_NONFREE");
+#endif
 }
 
 inline cv::Ptr<cv::Feature2D> createIIB(const Options& options)
 {
-    return cv::iib::IIB::create(cv::iib::IIB::scaleFactorFor(options.detector), options.granularity);
+    using cv::iib::IIB;
+    static const std::map<std::string, int> presets = {{"S128", IIB::PRESET_S128}, {"S256", IIB::PRESET_S256},
+            {"S512", IIB::PRESET_S512}, {"ACCURATE", IIB::PRESET_ACCURATE}, {"COMPACT", IIB::PRESET_COMPACT},
+            {"TINY", IIB::PRESET_TINY}, {"BALANCED", IIB::PRESET_BALANCED}};
+    const float factor = IIB::scaleFactorFor(options.detector);
+    const cv::Ptr<IIB> iib = options.preset == "default"
+                                     ? IIB::create(factor, options.granularity)
+                                     : IIB::createPreset(presets.at(options.preset), factor);
+    iib->setOrientation(options.orientation == "keypoint"   ? IIB::ORIENTATION_KEYPOINT
+                        : options.orientation == "gradient" ? IIB::ORIENTATION_GRADIENT
+                                                            : IIB::ORIENTATION_NONE);
+    return iib;
 }
 
 inline void detect(const Detector& detector, Pair& pair)
@@ -97,7 +130,7 @@ inline cv::Ptr<cv::DescriptorMatcher> createMatcher(const cv::Ptr<cv::Feature2D>
     return cv::iib::HierarchicalMatcher::create(levels, cv::iib::HierarchicalMatcher::EXACT, 0.35f, true);
 }
 
-//! H: from image A to B; empty: the one that MAGSAC finds in the matches themselves.
+//! H: from image A to B; empty: the one that MAGSAC finds in the matches themselves, if there is one.
 inline void verify(const cv::Mat& H, Result& result)
 {
     std::vector<cv::Point2f> a, b, projected;
@@ -106,15 +139,17 @@ inline void verify(const cv::Mat& H, Result& result)
         a.push_back(result.keypoints[0][m.queryIdx].pt);
         b.push_back(result.keypoints[1][m.trainIdx].pt);
     }
-    result.correct.assign(a.size(), 0);
+    result.good.assign(a.size(), 0);
     cv::Mat model = H;
     if (model.empty() && a.size() >= 4)
         model = cv::findHomography(a, b, cv::USAC_MAGSAC, MAX_ERROR);
-    if (a.empty() || model.empty())
-        return;
-    cv::perspectiveTransform(a, projected, model);
-    for (size_t i = 0; i < a.size(); i++)
-        result.correct[i] = cv::norm(projected[i] - b[i]) <= MAX_ERROR;
+    if (!a.empty() && !model.empty())
+        cv::perspectiveTransform(a, projected, model);
+    for (size_t i = 0; i < projected.size(); i++)
+        result.good[i] = cv::norm(projected[i] - b[i]) <= MAX_ERROR;
+    result.judged = !H.empty() || result.goodCount() >= MIN_CONSISTENT;
+    if (!result.judged)
+        result.good.assign(a.size(), 0);
 }
 
 inline Result matchPair(

@@ -1,0 +1,44 @@
+#!/bin/sh
+# Builds the library in build/ and installs it with its headers, its CMake package and its pkg-config file:
+#   scripts/install.sh [--prefix=FOLDER]
+# The folder is /usr/local unless --prefix says otherwise. What is missing is installed through apt, and sudo is asked
+# for where the user may not write.
+. "$(dirname "$0")/lib.sh"
+
+prefix=/usr/local
+case $#,${1:-} in
+0,) ;;
+1,--prefix=?*) prefix=${1#--prefix=} ;;
+2,--prefix) prefix=$2 ;;
+*) fail "takes --prefix=FOLDER alone, not $*" ;;
+esac
+case "$prefix" in
+/*) ;;
+*) prefix="$PWD/$prefix" ;;
+esac
+
+# shellcheck disable=SC2086
+need $build_packages
+build_library opencv_iib
+
+# The nearest folder that exists decides whether root is needed.
+existing="$prefix"
+while [ ! -d "$existing" ]; do
+    existing=$(dirname "$existing")
+done
+as_root=""
+[ -w "$existing" ] || as_root=sudo
+say "installing in $prefix"
+$as_root cmake --install "$build" --prefix "$prefix"
+case "$prefix" in
+/usr | /usr/local)
+    # The loader's cache learns of the new library.
+    $as_root ldconfig
+    ;;
+*)
+    pc=$(find "$prefix" -name opencv_iib.pc)
+    echo "A project finds it with"
+    echo "  cmake -DCMAKE_PREFIX_PATH='$prefix' ..."
+    echo "  export PKG_CONFIG_PATH='$(dirname "$pc")'"
+    ;;
+esac
