@@ -1,0 +1,19 @@
+#!/bin/sh
+# Builds the Debian packages libopencv-iib0.1 and libopencv-iib-dev in build/debian from a clean copy of what git knows,
+# and checks them with lintian; an error of lintian is one here.
+. "$(dirname "$0")/lib.sh"
+
+[ $# = 0 ] || fail "takes no argument"
+# shellcheck disable=SC2086
+need $build_packages debhelper dpkg-dev fakeroot lintian
+folder="$build/debian"
+rm -rf "$folder"
+mkdir -p "$folder/opencv-iib"
+git -C "$root" ls-files -z --cached --others --exclude-standard | tar -C "$root" --null -T - -c |
+    tar -C "$folder/opencv-iib" -x
+cd "$folder/opencv-iib"
+say "building the packages"
+dpkg-buildpackage -us -uc
+say "lintian"
+lintian --fail-on error --info "$folder"/*.changes
+say "the packages: $(ls "$folder"/*.deb | tr '\n' ' ')"
