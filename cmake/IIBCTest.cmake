@@ -1,5 +1,5 @@
 # ctest entries: one for each test suite of opencv_test_iib, once with all instruction sets and once under
-# each pin WIDEST=DISABLED; a smoke run of the perf tests; the consumer of the installation; the demo.
+# each pin WIDEST=DISABLED; a smoke run of the perf tests; the README on the installation; the demo.
 if(CMAKE_CROSSCOMPILING)
   return()  # scripts/arm64.sh runs the test program in an emulator
 endif()
@@ -16,13 +16,13 @@ add_custom_command(TARGET opencv_test_iib POST_BUILD
 set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${suites}")
 
 add_test(NAME perf-smoke COMMAND opencv_perf_iib --perf_min_samples=1 --perf_force_samples=1)
-add_test(NAME consumer COMMAND "${CMAKE_COMMAND}" "-DBUILD=${PROJECT_BINARY_DIR}"
-  "-DWORK=${PROJECT_BINARY_DIR}/consumer" "-DCXX=${CMAKE_CXX_COMPILER}" "-DFLAGS=${CMAKE_CXX_FLAGS}"
+add_test(NAME readme COMMAND "${CMAKE_COMMAND}" "-DBUILD=${PROJECT_BINARY_DIR}"
+  "-DWORK=${PROJECT_BINARY_DIR}/readme-test" "-DCXX=${CMAKE_CXX_COMPILER}" "-DFLAGS=${CMAKE_CXX_FLAGS}"
   "-DGENERATOR=${CMAKE_GENERATOR}"
-  -P "${PROJECT_SOURCE_DIR}/cmake/consumer/test.cmake")
+  -P "${PROJECT_SOURCE_DIR}/cmake/ReadmeTest.cmake")
 if(TARGET iib_demo)
   add_test(NAME demo COMMAND "${CMAKE_COMMAND}" "-DDEMO=$<TARGET_FILE:iib_demo>"
-    "-DWORK=${PROJECT_BINARY_DIR}/demo-test" -P "${PROJECT_SOURCE_DIR}/cmake/DemoTest.cmake")
+    "-DWORK=${PROJECT_BINARY_DIR}/demo-test" "-DOPENCV=${OpenCV_VERSION}" -P "${PROJECT_SOURCE_DIR}/cmake/DemoTest.cmake")
 endif()
 
 set(compilers "${CMAKE_CXX_COMPILER}")
@@ -35,6 +35,10 @@ endforeach()
 list(REMOVE_DUPLICATES compilers)
 add_test(NAME headers COMMAND "${CMAKE_COMMAND}" "-DCOMPILERS=${compilers}" "-DINCLUDE=${IIB_DIR}/include"
   "-DOPENCV_INCLUDE=${OpenCV_INCLUDE_DIRS}" -P "${PROJECT_SOURCE_DIR}/cmake/HeaderTest.cmake")
+find_program(IIB_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
+if(IIB_PYTHON)
+  add_test(NAME figures COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/figures.py" --check)
+endif()
 # Sanitizers add symbols of their own.
 if(UNIX AND NOT APPLE AND NOT IIB_SANITIZE)
   add_test(NAME symbols COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib>" "-DNM=${CMAKE_NM}"

@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+"""Tables of README.md and doc/performance.md from the committed results in doc/results: figures.py --check | --write
+
+A table stands between the lines `<!-- figures NAME -->` and `<!-- end of figures -->`, NAME being a function below.
+--write puts each anew, --check ends with an error where one differs from the results, which ctest runs.
+"""
+import argparse
+import collections
+import csv
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+TRAINED_ON = {'tilde_webcam', 'amos_daynight'}  # by the presets
+RENDERED = {'lights'}
+
+
+def rows(name):
+    with open(ROOT / 'doc/results' / name, newline='') as file:
+        return list(csv.DictReader(file))
+
+
+def mean(values):
+    values = list(values)
+    return sum(values) / len(values)
+
+
+def table(head, lines):
+    text = ['| ' + ' | '.join(head) + ' |', '|---' * len(head) + '|']
+    return '\n'.join(text + ['| ' + ' | '.join(line) + ' |' for line in lines])
+
+
+def precision_recall(chosen):
+    return '%.3f / %.3f' % (mean(float(r['precision']) for r in chosen), mean(float(r['recall']) for r in chosen))
+
+
+def detected_points():
+    """Points detected in both images, all pairs of real images under changed light."""
+    found = collections.defaultdict(list)
+    for row in rows('protocol_b.csv'):
+        if row['kind'] == 'light' and row['set'] not in RENDERED:
+            found[row['detector'], row['descriptor']].append(row)
+
+    def cells(detector, descriptor):
+        chosen = found[detector, descriptor]
+        return ['%.0f' % mean(float(r['correct']) for r in chosen),
+                '%.0f %%' % (100 * mean(float(r['precision']) for r in chosen))]
+
+    lines = []
+    for detector, own in (('ORB', 'ORB'), ('AKAZE', 'AKAZE'), ('SIFT', 'SIFT'), ('BRISK', 'BRISK'), ('KAZE', 'KAZE'),
+                          ('FAST', 'ORB'), ('AGAST', 'ORB')):
+        lines.append([detector, own] + cells(detector, own) + ['**%s**' % c for c in cells(detector, 'IIB')])
+    return table(['points of', 'descriptor', 'correct a pair', 'precision', 'IIB: correct', 'IIB: precision'], lines)
+
+
+def fixed_points():
+    """The same 1000 points in both images: light, and the two sequences of Oxford's set whose camera moves."""
+    found = collections.defaultdict(list)
+    for row in rows('protocol_a.csv'):
+        if row['set'] not in RENDERED:
+            found[row['configuration'], 'light' if row['kind'] == 'light' else row['sequence']].append(row)
+    lines = []
+    for label, name in (('IIB', 'IIB'), ('IIB, `PRESET_BALANCED`', 'IIB BALANCED'), ('SIFT', 'SIFT'),
+                        ('KAZE', 'KAZE'), ('AKAZE', 'AKAZE-486'), ('ORB', 'ORB'), ('BRISK', 'BRISK')):
+        lines.append([label, found[name, 'light'][0]['bytes']] +
+                     [precision_recall(found[name, place]) for place in ('light', 'wall', 'graf')])
+    return table(['', 'bytes', 'changed light', '`wall`', '`graf`'], lines)
+
+
+def presets():
+    """Fixed points: light that no preset was trained on, rendered light, moved cameras, turned images."""
+    use = (('IIB', 'default', 'you do not know yet'),
+           ('IIB ACCURATE', '`PRESET_ACCURATE`', 'a still camera, and every match counts'),
+           ('IIB COMPACT', '`PRESET_COMPACT`', 'a still camera, many images to keep'),
+           ('IIB TINY', '`PRESET_TINY`', 'a still camera, and memory is scarce'),
+           ('IIB BALANCED', '`PRESET_BALANCED`', 'the camera moves between the images'),
+           ('IIB S512', '`PRESET_S512`', 'the default, shortened'),
+           ('IIB S256', '`PRESET_S256`', 'the default, shortened'),
+           ('IIB S128', '`PRESET_S128`', 'the default, shortened'))
+    found = collections.defaultdict(list)
+    for row in rows('protocol_a.csv'):
+        place = row['sequence']
+        if row['kind'] == 'light':
+            place = 'rendered' if row['set'] in RENDERED else 'trained' if row['set'] in TRAINED_ON else 'light'
+        found[row['configuration'], place].append(row)
+    for row in rows('robustness.csv'):
+        if row['kind'] == 'turn' and row['target'] == '10':
+            found[row['configuration'], 'turned'].append(row)
+    lines = []
+    for name, label, when in use:
+        lines.append([label, found[name, 'light'][0]['bytes']] +
+                     [precision_recall(found[name, place]) for place in ('light', 'rendered', 'wall', 'graf', 'turned')] +
+                     [when])
+    return table(['preset', 'bytes', 'light', 'rendered', 'wall', 'graf', 'turned', 'when'], lines)
+
+
+def ratios():
+    """Correct / given matches a pair of AKAZE's points, under mutual matching and under ratio tests."""
+    rules = ('mutual', '0.95', '0.9', '0.85', '0.8', '0.75')
+    found = collections.defaultdict(list)
+    for row in rows('ratios.csv'):
+        place = 'changed light' if row['kind'] == 'illumination' else '`%s`' % row['sequence']
+        found[place, row['descriptor'], row['rule']].append(row)
+    lines = []
+    for place in ('changed light', '`wall`', '`graf`'):
+        for label, name in (('default', 'IIB'), ('ACCURATE', 'IIB ACCURATE'), ('COMPACT', 'IIB COMPACT'),
+                            ('BALANCED', 'IIB BALANCED'), ('S256', 'IIB S256')):
+            chosen = [found[place, name, rule] for rule in rules]
+            lines.append([place, label] + ['%.0f / %.0f' % tuple(mean(int(r[column]) for r in some)
+                                                                 for column in ('correct', 'given')) for some in chosen])
+    return table(['', '', 'mutual'] + list(rules[1:]), lines)
+
+
+def costs():
+    """Time to describe 1000 points of one image, in times of ORB's, and what a point more takes."""
+    found = {row['configuration']: row for row in rows('cost.csv')}
+    lines = []
+    for label, name in (('IIB', 'IIB'), ('IIB, `PRESET_BALANCED`', 'IIB BALANCED'), ('IIB, `overlap`', 'IIB overlap'),
+                        ('ORB', 'ORB'), ('BRISK', 'BRISK'), ('SIFT', 'SIFT'), ('AKAZE', 'AKAZE-486')):
+        def ratio(column):
+            return '%.2f' % (float(found[name][column]) / float(found['ORB'][column]))
+        lines.append([label, found[name]['bytes'], ratio('milliseconds'), ratio('microseconds_per_further_keypoint')])
+    return table(['', 'bytes', '1000 points', 'a point more'], lines)
+
+
+def all_costs():
+    """Every descriptor's time for 1000 points and for one more, and the first as a ratio to ORB's."""
+    lines = []
+    found = sorted(rows('cost.csv'), key=lambda row: float(row['milliseconds']))
+    orb = next(float(row['milliseconds']) for row in found if row['configuration'] == 'ORB')
+    for row in found:
+        time = float(row['milliseconds'])
+        lines.append([row['configuration'], row['bytes'], '%.2f' % time, '%.2f' % (time / orb),
+                      '%.2f' % float(row['microseconds_per_further_keypoint'])])
+    return table(['', 'bytes', 'ms', 'ratio to ORB', 'us a point more'], lines)
+
+
+PAGES = {'README.md': (detected_points, fixed_points, ratios, presets, costs), 'doc/performance.md': (all_costs,)}
+
+
+def filled(page, makers):
+    """The page's text, before and with its tables made anew."""
+    before = (ROOT / page).read_text()
+    named = {function.__name__: function for function in makers}
+    after, count = re.subn(r'(<!-- figures (\w+) -->\n).*?(?=<!-- end of figures -->)',
+                           lambda match: match[1] + named[match[2]]() + '\n', before, flags=re.DOTALL)
+    if count != len(makers):
+        sys.exit('%s holds %d tables of figures, not %d' % (page, count, len(makers)))
+    return before, after
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    mode = parser.add_mutually_exclusive_group(required=True)
+    mode.add_argument('--check', action='store_true')
+    mode.add_argument('--write', action='store_true')
+    arguments = parser.parse_args()
+    for page, makers in PAGES.items():
+        before, after = filled(page, makers)
+        if arguments.write:
+            (ROOT / page).write_text(after)
+        elif after != before:
+            sys.exit(page + ' differs from doc/results: run scripts/figures.py --write')
+
+
+if __name__ == '__main__':
+    main()

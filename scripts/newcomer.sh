@@ -1,0 +1,57 @@
+#!/bin/sh
+# Runs every command of README.md, in its order, on a bare Debian made by debootstrap, as someone would who has just
+# cloned the repository: what is in the `sh` blocks, with the files of the `cmake`, `cpp` and `python` blocks beside it.
+# Blocks with a <placeholder> are left out. The paths hold spaces. Needs root; the bare system stays in the cache.
+#   scripts/newcomer.sh [SUITE]    by default bookworm
+. "$(dirname "$0")/lib.sh"
+
+suite=${1:-bookworm}
+[ "$(id -u)" = 0 ] || fail "a bare system can only be made and entered as root"
+need debootstrap python3
+bare="$cache/newcomer-$suite.tar"
+mkdir -p "$cache"
+work=$(mktemp -d "$cache/newcomer.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+if [ ! -f "$bare" ]; then
+    say "making a bare $suite"
+    debootstrap --variant=minbase --include=ca-certificates,git,sudo "$suite" "$work/made" >"$cache/newcomer-$suite.log"
+    tar -C "$work/made" -cf "$bare.new" .
+    mv "$bare.new" "$bare"
+    rm -rf "$work/made"
+fi
+mkdir "$work/root"
+tar -C "$work/root" -xf "$bare"
+cp /etc/resolv.conf "$work/root/etc/resolv.conf"
+[ ! -f /etc/hosts ] || cp /etc/hosts "$work/root/etc/hosts"
+
+# The root lives for this run alone: dpkg need not wait for the disk after each file.
+echo force-unsafe-io >"$work/root/etc/dpkg/dpkg.cfg.d/newcomer"
+
+home="$work/root/root"
+mkdir "$home/the repository" "$home/my project"
+git -C "$root" ls-files -z --cached --others --exclude-standard | tar -C "$root" --null -T - -c |
+    tar -C "$home/the repository" -x
+cp "$root/tools/synthetic/day.png" "$root/tools/synthetic/night.png" "$home/my project"
+# The blocks as files: commands that speak of match_pair belong to the user's own project.
+python3 - "$root/README.md" "$home" <<'PYTHON'
+import pathlib
+import re
+import sys
+
+readme, home = pathlib.Path(sys.argv[1]).read_text(), pathlib.Path(sys.argv[2])
+names = {'cmake': 'CMakeLists.txt', 'cpp': 'match_pair.cpp', 'python': 'match_pair.py'}
+script = ['set -ex']
+for language, text in re.findall(r'^```(sh|cmake|cpp|python)\n(.*?)^```$', readme, re.MULTILINE | re.DOTALL):
+    if language == 'sh':
+        if '<' not in text:
+            script += ['cd "$HOME/%s"' % ('my project' if 'match_pair' in text else 'the repository'), text]
+    elif not (home / 'my project' / names[language]).exists():
+        (home / 'my project' / names[language]).write_text(text)
+(home / 'commands.sh').write_text('\n'.join(script))
+PYTHON
+say "running the README's commands in $work/root"
+# A mount namespace of its own, so that nothing stays mounted.
+unshare --mount sh -c 'mount -t proc proc "$1/proc" && exec chroot "$1" /usr/bin/env -i HOME=/root \
+    XDG_CACHE_HOME="/root/a cache" PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
+    sh /root/commands.sh' sh "$work/root" </dev/null
+say "every command of the README ran"
