@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "compute.hpp"
+#include "detector_file.hpp"
 #include "input.hpp"
 #include "support_region.hpp"
 
@@ -104,17 +105,17 @@ public:
     }
 
 private:
-    //! Whether calls to `feature` would come back to `extractor`, through any number of extractors.
+    //! Whether calls to `feature` would come back to `extractor`, through extractors and wrappers.
     static bool usesDetector(const Ptr<Feature2D>& feature, const Feature2D* extractor)
     {
-        const Feature2D* f = feature.get();
-        while (f && f != extractor)
+        Ptr<Feature2D> f = feature;
+        while (f && f.get() != extractor)
         {
-            const IIBDescriptorExtractor_Impl* const other =
-                    dynamic_cast<const IIBDescriptorExtractor_Impl*>(f);
-            f = other ? other->detector.get() : 0;
+            const Ptr<IIBDescriptorExtractor> other = f.dynamicCast<IIBDescriptorExtractor>();
+            const Ptr<NormalizedDetector> wrapper = f.dynamicCast<NormalizedDetector>();
+            f = other ? other->getDetector() : wrapper ? wrapper->getDetector() : Ptr<Feature2D>();
         }
-        return f == extractor;
+        return f.get() == extractor;
     }
 
     static Ptr<const DescriptorPlan> planOf(const Parameters& parameters)
@@ -165,6 +166,8 @@ void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArr
         extra.push_back(extraArrays.getMat());  // not its rows
     else if (!extraArrays.empty())
         extraArrays.getMatVector(extra);
+    if (p.extraChannels == 1)
+        joinRows(extra, image.size());
     checkKeyPoints(keypoints);
     if (image.empty())
     {
@@ -205,7 +208,11 @@ void IIBDescriptorExtractor_Impl::write(FileStorage& fs) const
        << "extraChannels" << p.extraChannels << "border" << p.border;
     if (!p.selection.empty())
         fs << "selection" << std::vector<int>(p.selection.begin(), p.selection.end());
-    fs << "}";
+    fs << "detector"
+       << "{";
+    writeDetector(fs, *detector);
+    fs << "}"
+       << "}";
 }
 
 String describeNode(const FileNode& node)
@@ -285,7 +292,11 @@ void IIBDescriptorExtractor_Impl::read(const FileNode& node)
     readNumber(fn, "extraChannels", r.extraChannels);
     readNumber(fn, "border", r.border);
     r.selection = readSelection(fn["selection"]);
+    r.check();                                     // before the detector reads
+    const FileNode detectorNode = fn["detector"];  // not in files of the first versions
+    const Ptr<Feature2D> d = detectorNode.empty() ? detector : readDetector(detectorNode, detector);
     replace(r);
+    detector = d;
 }
 
 }  // namespace

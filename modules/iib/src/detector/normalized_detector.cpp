@@ -2,6 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
+#include "../descriptor/detector_file.hpp"
 #include "../descriptor/input.hpp"
 #include "local_normalization.hpp"
 
@@ -81,10 +82,8 @@ public:
     using Feature2D::write;
     void write(FileStorage& fs) const CV_OVERRIDE
     {
-        fs << "format" << 1 << "sigma" << sigma << "detectorName" << detector->getDefaultName() << "detector"
-           << "{";
-        detector->write(fs);
-        fs << "}";
+        fs << "format" << 1;
+        writeDetector(fs, *this);
     }
 
     using Feature2D::read;
@@ -92,17 +91,11 @@ public:
     {
         int format = 0;
         cv::read(fn["format"], format, 0);
-        if (format != 1 || !(fn["sigma"].isReal() || fn["sigma"].isInt()))
+        if (format != 1 || (String)fn["class"] != getDefaultName())
             CV_Error(Error::StsParseError, "the node holds no NormalizedDetector parameters of format 1");
-        const float value = (float)fn["sigma"];
-        checkSigma(value);
-        const String name = (String)fn["detectorName"];
-        if (name != detector->getDefaultName())
-            CV_Error(Error::StsParseError, "the node is of a NormalizedDetector with " + name +
-                                                   ", this one has " + detector->getDefaultName() +
-                                                   "; create it with the other first");
-        detector->read(fn["detector"]);
-        sigma = value;
+        const Ptr<NormalizedDetector> other = readDetector(fn, detector).dynamicCast<NormalizedDetector>();
+        detector = other->getDetector();
+        sigma = other->getSigma();
     }
 
     void save(const String& filename) const CV_OVERRIDE

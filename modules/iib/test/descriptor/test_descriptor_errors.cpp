@@ -117,7 +117,8 @@ TEST(IIB_Errors, no_extractor_detects_by_itself)
     expectError(Error::StsBadArg, "its own detector", [=] { a->setDetector(a); });
     b->setDetector(a);
     expectError(Error::StsBadArg, "its own detector", [=] { a->setDetector(b); });
-    EXPECT_NE(a->getDetector(), Ptr<Feature2D>(b));
+    expectError(Error::StsBadArg, "its own detector", [=] { a->setDetector(NormalizedDetector::create(b)); });
+    EXPECT_EQ("Feature2D.ORB", a->getDetector()->getDefaultName());
 }
 
 }  // namespace

@@ -41,6 +41,11 @@ chosen are left out; quads in odd rows or columns belong to the windows of 2.
 The descriptors are CV_8U and compared with NORM_HAMMING. The same input gives the same bits for
 every instruction set, thread count and build. One object may serve several threads as long as none
 changes its parameters. As everywhere in OpenCV, cv::setNumThreads is not to be called meanwhile.
+
+**Files.** Algorithm::save and Feature2D::write store the parameters and the detector; Algorithm::load and
+Feature2D::read take either kind of file. Detectors of OpenCV's own features2d and NormalizedDetector are created anew
+with their parameters (SIFT tells none before OpenCV 4.8). Another one must be set by setDetector before read, which
+hands its parameters to it and throws a cv::Exception if it is of another class.
  */
 class CV_EXPORTS_W IIBDescriptorExtractor : public Feature2D
 {
@@ -164,7 +169,7 @@ public:
     @param image 8U, 16U or 32F with 1, 3 (BGR) or 4 (BGRA) channels. Float values are cut into 65535
     steps between the image's own minimum and maximum.
     @param extraChannels as many single-channel maps as getExtraChannels(), each of the image's size, 8U,
-    16U or 32F. A cell's value is the mean of the map.
+    16U or 32F; a single one needs no list. A cell's value is the mean of the map.
     @param keypoints their order is kept; none is removed but by #BORDER_DROP.
     @param descriptors keypoints.size() x descriptorSize(), CV_8U. Empty if the image or the keypoints are. It may
     be the image or one of the maps, which it then replaces.

@@ -1,0 +1,131 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/test_errors.hpp"
+#include "../support/test_images.hpp"
+
+namespace opencv_test {
+namespace {
+
+//! Every detector that a file can hold, none with its default parameters, but for SIFT, which tells none.
+std::vector<Ptr<Feature2D>> detectors()
+{
+    const Ptr<ORB> orb = ORB::create(321, 1.3f, 5, 17, 1, 3, ORB::FAST_SCORE, 25, 9);
+    return
+    {
+        orb, SIFT::create(), MSER::create(4, 30, 1000),
+                FastFeatureDetector::create(31, false, FastFeatureDetector::TYPE_7_12),
+                GFTTDetector::create(77, 0.02, 4, 5, true, 0.05), SimpleBlobDetector::create(),
+#if CV_VERSION_MAJOR < 5
+                AKAZE::create(AKAZE::DESCRIPTOR_KAZE, 0, 3, 0.0007f, 3, 3, KAZE::DIFF_WEICKERT),
+                KAZE::create(true, true, 0.0008f, 3, 3, KAZE::DIFF_CHARBONNIER), BRISK::create(41, 2),
+                AgastFeatureDetector::create(23, false, AgastFeatureDetector::AGAST_5_8),
+#endif
+                NormalizedDetector::create(orb, 7.5f),
+                NormalizedDetector::create(NormalizedDetector::create(orb))
+    };
+}
+
+String parametersOf(const Ptr<Feature2D>& detector)
+{
+    const Ptr<IIB> iib = IIB::create();
+    iib->setDetector(detector);
+    FileStorage fs(".yml", FileStorage::WRITE | FileStorage::MEMORY);
+    iib->write(fs);
+    return fs.releaseAndGetString();
+}
+
+TEST(IIB_DetectorFile, a_loaded_extractor_has_the_detector)
+{
+    const Mat image = scene(Size(320, 240), 1);
+    for (const Ptr<Feature2D>& detector : detectors())
+    {
+        SCOPED_TRACE(detector->getDefaultName());
+        const String text = parametersOf(detector);
+        const Ptr<IIB> loaded = Algorithm::loadFromString<IIB>(text);
+        EXPECT_EQ(detector->getDefaultName(), loaded->getDetector()->getDefaultName());
+        EXPECT_EQ(text, parametersOf(loaded->getDetector()));
+
+        std::vector<KeyPoint> expected, actual;
+        detector->detect(image, expected);
+        loaded->detect(image, actual);
+        expectSameKeyPoints(expected, actual);
+    }
+}
+
+TEST(IIB_DetectorFile, parameters_are_no_defaults_that_only_look_stored)
+{
+    const String text = parametersOf(NormalizedDetector::create(ORB::create(321), 7.5f));
+    for (const char* line : {"class: \"Feature2D.NormalizedDetector\"", "sigma: 7.5", "maxFeatures: 321."})
+        EXPECT_NE(String::npos, text.find(line)) << line << " is not in\n" << text;
+}
+
+TEST(IIB_DetectorFile, reading_leaves_the_callers_detector_alone)
+{
+    const Ptr<ORB> mine = ORB::create(10);
+    const Ptr<IIB> iib = IIB::create();
+    iib->setDetector(mine);
+    const FileStorage fs(parametersOf(ORB::create(20)), FileStorage::READ | FileStorage::MEMORY);
+    iib->read(fs["IIB"]);
+    EXPECT_EQ(10, mine->getMaxFeatures());
+    EXPECT_EQ(20, iib->getDetector().dynamicCast<ORB>()->getMaxFeatures());
+}
+
+//! A detector that this library does not know.
+class OwnDetector : public Feature2D
+{
+public:
+    explicit OwnDetector(int parameter_ = 0) : parameter(parameter_) {}
+    String getDefaultName() const CV_OVERRIDE { return "Feature2D.Own"; }
+    using Feature2D::write;
+    void write(FileStorage& fs) const CV_OVERRIDE { fs << "parameter" << parameter; }
+    using Feature2D::read;
+    void read(const FileNode& fn) CV_OVERRIDE { parameter = (int)fn["parameter"]; }
+
+    int parameter;
+};
+
+TEST(IIB_DetectorFile, an_unknown_detector_reads_its_parameters_or_is_an_error)
+{
+    for (const bool wrapped : {false, true})
+    {
+        const Ptr<Feature2D> written = makePtr<OwnDetector>(5);
+        const String text =
+                parametersOf(wrapped ? Ptr<Feature2D>(NormalizedDetector::create(written)) : written);
+        expectError(Error::StsParseError, "Feature2D.Own", [&] { Algorithm::loadFromString<IIB>(text); });
+
+        const FileStorage fs(text, FileStorage::READ | FileStorage::MEMORY);
+        const Ptr<OwnDetector> mine = makePtr<OwnDetector>();
+        const Ptr<IIB> iib = IIB::create();
+        iib->setDetector(wrapped ? Ptr<Feature2D>(NormalizedDetector::create(mine)) : Ptr<Feature2D>(mine));
+        iib->read(fs["IIB"]);
+        EXPECT_EQ(5, mine->parameter);
+    }
+}
+
+TEST(IIB_DetectorFile, damage_throws_and_changes_nothing)
+{
+    const String good = parametersOf(NormalizedDetector::create(ORB::create(321), 7.5f));
+    const char* replacements[][2] = {{"maxFeatures: 321.", "maxFeatures: many # "},
+            {"maxFeatures", "minFeatures"}, {"class: \"Feature2D.ORB\"", "class: 5"},
+            {"class: \"Feature2D.ORB\"", "glass: \"Feature2D.ORB\""}, {"sigma: 7.5", "sigma: -7.5"},
+            {"sigma: 7.5", "sigma: wide # 7.5"}};
+    for (const auto& r : replacements)
+    {
+        String damaged = good;
+        const size_t at = damaged.find(r[0]);
+        ASSERT_NE(String::npos, at) << r[0] << " is not in\n" << good;
+        damaged.replace(at, strlen(r[0]), r[1]);
+        const Ptr<Feature2D> mine = AKAZE::create();
+        const Ptr<IIB> iib = IIB::create(3.5f);
+        iib->setDetector(mine);
+        const FileStorage fs(damaged, FileStorage::READ | FileStorage::MEMORY);
+        EXPECT_THROW(iib->read(fs["IIB"]), cv::Exception) << r[1];
+        EXPECT_EQ(mine, iib->getDetector()) << r[1];
+        EXPECT_EQ(3.5f, iib->getScaleFactor()) << r[1];
+    }
+}
+
+}  // namespace
+}  // namespace opencv_test
