@@ -75,7 +75,7 @@ say "opencv_test_iib, in-tree"
 say "opencv_perf_iib, in-tree, a smoke run"
 "$build/bin/opencv_perf_iib" --perf_min_samples=1 --perf_force_samples=1
 say "cv2.iib"
-export PYTHONPATH="$build/lib/python3"
+export PYTHONPATH="$build/python_loader"
 /usr/bin/python3 "$root/modules/iib/misc/python/test/test_iib.py" -v
 say "the README's Python program, on the demo's pair"
 sed -n '/^```python$/,/^```$/{/^```/!p}' "$root/README.md" >"$build/readme.py"

@@ -30,6 +30,20 @@ void checkImage(const Mat& image)
     checkPixels(image, "the image");
 }
 
+void joinRows(std::vector<Mat>& maps, Size imageSize)
+{
+    const Size row(1, imageSize.width);
+    if ((int)maps.size() != imageSize.height || maps.size() < 2)
+        return;
+    for (const Mat& map : maps)
+        if (map.dims > 2 || map.size() != row || map.type() != maps[0].type())
+            return;
+    Mat whole(imageSize, maps[0].type());
+    for (int y = 0; y < whole.rows; y++)
+        Mat(maps[y].t()).copyTo(whole.row(y));
+    maps.assign(1, whole);
+}
+
 void checkExtraChannels(const std::vector<Mat>& maps, int expected, Size imageSize)
 {
     if ((int)maps.size() != expected)

@@ -16,6 +16,10 @@ namespace iib {
 //! Throws unless the image is 8U, 16U or 32F with 1, 3 or 4 channels and finite.
 void checkImage(const Mat& image);
 
+/** Makes one map of the rows of a single map. Python's bindings take an array of two dimensions where several maps are
+ expected for a list, and hand over each of its rows as a column. */
+void joinRows(std::vector<Mat>& maps, Size imageSize);
+
 //! Throws unless there are `expected` single-channel maps of the image's size, 8U, 16U or 32F and finite.
 void checkExtraChannels(const std::vector<Mat>& maps, int expected, Size imageSize);
 

@@ -128,17 +128,22 @@ std::vector<Mat> HierarchicalMatcherImpl::getTrainDescriptors() const
 
 Ptr<DescriptorMatcher> HierarchicalMatcherImpl::clone(bool emptyTrainData) const
 {
-    Ptr<HierarchicalMatcherImpl> copy = makePtr<HierarchicalMatcherImpl>(parameters);
-    copy->blocks = blocks;
+    Ptr<HierarchicalMatcherImpl> result = makePtr<HierarchicalMatcherImpl>(parameters);
+    result->blocks = blocks;
     if (emptyTrainData)
-        copy->counters = counters;
+        result->counters = counters;
     else
     {
         if (index)
-            copy->index = makePtr<PackedCodes>(*index);
-        copy->trainDescCollection = trainDescCollection;
+            result->index = makePtr<PackedCodes>(*index);
+        result->trainDescCollection = trainDescCollection;
     }
-    return copy;
+    return result;
+}
+
+Ptr<HierarchicalMatcher> HierarchicalMatcher::copy(bool emptyTrainData) const
+{
+    return clone(emptyTrainData).dynamicCast<HierarchicalMatcher>();
 }
 
 Ptr<HierarchicalMatcher> HierarchicalMatcher::create(

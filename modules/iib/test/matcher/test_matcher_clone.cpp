@@ -17,7 +17,7 @@ TEST(IIB_MatcherClone, keeps_parameters)
     matcher->setMaxRatio(0.5f);
     for (bool empty : {false, true})
     {
-        const Ptr<HierarchicalMatcher> copy = matcher->clone(empty).dynamicCast<HierarchicalMatcher>();
+        const Ptr<HierarchicalMatcher> copy = matcher->copy(empty);
         EXPECT_EQ(HierarchicalMatcher::THRESHOLD, copy->getMode());
         EXPECT_EQ((std::vector<float>{0.1f, 0.2f}), copy->getThresholds());
         EXPECT_TRUE(copy->getCrossCheck());
@@ -35,7 +35,7 @@ TEST(IIB_MatcherClone, shares_no_train_data)
     {
         const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({2, 8, 32});
         matcher->add(first);
-        const Ptr<HierarchicalMatcher> copy = matcher->clone().dynamicCast<HierarchicalMatcher>();
+        const Ptr<HierarchicalMatcher> copy = matcher->copy();
         HierarchicalMatcher &changed = originalChanges ? *matcher : *copy,
                             &same = originalChanges ? *copy : *matcher;
         changed.add(second);

@@ -198,6 +198,12 @@ public:
     version.
      */
     CV_WRAP static Ptr<HierarchicalMatcher> loadIndex(const String& filename);
+
+    /** @brief DescriptorMatcher::clone with this class as its type, which it is in Python too.
+
+    @param emptyTrainData copy the parameters alone, without the train descriptors.
+     */
+    CV_WRAP_AS(clone) Ptr<HierarchicalMatcher> copy(bool emptyTrainData = false) const;
 };
 
 //! @}

@@ -56,6 +56,19 @@ class DescriptorTest(unittest.TestCase):
         self.assertEqual(with_depth.shape, with_other.shape)
         self.assertFalse(np.array_equal(with_depth, with_other))
 
+    def test_one_map_needs_no_list(self):
+        iib = cv2.iib.IIBDescriptorExtractor.create(extraChannels=1)
+        for depth in (noise(3), noise(3)[:, ::-1], noise(3).astype(np.float32)):
+            np.testing.assert_array_equal(iib.computeWithChannels(noise(1), depth, grid())[1],
+                                          iib.computeWithChannels(noise(1), [depth], grid())[1])
+        with self.assertRaisesRegex(cv2.error, 'extra channel'):
+            iib.computeWithChannels(noise(1), noise(3)[:, 1:], grid())
+
+    def test_short_names_are_the_same_objects(self):
+        self.assertIs(cv2.iib.IIB, cv2.iib.IIBDescriptorExtractor)
+        self.assertEqual(cv2.iib.IIB_create(granularity=2).getGranularity(), 2)
+        self.assertEqual(cv2.iib.IIB_createPreset(cv2.iib.IIB_PRESET_BALANCED).descriptorSize(), 64)
+
     def test_light_that_is_linear_changes_no_bit_of_gradients_and_intensity(self):
         channels = sum(getattr(cv2.iib, 'IIBDescriptorExtractor_CHANNEL_' + name)
                        for name in ('GRAD_X', 'GRAD_Y', 'INTENSITY'))
@@ -168,6 +181,16 @@ class MatcherTest(unittest.TestCase):
             loaded = cv2.iib.HierarchicalMatcher.loadIndex(path)
         self.assertEqual([m.trainIdx for m in loaded.match(self.query)],
                          [m.trainIdx for m in matcher.match(self.query)])
+
+    def test_clone_keeps_its_class_and_codes(self):
+        matcher = cv2.iib.HierarchicalMatcher.create(self.levels, crossCheck=True)
+        matcher.add([self.train])
+        clone = matcher.clone()
+        self.assertIsInstance(clone, cv2.iib.HierarchicalMatcher)
+        self.assertEqual([m.trainIdx for m in clone.match(self.query)],
+                         [m.trainIdx for m in matcher.match(self.query)])
+        self.assertTrue(matcher.clone(emptyTrainData=True).getCrossCheck())
+        self.assertEqual(len(matcher.clone(True).getTrainDescriptors()), 0)
 
     def test_match_cost_is_one_for_brute_force_and_less_for_thresholds(self):
         matcher = cv2.iib.HierarchicalMatcher.create(
