@@ -173,11 +173,13 @@ class ColmapTest(unittest.TestCase):
     def test_pairs_stored_the_other_way_round(self):
         with Database(self.database, {}) as database:
             matrix = np.arange(9.).reshape(3, 3)
-            database.add_pair(5, 2, np.array([[1, 7]]), np.array([[1, 7]]), matrix)
-            row = database._db.execute('SELECT data, F FROM two_view_geometries').fetchone()
+            database.add_pair(5, 2, np.array([[1, 7], [3, 4]]), np.array([[1, 7]]), matrix)
+            row = database._db.execute('SELECT matches.data, two_view_geometries.data, F FROM matches JOIN '
+                                       'two_view_geometries USING (pair_id)').fetchone()
             self.assertEqual(list(database.pairs()), [(2, 5)])
-        self.assertEqual(np.frombuffer(row[0], np.uint32).tolist(), [7, 1])
-        np.testing.assert_array_equal(np.frombuffer(row[1]).reshape(3, 3), matrix.T)
+        self.assertEqual(np.frombuffer(row[0], np.uint32).reshape(-1, 2).tolist(), [[7, 1], [4, 3]])
+        self.assertEqual(np.frombuffer(row[1], np.uint32).tolist(), [7, 1])
+        np.testing.assert_array_equal(np.frombuffer(row[2]).reshape(3, 3), matrix.T)
 
     def test_exif(self):
         path = os.path.join(self.folder.name, 'x.jpg')
