@@ -7,51 +7,31 @@
 
 The OpenCV inside is its own: nothing but arrays and plain values passes between it and cv2.
 """
+from typing import Any
+
 from opencv_iib import _core
 from opencv_iib._core import error
 from opencv_iib._types import DMatch, KeyPoint
 from opencv_iib.descriptor import IIB, IIBDescriptorExtractor
+from opencv_iib.detectors import NormalizedDetector
 from opencv_iib.keypoints import array_to_keypoints, keypoints_to_array
 from opencv_iib.matcher import HierarchicalMatcher
+from opencv_iib.rotation import estimateRotation
 
-__version__ = '0.1.0'
+__version__: str = _core.VERSION
 #: Of the OpenCV inside.
 OPENCV_VERSION: str = _core.OPENCV_VERSION
 
-# The flat names that cv2.iib has as well.
-IIBDescriptorExtractor_create = IIB_create = IIBDescriptorExtractor.create
-IIBDescriptorExtractor_createPreset = IIB_createPreset = IIBDescriptorExtractor.createPreset
-IIBDescriptorExtractor_createFor = IIB_createFor = IIBDescriptorExtractor.createFor
-IIBDescriptorExtractor_scaleFactorFor = IIB_scaleFactorFor = IIBDescriptorExtractor.scaleFactorFor
-HierarchicalMatcher_create = HierarchicalMatcher.create
-HierarchicalMatcher_loadIndex = HierarchicalMatcher.loadIndex
+_FLAT_OWNERS = {'IIBDescriptorExtractor': IIBDescriptorExtractor, 'IIB': IIB, 'HierarchicalMatcher': HierarchicalMatcher,
+                'NormalizedDetector': NormalizedDetector}
 
-IIBDescriptorExtractor_CHANNEL_GRAD_X = IIBDescriptorExtractor.CHANNEL_GRAD_X
-IIBDescriptorExtractor_CHANNEL_GRAD_Y = IIBDescriptorExtractor.CHANNEL_GRAD_Y
-IIBDescriptorExtractor_CHANNEL_ORIENTATION = IIBDescriptorExtractor.CHANNEL_ORIENTATION
-IIBDescriptorExtractor_CHANNEL_INTENSITY = IIBDescriptorExtractor.CHANNEL_INTENSITY
-IIBDescriptorExtractor_CHANNEL_SIGNED_GRAD_X = IIBDescriptorExtractor.CHANNEL_SIGNED_GRAD_X
-IIBDescriptorExtractor_CHANNEL_SIGNED_GRAD_Y = IIBDescriptorExtractor.CHANNEL_SIGNED_GRAD_Y
-IIBDescriptorExtractor_CHANNELS_DEFAULT = IIBDescriptorExtractor.CHANNELS_DEFAULT
-IIBDescriptorExtractor_MAPPING_MEAN = IIBDescriptorExtractor.MAPPING_MEAN
-IIBDescriptorExtractor_MAPPING_MAX = IIBDescriptorExtractor.MAPPING_MAX
-IIBDescriptorExtractor_MAPPING_MIN = IIBDescriptorExtractor.MAPPING_MIN
-IIBDescriptorExtractor_MAPPING_QUARTILE = IIBDescriptorExtractor.MAPPING_QUARTILE
-IIBDescriptorExtractor_MAPPING_SORT = IIBDescriptorExtractor.MAPPING_SORT
-IIBDescriptorExtractor_MAPPING_HAAR = IIBDescriptorExtractor.MAPPING_HAAR
-IIBDescriptorExtractor_MAPPING_PAIRWISE = IIBDescriptorExtractor.MAPPING_PAIRWISE
-IIBDescriptorExtractor_BORDER_CLAMP = IIBDescriptorExtractor.BORDER_CLAMP
-IIBDescriptorExtractor_BORDER_DROP = IIBDescriptorExtractor.BORDER_DROP
-IIBDescriptorExtractor_PRESET_S128 = IIBDescriptorExtractor.PRESET_S128
-IIBDescriptorExtractor_PRESET_S256 = IIBDescriptorExtractor.PRESET_S256
-IIBDescriptorExtractor_PRESET_S512 = IIBDescriptorExtractor.PRESET_S512
-IIBDescriptorExtractor_PRESET_ACCURATE = IIBDescriptorExtractor.PRESET_ACCURATE
-IIBDescriptorExtractor_PRESET_COMPACT = IIBDescriptorExtractor.PRESET_COMPACT
-IIBDescriptorExtractor_PRESET_TINY = IIBDescriptorExtractor.PRESET_TINY
-IIBDescriptorExtractor_PRESET_BALANCED = IIBDescriptorExtractor.PRESET_BALANCED
-HierarchicalMatcher_EXACT = HierarchicalMatcher.EXACT
-HierarchicalMatcher_THRESHOLD = HierarchicalMatcher.THRESHOLD
-HierarchicalMatcher_ADAPTIVE = HierarchicalMatcher.ADAPTIVE
+
+def __getattr__(name: str) -> Any:
+    """The flat names that cv2.iib has as well, such as IIB_create and IIBDescriptorExtractor_BORDER_DROP."""
+    owner, _, member = name.partition('_')
+    if owner in _FLAT_OWNERS and member and not member.startswith('_') and hasattr(_FLAT_OWNERS[owner], member):
+        return getattr(_FLAT_OWNERS[owner], member)
+    raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
 
 
 def setNumThreads(nthreads: int) -> None:

@@ -9,8 +9,8 @@ import numpy as np
 
 from opencv_iib import _core
 from opencv_iib._arrays import as_array, as_arrays
-from opencv_iib.detectors import MissingDetector, connect, detector_name
-from opencv_iib.keypoints import Keypoints, array_to_keypoints, as_rows
+from opencv_iib.detectors import MissingDetector, core_detector, detect, detector_name
+from opencv_iib.keypoints import Keypoints, as_rows
 
 K = TypeVar('K', bound=Keypoints)
 
@@ -45,6 +45,11 @@ class IIBDescriptorExtractor:
 
     BORDER_CLAMP = 0
     BORDER_DROP = 1
+    BORDER_REFLECT = 2
+
+    ORIENTATION_NONE = 0
+    ORIENTATION_KEYPOINT = 1
+    ORIENTATION_GRADIENT = 2
 
     PRESET_S128 = 0
     PRESET_S256 = 1
@@ -98,18 +103,19 @@ class IIBDescriptorExtractor:
         :param detector: has ``detect(image, mask)``; its ``getDefaultName()`` or its class's name gives the factor.
         :param preset: one of PRESET_; -1 for the paper's default descriptor.
         """
-        factor = cls.scaleFactorFor(detector)
-        extractor = cls.create(factor) if preset == -1 else cls.createPreset(preset, factor)
-        extractor.setDetector(detector)
+        extractor = cls._of(_core.Extractor.createFor(core_detector(detector), preset))
+        extractor._detector = detector
         return extractor
 
     @staticmethod
-    def scaleFactorFor(detectorName: Any) -> float:
+    def scaleFactorFor(detectorName: Any = None, detector: Any = None) -> float:
         """Scale factor for a detector's keypoints.
 
         :param detectorName: such as 'ORB' or 'AKAZE', any case, or a detector object.
+        :param detector: a detector object, by the name that it has in ``cv2.iib``.
         """
-        return _core.Extractor.scaleFactorFor(detector_name(detectorName))
+        known = detectorName if detector is None else detector
+        return _core.Extractor.scaleFactorFor(known if isinstance(known, str) else core_detector(known))
 
     def compute(self, image: Any, keypoints: K) -> tuple[K, np.ndarray]:
         """Describes keypoints.
@@ -140,8 +146,7 @@ class IIBDescriptorExtractor:
 
         :param mask: H x W uint8, 0 where nothing is to be found.
         """
-        allowed = np.empty((0, 0), np.uint8) if mask is None else as_array(mask, 'the mask')
-        return array_to_keypoints(self._core.detect(as_array(image, 'the image'), allowed))
+        return detect(self._core, image, mask)
 
     def detectAndCompute(self, image: Any, mask: Any = None) -> tuple[tuple[Any, ...], np.ndarray]:
         """detect, then compute."""
@@ -152,7 +157,7 @@ class IIBDescriptorExtractor:
 
         It gets arrays of its own and may be of a foreign cv2. The scale factor stays as it is; see createFor.
         """
-        connect(self._core, detector)
+        self._core.setDetector(core_detector(detector))
         self._detector = detector
 
     def getDetector(self) -> Any:
@@ -211,10 +216,19 @@ class IIBDescriptorExtractor:
         return self._core.getOverlap()
 
     def setUseOrientation(self, useOrientation: bool) -> None:
+        """True: ORIENTATION_KEYPOINT, False: ORIENTATION_NONE."""
         self._core.setUseOrientation(useOrientation)
 
     def getUseOrientation(self) -> bool:
+        """Whether there is any orientation but ORIENTATION_NONE."""
         return self._core.getUseOrientation()
+
+    def setOrientation(self, mode: int) -> None:
+        """How the described squares are turned: one of ORIENTATION_."""
+        self._core.setOrientation(mode)
+
+    def getOrientation(self) -> int:
+        return self._core.getOrientation()
 
     def setExtraChannels(self, extraChannels: int) -> None:
         self._core.setExtraChannels(extraChannels)

@@ -1,4 +1,4 @@
-"""Detectors of Python, such as those of a foreign cv2, behind an extractor of this package."""
+"""Detectors of Python, such as those of a foreign cv2, behind the classes of this package; NormalizedDetector."""
 from __future__ import annotations
 
 from typing import Any, Optional
@@ -6,31 +6,45 @@ from typing import Any, Optional
 import numpy as np
 
 from opencv_iib import _core
-from opencv_iib.keypoints import Keypoints, as_rows
+from opencv_iib._arrays import as_array
+from opencv_iib.keypoints import Keypoints, array_to_keypoints, as_rows
 
 
 def detector_name(detector: Any) -> str:
-    """What :meth:`IIBDescriptorExtractor.scaleFactorFor` knows it by: its getDefaultName(), or its class's name."""
-    if isinstance(detector, str):
-        return detector
+    """Its getDefaultName(), or its class's name."""
     name = getattr(detector, 'getDefaultName', None)
     return str(name()) if callable(name) else type(detector).__name__
 
 
-def connect(extractor: _core.Extractor, detector: Any) -> None:
-    """Makes `extractor` ask `detector` for keypoints."""
+def _number(detector: Any, method: str) -> int:
+    call = getattr(detector, method, None)
+    return int(call()) if callable(call) else 0
+
+
+def core_detector(detector: Any) -> _core.Detector:
+    """What the extension calls: the object inside one of this package, or one that calls ``detector.detect``."""
+    core = getattr(detector, '_core', None)
+    if isinstance(core, _core.Detector):
+        return core
     if not callable(getattr(detector, 'detect', None)):
         raise TypeError(f'a detector has a method detect(image, mask), and {type(detector).__name__} has none')
 
-    def detect(image: np.ndarray, mask: Optional[np.ndarray]) -> np.ndarray:
-        found: Keypoints = detector.detect(image, mask)
-        return np.ascontiguousarray(as_rows(found))
+    def found(image: np.ndarray, mask: Optional[np.ndarray]) -> np.ndarray:
+        keypoints: Keypoints = detector.detect(image, mask)
+        return np.ascontiguousarray(as_rows(keypoints))
 
-    extractor.setDetector(detect, detector_name(detector).rsplit('.', 1)[-1])
+    return _core.Detector.foreign(found, detector_name(detector).rsplit('.', 1)[-1],
+                                  _number(detector, 'descriptorSize'), _number(detector, 'descriptorType'))
+
+
+def detect(core: _core.Detector, image: Any, mask: Any) -> tuple[Any, ...]:
+    """Keypoints as cv2.KeyPoint if cv2 is there."""
+    allowed = np.empty((0, 0), np.uint8) if mask is None else as_array(mask, 'the mask')
+    return array_to_keypoints(core.detect(as_array(image, 'the image'), allowed))
 
 
 class MissingDetector:
-    """Stands for a detector that could not be pickled with its extractor."""
+    """Stands for a detector that could not be pickled with the object that used it."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -39,4 +53,89 @@ class MissingDetector:
         return self.name
 
     def detect(self, image: Any, mask: Any = None) -> Any:
-        raise RuntimeError(f'the detector {self.name} was not pickled with its extractor: call setDetector() again')
+        raise RuntimeError(f'the detector {self.name} was not pickled with the object that used it: set it again')
+
+
+class NormalizedDetector:
+    """Finds the keypoints of another detector on the locally normalized image, where light changes them less.
+
+    Names, keywords and keypoints are those of ``cv2.iib``. Descriptors are best computed on the plain image:
+    ``IIB.createFor(NormalizedDetector(cv2.ORB_create()))`` does so. Images are as IIBDescriptorExtractor takes them.
+    """
+
+    def __init__(self, detector: Any, sigma: float = 4.0) -> None:
+        """As :meth:`create`."""
+        self._core = _core.NormalizedDetector.create(core_detector(detector), sigma)
+        self._detector = detector
+
+    @classmethod
+    def create(cls, detector: Any, sigma: float = 4.0) -> NormalizedDetector:
+        """Wraps a detector.
+
+        :param detector: of any cv2, or any object with ``detect(image, mask)``.
+        :param sigma: of the Gaussian filter in pixels, 1 to 256.
+        """
+        return cls(detector, sigma)
+
+    def detect(self, image: Any, mask: Any = None) -> tuple[Any, ...]:
+        """Keypoints, as cv2.KeyPoint if cv2 is there.
+
+        :param mask: H x W uint8, 0 where nothing is to be found.
+        """
+        return detect(self._core, image, mask)
+
+    def compute(self, image: Any, keypoints: Any) -> Any:
+        """The descriptors of the detector inside, on the plain image: what its own ``compute`` gives."""
+        if not self.descriptorSize():
+            raise _core.error(f'{detector_name(self._detector)} finds keypoints but does not describe them; describe '
+                              'them with another object, such as IIBDescriptorExtractor.createFor')
+        return self._detector.compute(image, keypoints)
+
+    def detectAndCompute(self, image: Any, mask: Any = None) -> Any:
+        """detect, then compute."""
+        return self.compute(image, self.detect(image, mask))
+
+    def getDetector(self) -> Any:
+        """The detector inside."""
+        return self._detector
+
+    def setSigma(self, sigma: float) -> None:
+        """Of the Gaussian filter in pixels, 1 to 256."""
+        self._core.setSigma(sigma)
+
+    def getSigma(self) -> float:
+        return self._core.getSigma()
+
+    def descriptorSize(self) -> int:
+        """Of the detector inside; 0 if it describes nothing."""
+        return _number(self._detector, 'descriptorSize')
+
+    def descriptorType(self) -> int:
+        """Of the detector inside."""
+        return _number(self._detector, 'descriptorType')
+
+    def defaultNorm(self) -> int:
+        """Of the detector inside."""
+        return _number(self._detector, 'defaultNorm')
+
+    def empty(self) -> bool:
+        """False: a detector is always ready."""
+        return False
+
+    def getDefaultName(self) -> str:
+        return 'Feature2D.NormalizedDetector'
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {'detector': detector_name(self._detector), 'sigma': self.getSigma()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__init__(MissingDetector(state['detector']), state['sigma'])  # type: ignore[misc]
+
+    def __copy__(self) -> NormalizedDetector:
+        return type(self)(self._detector, self.getSigma())
+
+    def __deepcopy__(self, memo: Any) -> NormalizedDetector:
+        return self.__copy__()
+
+    def __repr__(self) -> str:
+        return f'{type(self).__name__}({detector_name(self._detector)}, sigma={self.getSigma():g})'

@@ -40,10 +40,15 @@ class HierarchicalMatcher:
     THRESHOLD = 1
     ADAPTIVE = 2
 
-    def __init__(self, levelSizes: Sequence[int], mode: int = EXACT, threshold: float = 0.35,
+    def __init__(self, levelSizes: Optional[Sequence[int]] = None, mode: int = EXACT, threshold: float = 0.35,
                  crossCheck: bool = False) -> None:
         """As :meth:`create`."""
-        self._core = _core.Matcher.create(list(levelSizes), mode, threshold, crossCheck)
+        if levelSizes is not None:
+            self._core = _core.Matcher.create(list(levelSizes), mode, threshold, crossCheck)
+        else:
+            self._core = _core.Matcher.create()
+            self._core.setMode(mode)
+            self._core.setCrossCheck(crossCheck)
 
     @classmethod
     def _of(cls, core: _core.Matcher) -> HierarchicalMatcher:
@@ -52,16 +57,17 @@ class HierarchicalMatcher:
         return matcher
 
     @classmethod
-    def create(cls, levelSizes: Sequence[int], mode: int = EXACT, threshold: float = 0.35,
+    def create(cls, levelSizes: Optional[Sequence[int]] = None, mode: int = EXACT, threshold: float = 0.35,
                crossCheck: bool = False) -> HierarchicalMatcher:
         """Creates a matcher.
 
-        :param levelSizes: bytes of each level, coarse first; their sum is the descriptors' width.
+        :param levelSizes: bytes of each level, coarse first; their sum is the descriptors' width. None: descriptors of
+            any width are one level, as wide as the first that are added or passed to a call.
         :param mode: EXACT (what brute force finds), THRESHOLD (the paper's rule) or ADAPTIVE (approximate).
         :param threshold: of THRESHOLD, for every level, 0 to 1.
         :param crossCheck: report only pairs that are among each other's nearest.
         """
-        return cls._of(_core.Matcher.create(list(levelSizes), mode, threshold, crossCheck))
+        return cls(levelSizes, mode, threshold, crossCheck)
 
     def match(self, queryDescriptors: Any, trainDescriptors: Any = None, mask: Any = None,
               masks: Any = None) -> tuple[Any, ...]:
@@ -133,7 +139,7 @@ class HierarchicalMatcher:
         return self._of(self._core.clone(emptyTrainData))
 
     def levelSizes(self) -> tuple[int, ...]:
-        """Bytes of each level, coarse first."""
+        """Bytes of each level, coarse first; empty while a matcher created without them has seen no descriptors."""
         return tuple(self._core.levelSizes())
 
     def setMode(self, mode: int) -> None:
@@ -180,11 +186,10 @@ class HierarchicalMatcher:
         return cls._of(_core.Matcher.loadIndex(os.fspath(filename)))
 
     def __getstate__(self) -> dict[str, Any]:
-        return {'levelSizes': self.levelSizes(), 'parameters': self._core.parameters(),
-                'descriptors': self.getTrainDescriptors()}
+        return {'parameters': self._core.parameters(), 'descriptors': self.getTrainDescriptors()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self._core = _core.Matcher.create(list(state['levelSizes']), 0, 0.35, False)
+        self._core = _core.Matcher.create()
         self._core.setParameters(state['parameters'])
         self._core.add(list(state['descriptors']))
 

@@ -3,7 +3,9 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "bindings.hpp"
-#include "foreign_detector.hpp"
+#include "keypoints.hpp"
+
+#include "opencv2/iib.hpp"
 
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
@@ -48,19 +50,6 @@ nb::tuple compute(Extractor& self, const Array& image, const Array& keypointRows
     return nb::make_tuple(toNumpy(descriptors), toNumpy(kept));
 }
 
-nb::object detect(Extractor& self, const Array& image, const Array& mask)
-{
-    const cv::Mat view = viewOf(image, "the image");
-    const cv::Mat allowed = viewOf(mask, "the mask");  // empty: everywhere
-    std::vector<cv::KeyPoint> keypoints;
-    {
-        nb::gil_scoped_release release;
-        if (!view.empty())
-            self.detect(view, keypoints, allowed);
-    }
-    return toNumpy(toRows(keypoints));
-}
-
 std::string parameters(const Extractor& self)
 {
     cv::FileStorage file(".json", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
@@ -84,19 +73,26 @@ std::shared_ptr<Extractor> create(float scaleFactor, int granularity, int channe
 
 void bindExtractor(nb::module_& m)
 {
-    nb::class_<Extractor>(m, "Extractor")
+    nb::class_<Extractor, cv::Feature2D>(m, "Extractor")
             .def_static("create", &create)
             .def_static("createPreset",
                     [](int preset, float scaleFactor) -> std::shared_ptr<Extractor> {
                         return Extractor::createPreset(preset, scaleFactor);
                     })
+            .def_static("createFor",
+                    [](std::shared_ptr<cv::Feature2D> detector, int preset) -> std::shared_ptr<Extractor> {
+                        return Extractor::createFor(detector, preset);
+                    })
             .def_static("scaleFactorFor",
                     [](const std::string& name) { return Extractor::scaleFactorFor(cv::String(name)); })
+            .def_static("scaleFactorFor",
+                    [](std::shared_ptr<cv::Feature2D> detector) {
+                        return Extractor::scaleFactorFor(cv::Ptr<cv::Feature2D>(detector));
+                    })
             .def("compute", &compute)
-            .def("detect", &detect)
             .def("setDetector",
-                    [](Extractor& self, nb::callable function, const std::string& name) {
-                        self.setDetector(cv::makePtr<ForeignDetector>(function, name));
+                    [](Extractor& self, std::shared_ptr<cv::Feature2D> detector) {
+                        self.setDetector(detector);
                     })
             .def("levelSizes", &Extractor::levelSizes)
             .def("descriptorSize", [](const Extractor& self) { return self.descriptorSize(); })
@@ -112,6 +108,8 @@ void bindExtractor(nb::module_& m)
             .def("getOverlap", &Extractor::getOverlap)
             .def("setUseOrientation", &Extractor::setUseOrientation)
             .def("getUseOrientation", &Extractor::getUseOrientation)
+            .def("setOrientation", &Extractor::setOrientation)
+            .def("getOrientation", &Extractor::getOrientation)
             .def("setExtraChannels", &Extractor::setExtraChannels)
             .def("getExtraChannels", &Extractor::getExtraChannels)
             .def("setBorder", &Extractor::setBorder)

@@ -13,9 +13,11 @@ using namespace iib_python;
 NB_MODULE(_core, m)
 {
     nb::exception<cv::Exception>(m, "error");
+    bindDetectors(m);
     bindExtractor(m);
     bindMatcher(m);
 
+    m.attr("VERSION") = IIB_VERSION;
     m.attr("OPENCV_VERSION") = CV_VERSION;
     m.def("readKeyPoints", [](nb::sequence keypoints) { return toNumpy(readKeyPoints(keypoints)); });
     m.def("setNumThreads", [](int threads) { cv::setNumThreads(threads); });

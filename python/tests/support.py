@@ -1,5 +1,7 @@
 """Images and keypoints made of integers alone, as modules/iib/test/support/test_images.cpp makes them."""
 import re
+import threading
+import time
 from pathlib import Path
 
 import numpy as np
@@ -73,7 +75,27 @@ def fnv1a(array):
 
 
 def golden_hashes():
-    """Names and hashes of the C++ golden test; empty outside of a clone."""
+    """Names and hashes (with BORDER_CLAMP, with BORDER_REFLECT) of the C++ golden test; empty outside of a clone."""
     path = REPOSITORY / 'modules/iib/test/descriptor/test_descriptor_golden.cpp'
     text = path.read_text() if path.exists() else ''
-    return {name: int(value, 16) for name, value in re.findall(r'\{\s*"([^"]+)", (0x[0-9a-f]{16})', text)}
+    return {name: tuple(int(value, 16) for value in values)
+            for name, *values in re.findall(r'\{\s*"([^"]+)", (0x[0-9a-f]{16}), (0x[0-9a-f]{16})', text)}
+
+
+def steps_meanwhile(call):
+    """How often another thread runs Python while `call` is under way: 0 or 1 if that holds the GIL."""
+    begun, ended = threading.Event(), threading.Event()
+
+    def work():
+        begun.set()
+        call()
+        ended.set()
+    thread = threading.Thread(target=work)
+    thread.start()
+    begun.wait()
+    steps = 0
+    while not ended.is_set():
+        steps += 1
+        time.sleep(.001)
+    thread.join()
+    return steps

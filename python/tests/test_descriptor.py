@@ -9,7 +9,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import IIB
-from support import cv2, fnv1a, golden_hashes, grid, scatter, texture
+from support import cv2, fnv1a, golden_hashes, grid, scatter, steps_meanwhile, texture
 
 GOLDEN = {
     'default': {},
@@ -49,8 +49,10 @@ class Bits(unittest.TestCase):
                 iib = IIB.create(**arguments)
                 extra = [texture(320, 240, np.uint16 if i % 2 else np.uint8, 100 + i)
                          for i in range(iib.getExtraChannels())]
-                _, descriptors = iib.computeWithChannels(image, extra, keypoints)
-                self.assertEqual(fnv1a(descriptors), hashes[name])
+                for border, expected in zip((IIB.BORDER_CLAMP, IIB.BORDER_REFLECT), hashes[name]):
+                    iib.setBorder(border)
+                    _, descriptors = iib.computeWithChannels(image, extra, keypoints)
+                    self.assertEqual(fnv1a(descriptors), expected)
 
     def test_in_tree_cv2(self):
         if cv2 is None or not hasattr(cv2, 'iib'):
@@ -172,10 +174,11 @@ class Objects(unittest.TestCase):
         iib = IIB.create(scaleFactor=3.7, granularity=3, channels=51, mapping=IIB.MAPPING_PAIRWISE)
         iib.setSelection(np.array([[1, 0, 0, 0, 5], [3, 3, 6, 1, 8]], np.int32))
         iib.setBorder(IIB.BORDER_DROP)
+        iib.setOrientation(IIB.ORIENTATION_GRADIENT)
         return iib
 
     def expect_same(self, a, b):
-        for name in ('ScaleFactor', 'Granularity', 'Channels', 'Mapping', 'Overlap', 'UseOrientation',
+        for name in ('ScaleFactor', 'Granularity', 'Channels', 'Mapping', 'Overlap', 'UseOrientation', 'Orientation',
                      'ExtraChannels', 'Border'):
             self.assertEqual(getattr(a, 'get' + name)(), getattr(b, 'get' + name)(), name)
         np.testing.assert_array_equal(a.getSelection(), b.getSelection())
@@ -223,7 +226,9 @@ class Objects(unittest.TestCase):
             def detect(self, image, mask):
                 assert image.shape == (60, 80) and mask is None
                 return np.array([[20, 30, 5]], np.float32)
-        iib = IIB.createFor(AKAZE())
+        detector = AKAZE()
+        iib = IIB.createFor(detector)
+        self.assertIs(iib.getDetector(), detector)
         self.assertEqual(iib.getScaleFactor(), 12)
         keypoints, descriptors = iib.detectAndCompute(texture(80, 60))
         self.assertEqual([k.pt for k in keypoints], [(20, 30)])
@@ -235,6 +240,11 @@ class Objects(unittest.TestCase):
         keypoints, descriptors = IIB.create().detectAndCompute(texture(320, 240))
         self.assertGreater(len(keypoints), 10)
         self.assertEqual(len(descriptors), len(keypoints))
+
+    def test_the_gil_is_released(self):
+        image, iib = np.tile(texture(320, 240), (4, 4)), IIB.create()
+        keypoints = scatter(1280, 960, 20000, 3, 40, 2)
+        self.assertGreater(steps_meanwhile(lambda: iib.compute(image, keypoints)), 5)
 
     def test_threads_share_an_extractor(self):
         iib, image = IIB.create(), texture(320, 240)

@@ -9,7 +9,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import HierarchicalMatcher
-from support import cv2
+from support import cv2, steps_meanwhile
 
 LEVELS = (2, 8, 32, 128)
 
@@ -128,6 +128,22 @@ class MatcherTest(unittest.TestCase):
             matcher.saveIndex(path)
             self.expect_same(matcher, HierarchicalMatcher.loadIndex(path))
 
+    def test_without_level_sizes(self):
+        matcher = HierarchicalMatcher.create()
+        self.assertEqual(matcher.levelSizes(), ())
+        for width in (170, 32):
+            found = matcher.knnMatchArrays(self.query[:, :width], self.train[:, :width], k=2)
+            for a, b in zip(found, brute_force(self.query[:, :width], self.train[:, :width], 2)):
+                np.testing.assert_array_equal(a, b)
+        matcher.add(self.train)
+        self.assertEqual(matcher.levelSizes(), (170,))
+        twin = pickle.loads(pickle.dumps(matcher))
+        self.expect_same(matcher, twin)
+        twin.clear()
+        self.assertEqual(len(twin.match(self.query[:, :9], self.train[:, :9])), 50)
+        chosen = HierarchicalMatcher(mode=HierarchicalMatcher.ADAPTIVE, crossCheck=True)
+        self.assertEqual((chosen.getMode(), chosen.getCrossCheck()), (HierarchicalMatcher.ADAPTIVE, True))
+
     def test_match_cost(self):
         self.matcher.match(self.query, self.train)
         self.assertEqual(self.matcher.matchCost(), 1)
@@ -136,6 +152,12 @@ class MatcherTest(unittest.TestCase):
         self.matcher.setMode(HierarchicalMatcher.THRESHOLD)
         self.matcher.match(self.query, self.train)
         self.assertTrue(0 < self.matcher.matchCost() < 1)
+
+    def test_the_gil_is_released(self):
+        codes = np.random.default_rng(1).integers(0, 256, (6000, 170), np.uint8)
+        self.matcher.add(codes)
+        for call in (lambda: self.matcher.knnMatchArrays(codes, codes), lambda: self.matcher.knnMatchArrays(codes)):
+            self.assertGreater(steps_meanwhile(call), 5)
 
     def test_threads_share_a_matcher(self):
         self.matcher.add(self.train)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from opencv_iib.descriptor import IIBDescriptorExtractor
+from opencv_iib.detectors import NormalizedDetector
 from opencv_iib.keypoints import keypoints_to_array
 
 DETECTORS = ('AKAZE', 'BRISK', 'FAST', 'KAZE', 'ORB', 'SIFT')
@@ -54,16 +55,6 @@ def _make_detector(name: str, points: int) -> Any:
     return create(20) if name == 'FAST' else create()
 
 
-def even_contrast(image: np.ndarray, sigma: float = 4) -> np.ndarray:
-    """Grey values less their local mean, in units of their local deviation, as uint8 around 128."""
-    import cv2
-    grey = image.astype(np.float32)
-    mean = cv2.GaussianBlur(grey, (0, 0), sigma)
-    difference = grey - mean
-    deviation = np.sqrt(np.maximum(cv2.GaussianBlur(difference * difference, (0, 0), sigma), 0))
-    return np.asarray(np.clip(128 + 42 * difference / (deviation + 2), 0, 255).astype(np.uint8))
-
-
 class Features:
     """Detects and describes; one object serves all threads, each with a detector of its own."""
 
@@ -82,10 +73,10 @@ class Features:
     def __call__(self, image: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """:return: N x 7 float32 keypoints (see keypoints_to_array), strongest first, and N x bytes codes."""
         if not hasattr(self._local, 'detector'):
-            self._local.detector = _make_detector(self.options.detector, self.options.points)
+            made = _make_detector(self.options.detector, self.options.points)
+            self._local.detector = NormalizedDetector(made) if self.options.normalize else made
         detector = self._local.detector
-        found = sorted(detector.detect(even_contrast(image) if self.options.normalize else image),
-                       key=lambda keypoint: -keypoint.response)[:self.options.points]
+        found = sorted(detector.detect(image), key=lambda keypoint: -keypoint.response)[:self.options.points]
         if not self.own:
             keypoints, codes = self.extractor.compute(image, keypoints_to_array(found))
             return keypoints, codes
@@ -97,7 +88,6 @@ class Features:
         if self.own:
             return (int(_make_detector(self.options.detector, 1).descriptorSize()),)
         return self.extractor.levelSizes()
-
 
 
 def to_colmap(rows: np.ndarray) -> np.ndarray:

@@ -54,7 +54,7 @@ def export(database: str, features: str, matches: str, pairs: str, force: bool =
             for key, data in connection.execute(f'SELECT pair_id, data FROM {table} WHERE rows > 0'):
                 a, b = divmod(key, MAX_IMAGE_ID)
                 found = np.frombuffer(data, np.uint32).reshape(-1, 2)
-                nearest = np.full(counts[a], -1, np.int16 if counts[b] <= SHORT else np.int32)
+                nearest: np.ndarray = np.full(counts[a], -1, np.int16 if counts[b] <= SHORT else np.int32)
                 nearest[found[:, 0]] = found[:, 1]
                 group = file.create_group(_pair(names[a], names[b]))
                 group['matches0'] = nearest

@@ -1,0 +1,130 @@
+import copy
+import pickle
+import unittest
+
+import numpy as np
+
+import opencv_iib
+from opencv_iib import IIB, NormalizedDetector, estimateRotation
+from support import cv2, texture
+
+
+class Watching:
+    """A detector that keeps what it was shown, and finds one keypoint."""
+
+    def getDefaultName(self):
+        return 'Feature2D.SIFT'
+
+    def detect(self, image, mask=None):
+        self.image, self.mask = image, mask
+        return np.array([[20, 30, 5]], np.float32)
+
+
+class Normalized(unittest.TestCase):
+
+    def test_the_detector_sees_the_image_without_its_light(self):
+        detector, image = Watching(), texture(160, 120)
+        normalized = NormalizedDetector.create(detector, 6)
+        self.assertEqual([k.pt for k in normalized.detect(image)], [(20, 30)])
+        seen = detector.image
+        self.assertEqual((seen.shape, seen.dtype), (image.shape, np.uint8))
+        # the mean of what is evened out is 128 wherever one looks; that of the image is not
+        self.assertLess(abs(seen.mean() - 128), 4)
+        normalized.detect((image // 2 + 90).astype(np.uint8))
+        self.assertLess(np.abs(seen.astype(int) - detector.image).mean(), 4)
+        self.assertGreater(np.abs(seen.astype(int) - image).mean(), 10)
+
+    def test_sigma_and_mask_get_there(self):
+        detector, image = Watching(), texture(160, 120)
+        normalized = NormalizedDetector(detector)
+        self.assertEqual(normalized.getSigma(), 4)
+        normalized.detect(image)
+        seen = detector.image
+        normalized.setSigma(9)
+        mask = np.zeros((120, 160), np.uint8)
+        mask[3, 5] = 255
+        normalized.detect(image, mask)
+        self.assertEqual(normalized.getSigma(), 9)
+        self.assertTrue((seen != detector.image).any())
+        np.testing.assert_array_equal(detector.mask, mask)
+
+    def test_an_extractor_looks_inside(self):
+        detector = Watching()
+        iib = IIB.createFor(NormalizedDetector(detector))
+        self.assertEqual(iib.getScaleFactor(), 20)
+        keypoints, descriptors = iib.detectAndCompute(texture(160, 120))
+        self.assertEqual(len(keypoints), 1)
+        np.testing.assert_array_equal(descriptors, IIB.create(20).compute(texture(160, 120), keypoints)[1])
+
+    def test_mistakes_raise(self):
+        for culprit, call in (('sigma is 0', lambda: NormalizedDetector(Watching(), 0)),
+                              ('sigma is 257', lambda: NormalizedDetector(Watching()).setSigma(257)),
+                              ('does not describe', lambda: NormalizedDetector(Watching()).compute(texture(50, 50), [])),
+                              ('NaN', lambda: NormalizedDetector(Watching()).detect(np.full((9, 9), np.nan, np.float32)))):
+            with self.subTest(culprit), self.assertRaisesRegex(opencv_iib.error, culprit):
+                call()
+        with self.assertRaisesRegex(TypeError, 'detect'):
+            NormalizedDetector(object())
+
+    def test_an_extractor_is_not_its_own_detector(self):
+        iib, other = IIB.create(), IIB.create()
+        other.setDetector(iib)
+        for culprit in (iib, other):
+            with self.assertRaisesRegex(opencv_iib.error, 'its own detector'):
+                iib.setDetector(culprit)
+
+    def test_pickle_and_copy(self):
+        normalized = NormalizedDetector(Watching(), 7)
+        for twin in (copy.copy(normalized), copy.deepcopy(normalized)):
+            self.assertEqual((twin.getSigma(), len(twin.detect(texture(60, 60)))), (7, 1))
+        other = pickle.loads(pickle.dumps(normalized))
+        self.assertEqual(other.getSigma(), 7)
+        with self.assertRaisesRegex(RuntimeError, 'SIFT was not pickled'):
+            other.detect(texture(60, 60))
+
+    @unittest.skipIf(cv2 is None, 'no cv2')
+    def test_it_describes_as_the_detector_inside(self):
+        orb, image = cv2.ORB_create(100), texture(320, 240)
+        normalized = NormalizedDetector(orb)
+        self.assertEqual((normalized.descriptorSize(), normalized.defaultNorm()), (32, cv2.NORM_HAMMING))
+        keypoints, descriptors = normalized.detectAndCompute(image)
+        self.assertGreater(len(keypoints), 20)
+        np.testing.assert_array_equal(descriptors, orb.compute(image, keypoints)[1])
+
+    @unittest.skipIf(cv2 is None or not hasattr(cv2, 'AffineFeature_create'), 'no AffineFeature')
+    def test_affine_features_are_known_by_their_descriptors(self):
+        self.assertEqual(IIB.scaleFactorFor(cv2.AffineFeature_create(cv2.SIFT_create())), 20)
+        self.assertEqual(IIB.scaleFactorFor(NormalizedDetector(cv2.AffineFeature_create(cv2.ORB_create()))), 2)
+
+
+class Rotation(unittest.TestCase):
+
+    def setUp(self):
+        rng = np.random.default_rng(8)
+        self.points = np.hstack([rng.uniform(0, 500, (60, 2)), np.full((60, 1), 9)]).astype(np.float32)
+        angle = np.deg2rad(37)  # clockwise, y down
+        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        self.turned = self.points.copy()
+        self.turned[:, :2] = self.points[:, :2] @ turn
+        self.matches = np.stack([np.arange(60)] * 2, axis=1)
+        self.matches[:25, 1] = rng.permutation(60)[:25]
+
+    def test_the_angle_despite_wrong_matches(self):
+        self.assertLess(abs(estimateRotation(self.points, self.turned, self.matches) - 37), 2)
+        self.assertLess(abs(estimateRotation(self.turned, self.points, self.matches[25:]) - 323), 2)
+
+    def test_objects_and_arrays(self):
+        first, second = ([opencv_iib.KeyPoint(*row) for row in rows.tolist()] for rows in (self.points, self.turned))
+        matches = [opencv_iib.DMatch(a, b, 0, 1.) for a, b in self.matches.tolist()]
+        self.assertEqual(estimateRotation(first, second, matches),
+                         estimateRotation(self.points, self.turned, self.matches.astype(np.int16)))
+
+    def test_mistakes_raise(self):
+        for matches in (self.matches[:1], self.matches + 1, self.matches - 1, self.matches.astype(np.float32),
+                        self.matches.ravel(), []):
+            with self.assertRaises(opencv_iib.error):
+                estimateRotation(self.points, self.turned, matches)
+
+
+if __name__ == '__main__':
+    unittest.main()
