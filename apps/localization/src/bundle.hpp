@@ -1,0 +1,41 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_LOCALIZATION_BUNDLE_HPP
+#define IIB_LOCALIZATION_BUNDLE_HPP
+
+#include <vector>
+
+#include "geometry.hpp"
+
+// Least squares with Ceres, whose headers the OpenCV side of the application does not see.
+namespace iib_localization {
+
+struct RefinedPose
+{
+    Pose pose;
+    //! Of the position in metres and of a small rotation of the world's axes in radians, for errors of one pixel.
+    Eigen::Matrix<double, 6, 6> covariance;
+};
+
+/** Least reprojection error with Cauchy loss.
+@return false if the points do not determine the pose. */
+bool refinePose(const Pinhole& camera, const std::vector<Observation>& observations, RefinedPose& refined);
+
+//! A sight of a point by a pose, both by index.
+struct Sight
+{
+    int pose, point;
+    Pinhole camera;
+    Eigen::Vector2d pixel;
+};
+
+/** Bundle adjustment: moves the points, and with `refinePoses` the poses, which a prior holds near where they were
+(2 cm, 0.2 degrees), since they are where the world's frame comes from. */
+void adjustBundle(const std::vector<Sight>& sights, std::vector<Pose>& poses,
+        std::vector<Eigen::Vector3d>& points, bool refinePoses);
+
+}  // namespace iib_localization
+
+#endif

@@ -1,0 +1,95 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "features.hpp"
+
+#include "opencv2/iib.hpp"
+
+namespace iib_localization {
+namespace {
+
+using namespace cv::iib;
+
+//! Of the IIB descriptor; -1 is the paper's default. A map of another preset has to be built anew.
+constexpr int PRESET = -1;
+
+constexpr int MAX_KEYPOINTS = 1000;  // a detector
+constexpr float MAX_RATIO = 0.9f;    // of the nearest distance to the second nearest
+
+std::vector<cv::DMatch> matchEuclidean(const cv::Mat& query, const cv::Mat& train)
+{
+    cv::Mat q, t;
+    query.convertTo(q, CV_32F);
+    train.convertTo(t, CV_32F);
+    const cv::BFMatcher matcher(cv::NORM_L2);
+    std::vector<std::vector<cv::DMatch>> nearest;
+    std::vector<cv::DMatch> back, matches;
+    matcher.knnMatch(q, t, nearest, 2);
+    matcher.match(t, q, back);
+    for (const std::vector<cv::DMatch>& n : nearest)
+        if (back[n[0].trainIdx].trainIdx == n[0].queryIdx &&
+                (n.size() < 2 || n[0].distance < MAX_RATIO * n[1].distance))
+            matches.push_back(n[0]);
+    return matches;
+}
+
+}  // namespace
+
+FeatureMethod::FeatureMethod(const std::string& name) : name_(name)
+{
+    if (name == "sift")
+        detectors_ = {cv::SIFT::create(2 * MAX_KEYPOINTS)};
+    else if (name == "iib" || name == "own")
+        for (const cv::Ptr<cv::Feature2D>& detector : {cv::Ptr<cv::Feature2D>(cv::ORB::create(MAX_KEYPOINTS)),
+                     cv::Ptr<cv::Feature2D>(cv::AKAZE::create())})
+        {
+            const cv::Ptr<cv::Feature2D> normalized = NormalizedDetector::create(detector);
+            detectors_.push_back(
+                    name == "own" ? normalized : cv::Ptr<cv::Feature2D>(IIB::createFor(normalized, PRESET)));
+        }
+    else
+        CV_Error(cv::Error::StsBadArg, "features '" + name + "' are not one of iib, own and sift");
+}
+
+std::string FeatureMethod::description() const
+{
+    return name_ == "iib" ? "iib preset " + std::to_string(PRESET) : name_;
+}
+
+Features FeatureMethod::extract(const cv::Mat& grey) const
+{
+    Features features;
+    for (const cv::Ptr<cv::Feature2D>& detector : detectors_)
+    {
+        std::vector<cv::KeyPoint> keypoints;
+        cv::Mat codes;
+        detector->detect(grey, keypoints);
+        std::stable_sort(keypoints.begin(), keypoints.end(),
+                [](const cv::KeyPoint& a, const cv::KeyPoint& b) { return a.response > b.response; });
+        if (keypoints.size() > MAX_KEYPOINTS * 2 / detectors_.size())
+            keypoints.resize(MAX_KEYPOINTS * 2 / detectors_.size());
+        detector->compute(grey, keypoints, codes);
+        codes.convertTo(codes, CV_8U);  // SIFT's are whole numbers up to 255
+        for (const cv::KeyPoint& k : keypoints)
+            features.pixels.push_back(k.pt);
+        features.codes.push_back(codes);
+    }
+    return features;
+}
+
+std::vector<cv::DMatch> FeatureMethod::match(const cv::Mat& query, const cv::Mat& train) const
+{
+    std::vector<cv::DMatch> matches;
+    if (query.empty() || train.empty())
+        return matches;
+    if (!binary())
+        return matchEuclidean(query, train);
+    const cv::Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create();
+    matcher->setCrossCheck(true);
+    matcher->setMaxRatio(MAX_RATIO);
+    matcher->match(query, train, matches);
+    return matches;
+}
+
+}  // namespace iib_localization

@@ -1,0 +1,49 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_LOCALIZATION_FEATURES_HPP
+#define IIB_LOCALIZATION_FEATURES_HPP
+
+#include <string>
+#include <vector>
+
+#include "opencv2/features2d.hpp"
+
+namespace iib_localization {
+
+//! What was found in one image; the strongest first within each detector.
+struct Features
+{
+    std::vector<cv::Point2f> pixels;  //!< of all detectors, one after another
+    std::vector<cv::Mat> codes;       //!< a matrix for each detector, a row for each of its pixels, CV_8U
+};
+
+/** Keypoints and how they are described and compared.
+ - `iib`: ORB's and AKAZE's keypoints on the locally normalized image, IIB codes
+ - `own`: the same keypoints with ORB's and AKAZE's own descriptors
+ - `sift`: SIFT, with Euclidean distances */
+class FeatureMethod
+{
+public:
+    //! @throws cv::Exception (StsBadArg) for another name.
+    explicit FeatureMethod(const std::string& name);
+
+    const std::string& name() const { return name_; }
+    //! Tells methods apart whose descriptors cannot be compared.
+    std::string description() const;
+    size_t detectors() const { return detectors_.size(); }
+    bool binary() const { return name_ != "sift"; }
+
+    Features extract(const cv::Mat& grey) const;
+    //! Mutual nearest neighbours that the second nearest is clearly further than.
+    std::vector<cv::DMatch> match(const cv::Mat& query, const cv::Mat& train) const;
+
+private:
+    std::string name_;
+    std::vector<cv::Ptr<cv::Feature2D>> detectors_;
+};
+
+}  // namespace iib_localization
+
+#endif

@@ -1,0 +1,36 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "images.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "opencv2/core.hpp"
+
+namespace iib_localization {
+
+std::vector<ImageFile> listImages(const std::string& folder)
+{
+    static const std::set<std::string> extensions = {
+            ".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".ppm", ".pgm"};
+    std::vector<ImageFile> images;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    {
+        std::string extension = entry.path().extension().string();
+        std::transform(extension.begin(), extension.end(), extension.begin(), ::tolower);
+        if (extensions.count(extension) != 0)
+            images.push_back(
+                    {entry.path().string(), entry.path().filename().string(), entry.path().stem().string()});
+    }
+    if (images.empty())
+        CV_Error(cv::Error::StsError, folder + (error ? " cannot be read" : " has no images"));
+    std::sort(images.begin(), images.end(),
+            [](const ImageFile& a, const ImageFile& b) { return a.file < b.file; });
+    return images;
+}
+
+}  // namespace iib_localization

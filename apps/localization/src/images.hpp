@@ -1,0 +1,25 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_LOCALIZATION_IMAGES_HPP
+#define IIB_LOCALIZATION_IMAGES_HPP
+
+#include <string>
+#include <vector>
+
+namespace iib_localization {
+
+struct ImageFile
+{
+    std::string path;
+    std::string file;  //!< without the folder
+    std::string name;  //!< also without extension
+};
+
+//! The images of a folder by name. @throws cv::Exception if there is none.
+std::vector<ImageFile> listImages(const std::string& folder);
+
+}  // namespace iib_localization
+
+#endif

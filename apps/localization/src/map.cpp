@@ -1,0 +1,163 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "map.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "common/fnv1a.hpp"
+#include "opencv2/iib.hpp"
+#include "text_file.hpp"
+
+namespace iib_localization {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const HEADER = "map.txt";
+const char* const MAGIC = "iib_localization_map";
+constexpr int VERSION = 1;
+
+std::string hashOf(const std::string& path)
+{
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream)
+        CV_Error(cv::Error::StsError, path + " is missing: the map is not whole");
+    cv::iib::Fnv1a hash;
+    std::vector<char> block(1 << 20);
+    while (stream.read(block.data(), std::streamsize(block.size())) || stream.gcount() > 0)
+        hash.add(block.data(), size_t(stream.gcount()));
+    return cv::format("%016llx", (unsigned long long)hash.value());
+}
+
+std::string codesFile(size_t detector) { return "codes_" + std::to_string(detector) + ".iib"; }
+
+void writeCodes(const std::string& path, const Map& map, size_t detector)
+{
+    const cv::Ptr<cv::iib::HierarchicalMatcher> index = cv::iib::HierarchicalMatcher::create();
+    std::vector<cv::Mat> codes;
+    for (const std::vector<cv::Mat>& keyframe : map.codes)
+        codes.push_back(keyframe[detector]);
+    index->add(codes);
+    index->saveIndex(path);
+}
+
+void readCodes(const std::string& path, Map& map, size_t detector)
+{
+    const std::vector<cv::Mat> codes = cv::iib::HierarchicalMatcher::loadIndex(path)->getTrainDescriptors();
+    if (codes.size() != map.codes.size())
+        CV_Error(cv::Error::StsError, path + " is not of as many keyframes as images.txt");
+    for (size_t i = 0; i < codes.size(); i++)
+        map.codes[i][detector] = codes[i];
+}
+
+void writeFiles(const std::string& folder, const Map& map)
+{
+    std::vector<std::string> files = {"cameras.txt", "images.txt", "points3D.txt"};
+    writeModel(folder, map.model);
+    for (size_t d = 0; d < map.codes.at(0).size(); d++)
+    {
+        files.push_back(codesFile(d));
+        writeCodes(folder + "/" + files.back(), map, d);
+    }
+    const std::string header = folder + "/" + HEADER;
+    std::ofstream stream = createFile(header);
+    stream << MAGIC << " " << VERSION << "\nfeatures " << map.features << "\ndescription " << map.description
+           << "\n";
+    stream << "detectors " << map.codes[0].size() << "\n";
+    for (const std::string& file : files)
+        stream << "file " << file << " " << hashOf(folder + "/" + file) << "\n";
+    finishFile(stream, header);
+}
+
+}  // namespace
+
+size_t Map::codeBytes() const
+{
+    size_t bytes = 0;
+    for (const std::vector<cv::Mat>& keyframe : codes)
+        for (const cv::Mat& c : keyframe)
+            bytes += c.total() * c.elemSize();
+    return bytes;
+}
+
+void writeMap(const std::string& folder, const Map& map)
+{
+    fs::path target = fs::absolute(folder).lexically_normal();
+    if (!target.has_filename())  // a slash at the end
+        target = target.parent_path();
+    if (fs::exists(target) && !fs::is_empty(target) && !fs::exists(target / HEADER))
+        CV_Error(cv::Error::StsError, folder + " exists and is no map: choose another place, or remove it");
+    const fs::path temporary = target.string() + ".new-" + std::to_string(::getpid());
+    std::error_code error;
+    fs::create_directories(temporary, error);
+    if (error)
+        CV_Error(cv::Error::StsError, temporary.string() + " cannot be made: " + error.message());
+    try
+    {
+        writeFiles(temporary, map);
+        if (!fs::exists(target))
+            fs::rename(temporary, target);
+        else if (::renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) != 0)
+            CV_Error(cv::Error::StsError, folder + " cannot be replaced");
+    }
+    catch (const fs::filesystem_error& e)
+    {
+        fs::remove_all(temporary, error);
+        CV_Error(cv::Error::StsError, e.what());
+    }
+    catch (...)
+    {
+        fs::remove_all(temporary, error);
+        throw;
+    }
+    fs::remove_all(temporary, error);  // the old map, if there was one
+}
+
+Map readMap(const std::string& folder)
+{
+    if (!fs::exists(fs::path(folder) / HEADER))
+        CV_Error(cv::Error::StsError, folder + " is no map: it has no " + HEADER);
+    TextFile header(folder + "/" + HEADER);
+    if (!header.next() || header.word(0) != MAGIC)
+        header.fail("not the header of a map");
+    if (header.whole(1, 1, INT_MAX) > VERSION)
+        header.fail("the map is of a newer version of this program");
+    Map map;
+    int64_t detectors = 0;
+    while (header.next())
+    {
+        if (header.word(0) == "features")
+            map.features = header.word(1);
+        else if (header.word(0) == "description")
+            for (size_t i = 1; i < header.size(); i++)
+                map.description += (i > 1 ? " " : "") + header.word(i);
+        else if (header.word(0) == "detectors")
+            detectors = header.whole(1, 1, 16);
+        else if (header.word(0) != "file")
+            header.fail("'" + header.word(0) + "' is not known");
+        else if (hashOf(folder + "/" + header.word(1)) != header.word(2))
+            CV_Error(cv::Error::StsError, folder + "/" + header.word(1) + " is damaged: build the map again");
+    }
+    map.model = readModel(folder);
+    map.codes.assign(map.model.keyframes.size(), std::vector<cv::Mat>(size_t(detectors)));
+    for (size_t d = 0; d < size_t(detectors); d++)
+        readCodes(folder + "/" + codesFile(d), map, d);
+    for (size_t i = 0; i < map.codes.size(); i++)
+    {
+        size_t rows = 0;
+        for (const cv::Mat& c : map.codes[i])
+            rows += size_t(c.rows);
+        if (rows != map.model.keyframes[i].pixels.size())
+            CV_Error(cv::Error::StsError,
+                    folder + ": " + map.model.keyframes[i].name + " has not a code for each point");
+    }
+    return map;
+}
+
+}  // namespace iib_localization

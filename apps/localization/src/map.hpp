@@ -1,0 +1,37 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_LOCALIZATION_MAP_HPP
+#define IIB_LOCALIZATION_MAP_HPP
+
+#include "colmap_model.hpp"
+
+namespace iib_localization {
+
+/** Where a camera can find itself: keyframes, the points seen in them, and a code for each sight of a point.
+
+On disk it is a folder: COLMAP's text model, `codes_D.iib` (the index file of cv::iib::HierarchicalMatcher) for detector
+D, and `map.txt` with the way the codes were made and a hash of each of the files. */
+struct Map
+{
+    Model model;
+    std::string features;     //!< name of the FeatureMethod
+    std::string description;  //!< and its description
+    std::vector<std::vector<cv::Mat>>
+            codes;  //!< [keyframe][detector]; rows are the keyframe's pixels, in their order
+
+    //! All codes in bytes.
+    size_t codeBytes() const;
+};
+
+/** Writes a map beside the place where it belongs and then moves it there, so that whoever looks sees the old map or
+the new one whole.
+@throws cv::Exception if `folder` exists and is no map, or cannot be written. */
+void writeMap(const std::string& folder, const Map& map);
+//! @throws cv::Exception for what is no map, or a damaged one.
+Map readMap(const std::string& folder);
+
+}  // namespace iib_localization
+
+#endif

@@ -1,0 +1,22 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_LOCALIZATION_TRACKS_HPP
+#define IIB_LOCALIZATION_TRACKS_HPP
+
+#include "colmap_model.hpp"
+#include "features.hpp"
+
+namespace iib_localization {
+
+/** Matches keyframes with those near them, follows points from one to the next, triangulates and adjusts them.
+@param refinePoses lets the adjustment move the model's poses.
+@param model gets the points.
+@return for each feature of each keyframe the model's point, or -1. */
+std::vector<std::vector<int>> triangulateTracks(
+        const FeatureMethod& method, const std::vector<Features>& features, bool refinePoses, Model& model);
+
+}  // namespace iib_localization
+
+#endif
