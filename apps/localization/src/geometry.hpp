@@ -5,7 +5,7 @@
 #ifndef IIB_LOCALIZATION_GEOMETRY_HPP
 #define IIB_LOCALIZATION_GEOMETRY_HPP
 
-#include <Eigen/Geometry>
+#include <Eigen/Dense>
 
 // What both OpenCV's and Ceres's side of the application know; no header of either.
 namespace iib_localization {

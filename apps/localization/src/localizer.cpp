@@ -1,0 +1,234 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "localizer.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "opencv2/calib3d.hpp"
+
+namespace iib_localization {
+namespace {
+
+constexpr size_t CANDIDATES = 5;    // keyframes that an image is matched with
+constexpr double RANSAC_ERROR = 4;  // pixels
+constexpr double INLIER_ERROR = 3;  // pixels, of a refined pose
+constexpr size_t MIN_MATCHES = 12;
+constexpr size_t MIN_INLIERS = 15;
+constexpr double MIN_INLIER_SHARE = 0.1;  // of the matches
+constexpr double MAX_BOUND = 0.5;         // metres
+
+//! Milliseconds since the last call.
+class Stopwatch
+{
+public:
+    void lap(Location& location)
+    {
+        const int64 now = cv::getTickCount();
+        location.times.push_back(double(now - last_) / cv::getTickFrequency() * 1e3);
+        last_ = now;
+    }
+
+private:
+    int64 last_ = cv::getTickCount();
+};
+
+std::vector<Observation> within(
+        const std::vector<Observation>& matches, const Pinhole& camera, const Pose& pose)
+{
+    std::vector<Observation> inliers;
+    for (const Observation& o : matches)
+    {
+        const Eigen::Vector3d seen = pose.toCamera(o.point);
+        if (seen.z() > 0.1 && (camera.project(seen) - o.pixel).norm() < INLIER_ERROR)
+            inliers.push_back(o);
+    }
+    return inliers;
+}
+
+bool ransac(const std::vector<Observation>& matches, const Pinhole& p, Pose& pose)
+{
+    std::vector<cv::Point3d> points;
+    std::vector<cv::Point2d> pixels;
+    for (const Observation& o : matches)
+    {
+        points.emplace_back(o.point.x(), o.point.y(), o.point.z());
+        pixels.emplace_back(o.pixel.x(), o.pixel.y());
+    }
+    cv::UsacParams parameters;
+    parameters.score = cv::SCORE_METHOD_MAGSAC;
+    parameters.threshold = RANSAC_ERROR;
+    parameters.confidence = 0.999;
+    parameters.maxIterations = 10000;
+    cv::Mat matrix = (cv::Mat_<double>(3, 3) << p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1), rotation, translation,
+            inliers;
+    if (!cv::solvePnPRansac(
+                points, pixels, matrix, cv::noArray(), rotation, translation, inliers, parameters))
+        return false;
+    cv::Matx33d r;
+    cv::Rodrigues(rotation, r);
+    Eigen::Matrix3d fromWorld;
+    fromWorld << r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2);
+    pose.rotation = Eigen::Quaterniond(fromWorld).conjugate().normalized();
+    pose.position = -(pose.rotation * Eigen::Vector3d(translation.at<double>(0), translation.at<double>(1),
+                                              translation.at<double>(2)));
+    return pose.position.allFinite();
+}
+
+//! The residuals' standard deviation in a coordinate, from their median, so that a few wrong ones do not count.
+double deviation(const std::vector<Observation>& inliers, const Pinhole& camera, const Pose& pose)
+{
+    std::vector<double> errors;
+    for (const Observation& o : inliers)
+        errors.push_back((camera.project(pose.toCamera(o.point)) - o.pixel).norm());
+    std::nth_element(errors.begin(), errors.begin() + std::ptrdiff_t(errors.size() / 2), errors.end());
+    return errors[errors.size() / 2] / 1.1774;  // the median of a Rayleigh distribution
+}
+
+double worstDeviation(const Eigen::Matrix3d& covariance)
+{
+    return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
+                             .eigenvalues()[2]);
+}
+
+}  // namespace
+
+const std::vector<std::string>& Location::stages()
+{
+    static const std::vector<std::string> names = {"features", "retrieval", "matching", "pose"};
+    return names;
+}
+
+Localizer::Localizer(const Map& map, const Camera& camera)
+    : map_(map), camera_(camera), pinhole_(camera.pinhole()), method_(map.features)
+{
+    if (map.description != method_.description())
+        CV_Error(cv::Error::StsError, "the map is of '" + map.description + "', this program makes '" +
+                                              method_.description() + "': build the map again");
+    for (size_t d = 0; method_.binary() && d < method_.detectors(); d++)
+    {
+        std::vector<cv::Mat> codes;
+        for (const std::vector<cv::Mat>& keyframe : map.codes)
+            codes.push_back(keyframe[d]);
+        retrievals_.emplace_back(codes);
+    }
+}
+
+std::vector<size_t> Localizer::candidates(const Features& features, const Pose* prior) const
+{
+    const std::vector<Keyframe>& keyframes = map_.model.keyframes;
+    std::vector<size_t> order(keyframes.size());
+    std::iota(order.begin(), order.end(), size_t(0));
+    std::vector<float> votes(keyframes.size(), 0.f);
+    for (size_t k = 0; prior && k < votes.size(); k++)
+    {
+        // a metre counts as much as 30 degrees
+        const Pose& pose = keyframes[k].pose;
+        votes[k] = -float((pose.position - prior->position).norm() +
+                          pose.rotation.angularDistance(prior->rotation) * 6 / CV_PI);
+    }
+    for (size_t d = 0; !prior && d < retrievals_.size(); d++)
+        retrievals_[d].vote(features.codes[d], votes);
+    if (!prior && retrievals_.empty())
+        return order;  // without binary codes there is no vote: all keyframes
+    const size_t count = std::min(order.size(), CANDIDATES);
+    std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(count), order.end(),
+            [&](size_t a, size_t b) { return votes[a] > votes[b]; });
+    order.resize(count);
+    return order;
+}
+
+std::vector<Observation> Localizer::match(
+        const Features& features, const std::vector<size_t>& keyframes) const
+{
+    const std::vector<Eigen::Vector2d> pixels = camera_.undistorted(features.pixels);
+    std::vector<Observation> matches;
+    for (size_t k : keyframes)
+    {
+        int firstQuery = 0, firstTrain = 0;  // row of the detector's first keypoint
+        for (size_t d = 0; d < method_.detectors(); d++)
+        {
+            for (const cv::DMatch& m : method_.match(features.codes[d], map_.codes[k][d]))
+                matches.push_back({map_.model.points[map_.model.keyframes[k].points[firstTrain + m.trainIdx]],
+                        pixels[firstQuery + m.queryIdx]});
+            firstQuery += features.codes[d].rows;
+            firstTrain += map_.codes[k][d].rows;
+        }
+    }
+    return matches;
+}
+
+void Localizer::estimate(const std::vector<Observation>& matches, Location& location) const
+{
+    RefinedPose& refined = location.estimate;
+    if (!ransac(matches, pinhole_, refined.pose))
+    {
+        location.reason = "no pose that the matches agree on";
+        return;
+    }
+    // what agrees is looked for again after each refinement
+    for (int round = 0; round < 3; round++)
+    {
+        location.inliers = within(matches, pinhole_, refined.pose);
+        if (location.inliers.size() < MIN_INLIERS)
+        {
+            location.reason = "too few matches agree";
+            return;
+        }
+        if (!refinePose(pinhole_, location.inliers, refined))
+        {
+            location.reason = "the points do not determine the pose";
+            return;
+        }
+    }
+    judge(location);
+}
+
+void Localizer::judge(Location& location) const
+{
+    RefinedPose& refined = location.estimate;
+    const double sigma = std::max(0.2, deviation(location.inliers, pinhole_, refined.pose));
+    refined.covariance *= sigma * sigma;
+    location.metres = 3 * worstDeviation(refined.covariance.topLeftCorner<3, 3>());
+    location.degrees = 3 * worstDeviation(refined.covariance.bottomRightCorner<3, 3>()) * 180 / CV_PI;
+    if (double(location.inliers.size()) < MIN_INLIER_SHARE * double(location.matches))
+        location.reason = "too few matches agree";
+    else if (location.metres > MAX_BOUND)
+        location.reason = "the pose is uncertain";
+    else
+        location.found = true;
+}
+
+Location Localizer::locate(const cv::Mat& grey, const Pose* prior) const
+{
+    Location location;
+    if (grey.empty())
+    {
+        location.reason = "the image cannot be read";
+        return location;
+    }
+    if (grey.size() != camera_.size)
+    {
+        location.reason = cv::format("the image has %d x %d pixels and the camera %d x %d", grey.cols,
+                grey.rows, camera_.size.width, camera_.size.height);
+        return location;
+    }
+    Stopwatch watch;
+    const Features features = method_.extract(grey);
+    watch.lap(location);
+    const std::vector<size_t> keyframes = candidates(features, prior);
+    watch.lap(location);
+    const std::vector<Observation> matches = match(features, keyframes);
+    location.matches = matches.size();
+    watch.lap(location);
+    if (matches.size() < MIN_MATCHES)
+        location.reason = "too few matches";
+    else
+        estimate(matches, location);
+    watch.lap(location);
+    return location;
+}
+
+}  // namespace iib_localization

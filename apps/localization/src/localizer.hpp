@@ -1,0 +1,58 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_LOCALIZATION_LOCALIZER_HPP
+#define IIB_LOCALIZATION_LOCALIZER_HPP
+
+#include <memory>
+
+#include "bundle.hpp"
+#include "features.hpp"
+#include "map.hpp"
+#include "retrieval.hpp"
+
+namespace iib_localization {
+
+//! Where an image was taken, and how sure that is.
+struct Location
+{
+    bool found = false;
+    std::string reason;    //!< why there is no pose
+    RefinedPose estimate;  //!< its covariance is scaled to the residuals
+    double metres = 0;     //!< three standard deviations in the worst direction
+    double degrees = 0;
+    size_t matches = 0;
+    std::vector<Observation> inliers;
+    //! Milliseconds of each of STAGES.
+    std::vector<double> times;
+
+    static const std::vector<std::string>& stages();
+};
+
+//! Localizes single images of one camera in a map.
+class Localizer
+{
+public:
+    //! @throws cv::Exception if the map's descriptors are not those that this program makes.
+    Localizer(const Map& map, const Camera& camera);
+
+    //! @param prior about where the camera is; null: the keyframes are found by their codes.
+    Location locate(const cv::Mat& grey, const Pose* prior = nullptr) const;
+
+private:
+    std::vector<size_t> candidates(const Features& features, const Pose* prior) const;
+    std::vector<Observation> match(const Features& features, const std::vector<size_t>& keyframes) const;
+    void estimate(const std::vector<Observation>& matches, Location& location) const;
+    void judge(Location& location) const;
+
+    const Map& map_;
+    const Camera camera_;
+    const Pinhole pinhole_;
+    const FeatureMethod method_;
+    std::vector<Retrieval> retrievals_;  // of each detector
+};
+
+}  // namespace iib_localization
+
+#endif

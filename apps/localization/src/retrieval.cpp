@@ -1,0 +1,78 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "retrieval.hpp"
+
+#include <algorithm>
+#include <random>
+
+namespace iib_localization {
+namespace {
+
+constexpr int TABLES = 16;
+constexpr int STRONGEST = 400;        // codes a keyframe and detector that take part
+constexpr uint32_t MAX_ENTRIES = 64;  // of a key: what is that frequent tells nothing
+
+int participating(const cv::Mat& codes) { return std::min(codes.rows, STRONGEST); }
+
+}  // namespace
+
+uint32_t Retrieval::keyOf(const uchar* code, const std::vector<int>& bits)
+{
+    uint32_t key = 0;
+    for (int bit : bits)
+        key = key << 1 | (code[bit >> 3] >> (bit & 7) & 1u);
+    return key;
+}
+
+Retrieval::Retrieval(const std::vector<cv::Mat>& codes)
+{
+    size_t count = 0;
+    for (const cv::Mat& c : codes)
+    {
+        count += size_t(participating(c));
+        bytes_ = std::max(bytes_, c.cols);
+    }
+    if (count == 0)
+        return;
+    int keyBits = 8;  // about one code a key
+    while (keyBits < 26 && (size_t(1) << keyBits) < count)
+        keyBits++;
+    std::mt19937 random(1);
+    for (int t = 0; t < TABLES; t++)
+    {
+        Table table;
+        for (int i = 0; i < keyBits; i++)
+            table.bits.push_back(int(random() % uint32_t(8 * bytes_)));
+        table.begins.assign((size_t(1) << keyBits) + 1, 0);
+        for (const cv::Mat& c : codes)
+            for (int row = 0; row < participating(c); row++)
+                table.begins[keyOf(c.ptr(row), table.bits) + 1]++;
+        for (size_t key = 1; key < table.begins.size(); key++)
+            table.begins[key] += table.begins[key - 1];
+        table.keyframes.resize(count);
+        std::vector<uint32_t> next(table.begins.begin(), table.begins.end() - 1);
+        for (size_t k = 0; k < codes.size(); k++)
+            for (int row = 0; row < participating(codes[k]); row++)
+                table.keyframes[next[keyOf(codes[k].ptr(row), table.bits)]++] = uint32_t(k);
+        tables_.push_back(std::move(table));
+    }
+}
+
+void Retrieval::vote(const cv::Mat& codes, std::vector<float>& votes) const
+{
+    CV_Assert(codes.empty() || tables_.empty() || codes.cols == bytes_);
+    for (const Table& table : tables_)
+        for (int row = 0; row < codes.rows; row++)
+        {
+            const uint32_t key = keyOf(codes.ptr(row), table.bits);
+            const uint32_t begin = table.begins[key], end = table.begins[key + 1];
+            if (end - begin > MAX_ENTRIES)
+                continue;
+            for (uint32_t i = begin; i < end; i++)
+                votes[table.keyframes[i]] += 1.f / float(end - begin);
+        }
+}
+
+}  // namespace iib_localization
