@@ -24,6 +24,8 @@ ceres::Solver::Options solverOptions(ceres::LinearSolverType type)
 
 bool refinePose(const Pinhole& camera, const std::vector<Observation>& observations, RefinedPose& refined)
 {
+    if (observations.size() < 3)
+        return false;  // Ceres would not notice: it takes unknowns without equations for known
     std::vector<Eigen::Vector3d> points;
     points.reserve(observations.size());  // blocks of parameters do not move
     double* rotation = refined.pose.rotation.coeffs().data();

@@ -1,0 +1,224 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../src/localizer.hpp"
+#include "../src/map_builder.hpp"
+#include "../src/trajectory.hpp"
+#include "common/test/test_folder.hpp"
+#include "opencv2/imgcodecs.hpp"
+#include "opencv2/imgproc.hpp"
+
+namespace {
+using namespace iib_localization;
+
+const cv::Size SIZE(320, 240);
+const Camera CAMERA = {"PINHOLE", SIZE, {260, 260, 160, 120}};
+
+/** A textured wall that a camera in any pose near the origin sees, 4 m away and slanted:
+points (x, y, 4 + 0.4 x) for each pixel (120 a metre) of the texture. */
+class Wall
+{
+public:
+    explicit Wall(uint64 seed) : texture_(900, 1200, CV_32F, cv::Scalar(128))
+    {
+        cv::RNG random(seed);
+        for (int cell : {3, 9, 27, 81})
+        {
+            cv::Mat noise(texture_.rows / cell + 2, texture_.cols / cell + 2, CV_32F), large;
+            random.fill(noise, cv::RNG::NORMAL, 0, 30);
+            cv::resize(noise, large, texture_.size(), 0, 0, cv::INTER_CUBIC);
+            texture_ += large;
+        }
+        texture_.convertTo(texture_, CV_8U);
+    }
+
+    cv::Mat image(const Pose& pose) const
+    {
+        cv::Mat result;
+        cv::warpPerspective(texture_, result, textureToImage(pose), SIZE, cv::INTER_AREA);
+        return result;
+    }
+
+    //! In millimetres.
+    static cv::Mat depth(const Pose& pose)
+    {
+        cv::Mat result(SIZE, CV_16U);
+        // the wall is n x = 4
+        const Eigen::Vector3d n(-0.4, 0, 1);
+        for (int y = 0; y < SIZE.height; y++)
+            for (int x = 0; x < SIZE.width; x++)
+            {
+                const Eigen::Vector3d ray = CAMERA.pinhole().ray({x, y});
+                const double z = (4 - n.dot(pose.position)) / n.dot(pose.rotation * ray);
+                result.at<ushort>(y, x) = cv::saturate_cast<ushort>(z * 1000);
+            }
+        return result;
+    }
+
+private:
+    static cv::Mat textureToImage(const Pose& pose)
+    {
+        const Pinhole p = CAMERA.pinhole();
+        Eigen::Matrix3d k, wall;
+        k << p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1;
+        // texture (u, v, 1) to the world
+        wall << 1 / 120., 0, -5, 0, 1 / 120., -3.75, 0.4 / 120, 0, 4 - 0.4 * 5;
+        wall.col(2) -= pose.position;
+        const Eigen::Matrix3d h = k * pose.rotation.conjugate().toRotationMatrix() * wall;
+        cv::Mat result(3, 3, CV_64F);
+        for (int i = 0; i < 9; i++)
+            result.at<double>(i / 3, i % 3) = h(i / 3, i % 3);
+        return result;
+    }
+
+    cv::Mat texture_;
+};
+
+Pose poseAt(double x, double y, double yaw)
+{
+    return {Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitY())), {x, y, 0.2 * x}};
+}
+
+//! Six keyframes along the wall.
+class Localization : public testing::Test
+{
+protected:
+    Localization()
+    {
+        folder.makeFolder("images");
+        folder.makeFolder("depth");
+        std::vector<NamedPose> poses;
+        for (int i = 0; i < 6; i++)
+        {
+            const NamedPose p = {"k" + std::to_string(i), poseAt(0.3 * i - 0.8, 0.05 * (i % 2), 0.03 * i)};
+            cv::imwrite(folder.path("images/" + p.name + ".png"), wall.image(p.pose));
+            cv::imwrite(folder.path("depth/" + p.name + ".png"), Wall::depth(p.pose));
+            poses.push_back(p);
+        }
+        writeCameras(folder.path("cameras.txt"), {{1, CAMERA}});
+        writeTrajectory(folder.path("poses.txt"), poses);
+        sources.images = folder.path("images");
+        sources.cameras = folder.path("cameras.txt");
+        sources.poses = folder.path("poses.txt");
+    }
+
+    void expectFound(const Map& map, const cv::Mat& image, const Pose& truth, double metres)
+    {
+        const Location location = Localizer(map, CAMERA).locate(image);
+        ASSERT_TRUE(location.found) << location.reason;
+        EXPECT_LT((location.estimate.pose.position - truth.position).norm(), metres);
+        EXPECT_LT(location.metres, 0.05);
+        EXPECT_LT(location.estimate.pose.rotation.angularDistance(truth.rotation), 0.5 * CV_PI / 180);
+    }
+
+    const TestFolder folder;
+    const Wall wall{1};
+    MapSources sources;
+};
+
+TEST_F(Localization, with_depth_in_another_light)
+{
+    sources.depth = folder.path("depth");
+    writeMap(folder.path("map"), buildMap(sources));
+    const Map map = readMap(folder.path("map"));
+    const Pose truth = poseAt(0.1, -0.1, 0.1);
+    const cv::Mat image = wall.image(truth);
+    expectFound(map, image, truth, 0.01);
+    cv::Mat dark;
+    image.convertTo(dark, CV_8U, 0.2, 5);
+    expectFound(map, dark, truth, 0.02);
+}
+
+TEST_F(Localization, with_triangulated_points)
+{
+    const Map map = buildMap(sources);
+    const Pose truth = poseAt(0.1, -0.1, 0.1);
+    expectFound(map, wall.image(truth), truth, 0.01);
+}
+
+TEST_F(Localization, the_other_features_too)
+{
+    sources.depth = folder.path("depth");
+    const Pose truth = poseAt(0.1, -0.1, 0.1);
+    for (const char* name : {"own", "sift"})
+    {
+        sources.features = name;
+        expectFound(buildMap(sources), wall.image(truth), truth, 0.02);
+    }
+}
+
+TEST_F(Localization, an_unknown_place_and_bad_images_get_no_pose)
+{
+    sources.depth = folder.path("depth");
+    const Map map = buildMap(sources);
+    const Localizer localizer(map, CAMERA);
+    for (uint64 seed = 2; seed < 7; seed++)
+        EXPECT_FALSE(localizer.locate(Wall(seed).image(poseAt(0, 0, 0))).found);
+    EXPECT_EQ("the image cannot be read", localizer.locate(cv::Mat()).reason);
+    EXPECT_EQ("the image has 64 x 48 pixels and the camera 320 x 240",
+            localizer.locate(cv::Mat(48, 64, CV_8U)).reason);
+    EXPECT_EQ("too few matches", localizer.locate(cv::Mat(SIZE, CV_8U, cv::Scalar(7))).reason);
+}
+
+TEST_F(Localization, a_prior_takes_the_place_of_the_vote)
+{
+    sources.depth = folder.path("depth");
+    const Map map = buildMap(sources);
+    const Pose truth = poseAt(0.1, -0.1, 0.1);
+    const Pose away = poseAt(0.1, -0.1, 0.1 + CV_PI);
+    const Localizer localizer(map, CAMERA);
+    EXPECT_TRUE(localizer.locate(wall.image(truth), &truth).found);
+    EXPECT_TRUE(localizer.locate(wall.image(truth), &away).found)
+            << "it only says which keyframes come first";
+}
+
+TEST_F(Localization, bad_sources_are_told)
+{
+    const auto error = [&] { return messageOf([&] { buildMap(sources); }); };
+    sources.depth = folder.path("images");
+    EXPECT_EQ(folder.path("images/k0.png") + " is no 16-bit depth of the image's size", error());
+    sources.depth = "";
+    folder.write("images/k3.png", "no image");
+    EXPECT_EQ(folder.path("images/k3.png") + " cannot be read as an image", error());
+    folder.write("poses.txt", "other 0 0 0 0 0 0 1\n");
+    EXPECT_EQ(folder.path("poses.txt") + " has no pose for any image in " + folder.path("images"), error());
+    folder.write("poses.txt", "k0 0 0 0 0 0 0 1\n");
+    EXPECT_EQ("points can be triangulated between two or more keyframes only: give --depth", error());
+    sources.features = "orb";
+    EXPECT_EQ("features 'orb' are not one of iib, own and sift", error());
+}
+
+TEST(Depth, between_pixels_but_not_over_edges)
+{
+    cv::Mat depth(6, 6, CV_16U, cv::Scalar(2000));
+    EXPECT_NEAR(2, depthAt(depth, {2.3f, 2.6f}), 1e-9);
+    EXPECT_EQ(0, depthAt(depth, {0.5f, 3})) << "too near the border";
+    for (int x = 0; x < 6; x++)  // a plane: its inverse depth is linear
+        depth.col(x) = cv::Scalar(std::round(1e6 / (500 - 4 * x)));
+    EXPECT_NEAR(1e3 / (500 - 4 * 2.25), depthAt(depth, {2.25f, 3}), 1e-3);
+    depth.col(5) = cv::Scalar(4000);
+    EXPECT_NEAR(1e3 / (500 - 4 * 2.25), depthAt(depth, {2.25f, 3}), 1e-3);
+    depth.col(4) = cv::Scalar(4000);
+    EXPECT_EQ(0, depthAt(depth, {2.25f, 3})) << "an edge";
+    depth = cv::Scalar(2000);
+    depth.at<ushort>(3, 3) = 0;
+    EXPECT_EQ(0, depthAt(depth, {2.25f, 2.25f})) << "unknown";
+}
+
+TEST(Triangulate, the_point_on_all_rays)
+{
+    std::vector<Pose> poses(2);
+    poses[1].position = {1, 0, 0};
+    poses[1].rotation = Eigen::AngleAxisd(-0.3, Eigen::Vector3d::UnitY());
+    const Eigen::Vector3d truth(0.3, -0.2, 4);
+    Eigen::Vector3d point;
+    ASSERT_TRUE(triangulate(poses, {poses[0].toCamera(truth), poses[1].toCamera(truth)}, point));
+    EXPECT_LT((point - truth).norm(), 1e-9);
+    EXPECT_FALSE(triangulate(poses, {-poses[0].toCamera(truth), -poses[1].toCamera(truth)}, point))
+            << "behind";
+    const Eigen::Vector3d far(0, 0, 4000);
+    EXPECT_FALSE(triangulate(poses, {poses[0].toCamera(far), poses[1].toCamera(far)}, point)) << "parallel";
+}
+
+}  // namespace

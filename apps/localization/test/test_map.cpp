@@ -1,0 +1,94 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../src/map.hpp"
+#include "common/test/test_folder.hpp"
+
+namespace {
+using namespace iib_localization;
+
+Map smallMap()
+{
+    Map map;
+    map.features = "iib";
+    map.description = "iib preset -1";
+    map.model.cameras[1] = {"PINHOLE", {640, 480}, {500, 500, 320, 240}};
+    map.model.points = {{0, 0, 5}, {1, 0, 5}, {0, 1, 6}};
+    cv::Mat codes(3, 170, CV_8U);
+    cv::RNG(1).fill(codes, cv::RNG::UNIFORM, 0, 256);
+    map.model.keyframes = {{"a.png", 1, {}, {{1, 2}, {3, 4}, {5.5, 6}}, {0, 1, 2}},
+            {"none.png", 1, {}, {}, {}}, {"b.png", 1, {}, {{7, 8}}, {1}}};
+    map.codes = {{codes.rowRange(0, 2), codes.rowRange(2, 3)},
+            {cv::Mat(0, 170, CV_8U), cv::Mat(0, 170, CV_8U)}, {codes.rowRange(1, 2), cv::Mat(0, 170, CV_8U)}};
+    return map;
+}
+
+std::string errorOf(const std::string& folder)
+{
+    return messageOf([&] { readMap(folder); });
+}
+
+TEST(Map, round_trip_also_over_an_old_one)
+{
+    const TestFolder folder;
+    Map map = smallMap();
+    map.model.points[0].x() = 9;
+    writeMap(folder.path("map"), map);
+    writeMap(folder.path("map/"), smallMap());
+    map = smallMap();
+    const Map back = readMap(folder.path("map"));
+    EXPECT_EQ(map.features, back.features);
+    EXPECT_EQ(map.description, back.description);
+    EXPECT_EQ(map.model.points, back.model.points);
+    ASSERT_EQ(3u, back.codes.size());
+    for (size_t k = 0; k < 3; k++)
+        for (size_t d = 0; d < 2; d++)
+        {
+            ASSERT_EQ(map.codes[k][d].rows, back.codes[k][d].rows);
+            EXPECT_TRUE(
+                    map.codes[k][d].empty() || cv::countNonZero(map.codes[k][d] != back.codes[k][d]) == 0);
+        }
+    EXPECT_EQ(4u * 170, back.codeBytes());
+    std::vector<cv::String> left;
+    cv::utils::fs::glob(folder.path("."), "", left, false, true);
+    EXPECT_EQ(1u, left.size()) << "nothing beside the map";
+}
+
+TEST(Map, refuses_what_is_no_map_and_what_is_damaged)
+{
+    const TestFolder folder;
+    const std::string map = folder.path("map");
+    EXPECT_EQ(map + " is no map: it has no map.txt", errorOf(map));
+    folder.makeFolder("map");
+    folder.write("map/mine.txt", "precious");
+    EXPECT_EQ(map + " exists and is no map: choose another place, or remove it",
+            messageOf([&] { writeMap(map, smallMap()); }));
+    folder.write("map/map.txt", "something else\n");
+    EXPECT_EQ(map + "/map.txt:1: not the header of a map", errorOf(map));
+
+    writeMap(map, smallMap());
+    for (const char* file : {"cameras.txt", "images.txt", "points3D.txt", "codes_0.iib", "codes_1.iib"})
+    {
+        writeMap(map, smallMap());
+        std::ofstream(map + "/" + file, std::ios::app) << " ";
+        EXPECT_EQ(map + "/" + file + " is damaged: build the map again", errorOf(map));
+        ASSERT_EQ(0, std::remove((map + "/" + file).c_str()));
+        EXPECT_EQ(map + "/" + file + " is missing: the map is not whole", errorOf(map));
+    }
+}
+
+TEST(Map, a_failed_write_leaves_the_old_one)
+{
+    const TestFolder folder;
+    writeMap(folder.path("map"), smallMap());
+    Map broken = smallMap();
+    broken.codes[2][0] = cv::Mat(1, 64, CV_8U, cv::Scalar(0));  // of another width
+    EXPECT_NE("", messageOf([&] { writeMap(folder.path("map"), broken); }));
+    EXPECT_EQ("", errorOf(folder.path("map")));
+    std::vector<cv::String> left;
+    cv::utils::fs::glob(folder.path("."), "", left, false, true);
+    EXPECT_EQ(1u, left.size());
+}
+
+}  // namespace

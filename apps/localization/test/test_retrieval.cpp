@@ -1,0 +1,52 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../src/retrieval.hpp"
+#include "opencv2/ts.hpp"
+
+namespace {
+using namespace iib_localization;
+
+//! The codes with each bit turned over with a probability.
+cv::Mat noisy(const cv::Mat& codes, double probability, cv::RNG& random)
+{
+    cv::Mat result = codes.clone();
+    for (int row = 0; row < codes.rows; row++)
+        for (int bit = 0; bit < 8 * codes.cols; bit++)
+            if (random.uniform(0., 1.) < probability)
+                result.at<uchar>(row, bit / 8) ^= uchar(1 << bit % 8);
+    return result;
+}
+
+TEST(Retrieval, finds_the_keyframe_of_noisy_codes_among_many)
+{
+    cv::RNG random(1);
+    std::vector<cv::Mat> keyframes(300);
+    for (size_t k = 0; k < keyframes.size(); k++)
+    {
+        keyframes[k].create(k % 7 == 3 ? 0 : 100, 64, CV_8U);
+        if (!keyframes[k].empty())
+            random.fill(keyframes[k], cv::RNG::UNIFORM, 0, 256);
+    }
+    const Retrieval retrieval(keyframes);
+    for (size_t k : {0, 151, 299})
+    {
+        std::vector<float> votes(keyframes.size(), 0.f);
+        retrieval.vote(noisy(keyframes[k], 0.12, random), votes);
+        EXPECT_EQ(std::ptrdiff_t(k), std::max_element(votes.begin(), votes.end()) - votes.begin());
+        EXPECT_EQ(0, votes[3]) << "has no codes";
+    }
+}
+
+TEST(Retrieval, without_codes_there_are_no_votes)
+{
+    std::vector<float> votes(2, 0.f);
+    Retrieval({cv::Mat(), cv::Mat()}).vote(cv::Mat(5, 64, CV_8U, cv::Scalar(1)), votes);
+    EXPECT_EQ(0, votes[0]);
+    const std::vector<cv::Mat> codes(2, cv::Mat(5, 64, CV_8U, cv::Scalar(1)));
+    Retrieval(codes).vote(cv::Mat(), votes);
+    EXPECT_EQ(0, votes[0]);
+}
+
+}  // namespace
