@@ -234,7 +234,7 @@ int main()
         describe("compute", IIB::create(), CV_8UC1);
         describe("compute, colour", IIB::create(), CV_8UC3);
         describe("compute, 32F", IIB::create(), CV_32FC1);
-        describe("compute, turned", IIB::create(2.f, 5, 63, IIB::MAPPING_SORT, true, true), CV_16UC1);
+        describe("compute, rotated", IIB::create(2.f, 5, 63, IIB::MAPPING_SORT, true, true), CV_16UC1);
         describe("compute, extra channels", IIB::create(2.f, 4, 15, IIB::MAPPING_HAAR, false, false, 3),
                 CV_8UC1);
         describe("compute, selection", IIB::createPreset(IIB::PRESET_TINY), CV_8UC1);

@@ -13,12 +13,12 @@ void manyKeypoints(int count)
 {
     const Mat image = noise(Size(1280, 720), CV_8U, 1);
     const std::vector<KeyPoint> keypoints = scatter(image.size(), count);
-    for (const bool turned : {false, true})
+    for (const bool rotated : {false, true})
     {
-        const Ptr<IIB> iib = IIB::create(1.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, turned);
+        const Ptr<IIB> iib = IIB::create(1.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, rotated);
         Mat descriptors;
         {
-            const Report report(format("%d keypoints on 1280 x 720%s", count, turned ? ", turned" : ""));
+            const Report report(format("%d keypoints on 1280 x 720%s", count, rotated ? ", rotated" : ""));
             descriptors = describe(*iib, image, keypoints);
         }
         for (int i = 0; i < 1000; i++)
@@ -34,17 +34,18 @@ void largeImages(int megapixels)
 {
     const Size size(12500, megapixels * 80);
     for (const int type : {CV_8UC1, CV_16UC1, CV_8UC3, CV_32FC1})
-        for (const bool turned : {false, true})
+        for (const bool rotated : {false, true})
         {
             const Mat image = noise(size, type, 1);
             std::vector<KeyPoint> keypoints = scatter(size - Size(200, 200), 2000);
             keypoints.push_back(
                     KeyPoint((float)size.width / 2, (float)size.height / 2, (float)size.width, 10));
-            const Ptr<IIB> iib = IIB::create(1.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, turned);
+            const Ptr<IIB> iib =
+                    IIB::create(1.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, rotated);
             Mat descriptors;
             {
                 const Report report(format("%d x %d, %s%s", size.width, size.height,
-                        typeToString(type).c_str(), turned ? ", turned" : ""));
+                        typeToString(type).c_str(), rotated ? ", rotated" : ""));
                 descriptors = describe(*iib, image, keypoints);
             }
             if (type == CV_32FC1)

@@ -30,7 +30,7 @@ private:
 };
 
 cv::Mat noise(cv::Size size, int type, int seed);
-//! Turned keypoints of sizes 8 to 64.
+//! Rotated keypoints of sizes 8 to 64.
 std::vector<cv::KeyPoint> scatter(cv::Size size, int count);
 //! Descriptors of all the keypoints.
 cv::Mat describe(cv::iib::IIB& iib, const cv::Mat& image, std::vector<cv::KeyPoint> keypoints);

@@ -26,7 +26,7 @@ static const char* const OPTIONS =
         "{preset      | default      | [default S128 S256 S512 ACCURATE COMPACT TINY BALANCED] of IIB}"
         "{normalize   | no           | find the points on the locally normalized image, [no yes]}"
         "{granularity | 4            | levels of IIB's default, [1 2 3 4 5 6]}"
-        "{orientation | none         | IIB's regions: [none keypoint gradient], upright or turned by such an angle}"
+        "{orientation | none         | IIB's regions: [none keypoint gradient], upright or rotated by such an angle}"
         "{homography  |              | file of 3x3 numbers from A to B, to judge by; without it MAGSAC estimates one}"
         "{out         | iib_demo.png | the picture}";
 // clang-format on

@@ -11,7 +11,7 @@ namespace {
 
 struct LearnedSelection
 {
-    float scale;  // of the ROS, against the scale factor that the user gives
+    float scale;  // of the region of support, against the scale factor that the user gives
     int granularity, channels, mapping;
     const uchar (*quads)[5];  // null: all of them
     int count;

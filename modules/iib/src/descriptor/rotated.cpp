@@ -200,7 +200,7 @@ public:
     template <typename Pixels>
     void sum(const SampleGrid& grid, const int* index, const Rotation& rotation, const Pixels& pixelsOf)
     {
-        const GradientRotation turn = {
+        const GradientRotation gradients = {
                 cvRound(rotation.cosine * 4096), cvRound(rotation.sine * 4096), rotation.steps};
         int* planes[IMAGE_PLANES];
         int next = 0;
@@ -211,7 +211,7 @@ public:
             for (int p = 0; p < count; p++)
                 planes[p] = plane(next++);
             if (image)
-                kernels.imageSums(pixelsOf(i), index, grid.cells(), grid.sub * grid.sub, turn, planes);
+                kernels.imageSums(pixelsOf(i), index, grid.cells(), grid.sub * grid.sub, gradients, planes);
             else
                 kernels.mapSums(pixelsOf(i), index, grid.cells(), grid.sub * grid.sub, planes);
         }

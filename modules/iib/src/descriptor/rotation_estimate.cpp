@@ -101,8 +101,8 @@ double estimateRotation(const std::vector<KeyPoint>& keypoints1, const std::vect
             const Point2d before = from[j] - from[i], after = to[j] - to[i];
             if (before == Point2d() || after == Point2d())
                 continue;
-            const double turn = directionOf(after) - directionOf(before);
-            votes.add(turn < 0 ? turn + 360 : turn);
+            const double angle = directionOf(after) - directionOf(before);
+            votes.add(angle < 0 ? angle + 360 : angle);
         }
     }
     if (votes.empty())

@@ -16,8 +16,8 @@ struct DetectorScale
 };
 
 /* Paper, "Experiments Combined with Feature Detectors", for AKAZE to SURF. FAST, AGAST (size 7) and GFTT
- (size 3) find corners of one size: a ROS of 64 pixels, as in "Predefined Feature Points". The sizes of MSER
- and SimpleBlob are the diameters of regions; the ROS takes in their surroundings. */
+ (size 3) find corners of one size: a region of 64 pixels, as in "Predefined Feature Points". The sizes of MSER
+ and SimpleBlob are the diameters of what they found; the region of support takes in its surroundings. */
 const DetectorScale detectorScales[] = {{"akaze", 12.f}, {"orb", 2.f}, {"brisk", 4.f}, {"sift", 20.f},
         {"kaze", 20.f}, {"surf", 4.f}, {"fast", 64.f / 7}, {"agast", 64.f / 7}, {"gftt", 64.f / 3},
         {"mser", 2.f}, {"simpleblob", 4.f}};

@@ -150,7 +150,7 @@ TEST(IIB_Bits, selections)
         }
 }
 
-TEST(IIB_Bits, turned_regions_of_support)
+TEST(IIB_Bits, rotated_regions_of_support)
 {
     for (int depth = 0; depth < 2; depth++)
         for (int granularity = 1; granularity <= 6; granularity++)

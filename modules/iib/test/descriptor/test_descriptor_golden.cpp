@@ -38,7 +38,7 @@ void someQuads(IIB& iib)
     iib.setSelection(quads);
 }
 
-void turnedQuads(IIB& iib)
+void rotatedQuads(IIB& iib)
 {
     someQuads(iib);
     iib.setUseOrientation(true);
@@ -98,7 +98,7 @@ const Golden GOLDEN[] = {{"default", 0x7c4943b59e478a06, 0x2e989fe2274d8bf2, not
         {"8U colour", 0x5f19de037522b744, 0xb45d221b4e67cc73, nothing, CV_8UC3},
         {"32F colour", 0x5dbab4a1ac078b99, 0x2f0bca6c2417e44b, nothing, CV_32FC3},
         {"selection", 0x4b159b8d342f9f70, 0xf4dddd863a1c586a, someQuads, CV_8UC1},
-        {"selection, orientation of keypoints", 0x6358ca80c16b3c4b, 0x1660dccffba8e262, turnedQuads,
+        {"selection, orientation of keypoints", 0x6358ca80c16b3c4b, 0x1660dccffba8e262, rotatedQuads,
                 CV_8UC1}};
 
 uint64 hashOf(const Mat& m)

@@ -34,7 +34,7 @@ TEST(IIB_KeyPoints, border_drop_removes_those_whose_ros_leaves_the_image)
 {
     const Mat image = texture(SIZE, CV_8U, 3);
     std::vector<KeyPoint> keypoints = scatter(SIZE, 200, 8.f, 90.f, 4);
-    // a ROS of 40 pixels on an odd number of pixels on either side: the first and last places that fit
+    // a region of 40 pixels on an odd number of pixels on either side: the first and last places that fit
     for (float x : {19.f, 19.5f, 160.f, 159.5f, 18.5f, 18.f, 160.5f, 161.f})
         keypoints.push_back(KeyPoint(x, 80, 20));
     const Ptr<IIB> iib = IIB::create(2.f);
@@ -87,13 +87,13 @@ TEST(IIB_KeyPoints, nothing_to_describe_releases_the_output)
     EXPECT_TRUE(udescriptors.empty());
 }
 
-TEST(IIB_KeyPoints, small_ros_is_raised)
+TEST(IIB_KeyPoints, small_region_is_raised)
 {
     const Mat image = texture(SIZE, CV_8U, 6);
     for (int granularity = 1; granularity <= 6; granularity++)
-        for (int turned = 0; turned < 2; turned++)
+        for (int rotated = 0; rotated < 2; rotated++)
         {
-            const Ptr<IIB> iib = IIB::create(0.5f, granularity, 15, IIB::MAPPING_MEAN, false, turned != 0);
+            const Ptr<IIB> iib = IIB::create(0.5f, granularity, 15, IIB::MAPPING_MEAN, false, rotated != 0);
             std::vector<KeyPoint> keypoints = scatter(SIZE, 20, 8.f, 9.f, 7);
             const float smallest = 2.f * (1 << granularity);
             for (KeyPoint& kp : keypoints)
@@ -123,7 +123,7 @@ TEST(IIB_KeyPoints, far_outside_the_image_all_means_are_equal)
     iib->setMapping(IIB::MAPPING_MAX);
     EXPECT_EQ(0, countNonZero(describe(*iib, image, keypoints) != 255));
 
-    // turned ones see the border's pixels alone
+    // rotated ones see the border's pixels alone
     iib->setUseOrientation(true);
     iib->setMapping(IIB::MAPPING_MEAN);
     iib->setChannels(IIB::CHANNEL_INTENSITY);
@@ -151,12 +151,12 @@ TEST(IIB_KeyPoints, huge_sizes)
             iib->setUseOrientation(false);
             EXPECT_EQ(0, differingBits(oracle::describe(*iib, image, std::vector<Mat>(), keypoints),
                                  describe(*iib, image, keypoints)));
-            std::vector<KeyPoint> turned = keypoints;
-            for (KeyPoint& kp : turned)
+            std::vector<KeyPoint> rotated = keypoints;
+            for (KeyPoint& kp : rotated)
                 kp.angle = 200;
             iib->setUseOrientation(true);
-            EXPECT_EQ(0, differingBits(oracle::describe(*iib, image, std::vector<Mat>(), turned),
-                                 describe(*iib, image, turned)));
+            EXPECT_EQ(0, differingBits(oracle::describe(*iib, image, std::vector<Mat>(), rotated),
+                                 describe(*iib, image, rotated)));
         }
     }
 }

@@ -57,12 +57,12 @@ TEST(IIB_GradientOrientation, keypoints_at_the_same_place_get_different_peaks)
     const Mat image = texture(Size(200, 170), CV_8U, 5);
     const Ptr<IIB> iib = IIB::create(1.f);
     iib->setOrientation(IIB::ORIENTATION_GRADIENT);
-    const KeyPoint once(90, 80, 60, 10), turned(90, 80, 60, 200), larger(90, 80, 61, 10);
-    const Mat first = describe(*iib, image, {once}), all = describe(*iib, image, {once, turned, larger});
+    const KeyPoint once(90, 80, 60, 10), rotated(90, 80, 60, 200), larger(90, 80, 61, 10);
+    const Mat first = describe(*iib, image, {once}), all = describe(*iib, image, {once, rotated, larger});
     EXPECT_EQ(0, differingBits(first, all.row(0)));
     EXPECT_NE(0, differingBits(first, all.row(1)));
     EXPECT_EQ(0, differingBits(describe(*iib, image, {larger}), all.row(2)));
-    EXPECT_EQ(0, differingBits(first, describe(*iib, image, {turned})));  // KeyPoint::angle is ignored
+    EXPECT_EQ(0, differingBits(first, describe(*iib, image, {rotated})));  // KeyPoint::angle is ignored
 }
 
 TEST(IIB_GradientOrientation, border_drop_keeps_what_is_inside_at_any_angle)
@@ -79,13 +79,13 @@ TEST(IIB_GradientOrientation, border_drop_keeps_what_is_inside_at_any_angle)
     EXPECT_EQ(2, descriptors.rows);
 }
 
-TEST(IIB_GradientOrientation, finds_matches_in_a_turned_image)
+TEST(IIB_GradientOrientation, finds_matches_in_a_rotated_image)
 {
     const Mat image = scene(Size(400, 400), 7);
-    Mat turned;
+    Mat rotated;
     const Mat affine = getRotationMatrix2D(Point2f(199.5f, 199.5f), -40, 1);  // clockwise in the image
-    warpAffine(image, turned, affine, image.size(), INTER_CUBIC, cv::BORDER_REFLECT_101);
-    const Mat images[] = {image, relit(turned, 8)};
+    warpAffine(image, rotated, affine, image.size(), INTER_CUBIC, cv::BORDER_REFLECT_101);
+    const Mat images[] = {image, relit(rotated, 8)};
     const Ptr<IIB> iib = IIB::createFor(ORB::create(600));
     std::vector<KeyPoint> keypoints[2];
     Mat descriptors[2];

@@ -177,13 +177,14 @@ float prevailingAngle(const IIB& iib, const Mat& grey, const KeyPoint& kp, size_
     return angle < 360 ? angle : 0;
 }
 
-//! ROS and gradients turned by an angle: nearest pixels on a grid of samples x samples.
-struct Turned
+//! A region and its gradients rotated by an angle: the nearest pixels on a grid of samples x samples.
+struct RotatedRegion
 {
     int samples;
     std::vector<Channel> values;
 
-    Turned(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra, const KeyPoint& kp, float angle)
+    RotatedRegion(
+            const IIB& iib, const Mat& grey, const std::vector<Mat>& extra, const KeyPoint& kp, float angle)
     {
         const SupportRegion ros(iib, kp);
         samples = ros.side <= 64 && iib.getGranularity() <= 5 ? 32 : 64;
@@ -201,13 +202,13 @@ struct Turned
                 const int x = insideOf(iib, (x0 + u * stepX - v * stepY) >> 17, grey.cols);
                 const int y = insideOf(iib, (y0 + u * stepY + v * stepX) >> 17, grey.rows);
                 const int gx = gradX(grey, y, x), gy = gradY(grey, y, x);
-                const int turnedX = (cosine * gx + sine * gy + 2048) >> 12;
-                const int turnedY = (cosine * gy - sine * gx + 2048) >> 12;
+                const int rotatedX = (cosine * gx + sine * gy + 2048) >> 12;
+                const int rotatedY = (cosine * gy - sine * gx + 2048) >> 12;
                 const bool flat = gx == 0 && gy == 0;
-                const int turnedO =
+                const int rotatedO =
                         flat ? 0 : (orientation(gx, gy) + turn) & (cv::iib::ORIENTATION_STEPS - 1);
                 const std::vector<int> all =
-                        valuesOf(iib.getChannels(), grey, turnedX, turnedY, turnedO, extra, y, x);
+                        valuesOf(iib.getChannels(), grey, rotatedX, rotatedY, rotatedO, extra, y, x);
                 while (values.size() < all.size())
                     values.push_back(Channel(samples, samples));
                 for (size_t c = 0; c < all.size(); c++)
@@ -342,8 +343,9 @@ Cells cellsOf(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra,
     const bool gradient = iib.getOrientation() == IIB::ORIENTATION_GRADIENT && iib.getChannels() != 0;
     if (gradient || (iib.getOrientation() == IIB::ORIENTATION_KEYPOINT && kp.angle >= 0))
     {
-        const Turned turned(iib, grey, extra, kp, gradient ? prevailingAngle(iib, grey, kp, rank) : kp.angle);
-        return [turned](int c, int n, int row, int col) { return turned.cell(c, n, row, col); };
+        const RotatedRegion rotated(
+                iib, grey, extra, kp, gradient ? prevailingAngle(iib, grey, kp, rank) : kp.angle);
+        return [rotated](int c, int n, int row, int col) { return rotated.cell(c, n, row, col); };
     }
     const SupportRegion ros(iib, kp);
     const bool reflect = iib.getBorder() == IIB::BORDER_REFLECT;

@@ -13,9 +13,9 @@ namespace iib {
 //! @addtogroup iib
 //! @{
 
-/** @brief Angle by which most of the matched points of one image are turned in another.
+/** @brief Angle by which most of the matched points of one image are rotated in another.
 
-Angles of single keypoints change with the light, but a camera that turns turns all points alike. So a first matching,
+Angles of single keypoints change with the light, but a camera that turns moves all points by the same angle. So a first matching,
 with IIBDescriptorExtractor::ORIENTATION_GRADIENT, is enough to find the angle between two images; with it for all
 keypoints a second matching, with ORIENTATION_KEYPOINT, finds more:
 @code

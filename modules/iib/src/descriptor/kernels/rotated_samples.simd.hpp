@@ -111,7 +111,7 @@ void imageSums(const T* pixels, const int* index, int cells, int samplesInCell,
     const int count = cells * cells, lanes = VTraits<v_samples>::max_nlanes;
     const v_samples cosine = sampleFactor((T)rotation.cosine), sine = sampleFactor((T)rotation.sine);
     const v_samples half = v_setall_samples(2048);
-    const v_samples turn = v_setall_samples(rotation.steps), mask = v_setall_samples(ORIENTATION_STEPS - 1);
+    const v_samples angle = v_setall_samples(rotation.steps), mask = v_setall_samples(ORIENTATION_STEPS - 1);
     const v_samples zero = v_setall_samples(0);
     for (int cell = 0; cell < count; cell += lanes)
     {
@@ -120,7 +120,7 @@ void imageSums(const T* pixels, const int* index, int cells, int samplesInCell,
         {
             v_samples gx, gy, own, grey;
             loadPixels(pixels, index + s, gx, gy, own, grey);
-            steps += ((own + turn) & mask) & ~((gx | gy) == zero);
+            steps += ((own + angle) & mask) & ~((gx | gy) == zero);
             intensity += grey;
             const v_samples x =
                     (multiplySamples(gx, cosine, T()) + multiplySamples(gy, sine, T()) + half) >> 12;
