@@ -35,6 +35,7 @@ endforeach()
 list(REMOVE_DUPLICATES compilers)
 add_test(NAME headers COMMAND "${CMAKE_COMMAND}" "-DCOMPILERS=${compilers}" "-DINCLUDE=${IIB_DIR}/include"
   "-DOPENCV_INCLUDE=${OpenCV_INCLUDE_DIRS}" -P "${PROJECT_SOURCE_DIR}/cmake/HeaderTest.cmake")
+add_test(NAME includes COMMAND "${CMAKE_COMMAND}" "-DMODULE=${IIB_DIR}" -P "${PROJECT_SOURCE_DIR}/cmake/IncludeTest.cmake")
 find_program(IIB_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(IIB_PYTHON)
   add_test(NAME figures COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/figures.py" --check)

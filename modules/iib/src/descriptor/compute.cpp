@@ -7,7 +7,7 @@
 #include <array>
 #include <map>
 
-#include "input.hpp"
+#include "../common/image_input.hpp"
 #include "rotated.hpp"
 #include "upright.hpp"
 

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
+#include "../common/detector_file.hpp"
 #include "compute.hpp"
-#include "detector_file.hpp"
 #include "input.hpp"
 #include "support_region.hpp"
 

@@ -5,16 +5,10 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_INPUT_HPP
 #define OPENCV_IIB_DESCRIPTOR_INPUT_HPP
 
-#include "../precomp.hpp"
+#include "../common/image_input.hpp"
 
 namespace cv {
 namespace iib {
-
-/* What users pass, checked, as single-channel integer maps (CV_8U or CV_16U), on which all later decisions
- are exact. */
-
-//! Throws unless the image is 8U, 16U or 32F with 1, 3 or 4 channels and finite.
-void checkImage(const Mat& image);
 
 /** Makes one map of the rows of a single map. Python's bindings take an array of two dimensions where several maps are
  expected for a list, and hand over each of its rows as a column. */
@@ -25,10 +19,6 @@ void checkExtraChannels(const std::vector<Mat>& maps, int expected, Size imageSi
 
 //! Throws unless position and size of every keypoint are finite and the size is positive.
 void checkKeyPoints(const std::vector<KeyPoint>& keypoints);
-
-/** The part `area` of an image as a grey map. 8U and 16U stay what they are; 32F is cut into 65535 steps
- between the minimum and maximum of the whole image, so that a gain and an offset change nothing. */
-Mat integerMap(const Mat& image, Rect area);
 
 }  // namespace iib
 }  // namespace cv

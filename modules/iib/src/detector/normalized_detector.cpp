@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../descriptor/detector_file.hpp"
-#include "../descriptor/input.hpp"
+#include "../common/detector_file.hpp"
+#include "../common/image_input.hpp"
 #include "local_normalization.hpp"
 
 #include "opencv2/core/utils/trace.hpp"

@@ -1,0 +1,29 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_COMMON_IMAGE_INPUT_HPP
+#define OPENCV_IIB_COMMON_IMAGE_INPUT_HPP
+
+#include "../precomp.hpp"
+
+namespace cv {
+namespace iib {
+
+/* Images that users pass, checked, as single-channel integer maps (CV_8U or CV_16U), on which all later decisions
+ are exact. */
+
+//! Throws unless the pixels are 8U, 16U or 32F and finite; `what` names the image in the message.
+void checkPixels(const Mat& m, const String& what);
+
+//! Throws unless the image is 8U, 16U or 32F with 1, 3 or 4 channels and finite.
+void checkImage(const Mat& image);
+
+/** The part `area` of an image as a grey map. 8U and 16U stay what they are; 32F is cut into 65535 steps
+ between the minimum and maximum of the whole image, so that a gain and an offset change nothing. */
+Mat integerMap(const Mat& image, Rect area);
+
+}  // namespace iib
+}  // namespace cv
+
+#endif
