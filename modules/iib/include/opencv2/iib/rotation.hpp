@@ -15,9 +15,9 @@ namespace iib {
 
 /** @brief Angle by which most of the matched points of one image are rotated in another.
 
-Angles of single keypoints change with the light, but a camera that turns moves all points by the same angle. So a first matching,
-with IIBDescriptorExtractor::ORIENTATION_GRADIENT, is enough to find the angle between two images; with it for all
-keypoints a second matching, with ORIENTATION_KEYPOINT, finds more:
+Angles of single keypoints change with the light, but a camera that turns moves all points by the same angle. So a
+first matching, with IIBDescriptorExtractor::ORIENTATION_GRADIENT, is enough to find the angle between two images;
+with it for all keypoints a second matching, with ORIENTATION_KEYPOINT, finds more:
 @code
     for (KeyPoint& k : keypoints1) k.angle = 0;
     for (KeyPoint& k : keypoints2) k.angle = (float)estimateRotation(keypoints1, keypoints2, matches);
