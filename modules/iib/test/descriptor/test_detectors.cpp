@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../support/test_images.hpp"
+#include "../support/detected_matches.hpp"
 
 namespace opencv_test {
 namespace {
@@ -36,27 +36,14 @@ TEST_P(IIB_Detectors, detect_compute_and_match)
     EXPECT_FLOAT_EQ(p.scaleFactor, IIB::scaleFactorFor(cv::toLowerCase(p.name)));
     EXPECT_FLOAT_EQ(p.scaleFactor, IIB::scaleFactorFor(detector->getDefaultName()));
 
-    const Ptr<IIB> iib = IIB::create(IIB::scaleFactorFor(detector));
-    Mat images[2], descriptors[2];
+    Mat images[2];
     images[0] = scene(Size(480, 360), 3);
     images[1] = relit(images[0], 4);
-    std::vector<KeyPoint> keypoints[2];
-    for (int i = 0; i < 2; i++)
-    {
-        detector->detect(images[i], keypoints[i]);
-        KeyPointsFilter::retainBest(keypoints[i], 500);
-        descriptors[i] = describe(*iib, images[i], keypoints[i]);
-    }
-    std::vector<DMatch> matches;
-    HierarchicalMatcher::create(iib->levelSizes(), HierarchicalMatcher::EXACT, 0.35f, true)
-            ->match(descriptors[0], descriptors[1], matches);
-    int correct = 0;
-    for (const DMatch& m : matches)
-        correct += cv::norm(keypoints[0][m.queryIdx].pt - keypoints[1][m.trainIdx].pt) <= 3;
+    const DetectedMatches found = matchDetected(detector, images, 500);
     std::cout << format("[          ] %s: %d and %d keypoints, %d matches, %d correct\n", p.name,
-            (int)keypoints[0].size(), (int)keypoints[1].size(), (int)matches.size(), correct);
-    EXPECT_GE(correct, p.minCorrect);
-    EXPECT_GE(correct, 0.8 * matches.size());
+            (int)found.keypoints[0], (int)found.keypoints[1], (int)found.matches, found.correct);
+    EXPECT_GE(found.correct, p.minCorrect);
+    EXPECT_GE(found.correct, 0.8 * found.matches);
 }
 
 void PrintTo(const DetectorCase& p, std::ostream* os) { *os << p.name; }

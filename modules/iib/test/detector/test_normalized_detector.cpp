@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/test_errors.hpp"
-#include "../support/test_images.hpp"
+#include "../support/detected_matches.hpp"
 #include "normalization_oracle.hpp"
 
 namespace opencv_test {
@@ -121,26 +121,6 @@ struct DetectorGain
     double gain;  //!< right matches at normalized points by those at plain points, a little less than was measured
 };
 
-int correctMatches(const Ptr<Feature2D>& detector, float scaleFactor, const Mat images[2])
-{
-    const Ptr<IIB> iib = IIB::create(scaleFactor);
-    std::vector<KeyPoint> keypoints[2];
-    Mat descriptors[2];
-    for (int i = 0; i < 2; i++)
-    {
-        detector->detect(images[i], keypoints[i]);
-        KeyPointsFilter::retainBest(keypoints[i], 1000);
-        descriptors[i] = describe(*iib, images[i], keypoints[i]);
-    }
-    std::vector<DMatch> matches;
-    HierarchicalMatcher::create(iib->levelSizes(), HierarchicalMatcher::EXACT, 0.35f, true)
-            ->match(descriptors[0], descriptors[1], matches);
-    int correct = 0;
-    for (const DMatch& m : matches)
-        correct += cv::norm(keypoints[0][m.queryIdx].pt - keypoints[1][m.trainIdx].pt) <= 3;
-    return correct;
-}
-
 // Real images by day and night, below OPENCV_TEST_DATA_PATH; without them the test skips.
 TEST(IIB_NormalizedDetector, right_matches_by_changed_light)
 {
@@ -152,7 +132,6 @@ TEST(IIB_NormalizedDetector, right_matches_by_changed_light)
             {"tilde_webcam/courbevoie/1.png", "tilde_webcam/courbevoie/6.png"}};
     for (const DetectorGain& d : detectors)
     {
-        const float factor = IIB::scaleFactorFor(d.detector);
         int plain = 0, normalizedPoints = 0;
         for (const auto& pair : pairs)
         {
@@ -160,8 +139,8 @@ TEST(IIB_NormalizedDetector, right_matches_by_changed_light)
             for (int i = 0; i < 2; i++)
                 images[i] = imread(
                         cvtest::findDataFile(String("illumination/") + pair[i], false), IMREAD_GRAYSCALE);
-            plain += correctMatches(d.detector, factor, images);
-            normalizedPoints += correctMatches(NormalizedDetector::create(d.detector), factor, images);
+            plain += matchDetected(d.detector, images, 1000).correct;
+            normalizedPoints += matchDetected(NormalizedDetector::create(d.detector), images, 1000).correct;
         }
         std::cout << format("[          ] %s: %d right matches at plain points, %d at normalized ones\n",
                 d.detector->getDefaultName().c_str(), plain, normalizedPoints);

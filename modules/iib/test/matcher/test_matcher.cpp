@@ -72,15 +72,9 @@ INSTANTIATE_TEST_CASE_P(/**/, IIB_Matcher_Sizes,
 // Several images, one of them empty, with everything at once.
 TEST(IIB_Matcher, all_together_as_the_oracle)
 {
-    MatcherOracle oracle;
-    oracle.levelSizes = {2, 8, 32};
-    const int rows[] = {70, 0, 1, 37, 200};
-    for (int i = 0; i < 5; i++)
-        oracle.images.push_back(randomDescriptors(10 + i, rows[i], 42));
+    MatcherOracle oracle = oracleOfSeveralImages();
     const Mat queries = randomDescriptors(20, 90, 42);
-    std::vector<Mat> masks;
-    for (int i = 0; i < 5; i++)
-        masks.push_back(i == 1 || i == 2 ? Mat() : randomMask(30 + i, queries.rows, rows[i], 0.5));
+    const std::vector<Mat> masks = masksOfSeveralImages(oracle, queries.rows);
 
     for (int k : {1, 2, 5, 400})
         for (int bits = 0; bits < 16; bits++)
@@ -96,19 +90,9 @@ TEST(IIB_Matcher, all_together_as_the_oracle)
                     oracle.crossCheck);
             matcher->setMaxRatio(oracle.maxRatio);
             matcher->add(oracle.images);
-            Matches actual;
-            matcher->knnMatch(queries, actual, k, oracle.masks);
-            oracle.compared = oracle.all = 0;
-            expectEqual(oracle.knn(queries, k), actual);
-            EXPECT_EQ(oracle.compared / oracle.all, matcher->matchCost());
-
-            if (k != 1)
-                continue;
-            for (float radius : {0.5f, 20.f, 60.9f, 1e9f})
-            {
-                matcher->radiusMatch(queries, actual, radius, oracle.masks);
-                expectEqual(oracle.radius(queries, (int)std::min(radius, 1e6f)), actual);
-            }
+            expectKnnAsOracle(*matcher, oracle, queries, k);
+            if (k == 1)
+                expectRadiusAsOracle(*matcher, oracle, queries);
         }
 }
 

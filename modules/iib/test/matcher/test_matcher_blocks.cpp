@@ -31,15 +31,9 @@ Ptr<HierarchicalMatcher> createMatcher(const MatcherOracle& oracle, int mode, in
 TEST_P(IIB_Matcher_Blocks, as_the_oracle)
 {
     const int size = std::get<0>(GetParam()), mode = std::get<1>(GetParam());
-    MatcherOracle oracle;
-    oracle.levelSizes = {2, 8, 32};
-    const int rows[] = {70, 0, 1, 37, 200};
-    for (int i = 0; i < 5; i++)
-        oracle.images.push_back(randomDescriptors(10 + i, rows[i], 42));
+    MatcherOracle oracle = oracleOfSeveralImages();
     const Mat queries = randomDescriptors(20, 45, 42);
-    std::vector<Mat> masks;
-    for (int i = 0; i < 5; i++)
-        masks.push_back(i == 1 || i == 2 ? Mat() : randomMask(30 + i, queries.rows, rows[i], 0.5));
+    const std::vector<Mat> masks = masksOfSeveralImages(oracle, queries.rows);
     if (mode == HierarchicalMatcher::THRESHOLD)
         oracle.thresholds.assign(2, 0.35f);
     oracle.adaptiveBlock = mode == HierarchicalMatcher::ADAPTIVE ? size * 16 : 0;
@@ -53,21 +47,13 @@ TEST_P(IIB_Matcher_Blocks, as_the_oracle)
             oracle.maxRatio = bits & 4 ? 0.8f : 1.f;
             const Ptr<HierarchicalMatcher> matcher = createMatcher(oracle, mode, size);
             matcher->add(oracle.images);
-            Matches actual;
-            matcher->knnMatch(queries, actual, k, oracle.masks);
-            oracle.compared = oracle.all = 0;
-            expectEqual(oracle.knn(queries, k), actual);
-            EXPECT_EQ(oracle.compared / oracle.all, matcher->matchCost());
+            expectKnnAsOracle(*matcher, oracle, queries, k);
             // clones keep the size of blocks
-            matcher->clone(false)->knnMatch(queries, actual, k, oracle.masks);
-            expectEqual(oracle.knn(queries, k), actual);
-            if (k != 1 || mode == HierarchicalMatcher::ADAPTIVE)
-                continue;
-            for (float radius : {0.5f, 20.f, 60.9f, 1e9f})
-            {
-                matcher->radiusMatch(queries, actual, radius, oracle.masks);
-                expectEqual(oracle.radius(queries, (int)std::min(radius, 1e6f)), actual);
-            }
+            Matches ofClone;
+            matcher->clone(false)->knnMatch(queries, ofClone, k, oracle.masks);
+            expectEqual(oracle.knn(queries, k), ofClone);
+            if (k == 1 && mode != HierarchicalMatcher::ADAPTIVE)
+                expectRadiusAsOracle(*matcher, oracle, queries);
         }
 }
 

@@ -172,6 +172,24 @@ Matches MatcherOracle::radius(const Mat& queries, int radius)
     return result;
 }
 
+MatcherOracle oracleOfSeveralImages()
+{
+    MatcherOracle oracle;
+    oracle.levelSizes = {2, 8, 32};
+    const int rows[] = {70, 0, 1, 37, 200};
+    for (int i = 0; i < 5; i++)
+        oracle.images.push_back(randomDescriptors(10 + i, rows[i], 42));
+    return oracle;
+}
+
+std::vector<Mat> masksOfSeveralImages(const MatcherOracle& oracle, int queries)
+{
+    std::vector<Mat> masks;
+    for (int i = 0; i < 5; i++)
+        masks.push_back(i == 1 || i == 2 ? Mat() : randomMask(30 + i, queries, oracle.images[i].rows, 0.5));
+    return masks;
+}
+
 void expectEqual(const Matches& expected, const Matches& actual)
 {
     ASSERT_EQ(expected.size(), actual.size());
@@ -186,6 +204,25 @@ void expectEqual(const Matches& expected, const Matches& actual)
                     << "query " << q << ", neighbour " << i;
             ASSERT_EQ(e.queryIdx, a.queryIdx);
         }
+    }
+}
+
+void expectKnnAsOracle(HierarchicalMatcher& matcher, MatcherOracle& oracle, const Mat& queries, int k)
+{
+    Matches actual;
+    matcher.knnMatch(queries, actual, k, oracle.masks);
+    oracle.compared = oracle.all = 0;
+    expectEqual(oracle.knn(queries, k), actual);
+    EXPECT_EQ(oracle.compared / oracle.all, matcher.matchCost());
+}
+
+void expectRadiusAsOracle(HierarchicalMatcher& matcher, MatcherOracle& oracle, const Mat& queries)
+{
+    Matches actual;
+    for (float radius : {0.5f, 20.f, 60.9f, 1e9f})
+    {
+        matcher.radiusMatch(queries, actual, radius, oracle.masks);
+        expectEqual(oracle.radius(queries, (int)std::min(radius, 1e6f)), actual);
     }
 }
 

@@ -40,7 +40,19 @@ private:
     void keepAdaptive(const Mat& queries, Matches& candidates);
 };
 
+//! Five train images of 2, 8 and 32 bytes a level, one of them empty, one of a single row.
+MatcherOracle oracleOfSeveralImages();
+
+//! A mask for each image of oracleOfSeveralImages(), two of them empty: all pairs allowed.
+std::vector<Mat> masksOfSeveralImages(const MatcherOracle& oracle, int queries);
+
 void expectEqual(const Matches& expected, const Matches& actual);
+
+//! The k nearest by the matcher and by the oracle, and the share of bits that were compared.
+void expectKnnAsOracle(HierarchicalMatcher& matcher, MatcherOracle& oracle, const Mat& queries, int k);
+
+//! Within radii from less than any distance to more than any.
+void expectRadiusAsOracle(HierarchicalMatcher& matcher, MatcherOracle& oracle, const Mat& queries);
 
 }  // namespace opencv_test
 
