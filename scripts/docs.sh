@@ -5,6 +5,7 @@
 [ $# = 0 ] || fail "takes no argument"
 need doxygen
 version=$(sed -n 's/^project(opencv_iib VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
+rm -rf "$build/docs"
 mkdir -p "$build/docs"
 cd "$root"
 {
