@@ -3,17 +3,13 @@
 # opencv-contrib-python, which pip brings into the cache once: `opencv` and `opencv_contrib` in that folder.
 #   scripts/opencv_contrib_source.sh [MAJOR]      4, or 5; 4 unless it is said
 # Delete the folder from the cache to look for a newer one.
-set -eu
+. "$(dirname "$0")/lib.sh"
 
 major="${1:-4}"
 case "$major" in
 4 | 5) ;;
-*)
-    echo "opencv_contrib_source.sh takes the major version 4 or 5, not $major" >&2
-    exit 2
-    ;;
+*) fail "takes the major version 4 or 5, not '$major'" ;;
 esac
-cache="${XDG_CACHE_HOME:-$HOME/.cache}/opencv_iib"
 tree="$cache/opencv-contrib-$major"
 mkdir -p "$cache"
 exec 9>"$tree.lock"
