@@ -73,6 +73,15 @@ private:
     bool any;
 };
 
+// The position of a keypoint that a match refers to.
+Point2d positionOf(const KeyPoint& kp, int index)
+{
+    if (!(std::abs(kp.pt.x) <= FLT_MAX && std::abs(kp.pt.y) <= FLT_MAX))
+        CV_Error(Error::StsBadArg,
+                format("keypoint %d is at (%g, %g); positions must be finite", index, kp.pt.x, kp.pt.y));
+    return kp.pt;
+}
+
 }  // namespace
 
 double estimateRotation(const std::vector<KeyPoint>& keypoints1, const std::vector<KeyPoint>& keypoints2,
@@ -86,8 +95,8 @@ double estimateRotation(const std::vector<KeyPoint>& keypoints1, const std::vect
             CV_Error(Error::StsOutOfRange,
                     format("a match is of keypoints %d and %d; there are %d and %d", m.queryIdx, m.trainIdx,
                             (int)keypoints1.size(), (int)keypoints2.size()));
-        from.push_back(keypoints1[m.queryIdx].pt);
-        to.push_back(keypoints2[m.trainIdx].pt);
+        from.push_back(positionOf(keypoints1[m.queryIdx], m.queryIdx));
+        to.push_back(positionOf(keypoints2[m.trainIdx], m.trainIdx));
     }
     const size_t n = from.size();
     const size_t offsets = n < 2 ? 0 : std::min(n - 1, std::max(MAX_VOTES / n, (size_t)1));

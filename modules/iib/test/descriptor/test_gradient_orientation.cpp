@@ -168,6 +168,13 @@ TEST(IIB_Rotation, errors)
     expectError(Error::StsBadArg, "1 matches",
             [&] { estimateRotation(two, two, std::vector<DMatch>(1, both[0])); });
     expectError(Error::StsBadArg, "2 matches", [&] { estimateRotation(two, same, both); });
+    for (float value : {NOT_A_NUMBER, ENDLESS, -ENDLESS})
+    {
+        std::vector<KeyPoint> broken = two;
+        broken[1].pt.y = value;
+        expectError(Error::StsBadArg, "keypoint 1", [&] { estimateRotation(broken, two, both); });
+        expectError(Error::StsBadArg, "keypoint 1", [&] { estimateRotation(two, broken, both); });
+    }
 }
 
 }  // namespace

@@ -30,8 +30,8 @@ thirds of the matches may be wrong if those are scattered.
 @param matches1to2 queryIdx into keypoints1, trainIdx into keypoints2.
 @return degrees, 0 <= angle < 360, in the sense of KeyPoint::angle (clockwise in the image): what points right in the first
 image points there in the second.
-@throws cv::Exception (StsOutOfRange) for indices without a keypoint, (StsBadArg) if fewer than two matches differ in their
-positions in both images.
+@throws cv::Exception (StsOutOfRange) for indices without a keypoint, (StsBadArg) for matched keypoints whose positions are
+NaN or infinite and if fewer than two matches differ in their positions in both images.
  */
 CV_EXPORTS_W double estimateRotation(const std::vector<KeyPoint>& keypoints1,
         const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches1to2);
