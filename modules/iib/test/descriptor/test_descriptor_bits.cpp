@@ -101,6 +101,14 @@ TEST(IIB_Bits, large_regions_of_support)
     }
 }
 
+// Sums of 16-bit pixels leave 32 bits soon: cells are put together from 4 x 4 smaller ones, and more.
+TEST(IIB_Bits, large_regions_of_16_bit_images)
+{
+    const Mat image = texture(Size(420, 400), CV_16U, 5);
+    const Ptr<IIB> iib = IIB::create(1.f, 1, 63);
+    expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 6, 300.f, 1500.f, 1), "large");
+}
+
 // Regions at which products of level 1 or 2 just leave 32 bits: sums are centred there, or doubles take over.
 TEST(IIB_Bits, sums_at_the_edge_of_32_bits)
 {

@@ -94,6 +94,37 @@ TEST(IIB_MatcherEdges, small_image_does_not_limit_k)
         EXPECT_EQ(3u, matches[q].size());
 }
 
+TEST(IIB_MatcherEdges, least_distance_at_the_ratio_is_refused)
+{
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({ladder(0, 1), ladder(12, 1)});
+    matcher->setMaxRatio(0.5f);
+    std::vector<DMatch> matches;
+    matcher->match(ladder(3, 2), matches);  // distances 3 and 9, 4 and 8
+    ASSERT_EQ(1u, matches.size());
+    EXPECT_EQ(0, matches[0].queryIdx);
+}
+
+TEST(IIB_MatcherEdges, arrays_hold_what_knnMatch_finds)
+{
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({ladder(0, 3), Mat(), ladder(3, 5)});
+    const Mat queries = ladder(2, 4);
+    const int k = 10;  // two more than there are
+    Matches matches;
+    matcher->knnMatch(queries, matches, k);
+    Mat_<int> indices, distances, images;
+    matcher->knnMatchArrays(queries, indices, distances, k, noArray(), images);
+    for (const Mat& m : {indices, distances, images})
+        ASSERT_EQ(Size(k, queries.rows), m.size());
+    for (int q = 0; q < queries.rows; q++)
+        for (int i = 0; i < k; i++)
+        {
+            const DMatch m = i < 8 ? matches[q][i] : DMatch(q, -1, -1, -1);
+            EXPECT_EQ(m.trainIdx, indices(q, i));
+            EXPECT_EQ(m.imgIdx, images(q, i));
+            EXPECT_EQ((int)m.distance, distances(q, i));
+        }
+}
+
 TEST(IIB_MatcherEdges, compact_result_drops_rows_without_a_match)
 {
     Matches matches;
@@ -248,8 +279,9 @@ TEST(IIB_MatcherEdges, bad_input_throws)
     EXPECT_THROW(matcher->match(Mat(3, BYTES, CV_32F, Scalar(0)), matches), cv::Exception);
     EXPECT_THROW(matcher->add(Mat(3, BYTES + 1, CV_8U, Scalar(0))), cv::Exception);
     EXPECT_EQ(1u, matcher->getTrainDescriptors().size());
-    EXPECT_THROW(matcher->match(ladder(0, 2), matches, std::vector<Mat>(1, Mat(2, 4, CV_8U, Scalar(1)))),
-            cv::Exception);
+    for (Size size : {Size(4, 2), Size(5, 1), Size(5, 3)})
+        EXPECT_THROW(matcher->match(ladder(0, 2), matches, std::vector<Mat>(1, Mat(size, CV_8U, Scalar(1)))),
+                cv::Exception);
     EXPECT_THROW(matcher->match(ladder(0, 2), matches, std::vector<Mat>(1, Mat(2, 5, CV_32S, Scalar(1)))),
             cv::Exception);
     EXPECT_THROW(matcher->match(ladder(0, 2), matches, std::vector<Mat>(2)), cv::Exception);
