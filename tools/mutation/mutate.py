@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Mutation testing: builds the library once with every mutant of mutants.txt switched off, then runs the tests with
-one of them switched on at a time. A mutant that no test notices is a survivor.
+one of them switched on at a time: those in the folder of modules/iib/test with the name of the source's folder. A
+mutant that none of them notices is a survivor.
 
 mutate.py --source REPOSITORY --work FOLDER [--only NAME...]
 
@@ -8,6 +9,7 @@ A mutant is an expression of the source with a wrong one beside it. In a copy of
 IIB_MUTANT(number, right, wrong), and the environment variable IIB_MUTANT chooses at run time.
 """
 import argparse
+import concurrent.futures
 import os
 import pathlib
 import re
@@ -16,66 +18,91 @@ import subprocess
 import sys
 import time
 
+# A constant of each source file, which inner loops read faster than they could call a function.
 HEADER = """#pragma once
 #include <cstdlib>
-namespace iib_mutation {
-inline int chosen()
-{
-    static const int number = std::getenv("IIB_MUTANT") ? std::atoi(std::getenv("IIB_MUTANT")) : 0;
-    return number;
+namespace {
+const int iibChosenMutant = std::getenv("IIB_MUTANT") ? std::atoi(std::getenv("IIB_MUTANT")) : 0;
 }
-}
-#define IIB_MUTANT(number, right, wrong) (iib_mutation::chosen() == (number) ? (wrong) : (right))
+#define IIB_MUTANT(number, right, wrong) (iibChosenMutant == (number) ? (wrong) : (right))
 """
 
 
 class Mutant:
-    def __init__(self, number, name, path, context, right, wrong):
-        self.number, self.name, self.path = number, name, path
-        self.context, self.right, self.wrong = context, right, wrong
+    def __init__(self, number, fields):
+        self.number, self.name, self.path = number, fields["name"], fields["file"]
+        self.context, self.right, self.wrong = fields["in"], fields["right"], fields["wrong"]
+        self.area = fields.get("tests", self.path.split("/")[3])
 
-    def apply(self, source):
-        """Puts the switch around `right` within the line that holds `context`."""
-        text = (source / self.path).read_text()
+    def applied(self, text):
+        """The source `text` with the switch around `right` within the line that holds `context`."""
         if text.count(self.context) != 1:
             sys.exit(f"{self.name}: {self.path} holds '{self.context}' {text.count(self.context)} times, not once: "
                      "bring mutants.txt up to date")
         if self.context.count(self.right) != 1:
             sys.exit(f"{self.name}: '{self.right}' is not there once in its context")
         switch = f"IIB_MUTANT({self.number}, {self.right}, {self.wrong})"
-        text = text.replace(self.context, self.context.replace(self.right, switch))
-        (source / self.path).write_text(text)
+        return text.replace(self.context, self.context.replace(self.right, switch))
 
 
 def read_mutants(path):
-    """Blocks of lines `name: ...`, `file: ...`, `in: ...`, `right: ...`, `wrong: ...`."""
+    """Blocks of lines `name: ...`, `file: ...`, `in: ...`, `right: ...`, `wrong: ...`, and `tests: ...` if the folder of
+    the tests does not have the name of the source's folder."""
     mutants = []
     for block in re.split(r"\n\s*\n", path.read_text()):
         lines = [line for line in block.splitlines() if line and not line.startswith("#")]
         if not lines:
             continue
-        fields = dict(line.split(": ", 1) for line in lines)
-        mutants.append(Mutant(len(mutants) + 1, fields["name"], fields["file"], fields["in"], fields["right"],
-                              fields["wrong"]))
+        mutants.append(Mutant(len(mutants) + 1, dict(line.split(": ", 1) for line in lines)))
     return mutants
 
 
-def copy_source(repository, target):
-    shutil.rmtree(target, ignore_errors=True)
-    files = subprocess.check_output(["git", "-C", repository, "ls-files", "-z"]).decode().split("\0")
-    for name in filter(None, files):
-        (target / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(repository / name, target / name)
+def write_if_changed(path, content):
+    """A file that keeps its time is not compiled again."""
+    if not path.is_file() or path.read_bytes() != content:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
 
 
-def run_tests(program, number, timeout):
-    """Whether every test passes, with all instruction sets and without the wide ones, whose kernels differ. A crash,
-    an abort or a hang counts as noticed."""
+def copy_source(repository, mutants, target):
+    """A copy of the repository's files with the switches of all mutants."""
+    command = ["git", "-C", repository, "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    listed = subprocess.check_output(command).decode().split("\0")
+    content = {name: (repository / name).read_bytes() for name in listed if (repository / name).is_file()}
+    content["mutation.hpp"] = HEADER.encode()
+    for mutant in mutants:
+        if mutant.path not in content:
+            sys.exit(f"{mutant.name}: there is no {mutant.path}: bring mutants.txt up to date")
+        content[mutant.path] = mutant.applied(content[mutant.path].decode()).encode()
+    for old in target.rglob("*"):
+        if old.is_file() and str(old.relative_to(target)) not in content:
+            old.unlink()
+    for name, text in content.items():
+        write_if_changed(target / name, text)
+        if (repository / name).is_file():
+            shutil.copymode(repository / name, target / name)
+
+
+def suites(source, area):
+    """A filter for the test suites in the folder of `area`, which are to notice what is wrong there."""
+    names = set()
+    for path in sorted((source / "modules/iib/test" / area).glob("*.cpp")):
+        text = path.read_text()
+        names |= set(re.findall(r"^TEST(?:_P|_F)?\((\w+),", text, re.MULTILINE))
+    if not names:
+        sys.exit(f"there are no tests of {area}")
+    return ":".join(f"{name}.*:*/{name}.*" for name in sorted(names))
+
+
+def run_tests(program, suites, number, timeout):
+    """Whether all tests of the suites pass, with all instruction sets and without the wide ones, whose kernels differ.
+    A crash, an abort or a hang counts as noticed."""
     for off in ("", "AVX512-SKX,AVX512-ICL", "AVX2,AVX512-SKX,AVX512-ICL"):
         environment = dict(os.environ, IIB_MUTANT=str(number), OPENCV_CPU_DISABLE=off)
+        environment.pop("OPENCV_TEST_DATA_PATH", None)  # tests on photographs take long and are not everywhere
         try:
-            run = subprocess.run([program, "--gtest_break_on_failure"], env=environment, stdout=subprocess.DEVNULL,
-                                 stderr=subprocess.DEVNULL, timeout=timeout)
+            run = subprocess.run([program, f"--gtest_filter={suites}", "--gtest_break_on_failure"], env=environment,
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=timeout)
         except subprocess.TimeoutExpired:
             return False
         if run.returncode != 0:
@@ -95,27 +122,28 @@ def main():
     if unknown:
         sys.exit(f"no such mutants: {', '.join(sorted(unknown))}")
     source, build = options.work / "source", options.work / "build"
-    copy_source(options.source, source)
-    header = source / "mutation.hpp"
-    header.write_text(HEADER)
-    for mutant in mutants:
-        mutant.apply(source)
+    copy_source(options.source, mutants, source)
     subprocess.check_call(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DIIB_BUILD_TOOLS=OFF",
-                           f"-DCMAKE_CXX_FLAGS=-include {header}"], stdout=subprocess.DEVNULL)
+                           f"-DCMAKE_CXX_FLAGS=-include {source / 'mutation.hpp'}"], stdout=subprocess.DEVNULL)
     subprocess.check_call(["cmake", "--build", build, "--target", "opencv_test_iib"])
 
     program = build / "opencv_test_iib"
-    started = time.monotonic()
-    if not run_tests(program, 0, 3600):
-        sys.exit("the tests fail without any mutant")
-    timeout = 60 + 5 * (time.monotonic() - started)
     chosen = [m for m in mutants if not options.only or m.name in options.only]
-    survivors = []
-    for mutant in chosen:
-        survives = run_tests(program, mutant.number, timeout)
-        print(f"{'SURVIVED' if survives else 'noticed '} {mutant.name} ({mutant.path})", flush=True)
-        if survives:
-            survivors.append(mutant.name)
+    filters, limits = {}, {}
+    for area in sorted({m.area for m in chosen}):
+        started = time.monotonic()
+        filters[area] = suites(source, area)
+        if not run_tests(program, filters[area], 0, 3600):
+            sys.exit(f"the tests of {area} fail without any mutant")
+        limits[area] = 60 + 5 * (time.monotonic() - started)
+
+    def survives(mutant):
+        result = run_tests(program, filters[mutant.area], mutant.number, limits[mutant.area])
+        print(f"{'SURVIVED' if result else 'noticed '} {mutant.name} ({mutant.path})", flush=True)
+        return result
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        survivors = [mutant.name for mutant, survived in zip(chosen, pool.map(survives, chosen)) if survived]
     print(f"{len(chosen) - len(survivors)} of {len(chosen)} mutants noticed")
     return 1 if survivors else 0
 
