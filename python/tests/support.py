@@ -83,19 +83,22 @@ def golden_hashes():
 
 
 def steps_meanwhile(call):
-    """How often another thread runs Python while `call` is under way: 0 or 1 if that holds the GIL."""
-    begun, ended = threading.Event(), threading.Event()
+    """How often another thread runs Python in the middle half of the time that `call` takes: 0 if that holds the GIL.
+
+    Not at its begin and end: the other thread may take the GIL just before or after it.
+    """
+    span, steps, ended = [], [], threading.Event()
 
     def work():
-        begun.set()
+        span.append(time.perf_counter())
         call()
+        span.append(time.perf_counter())
         ended.set()
     thread = threading.Thread(target=work)
     thread.start()
-    begun.wait()
-    steps = 0
     while not ended.is_set():
-        steps += 1
+        steps.append(time.perf_counter())
         time.sleep(.001)
     thread.join()
-    return steps
+    begin, end = span
+    return sum(abs(step - (begin + end) / 2) < (end - begin) / 4 for step in steps)
