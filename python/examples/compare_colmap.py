@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """COLMAP's SIFT, ORB and IIB on photographs with known poses, as they are and with every second one relit.
 
-    python compare_colmap.py SCENE [--points 4000] [--methods SIFT,ORB,IIB]
+    python compare_colmap.py SCENE... [--points 4000] [--methods SIFT,ORB,IIB,SIFT+IIB] [--document FILE]
 
-SCENE holds ``images/`` and ``poses.txt`` (TUM: name or time, camera centre in metres, quaternion; in the order of the
+A SCENE holds ``images/`` and ``poses.txt`` (TUM: name or time, camera centre in metres, quaternion; in the order of the
 images' names). Needs the program colmap (Debian's package) and opencv_iib[colmap]. Prints a table: registered images,
 points, mean track length, reprojection error in pixels, and the median error of the camera centres after alignment,
-in per cent of the distance between the outermost of them.
+in per cent of the distance between the outermost of them. --document writes each line into FILE's table, in place of
+the one for the same scene, light and method if there is one.
+
+Methods: SIFT is COLMAP's own; ORB; IIB, or a preset's name, on ORB's keypoints; SIFT+IIB on those of cv2's SIFT.
 """
 import argparse
 import os
@@ -21,6 +24,10 @@ import cv2
 import numpy as np
 
 from opencv_iib.colmap import FeatureOptions, Options, build_database
+from opencv_iib.colmap.features import preset_names
+
+HEAD = ('| scene | light | method | registered | points | track | reprojection | centres, % |\n'
+        '|---|---|---|---|---|---|---|---|')
 
 
 def relit(image, number):
@@ -51,8 +58,9 @@ def make_database(method, images, database, points):
                '--SiftExtraction.use_gpu', 0, '--SiftExtraction.max_num_features', points)
         colmap('exhaustive_matcher', '--database_path', database, '--SiftMatching.use_gpu', 0)
         return
-    preset = {'ORB': 'OWN', 'IIB': 'DEFAULT'}.get(method, method)
-    build_database(str(images), str(database), Options(FeatureOptions('ORB', points, preset)))
+    detector, _, name = method.rpartition('+')
+    preset = {'ORB': 'OWN', 'IIB': 'DEFAULT'}.get(name, name)
+    build_database(str(images), str(database), Options(FeatureOptions(detector or 'ORB', points, preset)))
 
 
 def centres(model):
@@ -92,46 +100,70 @@ def measure(method, images, truth, points, work):
         colmap('mapper', '--database_path', database, '--image_path', images, '--output_path', sparse)
     except RuntimeError:  # no pair to begin with, for some versions
         pass
-    best = ('0', '0', '-', '-', float('nan'))
+    best = ('0', '0', 'nan', 'nan', float('nan'))
     for model in sparse.iterdir():
         text = colmap('model_analyzer', '--path', model)
         values = [re.search(name + r': ([\d.]+)', text) for name in
                   ('Registered images', 'Points', 'Mean track length', 'Mean reprojection error')]
-        row = tuple(v.group(1) if v else '-' for v in values)
+        row = tuple(v.group(1) if v else 'nan' for v in values)
         if int(row[0]) > int(best[0]):
             best = (*row, aligned_error(centres(model), truth))
     return best
 
 
+def compare(scene, light, methods, points):
+    """Lines of the table."""
+    names = sorted(os.listdir(scene / 'images'))
+    poses = [line.split() for line in (scene / 'poses.txt').read_text().splitlines()
+             if line.strip() and not line.startswith('#')]
+    with tempfile.TemporaryDirectory() as folder:
+        images = Path(folder, 'images')
+        images.mkdir()
+        truth = {}
+        for i, (name, pose) in enumerate(zip(names, poses)):
+            image = cv2.imread(str(scene / 'images' / name))
+            image = relit(image, i // 2 % 4) if light == 'relit' and i % 2 else image
+            cv2.imwrite(str(images / (Path(name).stem + '.png')), image)
+            truth[Path(name).stem + '.png'] = np.array(list(map(float, pose[1:4])))
+        for method in methods:
+            work = Path(folder, method)
+            work.mkdir()
+            row = measure(method, images, truth, points, work)
+            yield (f'| {scene.name} | {light} | {method} | {row[0]} of {len(names)} | {row[1]} | {float(row[2]):.2f} | '
+                   f'{float(row[3]):.2f} | {row[4]:.2f} |')
+
+
+def write_into(document, line):
+    """Puts a line into the table: in place of the one of the same scene, light and method, else as the last."""
+    text = document.read_text()
+    if HEAD not in text:
+        sys.exit(f'{document} has no table with the head\n{HEAD}')
+    begin = text.index(HEAD) + len(HEAD)
+    end = text.find('\n\n', begin)
+    rows = text[begin:end].splitlines()[1:]
+    key = line.split('|')[1:4]
+    same = [i for i, row in enumerate(rows) if row.split('|')[1:4] == key]
+    rows[same[0] if same else len(rows):(same[0] if same else len(rows)) + 1] = [line]
+    document.write_text(text[:begin] + '\n' + '\n'.join(rows) + text[end:])
+
+
 def main():
+    methods = 'SIFT,ORB,IIB,SIFT+IIB' + (',UNIVERSAL' if 'UNIVERSAL' in preset_names() else '')
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('scene', type=Path)
+    parser.add_argument('scenes', type=Path, nargs='+', metavar='SCENE')
     parser.add_argument('--points', type=int, default=4000)
-    parser.add_argument('--methods', default='SIFT,ORB,IIB', help='also any preset of opencv_iib')
+    parser.add_argument('--methods', default=methods, help='also any preset of opencv_iib (%(default)s)')
+    parser.add_argument('--document', type=Path, help='file with the table to write into')
     arguments = parser.parse_args()
     if not shutil.which('colmap'):
         sys.exit('there is no program colmap: install it (Debian: apt-get install colmap)')
-    names = sorted(os.listdir(arguments.scene / 'images'))
-    poses = [line.split() for line in (arguments.scene / 'poses.txt').read_text().splitlines()
-             if line.strip() and not line.startswith('#')]
-    truth = {name: np.array(list(map(float, pose[1:4]))) for name, pose in zip(names, poses)}
-
-    print('| light | method | registered | points | track | reprojection | centres, % |\n|---|---|---|---|---|---|---|')
-    for light in ('plain', 'relit'):
-        with tempfile.TemporaryDirectory() as folder:
-            images = Path(folder, 'images')
-            images.mkdir()
-            for i, name in enumerate(names):
-                image = cv2.imread(str(arguments.scene / 'images' / name))
-                image = relit(image, i // 2 % 4) if light == 'relit' and i % 2 else image
-                cv2.imwrite(str(images / (Path(name).stem + '.png')), image)
-            renamed = {Path(name).stem + '.png': centre for name, centre in truth.items()}
-            for method in arguments.methods.split(','):
-                work = Path(folder, method)
-                work.mkdir()
-                row = measure(method, images, renamed, arguments.points, work)
-                print(f'| {light} | {method} | {row[0]} of {len(names)} | {row[1]} | {row[2]} | {row[3]} | '
-                      f'{row[4]:.2f} |', flush=True)
+    print(HEAD)
+    for scene in arguments.scenes:
+        for light in ('plain', 'relit'):
+            for line in compare(scene, light, arguments.methods.split(','), arguments.points):
+                print(line, flush=True)
+                if arguments.document:
+                    write_into(arguments.document, line)
 
 
 if __name__ == '__main__':
