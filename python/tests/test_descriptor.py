@@ -54,14 +54,28 @@ class Bits(unittest.TestCase):
                     _, descriptors = iib.computeWithChannels(image, extra, keypoints)
                     self.assertEqual(fnv1a(descriptors), expected)
 
+    @unittest.skipIf(cv2 is None or not hasattr(cv2, 'iib'), 'this cv2 has no iib')
     def test_in_tree_cv2(self):
-        if cv2 is None or not hasattr(cv2, 'iib'):
-            self.skipTest('this cv2 has no iib')
-        image, keypoints = texture(160, 120), [cv2.KeyPoint(x, y, s) for x, y, s in grid().tolist()]
+        image, keypoints = texture(160, 120), [cv2.KeyPoint(x, y, s, 30) for x, y, s in grid().tolist()]
+        theirs = cv2.iib.IIBDescriptorExtractor
+        pairs = [(IIB.createPreset(getattr(IIB, name)), theirs.createPreset(getattr(IIB, name)))
+                 for name in dir(IIB) if name.startswith('PRESET_')]
         for mapping in range(7):
-            ours = IIB.create(mapping=mapping).compute(image, keypoints)[1]
-            theirs = cv2.iib.IIBDescriptorExtractor.create(mapping=mapping).compute(image, keypoints)[1]
-            np.testing.assert_array_equal(ours, theirs)
+            pairs.append((IIB.create(mapping=mapping), theirs.create(mapping=mapping)))
+        for setter, values in (('setBorder', range(3)), ('setOrientation', range(3))):
+            for value in values:
+                pairs.append((IIB.create(), theirs.create()))
+                for extractor in pairs[-1]:
+                    getattr(extractor, setter)(value)
+        for a, b in pairs:
+            np.testing.assert_array_equal(a.compute(image, keypoints)[1], b.compute(image, keypoints)[1])
+        found, expected = ([k.pt for k in wrap.create(cv2.ORB_create(100), 5).detect(image)]
+                           for wrap in (opencv_iib.NormalizedDetector, cv2.iib.NormalizedDetector))
+        self.assertEqual(found, expected)
+        codes = IIB.create().compute(image, keypoints)[1]
+        for ours, other in zip(*(kind.create(IIB.create().levelSizes()).knnMatchArrays(codes[::-1].copy(), codes, k=3)[:2]
+                                 for kind in (opencv_iib.HierarchicalMatcher, cv2.iib.HierarchicalMatcher))):
+            np.testing.assert_array_equal(ours, other)
 
 
 class Arrays(unittest.TestCase):
