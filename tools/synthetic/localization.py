@@ -75,7 +75,7 @@ def imu(seed):
     return "#timestamp [ns],w_x [rad s^-1],w_y,w_z,a_x [m s^-2],a_y,a_z\n" + "\n".join(rows) + "\n"
 
 
-# One ray a pixel takes a third of the time that smoothing does; the blur of a lens stands in for it.
+# One ray a pixel is quicker than smoothing, which the blur of a lens stands in for.
 ONE_RAY, BLUR = ["+FN8", "-A"], 0.6
 
 

@@ -45,7 +45,7 @@ class Poses(unittest.TestCase):
             step = times[k + 1] - times[k]
             rate = rows[k:k + 2, 1:4].mean(axis=0) - localization.GYRO_BIAS
             force = rows[k:k + 2, 4:7].mean(axis=0) - localization.ACCEL_BIAS
-            acceleration = turn @ cv2.Rodrigues(rate * step / 2)[0] @ force + localization.GRAVITY
+            acceleration = turn @ cv2.Rodrigues(rate * step / 2)[0] @ force + [0, 9.81, 0]
             place += velocity * step + acceleration * step ** 2 / 2
             velocity += acceleration * step
             turn = turn @ cv2.Rodrigues(rate * step)[0]
