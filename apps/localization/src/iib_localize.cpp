@@ -9,6 +9,8 @@
 #include "images.hpp"
 #include "localizer.hpp"
 #include "opencv2/imgcodecs.hpp"
+#include "opencv2/imgproc.hpp"
+#include "smoother.hpp"
 #include "text_file.hpp"
 #include "trajectory.hpp"
 
@@ -33,6 +35,53 @@ std::string csvRow(const std::string& name, const Location& location)
     return row + "\n";
 }
 
+//! The image with the points of the map that agree: where they are seen in green, where the pose has them in red.
+void writePicture(
+        const std::string& path, const cv::Mat& grey, const Location& location, const Camera& camera)
+{
+    const auto at = [&](const Eigen::Vector2d& p) {
+        const Eigen::Vector2d seen = camera.distorted(p);
+        return cv::Point(cv::Point2d(seen.x(), seen.y()));
+    };
+    cv::Mat picture;
+    cv::cvtColor(grey, picture, cv::COLOR_GRAY2BGR);
+    for (const Observation& o : location.inliers)
+    {
+        const cv::Point seen = at(o.pixel);
+        const cv::Point mapped = at(camera.pinhole().project(location.estimate.pose.toCamera(o.point)));
+        cv::line(picture, seen, mapped, {0, 0, 255});
+        cv::circle(picture, seen, 3, {0, 200, 0}, 1, cv::LINE_AA);
+    }
+    if (!cv::imwrite(path, picture))
+        CV_Error(cv::Error::StsError, path + " cannot be written");
+}
+
+//! Of the images alone.
+std::vector<std::optional<Pose>> posesOf(const std::vector<Location>& locations)
+{
+    std::vector<std::optional<Pose>> poses;
+    for (const Location& location : locations)
+        poses.push_back(location.found ? std::optional<Pose>(location.estimate.pose) : std::nullopt);
+    return poses;
+}
+
+std::vector<std::optional<Pose>> withImu(const std::vector<ImageFile>& images,
+        const std::vector<Location>& locations, const std::vector<ImuReading>& readings,
+        const Pinhole& camera)
+{
+    const std::vector<std::optional<Pose>> poses = posesOf(locations);
+    std::vector<VisualFrame> frames;
+    for (size_t i = 0; i < images.size(); i++)
+    {
+        const std::optional<int64_t> time = nanoseconds(images[i].name);
+        if (!time || (i > 0 && *time <= frames[i - 1].nanoseconds))
+            CV_Error(cv::Error::StsError, images[i].path + ": with --imu the images must be named by their "
+                                                           "times, in seconds or nanoseconds, in order");
+        frames.push_back({*time, poses[i], locations[i].inliers});
+    }
+    return smooth(camera, frames, readings);
+}
+
 int run(const iib_tools::CommandLine& line)
 {
     for (const char* needed : {"map", "images", "cameras", "out"})
@@ -50,16 +99,27 @@ int run(const iib_tools::CommandLine& line)
     const std::string out = line.text("out");
     std::error_code error;
     std::filesystem::create_directories(out, error);
+    std::vector<Location> locations;
+    for (const ImageFile& image : images)
+    {
+        const cv::Mat grey = cv::imread(image.path, cv::IMREAD_GRAYSCALE);
+        locations.push_back(localizer.locate(grey, findPose(priors, image.name)));
+        if (line.has("pictures") && locations.back().found)
+            writePicture(out + "/" + image.name + ".png", grey, locations.back(), cameras.begin()->second);
+    }
+    const std::vector<std::optional<Pose>> poses =
+            line.has("imu")
+                    ? withImu(images, locations, readImu(line.text("imu")), cameras.begin()->second.pinhole())
+                    : posesOf(locations);
+
     std::ofstream frames = createFile(out + "/frames.csv");
     frames << csvHeader();
     std::vector<NamedPose> trajectory;
-    for (const ImageFile& image : images)
+    for (size_t i = 0; i < images.size(); i++)
     {
-        const Location location =
-                localizer.locate(cv::imread(image.path, cv::IMREAD_GRAYSCALE), findPose(priors, image.name));
-        frames << csvRow(image.name, location);
-        if (location.found)
-            trajectory.push_back({image.name, location.estimate.pose});
+        frames << csvRow(images[i].name, locations[i]);
+        if (poses[i])
+            trajectory.push_back({images[i].name, *poses[i]});
     }
     finishFile(frames, out + "/frames.csv");
     writeTrajectory(out + "/trajectory.txt", trajectory);
@@ -73,12 +133,14 @@ int main(int argc, char** argv)
 {
     return iib_tools::runTool(argc, argv,
             "Finds where images were taken, in a map that iib_map made.\n"
-            "  iib_localize --map MAP --images DIR --cameras cameras.txt --out OUT\n"
+            "  iib_localize --map MAP --images DIR --cameras cameras.txt --out OUT [--imu imu.csv]\n"
             "OUT/trajectory.txt has the poses (TUM's format), OUT/frames.csv what became of each image.",
             "{map|<none>|the map, a folder}"
             "{images|<none>|folder of the images}"
             "{cameras|<none>|COLMAP's cameras.txt with the camera of all images}"
             "{prior|<none>|TUM's poses: about where the images were taken}"
+            "{imu|<none>|EuRoC's imu.csv, in the camera's axes; images must be named by their times}"
+            "{pictures||write each image with the points that agree, into the same folder}"
             "{out|<none>|folder for the results}",
             run);
 }

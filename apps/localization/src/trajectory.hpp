@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry.hpp"
+#include "imu.hpp"
 
 namespace iib_localization {
 
@@ -28,14 +28,6 @@ std::optional<int64_t> nanoseconds(const std::string& name);
 
 //! The pose of an image: that of the same name, else that of the same time to a microsecond; null if there is none.
 const Pose* findPose(const std::vector<NamedPose>& poses, const std::string& name);
-
-//! An inertial measurement in the camera's axes.
-struct ImuReading
-{
-    int64_t nanoseconds;
-    Eigen::Vector3d rate;   //!< rad/s
-    Eigen::Vector3d force;  //!< m/s^2: acceleration without gravity's
-};
 
 //! Reads EuRoC's imu.csv; times must rise.
 std::vector<ImuReading> readImu(const std::string& path);

@@ -2,6 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
+#include <random>
+
 #include <ceres/gradient_checker.h>
 
 #include "../src/residuals.hpp"
@@ -67,6 +69,86 @@ TEST(Residuals, prior)
     ASSERT_TRUE(function->Evaluate(pointers, residual.data(), nullptr));
     EXPECT_LT((residual.head<3>() - Eigen::Vector3d(-5, 0, 5)).norm(), 1e-9);
     EXPECT_NEAR(2 * std::sin(0.05) / 0.01, residual.tail<3>().norm(), 1e-9);
+}
+
+Preintegration someMotion(const ImuBias& bias)
+{
+    Preintegration p;
+    p.bias = bias;
+    for (int i = 0; i < 40; i++)
+        p.add({0.3 + 0.01 * i, -0.2, 0.5}, {1, 9.5 - 0.1 * i, 0.3}, 0.01);
+    return p;
+}
+
+TEST(Residuals, imu)
+{
+    const std::unique_ptr<ceres::CostFunction> function(
+            ImuError::create(someMotion({{0.01, 0, 0}, {0, 0.1, 0}})));
+    const Eigen::Quaterniond turn = TURN * Eigen::Quaterniond(0.9, 0.1, 0, 0.2).normalized();
+    checkJacobians(*function,
+            withPose({{1, 0.5, -0.2, 0.02, 0, 0.01, 0.1, 0, 0.2}, {turn.x(), turn.y(), turn.z(), turn.w()},
+                    {1.5, -2, 0.6}, {1.1, 0.4, -0.3, 0.02, 0.01, 0.01, 0.1, 0.1, 0.2}, {0, 9.81, 0}}),
+            {0, 3});
+}
+
+TEST(Residuals, state_prior)
+{
+    Matrix15 root = Matrix15::Random();
+    const Pose pose = {TURN * Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY()), {1.1, -2, 0.4}};
+    const std::unique_ptr<ceres::CostFunction> function(StatePrior::create(
+            pose, Eigen::Matrix<double, 9, 1>::Ones(), root * root.transpose() + Matrix15::Identity()));
+    checkJacobians(*function, withPose({{1, 0.5, -0.2, 0.02, 0, 0.01, 0.1, 0, 0.2}}), {0});
+}
+
+// The derivatives by the bias against differences.
+TEST(Preintegration, derivatives_by_the_bias)
+{
+    const double h = 1e-5;
+    const Preintegration middle = someMotion({});
+    for (int i = 0; i < 6; i++)
+    {
+        Preintegration ends[2];
+        for (int side : {0, 1})
+        {
+            ImuBias bias;
+            (i < 3 ? bias.rate[i] : bias.force[i - 3]) = side ? h : -h;
+            ends[side] = someMotion(bias);
+        }
+        Eigen::Matrix<double, 9, 1> expected;
+        expected << 2 * (ends[0].rotation.conjugate() * ends[1].rotation).vec(),
+                ends[1].velocity - ends[0].velocity, ends[1].position - ends[0].position;
+        EXPECT_LT((expected / (2 * h) - middle.byBias.col(i)).norm(), 1e-6) << i;
+    }
+}
+
+// A thousand noisy copies of a motion scatter as the covariance says.
+TEST(Preintegration, covariance_tells_the_noise)
+{
+    const double dt = 0.01, rateNoise = 2 * 1.7e-4 / std::sqrt(dt), forceNoise = 2 * 2.0e-3 / std::sqrt(dt);
+    const Preintegration exact = someMotion({});
+    std::mt19937 random(1);
+    std::normal_distribution<double> normal;
+    const auto noise = [&](double sigma) {
+        const double x = normal(random), y = normal(random), z = normal(random);  // in this order
+        return Eigen::Vector3d(sigma * x, sigma * y, sigma * z);
+    };
+    double sum = 0;
+    const int trials = 1000;
+    for (int t = 0; t < trials; t++)
+    {
+        Preintegration p;
+        for (int i = 0; i < 40; i++)
+        {
+            const Eigen::Vector3d rate = Eigen::Vector3d(0.3 + 0.01 * i, -0.2, 0.5) + noise(rateNoise);
+            const Eigen::Vector3d force = Eigen::Vector3d(1, 9.5 - 0.1 * i, 0.3) + noise(forceNoise);
+            p.add(rate, force, dt);
+        }
+        Eigen::Matrix<double, 9, 1> error;
+        error << 2 * (exact.rotation.conjugate() * p.rotation).vec(), p.velocity - exact.velocity,
+                p.position - exact.position;
+        sum += error.dot(exact.covariance.ldlt().solve(error));
+    }
+    EXPECT_NEAR(9, sum / trials, 0.6);  // the mean square in standard deviations; its own is 0.13
 }
 
 }  // namespace
