@@ -38,7 +38,7 @@ def precision_recall(chosen):
 def detected_points():
     """Points detected in both images, all pairs of real images under changed light."""
     found = collections.defaultdict(list)
-    for row in rows('protocol_b.csv'):
+    for row in rows('detected_points.csv'):
         if row['kind'] == 'light' and row['set'] not in RENDERED:
             found[row['detector'], row['descriptor']].append(row)
 
@@ -57,7 +57,7 @@ def detected_points():
 def fixed_points():
     """The same 1000 points in both images: light, and the two sequences of Oxford's set whose camera moves."""
     found = collections.defaultdict(list)
-    for row in rows('protocol_a.csv'):
+    for row in rows('fixed_points.csv'):
         if row['set'] not in RENDERED:
             found[row['configuration'], 'light' if row['kind'] == 'light' else row['sequence']].append(row)
     lines = []
@@ -79,7 +79,7 @@ def presets():
            ('IIB S256', '`PRESET_S256`', 'the default, shortened'),
            ('IIB S128', '`PRESET_S128`', 'the default, shortened'))
     found = collections.defaultdict(list)
-    for row in rows('protocol_a.csv'):
+    for row in rows('fixed_points.csv'):
         place = row['sequence']
         if row['kind'] == 'light':
             place = 'rendered' if row['set'] in RENDERED else 'trained' if row['set'] in TRAINED_ON else 'light'

@@ -45,12 +45,12 @@ Row rowOf(const String& name, const Ptr<IIB>& iib, const Mat& image,
 std::vector<Row> allRows(const Mat& image)
 {
     const Ptr<ORB> orb = ORB::create();
-    const Row peer = {"cv::ORB", [=](std::vector<KeyPoint>& k, Mat& d) { orb->compute(image, k, d); }, 1,
+    const Row baseline = {"cv::ORB", [=](std::vector<KeyPoint>& k, Mat& d) { orb->compute(image, k, d); }, 1,
             {DBL_MAX, DBL_MAX}};
     const std::vector<Mat> extra(2, image);
     const int all = IIB::CHANNELS_DEFAULT;
     return std::vector<Row>{
-            peer,
+            baseline,
             rowOf("default", IIB::create(), image),
             rowOf("granularity 5", IIB::create(2.f, 5), image),
             rowOf("overlap", IIB::create(2.f, 4, all, IIB::MAPPING_MEAN, true), image),

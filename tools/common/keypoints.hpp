@@ -23,7 +23,7 @@ struct SeedPoints
 raster order, as FAST gives them, every one has the same chance, and all parts of the image have their share. */
 std::vector<cv::KeyPoint> sampleUniformly(const std::vector<cv::KeyPoint>& keypoints, int count);
 
-/** Protocol A (paper, "Experiments Using Predefined Feature Points with ROS"): projects the reference's
+/** Fixed points (paper, "Experiments Using Predefined Feature Points with ROS"): projects the reference's
 points and samples `count` of those whose ROS, a square of side 2 * radius about the centre, lies inside both
 images. Angles become -1, KeyPoint::response the index of the seed, which survives descriptors that drop or
 reorder keypoints. */

@@ -13,7 +13,7 @@ namespace {
 
 typedef cv::Ptr<cv::Feature2D> Feature;
 
-Configuration peer(const std::string& name, float seedSize, const std::function<Feature()>& create,
+Configuration baseline(const std::string& name, float seedSize, const std::function<Feature()>& create,
         const std::string& seeds = "FAST")
 {
     Configuration c;
@@ -27,47 +27,48 @@ Configuration peer(const std::string& name, float seedSize, const std::function<
 
 Configuration akaze(int bits)
 {
-    return peer(
+    return baseline(
             "AKAZE-" + std::to_string(bits ? bits : 486), 0,
             [bits]() -> Feature { return cv::AKAZE::create(cv::AKAZE::DESCRIPTOR_MLDB_UPRIGHT, bits); },
             "AKAZE");
 }
 
 #ifdef HAVE_OPENCV_XFEATURES2D
-void addXfeatures2d(std::vector<Configuration>& peers)
+void addXfeatures2d(std::vector<Configuration>& baselines)
 {
     using namespace cv::xfeatures2d;
     const float side = 2 * SEED_RADIUS;
     for (int bytes : {16, 32, 64})
     {
-        peers.push_back(peer("BRIEF-" + std::to_string(8 * bytes), side,
+        baselines.push_back(baseline("BRIEF-" + std::to_string(8 * bytes), side,
                 [bytes]() -> Feature { return BriefDescriptorExtractor::create(bytes); }));
-        peers.push_back(peer("LATCH-" + std::to_string(8 * bytes), side,
+        baselines.push_back(baseline("LATCH-" + std::to_string(8 * bytes), side,
                 [bytes]() -> Feature { return LATCH::create(bytes, false); }));
     }
     // A pattern of 22 px about keypoints of size 7.
-    peers.push_back(peer("FREAK", 7 * SEED_RADIUS / 22, []() -> Feature { return FREAK::create(false); }));
+    baselines.push_back(
+            baseline("FREAK", 7 * SEED_RADIUS / 22, []() -> Feature { return FREAK::create(false); }));
     const int boost[][2] = {
             {64, BoostDesc::BINBOOST_64}, {128, BoostDesc::BINBOOST_128}, {256, BoostDesc::BINBOOST_256}};
     for (const auto& b : boost)
     {
         const int type = b[1];
-        peers.push_back(peer("BOOST-" + std::to_string(b[0]), side,
+        baselines.push_back(baseline("BOOST-" + std::to_string(b[0]), side,
                 [type]() -> Feature { return BoostDesc::create(type, true, 1.f); }));
     }
-    peers.push_back(
-            peer("BEBLID-256", side, []() -> Feature { return BEBLID::create(1.f, BEBLID::SIZE_256_BITS); }));
-    peers.push_back(
-            peer("BEBLID-512", side, []() -> Feature { return BEBLID::create(1.f, BEBLID::SIZE_512_BITS); }));
+    baselines.push_back(baseline(
+            "BEBLID-256", side, []() -> Feature { return BEBLID::create(1.f, BEBLID::SIZE_256_BITS); }));
+    baselines.push_back(baseline(
+            "BEBLID-512", side, []() -> Feature { return BEBLID::create(1.f, BEBLID::SIZE_512_BITS); }));
 #if CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407
-    peers.push_back(
-            peer("TEBLID-256", side, []() -> Feature { return TEBLID::create(1.f, TEBLID::SIZE_256_BITS); }));
-    peers.push_back(
-            peer("TEBLID-512", side, []() -> Feature { return TEBLID::create(1.f, TEBLID::SIZE_512_BITS); }));
+    baselines.push_back(baseline(
+            "TEBLID-256", side, []() -> Feature { return TEBLID::create(1.f, TEBLID::SIZE_256_BITS); }));
+    baselines.push_back(baseline(
+            "TEBLID-512", side, []() -> Feature { return TEBLID::create(1.f, TEBLID::SIZE_512_BITS); }));
 #endif
     // The window is 20 times 1.2 / 9 of the size.
-    peers.push_back(
-            peer("SURF", side * 9 / 24, []() -> Feature { return SURF::create(100, 4, 3, false, true); }));
+    baselines.push_back(baseline(
+            "SURF", side * 9 / 24, []() -> Feature { return SURF::create(100, 4, 3, false, true); }));
 }
 #endif
 
@@ -85,16 +86,16 @@ bool isAvailable(const Configuration& c)
 
 }  // namespace
 
-std::vector<Configuration> peerConfigurations()
+std::vector<Configuration> baselineConfigurations()
 {
     std::vector<Configuration> all = {// Its patch is 31 px whatever the size.
-            peer("ORB", 31, []() -> Feature { return cv::ORB::create(); }),
+            baseline("ORB", 31, []() -> Feature { return cv::ORB::create(); }),
             // A pattern of 9.2 px about keypoints of size 7.2.
-            peer("BRISK", SEED_RADIUS * 7.2f / 9.2f, []() -> Feature { return cv::BRISK::create(); }),
+            baseline("BRISK", SEED_RADIUS * 7.2f / 9.2f, []() -> Feature { return cv::BRISK::create(); }),
             // Four bins of 1.5 sizes each.
-            peer("SIFT", 2 * SEED_RADIUS / 6, []() -> Feature { return cv::SIFT::create(); }), akaze(128),
+            baseline("SIFT", 2 * SEED_RADIUS / 6, []() -> Feature { return cv::SIFT::create(); }), akaze(128),
             akaze(256), akaze(0),
-            peer(
+            baseline(
                     "KAZE", 0, []() -> Feature { return cv::KAZE::create(false, true); }, "KAZE")};
 #ifdef HAVE_OPENCV_XFEATURES2D
     addXfeatures2d(all);

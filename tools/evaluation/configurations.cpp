@@ -117,11 +117,11 @@ std::vector<Configuration> robustnessConfigurations()
     };
     std::vector<Configuration> all = presets();
     all.insert(all.begin(), {upright, oriented});
-    for (const Configuration& peer : peerConfigurations())
-        if (peer.name == "ORB" || peer.name == "SIFT")
+    for (const Configuration& baseline : baselineConfigurations())
+        if (baseline.name == "ORB" || baseline.name == "SIFT")
         {
-            all.push_back(peer);
-            all.push_back(peer);
+            all.push_back(baseline);
+            all.push_back(baseline);
             all.back().name += " oriented";
             all.back().oriented = true;
         }

@@ -13,7 +13,7 @@
 
 namespace iib_tools {
 
-const float SEED_RADIUS = 32;  //!< pixels; half the side of protocol A's ROS
+const float SEED_RADIUS = 32;  //!< pixels; half the side of the ROS of fixed points
 const float DEEP_RADIUS = 64;  //!< the same around keypoints of deep detectors
 
 //! A descriptor with its parameters, under the name that result files carry.
@@ -31,7 +31,7 @@ struct Configuration
 std::vector<Configuration> iibConfigurations();
 
 //! The other descriptors that this OpenCV has, with the parameters OpenCV recommends, upright.
-std::vector<Configuration> peerConfigurations();
+std::vector<Configuration> baselineConfigurations();
 
 //! Default IIB, upright and oriented, the presets, and ORB and SIFT for comparison.
 std::vector<Configuration> robustnessConfigurations();

@@ -90,8 +90,8 @@ int cost(const Options& options, const std::vector<ImagePair>& pairs)
     for (const Configuration& c : iibConfigurations())
         if (c.extraNames.empty() && c.seeds == "FAST")
             all.push_back(c);
-    for (const Configuration& peer : peerConfigurations())
-        all.push_back(peer);
+    for (const Configuration& baseline : baselineConfigurations())
+        all.push_back(baseline);
     ResultTable table(options.out + "/cost.csv",
             {"configuration", "bytes", "image", "keypoints", "milliseconds",
                     "microseconds_per_further_keypoint"},

@@ -109,10 +109,10 @@ void evaluatePair(const Options& options, const ImagePair& pair, const std::vect
 
 }  // namespace
 
-int protocolB(const Options& options, const std::vector<ImagePair>& pairs)
+int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs)
 {
     const std::vector<Detector> all = detectors(options);
-    ResultTable table(options.out + "/protocol_b.csv",
+    ResultTable table(options.out + "/detected_points.csv",
             {"set", "sequence", "target", "detector", "descriptor", "kind", "bytes", "correct", "putative",
                     "correspondences", "precision", "recall", "curve"},
             5);
@@ -127,7 +127,7 @@ int protocolB(const Options& options, const std::vector<ImagePair>& pairs)
             tasks.push_back({pair.name(),
                     [&options, &table, pair, missing] { evaluatePair(options, pair, missing, table); }});
     }
-    const int skipped = runTasks("protocol B", tasks);
+    const int skipped = runTasks("detected points", tasks);
     table.finish();
     return skipped;
 }

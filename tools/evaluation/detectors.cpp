@@ -106,9 +106,9 @@ std::vector<Detector> detectors(const Options& options)
                     "KAZE", []() -> Feature { return cv::KAZE::create(false, true); }, count),
             classic(
                     "SIFT", []() -> Feature { return cv::SIFT::create(); }, count)};
-    for (const Configuration& peer : peerConfigurations())
-        if (peer.name == "SURF")
-            all.push_back(classic("SURF", peer.create, count));
+    for (const Configuration& baseline : baselineConfigurations())
+        if (baseline.name == "SURF")
+            all.push_back(classic("SURF", baseline.create, count));
     if (!options.keypoints.empty())
         all.push_back(fromFiles(options.keypoints, count));
     if (!options.network.empty())

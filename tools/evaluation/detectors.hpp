@@ -22,7 +22,7 @@ struct Detection
     int norm;
 };
 
-//! A detector of protocol B (paper, "Experiments Combined with Feature Detectors").
+//! A detector of the experiment with detected points (paper, "Experiments Combined with Feature Detectors").
 struct Detector
 {
     std::string name;

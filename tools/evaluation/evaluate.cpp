@@ -20,7 +20,7 @@ struct Experiment
     int (*run)(const Options&, const std::vector<ImagePair>&);
 };
 
-const Experiment EXPERIMENTS[] = {{"protocol_a", protocolA}, {"protocol_b", protocolB},
+const Experiment EXPERIMENTS[] = {{"fixed_points", fixedPoints}, {"detected_points", detectedPoints},
         {"matching", matchingStudy}, {"robustness", robustness}, {"cost", cost}, {"pictures", pictures}};
 
 //! Results of other settings must not be mixed with these.

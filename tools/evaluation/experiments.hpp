@@ -27,17 +27,17 @@ struct Options
 
 /** Each experiment appends to `<out>/<name>.csv` what is not there yet.
 @return the number of pairs that were skipped because something was broken. */
-int protocolA(const Options& options, const std::vector<ImagePair>& pairs);
+int fixedPoints(const Options& options, const std::vector<ImagePair>& pairs);
 //! Of pairs whose light changes, as the paper's.
-int protocolB(const Options& options, const std::vector<ImagePair>& pairs);
+int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs);
 int matchingStudy(const Options& options, const std::vector<ImagePair>& pairs);
 int robustness(const Options& options, const std::vector<ImagePair>& pairs);
 int cost(const Options& options, const std::vector<ImagePair>& pairs);
-//! Pictures of the worst and best pairs of each set, by recall in `<out>/protocol_a.csv`.
+//! Pictures of the worst and best pairs of each set, by recall in `<out>/fixed_points.csv`.
 int pictures(const Options& options, const std::vector<ImagePair>& pairs);
 
-//! Columns of `<out>/protocol_a.csv`.
-std::vector<std::string> protocolAColumns();
+//! Columns of `<out>/fixed_points.csv`.
+std::vector<std::string> fixedPointsColumns();
 
 //! Names of the experiments in the order in which evaluate runs them.
 std::vector<std::string> experimentNames();

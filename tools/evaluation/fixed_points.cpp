@@ -58,21 +58,21 @@ void evaluatePair(const Options& options, const ImagePair& pair,
 
 }  // namespace
 
-std::vector<std::string> protocolAColumns()
+std::vector<std::string> fixedPointsColumns()
 {
     return {"set", "sequence", "target", "configuration", "kind", "bytes", "correct", "putative",
             "correspondences", "precision", "recall"};
 }
 
-int protocolA(const Options& options, const std::vector<ImagePair>& pairs)
+int fixedPoints(const Options& options, const std::vector<ImagePair>& pairs)
 {
     std::vector<Configuration> all = iibConfigurations();
     for (const std::string& file : options.saved)
         all.push_back(savedConfiguration(file));
-    for (const Configuration& peer : peerConfigurations())
-        all.push_back(peer);
+    for (const Configuration& baseline : baselineConfigurations())
+        all.push_back(baseline);
 
-    ResultTable table(options.out + "/protocol_a.csv", protocolAColumns(), 4);
+    ResultTable table(options.out + "/fixed_points.csv", fixedPointsColumns(), 4);
     std::vector<Task> tasks;
     for (const ImagePair& pair : pairs)
     {
@@ -84,7 +84,7 @@ int protocolA(const Options& options, const std::vector<ImagePair>& pairs)
             tasks.push_back({pair.name(),
                     [&options, &table, pair, missing] { evaluatePair(options, pair, missing, table); }});
     }
-    const int skipped = runTasks("protocol A", tasks);
+    const int skipped = runTasks("fixed points", tasks);
     table.finish();
     return skipped;
 }

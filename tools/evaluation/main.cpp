@@ -15,7 +15,7 @@ const char* const USAGE =
         "  DATA               folder of image sequences, or a list file (layouts: README.md beside the "
         "source)\n"
         "  --out FOLDER       for the results; a run that was interrupted goes on there\n"
-        "  --only NAME        protocol_a, protocol_b, matching, robustness, cost or pictures; may be "
+        "  --only NAME        fixed_points, detected_points, matching, robustness, cost or pictures; may be "
         "repeated\n"
         "  --points N         keypoints an image, 1000\n"
         "  --tolerance PX     of a correct match, 3\n"

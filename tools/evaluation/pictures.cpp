@@ -27,7 +27,7 @@ struct Choice
     double recall;
 };
 
-//! The worst and best pairs of each set by the default's recall, from protocol A's table.
+//! The worst and best pairs of each set by the default's recall, from the table of fixed points.
 std::vector<Choice> choose(const std::vector<Fields>& rows, int count)
 {
     std::map<std::string, std::vector<Choice>> sets;
@@ -110,7 +110,7 @@ int pictures(const Options& options, const std::vector<ImagePair>& pairs)
 
     std::vector<Task> tasks;
     for (const Choice& choice :
-            choose(readRows(options.out + "/protocol_a.csv", protocolAColumns()), options.worst))
+            choose(readRows(options.out + "/fixed_points.csv", fixedPointsColumns()), options.worst))
     {
         const auto found = byName.find(choice.name);
         if (found == byName.end())

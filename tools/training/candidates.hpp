@@ -15,7 +15,7 @@ namespace iib_tools {
 struct PoolParameters
 {
     int channels, mapping, granularity;  //!< as in IIBDescriptorExtractor::create
-    float scale;  //!< side of the ROS in units of KeyPoint::size, which is the ROS of protocol A
+    float scale;  //!< side of the ROS in units of KeyPoint::size, which is the ROS of the evaluation's fixed points
     /** Where a level's quads begin, coarse first, the last number for all finer levels too: a sum of 1 (even rows and
     columns), 2 (even rows, odd columns), 4 (odd rows, even columns) and 8 (odd rows and columns). */
     std::vector<int> windows;

@@ -13,7 +13,7 @@ namespace iib_tools {
 namespace {
 
 const int ANCHORS_A_PAIR = 100, PAIRS_A_STEP = 40, NEGATIVES = 15;
-const float SAME_POINT = 3;  // pixels; protocol A calls such a match correct
+const float SAME_POINT = 3;  // pixels; the evaluation calls such a match correct
 
 //! The given bits of every row, packed anew.
 cv::Mat gather(const cv::Mat& descriptors, const std::vector<int>& positions)

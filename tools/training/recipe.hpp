@@ -31,7 +31,7 @@ std::vector<Recipe> presetRecipes();
 cv::Ptr<cv::iib::IIBDescriptorExtractor> train(
         const Recipe& recipe, const std::vector<ImagePair>& pairs, uint64 seed, const Progress& progress);
 
-//! mAP and mAR of protocol A, means over the pairs.
+//! mAP and mAR at fixed points, means over the pairs.
 MeanScores judge(const std::vector<ImagePair>& pairs, const cv::Ptr<cv::Feature2D>& extractor,
         const Progress& progress);
 

@@ -25,7 +25,7 @@ struct DescribedPair
 //! Called with the work done so far and the whole of it.
 typedef std::function<void(int done, int all)> Progress;
 
-/** The points of protocol A (up to 1000 FAST corners a pair, ROS of radius 32) of `pairsPerScene` random pairs
+/** The evaluation's fixed points (up to 1000 FAST corners a pair, ROS of radius 32) of `pairsPerScene` random pairs
 of images of every scene, half of them mirrored, so that scenes count the same and left is like right. A part
 `warpShare` of the targets is turned by up to 20 degrees, scaled by 0.7 to 1.4 and tilted by up to 2, about
 the centre; two in five of these are of one image and its own warp, without a change of light. Pairs with fewer than 100 points are left out. */

@@ -8,13 +8,12 @@ import math
 import os
 
 
-# What the evaluation calls otherwise: its files, and kinds of change.
-FILES = {"fixed_points": "protocol_a", "detected_points": "protocol_b"}
+# Kinds of change that the evaluation calls otherwise.
 KINDS = {"light": "illumination", "turn": "rotation"}
 
 
 def file_name(name):
-    return FILES.get(name, name) + ".csv"
+    return name + ".csv"
 
 
 def read(folder, name):

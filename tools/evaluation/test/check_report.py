@@ -15,7 +15,7 @@ report, results = sys.argv[1:]
 subprocess.run([sys.executable, "-B", report, results], check=True, stdout=subprocess.DEVNULL)
 with open(os.path.join(results, "index.html")) as file:
     text = file.read()
-with open(os.path.join(results, "protocol_a.csv")) as file:
+with open(os.path.join(results, "fixed_points.csv")) as file:
     rows = [r for r in csv.DictReader(file) if r["configuration"] == "IIB" and r["kind"] == "light" and
             not r["set"].startswith("lights")]
 recall = sum(float(r["recall"]) for r in rows) / len(rows)

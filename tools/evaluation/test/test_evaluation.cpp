@@ -64,14 +64,14 @@ protected:
         ASSERT_TRUE(cv::imwrite(folder.path("data/set/" + name), image));
     }
 
-    std::vector<Fields> protocolARows() const
+    std::vector<Fields> fixedPointsRows() const
     {
-        return readRows(options.out + "/protocol_a.csv", protocolAColumns());
+        return readRows(options.out + "/fixed_points.csv", fixedPointsColumns());
     }
 
     double recallOf(const std::string& target, const std::string& configuration) const
     {
-        for (const Fields& row : protocolARows())
+        for (const Fields& row : fixedPointsRows())
             if (row[1] == target && row[3] == configuration)
                 return std::atof(row[10].c_str());
         ADD_FAILURE() << "no row of " << target << ", " << configuration;
@@ -96,7 +96,7 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
     EXPECT_GT(recallOf("still", "IIB +depth"), 0.9);
 
     const std::vector<std::string> tables = {
-            "protocol_a", "protocol_b", "matching", "robustness", "cost", "pictures"};
+            "fixed_points", "detected_points", "matching", "robustness", "cost", "pictures"};
     std::vector<std::string> first;
     for (const std::string& name : tables)
         first.push_back(contents(options.out + "/" + name + ".csv"));
@@ -111,7 +111,7 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
 
 TEST_F(EvaluationTest, an_interrupted_run_goes_on_to_the_same_result)
 {
-    for (const std::string experiment : {"robustness", "protocol_a"})
+    for (const std::string experiment : {"robustness", "fixed_points"})
     {
         options.experiments = {experiment};
         evaluate(options);
@@ -120,14 +120,14 @@ TEST_F(EvaluationTest, an_interrupted_run_goes_on_to_the_same_result)
         evaluate(options);
         EXPECT_EQ(whole, contents(file)) << experiment;
     }
-    const std::string whole = contents(options.out + "/protocol_a.csv");
+    const std::string whole = contents(options.out + "/fixed_points.csv");
 
     const int threads = cv::getNumThreads();
     cv::setNumThreads(1);
     options.out = folder.path("serial");
     evaluate(options);
     cv::setNumThreads(threads);
-    EXPECT_EQ(whole, contents(options.out + "/protocol_a.csv"));
+    EXPECT_EQ(whole, contents(options.out + "/fixed_points.csv"));
 }
 
 TEST_F(EvaluationTest, broken_files_are_counted_and_the_rest_goes_on)
@@ -135,14 +135,14 @@ TEST_F(EvaluationTest, broken_files_are_counted_and_the_rest_goes_on)
     folder.write("data/set/still/3.png", "no image");
     folder.write("data/set/v_shift/3.png", "no image");
     folder.write("data/set/v_shift/H_1_3", "1 2 3");
-    options.experiments = {"protocol_a"};
+    options.experiments = {"fixed_points"};
     EXPECT_EQ(2, evaluate(options));
     EXPECT_GT(recallOf("still", "IIB"), 0.9);
 }
 
 TEST_F(EvaluationTest, keypoints_from_files)
 {
-    options.experiments = {"protocol_b"};
+    options.experiments = {"detected_points"};
     options.keypoints = folder.path("points");
     folder.makeFolder("points/set/still");
     std::string list = "x,y,size\n";
@@ -154,7 +154,7 @@ TEST_F(EvaluationTest, keypoints_from_files)
     write("still/3.png", cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
     write("still/depth/3.png", cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
     EXPECT_EQ(1, evaluate(options));  // the third image has no such file
-    const std::string table = contents(options.out + "/protocol_b.csv"),
+    const std::string table = contents(options.out + "/detected_points.csv"),
                       row = "set,still,2,file,IIB,light,170,";
     const size_t at = table.find(row);
     ASSERT_NE(std::string::npos, at);
@@ -172,8 +172,8 @@ TEST_F(EvaluationTest, no_readable_pair_is_an_error)
 
 TEST_F(EvaluationTest, mistakes_are_told)
 {
-    options.experiments = {"protocol_c"};
-    EXPECT_NE(std::string::npos, messageOf([&] { evaluate(options); }).find("protocol_c"));
+    options.experiments = {"unknown_points"};
+    EXPECT_NE(std::string::npos, messageOf([&] { evaluate(options); }).find("unknown_points"));
     options.experiments.clear();
     folder.makeFolder("empty");
     options.roots = {folder.path("empty")};

@@ -23,7 +23,7 @@ struct PresetCase
 
 std::ostream& operator<<(std::ostream& out, const PresetCase& c) { return out << c.name; }
 
-//! Protocol A (paper, "Experiments Using Predefined Feature Points with ROS"): counts of one pair.
+//! Fixed points (paper, "Experiments Using Predefined Feature Points with ROS"): counts of one pair.
 struct Counts
 {
     int correct, putative, points;
