@@ -9,7 +9,7 @@
 
 #include "../precomp.hpp"
 
-// The compiler's word, not the build's: a generated header may not have been told.
+// Asks the compiler: OpenCV's generated headers know a big-endian machine only if its build was told.
 #if defined __BYTE_ORDER__ && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
 #define IIB_BIG_ENDIAN 1
 #else

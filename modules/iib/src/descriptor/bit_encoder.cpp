@@ -31,7 +31,7 @@ void doubleParentSums(const CellGrid<double>& children, CellGrid<double>& cells)
                         (children.cell(2 * r + 1, 2 * c)[i] + children.cell(2 * r + 1, 2 * c + 1)[i]);
 }
 
-//! The largest factor that makes siblings comparable.
+//! The largest factor by which Weights multiplies a sum, along one axis.
 double largestWeight(const Axis& axis, int n)
 {
     int smallest = INT_MAX, largest = 0;
@@ -43,7 +43,7 @@ double largestWeight(const Axis& axis, int n)
     return smallest == largest ? 1 : largest;
 }
 
-//! Of the channels in use: the others hold nothing.
+//! The largest sum of the channels in use.
 template <typename Cell> Cell largestSum(const CellGrid<Cell>& cells, int channels)
 {
     Cell largest = 0;

@@ -137,7 +137,7 @@ private:
         replace(changed);
     }
 
-    //! Sets what the selection's rows refer to, which ends it.
+    //! Sets a parameter that the rows of a selection refer to; another value removes the selection.
     template <typename T> void setShape(T Parameters::*member, T value)
     {
         Parameters changed = p;

@@ -30,7 +30,8 @@ struct KeyPointBatch
     }
 };
 
-//! How often keypoints are cut at gaps, along both axes in turn. What peels off one at a time would take long.
+//! How often keypoints are cut at gaps, along both axes in turn. Without a limit, keypoints that are cut off one by one
+//! would take quadratic time.
 enum
 {
     MAX_CUTS = 8

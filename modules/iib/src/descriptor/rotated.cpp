@@ -18,7 +18,7 @@ namespace {
 
 const double LARGEST_SIDE = 16384;  // so that a point's offset fits 32 bits
 
-//! A sine may add the two components of a gradient.
+//! Both components of a gradient are 4 times the largest pixel at most; rotated, one is sqrt(2) times that at most.
 int maxRotatedGradient(int depth) { return 6 * maxPixel(depth); }
 
 int samplesInRow(const SupportRegion& region, int granularity)
@@ -26,7 +26,7 @@ int samplesInRow(const SupportRegion& region, int granularity)
     return region.side <= 64 && granularity <= 5 ? 32 : 64;
 }
 
-//! A square of any angle that holds the region's, and a pixel for each rounding.
+//! An upright square that holds the region at any angle, and two pixels for roundings.
 SupportRegion circumscribed(const SupportRegion& region, Point2f centre)
 {
     return SupportRegion(centre, 2 * (std::min(region.side, LARGEST_SIDE) * 0.7072 + 2));

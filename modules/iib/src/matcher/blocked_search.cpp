@@ -182,7 +182,7 @@ SearchCost searchNearest(const SearchInput& input, KnnTable& forQueries, KnnTabl
         return split(input.queries.rows, evenParts(input),
                 [&](int from, int to) { return Part(input, from, to).nearest(forQueries, 0); });
     // In the other direction each part has neighbours of its own, merged by their order, so that the result
-    // does not depend on who comes first. Few parts, since each starts anew to learn what is near.
+    // does not depend on which is done first. Few parts, since each begins without thresholds.
     std::mutex lock;
     return split(input.queries.rows, getNumThreads(), [&](int from, int to) {
         KnnTable own(forTrains->rows(), forTrains->size(), CodeLayout::CODES_PER_BLOCK);

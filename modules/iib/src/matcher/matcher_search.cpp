@@ -21,7 +21,7 @@ static void checkRadius(float maxDistance)
         CV_Error_(Error::StsOutOfRange, ("maxDistance is %g: it has to be > 0", maxDistance));
 }
 
-// That of a call with two sets.
+// The masks of a call with two sets: one or none.
 static std::vector<Mat> singleMask(InputArray mask)
 {
     return std::vector<Mat>(mask.empty() ? 0 : 1, mask.getMat());

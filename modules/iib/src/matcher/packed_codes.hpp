@@ -19,7 +19,7 @@ public:
     PackedCodes& operator=(const PackedCodes&) = delete;
 
     const CodeLayout& layout() const { return format; }
-    //! The only ones that understand these codes.
+    //! The kernels that the codes are packed for; others would misread them.
     const HammingKernels& kernels() const { return scans; }
 
     size_t rows() const { return starts.back(); }
@@ -37,7 +37,7 @@ public:
     void add(const Mat& descriptors);
     //! Adds descriptors to the last image.
     void append(const Mat& descriptors);
-    //! Makes room, so that no memory is left over.
+    //! Makes memory for exactly these numbers of images and rows.
     void reserve(size_t images, size_t rows);
 
     //! Rows `from` to `to` of an image as they were added.

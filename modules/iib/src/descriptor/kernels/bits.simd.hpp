@@ -55,7 +55,7 @@ int centre(const CellGrid<Cell>& cells, const LevelShape& shape, const CellEdges
     for (int r = 0; r < n; r++)
         for (int c = 0; c < n; c++)
             total += v_cvt_f32(loadCell(cells.cell(r, c)));
-    // any number would do: its rounding changes no bit
+    // rounding it changes no bit: the same number is taken from all means, and only their order counts
     const v_int32x4 mean = v_round(total * v_setall_f32(area > 0 ? 1 / area : 0));
     v_uint32x4 largest = v_setzero_u32();
     centred.create(n);

@@ -88,15 +88,16 @@ inline void append(const uchar* plane, int lanes, int channels, BitAppender& out
 //! Appends the comparisons of all quads of a phase.
 inline void append(PlaneRows planes, const QuadPhase& phase, int bits, int channels, BitAppender& out)
 {
-    BitAppender writer = out;  // a copy that no store of a byte can change stays in registers
+    BitAppender writer =
+            out;  // a local copy: a store to uchar* could change `out`, so that it would be loaded anew
     for (int r = 0; r < phase.rows; r++, planes.first += planes.row)
         for (int plane = 0; plane < bits; plane++)
             append(planes.first + plane * planes.plane, phase.lanes(), channels, writer);
     out = writer;
 }
 
-/* Where the bits of rows shorter than a chunk go, one plane after another: not by way of memory, where bytes that were
- just stored could not be read as part of a longer word until the store is done. */
+/* Where the bits of rows shorter than a chunk go, one plane after another. They stay in registers: to load a word whose
+ bytes have just been stored one by one, a processor waits until the stores are done. */
 class ShortRowWriter
 {
 public:
@@ -133,7 +134,8 @@ IIB_TARGET_BIT_COMPRESS inline void appendChosen(
         const ChosenBits& chosen, const uchar* comparisons, BitAppender& out)
 {
 #if IIB_HAS_FAST_BIT_COMPRESS
-    BitAppender writer = out;  // a copy that no store of a byte can change stays in registers
+    BitAppender writer =
+            out;  // a local copy: a store to uchar* could change `out`, so that it would be loaded anew
     for (const ChosenBits::Word& word : chosen.words())
         writer.append(
                 compressBits(loadWord(comparisons + word.byte), word.compressor.mask), word.compressor.count);

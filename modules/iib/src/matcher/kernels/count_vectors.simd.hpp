@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Vectors of one value for each code of a CodeBlock, as all chapters of the matcher's kernels use them.
+// Vectors of one value for each code of a CodeBlock, which all kernels of the matcher share.
 
 #ifndef OPENCV_IIB_MATCHER_KERNELS_COUNT_VECTORS_SIMD_HPP
 #define OPENCV_IIB_MATCHER_KERNELS_COUNT_VECTORS_SIMD_HPP

@@ -37,7 +37,7 @@ struct CodePairs
     const uchar* allowed;  //!< queryCount x paddedTrains(), 0 for pairs that are masked; null: none is
 };
 
-//! The nearest code of the other side for each code: a scan replaces those than which it finds a nearer one.
+//! The nearest code of the other side for each code; a scan replaces an entry when it finds a nearer one.
 struct NearestCodes
 {
     NearestCodes(int* distances_, int* indices_) : distances(distances_), indices(indices_) {}

@@ -121,15 +121,15 @@ private:
         for (int block = 0; block < blocks; block++)
         {
             Tile<Q> tile;
-            Counts distance[Tile<Q>::SIZE], before[Tile<Q>::SIZE], room[Tile<Q>::SIZE];
-            startStages<Q>(tile, query, block, distance, before, room);
-            endPairs<Q>(0, 0, distance, before, room);
+            Counts distance[Tile<Q>::SIZE], before[Tile<Q>::SIZE], slack[Tile<Q>::SIZE];
+            startStages<Q>(tile, query, block, distance, before, slack);
+            endPairs<Q>(0, 0, distance, before, slack);
             for (int i = 0; i < Tile<Q>::SIZE; i++)
-                gone += room[i] >> 31;
+                gone += slack[i] >> 31;
             tile.advance(queries, codes(block), words[0], words[1]);
             tile.distances(distance);
-            endPairs<Q>(1, 0, distance, before, room);
-            storeRemaining<Q>(block, distance, room);
+            endPairs<Q>(1, 0, distance, before, slack);
+            storeRemaining<Q>(block, distance, slack);
         }
         scan.passed[0] += Q * blocks * CODES_PER_BLOCK + v_reduce_sum(gone);
     }
@@ -141,55 +141,55 @@ private:
         for (int block = 0; block < blocks; block++)
         {
             Tile<Q> tile;
-            Counts distance[Tile<Q>::SIZE], before[Tile<Q>::SIZE], room[Tile<Q>::SIZE];
-            startStages<Q>(tile, query, block, distance, before, room);
+            Counts distance[Tile<Q>::SIZE], before[Tile<Q>::SIZE], slack[Tile<Q>::SIZE];
+            startStages<Q>(tile, query, block, distance, before, slack);
             for (int i = 0; i < stage; i++)
             {
-                endPairs<Q>(i, scan.limits ? scan.limits + query : 0, distance, before, room);
+                endPairs<Q>(i, scan.limits ? scan.limits + query : 0, distance, before, slack);
                 tile.advance(queries, codes(block), words[i], words[i + 1]);
                 tile.distances(distance);
             }
             if (stage < scan.stageCount)
-                endPairs<Q>(stage, 0, distance, before, room);
-            storeRemaining<Q>(block, distance, room);
+                endPairs<Q>(stage, 0, distance, before, slack);
+            storeRemaining<Q>(block, distance, slack);
         }
     }
 
     template <int Q>
     CV_ALWAYS_INLINE void startStages(
-            Tile<Q>& tile, int query, int block, Counts* distance, Counts* before, Counts* room)
+            Tile<Q>& tile, int query, int block, Counts* distance, Counts* before, Counts* slack)
     {
         for (int i = 0; i < Tile<Q>::SIZE; i++)
         {
             before[i] = vx_setzero_s32();
-            room[i] = missing(query + i / VECTORS, block, i % VECTORS);
+            slack[i] = missing(query + i / VECTORS, block, i % VECTORS);
         }
         tile.start(queries, codes(block), words[0]);
         tile.distances(distance);
     }
 
-    //! Makes the room negative of the pairs that are not to go on at a stage.
+    //! Makes the slack of the pairs negative that are not to go on at a stage.
     template <int Q>
     CV_ALWAYS_INLINE void endPairs(
-            int stage, const int* limits, const Counts* distance, Counts* before, Counts* room) const
+            int stage, const int* limits, const Counts* distance, Counts* before, Counts* slack) const
     {
         const Counts most = vx_setall_s32(scan.stages[stage].most);
         for (int i = 0; i < Tile<Q>::SIZE; i++)
         {
-            room[i] = room[i] | (before[i] + most - distance[i]);
+            slack[i] = slack[i] | (before[i] + most - distance[i]);
             if (limits)
-                room[i] = room[i] | (vx_setall_s32(limits[i / VECTORS]) - distance[i]);
+                slack[i] = slack[i] | (vx_setall_s32(limits[i / VECTORS]) - distance[i]);
             before[i] = distance[i];
         }
     }
 
     //! NEVER in place of the distances of pairs that ended on the way.
     template <int Q>
-    CV_ALWAYS_INLINE void storeRemaining(int block, const Counts* distance, const Counts* room)
+    CV_ALWAYS_INLINE void storeRemaining(int block, const Counts* distance, const Counts* slack)
     {
         for (int i = 0; i < Tile<Q>::SIZE; i++)
             lists.store(i / VECTORS, block, i % VECTORS,
-                    v_select(room[i] < vx_setzero_s32(), vx_setall_s32(NEVER), distance[i]));
+                    v_select(slack[i] < vx_setzero_s32(), vx_setall_s32(NEVER), distance[i]));
         lists.append(block);
     }
 

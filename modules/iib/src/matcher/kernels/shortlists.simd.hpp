@@ -29,7 +29,7 @@ public:
     {
     }
 
-    //! Before distances are stored: those of blocks that are not appended afterwards are NEVER.
+    //! Call this before storing distances. Those of blocks that are not appended afterwards count as NEVER.
     void clear() { storedCount = 0; }
     void store(int q, int block, int v, const Counts& distance)
     {

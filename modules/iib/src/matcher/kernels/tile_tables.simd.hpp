@@ -138,7 +138,7 @@ public:
     }
 
 private:
-    // Half bytes hold the distances of three half bytes at most, which makes 12.
+    // A sum of N distances has to fit half a byte: a distance is 4 at most, so N is 3 at most.
     template <int N>
     static CV_ALWAYS_INLINE void addUp(
             Bytes* low, v_uint16* high, const TileQueries& queries, const unsigned* block, int v)
@@ -165,8 +165,8 @@ private:
             }
     }
 
-    // High halves add up shifted but not masked, which is cheaper: 16 times the low half of each second byte came
-    // with them, and goes in one go. Modulo 2^16 nothing is lost, since the sums themselves fit in bytes.
+    // addUp() shifts the high halves but does not mask them, which is cheaper, so each sum also has 16 times the low
+    // half of every second byte. That is subtracted here, once. Modulo 2^16 this is exact, since sums fit in bytes.
     static CV_ALWAYS_INLINE Bytes highSums(const Bytes& low, const v_uint16& high)
     {
         return v_reinterpret_as_u8(v_sub_wrap(high, (v_reinterpret_as_u16(low) >> 8) << 4));
@@ -177,7 +177,7 @@ private:
     {
         v_uint16 a, b;
         v_expand(sums, a, b);
-        // A vector holds the 16 codes at POSITIONS places: one after the other, as many as there are halves and quarters.
+        // A vector holds the 16 codes POSITIONS times, one after the other: its halves, or quarters, are added.
         if (POSITIONS > 1)
             addWide(a + b, counts);
         else
