@@ -18,3 +18,13 @@ if(IIB_SANITIZE)
   set_source_files_properties("${IIB_DIR}/test/support/descriptor_oracle.cpp" "${IIB_DIR}/test/support/matcher_oracle.cpp"
     PROPERTIES COMPILE_OPTIONS -fno-sanitize=all)
 endif()
+
+# A test program of a tool: the sources in test/ beside the caller, with the tools' main, and its entry in ctest.
+function(iib_add_tool_test name target library)
+  file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/test/*.cpp")
+  list(APPEND sources "${PROJECT_SOURCE_DIR}/tools/common/test/test_main.cpp")
+  list(REMOVE_DUPLICATES sources)
+  add_executable(${target} ${sources})
+  target_link_libraries(${target} PRIVATE ${library} opencv_ts)
+  add_test(NAME ${name} COMMAND ${target})
+endfunction()
