@@ -8,6 +8,7 @@ out="$root/results"
 previous=""
 for argument in "$@"; do
     [ "$previous" != --out ] || out="$argument"
+    case "$argument" in --out=*) out="${argument#--out=}" ;; esac
     previous="$argument"
 done
 

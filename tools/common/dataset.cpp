@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "csv.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
 
 namespace iib_tools {
@@ -117,26 +118,13 @@ void search(const std::string& folder, int depth, std::vector<ImagePair>& pairs)
             search(entry, depth - 1, pairs);
 }
 
-std::vector<std::string> fields(std::string line)
-{
-    if (!line.empty() && line.back() == '\r')
-        line.pop_back();
-    std::vector<std::string> out(1);
-    for (char c : line)
-        if (c == ',')
-            out.push_back("");
-        else
-            out.back() += c;
-    return out;
-}
-
 void addList(const std::string& file, std::vector<ImagePair>& pairs)
 {
     static const std::set<Kind> kinds = {"light", "blur", "jpeg", "viewpoint", "zoom"};
     const std::vector<std::string> head = {"reference", "target", "homography", "kind"};
     std::ifstream in(file);
     std::string line;
-    if (!std::getline(in, line) || fields(line) != head)
+    if (!std::getline(in, line) || splitFields(line) != head)
         CV_Error(cv::Error::StsParseError,
                 file + ": a list begins with the line reference,target,homography,kind");
 
@@ -146,7 +134,7 @@ void addList(const std::string& file, std::vector<ImagePair>& pairs)
     {
         if (line.empty())
             continue;
-        const std::vector<std::string> f = fields(line);
+        const std::vector<std::string> f = splitFields(line);
         ImagePair pair;
         pair.set = stem;
         pair.kind = f.size() == 4 && !f[3].empty() ? f[3] : "light";

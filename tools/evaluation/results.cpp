@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "common/csv.hpp"
 #include "opencv2/core.hpp"
 
 namespace iib_tools {
@@ -18,17 +19,6 @@ std::string joinFields(const Fields& fields)
     for (size_t i = 0; i < fields.size(); i++)
         line += (i ? "," : "") + fields[i];
     return line + "\n";
-}
-
-Fields splitFields(const std::string& line)
-{
-    Fields fields(1);
-    for (char c : line)
-        if (c == ',')
-            fields.push_back("");
-        else
-            fields.back() += c;
-    return fields;
 }
 
 }  // namespace
