@@ -74,6 +74,16 @@ private:
     const uchar *next, *end;
 };
 
+//! cv::setNumThreads, which takes as long as a small input, only where it changes something.
+inline void useThreads(int count)
+{
+    static int inUse = -1;
+    if (count == inUse)
+        return;
+    cv::setNumThreads(count);
+    inUse = count;
+}
+
 //! Runs a target on an input. What the library refuses with an exception is no failure.
 template <typename Target> inline int runTarget(const Target& target, const uchar* data, size_t size)
 {

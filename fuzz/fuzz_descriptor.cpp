@@ -5,7 +5,7 @@
 // IIBDescriptorExtractor::compute with any parameters, image, keypoints and extra maps: a cv::Exception or
 // descriptors that the naive oracle and a second run give as well.
 
-#include "byte_source.hpp"
+#include "images.hpp"
 #include "support/descriptor_oracle.hpp"
 
 #include <cmath>
@@ -15,64 +15,29 @@
 
 namespace {
 
-using namespace cv;
+using namespace fuzz;
 using cv::iib::IIB;
-
-//! Pixels of any type: noise, ramps, flat places, extremes, and in floats a rare NaN or infinity.
-Mat takeImage(ByteSource& in, Size size, int depth, int channels)
-{
-    Mat image(size, CV_MAKETYPE(depth, channels));
-    const int kind = in.between(0, 7);
-    RNG rng(in.take<ushort>());
-    if (kind < 3)
-        rng.fill(image, RNG::UNIFORM, depth == CV_8S || depth == CV_16S ? -100 : 0,
-                depth % 8 < 2 ? 256 : 65536);
-    else if (kind < 5)
-        for (int y = 0; y < image.rows; y++)
-            image.row(y).setTo(Scalar::all(kind == 3 ? y * 7 % 256 : (y & 1) * 65535));
-    else
-        image.setTo(Scalar::all(kind == 5 ? 0 : 65535));
-    if (depth == CV_32F && in.between(0, 3) == 0)
-        for (int i = in.between(0, 3); i > 0 && !image.empty(); i--)
-            image.ptr<float>(in.between(0, size.height - 1))[in.between(0, size.width * channels - 1)] =
-                    in.number();
-    // A view into a larger matrix: rows lie apart.
-    if (!in.flag() || image.empty())
-        return image;
-    const Rect inside(Point(in.between(0, 9), in.between(0, 9)), size);
-    Mat whole(size + Size(inside.x + 3, inside.y + 3), image.type());
-    std::memset(whole.data, 99, whole.total() * whole.elemSize());
-    image.copyTo(whole(inside));
-    return whole(inside);
-}
-
-Size takeSize(ByteSource& in)
-{
-    const int largest = in.rarely(64) ? 300 : 32;
-    const int width = in.between(0, largest);
-    return Size(width, in.between(0, largest));
-}
 
 Ptr<IIB> takeExtractor(ByteSource& in)
 {
     if (in.between(0, 7) == 7)
     {
-        const int preset = in.between(-1, 7);
+        const int preset = in.between(-1, 9);
         return IIB::createPreset(preset, in.number());
     }
     Ptr<IIB> iib = IIB::create();
     const int wild = in.between(0, 3) == 3;  // values out of range in a quarter of the runs
     iib->setScaleFactor(wild ? in.number() : 1 + in.between(0, 40) / 8.f);
-    iib->setGranularity(in.between(1 - wild, (in.rarely(32) ? 6 : 3) + wild));
-    iib->setExtraChannels(in.rarely(8) ? in.between(-wild, 16 + wild) : 0);
+    iib->setGranularity(in.between(1 - wild, (in.rarely(8) ? in.rarely(8) ? 6 : 3 : 2) + wild));
+    iib->setExtraChannels(in.rarely(32) ? in.between(-wild, 16 + wild) : in.between(0, 1));
     iib->setChannels(in.between(1 - wild, 63 + wild));
     iib->setMapping(in.between(-wild, 6 + wild));
     iib->setOverlap(in.flag());
-    iib->setUseOrientation(in.flag());
-    iib->setBorder(in.between(-wild, 1 + wild));
+    iib->setOrientation(in.between(-wild, 2 + wild));
+    iib->setBorder(in.between(-wild, 2 + wild));
     if (in.flag())
     {
-        const int rows = in.between(0, 20);
+        const int rows = in.between(0, in.rarely(8) ? 20 : 5);
         Mat_<int> quads(rows, 5);
         int level = 1;
         for (int i = 0; i < rows; i++)
@@ -92,21 +57,16 @@ std::vector<KeyPoint> takeKeyPoints(ByteSource& in, Size size)
 {
     std::vector<KeyPoint> keypoints;
     const bool wild = in.flag();
-    for (int i = in.between(0, in.rarely(32) ? 30 : 3); i > 0; i--)
+    for (int i = in.between(0, in.rarely(64) ? 30 : 2); i > 0; i--)
     {
         KeyPoint kp;
         kp.pt.x = wild ? in.number() : in.between(-20, size.width + 20) + in.between(0, 3) / 4.f;
         kp.pt.y = wild ? in.number() : in.between(-20, size.height + 20) + in.between(0, 3) / 4.f;
-        kp.size = wild ? in.number() : in.between(1, 255) / 4.f;
+        kp.size = wild ? in.number() : in.between(1, in.rarely(4) ? 255 : 40) / 4.f;
         kp.angle = wild ? in.number() : (float)in.between(-1, 360);
         keypoints.push_back(kp);
     }
     return keypoints;
-}
-
-bool isMap(const Mat& m)
-{
-    return (m.depth() == CV_8U || m.depth() == CV_16U || m.depth() == CV_32F) && checkRange(m);
 }
 
 //! Whether the header allows these arguments.
@@ -119,8 +79,7 @@ bool areValid(const IIB& iib, const Mat& image, const std::vector<Mat>& extra,
             return false;
     if (image.empty())
         return true;
-    if (!isMap(image) || image.channels() == 2 || image.channels() > 4 ||
-            (int)extra.size() != iib.getExtraChannels())
+    if (!isImage(image) || (int)extra.size() != iib.getExtraChannels())
         return false;
     for (const Mat& m : extra)
         if (!isMap(m) || m.size() != image.size())
@@ -149,17 +108,15 @@ void run(ByteSource& in)
 
     const Size size = takeSize(in);
     const bool odd = in.between(0, 15) == 15;  // a type that is refused
-    const int depths[] = {CV_8U, CV_8U, CV_16U, CV_32F}, channels[] = {1, 1, 3, 4};
-    const int depth = odd ? in.between(0, 7) : depths[in.between(0, 3)];
-    const Mat image = takeImage(in, size, depth, odd ? in.between(1, 4) : channels[in.between(0, 3)]);
+    const Mat image = takeImage(in, size, odd);
     std::vector<Mat> extra;
     for (int i = iib->getExtraChannels() + odd; i > 0; i--)
-        extra.push_back(takeImage(in, odd ? takeSize(in) : size, depths[in.between(0, 3)], 1));
+        extra.push_back(takeImage(in, odd ? takeSize(in) : size, takeDepth(in), 1));
     const std::vector<KeyPoint> given = takeKeyPoints(in, size);
 
     std::vector<KeyPoint> keypoints = given, again = given;
     Mat descriptors(3, 3, CV_8U), repeated;
-    setNumThreads(1);
+    useThreads(1);
     bool thrown = false;
     try
     {
@@ -183,8 +140,8 @@ void run(ByteSource& in)
     checkAgainstOracle(*iib, image, extra, keypoints, descriptors);
 
     // Other memory, another cut of the work, the same bits.
-    if (in.rarely(32))  // new threads take as long as the rest
-        setNumThreads(in.between(2, 4));
+    if (in.rarely(128))
+        useThreads(3);
     for (Mat& m : extra)
         m = m.clone();
     iib->compute(image.clone(), extra, again, repeated);

@@ -49,7 +49,7 @@ void checkIndex(const Ptr<HierarchicalMatcher>& matcher)
 
 extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
 {
-    setNumThreads(1);
+    useThreads(1);
     const bool honest = size > 0 && (data[0] & 1) != 0;
     const std::string bytes = size > 0 ? std::string((const char*)data + 1, size - 1) : std::string();
     static const ScratchFile file;

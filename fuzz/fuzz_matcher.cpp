@@ -57,8 +57,8 @@ bool isPartOf(const Matches& some, const MatcherOracle& oracle, const Mat& queri
 
 int takeRows(ByteSource& in)
 {
-    // beyond a block of 16 codes, and now and then beyond what is compared at a time
-    return in.rarely(128) ? in.between(2000, 4200) : in.between(0, in.rarely(8) ? 70 : 20);
+    // few, since time counts; some beyond a block of 16 codes. Blocks of the search are small, see takeMatcher()
+    return in.between(0, in.rarely(16) ? 40 : 7);
 }
 
 Mat takeDescriptors(ByteSource& in, int bytes)
@@ -101,7 +101,7 @@ Ptr<HierarchicalMatcher> takeMatcher(ByteSource& in, MatcherOracle& oracle)
 {
     const bool wild = in.between(0, 7) == 7;
     for (int i = in.between(1 - wild, 4); i > 0; i--)
-        oracle.levelSizes.push_back(in.between(1 - 2 * wild, in.flag() ? 70 : 9));
+        oracle.levelSizes.push_back(in.between(1 - 2 * wild, in.rarely(8) ? 70 : 9));
     const int mode = in.between(-wild, 2 + wild);
     oracle.crossCheck = in.flag();
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(
@@ -120,18 +120,24 @@ Ptr<HierarchicalMatcher> takeMatcher(ByteSource& in, MatcherOracle& oracle)
     matcher->setMaxRatio(oracle.maxRatio);
     // small blocks, so that the few codes of an input cross their boundaries
     cv::iib::SearchBlocks blocks;
-    blocks.queries = in.between(1, 40);
-    blocks.codeBlocks = in.between(1, 4);
+    blocks.queries = in.between(1, 9);
+    blocks.codeBlocks = in.between(1, 3);
     dynamic_cast<cv::iib::BlockedMatcher&>(*matcher).setSearchBlocks(blocks);
     if (mode == HierarchicalMatcher::THRESHOLD)
         oracle.thresholds = matcher->getThresholds();
+    // The oracle knows which part of a last level of more than a word is looked at first.
+    if (mode == HierarchicalMatcher::ADAPTIVE && oracle.levelSizes.back() > 4)
+        oracle.adaptiveBlock = 16 * blocks.codeBlocks;
     return matcher;
 }
 
 void checkRadius(HierarchicalMatcher& matcher, const Mat& queries, float radius, MatcherOracle& oracle)
 {
+    if (radius == 0)
+        return;
     Matches found(3);
     matcher.radiusMatch(queries, found, radius, oracle.masks);
+    oracle.adaptiveBlock = 0;  // radiusMatch is exact
     // also for a radius that is no number
     const double largest = 8. * queries.cols;
     FUZZ_CHECK(equal(
@@ -156,12 +162,10 @@ void run(ByteSource& in)
     }
     if (in.flag())
         oracle.masks = takeMasks(in, oracle.images, queries.rows);
-    // all neighbours: the time for that grows with their number squared
-    const bool all = in.between(0, 15) == 15 && (double)queries.rows * (double)trains < 50000;
-    const int k = all ? INT_MAX : in.between(1, 20);
+    const int k = in.rarely(16) ? INT_MAX : in.between(1, 20);
     const float radius = in.number();
     const bool compact = in.flag(), wrongWidth = in.between(0, 31) == 31;
-    setNumThreads(in.rarely(32) ? in.between(2, 4) : 1);  // new threads take as long as the rest
+    useThreads(in.rarely(128) ? 3 : 1);
 
     Matches found(2), again;
     bool thrown = false;
@@ -181,10 +185,9 @@ void run(ByteSource& in)
         return;
 
     // ADAPTIVE has nothing to go by in a single small level
-    const bool exact = matcher->getMode() != HierarchicalMatcher::ADAPTIVE ||
+    const bool known = matcher->getMode() != HierarchicalMatcher::ADAPTIVE || oracle.adaptiveBlock > 0 ||
                        (oracle.levelSizes.size() == 1 && width <= 4);
-    const bool cheap = (double)queries.rows * (double)trains * width < 200000;
-    if (cheap && exact)
+    if (known)
     {
         Matches expected = oracle.knn(queries, k);
         if (compact)
@@ -196,9 +199,8 @@ void run(ByteSource& in)
     FUZZ_CHECK(isPartOf(found, oracle, queries, k));
     const double cost = matcher->matchCost();
     FUZZ_CHECK(cost >= 0 && cost <= 1);
-    if (cheap && radius != 0)
-        checkRadius(*matcher, queries, radius, oracle);
-
+    if (in.flag())
+        return checkRadius(*matcher, queries, radius, oracle);
     matcher->clone(false)->knnMatch(queries, again, k, oracle.masks, compact);
     FUZZ_CHECK(equal(found, again));
 }

@@ -31,7 +31,7 @@ public:
     {
         Subject first;
         for (int i = in.between(1, 3); i > 0; i--)
-            first.model.levelSizes.push_back(in.between(1, in.between(0, 7) ? 6 : 60));
+            first.model.levelSizes.push_back(in.between(1, in.rarely(8) ? 60 : 6));
         first.matcher = HierarchicalMatcher::create(first.model.levelSizes);
         width = std::accumulate(first.model.levelSizes.begin(), first.model.levelSizes.end(), 0);
         subjects.push_back(first);
@@ -39,7 +39,7 @@ public:
 
     void run()
     {
-        for (int calls = 0; calls < 40 && in.left() > 0; calls++)
+        for (int calls = 0; calls < 16 && in.left() > 0; calls++)
             step(subjects[in.between(0, (int)subjects.size() - 1)]);
         for (Subject& s : subjects)
             ask(s);
@@ -49,7 +49,7 @@ public:
 private:
     void step(Subject& s)
     {
-        switch (in.between(0, 15))
+        switch (in.between(0, 17))
         {
         case 0:
         case 1:
@@ -64,13 +64,16 @@ private:
         case 10: overwrite(s); break;
         case 11: askWithTrainSet(s); break;
         case 12: askWithin(s); break;
+        case 13: askForArrays(s); break;
+        case 14: askForBest(s); break;
+        case 15: inspect(s); break;
         default: ask(s); break;
         }
     }
 
     Mat takeDescriptors(int bytes)
     {
-        return randomDescriptors(in.take<uchar>(), in.between(0, in.between(0, 15) ? 9 : 70), bytes);
+        return randomDescriptors(in.take<uchar>(), in.between(0, in.rarely(32) ? 70 : 6), bytes);
     }
 
     void add(Subject& s)
@@ -184,8 +187,52 @@ private:
         MatcherOracle model = s.model;
         model.images.assign(1, takeDescriptors(width));
         Matches found(1);
-        s.matcher->knnMatch(queries, model.images[0], found, 2);
+        switch (in.between(0, 2))
+        {
+        case 0: {
+            const int radius = in.between(1, 8 * width);
+            s.matcher->radiusMatch(queries, model.images[0], found, (float)radius);
+            return expect(model.radius(queries, radius), found);
+        }
+        case 1: {
+            std::vector<DMatch> best(1);
+            s.matcher->match(queries, model.images[0], best);
+            return expectBest(model.knn(queries, 1), best);
+        }
+        default: s.matcher->knnMatch(queries, model.images[0], found, 2);
+        }
         expect(model.knn(queries, 2), found);
+    }
+
+    void askForBest(Subject& s)
+    {
+        const Mat queries = takeDescriptors(width);
+        std::vector<DMatch> best(1);
+        s.matcher->match(queries, best);
+        expectBest(s.model.knn(queries, 1), best);
+    }
+
+    static void expectBest(const Matches& expected, const std::vector<DMatch>& best)
+    {
+        Matches found(expected.size());
+        for (const DMatch& m : best)
+            found[m.queryIdx].push_back(m);
+        expect(expected, found);
+    }
+
+    //! What is set is what is reported.
+    void inspect(const Subject& s)
+    {
+        const std::vector<Mat> images = s.matcher->getTrainDescriptors();
+        FUZZ_CHECK(s.matcher->levelSizes() == s.model.levelSizes && images.size() == s.model.images.size());
+        for (size_t i = 0; i < images.size(); i++)
+            FUZZ_CHECK(images[i].rows == s.model.images[i].rows &&
+                       (images[i].empty() || cv::norm(images[i], s.model.images[i], NORM_INF) == 0));
+        FUZZ_CHECK(s.matcher->getCrossCheck() == s.model.crossCheck &&
+                   s.matcher->getMaxRatio() == s.model.maxRatio && s.matcher->isMaskSupported());
+        FUZZ_CHECK(s.matcher->empty() == s.model.images.empty());
+        s.matcher->resetCost();
+        FUZZ_CHECK(s.matcher->matchCost() == 0);
     }
 
     void askWithin(Subject& s)
@@ -195,6 +242,28 @@ private:
         Matches found(1);
         s.matcher->radiusMatch(queries, found, (float)radius);
         expect(s.model.radius(queries, radius), found);
+    }
+
+    void askForArrays(const Subject& s)
+    {
+        const Mat queries = takeDescriptors(width);
+        const int k = in.between(1, 4);
+        MatcherOracle model = s.model;
+        const bool ownTrains = in.flag();
+        Mat_<int> indices, distances, images;
+        if (ownTrains)
+        {
+            model.images.assign(1, takeDescriptors(width));
+            s.matcher->knnMatchArrays(queries, model.images[0], indices, distances, k);
+        }
+        else
+            s.matcher->knnMatchArrays(queries, indices, distances, k, noArray(), images);
+        Matches found(queries.rows);
+        for (int q = 0; q < indices.rows; q++)
+            for (int i = 0; i < k && indices(q, i) >= 0; i++)
+                found[q].push_back(
+                        DMatch(q, indices(q, i), ownTrains ? 0 : images(q, i), (float)distances(q, i)));
+        expect(model.knn(queries, k), found);
     }
 
     static void expect(const Matches& expected, const Matches& found)
@@ -222,6 +291,6 @@ void run(ByteSource& in) { Session(in).run(); }
 
 extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
 {
-    setNumThreads(size > 0 && data[0] >= 248 ? 3 : 1);  // new threads take as long as the rest
+    useThreads(size > 0 && data[0] >= 254 ? 3 : 1);
     return runTarget(run, data, size);
 }

@@ -127,8 +127,12 @@ Cell uprightCell(const Channel& c, const SupportRegion& r, int n, int row, int c
 
 int64 clampTo(int64 v, int limit) { return std::min<int64>(std::max<int64>(v, 0), limit - 1); }
 
-//! Centre of a grid of points, in 2^-17 pixels; pixel 0 begins at 0.
-int64 fixedPoint(float centre) { return (int64)std::floor(centre * 131072. + 65536.5); }
+//! Centre of a grid of points, in 2^-17 pixels; pixel 0 begins at 0. What is farther than any image is as far.
+int64 fixedPoint(double centre)
+{
+    const double far = 1 << 29;
+    return (int64)std::floor(std::min(std::max(centre, -far), far) * 131072 + 65536.5);
+}
 
 int insideOf(const IIB& iib, int64 place, int limit)
 {

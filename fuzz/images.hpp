@@ -1,0 +1,76 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_FUZZ_IMAGES_HPP
+#define OPENCV_IIB_FUZZ_IMAGES_HPP
+
+#include "byte_source.hpp"
+
+#include <cstring>
+
+namespace fuzz {
+
+using namespace cv;
+
+inline Size takeSize(ByteSource& in)
+{
+    // few pixels, since time counts; some beyond a vector of 32, some beyond a band of rows
+    const int largest = in.rarely(8) ? in.rarely(32) ? 300 : 70 : 12;
+    const int width = in.between(0, largest);
+    return Size(width, in.between(0, largest));
+}
+
+//! Pixels of any type: noise, ramps, flat places, extremes, and in floats a rare NaN or infinity.
+inline Mat takeImage(ByteSource& in, Size size, int depth, int channels)
+{
+    Mat image(size, CV_MAKETYPE(depth, channels));
+    const int kind = in.between(0, 7);
+    RNG rng(in.take<ushort>());
+    if (kind < 3)
+        rng.fill(image, RNG::UNIFORM, depth == CV_8S || depth == CV_16S ? -100 : 0,
+                depth % 8 < 2 ? 256 : 65536);
+    else if (kind < 5)
+        for (int y = 0; y < image.rows; y++)
+            image.row(y).setTo(Scalar::all(kind == 3 ? y * 7 % 256 : (y & 1) * 65535));
+    else
+        image.setTo(Scalar::all(kind == 5 ? 0 : 65535));
+    if (depth == CV_32F && in.between(0, 3) == 0)
+        for (int i = in.between(0, 3); i > 0 && !image.empty(); i--)
+            image.ptr<float>(in.between(0, size.height - 1))[in.between(0, size.width * channels - 1)] =
+                    in.number();
+    // A view into a larger matrix: rows lie apart.
+    if (!in.flag() || image.empty())
+        return image;
+    const Rect inside(Point(in.between(0, 9), in.between(0, 9)), size);
+    Mat whole(size + Size(inside.x + 3, inside.y + 3), image.type());
+    std::memset(whole.data, 99, whole.total() * whole.elemSize());
+    image.copyTo(whole(inside));
+    return whole(inside);
+}
+
+//! A depth that the library takes.
+inline int takeDepth(ByteSource& in)
+{
+    const int depths[] = {CV_8U, CV_8U, CV_16U, CV_32F};
+    return depths[in.between(0, 3)];
+}
+
+//! @param odd any type, which the library may refuse.
+inline Mat takeImage(ByteSource& in, Size size, bool odd)
+{
+    const int channels[] = {1, 1, 3, 4};
+    const int depth = odd ? in.between(0, 7) : takeDepth(in);
+    return takeImage(in, size, depth, odd ? in.between(1, 4) : channels[in.between(0, 3)]);
+}
+
+inline bool isMap(const Mat& m)
+{
+    return (m.depth() == CV_8U || m.depth() == CV_16U || m.depth() == CV_32F) && checkRange(m);
+}
+
+inline bool isImage(const Mat& m) { return isMap(m) && m.channels() != 2 && m.channels() <= 4; }
+
+}  // namespace fuzz
+
+#endif
