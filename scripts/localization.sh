@@ -1,0 +1,23 @@
+#!/bin/sh
+# Shows long-term localization: scripts/localization.sh [OUT]
+# Renders the synthetic walk (once, about half an hour of processor time, kept in the user's cache folder), maps it at
+# noon, localizes the images of other lights with IIB and, in the same pipeline, with the detectors' own descriptors and
+# SIFT, and writes results.csv and index.html to OUT (results-localization). With OPENCV_TEST_DATA_PATH set, real
+# photographs (strecha) as well.
+. "$(dirname "$0")/lib.sh"
+
+[ $# -le 1 ] || fail "one folder at most, not $#"
+out=${1:-$root/results-localization}
+data="$cache/localization"
+# shellcheck disable=SC2086
+need $build_packages libceres-dev libunwind-dev povray python3-opencv python3-jinja2
+/usr/bin/python3 "$root/tools/synthetic/localization.py" "$data"
+if [ -f "$build/CMakeCache.txt" ]; then
+    configure -DIIB_BUILD_APPS=ON
+else
+    configure -DIIB_BUILD_TESTS=OFF -DIIB_BUILD_TOOLS=OFF -DIIB_BUILD_APPS=ON
+fi
+say "building iib_map and iib_localize"
+cmake --build "$build" --target iib_map iib_localize
+page=$(/usr/bin/python3 "$root/apps/localization/report/localization.py" "$build/apps/localization" "$data" "$out")
+say "results and page: $page"
