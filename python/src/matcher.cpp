@@ -52,23 +52,35 @@ nb::object toPython(const MatchRows& rows, nb::handle type)
     return result;
 }
 
-// Searches the train set given or, if that is None, those added.
+//! Arguments of a search: in the train set given or, if that is None, in those added.
+struct Search
+{
+    const bool inAdded;
+    const cv::Mat query, train;
+    const std::vector<cv::Mat> masks;
+
+    Search(const Array& queries, nb::object train_, nb::object masks_)
+        : inAdded(train_.is_none()), query(descriptorsOf(queries)),
+          train(inAdded ? cv::Mat() : descriptorsOf(nb::cast<Array>(train_))), masks(viewsOf(masks_, MASK))
+    {
+    }
+
+    //! The one mask of the train set given.
+    cv::Mat mask() const { return masks.empty() ? cv::Mat() : masks[0]; }
+};
+
 nb::object knnMatch(Matcher& self, const Array& queries, nb::object train, int k, nb::object masks,
         bool compact, nb::handle type)
 {
-    const cv::Mat query = descriptorsOf(queries);
-    const cv::Mat other = train.is_none() ? cv::Mat() : descriptorsOf(nb::cast<Array>(train));
-    const std::vector<cv::Mat> allowed = viewsOf(masks, MASK);
-    const bool added = train.is_none();
+    const Search s(queries, train, masks);
     MatchRows rows;
+    if (!s.query.empty())
     {
         nb::gil_scoped_release release;
-        if (query.empty())
-            rows.clear();
-        else if (added)
-            self.knnMatch(query, rows, k, allowed, compact);
+        if (s.inAdded)
+            self.knnMatch(s.query, rows, k, s.masks, compact);
         else
-            self.knnMatch(query, other, rows, k, allowed.empty() ? cv::Mat() : allowed[0], compact);
+            self.knnMatch(s.query, s.train, rows, k, s.mask(), compact);
     }
     return toPython(rows, type);
 }
@@ -76,44 +88,35 @@ nb::object knnMatch(Matcher& self, const Array& queries, nb::object train, int k
 nb::object radiusMatch(Matcher& self, const Array& queries, nb::object train, float maxDistance,
         nb::object masks, bool compact, nb::handle type)
 {
-    const cv::Mat query = descriptorsOf(queries);
-    const cv::Mat other = train.is_none() ? cv::Mat() : descriptorsOf(nb::cast<Array>(train));
-    const std::vector<cv::Mat> allowed = viewsOf(masks, MASK);
-    const bool added = train.is_none();
+    const Search s(queries, train, masks);
     MatchRows rows;
+    if (!s.query.empty())
     {
         nb::gil_scoped_release release;
-        if (query.empty())
-            rows.clear();
-        else if (added)
-            self.radiusMatch(query, rows, maxDistance, allowed, compact);
+        if (s.inAdded)
+            self.radiusMatch(s.query, rows, maxDistance, s.masks, compact);
         else
-            self.radiusMatch(
-                    query, other, rows, maxDistance, allowed.empty() ? cv::Mat() : allowed[0], compact);
+            self.radiusMatch(s.query, s.train, rows, maxDistance, s.mask(), compact);
     }
     return toPython(rows, type);
 }
 
 nb::tuple knnMatchArrays(Matcher& self, const Array& queries, nb::object train, int k, nb::object masks)
 {
-    const cv::Mat query = descriptorsOf(queries);
-    const cv::Mat other = train.is_none() ? cv::Mat() : descriptorsOf(nb::cast<Array>(train));
-    const std::vector<cv::Mat> allowed = viewsOf(masks, MASK);
-    const bool added = train.is_none();
+    const Search s(queries, train, masks);
     cv::Mat indices, distances, images;
     {
         nb::gil_scoped_release release;
-        if (added)
-            self.knnMatchArrays(query, indices, distances, k, allowed, images);
+        if (s.inAdded)
+            self.knnMatchArrays(s.query, indices, distances, k, s.masks, images);
         else
-            self.knnMatchArrays(
-                    query, other, indices, distances, k, allowed.empty() ? cv::Mat() : allowed[0]);
+            self.knnMatchArrays(s.query, s.train, indices, distances, k, s.mask());
     }
     for (cv::Mat* matrix : {&indices, &distances, &images})
         if (matrix->empty())
             matrix->create(0, k, CV_32S);
-    return added ? nb::make_tuple(toNumpy(indices), toNumpy(distances), toNumpy(images))
-                 : nb::make_tuple(toNumpy(indices), toNumpy(distances));
+    return s.inAdded ? nb::make_tuple(toNumpy(indices), toNumpy(distances), toNumpy(images))
+                     : nb::make_tuple(toNumpy(indices), toNumpy(distances));
 }
 
 void add(Matcher& self, const std::vector<Array>& arrays)
