@@ -42,6 +42,7 @@ class IIBDescriptorExtractor:
     MAPPING_SORT = 4
     MAPPING_HAAR = 5
     MAPPING_PAIRWISE = 6
+    MAPPING_BOXES = 7
 
     BORDER_CLAMP = 0
     BORDER_DROP = 1

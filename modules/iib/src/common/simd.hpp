@@ -286,8 +286,13 @@ inline v_groups32 subtractModulo(const v_groups32& a, const v_groups32& b) { ret
 #if CV_AVX2
 typedef v_int32x8 v_samples;
 
+typedef v_float32x8 v_means;
+
 inline v_samples v_load_samples(const int* p) { return v256_load(p); }
+inline v_samples v_load_samples(const short* p) { return v256_load_expand(p); }
 inline v_samples v_setall_samples(int v) { return v256_setall_s32(v); }
+inline v_means v_load_means(const float* p) { return v256_load(p); }
+inline v_means v_setall_means(float v) { return v256_setall_f32(v); }
 
 inline void loadPixels(
         const short* pixels, const int* i, v_samples& a, v_samples& b, v_samples& c, v_samples& d)
@@ -324,8 +329,13 @@ inline void loadPixels(
 #else
 typedef v_int32x4 v_samples;
 
+typedef v_float32x4 v_means;
+
 inline v_samples v_load_samples(const int* p) { return v_load(p); }
+inline v_samples v_load_samples(const short* p) { return v_load_expand(p); }
 inline v_samples v_setall_samples(int v) { return v_setall_s32(v); }
+inline v_means v_load_means(const float* p) { return v_load(p); }
+inline v_means v_setall_means(float v) { return v_setall_f32(v); }
 
 inline v_int32x4 loadPixel(const short* p) { return v_load_expand(p); }
 inline v_int32x4 loadPixel(const int* p) { return v_load(p); }

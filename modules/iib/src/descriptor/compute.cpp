@@ -8,6 +8,7 @@
 #include <map>
 
 #include "../common/image_input.hpp"
+#include "boxes.hpp"
 #include "rotated.hpp"
 #include "upright.hpp"
 
@@ -82,6 +83,45 @@ std::vector<int> ranksOf(const std::vector<KeyPoint>& keypoints)
     return ranks;
 }
 
+//! Calls work(batch, workspace) in parallel for each batch of keypoints with these pixels.
+template <typename Work> void forEachBatch(const std::vector<Rect>& pixels, const Work& work)
+{
+    const std::vector<Indices> batches = cutBatches(pixels, getNumThreads());
+    WorkspacePool pool;
+    parallel_for_(Range(0, (int)batches.size()), [&](const Range& range) {
+        std::unique_ptr<Workspace> workspace = pool.borrow();
+        for (int b = range.start; b < range.end; b++)
+            work(makeBatch(pixels, batches[b]), *workspace);
+        pool.giveBack(std::move(workspace));
+    });
+}
+
+//! By MAPPING_BOXES.
+void describeByBoxes(const DescriptorPlan& plan, const Mat& image, const std::vector<SupportRegion>& regions,
+        const std::vector<KeyPoint>& keypoints, Mat& descriptors)
+{
+    const Parameters& p = plan.parameters;
+    std::vector<float> angles;
+    for (const KeyPoint& kp : keypoints)
+        angles.push_back(isRotated(p, kp) ? kp.angle : -1);
+    std::vector<Rect> pixels;
+    if (p.orientation == IIB::ORIENTATION_GRADIENT)
+    {
+        for (size_t k = 0; k < keypoints.size(); k++)
+            pixels.push_back(rotatedPixels(regions[k], keypoints[k].pt, p.border, image.size()));
+        const std::vector<int> ranks = ranksOf(keypoints);
+        forEachBatch(pixels, [&](const KeyPointBatch& batch, Workspace& workspace) {
+            prevailingAngles(plan, image, batch, regions, keypoints, ranks, workspace, angles);
+        });
+        pixels.clear();
+    }
+    for (size_t k = 0; k < keypoints.size(); k++)
+        pixels.push_back(boxPixels(regions[k], keypoints[k].pt, angles[k] >= 0, p.border, image.size()));
+    forEachBatch(pixels, [&](const KeyPointBatch& batch, Workspace& workspace) {
+        describeBoxes(plan, image, batch, regions, keypoints, angles, workspace, descriptors);
+    });
+}
+
 }  // namespace
 
 bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image)
@@ -101,12 +141,16 @@ void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Ma
     const Parameters& p = plan.parameters;
     std::vector<SupportRegion> regions;
     regions.reserve(keypoints.size());
+    for (const KeyPoint& kp : keypoints)
+        regions.push_back(SupportRegion(kp, p.scaleFactor, p.granularity));
+    if (plan.boxes)
+        return describeByBoxes(
+                plan, integerMap(image, Rect(Point(), image.size())), regions, keypoints, descriptors);
     Subset upright, rotated;
     upright.reserve(keypoints.size());
-    for (const KeyPoint& kp : keypoints)
+    for (int k = 0; k < (int)keypoints.size(); k++)
     {
-        const int k = (int)regions.size();
-        regions.push_back(SupportRegion(kp, p.scaleFactor, p.granularity));
+        const KeyPoint& kp = keypoints[k];
         if (isRotated(p, kp))
             rotated.add(k, rotatedPixels(regions[k], kp.pt, p.border, image.size()));
         else

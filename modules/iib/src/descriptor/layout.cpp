@@ -4,6 +4,8 @@
 
 #include "layout.hpp"
 
+#include "box_plan.hpp"
+
 namespace cv {
 namespace iib {
 
@@ -25,12 +27,13 @@ static int channelBits(const Parameters& p, int level)
 //! Bits of a level that the channels before `end` make.
 static int bitsBefore(const Parameters& p, int level, int end)
 {
-    if (p.selection.empty())
+    const Mat_<int> selection = p.mapping == IIB::MAPPING_BOXES ? boxSelection(p) : p.selection;
+    if (selection.empty())
         return channelBits(p, level) * end;
     int bits = 0;
-    for (int i = 0; i < p.selection.rows; i++)
-        if (p.selection(i, 0) == level && p.selection(i, 1) < end)
-            bits += countBits(p.selection(i, 4));
+    for (int i = 0; i < selection.rows; i++)
+        if (selection(i, 0) == level && selection(i, 1) < end)
+            bits += countBits(selection(i, 4));
     return bits;
 }
 

@@ -7,6 +7,8 @@
 #include <array>
 #include <set>
 
+#include "box_plan.hpp"
+
 namespace cv {
 namespace iib {
 
@@ -14,6 +16,15 @@ static void require(bool ok, int code, const String& message)
 {
     if (!ok)
         CV_Error(code, message);
+}
+
+static void checkBoxes(const Parameters& p)
+{
+    require(p.granularity <= BOX_LEVELS, Error::StsOutOfRange,
+            format("granularity is %d; of MAPPING_BOXES it must be 1 to %d", p.granularity, (int)BOX_LEVELS));
+    require((p.channels & IIB::CHANNEL_ORIENTATION) == 0 && p.extraChannels == 0, Error::StsBadArg,
+            "MAPPING_BOXES takes neither CHANNEL_ORIENTATION nor extra channels; set others first");
+    require(!p.overlap, Error::StsBadArg, "boxes always overlap; set overlap to false for MAPPING_BOXES");
 }
 
 static void checkSelection(const Parameters& p)
@@ -30,11 +41,14 @@ static void checkSelection(const Parameters& p)
                                 p.granularity));
         require(channel >= 0 && channel < p.channelCount(), Error::StsOutOfRange,
                 where + format("channel %d is not in 0..%d", channel, p.channelCount() - 1));
-        const int end = (1 << level) - 2;
+        const bool boxes = p.mapping == IIB::MAPPING_BOXES;
+        const int end = boxes ? BOX_GRIDS[level - 1].n - 1 : (1 << level) - 2;
         require(row >= 0 && row <= end && col >= 0 && col <= end, Error::StsOutOfRange,
                 where + format("cell (%d, %d) is not in 0..%d", row, col, end));
-        require(bits > 0 && bits < 1 << bitsPerQuad(p.mapping), Error::StsOutOfRange,
-                where + format("bit mask %d is not in 1..%d", bits, (1 << bitsPerQuad(p.mapping)) - 1));
+        const int mask = boxes ? boxMask(p, level, channel, row, col) : (1 << bitsPerQuad(p.mapping)) - 1;
+        require(bits > 0 && (bits & ~mask) == 0, Error::StsOutOfRange,
+                where + format("bit mask %d is not in 1..%d, or not of bits that are there (%d)", bits, mask,
+                                mask));
         const std::array<int, 4> place = {{level, channel, row, col}};
         require(seen.insert(place).second, Error::StsBadArg, where + "the quad was given before");
         last = level;
@@ -68,7 +82,7 @@ void Parameters::check() const
             format("granularity is %d; it must be 1 to %d", granularity, MAX_GRANULARITY));
     require((channels & ~ALL_CHANNELS) == 0, Error::StsBadArg,
             format("channels is %d, with unknown bits; it must be a sum of CHANNEL_ values", channels));
-    require(mapping >= IIB::MAPPING_MEAN && mapping <= IIB::MAPPING_PAIRWISE, Error::StsBadArg,
+    require(mapping >= IIB::MAPPING_MEAN && mapping <= IIB::MAPPING_BOXES, Error::StsBadArg,
             format("mapping is %d; it must be one of the MAPPING_ values", mapping));
     require(extraChannels >= 0 && extraChannels <= MAX_EXTRA_CHANNELS, Error::StsOutOfRange,
             format("extraChannels is %d; it must be 0 to %d", extraChannels, MAX_EXTRA_CHANNELS));
@@ -78,6 +92,8 @@ void Parameters::check() const
     require(orientation >= IIB::ORIENTATION_NONE && orientation <= IIB::ORIENTATION_GRADIENT,
             Error::StsBadArg,
             format("orientation is %d; it must be one of the ORIENTATION_ values", orientation));
+    if (mapping == IIB::MAPPING_BOXES)
+        checkBoxes(*this);
     checkSelection(*this);
 }
 

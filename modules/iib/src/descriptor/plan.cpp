@@ -31,6 +31,11 @@ DescriptorPlan::DescriptorPlan(const Parameters& p)
     : parameters(p), finest(finestLevel(p)), levelBytes(iib::levelBytes(p)),
       bytes(std::accumulate(levelBytes.begin(), levelBytes.end(), 0)), kernels(descriptorKernels())
 {
+    if (p.mapping == IIB::MAPPING_BOXES)
+    {
+        boxes.reset(new BoxPlan(p));
+        return;
+    }
     const int channels = p.channelCount();
     for (int first = 0; first < channels; first += GROUP_CHANNELS)
     {

@@ -5,8 +5,10 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_PLAN_HPP
 #define OPENCV_IIB_DESCRIPTOR_PLAN_HPP
 
+#include <memory>
+
+#include "box_plan.hpp"
 #include "kernels/kernels.hpp"
-#include "parameters.hpp"
 
 namespace cv {
 namespace iib {
@@ -30,8 +32,9 @@ struct DescriptorPlan
     const Parameters parameters;
     const int finest;  //!< the finest level that has bits
     const std::vector<int> levelBytes;
-    const int bytes;  //!< of a descriptor
-    std::vector<ChannelGroup> groups;
+    const int bytes;                       //!< of a descriptor
+    std::vector<ChannelGroup> groups;      //!< of quads
+    std::unique_ptr<const BoxPlan> boxes;  //!< of MAPPING_BOXES, which has no groups; else null
     const DescriptorKernels& kernels;
 };
 

@@ -272,63 +272,104 @@ bool isSparse(const KeyPointBatch& batch, double pixelsKept)
     return (double)batch.area.width * batch.area.height > 16 * samples || pixelsKept > 1 << 24;
 }
 
+//! The pixels of a batch at the points of one grid after another.
+template <typename T> class GridPixels
+{
+public:
+    GridPixels(const DescriptorKernels& all, const std::vector<std::vector<Channel>>& packs_,
+            const KeyPointBatch& batch_, int border_, Workspace& workspace)
+        : kernels(all.pixels<T>()), packs(packs_), batch(batch_), border(border_),
+          image(packs_[0][0].map.size()), sparsePixels(kernels.rows, workspace.sparsePixels)
+    {
+        const int rows = batch.rows + KeyPointBatch::BAND_ROWS;
+        sparse = isSparse(batch, PixelBand<T>::pixelsKept(batch.area, rows));
+        if (sparse)
+            std::iota(index, index + MAX_SAMPLES, 0);
+        for (size_t i = 0; !sparse && i < packs.size(); i++)
+            bands.push_back(PixelBand<T>(packs[i], batch.area, rows, kernels.rows, workspace.sourceRows[i],
+                    workspace.sourcePixels[i]));
+    }
+
+    //! Has the pixels of a region at hand; regions come in the order of the batch.
+    void moveTo(const SupportRegion& region, Point2f centre)
+    {
+        const int end = batch.bandEnd(rotatedPixels(region, centre, border, image).br().y);
+        for (PixelBand<T>& band : bands)
+            band.advance(end);
+    }
+
+    //! @return where the points are in the arrays of pixels().
+    const int* locate(const SampleGrid& grid)
+    {
+        if (sparse)
+            kernels.rotated.places(grid, x, y);
+        else
+            kernels.rotated.indices(grid, bands[0].origin(), bands[0].step(), index);
+        return index;
+    }
+
+    const T* pixels(size_t pack, const SampleGrid& grid)
+    {
+        return sparse ? sparsePixels.read(packs[pack], x, y, grid.n * grid.n) : bands[pack].data();
+    }
+
+    //! By the gradients around a keypoint that moveTo() was given.
+    float angleOf(const SupportRegion& region, Point2f centre, int rank)
+    {
+        const SampleGrid grid = gridOf(region, centre, Rotation(0), ORIENTATION_SAMPLES, 1, border, image);
+        locate(grid);
+        return prevailingAngle(kernels.rotated, pixels(0, grid), index, rank);
+    }
+
+private:
+    const PixelKernels<T>& kernels;
+    const std::vector<std::vector<Channel>>& packs;
+    const KeyPointBatch& batch;
+    const int border;
+    const Size image;
+    bool sparse;
+    SparsePixels<T> sparsePixels;
+    std::vector<PixelBand<T>> bands;
+    int index[MAX_SAMPLES], x[MAX_SAMPLES], y[MAX_SAMPLES];
+};
+
 template <typename T>
 void describeBatch(const DescriptorPlan& plan, const std::vector<Channel>& channels,
         const KeyPointBatch& batch, const std::vector<SupportRegion>& regions,
         const std::vector<KeyPoint>& keypoints, const std::vector<int>& ranks, Workspace& workspace,
         Mat& descriptors)
 {
-    const Size image = channels[0].map.size();
-    const PixelKernels<T>& kernels = plan.kernels.pixels<T>();
-    const int rows = batch.rows + KeyPointBatch::BAND_ROWS;
-    const bool sparse = isSparse(batch, PixelBand<T>::pixelsKept(batch.area, rows));
-    Sampler<T> sampler(plan, channels, workspace);
-    SparsePixels<T> sparsePixels(kernels.rows, workspace.sparsePixels);
-    std::vector<PixelBand<T>> bands;
-    if (!sparse)
-        for (size_t i = 0; i < sampler.packs().size(); i++)
-            bands.push_back(PixelBand<T>(sampler.packs()[i], batch.area, rows, kernels.rows,
-                    workspace.sourceRows[i], workspace.sourcePixels[i]));
-    int index[MAX_SAMPLES], x[MAX_SAMPLES], y[MAX_SAMPLES];
-    if (sparse)
-        std::iota(index, index + MAX_SAMPLES, 0);
-
-    const auto locate = [&](const SampleGrid& grid) {
-        if (sparse)
-            kernels.rotated.places(grid, x, y);
-        else
-            kernels.rotated.indices(grid, bands[0].origin(), bands[0].step(), index);
-    };
-    const auto pixelsOf = [&](size_t pack, const SampleGrid& grid) {
-        return sparse ? sparsePixels.read(sampler.packs()[pack], x, y, grid.n * grid.n) : bands[pack].data();
-    };
-
     const Parameters& p = plan.parameters;
+    Sampler<T> sampler(plan, channels, workspace);
+    GridPixels<T> pixels(plan.kernels, sampler.packs(), batch, p.border, workspace);
     for (int k : batch.keypoints)
     {
         const Point2f centre = keypoints[k].pt;
-        if (!sparse)
-        {
-            const int end = batch.bandEnd(rotatedPixels(regions[k], centre, p.border, image).br().y);
-            for (PixelBand<T>& band : bands)
-                band.advance(end);
-        }
-        float angle = keypoints[k].angle;
-        if (p.orientation == IIB::ORIENTATION_GRADIENT)
-        {
-            const SampleGrid grid =
-                    gridOf(regions[k], centre, Rotation(0), ORIENTATION_SAMPLES, 1, p.border, image);
-            locate(grid);
-            angle = prevailingAngle(kernels.rotated, pixelsOf(0, grid), index, ranks[k]);
-        }
-        const Rotation rotation(angle);
+        pixels.moveTo(regions[k], centre);
+        const bool own = p.orientation == IIB::ORIENTATION_GRADIENT;
+        const Rotation rotation(own ? pixels.angleOf(regions[k], centre, ranks[k]) : keypoints[k].angle);
         const int n = samplesInRow(regions[k], p.granularity);
         // Two by two samples a cell, unless the cells are fewer.
         const int sub = plan.cellsInRow() == n ? 1 : 2;
-        const SampleGrid grid = gridOf(regions[k], centre, rotation, n, sub, p.border, image);
-        locate(grid);
-        sampler.sum(grid, index, rotation, [&](size_t pack) { return pixelsOf(pack, grid); });
+        const SampleGrid grid =
+                gridOf(regions[k], centre, rotation, n, sub, p.border, channels[0].map.size());
+        const int* const index = pixels.locate(grid);
+        sampler.sum(grid, index, rotation, [&](size_t pack) { return pixels.pixels(pack, grid); });
         sampler.write(grid, descriptors.ptr(k));
+    }
+}
+
+template <typename T>
+void findAngles(const DescriptorPlan& plan, const Mat& image, const KeyPointBatch& batch,
+        const std::vector<SupportRegion>& regions, const std::vector<KeyPoint>& keypoints,
+        const std::vector<int>& ranks, Workspace& workspace, std::vector<float>& angles)
+{
+    const SampledChannels sampled({Channel{IIB::CHANNEL_INTENSITY, image}});
+    GridPixels<T> pixels(plan.kernels, sampled.packs, batch, plan.parameters.border, workspace);
+    for (int k : batch.keypoints)
+    {
+        pixels.moveTo(regions[k], keypoints[k].pt);
+        angles[k] = pixels.angleOf(regions[k], keypoints[k].pt, ranks[k]);
     }
 }
 
@@ -361,6 +402,16 @@ void describeRotated(const DescriptorPlan& plan, const std::vector<Channel>& cha
         describeBatch<int>(plan, channels, batch, regions, keypoints, ranks, workspace, descriptors);
     else
         describeBatch<short>(plan, channels, batch, regions, keypoints, ranks, workspace, descriptors);
+}
+
+void prevailingAngles(const DescriptorPlan& plan, const Mat& image, const KeyPointBatch& batch,
+        const std::vector<SupportRegion>& regions, const std::vector<KeyPoint>& keypoints,
+        const std::vector<int>& ranks, Workspace& workspace, std::vector<float>& angles)
+{
+    if (image.depth() == CV_16U)
+        findAngles<int>(plan, image, batch, regions, keypoints, ranks, workspace, angles);
+    else
+        findAngles<short>(plan, image, batch, regions, keypoints, ranks, workspace, angles);
 }
 
 }  // namespace iib

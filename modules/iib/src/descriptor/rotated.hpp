@@ -31,6 +31,12 @@ void describeRotated(const DescriptorPlan& plan, const std::vector<Channel>& cha
         const std::vector<KeyPoint>& keypoints, const std::vector<int>& ranks, Workspace& workspace,
         Mat& descriptors);
 
+/** The angles alone of a batch's keypoints, by ORIENTATION_GRADIENT. Parameters as above.
+ @param image CV_8U or CV_16U, one channel. @param angles of the whole image's keypoints. */
+void prevailingAngles(const DescriptorPlan& plan, const Mat& image, const KeyPointBatch& batch,
+        const std::vector<SupportRegion>& regions, const std::vector<KeyPoint>& keypoints,
+        const std::vector<int>& ranks, Workspace& workspace, std::vector<float>& angles);
+
 }  // namespace iib
 }  // namespace cv
 

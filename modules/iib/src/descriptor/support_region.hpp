@@ -13,6 +13,12 @@ namespace iib {
 //! A bound of the lengths of the n cells in a row of a support region.
 static inline double longestCell(double side, int n) { return std::ceil(side / n); }
 
+//! The pixels of an image reflected once at each side: three times as many in a row and in a column, less those of the border.
+static inline Rect reflectedImage(Size image)
+{
+    return Rect(1 - image.width, 1 - image.height, 3 * image.width - 2, 3 * image.height - 2);
+}
+
 /** Region of support of a keypoint and its quadtree of cells (paper, "Local Patch Generation"). Pure
  geometry, in pixels of the image. */
 struct SupportRegion
@@ -40,13 +46,12 @@ struct SupportRegion
         return Rect(a.x, a.y, std::max(b.x - a.x, 1), std::max(b.y - a.y, 1));
     }
 
-    /** The pixels that count: those of the image, unless the region leaves it under BORDER_REFLECT. Then the image,
-     reflected once at each side, has three times as many in a row and in a column, less those of the border. */
+    //! The pixels that count: those of the image, unless the region leaves it under BORDER_REFLECT.
     Rect bounds(Size image, int border) const
     {
         if (border != IIB::BORDER_REFLECT || isInside(image))
             return Rect(Point(), image);
-        return Rect(1 - image.width, 1 - image.height, 3 * image.width - 2, 3 * image.height - 2);
+        return reflectedImage(image);
     }
 
     //! Whether no pixel of the upright region lies outside the image.

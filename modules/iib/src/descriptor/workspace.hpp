@@ -27,6 +27,8 @@ struct Workspace
     CellGrid<unsigned> cells, parentCells;
     CellGrid<double> doubleCells;
     BitEncoder::Workspace encoder;
+    ScratchMemory boxMeans;
+    BoxPlaces boxPlaces;
 };
 
 //! The workspaces of a call; threads borrow them.

@@ -57,6 +57,21 @@ const Golden GOLDEN[] = {{"default", 0x7c4943b59e478a06, 0x2e989fe2274d8bf2, not
                 [](IIB& i) { i.setMapping(IIB::MAPPING_HAAR); }, CV_8UC1},
         {"mapping pairwise", 0xcd3c1fb23c418b3a, 0x7eed83a5daee609b,
                 [](IIB& i) { i.setMapping(IIB::MAPPING_PAIRWISE); }, CV_8UC1},
+        {"mapping boxes", 0xac000b9f93d1369f, 0x5e67436840be8f59,
+                [](IIB& i) {
+                    i.setChannels(59);
+                    i.setGranularity(5);
+                    i.setMapping(IIB::MAPPING_BOXES);
+                },
+                CV_8UC1},
+        {"mapping boxes, orientation of keypoints", 0xc392ceb88be1db1e, 0x7dfbb1a300fd6cbb,
+                [](IIB& i) {
+                    i.setChannels(59);
+                    i.setGranularity(5);
+                    i.setMapping(IIB::MAPPING_BOXES);
+                    i.setUseOrientation(true);
+                },
+                CV_8UC1},
         {"gradient x", 0x9bf9c215914d0cc5, 0xc11d46de728f8b7c,
                 [](IIB& i) { i.setChannels(IIB::CHANNEL_GRAD_X); }, CV_8UC1},
         {"gradient y", 0xb7821168e4920a80, 0x2716add01922d585,

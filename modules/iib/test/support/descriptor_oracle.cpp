@@ -11,6 +11,7 @@
 #include <map>
 
 #include "../../src/descriptor/kernels/orientation.hpp"
+#include "box_oracle.hpp"
 
 namespace oracle {
 
@@ -341,14 +342,20 @@ void appendLevel(std::vector<uchar>& bytes, const std::vector<bool>& bits)
         bytes[start + i / 8] |= (uchar)((int)bits[i] << i % 8);
 }
 
-Cells cellsOf(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra,
-        const std::vector<Channel>& channels, const KeyPoint& kp, size_t rank)
+//! By which a keypoint is described; -1 if it is upright.
+float angleOf(const IIB& iib, const Mat& grey, const KeyPoint& kp, size_t rank)
 {
-    const bool gradient = iib.getOrientation() == IIB::ORIENTATION_GRADIENT && iib.getChannels() != 0;
-    if (gradient || (iib.getOrientation() == IIB::ORIENTATION_KEYPOINT && kp.angle >= 0))
+    if (iib.getOrientation() == IIB::ORIENTATION_GRADIENT && iib.getChannels() != 0)
+        return prevailingAngle(iib, grey, kp, rank);
+    return iib.getOrientation() == IIB::ORIENTATION_KEYPOINT && kp.angle >= 0 ? kp.angle : -1;
+}
+
+Cells cellsOf(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra,
+        const std::vector<Channel>& channels, const KeyPoint& kp, float angle)
+{
+    if (angle >= 0)
     {
-        const RotatedRegion rotated(
-                iib, grey, extra, kp, gradient ? prevailingAngle(iib, grey, kp, rank) : kp.angle);
+        const RotatedRegion rotated(iib, grey, extra, kp, angle);
         return [rotated](int c, int n, int row, int col) { return rotated.cell(c, n, row, col); };
     }
     const SupportRegion ros(iib, kp);
@@ -390,11 +397,14 @@ Mat describe(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra,
                 std::count_if(keypoints.begin(), keypoints.begin() + k, [&](const KeyPoint& other) {
                     return other.pt == keypoints[k].pt && other.size == keypoints[k].size;
                 });
-        const Cells cells = cellsOf(iib, grey, extra, channels, keypoints[k], rank);
+        const float angle = angleOf(iib, grey, keypoints[k], rank);
+        const Cells cells = cellsOf(iib, grey, extra, channels, keypoints[k], angle);
         std::vector<uchar> bytes;
         for (int level = 1; level <= iib.getGranularity(); level++)
-            appendLevel(bytes, selection.empty() ? levelBits(iib, cells, (int)channels.size(), level)
-                                                 : selectedBits(iib, cells, selection, level));
+            appendLevel(bytes, iib.getMapping() == IIB::MAPPING_BOXES
+                                       ? boxLevelBits(iib, grey, keypoints[k], angle, level)
+                               : selection.empty() ? levelBits(iib, cells, (int)channels.size(), level)
+                                                   : selectedBits(iib, cells, selection, level));
         descriptors.push_back(Mat(bytes).reshape(1, 1).clone());
     }
     return descriptors;

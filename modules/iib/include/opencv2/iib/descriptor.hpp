@@ -38,6 +38,28 @@ first:
 With a selection (see setSelection) the order is the same, whatever that of the selection, and the bits that were not
 chosen are left out; quads in odd rows or columns belong to the windows of 2.
 
+**Boxes.** With #MAPPING_BOXES, level g = 1..5 has n x n upright square boxes that overlap, so that a moved camera does not
+shift what a quad compares from one cell to the next. Sides, and the distance of the outermost centres from the keypoint,
+are in 80ths of the ROS:
+
+| level | n | side | distance |
+|---|---|---|---|
+| 1 | 3 | 32 | 24 |
+| 2 | 5 | 24 | 28 |
+| 3 | 7 | 16 | 30 |
+| 4 | 9 | 9 | 32 |
+| 5 | 7 | 6 | 12 |
+
+A box is made of whole squares of 2 x 2 pixels at even coordinates, at least one, nearest to its place. Of a box that leaves
+the pixels that count, the rest is weighted by what is missing, and a comparison with a box that has no pixel is 0. Five bits,
+where they exist: 0 to 2 are those of #MAPPING_HAAR of the box, the next one, and those below; 3 is gx > 0, gy > 0, or
+|gx| > |gy| (of #CHANNEL_GRAD_X); 4 is gx > gy (of #CHANNEL_SIGNED_GRAD_X) or gy > -gx (of #CHANNEL_SIGNED_GRAD_Y), of means
+over the box itself. Within a level the order is, outermost first: bits 0 to 2 before 3 and 4; row; column; bit; channel
+(|gx|, |gy|, gx, gy, intensity). There is neither #CHANNEL_ORIENTATION nor `overlap`, nor are there extra channels.
+
+Rotated boxes cost little more than upright ones: only their centres turn around the keypoint; the means of gx and gy are
+rotated as gradients are, and those of |gx| and |gy| are interpolated from four directions.
+
 The descriptors are CV_8U and compared with NORM_HAMMING. The same input gives the same bits for
 every instruction set, thread count and build. One object may serve several threads as long as none
 changes its parameters. As everywhere in OpenCV, cv::setNumThreads is not to be called meanwhile.
@@ -69,9 +91,10 @@ public:
         MAPPING_MAX,   //!< 4 bits: x_i = max(x)
         MAPPING_MIN,   //!< 4 bits: x_i = min(x)
         MAPPING_QUARTILE,  //!< 8 bits: the quarter of [min(x), max(x)] that x_i is in, equation (2); high bit first
-        MAPPING_SORT,     //!< 8 bits: the rank of x_i, ties by cell index; high bit first
-        MAPPING_HAAR,     //!< 3 bits: left > right, top > bottom, main diagonal > other diagonal
-        MAPPING_PAIRWISE  //!< 4 bits: x_0 > x_1, x_1 > x_3, x_3 > x_2, x_2 > x_0, around the quad
+        MAPPING_SORT,      //!< 8 bits: the rank of x_i, ties by cell index; high bit first
+        MAPPING_HAAR,      //!< 3 bits: left > right, top > bottom, main diagonal > other diagonal
+        MAPPING_PAIRWISE,  //!< 4 bits: x_0 > x_1, x_1 > x_3, x_3 > x_2, x_2 > x_0, around the quad
+        MAPPING_BOXES      //!< boxes on overlapping grids instead of cells, see above; granularity 1 to 5
     };
 
     //! What becomes of a keypoint whose ROS leaves the image. Inside, all give the same bits.
@@ -94,7 +117,7 @@ public:
     /** @brief Creates an extractor.
 
     @param scaleFactor side of the ROS in units of KeyPoint::size, > 0; see scaleFactorFor.
-    @param granularity number of levels G, 1 to 6.
+    @param granularity number of levels G, 1 to 6; with #MAPPING_BOXES to 5.
     @param channels a sum of #Channel values; may be 0 if there are extra channels.
     @param mapping one of #Mapping.
     @param overlap slide the 2x2 window of cells by one cell instead of two: (2^g - 1)^2 quads a level.
@@ -214,8 +237,8 @@ public:
     the radius. Of keypoints with the same position and size (as SIFT finds them, one for each direction) the second
     gets the second highest peak, and so on. A descriptor of extra channels alone stays upright.
 
-    Sums over upright rectangles do not rotate with a ROS, so a rotated one is sampled: on a grid of 32 x 32 points if
-    its side is at most 64 pixels and granularity at most 5, else of 64 x 64, at the nearest pixel of each, where the
+    Sums over upright rectangles do not rotate with a ROS, so but for #MAPPING_BOXES a rotated one is sampled: on a grid
+    of 32 x 32 points if its side is at most 64 pixels and granularity at most 5, else of 64 x 64, at the nearest pixel of each, where the
     gradient is rotated. So angle 0 does not give the bits of angle -1: one counts samples, the other all pixels.
     A point outside the image takes the pixel that #BORDER_REFLECT reflects there, or with #BORDER_CLAMP the nearest
     pixel of the border: the edge of the image crosses rotated cells at an angle, and cells with different numbers of
@@ -240,7 +263,8 @@ public:
     @param quads CV_32S, a row a quad, each at most once: level g (1..G, not descending), channel (its place among the channels
     in use, extra channels last), row and column of the quad's top left cell in the level's grid
     (0..2^g - 2; odd positions, between siblings, are allowed and need no `overlap`), and a bit mask of the
-    mapping's bits to keep (bit 0 is the first). Empty: all quads again.
+    mapping's bits to keep (bit 0 is the first). With #MAPPING_BOXES row and column are those of a box, 0..n - 1. Empty: all
+    quads or boxes again.
     @throws cv::Exception for another type or shape, levels out of order or values out of range.
      */
     CV_WRAP virtual void setSelection(InputArray quads) = 0;

@@ -5,7 +5,7 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_KERNELS_HPP
 #define OPENCV_IIB_DESCRIPTOR_KERNELS_KERNELS_HPP
 
-#include "quads.hpp"
+#include "boxes.hpp"
 
 namespace cv {
 namespace iib {
@@ -16,7 +16,7 @@ namespace iib {
 enum
 {
     ROW_PADDING = 64,  //!< kernels may read and write up to this many values past the end of a row
-    MAPPINGS = IIB::MAPPING_PAIRWISE + 1
+    MAPPINGS = IIB::MAPPING_PAIRWISE + 1  //!< of quads
 };
 
 //! What a row of pixels goes through. Rows begin anywhere and have ROW_PADDING values more than `width`.
@@ -154,6 +154,7 @@ struct DescriptorKernels
     SumRowFunc<int, unsigned>::Type sumIntRow;
     SumKernels<ushort> shortSums;
     SumKernels<unsigned> longSums;
+    BoxKernels boxes;
 
     //! The edges of n x n cells of a square with this top left corner and side, n a power of two, clamped to bounds.
     void (*cellEdges)(Point2d corner, double side, int n, Rect bounds, CellEdges& edges);

@@ -8,6 +8,7 @@
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "bits.simd.hpp"
+#include "boxes.simd.hpp"
 #include "cells.simd.hpp"
 #include "channel_rows.simd.hpp"
 #include "integral.simd.hpp"
@@ -50,6 +51,7 @@ DescriptorKernels makeTable()
         k.shortSums.bits[mapping] = bitsKernels<ushort>(mapping);
         k.longSums.bits[mapping] = bitsKernels<unsigned>(mapping);
     }
+    k.boxes = boxKernels();
     return k;
 }
 

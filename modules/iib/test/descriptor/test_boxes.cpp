@@ -1,0 +1,189 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/descriptor_oracle.hpp"
+#include "../support/test_errors.hpp"
+#include "../support/test_images.hpp"
+
+namespace opencv_test {
+namespace {
+
+const int ALL = IIB::CHANNEL_GRAD_X | IIB::CHANNEL_GRAD_Y | IIB::CHANNEL_INTENSITY |
+                IIB::CHANNEL_SIGNED_GRAD_X | IIB::CHANNEL_SIGNED_GRAD_Y;
+
+Ptr<IIB> boxes(int granularity = 5, int channels = ALL)
+{
+    return IIB::create(1.f, granularity, channels, IIB::MAPPING_BOXES);
+}
+
+void expectOracle(IIB& iib, const Mat& image, const std::vector<KeyPoint>& keypoints, const String& what)
+{
+    const Mat expected = oracle::describe(iib, image, std::vector<Mat>(), keypoints);
+    const Mat descriptors = describe(iib, image, keypoints);
+    ASSERT_EQ(expected.size(), descriptors.size()) << what;
+    for (int i = 0; i < expected.rows; i++)
+        ASSERT_EQ(0, differingBits(expected.row(i), descriptors.row(i)))
+                << what << ", keypoint " << i << " at " << keypoints[i].pt << " size " << keypoints[i].size
+                << " angle " << keypoints[i].angle;
+}
+
+TEST(IIB_Boxes, bits_as_the_oracle)
+{
+    for (int depth : {CV_8U, CV_16U})
+        for (int granularity = 1; granularity <= 5; granularity++)
+            for (int border : {IIB::BORDER_CLAMP, IIB::BORDER_REFLECT})
+            {
+                const Mat image = texture(Size(150, 131), depth, granularity);
+                const Ptr<IIB> iib = boxes(granularity);
+                iib->setBorder(border);
+                expectOracle(*iib, image, scatter(image.size(), 12, 2.f, 120.f, granularity),
+                        format("depth %d G %d border %d", depth, granularity, border));
+            }
+}
+
+TEST(IIB_Boxes, every_set_of_channels)
+{
+    const Mat image = texture(Size(101, 97), CV_8U, 2);
+    for (int channels = 1; channels < 64; channels++)
+        if ((channels & IIB::CHANNEL_ORIENTATION) == 0)
+            expectOracle(*boxes(2, channels), image, scatter(image.size(), 4, 8.f, 70.f, channels),
+                    format("channels %d", channels));
+}
+
+TEST(IIB_Boxes, images_of_every_width)
+{
+    for (int width = 1; width < 140; width += width < 20 ? 1 : 7)
+    {
+        const Mat image = texture(Size(width, 1 + width % 23), CV_8U, width);
+        expectOracle(*boxes(4), image, scatter(image.size(), 3, 4.f, 50.f, width), format("width %d", width));
+    }
+}
+
+// Sums over the largest boxes leave 32 bits in 8-bit images from a side of about 3000 pixels on.
+TEST(IIB_Boxes, large_regions)
+{
+    const Mat image = texture(Size(200, 180), CV_8U, 5);
+    std::vector<KeyPoint> keypoints;
+    for (float size : {400.f, 2900.f, 3000.f, 20000.f, 1e9f, 1e30f})
+        keypoints.push_back(KeyPoint(90.25f, 80.5f, size));
+    keypoints.push_back(KeyPoint(1e9f, -1e20f, 60.f));
+    for (int border : {IIB::BORDER_CLAMP, IIB::BORDER_REFLECT})
+    {
+        const Ptr<IIB> iib = boxes(2);
+        iib->setBorder(border);
+        for (const KeyPoint& kp : keypoints)
+            expectOracle(*iib, image, std::vector<KeyPoint>(1, kp), format("size %g", kp.size));
+        expectOracle(*iib, image, keypoints, "together");
+    }
+}
+
+TEST(IIB_Boxes, rotated)
+{
+    for (int depth : {CV_8U, CV_16U})
+        for (int orientation : {IIB::ORIENTATION_KEYPOINT, IIB::ORIENTATION_GRADIENT})
+            for (int border : {IIB::BORDER_CLAMP, IIB::BORDER_REFLECT})
+            {
+                const Mat image = texture(Size(200, 180), depth, 6);
+                std::vector<KeyPoint> keypoints = scatter(image.size(), 15, 8.f, 150.f, 7);
+                keypoints.push_back(keypoints[3]);  // by ORIENTATION_GRADIENT at another angle
+                const Ptr<IIB> iib = boxes();
+                iib->setOrientation(orientation);
+                iib->setBorder(border);
+                expectOracle(*iib, image, keypoints, format("depth %d, %d, %d", depth, orientation, border));
+            }
+}
+
+TEST(IIB_Boxes, angle_0_is_upright)
+{
+    const Mat image = texture(Size(200, 180), CV_8U, 8);
+    const std::vector<KeyPoint> upright(1, KeyPoint(100.25f, 90.5f, 60.f)),
+            rotated(1, KeyPoint(100.25f, 90.5f, 60.f, 0.f));
+    const Ptr<IIB> iib = boxes();
+    iib->setUseOrientation(true);
+    EXPECT_EQ(0, differingBits(describe(*iib, image, upright), describe(*iib, image, rotated)));
+}
+
+TEST(IIB_Boxes, rotated_image_has_nearly_the_same_bits)
+{
+    const Mat image = scene(Size(400, 400), 9);
+    std::vector<KeyPoint> keypoints = scatter(Size(160, 160), 60, 40.f, 60.f, 10), turned;
+    const float degrees = 35;
+    Mat affine = getRotationMatrix2D(Point2f(199.5f, 199.5f), -degrees, 1), rotatedImage;  // clockwise
+    warpAffine(image, rotatedImage, affine, image.size(), INTER_LINEAR, BORDER_REFLECT);
+    for (KeyPoint& kp : keypoints)
+    {
+        kp.pt += Point2f(120, 120);
+        kp.angle = 0;
+        const Matx33d a(affine.at<double>(0, 0), affine.at<double>(0, 1), affine.at<double>(0, 2),
+                affine.at<double>(1, 0), affine.at<double>(1, 1), affine.at<double>(1, 2), 0, 0, 1);
+        const Vec3d p = a * Vec3d(kp.pt.x, kp.pt.y, 1);
+        turned.push_back(KeyPoint((float)p[0], (float)p[1], kp.size, degrees));
+    }
+    const Ptr<IIB> iib = boxes();
+    iib->setUseOrientation(true);
+    const int bits = (int)keypoints.size() * iib->descriptorSize() * 8;
+    const int differing =
+            differingBits(describe(*iib, image, keypoints), describe(*iib, rotatedImage, turned));
+    EXPECT_LT(differing, bits * 0.15);
+    for (KeyPoint& kp : turned)
+        kp.angle = -1;
+    EXPECT_GT(differingBits(describe(*iib, image, keypoints), describe(*iib, rotatedImage, turned)),
+            2 * differing);
+}
+
+TEST(IIB_Boxes, selections)
+{
+    const Mat image = texture(Size(300, 280), CV_8U, 8);
+    const int sizes[] = {3, 5, 7, 9, 7};
+    for (int count = 1; count < 400; count *= 3)
+    {
+        RNG rng(count);
+        std::set<std::vector<int>> places;
+        for (int i = 0; i < count; i++)
+        {
+            const int level = rng.uniform(1, 6), end = sizes[level - 1] - 1;
+            places.insert({level, rng.uniform(0, 5), rng.uniform(0, end), rng.uniform(0, end)});
+        }
+        Mat_<int> selection;
+        for (const std::vector<int>& place : places)
+        {
+            // |gx|, |gy|, intensity, gx, gy
+            const int masks[] = {15, 7, 7, 31, 31};
+            const int mask = std::max(rng.uniform(0, 32) & masks[place[1]], 1);
+            selection.push_back(Mat_<int>({place[0], place[1], place[2], place[3], mask}).reshape(1, 1));
+        }
+        const Ptr<IIB> iib = boxes();
+        iib->setSelection(selection);
+        expectOracle(*iib, image, scatter(image.size(), 6, 10.f, 200.f, count), format("%d places", count));
+    }
+    const Ptr<IIB> last = boxes();
+    const Mat single = (Mat_<int>(2, 5) << 4, 3, 8, 8, 8, 5, 4, 0, 6, 16);
+    last->setSelection(single);
+    EXPECT_EQ((std::vector<int>{1, 1}), last->levelSizes());
+    expectOracle(*last, image, scatter(image.size(), 6, 10.f, 200.f, 1), "single boxes");
+}
+
+TEST(IIB_Boxes, sizes)
+{
+    // bits of quads 3 * 5 * (n - 1)^2, of boxes 5 n^2
+    EXPECT_EQ((std::vector<int>{14, 46, 99, 171, 99}), boxes()->levelSizes());
+    EXPECT_EQ((std::vector<int>{2}), boxes(1, IIB::CHANNEL_INTENSITY)->levelSizes());
+}
+
+TEST(IIB_Boxes, errors)
+{
+    expectError(Error::StsOutOfRange, "granularity is 6", [] { boxes(6); });
+    expectError(Error::StsBadArg, "CHANNEL_ORIENTATION", [] { boxes(3, IIB::CHANNELS_DEFAULT); });
+    expectError(Error::StsBadArg, "extra channels",
+            [] { IIB::create(1.f, 3, ALL, IIB::MAPPING_BOXES, false, false, 1); });
+    expectError(Error::StsBadArg, "overlap", [] { IIB::create(1.f, 3, ALL, IIB::MAPPING_BOXES, true); });
+    const Mat_<int> outside[] = {(Mat_<int>(1, 5) << 1, 0, 3, 0, 1), (Mat_<int>(1, 5) << 1, 0, 0, 3, 1),
+            (Mat_<int>(1, 5) << 1, 0, 2, 0, 1), (Mat_<int>(1, 5) << 1, 1, 0, 0, 8),
+            (Mat_<int>(1, 5) << 1, 0, 0, 0, 16), (Mat_<int>(1, 5) << 1, 0, 0, 0, 0)};
+    for (const Mat_<int>& selection : outside)
+        expectError(Error::StsOutOfRange, "selection, row 0", [&] { boxes()->setSelection(selection); });
+}
+
+}  // namespace
+}  // namespace opencv_test
