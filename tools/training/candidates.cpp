@@ -5,6 +5,7 @@
 #include "candidates.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <map>
 
@@ -55,23 +56,8 @@ bool inOneRow(const int* p, const int* q)
            p[3] % 2 == q[3] % 2;
 }
 
-}  // namespace
-
-bool CandidatePool::areNeighbours(const Candidate& a, const Candidate& b) const
+void addQuads(const PoolParameters& p, CandidatePool& pool)
 {
-    const int *p = quads[a.quad], *q = quads[b.quad];
-    return a.mask == b.mask && p[0] == q[0] && p[1] == q[1] && std::abs(p[2] - q[2]) <= 1 &&
-           std::abs(p[3] - q[3]) <= 1;
-}
-
-CandidatePool makePool(const PoolParameters& p)
-{
-    if (p.windows.empty() ||
-            std::any_of(p.windows.begin(), p.windows.end(), [](int w) { return w < 1 || w > 15; }))
-        CV_Error(cv::Error::StsOutOfRange,
-                "where quads begin is a number of 1 to 15 for each level, as 1,15,15");
-    CandidatePool pool;
-    pool.extractor = IIB::create(p.scale, p.granularity, p.channels, p.mapping);
     const int bits = bitsPerQuad(p.mapping);
     pool.quads = allQuads(p, (1 << bits) - 1);
     pool.extractor->setSelection(pool.quads);
@@ -100,6 +86,66 @@ CandidatePool makePool(const PoolParameters& p)
         start += (last - first) * bits;
         first = last;
     }
+}
+
+//! All bits of boxes in the order of a descriptor, see IIBDescriptorExtractor::MAPPING_BOXES.
+void addBoxes(const PoolParameters& p, CandidatePool& pool)
+{
+    const int boxesInRow[] = {3, 5, 7, 9, 7};
+    const struct
+    {
+        int kind, mask;  // of the bits of one box; those of a quad are 7
+    } channels[] = {{IIB::CHANNEL_GRAD_X, 8}, {IIB::CHANNEL_GRAD_Y, 0}, {IIB::CHANNEL_SIGNED_GRAD_X, 24},
+            {IIB::CHANNEL_SIGNED_GRAD_Y, 24}, {IIB::CHANNEL_INTENSITY, 0}};
+    std::map<std::array<int, 4>, int> rows;  // level, channel, row and column -> row of pool.quads
+    int position = 0;
+    for (int level = 1; level <= p.granularity; level++)
+    {
+        const int n = boxesInRow[level - 1];
+        position = (position + 7) / 8 * 8;
+        for (int first = 0; first < 5; first += 3)  // bits of quads, then of boxes
+            for (int place = 0; place < n * n; place++)
+                for (int bit = first; bit < (first == 0 ? 3 : 5); bit++)
+                    for (const auto& channel : channels)
+                    {
+                        const int row = place / n, column = place % n,
+                                  index = countBits(p.channels & (channel.kind - 1));
+                        const bool exists =
+                                first == 0 ? row + 1 < n && column + 1 < n : (channel.mask >> bit & 1) != 0;
+                        if (!exists || !(p.channels & channel.kind))
+                            continue;
+                        const auto quad = rows.insert({{{level, index, row, column}}, pool.quads.rows});
+                        if (quad.second)
+                            pool.quads.push_back(cv::Mat_<int>({level, index, row, column, 0}).reshape(1, 1));
+                        pool.quads(quad.first->second, 4) |= 1 << bit;
+                        pool.candidates.push_back({quad.first->second, 1 << bit, {position++}});
+                    }
+    }
+    pool.extractor->setSelection(pool.quads);
+}
+
+}  // namespace
+
+bool CandidatePool::areNeighbours(const Candidate& a, const Candidate& b) const
+{
+    const int *p = quads[a.quad], *q = quads[b.quad];
+    return a.mask == b.mask && p[0] == q[0] && p[1] == q[1] && std::abs(p[2] - q[2]) <= 1 &&
+           std::abs(p[3] - q[3]) <= 1;
+}
+
+CandidatePool makePool(const PoolParameters& p)
+{
+    if (p.mapping != IIB::MAPPING_BOXES &&
+            (p.windows.empty() ||
+                    std::any_of(p.windows.begin(), p.windows.end(), [](int w) { return w < 1 || w > 15; })))
+        CV_Error(cv::Error::StsOutOfRange,
+                "where quads begin is a number of 1 to 15 for each level, as 1,15,15");
+    CandidatePool pool;
+    pool.extractor = IIB::create(p.scale, p.granularity, p.channels, p.mapping);
+    if (p.mapping == IIB::MAPPING_BOXES)
+        addBoxes(p, pool);
+    else
+        addQuads(p, pool);
     return pool;
 }
 

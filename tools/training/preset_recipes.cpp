@@ -6,6 +6,8 @@
 
 namespace iib_tools {
 
+Warps warpsOfShare(double share) { return {share, 0.4, 20, 0.7, 1.4, 2, 0, 1, 0}; }
+
 std::vector<Recipe> presetRecipes()
 {
     using cv::iib::IIB;
@@ -21,14 +23,22 @@ std::vector<Recipe> presetRecipes()
     // coarse quads stand a moved camera: level 2 begins them at every cell; a fourth channel costs next to nothing
     const PoolParameters moving = {
             values + IIB::CHANNEL_SIGNED_GRAD_Y, IIB::MAPPING_MEAN, 4, 1.125f, {1, 15, 1}, false};
+    // boxes overlap, so that a moved camera shifts none wholly; see README.md
+    const PoolParameters boxes = {values + IIB::CHANNEL_SIGNED_GRAD_X + IIB::CHANNEL_SIGNED_GRAD_Y,
+            IIB::MAPPING_BOXES, 5, 1.25f, {}, false};
+    const Warps wide = {0.9, 0.5, 22, 0.7, 1.43, 2.5, 0.1, 1.5, 5};
+    Warps universal = wide;
+    universal.share = 0.5;
     return {
-            {"S128", 128, paper, 0., false, 12},
-            {"S256", 256, paper, 0., false, 12},
-            {"S512", 512, paper, 0., false, 12},
-            {"ACCURATE", 0, accurate, 0., false, 12},
-            {"COMPACT", 512, still, 0., false, 12},
-            {"TINY", 256, still, 0., false, 12},
-            {"BALANCED", 512, moving, 0.85, false, 24},
+            {"S128", 128, paper, warpsOfShare(0), false, 12},
+            {"S256", 256, paper, warpsOfShare(0), false, 12},
+            {"S512", 512, paper, warpsOfShare(0), false, 12},
+            {"ACCURATE", 0, accurate, warpsOfShare(0), false, 12},
+            {"COMPACT", 512, still, warpsOfShare(0), false, 12},
+            {"TINY", 256, still, warpsOfShare(0), false, 12},
+            {"BALANCED", 512, moving, warpsOfShare(0.85), false, 24},
+            {"VIEWPOINT", 512, boxes, wide, false, 24},
+            {"UNIVERSAL", 1024, boxes, universal, false, 24},
     };
 }
 

@@ -30,27 +30,10 @@ std::string tableRows(const cv::Mat_<int>& quads)
     return text;
 }
 
-}  // namespace
-
-cv::Ptr<IIB> train(
-        const Recipe& recipe, const std::vector<ImagePair>& pairs, uint64 seed, const Progress& progress)
-{
-    if (recipe.bits == 0)
-        return IIB::create(
-                recipe.pool.scale, recipe.pool.granularity, recipe.pool.channels, recipe.pool.mapping);
-    const CandidatePool pool = makePool(recipe.pool);
-    const std::vector<DescribedPair> described = describeForTraining(
-            pairs, pool.extractor, recipe.pairsPerScene, recipe.warpShare, seed, progress);
-    return selectedExtractor(pool, recipe.adaBoost
-                                           ? selectByAdaBoost(pool, described, recipe.bits, seed, progress)
-                                           : selectGreedily(pool, described, recipe.bits, seed, progress));
-}
-
-MeanScores judge(const std::vector<ImagePair>& pairs, const cv::Ptr<cv::Feature2D>& extractor,
-        const Progress& progress)
+MeanScores scoresOf(const std::vector<DescribedPair>& pairs)
 {
     std::vector<Counts> counts;
-    for (const DescribedPair& pair : describeForTest(pairs, extractor, progress))
+    for (const DescribedPair& pair : pairs)
     {
         Counts count = {0, 0, int(pair.points.size())};
         if (!pair.points.empty())
@@ -62,6 +45,37 @@ MeanScores judge(const std::vector<ImagePair>& pairs, const cv::Ptr<cv::Feature2
         counts.push_back(count);
     }
     return meanScores(counts);
+}
+
+}  // namespace
+
+cv::Ptr<IIB> train(
+        const Recipe& recipe, const std::vector<ImagePair>& pairs, uint64 seed, const Progress& progress)
+{
+    if (recipe.bits == 0)
+        return IIB::create(
+                recipe.pool.scale, recipe.pool.granularity, recipe.pool.channels, recipe.pool.mapping);
+    const CandidatePool pool = makePool(recipe.pool);
+    const std::vector<DescribedPair> described =
+            describeForTraining(pairs, pool.extractor, recipe.pairsPerScene, recipe.warps, seed, progress);
+    return selectedExtractor(pool, recipe.adaBoost
+                                           ? selectByAdaBoost(pool, described, recipe.bits, seed, progress)
+                                           : selectGreedily(pool, described, recipe.bits, seed, progress));
+}
+
+MeanScores judge(const std::vector<ImagePair>& pairs, const cv::Ptr<cv::Feature2D>& extractor,
+        const Progress& progress)
+{
+    return scoresOf(describeForTest(pairs, extractor, progress));
+}
+
+MeanScores judgeWarped(const std::vector<ImagePair>& pairs, const cv::Ptr<cv::Feature2D>& extractor,
+        const Warps& warps, uint64 seed, const Progress& progress)
+{
+    Warps all = warps;
+    all.share = 1;
+    const int pairsPerScene = 6;
+    return scoresOf(describeForTraining(pairs, extractor, pairsPerScene, all, seed, progress));
 }
 
 std::vector<ImagePair> foldOf(const std::vector<ImagePair>& pairs, int fold, int folds, bool inside)

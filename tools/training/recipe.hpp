@@ -20,10 +20,13 @@ struct Recipe
     std::string name;
     int bits;  //!< 0: all quads at even positions, there is nothing to learn
     PoolParameters pool;
-    double warpShare;  //!< of the training pairs, see describeForTraining
-    bool adaBoost;     //!< selectByAdaBoost instead of selectGreedily
+    Warps warps;
+    bool adaBoost;  //!< selectByAdaBoost instead of selectGreedily
     int pairsPerScene;
 };
+
+//! None, or as for BALANCED but for the share.
+Warps warpsOfShare(double share);
 
 //! How the built-in presets are made, in the order of IIBDescriptorExtractor::Preset.
 std::vector<Recipe> presetRecipes();
@@ -34,6 +37,10 @@ cv::Ptr<cv::iib::IIBDescriptorExtractor> train(
 //! mAP and mAR at fixed points, means over the pairs.
 MeanScores judge(const std::vector<ImagePair>& pairs, const cv::Ptr<cv::Feature2D>& extractor,
         const Progress& progress);
+
+//! The same of pairs made as for training, all of them warped.
+MeanScores judgeWarped(const std::vector<ImagePair>& pairs, const cv::Ptr<cv::Feature2D>& extractor,
+        const Warps& warps, uint64 seed, const Progress& progress);
 
 //! The pairs whose scene is (or, if `inside` is false, is not) number fold, fold + folds, ... in order.
 std::vector<ImagePair> foldOf(const std::vector<ImagePair>& pairs, int fold, int folds, bool inside);

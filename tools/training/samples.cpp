@@ -15,7 +15,6 @@ namespace {
 
 const float RADIUS = 32;
 const int POINTS = 1000, FEWEST_POINTS = 100;
-const double SAME_LIGHT = 0.4;  // of the warped pairs
 
 cv::Matx33d rotation(double radians)
 {
@@ -59,14 +58,36 @@ void makeSelfPair(LoadedPair& pair)
     pair.homography = cv::Matx33d::eye();
 }
 
-void warpTarget(LoadedPair& pair, cv::RNG& rng)
+//! By a power, and with noise.
+void changeGrey(cv::Mat& image, const Warps& warps, cv::RNG& rng)
 {
-    const double angle = rng.uniform(-20., 20.) * CV_PI / 180, scale = logUniform(rng, 0.7, 1.4);
-    const double tilt = std::sqrt(logUniform(rng, 1 / 2., 2.)), tiltAxis = rng.uniform(0., CV_PI);
+    const double gamma = logUniform(rng, 1 / warps.gamma, warps.gamma);
+    cv::Mat_<uchar> table(1, 256);
+    for (int i = 0; i < 256; i++)
+        table(i) = cv::saturate_cast<uchar>(255 * std::pow(i / 255., gamma));
+    cv::LUT(image, table, image);
+    cv::Mat noise(image.size(), CV_16S);
+    rng.fill(noise, cv::RNG::NORMAL, 0., rng.uniform(0., warps.noise));
+    cv::add(image, noise, image, cv::noArray(), CV_8U);
+}
+
+void warpTarget(LoadedPair& pair, const Warps& warps, cv::RNG& rng)
+{
+    const double angle = rng.uniform(-warps.degrees, warps.degrees) * CV_PI / 180,
+                 scale = logUniform(rng, warps.smallest, warps.largest);
+    const double tilt = std::sqrt(logUniform(rng, 1 / warps.tilt, warps.tilt)),
+                 tiltAxis = rng.uniform(0., CV_PI);
     const double x = pair.target.cols / 2., y = pair.target.rows / 2.;
     const cv::Matx33d toCentre(1, 0, -x, 0, 1, -y, 0, 0, 1), back(1, 0, x, 0, 1, y, 0, 0, 1);
     const cv::Matx33d stretch(tilt * scale, 0, 0, 0, scale / tilt, 0, 0, 0, 1);
-    const cv::Matx33d warp = back * rotation(tiltAxis) * stretch * rotation(angle - tiltAxis) * toCentre;
+    cv::Matx33d bend = cv::Matx33d::eye();
+    if (warps.perspective > 0)
+    {
+        bend(2, 0) = rng.uniform(-warps.perspective, warps.perspective) / pair.target.cols;
+        bend(2, 1) = rng.uniform(-warps.perspective, warps.perspective) / pair.target.rows;
+    }
+    const cv::Matx33d warp =
+            back * bend * rotation(tiltAxis) * stretch * rotation(angle - tiltAxis) * toCentre;
 
     cv::Mat source = pair.target.clone();  // it may share the reference's pixels
     if (scale < 1)                         // against aliasing
@@ -75,6 +96,8 @@ void warpTarget(LoadedPair& pair, cv::RNG& rng)
     cv::warpPerspective(source, warped, warp, source.size(), cv::INTER_LINEAR, cv::BORDER_REFLECT);
     pair.target = warped;
     pair.homography = warp * pair.homography;
+    if (warps.noise > 0)
+        changeGrey(pair.target, warps, rng);
 }
 
 DescribedPair describe(
@@ -92,7 +115,7 @@ DescribedPair describe(
 }  // namespace
 
 std::vector<DescribedPair> describeForTraining(const std::vector<ImagePair>& pairs,
-        const cv::Ptr<cv::Feature2D>& extractor, int pairsPerScene, double warpShare, uint64 seed,
+        const cv::Ptr<cv::Feature2D>& extractor, int pairsPerScene, const Warps& warps, uint64 seed,
         const Progress& progress)
 {
     std::map<std::string, std::vector<ImagePair>> scenes;
@@ -108,11 +131,11 @@ std::vector<DescribedPair> describeForTraining(const std::vector<ImagePair>& pai
             LoadedPair pair = drawPair(scene.second, rng);
             if (rng.uniform(0, 2) == 1)
                 mirror(pair);
-            if (rng.uniform(0., 1.) < warpShare)
+            if (rng.uniform(0., 1.) < warps.share)
             {
-                if (rng.uniform(0., 1.) < SAME_LIGHT)
+                if (rng.uniform(0., 1.) < warps.sameLight)
                     makeSelfPair(pair);
-                warpTarget(pair, rng);
+                warpTarget(pair, warps, rng);
             }
             described.push_back(describe(scene.first, pair, extractor));
             if (int(described.back().points.size()) < FEWEST_POINTS)

@@ -22,15 +22,27 @@ struct DescribedPair
     cv::Mat reference, target;        //!< CV_8U, a row a point
 };
 
+//! How training pairs are warped: about the target's centre, each number drawn anew for each pair.
+struct Warps
+{
+    double share;              //!< of the pairs
+    double sameLight;          //!< of these, those of one image and its own warp, without a change of light
+    double degrees;            //!< turned by up to so many
+    double smallest, largest;  //!< scale
+    double tilt;               //!< up to which ratio of scales along two directions
+    double perspective;        //!< change of scale from side to side, 0.1: by up to 10 %
+    double gamma;              //!< from 1 / gamma to gamma
+    double noise;              //!< standard deviation, up to so many grey values
+};
+
 //! Called with the work done so far and the whole of it.
 typedef std::function<void(int done, int all)> Progress;
 
 /** The evaluation's fixed points (up to 1000 FAST corners a pair, ROS of radius 32) of `pairsPerScene` random pairs
-of images of every scene, half of them mirrored, so that scenes count the same and left is like right. A part
-`warpShare` of the targets is turned by up to 20 degrees, scaled by 0.7 to 1.4 and tilted by up to 2, about
-the centre; two in five of these are of one image and its own warp, without a change of light. Pairs with fewer than 100 points are left out. */
+of images of every scene, half of them mirrored, so that scenes count the same and left is like right. Pairs with fewer
+than 100 points are left out. */
 std::vector<DescribedPair> describeForTraining(const std::vector<ImagePair>& pairs,
-        const cv::Ptr<cv::Feature2D>& extractor, int pairsPerScene, double warpShare, uint64 seed,
+        const cv::Ptr<cv::Feature2D>& extractor, int pairsPerScene, const Warps& warps, uint64 seed,
         const Progress& progress);
 
 //! All pairs as they are, for judging.

@@ -39,19 +39,26 @@ Progress show(const std::string& what)
     };
 }
 
+void add(MeanScores& sum, const MeanScores& scores, double share)
+{
+    sum.map += scores.map * share;
+    sum.mar += scores.mar * share;
+}
+
 void crossValidate(const Recipe& recipe, const std::vector<ImagePair>& pairs, int folds, uint64 seed)
 {
-    double map = 0, mar = 0;
+    MeanScores plain = {0, 0}, warped = {0, 0};
     for (int fold = 0; fold < folds; fold++)
     {
         const std::vector<ImagePair> unseen = foldOf(pairs, fold, folds, true);
         const cv::Ptr<cv::iib::IIB> learned =
                 train(recipe, foldOf(pairs, fold, folds, false), seed, show("training"));
-        const MeanScores scores = judge(unseen, learned, show("judging"));
-        map += scores.map * double(unseen.size()) / double(pairs.size());
-        mar += scores.mar * double(unseen.size()) / double(pairs.size());
+        const double share = double(unseen.size()) / double(pairs.size());
+        add(plain, judge(unseen, learned, show("judging")), share);
+        add(warped, judgeWarped(unseen, learned, recipe.warps, seed, show("judging warped")), share);
     }
-    std::cout << "mAP " << map << ", mAR " << mar << " on the scenes left out" << std::endl;
+    std::cout << "mAP " << plain.map << ", mAR " << plain.mar << " on the scenes left out; warped "
+              << warped.map << ", " << warped.mar << std::endl;
 }
 
 void writePresets(const std::string& file, const std::vector<ImagePair>& pairs, uint64 seed)
@@ -72,7 +79,7 @@ int run(const cv::CommandLineParser& args, const std::vector<std::string>& roots
     const Recipe recipe = {"selection", args.get<int>("bits"),
             {args.get<int>("channels"), args.get<int>("mapping"), args.get<int>("granularity"),
                     args.get<float>("scale"), windows, args.has("quads")},
-            args.get<double>("warp"), args.has("adaboost"), args.get<int>("pairs")};
+            warpsOfShare(args.get<double>("warp")), args.has("adaboost"), args.get<int>("pairs")};
     const uint64 seed = uint64(args.get<int>("seed"));
     const int folds = args.get<int>("folds");
     const std::string header = args.get<std::string>("presets"), out = args.get<std::string>("out");

@@ -37,7 +37,8 @@ protected:
     static Recipe recipe(bool wholeQuads, bool adaBoost)
     {
         const int channels = IIB::CHANNEL_GRAD_X + IIB::CHANNEL_GRAD_Y + IIB::CHANNEL_SIGNED_GRAD_X;
-        return {"test", 24, {channels, IIB::MAPPING_HAAR, 3, 1.f, {15}, wholeQuads}, 0., adaBoost, 3};
+        return {"test", 24, {channels, IIB::MAPPING_HAAR, 3, 1.f, {15}, wholeQuads}, warpsOfShare(0),
+                adaBoost, 3};
     }
 
     static void ignore(int, int) {}
@@ -111,17 +112,37 @@ TEST_F(Training, folds_split_scenes)
 
 TEST_F(Training, pool_bits_are_those_of_its_candidates)
 {
-    const CandidatePool pool = makePool(recipe(false, false).pool);
+    PoolParameters boxes = recipe(false, false).pool;
+    boxes.mapping = IIB::MAPPING_BOXES;
+    boxes.channels = 59;
+    boxes.granularity = 5;
     const cv::Mat image = cv::imread(folder.path("set/a/1.png"), cv::IMREAD_GRAYSCALE);
     std::vector<cv::KeyPoint> keypoints(1, cv::KeyPoint(100.f, 90.f, 64.f));
-    cv::Mat all, one;
-    pool.extractor->compute(image, keypoints, all);
-    for (size_t i = 0; i < pool.candidates.size(); i += 17)
+    for (const PoolParameters& parameters : {recipe(false, false).pool, boxes})
     {
-        selectedExtractor(pool, std::vector<int>(1, int(i)))->compute(image, keypoints, one);
-        const int position = pool.candidates[i].positions.at(0);
-        EXPECT_EQ(one.at<uchar>(0), all.at<uchar>(position / 8) >> position % 8 & 1) << "candidate " << i;
+        const CandidatePool pool = makePool(parameters);
+        cv::Mat all, one;
+        pool.extractor->compute(image, keypoints, all);
+        ASSERT_EQ(all.cols, IIB::create(1.f, parameters.granularity, parameters.channels, parameters.mapping,
+                                    parameters.mapping != IIB::MAPPING_BOXES)
+                                    ->descriptorSize());
+        for (size_t i = 0; i < pool.candidates.size(); i += 17)
+        {
+            selectedExtractor(pool, std::vector<int>(1, int(i)))->compute(image, keypoints, one);
+            const int position = pool.candidates[i].positions.at(0);
+            EXPECT_EQ(one.at<uchar>(0), all.at<uchar>(position / 8) >> position % 8 & 1) << "candidate " << i;
+        }
     }
+}
+
+TEST_F(Training, warped_pairs_match_less_but_match)
+{
+    const Warps warps = {1, 1, 22, 0.7, 1.43, 2.5, 0.1, 1.5, 5};
+    const cv::Ptr<IIB> iib = IIB::createPreset(IIB::PRESET_BALANCED, 1.f);
+    const MeanScores still = judge(pairs, iib, ignore), warped = judgeWarped(pairs, iib, warps, 1, ignore);
+    EXPECT_LT(warped.mar, still.mar);
+    EXPECT_GT(warped.mar, 0.1);
+    EXPECT_EQ(warped.mar, judgeWarped(pairs, iib, warps, 1, ignore).mar);
 }
 
 TEST_F(Training, quads_begin_only_where_they_may)
