@@ -15,9 +15,8 @@ using namespace cv::iib;
 constexpr int PRESET = -1;
 
 constexpr int MAX_KEYPOINTS = 1000;  // a detector
-constexpr float MAX_RATIO = 0.9f;    // of the nearest distance to the second nearest
 
-std::vector<cv::DMatch> matchEuclidean(const cv::Mat& query, const cv::Mat& train)
+std::vector<cv::DMatch> matchEuclidean(const cv::Mat& query, const cv::Mat& train, float maxRatio)
 {
     cv::Mat q, t;
     query.convertTo(q, CV_32F);
@@ -29,7 +28,7 @@ std::vector<cv::DMatch> matchEuclidean(const cv::Mat& query, const cv::Mat& trai
     matcher.match(t, q, back);
     for (const std::vector<cv::DMatch>& n : nearest)
         if (back[n[0].trainIdx].trainIdx == n[0].queryIdx &&
-                (n.size() < 2 || n[0].distance < MAX_RATIO * n[1].distance))
+                (n.size() < 2 || n[0].distance < maxRatio * n[1].distance))
             matches.push_back(n[0]);
     return matches;
 }
@@ -78,16 +77,16 @@ Features FeatureMethod::extract(const cv::Mat& grey) const
     return features;
 }
 
-std::vector<cv::DMatch> FeatureMethod::match(const cv::Mat& query, const cv::Mat& train) const
+std::vector<cv::DMatch> FeatureMethod::match(const cv::Mat& query, const cv::Mat& train, float maxRatio) const
 {
     std::vector<cv::DMatch> matches;
     if (query.empty() || train.empty())
         return matches;
     if (!binary())
-        return matchEuclidean(query, train);
+        return matchEuclidean(query, train, maxRatio);
     const cv::Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create();
     matcher->setCrossCheck(true);
-    matcher->setMaxRatio(MAX_RATIO);
+    matcher->setMaxRatio(maxRatio);
     matcher->match(query, train, matches);
     return matches;
 }

@@ -36,8 +36,8 @@ public:
     bool binary() const { return name_ != "sift"; }
 
     Features extract(const cv::Mat& grey) const;
-    //! Mutual nearest neighbours that the second nearest is clearly further than.
-    std::vector<cv::DMatch> match(const cv::Mat& query, const cv::Mat& train) const;
+    //! Mutual nearest neighbours, whose distance is less than maxRatio times the second nearest's.
+    std::vector<cv::DMatch> match(const cv::Mat& query, const cv::Mat& train, float maxRatio) const;
 
 private:
     std::string name_;

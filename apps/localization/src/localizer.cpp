@@ -12,13 +12,18 @@
 namespace iib_localization {
 namespace {
 
+constexpr size_t SHORTLIST = 20;    // keyframes by votes, of which
 constexpr size_t CANDIDATES = 5;    // keyframes that an image is matched with
+constexpr int STRONGEST = 400;      // of an image and detector, whose matches rank the shortlist
+constexpr float SURE_RATIO = 0.9f;  // of distances, of the matches that rank
+constexpr float MAX_RATIO =
+        0.97f;  // of the matches that the pose is from: with codes this long, right ones reach it
 constexpr double RANSAC_ERROR = 4;  // pixels
 constexpr double INLIER_ERROR = 3;  // pixels, of a refined pose
 constexpr size_t MIN_MATCHES = 12;
 constexpr size_t MIN_INLIERS = 15;
-constexpr double MIN_INLIER_SHARE = 0.1;  // of the matches
-constexpr double MAX_BOUND = 0.5;         // metres
+constexpr double MIN_INLIER_SHARE = 0.06;  // of the matches
+constexpr double MAX_BOUND = 0.5;          // metres
 
 //! Milliseconds since the last call.
 class Stopwatch
@@ -133,10 +138,27 @@ std::vector<size_t> Localizer::candidates(const Features& features, const Pose* 
         retrievals_[d].vote(features.codes[d], votes);
     if (!prior && retrievals_.empty())
         return order;  // without binary codes there is no vote: all keyframes
-    const size_t count = std::min(order.size(), CANDIDATES);
-    std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(count), order.end(),
-            [&](size_t a, size_t b) { return votes[a] > votes[b]; });
-    order.resize(count);
+    const auto keepBest = [&](size_t limit) {
+        const size_t count = std::min(order.size(), limit);
+        std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(count), order.end(),
+                [&](size_t a, size_t b) { return votes[a] > votes[b]; });
+        order.resize(count);
+    };
+    if (!prior)
+    {
+        keepBest(SHORTLIST);
+        for (size_t k : order)
+        {
+            votes[k] = 0;
+            for (size_t d = 0; d < method_.detectors(); d++)
+            {
+                const cv::Mat& codes = features.codes[d];
+                const cv::Mat strongest = codes.rows > STRONGEST ? codes.rowRange(0, STRONGEST) : codes;
+                votes[k] += float(method_.match(strongest, map_.codes[k][d], SURE_RATIO).size());
+            }
+        }
+    }
+    keepBest(CANDIDATES);
     return order;
 }
 
@@ -150,7 +172,7 @@ std::vector<Observation> Localizer::match(
         int firstQuery = 0, firstTrain = 0;  // row of the detector's first keypoint
         for (size_t d = 0; d < method_.detectors(); d++)
         {
-            for (const cv::DMatch& m : method_.match(features.codes[d], map_.codes[k][d]))
+            for (const cv::DMatch& m : method_.match(features.codes[d], map_.codes[k][d], MAX_RATIO))
                 matches.push_back({map_.model.points[map_.model.keyframes[k].points[firstTrain + m.trainIdx]],
                         pixels[firstQuery + m.queryIdx]});
             firstQuery += features.codes[d].rows;

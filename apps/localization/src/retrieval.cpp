@@ -11,6 +11,7 @@ namespace iib_localization {
 namespace {
 
 constexpr int TABLES = 16;
+constexpr int COARSE = 4;  // the first part of a code that bits are taken from: coarse cells change least
 constexpr int STRONGEST = 400;        // codes a keyframe and detector that take part
 constexpr uint32_t MAX_ENTRIES = 64;  // of a key: what is that frequent tells nothing
 
@@ -44,7 +45,7 @@ Retrieval::Retrieval(const std::vector<cv::Mat>& codes)
     {
         Table table;
         for (int i = 0; i < keyBits; i++)
-            table.bits.push_back(int(random() % uint32_t(8 * bytes_)));
+            table.bits.push_back(int(random() % uint32_t(8 * bytes_ / COARSE)));
         table.begins.assign((size_t(1) << keyBits) + 1, 0);
         for (const cv::Mat& c : codes)
             for (int row = 0; row < participating(c); row++)

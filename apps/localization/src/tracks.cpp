@@ -16,6 +16,7 @@ namespace iib_localization {
 namespace {
 
 constexpr size_t NEIGHBOURS = 6;          // keyframes that each is matched with
+constexpr float MAX_RATIO = 0.9f;         // of the matches' distances
 constexpr double MAX_ANGLE = 60;          // between their axes, degrees
 constexpr double MIN_PARALLAX = 1;        // degrees
 constexpr double MAX_ERROR = 4;           // pixels, of a first guess
@@ -158,7 +159,7 @@ TrackForest joinMatches(const FeatureMethod& method, const std::vector<Features>
         int first[2] = {0, 0};  // feature of the detector's first row
         for (size_t d = 0; d < method.detectors(); d++)
         {
-            for (const cv::DMatch& m : method.match(features[i].codes[d], features[j].codes[d]))
+            for (const cv::DMatch& m : method.match(features[i].codes[d], features[j].codes[d], MAX_RATIO))
             {
                 Track pair = {{i, first[0] + m.queryIdx}, {j, first[1] + m.trainIdx}};
                 const Track both = pair;
