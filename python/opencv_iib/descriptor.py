@@ -59,6 +59,8 @@ class IIBDescriptorExtractor:
     PRESET_COMPACT = 4
     PRESET_TINY = 5
     PRESET_BALANCED = 6
+    PRESET_VIEWPOINT = 7
+    PRESET_UNIVERSAL = 8
 
     def __init__(self, scaleFactor: float = 2.0, granularity: int = 4, channels: int = CHANNELS_DEFAULT,
                  mapping: int = MAPPING_MEAN, overlap: bool = False, useOrientation: bool = False,

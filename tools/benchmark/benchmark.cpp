@@ -59,6 +59,8 @@ std::vector<Row> allRows(const Mat& image)
             rowOf("SORT", IIB::create(2.f, 4, all, IIB::MAPPING_SORT), image),
             rowOf("HAAR", IIB::create(2.f, 4, all, IIB::MAPPING_HAAR), image),
             rowOf("PAIRWISE", IIB::create(2.f, 4, all, IIB::MAPPING_PAIRWISE), image),
+            rowOf("PRESET_VIEWPOINT", IIB::createPreset(IIB::PRESET_VIEWPOINT), image),
+            rowOf("PRESET_UNIVERSAL", IIB::createPreset(IIB::PRESET_UNIVERSAL), image),
             rowOf("2 extra channels", IIB::create(2.f, 4, all, IIB::MAPPING_MEAN, false, false, 2), image,
                     extra),
             rowOf("useOrientation", IIB::create(2.f, 4, all, IIB::MAPPING_MEAN, false, true), image),

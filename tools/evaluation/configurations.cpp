@@ -73,7 +73,8 @@ std::vector<Configuration> presets()
     return {withPreset("S128", IIB::PRESET_S128), withPreset("S256", IIB::PRESET_S256),
             withPreset("S512", IIB::PRESET_S512), withPreset("ACCURATE", IIB::PRESET_ACCURATE),
             withPreset("COMPACT", IIB::PRESET_COMPACT), withPreset("TINY", IIB::PRESET_TINY),
-            withPreset("BALANCED", IIB::PRESET_BALANCED)};
+            withPreset("BALANCED", IIB::PRESET_BALANCED), withPreset("VIEWPOINT", IIB::PRESET_VIEWPOINT),
+            withPreset("UNIVERSAL", IIB::PRESET_UNIVERSAL)};
 }
 
 Configuration onPointsOf(Configuration c, const std::string& detector)

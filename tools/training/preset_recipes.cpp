@@ -28,7 +28,7 @@ std::vector<Recipe> presetRecipes()
             IIB::MAPPING_BOXES, 5, 1.25f, {}, false};
     const Warps wide = {0.9, 0.5, 22, 0.7, 1.43, 2.5, 0.1, 1.5, 5};
     Warps universal = wide;
-    universal.share = 0.5;
+    universal.share = 0.67;
     return {
             {"S128", 128, paper, warpsOfShare(0), false, 12},
             {"S256", 256, paper, warpsOfShare(0), false, 12},

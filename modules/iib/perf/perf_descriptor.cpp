@@ -12,10 +12,20 @@ enum
     PEER_ORB = -1,
     OVERLAP = 100,
     GRANULARITY_5,
-    ORIENTED
+    ORIENTED,
+    UNIVERSAL,
+    UNIVERSAL_ORIENTED
 };
 CV_ENUM(Descriptor, PEER_ORB, IIB::MAPPING_MEAN, IIB::MAPPING_MAX, IIB::MAPPING_MIN, IIB::MAPPING_QUARTILE,
-        IIB::MAPPING_SORT, IIB::MAPPING_HAAR, IIB::MAPPING_PAIRWISE, OVERLAP, GRANULARITY_5, ORIENTED)
+        IIB::MAPPING_SORT, IIB::MAPPING_HAAR, IIB::MAPPING_PAIRWISE, OVERLAP, GRANULARITY_5, ORIENTED,
+        UNIVERSAL, UNIVERSAL_ORIENTED)
+
+Ptr<Feature2D> createUniversal(bool oriented)
+{
+    const Ptr<IIB> iib = IIB::createPreset(IIB::PRESET_UNIVERSAL);
+    iib->setUseOrientation(oriented);
+    return iib;
+}
 
 Ptr<Feature2D> createDescriptor(int descriptor)
 {
@@ -24,6 +34,8 @@ Ptr<Feature2D> createDescriptor(int descriptor)
     case PEER_ORB: return ORB::create();
     case OVERLAP: return IIB::create(2.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, true);
     case GRANULARITY_5: return IIB::create(2.f, 5);
+    case UNIVERSAL: return createUniversal(false);
+    case UNIVERSAL_ORIENTED: return createUniversal(true);
     case ORIENTED: return IIB::create(2.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, true);
     default: return IIB::create(2.f, 4, IIB::CHANNELS_DEFAULT, descriptor);
     }

@@ -97,7 +97,8 @@ inline cv::Ptr<cv::Feature2D> createIIB(const Options& options)
     using cv::iib::IIB;
     static const std::map<std::string, int> presets = {{"S128", IIB::PRESET_S128}, {"S256", IIB::PRESET_S256},
             {"S512", IIB::PRESET_S512}, {"ACCURATE", IIB::PRESET_ACCURATE}, {"COMPACT", IIB::PRESET_COMPACT},
-            {"TINY", IIB::PRESET_TINY}, {"BALANCED", IIB::PRESET_BALANCED}};
+            {"TINY", IIB::PRESET_TINY}, {"BALANCED", IIB::PRESET_BALANCED},
+            {"VIEWPOINT", IIB::PRESET_VIEWPOINT}, {"UNIVERSAL", IIB::PRESET_UNIVERSAL}};
     const float factor = IIB::scaleFactorFor(options.detector);
     const cv::Ptr<IIB> iib = options.preset == "default"
                                      ? IIB::create(factor, options.granularity)

@@ -136,17 +136,20 @@ public:
     enum Preset
     {
         PRESET_S128,  //!< 16 bytes of the default's bits (paper, "Reduction of the IIB Descriptor Size"): 0.902 / 0.748
-        PRESET_S256,      //!< 32 bytes of the default's bits: 0.948 / 0.824
-        PRESET_S512,      //!< 64 bytes of the default's bits: 0.973 / 0.878
-        PRESET_ACCURATE,  //!< 170 bytes, a ROS 1.25 times as wide, all quads: 0.988 / 0.946
-        PRESET_COMPACT,   //!< 64 bytes, a ROS 1.25 times as wide: 0.982 / 0.918
-        PRESET_TINY,      //!< 32 bytes, a ROS 1.25 times as wide: 0.969 / 0.878
-        PRESET_BALANCED   //!< 64 bytes, for cameras that move, a ROS 1.125 times as wide: 0.949 / 0.827
+        PRESET_S256,       //!< 32 bytes of the default's bits: 0.948 / 0.824
+        PRESET_S512,       //!< 64 bytes of the default's bits: 0.973 / 0.878
+        PRESET_ACCURATE,   //!< 170 bytes, a ROS 1.25 times as wide, all quads: 0.988 / 0.946
+        PRESET_COMPACT,    //!< 64 bytes, a ROS 1.25 times as wide: 0.982 / 0.918
+        PRESET_TINY,       //!< 32 bytes, a ROS 1.25 times as wide: 0.969 / 0.878
+        PRESET_BALANCED,   //!< 64 bytes, for cameras that move, a ROS 1.125 times as wide: 0.949 / 0.827
+        PRESET_VIEWPOINT,  //!< 64 bytes of #MAPPING_BOXES, for cameras that move far, a ROS 1.25 times as wide
+        PRESET_UNIVERSAL   //!< 128 bytes of #MAPPING_BOXES, for light and viewpoint, a ROS 1.25 times as wide
     };
 
     /** @brief Creates an extractor with a selection that comes with the library.
 
-    The selections were learned by tools/training on images of still cameras, that of PRESET_BALANCED on warped ones.
+    The selections were learned by tools/training on images of still cameras, those of PRESET_BALANCED, PRESET_VIEWPOINT and
+    PRESET_UNIVERSAL on warped ones. No image of the figures above was among them.
     The ROS of some is wider than `scaleFactor` says (see #Preset); getScaleFactor tells it.
 
     @param preset one of #Preset.
