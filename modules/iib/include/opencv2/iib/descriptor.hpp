@@ -57,8 +57,9 @@ where they exist: 0 to 2 are those of #MAPPING_HAAR of the box, the next one, an
 over the box itself. Within a level the order is, outermost first: bits 0 to 2 before 3 and 4; row; column; bit; channel
 (|gx|, |gy|, gx, gy, intensity). There is neither #CHANNEL_ORIENTATION nor `overlap`, nor are there extra channels.
 
-Rotated boxes cost little more than upright ones: only their centres turn around the keypoint; the means of gx and gy are
-rotated as gradients are, and those of |gx| and |gy| are interpolated from four directions.
+Rotated boxes stay upright and take no samples: only their centres turn around the keypoint; the means of gx and gy are
+rotated as gradients are, and those of |gx| and |gy| are interpolated from four directions. Boxes cost about twice as much
+as the default's cells (`scripts/bench.sh` measures it).
 
 The descriptors are CV_8U and compared with NORM_HAMMING. The same input gives the same bits for
 every instruction set, thread count and build. One object may serve several threads as long as none
