@@ -40,6 +40,13 @@ find_program(IIB_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(IIB_PYTHON)
   add_test(NAME figures COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/figures.py" --check)
 endif()
+# The Python package, linked with what is built here already. The script skips by itself where there is no package index.
+if(UNIX AND NOT APPLE AND NOT IIB_SANITIZE)
+  add_library(opencv_iib_static STATIC $<TARGET_OBJECTS:opencv_iib>)
+  add_test(NAME python COMMAND "${CMAKE_COMMAND}" -E env "OpenCV_DIR=${OpenCV_DIR}"
+    "${PROJECT_SOURCE_DIR}/scripts/python_test.sh" "$<TARGET_FILE:opencv_iib_static>")
+  set_tests_properties(python PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: python tests \\(")
+endif()
 # Sanitizers add symbols of their own.
 if(UNIX AND NOT APPLE AND NOT IIB_SANITIZE)
   add_test(NAME symbols COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib>" "-DNM=${CMAKE_NM}"

@@ -63,8 +63,8 @@ case "${1:-}" in
     sanitize "$sanitizers" "$@"
     ;;
 *)
-    # the synthetic data and the evaluation's report are tested where these are
-    need povray python3-opencv python3-jinja2
+    # the synthetic data, the evaluation's report and the Python package are tested where these are
+    need povray python3-opencv python3-jinja2 python3-venv python3-dev python3-numpy
     run "$root/build" '^$' "$@"
     ;;
 esac
