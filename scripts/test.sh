@@ -63,8 +63,8 @@ case "${1:-}" in
     sanitize "$sanitizers" "$@"
     ;;
 *)
-    # the synthetic data, the evaluation's report and the Python package are tested where these are
-    need povray python3-opencv python3-jinja2 python3-venv python3-dev python3-numpy
-    run "$root/build" '^$' "$@"
+    # the synthetic data, the evaluation's report, the Python package and apps/localization are tested where these are
+    need povray python3-opencv python3-jinja2 python3-venv python3-dev python3-numpy libceres-dev libunwind-dev
+    run "$root/build" '^$' -DIIB_BUILD_APPS=ON "$@"
     ;;
 esac
