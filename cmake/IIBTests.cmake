@@ -15,8 +15,8 @@ target_sources(opencv_test_iib PRIVATE "$<FILTER:$<TARGET_OBJECTS:opencv_iib>,IN
 
 # The naive oracles are not under test; sanitized, they would take most of the time.
 if(IIB_SANITIZE)
-  set_source_files_properties("${IIB_DIR}/test/support/descriptor_oracle.cpp" "${IIB_DIR}/test/support/matcher_oracle.cpp"
-    PROPERTIES COMPILE_OPTIONS -fno-sanitize=all)
+  set_source_files_properties("${IIB_DIR}/test/support/box_oracle.cpp" "${IIB_DIR}/test/support/descriptor_oracle.cpp"
+    "${IIB_DIR}/test/support/matcher_oracle.cpp" PROPERTIES COMPILE_OPTIONS -fno-sanitize=all)
 endif()
 
 # A test program of a tool: the sources in test/ beside the caller, with the tools' main, and its entry in ctest.
