@@ -101,7 +101,7 @@ TEST(IIB_Parameters, mistakes_throw_and_change_nothing)
         expectParameterError(
                 Error::StsBadArg, format("channels is %d", value), [=] { IIB::create(2.f, 4, value); },
                 [=](IIB& iib) { iib.setChannels(value); });
-    for (int value : {-1, 7, INT_MAX})
+    for (int value : {-1, 8, INT_MAX})
         expectParameterError(
                 Error::StsBadArg, format("mapping is %d", value), [=] { IIB::create(2.f, 4, 15, value); },
                 [=](IIB& iib) { iib.setMapping(value); });
