@@ -261,11 +261,11 @@ class IIBDescriptorExtractor:
         return self._core.getDefaultName()
 
     def save(self, filename: Union[str, os.PathLike[str]]) -> None:
-        """Writes the parameters to a .yml, .xml or .json file, as Algorithm::save does."""
+        """Writes the parameters, but not the detector, to a .yml, .xml or .json file, as Algorithm::save does."""
         self._core.save(os.fspath(filename))
 
     def write(self, fileName: Union[str, os.PathLike[str]]) -> None:
-        """Writes the parameters to a .yml, .xml or .json file, which read() and C++ read."""
+        """Writes the parameters, but not the detector, to a .yml, .xml or .json file, which read() and C++ read."""
         self._core.write(os.fspath(fileName))
 
     def read(self, fileName: Union[str, os.PathLike[str]]) -> None:

@@ -50,10 +50,21 @@ nb::tuple compute(Extractor& self, const Array& image, const Array& keypointRows
     return nb::make_tuple(toNumpy(descriptors), toNumpy(kept));
 }
 
+// The same without its detector, which may be an object of Python that no file can hold.
+cv::Ptr<Extractor> withoutDetector(const Extractor& self)
+{
+    const cv::Ptr<Extractor> result = Extractor::create(self.getScaleFactor(), self.getGranularity(),
+            self.getChannels(), self.getMapping(), self.getOverlap(), false, self.getExtraChannels());
+    result->setOrientation(self.getOrientation());
+    result->setBorder(self.getBorder());
+    result->setSelection(self.getSelection());
+    return result;
+}
+
 std::string parameters(const Extractor& self)
 {
     cv::FileStorage file(".json", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
-    self.write(file);
+    withoutDetector(self)->write(file);
     return file.releaseAndGetString();
 }
 
@@ -124,12 +135,13 @@ void bindExtractor(nb::module_& m)
                         return toNumpy(quads.empty() ? cv::Mat(0, 5, CV_32S) : quads);
                     })
             .def("getDefaultName", [](const Extractor& self) { return std::string(self.getDefaultName()); })
-            .def("save", [](const Extractor& self, const std::string& file) { self.save(file); })
+            .def("save",
+                    [](const Extractor& self, const std::string& file) { withoutDetector(self)->save(file); })
             .def("read", [](Extractor& self,
                                  const std::string& file) { static_cast<cv::Feature2D&>(self).read(file); })
             .def("write",
                     [](const Extractor& self, const std::string& file) {
-                        static_cast<const cv::Feature2D&>(self).write(file);
+                        static_cast<const cv::Feature2D&>(*withoutDetector(self)).write(file);
                     })
             .def("parameters", &parameters)
             .def("setParameters", &setParameters);

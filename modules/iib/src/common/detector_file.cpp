@@ -78,9 +78,11 @@ Properties propertiesOf(BRISK& d)
 
 template <class D> Ptr<Feature2D> make() { return D::create(); }
 
+//! None of another class that has the same name.
 template <class D> Properties properties(Feature2D& detector)
 {
-    return propertiesOf(dynamic_cast<D&>(detector));
+    D* const d = dynamic_cast<D*>(&detector);
+    return d ? propertiesOf(*d) : Properties();
 }
 
 //! Of detectors that write and read their parameters themselves, or tell none.

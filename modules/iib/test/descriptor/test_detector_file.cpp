@@ -104,6 +104,19 @@ TEST(IIB_DetectorFile, an_unknown_detector_reads_its_parameters_or_is_an_error)
     }
 }
 
+//! As Python's wrappers of a detector are.
+class AnotherOrb : public Feature2D
+{
+public:
+    String getDefaultName() const CV_OVERRIDE { return "Feature2D.ORB"; }
+};
+
+TEST(IIB_DetectorFile, another_class_of_the_same_name)
+{
+    const String text = parametersOf(makePtr<AnotherOrb>());
+    expectError(Error::StsParseError, "maxFeatures", [&] { Algorithm::loadFromString<IIB>(text); });
+}
+
 TEST(IIB_DetectorFile, damage_throws_and_changes_nothing)
 {
     const String good = parametersOf(NormalizedDetector::create(ORB::create(321), 7.5f));
