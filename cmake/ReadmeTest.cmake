@@ -82,7 +82,7 @@ if(NOT output MATCHES "^[0-9][0-9]+ of [0-9]+ matches agree with\n")
   message(FATAL_ERROR "day_night: '${output}'")
 endif()
 execute_process(COMMAND "${WORK}/presets" OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
-if(NOT output STREQUAL "64 bytes, 2.25 times the keypoint's size\n")
+if(NOT output STREQUAL "128 bytes, 2.5 times the keypoint's size\n")
   message(FATAL_ERROR "presets: '${output}'")
 endif()
 # The query is the first image: every point finds itself.
