@@ -68,6 +68,17 @@ def fixed_points():
     return table(['', 'bytes', 'changed light', '`wall`', '`graf`'], lines)
 
 
+def turned():
+    """Fixed points: the reference turned about its centre, in the same light."""
+    found = collections.defaultdict(list)
+    for row in rows('robustness.csv'):
+        if row['kind'] == 'turn':
+            found[row['configuration'], row['target']].append(row)
+    lines = [[name] + [precision_recall(found[name, degrees]) for degrees in ('5', '10', '15', '30')]
+             for name in ('IIB', 'IIB BALANCED', 'IIB oriented', 'ORB', 'ORB oriented', 'SIFT', 'SIFT oriented')]
+    return table(['', '5 degrees', '10', '15', '30'], lines)
+
+
 def presets():
     """Fixed points: light that no preset was trained on, rendered light, moved cameras, turned images."""
     use = (('IIB', 'default', 'you do not know yet'),
@@ -136,7 +147,7 @@ def all_costs():
     return table(['', 'bytes', 'ms', 'ratio to ORB', 'us a point more'], lines)
 
 
-PAGES = {'README.md': (detected_points, fixed_points, ratios, presets, costs), 'doc/performance.md': (all_costs,)}
+PAGES = {'README.md': (detected_points, fixed_points, turned, ratios, presets, costs), 'doc/performance.md': (all_costs,)}
 
 
 def filled(page, makers):
