@@ -5,6 +5,9 @@
 #include "detector_file.hpp"
 
 #include <functional>
+#include <type_traits>
+
+#include "file_numbers.hpp"
 
 namespace cv {
 namespace iib {
@@ -17,13 +20,17 @@ struct Property
     template <class D, class Base, class T>
     Property(const char* name_, D& d, T (Base::*getter)() const, void (Base::*setter)(T))
         : name(name_), get([&d, getter] { return (double)(d.*getter)(); }),
-          set([&d, setter](double value) { (d.*setter)((T)value); })
+          read([&d, name_, setter](const FileNode& parameters) {
+              typename std::conditional<std::is_enum<T>::value, int, T>::type value = 0;
+              readNumber(parameters, name_, value);
+              (d.*setter)((T)value);
+          })
     {
     }
 
     const char* name;
     std::function<double()> get;
-    std::function<void(double)> set;
+    std::function<void(const FileNode&)> read;  //!< of the number of this name, which must be there
 };
 
 typedef std::vector<Property> Properties;
@@ -152,11 +159,10 @@ Ptr<Feature2D> readDetector(const FileNode& node, const Ptr<Feature2D>& present)
         const Properties own = known->properties(*detector);
         for (const Property& property : own)
         {
-            const FileNode number = parameters[property.name];
-            if (!number.isInt() && !number.isReal())
+            if (parameters[property.name].empty())
                 CV_Error(Error::StsParseError,
                         "the file's detector, " + name + ", has no number " + property.name);
-            property.set((double)number);
+            property.read(parameters);
         }
         if (own.empty() && !parameters.empty())
             detector->read(parameters);
@@ -167,10 +173,9 @@ Ptr<Feature2D> readDetector(const FileNode& node, const Ptr<Feature2D>& present)
         const Ptr<NormalizedDetector> wrapper = present.dynamicCast<NormalizedDetector>();
         const Ptr<Feature2D> inside =
                 readDetector(node["detector"], wrapper ? wrapper->getDetector() : present);
-        const FileNode sigma = node["sigma"];
-        if (!sigma.isInt() && !sigma.isReal())
-            CV_Error(Error::StsParseError, "the file's NormalizedDetector has no number sigma");
-        return NormalizedDetector::create(inside, (float)sigma);
+        float sigma = 0;  // refused by create()
+        readNumber(node, "sigma", sigma);
+        return NormalizedDetector::create(inside, sigma);
     }
     if (name != present->getDefaultName())
         CV_Error(Error::StsParseError, "the file's detector is a " + name +

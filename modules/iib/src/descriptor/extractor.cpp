@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../common/detector_file.hpp"
+#include "../common/file_numbers.hpp"
 #include "compute.hpp"
 #include "input.hpp"
 #include "support_region.hpp"
@@ -213,37 +214,6 @@ void IIBDescriptorExtractor_Impl::write(FileStorage& fs) const
     writeDetector(fs, *detector);
     fs << "}"
        << "}";
-}
-
-String describeNode(const FileNode& node)
-{
-    if (node.empty())
-        return "nothing";
-    if (node.isInt() || node.isReal())
-        return format("%.17g", (double)node);
-    if (node.isString())
-        return "\"" + (String)node + "\"";
-    return node.isSeq() ? "a sequence" : "a map";
-}
-
-bool holds(double number, float) { return std::abs(number) <= FLT_MAX; }
-bool holds(double number, int) { return number == std::floor(number) && std::abs(number) <= INT_MAX; }
-bool holds(double number, bool) { return number == 0 || number == 1; }
-
-const char* expected(float) { return "a number"; }
-const char* expected(int) { return "a whole number"; }
-const char* expected(bool) { return "0 or 1"; }
-
-//! A number that is missing keeps its value.
-template <typename T> void readNumber(const FileNode& node, const char* name, T& value)
-{
-    const FileNode number = node[name];
-    if (number.empty())
-        return;
-    if (!(number.isInt() || number.isReal()) || !holds((double)number, T()))
-        CV_Error(Error::StsParseError,
-                format("%s is %s; it must be %s", name, describeNode(number).c_str(), expected(T())));
-    value = (T)(double)number;
 }
 
 Mat_<int> readSelection(const FileNode& node)

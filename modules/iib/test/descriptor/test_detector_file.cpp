@@ -121,6 +121,7 @@ TEST(IIB_DetectorFile, damage_throws_and_changes_nothing)
 {
     const String good = parametersOf(NormalizedDetector::create(ORB::create(321), 7.5f));
     const char* replacements[][2] = {{"maxFeatures: 321.", "maxFeatures: many # "},
+            {"maxFeatures: 321.", "maxFeatures: 3.7 # "}, {"maxFeatures: 321.", "maxFeatures: 1e300 # "},
             {"maxFeatures", "minFeatures"}, {"class: \"Feature2D.ORB\"", "class: 5"},
             {"class: \"Feature2D.ORB\"", "glass: \"Feature2D.ORB\""}, {"sigma: 7.5", "sigma: -7.5"},
             {"sigma: 7.5", "sigma: wide # 7.5"}};
