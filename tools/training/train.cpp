@@ -2,21 +2,22 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <sstream>
 
-#include "opencv2/core/utility.hpp"
+#include "common/command_line.hpp"
 #include "recipe.hpp"
 
 namespace {
 using namespace iib_tools;
 
+const char* const ABOUT = "iib_train [OPTION...] FOLDER...\n"
+                          "Learns which bits of IIB a short descriptor keeps, from folders of sequences.";
 const char* const KEYS =
-        "{help h     |        | this text }"
-        "{out        |        | YAML file for the selection, which IIBDescriptorExtractor::read takes }"
-        "{bits       | 256    | bits of the selection }"
+        "{out        | <none> | YAML file for the selection, which IIBDescriptorExtractor::read takes }"
+        "{bits       | 256    | bits of the selection; 0: all quads at even positions }"
         "{channels   | 51     | sum of IIBDescriptorExtractor::Channel values }"
         "{mapping    | 5      | IIBDescriptorExtractor::Mapping; 0 MEAN, 5 HAAR }"
         "{granularity| 4      | levels }"
@@ -26,11 +27,11 @@ const char* const KEYS =
         "1 even rows and columns, 2 odd columns, 4 odd rows, 8 both odd; 15 all }"
         "{quads      |        | choose whole quads, as in the paper, instead of bits }"
         "{adaboost   |        | plain AdaBoost, as in the paper }"
-        "{warp       | 0      | part of the pairs whose target is turned, scaled and tilted }"
+        "{warp       | 0      | part of the pairs whose target is turned, scaled and tilted, 0 to 1 }"
         "{pairs      | 24     | training pairs a scene }"
         "{seed       | 1      | seed of all random choices }"
         "{folds      | 0      | first cross-validate over that many groups of scenes }"
-        "{presets    |        | train the built-in presets instead and write this C++ header }";
+        "{presets    | <none> | train the built-in presets instead and write this C++ header }";
 
 Progress show(const std::string& what)
 {
@@ -70,27 +71,38 @@ void writePresets(const std::string& file, const std::vector<ImagePair>& pairs, 
             presets, cv::format("scripts/train.sh --presets --seed=%d", int(seed)), pairs, seed);
 }
 
-int run(const cv::CommandLineParser& args, const std::vector<std::string>& roots)
+std::vector<int> windowsOf(const std::string& list)
 {
     std::vector<int> windows;
-    std::istringstream list(args.get<std::string>("windows"));
-    for (std::string number; std::getline(list, number, ',');)
-        windows.push_back(std::atoi(number.c_str()));
-    const Recipe recipe = {"selection", args.get<int>("bits"),
-            {args.get<int>("channels"), args.get<int>("mapping"), args.get<int>("granularity"),
-                    args.get<float>("scale"), windows, args.has("quads")},
-            warpsOfShare(args.get<double>("warp")), args.has("adaboost"), args.get<int>("pairs")};
-    const uint64 seed = uint64(args.get<int>("seed"));
-    const int folds = args.get<int>("folds");
-    const std::string header = args.get<std::string>("presets"), out = args.get<std::string>("out");
-    if (!args.check() || roots.empty() || (header.empty() && out.empty() && folds < 2))
+    std::istringstream in(list);
+    for (std::string number; std::getline(in, number, ',');)
     {
-        args.printErrors();
-        args.printMessage();
-        return 2;
+        std::istringstream digits(number);
+        int sum = 0;
+        if (!(digits >> sum) || !digits.eof() || sum < 1 || sum > 15)
+            CV_Error(cv::Error::StsBadArg, "--windows=" + list + ": not a list of numbers from 1 to 15");
+        windows.push_back(sum);
     }
+    return windows;
+}
+
+int run(const CommandLine& line)
+{
+    const int most = std::numeric_limits<int>::max();
+    const Recipe recipe = {"selection", line.whole("bits", 0, most),
+            {line.whole("channels", 1, 63), line.whole("mapping", 0, cv::iib::IIB::MAPPING_BOXES),
+                    line.whole("granularity", 1, 6), float(line.number("scale", 0.01, 100)),
+                    windowsOf(line.text("windows")), line.has("quads")},
+            warpsOfShare(line.number("warp", 0, 1)), line.has("adaboost"), line.whole("pairs", 1, most)};
+    const uint64 seed = uint64(line.whole("seed", 0, most));
+    const int folds = line.whole("folds", 0, most);
+    const std::string header = line.text("presets"), out = line.text("out");
+    if (line.positional().empty())
+        CV_Error(cv::Error::StsBadArg, "no FOLDER of sequences (--help tells more)");
+    if (header.empty() && out.empty() && folds < 2)
+        CV_Error(cv::Error::StsBadArg, "nothing to do: give --out, --presets or --folds of 2 and more");
     std::vector<ImagePair> pairs;
-    for (const ImagePair& pair : findPairs(roots))
+    for (const ImagePair& pair : findPairs(line.positional()))
         if (pair.problem.empty())
             pairs.push_back(pair);
         else
@@ -106,23 +118,4 @@ int run(const cv::CommandLineParser& args, const std::vector<std::string>& roots
 
 }  // namespace
 
-int main(int argc, char** argv)
-{
-    std::vector<char*> options(1, argv[0]);
-    std::vector<std::string> roots;
-    for (int i = 1; i < argc; i++)
-        if (argv[i][0] == '-')
-            options.push_back(argv[i]);
-        else
-            roots.push_back(argv[i]);
-    const cv::CommandLineParser args(int(options.size()), options.data(), KEYS);
-    try
-    {
-        return run(args, roots);
-    }
-    catch (const cv::Exception& e)
-    {
-        std::cerr << "iib_train: " << e.err << "\n";
-        return 1;
-    }
-}
+int main(int argc, char** argv) { return runTool(argc, argv, ABOUT, KEYS, run); }
