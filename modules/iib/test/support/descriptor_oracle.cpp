@@ -193,6 +193,7 @@ struct RotatedRegion
     {
         const SupportRegion ros(iib, kp);
         samples = ros.side <= 64 && iib.getGranularity() <= 5 ? 32 : 64;
+        angle = std::fmod(angle, 360.f);  // exact, and small enough for cvRound()
         const double radians = angle * CV_PI / 180, spacing = std::min(ros.side, 16384.) / samples;
         const int64 stepX = cvRound(std::cos(radians) * spacing * 65536);
         const int64 stepY = cvRound(std::sin(radians) * spacing * 65536);
