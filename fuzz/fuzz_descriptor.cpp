@@ -31,7 +31,7 @@ Ptr<IIB> takeExtractor(ByteSource& in)
     iib->setGranularity(in.between(1 - wild, (in.rarely(8) ? in.rarely(8) ? 6 : 3 : 2) + wild));
     iib->setExtraChannels(in.rarely(32) ? in.between(-wild, 16 + wild) : in.between(0, 1));
     iib->setChannels(in.between(1 - wild, 63 + wild));
-    iib->setMapping(in.between(-wild, 6 + wild));
+    iib->setMapping(in.between(-wild, IIB::MAPPING_BOXES + wild));
     iib->setOverlap(in.flag());
     iib->setOrientation(in.between(-wild, 2 + wild));
     iib->setBorder(in.between(-wild, 2 + wild));
@@ -43,7 +43,8 @@ Ptr<IIB> takeExtractor(ByteSource& in)
         for (int i = 0; i < rows; i++)
         {
             level = std::min(level + (in.between(0, 3) == 0), iib->getGranularity());
-            const int side = (1 << level) - 2;
+            const bool boxes = iib->getMapping() == IIB::MAPPING_BOXES;
+            const int side = boxes ? (in.rarely(4) ? 8 : 2) : (1 << level) - 2;
             const Mat_<int> quad = (Mat_<int>(1, 5) << level, in.between(-wild, 5),
                     in.between(-wild, side + wild), in.between(-wild, side), in.between(1 - wild, 15));
             quad.copyTo(quads.row(i));

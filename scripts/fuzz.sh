@@ -1,10 +1,17 @@
 #!/bin/sh
 # Fuzzes the library with clang's libFuzzer, address and undefined-behaviour sanitizers:
-# scripts/fuzz.sh [-s SECONDS] [TARGET...]. By default every target of fuzz, 60 seconds each. What is
+# scripts/fuzz.sh [--plain] [-s SECONDS] [TARGET...]. By default every target of fuzz, 60 seconds each. What is
 # found on the way stays in build-fuzz/corpus and makes the next run start further on; an input that fails is
-# kept in build-fuzz/failures and belongs into fuzz/corpus, with a test, once the defect is mended.
+# kept in build-fuzz/failures and belongs into fuzz/corpus, with a test, once the defect is mended. --plain leaves the
+# sanitizers out and makes inputs smaller, so that many times as many are compared with the oracles; its corpus is the
+# same.
 . "$(dirname "$0")/lib.sh"
 
+plain=""
+if [ "${1:-}" = --plain ]; then
+    plain=yes
+    shift
+fi
 seconds=60
 if [ "${1:-}" = -s ]; then
     case "${2:-}" in
@@ -24,10 +31,17 @@ for target in "$@"; do
 done
 # shellcheck disable=SC2086
 need $build_packages clang llvm xz-utils
-build="$root/build-fuzz"
-# The last sanitizer finds casts of numbers too large for an integer, whose result depends on the machine.
-configure -DCMAKE_CXX_COMPILER=clang++ \
-    -DIIB_SANITIZE=fuzzer,address,undefined,float-cast-overflow "-DCMAKE_CXX_FLAGS=-fprofile-instr-generate -fcoverage-mapping"
+if [ -n "$plain" ]; then
+    build="$root/build-fuzz-plain" longest=64
+    # Where numbers are compared is not recorded: it takes half of the time.
+    configure -DCMAKE_CXX_COMPILER=clang++ -DIIB_SANITIZE=fuzzer \
+        -DCMAKE_CXX_FLAGS=-fno-sanitize-coverage=trace-cmp
+else
+    build="$root/build-fuzz" longest=512
+    # The last sanitizer finds casts of numbers too large for an integer, whose result depends on the machine.
+    configure -DCMAKE_CXX_COMPILER=clang++ -DIIB_SANITIZE=fuzzer,address,undefined,float-cast-overflow \
+        "-DCMAKE_CXX_FLAGS=-fprofile-instr-generate -fcoverage-mapping"
+fi
 say "building the targets"
 # shellcheck disable=SC2046
 cmake --build "$build" --target $(printf 'iib_fuzz_%s ' "$@")
@@ -37,29 +51,53 @@ covered() {
     llvm-cov report "$build/libopencv_iib.so" -instr-profile="$1" | awk '$1 == "TOTAL" { print $10 }'
 }
 
-mkdir -p "$build/failures"
+# replay TARGET: its inputs with the kernels of each instruction set, for their profiles.
+replay() {
+    for off in "" AVX512-SKX,AVX512-ICL AVX2,AVX512-SKX,AVX512-ICL SSE4.1,SSE4.2,AVX,AVX2,AVX512-SKX,AVX512-ICL; do
+        OPENCV_CPU_DISABLE=$off LLVM_PROFILE_FILE="$build/$1-without-$off.profraw" \
+            "$build/fuzz/iib_fuzz_$1" -runs=0 $options "$corpus/$1" "$root/fuzz/corpus/$1" >"$build/$1.log" 2>&1 ||
+            return 1
+    done
+}
+
+# What costs more than the library's own work: a record of where each block of memory was allocated, a long wait before
+# it is used again, libFuzzer's statistics of rare features and its search for leaks, and files on a disk. The suites
+# under the sanitizers have all of it.
+export ASAN_OPTIONS="malloc_context_size=0:quarantine_size_mb=4:${ASAN_OPTIONS:-}"
+[ -d /dev/shm ] && export OPENCV_TEMP_PATH=/dev/shm
+corpus="$root/build-fuzz/corpus" failures="$root/build-fuzz/failures"
+mkdir -p "$failures"
 failed=""
 for target in "$@"; do
-    program="$build/fuzz/iib_fuzz_$target"
-    found="$build/corpus/$target"
-    seeds="$root/fuzz/corpus/$target"
-    mkdir -p "$found"
+    options="-entropic=0 -detect_leaks=0 -timeout=60 -rss_limit_mb=4096 -max_len=$longest -artifact_prefix=$failures/$target-"
+    mkdir -p "$corpus/$target"
     say "$target, $seconds s"
-    LLVM_PROFILE_FILE=/dev/null "$program" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=4096 -max_len=1024 -print_final_stats=1 \
-        -artifact_prefix="$build/failures/$target-" "$found" "$seeds" >"$build/$target.log" 2>&1 || {
+    # shellcheck disable=SC2086
+    LLVM_PROFILE_FILE=/dev/null "$build/fuzz/iib_fuzz_$target" -max_total_time="$seconds" -print_final_stats=1 \
+        $options "$corpus/$target" "$root/fuzz/corpus/$target" >"$build/$target.log" 2>&1 || {
         failed="$failed $target"
         tail -n 30 "$build/$target.log"
         continue
     }
     executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$target.log")
-    LLVM_PROFILE_FILE="$build/$target.profraw" "$program" -runs=0 "$found" "$seeds" >/dev/null 2>&1
-    llvm-profdata merge -o "$build/$target.profdata" "$build/$target.profraw"
-    echo "$target: $executions executions, $(ls "$found" | wc -l) inputs kept," \
-        "$(covered "$build/$target.profdata") of the library's lines"
+    lines=""
+    if [ -z "$plain" ]; then
+        # shellcheck disable=SC2086
+        replay "$target" || {
+            failed="$failed $target"
+            tail -n 30 "$build/$target.log"
+            continue
+        }
+        llvm-profdata merge -o "$build/$target.profdata" "$build/$target"-without-*.profraw
+        lines=", $(covered "$build/$target.profdata") of the library's lines"
+    fi
+    echo "$target: $executions executions, $(ls "$corpus/$target" | wc -l) inputs kept$lines"
 done
-llvm-profdata merge -o "$build/all.profdata" "$build"/*.profraw
-echo "all targets that have run together: $(covered "$build/all.profdata") of the library's lines"
+if [ -z "$plain" ]; then
+    llvm-profdata merge -o "$build/all.profdata" "$build"/*.profraw
+    echo "all targets that have run together: $(covered "$build/all.profdata") of the library's lines"
+fi
 [ -z "$failed" ] || {
-    echo "failed:$failed; the inputs are in $build/failures" >&2
+    echo "failed:$failed; the inputs are in $failures" >&2
     exit 1
 }

@@ -41,7 +41,10 @@ for step in "$@"; do
         "$build/tools/stress/iib_fault_injection"
         ;;
     mutation) "$root/scripts/mutation.sh" ;;
-    fuzz) "$root/scripts/fuzz.sh" -s 600 ;;
+    fuzz)
+        "$root/scripts/fuzz.sh" --plain -s 1800 matcher descriptor
+        "$root/scripts/fuzz.sh" -s 600
+        ;;
     versions) "$root/scripts/versions.sh" ;;
     arm64) "$root/scripts/arm64.sh" ;;
     *)
