@@ -69,7 +69,7 @@ public:
     {
         const bool single = forQueries.size() == 1 && (!forTrains || forTrains->size() == 1);
         return visit([&](const PairBlock& block) {
-            if (single && input.policy.stages.empty())
+            if (single && input.policy.stages.empty() && NearestScan::fits(block.pairs))
                 return nearestOfOne(block, forQueries, forTrains);
             TableSink sink(block, forQueries, forTrains);
             return pruned(block, sink);

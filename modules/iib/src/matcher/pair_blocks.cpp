@@ -42,21 +42,18 @@ void forEachBlock(
     const PackedCodes& trains = input.trains;
     const CodeLayout& layout = trains.layout();
     const size_t rows = trains.rows();
-    std::vector<unsigned> plain((size_t)std::min(to - from, input.blocks.queries) * layout.words());
     std::vector<uchar> flags;
     for (int query = from; query < to; query += input.blocks.queries)
     {
         const int queryCount = std::min(input.blocks.queries, to - query);
-        for (int i = 0; i < queryCount; i++)
-            layout.arrange(input.queries.ptr(query + i), &plain[(size_t)i * layout.words()]);
+        const Mat queries = input.queries.rowRange(query, query + queryCount);
         for (int first = 0; first < trains.blocks(); first += input.blocks.codeBlocks)
         {
             const size_t train = (size_t)first * CodeLayout::CODES_PER_BLOCK;
             const size_t trainCount =
                     std::min(rows - train, (size_t)input.blocks.codeBlocks * CodeLayout::CODES_PER_BLOCK);
-            PairBlock block = {
-                    CodePairs(layout, plain.data(), queryCount, trains.block(first), (int)trainCount), query,
-                    train, queryCount * trainCount};
+            PairBlock block = {CodePairs(layout, queries, trains.block(first), (int)trainCount), query, train,
+                    queryCount * trainCount};
             if (!input.masks.empty())
             {
                 block.pairCount = fillFlags(input, block, flags);

@@ -57,10 +57,7 @@ struct ScanData
         }
     }
 
-    CodePairs pairs() const
-    {
-        return CodePairs(layout, plainQueries.data(), queries.rows, blocks.data(), trains.rows);
-    }
+    CodePairs pairs() const { return CodePairs(layout, queries, blocks.data(), trains.rows); }
 
     PrunedScan scan(const std::vector<PruneStage>& stages, HammingSink& sink)
     {
@@ -168,7 +165,7 @@ TEST(IIB_Hamming, scan_as_the_naive_loop)
 TEST(IIB_Hamming, nearest_as_the_naive_loop)
 {
     for (int bytes : {1, 5, 32, 64, 68, 170})
-        for (int rows : {16, 17, 31, 80})
+        for (int rows : {16, 17, 31, 80, 400})
             for (int queryCount : {1, 4, 5, 9})
                 for (int setting = 0; setting < 8; setting++)
                 {

@@ -51,6 +51,25 @@ TEST(IIB_MatcherEdges, ties_go_to_the_first_image_and_lowest_index)
     }
 }
 
+// Codes too wide for a scan that keeps a distance and an index in 31 bits.
+TEST(IIB_MatcherEdges, very_wide_codes)
+{
+    MatcherOracle oracle;
+    oracle.levelSizes = {70000};
+    oracle.images.push_back(randomDescriptors(1, 20, 70000));
+    const Mat queries = randomDescriptors(2, 5, 70000);
+    for (bool crossCheck : {false, true})
+    {
+        oracle.crossCheck = crossCheck;
+        const Ptr<HierarchicalMatcher> matcher =
+                HierarchicalMatcher::create(oracle.levelSizes, HierarchicalMatcher::EXACT, 0.3f, crossCheck);
+        matcher->add(oracle.images);
+        Matches found;
+        matcher->knnMatch(queries, found, 1);
+        expectEqual(oracle.knn(queries, 1), found);
+    }
+}
+
 TEST(IIB_MatcherEdges, train_set_empty)
 {
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(LEVELS);

@@ -39,26 +39,23 @@ CodeLayout::CodeLayout(const std::vector<int>& levelSizes, CodePacking packing_)
     }
 }
 
+// Inlined: it runs for each word of each code.
+inline unsigned CodeLayout::word(int i, const uchar* descriptor) const
+{
+    const Place& place = places[i];
+    unsigned result = 0;
+    if (place.bytes == WORD)
+        std::memcpy(&result, descriptor + place.from, WORD);
+    else
+        for (int b = 0; b < place.bytes; b++)
+            ((uchar*)&result)[b] = descriptor[place.from + b];
+    return result;
+}
+
 void CodeLayout::arrange(const uchar* descriptor, unsigned* plain) const
 {
     for (int i = 0; i < words(); i++)
-        gather(i, descriptor, 0, 1, plain + i);
-}
-
-void CodeLayout::gather(int i, const uchar* descriptors, size_t step, int count, unsigned* to) const
-{
-    const Place place = places[i];
-    descriptors += place.from;
-    if (place.bytes == WORD)
-        for (int lane = 0; lane < count; lane++)
-            std::memcpy(to + lane, descriptors + lane * step, WORD);
-    else
-        for (int lane = 0; lane < count; lane++)
-        {
-            to[lane] = 0;
-            for (int b = 0; b < place.bytes; b++)
-                ((uchar*)(to + lane))[b] = descriptors[lane * step + b];
-        }
+        plain[i] = word(i, descriptor);
 }
 
 void CodeLayout::restore(const unsigned* plain, uchar* descriptor) const
@@ -81,58 +78,55 @@ void CodeLayout::pack(const unsigned* plain, unsigned* packed) const
 
 void CodeLayout::store(const uchar* descriptor, unsigned* block, int lane) const
 {
-    unsigned first, second, parity;
     if (packing == PACKING_TABLES)
     {
         for (int i = 0; i < words(); i++)
         {
-            gather(i, descriptor, 0, 1, &first);
+            const unsigned plain = word(i, descriptor);
             uchar* to = (uchar*)(block + i * CODES_PER_BLOCK) + lane;
             for (int b = 0; b < WORD; b++)
-                to[b * CODES_PER_BLOCK] = ((const uchar*)&first)[b];
+                to[b * CODES_PER_BLOCK] = ((const uchar*)&plain)[b];
         }
         return;
     }
-    gather(0, descriptor, 0, 1, &parity);
-    block[lane] = parity;
+    unsigned parity = block[lane] = word(0, descriptor);
     for (int i = 1; i < words(); i += 2)
     {
-        gather(i, descriptor, 0, 1, &first);
-        gather(i + 1, descriptor, 0, 1, &second);
+        const unsigned first = word(i, descriptor), second = word(i + 1, descriptor);
         block[i * CODES_PER_BLOCK + lane] = parity ^ first;
         block[(i + 1) * CODES_PER_BLOCK + lane] = first ^ second;
         parity ^= first ^ second;
     }
 }
 
-// Its loops run over the lanes, so that compilers make vectors of them.
+// First the plain words, code by code; then loops over the lanes, which compilers make vectors of.
 void CodeLayout::storeBlock(const uchar* descriptors, size_t step, unsigned* block) const
 {
-    unsigned first[CODES_PER_BLOCK], second[CODES_PER_BLOCK], parity[CODES_PER_BLOCK];
+    for (int lane = 0; lane < CODES_PER_BLOCK; lane++)
+        for (int i = 0; i < words(); i++)
+            block[i * CODES_PER_BLOCK + lane] = word(i, descriptors + lane * step);
     if (packing == PACKING_TABLES)
     {
         for (int i = 0; i < words(); i++)
         {
-            gather(i, descriptors, step, CODES_PER_BLOCK, first);
+            unsigned plain[CODES_PER_BLOCK];
             uchar* to = (uchar*)(block + i * CODES_PER_BLOCK);
+            std::memcpy(plain, to, sizeof(plain));
             for (int b = 0; b < WORD; b++)
                 for (int lane = 0; lane < CODES_PER_BLOCK; lane++)
-                    to[b * CODES_PER_BLOCK + lane] = ((const uchar*)first)[lane * WORD + b];
+                    to[b * CODES_PER_BLOCK + lane] = ((const uchar*)plain)[lane * WORD + b];
         }
         return;
     }
-    gather(0, descriptors, step, CODES_PER_BLOCK, parity);
-    std::copy(parity, parity + CODES_PER_BLOCK, block);
+    unsigned parity[CODES_PER_BLOCK];
+    std::memcpy(parity, block, sizeof(parity));
     for (int i = 1; i < words(); i += 2)
     {
-        gather(i, descriptors, step, CODES_PER_BLOCK, first);
-        gather(i + 1, descriptors, step, CODES_PER_BLOCK, second);
-        unsigned* to = block + i * CODES_PER_BLOCK;
+        unsigned *first = block + i * CODES_PER_BLOCK, *second = first + CODES_PER_BLOCK;
         for (int lane = 0; lane < CODES_PER_BLOCK; lane++)
         {
-            to[lane] = parity[lane] ^ first[lane];
             second[lane] ^= first[lane];
-            to[CODES_PER_BLOCK + lane] = second[lane];
+            first[lane] ^= parity[lane];
             parity[lane] ^= second[lane];
         }
     }

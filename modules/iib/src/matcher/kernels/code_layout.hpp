@@ -76,8 +76,8 @@ private:
         int from, bytes;
     };
 
-    //! Puts word i of `count` descriptors into consecutive words.
-    void gather(int i, const uchar* descriptors, size_t step, int count, unsigned* to) const;
+    //! Word i of a descriptor's code, plain.
+    unsigned word(int i, const uchar* descriptor) const;
 
     std::vector<int> sizes, ends, segmentBits;
     std::vector<Place> places;  // of each word

@@ -7,6 +7,7 @@
 
 #include "code_layout.hpp"
 
+#include <algorithm>
 #include <climits>
 
 namespace cv {
@@ -15,9 +16,8 @@ namespace iib {
 //! The pairs that a scan compares: some queries with some train codes.
 struct CodePairs
 {
-    CodePairs(const CodeLayout& layout_, const unsigned* queries_, int queryCount_, const unsigned* trains_,
-            int trainCount_)
-        : layout(layout_), queries(queries_), queryCount(queryCount_), trains(trains_),
+    CodePairs(const CodeLayout& layout_, const Mat& queries_, const unsigned* trains_, int trainCount_)
+        : layout(layout_), queries(queries_), queryCount(queries_.rows), trains(trains_),
           trainCount(trainCount_), allowed(0)
     {
     }
@@ -30,7 +30,7 @@ struct CodePairs
     int paddedTrains() const { return blocks() * CodeLayout::CODES_PER_BLOCK; }
 
     const CodeLayout& layout;
-    const unsigned* queries;  //!< plain words, one code after the other
+    Mat queries;  //!< descriptors, a row each
     int queryCount;
     const unsigned* trains;  //!< packed, in CodeBlocks
     int trainCount;
@@ -45,9 +45,19 @@ struct NearestCodes
     int* indices;    //!< index in the scan
 };
 
-//! Finds the nearest train code of each query.
+//! Finds the nearest train code of each query. Only for pairs that fit.
 struct NearestScan
 {
+    enum
+    {
+        INDEX_BITS = 12  //!< of the 31 that index and distance share
+    };
+    //! Whether there are few enough of them, of codes short enough.
+    static bool fits(const CodePairs& pairs)
+    {
+        return std::max(pairs.queryCount, pairs.blocks()) <= 1 << INDEX_BITS &&
+               pairs.layout.bytes() < 1 << (31 - INDEX_BITS - 3);
+    }
     NearestScan(const CodePairs& pairs_, const NearestCodes& ofQueries_)
         : pairs(pairs_), ofQueries(ofQueries_), ofTrains(0, 0)
     {

@@ -6,6 +6,7 @@
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "scan_full.simd.hpp"
+#include "scan_nearest.simd.hpp"
 #include "scan_pruned.simd.hpp"
 #endif
 
@@ -30,7 +31,9 @@ template <class S> void scanAll(S&& scanner, int queryCount)
 
 void scanNearest(const NearestScan& scan)
 {
-    scanAll(FullScanner<NearestCollector>(scan.pairs, NearestCollector(scan)), scan.pairs.queryCount);
+    NearestScanner scanner(scan);
+    scanAll(scanner, scan.pairs.queryCount);
+    scanner.keepOfTrains();
 }
 
 void scanPruned(const PrunedScan& scan)
@@ -38,7 +41,7 @@ void scanPruned(const PrunedScan& scan)
     if (scan.stageCount > 0)
         scanAll(PrunedScanner(scan), scan.pairs.queryCount);
     else
-        scanAll(FullScanner<SinkCollector>(scan.pairs, SinkCollector(scan.sink)), scan.pairs.queryCount);
+        scanAll(FullScanner(scan.pairs, scan.sink), scan.pairs.queryCount);
 }
 
 }  // namespace

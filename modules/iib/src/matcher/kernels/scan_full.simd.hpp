@@ -13,26 +13,22 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
 //! Exhaustive scan; skips the rest of a tile once no pair in it can qualify.
-template <class Collector> class FullScanner : public Scanner<Collector>
+class FullScanner : public SinkScanner
 {
-    typedef Scanner<Collector> Base;
-    using Base::codes;
-    using Base::layout;
-
 public:
-    FullScanner(const CodePairs& p, const Collector& c) : Base(p, c), early(layout.words())
+    FullScanner(const CodePairs& p, HammingSink& s) : SinkScanner(p, s), early(layout.words())
     {
         // In both directions some pair is nearly always near enough; PACKING_ADDERS wants an odd number.
-        if (!c.trainThresholds && layout.bytes() > 64)
+        if (!s.trainThresholds && layout.bytes() > 64)
             early = layout.words() * 7 / 10 | 1;
     }
 
     //! Some queries against all blocks.
     template <int Q> void row(int query)
     {
-        this->template setQueries<Q>(query);
+        setQueries<Q>(query);
         // A look costs about a sixth of what an early end saves: stop looking where too few tiles end early.
-        for (int block = 0, ended = 0; block < Base::blocks; block++)
+        for (int block = 0, ended = 0; block < blocks; block++)
             ended += compare<Q>(query, block, block <= 8 + 6 * ended ? early : layout.words());
     }
 
@@ -42,17 +38,17 @@ private:
     {
         Tile<Q> tile;
         Counts distance[Tile<Q>::SIZE], slacks[Tile<Q>::SIZE];
-        tile.start(Base::queries, codes(block), end);
+        tile.start(queries, codes(block), end);
         bool near = anyNear<Q>(tile, query, block, distance, slacks);
         if (end < layout.words())
         {
             if (!near)
                 return true;
-            tile.advance(Base::queries, codes(block), end, layout.words());
+            tile.advance(queries, codes(block), end, layout.words());
             near = anyNear<Q>(tile, query, block, distance, slacks);
         }
         for (int q = 0; q < Q && near; q++)
-            this->collect(query + q, block, distance + q * VECTORS, slacks + q * VECTORS);
+            collect(query + q, block, distance + q * VECTORS, slacks + q * VECTORS);
         return false;
     }
 
@@ -64,7 +60,7 @@ private:
         tile.distances(distance);
         for (int i = 0; i < Tile<Q>::SIZE; i++)
         {
-            slacks[i] = this->slack(query + i / VECTORS, block, i % VECTORS, distance[i]);
+            slacks[i] = slack(query + i / VECTORS, block, i % VECTORS, distance[i]);
             any = any | slacks[i];
         }
         return v_check_any(any);

@@ -15,12 +15,12 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
 //! Gives pairs up at the stages of a scan.
-class PrunedScanner : public Scanner<SinkCollector>
+class PrunedScanner : public SinkScanner
 {
 public:
     explicit PrunedScanner(const PrunedScan& s)
-        : Scanner(s.pairs, SinkCollector(s.sink)), scan(s), lists(blocks),
-          queryRow(layout, segmentAt(0) + 1, 1), trainRows(layout, segmentAt(0) + 1, s.pairs.paddedTrains())
+        : SinkScanner(s.pairs, s.sink), scan(s), lists(blocks), queryRow(layout, segmentAt(0) + 1, 1),
+          trainRows(layout, segmentAt(0) + 1, s.pairs.paddedTrains())
     {
         for (int stage = 0; stage <= s.stageCount; stage++)
             words.push_back(layout.end(segmentAt(stage)));
@@ -94,11 +94,10 @@ private:
                 tile.advance(queries, codes(block), end, words[0]);
                 tile.distances(distance);
             }
-            const bool incomplete = pairs.allowed || block == blocks - 1;
             for (int i = 0; i < Tile<Q>::SIZE; i++)
             {
                 const int q = i / VECTORS, v = i % VECTORS;
-                if (incomplete)
+                if (incomplete(block))
                     distance[i] = v_select(missing(query + q, block, v) < vx_setzero_s32(),
                             vx_setall_s32(NEVER), distance[i]);
                 lists.store(q, block, v, distance[i]);
@@ -201,22 +200,6 @@ private:
         return !v_check_all(beyond);
     }
 
-    //! Negative in the lanes whose pairs do not exist or are masked.
-    CV_ALWAYS_INLINE Counts missing(int query, int block, int v) const
-    {
-        Counts result = vx_setzero_s32();
-        if (block == blocks - 1)
-            result =
-                    vx_setall_s32(pairs.trainCount - 1 - block * CODES_PER_BLOCK - v * WIDTH) - laneNumbers();
-        if (pairs.allowed)
-        {
-            const uchar* allowed = pairs.allowed + ((size_t)query * blocks + block) * CODES_PER_BLOCK;
-            result = result |
-                     (v_reinterpret_as_s32(vx_load_expand_q(allowed + v * WIDTH)) == vx_setzero_s32());
-        }
-        return result;
-    }
-
     //! The most that may differ at the stage.
     int lowerLimit(int query, int q, int stage)
     {
@@ -235,7 +218,7 @@ private:
     void finish(int query, int q, int count, int stage)
     {
         if (count > 0)
-            queryRow.set(0, plainQuery(query));
+            queryRow.set(0, plainQuery(q));
         for (; stage < scan.stageCount && count > 0; stage++)
         {
             if (stage + 1 < scan.stageCount)
@@ -244,12 +227,12 @@ private:
                 advance(q, count, stage);
         }
         const int *list = lists.list(q), *distance = lists.distances(q),
-                  *queryThreshold = collector.queryThresholds + query;
-        const int* trainThresholds = collector.trainThresholds;
+                  *queryThreshold = sink.queryThresholds + query;
+        const int* trainThresholds = sink.trainThresholds;
         for (int i = 0; i < count; i++)
             if (distance[list[i]] < *queryThreshold ||
                     (trainThresholds && distance[list[i]] < trainThresholds[list[i]]))
-                scan.sink.found(query, list[i], distance[list[i]]);
+                sink.found(query, list[i], distance[list[i]]);
     }
 
     //! Compares the pairs of a list to the stage after a stage; returns how many are left.

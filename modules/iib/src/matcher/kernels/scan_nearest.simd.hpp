@@ -1,0 +1,149 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_MATCHER_KERNELS_SCAN_NEAREST_SIMD_HPP
+#define OPENCV_IIB_MATCHER_KERNELS_SCAN_NEAREST_SIMD_HPP
+
+#include "../../common/aligned_buffer.hpp"
+#include "scanner.simd.hpp"
+
+namespace cv {
+namespace iib {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+namespace {
+
+/** The nearest of each query and, if wanted, of each train code. A pair's key is its distance, followed by an index in the
+low bits: the least key is that of the nearest pair, and of the first one if there are several. So no tile needs a
+branch on what it found. */
+class NearestScanner : public Scanner
+{
+public:
+    explicit NearestScanner(const NearestScan& s)
+        : Scanner(s.pairs), scan(s), trainKeys(s.ofTrains.distances ? s.pairs.paddedTrains() : 0, NO_KEY),
+          early(layout.words())
+    {
+        // Trains need the distances to all queries; PACKING_ADDERS wants an odd number.
+        if (trainKeys.empty() && layout.bytes() > 64)
+            early = layout.words() * 7 / 10 | 1;
+    }
+
+    //! Some queries against all blocks.
+    template <int Q> void row(int query)
+    {
+        setQueries<Q>(query);
+        Counts nearest[Tile<Q>::SIZE], limits[Q];
+        for (int i = 0; i < Tile<Q>::SIZE; i++)
+            nearest[i] = vx_setall_s32(NO_KEY);
+        for (int q = 0; q < Q; q++)
+            limits[q] = vx_setall_s32(scan.ofQueries.distances[query + q]);
+        // An early end pays for several looks that were in vain.
+        for (int block = 0, looks = 0; block < blocks; block++)
+        {
+            if (block % 8 == 0 && early < layout.words())
+            {
+                looks = std::max(looks, 1);
+                for (int q = 0; q < Q; q++)
+                    limits[q] = v_min(limits[q], vx_setall_s32(leastKey(nearest + q * VECTORS) >> INDEX_BITS));
+            }
+            if (looks == 0)
+                compare<Q>(query, block, layout.words(), limits, nearest);
+            else if (compare<Q>(query, block, early, limits, nearest))
+                looks++;
+            else
+                looks--;
+        }
+        for (int q = 0; q < Q; q++)
+            keepOfQuery(query + q, nearest + q * VECTORS);
+    }
+
+    //! After the last row.
+    void keepOfTrains() const
+    {
+        for (int train = 0; train < (int)trainKeys.size(); train++)
+            keep(scan.ofTrains, train, trainKeys[train], trainKeys[train] & INDEX_MASK);
+    }
+
+private:
+    enum
+    {
+        INDEX_BITS = NearestScan::INDEX_BITS,
+        INDEX_MASK = (1 << INDEX_BITS) - 1,
+        NO_KEY = INT_MAX
+    };
+
+    //! Returns whether the tile ended after `end` words, before the last, since no pair is within its limit.
+    template <int Q>
+    CV_ALWAYS_INLINE bool compare(int query, int block, int end, const Counts* limits, Counts* nearest)
+    {
+        Tile<Q> tile;
+        Counts keys[Tile<Q>::SIZE];
+        tile.start(queries, codes(block), end);
+        tile.distances(keys);
+        if (end < layout.words())
+        {
+            Counts slack = vx_setzero_s32();
+            for (int i = 0; i < Tile<Q>::SIZE; i++)
+                slack = slack | (keys[i] - limits[i / VECTORS]);
+            if (!v_check_any(slack))
+                return true;
+            tile.advance(queries, codes(block), end, layout.words());
+            tile.distances(keys);
+        }
+        for (int i = 0; i < Tile<Q>::SIZE; i++)
+            keys[i] = keys[i] << INDEX_BITS;
+        if (incomplete(block))
+            for (int i = 0; i < Tile<Q>::SIZE; i++)
+                keys[i] = v_select(missing(query + i / VECTORS, block, i % VECTORS) < vx_setzero_s32(),
+                        vx_setall_s32(NO_KEY), keys[i]);
+        for (int i = 0; i < Tile<Q>::SIZE; i++)
+            nearest[i] = v_min(nearest[i], keys[i] | vx_setall_s32(block));
+        for (int v = 0; v < VECTORS && !trainKeys.empty(); v++)
+        {
+            int* const ofTrains = trainKeys.data() + block * CODES_PER_BLOCK + v * WIDTH;
+            Counts least = vx_load(ofTrains);
+            for (int q = 0; q < Q; q++)
+                least = v_min(least, keys[q * VECTORS + v] | vx_setall_s32(query + q));
+            v_store(ofTrains, least);
+        }
+        return false;
+    }
+
+    //! Over the vectors of one query.
+    static int leastKey(const Counts* keys)
+    {
+        Counts least = keys[0];
+        for (int v = 1; v < VECTORS; v++)
+            least = v_min(least, keys[v]);
+        return v_reduce_min(least);
+    }
+
+    void keepOfQuery(int query, const Counts* keys) const
+    {
+        const int least = leastKey(keys);
+        Counts others[VECTORS];
+        for (int v = 0; v < VECTORS; v++)
+            others[v] = vx_setall_s32(least) - keys[v];
+        const int lane = trailingZeros32(ALL_LANES & ~negativeLanes(others));
+        keep(scan.ofQueries, query, least, (least & INDEX_MASK) * CODES_PER_BLOCK + lane);
+    }
+
+    static void keep(const NearestCodes& nearest, int i, int key, int index)
+    {
+        if (key == NO_KEY || key >> INDEX_BITS >= nearest.distances[i])
+            return;
+        nearest.distances[i] = key >> INDEX_BITS;
+        nearest.indices[i] = index;
+    }
+
+    const NearestScan& scan;
+    std::vector<int> trainKeys;  // none if only queries have neighbours
+    int early;  // words after which a tile is left if no pair is near enough so far: distances only grow
+};
+
+}  // namespace
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}  // namespace iib
+}  // namespace cv
+
+#endif
