@@ -39,6 +39,8 @@ add_test(NAME includes COMMAND "${CMAKE_COMMAND}" "-DMODULE=${IIB_DIR}" -P "${PR
 find_program(IIB_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(IIB_PYTHON)
   add_test(NAME figures COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/figures.py" --check)
+  add_test(NAME mutants COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/tools/mutation/mutate.py"
+    --source "${PROJECT_SOURCE_DIR}" --check)
 endif()
 # The Python package, linked with what is built here already. The script skips by itself where there is no package index.
 if(UNIX AND NOT APPLE AND NOT IIB_SANITIZE)

@@ -4,6 +4,7 @@ one of them switched on at a time: those in the folder of modules/iib/test with 
 mutant that none of them notices is a survivor.
 
 mutate.py --source REPOSITORY --work FOLDER [--only NAME...]
+mutate.py --source REPOSITORY --check
 
 A mutant is an expression of the source with a wrong one beside it. In a copy of the source both stand in
 IIB_MUTANT(number, right, wrong), and the environment variable IIB_MUTANT chooses at run time.
@@ -64,16 +65,26 @@ def write_if_changed(path, content):
         path.write_bytes(content)
 
 
+def switched(repository, mutants):
+    """The content of the sources with the switches of all mutants, by path."""
+    content = {}
+    for mutant in mutants:
+        if mutant.path not in content:
+            if not (repository / mutant.path).is_file():
+                sys.exit(f"{mutant.name}: there is no {mutant.path}: bring mutants.txt up to date")
+            content[mutant.path] = (repository / mutant.path).read_text()
+        content[mutant.path] = mutant.applied(content[mutant.path])
+    return content
+
+
 def copy_source(repository, mutants, target):
     """A copy of the repository's files with the switches of all mutants."""
     command = ["git", "-C", repository, "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
     listed = subprocess.check_output(command).decode().split("\0")
     content = {name: (repository / name).read_bytes() for name in listed if (repository / name).is_file()}
     content["mutation.hpp"] = HEADER.encode()
-    for mutant in mutants:
-        if mutant.path not in content:
-            sys.exit(f"{mutant.name}: there is no {mutant.path}: bring mutants.txt up to date")
-        content[mutant.path] = mutant.applied(content[mutant.path].decode()).encode()
+    for path, text in switched(repository, mutants).items():
+        content[path] = text.encode()
     for old in target.rglob("*"):
         if old.is_file() and str(old.relative_to(target)) not in content:
             old.unlink()
@@ -113,7 +124,9 @@ def run_tests(program, suites, number, timeout):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--source", type=pathlib.Path, required=True, help="the repository")
-    parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for the copy and its build")
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument("--work", type=pathlib.Path, help="folder for the copy and its build")
+    what.add_argument("--check", action="store_true", help="only see whether each mutant stands in the source, once")
     parser.add_argument("--only", nargs="*", default=[], help="names of mutants; all by default")
     options = parser.parse_args()
 
@@ -121,6 +134,9 @@ def main():
     unknown = set(options.only) - {m.name for m in mutants}
     if unknown:
         sys.exit(f"no such mutants: {', '.join(sorted(unknown))}")
+    if options.check:
+        switched(options.source, mutants)
+        return 0
     source, build = options.work / "source", options.work / "build"
     copy_source(options.source, mutants, source)
     subprocess.check_call(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DIIB_BUILD_TOOLS=OFF",
