@@ -4,6 +4,7 @@
 
 // What a descriptor costs beside cv::ORB on the same keypoints, in one run: prints a table, writes JSON.
 
+#include "matching.hpp"
 #include "scaling.hpp"
 #include "scene.hpp"
 
@@ -118,7 +119,7 @@ void print(const std::vector<Row>& rows)
                 marginal(row) / marginal(rows[0]));
 }
 
-void write(const std::vector<Row>& rows, const Scaling& scaling, const String& file)
+void write(const std::vector<Row>& rows, const Scaling& scaling, const Matching& matching, const String& file)
 {
     FileStorage fs(file, FileStorage::WRITE);
     if (!fs.isOpened())
@@ -135,6 +136,7 @@ void write(const std::vector<Row>& rows, const Scaling& scaling, const String& f
            << "}";
     fs << "]";
     scaling.write(fs);
+    matching.write(fs);
 }
 
 }  // namespace
@@ -167,7 +169,9 @@ int main(int argc, char** argv)
         print(rows);
         const Scaling scaling = measureScaling(rounds);
         scaling.print();
-        write(rows, scaling, args.get<String>("json"));
+        const Matching matching = measureMatching(rounds);
+        matching.print();
+        write(rows, scaling, matching, args.get<String>("json"));
         if (args.has("against"))
             printAgainst(rows, args.get<String>("against"));
     }

@@ -44,7 +44,8 @@ public:
             {
                 looks = std::max(looks, 1);
                 for (int q = 0; q < Q; q++)
-                    limits[q] = v_min(limits[q], vx_setall_s32(leastKey(nearest + q * VECTORS) >> INDEX_BITS));
+                    limits[q] =
+                            v_min(limits[q], vx_setall_s32(leastKey(nearest + q * VECTORS) >> INDEX_BITS));
             }
             if (looks == 0)
                 compare<Q>(query, block, layout.words(), limits, nearest);
