@@ -4,6 +4,7 @@
 #   scripts/bench.sh [--rounds=N] [--json=FILE]
 . "$(dirname "$0")/lib.sh"
 
+check_options "$root/tools/benchmark/benchmark.cpp" "$@"
 # shellcheck disable=SC2086
 need $build_packages
 build_tools iib_benchmark

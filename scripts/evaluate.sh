@@ -4,6 +4,7 @@
 # Results go to results/ unless --out says otherwise; an interrupted run goes on where it stopped.
 . "$(dirname "$0")/lib.sh"
 
+check_options "$root/tools/evaluation/main.cpp" "$@"
 out="$root/results"
 previous=""
 for argument in "$@"; do

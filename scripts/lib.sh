@@ -25,6 +25,33 @@ fail() {
     exit 2
 }
 
+# check_options SOURCE ARGUMENT...: whether the tool with these KEYS in its source takes the options, to be asked before
+# anything is installed for it.
+check_options() {
+    keys=$(sed -n 's/^ *"{\([a-z-]*\) *| *\([^| ]*\).*/\1|\2/p' "$1")
+    shift
+    without_value=""
+    for argument in "$@"; do
+        if [ -n "$without_value" ]; then
+            without_value=""
+            continue
+        fi
+        case "$argument" in
+        --) return 0 ;;
+        -?*) ;;
+        *) continue ;;
+        esac
+        name=${argument%%=*}
+        name=${name#-}
+        name=${name#-}
+        echo "$keys" | cut -d'|' -f1 | grep -qxF -e "$name" ||
+            fail "unknown option ${argument%%=*}; there are --$(echo "$keys" | cut -d'|' -f1 | paste -sd' ' | sed 's/ /, --/g')"
+        case "$argument" in *=*) continue ;; esac
+        echo "$keys" | grep -qxF -e "$name|" || without_value=$argument
+    done
+    [ -z "$without_value" ] || fail "option $without_value needs a value"
+}
+
 # need PACKAGE...: installs those Debian packages that are missing.
 need() {
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then

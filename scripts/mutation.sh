@@ -4,6 +4,11 @@
 # scripts/mutation.sh [--only NAME...]
 . "$(dirname "$0")/lib.sh"
 
+[ $# -eq 0 ] || [ "$1" = --only ] || fail "it takes no option but --only, not $1"
+for name in "$@"; do
+    [ "$name" = --only ] || grep -qxF -e "name: $name" "$root/tools/mutation/mutants.txt" ||
+        fail "there is no mutant $name in tools/mutation/mutants.txt"
+done
 # shellcheck disable=SC2086
 need $build_packages python3
 exec python3 "$root/tools/mutation/mutate.py" --source "$root" --work "$cache/mutation" "$@"

@@ -3,5 +3,14 @@
 # scripts/synthetic.sh FOLDER [--frames N] [--scenes SCENE...] [--path-lights LIGHT...] [--size W H] [--jobs N]
 . "$(dirname "$0")/lib.sh"
 
+[ $# -gt 0 ] || fail "a FOLDER is needed (--help tells more)"
+for argument in "$@"; do
+    case "$argument" in
+    --*)
+        grep -qF "add_argument(\"${argument%%=*}\"" "$root/tools/synthetic/render.py" ||
+            fail "unknown option $argument (--help lists them)"
+        ;;
+    esac
+done
 need povray python3-opencv
 exec /usr/bin/python3 "$root/tools/synthetic/render.py" "$@"

@@ -4,14 +4,14 @@
 # $OPENCV_TEST_DATA_PATH/illumination.
 . "$(dirname "$0")/lib.sh"
 
-need $build_packages
-build_tools iib_train
-case "${1:-}" in
---presets)
+if [ "${1:-}" = --presets ]; then
     shift
     data="${OPENCV_TEST_DATA_PATH:?the folder that holds illumination/}/illumination"
-    exec "$build/tools/training/iib_train" --presets="$root/modules/iib/src/descriptor/presets.generated.hpp" "$@" \
-        "$data/tilde_webcam" "$data/amos_daynight"
-    ;;
-*) exec "$build/tools/training/iib_train" "$@" ;;
-esac
+    set -- --presets="$root/modules/iib/src/descriptor/presets.generated.hpp" "$@" "$data/tilde_webcam" \
+        "$data/amos_daynight"
+fi
+check_options "$root/tools/training/train.cpp" "$@"
+# shellcheck disable=SC2086
+need $build_packages
+build_tools iib_train
+exec "$build/tools/training/iib_train" "$@"
