@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tables of README.md and doc/performance.md from the committed results in doc/results: figures.py --check | --write
+"""Tables of README.md and of pages in doc from the committed results in doc/results: figures.py --check | --write
 
 A table stands between the lines `<!-- figures NAME -->` and `<!-- end of figures -->`, NAME being a function below.
 --write puts each anew, --check ends with an error where one differs from the results, which ctest runs.
@@ -32,6 +32,8 @@ def table(head, lines):
 
 
 def precision_recall(chosen):
+    if not chosen:
+        return '–'
     return '%.3f / %.3f' % (mean(float(r['precision']) for r in chosen), mean(float(r['recall']) for r in chosen))
 
 
@@ -68,6 +70,16 @@ def fixed_points():
     return table(['', 'bytes', 'changed light', '`wall`', '`graf`'], lines)
 
 
+def extra_channels():
+    """Fixed points of rendered scenes: depth and labels of what is seen as further channels."""
+    found = collections.defaultdict(list)
+    for row in rows('fixed_points.csv'):
+        if row['set'] in RENDERED:
+            found[row['configuration']].append(row)
+    return table(['', 'rendered scenes'],
+                 [[name, precision_recall(found[name])] for name in ('IIB', 'IIB +depth', 'IIB +labels', 'IIB +depth+labels')])
+
+
 def turned():
     """Fixed points: the reference turned about its centre, in the same light."""
     found = collections.defaultdict(list)
@@ -86,6 +98,8 @@ def presets():
            ('IIB COMPACT', '`PRESET_COMPACT`', 'a still camera, many images to keep'),
            ('IIB TINY', '`PRESET_TINY`', 'a still camera, and memory is scarce'),
            ('IIB BALANCED', '`PRESET_BALANCED`', 'the camera moves between the images'),
+           ('IIB VIEWPOINT', '`PRESET_VIEWPOINT`', 'the camera moves far'),
+           ('IIB UNIVERSAL', '`PRESET_UNIVERSAL`', 'light and camera both change'),
            ('IIB S512', '`PRESET_S512`', 'the default, shortened'),
            ('IIB S256', '`PRESET_S256`', 'the default, shortened'),
            ('IIB S128', '`PRESET_S128`', 'the default, shortened'))
@@ -106,21 +120,30 @@ def presets():
     return table(['preset', 'bytes', 'light', 'rendered', 'wall', 'graf', 'turned', 'when'], lines)
 
 
-def ratios():
-    """Correct / given matches a pair of AKAZE's points, under mutual matching and under ratio tests."""
+def ratio_table(descriptors):
     rules = ('mutual', '0.95', '0.9', '0.85', '0.8', '0.75')
     found = collections.defaultdict(list)
     for row in rows('ratios.csv'):
-        place = 'changed light' if row['kind'] == 'illumination' else '`%s`' % row['sequence']
+        place = 'changed light' if row['kind'] == 'light' else '`%s`' % row['sequence']
         found[place, row['descriptor'], row['rule']].append(row)
     lines = []
     for place in ('changed light', '`wall`', '`graf`'):
-        for label, name in (('default', 'IIB'), ('ACCURATE', 'IIB ACCURATE'), ('COMPACT', 'IIB COMPACT'),
-                            ('BALANCED', 'IIB BALANCED'), ('S256', 'IIB S256')):
-            chosen = [found[place, name, rule] for rule in rules]
-            lines.append([place, label] + ['%.0f / %.0f' % tuple(mean(int(r[column]) for r in some)
-                                                                 for column in ('correct', 'given')) for some in chosen])
+        for name in descriptors:
+            chosen = [found[place, 'IIB ' + name if name != 'default' else 'IIB', rule] for rule in rules]
+            lines.append([place, name] + ['%.0f / %.0f' % tuple(mean(int(r[column]) for r in some)
+                                                                for column in ('correct', 'given')) for some in chosen])
     return table(['', '', 'mutual'] + list(rules[1:]), lines)
+
+
+def ratios():
+    """Correct / given matches a pair of AKAZE's points, under mutual matching and under ratio tests."""
+    return ratio_table(['default', 'ACCURATE', 'COMPACT', 'BALANCED', 'UNIVERSAL'])
+
+
+def all_ratios():
+    """The same for all presets."""
+    return ratio_table(['default', 'ACCURATE', 'COMPACT', 'TINY', 'BALANCED', 'VIEWPOINT', 'UNIVERSAL', 'S512', 'S256',
+                        'S128'])
 
 
 def costs():
@@ -147,7 +170,8 @@ def all_costs():
     return table(['', 'bytes', 'ms', 'ratio to ORB', 'us a point more'], lines)
 
 
-PAGES = {'README.md': (detected_points, fixed_points, turned, ratios, presets, costs), 'doc/performance.md': (all_costs,)}
+PAGES = {'README.md': (detected_points, fixed_points, turned, ratios, presets, costs), 'doc/performance.md': (all_costs,),
+         'doc/results/README.md': (extra_channels, all_ratios)}
 
 
 def filled(page, makers):

@@ -69,8 +69,8 @@ std::vector<Work> allWork()
             const float unused = 0.3f;  // no threshold counts in these modes
             add("EXACT", HierarchicalMatcher::create(levels, HierarchicalMatcher::EXACT, unused, crossCheck));
             if (codes == 10000)
-                add("ADAPTIVE",
-                        HierarchicalMatcher::create(levels, HierarchicalMatcher::ADAPTIVE, unused, crossCheck));
+                add("ADAPTIVE", HierarchicalMatcher::create(
+                                        levels, HierarchicalMatcher::ADAPTIVE, unused, crossCheck));
             add("BFMatcher", BFMatcher::create(NORM_HAMMING, crossCheck));
         }
     return all;

@@ -26,10 +26,14 @@ struct Described
 std::vector<std::pair<std::string, cv::Ptr<IIB>>> descriptors()
 {
     const float factor = IIB::scaleFactorFor("AKAZE");
-    return {{"IIB", IIB::create(factor)}, {"IIB ACCURATE", IIB::createPreset(IIB::PRESET_ACCURATE, factor)},
-            {"IIB COMPACT", IIB::createPreset(IIB::PRESET_COMPACT, factor)},
-            {"IIB BALANCED", IIB::createPreset(IIB::PRESET_BALANCED, factor)},
-            {"IIB S256", IIB::createPreset(IIB::PRESET_S256, factor)}};
+    std::vector<std::pair<std::string, cv::Ptr<IIB>>> all = {{"IIB", IIB::create(factor)}};
+    for (const auto& preset : std::vector<std::pair<std::string, int>>{{"ACCURATE", IIB::PRESET_ACCURATE},
+                 {"COMPACT", IIB::PRESET_COMPACT}, {"TINY", IIB::PRESET_TINY},
+                 {"BALANCED", IIB::PRESET_BALANCED}, {"VIEWPOINT", IIB::PRESET_VIEWPOINT},
+                 {"UNIVERSAL", IIB::PRESET_UNIVERSAL}, {"S512", IIB::PRESET_S512}, {"S256", IIB::PRESET_S256},
+                 {"S128", IIB::PRESET_S128}})
+        all.push_back({"IIB " + preset.first, IIB::createPreset(preset.second, factor)});
+    return all;
 }
 
 //! The strongest points of an image.

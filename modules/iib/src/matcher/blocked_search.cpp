@@ -57,10 +57,10 @@ private:
 };
 
 //! The queries that one thread takes, and the limits of the policy for each.
-class Part
+class PartialSearch
 {
 public:
-    Part(const SearchInput& input_, int from_, int to_)
+    PartialSearch(const SearchInput& input_, int from_, int to_)
         : input(input_), from(from_), to(to_), limits(to_ - from_, input_.policy.limit)
     {
     }
@@ -180,13 +180,13 @@ SearchCost searchNearest(const SearchInput& input, KnnTable& forQueries, KnnTabl
 {
     if (!forTrains)
         return split(input.queries.rows, evenParts(input),
-                [&](int from, int to) { return Part(input, from, to).nearest(forQueries, 0); });
+                [&](int from, int to) { return PartialSearch(input, from, to).nearest(forQueries, 0); });
     // In the other direction each part has neighbours of its own, merged by their order, so that the result
     // does not depend on which is done first. Few parts, since each begins without thresholds.
     std::mutex lock;
     return split(input.queries.rows, getNumThreads(), [&](int from, int to) {
         KnnTable own(forTrains->rows(), forTrains->size(), CodeLayout::CODES_PER_BLOCK);
-        const SearchCost cost = Part(input, from, to).nearest(forQueries, &own);
+        const SearchCost cost = PartialSearch(input, from, to).nearest(forQueries, &own);
         std::lock_guard<std::mutex> guard(lock);
         forTrains->merge(own);
         return cost;
@@ -196,7 +196,7 @@ SearchCost searchNearest(const SearchInput& input, KnnTable& forQueries, KnnTabl
 SearchCost searchWithin(const SearchInput& input, int radius, std::vector<std::vector<MatchKey>>& result)
 {
     return split(input.queries.rows, evenParts(input),
-            [&](int from, int to) { return Part(input, from, to).within(radius, result); });
+            [&](int from, int to) { return PartialSearch(input, from, to).within(radius, result); });
 }
 
 }  // namespace iib
