@@ -94,32 +94,35 @@ void addBoxes(const PoolParameters& p, CandidatePool& pool)
     const int boxesInRow[] = {3, 5, 7, 9, 7};
     const struct
     {
-        int kind, mask;  // of the bits of one box; those of a quad are 7
-    } channels[] = {{IIB::CHANNEL_GRAD_X, 8}, {IIB::CHANNEL_GRAD_Y, 0}, {IIB::CHANNEL_SIGNED_GRAD_X, 24},
-            {IIB::CHANNEL_SIGNED_GRAD_Y, 24}, {IIB::CHANNEL_INTENSITY, 0}};
+        int kind, bit;
+    } ownBits[] = {{IIB::CHANNEL_GRAD_X, 3}, {IIB::CHANNEL_SIGNED_GRAD_X, 4}, {IIB::CHANNEL_SIGNED_GRAD_Y, 3},
+            {IIB::CHANNEL_SIGNED_GRAD_Y, 4}, {IIB::CHANNEL_SIGNED_GRAD_X, 3}};
     std::map<std::array<int, 4>, int> rows;  // level, channel, row and column -> row of pool.quads
     int position = 0;
+    const auto add = [&](int level, int kind, int row, int column, int bit) {
+        const int index = countBits(p.channels & (kind - 1));
+        if (!(p.channels & kind))
+            return;
+        const auto quad = rows.insert({{{level, index, row, column}}, pool.quads.rows});
+        if (quad.second)
+            pool.quads.push_back(cv::Mat_<int>({level, index, row, column, 0}).reshape(1, 1));
+        pool.quads(quad.first->second, 4) |= 1 << bit;
+        pool.candidates.push_back({quad.first->second, 1 << bit, {position++}});
+    };
     for (int level = 1; level <= p.granularity; level++)
     {
         const int n = boxesInRow[level - 1];
         position = (position + 7) / 8 * 8;
-        for (int first = 0; first < 5; first += 3)  // bits of quads, then of boxes
-            for (int place = 0; place < n * n; place++)
-                for (int bit = first; bit < (first == 0 ? 3 : 5); bit++)
-                    for (const auto& channel : channels)
-                    {
-                        const int row = place / n, column = place % n,
-                                  index = countBits(p.channels & (channel.kind - 1));
-                        const bool exists =
-                                first == 0 ? row + 1 < n && column + 1 < n : (channel.mask >> bit & 1) != 0;
-                        if (!exists || !(p.channels & channel.kind))
-                            continue;
-                        const auto quad = rows.insert({{{level, index, row, column}}, pool.quads.rows});
-                        if (quad.second)
-                            pool.quads.push_back(cv::Mat_<int>({level, index, row, column, 0}).reshape(1, 1));
-                        pool.quads(quad.first->second, 4) |= 1 << bit;
-                        pool.candidates.push_back({quad.first->second, 1 << bit, {position++}});
-                    }
+        for (int row = 0; row + 1 < n; row++)
+            for (int bit = 0; bit < 3; bit++)
+                for (int column = 0; column + 1 < n; column++)
+                    for (int kind : {IIB::CHANNEL_GRAD_X, IIB::CHANNEL_GRAD_Y, IIB::CHANNEL_SIGNED_GRAD_X,
+                                 IIB::CHANNEL_SIGNED_GRAD_Y, IIB::CHANNEL_INTENSITY})
+                        add(level, kind, row, column, bit);
+        for (int row = 0; row < n; row++)
+            for (int column = 0; column < n; column++)
+                for (const auto& bit : ownBits)
+                    add(level, bit.kind, row, column, bit.bit);
     }
     pool.extractor->setSelection(pool.quads);
 }

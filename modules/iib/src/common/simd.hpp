@@ -99,6 +99,30 @@ inline unsigned greaterEqualMask(const v_int32& a, const v_int32& b) { return (u
 inline unsigned equalMask(const v_int32& a, const v_int32& b) { return (unsigned)v_signmask(a == b); }
 #endif
 
+//! The same for 16-bit lanes.
+inline unsigned greaterMask(const v_int16& a, const v_int16& b)
+{
+#if CV_AVX512_SKX
+    return _mm512_cmpgt_epi16_mask(a.val, b.val);
+#else
+    return (unsigned)v_signmask(a > b);
+#endif
+}
+
+//! As v_zip, of pairs of values.
+inline void zipPairs(const v_uint32& a, const v_uint32& b, v_uint32& low, v_uint32& high)
+{
+#if CV_AVX2
+    v_uint64 first, second;
+    v_zip(v_reinterpret_as_u64(a), v_reinterpret_as_u64(b), first, second);
+    low = v_reinterpret_as_u32(first);
+    high = v_reinterpret_as_u32(second);
+#else
+    low = v_combine_low(a, b);
+    high = v_combine_high(a, b);
+#endif
+}
+
 /* Quotients, roots and nearest integers as IEEE 754 says. On ARMv7 the vectors' first two are estimates, and v_round rounds
  halves up; scalars are exact there. */
 #if CV_NEON && !defined __aarch64__ && !defined _M_ARM64

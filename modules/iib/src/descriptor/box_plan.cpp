@@ -4,8 +4,6 @@
 
 #include "box_plan.hpp"
 
-#include <map>
-
 #include "layout.hpp"
 
 namespace cv {
@@ -18,8 +16,7 @@ enum
     HAAR_BITS = 3,
     HAAR_MASK = (1 << HAAR_BITS) - 1,
     FIRST_OWN_BIT = 1 << HAAR_BITS,
-    SECOND_OWN_BIT = FIRST_OWN_BIT << 1,
-    LANES_OF_OWN_BITS = 4
+    SECOND_OWN_BIT = FIRST_OWN_BIT << 1
 };
 
 //! The lane of a channel in use.
@@ -37,48 +34,36 @@ int laneOf(const Parameters& p, int channel)
     CV_Error(Error::StsInternal, "no such channel");
 }
 
-//! The comparisons of a level, of all those with chosen bits in order.
-BoxComparisons comparisonsOf(
-        const Parameters& p, const Mat_<int>& selection, int level, const std::vector<int>& boxes)
+//! Marks the bits that are chosen where their comparisons lie in memory.
+ChosenBits chosenOf(const Mat_<int>& selection, const Parameters& p, int level, const BoxGridShape& shape)
 {
-    const int n = BOX_GRIDS[level - 1].n;
-    typedef std::map<int, unsigned> LanesOfPlaces;  // place in the grid
-    LanesOfPlaces quads[HAAR_BITS], own;
+    std::vector<uint64> masks((shape.comparisonBytes() + 7) / 8, 0);
+    const auto choose = [&](int byte, int lane) { masks[byte / 8] |= (uint64)1 << (8 * (byte % 8) + lane); };
     for (int i = 0; i < selection.rows; i++)
     {
         const int* const row = selection[i];
-        const int place = row[2] * n + row[3], mask = row[4], lane = laneOf(p, row[1]);
         if (row[0] != level)
             continue;
-        for (int bit = 0; (mask & HAAR_MASK) && bit < HAAR_BITS; bit++)
-            quads[bit][place] |= (unsigned)(mask >> bit & 1) << lane;
-        if (mask & FIRST_OWN_BIT)
-            own[place] |= 1u << lane;
-        if (mask & SECOND_OWN_BIT)
-            own[place] |= 1u << (LANES_OF_OWN_BITS + lane);
-    }
-
-    std::vector<uchar> bytes;
-    BoxComparisons result = {bitOffset(p, level, 0), {}, {}, ChosenBits(std::vector<uint64>())};
-    for (const auto& quad : quads[0])
-    {
-        const int place = quad.first;
-        const BoxComparisons::Quad q = {{(ushort)boxes[place], (ushort)boxes[place + 1],
-                (ushort)boxes[place + n], (ushort)boxes[place + n + 1]}};
-        result.quads.push_back(q);
+        const int lane = laneOf(p, row[1]), mask = row[4];
         for (int bit = 0; bit < HAAR_BITS; bit++)
-            bytes.push_back((uchar)quads[bit][place]);
+            if (mask >> bit & 1)
+                choose((HAAR_BITS * row[2] + bit) * shape.quadBytes() + row[3], lane);
+        const int own = HAAR_BITS * (shape.n - 1) * shape.quadBytes() + row[2] * shape.stride() + row[3];
+        if (mask & FIRST_OWN_BIT)
+            choose(own, lane == LANE_GRADIENT_X ? (int)LANE_GRADIENT_X_AGAIN : lane);
+        if (mask & SECOND_OWN_BIT)
+            choose(own, lane == LANE_GRADIENT_Y ? (int)LANE_GRADIENT_SUM : lane);
     }
-    for (const auto& box : own)
-    {
-        result.boxes.push_back((ushort)boxes[box.first]);
-        bytes.push_back((uchar)box.second);
-    }
-    std::vector<uint64> masks((bytes.size() + 7) / 8, 0);
-    for (size_t i = 0; i < bytes.size(); i++)
-        masks[i / 8] |= (uint64)bytes[i] << 8 * (i % 8);
-    result.chosen = ChosenBits(masks);
-    return result;
+    return ChosenBits(masks);
+}
+
+//! How many boxes on another one begins where it ends; n if there is none.
+int spanOf(const BoxGrid& grid)
+{
+    int span = 1;
+    while (span < grid.n && grid.edge(span, -1) != grid.edge(0, 1))
+        span++;
+    return span;
 }
 
 }  // namespace
@@ -110,34 +95,23 @@ Mat_<int> boxSelection(const Parameters& p)
     return all;
 }
 
-BoxPlan::BoxPlan(const Parameters& p)
+BoxPlan::BoxPlan(const Parameters& p) : edges()
 {
     const Mat_<int> selection = boxSelection(p);
+    int places = 0;
     for (int level = 1; level <= p.granularity; level++)
     {
         const BoxGrid& grid = BOX_GRIDS[level - 1];
-        std::vector<bool> used(grid.n * grid.n);
-        for (int i = 0; i < selection.rows; i++)
-        {
-            const int place = selection(i, 2) * grid.n + selection(i, 3);
-            if (selection(i, 0) == level && (selection(i, 4) & HAAR_MASK))
-                used[place + 1] = used[place + grid.n] = used[place + grid.n + 1] = true;
-            if (selection(i, 0) == level)
-                used[place] = true;
-        }
-        Level l = {grid.side, boxes(), 0, {0, {}, {}, ChosenBits(std::vector<uint64>())}};
-        std::vector<int> indices(used.size());
-        for (size_t place = 0; place < used.size(); place++)
-            if (used[place])
-            {
-                indices[place] = boxes();
-                x.push_back(grid.centre((int)place % grid.n));
-                y.push_back(grid.centre((int)place / grid.n));
-            }
-        l.end = boxes();
-        if (l.end == l.first)
+        const BoxGridShape shape = {grid.n, spanOf(grid), places};
+        Level l = {shape, grid.side / 80., {}, bitOffset(p, level, 0), chosenOf(selection, p, level, shape)};
+        if (l.chosen.none())
             continue;
-        l.comparisons = comparisonsOf(p, selection, level, indices);
+        for (int i = 0; i < grid.n; i++)
+        {
+            l.centres.push_back(grid.centre(i));
+            edges[0][places] = grid.edge(i, -1);
+            edges[1][places++] = grid.edge(i, 1);
+        }
         levels.push_back(l);
     }
 }

@@ -20,10 +20,16 @@ struct BoxGrid
 
     //! The centre of box i of a row or column, in sides of the region from its centre.
     double centre(int i) const { return reach * (2. * i / (n - 1) - 1) / 80; }
+
+    //! Its left or upper edge (direction -1), or the opposite one (1); equal for boxes that meet.
+    double edge(int i, int direction) const
+    {
+        return (2 * reach * i - (n - 1) * reach + direction * side * (n - 1) / 2.) / (80. * (n - 1));
+    }
 };
 
 //! Level g is BOX_GRIDS[g - 1].
-static const BoxGrid BOX_GRIDS[BOX_LEVELS] = {{3, 32, 24}, {5, 24, 28}, {7, 16, 30}, {9, 9, 32}, {7, 6, 12}};
+static const BoxGrid BOX_GRIDS[BOX_LEVELS] = {{3, 32, 24}, {5, 24, 28}, {7, 16, 30}, {9, 8, 32}, {7, 6, 12}};
 
 //! The bits that a box has in a channel, as the mask of a selection; `channel` counts those in use.
 int boxMask(const Parameters& parameters, int level, int channel, int row, int col);
@@ -34,19 +40,20 @@ Mat_<int> boxSelection(const Parameters& parameters);
 //! Which boxes and comparisons a descriptor of MAPPING_BOXES needs.
 struct BoxPlan
 {
+    //! One that has any bit.
     struct Level
     {
-        int side;        //!< of a box, in 80ths of the region's
-        int first, end;  //!< the boxes of the level
-        BoxComparisons comparisons;
+        BoxGridShape shape;
+        double side;                  //!< of a box, in sides of the region
+        std::vector<double> centres;  //!< along either axis, in sides of the region from its centre
+        int offset;                   //!< of the first bit in the descriptor
+        ChosenBits chosen;
     };
 
     explicit BoxPlan(const Parameters& checked);
 
-    std::vector<double> x, y;  //!< centres of boxes in sides of the region from its own, BoxGrid::centre()
     std::vector<Level> levels;
-
-    int boxes() const { return (int)x.size(); }
+    double edges[2][MAX_BOX_PLACES];  //!< where boxes begin and end, as centres; 0 behind the last one
 };
 
 }  // namespace iib

@@ -50,67 +50,85 @@ void rotationMatrix(const Rotation& rotation, float matrix[BOX_LANES][BOX_LANES]
     matrix[LANE_GRADIENT_X][LANE_GRADIENT_X] = matrix[LANE_GRADIENT_Y][LANE_GRADIENT_Y] = (float)c;
     matrix[LANE_GRADIENT_Y][LANE_GRADIENT_X] = (float)s;
     matrix[LANE_GRADIENT_X][LANE_GRADIENT_Y] = (float)-s;
+    matrix[LANE_GRADIENT_X][LANE_GRADIENT_SUM] = (float)(c - s);
+    matrix[LANE_GRADIENT_Y][LANE_GRADIENT_SUM] = (float)(c + s);
+    matrix[LANE_GRADIENT_X][LANE_GRADIENT_X_AGAIN] = (float)c;
+    matrix[LANE_GRADIENT_Y][LANE_GRADIENT_X_AGAIN] = (float)s;
     matrix[LANE_INTENSITY][LANE_INTENSITY] = 1;
 }
 
-template <typename Sum> typename BoxMeansFunc<Sum>::Type meansOf(const BoxKernels& kernels);
-template <> BoxMeansFunc<unsigned>::Type meansOf<unsigned>(const BoxKernels& kernels)
+template <typename Sum, typename Mean> const BoxSumKernels<Sum, Mean>& sumsOf(const BoxKernels& kernels);
+template <> const BoxSumKernels<unsigned, short>& sumsOf(const BoxKernels& kernels)
 {
-    return kernels.means;
+    return kernels.shortSums;
 }
-template <> BoxMeansFunc<int64>::Type meansOf<int64>(const BoxKernels& kernels) { return kernels.longMeans; }
+template <> const BoxSumKernels<int64, int>& sumsOf(const BoxKernels& kernels) { return kernels.longSums; }
 
-//! Cells along the side of a box, at least one.
-double cellsInSide(double side, int in80ths)
+//! Cells along the side of a rotated keypoint's box, at least one.
+double cellsInSide(double side, const BoxPlan::Level& level)
 {
-    return std::max(std::floor(side * in80ths / (80 * BOX_CELL) + 0.5), 1.);
+    return std::max(std::floor(side / BOX_CELL * level.side + 0.5), 1.);
 }
 
-template <typename T, typename Sum>
-void describeBatch(const DescriptorPlan& plan, const Mat& image, const KeyPointBatch& batch,
-        const std::vector<SupportRegion>& regions, const std::vector<KeyPoint>& keypoints,
-        const std::vector<float>& angles, typename SumCellRowFunc<T, Sum>::Type sumRow, Workspace& workspace,
-        Mat& descriptors)
+//! Where the keypoints of a batch come from.
+struct BoxInput
 {
-    const BoxPlan& boxes = *plan.boxes;
+    const Mat& image;
+    const KeyPointBatch& batch;
+    const std::vector<SupportRegion>& regions;
+    const std::vector<KeyPoint>& keypoints;
+    const std::vector<float>* angles;  //!< null: upright
+};
+
+template <typename T, typename Sum, typename Mean>
+void describeBatch(const DescriptorPlan& plan, const BoxInput& input,
+        typename SumCellRowFunc<T, Sum>::Type sumRow, Workspace& workspace, Mat& descriptors)
+{
+    const Mat& image = input.image;
+    const KeyPointBatch& batch = input.batch;
+    const bool rotated = input.angles != 0;
     const BoxKernels& kernels = plan.kernels.boxes;
+    const BoxSumKernels<Sum, Mean>& sums = sumsOf<Sum, Mean>(kernels);
     const int border = plan.parameters.border;
     const std::vector<Channel> source = {{IIB::CHANNEL_SIGNED_GRAD_X, image},
             {IIB::CHANNEL_SIGNED_GRAD_Y, image}, {IIB::CHANNEL_INTENSITY, image}};
     CellBand<T, Sum> band(source, batch.area, batch.rows + KeyPointBatch::BAND_ROWS, plan.kernels, sumRow,
             workspace.channelRows, workspace.planes, workspace.integralRing);
-    float* const means = workspace.boxMeans.get<float>(MAX_BOXES * BOX_LANES);
-    BoxPlaces& places = workspace.boxPlaces;
+    const BoxIntegral<Sum>& integral = band.integral();
+    Mean* const means = workspace.boxMeans.get<Mean>(MAX_BOX_MEANS);
     BoxFrame frame;
     frame.bounds = cellsOf(boundsOf(border, image.size()));
-    frame.step = band.step();
+    frame.origin = integral.origin;
+    frame.count = integral.count;
+    BoxEdges edges;
     float matrix[BOX_LANES][BOX_LANES];
 
     for (int k : batch.keypoints)
     {
-        const bool rotated = angles[k] >= 0;
-        const Rotation rotation(rotated ? angles[k] : 0);
-        const double side = regions[k].side, sideInCells = side / BOX_CELL;
-        band.advance(
-                batch.bandEnd(boxPixels(regions[k], keypoints[k].pt, rotated, border, image.size()).br().y));
-        frame.origin = band.origin();
-        frame.x = (keypoints[k].pt.x + 0.5) / BOX_CELL;
-        frame.y = (keypoints[k].pt.y + 0.5) / BOX_CELL;
-        frame.cosine = rotation.cosine * sideInCells;
-        frame.sine = rotation.sine * sideInCells;
-        for (const BoxPlan::Level& level : boxes.levels)
-        {
-            frame.side = cellsInSide(side, level.side);
-            kernels.places(frame, boxes.x.data(), boxes.y.data(), level.first, level.end, places);
-        }
-        meansOf<Sum>(kernels)(band.data(), places, boxes.boxes(), means);
+        const SupportRegion& region = input.regions[k];
+        const Point2f centre = input.keypoints[k].pt;
+        const Rotation rotation(rotated ? (*input.angles)[k] : 0);
+        band.advance(batch.bandEnd(boxPixels(region, centre, rotated, border, image.size()).br().y));
+        frame.centre = Point2d((centre.x + 0.5) / BOX_CELL, (centre.y + 0.5) / BOX_CELL);
+        frame.side = region.side / BOX_CELL;
+        frame.oldest = band.oldest();
         if (rotated)
-        {
             rotationMatrix(rotation, matrix);
-            kernels.rotate(matrix, boxes.boxes(), means);
+        else
+            kernels.edges(frame, plan.boxes->edges, edges);
+        for (const BoxPlan::Level& level : plan.boxes->levels)
+        {
+            if (rotated)
+            {
+                kernels.places(frame, level.shape, level.centres.data(),
+                        Point2d(rotation.cosine, rotation.sine), cellsInSide(region.side, level),
+                        integral.step / BOX_LANES, workspace.boxPlaces);
+                sums.rotatedMeans(integral, level.shape, workspace.boxPlaces, matrix, means);
+            }
+            else
+                sums.means(integral, level.shape, edges, means);
+            sums.bits(means, level.shape, level.chosen, level.offset, descriptors.ptr(k));
         }
-        for (const BoxPlan::Level& level : boxes.levels)
-            kernels.bits(means, level.comparisons, descriptors.ptr(k));
     }
 }
 
@@ -120,7 +138,7 @@ bool sumsAreShort(const BoxPlan& plan, const KeyPointBatch& batch, const std::ve
     const double largest = 6 * 255 * BOX_CELL * BOX_CELL;  // |gx + gy| of a cell
     double cells = 0;
     for (int k : batch.keypoints)
-        cells = std::max(cells, cellsInSide(regions[k].side, plan.levels[0].side));
+        cells = std::max(cells, cellsInSide(regions[k].side, plan.levels[0]) + 1);
     return largest * cells * cells <= INT_MAX;
 }
 
@@ -128,26 +146,25 @@ bool sumsAreShort(const BoxPlan& plan, const KeyPointBatch& batch, const std::ve
 
 Rect boxPixels(const SupportRegion& region, Point2f centre, bool rotated, int border, Size image)
 {
-    // corners of the outermost grids, whose boxes do not turn; four pixels more for roundings
-    const SupportRegion extent(centre, region.side * (rotated ? 1.25 : 1) + 8);
+    // Corners of the outermost grids, whose boxes do not turn: (28 sqrt(2) + 12) / 40 at most. Four pixels more for roundings.
+    const SupportRegion extent(centre, region.side * (rotated ? 1.3 : 1) + 8);
     const Rect cells = cellsOf(extent.pixels(boundsOf(border, image)));
     return Rect(cells.tl() * (int)BOX_CELL, cells.size() * (int)BOX_CELL);
 }
 
 void describeBoxes(const DescriptorPlan& plan, const Mat& image, const KeyPointBatch& batch,
         const std::vector<SupportRegion>& regions, const std::vector<KeyPoint>& keypoints,
-        const std::vector<float>& angles, Workspace& workspace, Mat& descriptors)
+        const std::vector<float>* angles, Workspace& workspace, Mat& descriptors)
 {
     const BoxKernels& k = plan.kernels.boxes;
+    const BoxInput input = {image, batch, regions, keypoints, angles};
+    const int rotated = angles != 0;
     if (image.depth() == CV_16U)
-        describeBatch<int, int64>(
-                plan, image, batch, regions, keypoints, angles, k.sumIntRow, workspace, descriptors);
+        describeBatch<int, int64, int>(plan, input, k.sumIntRow[rotated], workspace, descriptors);
     else if (sumsAreShort(*plan.boxes, batch, regions))
-        describeBatch<short, unsigned>(
-                plan, image, batch, regions, keypoints, angles, k.sumShortRow, workspace, descriptors);
+        describeBatch<short, unsigned, short>(plan, input, k.sumShortRow[rotated], workspace, descriptors);
     else
-        describeBatch<short, int64>(
-                plan, image, batch, regions, keypoints, angles, k.sumLongRow, workspace, descriptors);
+        describeBatch<short, int64, int>(plan, input, k.sumLongRow[rotated], workspace, descriptors);
 }
 
 }  // namespace iib

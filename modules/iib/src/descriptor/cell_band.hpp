@@ -10,9 +10,8 @@
 namespace cv {
 namespace iib {
 
-/** The last rows of an integral image over cells of BOX_CELL x BOX_CELL pixels. Goes from the top of a rectangle of the
- image, reflected at its border, to its bottom. Unlike in a ring, the distance of two corners of a box is the same for all
- keypoints. */
+/** The last rows of an integral image over cells of BOX_CELL x BOX_CELL pixels, in a ring. Goes from the top of a rectangle
+ of the image, reflected at its border, to its bottom. */
 template <typename T, typename Sum> class CellBand
 {
 public:
@@ -20,16 +19,20 @@ public:
     //! @param area of whole cells. @param rows of pixels, how many, the newest included, a reader looks at.
     CellBand(const std::vector<Channel>& source, Rect area, int rows, const DescriptorKernels& kernels,
             typename SumCellRowFunc<T, Sum>::Type sumRow_, ScratchMemory& channelMemory,
-            ScratchMemory& rowMemory, ScratchMemory& bandMemory)
+            ScratchMemory& planeMemory, ScratchMemory& ringMemory)
         : channelRows(source, area, 0, kernels.pixels<T>().rows, channelMemory), sumRow(sumRow_),
           cells(area.x / BOX_CELL, area.y / BOX_CELL, area.width / BOX_CELL, area.height / BOX_CELL),
-          kept(rows / BOX_CELL + 1), capacity(std::min(2 * kept, cells.height + 1)), top(cells.y),
-          done(cells.y), rowStep(stepOf(cells.width)),
-          planeStep(wholeLines<T>((size_t)area.width + ROW_PADDING)),
-          planes(rowMemory.get<T>(BOX_PLANES * planeStep)),
-          values(bandMemory.get<Sum>((size_t)rowStep * BOX_LANES * capacity))
+          done(cells.y), planeStep(wholeLines<T>((size_t)area.width + ROW_PADDING)),
+          planes(planeMemory.get<T>(BOX_PLANES * planeStep))
     {
-        std::fill(row(done), row(done) + (size_t)rowStep * BOX_LANES, (Sum)0);
+        view.step = stepOf(cells.width);
+        view.count = std::min(rows / BOX_CELL + 2, cells.height + 1);
+        view.origin = cells.tl();
+        ring = ringMemory.get<Sum>((size_t)view.step * view.count);
+        view.data = ring;
+        std::fill(row(done), row(done) + view.step, (Sum)0);  // nothing is above the first row
+        for (int i = 0; i < view.count; i++)
+            std::fill(row(done + i), row(done + i) + BOX_LANES, (Sum)0);  // nor left of the first cell
     }
 
     //! Adds the image's rows up to and without `end`, which does not decrease from call to call.
@@ -37,8 +40,6 @@ public:
     {
         for (end /= BOX_CELL; done < end; done++)
         {
-            if (done + 1 >= top + capacity)
-                moveTop(done + 1 - kept);
             const T* rows[BOX_CELL][BOX_PLANES];
             for (int r = 0; r < BOX_CELL; r++)
             {
@@ -48,25 +49,24 @@ public:
                 if (r == 0)
                     keepPlanes(rows[r]);
             }
-            std::fill(row(done + 1), row(done + 1) + BOX_LANES, (Sum)0);
             sumRow(rows, cells.width, row(done), row(done + 1));
         }
     }
 
-    //! Sums left of and above a cell, from cell origin() on, step() cells from row to row.
-    const Sum* data() const { return values; }
-    int step() const { return rowStep; }
-    Point origin() const { return Point(cells.x, top); }
+    const BoxIntegral<Sum>& integral() const { return view; }
+
+    //! The first row of cells whose sums are at hand.
+    int oldest() const { return std::max(done - view.count + 1, view.origin.y); }
 
 private:
     //! An odd number of cache lines: with an even one the corners of a column would share few cache sets.
     static int stepOf(int width)
     {
-        const int inLine = std::max<int>(CACHE_LINE / (BOX_LANES * sizeof(Sum)), 1);
-        return ((width + inLine) / inLine | 1) * inLine;
+        const int inLine = CACHE_LINE / sizeof(Sum);
+        return (((width + 1) * BOX_LANES + inLine - 1) / inLine | 1) * inLine;
     }
 
-    Sum* row(int y) { return values + (size_t)(y - top) * rowStep * BOX_LANES; }
+    Sum* row(int y) { return ring + (size_t)((y - view.origin.y) % view.count) * view.step; }
 
     //! The planes are overwritten by those of the next row.
     void keepPlanes(const T* rowPlanes[BOX_PLANES])
@@ -78,21 +78,14 @@ private:
         }
     }
 
-    void moveTop(int y)
-    {
-        memmove(values, row(y), (size_t)(done + 1 - y) * rowStep * BOX_LANES * sizeof(Sum));
-        top = y;
-    }
-
     ChannelRows<T> channelRows;
     const typename SumCellRowFunc<T, Sum>::Type sumRow;
     const Rect cells;
-    const int kept, capacity;
-    int top, done;  //!< rows at hand: [top, done]
-    const int rowStep;
+    int done;  //!< rows of cells above this one are in the newest row
     const size_t planeStep;
     T* const planes;
-    Sum* const values;
+    Sum* ring;
+    BoxIntegral<Sum> view;
 };
 
 }  // namespace iib

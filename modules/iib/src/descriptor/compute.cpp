@@ -38,9 +38,11 @@ struct Subset
     }
 
     //! A batch whose keypoints are indices of the whole image's.
-    KeyPointBatch batch(const Indices& members) const
+    KeyPointBatch batch(const Indices& members) const { return ofImage(makeBatch(pixels, members)); }
+
+    //! The same, of one with indices of the subset.
+    KeyPointBatch ofImage(KeyPointBatch b) const
     {
-        KeyPointBatch b = makeBatch(pixels, members);
         for (int& k : b.keypoints)
             k = keypoints[k];
         return b;
@@ -115,11 +117,17 @@ void describeByBoxes(const DescriptorPlan& plan, const Mat& image, const std::ve
         });
         pixels.clear();
     }
+    Subset subsets[2];  // upright, rotated
     for (size_t k = 0; k < keypoints.size(); k++)
-        pixels.push_back(boxPixels(regions[k], keypoints[k].pt, angles[k] >= 0, p.border, image.size()));
-    forEachBatch(pixels, [&](const KeyPointBatch& batch, Workspace& workspace) {
-        describeBoxes(plan, image, batch, regions, keypoints, angles, workspace, descriptors);
-    });
+    {
+        const bool rotated = angles[k] >= 0;
+        subsets[rotated].add((int)k, boxPixels(regions[k], keypoints[k].pt, rotated, p.border, image.size()));
+    }
+    for (int rotated = 0; rotated < 2; rotated++)
+        forEachBatch(subsets[rotated].pixels, [&](const KeyPointBatch& batch, Workspace& workspace) {
+            describeBoxes(plan, image, subsets[rotated].ofImage(batch), regions, keypoints,
+                    rotated ? &angles : 0, workspace, descriptors);
+        });
 }
 
 }  // namespace

@@ -57,14 +57,14 @@ const Golden GOLDEN[] = {{"default", 0x7c4943b59e478a06, 0x2e989fe2274d8bf2, not
                 [](IIB& i) { i.setMapping(IIB::MAPPING_HAAR); }, CV_8UC1},
         {"mapping pairwise", 0xcd3c1fb23c418b3a, 0x7eed83a5daee609b,
                 [](IIB& i) { i.setMapping(IIB::MAPPING_PAIRWISE); }, CV_8UC1},
-        {"mapping boxes", 0xac000b9f93d1369f, 0x5e67436840be8f59,
+        {"mapping boxes", 0xcad76b68589c37fa, 0x35fcadab22d3f94b,
                 [](IIB& i) {
                     i.setChannels(59);
                     i.setGranularity(5);
                     i.setMapping(IIB::MAPPING_BOXES);
                 },
                 CV_8UC1},
-        {"mapping boxes, orientation of keypoints", 0xc392ceb88be1db1e, 0x7dfbb1a300fd6cbb,
+        {"mapping boxes, orientation of keypoints", 0xa9296c8b035f5704, 0xf32b3d751c69e7bc,
                 [](IIB& i) {
                     i.setChannels(59);
                     i.setGranularity(5);

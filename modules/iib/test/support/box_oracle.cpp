@@ -20,7 +20,7 @@ namespace {
 const struct
 {
     int n, side, reach;
-} GRIDS[] = {{3, 32, 24}, {5, 24, 28}, {7, 16, 30}, {9, 9, 32}, {7, 6, 12}};
+} GRIDS[] = {{3, 32, 24}, {5, 24, 28}, {7, 16, 30}, {9, 8, 32}, {7, 6, 12}};
 
 //! What boxes sum, pixel by pixel; the last two for rotation.
 enum Value
@@ -30,6 +30,7 @@ enum Value
     GRAD_X,
     GRAD_Y,
     INTENSITY,
+    GRAD_SUM,
     ABS_SUM,
     ABS_DIFFERENCE,
     VALUES
@@ -58,8 +59,8 @@ void addPixel(const Mat& grey, int y, int x, int64 sums[VALUES])
         gx += (2 - i * i) * (pixel(grey, y + i, x + 1) - pixel(grey, y + i, x - 1));
         gy += (2 - i * i) * (pixel(grey, y + 1, x + i) - pixel(grey, y - 1, x + i));
     }
-    const int values[VALUES] = {
-            std::abs(gx), std::abs(gy), gx, gy, pixel(grey, y, x), std::abs(gx + gy), std::abs(gx - gy)};
+    const int values[VALUES] = {std::abs(gx), std::abs(gy), gx, gy, pixel(grey, y, x), gx + gy,
+            std::abs(gx + gy), std::abs(gx - gy)};
     for (int i = 0; i < VALUES; i++)
         sums[i] += values[i];
 }
@@ -69,31 +70,46 @@ int edge(double position, int size, bool reflected)
 {
     const double least = reflected ? std::floor((1 - size) / 2.) : 0,
                  most = std::ceil((reflected ? 2 * size - 1 : size) / 2.);
-    return (int)std::min(std::max(std::floor(position + 0.5), least), most);
+    const double rounded = std::min(std::max(position + 0.5, least), most);
+    return (int)(std::floor(rounded + (1 << 30)) - (1 << 30));  // to 2^-22: ties depend on it
+}
+
+struct Range1d
+{
+    int begin, end;
+
+    int size() const { return std::max(end - begin, 1); }
+};
+
+//! The units of 2 pixels between two positions along an axis.
+Range1d between(const IIB& iib, double begin, double end, int size)
+{
+    const bool reflected = iib.getBorder() == IIB::BORDER_REFLECT;
+    const Range1d range = {edge(begin, size, reflected), edge(end, size, reflected)};
+    return range;
 }
 
 struct Box
 {
-    float mean[VALUES];  //!< sums weighted as if no pixel were missing
-};
+    float mean[VALUES];  //!< in halves of the sum over 2 x 2 pixels
 
-Box boxAt(const IIB& iib, const Mat& grey, double centreX, double centreY, double side)
-{
-    const bool reflected = iib.getBorder() == IIB::BORDER_REFLECT;
-    const int x0 = edge(centreX - side / 2, grey.cols, reflected),
-              x1 = edge(centreX - side / 2 + side, grey.cols, reflected);
-    const int y0 = edge(centreY - side / 2, grey.rows, reflected),
-              y1 = edge(centreY - side / 2 + side, grey.rows, reflected);
-    int64 sums[VALUES] = {};
-    for (int y = 2 * y0; y < 2 * y1; y++)
-        for (int x = 2 * x0; x < 2 * x1; x++)
-            addPixel(grey, y, x, sums);
-    const float weight = (float)side * (float)side / ((float)(x1 - x0) * (float)(y1 - y0));
-    Box box;
-    for (int i = 0; i < VALUES; i++)
-        box.mean[i] = (float)sums[i] * weight;
-    return box;
-}
+    Box(const Mat& grey, Range1d xs, Range1d ys, bool rotated)
+    {
+        int64 sums[VALUES] = {};
+        for (int y = 2 * ys.begin; y < 2 * ys.end; y++)
+            for (int x = 2 * xs.begin; x < 2 * xs.end; x++)
+                addPixel(grey, y, x, sums);
+        for (int i = 0; i < VALUES; i++)
+            mean[i] = rotated ? (float)sums[i] * (2.f / ((float)xs.size() * (float)ys.size()))
+                              : (float)sums[i] * (1.f / (float)xs.size()) * (2.f / (float)ys.size());
+    }
+
+    void round()
+    {
+        for (float& m : mean)
+            m = (float)cvRound(m);
+    }
+};
 
 //! The mean of |g| along a direction `turn` from that of x, from those at multiples of 45 degrees.
 float along(const Box& b, double cos2, double sin2, double cos4)
@@ -111,10 +127,41 @@ void turn(Box& b, double cosine, double sine)
     const double cos2 = cosine * cosine - sine * sine, sin2 = 2 * sine * cosine,
                  cos4 = cos2 * cos2 - sin2 * sin2;
     const Box old = b;
+    const float x = old.mean[GRAD_X], y = old.mean[GRAD_Y];
     b.mean[ABS_X] = along(old, cos2, sin2, cos4);
     b.mean[ABS_Y] = along(old, -cos2, -sin2, cos4);
-    b.mean[GRAD_X] = (float)cosine * old.mean[GRAD_X] + (float)sine * old.mean[GRAD_Y];
-    b.mean[GRAD_Y] = (float)-sine * old.mean[GRAD_X] + (float)cosine * old.mean[GRAD_Y];
+    b.mean[GRAD_X] = (float)cosine * x + (float)sine * y;
+    b.mean[GRAD_Y] = (float)-sine * x + (float)cosine * y;
+    b.mean[GRAD_SUM] = (float)(cosine - sine) * x + (float)(cosine + sine) * y;
+}
+
+/* Upright: between edges. Rotated: of a whole number of units, with a centre that turns.
+ @param centre in units of 2 pixels, as is regionSide. */
+Box boxAt(const IIB& iib, const Mat& grey, Point2d centre, double regionSide,
+        const cv::iib::Rotation* rotation, int level, int row, int col)
+{
+    const int n = GRIDS[level - 1].n;
+    const double reach = GRIDS[level - 1].reach, side = GRIDS[level - 1].side;
+    if (!rotation)
+    {
+        // numerators are whole or halves, so that edges where boxes meet are equal
+        const auto edges = [&](int i, double position, int size) {
+            const double middle = 2 * reach * i - (n - 1) * reach, half = side * (n - 1) / 2;
+            return between(iib, position + (middle - half) / (80 * (n - 1)) * regionSide,
+                    position + (middle + half) / (80 * (n - 1)) * regionSide, size);
+        };
+        Box box(grey, edges(col, centre.x, grey.cols), edges(row, centre.y, grey.rows), false);
+        box.round();
+        return box;
+    }
+    const double u = reach * (2. * col / (n - 1) - 1) / 80, v = reach * (2. * row / (n - 1) - 1) / 80;
+    const double c = rotation->cosine * regionSide, s = rotation->sine * regionSide;
+    const double units = std::max(std::floor(regionSide * (side / 80) + 0.5), 1.);
+    const double x = centre.x + (c * u - s * v) - units / 2, y = centre.y + (s * u + c * v) - units / 2;
+    Box box(grey, between(iib, x, x + units, grey.cols), between(iib, y, y + units, grey.rows), true);
+    turn(box, rotation->cosine, rotation->sine);
+    box.round();
+    return box;
 }
 
 //! The channels in use as Values, in the order of CHANNEL_ values.
@@ -130,15 +177,14 @@ std::vector<int> valuesInUse(const IIB& iib)
     return values;
 }
 
-//! Bits 3 and 4, which are of one box: 1, 0, or -1 where there is no such bit.
-int ownBit(const Box& b, int value, int bit)
+//! Bits 3 and 4, which are of one box.
+bool ownBit(const Box& b, int value, int bit)
 {
     switch (value)
     {
-    case ABS_X: return bit == 3 ? b.mean[ABS_X] > b.mean[ABS_Y] : -1;
+    case ABS_X: return b.mean[ABS_X] > b.mean[ABS_Y];
     case GRAD_X: return bit == 3 ? b.mean[GRAD_X] > 0 : b.mean[GRAD_X] > b.mean[GRAD_Y];
-    case GRAD_Y: return bit == 3 ? b.mean[GRAD_Y] > 0 : b.mean[GRAD_Y] > -b.mean[GRAD_X];
-    default: return -1;
+    default: return bit == 3 ? b.mean[GRAD_Y] > 0 : b.mean[GRAD_SUM] > 0;
     }
 }
 
@@ -162,51 +208,44 @@ bool isChosen(const Mat_<int>& selection, int level, int channel, int row, int c
 
 std::vector<bool> boxLevelBits(const IIB& iib, const Mat& grey, const KeyPoint& kp, float angle, int level)
 {
-    const bool rotated = angle >= 0;
-    const cv::iib::Rotation rotation(rotated ? angle : 0);  // ties depend on the last place
-    const double cosine = rotation.cosine, sine = rotation.sine;
+    const cv::iib::Rotation rotation(angle >= 0 ? angle : 0);  // ties depend on the last place
     const double regionSide =
             std::max((double)iib.getScaleFactor() * kp.size, (double)(1 << iib.getGranularity()));
+    const Point2d centre((kp.pt.x + 0.5) / 2, (kp.pt.y + 0.5) / 2);
     const int n = GRIDS[level - 1].n;
-    const double side = std::max(std::floor(regionSide * GRIDS[level - 1].side / 160 + 0.5), 1.);
     std::vector<Box> boxes;
     for (int row = 0; row < n; row++)
         for (int col = 0; col < n; col++)
-        {
-            const double u = GRIDS[level - 1].reach * (2. * col / (n - 1) - 1) / 80,
-                         v = GRIDS[level - 1].reach * (2. * row / (n - 1) - 1) / 80;
-            const double c = cosine * (regionSide / 2), s = sine * (regionSide / 2);
-            boxes.push_back(boxAt(iib, grey, (kp.pt.x + 0.5) / 2 + (c * u - s * v),
-                    (kp.pt.y + 0.5) / 2 + (s * u + c * v), side));
-            if (rotated)
-                turn(boxes.back(), cosine, sine);
-        }
+            boxes.push_back(
+                    boxAt(iib, grey, centre, regionSide / 2, angle >= 0 ? &rotation : 0, level, row, col));
 
     const std::vector<int> inUse = valuesInUse(iib);
     const Mat_<int> selection = iib.getSelection();
+    const auto chosen = [&](int value, int row, int col, int bit) {
+        const auto channel = std::find(inUse.begin(), inUse.end(), value);
+        return channel != inUse.end() &&
+               isChosen(selection, level, (int)(channel - inUse.begin()), row, col, bit);
+    };
     std::vector<bool> bits;
-    for (int first = 0; first < 5; first += 3)  // bits of quads, then of boxes
-        for (int row = 0; row < n; row++)
-            for (int col = 0; col < n; col++)
-                for (int bit = first; bit < (first == 0 ? 3 : 5); bit++)
-                    for (int value = 0; value <= INTENSITY; value++)
+    for (int row = 0; row + 1 < n; row++)
+        for (int bit = 0; bit < 3; bit++)
+            for (int col = 0; col + 1 < n; col++)
+                for (int value = 0; value <= INTENSITY; value++)
+                    if (chosen(value, row, col, bit))
                     {
-                        const auto channel = std::find(inUse.begin(), inUse.end(), value);
-                        if (channel == inUse.end() ||
-                                !isChosen(selection, level, (int)(channel - inUse.begin()), row, col, bit))
-                            continue;
                         const Box* const b = &boxes[row * n + col];
-                        if (first > 0)
-                        {
-                            if (ownBit(*b, value, bit) >= 0)
-                                bits.push_back(ownBit(*b, value, bit) > 0);
-                        }
-                        else if (row + 1 < n && col + 1 < n)
-                        {
-                            const Box* const quad[] = {b, b + 1, b + n, b + n + 1};
-                            bits.push_back(quadBit(quad, value, bit));
-                        }
+                        const Box* const quad[] = {b, b + 1, b + n, b + n + 1};
+                        bits.push_back(quadBit(quad, value, bit));
                     }
+    const struct
+    {
+        int value, bit;
+    } own[] = {{ABS_X, 3}, {GRAD_X, 4}, {GRAD_Y, 3}, {GRAD_Y, 4}, {GRAD_X, 3}};
+    for (int row = 0; row < n; row++)
+        for (int col = 0; col < n; col++)
+            for (const auto& o : own)
+                if (chosen(o.value, row, col, o.bit))
+                    bits.push_back(ownBit(boxes[row * n + col], o.value, o.bit));
     return bits;
 }
 

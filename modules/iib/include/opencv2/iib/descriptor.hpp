@@ -47,19 +47,21 @@ are in 80ths of the ROS:
 | 1 | 3 | 32 | 24 |
 | 2 | 5 | 24 | 28 |
 | 3 | 7 | 16 | 30 |
-| 4 | 9 | 9 | 32 |
+| 4 | 9 | 8 | 32 |
 | 5 | 7 | 6 | 12 |
 
-A box is made of whole squares of 2 x 2 pixels at even coordinates, at least one, nearest to its place. Of a box that leaves
-the pixels that count, the rest is weighted by what is missing, and a comparison with a box that has no pixel is 0. Five bits,
-where they exist: 0 to 2 are those of #MAPPING_HAAR of the box, the next one, and those below; 3 is gx > 0, gy > 0, or
-|gx| > |gy| (of #CHANNEL_GRAD_X); 4 is gx > gy (of #CHANNEL_SIGNED_GRAD_X) or gy > -gx (of #CHANNEL_SIGNED_GRAD_Y), of means
-over the box itself. Within a level the order is, outermost first: bits 0 to 2 before 3 and 4; row; column; bit; channel
-(|gx|, |gy|, gx, gy, intensity). There is neither #CHANNEL_ORIENTATION nor `overlap`, nor are there extra channels.
+A box is made of whole squares of 2 x 2 pixels at even coordinates; each of its edges is the nearest to its place. What is
+compared are means over the pixels that count, rounded to an eighth of a grey level or of a Sobel gradient (which is 8 times
+the difference of neighbouring pixels); a box without pixels has mean 0. Five bits, where they exist: 0 to 2 are those of
+#MAPPING_HAAR of the box, the next one, and those below; 3 is gx > 0, gy > 0, or |gx| > |gy| (of #CHANNEL_GRAD_X); 4 is
+gx > gy (of #CHANNEL_SIGNED_GRAD_X) or gx + gy > 0 (of #CHANNEL_SIGNED_GRAD_Y), of means over the box itself. Within a level
+the order is, outermost first: bits 0 to 2 by row, bit, column and channel (|gx|, |gy|, gx, gy, intensity); then by row and
+column |gx| > |gy|, gx > gy, gy > 0, gx + gy > 0, gx > 0. There is neither #CHANNEL_ORIENTATION nor `overlap`, nor are there
+extra channels.
 
-Rotated boxes stay upright and take no samples: only their centres turn around the keypoint; the means of gx and gy are
-rotated as gradients are, and those of |gx| and |gy| are interpolated from four directions. Boxes cost about twice as much
-as the default's cells (`scripts/bench.sh` measures it).
+Rotated boxes stay upright and take no samples: only their centres turn around the keypoint, with sides of whole squares; the
+means of gx and gy are rotated as gradients are, and those of |gx| and |gy| are interpolated from four directions. So angle 0
+does not give the bits of angle -1.
 
 The descriptors are CV_8U and compared with NORM_HAMMING. The same input gives the same bits for
 every instruction set, thread count and build. One object may serve several threads as long as none

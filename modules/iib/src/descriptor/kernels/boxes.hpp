@@ -13,7 +13,7 @@ namespace iib {
 /* MAPPING_BOXES: means over boxes on overlapping grids, from an integral image over cells of BOX_CELL x BOX_CELL pixels
  with BOX_LANES values side by side, so that one vector (or two) holds a corner of a box in all channels. */
 
-//! What is summed; the last two only serve rotation.
+//! What is summed of upright regions, and compared of all.
 enum BoxLane
 {
     LANE_ABSOLUTE_X,
@@ -21,9 +21,16 @@ enum BoxLane
     LANE_GRADIENT_X,
     LANE_GRADIENT_Y,
     LANE_INTENSITY,
-    LANE_ABSOLUTE_SUM,         //!< |gx + gy|
-    LANE_ABSOLUTE_DIFFERENCE,  //!< |gx - gy|
+    LANE_GRADIENT_SUM,      //!< gx + gy
+    LANE_GRADIENT_X_AGAIN,  //!< so that one comparison of a vector makes all bits of a box
     BOX_LANES = 8
+};
+
+//! What is summed of rotated regions in place of the last two.
+enum RotatedBoxLane
+{
+    LANE_ABSOLUTE_SUM = LANE_GRADIENT_SUM,             //!< |gx + gy|
+    LANE_ABSOLUTE_DIFFERENCE = LANE_GRADIENT_X_AGAIN,  //!< |gx - gy|
 };
 
 enum
@@ -31,42 +38,78 @@ enum
     BOX_CELL = 2,    //!< pixels along the side of a cell
     BOX_PLANES = 3,  //!< gx, gy and intensity of a row of pixels
     BOX_LEVELS = 5,
-    MAX_BOXES = 256
+    BOX_MEAN_STEPS = 2,  //!< to one in the sum of a cell: means of 8-bit images, and sums of two, fit 16 bits
+    MAX_BOXES_IN_ROW = 9,
+    BOXES_TOGETHER = 4,  //!< kernels may work on that many in a row at a time
+    MAX_BOX_STRIDE = (MAX_BOXES_IN_ROW + BOXES_TOGETHER - 1) / BOXES_TOGETHER * BOXES_TOGETHER,
+    MAX_BOX_MEANS = (MAX_BOXES_IN_ROW * MAX_BOX_STRIDE + BOXES_TOGETHER) * BOX_LANES
 };
 
-/** The comparisons of a level, of which any bit is chosen, as bytes with a bit for each lane: three for each quad, as
- MAPPING_HAAR; then one for each box, four bits of |gx| > |gy|, gx > 0, gy > 0 and four of gx > gy, gy > -gx. */
-struct BoxComparisons
+/** n x n boxes. Where span < n, box i ends where box i + span begins; else span is n. Means are in rows of stride() boxes, of
+ which the last ones mean nothing, as do BOXES_TOGETHER boxes behind the last row.
+
+ Comparisons lie in memory as bytes, with a bit for each lane: for each row of quads three times quadBytes(), one for each bit
+ of MAPPING_HAAR and in it a byte for each quad; then a byte for each mean, with |gx| > |gy|, gx > gy, gy > 0, gx + gy > 0
+ and gx > 0 in bits 0, 2, 3, 5 and 6. */
+struct BoxGridShape
 {
-    struct Quad
-    {
-        ushort boxes[4];  //!< top left, top right, bottom left, bottom right
-    };
+    int n, span;
+    int first;  //!< of its n places among those of all grids
 
-    int offset;  //!< of the first bit in the descriptor
-    std::vector<Quad> quads;
-    std::vector<ushort> boxes;
-    ChosenBits chosen;
+    int stride() const { return (n + BOXES_TOGETHER - 1) / BOXES_TOGETHER * BOXES_TOGETHER; }
+    int quadBytes() const { return (n - 1 + BOXES_TOGETHER - 1) / BOXES_TOGETHER * BOXES_TOGETHER; }
+    int comparisonBytes() const { return 3 * (n - 1) * quadBytes() + n * stride(); }
 };
 
-//! Where the boxes of a keypoint lie in an integral image, in cells.
-struct BoxPlaces
+enum
 {
-    int corner[MAX_BOXES];    //!< top left, from the image's first cell
-    int right[MAX_BOXES];     //!< from there to the top right corner
-    int below[MAX_BOXES];     //!< and to the bottom left one
-    float weight[MAX_BOXES];  //!< what a box's sum is multiplied by: 1 if all of its cells count
+    MAX_BOX_COMPARISONS = 4 * MAX_BOXES_IN_ROW * MAX_BOX_STRIDE
 };
 
-//! A grid's boxes for one keypoint.
+//! Integral image over cells: as IntegralRows, with BOX_LANES values a cell and rows and columns counted in cells.
+template <typename Sum> struct BoxIntegral
+{
+    const Sum* data;
+    int step;      //!< values from row to row
+    int count;     //!< rows in the ring; (y - origin.y) % count has the sums above row y
+    Point origin;  //!< the first cell of a row
+};
+
+enum
+{
+    MAX_BOX_PLACES = 32  //!< of boxes along an axis, in all grids
+};
+
+//! Where boxes begin and end in all grids of a keypoint; the products of weights are those of boxes.
+struct BoxEdges
+{
+    int x[2][MAX_BOX_PLACES];  //!< columns of the integral image
+    int y[2][MAX_BOX_PLACES];  //!< rows of the ring
+    float xWeights[MAX_BOX_PLACES + 1], yWeights[MAX_BOX_PLACES];
+};
+
+//! A keypoint's region, in cells.
 struct BoxFrame
 {
-    double x, y;          //!< the region's centre, in cells
-    double cosine, sine;  //!< times the region's side in cells
-    double side;          //!< of a box, whole cells
-    Rect bounds;          //!< the cells that count
-    Point origin;         //!< the first cell of the integral image, and
-    int step;             //!< how many it has in a row
+    Point2d centre;
+    double side;
+    Rect bounds;   //!< the cells that count
+    Point origin;  //!< of the integral image, and its
+    int count;     //!< rows in the ring, and
+    int oldest;    //!< which row of the image is the first at hand
+};
+
+//! A box anywhere, as the boxes of a rotated keypoint are.
+struct BoxPlaces
+{
+    enum
+    {
+        CAPACITY = MAX_BOXES_IN_ROW * MAX_BOXES_IN_ROW
+    };
+    int above[CAPACITY];  //!< its top left corner in the integral image, in cells
+    int below[CAPACITY];  //!< bottom left
+    int right[CAPACITY];  //!< cells from there to the right corners
+    float weight[CAPACITY];
 };
 
 template <typename T, typename Sum> struct SumCellRowFunc
@@ -76,28 +119,36 @@ template <typename T, typename Sum> struct SumCellRowFunc
     typedef void (*Type)(const T* const rows[BOX_CELL][BOX_PLANES], int cells, const Sum* above, Sum* out);
 };
 
-template <typename Sum> struct BoxMeansFunc
+//! A Mean is short if those of 8-bit images are looked for in a Sum of 32 bits, else int.
+template <typename Sum, typename Mean> struct BoxSumKernels
 {
-    //! BOX_LANES values a box, comparable within a grid.
-    typedef void (*Type)(const Sum* integral, const BoxPlaces& places, int count, float* means);
+    void (*means)(
+            const BoxIntegral<Sum>& integral, const BoxGridShape& grid, const BoxEdges& edges, Mean* means);
+
+    //! mean = sum over j of matrix[j] * (box's sums * weight)[j], without the last lane.
+    void (*rotatedMeans)(const BoxIntegral<Sum>& integral, const BoxGridShape& grid, const BoxPlaces& places,
+            const float matrix[BOX_LANES][BOX_LANES], Mean* means);
+
+    //! BoxGridShape::comparisonBytes() of them, of which the chosen ones are written.
+    void (*bits)(const Mean* means, const BoxGridShape& grid, const ChosenBits& chosen, int offset,
+            uchar* descriptor);
 };
 
 struct BoxKernels
 {
-    SumCellRowFunc<short, unsigned>::Type sumShortRow;
-    SumCellRowFunc<short, int64>::Type sumLongRow;
-    SumCellRowFunc<int, int64>::Type sumIntRow;
-    BoxMeansFunc<unsigned>::Type means;
-    BoxMeansFunc<int64>::Type longMeans;
+    //! Of upright and of rotated regions.
+    SumCellRowFunc<short, unsigned>::Type sumShortRow[2];
+    SumCellRowFunc<short, int64>::Type sumLongRow[2];
+    SumCellRowFunc<int, int64>::Type sumIntRow[2];
+    BoxSumKernels<unsigned, short> shortSums;
+    BoxSumKernels<int64, int> longSums;
 
-    //! Boxes first to end, whose centres are at (x, y) sides of the region from its own.
-    void (*places)(
-            const BoxFrame& frame, const double* x, const double* y, int first, int end, BoxPlaces& places);
+    //! @param offsets of begins and ends from the region's centre, in its sides.
+    void (*edges)(const BoxFrame& frame, const double (&offsets)[2][MAX_BOX_PLACES], BoxEdges& edges);
 
-    //! means = sum over j of matrix[j] * means[j] for each box, without the last lane.
-    void (*rotate)(const float matrix[BOX_LANES][BOX_LANES], int count, float* means);
-
-    void (*bits)(const float* means, const BoxComparisons& level, uchar* descriptor);
+    //! @param centres of the boxes from the region's, as offsets; (cosine, sine) of the angle. @param side of a box, in cells.
+    void (*places)(const BoxFrame& frame, const BoxGridShape& grid, const double* centres, Point2d direction,
+            double side, int step, BoxPlaces& places);
 };
 
 }  // namespace iib

@@ -8,7 +8,6 @@
 #include "bits_planes.simd.hpp"
 #include "boxes.hpp"
 #include "channel_rows.simd.hpp"
-#include "mappings.hpp"
 
 namespace cv {
 namespace iib {
@@ -18,7 +17,7 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
 //! Sums that 32 bits do not hold: rare, so written plainly.
-template <typename T>
+template <typename T, bool ROTATED>
 void sumLongCellRow(const T* const rows[BOX_CELL][BOX_PLANES], int cells, const int64* above, int64* out)
 {
     int64 sums[BOX_LANES] = {};
@@ -33,31 +32,43 @@ void sumLongCellRow(const T* const rows[BOX_CELL][BOX_PLANES], int cells, const 
                 sums[LANE_GRADIENT_X] += gx;
                 sums[LANE_GRADIENT_Y] += gy;
                 sums[LANE_INTENSITY] += rows[r][2][x];
-                sums[LANE_ABSOLUTE_SUM] += std::abs(gx + gy);
-                sums[LANE_ABSOLUTE_DIFFERENCE] += std::abs(gx - gy);
+                if (ROTATED)
+                {
+                    sums[LANE_ABSOLUTE_SUM] += std::abs(gx + gy);
+                    sums[LANE_ABSOLUTE_DIFFERENCE] += std::abs(gx - gy);
+                }
+                else
+                {
+                    sums[LANE_GRADIENT_SUM] += gx + gy;
+                    sums[LANE_GRADIENT_X_AGAIN] += gx;
+                }
             }
         for (int i = 0; i < BOX_LANES; i++)
             out[BOX_LANES * (c + 1) + i] = above[BOX_LANES * (c + 1) + i] + sums[i];
     }
 }
 
-//! Eight vectors' lanes side by side.
-inline void storeInterleaved(const v_int16 lanes[BOX_LANES], short* out)
+//! Sums of neighbouring pixels, two planes' in the halves of each 32 bits.
+inline v_uint32 pairSums(const v_int16& low, const v_int16& high)
 {
-    v_int16 a[BOX_LANES], b[BOX_LANES];
-    for (int i = 0; i < 4; i++)
-        v_zip(lanes[i], lanes[i + 4], a[2 * i], a[2 * i + 1]);  // 0 4, 1 5, 2 6, 3 7
+    const v_int16 ones = vx_setall_s16(1);
+    const v_uint32 mask = vx_setall_u32(0xffff);
+    return (v_reinterpret_as_u32(v_dotprod(low, ones)) & mask) |
+           (v_reinterpret_as_u32(v_dotprod(high, ones)) << 16);
+}
+
+//! Four vectors' lanes side by side, a cell in 128 bits.
+inline void storeCells(const v_uint32 pairs[BOX_LANES / 2], short* out)
+{
+    v_uint32 a[2], b[2];
+    v_zip(pairs[0], pairs[1], a[0], a[1]);
+    v_zip(pairs[2], pairs[3], b[0], b[1]);
     for (int half = 0; half < 2; half++)
     {
-        v_zip(a[half], a[4 + half], b[2 * half], b[2 * half + 1]);          // 0 2 4 6
-        v_zip(a[2 + half], a[6 + half], b[4 + 2 * half], b[5 + 2 * half]);  // 1 3 5 7
-    }
-    for (int quarter = 0; quarter < 4; quarter++)
-    {
-        v_int16 first, second;
-        v_zip(b[quarter], b[4 + quarter], first, second);
-        v_store_aligned(out, first);
-        v_store_aligned(out + VTraits<v_int16>::max_nlanes, second);
+        v_uint32 first, second;
+        zipPairs(a[half], b[half], first, second);
+        v_store_aligned(out, v_reinterpret_as_s16(first));
+        v_store_aligned(out + VTraits<v_int16>::max_nlanes, v_reinterpret_as_s16(second));
         out += 2 * VTraits<v_int16>::max_nlanes;
     }
 }
@@ -68,12 +79,13 @@ enum
     LANE_VECTORS = BOX_LANES / SAMPLE_LANES
 };
 
+template <bool ROTATED>
 void sumCellRow(
         const short* const rows[BOX_CELL][BOX_PLANES], int cells, const unsigned* above, unsigned* out)
 {
     enum
     {
-        CELLS = VTraits<v_int16>::max_nlanes
+        CELLS = VTraits<v_int16>::max_nlanes / BOX_CELL
     };
     short CV_DECL_ALIGNED(CACHE_LINE) values[CELLS * BOX_LANES];
     v_samples sums[LANE_VECTORS];
@@ -81,27 +93,32 @@ void sumCellRow(
         sum = v_setall_samples(0);
     for (int first = 0; first < cells; first += CELLS)
     {
-        v_int16 lanes[BOX_LANES];
-        for (v_int16& lane : lanes)
-            lane = vx_setzero_s16();
+        v_int16 plane[2][BOX_PLANES];
         for (int r = 0; r < BOX_CELL; r++)
+            for (int i = 0; i < BOX_PLANES; i++)
+                plane[r][i] = vx_load(rows[r][i] + BOX_CELL * first);
+        const v_int16 gx = plane[0][0] + plane[1][0], gy = plane[0][1] + plane[1][1];
+        v_uint32 pairs[BOX_LANES / 2] = {pairSums(absolute(plane[0][0]) + absolute(plane[1][0]),
+                                                 absolute(plane[0][1]) + absolute(plane[1][1])),
+                pairSums(gx, gy)};
+        const v_int16 intensity = plane[0][2] + plane[1][2];
+        if (ROTATED)
         {
-            v_int16 gx[BOX_CELL], gy[BOX_CELL], intensity[BOX_CELL];
-            v_load_deinterleave(rows[r][0] + BOX_CELL * first, gx[0], gx[1]);
-            v_load_deinterleave(rows[r][1] + BOX_CELL * first, gy[0], gy[1]);
-            v_load_deinterleave(rows[r][2] + BOX_CELL * first, intensity[0], intensity[1]);
-            for (int i = 0; i < BOX_CELL; i++)
+            v_int16 sum = vx_setzero_s16(), difference = sum;
+            for (int r = 0; r < BOX_CELL; r++)
             {
-                lanes[LANE_ABSOLUTE_X] += absolute(gx[i]);
-                lanes[LANE_ABSOLUTE_Y] += absolute(gy[i]);
-                lanes[LANE_GRADIENT_X] += gx[i];
-                lanes[LANE_GRADIENT_Y] += gy[i];
-                lanes[LANE_INTENSITY] += intensity[i];
-                lanes[LANE_ABSOLUTE_SUM] += absolute(v_int16(gx[i] + gy[i]));
-                lanes[LANE_ABSOLUTE_DIFFERENCE] += absolute(v_int16(gx[i] - gy[i]));
+                sum += absolute(v_int16(plane[r][0] + plane[r][1]));
+                difference += absolute(v_int16(plane[r][0] - plane[r][1]));
             }
+            pairs[2] = pairSums(intensity, sum);
+            pairs[3] = pairSums(difference, vx_setzero_s16());
         }
-        storeInterleaved(lanes, values);
+        else
+        {
+            pairs[2] = pairSums(intensity, v_int16(gx + gy));
+            pairs[3] = pairSums(gx, vx_setzero_s16());
+        }
+        storeCells(pairs, values);
         const int count = std::min((int)CELLS, cells - first);
         for (int c = 0; c < count; c++)
         {
@@ -117,128 +134,283 @@ void sumCellRow(
     }
 }
 
-/** The edge nearest to a position. As edgeAt(), which measures from `first`: here centres are no dyadic fractions, and
+/** The edge nearest to a position. As edgeAt(), which measures from `first`: here offsets are no dyadic fractions, and
  two borders with different bounds must round alike. */
-inline int boxEdge(double position, int first, int limit)
+inline int boxEdge(double position, double first, double limit)
 {
-    const double p = std::min(std::max(position + 0.5, (double)first), (double)limit);
-    const int cut = (int)p;
-    return cut - (cut > p);
+    const int shift = 1 << 30;  // on positive numbers the cast is a floor
+    return (int)(std::min(std::max(position + 0.5, first), limit) + shift) - shift;
 }
 
-//! The compiler makes vectors of the loop, with this file's instruction set.
-void boxPlaces(const BoxFrame& f, const double* x, const double* y, int first, int end, BoxPlaces& places)
+//! The row of the ring for one of the image; `row` counts from the first at hand and is less than twice their number.
+inline int ringRow(int row, int count) { return row - (row >= count ? count : 0); }
+
+//! The row of the image, at hand or not, that was in the ring's first row before those at hand.
+inline int firstRow(const BoxFrame& f) { return f.oldest - (f.oldest - f.origin.y) % f.count; }
+
+//! The compiler makes vectors of the loops, with this file's instruction set.
+void edgesAlong(double centre, double side, Range bounds, const double* offsets, int* edges)
 {
-    const double half = f.side / 2;
-    const float full = (float)f.side * (float)f.side;
-    const int left = f.bounds.x, right = f.bounds.x + f.bounds.width;
-    const int top = f.bounds.y, bottom = f.bounds.y + f.bounds.height;
-    for (int i = first; i < end; i++)
+    const double first = bounds.start, limit = bounds.end;
+    for (int i = 0; i < MAX_BOX_PLACES; i++)
+        edges[i] = boxEdge(centre + offsets[i] * side, first, limit);
+}
+
+void weightsOf(const int* begins, const int* ends, float numerator, float* weights)
+{
+    for (int i = 0; i < MAX_BOX_PLACES; i++)
+        weights[i] = numerator / (float)std::max(ends[i] - begins[i], 1);
+}
+
+void boxEdges(const BoxFrame& f, const double (&offsets)[2][MAX_BOX_PLACES], BoxEdges& edges)
+{
+    const Range columns(f.bounds.x, f.bounds.x + f.bounds.width),
+            rows(f.bounds.y, f.bounds.y + f.bounds.height);
+    for (int end = 0; end < 2; end++)
     {
-        const double boxX = f.x + (f.cosine * x[i] - f.sine * y[i]) - half;
-        const double boxY = f.y + (f.sine * x[i] + f.cosine * y[i]) - half;
-        const int x0 = boxEdge(boxX, left, right), x1 = boxEdge(boxX + f.side, left, right);
-        const int y0 = boxEdge(boxY, top, bottom), y1 = boxEdge(boxY + f.side, top, bottom);
-        places.corner[i] = (y0 - f.origin.y) * f.step + (x0 - f.origin.x);
-        places.right[i] = x1 - x0;
-        places.below[i] = (y1 - y0) * f.step;
-        places.weight[i] = full / ((float)(x1 - x0) * (float)(y1 - y0));
+        edgesAlong(f.centre.x, f.side, columns, offsets[end], edges.x[end]);
+        edgesAlong(f.centre.y, f.side, rows, offsets[end], edges.y[end]);
     }
+    weightsOf(edges.x[0], edges.x[1], 1, edges.xWeights);
+    weightsOf(edges.y[0], edges.y[1], BOX_MEAN_STEPS, edges.yWeights);
+    edges.xWeights[MAX_BOX_PLACES] = 0;  // kernels may look at one box more
+    const int left = f.origin.x, first = firstRow(f), count = f.count;
+    for (int end = 0; end < 2; end++)
+        for (int i = 0; i < MAX_BOX_PLACES; i++)
+        {
+            edges.x[end][i] -= left;
+            edges.y[end][i] = ringRow(edges.y[end][i] - first, count);
+        }
 }
 
-void boxMeans(const unsigned* integral, const BoxPlaces& places, int count, float* means)
+//! The compiler makes vectors of the inner loop, with this file's instruction set.
+void boxPlaces(const BoxFrame& f, const BoxGridShape& grid, const double* centres, Point2d direction,
+        double side, int step, BoxPlaces& places)
 {
-    for (int i = 0; i < count; i++)
-    {
-        const int* const a = (const int*)integral + (size_t)places.corner[i] * BOX_LANES;
-        const int* const b = a + (size_t)places.right[i] * BOX_LANES;
-        const size_t below = (size_t)places.below[i] * BOX_LANES;
-        const v_means weight = v_setall_means(places.weight[i]);
-        for (int lane = 0; lane < BOX_LANES; lane += SAMPLE_LANES)
+    const int first = firstRow(f);
+    const double half = side / 2;
+    const double cosine = direction.x * f.side, sine = direction.y * f.side;
+    const double left = f.bounds.x, right = f.bounds.x + f.bounds.width;
+    const double top = f.bounds.y, bottom = f.bounds.y + f.bounds.height;
+    for (int row = 0; row < grid.n; row++)
+        for (int col = 0; col < grid.n; col++)
         {
-            const v_samples sum = (v_load_samples(b + below + lane) - v_load_samples(a + below + lane)) -
-                                  (v_load_samples(b + lane) - v_load_samples(a + lane));
-            v_store(means + i * BOX_LANES + lane, v_cvt_f32(sum) * weight);
+            const double boxX = f.centre.x + (cosine * centres[col] - sine * centres[row]) - half;
+            const double boxY = f.centre.y + (sine * centres[col] + cosine * centres[row]) - half;
+            const int x0 = boxEdge(boxX, left, right), x1 = boxEdge(boxX + side, left, right);
+            const int y0 = boxEdge(boxY, top, bottom), y1 = boxEdge(boxY + side, top, bottom);
+            const int i = row * grid.n + col;
+            places.above[i] = ringRow(y0 - first, f.count) * step + (x0 - f.origin.x);
+            places.below[i] = ringRow(y1 - first, f.count) * step + (x0 - f.origin.x);
+            places.right[i] = x1 - x0;
+            places.weight[i] =
+                    (float)BOX_MEAN_STEPS / ((float)std::max(x1 - x0, 1) * (float)std::max(y1 - y0, 1));
+        }
+}
+
+void boxMeans(
+        const BoxIntegral<unsigned>& integral, const BoxGridShape& grid, const BoxEdges& edges, short* means)
+{
+    enum
+    {
+        LANES = VTraits<v_int32>::max_nlanes,
+        STRIPS = 2 * MAX_BOXES_IN_ROW
+    };
+    // Between the upper and lower edges of a row of boxes, and left of an edge. All are made first: to load a vector whose
+    // parts have just been stored, a processor waits until the stores are done.
+    int CV_DECL_ALIGNED(CACHE_LINE) strips[(MAX_BOXES_IN_ROW * STRIPS + 1) * BOX_LANES];
+    float CV_DECL_ALIGNED(CACHE_LINE) weights[(MAX_BOXES_IN_ROW + 1) * BOX_LANES];
+    size_t at[STRIPS];
+    const int n = grid.n, span = grid.span, count = n + span;
+    for (int i = 0; i < n; i++)
+        at[i] = (size_t)edges.x[0][grid.first + i] * BOX_LANES;
+    for (int i = 0; i < span; i++)
+        at[n + i] = (size_t)edges.x[1][grid.first + n - span + i] * BOX_LANES;
+    for (int i = 0; i <= n; i++)
+        for (int lane = 0; lane < BOX_LANES; lane += SAMPLE_LANES)
+            v_store(weights + i * BOX_LANES + lane, v_setall_means(edges.xWeights[grid.first + i]));
+    int* strip = strips;
+    for (int row = 0; row < n; row++)
+    {
+        const int* const top =
+                (const int*)integral.data + (size_t)edges.y[0][grid.first + row] * integral.step;
+        const int* const bottom =
+                (const int*)integral.data + (size_t)edges.y[1][grid.first + row] * integral.step;
+        for (int i = 0; i < count; i++, strip += BOX_LANES)
+            for (int lane = 0; lane < BOX_LANES; lane += SAMPLE_LANES)
+                v_store(strip + lane,
+                        v_load_samples(bottom + at[i] + lane) - v_load_samples(top + at[i] + lane));
+    }
+    for (int lane = 0; lane < BOX_LANES; lane += SAMPLE_LANES)
+        v_store(strip + lane, v_setall_samples(0));
+    for (int row = 0; row < n; row++)
+    {
+        const v_float32 weight = vx_setall_f32(edges.yWeights[grid.first + row]);
+        const int *const left = strips + row * count * BOX_LANES, *const right = left + span * BOX_LANES;
+        short* const out = means + row * grid.stride() * BOX_LANES;
+        for (int i = 0; i < n * BOX_LANES; i += LANES)
+        {
+            const v_int32 sums = vx_load(right + i) - vx_load(left + i);
+            v_pack_store(out + i, nearestInt(v_cvt_f32(sums) * vx_load(weights + i) * weight));
         }
     }
 }
 
-void longBoxMeans(const int64* integral, const BoxPlaces& places, int count, float* means)
+//! For 16-bit images and very large boxes.
+void boxMeans(const BoxIntegral<int64>& integral, const BoxGridShape& grid, const BoxEdges& edges, int* means)
 {
-    for (int i = 0; i < count; i++)
+    for (int row = 0; row < grid.n; row++)
+        for (int col = 0; col < grid.n; col++)
+        {
+            const int x = grid.first + col, y = grid.first + row;
+            const int64* const top = integral.data + (size_t)edges.y[0][y] * integral.step;
+            const int64* const bottom = integral.data + (size_t)edges.y[1][y] * integral.step;
+            const size_t left = (size_t)edges.x[0][x] * BOX_LANES, right = (size_t)edges.x[1][x] * BOX_LANES;
+            int* const mean = means + (row * grid.stride() + col) * BOX_LANES;
+            for (int lane = 0; lane < BOX_LANES; lane++)
+            {
+                const int64 sum =
+                        (bottom[right + lane] - top[right + lane]) - (bottom[left + lane] - top[left + lane]);
+                mean[lane] = cvRound((float)sum * edges.xWeights[x] * edges.yWeights[y]);
+            }
+        }
+}
+
+//! Corners of boxes as floats.
+inline v_means boxSums(const unsigned* above, const unsigned* below, size_t right)
+{
+    const v_samples sum =
+            (v_load_samples((const int*)below + right) - v_load_samples((const int*)above + right)) -
+            (v_load_samples((const int*)below) - v_load_samples((const int*)above));
+    return v_cvt_f32(sum);
+}
+
+inline v_means boxSums(const int64* above, const int64* below, size_t right)
+{
+    float sums[SAMPLE_LANES];
+    for (int i = 0; i < SAMPLE_LANES; i++)
+        sums[i] = (float)((below[right + i] - above[right + i]) - (below[i] - above[i]));
+    return v_load_means(sums);
+}
+
+inline void storeMeans(short* out, const v_means& m) { v_pack_store(out, nearestInt(m)); }
+inline void storeMeans(int* out, const v_means& m) { v_store(out, nearestInt(m)); }
+
+template <typename Sum, typename Mean>
+void rotatedBoxMeans(const BoxIntegral<Sum>& integral, const BoxGridShape& grid, const BoxPlaces& places,
+        const float matrix[BOX_LANES][BOX_LANES], Mean* means)
+{
+    float sums[BOX_LANES];
+    for (int row = 0; row < grid.n; row++)
+        for (int col = 0; col < grid.n; col++)
+        {
+            const int i = row * grid.n + col;
+            const Sum* const above = integral.data + (size_t)places.above[i] * BOX_LANES;
+            const Sum* const below = integral.data + (size_t)places.below[i] * BOX_LANES;
+            const size_t right = (size_t)places.right[i] * BOX_LANES;
+            const v_means weight = v_setall_means(places.weight[i]);
+            for (int lane = 0; lane < BOX_LANES; lane += SAMPLE_LANES)
+                v_store(sums + lane, boxSums(above + lane, below + lane, right) * weight);
+            Mean* const out = means + (row * grid.stride() + col) * BOX_LANES;
+            for (int lane = 0; lane < BOX_LANES; lane += SAMPLE_LANES)
+            {
+                v_means rotated = v_setall_means(0);
+                for (int j = 0; j < BOX_LANES - 1; j++)
+                    rotated += v_load_means(&matrix[j][lane]) * v_setall_means(sums[j]);
+                storeMeans(out + lane, rotated);
+            }
+        }
+}
+
+//! A bit for each lane of as many boxes as make a vector.
+inline void storeGreater(const v_int16& a, const v_int16& b, uchar* out)
+{
+    storeBytes((unsigned)greaterMask(a, b), VTraits<v_int16>::max_nlanes / 8, out);
+}
+
+//! Lanes whose own bit compares them with the next one, |gx| > |gy| and gx > gy; the others are compared with 0.
+const short NEXT_IS_PARTNER[BOXES_TOGETHER * BOX_LANES] = {-1, 0, -1, 0, 0, 0, 0, 0, -1, 0, -1, 0, 0, 0, 0, 0,
+        -1, 0, -1, 0, 0, 0, 0, 0, -1, 0, -1, 0, 0, 0, 0, 0};
+
+void compareBoxes(const short* means, const BoxGridShape& grid, uchar* out)
+{
+    enum
     {
-        const int64* const a = integral + (size_t)places.corner[i] * BOX_LANES;
-        const int64* const b = a + (size_t)places.right[i] * BOX_LANES;
-        const size_t below = (size_t)places.below[i] * BOX_LANES;
+        LANES = VTraits<v_int16>::max_nlanes
+    };
+    const int bytes = grid.quadBytes(), below = grid.stride() * BOX_LANES;
+    for (int row = 0; row + 1 < grid.n; row++, out += 3 * bytes)
+        for (int col = 0; col < bytes; col += LANES / BOX_LANES)
+        {
+            const short* const m = means + (row * grid.stride() + col) * BOX_LANES;
+            const v_int16 a = vx_load(m), b = vx_load(m + BOX_LANES), c = vx_load(m + below),
+                          d = vx_load(m + below + BOX_LANES);
+            const v_int16 left = v_add_wrap(a, c), right = v_add_wrap(b, d);
+            const v_int16 downLeft = v_sub_wrap(a, c), downRight = v_sub_wrap(b, d);
+            storeGreater(left, right, out + col);
+            storeGreater(downLeft, v_sub_wrap(vx_setzero_s16(), downRight), out + bytes + col);
+            storeGreater(downLeft, downRight, out + 2 * bytes + col);
+        }
+    const v_int16 partners = vx_load(NEXT_IS_PARTNER);
+    for (int i = 0; i < grid.n * grid.stride(); i += LANES / BOX_LANES)
+    {
+        const v_int16 m = vx_load(means + i * BOX_LANES);
+        storeGreater(m, v_reinterpret_as_s16(v_reinterpret_as_u64(m) >> 16) & partners, out + i);
+    }
+}
+
+//! Plainly.
+void compareBoxes(const int* means, const BoxGridShape& grid, uchar* out)
+{
+    const int bytes = grid.quadBytes(), below = grid.stride() * BOX_LANES;
+    for (int row = 0; row + 1 < grid.n; row++, out += 3 * bytes)
+        for (int col = 0; col + 1 < grid.n; col++)
+        {
+            const int* const m = means + (row * grid.stride() + col) * BOX_LANES;
+            unsigned bits[3] = {};
+            for (int lane = 0; lane < BOX_LANES; lane++)
+            {
+                const int a = m[lane], b = m[lane + BOX_LANES], c = m[lane + below],
+                          d = m[lane + below + BOX_LANES];
+                bits[0] |= (unsigned)(a + c > b + d) << lane;
+                bits[1] |= (unsigned)(a + b > c + d) << lane;
+                bits[2] |= (unsigned)(a + d > b + c) << lane;
+            }
+            for (int bit = 0; bit < 3; bit++)
+                out[bit * bytes + col] = (uchar)bits[bit];
+        }
+    for (int i = 0; i < grid.n * grid.stride(); i++)
+    {
+        const int* const m = means + i * BOX_LANES;
+        unsigned bits = 0;
         for (int lane = 0; lane < BOX_LANES; lane++)
-            means[i * BOX_LANES + lane] =
-                    (float)((b[below + lane] - a[below + lane]) - (b[lane] - a[lane])) * places.weight[i];
+            bits |= (unsigned)(m[lane] > (NEXT_IS_PARTNER[lane] ? m[lane + 1] : 0)) << lane;
+        out[i] = (uchar)bits;
     }
 }
 
-void rotateMeans(const float matrix[BOX_LANES][BOX_LANES], int count, float* means)
+template <typename Mean>
+void boxBits(
+        const Mean* means, const BoxGridShape& grid, const ChosenBits& chosen, int offset, uchar* descriptor)
 {
-    for (int i = 0; i < count; i++)
-    {
-        float* const m = means + i * BOX_LANES;
-        float rotated[BOX_LANES] = {};
-        for (int j = 0; j < BOX_LANES - 1; j++)
-            for (int k = 0; k < BOX_LANES; k++)
-                rotated[k] += matrix[j][k] * m[j];
-        std::copy(rotated, rotated + BOX_LANES, m);
-    }
+    uchar comparisons[MAX_BOX_COMPARISONS + 8];
+    compareBoxes(means, grid, comparisons);
+    BitWriter writer(descriptor, offset);
+    appendChosen(chosen, comparisons, writer);
 }
 
-//! Bits of a comparison of four or eight lanes, into a byte that was zero.
-struct PutLanes
+template <typename Sum, typename Mean> BoxSumKernels<Sum, Mean> boxSumKernels()
 {
-    uchar* bytes;
-    int lane;
-
-    template <typename V> void operator()(int bit, const V& greater) const
-    {
-        bytes[bit] |= (uchar)(v_signmask(greater) << lane);
-    }
-};
-
-inline unsigned boxBits(const v_float32x4& v)
-{
-    const v_uint64x2 pairs = v_reinterpret_as_u64(v);
-    const v_float32x4 swapped = v_reinterpret_as_f32((pairs << 32) | (pairs >> 32));
-    const v_float32x4 firstTwo = v_reinterpret_as_f32(v_uint32x4(~0u, ~0u, 0, 0));
-    const v_float32x4 lastSign = v_reinterpret_as_f32(v_uint32x4(0, 0, 0, 1u << 31));
-    const v_float32x4 partners = swapped & firstTwo, turned = swapped ^ lastSign;
-    return (unsigned)v_signmask(v > partners) | (unsigned)v_signmask(v > turned) << 4;
-}
-
-void boxLevelBits(const float* means, const BoxComparisons& level, uchar* descriptor)
-{
-    uchar buffer[MAX_BOXES * 4 + 8];
-    uchar* out = buffer;
-    for (const BoxComparisons::Quad& quad : level.quads)
-    {
-        out[0] = out[1] = out[2] = 0;
-        for (int lane = 0; lane < BOX_LANES; lane += SAMPLE_LANES)
-        {
-            const v_means x[4] = {v_load_means(means + quad.boxes[0] * BOX_LANES + lane),
-                    v_load_means(means + quad.boxes[1] * BOX_LANES + lane),
-                    v_load_means(means + quad.boxes[2] * BOX_LANES + lane),
-                    v_load_means(means + quad.boxes[3] * BOX_LANES + lane)};
-            const PutLanes put = {out, lane};
-            HaarMapping::map(x, put);
-        }
-        out += HaarMapping::BITS;
-    }
-    for (ushort box : level.boxes)
-        *out++ = (uchar)boxBits(v_load(means + box * BOX_LANES));
-    BitWriter writer(descriptor, level.offset);
-    appendChosen(level.chosen, buffer, writer);
+    const BoxSumKernels<Sum, Mean> k = {boxMeans, rotatedBoxMeans<Sum, Mean>, boxBits<Mean>};
+    return k;
 }
 
 BoxKernels boxKernels()
 {
-    const BoxKernels k = {sumCellRow, sumLongCellRow<short>, sumLongCellRow<int>, boxMeans, longBoxMeans,
-            boxPlaces, rotateMeans, boxLevelBits};
+    const BoxKernels k = {{sumCellRow<false>, sumCellRow<true>},
+            {sumLongCellRow<short, false>, sumLongCellRow<short, true>},
+            {sumLongCellRow<int, false>, sumLongCellRow<int, true>}, boxSumKernels<unsigned, short>(),
+            boxSumKernels<int64, int>(), boxEdges, boxPlaces};
     return k;
 }
 
