@@ -32,11 +32,11 @@ def povray(scene, mode, light, pose, size, output=None):
     with tempfile.TemporaryDirectory() as folder:
         picture = os.path.join(folder, "frame.png")
         done = subprocess.run(
-            ["povray", f"+I{HERE / scene}.pov", f"+O{picture}", f"+L{HERE}", f"+W{width}", f"+H{height}",
+            ["povray", f"+I{scene}.pov", f"+O{picture}", f"+W{width}", f"+H{height}",
              "+WT1", "-D", "-GD", "-GR", "-GS", "-GW", *(output or OUTPUT[mode]),
              f"File_Gamma={'srgb' if mode == IMAGE else '1.0'}",
              *(f"Declare={name}={value:.9g}" for name, value in declared.items())],
-            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            cwd=HERE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)  # it takes no path with a space
         rendered = cv2.imread(picture, cv2.IMREAD_UNCHANGED) if done.returncode == 0 else None
     if rendered is None:
         why = done.stderr[done.stderr.find("[Parsing"):]
