@@ -15,7 +15,7 @@ from support import cv2, texture
 
 if cv2 is not None:
     from opencv_iib.__main__ import main
-    from opencv_iib.colmap import FeatureOptions, Options, SettingsChanged, build_database, pipeline
+    from opencv_iib.colmap import FeatureOptions, Options, SettingsChanged, build_database, hloc, pipeline
     from opencv_iib.colmap import pairs as pair_lists
     from opencv_iib.colmap.database import MAX_IMAGE_ID, Database, pair_id
     from opencv_iib.colmap.features import to_colmap
@@ -104,19 +104,23 @@ class ColmapTest(unittest.TestCase):
         self.assertEqual(len(self.lines), 1)
         self.assertIn('broken.jpg', self.lines[0])
 
-    def test_an_interrupted_run_goes_on(self):
+    def interrupt(self):
+        """A run that ends when it verifies the third pair."""
         real, calls = pipeline.magsac, []
 
-        def interrupt(*arguments):
+        def magsac_or_not(*arguments):
             calls.append(1)
             if len(calls) == 3:
                 raise KeyboardInterrupt
             return real(*arguments)
-        with mock.patch.object(pipeline, 'magsac', interrupt), self.assertRaises(KeyboardInterrupt):
+        with mock.patch.object(pipeline, 'magsac', magsac_or_not), self.assertRaises(KeyboardInterrupt):
             with redirect_stderr(io.StringIO()):
                 build_database(self.images, self.database, Options(FeatureOptions(points=300), **FAST), workers=1)
+
+    def test_an_interrupted_run_goes_on(self):
+        self.interrupt()
         self.assertFalse(os.path.exists(self.database))
-        described, matched = [], []
+        real, described, matched = pipeline.magsac, [], []
         with mock.patch.object(pipeline, 'read_grey', lambda path: described.append(path)), \
                 mock.patch.object(pipeline, 'magsac', lambda *a: matched.append(1) or real(*a)):
             counts = self.build()
@@ -233,6 +237,26 @@ class ColmapTest(unittest.TestCase):
             self.assertEqual(database.read_camera(1).width, 400)
         finally:
             database.close()
+
+    @unittest.skipIf(pycolmap is None, 'no pycolmap')
+    def test_an_interrupted_run_goes_on_after_the_newest_colmap(self):
+        self.interrupt()
+        pycolmap.Database.open(self.database + '.partial').close()  # gives it its own schema
+        self.assertEqual(self.build()['verified pairs'], 3)
+        self.assertGreater(self.query('PRAGMA user_version')[0][0], 3800)
+        pycolmap.Database.open(self.database).close()
+
+    @unittest.skipIf(h5py is None, 'no h5py')
+    def test_hloc_keeps_its_files_until_all_are_new(self):
+        self.build()
+        files = [os.path.join(self.folder.name, name) for name in ('features.h5', 'matches.h5', 'pairs.txt')]
+        for file in files:
+            Path(file).write_bytes(b'precious')
+        before = sorted(os.listdir(self.folder.name))
+        with mock.patch.object(hloc, '_pair', side_effect=OSError('no space left')), self.assertRaises(OSError):
+            hloc.export(self.database, *files, force=True)
+        self.assertEqual([Path(file).read_bytes() for file in files], [b'precious'] * 3)
+        self.assertEqual(sorted(os.listdir(self.folder.name)), before)
 
     @unittest.skipIf(h5py is None, 'no h5py')
     def test_hloc(self):

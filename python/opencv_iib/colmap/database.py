@@ -80,7 +80,8 @@ class Database:
         self._db.execute('PRAGMA journal_mode=WAL')
         self._db.execute('PRAGMA synchronous=NORMAL')
         self._db.executescript(SCHEMA)
-        self._db.execute(f'PRAGMA user_version={SCHEMA_VERSION}')
+        if self._db.execute('PRAGMA user_version').fetchone()[0] == 0:  # not where a newer COLMAP has been at it
+            self._db.execute(f'PRAGMA user_version={SCHEMA_VERSION}')
         text = json.dumps(settings, sort_keys=True)
         row = self._db.execute('SELECT settings FROM iib_settings').fetchone()
         if row is None:
@@ -201,7 +202,8 @@ class Database:
             if inliers is not None:
                 zero = np.zeros((3, 3))
                 matrix = zero if fundamental is None else np.ascontiguousarray(fundamental, np.float64)
-                self._db.execute('INSERT OR REPLACE INTO two_view_geometries VALUES (?, ?, 2, ?, ?, ?, ?, ?, ?, ?)',
+                self._db.execute('INSERT OR REPLACE INTO two_view_geometries (pair_id, rows, cols, data, config, F, E, H, '
+                                 'qvec, tvec) VALUES (?, ?, 2, ?, ?, ?, ?, ?, ?, ?)',
                                  (pair_id(a, b), len(inliers), np.ascontiguousarray(inliers, np.uint32).tobytes(),
                                   UNCALIBRATED if len(inliers) else 0, matrix.tobytes(), zero.tobytes(),
                                   zero.tobytes(), np.array([1., 0, 0, 0]).tobytes(), np.zeros(3).tobytes()))

@@ -15,6 +15,45 @@ def _pair(a: str, b: str) -> str:
     return '/'.join(name.replace('/', '-') for name in (a, b))
 
 
+def _write_features(connection: sqlite3.Connection, path: str) -> tuple[dict[int, str], dict[int, int]]:
+    """:return: names of the images, and how many keypoints they have, by number."""
+    import h5py  # type: ignore[import-untyped,unused-ignore]
+    names, counts = {}, {}
+    with h5py.File(path, 'w') as file:
+        for number, name, width, height in connection.execute(
+                'SELECT image_id, name, width, height FROM images NATURAL JOIN cameras'):
+            rows, cols, data = connection.execute('SELECT rows, cols, data FROM keypoints WHERE image_id=?',
+                                                  (number,)).fetchone()
+            points = np.frombuffer(data, np.float32).reshape(rows, cols)[:, :2] - np.float32(.5)
+            names[number], counts[number] = name, len(points)
+            group = file.create_group(name)
+            group['keypoints'] = points
+            group['scores'] = np.ones(len(points), np.float32)
+            group['image_size'] = np.array([width, height])
+    return names, counts
+
+
+def _write_matches(connection: sqlite3.Connection, path: str, pairs: str, names: dict[int, str], counts: dict[int, int]
+                   ) -> int:
+    """:return: number of pairs."""
+    import h5py
+    verified = connection.execute('SELECT COUNT(*) FROM two_view_geometries WHERE rows > 0').fetchone()[0]
+    table = 'two_view_geometries' if verified else 'matches'
+    total = 0
+    with h5py.File(path, 'w') as file, open(pairs, 'w', encoding='utf-8') as listing:
+        for key, data in connection.execute(f'SELECT pair_id, data FROM {table} WHERE rows > 0'):
+            a, b = divmod(key, MAX_IMAGE_ID)
+            found = np.frombuffer(data, np.uint32).reshape(-1, 2)
+            nearest: np.ndarray = np.full(counts[a], -1, np.int16 if counts[b] <= SHORT else np.int32)
+            nearest[found[:, 0]] = found[:, 1]
+            group = file.create_group(_pair(names[a], names[b]))
+            group['matches0'] = nearest
+            group['matching_scores0'] = (nearest >= 0).astype(np.float16)
+            listing.write(f'{names[a]} {names[b]}\n')
+            total += 1
+    return total
+
+
 def export(database: str, features: str, matches: str, pairs: str, force: bool = False) -> int:
     """Writes keypoints, matches and the list of pairs as hloc's reconstruction and localization read them.
 
@@ -26,41 +65,25 @@ def export(database: str, features: str, matches: str, pairs: str, force: bool =
     :param pairs: text file to write, two names a line.
     :return: number of pairs.
     :raises FileExistsError: for a file that is there, unless force is set.
+
+    Files that are there are replaced when all three are complete.
     """
-    import h5py  # type: ignore[import-untyped,unused-ignore]
-    for path in (features, matches, pairs):
+    paths = (features, matches, pairs)
+    for path in paths:
         if os.path.exists(path) and not force:
             raise FileExistsError(f'{path} is there already: remove it, or pass force (--force)')
     if not os.path.isfile(database):
         raise FileNotFoundError(f'no database {database}')
+    partial = [path + '.partial' for path in paths]
     connection = sqlite3.connect(f'file:{os.path.abspath(database)}?mode=ro', uri=True)
     try:
-        names, counts = {}, {}
-        with h5py.File(features, 'w') as file:
-            for number, name, width, height in connection.execute(
-                    'SELECT image_id, name, width, height FROM images NATURAL JOIN cameras'):
-                row = connection.execute('SELECT rows, cols, data FROM keypoints WHERE image_id=?',
-                                         (number,)).fetchone()
-                points = np.frombuffer(row[2], np.float32).reshape(row[0], row[1])[:, :2] - np.float32(.5)
-                names[number], counts[number] = name, len(points)
-                group = file.create_group(name)
-                group['keypoints'] = points
-                group['scores'] = np.ones(len(points), np.float32)
-                group['image_size'] = np.array([width, height])
-        verified = connection.execute('SELECT COUNT(*) FROM two_view_geometries WHERE rows > 0').fetchone()[0]
-        table = 'two_view_geometries' if verified else 'matches'
-        total = 0
-        with h5py.File(matches, 'w') as file, open(pairs, 'w', encoding='utf-8') as listing:
-            for key, data in connection.execute(f'SELECT pair_id, data FROM {table} WHERE rows > 0'):
-                a, b = divmod(key, MAX_IMAGE_ID)
-                found = np.frombuffer(data, np.uint32).reshape(-1, 2)
-                nearest: np.ndarray = np.full(counts[a], -1, np.int16 if counts[b] <= SHORT else np.int32)
-                nearest[found[:, 0]] = found[:, 1]
-                group = file.create_group(_pair(names[a], names[b]))
-                group['matches0'] = nearest
-                group['matching_scores0'] = (nearest >= 0).astype(np.float16)
-                listing.write(f'{names[a]} {names[b]}\n')
-                total += 1
+        names, counts = _write_features(connection, partial[0])
+        total = _write_matches(connection, partial[1], partial[2], names, counts)
+        for made, path in zip(partial, paths):
+            os.replace(made, path)
         return total
     finally:
         connection.close()
+        for made in partial:
+            if os.path.exists(made):
+                os.unlink(made)
