@@ -8,13 +8,16 @@ namespace iib_python {
 
 namespace {
 
-//! An attribute's number. Plain calls of the C API: through nb::object each costs twice as much.
+//! An attribute's number. Plain calls of the C API: through nb::object each costs twice as much, and an integer as a
+//! float makes another object.
 float number(PyObject* object, PyObject* name)
 {
     PyObject* const value = PyObject_GetAttr(object, name);
-    const double result = value ? PyFloat_AsDouble(value) : -1;
-    Py_XDECREF(value);
-    if (PyErr_Occurred())
+    if (!value)
+        throw nb::python_error();
+    const double result = PyLong_CheckExact(value) ? PyLong_AsDouble(value) : PyFloat_AsDouble(value);
+    Py_DECREF(value);
+    if (result == -1 && PyErr_Occurred())
         throw nb::python_error();
     return (float)result;
 }
