@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """COLMAP's SIFT, ORB and IIB on photographs with known poses, as they are and with every second one relit.
 
-    python compare_colmap.py SCENE... [--points 4000] [--methods SIFT,ORB,IIB,SIFT+IIB] [--document FILE]
+    python compare_colmap.py SCENE... [--points 4000] [--methods SIFT,ORB,IIB,UNIVERSAL,SIFT+IIB] [--document FILE]
 
 A SCENE holds ``images/`` and ``poses.txt`` (TUM: name or time, camera centre in metres, quaternion; in the order of the
 images' names). Needs the program colmap (Debian's package) and opencv_iib[colmap]. Prints a table: registered images,
@@ -24,7 +24,6 @@ import cv2
 import numpy as np
 
 from opencv_iib.colmap import FeatureOptions, Options, build_database
-from opencv_iib.colmap.features import preset_names
 
 HEAD = ('| scene | light | method | registered | points | track | reprojection | centres, % |\n'
         '|---|---|---|---|---|---|---|---|')
@@ -148,7 +147,7 @@ def write_into(document, line):
 
 
 def main():
-    methods = 'SIFT,ORB,IIB,SIFT+IIB' + (',UNIVERSAL' if 'UNIVERSAL' in preset_names() else '')
+    methods = 'SIFT,ORB,IIB,UNIVERSAL,SIFT+IIB'
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('scenes', type=Path, nargs='+', metavar='SCENE')
     parser.add_argument('--points', type=int, default=4000)
