@@ -19,7 +19,12 @@ inline String describeNode(const FileNode& node)
         return format("%.17g", (double)node);
     if (node.isString())
         return "\"" + (String)node + "\"";
-    return node.isSeq() ? "a sequence" : "a map";
+    if (node.isSeq())
+        return format("a sequence of %d", (int)node.size());
+    String keys;
+    for (const String& key : node.keys())
+        keys += (keys.empty() ? "" : ", ") + key;
+    return "a map of: " + keys;
 }
 
 //! Whether a number of a file is one of this type.
@@ -33,16 +38,24 @@ inline const char* expected(float) { return "a number"; }
 inline const char* expected(int) { return "a whole number"; }
 inline const char* expected(bool) { return "0 or 1"; }
 
-//! Reads a number that must be of the value's type, else throws StsParseError. One that is missing keeps its value.
+/** The number of a node, which must be one of type T, else this throws StsParseError with the name.
+
+Where OpenCV's FileStorage has no 64-bit numbers, as in 4.6, it cuts whole numbers of a file to 32 bits, and nothing can
+tell that afterwards.
+ */
+template <typename T> T numberOf(const FileNode& node, const String& name)
+{
+    if (!(node.isInt() || node.isReal()) || !holds((double)node, T()))
+        CV_Error(Error::StsParseError, name + " is " + describeNode(node) + "; it must be " + expected(T()));
+    return (T)(double)node;
+}
+
+//! Reads the number of this name. One that is missing keeps its value.
 template <typename T> void readNumber(const FileNode& node, const char* name, T& value)
 {
     const FileNode number = node[name];
-    if (number.empty())
-        return;
-    if (!(number.isInt() || number.isReal()) || !holds((double)number, T()))
-        CV_Error(Error::StsParseError,
-                format("%s is %s; it must be %s", name, describeNode(number).c_str(), expected(T())));
-    value = (T)(double)number;
+    if (!number.empty())
+        value = numberOf<T>(number, name);
 }
 
 }  // namespace iib

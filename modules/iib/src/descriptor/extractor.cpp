@@ -225,18 +225,13 @@ Mat_<int> readSelection(const FileNode& node)
     if (node.empty())
         return Mat_<int>();
     if (!node.isSeq() || node.size() % 5 != 0)
-        CV_Error(Error::StsParseError,
-                format("the selection is %s of %d; it must be a sequence of rows of 5 whole numbers",
-                        describeNode(node).c_str(), (int)node.size()));
+        CV_Error(Error::StsParseError, "the selection is " + describeNode(node) +
+                                               "; it must be a sequence of rows of 5 whole numbers");
     Mat_<int> quads((int)node.size() / 5, 5);
     int i = 0;
     for (const FileNode& number : node)
     {
-        if (!number.isInt())
-            CV_Error(Error::StsParseError,
-                    format("number %d of the selection is %s; it must be a whole number", i,
-                            describeNode(number).c_str()));
-        quads(i / 5, i % 5) = (int)number;
+        quads(i / 5, i % 5) = numberOf<int>(number, format("number %d of the selection", i));
         i++;
     }
     return quads;
@@ -250,7 +245,7 @@ void IIBDescriptorExtractor_Impl::read(const FileNode& node)
     const FileNode version = fn.isMap() ? fn["format"] : FileNode();
     if (version.empty())
         CV_Error(Error::StsParseError, "the node holds no IIB parameters: it is " + describeNode(node) +
-                                               " without a format; give it the node that write() wrote");
+                                               ", without a format; give it the node that write() wrote");
     int format = 0;
     readNumber(fn, "format", format);
     if (format != 1)

@@ -14,7 +14,7 @@ void expectSame(const IIB& expected, const IIB& actual)
     EXPECT_EQ(expected.getChannels(), actual.getChannels());
     EXPECT_EQ(expected.getMapping(), actual.getMapping());
     EXPECT_EQ(expected.getOverlap(), actual.getOverlap());
-    EXPECT_EQ(expected.getUseOrientation(), actual.getUseOrientation());
+    EXPECT_EQ(expected.getOrientation(), actual.getOrientation());
     EXPECT_EQ(expected.getExtraChannels(), actual.getExtraChannels());
     EXPECT_EQ(expected.getBorder(), actual.getBorder());
     ASSERT_EQ(expected.getSelection().size(), actual.getSelection().size());
@@ -35,8 +35,9 @@ Ptr<IIB> unusual()
 
 TEST(IIB_IO, file_holds_every_parameter)
 {
-    const Ptr<IIB> plain = IIB::create();
-    for (const Ptr<IIB>& iib : {unusual(), plain})
+    const Ptr<IIB> plain = IIB::create(), gradient = unusual();
+    gradient->setOrientation(IIB::ORIENTATION_GRADIENT);
+    for (const Ptr<IIB>& iib : {unusual(), gradient, plain})
         for (const char* extension : {".yml", ".xml", ".json"})
         {
             const String file = cv::tempfile(extension);
@@ -110,6 +111,7 @@ TEST(IIB_IO, foreign_and_damaged_nodes_throw_and_change_nothing)
             {"useOrientation: 1", "useOrientation: [ 1 ]"}, {"extraChannels: 3", "extraChannels: 17"},
             {"border: 1", "border: 3"}, {"[ 1, 2,", "[ 1,"}, {"[ 1, 2,", "[ 1, 99,"},
             {"[ 1, 2,", "[ 1, two,"}, {"granularity: 5", "granularity: 3.6"}, {"format: 1", "format: 1.2"},
+            {"granularity: 5", "granularity: 4294967299."}, {"[ 1, 2,", "[ 1, 4294967298.,"},
             {"overlap: 1", "overlap: 2"}, {"overlap: 1", "overlap: \"false\""}, {"[ 1, 2,", "[ 1, 2.5,"},
             {"[ 1, 2, 0, 0, 255, 3, 0, 5, 6, 9, 3, 3, 0, 2, 64 ]", "7"}};
     for (const auto& r : replacements)

@@ -41,7 +41,9 @@ TEST(IIB_MatcherParameters, damaged_values_throw_and_are_named)
             {"[ 3.0", "[ .Nan, 3.0", "threshold"}, {"[ 3.0000001192092896e-01", "[ 7.0", "threshold"},
             {"[ 3.0000001192092896e-01 ]", "high", "thresholds"},
             {"maxRatio: 7.5", "maxRatio: half # 7.5", "maxRatio"},
-            {"maxRatio: 7.5", "maxRatio: [ 1 ] # 7.5", "maxRatio"}};
+            {"maxRatio: 7.5", "maxRatio: [ 1 ] # 7.5", "maxRatio"}, {"mode: 2", "mode: 4294967297.", "mode"},
+            {"[ 8, 24 ]", "[ 8, 4294967304. ]", "levelSizes"},
+            {"maxRatio: 7.5", "maxRatio: 1e39 # 7.5", "maxRatio"}};
     for (const auto& c : cases)
     {
         SCOPED_TRACE(c[1]);
@@ -57,6 +59,16 @@ TEST(IIB_MatcherParameters, damaged_values_throw_and_are_named)
         }
         EXPECT_EQ(std::vector<int>(1, 4), matcher->levelSizes());
     }
+}
+
+// Unless OpenCV cuts them to 32 bits before anyone can see it.
+TEST(IIB_MatcherParameters, whole_numbers_beyond_32_bits)
+{
+    const FileStorage probe("%YAML:1.0\n---\nnumber: 4294967304\n", FileStorage::READ | FileStorage::MEMORY);
+    if ((double)probe["number"] == 8)
+        return;
+    expectError(Error::StsParseError, "levelSizes", [] { readText(replaced("[ 8,", "[ 4294967304,")); });
+    expectError(Error::StsParseError, "mode", [] { readText(replaced("mode: 2", "mode: 4294967297")); });
 }
 
 TEST(IIB_MatcherParameters, files_of_others_are_refused)
