@@ -35,6 +35,27 @@ TEST(IIB_Rotated, sine_and_cosine_are_exact)
     EXPECT_EQ(cv::iib::Rotation(30.f).sine, cv::iib::Rotation(30.f + 360 * 4096).sine);
 }
 
+// To the last place, where the C library of another machine may differ (glibc 2.36's does, for all of these).
+TEST(IIB_Rotated, sine_and_cosine_have_the_same_bits_everywhere)
+{
+    const struct
+    {
+        float degrees;
+        double cosine, sine;
+    } expected[] = {{43.3051186f, 0.72771148666394203, 0.68588336630753433},
+            {10.f, 0.98480775301220802, 0.17364817766693036},
+            {137.5f, -0.73727733681012397, 0.67559020761566024},
+            {222.25f, -0.74021812748683213, -0.67236680743466803},
+            {-17.2999992f, 0.9547608034625833, -0.29737486136437691},
+            {1000.70001f, 0.18566682473406629, -0.98261275698678441}};
+    for (const auto& e : expected)
+    {
+        const cv::iib::Rotation r(e.degrees);
+        EXPECT_EQ(e.cosine, r.cosine) << e.degrees;
+        EXPECT_EQ(e.sine, r.sine) << e.degrees;
+    }
+}
+
 // What is kept does not depend on anything outside the image; what is removed has a corner there.
 TEST(IIB_Rotated, border_drop_looks_at_the_rotated_region)
 {
