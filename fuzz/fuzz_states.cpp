@@ -7,6 +7,7 @@
 
 #include "byte_source.hpp"
 #include "file.hpp"
+#include "../modules/iib/src/matcher/search_blocks.hpp"
 #include "support/matcher_oracle.hpp"
 
 #include <numeric>
@@ -22,6 +23,34 @@ struct Subject
 {
     Ptr<HierarchicalMatcher> matcher;
     MatcherOracle model;
+    bool ofAnyWidth = false;  //!< create() without level sizes, which takes the width of the first codes
+    int codeBlocks = cv::iib::SearchBlocks().codeBlocks;
+
+    //! Whether the matcher knows the level sizes already.
+    bool knowsLevels() const
+    {
+        return !ofAnyWidth ||
+               std::any_of(model.images.begin(), model.images.end(), [](const Mat& m) { return m.rows > 0; });
+    }
+
+    //! As the matcher's mode is; the model knows ADAPTIVE's sample only within a last level of more than a word.
+    void setMode(int mode)
+    {
+        if (mode == HierarchicalMatcher::ADAPTIVE && model.levelSizes.back() <= 4)
+            mode = HierarchicalMatcher::EXACT;
+        matcher->setMode(mode);
+        model.thresholds =
+                mode == HierarchicalMatcher::THRESHOLD ? matcher->getThresholds() : std::vector<float>();
+        model.adaptiveBlock = mode == HierarchicalMatcher::ADAPTIVE ? 16 * codeBlocks : 0;
+    }
+
+    //! A new matcher of the same parameters and codes.
+    void replace(const Ptr<HierarchicalMatcher>& other)
+    {
+        matcher = other;
+        codeBlocks = cv::iib::SearchBlocks().codeBlocks;
+        setMode(matcher->getMode());
+    }
 };
 
 class Session
@@ -30,9 +59,11 @@ public:
     explicit Session(ByteSource& source) : in(source)
     {
         Subject first;
-        for (int i = in.between(1, 3); i > 0; i--)
+        first.ofAnyWidth = in.rarely(4);
+        for (int i = first.ofAnyWidth ? 1 : in.between(1, 3); i > 0; i--)
             first.model.levelSizes.push_back(in.between(1, in.rarely(8) ? 60 : 6));
-        first.matcher = HierarchicalMatcher::create(first.model.levelSizes);
+        first.matcher = first.ofAnyWidth ? HierarchicalMatcher::create()
+                                         : HierarchicalMatcher::create(first.model.levelSizes);
         width = std::accumulate(first.model.levelSizes.begin(), first.model.levelSizes.end(), 0);
         subjects.push_back(first);
     }
@@ -49,7 +80,7 @@ public:
 private:
     void step(Subject& s)
     {
-        switch (in.between(0, 17))
+        switch (in.between(0, 21))
         {
         case 0:
         case 1:
@@ -67,6 +98,10 @@ private:
         case 13: askForArrays(s); break;
         case 14: askForBest(s); break;
         case 15: inspect(s); break;
+        case 16: setBlocks(s); break;
+        case 17: useThreads(in.rarely(4) ? 3 : 1); break;
+        case 18:
+        case 19: askWithMasks(s); break;
         default: ask(s); break;
         }
     }
@@ -96,6 +131,8 @@ private:
     //! Codes of another width throw and leave everything as it was.
     void refuse(Subject& s)
     {
+        if (!s.knowsLevels())
+            return;
         bool thrown = false;
         try
         {
@@ -125,11 +162,15 @@ private:
         subjects.push_back(other);
     }
 
+    //! An index has the level sizes of its codes.
     void reload(Subject& s)
     {
         static const ScratchFile file;
+        if (!s.knowsLevels())
+            return;
         s.matcher->saveIndex(file.name);
-        s.matcher = HierarchicalMatcher::loadIndex(file.name);
+        s.replace(HierarchicalMatcher::loadIndex(file.name));
+        s.ofAnyWidth = false;
     }
 
     //! Parameters go through a file into a matcher of the same codes.
@@ -144,7 +185,17 @@ private:
         const Ptr<HierarchicalMatcher> other = HierarchicalMatcher::create(std::vector<int>(1, 3));
         other->read(saved["m"]);
         other->add(s.model.images);
-        s.matcher = other;
+        s.replace(other);
+    }
+
+    void setBlocks(Subject& s)
+    {
+        cv::iib::SearchBlocks blocks;
+        blocks.queries = in.between(1, 9);
+        blocks.codeBlocks = in.between(1, 3);
+        dynamic_cast<cv::iib::BlockedMatcher&>(*s.matcher).setSearchBlocks(blocks);
+        s.codeBlocks = blocks.codeBlocks;
+        s.setMode(s.matcher->getMode());
     }
 
     void setParameters(Subject& s)
@@ -153,11 +204,9 @@ private:
         s.matcher->setCrossCheck(s.model.crossCheck);
         s.model.maxRatio = in.between(1, 8) / 8.f;
         s.matcher->setMaxRatio(s.model.maxRatio);
-        const bool threshold = in.flag();
-        s.matcher->setMode(threshold ? HierarchicalMatcher::THRESHOLD : HierarchicalMatcher::EXACT);
         if (s.model.levelSizes.size() > 1)
             s.matcher->setThresholds(std::vector<float>(1, in.between(0, 32) / 32.f));
-        s.model.thresholds = threshold ? s.matcher->getThresholds() : std::vector<float>();
+        s.setMode(in.between(HierarchicalMatcher::EXACT, HierarchicalMatcher::ADAPTIVE));
     }
 
     //! Values are copied when they are added; what becomes of the caller's matrices has no effect.
@@ -181,6 +230,21 @@ private:
         expect(s.model.knn(queries, k), found);
     }
 
+    void askWithMasks(const Subject& s)
+    {
+        const Mat queries = takeDescriptors(width);
+        MatcherOracle model = s.model;
+        for (const Mat& image : model.images)
+            model.masks.push_back(
+                    in.flag() || queries.empty() || image.empty()
+                            ? Mat()
+                            : randomMask(in.take<uchar>(), queries.rows, image.rows, in.between(0, 4) / 4.));
+        const int k = in.between(1, 4);
+        Matches found(2);
+        s.matcher->knnMatch(queries, found, k, model.masks);
+        expect(model.knn(queries, k), found);
+    }
+
     void askWithTrainSet(Subject& s)
     {
         const Mat queries = takeDescriptors(width);
@@ -191,6 +255,7 @@ private:
         {
         case 0: {
             const int radius = in.between(1, 8 * width);
+            model.adaptiveBlock = 0;  // radiusMatch is exact
             s.matcher->radiusMatch(queries, model.images[0], found, (float)radius);
             return expect(model.radius(queries, radius), found);
         }
@@ -224,7 +289,8 @@ private:
     void inspect(const Subject& s)
     {
         const std::vector<Mat> images = s.matcher->getTrainDescriptors();
-        FUZZ_CHECK(s.matcher->levelSizes() == s.model.levelSizes && images.size() == s.model.images.size());
+        FUZZ_CHECK(s.matcher->levelSizes() == (s.knowsLevels() ? s.model.levelSizes : std::vector<int>()));
+        FUZZ_CHECK(images.size() == s.model.images.size());
         for (size_t i = 0; i < images.size(); i++)
             FUZZ_CHECK(images[i].rows == s.model.images[i].rows &&
                        (images[i].empty() || cv::norm(images[i], s.model.images[i], NORM_INF) == 0));
@@ -240,8 +306,10 @@ private:
         const Mat queries = takeDescriptors(width);
         const int radius = in.between(1, 8 * width);
         Matches found(1);
+        MatcherOracle model = s.model;
+        model.adaptiveBlock = 0;  // radiusMatch is exact
         s.matcher->radiusMatch(queries, found, (float)radius);
-        expect(s.model.radius(queries, radius), found);
+        expect(model.radius(queries, radius), found);
     }
 
     void askForArrays(const Subject& s)
@@ -291,6 +359,6 @@ void run(ByteSource& in) { Session(in).run(); }
 
 extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
 {
-    useThreads(size > 0 && data[0] >= 254 ? 3 : 1);
+    useThreads(1);
     return runTarget(run, data, size);
 }
