@@ -21,8 +21,8 @@ Each keypoint has a region of support (ROS): a square with centre KeyPoint::pt a
 a *quad*, and a mapping turns their four mean values into bits, in each image channel. Light changes
 the values, but seldom the order among neighbours.
 
-A ROS side under 2^G pixels is raised to 2^G, so that no cell is empty. What of it lies outside the image is told by
-#Border; a quad of which one cell holds no pixel at all is taken as four equal means.
+A ROS side under 2^G pixels is raised to 2^G, so that no cell is empty. #Border says what becomes of a ROS that leaves the
+image. If a cell has no pixel at all, its quad gets the bits of four equal means.
 
 **Bits.** Levels come coarse first, each padded with zeros to a whole byte, bit 0 of byte 0 first. So
 the descriptor of granularity G-1 is a prefix of the one of G, unless the ROS is so small that G raises it
@@ -52,12 +52,18 @@ are in 80ths of the ROS:
 
 A box is made of whole squares of 2 x 2 pixels at even coordinates; each of its edges is the nearest to its place. What is
 compared are means over the pixels that count, rounded to an eighth of a grey level or of a Sobel gradient (which is 8 times
-the difference of neighbouring pixels); a box without pixels has mean 0. Five bits, where they exist: 0 to 2 are those of
-#MAPPING_HAAR of the box, the next one, and those below; 3 is gx > 0, gy > 0, or |gx| > |gy| (of #CHANNEL_GRAD_X); 4 is
-gx > gy (of #CHANNEL_SIGNED_GRAD_X) or gx + gy > 0 (of #CHANNEL_SIGNED_GRAD_Y), of means over the box itself. Within a level
-the order is, outermost first: bits 0 to 2 by row, bit, column and channel (|gx|, |gy|, gx, gy, intensity); then by row and
-column |gx| > |gy|, gx > gy, gy > 0, gx + gy > 0, gx > 0. There is neither #CHANNEL_ORIENTATION nor `overlap`, nor are there
-extra channels.
+the difference of neighbouring pixels). A box without pixels has mean 0.
+
+A box has up to five bits in a channel:
+ - 0 to 2 are the bits of #MAPPING_HAAR. The four means are those of the box, the next box in its row, and the two boxes
+   below these; the last row and the last column have none of these bits;
+ - 3 compares means of the box itself: gx > 0 in #CHANNEL_SIGNED_GRAD_X, gy > 0 in #CHANNEL_SIGNED_GRAD_Y, and
+   |gx| > |gy| in #CHANNEL_GRAD_X;
+ - 4 compares them too: gx > gy in #CHANNEL_SIGNED_GRAD_X and gx + gy > 0 in #CHANNEL_SIGNED_GRAD_Y.
+
+Within a level the order is, outermost first: bits 0 to 2 by row, bit, column and channel (|gx|, |gy|, gx, gy, intensity);
+then by row and column |gx| > |gy|, gx > gy, gy > 0, gx + gy > 0, gx > 0. #CHANNEL_ORIENTATION, `overlap` and extra channels
+do not go with boxes.
 
 Rotated boxes stay upright and take no samples: only their centres turn around the keypoint, with sides of whole squares; the
 means of gx and gy are rotated as gradients are, and those of |gx| and |gy| are interpolated from four directions. So angle 0

@@ -62,12 +62,12 @@ of the level sizes, and for masks of a wrong type, size or number.
 class CV_EXPORTS_W HierarchicalMatcher : public DescriptorMatcher
 {
 public:
-    //! Which pairs are compared to the end.
+    //! When the comparison of a pair ends early; see Modes above.
     enum Mode
     {
-        EXACT,      //!< all that could change the result of brute force
-        THRESHOLD,  //!< those within the threshold at every level before the last
-        ADAPTIVE    //!< those near the query's best so far before the most of the last level
+        EXACT,      //!< when it can no longer be a match: the result is that of brute force
+        THRESHOLD,  //!< when a level before the last is beyond its threshold
+        ADAPTIVE  //!< at 25 % of the last level, if it is unlikely to be closer than the query's best so far
     };
 
     /** @brief Creates a matcher.
@@ -93,7 +93,8 @@ public:
 
     /** @brief The train descriptors of each image, unpacked from the codes: CV_8U, rows x descriptor size.
 
-    It hides the base class's, whose matrices are empty here, so that codes are in memory once and not twice.
+    Call it on HierarchicalMatcher: DescriptorMatcher::getTrainDescriptors, which it hides, gives empty matrices, since
+    codes are held in memory only once.
      */
     CV_WRAP virtual std::vector<Mat> getTrainDescriptors() const = 0;
 
@@ -146,8 +147,8 @@ public:
 
     /** @brief knnMatch with matrices for results: in Python many times faster than lists of DMatch.
 
-    It stands before the overload for the train set added, since Python takes the first that fits: the
-    train descriptors would fit an output as well.
+    This overload is declared before the one for the train set that was added: Python takes the first overload that
+    fits, and train descriptors fit an output as well.
 
     @param queryDescriptors queries x descriptor size, CV_8U.
     @param trainDescriptors train rows x descriptor size, CV_8U, used instead of those added.
