@@ -1,11 +1,15 @@
-# The dynamic symbols of LIBRARY are the API's alone, and its soname, CMake package, pkg-config file and changelog
-# agree on the version.
+# The dynamic symbols of LIBRARY are the API's alone, its soname and changelog agree on the version, and it is hardened.
 # cmake -DLIBRARY=<file> -DNM=<nm> -DREADELF=<readelf> -DVERSION=<x.y.z> -DCHANGELOG=<file> -P SymbolTest.cmake
+# Without VERSION, of a library that OpenCV's own build made: only its symbols, and none of the standard library's
+# templates, which OpenCV's build lets through as weak ones.
 execute_process(COMMAND "${NM}" -DC --defined-only "${LIBRARY}" OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
 string(STRIP "${symbols}" symbols)
 string(REGEX REPLACE "[;\n]+" ";" symbols "${symbols}")
 set(classes "cv::iib::(IIBDescriptorExtractor|HierarchicalMatcher|NormalizedDetector)")
 set(api 0)
+if(NOT VERSION)
+  list(FILTER symbols EXCLUDE REGEX "^[0-9a-f]* [WVu] .*(std::|__gnu_cxx::)")
+endif()
 foreach(symbol IN LISTS symbols)
   string(REGEX REPLACE "^[0-9a-f]* . " "" symbol "${symbol}")
   if(symbol MATCHES "^${classes}::|^cv::iib::estimateRotation[(]|^(vtable|typeinfo|typeinfo name) for ${classes}$")
@@ -17,11 +21,21 @@ endforeach()
 if(api LESS 8)
   message(SEND_ERROR "${LIBRARY} shows only ${api} symbols of the API")
 endif()
+if(NOT VERSION)
+  return()
+endif()
 
 string(REGEX MATCH "^[0-9]+[.][0-9]+" soversion "${VERSION}")
 execute_process(COMMAND "${READELF}" -d "${LIBRARY}" OUTPUT_VARIABLE dynamic COMMAND_ERROR_IS_FATAL ANY)
 if(NOT dynamic MATCHES "SONAME[^\n]*\\[libopencv_iib\\.so\\.${soversion}\\]")
   message(SEND_ERROR "the soname of ${LIBRARY} is not that of version ${VERSION}")
+endif()
+if(NOT dynamic MATCHES "BIND_NOW")
+  message(SEND_ERROR "${LIBRARY} is not linked with -z now")
+endif()
+execute_process(COMMAND "${NM}" -D --undefined-only "${LIBRARY}" OUTPUT_VARIABLE needed COMMAND_ERROR_IS_FATAL ANY)
+if(NOT needed MATCHES "__stack_chk_fail")
+  message(SEND_ERROR "${LIBRARY} is not compiled with -fstack-protector-strong")
 endif()
 file(READ "${CHANGELOG}" changelog)
 if(NOT changelog MATCHES "\n## ${VERSION}[ \n]")

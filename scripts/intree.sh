@@ -70,6 +70,8 @@ cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
 }
 cmake --build "$build" --parallel "${JOBS:-$jobs}" --target opencv_test_iib opencv_perf_iib opencv_python3
 
+say "the library's symbols, in-tree"
+cmake "-DLIBRARY=$build/lib/libopencv_iib.so" -DNM=nm -P "$root/cmake/SymbolTest.cmake"
 say "opencv_test_iib, in-tree"
 "$build/bin/opencv_test_iib"
 say "opencv_perf_iib, in-tree, a smoke run"

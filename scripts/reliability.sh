@@ -4,8 +4,17 @@
 # bits sanitize stress mutation fuzz versions arm64
 . "$(dirname "$0")/lib.sh"
 
+known="bits sanitize stress mutation fuzz versions arm64"
+# shellcheck disable=SC2086
+[ $# -gt 0 ] || set -- $known
+for step in "$@"; do
+    case " $known " in
+    *" $step "*) ;;
+    *) fail "there is no step $step; there are: $known" ;;
+    esac
+done
+# shellcheck disable=SC2086
 need $build_packages clang xz-utils
-[ $# -gt 0 ] || set -- bits sanitize stress mutation fuzz versions arm64
 for step in "$@"; do
     say "$step"
     case "$step" in
@@ -34,11 +43,16 @@ for step in "$@"; do
     sanitize) "$root/scripts/test.sh" --sanitize ;;
     stress)
         configure -DIIB_BUILD_TESTS=ON -DIIB_BUILD_TOOLS=ON
-        cmake --build "$build" --target iib_stress iib_fault_injection
+        cmake --build "$build" --target iib_stress iib_fault_injection iib_thread_number
         for stress in keypoints codes pixels threads; do
             "$build/tools/stress/iib_stress" $stress
         done
         "$build/tools/stress/iib_fault_injection"
+        crashes=0
+        for run in 1 2 3 4 5 6 7; do
+            "$build/tools/stress/iib_thread_number" || crashes=$((crashes + 1))
+        done
+        echo "OpenCV alone, its number of threads changed meanwhile: $crashes of $run runs crashed"
         ;;
     mutation) "$root/scripts/mutation.sh" ;;
     fuzz)
@@ -47,9 +61,5 @@ for step in "$@"; do
         ;;
     versions) "$root/scripts/versions.sh" ;;
     arm64) "$root/scripts/arm64.sh" ;;
-    *)
-        echo "no such step: $step" >&2
-        exit 2
-        ;;
     esac
 done

@@ -8,6 +8,7 @@
 #include "scaling.hpp"
 #include "scene.hpp"
 
+#include "common/command_line.hpp"
 #include "opencv2/core/utility.hpp"
 #include "opencv2/iib.hpp"
 
@@ -139,46 +140,34 @@ void write(const std::vector<Row>& rows, const Scaling& scaling, const Matching&
     matching.write(fs);
 }
 
+int run(const CommandLine& line)
+{
+    if (!line.positional().empty())
+        CV_Error(Error::StsBadArg, "no argument but options (--help lists them)");
+    const int rounds = line.whole("rounds", 1, 1000000);
+    const Mat image = cornerImage(IMAGE_SIZE);
+    const std::vector<KeyPoint> keypoints[2] = {corners(image, FEW), corners(image, MANY)};
+    CV_Assert(keypoints[1].size() == MANY);
+    std::vector<Row> rows = allRows(image);
+    measure(rows, keypoints, rounds);
+    print(rows);
+    const Scaling scaling = measureScaling(rounds);
+    scaling.print();
+    const Matching matching = measureMatching(rounds);
+    matching.print();
+    write(rows, scaling, matching, line.text("json"));
+    if (line.has("against"))
+        printAgainst(rows, line.text("against"));
+    return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv)
 {
-    const CommandLineParser args(argc, argv,
-            "{help h||prints this}"
-            "{rounds|100|repetitions, of which the fastest counts}"
-            "{json|iib_benchmark.json|file to write}"
-            "{against||file of another run, to be compared with}");
-    if (args.has("help"))
-    {
-        args.printMessage();
-        return 0;
-    }
-    const int rounds = args.get<int>("rounds");
-    if (!args.check() || rounds < 1)
-    {
-        fprintf(stderr, "iib_benchmark: --rounds takes a whole number from 1\n");
-        return 2;
-    }
-    try
-    {
-        const Mat image = cornerImage(IMAGE_SIZE);
-        const std::vector<KeyPoint> keypoints[2] = {corners(image, FEW), corners(image, MANY)};
-        CV_Assert(keypoints[1].size() == MANY);
-        std::vector<Row> rows = allRows(image);
-        measure(rows, keypoints, rounds);
-        print(rows);
-        const Scaling scaling = measureScaling(rounds);
-        scaling.print();
-        const Matching matching = measureMatching(rounds);
-        matching.print();
-        write(rows, scaling, matching, args.get<String>("json"));
-        if (args.has("against"))
-            printAgainst(rows, args.get<String>("against"));
-    }
-    catch (const cv::Exception& e)
-    {
-        fprintf(stderr, "iib_benchmark: %s\n", e.err.c_str());
-        return 2;
-    }
-    return 0;
+    return runTool(argc, argv, "What a descriptor costs beside cv::ORB: iib_benchmark [options]",
+            "{rounds |100|repetitions, of which the fastest counts}"
+            "{json   |iib_benchmark.json|file to write}"
+            "{against|<none>|file of another run, to be compared with}",
+            run);
 }

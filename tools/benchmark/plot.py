@@ -1,12 +1,7 @@
 #!/usr/bin/python3
-"""Draws how the time to describe grows with pixels and keypoints: plot.py iib_benchmark.json picture.svg"""
+"""Draws how the time to describe grows with pixels and keypoints."""
+import argparse
 import json
-import sys
-
-import matplotlib
-
-matplotlib.use("svg")
-import matplotlib.pyplot as plt  # noqa: E402 (the backend comes first)
 
 
 def draw(axis, xs, points, label):
@@ -19,8 +14,17 @@ def draw(axis, xs, points, label):
     axis.grid(True, linewidth=0.4)
 
 
-def main(source, picture):
-    with open(source, encoding="utf-8") as file:
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("source", help="what iib_benchmark wrote, such as iib_benchmark.json")
+    parser.add_argument("picture", help="SVG file to write")
+    options = parser.parse_args()
+
+    import matplotlib  # after --help, which needs no package
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt
+
+    with open(options.source, encoding="utf-8") as file:
         data = json.load(file)
     figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.2))
     draw(left, [p["megapixels"] for p in data["pixels"]], data["pixels"],
@@ -28,8 +32,8 @@ def main(source, picture):
     draw(right, [p["keypoints"] for p in data["more_keypoints"]], data["more_keypoints"],
          f"keypoints ({data['more_keypoints'][0]['megapixels']:.2f} megapixels)")
     figure.tight_layout()
-    figure.savefig(picture, metadata={"Date": None})
+    figure.savefig(options.picture, metadata={"Date": None})
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main()

@@ -7,6 +7,8 @@
 
 #include "opencv2/iib.hpp"
 
+#include "common/command_line.hpp"
+
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -224,10 +226,10 @@ void changeMatcher()
             });
 }
 
-}  // namespace
-
-int main()
+int run(const iib_tools::CommandLine& line)
 {
+    if (!line.positional().empty())
+        CV_Error(Error::StsBadArg, "it takes no arguments");
     setNumThreads(1);  // a thread pool's own allocations are not this library's
     try
     {
@@ -249,4 +251,12 @@ int main()
         return 1;
     }
     return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    return iib_tools::runTool(
+            argc, argv, "Every allocation of the library fails in turn: iib_fault_injection", "", run);
 }

@@ -2,14 +2,12 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// The library under stress, each result compared with one got the easy way:
-//   iib_stress keypoints [COUNT]   many keypoints on one image
-//   iib_stress codes [COUNT]       many train descriptors
-//   iib_stress pixels [MEGAPIXELS] large images of every type
-//   iib_stress threads [SECONDS]   24 threads that share one extractor and one matcher
-// Prints time and memory; exit code 1 and a line for what does not hold.
+// The library under stress, each result compared with one got the easy way; see ABOUT. Prints time and memory; exit
+// code 1 and a line for what does not hold.
 
 #include "stress.hpp"
+
+#include "common/command_line.hpp"
 
 #include <cstdio>
 #include <cstdlib>
@@ -75,31 +73,55 @@ bool equal(const Mat& a, const Mat& b) { return a.size() == b.size() && norm(a, 
 
 }  // namespace iib_stress
 
-int main(int argc, char** argv)
+namespace {
+using namespace iib_stress;
+
+const char ABOUT[] = "The library under stress: iib_stress WHAT [AMOUNT]\n"
+                     "keypoints [COUNT]    many keypoints on one image\n"
+                     "codes [COUNT]        many train descriptors\n"
+                     "pixels [MEGAPIXELS]  large images of every type\n"
+                     "threads [SECONDS]    24 threads that share one extractor and one matcher";
+
+const struct
 {
-    using namespace iib_stress;
-    const std::string what = argc > 1 ? argv[1] : "";
-    const int amount = argc > 2 ? std::atoi(argv[2]) : 0;
-    try
-    {
-        if (what == "keypoints")
-            manyKeypoints(amount > 0 ? amount : 1000000);
-        else if (what == "codes")
-            manyCodes(amount > 0 ? amount : 1000000);
-        else if (what == "pixels")
-            largeImages(amount > 0 ? amount : 100);
-        else if (what == "threads")
-            manyThreads(amount > 0 ? amount : 120);
-        else
-        {
-            std::fprintf(stderr, "iib_stress keypoints|codes|pixels|threads [AMOUNT]\n");
-            return 2;
-        }
-    }
-    catch (const std::exception& e)
-    {
-        std::fprintf(stderr, "%s: %s\n", what.c_str(), e.what());
-        return 1;
-    }
-    return 0;
+    const char* name;
+    void (*run)(int);
+    int amount;
+} STRESSES[] = {{"keypoints", manyKeypoints, 1000000}, {"codes", manyCodes, 1000000},
+        {"pixels", largeImages, 100}, {"threads", manyThreads, 120}};
+
+//! A whole number above 0; 0 for any other word.
+int amountOf(const std::string& word)
+{
+    const bool digits = !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;
+    return digits && word.size() < 10 ? std::atoi(word.c_str()) : 0;
 }
+
+int run(const iib_tools::CommandLine& line)
+{
+    const std::vector<std::string>& words = line.positional();
+    if (words.empty() || words.size() > 2)
+        CV_Error(cv::Error::StsBadArg, "WHAT and perhaps an AMOUNT are needed (--help tells more)");
+    for (const auto& stress : STRESSES)
+        if (words[0] == stress.name)
+        {
+            const int amount = words.size() == 2 ? amountOf(words[1]) : stress.amount;
+            if (amount == 0)
+                CV_Error(cv::Error::StsBadArg, words[1] + ": not a whole number above 0");
+            try
+            {
+                stress.run(amount);
+                return 0;
+            }
+            catch (const std::exception& e)
+            {
+                std::fprintf(stderr, "%s: %s\n", stress.name, e.what());
+                return 1;
+            }
+        }
+    CV_Error(cv::Error::StsBadArg, "there is no " + words[0] + " (--help tells what there is)");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return iib_tools::runTool(argc, argv, ABOUT, "", run); }

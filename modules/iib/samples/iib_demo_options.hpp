@@ -70,6 +70,7 @@ inline std::string oneOf(const std::string& name, const std::string& value)
     throw UserError("--" + name + " takes one of " + words + ", not " + value);
 }
 
+// A sample stands alone, as those of OpenCV do, so it cannot use tools/common/command_line.hpp, which knows more.
 //! Arguments as cv::CommandLineParser wants them: `--name value` joined to `--name=value`, nothing unknown.
 inline std::vector<std::string> joinValues(
         int argc, const char* const* argv, std::vector<std::string>& images)
