@@ -32,7 +32,7 @@ done
 # shellcheck disable=SC2086
 need $build_packages clang llvm xz-utils
 if [ -n "$plain" ]; then
-    build="$root/build-fuzz-plain" longest=64
+    build="$root/build-fuzz-plain" longest=40
     # Where numbers are compared is not recorded: it takes half of the time.
     configure -DCMAKE_CXX_COMPILER=clang++ -DIIB_SANITIZE=fuzzer \
         -DCMAKE_CXX_FLAGS=-fno-sanitize-coverage=trace-cmp
