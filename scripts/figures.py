@@ -93,13 +93,13 @@ def turned():
 
 def presets():
     """Fixed points: light that no preset was trained on, rendered light, moved cameras, turned images."""
-    use = (('IIB', 'default', 'you do not know yet'),
+    use = (('IIB', 'default', 'a still camera, the paper as it is'),
            ('IIB ACCURATE', '`PRESET_ACCURATE`', 'a still camera, and every match counts'),
            ('IIB COMPACT', '`PRESET_COMPACT`', 'a still camera, many images to keep'),
            ('IIB TINY', '`PRESET_TINY`', 'a still camera, and memory is scarce'),
            ('IIB BALANCED', '`PRESET_BALANCED`', 'the camera moves between the images'),
            ('IIB VIEWPOINT', '`PRESET_VIEWPOINT`', 'the camera moves far'),
-           ('IIB UNIVERSAL', '`PRESET_UNIVERSAL`', 'light and camera both change'),
+           ('IIB UNIVERSAL', '`PRESET_UNIVERSAL`', 'you do not know yet; light and camera both change'),
            ('IIB S512', '`PRESET_S512`', 'the default, shortened'),
            ('IIB S256', '`PRESET_S256`', 'the default, shortened'),
            ('IIB S128', '`PRESET_S128`', 'the default, shortened'))

@@ -19,7 +19,10 @@ loop may be given another image for the same extractor meanwhile.
 class DetectionCall
 {
 public:
-    enum { MAX_NESTED = 8 };
+    enum
+    {
+        MAX_NESTED = 8
+    };
 
     //! Throws if this thread is already in MAX_NESTED calls of this extractor to its detector.
     explicit DetectionCall(const Feature2D* extractor_) : extractor(extractor_), outer(innermost())
