@@ -1,4 +1,4 @@
-# iib_evaluation tells in one line that no pair of images can be read, and ends with an error.
+# iib_evaluation names the image that it cannot read, says at its end that no pair is left, and ends with an error.
 # cmake -DEVALUATION=<program> -DWORK=<folder> -P UnreadableTest.cmake
 file(REMOVE_RECURSE "${WORK}")
 file(WRITE "${WORK}/data/set/sequence/1.png" "no image")
@@ -8,6 +8,7 @@ execute_process(COMMAND "${EVALUATION}" --out "${WORK}/results" "${WORK}/data"
 if(NOT code EQUAL 1)
   message(FATAL_ERROR "the exit code is ${code}, not 1:\n${output}${errors}")
 endif()
-if(NOT errors MATCHES "^iib_evaluation: [^\n]*read[^\n]*\n$")
-  message(FATAL_ERROR "not one line about what cannot be read:\n${errors}")
+if(NOT errors MATCHES "1.png: not a readable image\n" OR
+    NOT errors MATCHES "\niib_evaluation: none of the 1 image pairs can be read\n$")
+  message(FATAL_ERROR "not told what cannot be read:\n${errors}")
 endif()
