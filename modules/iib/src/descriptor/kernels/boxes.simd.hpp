@@ -382,9 +382,11 @@ void compareBoxes(const int* means, const BoxGridShape& grid, uchar* out)
     for (int i = 0; i < grid.n * grid.stride(); i++)
     {
         const int* const m = means + i * BOX_LANES;
+        // GCC 12 with the address sanitizer gets a condition on the lane wrong.
+        const int partners[BOX_LANES] = {m[1], 0, m[3], 0, 0, 0, 0, 0};
         unsigned bits = 0;
         for (int lane = 0; lane < BOX_LANES; lane++)
-            bits |= (unsigned)(m[lane] > (NEXT_IS_PARTNER[lane] ? m[lane + 1] : 0)) << lane;
+            bits |= (unsigned)(m[lane] > partners[lane]) << lane;
         out[i] = (uchar)bits;
     }
 }
