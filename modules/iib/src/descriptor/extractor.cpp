@@ -5,7 +5,6 @@
 #include "../common/detector_file.hpp"
 #include "../common/file_numbers.hpp"
 #include "compute.hpp"
-#include "detection_call.hpp"
 #include "input.hpp"
 #include "support_region.hpp"
 
@@ -36,10 +35,7 @@ public:
             OutputArray descriptors, bool useProvidedKeypoints) CV_OVERRIDE
     {
         if (!useProvidedKeypoints)
-        {
-            const DetectionCall call(this);
             detector->detect(image, keypoints, mask);
-        }
         if (descriptors.needed())
             compute(image, keypoints, descriptors);
     }

@@ -3,10 +3,6 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/detected_matches.hpp"
-#include "../support/test_errors.hpp"
-
-#include <condition_variable>
-#include <thread>
 
 namespace opencv_test {
 namespace {
@@ -89,78 +85,6 @@ TEST(IIB_Detector, behind_detect_and_compute)
         for (const KeyPoint& kp : keypoints)
             EXPECT_LT(kp.pt.x, 100);
     }
-}
-
-// setDetector() cannot see through AffineFeature.
-TEST(IIB_Detector, that_leads_back_to_its_extractor_throws)
-{
-    const Mat image = texture(Size(90, 80), CV_8U, 3);
-    const Ptr<IIB> outer = IIB::create(), inner = IIB::create();
-    const auto expectLoop = [&] {
-        std::vector<KeyPoint> keypoints;
-        Mat descriptors;
-        expectError(Error::StsBadArg, "leads back", [&] { outer->detect(image, keypoints); });
-        expectError(Error::StsBadArg, "leads back",
-                [&] { outer->detectAndCompute(image, noArray(), keypoints, descriptors); });
-    };
-    outer->setDetector(AffineFeature::create(outer));
-    expectLoop();
-    outer->setDetector(NormalizedDetector::create(AffineFeature::create(inner)));
-    inner->setDetector(AffineFeature::create(outer));
-    expectLoop();
-
-    inner->setDetector(ORB::create());
-    std::vector<KeyPoint> keypoints;
-    outer->detect(image, keypoints);
-    EXPECT_GT(keypoints.size(), 0u);
-    outer->setDetector(ORB::create(20));
-    outer->detect(image, keypoints);
-    EXPECT_GT(keypoints.size(), 0u);
-}
-
-//! Detects one keypoint when as many threads as it was told are in detect() at once, or never.
-class Meeting : public Feature2D
-{
-public:
-    explicit Meeting(int threads_) : threads(threads_) {}
-    using Feature2D::detect;
-    void detect(InputArray, std::vector<KeyPoint>& keypoints, InputArray) CV_OVERRIDE
-    {
-        std::unique_lock<std::mutex> lock(mutex);
-        if (++arrived == threads)
-            all.notify_all();
-        if (all.wait_for(lock, std::chrono::seconds(60), [&] { return arrived >= threads; }))
-            keypoints.assign(1, KeyPoint(1, 1, 9));
-    }
-
-private:
-    const int threads;
-    int arrived = 0;
-    std::mutex mutex;
-    std::condition_variable all;
-};
-
-TEST(IIB_Detector, serves_many_threads_and_long_chains)
-{
-    const int THREADS = 32;
-    const Mat image = texture(Size(60, 50), CV_8U, 3);
-    const Ptr<IIB> shared = IIB::create();
-    shared->setDetector(makePtr<Meeting>(THREADS));
-    Ptr<IIB> last = shared;  // of a chain of different extractors
-    for (int i = 0; i < 20; i++)
-    {
-        const Ptr<IIB> next = IIB::create();
-        next->setDetector(last);
-        last = next;
-    }
-    std::vector<std::vector<KeyPoint>> keypoints(THREADS);
-    std::vector<std::thread> threads;
-    for (int i = 0; i < THREADS; i++)
-        threads.emplace_back([&, i] { last->detect(image, keypoints[i]); });
-    for (std::thread& thread : threads)
-        thread.join();
-    for (const std::vector<KeyPoint>& found : keypoints)
-        EXPECT_EQ(1u, found.size());
 }
 
 TEST(IIB_ScaleFactor, surf_and_names_of_classes)

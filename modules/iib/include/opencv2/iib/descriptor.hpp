@@ -267,8 +267,7 @@ public:
     CV_WRAP virtual int getBorder() const = 0;
 
     //! The detector behind detect and detectAndCompute; ORB by default. It does not change the scale factor. Throws if
-    //! it is null, or is this extractor or leads back to it through extractors and NormalizedDetector. One that leads
-    //! back through another class, such as AffineFeature, throws when it detects.
+    //! it is null, or is this extractor or leads back to it.
     CV_WRAP virtual void setDetector(const Ptr<Feature2D>& detector) = 0;
     CV_WRAP virtual Ptr<Feature2D> getDetector() const = 0;
 
