@@ -19,9 +19,9 @@ Rect boxPixels(const SupportRegion& region, Point2f centre, bool rotated, int bo
 
 /** The descriptors of a batch by MAPPING_BOXES.
 
-Upright boxes lie on a grid, whose edges many of them share. A rotated keypoint needs no samples: the means of gx and gy are linear in them and so rotate as they do, and those of
-|gx| and |gy| come from the means of |gx|, |gy|, |gx + gy| and |gx - gy|, that is, of the gradient's magnitude in four
-directions. Boxes stay upright; only their centres turn.
+Upright boxes lie on a grid, whose edges many of them share. A rotated keypoint needs no samples: the means of gx and gy
+are linear in them and so rotate as they do, and those of |gx| and |gy| come from the means of |gx|, |gy|, |gx + gy| and
+|gx - gy|, that is, of the gradient's magnitude in four directions. Boxes stay upright; only their centres turn.
 
 @param image CV_8U or CV_16U, one channel.
 @param regions of all keypoints, as are keypoints, angles (null: all of the batch are upright) and the rows of descriptors. */

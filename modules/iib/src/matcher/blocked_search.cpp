@@ -95,7 +95,7 @@ private:
 
     SearchCost nearestOfOne(const PairBlock& block, KnnTable& forQueries, KnnTable* forTrains)
     {
-        const int queries = block.pairs.queryCount, trains = block.pairs.trainCount;
+        const int queries = block.pairs.queries.rows, trains = block.pairs.trainCount;
         queryIndices.assign(queries, -1);
         NearestScan scan(
                 block.pairs, NearestCodes(forQueries.thresholds() + block.firstQuery, queryIndices.data()));

@@ -13,12 +13,12 @@ static size_t fillFlags(const SearchInput& input, const PairBlock& block, std::v
 {
     const PackedCodes& trains = input.trains;
     const size_t step = block.pairs.paddedTrains(), end = block.firstTrain + block.pairs.trainCount;
-    flags.assign(block.pairs.queryCount * step, 0);
+    flags.assign(block.pairs.queries.rows * step, 0);
     size_t count = 0;
     for (size_t row = block.firstTrain; row < end;)
     {
         const size_t image = trains.imageOf(row), next = std::min(trains.start(image + 1), end);
-        for (int query = 0; query < block.pairs.queryCount; query++)
+        for (int query = 0; query < block.pairs.queries.rows; query++)
         {
             uchar* to = flags.data() + query * step + (row - block.firstTrain);
             if (input.masks[image].empty())

@@ -17,8 +17,7 @@ namespace iib {
 struct CodePairs
 {
     CodePairs(const CodeLayout& layout_, const Mat& queries_, const unsigned* trains_, int trainCount_)
-        : layout(layout_), queries(queries_), queryCount(queries_.rows), trains(trains_),
-          trainCount(trainCount_), allowed(0)
+        : layout(layout_), queries(queries_), trains(trains_), trainCount(trainCount_), allowed(0)
     {
     }
 
@@ -30,11 +29,10 @@ struct CodePairs
     int paddedTrains() const { return blocks() * CodeLayout::CODES_PER_BLOCK; }
 
     const CodeLayout& layout;
-    Mat queries;  //!< descriptors, a row each
-    int queryCount;
+    Mat queries;             //!< descriptors, a row each
     const unsigned* trains;  //!< packed, in CodeBlocks
     int trainCount;
-    const uchar* allowed;  //!< queryCount x paddedTrains(), 0 for pairs that are masked; null: none is
+    const uchar* allowed;  //!< queries.rows x paddedTrains(), 0 for pairs that are masked; null: none is
 };
 
 //! The nearest code of the other side for each code; a scan replaces an entry when it finds a nearer one.
@@ -55,7 +53,7 @@ struct NearestScan
     //! Whether there are few enough of them, of codes short enough.
     static bool fits(const CodePairs& pairs)
     {
-        return std::max(pairs.queryCount, pairs.blocks()) <= 1 << INDEX_BITS &&
+        return std::max(pairs.queries.rows, pairs.blocks()) <= 1 << INDEX_BITS &&
                pairs.layout.bytes() < 1 << (31 - INDEX_BITS - 3);
     }
     NearestScan(const CodePairs& pairs_, const NearestCodes& ofQueries_)

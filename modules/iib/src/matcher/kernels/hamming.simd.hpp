@@ -32,16 +32,16 @@ template <class S> void scanAll(S&& scanner, int queryCount)
 void scanNearest(const NearestScan& scan)
 {
     NearestScanner scanner(scan);
-    scanAll(scanner, scan.pairs.queryCount);
+    scanAll(scanner, scan.pairs.queries.rows);
     scanner.keepOfTrains();
 }
 
 void scanPruned(const PrunedScan& scan)
 {
     if (scan.stageCount > 0)
-        scanAll(PrunedScanner(scan), scan.pairs.queryCount);
+        scanAll(PrunedScanner(scan), scan.pairs.queries.rows);
     else
-        scanAll(FullScanner(scan.pairs, scan.sink), scan.pairs.queryCount);
+        scanAll(FullScanner(scan.pairs, scan.sink), scan.pairs.queries.rows);
 }
 
 }  // namespace

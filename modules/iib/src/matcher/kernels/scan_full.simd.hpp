@@ -16,11 +16,8 @@ namespace {
 class FullScanner : public SinkScanner
 {
 public:
-    FullScanner(const CodePairs& p, HammingSink& s) : SinkScanner(p, s), early(layout.words())
+    FullScanner(const CodePairs& p, HammingSink& s) : SinkScanner(p, s), early(earlyEnd(!s.trainThresholds))
     {
-        // In both directions some pair is nearly always near enough; PACKING_ADDERS wants an odd number.
-        if (!s.trainThresholds && layout.bytes() > 64)
-            early = layout.words() * 7 / 10 | 1;
     }
 
     //! Some queries against all blocks.
@@ -66,7 +63,7 @@ private:
         return v_check_any(any);
     }
 
-    int early;  // words after which a tile is left if no pair is near enough so far: distances only grow
+    const int early;
 };
 
 }  // namespace

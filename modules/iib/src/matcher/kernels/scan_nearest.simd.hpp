@@ -21,11 +21,8 @@ class NearestScanner : public Scanner
 public:
     explicit NearestScanner(const NearestScan& s)
         : Scanner(s.pairs), scan(s), trainKeys(s.ofTrains.distances ? s.pairs.paddedTrains() : 0, NO_KEY),
-          early(layout.words())
+          early(earlyEnd(trainKeys.empty()))
     {
-        // Trains need the distances to all queries; PACKING_ADDERS wants an odd number.
-        if (trainKeys.empty() && layout.bytes() > 64)
-            early = layout.words() * 7 / 10 | 1;
     }
 
     //! Some queries against all blocks.
@@ -139,7 +136,7 @@ private:
 
     const NearestScan& scan;
     std::vector<int> trainKeys;  // none if only queries have neighbours
-    int early;  // words after which a tile is left if no pair is near enough so far: distances only grow
+    const int early;
 };
 
 }  // namespace

@@ -53,6 +53,15 @@ protected:
         return result;
     }
 
+    /** Words after which a tile may be left if no pair is near enough so far, since distances only grow; all words where
+     that hardly happens or saves little. @param oneWay whether only queries have neighbours: in both directions some pair is
+     nearly always near enough. */
+    int earlyEnd(bool oneWay) const
+    {
+        // PACKING_ADDERS wants an odd number.
+        return oneWay && layout.bytes() > 64 ? layout.words() * 7 / 10 | 1 : layout.words();
+    }
+
     const unsigned* codes(int block) const { return pairs.trains + block * layout.blockWords(); }
 
     const CodePairs& pairs;
