@@ -1,6 +1,6 @@
 #!/bin/sh
-# What describing costs beside cv::ORB on this machine, how time and memory grow, and how much slower it is without
-# AVX2 and AVX-512: prints tables and writes iib_benchmark.json.
+# What describing costs beside cv::ORB on this machine, how time and memory grow, what matching costs beside BFMatcher,
+# and how much slower all that is without AVX2 and AVX-512: prints tables and writes iib_benchmark.json.
 #   scripts/bench.sh [--rounds=N] [--json=FILE]
 . "$(dirname "$0")/lib.sh"
 

@@ -91,7 +91,7 @@ void measure(std::vector<Row>& rows, const std::vector<KeyPoint> keypoints[2], i
 }
 
 //! How much slower the run was whose figures are in a file, for example under OPENCV_CPU_DISABLE.
-void printAgainst(const std::vector<Row>& rows, const String& file)
+void printAgainst(const std::vector<Row>& rows, const Matching& matching, const String& file)
 {
     const FileStorage fs(file, FileStorage::READ);
     if (!fs.isOpened())
@@ -103,6 +103,7 @@ void printAgainst(const std::vector<Row>& rows, const String& file)
             if (row.name == (String)other["name"])
                 printf("%-22s %8.2f\n", row.name.c_str(),
                         (double)other["milliseconds"][0] / row.milliseconds[0]);
+    matching.printAgainst(fs["matching"]);
 }
 
 //! Microseconds that one more keypoint costs.
@@ -157,7 +158,7 @@ int run(const CommandLine& line)
     matching.print();
     write(rows, scaling, matching, line.text("json"));
     if (line.has("against"))
-        printAgainst(rows, line.text("against"));
+        printAgainst(rows, matching, line.text("against"));
     return 0;
 }
 

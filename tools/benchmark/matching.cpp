@@ -160,6 +160,16 @@ void Matching::print() const
             orbFrame, iibFrame, iibFrame / orbFrame);
 }
 
+void Matching::printAgainst(const FileNode& others) const
+{
+    for (const FileNode& other : others)
+        for (const Row& row : rows)
+            if (row.name == (String)other["name"] && row.codes == (int)other["codes"] &&
+                    row.crossCheck == ((int)other["cross_check"] != 0))
+                printf("%-10s %6d %4s %8.2f\n", row.name.c_str(), row.codes, row.crossCheck ? "yes" : "",
+                        (double)other["milliseconds"] / row.milliseconds);
+}
+
 void Matching::write(FileStorage& fs) const
 {
     fs << "matching"

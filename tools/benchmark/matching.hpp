@@ -28,6 +28,8 @@ struct Matching
     double orbFrame, iibFrame;
 
     void print() const;
+    //! How much slower the rows of another run were, as write() has written them.
+    void printAgainst(const cv::FileNode& others) const;
     void write(cv::FileStorage& fs) const;
 };
 
