@@ -10,12 +10,13 @@
 #include <algorithm>
 #include <climits>
 
+#include "index_bits.hpp"
+
 namespace cv {
 namespace iib {
 
 //! A neighbour as one number: distance above, index below, so that ties go to the lowest index.
 typedef uint64 MatchKey;
-const int INDEX_BITS = 40;
 const MatchKey NO_MATCH = ~(MatchKey)0;
 
 inline MatchKey matchKey(int distance, size_t index) { return (MatchKey)distance << INDEX_BITS | index; }
