@@ -19,15 +19,12 @@ Mat readImage(const String& sequence, int number, int flags)
     return image;
 }
 
-std::ifstream openText(const String& name)
-{
-    return std::ifstream(cvtest::findDataFile("illumination/" + name, false).c_str());
-}
+String textFile(const String& name) { return cvtest::findDataFile("illumination/" + name, false); }
 
 //! The paper's seed points; they count from 1.
 std::vector<KeyPoint> readKeyPoints(const String& name)
 {
-    std::ifstream file = openText(name);
+    std::ifstream file(textFile(name).c_str());
     std::vector<KeyPoint> keypoints;
     std::string line;
     std::getline(file, line);
@@ -37,16 +34,6 @@ std::vector<KeyPoint> readKeyPoints(const String& name)
     while (file >> kp.pt.x >> comma >> kp.pt.y >> comma >> kp.size >> comma >> kp.angle)
         keypoints.push_back(kp);
     return keypoints;
-}
-
-Matx33d readHomography(const String& name)
-{
-    std::ifstream file = openText(name);
-    Matx33d h;
-    for (double& v : h.val)
-        file >> v;
-    EXPECT_FALSE(file.fail()) << name;
-    return h;
 }
 
 std::vector<DMatch> mutualMatches(const Mat& a, const Mat& b)
@@ -117,7 +104,7 @@ TEST(IIB_Real, leuven_with_orb_keypoints)
     }
     for (int k = 1; k < 6; k++)
     {
-        const Matx33d h = readHomography(sequence + format("/H_1_%d", k + 1));
+        const Matx33d h = readHomography(textFile(sequence + format("/H_1_%d", k + 1)));
         const Score orbScore = scoreOf(own[0], own[k], keypoints[0], keypoints[k], h);
         const Score iibScore = scoreOf(ours[0], ours[k], keypoints[0], keypoints[k], h);
         std::cout << format("[          ] 1 - %d: ORB %d of %d, IIB %d of %d correct\n", k + 1,

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../test_precomp.hpp"
+#include "../support/test_images.hpp"
 
 #include <cstdlib>
 #include <fstream>
@@ -33,10 +33,7 @@ Counts matchPair(const Ptr<IIB>& iib, const std::string& folder, int target, int
 {
     const Mat image1 = imread(folder + "/1.png", IMREAD_GRAYSCALE);
     const Mat image2 = imread(folder + format("/%d.png", target), IMREAD_GRAYSCALE);
-    Matx33d h = Matx33d::eye();
-    std::ifstream file(folder + format("/H_1_%d", target));
-    for (int i = 0; i < 9 && file; i++)
-        file >> h.val[i];
+    const Matx33d h = readHomography(folder + format("/H_1_%d", target));
 
     const float radius = 32;
     const auto inside = [&](Point2f p, Size size) {

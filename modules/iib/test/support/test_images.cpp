@@ -4,6 +4,8 @@
 
 #include "test_images.hpp"
 
+#include <fstream>
+
 namespace opencv_test {
 
 int Integers::below(int end)
@@ -79,6 +81,18 @@ Mat scene(Size size, int seed)
     }
     GaussianBlur(image, image, Size(3, 3), 0.7);
     return image;
+}
+
+Matx33d readHomography(const String& file)
+{
+    std::ifstream in(file.c_str());
+    Matx33d h = Matx33d::eye();
+    if (!in)
+        return h;
+    for (double& v : h.val)
+        in >> v;
+    EXPECT_FALSE(in.fail()) << file;
+    return h;
 }
 
 Mat relit(const Mat& image, int seed)

@@ -30,6 +30,9 @@ Mat texture(Size size, int depth, int seed);
 //! Polygons and ellipses in front of each other, CV_8U.
 Mat scene(Size size, int seed);
 
+//! Nine numbers of a text file; the identity if there is no such file.
+Matx33d readHomography(const String& file);
+
 //! The scene by another light: dimmed, from the side, with the camera's curve and noise.
 Mat relit(const Mat& image, int seed);
 
