@@ -4,18 +4,12 @@
 
 #include "layout.hpp"
 
+#include <bitset>
+
 #include "box_plan.hpp"
 
 namespace cv {
 namespace iib {
-
-static int countBits(int mask)
-{
-    int n = 0;
-    for (; mask; mask &= mask - 1)
-        n++;
-    return n;
-}
 
 //! Bits of all quads of one channel at a level.
 static int channelBits(const Parameters& p, int level)
@@ -33,7 +27,7 @@ static int bitsBefore(const Parameters& p, int level, int end)
     int bits = 0;
     for (int i = 0; i < selection.rows; i++)
         if (selection(i, 0) == level && selection(i, 1) < end)
-            bits += countBits(selection(i, 4));
+            bits += (int)std::bitset<32>((unsigned)selection(i, 4)).count();
     return bits;
 }
 
