@@ -10,6 +10,7 @@
 #include "../common/image_input.hpp"
 #include "boxes.hpp"
 #include "rotated.hpp"
+#include "rotated_region.hpp"
 #include "upright.hpp"
 
 namespace cv {

@@ -16,12 +16,6 @@ namespace iib {
 /* A region rotated by the keypoint's angle cannot use integral images, since |gx| does not rotate with it. It is sampled
  on a grid of points instead, and the gradient is rotated at each. */
 
-//! The pixels of the image that a region may sample at any angle, at least one.
-Rect rotatedPixels(const SupportRegion& region, Point2f centre, int border, Size image);
-
-//! Whether no corner of a rotated region, and so no sample, lies outside the image.
-bool rotatedIsInside(const SupportRegion& region, Point2f centre, float angle, Size image);
-
 /** The bits of the keypoints of a batch, all of whose angles are >= 0 or, by ORIENTATION_GRADIENT, found here.
  @param channels all channels of the descriptor.
  @param regions, keypoints of the whole image; as are the rows of descriptors.
