@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../precomp.hpp"
+#include "affine_backend.hpp"
 
 namespace cv {
 namespace iib {
@@ -21,26 +21,6 @@ struct DetectorScale
 const DetectorScale detectorScales[] = {{"akaze", 12.f}, {"orb", 2.f}, {"brisk", 4.f}, {"sift", 20.f},
         {"kaze", 20.f}, {"surf", 4.f}, {"fast", 64.f / 7}, {"agast", 64.f / 7}, {"gftt", 64.f / 3},
         {"mser", 2.f}, {"simpleblob", 4.f}};
-
-struct BackendDescriptor
-{
-    const char* name;
-    int bytes, type;
-};
-
-const BackendDescriptor backends[] = {{"SIFT", 128, CV_32F}, {"SIFT", 128, CV_8U}, {"ORB", 32, CV_8U},
-        {"BRISK", 64, CV_8U}, {"AKAZE", 61, CV_8U}};
-
-//! AffineFeature names only itself, but describes as the detector that it wraps.
-String backendOf(const Feature2D& affine)
-{
-    for (const BackendDescriptor& b : backends)
-        if (affine.descriptorSize() == b.bytes && affine.descriptorType() == b.type)
-            return b.name;
-    CV_Error(Error::StsBadArg,
-            "AffineFeature does not tell which detector it wraps; give create() the scale factor of "
-            "that one (see scaleFactorFor) and setDetector() the AffineFeature");
-}
 
 }  // namespace
 
@@ -81,7 +61,8 @@ float IIBDescriptorExtractor::scaleFactorFor(const Ptr<Feature2D>& detector)
     if (const Ptr<NormalizedDetector> wrapper = detector.dynamicCast<NormalizedDetector>())
         return scaleFactorFor(wrapper->getDetector());
     const String name = detector->getDefaultName();
-    return scaleFactorFor(name == "Feature2D.AffineFeature" ? backendOf(*detector) : name);
+    return scaleFactorFor(
+            name == "Feature2D.AffineFeature" ? affineBackend(*detector)->getDefaultName() : name);
 }
 
 Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::createFor(const Ptr<Feature2D>& detector, int preset)

@@ -187,8 +187,8 @@ public:
      */
     CV_WRAP static float scaleFactorFor(const String& detectorName);
     /** @overload
-    Looks into NormalizedDetector for its detector, and at the descriptors of AffineFeature, which tell ORB, SIFT, BRISK and
-    AKAZE apart.
+    Looks into NormalizedDetector for its detector. AffineFeature does not tell its own: it detects on a small image, and
+    its keypoints are compared with those of each detector that is known (up to a second).
     @throws cv::Exception (StsBadArg) for a detector that is not known and (StsNullPtr) for none. */
     CV_WRAP static float scaleFactorFor(const Ptr<Feature2D>& detector);
     /** @overload
