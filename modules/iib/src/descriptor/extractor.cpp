@@ -5,6 +5,7 @@
 #include "../common/detector_file.hpp"
 #include "../common/file_numbers.hpp"
 #include "compute.hpp"
+#include "detector_probe.hpp"
 #include "input.hpp"
 #include "support_region.hpp"
 
@@ -72,7 +73,7 @@ public:
     {
         if (!value)
             CV_Error(Error::StsNullPtr, "the detector is null");
-        if (usesDetector(value, this))
+        if (leadsBack(value))
             CV_Error(Error::StsBadArg, "the extractor cannot be its own detector; give it one that finds "
                                        "keypoints, such as ORB");
         detector = value;
@@ -106,17 +107,36 @@ public:
     }
 
 private:
-    //! Whether calls to `feature` would come back to `extractor`, through extractors and wrappers.
-    static bool usesDetector(const Ptr<Feature2D>& feature, const Feature2D* extractor)
+    //! Whether calls to `feature` would come back to this extractor.
+    bool leadsBack(Ptr<Feature2D> feature)
     {
-        Ptr<Feature2D> f = feature;
-        while (f && f.get() != extractor)
+        while (feature && feature.get() != this)
         {
-            const Ptr<IIBDescriptorExtractor> other = f.dynamicCast<IIBDescriptorExtractor>();
-            const Ptr<NormalizedDetector> wrapper = f.dynamicCast<NormalizedDetector>();
-            f = other ? other->getDetector() : wrapper ? wrapper->getDetector() : Ptr<Feature2D>();
+            if (feature->getDefaultName() == "Feature2D.AffineFeature")
+                return isCalledBy(*feature);
+            const Ptr<IIBDescriptorExtractor> other = feature.dynamicCast<IIBDescriptorExtractor>();
+            const Ptr<NormalizedDetector> wrapper = feature.dynamicCast<NormalizedDetector>();
+            feature = other ? other->getDetector() : wrapper ? wrapper->getDetector() : Ptr<Feature2D>();
         }
-        return f.get() == extractor;
+        return feature.get() == this;
+    }
+
+    //! AffineFeature does not tell what it wraps, so it is called while this extractor has another detector.
+    bool isCalledBy(Feature2D& affine)
+    {
+        const Ptr<DetectorProbe> probe = makePtr<DetectorProbe>();
+        const Ptr<Feature2D> own = detector;
+        detector = probe;
+        try
+        {
+            std::vector<KeyPoint> keypoints;
+            affine.detect(Mat(64, 64, CV_8U, Scalar(0)), keypoints);
+        }
+        catch (const Exception&)  // detect() of this extractor will tell of it
+        {
+        }
+        detector = own;
+        return probe->called;
     }
 
     static Ptr<const DescriptorPlan> planOf(const Parameters& parameters)

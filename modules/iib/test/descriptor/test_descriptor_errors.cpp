@@ -118,7 +118,17 @@ TEST(IIB_Errors, no_extractor_detects_by_itself)
     b->setDetector(a);
     expectError(Error::StsBadArg, "its own detector", [=] { a->setDetector(b); });
     expectError(Error::StsBadArg, "its own detector", [=] { a->setDetector(NormalizedDetector::create(b)); });
+    const Ptr<Feature2D> affine = AffineFeature::create(b, 1);
+    expectError(Error::StsBadArg, "its own detector", [=] { a->setDetector(affine); });
+    expectError(Error::StsBadArg, "its own detector",
+            [=] { a->setDetector(NormalizedDetector::create(affine)); });
     EXPECT_EQ("Feature2D.ORB", a->getDetector()->getDefaultName());
+
+    b->setDetector(ORB::create());
+    a->setDetector(affine);
+    EXPECT_EQ(affine, a->getDetector());
+    expectError(Error::StsBadArg, "its own detector", [=] { b->setDetector(a); });
+    EXPECT_EQ("Feature2D.ORB", b->getDetector()->getDefaultName());
 }
 
 }  // namespace

@@ -267,7 +267,7 @@ public:
     CV_WRAP virtual int getBorder() const = 0;
 
     //! The detector behind detect and detectAndCompute; ORB by default. It does not change the scale factor. Throws if
-    //! it is null, or is this extractor or leads back to it.
+    //! it is null, or is this extractor or leads back to it, through extractors, NormalizedDetector or AffineFeature.
     CV_WRAP virtual void setDetector(const Ptr<Feature2D>& detector) = 0;
     CV_WRAP virtual Ptr<Feature2D> getDetector() const = 0;
 
