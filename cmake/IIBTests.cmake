@@ -11,7 +11,7 @@ foreach(kind test perf)
 endforeach()
 
 # Suites of internals link what the library does not show.
-target_sources(opencv_test_iib PRIVATE "$<FILTER:$<TARGET_OBJECTS:opencv_iib>,INCLUDE,/(matcher/kernels/.*|descriptor/(box_plan|kernels/.*|keypoint_batches|layout|parameters|plan|rotation|selection))[.]>")
+target_sources(opencv_test_iib PRIVATE "$<FILTER:$<TARGET_OBJECTS:opencv_iib>,INCLUDE,/(matcher/kernels/.*|descriptor/(box_plan|kernels/.*|keypoint_batches|layout|parameters|plan|rotated_region|rotation|selection))[.]>")
 
 # The naive oracles are not under test; sanitized, they would take most of the time.
 if(IIB_SANITIZE)

@@ -5,7 +5,7 @@
 #include "../support/descriptor_oracle.hpp"
 #include "../support/test_images.hpp"
 
-#include "../../src/descriptor/rotation.hpp"
+#include "../../src/descriptor/rotated_region.hpp"
 
 #include <memory>
 
@@ -54,6 +54,23 @@ TEST(IIB_Rotated, sine_and_cosine_have_the_same_bits_everywhere)
         EXPECT_EQ(e.cosine, r.cosine) << e.degrees;
         EXPECT_EQ(e.sine, r.sine) << e.degrees;
     }
+}
+
+// A place of the sine whose rounding moves the samples of a grid.
+TEST(IIB_Rotated, grid_has_the_same_steps_everywhere)
+{
+    const KeyPoint keypoint(500, 400, 4246.43457f, 43.3051186f);
+    const cv::iib::SupportRegion region(keypoint.pt, keypoint.size * 2.);
+    const cv::iib::SampleGrid grid = cv::iib::gridOf(region, keypoint.pt, cv::iib::Rotation(keypoint.angle),
+            64, 1, IIB::BORDER_REFLECT, Size(1000, 800));
+    EXPECT_EQ(6328687, grid.stepX);
+    EXPECT_EQ(5964921,
+            grid.stepY);  // 5964920.5 and a little, or exactly that if the sine's last place were less
+    const Ptr<IIB> iib = rotating(6);
+    const Mat image = texture(grid.image, CV_8U, 5);
+    const std::vector<KeyPoint> keypoints(1, keypoint);
+    EXPECT_EQ(0, differingBits(oracle::describe(*iib, image, std::vector<Mat>(), keypoints),
+                         describe(*iib, image, keypoints)));
 }
 
 // What is kept does not depend on anything outside the image; what is removed has a corner there.
