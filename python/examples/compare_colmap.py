@@ -23,8 +23,6 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from opencv_iib.colmap import FeatureOptions, Options, build_database
-
 HEAD = ('| scene | light | method | registered | points | track | reprojection | centres, % |\n'
         '|---|---|---|---|---|---|---|---|')
 
@@ -59,6 +57,8 @@ def make_database(method, images, database, points):
         return
     detector, _, name = method.rpartition('+')
     preset = {'ORB': 'OWN', 'IIB': 'DEFAULT'}.get(name, name)
+    from opencv_iib.colmap import FeatureOptions, Options, build_database  # so that --help works without it
+
     build_database(str(images), str(database), Options(FeatureOptions(detector or 'ORB', points, preset)))
 
 

@@ -1,19 +1,15 @@
 #!/usr/bin/env python3
 """How much faster N Python threads describe and match than one: the GIL is released while they do.
 
-    python scale_threads.py [N]        by default one a core
-
 Every thread takes the same number of images, so that N of them at best do N times as much in the same time. The least
 times of 15 runs, in which one thread and N take turns; opencv_iib's own threads are off.
 """
+import argparse
 import os
-import sys
 import threading
 import time
 
 import numpy as np
-
-import opencv_iib
 
 RUNS = 15
 IMAGES = 8  # for each thread in one run
@@ -38,7 +34,11 @@ def scaling(function, threads):
     return threads * one / many
 
 
-count = int(sys.argv[1]) if len(sys.argv) > 1 else os.cpu_count()
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument('threads', type=int, nargs='?', default=os.cpu_count(), help='N (%(default)s, one a core)')
+count = parser.parse_args().threads
+import opencv_iib  # noqa: E402  so that --help works without it
+
 opencv_iib.setNumThreads(1)
 random = np.random.default_rng(1)
 image = random.integers(0, 256, (960, 1280), np.uint8)
