@@ -1,17 +1,41 @@
 #!/usr/bin/python3
-"""Draws how the time to describe grows with pixels and keypoints."""
+"""Draws how the time to describe grows with pixels and keypoints, and the time to match with codes, beside OpenCV's."""
 import argparse
 import json
 
 
-def draw(axis, xs, points, label):
-    axis.plot(xs, [p["milliseconds"] for p in points], marker="o")
-    axis.set_xlim(left=0)
-    axis.locator_params(axis="x", nbins=6)
-    axis.set_ylim(bottom=0)
+def finish(axis, label):
     axis.set_xlabel(label)
     axis.set_ylabel("ms")
     axis.grid(True, linewidth=0.4)
+    axis.legend()
+
+
+def draw_pixels(axis, data):
+    points = data["pixels"]
+    axis.plot([p["megapixels"] for p in points], [p["milliseconds"] for p in points], marker="o", label="IIB")
+    axis.set_xlim(left=0)
+    axis.set_ylim(bottom=0)
+    finish(axis, f"megapixels ({points[0]['keypoints']} keypoints)")
+
+
+def draw_keypoints(axis, data):
+    for name, label in (("default", "IIB"), ("cv::ORB", "ORB")):
+        row = next(r for r in data["rows"] if r["name"] == name)
+        axis.plot(data["keypoints"], row["milliseconds"], marker="o", label=label)
+    axis.set_xlim(left=0)
+    axis.set_ylim(bottom=0)
+    finish(axis, f"keypoints ({data['width']} x {data['height']})")
+
+
+def draw_codes(axis, data):
+    """On logarithmic axes: a line parallel to another takes so many times as long for any number of codes."""
+    for name, label in (("BFMatcher", "BFMatcher"), ("EXACT", "IIB's matcher")):
+        found = [m for m in data["matching"] if m["name"] == name and m["cross_check"]]
+        axis.plot([m["codes"] for m in found], [m["milliseconds"] for m in found], marker="o", label=label)
+    axis.set_xscale("log")
+    axis.set_yscale("log")
+    finish(axis, "codes on either side, cross-check")
 
 
 def main():
@@ -26,11 +50,9 @@ def main():
 
     with open(options.source, encoding="utf-8") as file:
         data = json.load(file)
-    figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.2))
-    draw(left, [p["megapixels"] for p in data["pixels"]], data["pixels"],
-         f"megapixels ({data['pixels'][0]['keypoints']} keypoints)")
-    draw(right, [p["keypoints"] for p in data["more_keypoints"]], data["more_keypoints"],
-         f"keypoints ({data['more_keypoints'][0]['megapixels']:.2f} megapixels)")
+    figure, axes = plt.subplots(1, 3, figsize=(12, 3.4))
+    for draw, axis in zip((draw_pixels, draw_keypoints, draw_codes), axes):
+        draw(axis, data)
     figure.tight_layout()
     figure.savefig(options.picture, metadata={"Date": None})
 

@@ -78,6 +78,20 @@ TEST(IIB_Boxes, large_regions)
     }
 }
 
+// Stripes have the largest gradients at every pixel: over the box in the middle their sum leaves 32 bits.
+TEST(IIB_Boxes, largest_sums)
+{
+    Mat image(1500, 1500, CV_8U, Scalar(0));
+    for (int x = 2; x < image.cols; x += x % 4 == 2 ? 1 : 3)
+        image.col(x).setTo(255);
+    const std::vector<KeyPoint> keypoints(1, KeyPoint(749.5f, 749.5f, 3800.f));
+    const Ptr<IIB> iib = boxes(1);
+    iib->setBorder(IIB::BORDER_CLAMP);
+    expectOracle(*iib, image, keypoints, "upright");
+    iib->setUseOrientation(true);
+    expectOracle(*iib, image, {KeyPoint(749.5f, 749.5f, 3800.f, 0.f)}, "rotated");
+}
+
 TEST(IIB_Boxes, rotated)
 {
     for (int depth : {CV_8U, CV_16U})
@@ -92,6 +106,19 @@ TEST(IIB_Boxes, rotated)
                 iib->setBorder(border);
                 expectOracle(*iib, image, keypoints, format("depth %d, %d, %d", depth, orientation, border));
             }
+}
+
+// A box of less than half a pixel is a cell all the same.
+TEST(IIB_Boxes, rotated_small_regions)
+{
+    const Mat image = texture(Size(60, 50), CV_8U, 14);
+    for (int granularity = 1; granularity <= 5; granularity++)
+    {
+        const Ptr<IIB> iib = boxes(granularity);
+        iib->setUseOrientation(true);
+        expectOracle(
+                *iib, image, scatter(image.size(), 20, 0.5f, 4.f, granularity), format("G %d", granularity));
+    }
 }
 
 // Turned by 45 degrees boxes reach farthest beyond the region; in so large a one, pixels of a too small area show.
