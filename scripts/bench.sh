@@ -1,14 +1,25 @@
 #!/bin/sh
 # What describing costs beside cv::ORB on this machine, how time and memory grow, what matching costs beside BFMatcher,
-# and how much slower all that is without AVX2 and AVX-512: prints tables and writes iib_benchmark.json.
-#   scripts/bench.sh [--rounds=N] [--json=FILE]
+# and how much slower all that is without AVX2 and AVX-512: prints tables and writes iib_benchmark.json. With --document the
+# results go to doc/results, from where the tables of README.md and doc/performance.md and their picture are made anew.
+#   scripts/bench.sh [--document] [--rounds=N] [--json=FILE]
 . "$(dirname "$0")/lib.sh"
 
+document=""
+if [ "${1:-}" = --document ]; then
+    document="$root/doc/results"
+    shift
+fi
 check_options "$root/tools/benchmark/benchmark.cpp" "$@"
 # shellcheck disable=SC2086
-need $build_packages
+need $build_packages ${document:+python3-matplotlib}
 build_tools iib_benchmark
 benchmark="$build/tools/benchmark/iib_benchmark"
-narrow="$build/without_avx2.json"
+narrow="${document:-$build}/benchmark_without_avx2.json"
+[ -z "$document" ] || set -- "$@" "--json=$document/benchmark.json"
 OPENCV_CPU_DISABLE=AVX2,AVX512-SKX,AVX512-ICL "$benchmark" "$@" --json="$narrow" >/dev/null
 "$benchmark" "$@" --against="$narrow"
+if [ -n "$document" ]; then
+    /usr/bin/python3 "$root/tools/benchmark/plot.py" "$document/benchmark.json" "$root/doc/speed.svg"
+    /usr/bin/python3 "$root/scripts/figures.py" --write
+fi

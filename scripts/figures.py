@@ -7,6 +7,7 @@ A table stands between the lines `<!-- figures NAME -->` and `<!-- end of figure
 import argparse
 import collections
 import csv
+import json
 import pathlib
 import re
 import sys
@@ -150,7 +151,8 @@ def costs():
     """Time to describe 1000 points of one image, in times of ORB's, and what a point more takes."""
     found = {row['configuration']: row for row in rows('cost.csv')}
     lines = []
-    for label, name in (('IIB', 'IIB'), ('IIB, `PRESET_BALANCED`', 'IIB BALANCED'), ('IIB, `overlap`', 'IIB overlap'),
+    for label, name in (('IIB', 'IIB'), ('IIB, `PRESET_BALANCED`', 'IIB BALANCED'),
+                        ('IIB, `PRESET_UNIVERSAL`', 'IIB UNIVERSAL'), ('IIB, `overlap`', 'IIB overlap'),
                         ('ORB', 'ORB'), ('BRISK', 'BRISK'), ('SIFT', 'SIFT'), ('AKAZE', 'AKAZE-486')):
         def ratio(column):
             return '%.2f' % (float(found[name][column]) / float(found['ORB'][column]))
@@ -170,7 +172,56 @@ def all_costs():
     return table(['', 'bytes', 'ms', 'ratio to ORB', 'us a point more'], lines)
 
 
-PAGES = {'README.md': (detected_points, fixed_points, turned, ratios, presets, costs), 'doc/performance.md': (all_costs,),
+def benchmark(name):
+    """What iib_benchmark wrote."""
+    return json.loads((ROOT / 'doc/results' / name).read_text())
+
+
+WIDE, NARROW = 'benchmark.json', 'benchmark_without_avx2.json'
+
+
+def describing():
+    """Describing beside ORB in one run, and in another one without AVX2 and AVX-512."""
+    data, narrow = benchmark(WIDE), benchmark(NARROW)
+    few, many = data['keypoints']
+    orb, lines = data['rows'][0]['milliseconds'], []
+    for row, slow in zip(data['rows'], narrow['rows']):
+        first, second = row['milliseconds']
+        lines.append([row['name'], '%.2f' % first, '%.2f' % (first / orb[0]),
+                      '%.2f' % ((second - first) * 1000 / (many - few)), '%.2f' % ((second - first) / (orb[1] - orb[0])),
+                      '%.1f' % (slow['milliseconds'][0] / first)])
+    return table(['', 'ms', 'ratio to ORB', 'us a point more', 'ratio', 'without AVX2, times'], lines)
+
+
+def speeds(name):
+    """How many times as fast as BFMatcher, by mode, codes and cross-check."""
+    found = {(m['name'], m['codes'], m['cross_check']): m['milliseconds'] for m in benchmark(name)['matching']}
+    return {key: found['BFMatcher', key[1], key[2]] / time for key, time in found.items()}
+
+
+def matching():
+    """Every way of matching beside BFMatcher in one run, and in another one without AVX2 and AVX-512."""
+    wide, narrow, lines = speeds(WIDE), speeds(NARROW), []
+    for m in benchmark(WIDE)['matching']:
+        key = m['name'], m['codes'], m['cross_check']
+        lines.append([m['name'], str(m['codes']), 'yes' if m['cross_check'] else '', '%.2f' % m['milliseconds'],
+                      '%.2f' % (1e6 * m['milliseconds'] / m['codes'] ** 2), '%.1f' % wide[key], '%.1f' % narrow[key],
+                      '%.3f' % m['right']])
+    return table(['', 'codes', 'cross-check', 'ms', 'ns a pair', 'times as fast as BFMatcher', 'the same without AVX2',
+                  'right'], lines)
+
+
+def matching_speed():
+    """The default mode, times as fast as BFMatcher."""
+    wide, narrow, lines = speeds(WIDE), speeds(NARROW), []
+    for codes in sorted({key[1] for key in wide}):
+        lines.append(['{0:,} x {0:,}'.format(codes)] + ['%.0f' % found['EXACT', codes, cross]
+                                                       for found in (wide, narrow) for cross in (0, 1)])
+    return table(['codes', 'AVX-512', 'and cross-check', 'without AVX2', 'and cross-check'], lines)
+
+
+PAGES = {'README.md': (detected_points, fixed_points, turned, ratios, presets, matching_speed, costs),
+         'doc/performance.md': (describing, matching, all_costs),
          'doc/results/README.md': (extra_channels, all_ratios)}
 
 
