@@ -30,7 +30,7 @@ def draw_keypoints(axis, data):
 
 def draw_codes(axis, data):
     """On logarithmic axes: a line parallel to another takes so many times as long for any number of codes."""
-    for name, label in (("BFMatcher", "BFMatcher"), ("EXACT", "IIB's matcher")):
+    for name, label in (("EXACT", "IIB's matcher"), ("BFMatcher", "BFMatcher")):
         found = [m for m in data["matching"] if m["name"] == name and m["cross_check"]]
         axis.plot([m["codes"] for m in found], [m["milliseconds"] for m in found], marker="o", label=label)
     axis.set_xscale("log")
