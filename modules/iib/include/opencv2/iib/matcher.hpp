@@ -45,8 +45,8 @@ within a radius of the query has the query within that radius.
    distance over all levels. Fast, and it loses whole keypoints in hard scenes.
  - #ADAPTIVE: approximate. Stops at 25 % of the last level if the partial distance exceeds the query's best by more
    than 1.75 sigma (sigma = sqrt(n) / 2 for n bits so far). Distances are exact; neighbours may be missed, and nothing
-   is promised for a single query. Of the right matches of #EXACT (170 bytes, k = 1) it kept 98.8 % between images
-   where they are 73 % of all keypoints and 98.3 % where they are 54 %; the bound was not tuned on these images.
+   is promised for a single query. Of the right matches of #EXACT (170 bytes, k = 1) it keeps at least 98 % on the
+   images of the test IIB_Real.adaptive_keeps_the_correct_matches, on which the bound was not tuned.
    Descriptors of up to 4 bytes are compared as in #EXACT, and so is radiusMatch.
 
 **Threads.** Calls run on cv::parallel_for_; results are the same for every number of threads and every
