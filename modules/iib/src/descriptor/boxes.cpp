@@ -101,13 +101,14 @@ void describeBatch(const DescriptorPlan& plan, const BoxInput& input,
     frame.origin = integral.origin;
     frame.count = integral.count;
     BoxEdges edges;
+    const Rotation upright(0);
     float matrix[BOX_LANES][BOX_LANES];
 
     for (int k : batch.keypoints)
     {
         const SupportRegion& region = input.regions[k];
         const Point2f centre = input.keypoints[k].pt;
-        const Rotation rotation(rotated ? (*input.angles)[k] : 0);
+        const Rotation rotation = rotated ? Rotation((*input.angles)[k]) : upright;
         band.advance(batch.bandEnd(boxPixels(region, centre, rotated, border, image.size()).br().y));
         frame.centre = Point2d((centre.x + 0.5) / BOX_CELL, (centre.y + 0.5) / BOX_CELL);
         frame.side = region.side / BOX_CELL;
