@@ -5,6 +5,7 @@
 #include "../support/descriptor_oracle.hpp"
 #include "../support/test_images.hpp"
 
+#include "../../src/descriptor/kernels/kernels.hpp"
 #include "../../src/descriptor/kernels/orientation.hpp"
 
 namespace opencv_test {
@@ -25,6 +26,22 @@ TEST(IIB_Orientation, as_atan2_for_all_gradients_of_8_bits)
         }
     EXPECT_LE(worst, 0.5 + 0.11);
     EXPECT_EQ(0, oracle::orientation(0, 0));
+}
+
+// Every gradient of an 8-bit image, by this machine's kernel.
+TEST(IIB_Orientation, kernel_for_all_gradients_of_8_bits)
+{
+    const int largest = 4 * 255, width = 2 * largest + 1;
+    std::vector<short> gx(width + cv::iib::ROW_PADDING), gy(gx.size()), steps(gx.size());
+    for (int x = 0; x < width; x++)
+        gx[x] = (short)(x - largest);
+    for (int y = -largest; y <= largest; y++)
+    {
+        std::fill(gy.begin(), gy.end(), (short)y);
+        cv::iib::descriptorKernels().shortPixels.rows.orientation(gx.data(), gy.data(), steps.data(), width);
+        for (int x = 0; x < width; x++)
+            ASSERT_EQ(oracle::orientation(gx[x], y), steps[x]) << gx[x] << ", " << y;
+    }
 }
 
 /* Every value of the rows of channels, sums and cells: two by two pixels around each pixel, whose order SORT tells,
