@@ -89,13 +89,9 @@ template <typename V> inline V exactRoot(const V& v) { return v_sqrt(v); }
 //! Adds to each value those before it in its group of four, modulo 2^16.
 inline v_uint16 prefixSumsOfFour(const v_uint16& v)
 {
-#if CV_AVX512_SKX
-    return v_uint16(_mm512_mullo_epi64(v.val, _mm512_set1_epi64(0x0001000100010001)));
-#else
     // Added in 16 bits: valgrind takes a whole 64-bit sum for undefined where the last pixels of four are.
     const v_uint16 two = v_add_wrap(v, v_reinterpret_as_u16(v_reinterpret_as_u64(v) << 16));
     return v_add_wrap(two, v_reinterpret_as_u16(v_reinterpret_as_u64(two) << 32));
-#endif
 }
 
 //! Where a vector has more than four 64-bit elements, adds the fourth to those after it, in 16-bit lanes.
