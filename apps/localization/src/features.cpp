@@ -11,8 +11,8 @@ namespace {
 
 using namespace cv::iib;
 
-//! Of the IIB descriptor; -1 is the paper's default. A map of another preset has to be built anew.
-constexpr int PRESET = -1;
+//! Made for cameras that move. A map of another preset has to be built anew.
+constexpr int PRESET = IIB::PRESET_UNIVERSAL;
 
 constexpr int MAX_KEYPOINTS = 1000;  // a detector
 

@@ -34,6 +34,12 @@ public:
     std::string description() const;
     size_t detectors() const { return detectors_.size(); }
     bool binary() const { return name_ != "sift"; }
+    //! The ratio of distances, of the matches that tell which keyframe is the right one.
+    float sureRatio() const { return name_ == "iib" ? 0.9f : 0.8f; }
+    //! How many of the codes' columns tell keyframes apart: IIB's begin with the coarse cells.
+    int coarseColumns(int columns) const { return name_ == "iib" ? columns / 2 : columns; }
+    //! The ratio of the matches that a pose is found from: right ones of codes as long as IIB's reach it.
+    float poseRatio() const { return name_ == "iib" ? 0.97f : 0.8f; }
 
     Features extract(const cv::Mat& grey) const;
     //! Mutual nearest neighbours, whose distance is less than maxRatio times the second nearest's.

@@ -15,9 +15,6 @@ namespace {
 constexpr size_t SHORTLIST = 20;    // keyframes by votes, of which
 constexpr size_t CANDIDATES = 5;    // keyframes that an image is matched with
 constexpr int STRONGEST = 400;      // of an image and detector, whose matches rank the shortlist
-constexpr float SURE_RATIO = 0.9f;  // of distances, of the matches that rank
-constexpr float MAX_RATIO =
-        0.97f;  // of the matches that the pose is from: with codes this long, right ones reach it
 constexpr double RANSAC_ERROR = 4;  // pixels
 constexpr double INLIER_ERROR = 3;  // pixels, of a refined pose
 constexpr size_t MIN_MATCHES = 12;
@@ -136,8 +133,6 @@ std::vector<size_t> Localizer::candidates(const Features& features, const Pose* 
     }
     for (size_t d = 0; !prior && d < retrievals_.size(); d++)
         retrievals_[d].vote(features.codes[d], votes);
-    if (!prior && retrievals_.empty())
-        return order;  // without binary codes there is no vote: all keyframes
     const auto keepBest = [&](size_t limit) {
         const size_t count = std::min(order.size(), limit);
         std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(count), order.end(),
@@ -146,20 +141,27 @@ std::vector<size_t> Localizer::candidates(const Features& features, const Pose* 
     };
     if (!prior)
     {
-        keepBest(SHORTLIST);
+        if (!retrievals_.empty())  // without binary codes there is no vote: all keyframes are ranked
+            keepBest(SHORTLIST);
         for (size_t k : order)
-        {
-            votes[k] = 0;
-            for (size_t d = 0; d < method_.detectors(); d++)
-            {
-                const cv::Mat& codes = features.codes[d];
-                const cv::Mat strongest = codes.rows > STRONGEST ? codes.rowRange(0, STRONGEST) : codes;
-                votes[k] += float(method_.match(strongest, map_.codes[k][d], SURE_RATIO).size());
-            }
-        }
+            votes[k] = float(countSureMatches(features, k));
     }
     keepBest(CANDIDATES);
     return order;
+}
+
+size_t Localizer::countSureMatches(const Features& features, size_t keyframe) const
+{
+    size_t count = 0;
+    for (size_t d = 0; d < method_.detectors(); d++)
+    {
+        const cv::Mat &query = features.codes[d], &train = map_.codes[keyframe][d];
+        const cv::Range rows(0, std::min(query.rows, STRONGEST));
+        const cv::Range columns(0, method_.coarseColumns(query.cols));
+        if (!query.empty() && !train.empty())
+            count += method_.match(query(rows, columns), train.colRange(columns), method_.sureRatio()).size();
+    }
+    return count;
 }
 
 std::vector<Observation> Localizer::match(
@@ -172,7 +174,8 @@ std::vector<Observation> Localizer::match(
         int firstQuery = 0, firstTrain = 0;  // row of the detector's first keypoint
         for (size_t d = 0; d < method_.detectors(); d++)
         {
-            for (const cv::DMatch& m : method_.match(features.codes[d], map_.codes[k][d], MAX_RATIO))
+            for (const cv::DMatch& m :
+                    method_.match(features.codes[d], map_.codes[k][d], method_.poseRatio()))
                 matches.push_back({map_.model.points[map_.model.keyframes[k].points[firstTrain + m.trainIdx]],
                         pixels[firstQuery + m.queryIdx]});
             firstQuery += features.codes[d].rows;

@@ -42,6 +42,7 @@ public:
 
 private:
     std::vector<size_t> candidates(const Features& features, const Pose* prior) const;
+    size_t countSureMatches(const Features& features, size_t keyframe) const;
     std::vector<Observation> match(const Features& features, const std::vector<size_t>& keyframes) const;
     void estimate(const std::vector<Observation>& matches, Location& location) const;
     void judge(Location& location) const;
