@@ -7,16 +7,14 @@
 #include <algorithm>
 #include <numeric>
 
-#include "opencv2/calib3d.hpp"
+#include "pnp.hpp"
 
 namespace iib_localization {
 namespace {
 
-constexpr size_t SHORTLIST = 20;    // keyframes by votes, of which
-constexpr size_t CANDIDATES = 5;    // keyframes that an image is matched with
-constexpr int STRONGEST = 400;      // of an image and detector, whose matches rank the shortlist
-constexpr double RANSAC_ERROR = 4;  // pixels
-constexpr double INLIER_ERROR = 3;  // pixels, of a refined pose
+constexpr size_t SHORTLIST = 20;  // keyframes by votes, of which
+constexpr size_t CANDIDATES = 5;  // keyframes that an image is matched with
+constexpr int STRONGEST = 400;    // of an image and detector, whose matches rank the shortlist
 constexpr size_t MIN_MATCHES = 12;
 constexpr size_t MIN_INLIERS = 15;
 constexpr double MIN_INLIER_SHARE = 0.06;  // of the matches
@@ -36,48 +34,6 @@ public:
 private:
     int64 last_ = cv::getTickCount();
 };
-
-std::vector<Observation> within(
-        const std::vector<Observation>& matches, const Pinhole& camera, const Pose& pose)
-{
-    std::vector<Observation> inliers;
-    for (const Observation& o : matches)
-    {
-        const Eigen::Vector3d seen = pose.toCamera(o.point);
-        if (seen.z() > 0.1 && (camera.project(seen) - o.pixel).norm() < INLIER_ERROR)
-            inliers.push_back(o);
-    }
-    return inliers;
-}
-
-bool ransac(const std::vector<Observation>& matches, const Pinhole& p, Pose& pose)
-{
-    std::vector<cv::Point3d> points;
-    std::vector<cv::Point2d> pixels;
-    for (const Observation& o : matches)
-    {
-        points.emplace_back(o.point.x(), o.point.y(), o.point.z());
-        pixels.emplace_back(o.pixel.x(), o.pixel.y());
-    }
-    cv::UsacParams parameters;
-    parameters.score = cv::SCORE_METHOD_MAGSAC;
-    parameters.threshold = RANSAC_ERROR;
-    parameters.confidence = 0.999;
-    parameters.maxIterations = 10000;
-    cv::Mat matrix = (cv::Mat_<double>(3, 3) << p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1), rotation, translation,
-            inliers;
-    if (!cv::solvePnPRansac(
-                points, pixels, matrix, cv::noArray(), rotation, translation, inliers, parameters))
-        return false;
-    cv::Matx33d r;
-    cv::Rodrigues(rotation, r);
-    Eigen::Matrix3d fromWorld;
-    fromWorld << r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2);
-    pose.rotation = Eigen::Quaterniond(fromWorld).conjugate().normalized();
-    pose.position = -(pose.rotation * Eigen::Vector3d(translation.at<double>(0), translation.at<double>(1),
-                                              translation.at<double>(2)));
-    return pose.position.allFinite();
-}
 
 //! The residuals' standard deviation in a coordinate, from their median, so that a few wrong ones do not count.
 double deviation(const std::vector<Observation>& inliers, const Pinhole& camera, const Pose& pose)
@@ -188,7 +144,7 @@ std::vector<Observation> Localizer::match(
 void Localizer::estimate(const std::vector<Observation>& matches, Location& location) const
 {
     RefinedPose& refined = location.estimate;
-    if (!ransac(matches, pinhole_, refined.pose))
+    if (!poseByRansac(matches, pinhole_, refined.pose))
     {
         location.reason = "no pose that the matches agree on";
         return;
@@ -196,7 +152,7 @@ void Localizer::estimate(const std::vector<Observation>& matches, Location& loca
     // what agrees is looked for again after each refinement
     for (int round = 0; round < 3; round++)
     {
-        location.inliers = within(matches, pinhole_, refined.pose);
+        location.inliers = agreeing(matches, pinhole_, refined.pose);
         if (location.inliers.size() < MIN_INLIERS)
         {
             location.reason = "too few matches agree";

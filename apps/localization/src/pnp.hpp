@@ -1,0 +1,23 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_LOCALIZATION_PNP_HPP
+#define IIB_LOCALIZATION_PNP_HPP
+
+#include <vector>
+
+#include "geometry.hpp"
+
+namespace iib_localization {
+
+//! The pose that most matches agree on, not refined (USAC with MAGSAC's score). False if there is none.
+bool poseByRansac(const std::vector<Observation>& matches, const Pinhole& camera, Pose& pose);
+
+//! The matches within three pixels of where the pose has them.
+std::vector<Observation> agreeing(
+        const std::vector<Observation>& matches, const Pinhole& camera, const Pose& pose);
+
+}  // namespace iib_localization
+
+#endif
