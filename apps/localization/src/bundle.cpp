@@ -58,6 +58,33 @@ bool refinePose(const Pinhole& camera, const std::vector<Observation>& observati
     return c.allFinite();
 }
 
+double refineFocal(const Pinhole& camera, std::vector<View>& views, double& scale)
+{
+    ceres::Problem problem;
+    problem.AddParameterBlock(&scale, 1);
+    problem.SetParameterLowerBound(&scale, 0, 0.1);
+    for (View& view : views)
+    {
+        double* rotation = view.pose.rotation.coeffs().data();
+        problem.AddParameterBlock(rotation, 4, new ceres::EigenQuaternionManifold);
+        for (Observation& o : view.inliers)
+        {
+            problem.AddResidualBlock(FocalError::create(camera, o.pixel), new ceres::CauchyLoss(LOSS_SCALE),
+                    rotation, view.pose.position.data(), o.point.data(), &scale);
+            problem.SetParameterBlockConstant(o.point.data());
+        }
+    }
+    ceres::Solver::Summary summary;
+    ceres::Solve(solverOptions(ceres::SPARSE_SCHUR), &problem, &summary);
+    ceres::Covariance covariance((ceres::Covariance::Options()));
+    const std::vector<const double*> blocks = {&scale};
+    double variance = 0;
+    if (!summary.IsSolutionUsable() || !covariance.Compute(blocks, &problem) ||
+            !covariance.GetCovarianceBlock(&scale, &scale, &variance))
+        return std::numeric_limits<double>::infinity();
+    return std::sqrt(variance);
+}
+
 void adjustBundle(const std::vector<Sight>& sights, std::vector<Pose>& poses,
         std::vector<Eigen::Vector3d>& points, bool refinePoses)
 {

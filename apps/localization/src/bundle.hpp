@@ -23,6 +23,18 @@ struct RefinedPose
 @return false if the points do not determine the pose. */
 bool refinePose(const Pinhole& camera, const std::vector<Observation>& observations, RefinedPose& refined);
 
+//! An image with its pose, and the points that agree with it.
+struct View
+{
+    Pose pose;
+    std::vector<Observation> inliers;
+};
+
+/** Moves the poses and one focal length to the least reprojection error.
+@param scale of the camera's focal length: a first guess and the result.
+@return the standard deviation of `scale` for errors of one pixel; infinite if the points do not determine it. */
+double refineFocal(const Pinhole& camera, std::vector<View>& views, double& scale);
+
 //! A sight of a point by a pose, both by index.
 struct Sight
 {

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "common/command_line.hpp"
+#include "focal_check.hpp"
 #include "images.hpp"
 #include "localizer.hpp"
 #include "opencv2/imgcodecs.hpp"
@@ -27,9 +28,9 @@ std::string csvHeader()
 
 std::string csvRow(const std::string& name, const Location& location)
 {
-    std::string row =
-            cv::format("%s,%d,%s,%d,%d,%.4f,%.4f", name.c_str(), location.found, location.reason.c_str(),
-                    int(location.matches), int(location.inliers.size()), location.metres, location.degrees);
+    std::string row = cv::format("%s,%d,%s,%d,%d,%.4f,%.4f", name.c_str(), location.found,
+            location.reason.c_str(), int(location.matched.size()), int(location.inliers.size()),
+            location.metres, location.degrees);
     for (size_t i = 0; i < Location::stages().size(); i++)
         row += i < location.times.size() ? cv::format(",%.2f", location.times[i]) : ",";
     return row + "\n";
@@ -99,29 +100,34 @@ int run(const iib_tools::CommandLine& line)
     const std::string out = line.text("out");
     std::error_code error;
     std::filesystem::create_directories(out, error);
+    std::ofstream frames = createFile(out + "/frames.csv");
+    frames << csvHeader();
     std::vector<Location> locations;
+    FocalCheck focal(cameras.begin()->second.pinhole());
     for (const ImageFile& image : images)
     {
         const cv::Mat grey = cv::imread(image.path, cv::IMREAD_GRAYSCALE);
         locations.push_back(localizer.locate(grey, findPose(priors, image.name)));
-        if (line.has("pictures") && locations.back().found)
-            writePicture(out + "/" + image.name + ".png", grey, locations.back(), cameras.begin()->second);
+        Location& location = locations.back();
+        if (line.has("pictures") && location.found)
+            writePicture(out + "/" + image.name + ".png", grey, location, cameras.begin()->second);
+        frames << csvRow(image.name, location);
+        focal.add(location);
+        location.matched = {};  // a long run has no room for all
     }
+    finishFile(frames, out + "/frames.csv");
+    if (const double scale = focal.scale(); scale != 1)
+        std::cerr << line.text("cameras") << ": the images fit a focal length " << cv::format("%.3f", scale)
+                  << " times as long better: calibrate the camera\n";
     const std::vector<std::optional<Pose>> poses =
             line.has("imu")
                     ? withImu(images, locations, readImu(line.text("imu")), cameras.begin()->second.pinhole())
                     : posesOf(locations);
 
-    std::ofstream frames = createFile(out + "/frames.csv");
-    frames << csvHeader();
     std::vector<NamedPose> trajectory;
     for (size_t i = 0; i < images.size(); i++)
-    {
-        frames << csvRow(images[i].name, locations[i]);
         if (poses[i])
             trajectory.push_back({images[i].name, *poses[i]});
-    }
-    finishFile(frames, out + "/frames.csv");
     writeTrajectory(out + "/trajectory.txt", trajectory);
     std::cout << trajectory.size() << " of " << images.size() << " images have a pose\n";
     return 0;

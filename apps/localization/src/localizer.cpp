@@ -141,10 +141,10 @@ std::vector<Observation> Localizer::match(
     return matches;
 }
 
-void Localizer::estimate(const std::vector<Observation>& matches, Location& location) const
+void Localizer::estimate(Location& location) const
 {
     RefinedPose& refined = location.estimate;
-    if (!poseByRansac(matches, pinhole_, refined.pose))
+    if (!poseByRansac(location.matched, pinhole_, refined.pose))
     {
         location.reason = "no pose that the matches agree on";
         return;
@@ -152,7 +152,7 @@ void Localizer::estimate(const std::vector<Observation>& matches, Location& loca
     // what agrees is looked for again after each refinement
     for (int round = 0; round < 3; round++)
     {
-        location.inliers = agreeing(matches, pinhole_, refined.pose);
+        location.inliers = agreeing(location.matched, pinhole_, refined.pose);
         if (location.inliers.size() < MIN_INLIERS)
         {
             location.reason = "too few matches agree";
@@ -174,7 +174,7 @@ void Localizer::judge(Location& location) const
     refined.covariance *= sigma * sigma;
     location.metres = 3 * worstDeviation(refined.covariance.topLeftCorner<3, 3>());
     location.degrees = 3 * worstDeviation(refined.covariance.bottomRightCorner<3, 3>()) * 180 / CV_PI;
-    if (double(location.inliers.size()) < MIN_INLIER_SHARE * double(location.matches))
+    if (double(location.inliers.size()) < MIN_INLIER_SHARE * double(location.matched.size()))
         location.reason = "too few matches agree";
     else if (location.metres > MAX_BOUND)
         location.reason = "the pose is uncertain";
@@ -201,13 +201,12 @@ Location Localizer::locate(const cv::Mat& grey, const Pose* prior) const
     watch.lap(location);
     const std::vector<size_t> keyframes = candidates(features, prior);
     watch.lap(location);
-    const std::vector<Observation> matches = match(features, keyframes);
-    location.matches = matches.size();
+    location.matched = match(features, keyframes);
     watch.lap(location);
-    if (matches.size() < MIN_MATCHES)
+    if (location.matched.size() < MIN_MATCHES)
         location.reason = "too few matches";
     else
-        estimate(matches, location);
+        estimate(location);
     watch.lap(location);
     return location;
 }

@@ -22,7 +22,7 @@ struct Location
     RefinedPose estimate;  //!< its covariance is scaled to the residuals
     double metres = 0;     //!< three standard deviations in the worst direction
     double degrees = 0;
-    size_t matches = 0;
+    std::vector<Observation> matched;  //!< points of the map and where they may be seen; many are wrong
     std::vector<Observation> inliers;
     //! Milliseconds of each of STAGES.
     std::vector<double> times;
@@ -44,7 +44,7 @@ private:
     std::vector<size_t> candidates(const Features& features, const Pose* prior) const;
     size_t countSureMatches(const Features& features, size_t keyframe) const;
     std::vector<Observation> match(const Features& features, const std::vector<size_t>& keyframes) const;
-    void estimate(const std::vector<Observation>& matches, Location& location) const;
+    void estimate(Location& location) const;
     void judge(Location& location) const;
 
     const Map& map_;

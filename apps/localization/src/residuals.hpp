@@ -39,6 +39,29 @@ struct ReprojectionError
     }
 };
 
+//! ReprojectionError for a focal length that is `scale` times the camera's.
+struct FocalError
+{
+    ReprojectionError given;
+
+    template <typename T>
+    bool operator()(const T* rotation, const T* position, const T* point, const T* scale, T* residual) const
+    {
+        if (!given(rotation, position, point, residual))
+            return false;
+        const Eigen::Vector2d offset(given.pixel.x() - given.camera.cx, given.pixel.y() - given.camera.cy);
+        for (int i = 0; i < 2; i++)
+            residual[i] = *scale * (residual[i] + T(offset[i])) - T(offset[i]);
+        return true;
+    }
+
+    static ceres::CostFunction* create(const Pinhole& camera, const Eigen::Vector2d& pixel)
+    {
+        return new ceres::AutoDiffCostFunction<FocalError, 2, 4, 3, 3, 1>(
+                new FocalError{ReprojectionError{camera, pixel}});
+    }
+};
+
 //! How far a pose is from a given one, in units of what is usual.
 struct PosePrior
 {

@@ -58,6 +58,20 @@ TEST(Residuals, reprojection)
     EXPECT_FALSE(function->Evaluate(pointers, residual, nullptr));
 }
 
+TEST(Residuals, focal_length)
+{
+    const Pinhole camera = {500, 510, 320, 240};
+    const std::unique_ptr<ceres::CostFunction> function(FocalError::create(camera, {100, 200}));
+    const Eigen::Vector3d point = Pose{TURN, {1, -2, 0.5}}.toWorld({0.5, -0.7, 3});
+    const Blocks blocks = withPose({{point.x(), point.y(), point.z()}, {1.3}});
+    checkJacobians(*function, blocks, {0});
+    const double* pointers[] = {blocks[0].data(), blocks[1].data(), blocks[2].data(), blocks[3].data()};
+    double residual[2];
+    ASSERT_TRUE(function->Evaluate(pointers, residual, nullptr));
+    EXPECT_NEAR(1.3 * 500 * 0.5 / 3 + 320 - 100, residual[0], 1e-9);
+    EXPECT_NEAR(1.3 * 510 * -0.7 / 3 + 240 - 200, residual[1], 1e-9);
+}
+
 TEST(Residuals, prior)
 {
     const Pose pose = {TURN * Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY()), {1.1, -2, 0.4}};
