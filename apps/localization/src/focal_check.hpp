@@ -36,13 +36,10 @@ private:
     };
 
     Pinhole scaled(double scale) const;
-    Fit givenFit() const;
-    Fit search() const;
     double refine(Fit& fit) const;
 
     const Pinhole camera_;
     std::vector<Image> images_;
-    size_t found_ = 0;  // of the images
 };
 
 }  // namespace iib_localization
