@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "common/command_line.hpp"
+#include "localizer.hpp"
 #include "map_builder.hpp"
 
 namespace {
@@ -13,8 +14,11 @@ using namespace iib_localization;
 void printInfo(const Map& map)
 {
     const size_t keyframes = map.model.keyframes.size();
+    const Localizer localizer(map, map.model.cameras.begin()->second);
     std::cout << keyframes << " keyframes, " << map.model.points.size() << " points, features "
-              << map.description << ", " << map.codeBytes() / keyframes << " bytes of codes a keyframe\n";
+              << map.description << "\nbytes a keyframe: codes " << map.codeBytes() / keyframes << ", points "
+              << map.pointBytes() / keyframes << ", retrieval " << localizer.retrievalBytes() / keyframes
+              << "\n";
 }
 
 int run(const iib_tools::CommandLine& line)

@@ -74,6 +74,14 @@ Localizer::Localizer(const Map& map, const Camera& camera)
     }
 }
 
+size_t Localizer::retrievalBytes() const
+{
+    size_t sum = 0;
+    for (const Retrieval& retrieval : retrievals_)
+        sum += retrieval.bytes();
+    return sum;
+}
+
 std::vector<size_t> Localizer::candidates(const Features& features, const Pose* prior) const
 {
     const std::vector<Keyframe>& keyframes = map_.model.keyframes;

@@ -40,6 +40,9 @@ public:
     //! @param prior about where the camera is; null: the keyframes are found by their codes.
     Location locate(const cv::Mat& grey, const Pose* prior = nullptr) const;
 
+    //! Memory of what finds the keyframes; the map's own comes on top.
+    size_t retrievalBytes() const;
+
 private:
     std::vector<size_t> candidates(const Features& features, const Pose* prior) const;
     size_t countSureMatches(const Features& features, size_t keyframe) const;

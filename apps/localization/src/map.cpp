@@ -86,6 +86,14 @@ size_t Map::codeBytes() const
     return bytes;
 }
 
+size_t Map::pointBytes() const
+{
+    size_t bytes = model.points.size() * sizeof(model.points[0]);
+    for (const Keyframe& k : model.keyframes)
+        bytes += k.points.size() * (sizeof(k.points[0]) + sizeof(k.pixels[0]));
+    return bytes;
+}
+
 void writeMap(const std::string& folder, const Map& map)
 {
     fs::path target = fs::absolute(folder).lexically_normal();

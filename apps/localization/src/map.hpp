@@ -23,6 +23,8 @@ struct Map
 
     //! All codes in bytes.
     size_t codeBytes() const;
+    //! Points and where they are seen, in bytes.
+    size_t pointBytes() const;
 };
 
 /** Writes a map beside the place where it belongs and then moves it there, so that whoever looks sees the old map or

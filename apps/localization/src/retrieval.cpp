@@ -61,8 +61,9 @@ Retrieval::Retrieval(const std::vector<cv::Mat>& codes)
     }
 }
 
-void Retrieval::vote(const cv::Mat& codes, std::vector<float>& votes) const
+size_t Retrieval::vote(const cv::Mat& codes, std::vector<float>& votes) const
 {
+    size_t visited = 0;
     CV_Assert(codes.empty() || tables_.empty() || codes.cols == bytes_);
     for (const Table& table : tables_)
         for (int row = 0; row < codes.rows; row++)
@@ -71,9 +72,19 @@ void Retrieval::vote(const cv::Mat& codes, std::vector<float>& votes) const
             const uint32_t begin = table.begins[key], end = table.begins[key + 1];
             if (end - begin > MAX_ENTRIES)
                 continue;
+            visited += end - begin;
             for (uint32_t i = begin; i < end; i++)
                 votes[table.keyframes[i]] += 1.f / float(end - begin);
         }
+    return visited;
+}
+
+size_t Retrieval::bytes() const
+{
+    size_t sum = 0;
+    for (const Table& table : tables_)
+        sum += sizeof(uint32_t) * (table.begins.size() + table.keyframes.size());
+    return sum;
 }
 
 }  // namespace iib_localization

@@ -20,8 +20,11 @@ public:
     //! @param codes of each keyframe, of one detector, the strongest keypoints first; may be empty.
     explicit Retrieval(const std::vector<cv::Mat>& codes);
 
-    //! Adds to the votes for each keyframe.
-    void vote(const cv::Mat& codes, std::vector<float>& votes) const;
+    //! Adds to the votes for each keyframe. Returns how many codes of the map were looked at.
+    size_t vote(const cv::Mat& codes, std::vector<float>& votes) const;
+
+    //! Memory that is used.
+    size_t bytes() const;
 
 private:
     struct Table

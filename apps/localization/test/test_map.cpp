@@ -50,6 +50,7 @@ TEST(Map, round_trip_also_over_an_old_one)
                     map.codes[k][d].empty() || cv::countNonZero(map.codes[k][d] != back.codes[k][d]) == 0);
         }
     EXPECT_EQ(4u * 170, back.codeBytes());
+    EXPECT_EQ(3u * 3 * sizeof(double) + 4u * (2 * sizeof(double) + sizeof(int)), back.pointBytes());
     std::vector<cv::String> left;
     cv::utils::fs::glob(folder.path("."), "", left, false, true);
     EXPECT_EQ(1u, left.size()) << "nothing beside the map";

@@ -39,6 +39,26 @@ TEST(Retrieval, finds_the_keyframe_of_noisy_codes_among_many)
     }
 }
 
+// A map a hundred times as large takes as many votes, and its memory grows with it.
+TEST(Retrieval, looks_at_no_more_codes_of_ten_thousand_keyframes)
+{
+    cv::RNG random(1);
+    std::vector<cv::Mat> keyframes(10000);
+    for (cv::Mat& codes : keyframes)
+    {
+        codes.create(40, 64, CV_8U);
+        random.fill(codes, cv::RNG::UNIFORM, 0, 256);
+    }
+    const Retrieval large(keyframes), small(std::vector<cv::Mat>(keyframes.begin(), keyframes.begin() + 100));
+    EXPECT_LT(large.bytes(), 150 * small.bytes());
+    const cv::Mat query = noisy(keyframes[50], 0.1, random);
+    std::vector<float> votes(100, 0.f), manyVotes(keyframes.size(), 0.f);
+    const size_t visited = small.vote(query, votes), manyVisited = large.vote(query, manyVotes);
+    EXPECT_GT(visited, 0u);
+    EXPECT_LT(manyVisited, 1.5 * visited);
+    EXPECT_EQ(50, std::max_element(manyVotes.begin(), manyVotes.end()) - manyVotes.begin());
+}
+
 TEST(Retrieval, without_codes_there_are_no_votes)
 {
     std::vector<float> votes(2, 0.f);
