@@ -66,7 +66,8 @@ def imu(seed):
     random = np.random.default_rng(seed)
     rows = []
     for time, a, b, c in zip(times, before, now, after):
-        turn = cv2.Rodrigues(a[:3, :3].T @ c[:3, :3])[0].ravel() / (2 * step)
+        change = a[:3, :3].T @ c[:3, :3]  # by so little that its skew part is the angle; cv2.Rodrigues would say 0
+        turn = (change - change.T)[[2, 0, 1], [1, 2, 0]] / (4 * step)
         acceleration = (a[:3, 3] - 2 * b[:3, 3] + c[:3, 3]) / step ** 2
         force = b[:3, :3].T @ (acceleration - GRAVITY)
         turn = turn + GYRO_BIAS + random.standard_normal(3) * GYRO_NOISE * np.sqrt(IMU_RATE)
