@@ -2,8 +2,8 @@
 # Shows long-term localization: scripts/localization.sh [OUT]
 # Renders the synthetic walk (once, about half an hour of processor time, kept in the user's cache folder), maps it at
 # noon, localizes the images of other lights with IIB and, in the same pipeline, with the detectors' own descriptors and
-# SIFT, and writes results.csv and index.html to OUT (results-localization). With OPENCV_TEST_DATA_PATH set, real
-# photographs (strecha) as well.
+# SIFT, and writes index.html with pictures and a video, results.csv and growth.csv to OUT (results-localization). With
+# OPENCV_TEST_DATA_PATH set, also localizes real photographs (strecha) and photographs of other places.
 . "$(dirname "$0")/lib.sh"
 
 [ $# -le 1 ] || fail "one folder at most, not $#"
@@ -18,6 +18,6 @@ else
     configure -DIIB_BUILD_TESTS=OFF -DIIB_BUILD_TOOLS=OFF -DIIB_BUILD_APPS=ON
 fi
 say "building iib_map and iib_localize"
-cmake --build "$build" --target iib_map iib_localize
+cmake --build "$build" --target iib_map iib_localize iib_map_growth
 page=$(/usr/bin/python3 "$root/apps/localization/report/localization.py" "$build/apps/localization" "$data" "$out")
 say "results and page: $page"
