@@ -20,6 +20,7 @@ from scenes import LIGHTS, NOISE, NOISE_BY_DAY, SCENES, extrinsics, intrinsics, 
 HERE = pathlib.Path(__file__).resolve().parent
 DEPTH_SCALE = 0.004  # metres a step, as in common.inc
 IMAGE, DEPTH, LABELS = range(3)
+ATTEMPTS = 3  # POV-Ray 3.7 sometimes ends by a signal; the same scene then renders
 # A ray through the middle of the pixel gives depth and label; a picture is smoothed, without chance.
 OUTPUT = {IMAGE: ["+FN8", "+A0.15", "+AM1", "+R2", "-J"], DEPTH: ["+FN16", "-A"], LABELS: ["+FN8", "-A"]}
 
@@ -31,12 +32,14 @@ def povray(scene, mode, light, pose, size, output=None):
                     Focal=intrinsics(scene, width, height)[0, 0])
     with tempfile.TemporaryDirectory() as folder:
         picture = os.path.join(folder, "frame.png")
-        done = subprocess.run(
-            ["povray", f"+I{scene}.pov", f"+O{picture}", f"+W{width}", f"+H{height}",
-             "+WT1", "-D", "-GD", "-GR", "-GS", "-GW", *(output or OUTPUT[mode]),
-             f"File_Gamma={'srgb' if mode == IMAGE else '1.0'}",
-             *(f"Declare={name}={value:.9g}" for name, value in declared.items())],
-            cwd=HERE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)  # it takes no path with a space
+        command = ["povray", f"+I{scene}.pov", f"+O{picture}", f"+W{width}", f"+H{height}",
+                   "+WT1", "-D", "-GD", "-GR", "-GS", "-GW", *(output or OUTPUT[mode]),
+                   f"File_Gamma={'srgb' if mode == IMAGE else '1.0'}",
+                   *(f"Declare={name}={value:.9g}" for name, value in declared.items())]
+        for _ in range(ATTEMPTS):  # in the scenes' folder, since it takes no path with a space
+            done = subprocess.run(command, cwd=HERE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            if done.returncode >= 0:
+                break
         rendered = cv2.imread(picture, cv2.IMREAD_UNCHANGED) if done.returncode == 0 else None
     if rendered is None:
         why = done.stderr[done.stderr.find("[Parsing"):]

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 for needed in ("cv2", "numpy", "povray"):
     if not (shutil.which(needed) or importlib.util.find_spec(needed)):
@@ -65,6 +66,17 @@ class KnownGeometry(unittest.TestCase):
             np.testing.assert_allclose([columns.mean(), rows.mean()], pixel, atol=0.35)
             nearest = render_plane(render.DEPTH, pose)[lamp].min() * render.DEPTH_SCALE
             self.assertAlmostEqual(nearest, distance - 0.1, delta=0.015)
+
+    def test_a_crash_is_tried_again(self):
+        with tempfile.TemporaryDirectory() as folder:
+            program, crashed = pathlib.Path(folder) / "povray", pathlib.Path(folder) / "crashed"
+            program.write_text(f'#!/bin/sh\n[ -e {crashed} ] || {{ touch {crashed}; kill -SEGV $$; }}\n'
+                               f'exec {shutil.which("povray")} "$@"\n')
+            program.chmod(0o755)
+            with unittest.mock.patch.dict("os.environ", PATH=f"{folder}:/usr/bin:/bin"):
+                depth = render_plane(render.DEPTH, (0, 1, 0, 0, 0))
+            self.assertTrue(crashed.exists())
+        self.assertEqual(depth.shape, SIZE[::-1])
 
     def test_label_areas(self):
         pose = self.poses[0]
