@@ -12,7 +12,8 @@ from measure import distance, read_poses
 ABOVE = (720, 180)  # sizes of the drawings
 OVER_TIME = (720, 200)
 MAX_ERROR = 0.10  # metres, the top of the drawing over time
-FRAME = (480, 360)  # size of an image in a picture and in the video
+FRAME = (480, 360)  # size of an image in a picture
+VIDEO = (640, 240)  # noise of the night is smoothed, or the file would be large
 VIDEO_RATE = 4  # frames a second
 
 
@@ -65,10 +66,10 @@ def write_picture(path, every_pair):
 
 
 def write_video(path, every_pair):
-    """VP8, which browsers play."""
-    writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"VP80"), VIDEO_RATE, (2 * FRAME[0], FRAME[1]))
+    """VP9, which browsers play."""
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"VP90"), VIDEO_RATE, VIDEO)
     if not writer.isOpened():
-        raise RuntimeError(f"{path} cannot be written: this OpenCV has no VP8")
+        raise RuntimeError(f"{path} cannot be written: this OpenCV has no VP9")
     for _, pair in every_pair:
-        writer.write(pair)
+        writer.write(cv2.resize(pair, VIDEO, interpolation=cv2.INTER_AREA))
     writer.release()

@@ -42,7 +42,7 @@ def all_rows():
     return [street_row(*kind, light) for kind in kinds for light in LIGHTS]
 
 
-TIMES = [{"threads": n, "all": 90.0, "features": 60.0, "retrieval": 10.0, "matching": 10.0, "pose": 10.0} for n in (1, 2)]
+TIMES = [{"threads": n, "processor": 90.0, "all": 90.0, "features": 60.0, "retrieval": 10.0, "matching": 10.0, "pose": 10.0} for n in (1, 2)]
 
 
 class Sums(unittest.TestCase):
@@ -71,8 +71,10 @@ class Aims(unittest.TestCase):
         for r in rows:
             if (r["map"], r["keyframes"], r["light"]) == ("depth", "2.8 m", "dusk"):
                 r["within_5cm"] = 89.0
+            if (r["map"], r["light"]) == ("depth, IMU, one image of 4", "winter"):
+                r["found"] = 3
         missed = [aim for aim in localization.aims(rows, TIMES, {"images": 200, "found": 3}) if not aim["reached"]]
-        self.assertEqual([aim["measured"] for aim in missed], ["89 %", "1.5 %"])
+        self.assertEqual([aim["measured"] for aim in missed], ["89 %", "75 %", "1.5 %"])
 
 
 class Page(unittest.TestCase):

@@ -12,6 +12,9 @@
 // Least squares with Ceres, whose headers the OpenCV side of the application does not see.
 namespace iib_localization {
 
+//! Points of the map err together, so each counts as less than an independent pixel would.
+constexpr double POINT_WEIGHT = 0.2;
+
 struct RefinedPose
 {
     Pose pose;

@@ -18,7 +18,7 @@ constexpr int STRONGEST = 400;    // of an image and detector, whose matches ran
 constexpr size_t MIN_MATCHES = 12;
 constexpr size_t MIN_INLIERS = 15;
 constexpr double MIN_INLIER_SHARE = 0.06;  // of the matches
-constexpr double MAX_BOUND = 0.5;          // metres
+constexpr double MAX_BOUND = 1;            // metres
 
 //! Milliseconds since the last call.
 class Stopwatch
@@ -179,7 +179,7 @@ void Localizer::judge(Location& location) const
 {
     RefinedPose& refined = location.estimate;
     const double sigma = std::max(0.2, deviation(location.inliers, pinhole_, refined.pose));
-    refined.covariance *= sigma * sigma;
+    refined.covariance *= sigma * sigma / POINT_WEIGHT;
     location.metres = 3 * worstDeviation(refined.covariance.topLeftCorner<3, 3>());
     location.degrees = 3 * worstDeviation(refined.covariance.bottomRightCorner<3, 3>()) * 180 / CV_PI;
     if (double(location.inliers.size()) < MIN_INLIER_SHARE * double(location.matched.size()))

@@ -8,6 +8,7 @@
 
 #include <ceres/normal_prior.h>
 
+#include "bundle.hpp"
 #include "residuals.hpp"
 
 namespace iib_localization {
@@ -19,8 +20,6 @@ constexpr size_t MAX_POINTS = 100;           // a frame
 constexpr int64_t MAX_ALONE = int64_t(3e9);  // nanoseconds without an image
 constexpr double GRAVITY = 9.81;             // m/s^2
 constexpr double GRAVITY_DEVIATION = 0.2;    // m/s^2, of the first guess across its direction
-// Points of the map err together, so each counts as less than an independent pixel would.
-constexpr double POINT_WEIGHT = 0.2;
 
 typedef Eigen::Matrix<double, 9, 1> Motion;
 
