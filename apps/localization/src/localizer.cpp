@@ -16,9 +16,10 @@ constexpr size_t SHORTLIST = 20;  // keyframes by votes, of which
 constexpr size_t CANDIDATES = 5;  // keyframes that an image is matched with
 constexpr int STRONGEST = 400;    // of an image and detector, whose matches rank the shortlist
 constexpr size_t MIN_MATCHES = 12;
+// In an unknown place up to 20 of 1100 matches agree by chance. A pose needs 15 and a share of the matches.
 constexpr size_t MIN_INLIERS = 15;
-constexpr double MIN_INLIER_SHARE = 0.06;  // of the matches
-constexpr double MAX_BOUND = 1;            // metres
+constexpr double MIN_INLIER_SHARE = 0.02;
+constexpr double MAX_BOUND = 1;  // metres
 
 //! Milliseconds since the last call.
 class Stopwatch
@@ -182,7 +183,8 @@ void Localizer::judge(Location& location) const
     refined.covariance *= sigma * sigma / POINT_WEIGHT;
     location.metres = 3 * worstDeviation(refined.covariance.topLeftCorner<3, 3>());
     location.degrees = 3 * worstDeviation(refined.covariance.bottomRightCorner<3, 3>()) * 180 / CV_PI;
-    if (double(location.inliers.size()) < MIN_INLIER_SHARE * double(location.matched.size()))
+    const double needed = double(MIN_INLIERS) + MIN_INLIER_SHARE * double(location.matched.size());
+    if (double(location.inliers.size()) < needed)
         location.reason = "too few matches agree";
     else if (location.metres > MAX_BOUND)
         location.reason = "the pose is uncertain";
