@@ -77,9 +77,9 @@ class Programs:
                  "--out", target, *(["--depth", depth] if depth else []))
         return target
 
-    def localize(self, map_folder, images, cameras, truth, *options, threads=None):
-        """Rows of frames.csv with the errors of those that have a pose."""
-        target = self.out / "located" / map_folder.name / f"{images.parent.name}-{images.name}"
+    def localize(self, map_folder, name, images, cameras, truth, *options, threads=None):
+        """Rows of frames.csv with the errors of those that have a pose. The name is that of a folder for the results."""
+        target = self.out / "located" / map_folder.name / name
         target.mkdir(parents=True, exist_ok=True)
         self.run("iib_localize", "--map", map_folder, "--images", images, "--cameras", cameras, "--out", target, *options,
                  threads=threads)
@@ -136,9 +136,9 @@ class Street:
                                    self.mapped / "cameras.txt", self.every(step), features,
                                    self.mapped / "depth" if depth else None)
 
-    def localize(self, place, light, *options, images=None, threads=None):
+    def localize(self, place, light, *options, name="", images=None, threads=None):
         folder = self.data / light
-        return self.programs.localize(place, images or folder / "images", folder / "cameras.txt",
+        return self.programs.localize(place, light + name, images or folder / "images", folder / "cameras.txt",
                                       read_poses(folder / "poses.txt"), *options, threads=threads)
 
     def add(self, kind, features, light, located, step=1):
@@ -146,16 +146,21 @@ class Street:
                           **summary(located)})
 
     def measure(self):
-        for features, step, depth in [(method, 1, True) for method in METHODS] + [
-                ("iib", 1, False), ("iib", 2, True), ("iib", 4, True)]:
-            place = self.place(features, step, depth)
-            shown = (features, step, depth) == ("iib", 1, True)
-            for light in self.lights:
-                located = self.localize(place, light, *(["--pictures"] if shown else []))
-                self.add("depth" if depth else "triangulated", features, light, located, step)
-                if shown:
-                    self.single[light] = located
+        self.measure_images("iib", pictures=True)
+        self.measure_images("iib", depth=False)
+        for step in list(SPACINGS)[1:]:
+            self.measure_images("iib", step=step)
         self.measure_imu()
+        for features in list(METHODS)[1:]:
+            self.measure_images(features)
+
+    def measure_images(self, features, step=1, depth=True, pictures=False):
+        place = self.place(features, step, depth)
+        for light in self.lights:
+            located = self.localize(place, light, *(["--pictures"] if pictures else []))
+            self.add("depth" if depth else "triangulated", features, light, located, step)
+            if pictures:
+                self.single[light] = located
 
     def measure_imu(self):
         """All images with the IMU, and one of four (the others are files that are no images)."""
@@ -163,11 +168,13 @@ class Street:
         for light in self.lights:
             source, kept = self.data / light, self.programs.out / "dropped" / light / "images"
             kept.mkdir(parents=True, exist_ok=True)
-            for k, path in enumerate(sorted((source / "images").glob("[0-9]*.png"))):
-                (kept / path.name).write_bytes(path.read_bytes() if k % DROPPED == 0 else b"")
+            for k, name in enumerate(read_poses(source / "poses.txt")):
+                image = (source / "images" / f"{name}.png").read_bytes() if k % DROPPED == 0 else b""
+                (kept / f"{name}.png").write_bytes(image)
             self.inertial[light] = {}
-            for kind, images in (("depth, IMU", None), (f"depth, IMU, one image of {DROPPED}", kept)):
-                located = self.localize(place, light, "--imu", source / "imu.csv", images=images)
+            for kind, name, images in (("depth, IMU", "-imu", None),
+                                       (f"depth, IMU, one image of {DROPPED}", "-dropped", kept)):
+                located = self.localize(place, light, "--imu", source / "imu.csv", name=name, images=images)
                 self.add(kind, "iib", light, located)
                 self.inertial[light][kind] = located
 
@@ -182,9 +189,9 @@ class Street:
             rounds, processor = [], []
             for _ in range(ROUNDS):
                 start = processor_time()
-                self.localize(place, light, images=first, threads=threads)
+                self.localize(place, light, name="-first", images=first, threads=threads)
                 middle = processor_time()
-                located = self.localize(place, light, threads=threads)
+                located = self.localize(place, light, name="-times", threads=threads)
                 processor.append((processor_time() - middle - (middle - start)) / (len(located) - 1))
                 rounds.append([[float(row[f"{stage}_ms"] or 0) for stage in STAGES] for row in located])
             rounds = np.array(rounds)
@@ -226,7 +233,7 @@ def photographs(programs, data, rows):
             place = programs.build(f"{features}-{source.name}", ours / "map", source / "cameras.txt", source / "poses.txt",
                                    features)
             for kind in ("plain", "relit"):
-                located = programs.localize(place, ours / kind, source / "cameras.txt", read_poses(source / "poses.txt"))
+                located = programs.localize(place, kind, ours / kind, source / "cameras.txt", read_poses(source / "poses.txt"))
                 rows.append({"data": source.name, "map": "triangulated", "keyframes": "every other image",
                              "features": features, "light": kind, **summary(located)})
 
@@ -241,5 +248,5 @@ def unknown_places(programs, street, data):
     for k, path in enumerate(paths[::max(1, len(paths) // UNKNOWN)]):
         image = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
         cv2.imwrite(str(target / f"{k:04d}.png"), cv2.resize(image, size, interpolation=cv2.INTER_AREA))
-    located = programs.localize(programs.out / "maps" / "iib-1-depth", target, cameras, None)
+    located = programs.localize(programs.out / "maps" / "iib-1-depth", "unknown", target, cameras, None)
     return {"images": len(located), "found": sum("pose" in row for row in located)}
