@@ -67,7 +67,8 @@ def aims(rows, times, unknown):
 def write_page(path, **content):
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True)
     template = environment.get_template("page.html.j2")
-    path.write_text(template.render(methods=measure.METHODS, stages=measure.STAGES, **content), encoding="utf-8")
+    path.write_text(template.render(methods=measure.METHODS, stages=measure.STAGES, rounds=measure.ROUNDS, **content),
+                    encoding="utf-8")
 
 
 def main():
