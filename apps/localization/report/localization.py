@@ -40,7 +40,8 @@ def aims(rows, times, unknown):
         return {"what": what, "wanted": f"at least {wanted} %", "measured": f"{worst:g} %", "reached": worst >= wanted}
 
     def at_most(what, wanted, value, unit):
-        return {"what": what, "wanted": f"at most {wanted} {unit}", "measured": f"{value:g} {unit}", "reached": value <= wanted}
+        return {"what": what, "wanted": f"at most {wanted} {unit}", "measured": f"{value:g} {unit}",
+                "reached": value <= wanted}
 
     depth = of("depth")
     result = [at_least("map with depth, within 5 cm and 0.5°", 95, depth, "within_5cm"),

@@ -42,7 +42,8 @@ def all_rows():
     return [street_row(*kind, light) for kind in kinds for light in LIGHTS]
 
 
-TIMES = [{"threads": n, "processor": 90.0, "all": 90.0, "features": 60.0, "retrieval": 10.0, "matching": 10.0, "pose": 10.0} for n in (1, 2)]
+TIMES = [{"threads": n, "processor": 90.0, "all": 90.0, "features": 60.0, "retrieval": 10.0, "matching": 10.0,
+          "pose": 10.0} for n in (1, 2)]
 
 
 class Sums(unittest.TestCase):
