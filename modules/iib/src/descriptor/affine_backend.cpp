@@ -41,28 +41,36 @@ Ptr<Feature2D> affineBackend(Feature2D& affine)
     const Mat image = manyFeatures();
     std::vector<KeyPoint> keypoints, candidates;
     affine.detect(image, keypoints);
-    const Ptr<Feature2D> known[] = {
-        ORB::create(2000),
-        SIFT::create(),
+    keypoints.erase(std::remove_if(keypoints.begin(), keypoints.end(),
+                            [](const KeyPoint& kp) { return kp.class_id != 0; }),
+            keypoints.end());  // those of the first view
+    // the most usual first; to make a BRISK takes longer than to detect with the others
+    typedef Ptr<Feature2D> Any;
+    Any (*const known[])() = {
+        [] { return Any(ORB::create(2000)); },
+        [] { return Any(SIFT::create()); },
+        [] { return Any(FastFeatureDetector::create()); },
+        [] { return Any(GFTTDetector::create()); },
+        [] { return Any(SimpleBlobDetector::create()); },
 #if CV_VERSION_MAJOR < 5  // opencv_contrib's since then
-        AKAZE::create(),
-        BRISK::create(),
-        KAZE::create(),
-        AgastFeatureDetector::create(),
+        [] { return Any(AKAZE::create()); },
+        [] { return Any(AgastFeatureDetector::create()); },
+        [] { return Any(KAZE::create()); },
+        [] { return Any(BRISK::create()); },
 #endif
-        FastFeatureDetector::create(),
-        GFTTDetector::create(),
-        SimpleBlobDetector::create()
     };
     Ptr<Feature2D> best;
     int most = 0;
-    for (const Ptr<Feature2D>& detector : known)
+    for (const auto create : known)
     {
+        const Ptr<Feature2D> detector = create();
         detector->detect(image, candidates);
         int alike = 0;
         for (const KeyPoint& kp : keypoints)
             alike += std::any_of(candidates.begin(), candidates.end(),
                     [&](const KeyPoint& candidate) { return areAlike(kp, candidate); });
+        if (2 * alike > (int)keypoints.size())
+            return detector;
         if (alike > most)
         {
             most = alike;
