@@ -124,8 +124,13 @@ private:
     //! AffineFeature does not tell what it wraps, so it is called while this extractor has another detector.
     bool isCalledBy(Feature2D& affine)
     {
+        struct Restored  // whatever is thrown
+        {
+            Ptr<Feature2D>& place;
+            const Ptr<Feature2D> value;
+            ~Restored() { place = value; }
+        } const restored = {detector, detector};
         const Ptr<DetectorProbe> probe = makePtr<DetectorProbe>();
-        const Ptr<Feature2D> own = detector;
         detector = probe;
         try
         {
@@ -135,7 +140,6 @@ private:
         catch (const Exception&)  // detect() of this extractor will tell of it
         {
         }
-        detector = own;
         return probe->called;
     }
 

@@ -131,5 +131,24 @@ TEST(IIB_Errors, no_extractor_detects_by_itself)
     EXPECT_EQ("Feature2D.ORB", b->getDetector()->getDefaultName());
 }
 
+class OutOfMemory : public Feature2D
+{
+public:
+    void detectAndCompute(InputArray, InputArray, std::vector<KeyPoint>&, OutputArray, bool) CV_OVERRIDE
+    {
+        throw std::bad_alloc();
+    }
+};
+
+// setDetector() lets an AffineFeature detect, with another detector in the extractor meanwhile.
+TEST(IIB_Errors, detector_stays_when_memory_runs_out)
+{
+    const Ptr<AffineFeature> affine = AffineFeature::create(makePtr<OutOfMemory>(), 1);
+    affine->setViewParams({1.f}, {0.f});  // on this thread
+    const Ptr<IIB> iib = IIB::create();
+    EXPECT_THROW(iib->setDetector(affine), std::bad_alloc);
+    EXPECT_EQ("Feature2D.ORB", iib->getDetector()->getDefaultName());
+}
+
 }  // namespace
 }  // namespace opencv_test
