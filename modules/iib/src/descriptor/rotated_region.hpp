@@ -12,7 +12,9 @@
 namespace cv {
 namespace iib {
 
-//! The grid of n x n points over a rotated region, `sub` x `sub` of them a cell.
+/** The grid of points over a rotated region.
+@param region, centre in pixels of the image; only the region's side counts, up to 16384.
+@param n points in a row, up to MAX_SAMPLES_IN_ROW, `sub` x `sub` of them a cell. @param border one of IIB::Border. */
 SampleGrid gridOf(const SupportRegion& region, Point2f centre, const Rotation& rotation, int n, int sub,
         int border, Size image);
 

@@ -188,8 +188,9 @@ public:
     CV_WRAP static float scaleFactorFor(const String& detectorName);
     /** @overload
     Looks into NormalizedDetector for its detector. AffineFeature does not tell its own: it detects on a small image, and
-    its keypoints are compared with those of each detector that is known (up to a second).
-    @throws cv::Exception (StsBadArg) for a detector that is not known and (StsNullPtr) for none. */
+    its keypoints are compared with those of each detector that is known (up to a second), with its default parameters.
+    @throws cv::Exception (StsBadArg) for a detector that is not known, or that AffineFeature wraps with parameters that
+    leave no keypoint in common, as another patch size of ORB or another sigma of SIFT; (StsNullPtr) for none. */
     CV_WRAP static float scaleFactorFor(const Ptr<Feature2D>& detector);
     /** @overload
     A literal would fit both of the above, since Ptr converts from any pointer. */
