@@ -10,20 +10,21 @@
 namespace cv {
 namespace iib {
 
-//! Points in a row of the grid over a region whose gradients vote for its angle.
 enum
 {
-    ORIENTATION_SAMPLES = 32
+    ORIENTATION_CELLS = 32,  //!< in a row of the grid over a region whose gradients vote for its angle
+    ORIENTATION_SUB = 2      //!< a cell has ORIENTATION_SUB x ORIENTATION_SUB points
 };
 
-/** The direction that prevails among gradients: a peak of their smoothed histogram, in which each counts by its magnitude
- and by a Gaussian of half the region's radius around the centre.
+/** The direction that prevails among gradients (Sobel 3x3) between cells: a peak of their smoothed histogram, in which
+ each counts by its magnitude and by a Gaussian of half the region's radius around the centre.
 
-@param pixels, index of ORIENTATION_SAMPLES x ORIENTATION_SAMPLES points, as for imageSums, for cells of one point.
+@param pixels, index of the points of ORIENTATION_CELLS x ORIENTATION_CELLS cells, as for mapSums; the fourth value of a
+pixel is its intensity.
 @param rank 0 for the highest peak, 1 for the next, and so on; the lowest if there are not so many.
 @return degrees, 0 <= angle < 360, clockwise in the image; 0 if there is no peak. */
 template <typename T>
-float prevailingAngle(const RotatedSampleKernels<T>& kernels, const T* pixels, const int* index, int rank);
+float prevailingAngle(const DescriptorKernels& kernels, const T* pixels, const int* index, int rank);
 
 }  // namespace iib
 }  // namespace cv

@@ -20,10 +20,11 @@ int samplesInRow(const SupportRegion& region, int granularity)
 
 //! The angle of a region by its own gradients.
 template <typename T>
-float angleOf(GridPixels<T>& pixels, const RotatedSampleKernels<T>& kernels, const SupportRegion& region,
+float angleOf(GridPixels<T>& pixels, const DescriptorKernels& kernels, const SupportRegion& region,
         Point2f centre, int rank, int border, Size image)
 {
-    const SampleGrid grid = gridOf(region, centre, Rotation(0), ORIENTATION_SAMPLES, 1, border, image);
+    const SampleGrid grid = gridOf(
+            region, centre, Rotation(0), ORIENTATION_CELLS * ORIENTATION_SUB, ORIENTATION_SUB, border, image);
     const typename GridPixels<T>::Points points = pixels.at(region, centre, grid);
     return prevailingAngle(kernels, points.pixels(0), points.index(), rank);
 }
@@ -35,7 +36,6 @@ void describeBatch(const DescriptorPlan& plan, const std::vector<Channel>& chann
         Mat& descriptors)
 {
     const Parameters& p = plan.parameters;
-    const RotatedSampleKernels<T>& kernels = plan.kernels.pixels<T>().rotated;
     const Size image = channels[0].map.size();
     CellSampler<T> sampler(plan, channels, workspace);
     GridPixels<T> pixels(plan.kernels, sampler.packs(), batch, p.border, workspace);
@@ -43,9 +43,10 @@ void describeBatch(const DescriptorPlan& plan, const std::vector<Channel>& chann
     {
         const SupportRegion& region = regions[k];
         const Point2f centre = keypoints[k].pt;
-        const Rotation rotation(p.orientation == IIB::ORIENTATION_GRADIENT
-                                        ? angleOf(pixels, kernels, region, centre, ranks[k], p.border, image)
-                                        : keypoints[k].angle);
+        const Rotation rotation(
+                p.orientation == IIB::ORIENTATION_GRADIENT
+                        ? angleOf(pixels, plan.kernels, region, centre, ranks[k], p.border, image)
+                        : keypoints[k].angle);
         const int n = samplesInRow(region, p.granularity);
         // Two by two samples a cell, unless the cells are fewer.
         const int sub = plan.cellsInRow() == n ? 1 : 2;
@@ -63,7 +64,7 @@ void findAngles(const DescriptorPlan& plan, const Mat& image, const KeyPointBatc
     const SampledChannels sampled({Channel{IIB::CHANNEL_INTENSITY, image}});
     GridPixels<T> pixels(plan.kernels, sampled.packs, batch, plan.parameters.border, workspace);
     for (int k : batch.keypoints)
-        angles[k] = angleOf(pixels, plan.kernels.pixels<T>().rotated, regions[k], keypoints[k].pt, ranks[k],
+        angles[k] = angleOf(pixels, plan.kernels, regions[k], keypoints[k].pt, ranks[k],
                 plan.parameters.border, image.size());
 }
 

@@ -140,31 +140,44 @@ int insideOf(const IIB& iib, int64 place, int limit)
     return (int)(iib.getBorder() == IIB::BORDER_REFLECT ? reflectTo(place, limit) : clampTo(place, limit));
 }
 
-//! A peak of the gradients' directions in a circle, 64 bins weighted by magnitude and a Gaussian, smoothed.
+//! A peak of the directions of gradients between 32 x 32 cells in a circle, 64 bins weighted by magnitude and a Gaussian,
+//! smoothed.
 float prevailingAngle(const IIB& iib, const Mat& grey, const KeyPoint& kp, size_t rank)
 {
-    const int samples = 32, bins = 64;
+    const int samples = 64, n = 32, bins = 64;
     const int64 step = cvRound(std::min(SupportRegion(iib, kp).side, 16384.) / samples * 65536);
-    std::vector<int64> histogram(bins, 0);
+    Mat_<int> cells = Mat_<int>::zeros(n, n);
     for (int row = 0; row < samples; row++)
         for (int col = 0; col < samples; col++)
         {
             const int u = 2 * col + 1 - samples, v = 2 * row + 1 - samples;
-            const double dx = (double)u / samples, dy = (double)v / samples;
-            if (dx * dx + dy * dy > 1)
-                continue;
             const int x = insideOf(iib, (fixedPoint(kp.pt.x) + u * step) >> 17, grey.cols);
             const int y = insideOf(iib, (fixedPoint(kp.pt.y) + v * step) >> 17, grey.rows);
-            const int weight = cvRound(32 * std::exp(-2 * dx * dx)) * cvRound(32 * std::exp(-2 * dy * dy));
-            const float gx = (float)gradX(grey, y, x), gy = (float)gradY(grey, y, x);
-            histogram[orientation((int)gx, (int)gy) / 16] +=
-                    cvRound(std::sqrt(gx * gx + gy * gy) * (float)weight);
+            cells(row / 2, col / 2) += at(grey, y, x);
         }
-    for (int pass = 0; pass < 7; pass++)
+    std::vector<int64> histogram(bins, 0);
+    for (int row = 1; row < n - 1; row++)
+        for (int col = 1; col < n - 1; col++)
+        {
+            const double dx = (2. * col + 1 - n) / n, dy = (2. * row + 1 - n) / n;
+            if (dx * dx + dy * dy > 1)
+                continue;
+            const int weight = cvRound(32 * std::exp(-2 * dx * dx)) * cvRound(32 * std::exp(-2 * dy * dy));
+            int gx = 0, gy = 0;
+            for (int i = -1; i <= 1; i++)
+            {
+                gx += (2 - i * i) * (cells(row + i, col + 1) - cells(row + i, col - 1));
+                gy += (2 - i * i) * (cells(row + 1, col + i) - cells(row - 1, col + i));
+            }
+            const float x = (float)gx, y = (float)gy;
+            histogram[orientation(gx, gy) / 16] += cvRound(std::sqrt(x * x + y * y) * (float)weight);
+        }
+    for (int pass = 0; pass < 6; pass++)
     {
         const std::vector<int64> h = histogram;
         for (int i = 0; i < bins; i++)
-            histogram[i] = h[(i + bins - 1) % bins] + 2 * h[i] + h[(i + 1) % bins];
+            histogram[i] = h[(i + bins - 2) % bins] + h[(i + bins - 1) % bins] + h[i] + h[(i + 1) % bins] +
+                           h[(i + 2) % bins];
     }
     std::vector<std::pair<int64, int>> peaks;  // highest first, the lower bin first
     for (int i = 0; i < bins; i++)

@@ -248,12 +248,13 @@ public:
 
     #ORIENTATION_GRADIENT ignores KeyPoint::angle and leaves it as it is. The angle is the peak of a smoothed histogram
     of the directions of gradients in the circle within the ROS, weighted by their magnitudes and by a Gaussian of half
-    the radius. Of keypoints with the same position and size (as SIFT finds them, one for each direction) the second
-    gets the second highest peak, and so on. A descriptor of extra channels alone stays upright.
+    the radius; gradients between 32 x 32 cells of the ROS, each the mean of four points. Of keypoints with the same
+    position and size (as SIFT finds them, one for each direction) the second gets the second highest peak, and so on.
+    A descriptor of extra channels alone stays upright.
 
     Sums over upright rectangles do not rotate with a ROS, so but for #MAPPING_BOXES a rotated one is sampled: on a grid
-    of 32 x 32 points if its side is at most 64 pixels and granularity at most 5, else of 64 x 64, at the nearest pixel of each, where the
-    gradient is rotated. So angle 0 does not give the bits of angle -1: one counts samples, the other all pixels.
+    of 32 x 32 points if its side is at most 64 pixels and granularity at most 5, else of 64 x 64, at the nearest pixel
+    of each, where the gradient is rotated. So angle 0 does not give the bits of angle -1: one counts samples, the other all pixels.
     A point outside the image takes the pixel that #BORDER_REFLECT reflects there, or with #BORDER_CLAMP the nearest
     pixel of the border: the edge of the image crosses rotated cells at an angle, and cells with different numbers of
     samples would no longer be comparable without a division. A side of more than 16384 pixels is cut to that. */

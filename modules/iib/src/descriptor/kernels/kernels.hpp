@@ -79,9 +79,8 @@ template <typename T> struct RotatedSampleKernels
     void (*imageSums)(const T* pixels, const int* index, int cells, int samplesInCell,
             const GradientRotation& rotation, int* const sums[IMAGE_PLANES]);
 
-    //! Orientations as they are, and magnitudes of gradients times weights, rounded; of the same pixels.
-    void (*gradientVotes)(
-            const T* pixels, const int* index, const int* weights, int count, int* steps, int* votes);
+    //! Magnitudes of gradients times weights, rounded. Arrays have ROW_PADDING values more than `count`.
+    void (*gradientVotes)(const int* gx, const int* gy, const int* weights, int count, int* votes);
 
     //! Sums of four maps as they are.
     void (*mapSums)(

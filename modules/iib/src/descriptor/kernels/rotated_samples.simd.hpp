@@ -140,16 +140,12 @@ void imageSums(const T* pixels, const int* index, int cells, int samplesInCell,
     }
 }
 
-template <typename T>
-void gradientVotes(const T* pixels, const int* index, const int* weights, int count, int* steps, int* votes)
+void gradientVotes(const int* gx, const int* gy, const int* weights, int count, int* votes)
 {
-    for (int i = 0; i < count; i += VTraits<v_samples>::max_nlanes)
+    for (int i = 0; i < count; i += VTraits<v_int32>::max_nlanes)
     {
-        v_samples gx, gy, own, grey;
-        loadPixels(pixels, index + i, gx, gy, own, grey);
-        const auto x = v_cvt_f32(gx), y = v_cvt_f32(gy), weight = v_cvt_f32(v_load_samples(weights + i));
-        v_store(steps + i, own);
-        v_store(votes + i, nearestInt(exactRoot(x * x + y * y) * weight));
+        const v_float32 x = v_cvt_f32(vx_load(gx + i)), y = v_cvt_f32(vx_load(gy + i));
+        v_store(votes + i, nearestInt(exactRoot(x * x + y * y) * v_cvt_f32(vx_load(weights + i))));
     }
 }
 
@@ -198,7 +194,7 @@ void interleaveSums(const int* const sums[GROUP_CHANNELS], const int addends[GRO
 template <typename T> RotatedSampleKernels<T> rotatedSampleKernels()
 {
     const RotatedSampleKernels<T> k = {
-            samplePlaces, sampleIndices, imageSums<T>, gradientVotes<T>, mapSums<T>, interleaveSums};
+            samplePlaces, sampleIndices, imageSums<T>, gradientVotes, mapSums<T>, interleaveSums};
     return k;
 }
 
