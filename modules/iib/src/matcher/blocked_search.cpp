@@ -21,12 +21,12 @@ public:
         : HammingSink(forQueries_.thresholds() + block.firstQuery,
                   forTrains_ ? forTrains_->thresholds() + block.firstTrain : 0),
           forQueries(forQueries_), forTrains(forTrains_), firstQuery(block.firstQuery),
-          firstTrain(block.firstTrain)
+          firstTrain(block.firstTrain), firstIndex(block.firstIndex)
     {
     }
     void found(int query, int train, int distance) CV_OVERRIDE
     {
-        forQueries.insert(firstQuery + query, matchKey(distance, firstTrain + train));
+        forQueries.insert(firstQuery + query, matchKey(distance, firstIndex + train));
         if (forTrains)
             forTrains->insert(firstTrain + train, matchKey(distance, firstQuery + query));
     }
@@ -34,7 +34,7 @@ public:
 private:
     KnnTable& forQueries;
     KnnTable* forTrains;
-    const size_t firstQuery, firstTrain;
+    const size_t firstQuery, firstTrain, firstIndex;
 };
 
 //! Lists all pairs of a block that are below one threshold.
@@ -43,17 +43,17 @@ class ListSink CV_FINAL : public HammingSink
 public:
     ListSink(const PairBlock& block, const int* thresholds, std::vector<std::vector<MatchKey>>& result_)
         : HammingSink(thresholds, 0), result(result_), firstQuery(block.firstQuery),
-          firstTrain(block.firstTrain)
+          firstIndex(block.firstIndex)
     {
     }
     void found(int query, int train, int distance) CV_OVERRIDE
     {
-        result[firstQuery + query].push_back(matchKey(distance, firstTrain + train));
+        result[firstQuery + query].push_back(matchKey(distance, firstIndex + train));
     }
 
 private:
     std::vector<std::vector<MatchKey>>& result;
-    const size_t firstQuery, firstTrain;
+    const size_t firstQuery, firstIndex;
 };
 
 //! The queries that one thread takes, and the limits of the policy for each.
@@ -108,7 +108,7 @@ private:
         for (int i = 0; i < queries; i++)
             if (queryIndices[i] >= 0)
                 forQueries.insert(block.firstQuery + i,
-                        matchKey(scan.ofQueries.distances[i], block.firstTrain + queryIndices[i]));
+                        matchKey(scan.ofQueries.distances[i], block.firstIndex + queryIndices[i]));
         for (int i = 0; forTrains && i < trains; i++)
             if (trainIndices[i] >= 0)
                 forTrains->insert(block.firstTrain + i,

@@ -5,18 +5,15 @@
 #ifndef OPENCV_IIB_MATCHER_INDEX_FILE_HPP
 #define OPENCV_IIB_MATCHER_INDEX_FILE_HPP
 
-#include "../common/fnv1a.hpp"
-#include "../common/replaced_file.hpp"
+#include "../common/checked_file.hpp"
 #include "parameters.hpp"
-
-#include <fstream>
 
 namespace cv {
 namespace iib {
 
-/* Format 1 of an index, all numbers little-endian: "IIBINDEX"; u32: version, number of levels, each level's bytes, mode,
-cross-check; f32: maximal ratio, each threshold; u64: number of images, each image's rows; the descriptors of all images;
-u64: FNV-1a hash of all before. Descriptors pass through in pieces, so that no second copy of them is in memory. */
+/* Format 1 of an index, a checked file: u32: number of levels, each level's bytes, mode, cross-check; f32: maximal ratio,
+each threshold; u64: number of images, each image's rows; the descriptors of all images. Descriptors pass through in
+pieces, so that no second copy of them is in memory. */
 
 //! What stands before the descriptors.
 struct IndexHeader
@@ -30,17 +27,12 @@ class IndexWriter
 public:
     IndexWriter(const String& filename, const IndexHeader& header);
     //! Writes the next descriptors, continuous CV_8U; what image they belong to follows from the header.
-    void write(const Mat& descriptors) { bytes(descriptors.data, descriptors.total()); }
+    void write(const Mat& descriptors) { file.bytes(descriptors.data, descriptors.total()); }
     //! Puts the file in its place.
     void finish();
 
 private:
-    void bytes(const void* data, size_t size);
-    void number(uint64 value, int size);
-    void real(float value);
-
-    ReplacedFile file;
-    Fnv1a hash;
+    CheckedWriter file;
 };
 
 //! Checks that the file is whole and that its numbers make sense together; whether they are valid parameters is for the
@@ -51,24 +43,12 @@ public:
     explicit IndexReader(const String& filename);
     const IndexHeader& header() const { return head; }
     //! Fills a continuous matrix with the next descriptors.
-    void read(Mat& descriptors) { bytes(descriptors.data, descriptors.total()); }
+    void read(Mat& descriptors) { file.bytes(descriptors.data, descriptors.total()); }
     //! Throws unless all was read and the checksum fits.
     void finish();
 
 private:
-    void readHeader();
-    //! Whatever the file claims, no more memory is asked for than it has bytes.
-    void expect(uint64 count, uint64 size) const;
-    void bytes(void* data, size_t size);
-    uint64 number(int size);
-    unsigned word() { return (unsigned)number(4); }
-    float real();
-    void fail(const String& why) const;
-
-    String name;
-    std::ifstream stream;
-    uint64 left;
-    Fnv1a hash;
+    CheckedReader file;
     IndexHeader head;
 };
 

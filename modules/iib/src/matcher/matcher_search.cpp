@@ -65,7 +65,7 @@ KnnTable HierarchicalMatcherImpl::nearest(
     const Mat queries = checkedDescriptors(queries_, trains.layout().bytes(), parameters.levelSizes.empty());
     const PruningPolicy pruning = policy(trains.layout());
     const std::vector<Mat> masks = checkedMasks(masks_, queries.rows, trains);
-    const SearchInput input = {trains, queries, pruning, masks, blocks};
+    const SearchInput input(trains, queries, pruning, masks, blocks);
     SearchCost cost;
     KnnTable found = findNearest(input, k, parameters.crossCheck, parameters.maxRatio, cost);
     count(cost);
@@ -82,7 +82,7 @@ void HierarchicalMatcherImpl::withinRadius(const PackedCodes& trains, const Mat&
     const PruningPolicy pruning =
             parameters.mode == THRESHOLD ? policy(layout) : radiusPolicy(layout, radius);
     const std::vector<Mat> masks = checkedMasks(masks_, queries.rows, trains);
-    const SearchInput input = {trains, queries, pruning, masks, blocks};
+    const SearchInput input(trains, queries, pruning, masks, blocks);
     SearchCost cost;
     toMatches(trains, findWithin(input, radius, cost), compactResult, matches);
     count(cost);

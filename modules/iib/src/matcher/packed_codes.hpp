@@ -10,16 +10,22 @@
 namespace cv {
 namespace iib {
 
-//! Train codes of several images, one after the other, packed for the kernels that were the best when it was made.
+//! Train codes of several images, one after the other. Those that are added are packed for the kernels that were the best
+//! when it was made.
 class PackedCodes
 {
 public:
     explicit PackedCodes(const std::vector<int>& levelSizes);
+    /** Codes that lie elsewhere, in a packing that need not be the kernels', and stay there; they are only read.
+    @param starts first row of each image, and the number of all rows
+    @param blocks CodeBlocks without a gap, aligned for vectors */
+    PackedCodes(const std::vector<int>& levelSizes, CodePacking packing, const std::vector<size_t>& starts,
+            const unsigned* blocks);
     PackedCodes(const PackedCodes& other);
     PackedCodes& operator=(const PackedCodes&) = delete;
 
     const CodeLayout& layout() const { return format; }
-    //! The kernels that the codes are packed for; others would misread them.
+    //! The kernels that layout() is for; others would misread it.
     const HammingKernels& kernels() const { return scans; }
 
     size_t rows() const { return starts.back(); }
@@ -30,8 +36,12 @@ public:
     size_t start(size_t image) const { return starts[image]; }
 
     int blocks() const { return filled; }
-    //! A CodeBlock; those after it follow without a gap. Lanes beyond rows() are zeros.
-    const unsigned* block(int i) const { return codes.ptr<unsigned>(i); }
+    //! CodeBlocks of layout() without a gap: where they lie or, if they are packed in another way, in `scratch`. Lanes beyond
+    //! rows() are zeros.
+    const unsigned* block(int first, int count, Mat& scratch) const;
+    //! All of them as they lie.
+    Mat stored() const { return filled > 0 ? codes.rowRange(0, filled) : Mat(); }
+    CodePacking storedPacking() const { return packing; }
 
     //! Adds an image's descriptors: CV_8U, layout().bytes() columns, any number of rows. Changes nothing if it throws.
     void add(const Mat& descriptors);
@@ -49,12 +59,15 @@ private:
     //! Makes memory for that many blocks.
     void allocate(int blocks);
     void store(const Mat& descriptors);
+    //! The descriptors of this row and those after it.
+    void unpack(size_t row, Mat& descriptors) const;
 
     const HammingKernels& scans;
-    const CodeLayout format;
-    std::vector<size_t> starts;  //!< first row of each image, and the number of all rows
-    Mat codes;                   //!< a row a CodeBlock, which makes them aligned
-    int filled;                  //!< of these rows
+    const CodePacking packing;       //!< of `codes`
+    const CodeLayout format, lying;  //!< of the kernels, and of `codes`
+    std::vector<size_t> starts;      //!< first row of each image, and the number of all rows
+    Mat codes;                       //!< a row a CodeBlock, which makes them aligned
+    int filled;                      //!< of these rows
 };
 
 }  // namespace iib

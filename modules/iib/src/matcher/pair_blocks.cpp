@@ -8,6 +8,18 @@
 namespace cv {
 namespace iib {
 
+// Whether some pairs of a block may be left out.
+static bool needsFlags(const SearchInput& input, const PairBlock& block)
+{
+    if (!input.masks.empty() || !input.hidden)
+        return !input.masks.empty();
+    const PackedCodes& trains = input.trains;
+    const auto first = input.hidden->begin() + trains.imageOf(block.firstTrain),
+               end = input.hidden->begin() + trains.imageOf(block.firstTrain + block.pairs.trainCount - 1) +
+                     1;
+    return std::find(first, end, true) != end;
+}
+
 // Copies the masks of a block of pairs into flags, rows of a whole number of CodeBlocks, and counts the pairs left.
 static size_t fillFlags(const SearchInput& input, const PairBlock& block, std::vector<uchar>& flags)
 {
@@ -18,10 +30,11 @@ static size_t fillFlags(const SearchInput& input, const PairBlock& block, std::v
     for (size_t row = block.firstTrain; row < end;)
     {
         const size_t image = trains.imageOf(row), next = std::min(trains.start(image + 1), end);
-        for (int query = 0; query < block.pairs.queries.rows; query++)
+        const bool shown = !input.hidden || !(*input.hidden)[image];
+        for (int query = 0; shown && query < block.pairs.queries.rows; query++)
         {
             uchar* to = flags.data() + query * step + (row - block.firstTrain);
-            if (input.masks[image].empty())
+            if (input.masks.empty() || input.masks[image].empty())
                 std::fill(to, to + (next - row), (uchar)1);
             else
             {
@@ -43,6 +56,7 @@ void forEachBlock(
     const CodeLayout& layout = trains.layout();
     const size_t rows = trains.rows();
     std::vector<uchar> flags;
+    Mat scratch;
     for (int query = from; query < to; query += input.blocks.queries)
     {
         const int queryCount = std::min(input.blocks.queries, to - query);
@@ -52,9 +66,11 @@ void forEachBlock(
             const size_t train = (size_t)first * CodeLayout::CODES_PER_BLOCK;
             const size_t trainCount =
                     std::min(rows - train, (size_t)input.blocks.codeBlocks * CodeLayout::CODES_PER_BLOCK);
-            PairBlock block = {CodePairs(layout, queries, trains.block(first), (int)trainCount), query, train,
-                    queryCount * trainCount};
-            if (!input.masks.empty())
+            const unsigned* const codes =
+                    trains.block(first, std::min(input.blocks.codeBlocks, trains.blocks() - first), scratch);
+            PairBlock block = {CodePairs(layout, queries, codes, (int)trainCount), query, train,
+                    input.firstIndex + train, queryCount * trainCount};
+            if (needsFlags(input, block))
             {
                 block.pairCount = fillFlags(input, block, flags);
                 block.pairs.allowed = flags.data();

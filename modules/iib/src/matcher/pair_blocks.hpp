@@ -17,8 +17,8 @@ struct PairBlock
 {
     CodePairs pairs;
     int firstQuery;
-    size_t firstTrain;
-    size_t pairCount;  //!< those that are not masked
+    size_t firstTrain, firstIndex;  //!< its row among the train codes, and what results call it
+    size_t pairCount;               //!< those that are not masked
 };
 
 //! Visits all pairs of queries `from` to `to` with all train codes, block by block: all train codes in ascending order

@@ -29,11 +29,20 @@ struct SearchCost
 //! What a search looks for and among which pairs.
 struct SearchInput
 {
+    SearchInput(const PackedCodes& trains_, const Mat& queries_, const PruningPolicy& policy_,
+            const std::vector<Mat>& masks_, const SearchBlocks& blocks_)
+        : trains(trains_), queries(queries_), policy(policy_), masks(masks_), blocks(blocks_), hidden(0),
+          firstIndex(0)
+    {
+    }
+
     const PackedCodes& trains;
     const Mat& queries;             //!< CV_8U, as wide as the train codes
     const PruningPolicy& policy;    //!< made for the layout of the train codes
     const std::vector<Mat>& masks;  //!< none, or one for each image, empty or queries x rows(image)
     const SearchBlocks& blocks;
+    const std::vector<bool>* hidden;  //!< of each image, whether its rows are left out; null: none is
+    size_t firstIndex;                //!< what the first of the train codes is called in results
 };
 
 /** Finds the k nearest for each query; with `mutual`, only pairs that are among the k nearest in both directions. A row

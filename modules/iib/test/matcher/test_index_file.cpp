@@ -2,6 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
+#include "../support/disk.hpp"
 #include "../support/matcher_oracle.hpp"
 #include "../support/temporary_file.hpp"
 #include "../support/test_errors.hpp"
@@ -10,9 +11,7 @@
 #include <thread>
 
 #ifdef __linux__
-#include <csignal>
 #include <malloc.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #endif
@@ -60,21 +59,6 @@ TEST(IIB_IndexFile, savers_at_the_same_time_leave_a_whole_file)
 }
 
 #ifdef __linux__
-//! No file grows beyond this many bytes, as on a full disk.
-struct FullDisk
-{
-    rlimit before;
-    explicit FullDisk(rlim_t bytes)
-    {
-        getrlimit(RLIMIT_FSIZE, &before);
-        rlimit limit = before;
-        limit.rlim_cur = bytes;
-        signal(SIGXFSZ, SIG_IGN);
-        setrlimit(RLIMIT_FSIZE, &limit);
-    }
-    ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before); }
-};
-
 TEST(IIB_IndexFile, full_disk_keeps_the_old_file)
 {
     const String folder = cv::tempfile(".folder"), name = folder + "/index.iib";

@@ -7,9 +7,22 @@
 
 #include "../test_precomp.hpp"
 
+#include "opencv2/core/utils/filesystem.hpp"
+
 #include <fstream>
 
 namespace opencv_test {
+
+inline void writeFile(const String& name, const std::string& bytes)
+{
+    std::ofstream(name.c_str(), std::ios::binary).write(bytes.data(), bytes.size());
+}
+
+inline std::string readFile(const String& name)
+{
+    std::ifstream in(name.c_str(), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+}
 
 //! A name for a file that goes with the object.
 struct TemporaryFile
@@ -17,15 +30,26 @@ struct TemporaryFile
     String name;
     explicit TemporaryFile(const char* extension = ".iib") : name(cv::tempfile(extension)) {}
     ~TemporaryFile() { std::remove(name.c_str()); }
-    void write(const std::string& bytes) const
-    {
-        std::ofstream(name.c_str(), std::ios::binary).write(bytes.data(), bytes.size());
-    }
-    std::string read() const
-    {
-        std::ifstream in(name.c_str(), std::ios::binary);
-        return std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-    }
+    void write(const std::string& bytes) const { writeFile(name, bytes); }
+    std::string read() const { return readFile(name); }
+};
+
+//! A folder that goes with the object and with all that is in it.
+struct TemporaryFolder
+{
+    String name;
+    TemporaryFolder() : name(cv::tempfile(".folder")) { utils::fs::createDirectory(name); }
+    ~TemporaryFolder() { utils::fs::remove_all(name); }
+};
+
+//! A file that is as it was at the end, whatever is written to it meanwhile.
+struct RestoredFile
+{
+    const String name;
+    const std::string bytes;
+    explicit RestoredFile(const String& name_) : name(name_), bytes(readFile(name_)) {}
+    ~RestoredFile() { write(bytes); }
+    void write(const std::string& altered) const { writeFile(name, altered); }
 };
 
 }  // namespace opencv_test

@@ -1,0 +1,79 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_COMMON_CHECKED_FILE_HPP
+#define OPENCV_IIB_COMMON_CHECKED_FILE_HPP
+
+#include "fnv1a.hpp"
+#include "replaced_file.hpp"
+
+#include <fstream>
+
+namespace cv {
+namespace iib {
+
+/* Binary files that do not depend on the machine and tell when they are altered: eight letters that name the kind of
+file, u32 version, little-endian numbers and bytes, u64 FNV-1a hash of all before. */
+
+//! The eight letters, the newest version that is understood, and what errors call such a file.
+struct FileKind
+{
+    const char* letters;
+    unsigned version;
+    const char* name;
+};
+
+class CheckedWriter
+{
+public:
+    CheckedWriter(const String& filename, const FileKind& kind);
+    void bytes(const void* data, size_t size);
+    void number(uint64 value, int size);
+    void real(float value);
+    //! Writes the hash of all so far, and returns it.
+    uint64 seal();
+    //! Writes what no hash covers, after seal().
+    void unchecked(const void* data, size_t size);
+    //! Bytes so far.
+    uint64 size() const { return written; }
+    //! Puts the file in its place.
+    void commit() { file.commit(); }
+
+private:
+    ReplacedFile file;
+    uint64 written;
+    Fnv1a hash;
+};
+
+class CheckedReader
+{
+public:
+    CheckedReader(const String& filename, const FileKind& kind);
+    void bytes(void* data, size_t size);
+    uint64 number(int size);
+    unsigned word() { return (unsigned)number(4); }
+    float real();
+    //! Reads the hash of all so far, and returns it; throws if it does not fit.
+    uint64 seal();
+    //! Bytes that were read, and that were not read yet.
+    uint64 position() const { return whole - rest; }
+    uint64 left() const { return rest; }
+    //! Throws if so many things of that size cannot be in what is left: whatever the file claims, no more memory is asked
+    //! for than it has bytes.
+    void expect(uint64 count, uint64 size) const;
+    //! @throws cv::Exception that names the file, what it should be, and why it is not.
+    void fail(const String& why) const;
+
+private:
+    String name;
+    const char* kindName;
+    std::ifstream stream;
+    uint64 whole, rest;
+    Fnv1a hash;
+};
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

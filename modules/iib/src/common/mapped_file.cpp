@@ -1,0 +1,95 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../precomp.hpp"
+#include "mapped_file.hpp"
+
+#ifdef _WIN32
+#define NOMINMAX
+#include <windows.h>
+#else
+#include <cerrno>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#endif
+
+namespace cv {
+namespace iib {
+
+#ifdef _WIN32
+
+MappedFile::MappedFile(const String& filename) : bytes(0), length(0)
+{
+    const HANDLE file = CreateFileA(filename.c_str(), GENERIC_READ, FILE_SHARE_READ | FILE_SHARE_DELETE, 0,
+            OPEN_EXISTING, FILE_ATTRIBUTE_NORMAL, 0);
+    LARGE_INTEGER size;
+    const bool opened = file != INVALID_HANDLE_VALUE && GetFileSizeEx(file, &size);
+    if (opened && size.QuadPart > 0)
+        if (const HANDLE mapping = CreateFileMappingA(file, 0, PAGE_READONLY, 0, 0, 0))
+        {
+            bytes = (const uchar*)MapViewOfFile(mapping, FILE_MAP_READ, 0, 0, 0);
+            CloseHandle(mapping);
+        }
+    if (file != INVALID_HANDLE_VALUE)
+        CloseHandle(file);
+    if (!bytes)
+        CV_Error(Error::StsError, "Cannot read " + filename);
+    length = (size_t)size.QuadPart;
+}
+
+MappedFile::~MappedFile() { UnmapViewOfFile(bytes); }
+
+FileLock::FileLock(const String& filename)
+{
+    while ((file = CreateFileA(filename.c_str(), GENERIC_WRITE, 0, 0, OPEN_ALWAYS, FILE_ATTRIBUTE_NORMAL,
+                    0)) == INVALID_HANDLE_VALUE)
+    {
+        if (GetLastError() != ERROR_SHARING_VIOLATION)
+            CV_Error(Error::StsError, "Cannot write " + filename + ": check the folder and its rights");
+        Sleep(10);
+    }
+}
+
+FileLock::~FileLock() { CloseHandle(file); }
+
+#else
+
+MappedFile::MappedFile(const String& filename) : bytes(0), length(0)
+{
+    const int file = open(filename.c_str(), O_RDONLY | O_CLOEXEC);
+    struct stat status;
+    void* mapped = MAP_FAILED;
+    if (file >= 0 && fstat(file, &status) == 0 && status.st_size > 0)
+        mapped = mmap(0, (size_t)status.st_size, PROT_READ, MAP_SHARED, file, 0);
+    if (file >= 0)
+        close(file);
+    if (mapped == MAP_FAILED)
+        CV_Error(Error::StsError, "Cannot read " + filename);
+    bytes = (const uchar*)mapped;
+    length = (size_t)status.st_size;
+}
+
+MappedFile::~MappedFile() { munmap((void*)bytes, length); }
+
+FileLock::FileLock(const String& filename) : file(open(filename.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666))
+{
+    int result = file < 0 ? -1 : flock(file, LOCK_EX);
+    while (file >= 0 && result != 0 && errno == EINTR)
+        result = flock(file, LOCK_EX);
+    if (result == 0)
+        return;
+    if (file >= 0)
+        close(file);
+    CV_Error(Error::StsError, "Cannot write " + filename + ": check the folder and its rights");
+}
+
+FileLock::~FileLock() { close(file); }
+
+#endif
+
+}  // namespace iib
+}  // namespace cv

@@ -1,0 +1,52 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_COMMON_MAPPED_FILE_HPP
+#define OPENCV_IIB_COMMON_MAPPED_FILE_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv {
+namespace iib {
+
+//! A file's bytes as read-only memory, read from the disk where they are looked at. The file must not become shorter
+//! meanwhile.
+class MappedFile
+{
+public:
+    explicit MappedFile(const String& filename);
+    ~MappedFile();
+    MappedFile(const MappedFile&) = delete;
+    MappedFile& operator=(const MappedFile&) = delete;
+
+    const uchar* data() const { return bytes; }
+    size_t size() const { return length; }
+
+private:
+    const uchar* bytes;
+    size_t length;
+};
+
+//! Holds a lock among processes and threads from its creation, for which it waits, to its end. The file is made if it is
+//! missing, and stays. The system gives the lock of a killed process back.
+class FileLock
+{
+public:
+    explicit FileLock(const String& filename);
+    ~FileLock();
+    FileLock(const FileLock&) = delete;
+    FileLock& operator=(const FileLock&) = delete;
+
+private:
+#ifdef _WIN32
+    void* file;
+#else
+    int file;
+#endif
+};
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

@@ -1,0 +1,33 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_MATCHER_MANIFEST_HPP
+#define OPENCV_IIB_MATCHER_MANIFEST_HPP
+
+#include "code_segment.hpp"
+
+namespace cv {
+namespace iib {
+
+/* Format 1 of a manifest, a checked file: u32: number of levels, each level's bytes; u64: number of segments; of each:
+number (of its file's name), rows, images, checksum; number of removed images, each of them in ascending order. */
+
+//! What a commit of MappedIndex holds: the segments in the order of their rows, and which images are hidden.
+struct Manifest
+{
+    Manifest() : checksum(0) {}
+    std::vector<int> levelSizes;
+    std::vector<SegmentEntry> segments;
+    std::vector<uint64> removed;  //!< images, ascending
+    uint64 checksum;              //!< of the file that it was read from
+};
+
+//! Replaces the file in one step.
+void writeManifest(const String& filename, const Manifest& manifest);
+Manifest readManifest(const String& filename);
+
+}  // namespace iib
+}  // namespace cv
+
+#endif
