@@ -15,6 +15,7 @@ from opencv_iib._types import DMatch, KeyPoint
 from opencv_iib.descriptor import IIB, IIBDescriptorExtractor
 from opencv_iib.detectors import NormalizedDetector
 from opencv_iib.keypoints import array_to_keypoints, keypoints_to_array
+from opencv_iib.mapped_index import MappedIndex
 from opencv_iib.matcher import HierarchicalMatcher
 from opencv_iib.rotation import estimateRotation
 

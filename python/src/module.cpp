@@ -16,6 +16,7 @@ NB_MODULE(_core, m)
     bindDetectors(m);
     bindExtractor(m);
     bindMatcher(m);
+    bindMappedIndex(m);
 
     m.attr("VERSION") = IIB_VERSION;
     m.attr("OPENCV_VERSION") = CV_VERSION;

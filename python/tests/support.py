@@ -82,6 +82,13 @@ def golden_hashes():
             for name, *values in re.findall(r'\{\s*"([^"]+)", (0x[0-9a-f]{16}), (0x[0-9a-f]{16})', text)}
 
 
+def brute_force(query, train, k):
+    """Indices and distances, queries x k."""
+    bits = np.unpackbits(query[:, None] ^ train[None], axis=2).sum(axis=2, dtype=np.int32)
+    order = np.argsort(bits, axis=1, kind='stable')[:, :k]
+    return order, np.take_along_axis(bits, order, 1)
+
+
 def steps_meanwhile(call):
     """How often another thread runs Python in the middle half of the time that `call` takes: 0 if that holds the GIL.
 

@@ -9,16 +9,9 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import HierarchicalMatcher
-from support import cv2, steps_meanwhile
+from support import brute_force, cv2, steps_meanwhile
 
 LEVELS = (2, 8, 32, 128)
-
-
-def brute_force(query, train, k):
-    """Indices and distances, queries x k."""
-    bits = np.unpackbits(query[:, None] ^ train[None], axis=2).sum(axis=2, dtype=np.int32)
-    order = np.argsort(bits, axis=1, kind='stable')[:, :k]
-    return order, np.take_along_axis(bits, order, 1)
 
 
 def keys(rows):

@@ -1,0 +1,105 @@
+"""MappedIndex: codes in a folder, searched where they lie."""
+from __future__ import annotations
+
+import os
+from typing import Any, Optional, Sequence, Union
+
+import numpy as np
+
+from opencv_iib import _core
+from opencv_iib._arrays import as_array, as_arrays
+
+Folder = Union[str, os.PathLike[str]]
+
+
+class MappedIndex:
+    """Binary codes in a folder of files that are mapped into memory, as C++'s cv::iib::MappedIndex writes and reads them.
+
+    For more codes than memory should hold, for several processes that search the same codes, and for programs that should
+    be ready at once. Each call of :meth:`add` or :meth:`remove` is one commit: whatever fails, the folder stays as it was
+    before. Writers wait for each other; readers see the commit that they opened until :meth:`refresh`. Rows and images
+    are numbered in the order in which they were added, and keep their numbers when others are removed.
+
+    A file that is missing, truncated or altered raises :class:`opencv_iib.error`, which names it. Searches release the
+    GIL; threads may share an object as long as none adds, removes or refreshes. A pickle holds the folder's name alone.
+    """
+
+    def __init__(self, folder: Folder) -> None:
+        """As :meth:`open`."""
+        self._core = _core.MappedIndex.open(os.fspath(folder))
+        self._folder = os.fspath(folder)
+
+    @classmethod
+    def open(cls, folder: Folder) -> MappedIndex:
+        """Opens the last commit; the codes are mapped when they are first searched, and then checked once."""
+        return cls(folder)
+
+    @classmethod
+    def create(cls, folder: Folder, levelSizes: Sequence[int]) -> MappedIndex:
+        """Makes a folder, whose parent has to exist, with an index without images.
+
+        :param levelSizes: bytes of each level, coarse first, as of HierarchicalMatcher; one level is enough.
+        """
+        _core.MappedIndex.create(os.fspath(folder), list(levelSizes))
+        return cls(folder)
+
+    def levelSizes(self) -> tuple[int, ...]:
+        """Bytes of each level, coarse first."""
+        return tuple(self._core.levelSizes())
+
+    def images(self) -> int:
+        """Images ever added."""
+        return self._core.images()
+
+    def rows(self) -> int:
+        """Rows ever added."""
+        return self._core.rows()
+
+    def segments(self) -> int:
+        """Files of codes, one for each call of :meth:`add`."""
+        return self._core.segments()
+
+    def version(self) -> int:
+        """A number that changes with every commit."""
+        return self._core.version()
+
+    def imageOf(self, row: int) -> int:
+        """The image of a row."""
+        return self._core.imageOf(row)
+
+    def firstRow(self, image: int) -> int:
+        """The first row of an image."""
+        return self._core.firstRow(image)
+
+    def descriptors(self, image: int) -> np.ndarray:
+        """A copy of the descriptors of an image."""
+        return self._core.descriptors(image)
+
+    def add(self, descriptors: Any) -> None:
+        """Adds the descriptors of one image (an array) or of several (a sequence of arrays), and commits them.
+
+        They become one file. Add many images at once: searches like files of 100,000 rows and more.
+        """
+        self._core.add(as_arrays(descriptors, 'descriptors'))
+
+    def remove(self, images: Sequence[int]) -> None:
+        """Hides images from all searches; their codes stay on the disk."""
+        self._core.remove([int(image) for image in images])
+
+    def refresh(self) -> None:
+        """Goes on to the last commit."""
+        self._core.refresh()
+
+    def search(self, queryDescriptors: Any, k: int = 1, segment: Optional[int] = None) -> tuple[np.ndarray, np.ndarray]:
+        """The k nearest rows of each query by Hamming distance, ties in the order of rows.
+
+        :param segment: the number of the only file to search.
+        :return: rows (int64) and distances (int32), queries x k, -1 where there are fewer.
+        """
+        return self._core.search(as_array(queryDescriptors, 'queries'), k, -1 if segment is None else segment)
+
+    def __reduce__(self) -> Any:
+        return type(self), (self._folder,)
+
+    def __repr__(self) -> str:
+        return f'{type(self).__name__}({self._folder!r})'

@@ -1,0 +1,175 @@
+"""Codes for more than one process or machine: a folder of shards, searched here or by the workers of a Dask cluster.
+
+    from opencv_iib import shards
+    shards.write(folder, codes)
+    indices, distances = shards.search(folder, queries, k=5, client=distributed.Client(address))
+
+A folder is a :class:`opencv_iib.MappedIndex`, a shard one of its segments; workers read it by the same name.
+"""
+from __future__ import annotations
+
+import fcntl
+import os
+import threading
+from contextlib import contextmanager
+from typing import Any, Iterable, Iterator, Optional, Sequence, Union
+
+import numpy as np
+
+from opencv_iib._arrays import as_array
+from opencv_iib.mapped_index import Folder, MappedIndex
+
+Arrays = tuple[np.ndarray, np.ndarray]
+
+
+def write(folder: Folder, codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per_shard: int = 1 << 20,
+          level_sizes: Optional[Sequence[int]] = None) -> MappedIndex:
+    """Writes codes to a new folder, shard by shard; it appears when it is complete.
+
+    Until then it is called ``folder.partial``, and the same call goes on from the last shard that was written.
+
+    :param codes: N x bytes uint8, which is cut into shards; or arrays like that, each of which stays whole as an image of
+        the :class:`MappedIndex`.
+    :param rows_per_shard: a shard ends with the image that brings it to so many rows. One shard is in memory at a time.
+    :param level_sizes: bytes of each level, coarse first; None: one level.
+    :raises ValueError: if ``folder.partial`` was begun with other codes or other sizes, or there are no codes.
+    :raises FileExistsError: if the folder is there.
+    :raises BlockingIOError: if another process is writing it.
+    """
+    if rows_per_shard < 1:
+        raise ValueError(f'rows_per_shard is {rows_per_shard}: at least 1 is needed')
+    folder = os.fspath(folder)
+    partial = folder + '.partial'
+    with _only_writer(partial):
+        if os.path.isdir(folder) and os.listdir(folder):
+            raise FileExistsError(f'{folder} is there already: choose another folder, or add to it with MappedIndex')
+        index = _write(partial, _images(codes, rows_per_shard), rows_per_shard, level_sizes)
+        del index
+        os.rename(partial, folder)
+    return MappedIndex(folder)
+
+
+@contextmanager
+def _only_writer(folder: str) -> Iterator[None]:
+    os.makedirs(folder, exist_ok=True)
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise BlockingIOError(f'{folder} is being written by another process: wait until it has ended') from None
+        yield
+    finally:
+        os.close(descriptor)
+
+
+def _images(codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per_shard: int) -> Iterator[np.ndarray]:
+    if isinstance(codes, np.ndarray):
+        if codes.ndim != 2:
+            raise ValueError(f'codes: rows x bytes are needed, not an array of {codes.ndim} dimensions')
+        for first in range(0, max(len(codes), 1), rows_per_shard):
+            yield as_array(codes[first:first + rows_per_shard], 'codes')
+    else:
+        for image in codes:
+            yield as_array(image, 'codes')
+
+
+def _write(folder: str, images: Iterator[np.ndarray], rows_per_shard: int,
+           level_sizes: Optional[Sequence[int]]) -> MappedIndex:
+    index: Optional[MappedIndex] = None
+    if os.path.exists(os.path.join(folder, 'manifest.iib')):
+        index = MappedIndex(folder)
+        if level_sizes is not None and index.levelSizes() != tuple(level_sizes):
+            raise ValueError(f'{folder} was begun with level sizes {index.levelSizes()}: remove it, or go on with these')
+        _skip(index, images, folder)
+    elif level_sizes is not None:
+        index = MappedIndex.create(folder, level_sizes)
+    shard: list[np.ndarray] = []
+    for image in images:
+        if index is None:
+            index = MappedIndex.create(folder, [image.shape[1]])
+        shard.append(image)
+        if sum(len(one) for one in shard) >= rows_per_shard:
+            index.add(shard)
+            shard = []
+    if index is None:
+        raise ValueError('no codes and no level sizes: at least one of them is needed')
+    if shard:
+        index.add(shard)
+    return index
+
+
+def _skip(index: MappedIndex, images: Iterator[np.ndarray], folder: str) -> None:
+    """Drops the images that an interrupted call has written; the first of each shard tells whether they are the same."""
+    for number in range(index.images()):
+        image = next(images, None)
+        last = number + 1 == index.images()
+        rows = (index.rows() if last else index.firstRow(number + 1)) - index.firstRow(number)
+        if image is None or len(image) != rows or (last and not np.array_equal(image, index.descriptors(number))):
+            raise ValueError(f'{folder} was begun with other codes or another rows_per_shard: remove it to begin anew')
+
+
+def search(folder: Folder, queries: Any, k: int = 5, client: Any = None) -> Arrays:
+    """The k nearest codes of each query by Hamming distance, in all shards; ties in the order of the codes.
+
+    The result is the same, byte for byte, without a client and for any number of shards and workers. A worker that
+    vanishes costs time: others take its shards.
+
+    :param queries: rows of as many bytes as the codes.
+    :param client: None to search in this process; or a ``distributed.Client``, whose workers read the folder by the same
+        name. Each shard goes to the same worker as before if that is there, which has it mapped already.
+    :return: indices (int64) and distances (int32), queries x k, -1 where there are fewer.
+    :raises opencv_iib.error: for a shard that is missing, truncated or altered; it is named.
+    """
+    queries = as_array(queries, 'queries')
+    index = _opened(os.path.abspath(os.fspath(folder)))
+    if client is None or index.segments() == 0:
+        return index.search(queries, k)
+    from distributed import as_completed
+    workers = sorted(client.scheduler_info(n_workers=-1)['workers'])
+    futures = [client.submit(_search_shard, os.path.abspath(os.fspath(folder)), index.version(), shard, queries, k,
+                             workers=[workers[shard % len(workers)]] if workers else None,
+                             allow_other_workers=bool(workers), pure=False)
+               for shard in range(index.segments())]
+    best = np.full((len(queries), k), _NONE)
+    for future in as_completed(futures):
+        best = np.sort(np.concatenate([best, _keys(*future.result())], 1), 1)[:, :k]
+    return _arrays(best)
+
+
+_lock = threading.Lock()
+_indices: dict[str, MappedIndex] = {}
+
+
+def _opened(folder: str) -> MappedIndex:
+    """The folder's last commit; what this process has mapped of it stays so."""
+    index = MappedIndex(folder)
+    with _lock:
+        known = _indices.get(folder)
+        if known is not None and known.version() == index.version():
+            return known
+        _indices[folder] = index
+    return index
+
+
+def _search_shard(folder: str, version: int, shard: int, queries: np.ndarray, k: int) -> Arrays:
+    index = _opened(folder)
+    if index.version() != version:
+        raise RuntimeError(f'{folder} was changed meanwhile, or is not the same for all workers: search again')
+    return index.search(queries, k, shard)
+
+
+# A neighbour as one number, as in the C++ library: distance above, index below, so that ties go to the lowest index.
+_INDEX_BITS = 40
+_NONE = np.uint64(2**64 - 1)
+
+
+def _keys(indices: np.ndarray, distances: np.ndarray) -> np.ndarray:
+    keys = distances.astype(np.uint64) << np.uint64(_INDEX_BITS) | indices.astype(np.uint64)
+    return np.where(indices < 0, _NONE, keys)
+
+
+def _arrays(keys: np.ndarray) -> Arrays:
+    none = keys == _NONE
+    indices = np.where(none, -1, (keys & np.uint64(2**_INDEX_BITS - 1)).astype(np.int64))
+    return indices, np.where(none, -1, (keys >> np.uint64(_INDEX_BITS)).astype(np.int32)).astype(np.int32)

@@ -1,0 +1,87 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "opencv2/iib/mapped_index.hpp"
+
+namespace iib_python {
+
+namespace {
+
+typedef cv::iib::MappedIndex Index;
+
+std::shared_ptr<Index> create(const std::string& folder, const std::vector<int>& levelSizes)
+{
+    return Index::create(folder, levelSizes);
+}
+
+std::shared_ptr<Index> open(const std::string& folder)
+{
+    nb::gil_scoped_release release;
+    return Index::open(folder);
+}
+
+void add(Index& self, const std::vector<Array>& arrays)
+{
+    std::vector<cv::Mat> views;
+    for (const Array& array : arrays)
+        views.push_back(viewOf(array, "descriptors"));
+    nb::gil_scoped_release release;
+    self.add(views);
+}
+
+void remove(Index& self, const std::vector<int64_t>& images)
+{
+    nb::gil_scoped_release release;
+    self.remove(std::vector<int64>(images.begin(), images.end()));
+}
+
+template <typename T> nb::object matrixOf(std::vector<T>&& values, size_t columns)
+{
+    std::vector<T>* const kept = new std::vector<T>(std::move(values));
+    const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+    return nb::cast(nb::ndarray<nb::numpy, T, nb::ndim<2>>(
+            kept->data(), {columns ? kept->size() / columns : 0, columns}, owner));
+}
+
+nb::tuple search(const Index& self, const Array& queries_, int k, int segment)
+{
+    const cv::Mat queries = viewOf(queries_, "queries");
+    std::vector<int64> rows;
+    std::vector<int> distances;
+    {
+        nb::gil_scoped_release release;
+        self.knnSearch(queries, k, rows, distances, segment);
+    }
+    return nb::make_tuple(matrixOf(std::vector<int64_t>(rows.begin(), rows.end()), k), matrixOf(std::move(distances), k));
+}
+
+}  // namespace
+
+void bindMappedIndex(nb::module_& m)
+{
+    nb::class_<Index>(m, "MappedIndex")
+            .def_static("create", &create)
+            .def_static("open", &open)
+            .def("levelSizes", &Index::levelSizes)
+            .def("images", [](const Index& self) { return (int64_t)self.images(); })
+            .def("rows", [](const Index& self) { return (int64_t)self.rows(); })
+            .def("segments", &Index::segments)
+            .def("version", [](const Index& self) { return (uint64_t)self.version(); })
+            .def("imageOf", [](const Index& self, int64_t row) { return (int64_t)self.imageOf(row); })
+            .def("firstRow", [](const Index& self, int64_t image) { return (int64_t)self.firstRow(image); })
+            .def("descriptors", [](const Index& self, int64_t image) { return toNumpy(self.descriptors(image)); })
+            .def("add", &add)
+            .def("remove", &remove)
+            .def("refresh", &Index::refresh)
+            .def("search", &search);
+}
+
+}  // namespace iib_python

@@ -1,0 +1,159 @@
+import os
+import signal
+import tempfile
+import threading
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import opencv_iib
+from opencv_iib import MappedIndex, shards
+from support import brute_force
+
+try:
+    import distributed
+except ImportError:
+    distributed = None
+
+
+class Interrupted(Exception):
+    pass
+
+
+def until(arrays, count):
+    """The first `count` of them, and then an error."""
+    yield from arrays[:count]
+    raise Interrupted
+
+
+class ShardsTest(unittest.TestCase):
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = os.path.join(temporary.name, 'codes')
+        rng = np.random.default_rng(8)
+        self.codes = rng.integers(0, 256, (400, 8), np.uint8)  # of 8 bytes, so that many distances tie
+        self.queries = rng.integers(0, 256, (30, 8), np.uint8)
+
+    def expect_found(self, found, k, codes=None):
+        expected = brute_force(self.queries, self.codes if codes is None else codes, k)
+        self.assertEqual([found[0].tobytes(), found[1].tobytes()],
+                         [expected[0].astype(np.int64).tobytes(), expected[1].astype(np.int32).tobytes()])
+        self.assertEqual((found[0].dtype, found[1].dtype), (np.int64, np.int32))
+
+    def test_any_number_of_shards(self):
+        for rows_per_shard in (1 << 20, 400, 399, 57, 1):
+            with self.subTest(rows_per_shard):
+                folder = f'{self.folder}-{rows_per_shard}'
+                index = shards.write(folder, self.codes, rows_per_shard)
+                self.assertEqual(index.segments(), -(-400 // min(rows_per_shard, 400)))
+                for k in (1, 5, 100):  # more than a shard has
+                    self.expect_found(shards.search(folder, self.queries, k), k)
+
+    def test_arrays_stay_whole(self):
+        index = shards.write(Path(self.folder), (self.codes[i:i + 30] for i in range(0, 400, 30)), 100, (2, 6))
+        self.assertEqual((index.images(), index.segments(), index.levelSizes()), (14, 4, (2, 6)))
+        self.expect_found(shards.search(Path(self.folder), self.queries), 5)
+
+    def test_no_codes(self):
+        shards.write(self.folder, self.codes[:0])
+        for array in shards.search(self.folder, self.queries, 3):
+            np.testing.assert_array_equal(array, np.full((30, 3), -1))
+        shards.write(self.folder + '2', [], level_sizes=[8])
+        self.assertEqual(MappedIndex(self.folder + '2').segments(), 0)
+        with self.assertRaisesRegex(ValueError, 'no codes'):
+            shards.write(self.folder + '3', [])
+
+    def test_an_interrupted_call_goes_on(self):
+        images = [self.codes[i:i + 30] for i in range(0, 400, 30)]
+        for count in (1, 5, 9):
+            with self.assertRaises(Interrupted):
+                shards.write(self.folder, until(images, count), 60)
+            self.assertFalse(os.path.exists(self.folder))
+        first = os.path.join(self.folder + '.partial', 'segment-000001.iib')
+        inode = os.stat(first).st_ino
+        with self.assertRaisesRegex(ValueError, 'level sizes'):
+            shards.write(self.folder, images, 60, (4, 4))
+        for others in (images[:7], images[1:], [self.codes[::-1][i:i + 30] for i in range(0, 400, 30)]):
+            with self.assertRaisesRegex(ValueError, 'other codes'):
+                shards.write(self.folder, others, 60)
+        index = shards.write(self.folder, images, 60)
+        self.assertEqual((index.images(), index.segments()), (14, 7))
+        self.assertEqual(os.stat(os.path.join(self.folder, 'segment-000001.iib')).st_ino, inode)
+        self.assertFalse(os.path.exists(self.folder + '.partial'))
+        self.expect_found(shards.search(self.folder, self.queries), 5)
+
+    def test_one_writer(self):
+        def images():
+            yield self.codes
+            with self.assertRaisesRegex(BlockingIOError, 'another process'):
+                shards.write(self.folder, self.codes)
+        shards.write(self.folder, images(), 10)
+        with self.assertRaises(FileExistsError):
+            shards.write(self.folder, self.codes)
+        self.expect_found(shards.search(self.folder, self.queries), 5)
+
+    def test_mistakes(self):
+        for call in (lambda: shards.write(self.folder, self.codes, 0), lambda: shards.write(self.folder, self.codes[0])):
+            with self.assertRaises(ValueError):
+                call()
+
+    def test_a_new_commit_is_seen(self):
+        index = shards.write(self.folder, self.codes[:300], 100)
+        self.expect_found(shards.search(self.folder, self.queries), 5, self.codes[:300])
+        index.add(self.codes[300:])
+        self.expect_found(shards.search(self.folder, self.queries), 5)
+
+    def altered(self):
+        """Alters a shard, and gives its name."""
+        name = os.path.join(self.folder, 'segment-000003.iib')
+        content = bytearray(Path(name).read_bytes())
+        content[-9] ^= 1
+        Path(name).write_bytes(content)
+        return name
+
+    def test_an_altered_shard_is_named(self):
+        shards.write(self.folder, self.codes, 100)
+        with self.assertRaisesRegex(opencv_iib.error, self.altered()):
+            shards.search(self.folder, self.queries)
+
+    @unittest.skipIf(distributed is None, 'no dask.distributed')
+    def test_workers_of_dask(self):
+        shards.write(self.folder, self.codes, 57)
+        shards.write(self.folder + '0', [], level_sizes=[8])
+        with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None,
+                                      silence_logs=50) as cluster, distributed.Client(cluster) as client:
+            for k in (1, 100):
+                self.expect_found(shards.search(self.folder, self.queries, k, client), k)
+            self.assertEqual(shards.search(self.folder + '0', self.queries, 2, client)[0].tolist(), [[-1, -1]] * 30)
+            with self.assertRaises(opencv_iib.error):
+                shards.search(self.folder, self.queries[:, 1:], 5, client)
+            self.expect_found(self.while_a_worker_dies(client), 5)
+            index = MappedIndex(self.folder)
+            index.add(self.codes[:50])
+            self.expect_found(shards.search(self.folder, self.queries, 5, client), 5,
+                              np.concatenate([self.codes, self.codes[:50]]))
+            name = self.altered()
+            index.remove([index.images() - 1])  # so that all workers map it anew
+            with self.assertRaisesRegex(opencv_iib.error, name):
+                shards.search(self.folder, self.queries, 5, client)
+
+    def while_a_worker_dies(self, client):
+        """A search meanwhile: the worker is stopped before it, and killed when it has been given its shards."""
+        found = []
+        process = next(iter(client.run(os.getpid).values()))
+        os.kill(process, signal.SIGSTOP)
+        thread = threading.Thread(target=lambda: found.append(shards.search(self.folder, self.queries, 5, client)))
+        thread.start()
+        thread.join(.5)
+        self.assertTrue(thread.is_alive())  # it waits for the worker
+        os.kill(process, signal.SIGKILL)
+        thread.join(60)
+        self.assertFalse(thread.is_alive())
+        return found[0]
+
+
+if __name__ == '__main__':
+    unittest.main()
