@@ -60,7 +60,8 @@ nb::tuple search(const Index& self, const Array& queries_, int k, int segment)
         nb::gil_scoped_release release;
         self.knnSearch(queries, k, rows, distances, segment);
     }
-    return nb::make_tuple(matrixOf(std::vector<int64_t>(rows.begin(), rows.end()), k), matrixOf(std::move(distances), k));
+    return nb::make_tuple(
+            matrixOf(std::vector<int64_t>(rows.begin(), rows.end()), k), matrixOf(std::move(distances), k));
 }
 
 }  // namespace
@@ -77,7 +78,8 @@ void bindMappedIndex(nb::module_& m)
             .def("version", [](const Index& self) { return (uint64_t)self.version(); })
             .def("imageOf", [](const Index& self, int64_t row) { return (int64_t)self.imageOf(row); })
             .def("firstRow", [](const Index& self, int64_t image) { return (int64_t)self.firstRow(image); })
-            .def("descriptors", [](const Index& self, int64_t image) { return toNumpy(self.descriptors(image)); })
+            .def("descriptors",
+                    [](const Index& self, int64_t image) { return toNumpy(self.descriptors(image)); })
             .def("add", &add)
             .def("remove", &remove)
             .def("refresh", &Index::refresh)
