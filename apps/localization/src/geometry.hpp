@@ -43,6 +43,28 @@ struct Observation
     Eigen::Vector2d pixel;
 };
 
+//! A line segment of an image.
+struct Segment
+{
+    Eigen::Vector2d begin, end;
+
+    double length() const { return (end - begin).norm(); }
+    Eigen::Vector2d direction() const { return (end - begin).normalized(); }
+    //! The distance of a point from the line through the segment, in pixels; positive on one side.
+    double distance(const Eigen::Vector2d& p) const
+    {
+        const Eigen::Vector2d d = direction(), v = p - begin;
+        return d.x() * v.y() - d.y() * v.x();
+    }
+};
+
+//! A piece of a line of the map, and the segment that it is seen as, without distortion.
+struct LineObservation
+{
+    Eigen::Vector3d begin, end;
+    Segment segment;
+};
+
 }  // namespace iib_localization
 
 #endif

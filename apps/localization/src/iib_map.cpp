@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "common/command_line.hpp"
+#include "line_features.hpp"
 #include "localizer.hpp"
 #include "map_builder.hpp"
 
@@ -15,10 +16,11 @@ void printInfo(const Map& map)
 {
     const size_t keyframes = map.model.keyframes.size();
     const Localizer localizer(map, map.model.cameras.begin()->second);
-    std::cout << keyframes << " keyframes, " << map.model.points.size() << " points, features "
-              << map.description << "\nbytes a keyframe: codes " << map.codeBytes() / keyframes << ", points "
+    std::cout << keyframes << " keyframes, " << map.model.points.size() << " points, "
+              << map.lines.lines.size() << " lines, features " << map.description
+              << "\nbytes a keyframe: codes " << map.codeBytes() / keyframes << ", points "
               << map.pointBytes() / keyframes << ", retrieval " << localizer.retrievalBytes() / keyframes
-              << "\n";
+              << ", lines " << map.lines.bytes() / keyframes << "\n";
 }
 
 int run(const iib_tools::CommandLine& line)
@@ -42,6 +44,8 @@ int run(const iib_tools::CommandLine& line)
     sources.features = line.text("features");
     sources.refinePoses = line.has("refine-poses");
     const Map map = buildMap(sources);
+    if (!linesAvailable())
+        std::cerr << "the map has no lines: this program was built without OpenCV's line_descriptor\n";
     writeMap(line.text("out"), map);
     printInfo(map);
     return 0;

@@ -36,24 +36,36 @@ std::string hashOf(const std::string& path)
 }
 
 std::string codesFile(size_t detector) { return "codes_" + std::to_string(detector) + ".iib"; }
+const char* const LINES = "lines3D.txt";
+const char* const LINE_CODES = "codes_lines.iib";
 
-void writeCodes(const std::string& path, const Map& map, size_t detector)
+//! @param codes of each keyframe.
+void writeCodes(const std::string& path, const std::vector<cv::Mat>& codes)
 {
     const cv::Ptr<cv::iib::HierarchicalMatcher> index = cv::iib::HierarchicalMatcher::create();
-    std::vector<cv::Mat> codes;
-    for (const std::vector<cv::Mat>& keyframe : map.codes)
-        codes.push_back(keyframe[detector]);
     index->add(codes);
     index->saveIndex(path);
 }
 
-void readCodes(const std::string& path, Map& map, size_t detector)
+std::vector<cv::Mat> readCodes(const std::string& path, size_t keyframes)
 {
     const std::vector<cv::Mat> codes = cv::iib::HierarchicalMatcher::loadIndex(path)->getTrainDescriptors();
-    if (codes.size() != map.codes.size())
+    if (codes.size() != keyframes)
         CV_Error(cv::Error::StsError, path + " is not of as many keyframes as images.txt");
-    for (size_t i = 0; i < codes.size(); i++)
-        map.codes[i][detector] = codes[i];
+    return codes;
+}
+
+LineMap readLineMap(const std::string& folder, const Model& model)
+{
+    LineMap map;
+    map.lines = readLines(folder + "/" + LINES, model.keyframes.size());
+    map.codes = readCodes(folder + "/" + LINE_CODES, model.keyframes.size());
+    const std::vector<std::vector<int>> seen = linesOfKeyframes(map.lines, map.codes.size());
+    for (size_t k = 0; k < seen.size(); k++)
+        if (map.codes[k].rows != int(seen[k].size()))
+            CV_Error(cv::Error::StsError,
+                    folder + ": " + model.keyframes[k].name + " has not a code for each line");
+    return map;
 }
 
 void writeFiles(const std::string& folder, const Map& map)
@@ -62,8 +74,17 @@ void writeFiles(const std::string& folder, const Map& map)
     writeModel(folder, map.model);
     for (size_t d = 0; d < map.codes.at(0).size(); d++)
     {
+        std::vector<cv::Mat> codes;
+        for (const std::vector<cv::Mat>& keyframe : map.codes)
+            codes.push_back(keyframe[d]);
         files.push_back(codesFile(d));
-        writeCodes(folder + "/" + files.back(), map, d);
+        writeCodes(folder + "/" + files.back(), codes);
+    }
+    if (!map.lines.lines.empty())
+    {
+        files.insert(files.end(), {LINES, LINE_CODES});
+        writeLines(folder + "/" + LINES, map.lines.lines);
+        writeCodes(folder + "/" + LINE_CODES, map.lines.codes);
     }
     const std::string header = folder + "/" + HEADER;
     std::ofstream stream = createFile(header);
@@ -138,6 +159,7 @@ Map readMap(const std::string& folder)
         header.fail("the map is of a newer version of this program");
     Map map;
     int64_t detectors = 0;
+    bool lines = false;
     while (header.next())
     {
         if (header.word(0) == "features")
@@ -151,11 +173,19 @@ Map readMap(const std::string& folder)
             header.fail("'" + header.word(0) + "' is not known");
         else if (hashOf(folder + "/" + header.word(1)) != header.word(2))
             CV_Error(cv::Error::StsError, folder + "/" + header.word(1) + " is damaged: build the map again");
+        else
+            lines |= header.word(1) == LINES;
     }
     map.model = readModel(folder);
     map.codes.assign(map.model.keyframes.size(), std::vector<cv::Mat>(size_t(detectors)));
     for (size_t d = 0; d < size_t(detectors); d++)
-        readCodes(folder + "/" + codesFile(d), map, d);
+    {
+        const std::vector<cv::Mat> codes = readCodes(folder + "/" + codesFile(d), map.codes.size());
+        for (size_t k = 0; k < codes.size(); k++)
+            map.codes[k][d] = codes[k];
+    }
+    if (lines)
+        map.lines = readLineMap(folder, map.model);
     for (size_t i = 0; i < map.codes.size(); i++)
     {
         size_t rows = 0;

@@ -6,13 +6,15 @@
 #define IIB_LOCALIZATION_MAP_HPP
 
 #include "colmap_model.hpp"
+#include "line_map.hpp"
 
 namespace iib_localization {
 
 /** Where a camera can find itself: keyframes, the points seen in them, and a code for each sight of a point.
 
 On disk it is a folder: COLMAP's text model, `codes_D.iib` (the index file of cv::iib::HierarchicalMatcher) for detector
-D, and `map.txt` with the way the codes were made and a hash of each of the files. */
+D, with lines also `lines3D.txt` and `codes_lines.iib`, and `map.txt` with the way the codes were made and a hash of each
+of the files. */
 struct Map
 {
     Model model;
@@ -20,6 +22,7 @@ struct Map
     std::string description;  //!< and its description
     std::vector<std::vector<cv::Mat>>
             codes;  //!< [keyframe][detector]; rows are the keyframe's pixels, in their order
+    LineMap lines;  //!< may be empty
 
     //! All codes in bytes.
     size_t codeBytes() const;

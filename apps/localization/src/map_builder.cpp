@@ -9,6 +9,8 @@
 #include "opencv2/imgcodecs.hpp"
 
 #include "images.hpp"
+#include "line_mapping.hpp"
+#include "line_tracks.hpp"
 #include "tracks.hpp"
 #include "trajectory.hpp"
 
@@ -117,12 +119,15 @@ Map buildMap(const MapSources& sources)
     map.description = method.description();
     const std::vector<ImageFile> images = findKeyframes(sources, map.model);
     std::vector<Features> features;
+    std::vector<LineFeatures> lines;
     std::vector<std::vector<int>> points;  // of each feature of each keyframe; -1: none
     for (size_t k = 0; k < images.size(); k++)
     {
         const Keyframe& keyframe = map.model.keyframes[k];
         const Camera& camera = map.model.cameras.at(keyframe.camera);
-        features.push_back(method.extract(readKeyframe(images[k], camera)));
+        const cv::Mat grey = readKeyframe(images[k], camera);
+        features.push_back(method.extract(grey));
+        lines.push_back(extractLines(grey));
         points.emplace_back(features[k].pixels.size(), -1);
         if (sources.depth.empty())
             continue;
@@ -134,9 +139,13 @@ Map buildMap(const MapSources& sources)
                 points[k][i] = int(map.model.points.size());
                 map.model.points.push_back(keyframe.pose.toWorld(camera.pinhole().ray(straight[i]) * z));
             }
+        addLinesFromDepth(map.lines, lines[k], camera, keyframe.pose, depth);
     }
     if (sources.depth.empty())
+    {
         points = triangulateTracks(method, features, sources.refinePoses, map.model);
+        map.lines = triangulateLines(lines, map.model);
+    }
     for (size_t k = 0; k < images.size(); k++)
         addSights(map, map.model.keyframes[k], features[k], points[k]);
     if (map.model.points.size() < 10)

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
-#include <set>
 
 #include "bundle.hpp"
 #include "map_builder.hpp"
@@ -32,28 +31,6 @@ struct Place
     }
 };
 typedef std::vector<Place> Track;
-
-//! Pairs of keyframes that may see the same.
-std::set<std::pair<int, int>> nearPairs(const std::vector<Keyframe>& keyframes)
-{
-    std::set<std::pair<int, int>> pairs;
-    for (int i = 0; i < int(keyframes.size()); i++)
-    {
-        std::vector<std::pair<double, int>> others;
-        for (int j = 0; j < int(keyframes.size()); j++)
-        {
-            const Pose &a = keyframes[i].pose, &b = keyframes[j].pose;
-            const double cosine =
-                    (a.rotation * Eigen::Vector3d::UnitZ()).dot(b.rotation * Eigen::Vector3d::UnitZ());
-            if (j != i && cosine > std::cos(MAX_ANGLE * CV_PI / 180))
-                others.emplace_back((a.position - b.position).norm(), j);
-        }
-        std::sort(others.begin(), others.end());
-        for (size_t n = 0; n < std::min(others.size(), NEIGHBOURS); n++)
-            pairs.insert({std::min(i, others[n].second), std::max(i, others[n].second)});
-    }
-    return pairs;
-}
 
 class Triangulator
 {
@@ -180,6 +157,27 @@ TrackForest joinMatches(const FeatureMethod& method, const std::vector<Features>
 }
 
 }  // namespace
+
+std::set<std::pair<int, int>> nearPairs(const std::vector<Keyframe>& keyframes)
+{
+    std::set<std::pair<int, int>> pairs;
+    for (int i = 0; i < int(keyframes.size()); i++)
+    {
+        std::vector<std::pair<double, int>> others;
+        for (int j = 0; j < int(keyframes.size()); j++)
+        {
+            const Pose &a = keyframes[i].pose, &b = keyframes[j].pose;
+            const double cosine =
+                    (a.rotation * Eigen::Vector3d::UnitZ()).dot(b.rotation * Eigen::Vector3d::UnitZ());
+            if (j != i && cosine > std::cos(MAX_ANGLE * CV_PI / 180))
+                others.emplace_back((a.position - b.position).norm(), j);
+        }
+        std::sort(others.begin(), others.end());
+        for (size_t n = 0; n < std::min(others.size(), NEIGHBOURS); n++)
+            pairs.insert({std::min(i, others[n].second), std::max(i, others[n].second)});
+    }
+    return pairs;
+}
 
 bool triangulate(
         const std::vector<Pose>& poses, const std::vector<Eigen::Vector3d>& rays, Eigen::Vector3d& point)

@@ -5,10 +5,15 @@
 #ifndef IIB_LOCALIZATION_TRACKS_HPP
 #define IIB_LOCALIZATION_TRACKS_HPP
 
+#include <set>
+
 #include "colmap_model.hpp"
 #include "features.hpp"
 
 namespace iib_localization {
+
+//! Pairs of keyframes that may see the same: each with the six nearest that look the same way within 60 degrees.
+std::set<std::pair<int, int>> nearPairs(const std::vector<Keyframe>& keyframes);
 
 /** Matches keyframes with those near them, follows points from one to the next, triangulates and adjusts them.
 @param refinePoses lets the adjustment move the model's poses.

@@ -1,0 +1,88 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "line_features.hpp"
+
+#include "opencv2/imgproc.hpp"
+
+#ifdef IIB_HAVE_LINE_DESCRIPTOR
+#include "opencv2/line_descriptor.hpp"
+#endif
+
+namespace iib_localization {
+namespace {
+
+constexpr float MIN_LENGTH = 20;  // pixels
+constexpr int CODE_BYTES = 32;
+#ifdef IIB_HAVE_LINE_DESCRIPTOR
+// LSD works on the image scaled by 0.8 and divides coordinates by it, as if the middle of the first pixel stayed where it
+// was; cv::resize leaves the image's corner where it was.
+constexpr float LSD_SCALE = 0.8f;
+constexpr float LSD_OFFSET = 0.5f / LSD_SCALE - 0.5f;
+
+cv::line_descriptor::KeyLine keyLine(const cv::Vec4f& s, int index)
+{
+    cv::line_descriptor::KeyLine line;
+    line.startPointX = line.sPointInOctaveX = s[0];
+    line.startPointY = line.sPointInOctaveY = s[1];
+    line.endPointX = line.ePointInOctaveX = s[2];
+    line.endPointY = line.ePointInOctaveY = s[3];
+    line.pt = {(s[0] + s[2]) / 2, (s[1] + s[3]) / 2};
+    line.angle = std::atan2(s[3] - s[1], s[2] - s[0]);
+    line.lineLength = std::hypot(s[2] - s[0], s[3] - s[1]);
+    line.numOfPixels = cvRound(line.lineLength);
+    line.size = line.response = 0;  // not looked at
+    line.octave = 0;
+    line.class_id = index;
+    return line;
+}
+#endif
+
+}  // namespace
+
+bool linesAvailable()
+{
+#ifdef IIB_HAVE_LINE_DESCRIPTOR
+    return true;
+#else
+    return false;
+#endif
+}
+
+LineFeatures extractLines(const cv::Mat& grey)
+{
+    LineFeatures features;
+    features.codes.create(0, CODE_BYTES, CV_8U);
+#ifdef IIB_HAVE_LINE_DESCRIPTOR
+    std::vector<cv::Vec4f> found;
+    cv::createLineSegmentDetector(cv::LSD_REFINE_STD, LSD_SCALE)->detect(grey, found);
+    std::vector<cv::line_descriptor::KeyLine> lines;
+    for (const cv::Vec4f& raw : found)
+    {
+        const cv::Vec4f s = raw + cv::Vec4f::all(LSD_OFFSET);
+        if (std::hypot(s[2] - s[0], s[3] - s[1]) < MIN_LENGTH)
+            continue;
+        lines.push_back(keyLine(s, int(lines.size())));
+        features.segments.push_back({{s[0], s[1]}, {s[2], s[3]}});
+    }
+    if (!lines.empty())
+        cv::line_descriptor::BinaryDescriptor::createBinaryDescriptor()->compute(grey, lines, features.codes);
+#endif
+    return features;
+}
+
+std::vector<Segment> undistorted(const std::vector<Segment>& segments, const Camera& camera)
+{
+    std::vector<cv::Point2f> ends;
+    for (const Segment& s : segments)
+        for (const Eigen::Vector2d& p : {s.begin, s.end})
+            ends.emplace_back(float(p.x()), float(p.y()));
+    const std::vector<Eigen::Vector2d> straight = camera.undistorted(ends);
+    std::vector<Segment> result;
+    for (size_t i = 0; i < segments.size(); i++)
+        result.push_back({straight[2 * i], straight[2 * i + 1]});
+    return result;
+}
+
+}  // namespace iib_localization
