@@ -22,9 +22,10 @@ ceres::Solver::Options solverOptions(ceres::LinearSolverType type)
 
 }  // namespace
 
-bool refinePose(const Pinhole& camera, const std::vector<Observation>& observations, RefinedPose& refined)
+bool refinePose(const Pinhole& camera, const std::vector<Observation>& observations, RefinedPose& refined,
+        const std::vector<LineObservation>& lines, double lineWeight)
 {
-    if (observations.size() < 3)
+    if (observations.size() + lines.size() < 3)
         return false;  // Ceres would not notice: it takes unknowns without equations for known
     std::vector<Eigen::Vector3d> points;
     points.reserve(observations.size());  // blocks of parameters do not move
@@ -40,6 +41,9 @@ bool refinePose(const Pinhole& camera, const std::vector<Observation>& observati
                 new ceres::CauchyLoss(LOSS_SCALE), rotation, position, points.back().data());
         problem.SetParameterBlockConstant(points.back().data());
     }
+    for (const LineObservation& line : lines)
+        problem.AddResidualBlock(LineError::create(camera, line, lineWeight),
+                new ceres::CauchyLoss(LOSS_SCALE), rotation, position);
     ceres::Solver::Summary summary;
     ceres::Solve(solverOptions(ceres::DENSE_QR), &problem, &summary);
     ceres::Covariance::Options options;

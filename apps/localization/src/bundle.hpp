@@ -23,8 +23,10 @@ struct RefinedPose
 };
 
 /** Least reprojection error with Cauchy loss.
-@return false if the points do not determine the pose. */
-bool refinePose(const Pinhole& camera, const std::vector<Observation>& observations, RefinedPose& refined);
+@param lines what is seen of lines, whose distances count `lineWeight` times as much as those of points.
+@return false if points and lines do not determine the pose. */
+bool refinePose(const Pinhole& camera, const std::vector<Observation>& observations, RefinedPose& refined,
+        const std::vector<LineObservation>& lines = {}, double lineWeight = 1);
 
 //! An image with its pose, and the points that agree with it.
 struct View

@@ -12,6 +12,7 @@
 #include "common/command_line.hpp"
 #include "focal_check.hpp"
 #include "images.hpp"
+#include "line_features.hpp"
 #include "localizer.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
@@ -24,7 +25,7 @@ using namespace iib_localization;
 
 std::string csvHeader()
 {
-    std::string header = "name,found,reason,matches,inliers,bound_m,bound_deg";
+    std::string header = "name,found,reason,matches,inliers,line_inliers,bound_m,bound_deg";
     for (const std::string& stage : Location::stages())
         header += "," + stage + "_ms";
     return header + "\n";
@@ -32,15 +33,15 @@ std::string csvHeader()
 
 std::string csvRow(const std::string& name, const Location& location)
 {
-    std::string row = cv::format("%s,%d,%s,%d,%d,%.4f,%.4f", name.c_str(), location.found,
+    std::string row = cv::format("%s,%d,%s,%d,%d,%d,%.4f,%.4f", name.c_str(), location.found,
             location.reason.c_str(), int(location.matched.size()), int(location.inliers.size()),
-            location.metres, location.degrees);
+            int(location.lineInliers.size()), location.metres, location.degrees);
     for (size_t i = 0; i < Location::stages().size(); i++)
         row += i < location.times.size() ? cv::format(",%.2f", location.times[i]) : ",";
     return row + "\n";
 }
 
-//! The image with the points of the map that agree: where they are seen in green, where the pose has them in red.
+//! The image with the points and lines of the map that agree: where they are seen in green, where the pose has them in red.
 void writePicture(
         const std::string& path, const cv::Mat& grey, const Location& location, const Camera& camera)
 {
@@ -50,6 +51,15 @@ void writePicture(
     };
     cv::Mat picture;
     cv::cvtColor(grey, picture, cv::COLOR_GRAY2BGR);
+    for (const LineObservation& o : location.lineInliers)
+    {
+        const Pose& pose = location.estimate.pose;
+        const auto mapped = [&](const Eigen::Vector3d& p) {
+            return at(camera.pinhole().project(pose.toCamera(p)));
+        };
+        cv::line(picture, mapped(o.begin), mapped(o.end), {0, 0, 255});
+        cv::line(picture, at(o.segment.begin), at(o.segment.end), {0, 200, 0}, 1, cv::LINE_AA);
+    }
     for (const Observation& o : location.inliers)
     {
         const cv::Point seen = at(o.pixel);
@@ -109,7 +119,10 @@ int run(const iib_tools::CommandLine& line)
     const std::vector<NamedPose> priors =
             line.has("prior") ? readTrajectory(line.text("prior")) : std::vector<NamedPose>();
     const Map map = readMap(line.text("map"));
-    const Localizer localizer(map, cameras.begin()->second);
+    const Localizer localizer(map, cameras.begin()->second, line.has("no-lines") ? Lines::OFF : Lines::ON);
+    if (!line.has("no-lines") && !map.lines.lines.empty() && !linesAvailable())
+        std::cerr
+                << "the map's lines are not used: this program was built without OpenCV's line_descriptor\n";
 
     const std::string out = line.text("out");
     std::error_code error;
@@ -167,13 +180,15 @@ int main(int argc, char** argv)
 {
     return iib_tools::runTool(argc, argv,
             "Finds where images were taken, in a map that iib_map made.\n"
-            "  iib_localize --map MAP --images DIR --cameras cameras.txt --out OUT [--imu imu.csv]\n"
+            "  iib_localize --map MAP --images DIR --cameras cameras.txt --out OUT [--imu imu.csv] "
+            "[--no-lines]\n"
             "OUT/trajectory.txt has the poses (TUM's format), OUT/frames.csv what became of each image.",
             "{map|<none>|the map, a folder}"
             "{images|<none>|folder of the images}"
             "{cameras|<none>|COLMAP's cameras.txt with the camera of all images}"
             "{prior|<none>|TUM's poses: about where the images were taken}"
             "{imu|<none>|EuRoC's imu.csv, in the camera's axes; images must be named by their times}"
+            "{no-lines||use points only, also if the map has lines}"
             "{pictures||write each image with the points that agree, into the same folder}"
             "{out|<none>|folder for the results}",
             run);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "line_features.hpp"
 #include "pnp.hpp"
 
 namespace iib_localization {
@@ -20,6 +21,9 @@ constexpr size_t MIN_MATCHES = 12;
 constexpr size_t MIN_INLIERS = 15;
 constexpr double MIN_INLIER_SHARE = 0.02;
 constexpr double MAX_BOUND = 1;  // metres
+constexpr size_t MIN_LINES = 5;  // fewer do not tell their noise
+constexpr double MAX_LINE_WEIGHT = 3;
+constexpr double LINE_GATE = 4;  // pixels, of a line from where the pose of the points has it
 
 //! Milliseconds since the last call.
 class Stopwatch
@@ -56,11 +60,11 @@ double worstDeviation(const Eigen::Matrix3d& covariance)
 
 const std::vector<std::string>& Location::stages()
 {
-    static const std::vector<std::string> names = {"features", "retrieval", "matching", "pose"};
+    static const std::vector<std::string> names = {"features", "retrieval", "matching", "pose", "lines"};
     return names;
 }
 
-Localizer::Localizer(const Map& map, const Camera& camera)
+Localizer::Localizer(const Map& map, const Camera& camera, Lines lines)
     : map_(map), camera_(camera), pinhole_(camera.pinhole()), method_(map.features)
 {
     if (map.description != method_.description())
@@ -73,6 +77,8 @@ Localizer::Localizer(const Map& map, const Camera& camera)
             codes.push_back(keyframe[d]);
         retrievals_.emplace_back(codes);
     }
+    if (lines == Lines::ON && linesAvailable() && !map.lines.lines.empty())
+        linesOf_ = linesOfKeyframes(map.lines.lines, map.model.keyframes.size());
 }
 
 size_t Localizer::retrievalBytes() const
@@ -150,13 +156,13 @@ std::vector<Observation> Localizer::match(
     return matches;
 }
 
-void Localizer::estimate(Location& location) const
+bool Localizer::estimate(Location& location) const
 {
     RefinedPose& refined = location.estimate;
     if (!poseByRansac(location.matched, pinhole_, refined.pose))
     {
         location.reason = "no pose that the matches agree on";
-        return;
+        return false;
     }
     // what agrees is looked for again after each refinement
     for (int round = 0; round < 3; round++)
@@ -165,15 +171,50 @@ void Localizer::estimate(Location& location) const
         if (location.inliers.size() < MIN_INLIERS)
         {
             location.reason = "too few matches agree";
-            return;
+            return false;
         }
         if (!refinePose(pinhole_, location.inliers, refined))
         {
             location.reason = "the points do not determine the pose";
-            return;
+            return false;
         }
     }
-    judge(location);
+    return true;
+}
+
+void Localizer::addLines(Location& location, const cv::Mat& grey, const std::vector<size_t>& keyframes) const
+{
+    const LineFeatures features = extractLines(grey);
+    const DescribedSegments image = {undistorted(features.segments, camera_), features.codes};
+    std::vector<LineObservation> matches;
+    for (size_t k : keyframes)
+    {
+        std::vector<Line3> lines;
+        for (size_t i = 0; i < linesOf_[k].size(); i++)
+        {
+            const MapLine& line = map_.lines.lines[size_t(linesOf_[k][i])];
+            lines.push_back({line.begin, line.end, map_.lines.codes[k].ptr(int(i))});
+        }
+        const std::vector<LineObservation> found =
+                matchLines(lines, image, pinhole_, location.estimate.pose, LINE_GATE);
+        matches.insert(matches.end(), found.begin(), found.end());
+    }
+    Location refined = location;
+    for (int round = 0; round < 3; round++)
+    {
+        const Pose& pose = refined.estimate.pose;
+        refined.inliers = agreeing(location.matched, pinhole_, pose);
+        refined.lineInliers = round == 0 ? matches : agreeing(matches, pinhole_, pose);
+        if (refined.lineInliers.size() < MIN_LINES || refined.inliers.size() < MIN_INLIERS)
+            return;
+        // each kind counts by its own noise
+        const double weight =
+                deviation(refined.inliers, pinhole_, pose) / deviation(refined.lineInliers, pinhole_, pose);
+        if (!refinePose(pinhole_, refined.inliers, refined.estimate, refined.lineInliers,
+                    std::clamp(weight, 1 / MAX_LINE_WEIGHT, MAX_LINE_WEIGHT)))
+            return;
+    }
+    location = refined;
 }
 
 void Localizer::judge(Location& location) const
@@ -214,10 +255,19 @@ Location Localizer::locate(const cv::Mat& grey, const Pose* prior) const
     location.matched = match(features, keyframes);
     watch.lap(location);
     if (location.matched.size() < MIN_MATCHES)
+    {
         location.reason = "too few matches";
-    else
-        estimate(location);
+        return location;
+    }
+    const bool estimated = estimate(location);
     watch.lap(location);
+    if (estimated && !linesOf_.empty())
+    {
+        addLines(location, grey, keyframes);
+        watch.lap(location);
+    }
+    if (estimated)
+        judge(location);
     return location;
 }
 

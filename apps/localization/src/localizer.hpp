@@ -9,6 +9,7 @@
 
 #include "bundle.hpp"
 #include "features.hpp"
+#include "line_matching.hpp"
 #include "map.hpp"
 #include "retrieval.hpp"
 
@@ -24,10 +25,17 @@ struct Location
     double degrees = 0;
     std::vector<Observation> matched;  //!< points of the map and where they may be seen; many are wrong
     std::vector<Observation> inliers;
+    std::vector<LineObservation> lineInliers;
     //! Milliseconds of each of STAGES.
     std::vector<double> times;
 
     static const std::vector<std::string>& stages();
+};
+
+enum class Lines
+{
+    OFF,
+    ON  //!< if the map has any
 };
 
 //! Localizes single images of one camera in a map.
@@ -35,7 +43,7 @@ class Localizer
 {
 public:
     //! @throws cv::Exception if the map's descriptors are not those that this program makes.
-    Localizer(const Map& map, const Camera& camera);
+    Localizer(const Map& map, const Camera& camera, Lines lines = Lines::ON);
 
     //! @param prior about where the camera is; null: the keyframes are found by their codes.
     Location locate(const cv::Mat& grey, const Pose* prior = nullptr) const;
@@ -47,14 +55,16 @@ private:
     std::vector<size_t> candidates(const Features& features, const Pose* prior) const;
     size_t countSureMatches(const Features& features, size_t keyframe) const;
     std::vector<Observation> match(const Features& features, const std::vector<size_t>& keyframes) const;
-    void estimate(Location& location) const;
+    bool estimate(Location& location) const;
+    void addLines(Location& location, const cv::Mat& grey, const std::vector<size_t>& keyframes) const;
     void judge(Location& location) const;
 
     const Map& map_;
     const Camera camera_;
     const Pinhole pinhole_;
     const FeatureMethod method_;
-    std::vector<Retrieval> retrievals_;  // of each detector
+    std::vector<Retrieval> retrievals_;      // of each detector
+    std::vector<std::vector<int>> linesOf_;  // each keyframe; empty: without lines
 };
 
 }  // namespace iib_localization

@@ -39,6 +39,34 @@ struct ReprojectionError
     }
 };
 
+//! The distances in pixels of a line's ends from the segment that it is seen as, times a weight. Of a pose.
+struct LineError
+{
+    Pinhole camera;
+    LineObservation line;
+    double weight;
+
+    template <typename T> bool operator()(const T* rotation, const T* position, T* residual) const
+    {
+        const Eigen::Vector2d along = line.segment.direction();
+        const Eigen::Vector3d* const ends[] = {&line.begin, &line.end};
+        for (int i = 0; i < 2; i++)
+        {
+            const Vector3<T> point = ends[i]->cast<T>();
+            T offset[2];  // from the segment's beginning
+            if (!ReprojectionError{camera, line.segment.begin}(rotation, position, point.data(), offset))
+                return false;
+            residual[i] = weight * (along.x() * offset[1] - along.y() * offset[0]);
+        }
+        return true;
+    }
+
+    static ceres::CostFunction* create(const Pinhole& camera, const LineObservation& line, double weight)
+    {
+        return new ceres::AutoDiffCostFunction<LineError, 2, 4, 3>(new LineError{camera, line, weight});
+    }
+};
+
 //! ReprojectionError for a focal length that is `scale` times the camera's.
 struct FocalError
 {

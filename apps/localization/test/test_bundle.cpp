@@ -31,6 +31,22 @@ struct Scene
             observations.push_back({truth.toWorld(CAMERA.ray(pixel) * depth), pixel});
         }
     }
+    //! Lines of about a metre, seen as what the truth makes of them.
+    std::vector<LineObservation> lines(int count)
+    {
+        std::uniform_real_distribution<double> unit(0, 1);
+        std::vector<LineObservation> result;
+        for (int i = 0; i < count; i++)
+        {
+            const Eigen::Vector2d pixel(640 * unit(random), 480 * unit(random));
+            const Eigen::Vector3d begin = CAMERA.ray(pixel) * (3 + 12 * unit(random));
+            const Eigen::Vector3d end =
+                    begin + Eigen::Vector3d(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5);
+            result.push_back(
+                    {truth.toWorld(begin), truth.toWorld(end), {CAMERA.project(begin), CAMERA.project(end)}});
+        }
+        return result;
+    }
     void addNoise(double sigma)
     {
         std::normal_distribution<double> noise(0, sigma);
@@ -68,6 +84,59 @@ TEST(RefinePose, covariance_tells_the_error)
         scene.addNoise(0.3);
         RefinedPose refined{scene.nearby(), {}};
         ASSERT_TRUE(refinePose(CAMERA, scene.observations, refined));
+        Eigen::Matrix<double, 6, 1> error;
+        const Eigen::AngleAxisd turn(refined.pose.rotation * scene.truth.rotation.conjugate());
+        error << refined.pose.position - scene.truth.position, turn.angle() * turn.axis();
+        sum += error.dot((refined.covariance * 0.3 * 0.3).ldlt().solve(error));
+    }
+    EXPECT_GT(sum / trials, 4.5);
+    EXPECT_LT(sum / trials, 8);
+}
+
+// Five points with an error of a pixel, and forty lines with one of 0.3 pixels, of which four are wrong.
+TEST(RefinePose, lines_make_a_pose_of_few_points_better)
+{
+    double sums[2] = {0, 0};  // without and with lines
+    for (unsigned seed = 0; seed < 20; seed++)
+    {
+        Scene scene(seed, 5);
+        scene.addNoise(1);
+        std::vector<LineObservation> lines = scene.lines(40);
+        std::normal_distribution<double> noise(0, 0.3);
+        for (size_t i = 0; i < lines.size(); i++)
+        {
+            const double wrong = i < 4 ? 5 : 0;
+            for (Eigen::Vector2d* end : {&lines[i].segment.begin, &lines[i].segment.end})
+                *end += Eigen::Vector2d(noise(scene.random) + wrong, noise(scene.random) - wrong);
+        }
+        for (bool withLines : {false, true})
+        {
+            RefinedPose refined{scene.nearby(), {}};
+            ASSERT_TRUE(refinePose(CAMERA, scene.observations, refined,
+                    withLines ? lines : std::vector<LineObservation>(), 1 / 0.3));
+            sums[withLines] += (refined.pose.position - scene.truth.position).norm();
+        }
+    }
+    EXPECT_LT(sums[1], 0.25 * sums[0]);
+    EXPECT_LT(sums[1] / 20, 0.01);
+}
+
+// As of points: the mean square in units of the covariance is the number of coordinates.
+TEST(RefinePose, covariance_tells_the_error_of_lines_too)
+{
+    double sum = 0;
+    const int trials = 200;
+    for (int i = 0; i < trials; i++)
+    {
+        Scene scene(unsigned(i) + 10, 10);
+        scene.addNoise(0.3);
+        std::vector<LineObservation> lines = scene.lines(30);
+        std::normal_distribution<double> noise(0, 0.6);
+        for (LineObservation& line : lines)
+            for (Eigen::Vector2d* end : {&line.segment.begin, &line.segment.end})
+                *end += Eigen::Vector2d(noise(scene.random), noise(scene.random));
+        RefinedPose refined{scene.nearby(), {}};
+        ASSERT_TRUE(refinePose(CAMERA, scene.observations, refined, lines, 0.5));
         Eigen::Matrix<double, 6, 1> error;
         const Eigen::AngleAxisd turn(refined.pose.rotation * scene.truth.rotation.conjugate());
         error << refined.pose.position - scene.truth.position, turn.angle() * turn.axis();

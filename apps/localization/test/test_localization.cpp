@@ -2,6 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
+#include "../src/line_features.hpp"
 #include "../src/localizer.hpp"
 #include "../src/map_builder.hpp"
 #include "../src/trajectory.hpp"
@@ -32,6 +33,8 @@ public:
         }
         texture_.convertTo(texture_, CV_8U);
     }
+
+    explicit Wall(const cv::Mat& texture) : texture_(texture) {}
 
     cv::Mat image(const Pose& pose) const
     {
@@ -75,6 +78,20 @@ private:
     cv::Mat texture_;
 };
 
+//! Stripes across and upright, and points only in the middle.
+cv::Mat stripesWithFewPoints()
+{
+    cv::Mat texture(900, 1200, CV_8U, cv::Scalar(120));
+    for (int v = 20; v < 900; v += 60)
+        texture(cv::Rect(0, v, 480, 25)) = 170;
+    for (int u = 720; u < 1200; u += 60)
+        texture(cv::Rect(u, 0, 25, 900)) = 70;
+    cv::Mat noise(12, 12, CV_8U), points = texture(cv::Rect(540, 390, 120, 120));
+    cv::RNG(3).fill(noise, cv::RNG::UNIFORM, 40, 220);
+    cv::resize(noise, points, points.size(), 0, 0, cv::INTER_NEAREST);
+    return texture;
+}
+
 Pose poseAt(double x, double y, double yaw)
 {
     return {Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitY())), {x, y, 0.2 * x}};
@@ -84,7 +101,7 @@ Pose poseAt(double x, double y, double yaw)
 class Localization : public testing::Test
 {
 protected:
-    Localization()
+    explicit Localization(const Wall& pictured = Wall(1)) : wall(pictured)
     {
         folder.makeFolder("images");
         folder.makeFolder("depth");
@@ -113,7 +130,7 @@ protected:
     }
 
     const TestFolder folder;
-    const Wall wall{1};
+    const Wall wall;
     MapSources sources;
 };
 
@@ -146,6 +163,55 @@ TEST_F(Localization, the_other_features_too)
         sources.features = name;
         expectFound(buildMap(sources), wall.image(truth), truth, 0.02);
     }
+}
+
+class LocalizationByLines : public Localization
+{
+protected:
+    LocalizationByLines() : Localization(Wall(stripesWithFewPoints())) {}
+
+    //! The mean errors of five poses in metres: without and with lines.
+    std::pair<double, double> errors(const Map& map)
+    {
+        std::pair<double, double> means(0, 0);
+        cv::RNG random(7);
+        for (int i = 0; i < 5; i++)
+        {
+            const Pose truth =
+                    poseAt(random.uniform(-0.5, 0.5), random.uniform(-0.2, 0.2), random.uniform(0., 0.15));
+            cv::Mat image = wall.image(truth), noise(SIZE, CV_16S);
+            random.fill(noise, cv::RNG::NORMAL, 0, 3);
+            cv::add(image, noise, image, cv::noArray(), CV_8U);
+            const Location without = Localizer(map, CAMERA, Lines::OFF).locate(image);
+            const Location with = Localizer(map, CAMERA).locate(image);
+            EXPECT_TRUE(without.found && with.found) << without.reason << with.reason;
+            EXPECT_TRUE(without.lineInliers.empty());
+            EXPECT_GE(with.lineInliers.size(), 10u);
+            EXPECT_LT(with.metres, without.metres) << "surer";
+            means.first += (without.estimate.pose.position - truth.position).norm() / 5;
+            means.second += (with.estimate.pose.position - truth.position).norm() / 5;
+        }
+        return means;
+    }
+};
+
+TEST_F(LocalizationByLines, helps_where_points_are_few)
+{
+    if (!linesAvailable())
+        return;
+    sources.depth = folder.path("depth");
+    writeMap(folder.path("map"), buildMap(sources));
+    const auto [without, with] = errors(readMap(folder.path("map")));
+    EXPECT_LT(with, 0.5 * without);
+    EXPECT_LT(with, 0.01);
+}
+
+TEST_F(LocalizationByLines, triangulated_ones_too)
+{
+    if (!linesAvailable())
+        return;
+    const auto [without, with] = errors(buildMap(sources));
+    EXPECT_LT(with, 0.7 * without);
 }
 
 TEST_F(Localization, an_unknown_place_and_bad_images_get_no_pose)
