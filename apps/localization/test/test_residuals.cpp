@@ -72,6 +72,32 @@ TEST(Residuals, focal_length)
     EXPECT_NEAR(1.3 * 510 * -0.7 / 3 + 240 - 200, residual[1], 1e-9);
 }
 
+TEST(Residuals, line)
+{
+    const Pinhole camera = {500, 510, 320, 240};
+    const Pose pose = {TURN, {1, -2, 0.5}};
+    const LineObservation line = {
+            pose.toWorld({0.5, -0.7, 3}), pose.toWorld({-0.2, 0.4, 2}), {{100, 200}, {130, 240}}};
+    const std::unique_ptr<ceres::CostFunction> function(LineError::create(camera, line, 1.5));
+    const Blocks blocks = withPose({});
+    checkJacobians(*function, blocks, {0});
+    const double* pointers[] = {blocks[0].data(), blocks[1].data()};
+    double residual[2];
+    ASSERT_TRUE(function->Evaluate(pointers, residual, nullptr));
+    // along the segment (3, 4) / 5, so across it (-4, 3) / 5
+    const double x[] = {500 * 0.5 / 3 + 320 - 100, 500 * -0.2 / 2 + 320 - 100};
+    const double y[] = {510 * -0.7 / 3 + 240 - 200, 510 * 0.4 / 2 + 240 - 200};
+    for (int i : {0, 1})
+    {
+        EXPECT_NEAR(1.5 * (-4 * x[i] + 3 * y[i]) / 5, residual[i], 1e-9);
+        EXPECT_NEAR((-4 * x[i] + 3 * y[i]) / 5, line.segment.distance({x[i] + 100, y[i] + 200}), 1e-9);
+    }
+    LineObservation behind = line;
+    behind.end = pose.toWorld({0, 0, -1});
+    const std::unique_ptr<ceres::CostFunction> other(LineError::create(camera, behind, 1.5));
+    EXPECT_FALSE(other->Evaluate(pointers, residual, nullptr));
+}
+
 TEST(Residuals, prior)
 {
     const Pose pose = {TURN * Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY()), {1.1, -2, 0.4}};
