@@ -220,8 +220,63 @@ def matching_speed():
     return table(['codes', 'AVX-512', 'and cross-check', 'without AVX2', 'and cross-check'], lines)
 
 
+SCALE = 'scale.json'
+
+
+def flat_search():
+    """Exact search beside faiss's flat index, in ns a pair; by threads."""
+    data = benchmark(SCALE)
+    faiss = 'faiss ' + data['faiss']
+    found = {(r['bytes'], r['k'], r['threads']): r for r in data['flat']['rows']}
+    lines = []
+    for width, k in sorted({key[:2] for key in found}):
+        cells = []
+        for threads in (1, 2):
+            row = found[width, k, threads]
+            cells += ['%.2f' % row['iib_ns'], '%.2f' % row['faiss_ns'], '%.1f' % (row['faiss_ns'] / row['iib_ns'])]
+        lines.append([str(width), str(k)] + cells)
+    return table(['bytes', 'k', 'ns a pair', faiss, 'times', '2 threads', faiss, 'times'], lines)
+
+
+def approximate_search():
+    """faiss's approximate indices with the least setting that reaches the recall, beside the exact scan."""
+    data = benchmark(SCALE)['approximate']
+    return table(['%s codes of' % format(data['codes'], ','), '', '', 'recall', 'queries a second', 'bytes a code', 'built in s'],
+                 [[r['data'], r['index'], r['setting'], '%.3f' % r['recall'], '%.0f' % r['queries_a_second'],
+                   '%.0f' % r['bytes_a_code'], '%.0f' % r['build_seconds']] for r in data['rows']])
+
+
+def mapped_index():
+    """A MappedIndex opened in a fresh process, and the same search by one worker of Dask and by two."""
+    data = benchmark(SCALE)
+    index, workers = data['mapped'], data['workers']
+    return table(['%s codes of %d bytes' % (format(index['codes'], ','), index['bytes']), ''], [
+        ['written and on the disk, s', '%.0f' % index['write_seconds']],
+        ['opened, ms', '%.1f' % index['open_ms']],
+        ['resident after that, MB', '%.1f' % index['open_resident_mb']],
+        ['first query, which maps and checks all, ms', '%.0f' % index['first_search_ms']],
+        ['the next, ms', '%.0f' % index['second_search_ms']],
+        ['%d queries, k = 5, one worker of one thread, s' % workers['queries'], '%.1f' % workers['one_worker_seconds']],
+        ['two such workers, s', '%.1f' % workers['two_workers_seconds']],
+        ['times as fast', '%.1f' % (workers['one_worker_seconds'] / workers['two_workers_seconds'])]])
+
+
+def on_paper():
+    """What 10^9 codes of 64 bytes need, by the time a pair takes one thread here."""
+    pair, = [r['iib_ns'] for r in benchmark(SCALE)['flat']['rows'] if (r['bytes'], r['k'], r['threads']) == (64, 1, 1)]
+    ivf, = [r['bytes_a_code'] for r in benchmark(SCALE)['approximate']['rows']
+            if 'IVF' in r['index'] and r['data'] == 'photographs']
+    seconds = 500 * pair  # 500 queries x 10^9 codes
+    return table(['10^9 codes of 64 bytes', ''], [
+        ['a folder, and memory of all machines together, GB', '64'],
+        ['the same in IndexBinaryIVF, GB', '%.0f' % ivf],
+        ['exact, an image of 500 codes, one core, s', '%.0f' % seconds],
+        ['on 8 machines of 32 cores, s', '%.1f' % (seconds / 256)]])
+
+
 PAGES = {'README.md': (detected_points, fixed_points, turned, ratios, presets, matching_speed, costs),
          'doc/performance.md': (describing, matching, all_costs),
+         'doc/scale.md': (mapped_index, flat_search, approximate_search, on_paper),
          'doc/results/README.md': (extra_channels, all_ratios)}
 
 

@@ -1,0 +1,30 @@
+#!/bin/sh
+# Measures searches among many codes beside faiss, and prints the figures: exact at several widths, faiss's approximate
+# indices, a mapped index of ten million codes, Dask's workers. Takes about a quarter of an hour, and pip's package index.
+# With --document the results go to doc/results, from where the tables of doc/scale.md are made anew.
+#   scripts/scale.sh [--document] [--images=FOLDER] [--codes=N] [--mapped=N] [--rounds=N]
+# FOLDER: SET/SEQUENCE/1.png, 2.png and so on, of places in changing light; without it random codes alone are searched.
+. "$(dirname "$0")/lib.sh"
+
+out="$build/scale.json"
+if [ "${1:-}" = --document ]; then
+    out="$root/doc/results/scale.json"
+    shift
+fi
+for argument in "$@"; do
+    case "$argument" in
+    --images=* | --codes=* | --mapped=* | --rounds=*) ;;
+    *) fail "unknown option $argument; there are --images=, --codes=, --mapped=, --rounds=" ;;
+    esac
+done
+# shellcheck disable=SC2086
+need $build_packages python3-venv python3-dev
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir -p "$build"
+say "building the package"
+/usr/bin/python3 -m venv "$work/environment"
+"$work/environment/bin/pip" install --quiet "$root[distributed]" opencv-python-headless faiss-cpu
+say "measuring"
+"$work/environment/bin/python" "$root/tools/scale/measure.py" --out "$out" "$@"
+[ "$out" = "$build/scale.json" ] || /usr/bin/python3 "$root/scripts/figures.py" --write
