@@ -17,7 +17,8 @@ import numpy as np
 
 METHODS = {"iib": "IIB", "own": "ORB and AKAZE", "sift": "SIFT"}
 LIMITS = [(0.05, 0.5), (0.10, 1.0), (0.25, 2.0)]  # metres, degrees
-STAGES = ["features", "retrieval", "matching", "pose"]
+STAGES = ["features", "retrieval", "matching", "pose", "lines"]
+POINTS_ONLY = ", points only"  # after the kind of map, of a run without lines
 SPACINGS = {1: "1.4 m", 2: "2.8 m", 4: "5.6 m"}  # between keyframes, by the step among the rendered ones
 DROPPED = 4  # of so many images, one is kept
 ROUNDS = 3  # of timing, of which the quickest counts
@@ -107,6 +108,7 @@ def summary(rows):
             result[f"{name}_cm"] = round(100 * value, 2)
         result["mean_cm"] = round(100 * float(np.mean(distances)), 2)
         result["median_cm"] = round(100 * float(np.median(distances)), 2)
+        result["line_inliers"] = round(float(np.mean([int(row["line_inliers"]) for row in found])), 1)
     alone = [(distance(row), float(row["bound_m"])) for row in found if row["found"] == "1"]
     if alone:
         result["within_bound"] = round(100 * float(np.mean([error <= bound for error, bound in alone])), 1)
@@ -158,7 +160,10 @@ class Street:
         place = self.place(features, step, depth)
         for light in self.lights:
             located = self.localize(place, light, *(["--pictures"] if pictures else []))
-            self.add("depth" if depth else "triangulated", features, light, located, step)
+            kind = "depth" if depth else "triangulated"
+            self.add(kind, features, light, located, step)
+            if features == "iib" and step == 1:
+                self.add(kind + POINTS_ONLY, features, light, self.localize(place, light, "--no-lines", name="-points"))
             if pictures:
                 self.single[light] = located
 
@@ -179,24 +184,24 @@ class Street:
                 self.inertial[light][kind] = located
 
     def times(self):
-        """Milliseconds of each stage by the number of threads: medians of the images' quickest rounds. Processor time, less
-        that of a run with one image, is what other programs change least."""
+        """Milliseconds of each stage by the number of threads, without and with lines: medians of the images' quickest
+        rounds. Processor time, less that of a run with one image, is what other programs change least."""
         place, light, result = self.programs.out / "maps" / "iib-1-depth", self.lights[0], []
         first = self.programs.out / "first" / light / "images"
         first.mkdir(parents=True, exist_ok=True)
         shutil.copy(min((self.data / light / "images").glob("[0-9]*.png")), first)
-        for threads in (1, 2):
+        for threads, options in ((1, ["--no-lines"]), (2, ["--no-lines"]), (1, []), (2, [])):
             rounds, processor = [], []
             for _ in range(ROUNDS):
                 start = processor_time()
-                self.localize(place, light, name="-first", images=first, threads=threads)
+                self.localize(place, light, *options, name="-first", images=first, threads=threads)
                 middle = processor_time()
-                located = self.localize(place, light, name="-times", threads=threads)
+                located = self.localize(place, light, *options, name="-times", threads=threads)
                 processor.append((processor_time() - middle - (middle - start)) / (len(located) - 1))
                 rounds.append([[float(row[f"{stage}_ms"] or 0) for stage in STAGES] for row in located])
             rounds = np.array(rounds)
             quickest = np.take_along_axis(rounds, rounds.sum(axis=2).argmin(axis=0)[None, :, None], axis=0)[0]
-            result.append({"threads": threads, "processor": round(1e3 * min(processor), 1),
+            result.append({"threads": threads, "with_lines": not options, "processor": round(1e3 * min(processor), 1),
                            "all": round(float(np.median(quickest.sum(axis=1))), 1),
                            **dict(zip(STAGES, np.median(quickest, axis=0).round(1).tolist()))})
         return result
@@ -234,8 +239,13 @@ def photographs(programs, data, rows):
                                    features)
             for kind in ("plain", "relit"):
                 located = programs.localize(place, kind, ours / kind, source / "cameras.txt", read_poses(source / "poses.txt"))
-                rows.append({"data": source.name, "map": "triangulated", "keyframes": "every other image",
-                             "features": features, "light": kind, **summary(located)})
+                row = {"data": source.name, "map": "triangulated", "keyframes": "every other image", "features": features,
+                       "light": kind}
+                rows.append({**row, **summary(located)})
+                if features == "iib":
+                    located = programs.localize(place, f"{kind}-points", ours / kind, source / "cameras.txt",
+                                                read_poses(source / "poses.txt"), "--no-lines")
+                    rows.append({**row, "map": row["map"] + POINTS_ONLY, **summary(located)})
 
 
 def unknown_places(programs, street, data):

@@ -26,7 +26,7 @@ LIGHTS = ["night", "dusk", "winter", "overcast"]
 
 
 def row(error, degrees=0.0, **others):
-    return {"name": "1", "found": "1", "bound_m": "0.03", "inliers": "9", "pose": (np.zeros(3), TURNED),
+    return {"name": "1", "found": "1", "bound_m": "0.03", "inliers": "9", "line_inliers": "3", "pose": (np.zeros(3), TURNED),
             "errors": np.array([error, 0, 0, degrees]), **others}
 
 
@@ -43,7 +43,7 @@ def all_rows():
 
 
 TIMES = [{"threads": n, "processor": 90.0, "all": 90.0, "features": 60.0, "retrieval": 10.0, "matching": 10.0,
-          "pose": 10.0} for n in (1, 2)]
+          "pose": 10.0, "lines": 40.0 if lines else 0.0, "with_lines": lines} for lines in (False, True) for n in (1, 2)]
 
 
 class Sums(unittest.TestCase):
@@ -62,6 +62,7 @@ class Sums(unittest.TestCase):
         self.assertEqual((sums["images"], sums["found"]), (4, 3))
         self.assertAlmostEqual(sums["mean_cm"], 8.67)
         self.assertAlmostEqual(sums["within_bound"], 33.3)
+        self.assertEqual(sums["line_inliers"], 3)
         self.assertEqual(measure.summary([lost])["within_25cm"], 0)
 
 
@@ -98,6 +99,19 @@ class Page(unittest.TestCase):
             text = path.read_text(encoding="utf-8")
         self.assertEqual(text.count('class="missed"'), 1)
         self.assertIn("<td>50.0</td>", text)
+
+    def test_compares_points_only_with_lines(self):
+        rows = [street_row(kind, "1.4 m", "night", mean_cm=mean, line_inliers=lines)
+                for kind, mean, lines in (("depth", 0.71, 34.0), ("depth" + measure.POINTS_ONLY, 0.93, 0.0))]
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "index.html"
+            localization.write_page(path, rows=rows, aims=[], lights=[], unknown=None, times=TIMES, growth=[], info=[])
+            text = path.read_text(encoding="utf-8")
+        section = text[text.index("<h2>With and without lines"):]
+        table = section[:section.index("</table>")]
+        self.assertEqual(table.count("<tr>"), 2)
+        self.assertLess(table.index("<td>0.93</td>"), table.index("<td>0.71</td>"))
+        self.assertIn("<td>34.0</td>", table)
 
     def test_video_can_be_read(self):
         frames = [(None, np.full((pictures.FRAME[1], 2 * pictures.FRAME[0], 3), grey, np.uint8)) for grey in (50, 200)]
