@@ -11,6 +11,7 @@ import pathlib
 import resource
 import shutil
 import subprocess
+import time
 
 import cv2
 import numpy as np
@@ -50,10 +51,10 @@ def errors(truth, found):
     return np.append(np.abs(ahead), turn)
 
 
-def processor_time():
-    """Of the programs that have ended, in seconds."""
+def seconds():
+    """Now, and the processor time of the programs that have ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
+    return np.array([time.perf_counter(), used.ru_utime + used.ru_stime])
 
 
 def distance(row):
@@ -66,9 +67,10 @@ class Programs:
         self.folder, self.out = folder, out
 
     def run(self, name, *arguments, threads=None):
-        environment = dict(os.environ, **({"OPENCV_FOR_THREADS_NUM": str(threads)} if threads else {}))
-        done = subprocess.run([str(self.folder / name), *map(str, arguments)], check=True, env=environment,
-                              stdout=subprocess.PIPE, text=True)
+        """What the program prints. Threads are as many as the processors that it may use."""
+        processors = sorted(os.sched_getaffinity(0))[:threads]
+        done = subprocess.run([str(self.folder / name), *map(str, arguments)], check=True, stdout=subprocess.PIPE,
+                              text=True, preexec_fn=lambda: os.sched_setaffinity(0, processors))
         return done.stdout
 
     def build(self, name, images, cameras, poses, features, depth=None):
@@ -184,25 +186,27 @@ class Street:
                 self.inertial[light][kind] = located
 
     def times(self):
-        """Milliseconds of each stage by the number of threads, without and with lines: medians of the images' quickest
-        rounds. Processor time, less that of a run with one image, is what other programs change least."""
+        """Milliseconds an image by the number of threads, without and with lines. From start to end, and of processor time:
+        the least of some rounds, less that of a run with one image. Of each stage: medians of the images' quickest rounds."""
         place, light, result = self.programs.out / "maps" / "iib-1-depth", self.lights[0], []
         first = self.programs.out / "first" / light / "images"
         first.mkdir(parents=True, exist_ok=True)
         shutil.copy(min((self.data / light / "images").glob("[0-9]*.png")), first)
         for threads, options in ((1, ["--no-lines"]), (2, ["--no-lines"]), (1, []), (2, [])):
-            rounds, processor = [], []
+            begins, whole, rounds = [], [], []
             for _ in range(ROUNDS):
-                start = processor_time()
+                used = seconds()
                 self.localize(place, light, *options, name="-first", images=first, threads=threads)
-                middle = processor_time()
+                begins.append(seconds() - used)
+                used = seconds()
                 located = self.localize(place, light, *options, name="-times", threads=threads)
-                processor.append((processor_time() - middle - (middle - start)) / (len(located) - 1))
+                whole.append(seconds() - used)
                 rounds.append([[float(row[f"{stage}_ms"] or 0) for stage in STAGES] for row in located])
+            image = 1e3 * (np.min(whole, axis=0) - np.min(begins, axis=0)) / (len(located) - 1)
             rounds = np.array(rounds)
             quickest = np.take_along_axis(rounds, rounds.sum(axis=2).argmin(axis=0)[None, :, None], axis=0)[0]
-            result.append({"threads": threads, "with_lines": not options, "processor": round(1e3 * min(processor), 1),
-                           "all": round(float(np.median(quickest.sum(axis=1))), 1),
+            result.append({"threads": threads, "with_lines": not options, "elapsed": round(image[0], 1),
+                           "processor": round(image[1], 1),
                            **dict(zip(STAGES, np.median(quickest, axis=0).round(1).tolist()))})
         return result
 
@@ -249,7 +253,8 @@ def photographs(programs, data, rows):
 
 
 def unknown_places(programs, street, data):
-    """Photographs of other places in the street's map with depth. Their sizes are changed to the camera's."""
+    """Photographs of other places, and their mirror images, in the street's map with depth. Their sizes are changed to the
+    camera's."""
     paths = sorted([*data.glob("illumination/*/*/*.png"), *data.glob("strecha/*/images/*")])
     cameras = street.mapped / "cameras.txt"
     size = tuple(map(int, [line for line in cameras.read_text().splitlines() if line[0] != "#"][0].split()[2:4]))
@@ -257,6 +262,8 @@ def unknown_places(programs, street, data):
     target.mkdir(parents=True, exist_ok=True)
     for k, path in enumerate(paths[::max(1, len(paths) // UNKNOWN)]):
         image = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
-        cv2.imwrite(str(target / f"{k:04d}.png"), cv2.resize(image, size, interpolation=cv2.INTER_AREA))
+        resized = cv2.resize(image, size, interpolation=cv2.INTER_AREA)
+        cv2.imwrite(str(target / f"{k:04d}.png"), resized)
+        cv2.imwrite(str(target / f"{k:04d}_mirrored.png"), cv2.flip(resized, 1))
     located = programs.localize(programs.out / "maps" / "iib-1-depth", "unknown", target, cameras, None)
     return {"images": len(located), "found": sum("pose" in row for row in located)}
