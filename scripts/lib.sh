@@ -106,12 +106,25 @@ build_library() {
     cmake --build "$build" --target "$@"
 }
 
-# build_tools TARGET...: programs of tools/, below $build/tools.
+# The argument of configure with which the tools have the descriptors of opencv_contrib.
+contrib_argument() {
+    need python3-venv >&2
+    contrib=$("$root/scripts/opencv_contrib_source.sh" 4)
+    echo "-DIIB_CONTRIB_SOURCE=$contrib"
+}
+
+# build_tools TARGET...: programs of tools/, below $build/tools; an argument of configure may stand before them.
 build_tools() {
+    option=""
+    case "$1" in -D*)
+        option="$1"
+        shift
+        ;;
+    esac
     if [ -f "$build/CMakeCache.txt" ]; then
-        configure -DIIB_BUILD_TOOLS=ON
+        configure -DIIB_BUILD_TOOLS=ON ${option:+"$option"}
     else
-        configure -DIIB_BUILD_TESTS=OFF -DIIB_BUILD_TOOLS=ON
+        configure -DIIB_BUILD_TESTS=OFF -DIIB_BUILD_TOOLS=ON ${option:+"$option"}
     fi
     say "building $*"
     cmake --build "$build" --target "$@"

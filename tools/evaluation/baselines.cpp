@@ -3,8 +3,10 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "configurations.hpp"
+#include "opencv2/imgproc.hpp"
 #include "opencv2/opencv_modules.hpp"
-#ifdef HAVE_OPENCV_XFEATURES2D
+#if defined(HAVE_OPENCV_XFEATURES2D) || defined(IIB_WITH_CONTRIB)
+#define IIB_HAVE_XFEATURES2D
 #include "opencv2/xfeatures2d.hpp"
 #endif
 
@@ -33,7 +35,39 @@ Configuration akaze(int bits)
             "AKAZE");
 }
 
-#ifdef HAVE_OPENCV_XFEATURES2D
+#ifdef IIB_HAVE_XFEATURES2D
+//! LUCID takes colour images alone.
+class GreyLUCID CV_FINAL : public cv::Feature2D
+{
+public:
+    void compute(cv::InputArray image, std::vector<cv::KeyPoint>& keypoints,
+            cv::OutputArray descriptors) CV_OVERRIDE
+    {
+        cv::Mat colour;
+        cv::cvtColor(image, colour, cv::COLOR_GRAY2BGR);
+        lucid_->compute(colour, keypoints, descriptors);
+    }
+    int descriptorSize() const CV_OVERRIDE { return lucid_->descriptorSize(); }
+    int descriptorType() const CV_OVERRIDE { return lucid_->descriptorType(); }
+    int defaultNorm() const CV_OVERRIDE { return lucid_->defaultNorm(); }
+
+private:
+    Feature lucid_ = cv::xfeatures2d::LUCID::create();
+};
+
+//! As OpenCV's documentation recommends for corners: five times their size, 35 pixels.
+const float CORNER_SIZE = 7, CORNER_SCALE = 5;
+
+template <class T>
+void addBeblid(const std::string& name, int bits, int size, std::vector<Configuration>& baselines)
+{
+    const std::string full = name + "-" + std::to_string(bits);
+    baselines.push_back(
+            baseline(full, 2 * SEED_RADIUS, [size]() -> Feature { return T::create(1.f, size); }));
+    baselines.push_back(baseline(
+            full + " 5x", CORNER_SIZE, [size]() -> Feature { return T::create(CORNER_SCALE, size); }));
+}
+
 void addXfeatures2d(std::vector<Configuration>& baselines)
 {
     using namespace cv::xfeatures2d;
@@ -48,6 +82,15 @@ void addXfeatures2d(std::vector<Configuration>& baselines)
     // A pattern of 22 px about keypoints of size 7.
     baselines.push_back(
             baseline("FREAK", 7 * SEED_RADIUS / 22, []() -> Feature { return FREAK::create(false); }));
+    addBeblid<BEBLID>("BEBLID", 256, BEBLID::SIZE_256_BITS, baselines);
+    addBeblid<BEBLID>("BEBLID", 512, BEBLID::SIZE_512_BITS, baselines);
+#if defined(IIB_WITH_CONTRIB) || CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407
+    addBeblid<TEBLID>("TEBLID", 256, TEBLID::SIZE_256_BITS, baselines);
+    addBeblid<TEBLID>("TEBLID", 512, TEBLID::SIZE_512_BITS, baselines);
+#endif
+    baselines.push_back(baseline("DAISY", side, []() -> Feature { return DAISY::create(SEED_RADIUS); }));
+    baselines.push_back(baseline("LUCID", side, []() -> Feature { return cv::makePtr<GreyLUCID>(); }));
+#ifdef HAVE_OPENCV_XFEATURES2D
     const int boost[][2] = {
             {64, BoostDesc::BINBOOST_64}, {128, BoostDesc::BINBOOST_128}, {256, BoostDesc::BINBOOST_256}};
     for (const auto& b : boost)
@@ -56,19 +99,10 @@ void addXfeatures2d(std::vector<Configuration>& baselines)
         baselines.push_back(baseline("BOOST-" + std::to_string(b[0]), side,
                 [type]() -> Feature { return BoostDesc::create(type, true, 1.f); }));
     }
-    baselines.push_back(baseline(
-            "BEBLID-256", side, []() -> Feature { return BEBLID::create(1.f, BEBLID::SIZE_256_BITS); }));
-    baselines.push_back(baseline(
-            "BEBLID-512", side, []() -> Feature { return BEBLID::create(1.f, BEBLID::SIZE_512_BITS); }));
-#if CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407
-    baselines.push_back(baseline(
-            "TEBLID-256", side, []() -> Feature { return TEBLID::create(1.f, TEBLID::SIZE_256_BITS); }));
-    baselines.push_back(baseline(
-            "TEBLID-512", side, []() -> Feature { return TEBLID::create(1.f, TEBLID::SIZE_512_BITS); }));
-#endif
     // The window is 20 times 1.2 / 9 of the size.
     baselines.push_back(baseline(
             "SURF", side * 9 / 24, []() -> Feature { return SURF::create(100, 4, 3, false, true); }));
+#endif
 }
 #endif
 
@@ -97,7 +131,7 @@ std::vector<Configuration> baselineConfigurations()
             akaze(256), akaze(0),
             baseline(
                     "KAZE", 0, []() -> Feature { return cv::KAZE::create(false, true); }, "KAZE")};
-#ifdef HAVE_OPENCV_XFEATURES2D
+#ifdef IIB_HAVE_XFEATURES2D
     addXfeatures2d(all);
 #endif
     std::vector<Configuration> available;

@@ -1,0 +1,25 @@
+# Target iib_contrib: the descriptors of opencv_contrib's xfeatures2d, which no Debian package has, from the source that
+# scripts/opencv_contrib_source.sh brings, against the OpenCV at hand. Only what cv::Feature2D describes with: no OpenCL,
+# no SURF (not free), no tables of BoostDesc and VGG, which OpenCV's own build would download.
+set(xfeatures2d "${IIB_CONTRIB_SOURCE}/opencv_contrib/modules/xfeatures2d")
+if(NOT EXISTS "${xfeatures2d}/src/beblid.cpp")
+  message(FATAL_ERROR "IIB_CONTRIB_SOURCE is to be the folder that scripts/opencv_contrib_source.sh prints, "
+    "not \"${IIB_CONTRIB_SOURCE}\"")
+endif()
+# Headers that OpenCV's own build generates and its sources ask for. Empty ones mean: no optional feature.
+set(stubs "${CMAKE_CURRENT_BINARY_DIR}/contrib_stubs")
+foreach(stub cvconfig.h cv_cpu_config.h custom_hal.hpp)
+  file(WRITE "${stubs}/${stub}" "")
+endforeach()
+
+find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc features2d)
+add_library(iib_contrib STATIC)
+foreach(name beblid brief daisy freak latch lucid)
+  target_sources(iib_contrib PRIVATE "${xfeatures2d}/src/${name}.cpp")
+endforeach()
+target_compile_definitions(iib_contrib PRIVATE __OPENCV_BUILD=1 INTERFACE IIB_WITH_CONTRIB)
+target_compile_options(iib_contrib PRIVATE -w)  # not ours to mend
+# The installed headers come first: of the source tree's core only the private ones are wanted.
+target_include_directories(iib_contrib SYSTEM PUBLIC "${xfeatures2d}/include"
+  PRIVATE ${OpenCV_INCLUDE_DIRS} "${stubs}" "${IIB_CONTRIB_SOURCE}/opencv/modules/core/include")
+target_link_libraries(iib_contrib PUBLIC opencv_core opencv_imgproc opencv_features2d)
