@@ -2,9 +2,15 @@
 # What describing costs beside cv::ORB on this machine, how time and memory grow, what matching costs beside BFMatcher,
 # and how much slower all that is without AVX2 and AVX-512: prints tables and writes iib_benchmark.json. With --document the
 # results go to doc/results, from where the tables of README.md and doc/performance.md and their picture are made anew.
-#   scripts/bench.sh [--document] [--rounds=N] [--json=FILE]
+# --contrib adds BEBLID, TEBLID and LATCH of opencv_contrib, whose source pip brings.
+#   scripts/bench.sh [--contrib] [--document] [--rounds=N] [--json=FILE]
 . "$(dirname "$0")/lib.sh"
 
+contrib=""
+if [ "${1:-}" = --contrib ]; then
+    contrib=yes
+    shift
+fi
 document=""
 if [ "${1:-}" = --document ]; then
     document="$root/doc/results"
@@ -13,7 +19,8 @@ fi
 check_options "$root/tools/benchmark/benchmark.cpp" "$@"
 # shellcheck disable=SC2086
 need $build_packages ${document:+python3-matplotlib}
-build_tools iib_benchmark
+[ -z "$contrib" ] || contrib=$(contrib_argument)
+build_tools ${contrib:+"$contrib"} iib_benchmark
 benchmark="$build/tools/benchmark/iib_benchmark"
 narrow="${document:-$build}/benchmark_without_avx2.json"
 [ -z "$document" ] || set -- "$@" "--json=$document/benchmark.json"

@@ -12,6 +12,13 @@
 #include "opencv2/core/utility.hpp"
 #include "opencv2/iib.hpp"
 
+#include "opencv2/opencv_modules.hpp"
+#if defined(IIB_WITH_CONTRIB) || (defined(HAVE_OPENCV_XFEATURES2D) &&                                        \
+                                         CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407)  // with TEBLID
+#define IIB_HAVE_XFEATURES2D
+#include "opencv2/xfeatures2d.hpp"
+#endif
+
 #include <cstdio>
 #include <functional>
 
@@ -44,14 +51,34 @@ Row rowOf(const String& name, const Ptr<IIB>& iib, const Mat& image,
     return row;
 }
 
+Row otherRow(const String& name, const Ptr<Feature2D>& feature, const Mat& image)
+{
+    const Row row = {name, [=](std::vector<KeyPoint>& k, Mat& d) { feature->compute(image, k, d); }, 1,
+            {DBL_MAX, DBL_MAX}};
+    return row;
+}
+
+//! The rivals of opencv_contrib, where it is there.
+void addContrib(const Mat& image, std::vector<Row>& rows)
+{
+#ifdef IIB_HAVE_XFEATURES2D
+    using namespace cv::xfeatures2d;
+    rows.push_back(otherRow("BEBLID-256", BEBLID::create(1.f, BEBLID::SIZE_256_BITS), image));
+    rows.push_back(otherRow("BEBLID-512", BEBLID::create(1.f, BEBLID::SIZE_512_BITS), image));
+    rows.push_back(otherRow("TEBLID-512", TEBLID::create(1.f, TEBLID::SIZE_512_BITS), image));
+    rows.push_back(otherRow("LATCH-512", LATCH::create(64, false), image));
+#else
+    (void)image;
+    (void)rows;
+#endif
+}
+
 std::vector<Row> allRows(const Mat& image)
 {
-    const Ptr<ORB> orb = ORB::create();
-    const Row baseline = {"cv::ORB", [=](std::vector<KeyPoint>& k, Mat& d) { orb->compute(image, k, d); }, 1,
-            {DBL_MAX, DBL_MAX}};
+    const Row baseline = otherRow("cv::ORB", ORB::create(), image);
     const std::vector<Mat> extra(2, image);
     const int all = IIB::CHANNELS_DEFAULT;
-    return std::vector<Row>{
+    std::vector<Row> rows = {
             baseline,
             rowOf("default", IIB::create(), image),
             rowOf("granularity 5", IIB::create(2.f, 5), image),
@@ -68,6 +95,8 @@ std::vector<Row> allRows(const Mat& image)
             rowOf("useOrientation", IIB::create(2.f, 4, all, IIB::MAPPING_MEAN, false, true), image),
             rowOf("default, 2 threads", IIB::create(), image, std::vector<Mat>(), 2),
     };
+    addContrib(image, rows);
+    return rows;
 }
 
 //! The rounds go through all rows, so that a slow moment of the machine meets them alike.
