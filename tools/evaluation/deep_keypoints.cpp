@@ -12,13 +12,24 @@
 namespace iib_tools {
 namespace {
 
-const int MULTIPLE = 32;   // networks that pool five times want it of width and height
-const int SEPARATION = 4;  // pixels between maxima of a score map
+const int MULTIPLE = 32;  // networks that pool five times want it of width and height
+
+//! What the authors do to find keypoints in their maps of scores.
+struct PostProcessing
+{
+    int radius;                   //!< of non-maximum suppression, pixels
+    int borderBefore, borderEnd;  //!< pixels left out at the top and left, and at the bottom and right
+    bool refine;                  //!< to the mean position of the scores' softmax around a maximum
+};
+const PostProcessing SUPERPOINT = {4, 4, 4, false}, ALIKE = {2, 3, 2, true};
+const int SUPPRESSIONS = 2;      // rounds in which what others suppressed comes back if those are suppressed
+const float TEMPERATURE = 0.1f;  // of ALIKE's softmax
 
 //! What the outputs hold; empty where the network does not give it.
 struct Outputs
 {
     cv::Mat scoreMap;       // H x W
+    PostProcessing how;     // of the map of scores
     cv::Mat points;         // N x 2
     cv::Mat scores;         // N x 1
     cv::Mat descriptors;    // N x D
@@ -49,12 +60,16 @@ cv::Mat cellScores(const cv::Mat& logits)
 Outputs sortOutputs(const std::vector<cv::Mat>& mats, cv::Size size)
 {
     Outputs out;
+    out.how = ALIKE;
     std::vector<cv::Mat> lists;
     for (const cv::Mat& m : mats)
     {
         std::vector<int> shape(m.size.p, m.size.p + m.dims);
         if (shape.size() == 4 && shape[1] == 65)
+        {
             out.scoreMap = cellScores(m);
+            out.how = SUPERPOINT;
+        }
         else if (shape.size() >= 3 && int(m.total()) == size.area() && shape.back() == size.width)
             out.scoreMap = m.reshape(1, size.height);
         else if (shape.size() == 4)
@@ -73,20 +88,55 @@ Outputs sortOutputs(const std::vector<cv::Mat>& mats, cv::Size size)
     return out;
 }
 
-//! Local maxima of a score map.
-std::vector<cv::KeyPoint> maxima(const cv::Mat& scores)
+cv::Mat highestAround(const cv::Mat& map, int radius)
 {
     cv::Mat highest;
-    const int side = 2 * SEPARATION + 1;
-    cv::dilate(scores, highest, cv::Mat::ones(side, side, CV_8U));
-    std::vector<cv::KeyPoint> found;
-    for (int y = 0; y < scores.rows; y++)
-        for (int x = 0; x < scores.cols; x++)
+    cv::dilate(map, highest, cv::Mat::ones(2 * radius + 1, 2 * radius + 1, CV_8U));
+    return highest;
+}
+
+//! 255 where a score is the highest around, or the highest of those that no such maximum suppresses.
+cv::Mat maximaMask(const cv::Mat& scores, int radius)
+{
+    cv::Mat found = scores == highestAround(scores, radius);
+    for (int round = 0; round < SUPPRESSIONS; round++)
+    {
+        const cv::Mat suppressed = highestAround(found, radius);
+        cv::Mat rest = scores.clone();
+        rest.setTo(0, suppressed);
+        found |= (rest == highestAround(rest, radius)) & ~suppressed;
+    }
+    return found;
+}
+
+//! The mean of the pixels around, weighted by their scores' softmax.
+cv::Point2f refined(const cv::Mat& scores, int x, int y, int radius)
+{
+    float sum = 0, sumX = 0, sumY = 0;
+    for (int dy = -radius; dy <= radius; dy++)
+        for (int dx = -radius; dx <= radius; dx++)
         {
-            const float s = scores.at<float>(y, x);
-            if (s > 0 && s == highest.at<float>(y, x))
-                found.push_back(cv::KeyPoint(float(x), float(y), 1, -1, s));
+            const float weight =
+                    std::exp((scores.at<float>(y + dy, x + dx) - scores.at<float>(y, x)) / TEMPERATURE);
+            sum += weight;
+            sumX += weight * float(dx);
+            sumY += weight * float(dy);
         }
+    return cv::Point2f(float(x) + sumX / sum, float(y) + sumY / sum);
+}
+
+std::vector<cv::KeyPoint> maxima(const cv::Mat& scores, const PostProcessing& how)
+{
+    const cv::Mat mask = maximaMask(scores, how.radius);
+    std::vector<cv::KeyPoint> found;
+    for (int y = how.borderBefore; y < scores.rows - how.borderEnd; y++)
+        for (int x = how.borderBefore; x < scores.cols - how.borderEnd; x++)
+            if (mask.at<uchar>(y, x) && scores.at<float>(y, x) > 0)
+            {
+                const cv::Point2f at =
+                        how.refine ? refined(scores, x, y, how.radius) : cv::Point2f(float(x), float(y));
+                found.push_back(cv::KeyPoint(at, 1, -1, scores.at<float>(y, x)));
+            }
     return found;
 }
 
@@ -110,15 +160,22 @@ std::vector<cv::KeyPoint> listed(const Outputs& out, cv::Size size)
     return found;
 }
 
-//! Bilinear sample of a descriptor map, whose cells' centres are spread evenly over the image.
+/** Bilinear sample of a descriptor map. The authors of SuperPoint put its corners' centres on the centres of the
+image's first and last cells, but for half a pixel at the end; a map of the image's size is sampled at the points. */
 cv::Mat sampleMap(const cv::Mat& map, const std::vector<cv::KeyPoint>& keypoints, cv::Size size)
 {
     const int depth = map.size[1], h = map.size[2], w = map.size[3];
+    const auto place = [](float at, int cells, int pixels) {
+        const float cell = float(pixels) / float(cells);
+        if (cells == pixels)
+            return at;
+        return (at - cell / 2 + 0.5f) / (float(pixels) - cell / 2 - 0.5f) * float(cells - 1);
+    };
     cv::Mat mapX(1, int(keypoints.size()), CV_32F), mapY(1, int(keypoints.size()), CV_32F);
     for (int i = 0; i < mapX.cols; i++)
     {
-        mapX.at<float>(i) = (keypoints[i].pt.x + 0.5f) * float(w) / float(size.width) - 0.5f;
-        mapY.at<float>(i) = (keypoints[i].pt.y + 0.5f) * float(h) / float(size.height) - 0.5f;
+        mapX.at<float>(i) = place(keypoints[i].pt.x, w, size.width);
+        mapY.at<float>(i) = place(keypoints[i].pt.y, h, size.height);
     }
     cv::Mat descriptors(mapX.cols, depth, CV_32F);
     for (int c = 0; c < depth; c++)
@@ -177,7 +234,11 @@ DeepKeypoints DeepDetector::detect(const cv::Mat& image, int count)
     }
     const Outputs out = sortOutputs(mats, padded.size());
     DeepKeypoints result;
-    for (const cv::KeyPoint& k : out.points.empty() ? maxima(out.scoreMap) : listed(out, padded.size()))
+    // The padding is no part of the image, nor of its border.
+    const cv::Rect inside(cv::Point(), image.size());
+    const std::vector<cv::KeyPoint> found =
+            out.points.empty() ? maxima(out.scoreMap(inside), out.how) : listed(out, padded.size());
+    for (const cv::KeyPoint& k : found)
         if (k.pt.x >= 0 && k.pt.y >= 0 && k.pt.x <= float(image.cols - 1) && k.pt.y <= float(image.rows - 1))
             result.keypoints.push_back(k);
     std::stable_sort(result.keypoints.begin(), result.keypoints.end(),

@@ -55,6 +55,51 @@ TEST(DeepKeypoints, superpoint_logits)
     expectAt(DOTS, detector.detect(dots(DOTS), 3).keypoints);
 }
 
+TEST(DeepKeypoints, two_sizes_in_a_row)
+{
+    for (const char* name : {"heatmap", "superpoint"})
+    {
+        DeepDetector detector(network(name));
+        for (const cv::Size size : {cv::Size(100, 70), cv::Size(200, 130), cv::Size(100, 70)})
+        {
+            cv::Mat image(size, CV_8U, cv::Scalar(0));
+            dots(DOTS).copyTo(image(cv::Rect(0, 0, 100, 70)));
+            expectAt(DOTS, detector.detect(image, 3).keypoints);
+        }
+    }
+}
+
+TEST(DeepKeypoints, border_is_left_out)
+{
+    const std::vector<cv::Point> at = {
+            {50, 3}, {3, 30}, {96, 40}, {60, 66}, {50, 30}, {95, 10}, {4, 60}, {20, 65}};
+    expectAt(std::vector<cv::Point>(at.begin() + 4, at.end()),
+            DeepDetector(network("superpoint")).detect(dots(at), 4).keypoints);
+}
+
+// The brightest suppresses the second, which then does not suppress the third.
+TEST(DeepKeypoints, suppression_is_repeated)
+{
+    const std::vector<cv::Point> chain = {{40, 30}, {43, 30}, {46, 30}};
+    expectAt({chain[0], chain[2]}, DeepDetector(network("superpoint")).detect(dots(chain), 2).keypoints);
+    const std::vector<cv::Point> near = {{40, 30}, {42, 30}, {44, 30}};
+    const DeepKeypoints found = DeepDetector(network("heatmap")).detect(dots(near), 2);
+    ASSERT_EQ(2u, found.keypoints.size());
+    const double weight = std::exp(20 / 255. / 0.1);  // of the second, which pulls the third
+    EXPECT_NEAR(44 - 2 * weight / (1 + weight), found.keypoints[1].pt.x, 0.02);
+}
+
+// A step towards a neighbour that is nearly as bright, by the weights of a softmax.
+TEST(DeepKeypoints, maximum_is_refined)
+{
+    const DeepKeypoints found =
+            DeepDetector(network("heatmap")).detect(dots({{40, 30}, {41, 30}}), 1);  // 250 and 230
+    ASSERT_EQ(1u, found.keypoints.size());
+    const double weight = std::exp(-20 / 255. / 0.1), rest = 23 * std::exp(-250 / 255. / 0.1);
+    EXPECT_NEAR(40 + weight / (1 + weight + rest), found.keypoints[0].pt.x, 0.01);
+    EXPECT_NEAR(30, found.keypoints[0].pt.y, 0.001);
+}
+
 // The same three points and scores for any image.
 TEST(DeepKeypoints, keypoint_list_in_colour)
 {
