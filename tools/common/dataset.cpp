@@ -11,6 +11,7 @@
 #include <set>
 
 #include "csv.hpp"
+#include "views.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
 
 namespace iib_tools {
@@ -89,6 +90,7 @@ bool addSequence(const std::string& folder, std::vector<ImagePair>& pairs)
         if (fs::exists(join(join(folder, extra), "1.png")))
             common.extraNames.push_back(extra);
 
+    const std::string correspondences = join(folder, "corrs.txt");
     std::vector<cv::String> homographies;
     fs::glob(folder, oxford ? "H1to*" : "H_1_*", homographies);
     for (const auto& image : images)
@@ -100,6 +102,11 @@ bool addSequence(const std::string& folder, std::vector<ImagePair>& pairs)
         pair.targetFile = image.second;
         if (!homographies.empty())
             pair.homographyFile = join(folder, oxford ? "H1to" + pair.target + "p" : "H_1_" + pair.target);
+        else if (fs::exists(correspondences))
+        {
+            pair.correspondencesFile = correspondences;
+            pair.kind = "wide";
+        }
         pairs.push_back(pair);
     }
     return true;
@@ -107,7 +114,7 @@ bool addSequence(const std::string& folder, std::vector<ImagePair>& pairs)
 
 void search(const std::string& folder, int depth, std::vector<ImagePair>& pairs)
 {
-    if (addSequence(folder, pairs) || depth == 0)
+    if (holdsViews(folder) || addSequence(folder, pairs) || depth == 0)
         return;
     std::vector<cv::String> entries;
     fs::glob(folder, "*", entries, false, true);

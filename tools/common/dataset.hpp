@@ -12,8 +12,8 @@
 
 namespace iib_tools {
 
-/** What changes between the images of a sequence: "light", "blur", "jpeg", "viewpoint" or "zoom" (with
-rotation). Known for the sequences of Oxford by name and for HPatches by the prefix `v_`; "light" otherwise. */
+/** What changes between the images of a sequence: "light", "blur", "jpeg", "viewpoint", "zoom" (with
+rotation) or, with correspondences instead of a homography, "wide". Known for the sequences of Oxford by name and for HPatches by the prefix `v_`; "light" otherwise. */
 typedef std::string Kind;
 
 //! A reference image and a target image of the same scene; files are read by loadPair alone.
@@ -24,7 +24,8 @@ struct ImagePair
     std::string target;    //!< the target's number, or its file name in a list
     Kind kind;
     std::string referenceFile, targetFile;
-    std::string homographyFile;  //!< empty: static camera, identity
+    std::string homographyFile;       //!< empty: static camera, identity
+    std::string correspondencesFile;  //!< not empty: known points instead of a homography
     //! Maps of the image's size that lie beside reference and target: "depth", "labels", in this order.
     std::vector<std::string> extraNames;
     std::string problem;  //!< why the pair cannot be used, empty if nothing is known against it
@@ -36,15 +37,18 @@ struct LoadedPair
 {
     cv::Mat reference, target;                         //!< CV_8UC1
     cv::Matx33d homography;                            //!< reference to target, pixels
+    std::vector<cv::Vec4d> correspondences;            //!< x, y in the reference, x, y in the target
     std::vector<cv::Mat> referenceExtra, targetExtra;  //!< one an ImagePair::extraNames, 8U or 16U
 };
 
 /** Finds all pairs (1, k) below the given folders, up to four levels deep, in the layouts
  - `1.png`, `H_1_k` (also .ppm, .pgm, .jpg, .tif: HPatches), with `depth/k.png`, `labels/k.png` if any;
  - `img1.ppm`, `H1to2p` (original Oxford);
+ - `1.png`, `2.png`, `corrs.txt` (WxBS, EVD) with x1 y1 x2 y2 a line;
 and in list files: a head line `reference,target,homography,kind`, then one pair a line, paths relative to
 the list, the last two fields may be empty (identity, "light").
-Sequences without any H file are of a static camera; folders called `frames` (walks) are left out. The order is by path, numbers by value.
+Sequences without any H file are of a static camera; folders called `frames` (walks) and those of views.hpp are left
+out. The order is by path, numbers by value.
 @throws cv::Exception for a root that does not exist, a list without its head line, or two pairs of the
 same name. */
 std::vector<ImagePair> findPairs(const std::vector<std::string>& roots);

@@ -130,11 +130,11 @@ std::vector<cv::KeyPoint> readKeypoints(const std::string& file)
         const bool names = number == 1 && line.compare(0, 3, "x,y") == 0;
         if (names || line.empty())
             continue;
-        if (v.size() < 3 || v.size() > 5 || v[2] <= 0)
+        if (v.size() < 2 || v.size() > 5 || (v.size() > 2 && v[2] < 0))
             CV_Error(cv::Error::StsParseError, file + ", line " + std::to_string(number) +
-                                                       ": not x,y,size[,angle[,response]] with size > 0");
-        keypoints.push_back(
-                cv::KeyPoint(v[0], v[1], v[2], v.size() > 3 ? v[3] : -1.f, v.size() > 4 ? v[4] : 0.f));
+                                                       ": not x,y[,size[,angle[,response]]] with size >= 0");
+        keypoints.push_back(cv::KeyPoint(v[0], v[1], v.size() > 2 ? v[2] : 0.f, v.size() > 3 ? v[3] : -1.f,
+                v.size() > 4 ? v[4] : 0.f));
     }
     return keypoints;
 }

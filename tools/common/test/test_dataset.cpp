@@ -37,6 +37,26 @@ TEST(Dataset, numbered_images_with_homographies)
     EXPECT_EQ(cv::Size(30, 20), loaded.target.size());
 }
 
+TEST(Dataset, correspondences_instead_of_a_homography)
+{
+    TestFolder folder;
+    folder.makeFolder("wxbs/kremlin");
+    for (const char* name : {"wxbs/kremlin/01.png", "wxbs/kremlin/02.png"})
+        writeImage(folder, name);
+    folder.write("wxbs/kremlin/corrs.txt", "1 2 3 4\n\n5.5 6 7 8\r\n");
+    const std::vector<ImagePair> pairs = findPairs({folder.path("")});
+    ASSERT_EQ(1u, pairs.size());
+    EXPECT_EQ("wide", pairs[0].kind);
+    EXPECT_EQ(std::vector<cv::Vec4d>({{1, 2, 3, 4}, {5.5, 6, 7, 8}}), loadPair(pairs[0]).correspondences);
+    for (const char* text : {"", "1 2 3\n", "1 2 3 4 5\n", "a b c d\n"})
+    {
+        folder.write("wxbs/kremlin/corrs.txt", text);
+        EXPECT_NE(std::string::npos, messageOf([&] { loadPair(pairs[0]); }).find("corrs.txt")) << text;
+    }
+    folder.write("wxbs/kremlin/H_1_2", SHIFT);
+    EXPECT_TRUE(findPairs({folder.path("")})[0].correspondencesFile.empty());
+}
+
 TEST(Dataset, static_camera_with_extra_maps)
 {
     TestFolder folder;

@@ -1,0 +1,39 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_TOOLS_VIEWS_HPP
+#define IIB_TOOLS_VIEWS_HPP
+
+#include <string>
+#include <vector>
+
+#include "opencv2/core.hpp"
+
+namespace iib_tools {
+
+//! Two images of one scene from known places.
+struct ViewPair
+{
+    std::string set;       //!< name of the folder that holds the views' folders
+    std::string sequence;  //!< name of the target's folder
+    std::string target;    //!< the images' names, joined by a hyphen
+    std::string referenceFile, targetFile;
+    cv::Matx33d referenceCamera, targetCamera;  //!< focal lengths and centre, pixels
+    cv::Matx33d rotation;                       //!< from the reference's axes to the target's
+    cv::Vec3d translation;                      //!< of the same, its length unknown to the methods under test
+};
+
+//! Whether a folder holds `cameras.txt`, `poses.txt` and `images`.
+bool holdsViews(const std::string& folder);
+
+/** Finds pairs in folders as tools/synthetic/localization.py writes them, up to four levels deep: `cameras.txt` (COLMAP,
+one PINHOLE camera), `poses.txt` (TUM, camera to world, a name a line) and `images/<name>.png` or .jpg. Names without
+an image are left out. An image is paired with the next three of its folder; beside a folder `map`, images of other
+folders are instead paired with the map's next one at a distance of half a metre or more.
+@throws cv::Exception, with file and line, for a folder whose files are broken. */
+std::vector<ViewPair> findViewPairs(const std::vector<std::string>& roots);
+
+}  // namespace iib_tools
+
+#endif
