@@ -1,9 +1,15 @@
 #!/bin/sh
 # Reproduces the paper's experiments on folders of image sequences and writes CSV files and one page.
-#   scripts/evaluate.sh [--out FOLDER] [options of iib_evaluation] DATA...
-# Results go to results/ unless --out says otherwise; an interrupted run goes on where it stopped.
+#   scripts/evaluate.sh [--contrib] [--out FOLDER] [options of iib_evaluation] DATA...
+# Results go to results/ unless --out says otherwise; an interrupted run goes on where it stopped. --contrib, which is
+# the first then, adds the descriptors of opencv_contrib, whose source pip brings (BEBLID, TEBLID, LATCH and more).
 . "$(dirname "$0")/lib.sh"
 
+contrib=""
+if [ "${1:-}" = --contrib ]; then
+    contrib=yes
+    shift
+fi
 check_options "$root/tools/evaluation/main.cpp" "$@"
 out="$root/results"
 previous=""
@@ -15,8 +21,16 @@ done
 
 # shellcheck disable=SC2086
 need $build_packages python3-jinja2
-build_tools iib_evaluation
+[ -z "$contrib" ] || contrib=$(contrib_argument)
+build_tools ${contrib:+"$contrib"} iib_evaluation
 
-"$build/tools/evaluation/iib_evaluation" --out "$out" "$@"
+"$build/tools/evaluation/iib_evaluation" --out "$out" --compare "$root/tools/synthetic/day_night.csv" "$@"
+{
+    echo "commit $(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo unknown)"
+    echo "date $(date -u +%Y-%m-%d)"
+    echo "machine $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $jobs threads"
+    [ -z "$contrib" ] ||
+        echo "opencv_contrib $(sed -n 's/^Version: \([0-9]*[.][0-9]*[.][0-9]*\).*/\1/p' "${contrib#*=}/PKG-INFO")"
+} >"$out/run.txt"
 page=$(/usr/bin/python3 "$root/tools/evaluation/report/report.py" "$out")
 say "results and page: $page"

@@ -107,6 +107,13 @@ std::vector<Configuration> iibConfigurations()
     return all;
 }
 
+std::vector<Configuration> generalPresets()
+{
+    return {withPreset("ACCURATE", IIB::PRESET_ACCURATE), withPreset("COMPACT", IIB::PRESET_COMPACT),
+            withPreset("BALANCED", IIB::PRESET_BALANCED), withPreset("VIEWPOINT", IIB::PRESET_VIEWPOINT),
+            withPreset("UNIVERSAL", IIB::PRESET_UNIVERSAL)};
+}
+
 std::vector<Configuration> robustnessConfigurations()
 {
     Configuration upright = iib("IIB", Parameters());
@@ -119,7 +126,9 @@ std::vector<Configuration> robustnessConfigurations()
     std::vector<Configuration> all = presets();
     all.insert(all.begin(), {upright, oriented});
     for (const Configuration& baseline : baselineConfigurations())
-        if (baseline.name == "ORB" || baseline.name == "SIFT")
+        if (baseline.name == "BEBLID-512" || baseline.name == "TEBLID-512")
+            all.push_back(baseline);
+        else if (baseline.name == "ORB" || baseline.name == "SIFT")
         {
             all.push_back(baseline);
             all.push_back(baseline);

@@ -30,6 +30,9 @@ struct Configuration
 //! All tables of the paper on IIB: channels, mappings, overlap, granularity, extra channels; and the presets.
 std::vector<Configuration> iibConfigurations();
 
+//! The presets that detected points are described with: those for any light or view at more than 60 bytes.
+std::vector<Configuration> generalPresets();
+
 //! The other descriptors that this OpenCV has, with the parameters OpenCV recommends, upright.
 std::vector<Configuration> baselineConfigurations();
 

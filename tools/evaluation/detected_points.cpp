@@ -15,12 +15,6 @@ namespace {
 
 const int THRESHOLDS = 64;
 
-struct Described
-{
-    cv::Mat descriptors;
-    int norm, bytes;
-};
-
 //! Thresholds in equal steps up to the largest distance: all bits, or opposite corners of a unit sphere's octant.
 std::vector<float> thresholds(const Described& reference)
 {
@@ -46,44 +40,10 @@ std::string curveText(const std::vector<CurvePoint>& curve)
     return out;
 }
 
-struct DetectedPair
+//! Whether the page shows how its recall grows with the distance.
+bool hasCurve(const Detector& detector, const std::string& descriptor)
 {
-    std::vector<cv::KeyPoint> reference, target;
-    cv::Matx33d homography;
-    int correspondences;
-};
-
-void compare(const Fields& key, const std::string& kind, const DetectedPair& pair, const Described& reference,
-        const Described& target, double tolerance, ResultTable& table)
-{
-    const std::vector<cv::DMatch> matches =
-            mutualMatches(reference.descriptors, target.descriptors, reference.norm);
-    std::vector<bool> correct;
-    for (const cv::DMatch& m : matches)
-        correct.push_back(
-                correspond(pair.reference[m.queryIdx], pair.target[m.trainIdx], pair.homography, tolerance));
-    const Counts n = countsOf(correct, pair.correspondences);
-    Fields row = key;
-    for (const std::string& field : {kind, std::to_string(reference.bytes), std::to_string(n.correct),
-                 std::to_string(n.putative), std::to_string(n.correspondences), text(precision(n)),
-                 text(recall(n)), curveText(matchCurve(matches, correct, thresholds(reference)))})
-        row.push_back(field);
-    table.append(row);
-}
-
-Described withIIB(const cv::Mat& image, const Detector& detector, std::vector<cv::KeyPoint> keypoints)
-{
-    Described d = {cv::Mat(), cv::NORM_HAMMING, 0};
-    const cv::Ptr<cv::Feature2D> iib = defaultIIB(detector.scaleFactor);
-    iib->compute(image, keypoints, d.descriptors);
-    d.bytes = descriptorBytes(*iib);
-    return d;
-}
-
-Described ofDetection(const Detection& detection)
-{
-    return {detection.descriptors, detection.norm,
-            int(detection.descriptors.cols * detection.descriptors.elemSize())};
+    return descriptor == "IIB" || descriptor == detector.descriptor || descriptor == "BEBLID-512";
 }
 
 void evaluatePair(const Options& options, const ImagePair& pair, const std::vector<Detector>& detectors,
@@ -94,16 +54,28 @@ void evaluatePair(const Options& options, const ImagePair& pair, const std::vect
     {
         const Detection a = detector.detect(loaded.reference, pair, pair.referenceFile);
         const Detection b = detector.detect(loaded.target, pair, pair.targetFile);
-        const DetectedPair detected = {a.keypoints, b.keypoints, loaded.homography,
-                countCorrespondences(a.keypoints, b.keypoints, loaded.homography, options.tolerance)};
-        const Fields key = {pair.set, pair.sequence, pair.target, detector.name};
-        Fields own = key, iib = key;
-        own.push_back(detector.descriptor);
-        iib.push_back("IIB");
-        if (!detector.descriptor.empty())
-            compare(own, pair.kind, detected, ofDetection(a), ofDetection(b), options.tolerance, table);
-        compare(iib, pair.kind, detected, withIIB(loaded.reference, detector, a.keypoints),
-                withIIB(loaded.target, detector, b.keypoints), options.tolerance, table);
+        const int correspondences =
+                countCorrespondences(a.keypoints, b.keypoints, loaded.homography, options.tolerance);
+        const std::vector<Described> reference = describeAll(detector, a, loaded.reference),
+                                     target = describeAll(detector, b, loaded.target);
+        if (reference.size() != target.size())
+            CV_Error(cv::Error::StsUnmatchedSizes,
+                    pair.name() + ": own descriptors of " + detector.name + " for one image of two");
+        for (size_t i = 0; i < reference.size(); i++)
+        {
+            const Described &r = reference[i], &t = target[i];
+            const std::vector<cv::DMatch> matches = mutualMatches(r.descriptors, t.descriptors, r.norm);
+            std::vector<bool> correct;
+            for (const cv::DMatch& m : matches)
+                correct.push_back(correspond(r.keypoints[m.queryIdx], t.keypoints[m.trainIdx],
+                        loaded.homography, options.tolerance));
+            const Counts n = countsOf(correct, correspondences);
+            table.append({pair.set, pair.sequence, pair.target, detector.name, r.name, pair.kind,
+                    std::to_string(r.bytes), std::to_string(n.correct), std::to_string(n.putative),
+                    std::to_string(n.correspondences), text(precision(n)), text(recall(n)),
+                    hasCurve(detector, r.name) ? curveText(matchCurve(matches, correct, thresholds(r)))
+                                               : ""});
+        }
     }
 }
 

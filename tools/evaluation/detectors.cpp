@@ -5,10 +5,14 @@
 #include "detectors.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <tuple>
 
-#include "deep_keypoints.hpp"
+#include "common/fnv1a.hpp"
 #include "common/keypoints.hpp"
+#include "common/npy.hpp"
+#include "deep_keypoints.hpp"
+#include "opencv2/core/utils/filesystem.hpp"
 #include "opencv2/iib.hpp"
 
 namespace iib_tools {
@@ -30,7 +34,7 @@ void selectStrongest(std::vector<cv::KeyPoint>& keypoints, int count)
     keypoints.resize(std::min(keypoints.size(), size_t(count)));
 }
 
-//! The descriptor may drop keypoints; IIB is then given the same ones.
+//! The descriptor may drop keypoints; the others are then given the same ones.
 Detector classic(const std::string& name, const std::string& descriptorName,
         const std::function<Feature()>& detector, const std::function<Feature()>& descriptor, int count)
 {
@@ -43,7 +47,7 @@ Detector classic(const std::string& name, const std::string& descriptorName,
         d.norm = own->defaultNorm();
         return d;
     };
-    return {name, descriptorName, cv::iib::IIB::scaleFactorFor(name), detect};
+    return {name, descriptorName, cv::iib::IIB::scaleFactorFor(name), detect, {}};
 }
 
 Detector classic(const std::string& name, const std::function<Feature()>& feature, int count)
@@ -51,26 +55,52 @@ Detector classic(const std::string& name, const std::function<Feature()>& featur
     return classic(name, name, feature, feature, count);
 }
 
-//! Keypoints without a scale, such as learned detectors give: one size, and a ROS of radius DEEP_RADIUS.
-void giveDeepSize(std::vector<cv::KeyPoint>& keypoints)
+//! Found on the locally normalized image; the plain image is described.
+Detector normalized(const std::string& name, const std::function<Feature()>& feature, int count)
 {
-    for (cv::KeyPoint& keypoint : keypoints)
-        keypoint.size = 2 * DEEP_RADIUS;
+    const auto detector = [feature]() -> Feature { return cv::iib::NormalizedDetector::create(feature()); };
+    Detector d = classic(name, name, detector, feature, count);
+    d.name += " normalized";
+    return d;
 }
 
-Detector fromFiles(const std::string& folder, int count)
+//! A detector that gives no size gets a ROS of radius DEEP_RADIUS.
+void giveMissingSizes(std::vector<cv::KeyPoint>& keypoints)
+{
+    for (cv::KeyPoint& keypoint : keypoints)
+        if (!(keypoint.size > 0))
+            keypoint.size = 2 * DEEP_RADIUS;
+}
+
+/** Keypoints of a detector from `<set>/<sequence>/<image>.csv` below the folder, and its own descriptors, row by row,
+from the file beside it that ends with .npy, if there is one. */
+Detector fromFiles(const KeypointFolder& source, int count)
 {
     const auto detect = [=](const cv::Mat&, const ImagePair& pair, const std::string& imageFile) {
         const size_t start = imageFile.find_last_of('/') + 1;
         const std::string image = imageFile.substr(start, imageFile.find('.', start) - start);
+        const std::string file = source.folder + "/" + pair.set + "/" + pair.sequence + "/" + image;
         Detection d;
-        d.keypoints = readKeypoints(folder + "/" + pair.set + "/" + pair.sequence + "/" + image + ".csv");
+        d.keypoints = readKeypoints(file + ".csv");
+        for (size_t i = 0; i < d.keypoints.size(); i++)
+            d.keypoints[i].class_id = int(i);
+        const size_t all = d.keypoints.size();
+        giveMissingSizes(d.keypoints);
         selectStrongest(d.keypoints, count);
-        giveDeepSize(d.keypoints);
-        d.norm = 0;
+        d.norm = 0;  // no descriptors
+        if (!cv::utils::fs::exists(file + ".npy"))
+            return d;
+        const cv::Mat rows = readNpy(file + ".npy");
+        if (size_t(rows.rows) != all)
+            CV_Error(cv::Error::StsUnmatchedSizes,
+                    cv::format("%s.npy: %d rows for %d keypoints", file.c_str(), rows.rows, int(all)));
+        d.descriptors.create(0, rows.cols, rows.type());
+        for (const cv::KeyPoint& k : d.keypoints)
+            d.descriptors.push_back(rows.row(k.class_id));
+        d.norm = rows.type() == CV_32F ? int(cv::NORM_L2) : int(cv::NORM_HAMMING);
         return d;
     };
-    return {"file", "", 1.f, detect};
+    return {source.name, source.name, 1.f, detect, {}};
 }
 
 Detector fromNetwork(const std::string& file, int count)
@@ -79,41 +109,133 @@ Detector fromNetwork(const std::string& file, int count)
     const auto detect = [=](const cv::Mat& image, const ImagePair&, const std::string&) {
         const DeepKeypoints found = network->detect(image, count);
         Detection d = {found.keypoints, found.descriptors, cv::NORM_L2};
-        giveDeepSize(d.keypoints);
+        for (cv::KeyPoint& keypoint : d.keypoints)
+            keypoint.size = 2 * DEEP_RADIUS;
         return d;
     };
-    return {"network", network->hasDescriptors() ? "network" : "", 1.f, detect};
+    return {"network", network->hasDescriptors() ? "network" : "", 1.f, detect, {}};
+}
+
+//! What people describe ORB's points with instead; the patches that have a fixed size are of about ORB's.
+std::vector<Configuration> othersOnORB()
+{
+    std::vector<Configuration> others;
+    for (const Configuration& c : baselineConfigurations())
+        for (const char* name : {"BEBLID-512", "TEBLID-512", "LATCH-512", "BRIEF-512", "FREAK"})
+            if (c.name == name)
+                others.push_back(c);
+    return others;
+}
+
+std::vector<Detector> classicDetectors(int count)
+{
+    const auto fast = []() -> Feature { return cv::FastFeatureDetector::create(); };
+    const auto agast = []() -> Feature { return cv::AgastFeatureDetector::create(); };
+    const auto orb = [count]() -> Feature { return cv::ORB::create(count); };
+    const auto brisk = []() -> Feature { return cv::BRISK::create(); };
+    const auto akaze = []() -> Feature { return cv::AKAZE::create(cv::AKAZE::DESCRIPTOR_MLDB_UPRIGHT); };
+    const auto kaze = []() -> Feature { return cv::KAZE::create(false, true); };
+    const auto sift = []() -> Feature { return cv::SIFT::create(); };
+    std::vector<Detector> all = {classic("FAST", "ORB", fast, orb, count),
+            classic("AGAST", "ORB", agast, orb, count), classic("ORB", orb, count),
+            classic("BRISK", brisk, count), classic("AKAZE", akaze, count), classic("KAZE", kaze, count),
+            classic("SIFT", sift, count), normalized("ORB", orb, count), normalized("AKAZE", akaze, count),
+            normalized("SIFT", sift, count)};
+    for (Detector& detector : all)
+        if (detector.name == "ORB")
+            detector.others = othersOnORB();
+    for (const Configuration& baseline : baselineConfigurations())
+        if (baseline.name == "SURF")
+            all.push_back(classic("SURF", baseline.create, count));
+    return all;
+}
+
+Described describeWith(
+        const std::string& name, const Feature& feature, const Detection& detection, const cv::Mat& image)
+{
+    Described d = {name, detection.keypoints, cv::Mat(), feature->defaultNorm(), descriptorBytes(*feature)};
+    feature->compute(image, d.keypoints, d.descriptors);
+    return d;
+}
+
+void addFile(const std::string& file, cv::iib::Fnv1a& hash)
+{
+    std::ifstream in(file, std::ios::binary);
+    if (!in)
+        CV_Error(cv::Error::StsObjectNotFound, file + ": cannot be read");
+    const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    hash.add(bytes.data(), bytes.size());
 }
 
 }  // namespace
 
 std::vector<Detector> detectors(const Options& options)
 {
-    const int count = options.points;
-    const auto orb = [count]() -> Feature { return cv::ORB::create(count); };
-    const auto akaze = []() -> Feature { return cv::AKAZE::create(cv::AKAZE::DESCRIPTOR_MLDB_UPRIGHT); };
-    std::vector<Detector> all = {
-            classic(
-                    "FAST", "ORB", []() -> Feature { return cv::FastFeatureDetector::create(); }, orb, count),
-            classic(
-                    "AGAST", "ORB", []() -> Feature { return cv::AgastFeatureDetector::create(); }, orb,
-                    count),
-            classic("ORB", orb, count),
-            classic(
-                    "BRISK", []() -> Feature { return cv::BRISK::create(); }, count),
-            classic("AKAZE", akaze, count),
-            classic(
-                    "KAZE", []() -> Feature { return cv::KAZE::create(false, true); }, count),
-            classic(
-                    "SIFT", []() -> Feature { return cv::SIFT::create(); }, count)};
-    for (const Configuration& baseline : baselineConfigurations())
-        if (baseline.name == "SURF")
-            all.push_back(classic("SURF", baseline.create, count));
-    if (!options.keypoints.empty())
-        all.push_back(fromFiles(options.keypoints, count));
+    std::vector<Detector> all = classicDetectors(options.points), chosen;
+    std::string known;
+    for (const Detector& d : all)
+        known += (known.empty() ? "" : ", ") + d.name;
+    for (const std::string& name : options.detectors)
+    {
+        const auto found =
+                std::find_if(all.begin(), all.end(), [&](const Detector& d) { return d.name == name; });
+        if (found == all.end())
+            CV_Error(cv::Error::StsBadArg, "unknown detector " + name + "; there are " + known);
+        chosen.push_back(*found);
+    }
+    if (options.detectors.empty())
+        chosen = all;
+    for (const KeypointFolder& source : options.keypoints)
+        chosen.push_back(fromFiles(source, options.points));
     if (!options.network.empty())
-        all.push_back(fromNetwork(options.network, count));
+        chosen.push_back(fromNetwork(options.network, options.points));
+    return chosen;
+}
+
+std::vector<Described> describeAll(const Detector& detector, const Detection& detection, const cv::Mat& image)
+{
+    std::vector<Described> all;
+    if (!detector.descriptor.empty() && detection.norm != 0)
+        all.push_back({detector.descriptor, detection.keypoints, detection.descriptors, detection.norm,
+                int(detection.descriptors.cols * detection.descriptors.elemSize())});
+    for (const Configuration& c : detector.others)
+        all.push_back(describeWith(c.name, c.create(), detection, image));
+    for (const Configuration& c : generalPresets())
+    {
+        const cv::Ptr<cv::iib::IIB> iib = c.create().dynamicCast<cv::iib::IIB>();
+        iib->setScaleFactor(detector.scaleFactor);
+        all.push_back(describeWith(c.name, iib, detection, image));
+    }
+    all.push_back(describeWith("IIB", defaultIIB(detector.scaleFactor), detection, image));
     return all;
+}
+
+std::vector<std::pair<std::string, std::string>> digests(const Options& options)
+{
+    std::vector<std::pair<std::string, std::string>> found;
+    for (const KeypointFolder& source : options.keypoints)
+    {
+        std::vector<cv::String> files;
+        cv::utils::fs::glob_relative(source.folder, "", files, true);
+        std::sort(files.begin(), files.end());
+        cv::iib::Fnv1a hash;
+        for (const std::string& file : files)
+        {
+            hash.add(file.c_str(), file.size() + 1);
+            addFile(source.folder + "/" + file, hash);
+        }
+        if (files.empty())
+            CV_Error(cv::Error::StsObjectNotFound, source.folder + ": no files of keypoints");
+        found.push_back(
+                {"keypoints " + source.name, cv::format("%016llx", (unsigned long long)hash.value())});
+    }
+    if (!options.network.empty())
+    {
+        cv::iib::Fnv1a hash;
+        addFile(options.network, hash);
+        found.push_back({"network", cv::format("%016llx", (unsigned long long)hash.value())});
+    }
+    return found;
 }
 
 }  // namespace iib_tools

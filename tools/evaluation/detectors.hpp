@@ -19,10 +19,10 @@ struct Detection
 {
     std::vector<cv::KeyPoint> keypoints;
     cv::Mat descriptors;
-    int norm;
+    int norm;  //!< 0: none were given
 };
 
-//! A detector of the experiment with detected points (paper, "Experiments Combined with Feature Detectors").
+//! A detector of the experiments with detected points (paper, "Experiments Combined with Feature Detectors").
 struct Detector
 {
     std::string name;
@@ -30,12 +30,33 @@ struct Detector
     float scaleFactor;       //!< of IIB on its keypoints
     //! From an 8-bit grey image, the pair it belongs to and the image's file.
     std::function<Detection(const cv::Mat&, const ImagePair&, const std::string&)> detect;
+    std::vector<Configuration> others;  //!< of other makers, described at the same points
 };
 
-/** FAST, AGAST (both with ORB's descriptor), ORB, BRISK, AKAZE, KAZE, SIFT, SURF where present, keypoints from
+/** FAST, AGAST (both with ORB's descriptor), ORB, BRISK, AKAZE, KAZE, SIFT, SURF where present, ORB, AKAZE and SIFT
+on the locally normalized image ("ORB normalized"); of these the ones that Options::detectors names; keypoints from
 files and from a network where the options name them. Each gives at most Options::points keypoints, the
-strongest. */
+strongest.
+@throws cv::Exception for an unknown name. */
 std::vector<Detector> detectors(const Options& options);
+
+//! One image's keypoints, those that a descriptor kept, and their descriptors.
+struct Described
+{
+    std::string name;
+    std::vector<cv::KeyPoint> keypoints;
+    cv::Mat descriptors;
+    int norm, bytes;
+};
+
+/** The detector's own descriptors if it has some, those of Detector::others, IIB's presets and last IIB's default. In
+the same order for every image of a detector, but the own ones may be missing in files. */
+std::vector<Described> describeAll(
+        const Detector& detector, const Detection& detection, const cv::Mat& image);
+
+/** What decides the results of the detectors from files and networks: a name, and a digest of the data.
+@throws cv::Exception if something cannot be read. */
+std::vector<std::pair<std::string, std::string>> digests(const Options& options);
 
 }  // namespace iib_tools
 

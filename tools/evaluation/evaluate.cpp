@@ -7,6 +7,8 @@
 #include <iostream>
 #include <iterator>
 
+#include "common/views.hpp"
+#include "detectors.hpp"
 #include "experiments.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
 #include "tasks.hpp"
@@ -21,21 +23,35 @@ struct Experiment
 };
 
 const Experiment EXPERIMENTS[] = {{"fixed_points", fixedPoints}, {"detected_points", detectedPoints},
-        {"matching", matchingStudy}, {"robustness", robustness}, {"cost", cost}, {"pictures", pictures}};
+        {"whole_tasks", wholeTasks}, {"matching", matchingStudy}, {"robustness", robustness}, {"cost", cost},
+        {"pictures", pictures}, {"comparison", comparison}};
 
-//! Results of other settings must not be mixed with these.
+//! Results of other settings must not be mixed with these; a further detector from files or a network may join.
 void checkSettings(const Options& options)
 {
+    std::vector<std::pair<std::string, std::string>> settings = {{"points", std::to_string(options.points)},
+            {"tolerance", std::to_string(options.tolerance)}, {"opencv", CV_VERSION}};
+    for (const auto& digest : digests(options))
+        settings.push_back(digest);
     const std::string file = options.out + "/settings.txt";
-    const std::string settings = "points " + std::to_string(options.points) + "\ntolerance " +
-                                 std::to_string(options.tolerance) + "\nopencv " + CV_VERSION + "\n";
     std::ifstream in(file);
-    const std::string found((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    if (!found.empty() && found != settings)
-        CV_Error(cv::Error::StsBadArg, file + " tells of other settings: choose another output folder");
+    for (std::string line; std::getline(in, line);)
+    {
+        const size_t blank = line.find_last_of(' ');
+        const std::string name = line.substr(0, blank),
+                          value = blank == std::string::npos ? "" : line.substr(blank + 1);
+        const auto known = std::find_if(settings.begin(), settings.end(),
+                [&](const std::pair<std::string, std::string>& s) { return s.first == name; });
+        if (known == settings.end())
+            settings.push_back({name, value});
+        else if (known->second != value)
+            CV_Error(cv::Error::StsBadArg, file + " tells of other settings (" + name + " " + value +
+                                                   "): choose another output folder");
+    }
     in.close();
     std::ofstream out(file);
-    out << settings;
+    for (const auto& setting : settings)
+        out << setting.first << " " << setting.second << "\n";
     if (!out.flush())
         CV_Error(cv::Error::StsError, file + ": cannot be written");
 }
@@ -75,21 +91,25 @@ int evaluate(const Options& options)
         if (std::find(known.begin(), known.end(), name) == known.end())
             CV_Error(cv::Error::StsBadArg, "unknown experiment " + name);
     const std::vector<ImagePair> pairs = findPairs(options.roots);
-    if (pairs.empty())
+    if (pairs.empty() && findViewPairs(options.roots).empty())
         CV_Error(cv::Error::StsObjectNotFound,
                 "no image sequences found; the README of tools/evaluation tells the layouts");
     cv::utils::fs::createDirectories(options.out);
     checkSettings(options);
 
     const std::vector<ImagePair> readable = readablePairs(pairs);
-    if (readable.empty())
+    if (readable.empty() && !pairs.empty())
         CV_Error(cv::Error::StsObjectNotFound,
                 "none of the " + std::to_string(pairs.size()) + " image pairs can be read");
+    std::vector<ImagePair> planar;  // all but those of known points
+    for (const ImagePair& pair : readable)
+        if (pair.correspondencesFile.empty())
+            planar.push_back(pair);
     int skipped = int(pairs.size() - readable.size());
     for (const Experiment& e : EXPERIMENTS)
         if (options.experiments.empty() || std::find(options.experiments.begin(), options.experiments.end(),
                                                    e.name) != options.experiments.end())
-            skipped += e.run(options, readable);
+            skipped += e.run(options, e.run == wholeTasks ? readable : planar);
     std::cerr << "evaluated " << readable.size() << " of " << pairs.size() << " image pairs, skipped "
               << skipped << " pieces of work" << std::endl;
     return skipped;

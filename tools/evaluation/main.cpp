@@ -15,17 +15,29 @@ const char ABOUT[] = "The paper's experiments, and more, on image sequences: iib
 
 const char KEYS[] =
         "{out         |<none>|folder of the results; a run that was interrupted goes on there}"
-        "{only        |<none>|fixed_points, detected_points, matching, robustness, cost or pictures; may be "
-        "repeated}"
+        "{only        |<none>|fixed_points, detected_points, whole_tasks, matching, robustness, cost, "
+        "pictures "
+        "or comparison; may be repeated}"
+        "{compare     |<none>|list file of pairs to draw the matches of IIB and others on}"
         "{points      |1000  |keypoints an image}"
         "{tolerance   |3     |of a correct match, in pixels}"
         "{threads     |<none>|all processors, unless said}"
         "{no-pictures |      |no pictures of the worst and best pairs}"
         "{descriptor  |<none>|an extractor saved by IIBDescriptorExtractor::save, to compare; may be "
         "repeated}"
-        "{keypoints   |<none>|folder with <set>/<sequence>/<image>.csv of a detector: "
-        "x,y,size,angle,response}"
+        "{detectors   |<none>|one of OpenCV's for detected points, instead of all; may be repeated}"
+        "{keypoints   |<none>|NAME=FOLDER of a detector, with <set>/<sequence>/<image>.csv: "
+        "x,y,size,angle,response, and <image>.npy of its descriptors, if any; may be repeated}"
         "{network     |<none>|ONNX file of a keypoint detector, such as SuperPoint or ALIKE}";
+
+KeypointFolder keypointFolder(const std::string& given)
+{
+    const size_t equals = given.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == given.size() || given.find(',') < equals)
+        CV_Error(
+                cv::Error::StsBadArg, "--keypoints " + given + ": not NAME=FOLDER, the name without a comma");
+    return {given.substr(0, equals), given.substr(equals + 1)};
+}
 
 int run(const CommandLine& line)
 {
@@ -42,8 +54,11 @@ int run(const CommandLine& line)
     if (line.has("no-pictures"))
         options.worst = 0;
     options.saved = line.all("descriptor");
-    options.keypoints = line.text("keypoints");
+    options.detectors = line.all("detectors");
+    for (const std::string& given : line.all("keypoints"))
+        options.keypoints.push_back(keypointFolder(given));
     options.network = line.text("network");
+    options.compare = line.text("compare");
     evaluate(options);
     return 0;
 }

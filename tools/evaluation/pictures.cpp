@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <map>
 
+#include "common/metrics.hpp"
+#include "detectors.hpp"
 #include "experiments.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
 #include "opencv2/imgcodecs.hpp"
@@ -53,7 +55,14 @@ std::vector<Choice> choose(const std::vector<Fields>& rows, int count)
     return chosen;
 }
 
-cv::Mat draw(const LoadedPair& loaded, const SeededMatches& m)
+struct Drawn
+{
+    std::vector<cv::KeyPoint> reference, target;
+    std::vector<cv::DMatch> matches;
+    std::vector<bool> correct;
+};
+
+cv::Mat draw(const LoadedPair& loaded, const Drawn& m)
 {
     const double scale = double(WIDTH) / (loaded.reference.cols + loaded.target.cols);
     cv::Mat left, right, picture;
@@ -64,15 +73,25 @@ cv::Mat draw(const LoadedPair& loaded, const SeededMatches& m)
     right.copyTo(both(cv::Rect(cv::Point(left.cols, 0), right.size())));
     cv::cvtColor(both, picture, cv::COLOR_GRAY2BGR);
     const size_t step = m.matches.size() / LINES + 1;
+    std::vector<size_t> drawn;
     for (size_t i = 0; i < m.matches.size(); i += step)
+        drawn.push_back(i);
+    // The right ones lie above the wrong ones.
+    std::stable_partition(drawn.begin(), drawn.end(), [&](size_t i) { return !m.correct[i]; });
+    for (size_t i : drawn)
     {
-        const cv::Point2f a = m.reference.keypoints[m.matches[i].queryIdx].pt * scale;
-        const cv::Point2f b =
-                m.target.keypoints[m.matches[i].trainIdx].pt * scale + cv::Point2f(float(left.cols), 0);
+        const cv::Point2f a = m.reference[m.matches[i].queryIdx].pt * scale;
+        const cv::Point2f b = m.target[m.matches[i].trainIdx].pt * scale + cv::Point2f(float(left.cols), 0);
         const cv::Scalar colour = m.correct[i] ? cv::Scalar(90, 200, 40) : cv::Scalar(40, 60, 230);
         cv::line(picture, a, b, colour, 1, cv::LINE_AA);
     }
     return picture;
+}
+
+void writePicture(const std::string& file, const cv::Mat& picture)
+{
+    if (!cv::imwrite(file, picture, {cv::IMWRITE_JPEG_QUALITY, 75}))
+        CV_Error(cv::Error::StsError, file + ": cannot be written");
 }
 
 void drawPair(const Options& options, const ImagePair& pair, const Choice& choice, ResultTable& table)
@@ -87,13 +106,67 @@ void drawPair(const Options& options, const ImagePair& pair, const Choice& choic
             SeedSource(loaded.reference, options.points).seeds(iib, loaded.target.size(), loaded.homography);
     const SeededMatches m = matchSeeds(iib, seeded, options.tolerance);
     const std::string file = "pictures/" + pair.set + "_" + pair.sequence + "_" + pair.target + ".jpg";
-    if (!cv::imwrite(options.out + "/" + file, draw(loaded, m), {cv::IMWRITE_JPEG_QUALITY, 75}))
-        CV_Error(cv::Error::StsError, file + ": cannot be written");
+    writePicture(options.out + "/" + file,
+            draw(loaded, {m.reference.keypoints, m.target.keypoints, m.matches, m.correct}));
     table.append({pair.set, choice.rank, pair.sequence, pair.target, std::to_string(m.counts.correct),
             std::to_string(m.counts.putative), std::to_string(m.counts.correspondences), file});
 }
 
+//! The mutual matches of one descriptor at the detector's points, and how many are right.
+void drawDetected(const Options& options, const ImagePair& pair, const Detector& detector,
+        const std::vector<std::string>& descriptors, ResultTable& table)
+{
+    const LoadedPair loaded = loadPair(pair);
+    const std::vector<Described> reference = describeAll(detector,
+                                         detector.detect(loaded.reference, pair, pair.referenceFile),
+                                         loaded.reference),
+                                 target = describeAll(detector,
+                                         detector.detect(loaded.target, pair, pair.targetFile),
+                                         loaded.target);
+    for (size_t i = 0; i < reference.size(); i++)
+    {
+        const Described &r = reference[i], &t = target[i];
+        if (std::find(descriptors.begin(), descriptors.end(), r.name) == descriptors.end())
+            continue;
+        Drawn drawn = {r.keypoints, t.keypoints, mutualMatches(r.descriptors, t.descriptors, r.norm), {}};
+        drawn.correct = correctByLocation(
+                drawn.matches, drawn.reference, drawn.target, loaded.homography, options.tolerance);
+        const Counts n = countsOf(drawn.correct, 0);
+        const std::string file = "pictures/" + pair.set + "_" + detector.name + "_" + r.name + ".jpg";
+        writePicture(options.out + "/" + file, draw(loaded, drawn));
+        table.append({pair.set, pair.target, detector.name, r.name, std::to_string(n.correct),
+                std::to_string(n.putative), file});
+    }
+}
+
 }  // namespace
+
+int comparison(const Options& options, const std::vector<ImagePair>&)
+{
+    if (options.compare.empty())
+        return 0;
+    cv::utils::fs::createDirectories(options.out + "/pictures");
+    const std::string file = options.out + "/comparison.csv";
+    std::remove(file.c_str());
+    ResultTable table(file, {"set", "target", "detector", "descriptor", "correct", "putative", "file"}, 4);
+    Options classic = options;
+    classic.keypoints.clear();
+    classic.network.clear();
+    classic.detectors = {"ORB", "SIFT"};
+    std::vector<Task> tasks;
+    for (const ImagePair& pair : findPairs({options.compare}))
+        for (const Detector& detector : detectors(classic))
+            tasks.push_back({pair.name() + " " + detector.name, [&options, &table, pair, detector] {
+                                 const std::vector<std::string> at =
+                                         detector.name == "ORB"
+                                                 ? std::vector<std::string>{"ORB", "BEBLID-512", "IIB"}
+                                                 : std::vector<std::string>{"SIFT"};
+                                 drawDetected(options, pair, detector, at, table);
+                             }});
+    const int skipped = runTasks("comparison", tasks);
+    table.finish();
+    return skipped;
+}
 
 int pictures(const Options& options, const std::vector<ImagePair>& pairs)
 {

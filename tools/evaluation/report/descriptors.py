@@ -40,7 +40,7 @@ SHOWN = {
     "SURF": (("SURF", "SURF"), False, "patented until 2020, non-free build"),
 }
 
-# The bars at the head of the page.
+# The bars at the head of the page; of two sizes of a point, the better one.
 HEADLINE = ("IIB", "IIB COMPACT", "SIFT", "KAZE", "AKAZE-486", "BEBLID-512", "TEBLID-512", "LATCH-512", "ORB",
             "BRIEF-512", "BRISK", "FREAK")
 

@@ -18,7 +18,7 @@ from paper_orders import orders
 from results import area_under_curve, column, curve, domain, file_name, group, interval, mean, mean_accuracy, read
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-CSV_FILES = ("fixed_points", "detected_points", "whole_tasks", "matching", "robustness", "cost", "learned")
+CSV_FILES = ("fixed_points", "detected_points", "whole_tasks", "matching", "robustness", "cost", "learned", "comparison")
 
 
 def score(rows):
@@ -192,7 +192,7 @@ def settings(folder):
         path = os.path.join(folder, name)
         if os.path.exists(path):
             with open(path) as file:
-                found += [line.strip() for line in file if line.strip()]
+                found += [line.strip() for line in file if line.strip() and not line.startswith("keypoints ")]
     return found
 
 
@@ -204,7 +204,8 @@ def main():
     if not any(tables.values()):
         sys.exit("%s: no results of iib_evaluation" % folder)
     rows = overview(tables)
-    headline = [r for name in descriptors.HEADLINE for r in rows if r["name"] == name]
+    headline = [max(same, key=lambda r: r["score"]["recall"]) for same in
+                ([r for r in rows if r["name"] in (name, name + " 5x")] for name in descriptors.HEADLINE) if same]
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     page = environment.get_template("page.html.j2").render(
@@ -212,6 +213,7 @@ def main():
         curves=detector_curves(tables), changes=changes(tables), warps=warp_charts(tables),
         tasks=whole_tasks(tables), paper=paper_tables(tables), orders=paper_orders(tables), maps=maps(tables),
         matching=matching(tables), scenes=scenes(tables), cost=tables["cost"], pictures=read(folder, "pictures"),
+        comparison=sorted(tables["comparison"], key=lambda r: -int(r["correct"])),
         all_pairs=score(by_name(illumination(tables["fixed_points"])).get("IIB", [])), settings=settings(folder),
         files=[file_name(name) for name in CSV_FILES if tables[name]])
     path = os.path.join(folder, "index.html")

@@ -20,11 +20,12 @@ with open(os.path.join(results, "fixed_points.csv")) as file:
             not r["set"].startswith("lights")]
 recall = sum(float(r["recall"]) for r in rows) / len(rows)
 assert "recall %.3f</b>" % recall in text, recall
-for section in ("all", "detectors", "pictures", "moved", "paper", "scenes", "run"):
+for section in ("all", "detectors", "pictures", "moved", "tasks", "paper", "scenes", "run"):
     assert 'id="%s"' % section in text, section
 for name in ("IIB", "IIB BALANCED", "ORB", "SIFT", "AKAZE-486"):
     assert re.search(r'<td>%s( <span class="tag">learned</span>)?</td><td>\d+</td><td data-value="[\d.]+">' % name,
                      text), name
+assert text.count("Matches of IIB between day and night") == 1
 for link in re.findall(r'(?:src|href)="([^"#]+)"', text):
     assert os.path.exists(os.path.join(results, link)), link
 assert len(text) < 200000, len(text)

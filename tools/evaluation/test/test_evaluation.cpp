@@ -11,6 +11,7 @@
 #include "../tasks.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
+#include "common/test/npy_text.hpp"
 #include "common/test/test_folder.hpp"
 
 namespace {
@@ -89,14 +90,17 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
         options.out = kept;
         cv::utils::fs::remove_all(kept);
     }
+    folder.write("pairs.csv",
+            "reference,target,homography,kind\ndata/set/still/1.png,data/set/still/2.png,,light\n");
+    options.compare = folder.path("pairs.csv");
     EXPECT_EQ(0, evaluate(options));
     EXPECT_GT(recallOf("still", "IIB"), 0.9);
     EXPECT_GT(recallOf("v_shift", "IIB"), 0.9);
     EXPECT_GT(recallOf("still", "IIB"), recallOf("still", "IIB g2"));
     EXPECT_GT(recallOf("still", "IIB +depth"), 0.9);
 
-    const std::vector<std::string> tables = {
-            "fixed_points", "detected_points", "matching", "robustness", "cost", "pictures"};
+    const std::vector<std::string> tables = {"fixed_points", "detected_points", "whole_tasks", "matching",
+            "robustness", "cost", "pictures", "comparison"};
     std::vector<std::string> first;
     for (const std::string& name : tables)
         first.push_back(contents(options.out + "/" + name + ".csv"));
@@ -104,6 +108,8 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
     for (size_t i = 0; i < tables.size(); i++)
         EXPECT_EQ(first[i], contents(options.out + "/" + tables[i] + ".csv")) << tables[i];
     EXPECT_FALSE(cv::imread(options.out + "/pictures/set_still_2.jpg").empty());
+    for (const char* drawn : {"ORB_IIB", "ORB_ORB", "SIFT_SIFT"})
+        EXPECT_FALSE(cv::imread(options.out + "/pictures/pairs_" + drawn + ".jpg").empty()) << drawn;
 
     options.points = 100;
     EXPECT_NE(std::string::npos, messageOf([&] { evaluate(options); }).find("settings"));
@@ -140,25 +146,84 @@ TEST_F(EvaluationTest, broken_files_are_counted_and_the_rest_goes_on)
     EXPECT_GT(recallOf("still", "IIB"), 0.9);
 }
 
-TEST_F(EvaluationTest, keypoints_from_files)
+//! The number that follows `start` in a table, -1 without it.
+int valueAfter(const std::string& table, const std::string& start)
 {
-    options.experiments = {"detected_points"};
-    options.keypoints = folder.path("points");
-    folder.makeFolder("points/set/still");
-    std::string list = "x,y,size\n";
-    for (int y = 40; y < 200; y += 16)
-        for (int x = 40; x < 280; x += 16)
-            list += std::to_string(x) + "," + std::to_string(y) + ",5\n";
-    folder.write("points/set/still/1.csv", list);
-    folder.write("points/set/still/2.csv", list);
+    const size_t at = table.find("\n" + start);
+    return at == std::string::npos ? -1 : std::atoi(table.c_str() + at + 1 + start.size());
+}
+
+class KeypointFilesTest : public EvaluationTest
+{
+protected:
+    void SetUp() CV_OVERRIDE
+    {
+        EvaluationTest::SetUp();
+        options.experiments = {"detected_points"};
+        options.detectors = {"ORB"};
+        addPoints("plain", "x,y\n", "");
+        addPoints("large", "x,y,size\n", ",128");
+        addPoints("small", "x,y,size\n", ",5");
+    }
+
+    //! The same 150 points in both images of `still`, and of no other sequence.
+    void addPoints(const std::string& name, std::string list, const std::string& size)
+    {
+        folder.makeFolder(name + "/set/still");
+        for (int y = 40; y < 200; y += 16)
+            for (int x = 40; x < 280; x += 16)
+                list += std::to_string(x) + "," + std::to_string(y) + size + "\n";
+        for (const char* image : {"1", "2"})
+            folder.write(name + "/set/still/" + image + ".csv", list);
+        options.keypoints.push_back({name, folder.path(name)});
+    }
+
+    std::string table() const { return contents(options.out + "/detected_points.csv"); }
+};
+
+TEST_F(KeypointFilesTest, several_folders_and_their_sizes)
+{
     write("still/3.png", cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
     write("still/depth/3.png", cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
-    EXPECT_EQ(1, evaluate(options));  // the third image has no such file
-    const std::string table = contents(options.out + "/detected_points.csv"),
-                      row = "set,still,2,file,IIB,light,170,";
-    const size_t at = table.find(row);
-    ASSERT_NE(std::string::npos, at);
-    EXPECT_GT(std::atoi(table.c_str() + at + row.size()), 100);  // correct matches of 150 points
+    EXPECT_EQ(1, evaluate(options));  // the third image has no such file; v_shift is not of changed light
+    const int plain = valueAfter(table(), "set,still,2,plain,IIB,light,170,");
+    EXPECT_GT(plain, 100);
+    EXPECT_EQ(plain, valueAfter(table(), "set,still,2,large,IIB,light,170,"));
+    EXPECT_LT(valueAfter(table(), "set,still,2,small,IIB,light,170,"), plain);
+    EXPECT_EQ(-1, valueAfter(table(), "set,still,2,plain,plain,light,"));
+    EXPECT_GT(valueAfter(table(), "set,still,2,ORB,IIB UNIVERSAL,light,"), 0);
+    EXPECT_EQ(std::string::npos, table().find(",SIFT,"));
+    EXPECT_EQ(0, valueAfter(table(), "set,still,3,ORB,ORB,light,32,"));  // nothing is seen in the third image
+}
+
+TEST_F(KeypointFilesTest, own_descriptors_beside_the_points)
+{
+    cv::Mat rows(150, 3, CV_32F);
+    for (int i = 0; i < rows.rows; i++)
+        for (int c = 0; c < rows.cols; c++)
+            rows.at<float>(i, c) = float(c == 0 ? i : i % (7 * c));
+    folder.write("plain/set/still/1.npy", npyText(rows));
+    folder.write("plain/set/still/2.npy", npyText(rows));
+    EXPECT_EQ(0, evaluate(options));
+    EXPECT_EQ(150, valueAfter(table(), "set,still,2,plain,plain,light,12,"));
+
+    folder.write("plain/set/still/2.npy", npyText(rows.rowRange(1, 150)));
+    options.out = folder.path("cut");
+    EXPECT_EQ(1, evaluate(options));  // told, counted, and the rest is there
+    EXPECT_EQ(std::string::npos, table().find(",plain,plain,"));
+}
+
+TEST_F(KeypointFilesTest, decide_whether_results_are_reused)
+{
+    options.keypoints.resize(1);
+    evaluate(options);
+    options.keypoints.push_back({"large", folder.path("large")});
+    EXPECT_EQ("", messageOf([&] { evaluate(options); }));  // another one may join
+    EXPECT_GT(valueAfter(table(), "set,still,2,large,IIB,light,170,"), 100);
+    folder.write("plain/set/still/2.csv", "x,y\n50,50\n");
+    EXPECT_NE(std::string::npos, messageOf([&] { evaluate(options); }).find("settings (keypoints plain"));
+    options.keypoints[0].folder = folder.path("none");
+    EXPECT_NE("", messageOf([&] { evaluate(options); }));
 }
 
 TEST_F(EvaluationTest, no_readable_pair_is_an_error)
@@ -174,6 +239,10 @@ TEST_F(EvaluationTest, mistakes_are_told)
 {
     options.experiments = {"unknown_points"};
     EXPECT_NE(std::string::npos, messageOf([&] { evaluate(options); }).find("unknown_points"));
+    options.experiments = {"detected_points"};
+    options.detectors = {"SIFTER"};
+    EXPECT_NE(std::string::npos,
+            messageOf([&] { evaluate(options); }).find("unknown detector SIFTER; there are FAST"));
     options.experiments.clear();
     folder.makeFolder("empty");
     options.roots = {folder.path("empty")};
