@@ -99,6 +99,7 @@ private:
         queryIndices.assign(queries, -1);
         NearestScan scan(
                 block.pairs, NearestCodes(forQueries.thresholds() + block.firstQuery, queryIndices.data()));
+        scan.early = input.early;
         if (forTrains)
         {
             trainIndices.assign(trains, -1);
@@ -167,20 +168,25 @@ SearchCost split(int queries, int parts, const std::function<SearchCost(int, int
 }
 
 // Some parts for each thread, so that all are done at about the same time.
-int evenParts(const SearchInput& input)
+int evenParts(const SearchInput& input, int queries)
 {
-    const int blocks = (input.queries.rows + input.blocks.queries - 1) / input.blocks.queries,
-              threads = getNumThreads();
+    const int blocks = (queries + input.blocks.queries - 1) / input.blocks.queries, threads = getNumThreads();
     return std::max((blocks + threads - 1) / threads, 2) * threads;
 }
 
 }  // namespace
 
+SearchCost searchNearest(const SearchInput& input, const Range& queries, KnnTable& forQueries)
+{
+    return split(queries.size(), evenParts(input, queries.size()), [&](int from, int to) {
+        return PartialSearch(input, queries.start + from, queries.start + to).nearest(forQueries, 0);
+    });
+}
+
 SearchCost searchNearest(const SearchInput& input, KnnTable& forQueries, KnnTable* forTrains)
 {
     if (!forTrains)
-        return split(input.queries.rows, evenParts(input),
-                [&](int from, int to) { return PartialSearch(input, from, to).nearest(forQueries, 0); });
+        return searchNearest(input, Range(0, input.queries.rows), forQueries);
     // In the other direction each part has neighbours of its own, merged by their order, so that the result
     // does not depend on which is done first. Few parts, since each begins without thresholds.
     std::mutex lock;
@@ -195,7 +201,7 @@ SearchCost searchNearest(const SearchInput& input, KnnTable& forQueries, KnnTabl
 
 SearchCost searchWithin(const SearchInput& input, int radius, std::vector<std::vector<MatchKey>>& result)
 {
-    return split(input.queries.rows, evenParts(input),
+    return split(input.queries.rows, evenParts(input, input.queries.rows),
             [&](int from, int to) { return PartialSearch(input, from, to).within(radius, result); });
 }
 

@@ -3,10 +3,10 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../precomp.hpp"
-#include "blocked_search.hpp"
 #include "input.hpp"
 #include "manifest.hpp"
 #include "parameters.hpp"
+#include "skipping_search.hpp"
 
 #include "opencv2/iib/mapped_index.hpp"
 
@@ -138,8 +138,7 @@ public:
         const size_t first = segment < 0 ? 0 : segment, end = segment < 0 ? opened.size() : first + 1;
         const size_t count = firstRows[end] - firstRows[first];
         KnnTable found(queries.rows, (int)std::min((size_t)k, std::max(count, (size_t)1)));
-        for (size_t i = first; i < end; i++)
-            search(i, queries, found);
+        search(first, end, queries, found);
 
         rows_.assign((size_t)queries.rows * k, -1);
         distances.assign(rows_.size(), -1);
@@ -173,17 +172,24 @@ private:
         return std::upper_bound(firsts.begin(), firsts.end(), (size_t)number) - firsts.begin() - 1;
     }
 
-    void search(size_t segment, const Mat& queries, KnnTable& found) const
+    //! In the segments `first` to `end`.
+    void search(size_t first, size_t end, const Mat& queries, KnnTable& found) const
     {
-        const std::vector<bool> hidden = hiddenOf(segment);
-        const PackedCodes& codes = opened[segment]->codes();
         const PruningPolicy policy = exactPolicy();
         const std::vector<Mat> masks;
         const SearchBlocks blocks;
-        SearchInput input(codes, queries, policy, masks, blocks);
-        input.firstIndex = firstRows[segment];
-        input.hidden = hidden.empty() ? 0 : &hidden;
-        searchNearest(input, found, 0);
+        std::vector<std::vector<bool>> hidden;
+        for (size_t i = first; i < end; i++)
+            hidden.push_back(hiddenOf(i));
+        std::vector<SearchInput> inputs;
+        for (size_t i = first; i < end; i++)
+        {
+            SearchInput input(opened[i]->codes(), queries, policy, masks, blocks);
+            input.firstIndex = firstRows[i];
+            input.hidden = hidden[i - first].empty() ? 0 : &hidden[i - first];
+            inputs.push_back(input);
+        }
+        searchSkipping(inputs, found);
     }
 
     //! Which images of a segment were removed; empty if none was.

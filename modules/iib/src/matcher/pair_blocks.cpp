@@ -61,13 +61,12 @@ void forEachBlock(
     {
         const int queryCount = std::min(input.blocks.queries, to - query);
         const Mat queries = input.queries.rowRange(query, query + queryCount);
-        for (int first = 0; first < trains.blocks(); first += input.blocks.codeBlocks)
+        for (int first = input.firstBlock; first < input.endBlock; first += input.blocks.codeBlocks)
         {
+            const int blocks = std::min(input.blocks.codeBlocks, input.endBlock - first);
             const size_t train = (size_t)first * CodeLayout::CODES_PER_BLOCK;
-            const size_t trainCount =
-                    std::min(rows - train, (size_t)input.blocks.codeBlocks * CodeLayout::CODES_PER_BLOCK);
-            const unsigned* const codes =
-                    trains.block(first, std::min(input.blocks.codeBlocks, trains.blocks() - first), scratch);
+            const size_t trainCount = std::min(rows - train, (size_t)blocks * CodeLayout::CODES_PER_BLOCK);
+            const unsigned* const codes = trains.block(first, blocks, scratch);
             PairBlock block = {CodePairs(layout, queries, codes, (int)trainCount), query, train,
                     input.firstIndex + train, queryCount * trainCount};
             if (needsFlags(input, block))

@@ -264,6 +264,78 @@ TEST_F(IIB_MappedIndex, other_instruction_sets_read_it)
     setUseOptimized(before);
 }
 
+//! Enough codes and queries for chunks to be left out; each code is there twice, and so ties are everywhere.
+struct IIB_MappedIndex_Skipping : public testing::Test
+{
+    const TemporaryFolder folder;
+    Mat codes;
+    Ptr<MappedIndex> index;
+    RNG rng;
+
+    IIB_MappedIndex_Skipping() : codes(70000, BYTES, CV_8U), rng(5) {}
+    void SetUp() CV_OVERRIDE
+    {
+        rng.fill(codes, RNG::UNIFORM, 0, 256);
+        codes.rowRange(0, 35000).copyTo(codes.rowRange(35000, 70000));
+        // As far from a query as each other: one by its first bytes, which the bound sees, and one by its last.
+        for (int i = 0; i < 40; i++)
+        {
+            codes.row(60000 + i).copyTo(codes.row(2000 + i));
+            codes.row(i).copyTo(codes.row(25000 + i));  // which was the same
+            codes.at<uchar>(2000 + i, 0) ^= 15;
+            codes.at<uchar>(60000 + i, BYTES - 1) ^= 15;
+        }
+        index = MappedIndex::create(folder.name, LEVELS);
+        index->add(std::vector<Mat>{codes.rowRange(0, 100), codes.rowRange(100, 30000)});
+        index->add(Mat(0, BYTES, CV_8U));
+        index->add(codes.rowRange(30000, 70000));
+    }
+
+    //! Queries near codes, the first 20 near those of image 0, the last 40 between those that are equally far.
+    Mat nearQueries()
+    {
+        Mat queries(300, BYTES, CV_8U);
+        for (int q = 0; q < queries.rows; q++)
+        {
+            const int row = q < 20 ? q : q < 260 ? rng.uniform(0, 70000) : 60000 + q - 260;
+            codes.row(row).copyTo(queries.row(q));
+            for (int flips = 0; flips < 8 && q < 260; flips++)
+                queries.at<uchar>(q, rng.uniform(0, BYTES)) ^= 1 << rng.uniform(0, 8);
+            if (q >= 260)
+                queries.at<uchar>(q, BYTES - 1) ^= 15;
+        }
+        return queries;
+    }
+
+    //! Compares with HierarchicalMatcher among the codes from a row on.
+    void expectFound(const Mat& queries, int firstRow)
+    {
+        const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(LEVELS);
+        for (int k : {1, 2, 3})
+        {
+            SCOPED_TRACE(k);
+            Mat rows, distances;
+            matcher->knnMatchArrays(queries, codes.rowRange(firstRow, codes.rows), rows, distances, k);
+            const Found found = search(*index, queries, k);
+            rows += firstRow;
+            EXPECT_EQ(std::vector<int64>(rows.begin<int>(), rows.end<int>()), found.rows);
+            EXPECT_EQ(std::vector<int>(distances.begin<int>(), distances.end<int>()), found.distances);
+        }
+    }
+};
+
+TEST_F(IIB_MappedIndex_Skipping, finds_what_a_full_search_finds)
+{
+    Mat random(300, BYTES, CV_8U);
+    rng.fill(random, RNG::UNIFORM, 0, 256);
+    expectFound(random, 0);
+    const Mat queries = nearQueries();
+    expectFound(queries, 0);
+    EXPECT_EQ(2000, search(*index, queries, 1).rows[260]);
+    index->remove({0});
+    expectFound(queries, 100);
+}
+
 #ifdef __linux__
 TEST_F(IIB_MappedIndex, full_disk_keeps_the_last_commit)
 {
