@@ -13,13 +13,25 @@
 namespace iib_localization {
 namespace {
 
-constexpr float MIN_LENGTH = 20;  // pixels
 constexpr int CODE_BYTES = 32;
+
+LineFeatures noLines()
+{
+    LineFeatures features;
+    features.codes.create(0, CODE_BYTES, CV_8U);
+    return features;
+}
+
+}  // namespace
+
 #ifdef IIB_HAVE_LINE_DESCRIPTOR
+namespace {
+
 // LSD works on the image scaled by 0.8 and divides coordinates by it, as if the middle of the first pixel stayed where it
 // was; cv::resize leaves the image's corner where it was.
 constexpr float LSD_SCALE = 0.8f;
 constexpr float LSD_OFFSET = 0.5f / LSD_SCALE - 0.5f;
+constexpr float MIN_LENGTH = 20;  // pixels
 
 cv::line_descriptor::KeyLine keyLine(const cv::Vec4f& s, int index)
 {
@@ -37,24 +49,14 @@ cv::line_descriptor::KeyLine keyLine(const cv::Vec4f& s, int index)
     line.class_id = index;
     return line;
 }
-#endif
 
 }  // namespace
 
-bool linesAvailable()
-{
-#ifdef IIB_HAVE_LINE_DESCRIPTOR
-    return true;
-#else
-    return false;
-#endif
-}
+bool linesAvailable() { return true; }
 
 LineFeatures extractLines(const cv::Mat& grey)
 {
-    LineFeatures features;
-    features.codes.create(0, CODE_BYTES, CV_8U);
-#ifdef IIB_HAVE_LINE_DESCRIPTOR
+    LineFeatures features = noLines();
     std::vector<cv::Vec4f> found;
     cv::createLineSegmentDetector(cv::LSD_REFINE_STD, LSD_SCALE)->detect(grey, found);
     std::vector<cv::line_descriptor::KeyLine> lines;
@@ -68,9 +70,13 @@ LineFeatures extractLines(const cv::Mat& grey)
     }
     if (!lines.empty())
         cv::line_descriptor::BinaryDescriptor::createBinaryDescriptor()->compute(grey, lines, features.codes);
-#endif
     return features;
 }
+#else
+bool linesAvailable() { return false; }
+
+LineFeatures extractLines(const cv::Mat&) { return noLines(); }
+#endif
 
 std::vector<Segment> undistorted(const std::vector<Segment>& segments, const Camera& camera)
 {
