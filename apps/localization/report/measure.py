@@ -24,6 +24,7 @@ SPACINGS = {1: "1.4 m", 2: "2.8 m", 4: "5.6 m"}  # between keyframes, by the ste
 DROPPED = 4  # of so many images, one is kept
 ROUNDS = 3  # of timing, of which the quickest counts
 UNKNOWN = 200  # photographs of other places
+FIRST = 6  # images that iib_localize checks the focal length with
 
 
 def read_poses(path):
@@ -187,11 +188,13 @@ class Street:
 
     def times(self):
         """Milliseconds an image by the number of threads, without and with lines. From start to end, and of processor time:
-        the least of some rounds, less that of a run with one image. Of each stage: medians of the images' quickest rounds."""
+        the least of some rounds, less that of a run with the first images, which iib_localize also checks the focal length
+        with. Of each stage: medians of the images' quickest rounds."""
         place, light, result = self.programs.out / "maps" / "iib-1-depth", self.lights[0], []
         first = self.programs.out / "first" / light / "images"
         first.mkdir(parents=True, exist_ok=True)
-        shutil.copy(min((self.data / light / "images").glob("[0-9]*.png")), first)
+        for path in sorted((self.data / light / "images").glob("[0-9]*.png"))[:FIRST]:
+            shutil.copy(path, first)
         for threads, options in ((1, ["--no-lines"]), (2, ["--no-lines"]), (1, []), (2, [])):
             begins, whole, rounds = [], [], []
             for _ in range(ROUNDS):
@@ -202,7 +205,7 @@ class Street:
                 located = self.localize(place, light, *options, name="-times", threads=threads)
                 whole.append(seconds() - used)
                 rounds.append([[float(row[f"{stage}_ms"] or 0) for stage in STAGES] for row in located])
-            image = 1e3 * (np.min(whole, axis=0) - np.min(begins, axis=0)) / (len(located) - 1)
+            image = 1e3 * (np.min(whole, axis=0) - np.min(begins, axis=0)) / (len(located) - FIRST)
             rounds = np.array(rounds)
             quickest = np.take_along_axis(rounds, rounds.sum(axis=2).argmin(axis=0)[None, :, None], axis=0)[0]
             result.append({"threads": threads, "with_lines": not options, "elapsed": round(image[0], 1),
