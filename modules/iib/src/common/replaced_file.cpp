@@ -110,7 +110,11 @@ ReplacedFile::~ReplacedFile()
         std::remove(temporary.c_str());
 }
 
-void ReplacedFile::write(const void* data, size_t size) { std::fwrite(data, 1, size, stream); }
+void ReplacedFile::write(const void* data, size_t size)
+{
+    if (size > 0)  // fwrite takes no null pointer, not even for nothing
+        std::fwrite(data, 1, size, stream);
+}
 
 void ReplacedFile::commit()
 {
