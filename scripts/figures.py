@@ -65,9 +65,10 @@ def fixed_points():
             found[row['configuration'], 'light' if row['kind'] == 'light' else row['sequence']].append(row)
     lines = []
     for label, name in (('IIB', 'IIB'), ('IIB, `PRESET_BALANCED`', 'IIB BALANCED'), ('SIFT', 'SIFT'),
-                        ('KAZE', 'KAZE'), ('AKAZE', 'AKAZE-486'), ('BEBLID', 'BEBLID-512'), ('BEBLID, 35 px', 'BEBLID-512 5x'),
-                        ('TEBLID', 'TEBLID-512'), ('TEBLID, 35 px', 'TEBLID-512 5x'), ('LATCH', 'LATCH-512'), ('ORB', 'ORB'), ('BRIEF', 'BRIEF-512'),
-                        ('FREAK', 'FREAK'), ('BRISK', 'BRISK')):
+                        ('KAZE', 'KAZE'), ('AKAZE', 'AKAZE-486'), ('BEBLID', 'BEBLID-512'),
+                        ('BEBLID, 35 px', 'BEBLID-512 5x'), ('TEBLID', 'TEBLID-512'),
+                        ('TEBLID, 35 px', 'TEBLID-512 5x'), ('LATCH', 'LATCH-512'), ('ORB', 'ORB'),
+                        ('BRIEF', 'BRIEF-512'), ('FREAK', 'FREAK'), ('BRISK', 'BRISK')):
         lines.append([label, found[name, 'light'][0]['bytes']] +
                      [precision_recall(found[name, place]) for place in ('light', 'wall', 'graf')])
     return table(['', 'bytes', 'changed light', '`wall`', '`graf`'], lines)

@@ -97,7 +97,7 @@ std::vector<std::optional<Pose>> withImu(const std::vector<ImageFile>& images,
     return smooth(camera, frames, readings);
 }
 
-//! Keeps the buffers of one image for the next: to give their pages back and to fetch them again takes a quarter of the time.
+//! Keeps the buffers of one image for the next: to give their pages back and to fetch them again takes 40 % of the time.
 void keepFreedMemory()
 {
 #ifdef __GLIBC__
@@ -154,6 +154,7 @@ int run(const iib_tools::CommandLine& line)
             frames << csvRow(name, location);
             focal.add(location);
             location.matched = {};  // a long run has no room for all
+            location.lineInliers = {};
         }
     }
     finishFile(frames, out + "/frames.csv");

@@ -165,6 +165,30 @@ TEST_F(Localization, the_other_features_too)
     }
 }
 
+TEST_F(Localization, several_images_at_once)
+{
+    sources.depth = folder.path("depth");
+    const Map map = buildMap(sources);
+    const Localizer localizer(map, CAMERA);
+    std::vector<cv::Mat> images;
+    std::vector<Location> alone, atOnce(8);
+    for (int i = 0; i < int(atOnce.size()); i++)
+    {
+        images.push_back(wall.image(poseAt(0.1 * i - 0.4, -0.1, 0.02 * i)));
+        alone.push_back(localizer.locate(images.back()));
+    }
+    cv::parallel_for_(cv::Range(0, int(images.size())), [&](const cv::Range& range) {
+        for (size_t i = size_t(range.start); i < size_t(range.end); i++)
+            atOnce[i] = localizer.locate(images[i]);
+    });
+    for (size_t i = 0; i < images.size(); i++)
+    {
+        ASSERT_TRUE(alone[i].found && atOnce[i].found) << i;
+        EXPECT_EQ(alone[i].estimate.pose.position, atOnce[i].estimate.pose.position) << i;
+        EXPECT_EQ(alone[i].estimate.pose.rotation.coeffs(), atOnce[i].estimate.pose.rotation.coeffs()) << i;
+    }
+}
+
 class LocalizationByLines : public Localization
 {
 protected:

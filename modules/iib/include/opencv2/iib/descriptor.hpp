@@ -254,7 +254,8 @@ public:
 
     Sums over upright rectangles do not rotate with a ROS, so but for #MAPPING_BOXES a rotated one is sampled: on a grid
     of 32 x 32 points if its side is at most 64 pixels and granularity at most 5, else of 64 x 64, at the nearest pixel
-    of each, where the gradient is rotated. So angle 0 does not give the bits of angle -1: one counts samples, the other all pixels.
+    of each, where the gradient is rotated. So angle 0 does not give the bits of angle -1: one counts samples, the other
+    all pixels.
     A point outside the image takes the pixel that #BORDER_REFLECT reflects there, or with #BORDER_CLAMP the nearest
     pixel of the border: the edge of the image crosses rotated cells at an angle, and cells with different numbers of
     samples would no longer be comparable without a division. A side of more than 16384 pixels is cut to that. */

@@ -34,7 +34,7 @@ Searches run on cv::parallel_for_; results are the same for every number of thre
 the rows are spread over segments.
 
 @throws cv::Exception from every call that reads, for a manifest or a segment that is missing, truncated, altered or of a
-newer version; it names the file.
+newer version; it names the file. StsOutOfRange for a row, an image or a segment that is not there.
  */
 class CV_EXPORTS MappedIndex
 {
@@ -74,6 +74,7 @@ public:
 
     @param descriptors a matrix for each image, CV_8U, a row a descriptor; or a single matrix. They are packed in memory
     first. A search is at its best with segments of 10^5 rows and more: add many images at once.
+    @throws cv::Exception for descriptors of another type or width, and if the folder cannot be written.
      */
     virtual void add(InputArrayOfArrays descriptors) = 0;
 
@@ -90,6 +91,7 @@ public:
     @param rows queries x k, nearest first; -1 where there are fewer.
     @param distances as many, in bits; -1 where there are fewer.
     @param segment search this one alone; -1 for all.
+    @throws cv::Exception for queries of another type or width, and (StsOutOfRange) for k < 1.
      */
     virtual void knnSearch(InputArray queryDescriptors, int k, std::vector<int64>& rows,
             std::vector<int>& distances, int segment = -1) const = 0;
