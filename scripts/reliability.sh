@@ -1,10 +1,10 @@
 #!/bin/sh
 # Makes the figures of doc/reliability.md, step by step, on a machine with hours to spare; each step ends with an
 # error if it finds one. scripts/reliability.sh [STEP...], of:
-# bits sanitize stress mutation fuzz versions arm64 wheel
+# bits sanitize stress mutation fuzz versions arm64 wheel presets
 . "$(dirname "$0")/lib.sh"
 
-known="bits sanitize stress mutation fuzz versions arm64 wheel"
+known="bits sanitize stress mutation fuzz versions arm64 wheel presets"
 # shellcheck disable=SC2086
 [ $# -gt 0 ] || set -- $known
 for step in "$@"; do
@@ -62,5 +62,9 @@ for step in "$@"; do
     versions) "$root/scripts/versions.sh" ;;
     arm64) "$root/scripts/arm64.sh" ;;
     wheel) "$root/scripts/wheel.sh" --test ;;
+    presets)
+        "$root/scripts/train.sh" --presets --seed=1
+        git -C "$root" diff --exit-code -- modules/iib/src/descriptor/presets.generated.hpp
+        ;;
     esac
 done

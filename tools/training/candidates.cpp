@@ -145,6 +145,7 @@ CandidatePool makePool(const PoolParameters& p)
                 "where quads begin is a number of 1 to 15 for each level, as 1,15,15");
     CandidatePool pool;
     pool.extractor = IIB::create(p.scale, p.granularity, p.channels, p.mapping);
+    pool.extractor->setBorder(p.border);
     if (p.mapping == IIB::MAPPING_BOXES)
         addBoxes(p, pool);
     else

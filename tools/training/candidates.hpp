@@ -20,6 +20,7 @@ struct PoolParameters
     columns), 2 (even rows, odd columns), 4 (odd rows, even columns) and 8 (odd rows and columns). */
     std::vector<int> windows;
     bool wholeQuads;  //!< quads are chosen with all their bits, as in the paper; otherwise bit by bit
+    int border;       //!< IIBDescriptorExtractor::Border of the regions that are trained on
 };
 
 //! The smallest thing that is chosen or not: a quad, or one bit of a quad.

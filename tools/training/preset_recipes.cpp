@@ -14,18 +14,20 @@ std::vector<Recipe> presetRecipes()
     const int gradients = IIB::CHANNEL_GRAD_X + IIB::CHANNEL_GRAD_Y + IIB::CHANNEL_SIGNED_GRAD_X +
                           IIB::CHANNEL_SIGNED_GRAD_Y;
     const int values = IIB::CHANNEL_GRAD_X + IIB::CHANNEL_GRAD_Y + IIB::CHANNEL_INTENSITY;
+    // Quads were learned before BORDER_REFLECT was the default, and keep their bits.
+    const int zeros = IIB::BORDER_CLAMP;
     // the default's quads but those of the orientation, whose bits are seldom worth what it costs to compute
-    const PoolParameters paper = {values, IIB::MAPPING_MEAN, 4, 1.f, {1}, false};
+    const PoolParameters paper = {values, IIB::MAPPING_MEAN, 4, 1.f, {1}, false, zeros};
     // a wider ROS pays while the camera stands still; at 1.25 sums over its cells still have 16 bits
-    const PoolParameters still = {gradients, IIB::MAPPING_HAAR, 4, 1.25f, {1}, false};
+    const PoolParameters still = {gradients, IIB::MAPPING_HAAR, 4, 1.25f, {1}, false, zeros};
     PoolParameters accurate = still;
     accurate.mapping = IIB::MAPPING_PAIRWISE;
     // coarse quads stand a moved camera: level 2 begins them at every cell; a fourth channel costs next to nothing
     const PoolParameters moving = {
-            values + IIB::CHANNEL_SIGNED_GRAD_Y, IIB::MAPPING_MEAN, 4, 1.125f, {1, 15, 1}, false};
+            values + IIB::CHANNEL_SIGNED_GRAD_Y, IIB::MAPPING_MEAN, 4, 1.125f, {1, 15, 1}, false, zeros};
     // boxes overlap, so that a moved camera shifts none wholly; see README.md
     const PoolParameters boxes = {values + IIB::CHANNEL_SIGNED_GRAD_X + IIB::CHANNEL_SIGNED_GRAD_Y,
-            IIB::MAPPING_BOXES, 5, 1.25f, {}, false};
+            IIB::MAPPING_BOXES, 5, 1.25f, {}, false, IIB::BORDER_REFLECT};
     const Warps wide = {0.9, 0.5, 22, 0.7, 1.43, 2.5, 0.1, 1.5, 5};
     Warps universal = wide;
     universal.share = 0.67;

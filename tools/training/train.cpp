@@ -92,7 +92,7 @@ int run(const CommandLine& line)
     const Recipe recipe = {"selection", line.whole("bits", 0, most),
             {line.whole("channels", 1, 63), line.whole("mapping", 0, cv::iib::IIB::MAPPING_BOXES),
                     line.whole("granularity", 1, 6), float(line.number("scale", 0.01, 100)),
-                    windowsOf(line.text("windows")), line.has("quads")},
+                    windowsOf(line.text("windows")), line.has("quads"), cv::iib::IIB::BORDER_REFLECT},
             warpsOfShare(line.number("warp", 0, 1)), line.has("adaboost"), line.whole("pairs", 1, most)};
     const uint64 seed = uint64(line.whole("seed", 0, most));
     const int folds = line.whole("folds", 0, most);

@@ -37,8 +37,8 @@ protected:
     static Recipe recipe(bool wholeQuads, bool adaBoost)
     {
         const int channels = IIB::CHANNEL_GRAD_X + IIB::CHANNEL_GRAD_Y + IIB::CHANNEL_SIGNED_GRAD_X;
-        return {"test", 24, {channels, IIB::MAPPING_HAAR, 3, 1.f, {15}, wholeQuads}, warpsOfShare(0),
-                adaBoost, 3};
+        return {"test", 24, {channels, IIB::MAPPING_HAAR, 3, 1.f, {15}, wholeQuads, IIB::BORDER_REFLECT},
+                warpsOfShare(0), adaBoost, 3};
     }
 
     static void ignore(int, int) {}
@@ -132,6 +132,26 @@ TEST_F(Training, pool_bits_are_those_of_its_candidates)
             const int position = pool.candidates[i].positions.at(0);
             EXPECT_EQ(one.at<uchar>(0), all.at<uchar>(position / 8) >> position % 8 & 1) << "candidate " << i;
         }
+    }
+}
+
+TEST_F(Training, regions_beyond_the_image_are_trained_with_the_border_asked_for)
+{
+    PoolParameters parameters = recipe(false, false).pool;
+    const cv::Mat image = cv::imread(folder.path("set/a/1.png"), cv::IMREAD_GRAYSCALE);
+    for (int border : {IIB::BORDER_CLAMP, IIB::BORDER_REFLECT})
+    {
+        parameters.border = border;
+        const CandidatePool pool = makePool(parameters);
+        const cv::Ptr<IIB> expected =
+                IIB::create(1.f, parameters.granularity, parameters.channels, parameters.mapping);
+        expected->setSelection(pool.quads);
+        expected->setBorder(border);
+        std::vector<cv::KeyPoint> keypoints(1, cv::KeyPoint(10.f, 90.f, 64.f));
+        cv::Mat codes, expectedCodes;
+        pool.extractor->compute(image, keypoints, codes);
+        expected->compute(image, keypoints, expectedCodes);
+        EXPECT_EQ(0, cv::norm(codes, expectedCodes, cv::NORM_HAMMING)) << "border " << border;
     }
 }
 
