@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """COLMAP's SIFT, ORB and IIB on photographs with known poses, as they are and with every second one relit.
 
-    python compare_colmap.py SCENE... [--points 4000] [--methods SIFT,ORB,IIB,UNIVERSAL,SIFT+IIB] [--document FILE]
+    python compare_colmap.py SCENE... [--points 4000] [--methods SIFT,ORB,IIB,UNIVERSAL/refined] [--document FILE]
 
 A SCENE holds ``images/`` and ``poses.txt`` (TUM: name or time, camera centre in metres, quaternion; in the order of the
 images' names). Needs the program colmap (Debian's package) and opencv_iib[colmap]. Prints a table: registered images,
@@ -9,7 +9,8 @@ points, mean track length, reprojection error in pixels, and the median error of
 in per cent of the distance between the outermost of them. --document writes each line into FILE's table, in place of
 the one for the same scene, light and method if there is one.
 
-Methods: SIFT is COLMAP's own; ORB; IIB, or a preset's name, on ORB's keypoints; SIFT+IIB on those of cv2's SIFT.
+Methods: SIFT is COLMAP's own; ORB; IIB, or a preset's name, on ORB's keypoints; SIFT+IIB on those of cv2's SIFT;
+each but COLMAP's SIFT also as NAME/refined.
 """
 import argparse
 import os
@@ -55,11 +56,13 @@ def make_database(method, images, database, points):
                '--SiftExtraction.use_gpu', 0, '--SiftExtraction.max_num_features', points)
         colmap('exhaustive_matcher', '--database_path', database, '--SiftMatching.use_gpu', 0)
         return
-    detector, _, name = method.rpartition('+')
+    described, _, refined = method.partition('/')
+    detector, _, name = described.rpartition('+')
     preset = {'ORB': 'OWN', 'IIB': 'DEFAULT'}.get(name, name)
     from opencv_iib.colmap import FeatureOptions, Options, build_database  # so that --help works without it
 
-    build_database(str(images), str(database), Options(FeatureOptions(detector or 'ORB', points, preset)))
+    build_database(str(images), str(database), Options(FeatureOptions(detector or 'ORB', points, preset),
+                                                       refine=refined == 'refined'))
 
 
 def centres(model):
@@ -125,7 +128,7 @@ def compare(scene, light, methods, points):
             cv2.imwrite(str(images / (Path(name).stem + '.png')), image)
             truth[Path(name).stem + '.png'] = np.array(list(map(float, pose[1:4])))
         for method in methods:
-            work = Path(folder, method)
+            work = Path(folder, method.replace('/', '-'))
             work.mkdir()
             row = measure(method, images, truth, points, work)
             yield (f'| {scene.name} | {light} | {method} | {row[0]} of {len(names)} | {row[1]} | {float(row[2]):.2f} | '
@@ -147,7 +150,7 @@ def write_into(document, line):
 
 
 def main():
-    methods = 'SIFT,ORB,IIB,UNIVERSAL,SIFT+IIB'
+    methods = 'SIFT,ORB,ORB/refined,IIB,IIB/refined,UNIVERSAL,UNIVERSAL/refined,SIFT+IIB'
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('scenes', type=Path, nargs='+', metavar='SCENE')
     parser.add_argument('--points', type=int, default=4000)

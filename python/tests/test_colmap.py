@@ -17,6 +17,8 @@ if cv2 is not None:
     from opencv_iib.__main__ import main
     from opencv_iib.colmap import FeatureOptions, Options, SettingsChanged, build_database, hloc, pipeline
     from opencv_iib.colmap import pairs as pair_lists
+    from opencv_iib.colmap import refine
+    from opencv_iib.colmap.alignment import Patches, combine, frames, offsets
     from opencv_iib.colmap.database import MAX_IMAGE_ID, Database, pair_id
     from opencv_iib.colmap.features import to_colmap
     from opencv_iib.colmap.images import exif_focal_length
@@ -155,6 +157,82 @@ class ColmapTest(unittest.TestCase):
         with redirect_stderr(io.StringIO()):
             build_database(self.images, self.database, Options(FeatureOptions(points=300), **FAST), workers=5)
         self.assertEqual(self.query('SELECT pair_id, data FROM matches ORDER BY pair_id'), one)
+
+    def errors(self):
+        """Of verified matches, in pixels along both axes, where b.png lies at (30.4, 20.7) of a.png."""
+        points = {number: np.frombuffer(data, np.float32).reshape(rows, 4)
+                  for number, rows, data in self.query('SELECT image_id, rows, data FROM keypoints')}
+        rows, data = self.query(f'SELECT rows, data FROM two_view_geometries WHERE pair_id={pair_id(1, 2)}')[0]
+        found = np.frombuffer(data, np.uint32).reshape(rows, 2)
+        return np.abs(points[1][found[:, 0], :2] - points[2][found[:, 1], :2] - [30.4, 20.7]).max(axis=1)
+
+    def move_b(self):
+        world = cv2.resize(texture(160, 120, seed=3), (640, 480), interpolation=cv2.INTER_CUBIC)
+        moved = cv2.warpAffine(world, np.array([[1, 0, -30.4], [0, 1, -20.7]]), (400, 300))
+        cv2.imwrite(os.path.join(self.images, 'b.png'), cv2.convertScaleAbs(moved, alpha=1.3, beta=-40))
+
+    def test_refinement_finds_fractions_of_a_pixel(self):
+        self.move_b()
+        counts = self.build()
+        plain = self.errors()
+        refined_counts = self.build(refine=True, force=True)
+        refined = self.errors()
+        self.assertEqual(refined_counts['keypoints'], counts['keypoints'])
+        self.assertGreater(len(refined), .7 * len(plain))
+        self.assertGreater(np.median(plain), .25)
+        self.assertLess(np.median(refined), .1)
+        self.assertFalse([name for name, in self.query('SELECT name FROM sqlite_master') if name and 'iib' in name])
+
+    def test_an_interrupted_refinement_goes_on(self):
+        self.move_b()
+        self.build(refine=True)
+        tables = ('SELECT * FROM keypoints', 'SELECT * FROM matches ORDER BY pair_id',
+                  'SELECT pair_id, data FROM two_view_geometries ORDER BY pair_id')
+        whole = [self.query(sql) for sql in tables]
+        os.unlink(self.database)
+        real, calls = Database.add_refined, []
+
+        def add_or_not(*arguments):
+            calls.append(1)
+            if len(calls) == 3:
+                raise KeyboardInterrupt
+            real(*arguments)
+        with mock.patch.object(Database, 'add_refined', add_or_not), self.assertRaises(KeyboardInterrupt):
+            self.build(refine=True)
+        with mock.patch.object(refine, 'read_grey', side_effect=refine.read_grey) as reads:
+            self.build(refine=True)
+        self.assertGreater(reads.call_count, 0)
+        self.assertEqual([self.query(sql) for sql in tables], whole)
+
+    def test_patches_of_turned_and_larger_keypoints(self):
+        image = cv2.GaussianBlur(texture(400, 300, seed=5), (0, 0), 2)
+        turn = cv2.getRotationMatrix2D((200, 150), -100, 2)  # by 100 degrees, twice as large
+        turned = cv2.warpAffine(image, turn, (400, 300), flags=cv2.INTER_CUBIC)
+        points = np.array([[240.5, 160.5, 15, 0], [220.5, 190.5, 15, 0]], np.float32)
+        there = points.copy()
+        there[:, :2] = (points[:, :2] - .5) @ turn[:, :2].T + turn[:, 2] + [1.7, .3]
+        there[:, 2:] = 30, np.deg2rad(100)
+        moved = frames(there, 2, True)
+        found = offsets(Patches(turned), moved, Patches(image), frames(points, 2, True))
+        np.testing.assert_allclose(there[:, :2] - .5 + np.einsum('nij,nj->ni', moved[:, :, :2], found),
+                                   (points[:, :2] - .5) @ turn[:, :2].T + turn[:, 2], atol=.15)
+
+    def test_patches_that_do_not_fit(self):
+        point = frames(np.array([[150.5, 115.5, 15, 0]], np.float32), 2, False)
+        one, other = (texture(200, 160, seed=seed) for seed in (1, 2))
+        for image, fits in ((one, True), (cv2.addWeighted(one, .8, other, .2, 0), True), (other, False),
+                            (cv2.addWeighted(one, .5, other, .5, 0), False), (np.zeros_like(one), False)):
+            found = offsets(Patches(image), point, Patches(one), point)
+            if fits:
+                np.testing.assert_allclose(found, 0, atol=.3)
+            else:
+                self.assertTrue(np.isnan(found).all())
+
+    def test_a_keypoint_goes_where_most_of_its_matches_want_it(self):
+        nothing = [np.nan, np.nan]
+        moves, agree = combine(4, np.array([2, 0, 2, 2, 3]), np.array([[1, 1], nothing, [1.5, .5], [5, 1], [-2, 0]]))
+        np.testing.assert_allclose(moves, [[0, 0], [0, 0], [1.5, 1], [-2, 0]])
+        self.assertEqual(agree.tolist(), [True, False, True, False, True])
 
     def test_pairs(self):
         self.assertEqual(sorted(pair_lists.exhaustive(7, 2)), [(a, b) for a in range(7) for b in range(a + 1, 7)])

@@ -63,9 +63,9 @@ class Features:
         self.options = options
         preset = preset_names()[options.preset]
         self.own = preset == -2
-        factor = IIBDescriptorExtractor.scaleFactorFor(options.detector)
-        self.extractor = (IIBDescriptorExtractor.create(factor) if preset < 0 else
-                          IIBDescriptorExtractor.createPreset(preset, factor))
+        self.scale_factor = IIBDescriptorExtractor.scaleFactorFor(options.detector)
+        self.extractor = (IIBDescriptorExtractor.create(self.scale_factor) if preset < 0 else
+                          IIBDescriptorExtractor.createPreset(preset, self.scale_factor))
         if options.orientation:
             self.extractor.setUseOrientation(True)
         self._local = threading.local()

@@ -16,6 +16,7 @@ from opencv_iib.colmap.database import CAMERA_MODELS, Database, SettingsChanged,
 from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
 from opencv_iib.colmap.images import exif_focal_length, find_images, read_grey
 from opencv_iib.colmap.progress import Progress
+from opencv_iib.colmap.refine import refine_images
 from opencv_iib.colmap.verify import colmap_binary, magsac, matches_importer
 from opencv_iib.matcher import HierarchicalMatcher
 
@@ -36,8 +37,9 @@ class Options:
     share_cameras: bool = False  #: one camera for all images of the same size and focal length
     pairs: str = 'exhaustive'  #: one of PAIRS, or the name of a file with two names a line
     neighbours: int = 20  #: images that each is paired with (sequential, retrieval)
-    ratio: float = 1  #: ratio test, as HierarchicalMatcher.setMaxRatio; 1: none. Matches are always mutual.
+    ratio: float = .9  #: ratio test, as HierarchicalMatcher.setMaxRatio; 1: none. Matches are always mutual.
     verify: str = 'auto'  #: one of VERIFIERS; auto: COLMAP's program if it is there, else MAGSAC
+    refine: bool = False  #: move matched keypoints to where their surroundings fit best, and drop matches that do not
 
     def check(self) -> None:
         """:raises ValueError: naming what is wrong, and what there is."""
@@ -180,6 +182,14 @@ def match_pairs(database: Database, options: Options, level_sizes: tuple[int, ..
     progress.close()
 
 
+def verify_pairs(database: Database, binary: Optional[str], log: Callable[[str], None]) -> None:
+    """Has COLMAP's program, if there is one to be asked, verify the pairs that have no two-view geometry."""
+    if binary is not None:
+        log('verifying with colmap matches_importer')
+        names = {number: name for name, number in database.image_ids().items()}
+        matches_importer(binary, database.partial, ((names[a], names[b]) for a, b in database.pairs()))
+
+
 def build_database(images: str, database: str, options: Options = Options(), force: bool = False,
                    workers: Optional[int] = None, log: Callable[[str], None] = lambda line: print(line, file=sys.stderr)
                    ) -> dict[str, int]:
@@ -216,12 +226,12 @@ def build_database(images: str, database: str, options: Options = Options(), for
         target = Database(database, settings)
     with target:
         describe_images(target, images, options, workers, log)
-        level_sizes = Features(options.features).level_sizes()
-        match_pairs(target, options, level_sizes, verify, workers)
-        if verify == 'colmap' and binary is not None:
-            log('verifying with colmap matches_importer')
-            names = {number: name for name, number in target.image_ids().items()}
-            matches_importer(binary, target.partial, ((names[a], names[b]) for a, b in target.pairs()))
+        features = Features(options.features)
+        match_pairs(target, options, features.level_sizes(), verify, workers)
+        verify_pairs(target, binary if verify == 'colmap' else None, log)
+        if options.refine:
+            refine_images(target, images, features, verify, workers)
+            verify_pairs(target, binary if verify == 'colmap' else None, log)
         counts = {**target.counts(), 'failed': target.failures()}
         target.finish()
     return counts
