@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "detectors.hpp"
+#include "described_images.hpp"
 #include "experiments.hpp"
 #include "common/metrics.hpp"
 #include "results.hpp"
@@ -47,23 +47,22 @@ bool hasCurve(const Detector& detector, const std::string& descriptor)
 }
 
 void evaluatePair(const Options& options, const ImagePair& pair, const std::vector<Detector>& detectors,
-        ResultTable& table)
+        DescribedImages& described, ResultTable& table)
 {
     const LoadedPair loaded = loadPair(pair);
     for (const Detector& detector : detectors)
     {
-        const Detection a = detector.detect(loaded.reference, pair, pair.referenceFile);
-        const Detection b = detector.detect(loaded.target, pair, pair.targetFile);
-        const int correspondences =
-                countCorrespondences(a.keypoints, b.keypoints, loaded.homography, options.tolerance);
-        const std::vector<Described> reference = describeAll(detector, a, loaded.reference),
-                                     target = describeAll(detector, b, loaded.target);
-        if (reference.size() != target.size())
+        const auto reference = described.get(detector, loaded.reference, pair, pair.referenceFile),
+                   target = described.get(detector, loaded.target, pair, pair.targetFile);
+        if (reference->size() != target->size())
             CV_Error(cv::Error::StsUnmatchedSizes,
                     pair.name() + ": own descriptors of " + detector.name + " for one image of two");
-        for (size_t i = 0; i < reference.size(); i++)
+        // IIB, the last one, keeps every point.
+        const int correspondences = countCorrespondences(
+                reference->back().keypoints, target->back().keypoints, loaded.homography, options.tolerance);
+        for (size_t i = 0; i < reference->size(); i++)
         {
-            const Described &r = reference[i], &t = target[i];
+            const Described &r = (*reference)[i], &t = (*target)[i];
             const std::vector<cv::DMatch> matches = mutualMatches(r.descriptors, t.descriptors, r.norm);
             std::vector<bool> correct;
             for (const cv::DMatch& m : matches)
@@ -88,6 +87,7 @@ int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs)
             {"set", "sequence", "target", "detector", "descriptor", "kind", "bytes", "correct", "putative",
                     "correspondences", "precision", "recall", "curve"},
             5);
+    DescribedImages described;
     std::vector<Task> tasks;
     for (const ImagePair& pair : pairs)
     {
@@ -97,7 +97,7 @@ int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs)
                 missing.push_back(d);
         if (!missing.empty())
             tasks.push_back({pair.name(),
-                    [&options, &table, pair, missing] { evaluatePair(options, pair, missing, table); }});
+                    [&, pair, missing] { evaluatePair(options, pair, missing, described, table); }});
     }
     const int skipped = runTasks("detected points", tasks);
     table.finish();

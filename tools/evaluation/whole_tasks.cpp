@@ -8,7 +8,7 @@
 
 #include "common/metrics.hpp"
 #include "common/views.hpp"
-#include "detectors.hpp"
+#include "described_images.hpp"
 #include "experiments.hpp"
 #include "opencv2/calib3d.hpp"
 #include "opencv2/imgcodecs.hpp"
@@ -132,36 +132,45 @@ Outcome epipolarError(const Points& points, const std::vector<cv::Vec4d>& corres
     return {sum / double(correspondences.size()), cv::countNonZero(mask)};
 }
 
-//! For moved cameras the wide presets are no choice.
-bool isCompared(const Described& d) { return d.name != "IIB ACCURATE" && d.name != "IIB COMPACT"; }
-
 struct Images
 {
     ImagePair names;
     cv::Mat reference, target;
 };
 
+//! What all tasks of a run share.
+struct Run
+{
+    Run(const std::vector<Detector>& all, const std::string& file)
+        : detectors(all), table(file,
+                                  {"task", "set", "sequence", "target", "detector", "descriptor", "matching",
+                                          "error", "inliers"},
+                                  7)
+    {
+    }
+
+    const std::vector<Detector> detectors;
+    DescribedImages described;
+    ResultTable table;
+};
+
 void evaluateImages(const std::string& task, const Images& images, const std::vector<Detector>& detectors,
-        const Estimator& estimate, ResultTable& table)
+        const Estimator& estimate, Run& run)
 {
     for (const Detector& detector : detectors)
     {
-        const auto described = [&](const cv::Mat& image, const std::string& file) {
-            return describeAll(detector, detector.detect(image, images.names, file), image);
-        };
-        const std::vector<Described> reference = described(images.reference, images.names.referenceFile),
-                                     target = described(images.target, images.names.targetFile);
-        for (size_t i = 0; i < std::min(reference.size(), target.size()); i++)
+        const auto reference = run.described.get(
+                           detector, images.reference, images.names, images.names.referenceFile),
+                   target = run.described.get(detector, images.target, images.names, images.names.targetFile);
+        for (size_t i = 0; i < reference->size(); i++)
         {
-            const Described &r = reference[i], &t = target[i];
-            if (!isCompared(r))
-                continue;
+            const Described &r = (*reference)[i], &t = (*target)[i];
             const std::pair<const char*, std::vector<cv::DMatch>> rules[] = {{"ratio", ratioMatches(r, t)},
                     {"mutual", mutualMatches(r.descriptors, t.descriptors, r.norm)}};
             for (const auto& rule : rules)
             {
                 const Outcome o = estimate(pointsOf(rule.second, r, t));
-                table.append({task, images.names.set, images.names.sequence, images.names.target,
+                run.table.append({task, images.names.set, images.names.sequence, images.names.target,
                         detector.name, r.name, rule.first, text(o.error), std::to_string(o.inliers)});
             }
         }
@@ -169,12 +178,11 @@ void evaluateImages(const std::string& task, const Images& images, const std::ve
 }
 
 //! Those of which the table lacks the row that is written last.
-std::vector<Detector> missing(const std::string& task, const ImagePair& names,
-        const std::vector<Detector>& all, const ResultTable& table)
+std::vector<Detector> missing(const std::string& task, const ImagePair& names, const Run& run)
 {
     std::vector<Detector> rest;
-    for (const Detector& d : all)
-        if (!table.has({task, names.set, names.sequence, names.target, d.name, "IIB", "mutual"}))
+    for (const Detector& d : run.detectors)
+        if (!run.table.has({task, names.set, names.sequence, names.target, d.name, "IIB", "mutual"}))
             rest.push_back(d);
     return rest;
 }
@@ -190,42 +198,40 @@ Images imagesOf(const ViewPair& pair)
     return images;
 }
 
-void addPoses(const Options& options, const std::vector<Detector>& detectors, ResultTable& table,
-        std::vector<Task>& tasks)
+void addPoses(const Options& options, Run& run, std::vector<Task>& tasks)
 {
     for (const ViewPair& pair : findViewPairs(options.roots))
     {
         Images images = imagesOf(pair);
-        const std::vector<Detector> rest = missing("pose", images.names, detectors, table);
+        const std::vector<Detector> rest = missing("pose", images.names, run);
         if (rest.empty())
             continue;
-        tasks.push_back({images.names.name(), [&table, pair, images, rest]() mutable {
+        tasks.push_back({images.names.name(), [&run, pair, images, rest]() mutable {
                              images.reference = readImage(pair.referenceFile, cv::IMREAD_GRAYSCALE);
                              images.target = readImage(pair.targetFile, cv::IMREAD_GRAYSCALE);
                              const auto estimate = [&](const Points& p) { return poseError(p, pair); };
-                             evaluateImages("pose", images, rest, estimate, table);
+                             evaluateImages("pose", images, rest, estimate, run);
                          }});
     }
 }
 
-void addImagePairs(const std::vector<ImagePair>& pairs, const std::vector<Detector>& detectors,
-        ResultTable& table, std::vector<Task>& tasks)
+void addImagePairs(const std::vector<ImagePair>& pairs, Run& run, std::vector<Task>& tasks)
 {
     for (const ImagePair& pair : pairs)
     {
         const std::string task = pair.correspondencesFile.empty() ? "homography" : "epipolar";
-        const std::vector<Detector> rest = missing(task, pair, detectors, table);
+        const std::vector<Detector> rest = missing(task, pair, run);
         if (rest.empty())
             continue;
         tasks.push_back(
-                {pair.name(), [&table, pair, rest, task] {
+                {pair.name(), [&run, pair, rest, task] {
                      const LoadedPair loaded = loadPair(pair);
                      const auto estimate = [&](const Points& p) {
                          return task == "epipolar"
                                         ? epipolarError(p, loaded.correspondences)
                                         : homographyError(p, loaded.homography, loaded.reference.size());
                      };
-                     evaluateImages(task, {pair, loaded.reference, loaded.target}, rest, estimate, table);
+                     evaluateImages(task, {pair, loaded.reference, loaded.target}, rest, estimate, run);
                  }});
     }
 }
@@ -238,16 +244,13 @@ int wholeTasks(const Options& options, const std::vector<ImagePair>& pairs)
     classic.keypoints.clear();
     classic.network.clear();
     if (classic.detectors.empty())
-        classic.detectors = {"ORB", "AKAZE", "SIFT", "ORB normalized", "AKAZE normalized"};
-    const std::vector<Detector> all = detectors(classic);
-    ResultTable table(options.out + "/whole_tasks.csv",
-            {"task", "set", "sequence", "target", "detector", "descriptor", "matching", "error", "inliers"},
-            7);
+        classic.detectors = {"ORB", "AKAZE", "SIFT", "ORB normalized", "AKAZE normalized", "SIFT normalized"};
+    Run run(detectors(classic), options.out + "/whole_tasks.csv");
     std::vector<Task> tasks;
-    addPoses(options, all, table, tasks);
-    addImagePairs(pairs, all, table, tasks);
+    addPoses(options, run, tasks);
+    addImagePairs(pairs, run, tasks);
     const int skipped = runTasks("whole tasks", tasks);
-    table.finish();
+    run.table.finish();
     return skipped;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "../described_images.hpp"
 #include "../experiments.hpp"
 #include "../results.hpp"
 #include "common/test/test_folder.hpp"
@@ -137,6 +138,35 @@ TEST_F(WholeTasksTest, homography_and_epipolar_geometry)
     evaluate(options);
     for (const Fields& row : readRows(options.out + "/fixed_points.csv", fixedPointsColumns()))
         EXPECT_EQ("flat", row[1]);
+}
+
+TEST(DescribedImages, the_last_ones_are_kept)
+{
+    int detections = 0;
+    Detector detector;
+    detector.name = "counted";
+    detector.scaleFactor = 1;
+    detector.detect = [&](const cv::Mat&, const ImagePair&, const std::string&) {
+        detections++;
+        return Detection{{cv::KeyPoint(50, 50, 20)}, cv::Mat(), 0};
+    };
+    const cv::Mat image(100, 100, CV_8U, cv::Scalar(90));
+    DescribedImages described(2);
+    const auto get = [&](const char* file) { return described.get(detector, image, ImagePair(), file); };
+    const DescribedImages::Result first = get("a");
+    EXPECT_EQ("IIB", first->back().name);
+    EXPECT_EQ(first, get("a"));
+    get("b");
+    EXPECT_EQ(first, get("a"));
+    EXPECT_EQ(2, detections);
+    get("c");  // a leaves
+    get("b");
+    EXPECT_EQ(3, detections);
+    get("a");
+    EXPECT_EQ(4, detections);
+    detector.name = "other";
+    get("a");
+    EXPECT_EQ(5, detections);
 }
 
 TEST_F(WholeTasksTest, too_few_matches_are_a_failure)

@@ -1,0 +1,32 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "described_images.hpp"
+
+namespace iib_tools {
+
+DescribedImages::Result DescribedImages::get(
+        const Detector& detector, const cv::Mat& image, const ImagePair& pair, const std::string& file)
+{
+    const Key key(detector.name, file);
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        const auto found = known_.find(key);
+        if (found != known_.end())
+            return found->second;
+    }
+    const Result result = std::make_shared<std::vector<Described>>(
+            describeAll(detector, detector.detect(image, pair, file), image));
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (known_.emplace(key, result).second)
+        order_.push_back(key);
+    if (order_.size() > most_)
+    {
+        known_.erase(order_.front());
+        order_.pop_front();
+    }
+    return result;
+}
+
+}  // namespace iib_tools

@@ -1,0 +1,42 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_TOOLS_DESCRIBED_IMAGES_HPP
+#define IIB_TOOLS_DESCRIBED_IMAGES_HPP
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "detectors.hpp"
+
+namespace iib_tools {
+
+/** What describeAll gave for images that occur in several pairs; describing takes most of an experiment's time. Keeps
+the last ones only. Safe to use from several threads. */
+class DescribedImages
+{
+public:
+    typedef std::shared_ptr<const std::vector<Described>> Result;
+
+    //! Keeps so many images of one detector each, of about a megabyte.
+    explicit DescribedImages(size_t most = 200) : most_(most) {}
+
+    //! Of the image of a file that belongs to a pair. Two threads that ask for the same at once may both compute it.
+    Result get(
+            const Detector& detector, const cv::Mat& image, const ImagePair& pair, const std::string& file);
+
+private:
+    typedef std::pair<std::string, std::string> Key;  // detector, file
+
+    size_t most_;
+    std::map<Key, Result> known_;
+    std::deque<Key> order_;  // oldest first
+    std::mutex mutex_;
+};
+
+}  // namespace iib_tools
+
+#endif
