@@ -126,7 +126,7 @@ std::vector<Configuration> robustnessConfigurations()
     std::vector<Configuration> all = presets();
     all.insert(all.begin(), {upright, oriented});
     for (const Configuration& baseline : baselineConfigurations())
-        if (baseline.name == "BEBLID-512" || baseline.name == "TEBLID-512")
+        if (baseline.name == "BEBLID-512" || baseline.name == "TEBLID-512" || baseline.name == "LATCH-512")
             all.push_back(baseline);
         else if (baseline.name == "ORB" || baseline.name == "SIFT")
         {

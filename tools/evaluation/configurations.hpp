@@ -36,7 +36,7 @@ std::vector<Configuration> generalPresets();
 //! The other descriptors that this OpenCV has, with the parameters OpenCV recommends, upright.
 std::vector<Configuration> baselineConfigurations();
 
-//! Default IIB, upright and oriented, the presets, and ORB and SIFT for comparison.
+//! Default IIB, upright and oriented, the presets, and for comparison ORB, SIFT, BEBLID, TEBLID and LATCH.
 std::vector<Configuration> robustnessConfigurations();
 
 //! An IIB extractor as IIBDescriptorExtractor::save wrote it, selection included; named by its file.

@@ -50,16 +50,12 @@ Detector classic(const std::string& name, const std::string& descriptorName,
     return {name, descriptorName, cv::iib::IIB::scaleFactorFor(name), detect, {}};
 }
 
-Detector classic(const std::string& name, const std::function<Feature()>& feature, int count)
-{
-    return classic(name, name, feature, feature, count);
-}
-
 //! Found on the locally normalized image; the plain image is described.
-Detector normalized(const std::string& name, const std::function<Feature()>& feature, int count)
+Detector normalized(const std::string& name, const std::string& descriptorName,
+        const std::function<Feature()>& detector, const std::function<Feature()>& descriptor, int count)
 {
-    const auto detector = [feature]() -> Feature { return cv::iib::NormalizedDetector::create(feature()); };
-    Detector d = classic(name, name, detector, feature, count);
+    const auto wrapped = [detector]() -> Feature { return cv::iib::NormalizedDetector::create(detector()); };
+    Detector d = classic(name, descriptorName, wrapped, descriptor, count);
     d.name += " normalized";
     return d;
 }
@@ -136,17 +132,25 @@ std::vector<Detector> classicDetectors(int count)
     const auto akaze = []() -> Feature { return cv::AKAZE::create(cv::AKAZE::DESCRIPTOR_MLDB_UPRIGHT); };
     const auto kaze = []() -> Feature { return cv::KAZE::create(false, true); };
     const auto sift = []() -> Feature { return cv::SIFT::create(); };
-    std::vector<Detector> all = {classic("FAST", "ORB", fast, orb, count),
-            classic("AGAST", "ORB", agast, orb, count), classic("ORB", orb, count),
-            classic("BRISK", brisk, count), classic("AKAZE", akaze, count), classic("KAZE", kaze, count),
-            classic("SIFT", sift, count), normalized("ORB", orb, count), normalized("AKAZE", akaze, count),
-            normalized("SIFT", sift, count)};
-    for (Detector& detector : all)
-        if (detector.name == "ORB")
-            detector.others = othersOnORB();
+    const struct
+    {
+        const char *name, *descriptor;
+        std::function<Feature()> detector, own;
+    } known[] = {{"FAST", "ORB", fast, orb}, {"AGAST", "ORB", agast, orb}, {"ORB", "ORB", orb, orb},
+            {"BRISK", "BRISK", brisk, brisk}, {"AKAZE", "AKAZE", akaze, akaze}, {"KAZE", "KAZE", kaze, kaze},
+            {"SIFT", "SIFT", sift, sift}};
+    std::vector<Detector> all;
+    for (const auto& k : known)
+    {
+        all.push_back(classic(k.name, k.descriptor, k.detector, k.own, count));
+        if (all.back().name == "ORB")
+            all.back().others = othersOnORB();
+    }
+    for (const auto& k : known)
+        all.push_back(normalized(k.name, k.descriptor, k.detector, k.own, count));
     for (const Configuration& baseline : baselineConfigurations())
         if (baseline.name == "SURF")
-            all.push_back(classic("SURF", baseline.create, count));
+            all.push_back(classic("SURF", "SURF", baseline.create, baseline.create, count));
     return all;
 }
 
@@ -190,6 +194,17 @@ std::vector<Detector> detectors(const Options& options)
     if (!options.network.empty())
         chosen.push_back(fromNetwork(options.network, options.points));
     return chosen;
+}
+
+std::vector<std::string> describedNames(const Detector& detector)
+{
+    std::vector<std::string> names;
+    for (const Configuration& c : detector.others)
+        names.push_back(c.name);
+    for (const Configuration& c : generalPresets())
+        names.push_back(c.name);
+    names.push_back("IIB");
+    return names;
 }
 
 std::vector<Described> describeAll(const Detector& detector, const Detection& detection, const cv::Mat& image)

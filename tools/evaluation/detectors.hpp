@@ -33,10 +33,9 @@ struct Detector
     std::vector<Configuration> others;  //!< of other makers, described at the same points
 };
 
-/** FAST, AGAST (both with ORB's descriptor), ORB, BRISK, AKAZE, KAZE, SIFT, SURF where present, ORB, AKAZE and SIFT
-on the locally normalized image ("ORB normalized"); of these the ones that Options::detectors names; keypoints from
-files and from a network where the options name them. Each gives at most Options::points keypoints, the
-strongest.
+/** FAST, AGAST (both with ORB's descriptor), ORB, BRISK, AKAZE, KAZE, SIFT, the same seven on the locally normalized
+image ("ORB normalized"), SURF where present; of these the ones that Options::detectors names; keypoints from files and
+from a network where the options name them. Each gives at most Options::points keypoints, the strongest.
 @throws cv::Exception for an unknown name. */
 std::vector<Detector> detectors(const Options& options);
 
@@ -53,6 +52,9 @@ struct Described
 the same order for every image of a detector, but the own ones may be missing in files. */
 std::vector<Described> describeAll(
         const Detector& detector, const Detection& detection, const cv::Mat& image);
+
+//! Names of what describeAll gives for every image, without the detector's own.
+std::vector<std::string> describedNames(const Detector& detector);
 
 /** What decides the results of the detectors from files and networks: a name, and a digest of the data.
 @throws cv::Exception if something cannot be read. */

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include "../experiments.hpp"
 #include "../results.hpp"
@@ -194,6 +195,25 @@ TEST_F(KeypointFilesTest, several_folders_and_their_sizes)
     EXPECT_GT(valueAfter(table(), "set,still,2,ORB,IIB UNIVERSAL,light,"), 0);
     EXPECT_EQ(std::string::npos, table().find(",SIFT,"));
     EXPECT_EQ(0, valueAfter(table(), "set,still,3,ORB,ORB,light,32,"));  // nothing is seen in the third image
+}
+
+TEST_F(EvaluationTest, results_without_a_descriptor_are_completed)
+{
+    options.experiments = {"detected_points"};
+    options.detectors = {"FAST", "FAST normalized"};
+    evaluate(options);
+    const std::string file = options.out + "/detected_points.csv", whole = contents(file);
+    EXPECT_GT(valueAfter(whole, "set,still,2,FAST normalized,ORB,light,32,"), 0);
+    EXPECT_GT(valueAfter(whole, "set,still,2,FAST normalized,IIB UNIVERSAL,light,128,"), 20);
+    std::istringstream lines(whole);
+    std::string rest;
+    for (std::string line; std::getline(lines, line);)
+        if (line.find(",IIB UNIVERSAL,") == std::string::npos)
+            rest += line + "\n";
+    ASSERT_LT(rest.size(), whole.size());
+    std::ofstream(file) << rest;
+    evaluate(options);
+    EXPECT_EQ(whole, contents(file));
 }
 
 TEST_F(KeypointFilesTest, own_descriptors_beside_the_points)
