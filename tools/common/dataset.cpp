@@ -45,20 +45,31 @@ Kind kindOf(const std::string& sequence)
     return sequence.compare(0, 2, "v_") == 0 ? "viewpoint" : "light";
 }
 
-//! The images `<prefix>k.<extension>` of a folder, by k; empty without k = 1.
-std::map<int, std::string> numberedImages(const std::string& folder, const std::string& prefix)
+//! The images of a folder, sorted by name.
+std::vector<std::string> imagesOf(const std::string& folder, const std::string& prefix = "")
 {
     static const std::set<std::string> extensions = {"png", "ppm", "pgm", "jpg", "jpeg", "tif", "tiff"};
-    std::map<int, std::string> images;
     std::vector<cv::String> files;
+    std::vector<std::string> images;
     fs::glob(folder, prefix + "*", files);
     std::sort(files.begin(), files.end());
     for (const std::string& file : files)
     {
+        const size_t dot = baseName(file).find('.');
+        if (dot != std::string::npos && extensions.count(baseName(file).substr(dot + 1)))
+            images.push_back(file);
+    }
+    return images;
+}
+
+//! The images `<prefix>k.<extension>` of a folder, by k; empty without k = 1.
+std::map<int, std::string> numberedImages(const std::string& folder, const std::string& prefix)
+{
+    std::map<int, std::string> images;
+    for (const std::string& file : imagesOf(folder, prefix))
+    {
         const std::string name = baseName(file);
         const size_t dot = name.find('.');
-        if (dot == std::string::npos || !extensions.count(name.substr(dot + 1)))
-            continue;
         const std::string number = name.substr(prefix.size(), dot - prefix.size());
         if (number.empty() || number.size() > 6 ||
                 number.find_first_not_of("0123456789") != std::string::npos)
@@ -112,9 +123,31 @@ bool addSequence(const std::string& folder, std::vector<ImagePair>& pairs)
     return true;
 }
 
+//! Appends the pairs of a folder laid out as EVD: images of one name in `1` and `2`, homographies in `h`.
+bool addPairFolders(const std::string& folder, std::vector<ImagePair>& pairs)
+{
+    const std::string homographies = join(folder, "h");
+    if (!fs::isDirectory(homographies))
+        return false;
+    for (const std::string& reference : imagesOf(join(folder, "1")))
+    {
+        const std::string name = baseName(reference);
+        ImagePair pair;
+        pair.set = baseName(folder);
+        pair.sequence = name.substr(0, name.find('.'));
+        pair.target = "2";
+        pair.kind = "viewpoint";
+        pair.referenceFile = reference;
+        pair.targetFile = join(join(folder, "2"), name);
+        pair.homographyFile = join(homographies, pair.sequence + ".txt");
+        pairs.push_back(pair);
+    }
+    return true;
+}
+
 void search(const std::string& folder, int depth, std::vector<ImagePair>& pairs)
 {
-    if (holdsViews(folder) || addSequence(folder, pairs) || depth == 0)
+    if (holdsViews(folder) || addSequence(folder, pairs) || addPairFolders(folder, pairs) || depth == 0)
         return;
     std::vector<cv::String> entries;
     fs::glob(folder, "*", entries, false, true);

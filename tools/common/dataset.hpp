@@ -13,7 +13,8 @@
 namespace iib_tools {
 
 /** What changes between the images of a sequence: "light", "blur", "jpeg", "viewpoint", "zoom" (with
-rotation) or, with correspondences instead of a homography, "wide". Known for the sequences of Oxford by name and for HPatches by the prefix `v_`; "light" otherwise. */
+rotation) or, with correspondences instead of a homography, "wide". Known for the sequences of Oxford by name, for
+HPatches by the prefix `v_` and for EVD; "light" otherwise. */
 typedef std::string Kind;
 
 //! A reference image and a target image of the same scene; files are read by loadPair alone.
@@ -44,7 +45,8 @@ struct LoadedPair
 /** Finds all pairs (1, k) below the given folders, up to four levels deep, in the layouts
  - `1.png`, `H_1_k` (also .ppm, .pgm, .jpg, .tif: HPatches), with `depth/k.png`, `labels/k.png` if any;
  - `img1.ppm`, `H1to2p` (original Oxford);
- - `1.png`, `2.png`, `corrs.txt` (WxBS, EVD) with x1 y1 x2 y2 a line;
+ - `1.png`, `2.png`, or `01.png`, `02.png`, `corrs.txt` (WxBS) with x1 y1 x2 y2 a line;
+ - `1/<name>.png`, `2/<name>.png`, `h/<name>.txt` (EVD), a homography from the first to the second;
 and in list files: a head line `reference,target,homography,kind`, then one pair a line, paths relative to
 the list, the last two fields may be empty (identity, "light").
 Sequences without any H file are of a static camera; folders called `frames` (walks) and those of views.hpp are left

@@ -57,6 +57,47 @@ TEST(Dataset, correspondences_instead_of_a_homography)
     EXPECT_TRUE(findPairs({folder.path("")})[0].correspondencesFile.empty());
 }
 
+//! As its authors' archive has them: categories of pairs.
+TEST(Dataset, folders_of_wxbs)
+{
+    TestFolder folder;
+    for (const char* pair : {"WGALBS/kremlin", "WGBS/petrzin"})
+    {
+        folder.makeFolder(std::string("WxBS/v1.1/") + pair);
+        for (const char* name : {"/01.png", "/02.png"})
+            writeImage(folder, std::string("WxBS/v1.1/") + pair + name);
+        // As numpy writes them, and beside them what is not read.
+        folder.write(std::string("WxBS/v1.1/") + pair + "/corrs.txt", "1.25e+01 2.0e+00 3.5e+00 -4.0e-01\n");
+        folder.write(std::string("WxBS/v1.1/") + pair + "/crossval_errors.txt", "0.5\n");
+    }
+    const std::vector<ImagePair> pairs = findPairs({folder.path("")});
+    ASSERT_EQ(2u, pairs.size());
+    EXPECT_EQ("WGALBS/kremlin/2", pairs[0].name());
+    EXPECT_EQ("WGBS/petrzin/2", pairs[1].name());
+    EXPECT_EQ(std::vector<cv::Vec4d>({{12.5, 2, 3.5, -0.4}}), loadPair(pairs[1]).correspondences);
+}
+
+TEST(Dataset, folders_of_evd)
+{
+    TestFolder folder;
+    for (const char* part : {"EVD/1", "EVD/2", "EVD/h"})
+        folder.makeFolder(part);
+    for (const char* name : {"EVD/1/adam.png", "EVD/2/adam.png", "EVD/1/cafe.png"})
+        writeImage(folder, name);
+    folder.write("EVD/h/adam.txt", SHIFT);
+    folder.write("EVD/h/cafe.txt", SHIFT);
+    for (const char* root : {"", "EVD"})
+    {
+        const std::vector<ImagePair> pairs = findPairs({folder.path(root)});
+        ASSERT_EQ(2u, pairs.size());
+        EXPECT_EQ("EVD/adam/2", pairs[0].name());
+        EXPECT_EQ("viewpoint", pairs[0].kind);
+        EXPECT_EQ(5, loadPair(pairs[0]).homography(0, 2));
+        EXPECT_EQ("EVD/cafe/2", pairs[1].name());
+        EXPECT_NE(std::string::npos, messageOf([&] { loadPair(pairs[1]); }).find("2/cafe.png"));
+    }
+}
+
 TEST(Dataset, static_camera_with_extra_maps)
 {
     TestFolder folder;
