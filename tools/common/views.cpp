@@ -139,18 +139,21 @@ void addAcross(const std::string& set, const Folder& map, const Folder& visit, s
 
 void search(const std::string& folder, int depth, std::vector<ViewPair>& pairs)
 {
-    std::vector<cv::String> entries;
+    std::vector<cv::String> entries, views;
     fs::glob(folder, "*", entries, false, true);
     std::sort(entries.begin(), entries.end());
-    const std::string map = fs::join(folder, "map");
-    const bool mapped = holdsViews(map);
     for (const std::string& entry : entries)
-        if (holdsViews(entry) && mapped && entry != map)
-            addAcross(lastName(folder), readFolder(map), readFolder(entry), pairs);
-        else if (holdsViews(entry))
-            addWithin(lastName(folder), readFolder(entry), pairs);
+        if (holdsViews(entry))
+            views.push_back(entry);
         else if (depth > 0 && fs::isDirectory(entry))
             search(entry, depth - 1, pairs);
+    const std::string map = fs::join(folder, "map");
+    const bool visited = holdsViews(map) && views.size() > 1;
+    for (const std::string& view : views)
+        if (!visited)
+            addWithin(lastName(folder), readFolder(view), pairs);
+        else if (view != map)
+            addAcross(lastName(folder), readFolder(map), readFolder(view), pairs);
 }
 
 }  // namespace

@@ -29,8 +29,8 @@ bool holdsViews(const std::string& folder);
 
 /** Finds pairs in folders as tools/synthetic/localization.py writes them, up to four levels deep: `cameras.txt` (COLMAP,
 one PINHOLE camera), `poses.txt` (TUM, camera to world, a name a line) and `images/<name>.png` or .jpg. Names without
-an image are left out. An image is paired with the next three of its folder; beside a folder `map`, images of other
-folders are instead paired with the map's next one at a distance of half a metre or more.
+an image are left out. An image is paired with the next three of its folder; where other folders lie beside a folder
+`map`, each of their images is paired with the map's next one at a distance of half a metre or more instead.
 @throws cv::Exception, with file and line, for a folder whose files are broken. */
 std::vector<ViewPair> findViewPairs(const std::vector<std::string>& roots);
 
