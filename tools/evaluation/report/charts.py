@@ -22,6 +22,8 @@ def lines(series, x_label, y_label, x_ticks, y_top=1.0, x_range=None, place=lamb
         return (round(LEFT + (place(x) - low) / (high - low) * (WIDTH - LEFT - RIGHT), 1),
                 round(HEIGHT - BOTTOM - y / y_top * (HEIGHT - TOP - BOTTOM), 1))
 
+    if len(series) > len(STYLES):
+        raise ValueError("%d series, and styles for %d" % (len(series), len(STYLES)))
     drawn = []
     for (name, points), (colour, dashes) in zip(series.items(), STYLES):
         placed = [at(x, y) for x, y in points]

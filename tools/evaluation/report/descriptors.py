@@ -44,6 +44,22 @@ SHOWN = {
 HEADLINE = ("IIB", "IIB COMPACT", "SIFT", "KAZE", "AKAZE-486", "BEBLID-512", "TEBLID-512", "LATCH-512", "ORB",
             "BRIEF-512", "BRISK", "FREAK")
 
-# Those that the tables of moved cameras, blur and scenes compare.
+# Kinds of change besides light, as the page calls them.
+CHANGES = {"viewpoint": "other viewpoint", "zoom": "zoom and rotation", "blur": "blur", "jpeg": "compression"}
+
+# Those that the table of moved cameras and blur compares.
 COMPARED = ("IIB", "IIB COMPACT", "IIB BALANCED", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB", "BRISK", "SIFT", "AKAZE-486",
             "BEBLID-512", "TEBLID-512", "LATCH-512")
+
+# Learned descriptors that come with their own points and are entered in learned.csv: licence of the weights.
+NETWORKS = {"XFeat": "Apache-2.0", "SuperPoint": "noncommercial research only", "ALIKE-n": "BSD-3-Clause",
+            "ALIKED-n16": "BSD-3-Clause"}
+
+# Lines of the charts of turned and scaled images.
+WARPED = ("IIB", "IIB oriented", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB oriented", "SIFT", "SIFT oriented", "BEBLID-512",
+          "TEBLID-512", "LATCH-512")
+
+# Bars of the poses: points of a detector, and what describes them.
+POSES = (("SIFT", "SIFT"), ("SIFT", "IIB UNIVERSAL"), ("SIFT normalized", "IIB UNIVERSAL"), ("AKAZE", "AKAZE"),
+         ("AKAZE", "IIB UNIVERSAL"), ("AKAZE normalized", "IIB UNIVERSAL"), ("ORB", "ORB"), ("ORB", "BEBLID-512"),
+         ("ORB", "IIB"), ("ORB", "IIB UNIVERSAL"), ("ORB normalized", "IIB UNIVERSAL"))

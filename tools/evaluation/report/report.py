@@ -15,7 +15,7 @@ import charts
 import descriptors
 import paper
 from paper_orders import orders
-from results import area_under_curve, column, curve, domain, file_name, group, interval, mean, mean_accuracy, read
+from results import areas, column, curve, domain, file_name, group, interval, mean, mean_accuracy, read
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 CSV_FILES = ("fixed_points", "detected_points", "whole_tasks", "matching", "robustness", "cost", "learned", "comparison")
@@ -54,6 +54,13 @@ def overview(tables):
     return found
 
 
+def networks(tables):
+    """Learned descriptors at their own points, for the end of the main table, with IIB's figure at the same points."""
+    detected = group(illumination(tables["detected_points"]), "detector", "descriptor")
+    return [dict(row, licence=descriptors.NETWORKS[row["descriptor"]],
+                 iib=score(detected.get((row["detector"], "IIB"), []))) for row in tables["learned"]]
+
+
 def detectors(tables):
     """For each detector: its own descriptor and IIB's on the same points."""
     rows = illumination(tables["detected_points"])
@@ -66,7 +73,8 @@ def detectors(tables):
                 lines.append({"name": row["descriptor"], "ours": False, "learned": True, "source": row,
                               "score": {"correct": float(row["correct"]), "pairs": int(row["pairs"]),
                                         "bytes": row["bytes"]}})
-        found.append({"name": detector, "lines": sorted(lines, key=lambda r: -r["score"]["correct"])})
+        found.append({"name": detector, "normalized": detector.endswith(" normalized"),
+                      "lines": sorted(lines, key=lambda r: -r["score"]["correct"])})
     return found
 
 
@@ -88,14 +96,13 @@ def detector_curves(tables):
 
 
 def changes(tables):
-    """Moved cameras, blur and compression: the scores of the compared descriptors by sequence."""
-    rows = [r for r in tables["fixed_points"] if r["kind"] != "illumination"]
-    names = [n for n in descriptors.COMPARED if any(r["configuration"] == n for r in rows)]
-    lines = []
-    for (kind, sequence), members in group(rows, "kind", "sequence").items():
-        scores = by_name(members)
-        lines.append(("%s (%s)" % (sequence, kind), [score(scores.get(n, [])) for n in names]))
-    return {"names": names, "lines": lines}
+    """Moved cameras, blur and compression: the scores of the compared descriptors by kind of change."""
+    scores = group([r for r in tables["fixed_points"] if r["kind"] in descriptors.CHANGES], "configuration", "kind")
+    kinds = [kind for kind in descriptors.CHANGES if ("IIB", kind) in scores]
+    return {"kinds": [(descriptors.CHANGES[kind], sorted({r["sequence"] for r in scores["IIB", kind]}))
+                      for kind in kinds],
+            "lines": [(name, [score(scores.get((name, kind), [])) for kind in kinds])
+                      for name in descriptors.COMPARED if any((name, kind) in scores for kind in kinds)]}
 
 
 def warp_charts(tables):
@@ -103,36 +110,51 @@ def warp_charts(tables):
     found = []
     for kind, label, ticks, place in (
             ("rotation", "degrees", [(a, "%d" % a) for a in (0, 45, 90, 135, 180)], lambda x: x),
-            ("scale", "factor", [(a, "%g" % a) for a in (0.5, 0.7, 1, 1.4, 2)], math.log)):
-        series = {}
-        for name, members in by_name([r for r in tables["robustness"] if r["kind"] == kind]).items():
-            if name.split(" oriented")[0] in ("IIB", "IIB BALANCED", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB", "SIFT",
-                                              "BEBLID-512", "TEBLID-512"):
-                series[name] = sorted((float(target), mean(column(mine, "recall")))
-                                      for target, mine in by_name(members, "target").items())
+            ("scale", "factor, logarithmic", [(a, "%g" % a) for a in (0.5, 0.7, 1, 1.4, 2)], math.log)):
+        of_name = by_name([r for r in tables["robustness"] if r["kind"] == kind])
+        series = {name: sorted((float(target), mean(column(mine, "recall")))
+                               for target, mine in by_name(of_name[name], "target").items())
+                  for name in descriptors.WARPED if name in of_name}
         if series:
             x_range = (0, 180) if kind == "rotation" else (0.5, 2)
             found.append((kind, charts.lines(series, label, "recall", ticks, x_range=x_range, place=place)))
     return found
 
 
+# Task: limits of the error for the areas under its curve.
+LIMITS = {"pose": (5, 10, 20), "homography": (3, 5, 10), "epipolar": (1, 3, 5)}
+
+
+def task_line(task, key, rows):
+    errors, limits = column(rows, "error"), LIMITS[task]
+    parts = [areas(errors, limit) for limit in limits]
+    return {"detector": key[0], "descriptor": key[1], "matching": key[2], "pairs": len(errors),
+            "areas": [(mean(p), interval(p)) for p in parts],
+            "accuracy": mean_accuracy(errors, range(1, limits[-1] + 1)), "inliers": mean(column(rows, "inliers"))}
+
+
 def whole_tasks(tables):
-    """Areas under the curve of the error, by task, detector, descriptor and choice of matches."""
-    limits = {"pose": (5, 10, 20), "homography": (3, 5, 10), "epipolar": (1, 3, 5)}
-    units = {"pose": "degrees", "homography": "pixels at the corners", "epipolar": "pixels from the epipolar line"}
+    """Areas under the curve of the error, by task and kind of images, then detector, descriptor and choice of matches."""
+    kinds = {(r["set"], r["sequence"], r["target"]): r["kind"] for r in tables["fixed_points"]}
+
+    def images(row):
+        if row["task"] == "homography":
+            return kinds.get((row["set"], row["sequence"], row["target"]), "illumination") == "illumination"
+        return domain(row)
+
+    rows = [dict(row, images=images(row)) for row in tables["whole_tasks"]]
     found = []
-    for (task,), of_task in group(tables["whole_tasks"], "task").items():
-        lines = []
-        for key, members in group(of_task, "detector", "descriptor", "matching").items():
-            errors = column(members, "error")
-            top = max(limits[task])
-            lines.append({"detector": key[0], "descriptor": key[1], "matching": key[2], "pairs": len(errors),
-                          "areas": [area_under_curve(errors, limit) for limit in limits[task]],
-                          "accuracy": mean_accuracy(errors, range(1, top + 1)),
-                          "inliers": mean(column(members, "inliers"))})
-        lines.sort(key=lambda r: -r["areas"][1])
-        found.append({"task": task, "limits": limits[task], "unit": units[task], "lines": lines})
-    return found
+    for (task, which), members in group(rows, "task", "images").items():
+        lines = [task_line(task, key, mine)
+                 for key, mine in group(members, "detector", "descriptor", "matching").items()]
+        lines.sort(key=lambda line: -line["areas"][1][0])
+        best = {}
+        for line in lines:
+            best.setdefault((line["detector"], line["descriptor"]), line)
+        bars = [best[key] for key in descriptors.POSES if key in best] if task == "pose" else []
+        found.append({"task": task, "images": which, "limits": LIMITS[task], "lines": lines,
+                      "bars": sorted(bars, key=lambda line: -line["areas"][1][0])})
+    return sorted(found, key=lambda t: (list(LIMITS).index(t["task"]), str(t["images"])))
 
 
 def paper_tables(tables):
@@ -209,7 +231,7 @@ def main():
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     page = environment.get_template("page.html.j2").render(
-        overview=rows, headline=sorted(headline, key=lambda r: -r["score"]["recall"]), detectors=detectors(tables),
+        overview=rows, networks=networks(tables), headline=sorted(headline, key=lambda r: -r["score"]["recall"]), detectors=detectors(tables),
         curves=detector_curves(tables), changes=changes(tables), warps=warp_charts(tables),
         tasks=whole_tasks(tables), paper=paper_tables(tables), orders=paper_orders(tables), maps=maps(tables),
         matching=matching(tables), scenes=scenes(tables), cost=tables["cost"], pictures=read(folder, "pictures"),

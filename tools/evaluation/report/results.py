@@ -70,11 +70,9 @@ def curve(rows):
     return [(1 - c / p, c / correspondences) for c, p in sums or [] if p * 100 > sums[-1][1] and correspondences > 0]
 
 
-def area_under_curve(errors, limit):
-    """The share of pairs below an error, averaged over all errors from 0 to the limit."""
-    errors = sorted(errors)
-    area = sum(max(0.0, limit - error) for error in errors)
-    return area / limit / len(errors) if errors else 0.0
+def areas(errors, limit):
+    """For each pair the part of 0 to the limit that lies above its error; their mean is the area under the curve."""
+    return [max(0.0, limit - error) / limit for error in errors]
 
 
 def mean_accuracy(errors, limits):

@@ -25,6 +25,8 @@ for section in ("all", "detectors", "pictures", "moved", "tasks", "paper", "scen
 for name in ("IIB", "IIB BALANCED", "ORB", "SIFT", "AKAZE-486"):
     assert re.search(r'<td>%s( <span class="tag">learned</span>)?</td><td>\d+</td><td data-value="[\d.]+">' % name,
                      text), name
+for meaning in re.findall(r"<dd>(.*?)</dd>", text):
+    assert meaning.endswith(".") and ". " not in meaning, meaning  # a metric is told in one sentence
 assert text.count("Matches of IIB between day and night") == 1
 for link in re.findall(r'(?:src|href)="([^"#]+)"', text):
     assert os.path.exists(os.path.join(results, link)), link
