@@ -60,6 +60,7 @@ WARPED = ("IIB", "IIB oriented", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB oriented
           "TEBLID-512", "LATCH-512")
 
 # Bars of the poses: points of a detector, and what describes them.
-POSES = (("SIFT", "SIFT"), ("SIFT", "IIB UNIVERSAL"), ("SIFT normalized", "IIB UNIVERSAL"), ("AKAZE", "AKAZE"),
-         ("AKAZE", "IIB UNIVERSAL"), ("AKAZE normalized", "IIB UNIVERSAL"), ("ORB", "ORB"), ("ORB", "BEBLID-512"),
-         ("ORB", "IIB"), ("ORB", "IIB UNIVERSAL"), ("ORB normalized", "IIB UNIVERSAL"))
+POSES = (("SIFT", "SIFT"), ("SIFT", "IIB UNIVERSAL"), ("SIFT normalized", "SIFT"), ("SIFT normalized", "IIB UNIVERSAL"),
+         ("SIFT normalized", "IIB VIEWPOINT"), ("AKAZE", "AKAZE"), ("AKAZE", "IIB UNIVERSAL"),
+         ("AKAZE normalized", "AKAZE"), ("AKAZE normalized", "IIB UNIVERSAL"), ("ORB", "ORB"), ("ORB", "BEBLID-512"),
+         ("ORB", "IIB"), ("ORB", "IIB UNIVERSAL"), ("ORB normalized", "ORB"), ("ORB normalized", "IIB UNIVERSAL"))

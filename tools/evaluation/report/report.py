@@ -153,6 +153,8 @@ def whole_tasks(tables):
             best.setdefault((line["detector"], line["descriptor"]), line)
         bars = [best[key] for key in descriptors.POSES if key in best] if task == "pose" else []
         found.append({"task": task, "images": which, "limits": LIMITS[task], "lines": lines,
+                      "sequences": sorted({r["sequence"] for r in members}),
+                      "pairs": max(line["pairs"] for line in lines),
                       "bars": sorted(bars, key=lambda line: -line["areas"][1][0])})
     return sorted(found, key=lambda t: (list(LIMITS).index(t["task"]), str(t["images"])))
 
