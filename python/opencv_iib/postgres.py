@@ -8,22 +8,30 @@
         votes = places.vote(codes_by_night)  # [('noon/0001.jpg', 212), ...]
 
 All statements run in the transaction of the connection that was given: nothing is committed here.
+
+Where the database has pgvector (``CREATE EXTENSION vector``), :meth:`Places.create_index` makes votes faster.
 """
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Optional
 
 import numpy as np
 from psycopg import Connection, sql
 
 from opencv_iib._arrays import as_array
 
+# The coarse levels of the default descriptor, 42 of its 170 bytes, which tell most of the distance.
+_PREFIX_BITS = 336
+_EF_CONSTRUCTION = 128
+# Parallel builds of an index overflow a buffer before this version of pgvector (CVE-2026-3172).
+_PARALLEL_BUILDS_FROM = (0, 8, 2)
+
 
 class Places:
     """A table with a row a place, ``NAME`` (id, name), and one of their codes, ``NAME_codes`` (place, number, code).
 
     Codes are of the type ``bit(n)``, their first byte leftmost; a place's codes go when its row is deleted. Searches are
-    exact: ``bit_count(a # b)`` of every pair (PostgreSQL 14 or newer).
+    exact, ``bit_count(a # b)`` of every pair (PostgreSQL 14 or newer), until :meth:`create_index` was called.
     """
 
     def __init__(self, connection: Connection[Any], name: str, code_bytes: int) -> None:
@@ -36,7 +44,8 @@ class Places:
         self._connection = connection
         self._bytes = code_bytes
         self._names = {'places': sql.Identifier(name), 'codes': sql.Identifier(f'{name}_codes'),
-                       'code': sql.SQL(f'bit({8 * code_bytes})')}
+                       'index': sql.Identifier(f'{name}_codes_prefix'), 'code': sql.SQL(f'bit({8 * code_bytes})'),
+                       'prefix': sql.SQL(f'bit({min(8 * code_bytes, _PREFIX_BITS)})')}
         self._execute('CREATE TABLE IF NOT EXISTS {places} (id bigserial PRIMARY KEY, name text UNIQUE NOT NULL)')
         self._execute('CREATE TABLE IF NOT EXISTS {codes} (place bigint NOT NULL REFERENCES {places} ON DELETE CASCADE, '
                       'number integer NOT NULL, code {code} NOT NULL, PRIMARY KEY (place, number))')
@@ -61,19 +70,68 @@ class Places:
         """Removes a place and its codes; nothing happens if there is none of this name."""
         self._execute('DELETE FROM {places} WHERE name = %s', name)
 
-    def vote(self, codes: Any, count: int = 10) -> list[tuple[str, int]]:
+    def pgvector(self) -> Optional[tuple[int, ...]]:
+        """Version of pgvector in this database, such as (0, 8, 0); None without it."""
+        version = self._execute("SELECT extversion FROM pg_extension WHERE extname = 'vector'")
+        return tuple(int(part) for part in version[0][0].split('.')) if version else None
+
+    def create_index(self) -> None:
+        """Makes an HNSW index over the first 42 bytes of the codes (all, where they are shorter), unless it is there.
+
+        It is made faster after places were inserted than before, and fastest if it fits into ``maintenance_work_mem``.
+        What is inserted or deleted later is found or not found as without it.
+
+        :raises ValueError: if the database has no pgvector of version 0.8 or newer.
+        """
+        version = self.pgvector()
+        if version is None or version < (0, 8):
+            found = 'no pgvector' if version is None else f'pgvector {".".join(map(str, version))}'
+            raise ValueError(f'this database has {found}, 0.8 or newer is needed: install it and CREATE EXTENSION vector, '
+                             'or do without an index')
+        (workers,), = self._execute("SELECT current_setting('max_parallel_maintenance_workers')")
+        if version < _PARALLEL_BUILDS_FROM:
+            self._set('max_parallel_maintenance_workers', 0)
+        self._execute('CREATE INDEX IF NOT EXISTS {index} ON {codes} USING hnsw ((code::{prefix}) bit_hamming_ops) '
+                      f'WITH (ef_construction = {_EF_CONSTRUCTION})')
+        self._set('max_parallel_maintenance_workers', workers)
+
+    def has_index(self) -> bool:
+        """Whether :meth:`create_index` was called for these tables."""
+        name = self._names['index'].as_string(self._connection)
+        return bool(self._execute('SELECT to_regclass(%s) IS NOT NULL', name)[0][0])
+
+    def vote(self, codes: Any, count: int = 10, candidates: int = 100) -> list[tuple[str, int]]:
         """The places that look most like an image: each of its codes votes for the place of the code nearest to it.
 
         Ties among codes go to the place that was inserted first, and so do ties among places.
 
         :param codes: of the image, N x bytes.
         :param count: at most so many places.
+        :param candidates: with an index, so many codes of the nearest prefixes are compared whole, at most 1000, and
+            nearer ones may be missed; 0, or no index: all codes are compared.
         :return: names and votes, most votes first; only places that have any.
         """
+        if not 0 <= candidates <= 1000:
+            raise ValueError(f'candidates is {candidates}: it has to be 0 to 1000')
+        bits = self._bits(codes)
+        if not candidates or not self.has_index():
+            return self._votes('{codes}', bits, count)
+        # Settings of this statement alone: they are rolled back, and nothing else is there to be.
+        with self._connection.transaction(force_rollback=True):
+            self._set('hnsw.ef_search', max(candidates, 40))
+            self._set('hnsw.iterative_scan', 'relaxed_order')  # goes on behind rows that were deleted
+            return self._votes('(SELECT place, code FROM {codes} ORDER BY code::{prefix} <~> query.code::{prefix} '
+                               f'LIMIT {candidates})', bits, count)
+
+    def _votes(self, searched: str, bits: list[str], count: int) -> list[tuple[str, int]]:
         return [(name, votes) for name, votes in self._execute(
             'SELECT name, count(*) FROM unnest(%s::{code}[]) query(code) CROSS JOIN LATERAL '
-            '(SELECT place FROM {codes} ORDER BY bit_count({codes}.code # query.code), place LIMIT 1) nearest '
-            'JOIN {places} ON id = place GROUP BY id, name ORDER BY count(*) DESC, id LIMIT %s', self._bits(codes), count)]
+            f'(SELECT place FROM {searched} searched ORDER BY bit_count(searched.code # query.code), place LIMIT 1) nearest '
+            'JOIN {places} ON id = place GROUP BY id, name ORDER BY count(*) DESC, id LIMIT %s', bits, count)]
+
+    def _set(self, name: str, value: Any) -> None:
+        """A setting of PostgreSQL until the transaction ends."""
+        self._execute('SELECT set_config(%s, %s, true)', name, str(value))
 
     def _bits(self, codes: Any) -> list[str]:
         array = as_array(codes, 'codes')

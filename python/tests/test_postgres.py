@@ -25,8 +25,20 @@ def plain_votes(places, codes, count=10):
     return [(list(places)[i], int(votes[i])) for i in order if votes[i]]
 
 
-@unittest.skipUnless(SERVER, 'no server: scripts/postgres_test.sh starts one')
-class PlacesTest(unittest.TestCase):
+def described(iib, image):
+    grey = cv2.imread(str(image), cv2.IMREAD_GRAYSCALE)
+    points = cv2.goodFeaturesToTrack(grey, 100, .001, 8)[:, 0]
+    return iib.compute(grey, np.column_stack([points, np.full(len(points), 32)]).astype(np.float32))[1]
+
+
+def cameras_by_night(iib):
+    """Codes of the first image, by day, and of the last, by night, of each camera."""
+    cameras = {sequence.name: sorted(sequence.glob('*.png'), key=lambda path: int(path.stem))
+               for sequence in sorted(DATA.glob('tilde_webcam/*')) + sorted(DATA.glob('amos_daynight/*'))}
+    return [{name: described(iib, images[i]) for name, images in cameras.items()} for i in (0, -1)]
+
+
+class ServerTest(unittest.TestCase):
 
     def setUp(self):
         self.connection = psycopg.connect(SERVER)
@@ -44,18 +56,29 @@ class PlacesTest(unittest.TestCase):
             places.insert(place, codes)
         return places
 
-    def recall(self, places, walk, night):
-        """At 1, 5 and 10; the votes are those of a plain scan."""
+    def recall(self, night, vote):
+        """At 1, 5 and 10."""
         ranks = []
         for name, codes in night.items():
-            votes = places.vote(codes)
-            self.assertEqual(votes, plain_votes(walk, codes))
-            ranks.append([place for place, _ in votes].index(name) if name in dict(votes) else 10)
+            names = [place for place, _ in vote(codes)]
+            ranks.append(names.index(name) if name in names else 10)
         return [float(np.mean([rank < at for rank in ranks])) for at in (1, 5, 10)]
+
+    def plain_recall(self, places, walk, night):
+        """The votes are those of a plain scan."""
+        def vote(codes):
+            votes = places.vote(codes, candidates=0)
+            self.assertEqual(votes, plain_votes(walk, codes))
+            return votes
+        return self.recall(night, vote)
+
+
+@unittest.skipUnless(SERVER, 'no server: scripts/postgres_test.sh starts one')
+class PlacesTest(ServerTest):
 
     def test_votes_are_those_of_a_plain_scan(self):
         places = self.places(self.walk)
-        self.assertEqual(self.recall(places, self.walk, self.night), [1, 1, 1])
+        self.assertEqual(self.plain_recall(places, self.walk, self.night), [1, 1, 1])
         self.assertEqual(places.vote(self.night['noon/3'], 2), plain_votes(self.walk, self.night['noon/3'], 2))
 
     def test_ties_go_to_the_first_place(self):
@@ -85,7 +108,8 @@ class PlacesTest(unittest.TestCase):
         places = self.places(self.walk)
         for call in (lambda: Places(self.connection, 'a "walk"', 21), lambda: Places(self.connection, 'none', 0),
                      lambda: places.vote(self.night['noon/0'][:, 1:]), lambda: places.insert('new', np.zeros(20, np.uint8)),
-                     lambda: places.insert('new', np.zeros((1, 20)))):
+                     lambda: places.insert('new', np.zeros((1, 20))), lambda: places.vote(self.night['noon/0'], 10, -1),
+                     lambda: places.vote(self.night['noon/0'], 10, 1001)):
             with self.assertRaises(ValueError):
                 call()
         with self.assertRaises(psycopg.errors.UniqueViolation):
@@ -94,17 +118,99 @@ class PlacesTest(unittest.TestCase):
     @unittest.skipIf(cv2 is None, 'no cv2')
     @unittest.skipUnless(DATA.is_dir(), 'no images in $OPENCV_TEST_DATA_PATH/illumination')
     def test_cameras_by_night(self):
-        iib = IIB.createPreset(IIB.PRESET_COMPACT)
-        day, night = {}, {}
-        for sequence in sorted(DATA.glob('tilde_webcam/*')) + sorted(DATA.glob('amos_daynight/*')):
-            images = sorted(sequence.glob('*.png'), key=lambda path: int(path.stem))
-            for walk, image in ((day, images[0]), (night, images[-1])):
-                grey = cv2.imread(str(image), cv2.IMREAD_GRAYSCALE)
-                points = cv2.goodFeaturesToTrack(grey, 100, .001, 8)[:, 0]
-                rows = np.column_stack([points, np.full(len(points), 32)]).astype(np.float32)
-                walk[sequence.name] = iib.compute(grey, rows)[1]
-        recall = self.recall(self.places(day), day, night)
+        day, night = cameras_by_night(IIB.createPreset(IIB.PRESET_COMPACT))
+        recall = self.plain_recall(self.places(day), day, night)
         print(f'\n{len(day)} cameras, 100 codes each: recall by night at 1, 5, 10: ' + ' '.join(f'{r:.2f}' for r in recall))
+        self.assertGreater(recall[0], .5)
+
+    def test_without_pgvector(self):
+        places = self.places(self.walk)
+        self.connection.execute('DROP EXTENSION IF EXISTS vector')
+        self.assertIsNone(places.pgvector())
+        self.assertFalse(places.has_index())
+        with self.assertRaisesRegex(ValueError, 'CREATE EXTENSION vector'):
+            places.create_index()
+        self.assertEqual(places.vote(self.night['noon/3']), plain_votes(self.walk, self.night['noon/3']))
+
+
+@unittest.skipUnless(SERVER, 'no server: scripts/postgres_test.sh starts one')
+class PgvectorTest(ServerTest):
+    """With an index; the table is small, so that PostgreSQL has to be told not to scan it."""
+
+    def setUp(self):
+        super().setUp()
+        if not self.connection.execute("SELECT 1 FROM pg_available_extensions WHERE name = 'vector'").fetchone():
+            self.skipTest('pgvector is not installed on this server: scripts/postgres_test.sh --debian13 has it')
+        self.connection.execute('CREATE EXTENSION IF NOT EXISTS vector')
+        self.connection.execute('SET enable_seqscan = off')
+        self.connection.execute('SET jit = off')  # whose threshold the cost of what is off exceeds
+
+    def indexed(self, walk):
+        places = self.places(walk)
+        self.assertFalse(places.has_index())
+        places.create_index()
+        places.create_index()
+        self.assertTrue(places.has_index())
+        return places
+
+    def scans(self):
+        """How often an index of the walk's codes was searched in this transaction."""
+        (count,), = self.connection.execute("SELECT idx_scan FROM pg_stat_xact_user_tables WHERE relname = 'a \"walk\"_codes'")
+        return count
+
+    def test_the_index_finds_what_a_scan_finds(self):
+        places = self.indexed(self.walk)
+        for codes in self.night.values():
+            before = self.scans()
+            self.assertEqual(places.vote(codes, candidates=1000), plain_votes(self.walk, codes))
+            self.assertEqual(self.scans() - before, len(codes))
+        before = self.scans()
+        places.vote(self.night['noon/0'], candidates=0)
+        self.assertEqual(self.scans(), before)
+
+    def test_whole_codes_decide(self):
+        """Places whose prefixes are farther than those of others: found as far as there are candidates."""
+        rng = np.random.default_rng(3)
+        query = rng.integers(0, 256, (1, 50), np.uint8)
+        near, far = query.copy(), query.copy()
+        near[:, :10] ^= 255
+        far[:, 42:] ^= 255
+        walk = {'far': np.concatenate([far, far ^ np.eye(1, 50, 49, np.uint8)]), 'near': near[:, :]}
+        near[:, 5:10] ^= 255  # 40 bits of the prefix differ, of the other place 64 behind it
+        places = self.indexed(walk)
+        self.assertEqual(places.vote(query, candidates=3), [('near', 1)])
+        self.assertEqual(places.vote(query, candidates=2), [('far', 1)])
+
+    def test_what_comes_and_goes_later(self):
+        walk = dict(self.walk)
+        places = self.indexed(walk)
+        for name in list(walk)[:10]:
+            places.delete(name)
+            del walk[name]
+        places.insert('gone', np.concatenate([self.night['noon/11'] ^ np.uint8(bits) for bits in range(64)]))
+        places.delete('gone')
+        walk['later'] = self.night['noon/0']
+        places.insert('later', walk['later'])
+        for codes in self.night.values():
+            self.assertEqual(places.vote(codes, candidates=50), plain_votes(walk, codes))
+
+    def test_settings_are_left_as_they_were(self):
+        before = self.connection.execute('SHOW max_parallel_maintenance_workers').fetchone()
+        places = self.indexed(self.walk)
+        self.assertEqual(self.connection.execute('SHOW max_parallel_maintenance_workers').fetchone(), before)
+        self.connection.execute('SET LOCAL hnsw.ef_search = 77')
+        places.vote(self.night['noon/0'], candidates=900)
+        self.assertEqual(self.connection.execute('SHOW hnsw.ef_search').fetchone(), ('77',))
+
+    @unittest.skipIf(cv2 is None, 'no cv2')
+    @unittest.skipUnless(DATA.is_dir(), 'no images in $OPENCV_TEST_DATA_PATH/illumination')
+    def test_cameras_by_night(self):
+        day, night = cameras_by_night(IIB.create())
+        places = self.indexed(day)
+        plain = self.plain_recall(places, day, night)
+        recall = self.recall(night, places.vote)
+        print(f'\n{len(day)} cameras, 100 codes each: recall by night at 1, 5, 10: ' + ' '.join(f'{r:.2f}' for r in recall) +
+              ', of a plain scan ' + ' '.join(f'{r:.2f}' for r in plain))
         self.assertGreater(recall[0], .5)
 
 
