@@ -2,9 +2,10 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import sqlite3
 import sys
-from typing import Optional, Sequence
+from typing import Any, Optional, Sequence
 
 from opencv_iib.colmap import hloc
 from opencv_iib.colmap.database import CAMERA_MODELS
@@ -51,6 +52,7 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument('--refine', action='store_true',
                          help='move matched keypoints to where their surroundings fit, drop matches that do not')
     command.add_argument('--workers', type=int, help='threads (one a core)')
+    command.add_argument('--scheduler', metavar='ADDRESS', help="have the workers of Dask's scheduler there do it")
     command.add_argument('--force', action='store_true', help='replace a database that is there')
 
     command = commands.add_parser('hloc', help="write a database's keypoints and matches as hloc reads them")
@@ -60,6 +62,18 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument('pairs', help='list of pairs to write')
     command.add_argument('--force', action='store_true', help='replace files that are there')
     return parser
+
+
+def _client(scheduler: Optional[str]) -> contextlib.AbstractContextManager[Any]:
+    """Of Dask, or None without a scheduler."""
+    if scheduler is None:
+        return contextlib.nullcontext()
+    try:
+        from distributed import Client
+    except ImportError as e:
+        raise ImportError(f'{e}: --scheduler needs pip install opencv-iib[distributed]') from None
+    client: contextlib.AbstractContextManager[Any] = Client(scheduler)  # type: ignore[no-untyped-call,unused-ignore]
+    return client
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
@@ -76,7 +90,9 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
             options = Options(_feature_options(arguments), arguments.camera_model, arguments.focal,
                               arguments.share_cameras, arguments.pairs, arguments.neighbours, arguments.ratio,
                               arguments.verify, arguments.refine)
-            counts = build_database(arguments.images, arguments.database, options, arguments.force, arguments.workers)
+            with _client(arguments.scheduler) as client:
+                counts = build_database(arguments.images, arguments.database, options, arguments.force,
+                                        arguments.workers, client=client)
             print(f'{arguments.database}: ' + ', '.join(f'{count} {name}' for name, count in counts.items()))
     except KeyboardInterrupt:
         print('interrupted; the same command goes on from here', file=sys.stderr)

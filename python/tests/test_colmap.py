@@ -15,7 +15,7 @@ from support import cv2, texture
 
 if cv2 is not None:
     from opencv_iib.__main__ import main
-    from opencv_iib.colmap import FeatureOptions, Options, SettingsChanged, build_database, hloc, pipeline
+    from opencv_iib.colmap import FeatureOptions, Options, SettingsChanged, build_database, hloc, parallel, pipeline
     from opencv_iib.colmap import pairs as pair_lists
     from opencv_iib.colmap import refine
     from opencv_iib.colmap.alignment import Patches, combine, frames, offsets
@@ -24,6 +24,10 @@ if cv2 is not None:
     from opencv_iib.colmap.images import exif_focal_length
     from opencv_iib.colmap.verify import magsac
 
+try:
+    import distributed
+except ImportError:
+    distributed = None
 try:
     import h5py
 except ImportError:
@@ -55,11 +59,20 @@ class ColmapTest(unittest.TestCase):
             cv2.imwrite(os.path.join(self.images, name), world[20 * i:300 + 20 * i, 30 * i:400 + 30 * i])
         self.lines = []
 
-    def build(self, force=False, **options):
+    def build(self, force=False, client=None, **options):
         features = FeatureOptions(points=options.pop('points', 300))
         with redirect_stderr(io.StringIO()):
             return build_database(self.images, self.database, Options(features, **{**FAST, **options}), force,
-                                  workers=2, log=self.lines.append)
+                                  workers=2, log=self.lines.append, client=client)
+
+    def dump(self):
+        """Every row of every table, and removes the database."""
+        connection = sqlite3.connect(self.database)
+        try:
+            return list(connection.iterdump())
+        finally:
+            connection.close()
+            os.unlink(self.database)
 
     def query(self, sql):
         connection = sqlite3.connect(self.database)
@@ -234,8 +247,37 @@ class ColmapTest(unittest.TestCase):
         np.testing.assert_allclose(moves, [[0, 0], [0, 0], [1.5, 1], [-2, 0]])
         self.assertEqual(agree.tolist(), [True, False, True, False, True])
 
+    @unittest.skipIf(distributed is None, 'no distributed')
+    def test_the_workers_of_a_client(self):
+        for name in ('d.png', 'e.png'):
+            shutil.copy(os.path.join(self.images, 'a.png'), os.path.join(self.images, name))
+        Path(self.images, 'broken.jpg').write_bytes(b'no image')
+        counts = self.build()
+        lines, rows = list(self.lines), self.dump()
+        self.assertEqual((counts['pairs'], len(lines)), (10, 1))
+        with distributed.LocalCluster(n_workers=2, threads_per_worker=2, dashboard_address=None,
+                                      silence_logs=50) as cluster, distributed.Client(cluster) as client:
+            with mock.patch.object(parallel.Cluster, 'tile_side', 2):
+                self.assertEqual(self.build(client=client), counts)
+            self.assertEqual((self.lines[1:], self.dump()), (lines, rows))
+            err = io.StringIO()
+            with redirect_stdout(io.StringIO()), redirect_stderr(err):
+                self.assertEqual(main(['colmap', self.images, self.database, '--points', '300', '--verify', 'magsac',
+                                       '--scheduler', cluster.scheduler_address]), 0)
+            self.assertEqual(self.dump(), rows)
+            moved = self.images + '-moved'
+            with mock.patch.object(pipeline.os.path, 'abspath', return_value=moved), \
+                    self.assertRaisesRegex(FileNotFoundError, moved):
+                self.build(client=client)
+
     def test_pairs(self):
         self.assertEqual(sorted(pair_lists.exhaustive(7, 2)), [(a, b) for a in range(7) for b in range(a + 1, 7)])
+        pairs = list(pair_lists.exhaustive(60))
+        tiles = list(pair_lists.tiles(pairs, 8))
+        self.assertEqual(sorted(pair for tile in tiles for pair in tile), sorted(pairs))
+        self.assertLessEqual(max(len({image for pair in tile for image in pair}) for tile in tiles), 16)
+        self.assertLess(len(tiles), 1.5 * len(pairs) / 64)
+        self.assertEqual(list(pair_lists.tiles(pairs, 1)), [[pair] for pair in pairs])
         self.assertEqual(list(pair_lists.sequential(4, 2)), [(0, 1), (0, 2), (1, 2), (1, 3), (2, 3)])
         listing = os.path.join(self.folder.name, 'pairs.txt')
         Path(listing).write_text('# pairs\na.png more/c.png\n')

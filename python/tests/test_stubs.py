@@ -20,7 +20,7 @@ UNREADABLE = re.compile(r'opencv_iib\._core\.\S+ (is not a function|is inconsist
                         r'not|is inconsistent, metaclass differs|is a disjoint base at runtime|'
                         r'is inconsistent, stub does not have \*args parameter "args"|'
                         r'is inconsistent, stub does not have \*\*kwargs parameter "kwargs")'
-                        r'|opencv_iib\._types\._cv2 is inconsistent')
+                        r'|opencv_iib\.(_types\._cv2|colmap\.pipeline\.(_features|_matcher)) is inconsistent')
 
 
 def stubs():

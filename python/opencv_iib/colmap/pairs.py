@@ -1,7 +1,8 @@
 """Which pairs of images to match. Pairs are made one by one, so that their number costs no memory."""
 from __future__ import annotations
 
-from typing import Callable, Iterator, Sequence
+import itertools
+from typing import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -18,6 +19,17 @@ def exhaustive(count: int, block: int = BLOCK) -> Iterator[Pair]:
             for a in range(first, min(first + block, count)):
                 for b in range(max(second, a + 1), min(second + block, count)):
                     yield a, b
+
+
+def tiles(pairs: Iterable[Pair], side: int) -> Iterator[list[Pair]]:
+    """The same pairs in lists, each of `side` images with as many others; with a side of 1, as they come."""
+    def tile(pair: Pair) -> Pair:
+        return pair[0] // side, pair[1] // side
+
+    pairs = iter(pairs)
+    while block := list(itertools.islice(pairs, BLOCK * BLOCK if side > 1 else 1)):
+        for _, found in itertools.groupby(sorted(block, key=tile), tile):
+            yield list(found)
 
 
 def sequential(count: int, overlap: int) -> Iterator[Pair]:

@@ -2,11 +2,12 @@
 from __future__ import annotations
 
 import collections
-import concurrent.futures
 import dataclasses
+import functools
 import os
+import socket
 import sys
-from typing import Any, Callable, Iterable, Iterator, Optional, TypeVar
+from typing import Any, Callable, Iterator, Optional
 
 import numpy as np
 
@@ -15,13 +16,11 @@ from opencv_iib.colmap import pairs as pair_lists
 from opencv_iib.colmap.database import CAMERA_MODELS, Database, SettingsChanged, remove_partial
 from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
 from opencv_iib.colmap.images import exif_focal_length, find_images, read_grey
+from opencv_iib.colmap.parallel import Cluster, Crew, Threads, in_parallel
 from opencv_iib.colmap.progress import Progress
 from opencv_iib.colmap.refine import refine_images
 from opencv_iib.colmap.verify import colmap_binary, magsac, matches_importer
 from opencv_iib.matcher import HierarchicalMatcher
-
-T = TypeVar('T')
-R = TypeVar('R')
 
 PAIRS = ('exhaustive', 'sequential', 'retrieval')
 VERIFIERS = ('auto', 'colmap', 'magsac', 'none')
@@ -56,29 +55,6 @@ class Options:
             raise ValueError(f'ratio is {self.ratio}: it has to be in (0, 1]')
 
 
-def in_parallel(function: Callable[[T], R], jobs: Iterable[T], workers: int) -> Iterator[tuple[T, Any]]:
-    """Runs jobs on threads, a few ahead: (job, result or exception), in order, in bounded memory."""
-    with concurrent.futures.ThreadPoolExecutor(workers) as pool:
-        waiting: collections.deque[tuple[T, concurrent.futures.Future[R]]] = collections.deque()
-
-        def first() -> tuple[T, Any]:
-            job, future = waiting.popleft()
-            failed = future.exception()
-            if failed is not None and not isinstance(failed, Exception):
-                raise failed
-            return job, future.result() if failed is None else failed
-        try:
-            for job in jobs:
-                waiting.append((job, pool.submit(function, job)))
-                if len(waiting) >= 2 * workers:
-                    yield first()
-            while waiting:
-                yield first()
-        finally:
-            for _, future in waiting:
-                future.cancel()
-
-
 class _Cache:
     """The last images' codes and points, `size` of them."""
 
@@ -96,22 +72,34 @@ class _Cache:
         return self._kept[image]
 
 
-def describe_images(database: Database, folder: str, options: Options, workers: int, log: Callable[[str], None]
-                    ) -> None:
+@functools.lru_cache(maxsize=1)
+def _features(options: FeatureOptions) -> Features:
+    """Of this process, whichever client's jobs it does."""
+    return Features(options)
+
+
+def describe_image(folder: str, options: Options, name: str
+                   ) -> tuple[np.ndarray, np.ndarray, int, int, Optional[float]]:
+    """COLMAP's keypoints, codes, width, height, and the focal length if it is known."""
+    if not os.path.isdir(folder):
+        raise FileNotFoundError(f'{folder} is not there on {socket.gethostname()}: all workers have to read the images '
+                                'by the same name')
+    path = os.path.join(folder, name)
+    image = read_grey(path)
+    rows, codes = _features(options.features)(image)
+    height, width = image.shape
+    return to_colmap(rows), codes, width, height, options.focal or exif_focal_length(path, width, height)
+
+
+def describe_images(database: Database, folder: str, options: Options, crew: Crew, log: Callable[[str], None]) -> None:
     """Describes the images that the database does not know. A broken one is a line in `log`, and counted."""
-    features = Features(options.features)
-
-    def describe(name: str) -> tuple[np.ndarray, np.ndarray, int, int, Optional[float]]:
-        path = os.path.join(folder, name)
-        image = read_grey(path)
-        rows, codes = features(image)
-        height, width = image.shape
-        return to_colmap(rows), codes, width, height, options.focal or exif_focal_length(path, width, height)
-
     names = find_images(folder)
     known = database.known()
     progress = Progress('describing', len(names), len(names) - sum(name not in known for name in names))
-    for name, result in in_parallel(describe, (name for name in names if name not in known), workers):
+    describe = functools.partial(describe_image, os.path.abspath(folder), options)
+    for name, result in in_parallel(describe, (name for name in names if name not in known), crew):
+        if isinstance(result, (FileNotFoundError, ImportError)):
+            raise result  # not the image is at fault, but where it is worked on
         if isinstance(result, Exception):
             reason = str(result).splitlines()[0] if str(result) else type(result).__name__
             database.add_failure(name, reason)
@@ -143,42 +131,63 @@ def list_pairs(database: Database, options: Options, level_sizes: tuple[int, ...
     return ((ids[a], ids[b]) for a, b in chosen), total
 
 
-def match_pairs(database: Database, options: Options, level_sizes: tuple[int, ...], verify: str, workers: int) -> None:
-    """Matches, and with magsac verifies, the pairs that the database does not hold."""
+@functools.lru_cache(maxsize=1)
+def _matcher(level_sizes: tuple[int, ...], ratio: float) -> HierarchicalMatcher:
     matcher = HierarchicalMatcher.create(level_sizes, crossCheck=True)
-    matcher.setMaxRatio(options.ratio)
-    images = _Cache(lambda i: (database.load_codes(i), database.load_keypoints(i)[:, :2]), 2 * pair_lists.BLOCK + 2)
+    matcher.setMaxRatio(ratio)
+    return matcher
+
+
+def match_pair(matcher: HierarchicalMatcher, verify: str, image_a: Any, image_b: Any) -> tuple[Any, ...]:
+    """Arguments of Database.add_pair, from codes and points of both."""
+    (codes_a, points_a), (codes_b, points_b) = image_a, image_b
+    if not len(codes_a) or not len(codes_b):
+        matches = np.empty((0, 2), np.int32)
+    else:
+        nearest = matcher.knnMatchArrays(codes_a, codes_b)[0].ravel()
+        queries = np.flatnonzero(nearest >= 0)
+        matches = np.stack([queries, nearest[queries]], axis=1)
+    if verify != 'magsac':
+        return matches, None, None
+    inliers, matrix = magsac(points_a[matches[:, 0]], points_b[matches[:, 1]])
+    return matches, matches[inliers], matrix
+
+
+def match_tile(level_sizes: tuple[int, ...], ratio: float, verify: str,
+               tile: tuple[list[tuple[int, int]], dict[int, Any]]) -> list[tuple[Any, ...]]:
+    """Of each pair of image ids; codes and points are by id."""
+    pairs, images = tile
+    return [match_pair(_matcher(level_sizes, ratio), verify, images[a], images[b]) for a, b in pairs]
+
+
+def match_pairs(database: Database, options: Options, level_sizes: tuple[int, ...], verify: str, crew: Crew) -> None:
+    """Matches, and with magsac verifies, the pairs that the database does not hold."""
+    images = _Cache(lambda i: crew.hold(database.load_codes(i), database.load_keypoints(i)[:, :2]),
+                    2 * pair_lists.BLOCK + 2)
     pairs, total = list_pairs(database, options, level_sizes)
     progress = Progress('matching', total)
     begun: set[tuple[int, int]] = set()
 
-    def jobs() -> Iterator[tuple[int, int, Any, Any]]:
+    def missing() -> Iterator[tuple[int, int]]:
         for a, b in pairs:
             if database.has_pair(a, b) or (a, b) in begun or (b, a) in begun:
                 progress.step()
                 continue
             begun.add((a, b))
-            yield a, b, images[a], images[b]
+            yield a, b
 
-    def match(job: tuple[int, int, Any, Any]) -> tuple[Any, ...]:
-        (codes_a, points_a), (codes_b, points_b) = job[2:]
-        if not len(codes_a) or not len(codes_b):
-            matches = np.empty((0, 2), np.int32)
-        else:
-            nearest = matcher.knnMatchArrays(codes_a, codes_b)[0].ravel()
-            queries = np.flatnonzero(nearest >= 0)
-            matches = np.stack([queries, nearest[queries]], axis=1)
-        if verify != 'magsac':
-            return matches, None, None
-        inliers, matrix = magsac(points_a[matches[:, 0]], points_b[matches[:, 1]])
-        return matches, matches[inliers], matrix
+    def jobs() -> Iterator[tuple[list[tuple[int, int]], dict[int, Any]]]:
+        for tile in pair_lists.tiles(missing(), crew.tile_side):
+            yield tile, {image: images[image] for pair in tile for image in pair}
 
-    for (a, b, _, _), result in in_parallel(match, jobs(), workers):
-        if isinstance(result, Exception):
-            raise result
-        database.add_pair(a, b, *result)
-        begun.discard((a, b))
-        progress.step()
+    match = functools.partial(match_tile, level_sizes, options.ratio, verify)
+    for (tile, _), results in in_parallel(match, jobs(), crew):
+        if isinstance(results, Exception):
+            raise results
+        for pair, result in zip(tile, results):
+            database.add_pair(*pair, *result)
+            begun.discard(pair)
+            progress.step()
     progress.close()
 
 
@@ -191,8 +200,8 @@ def verify_pairs(database: Database, binary: Optional[str], log: Callable[[str],
 
 
 def build_database(images: str, database: str, options: Options = Options(), force: bool = False,
-                   workers: Optional[int] = None, log: Callable[[str], None] = lambda line: print(line, file=sys.stderr)
-                   ) -> dict[str, int]:
+                   workers: Optional[int] = None, log: Callable[[str], None] = lambda line: print(line, file=sys.stderr),
+                   client: Any = None) -> dict[str, int]:
     """Describes and matches the images below a folder and writes COLMAP's database.
 
     :param images: folder; names in the database are relative to it.
@@ -200,6 +209,8 @@ def build_database(images: str, database: str, options: Options = Options(), for
         goes on from there, if the options are the same.
     :param force: replace a database that is there, and begin anew if an unfinished one had other options.
     :param workers: threads; None for one a core.
+    :param client: a ``distributed.Client`` whose workers describe and match instead. They read the images by the same
+        name; the database is written here, and is the same row for row. Refining is done here too.
     :return: counts of images, keypoints, pairs, matches, and of images that failed.
     :raises FileExistsError: if the database is there and force is not set.
     :raises ValueError: for options that are none, and for a folder without images.
@@ -212,7 +223,8 @@ def build_database(images: str, database: str, options: Options = Options(), for
         raise FileExistsError(f'{database} is there already: remove it, or pass force (--force)')
     if not find_images(images):
         raise ValueError(f'no images below {images}')
-    workers = workers or os.cpu_count() or 1
+    threads = workers or os.cpu_count() or 1
+    crew = Threads(threads) if client is None else Cluster(client)
     binary = colmap_binary() if options.verify in ('auto', 'colmap') else None
     verify = options.verify if options.verify != 'auto' else 'colmap' if binary else 'magsac'
     settings = {**dataclasses.asdict(options), 'verify': verify, 'images': os.path.abspath(images),
@@ -225,12 +237,12 @@ def build_database(images: str, database: str, options: Options = Options(), for
         remove_partial(database)
         target = Database(database, settings)
     with target:
-        describe_images(target, images, options, workers, log)
-        features = Features(options.features)
-        match_pairs(target, options, features.level_sizes(), verify, workers)
+        describe_images(target, images, options, crew, log)
+        features = _features(options.features)
+        match_pairs(target, options, features.level_sizes(), verify, crew)
         verify_pairs(target, binary if verify == 'colmap' else None, log)
         if options.refine:
-            refine_images(target, images, features, verify, workers)
+            refine_images(target, images, features, verify, threads)
             verify_pairs(target, binary if verify == 'colmap' else None, log)
         counts = {**target.counts(), 'failed': target.failures()}
         target.finish()

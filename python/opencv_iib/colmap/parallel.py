@@ -1,0 +1,79 @@
+"""Who does the work on images and pairs: threads of this process, or the workers of a Dask client."""
+from __future__ import annotations
+
+import collections
+import concurrent.futures
+from typing import Any, Callable, Iterable, Iterator, TypeVar, Union
+
+import numpy as np
+
+T = TypeVar('T')
+R = TypeVar('R')
+
+
+class Threads:
+    """Of this process."""
+
+    tile_side = 1  #: images that a job matches with as many others
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+
+    def executor(self) -> concurrent.futures.Executor:
+        return concurrent.futures.ThreadPoolExecutor(self._count)
+
+    def ahead(self) -> int:
+        """How many jobs may wait or run at once."""
+        return 2 * self._count
+
+    def hold(self, *arrays: np.ndarray) -> Any:
+        """What a job takes for the arrays, as one argument or within one."""
+        return arrays
+
+
+class Cluster:
+    """The workers of a ``distributed.Client``."""
+
+    tile_side = 8
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+
+    def executor(self) -> concurrent.futures.Executor:
+        executor: concurrent.futures.Executor = self._client.get_executor(pure=False)
+        return executor
+
+    def ahead(self) -> int:
+        threads: dict[str, int] = self._client.nthreads()  # workers come and go
+        return 2 * max(1, sum(threads.values()))
+
+    def hold(self, *arrays: np.ndarray) -> Any:
+        # A worker keeps and hands on what it was given once. As a task and not as scattered data: if the worker vanishes,
+        # the scheduler gives the arrays to another.
+        return self._client.submit(tuple, arrays, pure=False)
+
+
+Crew = Union[Threads, Cluster]
+
+
+def in_parallel(function: Callable[[T], R], jobs: Iterable[T], crew: Crew) -> Iterator[tuple[T, Any]]:
+    """Has jobs done, a few ahead: (job, result or exception), in order, in bounded memory."""
+    with crew.executor() as pool:
+        waiting: collections.deque[tuple[T, concurrent.futures.Future[R]]] = collections.deque()
+
+        def first() -> tuple[T, Any]:
+            job, future = waiting.popleft()
+            failed = future.exception()
+            if failed is not None and not isinstance(failed, Exception):
+                raise failed
+            return job, future.result() if failed is None else failed
+        try:
+            for job in jobs:
+                waiting.append((job, pool.submit(function, job)))
+                while len(waiting) >= crew.ahead():
+                    yield first()
+            while waiting:
+                yield first()
+        finally:
+            for _, future in waiting:
+                future.cancel()
