@@ -38,6 +38,7 @@ set -- "--config-settings=build-dir=$work/build"
 say "python tests with pip's newest OpenCV"
 check newest "$work"/*.whl opencv-python-headless pillow h5py pycolmap distributed "psycopg[binary]" mypy
 "$root/scripts/postgres_test.sh" "$work/newest/bin/python"
+"$root/scripts/network_test.sh" "$work/newest/bin/python"
 
 if /usr/bin/python3 -c 'import cv2' 2>"$work/log"; then
     say "python tests with Debian's OpenCV"
