@@ -56,8 +56,8 @@ NETWORKS = {"XFeat": "Apache-2.0", "SuperPoint": "noncommercial research only", 
             "ALIKED-n16": "BSD-3-Clause"}
 
 # Lines of the charts of turned and scaled images.
-WARPED = ("IIB", "IIB oriented", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB oriented", "SIFT", "SIFT oriented", "BEBLID-512",
-          "TEBLID-512", "LATCH-512")
+WARPED = ("IIB", "IIB oriented", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB oriented", "SIFT", "SIFT oriented",
+          "BEBLID-512", "TEBLID-512", "LATCH-512")
 
 # Bars of the poses: points of a detector, and what describes them.
 POSES = (("SIFT", "SIFT"), ("SIFT", "IIB UNIVERSAL"), ("SIFT normalized", "SIFT"), ("SIFT normalized", "IIB UNIVERSAL"),

@@ -81,3 +81,21 @@ BASELINES = {
     "IIB on KAZE points": None,
     "KAZE": None,
 }
+
+# The tables under the questions that they answer, with plain names of those rows that are called by the paper's letters.
+TABLES = (
+    ("Which image channels", CHANNELS, {
+        "IIB y": "vertical gradient", "IIB x": "horizontal gradient", "IIB i": "intensity",
+        "IIB o": "direction of the gradient", "IIB o+i": "direction, intensity", "IIB x+y": "both gradients",
+        "IIB x+y+i": "both gradients, intensity", "IIB x+y+o": "both gradients, direction",
+        "IIB": "all four (default)"}),
+    ("How four neighbours become bits", MAPPINGS, {
+        "IIB": "above their mean (default)", "IIB max": "the largest", "IIB min": "the smallest",
+        "IIB quartile": "quarter of their range", "IIB sort": "rank", "IIB haar": "halves and diagonals",
+        "IIB pairwise": "above the next one"}),
+    ("Overlapping quads", OVERLAP, {"IIB": "side by side (default)", "IIB overlap": "overlapping"}),
+    ("How many levels", GRANULARITY, {
+        "IIB g2": "2", "IIB g3": "3", "IIB": "4 (default)", "IIB g5": "5"}),
+    ("Fewer bits, chosen by learning", LEARNED, {
+        "IIB S128": "128 bits", "IIB S256": "256 bits", "IIB S512": "512 bits", "IIB": "all 1360 (default)"}),
+    ("Other descriptors", BASELINES, {"IIB x+y": "IIB, both gradients alone", "IIB g3": "IIB, 3 levels"}))

@@ -134,7 +134,7 @@ def task_line(task, key, rows):
 
 
 def whole_tasks(tables):
-    """Areas under the curve of the error, by task and kind of images, then detector, descriptor and choice of matches."""
+    """Areas under the curve of the error, by task and kind of images, then detector, descriptor and matches."""
     kinds = {(r["set"], r["sequence"], r["target"]): r["kind"] for r in tables["fixed_points"]}
 
     def images(row):
@@ -163,15 +163,12 @@ def paper_tables(tables):
     """The tables of the paper: ours, by domain, beside the paper's figures."""
     rows = {where: by_name(illumination(tables["fixed_points"], where)) for where in ("natural", "rendered")}
     found = []
-    for title, figures in (("Which image channels", paper.CHANNELS), ("Which mapping to bits", paper.MAPPINGS),
-                           ("Overlapping quads", paper.OVERLAP), ("How many levels", paper.GRANULARITY),
-                           ("Fewer bits, chosen by learning", paper.LEARNED),
-                           ("Other descriptors", paper.BASELINES)):
+    for title, figures, plain in paper.TABLES:
         lines = []
         for name, theirs in figures.items():
             ours = [score(rows[where].get(name, [])) for where in ("natural", "rendered")]
             if any(ours):
-                lines.append((name, ours, theirs and (theirs[0:2], theirs[2:4])))
+                lines.append((name, plain.get(name), ours, theirs and (theirs[0:2], theirs[2:4])))
         if lines:
             found.append((title, lines))
     return found
@@ -233,8 +230,8 @@ def main():
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     page = environment.get_template("page.html.j2").render(
-        overview=rows, networks=networks(tables), headline=sorted(headline, key=lambda r: -r["score"]["recall"]), detectors=detectors(tables),
-        curves=detector_curves(tables), changes=changes(tables), warps=warp_charts(tables),
+        overview=rows, networks=networks(tables), headline=sorted(headline, key=lambda r: -r["score"]["recall"]),
+        detectors=detectors(tables), curves=detector_curves(tables), changes=changes(tables), warps=warp_charts(tables),
         tasks=whole_tasks(tables), paper=paper_tables(tables), orders=paper_orders(tables), maps=maps(tables),
         matching=matching(tables), scenes=scenes(tables), cost=tables["cost"], pictures=read(folder, "pictures"),
         comparison=sorted(tables["comparison"], key=lambda r: -int(r["correct"])),
