@@ -8,8 +8,18 @@
 #include "opencv2/ts.hpp"
 #include "opencv2/iib.hpp"
 
+#if CV_VERSION_MAJOR >= 5
+#include "opencv2/xfeatures2d.hpp"
+#endif
+
 namespace opencv_test {
 using namespace cv::iib;
+#if CV_VERSION_MAJOR >= 5  // opencv_contrib has these since then
+using cv::xfeatures2d::AgastFeatureDetector;
+using cv::xfeatures2d::AKAZE;
+using cv::xfeatures2d::BRISK;
+using cv::xfeatures2d::KAZE;
+#endif
 }  // namespace opencv_test
 
 #endif

@@ -20,7 +20,11 @@ Mat imread(const std::string& name)
 }  // namespace
 }  // namespace opencv_test
 
+#if CV_VERSION_MAJOR >= 5
+#include "features/test/test_descriptors_invariance.impl.hpp"
+#else
 #include "features2d/test/test_descriptors_invariance.impl.hpp"
+#endif
 
 namespace opencv_test {
 namespace {
@@ -64,7 +68,11 @@ const std::string IMAGE_FILENAME = "tsukuba.png";
 }  // namespace
 }  // namespace opencv_test
 
+#if CV_VERSION_MAJOR >= 5
+#include "features/test/test_descriptors_regression.impl.hpp"
+#else
 #include "features2d/test/test_descriptors_regression.impl.hpp"
+#endif
 
 namespace opencv_test {
 namespace {

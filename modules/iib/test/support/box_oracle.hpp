@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "opencv2/core.hpp"
-#include "opencv2/features2d.hpp"
+#include "opencv2/iib/features.hpp"
 #include "opencv2/iib/descriptor.hpp"
 
 namespace oracle {

@@ -6,7 +6,7 @@
 #define OPENCV_IIB_TEST_SUPPORT_DESCRIPTOR_ORACLE_HPP
 
 #include "opencv2/core.hpp"
-#include "opencv2/features2d.hpp"
+#include "opencv2/iib/features.hpp"
 #include "opencv2/iib/descriptor.hpp"
 
 /*
