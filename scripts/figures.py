@@ -95,6 +95,29 @@ def turned():
     return table(['', '5 degrees', '10', '15', '30'], lines)
 
 
+def poses():
+    """Area under the curve of the error of the relative pose up to 10 degrees, with the better choice of matches."""
+    found = collections.defaultdict(lambda: collections.defaultdict(list))
+    for row in rows('whole_tasks.csv'):
+        if row['task'] == 'pose':
+            found[row['detector'], row['descriptor'], row['set']][row['matching']].append(float(row['error']))
+
+    def cell(detector, descriptor, place):
+        return '%.2f' % max(mean(max(0, 1 - error / 10) for error in errors)
+                            for errors in found[detector, descriptor, place].values())
+
+    lines = []
+    for detector, descriptor in (('SIFT', 'SIFT'), ('AKAZE', 'AKAZE'), ('ORB', 'ORB'), ('ORB', 'BEBLID-512'),
+                                 ('SIFT', 'IIB UNIVERSAL'), ('AKAZE', 'IIB UNIVERSAL'),
+                                 ('SIFT normalized', 'SIFT'), ('SIFT normalized', 'IIB UNIVERSAL'),
+                                 ('AKAZE normalized', 'AKAZE'), ('AKAZE normalized', 'IIB UNIVERSAL')):
+        lines.append([detector, descriptor] +
+                     [cell(detector, descriptor, place) for place in ('strecha', 'synthetic_street')])
+    pairs = [len(found['SIFT', 'SIFT', place]['mutual']) for place in ('strecha', 'synthetic_street')]
+    return table(['points of', 'descriptor', 'buildings by day, %d pairs' % pairs[0],
+                  'street, other light, %d pairs' % pairs[1]], lines)
+
+
 def presets():
     """Fixed points: light that no preset was trained on, rendered light, moved cameras, turned images."""
     use = (('IIB', 'default', 'a still camera, the paper as it is'),
@@ -286,7 +309,7 @@ def place_recognition():
                   ['%.2f' % recall for recall in r['recall']] + ['%.0f' % (1000 * r['seconds_an_image'])] for r in data['rows']])
 
 
-PAGES = {'README.md': (detected_points, fixed_points, turned, ratios, presets, matching_speed, costs),
+PAGES = {'README.md': (detected_points, fixed_points, turned, poses, ratios, presets, matching_speed, costs),
          'doc/performance.md': (describing, matching, all_costs),
          'doc/scale.md': (mapped_index, flat_search, approximate_search, on_paper, place_recognition),
          'doc/results/README.md': (extra_channels, all_ratios)}

@@ -62,5 +62,6 @@ WARPED = ("IIB", "IIB oriented", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB oriented
 # Bars of the poses: points of a detector, and what describes them.
 POSES = (("SIFT", "SIFT"), ("SIFT", "IIB UNIVERSAL"), ("SIFT normalized", "SIFT"), ("SIFT normalized", "IIB UNIVERSAL"),
          ("SIFT normalized", "IIB VIEWPOINT"), ("AKAZE", "AKAZE"), ("AKAZE", "IIB UNIVERSAL"),
-         ("AKAZE normalized", "AKAZE"), ("AKAZE normalized", "IIB UNIVERSAL"), ("ORB", "ORB"), ("ORB", "BEBLID-512"),
-         ("ORB", "IIB"), ("ORB", "IIB UNIVERSAL"), ("ORB normalized", "ORB"), ("ORB normalized", "IIB UNIVERSAL"))
+         ("AKAZE normalized", "AKAZE"), ("AKAZE normalized", "IIB UNIVERSAL"), ("AKAZE normalized", "IIB VIEWPOINT"),
+         ("ORB", "ORB"), ("ORB", "BEBLID-512"), ("ORB", "IIB"), ("ORB", "IIB UNIVERSAL"),
+         ("ORB normalized", "ORB"), ("ORB normalized", "IIB UNIVERSAL"))
