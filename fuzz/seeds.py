@@ -6,7 +6,7 @@ import sys
 
 corpus = pathlib.Path(sys.argv[1])
 for target, count, length in (("descriptor", 12, 160), ("matcher", 12, 120), ("parameters", 12, 160), ("states", 12, 300),
-                              ("detector", 12, 100)):
+                              ("detector", 12, 100), ("mapped", 12, 400)):
     (corpus / target).mkdir(parents=True, exist_ok=True)
     for number in range(count):
         source = random.Random(f"{target} {number}")

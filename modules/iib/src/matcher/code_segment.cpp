@@ -36,7 +36,7 @@ static uint64 wordHash(const void* data, size_t bytes)
 // Of each `checkedBlocks` rows of a matrix with a row a CodeBlock.
 static std::vector<uint64> checksumsOf(const Mat& blocks, int checkedBlocks)
 {
-    std::vector<uint64> sums((blocks.rows + checkedBlocks - 1) / checkedBlocks);
+    std::vector<uint64> sums((size_t)(((int64)blocks.rows + checkedBlocks - 1) / checkedBlocks));
     parallel_for_(Range(0, (int)sums.size()), [&](const Range& range) {
         for (int i = range.start; i < range.end; i++)
             sums[i] = wordHash(blocks.ptr(i * checkedBlocks),
@@ -110,11 +110,18 @@ void CodeSegment::map()
     header.expect(images, 8);
     std::vector<size_t> starts(1, 0);
     for (uint64 i = 0; i < images; i++)
-        starts.push_back(starts.back() + (size_t)header.number(8));
+    {
+        const uint64 rows = header.number(8);
+        if (rows > expected.rows - starts.back())
+            header.fail("it is not the one that the manifest names");
+        starts.push_back(starts.back() + (size_t)rows);
+    }
     if (images != expected.images || starts.back() != expected.rows || checkedBlocks <= 0)
         header.fail("it is not the one that the manifest names");
     const uint64 blocks = (expected.rows + CodeLayout::CODES_PER_BLOCK - 1) / CodeLayout::CODES_PER_BLOCK;
-    std::vector<uint64> checksums((size_t)((blocks + checkedBlocks - 1) / checkedBlocks));
+    const uint64 sums = (blocks + checkedBlocks - 1) / checkedBlocks;
+    header.expect(sums, 8);
+    std::vector<uint64> checksums((size_t)sums);
     for (size_t i = 0; i < checksums.size(); i++)
         checksums[i] = header.number(8);
     if (header.seal() != expected.checksum)

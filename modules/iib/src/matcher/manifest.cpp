@@ -5,6 +5,7 @@
 #include "../precomp.hpp"
 #include "manifest.hpp"
 #include "../common/checked_file.hpp"
+#include "index_bits.hpp"
 
 namespace cv {
 namespace iib {
@@ -31,6 +32,25 @@ void writeManifest(const String& filename, const Manifest& manifest)
     file.commit();
 }
 
+// What every commit keeps to, whose numbers are added up without a further look.
+static bool fits(const Manifest& manifest)
+{
+    const uint64 limit = (uint64)1 << INDEX_BITS;
+    uint64 rows = 0, images = 0, last = 0;
+    for (const SegmentEntry& segment : manifest.segments)
+    {
+        if (segment.number <= last || segment.rows >= limit - rows || segment.images >= limit - images)
+            return false;
+        last = segment.number;
+        rows += segment.rows;
+        images += segment.images;
+    }
+    for (size_t i = 0; i < manifest.removed.size(); i++)
+        if (manifest.removed[i] >= images || (i > 0 && manifest.removed[i] <= manifest.removed[i - 1]))
+            return false;
+    return true;
+}
+
 Manifest readManifest(const String& filename)
 {
     CheckedReader file(filename, KIND);
@@ -53,6 +73,8 @@ Manifest readManifest(const String& filename)
     for (uint64 i = 0; i < removed; i++)
         manifest.removed.push_back(file.number(8));
     manifest.checksum = file.seal();
+    if (!fits(manifest))
+        file.fail("its segments and images do not fit together");
     return manifest;
 }
 

@@ -11,7 +11,7 @@ namespace cv {
 namespace iib {
 
 /* Format 1 of a manifest, a checked file: u32: number of levels, each level's bytes; u64: number of segments; of each:
-number (of its file's name), rows, images, checksum; number of removed images, each of them in ascending order. */
+number (of its file's name, ascending), rows, images, checksum; number of removed images, each of them in ascending order. */
 
 //! What a commit of MappedIndex holds: the segments in the order of their rows, and which images are hidden.
 struct Manifest

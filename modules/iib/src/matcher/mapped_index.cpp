@@ -8,8 +8,6 @@
 #include "parameters.hpp"
 #include "skipping_search.hpp"
 
-#include "opencv2/iib/mapped_index.hpp"
-
 #include "opencv2/core/utils/filesystem.hpp"
 
 #include <cstdio>
@@ -180,7 +178,10 @@ private:
         const SearchBlocks blocks;
         std::vector<std::vector<bool>> hidden;
         for (size_t i = first; i < end; i++)
+        {
+            opened[i]->codes();  // first: a manifest may claim more images than memory has bits for
             hidden.push_back(hiddenOf(i));
+        }
         std::vector<SearchInput> inputs;
         for (size_t i = first; i < end; i++)
         {

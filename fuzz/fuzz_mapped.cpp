@@ -1,0 +1,161 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+// MappedIndex on a manifest and a segment that say anything, with right checksums in most runs: a cv::Exception, or an
+// index that finds what brute force finds.
+
+#include "byte_source.hpp"
+#include "file.hpp"
+
+#include "../modules/iib/src/common/fnv1a.hpp"
+#include "opencv2/iib.hpp"
+
+namespace {
+
+using namespace cv;
+using cv::iib::MappedIndex;
+
+//! A file as checked_file.hpp has it. Each number is another one now and then.
+class FileOf
+{
+public:
+    FileOf(ByteSource& in_, const char* letters) : in(in_), text(letters) { number(1, 4); }
+    void number(uint64 value, int size)
+    {
+        if (in.rarely(64))
+            value = in.flag() ? in.take<uint64>() : (uint64)in.take<short>() << in.between(0, 56);
+        for (int i = 0; i < size; i++)
+            text += (char)(value >> 8 * i);
+    }
+    void bytes(const std::string& more) { text += more; }
+    //! Appends the hash of all so far, and returns it.
+    uint64 seal()
+    {
+        cv::iib::Fnv1a hash;
+        hash.add(text.data(), text.size());
+        number(hash.value(), 8);
+        return hash.value();
+    }
+    const std::string& whole()
+    {
+        if (in.rarely(64))
+            text.resize(in.take<ushort>() % (text.size() + 1));
+        return text;
+    }
+    size_t size() const { return text.size(); }
+
+private:
+    ByteSource& in;
+    std::string text;
+};
+
+//! As code_segment.cpp has it.
+uint64 wordHash(const std::string& bytes)
+{
+    uint64 state = CV_BIG_UINT(0xcbf29ce484222325);
+    for (size_t i = 0; i + 8 <= bytes.size(); i += 8)
+    {
+        uint64 word;
+        std::memcpy(&word, &bytes[i], sizeof(word));
+        state = (state ^ word) * CV_BIG_UINT(0x100000001b3);
+    }
+    return state;
+}
+
+//! A single level of up to 4 bytes is a word, and has no filling in either packing: 64 bytes are 16 codes.
+const int BLOCK_BYTES = 64, CODES_PER_BLOCK = 16;
+
+void write(ByteSource& in, const String& folder)
+{
+    const int levelBytes = in.between(1, 4), images = in.between(0, 5), checkedBlocks = in.between(1, 3);
+    std::vector<int> rows;
+    int all = 0;
+    for (int i = 0; i < images; i++)
+    {
+        rows.push_back(in.between(0, 20));
+        all += rows.back();
+    }
+    FileOf codes(in, "IIBCODES");
+    codes.number(1, 4);
+    codes.number(levelBytes, 4);
+    codes.bytes(in.flag() ? "ADDERS  " : "TABLES  ");
+    codes.number(checkedBlocks, 4);
+    codes.number(images, 8);
+    for (int count : rows)
+        codes.number(count, 8);
+    std::string blocks((all + CODES_PER_BLOCK - 1) / CODES_PER_BLOCK * BLOCK_BYTES, '\0');
+    for (char& byte : blocks)
+        byte = (char)in.take<uchar>();
+    for (size_t i = 0; i < blocks.size(); i += checkedBlocks * BLOCK_BYTES)
+        codes.number(wordHash(blocks.substr(i, checkedBlocks * BLOCK_BYTES)), 8);
+    const uint64 checksum = codes.seal();
+    codes.bytes(std::string((4096 - codes.size() % 4096) % 4096, '\0') + blocks);
+    const int segments = in.between(0, 3);  // of the same codes
+    for (int i = 1; i <= segments; i++)
+        writeFile(folder + format("/segment-%06d.iib", i), codes.whole());
+
+    FileOf commit(in, "IIBSHARD");
+    commit.number(1, 4);
+    commit.number(levelBytes, 4);
+    commit.number(segments, 8);
+    for (int i = 0; i < segments; i++)
+    {
+        commit.number(i + 1, 8);
+        commit.number(all, 8);
+        commit.number(images, 8);
+        commit.number(checksum, 8);
+    }
+    const int removed = in.between(0, 3);
+    commit.number(removed, 8);
+    for (int i = 0; i < removed; i++)
+        commit.number(i * 2, 8);
+    commit.seal();
+    writeFile(folder + "/manifest.iib", commit.whole());
+}
+
+//! Rows that a search finds are those of the images, and their distances those of the images' codes.
+void check(const MappedIndex& index)
+{
+    FUZZ_CHECK(index.images() >= 0 && index.rows() >= 0);
+    const std::vector<int> levels = index.levelSizes();
+    int width = 0;
+    for (int level : levels)
+        width += level;
+    const Mat query(1, width, CV_8U, Scalar(0x35));
+    std::vector<int64> rows;
+    std::vector<int> distances;
+    const int k = (int)std::min(index.rows() + 2, (int64)100);
+    index.knnSearch(query, k, rows, distances);
+    FUZZ_CHECK(rows.size() == (size_t)k && distances.size() == rows.size());
+    std::vector<std::pair<int, int64>> all;
+    for (int64 image = 0; image < index.images(); image++)
+    {
+        const Mat codes = index.descriptors(image);
+        for (int i = 0; i < codes.rows; i++)
+            all.push_back(std::make_pair((int)norm(codes.row(i), query, NORM_HAMMING), index.firstRow(image) + i));
+    }
+    FUZZ_CHECK((int64)all.size() == index.rows());
+    for (int i = 0; i < k && rows[i] >= 0; i++)
+    {
+        // Bits that fill up the last word and are not zero, which no call writes, count in distances.
+        FUZZ_CHECK(width % 4 != 0 ||
+                   std::find(all.begin(), all.end(), std::make_pair(distances[i], rows[i])) != all.end());
+        FUZZ_CHECK(index.firstRow(index.imageOf(rows[i])) <= rows[i]);
+        FUZZ_CHECK(i == 0 || std::make_pair(distances[i - 1], rows[i - 1]) < std::make_pair(distances[i], rows[i]));
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
+{
+    useThreads(1);
+    static const ScratchFolder folder;
+    return runTarget(
+            [](ByteSource& in) {
+                write(in, folder.name);
+                check(*MappedIndex::open(folder.name));
+            },
+            data, size);
+}
