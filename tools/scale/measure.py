@@ -2,7 +2,8 @@
 """Measures searches among many codes, beside faiss: measure.py --out FILE [--images FOLDER] [--codes N] [--mapped N]
 
 Writes JSON: exact search at several widths, approximate indices of faiss at a recall of .95, the folder of a MappedIndex
-of --mapped codes, and Dask's workers on it. Everything that is compared takes turns, and the least time counts.
+of --mapped codes, and Dask's workers on it. Everything that is compared takes turns, and the least time counts. With
+--approximate N the approximate indices of N codes alone, beside what FILE has of other numbers.
 """
 import argparse
 import json
@@ -98,16 +99,17 @@ def photographs(folder, count, queries):
     return np.concatenate(trains)[:count], others[random.permutation(len(others))[:queries]]
 
 
-def settings():
+def settings(codes):
     """Approximate indices of faiss: name, how to make one, and values of the parameter that trades time for recall."""
     bits = 8 * BYTES
+    power = round(np.log2(2 * codes ** .5))
 
     def ivf():
-        return faiss.IndexBinaryIVF(faiss.IndexBinaryFlat(bits), bits, 1024)
+        return faiss.IndexBinaryIVF(faiss.IndexBinaryFlat(bits), bits, 2 ** power)
 
     def hash_index():
         return faiss.IndexBinaryMultiHash(bits, 16, 18)
-    return (('IndexBinaryIVF, 1024 lists', ivf, 'nprobe', [2 ** i for i in range(11)]),
+    return (('IndexBinaryIVF, %d lists' % 2 ** power, ivf, 'nprobe', [2 ** i for i in range(power + 1)]),
             ('IndexBinaryHNSW, M 16', lambda: faiss.IndexBinaryHNSW(bits, 16), 'efSearch', [2 ** i for i in range(3, 12)]),
             ('IndexBinaryMultiHash, 16 of 18 bits', hash_index, 'nflip', [0, 1, 2, 3]))
 
@@ -122,11 +124,11 @@ def approximate(name, train, query, rounds):
     rows = [{'data': name, 'index': 'exact (HierarchicalMatcher)', 'setting': '', 'recall': 1, 'build_seconds': 0,
              'queries_a_second': len(query) / seconds, 'bytes_a_code': BYTES}]
     print(rows[-1], flush=True)
-    for label, make, parameter, values in settings():
+    for label, make, parameter, values in settings(len(train)):
         begin = time.perf_counter()
         index = make()
         if not index.is_trained:
-            index.train(train[np.random.default_rng(4).permutation(len(train))[:40 * 1024]])
+            index.train(train[np.random.default_rng(4).permutation(len(train))[:40 * index.nlist]])
         index.add(train)
         build = time.perf_counter() - begin
         for value in values:
@@ -140,6 +142,15 @@ def approximate(name, train, query, rounds):
                      'bytes_a_code': faiss.serialize_index_binary(index).nbytes / len(train)})
         print(rows[-1], flush=True)
     return rows
+
+
+def all_approximate(codes, images, rounds):
+    train = random_codes(1, codes)
+    rows = approximate('random, a tenth of the bits flipped', train, flipped(train[::len(train) // 1000][:1000], .1, 5),
+                       rounds)
+    if images:
+        rows += approximate('photographs', *photographs(images, codes, 1000), rounds)
+    return {'codes': codes, 'rows': rows}
 
 
 OPENING = '''
@@ -197,22 +208,26 @@ def main():
     parser.add_argument('--out', required=True)
     parser.add_argument('--images', help='folder of SET/SEQUENCE/1.png and so on; none: random codes alone')
     parser.add_argument('--codes', type=int, default=300000, help='in approximate indices (%(default)s)')
+    parser.add_argument('--approximate', type=int, help='measure approximate indices of so many codes alone')
     parser.add_argument('--mapped', type=int, default=10**7, help='in the MappedIndex (%(default)s)')
     parser.add_argument('--rounds', type=int, default=4, help='(%(default)s)')
     arguments = parser.parse_args()
+    out = pathlib.Path(arguments.out)
+    if arguments.approximate:
+        result = json.loads(out.read_text())
+        others = [one for one in result['approximate'] if one['codes'] != arguments.approximate]
+        result['approximate'] = sorted(
+            others + [all_approximate(arguments.approximate, arguments.images, arguments.rounds)], key=lambda one: one['codes'])
+        out.write_text(json.dumps(result, indent=1) + '\n')
+        return
     result = {'faiss': faiss.__version__, 'faiss_options': faiss.get_compile_options().strip(),
-              'flat': flat(100000, 512, arguments.rounds)}
-    train = random_codes(1, arguments.codes)
-    rows = approximate('random, a tenth of the bits flipped', train, flipped(train[::len(train) // 1000][:1000], .1, 5),
-                       arguments.rounds)
-    if arguments.images:
-        rows += approximate('photographs', *photographs(arguments.images, arguments.codes, 1000), arguments.rounds)
-    result['approximate'] = {'codes': arguments.codes, 'rows': rows}
+              'flat': flat(100000, 512, arguments.rounds),
+              'approximate': [all_approximate(arguments.codes, arguments.images, arguments.rounds)]}
     with tempfile.TemporaryDirectory() as folder:
         name = str(pathlib.Path(folder) / 'codes')
         result['mapped'] = mapped(name, arguments.mapped)
         result['workers'] = workers(name, 1000, arguments.rounds)
-    pathlib.Path(arguments.out).write_text(json.dumps(result, indent=1) + '\n')
+    out.write_text(json.dumps(result, indent=1) + '\n')
 
 
 if __name__ == '__main__':
