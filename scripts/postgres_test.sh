@@ -71,7 +71,11 @@ else
         chmod 755 "$work"
     fi
     as_postgres() {
-        (cd "$server" && $as_user env PGDATA="$server/data" "$programs/$@")
+        (
+            program=$programs/$1
+            shift
+            cd "$server" && $as_user env PGDATA="$server/data" "$program" "$@"
+        )
     }
     sockets=$server
     say "tests with PostgreSQL of $programs"
