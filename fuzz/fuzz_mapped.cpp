@@ -133,7 +133,8 @@ void check(const MappedIndex& index)
     {
         const Mat codes = index.descriptors(image);
         for (int i = 0; i < codes.rows; i++)
-            all.push_back(std::make_pair((int)norm(codes.row(i), query, NORM_HAMMING), index.firstRow(image) + i));
+            all.push_back(
+                    std::make_pair((int)norm(codes.row(i), query, NORM_HAMMING), index.firstRow(image) + i));
     }
     FUZZ_CHECK((int64)all.size() == index.rows());
     for (int i = 0; i < k && rows[i] >= 0; i++)
@@ -142,7 +143,8 @@ void check(const MappedIndex& index)
         FUZZ_CHECK(width % 4 != 0 ||
                    std::find(all.begin(), all.end(), std::make_pair(distances[i], rows[i])) != all.end());
         FUZZ_CHECK(index.firstRow(index.imageOf(rows[i])) <= rows[i]);
-        FUZZ_CHECK(i == 0 || std::make_pair(distances[i - 1], rows[i - 1]) < std::make_pair(distances[i], rows[i]));
+        FUZZ_CHECK(i == 0 ||
+                   std::make_pair(distances[i - 1], rows[i - 1]) < std::make_pair(distances[i], rows[i]));
     }
 }
 
