@@ -192,9 +192,9 @@ def all_costs():
     found = sorted(rows('cost.csv'), key=lambda row: float(row['milliseconds']))
     orb = next(float(row['milliseconds']) for row in found if row['configuration'] == 'ORB')
     for row in found:
-        time = float(row['milliseconds'])
+        time, further = float(row['milliseconds']), float(row['microseconds_per_further_keypoint'])
         lines.append([row['configuration'], row['bytes'], '%.2f' % time, '%.2f' % (time / orb),
-                      '%.2f' % float(row['microseconds_per_further_keypoint'])])
+                      '%.2f' % further if further > 0 else 'lost in the noise'])
     return table(['', 'bytes', 'ms', 'ratio to ORB', 'us a point more'], lines)
 
 
