@@ -70,14 +70,15 @@ def frames(keypoints: np.ndarray, factor: float, turned: bool) -> np.ndarray:
 def _offset(reference: np.ndarray, patch: np.ndarray) -> Optional[np.ndarray]:
     """Where the reference's centre lies in the larger patch, in samples from that one's centre."""
     import cv2
-    warp = np.array([[1, 0, MARGIN], [0, 1, MARGIN]], np.float32)
+    begin = np.array([[1, 0, MARGIN], [0, 1, MARGIN]], np.float32)
     stop = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 30, 1e-3)
     try:
-        correlation, warp = cv2.findTransformECC(reference, patch, warp, cv2.MOTION_AFFINE, stop, None, 3)
+        everywhere = np.ones(patch.shape, np.uint8)
+        correlation, warp = cv2.findTransformECC(reference, patch, begin, cv2.MOTION_AFFINE, stop, everywhere, 3)
     except cv2.error:  # it does not converge
         return None
     middle = (SIDE - 1) / 2
-    offset = np.asarray(warp @ np.array([middle, middle, 1]) - (middle + MARGIN))
+    offset = np.asarray(warp) @ np.array([middle, middle, 1]) - (middle + MARGIN)
     return offset if correlation >= LEAST_CORRELATION and np.abs(offset).max() <= FARTHEST else None
 
 
