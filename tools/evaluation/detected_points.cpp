@@ -52,17 +52,14 @@ void evaluatePair(const Options& options, const ImagePair& pair, const std::vect
     const LoadedPair loaded = loadPair(pair);
     for (const Detector& detector : detectors)
     {
-        const auto reference = described.get(detector, loaded.reference, pair, pair.referenceFile),
-                   target = described.get(detector, loaded.target, pair, pair.targetFile);
-        if (reference->size() != target->size())
-            CV_Error(cv::Error::StsUnmatchedSizes,
-                    pair.name() + ": own descriptors of " + detector.name + " for one image of two");
+        const auto both = described.both(detector, loaded.reference, loaded.target, pair);
+        const std::vector<Described>&reference = *both.first, &target = *both.second;
         // IIB, the last one, keeps every point.
         const int correspondences = countCorrespondences(
-                reference->back().keypoints, target->back().keypoints, loaded.homography, options.tolerance);
-        for (size_t i = 0; i < reference->size(); i++)
+                reference.back().keypoints, target.back().keypoints, loaded.homography, options.tolerance);
+        for (size_t i = 0; i < reference.size(); i++)
         {
-            const Described &r = (*reference)[i], &t = (*target)[i];
+            const Described &r = reference[i], &t = target[i];
             const std::vector<cv::DMatch> matches = mutualMatches(r.descriptors, t.descriptors, r.norm);
             std::vector<bool> correct;
             for (const cv::DMatch& m : matches)

@@ -159,12 +159,10 @@ void evaluateImages(const std::string& task, const Images& images, const std::ve
 {
     for (const Detector& detector : detectors)
     {
-        const auto reference = run.described.get(
-                           detector, images.reference, images.names, images.names.referenceFile),
-                   target = run.described.get(detector, images.target, images.names, images.names.targetFile);
-        for (size_t i = 0; i < reference->size(); i++)
+        const auto both = run.described.both(detector, images.reference, images.target, images.names);
+        for (size_t i = 0; i < both.first->size(); i++)
         {
-            const Described &r = (*reference)[i], &t = (*target)[i];
+            const Described &r = (*both.first)[i], &t = (*both.second)[i];
             const std::pair<const char*, std::vector<cv::DMatch>> rules[] = {{"ratio", ratioMatches(r, t)},
                     {"mutual", mutualMatches(r.descriptors, t.descriptors, r.norm)}};
             for (const auto& rule : rules)

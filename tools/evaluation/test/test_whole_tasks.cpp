@@ -169,6 +169,26 @@ TEST(DescribedImages, the_last_ones_are_kept)
     EXPECT_EQ(5, detections);
 }
 
+TEST(DescribedImages, own_descriptors_of_one_image_alone_are_refused)
+{
+    Detector detector;
+    detector.name = "network";
+    detector.descriptor = "network";
+    detector.scaleFactor = 1;
+    detector.detect = [](const cv::Mat&, const ImagePair&, const std::string& file) {
+        return Detection{
+                {cv::KeyPoint(50, 50, 20)}, cv::Mat::zeros(1, 8, CV_8U), file == "a" ? cv::NORM_HAMMING : 0};
+    };
+    const cv::Mat image(100, 100, CV_8U, cv::Scalar(90));
+    DescribedImages described;
+    ImagePair pair;
+    pair.referenceFile = "a";
+    pair.targetFile = "b";
+    EXPECT_THROW(described.both(detector, image, image, pair), cv::Exception);
+    pair.targetFile = "a";
+    EXPECT_EQ("network", described.both(detector, image, image, pair).second->front().name);
+}
+
 TEST_F(WholeTasksTest, too_few_matches_are_a_failure)
 {
     folder.makeFolder("data/set/empty");
