@@ -217,6 +217,12 @@ class ColmapTest(unittest.TestCase):
         self.assertGreater(reads.call_count, 0)
         self.assertEqual([self.query(sql) for sql in tables], whole)
 
+    def test_an_image_that_is_gone_when_it_is_refined(self):
+        def verified(*_):
+            os.unlink(os.path.join(self.images, 'b.png'))
+        with mock.patch.object(pipeline, 'verify_pairs', verified), self.assertRaisesRegex(ValueError, 'b.png: not an image'):
+            self.build(refine=True)
+
     def test_patches_of_turned_and_larger_keypoints(self):
         image = cv2.GaussianBlur(texture(400, 300, seed=5), (0, 0), 2)
         turn = cv2.getRotationMatrix2D((200, 150), -100, 2)  # by 100 degrees, twice as large

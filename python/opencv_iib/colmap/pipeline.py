@@ -1,7 +1,6 @@
 """From a folder of images to a database for ``colmap mapper``."""
 from __future__ import annotations
 
-import collections
 import dataclasses
 import functools
 import os
@@ -13,6 +12,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib.colmap import pairs as pair_lists
+from opencv_iib.colmap.cache import Cache
 from opencv_iib.colmap.database import CAMERA_MODELS, Database, SettingsChanged, remove_partial
 from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
 from opencv_iib.colmap.images import exif_focal_length, find_images, read_grey
@@ -53,23 +53,6 @@ class Options:
             raise ValueError('verify is colmap, but there is no program colmap: install it, or take magsac')
         if not 0 < self.ratio <= 1:
             raise ValueError(f'ratio is {self.ratio}: it has to be in (0, 1]')
-
-
-class _Cache:
-    """The last images' codes and points, `size` of them."""
-
-    def __init__(self, load: Callable[[int], Any], size: int) -> None:
-        self._load, self._size = load, size
-        self._kept: collections.OrderedDict[int, Any] = collections.OrderedDict()
-
-    def __getitem__(self, image: int) -> Any:
-        if image in self._kept:
-            self._kept.move_to_end(image)
-        else:
-            self._kept[image] = self._load(image)
-            if len(self._kept) > self._size:
-                self._kept.popitem(last=False)
-        return self._kept[image]
 
 
 @functools.lru_cache(maxsize=1)
@@ -162,8 +145,8 @@ def match_tile(level_sizes: tuple[int, ...], ratio: float, verify: str,
 
 def match_pairs(database: Database, options: Options, level_sizes: tuple[int, ...], verify: str, crew: Crew) -> None:
     """Matches, and with magsac verifies, the pairs that the database does not hold."""
-    images = _Cache(lambda i: crew.hold(database.load_codes(i), database.load_keypoints(i)[:, :2]),
-                    2 * pair_lists.BLOCK + 2)
+    images = Cache(lambda i: crew.hold(database.load_codes(i), database.load_keypoints(i)[:, :2]),
+                   2 * pair_lists.BLOCK + 2)
     pairs, total = list_pairs(database, options, level_sizes)
     progress = Progress('matching', total)
     begun: set[tuple[int, int]] = set()

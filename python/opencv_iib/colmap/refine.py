@@ -1,7 +1,6 @@
 """Moves keypoints to where the images agree on them, between matching and COLMAP's mapper."""
 from __future__ import annotations
 
-import collections
 import concurrent.futures
 import os
 from typing import Any
@@ -9,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from opencv_iib.colmap.alignment import Patches, combine, frames, offsets
+from opencv_iib.colmap.cache import Cache
 from opencv_iib.colmap.database import Database
 from opencv_iib.colmap.features import Features
 from opencv_iib.colmap.images import read_grey
@@ -18,20 +18,11 @@ from opencv_iib.colmap.verify import magsac
 IMAGES_KEPT = 32  #: read and evened out; 7 bytes a pixel
 
 
-class _Images:
-    """What the patches of the last images used are sampled from."""
-
-    def __init__(self, folder: str, names: dict[int, str]) -> None:
-        self._folder, self._names = folder, names
-        self._kept: collections.OrderedDict[int, Patches] = collections.OrderedDict()
-
-    def __getitem__(self, number: int) -> Patches:
-        if number not in self._kept:
-            self._kept[number] = Patches(read_grey(os.path.join(self._folder, self._names[number])))
-            if len(self._kept) > IMAGES_KEPT:
-                self._kept.popitem(last=False)
-        self._kept.move_to_end(number)
-        return self._kept[number]
+def _patches(folder: str, name: str) -> Patches:
+    try:
+        return Patches(read_grey(os.path.join(folder, name)))
+    except ValueError as e:
+        raise ValueError(f'{name}: {e}') from None
 
 
 def refine_images(database: Database, folder: str, features: Features, verify: str, workers: int) -> None:
@@ -41,9 +32,11 @@ def refine_images(database: Database, folder: str, features: Features, verify: s
     are verified anew here with magsac, and left without two-view geometries for COLMAP.
 
     :param verify: magsac, colmap or none; with none all matches are aligned, otherwise the verified ones.
+    :raises ValueError: naming an image that can no longer be read.
     """
     numbers = database.image_ids()
-    images = _Images(folder, {number: name for name, number in numbers.items()})
+    names = {number: name for name, number in numbers.items()}
+    images = Cache(lambda number: _patches(folder, names[number]), IMAGES_KEPT)
     done = database.refined()
     progress = Progress('refining', len(numbers), len(done))
 
