@@ -9,15 +9,15 @@ namespace iib {
 
 void joinRows(std::vector<Mat>& maps, Size imageSize)
 {
-    const Size row(1, imageSize.width);
+    const Size row(imageSize.width, 1), column(1, imageSize.width);
     if ((int)maps.size() != imageSize.height || maps.size() < 2)
         return;
     for (const Mat& map : maps)
-        if (map.dims > 2 || map.size() != row || map.type() != maps[0].type())
+        if (map.dims > 2 || (map.size() != row && map.size() != column) || map.type() != maps[0].type())
             return;
     Mat whole(imageSize, maps[0].type());
     for (int y = 0; y < whole.rows; y++)
-        Mat(maps[y].t()).copyTo(whole.row(y));
+        (maps[y].cols == 1 ? Mat(maps[y].t()) : maps[y]).copyTo(whole.row(y));
     maps.assign(1, whole);
 }
 

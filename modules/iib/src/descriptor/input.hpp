@@ -11,7 +11,7 @@ namespace cv {
 namespace iib {
 
 /** Makes one map of the rows of a single map. Python's bindings take an array of two dimensions where several maps are
- expected for a list, and hand over each of its rows as a column. */
+ expected for a list, and hand over each of its rows, until OpenCV 5 as a column. */
 void joinRows(std::vector<Mat>& maps, Size imageSize);
 
 //! Throws unless there are `expected` single-channel maps of the image's size, 8U, 16U or 32F and finite.

@@ -12,7 +12,7 @@
 namespace cv {
 namespace iib {
 
-static void require(bool ok, int code, const String& message)
+static void require(bool ok, Error::Code code, const String& message)
 {
     if (!ok)
         CV_Error(code, message);
