@@ -9,6 +9,7 @@
 #include "opencv2/iib.hpp"
 
 #if CV_VERSION_MAJOR >= 5
+#include "opencv2/geometry.hpp"
 #include "opencv2/xfeatures2d.hpp"
 #endif
 

@@ -93,8 +93,8 @@ TEST(IIB_NormalizedDetector, errors)
 
 TEST(IIB_NormalizedDetector, parameters_and_files)
 {
-    const Ptr<Feature2D> inside = AKAZE::create();
-    inside.dynamicCast<AKAZE>()->setThreshold(0.0003);
+    const Ptr<Feature2D> inside = GFTTDetector::create();
+    inside.dynamicCast<GFTTDetector>()->setQualityLevel(0.003);
     const Ptr<NormalizedDetector> detector = NormalizedDetector::create(inside, 5.f);
     EXPECT_EQ(inside, detector->getDetector());
     detector->setSigma(6.5f);
@@ -107,9 +107,9 @@ TEST(IIB_NormalizedDetector, parameters_and_files)
     FileStorage fs(file, FileStorage::READ);
     copy->read(fs.getFirstTopLevelNode());
     EXPECT_EQ(6.5f, copy->getSigma());
-    const Ptr<AKAZE> akaze = copy->getDetector().dynamicCast<AKAZE>();
-    ASSERT_TRUE(akaze);
-    EXPECT_EQ(0.0003f, (float)akaze->getThreshold());
+    const Ptr<GFTTDetector> corners = copy->getDetector().dynamicCast<GFTTDetector>();
+    ASSERT_TRUE(corners);
+    EXPECT_EQ(0.003, corners->getQualityLevel());
     expectError(Error::StsParseError, "NormalizedDetector", [&] { copy->read(FileNode()); });
     fs.release();
     std::remove(file.c_str());
