@@ -44,6 +44,27 @@ inline unsigned greaterMask(const v_int16& a, const v_int16& b)
 #endif
 }
 
+//! `whole` - v where `sign` is negative, v elsewhere.
+inline v_int16 subtractWhereNegative(const v_int16& sign, const v_int16& whole, const v_int16& v)
+{
+#if CV_AVX512_SKX
+    return v_int16(_mm512_mask_sub_epi16(v.val, _mm512_movepi16_mask(sign.val), whole.val, v.val));
+#else
+    const v_int16 mask = sign >> 15;  // v ^ -1 is -v - 1
+    return (v ^ mask) + (mask & (whole + vx_setall_s16(1)));
+#endif
+}
+
+inline v_int32 subtractWhereNegative(const v_int32& sign, const v_int32& whole, const v_int32& v)
+{
+#if CV_AVX512_SKX
+    return v_int32(_mm512_mask_sub_epi32(v.val, _mm512_movepi32_mask(sign.val), whole.val, v.val));
+#else
+    const v_int32 mask = sign >> 31;  // v ^ -1 is -v - 1
+    return (v ^ mask) + (mask & (whole + vx_setall_s32(1)));
+#endif
+}
+
 //! As v_zip, of pairs of values.
 inline void zipPairs(const v_uint32& a, const v_uint32& b, v_uint32& low, v_uint32& high)
 {
@@ -85,6 +106,44 @@ inline v_float32 exactQuotient(const v_float32& a, const v_float32& b) { return 
 template <typename V> inline auto nearestInt(const V& v) -> decltype(v_round(v)) { return v_round(v); }
 template <typename V> inline V exactRoot(const V& v) { return v_sqrt(v); }
 #endif
+
+/* Four planes side by side: out[0] gets the first pixels. To zip within 128 bits is cheap, across a wider vector it is not:
+ pairs of pixels are first put where that brings neighbours together. */
+inline void interleaveFour(const v_uint16 planes[4], v_uint16 out[4])
+{
+#if CV_AVX512_SKX
+    const __m512i places = _mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15);
+    __m512i p[4];
+    for (int i = 0; i < 4; i++)
+        p[i] = _mm512_permutexvar_epi32(places, planes[i].val);
+    const __m512i low01 = _mm512_unpacklo_epi16(p[0], p[1]), high01 = _mm512_unpackhi_epi16(p[0], p[1]);
+    const __m512i low23 = _mm512_unpacklo_epi16(p[2], p[3]), high23 = _mm512_unpackhi_epi16(p[2], p[3]);
+    out[0] = v_uint16(_mm512_unpacklo_epi32(low01, low23));
+    out[1] = v_uint16(_mm512_unpackhi_epi32(low01, low23));
+    out[2] = v_uint16(_mm512_unpacklo_epi32(high01, high23));
+    out[3] = v_uint16(_mm512_unpackhi_epi32(high01, high23));
+#elif CV_AVX2
+    const __m256i places = _mm256_setr_epi32(0, 2, 4, 6, 1, 3, 5, 7);
+    __m256i p[4];
+    for (int i = 0; i < 4; i++)
+        p[i] = _mm256_permutevar8x32_epi32(planes[i].val, places);
+    const __m256i low01 = _mm256_unpacklo_epi16(p[0], p[1]), high01 = _mm256_unpackhi_epi16(p[0], p[1]);
+    const __m256i low23 = _mm256_unpacklo_epi16(p[2], p[3]), high23 = _mm256_unpackhi_epi16(p[2], p[3]);
+    out[0] = v_uint16(_mm256_unpacklo_epi32(low01, low23));
+    out[1] = v_uint16(_mm256_unpackhi_epi32(low01, low23));
+    out[2] = v_uint16(_mm256_unpacklo_epi32(high01, high23));
+    out[3] = v_uint16(_mm256_unpackhi_epi32(high01, high23));
+#else
+    v_uint16 low01, high01, low23, high23;
+    v_zip(planes[0], planes[1], low01, high01);
+    v_zip(planes[2], planes[3], low23, high23);
+    v_uint32 pixels[4];
+    v_zip(v_reinterpret_as_u32(low01), v_reinterpret_as_u32(low23), pixels[0], pixels[1]);
+    v_zip(v_reinterpret_as_u32(high01), v_reinterpret_as_u32(high23), pixels[2], pixels[3]);
+    for (int i = 0; i < 4; i++)
+        out[i] = v_reinterpret_as_u16(pixels[i]);
+#endif
+}
 
 //! Adds to each value those before it in its group of four, modulo 2^16.
 inline v_uint16 prefixSumsOfFour(const v_uint16& v)

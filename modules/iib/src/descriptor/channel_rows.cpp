@@ -9,13 +9,11 @@ namespace iib {
 
 namespace {
 
-// Rows of the scratch memory: three of the image in turn, its gradient, the channels.
+// Rows of the scratch memory: three of the image in turn, the channels.
 enum
 {
     IMAGE_ROWS = 3,
-    GRADIENT_X = IMAGE_ROWS,
-    GRADIENT_Y,
-    FIRST_PLANE,
+    FIRST_PLANE = IMAGE_ROWS,
     SCRATCH_ROWS = FIRST_PLANE + GROUP_CHANNELS
 };
 
@@ -36,7 +34,7 @@ ChannelRows<T>::ChannelRows(const std::vector<Channel>& channels_, Rect area_, i
     : channels(channels_), area(area_),
       source(reflectedRange(area_.x, area_.x + area_.width, channels_[0].map.cols)),
       origin(std::min(area_.x, source.start)), signedOffset((T)signedOffset_), kernels(kernels_),
-      gradientOf(0),
+      gradientOf(0), imageChannels(),
       step(wholeLines<T>((size_t)std::max(area_.x + area_.width, source.end) - origin + 2 + ROW_PADDING)),
       scratch(memory.get<T>(SCRATCH_ROWS * step))
 {
@@ -45,8 +43,24 @@ ChannelRows<T>::ChannelRows(const std::vector<Channel>& channels_, Rect area_, i
             gradientOf = &c.map;
     for (int& y : read)
         y = -1;
+    T* out[GROUP_CHANNELS];
     for (int i = 0; i < GROUP_CHANNELS; i++)
-        planes[i] = row(FIRST_PLANE + std::min(i, (int)channels.size() - 1)) + (area.x - origin);
+    {
+        T* const plane = row(FIRST_PLANE + std::min(i, (int)channels.size() - 1));
+        planes[i] = plane + (area.x - origin);
+        out[i] = plane + (source.start - origin);
+    }
+    for (size_t i = 0; i < channels.size(); i++)
+        switch (channels[i].kind)
+        {
+        case IIB::CHANNEL_GRAD_X: imageChannels.absoluteX = out[i]; break;
+        case IIB::CHANNEL_GRAD_Y: imageChannels.absoluteY = out[i]; break;
+        case IIB::CHANNEL_ORIENTATION: imageChannels.steps = out[i]; break;
+        case IIB::CHANNEL_SIGNED_GRAD_X: imageChannels.x = out[i]; break;
+        case IIB::CHANNEL_SIGNED_GRAD_Y: imageChannels.y = out[i]; break;
+        case IIB::CHANNEL_INTENSITY: imageChannels.pixels = out[i]; break;
+        default: break;
+        }
 }
 
 template <typename T> void ChannelRows<T>::computeGradient(int y)
@@ -66,7 +80,7 @@ template <typename T> void ChannelRows<T>::computeGradient(int y)
         widen(kernels, *gradientOf, imageY, left, out, 1);
         widen(kernels, *gradientOf, imageY, right, out + source.size() + 1, 1);
     }
-    kernels.gradient(around[0], around[1], around[2], row(GRADIENT_X), row(GRADIENT_Y), source.size());
+    kernels.imageChannels(around[0], around[1], around[2], signedOffset, imageChannels, source.size());
 }
 
 //! Fills what lies beside the image.
@@ -84,21 +98,12 @@ template <typename T> void ChannelRows<T>::compute(int y)
     y = reflected(y, channels[0].map.rows);
     if (gradientOf)
         computeGradient(y);
-    const T *gx = row(GRADIENT_X), *gy = row(GRADIENT_Y);
-    const int width = source.size();
     for (size_t i = 0; i < channels.size(); i++)
     {
-        T* const out = row(FIRST_PLANE + (int)i) + (source.start - origin);
-        switch (channels[i].kind)
-        {
-        case IIB::CHANNEL_GRAD_X: kernels.absolute(gx, out, width); break;
-        case IIB::CHANNEL_GRAD_Y: kernels.absolute(gy, out, width); break;
-        case IIB::CHANNEL_ORIENTATION: kernels.orientation(gx, gy, out, width); break;
-        case IIB::CHANNEL_SIGNED_GRAD_X: kernels.add(gx, signedOffset, out, width); break;
-        case IIB::CHANNEL_SIGNED_GRAD_Y: kernels.add(gy, signedOffset, out, width); break;
-        default: widen(kernels, channels[i].map, y, source.start, out, width); break;
-        }
-        reflect(row(FIRST_PLANE + (int)i));
+        T* const out = row(FIRST_PLANE + (int)i);
+        if (channels[i].kind == 0 || !gradientOf)
+            widen(kernels, channels[i].map, y, source.start, out + (source.start - origin), source.size());
+        reflect(out);
     }
 }
 

@@ -40,7 +40,8 @@ private:
     const T signedOffset;
     const RowKernels<T>& kernels;
     const Mat* gradientOf;  //!< the image, or null if no channel needs its gradient
-    int read[3];            //!< which row of the image each of the first three scratch rows holds
+    ImageChannelRows<T> imageChannels;
+    int read[3];  //!< which row of the image each of the first three scratch rows holds
     size_t step;
     T* const scratch;
     const T* planes[GROUP_CHANNELS];

@@ -100,9 +100,9 @@ float prevailingAngle(const DescriptorKernels& kernels, const T* pixels, const i
     for (int row = 0; row < INNER; row++)
     {
         const int* const above = cells + row * CELLS;
-        rows.gradient(above, above + CELLS, above + 2 * CELLS, gx + row * INNER, gy + row * INNER, INNER);
+        const ImageChannelRows<int> out = {0, gx + row * INNER, gy + row * INNER, 0, 0, steps + row * INNER};
+        rows.imageChannels(above, above + CELLS, above + 2 * CELLS, 0, out, INNER);
     }
-    rows.orientation(gx, gy, steps, VOTES);
     kernels.pixels<T>().rotated.gradientVotes(gx, gy, weights.of, VOTES, votes);
     int64 bins[BINS] = {};
     for (int i = 0; i < VOTES; i++)

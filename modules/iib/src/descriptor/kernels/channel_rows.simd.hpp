@@ -23,21 +23,6 @@ inline v_int32 absolute(const v_int32& v) { return v_reinterpret_as_s32(v_abs(v)
 inline v_int16 setAll(short v) { return vx_setall_s16(v); }
 inline v_int32 setAll(int v) { return vx_setall_s32(v); }
 
-template <typename T>
-void gradientRow(const T* above, const T* middle, const T* below, T* gx, T* gy, int width)
-{
-    typedef decltype(setAll(T())) V;
-    for (int x = 0; x < width; x += VTraits<V>::max_nlanes)
-    {
-        const V a0 = vx_load(above + x), a1 = vx_load(above + x + 1), a2 = vx_load(above + x + 2);
-        const V m0 = vx_load(middle + x), m2 = vx_load(middle + x + 2);
-        const V b0 = vx_load(below + x), b1 = vx_load(below + x + 1), b2 = vx_load(below + x + 2);
-        const V dm = m2 - m0, d0 = b0 - a0, d1 = b1 - a1, d2 = b2 - a2;
-        v_store(gx + x, ((a2 - a0) + (b2 - b0)) + (dm + dm));
-        v_store(gy + x, (d0 + d2) + (d1 + d1));
-    }
-}
-
 //! ORIENTATION_STEPS / 8 steps for equal sides; lo <= hi, hi > 0.
 inline v_int32 octantSteps(const v_int32& lo, const v_int32& hi)
 {
@@ -54,45 +39,48 @@ inline v_int16 octantSteps(const v_int16& lo, const v_int16& hi)
     return v_reinterpret_as_s16(even | (odd << 16));
 }
 
-//! -1 where v is negative, else 0: cheaper than a comparison, which AVX-512 makes a mask that it must turn back.
-inline v_int16 negative(const v_int16& v) { return v >> 15; }
-inline v_int32 negative(const v_int32& v) { return v >> 31; }
-
-//! `whole` - steps where `mask` is -1, steps where it is 0; as steps ^ -1 is -steps - 1.
-template <typename V> inline V mirror(const V& steps, const V& mask, const V& wholeAndOne)
+template <typename T, typename V> inline V orientation(const V& gx, const V& gy)
 {
-    return (steps ^ mask) + (mask & wholeAndOne);
+    const V ax = absolute(gx), ay = absolute(gy);
+    V s = octantSteps(v_min(ax, ay), v_max(v_max(ax, ay), setAll((T)1)));
+    s = subtractWhereNegative(ax - ay, setAll((T)(ORIENTATION_STEPS / 4)), s);
+    s = subtractWhereNegative(gx, setAll((T)(ORIENTATION_STEPS / 2)), s);
+    s = subtractWhereNegative(setAll((T)0) - gy, setAll((T)ORIENTATION_STEPS), s);
+    return s & setAll((T)(ORIENTATION_STEPS - 1));
 }
 
-template <typename T> void orientationRow(const T* gxRow, const T* gyRow, T* steps, int width)
+template <typename T> void orientationRow(const T* gx, const T* gy, T* steps, int width)
+{
+    for (int x = 0; x < width; x += VTraits<decltype(setAll(T()))>::max_nlanes)
+        v_store(steps + x, orientation<T>(vx_load(gx + x), vx_load(gy + x)));
+}
+
+template <typename T>
+void imageChannelRows(
+        const T* above, const T* middle, const T* below, T signedOffset, ImageChannelRows<T> out, int width)
 {
     typedef decltype(setAll(T())) V;
-    const V zero = setAll((T)0), one = setAll((T)1), mask = setAll((T)(ORIENTATION_STEPS - 1));
-    const V quarter = setAll((T)(ORIENTATION_STEPS / 4 + 1)), half = setAll((T)(ORIENTATION_STEPS / 2 + 1));
+    const V offset = setAll(signedOffset);
     for (int x = 0; x < width; x += VTraits<V>::max_nlanes)
     {
-        const V gx = vx_load(gxRow + x), gy = vx_load(gyRow + x);
-        const V ax = absolute(gx), ay = absolute(gy);
-        V s = octantSteps(v_min(ax, ay), v_max(v_max(ax, ay), one));
-        s = mirror(s, negative(ax - ay), quarter);
-        s = mirror(s, negative(gx), half);
-        s = mirror(s, negative(zero - gy), one);  // of a whole turn, which the mask takes away
-        v_store(steps + x, s & mask);
+        const V a0 = vx_load(above + x), a1 = vx_load(above + x + 1), a2 = vx_load(above + x + 2);
+        const V m0 = vx_load(middle + x), m2 = vx_load(middle + x + 2);
+        const V b0 = vx_load(below + x), b1 = vx_load(below + x + 1), b2 = vx_load(below + x + 2);
+        const V dm = m2 - m0, d0 = b0 - a0, d1 = b1 - a1, d2 = b2 - a2;
+        const V gx = ((a2 - a0) + (b2 - b0)) + (dm + dm), gy = (d0 + d2) + (d1 + d1);
+        if (out.pixels)
+            v_store(out.pixels + x, vx_load(middle + x + 1));
+        if (out.x)
+            v_store(out.x + x, gx + offset);
+        if (out.y)
+            v_store(out.y + x, gy + offset);
+        if (out.absoluteX)
+            v_store(out.absoluteX + x, absolute(gx));
+        if (out.absoluteY)
+            v_store(out.absoluteY + x, absolute(gy));
+        if (out.steps)
+            v_store(out.steps + x, orientation<T>(gx, gy));
     }
-}
-
-// The rest is left to the compiler, which has this file's instruction set too.
-
-template <typename T> void absoluteRow(const T* in, T* out, int width)
-{
-    for (int x = 0; x < width; x++)
-        out[x] = (T)(in[x] < 0 ? -in[x] : in[x]);
-}
-
-template <typename T> void addRow(const T* in, T addend, T* out, int width)
-{
-    for (int x = 0; x < width; x++)
-        out[x] = (T)(in[x] + addend);
 }
 
 void widenRow(const uchar* in, short* out, int width)
@@ -131,8 +119,7 @@ template <typename T> void interleaveRow(const T* const planes[GROUP_CHANNELS], 
 
 template <typename T> RowKernels<T> rowKernels()
 {
-    const RowKernels<T> k = {gradientRow<T>, orientationRow<T>, absoluteRow<T>, addRow<T>, widenRow, widenRow,
-            interleaveRow<T>};
+    const RowKernels<T> k = {imageChannelRows<T>, orientationRow<T>, widenRow, widenRow, interleaveRow<T>};
     return k;
 }
 

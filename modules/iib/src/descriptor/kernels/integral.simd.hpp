@@ -24,16 +24,9 @@ inline v_uint16 loadSums(const short* plane, int x)
 //! A vector (v_uint16) of pixels of four channels, side by side.
 inline void interleave(const short* const planes[GROUP_CHANNELS], int x, v_uint16 pixels[4])
 {
-    v_uint16 a0, a1, b0, b1;
-    v_zip(loadSums(planes[0], x), loadSums(planes[1], x), a0, a1);
-    v_zip(loadSums(planes[2], x), loadSums(planes[3], x), b0, b1);
-    v_uint32 p0, p1, p2, p3;
-    v_zip(v_reinterpret_as_u32(a0), v_reinterpret_as_u32(b0), p0, p1);
-    v_zip(v_reinterpret_as_u32(a1), v_reinterpret_as_u32(b1), p2, p3);
-    pixels[0] = v_reinterpret_as_u16(p0);
-    pixels[1] = v_reinterpret_as_u16(p1);
-    pixels[2] = v_reinterpret_as_u16(p2);
-    pixels[3] = v_reinterpret_as_u16(p3);
+    const v_uint16 sums[GROUP_CHANNELS] = {
+            loadSums(planes[0], x), loadSums(planes[1], x), loadSums(planes[2], x), loadSums(planes[3], x)};
+    interleaveFour(sums, pixels);
 }
 
 void sumRow16(const short* const planes[GROUP_CHANNELS], int width, const ushort* above, ushort* out)
@@ -47,10 +40,10 @@ void sumRow16(const short* const planes[GROUP_CHANNELS], int width, const ushort
         for (int i = 0; i < 4; i++)
         {
             const int at = (x + i * pixelsInVector + 1) * GROUP_CHANNELS;
-            const v_uint16 sums = addFourthToUpper(pixels[i]);
-            v_store(out + at, v_add_wrap(v_add_wrap(sums, carry), vx_load(above + at)));
+            const v_uint16 sums = v_add_wrap(addFourthToUpper(pixels[i]), carry);
+            v_store(out + at, v_add_wrap(sums, vx_load(above + at)));
             if ((i + 1) * pixelsInVector % 4 == 0)
-                carry = v_add_wrap(carry, repeatLastFour(sums));
+                carry = repeatLastFour(sums);
         }
     }
 }

@@ -19,15 +19,24 @@ enum
     MAPPINGS = IIB::MAPPING_PAIRWISE + 1  //!< of quads
 };
 
+//! Where a row of an image's channels goes; null for what is not wanted.
+template <typename T> struct ImageChannelRows
+{
+    T* pixels;                 //!< those of the middle row
+    T *x, *y;                  //!< with signs
+    T *absoluteX, *absoluteY;  //!< without
+    T* steps;                  //!< orientation: atan2(-gy, gx) in ORIENTATION_STEPS a turn
+};
+
 //! What a row of pixels goes through. Rows begin anywhere and have ROW_PADDING values more than `width`.
 template <typename T> struct RowKernels
 {
-    //! Sobel 3x3. The three source rows begin one pixel left of gx[0] and end one pixel right of it.
-    void (*gradient)(const T* above, const T* middle, const T* below, T* gx, T* gy, int width);
-    //! atan2(-gy, gx) in ORIENTATION_STEPS a turn.
+    /** Sobel 3x3. The three source rows begin one pixel left of the others and end one pixel right of them.
+     @param offset added to the gradients with signs. */
+    void (*imageChannels)(
+            const T* above, const T* middle, const T* below, T offset, ImageChannelRows<T> out, int width);
+    //! The orientation alone.
     void (*orientation)(const T* gx, const T* gy, T* steps, int width);
-    void (*absolute)(const T* in, T* out, int width);
-    void (*add)(const T* in, T addend, T* out, int width);
     void (*widen8u)(const uchar* in, T* out, int width);
     void (*widen16u)(const ushort* in, T* out, int width);
     //! Four planes side by side.
