@@ -129,17 +129,25 @@ private:
     const unsigned mask;
 };
 
-/* Appends the chosen bits of a phase. */
-IIB_TARGET_BIT_COMPRESS inline void appendChosen(
+#if IIB_HAS_FAST_BIT_COMPRESS
+IIB_TARGET_BIT_COMPRESS inline void compressChosen(
         const ChosenBits& chosen, const uchar* comparisons, BitAppender& out)
 {
-#if IIB_HAS_FAST_BIT_COMPRESS
     BitAppender writer =
             out;  // a local copy: a store to uchar* could change `out`, so that it would be loaded anew
     for (const ChosenBits::Word& word : chosen.words())
         writer.append(
                 compressBits(loadWord(comparisons + word.byte), word.compressor.mask), word.compressor.count);
     out = writer;
+}
+#endif
+
+//! Appends the chosen bits of a phase.
+inline void appendChosen(const ChosenBits& chosen, const uchar* comparisons, BitAppender& out)
+{
+#if IIB_HAS_FAST_BIT_COMPRESS
+    freeUpperHalves();
+    compressChosen(chosen, comparisons, out);
 #else
     chosen.append(comparisons, out);
 #endif
