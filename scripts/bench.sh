@@ -1,8 +1,9 @@
 #!/bin/sh
-# What describing costs beside cv::ORB on this machine, how time and memory grow, what matching costs beside BFMatcher,
-# and how much slower all that is without AVX2 and AVX-512: prints tables and writes iib_benchmark.json. With --document the
-# results go to doc/results, from where the tables of README.md and doc/performance.md and their picture are made anew.
-# --contrib adds BEBLID, TEBLID and LATCH of opencv_contrib, whose source pip brings.
+# What describing costs beside cv::ORB on this machine, how time and memory grow, what matching costs beside BFMatcher and,
+# where python3 has faiss and opencv_iib, beside faiss's flat index, what small work costs, and how much slower all that is
+# without AVX-512 and without AVX2: prints tables and writes iib_benchmark.json. With --document the results go to
+# doc/results, from where the tables of README.md and doc/performance.md and their picture are made anew. --contrib adds
+# BEBLID, TEBLID and LATCH of opencv_contrib, whose source pip brings.
 #   scripts/bench.sh [--contrib] [--document] [--rounds=N] [--json=FILE]
 . "$(dirname "$0")/lib.sh"
 
@@ -22,10 +23,16 @@ need $build_packages ${document:+python3-matplotlib}
 [ -z "$contrib" ] || contrib=$(contrib_argument)
 build_tools ${contrib:+"$contrib"} iib_benchmark
 benchmark="$build/tools/benchmark/iib_benchmark"
-narrow="${document:-$build}/benchmark_without_avx2.json"
 [ -z "$document" ] || set -- "$@" "--json=$document/benchmark.json"
-OPENCV_CPU_DISABLE=AVX2,AVX512-SKX,AVX512-ICL "$benchmark" "$@" --json="$narrow" >/dev/null
+for without in AVX512-SKX,AVX512-ICL AVX2,AVX512-SKX,AVX512-ICL; do
+    case "$without" in AVX2*) narrow=avx2 ;; *) narrow=avx512 ;; esac
+    narrow="${document:-$build}/benchmark_without_$narrow.json"
+    OPENCV_CPU_DISABLE=$without "$benchmark" "$@" --json="$narrow" >/dev/null
+done
 "$benchmark" "$@" --against="$narrow"
+if python3 -c "import faiss, opencv_iib" 2>/dev/null; then
+    python3 "$root/tools/scale/measure.py" --flat
+fi
 if [ -n "$document" ]; then
     /usr/bin/python3 "$root/tools/benchmark/plot.py" "$document/benchmark.json" "$root/doc/speed.svg"
     /usr/bin/python3 "$root/scripts/figures.py" --write

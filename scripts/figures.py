@@ -203,7 +203,7 @@ def benchmark(name):
     return json.loads((ROOT / 'doc/results' / name).read_text())
 
 
-WIDE, NARROW = 'benchmark.json', 'benchmark_without_avx2.json'
+WIDE, AVX2, NARROW = 'benchmark.json', 'benchmark_without_avx512.json', 'benchmark_without_avx2.json'
 
 
 def describing():
@@ -244,6 +244,41 @@ def matching_speed():
         lines.append(['{0:,} x {0:,}'.format(codes)] + ['%.0f' % found['EXACT', codes, cross]
                                                        for found in (wide, narrow) for cross in (0, 1)])
     return table(['codes', 'AVX-512', 'and cross-check', 'without AVX2', 'and cross-check'], lines)
+
+
+def small_work():
+    """What frames of a video ask for, in ratios of one run, with all instruction sets and with fewer."""
+    def column(name):
+        data = benchmark(name)
+        frames, times = data['frames'], {row['name']: row['milliseconds'] for row in data['rows']}
+        pairs = {(m['name'], m['codes'], m['cross_check']): m['milliseconds'] / m['codes'] ** 2 for m in data['matching']}
+        faster = speeds(name)
+
+        def slowest(*presets):
+            return '%.2f' % (max(times['PRESET_' + preset][1] for preset in presets) / times['default'][1])
+
+        def further(row):
+            return times[row][1] - times[row][0]
+        return ['%.2f' % (times['default'][0] / times['cv::ORB'][0]),
+                '%.1f' % (further('useOrientation') / further('default')),
+                slowest('COMPACT', 'BALANCED'), slowest('VIEWPOINT', 'UNIVERSAL'),
+                '%.2f' % (pairs['EXACT', 500, 0] / pairs['EXACT', 10000, 0]),
+                '%.2f' % (pairs['EXACT', 1000, 0] / pairs['EXACT', 10000, 0]),
+                '%.1f' % faster['EXACT', 500, 1], '%.1f' % faster['EXACT', 1000, 1], '%.1f' % faster['EXACT', 10000, 1],
+                '%.2f' % (pairs['EXACT', 10000, 0] / pairs['ADAPTIVE', 10000, 0]),
+                '%.2f' % (frames['iib'] / frames['orb']),
+                '%.0f' % (1000 * frames['one_keypoint']), '%.0f' % (1000 * frames['one_code']),
+                '%.2f' % (frames['describe'][0] / frames['describe'][1]),
+                '%.2f' % (frames['match'][0] / frames['match'][1])]
+    labels = ('describe 1000 points, over ORB', 'a turned point more, over an upright one',
+              'describe 5000 points: COMPACT or BALANCED, the slower one, over the default', 'VIEWPOINT or UNIVERSAL, by boxes',
+              'match 500 with 500: time a pair, over that of 10,000', '1000 with 1000, the same',
+              'match 500 with 500, cross-check: times as fast as BFMatcher', '1000 with 1000', '10,000 with 10,000',
+              'ADAPTIVE: times as fast as EXACT, 10,000 codes',
+              'a frame of 640 x 480: describe and match 1000 points on two threads, over ORB and BFMatcher',
+              'one point of it described, us', 'one code matched with one, us',
+              'describe 5000 points: times as fast on two threads', 'match 5000 with 5000, cross-check: the same')
+    return table(['', 'AVX-512', 'AVX2', 'SSE4.2'], zip(labels, *(column(name) for name in (WIDE, AVX2, NARROW))))
 
 
 SCALE = 'scale.json'
@@ -310,7 +345,7 @@ def place_recognition():
 
 
 PAGES = {'README.md': (detected_points, fixed_points, turned, poses, ratios, presets, matching_speed, costs),
-         'doc/performance.md': (describing, matching, all_costs),
+         'doc/performance.md': (describing, matching, small_work, all_costs),
          'doc/scale.md': (mapped_index, flat_search, approximate_search, on_paper, place_recognition),
          'doc/results/README.md': (extra_channels, all_ratios)}
 

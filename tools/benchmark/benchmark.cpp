@@ -4,6 +4,7 @@
 
 // What a descriptor costs beside cv::ORB on the same keypoints, in one run: prints a table, writes JSON.
 
+#include "frames.hpp"
 #include "matching.hpp"
 #include "scaling.hpp"
 #include "scene.hpp"
@@ -88,6 +89,8 @@ std::vector<Row> allRows(const Mat& image)
             rowOf("SORT", IIB::create(2.f, 4, all, IIB::MAPPING_SORT), image),
             rowOf("HAAR", IIB::create(2.f, 4, all, IIB::MAPPING_HAAR), image),
             rowOf("PAIRWISE", IIB::create(2.f, 4, all, IIB::MAPPING_PAIRWISE), image),
+            rowOf("PRESET_COMPACT", IIB::createPreset(IIB::PRESET_COMPACT), image),
+            rowOf("PRESET_BALANCED", IIB::createPreset(IIB::PRESET_BALANCED), image),
             rowOf("PRESET_VIEWPOINT", IIB::createPreset(IIB::PRESET_VIEWPOINT), image),
             rowOf("PRESET_UNIVERSAL", IIB::createPreset(IIB::PRESET_UNIVERSAL), image),
             rowOf("2 extra channels", IIB::create(2.f, 4, all, IIB::MAPPING_MEAN, false, false, 2), image,
@@ -150,7 +153,8 @@ void print(const std::vector<Row>& rows)
                 marginal(row) / marginal(rows[0]));
 }
 
-void write(const std::vector<Row>& rows, const Scaling& scaling, const Matching& matching, const String& file)
+void write(const std::vector<Row>& rows, const Scaling& scaling, const Matching& matching,
+        const Frames& frames, const String& file)
 {
     FileStorage fs(file, FileStorage::WRITE);
     if (!fs.isOpened())
@@ -168,6 +172,7 @@ void write(const std::vector<Row>& rows, const Scaling& scaling, const Matching&
     fs << "]";
     scaling.write(fs);
     matching.write(fs);
+    frames.write(fs);
 }
 
 int run(const CommandLine& line)
@@ -185,7 +190,9 @@ int run(const CommandLine& line)
     scaling.print();
     const Matching matching = measureMatching(rounds);
     matching.print();
-    write(rows, scaling, matching, line.text("json"));
+    const Frames frames = measureFrames(rounds);
+    frames.print();
+    write(rows, scaling, matching, frames, line.text("json"));
     if (line.has("against"))
         printAgainst(rows, matching, line.text("against"));
     return 0;

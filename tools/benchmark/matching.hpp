@@ -24,9 +24,6 @@ struct Matching
     };
 
     std::vector<Row> rows;
-    //! A frame of 640 x 480 with 1000 points, to the one before: description and mutual matches on two threads.
-    double orbFrame, iibFrame;
-
     void print() const;
     //! How much slower the rows of another run were, as write() has written them.
     void printAgainst(const cv::FileNode& others) const;

@@ -4,7 +4,6 @@
 
 #include "scene.hpp"
 
-#include "opencv2/features2d.hpp"
 #include "opencv2/imgproc.hpp"
 
 using namespace cv;
@@ -23,6 +22,20 @@ Mat cornerImage(Size size)
     return image;
 }
 
+Mat relit(const Mat& image)
+{
+    Mat ramp(1, image.cols, CV_32F), result, noise(image.size(), CV_32F);
+    for (int x = 0; x < image.cols; x++)
+        ramp.at<float>(x) = 0.3f + 0.5f * float(x) / float(image.cols);
+    image.convertTo(result, CV_32F);
+    result = result.mul(repeat(ramp, image.rows, 1));
+    theRNG().state = 4;
+    randn(noise, 0, 6);
+    result += noise;
+    result.convertTo(result, CV_8U);
+    return result;
+}
+
 std::vector<KeyPoint> corners(const Mat& image, size_t count)
 {
     std::vector<KeyPoint> all, chosen;
@@ -39,6 +52,13 @@ std::vector<KeyPoint> corners(const Mat& image, size_t count)
             chosen.back().angle = rng.uniform(0.f, 360.f);
         }
     return chosen;
+}
+
+Mat described(const Ptr<Feature2D>& extractor, const Mat& image, std::vector<KeyPoint> keypoints)
+{
+    Mat descriptors;
+    extractor->compute(image, keypoints, descriptors);
+    return descriptors;
 }
 
 }  // namespace iib_tools

@@ -1,0 +1,26 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef IIB_TOOLS_BENCHMARK_TIMING_HPP
+#define IIB_TOOLS_BENCHMARK_TIMING_HPP
+
+#include "opencv2/core/utility.hpp"
+
+#include <functional>
+
+namespace iib_tools {
+
+//! Milliseconds.
+inline double timeOf(const std::function<void()>& work)
+{
+    cv::TickMeter meter;
+    meter.start();
+    work();
+    meter.stop();
+    return meter.getTimeMilli();
+}
+
+}  // namespace iib_tools
+
+#endif
