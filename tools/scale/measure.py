@@ -3,7 +3,8 @@
 
 Writes JSON: exact search at several widths, approximate indices of faiss at a recall of .95, the folder of a MappedIndex
 of --mapped codes, and Dask's workers on it. Everything that is compared takes turns, and the least time counts. With
---approximate N the approximate indices of N codes alone, beside what FILE has of other numbers.
+--approximate N the approximate indices of N codes alone, beside what FILE has of other numbers. --flat prints the exact
+search alone.
 """
 import argparse
 import json
@@ -14,7 +15,6 @@ import tempfile
 import time
 
 import cv2
-import distributed
 import faiss
 import numpy as np
 import opencv_iib
@@ -23,6 +23,7 @@ from opencv_iib import HierarchicalMatcher, IIB, MappedIndex, shards
 WIDTHS = (16, 32, 64, 128, 170)
 BYTES = 64
 RECALL = .95
+PATIENCE = 60  # seconds: no parameter is raised further once a search of all queries takes longer
 
 
 def random_codes(seed, rows, width=BYTES):
@@ -100,7 +101,8 @@ def photographs(folder, count, queries):
 
 
 def settings(codes):
-    """Approximate indices of faiss: name, how to make one, and values of the parameter that trades time for recall."""
+    """Approximate indices of faiss: name, how to make one, and values of the parameter that trades time for recall. No
+    graph of more than a million codes: it would be slower to build and to search than all others, as it is with fewer."""
     bits = 8 * BYTES
     power = round(np.log2(2 * codes ** .5))
 
@@ -109,9 +111,12 @@ def settings(codes):
 
     def hash_index():
         return faiss.IndexBinaryMultiHash(bits, 16, 18)
-    return (('IndexBinaryIVF, %d lists' % 2 ** power, ivf, 'nprobe', [2 ** i for i in range(power + 1)]),
-            ('IndexBinaryHNSW, M 16', lambda: faiss.IndexBinaryHNSW(bits, 16), 'efSearch', [2 ** i for i in range(3, 12)]),
-            ('IndexBinaryMultiHash, 16 of 18 bits', hash_index, 'nflip', [0, 1, 2, 3]))
+    indices = [('IndexBinaryIVF, %d lists' % 2 ** power, ivf, 'nprobe', [2 ** i for i in range(power + 1)]),
+               ('IndexBinaryMultiHash, 16 of 18 bits', hash_index, 'nflip', [0, 1, 2, 3])]
+    if codes <= 10**6:
+        indices.insert(1, ('IndexBinaryHNSW, M 16', lambda: faiss.IndexBinaryHNSW(bits, 16), 'efSearch',
+                           [2 ** i for i in range(3, 12)]))
+    return indices
 
 
 def approximate(name, train, query, rounds):
@@ -128,13 +133,14 @@ def approximate(name, train, query, rounds):
         begin = time.perf_counter()
         index = make()
         if not index.is_trained:
-            index.train(train[np.random.default_rng(4).permutation(len(train))[:40 * index.nlist]])
+            index.train(train[np.random.default_rng(4).permutation(len(train))[:min(40 * index.nlist, 100000)]])
         index.add(train)
         build = time.perf_counter() - begin
         for value in values:
             setattr(index.hnsw if parameter == 'efSearch' else index, parameter, value)
+            begin = time.perf_counter()
             recall = float(np.mean(index.search(query, 1)[0].ravel() == exact))
-            if recall >= RECALL:
+            if recall >= RECALL or time.perf_counter() - begin > PATIENCE:
                 break
         seconds, = least_seconds([lambda: index.search(query, 1)], rounds)
         rows.append({'data': name, 'index': label, 'setting': f'{parameter} {value}', 'recall': recall,
@@ -187,6 +193,7 @@ def mapped(folder, codes):
 
 def workers(folder, queries, rounds):
     """The same search by one worker and by two, each of one thread."""
+    import distributed  # which the exact search alone does not need
     query, calls, clusters = random_codes(2, queries), [], []
     for count in (1, 2):
         cluster = distributed.LocalCluster(n_workers=count, threads_per_worker=1, dashboard_address=None, silence_logs=50)
@@ -205,13 +212,18 @@ def workers(folder, queries, rounds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('--out', required=True)
+    wanted = parser.add_mutually_exclusive_group(required=True)
+    wanted.add_argument('--out', metavar='FILE')
+    wanted.add_argument('--flat', action='store_true')
     parser.add_argument('--images', help='folder of SET/SEQUENCE/1.png and so on; none: random codes alone')
     parser.add_argument('--codes', type=int, default=300000, help='in approximate indices (%(default)s)')
     parser.add_argument('--approximate', type=int, help='measure approximate indices of so many codes alone')
     parser.add_argument('--mapped', type=int, default=10**7, help='in the MappedIndex (%(default)s)')
     parser.add_argument('--rounds', type=int, default=4, help='(%(default)s)')
     arguments = parser.parse_args()
+    if arguments.flat:
+        flat(100000, 512, arguments.rounds)
+        return
     out = pathlib.Path(arguments.out)
     if arguments.approximate:
         result = json.loads(out.read_text())
