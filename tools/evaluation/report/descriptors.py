@@ -59,8 +59,8 @@ NETWORKS = {"XFeat": "Apache-2.0", "SuperPoint": "noncommercial research only", 
 WARPED = ("IIB", "IIB oriented", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB oriented", "SIFT", "SIFT oriented",
           "BEBLID-512", "TEBLID-512", "LATCH-512")
 
-# Bars of the poses: points of a detector, and what describes them.
-POSES = (("SIFT", "SIFT"), ("SIFT", "IIB UNIVERSAL"), ("SIFT normalized", "SIFT"), ("SIFT normalized", "IIB UNIVERSAL"),
+# Bars of whole tasks: points of a detector, and what describes them.
+TASKS = (("SIFT", "SIFT"), ("SIFT", "IIB UNIVERSAL"), ("SIFT normalized", "SIFT"), ("SIFT normalized", "IIB UNIVERSAL"),
          ("SIFT normalized", "IIB VIEWPOINT"), ("AKAZE", "AKAZE"), ("AKAZE", "IIB UNIVERSAL"),
          ("AKAZE normalized", "AKAZE"), ("AKAZE normalized", "IIB UNIVERSAL"), ("AKAZE normalized", "IIB VIEWPOINT"),
          ("ORB", "ORB"), ("ORB", "BEBLID-512"), ("ORB", "IIB"), ("ORB", "IIB UNIVERSAL"),

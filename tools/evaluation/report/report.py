@@ -151,7 +151,7 @@ def whole_tasks(tables):
         best = {}
         for line in lines:
             best.setdefault((line["detector"], line["descriptor"]), line)
-        bars = [best[key] for key in descriptors.POSES if key in best] if task == "pose" else []
+        bars = [best[key] for key in descriptors.TASKS if key in best] if task != "epipolar" else []
         found.append({"task": task, "images": which, "limits": LIMITS[task], "lines": lines,
                       "sequences": sorted({r["sequence"] for r in members}),
                       "pairs": max(line["pairs"] for line in lines),
