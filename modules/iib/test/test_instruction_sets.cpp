@@ -5,6 +5,12 @@
 #include "test_precomp.hpp"
 #include "../src/descriptor/kernels/kernels.hpp"
 #include "../src/matcher/kernels/hamming.hpp"
+#include "support/test_images.hpp"
+
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <cpuid.h>
+#include <immintrin.h>
+#endif
 
 namespace opencv_test {
 namespace {
@@ -30,6 +36,41 @@ TEST(IIB_InstructionSets, descriptor_runs_on_the_widest)
 TEST(IIB_InstructionSets, matcher_runs_on_the_widest)
 {
     EXPECT_EQ(widestInstructionSet(), hammingKernels().instructionSet);
+}
+#endif
+
+#if defined(__x86_64__) && defined(__GNUC__)
+//! Whether the processor tells which parts of its registers are in use.
+bool tellsWhatIsInUse()
+{
+    unsigned a, b, c, d;
+    if (!__get_cpuid(1, &a, &b, &c, &d) || !(c & bit_OSXSAVE))
+        return false;
+    return __get_cpuid_count(0xd, 1, &a, &b, &c, &d) && (a & 4);
+}
+
+//! The upper halves of ymm0 to ymm15 and of zmm0 to zmm15.
+__attribute__((target("xsave"))) unsigned upperHalvesInUse() { return (unsigned)_xgetbv(1) & 0x44; }
+
+// In use, they make all code without AVX that follows much slower: presets cost twice as much as they had to.
+TEST(IIB_InstructionSets, calls_leave_no_upper_halves_in_use)
+{
+    if (!tellsWhatIsInUse())
+        throw SkipTestException("the processor does not tell which parts of its registers are in use");
+    const Mat image = texture(Size(160, 120), CV_8U, 1);
+    std::vector<KeyPoint> keypoints = {KeyPoint(60, 60, 20), KeyPoint(80, 50, 20, 30)};
+    Mat descriptors;
+    for (int preset = 0; preset <= IIB::PRESET_UNIVERSAL; preset++)
+        for (int orientation : {IIB::ORIENTATION_NONE, IIB::ORIENTATION_KEYPOINT, IIB::ORIENTATION_GRADIENT})
+        {
+            const Ptr<IIB> iib = IIB::createPreset(preset);
+            iib->setOrientation(orientation);
+            iib->compute(image, keypoints, descriptors);
+            EXPECT_EQ(0u, upperHalvesInUse()) << "preset " << preset << ", orientation " << orientation;
+            std::vector<DMatch> matches;
+            HierarchicalMatcher::create(iib->levelSizes())->match(descriptors, descriptors, matches);
+            EXPECT_EQ(0u, upperHalvesInUse()) << "matching, preset " << preset;
+        }
 }
 #endif
 
