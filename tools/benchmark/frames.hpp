@@ -12,11 +12,11 @@ namespace iib_tools {
 //! What small work costs, of which a video has much, and what a second thread brings. Milliseconds, least of all rounds.
 struct Frames
 {
-    double orb, iib;      //!< a frame described and matched to the last one, on two threads
-    double oneKeypoint;   //!< of such a frame, described
-    double oneCode;       //!< matched with one
-    double describe[2];   //!< many keypoints, on one thread and on two
-    double match[2];      //!< many codes, mutually
+    double orb, iib;     //!< a frame described and matched to the last one, on two threads
+    double oneKeypoint;  //!< of such a frame, described
+    double oneCode;      //!< matched with one
+    double describe[2];  //!< many keypoints, on one thread and on two
+    double match[2];     //!< many codes, mutually
 
     void print() const;
     void write(cv::FileStorage& fs) const;
