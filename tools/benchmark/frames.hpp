@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef IIB_TOOLS_BENCHMARK_FRAMES_HPP
-#define IIB_TOOLS_BENCHMARK_FRAMES_HPP
+#ifndef OPENCV_IIB_BENCHMARK_FRAMES_HPP
+#define OPENCV_IIB_BENCHMARK_FRAMES_HPP
 
 #include "opencv2/core.hpp"
 

@@ -24,6 +24,7 @@ struct Matching
     };
 
     std::vector<Row> rows;
+
     void print() const;
     //! How much slower the rows of another run were, as write() has written them.
     void printAgainst(const cv::FileNode& others) const;

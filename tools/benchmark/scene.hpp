@@ -18,6 +18,7 @@ cv::Mat relit(const cv::Mat& image);
 //! FAST corners, spread over the image, with ORB's size, away from the border, where ORB would drop them.
 std::vector<cv::KeyPoint> corners(const cv::Mat& image, size_t count);
 
+//! The descriptors of the keypoints, of which those that the extractor drops are missing.
 cv::Mat described(
         const cv::Ptr<cv::Feature2D>& extractor, const cv::Mat& image, std::vector<cv::KeyPoint> keypoints);
 

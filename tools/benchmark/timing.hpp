@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef IIB_TOOLS_BENCHMARK_TIMING_HPP
-#define IIB_TOOLS_BENCHMARK_TIMING_HPP
+#ifndef OPENCV_IIB_BENCHMARK_TIMING_HPP
+#define OPENCV_IIB_BENCHMARK_TIMING_HPP
 
 #include "opencv2/core/utility.hpp"
 
@@ -11,7 +11,7 @@
 
 namespace iib_tools {
 
-//! Milliseconds.
+//! Milliseconds that one call takes.
 inline double timeOf(const std::function<void()>& work)
 {
     cv::TickMeter meter;
