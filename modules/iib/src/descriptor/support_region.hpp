@@ -57,8 +57,9 @@ struct SupportRegion
     //! Whether no pixel of the upright region lies outside the image.
     bool isInside(Size image) const
     {
-        return std::floor(x + 0.5) >= 0 && std::floor(x + side + 0.5) <= image.width &&
-               std::floor(y + 0.5) >= 0 && std::floor(y + side + 0.5) <= image.height;
+        // as whole edges, which are the floors of these, compare with whole numbers
+        return x + 0.5 >= 0 && x + side + 0.5 < image.width + 1 && y + 0.5 >= 0 &&
+               y + side + 0.5 < image.height + 1;
     }
 };
 
