@@ -93,7 +93,7 @@ void describeBatch(const DescriptorPlan& plan, const BoxInput& input,
     const std::vector<Channel> source = {{IIB::CHANNEL_SIGNED_GRAD_X, image},
             {IIB::CHANNEL_SIGNED_GRAD_Y, image}, {IIB::CHANNEL_INTENSITY, image}};
     CellBand<T, Sum> band(source, batch.area, batch.rows + KeyPointBatch::BAND_ROWS, plan.kernels, sumRow,
-            workspace.channelRows, workspace.planes, workspace.integralRing);
+            workspace.channelRows, workspace.planes, workspace.ring);
     const BoxIntegral<Sum>& integral = band.integral();
     Mean* const means = workspace.boxMeans.get<Mean>(MAX_BOX_MEANS);
     BoxFrame frame;

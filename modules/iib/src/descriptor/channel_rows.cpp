@@ -9,14 +9,6 @@ namespace iib {
 
 namespace {
 
-// Rows of the scratch memory: three of the image in turn, the channels.
-enum
-{
-    IMAGE_ROWS = 3,
-    FIRST_PLANE = IMAGE_ROWS,
-    SCRATCH_ROWS = FIRST_PLANE + GROUP_CHANNELS
-};
-
 template <typename T>
 void widen(const RowKernels<T>& kernels, const Mat& map, int y, int x, T* out, int width)
 {
@@ -34,7 +26,7 @@ ChannelRows<T>::ChannelRows(const std::vector<Channel>& channels_, Rect area_, i
     : channels(channels_), area(area_),
       source(reflectedRange(area_.x, area_.x + area_.width, channels_[0].map.cols)),
       origin(std::min(area_.x, source.start)), signedOffset((T)signedOffset_), kernels(kernels_),
-      gradientOf(0), imageChannels(),
+      gradientOf(0),
       step(wholeLines<T>((size_t)std::max(area_.x + area_.width, source.end) - origin + 2 + ROW_PADDING)),
       scratch(memory.get<T>(SCRATCH_ROWS * step))
 {
@@ -43,27 +35,31 @@ ChannelRows<T>::ChannelRows(const std::vector<Channel>& channels_, Rect area_, i
             gradientOf = &c.map;
     for (int& y : read)
         y = -1;
-    T* out[GROUP_CHANNELS];
     for (int i = 0; i < GROUP_CHANNELS; i++)
-    {
-        T* const plane = row(FIRST_PLANE + std::min(i, (int)channels.size() - 1));
-        planes[i] = plane + (area.x - origin);
-        out[i] = plane + (source.start - origin);
-    }
-    for (size_t i = 0; i < channels.size(); i++)
-        switch (channels[i].kind)
-        {
-        case IIB::CHANNEL_GRAD_X: imageChannels.absoluteX = out[i]; break;
-        case IIB::CHANNEL_GRAD_Y: imageChannels.absoluteY = out[i]; break;
-        case IIB::CHANNEL_ORIENTATION: imageChannels.steps = out[i]; break;
-        case IIB::CHANNEL_SIGNED_GRAD_X: imageChannels.x = out[i]; break;
-        case IIB::CHANNEL_SIGNED_GRAD_Y: imageChannels.y = out[i]; break;
-        case IIB::CHANNEL_INTENSITY: imageChannels.pixels = out[i]; break;
-        default: break;
-        }
+        placeOf[i] = std::min(i, (int)channels.size() - 1) * step + (area.x - origin);
 }
 
-template <typename T> void ChannelRows<T>::computeGradient(int y)
+template <typename T> ImageChannelRows<T> ChannelRows<T>::imageChannels(T* out) const
+{
+    ImageChannelRows<T> rows = ImageChannelRows<T>();
+    for (size_t i = 0; i < channels.size(); i++)
+    {
+        T* const plane = out + i * step + (source.start - origin);
+        switch (channels[i].kind)
+        {
+        case IIB::CHANNEL_GRAD_X: rows.absoluteX = plane; break;
+        case IIB::CHANNEL_GRAD_Y: rows.absoluteY = plane; break;
+        case IIB::CHANNEL_ORIENTATION: rows.steps = plane; break;
+        case IIB::CHANNEL_SIGNED_GRAD_X: rows.x = plane; break;
+        case IIB::CHANNEL_SIGNED_GRAD_Y: rows.y = plane; break;
+        case IIB::CHANNEL_INTENSITY: rows.pixels = plane; break;
+        default: break;
+        }
+    }
+    return rows;
+}
+
+template <typename T> ImageRows<T> ChannelRows<T>::imageRows(int y)
 {
     const T* around[3];
     for (int i = 0; i < 3; i++)
@@ -80,7 +76,7 @@ template <typename T> void ChannelRows<T>::computeGradient(int y)
         widen(kernels, *gradientOf, imageY, left, out, 1);
         widen(kernels, *gradientOf, imageY, right, out + source.size() + 1, 1);
     }
-    kernels.imageChannels(around[0], around[1], around[2], signedOffset, imageChannels, source.size());
+    return {around[0], around[1], around[2]};
 }
 
 //! Fills what lies beside the image.
@@ -97,7 +93,7 @@ template <typename T> void ChannelRows<T>::compute(int y)
 {
     y = reflected(y, channels[0].map.rows);
     if (gradientOf)
-        computeGradient(y);
+        kernels.imageChannels(imageRows(y), signedOffset, imageChannels(row(FIRST_PLANE)), source.size());
     for (size_t i = 0; i < channels.size(); i++)
     {
         T* const out = row(FIRST_PLANE + (int)i);
@@ -105,6 +101,14 @@ template <typename T> void ChannelRows<T>::compute(int y)
             widen(kernels, channels[i].map, y, source.start, out + (source.start - origin), source.size());
         reflect(out);
     }
+}
+
+template <typename T> void ChannelRows<T>::add(int y, const T* above, T* out)
+{
+    y = reflected(y, channels[0].map.rows);
+    kernels.addImageChannels(imageRows(y), signedOffset, imageChannels(out), above - out, source.size());
+    for (size_t i = 0; i < channels.size(); i++)
+        reflect(out + i * step);
 }
 
 template class ChannelRows<short>;

@@ -20,7 +20,8 @@ public:
     IntegralBand(const std::vector<Channel>& channels, Rect area, int rows, const DescriptorKernels& kernels,
             ScratchMemory& rowMemory, ScratchMemory& ringMemory)
         : channelRows(channels, area, maxGradient(channels), kernels.pixels<T>().rows, rowMemory),
-          width(area.width), done(area.y), sumRow(kernels.sumRow<T, Sum>())
+          width(area.width), done(area.y), sumRow(kernels.sumRow<T, Sum>()),
+          sumCells(kernels.sums<Sum>().cells)
     {
         view.step = rowBytes(area.width) / sizeof(Sum);
         view.count = rows;
@@ -47,7 +48,11 @@ public:
         }
     }
 
-    const IntegralRows<Sum>& rows() const { return view; }
+    //! Sums over n x n cells.
+    void cells(const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& sums) const
+    {
+        sumCells(view, xEdges, yEdges, n, sums);
+    }
 
 private:
     static size_t rowBytes(int width)
@@ -63,6 +68,7 @@ private:
     const int width;
     int done;  //!< rows of the image above this one are in the newest row
     const typename SumRowFunc<T, Sum>::Type sumRow;
+    const typename SumKernels<Sum>::CellsFunc sumCells;
     Sum* begin;
     IntegralRows<Sum> view;
 };

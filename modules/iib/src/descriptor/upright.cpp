@@ -4,6 +4,7 @@
 
 #include "upright.hpp"
 
+#include "column_band.hpp"
 #include "integral_band.hpp"
 
 namespace cv {
@@ -67,9 +68,9 @@ template <> CellGrid<ushort>& cellsOf(Workspace& workspace) { return workspace.s
 template <> CellGrid<unsigned>& cellsOf(Workspace& workspace) { return workspace.cells; }
 
 //! Cells whose sums could exceed a Sum are put together from smaller ones.
-template <typename Sum>
-const CellGrid<double>& largeCellSums(const SumKernels<Sum>& kernels, const IntegralRows<Sum>& rows,
-        const CellEdges& edges, int n, double largestPixel, Workspace& workspace)
+template <typename Sum, typename Band>
+const CellGrid<double>& largeCellSums(
+        const Band& band, const CellEdges& edges, int n, double largestPixel, Workspace& workspace)
 {
     const double largestSum = std::numeric_limits<Sum>::max();
     int parts = 2;
@@ -77,24 +78,24 @@ const CellGrid<double>& largeCellSums(const SumKernels<Sum>& kernels, const Inte
         parts *= 2;
     const FineEdges fine(edges, n, parts);
     CellGrid<Sum>& fineCells = cellsOf<Sum>(workspace);
-    kernels.cells(rows, fine.x.data(), fine.y.data(), n * parts, fineCells);
+    band.cells(fine.x.data(), fine.y.data(), n * parts, fineCells);
     gather(fineCells, workspace.doubleCells, n);
     return workspace.doubleCells;
 }
 
-template <typename T, typename Sum>
+//! By sums over rows and columns that a Band makes.
+template <typename Band, typename Sum>
 void describeBatch(const DescriptorPlan& plan, const ChannelGroup& group,
         const std::vector<Channel>& channels, const KeyPointBatch& batch,
         const std::vector<SupportRegion>& regions, Workspace& workspace, Mat& descriptors)
 {
     const Size image = channels[0].map.size();
     const int n = plan.cellsInRow(), largest = maxValue(channels, maxGradient(channels));
-    const SumKernels<Sum>& kernels = plan.kernels.sums<Sum>();
     const double largestSum = std::numeric_limits<Sum>::max();
     CellGrid<Sum>& cells = cellsOf<Sum>(workspace);
     const BitEncoder encoder(plan, group, largest, workspace.encoder);
-    IntegralBand<T, Sum> band(channels, batch.area, batch.rows + KeyPointBatch::BAND_ROWS + 1, plan.kernels,
-            workspace.channelRows, workspace.integralRing);
+    Band band(channels, batch.area, batch.rows + KeyPointBatch::BAND_ROWS + 1, plan.kernels,
+            workspace.channelRows, workspace.ring);
     CellEdges edges;
 
     for (int k : batch.keypoints)
@@ -107,24 +108,34 @@ void describeBatch(const DescriptorPlan& plan, const ChannelGroup& group,
         const double cell = longestCell(region.side, n);
         if (largest * cell * cell <= largestSum)
         {
-            kernels.cells(band.rows(), edges.x, edges.y, n, cells);
+            band.cells(edges.x, edges.y, n, cells);
             encoder.write(cells, edges, cell, descriptor);
         }
         else
-            encoder.write(largeCellSums(kernels, band.rows(), edges, n, largest, workspace), edges, cell,
-                    descriptor);
+            encoder.write(largeCellSums<Sum>(band, edges, n, largest, workspace), edges, cell, descriptor);
     }
 }
 
-//! Whether 16 bits hold the sums over the finest cells of all keypoints.
-bool sumsAreShort(
-        int largest, const KeyPointBatch& batch, const std::vector<SupportRegion>& regions, int cellsInRow)
+double largestSide(const KeyPointBatch& batch, const std::vector<SupportRegion>& regions)
 {
     double side = 0;
     for (int k : batch.keypoints)
         side = std::max(side, regions[k].side);
-    const double cell = longestCell(side, cellsInRow);
-    return largest * cell * cell <= USHRT_MAX;
+    return side;
+}
+
+//! Whether sums down the columns take less time than integral images: where cells are narrow, and keypoints are few.
+bool columnsAreFaster(const DescriptorPlan& plan, const std::vector<Channel>& channels,
+        const KeyPointBatch& batch, double side)
+{
+    const double pixelsOfKeyPoint = 256;  // so many make up for the longer time that a keypoint's cells take
+    bool ofImage = maxGradient(channels) > 0;
+    for (const Channel& c : channels)
+        ofImage = ofImage && c.kind != 0;
+    const int n = plan.cellsInRow();
+    // 7 * (64.f / 7), the region of FAST's keypoints, is a little more than 64
+    return plan.kernels.columnCells && ofImage && n % 8 == 0 && side <= ColumnRows::CELL * n * 1.000001 &&
+           pixelsOfKeyPoint * (double)batch.keypoints.size() <= (double)batch.area.width * batch.area.height;
 }
 
 }  // namespace
@@ -133,13 +144,15 @@ void describeUpright(const DescriptorPlan& plan, const ChannelGroup& group,
         const std::vector<Channel>& channels, const KeyPointBatch& batch,
         const std::vector<SupportRegion>& regions, Workspace& workspace, Mat& descriptors)
 {
-    const int largest = maxValue(channels, maxGradient(channels));
-    if (is16Bit(channels))
-        describeBatch<int, unsigned>(plan, group, channels, batch, regions, workspace, descriptors);
-    else if (sumsAreShort(largest, batch, regions, plan.cellsInRow()))
-        describeBatch<short, ushort>(plan, group, channels, batch, regions, workspace, descriptors);
-    else
-        describeBatch<short, unsigned>(plan, group, channels, batch, regions, workspace, descriptors);
+    const double side = largestSide(batch, regions), cell = longestCell(side, plan.cellsInRow());
+    // whether 16 bits hold the sums over the finest cells of all keypoints
+    const bool isShort = maxValue(channels, maxGradient(channels)) * cell * cell <= USHRT_MAX;
+    const auto describe = is16Bit(channels) ? describeBatch<IntegralBand<int, unsigned>, unsigned>
+                          : !isShort        ? describeBatch<IntegralBand<short, unsigned>, unsigned>
+                          : columnsAreFaster(plan, channels, batch, side)
+                                  ? describeBatch<ColumnBand, ushort>
+                                  : describeBatch<IntegralBand<short, ushort>, ushort>;
+    describe(plan, group, channels, batch, regions, workspace, descriptors);
 }
 
 }  // namespace iib

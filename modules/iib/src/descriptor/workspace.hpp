@@ -20,7 +20,7 @@ struct Workspace
         MAX_PACKS = 1 + (MAX_EXTRA_CHANNELS + GROUP_CHANNELS - 1) / GROUP_CHANNELS
     };
 
-    ScratchMemory channelRows, integralRing;
+    ScratchMemory channelRows, ring;
     ScratchMemory sourceRows[MAX_PACKS], sourcePixels[MAX_PACKS], sparsePixels,
             planes;  //!< of rotated regions
     CellGrid<ushort> shortCells;

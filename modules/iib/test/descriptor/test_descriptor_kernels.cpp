@@ -142,6 +142,86 @@ TEST(IIB_DescriptorKernels, cell_sums)
     checkCells<unsigned>(1 << 20);
 }
 
+//! From sums down the columns of as many channels, where the kernel exists.
+void checkColumnCells(int channels, int widest)
+{
+    Integers random(11);
+    const Rect area(11, 5, 330, 70);
+    const Ring<ushort> ring(area, 66, 64, 60, random);
+    const size_t plane = (size_t)area.width + ROW_PADDING;
+    std::vector<ushort> values(GROUP_CHANNELS * plane * ring.rows.count);
+    ColumnRows rows = {values.data(), GROUP_CHANNELS * plane, {}, ring.rows.count, ring.rows.origin};
+    for (int i = 0; i < GROUP_CHANNELS; i++)
+        rows.channels[i] = std::min(i, channels - 1) * plane;
+    for (int y = 0; y < rows.count; y++)
+        for (int i = 0; i < GROUP_CHANNELS; i++)
+            for (int x = 0; x < area.width; x++)
+                values[y * rows.step + i * plane + x] = (ushort)(60000 + ring.sum(x, 0, x + 1, y, i));
+    for (int n = 8; n <= 64; n *= 2)
+        for (int round = 0; round < 20; round++)
+        {
+            std::vector<int> x(1, area.x + random.below(10)), y(n + 1);
+            for (int i = 0; i < n; i++)
+                x.push_back(x[i] + std::max(0, widest - random.below(3)));
+            for (int& v : y)
+                v = area.y + random.below(65);
+            std::sort(y.begin(), y.end());
+            x.resize(paddedEdges(n), x[n]);
+            CellGrid<ushort> cells;
+            descriptorKernels().columnCells(rows, x.data(), y.data(), n, cells);
+            for (int r = 0; r < n; r++)
+                for (int c = 0; c < n; c++)
+                    for (int i = 0; i < GROUP_CHANNELS; i++)
+                        ASSERT_EQ(ring.sum(x[c] - area.x, y[r] - area.y, x[c + 1] - area.x, y[r + 1] - area.y,
+                                          std::min(i, channels - 1)),
+                                cells.cell(r, c)[i])
+                                << n << ": " << r << ", " << c;
+        }
+}
+
+TEST(IIB_DescriptorKernels, cell_sums_from_columns)
+{
+    if (!descriptorKernels().columnCells)
+        throw SkipTestException("these instructions have no such kernel");
+    for (int channels = 1; channels <= GROUP_CHANNELS; channels++)
+        for (int widest = 0; widest <= 5; widest++)
+            checkColumnCells(channels, widest);
+}
+
+//! Channels added to other rows are what they are alone, and those rows.
+template <typename T> void checkAddedChannels(int limit)
+{
+    Integers random(12);
+    const RowKernels<T>& kernels = descriptorKernels().pixels<T>().rows;
+    for (int width = 1; width <= 140; width++)
+    {
+        const std::vector<T> above = randomRow<T>(random, width + 2, limit),
+                             middle = randomRow<T>(random, width + 2, limit),
+                             below = randomRow<T>(random, width + 2, limit);
+        const ImageRows<T> rows = {above.data(), middle.data(), below.data()};
+        const size_t step = width + ROW_PADDING;
+        std::vector<T> alone(6 * step), sums = randomRow<T>(random, 12 * (int)step, 30000);
+        const auto planes = [&](T* p) {
+            const ImageChannelRows<T> out = {
+                    p, p + step, p + 2 * step, p + 3 * step, p + 4 * step, p + 5 * step};
+            return out;
+        };
+        kernels.imageChannels(rows, (T)(4 * limit), planes(alone.data()), width);
+        T* const added = sums.data() + 6 * step;
+        kernels.addImageChannels(rows, (T)(4 * limit), planes(added), -6 * (ptrdiff_t)step, width);
+        for (int i = 0; i < 6; i++)
+            for (int x = 0; x < width; x++)
+                ASSERT_EQ((T)(sums[i * step + x] + alone[i * step + x]), added[i * step + x])
+                        << "width " << width << " channel " << i << " x " << x;
+    }
+}
+
+TEST(IIB_DescriptorKernels, channels_added_to_rows)
+{
+    checkAddedChannels<short>(256);
+    checkAddedChannels<int>(65536);
+}
+
 TEST(IIB_DescriptorKernels, cell_edges)
 {
     Integers random(9);

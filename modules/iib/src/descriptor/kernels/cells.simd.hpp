@@ -50,7 +50,8 @@ template <typename V> struct RowSums
 template <typename Sum> class RowFinder
 {
 public:
-    RowFinder(const IntegralRows<Sum>& rows, int top)
+    template <typename Rows>
+    RowFinder(const Rows& rows, int top)
         : data(rows.data), step(rows.step), count(rows.count), shift((top - rows.origin.y) % count - top)
     {
     }

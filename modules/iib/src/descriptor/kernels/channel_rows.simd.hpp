@@ -20,67 +20,184 @@ inline v_int16 absolute(const v_int16& v) { return v_reinterpret_as_s16(v_abs(v)
 
 inline v_int32 absolute(const v_int32& v) { return v_reinterpret_as_s32(v_abs(v)); }
 
+inline v_int16 addModulo(const v_int16& a, const v_int16& b) { return v_add_wrap(a, b); }
+inline v_int32 addModulo(const v_int32& a, const v_int32& b) { return a + b; }
+
 inline v_int16 setAll(short v) { return vx_setall_s16(v); }
 inline v_int32 setAll(int v) { return vx_setall_s32(v); }
 
-//! ORIENTATION_STEPS / 8 steps for equal sides; lo <= hi, hi > 0.
-inline v_int32 octantSteps(const v_int32& lo, const v_int32& hi)
+/* ORIENTATION_STEPS / 8 steps for equal sides, of 16-bit lanes or 32-bit ones that are 0 or greater. Other work finds room
+ between the division and what follows it. */
+class OctantSteps32
 {
-    const v_float32 t = exactQuotient(v_cvt_f32(lo), v_cvt_f32(hi)), t2 = t * t;
-    const v_float32 a = vx_setall_f32(ATAN_A), b = vx_setall_f32(ATAN_B), c = vx_setall_f32(ATAN_C);
-    return nearestInt(((c * t2 + b) * t2 + a) * t);
-}
+public:
+    //! @param lo, hi lo <= hi, hi > 0.
+    OctantSteps32(const v_int32& lo, const v_int32& hi) : t(exactQuotient(v_cvt_f32(lo), v_cvt_f32(hi))) {}
 
-//! Even and odd lanes apart, which takes no shuffle; lanes are 0 or greater.
-inline v_int16 octantSteps(const v_int16& lo, const v_int16& hi)
-{
-    const v_int32 low = vx_setall_s32(0xffff), lo2 = v_reinterpret_as_s32(lo), hi2 = v_reinterpret_as_s32(hi);
-    const v_int32 even = octantSteps(lo2 & low, hi2 & low), odd = octantSteps(lo2 >> 16, hi2 >> 16);
-    return v_reinterpret_as_s16(even | (odd << 16));
-}
+    v_int32 operator()() const
+    {
+        const v_float32 t2 = t * t;
+        return nearestInt(((c() * t2 + b()) * t2 + a()) * t);
+    }
 
-template <typename T, typename V> inline V orientation(const V& gx, const V& gy)
+    //! The same for sides of up to 11 bits, where a rounding less changes no step.
+    v_int32 ofShortSides() const
+    {
+        const v_float32 t2 = t * t;
+        return nearestInt(v_muladd(v_muladd(c(), t2, b()), t2, a()) * t);
+    }
+
+private:
+    static v_float32 a() { return vx_setall_f32(ATAN_A); }
+    static v_float32 b() { return vx_setall_f32(ATAN_B); }
+    static v_float32 c() { return vx_setall_f32(ATAN_C); }
+
+    const v_float32 t;
+};
+
+//! Even and odd lanes apart, which takes no shuffle.
+class OctantSteps16
 {
-    const V ax = absolute(gx), ay = absolute(gy);
-    V s = octantSteps(v_min(ax, ay), v_max(v_max(ax, ay), setAll((T)1)));
-    s = subtractWhereNegative(ax - ay, setAll((T)(ORIENTATION_STEPS / 4)), s);
-    s = subtractWhereNegative(gx, setAll((T)(ORIENTATION_STEPS / 2)), s);
-    s = subtractWhereNegative(setAll((T)0) - gy, setAll((T)ORIENTATION_STEPS), s);
-    return s & setAll((T)(ORIENTATION_STEPS - 1));
-}
+public:
+    OctantSteps16(const v_int16& lo, const v_int16& hi)
+        : even(v_reinterpret_as_s32(lo) & low(), v_reinterpret_as_s32(hi) & low()),
+          odd(v_reinterpret_as_s32(lo) >> 16, v_reinterpret_as_s32(hi) >> 16)
+    {
+    }
+
+    v_int16 operator()() const
+    {
+        return v_reinterpret_as_s16(even.ofShortSides() | (odd.ofShortSides() << 16));
+    }
+
+private:
+    static v_int32 low() { return vx_setall_s32(0xffff); }
+
+    const OctantSteps32 even, odd;
+};
+
+template <typename V> struct OctantSteps;
+template <> struct OctantSteps<v_int16>
+{
+    typedef OctantSteps16 Type;
+};
+template <> struct OctantSteps<v_int32>
+{
+    typedef OctantSteps32 Type;
+};
+
+//! A gradient, its absolute values, and where it points.
+template <typename T, typename V> struct Gradient
+{
+    V x, y, absoluteX, absoluteY;
+
+    Gradient(const V& gx, const V& gy) : x(gx), y(gy), absoluteX(absolute(gx)), absoluteY(absolute(gy)) {}
+
+    //! Sobel 3x3. The rows begin one pixel to the left.
+    static Gradient sobel(const T* above, const T* middle, const T* below)
+    {
+        const V a0 = vx_load(above), a1 = vx_load(above + 1), a2 = vx_load(above + 2);
+        const V m0 = vx_load(middle), m2 = vx_load(middle + 2);
+        const V b0 = vx_load(below), b1 = vx_load(below + 1), b2 = vx_load(below + 2);
+        const V dm = m2 - m0, d0 = b0 - a0, d1 = b1 - a1, d2 = b2 - a2;
+        return Gradient(((a2 - a0) + (b2 - b0)) + (dm + dm), (d0 + d2) + (d1 + d1));
+    }
+
+    typename OctantSteps<V>::Type octant() const
+    {
+        return typename OctantSteps<V>::Type(
+                v_min(absoluteX, absoluteY), v_max(v_max(absoluteX, absoluteY), setAll((T)1)));
+    }
+
+    //! atan2(-gy, gx), modulo ORIENTATION_STEPS, from the steps in its octant.
+    V orientation(V s) const
+    {
+        const V zero = setAll((T)0);
+        s = subtractWhereLess(absoluteX, absoluteY, setAll((T)(ORIENTATION_STEPS / 4)), s);
+        s = subtractWhereLess(x, zero, setAll((T)(ORIENTATION_STEPS / 2)), s);
+        s = subtractWhereLess(zero, y, setAll((T)ORIENTATION_STEPS), s);
+        return s & setAll((T)(ORIENTATION_STEPS - 1));
+    }
+};
 
 template <typename T> void orientationRow(const T* gx, const T* gy, T* steps, int width)
 {
-    for (int x = 0; x < width; x += VTraits<decltype(setAll(T()))>::max_nlanes)
-        v_store(steps + x, orientation<T>(vx_load(gx + x), vx_load(gy + x)));
+    typedef decltype(setAll(T())) V;
+    for (int x = 0; x < width; x += VTraits<V>::max_nlanes)
+    {
+        const Gradient<T, V> g(vx_load(gx + x), vx_load(gy + x));
+        v_store(steps + x, g.orientation(g.octant()()));
+    }
+}
+
+//! What becomes of a channel's values: they are stored,
+struct Store
+{
+    template <typename T, typename V> void operator()(T* out, const V& values) const { v_store(out, values); }
+};
+
+//! or added to others, and then stored.
+struct AddTo
+{
+    ptrdiff_t above;
+
+    template <typename T, typename V> void operator()(T* out, const V& values) const
+    {
+        v_store(out, addModulo(values, vx_load(out + above)));
+    }
+};
+
+//! Two vectors at once: the divisions of one are on their way while the other goes on.
+template <typename T, typename Put>
+inline void imageChannelRows(
+        const ImageRows<T>& in, T signedOffset, ImageChannelRows<T> out, int width, const Put& put)
+{
+    typedef decltype(setAll(T())) V;
+    enum
+    {
+        N = VTraits<V>::max_nlanes
+    };
+    const ImageRows<T> rows = in;  // a local copy: a store could change `in`, so that it would be loaded anew
+    const V offset = setAll(signedOffset);
+    for (int x = 0; x < width; x += 2 * N)
+    {
+        const T *const above = rows.above + x, *const middle = rows.middle + x, *const below = rows.below + x;
+        const auto g = Gradient<T, V>::sobel(above, middle, below);
+        const auto h = Gradient<T, V>::sobel(above + N, middle + N, below + N);
+        const auto putBoth = [&](T* row, const V& first, const V& second) {
+            put(row + x, first);
+            put(row + x + N, second);
+        };
+        if (out.pixels)
+            putBoth(out.pixels, vx_load(middle + 1), vx_load(middle + N + 1));
+        if (out.x)
+            putBoth(out.x, g.x + offset, h.x + offset);
+        if (out.y)
+            putBoth(out.y, g.y + offset, h.y + offset);
+        if (out.absoluteX)
+            putBoth(out.absoluteX, g.absoluteX, h.absoluteX);
+        if (out.absoluteY)
+            putBoth(out.absoluteY, g.absoluteY, h.absoluteY);
+        if (out.steps)
+        {
+            const auto first = g.octant(), second = h.octant();
+            putBoth(out.steps, g.orientation(first()), h.orientation(second()));
+        }
+    }
 }
 
 template <typename T>
-void imageChannelRows(
-        const T* above, const T* middle, const T* below, T signedOffset, ImageChannelRows<T> out, int width)
+void imageChannelRows(const ImageRows<T>& rows, T signedOffset, const ImageChannelRows<T>& out, int width)
 {
-    typedef decltype(setAll(T())) V;
-    const V offset = setAll(signedOffset);
-    for (int x = 0; x < width; x += VTraits<V>::max_nlanes)
-    {
-        const V a0 = vx_load(above + x), a1 = vx_load(above + x + 1), a2 = vx_load(above + x + 2);
-        const V m0 = vx_load(middle + x), m2 = vx_load(middle + x + 2);
-        const V b0 = vx_load(below + x), b1 = vx_load(below + x + 1), b2 = vx_load(below + x + 2);
-        const V dm = m2 - m0, d0 = b0 - a0, d1 = b1 - a1, d2 = b2 - a2;
-        const V gx = ((a2 - a0) + (b2 - b0)) + (dm + dm), gy = (d0 + d2) + (d1 + d1);
-        if (out.pixels)
-            v_store(out.pixels + x, vx_load(middle + x + 1));
-        if (out.x)
-            v_store(out.x + x, gx + offset);
-        if (out.y)
-            v_store(out.y + x, gy + offset);
-        if (out.absoluteX)
-            v_store(out.absoluteX + x, absolute(gx));
-        if (out.absoluteY)
-            v_store(out.absoluteY + x, absolute(gy));
-        if (out.steps)
-            v_store(out.steps + x, orientation<T>(gx, gy));
-    }
+    imageChannelRows(rows, signedOffset, out, width, Store());
+}
+
+template <typename T>
+void addImageChannelRows(
+        const ImageRows<T>& rows, T signedOffset, const ImageChannelRows<T>& out, ptrdiff_t above, int width)
+{
+    const AddTo put = {above};
+    imageChannelRows(rows, signedOffset, out, width, put);
 }
 
 void widenRow(const uchar* in, short* out, int width)
@@ -119,7 +236,8 @@ template <typename T> void interleaveRow(const T* const planes[GROUP_CHANNELS], 
 
 template <typename T> RowKernels<T> rowKernels()
 {
-    const RowKernels<T> k = {imageChannelRows<T>, orientationRow<T>, widenRow, widenRow, interleaveRow<T>};
+    const RowKernels<T> k = {imageChannelRows<T>, addImageChannelRows<T>, orientationRow<T>, widenRow,
+            widenRow, interleaveRow<T>};
     return k;
 }
 

@@ -19,6 +19,12 @@ enum
     MAPPINGS = IIB::MAPPING_PAIRWISE + 1  //!< of quads
 };
 
+//! Three rows of an image. They begin one pixel left of those that are wanted and end one pixel right of them.
+template <typename T> struct ImageRows
+{
+    const T *above, *middle, *below;
+};
+
 //! Where a row of an image's channels goes; null for what is not wanted.
 template <typename T> struct ImageChannelRows
 {
@@ -31,10 +37,12 @@ template <typename T> struct ImageChannelRows
 //! What a row of pixels goes through. Rows begin anywhere and have ROW_PADDING values more than `width`.
 template <typename T> struct RowKernels
 {
-    /** Sobel 3x3. The three source rows begin one pixel left of the others and end one pixel right of them.
+    /** Sobel 3x3.
      @param offset added to the gradients with signs. */
-    void (*imageChannels)(
-            const T* above, const T* middle, const T* below, T offset, ImageChannelRows<T> out, int width);
+    void (*imageChannels)(const ImageRows<T>& rows, T offset, const ImageChannelRows<T>& out, int width);
+    //! The same, and adds to each value, modulo 2^16 or 2^32, the one that is `above` places behind its own.
+    void (*addImageChannels)(
+            const ImageRows<T>& rows, T offset, const ImageChannelRows<T>& out, ptrdiff_t above, int width);
     //! The orientation alone.
     void (*orientation)(const T* gx, const T* gy, T* steps, int width);
     void (*widen8u)(const uchar* in, T* out, int width);
@@ -119,6 +127,22 @@ template <typename Sum> struct IntegralRows
      origin.x + 1, ... */
 };
 
+/** What a reader sees of the sums down the columns of GROUP_CHANNELS channels, modulo 2^16: the last rows, in a ring like
+ that of IntegralRows. They are cheaper to make than an integral image, and to add up where cells are narrow. */
+struct ColumnRows
+{
+    const ushort* data;
+    size_t step;                      //!< elements from row to row
+    size_t channels[GROUP_CHANNELS];  //!< where in a row each channel has its pixel origin.x
+    int count;                        //!< rows in the ring
+    Point origin;                     //!< in the image
+
+    enum
+    {
+        CELL = 4  //!< cells should not be wider than this
+    };
+};
+
 //! From a row of each channel: out = above + sums along the row; both begin left of the first pixel, with 0.
 template <typename T, typename Sum> struct SumRowFunc
 {
@@ -147,8 +171,9 @@ template <typename Sum> struct BitsKernels
 template <typename Sum> struct SumKernels
 {
     //! Sums over n x n cells with the given edges, paddedEdges(n) and n + 1 of them, in pixels of the image.
-    void (*cells)(
+    typedef void (*CellsFunc)(
             const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells);
+    CellsFunc cells;
     BitsKernels<Sum> bits[MAPPINGS];
 };
 
@@ -161,6 +186,10 @@ struct DescriptorKernels
     SumRowFunc<short, unsigned>::Type sumLongRow;
     SumRowFunc<int, unsigned>::Type sumIntRow;
     SumKernels<ushort> shortSums;
+    /** As shortSums.cells, from the sums down the columns; n is a multiple of 8. Null where it would be slow. May read
+     ROW_PADDING values past the end of a row. */
+    void (*columnCells)(
+            const ColumnRows& rows, const int* xEdges, const int* yEdges, int n, CellGrid<ushort>& cells);
     SumKernels<unsigned> longSums;
     BoxKernels boxes;
 

@@ -11,6 +11,7 @@
 #include "boxes.simd.hpp"
 #include "cells.simd.hpp"
 #include "channel_rows.simd.hpp"
+#include "column_cells.simd.hpp"
 #include "integral.simd.hpp"
 #include "rotated_samples.simd.hpp"
 #endif
@@ -45,6 +46,11 @@ DescriptorKernels makeTable()
     k.sumIntRow = sumRowOf16Bit;
     k.cellEdges = cellEdges;
     k.shortSums.cells = cellSums<ushort>;
+#if IIB_SUMS_SEGMENTS
+    k.columnCells = columnCells;
+#else
+    k.columnCells = 0;
+#endif
     k.longSums.cells = cellSums<unsigned>;
     for (int mapping = 0; mapping < MAPPINGS; mapping++)
     {
