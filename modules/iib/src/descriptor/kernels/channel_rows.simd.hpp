@@ -200,13 +200,21 @@ void addImageChannelRows(
     imageChannelRows(rows, signedOffset, out, width, put);
 }
 
+//! The last vector may overlap the one before; nothing past the end is read, where no pixel need be.
 void widenRow(const uchar* in, short* out, int width)
 {
-    int x = 0;
-    for (; x <= width - VTraits<v_int16>::max_nlanes; x += VTraits<v_int16>::max_nlanes)
-        v_store(out + x, v_reinterpret_as_s16(vx_load_expand(in + x)));
-    for (; x < width; x++)
-        out[x] = in[x];
+    enum
+    {
+        N = VTraits<v_int16>::max_nlanes
+    };
+    const auto widen = [&](int x) { v_store(out + x, v_reinterpret_as_s16(vx_load_expand(in + x))); };
+    for (int x = 0; x <= width - N; x += N)
+        widen(x);
+    if (width >= N)
+        widen(width - N);
+    else
+        for (int x = 0; x < width; x++)
+            out[x] = in[x];
 }
 
 template <typename Pixel, typename T> void widenRow(const Pixel* in, T* out, int width)
