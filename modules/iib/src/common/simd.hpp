@@ -242,8 +242,15 @@ inline __m128i twoGroups(const ushort* first, const ushort* second)
 //! Four places: row + at[0], at[2], at[4], at[6].
 inline v_groups16 loadGroups(const ushort* row, const size_t* at)
 {
+#if CV_AVX512_SKX
+    __m256i v = _mm256_castsi128_si256(_mm_loadl_epi64((const __m128i*)(row + at[0])));
+    v = _mm256_mask_broadcastq_epi64(v, 2, _mm_loadl_epi64((const __m128i*)(row + at[2])));
+    v = _mm256_mask_broadcastq_epi64(v, 4, _mm_loadl_epi64((const __m128i*)(row + at[4])));
+    return v_groups16(_mm256_mask_broadcastq_epi64(v, 8, _mm_loadl_epi64((const __m128i*)(row + at[6]))));
+#else
     const __m128i low = twoGroups(row + at[0], row + at[2]), high = twoGroups(row + at[4], row + at[6]);
     return v_groups16(_mm256_inserti128_si256(_mm256_castsi128_si256(low), high, 1));
+#endif
 }
 
 //! Two places: row + at[0], at[2].
