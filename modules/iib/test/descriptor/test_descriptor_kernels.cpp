@@ -158,7 +158,7 @@ void checkColumnCells(int channels, int widest)
             for (int x = 0; x < area.width; x++)
                 values[y * rows.step + i * plane + x] = (ushort)(60000 + ring.sum(x, 0, x + 1, y, i));
     for (int n = 8; n <= 64; n *= 2)
-        for (int round = 0; round < 20; round++)
+        for (int round = 0; round < 5; round++)
         {
             std::vector<int> x(1, area.x + random.below(10)), y(n + 1);
             for (int i = 0; i < n; i++)
