@@ -74,10 +74,15 @@ private:
     struct Place
     {
         int from, bytes;
+        unsigned mask;  //!< of these bytes
+
+        Place(int from_, int bytes_) : from(from_), bytes(bytes_), mask(0) { memset(&mask, 255, bytes); }
     };
 
+    class PaddedDescriptor;
+
     //! Word i of a descriptor's code, plain.
-    unsigned word(int i, const uchar* descriptor) const;
+    unsigned word(int i, const PaddedDescriptor& descriptor) const;
 
     std::vector<int> sizes, ends, segmentBits;
     std::vector<Place> places;  // of each word
