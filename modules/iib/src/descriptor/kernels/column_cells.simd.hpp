@@ -6,6 +6,7 @@
 #define OPENCV_IIB_DESCRIPTOR_KERNELS_COLUMN_CELLS_SIMD_HPP
 
 #include "cells.simd.hpp"
+#include "segment_sums.simd.hpp"
 
 namespace cv {
 namespace iib {
@@ -31,6 +32,7 @@ void addColumn(const ushort* const* lines, const size_t channels[GROUP_CHANNELS]
 
 void columnCells(const ColumnRows& rows, const int* xEdges, const int* yEdges, int n, CellGrid<ushort>& cells)
 {
+    static_assert((int)ColumnRows::CELL == (int)SegmentSums::LONGEST, "wider cells take longer");
     const RowFinder<ushort> row(rows, yEdges[0]);
     AutoBuffer<const ushort*, 72> lines(n + 1);
     for (int r = 0; r <= n; r++)
