@@ -6,7 +6,6 @@
 #define OPENCV_IIB_DESCRIPTOR_KERNELS_COLUMN_CELLS_SIMD_HPP
 
 #include "cells.simd.hpp"
-#include "segment_sums.simd.hpp"
 
 namespace cv {
 namespace iib {
