@@ -15,8 +15,8 @@ def estimateRotation(keypoints1: np.ndarray, keypoints2: np.ndarray, matches1to2
 
 class Detector:
     @staticmethod
-    def foreign(function: Callable[[np.ndarray, Optional[np.ndarray]], np.ndarray], name: str, descriptorSize: int,
-                descriptorType: int, /) -> Detector: ...
+    def foreign(function: Callable[[np.ndarray, Optional[np.ndarray]], np.ndarray], name: str,
+                /) -> Detector: ...
     def detect(self, image: np.ndarray, mask: np.ndarray, /) -> np.ndarray: ...
 
 class NormalizedDetector(Detector):

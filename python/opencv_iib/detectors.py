@@ -33,8 +33,7 @@ def core_detector(detector: Any) -> _core.Detector:
         keypoints: Keypoints = detector.detect(image, mask)
         return np.ascontiguousarray(as_rows(keypoints))
 
-    return _core.Detector.foreign(found, detector_name(detector).rsplit('.', 1)[-1],
-                                  _number(detector, 'descriptorSize'), _number(detector, 'descriptorType'))
+    return _core.Detector.foreign(found, detector_name(detector).rsplit('.', 1)[-1])
 
 
 def detect(core: _core.Detector, image: Any, mask: Any) -> tuple[Any, ...]:

@@ -27,10 +27,9 @@ nb::object detect(cv::Feature2D& self, const Array& image, const Array& mask)
     return toNumpy(toRows(keypoints));
 }
 
-std::shared_ptr<cv::Feature2D> foreignDetector(
-        nb::callable function, const std::string& name, int descriptorSize, int descriptorType)
+std::shared_ptr<cv::Feature2D> foreignDetector(nb::callable function, const std::string& name)
 {
-    return std::make_shared<ForeignDetector>(function, name, descriptorSize, descriptorType);
+    return std::make_shared<ForeignDetector>(function, name);
 }
 
 std::shared_ptr<Normalized> createNormalized(std::shared_ptr<cv::Feature2D> detector, float sigma)

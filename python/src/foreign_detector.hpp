@@ -14,16 +14,12 @@ namespace iib_python {
 /** @brief A detector of Python, for instance of a foreign cv2, as this OpenCV's Feature2D.
 
 `function(image, mask or None)` gives rows of keypoints (keypoints.hpp). Only arrays cross; the image that it gets is
-a copy, since a detector may keep it. Any thread may call it. Size and type of its descriptors tell what an AffineFeature
-wraps; it computes none.
+a copy, since a detector may keep it. Any thread may call it. It computes no descriptors.
  */
 class ForeignDetector CV_FINAL : public cv::Feature2D
 {
 public:
-    ForeignDetector(nb::callable function_, const std::string& name_, int bytes_, int type_)
-        : function(function_), name(name_), bytes(bytes_), type(type_)
-    {
-    }
+    ForeignDetector(nb::callable function_, const std::string& name_) : function(function_), name(name_) {}
     ~ForeignDetector()
     {
         nb::gil_scoped_acquire gil;
@@ -32,14 +28,11 @@ public:
 
     void detect(cv::InputArray image, std::vector<cv::KeyPoint>& keypoints, cv::InputArray mask) CV_OVERRIDE;
     bool empty() const CV_OVERRIDE { return false; }
-    int descriptorSize() const CV_OVERRIDE { return bytes; }
-    int descriptorType() const CV_OVERRIDE { return type; }
     cv::String getDefaultName() const CV_OVERRIDE { return "Feature2D." + name; }
 
 private:
     nb::object function;
     std::string name;
-    int bytes, type;
 };
 
 }  // namespace iib_python

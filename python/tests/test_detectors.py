@@ -91,11 +91,6 @@ class Normalized(unittest.TestCase):
         self.assertGreater(len(keypoints), 20)
         np.testing.assert_array_equal(descriptors, orb.compute(image, keypoints)[1])
 
-    @unittest.skipIf(cv2 is None or not hasattr(cv2, 'AffineFeature_create'), 'no AffineFeature')
-    def test_affine_features_are_known_by_their_descriptors(self):
-        self.assertEqual(IIB.scaleFactorFor(cv2.AffineFeature_create(cv2.SIFT_create())), 20)
-        self.assertEqual(IIB.scaleFactorFor(NormalizedDetector(cv2.AffineFeature_create(cv2.ORB_create()))), 2)
-
 
 class Rotation(unittest.TestCase):
 

@@ -10,14 +10,14 @@
 namespace cv {
 namespace iib {
 
-/* The detector of an extractor in a file. Most detectors of OpenCV 4 write nothing of themselves, so the parameters of
- those that tell them are written here. SIFT tells none before OpenCV 4.8: it comes back with its defaults. */
+/* The detector of an extractor in a file. Files hold ORB, which create() starts with and which writes nothing of itself,
+ and NormalizedDetector; of others they hold the name, and what those write themselves. */
 
 //! Writes class and parameters as keys of the map that is open in `fs`.
 void writeDetector(FileStorage& fs, const Feature2D& detector);
 
-/** Creates the detector that writeDetector wrote. One of a class that is not OpenCV's own features2d cannot be created
- here: `present`, if it is of that class, reads the parameters and is returned, else a cv::Exception tells what to do. */
+/** Creates the ORB or the NormalizedDetector that writeDetector wrote. For any other class `present` must be of it: it reads
+ the parameters and is returned. @throws cv::Exception (StsParseError) that tells what to do if it is not. */
 Ptr<Feature2D> readDetector(const FileNode& node, const Ptr<Feature2D>& present);
 
 }  // namespace iib

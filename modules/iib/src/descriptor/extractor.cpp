@@ -5,7 +5,6 @@
 #include "../common/detector_file.hpp"
 #include "../common/file_numbers.hpp"
 #include "compute.hpp"
-#include "detector_probe.hpp"
 #include "input.hpp"
 #include "support_region.hpp"
 
@@ -107,40 +106,16 @@ public:
     }
 
 private:
-    //! Whether calls to `feature` would come back to this extractor.
-    bool leadsBack(Ptr<Feature2D> feature)
+    //! Whether `feature` is this extractor, or a class of this library that holds it.
+    bool leadsBack(Ptr<Feature2D> feature) const
     {
         while (feature && feature.get() != this)
         {
-            if (feature->getDefaultName() == "Feature2D.AffineFeature")
-                return isCalledBy(*feature);
             const Ptr<IIBDescriptorExtractor> other = feature.dynamicCast<IIBDescriptorExtractor>();
             const Ptr<NormalizedDetector> wrapper = feature.dynamicCast<NormalizedDetector>();
             feature = other ? other->getDetector() : wrapper ? wrapper->getDetector() : Ptr<Feature2D>();
         }
         return feature.get() == this;
-    }
-
-    //! AffineFeature does not tell what it wraps, so it is called while this extractor has another detector.
-    bool isCalledBy(Feature2D& affine)
-    {
-        struct Restored  // whatever is thrown
-        {
-            Ptr<Feature2D>& place;
-            const Ptr<Feature2D> value;
-            ~Restored() { place = value; }
-        } const restored = {detector, detector};
-        const Ptr<DetectorProbe> probe = makePtr<DetectorProbe>();
-        detector = probe;
-        try
-        {
-            std::vector<KeyPoint> keypoints;
-            affine.detect(Mat(64, 64, CV_8U, Scalar(0)), keypoints);
-        }
-        catch (const Exception&)  // detect() of this extractor will tell of it
-        {
-        }
-        return probe->called;
     }
 
     static Ptr<const DescriptorPlan> planOf(const Parameters& parameters)

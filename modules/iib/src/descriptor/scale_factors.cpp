@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "affine_backend.hpp"
+#include "../precomp.hpp"
 
 namespace cv {
 namespace iib {
@@ -44,7 +44,8 @@ float IIBDescriptorExtractor::scaleFactorFor(const String& detectorName)
     }
     CV_Error(Error::StsBadArg, "no scale factor is known for the detector \"" + detectorName +
                                        "\", only for " + known +
-                                       "; give create() the ROS side divided by KeyPoint::size");
+                                       "; give create() the ROS side divided by KeyPoint::size, and the "
+                                       "detector to setDetector()");
 }
 
 float IIBDescriptorExtractor::scaleFactorFor(const char* detectorName)
@@ -60,9 +61,7 @@ float IIBDescriptorExtractor::scaleFactorFor(const Ptr<Feature2D>& detector)
         CV_Error(Error::StsNullPtr, "the detector is null");
     if (const Ptr<NormalizedDetector> wrapper = detector.dynamicCast<NormalizedDetector>())
         return scaleFactorFor(wrapper->getDetector());
-    const String name = detector->getDefaultName();
-    return scaleFactorFor(
-            name == "Feature2D.AffineFeature" ? affineBackend(*detector)->getDefaultName() : name);
+    return scaleFactorFor(detector->getDefaultName());
 }
 
 Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::createFor(const Ptr<Feature2D>& detector, int preset)

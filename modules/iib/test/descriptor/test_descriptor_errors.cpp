@@ -118,36 +118,7 @@ TEST(IIB_Errors, no_extractor_detects_by_itself)
     b->setDetector(a);
     expectError(Error::StsBadArg, "its own detector", [=] { a->setDetector(b); });
     expectError(Error::StsBadArg, "its own detector", [=] { a->setDetector(NormalizedDetector::create(b)); });
-    const Ptr<Feature2D> affine = AffineFeature::create(b, 1);
-    expectError(Error::StsBadArg, "its own detector", [=] { a->setDetector(affine); });
-    expectError(Error::StsBadArg, "its own detector",
-            [=] { a->setDetector(NormalizedDetector::create(affine)); });
     EXPECT_EQ("Feature2D.ORB", a->getDetector()->getDefaultName());
-
-    b->setDetector(ORB::create());
-    a->setDetector(affine);
-    EXPECT_EQ(affine, a->getDetector());
-    expectError(Error::StsBadArg, "its own detector", [=] { b->setDetector(a); });
-    EXPECT_EQ("Feature2D.ORB", b->getDetector()->getDefaultName());
-}
-
-class OutOfMemory : public Feature2D
-{
-public:
-    void detectAndCompute(InputArray, InputArray, std::vector<KeyPoint>&, OutputArray, bool) CV_OVERRIDE
-    {
-        throw std::bad_alloc();
-    }
-};
-
-// setDetector() lets an AffineFeature detect, with another detector in the extractor meanwhile.
-TEST(IIB_Errors, detector_stays_when_memory_runs_out)
-{
-    const Ptr<AffineFeature> affine = AffineFeature::create(makePtr<OutOfMemory>(), 1);
-    affine->setViewParams({1.f}, {0.f});  // on this thread
-    const Ptr<IIB> iib = IIB::create();
-    EXPECT_THROW(iib->setDetector(affine), std::bad_alloc);
-    EXPECT_EQ("Feature2D.ORB", iib->getDetector()->getDefaultName());
 }
 
 }  // namespace

@@ -93,8 +93,7 @@ TEST(IIB_NormalizedDetector, errors)
 
 TEST(IIB_NormalizedDetector, parameters_and_files)
 {
-    const Ptr<Feature2D> inside = GFTTDetector::create();
-    inside.dynamicCast<GFTTDetector>()->setQualityLevel(0.003);
+    const Ptr<Feature2D> inside = ORB::create(77);
     const Ptr<NormalizedDetector> detector = NormalizedDetector::create(inside, 5.f);
     EXPECT_EQ(inside, detector->getDetector());
     detector->setSigma(6.5f);
@@ -107,9 +106,9 @@ TEST(IIB_NormalizedDetector, parameters_and_files)
     FileStorage fs(file, FileStorage::READ);
     copy->read(fs.getFirstTopLevelNode());
     EXPECT_EQ(6.5f, copy->getSigma());
-    const Ptr<GFTTDetector> corners = copy->getDetector().dynamicCast<GFTTDetector>();
-    ASSERT_TRUE(corners);
-    EXPECT_EQ(0.003, corners->getQualityLevel());
+    const Ptr<ORB> orb = copy->getDetector().dynamicCast<ORB>();
+    ASSERT_TRUE(orb);
+    EXPECT_EQ(77, orb->getMaxFeatures());
     expectError(Error::StsParseError, "NormalizedDetector", [&] { copy->read(FileNode()); });
     fs.release();
     std::remove(file.c_str());

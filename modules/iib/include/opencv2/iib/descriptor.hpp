@@ -74,9 +74,9 @@ every instruction set, thread count and build. One object may serve several thre
 changes its parameters. As everywhere in OpenCV, cv::setNumThreads is not to be called meanwhile.
 
 **Files.** Algorithm::save and Feature2D::write store the parameters and the detector; Algorithm::load and
-Feature2D::read take either kind of file. Detectors of OpenCV's own features2d and NormalizedDetector are created anew
-with their parameters (SIFT tells none before OpenCV 4.8). Another one must be set by setDetector before read, which
-hands its parameters to it and throws a cv::Exception if it is of another class.
+Feature2D::read take either kind of file. ORB and NormalizedDetector come back with their parameters. A detector of any
+other class must be set by setDetector before read: files hold its name and what its own write() tells, which its
+read() gets; read throws a cv::Exception if the detector that is set is of another class.
  */
 class CV_EXPORTS_W IIBDescriptorExtractor : public Feature2D
 {
@@ -187,10 +187,8 @@ public:
      */
     CV_WRAP static float scaleFactorFor(const String& detectorName);
     /** @overload
-    Looks into NormalizedDetector for its detector. AffineFeature does not tell its own: it detects on a small image, and
-    its keypoints are compared with those of each detector that is known (up to a second), with its default parameters.
-    @throws cv::Exception (StsBadArg) for a detector that is not known, or that AffineFeature wraps with parameters that
-    leave no keypoint in common, as another patch size of ORB or another sigma of SIFT; (StsNullPtr) for none. */
+    Looks into NormalizedDetector for its detector. AffineFeature does not tell its own: take the name of that one.
+    @throws cv::Exception (StsBadArg) for a detector that is not known, (StsNullPtr) for none. */
     CV_WRAP static float scaleFactorFor(const Ptr<Feature2D>& detector);
     /** @overload
     A literal would fit both of the above, since Ptr converts from any pointer. */
@@ -270,7 +268,7 @@ public:
     CV_WRAP virtual int getBorder() const = 0;
 
     //! The detector behind detect and detectAndCompute; ORB by default. It does not change the scale factor. Throws if
-    //! it is null, or is this extractor or leads back to it, through extractors, NormalizedDetector or AffineFeature.
+    //! it is null, or is this extractor, also within other extractors and NormalizedDetector.
     CV_WRAP virtual void setDetector(const Ptr<Feature2D>& detector) = 0;
     CV_WRAP virtual Ptr<Feature2D> getDetector() const = 0;
 
