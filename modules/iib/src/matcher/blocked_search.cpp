@@ -99,7 +99,6 @@ private:
         queryIndices.assign(queries, -1);
         NearestScan scan(
                 block.pairs, NearestCodes(forQueries.thresholds() + block.firstQuery, queryIndices.data()));
-        scan.early = input.early;
         if (forTrains)
         {
             trainIndices.assign(trains, -1);
@@ -176,17 +175,11 @@ int evenParts(const SearchInput& input, int queries)
 
 }  // namespace
 
-SearchCost searchNearest(const SearchInput& input, const Range& queries, KnnTable& forQueries)
-{
-    return split(queries.size(), evenParts(input, queries.size()), [&](int from, int to) {
-        return PartialSearch(input, queries.start + from, queries.start + to).nearest(forQueries, 0);
-    });
-}
-
 SearchCost searchNearest(const SearchInput& input, KnnTable& forQueries, KnnTable* forTrains)
 {
     if (!forTrains)
-        return searchNearest(input, Range(0, input.queries.rows), forQueries);
+        return split(input.queries.rows, evenParts(input, input.queries.rows),
+                [&](int from, int to) { return PartialSearch(input, from, to).nearest(forQueries, 0); });
     // In the other direction each part has neighbours of its own, merged by their order, so that the result
     // does not depend on which is done first. Few parts, since each begins without thresholds.
     std::mutex lock;

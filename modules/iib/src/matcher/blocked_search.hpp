@@ -15,9 +15,6 @@ namespace iib {
 //! Fills the tables with the nearest; forTrains is null when nobody asks for the other direction.
 SearchCost searchNearest(const SearchInput& input, KnnTable& forQueries, KnnTable* forTrains);
 
-//! The nearest of some queries.
-SearchCost searchNearest(const SearchInput& input, const Range& queries, KnnTable& forQueries);
-
 //! Adds the pairs within a radius to the list of each query.
 SearchCost searchWithin(const SearchInput& input, int radius, std::vector<std::vector<MatchKey>>& result);
 

@@ -6,7 +6,7 @@
 #include "input.hpp"
 #include "manifest.hpp"
 #include "parameters.hpp"
-#include "skipping_search.hpp"
+#include "blocked_search.hpp"
 
 #include "opencv2/core/utils/filesystem.hpp"
 
@@ -182,15 +182,13 @@ private:
             opened[i]->codes();  // first: a manifest may claim more images than memory has bits for
             hidden.push_back(hiddenOf(i));
         }
-        std::vector<SearchInput> inputs;
         for (size_t i = first; i < end; i++)
         {
             SearchInput input(opened[i]->codes(), queries, policy, masks, blocks);
             input.firstIndex = firstRows[i];
             input.hidden = hidden[i - first].empty() ? 0 : &hidden[i - first];
-            inputs.push_back(input);
+            searchNearest(input, found, 0);
         }
-        searchSkipping(inputs, found);
     }
 
     //! Which images of a segment were removed; empty if none was.

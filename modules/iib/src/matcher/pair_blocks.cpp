@@ -61,9 +61,9 @@ void forEachBlock(
     {
         const int queryCount = std::min(input.blocks.queries, to - query);
         const Mat queries = input.queries.rowRange(query, query + queryCount);
-        for (int first = input.firstBlock; first < input.endBlock; first += input.blocks.codeBlocks)
+        for (int first = 0; first < trains.blocks(); first += input.blocks.codeBlocks)
         {
-            const int blocks = std::min(input.blocks.codeBlocks, input.endBlock - first);
+            const int blocks = std::min(input.blocks.codeBlocks, trains.blocks() - first);
             const size_t train = (size_t)first * CodeLayout::CODES_PER_BLOCK;
             const size_t trainCount = std::min(rows - train, (size_t)blocks * CodeLayout::CODES_PER_BLOCK);
             const unsigned* const codes = trains.block(first, blocks, scratch);

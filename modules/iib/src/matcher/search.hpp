@@ -32,7 +32,7 @@ struct SearchInput
     SearchInput(const PackedCodes& trains_, const Mat& queries_, const PruningPolicy& policy_,
             const std::vector<Mat>& masks_, const SearchBlocks& blocks_)
         : trains(trains_), queries(queries_), policy(policy_), masks(masks_), blocks(blocks_), hidden(0),
-          firstIndex(0), firstBlock(0), endBlock(trains_.blocks()), early(0)
+          firstIndex(0)
     {
     }
 
@@ -43,8 +43,6 @@ struct SearchInput
     const SearchBlocks& blocks;
     const std::vector<bool>* hidden;  //!< of each image, whether its rows are left out; null: none is
     size_t firstIndex;                //!< what the first of the train codes is called in results
-    int firstBlock, endBlock;         //!< CodeBlocks of the train codes that are searched: all by default
-    int early;                        //!< of NearestScan
 };
 
 /** Finds the k nearest for each query; with `mutual`, only pairs that are among the k nearest in both directions. A row

@@ -43,7 +43,7 @@ struct NearestCodes
     int* indices;    //!< index in the scan
 };
 
-//! Finds the nearest train code of each query, by all words of the codes or by the first ones. Only for pairs that fit.
+//! Finds the nearest train code of each query. Only for pairs that fit.
 struct NearestScan
 {
     enum
@@ -57,12 +57,10 @@ struct NearestScan
                pairs.layout.bytes() < 1 << (31 - INDEX_BITS - 3);
     }
     NearestScan(const CodePairs& pairs_, const NearestCodes& ofQueries_)
-        : pairs(pairs_), words(pairs_.layout.words()), early(0), ofQueries(ofQueries_), ofTrains(0, 0)
+        : pairs(pairs_), ofQueries(ofQueries_), ofTrains(0, 0)
     {
     }
     CodePairs pairs;
-    int words;  //!< that are compared; odd
-    int early;  //!< words after which most pairs are too far apart, odd; 0: what suits codes of that length
     NearestCodes ofQueries;
     NearestCodes ofTrains;  //!< of paddedTrains() codes; null: not wanted
 };

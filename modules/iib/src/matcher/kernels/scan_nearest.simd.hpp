@@ -21,7 +21,7 @@ class NearestScanner : public Scanner
 public:
     explicit NearestScanner(const NearestScan& s)
         : Scanner(s.pairs), scan(s), trainKeys(s.ofTrains.distances ? s.pairs.paddedTrains() : 0, NO_KEY),
-          early(std::min(s.early > 0 ? s.early : earlyEnd(trainKeys.empty()), s.words))
+          early(earlyEnd(trainKeys.empty()))
     {
     }
 
@@ -37,7 +37,7 @@ public:
         // An early end pays for several looks that were in vain.
         for (int block = 0, looks = 0; block < blocks; block++)
         {
-            if (block % 8 == 0 && early < scan.words)
+            if (block % 8 == 0 && early < layout.words())
             {
                 looks = std::max(looks, 1);
                 for (int q = 0; q < Q; q++)
@@ -45,7 +45,7 @@ public:
                             v_min(limits[q], vx_setall_s32(leastKey(nearest + q * VECTORS) >> INDEX_BITS));
             }
             if (looks == 0)
-                compare<Q>(query, block, scan.words, limits, nearest);
+                compare<Q>(query, block, layout.words(), limits, nearest);
             else if (compare<Q>(query, block, early, limits, nearest))
                 looks++;
             else
@@ -78,14 +78,14 @@ private:
         Counts keys[Tile<Q>::SIZE];
         tile.start(queries, codes(block), end);
         tile.distances(keys);
-        if (end < scan.words)
+        if (end < layout.words())
         {
             Counts slack = vx_setzero_s32();
             for (int i = 0; i < Tile<Q>::SIZE; i++)
                 slack = slack | (keys[i] - limits[i / VECTORS]);
             if (!v_check_any(slack))
                 return true;
-            tile.advance(queries, codes(block), end, scan.words);
+            tile.advance(queries, codes(block), end, layout.words());
             tile.distances(keys);
         }
         for (int i = 0; i < Tile<Q>::SIZE; i++)
