@@ -56,7 +56,7 @@ SegmentEntry writeSegment(const String& filename, uint64 number, const PackedCod
     file.number(levels.size(), 4);
     for (size_t i = 0; i < levels.size(); i++)
         file.number(levels[i], 4);
-    file.bytes(PACKING_LETTERS[codes.storedPacking()], LETTERS);
+    file.bytes(PACKING_LETTERS[codes.kernels().packing], LETTERS);
     file.number(checkedBlocks, 4);
     file.number(codes.images(), 8);
     for (size_t i = 0; i < codes.images(); i++)
@@ -129,17 +129,17 @@ void CodeSegment::map()
 
     const uint64 offset = aligned(header.position());
     const Ptr<MappedFile> bytes = makePtr<MappedFile>(name);
-    if (bytes->size() != offset + blocks * CodeLayout(levels, packing).blockWords() * sizeof(unsigned))
+    const size_t blockWords = CodeLayout(levels, packing).blockWords();
+    if (blocks > INT_MAX || bytes->size() != offset + blocks * blockWords * sizeof(unsigned))
         header.fail("it is truncated or altered");
-    const Ptr<PackedCodes> codes =
-            makePtr<PackedCodes>(levels, packing, starts, (const unsigned*)(bytes->data() + offset));
-    const std::vector<uint64> found = checksumsOf(codes->stored(), checkedBlocks);
+    const Mat lying((int)blocks, (int)blockWords, CV_32S, const_cast<uchar*>(bytes->data()) + offset);
+    const std::vector<uint64> found = checksumsOf(lying, checkedBlocks);
     const size_t wrong = std::mismatch(found.begin(), found.end(), checksums.begin()).first - found.begin();
     if (wrong < found.size())
         header.fail(format("it is altered: its rows from %lld on do not fit their checksum",
                 (long long)wrong * checkedBlocks * CodeLayout::CODES_PER_BLOCK));
+    packed = makePtr<PackedCodes>(levels, packing, starts, lying);
     file = bytes;
-    packed = codes;
 }
 
 }  // namespace iib

@@ -12,8 +12,7 @@ namespace iib {
 static const int CODES_PER_BLOCK = CodeLayout::CODES_PER_BLOCK;
 
 PackedCodes::PackedCodes(const std::vector<int>& levelSizes)
-    : scans(hammingKernels()), packing(scans.packing), format(levelSizes, packing), lying(format),
-      starts(1, 0), filled(0)
+    : scans(hammingKernels()), format(levelSizes, scans.packing), starts(1, 0), filled(0)
 {
 }
 
@@ -24,18 +23,42 @@ static int blocksFor(size_t rows)
     return (int)blocks;
 }
 
-PackedCodes::PackedCodes(const std::vector<int>& levelSizes, CodePacking packing_,
-        const std::vector<size_t>& starts_, const unsigned* blocks)
-    : scans(hammingKernels()), packing(packing_), format(levelSizes, scans.packing),
-      lying(levelSizes, packing), starts(starts_),
-      codes(blocksFor(starts.back()), (int)lying.blockWords(), CV_32S, const_cast<unsigned*>(blocks)),
-      filled(codes.rows)
+// The descriptors of codes from a row on.
+static void unpack(const CodeLayout& layout, const Mat& codes, size_t row, Mat& descriptors)
 {
+    AutoBuffer<unsigned> plain(layout.words());
+    for (int i = 0; i < descriptors.rows; i++, row++)
+    {
+        layout.fetch(codes.ptr<unsigned>((int)(row / CODES_PER_BLOCK)), (int)(row % CODES_PER_BLOCK),
+                plain.data());
+        layout.restore(plain.data(), descriptors.ptr(i));
+    }
+}
+
+static Mat repacked(const Mat& blocks, const CodeLayout& from, const CodeLayout& to)
+{
+    Mat result(blocks.rows, (int)to.blockWords(), CV_32S), descriptors(CODES_PER_BLOCK, from.bytes(), CV_8U);
+    for (int i = 0; i < blocks.rows; i++)
+    {
+        unpack(from, blocks, (size_t)i * CODES_PER_BLOCK, descriptors);
+        to.storeBlock(descriptors.data, descriptors.step, result.ptr<unsigned>(i));
+    }
+    return result;
+}
+
+PackedCodes::PackedCodes(const std::vector<int>& levelSizes, CodePacking packing,
+        const std::vector<size_t>& starts_, const Mat& blocks)
+    : scans(hammingKernels()), format(levelSizes, scans.packing), starts(starts_), codes(blocks),
+      filled(blocks.rows)
+{
+    CV_Assert(filled == blocksFor(rows()));
+    if (packing != scans.packing)
+        codes = repacked(blocks, CodeLayout(levelSizes, packing), format);
 }
 
 PackedCodes::PackedCodes(const PackedCodes& other)
-    : scans(other.scans), packing(other.packing), format(other.format), lying(other.lying),
-      starts(other.starts), codes(other.codes.rowRange(0, other.filled).clone()), filled(other.filled)
+    : scans(other.scans), format(other.format), starts(other.starts),
+      codes(other.codes.rowRange(0, other.filled).clone()), filled(other.filled)
 {
 }
 
@@ -56,7 +79,7 @@ void PackedCodes::grow(int blocks)
 // Not by Mat::resize: when memory lacks, it leaves the matrix larger than its memory.
 void PackedCodes::allocate(int blocks)
 {
-    Mat larger(blocks, (int)lying.blockWords(), CV_32S);
+    Mat larger(blocks, (int)format.blockWords(), CV_32S);
     if (filled > 0)
         codes.rowRange(0, filled).copyTo(larger.rowRange(0, filled));
     codes = larger;
@@ -95,45 +118,20 @@ void PackedCodes::store(const Mat& descriptors)
         const int lane = (int)(row % CODES_PER_BLOCK);
         if (lane == 0 && i + CODES_PER_BLOCK <= descriptors.rows)
         {
-            lying.storeBlock(descriptors.ptr(i), descriptors.step, block);
+            format.storeBlock(descriptors.ptr(i), descriptors.step, block);
             i += CODES_PER_BLOCK;
         }
         else
-            lying.store(descriptors.ptr(i++), block, lane);
+            format.store(descriptors.ptr(i++), block, lane);
     }
     starts.back() += descriptors.rows;
 }
 
 Mat PackedCodes::descriptors(size_t image, size_t from, size_t to) const
 {
-    Mat result((int)(to - from), lying.bytes(), CV_8U);
-    unpack(starts[image] + from, result);
+    Mat result((int)(to - from), format.bytes(), CV_8U);
+    unpack(format, codes, starts[image] + from, result);
     return result;
-}
-
-void PackedCodes::unpack(size_t row, Mat& descriptors) const
-{
-    AutoBuffer<unsigned> plain(lying.words());
-    for (int i = 0; i < descriptors.rows; i++, row++)
-    {
-        lying.fetch(codes.ptr<unsigned>((int)(row / CODES_PER_BLOCK)), (int)(row % CODES_PER_BLOCK),
-                plain.data());
-        lying.restore(plain.data(), descriptors.ptr(i));
-    }
-}
-
-const unsigned* PackedCodes::block(int first, int count, Mat& scratch) const
-{
-    if (packing == scans.packing)
-        return codes.ptr<unsigned>(first);
-    scratch.create(count, (int)format.blockWords(), CV_32S);
-    Mat descriptors(CODES_PER_BLOCK, format.bytes(), CV_8U);
-    for (int i = 0; i < count; i++)
-    {
-        unpack((size_t)(first + i) * CODES_PER_BLOCK, descriptors);
-        format.storeBlock(descriptors.data, descriptors.step, scratch.ptr<unsigned>(i));
-    }
-    return scratch.ptr<unsigned>();
 }
 
 }  // namespace iib

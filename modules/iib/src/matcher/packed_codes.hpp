@@ -16,11 +16,12 @@ class PackedCodes
 {
 public:
     explicit PackedCodes(const std::vector<int>& levelSizes);
-    /** Codes that lie elsewhere, in a packing that need not be the kernels', and stay there; they are only read.
+    /** Codes that lie elsewhere, and stay there if they are packed as the kernels want them; if not, they are copied. They
+    are only read.
     @param starts first row of each image, and the number of all rows
-    @param blocks CodeBlocks without a gap, aligned for vectors */
+    @param blocks a row a CodeBlock, CV_32S, aligned for vectors */
     PackedCodes(const std::vector<int>& levelSizes, CodePacking packing, const std::vector<size_t>& starts,
-            const unsigned* blocks);
+            const Mat& blocks);
     PackedCodes(const PackedCodes& other);
     PackedCodes& operator=(const PackedCodes&) = delete;
 
@@ -36,12 +37,10 @@ public:
     size_t start(size_t image) const { return starts[image]; }
 
     int blocks() const { return filled; }
-    //! CodeBlocks of layout() without a gap: where they lie or, if they are packed in another way, in `scratch`. Lanes beyond
-    //! rows() are zeros.
-    const unsigned* block(int first, int count, Mat& scratch) const;
-    //! All of them as they lie.
+    //! The CodeBlocks of layout() from one on, without a gap. Lanes beyond rows() are zeros.
+    const unsigned* block(int first) const { return codes.ptr<unsigned>(first); }
+    //! All of them, a row each.
     Mat stored() const { return filled > 0 ? codes.rowRange(0, filled) : Mat(); }
-    CodePacking storedPacking() const { return packing; }
 
     //! Adds an image's descriptors: CV_8U, layout().bytes() columns, any number of rows. Changes nothing if it throws.
     void add(const Mat& descriptors);
@@ -59,15 +58,12 @@ private:
     //! Makes memory for that many blocks.
     void allocate(int blocks);
     void store(const Mat& descriptors);
-    //! The descriptors of this row and those after it.
-    void unpack(size_t row, Mat& descriptors) const;
 
     const HammingKernels& scans;
-    const CodePacking packing;       //!< of `codes`
-    const CodeLayout format, lying;  //!< of the kernels, and of `codes`
-    std::vector<size_t> starts;      //!< first row of each image, and the number of all rows
-    Mat codes;                       //!< a row a CodeBlock, which makes them aligned
-    int filled;                      //!< of these rows
+    const CodeLayout format;
+    std::vector<size_t> starts;  //!< first row of each image, and the number of all rows
+    Mat codes;                   //!< a row a CodeBlock, which makes them aligned
+    int filled;                  //!< of these rows
 };
 
 }  // namespace iib

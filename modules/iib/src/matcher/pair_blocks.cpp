@@ -56,7 +56,6 @@ void forEachBlock(
     const CodeLayout& layout = trains.layout();
     const size_t rows = trains.rows();
     std::vector<uchar> flags;
-    Mat scratch;
     for (int query = from; query < to; query += input.blocks.queries)
     {
         const int queryCount = std::min(input.blocks.queries, to - query);
@@ -66,7 +65,7 @@ void forEachBlock(
             const int blocks = std::min(input.blocks.codeBlocks, trains.blocks() - first);
             const size_t train = (size_t)first * CodeLayout::CODES_PER_BLOCK;
             const size_t trainCount = std::min(rows - train, (size_t)blocks * CodeLayout::CODES_PER_BLOCK);
-            const unsigned* const codes = trains.block(first, blocks, scratch);
+            const unsigned* const codes = trains.block(first);
             PairBlock block = {CodePairs(layout, queries, codes, (int)trainCount), query, train,
                     input.firstIndex + train, queryCount * trainCount};
             if (needsFlags(input, block))

@@ -27,7 +27,7 @@ a killed process, the folder stays as it was after the last call that returned. 
 in one process or several; what each of them commits stays. Readers see the state that they opened until refresh().
 
 **Machines.** Files are little-endian. The packing that suits this machine's instruction set is used and named in the
-segment; a machine that searches another packing converts it on the way, which slows searches of few queries down the most.
+segment; a machine that searches another packing converts it when it is first searched, into memory.
 
 **Threads.** Any number of threads may search one object as long as none calls add(), remove() or refresh() of it.
 Searches run on cv::parallel_for_; results are the same for every number of threads, every instruction set, and however
