@@ -25,7 +25,9 @@ Rect cellsOf(Rect pixels)
 //! The pixels that count, for a region that may leave the image by a rounding.
 Rect boundsOf(int border, Size image)
 {
-    const Rect all = border == IIB::BORDER_REFLECT ? reflectedImage(image) : Rect(Point(), image);
+    Rect all = border == IIB::BORDER_REFLECT ? reflectedImage(image) : Rect(Point(), image);
+    if (border == IIB::BORDER_CLAMP)  // without the cells that an odd image cuts, unless there are no others
+        all = Rect(0, 0, std::max(image.width & ~1, 1), std::max(image.height & ~1, 1));
     const Rect cells = cellsOf(all);
     return Rect(cells.tl() * (int)BOX_CELL, cells.size() * (int)BOX_CELL);
 }

@@ -54,9 +54,29 @@ TEST(IIB_Boxes, every_set_of_channels)
 TEST(IIB_Boxes, images_of_every_width)
 {
     for (int width = 1; width < 140; width += width < 20 ? 1 : 7)
+        for (int border : {IIB::BORDER_CLAMP, IIB::BORDER_REFLECT})
+        {
+            const Mat image = texture(Size(width, 1 + width % 23), CV_8U, width);
+            const Ptr<IIB> iib = boxes(4);
+            iib->setBorder(border);
+            expectOracle(*iib, image, scatter(image.size(), 3, 4.f, 50.f, width),
+                    format("width %d, border %d", width, border));
+        }
+}
+
+// The last row and column of an odd image belong to squares whose other half a reflection would make.
+TEST(IIB_Boxes, no_pixel_from_outside_counts_when_clamped)
+{
+    const Mat odd = texture(Size(151, 131), CV_8U, 3), even = odd(Rect(0, 0, 150, 130));
+    const std::vector<KeyPoint> keypoints = scatter(odd.size(), 60, 20.f, 120.f, 4);
+    for (bool rotated : {false, true})
     {
-        const Mat image = texture(Size(width, 1 + width % 23), CV_8U, width);
-        expectOracle(*boxes(4), image, scatter(image.size(), 3, 4.f, 50.f, width), format("width %d", width));
+        const Ptr<IIB> iib = boxes(5, IIB::CHANNEL_INTENSITY);
+        iib->setUseOrientation(rotated);
+        iib->setBorder(IIB::BORDER_CLAMP);
+        EXPECT_EQ(0, differingBits(describe(*iib, odd, keypoints), describe(*iib, even, keypoints)));
+        iib->setBorder(IIB::BORDER_REFLECT);
+        EXPECT_NE(0, differingBits(describe(*iib, odd, keypoints), describe(*iib, even, keypoints)));
     }
 }
 

@@ -66,10 +66,12 @@ void addPixel(const Mat& grey, int y, int x, int64 sums[VALUES])
 }
 
 //! The edge of 2 x 2 pixels nearest to a position, within those that count. All in units of 2 pixels.
-int edge(double position, int size, bool reflected)
+int edge(double position, int size, int border)
 {
+    const bool reflected = border == IIB::BORDER_REFLECT;
     const double least = reflected ? std::floor((1 - size) / 2.) : 0,
-                 most = std::ceil((reflected ? 2 * size - 1 : size) / 2.);
+                 most = border == IIB::BORDER_CLAMP ? std::max(std::floor(size / 2.), 1.)
+                                                    : std::ceil((reflected ? 2 * size - 1 : size) / 2.);
     const double rounded = std::min(std::max(position + 0.5, least), most);
     return (int)(std::floor(rounded + (1 << 30)) - (1 << 30));  // to 2^-22: ties depend on it
 }
@@ -84,8 +86,7 @@ struct Range1d
 //! The units of 2 pixels between two positions along an axis.
 Range1d between(const IIB& iib, double begin, double end, int size)
 {
-    const bool reflected = iib.getBorder() == IIB::BORDER_REFLECT;
-    const Range1d range = {edge(begin, size, reflected), edge(end, size, reflected)};
+    const Range1d range = {edge(begin, size, iib.getBorder()), edge(end, size, iib.getBorder())};
     return range;
 }
 
