@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../common/detector_file.hpp"
+#include "../common/detector_input.hpp"
 #include "../common/file_numbers.hpp"
 #include "compute.hpp"
 #include "input.hpp"
@@ -31,11 +32,13 @@ public:
     void compute(InputArray image, InputArrayOfArrays extraChannels, std::vector<KeyPoint>& keypoints,
             OutputArray descriptors) CV_OVERRIDE;
 
-    void detectAndCompute(InputArray image, InputArray mask, std::vector<KeyPoint>& keypoints,
+    void detectAndCompute(InputArray imageArray, InputArray mask, std::vector<KeyPoint>& keypoints,
             OutputArray descriptors, bool useProvidedKeypoints) CV_OVERRIDE
     {
+        const Mat image = imageArray.getMat();
         if (!useProvidedKeypoints)
-            detector->detect(image, keypoints, mask);
+            detector->detect(imageFor(*detector, image), keypoints,
+                    image.empty() ? Mat() : maskFor(mask, image.size()));
         if (descriptors.needed())
             compute(image, keypoints, descriptors);
     }

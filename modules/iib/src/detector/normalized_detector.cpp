@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../common/detector_file.hpp"
+#include "../common/detector_input.hpp"
 #include "../common/image_input.hpp"
 #include "local_normalization.hpp"
 
@@ -41,7 +42,7 @@ public:
             return keypoints.clear();
         checkImage(image);
         const Mat grey = integerMap(image, Rect(Point(), image.size()));
-        detector->detect(normalizeLocally(grey, sigma), keypoints, mask);
+        detector->detect(normalizeLocally(grey, sigma), keypoints, maskFor(mask, image.size()));
     }
 
     using Feature2D::compute;
@@ -52,7 +53,7 @@ public:
                     detector->getDefaultName() +
                             " finds keypoints but does not describe them; describe them with "
                             "another Feature2D, such as IIBDescriptorExtractor::createFor");
-        detector->compute(image, keypoints, descriptors);
+        detector->compute(imageFor(*detector, image.getMat()), keypoints, descriptors);
     }
 
     void detectAndCompute(InputArray image, InputArray mask, std::vector<KeyPoint>& keypoints,

@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/detected_matches.hpp"
+#include "../support/test_errors.hpp"
 
 namespace opencv_test {
 namespace {
@@ -95,6 +96,102 @@ TEST(IIB_Detector, behind_detect_and_compute)
         for (const KeyPoint& kp : keypoints)
             EXPECT_LT(kp.pt.x, 100);
     }
+}
+
+//! A texture that reaches from 0 to 255, in another type.
+Mat converted(const Mat& grey, int type)
+{
+    Mat image;
+    grey.convertTo(image, CV_MAT_DEPTH(type), CV_MAT_DEPTH(type) == CV_16U ? 257 : 1 / 255.);
+    merge(std::vector<Mat>(CV_MAT_CN(type), image), image);
+    return image;
+}
+
+// ORB, BRISK and SIFT take 8 bits alone, and ORB computed garbage of CV_32FC3.
+TEST(IIB_Detector, images_of_every_type)
+{
+    Mat grey = scene(Size(240, 200), 3);
+    normalize(grey, grey, 0, 255, NORM_MINMAX);
+    for (const Ptr<Feature2D>& detector : {Ptr<Feature2D>(ORB::create()), Ptr<Feature2D>(BRISK::create()),
+                 Ptr<Feature2D>(SIFT::create()), Ptr<Feature2D>(AKAZE::create())})
+        for (int type : {CV_16UC1, CV_16UC3, CV_32FC1, CV_32FC3, CV_32FC4})
+        {
+            SCOPED_TRACE(detector->getDefaultName() + " " + typeToString(type));
+            const Mat image = converted(grey, type);
+            std::vector<KeyPoint> expected, detected;
+            detector->detect(grey, expected);
+            ASSERT_GT(expected.size(), 10u);
+            Mat descriptors;
+            const Ptr<IIB> iib = IIB::createFor(detector);
+            iib->detectAndCompute(image, noArray(), detected, descriptors);
+            expectSameKeyPoints(expected, detected);
+            EXPECT_EQ(0, differingBits(describe(*iib, image, expected), descriptors));
+
+            const Ptr<NormalizedDetector> inside = NormalizedDetector::create(detector);
+            Mat own, expectedOwn;
+            detector->compute(grey, expected, expectedOwn);
+            inside->compute(image, detected, own);
+            expectSameKeyPoints(expected, detected);
+            EXPECT_EQ(0, cvtest::norm(expectedOwn, own, NORM_INF));
+        }
+}
+
+// What an extractor within a NormalizedDetector is given stays as it is: its bits would change.
+TEST(IIB_Detector, extractors_inside_get_all_of_an_image)
+{
+    const Mat image = texture(Size(200, 180), CV_16U, 3);
+    std::vector<KeyPoint> keypoints = scatter(image.size(), 20, 8.f, 20.f, 4);
+    const Ptr<IIB> iib = IIB::create();
+    Mat descriptors;
+    NormalizedDetector::create(iib)->compute(image, keypoints, descriptors);
+    EXPECT_EQ(0, differingBits(describe(*iib, image, keypoints), descriptors));
+}
+
+//! An extractor, and a detector of the normalized image.
+std::vector<Ptr<Feature2D>> bothWith(const Ptr<Feature2D>& detector)
+{
+    return {IIB::createFor(detector), NormalizedDetector::create(detector)};
+}
+
+// ORB of OpenCV 4.6 scales the mask and keeps what is above 254.
+TEST(IIB_Detector, any_number_in_a_mask_but_0_allows)
+{
+    const Mat image = scene(Size(320, 240), 1);
+    Mat ones = Mat::zeros(image.size(), CV_8U);
+    ones.colRange(40, 280).setTo(1);
+    for (const Ptr<Feature2D>& detector : bothWith(ORB::create()))
+    {
+        std::vector<KeyPoint> expected, keypoints;
+        detector->detect(image, expected, ones * 255);
+        detector->detect(image, keypoints, ones);
+        ASSERT_GT(expected.size(), 50u);
+        expectSameKeyPoints(expected, keypoints);
+    }
+}
+
+TEST(IIB_Detector, masks_and_images_that_are_refused)
+{
+    const Mat image = scene(Size(100, 80), 1);
+    Mat broken = Mat::ones(image.size(), CV_32F);
+    broken.at<float>(7, 9) = NOT_A_NUMBER;
+    for (const Ptr<Feature2D>& inside : {Ptr<Feature2D>(ORB::create()), Ptr<Feature2D>(AKAZE::create())})
+        for (const Ptr<Feature2D>& detector : bothWith(inside))
+        {
+            std::vector<KeyPoint> keypoints(1, KeyPoint(50, 40, 9));
+            Mat descriptors;
+            expectError(Error::StsUnmatchedSizes, "the mask is 80 x 80; the image is 100 x 80",
+                    [&] { detector->detect(image, keypoints, Mat::ones(80, 80, CV_8U)); });
+            for (int type : {CV_8UC3, CV_8S, CV_32F})
+                expectError(Error::StsUnsupportedFormat, "the mask has type " + typeToString(type),
+                        [&] { detector->detect(image, keypoints, Mat::ones(image.size(), type)); });
+            expectError(
+                    Error::StsBadArg, "(9, 7)", [&] { detector->compute(broken, keypoints, descriptors); });
+            expectError(Error::StsBadArg, "(9, 7)", [&] { detector->detect(broken, keypoints); });
+            expectError(Error::StsBadArg, "2 channels",
+                    [&] { detector->detect(Mat(30, 30, CV_8UC2), keypoints); });
+            expectError(Error::StsUnsupportedFormat, "CV_64F",
+                    [&] { detector->detect(Mat::zeros(30, 30, CV_64F), keypoints); });
+        }
 }
 
 TEST(IIB_ScaleFactor, surf_and_names_of_classes)

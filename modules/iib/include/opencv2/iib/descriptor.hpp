@@ -50,7 +50,8 @@ are in 80ths of the ROS:
 | 4 | 9 | 8 | 32 |
 | 5 | 7 | 6 | 12 |
 
-A box is made of whole squares of 2 x 2 pixels at even coordinates; each of its edges is the nearest to its place. What is
+A box is made of whole squares of 2 x 2 pixels at even coordinates; each of its edges is the nearest to its place. A square
+that an odd image cuts is completed by reflection, but with #BORDER_CLAMP it does not count. What is
 compared are means over the pixels that count, rounded to an eighth of a grey level or of a Sobel gradient (which is 8 times
 the difference of neighbouring pixels). A box without pixels has mean 0.
 
@@ -267,8 +268,10 @@ public:
     CV_WRAP virtual void setBorder(int border) = 0;
     CV_WRAP virtual int getBorder() const = 0;
 
-    //! The detector behind detect and detectAndCompute; ORB by default. It does not change the scale factor. Throws if
-    //! it is null, or is this extractor, also within other extractors and NormalizedDetector.
+    //! The detector behind detect and detectAndCompute; ORB by default. It does not change the scale factor. One of
+    //! another library gets images of 16U and 32F as 8-bit grey, from the image's own minimum to its maximum. Masks are
+    //! CV_8UC1 of the image's size, or empty. Throws if it is null, or is this extractor, also within other extractors
+    //! and NormalizedDetector.
     CV_WRAP virtual void setDetector(const Ptr<Feature2D>& detector) = 0;
     CV_WRAP virtual Ptr<Feature2D> getDetector() const = 0;
 

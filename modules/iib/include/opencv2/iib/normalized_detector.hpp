@@ -23,14 +23,15 @@ bits.
 
 Descriptors are best computed on the plain image: IIBDescriptorExtractor::createFor takes this detector and does so, and
 IIBDescriptorExtractor::scaleFactorFor gives the factor of the detector inside. compute and detectAndCompute of this
-class describe with the detector inside, on the plain image too.
+class describe with the detector inside, on the plain image too; one of another library gets images of 16U and 32F as
+8-bit grey, from the image's own minimum to its maximum. A mask is CV_8UC1 of the image's size, or empty.
 
 Images may be 8U, 16U or 32F with 1, 3 (BGR) or 4 (BGRA) channels. The largest value of 16-bit images counts as 255;
 float values are taken between the image's own minimum and maximum. The normalized image is the same for every
 instruction set and thread count. An empty image gives no keypoints.
 
-@throws cv::Exception from detect, compute and detectAndCompute for images of another type and for pixels that are NaN
-or infinite; from those that describe, if the detector inside does not describe keypoints.
+@throws cv::Exception from detect, compute and detectAndCompute for images and masks of another type or size and for
+pixels that are NaN or infinite; from those that describe, if the detector inside does not describe keypoints.
  */
 class CV_EXPORTS_W NormalizedDetector : public Feature2D
 {
