@@ -33,10 +33,7 @@ byte b of code i at byte b * CODES_PER_BLOCK + i with PACKING_TABLES. */
 class CodeLayout
 {
 public:
-    enum
-    {
-        CODES_PER_BLOCK = 16
-    };
+    static constexpr int CODES_PER_BLOCK = 16;
 
     //! Sizes of the levels in bytes, coarse first.
     CodeLayout(const std::vector<int>& levelSizes, CodePacking packing);

@@ -46,10 +46,7 @@ struct NearestCodes
 //! Finds the nearest train code of each query. Only for pairs that fit.
 struct NearestScan
 {
-    enum
-    {
-        INDEX_BITS = 12  //!< of the 31 that index and distance share
-    };
+    static constexpr int INDEX_BITS = 12;  //!< of the 31 that index and distance share
     //! Whether there are few enough of them, of codes short enough.
     static bool fits(const CodePairs& pairs)
     {
@@ -86,10 +83,7 @@ public:
 //! Where a scan may give a pair up: after a segment, not the last one, and later than that of the stage before.
 struct PruneStage
 {
-    enum
-    {
-        NO_MAX = 1 << 28
-    };
+    static constexpr int NO_MAX = 1 << 28;
     int segment;
     int most;  //!< bits that may differ since the stage before
 };

@@ -15,28 +15,33 @@ namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
-// Single pairs are compared row by row: plain levels of ROW_WORDS words of 64 bits or a multiple.
+// Single pairs are compared row by row: plain levels of ROW_WORDS words or a multiple.
 #if IIB_COUNTS_LANES
-const int ROW_WORDS = WIDTH / 2;
-inline int countDifferences(const uint64* a, const uint64* b, int words)
+const int ROW_WORDS = WIDTH;
+inline int countDifferences(const unsigned* a, const unsigned* b, int words)
 {
-    v_uint32 count = v_popcount(v_reinterpret_as_u32(vx_load(a) ^ vx_load(b)));
+    v_uint32 count = v_popcount(vx_load(a) ^ vx_load(b));
     for (int i = ROW_WORDS; i < words; i += ROW_WORDS)
-        count += v_popcount(v_reinterpret_as_u32(vx_load(a + i) ^ vx_load(b + i)));
+        count += v_popcount(vx_load(a + i) ^ vx_load(b + i));
     return (int)v_reduce_sum(count);
 }
 #elif IIB_COUNTS_64_BITS
-const int ROW_WORDS = 1;
-inline int countDifferences(const uint64* a, const uint64* b, int words)
+const int ROW_WORDS = 2;
+inline int countDifferences(const unsigned* a, const unsigned* b, int words)
 {
     int count = 0;
-    for (int i = 0; i < words; i++)
-        count += countBits64(a[i] ^ b[i]);
+    for (int i = 0; i < words; i += ROW_WORDS)
+    {
+        uint64 x, y;
+        memcpy(&x, a + i, sizeof(x));
+        memcpy(&y, b + i, sizeof(y));
+        count += countBits64(x ^ y);
+    }
     return count;
 }
 #else
-const int ROW_WORDS = 2;
-inline int countDifferences(const uint64* a, const uint64* b, int words)
+const int ROW_WORDS = 4;
+inline int countDifferences(const unsigned* a, const unsigned* b, int words)
 {
     unsigned count = 0;
     for (int i = 0; i < words; i += ROW_WORDS)
@@ -50,27 +55,31 @@ class PairRows
 {
 public:
     PairRows(const CodeLayout& l, int first_, int rows)
-        : layout(l), first(first_), plain(l.words()), known(rows, 0)
+        : layout(l), first(first_), plain(l.words()), starts(l.segments() + 1), known(rows)
     {
-        starts.assign(first + 1, 0);
-        for (int segment = first; segment < layout.segments(); segment++)
-            starts.push_back(starts[segment] + (int)alignSize((size(segment) + 1) / 2, ROW_WORDS));
-        step = starts.back();
+        for (int segment = 0; segment <= layout.segments(); segment++)
+            starts[segment] = segment <= first ? 0 : starts[segment - 1] + paddedSize(segment - 1);
+        step = starts[layout.segments()];
+        memset(known.data(), 0, rows);
         words.allocate((size_t)rows * step);
     }
 
-    //! Words of 64 bits from the end of a segment to the end of another.
+    //! Words from the end of a segment to the end of another.
     int count(int from, int to) const { return starts[to + 1] - starts[from + 1]; }
     //! What follows a segment.
-    const uint64* after(int segment, int row) const { return start(row) + starts[segment + 1]; }
+    const unsigned* after(int segment, int row) const
+    {
+        return words.data() + (size_t)row * step + starts[segment + 1];
+    }
 
     void set(int row, const unsigned* code)
     {
         for (int segment = first; segment < layout.segments(); segment++)
         {
+            unsigned* const to = words.data() + (size_t)row * step;
             const unsigned* end = code + layout.end(segment);
-            unsigned* filled = std::copy(end - size(segment), end, (unsigned*)(start(row) + starts[segment]));
-            std::fill(filled, (unsigned*)(start(row) + starts[segment + 1]), 0u);
+            unsigned* filled = std::copy(end - size(segment), end, to + starts[segment]);
+            std::fill(filled, to + starts[segment + 1], 0u);
         }
         known[row] = 1;
     }
@@ -86,15 +95,15 @@ public:
 
 private:
     int size(int segment) const { return layout.end(segment) - (segment ? layout.end(segment - 1) : 0); }
-    uint64* start(int row) const { return const_cast<uint64*>(words.data()) + (size_t)row * step; }
+    int paddedSize(int segment) const { return (int)alignSize(size(segment), ROW_WORDS); }
 
     const CodeLayout& layout;
     const int first;
     AutoBuffer<unsigned> plain;
-    std::vector<int> starts;
+    AutoBuffer<int> starts;  // of each segment in a row, and the end
     int step;
-    std::vector<uchar> known;
-    AlignedBuffer<uint64> words;
+    AutoBuffer<uchar> known;  // whether a row was set
+    AlignedBuffer<unsigned> words;
 };
 
 }  // namespace

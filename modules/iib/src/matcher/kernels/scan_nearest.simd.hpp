@@ -20,9 +20,10 @@ class NearestScanner : public Scanner
 {
 public:
     explicit NearestScanner(const NearestScan& s)
-        : Scanner(s.pairs), scan(s), trainKeys(s.ofTrains.distances ? s.pairs.paddedTrains() : 0, NO_KEY),
-          early(earlyEnd(trainKeys.empty()))
+        : Scanner(s.pairs), scan(s), trains(s.ofTrains.distances ? s.pairs.paddedTrains() : 0),
+          trainKeys(trains), early(earlyEnd(trains == 0))
     {
+        std::fill(trainKeys.data(), trainKeys.data() + trains, int(NO_KEY));
     }
 
     //! Some queries against all blocks.
@@ -58,17 +59,13 @@ public:
     //! After the last row.
     void keepOfTrains() const
     {
-        for (int train = 0; train < (int)trainKeys.size(); train++)
-            keep(scan.ofTrains, train, trainKeys[train], trainKeys[train] & INDEX_MASK);
+        for (int train = 0; train < trains; train++)
+            keep(scan.ofTrains, train, trainKeys.data()[train], trainKeys.data()[train] & INDEX_MASK);
     }
 
 private:
-    enum
-    {
-        INDEX_BITS = NearestScan::INDEX_BITS,
-        INDEX_MASK = (1 << INDEX_BITS) - 1,
-        NO_KEY = INT_MAX
-    };
+    static constexpr int INDEX_BITS = NearestScan::INDEX_BITS, INDEX_MASK = (1 << INDEX_BITS) - 1,
+                         NO_KEY = INT_MAX;
 
     //! Returns whether the tile ended after `end` words, before the last, since no pair is within its limit.
     template <int Q>
@@ -96,7 +93,7 @@ private:
                         vx_setall_s32(NO_KEY), keys[i]);
         for (int i = 0; i < Tile<Q>::SIZE; i++)
             nearest[i] = v_min(nearest[i], keys[i] | vx_setall_s32(block));
-        for (int v = 0; v < VECTORS && !trainKeys.empty(); v++)
+        for (int v = 0; v < VECTORS && trains > 0; v++)
         {
             int* const ofTrains = trainKeys.data() + block * CODES_PER_BLOCK + v * WIDTH;
             Counts least = vx_load(ofTrains);
@@ -135,7 +132,8 @@ private:
     }
 
     const NearestScan& scan;
-    std::vector<int> trainKeys;  // none if only queries have neighbours
+    const int trains;  // 0 if only queries have neighbours
+    AlignedBuffer<int> trainKeys;
     const int early;
 };
 

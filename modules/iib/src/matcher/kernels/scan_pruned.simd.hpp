@@ -7,7 +7,6 @@
 
 #include "pair_rows.simd.hpp"
 #include "shortlists.simd.hpp"
-#include "scanner.simd.hpp"
 
 namespace cv {
 namespace iib {
@@ -20,10 +19,10 @@ class PrunedScanner : public SinkScanner
 public:
     explicit PrunedScanner(const PrunedScan& s)
         : SinkScanner(s.pairs, s.sink), scan(s), lists(blocks), queryRow(layout, segmentAt(0) + 1, 1),
-          trainRows(layout, segmentAt(0) + 1, s.pairs.paddedTrains())
+          trainRows(layout, segmentAt(0) + 1, s.pairs.paddedTrains()), words(s.stageCount + 1)
     {
         for (int stage = 0; stage <= s.stageCount; stage++)
-            words.push_back(layout.end(segmentAt(stage)));
+            words[stage] = layout.end(segmentAt(stage));
         early = s.limits && words[0] > 8 ? words[0] * 3 / 4 | 1 : words[0];
     }
 
@@ -241,7 +240,7 @@ private:
         const int from = segmentAt(stage), to = segmentAt(stage + 1);
         const int most = stage + 1 < scan.stageCount ? scan.stages[stage + 1].most : NEVER;
         const int size = queryRow.count(from, to);
-        const uint64* query = queryRow.after(from, 0);
+        const unsigned* query = queryRow.after(from, 0);
         int *list = lists.list(q), *distance = lists.distances(q), left = 0;
         for (int i = 0; i < count; i++)
         {
@@ -264,9 +263,9 @@ private:
     const PrunedScan& scan;
     Shortlists lists;
     PairRows queryRow, trainRows;
-    std::vector<int> words;  // up to each stage, and in all
-    int early;               // words after which a tile is left if no pair in it can pass the first stage
-    int least[QUERIES];      // of the distances at the first stage
+    AutoBuffer<int> words;  // up to each stage, and in all
+    int early;              // words after which a tile is left if no pair in it can pass the first stage
+    int least[QUERIES];     // of the distances at the first stage
 };
 
 }  // namespace

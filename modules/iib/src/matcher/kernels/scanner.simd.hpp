@@ -7,8 +7,16 @@
 #ifndef OPENCV_IIB_MATCHER_KERNELS_SCANNER_SIMD_HPP
 #define OPENCV_IIB_MATCHER_KERNELS_SCANNER_SIMD_HPP
 
+#include "../../common/simd.hpp"
 #include "hamming.hpp"
-#include "tile.simd.hpp"
+
+// Tile compares some queries with a CodeBlock, TileQueries prepares these queries, PACKING is the packing that both
+// understand: by tables in registers where bytes are looked up faster than the bits of words are counted, else by adders.
+#if IIB_LOOKS_UP_16 && !IIB_COUNTS_LANES
+#include "tile_tables.simd.hpp"
+#else
+#include "tile_adders.simd.hpp"
+#endif
 
 namespace cv {
 namespace iib {

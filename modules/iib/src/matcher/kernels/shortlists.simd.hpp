@@ -8,17 +8,14 @@
 #define OPENCV_IIB_MATCHER_KERNELS_SHORTLISTS_SIMD_HPP
 
 #include "../../common/aligned_buffer.hpp"
-#include "tile.simd.hpp"
+#include "scanner.simd.hpp"
 
 namespace cv {
 namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
-enum
-{
-    NEVER = INT_MAX  //!< the distance of pairs that ended
-};
+const int NEVER = INT_MAX;  // the distance of pairs that ended
 
 class Shortlists
 {
@@ -78,7 +75,7 @@ public:
 private:
     const size_t rowSize, listSize;
     AlignedBuffer<int> values, lists;
-    std::vector<int> stored;  // blocks, ascending
+    AutoBuffer<int> stored;  // blocks, ascending
     int storedCount;
 };
 

@@ -57,10 +57,7 @@ private:
 template <int Q> class Tile
 {
 public:
-    enum
-    {
-        SIZE = Q * VECTORS
-    };
+    static constexpr int SIZE = Q * VECTORS;
 
     //! Compares words 0 to `to`.
     CV_ALWAYS_INLINE void start(const TileQueries& queries, const unsigned* block, int to)

@@ -89,11 +89,7 @@ private:
 template <int Q> class Tile
 {
 public:
-    enum
-    {
-        SIZE = Q * VECTORS,
-        PAIRS = (Q + 1) / 2
-    };
+    static constexpr int SIZE = Q * VECTORS, PAIRS = (Q + 1) / 2;
 
     //! Compares words 0 to `to`.
     CV_ALWAYS_INLINE void start(const TileQueries& queries, const unsigned* block, int to)
