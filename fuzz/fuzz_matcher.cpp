@@ -7,7 +7,7 @@
 
 #include "byte_source.hpp"
 #include "support/matcher_oracle.hpp"
-#include "../src/matcher/search_blocks.hpp"
+#include "../src/matcher/pair_scan.hpp"
 
 #include <numeric>
 
@@ -119,15 +119,14 @@ Ptr<HierarchicalMatcher> takeMatcher(ByteSource& in, MatcherOracle& oracle)
     oracle.maxRatio = wild ? in.number() : in.between(1, 16) / 16.f;
     matcher->setMaxRatio(oracle.maxRatio);
     // small blocks, so that the few codes of an input cross their boundaries
-    cv::iib::SearchBlocks blocks;
-    blocks.queries = in.between(1, 9);
-    blocks.codeBlocks = in.between(1, 3);
-    dynamic_cast<cv::iib::BlockedMatcher&>(*matcher).setSearchBlocks(blocks);
+    cv::iib::ScanBlocks& blocks = dynamic_cast<cv::iib::ScanBlocks&>(*matcher);
+    blocks.queryCount = in.between(1, 9);
+    blocks.codeBlocks = blocks.codeBlocksOfLimits = in.between(1, 3);
     if (mode == HierarchicalMatcher::THRESHOLD)
         oracle.thresholds = matcher->getThresholds();
     // The oracle knows which part of a last level of more than a word is looked at first.
     if (mode == HierarchicalMatcher::ADAPTIVE && oracle.levelSizes.back() > 4)
-        oracle.adaptiveBlock = 16 * blocks.codeBlocks;
+        oracle.adaptiveBlock = 16 * blocks.codeBlocksOfLimits;
     return matcher;
 }
 

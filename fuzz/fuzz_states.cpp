@@ -7,7 +7,7 @@
 
 #include "byte_source.hpp"
 #include "file.hpp"
-#include "../modules/iib/src/matcher/search_blocks.hpp"
+#include "../modules/iib/src/matcher/pair_scan.hpp"
 #include "support/matcher_oracle.hpp"
 
 #include <numeric>
@@ -24,7 +24,7 @@ struct Subject
     Ptr<HierarchicalMatcher> matcher;
     MatcherOracle model;
     bool ofAnyWidth = false;  //!< create() without level sizes, which takes the width of the first codes
-    int codeBlocks = cv::iib::SearchBlocks().codeBlocks;
+    int codeBlocks = cv::iib::ScanBlocks().codeBlocksOfLimits;
 
     //! Whether the matcher knows the level sizes already.
     bool knowsLevels() const
@@ -48,7 +48,7 @@ struct Subject
     void replace(const Ptr<HierarchicalMatcher>& other)
     {
         matcher = other;
-        codeBlocks = cv::iib::SearchBlocks().codeBlocks;
+        codeBlocks = cv::iib::ScanBlocks().codeBlocksOfLimits;
         setMode(matcher->getMode());
     }
 };
@@ -190,11 +190,10 @@ private:
 
     void setBlocks(Subject& s)
     {
-        cv::iib::SearchBlocks blocks;
-        blocks.queries = in.between(1, 9);
-        blocks.codeBlocks = in.between(1, 3);
-        dynamic_cast<cv::iib::BlockedMatcher&>(*s.matcher).setSearchBlocks(blocks);
-        s.codeBlocks = blocks.codeBlocks;
+        cv::iib::ScanBlocks& blocks = dynamic_cast<cv::iib::ScanBlocks&>(*s.matcher);
+        blocks.queryCount = in.between(1, 9);
+        blocks.codeBlocks = blocks.codeBlocksOfLimits = in.between(1, 3);
+        s.codeBlocks = blocks.codeBlocksOfLimits;
         s.setMode(s.matcher->getMode());
     }
 

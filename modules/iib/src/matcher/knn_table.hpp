@@ -10,10 +10,11 @@
 #include <algorithm>
 #include <climits>
 
-#include "index_bits.hpp"
-
 namespace cv {
 namespace iib {
+
+//! Of the number of a train code among all images.
+static constexpr int INDEX_BITS = 40;
 
 //! A neighbour as one number: distance above, index below, so that ties go to the lowest index.
 typedef uint64 MatchKey;

@@ -5,7 +5,7 @@
 #include "../precomp.hpp"
 #include "manifest.hpp"
 #include "../common/checked_file.hpp"
-#include "index_bits.hpp"
+#include "knn_table.hpp"
 
 namespace cv {
 namespace iib {

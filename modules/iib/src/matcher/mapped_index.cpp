@@ -6,7 +6,7 @@
 #include "input.hpp"
 #include "manifest.hpp"
 #include "parameters.hpp"
-#include "blocked_search.hpp"
+#include "search.hpp"
 
 #include "opencv2/core/utils/filesystem.hpp"
 
@@ -173,9 +173,8 @@ private:
     //! In the segments `first` to `end`.
     void search(size_t first, size_t end, const Mat& queries, KnnTable& found) const
     {
-        const PruningPolicy policy = exactPolicy();
+        const PruningPolicy policy;
         const std::vector<Mat> masks;
-        const SearchBlocks blocks;
         std::vector<std::vector<bool>> hidden;
         for (size_t i = first; i < end; i++)
         {
@@ -184,10 +183,10 @@ private:
         }
         for (size_t i = first; i < end; i++)
         {
-            SearchInput input(opened[i]->codes(), queries, policy, masks, blocks);
+            SearchInput input(opened[i]->codes(), queries, policy, masks);
             input.firstIndex = firstRows[i];
             input.hidden = hidden[i - first].empty() ? 0 : &hidden[i - first];
-            searchNearest(input, found, 0);
+            addNearest(input, found);
         }
     }
 

@@ -20,15 +20,6 @@ std::vector<int> HierarchicalMatcherImpl::levelSizes() const
     return index ? index->layout().levelSizes() : parameters.levelSizes;
 }
 
-std::vector<int> HierarchicalMatcherImpl::levelsFor(int width) const
-{
-    MatcherParameters p = parameters;
-    if (p.levelSizes.empty())
-        p.levelSizes.assign(1, width);
-    check(p);
-    return p.levelSizes;
-}
-
 void HierarchicalMatcherImpl::set(const MatcherParameters& changed)
 {
     check(changed);
@@ -72,17 +63,11 @@ void HierarchicalMatcherImpl::resetCost()
     counters->all = 0;
 }
 
-void HierarchicalMatcherImpl::count(const SearchCost& cost) const
-{
-    counters->compared += cost.compared;
-    counters->all += cost.all;
-}
-
 void HierarchicalMatcherImpl::makeIndex(int width)
 {
     if (index)
         return;
-    Ptr<PackedCodes> made = makePtr<PackedCodes>(levelsFor(width));
+    Ptr<PackedCodes> made = makePtr<PackedCodes>(levelSizesFor(parameters, width));
     for (size_t i = 0; i < trainDescCollection.size(); i++)  // images without rows came before
         made->add(Mat());
     index = made;
@@ -129,7 +114,7 @@ std::vector<Mat> HierarchicalMatcherImpl::getTrainDescriptors() const
 Ptr<DescriptorMatcher> HierarchicalMatcherImpl::clone(bool emptyTrainData) const
 {
     Ptr<HierarchicalMatcherImpl> result = makePtr<HierarchicalMatcherImpl>(parameters);
-    result->blocks = blocks;
+    static_cast<ScanBlocks&>(*result) = *this;
     if (emptyTrainData)
         result->counters = counters;
     else

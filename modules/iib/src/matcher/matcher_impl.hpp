@@ -22,8 +22,9 @@ struct CostCounters
 };
 
 //! Glue between DescriptorMatcher's interface and the search: parameters and files in matcher.cpp and matcher_files.cpp,
-//! calls that match in matcher_search.cpp.
-class HierarchicalMatcherImpl CV_FINAL : public HierarchicalMatcher, public BlockedMatcher
+//! calls that match in matcher_search.cpp. Tests reach its
+//! ScanBlocks by dynamic_cast.
+class HierarchicalMatcherImpl CV_FINAL : public HierarchicalMatcher, public ScanBlocks
 {
 public:
     explicit HierarchicalMatcherImpl(const MatcherParameters& p);
@@ -39,7 +40,6 @@ public:
     float getMaxRatio() const CV_OVERRIDE { return parameters.maxRatio; }
     double matchCost() const CV_OVERRIDE;
     void resetCost() CV_OVERRIDE;
-    void setSearchBlocks(const SearchBlocks& b) CV_OVERRIDE { blocks = b; }
 
     bool isMaskSupported() const CV_OVERRIDE { return true; }
     void add(InputArrayOfArrays descriptors) CV_OVERRIDE;
@@ -87,8 +87,6 @@ private:
     Ptr<const PackedCodes> trainCodes(const Mat& queries) const;
     //! Those of a call with two sets.
     Ptr<const PackedCodes> packed(InputArray trains, const Mat& queries) const;
-    //! Level sizes for codes of that width.
-    std::vector<int> levelsFor(int width) const;
     KnnTable nearest(const PackedCodes& trains, const Mat& queries, int k, InputArrayOfArrays masks) const;
     void withinRadius(const PackedCodes& trains, const Mat& queries, float maxDistance,
             InputArrayOfArrays masks, bool compactResult, std::vector<std::vector<DMatch>>& matches) const;
@@ -96,7 +94,6 @@ private:
     void count(const SearchCost& cost) const;
 
     MatcherParameters parameters;
-    SearchBlocks blocks;
     Ptr<PackedCodes> index;  //!< null while the width of codes is not known
     Ptr<CostCounters> counters;
 };

@@ -31,7 +31,7 @@ Ptr<const PackedCodes> HierarchicalMatcherImpl::trainCodes(const Mat& queries) c
 {
     if (index)
         return index;
-    Ptr<PackedCodes> none = makePtr<PackedCodes>(levelsFor(std::max(queries.cols, 1)));
+    Ptr<PackedCodes> none = makePtr<PackedCodes>(levelSizesFor(parameters, std::max(queries.cols, 1)));
     for (size_t i = 0; i < trainDescCollection.size(); i++)
         none->add(Mat());
     return none;
@@ -42,7 +42,7 @@ Ptr<const PackedCodes> HierarchicalMatcherImpl::packed(InputArray trains, const 
     std::vector<Mat> images = imagesOf(trains);
     const int width = widthOf(images);
     const Ptr<PackedCodes> codes =
-            makePtr<PackedCodes>(levelsFor(width > 0 ? width : std::max(queries.cols, 1)));
+            makePtr<PackedCodes>(levelSizesFor(parameters, width > 0 ? width : std::max(queries.cols, 1)));
     for (size_t i = 0; i < images.size(); i++)
         codes->add(checkedDescriptors(images[i], codes->layout().bytes(), parameters.levelSizes.empty()));
     return codes;
@@ -54,8 +54,14 @@ PruningPolicy HierarchicalMatcherImpl::policy(const CodeLayout& layout) const
     {
     case THRESHOLD: return thresholdPolicy(layout, parameters.thresholds);
     case ADAPTIVE: return adaptivePolicy(layout);
-    default: return exactPolicy();
+    default: return PruningPolicy();
     }
+}
+
+void HierarchicalMatcherImpl::count(const SearchCost& cost) const
+{
+    counters->compared += cost.compared;
+    counters->all += cost.all;
 }
 
 KnnTable HierarchicalMatcherImpl::nearest(
@@ -65,7 +71,7 @@ KnnTable HierarchicalMatcherImpl::nearest(
     const Mat queries = checkedDescriptors(queries_, trains.layout().bytes(), parameters.levelSizes.empty());
     const PruningPolicy pruning = policy(trains.layout());
     const std::vector<Mat> masks = checkedMasks(masks_, queries.rows, trains);
-    const SearchInput input(trains, queries, pruning, masks, blocks);
+    const SearchInput input(trains, queries, pruning, masks, *this);
     SearchCost cost;
     KnnTable found = findNearest(input, k, parameters.crossCheck, parameters.maxRatio, cost);
     count(cost);
@@ -82,7 +88,7 @@ void HierarchicalMatcherImpl::withinRadius(const PackedCodes& trains, const Mat&
     const PruningPolicy pruning =
             parameters.mode == THRESHOLD ? policy(layout) : radiusPolicy(layout, radius);
     const std::vector<Mat> masks = checkedMasks(masks_, queries.rows, trains);
-    const SearchInput input(trains, queries, pruning, masks, blocks);
+    const SearchInput input(trains, queries, pruning, masks, *this);
     SearchCost cost;
     toMatches(trains, findWithin(input, radius, cost), compactResult, matches);
     count(cost);

@@ -4,7 +4,7 @@
 
 #include "../precomp.hpp"
 #include "packed_codes.hpp"
-#include "index_bits.hpp"
+#include "knn_table.hpp"
 
 namespace cv {
 namespace iib {

@@ -17,8 +17,6 @@ static void addStage(PruningPolicy& policy, int segment, int most = PruneStage::
 //! Random differences of n bits spread by sqrt(n) / 2 around n / 2.
 static double spread(int bits) { return std::sqrt((double)bits) / 2; }
 
-PruningPolicy exactPolicy() { return PruningPolicy(); }
-
 // One stage, where most pairs are beyond the radius; none where they hardly ever are.
 PruningPolicy radiusPolicy(const CodeLayout& layout, int radius)
 {

@@ -4,13 +4,72 @@
 
 #include "../precomp.hpp"
 #include "search.hpp"
-#include "blocked_search.hpp"
+
+#include <mutex>
 
 namespace cv {
 namespace iib {
 
+namespace {
+
+//! Cuts queries in parts, which threads scan, and adds up the work. `scan` takes a Range of queries.
+template <class Scan> class ParallelScan CV_FINAL : public ParallelLoopBody
+{
+public:
+    ParallelScan(int queries_, int parts, const Scan& scan_)
+        : queries(queries_), size(std::max((queries + parts - 1) / parts, 4)),  // a tile's queries
+          scan(scan_)
+    {
+    }
+    SearchCost run() const
+    {
+        const int parts = (queries + size - 1) / size;
+        parallel_for_(Range(0, parts), *this, parts);
+        return cost;
+    }
+    void operator()(const Range& parts) const CV_OVERRIDE
+    {
+        const SearchCost work = scan(Range(parts.start * size, std::min(parts.end * size, queries)));
+        std::lock_guard<std::mutex> guard(lock);
+        cost += work;
+    }
+
+private:
+    const int queries, size;
+    const Scan& scan;
+    mutable std::mutex lock;
+    mutable SearchCost cost;
+};
+
+template <class Scan> SearchCost scanInParts(int queries, int parts, const Scan& scan)
+{
+    return ParallelScan<Scan>(queries, parts, scan).run();
+}
+
+// Some parts for each thread, so that all are done at about the same time.
+int evenParts(const SearchInput& input)
+{
+    const int blocks = (input.queries.rows + input.blocks.queryCount - 1) / input.blocks.queryCount,
+              threads = getNumThreads();
+    return std::max((blocks + threads - 1) / threads, 2) * threads;
+}
+
+// In the other direction each part has neighbours of its own, merged by their order, so that the result does not depend
+// on which is done first. Few parts, since each begins without thresholds.
+SearchCost addNearestOfBoth(const SearchInput& input, KnnTable& forQueries, KnnTable& forTrains)
+{
+    std::mutex lock;
+    return scanInParts(input.queries.rows, getNumThreads(), [&](const Range& queries) {
+        KnnTable own(forTrains.rows(), forTrains.size(), CodeLayout::CODES_PER_BLOCK);
+        const SearchCost cost = scanNearest(input, queries, forQueries, &own);
+        std::lock_guard<std::mutex> guard(lock);
+        forTrains.merge(own);
+        return cost;
+    });
+}
+
 // Leaves the pairs that are among the nearest in both directions.
-static void keepMutual(KnnTable& forQueries, const KnnTable& forTrains)
+void keepMutual(KnnTable& forQueries, const KnnTable& forTrains)
 {
     for (size_t query = 0; query < forQueries.rows(); query++)
     {
@@ -25,19 +84,27 @@ static void keepMutual(KnnTable& forQueries, const KnnTable& forTrains)
     }
 }
 
-static bool passesRatio(const MatchKey* row, float maxRatio)
+bool passesRatio(const MatchKey* row, float maxRatio)
 {
     return row[1] == NO_MATCH || distanceOf(row[0]) < (double)maxRatio * distanceOf(row[1]);
 }
 
 // The first k of each row that passes the ratio test; the others stay empty.
-static KnnTable afterRatio(const KnnTable& found, int k, float maxRatio)
+KnnTable afterRatio(const KnnTable& found, int k, float maxRatio)
 {
     KnnTable result(found.rows(), k);
     for (size_t query = 0; query < found.rows(); query++)
         if (passesRatio(found[query], maxRatio))
             std::copy(found[query], found[query] + k, result[query]);
     return result;
+}
+
+}  // namespace
+
+SearchCost addNearest(const SearchInput& input, KnnTable& forQueries)
+{
+    return scanInParts(input.queries.rows, evenParts(input),
+            [&](const Range& queries) { return scanNearest(input, queries, forQueries, 0); });
 }
 
 KnnTable findNearest(const SearchInput& input, int k, bool mutual, float maxRatio, SearchCost& cost)
@@ -49,7 +116,7 @@ KnnTable findNearest(const SearchInput& input, int k, bool mutual, float maxRati
     const bool ratio = maxRatio < 1;
     KnnTable forQueries(queries, std::max(k, ratio ? 2 : 1));
     KnnTable forTrains(mutual ? trains : 0, backK);
-    cost += searchNearest(input, forQueries, mutual ? &forTrains : 0);
+    cost += mutual ? addNearestOfBoth(input, forQueries, forTrains) : addNearest(input, forQueries);
     if (ratio)
         forQueries = afterRatio(forQueries, k, maxRatio);
     if (mutual)
@@ -60,7 +127,8 @@ KnnTable findNearest(const SearchInput& input, int k, bool mutual, float maxRati
 std::vector<std::vector<MatchKey>> findWithin(const SearchInput& input, int radius, SearchCost& cost)
 {
     std::vector<std::vector<MatchKey>> result(input.queries.rows);
-    cost += searchWithin(input, radius, result);
+    cost += scanInParts(input.queries.rows, evenParts(input),
+            [&](const Range& queries) { return scanWithin(input, queries, radius, result); });
     for (size_t query = 0; query < result.size(); query++)
         std::sort(result[query].begin(), result[query].end());
     return result;

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/matcher_oracle.hpp"
-#include "../../src/matcher/search_blocks.hpp"
+#include "../../src/matcher/pair_scan.hpp"
 
 namespace opencv_test {
 namespace {
@@ -13,10 +13,8 @@ typedef testing::TestWithParam<std::tuple<int, int>> IIB_Matcher_Blocks;  // blo
 
 void setBlocks(HierarchicalMatcher& matcher, int size)
 {
-    SearchBlocks blocks;
-    blocks.queries = size;
-    blocks.codeBlocks = size;
-    dynamic_cast<BlockedMatcher&>(matcher).setSearchBlocks(blocks);
+    ScanBlocks& blocks = dynamic_cast<ScanBlocks&>(matcher);
+    blocks.queryCount = blocks.codeBlocks = blocks.codeBlocksOfLimits = size;
 }
 
 Ptr<HierarchicalMatcher> createMatcher(const MatcherOracle& oracle, int mode, int blocks)
@@ -61,6 +59,26 @@ INSTANTIATE_TEST_CASE_P(/**/, IIB_Matcher_Blocks,
         testing::Combine(testing::Values(1, 8, 128),
                 testing::Values((int)HierarchicalMatcher::EXACT, (int)HierarchicalMatcher::THRESHOLD,
                         (int)HierarchicalMatcher::ADAPTIVE)));
+
+// Blocks for the cache are no part of ADAPTIVE's answers, whose limits come down every 2048 codes.
+TEST(IIB_Matcher_Adaptive, does_not_depend_on_blocks)
+{
+    const Mat queries = randomDescriptors(1, 30, 64), trains = randomDescriptors(2, 5000, 64);
+    const Ptr<HierarchicalMatcher> matcher =
+            HierarchicalMatcher::create({16, 48}, HierarchicalMatcher::ADAPTIVE);
+    MatcherOracle oracle;
+    oracle.levelSizes = {16, 48};
+    oracle.images.push_back(trains);
+    oracle.adaptiveBlock = 2048;
+    matcher->add(trains);
+    for (int size : {1, 100, 1000})
+    {
+        ScanBlocks& blocks = dynamic_cast<ScanBlocks&>(*matcher);
+        blocks.queryCount = blocks.codeBlocks = size;
+        matcher->resetCost();
+        expectKnnAsOracle(*matcher, oracle, queries, 5);
+    }
+}
 
 // A pair just within ADAPTIVE's margin of the best one, and one just beyond: 1.75 sigma of 64 bits are 7.
 TEST(IIB_Matcher_Adaptive, margin)

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/matcher_oracle.hpp"
-#include "../../src/matcher/search_blocks.hpp"
+#include "../../src/matcher/pruning.hpp"
 
 namespace opencv_test {
 namespace {
@@ -34,7 +34,7 @@ TEST_P(IIB_Matcher_Toggle, between_add_and_match)
     const Mat queries = randomDescriptors(3, 50, 42);
     const Matches nearby = oracle.radius(queries, 40);
     if (mode == HierarchicalMatcher::ADAPTIVE)  // not in radiusMatch
-        oracle.adaptiveBlock = cv::iib::SearchBlocks().codeBlocks * 16;
+        oracle.adaptiveBlock = cv::iib::PruningPolicy::CODE_BLOCKS_OF_LIMITS * 16;
     const Matches nearest = oracle.knn(queries, 1), three = oracle.knn(queries, 3);
 
     setUseOptimized(first);

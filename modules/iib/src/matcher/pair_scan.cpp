@@ -1,0 +1,234 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../precomp.hpp"
+#include "pair_scan.hpp"
+
+namespace cv {
+namespace iib {
+
+namespace {
+
+/** The blocks of pairs that are scanned one after the other: some queries with all train codes in ascending order, then
+the next queries. Indices in `pairs` count from firstQuery and firstTrain. */
+class PairBlocks
+{
+public:
+    PairBlocks(const SearchInput& input_, const Range& range_)
+        : pairs(input_.trains.layout(), Mat(), 0, 0), firstQuery(range_.start), firstTrain(0), pairCount(0),
+          input(input_), range(range_), step(input.blocks.codeBlocksFor(input.policy)), nextBlock(0),
+          limits(range.size(), input.policy.limit)
+    {
+    }
+
+    //! Goes to the first block or to the next; false after the last.
+    bool next()
+    {
+        if (nextBlock >= input.trains.blocks())
+        {
+            firstQuery += input.blocks.queryCount;
+            nextBlock = 0;
+        }
+        if (firstQuery >= range.end || input.trains.blocks() == 0)
+            return false;
+        const int count = std::min(step, input.trains.blocks() - nextBlock);
+        firstTrain = (size_t)nextBlock * CodeLayout::CODES_PER_BLOCK;
+        pairs.queries =
+                input.queries.rowRange(firstQuery, std::min(firstQuery + input.blocks.queryCount, range.end));
+        pairs.trains = input.trains.block(nextBlock);
+        pairs.trainCount =
+                (int)std::min(input.trains.rows() - firstTrain, (size_t)count * CodeLayout::CODES_PER_BLOCK);
+        nextBlock += count;
+        if (needsFlags())
+            fillFlags();
+        else
+        {
+            pairs.allowed = 0;
+            pairCount = (size_t)pairs.queries.rows * pairs.trainCount;
+        }
+        return true;
+    }
+
+    //! What the first train code is called in results.
+    size_t firstIndex() const { return input.firstIndex + firstTrain; }
+    //! Of the policy, for each query of the block.
+    int* limitsOfQueries() { return &limits[firstQuery - range.start]; }
+
+    CodePairs pairs;
+    int firstQuery;
+    size_t firstTrain;
+    size_t pairCount;  //!< those that are not masked
+
+private:
+    //! Whether some pairs of the block may be left out.
+    bool needsFlags() const
+    {
+        if (!input.masks.empty() || !input.hidden)
+            return !input.masks.empty();
+        const auto first = input.hidden->begin() + input.trains.imageOf(firstTrain),
+                   end = input.hidden->begin() + input.trains.imageOf(firstTrain + pairs.trainCount - 1) + 1;
+        return std::find(first, end, true) != end;
+    }
+
+    //! Copies the masks of the block into rows of a whole number of CodeBlocks, and counts the pairs left.
+    void fillFlags()
+    {
+        const PackedCodes& trains = input.trains;
+        const size_t width = pairs.paddedTrains(), end = firstTrain + pairs.trainCount;
+        flags.assign(pairs.queries.rows * width, 0);
+        pairs.allowed = flags.data();
+        pairCount = 0;
+        for (size_t row = firstTrain; row < end;)
+        {
+            const size_t image = trains.imageOf(row), count = std::min(trains.start(image + 1), end) - row;
+            const bool shown = !input.hidden || !(*input.hidden)[image];
+            for (int query = 0; shown && query < pairs.queries.rows; query++)
+            {
+                uchar* to = flags.data() + query * width + (row - firstTrain);
+                if (input.masks.empty() || input.masks[image].empty())
+                    std::fill(to, to + count, (uchar)1);
+                else
+                    std::copy_n(input.masks[image].ptr(firstQuery + query) + (row - trains.start(image)),
+                            count, to);
+                pairCount += count - std::count(to, to + count, (uchar)0);
+            }
+            row += count;
+        }
+    }
+
+    const SearchInput& input;
+    const Range range;
+    const int step;
+    int nextBlock;
+    std::vector<int> limits;
+    std::vector<uchar> flags;
+};
+
+//! Puts the pairs of a block into tables of any k.
+class TableSink CV_FINAL : public HammingSink
+{
+public:
+    TableSink(const PairBlocks& block_, KnnTable& forQueries_, KnnTable* forTrains_)
+        : HammingSink(forQueries_.thresholds() + block_.firstQuery,
+                  forTrains_ ? forTrains_->thresholds() + block_.firstTrain : 0),
+          block(block_), forQueries(forQueries_), forTrains(forTrains_)
+    {
+    }
+    void found(int query, int train, int distance) CV_OVERRIDE
+    {
+        forQueries.insert(block.firstQuery + query, matchKey(distance, block.firstIndex() + train));
+        if (forTrains)
+            forTrains->insert(block.firstTrain + train, matchKey(distance, block.firstQuery + query));
+    }
+
+private:
+    const PairBlocks& block;
+    KnnTable& forQueries;
+    KnnTable* forTrains;
+};
+
+//! Lists all pairs of a block that are below one threshold.
+class ListSink CV_FINAL : public HammingSink
+{
+public:
+    ListSink(const PairBlocks& block_, const int* thresholds, std::vector<std::vector<MatchKey>>& lists_)
+        : HammingSink(thresholds, 0), block(block_), lists(lists_)
+    {
+    }
+    void found(int query, int train, int distance) CV_OVERRIDE
+    {
+        lists[block.firstQuery + query].push_back(matchKey(distance, block.firstIndex() + train));
+    }
+
+private:
+    const PairBlocks& block;
+    std::vector<std::vector<MatchKey>>& lists;
+};
+
+SearchCost scanPruned(const SearchInput& input, PairBlocks& block, HammingSink& sink)
+{
+    const PruningPolicy& policy = input.policy;
+    const CodeLayout& layout = input.trains.layout();
+    std::vector<int64> passed(policy.stages.size(), 0);
+    PrunedScan scan(block.pairs, sink);
+    scan.stages = policy.stages.data();
+    scan.stageCount = (int)policy.stages.size();
+    scan.passed = passed.data();
+    scan.limits = policy.stages.size() == 1 ? block.limitsOfQueries() : 0;
+    scan.margin = policy.margin;
+    input.trains.kernels().pruned(scan);
+
+    SearchCost cost;
+    cost.all = (uint64)block.pairCount * 8 * layout.bytes();
+    uint64 alive = block.pairCount;
+    for (int segment = 0, stage = 0; segment < layout.segments(); segment++)
+    {
+        cost.compared += alive * layout.bits(segment);
+        if (stage < scan.stageCount && policy.stages[stage].segment == segment)
+            alive = passed[stage++];
+    }
+    return cost;
+}
+
+// Puts the nearest of a scan into a table of theirs, in which the first of the other side is `firstOther`.
+void keep(const NearestCodes& nearest, int count, size_t firstOther, KnnTable& table, size_t first)
+{
+    for (int i = 0; i < count; i++)
+        if (nearest.indices[i] >= 0)
+            table.insert(first + i, matchKey(nearest.distances[i], firstOther + nearest.indices[i]));
+}
+
+// For tables of a single column, without stages.
+SearchCost scanSingle(
+        const SearchInput& input, const PairBlocks& block, KnnTable& forQueries, KnnTable* forTrains)
+{
+    const int queries = block.pairs.queries.rows, trains = block.pairs.trainCount;
+    std::vector<int> queryIndices(queries, -1), trainIndices(forTrains ? trains : 0, -1);
+    NearestScan scan(
+            block.pairs, NearestCodes(forQueries.thresholds() + block.firstQuery, queryIndices.data()));
+    if (forTrains)
+        scan.ofTrains = NearestCodes(forTrains->thresholds() + block.firstTrain, trainIndices.data());
+    input.trains.kernels().nearest(scan);
+    keep(scan.ofQueries, queries, block.firstIndex(), forQueries, block.firstQuery);
+    if (forTrains)
+        keep(scan.ofTrains, trains, block.firstQuery, *forTrains, block.firstTrain);
+    SearchCost cost;
+    cost.compared = cost.all = (uint64)block.pairCount * 8 * input.trains.layout().bytes();
+    return cost;
+}
+
+}  // namespace
+
+SearchCost scanNearest(
+        const SearchInput& input, const Range& queries, KnnTable& forQueries, KnnTable* forTrains)
+{
+    const bool single =
+            forQueries.size() == 1 && (!forTrains || forTrains->size() == 1) && input.policy.stages.empty();
+    SearchCost cost;
+    for (PairBlocks block(input, queries); block.next();)
+        if (single && NearestScan::fits(block.pairs))
+            cost += scanSingle(input, block, forQueries, forTrains);
+        else
+        {
+            TableSink sink(block, forQueries, forTrains);
+            cost += scanPruned(input, block, sink);
+        }
+    return cost;
+}
+
+SearchCost scanWithin(
+        const SearchInput& input, const Range& queries, int radius, std::vector<std::vector<MatchKey>>& lists)
+{
+    const std::vector<int> thresholds(std::min(queries.size(), input.blocks.queryCount), radius + 1);
+    SearchCost cost;
+    for (PairBlocks block(input, queries); block.next();)
+    {
+        ListSink sink(block, thresholds.data(), lists);
+        cost += scanPruned(input, block, sink);
+    }
+    return cost;
+}
+
+}  // namespace iib
+}  // namespace cv
