@@ -1,7 +1,8 @@
 # ctest entries: one for each test suite of opencv_test_iib, once with all instruction sets and once under
-# each pin WIDEST=DISABLED; a smoke run of the perf tests; the README on the installation; the demo.
+# each pin WIDEST=DISABLED; a smoke run of the perf tests; the README on the installation; the demo. Those with the label
+# `nightly` are for scripts/test.sh --all.
 if(CMAKE_CROSSCOMPILING)
-  return()  # scripts/arm64.sh runs the test program in an emulator
+  return()  # scripts/helpers/arm64.sh runs the test program in an emulator
 endif()
 set(suites "${PROJECT_BINARY_DIR}/suites.cmake")
 set(pins "")
@@ -9,22 +10,39 @@ if(IIB_DISPATCH)
   set(pins AVX512_SKX=AVX512-ICL AVX2=AVX512-SKX,AVX512-ICL SSE4_2=AVX2,AVX512-SKX,AVX512-ICL
     baseline=SSE4.1,SSE4.2,AVX,AVX2,AVX512-SKX,AVX512-ICL)
 endif()
+# Suites of kernels, which compare every instruction set with naive code over sizes and alignments. Sanitized, where all
+# takes ten times as long, the others run once by day, and under each pin by night.
+set(kernels Kernels Hamming Bits Boxes Rotated GradientOrientation Normalization Matcher_Sizes Golden InstructionSets)
+set(label "")
+if(IIB_SANITIZE)
+  set(label nightly)
+endif()
 add_custom_command(TARGET opencv_test_iib POST_BUILD
   COMMAND "${CMAKE_COMMAND}" "-DEXE=$<TARGET_FILE:opencv_test_iib>" "-DOUT=${suites}" "-DPINS=${pins}"
-    -P "${PROJECT_SOURCE_DIR}/cmake/ListSuites.cmake"
+    "-DKERNELS=${kernels}" "-DLABEL=${label}" -P "${PROJECT_SOURCE_DIR}/cmake/ListSuites.cmake"
   BYPRODUCTS "${suites}" VERBATIM)
 set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${suites}")
+
+add_test(NAME includes COMMAND "${CMAKE_COMMAND}" "-DMODULE=${IIB_DIR}" -P "${PROJECT_SOURCE_DIR}/cmake/IncludeTest.cmake")
+if(TARGET iib_demo)
+  add_test(NAME demo COMMAND "${CMAKE_COMMAND}" "-DDEMO=$<TARGET_FILE:iib_demo>"
+    "-DWORK=${PROJECT_BINARY_DIR}/demo-test" "-DOPENCV=${OpenCV_VERSION}" -P "${PROJECT_SOURCE_DIR}/cmake/DemoTest.cmake")
+  if(IIB_SANITIZE)
+    set_tests_properties(demo PROPERTIES LABELS nightly)
+  endif()
+endif()
+
+if(IIB_SANITIZE)
+  return()  # what follows compiles, times or looks at symbols, and shows nothing more in an instrumented build
+endif()
 
 add_test(NAME perf-smoke COMMAND opencv_perf_iib --perf_min_samples=1 --perf_force_samples=1)
 add_test(NAME readme COMMAND "${CMAKE_COMMAND}" "-DBUILD=${PROJECT_BINARY_DIR}"
   "-DWORK=${PROJECT_BINARY_DIR}/readme-test" "-DCXX=${CMAKE_CXX_COMPILER}" "-DFLAGS=${CMAKE_CXX_FLAGS}"
-  "-DGENERATOR=${CMAKE_GENERATOR}"
-  -P "${PROJECT_SOURCE_DIR}/cmake/ReadmeTest.cmake")
-if(TARGET iib_demo)
-  add_test(NAME demo COMMAND "${CMAKE_COMMAND}" "-DDEMO=$<TARGET_FILE:iib_demo>"
-    "-DWORK=${PROJECT_BINARY_DIR}/demo-test" "-DOPENCV=${OpenCV_VERSION}" -P "${PROJECT_SOURCE_DIR}/cmake/DemoTest.cmake")
+  "-DGENERATOR=${CMAKE_GENERATOR}" -P "${PROJECT_SOURCE_DIR}/cmake/ReadmeTest.cmake")
+if(UNIX)
+  add_test(NAME scripts COMMAND "${PROJECT_SOURCE_DIR}/scripts/helpers/scripts_test.sh")
 endif()
-
 set(compilers "${CMAKE_CXX_COMPILER}")
 foreach(name g++ clang++)
   find_program(IIB_${name} ${name})
@@ -45,29 +63,19 @@ list(APPEND source "${IIB_DIR}/src/precomp.hpp")
 add_test(NAME fast-math-refused COMMAND ${fast_math} ${source})
 set_tests_properties(fast-math-refused PROPERTIES PASS_REGULAR_EXPRESSION "error: .*-ffast-math lets NaN through")
 add_test(NAME fast-math-undone COMMAND ${fast_math} ${IIB_FLAGS} ${source})
-add_test(NAME includes COMMAND "${CMAKE_COMMAND}" "-DMODULE=${IIB_DIR}" -P "${PROJECT_SOURCE_DIR}/cmake/IncludeTest.cmake")
 find_program(IIB_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(IIB_PYTHON)
-  add_test(NAME figures COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/figures.py" --check)
+  add_test(NAME figures COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/figures.py" --check)
   add_test(NAME mutants COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/tools/mutation/mutate.py"
     --source "${PROJECT_SOURCE_DIR}" --check)
 endif()
 # The Python package, linked with what is built here already. The script skips by itself where there is no package index.
-if(UNIX AND NOT APPLE AND NOT IIB_SANITIZE)
+if(UNIX AND NOT APPLE)
   add_library(opencv_iib_static STATIC $<TARGET_OBJECTS:opencv_iib>)
   add_test(NAME python COMMAND "${CMAKE_COMMAND}" -E env "OpenCV_DIR=${OpenCV_DIR}"
-    "${PROJECT_SOURCE_DIR}/scripts/python_test.sh" "$<TARGET_FILE:opencv_iib_static>")
+    "${PROJECT_SOURCE_DIR}/scripts/helpers/python_test.sh" "$<TARGET_FILE:opencv_iib_static>")
   set_tests_properties(python PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: python tests \\(")
-endif()
-# Sanitizers add symbols of their own.
-if(UNIX AND NOT APPLE AND NOT IIB_SANITIZE)
   add_test(NAME symbols COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib>" "-DNM=${CMAKE_NM}"
     "-DREADELF=${CMAKE_READELF}" "-DVERSION=${PROJECT_VERSION}" "-DCHANGELOG=${PROJECT_SOURCE_DIR}/CHANGELOG.md"
     -P "${PROJECT_SOURCE_DIR}/cmake/SymbolTest.cmake")
-endif()
-# It rewrites the headers of the oldest version; later ones bring the new spelling themselves.
-if(OpenCV_VERSION VERSION_LESS 4.7)
-  add_test(NAME newer-opencv COMMAND "${CMAKE_COMMAND}" "-DCXX=${CMAKE_CXX_COMPILER}" "-DSOURCES=${IIB_DIR}/src"
-    "-DINCLUDE=${IIB_DIR}/include" "-DOPENCV_INCLUDE=${OpenCV_INCLUDE_DIRS}" "-DDISPATCH=${PROJECT_BINARY_DIR}/dispatch"
-    "-DWORK=${PROJECT_BINARY_DIR}/newer-opencv" -P "${PROJECT_SOURCE_DIR}/cmake/NewerOpenCVTest.cmake")
 endif()

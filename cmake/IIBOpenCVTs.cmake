@@ -1,7 +1,7 @@
 # Target opencv_ts: OpenCV's test framework, which no distribution packages, from OpenCV's source.
 # It is built once for each version, compiler and set of flags, in the user's cache folder.
 if(NOT OPENCV_SOURCE_DIR)
-  execute_process(COMMAND "${PROJECT_SOURCE_DIR}/scripts/opencv_source.sh"
+  execute_process(COMMAND "${PROJECT_SOURCE_DIR}/scripts/helpers/opencv_source.sh"
     OUTPUT_VARIABLE source OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE failed)
   if(NOT failed)
     set(OPENCV_SOURCE_DIR "${source}")
@@ -17,7 +17,8 @@ if(DEFINED ENV{XDG_CACHE_HOME})
 else()
   set(cache "$ENV{HOME}/.cache/opencv_iib")
 endif()
-string(REPLACE ";" " " flags "${CMAKE_CXX_FLAGS} ${IIB_FLAGS}")
+# Not under test: without sanitizers, so that one build of it serves all.
+string(REPLACE ";" " " flags "${CMAKE_CXX_FLAGS} ${IIB_BIT_FLAGS}")
 file(SHA1 "${PROJECT_SOURCE_DIR}/cmake/ts/CMakeLists.txt" recipe)
 string(SHA1 key "${OPENCV_SOURCE_DIR} ${OpenCV_VERSION} ${CMAKE_CXX_COMPILER} ${CMAKE_CXX_COMPILER_VERSION} ${flags} ${recipe}")
 string(SUBSTRING ${key} 0 12 key)

@@ -7,14 +7,16 @@ foreach(kind test perf)
   set(target opencv_${kind}_iib)
   add_executable(${target} ${sources})
   target_include_directories(${target} PRIVATE "${IIB_DIR}/${kind}" "${OPENCV_SOURCE_DIR}/modules")
+  target_compile_options(${target} PRIVATE ${IIB_ADDRESS_ALONE})
   target_link_libraries(${target} PRIVATE opencv_iib opencv_ts opencv_calib3d)
 endforeach()
 
 # Suites of internals link what the library does not show.
 target_sources(opencv_test_iib PRIVATE "$<FILTER:$<TARGET_OBJECTS:opencv_iib>,INCLUDE,/(matcher/kernels/.*|descriptor/(box_plan|kernels/.*|keypoint_batches|layout|parameters|plan|rotated_region|rotation|selection))[.]>")
 
-# The naive oracles are not under test; sanitized, they would take most of the time.
+# The naive oracles are not under test; sanitized, they would take most of the time. Nobody asks for the speed then.
 if(IIB_SANITIZE)
+  set_target_properties(opencv_perf_iib PROPERTIES EXCLUDE_FROM_ALL ON)
   set_source_files_properties("${IIB_DIR}/test/support/box_oracle.cpp" "${IIB_DIR}/test/support/descriptor_oracle.cpp"
     "${IIB_DIR}/test/support/matcher_oracle.cpp" PROPERTIES COMPILE_OPTIONS -fno-sanitize=all)
 endif()

@@ -5,7 +5,7 @@
 # doc/results, from where the tables of README.md and doc/performance.md and their picture are made anew. --contrib adds
 # BEBLID, TEBLID and LATCH of opencv_contrib, whose source pip brings.
 #   scripts/bench.sh [--contrib] [--document] [--rounds=N] [--json=FILE]
-. "$(dirname "$0")/lib.sh"
+. "$(dirname "$0")/helpers/lib.sh"
 
 contrib=""
 if [ "${1:-}" = --contrib ]; then
@@ -18,6 +18,7 @@ if [ "${1:-}" = --document ]; then
     shift
 fi
 check_options "$root/tools/benchmark/benchmark.cpp" "$@"
+[ "$operands" = 0 ] || fail "takes options alone (--help tells more)"
 # shellcheck disable=SC2086
 need $build_packages ${document:+python3-matplotlib}
 [ -z "$contrib" ] || contrib=$(contrib_argument)
@@ -35,5 +36,5 @@ if python3 -c "import faiss, opencv_iib" 2>/dev/null; then
 fi
 if [ -n "$document" ]; then
     /usr/bin/python3 "$root/tools/benchmark/plot.py" "$document/benchmark.json" "$root/doc/speed.svg"
-    /usr/bin/python3 "$root/scripts/figures.py" --write
+    /usr/bin/python3 "$root/scripts/helpers/figures.py" --write
 fi

@@ -16,7 +16,7 @@ more_help() {
     done
 }
 
-. "$(dirname "$0")/lib.sh"
+. "$(dirname "$0")/helpers/lib.sh"
 
 # check OPTION VALUE: is there such an option, and does it take the value?
 check() {

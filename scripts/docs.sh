@@ -1,6 +1,6 @@
 #!/bin/sh
 # Makes the site of the documentation with Doxygen in build/docs/html; any warning is an error.
-. "$(dirname "$0")/lib.sh"
+. "$(dirname "$0")/helpers/lib.sh"
 
 [ $# = 0 ] || fail "takes no argument"
 need doxygen

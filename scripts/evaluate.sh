@@ -3,7 +3,7 @@
 #   scripts/evaluate.sh [--contrib] [--out FOLDER] [options of iib_evaluation] DATA...
 # Results go to results/ unless --out says otherwise; an interrupted run goes on where it stopped. --contrib, which is
 # the first then, adds the descriptors of opencv_contrib, whose source pip brings (BEBLID, TEBLID, LATCH and more).
-. "$(dirname "$0")/lib.sh"
+. "$(dirname "$0")/helpers/lib.sh"
 
 contrib=""
 if [ "${1:-}" = --contrib ]; then
@@ -11,6 +11,7 @@ if [ "${1:-}" = --contrib ]; then
     shift
 fi
 check_options "$root/tools/evaluation/main.cpp" "$@"
+[ "$operands" != 0 ] || fail "a folder of DATA is needed (--help tells more)"
 out="$root/results"
 previous=""
 for argument in "$@"; do

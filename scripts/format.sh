@@ -1,7 +1,7 @@
 #!/bin/sh
 # Formats every C++ source with clang-format and .clang-format: scripts/format.sh [--check]
 # --check changes nothing and ends with an error where a file would change. Generated tables are left out.
-. "$(dirname "$0")/lib.sh"
+. "$(dirname "$0")/helpers/lib.sh"
 
 case "${1:-}" in
 "") mode=-i ;;

@@ -5,7 +5,7 @@
 # kept in build-fuzz/failures and belongs into fuzz/corpus, with a test, once the defect is mended. --plain leaves the
 # sanitizers out and makes inputs smaller, so that many times as many are compared with the oracles; its corpus is the
 # same.
-. "$(dirname "$0")/lib.sh"
+. "$(dirname "$0")/helpers/lib.sh"
 
 plain=""
 if [ "${1:-}" = --plain ]; then

@@ -3,7 +3,7 @@
 #   scripts/install.sh [--prefix=FOLDER]
 # The folder is /usr/local unless --prefix says otherwise. What is missing is installed through apt, and sudo is asked
 # for where the user may not write.
-. "$(dirname "$0")/lib.sh"
+. "$(dirname "$0")/helpers/lib.sh"
 
 prefix=/usr/local
 case $#,${1:-} in

@@ -1,12 +1,21 @@
 #!/bin/sh
 # Builds OpenCV's own source with this module through OPENCV_EXTRA_MODULES_PATH, and runs the tests of C++, of speed
 # (a smoke run) and of Python there.
-#   scripts/intree.sh [--source debian|contrib|contrib-5] [options of CMake]
+#   scripts/intree.sh [--short] [--source debian|contrib|contrib-5] [options of CMake]
+# --short: what scripts/test.sh has not shown of the same sources: that they build here, give the same bits (golden tests)
+# and the API of C++ and Python; OpenCV is built with little optimization, for AVX2 and AVX512_ICL alone.
 # debian: the distribution's source of its OpenCV. contrib: the newest OpenCV 4 with opencv_contrib's xfeatures2d,
 # from the source distribution of opencv-contrib-python; contrib-5: the newest OpenCV 5 in the same way.
 # JOBS limits the parallel jobs. The last line tells the build's folder.
-. "$(dirname "$0")/lib.sh"
+. "$(dirname "$0")/helpers/lib.sh"
 
+dispatch="SSE4_1;SSE4_2;AVX;FP16;AVX2;AVX512_SKX;AVX512_ICL"
+flags=-O3 tests="*" short=""
+if [ "${1:-}" = --short ]; then
+    dispatch="AVX2;AVX512_ICL" flags=-O1 short=.short
+    tests="IIB_Golden*:IIB_IO*:IIB_Errors*:IIB_Input*:IIB_KeyPoints*:IIB_MatcherCreate*:IIB_MatcherEdges*:IIB_IndexFile*:IIB_InstructionSets*"
+    shift
+fi
 kind=debian
 case "${1:-}" in
 --source)
@@ -18,14 +27,20 @@ case "${1:-}" in
     shift
     ;;
 esac
+for argument in "$@"; do
+    case "$argument" in
+    -D?*) ;;
+    *) fail "$argument is not -DNAME=VALUE for CMake (--help tells more)" ;;
+    esac
+done
 
 extra_modules="$root/modules"
 list=iib,ts,python3,flann,calib3d
 case "$kind" in
 debian)
     need $build_packages xz-utils libpng-dev zlib1g-dev python3-dev python3-numpy
-    source=$("$root/scripts/opencv_source.sh")
-    build="$source.intree"
+    source=$("$root/scripts/helpers/opencv_source.sh")
+    build="$source.intree$short"
     # What Debian's source lacks.
     options="-DWITH_QUIRC=OFF -DWITH_PROTOBUF=OFF -DWITH_ADE=OFF -DWITH_JPEG=OFF"
     ;;
@@ -33,8 +48,8 @@ contrib | contrib-5)
     need $build_packages libpng-dev libjpeg-dev zlib1g-dev python3-dev python3-numpy python3-venv
     major=4
     [ "$kind" = contrib ] || major=5
-    source=$("$root/scripts/opencv_contrib_source.sh" "$major")
-    build="$source.intree"
+    source=$("$root/scripts/helpers/opencv_contrib_source.sh" "$major")
+    build="$source.intree$short"
     # Only xfeatures2d of opencv_contrib: CMake looks at every module of a folder that it is given.
     mkdir -p "$source/chosen"
     ln -sfn "$source/opencv_contrib/modules/xfeatures2d" "$source/chosen/xfeatures2d"
@@ -60,7 +75,7 @@ say "building OpenCV with the module in $build (minutes for the first time)"
 cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
     -DOPENCV_EXTRA_MODULES_PATH="$extra_modules" -DBUILD_LIST="$list" \
     -DPYTHON3_EXECUTABLE=/usr/bin/python3 \
-    -DCPU_DISPATCH="SSE4_1;SSE4_2;AVX;FP16;AVX2;AVX512_SKX;AVX512_ICL" $options \
+    -DCPU_DISPATCH="$dispatch" -DCMAKE_CXX_FLAGS_RELEASE="$flags -DNDEBUG" $options \
     -DWITH_IPP=OFF -DWITH_ITT=OFF \
     -DWITH_TIFF=OFF -DWITH_WEBP=OFF -DWITH_OPENJPEG=OFF -DWITH_JASPER=OFF -DWITH_OPENEXR=OFF \
     -DWITH_GTK=OFF -DWITH_QT=OFF -DWITH_VTK=OFF -DWITH_FFMPEG=OFF -DWITH_GSTREAMER=OFF -DWITH_V4L=OFF \
@@ -73,7 +88,7 @@ cmake --build "$build" --parallel "${JOBS:-$jobs}" --target opencv_test_iib open
 say "the library's symbols, in-tree"
 cmake "-DLIBRARY=$build/lib/libopencv_iib.so" -DNM=nm -P "$root/cmake/SymbolTest.cmake"
 say "opencv_test_iib, in-tree"
-"$build/bin/opencv_test_iib"
+"$build/bin/opencv_test_iib" --gtest_filter="$tests"
 say "opencv_perf_iib, in-tree, a smoke run"
 "$build/bin/opencv_perf_iib" --perf_min_samples=1 --perf_force_samples=1
 say "cv2.iib"

@@ -4,9 +4,10 @@
 # noon, localizes the images of other lights with IIB and, in the same pipeline, with the detectors' own descriptors and
 # SIFT, and writes index.html with pictures and a video, results.csv and growth.csv to OUT (results-localization). With
 # OPENCV_TEST_DATA_PATH set, also localizes real photographs (strecha) and photographs of other places.
-. "$(dirname "$0")/lib.sh"
+. "$(dirname "$0")/helpers/lib.sh"
 
 [ $# -le 1 ] || fail "one folder at most, not $#"
+case "${1:-}" in -*) fail "unknown option $1; the one argument is a folder" ;; esac
 out=${1:-$root/results-localization}
 data="$cache/localization"
 # shellcheck disable=SC2086

@@ -1,31 +1,30 @@
 #!/bin/sh
-# Builds the module and its tests against the installed OpenCV, in build/, and runs them all.
-# Arguments go to CMake: scripts/test.sh -DOPENCV_SOURCE_DIR=...
-# scripts/test.sh --sanitize runs them under the address and undefined-behaviour sanitizers, then under the thread
-# sanitizer, each in a build folder of its own, and the short ones in valgrind; --sanitize=address,undefined,
-# --sanitize=thread and --sanitize=valgrind one of these.
-. "$(dirname "$0")/lib.sh"
+# Builds the module and its tests against the installed OpenCV, in build/, and runs them.
+#   scripts/test.sh [--all] [--sanitize[=KIND]] [-DNAME=VALUE for CMake]...
+# --all: those that take long too, which .ci/nightly runs (ctest's label `nightly`).
+# --sanitize: under the address and undefined-behaviour sanitizers, then under the thread sanitizer, each in a build folder
+# of its own, and the short ones in valgrind; KIND is one of these: address,undefined or thread or valgrind.
+. "$(dirname "$0")/helpers/lib.sh"
 
-# run BUILD NOT_TO_RUN CMAKE_ARGUMENT...: configures, builds and tests, but for the tests that match NOT_TO_RUN.
+# run BUILD CMAKE_ARGUMENT...: configures, builds and tests.
 run() {
-    build=$1 not_to_run=$2
-    shift 2
-    configure -DIIB_BUILD_TESTS=ON -DIIB_BUILD_TOOLS=ON "$@"
+    build=$1
+    shift
+    configure -DIIB_BUILD_TESTS=ON "$@"
     say "building library, tests and tools"
     cmake --build "$build"
     [ -n "${OPENCV_TEST_DATA_PATH:-}" ] || say "OPENCV_TEST_DATA_PATH is not set: tests on real images skip"
-    ctest --test-dir "$build" --output-on-failure --parallel "$jobs" --exclude-regex "$not_to_run"
+    # shellcheck disable=SC2086
+    ctest --test-dir "$build" --output-on-failure --parallel "$jobs" $chosen
 }
 
 sanitize() {
     sanitizers=$1
     shift
     export TSAN_OPTIONS="suppressions=$root/cmake/sanitizer/threads.supp"
-    # Not what compiles or times: those tests see nothing more in an instrumented build. Real images once, not for each
-    # instruction set: ten times as slow here, they took a quarter of an hour, and each set's kernels have their oracles.
-    # Little optimization, since instrumented code takes long to compile.
-    run "$root/build-$(echo "$sanitizers" | tr , -)" "perf-smoke|headers|newer-opencv|readme|synthetic|IIB_Real \\[" \
-        "-DIIB_SANITIZE=$sanitizers" -DCMAKE_CXX_FLAGS_RELEASE=-O1 "$@"
+    # Little optimization, since instrumented code takes long to compile. The tools are no library: by night.
+    run "$root/build-$(echo "$sanitizers" | tr , -)" "-DIIB_SANITIZE=$sanitizers" "-DIIB_BUILD_TOOLS=$all" \
+        -DCMAKE_CXX_FLAGS_RELEASE=-O1 "$@"
 }
 
 memcheck() {
@@ -39,33 +38,36 @@ memcheck() {
         --gtest_filter='IIB_Golden*:IIB_Hamming*:IIB_Error*:IIB_IO*:IIB_Matcher.*:IIB_MatcherEdges*:IIB_MatcherFile*-*no_limit*'
 }
 
-# Before anything is installed: a mistake in the arguments.
-case "${1:-}" in
---sanitize | --sanitize=valgrind | --sanitize=address,undefined | --sanitize=thread) ;;
--D?* | "") ;;
-*) fail "$1 is neither -DNAME=VALUE for CMake nor one of --sanitize, --sanitize=address,undefined," \
-    "--sanitize=thread and --sanitize=valgrind" ;;
-esac
-need $build_packages xz-utils
-case "${1:-}" in
---sanitize)
+all=OFF chosen="--label-exclude nightly"
+if [ "${1:-}" = --all ]; then
+    all=ON chosen=""
     shift
+fi
+kind=""
+case "${1:-}" in
+--sanitize=valgrind | --sanitize=address,undefined | --sanitize=thread) kind=${1#--sanitize=} ;;
+--sanitize) kind=every ;;
+esac
+[ -z "$kind" ] || shift
+for argument in "$@"; do
+    case "$argument" in
+    -D?*) ;;
+    *) fail "$argument is not -DNAME=VALUE for CMake (--help tells more)" ;;
+    esac
+done
+# shellcheck disable=SC2086
+need $build_packages xz-utils
+case "$kind" in
+every)
     sanitize address,undefined "$@"
     sanitize thread "$@"
     memcheck "$@"
     ;;
---sanitize=valgrind)
-    shift
-    memcheck "$@"
-    ;;
---sanitize=address,undefined | --sanitize=thread)
-    sanitizers=${1#--sanitize=}
-    shift
-    sanitize "$sanitizers" "$@"
-    ;;
+valgrind) memcheck "$@" ;;
+?*) sanitize "$kind" "$@" ;;
 *)
     # the synthetic data, the evaluation's report, the Python package and apps/localization are tested where these are
     need povray python3-opencv python3-jinja2 python3-venv python3-dev python3-numpy libceres-dev libunwind-dev
-    run "$root/build" '^$' -DIIB_BUILD_APPS=ON "$@"
+    run "$root/build" -DIIB_BUILD_TOOLS=ON -DIIB_BUILD_APPS=ON "$@"
     ;;
 esac

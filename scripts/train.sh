@@ -2,7 +2,7 @@
 # Learns a selection: scripts/train.sh --out=selection.yml FOLDER...; build/tools/training/iib_train --help lists the options.
 # With --presets first it trains the built-in presets on tilde_webcam and amos_daynight, which lie in
 # $OPENCV_TEST_DATA_PATH/illumination.
-. "$(dirname "$0")/lib.sh"
+. "$(dirname "$0")/helpers/lib.sh"
 
 if [ "${1:-}" = --presets ]; then
     shift
@@ -11,6 +11,7 @@ if [ "${1:-}" = --presets ]; then
         "$data/amos_daynight"
 fi
 check_options "$root/tools/training/train.cpp" "$@"
+[ "$operands" != 0 ] || fail "a FOLDER to train on is needed (--help tells more)"
 # shellcheck disable=SC2086
 need $build_packages
 build_tools iib_train

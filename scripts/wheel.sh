@@ -6,7 +6,7 @@
 #   scripts/wheel.sh [--test] [PYTHON...]
 # PYTHON: interpreters to build and test with; by default those of 3.9 to 3.13 that pyenv has, else python3. From Python
 # 3.12 on one wheel serves all (the stable ABI); older ones get a wheel each.
-. "$(dirname "$0")/lib.sh"
+. "$(dirname "$0")/helpers/lib.sh"
 
 test=""
 [ "${1:-}" != --test ] || {
@@ -14,7 +14,7 @@ test=""
     shift
 }
 for python in "$@"; do
-    command -v "$python" >/dev/null || fail "no Python $python"
+    command -v "$python" >/dev/null 2>&1 || fail "no Python $python"
 done
 if [ $# = 0 ]; then
     for minor in 9 10 11 12 13; do

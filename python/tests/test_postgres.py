@@ -73,7 +73,7 @@ class ServerTest(unittest.TestCase):
         return self.recall(night, vote)
 
 
-@unittest.skipUnless(SERVER, 'no server: scripts/postgres_test.sh starts one')
+@unittest.skipUnless(SERVER, 'no server: scripts/helpers/postgres_test.sh starts one')
 class PlacesTest(ServerTest):
 
     def test_votes_are_those_of_a_plain_scan(self):
@@ -133,14 +133,14 @@ class PlacesTest(ServerTest):
         self.assertEqual(places.vote(self.night['noon/3']), plain_votes(self.walk, self.night['noon/3']))
 
 
-@unittest.skipUnless(SERVER, 'no server: scripts/postgres_test.sh starts one')
+@unittest.skipUnless(SERVER, 'no server: scripts/helpers/postgres_test.sh starts one')
 class PgvectorTest(ServerTest):
     """With an index; the table is small, so that PostgreSQL has to be told not to scan it."""
 
     def setUp(self):
         super().setUp()
         if not self.connection.execute("SELECT 1 FROM pg_available_extensions WHERE name = 'vector'").fetchone():
-            self.skipTest('pgvector is not installed on this server: scripts/postgres_test.sh --debian13 has it')
+            self.skipTest('pgvector is not installed on this server: scripts/helpers/postgres_test.sh --debian13 has it')
         self.connection.execute('CREATE EXTENSION IF NOT EXISTS vector')
         self.connection.execute('SET enable_seqscan = off')
         self.connection.execute('SET jit = off')  # whose threshold the cost of what is off exceeds

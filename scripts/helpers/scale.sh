@@ -2,7 +2,7 @@
 # Measures searches among many codes beside faiss, and prints the figures: exact at several widths, faiss's approximate
 # indices, a mapped index of ten million codes, Dask's workers. Takes about a quarter of an hour, and pip's package index.
 # With --document the results go to doc/results, from where the tables of doc/scale.md are made anew.
-#   scripts/scale.sh [--document] [--images=FOLDER] [--codes=N] [--mapped=N] [--rounds=N] [--approximate=N]
+#   scripts/helpers/scale.sh [--document] [--images=FOLDER] [--codes=N] [--mapped=N] [--rounds=N] [--approximate=N]
 # FOLDER: SET/SEQUENCE/1.png, 2.png and so on, of places in changing light; without it random codes alone are searched.
 # --approximate: faiss's approximate indices of N codes alone, which are added to results that are there.
 . "$(dirname "$0")/lib.sh"
@@ -14,7 +14,9 @@ if [ "${1:-}" = --document ]; then
 fi
 for argument in "$@"; do
     case "$argument" in
-    --images=* | --codes=* | --mapped=* | --rounds=* | --approximate=*) ;;
+    --images=*) check_folders "${argument#--images=}" ;;
+    --codes=*[!0-9]* | --mapped=*[!0-9]* | --rounds=*[!0-9]* | --approximate=*[!0-9]*) fail "$argument is no number" ;;
+    --codes=?* | --mapped=?* | --rounds=?* | --approximate=?*) ;;
     *) fail "unknown option $argument; there are --images=, --codes=, --mapped=, --rounds=, --approximate=" ;;
     esac
 done
@@ -28,4 +30,4 @@ say "building the package"
 "$work/environment/bin/pip" install --quiet "$root[distributed]" opencv-python-headless faiss-cpu
 say "measuring"
 "$work/environment/bin/python" "$root/tools/scale/measure.py" --out "$out" "$@"
-[ "$out" = "$build/scale.json" ] || /usr/bin/python3 "$root/scripts/figures.py" --write
+[ "$out" = "$build/scale.json" ] || /usr/bin/python3 "$root/scripts/helpers/figures.py" --write

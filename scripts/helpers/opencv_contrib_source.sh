@@ -1,10 +1,11 @@
 #!/bin/sh
 # Prints the folder of the newest OpenCV source with opencv_contrib beside it, from the source distribution of
 # opencv-contrib-python, which pip brings into the cache once: `opencv` and `opencv_contrib` in that folder.
-#   scripts/opencv_contrib_source.sh [MAJOR]      4, or 5; 4 unless it is said
+#   scripts/helpers/opencv_contrib_source.sh [MAJOR]      4, or 5; 4 unless it is said
 # Delete the folder from the cache to look for a newer one.
 . "$(dirname "$0")/lib.sh"
 
+[ $# -le 1 ] || fail "takes one version, not $*"
 major="${1:-4}"
 case "$major" in
 4 | 5) ;;

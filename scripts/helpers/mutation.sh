@@ -1,7 +1,7 @@
 #!/bin/sh
 # Mutation testing: whether the tests notice each of the wrong lines in tools/mutation/mutants.txt; ends with an error
 # if one survives. Takes a build and some 15 seconds a mutant on two cores.
-# scripts/mutation.sh [--only NAME...]
+# scripts/helpers/mutation.sh [--only NAME...]
 . "$(dirname "$0")/lib.sh"
 
 [ $# -eq 0 ] || [ "$1" = --only ] || fail "it takes no option but --only, not $1"

@@ -1,9 +1,11 @@
 # shellcheck shell=sh
-# Shared by the scripts here; sourced first, with the script's own arguments. Sets root (the repository), cache, build
+# Shared by all scripts; sourced first, with the script's own arguments. Sets root (the repository), cache, build
 # and jobs, and answers --help with the comment at the head of the script, and what its function more_help prints if
 # it has one, before anything is installed or built.
 set -eu
-root=$(cd "$(dirname "$0")/.." && pwd)
+root=$(cd "$(dirname "$0")" && pwd)
+root=${root%/helpers}
+root=${root%/*}  # of scripts/ or .ci/
 cache="${XDG_CACHE_HOME:-$HOME/.cache}/opencv_iib"
 jobs=$(getconf _NPROCESSORS_ONLN)
 
@@ -26,30 +28,67 @@ fail() {
 }
 
 # check_options SOURCE ARGUMENT...: whether the tool with these KEYS in its source takes the options, to be asked before
-# anything is installed for it.
+# anything is installed for it; an option whose default is a number takes numbers. Sets operands to the number of the other
+# arguments, files or folders that must be there.
 check_options() {
     keys=$(sed -n 's/^ *"{\([a-z-]*\) *| *\([^| ]*\).*/\1|\2/p' "$1")
     shift
-    without_value=""
+    operands=0 name="" given=""  # an option that waits for its value
     for argument in "$@"; do
-        if [ -n "$without_value" ]; then
-            without_value=""
+        if [ -n "$name" ]; then
+            check_value "$argument"
+            name=""
             continue
         fi
         case "$argument" in
         --) return 0 ;;
         -?*) ;;
-        *) continue ;;
+        *)
+            [ -e "$argument" ] || fail "there is no $argument"
+            operands=$((operands + 1))
+            continue
+            ;;
         esac
-        name=${argument%%=*}
-        name=${name#-}
+        given=${argument%%=*}
+        name=${given#-}
         name=${name#-}
         echo "$keys" | cut -d'|' -f1 | grep -qxF -e "$name" ||
-            fail "unknown option ${argument%%=*}; there are --$(echo "$keys" | cut -d'|' -f1 | paste -sd' ' | sed 's/ /, --/g')"
-        case "$argument" in *=*) continue ;; esac
-        echo "$keys" | grep -qxF -e "$name|" || without_value=$argument
+            fail "unknown option $given; there are --$(echo "$keys" | cut -d'|' -f1 | paste -sd' ' | sed 's/ /, --/g')"
+        case "$argument" in
+        *=*) check_value "${argument#*=}" ;;
+        *)
+            # A switch; or the value follows.
+            ! echo "$keys" | grep -qxF -e "$name|" || name=""
+            continue
+            ;;
+        esac
+        name=""
     done
-    [ -z "$without_value" ] || fail "option $without_value needs a value"
+    [ -z "$name" ] || fail "option $given needs a value"
+}
+
+# check_value VALUE: of the option given, whose key is name.
+check_value() {
+    default=$(echo "$keys" | sed -n "s/^$name|//p")
+    case "$default,$1" in
+    [0-9]*,*[!0-9.,-]* | [0-9]*,) fail "option $given takes a number, not '$1'" ;;
+    esac
+}
+
+# check_folders FOLDER...: whether each is one.
+check_folders() {
+    for folder in "$@"; do
+        [ -d "$folder" ] || fail "$folder is no folder"
+    done
+}
+
+# check_suites SUITE...: whether each may be the name of a release of Debian or Ubuntu.
+check_suites() {
+    for suite in "$@"; do
+        case "$suite" in
+        *[!a-z]*) fail "$suite is not the name of a release, such as trixie" ;;
+        esac
+    done
 }
 
 # need PACKAGE...: installs those Debian packages that are missing.
@@ -109,7 +148,7 @@ build_library() {
 # The argument of configure with which the tools have the descriptors of opencv_contrib.
 contrib_argument() {
     need python3-venv >&2
-    contrib=$("$root/scripts/opencv_contrib_source.sh" 4)
+    contrib=$("$root/scripts/helpers/opencv_contrib_source.sh" 4)
     echo "-DIIB_CONTRIB_SOURCE=$contrib"
 }
 

@@ -1,13 +1,20 @@
 #!/bin/sh
 # Installs the Python package into clean virtual environments and runs python/tests there: with pip's newest OpenCV, and
 # with Debian's (python3-opencv). Skips with a word where pip reaches no package index.
-#   scripts/python_test.sh [LIBRARY]
+#   scripts/helpers/python_test.sh [--servers] [LIBRARY]
+# --servers: with PostgreSQL, and with Dask's workers in network namespaces, too, where these can be had.
 # LIBRARY: the module as a static library of position-independent code, built with the installed OpenCV, as ctest's entry
 # `python` has it; without it the whole package is built, which takes minutes.
 . "$(dirname "$0")/lib.sh"
 
+servers=""
+if [ "${1:-}" = --servers ]; then
+    servers=yes
+    shift
+fi
 [ $# -le 1 ] || fail "takes one library, not $*"
 library="${1:-}"
+[ -z "$library" ] || [ -f "$library" ] || fail "there is no library $library"
 [ -n "$library" ] || need $build_packages python3-venv python3-dev python3-opencv python3-numpy
 
 work=$(mktemp -d)
@@ -37,8 +44,10 @@ set -- "--config-settings=build-dir=$work/build"
 
 say "python tests with pip's newest OpenCV"
 check newest "$work"/*.whl opencv-python-headless pillow h5py pycolmap distributed "psycopg[binary]" mypy
-"$root/scripts/postgres_test.sh" "$work/newest/bin/python"
-"$root/scripts/network_test.sh" "$work/newest/bin/python"
+if [ -n "$servers" ]; then
+    "$root/scripts/helpers/postgres_test.sh" "$work/newest/bin/python"
+    "$root/scripts/helpers/network_test.sh" "$work/newest/bin/python"
+fi
 
 if /usr/bin/python3 -c 'import cv2' 2>"$work/log"; then
     say "python tests with Debian's OpenCV"

@@ -1,12 +1,10 @@
 #!/bin/sh
 # Builds and tests the module, stand-alone and in-tree, with the OpenCV of other Debian releases, each in a root
-# of its own in the cache: scripts/versions.sh [suite...], by default trixie (OpenCV 4.10). Needs root.
+# of its own in the cache: scripts/helpers/versions.sh [suite...], by default trixie (OpenCV 4.10). Needs root.
 . "$(dirname "$0")/lib.sh"
 
-[ "$(id -u)" = 0 ] || {
-    echo "a root of another release can only be made and entered as root" >&2
-    exit 1
-}
+check_suites "$@"
+[ "$(id -u)" = 0 ] || fail "a root of another release can only be made and entered as root"
 need debootstrap
 [ $# -gt 0 ] || set -- trixie
 for suite in "$@"; do

@@ -12,7 +12,7 @@ import pathlib
 import re
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 TRAINED_ON = {'tilde_webcam', 'amos_daynight'}  # by the presets
 RENDERED = {'lights'}
 
@@ -372,7 +372,7 @@ def main():
         if arguments.write:
             (ROOT / page).write_text(after)
         elif after != before:
-            sys.exit(page + ' differs from doc/results: run scripts/figures.py --write')
+            sys.exit(page + ' differs from doc/results: run scripts/helpers/figures.py --write')
 
 
 if __name__ == '__main__':

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Tests opencv_iib.postgres with a real server of PostgreSQL in a temporary folder, reached by a socket in it alone.
 # Skips with a word where no server is installed (Debian: postgresql).
-#   scripts/postgres_test.sh [--debian13 [--document=FOLDER]] [PYTHON]
+#   scripts/helpers/postgres_test.sh [--debian13 [--document=FOLDER]] [PYTHON]
 # PYTHON: an interpreter that has the package and psycopg; without it both are installed into a clean virtual
 # environment, which takes minutes. --debian13: with Debian 13's server and pgvector, which debootstrap puts into the
 # cache; needs root. --document: instead of tests, place recognition among the images of FOLDER (SET/SEQUENCE/1.png, 2.png
@@ -26,6 +26,8 @@ case "$system,${1:-}" in
 esac
 [ $# -le 1 ] || fail "takes one interpreter, not $*"
 python="${1:-}"
+[ -z "$python" ] || command -v "$python" >/dev/null 2>&1 || fail "there is no interpreter $python"
+[ -z "$images" ] || check_folders "$images"
 
 work=$(mktemp -d)
 server=$work/server
@@ -100,7 +102,7 @@ fi
 export IIB_POSTGRES="host=$server user=postgres dbname=postgres"
 if [ -n "$images" ]; then
     "$python" "$root/tools/scale/places.py" --images "$images" --out "$root/doc/results/places.json"
-    /usr/bin/python3 "$root/scripts/figures.py" --write
+    /usr/bin/python3 "$root/scripts/helpers/figures.py" --write
 else
     cd "$root/python/tests"
     "$python" -m unittest test_postgres

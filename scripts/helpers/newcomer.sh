@@ -2,10 +2,12 @@
 # Runs every command of README.md, in its order, on a bare Debian made by debootstrap, as someone would who has just
 # cloned the repository: what is in the `sh` blocks, with the files of the `cmake`, `cpp` and `python` blocks beside it.
 # Blocks with a <placeholder> are left out. The paths hold spaces. Needs root; the bare system stays in the cache.
-#   scripts/newcomer.sh [SUITE]    by default bookworm
+#   scripts/helpers/newcomer.sh [SUITE]    by default bookworm
 . "$(dirname "$0")/lib.sh"
 
+[ $# -le 1 ] || fail "takes one release, not $*"
 suite=${1:-bookworm}
+check_suites "$suite"
 [ "$(id -u)" = 0 ] || fail "a bare system can only be made and entered as root"
 need debootstrap python3
 bare="$cache/newcomer-$suite.tar"

@@ -3,6 +3,7 @@
 # fetches it from the machine's own apt mirror into the cache; nothing of the system's apt changes.
 . "$(dirname "$0")/lib.sh"
 
+[ $# = 0 ] || fail "takes no argument"
 version=$(dpkg-query -W -f '${source:Version}' libopencv-core-dev 2>/dev/null) || {
     echo "libopencv-core-dev is not installed as a Debian package" >&2
     exit 1

@@ -1,9 +1,15 @@
 #!/bin/sh
 # Cross-compiles the module and its tests for arm64 (NEON) and runs them under qemu-user: golden hashes included.
 # The arm64 packages come from the machine's own apt mirror and are unpacked in the cache; the system's package
-# database does not change. Arguments go to the test program: scripts/arm64.sh --gtest_filter='IIB_Golden*'
+# database does not change. Arguments go to the test program: scripts/helpers/arm64.sh --gtest_filter='IIB_Golden*'
 . "$(dirname "$0")/lib.sh"
 
+for argument in "$@"; do
+    case "$argument" in
+    --gtest_?*) ;;
+    *) fail "$argument is no option --gtest_... of the test program" ;;
+    esac
+done
 need $build_packages g++-aarch64-linux-gnu qemu-user-static xz-utils
 version=$(dpkg-query -W -f '${source:Version}' libopencv-core-dev)
 sysroot="$cache/arm64-$version"

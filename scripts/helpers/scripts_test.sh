@@ -1,0 +1,68 @@
+#!/bin/sh
+# Calls every script with arguments that it cannot take: each must say so in one line and end with code 2, before it installs,
+# fetches or builds anything. Programs that would do that are replaced by one that notes its call.
+. "$(dirname "$0")/lib.sh"
+
+[ $# = 0 ] || fail "takes no argument"
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir "$work/programs"
+for program in apt-get sudo cmake ninja pip python3 debootstrap clang-format clang++ doxygen povray unshare docker; do
+    printf '#!/bin/sh\necho "%s $*" >>"%s"\nexit 1\n' $program "$work/called" >"$work/programs/$program"
+    chmod +x "$work/programs/$program"
+done
+failed=0
+
+# refused SCRIPT ARGUMENT...
+refused() {
+    code=0
+    (cd "$root" && PATH="$work/programs:$PATH" XDG_CACHE_HOME="$work/cache" "$@" >"$work/out" 2>"$work/error") || code=$?
+    if [ $code != 2 ] || [ "$(wc -l <"$work/error")" != 1 ] || [ -s "$work/out" ] || [ -e "$work/called" ] || [ -e "$work/cache" ]; then
+        echo "$*: exit code $code" >&2
+        cat "$work/out" "$work/error" "$work/called" >&2 2>/dev/null || :
+        rm -rf "$work/called" "$work/cache"
+        failed=1
+    fi
+}
+
+cd "$root"
+for script in scripts/*.sh scripts/helpers/*.sh .ci/run .ci/nightly; do
+    case "$script" in */lib.sh) continue ;; esac
+    refused "$script" --bogus-option
+done
+refused scripts/bench.sh --rounds=abc
+refused scripts/bench.sh --rounds abc
+refused scripts/bench.sh --rounds
+refused scripts/bench.sh folder
+refused scripts/demo.sh no-such.png no-such.png
+refused scripts/demo.sh --detector=SURFER
+refused scripts/evaluate.sh
+refused scripts/evaluate.sh no-such-folder
+refused scripts/evaluate.sh --points=many .
+refused scripts/fuzz.sh no-such-target
+refused scripts/fuzz.sh -s soon
+refused scripts/intree.sh --source=nowhere
+refused scripts/intree.sh --short unknown
+refused scripts/test.sh --sanitize=nothing
+refused scripts/test.sh --all unknown
+refused scripts/train.sh
+refused scripts/train.sh --out=selection.yml
+refused scripts/train.sh --bits=few .
+refused scripts/upstream.sh no-such-folder
+refused scripts/wheel.sh no-such-python
+refused scripts/helpers/arm64.sh unknown
+refused scripts/helpers/colmap.sh no-such-scene
+refused scripts/helpers/mutation.sh --only no-such-mutant
+refused scripts/helpers/network_test.sh no-such-python
+refused scripts/helpers/newcomer.sh bookworm trixie
+refused scripts/helpers/opencv_contrib_source.sh 3
+refused scripts/helpers/opencv_source.sh unknown
+refused scripts/helpers/postgres_test.sh no-such-python
+refused scripts/helpers/python_test.sh no-such-library
+refused scripts/helpers/scale.sh --codes=many
+refused scripts/helpers/scale.sh --images=no-such-folder
+refused scripts/helpers/static_opencv.sh unknown
+refused scripts/helpers/synthetic.sh
+refused scripts/helpers/versions.sh trixie/
+refused .ci/nightly no-such-step
+exit $failed
