@@ -1,10 +1,16 @@
 #!/bin/sh
 # Reproduces the paper's experiments on folders of image sequences and writes CSV files and one page.
-#   scripts/evaluate.sh [--contrib] [--out FOLDER] [options of iib_evaluation] DATA...
-# Results go to results/ unless --out says otherwise; an interrupted run goes on where it stopped. --contrib, which is
-# the first then, adds the descriptors of opencv_contrib, whose source pip brings (BEBLID, TEBLID, LATCH and more).
+#   scripts/evaluate.sh [--document] [--contrib] [--out FOLDER] [options of iib_evaluation] DATA...
+# Results go to results/ unless --out says otherwise; an interrupted run goes on where it stopped. --document puts their
+# summaries and the page into doc/results, from where tables of the README are made anew; --contrib adds the descriptors of
+# opencv_contrib, whose source pip brings (BEBLID, TEBLID, LATCH and more).
 . "$(dirname "$0")/helpers/lib.sh"
 
+document=""
+if [ "${1:-}" = --document ]; then
+    document=yes
+    shift
+fi
 contrib=""
 if [ "${1:-}" = --contrib ]; then
     contrib=yes
@@ -33,5 +39,14 @@ build_tools ${contrib:+"$contrib"} iib_evaluation
     [ -z "$contrib" ] ||
         echo "opencv_contrib $(sed -n 's/^Version: \([0-9]*[.][0-9]*[.][0-9]*\).*/\1/p' "${contrib#*=}/PKG-INFO")"
 } >"$out/run.txt"
+# Learned descriptors, which are not measured here.
+[ -z "$document" ] || cp "$root/doc/results/learned.csv" "$out"
 page=$(/usr/bin/python3 "$root/tools/evaluation/report/report.py" "$out")
 say "results and page: $page"
+if [ -n "$document" ]; then
+    /usr/bin/python3 "$root/scripts/helpers/summaries.py" "$out"
+    for file in index.html cost.csv run.txt settings.txt pictures; do
+        [ ! -e "$out/$file" ] || cp -r "$out/$file" "$root/doc/results"
+    done
+    /usr/bin/python3 "$root/scripts/helpers/figures.py" --write
+fi

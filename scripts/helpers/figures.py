@@ -13,8 +13,7 @@ import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-TRAINED_ON = {'tilde_webcam', 'amos_daynight'}  # by the presets
-RENDERED = {'lights'}
+LIGHT = {'light', 'trained'}  # places of summaries.py: real images under changed light
 
 
 def rows(name):
@@ -22,9 +21,9 @@ def rows(name):
         return list(csv.DictReader(file))
 
 
-def mean(values):
-    values = list(values)
-    return sum(values) / len(values)
+def mean(chosen, column):
+    """Of all pairs of images that these rows sum up."""
+    return sum(int(r['pairs']) * float(r[column]) for r in chosen) / sum(int(r['pairs']) for r in chosen)
 
 
 def table(head, lines):
@@ -33,22 +32,25 @@ def table(head, lines):
 
 
 def precision_recall(chosen):
-    if not chosen:
-        return '–'
-    return '%.3f / %.3f' % (mean(float(r['precision']) for r in chosen), mean(float(r['recall']) for r in chosen))
+    return '%.3f / %.3f' % (mean(chosen, 'precision'), mean(chosen, 'recall')) if chosen else '–'
+
+
+def grouped(name, key, chosen=lambda row: True):
+    """Rows of a file by the columns of `key`."""
+    found = collections.defaultdict(list)
+    for row in rows(name):
+        if chosen(row):
+            found[tuple(row[column] for column in key) if len(key) > 1 else row[key[0]]].append(row)
+    return found
 
 
 def detected_points():
     """Points detected in both images, all pairs of real images under changed light."""
-    found = collections.defaultdict(list)
-    for row in rows('detected_points.csv'):
-        if row['kind'] == 'light' and row['set'] not in RENDERED:
-            found[row['detector'], row['descriptor']].append(row)
+    found = grouped('detected_points.csv', ('detector', 'descriptor'), lambda row: row['place'] in LIGHT)
 
     def cells(detector, descriptor):
         chosen = found[detector, descriptor]
-        return ['%.0f' % mean(float(r['correct']) for r in chosen),
-                '%.0f %%' % (100 * mean(float(r['precision']) for r in chosen))]
+        return ['%.0f' % mean(chosen, 'correct'), '%.0f %%' % (100 * mean(chosen, 'precision'))]
 
     lines = []
     for detector, own in (('ORB', 'ORB'), ('AKAZE', 'AKAZE'), ('SIFT', 'SIFT'), ('BRISK', 'BRISK'), ('KAZE', 'KAZE'),
@@ -59,37 +61,29 @@ def detected_points():
 
 def fixed_points():
     """The same 1000 points in both images: light, and the two sequences of Oxford's set whose camera moves."""
-    found = collections.defaultdict(list)
-    for row in rows('fixed_points.csv'):
-        if row['set'] not in RENDERED:
-            found[row['configuration'], 'light' if row['kind'] == 'light' else row['sequence']].append(row)
+    found = grouped('fixed_points.csv', ('configuration', 'place'))
     lines = []
     for label, name in (('IIB', 'IIB'), ('IIB, `PRESET_BALANCED`', 'IIB BALANCED'), ('SIFT', 'SIFT'),
                         ('KAZE', 'KAZE'), ('AKAZE', 'AKAZE-486'), ('BEBLID', 'BEBLID-512'),
                         ('BEBLID, 35 px', 'BEBLID-512 5x'), ('TEBLID', 'TEBLID-512'),
                         ('TEBLID, 35 px', 'TEBLID-512 5x'), ('LATCH', 'LATCH-512'), ('ORB', 'ORB'),
                         ('BRIEF', 'BRIEF-512'), ('FREAK', 'FREAK'), ('BRISK', 'BRISK')):
-        lines.append([label, found[name, 'light'][0]['bytes']] +
-                     [precision_recall(found[name, place]) for place in ('light', 'wall', 'graf')])
+        light = found[name, 'light'] + found[name, 'trained']
+        lines.append([label, light[0]['bytes']] +
+                     [precision_recall(chosen) for chosen in (light, found[name, 'wall'], found[name, 'graf'])])
     return table(['', 'bytes', 'changed light', '`wall`', '`graf`'], lines)
 
 
 def extra_channels():
     """Fixed points of rendered scenes: depth and labels of what is seen as further channels."""
-    found = collections.defaultdict(list)
-    for row in rows('fixed_points.csv'):
-        if row['set'] in RENDERED:
-            found[row['configuration']].append(row)
+    found = grouped('fixed_points.csv', ('configuration',), lambda row: row['place'] == 'rendered')
     return table(['', 'rendered scenes'],
                  [[name, precision_recall(found[name])] for name in ('IIB', 'IIB +depth', 'IIB +labels', 'IIB +depth+labels')])
 
 
 def turned():
     """Fixed points: the reference turned about its centre, in the same light, of scenes that no preset was trained on."""
-    found = collections.defaultdict(list)
-    for row in rows('robustness.csv'):
-        if row['kind'] == 'turn' and row['set'] not in TRAINED_ON:
-            found[row['configuration'], row['target']].append(row)
+    found = grouped('robustness.csv', ('configuration', 'target'))
     lines = [[name] + [precision_recall(found[name, degrees]) for degrees in ('5', '10', '15', '30')]
              for name in ('IIB', 'IIB BALANCED', 'IIB oriented', 'ORB', 'ORB oriented', 'SIFT', 'SIFT oriented')]
     return table(['', '5 degrees', '10', '15', '30'], lines)
@@ -97,14 +91,10 @@ def turned():
 
 def poses():
     """Area under the curve of the error of the relative pose up to 10 degrees, with the better choice of matches."""
-    found = collections.defaultdict(lambda: collections.defaultdict(list))
-    for row in rows('whole_tasks.csv'):
-        if row['task'] == 'pose':
-            found[row['detector'], row['descriptor'], row['set']][row['matching']].append(float(row['error']))
+    found = grouped('whole_tasks.csv', ('detector', 'descriptor', 'set'))
 
     def cell(detector, descriptor, place):
-        return '%.2f' % max(mean(max(0, 1 - error / 10) for error in errors)
-                            for errors in found[detector, descriptor, place].values())
+        return '%.2f' % max(float(row['score']) for row in found[detector, descriptor, place])
 
     lines = []
     for detector, descriptor in (('SIFT', 'SIFT'), ('AKAZE', 'AKAZE'), ('ORB', 'ORB'), ('ORB', 'BEBLID-512'),
@@ -113,9 +103,9 @@ def poses():
                                  ('AKAZE normalized', 'AKAZE'), ('AKAZE normalized', 'IIB UNIVERSAL')):
         lines.append([detector, descriptor] +
                      [cell(detector, descriptor, place) for place in ('strecha', 'synthetic_street')])
-    pairs = [len(found['SIFT', 'SIFT', place]['mutual']) for place in ('strecha', 'synthetic_street')]
-    return table(['points of', 'descriptor', 'buildings by day, %d pairs' % pairs[0],
-                  'street, other light, %d pairs' % pairs[1]], lines)
+    pairs = tuple(found['SIFT', 'SIFT', place][0]['pairs'] for place in ('strecha', 'synthetic_street'))
+    return table(['points of', 'descriptor', 'buildings by day, %s pairs' % pairs[0],
+                  'street, other light, %s pairs' % pairs[1]], lines)
 
 
 def presets():
@@ -130,35 +120,24 @@ def presets():
            ('IIB S512', '`PRESET_S512`', 'the default, shortened'),
            ('IIB S256', '`PRESET_S256`', 'the default, shortened'),
            ('IIB S128', '`PRESET_S128`', 'the default, shortened'))
-    found = collections.defaultdict(list)
-    for row in rows('fixed_points.csv'):
-        place = row['sequence']
-        if row['kind'] == 'light':
-            place = 'rendered' if row['set'] in RENDERED else 'trained' if row['set'] in TRAINED_ON else 'light'
-        found[row['configuration'], place].append(row)
-    for row in rows('robustness.csv'):
-        if row['kind'] == 'turn' and row['target'] == '10' and row['set'] not in TRAINED_ON:
-            found[row['configuration'], 'turned'].append(row)
+    found, turns = grouped('fixed_points.csv', ('configuration', 'place')), grouped('robustness.csv', ('configuration', 'target'))
     lines = []
     for name, label, when in use:
         lines.append([label, found[name, 'light'][0]['bytes']] +
-                     [precision_recall(found[name, place]) for place in ('light', 'rendered', 'wall', 'graf', 'turned')] +
-                     [when])
+                     [precision_recall(found[name, place]) for place in ('light', 'rendered', 'wall', 'graf')] +
+                     [precision_recall(turns[name, '10']), when])
     return table(['preset', 'bytes', 'light', 'rendered', 'wall', 'graf', 'turned', 'when'], lines)
 
 
 def ratio_table(descriptors):
     rules = ('mutual', '0.95', '0.9', '0.85', '0.8', '0.75')
-    found = collections.defaultdict(list)
-    for row in rows('ratios.csv'):
-        place = 'changed light' if row['kind'] == 'light' else '`%s`' % row['sequence']
-        found[place, row['descriptor'], row['rule']].append(row)
+    found = grouped('ratios.csv', ('place', 'descriptor', 'rule'))
     lines = []
-    for place in ('changed light', '`wall`', '`graf`'):
+    for label, places in (('changed light', LIGHT), ('`wall`', {'wall'}), ('`graf`', {'graf'})):
         for name in descriptors:
-            chosen = [found[place, 'IIB ' + name if name != 'default' else 'IIB', rule] for rule in rules]
-            lines.append([place, name] + ['%.0f / %.0f' % tuple(mean(int(r[column]) for r in some)
-                                                                for column in ('correct', 'given')) for some in chosen])
+            full = 'IIB ' + name if name != 'default' else 'IIB'
+            chosen = [sum((found[place, full, rule] for place in places), []) for rule in rules]
+            lines.append([label, name] + ['%.0f / %.0f' % (mean(some, 'correct'), mean(some, 'given')) for some in chosen])
     return table(['', '', 'mutual'] + list(rules[1:]), lines)
 
 
