@@ -57,8 +57,8 @@ PackedCodes::PackedCodes(const std::vector<int>& levelSizes, CodePacking packing
 }
 
 PackedCodes::PackedCodes(const PackedCodes& other)
-    : scans(other.scans), format(other.format), starts(other.starts),
-      codes(other.codes.rowRange(0, other.filled).clone()), filled(other.filled)
+    : scans(other.scans), format(other.format), starts(other.starts), codes(other.stored().clone()),
+      filled(other.filled)
 {
 }
 
