@@ -184,12 +184,11 @@ void matchAll()
     std::remove(file.c_str());
 }
 
-void addToMatcher()
+void addToMatcher(int width)
 {
-    const std::vector<int> levels = {2, 8};
-    Mat train(1200, 10, CV_8U);
+    Mat train(1200, width, CV_8U);
     RNG(4).fill(train, RNG::UNIFORM, 0, 256);
-    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(levels);
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({2, width - 2});
     failEachAllocation(
             "add", [&] { matcher->add(train); },
             [&] {
@@ -242,7 +241,8 @@ int run(const iib_tools::CommandLine& line)
         describe("compute, selection", IIB::createPreset(IIB::PRESET_TINY), CV_8UC1);
         changeExtractor();
         matchAll();
-        addToMatcher();
+        addToMatcher(10);
+        addToMatcher(600);
         changeMatcher();
     }
     catch (const std::exception& e)

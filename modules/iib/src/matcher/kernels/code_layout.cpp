@@ -38,40 +38,23 @@ CodeLayout::CodeLayout(const std::vector<int>& levelSizes, CodePacking packing_)
     }
 }
 
-//! A copy of a descriptor, of which whole words can be read from any byte on.
-class CodeLayout::PaddedDescriptor
-{
-public:
-    explicit PaddedDescriptor(int width_) : width(width_), bytes(width + WORD)
-    {
-        memset(bytes.data() + width, 0, WORD);
-    }
-    PaddedDescriptor(int width_, const uchar* descriptor) : PaddedDescriptor(width_) { set(descriptor); }
-
-    void set(const uchar* descriptor) { memcpy(bytes.data(), descriptor, width); }
-    unsigned wordFrom(int byte) const
-    {
-        unsigned word;
-        memcpy(&word, bytes.data() + byte, WORD);
-        return word;
-    }
-
-private:
-    const int width;
-    AutoBuffer<uchar, 512> bytes;
-};
-
 // Inlined: it runs for each word of each code.
-inline unsigned CodeLayout::word(int i, const PaddedDescriptor& descriptor) const
+inline unsigned CodeLayout::word(int i, const uchar* descriptor) const
 {
-    return descriptor.wordFrom(places[i].from) & places[i].mask;
+    const Place place = places[i];
+    unsigned result = 0;
+    if (place.bytes == WORD)
+        std::memcpy(&result, descriptor + place.from, WORD);
+    else
+        for (int b = 0; b < place.bytes; b++)
+            reinterpret_cast<uchar*>(&result)[b] = descriptor[place.from + b];
+    return result;
 }
 
 void CodeLayout::arrange(const uchar* descriptor, unsigned* plain) const
 {
-    const PaddedDescriptor padded(width, descriptor);
     for (int i = 0, count = words(); i < count; i++)
-        plain[i] = word(i, padded);
+        plain[i] = word(i, descriptor);
 }
 
 void CodeLayout::restore(const unsigned* plain, uchar* descriptor) const
@@ -94,22 +77,21 @@ void CodeLayout::pack(const unsigned* plain, unsigned* packed) const
 
 void CodeLayout::store(const uchar* descriptor, unsigned* block, int lane) const
 {
-    const PaddedDescriptor padded(width, descriptor);
     if (packing == PACKING_TABLES)
     {
         for (int i = 0; i < words(); i++)
         {
-            const unsigned plain = word(i, padded);
+            const unsigned plain = word(i, descriptor);
             uchar* to = (uchar*)(block + i * CODES_PER_BLOCK) + lane;
             for (int b = 0; b < WORD; b++)
                 to[b * CODES_PER_BLOCK] = ((const uchar*)&plain)[b];
         }
         return;
     }
-    unsigned parity = block[lane] = word(0, padded);
+    unsigned parity = block[lane] = word(0, descriptor);
     for (int i = 1; i < words(); i += 2)
     {
-        const unsigned first = word(i, padded), second = word(i + 1, padded);
+        const unsigned first = word(i, descriptor), second = word(i + 1, descriptor);
         block[i * CODES_PER_BLOCK + lane] = parity ^ first;
         block[(i + 1) * CODES_PER_BLOCK + lane] = first ^ second;
         parity ^= first ^ second;
@@ -119,12 +101,11 @@ void CodeLayout::store(const uchar* descriptor, unsigned* block, int lane) const
 // First the plain words, code by code; then loops over the lanes, which compilers make vectors of.
 void CodeLayout::storeBlock(const uchar* descriptors, size_t step, unsigned* block) const
 {
-    PaddedDescriptor padded(width);
     for (int lane = 0; lane < CODES_PER_BLOCK; lane++)
     {
-        padded.set(descriptors + lane * step);
+        const uchar* const descriptor = descriptors + lane * step;
         for (int i = 0, count = words(); i < count; i++)
-            block[i * CODES_PER_BLOCK + lane] = word(i, padded);
+            block[i * CODES_PER_BLOCK + lane] = word(i, descriptor);
     }
     if (packing == PACKING_TABLES)
     {

@@ -59,7 +59,7 @@ public:
 
     //! Packs the words of one code; only with PACKING_ADDERS.
     void pack(const unsigned* plain, unsigned* packed) const;
-    //! Puts a descriptor into a lane of a CodeBlock.
+    //! Puts a descriptor into a lane of a CodeBlock. Neither this nor storeBlock() can fail.
     void store(const uchar* descriptor, unsigned* block, int lane) const;
     //! Fills a whole CodeBlock with CODES_PER_BLOCK descriptors that lie `step` bytes apart.
     void storeBlock(const uchar* descriptors, size_t step, unsigned* block) const;
@@ -71,15 +71,12 @@ private:
     struct Place
     {
         int from, bytes;
-        unsigned mask;  //!< of these bytes
 
-        Place(int from_, int bytes_) : from(from_), bytes(bytes_), mask(0) { memset(&mask, 255, bytes); }
+        Place(int from_, int bytes_) : from(from_), bytes(bytes_) {}
     };
 
-    class PaddedDescriptor;
-
     //! Word i of a descriptor's code, plain.
-    unsigned word(int i, const PaddedDescriptor& descriptor) const;
+    unsigned word(int i, const uchar* descriptor) const;
 
     std::vector<int> sizes, ends, segmentBits;
     std::vector<Place> places;  // of each word
