@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <climits>
+#include <new>
 
 namespace cv {
 namespace iib {
@@ -24,13 +25,29 @@ inline MatchKey matchKey(int distance, size_t index) { return (MatchKey)distance
 inline int distanceOf(MatchKey n) { return (int)(n >> INDEX_BITS); }
 inline size_t indexOf(MatchKey n) { return (size_t)(n & (((MatchKey)1 << INDEX_BITS) - 1)); }
 
+//! A value for each of k neighbours of each row; throws StsNoMem, with k, if memory does not hold them.
+template <typename T> std::vector<T> forNeighbours(size_t rows, int k, T value)
+{
+    try
+    {
+        if ((uint64)rows * k <= std::vector<T>().max_size())
+            return std::vector<T>(rows * k, value);
+    }
+    catch (const std::bad_alloc&)
+    {
+    }
+    CV_Error_(
+            Error::StsNoMem, ("k is %d: memory does not hold as many neighbours of each of %llu descriptors",
+                                     k, (unsigned long long)rows));
+}
+
 //! The k nearest neighbours of each of many codes, in ascending order; NO_MATCH where there are fewer.
 class KnnTable
 {
 public:
     //! `padding` more entries are there for vectors that read thresholds() past the end.
     KnnTable(size_t rows, int k_, size_t padding = 0)
-        : k(k_), keys(rows * k_, NO_MATCH), nearest(rows + padding, INT_MAX)
+        : k(k_), keys(forNeighbours(rows, k_, NO_MATCH)), nearest(rows + padding, INT_MAX)
     {
     }
 

@@ -138,8 +138,8 @@ public:
         KnnTable found(queries.rows, (int)std::min((size_t)k, std::max(count, (size_t)1)));
         search(first, end, queries, found);
 
-        rows_.assign((size_t)queries.rows * k, -1);
-        distances.assign(rows_.size(), -1);
+        rows_ = forNeighbours<int64>(queries.rows, k, -1);
+        distances = forNeighbours<int>(queries.rows, k, -1);
         for (size_t query = 0; query < (size_t)queries.rows; query++)
             for (int i = 0; i < found.size() && found[query][i] != NO_MATCH; i++)
             {
