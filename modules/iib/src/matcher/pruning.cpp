@@ -31,11 +31,13 @@ PruningPolicy radiusPolicy(const CodeLayout& layout, int radius)
     return policy;
 }
 
+// The number meant by a float such as .35f is within FLT_EPSILON of it, so that what ties by that number passes.
 PruningPolicy thresholdPolicy(const CodeLayout& layout, const std::vector<float>& thresholds)
 {
     PruningPolicy policy;
     for (int level = 0; level + 1 < layout.levels(); level++)
-        addStage(policy, level, cvFloor((double)thresholds[level] * 8 * layout.levelSizes()[level]));
+        addStage(policy, level,
+                cvFloor(thresholds[level] * (1. + FLT_EPSILON) * 8 * layout.levelSizes()[level]));
     return policy;
 }
 

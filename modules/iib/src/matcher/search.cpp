@@ -84,9 +84,10 @@ void keepMutual(KnnTable& forQueries, const KnnTable& forTrains)
     }
 }
 
+// The number meant by a float such as .6f is within FLT_EPSILON of it, so that what ties by that number does not pass.
 bool passesRatio(const MatchKey* row, float maxRatio)
 {
-    return row[1] == NO_MATCH || distanceOf(row[0]) < (double)maxRatio * distanceOf(row[1]);
+    return row[1] == NO_MATCH || distanceOf(row[0]) < maxRatio * (1. - FLT_EPSILON) * distanceOf(row[1]);
 }
 
 // The first k of each row that passes the ratio test; the others stay empty.

@@ -123,6 +123,47 @@ TEST(IIB_MatcherEdges, least_distance_at_the_ratio_is_refused)
     EXPECT_EQ(0, matches[0].queryIdx);
 }
 
+//! A code of some bytes whose first bits are set, for each number of bits.
+Mat codesOfBits(const std::vector<int>& counts, int bytes)
+{
+    Mat codes((int)counts.size(), bytes, CV_8U, Scalar(0));
+    for (int i = 0; i < codes.rows; i++)
+        for (int bit = 0; bit < counts[i]; bit++)
+            codes.at<uchar>(i, bit / 8) |= 1 << bit % 8;
+    return codes;
+}
+
+// Also where the float is above the hundredth that it stands for.
+TEST(IIB_MatcherEdges, ties_at_any_hundredth_are_refused)
+{
+    const Mat zero = codesOfBits({0}, 13);
+    for (int hundredth = 1; hundredth < 100; hundredth++)
+    {
+        const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({13});
+        matcher->setMaxRatio(hundredth / 100.f);
+        std::vector<DMatch> tie, nearer;
+        matcher->match(zero, codesOfBits({hundredth, 100}, 13), tie);
+        matcher->match(zero, codesOfBits({hundredth - 1, 100}, 13), nearer);
+        EXPECT_EQ(0u, tie.size()) << hundredth;
+        EXPECT_EQ(1u, nearer.size()) << hundredth;
+    }
+}
+
+TEST(IIB_MatcherEdges, ties_at_any_hundredth_are_within_the_threshold)
+{
+    std::vector<int> counts;
+    for (int i = 0; i <= 160; i++)
+        counts.push_back(i);
+    const Mat codes = codesOfBits(counts, 21);
+    for (int hundredth = 0; hundredth <= 100; hundredth++)
+    {
+        Matches matches;
+        HierarchicalMatcher::create({20, 1}, HierarchicalMatcher::THRESHOLD, hundredth / 100.f)
+                ->knnMatch(codes.row(0), codes, matches, 200);
+        EXPECT_EQ((size_t)(hundredth * 160 / 100) + 1, matches[0].size()) << hundredth;
+    }
+}
+
 TEST(IIB_MatcherEdges, arrays_hold_what_knnMatch_finds)
 {
     const Ptr<HierarchicalMatcher> matcher = matcherOf({ladder(0, 3), Mat(), ladder(3, 5)});

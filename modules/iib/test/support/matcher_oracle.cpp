@@ -36,6 +36,9 @@ int hammingDistance(const uchar* a, const uchar* b, int bytes)
     return distance;
 }
 
+// How far a float may be from the number that it stands for, as a part of it.
+static const double EPSILON = 1. / (1 << 23);
+
 bool MatcherOracle::passes(const uchar* query, const uchar* train)
 {
     for (size_t level = 0; level < levelSizes.size(); level++)
@@ -43,7 +46,7 @@ bool MatcherOracle::passes(const uchar* query, const uchar* train)
         const int bits = 8 * levelSizes[level];
         compared += bits;
         if (level < thresholds.size() &&
-                hammingDistance(query, train, levelSizes[level]) > thresholds[level] * (double)bits)
+                hammingDistance(query, train, levelSizes[level]) > thresholds[level] * (1 + EPSILON) * bits)
             return false;
         query += levelSizes[level];
         train += levelSizes[level];
@@ -145,7 +148,7 @@ Matches MatcherOracle::knn(const Mat& queries, int k)
     for (size_t q = 0; q < result.size(); q++)
     {
         std::vector<DMatch>& row = result[q];
-        if (maxRatio < 1 && row.size() > 1 && !(row[0].distance < (double)maxRatio * row[1].distance))
+        if (maxRatio < 1 && row.size() > 1 && !(row[0].distance < maxRatio * (1 - EPSILON) * row[1].distance))
             row.clear();
         row.resize(std::min(row.size(), (size_t)k));
         if (crossCheck)

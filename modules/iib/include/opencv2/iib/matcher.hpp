@@ -42,11 +42,13 @@ within a radius of the query has the query within that radius.
  - #EXACT: what brute force finds, bit for bit.
  - #THRESHOLD: the paper's rule. A pair goes on to the next level only while its distance in the current
    one is at most threshold * bits of that level; pairs that reach the last level are ranked by the
-   distance over all levels. Fast, and it loses whole keypoints in hard scenes.
+   distance over all levels. Fast, and it loses whole keypoints in hard scenes. The comparison is distance <=
+   threshold * (1 + 2^-23) * bits in double, so that a decimal number keeps its ties: at 0.35, 56 of 160 bits go on.
  - #ADAPTIVE: approximate. Stops at 25 % of the last level if the partial distance exceeds the query's best by more
-   than 1.75 sigma (sigma = sqrt(n) / 2 for n bits so far). Distances are exact; neighbours may be missed, and nothing
-   is promised for a single query. Of the right matches of #EXACT (170 bytes, k = 1) it keeps at least 98 % on the
-   images of the test IIB_Real.adaptive_keeps_the_correct_matches, on which the bound was not tuned.
+   than 1.75 sigma (sigma = sqrt(n) / 2 for n bits so far). Train descriptors are compared in groups of 2048, in the
+   order in which they were added; the best is that of the group and of those before. Distances are exact; neighbours
+   may be missed, and nothing is promised for a single query. Of the right matches of #EXACT (170 bytes, k = 1) it keeps
+   at least 98 % on the images of the test IIB_Real.adaptive_keeps_the_correct_matches, on which the bound was not tuned.
    Descriptors of up to 4 bytes are compared as in #EXACT, and so is radiusMatch.
 
 **Threads.** Calls run on cv::parallel_for_; results are the same for every number of threads and every
@@ -54,7 +56,9 @@ instruction set. One object may serve several threads as long as none adds descr
 parameters. As everywhere in OpenCV, cv::setNumThreads is not to be called meanwhile.
 
 **Files.** Algorithm::save and DescriptorMatcher::write store the parameters; Algorithm::load and
-DescriptorMatcher::read take either kind of file. saveIndex stores the train descriptors as well.
+DescriptorMatcher::read take either kind of file. saveIndex stores the train descriptors as well. Where OpenCV's
+FileStorage has no 64-bit numbers, as in 4.6, it cuts larger ones in a file before anyone can tell: 4294967304 is read
+as 8.
 
 @throws cv::Exception from every call for descriptors that are not CV_8U or whose columns are not the sum
 of the level sizes, and for masks of a wrong type, size or number.
@@ -138,9 +142,10 @@ public:
     /** @brief Ratio test inside match, knnMatch and knnMatchArrays, over the same pairs as the search.
 
     @param maxRatio in (0, 1]. A query keeps its matches only if its least distance is less than maxRatio
-    times its second least; a query with a single candidate keeps it. 1, the default, turns the test off. The 0.75 to
-    0.8 that suit SIFT throw most right matches of long binary codes away where the view moves: take 0.9 to 0.95, or
-    setCrossCheck instead.
+    times its second least: least < maxRatio * (1 - 2^-23) * second in double, so that ties of a decimal number do not
+    pass, such as 6 and 10 bits at 0.6. A query with a single candidate keeps it. 1, the default, turns the test off. The
+    0.75 to 0.8 that suit SIFT throw most right matches of long binary codes away where the view moves: take 0.9 to 0.95,
+    or setCrossCheck instead.
      */
     CV_WRAP virtual void setMaxRatio(float maxRatio) = 0;
     CV_WRAP virtual float getMaxRatio() const = 0;
