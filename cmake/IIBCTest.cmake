@@ -79,3 +79,9 @@ if(UNIX AND NOT APPLE)
     "-DREADELF=${CMAKE_READELF}" "-DVERSION=${PROJECT_VERSION}" "-DCHANGELOG=${PROJECT_SOURCE_DIR}/CHANGELOG.md"
     -P "${PROJECT_SOURCE_DIR}/cmake/SymbolTest.cmake")
 endif()
+# Other compilers and unoptimized builds inline less.
+if(IIB_DISPATCH AND NOT IIB_SANITIZE AND CMAKE_BUILD_TYPE STREQUAL "Release" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_test(NAME dispatched-symbols COMMAND "${CMAKE_COMMAND}"
+    "-DOBJECTS=$<FILTER:$<TARGET_OBJECTS:opencv_iib>,INCLUDE,/dispatch/>" "-DNM=${CMAKE_NM}"
+    -P "${PROJECT_SOURCE_DIR}/cmake/DispatchTest.cmake")
+endif()
