@@ -69,6 +69,14 @@ class HierarchicalMatcher:
         """
         return cls(levelSizes, mode, threshold, crossCheck)
 
+    @classmethod
+    def createRecommended(cls) -> HierarchicalMatcher:
+        """What suits IIB best where light and view change: EXACT, with cross-check and a maximal ratio of 0.9.
+
+        For descriptors of any width, as :meth:`create` without level sizes.
+        """
+        return cls._of(_core.Matcher.createRecommended())
+
     def match(self, queryDescriptors: Any, trainDescriptors: Any = None, mask: Any = None,
               masks: Any = None) -> tuple[Any, ...]:
         """The nearest train descriptor of each query that has one, in the order of the queries."""

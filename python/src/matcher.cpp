@@ -178,6 +178,8 @@ void bindMatcher(nb::module_& m)
     nb::class_<Matcher>(m, "Matcher")
             .def_static("create", &create)
             .def_static("create", []() -> std::shared_ptr<Matcher> { return Matcher::create(); })
+            .def_static("createRecommended",
+                    []() -> std::shared_ptr<Matcher> { return Matcher::createRecommended(); })
             .def_static("loadIndex", &loadIndex)
             .def("saveIndex", &saveIndex)
             .def("clone", &clone)

@@ -57,6 +57,18 @@ class MatcherTest(unittest.TestCase):
         self.matcher.clear()
         self.assertTrue(self.matcher.empty())
 
+    def test_recommended(self):
+        matcher = HierarchicalMatcher.createRecommended()
+        self.assertIsInstance(matcher, HierarchicalMatcher)
+        for other in (matcher, matcher.clone(), pickle.loads(pickle.dumps(matcher))):
+            self.assertEqual((other.levelSizes(), other.getMode(), other.getCrossCheck()),
+                             ((), HierarchicalMatcher.EXACT, True))
+            self.assertAlmostEqual(other.getMaxRatio(), .9, 6)
+        matches = matcher.match(self.query, self.train)
+        self.assertEqual([(m.queryIdx, m.trainIdx) for m in matches], [(i, i + 10) for i in range(50)])
+        self.train[0] = self.train[10]  # as near as the right one
+        self.assertEqual([m.queryIdx for m in matcher.match(self.query, self.train)], list(range(1, 50)))
+
     def test_what_is_added_is_a_copy(self):
         train = self.train.copy()
         self.matcher.add(train)

@@ -150,5 +150,13 @@ Ptr<HierarchicalMatcher> HierarchicalMatcher::create()
     return makePtr<HierarchicalMatcherImpl>(MatcherParameters());
 }
 
+Ptr<HierarchicalMatcher> HierarchicalMatcher::createRecommended()
+{
+    MatcherParameters p;
+    p.crossCheck = true;
+    p.maxRatio = 0.9f;
+    return makePtr<HierarchicalMatcherImpl>(p);
+}
+
 }  // namespace iib
 }  // namespace cv

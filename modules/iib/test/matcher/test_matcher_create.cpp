@@ -92,13 +92,40 @@ void expectSame(const HierarchicalMatcher& a, const HierarchicalMatcher& b)
     EXPECT_EQ(a.getMaxRatio(), b.getMaxRatio());
 }
 
+TEST(IIB_MatcherCreate, recommended)
+{
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
+    EXPECT_TRUE(matcher->levelSizes().empty());
+    EXPECT_EQ(HierarchicalMatcher::EXACT, matcher->getMode());
+    EXPECT_TRUE(matcher->getCrossCheck());
+    EXPECT_EQ(0.9f, matcher->getMaxRatio());
+    expectSame(*matcher, *matcher->copy());
+
+    MatcherOracle oracle;
+    oracle.levelSizes.assign(1, 128);
+    oracle.images.push_back(randomDescriptors(2, 70, 128));
+    oracle.crossCheck = true;
+    oracle.maxRatio = 0.9f;
+    const Mat queries = randomDescriptors(1, 50, 128);
+    matcher->add(oracle.images);
+    expectKnnAsOracle(*matcher, oracle, queries, 1);
+    EXPECT_FALSE(oracle.knn(queries, 1).empty());
+
+    const TemporaryFile file;
+    matcher->saveIndex(file.name);
+    const Ptr<HierarchicalMatcher> loaded = HierarchicalMatcher::loadIndex(file.name);
+    expectSame(*matcher, *loaded);
+    expectKnnAsOracle(*loaded, oracle, queries, 1);
+}
+
 // Algorithm's convention and DescriptorMatcher's, each read by the other's call.
 TEST(IIB_MatcherCreate, save_write_load_and_read_in_all_directions)
 {
     const Ptr<HierarchicalMatcher> unusual =
             HierarchicalMatcher::create({8, 24}, HierarchicalMatcher::ADAPTIVE, 0.3f, true);
     unusual->setMaxRatio(0.75f);
-    for (const Ptr<HierarchicalMatcher>& matcher : {unusual, HierarchicalMatcher::create()})
+    for (const Ptr<HierarchicalMatcher>& matcher :
+            {unusual, HierarchicalMatcher::create(), HierarchicalMatcher::createRecommended()})
         for (const char* extension : {".yml", ".xml", ".json"})
             for (bool save : {false, true})
             {

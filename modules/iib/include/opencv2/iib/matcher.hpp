@@ -92,6 +92,13 @@ public:
      */
     CV_WRAP static Ptr<HierarchicalMatcher> create();
 
+    /** @brief What suits IIB best where light and view change: #EXACT, with cross-check and a maximal ratio of 0.9.
+
+    Poses from such matches were more accurate than from those of the cross-check alone. Otherwise as create() without
+    level sizes: for descriptors of any width.
+     */
+    CV_WRAP static Ptr<HierarchicalMatcher> createRecommended();
+
     //! Bytes of each level, coarse first; empty while create() without level sizes has seen no descriptors.
     CV_WRAP virtual std::vector<int> levelSizes() const = 0;
 

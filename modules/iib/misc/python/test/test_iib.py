@@ -160,6 +160,13 @@ class MatcherTest(unittest.TestCase):
         self.assertEqual(len(matcher.knnMatch(self.query, 2)), 50)
         np.testing.assert_array_equal(matcher.getTrainDescriptors()[0], self.train)
 
+    def test_recommended(self):
+        matcher = cv2.iib.HierarchicalMatcher.createRecommended()
+        self.assertTrue(matcher.getCrossCheck())
+        self.assertAlmostEqual(matcher.getMaxRatio(), 0.9, 6)
+        self.assertEqual(matcher.getMode(), cv2.iib.HierarchicalMatcher_EXACT)
+        self.assertEqual([m.trainIdx for m in matcher.match(self.query, self.train)], list(range(10, 60)))
+
     def test_arrays_equal_matches(self):
         matcher = cv2.iib.HierarchicalMatcher.create(self.levels)
         matches = matcher.knnMatch(self.query, self.train, 3)
