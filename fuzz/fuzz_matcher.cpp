@@ -7,7 +7,7 @@
 
 #include "byte_source.hpp"
 #include "support/matcher_oracle.hpp"
-#include "../src/matcher/pair_scan.hpp"
+#include "../src/matcher/search.hpp"
 
 #include <numeric>
 

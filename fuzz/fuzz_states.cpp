@@ -7,7 +7,7 @@
 
 #include "byte_source.hpp"
 #include "file.hpp"
-#include "../modules/iib/src/matcher/pair_scan.hpp"
+#include "../modules/iib/src/matcher/search.hpp"
 #include "support/matcher_oracle.hpp"
 
 #include <numeric>

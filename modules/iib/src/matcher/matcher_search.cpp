@@ -4,6 +4,7 @@
 
 #include "matcher_impl.hpp"
 #include "input.hpp"
+#include "pruning.hpp"
 #include "results.hpp"
 
 namespace cv {

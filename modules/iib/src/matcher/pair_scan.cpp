@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../precomp.hpp"
-#include "pair_scan.hpp"
+#include "search.hpp"
 
 namespace cv {
 namespace iib {
@@ -148,24 +148,21 @@ private:
 
 SearchCost scanPruned(const SearchInput& input, PairBlocks& block, HammingSink& sink)
 {
-    const PruningPolicy& policy = input.policy;
+    const std::vector<PruneStage>& stages = input.policy.stages;
     const CodeLayout& layout = input.trains.layout();
-    std::vector<int64> passed(policy.stages.size(), 0);
-    PrunedScan scan(block.pairs, sink);
-    scan.stages = policy.stages.data();
-    scan.stageCount = (int)policy.stages.size();
+    std::vector<int64> passed(stages.size(), 0);
+    PrunedScan scan(block.pairs, input.policy, sink);
     scan.passed = passed.data();
-    scan.limits = policy.stages.size() == 1 ? block.limitsOfQueries() : 0;
-    scan.margin = policy.margin;
+    scan.limits = stages.size() == 1 ? block.limitsOfQueries() : 0;
     input.trains.kernels().pruned(scan);
 
     SearchCost cost;
     cost.all = (uint64)block.pairCount * 8 * layout.bytes();
     uint64 alive = block.pairCount;
-    for (int segment = 0, stage = 0; segment < layout.segments(); segment++)
+    for (size_t segment = 0, stage = 0; segment < (size_t)layout.segments(); segment++)
     {
-        cost.compared += alive * layout.bits(segment);
-        if (stage < scan.stageCount && policy.stages[stage].segment == segment)
+        cost.compared += alive * layout.bits((int)segment);
+        if (stage < stages.size() && stages[stage].segment == (int)segment)
             alive = passed[stage++];
     }
     return cost;

@@ -34,6 +34,7 @@ struct ScanData
     CodeLayout layout;
     Mat queries, trains;
     std::vector<unsigned> plainQueries, plainTrains, blocks;
+    PruningPolicy policy;
     std::vector<int64> passed;
     std::vector<int> queryThresholds, trainThresholds;
 
@@ -61,10 +62,9 @@ struct ScanData
 
     PrunedScan scan(const std::vector<PruneStage>& stages, HammingSink& sink)
     {
+        policy.stages = stages;
         passed.assign(stages.size(), 0);
-        PrunedScan result(pairs(), sink);
-        result.stages = stages.data();
-        result.stageCount = (int)stages.size();
+        PrunedScan result(pairs(), policy, sink);
         result.passed = passed.data();
         return result;
     }
@@ -270,7 +270,7 @@ TEST(IIB_Hamming, limits_as_the_naive_loop)
         AllPairs sink(data.queryThresholds.data(), data.trainThresholds.data());
         PrunedScan scan = data.scan(stages, sink);
         scan.limits = limits.data();
-        scan.margin = margin;
+        data.policy.margin = margin;
         data.kernels.pruned(scan);
         Distances expected;
         for (int q = 0; q < data.queries.rows; q++)

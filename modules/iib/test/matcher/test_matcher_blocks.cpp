@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/matcher_oracle.hpp"
-#include "../../src/matcher/pair_scan.hpp"
+#include "../../src/matcher/search.hpp"
 
 namespace opencv_test {
 namespace {

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/matcher_oracle.hpp"
-#include "../../src/matcher/pruning.hpp"
+#include "../../src/matcher/kernels/hamming.hpp"
 
 namespace opencv_test {
 namespace {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <climits>
+#include <vector>
 
 namespace cv {
 namespace iib {
@@ -88,20 +89,32 @@ struct PruneStage
     int most;  //!< bits that may differ since the stage before
 };
 
+//! Where pairs are given up on the way from coarse to fine; without stages, never.
+struct PruningPolicy
+{
+    //! With a margin, this many CodeBlocks of train codes, 2048 codes, are compared before limits come down. It is part of
+    //! ADAPTIVE's answers, and so not to be changed for speed.
+    static constexpr int CODE_BLOCKS_OF_LIMITS = 128;
+
+    std::vector<PruneStage> stages;
+    int limit;   //!< with a single stage, the most bits that may differ there
+    int margin;  //!< if >= 0, the limit of a query comes down to its least difference there plus this
+
+    PruningPolicy() : limit(INT_MAX), margin(-1) {}
+};
+
 //! Finds all pairs that are near enough and that no stage gives up. Without stages, all are compared to the end.
 struct PrunedScan
 {
-    PrunedScan(const CodePairs& pairs_, HammingSink& sink_)
-        : pairs(pairs_), sink(sink_), stages(0), stageCount(0), passed(0), limits(0), margin(-1)
+    PrunedScan(const CodePairs& pairs_, const PruningPolicy& policy_, HammingSink& sink_)
+        : pairs(pairs_), policy(policy_), sink(sink_), passed(0), limits(0)
     {
     }
     CodePairs pairs;
+    const PruningPolicy& policy;
     HammingSink& sink;
-    const PruneStage* stages;
-    int stageCount;
-    int64* passed;  //!< stageCount: adds up the pairs that went on at the stage
+    int64* passed;  //!< for each stage: adds up the pairs that went on there
     int* limits;    //!< null, or with a single stage: for each query the most bits that may differ there
-    int margin;     //!< if >= 0, limits come down to the query's least difference so far plus this
 };
 
 /** The scans of one instruction set, and how they want their train codes packed: both belong together.

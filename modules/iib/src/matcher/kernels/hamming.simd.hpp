@@ -38,7 +38,7 @@ void scanNearest(const NearestScan& scan)
 
 void scanPruned(const PrunedScan& scan)
 {
-    if (scan.stageCount > 0)
+    if (!scan.policy.stages.empty())
         scanAll(PrunedScanner(scan), scan.pairs.queries.rows);
     else
         scanAll(FullScanner(scan.pairs, scan.sink), scan.pairs.queries.rows);

@@ -18,10 +18,11 @@ class PrunedScanner : public SinkScanner
 {
 public:
     explicit PrunedScanner(const PrunedScan& s)
-        : SinkScanner(s.pairs, s.sink), scan(s), lists(blocks), queryRow(layout, segmentAt(0) + 1, 1),
-          trainRows(layout, segmentAt(0) + 1, s.pairs.paddedTrains()), words(s.stageCount + 1)
+        : SinkScanner(s.pairs, s.sink), scan(s), policy(s.policy), stageCount((int)policy.stages.size()),
+          lists(blocks), queryRow(layout, segmentAt(0) + 1, 1),
+          trainRows(layout, segmentAt(0) + 1, s.pairs.paddedTrains()), words(stageCount + 1)
     {
-        for (int stage = 0; stage <= s.stageCount; stage++)
+        for (int stage = 0; stage <= stageCount; stage++)
             words[stage] = layout.end(segmentAt(stage));
         early = s.limits && words[0] > 8 ? words[0] * 3 / 4 | 1 : words[0];
     }
@@ -32,12 +33,12 @@ public:
     {
         setQueries<Q>(query);
         // Two stages in one go if the second comes soon after the first, where hardly any tile would end.
-        int stage = scan.stageCount > 1 && words[1] - words[0] <= 4 ? 1 : 0;
+        int stage = stageCount > 1 && words[1] - words[0] <= 4 ? 1 : 0;
         if (stage == 0)
             compareToFirst<Q>(query);
         else
             compareToSecond<Q>(query);
-        for (; stage < scan.stageCount; compareTo<Q>(query, ++stage))
+        for (; stage < stageCount; compareTo<Q>(query, ++stage))
         {
             int counts[Q], limits[Q], pairCount = 0;
             for (int q = 0; q < Q; q++)
@@ -103,7 +104,7 @@ private:
                 minima[q] = v_min(minima[q], distance[i]);
             }
             lists.append(block);
-            if (early < words[0] && block % 8 == 0 && scan.margin >= 0)
+            if (early < words[0] && block % 8 == 0 && policy.margin >= 0)
                 for (int q = 0; q < Q; q++)
                     limits[q] = v_min(limits[q], vx_setall_s32(plusMargin(v_reduce_min(minima[q]))));
         }
@@ -147,7 +148,7 @@ private:
                 tile.advance(queries, codes(block), words[i], words[i + 1]);
                 tile.distances(distance);
             }
-            if (stage < scan.stageCount)
+            if (stage < stageCount)
                 endPairs<Q>(stage, 0, distance, before, slack);
             storeRemaining<Q>(block, distance, slack);
         }
@@ -171,7 +172,7 @@ private:
     CV_ALWAYS_INLINE void endPairs(
             int stage, const int* limits, const Counts* distance, Counts* before, Counts* slack) const
     {
-        const Counts most = vx_setall_s32(scan.stages[stage].most);
+        const Counts most = vx_setall_s32(policy.stages[stage].most);
         for (int i = 0; i < Tile<Q>::SIZE; i++)
         {
             slack[i] = slack[i] | (before[i] + most - distance[i]);
@@ -203,24 +204,24 @@ private:
     int lowerLimit(int query, int q, int stage)
     {
         // Beyond the first stage, compareToSecond() and compareTo() have looked at it.
-        const int most = stage == 0 ? scan.stages[0].most : NEVER - 1;
+        const int most = stage == 0 ? policy.stages[0].most : NEVER - 1;
         if (!scan.limits)
             return most;
         int& limit = scan.limits[query];
-        if (scan.margin >= 0)
+        if (policy.margin >= 0)
             limit = std::min(limit, plusMargin(least[q]));
         return std::min(limit, most);
     }
-    int plusMargin(int distance) const { return std::min(distance, NEVER - scan.margin) + scan.margin; }
+    int plusMargin(int distance) const { return std::min(distance, NEVER - policy.margin) + policy.margin; }
 
     //! Takes the pairs of a list one by one through the stages that follow.
     void finish(int query, int q, int count, int stage)
     {
         if (count > 0)
             queryRow.set(0, plainQuery(q));
-        for (; stage < scan.stageCount && count > 0; stage++)
+        for (; stage < stageCount && count > 0; stage++)
         {
-            if (stage + 1 < scan.stageCount)
+            if (stage + 1 < stageCount)
                 scan.passed[stage + 1] += count = advance(q, count, stage);
             else
                 advance(q, count, stage);
@@ -238,7 +239,7 @@ private:
     int advance(int q, int count, int stage)
     {
         const int from = segmentAt(stage), to = segmentAt(stage + 1);
-        const int most = stage + 1 < scan.stageCount ? scan.stages[stage + 1].most : NEVER;
+        const int most = stage + 1 < stageCount ? policy.stages[stage + 1].most : NEVER;
         const int size = queryRow.count(from, to);
         const unsigned* query = queryRow.after(from, 0);
         int *list = lists.list(q), *distance = lists.distances(q), left = 0;
@@ -257,10 +258,12 @@ private:
     //! The segment that ends at a stage, or the last one after the last stage.
     int segmentAt(int stage) const
     {
-        return stage < scan.stageCount ? scan.stages[stage].segment : layout.segments() - 1;
+        return stage < stageCount ? policy.stages[stage].segment : layout.segments() - 1;
     }
 
     const PrunedScan& scan;
+    const PruningPolicy& policy;
+    const int stageCount;
     Shortlists lists;
     PairRows queryRow, trainRows;
     AutoBuffer<int> words;  // up to each stage, and in all
