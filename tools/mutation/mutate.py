@@ -29,32 +29,54 @@ const int iibChosenMutant = std::getenv("IIB_MUTANT") ? std::atoi(std::getenv("I
 """
 
 
+def pattern(code):
+    """Finds code however its lines are broken and its spaces set."""
+    return re.compile(r"\s*".join(re.escape(token) for token in re.findall(r"\w+|\S", code)))
+
+
 class Mutant:
-    def __init__(self, number, fields):
-        self.number, self.name, self.path = number, fields["name"], fields["file"]
-        self.context, self.right, self.wrong = fields["in"], fields["right"], fields["wrong"]
+    """`sources`: the text of every source, by path. The mutant belongs to the one that holds its context, wherever that has
+    been moved; `file` tells where several do."""
+
+    def __init__(self, number, fields, sources):
+        self.number, self.name, self.right, self.wrong = number, fields["name"], fields["right"], fields["wrong"]
+        self.context = pattern(fields["in"])
+        found = [path for path, text in sources.items() if self.context.search(text)]
+        if len(found) > 1:
+            found = [path for path in found if path == fields.get("file")]
+        if len(found) != 1 or len(self.context.findall(sources[found[0]])) != 1:
+            sys.exit(f"{self.name}: '{fields['in']}' is not in the sources once: bring mutants.txt up to date")
+        self.path, = found
         self.area = fields.get("tests", self.path.split("/")[3])
 
     def applied(self, text):
-        """The source `text` with the switch around `right` within the line that holds `context`."""
-        if text.count(self.context) != 1:
-            sys.exit(f"{self.name}: {self.path} holds '{self.context}' {text.count(self.context)} times, not once: "
-                     "bring mutants.txt up to date")
-        if self.context.count(self.right) != 1:
-            sys.exit(f"{self.name}: '{self.right}' is not there once in its context")
-        switch = f"IIB_MUTANT({self.number}, {self.right}, {self.wrong})"
-        return text.replace(self.context, self.context.replace(self.right, switch))
+        """The source `text` with the switch around `right` within the context."""
+        def switched(context):
+            code, count = pattern(self.right).subn(
+                lambda right: f"IIB_MUTANT({self.number}, {right[0]}, {self.wrong})", context[0])
+            if count != 1:
+                sys.exit(f"{self.name}: '{self.right}' is not there once in its context")
+            return code
+        text, count = self.context.subn(switched, text)
+        if count != 1:
+            sys.exit(f"{self.name}: another mutant changes the same code")
+        return text
 
 
-def read_mutants(path):
-    """Blocks of lines `name: ...`, `file: ...`, `in: ...`, `right: ...`, `wrong: ...`, and `tests: ...` if the folder of
-    the tests does not have the name of the source's folder."""
+def read_sources(repository):
+    return {str(path.relative_to(repository)): path.read_text()
+            for path in sorted(repository.glob("modules/*/src/**/*.?pp")) if ".generated." not in path.name}
+
+
+def read_mutants(path, sources):
+    """Blocks of lines `name: ...`, `in: ...`, `right: ...`, `wrong: ...`; `file: ...` if several sources hold what `in` says,
+    and `tests: ...` if the folder of the tests does not have the name of the source's folder."""
     mutants = []
     for block in re.split(r"\n\s*\n", path.read_text()):
         lines = [line for line in block.splitlines() if line and not line.startswith("#")]
         if not lines:
             continue
-        mutants.append(Mutant(len(mutants) + 1, dict(line.split(": ", 1) for line in lines)))
+        mutants.append(Mutant(len(mutants) + 1, dict(line.split(": ", 1) for line in lines), sources))
     return mutants
 
 
@@ -65,25 +87,21 @@ def write_if_changed(path, content):
         path.write_bytes(content)
 
 
-def switched(repository, mutants):
+def switched(sources, mutants):
     """The content of the sources with the switches of all mutants, by path."""
     content = {}
     for mutant in mutants:
-        if mutant.path not in content:
-            if not (repository / mutant.path).is_file():
-                sys.exit(f"{mutant.name}: there is no {mutant.path}: bring mutants.txt up to date")
-            content[mutant.path] = (repository / mutant.path).read_text()
-        content[mutant.path] = mutant.applied(content[mutant.path])
+        content[mutant.path] = mutant.applied(content.get(mutant.path, sources[mutant.path]))
     return content
 
 
-def copy_source(repository, mutants, target):
-    """A copy of the repository's files with the switches of all mutants."""
+def copy_source(repository, changed, target):
+    """A copy of the repository's files but for those that are `changed`."""
     command = ["git", "-C", repository, "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
     listed = subprocess.check_output(command).decode().split("\0")
     content = {name: (repository / name).read_bytes() for name in listed if (repository / name).is_file()}
     content["mutation.hpp"] = HEADER.encode()
-    for path, text in switched(repository, mutants).items():
+    for path, text in changed.items():
         content[path] = text.encode()
     for old in target.rglob("*"):
         if old.is_file() and str(old.relative_to(target)) not in content:
@@ -130,15 +148,16 @@ def main():
     parser.add_argument("--only", nargs="*", default=[], help="names of mutants; all by default")
     options = parser.parse_args()
 
-    mutants = read_mutants(pathlib.Path(__file__).with_name("mutants.txt"))
+    sources = read_sources(options.source)
+    mutants = read_mutants(pathlib.Path(__file__).with_name("mutants.txt"), sources)
     unknown = set(options.only) - {m.name for m in mutants}
     if unknown:
         sys.exit(f"no such mutants: {', '.join(sorted(unknown))}")
+    changed = switched(sources, mutants)
     if options.check:
-        switched(options.source, mutants)
         return 0
     source, build = options.work / "source", options.work / "build"
-    copy_source(options.source, mutants, source)
+    copy_source(options.source, changed, source)
     subprocess.check_call(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DIIB_BUILD_TOOLS=OFF",
                            f"-DCMAKE_CXX_FLAGS=-include {source / 'mutation.hpp'}"], stdout=subprocess.DEVNULL)
     subprocess.check_call(["cmake", "--build", build, "--target", "opencv_test_iib"])
