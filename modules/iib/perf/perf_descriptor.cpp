@@ -3,12 +3,6 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "perf_precomp.hpp"
-#include "opencv2/opencv_modules.hpp"
-// With TEBLID.
-#if defined(HAVE_OPENCV_XFEATURES2D) && CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407
-#define IIB_PERF_CONTRIB
-#include "opencv2/xfeatures2d.hpp"
-#endif
 
 namespace opencv_test {
 namespace {
@@ -75,39 +69,6 @@ PERF_TEST_P(IIB_Compute, hd, testing::Combine(Descriptor::all(), testing::Values
     TEST_CYCLE() scene.describe(descriptor);
     SANITY_CHECK_NOTHING();
 }
-
-#ifdef IIB_PERF_CONTRIB
-enum
-{
-    BEBLID_256,
-    BEBLID_512,
-    TEBLID_512,
-    LATCH_512
-};
-CV_ENUM(ContribDescriptor, BEBLID_256, BEBLID_512, TEBLID_512, LATCH_512)
-
-Ptr<Feature2D> createContrib(int descriptor)
-{
-    using namespace cv::xfeatures2d;
-    switch (descriptor)
-    {
-    case BEBLID_256: return BEBLID::create(1.f, BEBLID::SIZE_256_BITS);
-    case BEBLID_512: return BEBLID::create(1.f, BEBLID::SIZE_512_BITS);
-    case TEBLID_512: return TEBLID::create(1.f, TEBLID::SIZE_512_BITS);
-    default: return LATCH::create(64, false);
-    }
-}
-
-typedef perf::TestBaseWithParam<tuple<ContribDescriptor, int>> IIB_ComputeContrib;  // descriptor, keypoints
-
-PERF_TEST_P(IIB_ComputeContrib, hd, testing::Combine(ContribDescriptor::all(), testing::Values(1000, 5000)))
-{
-    Scene scene(get<1>(GetParam()));
-    const Ptr<Feature2D> descriptor = createContrib(get<0>(GetParam()));
-    TEST_CYCLE() scene.describe(descriptor);
-    SANITY_CHECK_NOTHING();
-}
-#endif
 
 }  // namespace
 }  // namespace opencv_test
