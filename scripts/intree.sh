@@ -3,16 +3,17 @@
 # (a smoke run) and of Python there.
 #   scripts/intree.sh [--short] [--source debian|contrib|contrib-5] [options of CMake]
 # --short: what scripts/test.sh has not shown of the same sources: that they build here, give the same bits (golden tests)
-# and the API of C++ and Python; OpenCV is built with little optimization, for AVX2 and AVX512_ICL alone.
+# and the API of C++ and Python; OpenCV is built with little optimization, for AVX512_ICL alone, which it has no code for
+# itself, and without calib3d, which samples alone need.
 # debian: the distribution's source of its OpenCV. contrib: the newest OpenCV 4 with opencv_contrib's xfeatures2d,
 # from the source distribution of opencv-contrib-python; contrib-5: the newest OpenCV 5 in the same way.
 # JOBS limits the parallel jobs. The last line tells the build's folder.
 . "$(dirname "$0")/helpers/lib.sh"
 
 dispatch="SSE4_1;SSE4_2;AVX;FP16;AVX2;AVX512_SKX;AVX512_ICL"
-flags=-O3 tests="*" short=""
+flags=-O3 tests="*" short="" calib3d=,calib3d
 if [ "${1:-}" = --short ]; then
-    dispatch="AVX2;AVX512_ICL" flags=-O1 short=.short
+    dispatch="AVX512_ICL" flags=-O1 short=.short calib3d=""
     tests="IIB_Golden*:IIB_IO*:IIB_Errors*:IIB_Input*:IIB_KeyPoints*:IIB_MatcherCreate*:IIB_MatcherEdges*:IIB_IndexFile*:IIB_InstructionSets*"
     shift
 fi
@@ -35,7 +36,7 @@ for argument in "$@"; do
 done
 
 extra_modules="$root/modules"
-list=iib,ts,python3,flann,calib3d
+list=iib,ts,python3,flann$calib3d
 case "$kind" in
 debian)
     need $build_packages xz-utils libpng-dev zlib1g-dev python3-dev python3-numpy
