@@ -91,6 +91,14 @@ check_suites() {
     done
 }
 
+# The images of the tests, where they lie beside the repository.
+find_data() {
+    if [ -z "${OPENCV_TEST_DATA_PATH:-}" ] && [ -d "$root/../shared/data" ]; then
+        OPENCV_TEST_DATA_PATH=$(cd "$root/../shared/data" && pwd)
+        export OPENCV_TEST_DATA_PATH
+    fi
+}
+
 # need PACKAGE...: installs those Debian packages that are missing.
 need() {
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
