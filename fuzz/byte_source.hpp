@@ -84,16 +84,30 @@ inline void useThreads(int count)
     inUse = count;
 }
 
-//! Runs a target on an input. What the library refuses with an exception is no failure.
-template <typename Target> inline int runTarget(const Target& target, const uchar* data, size_t size)
+//! Whether a target gives the library what it refuses, or catches these exceptions itself.
+enum class Refusals
+{
+    EXPECTED,
+    NONE
+};
+
+//! Runs a target on an input. An exception of the library that the target does not expect ends the run.
+template <typename Target>
+inline int runTarget(
+        const Target& target, const uchar* data, size_t size, Refusals refusals = Refusals::EXPECTED)
 {
     ByteSource in(data, size);
     try
     {
         target(in);
     }
-    catch (const cv::Exception&)
+    catch (const cv::Exception& e)
     {
+        if (refusals == Refusals::NONE)
+        {
+            std::fprintf(stderr, "%s\n", e.what());
+            std::abort();
+        }
     }
     return 0;
 }

@@ -359,5 +359,5 @@ void run(ByteSource& in) { Session(in).run(); }
 extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
 {
     useThreads(1);
-    return runTarget(run, data, size);
+    return runTarget(run, data, size, Refusals::NONE);
 }
