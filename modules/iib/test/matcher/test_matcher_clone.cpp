@@ -26,11 +26,14 @@ TEST(IIB_MatcherClone, keeps_parameters)
     }
 }
 
-// What either adds or clears is not in the other's packed codes, nor in its matrices.
-TEST(IIB_MatcherClone, shares_no_train_data)
+// What either adds or clears is not in the other's packed codes, nor in its matrices; 5 rows and 6 more are in one
+// CodeBlock, 20 more need new memory.
+typedef testing::TestWithParam<int> IIB_MatcherClone_Rows;
+TEST_P(IIB_MatcherClone_Rows, are_not_shared)
 {
-    const Mat first = randomDescriptors(1, 5, 42), second = randomDescriptors(2, 20, 42),
-              third = randomDescriptors(3, 20, 42);
+    const int rows = GetParam();
+    const Mat first = randomDescriptors(1, 5, 42), second = randomDescriptors(2, rows, 42),
+              third = randomDescriptors(3, rows, 42);
     for (bool originalChanges : {false, true})
     {
         const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({2, 8, 32});
@@ -49,8 +52,8 @@ TEST(IIB_MatcherClone, shares_no_train_data)
         same.add(third);
         std::vector<DMatch> best;
         changed.match(second, best);
-        ASSERT_EQ(20u, best.size());
-        for (int q = 0; q < 20; q++)
+        ASSERT_EQ((size_t)rows, best.size());
+        for (int q = 0; q < rows; q++)
             EXPECT_EQ(0, best[q].distance);
         EXPECT_EQ(0, cvtest::norm(third, same.getTrainDescriptors()[1], NORM_INF));
         EXPECT_EQ(0, cvtest::norm(second, changed.getTrainDescriptors()[1], NORM_INF));
@@ -63,6 +66,8 @@ TEST(IIB_MatcherClone, shares_no_train_data)
         EXPECT_EQ(2u, same.getTrainDescriptors().size());
     }
 }
+
+INSTANTIATE_TEST_CASE_P(/**/, IIB_MatcherClone_Rows, testing::Values(6, 20));
 
 // Fresh, with images that have no rows, and cleared.
 TEST(IIB_MatcherClone, of_a_matcher_without_rows)
