@@ -12,6 +12,44 @@ namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
+//! Hands pairs that are near enough to a sink.
+class SinkScanner : public Scanner
+{
+public:
+    SinkScanner(const CodePairs& p, HammingSink& s) : Scanner(p), sink(s) {}
+
+protected:
+    //! Negative where a distance is small enough to be found.
+    CV_ALWAYS_INLINE Counts slack(int query, int block, int v, const Counts& distance) const
+    {
+        Counts threshold = vx_setall_s32(sink.queryThresholds[query]);
+        if (sink.trainThresholds)
+            threshold = v_max(threshold, vx_load(sink.trainThresholds + block * CODES_PER_BLOCK + v * WIDTH));
+        return distance - threshold;
+    }
+
+    //! Hands on the pairs whose slack is negative.
+    void collect(int query, int block, const Counts* distances, const Counts* slacks)
+    {
+        int lanes = negativeLanes(slacks);
+        if (!lanes)
+            return;
+        if (incomplete(block))
+        {
+            Counts missed[VECTORS];
+            for (int v = 0; v < VECTORS; v++)
+                missed[v] = missing(query, block, v);
+            lanes &= ~negativeLanes(missed);
+        }
+        int near[CODES_PER_BLOCK];
+        storeLanes(near, distances, lanes);
+        for (int i = 0; lanes; lanes &= lanes - 1)
+            sink.found(query, block * CODES_PER_BLOCK + trailingZeros32(lanes), near[i++]);
+    }
+
+    HammingSink& sink;
+};
+
 //! Exhaustive scan; skips the rest of a tile once no pair in it can qualify.
 class FullScanner : public SinkScanner
 {

@@ -6,6 +6,7 @@
 #define OPENCV_IIB_MATCHER_KERNELS_SCAN_PRUNED_SIMD_HPP
 
 #include "pair_rows.simd.hpp"
+#include "scan_full.simd.hpp"
 #include "shortlists.simd.hpp"
 
 namespace cv {
