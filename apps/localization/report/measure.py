@@ -24,6 +24,7 @@ SPACINGS = {1: "1.4 m", 2: "2.8 m", 4: "5.6 m"}  # between keyframes, by the ste
 DROPPED = 4  # of so many images, one is kept
 ROUNDS = 3  # of timing, of which the quickest counts
 UNKNOWN = 200  # photographs of other places
+NOTHING_FOUND = 3  # status of iib_localize
 FIRST = 6  # images that iib_localize checks the focal length with
 
 
@@ -70,8 +71,10 @@ class Programs:
     def run(self, name, *arguments, threads=None):
         """What the program prints. Threads are as many as the processors that it may use."""
         processors = sorted(os.sched_getaffinity(0))[:threads]
-        done = subprocess.run([str(self.folder / name), *map(str, arguments)], check=True, stdout=subprocess.PIPE,
+        done = subprocess.run([str(self.folder / name), *map(str, arguments)], stdout=subprocess.PIPE,
                               text=True, preexec_fn=lambda: os.sched_setaffinity(0, processors))
+        if done.returncode not in (0, NOTHING_FOUND):
+            done.check_returncode()
         return done.stdout
 
     def build(self, name, images, cameras, poses, features, depth=None):

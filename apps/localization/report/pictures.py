@@ -52,7 +52,7 @@ def pairs(street, overlays, light):
         if "pose" in row:
             nearest = min(keyframes, key=lambda name: np.linalg.norm(keyframes[name][0] - row["pose"][0]))
             day = cv2.imread(str(street.mapped / "images" / f"{nearest}.png"))
-            now = cv2.imread(str(overlays / light / f"{row['name']}.png"))
+            now = cv2.imread(str(overlays / light / f"{row['name']}.matches.png"))
             pair = np.hstack([cv2.resize(p, FRAME, interpolation=cv2.INTER_AREA) for p in (day, now)])
             text = f"{light}, {row['inliers']} points agree, {100 * distance(row):.1f} cm off"
             cv2.putText(pair, text, (FRAME[0] + 8, 20), cv2.FONT_HERSHEY_SIMPLEX, 0.5, (255, 255, 255), 1, cv2.LINE_AA)

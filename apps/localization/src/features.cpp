@@ -91,4 +91,18 @@ std::vector<cv::DMatch> FeatureMethod::match(const cv::Mat& query, const cv::Mat
     return matches;
 }
 
+std::vector<cv::DMatch> FeatureMethod::match(const Features& a, const Features& b, float maxRatio) const
+{
+    std::vector<cv::DMatch> all;
+    int firstA = 0, firstB = 0;  // of the detector
+    for (size_t d = 0; d < detectors(); d++)
+    {
+        for (const cv::DMatch& m : match(a.codes[d], b.codes[d], maxRatio))
+            all.emplace_back(firstA + m.queryIdx, firstB + m.trainIdx, m.distance);
+        firstA += a.codes[d].rows;
+        firstB += b.codes[d].rows;
+    }
+    return all;
+}
+
 }  // namespace iib_localization

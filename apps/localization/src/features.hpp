@@ -44,6 +44,8 @@ public:
     Features extract(const cv::Mat& grey) const;
     //! Mutual nearest neighbours, whose distance is less than maxRatio times the second nearest's.
     std::vector<cv::DMatch> match(const cv::Mat& query, const cv::Mat& train, float maxRatio) const;
+    //! The same of two images: indices are those of their pixels.
+    std::vector<cv::DMatch> match(const Features& a, const Features& b, float maxRatio) const;
 
 private:
     std::string name_;

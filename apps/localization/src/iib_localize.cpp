@@ -2,7 +2,6 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include <filesystem>
 #include <iostream>
 #include <limits>
 #ifdef __GLIBC__
@@ -14,6 +13,7 @@
 #include "images.hpp"
 #include "line_features.hpp"
 #include "localizer.hpp"
+#include "new_folder.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
 #include "smoother.hpp"
@@ -22,6 +22,8 @@
 
 namespace {
 using namespace iib_localization;
+
+constexpr int NOTHING_FOUND = 3;  // status
 
 std::string csvHeader()
 {
@@ -80,20 +82,29 @@ std::vector<std::optional<Pose>> posesOf(const std::vector<Location>& locations)
     return poses;
 }
 
-std::vector<std::optional<Pose>> withImu(const std::vector<ImageFile>& images,
+//! In nanoseconds, as the smoother takes them.
+std::vector<int64_t> timesOf(const std::vector<ImageFile>& images)
+{
+    std::vector<int64_t> times;
+    for (const ImageFile& image : images)
+    {
+        const std::optional<int64_t> time = nanoseconds(image.name);
+        if (!time || (!times.empty() && *time <= times.back()))
+            CV_Error(cv::Error::StsError, image.path + ": with --imu the images must be named by their "
+                                                       "times, in seconds or nanoseconds, in order");
+        times.push_back(*time);
+    }
+    return times;
+}
+
+std::vector<std::optional<Pose>> withImu(const std::vector<int64_t>& times,
         const std::vector<Location>& locations, const std::vector<ImuReading>& readings,
         const Pinhole& camera)
 {
     const std::vector<std::optional<Pose>> poses = posesOf(locations);
     std::vector<VisualFrame> frames;
-    for (size_t i = 0; i < images.size(); i++)
-    {
-        const std::optional<int64_t> time = nanoseconds(images[i].name);
-        if (!time || (i > 0 && *time <= frames[i - 1].nanoseconds))
-            CV_Error(cv::Error::StsError, images[i].path + ": with --imu the images must be named by their "
-                                                           "times, in seconds or nanoseconds, in order");
-        frames.push_back({*time, poses[i], locations[i].inliers});
-    }
+    for (size_t i = 0; i < times.size(); i++)
+        frames.push_back({times[i], poses[i], locations[i].inliers});
     return smooth(camera, frames, readings);
 }
 
@@ -118,15 +129,17 @@ int run(const iib_tools::CommandLine& line)
     const std::vector<ImageFile> images = listImages(line.text("images"));
     const std::vector<NamedPose> priors =
             line.has("prior") ? readTrajectory(line.text("prior")) : std::vector<NamedPose>();
+    const bool imu = line.has("imu");
+    const std::vector<ImuReading> readings = imu ? readImu(line.text("imu")) : std::vector<ImuReading>();
+    const std::vector<int64_t> times = imu ? timesOf(images) : std::vector<int64_t>();
     const Map map = readMap(line.text("map"));
     const Localizer localizer(map, cameras.begin()->second, line.has("no-lines") ? Lines::OFF : Lines::ON);
     if (!line.has("no-lines") && !map.lines.lines.empty() && !linesAvailable())
         std::cerr
                 << "the map's lines are not used: this program was built without OpenCV's line_descriptor\n";
 
-    const std::string out = line.text("out");
-    std::error_code error;
-    std::filesystem::create_directories(out, error);
+    NewFolder results(line.text("out"), {"frames.csv", "trajectory.txt", "*.matches.png"});
+    const std::string& out = results.path();
     std::ofstream frames = createFile(out + "/frames.csv");
     frames << csvHeader();
     std::vector<Location> locations;
@@ -150,7 +163,7 @@ int run(const iib_tools::CommandLine& line)
             const std::string& name = images[first + i].name;
             Location& location = locations[first + i];
             if (line.has("pictures") && location.found)
-                writePicture(out + "/" + name + ".png", greys[i], location, cameras.begin()->second);
+                writePicture(out + "/" + name + ".matches.png", greys[i], location, cameras.begin()->second);
             frames << csvRow(name, location);
             focal.add(location);
             location.matched = {};  // a long run has no room for all
@@ -162,17 +175,16 @@ int run(const iib_tools::CommandLine& line)
         std::cerr << line.text("cameras") << ": the images fit a focal length " << cv::format("%.3f", scale)
                   << " times as long better: calibrate the camera\n";
     const std::vector<std::optional<Pose>> poses =
-            line.has("imu")
-                    ? withImu(images, locations, readImu(line.text("imu")), cameras.begin()->second.pinhole())
-                    : posesOf(locations);
+            imu ? withImu(times, locations, readings, cameras.begin()->second.pinhole()) : posesOf(locations);
 
     std::vector<NamedPose> trajectory;
     for (size_t i = 0; i < images.size(); i++)
         if (poses[i])
             trajectory.push_back({images[i].name, *poses[i]});
     writeTrajectory(out + "/trajectory.txt", trajectory);
+    results.publish();
     std::cout << trajectory.size() << " of " << images.size() << " images have a pose\n";
-    return 0;
+    return trajectory.empty() ? NOTHING_FOUND : 0;
 }
 
 }  // namespace
@@ -183,14 +195,15 @@ int main(int argc, char** argv)
             "Finds where images were taken, in a map that iib_map made.\n"
             "  iib_localize --map MAP --images DIR --cameras cameras.txt --out OUT [--imu imu.csv] "
             "[--no-lines]\n"
-            "OUT/trajectory.txt has the poses (TUM's format), OUT/frames.csv what became of each image.",
+            "OUT/trajectory.txt has the poses (TUM's format), OUT/frames.csv what became of each image.\n"
+            "The status is 3 if none has a pose.",
             "{map|<none>|the map, a folder}"
             "{images|<none>|folder of the images}"
             "{cameras|<none>|COLMAP's cameras.txt with the camera of all images}"
             "{prior|<none>|TUM's poses: about where the images were taken}"
             "{imu|<none>|EuRoC's imu.csv, in the camera's axes; images must be named by their times}"
             "{no-lines||use points only, also if the map has lines}"
-            "{pictures||write each image with the points that agree, into the same folder}"
-            "{out|<none>|folder for the results}",
+            "{pictures||write each image with the points that agree, as OUT/NAME.matches.png}"
+            "{out|<none>|folder for the results; older results there are replaced}",
             run);
 }

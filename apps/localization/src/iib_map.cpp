@@ -43,10 +43,11 @@ int run(const iib_tools::CommandLine& line)
     sources.depth = line.text("depth");
     sources.features = line.text("features");
     sources.refinePoses = line.has("refine-poses");
+    NewFolder place = placeOfMap(line.text("out"));
     const Map map = buildMap(sources);
     if (!linesAvailable())
         std::cerr << "the map has no lines: this program was built without OpenCV's line_descriptor\n";
-    writeMap(line.text("out"), map);
+    writeMap(std::move(place), map);
     printInfo(map);
     return 0;
 }
@@ -65,6 +66,6 @@ int main(int argc, char** argv)
             "{depth|<none>|folder of 16-bit images in millimetres; without it, points are triangulated}"
             "{refine-poses||let the bundle adjustment of triangulated points move the poses}"
             "{features|iib|iib, or for comparisons: own (ORB's and AKAZE's descriptors) or sift}"
-            "{out|<none>|the map, a folder}",
+            "{out|<none>|the map, a folder; an older map there is replaced}",
             run);
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "opencv2/core.hpp"
@@ -30,6 +31,18 @@ std::vector<ImageFile> listImages(const std::string& folder)
         CV_Error(cv::Error::StsError, folder + (error ? " cannot be read" : " has no images"));
     std::sort(images.begin(), images.end(),
             [](const ImageFile& a, const ImageFile& b) { return a.file < b.file; });
+    std::map<std::string, std::string> files;  // by name
+    for (const ImageFile& image : images)
+    {
+        if (image.file[0] == '#' || image.file.find_first_of(" \t\r\n,\"") != std::string::npos)
+            CV_Error(cv::Error::StsError,
+                    image.path + ": rename it, without blanks, commas, quotes and a leading #: "
+                                 "files of poses cannot hold these");
+        const auto [other, isNew] = files.emplace(image.name, image.file);
+        if (!isNew)
+            CV_Error(cv::Error::StsError,
+                    image.path + " and " + other->second + " would have one pose: rename one of them");
+    }
     return images;
 }
 

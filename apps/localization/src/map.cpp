@@ -4,10 +4,6 @@
 
 #include "map.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cstdio>
 #include <filesystem>
 
 #include "common/fnv1a.hpp"
@@ -115,37 +111,15 @@ size_t Map::pointBytes() const
     return bytes;
 }
 
-void writeMap(const std::string& folder, const Map& map)
+NewFolder placeOfMap(const std::string& folder)
 {
-    fs::path target = fs::absolute(folder).lexically_normal();
-    if (!target.has_filename())  // a slash at the end
-        target = target.parent_path();
-    if (fs::exists(target) && !fs::is_empty(target) && !fs::exists(target / HEADER))
-        CV_Error(cv::Error::StsError, folder + " exists and is no map: choose another place, or remove it");
-    const fs::path temporary = target.string() + ".new-" + std::to_string(::getpid());
-    std::error_code error;
-    fs::create_directories(temporary, error);
-    if (error)
-        CV_Error(cv::Error::StsError, temporary.string() + " cannot be made: " + error.message());
-    try
-    {
-        writeFiles(temporary, map);
-        if (!fs::exists(target))
-            fs::rename(temporary, target);
-        else if (::renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) != 0)
-            CV_Error(cv::Error::StsError, folder + " cannot be replaced");
-    }
-    catch (const fs::filesystem_error& e)
-    {
-        fs::remove_all(temporary, error);
-        CV_Error(cv::Error::StsError, e.what());
-    }
-    catch (...)
-    {
-        fs::remove_all(temporary, error);
-        throw;
-    }
-    fs::remove_all(temporary, error);  // the old map, if there was one
+    return {folder, {HEADER, "cameras.txt", "images.txt", "points3D.txt", LINES, "codes_*.iib"}};
+}
+
+void writeMap(NewFolder&& place, const Map& map)
+{
+    writeFiles(place.path(), map);
+    place.publish();
 }
 
 Map readMap(const std::string& folder)

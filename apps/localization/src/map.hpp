@@ -7,6 +7,7 @@
 
 #include "colmap_model.hpp"
 #include "line_map.hpp"
+#include "new_folder.hpp"
 
 namespace iib_localization {
 
@@ -30,10 +31,10 @@ struct Map
     size_t pointBytes() const;
 };
 
-/** Writes a map beside the place where it belongs and then moves it there, so that whoever looks sees the old map or
-the new one whole.
-@throws cv::Exception if `folder` exists and is no map, or cannot be written. */
-void writeMap(const std::string& folder, const Map& map);
+//! Where a map can be written, also in place of an old one. @throws cv::Exception if `folder` holds anything else.
+NewFolder placeOfMap(const std::string& folder);
+//! Writes a map and publishes it. @throws cv::Exception if it cannot be written.
+void writeMap(NewFolder&& place, const Map& map);
 //! @throws cv::Exception for what is no map, or a damaged one.
 Map readMap(const std::string& folder);
 

@@ -11,11 +11,14 @@
 #include "images.hpp"
 #include "line_mapping.hpp"
 #include "line_tracks.hpp"
+#include "pose_check.hpp"
 #include "tracks.hpp"
 #include "trajectory.hpp"
 
 namespace iib_localization {
 namespace {
+
+constexpr double MIN_POSE_AGREEMENT = 0.5;
 
 //! Keyframes with camera and pose, yet without points, and where their images are.
 std::vector<ImageFile> findKeyframes(const MapSources& sources, Model& model)
@@ -141,6 +144,10 @@ Map buildMap(const MapSources& sources)
             }
         addLinesFromDepth(map.lines, lines[k], camera, keyframe.pose, depth);
     }
+    if (poseAgreement(method, features, map.model) < MIN_POSE_AGREEMENT)
+        CV_Error(cv::Error::StsError,
+                sources.poses + " does not fit the images in " + sources.images +
+                        ": are the poses those of these images, and is the camera right?");
     if (sources.depth.empty())
     {
         points = triangulateTracks(method, features, sources.refinePoses, map.model);

@@ -132,22 +132,14 @@ TrackForest joinMatches(const FeatureMethod& method, const std::vector<Features>
     };
     std::vector<Link> links;
     for (const auto& [i, j] : nearPairs(model.keyframes))
-    {
-        int first[2] = {0, 0};  // feature of the detector's first row
-        for (size_t d = 0; d < method.detectors(); d++)
+        for (const cv::DMatch& m : method.match(features[i], features[j], MAX_RATIO))
         {
-            for (const cv::DMatch& m : method.match(features[i].codes[d], features[j].codes[d], MAX_RATIO))
-            {
-                Track pair = {{i, first[0] + m.queryIdx}, {j, first[1] + m.trainIdx}};
-                const Track both = pair;
-                Eigen::Vector3d point;
-                if (triangulator.place(pair, MAX_ERROR, point))
-                    links.push_back({m.distance, both[0], both[1]});
-            }
-            first[0] += features[i].codes[d].rows;
-            first[1] += features[j].codes[d].rows;
+            const Track both = {{i, m.queryIdx}, {j, m.trainIdx}};
+            Track placed = both;
+            Eigen::Vector3d point;
+            if (triangulator.place(placed, MAX_ERROR, point))
+                links.push_back({m.distance, both[0], both[1]});
         }
-    }
     std::stable_sort(
             links.begin(), links.end(), [](const Link& a, const Link& b) { return a.distance < b.distance; });
     TrackForest forest(features);

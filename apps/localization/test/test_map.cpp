@@ -55,8 +55,8 @@ TEST(Map, round_trip_also_over_an_old_one)
     const TestFolder folder;
     Map map = smallMap();
     map.model.points[0].x() = 9;
-    writeMap(folder.path("map"), map);
-    writeMap(folder.path("map/"), smallMap());
+    writeMap(placeOfMap(folder.path("map")), map);
+    writeMap(placeOfMap(folder.path("map/")), smallMap());
     map = smallMap();
     const Map back = readMap(folder.path("map"));
     EXPECT_EQ(map.features, back.features);
@@ -81,7 +81,7 @@ TEST(Map, lines_round_trip)
 {
     const TestFolder folder;
     const Map map = mapWithLines();
-    writeMap(folder.path("map"), map);
+    writeMap(placeOfMap(folder.path("map")), map);
     const Map back = readMap(folder.path("map"));
     ASSERT_EQ(2u, back.lines.lines.size());
     for (size_t i : {0, 1})
@@ -96,7 +96,7 @@ TEST(Map, lines_round_trip)
     EXPECT_EQ(seen, linesOfKeyframes(back.lines.lines, 3));
     EXPECT_EQ(map.lines.bytes(), back.lines.bytes());
 
-    writeMap(folder.path("map"), smallMap());
+    writeMap(placeOfMap(folder.path("map")), smallMap());
     EXPECT_TRUE(readMap(folder.path("map")).lines.lines.empty()) << "a map without lines is one";
 }
 
@@ -106,7 +106,7 @@ TEST(Map, refuses_damaged_lines)
     const std::string map = folder.path("map");
     for (const char* file : {"lines3D.txt", "codes_lines.iib"})
     {
-        writeMap(map, mapWithLines());
+        writeMap(placeOfMap(map), mapWithLines());
         std::ofstream(map + "/" + file, std::ios::app) << " ";
         EXPECT_EQ(map + "/" + file + " is damaged: build the map again", errorOf(map));
         ASSERT_EQ(0, std::remove((map + "/" + file).c_str()));
@@ -114,7 +114,7 @@ TEST(Map, refuses_damaged_lines)
     }
     Map wrong = mapWithLines();
     wrong.lines.codes[0] = wrong.lines.codes[0].rowRange(0, 1);
-    writeMap(map, wrong);
+    writeMap(placeOfMap(map), wrong);
     EXPECT_EQ(map + ": a.png has not a code for each line", errorOf(map));
 
     const std::string path = folder.path("lines");
@@ -138,15 +138,17 @@ TEST(Map, refuses_what_is_no_map_and_what_is_damaged)
     EXPECT_EQ(map + " is no map: it has no map.txt", errorOf(map));
     folder.makeFolder("map");
     folder.write("map/mine.txt", "precious");
-    EXPECT_EQ(map + " exists and is no map: choose another place, or remove it",
-            messageOf([&] { writeMap(map, smallMap()); }));
-    folder.write("map/map.txt", "something else\n");
-    EXPECT_EQ(map + "/map.txt:1: not the header of a map", errorOf(map));
+    EXPECT_EQ(map + " holds mine.txt, which is no result of this program: choose another folder",
+            messageOf([&] { placeOfMap(map); }));
+    folder.makeFolder("text");
+    folder.write("text/map.txt", "something else\n");
+    EXPECT_EQ(folder.path("text") + "/map.txt:1: not the header of a map", errorOf(folder.path("text")));
 
-    writeMap(map, smallMap());
+    ASSERT_EQ(0, std::remove((map + "/mine.txt").c_str()));
+    writeMap(placeOfMap(map), smallMap());
     for (const char* file : {"cameras.txt", "images.txt", "points3D.txt", "codes_0.iib", "codes_1.iib"})
     {
-        writeMap(map, smallMap());
+        writeMap(placeOfMap(map), smallMap());
         std::ofstream(map + "/" + file, std::ios::app) << " ";
         EXPECT_EQ(map + "/" + file + " is damaged: build the map again", errorOf(map));
         ASSERT_EQ(0, std::remove((map + "/" + file).c_str()));
@@ -157,10 +159,10 @@ TEST(Map, refuses_what_is_no_map_and_what_is_damaged)
 TEST(Map, a_failed_write_leaves_the_old_one)
 {
     const TestFolder folder;
-    writeMap(folder.path("map"), smallMap());
+    writeMap(placeOfMap(folder.path("map")), smallMap());
     Map broken = smallMap();
     broken.codes[2][0] = cv::Mat(1, 64, CV_8U, cv::Scalar(0));  // of another width
-    EXPECT_NE("", messageOf([&] { writeMap(folder.path("map"), broken); }));
+    EXPECT_NE("", messageOf([&] { writeMap(placeOfMap(folder.path("map")), broken); }));
     EXPECT_EQ("", errorOf(folder.path("map")));
     std::vector<cv::String> left;
     cv::utils::fs::glob(folder.path("."), "", left, false, true);

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <string>
 
+#include "opencv2/core.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
 #include "opencv2/ts.hpp"
 
