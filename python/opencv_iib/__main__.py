@@ -7,6 +7,7 @@ import sqlite3
 import sys
 from typing import Any, Optional, Sequence
 
+from opencv_iib import error
 from opencv_iib.colmap import hloc
 from opencv_iib.colmap.database import CAMERA_MODELS
 from opencv_iib.colmap.features import DETECTORS, FeatureOptions, preset_names
@@ -76,6 +77,14 @@ def _client(scheduler: Optional[str]) -> contextlib.AbstractContextManager[Any]:
     return client
 
 
+def _cv2_error() -> type[Exception]:
+    try:
+        import cv2
+    except ImportError:
+        return ImportError
+    return cv2.error
+
+
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Runs a command; the exit status."""
     arguments = _parser().parse_args(argv)
@@ -97,8 +106,10 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     except KeyboardInterrupt:
         print('interrupted; the same command goes on from here', file=sys.stderr)
         return 130
-    except (OSError, ValueError, RuntimeError, ImportError, sqlite3.Error) as e:
-        print(f'{arguments.command}: {e}', file=sys.stderr)
+    except Exception as e:
+        if not isinstance(e, (OSError, ValueError, RuntimeError, ImportError, sqlite3.Error, error, _cv2_error())):
+            raise
+        print(f'{arguments.command}: {" ".join(str(e).split())}', file=sys.stderr)
         return 1
     return 0
 

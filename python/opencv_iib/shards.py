@@ -8,15 +8,16 @@ A folder is a :class:`opencv_iib.MappedIndex`, a shard one of its segments; work
 """
 from __future__ import annotations
 
-import fcntl
+import functools
 import os
 import threading
-from contextlib import contextmanager
-from typing import Any, Iterable, Iterator, Optional, Sequence, Union
+import time
+from typing import Any, Callable, Iterable, Iterator, Optional, Sequence, Union
 
 import numpy as np
 
 from opencv_iib._arrays import as_array
+from opencv_iib._lock import only_writer
 from opencv_iib.mapped_index import Folder, MappedIndex
 
 Arrays = tuple[np.ndarray, np.ndarray]
@@ -38,29 +39,16 @@ def write(folder: Folder, codes: Union[np.ndarray, Iterable[np.ndarray]], rows_p
     """
     if rows_per_shard < 1:
         raise ValueError(f'rows_per_shard is {rows_per_shard}: at least 1 is needed')
-    folder = os.fspath(folder)
+    folder = os.path.normpath(folder)  # without a slash at its end
     partial = folder + '.partial'
-    with _only_writer(partial):
+    os.makedirs(partial, exist_ok=True)
+    with only_writer(partial):
         if os.path.isdir(folder) and os.listdir(folder):
             raise FileExistsError(f'{folder} is there already: choose another folder, or add to it with MappedIndex')
         index = _write(partial, _images(codes, rows_per_shard), rows_per_shard, level_sizes)
         del index
         os.rename(partial, folder)
     return MappedIndex(folder)
-
-
-@contextmanager
-def _only_writer(folder: str) -> Iterator[None]:
-    os.makedirs(folder, exist_ok=True)
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise BlockingIOError(f'{folder} is being written by another process: wait until it has ended') from None
-        yield
-    finally:
-        os.close(descriptor)
 
 
 def _images(codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per_shard: int) -> Iterator[np.ndarray]:
@@ -120,21 +108,47 @@ def search(folder: Folder, queries: Any, k: int = 5, client: Any = None) -> Arra
         name. Each shard goes to the same worker as before if that is there, which has it mapped already.
     :return: indices (int64) and distances (int32), queries x k, -1 where there are fewer.
     :raises opencv_iib.error: for a shard that is missing, truncated or altered; it is named.
+    :raises RuntimeError: if the client has had no worker for a minute.
     """
     queries = as_array(queries, 'queries')
     index = _opened(os.path.abspath(os.fspath(folder)))
     if client is None or index.segments() == 0:
         return index.search(queries, k)
-    from distributed import as_completed
-    workers = sorted(client.scheduler_info(n_workers=-1)['workers'])
-    futures = [client.submit(_search_shard, os.path.abspath(os.fspath(folder)), index.version(), shard, queries, k,
-                             workers=[workers[shard % len(workers)]] if workers else None,
-                             allow_other_workers=bool(workers), pure=False)
-               for shard in range(index.segments())]
+    search_shard = functools.partial(_search_shard, os.path.abspath(os.fspath(folder)), index.version(), queries, k)
     best = np.full((len(queries), k), _NONE)
-    for future in as_completed(futures):
-        best = np.sort(np.concatenate([best, _keys(*future.result())], 1), 1)[:, :k]
+    for found in _by_workers(client, search_shard, range(index.segments())):
+        best = np.sort(np.concatenate([best, _keys(*found)], 1), 1)[:, :k]
     return _arrays(best)
+
+
+def _by_workers(client: Any, call: Callable[[int], Arrays], shards: Iterable[int]) -> Iterator[Arrays]:
+    from distributed import TimeoutError, wait
+    workers = sorted(client.scheduler_info(n_workers=-1)['workers'])
+    place = {shard: workers[shard % len(workers)] for shard in shards} if workers else {}
+    waiting = {client.submit(call, shard, workers=place.get(shard), allow_other_workers=shard in place, pure=False): shard
+               for shard in shards}
+    seen = time.monotonic()
+    while waiting:
+        try:
+            done = wait(list(waiting), _PATIENCE, 'FIRST_COMPLETED').done
+        except TimeoutError:
+            done = ()
+        for future in done:
+            del waiting[future]
+            yield future.result()
+        alive = client.nthreads()
+        if alive:
+            seen = time.monotonic()
+        elif time.monotonic() - seen > _WITHOUT_WORKERS:
+            raise RuntimeError(f'no worker has been there for {_WITHOUT_WORKERS} s: start some and search again')
+        # If all workers vanish at once, the scheduler keeps their tasks for them, whatever workers come later.
+        for future, shard in list(waiting.items()):
+            if alive and not done and shard in place and place[shard] not in alive:
+                del waiting[future], place[shard]
+                waiting[client.submit(call, shard, pure=False)] = shard
+
+
+_PATIENCE, _WITHOUT_WORKERS = 2, 60  # seconds
 
 
 _lock = threading.Lock()
@@ -152,7 +166,7 @@ def _opened(folder: str) -> MappedIndex:
     return index
 
 
-def _search_shard(folder: str, version: int, shard: int, queries: np.ndarray, k: int) -> Arrays:
+def _search_shard(folder: str, version: int, queries: np.ndarray, k: int, shard: int) -> Arrays:
     index = _opened(folder)
     if index.version() != version:
         raise RuntimeError(f'{folder} was changed meanwhile, or is not the same for all workers: search again')

@@ -1,5 +1,6 @@
 import io
 import os
+import re
 import shutil
 import sqlite3
 import struct
@@ -11,9 +12,10 @@ from unittest import mock
 
 import numpy as np
 
-from support import cv2, texture
+from support import REPOSITORY, cv2, texture
 
 if cv2 is not None:
+    from opencv_iib._lock import only_writer
     from opencv_iib.__main__ import main
     from opencv_iib.colmap import FeatureOptions, Options, SettingsChanged, build_database, hloc, parallel, pipeline
     from opencv_iib.colmap import pairs as pair_lists
@@ -143,11 +145,82 @@ class ColmapTest(unittest.TestCase):
         self.assertLess(len(matched), 3)
         self.assertEqual((counts['images'], counts['pairs']), (3, 3))
 
+    def test_images_changed_or_removed_after_an_interruption(self):
+        os.rename(os.path.join(self.images, 'more/c.png'), os.path.join(self.images, 'c.png'))
+        shutil.copy(os.path.join(self.images, 'b.png'), os.path.join(self.images, 'd.png'))
+        for refine_too in (False, True):
+            if refine_too:
+                with mock.patch.object(Database, 'finish', side_effect=KeyboardInterrupt), \
+                        self.assertRaises(KeyboardInterrupt):
+                    self.build(refine=True)
+            else:
+                self.interrupt()
+            shutil.copy(os.path.join(self.images, 'c.png'), os.path.join(self.images, 'b.png'))
+            if refine_too:
+                with self.assertRaisesRegex(SettingsChanged, 'b.png was changed or removed .*--force'):
+                    self.build(refine=True)
+                break
+            os.unlink(os.path.join(self.images, 'a.png'))
+            self.assertEqual(self.build()['images'], 3)
+            self.assertEqual([name for name, in self.query('SELECT name FROM images ORDER BY name')],
+                             ['b.png', 'c.png', 'd.png'])
+            b, c = (self.query(f"SELECT data FROM keypoints NATURAL JOIN images WHERE name='{name}.png'") for name in 'bc')
+            self.assertEqual(b, c)
+            self.assertEqual(self.query('SELECT COUNT(*) FROM cameras'), [(3,)])
+            numbers = {number for number, in self.query('SELECT image_id FROM images')}
+            for key, in self.query('SELECT pair_id FROM matches'):
+                self.assertLessEqual(set(divmod(key, MAX_IMAGE_ID)), numbers)
+            os.unlink(self.database)
+
+    def test_two_runs_at_once(self):
+        with only_writer(self.database + '.partial'), self.assertRaisesRegex(BlockingIOError, 'another process'):
+            self.build()
+        self.assertEqual(self.build()['images'], 3)
+
+    def test_an_unfinished_database_that_is_none(self):
+        Path(self.database + '.partial').write_bytes(b'junk' * 1000)
+        Path(self.database + '.partial-wal').write_bytes(b'junk' * 1000)
+        with self.assertRaisesRegex(SettingsChanged, 'not a database.*--force'):
+            self.build()
+        self.assertEqual(self.build(force=True)['images'], 3)
+
+    def test_names_that_lists_cannot_hold(self):
+        for old, new in (('a.png', '#a.png'), ('b.png', 'b 1.png'), ('more/c.png', 'more/c.png')):
+            os.rename(os.path.join(self.images, old), os.path.join(self.images, new))
+        self.assertEqual(self.build(verify='auto')['verified pairs'], 3)
+        with mock.patch.object(pipeline, 'colmap_binary', return_value='colmap'), \
+                self.assertRaisesRegex(ValueError, '#a.png: .*blanks'):
+            self.build(verify='colmap', force=True)
+        listing = os.path.join(self.folder.name, 'pairs.txt')
+        Path(listing).write_text('# a comment\nb 1.png more/c.png\n\n')
+        self.assertEqual(self.build(pairs=listing, force=True)['pairs'], 1)
+        if h5py is not None:
+            files = [os.path.join(self.folder.name, name) for name in ('features.h5', 'matches.h5', 'list.txt')]
+            with self.assertRaisesRegex(ValueError, 'hloc.*rename'):
+                hloc.export(self.database, *files)
+
+    def test_files_that_are_no_images_are_left_out(self):
+        image = cv2.imread(os.path.join(self.images, 'a.png'))
+        whole = cv2.imencode('.jpg', image)[1].tobytes()
+        thumbnail = b'\xff\xe1' + struct.pack('>H', 2 + len(whole)) + whole  # in a segment of its own
+        for name, data in (('half.jpg', whole[:len(whole) // 2]), ('header.jpg', whole[:300]), ('empty.jpg', b''),
+                           ('thumbnail.jpg', whole[:2] + thumbnail + whole[2:len(whole) // 2]),
+                           ('half.png', cv2.imencode('.png', image)[1].tobytes()[:5000])):
+            Path(self.images, name).write_bytes(data)
+        os.mkfifo(os.path.join(self.images, 'fifo.jpg'))
+        Path(os.fsencode(self.images).decode() + '/latin\udce9.png').write_bytes(b'')
+        Path(self.images, 'link.png').symlink_to('nothing.png')
+        Path(self.images, 'good.jpg').write_bytes(whole[:2] + b'\xff' + thumbnail + whole[2:] + b'trailer \xff\xda')
+        counts = self.build()
+        self.assertEqual((counts['images'], counts['failed']), (4, 8))
+        self.assertEqual(len(self.lines), 8)
+        self.assertTrue(any('its name is not UTF-8' in line for line in self.lines))
+
     def test_other_settings_do_not_go_on_by_accident(self):
         with mock.patch.object(pipeline, 'match_pairs', side_effect=KeyboardInterrupt), \
                 self.assertRaises(KeyboardInterrupt):
             self.build()
-        with self.assertRaises(SettingsChanged):
+        with self.assertRaisesRegex(SettingsChanged, '--force'):
             self.build(points=200)
         self.assertEqual(self.build(points=200, force=True)['images'], 3)
 
@@ -289,7 +362,7 @@ class ColmapTest(unittest.TestCase):
         Path(listing).write_text('# pairs\na.png more/c.png\n')
         self.assertEqual(self.build(pairs=listing)['pairs'], 1)
         Path(listing).write_text('a.png nothing.png\n')
-        with self.assertRaisesRegex(ValueError, 'pairs.txt:1: no image nothing.png'):
+        with self.assertRaisesRegex(ValueError, 'pairs.txt:1: not the names of two images'):
             self.build(pairs=listing, force=True)
         self.assertEqual(self.build(pairs='retrieval', neighbours=1, force=True)['images'], 3)
         self.assertIn(self.query('SELECT COUNT(*) FROM matches')[0][0], (2, 3))
@@ -334,7 +407,13 @@ class ColmapTest(unittest.TestCase):
             with redirect_stdout(out), redirect_stderr(err):
                 self.assertEqual(main(arguments), expected)
         self.assertIn('--force', err.getvalue())
-        for wrong in (['colmap', self.images + '/none', 'x.db'], ['colmap', self.images, 'x.db', '--ratio', '0']):
+        small = os.path.join(self.folder.name, 'small.png')
+        cv2.imwrite(small, np.zeros((1, 1), np.uint8))
+        Path(self.folder.name, 'other.db.partial').write_bytes(b'junk' * 1000)
+        for wrong in (['colmap', self.images + '/none', 'x.db'], ['colmap', self.images, 'x.db', '--ratio', '0'],
+                      ['colmap', self.images, 'x.db', '--neighbours', '-1'], ['colmap', self.images, 'x.db', '--workers', '0'],
+                      ['colmap', self.images, os.path.join(self.folder.name, 'other.db')],
+                      ['demo', small, small, '--out', os.path.join(self.folder.name, 'no.suffix')]):
             with redirect_stderr(io.StringIO()) as err:
                 self.assertEqual(main(wrong), 1)
             self.assertEqual(err.getvalue().count('\n'), 1)
@@ -346,6 +425,19 @@ class ColmapTest(unittest.TestCase):
                                    '--points', '200', '--out', out]), 0)
         self.assertIn('agree', text.getvalue())
         self.assertEqual(cv2.imread(out).shape[1], 2 * 400)
+
+    @unittest.skipUnless((REPOSITORY / 'doc/colmap.md').exists(), 'the documentation is not beside these tests')
+    def test_the_example_of_the_documentation(self):
+        example, = re.findall('```python\n(.*?)```', (REPOSITORY / 'doc/colmap.md').read_text(), re.S)
+        where = os.getcwd()
+        os.chdir(self.folder.name)
+        try:
+            names = {}
+            with redirect_stderr(io.StringIO()):
+                exec(example, names)
+        finally:
+            os.chdir(where)
+        self.assertEqual(names['counts']['images'], 3)
 
     @unittest.skipIf(shutil.which('colmap') is None, 'no program colmap')
     def test_colmap_verifies(self):

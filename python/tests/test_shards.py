@@ -4,6 +4,7 @@ import tempfile
 import threading
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -95,6 +96,11 @@ class ShardsTest(unittest.TestCase):
             shards.write(self.folder, self.codes)
         self.expect_found(shards.search(self.folder, self.queries), 5)
 
+    def test_a_slash_at_the_end(self):
+        self.assertEqual(shards.write(self.folder + os.sep, self.codes).rows(), 400)
+        self.assertEqual(os.listdir(os.path.dirname(self.folder)), [os.path.basename(self.folder)])
+        self.assertNotIn('.partial', os.listdir(self.folder))
+
     def test_mistakes(self):
         for call in (lambda: shards.write(self.folder, self.codes, 0), lambda: shards.write(self.folder, self.codes[0])):
             with self.assertRaises(ValueError):
@@ -130,7 +136,7 @@ class ShardsTest(unittest.TestCase):
             self.assertEqual(shards.search(self.folder + '0', self.queries, 2, client)[0].tolist(), [[-1, -1]] * 30)
             with self.assertRaises(opencv_iib.error):
                 shards.search(self.folder, self.queries[:, 1:], 5, client)
-            self.expect_found(self.while_a_worker_dies(client), 5)
+            self.expect_found(self.while_workers_die(client, 1), 5)
             index = MappedIndex(self.folder)
             index.add(self.codes[:50])
             self.expect_found(shards.search(self.folder, self.queries, 5, client), 5,
@@ -140,16 +146,29 @@ class ShardsTest(unittest.TestCase):
             with self.assertRaisesRegex(opencv_iib.error, name):
                 shards.search(self.folder, self.queries, 5, client)
 
-    def while_a_worker_dies(self, client):
-        """A search meanwhile: the worker is stopped before it, and killed when it has been given its shards."""
+    @unittest.skipIf(distributed is None, 'no dask.distributed')
+    def test_all_workers_die_together(self):
+        shards.write(self.folder, self.codes, 57)
+        with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None,
+                                      silence_logs=50) as cluster, distributed.Client(cluster) as client:
+            self.expect_found(self.while_workers_die(client, 2), 5)  # nannies start others
+        with distributed.LocalCluster(n_workers=0, dashboard_address=None, silence_logs=50) as cluster, \
+                distributed.Client(cluster) as client, mock.patch.object(shards, '_WITHOUT_WORKERS', 1), \
+                self.assertRaisesRegex(RuntimeError, 'no worker'):
+            shards.search(self.folder, self.queries, 5, client)
+
+    def while_workers_die(self, client, count):
+        """A search meanwhile: the workers are stopped before it, and killed when they have been given their shards."""
         found = []
-        process = next(iter(client.run(os.getpid).values()))
-        os.kill(process, signal.SIGSTOP)
+        processes = list(client.run(os.getpid).values())[:count]
+        for process in processes:
+            os.kill(process, signal.SIGSTOP)
         thread = threading.Thread(target=lambda: found.append(shards.search(self.folder, self.queries, 5, client)))
         thread.start()
         thread.join(.5)
-        self.assertTrue(thread.is_alive())  # it waits for the worker
-        os.kill(process, signal.SIGKILL)
+        self.assertTrue(thread.is_alive())  # it waits for the workers
+        for process in processes:
+            os.kill(process, signal.SIGKILL)
         thread.join(60)
         self.assertFalse(thread.is_alive())
         return found[0]

@@ -1,7 +1,7 @@
 """COLMAP's database file: the schema of COLMAP 3.8, which every later version upgrades when it opens it.
 
-While it is made it is called ``NAME.partial`` and has tables of its own, for the codes, for failures and for the
-settings; finish() drops them and moves the file to its name in one step.
+While it is made it is called ``NAME.partial`` and has tables of its own, for the codes, the state of the image files and
+the settings; finish() drops them and moves the file to its name in one step.
 """
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ CREATE TABLE IF NOT EXISTS two_view_geometries (pair_id INTEGER PRIMARY KEY NOT 
   cols INTEGER NOT NULL, data BLOB, config INTEGER NOT NULL, F BLOB, E BLOB, H BLOB, qvec BLOB, tvec BLOB);
 CREATE TABLE IF NOT EXISTS iib_codes (image_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER NOT NULL,
   cols INTEGER NOT NULL, data BLOB);
-CREATE TABLE IF NOT EXISTS iib_failures (name TEXT PRIMARY KEY NOT NULL, reason TEXT NOT NULL);
+CREATE TABLE IF NOT EXISTS iib_files (name TEXT PRIMARY KEY NOT NULL, stamp TEXT NOT NULL);
 CREATE TABLE IF NOT EXISTS iib_refined (image_id INTEGER PRIMARY KEY NOT NULL);
 CREATE TABLE IF NOT EXISTS iib_settings (settings TEXT NOT NULL);
 '''
@@ -47,15 +47,11 @@ CAMERA_MODELS = {'SIMPLE_PINHOLE': (0, 1, 0), 'PINHOLE': (1, 2, 0), 'SIMPLE_RADI
 UNCALIBRATED = 3  # COLMAP's TwoViewGeometry::UNCALIBRATED
 
 
-class SettingsChanged(Exception):
-    """The unfinished database was begun with other settings."""
+class SettingsChanged(ValueError):
+    """An unfinished database cannot be gone on with: it was begun with other settings or images, or is none."""
 
-
-def remove_partial(path: str) -> None:
-    """Removes the unfinished database of `path`."""
-    for suffix in ('', '-wal', '-shm'):
-        if os.path.exists(f'{path}.partial{suffix}'):
-            os.unlink(f'{path}.partial{suffix}')
+    def __init__(self, why: str) -> None:
+        super().__init__(f'{why}: go on as it was begun, or begin anew with force (--force)')
 
 
 def pair_id(a: int, b: int) -> int:
@@ -68,16 +64,41 @@ def _array(row: Any, dtype: Any) -> np.ndarray:
 
 
 class Database:
-    """A database in the making. One thread writes; load_codes() and load_keypoints() are for that thread too."""
+    """A database in the making. One process at a time, and one thread of it, uses it."""
 
-    def __init__(self, path: str, settings: dict[str, Any]) -> None:
+    def __init__(self, path: str, settings: dict[str, Any], force: bool = False) -> None:
         """Opens ``path.partial``, new or as an interrupted run left it.
 
-        :raises SettingsChanged: if that run had other settings.
+        :param force: begin anew instead of raising.
+        :raises SettingsChanged: if that run had other settings, or the file is no database.
         """
         self.path = path
         self.partial = path + '.partial'
+        try:
+            self._open(settings)
+        except SettingsChanged:
+            if not force:
+                raise
+            for log in (self.partial + '-wal', self.partial + '-shm'):
+                if os.path.exists(log):
+                    os.unlink(log)
+            os.truncate(self.partial, 0)  # the same file: it may be locked
+            self._open(settings)
+
+    def _open(self, settings: dict[str, Any]) -> None:
         self._db = sqlite3.connect(self.partial, isolation_level=None)
+        try:
+            self._begin(settings)
+        except sqlite3.DatabaseError as e:
+            self.close()
+            if type(e) is not sqlite3.DatabaseError:  # such as a full disk
+                raise
+            raise SettingsChanged(f'{self.partial}: {e}') from None
+        except SettingsChanged:
+            self.close()
+            raise
+
+    def _begin(self, settings: dict[str, Any]) -> None:
         self._db.execute('PRAGMA journal_mode=WAL')
         self._db.execute('PRAGMA synchronous=NORMAL')
         self._db.executescript(SCHEMA)
@@ -88,8 +109,7 @@ class Database:
         if row is None:
             self._db.execute('INSERT INTO iib_settings VALUES (?)', (text,))
         elif row[0] != text:
-            self._db.close()
-            raise SettingsChanged(f'{self.partial} was begun with other settings: {row[0]}')
+            raise SettingsChanged(f'{self.partial} was begun with other settings, {row[0]}')
 
     def __enter__(self) -> Database:
         return self
@@ -102,7 +122,7 @@ class Database:
 
     def finish(self) -> None:
         """Drops what COLMAP does not know and moves the file to its name."""
-        for table in ('iib_codes', 'iib_failures', 'iib_refined', 'iib_settings'):
+        for table in ('iib_codes', 'iib_files', 'iib_refined', 'iib_settings'):
             self._db.execute(f'DROP TABLE {table}')
         self._db.execute('PRAGMA wal_checkpoint(TRUNCATE)')
         self._db.execute('PRAGMA journal_mode=DELETE')
@@ -125,29 +145,41 @@ class Database:
 
     # Images
 
-    def known(self) -> set[str]:
-        """Names of the images described, and of those that failed."""
-        return {name for name, in self._db.execute('SELECT name FROM images UNION SELECT name FROM iib_failures')}
+    def stamps(self) -> dict[str, str]:
+        """Of the files of the images that are described, by name."""
+        return dict(self._db.execute('SELECT name, stamp FROM iib_files'))
+
+    def forget(self, name: str) -> None:
+        """Removes an image and its pairs.
+
+        :raises SettingsChanged: if it has a part in keypoints that were refined.
+        """
+        if self.refined():
+            raise SettingsChanged(f'{name} was changed or removed after keypoints were refined by it')
+        with self._transaction():
+            image, camera = self._db.execute('SELECT image_id, camera_id FROM images WHERE name=?', (name,)).fetchone()
+            self._db.execute('DELETE FROM iib_files WHERE name=?', (name,))
+            for table in ('images', 'keypoints', 'iib_codes'):
+                self._db.execute(f'DELETE FROM {table} WHERE image_id=?', (image,))
+            for table in ('matches', 'two_view_geometries'):
+                self._db.execute(f'DELETE FROM {table} WHERE ? IN (pair_id / {MAX_IMAGE_ID}, pair_id % {MAX_IMAGE_ID})',
+                                 (image,))
+            self._db.execute('DELETE FROM cameras WHERE camera_id=? AND camera_id NOT IN (SELECT camera_id FROM images)',
+                             (camera,))
 
     def image_ids(self) -> dict[str, int]:
         return dict(self._db.execute('SELECT name, image_id FROM images ORDER BY name'))
-
-    def failures(self) -> int:
-        count: int = self._db.execute('SELECT COUNT(*) FROM iib_failures').fetchone()[0]
-        return count
-
-    def add_failure(self, name: str, reason: str) -> None:
-        self._db.execute('INSERT OR REPLACE INTO iib_failures VALUES (?, ?)', (name, reason))
 
     def find_camera(self, model: int, width: int, height: int, params: np.ndarray, prior: bool) -> Optional[int]:
         row = self._db.execute('SELECT camera_id FROM cameras WHERE model=? AND width=? AND height=? AND params=? AND '
                                'prior_focal_length=?', (model, width, height, params.tobytes(), int(prior))).fetchone()
         return None if row is None else int(row[0])
 
-    def add_image(self, name: str, width: int, height: int, model: str, focal: float, prior: bool, shared: bool,
-                  keypoints: np.ndarray, codes: np.ndarray) -> None:
+    def add_image(self, name: str, stamp: str, width: int, height: int, model: str, focal: float, prior: bool,
+                  shared: bool, keypoints: np.ndarray, codes: np.ndarray) -> None:
         """An image with its camera, keypoints and codes, in one transaction.
 
+        :param stamp: tells whether the file is the same later.
         :param shared: use a camera that is there already, if it is the same in all.
         :param keypoints: N x 4 float32: x, y (pixels; the centre of the first pixel is .5), scale, angle (radians).
         :param codes: N x bytes uint8.
@@ -164,6 +196,7 @@ class Database:
             self._db.execute('INSERT INTO keypoints VALUES (?, ?, ?, ?)',
                              (image, *keypoints.shape, np.ascontiguousarray(keypoints, np.float32).tobytes()))
             self._db.execute('INSERT INTO iib_codes VALUES (?, ?, ?, ?)', (image, *codes.shape, codes.tobytes()))
+            self._db.execute('INSERT INTO iib_files VALUES (?, ?)', (name, stamp))
 
     def load_codes(self, image: int) -> np.ndarray:
         """N x bytes uint8."""

@@ -7,6 +7,7 @@ import sqlite3
 import numpy as np
 
 from opencv_iib.colmap.database import MAX_IMAGE_ID
+from opencv_iib.colmap.images import is_listable
 
 SHORT = 2 ** 15 - 1  # hloc's own files hold int16; its readers take any integers
 
@@ -24,6 +25,8 @@ def _write_features(connection: sqlite3.Connection, path: str) -> tuple[dict[int
                 'SELECT image_id, name, width, height FROM images NATURAL JOIN cameras'):
             rows, cols, data = connection.execute('SELECT rows, cols, data FROM keypoints WHERE image_id=?',
                                                   (number,)).fetchone()
+            if not is_listable(name):
+                raise ValueError(f'{name}: hloc\'s lists hold no names with blanks or a leading #; rename it')
             points = np.frombuffer(data, np.float32).reshape(rows, cols)[:, :2] - np.float32(.5)
             names[number], counts[number] = name, len(points)
             group = file.create_group(name)
@@ -65,6 +68,7 @@ def export(database: str, features: str, matches: str, pairs: str, force: bool =
     :param pairs: text file to write, two names a line.
     :return: number of pairs.
     :raises FileExistsError: for a file that is there, unless force is set.
+    :raises ValueError: for an image's name that the list of pairs cannot hold.
 
     Files that are there are replaced when all three are complete.
     """

@@ -22,16 +22,48 @@ def find_images(folder: str) -> list[str]:
     return sorted(names)
 
 
+def stamp(path: str) -> str:
+    """Size and time of a file: others if it was changed."""
+    try:
+        status = os.stat(path)
+    except OSError:
+        return ''
+    return f'{status.st_size} {status.st_mtime_ns}'
+
+
+def is_utf8(name: str) -> bool:
+    """Whether a file's name can be stored; those that Python could not decode cannot."""
+    return not any('\ud800' <= letter <= '\udfff' for letter in name)
+
+
+def is_listable(name: str) -> bool:
+    """Whether a name can stand in COLMAP's and hloc's lists, two a line with a blank between them."""
+    return not name.startswith('#') and not any(letter.isspace() for letter in name)
+
+
 def read_grey(path: str) -> np.ndarray:
     """H x W uint8, as the file has it: like COLMAP, not turned as EXIF may ask.
 
-    :raises ValueError: if it cannot be read.
+    :raises ValueError: if it cannot be read, also if it is a JPEG without its end, which cv2 would fill with grey.
     """
     import cv2
-    image = cv2.imread(path, cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION)
+    readable = os.path.isfile(path) and not _is_cut_off(path)
+    image = cv2.imread(path, cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION) if readable else None
     if image is None:
         raise ValueError('not an image that cv2 reads, or cut off')
     return np.asarray(image)
+
+
+def _is_cut_off(path: str) -> bool:
+    with open(path, 'rb') as file:
+        data = file.read()
+    at = 2 if data.startswith(b'\xff\xd8') else len(data)
+    while data[at:at + 1] == b'\xff':  # segments, one of which may hold a thumbnail with an end of its own
+        if data[at + 1:at + 2] == b'\xda':
+            return b'\xff\xd9' not in data[at:]
+        fill = data[at + 1:at + 2] == b'\xff'
+        at += 1 if fill else 2 + int.from_bytes(data[at + 2:at + 4], 'big')
+    return False
 
 
 def exif_focal_length(path: str, width: int, height: int) -> Optional[float]:

@@ -40,22 +40,23 @@ def sequential(count: int, overlap: int) -> Iterator[Pair]:
 
 
 def from_file(path: str, numbers: dict[str, int]) -> Iterator[Pair]:
-    """Pairs of a text file with two names a line, as COLMAP and hloc write them; '#' begins a comment.
+    """Pairs of a text file with two names a line, as COLMAP and hloc write them; '#' begins a line of comment.
 
-    :raises ValueError: naming file and line, for a line that is no pair or a name that is no image.
+    :raises ValueError: naming file and line, for a line that is not the names of two images.
     """
     with open(path, encoding='utf-8') as file:
         for number, line in enumerate(file, 1):
-            names = line.split('#')[0].split()
-            if not names:
+            words = line.split()
+            if not words or words[0].startswith('#'):
                 continue
-            if len(names) != 2:
-                raise ValueError(f'{path}:{number}: two names are needed, not {len(names)}')
-            for name in names:
-                if name not in numbers:
-                    raise ValueError(f'{path}:{number}: no image {name} was described')
-            if names[0] != names[1]:
-                yield numbers[names[0]], numbers[names[1]]
+            for cut in range(1, len(words)):  # names may have blanks in them
+                a, b = ' '.join(words[:cut]), ' '.join(words[cut:])
+                if a in numbers and b in numbers:
+                    break
+            else:
+                raise ValueError(f'{path}:{number}: not the names of two images that were described')
+            if a != b:
+                yield numbers[a], numbers[b]
 
 
 def retrieval(count: int, load: Callable[[int], np.ndarray], level_sizes: Sequence[int], neighbours: int,

@@ -11,11 +11,12 @@ from typing import Any, Callable, Iterator, Optional
 import numpy as np
 
 import opencv_iib
+from opencv_iib._lock import only_writer
 from opencv_iib.colmap import pairs as pair_lists
 from opencv_iib.colmap.cache import Cache
-from opencv_iib.colmap.database import CAMERA_MODELS, Database, SettingsChanged, remove_partial
+from opencv_iib.colmap.database import CAMERA_MODELS, Database
 from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
-from opencv_iib.colmap.images import exif_focal_length, find_images, read_grey
+from opencv_iib.colmap.images import exif_focal_length, find_images, is_listable, is_utf8, read_grey, stamp
 from opencv_iib.colmap.parallel import Cluster, Crew, Threads, in_parallel
 from opencv_iib.colmap.progress import Progress
 from opencv_iib.colmap.refine import refine_images
@@ -51,6 +52,8 @@ class Options:
             raise ValueError(f'verify is {self.verify}: it has to be one of {", ".join(VERIFIERS)}')
         if self.verify == 'colmap' and colmap_binary() is None:
             raise ValueError('verify is colmap, but there is no program colmap: install it, or take magsac')
+        if self.neighbours < 1:
+            raise ValueError(f'neighbours is {self.neighbours}: it has to be at least 1')
         if not 0 < self.ratio <= 1:
             raise ValueError(f'ratio is {self.ratio}: it has to be in (0, 1]')
 
@@ -67,6 +70,8 @@ def describe_image(folder: str, options: Options, name: str
     if not os.path.isdir(folder):
         raise FileNotFoundError(f'{folder} is not there on {socket.gethostname()}: all workers have to read the images '
                                 'by the same name')
+    if not is_utf8(name):
+        raise ValueError('its name is not UTF-8')
     path = os.path.join(folder, name)
     image = read_grey(path)
     rows, codes = _features(options.features)(image)
@@ -74,25 +79,34 @@ def describe_image(folder: str, options: Options, name: str
     return to_colmap(rows), codes, width, height, options.focal or exif_focal_length(path, width, height)
 
 
-def describe_images(database: Database, folder: str, options: Options, crew: Crew, log: Callable[[str], None]) -> None:
-    """Describes the images that the database does not know. A broken one is a line in `log`, and counted."""
-    names = find_images(folder)
-    known = database.known()
-    progress = Progress('describing', len(names), len(names) - sum(name not in known for name in names))
+def describe_images(database: Database, folder: str, options: Options, crew: Crew, log: Callable[[str], None]) -> int:
+    """Describes the images that the database does not know, and removes those that were changed or are gone.
+
+    :return: how many are broken; each is a line in `log`.
+    """
+    stamps = {name: stamp(os.path.join(folder, name)) for name in find_images(folder)}
+    for name, known in database.stamps().items():
+        if stamps.get(name) != known:
+            database.forget(name)
+    done = database.stamps()
+    missing = [name for name in stamps if name not in done]
+    failed = 0
+    progress = Progress('describing', len(stamps), len(done))
     describe = functools.partial(describe_image, os.path.abspath(folder), options)
-    for name, result in in_parallel(describe, (name for name in names if name not in known), crew):
+    for name, result in in_parallel(describe, missing, crew):
         if isinstance(result, (FileNotFoundError, ImportError)):
             raise result  # not the image is at fault, but where it is worked on
         if isinstance(result, Exception):
             reason = str(result).splitlines()[0] if str(result) else type(result).__name__
-            database.add_failure(name, reason)
+            failed += 1
             log(f'{name}: {reason}')
         else:
             keypoints, codes, width, height, focal = result
-            database.add_image(name, width, height, options.camera_model, focal or 1.2 * max(width, height),
+            database.add_image(name, stamps[name], width, height, options.camera_model, focal or 1.2 * max(width, height),
                                bool(focal), options.share_cameras, keypoints, codes)
         progress.step()
     progress.close()
+    return failed
 
 
 def list_pairs(database: Database, options: Options, level_sizes: tuple[int, ...]
@@ -198,35 +212,38 @@ def build_database(images: str, database: str, options: Options = Options(), for
     :raises FileExistsError: if the database is there and force is not set.
     :raises ValueError: for options that are none, and for a folder without images.
     :raises SettingsChanged: if an unfinished database had other options and force is not set.
+    :raises BlockingIOError: if another process is writing the database.
     """
     options.check()
+    if workers is not None and workers < 1:
+        raise ValueError(f'workers is {workers}: at least 1 is needed')
     if not os.path.isdir(images):
         raise ValueError(f'{images} is no folder')
-    if os.path.exists(database) and not force:
-        raise FileExistsError(f'{database} is there already: remove it, or pass force (--force)')
-    if not find_images(images):
+    names = find_images(images)
+    if not names:
         raise ValueError(f'no images below {images}')
     threads = workers or os.cpu_count() or 1
     crew = Threads(threads) if client is None else Cluster(client)
-    binary = colmap_binary() if options.verify in ('auto', 'colmap') else None
-    verify = options.verify if options.verify != 'auto' else 'colmap' if binary else 'magsac'
+    verify = options.verify
+    if verify == 'auto':
+        verify = 'colmap' if colmap_binary() and all(map(is_listable, names)) else 'magsac'
+    binary = colmap_binary() if verify == 'colmap' else None
+    unlistable = [name for name in names if binary and not is_listable(name)]
+    if unlistable:
+        raise ValueError(f'{unlistable[0]}: matches_importer reads no names with blanks or a leading #; rename it, or '
+                         'verify by magsac (--verify)')
     settings = {**dataclasses.asdict(options), 'verify': verify, 'images': os.path.abspath(images),
                 'version': opencv_iib.__version__}
-    try:
-        target = Database(database, settings)
-    except SettingsChanged:
-        if not force:
-            raise
-        remove_partial(database)
-        target = Database(database, settings)
-    with target:
-        describe_images(target, images, options, crew, log)
+    if os.path.exists(database) and not force:
+        raise FileExistsError(f'{database} is there already: remove it, or pass force (--force)')
+    with only_writer(database + '.partial'), Database(database, settings, force) as target:
+        failed = describe_images(target, images, options, crew, log)
         features = _features(options.features)
         match_pairs(target, options, features.level_sizes(), verify, crew)
-        verify_pairs(target, binary if verify == 'colmap' else None, log)
+        verify_pairs(target, binary, log)
         if options.refine:
             refine_images(target, images, features, verify, threads)
-            verify_pairs(target, binary if verify == 'colmap' else None, log)
-        counts = {**target.counts(), 'failed': target.failures()}
+            verify_pairs(target, binary, log)
+        counts = {**target.counts(), 'failed': failed}
         target.finish()
     return counts

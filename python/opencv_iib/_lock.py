@@ -1,0 +1,31 @@
+"""One writer at a time, also among processes."""
+from __future__ import annotations
+
+import os
+from contextlib import contextmanager
+from typing import Iterator
+
+try:
+    import fcntl
+except ImportError:  # not on Windows
+    fcntl = None  # type: ignore[assignment,unused-ignore]
+
+
+@contextmanager
+def only_writer(path: str) -> Iterator[None]:
+    """Locks a folder, or a file, which is made if it is missing.
+
+    :raises BlockingIOError: if another process has it locked.
+    """
+    if fcntl is None:
+        yield
+        return
+    descriptor = os.open(path, os.O_RDONLY if os.path.isdir(path) else os.O_RDWR | os.O_CREAT)
+    try:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise BlockingIOError(f'{path} is being written by another process: wait until it has ended') from None
+        yield
+    finally:
+        os.close(descriptor)
