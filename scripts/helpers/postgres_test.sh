@@ -1,5 +1,5 @@
 #!/bin/sh
-# Tests opencv_iib.postgres with a real server of PostgreSQL in a temporary folder, reached by a socket in it alone.
+# Tests python/examples/postgres.py with a real server of PostgreSQL in a temporary folder, reached by a socket in it alone.
 # Skips with a word where no server is installed (Debian: postgresql).
 #   scripts/helpers/postgres_test.sh [--debian13 [--document=FOLDER]] [PYTHON]
 # PYTHON: an interpreter that has the package and psycopg; without it both are installed into a clean virtual
@@ -88,7 +88,7 @@ if [ -z "$python" ]; then
     say "building the package"
     /usr/bin/python3 -m venv "$work/environment"
     python=$work/environment/bin/python
-    "$python" -m pip install --quiet "$root[postgres]" opencv-python-headless
+    "$python" -m pip install --quiet "$root" "psycopg[binary]" opencv-python-headless
 fi
 
 {
@@ -104,6 +104,6 @@ if [ -n "$images" ]; then
     "$python" "$root/tools/scale/places.py" --images "$images" --out "$root/doc/results/places.json"
     /usr/bin/python3 "$root/scripts/helpers/figures.py" --write
 else
-    cd "$root/python/tests"
+    cd "$root/python/examples"
     "$python" -m unittest test_postgres
 fi

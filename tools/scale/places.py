@@ -8,13 +8,16 @@ import argparse
 import json
 import os
 import pathlib
+import sys
 import time
 
 import cv2
 import numpy as np
 import psycopg
 from opencv_iib import IIB
-from opencv_iib.postgres import Places
+
+sys.path.append(str(pathlib.Path(__file__).parents[2] / 'python/examples'))
+from postgres import Places  # noqa: E402
 
 CANDIDATES = (0, 10, 100, 400)
 AT = (1, 5, 10)

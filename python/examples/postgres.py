@@ -1,28 +1,29 @@
 """Places in PostgreSQL: codes of images beside whatever else a database knows of them, and which image a new one shows.
 
     import psycopg
-    from opencv_iib.postgres import Places
+    from postgres import Places
     with psycopg.connect('dbname=walks') as connection:
         places = Places(connection, 'walk', iib.descriptorSize())
         places.insert('noon/0001.jpg', codes)
         votes = places.vote(codes_by_night)  # [('noon/0001.jpg', 212), ...]
 
-All statements run in the transaction of the connection that was given: nothing is committed here.
+An example: copy it. It needs ``pip install 'psycopg[binary]'``. All statements run in the transaction of the connection that
+was given: nothing is committed here, unless the connection commits by itself.
 
 Where the database has pgvector (``CREATE EXTENSION vector``), :meth:`Places.create_index` makes votes faster.
 """
 from __future__ import annotations
 
+import contextlib
 from typing import Any, Optional
 
 import numpy as np
-from psycopg import Connection, sql
-
-from opencv_iib._arrays import as_array
+from psycopg import Connection, rows, sql
 
 # The coarse levels of the default descriptor, 42 of its 170 bytes, which tell most of the distance.
 _PREFIX_BITS = 336
 _EF_CONSTRUCTION = 128
+_LONGEST_NAME = 63 - len('_codes_prefix')  # PostgreSQL cuts longer ones off
 # Parallel builds of an index overflow a buffer before this version of pgvector (CVE-2026-3172).
 _PARALLEL_BUILDS_FROM = (0, 8, 2)
 
@@ -37,18 +38,24 @@ class Places:
     def __init__(self, connection: Connection[Any], name: str, code_bytes: int) -> None:
         """Takes the tables, or makes them if they are missing.
 
-        :raises ValueError: if the table that is there holds codes of another width, or the width is not at least 1.
+        :raises ValueError: if the table that is there holds codes of another width, the width is not at least 1, or the name
+            is longer than 50 bytes or has a %.
         """
         if code_bytes < 1:
             raise ValueError(f'code_bytes is {code_bytes}: at least 1 is needed')
+        if not 1 <= len(name.encode()) <= _LONGEST_NAME or '%' in name:
+            raise ValueError(f'name is {name!r}: 1 to {_LONGEST_NAME} bytes without % are needed')
         self._connection = connection
         self._bytes = code_bytes
         self._names = {'places': sql.Identifier(name), 'codes': sql.Identifier(f'{name}_codes'),
                        'index': sql.Identifier(f'{name}_codes_prefix'), 'code': sql.SQL(f'bit({8 * code_bytes})'),
                        'prefix': sql.SQL(f'bit({min(8 * code_bytes, _PREFIX_BITS)})')}
-        self._execute('CREATE TABLE IF NOT EXISTS {places} (id bigserial PRIMARY KEY, name text UNIQUE NOT NULL)')
-        self._execute('CREATE TABLE IF NOT EXISTS {codes} (place bigint NOT NULL REFERENCES {places} ON DELETE CASCADE, '
-                      'number integer NOT NULL, code {code} NOT NULL, PRIMARY KEY (place, number))')
+        with self._transaction():
+            # CREATE TABLE IF NOT EXISTS fails where two sessions run it at once.
+            self._execute('SELECT pg_advisory_xact_lock(hashtext(%s))', name)
+            self._execute('CREATE TABLE IF NOT EXISTS {places} (id bigserial PRIMARY KEY, name text UNIQUE NOT NULL)')
+            self._execute('CREATE TABLE IF NOT EXISTS {codes} (place bigint NOT NULL REFERENCES {places} ON DELETE CASCADE, '
+                          'number integer NOT NULL, code {code} NOT NULL, PRIMARY KEY (place, number))')
         (bits,), = self._execute("SELECT atttypmod FROM pg_attribute WHERE attrelid = %s::regclass AND attname = 'code'",
                                  self._names['codes'].as_string(connection))
         if bits != 8 * code_bytes:
@@ -60,11 +67,12 @@ class Places:
         :raises psycopg.errors.UniqueViolation: if a place of this name is there.
         """
         bits = self._bits(codes)
-        (place,), = self._execute('INSERT INTO {places} (name) VALUES (%s) RETURNING id', name)
-        statement = sql.SQL('COPY {codes} (place, number, code) FROM STDIN').format(**self._names)
-        with self._connection.cursor() as cursor, cursor.copy(statement) as copy:
-            for number, code in enumerate(bits):
-                copy.write_row((place, number, code))
+        with self._transaction():
+            (place,), = self._execute('INSERT INTO {places} (name) VALUES (%s) RETURNING id', name)
+            statement = sql.SQL('COPY {codes} (place, number, code) FROM STDIN').format(**self._names)
+            with self._connection.cursor() as cursor, cursor.copy(statement) as copy:
+                for number, code in enumerate(bits):
+                    copy.write_row((place, number, code))
 
     def delete(self, name: str) -> None:
         """Removes a place and its codes; nothing happens if there is none of this name."""
@@ -129,17 +137,21 @@ class Places:
             f'(SELECT place FROM {searched} searched ORDER BY bit_count(searched.code # query.code), place LIMIT 1) nearest '
             'JOIN {places} ON id = place GROUP BY id, name ORDER BY count(*) DESC, id LIMIT %s', bits, count)]
 
+    def _transaction(self) -> Any:
+        """All or nothing, on a connection that commits by itself too."""
+        return self._connection.transaction() if self._connection.autocommit else contextlib.nullcontext()
+
     def _set(self, name: str, value: Any) -> None:
         """A setting of PostgreSQL until the transaction ends."""
         self._execute('SELECT set_config(%s, %s, true)', name, str(value))
 
     def _bits(self, codes: Any) -> list[str]:
-        array = as_array(codes, 'codes')
+        array = np.asarray(codes)
         if array.dtype != np.uint8 or array.ndim != 2 or array.shape[1] != self._bytes:
             raise ValueError(f'codes: rows of {self._bytes} bytes are needed, not {array.dtype} of shape {array.shape}')
         return [(row + ord('0')).tobytes().decode() for row in np.unpackbits(array, axis=1)]
 
     def _execute(self, statement: str, *parameters: Any) -> list[tuple[Any, ...]]:
-        with self._connection.cursor() as cursor:
+        with self._connection.cursor(row_factory=rows.tuple_row) as cursor:
             cursor.execute(sql.SQL(statement).format(**self._names), parameters)  # type: ignore[arg-type,unused-ignore]
             return cursor.fetchall() if cursor.description else []

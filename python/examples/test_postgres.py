@@ -1,18 +1,24 @@
 import os
+import threading
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
 from opencv_iib import IIB, HierarchicalMatcher
-from support import cv2
+
+try:
+    import cv2
+except ImportError:
+    cv2 = None
 
 SERVER = os.environ.get('IIB_POSTGRES')
 DATA = Path(os.environ.get('OPENCV_TEST_DATA_PATH', '')) / 'illumination'
 
 if SERVER:
     import psycopg
-    from opencv_iib.postgres import Places
+    from postgres import Places
 
 
 def plain_votes(places, codes, count=10):
@@ -103,6 +109,57 @@ class PlacesTest(ServerTest):
         places.insert('no codes', np.empty((0, 20), np.uint8))
         self.assertEqual(places.vote(self.night['noon/0']), [])
         self.assertEqual(places.vote(np.empty((0, 20), np.uint8)), [])
+
+    def test_a_connection_that_commits_by_itself(self):
+        with psycopg.connect(SERVER, autocommit=True) as connection:
+            self.addCleanup(self.drop, 'walk')
+            places = Places(connection, 'walk', 20)
+
+            class Broken(list):
+                def __iter__(self):
+                    yield from self[:2]
+                    raise ConnectionError
+            with mock.patch.object(places, '_bits', lambda codes: Broken(Places._bits(places, codes))), \
+                    self.assertRaises(ConnectionError):
+                places.insert('noon/0', self.walk['noon/0'])
+            places.insert('noon/0', self.walk['noon/0'])
+            self.assertEqual(places.vote(self.walk['noon/0']), [('noon/0', len(self.walk['noon/0']))])
+
+    def test_rows_that_are_dicts(self):
+        self.connection.row_factory = psycopg.rows.dict_row
+        places = self.places(self.walk)
+        self.assertEqual(places.vote(self.night['noon/3']), plain_votes(self.walk, self.night['noon/3']))
+
+    def test_writers_at_once(self):
+        self.addCleanup(self.drop, 'walk')
+        errors, barrier = [], threading.Barrier(8)
+
+        def write(name):
+            try:
+                with psycopg.connect(SERVER) as connection:
+                    barrier.wait()
+                    Places(connection, 'walk', 20).insert(name, self.walk[name])
+            except Exception as e:
+                errors.append(e)
+        threads = [threading.Thread(target=write, args=[name]) for name in list(self.walk)[:8]]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(errors, [])
+        self.assertEqual(Places(self.connection, 'walk', 20).vote(self.walk['noon/5'])[0][0], 'noon/5')
+
+    def drop(self, name):
+        with psycopg.connect(SERVER) as connection:
+            self.connection.close()
+            connection.execute(f'DROP TABLE IF EXISTS {name}_codes, {name}')
+
+    def test_names(self):
+        places = self.places(self.walk, 'w' * 50)
+        self.assertEqual(places.vote(self.night['noon/3']), plain_votes(self.walk, self.night['noon/3']))
+        for name in ('w' * 51, 'Ä' * 26, '100%s', ''):
+            with self.assertRaisesRegex(ValueError, '50 bytes'):
+                Places(self.connection, name, 20)
 
     def test_mistakes(self):
         places = self.places(self.walk)
