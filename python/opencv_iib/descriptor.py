@@ -188,9 +188,11 @@ class IIBDescriptorExtractor:
         return False
 
     def setScaleFactor(self, scaleFactor: float) -> None:
+        """Side of the described square in units of a keypoint's size, > 0."""
         self._core.setScaleFactor(scaleFactor)
 
     def getScaleFactor(self) -> float:
+        """Side of the described square in units of a keypoint's size."""
         return self._core.getScaleFactor()
 
     def setGranularity(self, granularity: int) -> None:
@@ -198,24 +200,31 @@ class IIBDescriptorExtractor:
         self._core.setGranularity(granularity)
 
     def getGranularity(self) -> int:
+        """Number of levels."""
         return self._core.getGranularity()
 
     def setChannels(self, channels: int) -> None:
+        """A sum of CHANNEL_ values; may be 0 if there are extra channels."""
         self._core.setChannels(channels)
 
     def getChannels(self) -> int:
+        """A sum of CHANNEL_ values."""
         return self._core.getChannels()
 
     def setMapping(self, mapping: int) -> None:
+        """One of MAPPING_."""
         self._core.setMapping(mapping)
 
     def getMapping(self) -> int:
+        """One of MAPPING_."""
         return self._core.getMapping()
 
     def setOverlap(self, overlap: bool) -> None:
+        """Whether the windows of 2 x 2 cells slide by one cell instead of two."""
         self._core.setOverlap(overlap)
 
     def getOverlap(self) -> bool:
+        """Whether the windows of 2 x 2 cells slide by one cell instead of two."""
         return self._core.getOverlap()
 
     def setUseOrientation(self, useOrientation: bool) -> None:
@@ -231,12 +240,15 @@ class IIBDescriptorExtractor:
         self._core.setOrientation(mode)
 
     def getOrientation(self) -> int:
+        """One of ORIENTATION_."""
         return self._core.getOrientation()
 
     def setExtraChannels(self, extraChannels: int) -> None:
+        """Number of maps that computeWithChannels is given, 0 to 16."""
         self._core.setExtraChannels(extraChannels)
 
     def getExtraChannels(self) -> int:
+        """Number of maps that computeWithChannels is given."""
         return self._core.getExtraChannels()
 
     def setBorder(self, border: int) -> None:
@@ -244,6 +256,7 @@ class IIBDescriptorExtractor:
         self._core.setBorder(border)
 
     def getBorder(self) -> int:
+        """One of BORDER_."""
         return self._core.getBorder()
 
     def setSelection(self, quads: Any) -> None:
@@ -258,6 +271,7 @@ class IIBDescriptorExtractor:
         return self._core.getSelection()
 
     def getDefaultName(self) -> str:
+        """Feature2D.IIB, the name of the parameters in files."""
         return self._core.getDefaultName()
 
     def save(self, filename: Union[str, os.PathLike[str]]) -> None:

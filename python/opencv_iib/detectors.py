@@ -1,7 +1,8 @@
 """Detectors of Python, such as those of a foreign cv2, behind the classes of this package; NormalizedDetector."""
 from __future__ import annotations
 
-from typing import Any, Optional
+import weakref
+from typing import Any, Callable, Optional
 
 import numpy as np
 
@@ -28,9 +29,15 @@ def core_detector(detector: Any) -> _core.Detector:
         return core
     if not callable(getattr(detector, 'detect', None)):
         raise TypeError(f'a detector has a method detect(image, mask), and {type(detector).__name__} has none')
+    # The object that detects keeps it alive; the garbage collector could not see a reference from within the extension.
+    try:
+        kept: Callable[[], Any] = weakref.ref(detector)
+    except TypeError:  # those of cv2
+        def kept() -> Any:
+            return detector
 
     def found(image: np.ndarray, mask: Optional[np.ndarray]) -> np.ndarray:
-        keypoints: Keypoints = detector.detect(image, mask)
+        keypoints: Keypoints = kept().detect(image, mask)
         return np.ascontiguousarray(as_rows(keypoints))
 
     return _core.Detector.foreign(found, detector_name(detector).rsplit('.', 1)[-1])
@@ -103,6 +110,7 @@ class NormalizedDetector:
         self._core.setSigma(sigma)
 
     def getSigma(self) -> float:
+        """Of the Gaussian filter in pixels."""
         return self._core.getSigma()
 
     def descriptorSize(self) -> int:
@@ -122,6 +130,7 @@ class NormalizedDetector:
         return False
 
     def getDefaultName(self) -> str:
+        """As in cv2.iib."""
         return 'Feature2D.NormalizedDetector'
 
     def __getstate__(self) -> dict[str, Any]:

@@ -155,6 +155,7 @@ class HierarchicalMatcher:
         self._core.setMode(mode)
 
     def getMode(self) -> int:
+        """EXACT, THRESHOLD or ADAPTIVE."""
         return self._core.getMode()
 
     def setThresholds(self, thresholds: Sequence[float]) -> None:
@@ -162,12 +163,15 @@ class HierarchicalMatcher:
         self._core.setThresholds([float(t) for t in thresholds])
 
     def getThresholds(self) -> tuple[float, ...]:
+        """Of THRESHOLD, one a level."""
         return tuple(self._core.getThresholds())
 
     def setCrossCheck(self, crossCheck: bool) -> None:
+        """Whether to report only pairs that are among each other's nearest."""
         self._core.setCrossCheck(crossCheck)
 
     def getCrossCheck(self) -> bool:
+        """Whether only pairs that are among each other's nearest are reported."""
         return self._core.getCrossCheck()
 
     def setMaxRatio(self, maxRatio: float) -> None:
@@ -175,6 +179,7 @@ class HierarchicalMatcher:
         self._core.setMaxRatio(maxRatio)
 
     def getMaxRatio(self) -> float:
+        """Of the distances to the nearest and the second nearest; 1: no test."""
         return self._core.getMaxRatio()
 
     def matchCost(self) -> float:
@@ -182,6 +187,7 @@ class HierarchicalMatcher:
         return self._core.matchCost()
 
     def resetCost(self) -> None:
+        """Begins a new count for matchCost()."""
         self._core.resetCost()
 
     def saveIndex(self, filename: Union[str, os.PathLike[str]]) -> None:

@@ -30,7 +30,7 @@ int depthOf(nb::dlpack::dtype type)
 cv::Mat viewOf(const Array& array, const char* what)
 {
     const size_t dims = array.ndim();
-    if (dims < 1 || dims > 3)
+    if (dims > 3 || (dims < 2 && array.size() > 0))
         CV_Error_(cv::Error::StsBadArg,
                 ("%s: an array of 2 or 3 dimensions is needed, not %d", what, (int)dims));
     const int depth = depthOf(array.dtype());

@@ -52,71 +52,112 @@ nb::object toPython(const MatchRows& rows, nb::handle type)
     return result;
 }
 
-//! Arguments of a search: in the train set given or, if that is None, in those added.
-struct Search
+//! A search in the train set given or, if that is None, in those added.
+class Search
 {
-    const bool inAdded;
-    const cv::Mat query, train;
-    const std::vector<cv::Mat> masks;
-
-    Search(const Array& queries, nb::object train_, nb::object masks_)
-        : inAdded(train_.is_none()), query(descriptorsOf(queries)),
-          train(inAdded ? cv::Mat() : descriptorsOf(nb::cast<Array>(train_))), masks(viewsOf(masks_, MASK))
+public:
+    Search(Matcher& self, const Array& queries, nb::object train, nb::object masks)
+        : query_(descriptorsOf(queries)), masks_(viewsOf(masks, MASK)), searched_(&self)
     {
+        if (train.is_none())
+            return;
+        const std::vector<cv::Mat> given = {descriptorsOf(nb::cast<Array>(train))};
+        nb::gil_scoped_release release;
+        given_ = self.clone(true).dynamicCast<Matcher>();  // it counts its cost with that of `self`
+        given_->add(given);
+        searched_ = given_.get();
     }
 
-    //! The one mask of the train set given.
-    cv::Mat mask() const { return masks.empty() ? cv::Mat() : masks[0]; }
+    bool inAdded() const { return !given_; }
+
+    /** Calls `find(matcher, queries, masks, number of the first query)` for blocks of queries; Ctrl-C acts between two. All
+    queries are one block for a cross-check, which has to know the others. */
+    template <typename Find> void inBlocks(Find find) const
+    {
+        bool whole = searched_->getCrossCheck();
+        for (const cv::Mat& mask : masks_)
+            whole |= !mask.empty() && mask.rows != query_.rows;  // a mistake, which the matcher tells
+        const int rows = whole ? query_.rows : BLOCK;
+        int first = 0;
+        do
+        {
+            const cv::Range block(first, std::min(first + rows, query_.rows));
+            std::vector<cv::Mat> masks;
+            for (const cv::Mat& mask : masks_)
+                masks.push_back(mask.empty() || whole ? mask : mask.rowRange(block));
+            {
+                nb::gil_scoped_release release;
+                find(*searched_, query_.rowRange(block), masks, first);
+            }
+            first = block.end;
+            if (PyErr_CheckSignals() != 0)
+                throw nb::python_error();
+        } while (first < query_.rows);
+    }
+
+private:
+    static constexpr int BLOCK = 512;  // with a million codes, less than a second on one core
+
+    const cv::Mat query_;
+    const std::vector<cv::Mat> masks_;
+    cv::Ptr<Matcher> given_;
+    Matcher* searched_;
 };
+
+//! Adds the matches of a block whose first query has this number.
+void append(MatchRows& all, MatchRows& block, int first)
+{
+    for (std::vector<cv::DMatch>& row : block)
+    {
+        for (cv::DMatch& m : row)
+            m.queryIdx += first;
+        all.push_back(std::move(row));
+    }
+}
 
 nb::object knnMatch(Matcher& self, const Array& queries, nb::object train, int k, nb::object masks,
         bool compact, nb::handle type)
 {
-    const Search s(queries, train, masks);
-    MatchRows rows;
-    if (!s.query.empty())
-    {
-        nb::gil_scoped_release release;
-        if (s.inAdded)
-            self.knnMatch(s.query, rows, k, s.masks, compact);
-        else
-            self.knnMatch(s.query, s.train, rows, k, s.mask(), compact);
-    }
-    return toPython(rows, type);
+    MatchRows all;
+    Search(self, queries, train, masks)
+            .inBlocks([&](Matcher& matcher, const cv::Mat& query, const std::vector<cv::Mat>& allowed,
+                              int first) {
+                MatchRows block;
+                matcher.knnMatch(query, block, k, allowed, compact);
+                append(all, block, first);
+            });
+    return toPython(all, type);
 }
 
 nb::object radiusMatch(Matcher& self, const Array& queries, nb::object train, float maxDistance,
         nb::object masks, bool compact, nb::handle type)
 {
-    const Search s(queries, train, masks);
-    MatchRows rows;
-    if (!s.query.empty())
-    {
-        nb::gil_scoped_release release;
-        if (s.inAdded)
-            self.radiusMatch(s.query, rows, maxDistance, s.masks, compact);
-        else
-            self.radiusMatch(s.query, s.train, rows, maxDistance, s.mask(), compact);
-    }
-    return toPython(rows, type);
+    MatchRows all;
+    Search(self, queries, train, masks)
+            .inBlocks([&](Matcher& matcher, const cv::Mat& query, const std::vector<cv::Mat>& allowed,
+                              int first) {
+                MatchRows block;
+                matcher.radiusMatch(query, block, maxDistance, allowed, compact);
+                append(all, block, first);
+            });
+    return toPython(all, type);
 }
 
 nb::tuple knnMatchArrays(Matcher& self, const Array& queries, nb::object train, int k, nb::object masks)
 {
-    const Search s(queries, train, masks);
-    cv::Mat indices, distances, images;
-    {
-        nb::gil_scoped_release release;
-        if (s.inAdded)
-            self.knnMatchArrays(s.query, indices, distances, k, s.masks, images);
-        else
-            self.knnMatchArrays(s.query, s.train, indices, distances, k, s.mask());
-    }
-    for (cv::Mat* matrix : {&indices, &distances, &images})
-        if (matrix->empty())
-            matrix->create(0, k, CV_32S);
-    return s.inAdded ? nb::make_tuple(toNumpy(indices), toNumpy(distances), toNumpy(images))
-                     : nb::make_tuple(toNumpy(indices), toNumpy(distances));
+    const Search search(self, queries, train, masks);
+    cv::Mat all[3];  // indices, distances, images
+    search.inBlocks([&](Matcher& matcher, const cv::Mat& query, const std::vector<cv::Mat>& allowed, int) {
+        cv::Mat block[3];
+        matcher.knnMatchArrays(query, block[0], block[1], k, allowed, block[2]);
+        for (int i = 0; i < 3; i++)
+            all[i].push_back(block[i]);
+    });
+    for (cv::Mat& matrix : all)
+        if (matrix.empty())
+            matrix.create(0, k, CV_32S);
+    return search.inAdded() ? nb::make_tuple(toNumpy(all[0]), toNumpy(all[1]), toNumpy(all[2]))
+                            : nb::make_tuple(toNumpy(all[0]), toNumpy(all[1]));
 }
 
 void add(Matcher& self, const std::vector<Array>& arrays)

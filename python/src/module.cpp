@@ -12,7 +12,21 @@ using namespace iib_python;
 
 NB_MODULE(_core, m)
 {
-    nb::exception<cv::Exception>(m, "error");
+    const nb::object error = nb::steal(PyErr_NewExceptionWithDoc(
+            "opencv_iib.error", "A mistake in a call, as cv2.error.", nullptr, nullptr));
+    m.attr("error") = error;
+    nb::register_exception_translator(
+            [](const std::exception_ptr& thrown, void* type) {
+                try
+                {
+                    std::rethrow_exception(thrown);
+                }
+                catch (const cv::Exception& e)  // what() has paths of the machine that built this
+                {
+                    PyErr_SetString(static_cast<PyObject*>(type), e.err.c_str());
+                }
+            },
+            error.ptr());
     bindDetectors(m);
     bindExtractor(m);
     bindMatcher(m);

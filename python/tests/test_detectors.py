@@ -1,6 +1,8 @@
 import copy
+import gc
 import pickle
 import unittest
+import weakref
 
 import numpy as np
 
@@ -65,6 +67,47 @@ class Normalized(unittest.TestCase):
                 call()
         with self.assertRaisesRegex(TypeError, 'detect'):
             NormalizedDetector(object())
+
+    def test_masks_of_ones_are_as_those_of_255(self):
+        image, ones = texture(160, 120), np.zeros((120, 160), np.uint8)
+        ones[:, 80:] = 1
+        detector = Watching()
+        for finder in (NormalizedDetector(detector), IIB.createFor(detector)):
+            for mask in (ones, ones > 0):
+                finder.detect(image, mask)
+                np.testing.assert_array_equal(detector.mask, 255 * (mask > 0))
+        self.assertEqual(ones.max(), 1)
+        iib = IIB.create()  # finds by the ORB inside
+        self.assertEqual(len(iib.detect(image, ones)), len(iib.detect(image, 255 * ones)))
+        self.assertEqual(len(iib.detect(image, np.ones_like(image))), len(iib.detect(image)))
+
+    def test_masks_and_images_of_another_shape(self):
+        image = texture(160, 120)
+        for finder in (NormalizedDetector(Watching()), IIB.createFor(Watching())):
+            for mask in (np.ones((160, 120), np.uint8), np.ones((120, 160), np.float32), np.ones((120, 160, 3), np.uint8),
+                         np.ones((60, 80), np.uint8)):
+                with self.assertRaisesRegex(opencv_iib.error, 'the mask '):
+                    finder.detect(image, mask)
+            with self.assertRaisesRegex(opencv_iib.error, 'image: an array of 2 or 3 dimensions'):
+                finder.detect(image[0])
+        with self.assertRaisesRegex(opencv_iib.error, 'image: an array of 2 or 3 dimensions'):
+            IIB.create().compute(image.ravel(), np.array([[9, 9, 5]], np.float32))
+
+    def test_an_object_whose_extractor_asks_it_for_keypoints_is_collected(self):
+        class Owner(Watching):
+            def __init__(self, wrap):
+                self.iib = IIB.createFor(wrap(self))
+
+        for wrap in (lambda owner: owner, NormalizedDetector):
+            owner = Owner(wrap)
+            self.assertEqual(len(owner.iib.detect(texture(60, 60))), 1)
+            watched = weakref.ref(owner)
+            del owner
+            gc.collect()
+            self.assertIsNone(watched())
+        iib = IIB.createFor(NormalizedDetector(Watching()))
+        gc.collect()
+        self.assertEqual(len(copy.copy(iib).detect(texture(60, 60))), 1)
 
     def test_an_extractor_is_not_its_own_detector(self):
         iib, other = IIB.create(), IIB.create()

@@ -1,7 +1,9 @@
 import copy
 import pickle
+import signal
 import tempfile
 import threading
+import time
 import unittest
 from pathlib import Path
 
@@ -189,6 +191,47 @@ class MatcherTest(unittest.TestCase):
         points = [cv2.KeyPoint(float(i), 5, 3) for i in range(70)]
         image = np.zeros((20, 80), np.uint8)
         self.assertIsNotNone(cv2.drawMatches(image, points, image, points, ours, None))
+
+    def test_many_queries(self):
+        """They are searched in blocks of 512."""
+        rng = np.random.default_rng(5)
+        queries, train = rng.integers(0, 256, (1100, 4), np.uint8), rng.integers(0, 256, (60, 4), np.uint8)
+        indices, distances = brute_force(queries, train, 3)
+        matcher = HierarchicalMatcher()
+        np.testing.assert_array_equal(matcher.knnMatchArrays(queries, train, 3), [indices, distances])
+        self.assertEqual(matcher.matchCost(), 1)
+        found = matcher.knnMatch(queries, train, 3)
+        self.assertEqual([[(m.queryIdx, m.trainIdx) for m in row] for row in found],
+                         [[(q, t) for t in row] for q, row in enumerate(indices.tolist())])
+        near = matcher.radiusMatch(queries, train, 8, compactResult=True)
+        self.assertEqual([row[0].queryIdx for row in near], np.flatnonzero(distances[:, 0] <= 8).tolist())
+        mask = np.zeros((1100, 60), np.uint8)
+        mask[np.arange(1100), np.arange(1100) % 60] = 1
+        np.testing.assert_array_equal(matcher.knnMatchArrays(queries, train, 1, mask)[0].ravel(), np.arange(1100) % 60)
+        for rows in (512, 588):
+            with self.assertRaises(opencv_iib.error):
+                matcher.knnMatchArrays(queries, train, 1, mask[:rows])
+        matcher.add([train[:20], train[20:]])
+        indices, distances, images = matcher.knnMatchArrays(queries, k=3)
+        np.testing.assert_array_equal(indices + 20 * images, brute_force(queries, train, 3)[0])
+        matcher.setCrossCheck(True)
+        self.assertEqual(len(matcher.match(queries, train)), len(matcher.match(train, queries)))
+
+    def test_an_interrupt_acts_promptly(self):
+        rng = np.random.default_rng(5)
+        queries, train = rng.integers(0, 256, (512, 32), np.uint8), rng.integers(0, 256, (100000, 32), np.uint8)
+        begin = time.monotonic()
+        HierarchicalMatcher().knnMatchArrays(queries, train)
+        block = time.monotonic() - begin
+        old = signal.signal(signal.SIGALRM, signal.default_int_handler)
+        try:
+            signal.setitimer(signal.ITIMER_REAL, block)
+            begin = time.monotonic()
+            with self.assertRaises(KeyboardInterrupt):
+                HierarchicalMatcher().knnMatchArrays(np.repeat(queries, 200, 0), train)
+            self.assertLess(time.monotonic() - begin, 60 * block)
+        finally:
+            signal.signal(signal.SIGALRM, old)
 
 
 if __name__ == '__main__':

@@ -1,7 +1,9 @@
 """Everything that the C++ headers offer to Python is there, by the same name and value."""
 import importlib.metadata
 import inspect
+import pydoc
 import re
+import traceback
 import unittest
 
 import opencv_iib
@@ -74,10 +76,27 @@ class Names(unittest.TestCase):
         self.assertRegex(opencv_iib.OPENCV_VERSION, r'^[45]\.\d')
 
     def test_every_public_name_is_documented(self):
-        for owner in HEADERS:
-            self.assertTrue(getattr(opencv_iib, owner).__doc__)
-        for name in ('compute', 'computeWithChannels', 'detect', 'setDetector', 'levelSizes'):
-            self.assertTrue(getattr(opencv_iib.IIB, name).__doc__, name)
+        public = {name: getattr(opencv_iib, name) for name in opencv_iib.__all__}
+        for name, value in list(public.items()):
+            if inspect.isclass(value):
+                public.update({f'{name}.{member}': getattr(value, member) for member in vars(value)
+                               if not member.startswith('_')})
+        self.assertEqual([name for name, value in public.items()
+                          if callable(value) and not (value.__doc__ or '').strip()], [])
+
+    def test_help_and_star_import_see_the_classes(self):
+        names = {}
+        exec('from opencv_iib import *', names)
+        self.assertEqual(set(opencv_iib.__all__) - set(names), set())
+        for name in (*HEADERS, 'IIB', 'MappedIndex', 'DMatch', 'KeyPoint', 'error', 'estimateRotation'):
+            self.assertIn(name, names)
+            self.assertIn(name, pydoc.plain(pydoc.render_doc(opencv_iib)))
+
+    def test_an_error_is_what_went_wrong_without_paths(self):
+        with self.assertRaises(opencv_iib.error) as caught:
+            opencv_iib.IIB.create(-1)
+        self.assertRegex(traceback.format_exception_only(opencv_iib.error, caught.exception)[0], '^opencv_iib.error: scaleFactor')
+        self.assertNotIn('/', str(caught.exception))
 
 
 if __name__ == '__main__':

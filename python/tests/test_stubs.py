@@ -58,6 +58,15 @@ class Stubs(unittest.TestCase):
         self.assertEqual(stubs(), signatures())
 
     @unittest.skipIf(mypy is None, 'no mypy')
+    def test_a_strict_program_sees_the_names(self):
+        program = '\n'.join(['import opencv_iib', *(f'print(opencv_iib.{name})' for name in opencv_iib.__all__),
+                             'iib: opencv_iib.IIB = opencv_iib.IIB.create()'])
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([sys.executable, '-m', 'mypy', '--strict', '-c', program], capture_output=True, text=True,
+                                  cwd=folder)
+        self.assertEqual((done.returncode, done.stderr), (0, ''), done.stdout)
+
+    @unittest.skipIf(mypy is None, 'no mypy')
     def test_stubtest(self):
         with tempfile.TemporaryDirectory() as cache:
             done = subprocess.run([sys.executable, '-m', 'mypy.stubtest', '--concise', 'opencv_iib'],
