@@ -18,25 +18,31 @@ namespace {
 using namespace fuzz;
 using cv::iib::IIB;
 
-Ptr<IIB> takeExtractor(ByteSource& in)
+//! @param mayBeRefused whether any parameter is one that a setter may refuse.
+Ptr<IIB> takeExtractor(ByteSource& in, bool& mayBeRefused)
 {
     if (in.between(0, 7) == 7)
     {
+        mayBeRefused = true;
         const int preset = in.between(-1, 9);
         return IIB::createPreset(preset, in.number());
     }
     Ptr<IIB> iib = IIB::create();
     const int wild = in.between(0, 3) == 3;  // values out of range in a quarter of the runs
+    mayBeRefused = wild != 0;
     iib->setScaleFactor(wild ? in.number() : 1 + in.between(0, 40) / 8.f);
     iib->setGranularity(in.between(1 - wild, (in.rarely(8) ? in.rarely(8) ? 6 : 3 : 2) + wild));
     iib->setExtraChannels(in.rarely(32) ? in.between(-wild, 16 + wild) : in.between(0, 1));
     iib->setChannels(in.between(1 - wild, 63 + wild));
-    iib->setMapping(in.between(-wild, IIB::MAPPING_BOXES + wild));
+    const int mapping = in.between(-wild, IIB::MAPPING_BOXES + wild);
+    mayBeRefused = mayBeRefused || mapping == IIB::MAPPING_BOXES;  // not with every channel, nor with overlap
+    iib->setMapping(mapping);
     iib->setOverlap(in.flag());
     iib->setOrientation(in.between(-wild, 2 + wild));
     iib->setBorder(in.between(-wild, 2 + wild));
     if (in.flag())
     {
+        mayBeRefused = true;
         const int rows = in.between(0, in.rarely(8) ? 20 : 5);
         Mat_<int> quads(rows, 5);
         int level = 1;
@@ -103,7 +109,13 @@ void checkAgainstOracle(const IIB& iib, const Mat& image, const std::vector<Mat>
 
 void run(ByteSource& in)
 {
-    const Ptr<IIB> iib = takeExtractor(in);
+    Ptr<IIB> iib;
+    bool mayBeRefused = false;
+    if (refused([&] { iib = takeExtractor(in, mayBeRefused); }))
+    {
+        FUZZ_CHECK(mayBeRefused);
+        return;
+    }
     const std::vector<int> levels = iib->levelSizes();
     FUZZ_CHECK(std::accumulate(levels.begin(), levels.end(), 0) == iib->descriptorSize());
 
@@ -118,15 +130,7 @@ void run(ByteSource& in)
     std::vector<KeyPoint> keypoints = given, again = given;
     Mat descriptors(3, 3, CV_8U), repeated;
     useThreads(1);
-    bool thrown = false;
-    try
-    {
-        iib->compute(image, extra, keypoints, descriptors);
-    }
-    catch (const cv::Exception&)
-    {
-        thrown = true;
-    }
+    const bool thrown = refused([&] { iib->compute(image, extra, keypoints, descriptors); });
     FUZZ_CHECK(thrown != areValid(*iib, image, extra, given));
     if (thrown)
         return;

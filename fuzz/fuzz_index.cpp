@@ -54,12 +54,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
     const std::string bytes = size > 0 ? std::string((const char*)data + 1, size - 1) : std::string();
     static const ScratchFile file;
     file.write(honest ? withChecksum(bytes) : bytes);
-    try
-    {
-        checkIndex(HierarchicalMatcher::loadIndex(file.name));
-    }
-    catch (const cv::Exception&)
-    {
-    }
+    Ptr<HierarchicalMatcher> matcher;
+    if (!refused([&] { matcher = HierarchicalMatcher::loadIndex(file.name); }))
+        checkIndex(matcher);
     return 0;
 }

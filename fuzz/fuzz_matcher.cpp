@@ -132,33 +132,21 @@ Ptr<HierarchicalMatcher> takeMatcher(ByteSource& in, bool wild, MatcherOracle& o
 void checkRadius(HierarchicalMatcher& matcher, const Mat& queries, float radius, MatcherOracle& oracle)
 {
     Matches found(3);
-    bool thrown = false;
-    try
-    {
-        matcher.radiusMatch(queries, found, radius, oracle.masks);
-    }
-    catch (const cv::Exception&)
-    {
-        thrown = true;
-    }
+    // also for a radius that is no number
+    const bool thrown = refused([&] { matcher.radiusMatch(queries, found, radius, oracle.masks); });
     FUZZ_CHECK(thrown == !(radius > FLT_EPSILON));
     if (thrown)
         return;
     oracle.adaptiveBlock = 0;  // radiusMatch is exact
-    const double largest = 8. * queries.cols;
-    FUZZ_CHECK(equal(oracle.radius(queries, cvFloor(std::min((double)radius, largest))), found));
+    FUZZ_CHECK(equal(oracle.radius(queries, cvFloor(std::min((double)radius, 8. * queries.cols))), found));
 }
 
 void run(ByteSource& in)
 {
     MatcherOracle oracle;
-    const bool wild = in.between(0, 7) == 7;
     Ptr<HierarchicalMatcher> matcher;
-    try
-    {
-        matcher = takeMatcher(in, wild, oracle);
-    }
-    catch (const cv::Exception&)
+    const bool wild = in.between(0, 7) == 7;  // parameters that may be refused
+    if (refused([&] { matcher = takeMatcher(in, wild, oracle); }))
     {
         FUZZ_CHECK(wild);
         return;
@@ -183,16 +171,10 @@ void run(ByteSource& in)
     useThreads(in.rarely(128) ? 3 : 1);
 
     Matches found(2), again;
-    bool thrown = false;
-    try
-    {
+    const bool thrown = refused([&] {
         matcher->knnMatch(
                 wrongWidth ? Mat(3, width + 1, CV_8U, Scalar(1)) : queries, found, k, oracle.masks, compact);
-    }
-    catch (const cv::Exception&)
-    {
-        thrown = true;
-    }
+    });
     if (queries.empty() || trains == 0)
         return;  // DescriptorMatcher has returned before asking
     FUZZ_CHECK(thrown == (wrongWidth || !areValid(oracle.masks, oracle.images, queries.rows)));
@@ -222,7 +204,4 @@ void run(ByteSource& in)
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
-{
-    return runTarget(run, data, size, Refusals::NONE);
-}
+extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size) { return runTarget(run, data, size); }

@@ -80,11 +80,7 @@ template <typename T> String written(const T& object)
 template <typename T> void read(T& object, const FileNode& node)
 {
     const String before = written(object);
-    try
-    {
-        object.read(node);
-    }
-    catch (const cv::Exception&)
+    if (refused([&] { object.read(node); }))
     {
         FUZZ_CHECK(written(object) == before);
         return;

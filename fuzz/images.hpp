@@ -27,6 +27,8 @@ inline Mat takeImage(ByteSource& in, Size size, int depth, int channels)
     Mat image(size, CV_MAKETYPE(depth, channels));
     const int kind = in.between(0, 7);
     RNG rng(in.take<ushort>());
+    if (image.empty())
+        return image;
     if (kind < 3)
         rng.fill(image, RNG::UNIFORM, depth == CV_8S || depth == CV_16S ? -100 : 0,
                 depth % 8 < 2 ? 256 : 65536);
@@ -36,11 +38,11 @@ inline Mat takeImage(ByteSource& in, Size size, int depth, int channels)
     else
         image.setTo(Scalar::all(kind == 5 ? 0 : 65535));
     if (depth == CV_32F && in.between(0, 3) == 0)
-        for (int i = in.between(0, 3); i > 0 && !image.empty(); i--)
+        for (int i = in.between(0, 3); i > 0; i--)
             image.ptr<float>(in.between(0, size.height - 1))[in.between(0, size.width * channels - 1)] =
                     in.number();
     // A view into a larger matrix: rows lie apart.
-    if (!in.flag() || image.empty())
+    if (!in.flag())
         return image;
     const Rect inside(Point(in.between(0, 9), in.between(0, 9)), size);
     Mat whole(size + Size(inside.x + 3, inside.y + 3), image.type());
