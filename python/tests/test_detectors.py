@@ -116,6 +116,19 @@ class Normalized(unittest.TestCase):
             with self.assertRaisesRegex(opencv_iib.error, 'its own detector'):
                 iib.setDetector(culprit)
 
+    def test_masks_and_images_that_are_refused(self):
+        image = texture(100, 80)
+        for detector in (IIB.create(), IIB.createFor(Watching()), NormalizedDetector(Watching())):
+            for culprit, arguments in (('80 x 80', (image, np.ones((80, 80), np.uint8))),
+                                       ('the mask has type CV_32F', (image, np.ones((80, 100), np.float32))),
+                                       ('1 dimension', (image.ravel(),))):
+                with self.subTest(culprit), self.assertRaisesRegex(opencv_iib.error, culprit):
+                    detector.detect(*arguments)
+            mask = np.ones((80, 100), bool)
+            self.assertEqual(len(detector.detect(image, mask)), len(detector.detect(image, mask * np.uint8(255))))
+        with self.assertRaisesRegex(opencv_iib.error, '1 dimension'):
+            IIB.create().compute(image.ravel(), [])
+
     def test_pickle_and_copy(self):
         normalized = NormalizedDetector(Watching(), 7)
         for twin in (copy.copy(normalized), copy.deepcopy(normalized)):
