@@ -40,6 +40,35 @@ inline unsigned greaterEqualMask(const v_int32& a, const v_int32& b) { return (u
 inline unsigned equalMask(const v_int32& a, const v_int32& b) { return (unsigned)v_signmask(a == b); }
 #endif
 
+/* Doubles, or one of them where there are no such vectors (ARMv7, WebAssembly). */
+#if CV_SIMD_64F
+typedef v_float64 v_doubles;
+
+inline v_doubles loadDoubles(const double* p) { return vx_load(p); }
+inline v_doubles repeatedDouble(double v) { return vx_setall_f64(v); }
+inline unsigned greaterMask(const v_doubles& a, const v_doubles& b) { return (unsigned)v_signmask(a > b); }
+inline unsigned greaterEqualMask(const v_doubles& a, const v_doubles& b)
+{
+    return (unsigned)v_signmask(a >= b);
+}
+inline unsigned equalMask(const v_doubles& a, const v_doubles& b) { return (unsigned)v_signmask(a == b); }
+#else
+typedef double v_doubles;
+
+template <> struct VTraits<double>
+{
+    static constexpr int max_nlanes = 1;
+};
+inline double loadDoubles(const double* p) { return *p; }
+inline double repeatedDouble(double v) { return v; }
+inline void v_store(double* p, double v) { *p = v; }
+inline double v_min(double a, double b) { return std::min(a, b); }
+inline double v_max(double a, double b) { return std::max(a, b); }
+inline unsigned greaterMask(double a, double b) { return a > b; }
+inline unsigned greaterEqualMask(double a, double b) { return a >= b; }
+inline unsigned equalMask(double a, double b) { return a == b; }
+#endif
+
 //! The same for 16-bit lanes.
 inline unsigned greaterMask(const v_int16& a, const v_int16& b)
 {
@@ -193,18 +222,30 @@ inline v_uint32 repeatLastFour(const v_uint32& v)
 #endif
 }
 
-//! Stores groups of four values, every other one to `even` and to `odd`; a vector of one group, number i, to either.
-inline void storeAlternately(unsigned* even, unsigned* odd, int i, const v_uint32& v)
+/* Stores groups of four lanes, every other one to `even` and to `odd`; `lane` counts the lanes that were stored before, and
+ a vector may be as small as one. */
+inline void storeAlternately(unsigned* even, unsigned* odd, int lane, const v_int32& v)
+{
+    const v_uint32 u = v_reinterpret_as_u32(v);
+#if CV_AVX512_SKX
+    const v_uint32 sorted(_mm512_shuffle_i32x4(u.val, u.val, 0xd8));  // groups 0, 2, 1, 3
+    v_store_low(even + lane / 2, sorted);
+    v_store_high(odd + lane / 2, sorted);
+#elif CV_AVX2
+    v_store_low(even + lane / 2, u);
+    v_store_high(odd + lane / 2, u);
+#else
+    v_store((lane % 8 < 4 ? even : odd) + lane / 8 * 4, u);
+#endif
+}
+
+inline void storeAlternately(double* even, double* odd, int lane, const v_doubles& v)
 {
 #if CV_AVX512_SKX
-    const v_uint32 sorted(_mm512_shuffle_i32x4(v.val, v.val, 0xd8));  // groups 0, 2, 1, 3
-    v_store_low(even + 2 * i, sorted);
-    v_store_high(odd + 2 * i, sorted);
-#elif CV_AVX2
-    v_store_low(even + 2 * i, v);
-    v_store_high(odd + 2 * i, v);
+    v_store_low(even + lane / 2, v);
+    v_store_high(odd + lane / 2, v);
 #else
-    v_store((i % 2 ? odd : even) + i / 2 * 4, v);
+    v_store((lane % 8 < 4 ? even : odd) + lane / 8 * 4 + lane % 4, v);
 #endif
 }
 

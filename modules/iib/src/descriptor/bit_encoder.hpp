@@ -10,14 +10,15 @@
 namespace cv {
 namespace iib {
 
-//! From the sums over the finest cells of a keypoint to the bits of one group of channels, level by level.
+/** From the sums over the finest cells of a keypoint to the bits of one group of channels, level by level. Products of
+ sums and weights are integers of 32 bits at the finest levels, as far as these surely fit, and doubles at the others. */
 class BitEncoder
 {
 public:
     //! Memory that one thread uses again for each keypoint.
     struct Workspace
     {
-        CellGrid<unsigned> sums[MAX_GRANULARITY + 1], centred;
+        CellGrid<unsigned> sums[MAX_GRANULARITY];
         CellGrid<double> doubleSums[MAX_GRANULARITY + 1];
     };
 
@@ -25,32 +26,28 @@ public:
     BitEncoder(const DescriptorPlan& plan, const ChannelGroup& group, int maxValue, Workspace& workspace);
 
     /** Writes the bits of all levels into a descriptor; the groups before have written theirs.
-     @param cells sums over the finest cells; Sum = ushort, unsigned or double.
+     @param cells sums over the finest cells; Sum = ushort or unsigned.
      @param longestCell a bound of the difference of neighbouring edges. */
     template <typename Sum>
     void write(
-            const CellGrid<Sum>& cells, const CellEdges& edges, double longestCell, uchar* descriptor) const
+            const CellGrid<Sum>& cells, const CellEdges& edges, double longestCell, uchar* descriptor) const;
+
+    //! The same of sums that no unsigned holds.
+    void write(const CellGrid<double>& cells, const CellEdges& edges, double, uchar* descriptor) const
     {
-        writeFrom(plan.finest, cells, edges, longestCell, descriptor);
+        writeDoubles(plan.finest, cells, edges, descriptor);
     }
 
 private:
-    /** Writes a level and, from the sums of its cells, all coarser ones: in one call of a kernel as many as surely fit
-     its integers.
-     @param longest a bound of the lengths of this level's cells. */
-    template <typename Sum>
-    void writeFrom(int level, const CellGrid<Sum>& cells, const CellEdges& edges, double longest,
-            uchar* descriptor) const;
+    //! The levels from `finest` on.
+    void writeDoubles(
+            int finest, const CellGrid<double>& cells, const CellEdges& edges, uchar* descriptor) const;
 
     const DescriptorPlan& plan;
     const ChannelGroup& group;
-    const double value;  //!< four times the largest that is summed
+    const double largest;  //!< four times the largest value that is summed
     Workspace& workspace;
 };
-
-template <>
-void BitEncoder::writeFrom(int level, const CellGrid<double>& cells, const CellEdges& edges, double longest,
-        uchar* descriptor) const;
 
 }  // namespace iib
 }  // namespace cv

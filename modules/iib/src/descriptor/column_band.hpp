@@ -41,9 +41,9 @@ public:
     }
 
     //! Sums over n x n cells.
-    void cells(const int* xEdges, const int* yEdges, int n, CellGrid<ushort>& sums) const
+    void cells(const CellEdges& edges, int n, CellGrid<ushort>& sums) const
     {
-        kernels.columnCells(view, xEdges, yEdges, n, sums);
+        kernels.columnCells(view, edges.x, edges.y, n, sums);
     }
 
 private:

@@ -21,7 +21,9 @@ public:
             ScratchMemory& rowMemory, ScratchMemory& ringMemory)
         : channelRows(channels, area, maxGradient(channels), kernels.pixels<T>().rows, rowMemory),
           width(area.width), done(area.y), sumRow(kernels.sumRow<T, Sum>()),
-          sumCells(kernels.sums<Sum>().cells)
+          sumCells(kernels.sums<Sum>().cells),
+          longestPart((int)std::sqrt(
+                  (double)std::numeric_limits<Sum>::max() / maxValue(channels, maxGradient(channels))))
     {
         view.step = rowBytes(area.width) / sizeof(Sum);
         view.count = rows;
@@ -48,10 +50,26 @@ public:
         }
     }
 
-    //! Sums over n x n cells.
-    void cells(const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& sums) const
+    //! Sums over n x n cells, each of which a Sum must hold.
+    void cells(const CellEdges& edges, int n, CellGrid<Sum>& sums) const
     {
-        sumCells(view, xEdges, yEdges, n, sums);
+        sumCells(view, edges.x, edges.y, n, sums);
+    }
+
+    //! Sums over larger cells: those over parts of them are added up.
+    void cells(const CellEdges& edges, int n, CellGrid<double>& sums) const
+    {
+        sums.create(n);
+        for (int r = 0; r < n; r++)
+            for (int c = 0; c < n; c++)
+            {
+                double* const sum = sums.cell(r, c);
+                std::fill_n(sum, (int)GROUP_CHANNELS, 0.);
+                for (int y = edges.y[r]; y < edges.y[r + 1]; y += longestPart)
+                    for (int x = edges.x[c]; x < edges.x[c + 1]; x += longestPart)
+                        addPart(Range(x, std::min(x + longestPart, edges.x[c + 1])),
+                                Range(y, std::min(y + longestPart, edges.y[r + 1])), sum);
+            }
     }
 
 private:
@@ -62,13 +80,23 @@ private:
         return ((bytes + CACHE_LINE - 1) / CACHE_LINE | 1) * CACHE_LINE;
     }
 
-    Sum* row(int y) { return begin + (y - view.origin.y) % view.count * view.step; }
+    void addPart(Range x, Range y, double* sum) const
+    {
+        const Sum *const top = row(y.start), *const bottom = row(y.end);
+        const size_t left = (size_t)(x.start - view.origin.x) * GROUP_CHANNELS,
+                     right = (size_t)(x.end - view.origin.x) * GROUP_CHANNELS;
+        for (int i = 0; i < GROUP_CHANNELS; i++)
+            sum[i] += (Sum)(bottom[right + i] - bottom[left + i] - top[right + i] + top[left + i]);
+    }
+
+    Sum* row(int y) const { return begin + (y - view.origin.y) % view.count * view.step; }
 
     ChannelRows<T> channelRows;
     const int width;
     int done;  //!< rows of the image above this one are in the newest row
     const typename SumRowFunc<T, Sum>::Type sumRow;
     const typename SumKernels<Sum>::CellsFunc sumCells;
+    const int longestPart;  //!< a Sum holds the sums over as many rows of as many pixels
     Sum* begin;
     IntegralRows<Sum> view;
 };

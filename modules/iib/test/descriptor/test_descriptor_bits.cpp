@@ -101,7 +101,7 @@ TEST(IIB_Bits, large_regions_of_support)
     }
 }
 
-// Sums of 16-bit pixels leave 32 bits soon: cells are put together from 4 x 4 smaller ones, and more.
+// Sums of 16-bit pixels leave 32 bits soon: cells are put together from parts.
 TEST(IIB_Bits, large_regions_of_16_bit_images)
 {
     const Mat image = texture(Size(420, 400), CV_16U, 5);
@@ -109,14 +109,14 @@ TEST(IIB_Bits, large_regions_of_16_bit_images)
     expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 6, 300.f, 1500.f, 1), "large");
 }
 
-// Regions at which products of level 1 or 2 just leave 32 bits: sums are centred there, or doubles take over.
+// Regions at which products of level 1 or 2 just leave 32 bits, where doubles take over.
 TEST(IIB_Bits, sums_at_the_edge_of_32_bits)
 {
     for (int mapping = IIB::MAPPING_MEAN; mapping <= IIB::MAPPING_PAIRWISE; mapping++)
         for (int depth : {CV_8U, CV_16U})
         {
             Mat image = texture(Size(260, 240), depth, mapping);
-            image.colRange(130, 260).setTo(0);  // centred sums of both signs, as large as they get
+            image.colRange(130, 260).setTo(0);  // sums of all sizes
             const Ptr<IIB> iib = IIB::create(1.f, 3, 63, mapping);
             std::vector<KeyPoint> keypoints;
             for (float size : {13.f, 27.f, 45.f, 67.f, 81.f, 103.f, 133.f, 201.f})

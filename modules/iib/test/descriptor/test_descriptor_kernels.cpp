@@ -246,6 +246,58 @@ TEST(IIB_DescriptorKernels, cell_edges)
         }
 }
 
+//! Of all levels of random cells; sums that fit both kinds of kernels.
+template <typename Sum>
+std::vector<uchar> writeBits(const BitsKernels<Sum>& kernels, const std::vector<int>& values,
+        const std::vector<LevelShape>& shapes, const CellEdges& edges)
+{
+    typedef typename BitsKernels<Sum>::Parent Parent;
+    const int finest = (int)shapes.size() - 1, n = 1 << finest;
+    CellGrid<Sum> cells;
+    CellGrid<Parent> sums[MAX_GRANULARITY];
+    cells.create(n);
+    for (int r = 0, i = 0; r < n; r++)
+        for (int c = 0; c < n; c++)
+            for (int channel = 0; channel < GROUP_CHANNELS; channel++)
+                cells.cell(r, c)[channel] = (Sum)values[i++];
+    for (int level = 0; level < finest; level++)
+        sums[level].create(1 << level);
+    std::vector<uchar> descriptor(1 << 20, 0);
+    kernels.write(cells, shapes.data(), edges, finest, 1, sums, descriptor.data());
+    return descriptor;
+}
+
+TEST(IIB_DescriptorKernels, all_types_of_sums_give_the_same_bits)
+{
+    Integers random(13);
+    for (int mapping = 0; mapping < MAPPINGS; mapping++)
+        for (int finest = 1; finest <= 6; finest++)
+            for (int channels = 1; channels <= GROUP_CHANNELS; channels++)
+            {
+                const int n = 1 << finest, phases = channels % 2 ? 1 : 15;
+                std::vector<LevelShape> shapes(1);
+                for (int level = 1, offset = 0; level <= finest; level++)
+                {
+                    shapes.push_back(LevelShape{1 << level, 1 << (finest - level), offset, channels, phases,
+                            std::vector<ChosenBits>()});
+                    offset += 8 * 4 * channels << 2 * level;
+                }
+                CellEdges edges = CellEdges();
+                for (int i = 1; i < paddedEdges(n); i++)
+                    edges.x[i] = edges.x[i - 1] + (i <= n ? random.between(1, 3) : 0);
+                for (int i = 1; i <= n; i++)
+                    edges.y[i] = edges.y[i - 1] + random.between(1, 3);
+                std::vector<int> values(n * n * GROUP_CHANNELS);
+                for (int& v : values)
+                    v = random.below(8);  // ties are frequent
+                const DescriptorKernels& k = descriptorKernels();
+                const std::vector<uchar> bits = writeBits(k.doubleBits[mapping], values, shapes, edges);
+                EXPECT_NE(0, std::count_if(bits.begin(), bits.end(), [](uchar b) { return b != 0; }));
+                EXPECT_EQ(bits, writeBits(k.shortSums.bits[mapping], values, shapes, edges));
+                EXPECT_EQ(bits, writeBits(k.longSums.bits[mapping], values, shapes, edges));
+            }
+}
+
 TEST(IIB_DescriptorKernels, bits_are_written_where_they_belong)
 {
     Integers random(10);

@@ -7,7 +7,7 @@
 
 // Where comparisons lie in memory, and how they become bits of a descriptor.
 
-#include "bits_lanes.simd.hpp"
+#include "bits_quads.simd.hpp"
 
 namespace cv {
 namespace iib {
@@ -81,7 +81,7 @@ inline void append(const uchar* plane, int lanes, int channels, BitAppender& out
         for (int first = 0; first < lanes; first += CHUNK)
         {
             const uchar* p = plane + first / 8;
-            appendChunk(p[0] | p[1] << 8, std::min(lanes - first, (int)CHUNK), channels, out);
+            appendChunk(p[0] | p[1] << 8, std::min(lanes - first, CHUNK), channels, out);
         }
 }
 
@@ -108,10 +108,8 @@ public:
 
     template <int PLANES> void storeRow(const unsigned chunks[PLANES])
     {
-        enum
-        {
-            TOGETHER = PLANES % 4 == 0 ? 4 : PLANES
-        };  // planes, of twelve bits at most, that fit a word
+        constexpr int TOGETHER =
+                PLANES % 4 == 0 ? 4 : PLANES;  // planes, of twelve bits at most, that fit a word
         for (int p = 0; p < PLANES; p += TOGETHER)
         {
             uint64 bits = 0;

@@ -5,9 +5,10 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_BITS_QUADS_SIMD_HPP
 #define OPENCV_IIB_DESCRIPTOR_KERNELS_BITS_QUADS_SIMD_HPP
 
-// The cells of quads, their weights and the sums over them.
+// The cells of quads as vectors: their sums, their weights, and comparisons, which are bits.
 
-#include "bits_lanes.simd.hpp"
+#include "../../common/simd.hpp"
+#include "quads.hpp"
 
 namespace cv {
 namespace iib {
@@ -16,13 +17,83 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
+//! Lanes, one for each channel of a quad, that are mapped at a time, whatever the width of a vector V.
+constexpr int CHUNK = QuadPhase::CHUNK;
+template <typename V> struct Chunk
+{
+    static constexpr int LANES = VTraits<V>::max_nlanes, VECTORS = CHUNK / LANES;
+};
+
+//! What a level's products are computed in, and the type of the next coarser level's sums.
+template <typename Cell> struct Level
+{
+    typedef v_int32 Vector;
+    typedef unsigned Parent;
+};
+template <> struct Level<double>
+{
+    typedef v_doubles Vector;
+    typedef double Parent;
+};
+
 inline v_int32 loadCells(const ushort* p) { return v_reinterpret_as_s32(vx_load_expand(p)); }
 inline v_int32 loadCells(const unsigned* p) { return v_reinterpret_as_s32(vx_load(p)); }
+inline v_doubles loadCells(const double* p) { return loadDoubles(p); }
+
+inline v_int32 repeated(int v, const v_int32&) { return vx_setall_s32(v); }
+inline v_doubles repeated(int v, const v_doubles&) { return repeatedDouble(v); }
+
+//! A vector whose comparisons are bits, a bit a lane.
+template <typename V> struct Lanes
+{
+    V v;
+
+    Lanes() {}
+    Lanes(const V& vector) : v(vector) {}
+};
+
+template <typename V> inline Lanes<V> operator+(const Lanes<V>& a, const Lanes<V>& b) { return a.v + b.v; }
+template <typename V> inline Lanes<V> operator-(const Lanes<V>& a, const Lanes<V>& b) { return a.v - b.v; }
+template <typename V> inline Lanes<V> least(const Lanes<V>& a, const Lanes<V>& b) { return v_min(a.v, b.v); }
+template <typename V> inline Lanes<V> greatest(const Lanes<V>& a, const Lanes<V>& b)
+{
+    return v_max(a.v, b.v);
+}
+template <typename V> inline unsigned operator>(const Lanes<V>& a, const Lanes<V>& b)
+{
+    return greaterMask(a.v, b.v);
+}
+template <typename V> inline unsigned operator>=(const Lanes<V>& a, const Lanes<V>& b)
+{
+    return greaterEqualMask(a.v, b.v);
+}
+template <typename V> inline unsigned operator==(const Lanes<V>& a, const Lanes<V>& b)
+{
+    return equalMask(a.v, b.v);
+}
+
+inline Lanes<v_int32> fourTimes(const Lanes<v_int32>& a) { return a.v << 2; }
+inline Lanes<v_doubles> fourTimes(const Lanes<v_doubles>& a) { return a.v * repeatedDouble(4); }
+
+//! floor(a / 4) is as good as a / 4: an integer is greater than both or than neither.
+inline Lanes<v_int32> quarter(const Lanes<v_int32>& a) { return a.v >> 2; }
+inline Lanes<v_doubles> quarter(const Lanes<v_doubles>& a) { return a.v * repeatedDouble(0.25); }
+
+//! Collects comparisons, from a lane on.
+struct Put
+{
+    unsigned* planes;
+    int lane;
+
+    void operator()(int plane, unsigned bits) const { planes[plane] |= bits << lane; }
+};
 
 //! The cells of a chunk of quads, and of those in the rows below it.
 template <typename Cell> class QuadRows
 {
 public:
+    typedef typename Level<Cell>::Vector V;
+
     //! Begins with quads whose top left cells are in row dy and columns dx, dx + 2, ..., at value `first`.
     QuadRows(const CellGrid<Cell>& cells, int dy, int dx, int first)
         : left(cells.row(dy, dx) + first), right(cells.row(dy, 1 - dx) + dx * GROUP_CHANNELS + first),
@@ -30,7 +101,7 @@ public:
     {
     }
 
-    void load(int lane, v_int32 x[4]) const
+    void load(int lane, V x[4]) const
     {
         x[0] = loadCells(left + lane);
         x[1] = loadCells(right + lane);
@@ -50,18 +121,17 @@ private:
 };
 
 //! Where the sums over such quads go: the cells of the next coarser level.
-class ParentRows
+template <typename Parent> class ParentRows
 {
 public:
-    ParentRows(CellGrid<unsigned>& parents, int first)
+    ParentRows(CellGrid<Parent>& parents, int first)
         : even(parents.row(0, 0) + first / 2), odd(parents.row(0, 1) + first / 2), step(parents.rowStep())
     {
     }
 
-    void store(int lane, const v_int32 x[4]) const
+    template <typename V> void store(int lane, const V x[4]) const
     {
-        const v_uint32 sums = v_reinterpret_as_u32((x[0] + x[1]) + (x[2] + x[3]));
-        storeAlternately(even, odd, lane / GROUP_CHANNELS, sums);
+        storeAlternately(even, odd, lane, (x[0] + x[1]) + (x[2] + x[3]));
     }
 
     void next()
@@ -71,14 +141,16 @@ public:
     }
 
 private:
-    unsigned *even, *odd;
+    Parent *even, *odd;
     const size_t step;
 };
 
 //! Weights of a chunk of quads along a row.
-struct ColumnWeights
+template <typename V> struct ColumnWeights;
+
+template <> struct ColumnWeights<v_int32>
 {
-    v_int32 left[CHUNK_VECTORS], right[CHUNK_VECTORS];
+    v_int32 left[Chunk<v_int32>::VECTORS], right[Chunk<v_int32>::VECTORS];
 
     //! @param x the first column.
     CV_ALWAYS_INLINE ColumnWeights(const Axis& axis, int x)
@@ -91,6 +163,27 @@ struct ColumnWeights
         const v_int32x4 lefts = middle - begin, rights = end - middle, same = lefts == rights;
         repeatEachFourTimes(v_select(same, v_setall_s32(1), rights), left);
         repeatEachFourTimes(v_select(same, v_setall_s32(1), lefts), right);
+    }
+};
+
+template <> struct ColumnWeights<v_doubles>
+{
+    v_doubles left[Chunk<v_doubles>::VECTORS], right[Chunk<v_doubles>::VECTORS];
+
+    ColumnWeights(const Axis& axis, int x)
+    {
+        double lefts[CHUNK], rights[CHUNK];
+        for (int lane = 0; lane < CHUNK; lane++)
+        {
+            const Weights weights(axis, x + lane / GROUP_CHANNELS * 2);
+            lefts[lane] = weights.first;
+            rights[lane] = weights.second;
+        }
+        for (int i = 0; i < Chunk<v_doubles>::VECTORS; i++)
+        {
+            left[i] = loadDoubles(lefts + i * Chunk<v_doubles>::LANES);
+            right[i] = loadDoubles(rights + i * Chunk<v_doubles>::LANES);
+        }
     }
 };
 

@@ -149,23 +149,19 @@ template <typename T, typename Sum> struct SumRowFunc
     typedef void (*Type)(const T* const planes[GROUP_CHANNELS], int width, const Sum* above, Sum* out);
 };
 
+//! For sums in double, all products and parent sums are doubles, else 32-bit integers, which they must fit.
 template <typename Sum> struct BitsKernels
 {
-    /** Bits of the levels from `finest` down to `coarsest`, in the order of descriptor.hpp.
+    typedef typename std::conditional<std::is_same<Sum, double>::value, double, unsigned>::type Parent;
+
+    /** Writes the bits of the levels from `finest` down to `coarsest`, in the order of descriptor.hpp.
      @param cells of the finest one. @param shapes of each level.
      @param sums of each level: gets those of the coarser ones, down to coarsest - 1. Their grids have been created. */
-    void (*levelBits)(const CellGrid<Sum>& cells, const LevelShape shapes[], const CellEdges& edges,
-            int finest, int coarsest, CellGrid<unsigned> sums[], uchar* descriptor);
+    void (*write)(const CellGrid<Sum>& cells, const LevelShape shapes[], const CellEdges& edges, int finest,
+            int coarsest, CellGrid<Parent> sums[], uchar* descriptor);
 
     //! The sums alone.
-    void (*parentSums)(const CellGrid<Sum>& cells, CellGrid<unsigned>& parents);
-
-    /** Takes c times its pixels from each cell, with c about the mean of a channel over the level: sums become small, and
-     as sum * weight loses the same c * (both widths) * (both heights) in all cells of a quad, no comparison changes.
-     @param cells whose sums, and c times their pixels, fit an int.
-     @param centred gets signed sums. @return the largest absolute one. */
-    int (*centre)(const CellGrid<Sum>& cells, const LevelShape& shape, const CellEdges& edges,
-            CellGrid<unsigned>& centred);
+    void (*parentSums)(const CellGrid<Sum>& cells, CellGrid<Parent>& parents);
 };
 
 template <typename Sum> struct SumKernels
@@ -191,6 +187,7 @@ struct DescriptorKernels
     void (*columnCells)(
             const ColumnRows& rows, const int* xEdges, const int* yEdges, int n, CellGrid<ushort>& cells);
     SumKernels<unsigned> longSums;
+    BitsKernels<double> doubleBits[MAPPINGS];  //!< where 32-bit integers are too small
     BoxKernels boxes;
 
     //! The edges of n x n cells of a square with this top left corner and side, n a power of two, clamped to bounds.

@@ -56,6 +56,7 @@ DescriptorKernels makeTable()
     {
         k.shortSums.bits[mapping] = bitsKernels<ushort>(mapping);
         k.longSums.bits[mapping] = bitsKernels<unsigned>(mapping);
+        k.doubleBits[mapping] = bitsKernels<double>(mapping);
     }
     k.boxes = boxKernels();
     return k;

@@ -10,29 +10,14 @@
 namespace cv {
 namespace iib {
 
-/* Mappings f(x) of the four cell means of a quad to bits (paper, "Binary Bit Formulation"). They are written
- once for numbers and for vectors: V is double or a vector, and put(bit, b) takes what a comparison of V gives.
- No value exceeds four times the largest x. */
-
-template <typename V> inline V least(const V& a, const V& b) { return v_min(a, b); }
-template <typename V> inline V greatest(const V& a, const V& b) { return v_max(a, b); }
-template <> inline double least(const double& a, const double& b) { return std::min(a, b); }
-template <> inline double greatest(const double& a, const double& b) { return std::max(a, b); }
-
-template <typename V> inline V fourTimes(const V& v) { return v << 2; }
-template <> inline double fourTimes(const double& v) { return 4 * v; }
-
-//! floor(v / 4) is exact for vectors: for an integer x, x > v / 4 if and only if x > floor(v / 4).
-template <typename V> inline V quarter(const V& v) { return v >> 2; }
-template <> inline double quarter(const double& v) { return v / 4; }
+/* Mappings f(x) of the four cell means of a quad to bits (paper, "Binary Bit Formulation"). V is a vector of integers or
+ of doubles that hold integers, with least, greatest, fourTimes and quarter; put(bit, b) takes what a comparison of V
+ gives. No value exceeds four times the largest x. */
 
 //! Equation (1): x_i > mean(x).
 struct MeanMapping
 {
-    enum
-    {
-        BITS = 4
-    };
+    static constexpr int BITS = 4;
 
     template <typename V, typename Put> static void map(const V x[4], const Put& put)
     {
@@ -44,10 +29,7 @@ struct MeanMapping
 
 struct MaxMapping
 {
-    enum
-    {
-        BITS = 4
-    };
+    static constexpr int BITS = 4;
 
     template <typename V, typename Put> static void map(const V x[4], const Put& put)
     {
@@ -59,10 +41,7 @@ struct MaxMapping
 
 struct MinMapping
 {
-    enum
-    {
-        BITS = 4
-    };
+    static constexpr int BITS = 4;
 
     template <typename V, typename Put> static void map(const V x[4], const Put& put)
     {
@@ -75,10 +54,7 @@ struct MinMapping
 //! Equation (2), with x - min(x) and R = max(x) - min(x) both four times as large.
 struct QuartileMapping
 {
-    enum
-    {
-        BITS = 8
-    };
+    static constexpr int BITS = 8;
 
     template <typename V, typename Put> static void map(const V x[4], const Put& put)
     {
@@ -98,10 +74,7 @@ struct QuartileMapping
 //! The rank of x_i, 0 the smallest; among equals the lower index ranks lower.
 struct SortMapping
 {
-    enum
-    {
-        BITS = 8
-    };
+    static constexpr int BITS = 8;
 
     template <typename V, typename Put> static void map(const V x[4], const Put& put)
     {
@@ -124,10 +97,7 @@ private:
 //! Left > right, top > bottom, main > other diagonal.
 struct HaarMapping
 {
-    enum
-    {
-        BITS = 3
-    };
+    static constexpr int BITS = 3;
 
     template <typename V, typename Put> static void map(const V x[4], const Put& put)
     {
@@ -140,10 +110,7 @@ struct HaarMapping
 //! Each cell > the next, around the quad.
 struct PairwiseMapping
 {
-    enum
-    {
-        BITS = 4
-    };
+    static constexpr int BITS = 4;
 
     template <typename V, typename Put> static void map(const V x[4], const Put& put)
     {
