@@ -10,10 +10,7 @@
 namespace cv {
 namespace iib {
 
-enum
-{
-    CACHE_LINE = 64
-};
+constexpr int CACHE_LINE = 64;
 
 //! n rounded up to fill whole cache lines of T.
 template <typename T> inline size_t wholeLines(size_t n)

@@ -356,12 +356,9 @@ inline v_groups32 subtractModulo(const v_groups32& a, const v_groups32& b) { ret
 class SegmentSums
 {
 public:
-    enum
-    {
-        COUNT = 8,
-        LONGEST = 4,  //!< of each segment, these first values are summed,
-        REACH = 32    //!< as far as they are among these first ones of all
-    };
+    static constexpr int COUNT = 8;
+    static constexpr int LONGEST = 4;  //!< values of a segment that are summed: the first ones,
+    static constexpr int REACH = 32;   //!< and only those among so many first ones of all segments
 
     //! @param edges COUNT + 1 of them, where the segments begin and end.
     explicit SegmentSums(const int* edges)

@@ -68,7 +68,7 @@ void BitEncoder::write(
     if (level == finest)
         widen(cells, wide);
     else
-        plan.kernels.sums<Sum>().bits[plan.parameters.mapping].write(
+        plan.kernels.sums(Sum()).bits[plan.parameters.mapping].write(
                 cells, shapes, edges, finest, level + 1, workspace.sums, descriptor);
     if (level == 0)
         return;

@@ -32,7 +32,7 @@ template <typename T> class CellSampler
 public:
     CellSampler(const DescriptorPlan& plan_, const std::vector<Channel>& channels_, Workspace& workspace_)
         : plan(plan_), channels(channels_), sampled(channels_), workspace(workspace_),
-          kernels(plan_.kernels.pixels<T>().rotated),
+          kernels(plan_.kernels.pixels(T()).rotated),
           sums(workspace_.planes.get<int>((size_t)sampled.planes() * MAX_SAMPLES))
     {
     }
@@ -50,7 +50,7 @@ public:
         for (size_t i = 0; i < packs().size(); i++)
         {
             const bool image = sampled.hasImage && i == 0;
-            const int count = image ? (int)IMAGE_PLANES : (int)GROUP_CHANNELS;
+            const int count = image ? IMAGE_PLANES : GROUP_CHANNELS;
             for (int p = 0; p < count; p++)
                 planes[p] = plane(next++);
             if (image)
@@ -66,7 +66,7 @@ public:
     {
         const int n = plan.cellsInRow(), cell = grid.n / n;
         const CellEdges edges = equalEdges(n, cell);
-        const auto parentSums = plan.kernels.sums<unsigned>().bits[plan.parameters.mapping].parentSums;
+        const auto parentSums = plan.kernels.longSums.bits[plan.parameters.mapping].parentSums;
         for (const ChannelGroup& group : plan.groups)
         {
             CellGrid<unsigned>* cells[2] = {&workspace.cells, &workspace.parentCells};

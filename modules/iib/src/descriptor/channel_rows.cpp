@@ -36,7 +36,10 @@ ChannelRows<T>::ChannelRows(const std::vector<Channel>& channels_, Rect area_, i
     for (int& y : read)
         y = -1;
     for (int i = 0; i < GROUP_CHANNELS; i++)
+    {
         placeOf[i] = std::min(i, (int)channels.size() - 1) * step + (area.x - origin);
+        planes[i] = row(FIRST_PLANE) + placeOf[i];
+    }
 }
 
 template <typename T> ImageChannelRows<T> ChannelRows<T>::imageChannels(T* out) const
@@ -89,7 +92,7 @@ template <typename T> void ChannelRows<T>::reflect(T* out) const
         out[x - origin] = out[reflected(x, width) - origin];
 }
 
-template <typename T> void ChannelRows<T>::compute(int y)
+template <typename T> const T* const* ChannelRows<T>::compute(int y)
 {
     y = reflected(y, channels[0].map.rows);
     if (gradientOf)
@@ -101,6 +104,7 @@ template <typename T> void ChannelRows<T>::compute(int y)
             widen(kernels, channels[i].map, y, source.start, out + (source.start - origin), source.size());
         reflect(out);
     }
+    return planes;
 }
 
 template <typename T> void ChannelRows<T>::add(int y, const T* above, T* out)

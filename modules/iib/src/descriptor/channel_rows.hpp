@@ -23,27 +23,21 @@ public:
             const RowKernels<T>& kernels, ScratchMemory& memory);
 
     //! Moves on to row y, the one after the last row or any row.
-    void compute(int y);
-
-    //! Channel i in the row, at the pixels of the rectangle; i < GROUP_CHANNELS, missing channels repeat the last.
-    const T* plane(int i) { return row(FIRST_PLANE) + placeOf[i]; }
+    //! @return GROUP_CHANNELS channels in the row, at the pixels of the rectangle; missing ones repeat the last.
+    const T* const* compute(int y);
 
     /** Adds row y of the channels, all of them the image's, to other rows, modulo 2^16 or 2^32.
      @param above, out rowSize() values. */
     void add(int y, const T* above, T* out);
 
-    //! Values in a row of all channels that the caller keeps, and where channel i has the rectangle's first pixel in it.
+    //! Values in a row of all channels that the caller keeps, and where each has the rectangle's first pixel in it.
     size_t rowSize() const { return GROUP_CHANNELS * step; }
-    size_t place(int i) const { return placeOf[i]; }
+    const size_t* places() const { return placeOf; }
 
 private:
     // Rows of the scratch memory: three of the image in turn, the channels.
-    enum
-    {
-        IMAGE_ROWS = 3,
-        FIRST_PLANE = IMAGE_ROWS,
-        SCRATCH_ROWS = FIRST_PLANE + GROUP_CHANNELS
-    };
+    static constexpr int IMAGE_ROWS = 3, FIRST_PLANE = IMAGE_ROWS,
+                         SCRATCH_ROWS = FIRST_PLANE + GROUP_CHANNELS;
 
     ImageRows<T> imageRows(int y);
     ImageChannelRows<T> imageChannels(T* out) const;
@@ -57,10 +51,11 @@ private:
     const T signedOffset;
     const RowKernels<T>& kernels;
     const Mat* gradientOf;  //!< the image, or null if no channel needs its gradient
-    int read[3];            //!< which row of the image each of the first three scratch rows holds
+    int read[IMAGE_ROWS];   //!< which row of the image each of the first three scratch rows holds
     size_t step;
     T* const scratch;
     size_t placeOf[GROUP_CHANNELS];
+    const T* planes[GROUP_CHANNELS];
 };
 
 }  // namespace iib

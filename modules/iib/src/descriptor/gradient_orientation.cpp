@@ -93,8 +93,8 @@ float prevailingAngle(const DescriptorKernels& kernels, const T* pixels, const i
 {
     static const CellWeights weights;
     int cells[CELLS * CELLS + ROW_PADDING];
-    sumCells(kernels.pixels<T>().rotated, pixels, index, cells);
-    const RowKernels<int>& rows = kernels.pixels<int>().rows;
+    sumCells(kernels.pixels(T()).rotated, pixels, index, cells);
+    const RowKernels<int>& rows = kernels.pixels(int()).rows;
     int gx[VOTES + ROW_PADDING], gy[VOTES + ROW_PADDING], steps[VOTES + ROW_PADDING],
             votes[VOTES + ROW_PADDING];
     for (int row = 0; row < INNER; row++)
@@ -103,7 +103,7 @@ float prevailingAngle(const DescriptorKernels& kernels, const T* pixels, const i
         const ImageChannelRows<int> out = {0, gx + row * INNER, gy + row * INNER, 0, 0, steps + row * INNER};
         rows.imageChannels({above, above + CELLS, above + 2 * CELLS}, 0, out, INNER);
     }
-    kernels.pixels<T>().rotated.gradientVotes(gx, gy, weights.of, VOTES, votes);
+    kernels.pixels(T()).rotated.gradientVotes(gx, gy, weights.of, VOTES, votes);
     int64 bins[BINS] = {};
     for (int i = 0; i < VOTES; i++)
         bins[steps[i] / STEPS_PER_BIN] += votes[i];

@@ -29,7 +29,7 @@ template <typename T> class GridPixels
 public:
     GridPixels(const DescriptorKernels& all, const std::vector<std::vector<Channel>>& packs_,
             const KeyPointBatch& batch_, int border_, Workspace& workspace)
-        : kernels(all.pixels<T>()), packs(packs_), batch(batch_), border(border_),
+        : kernels(all.pixels(T())), packs(packs_), batch(batch_), border(border_),
           sparsePixels(kernels.rows, workspace.sparsePixels)
     {
         const int rows = batch.rows + KeyPointBatch::BAND_ROWS;

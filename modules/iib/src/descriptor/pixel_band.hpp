@@ -34,13 +34,7 @@ public:
         if (end > top + capacity)
             moveTop(std::max(end - kept, area.y));
         for (; done < end; done++)
-        {
-            channelRows.compute(done);
-            const T* planes[GROUP_CHANNELS];
-            for (int i = 0; i < GROUP_CHANNELS; i++)
-                planes[i] = channelRows.plane(i);
-            kernels.interleave(planes, row(done), area.width);
-        }
+            kernels.interleave(channelRows.compute(done), row(done), area.width);
     }
 
     //! Pixels at hand, from the first row on, step() pixels from row to row; the first one is at origin() in the image.

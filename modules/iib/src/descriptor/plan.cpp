@@ -39,8 +39,7 @@ DescriptorPlan::DescriptorPlan(const Parameters& p)
     const int channels = p.channelCount();
     for (int first = 0; first < channels; first += GROUP_CHANNELS)
     {
-        ChannelGroup group = {
-                first, std::min(channels - first, (int)GROUP_CHANNELS), std::vector<LevelShape>(1)};
+        ChannelGroup group = {first, std::min(channels - first, GROUP_CHANNELS), std::vector<LevelShape>(1)};
         for (int level = 1; level <= finest; level++)
             group.levels.push_back(levelShape(p, finest, level, first / GROUP_CHANNELS, group.count));
         groups.push_back(group);

@@ -48,7 +48,7 @@ struct SampledChannels
                     maps.begin() + i, maps.begin() + std::min(i + GROUP_CHANNELS, maps.size())));
     }
 
-    int imagePlanes() const { return hasImage ? (int)IMAGE_PLANES : 0; }
+    int imagePlanes() const { return hasImage ? IMAGE_PLANES : 0; }
     int planes() const { return imagePlanes() + GROUP_CHANNELS * ((int)packs.size() - hasImage); }
 };
 

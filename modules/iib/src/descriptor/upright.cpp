@@ -60,7 +60,7 @@ bool columnsAreFaster(const DescriptorPlan& plan, const std::vector<Channel>& ch
         ofImage = ofImage && c.kind != 0;
     const int n = plan.cellsInRow();
     // 7 * (64.f / 7), the region of FAST's keypoints, is a little more than 64
-    return plan.kernels.columnCells && ofImage && n % 8 == 0 && side <= ColumnRows::CELL * n * 1.000001 &&
+    return plan.kernels.columnCells && ofImage && n % 8 == 0 && side <= NARROW_CELL * n * 1.000001 &&
            pixelsOfKeyPoint * (double)batch.keypoints.size() <= (double)batch.area.width * batch.area.height;
 }
 

@@ -43,7 +43,7 @@ template <typename T, typename Sum> void checkSumRow(int limit)
         Sum* const o = out.data() + CACHE_LINE / sizeof(Sum) - GROUP_CHANNELS;
         for (size_t i = 0; i < values; i++)
             a[i] = i < GROUP_CHANNELS ? 0 : (Sum)random.below(INT_MAX);
-        descriptorKernels().sumRow<T, Sum>()(begin, width, a, o);
+        descriptorKernels().sumRow(T(), Sum())(begin, width, a, o);
         for (int c = 0; c < GROUP_CHANNELS; c++)
         {
             Sum sum = 0;
@@ -69,7 +69,7 @@ template <typename Sum> struct Ring
 {
     Mat_<Vec4i> map;
     std::vector<Sum> values;
-    IntegralRows<Sum> rows;
+    RingRows<Sum> rows;
 
     Ring(Rect area, int count, int end, int limit, Integers& random) : map(area.size())
     {
@@ -115,9 +115,9 @@ template <typename Sum> void checkCells(int limit)
             std::sort(y.begin(), y.end());
             x.resize(paddedEdges(n), x[n]);
             CellGrid<Sum> cells;
-            descriptorKernels().sums<Sum>().cells(ring.rows, x.data(), y.data(), n, cells);
+            descriptorKernels().sums(Sum()).cells(ring.rows, x.data(), y.data(), n, cells);
             CellGrid<unsigned> parents;
-            descriptorKernels().sums<Sum>().bits[0].parentSums(cells, parents);
+            descriptorKernels().sums(Sum()).bits[0].parentSums(cells, parents);
             for (int r = 0; r < n; r++)
                 for (int c = 0; c < n; c++)
                     for (int i = 0; i < 4; i++)
@@ -149,14 +149,15 @@ void checkColumnCells(int channels, int widest)
     const Rect area(11, 5, 330, 70);
     const Ring<ushort> ring(area, 66, 64, 60, random);
     const size_t plane = (size_t)area.width + ROW_PADDING;
-    std::vector<ushort> values(GROUP_CHANNELS * plane * ring.rows.count);
-    ColumnRows rows = {values.data(), GROUP_CHANNELS * plane, {}, ring.rows.count, ring.rows.origin};
+    std::vector<short> values(GROUP_CHANNELS * plane * ring.rows.count);
+    const RingRows<short> rows = {values.data(), GROUP_CHANNELS * plane, ring.rows.count, ring.rows.origin};
+    size_t places[GROUP_CHANNELS];
     for (int i = 0; i < GROUP_CHANNELS; i++)
-        rows.channels[i] = std::min(i, channels - 1) * plane;
+        places[i] = std::min(i, channels - 1) * plane;
     for (int y = 0; y < rows.count; y++)
         for (int i = 0; i < GROUP_CHANNELS; i++)
             for (int x = 0; x < area.width; x++)
-                values[y * rows.step + i * plane + x] = (ushort)(60000 + ring.sum(x, 0, x + 1, y, i));
+                values[y * rows.step + i * plane + x] = (short)(60000 + ring.sum(x, 0, x + 1, y, i));
     for (int n = 8; n <= 64; n *= 2)
         for (int round = 0; round < 5; round++)
         {
@@ -168,7 +169,7 @@ void checkColumnCells(int channels, int widest)
             std::sort(y.begin(), y.end());
             x.resize(paddedEdges(n), x[n]);
             CellGrid<ushort> cells;
-            descriptorKernels().columnCells(rows, x.data(), y.data(), n, cells);
+            descriptorKernels().columnCells(rows, places, x.data(), y.data(), n, cells);
             for (int r = 0; r < n; r++)
                 for (int c = 0; c < n; c++)
                     for (int i = 0; i < GROUP_CHANNELS; i++)
@@ -192,7 +193,7 @@ TEST(IIB_DescriptorKernels, cell_sums_from_columns)
 template <typename T> void checkAddedChannels(int limit)
 {
     Integers random(12);
-    const RowKernels<T>& kernels = descriptorKernels().pixels<T>().rows;
+    const RowKernels<T>& kernels = descriptorKernels().pixels(T()).rows;
     for (int width = 1; width <= 140; width++)
     {
         const std::vector<T> above = randomRow<T>(random, width + 2, limit),

@@ -50,8 +50,7 @@ template <typename V> struct RowSums
 template <typename Sum> class RowFinder
 {
 public:
-    template <typename Rows>
-    RowFinder(const Rows& rows, int top)
+    RowFinder(const RingRows<Sum>& rows, int top)
         : data(rows.data), step(rows.step), count(rows.count), shift((top - rows.origin.y) % count - top)
     {
     }
@@ -78,14 +77,10 @@ template <> struct Groups<unsigned>
 };
 
 template <typename Sum>
-void cellSums(
-        const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells)
+void cellSums(const RingRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells)
 {
     typedef typename Groups<Sum>::Vector V;
-    enum
-    {
-        COLUMNS = 2 * VTraits<V>::max_nlanes / GROUP_CHANNELS
-    };
+    constexpr int COLUMNS = 2 * VTraits<V>::max_nlanes / GROUP_CHANNELS;
     const RowFinder<Sum> row(rows, yEdges[0]);
     AutoBuffer<const Sum*, 64> lines(n);
     for (int r = 0; r < n; r++)

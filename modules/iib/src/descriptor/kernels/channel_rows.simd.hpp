@@ -153,10 +153,7 @@ inline void imageChannelRows(
         const ImageRows<T>& in, T signedOffset, ImageChannelRows<T> out, int width, const Put& put)
 {
     typedef decltype(setAll(T())) V;
-    enum
-    {
-        N = VTraits<V>::max_nlanes
-    };
+    constexpr int N = VTraits<V>::max_nlanes;
     const ImageRows<T> rows = in;  // a local copy: a store could change `in`, so that it would be loaded anew
     const V offset = setAll(signedOffset);
     for (int x = 0; x < width; x += 2 * N)
@@ -203,10 +200,7 @@ void addImageChannelRows(
 //! The last vector may overlap the one before; nothing past the end is read, where no pixel need be.
 void widenRow(const uchar* in, short* out, int width)
 {
-    enum
-    {
-        N = VTraits<v_int16>::max_nlanes
-    };
+    constexpr int N = VTraits<v_int16>::max_nlanes;
     const auto widen = [&](int x) { v_store(out + x, v_reinterpret_as_s16(vx_load_expand(in + x))); };
     for (int x = 0; x <= width - N; x += N)
         widen(x);

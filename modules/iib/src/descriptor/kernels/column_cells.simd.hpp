@@ -29,21 +29,22 @@ void addColumn(const ushort* const* lines, const size_t channels[GROUP_CHANNELS]
         }
 }
 
-void columnCells(const ColumnRows& rows, const int* xEdges, const int* yEdges, int n, CellGrid<ushort>& cells)
+void columnCells(const RingRows<short>& rows, const size_t channels[GROUP_CHANNELS], const int* xEdges,
+        const int* yEdges, int n, CellGrid<ushort>& cells)
 {
-    static_assert((int)ColumnRows::CELL == (int)SegmentSums::LONGEST, "wider cells take longer");
-    const RowFinder<ushort> row(rows, yEdges[0]);
+    static_assert(NARROW_CELL == SegmentSums::LONGEST, "wider cells take longer");
+    const RowFinder<short> row(rows, yEdges[0]);
     AutoBuffer<const ushort*, 72> lines(n + 1);
     for (int r = 0; r <= n; r++)
-        lines[r] = row(yEdges[r]);
+        lines[r] = reinterpret_cast<const ushort*>(row(yEdges[r]));
     cells.create(n);
     const size_t step = cells.row(0, 1) - cells.row(0, 0);
     for (int c = 0; c < n; c += SegmentSums::COUNT)
     {
         const SegmentSums segments(xEdges + c);
         const size_t first = (size_t)(xEdges[c] - rows.origin.x);
-        const size_t at[GROUP_CHANNELS] = {rows.channels[0] + first, rows.channels[1] + first,
-                rows.channels[2] + first, rows.channels[3] + first};
+        const size_t at[GROUP_CHANNELS] = {
+                channels[0] + first, channels[1] + first, channels[2] + first, channels[3] + first};
         ushort* out = cells.row(0, 0) + c / 2 * GROUP_CHANNELS;
         v_uint16 above = segments(lines[0], at);
         for (int r = 0; r < n; r++, out += 2 * step)
@@ -54,7 +55,7 @@ void columnCells(const ColumnRows& rows, const int* xEdges, const int* yEdges, i
         }
         for (int k = 0; k < SegmentSums::COUNT && !segments.areComplete(); k++)
             for (int x = SegmentSums::reached(xEdges + c, k); x < xEdges[c + k + 1]; x++)
-                addColumn(lines.data(), rows.channels, x - rows.origin.x, c + k, cells);
+                addColumn(lines.data(), channels, x - rows.origin.x, c + k, cells);
     }
 }
 

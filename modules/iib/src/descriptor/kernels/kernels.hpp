@@ -13,11 +13,9 @@ namespace iib {
 /* What is compiled for each instruction set, as one table of functions. A pixel's value T is short for 8-bit images
  and int for 16-bit ones; a Sum is ushort or unsigned, modulo 2^16 or 2^32. */
 
-enum
-{
-    ROW_PADDING = 64,  //!< kernels may read and write up to this many values past the end of a row
-    MAPPINGS = IIB::MAPPING_PAIRWISE + 1  //!< of quads
-};
+constexpr int ROW_PADDING = 64;  //!< kernels may read and write up to this many values past the end of a row
+constexpr int MAPPINGS = IIB::MAPPING_PAIRWISE + 1;  //!< of quads
+constexpr int NARROW_CELL = 4;  //!< pixels; sums down the columns add up wider ones slowly
 
 //! Three rows of an image. They begin one pixel left of those that are wanted and end one pixel right of them.
 template <typename T> struct ImageRows
@@ -67,12 +65,9 @@ struct SampleGrid
     int cells() const { return n / sub; }
 };
 
-enum
-{
-    MAX_SAMPLES_IN_ROW = 64,  //!< of a grid
-    MAX_SAMPLES = MAX_SAMPLES_IN_ROW * MAX_SAMPLES_IN_ROW,
-    IMAGE_PLANES = 6  //!< the kinds of channels that an image has, in the order of IIB::Channel
-};
+constexpr int MAX_SAMPLES_IN_ROW = 64;  //!< of a grid
+constexpr int MAX_SAMPLES = MAX_SAMPLES_IN_ROW * MAX_SAMPLES_IN_ROW;
+constexpr int IMAGE_PLANES = 6;  //!< the kinds of channels that an image has, in the order of IIB::Channel
 
 //! An angle, in 2^-12, and in ORIENTATION_STEPS a turn.
 struct GradientRotation
@@ -114,33 +109,16 @@ template <typename T> struct PixelKernels
     RotatedSampleKernels<T> rotated;
 };
 
-/** What a reader sees of integral images of GROUP_CHANNELS channels, side by side in each pixel: the last rows,
- in a ring. A cell's sum, as the difference of its corners, is right if a Sum can hold it, however large the image. */
-template <typename Sum> struct IntegralRows
+/** What a reader sees of sums of GROUP_CHANNELS channels: the last rows, in a ring. Row (y - origin.y) % count holds the sums
+ over the image's rows [origin.y, y): those of an integral image, side by side in each pixel, left of the pixels origin.x,
+ origin.x + 1, ...; or those down the columns, a plane for each channel. A cell's sum, as the difference of its corners, is
+ right if a Sum can hold it, however large the image. */
+template <typename Sum> struct RingRows
 {
     const Sum* data;
     size_t step;   //!< elements from row to row
     int count;     //!< rows in the ring
     Point origin;  //!< in the image
-
-    /* Row (y - origin.y) % count has the sums over the image's rows [origin.y, y), left of the pixels origin.x,
-     origin.x + 1, ... */
-};
-
-/** What a reader sees of the sums down the columns of GROUP_CHANNELS channels, modulo 2^16: the last rows, in a ring like
- that of IntegralRows. They are cheaper to make than an integral image, and to add up where cells are narrow. */
-struct ColumnRows
-{
-    const ushort* data;
-    size_t step;                      //!< elements from row to row
-    size_t channels[GROUP_CHANNELS];  //!< where in a row each channel has its pixel origin.x
-    int count;                        //!< rows in the ring
-    Point origin;                     //!< in the image
-
-    enum
-    {
-        CELL = 4  //!< cells should not be wider than this
-    };
 };
 
 //! From a row of each channel: out = above + sums along the row; both begin left of the first pixel, with 0.
@@ -168,7 +146,7 @@ template <typename Sum> struct SumKernels
 {
     //! Sums over n x n cells with the given edges, paddedEdges(n) and n + 1 of them, in pixels of the image.
     typedef void (*CellsFunc)(
-            const IntegralRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells);
+            const RingRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells);
     CellsFunc cells;
     BitsKernels<Sum> bits[MAPPINGS];
 };
@@ -182,10 +160,11 @@ struct DescriptorKernels
     SumRowFunc<short, unsigned>::Type sumLongRow;
     SumRowFunc<int, unsigned>::Type sumIntRow;
     SumKernels<ushort> shortSums;
-    /** As shortSums.cells, from the sums down the columns; n is a multiple of 8. Null where it would be slow. May read
-     ROW_PADDING values past the end of a row. */
-    void (*columnCells)(
-            const ColumnRows& rows, const int* xEdges, const int* yEdges, int n, CellGrid<ushort>& cells);
+    /** As shortSums.cells, from the sums down the columns, modulo 2^16. Null where it would be slow, as it is for cells
+     wider than NARROW_CELL. May read ROW_PADDING values past the end of a row.
+     @param channels where in a row each channel has its pixel origin.x. @param n a multiple of 8. */
+    void (*columnCells)(const RingRows<short>& rows, const size_t channels[GROUP_CHANNELS], const int* xEdges,
+            const int* yEdges, int n, CellGrid<ushort>& cells);
     SumKernels<unsigned> longSums;
     BitsKernels<double> doubleBits[MAPPINGS];  //!< where 32-bit integers are too small
     BoxKernels boxes;
@@ -193,27 +172,14 @@ struct DescriptorKernels
     //! The edges of n x n cells of a square with this top left corner and side, n a power of two, clamped to bounds.
     void (*cellEdges)(Point2d corner, double side, int n, Rect bounds, CellEdges& edges);
 
-    template <typename T> const PixelKernels<T>& pixels() const;
-    template <typename Sum> const SumKernels<Sum>& sums() const;
-    template <typename T, typename Sum> typename SumRowFunc<T, Sum>::Type sumRow() const;
+    const PixelKernels<short>& pixels(short) const { return shortPixels; }
+    const PixelKernels<int>& pixels(int) const { return intPixels; }
+    const SumKernels<ushort>& sums(ushort) const { return shortSums; }
+    const SumKernels<unsigned>& sums(unsigned) const { return longSums; }
+    SumRowFunc<short, ushort>::Type sumRow(short, ushort) const { return sumShortRow; }
+    SumRowFunc<short, unsigned>::Type sumRow(short, unsigned) const { return sumLongRow; }
+    SumRowFunc<int, unsigned>::Type sumRow(int, unsigned) const { return sumIntRow; }
 };
-
-template <> inline const PixelKernels<short>& DescriptorKernels::pixels() const { return shortPixels; }
-template <> inline const PixelKernels<int>& DescriptorKernels::pixels() const { return intPixels; }
-template <> inline const SumKernels<ushort>& DescriptorKernels::sums() const { return shortSums; }
-template <> inline const SumKernels<unsigned>& DescriptorKernels::sums() const { return longSums; }
-template <> inline SumRowFunc<short, ushort>::Type DescriptorKernels::sumRow<short, ushort>() const
-{
-    return sumShortRow;
-}
-template <> inline SumRowFunc<short, unsigned>::Type DescriptorKernels::sumRow<short, unsigned>() const
-{
-    return sumLongRow;
-}
-template <> inline SumRowFunc<int, unsigned>::Type DescriptorKernels::sumRow<int, unsigned>() const
-{
-    return sumIntRow;
-}
 
 //! Those for this machine, the fastest that cv::setUseOptimized and OPENCV_CPU_DISABLE allow.
 const DescriptorKernels& descriptorKernels();

@@ -10,10 +10,7 @@ namespace iib {
 
 /* Orientation is an integer, so that sums and decisions are exact: ORIENTATION_STEPS a turn, about the
  range of |gx| of 8-bit images. */
-enum
-{
-    ORIENTATION_STEPS = 1024
-};
+constexpr int ORIENTATION_STEPS = 1024;
 
 /* Minimax polynomial a t + b t^3 + c t^5 of ORIENTATION_STEPS / (2 pi) * atan(t) on [0, 1]; its error is
  0.1 step (0.035 degrees). Scalar and vector code evaluate it in the same order without fused operations,

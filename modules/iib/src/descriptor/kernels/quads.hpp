@@ -18,11 +18,7 @@ struct QuadPhase
 {
     int dy, dx, rows, quads;
 
-    enum
-    {
-        COUNT = 4,
-        CHUNK = 16
-    };
+    static constexpr int COUNT = 4, CHUNK = 16;
 
     //! @param i 0 to COUNT - 1, which of those on n x n cells; all but the first exist with overlap only.
     QuadPhase(int n, int i) : dy(i / 2), dx(i % 2), rows((n - dy) / 2), quads((n - dx) / 2) {}
