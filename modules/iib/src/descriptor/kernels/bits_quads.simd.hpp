@@ -7,7 +7,7 @@
 
 // The cells of quads as vectors: their sums, their weights, and comparisons, which are bits.
 
-#include "../../common/simd.hpp"
+#include "../../common/vectors.hpp"
 #include "quads.hpp"
 
 namespace cv {
@@ -16,6 +16,84 @@ namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
+
+//! A bit for each lane where the comparison holds.
+template <typename V> inline unsigned greaterMask(const V& a, const V& b)
+{
+    return (unsigned)v_signmask(a > b);
+}
+template <typename V> inline unsigned greaterEqualMask(const V& a, const V& b)
+{
+    return (unsigned)v_signmask(a >= b);
+}
+template <typename V> inline unsigned equalMask(const V& a, const V& b)
+{
+    return (unsigned)v_signmask(a == b);
+}
+#if CV_AVX512_SKX  // the above turns its masks into vectors and back
+inline unsigned greaterMask(const v_int32& a, const v_int32& b)
+{
+    return _mm512_cmpgt_epi32_mask(a.val, b.val);
+}
+inline unsigned greaterEqualMask(const v_int32& a, const v_int32& b)
+{
+    return _mm512_cmpge_epi32_mask(a.val, b.val);
+}
+inline unsigned equalMask(const v_int32& a, const v_int32& b)
+{
+    return _mm512_cmpeq_epi32_mask(a.val, b.val);
+}
+inline unsigned greaterMask(const v_int16& a, const v_int16& b)
+{
+    return _mm512_cmpgt_epi16_mask(a.val, b.val);
+}
+#endif
+
+/* Stores groups of four lanes, every other one to `even` and to `odd`; `lane` counts the lanes that were stored before, and
+ a vector may be as small as one. */
+inline void storeAlternately(unsigned* even, unsigned* odd, int lane, const v_int32& v)
+{
+    const v_uint32 u = v_reinterpret_as_u32(v);
+#if CV_AVX512_SKX
+    const v_uint32 sorted(_mm512_shuffle_i32x4(u.val, u.val, 0xd8));  // groups 0, 2, 1, 3
+    v_store_low(even + lane / 2, sorted);
+    v_store_high(odd + lane / 2, sorted);
+#elif CV_AVX2
+    v_store_low(even + lane / 2, u);
+    v_store_high(odd + lane / 2, u);
+#else
+    v_store((lane % 8 < 4 ? even : odd) + lane / 8 * 4, u);
+#endif
+}
+
+inline void storeAlternately(double* even, double* odd, int lane, const v_doubles& v)
+{
+#if CV_AVX512_SKX
+    v_store_low(even + lane / 2, v);
+    v_store_high(odd + lane / 2, v);
+#else
+    v_store((lane % 8 < 4 ? even : odd) + lane / 8 * 4 + lane % 4, v);
+#endif
+}
+
+/* Four numbers, each repeated four times, as 16 / v_int32 lanes vectors. Not by way of memory, where what was stored in
+ parts could not be read whole until all stores before it are done. */
+inline void repeatEachFourTimes(const v_int32x4& n, v_int32 out[])
+{
+#if CV_AVX512_SKX
+    const __m512i places = _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
+    out[0] = v_int32(_mm512_permutexvar_epi32(places, _mm512_castsi128_si512(n.val)));
+#elif CV_AVX2
+    const __m256i twice = _mm256_broadcastsi128_si256(n.val);
+    out[0] = v_int32(_mm256_permutevar8x32_epi32(twice, _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1)));
+    out[1] = v_int32(_mm256_permutevar8x32_epi32(twice, _mm256_setr_epi32(2, 2, 2, 2, 3, 3, 3, 3)));
+#else
+    out[0] = v_broadcast_element<0>(n);
+    out[1] = v_broadcast_element<1>(n);
+    out[2] = v_broadcast_element<2>(n);
+    out[3] = v_broadcast_element<3>(n);
+#endif
+}
 
 //! Lanes, one for each channel of a quad, that are mapped at a time, whatever the width of a vector V.
 constexpr int CHUNK = QuadPhase::CHUNK;

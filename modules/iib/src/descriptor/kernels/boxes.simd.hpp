@@ -16,6 +16,20 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
+//! As v_zip, of pairs of values.
+inline void zipPairs(const v_uint32& a, const v_uint32& b, v_uint32& low, v_uint32& high)
+{
+#if CV_AVX2
+    v_uint64 first, second;
+    v_zip(v_reinterpret_as_u64(a), v_reinterpret_as_u64(b), first, second);
+    low = v_reinterpret_as_u32(first);
+    high = v_reinterpret_as_u32(second);
+#else
+    low = v_combine_low(a, b);
+    high = v_combine_high(a, b);
+#endif
+}
+
 //! Sums that 32 bits do not hold: rare, so written plainly.
 template <typename T, bool ROTATED>
 void sumLongCellRow(const T* const rows[BOX_CELL][BOX_PLANES], int cells, const int64* above, int64* out)

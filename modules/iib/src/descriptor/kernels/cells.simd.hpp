@@ -5,7 +5,7 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_CELLS_SIMD_HPP
 #define OPENCV_IIB_DESCRIPTOR_KERNELS_CELLS_SIMD_HPP
 
-#include "../../common/simd.hpp"
+#include "../../common/vectors.hpp"
 #include "kernels.hpp"
 
 namespace cv {
@@ -14,6 +14,83 @@ namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
+
+/* Groups of four values from several places side by side, and a vector of them moved on by one group. A vector of 256
+ bits at most: the offsets of a whole 512-bit one are too many for the registers. Not v_lut_quads: gather instructions
+ are slow on many machines. */
+#if CV_AVX2
+typedef v_uint16x16 v_groups16;
+typedef v_uint32x8 v_groups32;
+
+//! Four places: row + at[0], at[2], at[4], at[6].
+inline v_groups16 loadGroups(const ushort* row, const size_t* at)
+{
+#if CV_AVX512_SKX
+    __m256i v = _mm256_castsi128_si256(_mm_loadl_epi64((const __m128i*)(row + at[0])));
+    v = _mm256_mask_broadcastq_epi64(v, 2, _mm_loadl_epi64((const __m128i*)(row + at[2])));
+    v = _mm256_mask_broadcastq_epi64(v, 4, _mm_loadl_epi64((const __m128i*)(row + at[4])));
+    return v_groups16(_mm256_mask_broadcastq_epi64(v, 8, _mm_loadl_epi64((const __m128i*)(row + at[6]))));
+#else
+    const __m128i low = v_load_halves(row + at[0], row + at[2]).val;
+    return v_groups16(_mm256_inserti128_si256(
+            _mm256_castsi128_si256(low), v_load_halves(row + at[4], row + at[6]).val, 1));
+#endif
+}
+
+//! Two places: row + at[0], at[2].
+inline v_groups32 loadGroups(const unsigned* row, const size_t* at)
+{
+    const __m256i low = _mm256_castsi128_si256(v_load(row + at[0]).val);
+    return v_groups32(_mm256_inserti128_si256(low, v_load(row + at[2]).val, 1));
+}
+
+//! Without the first group, and with the one at `more` behind the last.
+inline v_groups16 nextGroups(const v_groups16& v, const ushort* more)
+{
+    const __m256i next = _mm256_castsi128_si256(v_load_low(more).val);
+#if CV_AVX512_SKX
+    return v_groups16(_mm256_alignr_epi64(next, v.val, 1));
+#else
+    return v_rotate_right<4>(v, v_groups16(next));
+#endif
+}
+
+inline v_groups32 nextGroups(const v_groups32& v, const unsigned* more)
+{
+    const __m256i next = _mm256_castsi128_si256(v_load(more).val);
+#if CV_AVX512_SKX
+    return v_groups32(_mm256_alignr_epi64(next, v.val, 2));
+#else
+    return v_rotate_right<4>(v, v_groups32(next));
+#endif
+}
+
+inline v_groups16 subtractModulo(const v_groups16& a, const v_groups16& b) { return v_sub_wrap(a, b); }
+inline v_groups32 subtractModulo(const v_groups32& a, const v_groups32& b) { return a - b; }
+#else
+typedef v_uint16x8 v_groups16;
+typedef v_uint32x4 v_groups32;
+
+//! Two places: row + at[0], at[2].
+inline v_groups16 loadGroups(const ushort* row, const size_t* at)
+{
+    return v_load_halves(row + at[0], row + at[2]);
+}
+
+//! One place: row + at[0].
+inline v_groups32 loadGroups(const unsigned* row, const size_t* at) { return v_load(row + at[0]); }
+
+//! Without the first group, and with the one at `more` behind the last.
+inline v_groups16 nextGroups(const v_groups16& v, const ushort* more)
+{
+    return v_rotate_right<4>(v, v_groups16(v_load_low(more)));
+}
+
+inline v_groups32 nextGroups(const v_groups32&, const unsigned* more) { return v_load(more); }
+
+inline v_groups16 subtractModulo(const v_groups16& a, const v_groups16& b) { return v_sub_wrap(a, b); }
+inline v_groups32 subtractModulo(const v_groups32& a, const v_groups32& b) { return a - b; }
+#endif
 
 /* n is a power of two, so that the edges of a level are a subset of those of the next. The compiler makes vectors of
  the loop, with this file's instruction set. */

@@ -5,7 +5,7 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_CHANNEL_ROWS_SIMD_HPP
 #define OPENCV_IIB_DESCRIPTOR_KERNELS_CHANNEL_ROWS_SIMD_HPP
 
-#include "../../common/simd.hpp"
+#include "../../common/vectors.hpp"
 #include "kernels.hpp"
 #include "orientation.hpp"
 
@@ -15,6 +15,27 @@ namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
+
+//! `whole` - v where a < b, v elsewhere.
+inline v_int16 subtractWhereLess(const v_int16& a, const v_int16& b, const v_int16& whole, const v_int16& v)
+{
+#if CV_AVX512_SKX
+    return v_int16(_mm512_mask_sub_epi16(v.val, _mm512_cmplt_epi16_mask(a.val, b.val), whole.val, v.val));
+#else
+    const v_int16 mask = a < b;  // v ^ -1 is -v - 1
+    return (v ^ mask) + (mask & (whole + vx_setall_s16(1)));
+#endif
+}
+
+inline v_int32 subtractWhereLess(const v_int32& a, const v_int32& b, const v_int32& whole, const v_int32& v)
+{
+#if CV_AVX512_SKX
+    return v_int32(_mm512_mask_sub_epi32(v.val, _mm512_cmplt_epi32_mask(a.val, b.val), whole.val, v.val));
+#else
+    const v_int32 mask = a < b;  // v ^ -1 is -v - 1
+    return (v ^ mask) + (mask & (whole + vx_setall_s32(1)));
+#endif
+}
 
 inline v_int16 absolute(const v_int16& v) { return v_reinterpret_as_s16(v_abs(v)); }
 

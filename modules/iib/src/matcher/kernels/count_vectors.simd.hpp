@@ -7,13 +7,100 @@
 #ifndef OPENCV_IIB_MATCHER_KERNELS_COUNT_VECTORS_SIMD_HPP
 #define OPENCV_IIB_MATCHER_KERNELS_COUNT_VECTORS_SIMD_HPP
 
-#include "../../common/simd.hpp"
+#include "../../common/vectors.hpp"
 #include "code_layout.hpp"
 
 namespace cv {
 namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
+
+/* Each primitive is chosen by instruction set, never by the width of vectors, which different architectures share; where
+ there is no portable form, a macro says whether it exists. */
+
+//! Number of set bits.
+inline int countBits(unsigned word)
+{
+#if CV_POPCNT
+    return _mm_popcnt_u32(word);
+#else
+    int count = 0;
+    for (; word; word &= word - 1)
+        count++;
+    return count;
+#endif
+}
+
+// Counts the bits of 64-bit words by one instruction.
+#if CV_POPCNT && (defined __x86_64__ || defined _M_X64)
+#define IIB_COUNTS_64_BITS 1
+inline int countBits64(uint64 word) { return (int)_mm_popcnt_u64(word); }
+#else
+#define IIB_COUNTS_64_BITS 0
+#endif
+
+// v_popcount(v_uint32) is one instruction; elsewhere counting bytes is cheaper.
+#if CV_AVX512_ICL && IIB_NATIVE_VECTORS
+#define IIB_COUNTS_LANES 1
+#else
+#define IIB_COUNTS_LANES 0
+#endif
+
+//! A full adder of parity, `first` and `second`, given by x = parity ^ first and a ^ b = first ^ second: returns the
+//! carry and makes parity the low bit of the sum.
+inline v_uint32 fullAdder(v_uint32& parity, const v_uint32& x, const v_uint32& a, const v_uint32& b)
+{
+    const v_uint32 before = parity;
+#if CV_AVX512_SKX && IIB_NATIVE_VECTORS
+    // The next parity is before ^ a ^ b; it stands for y in the table of the carry.
+    parity = v_uint32(_mm512_ternarylogic_epi32(before.val, a.val, b.val, 0x96));
+    return v_uint32(_mm512_ternarylogic_epi32(before.val, x.val, parity.val, 0x74));
+#else
+    const v_uint32 y = a ^ b;
+    parity = before ^ y;
+    return before ^ (x & ~y);
+#endif
+}
+
+// lookUp16 picks bytes out of tables of 16, a table for each 16 bytes of the vector; an index is 0 to 15.
+#if CV_AVX512_SKX && IIB_NATIVE_VECTORS
+#define IIB_LOOKS_UP_16 1
+inline v_uint8 lookUp16(const v_uint8& table, const v_uint8& index)
+{
+    return v_uint8(_mm512_shuffle_epi8(table.val, index.val));
+}
+#elif CV_AVX2 && IIB_NATIVE_VECTORS
+#define IIB_LOOKS_UP_16 1
+inline v_uint8 lookUp16(const v_uint8& table, const v_uint8& index)
+{
+    return v_uint8(_mm256_shuffle_epi8(table.val, index.val));
+}
+#elif CV_SSSE3 && IIB_NATIVE_VECTORS
+#define IIB_LOOKS_UP_16 1
+inline v_uint8 lookUp16(const v_uint8& table, const v_uint8& index)
+{
+    return v_uint8(_mm_shuffle_epi8(table.val, index.val));
+}
+#elif CV_NEON && defined __aarch64__ && IIB_NATIVE_VECTORS
+#define IIB_LOOKS_UP_16 1
+inline v_uint8 lookUp16(const v_uint8& table, const v_uint8& index)
+{
+    return v_uint8(vqtbl1q_u8(table.val, index.val));
+}
+#else
+#define IIB_LOOKS_UP_16 0
+#endif
+
+// Moves the chosen lanes to the front of a vector.
+#if CV_AVX512_SKX && IIB_NATIVE_VECTORS
+#define IIB_COMPRESSES_LANES 1
+inline v_int32 compressLanes(const v_int32& values, int lanes)
+{
+    return v_int32(_mm512_maskz_compress_epi32((__mmask16)lanes, values.val));
+}
+#else
+#define IIB_COMPRESSES_LANES 0
+#endif
 
 typedef v_uint32 Words;
 typedef v_int32 Counts;

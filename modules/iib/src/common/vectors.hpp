@@ -2,10 +2,12 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_COMMON_VECTOR_OPERATORS_HPP
-#define OPENCV_IIB_COMMON_VECTOR_OPERATORS_HPP
+#ifndef OPENCV_IIB_COMMON_VECTORS_HPP
+#define OPENCV_IIB_COMMON_VECTORS_HPP
 
 #include "opencv2/core/version.hpp"
+
+// OpenCV's universal intrinsics, and what all vector code shares.
 
 // Vectors of unknown length (RVV) cannot be members or elements of arrays, and only x86 has its own primitives
 // for wide vectors: elsewhere a vector has 128 bits.
@@ -22,6 +24,12 @@
 namespace cv {
 
 CV_CPU_OPTIMIZATION_HAL_NAMESPACE_BEGIN
+
+#ifdef CV_FORCE_SIMD128_CPP
+#define IIB_NATIVE_VECTORS 0
+#else
+#define IIB_NATIVE_VECTORS 1
+#endif
 
 #if CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 7
 template <typename V> struct VTraits
@@ -75,6 +83,77 @@ template <typename V> inline auto operator~(const V& a) -> decltype(v_not(a)) { 
 #undef IIB_VECTOR_OPERATOR
 #undef IIB_VECTOR_ASSIGNMENT
 #undef IIB_VECTOR_SHIFT
+
+/* Quotients, roots and nearest integers as IEEE 754 says. On ARMv7 the vectors' first two are estimates, and v_round rounds
+ halves up; scalars are exact there. */
+#if CV_NEON && !defined __aarch64__ && !defined _M_ARM64
+inline v_float32 exactQuotient(const v_float32& a, const v_float32& b)
+{
+    float x[4], y[4];
+    v_store(x, a);
+    v_store(y, b);
+    return v_float32(x[0] / y[0], x[1] / y[1], x[2] / y[2], x[3] / y[3]);
+}
+inline v_int32 nearestInt(const v_float32& v)
+{
+    float x[4];
+    v_store(x, v);
+    return v_int32(cvRound(x[0]), cvRound(x[1]), cvRound(x[2]), cvRound(x[3]));
+}
+inline v_float32 exactRoot(const v_float32& v)
+{
+    float x[4];
+    v_store(x, v);
+    return v_float32(std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3]));
+}
+#else
+inline v_float32 exactQuotient(const v_float32& a, const v_float32& b) { return a / b; }
+template <typename V> inline auto nearestInt(const V& v) -> decltype(v_round(v)) { return v_round(v); }
+template <typename V> inline V exactRoot(const V& v) { return v_sqrt(v); }
+#endif
+
+/* Doubles, or one of them where there are no such vectors (ARMv7, WebAssembly). */
+#if CV_SIMD_64F
+typedef v_float64 v_doubles;
+
+inline v_doubles loadDoubles(const double* p) { return vx_load(p); }
+inline v_doubles repeatedDouble(double v) { return vx_setall_f64(v); }
+#else
+typedef double v_doubles;
+
+template <> struct VTraits<double>
+{
+    static constexpr int max_nlanes = 1;
+};
+inline double loadDoubles(const double* p) { return *p; }
+inline double repeatedDouble(double v) { return v; }
+inline void v_store(double* p, double v) { *p = v; }
+inline double v_min(double a, double b) { return std::min(a, b); }
+inline double v_max(double a, double b) { return std::max(a, b); }
+//! As if a comparison gave a lane of all ones or zeros.
+inline int v_signmask(bool comparison) { return comparison; }
+#endif
+
+/* Vectors of 256 bits at most, for values that come from many places. */
+#if CV_AVX2
+typedef v_int32x8 v_samples;
+typedef v_float32x8 v_means;
+
+inline v_samples v_load_samples(const int* p) { return v256_load(p); }
+inline v_samples v_load_samples(const short* p) { return v256_load_expand(p); }
+inline v_samples v_setall_samples(int v) { return v256_setall_s32(v); }
+inline v_means v_load_means(const float* p) { return v256_load(p); }
+inline v_means v_setall_means(float v) { return v256_setall_f32(v); }
+#else
+typedef v_int32x4 v_samples;
+typedef v_float32x4 v_means;
+
+inline v_samples v_load_samples(const int* p) { return v_load(p); }
+inline v_samples v_load_samples(const short* p) { return v_load_expand(p); }
+inline v_samples v_setall_samples(int v) { return v_setall_s32(v); }
+inline v_means v_load_means(const float* p) { return v_load(p); }
+inline v_means v_setall_means(float v) { return v_setall_f32(v); }
+#endif
 
 CV_CPU_OPTIMIZATION_HAL_NAMESPACE_END
 
