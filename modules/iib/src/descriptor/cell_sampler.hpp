@@ -6,12 +6,53 @@
 #define OPENCV_IIB_DESCRIPTOR_CELL_SAMPLER_HPP
 
 #include "bit_encoder.hpp"
+#include "channels.hpp"
 #include "rotation.hpp"
-#include "sampled_channels.hpp"
 #include "workspace.hpp"
 
 namespace cv {
 namespace iib {
+
+/** What the channels of a descriptor are sampled from, GROUP_CHANNELS values to a pixel: what the image's channels are
+ made of comes first, extra maps follow. */
+struct SampledChannels
+{
+    bool hasImage;
+    std::vector<std::vector<Channel>> packs;
+    std::vector<int> planeOf;  //!< of each channel, in the planes of sums
+
+    explicit SampledChannels(const std::vector<Channel>& channels) : hasImage(false)
+    {
+        std::vector<Channel> maps;
+        for (const Channel& c : channels)
+        {
+            int plane = 0;
+            while (c.kind >> plane > 1)
+                plane++;
+            planeOf.push_back(c.kind == 0 ? -1 - (int)maps.size() : plane);
+            if (c.kind == 0)
+                maps.push_back(c);
+            else if (!hasImage)
+            {
+                hasImage = true;
+                const int kinds[] = {IIB::CHANNEL_SIGNED_GRAD_X, IIB::CHANNEL_SIGNED_GRAD_Y,
+                        IIB::CHANNEL_ORIENTATION, IIB::CHANNEL_INTENSITY};
+                packs.push_back(std::vector<Channel>());
+                for (int kind : kinds)
+                    packs[0].push_back(Channel{kind, c.map});
+            }
+        }
+        for (int& plane : planeOf)
+            if (plane < 0)
+                plane = imagePlanes() - 1 - plane;
+        for (size_t i = 0; i < maps.size(); i += GROUP_CHANNELS)
+            packs.push_back(std::vector<Channel>(
+                    maps.begin() + i, maps.begin() + std::min(i + GROUP_CHANNELS, maps.size())));
+    }
+
+    int imagePlanes() const { return hasImage ? IMAGE_PLANES : 0; }
+    int planes() const { return imagePlanes() + GROUP_CHANNELS * ((int)packs.size() - hasImage); }
+};
 
 //! Both components of a gradient are 4 times the largest pixel at most; rotated, one is sqrt(2) times that at most.
 inline int maxRotatedGradient(int depth) { return 6 * maxPixel(depth); }

@@ -54,5 +54,112 @@ int maxValue(const Channel* channels, int count, int gradient)
     return largest;
 }
 
+template <typename T>
+static void widen(const RowKernels<T>& kernels, const Mat& map, int y, int x, T* out, int width)
+{
+    if (map.depth() == CV_8U)
+        kernels.widen8u(map.ptr<uchar>(y) + x, out, width);
+    else
+        kernels.widen16u(map.ptr<ushort>(y) + x, out, width);
+}
+
+template <typename T>
+ChannelRows<T>::ChannelRows(const std::vector<Channel>& channels_, Rect area_, int signedOffset_,
+        const RowKernels<T>& kernels_, ScratchMemory& memory)
+    : channels(channels_), area(area_),
+      source(reflectedRange(area_.x, area_.x + area_.width, channels_[0].map.cols)),
+      origin(std::min(area_.x, source.start)), signedOffset((T)signedOffset_), kernels(kernels_),
+      gradientOf(0),
+      step(wholeLines<T>((size_t)std::max(area_.x + area_.width, source.end) - origin + 2 + ROW_PADDING)),
+      scratch(memory.get<T>(SCRATCH_ROWS * step))
+{
+    for (const Channel& c : channels)
+        if (usesGradient(c))
+            gradientOf = &c.map;
+    for (int& y : read)
+        y = -1;
+    for (int i = 0; i < GROUP_CHANNELS; i++)
+    {
+        placeOf[i] = std::min(i, (int)channels.size() - 1) * step + (area.x - origin);
+        planes[i] = row(FIRST_PLANE) + placeOf[i];
+    }
+}
+
+template <typename T> ImageChannelRows<T> ChannelRows<T>::imageChannels(T* out) const
+{
+    ImageChannelRows<T> rows = ImageChannelRows<T>();
+    for (size_t i = 0; i < channels.size(); i++)
+    {
+        T* const plane = out + i * step + (source.start - origin);
+        switch (channels[i].kind)
+        {
+        case IIB::CHANNEL_GRAD_X: rows.absoluteX = plane; break;
+        case IIB::CHANNEL_GRAD_Y: rows.absoluteY = plane; break;
+        case IIB::CHANNEL_ORIENTATION: rows.steps = plane; break;
+        case IIB::CHANNEL_SIGNED_GRAD_X: rows.x = plane; break;
+        case IIB::CHANNEL_SIGNED_GRAD_Y: rows.y = plane; break;
+        case IIB::CHANNEL_INTENSITY: rows.pixels = plane; break;
+        default: break;
+        }
+    }
+    return rows;
+}
+
+template <typename T> ImageRows<T> ChannelRows<T>::imageRows(int y)
+{
+    const T* around[3];
+    for (int i = 0; i < 3; i++)
+    {
+        // pixels beyond the image repeat its border, as Sobel's BORDER_REPLICATE
+        const int imageY = std::min(std::max(y + i - 1, 0), gradientOf->rows - 1);
+        T* out = row(imageY % IMAGE_ROWS);
+        around[i] = out;
+        if (read[imageY % IMAGE_ROWS] == imageY)
+            continue;
+        read[imageY % IMAGE_ROWS] = imageY;
+        widen(kernels, *gradientOf, imageY, source.start, out + 1, source.size());
+        const int left = std::max(source.start - 1, 0), right = std::min(source.end, gradientOf->cols - 1);
+        widen(kernels, *gradientOf, imageY, left, out, 1);
+        widen(kernels, *gradientOf, imageY, right, out + source.size() + 1, 1);
+    }
+    return {around[0], around[1], around[2]};
+}
+
+//! Fills what lies beside the image.
+template <typename T> void ChannelRows<T>::reflect(T* out) const
+{
+    const int width = channels[0].map.cols, end = area.x + area.width;
+    for (int x = area.x; x < std::min(end, 0); x++)
+        out[x - origin] = out[reflected(x, width) - origin];
+    for (int x = std::max(area.x, width); x < end; x++)
+        out[x - origin] = out[reflected(x, width) - origin];
+}
+
+template <typename T> const T* const* ChannelRows<T>::compute(int y)
+{
+    y = reflected(y, channels[0].map.rows);
+    if (gradientOf)
+        kernels.imageChannels(imageRows(y), signedOffset, imageChannels(row(FIRST_PLANE)), source.size());
+    for (size_t i = 0; i < channels.size(); i++)
+    {
+        T* const out = row(FIRST_PLANE + (int)i);
+        if (channels[i].kind == 0 || !gradientOf)
+            widen(kernels, channels[i].map, y, source.start, out + (source.start - origin), source.size());
+        reflect(out);
+    }
+    return planes;
+}
+
+template <typename T> void ChannelRows<T>::add(int y, const T* above, T* out)
+{
+    y = reflected(y, channels[0].map.rows);
+    kernels.addImageChannels(imageRows(y), signedOffset, imageChannels(out), above - out, source.size());
+    for (size_t i = 0; i < channels.size(); i++)
+        reflect(out + i * step);
+}
+
+template class ChannelRows<short>;
+template class ChannelRows<int>;
+
 }  // namespace iib
 }  // namespace cv

@@ -5,7 +5,9 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_CHANNELS_HPP
 #define OPENCV_IIB_DESCRIPTOR_CHANNELS_HPP
 
+#include "kernels/kernels.hpp"
 #include "layout.hpp"
+#include "support_region.hpp"
 
 namespace cv {
 namespace iib {
@@ -44,6 +46,52 @@ inline int maxValue(const std::vector<Channel>& channels, int gradient)
 {
     return maxValue(channels.data(), (int)channels.size(), gradient);
 }
+
+/** The rows of a group of channels over a rectangle, one at a time from the top. Where the rectangle leaves the image, the
+ channels are reflected (BORDER_REFLECT_101). */
+template <typename T> class ChannelRows
+{
+public:
+    //! @param channels 1 to GROUP_CHANNELS; they, the kernels and the memory outlive the object.
+    //! @param signedOffset added to signed gradients, to keep them positive.
+    ChannelRows(const std::vector<Channel>& channels, Rect area, int signedOffset,
+            const RowKernels<T>& kernels, ScratchMemory& memory);
+
+    //! Moves on to row y, the one after the last row or any row.
+    //! @return GROUP_CHANNELS channels in the row, at the pixels of the rectangle; missing ones repeat the last.
+    const T* const* compute(int y);
+
+    /** Adds row y of the channels, all of them the image's, to other rows, modulo 2^16 or 2^32.
+     @param above, out rowSize() values. */
+    void add(int y, const T* above, T* out);
+
+    //! Values in a row of all channels that the caller keeps, and where each has the rectangle's first pixel in it.
+    size_t rowSize() const { return GROUP_CHANNELS * step; }
+    const size_t* places() const { return placeOf; }
+
+private:
+    // Rows of the scratch memory: three of the image in turn, the channels.
+    static constexpr int IMAGE_ROWS = 3, FIRST_PLANE = IMAGE_ROWS,
+                         SCRATCH_ROWS = FIRST_PLANE + GROUP_CHANNELS;
+
+    ImageRows<T> imageRows(int y);
+    ImageChannelRows<T> imageChannels(T* out) const;
+    void reflect(T* out) const;
+    T* row(int i) { return scratch + i * step; }
+
+    const std::vector<Channel>& channels;
+    const Rect area;
+    const Range source;  //!< columns of the image that the rectangle shows, also reflected
+    const int origin;    //!< the first column of the rows of channels
+    const T signedOffset;
+    const RowKernels<T>& kernels;
+    const Mat* gradientOf;  //!< the image, or null if no channel needs its gradient
+    int read[IMAGE_ROWS];   //!< which row of the image each of the first three scratch rows holds
+    size_t step;
+    T* const scratch;
+    size_t placeOf[GROUP_CHANNELS];
+    const T* planes[GROUP_CHANNELS];
+};
 
 }  // namespace iib
 }  // namespace cv

@@ -5,7 +5,7 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_COLUMN_BAND_HPP
 #define OPENCV_IIB_DESCRIPTOR_COLUMN_BAND_HPP
 
-#include "channel_rows.hpp"
+#include "channels.hpp"
 #include "row_ring.hpp"
 
 namespace cv {

@@ -7,13 +7,148 @@
 
 #include <numeric>
 
+#include "channels.hpp"
 #include "keypoint_batches.hpp"
-#include "pixel_band.hpp"
 #include "rotated_region.hpp"
-#include "sparse_pixels.hpp"
+#include "workspace.hpp"
 
 namespace cv {
 namespace iib {
+
+/** The last rows of GROUP_CHANNELS channels, side by side in each pixel, to be sampled anywhere. Goes from the top of a
+ rectangle of the image to its bottom. */
+template <typename T> class PixelBand
+{
+public:
+    //! Pixels that a band keeps; a caller that cannot afford them samples without one.
+    static double pixelsKept(Rect area, int rows) { return (double)rowStep(area) * capacityFor(area, rows); }
+
+    //! @param channels 1 to GROUP_CHANNELS; they, the kernels and the memory outlive the band.
+    //! @param rows how many rows, the newest included, a reader looks at.
+    PixelBand(const std::vector<Channel>& channels, Rect area_, int rows, const RowKernels<T>& kernels_,
+            ScratchMemory& rowMemory, ScratchMemory& pixelMemory)
+        : channelRows(channels, area_, 0, kernels_, rowMemory), kernels(kernels_), area(area_), kept(rows),
+          capacity(capacityFor(area_, rows)), top(area_.y), done(area_.y), pixelStep(rowStep(area_)),
+          pixels(pixelMemory.get<T>((size_t)pixelStep * capacity * GROUP_CHANNELS))
+    {
+    }
+
+    //! Makes the rows up to and without `end` of the image; `end` does not decrease from call to call.
+    void advance(int end)
+    {
+        if (end > top + capacity)
+            moveTop(std::max(end - kept, area.y));
+        for (; done < end; done++)
+            kernels.interleave(channelRows.compute(done), row(done), area.width);
+    }
+
+    //! Pixels at hand, from the first row on, step() pixels from row to row; the first one is at origin() in the image.
+    const T* data() const { return pixels; }
+    int step() const { return pixelStep; }
+    Point origin() const { return Point(area.x, top); }
+
+private:
+    static int rowStep(Rect area) { return area.width + ROW_PADDING; }
+    // Twice the rows that are kept: each row is then moved once at most.
+    static int capacityFor(Rect area, int rows) { return (int)std::min<int64>(2 * (int64)rows, area.height); }
+
+    T* row(int y) { return pixels + (size_t)(y - top) * pixelStep * GROUP_CHANNELS; }
+
+    void moveTop(int y)
+    {
+        if (done > y)
+            memmove(pixels, row(y), (size_t)(done - y) * pixelStep * GROUP_CHANNELS * sizeof(T));
+        done = std::max(done, y);
+        top = y;
+    }
+
+    ChannelRows<T> channelRows;
+    const RowKernels<T>& kernels;
+    const Rect area;
+    const int kept, capacity;
+    int top, done;  //!< rows of the image at hand: [top, done)
+    const int pixelStep;
+    T* const pixels;
+};
+
+//! One channel's values at a sample: pixels beyond the image repeat its border.
+template <typename Pixel> struct Neighbourhood
+{
+    const Mat& map;
+    int x0, x1, x2, y;
+
+    Neighbourhood(const Mat& map_, int x, int y_)
+        : map(map_), x0(std::max(x - 1, 0)), x1(x), x2(std::min(x + 1, map_.cols - 1)), y(y_)
+    {
+    }
+
+    int centre() const { return map.ptr<Pixel>(y)[x1]; }
+
+    //! Sobel 3x3.
+    void gradient(int& gx, int& gy) const
+    {
+        const Pixel *a = map.ptr<Pixel>(std::max(y - 1, 0)), *m = map.ptr<Pixel>(y),
+                    *b = map.ptr<Pixel>(std::min(y + 1, map.rows - 1));
+        gx = (a[x2] - a[x0]) + 2 * (m[x2] - m[x0]) + (b[x2] - b[x0]);
+        gy = (b[x0] - a[x0]) + 2 * (b[x1] - a[x1]) + (b[x2] - a[x2]);
+    }
+};
+
+/** The samples of one keypoint read from the maps themselves, as pixels in the order of the places. For grids that touch
+ few pixels of the area that they span. */
+template <typename T> class SparsePixels
+{
+public:
+    SparsePixels(const RowKernels<T>& kernels_, ScratchMemory& memory)
+        : kernels(kernels_), values(memory.get<T>((size_t)(MAX_SAMPLES + ROW_PADDING) * 2 * GROUP_CHANNELS))
+    {
+    }
+
+    //! @param x, y places in the maps, `count` of them. @return as many pixels of GROUP_CHANNELS values.
+    const T* read(const std::vector<Channel>& pack, const int* x, const int* y, int count)
+    {
+        for (int i = 0; i < (int)pack.size(); i++)
+            if (pack[i].kind != IIB::CHANNEL_SIGNED_GRAD_Y && pack[i].kind != IIB::CHANNEL_ORIENTATION)
+            {
+                if (pack[i].map.depth() == CV_8U)
+                    readPlane<uchar>(pack[i], x, y, count, i);
+                else
+                    readPlane<ushort>(pack[i], x, y, count, i);
+            }
+        if (pack[0].kind != 0)
+            kernels.orientation(plane(0), plane(1), plane(2), count);
+        const T* planes[GROUP_CHANNELS];
+        for (int i = 0; i < GROUP_CHANNELS; i++)
+            planes[i] = plane(std::min(i, (int)pack.size() - 1));
+        kernels.interleave(planes, plane(GROUP_CHANNELS), count);
+        return plane(GROUP_CHANNELS);
+    }
+
+private:
+    T* plane(int i) { return values + (size_t)i * (MAX_SAMPLES + ROW_PADDING); }
+
+    //! A channel; with the horizontal gradient comes the vertical one, as the next plane.
+    template <typename Pixel>
+    void readPlane(const Channel& c, const int* x, const int* y, int count, int index)
+    {
+        for (int s = 0; s < count; s++)
+        {
+            const Neighbourhood<Pixel> around(c.map, x[s], y[s]);
+            if (usesGradient(c))
+            {
+                int gx, gy;
+                around.gradient(gx, gy);
+                plane(index)[s] = (T)gx;
+                plane(index + 1)[s] = (T)gy;
+            }
+            else
+                plane(index)[s] = (T)around.centre();
+        }
+    }
+
+    const RowKernels<T>& kernels;
+    T* const values;
+};
 
 /* A row of pixels costs about a sixteenth of what as many samples cost that are read one by one. The limit keeps memory
  and indices small: a few large regions may span billions of pixels. */
