@@ -72,7 +72,7 @@ private:
     ChannelRows<T> channelRows;
     RowRing<Sum> ring;
     const int width;
-    const typename SumRowFunc<T, Sum>::Type sumRow;
+    const SumRowFunc<T, Sum> sumRow;
     const typename SumKernels<Sum>::CellsFunc sumCells;
     const int longestPart;  //!< a Sum holds the sums over as many rows of as many pixels
 };

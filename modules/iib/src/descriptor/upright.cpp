@@ -12,11 +12,6 @@ namespace iib {
 
 namespace {
 
-template <typename Sum> CellGrid<Sum>& cellsOf(Workspace& workspace);
-template <> CellGrid<ushort>& cellsOf(Workspace& workspace) { return workspace.shortCells; }
-template <> CellGrid<unsigned>& cellsOf(Workspace& workspace) { return workspace.cells; }
-template <> CellGrid<double>& cellsOf(Workspace& workspace) { return workspace.doubleCells; }
-
 //! By sums over cells that a Band makes.
 template <typename Band, typename Sum>
 void describeBatch(const DescriptorPlan& plan, const ChannelGroup& group,
@@ -25,7 +20,7 @@ void describeBatch(const DescriptorPlan& plan, const ChannelGroup& group,
 {
     const Size image = channels[0].map.size();
     const int n = plan.cellsInRow();
-    CellGrid<Sum>& cells = cellsOf<Sum>(workspace);
+    CellGrid<Sum>& cells = workspace.cellsOf(Sum());
     const BitEncoder encoder(plan, group, maxValue(channels, maxGradient(channels)), workspace.encoder);
     Band band(channels, batch.area, batch.rows + KeyPointBatch::BAND_ROWS + 1, plan.kernels,
             workspace.channelRows, workspace.ring);

@@ -15,10 +15,7 @@ namespace iib {
 //! Memory that one thread uses again for each batch of keypoints. What it holds means nothing between two batches.
 struct Workspace
 {
-    enum
-    {
-        MAX_PACKS = 1 + (MAX_EXTRA_CHANNELS + GROUP_CHANNELS - 1) / GROUP_CHANNELS
-    };
+    static constexpr int MAX_PACKS = 1 + (MAX_EXTRA_CHANNELS + GROUP_CHANNELS - 1) / GROUP_CHANNELS;
 
     ScratchMemory channelRows, ring;
     ScratchMemory sourceRows[MAX_PACKS], sourcePixels[MAX_PACKS], sparsePixels,
@@ -26,6 +23,9 @@ struct Workspace
     CellGrid<ushort> shortCells;
     CellGrid<unsigned> cells, parentCells;
     CellGrid<double> doubleCells;
+    CellGrid<ushort>& cellsOf(ushort) { return shortCells; }
+    CellGrid<unsigned>& cellsOf(unsigned) { return cells; }
+    CellGrid<double>& cellsOf(double) { return doubleCells; }
     BitEncoder::Workspace encoder;
     ScratchMemory boxMeans;
     BoxPlaces boxPlaces;

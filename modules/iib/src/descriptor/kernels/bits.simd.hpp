@@ -20,15 +20,15 @@ namespace {
 constexpr int MAX_QUADS = 1 << (MAX_GRANULARITY - 1), MAX_LANES = MAX_QUADS * GROUP_CHANNELS;
 
 template <typename Cell>
-void parentSums(const CellGrid<Cell>& cells, CellGrid<typename Level<Cell>::Parent>& parents)
+void parentSums(const CellGrid<Cell>& cells, CellGrid<typename BitsKernels<Cell>::Parent>& parents)
 {
-    typedef typename Level<Cell>::Vector V;
+    typedef typename QuadRows<Cell>::V V;
     const int n = cells.size() / 2;
     parents.create(n);
     for (int first = 0; first < n * GROUP_CHANNELS; first += CHUNK)
     {
         QuadRows<Cell> quads(cells, 0, 0, first);
-        ParentRows<typename Level<Cell>::Parent> sums(parents, first);
+        ParentRows<typename BitsKernels<Cell>::Parent> sums(parents, first);
         for (int r = 0; r < n; r++, quads.next(), sums.next())
             for (int lane = 0; lane < CHUNK; lane += Chunk<V>::LANES)
             {
@@ -78,7 +78,7 @@ void compareQuads(const CellGrid<Cell>& cells, const LevelShape& shape, const Ce
     const int* const rowEdges = edges.y + phase.dy * shape.step;
     for (int first = 0; first < phase.lanes(); first += CHUNK, out.nextChunk())
     {
-        const ColumnWeights<typename Level<Cell>::Vector> columns(x, phase.dx + first / 2);
+        const ColumnWeights<typename QuadRows<Cell>::V> columns(x, phase.dx + first / 2);
         compareColumns<Mapping, WITH_PARENTS>(QuadRows<Cell>(cells, phase.dy, phase.dx, first), columns,
                 rowEdges, shape.step, phase.rows, ParentRows<Parent>(parents, first), out);
     }
@@ -134,7 +134,7 @@ template <typename Cell> struct BitsKernelsOf
     template <typename Mapping> BitsKernels<Cell> visit() const
     {
         const BitsKernels<Cell> k = {
-                writeLevels<Mapping, Cell, typename Level<Cell>::Parent>, parentSums<Cell>};
+                writeLevels<Mapping, Cell, typename BitsKernels<Cell>::Parent>, parentSums<Cell>};
         return k;
     }
 };

@@ -102,18 +102,6 @@ template <typename V> struct Chunk
     static constexpr int LANES = VTraits<V>::max_nlanes, VECTORS = CHUNK / LANES;
 };
 
-//! What a level's products are computed in, and the type of the next coarser level's sums.
-template <typename Cell> struct Level
-{
-    typedef v_int32 Vector;
-    typedef unsigned Parent;
-};
-template <> struct Level<double>
-{
-    typedef v_doubles Vector;
-    typedef double Parent;
-};
-
 inline v_int32 loadCells(const ushort* p) { return v_reinterpret_as_s32(vx_load_expand(p)); }
 inline v_int32 loadCells(const unsigned* p) { return v_reinterpret_as_s32(vx_load(p)); }
 inline v_doubles loadCells(const double* p) { return loadDoubles(p); }
@@ -170,7 +158,7 @@ struct Put
 template <typename Cell> class QuadRows
 {
 public:
-    typedef typename Level<Cell>::Vector V;
+    typedef decltype(loadCells((const Cell*)0)) V;
 
     //! Begins with quads whose top left cells are in row dy and columns dx, dx + 2, ..., at value `first`.
     QuadRows(const CellGrid<Cell>& cells, int dy, int dx, int first)

@@ -144,19 +144,10 @@ private:
     const int count, shift;
 };
 
-template <typename Sum> struct Groups
-{
-    typedef v_groups16 Vector;
-};
-template <> struct Groups<unsigned>
-{
-    typedef v_groups32 Vector;
-};
-
 template <typename Sum>
 void cellSums(const RingRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells)
 {
-    typedef typename Groups<Sum>::Vector V;
+    typedef decltype(loadGroups(rows.data, (const size_t*)0)) V;
     constexpr int COLUMNS = 2 * VTraits<V>::max_nlanes / GROUP_CHANNELS;
     const RowFinder<Sum> row(rows, yEdges[0]);
     AutoBuffer<const Sum*, 64> lines(n);

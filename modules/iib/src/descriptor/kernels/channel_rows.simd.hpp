@@ -97,15 +97,8 @@ private:
     const OctantSteps32 even, odd;
 };
 
-template <typename V> struct OctantSteps;
-template <> struct OctantSteps<v_int16>
-{
-    typedef OctantSteps16 Type;
-};
-template <> struct OctantSteps<v_int32>
-{
-    typedef OctantSteps32 Type;
-};
+inline OctantSteps16 octantSteps(const v_int16& lo, const v_int16& hi) { return OctantSteps16(lo, hi); }
+inline OctantSteps32 octantSteps(const v_int32& lo, const v_int32& hi) { return OctantSteps32(lo, hi); }
 
 //! A gradient, its absolute values, and where it points.
 template <typename T, typename V> struct Gradient
@@ -124,10 +117,9 @@ template <typename T, typename V> struct Gradient
         return Gradient(((a2 - a0) + (b2 - b0)) + (dm + dm), (d0 + d2) + (d1 + d1));
     }
 
-    typename OctantSteps<V>::Type octant() const
+    auto octant() const -> decltype(octantSteps(absoluteX, absoluteY))
     {
-        return typename OctantSteps<V>::Type(
-                v_min(absoluteX, absoluteY), v_max(v_max(absoluteX, absoluteY), setAll((T)1)));
+        return octantSteps(v_min(absoluteX, absoluteY), v_max(v_max(absoluteX, absoluteY), setAll((T)1)));
     }
 
     //! atan2(-gy, gx), modulo ORIENTATION_STEPS, from the steps in its octant.

@@ -122,10 +122,8 @@ template <typename Sum> struct RingRows
 };
 
 //! From a row of each channel: out = above + sums along the row; both begin left of the first pixel, with 0.
-template <typename T, typename Sum> struct SumRowFunc
-{
-    typedef void (*Type)(const T* const planes[GROUP_CHANNELS], int width, const Sum* above, Sum* out);
-};
+template <typename T, typename Sum>
+using SumRowFunc = void (*)(const T* const planes[GROUP_CHANNELS], int width, const Sum* above, Sum* out);
 
 //! For sums in double, all products and parent sums are doubles, else 32-bit integers, which they must fit.
 template <typename Sum> struct BitsKernels
@@ -156,9 +154,9 @@ struct DescriptorKernels
     const char* instructionSet;  //!< for which they were compiled
     PixelKernels<short> shortPixels;
     PixelKernels<int> intPixels;
-    SumRowFunc<short, ushort>::Type sumShortRow;
-    SumRowFunc<short, unsigned>::Type sumLongRow;
-    SumRowFunc<int, unsigned>::Type sumIntRow;
+    SumRowFunc<short, ushort> sumShortRow;
+    SumRowFunc<short, unsigned> sumLongRow;
+    SumRowFunc<int, unsigned> sumIntRow;
     SumKernels<ushort> shortSums;
     /** As shortSums.cells, from the sums down the columns, modulo 2^16. Null where it would be slow, as it is for cells
      wider than NARROW_CELL. May read ROW_PADDING values past the end of a row.
@@ -176,9 +174,9 @@ struct DescriptorKernels
     const PixelKernels<int>& pixels(int) const { return intPixels; }
     const SumKernels<ushort>& sums(ushort) const { return shortSums; }
     const SumKernels<unsigned>& sums(unsigned) const { return longSums; }
-    SumRowFunc<short, ushort>::Type sumRow(short, ushort) const { return sumShortRow; }
-    SumRowFunc<short, unsigned>::Type sumRow(short, unsigned) const { return sumLongRow; }
-    SumRowFunc<int, unsigned>::Type sumRow(int, unsigned) const { return sumIntRow; }
+    SumRowFunc<short, ushort> sumRow(short, ushort) const { return sumShortRow; }
+    SumRowFunc<short, unsigned> sumRow(short, unsigned) const { return sumLongRow; }
+    SumRowFunc<int, unsigned> sumRow(int, unsigned) const { return sumIntRow; }
 };
 
 //! Those for this machine, the fastest that cv::setUseOptimized and OPENCV_CPU_DISABLE allow.

@@ -10,12 +10,9 @@
 namespace cv {
 namespace iib {
 
-enum
-{
-    NORMALIZATION_PADDING = 64,  //!< values that kernels may read and write on either side of a row
-    GREY_BITS = 7,               //!< pixels, means and differences are grey levels of 0..255 in 2^-7
-    WHITE = 255 << GREY_BITS
-};
+constexpr int NORMALIZATION_PADDING = 64;  //!< values that kernels may read and write on either side of a row
+constexpr int GREY_BITS = 7;  //!< pixels, means and differences are grey levels of 0..255 in 2^-7
+constexpr int WHITE = 255 << GREY_BITS;
 
 /* What local normalization does with rows. A `half` row has half as many values as those it comes from or goes to.
  All decisions are on integers but gain's, whose square root and quotient IEEE 754 rounds in one way. */

@@ -17,11 +17,7 @@ const NormalizationKernels& normalizationKernels();
 
 namespace {
 
-enum
-{
-    SHORTS = VTraits<v_int16>::max_nlanes,
-    INTS = VTraits<v_int32>::max_nlanes
-};
+constexpr int SHORTS = VTraits<v_int16>::max_nlanes, INTS = VTraits<v_int32>::max_nlanes;
 
 void widen(const uchar* pixels, short* out, int width)
 {
