@@ -39,17 +39,17 @@ void parentSums(const CellGrid<Cell>& cells, CellGrid<typename BitsKernels<Cell>
     }
 }
 
-//! Compares a chunk of quads and all those below it. WITH_PARENTS also stores the sums over quads.
+//! Compares the first `lanes` of a chunk of quads and all those below it. WITH_PARENTS also stores the sums over quads.
 template <typename Mapping, bool WITH_PARENTS, typename Cell, typename V, typename Parent, typename Out>
 inline void compareColumns(QuadRows<Cell> quads, const ColumnWeights<V>& columns, const int* edges, int step,
-        int rows, ParentRows<Parent> sums, Out out)
+        int rows, int lanes, ParentRows<Parent> sums, Out out)
 {
     for (int r = 0; r < rows; r++)
     {
         const Weights heights(edges[step] - edges[0], edges[2 * step] - edges[step]);
         edges += 2 * step;
         unsigned chunk[Mapping::BITS] = {};
-        for (int i = 0; i < Chunk<V>::VECTORS; i++)
+        for (int i = 0; i < Chunk<V>::VECTORS && i * Chunk<V>::LANES < lanes; i++)
         {
             V x[4], weights[] = {columns.left[i], columns.right[i], columns.left[i], columns.right[i]};
             quads.load(i * Chunk<V>::LANES, x);
@@ -80,7 +80,8 @@ void compareQuads(const CellGrid<Cell>& cells, const LevelShape& shape, const Ce
     {
         const ColumnWeights<typename QuadRows<Cell>::V> columns(x, phase.dx + first / 2);
         compareColumns<Mapping, WITH_PARENTS>(QuadRows<Cell>(cells, phase.dy, phase.dx, first), columns,
-                rowEdges, shape.step, phase.rows, ParentRows<Parent>(parents, first), out);
+                rowEdges, shape.step, phase.rows, phase.lanes() - first, ParentRows<Parent>(parents, first),
+                out);
     }
 }
 
