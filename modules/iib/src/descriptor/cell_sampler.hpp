@@ -80,7 +80,7 @@ public:
 
     const std::vector<std::vector<Channel>>& packs() const { return sampled.packs; }
 
-    //! All planes of sums. @param points of the grid: GridPixels::Points.
+    //! Makes all planes of sums. @param points of the grid: GridPixels::Points.
     template <typename Points>
     void sum(const Points& points, const SampleGrid& grid, const Rotation& rotation)
     {
@@ -102,7 +102,7 @@ public:
         }
     }
 
-    //! The bits of all groups of channels.
+    //! Writes the bits of all groups of channels.
     void write(const SampleGrid& grid, uchar* descriptor)
     {
         const int n = plan.cellsInRow(), cell = grid.n / n;

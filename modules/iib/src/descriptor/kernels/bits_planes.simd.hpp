@@ -16,8 +16,8 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-/* Moves the bits of a mask together, to the low end. Processors with AVX-512 have a fast instruction for it; among those
- with AVX2 are some where it is slower than a dozen shifts. */
+/* PEXT, which packs the bits of a mask at the low end. It is fast on all processors with AVX-512; on some with AVX2 it is
+ slower than a dozen shifts. */
 #if CV_AVX512_SKX && (defined __x86_64__ || defined _M_X64)
 #define IIB_HAS_FAST_BIT_COMPRESS 1
 #ifdef __GNUC__
@@ -34,7 +34,7 @@ inline void freeUpperHalves() { _mm256_zeroupper(); }
 #define IIB_TARGET_BIT_COMPRESS
 #endif
 
-//! Where the bits of a chunk go, two bytes for each plane.
+//! Writes the bits of chunks to planes in memory, two bytes for each plane.
 struct PlaneRows
 {
     uchar* first;
@@ -43,7 +43,7 @@ struct PlaneRows
     //! A chunk of each plane of a row.
     template <int PLANES> void storeRow(const unsigned chunks[PLANES])
     {
-        if (PLANES % 4 == 0 && plane == CHUNK / 8)  // whole words, as they may soon be read
+        if (PLANES % 4 == 0 && plane == CHUNK / 8)  // whole words, which are fast to read back
             for (int p = 0; p + 3 < PLANES; p += 4)
                 storeBytes((uint64)(ushort)chunks[p] | (uint64)(ushort)chunks[p + 1] << 16 |
                                    (uint64)(ushort)chunks[p + 2] << 32 | (uint64)(ushort)chunks[p + 3] << 48,
@@ -79,14 +79,14 @@ inline unsigned dropLanes(unsigned chunk, int channels)
     }
 }
 
-//! Appends the lowest `lanes` bits of a chunk but for those of channels that are not in use.
+//! Appends the lowest `lanes` bits of a chunk without those of channels that are not in use.
 inline void appendChunk(unsigned chunk, int lanes, int channels, BitAppender& out)
 {
     const int count = lanes / GROUP_CHANNELS * channels;
     out.append(dropLanes(chunk, channels) & ((1u << count) - 1), count);
 }
 
-//! Appends a plane, `lanes` bits of which those of the channels in use are wanted.
+//! Appends the `lanes` bits of a plane without those of channels that are not in use.
 inline void append(const uchar* plane, int lanes, int channels, BitAppender& out)
 {
     if (channels == GROUP_CHANNELS)
@@ -106,8 +106,7 @@ inline void append(const uchar* plane, int lanes, int channels, BitAppender& out
 //! Appends the comparisons of all quads of a phase.
 inline void append(PlaneRows planes, const QuadPhase& phase, int bits, int channels, BitAppender& out)
 {
-    BitAppender writer =
-            out;  // a local copy: a store to uchar* could change `out`, so that it would be loaded anew
+    BitAppender writer = out;  // a copy, which stores to uchar* surely do not change
     for (int r = 0; r < phase.rows; r++, planes.first += planes.row)
         for (int plane = 0; plane < bits; plane++)
             append(planes.first + plane * planes.plane, phase.lanes(), channels, writer);
@@ -149,8 +148,7 @@ private:
 IIB_TARGET_BIT_COMPRESS inline void compressChosen(
         const ChosenBits& chosen, const uchar* comparisons, BitAppender& out)
 {
-    BitAppender writer =
-            out;  // a local copy: a store to uchar* could change `out`, so that it would be loaded anew
+    BitAppender writer = out;  // a copy, which stores to uchar* surely do not change
     for (const ChosenBits::Word& word : chosen.words())
         writer.append(
                 compressBits(loadWord(comparisons + word.byte), word.compressor.mask), word.compressor.count);

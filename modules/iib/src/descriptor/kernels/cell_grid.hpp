@@ -28,7 +28,7 @@ public:
         values.allocate(2 * (n + 1) * step);  // a row more, for the corners of cells
     }
 
-    //! Cells (row, parity), (row, parity + 2), ...; kernels may run a vector over the end, with one cell skipped.
+    //! Cells (row, parity), (row, parity + 2), ... Kernels may read and write a vector past the end.
     T* row(int r, int parity) { return values.data() + (2 * r + parity) * step; }
     const T* row(int r, int parity) const { return values.data() + (2 * r + parity) * step; }
 
@@ -38,7 +38,7 @@ public:
 
     int size() const { return n; }
 
-    //! From a row to the next one, in values.
+    //! Values from a row to the next one.
     size_t rowStep() const { return 2 * step; }
 
 private:
@@ -53,7 +53,7 @@ static inline int edgeAt(double position, int first, int limit)
     return (int)(std::min(std::max(position + 0.5, (double)first), (double)limit) - first) + first;
 }
 
-//! The n + 1 edges of n columns, and the last one again: kernels run over the end, by up to 7 columns of any level.
+//! The n + 1 edges of n columns, and copies of the last one: kernels read up to 7 more columns of any level.
 constexpr int paddedEdges(int n) { return n + 1 + 7 * (n / 2); }
 
 //! The edges of the finest cells of a support region, in pixels or samples.

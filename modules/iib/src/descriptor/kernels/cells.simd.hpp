@@ -15,9 +15,9 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-/* Groups of four values from several places side by side, and a vector of them moved on by one group. A vector of 256
- bits at most: the offsets of a whole 512-bit one are too many for the registers. Not v_lut_quads: gather instructions
- are slow on many machines. */
+/* A group is the four channels of a pixel. loadGroups() loads groups from several places into one vector, nextGroups() shifts
+ a vector by one group. Vectors have 256 bits at most: the offsets of a 512-bit one need too many registers. v_lut_quads is
+ not used, since gather instructions are slow on many machines. */
 #if CV_AVX2
 typedef v_uint16x16 v_groups16;
 typedef v_uint32x8 v_groups32;
@@ -44,7 +44,7 @@ inline v_groups32 loadGroups(const unsigned* row, const size_t* at)
     return v_groups32(_mm256_inserti128_si256(low, v_load(row + at[2]).val, 1));
 }
 
-//! Without the first group, and with the one at `more` behind the last.
+//! Drops the first group and appends the one at `more`.
 inline v_groups16 nextGroups(const v_groups16& v, const ushort* more)
 {
     const __m256i next = _mm256_castsi128_si256(v_load_low(more).val);
@@ -80,7 +80,7 @@ inline v_groups16 loadGroups(const ushort* row, const size_t* at)
 //! One place: row + at[0].
 inline v_groups32 loadGroups(const unsigned* row, const size_t* at) { return v_load(row + at[0]); }
 
-//! Without the first group, and with the one at `more` behind the last.
+//! Drops the first group and appends the one at `more`.
 inline v_groups16 nextGroups(const v_groups16& v, const ushort* more)
 {
     return v_rotate_right<4>(v, v_groups16(v_load_low(more)));
@@ -110,7 +110,7 @@ void cellEdges(Point2d corner, double side, int n, Rect bounds, CellEdges& edges
         x[k] = x[n];
 }
 
-//! Differences of neighbouring corners in a row: the sums over left and right cells and all above them.
+//! Sums over left and right cells and all pixels above them: differences of neighbouring corners in a row.
 template <typename V> struct RowSums
 {
     V left, right;

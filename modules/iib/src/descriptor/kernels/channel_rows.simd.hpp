@@ -16,7 +16,7 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-//! `whole` - v where a < b, v elsewhere.
+//! `whole` - v where a < b, else v.
 inline v_int16 subtractWhereLess(const v_int16& a, const v_int16& b, const v_int16& whole, const v_int16& v)
 {
 #if CV_AVX512_SKX
@@ -76,7 +76,7 @@ private:
     const v_float32 t;
 };
 
-//! Even and odd lanes apart, which takes no shuffle.
+//! Computes even and odd lanes apart, which takes no shuffle.
 class OctantSteps16
 {
 public:
@@ -143,13 +143,13 @@ template <typename T> void orientationRow(const T* gx, const T* gy, T* steps, in
     }
 }
 
-//! What becomes of a channel's values: they are stored,
+//! Stores the values of a channel.
 struct Store
 {
     template <typename T, typename V> void operator()(T* out, const V& values) const { v_store(out, values); }
 };
 
-//! or added to others, and then stored.
+//! Adds the values of a channel to others, and stores the sums.
 struct AddTo
 {
     ptrdiff_t above;
@@ -160,14 +160,14 @@ struct AddTo
     }
 };
 
-//! Two vectors at once: the divisions of one are on their way while the other goes on.
+//! Two vectors at once, so that their divisions overlap.
 template <typename T, typename Put>
 inline void imageChannelRows(
         const ImageRows<T>& in, T signedOffset, ImageChannelRows<T> out, int width, const Put& put)
 {
     typedef decltype(setAll(T())) V;
     constexpr int N = VTraits<V>::max_nlanes;
-    const ImageRows<T> rows = in;  // a local copy: a store could change `in`, so that it would be loaded anew
+    const ImageRows<T> rows = in;  // a copy, which stores surely do not change
     const V offset = setAll(signedOffset);
     for (int x = 0; x < width; x += 2 * N)
     {
@@ -210,7 +210,7 @@ void addImageChannelRows(
     imageChannelRows(rows, signedOffset, out, width, put);
 }
 
-//! The last vector may overlap the one before; nothing past the end is read, where no pixel need be.
+//! The last vector may overlap the one before: nothing past the last pixel is read.
 void widenRow(const uchar* in, short* out, int width)
 {
     constexpr int N = VTraits<v_int16>::max_nlanes;

@@ -15,8 +15,8 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-/* Four planes side by side: out[0] gets the first pixels. To zip within 128 bits is cheap, across a wider vector it is not:
- pairs of pixels are first put where that brings neighbours together. */
+/* Interleaves four planes; out[0] gets the first pixels. Zipping is cheap only within 128 bits, so that wider vectors are
+ first permuted. */
 inline void interleaveFour(const v_uint16 planes[4], v_uint16 out[4])
 {
 #if CV_AVX512_SKX
@@ -61,7 +61,7 @@ inline v_uint16 prefixSumsOfFour(const v_uint16& v)
     return v_add_wrap(two, v_reinterpret_as_u16(v_reinterpret_as_u64(two) << 32));
 }
 
-//! Where a vector has more than four 64-bit elements, adds the fourth to those after it, in 16-bit lanes.
+//! In vectors of 512 bits, adds the fourth 64-bit element to the four after it, in 16-bit lanes.
 inline v_uint16 addFourthToUpper(const v_uint16& v)
 {
 #if CV_AVX512_SKX
@@ -72,7 +72,7 @@ inline v_uint16 addFourthToUpper(const v_uint16& v)
 #endif
 }
 
-//! The last four values in the places of all; universal intrinsics have this for 128 bits only.
+//! Repeats the last four values; universal intrinsics have this for 128 bits only.
 inline v_uint16 repeatLastFour(const v_uint16& v)
 {
 #if CV_AVX512_SKX
@@ -95,13 +95,13 @@ inline v_uint32 repeatLastFour(const v_uint32& v)
 #endif
 }
 
-//! The plane's sums over each four pixels, from pixel x on.
+//! Running sums within each four pixels of a plane, from pixel x on.
 inline v_uint16 loadSums(const short* plane, int x)
 {
     return prefixSumsOfFour(v_reinterpret_as_u16(vx_load(plane + x)));
 }
 
-//! A vector (v_uint16) of pixels of four channels, side by side.
+//! The same of four planes, interleaved.
 inline void interleave(const short* const planes[GROUP_CHANNELS], int x, v_uint16 pixels[4])
 {
     const v_uint16 sums[GROUP_CHANNELS] = {

@@ -27,7 +27,7 @@ struct QuadPhase
     int planeBytes() const { return (lanes() + CHUNK - 1) / CHUNK * (CHUNK / 8); }
 };
 
-//! Moves the bits of a mask together, to the low end.
+//! Takes the bits of a word that a mask has set, and packs them at the low end (PEXT).
 struct BitCompressor
 {
     uint64 mask, moves[6];
@@ -41,7 +41,7 @@ struct BitCompressor
 class ChosenBits
 {
 public:
-    //! Eight bytes of the comparisons of which any bit is chosen.
+    //! Eight bytes of comparisons, with at least one chosen bit.
     struct Word
     {
         size_t byte;
@@ -71,8 +71,8 @@ struct LevelShape
     int n;                           //!< cells in a row
     int step;                        //!< finest cells in a cell of this level, along an axis
     int offset;                      //!< of its first bit in the descriptor
-    int channels;                    //!< of GROUP_CHANNELS, those in use
-    int phases;                      //!< a bit for each that is in use
+    int channels;                    //!< in use, of GROUP_CHANNELS
+    int phases;                      //!< bit i is set if phase i is in use
     std::vector<ChosenBits> chosen;  //!< of each phase; empty: the bits of all quads are in use
 
     bool uses(int phase) const { return phases >> phase & 1; }
@@ -90,7 +90,7 @@ struct Axis
     int length(int i) const { return edge(i + 1) - edge(i); }
 };
 
-/** What makes the sums of a level comparable: the factors of neighbouring cells along an axis, 1 if they are equally
+/** Factors that make the sums of neighbouring cells along an axis comparable, 1 if they are equally
  long. With widths w0, w1 and heights h0, h1 of a quad's cells, the mean of cell (i, j) is sum / (w_j h_i), and
  sum * w_(1-j) * h_(1-i) is that but for a factor common to the four: decisions need no division. */
 struct Weights

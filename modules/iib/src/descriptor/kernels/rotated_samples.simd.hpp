@@ -73,7 +73,7 @@ inline v_samples multiplySamples(const v_samples& v, const v_samples& factor, sh
 }
 inline v_samples multiplySamples(const v_samples& v, const v_samples& factor, int) { return v * factor; }
 
-//! Takes points as indices of pixels in a window.
+//! Writes points as indices of pixels in a window.
 struct IndexWriter
 {
     const v_samples originX, originY, step;
@@ -99,7 +99,7 @@ struct PlaceWriter
     }
 };
 
-//! The place in [0, last] that a place outside gets.
+//! Brings a coordinate into [0, last], by reflection or clamping.
 template <bool reflect> inline v_samples inside(const v_samples& place, const v_samples& last)
 {
     const v_samples zero = v_setall_samples(0);
