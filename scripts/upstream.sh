@@ -34,7 +34,7 @@ git -C "$folder" ls-files modules/iib | while read -r file; do
     esac
     [ ! -x "$folder/$file" ] || fail "$file is executable"
 done
-bytes=$(git -C "$folder" format-patch --stdout HEAD^ | wc -c)
+bytes=$(git -C "$folder" diff --binary HEAD^ HEAD | wc -c)
 say "the patch has $bytes bytes"
 [ "$bytes" -lt 1000000 ] || fail "a patch of opencv_contrib has less than 1,000,000 bytes"
 
