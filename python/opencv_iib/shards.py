@@ -130,7 +130,8 @@ def _by_workers(client: Any, call: Callable[[int], Arrays], shards: Iterable[int
     seen = time.monotonic()
     while waiting:
         try:
-            done = wait(list(waiting), _PATIENCE, 'FIRST_COMPLETED').done
+            done = wait(list(waiting), _PATIENCE,  # type: ignore[no-untyped-call,unused-ignore]
+                        'FIRST_COMPLETED').done
         except TimeoutError:
             done = ()
         for future in done:
