@@ -60,6 +60,7 @@ std::vector<int> valuesOf(
 {
     const int offset = grey.depth() == CV_8U ? 6 * 255 : 6 * 65535;  // keeps signed gradients positive
     std::vector<int> v;
+    v.reserve(6 + extra.size());
     if (enabled & IIB::CHANNEL_GRAD_X)
         v.push_back(std::abs(gx));
     if (enabled & IIB::CHANNEL_GRAD_Y)
