@@ -5,7 +5,7 @@
 execute_process(COMMAND "${NM}" -DC --defined-only "${LIBRARY}" OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
 string(STRIP "${symbols}" symbols)
 string(REGEX REPLACE "[;\n]+" ";" symbols "${symbols}")
-set(classes "cv::iib::(IIBDescriptorExtractor|HierarchicalMatcher|MappedIndex|NormalizedDetector)")
+set(classes "cv::iib::(IIBDescriptorExtractor|HessianDetector|HierarchicalMatcher|MappedIndex|NormalizedDetector)")
 set(api 0)
 if(NOT VERSION)
   list(FILTER symbols EXCLUDE REGEX "^[0-9a-f]* [WVu] .*(std::|__gnu_cxx::)")

@@ -7,6 +7,7 @@
 // and of extractors: a factor, keypoints with descriptors, or a cv::Exception.
 
 #include "images.hpp"
+#include "detector/hessian_oracle.hpp"
 #include "detector/normalization_oracle.hpp"
 
 #include <cmath>
@@ -34,6 +35,24 @@ void normalize(ByteSource& in)
     FUZZ_CHECK(keypoints.empty() && capture->seen.size() == image.size() && capture->seen.type() == CV_8U);
     if (image.channels() == 1 && image.depth() != CV_32F)
         FUZZ_CHECK(cv::norm(oracle::normalizeLocally(image, sigma), capture->seen, NORM_INF) == 0);
+}
+
+//! The keypoints of the oracle, for any image and parameters.
+void blobs(ByteSource& in)
+{
+    const Ptr<HessianDetector> detector = HessianDetector::create(in.between(0, 40), in.between(0, 9) / 100.f,
+            in.between(1, 8), in.between(15, 80) / 10.f, (float)in.between(2, 40));
+    const Mat image = takeImage(in, takeSize(in), in.flag() ? CV_8U : CV_16U, 1);
+    std::vector<KeyPoint> keypoints;
+    detector->detect(image, keypoints);
+    const bool tooSmall = image.rows < 2 || image.cols < 2;
+    const std::vector<KeyPoint> expected =
+            tooSmall ? std::vector<KeyPoint>() : oracle::findBlobs(image, *detector);
+    FUZZ_CHECK(keypoints.size() == expected.size());
+    for (size_t i = 0; i < expected.size(); i++)
+        FUZZ_CHECK(keypoints[i].pt == expected[i].pt && keypoints[i].size == expected[i].size &&
+                   keypoints[i].response == expected[i].response &&
+                   keypoints[i].octave == expected[i].octave);
 }
 
 std::vector<KeyPoint> takePoints(ByteSource& in)
@@ -96,8 +115,8 @@ void rotation(ByteSource& in)
 void scaleFactor(ByteSource& in)
 {
     const char* const names[] = {"AKAZE", "Feature2D.ORB", "brisk", "SIFT", "Feature2D.FastFeatureDetector",
-            "AgastFeatureDetector", "GFTTDetector", "SimpleBlobDetector", "mser"};
-    const String right = names[in.between(0, 8)];
+            "AgastFeatureDetector", "GFTTDetector", "SimpleBlobDetector", "mser", "HessianDetector"};
+    const String right = names[in.between(0, 9)];
     String name = right;
     for (int i = in.between(0, 2); i > 0; i--)
         name[in.between(0, (int)name.size() - 1)] = in.take<char>();
@@ -154,8 +173,9 @@ void detectAndCompute(ByteSource& in)
 
 void run(ByteSource& in)
 {
-    switch (in.between(0, 7))
+    switch (in.between(0, 8))
     {
+    case 8: blobs(in); break;
     case 0: scaleFactor(in); break;
     case 1: chain(in); break;
     case 2: detectAndCompute(in); break;

@@ -67,7 +67,7 @@ PYTHON
     tail -n 5 "$work/log" >&2
     exit 1
 }
-for class in IIBDescriptorExtractor HierarchicalMatcher NormalizedDetector; do
+for class in IIBDescriptorExtractor HessianDetector HierarchicalMatcher NormalizedDetector; do
     [ -f "$work/gen/java/org/opencv/iib/$class.java" ] || fail "the class $class has no wrapper for Java"
 done
 ! sed -n '/=== MODULE: iib/,$p' "$work/gen_java.log" | grep "^SKIP" || fail "these have no wrappers for Java"

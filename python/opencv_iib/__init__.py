@@ -1,9 +1,9 @@
 """Feature matching that survives a change of light: the classes of ``cv2.iib``, beside any cv2 or none.
 
-    import cv2, opencv_iib
-    iib = opencv_iib.IIB.createFor(cv2.ORB_create(2000))
+    import opencv_iib
+    iib = opencv_iib.IIB.createRecommended()
     keypoints, descriptors = iib.detectAndCompute(image)
-    matches = opencv_iib.HierarchicalMatcher(iib.levelSizes(), crossCheck=True).match(descriptors, others)
+    matches = opencv_iib.HierarchicalMatcher.createRecommended().match(descriptors, others)
 
 The OpenCV inside is its own: nothing but arrays and plain values passes between it and cv2.
 """
@@ -13,7 +13,7 @@ from opencv_iib import _core
 from opencv_iib._core import error
 from opencv_iib._types import DMatch, KeyPoint
 from opencv_iib.descriptor import IIB, IIBDescriptorExtractor
-from opencv_iib.detectors import NormalizedDetector
+from opencv_iib.detectors import HessianDetector, NormalizedDetector
 from opencv_iib.keypoints import array_to_keypoints, keypoints_to_array
 from opencv_iib.mapped_index import MappedIndex
 from opencv_iib.matcher import HierarchicalMatcher
@@ -28,7 +28,7 @@ __version__: str = _core.VERSION
 OPENCV_VERSION: str = _core.OPENCV_VERSION
 
 _FLAT_OWNERS = {'IIBDescriptorExtractor': IIBDescriptorExtractor, 'IIB': IIB, 'HierarchicalMatcher': HierarchicalMatcher,
-                'NormalizedDetector': NormalizedDetector}
+                'HessianDetector': HessianDetector, 'NormalizedDetector': NormalizedDetector}
 
 
 def __getattr__(name: str) -> Any:

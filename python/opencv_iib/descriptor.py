@@ -9,7 +9,7 @@ import numpy as np
 
 from opencv_iib import _core
 from opencv_iib._arrays import as_array, as_arrays
-from opencv_iib.detectors import MissingDetector, core_detector, detect, detector_name
+from opencv_iib.detectors import HessianDetector, MissingDetector, core_detector, detect, detector_name
 from opencv_iib.keypoints import Keypoints, as_rows
 
 K = TypeVar('K', bound=Keypoints)
@@ -109,6 +109,16 @@ class IIBDescriptorExtractor:
         extractor = cls._of(_core.Extractor.createFor(core_detector(detector), preset))
         extractor._detector = detector
         return extractor
+
+    @classmethod
+    def createRecommended(cls, maxFeatures: int = 1000) -> IIBDescriptorExtractor:
+        """What to take first, where light, place or both change: HessianDetector and PRESET_UNIVERSAL.
+
+        ``detectAndCompute`` finds and describes; match with ``HierarchicalMatcher.createRecommended()``.
+
+        :param maxFeatures: keypoints of an image, the strongest; 0 keeps all.
+        """
+        return cls.createFor(HessianDetector(maxFeatures), cls.PRESET_UNIVERSAL)
 
     @staticmethod
     def scaleFactorFor(detectorName: Any = None, detector: Any = None) -> float:
@@ -288,15 +298,18 @@ class IIBDescriptorExtractor:
 
     def __getstate__(self) -> dict[str, Any]:
         # A detector of cv2 cannot be pickled; describing, which workers are sent an extractor for, needs none.
-        name = None if self._detector is None else detector_name(self._detector)
-        return {'parameters': self._core.parameters(), 'detector': name}
+        detector = self._detector
+        if detector is not None and not isinstance(detector, HessianDetector):
+            detector = detector_name(detector)
+        return {'parameters': self._core.parameters(), 'detector': detector}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self._core = _core.Extractor.create(2.0, 4, 15, 0, False, False, 0)
         self._core.setParameters(state['parameters'])
         self._detector = None
-        if state['detector'] is not None:
-            self.setDetector(MissingDetector(state['detector']))
+        detector = state['detector']
+        if detector is not None:
+            self.setDetector(MissingDetector(detector) if isinstance(detector, str) else detector)
 
     def __copy__(self) -> IIBDescriptorExtractor:
         twin = type(self).__new__(type(self))

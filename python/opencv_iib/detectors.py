@@ -1,4 +1,4 @@
-"""Detectors of Python, such as those of a foreign cv2, behind the classes of this package; NormalizedDetector."""
+"""Detectors of Python, such as those of a foreign cv2, behind the classes of this package; the package's own."""
 from __future__ import annotations
 
 import weakref
@@ -60,6 +60,99 @@ class MissingDetector:
 
     def detect(self, image: Any, mask: Any = None) -> Any:
         raise RuntimeError(f'the detector {self.name} was not pickled with the object that used it: set it again')
+
+
+class HessianDetector:
+    """Finds blobs of the locally normalized image: maxima over place and scale of the determinant of its Hessian.
+
+    Names, keywords and keypoints are those of ``cv2.iib``. ``IIB.createRecommended()`` puts it together with the
+    descriptor for it. Images are as IIBDescriptorExtractor takes them. Keypoints come strongest first; their size is twice
+    the sigma of the blob in pixels, their angle -1.
+    """
+
+    def __init__(self, maxFeatures: int = 1000, threshold: float = 0.0, scales: int = 5, sigma: float = 2.2,
+                 normalizationSigma: float = 5.0) -> None:
+        """As :meth:`create`."""
+        self._core = _core.HessianDetector.create(maxFeatures, threshold, scales, sigma, normalizationSigma)
+
+    @classmethod
+    def create(cls, maxFeatures: int = 1000, threshold: float = 0.0, scales: int = 5, sigma: float = 2.2,
+               normalizationSigma: float = 5.0) -> HessianDetector:
+        """Creates a detector.
+
+        :param maxFeatures: the strongest that are kept; 0 keeps all.
+        :param threshold: smallest response, 0 or more.
+        :param scales: number of scales, 1 to 8, each sqrt(2) times the one before.
+        :param sigma: of the smallest scale in pixels, 1.5 to 8.
+        :param normalizationSigma: of the local normalization's Gaussian in pixels, 2 to 256.
+        """
+        return cls(maxFeatures, threshold, scales, sigma, normalizationSigma)
+
+    def detect(self, image: Any, mask: Any = None) -> tuple[Any, ...]:
+        """Keypoints, as cv2.KeyPoint if cv2 is there.
+
+        :param mask: H x W uint8, 0 where nothing is to be found.
+        """
+        return detect(self._core, image, mask)
+
+    def setMaxFeatures(self, maxFeatures: int) -> None:
+        """The strongest that are kept; 0 keeps all."""
+        self._core.setMaxFeatures(maxFeatures)
+
+    def getMaxFeatures(self) -> int:
+        """As setMaxFeatures says."""
+        return self._core.getMaxFeatures()
+
+    def setThreshold(self, threshold: float) -> None:
+        """Smallest response, 0 or more."""
+        self._core.setThreshold(threshold)
+
+    def getThreshold(self) -> float:
+        """As setThreshold says."""
+        return self._core.getThreshold()
+
+    def setScales(self, scales: int) -> None:
+        """Number of scales, 1 to 8."""
+        self._core.setScales(scales)
+
+    def getScales(self) -> int:
+        """As setScales says."""
+        return self._core.getScales()
+
+    def setSigma(self, sigma: float) -> None:
+        """Of the smallest scale in pixels, 1.5 to 8."""
+        self._core.setSigma(sigma)
+
+    def getSigma(self) -> float:
+        """As setSigma says."""
+        return self._core.getSigma()
+
+    def setNormalizationSigma(self, normalizationSigma: float) -> None:
+        """Of the local normalization's Gaussian in pixels, 2 to 256."""
+        self._core.setNormalizationSigma(normalizationSigma)
+
+    def getNormalizationSigma(self) -> float:
+        """As setNormalizationSigma says."""
+        return self._core.getNormalizationSigma()
+
+    def descriptorSize(self) -> int:
+        """0: it describes nothing."""
+        return 0
+
+    def empty(self) -> bool:
+        """False: a detector is always ready."""
+        return False
+
+    def getDefaultName(self) -> str:
+        """Feature2D.HessianDetector"""
+        return 'Feature2D.HessianDetector'
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.getMaxFeatures(), self.getThreshold(), self.getScales(), self.getSigma(),
+                            self.getNormalizationSigma())
+
+    def __repr__(self) -> str:
+        return f'{type(self).__name__}(maxFeatures={self.getMaxFeatures()}, sigma={self.getSigma():g})'
 
 
 class NormalizedDetector:

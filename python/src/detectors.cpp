@@ -13,6 +13,7 @@ namespace iib_python {
 namespace {
 
 typedef cv::iib::NormalizedDetector Normalized;
+typedef cv::iib::HessianDetector Hessian;
 
 nb::object detect(cv::Feature2D& self, const Array& image, const Array& mask)
 {
@@ -35,6 +36,12 @@ std::shared_ptr<cv::Feature2D> foreignDetector(nb::callable function, const std:
 std::shared_ptr<Normalized> createNormalized(std::shared_ptr<cv::Feature2D> detector, float sigma)
 {
     return Normalized::create(detector, sigma);
+}
+
+std::shared_ptr<Hessian> createHessian(
+        int maxFeatures, float threshold, int scales, float sigma, float normalizationSigma)
+{
+    return Hessian::create(maxFeatures, threshold, scales, sigma, normalizationSigma);
 }
 
 // Matches are rows of two columns: index into the first keypoints, index into the second.
@@ -63,6 +70,18 @@ void bindDetectors(nb::module_& m)
             .def_static("create", &createNormalized)
             .def("setSigma", &Normalized::setSigma)
             .def("getSigma", &Normalized::getSigma);
+    nb::class_<Hessian, cv::Feature2D>(m, "HessianDetector")
+            .def_static("create", &createHessian)
+            .def("setMaxFeatures", &Hessian::setMaxFeatures)
+            .def("getMaxFeatures", &Hessian::getMaxFeatures)
+            .def("setThreshold", &Hessian::setThreshold)
+            .def("getThreshold", &Hessian::getThreshold)
+            .def("setScales", &Hessian::setScales)
+            .def("getScales", &Hessian::getScales)
+            .def("setSigma", &Hessian::setSigma)
+            .def("getSigma", &Hessian::getSigma)
+            .def("setNormalizationSigma", &Hessian::setNormalizationSigma)
+            .def("getNormalizationSigma", &Hessian::getNormalizationSigma);
     m.def("estimateRotation", &estimateRotation);
 }
 

@@ -7,7 +7,7 @@ import weakref
 import numpy as np
 
 import opencv_iib
-from opencv_iib import IIB, NormalizedDetector, estimateRotation
+from opencv_iib import HessianDetector, HierarchicalMatcher, IIB, NormalizedDetector, estimateRotation
 from support import cv2, texture
 
 
@@ -20,6 +20,54 @@ class Watching:
     def detect(self, image, mask=None):
         self.image, self.mask = image, mask
         return np.array([[20, 30, 5]], np.float32)
+
+
+class Hessian(unittest.TestCase):
+
+    def test_parameters_and_pickle(self):
+        detector = HessianDetector(50, threshold=0.01)
+        detector.setScales(4)
+        detector.setSigma(3)
+        detector.setNormalizationSigma(6)
+        for twin in (detector, copy.copy(detector), copy.deepcopy(detector), pickle.loads(pickle.dumps(detector))):
+            self.assertEqual((twin.getMaxFeatures(), twin.getScales(), twin.getSigma(), twin.getNormalizationSigma()),
+                             (50, 4, 3, 6))
+            self.assertAlmostEqual(twin.getThreshold(), 0.01)
+        detector.setMaxFeatures(0)
+        self.assertEqual(detector.getMaxFeatures(), 0)
+        with self.assertRaisesRegex(opencv_iib.error, 'scales'):
+            detector.setScales(9)
+
+    def test_strongest_first_and_masks(self):
+        image = texture(160, 120)
+        keypoints = HessianDetector.create(30).detect(image)
+        self.assertEqual(len(keypoints), 30)
+        self.assertEqual(sorted((k.response for k in keypoints), reverse=True), [k.response for k in keypoints])
+        mask = np.zeros(image.shape, np.uint8)
+        mask[:, :80] = 1
+        self.assertTrue(all(k.pt[0] < 80 for k in HessianDetector(0).detect(image, mask)))
+        with self.assertRaisesRegex(opencv_iib.error, 'mask'):
+            HessianDetector().detect(image, mask[:5])
+
+
+class Recommended(unittest.TestCase):
+
+    def test_finds_describes_and_matches_in_three_lines(self):
+        image = texture(200, 160)
+        iib = IIB.createRecommended(60)
+        keypoints, codes = iib.detectAndCompute(image)
+        self.assertEqual(codes.shape, (60, iib.descriptorSize()))
+        self.assertEqual([k.pt for k in keypoints], [k.pt for k in HessianDetector(60).detect(image)])
+        expected = IIB.createPreset(IIB.PRESET_UNIVERSAL, IIB.scaleFactorFor('Hessian')).compute(image, keypoints)[1]
+        np.testing.assert_array_equal(codes, expected)
+        matches = HierarchicalMatcher.createRecommended().match(codes, codes)
+        self.assertTrue(matches and all(m.queryIdx == m.trainIdx for m in matches))
+
+    def test_pickled_with_its_detector(self):
+        image = texture(160, 120)
+        iib = IIB.createRecommended(40)
+        for twin in (copy.copy(iib), pickle.loads(pickle.dumps(iib))):
+            np.testing.assert_array_equal(twin.detectAndCompute(image)[1], iib.detectAndCompute(image)[1])
 
 
 class Normalized(unittest.TestCase):

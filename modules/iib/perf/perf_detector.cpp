@@ -19,15 +19,17 @@ enum
 {
     PEER_ORB,
     NORMALIZATION,
-    NORMALIZED_ORB
+    NORMALIZED_ORB,
+    HESSIAN
 };
-CV_ENUM(Detector, PEER_ORB, NORMALIZATION, NORMALIZED_ORB)
+CV_ENUM(Detector, PEER_ORB, NORMALIZATION, NORMALIZED_ORB, HESSIAN)
 
 Ptr<Feature2D> createDetector(int detector)
 {
     switch (detector)
     {
     case NORMALIZATION: return NormalizedDetector::create(makePtr<FindsNothing>());
+    case HESSIAN: return HessianDetector::create(1000);
     case NORMALIZED_ORB: return NormalizedDetector::create(ORB::create(1000));
     default: return ORB::create(1000);
     }

@@ -60,6 +60,12 @@ Ptr<Feature2D> readDetector(const FileNode& node, const Ptr<Feature2D>& present)
     const FileNode parameters = node["parameters"];
     if (name == "Feature2D.ORB")
         return readOrb(parameters);
+    if (name == "Feature2D.HessianDetector")
+    {
+        const Ptr<HessianDetector> detector = HessianDetector::create();
+        detector->read(parameters);
+        return detector;
+    }
     if (name == "Feature2D.NormalizedDetector")
     {
         const Ptr<NormalizedDetector> wrapper = present.dynamicCast<NormalizedDetector>();

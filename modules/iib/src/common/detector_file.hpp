@@ -10,13 +10,13 @@
 namespace cv {
 namespace iib {
 
-/* The detector of an extractor in a file. Files hold ORB, which create() starts with and which writes nothing of itself,
- and NormalizedDetector; of others they hold the name, and what those write themselves. */
+/* The detector of an extractor in a file. Files hold HessianDetector, NormalizedDetector and ORB, which create()
+ starts with and which writes nothing of itself; of others they hold the name, and what those write themselves. */
 
 //! Writes class and parameters as keys of the map that is open in `fs`.
 void writeDetector(FileStorage& fs, const Feature2D& detector);
 
-/** Creates the ORB or the NormalizedDetector that writeDetector wrote. For any other class `present` must be of it: it reads
+/** Creates the ORB, HessianDetector or NormalizedDetector that writeDetector wrote. For any other class `present` must be of it: it reads
  the parameters and is returned. @throws cv::Exception (StsParseError) that tells what to do if it is not. */
 Ptr<Feature2D> readDetector(const FileNode& node, const Ptr<Feature2D>& present);
 

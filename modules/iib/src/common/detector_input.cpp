@@ -24,7 +24,8 @@ static Mat stretchedTo8Bits(const Mat& map)
 Mat imageFor(const Feature2D& detector, const Mat& image)
 {
     if (image.empty() || dynamic_cast<const IIBDescriptorExtractor*>(&detector) ||
-            dynamic_cast<const NormalizedDetector*>(&detector))
+            dynamic_cast<const NormalizedDetector*>(&detector) ||
+            dynamic_cast<const HessianDetector*>(&detector))
         return image;
     checkImage(image);
     if (image.depth() == CV_8U)

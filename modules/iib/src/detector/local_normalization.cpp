@@ -63,11 +63,13 @@ struct Blurs
 class Normalizer
 {
 public:
-    Normalizer(const Mat& grey_, double sigma)
-        : kernels(normalizationKernels()), grey(grey_), blurs(sigma), scratch(Size(grey_.cols + 1, 3)),
-          factor(0)
+    //! Of an image as it is, or of one at half its resolution.
+    Normalizer(const Mat& grey_, bool halved_, double sigma)
+        : kernels(normalizationKernels()), grey(grey_), halved(halved_), blurs(sigma),
+          size(halved ? Size(grey.cols / 2, grey.rows / 2) : grey.size()),
+          pixels(Size(grey.cols + 1, halved ? 2 : 0)), scratch(Size(size.width + 1, 3)), factor(0)
     {
-        sizes.push_back(grey.size());
+        sizes.push_back(size);
         for (int i = 0; i < blurs.levels; i++)
             sizes.push_back(halfOf(sizes.back()));
         double largest = 255;
@@ -81,40 +83,49 @@ public:
     {
         const Plane<short> differences = differencesTo(means());
         const Plane<short> gains = gainsOf(differences);
-        Mat result(grey.size(), CV_8U);
-        for (int y = 0; y < grey.rows; y++)
+        Mat result(size, CV_8U);
+        for (int y = 0; y < size.height; y++)
         {
             upsampleRow(gains, y, scratch.row(0));
-            kernels.scale(differences.row(y), scratch.row(0), result.ptr(y), grey.cols);
+            kernels.scale(differences.row(y), scratch.row(0), result.ptr(y), size.width);
         }
         return result;
     }
 
 private:
-    //! Row y of the image, at `out`.
-    void readRow(int y, short* out) const
+    //! Row y of what is normalized, at `out`.
+    void readRow(int y, short* out)
+    {
+        if (!halved)
+            return readPixels(y, out);
+        readPixels(2 * y, pixels.row(0));
+        readPixels(2 * y + 1, pixels.row(1));
+        kernels.halveShorts(pixels.row(0), pixels.row(1), out, size.width);
+    }
+
+    void readPixels(int y, short* out) const
     {
         if (grey.depth() == CV_8U)
             return kernels.widen(grey.ptr(y), out, grey.cols);
-        const ushort* pixels = grey.ptr<ushort>(y);
+        const ushort* values = grey.ptr<ushort>(y);
         for (int x = 0; x < grey.cols; x++)
-            out[x] = (short)(((int64)pixels[x] * factor + 32768) >> 16);
+            out[x] = (short)(((int64)values[x] * factor + 32768) >> 16);
     }
 
     //! G*I at half the image's size.
     Plane<short> means()
     {
-        Plane<short> half(sizes[1]);
-        for (int y = 0; y < half.size.height; y++)
+        Plane<short> halves(sizes[1]);
+        for (int y = 0; y < halves.size.height; y++)
         {
             for (int i = 0; i < 2; i++)
             {
-                readRow(std::min(2 * y + i, grey.rows - 1), scratch.row(i));
-                scratch.extend(i, grey.cols);
+                readRow(std::min(2 * y + i, size.height - 1), scratch.row(i));
+                scratch.extend(i, size.width);
             }
-            kernels.halveShorts(scratch.row(0), scratch.row(1), half.row(y), half.size.width);
+            kernels.halveShorts(scratch.row(0), scratch.row(1), halves.row(y), halves.size.width);
         }
-        Plane<short> smallest = halved(std::move(half), 1, kernels.halveShorts);
+        Plane<short> smallest = reduced(std::move(halves), 1, kernels.halveShorts);
         Plane<int> sums(smallest.size);
         for (int y = 0; y < sums.size.height; y++)
             std::copy_n(smallest.row(y), sums.size.width, sums.row(y));
@@ -127,13 +138,13 @@ private:
     //! I - G*I.
     Plane<short> differencesTo(const Plane<short>& means)
     {
-        Plane<short> differences(grey.size());
-        for (int y = 0; y < grey.rows; y++)
+        Plane<short> differences(size);
+        for (int y = 0; y < size.height; y++)
         {
             readRow(y, scratch.row(0));
             upsampleRow(means, y, scratch.row(1));
-            kernels.subtract(scratch.row(0), scratch.row(1), differences.row(y), grey.cols);
-            differences.extend(y, grey.cols);
+            kernels.subtract(scratch.row(0), scratch.row(1), differences.row(y), size.width);
+            differences.extend(y, size.width);
         }
         return differences;
     }
@@ -141,11 +152,11 @@ private:
     //! What differences are multiplied by, at half the image's size.
     Plane<short> gainsOf(const Plane<short>& differences)
     {
-        Plane<int> half(sizes[1]);
-        for (int y = 0; y < half.size.height; y++)
-            kernels.squares(differences.row(2 * y), differences.row(std::min(2 * y + 1, grey.rows - 1)),
-                    half.row(y), half.size.width);
-        Plane<int> variances = halved(std::move(half), 1, kernels.halveInts);
+        Plane<int> halves(sizes[1]);
+        for (int y = 0; y < halves.size.height; y++)
+            kernels.squares(differences.row(2 * y), differences.row(std::min(2 * y + 1, size.height - 1)),
+                    halves.row(y), halves.size.width);
+        Plane<int> variances = reduced(std::move(halves), 1, kernels.halveInts);
         blur(variances);
         Plane<short> gains(variances.size);
         for (int y = 0; y < gains.size.height; y++)
@@ -154,7 +165,7 @@ private:
     }
 
     //! From sizes[level] down to the smallest.
-    template <typename T> Plane<T> halved(Plane<T> plane, int level, HalveFunc<T> halve) const
+    template <typename T> Plane<T> reduced(Plane<T> plane, int level, HalveFunc<T> halve) const
     {
         if (level == blurs.levels)
             return plane;
@@ -164,7 +175,7 @@ private:
         for (int y = 0; y < half.size.height; y++)
             halve(plane.row(2 * y), plane.row(std::min(2 * y + 1, plane.size.height - 1)), half.row(y),
                     half.size.width);
-        return halved(std::move(half), level + 1, halve);
+        return reduced(std::move(half), level + 1, halve);
     }
 
     //! From sizes[level] up to half the image's size.
@@ -180,19 +191,19 @@ private:
 
     void blur(Plane<int>& plane) const
     {
-        const Size size = plane.size;
-        Plane<int> out(size);
+        const int width = plane.size.width, height = plane.size.height;
+        Plane<int> out(plane.size);
         for (int pass = 0; pass < blurs.passes; pass++)
         {
-            for (int y = 0; y < size.height; y++)
+            for (int y = 0; y < height; y++)
             {
-                plane.extend(y, size.width);
+                plane.extend(y, width);
                 const int* row = plane.row(y);
-                kernels.blur(row - 1, row, row + 1, blurs.weight, out.row(y), size.width);
+                kernels.blur(row - 1, row, row + 1, blurs.weight, out.row(y), width);
             }
-            for (int y = 0; y < size.height; y++)
-                kernels.blur(out.row(std::max(y - 1, 0)), out.row(y),
-                        out.row(std::min(y + 1, size.height - 1)), blurs.weight, plane.row(y), size.width);
+            for (int y = 0; y < height; y++)
+                kernels.blur(out.row(std::max(y - 1, 0)), out.row(y), out.row(std::min(y + 1, height - 1)),
+                        blurs.weight, plane.row(y), width);
         }
     }
 
@@ -209,15 +220,20 @@ private:
 
     const NormalizationKernels& kernels;
     const Mat& grey;
+    const bool halved;
     const Blurs blurs;
-    std::vector<Size> sizes;  //!< the image's, half of it, and so on
+    const Size size;          //!< of what is normalized
+    std::vector<Size> sizes;  //!< that, half of it, and so on
+    Plane<short> pixels;      //!< two rows of an image that is halved
     Plane<short> scratch;
     int64 factor;  //!< of 16-bit pixels, in 2^-16
 };
 
 }  // namespace
 
-Mat normalizeLocally(const Mat& grey, double sigma) { return Normalizer(grey, sigma).run(); }
+Mat normalizeLocally(const Mat& grey, double sigma) { return Normalizer(grey, false, sigma).run(); }
+
+Mat normalizeHalf(const Mat& grey, double sigma) { return Normalizer(grey, true, sigma / 2).run(); }
 
 }  // namespace iib
 }  // namespace cv

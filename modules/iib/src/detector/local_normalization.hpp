@@ -19,6 +19,12 @@ interpolation back: of a variance of sigma^2 up to the rounding of a weight.
 @param sigma in pixels, 1 to 256. */
 Mat normalizeLocally(const Mat& grey, double sigma);
 
+/** The same of the image at half its resolution: means of 2 x 2 pixels; an odd last row or column is left out.
+
+@param grey at least 2 x 2 pixels.
+@param sigma in pixels of `grey`, 2 to 256. */
+Mat normalizeHalf(const Mat& grey, double sigma);
+
 }  // namespace iib
 }  // namespace cv
 

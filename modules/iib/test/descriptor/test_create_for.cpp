@@ -56,6 +56,32 @@ TEST(IIB_CreateFor, describes_what_its_detector_finds_on_the_plain_image)
     EXPECT_EQ(0, differingBits(describe(*IIB::create(2.f), image, expected), descriptors));
 }
 
+TEST(IIB_CreateFor, recommended_is_hessian_and_universal)
+{
+    const Mat image = relit(scene(Size(320, 240), 3), 4);
+    const Ptr<IIB> iib = IIB::createRecommended(200);
+    std::vector<KeyPoint> expected, keypoints;
+    Mat descriptors;
+    HessianDetector::create(200)->detect(image, expected);
+    iib->detectAndCompute(image, noArray(), keypoints, descriptors);
+    ASSERT_GT(expected.size(), 100u);
+    expectSameKeyPoints(expected, keypoints);
+    const Ptr<IIB> universal =
+            IIB::createPreset(IIB::PRESET_UNIVERSAL, IIB::scaleFactorFor("HessianDetector"));
+    EXPECT_EQ(0, differingBits(describe(*universal, image, expected), descriptors));
+
+    const String file = cv::tempfile(".yml");
+    iib->save(file);
+    const Ptr<IIB> copy = Algorithm::load<IIB>(file);
+    std::remove(file.c_str());
+    ASSERT_TRUE(copy);
+    Mat others;
+    copy->detectAndCompute(image, noArray(), keypoints, others);
+    expectSameKeyPoints(expected, keypoints);
+    EXPECT_EQ(0, differingBits(descriptors, others));
+    expectError(Error::StsOutOfRange, "maxFeatures", [] { IIB::createRecommended(-1); });
+}
+
 //! IIB as a detector: it finds another one's keypoints.
 TEST(IIB_CreateFor, errors)
 {

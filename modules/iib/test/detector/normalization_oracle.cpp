@@ -94,16 +94,15 @@ Map enlarged(Map m, Size size, int levels)
     return m;
 }
 
-}  // namespace
-
-Mat normalizeLocally(const Mat& grey, double sigma)
+//! Of grey levels in 2^-7.
+Mat normalized(const Map& pixels, double sigma)
 {
     const int levels = std::max((int)std::floor(std::log2(sigma)), 1);
-    const Map pixels = greyLevels(grey);
-    const Map means = enlarged(smallest(halved(pixels), sigma, levels), grey.size(), levels);
-    Map squares(grey.size());
-    for (int y = 0; y < grey.rows; y++)
-        for (int x = 0; x < grey.cols; x++)
+    const Size size = pixels.size();
+    const Map means = enlarged(smallest(halved(pixels), sigma, levels), size, levels);
+    Map squares(size);
+    for (int y = 0; y < size.height; y++)
+        for (int x = 0; x < size.width; x++)
         {
             const int eighths = (pixels(y, x) - means(y, x) + 8) >> 4;
             squares(y, x) = eighths * eighths;
@@ -111,15 +110,25 @@ Mat normalizeLocally(const Mat& grey, double sigma)
     Map gains = smallest(halved(squares), sigma, levels);
     for (int& gain : gains)
         gain = cvRound(1024 * 40 * 8.f / (std::sqrt((float)gain) + 16));
-    gains = enlarged(gains, grey.size(), levels);
-    Mat result(grey.size(), CV_8U);
-    for (int y = 0; y < grey.rows; y++)
-        for (int x = 0; x < grey.cols; x++)
+    gains = enlarged(gains, size, levels);
+    Mat result(size, CV_8U);
+    for (int y = 0; y < size.height; y++)
+        for (int x = 0; x < size.width; x++)
         {
             const int halves = ((pixels(y, x) - means(y, x)) * gains(y, x)) >> 16;
             result.at<uchar>(y, x) = saturate_cast<uchar>(((halves + 1) >> 1) + 128);
         }
     return result;
+}
+
+}  // namespace
+
+Mat normalizeLocally(const Mat& grey, double sigma) { return normalized(greyLevels(grey), sigma); }
+
+Mat normalizeHalf(const Mat& grey, double sigma)
+{
+    const Mat even = greyLevels(grey)(Rect(0, 0, grey.cols / 2 * 2, grey.rows / 2 * 2));
+    return normalized(halved(even), sigma / 2);
 }
 
 Mat normalizeByDefinition(const Mat& grey, double sigma)

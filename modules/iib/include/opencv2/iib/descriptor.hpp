@@ -75,7 +75,7 @@ every instruction set, thread count and build. One object may serve several thre
 changes its parameters. As everywhere in OpenCV, cv::setNumThreads is not to be called meanwhile.
 
 **Files.** Algorithm::save and Feature2D::write store the parameters and the detector; Algorithm::load and
-Feature2D::read take either kind of file. ORB and NormalizedDetector come back with their parameters. A detector of any
+Feature2D::read take either kind of file. ORB, HessianDetector and NormalizedDetector come back with their parameters. A detector of any
 other class must be set by setDetector before read: files hold its name and what its own write() tells, which its
 read() gets; read throws a cv::Exception if the detector that is set is of another class.
  */
@@ -179,6 +179,15 @@ public:
     is not known use create(scaleFactor), with the side of the ROS by KeyPoint::size as its factor, and setDetector.
      */
     CV_WRAP static Ptr<IIBDescriptorExtractor> createFor(const Ptr<Feature2D>& detector, int preset = -1);
+
+    /** @brief Creates what to take first, where light, place or both change: HessianDetector and #PRESET_UNIVERSAL.
+
+    detectAndCompute() finds and describes; match the codes with HierarchicalMatcher::createRecommended().
+
+    @param maxFeatures keypoints of an image, the strongest; 0 keeps all. 2000 give a little more accurate poses than 1000.
+    @throws cv::Exception (StsOutOfRange) for a negative number.
+     */
+    CV_WRAP static Ptr<IIBDescriptorExtractor> createRecommended(int maxFeatures = 1000);
 
     /** @brief Scale factor for a detector's keypoints (paper, "Experiments Combined with Feature Detectors").
 

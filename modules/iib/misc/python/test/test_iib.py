@@ -160,6 +160,16 @@ class MatcherTest(unittest.TestCase):
         self.assertEqual(len(matcher.knnMatch(self.query, 2)), 50)
         np.testing.assert_array_equal(matcher.getTrainDescriptors()[0], self.train)
 
+    def test_recommended_chain(self):
+        image = np.random.default_rng(3).integers(0, 256, (120, 160)).astype(np.uint8)
+        image = cv2.GaussianBlur(image, (0, 0), 1.5)
+        keypoints, codes = cv2.iib.IIB.createRecommended(60).detectAndCompute(image, None)
+        found = cv2.iib.HessianDetector.create(60).detect(image)
+        self.assertEqual([k.pt for k in keypoints], [k.pt for k in found])
+        matches = cv2.iib.HierarchicalMatcher.createRecommended().match(codes, codes)
+        self.assertEqual([m.trainIdx for m in matches], [m.queryIdx for m in matches])
+        self.assertGreater(len(matches), 30)
+
     def test_recommended(self):
         matcher = cv2.iib.HierarchicalMatcher.createRecommended()
         self.assertTrue(matcher.getCrossCheck())

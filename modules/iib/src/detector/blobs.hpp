@@ -1,0 +1,34 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_DETECTOR_BLOBS_HPP
+#define OPENCV_IIB_DETECTOR_BLOBS_HPP
+
+#include "../precomp.hpp"
+
+namespace cv {
+namespace iib {
+
+//! Parameters of HessianDetector, described there.
+struct HessianParameters
+{
+    int maxFeatures;
+    float threshold;
+    int scales;
+    float sigma, normalizationSigma;
+
+    //! Throws (StsOutOfRange) for values that HessianDetector::create does not take.
+    void check() const;
+};
+
+/** The keypoints of HessianDetector.
+
+@param normalized CV_8U, the normalized image at half the resolution.
+@param mask of the image: empty or CV_8U. */
+std::vector<KeyPoint> findBlobs(const Mat& normalized, const HessianParameters& parameters, const Mat& mask);
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

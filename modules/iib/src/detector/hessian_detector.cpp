@@ -1,0 +1,154 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../common/detector_input.hpp"
+#include "../common/file_numbers.hpp"
+#include "../common/image_input.hpp"
+#include "blobs.hpp"
+#include "local_normalization.hpp"
+
+#include "opencv2/core/utils/trace.hpp"
+#include "opencv2/iib/hessian_detector.hpp"
+
+namespace cv {
+namespace iib {
+
+void HessianParameters::check() const
+{
+    const auto require = [](bool holds, const char* name, double value, const char* range) {
+        if (!holds)
+            CV_Error(Error::StsOutOfRange, format("%s is %g; it must be %s", name, value, range));
+    };
+    require(maxFeatures >= 0, "maxFeatures", maxFeatures, "0 (all) or more");
+    require(threshold >= 0 && threshold < std::numeric_limits<float>::infinity(), "threshold", threshold,
+            "0 or more, and finite");
+    require(scales >= 1 && scales <= 8, "scales", scales, "1 to 8");
+    require(sigma >= 1.5f && sigma <= 8, "sigma", sigma, "1.5 to 8 pixels");
+    require(normalizationSigma >= 2 && normalizationSigma <= 256, "normalizationSigma", normalizationSigma,
+            "2 to 256 pixels");
+}
+
+namespace {
+
+class HessianDetector_Impl CV_FINAL : public HessianDetector
+{
+public:
+    explicit HessianDetector_Impl(const HessianParameters& parameters) : p(parameters) { p.check(); }
+
+    using Feature2D::detect;
+    void detect(InputArray imageArray, std::vector<KeyPoint>& keypoints, InputArray maskArray) CV_OVERRIDE
+    {
+        CV_TRACE_FUNCTION();
+
+        const Mat image = imageArray.getMat();
+        if (image.empty())
+            return keypoints.clear();
+        checkImage(image);
+        const Mat mask = maskFor(maskArray, image.size());
+        const Mat grey = integerMap(image, Rect(Point(), image.size()));
+        if (image.rows < 2 || image.cols < 2)
+            return keypoints.clear();
+        keypoints = findBlobs(normalizeHalf(grey, p.normalizationSigma), p, mask);
+    }
+
+    using Feature2D::compute;
+    void compute(InputArray, std::vector<KeyPoint>&, OutputArray) CV_OVERRIDE { refuseToDescribe(); }
+
+    void detectAndCompute(InputArray image, InputArray mask, std::vector<KeyPoint>& keypoints,
+            OutputArray descriptors, bool useProvidedKeypoints) CV_OVERRIDE
+    {
+        if (descriptors.needed() || useProvidedKeypoints)
+            refuseToDescribe();
+        detect(image, keypoints, mask);
+    }
+
+    bool empty() const CV_OVERRIDE { return false; }
+
+    void setMaxFeatures(int value) CV_OVERRIDE { set(&HessianParameters::maxFeatures, value); }
+    int getMaxFeatures() const CV_OVERRIDE { return p.maxFeatures; }
+    void setThreshold(float value) CV_OVERRIDE { set(&HessianParameters::threshold, value); }
+    float getThreshold() const CV_OVERRIDE { return p.threshold; }
+    void setScales(int value) CV_OVERRIDE { set(&HessianParameters::scales, value); }
+    int getScales() const CV_OVERRIDE { return p.scales; }
+    void setSigma(float value) CV_OVERRIDE { set(&HessianParameters::sigma, value); }
+    float getSigma() const CV_OVERRIDE { return p.sigma; }
+    void setNormalizationSigma(float value) CV_OVERRIDE
+    {
+        set(&HessianParameters::normalizationSigma, value);
+    }
+    float getNormalizationSigma() const CV_OVERRIDE { return p.normalizationSigma; }
+
+    String getDefaultName() const CV_OVERRIDE { return Feature2D::getDefaultName() + ".HessianDetector"; }
+
+    using Feature2D::write;
+    void write(FileStorage& fs) const CV_OVERRIDE
+    {
+        // One node, which is then the first of a file: Algorithm::load() reads what Feature2D::write(file) wrote.
+        fs << "HessianDetector"
+           << "{";
+        fs << "format" << 1 << "maxFeatures" << p.maxFeatures << "threshold" << p.threshold << "scales"
+           << p.scales << "sigma" << p.sigma << "normalizationSigma" << p.normalizationSigma;
+        fs << "}";
+    }
+
+    using Feature2D::read;
+    void read(const FileNode& node) CV_OVERRIDE
+    {
+        // The node that write() made, or what holds it: the root of a file, or a node around it.
+        const FileNode inner = node.isMap() ? node["HessianDetector"] : FileNode();
+        const FileNode fn = inner.isMap() ? inner : node;
+        int version = 0;
+        if (fn.isMap() && !fn["format"].empty())
+            readNumber(fn, "format", version);
+        if (version != 1)
+            CV_Error(Error::StsParseError,
+                    "the node holds no HessianDetector parameters of format 1: it is " + describeNode(node));
+        HessianParameters r = p;
+        readNumber(fn, "maxFeatures", r.maxFeatures);
+        readNumber(fn, "threshold", r.threshold);
+        readNumber(fn, "scales", r.scales);
+        readNumber(fn, "sigma", r.sigma);
+        readNumber(fn, "normalizationSigma", r.normalizationSigma);
+        r.check();
+        p = r;
+    }
+
+    void save(const String& filename) const CV_OVERRIDE
+    {
+        // a node's name may not hold the dot of getDefaultName()
+        FileStorage fs(filename, FileStorage::WRITE);
+        CV_Assert(fs.isOpened());
+        write(fs);
+    }
+
+private:
+    static void refuseToDescribe()
+    {
+        CV_Error(Error::StsNotImplemented,
+                "HessianDetector finds keypoints but does not describe them; describe "
+                "them with IIBDescriptorExtractor::createFor(detector)");
+    }
+
+    template <typename T> void set(T HessianParameters::*member, T value)
+    {
+        HessianParameters changed = p;
+        changed.*member = value;
+        changed.check();
+        p = changed;
+    }
+
+    HessianParameters p;
+};
+
+}  // namespace
+
+Ptr<HessianDetector> HessianDetector::create(
+        int maxFeatures, float threshold, int scales, float sigma, float normalizationSigma)
+{
+    const HessianParameters p = {maxFeatures, threshold, scales, sigma, normalizationSigma};
+    return makePtr<HessianDetector_Impl>(p);
+}
+
+}  // namespace iib
+}  // namespace cv

@@ -1,0 +1,45 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_DETECTOR_KERNELS_HESSIAN_HPP
+#define OPENCV_IIB_DETECTOR_KERNELS_HESSIAN_HPP
+
+#include "../../precomp.hpp"
+
+namespace cv {
+namespace iib {
+
+static constexpr int HESSIAN_PADDING = 64;  //!< values that kernels may read and write beyond a row's width
+static constexpr int CONTRAST_BITS = 6;     //!< smoothed rows are normalized grey levels in 2^-6
+
+//! Weights of (near: 1, far: 2 spacings away) in a smoothing, in 2^-16; 0 to 16384.
+struct BlurWeights
+{
+    short near, far;
+};
+
+/* What HessianDetector does with rows. Smoothing is on integers; responses are floats in one order of operations. */
+struct HessianKernels
+{
+    //! Normalized 8-bit pixels around 128, which have no padding, to -127..127 in 2^-6.
+    void (*centre)(const uchar* pixels, short* out, int width);
+    //! out = c + near * (b + d - 2 c) + far * (a + e - 2 c) of rows a, b, c, d, e.
+    void (*blur)(const short* const rows[5], BlurWeights weights, short* out, int width);
+    //! factor * (Ixx Iyy - Ixy^2) by differences over `distance` pixels; rows: `distance` above, at and below.
+    void (*response)(const short* const rows[3], int distance, float factor, float* out, int width);
+    //! The largest of 3 x 3 values.
+    void (*largest)(const float* const rows[3], float* out, int width);
+    /** Columns from `begin` to before `end` where the value is at least `threshold`, which is positive, and at least what
+     three rows hold there. Returns their number. */
+    int (*maxima)(const float* values, const float* const bounds[3], float threshold, int begin, int end,
+            int* columns);
+};
+
+//! The kernels for this machine.
+const HessianKernels& hessianKernels();
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

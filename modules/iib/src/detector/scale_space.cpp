@@ -1,0 +1,135 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "scale_space.hpp"
+
+namespace cv {
+namespace iib {
+
+namespace {
+
+//! Five taps `spacing` apart that add this variance: twice (w, 1 - 2 w, w), of which each adds 2 w spacing^2.
+SmoothingStep stepOf(double variance)
+{
+    const int spacing = cvCeil(std::sqrt(.75 * variance));  // w is 1/3 at the most: one peak
+    const double w = variance / (4 * spacing * spacing);
+    const BlurWeights weights = {(short)cvRound(2 * w * (1 - 2 * w) * 65536), (short)cvRound(w * w * 65536)};
+    return {spacing, weights, 0, 0};
+}
+
+}  // namespace
+
+std::vector<SmoothingStep> smoothingSteps(const std::vector<double>& sigmas)
+{
+    const double unit = 40 << CONTRAST_BITS;  // a local standard deviation
+    std::vector<SmoothingStep> steps;
+    double variance = 0;
+    for (double sigma : sigmas)
+    {
+        const double wanted = sigma * sigma;
+        while (wanted - variance > 1e-9)
+        {
+            const double added = std::min(wanted - variance, std::max(variance, 4. / 3));
+            steps.push_back(stepOf(added));
+            variance += added;
+        }
+        const int distance = std::max(cvRound(.75 * sigma), 1);
+        steps.back().distance = distance;
+        steps.back().factor = (float)(wanted * wanted / (std::pow(distance, 4.) * unit * unit));
+    }
+    return steps;
+}
+
+ScaleSpace::ScaleSpace(
+        const Mat& normalized_, const std::vector<SmoothingStep>& steps_, int first_, int last_)
+    : kernels(hessianKernels()), normalized(normalized_), steps(steps_), first(first_), last(last_),
+      next(first_ - 2), ahead(steps_.size() + 1, 0), earliest(steps_.size() + 1, first_ - 1)
+{
+    const int width = normalized.cols;
+    std::vector<int> oldest(ahead.size(), 0);  // row that is still needed, from advance()'s row
+    int reach = 0;
+    for (size_t i = steps.size(); i-- > 0;)
+    {
+        const SmoothingStep& s = steps[i];
+        if (s.distance)
+        {
+            ahead[i + 1] = std::max(ahead[i + 1], 1 + s.distance);
+            oldest[i + 1] = std::min(oldest[i + 1], 1 - s.distance);
+            earliest[i + 1] = std::min(earliest[i + 1], first - 1 - s.distance);
+        }
+        ahead[i] = ahead[i + 1] + 2 * s.spacing;
+        oldest[i] = ahead[i + 1] - 2 * s.spacing;
+        earliest[i] = earliest[i + 1] - 2 * s.spacing;
+        reach = std::max(reach, std::max(2 * s.spacing, s.distance));
+    }
+    for (size_t i = 0; i < ahead.size(); i++)
+    {
+        earliest[i] = std::max(earliest[i], 0);
+        next = std::min(next, earliest[i] - ahead[i]);
+        images.push_back(RecentRows<short>(ahead[i] - oldest[i] + 1, width, reach));
+    }
+    smoothedDown.push_back(RecentRows<short>(1, width, reach));
+    for (const SmoothingStep& s : steps)
+        if (s.distance)
+        {
+            responses.push_back(RecentRows<float>(3, width, 1));
+            maxima.push_back(RecentRows<float>(1, width, 1));
+        }
+}
+
+void ScaleSpace::advance(int y)
+{
+    for (; next <= y; next++)
+    {
+        for (size_t i = 0; i < images.size(); i++)
+            if (next + ahead[i] >= earliest[i] && next + ahead[i] < normalized.rows)
+                makeRow(i, next + ahead[i]);
+        if (next + 1 >= first - 1)
+            makeResponses(next + 1);
+    }
+    for (size_t i = 0; i < maxima.size(); i++)
+    {
+        const float* const rows[] = {response(i, y - 1), response(i, y), response(i, y + 1)};
+        kernels.largest(rows, maxima[i].row(0), normalized.cols);
+    }
+}
+
+void ScaleSpace::makeRow(size_t image, int y)
+{
+    short* const out = images[image].row(y);
+    const int width = normalized.cols;
+    if (image == 0)
+        kernels.centre(normalized.ptr(y), out, width);
+    else
+    {
+        const SmoothingStep& s = steps[image - 1];
+        const short* rows[5];
+        for (int i = 0; i < 5; i++)
+            rows[i] = images[image - 1].row(
+                    std::min(std::max(y + (i - 2) * s.spacing, 0), normalized.rows - 1));
+        short* const down = smoothedDown[0].row(0);
+        kernels.blur(rows, s.weights, down, width);
+        smoothedDown[0].repeatEnds(0);
+        for (int i = 0; i < 5; i++)
+            rows[i] = down + (i - 2) * s.spacing;
+        kernels.blur(rows, s.weights, out, width);
+    }
+    images[image].repeatEnds(y);
+}
+
+void ScaleSpace::makeResponses(int y)
+{
+    size_t scale = 0;
+    for (size_t i = 0; i < steps.size(); i++)
+        if (const int d = steps[i].distance)
+        {
+            const short* const rows[] = {images[i + 1].row(std::max(y - d, 0)), images[i + 1].row(y),
+                    images[i + 1].row(std::min(y + d, normalized.rows - 1))};
+            kernels.response(rows, d, steps[i].factor, responses[scale].row(y), normalized.cols);
+            scale++;
+        }
+}
+
+}  // namespace iib
+}  // namespace cv

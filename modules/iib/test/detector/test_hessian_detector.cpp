@@ -1,0 +1,252 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/detected_matches.hpp"
+#include "../support/temporary_file.hpp"
+#include "../support/test_errors.hpp"
+#include "../support/test_images.hpp"
+#include "hessian_oracle.hpp"
+
+namespace opencv_test {
+namespace {
+
+std::vector<KeyPoint> found(const HessianDetector& detector, InputArray image, InputArray mask = noArray())
+{
+    std::vector<KeyPoint> keypoints;
+    const_cast<HessianDetector&>(detector).detect(image, keypoints, mask);
+    return keypoints;
+}
+
+TEST(IIB_HessianDetector, as_the_oracle_for_every_size_and_alignment)
+{
+    const Mat whole = texture(Size(260, 70), CV_8U, 1);
+    const Ptr<HessianDetector> detector = HessianDetector::create(0);
+    size_t n = 0;
+    for (int width = 2; width <= 240; width += width < 90 ? 1 : 13)
+    {
+        const Mat image = whole(Rect(width % 5, width % 3, width, 2 + width % 61));
+        const std::vector<KeyPoint> expected = oracle::findBlobs(image, *detector);
+        expectSameKeyPoints(expected, found(*detector, image));
+        ASSERT_FALSE(HasFailure()) << image.size();
+        n += expected.size();
+    }
+    EXPECT_GT(n, 1000u);
+}
+
+TEST(IIB_HessianDetector, as_the_oracle_for_every_parameter_and_depth)
+{
+    struct
+    {
+        int maxFeatures;
+        float threshold;
+        int scales;
+        float sigma, normalizationSigma;
+    } const all[] = {{0, 0, 5, 2, 4}, {50, 0, 5, 2.2f, 5}, {0, .05f, 5, 2, 4}, {0, 0, 1, 2, 4},
+            {0, 0, 2, 1.5f, 2}, {0, 0, 8, 1.5f, 3}, {0, 0, 3, 2.5f, 5}, {0, 0, 4, 3.3f, 20},
+            {0, 0, 8, 8, 256}, {0, 0, 6, 4, 6}};
+    for (int depth : {CV_8U, CV_16U})
+        for (const auto& p : all)
+        {
+            const Mat image = texture(Size(187, 131), depth, 2);
+            const Ptr<HessianDetector> detector = HessianDetector::create(
+                    p.maxFeatures, p.threshold, p.scales, p.sigma, p.normalizationSigma);
+            expectSameKeyPoints(oracle::findBlobs(image, *detector), found(*detector, image));
+            ASSERT_FALSE(HasFailure()) << depth << ": " << p.maxFeatures << " " << p.threshold << " "
+                                       << p.scales << " " << p.sigma << " " << p.normalizationSigma;
+        }
+}
+
+// Black and white pixels, and a pattern that repeats: the largest numbers, and neighbours with the same response.
+TEST(IIB_HessianDetector, as_the_oracle_at_the_largest_contrast_and_with_ties)
+{
+    Mat noise = texture(Size(130, 90), CV_8U, 3);
+    cv::threshold(noise, noise, 127, 255, THRESH_BINARY);
+    Mat pattern(120, 160, CV_8U);
+    for (int y = 0; y < pattern.rows; y++)
+        for (int x = 0; x < pattern.cols; x++)
+            pattern.at<uchar>(y, x) = (x / 8 + y / 8) % 2 ? 255 : 0;
+    const Ptr<HessianDetector> detector = HessianDetector::create(0);
+    for (const Mat& image : {noise, pattern, Mat(255 - pattern)})
+    {
+        const std::vector<KeyPoint> expected = oracle::findBlobs(image, *detector);
+        EXPECT_GT(expected.size(), 50u);
+        expectSameKeyPoints(expected, found(*detector, image));
+    }
+}
+
+TEST(IIB_HessianDetector, the_same_for_every_number_of_threads)
+{
+    const int before = getNumThreads();
+    const Mat image = texture(Size(300, 421), CV_8U, 4);
+    const Ptr<HessianDetector> detector = HessianDetector::create(0);
+    setNumThreads(1);
+    const std::vector<KeyPoint> expected = found(*detector, image);
+    EXPECT_GT(expected.size(), 500u);
+    for (int threads : {2, 3, 7})
+    {
+        setNumThreads(threads);
+        expectSameKeyPoints(expected, found(*detector, image));
+    }
+    setNumThreads(before);
+}
+
+TEST(IIB_HessianDetector, finds_a_blob_where_it_is_and_how_large)
+{
+    const Ptr<HessianDetector> detector = HessianDetector::create(1, 0.f, 6, 2.f, 256.f);
+    float sizeOfThree =
+            0;  // larger than 6: local normalization raises the flanks of a blob on a plain ground
+    for (double sigma : {3., 4., 5.5})
+        for (const Point2d centre : {Point2d(60, 50), Point2d(60.5, 50.25), Point2d(61.3, 49.7)})
+        {
+            Mat image(100, 120, CV_32F);
+            for (int y = 0; y < image.rows; y++)
+                for (int x = 0; x < image.cols; x++)
+                    image.at<float>(y, x) = (float)std::exp(
+                            -(std::pow(x - centre.x, 2) + std::pow(y - centre.y, 2)) / (2 * sigma * sigma));
+            for (const Mat& blob : {image, Mat(-image)})
+            {
+                const std::vector<KeyPoint> keypoints = found(*detector, blob);
+                ASSERT_EQ(1u, keypoints.size());
+                EXPECT_NEAR(centre.x, keypoints[0].pt.x, .15) << sigma;
+                EXPECT_NEAR(centre.y, keypoints[0].pt.y, .15) << sigma;
+                if (sizeOfThree == 0)
+                    sizeOfThree = keypoints[0].size;
+                EXPECT_NEAR(2 * (sigma - 3), keypoints[0].size - sizeOfThree, .8);
+                EXPECT_EQ(-1.f, keypoints[0].angle);
+            }
+        }
+}
+
+TEST(IIB_HessianDetector, strongest_first_and_fewer_are_the_first_of_more)
+{
+    const Mat image = texture(Size(320, 240), CV_8U, 5);
+    const std::vector<KeyPoint> all = found(*HessianDetector::create(0), image);
+    ASSERT_GT(all.size(), 600u);
+    for (size_t i = 1; i < all.size(); i++)
+        EXPECT_GE(all[i - 1].response, all[i].response);
+    const std::vector<KeyPoint> some = found(*HessianDetector::create(100), image);
+    expectSameKeyPoints(std::vector<KeyPoint>(all.begin(), all.begin() + 100), some);
+    const float threshold = all[200].response;
+    for (const KeyPoint& kp : found(*HessianDetector::create(0, threshold), image))
+        EXPECT_GE(kp.response, threshold);
+    EXPECT_EQ(201u, found(*HessianDetector::create(0, threshold), image).size());
+}
+
+TEST(IIB_HessianDetector, takes_every_type_of_image)
+{
+    const Mat grey = texture(Size(200, 160), CV_8U, 6);
+    const Ptr<HessianDetector> detector = HessianDetector::create();
+    const std::vector<KeyPoint> expected = found(*detector, grey);
+    ASSERT_GT(expected.size(), 100u);
+    Mat colour, framed;
+    merge(std::vector<Mat>(3, grey), colour);
+    expectSameKeyPoints(expected, found(*detector, colour));
+    merge(std::vector<Mat>(4, grey), colour);
+    expectSameKeyPoints(expected, found(*detector, colour));
+    UMat onDevice;
+    grey.copyTo(onDevice);
+    expectSameKeyPoints(expected, found(*detector, onDevice));
+    cv::copyMakeBorder(grey, framed, 5, 6, 7, 8, BORDER_CONSTANT, Scalar(0));
+    expectSameKeyPoints(expected, found(*detector, framed(Rect(Point(7, 5), grey.size()))));
+    Mat wide, real;
+    grey.convertTo(wide, CV_16U, 257);
+    grey.convertTo(real, CV_32F, 1 / 255.);
+    EXPECT_GT(found(*detector, wide).size(), 100u);
+    EXPECT_GT(found(*detector, real).size(), 100u);
+    EXPECT_TRUE(found(*detector, Mat()).empty());
+    EXPECT_TRUE(found(*detector, Mat(1, 40, CV_8U, Scalar(7))).empty());
+    EXPECT_TRUE(found(*detector, Mat(90, 90, CV_8U, Scalar(7))).empty());
+}
+
+TEST(IIB_HessianDetector, masks_leave_out_before_the_strongest_are_chosen)
+{
+    const Mat image = texture(Size(240, 200), CV_8U, 7);
+    Mat mask = Mat::zeros(image.size(), CV_8U);
+    mask(Rect(30, 40, 100, 120)) = 1;
+    std::vector<KeyPoint> expected;
+    for (const KeyPoint& kp : found(*HessianDetector::create(0), image))
+        if (mask.at<uchar>(cvRound(kp.pt.y), cvRound(kp.pt.x)))
+            expected.push_back(kp);
+    ASSERT_GT(expected.size(), 60u);
+    expected.resize(60);
+    const Ptr<HessianDetector> detector = HessianDetector::create(60);
+    expectSameKeyPoints(expected, found(*detector, image, mask));
+    expectError(Error::StsUnmatchedSizes, "mask", [&] { found(*detector, image, mask.rowRange(0, 50)); });
+    expectError(Error::StsUnsupportedFormat, "mask",
+            [&] { found(*detector, image, Mat(image.size(), CV_32F, Scalar(1))); });
+}
+
+TEST(IIB_HessianDetector, errors)
+{
+    expectError(Error::StsOutOfRange, "maxFeatures", [] { HessianDetector::create(-1); });
+    for (float threshold : {-.1f, NOT_A_NUMBER, ENDLESS})
+        expectError(Error::StsOutOfRange, "threshold", [&] { HessianDetector::create(1, threshold); });
+    for (int scales : {0, 9})
+        expectError(Error::StsOutOfRange, "scales", [&] { HessianDetector::create(1, 0.f, scales); });
+    for (float sigma : {1.49f, 8.1f, NOT_A_NUMBER})
+        expectError(Error::StsOutOfRange, "sigma", [&] { HessianDetector::create(1, 0.f, 5, sigma); });
+    for (float sigma : {1.9f, 257.f, NOT_A_NUMBER})
+        expectError(Error::StsOutOfRange, "normalizationSigma",
+                [&] { HessianDetector::create(1, 0.f, 5, 2.f, sigma); });
+    const Ptr<HessianDetector> detector = HessianDetector::create();
+    expectError(Error::StsOutOfRange, "sigma", [&] { detector->setSigma(0); });
+    expectError(Error::StsOutOfRange, "scales", [&] { detector->setScales(0); });
+    EXPECT_EQ(HessianDetector::create()->getSigma(), detector->getSigma());
+    expectError(Error::StsBadArg, "2 channels", [&] { found(*detector, Mat(30, 30, CV_8UC2)); });
+    Mat broken = Mat::zeros(30, 30, CV_32F);
+    broken.at<float>(7, 9) = NOT_A_NUMBER;
+    expectError(Error::StsBadArg, "(9, 7)", [&] { found(*detector, broken); });
+    std::vector<KeyPoint> keypoints(1, KeyPoint(9, 9, 5));
+    Mat descriptors;
+    const Mat image = texture(Size(60, 60), CV_8U, 8);
+    expectError(
+            Error::StsNotImplemented, "createFor", [&] { detector->compute(image, keypoints, descriptors); });
+    expectError(Error::StsNotImplemented, "createFor",
+            [&] { detector->detectAndCompute(image, noArray(), keypoints, descriptors); });
+    detector->detectAndCompute(image, noArray(), keypoints, noArray());
+    expectSameKeyPoints(found(*detector, image), keypoints);
+}
+
+TEST(IIB_HessianDetector, parameters_and_files)
+{
+    const Ptr<HessianDetector> detector = HessianDetector::create();
+    detector->setMaxFeatures(77);
+    detector->setThreshold(.125f);
+    detector->setScales(3);
+    detector->setSigma(2.5f);
+    detector->setNormalizationSigma(7);
+    EXPECT_EQ("Feature2D.HessianDetector", detector->getDefaultName());
+    const auto expectSame = [&](const Ptr<HessianDetector>& copy) {
+        ASSERT_TRUE(copy);
+        EXPECT_EQ(77, copy->getMaxFeatures());
+        EXPECT_EQ(.125f, copy->getThreshold());
+        EXPECT_EQ(3, copy->getScales());
+        EXPECT_EQ(2.5f, copy->getSigma());
+        EXPECT_EQ(7.f, copy->getNormalizationSigma());
+    };
+    const String file = cv::tempfile(".yml");
+    for (bool saved : {true, false})
+    {
+        if (saved)
+            detector->save(file);
+        else
+            detector->Feature2D::write(file);
+        const Ptr<HessianDetector> copy = HessianDetector::create();
+        copy->Feature2D::read(file);
+        expectSame(copy);
+        FileStorage fs(file, FileStorage::READ);
+        const Ptr<HessianDetector> other = HessianDetector::create();
+        other->read(fs.getFirstTopLevelNode());
+        expectSame(other);
+    }
+    std::remove(file.c_str());
+    const Ptr<HessianDetector> other = HessianDetector::create();
+    expectError(Error::StsParseError, "HessianDetector", [&] { other->read(FileNode()); });
+    FileStorage wrong("{\"format\": 1, \"scales\": 99}", FileStorage::READ | FileStorage::MEMORY);
+    expectError(Error::StsOutOfRange, "scales", [&] { other->read(wrong.root()); });
+    EXPECT_EQ(HessianDetector::create()->getScales(), other->getScales());
+}
+
+}  // namespace
+}  // namespace opencv_test
