@@ -155,6 +155,38 @@ inline v_means v_load_means(const float* p) { return v_load(p); }
 inline v_means v_setall_means(float v) { return v_setall_f32(v); }
 #endif
 
+//! A bit for each lane where the comparison holds.
+template <typename V> inline unsigned greaterMask(const V& a, const V& b)
+{
+    return (unsigned)v_signmask(a > b);
+}
+template <typename V> inline unsigned greaterEqualMask(const V& a, const V& b)
+{
+    return (unsigned)v_signmask(a >= b);
+}
+template <typename V> inline unsigned equalMask(const V& a, const V& b)
+{
+    return (unsigned)v_signmask(a == b);
+}
+#if CV_AVX512_SKX  // the above turns its masks into vectors and back
+inline unsigned greaterMask(const v_int32& a, const v_int32& b)
+{
+    return _mm512_cmpgt_epi32_mask(a.val, b.val);
+}
+inline unsigned greaterEqualMask(const v_int32& a, const v_int32& b)
+{
+    return _mm512_cmpge_epi32_mask(a.val, b.val);
+}
+inline unsigned equalMask(const v_int32& a, const v_int32& b)
+{
+    return _mm512_cmpeq_epi32_mask(a.val, b.val);
+}
+inline unsigned greaterMask(const v_int16& a, const v_int16& b)
+{
+    return _mm512_cmpgt_epi16_mask(a.val, b.val);
+}
+#endif
+
 CV_CPU_OPTIMIZATION_HAL_NAMESPACE_END
 
 }  // namespace cv

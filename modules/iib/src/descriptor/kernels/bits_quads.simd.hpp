@@ -17,38 +17,6 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-//! A bit for each lane where the comparison holds.
-template <typename V> inline unsigned greaterMask(const V& a, const V& b)
-{
-    return (unsigned)v_signmask(a > b);
-}
-template <typename V> inline unsigned greaterEqualMask(const V& a, const V& b)
-{
-    return (unsigned)v_signmask(a >= b);
-}
-template <typename V> inline unsigned equalMask(const V& a, const V& b)
-{
-    return (unsigned)v_signmask(a == b);
-}
-#if CV_AVX512_SKX  // the above turns its masks into vectors and back
-inline unsigned greaterMask(const v_int32& a, const v_int32& b)
-{
-    return _mm512_cmpgt_epi32_mask(a.val, b.val);
-}
-inline unsigned greaterEqualMask(const v_int32& a, const v_int32& b)
-{
-    return _mm512_cmpge_epi32_mask(a.val, b.val);
-}
-inline unsigned equalMask(const v_int32& a, const v_int32& b)
-{
-    return _mm512_cmpeq_epi32_mask(a.val, b.val);
-}
-inline unsigned greaterMask(const v_int16& a, const v_int16& b)
-{
-    return _mm512_cmpgt_epi16_mask(a.val, b.val);
-}
-#endif
-
 /* Stores groups of four lanes, every other one to `even` and to `odd`; `lane` counts the lanes that were stored before, and
  a vector may be as small as one. */
 inline void storeAlternately(unsigned* even, unsigned* odd, int lane, const v_int32& v)
