@@ -47,20 +47,19 @@ public:
         steps = smoothingSteps(sigmas);
     }
 
-    std::vector<Extremum> extrema() const
+    //! In parts of the image.
+    std::vector<std::vector<Extremum>> extrema() const
     {
         const int first = borders[0], rows = normalized.rows - 2 * first;
         if (rows <= 0 || normalized.cols <= 2 * first)
-            return std::vector<Extremum>();
+            return std::vector<std::vector<Extremum>>();
         const int parts = std::max(std::min(getNumThreads(), rows / LEAST_ROWS), 1);
         std::vector<std::vector<Extremum>> found(parts);
         parallel_for_(Range(0, parts), [&](const Range& range) {
             for (int i = range.start; i < range.end; i++)
                 find(first + rows * i / parts, first + rows * (i + 1) / parts - 1, found[i]);
         });
-        for (int i = 1; i < parts; i++)
-            found[0].insert(found[0].end(), found[i].begin(), found[i].end());
-        return std::move(found[0]);
+        return found;
     }
 
     //! Refined by quadratic fits: of the response in place, and of the response along the scales.
@@ -147,15 +146,15 @@ private:
 std::vector<KeyPoint> findBlobs(const Mat& normalized, const HessianParameters& parameters, const Mat& mask)
 {
     const BlobFinder finder(normalized, parameters);
-    const std::vector<Extremum> extrema = finder.extrema();
+    const std::vector<std::vector<Extremum>> parts = finder.extrema();
     std::vector<const Extremum*> order;
-    order.reserve(extrema.size());
-    for (const Extremum& e : extrema)
-    {
-        const Point2f pt = mask.empty() ? Point2f() : finder.refined(e).pt;
-        if (mask.empty() || mask.at<uchar>(cvRound(pt.y), cvRound(pt.x)))
-            order.push_back(&e);
-    }
+    for (const std::vector<Extremum>& part : parts)
+        for (const Extremum& e : part)
+        {
+            const Point2f pt = mask.empty() ? Point2f() : finder.refined(e).pt;
+            if (mask.empty() || mask.at<uchar>(cvRound(pt.y), cvRound(pt.x)))
+                order.push_back(&e);
+        }
     const auto before = [](const Extremum* a, const Extremum* b) { return isBefore(*a, *b); };
     const size_t most = parameters.maxFeatures;
     if (most > 0 && order.size() > most)

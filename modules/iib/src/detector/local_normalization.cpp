@@ -60,14 +60,15 @@ struct Blurs
     }
 };
 
+const double ROWS_OF_A_THREAD = 64;  // fewer cost more to hand out than to make
+
 class Normalizer
 {
 public:
     //! Of an image as it is, or of one at half its resolution.
     Normalizer(const Mat& grey_, bool halved_, double sigma)
         : kernels(normalizationKernels()), grey(grey_), halved(halved_), blurs(sigma),
-          size(halved ? Size(grey.cols / 2, grey.rows / 2) : grey.size()),
-          pixels(Size(grey.cols + 1, halved ? 2 : 0)), scratch(Size(size.width + 1, 3)), factor(0)
+          size(halved ? Size(grey.cols / 2, grey.rows / 2) : grey.size()), factor(0)
     {
         sizes.push_back(size);
         for (int i = 0; i < blurs.levels; i++)
@@ -79,22 +80,48 @@ public:
             factor = cvRound(WHITE * 65536. / largest);
     }
 
-    Mat run()
+    Mat run() const
     {
         const Plane<short> differences = differencesTo(means());
         const Plane<short> gains = gainsOf(differences);
         Mat result(size, CV_8U);
-        for (int y = 0; y < size.height; y++)
-        {
-            upsampleRow(gains, y, scratch.row(0));
-            kernels.scale(differences.row(y), scratch.row(0), result.ptr(y), size.width);
-        }
+        forRows(size.height, [&](int y, Scratch& scratch) {
+            upsampleRow(gains, y, scratch.between, scratch.rows.row(0));
+            kernels.scale(differences.row(y), scratch.rows.row(0), result.ptr(y), size.width);
+        });
         return result;
     }
 
 private:
+    //! Rows that a thread works on.
+    struct Scratch
+    {
+        Plane<short> pixels;   //!< two rows of an image that is halved
+        Plane<short> rows;     //!< two rows of what is normalized
+        Plane<short> between;  //!< one of half as many values
+
+        explicit Scratch(const Normalizer& n)
+            : pixels(Size(n.grey.cols + 1, n.halved ? 2 : 0)), rows(Size(n.size.width + 1, 2)),
+              between(Size(n.size.width + 1, 1))
+        {
+        }
+    };
+
+    //! Calls work(y, scratch) for all rows, from several threads.
+    template <typename Work> void forRows(int rows, const Work& work) const
+    {
+        parallel_for_(
+                Range(0, rows),
+                [&](const Range& range) {
+                    Scratch scratch(*this);
+                    for (int y = range.start; y < range.end; y++)
+                        work(y, scratch);
+                },
+                rows / ROWS_OF_A_THREAD);
+    }
+
     //! Row y of what is normalized, at `out`.
-    void readRow(int y, short* out)
+    void readRow(int y, Plane<short>& pixels, short* out) const
     {
         if (!halved)
             return readPixels(y, out);
@@ -113,18 +140,17 @@ private:
     }
 
     //! G*I at half the image's size.
-    Plane<short> means()
+    Plane<short> means() const
     {
         Plane<short> halves(sizes[1]);
-        for (int y = 0; y < halves.size.height; y++)
-        {
+        forRows(halves.size.height, [&](int y, Scratch& scratch) {
             for (int i = 0; i < 2; i++)
             {
-                readRow(std::min(2 * y + i, size.height - 1), scratch.row(i));
-                scratch.extend(i, size.width);
+                readRow(std::min(2 * y + i, size.height - 1), scratch.pixels, scratch.rows.row(i));
+                scratch.rows.extend(i, size.width);
             }
-            kernels.halveShorts(scratch.row(0), scratch.row(1), halves.row(y), halves.size.width);
-        }
+            kernels.halveShorts(scratch.rows.row(0), scratch.rows.row(1), halves.row(y), halves.size.width);
+        });
         Plane<short> smallest = reduced(std::move(halves), 1, kernels.halveShorts);
         Plane<int> sums(smallest.size);
         for (int y = 0; y < sums.size.height; y++)
@@ -136,26 +162,26 @@ private:
     }
 
     //! I - G*I.
-    Plane<short> differencesTo(const Plane<short>& means)
+    Plane<short> differencesTo(const Plane<short>& means) const
     {
         Plane<short> differences(size);
-        for (int y = 0; y < size.height; y++)
-        {
-            readRow(y, scratch.row(0));
-            upsampleRow(means, y, scratch.row(1));
-            kernels.subtract(scratch.row(0), scratch.row(1), differences.row(y), size.width);
+        forRows(size.height, [&](int y, Scratch& scratch) {
+            readRow(y, scratch.pixels, scratch.rows.row(0));
+            upsampleRow(means, y, scratch.between, scratch.rows.row(1));
+            kernels.subtract(scratch.rows.row(0), scratch.rows.row(1), differences.row(y), size.width);
             differences.extend(y, size.width);
-        }
+        });
         return differences;
     }
 
     //! What differences are multiplied by, at half the image's size.
-    Plane<short> gainsOf(const Plane<short>& differences)
+    Plane<short> gainsOf(const Plane<short>& differences) const
     {
         Plane<int> halves(sizes[1]);
-        for (int y = 0; y < halves.size.height; y++)
+        forRows(halves.size.height, [&](int y, Scratch&) {
             kernels.squares(differences.row(2 * y), differences.row(std::min(2 * y + 1, size.height - 1)),
                     halves.row(y), halves.size.width);
+        });
         Plane<int> variances = reduced(std::move(halves), 1, kernels.halveInts);
         blur(variances);
         Plane<short> gains(variances.size);
@@ -179,13 +205,13 @@ private:
     }
 
     //! From sizes[level] up to half the image's size.
-    Plane<short> upsampled(Plane<short> plane, int level)
+    Plane<short> upsampled(Plane<short> plane, int level) const
     {
         if (level == 1)
             return plane;
-        Plane<short> larger(sizes[level - 1]);
+        Plane<short> larger(sizes[level - 1]), between(Size(plane.size.width + 1, 1));
         for (int y = 0; y < larger.size.height; y++)
-            upsampleRow(plane, y, larger.row(y));
+            upsampleRow(plane, y, between, larger.row(y));
         return upsampled(std::move(larger), level - 1);
     }
 
@@ -208,14 +234,13 @@ private:
     }
 
     //! Row y of twice the plane's size.
-    void upsampleRow(const Plane<short>& half, int y, short* out)
+    void upsampleRow(const Plane<short>& half, int y, Plane<short>& between, short* out) const
     {
         const int width = half.size.width, other = y / 2 + (y % 2 ? 1 : -1);
-        short* between = scratch.row(2);
         kernels.interpolate(half.row(y / 2), half.row(std::min(std::max(other, 0), half.size.height - 1)),
-                between, width);
-        scratch.extend(2, width);
-        kernels.upsample(between, out, width);
+                between.row(0), width);
+        between.extend(0, width);
+        kernels.upsample(between.row(0), out, width);
     }
 
     const NormalizationKernels& kernels;
@@ -224,9 +249,7 @@ private:
     const Blurs blurs;
     const Size size;          //!< of what is normalized
     std::vector<Size> sizes;  //!< that, half of it, and so on
-    Plane<short> pixels;      //!< two rows of an image that is halved
-    Plane<short> scratch;
-    int64 factor;  //!< of 16-bit pixels, in 2^-16
+    int64 factor;             //!< of 16-bit pixels, in 2^-16
 };
 
 }  // namespace
