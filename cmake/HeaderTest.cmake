@@ -1,7 +1,12 @@
-# Compiles each public header alone, and all of them (opencv2/iib.hpp) as C++11 and C++20 with every compiler at hand, and
-# accepts no warning.
-# cmake -DCOMPILERS=<list> -DINCLUDE=<this module's folder> -DOPENCV_INCLUDE=<list> -P HeaderTest.cmake
-file(GLOB_RECURSE headers RELATIVE "${INCLUDE}" "${INCLUDE}/*.hpp")
+# Compiles each header of the include folders alone, and those that users include, opencv2/*.hpp, as C++11 and C++20 with
+# every compiler at hand, and accepts no warning.
+# cmake -DCOMPILERS=<list> -DINCLUDE=<list of folders> -DOPENCV_INCLUDE=<list> -P HeaderTest.cmake
+set(headers "")
+foreach(folder IN LISTS INCLUDE)
+  file(GLOB_RECURSE found RELATIVE "${folder}" "${folder}/*.hpp")
+  list(APPEND headers ${found})
+endforeach()
+list(TRANSFORM INCLUDE PREPEND "-I")
 list(LENGTH headers count)
 if(count EQUAL 0)
   message(FATAL_ERROR "no headers below ${INCLUDE}")
@@ -10,7 +15,7 @@ list(TRANSFORM OPENCV_INCLUDE PREPEND "-isystem;")
 function(compile compiler standard header)
   execute_process(
     COMMAND "${compiler}" -std=c++${standard} -Wall -Wextra -Wpedantic -Wshadow -Werror -fsyntax-only -x c++
-      "-I${INCLUDE}" ${OPENCV_INCLUDE} -include "${header}" /dev/null
+      ${INCLUDE} ${OPENCV_INCLUDE} -include "${header}" /dev/null
     RESULT_VARIABLE failed ERROR_VARIABLE errors)
   if(failed)
     message(SEND_ERROR "${header}, ${compiler}, C++${standard}:\n${errors}")
@@ -23,5 +28,6 @@ endforeach()
 foreach(compiler IN LISTS COMPILERS)
   foreach(standard 11 20)
     compile("${compiler}" ${standard} opencv2/iib.hpp)
+    compile("${compiler}" ${standard} opencv2/iib_index.hpp)
   endforeach()
 endforeach()

@@ -1,10 +1,9 @@
-# ctest entries: one for each test suite of opencv_test_iib, once with all instruction sets and once under
-# each pin WIDEST=DISABLED; a smoke run of the perf tests; the README on the installation; the demo. Those with the label
+# ctest entries: one for each test suite of opencv_test_iib and opencv_test_iib_index, once with all instruction sets and
+# once under each pin WIDEST=DISABLED; a smoke run of the perf tests; the README on the installation; the demo. Those with the label
 # `nightly` are for scripts/test.sh --all.
 if(CMAKE_CROSSCOMPILING)
   return()  # scripts/helpers/arm64.sh runs the test program in an emulator
 endif()
-set(suites "${PROJECT_BINARY_DIR}/suites.cmake")
 set(pins "")
 if(IIB_DISPATCH)
   set(pins AVX512_SKX=AVX512-ICL AVX2=AVX512-SKX,AVX512-ICL SSE4_2=AVX2,AVX512-SKX,AVX512-ICL
@@ -12,16 +11,20 @@ if(IIB_DISPATCH)
 endif()
 # Suites of kernels, which compare every instruction set with naive code over sizes and alignments. Sanitized, where all
 # takes ten times as long, the others run once by day, and under each pin by night.
-set(kernels Kernels Hamming Bits Boxes Rotated GradientOrientation Normalization Matcher_Sizes Golden InstructionSets)
+set(kernels_of_opencv_test_iib Kernels Hamming Bits Boxes Rotated GradientOrientation Normalization Matcher_Sizes Golden InstructionSets)
+set(kernels_of_opencv_test_iib_index MappedIndex)
 set(label "")
 if(IIB_SANITIZE)
   set(label nightly)
 endif()
-add_custom_command(TARGET opencv_test_iib POST_BUILD
-  COMMAND "${CMAKE_COMMAND}" "-DEXE=$<TARGET_FILE:opencv_test_iib>" "-DOUT=${suites}" "-DPINS=${pins}"
-    "-DKERNELS=${kernels}" "-DLABEL=${label}" -P "${PROJECT_SOURCE_DIR}/cmake/ListSuites.cmake"
-  BYPRODUCTS "${suites}" VERBATIM)
-set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${suites}")
+foreach(program opencv_test_iib opencv_test_iib_index)
+  set(suites "${PROJECT_BINARY_DIR}/${program}.suites.cmake")
+  add_custom_command(TARGET ${program} POST_BUILD
+    COMMAND "${CMAKE_COMMAND}" "-DEXE=$<TARGET_FILE:${program}>" "-DOUT=${suites}" "-DPINS=${pins}"
+      "-DKERNELS=${kernels_of_${program}}" "-DLABEL=${label}" -P "${PROJECT_SOURCE_DIR}/cmake/ListSuites.cmake"
+    BYPRODUCTS "${suites}" VERBATIM)
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${suites}")
+endforeach()
 
 add_test(NAME includes COMMAND "${CMAKE_COMMAND}" "-DMODULE=${IIB_DIR}" -P "${PROJECT_SOURCE_DIR}/cmake/IncludeTest.cmake")
 if(TARGET iib_demo)
@@ -51,7 +54,8 @@ foreach(name g++ clang++)
   endif()
 endforeach()
 list(REMOVE_DUPLICATES compilers)
-add_test(NAME headers COMMAND "${CMAKE_COMMAND}" "-DCOMPILERS=${compilers}" "-DINCLUDE=${IIB_DIR}/include"
+add_test(NAME headers COMMAND "${CMAKE_COMMAND}" "-DCOMPILERS=${compilers}"
+  "-DINCLUDE=${IIB_DIR}/include;${IIB_INDEX_DIR}/include"
   "-DOPENCV_INCLUDE=${OpenCV_INCLUDE_DIRS}" -P "${PROJECT_SOURCE_DIR}/cmake/HeaderTest.cmake")
 # No source compiles with -ffast-math, and the build's own flags undo it where a user's flags hold it.
 set(fast_math "${CMAKE_CXX_COMPILER}" -std=c++11 -ffast-math)
@@ -71,14 +75,15 @@ if(IIB_PYTHON)
 endif()
 # The Python package, linked with what is built here already. The script skips by itself where there is no package index.
 if(UNIX AND NOT APPLE)
-  add_library(opencv_iib_static STATIC $<TARGET_OBJECTS:opencv_iib>)
+  add_library(opencv_iib_static STATIC $<TARGET_OBJECTS:opencv_iib> $<TARGET_OBJECTS:opencv_iib_index>)
   add_test(NAME python COMMAND "${CMAKE_COMMAND}" -E env "OpenCV_DIR=${OpenCV_DIR}"
     "${PROJECT_SOURCE_DIR}/scripts/helpers/python_test.sh" "$<TARGET_FILE:opencv_iib_static>")
   set_tests_properties(python PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: python tests \\("
     COST 1000)  # begun first, so that nothing waits for it at the end
-  add_test(NAME symbols COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib>" "-DNM=${CMAKE_NM}"
-    "-DREADELF=${CMAKE_READELF}" "-DVERSION=${PROJECT_VERSION}" "-DCHANGELOG=${PROJECT_SOURCE_DIR}/CHANGELOG.md"
-    -P "${PROJECT_SOURCE_DIR}/cmake/SymbolTest.cmake")
+  set(symbol_test "-DNM=${CMAKE_NM}" "-DREADELF=${CMAKE_READELF}" "-DVERSION=${PROJECT_VERSION}"
+    "-DCHANGELOG=${PROJECT_SOURCE_DIR}/CHANGELOG.md" -P "${PROJECT_SOURCE_DIR}/cmake/SymbolTest.cmake")
+  add_test(NAME symbols COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib>" ${symbol_test})
+  add_test(NAME symbols-index COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib_index>" ${symbol_test})
 endif()
 # Other compilers and unoptimized builds inline less.
 if(IIB_DISPATCH AND NOT IIB_SANITIZE AND CMAKE_BUILD_TYPE STREQUAL "Release" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

@@ -1,12 +1,19 @@
-# Library, headers, CMake package opencv_iib and opencv_iib.pc. The headers go beside OpenCV's own.
+# Libraries, headers, CMake package opencv_iib and opencv_iib.pc. The headers go beside OpenCV's own.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(include_dir "${CMAKE_INSTALL_INCLUDEDIR}/opencv4")
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/opencv_iib")
 
-target_include_directories(opencv_iib INTERFACE "$<INSTALL_INTERFACE:${include_dir}>")
-install(TARGETS opencv_iib EXPORT opencv_iib LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
-install(DIRECTORY "${IIB_DIR}/include/opencv2" DESTINATION "${include_dir}")
+foreach(target opencv_iib opencv_iib_index)
+  target_include_directories(${target} INTERFACE "$<INSTALL_INTERFACE:${include_dir}>")
+endforeach()
+# Outside of the system's folders, the one library finds the other beside itself.
+if(UNIX AND NOT APPLE AND NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+  set_target_properties(opencv_iib_index PROPERTIES INSTALL_RPATH "\$ORIGIN")
+endif()
+install(TARGETS opencv_iib opencv_iib_index EXPORT opencv_iib LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+install(DIRECTORY "${IIB_DIR}/include/opencv2" "${IIB_INDEX_DIR}/include/opencv2" DESTINATION "${include_dir}"
+  PATTERN "*.private.hpp" EXCLUDE)
 install(EXPORT opencv_iib FILE opencv_iibTargets.cmake DESTINATION "${package_dir}")
 
 configure_package_config_file(cmake/opencv_iibConfig.cmake.in opencv_iibConfig.cmake

@@ -1,15 +1,20 @@
-# opencv_test_iib and opencv_perf_iib on OpenCV's own test framework.
+# opencv_test_iib, opencv_test_iib_index and opencv_perf_iib on OpenCV's own test framework.
 find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc features2d flann calib3d imgcodecs videoio highgui)
 include(IIBOpenCVTs)
 
-foreach(kind test perf)
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${IIB_DIR}/${kind}/*.cpp" "${IIB_DIR}/${kind}/*.hpp")
-  set(target opencv_${kind}_iib)
+# The program opencv_KIND_NAME of modules/NAME/KIND.
+function(iib_add_test_program kind name)
+  set(dir "${PROJECT_SOURCE_DIR}/modules/${name}/${kind}")
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${dir}/*.cpp" "${dir}/*.hpp")
+  set(target opencv_${kind}_${name})
   add_executable(${target} ${sources})
-  target_include_directories(${target} PRIVATE "${IIB_DIR}/${kind}" "${OPENCV_SOURCE_DIR}/modules")
+  target_include_directories(${target} PRIVATE "${dir}" "${OPENCV_SOURCE_DIR}/modules")
   target_compile_options(${target} PRIVATE ${IIB_ADDRESS_ALONE})
-  target_link_libraries(${target} PRIVATE opencv_iib opencv_ts opencv_calib3d)
-endforeach()
+  target_link_libraries(${target} PRIVATE opencv_${name} opencv_ts opencv_calib3d)
+endfunction()
+iib_add_test_program(test iib)
+iib_add_test_program(perf iib)
+iib_add_test_program(test iib_index)
 
 # Suites of internals link what the library does not show.
 target_sources(opencv_test_iib PRIVATE "$<FILTER:$<TARGET_OBJECTS:opencv_iib>,INCLUDE,/(matcher/kernels/.*|descriptor/(box_plan|kernels/.*|keypoint_batches|layout|parameters|plan|rotated_region|rotation|selection))[.]>")

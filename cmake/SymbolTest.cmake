@@ -1,11 +1,14 @@
-# The dynamic symbols of LIBRARY are the API's alone, its soname and changelog agree on the version, and it is hardened.
+# The dynamic symbols of LIBRARY, opencv_iib or opencv_iib_index, are those of the API and of *.private.hpp alone, its soname and changelog agree on the version, and it is hardened.
 # cmake -DLIBRARY=<file> -DNM=<nm> -DREADELF=<readelf> -DVERSION=<x.y.z> -DCHANGELOG=<file> -P SymbolTest.cmake
 # Without VERSION, of a library that OpenCV's own build made: only its symbols, and none of the standard library's
 # templates, which OpenCV's build lets through as weak ones.
 execute_process(COMMAND "${NM}" -DC --defined-only "${LIBRARY}" OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
 string(STRIP "${symbols}" symbols)
 string(REGEX REPLACE "[;\n]+" ";" symbols "${symbols}")
-set(classes "cv::iib::(IIBDescriptorExtractor|HessianDetector|HierarchicalMatcher|MappedIndex|NormalizedDetector)")
+set(classes "cv::iib::(IIBDescriptorExtractor|HessianDetector|HierarchicalMatcher|NormalizedDetector|CheckedReader|CheckedWriter|SearchedCodes)")
+if(LIBRARY MATCHES "opencv_iib_index[^/]*$")
+  set(classes "cv::iib::(MappedIndex)")
+endif()
 set(api 0)
 if(NOT VERSION)
   list(FILTER symbols EXCLUDE REGEX "^[0-9a-f]* [WVu] .*(std::|__gnu_cxx::)")
@@ -27,7 +30,7 @@ endif()
 
 string(REGEX MATCH "^[0-9]+[.][0-9]+" soversion "${VERSION}")
 execute_process(COMMAND "${READELF}" -d "${LIBRARY}" OUTPUT_VARIABLE dynamic COMMAND_ERROR_IS_FATAL ANY)
-if(NOT dynamic MATCHES "SONAME[^\n]*\\[libopencv_iib\\.so\\.${soversion}\\]")
+if(NOT dynamic MATCHES "SONAME[^\n]*\\[libopencv_iib(_index)?\\.so\\.${soversion}\\]")
   message(SEND_ERROR "the soname of ${LIBRARY} is not that of version ${VERSION}")
 endif()
 if(NOT dynamic MATCHES "BIND_NOW")

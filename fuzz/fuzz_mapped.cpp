@@ -9,7 +9,7 @@
 #include "file.hpp"
 
 #include "../modules/iib/src/common/fnv1a.hpp"
-#include "opencv2/iib.hpp"
+#include "opencv2/iib_index.hpp"
 
 namespace {
 

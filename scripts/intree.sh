@@ -1,5 +1,5 @@
 #!/bin/sh
-# Builds OpenCV's own source with this module through OPENCV_EXTRA_MODULES_PATH, and runs the tests of C++, of speed
+# Builds OpenCV's own source with these modules through OPENCV_EXTRA_MODULES_PATH, and runs the tests of C++, of speed
 # (a smoke run) and of Python there.
 #   scripts/intree.sh [--short] [--source debian|contrib|contrib-5] [options of CMake]
 # --short: what scripts/test.sh has not shown of the same sources: that they build here, give the same bits (golden tests)
@@ -36,7 +36,7 @@ for argument in "$@"; do
 done
 
 extra_modules="$root/modules"
-list=iib,ts,python3,flann$calib3d
+list=iib,iib_index,ts,python3,flann$calib3d
 case "$kind" in
 debian)
     need $build_packages xz-utils libpng-dev zlib1g-dev python3-dev python3-numpy
@@ -84,12 +84,15 @@ cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
     tail -n 30 "$build.log" >&2
     exit 1
 }
-cmake --build "$build" --parallel "${JOBS:-$jobs}" --target opencv_test_iib opencv_perf_iib opencv_python3
+cmake --build "$build" --parallel "${JOBS:-$jobs}" --target opencv_test_iib opencv_test_iib_index opencv_perf_iib opencv_python3
 
-say "the library's symbols, in-tree"
-cmake "-DLIBRARY=$build/lib/libopencv_iib.so" -DNM=nm -P "$root/cmake/SymbolTest.cmake"
-say "opencv_test_iib, in-tree"
+say "the libraries' symbols, in-tree"
+for library in iib iib_index; do
+    cmake "-DLIBRARY=$build/lib/libopencv_$library.so" -DNM=nm -P "$root/cmake/SymbolTest.cmake"
+done
+say "opencv_test_iib and opencv_test_iib_index, in-tree"
 "$build/bin/opencv_test_iib" --gtest_filter="$tests"
+"$build/bin/opencv_test_iib_index"
 say "opencv_perf_iib, in-tree, a smoke run"
 "$build/bin/opencv_perf_iib" --perf_min_samples=1 --perf_force_samples=1
 say "cv2.iib"

@@ -26,7 +26,7 @@ class OpenCVIIBConan(ConanFile):
         self.version = lists.split("project(opencv_iib VERSION ")[1].split()[0]
 
     def export_sources(self):
-        for pattern in ("CMakeLists.txt", "LICENSE", "cmake/*", "modules/iib/*"):
+        for pattern in ("CMakeLists.txt", "LICENSE", "cmake/*", "modules/*"):
             copy(self, pattern, self._repository, self.export_sources_folder)
 
     def layout(self):
@@ -52,7 +52,7 @@ class OpenCVIIBConan(ConanFile):
     def build(self):
         cmake = CMake(self)
         cmake.configure()
-        cmake.build(target="opencv_iib")
+        cmake.build(target="opencv_iib_index")
 
     def package(self):
         copy(self, "LICENSE", self.source_folder, os.path.join(self.package_folder, "licenses"))
@@ -64,7 +64,7 @@ class OpenCVIIBConan(ConanFile):
         self.cpp_info.set_property("cmake_file_name", "opencv_iib")
         self.cpp_info.set_property("cmake_target_name", "opencv_iib")
         self.cpp_info.set_property("pkg_config_name", "opencv_iib")
-        self.cpp_info.libs = ["opencv_iib"]
+        self.cpp_info.libs = ["opencv_iib_index", "opencv_iib"]
         self.cpp_info.includedirs = [os.path.join("include", "opencv4")]
         features = "features2d" if Version(self.dependencies["opencv"].ref.version) < "5" else "features"
         self.cpp_info.requires = ["opencv::opencv_core", "opencv::opencv_imgproc", "opencv::opencv_" + features]

@@ -9,7 +9,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include "opencv2/iib/mapped_index.hpp"
+#include "opencv2/iib_index.hpp"
 
 namespace iib_python {
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Mutation testing: builds the library once with every mutant of mutants.txt switched off, then runs the tests with
-one of them switched on at a time: those in the folder of modules/iib/test with the name of the source's folder. A
-mutant that none of them notices is a survivor.
+one of them switched on at a time: those in the folder of modules/iib/test with the name of the source's folder, or all
+of modules/iib_index. A mutant that none of them notices is a survivor.
 
 mutate.py --source REPOSITORY --work FOLDER [--only NAME...]
 mutate.py --source REPOSITORY --check
@@ -47,7 +47,7 @@ class Mutant:
         if len(found) != 1 or len(self.context.findall(sources[found[0]])) != 1:
             sys.exit(f"{self.name}: '{fields['in']}' is not in the sources once: bring mutants.txt up to date")
         self.path, = found
-        self.area = fields.get("tests", self.path.split("/")[3])
+        self.area = fields.get("tests", self.path.split("/")[1 if "/iib_index/" in self.path else 3])
 
     def applied(self, text):
         """The source `text` with the switch around `right` within the context."""
@@ -70,7 +70,8 @@ def read_sources(repository):
 
 def read_mutants(path, sources):
     """Blocks of lines `name: ...`, `in: ...`, `right: ...`, `wrong: ...`; `file: ...` if several sources hold what `in` says,
-    and `tests: ...` if the folder of the tests does not have the name of the source's folder."""
+    and `tests: ...` if the folder of the tests does not have the name of the source's folder
+    (`iib_index`: that module's)."""
     mutants = []
     for block in re.split(r"\n\s*\n", path.read_text()):
         lines = [line for line in block.splitlines() if line and not line.startswith("#")]
@@ -115,7 +116,8 @@ def copy_source(repository, changed, target):
 def suites(source, area):
     """A filter for the test suites in the folder of `area`, which are to notice what is wrong there."""
     names = set()
-    for path in sorted((source / "modules/iib/test" / area).glob("*.cpp")):
+    folder = "modules/iib_index/test" if area == "iib_index" else f"modules/iib/test/{area}"
+    for path in sorted((source / folder).glob("*.cpp")):
         text = path.read_text()
         names |= set(re.findall(r"^TEST(?:_P|_F)?\((\w+),", text, re.MULTILINE))
     if not names:
@@ -160,20 +162,20 @@ def main():
     copy_source(options.source, changed, source)
     subprocess.check_call(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DIIB_BUILD_TOOLS=OFF",
                            f"-DCMAKE_CXX_FLAGS=-include {source / 'mutation.hpp'}"], stdout=subprocess.DEVNULL)
-    subprocess.check_call(["cmake", "--build", build, "--target", "opencv_test_iib"])
+    subprocess.check_call(["cmake", "--build", build, "--target", "opencv_test_iib", "opencv_test_iib_index"])
 
-    program = build / "opencv_test_iib"
     chosen = [m for m in mutants if not options.only or m.name in options.only]
-    filters, limits = {}, {}
+    programs, filters, limits = {}, {}, {}
     for area in sorted({m.area for m in chosen}):
         started = time.monotonic()
+        programs[area] = build / ("opencv_test_iib_index" if area == "iib_index" else "opencv_test_iib")
         filters[area] = suites(source, area)
-        if not run_tests(program, filters[area], 0, 3600):
+        if not run_tests(programs[area], filters[area], 0, 3600):
             sys.exit(f"the tests of {area} fail without any mutant")
         limits[area] = 60 + 5 * (time.monotonic() - started)
 
     def survives(mutant):
-        result = run_tests(program, filters[mutant.area], mutant.number, limits[mutant.area])
+        result = run_tests(programs[mutant.area], filters[mutant.area], mutant.number, limits[mutant.area])
         print(f"{'SURVIVED' if result else 'noticed '} {mutant.name} ({mutant.path})", flush=True)
         return result
 

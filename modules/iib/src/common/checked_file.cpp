@@ -3,7 +3,9 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../precomp.hpp"
-#include "checked_file.hpp"
+#include "fnv1a.hpp"
+#include "opencv2/iib/checked_file.private.hpp"
+#include "replaced_file.hpp"
 
 #include <cstring>
 
@@ -12,7 +14,8 @@ namespace iib {
 
 static const size_t LETTERS = 8;
 
-CheckedWriter::CheckedWriter(const String& filename, const FileKind& kind) : file(filename), written(0)
+CheckedWriter::CheckedWriter(const String& filename, const FileKind& kind)
+    : file(makePtr<ReplacedFile>(filename)), hash(makePtr<Fnv1a>()), written(0)
 {
     bytes(kind.letters, LETTERS);
     number(kind.version, 4);
@@ -20,13 +23,13 @@ CheckedWriter::CheckedWriter(const String& filename, const FileKind& kind) : fil
 
 void CheckedWriter::bytes(const void* data, size_t size)
 {
-    hash.add(data, size);
+    hash->add(data, size);
     unchecked(data, size);
 }
 
 void CheckedWriter::unchecked(const void* data, size_t size)
 {
-    file.write(data, size);
+    file->write(data, size);
     written += size;
 }
 
@@ -47,13 +50,16 @@ void CheckedWriter::real(float value)
 
 uint64 CheckedWriter::seal()
 {
-    const uint64 value = hash.value();
+    const uint64 value = hash->value();
     number(value, 8);
     return value;
 }
 
+void CheckedWriter::commit() { file->commit(); }
+
 CheckedReader::CheckedReader(const String& filename, const FileKind& kind)
-    : name(filename), kindName(kind.name), stream(filename.c_str(), std::ios::binary), whole(0), rest(0)
+    : name(filename), kindName(kind.name), stream(filename.c_str(), std::ios::binary), hash(makePtr<Fnv1a>()),
+      whole(0), rest(0)
 {
     stream.seekg(0, std::ios::end);
     const std::streamoff end = stream.tellg();
@@ -74,7 +80,7 @@ CheckedReader::CheckedReader(const String& filename, const FileKind& kind)
 
 uint64 CheckedReader::seal()
 {
-    const uint64 expected = hash.value();
+    const uint64 expected = hash->value();
     if (number(8) != expected)
         fail("it is altered: its checksum does not fit");
     return expected;
@@ -92,7 +98,7 @@ void CheckedReader::bytes(void* data, size_t size)
     stream.read((char*)data, size);
     if (!stream)
         fail("it is truncated");
-    hash.add(data, size);
+    hash->add(data, size);
     rest -= size;
 }
 

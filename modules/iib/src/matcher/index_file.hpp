@@ -5,7 +5,7 @@
 #ifndef OPENCV_IIB_MATCHER_INDEX_FILE_HPP
 #define OPENCV_IIB_MATCHER_INDEX_FILE_HPP
 
-#include "../common/checked_file.hpp"
+#include "opencv2/iib/checked_file.private.hpp"
 #include "parameters.hpp"
 
 namespace cv {

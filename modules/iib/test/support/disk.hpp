@@ -5,7 +5,7 @@
 #ifndef OPENCV_IIB_TEST_SUPPORT_DISK_HPP
 #define OPENCV_IIB_TEST_SUPPORT_DISK_HPP
 
-#include "../test_precomp.hpp"
+#include "test_precomp.hpp"
 
 #ifdef __linux__
 #include <csignal>

@@ -6,34 +6,12 @@
 
 namespace opencv_test {
 
-Mat randomDescriptors(uint64 seed, int rows, int bytes)
-{
-    RNG rng(seed), centres(7);
-    Mat base(16, bytes, CV_8U), result(rows, bytes, CV_8U);
-    centres.fill(base, RNG::UNIFORM, 0, 256);
-    for (int i = 0; i < rows; i++)
-    {
-        base.row(rng.uniform(0, base.rows)).copyTo(result.row(i));
-        for (int flips = rng.uniform(0, bytes * 2); flips > 0; flips--)
-            result.at<uchar>(i, rng.uniform(0, bytes)) ^= (uchar)(1 << rng.uniform(0, 8));
-    }
-    return result;
-}
-
 Mat randomMask(uint64 seed, int rows, int cols, double share)
 {
     RNG rng(seed);
     Mat values(rows, cols, CV_64F);
     rng.fill(values, RNG::UNIFORM, 0, 1);
     return values < share;
-}
-
-int hammingDistance(const uchar* a, const uchar* b, int bytes)
-{
-    int distance = 0;
-    for (int i = 0; i < bytes * 8; i++)
-        distance += (a[i / 8] ^ b[i / 8]) >> i % 8 & 1;
-    return distance;
 }
 
 // How far a float may be from the number that it stands for, as a part of it.

@@ -6,18 +6,14 @@
 #define OPENCV_IIB_TEST_SUPPORT_MATCHER_ORACLE_HPP
 
 #include "../test_precomp.hpp"
+#include "random_descriptors.hpp"
 
 namespace opencv_test {
 
 typedef std::vector<std::vector<DMatch>> Matches;
 
-//! Random descriptors in clusters, so that there are near ones, equal ones and ties.
-Mat randomDescriptors(uint64 seed, int rows, int bytes);
-
 //! CV_8UC1 of 0 and 255, about `share` of them set.
 Mat randomMask(uint64 seed, int rows, int cols, double share);
-
-int hammingDistance(const uchar* a, const uchar* b, int bytes);
 
 //! Matching as the header defines it, pair by pair.
 struct MatcherOracle

@@ -5,7 +5,7 @@
 #ifndef OPENCV_IIB_TEST_SUPPORT_TEMPORARY_FILE_HPP
 #define OPENCV_IIB_TEST_SUPPORT_TEMPORARY_FILE_HPP
 
-#include "../test_precomp.hpp"
+#include "test_precomp.hpp"
 
 #include "opencv2/core/utils/filesystem.hpp"
 

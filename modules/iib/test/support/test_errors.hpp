@@ -5,7 +5,7 @@
 #ifndef OPENCV_IIB_TEST_SUPPORT_TEST_ERRORS_HPP
 #define OPENCV_IIB_TEST_SUPPORT_TEST_ERRORS_HPP
 
-#include "../test_precomp.hpp"
+#include "test_precomp.hpp"
 
 namespace opencv_test {
 

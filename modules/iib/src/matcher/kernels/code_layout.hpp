@@ -10,16 +10,17 @@
 namespace cv {
 namespace iib {
 
-//! How codes are kept so that a kernel compares one query with many of them at once.
+//! How codes are kept so that a kernel compares one query with many of them at once. The numbers stand in files: what a number
+//! means, and what CodeLayout makes of it, never changes.
 enum CodePacking
 {
     /** Words combined so that half as many population counts do. With c the plain words, word 0 is c[0], then
     follow c[0] ^ ... ^ c[2k] ^ c[2k + 1] and c[2k + 1] ^ c[2k + 2]. The differences of two such codes are just
     what a chain of full adders needs for parity and carry, and
         Hamming distance = popcount(parity) + 2 * sum of popcount(carry). */
-    PACKING_ADDERS,
+    PACKING_ADDERS = 1,
     //! Plain bytes, whose distances are looked up in tables of the query's.
-    PACKING_TABLES
+    PACKING_TABLES = 2
 };
 
 /** Where the bits of a descriptor lie in a code of 32-bit words, and how CODES_PER_BLOCK codes lie side by side in a

@@ -2,11 +2,11 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_MATCHER_CODE_SEGMENT_HPP
-#define OPENCV_IIB_MATCHER_CODE_SEGMENT_HPP
+#ifndef OPENCV_IIB_INDEX_CODE_SEGMENT_HPP
+#define OPENCV_IIB_INDEX_CODE_SEGMENT_HPP
 
-#include "../common/mapped_file.hpp"
-#include "packed_codes.hpp"
+#include "mapped_file.hpp"
+#include "opencv2/iib/searched_codes.private.hpp"
 
 #include <mutex>
 
@@ -14,8 +14,8 @@ namespace cv {
 namespace iib {
 
 /* Format 1 of a segment, a checked file: u32: number of levels, each level's bytes, packing (eight letters), checked
-blocks: CodeBlocks that a checksum is for; u64: number of images, each image's rows, a checksum for each of the checked
-blocks; the hash. Then zeros up to a multiple of 4096 bytes, and from there the CodeBlocks as CodeLayout has them. */
+blocks: blocks of SearchedCodes that a checksum is for; u64: number of images, each image's rows, a checksum for each of the checked
+blocks; the hash. Then zeros up to a multiple of 4096 bytes, and from there the blocks of SearchedCodes. */
 
 //! What the manifest says of a segment.
 struct SegmentEntry
@@ -24,7 +24,8 @@ struct SegmentEntry
 };
 
 //! Writes codes to a file, which appears when it is whole and on the disk.
-SegmentEntry writeSegment(const String& filename, uint64 number, const PackedCodes& codes);
+SegmentEntry writeSegment(
+        const String& filename, uint64 number, const std::vector<int>& levels, const SearchedCodes& codes);
 
 //! A segment's file, mapped and checked when its codes are first asked for.
 class CodeSegment
@@ -33,7 +34,7 @@ public:
     CodeSegment(const String& filename, const SegmentEntry& entry, const std::vector<int>& levelSizes);
     const SegmentEntry& entry() const { return expected; }
     //! @throws cv::Exception that names the file if it is missing, altered, or not the one that the entry tells of.
-    const PackedCodes& codes();
+    const SearchedCodes& codes();
 
 private:
     void map();
@@ -43,7 +44,7 @@ private:
     const std::vector<int> levels;
     std::mutex lock;
     Ptr<MappedFile> file;
-    Ptr<PackedCodes> packed;  // null until it is checked
+    Ptr<SearchedCodes> packed;  // null until it is checked
 };
 
 }  // namespace iib

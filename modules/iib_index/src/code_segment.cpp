@@ -2,9 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../precomp.hpp"
+#include "precomp.hpp"
 #include "code_segment.hpp"
-#include "../common/checked_file.hpp"
+#include "opencv2/iib/checked_file.private.hpp"
 
 #include <cstring>
 
@@ -15,7 +15,7 @@ static const FileKind KIND = {"IIBCODES", 1, "a segment of MappedIndex"};
 static const size_t ALIGNMENT = 4096;
 static const size_t CHECKED_BYTES = 1 << 20;
 static const size_t LETTERS = 8;
-static const char* const PACKING_LETTERS[] = {"ADDERS  ", "TABLES  "};  // of PACKING_ADDERS, PACKING_TABLES
+static const char* const LAYOUT_LETTERS[] = {"ADDERS  ", "TABLES  "};  // of layouts 1 and 2
 
 static uint64 aligned(uint64 offset) { return (offset + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT; }
 
@@ -33,7 +33,7 @@ static uint64 wordHash(const void* data, size_t bytes)
     return state;
 }
 
-// Of each `checkedBlocks` rows of a matrix with a row a CodeBlock.
+// Of each `checkedBlocks` rows of a matrix with a row a block.
 static std::vector<uint64> checksumsOf(const Mat& blocks, int checkedBlocks)
 {
     std::vector<uint64> sums((size_t)(((int64)blocks.rows + checkedBlocks - 1) / checkedBlocks));
@@ -45,18 +45,18 @@ static std::vector<uint64> checksumsOf(const Mat& blocks, int checkedBlocks)
     return sums;
 }
 
-SegmentEntry writeSegment(const String& filename, uint64 number, const PackedCodes& codes)
+SegmentEntry writeSegment(
+        const String& filename, uint64 number, const std::vector<int>& levels, const SearchedCodes& codes)
 {
-    const Mat blocks = codes.stored();
-    const size_t blockBytes = codes.layout().blockWords() * sizeof(unsigned);
+    const Mat blocks = codes.blocks();
+    const size_t blockBytes = SearchedCodes::blockBytes(levels, codes.layout());
     const int checkedBlocks = (int)std::max(CHECKED_BYTES / blockBytes, (size_t)1);
     const std::vector<uint64> sums = checksumsOf(blocks, checkedBlocks);
-    const std::vector<int>& levels = codes.layout().levelSizes();
     CheckedWriter file(filename, KIND);
     file.number(levels.size(), 4);
     for (size_t i = 0; i < levels.size(); i++)
         file.number(levels[i], 4);
-    file.bytes(PACKING_LETTERS[codes.kernels().packing], LETTERS);
+    file.bytes(LAYOUT_LETTERS[codes.layout() - 1], LETTERS);
     file.number(checkedBlocks, 4);
     file.number(codes.images(), 8);
     for (size_t i = 0; i < codes.images(); i++)
@@ -77,7 +77,7 @@ CodeSegment::CodeSegment(
 {
 }
 
-const PackedCodes& CodeSegment::codes()
+const SearchedCodes& CodeSegment::codes()
 {
     std::lock_guard<std::mutex> guard(lock);
     if (!packed)
@@ -85,15 +85,15 @@ const PackedCodes& CodeSegment::codes()
     return *packed;
 }
 
-static CodePacking readPacking(CheckedReader& header)
+static unsigned readLayout(CheckedReader& header)
 {
     char letters[LETTERS];
     header.bytes(letters, LETTERS);
-    for (CodePacking packing : {PACKING_ADDERS, PACKING_TABLES})
-        if (std::memcmp(letters, PACKING_LETTERS[packing], LETTERS) == 0)
-            return packing;
+    for (unsigned layout : {1, 2})
+        if (std::memcmp(letters, LAYOUT_LETTERS[layout - 1], LETTERS) == 0)
+            return layout;
     header.fail("its packing is unknown: it is altered");
-    return PACKING_ADDERS;
+    return 0;
 }
 
 void CodeSegment::map()
@@ -104,7 +104,7 @@ void CodeSegment::map()
         fits = (int)header.word() == levels[i];
     if (!fits)
         header.fail("its levels are not those of the manifest");
-    const CodePacking packing = readPacking(header);
+    const unsigned layout = readLayout(header);
     const int checkedBlocks = (int)header.word();
     const uint64 images = header.number(8);
     header.expect(images, 8);
@@ -118,7 +118,8 @@ void CodeSegment::map()
     }
     if (images != expected.images || starts.back() != expected.rows || checkedBlocks <= 0)
         header.fail("it is not the one that the manifest names");
-    const uint64 blocks = (expected.rows + CodeLayout::CODES_PER_BLOCK - 1) / CodeLayout::CODES_PER_BLOCK;
+    const uint64 blocks =
+            (expected.rows + SearchedCodes::CODES_PER_BLOCK - 1) / SearchedCodes::CODES_PER_BLOCK;
     const uint64 sums = (blocks + checkedBlocks - 1) / checkedBlocks;
     header.expect(sums, 8);
     std::vector<uint64> checksums((size_t)sums);
@@ -129,16 +130,17 @@ void CodeSegment::map()
 
     const uint64 offset = aligned(header.position());
     const Ptr<MappedFile> bytes = makePtr<MappedFile>(name);
-    const size_t blockWords = CodeLayout(levels, packing).blockWords();
-    if (blocks > INT_MAX || bytes->size() != offset + blocks * blockWords * sizeof(unsigned))
+    const size_t blockBytes = SearchedCodes::blockBytes(levels, layout);
+    if (blocks > INT_MAX || bytes->size() != offset + blocks * blockBytes)
         header.fail("it is truncated or altered");
-    const Mat lying((int)blocks, (int)blockWords, CV_32S, const_cast<uchar*>(bytes->data()) + offset);
+    const Mat lying(
+            (int)blocks, (int)(blockBytes / sizeof(int)), CV_32S, const_cast<uchar*>(bytes->data()) + offset);
     const std::vector<uint64> found = checksumsOf(lying, checkedBlocks);
     const size_t wrong = std::mismatch(found.begin(), found.end(), checksums.begin()).first - found.begin();
     if (wrong < found.size())
         header.fail(format("it is altered: its rows from %lld on do not fit their checksum",
-                (long long)wrong * checkedBlocks * CodeLayout::CODES_PER_BLOCK));
-    packed = makePtr<PackedCodes>(levels, packing, starts, lying);
+                (long long)wrong * checkedBlocks * SearchedCodes::CODES_PER_BLOCK));
+    packed = makePtr<SearchedCodes>(levels, layout, starts, lying);
     file = bytes;
 }
 

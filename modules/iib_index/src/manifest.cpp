@@ -2,10 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../precomp.hpp"
+#include "precomp.hpp"
 #include "manifest.hpp"
-#include "../common/checked_file.hpp"
-#include "knn_table.hpp"
+#include "opencv2/iib/checked_file.private.hpp"
 
 namespace cv {
 namespace iib {
@@ -35,7 +34,7 @@ void writeManifest(const String& filename, const Manifest& manifest)
 // What every commit keeps to, whose numbers are added up without a further look.
 static bool fits(const Manifest& manifest)
 {
-    const uint64 limit = (uint64)1 << INDEX_BITS;
+    const uint64 limit = (uint64)1 << SearchedCodes::ROW_BITS;
     uint64 rows = 0, images = 0, last = 0;
     for (const SegmentEntry& segment : manifest.segments)
     {

@@ -2,11 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../precomp.hpp"
-#include "input.hpp"
+#include "precomp.hpp"
 #include "manifest.hpp"
-#include "parameters.hpp"
-#include "search.hpp"
 
 #include "opencv2/core/utils/filesystem.hpp"
 
@@ -32,15 +29,6 @@ void removeUnfinished(const String& folder)
     glob(folder + "/*.tmp", files);
     for (size_t i = 0; i < files.size(); i++)
         std::remove(files[i].c_str());
-}
-
-void checkLevels(const std::vector<int>& levelSizes)
-{
-    checkLevelSizesGiven(levelSizes);
-    MatcherParameters p;
-    p.levelSizes = levelSizes;
-    p.thresholds.assign(p.stages(), 0.f);
-    check(p);
 }
 
 class MappedIndexImpl CV_FINAL : public MappedIndex
@@ -69,24 +57,20 @@ public:
     Mat descriptors(int64 image) const CV_OVERRIDE
     {
         const size_t i = segmentHolding(image, firstImages, "image"), local = (size_t)image - firstImages[i];
-        const PackedCodes& codes = opened[i]->codes();
-        return codes.descriptors(local, 0, codes.rows(local));
+        return opened[i]->codes().descriptors(local);
     }
 
     void add(InputArrayOfArrays descriptors) CV_OVERRIDE
     {
-        std::vector<Mat> images = imagesOf(descriptors);
-        if (images.empty())
+        const SearchedCodes codes(manifest.levelSizes, descriptors);
+        if (codes.images() == 0)
             return;
-        PackedCodes codes(manifest.levelSizes);
-        for (size_t i = 0; i < images.size(); i++)
-            codes.add(checkedDescriptors(images[i], codes.layout().bytes(), false));
         commit([&](Manifest& next) {
             if (next.levelSizes != manifest.levelSizes)
                 CV_Error(
                         Error::StsBadArg, folder + " holds an index of other level sizes now: open it again");
             const uint64 number = next.segments.empty() ? 1 : next.segments.back().number + 1;
-            next.segments.push_back(writeSegment(segmentOf(folder, number), number, codes));
+            next.segments.push_back(writeSegment(segmentOf(folder, number), number, next.levelSizes, codes));
         });
     }
 
@@ -104,7 +88,7 @@ public:
     void refresh() CV_OVERRIDE
     {
         Manifest next = readManifest(manifestOf(folder));
-        checkLevels(next.levelSizes);
+        SearchedCodes::check(next.levelSizes);
         std::vector<Ptr<CodeSegment>> segments;
         std::vector<size_t> rows(1, 0), images(1, 0);
         for (size_t i = 0; i < next.segments.size(); i++)
@@ -124,28 +108,19 @@ public:
         std::swap(firstImages, images);
     }
 
-    void knnSearch(InputArray queries_, int k, std::vector<int64>& rows_, std::vector<int>& distances,
+    void knnSearch(InputArray queries, int k, std::vector<int64>& found, std::vector<int>& distances,
             int segment) const CV_OVERRIDE
     {
-        const int width = CodeLayout(manifest.levelSizes, PACKING_TABLES).bytes();
-        const Mat queries = checkedDescriptors(queries_.getMat(), width, false);
-        if (k <= 0)
-            CV_Error_(Error::StsOutOfRange, ("k is %d: it has to be > 0", k));
         if (segment < -1 || segment >= segments())
             CV_Error_(Error::StsOutOfRange, ("segment is %d: there are %d", segment, segments()));
         const size_t first = segment < 0 ? 0 : segment, end = segment < 0 ? opened.size() : first + 1;
-        const size_t count = firstRows[end] - firstRows[first];
-        KnnTable found(queries.rows, (int)std::min((size_t)k, std::max(count, (size_t)1)));
-        search(first, end, queries, found);
-
-        rows_ = forNeighbours<int64>(queries.rows, k, -1);
-        distances = forNeighbours<int>(queries.rows, k, -1);
-        for (size_t query = 0; query < (size_t)queries.rows; query++)
-            for (int i = 0; i < found.size() && found[query][i] != NO_MATCH; i++)
-            {
-                rows_[query * k + i] = (int64)indexOf(found[query][i]);
-                distances[query * k + i] = distanceOf(found[query][i]);
-            }
+        std::vector<SearchedCodes::Part> parts;
+        for (size_t i = first; i < end; i++)
+        {
+            const SearchedCodes& codes = opened[i]->codes();  // first: it checks what the manifest claims
+            parts.push_back({&codes, firstRows[i], hiddenOf(i)});
+        }
+        SearchedCodes::findNearest(manifest.levelSizes, parts, queries, k, found, distances);
     }
 
 private:
@@ -168,26 +143,6 @@ private:
             CV_Error_(Error::StsOutOfRange,
                     ("%s %lld: there are %lld", what, (long long)number, (long long)firsts.back()));
         return std::upper_bound(firsts.begin(), firsts.end(), (size_t)number) - firsts.begin() - 1;
-    }
-
-    //! In the segments `first` to `end`.
-    void search(size_t first, size_t end, const Mat& queries, KnnTable& found) const
-    {
-        const PruningPolicy policy;
-        const std::vector<Mat> masks;
-        std::vector<std::vector<bool>> hidden;
-        for (size_t i = first; i < end; i++)
-        {
-            opened[i]->codes();  // first: a manifest may claim more images than memory has bits for
-            hidden.push_back(hiddenOf(i));
-        }
-        for (size_t i = first; i < end; i++)
-        {
-            SearchInput input(opened[i]->codes(), queries, policy, masks);
-            input.firstIndex = firstRows[i];
-            input.hidden = hidden[i - first].empty() ? 0 : &hidden[i - first];
-            addNearest(input, found);
-        }
     }
 
     //! Which images of a segment were removed; empty if none was.
@@ -214,7 +169,7 @@ MappedIndex::~MappedIndex() {}
 
 Ptr<MappedIndex> MappedIndex::create(const String& folder, const std::vector<int>& levelSizes)
 {
-    checkLevels(levelSizes);
+    SearchedCodes::check(levelSizes);
     if (!utils::fs::isDirectory(folder) && !utils::fs::createDirectory(folder))
         CV_Error(Error::StsError, "Cannot make the folder " + folder + ": check its parent and the rights");
     {

@@ -2,18 +2,20 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_COMMON_CHECKED_FILE_HPP
-#define OPENCV_IIB_COMMON_CHECKED_FILE_HPP
+#ifndef OPENCV_IIB_CHECKED_FILE_PRIVATE_HPP
+#define OPENCV_IIB_CHECKED_FILE_PRIVATE_HPP
 
-#include "fnv1a.hpp"
-#include "replaced_file.hpp"
+#include "opencv2/core.hpp"
 
 #include <fstream>
 
 namespace cv {
 namespace iib {
 
-/* Binary files that do not depend on the machine and tell when they are altered: eight letters that name the kind of
+class Fnv1a;
+class ReplacedFile;
+
+/* Not installed: for this library and for modules that depend on it. Binary files that do not depend on the machine and tell when they are altered: eight letters that name the kind of
 file, u32 version, little-endian numbers and bytes, u64 FNV-1a hash of all before. */
 
 //! The eight letters, the newest version that is understood, and what errors call such a file.
@@ -24,7 +26,7 @@ struct FileKind
     const char* name;
 };
 
-class CheckedWriter
+class CV_EXPORTS CheckedWriter
 {
 public:
     CheckedWriter(const String& filename, const FileKind& kind);
@@ -38,15 +40,15 @@ public:
     //! Bytes so far.
     uint64 size() const { return written; }
     //! Puts the file in its place.
-    void commit() { file.commit(); }
+    void commit();
 
 private:
-    ReplacedFile file;
+    Ptr<ReplacedFile> file;
+    Ptr<Fnv1a> hash;
     uint64 written;
-    Fnv1a hash;
 };
 
-class CheckedReader
+class CV_EXPORTS CheckedReader
 {
 public:
     CheckedReader(const String& filename, const FileKind& kind);
@@ -69,8 +71,8 @@ private:
     String name;
     const char* kindName;
     std::ifstream stream;
+    Ptr<Fnv1a> hash;
     uint64 whole, rest;
-    Fnv1a hash;
 };
 
 }  // namespace iib

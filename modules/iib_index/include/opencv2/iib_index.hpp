@@ -2,15 +2,19 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_MAPPED_INDEX_HPP
-#define OPENCV_IIB_MAPPED_INDEX_HPP
+#ifndef OPENCV_IIB_INDEX_HPP
+#define OPENCV_IIB_INDEX_HPP
 
 #include "opencv2/core.hpp"
+
+/**
+@defgroup iib_index Binary codes in files, searched where they lie
+*/
 
 namespace cv {
 namespace iib {
 
-//! @addtogroup iib
+//! @addtogroup iib_index
 //! @{
 
 /** @brief Binary codes in a folder, searched where they lie: for more codes than memory should hold, for several programs

@@ -2,12 +2,13 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../support/disk.hpp"
-#include "../support/matcher_oracle.hpp"
-#include "../support/temporary_file.hpp"
-#include "../support/test_errors.hpp"
+#include "test_precomp.hpp"
 
-#include "../../src/common/fnv1a.hpp"
+#include "../../iib/src/common/fnv1a.hpp"
+#include "../../iib/test/support/disk.hpp"
+#include "../../iib/test/support/random_descriptors.hpp"
+#include "../../iib/test/support/temporary_file.hpp"
+#include "../../iib/test/support/test_errors.hpp"
 
 #include <thread>
 
@@ -19,8 +20,6 @@
 
 namespace opencv_test {
 namespace {
-
-using cv::iib::MappedIndex;
 
 const std::vector<int> LEVELS = {2, 8, 32};
 const int BYTES = 42;

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_MATCHER_MANIFEST_HPP
-#define OPENCV_IIB_MATCHER_MANIFEST_HPP
+#ifndef OPENCV_IIB_INDEX_MANIFEST_HPP
+#define OPENCV_IIB_INDEX_MANIFEST_HPP
 
 #include "code_segment.hpp"
 

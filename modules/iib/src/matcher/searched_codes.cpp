@@ -1,0 +1,98 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../precomp.hpp"
+#include "input.hpp"
+#include "opencv2/iib/searched_codes.private.hpp"
+#include "parameters.hpp"
+#include "search.hpp"
+
+#include <numeric>
+
+namespace cv {
+namespace iib {
+
+static_assert((int)SearchedCodes::CODES_PER_BLOCK == (int)CodeLayout::CODES_PER_BLOCK, "one number");
+static_assert((int)SearchedCodes::ROW_BITS == INDEX_BITS, "one number");
+
+void SearchedCodes::check(const std::vector<int>& levelSizes)
+{
+    checkLevelSizesGiven(levelSizes);
+    MatcherParameters p;
+    p.levelSizes = levelSizes;
+    p.thresholds.assign(p.stages(), 0.f);
+    iib::check(p);
+}
+
+bool SearchedCodes::knows(unsigned layout) { return layout == PACKING_ADDERS || layout == PACKING_TABLES; }
+
+size_t SearchedCodes::blockBytes(const std::vector<int>& levelSizes, unsigned layout)
+{
+    return CodeLayout(levelSizes, (CodePacking)layout).blockWords() * sizeof(unsigned);
+}
+
+SearchedCodes::SearchedCodes(const std::vector<int>& levelSizes, InputArrayOfArrays descriptors)
+    : packed(makePtr<PackedCodes>(levelSizes))
+{
+    const std::vector<Mat> images = imagesOf(descriptors);
+    for (size_t i = 0; i < images.size(); i++)
+        packed->add(checkedDescriptors(images[i], packed->layout().bytes(), false));
+}
+
+SearchedCodes::SearchedCodes(const std::vector<int>& levelSizes, unsigned layout,
+        const std::vector<size_t>& starts, const Mat& blocks)
+    : packed(makePtr<PackedCodes>(levelSizes, (CodePacking)layout, starts, blocks))
+{
+}
+
+unsigned SearchedCodes::layout() const { return packed->kernels().packing; }
+
+Mat SearchedCodes::blocks() const
+{
+    return packed->blocks() > 0 ? packed->stored() : Mat(0, (int)packed->layout().blockWords(), CV_32S);
+}
+
+size_t SearchedCodes::images() const { return packed->images(); }
+size_t SearchedCodes::rows() const { return packed->rows(); }
+size_t SearchedCodes::rows(size_t image) const { return packed->rows(image); }
+size_t SearchedCodes::start(size_t image) const { return packed->start(image); }
+size_t SearchedCodes::imageOf(size_t row) const { return packed->imageOf(row); }
+Mat SearchedCodes::descriptors(size_t image) const
+{
+    return packed->descriptors(image, 0, packed->rows(image));
+}
+
+void SearchedCodes::findNearest(const std::vector<int>& levelSizes, const std::vector<Part>& parts,
+        InputArray queries_, int k, std::vector<int64>& rows, std::vector<int>& distances)
+{
+    const int width = std::accumulate(levelSizes.begin(), levelSizes.end(), 0);
+    const Mat queries = checkedDescriptors(queries_.getMat(), width, false);
+    if (k <= 0)
+        CV_Error_(Error::StsOutOfRange, ("k is %d: it has to be > 0", k));
+    const PruningPolicy policy;
+    const std::vector<Mat> masks;
+    size_t count = 0;
+    for (const Part& part : parts)
+        count += part.codes->rows();
+    KnnTable found(queries.rows, (int)std::min((size_t)k, std::max(count, (size_t)1)));
+    for (const Part& part : parts)
+    {
+        SearchInput input(*part.codes->packed, queries, policy, masks);
+        input.firstIndex = part.firstRow;
+        input.hidden = part.hidden.empty() ? 0 : &part.hidden;
+        addNearest(input, found);
+    }
+
+    rows = forNeighbours<int64>(queries.rows, k, -1);
+    distances = forNeighbours<int>(queries.rows, k, -1);
+    for (size_t query = 0; query < (size_t)queries.rows; query++)
+        for (int i = 0; i < found.size() && found[query][i] != NO_MATCH; i++)
+        {
+            rows[query * k + i] = (int64)indexOf(found[query][i]);
+            distances[query * k + i] = distanceOf(found[query][i]);
+        }
+}
+
+}  // namespace iib
+}  // namespace cv
