@@ -30,7 +30,7 @@ String withoutLinks(const String& name) { return name; }
 bool isRegular(const struct stat& status) { return (status.st_mode & _S_IFREG) != 0; }
 void keepRights(std::FILE*, const struct stat&) {}
 bool flushToDisk(std::FILE* file) { return std::fflush(file) == 0 && _commit(_fileno(file)) == 0; }
-bool replace(const String& from, const String& to)
+bool replace(const String& from, const String& to, const String&)
 {
     return MoveFileExA(from.c_str(), to.c_str(), MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) != 0;
 }
@@ -56,13 +56,11 @@ void keepRights(std::FILE* file, const struct stat& status)
 
 bool flushToDisk(std::FILE* file) { return std::fflush(file) == 0 && fsync(fileno(file)) == 0; }
 
-bool replace(const String& from, const String& to)
+bool replace(const String& from, const String& to, const String& folder)
 {
     if (std::rename(from.c_str(), to.c_str()) != 0)
         return false;
     // The new name is safe once the folder is on the disk too; some file systems cannot do that.
-    const size_t slash = to.rfind('/');
-    const String folder = slash == String::npos ? String(".") : to.substr(0, slash + 1);
     const int descriptor = ::open(folder.c_str(), O_RDONLY);
     if (descriptor >= 0)
     {
@@ -118,6 +116,9 @@ void ReplacedFile::write(const void* data, size_t size)
 
 void ReplacedFile::commit()
 {
+    // Before anything is done, since memory may lack.
+    const size_t slash = target.rfind('/');
+    const String folder = slash == String::npos ? String(".") : target.substr(0, slash + 1);
     bool good = !std::ferror(stream);
     if (temporary.empty())
         good = std::fflush(stream) == 0 && good;
@@ -125,7 +126,7 @@ void ReplacedFile::commit()
         good = good && flushToDisk(stream);
     good = std::fclose(stream) == 0 && good;
     stream = 0;
-    if (!temporary.empty() && !(good && replace(temporary, target)))
+    if (!temporary.empty() && !(good && replace(temporary, target, folder)))
     {
         std::remove(temporary.c_str());
         good = false;
