@@ -4,16 +4,14 @@
 
 #include "precomp.hpp"
 #include "manifest.hpp"
-#include "opencv2/iib/checked_file.private.hpp"
 
 namespace cv {
 namespace iib {
 
 static const FileKind KIND = {"IIBSHARD", 1, "the manifest of a MappedIndex"};
 
-void writeManifest(const String& filename, const Manifest& manifest)
+ManifestFile::ManifestFile(const String& filename, Manifest& manifest) : file(filename, KIND)
 {
-    CheckedWriter file(filename, KIND);
     file.number(manifest.levelSizes.size(), 4);
     for (size_t i = 0; i < manifest.levelSizes.size(); i++)
         file.number(manifest.levelSizes[i], 4);
@@ -27,8 +25,7 @@ void writeManifest(const String& filename, const Manifest& manifest)
     file.number(manifest.removed.size(), 8);
     for (size_t i = 0; i < manifest.removed.size(); i++)
         file.number(manifest.removed[i], 8);
-    file.seal();
-    file.commit();
+    manifest.checksum = file.seal();
 }
 
 // What every commit keeps to, whose numbers are added up without a further look.

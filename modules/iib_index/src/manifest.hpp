@@ -6,6 +6,7 @@
 #define OPENCV_IIB_INDEX_MANIFEST_HPP
 
 #include "code_segment.hpp"
+#include "opencv2/iib/checked_file.private.hpp"
 
 namespace cv {
 namespace iib {
@@ -23,8 +24,19 @@ struct Manifest
     uint64 checksum;              //!< of the file that it was read from
 };
 
-//! Replaces the file in one step.
-void writeManifest(const String& filename, const Manifest& manifest);
+//! A manifest that is written beside the old one.
+class ManifestFile
+{
+public:
+    //! Fills in the manifest's checksum.
+    ManifestFile(const String& filename, Manifest& manifest);
+    //! Replaces the old one in one step.
+    void commit() { file.commit(); }
+
+private:
+    CheckedWriter file;
+};
+
 Manifest readManifest(const String& filename);
 
 }  // namespace iib

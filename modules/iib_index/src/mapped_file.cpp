@@ -87,7 +87,12 @@ FileLock::FileLock(const String& filename) : file(open(filename.c_str(), O_RDWR 
     CV_Error(Error::StsError, "Cannot write " + filename + ": check the folder and its rights");
 }
 
-FileLock::~FileLock() { close(file); }
+FileLock::~FileLock()
+{
+    flock(file,
+            LOCK_UN);  // closing is not enough: a process that was forked meanwhile holds the same open file
+    close(file);
+}
 
 #endif
 

@@ -1,0 +1,27 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+#ifndef OPENCV_IIB_INDEX_FOLDER_HPP
+#define OPENCV_IIB_INDEX_FOLDER_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv {
+namespace iib {
+
+/* The files of an index: manifest.iib, segment-NNNNNN.iib, lock, and unfinished ones, which a writer has begun and not yet
+renamed. */
+
+String manifestOf(const String& folder);
+String segmentOf(const String& folder, uint64 number);
+String lockOf(const String& folder);
+
+//! Throws if there is anything but the lock and unfinished files, which a killed create() leaves.
+void checkEmpty(const String& folder);
+//! Removes the unfinished files of an index and nothing else. Only under the lock.
+void removeUnfinished(const String& folder);
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

@@ -1,0 +1,87 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_INDEX_TEST_INDEX_FIXTURE_HPP
+#define OPENCV_IIB_INDEX_TEST_INDEX_FIXTURE_HPP
+
+#include "test_precomp.hpp"
+
+#include "../../iib/test/support/random_descriptors.hpp"
+#include "../../iib/test/support/temporary_file.hpp"
+#include "../../iib/test/support/test_errors.hpp"
+
+namespace opencv_test {
+
+const std::vector<int> LEVELS = {2, 8, 32};
+const int BYTES = 42;
+
+struct Found
+{
+    std::vector<int64> rows;
+    std::vector<int> distances;
+    bool operator==(const Found& other) const { return rows == other.rows && distances == other.distances; }
+};
+
+inline Found search(const MappedIndex& index, const Mat& queries, int k, int segment = -1)
+{
+    Found found;
+    index.knnSearch(queries, k, found.rows, found.distances, segment);
+    return found;
+}
+
+//! What brute force finds; `hidden` images are left out.
+inline Found expected(const std::vector<Mat>& images, const Mat& queries, int k,
+        const std::set<int>& hidden = std::set<int>())
+{
+    Found found;
+    for (int q = 0; q < queries.rows; q++)
+    {
+        std::vector<std::pair<int, int64>> all;
+        int64 row = 0;
+        for (size_t image = 0; image < images.size(); image++)
+            for (int i = 0; i < images[image].rows; i++, row++)
+                if (!hidden.count((int)image))
+                    all.push_back(std::make_pair(
+                            hammingDistance(queries.ptr(q), images[image].ptr(i), BYTES), row));
+        std::sort(all.begin(), all.end());
+        all.resize(k, std::make_pair(-1, (int64)-1));
+        for (const std::pair<int, int64>& one : all)
+        {
+            found.distances.push_back(one.first);
+            found.rows.push_back(one.second);
+        }
+    }
+    return found;
+}
+
+//! A segment each: 3 images, one of them empty; a single row; nothing; more than a block of the scan.
+const std::vector<std::vector<int>> ADDED = {{40, 0, 17}, {1}, {0, 0}, {2100, 5}};
+
+//! An index of ADDED and what is in it.
+struct IndexFixture : public testing::Test
+{
+    const TemporaryFolder folder;
+    std::vector<Mat> images;
+    Mat queries;
+    Ptr<MappedIndex> index;
+
+    void SetUp() CV_OVERRIDE
+    {
+        index = MappedIndex::create(folder.name, LEVELS);
+        for (const std::vector<int>& rows : ADDED)
+        {
+            std::vector<Mat> added;
+            for (int count : rows)
+                added.push_back(randomDescriptors(images.size() + added.size(), count, BYTES));
+            index->add(added);
+            images.insert(images.end(), added.begin(), added.end());
+        }
+        queries = randomDescriptors(100, 23, BYTES);
+    }
+    String segment(int number) const { return folder.name + format("/segment-%06d.iib", number); }
+};
+
+}  // namespace opencv_test
+
+#endif
