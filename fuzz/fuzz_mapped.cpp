@@ -20,7 +20,7 @@ using cv::iib::MappedIndex;
 class FileOf
 {
 public:
-    FileOf(ByteSource& in_, const char* letters) : in(in_), text(letters) { number(1, 4); }
+    FileOf(ByteSource& in_, const char* letters, int format) : in(in_), text(letters) { number(format, 4); }
     void number(uint64 value, int size)
     {
         if (in.rarely(64))
@@ -85,17 +85,27 @@ bool write(ByteSource& in, const String& folder)
         rows.push_back(in.between(0, 20));
         all += rows.back();
     }
-    FileOf codes(in, "IIBCODES");
+    const bool tables = in.flag(), oldFormat = in.flag();
+    FileOf codes(in, "IIBCODES", oldFormat ? 1 : 2);
     codes.number(1, 4);
     codes.number(levelBytes, 4);
-    codes.bytes(in.flag() ? "ADDERS  " : "TABLES  ");
+    if (oldFormat)
+        codes.bytes(tables ? "TABLES  " : "ADDERS  ");
+    else
+        codes.number(tables ? 2 : 1, 4);
     codes.number(checkedBlocks, 4);
     codes.number(images, 8);
     for (int count : rows)
         codes.number(count, 8);
     std::string blocks((all + CODES_PER_BLOCK - 1) / CODES_PER_BLOCK * BLOCK_BYTES, '\0');
-    for (char& byte : blocks)
-        byte = (char)in.take<uchar>();
+    const bool filled = in.rarely(8);  // with bits that belong to no code
+    for (size_t i = 0; i < blocks.size(); i++)
+    {
+        const int place = i % BLOCK_BYTES, code = tables ? place % CODES_PER_BLOCK : place / 4,
+                  byte = tables ? place / CODES_PER_BLOCK : place % 4;
+        if (filled || (byte < levelBytes && (int)(i / BLOCK_BYTES) * CODES_PER_BLOCK + code < all))
+            blocks[i] = (char)in.take<uchar>();
+    }
     for (size_t i = 0; i < blocks.size(); i += checkedBlocks * BLOCK_BYTES)
         codes.number(wordHash(blocks.substr(i, checkedBlocks * BLOCK_BYTES)), 8);
     const uint64 checksum = codes.seal();
@@ -104,7 +114,7 @@ bool write(ByteSource& in, const String& folder)
     for (int i = 1; i <= segments; i++)
         writeFile(folder + format("/segment-%06d.iib", i), codes.whole());
 
-    FileOf commit(in, "IIBSHARD");
+    FileOf commit(in, "IIBSHARD", 1);
     commit.number(1, 4);
     commit.number(levelBytes, 4);
     commit.number(segments, 8);
@@ -121,7 +131,6 @@ bool write(ByteSource& in, const String& folder)
         commit.number(i * 2, 8);
     commit.seal();
     writeFile(folder + "/manifest.iib", commit.whole());
-    const bool filled = levelBytes < 4 || all % CODES_PER_BLOCK > 0;  // with bits that belong to no code
     return codes.isAltered() || commit.isAltered() || filled || 2 * (removed - 1) >= segments * images;
 }
 
@@ -150,9 +159,7 @@ void check(const MappedIndex& index)
     FUZZ_CHECK((int64)all.size() == index.rows());
     for (int i = 0; i < k && rows[i] >= 0; i++)
     {
-        // Bits that fill up the last word and are not zero, which no call writes, count in distances.
-        FUZZ_CHECK(width % 4 != 0 ||
-                   std::find(all.begin(), all.end(), std::make_pair(distances[i], rows[i])) != all.end());
+        FUZZ_CHECK(std::find(all.begin(), all.end(), std::make_pair(distances[i], rows[i])) != all.end());
         FUZZ_CHECK(index.firstRow(index.imageOf(rows[i])) <= rows[i]);
         FUZZ_CHECK(i == 0 ||
                    std::make_pair(distances[i - 1], rows[i - 1]) < std::make_pair(distances[i], rows[i]));

@@ -36,7 +36,7 @@ class MappedIndex:
 
     @classmethod
     def create(cls, folder: Folder, levelSizes: Sequence[int]) -> MappedIndex:
-        """Makes a folder, whose parent has to exist, with an index without images.
+        """Makes a folder, whose parent has to exist, or takes an empty one, with an index without images.
 
         :param levelSizes: bytes of each level, coarse first, as of HierarchicalMatcher; one level is enough.
         """

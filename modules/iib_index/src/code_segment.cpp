@@ -11,38 +11,39 @@
 namespace cv {
 namespace iib {
 
-static const FileKind KIND = {"IIBCODES", 1, "a segment of MappedIndex"};
+static const FileKind KIND = {"IIBCODES", 2, "a segment of MappedIndex"};
 static const size_t ALIGNMENT = 4096;
 static const size_t CHECKED_BYTES = 1 << 20;
 static const size_t LETTERS = 8;
-static const char* const LAYOUT_LETTERS[] = {"ADDERS  ", "TABLES  "};  // of layouts 1 and 2
+static const char* const LETTERS_OF_LAYOUTS[] = {"ADDERS  ", "TABLES  "};  // of 1 and 2, in format 1
 
 static uint64 aligned(uint64 offset) { return (offset + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT; }
 
-// FNV-1a of 64-bit words, which is eight times as fast as that of bytes. Each step is one to one, so that a single word
-// that changed is always seen.
-static uint64 wordHash(const void* data, size_t bytes)
+// FNV-1a of little-endian 64-bit words, which is eight times as fast as that of bytes. Each step is one to one, so that a
+// single word that changed is always seen.
+static uint64 wordHash(const Mat& blocks)
 {
     uint64 state = CV_BIG_UINT(0xcbf29ce484222325);
-    for (size_t i = 0; i < bytes / sizeof(uint64); i++)
+    for (const uchar *p = blocks.data, *end = p + blocks.rows * blocks.step; p < end; p += 8)
     {
-        uint64 word;
-        std::memcpy(&word, static_cast<const uchar*>(data) + i * sizeof(word), sizeof(word));
+        const uint64 word = (uint64)p[0] | (uint64)p[1] << 8 | (uint64)p[2] << 16 | (uint64)p[3] << 24 |
+                            (uint64)p[4] << 32 | (uint64)p[5] << 40 | (uint64)p[6] << 48 | (uint64)p[7] << 56;
         state = (state ^ word) * CV_BIG_UINT(0x100000001b3);
     }
     return state;
 }
 
-// Of each `checkedBlocks` rows of a matrix with a row a block.
-static std::vector<uint64> checksumsOf(const Mat& blocks, int checkedBlocks)
+// Calls `visit` with the number of each part that a checksum is for, and its blocks, on several threads.
+template <typename Visit> static void forEachPart(const Mat& blocks, int checkedBlocks, const Visit& visit)
 {
-    std::vector<uint64> sums((size_t)(((int64)blocks.rows + checkedBlocks - 1) / checkedBlocks));
-    parallel_for_(Range(0, (int)sums.size()), [&](const Range& range) {
+    const int parts = (int)(((int64)blocks.rows + checkedBlocks - 1) / checkedBlocks);
+    parallel_for_(Range(0, parts), [&](const Range& range) {
         for (int i = range.start; i < range.end; i++)
-            sums[i] = wordHash(blocks.ptr(i * checkedBlocks),
-                    std::min(checkedBlocks, blocks.rows - i * checkedBlocks) * blocks.step);
+        {
+            const int first = i * checkedBlocks, count = std::min(checkedBlocks, blocks.rows - first);
+            visit(i, blocks.rowRange(first, first + count));
+        }
     });
-    return sums;
 }
 
 SegmentEntry writeSegment(
@@ -51,12 +52,13 @@ SegmentEntry writeSegment(
     const Mat blocks = codes.blocks();
     const size_t blockBytes = SearchedCodes::blockBytes(levels, codes.layout());
     const int checkedBlocks = (int)std::max(CHECKED_BYTES / blockBytes, (size_t)1);
-    const std::vector<uint64> sums = checksumsOf(blocks, checkedBlocks);
+    std::vector<uint64> sums((size_t)(((int64)blocks.rows + checkedBlocks - 1) / checkedBlocks));
+    forEachPart(blocks, checkedBlocks, [&](int i, const Mat& part) { sums[i] = wordHash(part); });
     CheckedWriter file(filename, KIND);
     file.number(levels.size(), 4);
     for (size_t i = 0; i < levels.size(); i++)
         file.number(levels[i], 4);
-    file.bytes(LAYOUT_LETTERS[codes.layout() - 1], LETTERS);
+    file.number(codes.layout(), 4);
     file.number(checkedBlocks, 4);
     file.number(codes.images(), 8);
     for (size_t i = 0; i < codes.images(); i++)
@@ -87,13 +89,20 @@ const SearchedCodes& CodeSegment::codes()
 
 static unsigned readLayout(CheckedReader& header)
 {
-    char letters[LETTERS];
-    header.bytes(letters, LETTERS);
-    for (unsigned layout : {1, 2})
-        if (std::memcmp(letters, LAYOUT_LETTERS[layout - 1], LETTERS) == 0)
-            return layout;
-    header.fail("its packing is unknown: it is altered");
-    return 0;
+    unsigned layout = 0;
+    if (header.version() == 1)
+    {
+        char letters[LETTERS];
+        header.bytes(letters, LETTERS);
+        for (unsigned i = 1; i <= 2; i++)
+            if (std::memcmp(letters, LETTERS_OF_LAYOUTS[i - 1], LETTERS) == 0)
+                layout = i;
+    }
+    else
+        layout = header.word();
+    if (!SearchedCodes::knows(layout))
+        header.fail("its layout is unknown");
+    return layout;
 }
 
 void CodeSegment::map()
@@ -135,11 +144,19 @@ void CodeSegment::map()
         header.fail("it is truncated or altered");
     const Mat lying(
             (int)blocks, (int)(blockBytes / sizeof(int)), CV_32S, const_cast<uchar*>(bytes->data()) + offset);
-    const std::vector<uint64> found = checksumsOf(lying, checkedBlocks);
-    const size_t wrong = std::mismatch(found.begin(), found.end(), checksums.begin()).first - found.begin();
-    if (wrong < found.size())
-        header.fail(format("it is altered: its rows from %lld on do not fit their checksum",
-                (long long)wrong * checkedBlocks * SearchedCodes::CODES_PER_BLOCK));
+    if (std::count(bytes->data() + header.position(), bytes->data() + offset, 0) !=
+            (int64)(offset - header.position()))
+        header.fail("it is altered: there is something between its header and its codes");
+    const size_t partRows = (size_t)checkedBlocks * SearchedCodes::CODES_PER_BLOCK;
+    std::vector<uchar> right(checksums.size());
+    forEachPart(lying, checkedBlocks, [&](int i, const Mat& part) {
+        right[i] = wordHash(part) == checksums[i] &&
+                   SearchedCodes::fillsWithZeros(levels, layout, expected.rows - i * partRows, part);
+    });
+    const size_t wrong = std::find(right.begin(), right.end(), 0) - right.begin();
+    if (wrong < right.size())
+        header.fail(format("it is altered: its rows from %lld on are not as they were written",
+                (long long)(wrong * partRows)));
     packed = makePtr<SearchedCodes>(levels, layout, starts, lying);
     file = bytes;
 }

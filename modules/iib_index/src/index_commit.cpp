@@ -11,8 +11,8 @@ namespace iib {
 void checkNumber(int64 number, uint64 count, const char* what)
 {
     if (number < 0 || (uint64)number >= count)
-        CV_Error_(Error::StsOutOfRange,
-                ("%s %lld: there are %lld", what, (long long)number, (long long)count));
+        CV_Error_(
+                Error::StsOutOfRange, ("%s %lld: there are %lld", what, (long long)number, (long long)count));
 }
 
 // The last segment that begins at or before a number; `firsts` ends with the number of all.
@@ -32,9 +32,9 @@ IndexCommit::IndexCommit(const String& folder, const Manifest& manifest, const I
         const SegmentEntry& entry = manifest.segments[i];
         const bool same = i < known && before->opened[i]->entry().number == entry.number &&
                           before->opened[i]->entry().checksum == entry.checksum;
-        opened.push_back(same ? before->opened[i]
-                              : makePtr<CodeSegment>(
-                                        segmentOf(folder, entry.number), entry, manifest.levelSizes));
+        opened.push_back(
+                same ? before->opened[i]
+                     : makePtr<CodeSegment>(segmentOf(folder, entry.number), entry, manifest.levelSizes));
         firstRows.push_back(firstRows.back() + (size_t)entry.rows);
         firstImages.push_back(firstImages.back() + (size_t)entry.images);
     }

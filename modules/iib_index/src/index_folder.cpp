@@ -11,7 +11,8 @@
 namespace cv {
 namespace iib {
 
-static const char *const MANIFEST = "manifest.iib", *const SEGMENT = "segment-%06llu.iib", *const LOCK = "lock";
+static const char *const MANIFEST = "manifest.iib", *const SEGMENT = "segment-%06llu.iib",
+                         *const LOCK = "lock";
 
 String manifestOf(const String& folder) { return folder + "/" + MANIFEST; }
 

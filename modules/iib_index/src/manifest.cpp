@@ -69,6 +69,7 @@ Manifest readManifest(const String& filename)
     for (uint64 i = 0; i < removed; i++)
         manifest.removed.push_back(file.number(8));
     manifest.checksum = file.seal();
+    file.expectEnd();
     if (!fits(manifest))
         file.fail("its segments and images do not fit together");
     return manifest;

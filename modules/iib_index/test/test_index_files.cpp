@@ -13,13 +13,143 @@ struct IIB_MappedIndex_Files : public IndexFixture
 {
 };
 
+//! The files of an index of two levels, 1 and 20 bytes, with three images of 1, 0 and 2 rows of goldenRow(), the first image
+//! removed. Made by the library of 22 November 2026, which wrote format 1; those of format 2 have its header changed as
+//! code_segment.hpp says, by a script.
+struct Golden
+{
+    int layout;
+    std::string segment, manifest;  //!< in hexadecimal; the segment up to its codes
+};
+
+const Golden FORMAT_1[] = {
+        {1,
+                "494942434f44455301000000020000000100000014000000414444455253202024090000030000000000"
+                "000001000000000000000000000000000000020000000000000009cbc0efef13f65e8c599ba99dc8a78b",
+                "494942534841524401000000020000000100000014000000010000000000000001000000000000000300"
+                "00000000000003000000000000008c599ba99dc8a78b0100000000000000000000000000000066f643d7"
+                "6a52c2f9"},
+        {2,
+                "494942434f444553010000000200000001000000140000005441424c45532020aa0a0000030000000000"
+                "0000010000000000000000000000000000000200000000000000be2a2d7761ed3ff2b33def7c8a68c552",
+                "494942534841524401000000020000000100000014000000010000000000000001000000000000000300"
+                "0000000000000300000000000000b33def7c8a68c5520100000000000000000000000000000044fdeaab"
+                "b516f146"},
+};
+
+const Golden FORMAT_2[] = {
+        {1,
+                "494942434f44455302000000020000000100000014000000010000002409000003000000000000000100"
+                "0000000000000000000000000000020000000000000009cbc0efef13f65ea33b068e505bac54",
+                "494942534841524401000000020000000100000014000000010000000000000001000000000000000300"
+                "0000000000000300000000000000a33b068e505bac54010000000000000000000000000000009557a1e0"
+                "1523de37"},
+        {2,
+                "494942434f4445530200000002000000010000001400000002000000aa0a000003000000000000000100"
+                "00000000000000000000000000000200000000000000be2a2d7761ed3ff2ab295c0af982bc67",
+                "494942534841524401000000020000000100000014000000010000000000000001000000000000000300"
+                "0000000000000300000000000000ab295c0af982bc6701000000000000000000000000000000dafbabe6"
+                "7452393f"},
+};
+
+//! Where the codes of each layout are not zero.
+const std::vector<std::pair<int, std::string>> CODES[] = {
+        {{0, "0b"}, {4, "70"}, {8, "d5"}, {64, "3b557a9fe5badf042f1f4469"}, {128, "b0f0b07070b0f050b070d0d0"},
+                {192, "7f19be4329fe83c8ebc3082d"}, {256, "9c94acf494ac74b4acf4b46c"},
+                {320, "cb752adfc56a1f247f5f6499"}, {384, "ec11365b51769bc0b6db0025"}},
+        {{0, "0b70d5"}, {64, "3095fa"}, {80, "55ba1f"}, {96, "7adf44"}, {112, "9f0469"}, {128, "80e54a"},
+                {144, "a50a6f"}, {160, "ca2f94"}, {176, "ef54b9"}, {192, "c4298e"}, {208, "e94eb3"},
+                {224, "0e73d8"}, {240, "3398fd"}, {256, "58bd22"}, {272, "7de247"}, {288, "a2076c"},
+                {304, "c72c91"}, {320, "ec51b6"}, {336, "1176db"}, {352, "369b"}, {368, "5bc025"}}};
+const size_t CODES_SIZES[] = {448, 384};
+
+Mat goldenRow(int row)
+{
+    Mat descriptor(1, 21, CV_8U);
+    for (int i = 0; i < 21; i++)
+        descriptor.at<uchar>(0, i) = (uchar)(37 * i + 101 * row + 11);
+    return descriptor;
+}
+
+std::vector<Mat> goldenImages()
+{
+    std::vector<Mat> images = {goldenRow(0), Mat(0, 21, CV_8U), goldenRow(1)};
+    images[2].push_back(goldenRow(2));
+    return images;
+}
+
+std::string fromHex(const std::string& hex)
+{
+    std::string bytes;
+    for (size_t i = 0; i < hex.size(); i += 2)
+        bytes += (char)std::stoi(hex.substr(i, 2), 0, 16);
+    return bytes;
+}
+
+std::string codesOf(int layout)
+{
+    std::string codes(CODES_SIZES[layout - 1], '\0');
+    for (const std::pair<int, std::string>& run : CODES[layout - 1])
+        codes.replace(run.first, run.second.size() / 2, fromHex(run.second));
+    return codes;
+}
+
+std::string segmentOf(const std::string& header, const std::string& codes)
+{
+    return header + std::string(4096 - header.size(), '\0') + codes;
+}
+
+void writeIndex(const String& folder, const std::string& segment, const std::string& manifest)
+{
+    writeFile(folder + "/segment-000001.iib", segment);
+    writeFile(folder + "/manifest.iib", manifest);
+}
+
+TEST_F(IIB_MappedIndex_Files, are_written_as_documented)
+{
+    const TemporaryFolder own;
+    const Ptr<MappedIndex> made = MappedIndex::create(own.name, {1, 20});
+    made->add(goldenImages());
+    made->remove({0});
+    const std::string bytes = readFile(own.name + "/segment-000001.iib");
+    ASSERT_GT(bytes.size(), 4096u);
+    ASSERT_TRUE(bytes[24] == 1 || bytes[24] == 2);
+    const Golden& golden = FORMAT_2[bytes[24] - 1];
+    EXPECT_TRUE(segmentOf(fromHex(golden.segment), codesOf(golden.layout)) == bytes);
+    EXPECT_TRUE(fromHex(golden.manifest) == readFile(own.name + "/manifest.iib"));
+}
+
+TEST_F(IIB_MappedIndex_Files, of_each_format_and_layout_are_read)
+{
+    for (const Golden* goldens : {FORMAT_1, FORMAT_2})
+        for (int layout : {1, 2})
+        {
+            SCOPED_TRACE(format("format %d, layout %d", goldens == FORMAT_1 ? 1 : 2, layout));
+            const Golden& golden = goldens[layout - 1];
+            const TemporaryFolder own;
+            writeIndex(
+                    own.name, segmentOf(fromHex(golden.segment), codesOf(layout)), fromHex(golden.manifest));
+            const Ptr<MappedIndex> opened = MappedIndex::open(own.name);
+            EXPECT_EQ(std::vector<int>({1, 20}), opened->levelSizes());
+            ASSERT_EQ(3, opened->images());
+            for (int image = 0; image < 3; image++)
+                EXPECT_EQ(0, cvtest::norm(goldenImages()[image], opened->descriptors(image), NORM_INF));
+            const Found found = search(*opened, goldenRow(2), 3);
+            EXPECT_EQ(std::vector<int64>({2, 1, -1}), found.rows);
+            EXPECT_EQ(std::vector<int>({0, (int)cvtest::norm(goldenRow(1), goldenRow(2), NORM_HAMMING), -1}),
+                    found.distances);
+            opened->add(goldenRow(3));  // in the newest format beside it
+            EXPECT_EQ(3, search(*MappedIndex::open(own.name), goldenRow(3), 1).rows[0]);
+        }
+}
+
 TEST_F(IIB_MappedIndex_Files, altered_files_are_named)
 {
     for (int number : {1, 2, 4})
     {
         const RestoredFile file(segment(number));
         const size_t size = file.bytes.size();
-        for (size_t position : {(size_t)0, (size_t)13, (size_t)60, size - 1, size - 700})
+        for (size_t position : {(size_t)0, (size_t)13, (size_t)60, (size_t)4000, size - 1, size - 700})
         {
             SCOPED_TRACE(format("segment %d, byte %d", number, (int)position));
             std::string altered = file.bytes;
@@ -63,6 +193,8 @@ TEST_F(IIB_MappedIndex_Files, altered_files_are_named)
         manifest.write(manifest.bytes.substr(0, position));
         expectError(Error::StsParseError, manifest.name, [&] { MappedIndex::open(folder.name); });
     }
+    manifest.write(manifest.bytes + "x");
+    expectError(Error::StsParseError, manifest.name, [&] { MappedIndex::open(folder.name); });
 }
 
 //! A file's bytes with a number put in, little-endian.
@@ -72,7 +204,6 @@ std::string with(std::string bytes, size_t position, uint64 value, int size = 8)
         bytes[position + i] = (char)(value >> 8 * i);
     return bytes;
 }
-
 
 //! The same with the hash at `position` made that of what is before it.
 std::string sealed(const std::string& bytes, size_t position)
@@ -107,7 +238,7 @@ TEST_F(IIB_MappedIndex_Files, impossible_numbers_are_refused)
         expectError(Error::StsParseError, first.name, [&] { search(*opened, queries, 1); });
     }
 
-    const size_t checkedBlocks = 8 + 4 + 4 + 3 * 4 + 8, rows = checkedBlocks + 4 + 8,
+    const size_t checkedBlocks = 8 + 4 + 4 + 3 * 4 + 4, rows = checkedBlocks + 4 + 8,
                  segmentSeal = rows + 4 * 8;
     const auto writeBoth = [&](const std::string& bytes) {
         first.write(sealed(bytes, segmentSeal));
@@ -118,9 +249,60 @@ TEST_F(IIB_MappedIndex_Files, impossible_numbers_are_refused)
     writeBoth(with(with(with(first.bytes, rows, (uint64)1 << 63), rows + 8, (uint64)1 << 63), rows + 16, 57));
     const Ptr<MappedIndex> opened = MappedIndex::open(folder.name);
     expectError(Error::StsParseError, first.name, [&] { search(*opened, queries, 1); });
+    for (int layout : {0, 3, 1 << 24})
+    {
+        writeBoth(with(first.bytes, checkedBlocks - 4, layout, 4));
+        const Ptr<MappedIndex> unknown = MappedIndex::open(folder.name);
+        expectError(Error::StsParseError, first.name, [&] { search(*unknown, queries, 1); });
+    }
     // one checksum for all: unusual, but right
     writeBoth(with(first.bytes, checkedBlocks, INT_MAX, 4));
     EXPECT_TRUE(expected(images, queries, 3, {1, 5}) == search(*MappedIndex::open(folder.name), queries, 3));
+}
+
+//! The checksum of codes, as code_segment.hpp says.
+uint64 wordHash(const std::string& codes)
+{
+    uint64 state = CV_BIG_UINT(0xcbf29ce484222325);
+    for (size_t i = 0; i < codes.size(); i += 8)
+    {
+        uint64 word = 0;
+        for (int b = 0; b < 8; b++)
+            word |= (uint64)(uchar)codes[i + b] << 8 * b;
+        state = (state ^ word) * CV_BIG_UINT(0x100000001b3);
+    }
+    return state;
+}
+
+// They would count in distances. All checksums are right.
+TEST_F(IIB_MappedIndex_Files, bits_that_fill_codes_up_have_to_be_zero)
+{
+    // The word of the first level, a code that is not there, and the last word, which makes their number odd in layout 1.
+    const std::vector<int> filling[] = {{1, 3, 11, 12, 60, 64 + 63, 384, 395}, {16, 63, 3, 15, 383}};
+    for (int layout : {1, 2})
+        for (int position : filling[layout - 1])
+        {
+            SCOPED_TRACE(format("layout %d, byte %d", layout, position));
+            std::string codes = codesOf(layout), header = fromHex(FORMAT_1[layout - 1].segment),
+                        manifest = fromHex(FORMAT_1[layout - 1].manifest);
+            codes[position] ^= 16;
+            header = sealed(with(header, header.size() - 16, wordHash(codes)), header.size() - 8);
+            manifest.replace(8 + 4 + 3 * 4 + 4 * 8, 8, header.substr(header.size() - 8));
+            const TemporaryFolder own;
+            writeIndex(own.name, segmentOf(header, codes), sealed(manifest, manifest.size() - 8));
+            const Ptr<MappedIndex> opened = MappedIndex::open(own.name);
+            expectError(
+                    Error::StsParseError, "segment-000001.iib", [&] { search(*opened, goldenRow(0), 1); });
+        }
+}
+
+// A file that is mapped must not be shortened; to delete or replace it is harmless.
+TEST_F(IIB_MappedIndex_Files, mapped_segments_outlive_their_names)
+{
+    const Found before = search(*index, queries, 3);
+    std::remove(segment(1).c_str());
+    ASSERT_EQ(0, std::rename(segment(2).c_str(), segment(4).c_str()));
+    EXPECT_TRUE(before == search(*index, queries, 3));
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ void CheckedWriter::commit() { file->commit(); }
 
 CheckedReader::CheckedReader(const String& filename, const FileKind& kind)
     : name(filename), kindName(kind.name), stream(filename.c_str(), std::ios::binary), hash(makePtr<Fnv1a>()),
-      whole(0), rest(0)
+      whole(0), rest(0), format(0)
 {
     stream.seekg(0, std::ios::end);
     const std::streamoff end = stream.tellg();
@@ -71,11 +71,11 @@ CheckedReader::CheckedReader(const String& filename, const FileKind& kind)
     bytes(letters, sizeof(letters));
     if (std::memcmp(letters, kind.letters, sizeof(letters)) != 0)
         fail("it is a file of another kind");
-    const unsigned version = word();
-    if (version == 0)
+    format = word();
+    if (format == 0)
         fail("its format 0 does not exist: it is altered");
-    if (version > kind.version)
-        fail(format("its format %u is newer than this library's, %u", version, kind.version));
+    if (format > kind.version)
+        fail(cv::format("its format %u is newer than this library's, %u", format, kind.version));
 }
 
 uint64 CheckedReader::seal()
@@ -90,6 +90,12 @@ void CheckedReader::expect(uint64 count, uint64 size) const
 {
     if (size != 0 && count > rest / size)
         fail("it is truncated or altered");
+}
+
+void CheckedReader::expectEnd() const
+{
+    if (rest != 0)
+        fail("it is altered: there is more behind its end");
 }
 
 void CheckedReader::bytes(void* data, size_t size)

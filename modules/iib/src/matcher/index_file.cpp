@@ -65,8 +65,7 @@ IndexReader::IndexReader(const String& filename) : file(filename, KIND)
 void IndexReader::finish()
 {
     file.seal();
-    if (file.left() != 0)
-        file.fail("it is altered: there is more behind its end");
+    file.expectEnd();
 }
 
 }  // namespace iib

@@ -32,6 +32,19 @@ size_t SearchedCodes::blockBytes(const std::vector<int>& levelSizes, unsigned la
     return CodeLayout(levelSizes, (CodePacking)layout).blockWords() * sizeof(unsigned);
 }
 
+bool SearchedCodes::fillsWithZeros(
+        const std::vector<int>& levelSizes, unsigned layout, size_t rows, const Mat& blocks)
+{
+    const CodeLayout codes(levelSizes, (CodePacking)layout);
+    for (int i = 0; i < blocks.rows; i++)
+    {
+        const size_t left = rows - (size_t)i * CODES_PER_BLOCK;
+        if (!codes.fillsWithZeros(blocks.ptr<unsigned>(i), (int)std::min(left, (size_t)CODES_PER_BLOCK)))
+            return false;
+    }
+    return true;
+}
+
 SearchedCodes::SearchedCodes(const std::vector<int>& levelSizes, InputArrayOfArrays descriptors)
     : packed(makePtr<PackedCodes>(levelSizes))
 {

@@ -22,23 +22,27 @@ that search the same codes, and for programs that should be ready at once.
 
 A folder has a manifest and segments. A segment is a file that never changes: the codes of the images that one call of
 add() added, packed as the search reads them, with a checksum for about every mebibyte. Segments are mapped into memory
-when they are first searched, and then checked once.
+when they are first searched, and checked once, then. **From there on a segment must not be changed:** if it is shortened,
+the system ends the program that reads it (SIGBUS), and if it is overwritten, answers are wrong. To delete it, or to rename
+another file over it, does not disturb who has it mapped. No call of this class does any of that.
 
 Rows are numbered through all images ever added, from 0, and so are images; removed ones keep their numbers.
 
 **Commits.** add() and remove() write what is new and then rename a new manifest into place. Whatever fails, a full disk or
-a killed process, the folder stays as it was after the last call that returned. Writers of one folder wait for each other,
-in one process or several; what each of them commits stays. Readers see the state that they opened until refresh().
+a killed process, the folder stays as it was after the last call that returned: a call that throws has committed nothing.
+Writers of one folder wait for each other, in one process or several; what each of them commits stays. Readers see the state
+that they opened until refresh(). The folder is the index's own; the next writer removes the unfinished files of a killed
+one (`segment-000001.iib.*.tmp`, `manifest.iib.*.tmp`), and no others.
 
-**Machines.** Files are little-endian. The packing that suits this machine's instruction set is used and named in the
-segment; a machine that searches another packing converts it when it is first searched, into memory.
+**Machines.** Files are the same bytes on all. The packing that suits this machine's instruction set is used and named in
+the segment; a machine that searches another packing converts it when it is first searched, into memory.
 
 **Threads.** Any number of threads may search one object as long as none calls add(), remove() or refresh() of it.
 Searches run on cv::parallel_for_; results are the same for every number of threads, every instruction set, and however
 the rows are spread over segments.
 
-@throws cv::Exception from every call that reads, for a manifest or a segment that is missing, truncated, altered or of a
-newer version; it names the file. StsOutOfRange for a row, an image or a segment that is not there.
+@throws cv::Exception from every call that reads a manifest, and from the first that reads a segment, if the file is missing,
+truncated, altered or of a newer version; it names the file. StsOutOfRange for a row, an image or a segment that is not there.
  */
 class CV_EXPORTS MappedIndex
 {
@@ -47,7 +51,7 @@ public:
 
     @param folder the parent has to exist.
     @param levelSizes as in HierarchicalMatcher::create; a single level is enough.
-    @throws cv::Exception if the folder holds an index, or cannot be written.
+    @throws cv::Exception if the folder holds anything, or cannot be written.
      */
     static Ptr<MappedIndex> create(const String& folder, const std::vector<int>& levelSizes);
 
@@ -82,7 +86,7 @@ public:
      */
     virtual void add(InputArrayOfArrays descriptors) = 0;
 
-    //! Hides images from all searches, and commits that. Their codes stay on the disk.
+    //! Hides images of the last commit, whoever made it, from all searches, and commits that. Their codes stay on the disk.
     virtual void remove(const std::vector<int64>& images) = 0;
 
     //! Goes on to the last commit. Segments that were mapped stay so.

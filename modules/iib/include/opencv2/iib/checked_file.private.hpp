@@ -58,9 +58,12 @@ public:
     float real();
     //! Reads the hash of all so far, and returns it; throws if it does not fit.
     uint64 seal();
-    //! Bytes that were read, and that were not read yet.
+    //! The file's version, from 1 to the newest that is understood.
+    unsigned version() const { return format; }
+    //! Bytes that were read.
     uint64 position() const { return whole - rest; }
-    uint64 left() const { return rest; }
+    //! Throws if there is more to read.
+    void expectEnd() const;
     //! Throws if so many things of that size cannot be in what is left: whatever the file claims, no more memory is asked
     //! for than it has bytes.
     void expect(uint64 count, uint64 size) const;
@@ -73,6 +76,7 @@ private:
     std::ifstream stream;
     Ptr<Fnv1a> hash;
     uint64 whole, rest;
+    unsigned format;
 };
 
 }  // namespace iib

@@ -30,6 +30,10 @@ public:
     static void check(const std::vector<int>& levelSizes);
     //! Whether codes of that layout can be searched.
     static bool knows(unsigned layout);
+    //! Whether blocks of that many rows are zero wherever no bit of a descriptor lies, as blocks() are. Others give wrong
+    //! distances.
+    static bool fillsWithZeros(
+            const std::vector<int>& levelSizes, unsigned layout, size_t rows, const Mat& blocks);
     //! Bytes of a block.
     static size_t blockBytes(const std::vector<int>& levelSizes, unsigned layout);
 
