@@ -46,9 +46,10 @@ say "building the targets"
 # shellcheck disable=SC2046
 cmake --build "$build" --target $(printf 'iib_fuzz_%s ' "$@")
 
-# covered PROFILE: the share of the library's lines that ran.
+# covered PROFILE: the share of the libraries' lines that ran.
 covered() {
-    llvm-cov report "$build/libopencv_iib.so" -instr-profile="$1" | awk '$1 == "TOTAL" { print $10 }'
+    llvm-cov report "$build/libopencv_iib.so" -object "$build/libopencv_iib_index.so" -instr-profile="$1" |
+        awk '$1 == "TOTAL" { print $10 }'
 }
 
 # replay TARGET: its inputs with the kernels of each instruction set, for their profiles.
