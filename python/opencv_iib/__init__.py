@@ -19,7 +19,7 @@ from opencv_iib.mapped_index import MappedIndex
 from opencv_iib.matcher import HierarchicalMatcher
 from opencv_iib.rotation import estimateRotation
 
-__all__ = ['DMatch', 'HierarchicalMatcher', 'IIB', 'IIBDescriptorExtractor', 'KeyPoint', 'MappedIndex',
+__all__ = ['DMatch', 'HessianDetector', 'HierarchicalMatcher', 'IIB', 'IIBDescriptorExtractor', 'KeyPoint', 'MappedIndex',
            'NormalizedDetector', 'OPENCV_VERSION', 'array_to_keypoints', 'error', 'estimateRotation', 'getNumThreads',
            'keypoints_to_array', 'setNumThreads']
 

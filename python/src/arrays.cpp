@@ -48,14 +48,6 @@ cv::Mat viewOf(const Array& array, const char* what)
             const_cast<void*>(array.data()));
 }
 
-cv::Mat imageOf(const Array& array)
-{
-    if (array.ndim() == 1)
-        CV_Error(cv::Error::StsBadArg,
-                "the image has 1 dimension; it must have 2 (rows, columns), and 3 with channels");
-    return viewOf(array, "the image");
-}
-
 nb::object toNumpy(const cv::Mat& matrix)
 {
     CV_Assert(matrix.channels() == 1 && (matrix.empty() || matrix.isContinuous()));

@@ -21,9 +21,6 @@ typedef nb::ndarray<nb::ro, nb::c_contig, nb::device::cpu> Array;
 //! @throws cv::Exception that names `what` for another number of dimensions or a type that a Mat has not.
 cv::Mat viewOf(const Array& array, const char* what);
 
-//! The same of an image, which has 2 or 3 dimensions.
-cv::Mat imageOf(const Array& array);
-
 //! A numpy array that owns the matrix's memory. The matrix has one channel and is continuous.
 nb::object toNumpy(const cv::Mat& matrix);
 

@@ -17,7 +17,7 @@ typedef cv::iib::HessianDetector Hessian;
 
 nb::object detect(cv::Feature2D& self, const Array& image, const Array& mask)
 {
-    const cv::Mat view = imageOf(image);
+    const cv::Mat view = viewOf(image, "the image");
     const cv::Mat allowed = viewOf(mask, "the mask");  // empty: everywhere
     std::vector<cv::KeyPoint> keypoints;
     {

@@ -29,7 +29,7 @@ std::vector<cv::Mat> viewsOf(const std::vector<Array>& arrays, const char* what)
 nb::tuple compute(Extractor& self, const Array& image, const Array& keypointRows,
         const std::vector<Array>& extraChannels)
 {
-    const cv::Mat view = imageOf(image);
+    const cv::Mat view = viewOf(image, "the image");
     const std::vector<cv::Mat> extra = viewsOf(extraChannels, "an extra channel");
     std::vector<cv::KeyPoint> keypoints = toKeyPoints(viewOf(keypointRows, "keypoints"));
     const size_t given = keypoints.size();

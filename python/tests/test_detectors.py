@@ -129,18 +129,6 @@ class Normalized(unittest.TestCase):
         self.assertEqual(len(iib.detect(image, ones)), len(iib.detect(image, 255 * ones)))
         self.assertEqual(len(iib.detect(image, np.ones_like(image))), len(iib.detect(image)))
 
-    def test_masks_and_images_of_another_shape(self):
-        image = texture(160, 120)
-        for finder in (NormalizedDetector(Watching()), IIB.createFor(Watching())):
-            for mask in (np.ones((160, 120), np.uint8), np.ones((120, 160), np.float32), np.ones((120, 160, 3), np.uint8),
-                         np.ones((60, 80), np.uint8)):
-                with self.assertRaisesRegex(opencv_iib.error, 'the mask '):
-                    finder.detect(image, mask)
-            with self.assertRaisesRegex(opencv_iib.error, 'image: an array of 2 or 3 dimensions'):
-                finder.detect(image[0])
-        with self.assertRaisesRegex(opencv_iib.error, 'image: an array of 2 or 3 dimensions'):
-            IIB.create().compute(image.ravel(), np.array([[9, 9, 5]], np.float32))
-
     def test_an_object_whose_extractor_asks_it_for_keypoints_is_collected(self):
         class Owner(Watching):
             def __init__(self, wrap):
@@ -169,12 +157,12 @@ class Normalized(unittest.TestCase):
         for detector in (IIB.create(), IIB.createFor(Watching()), NormalizedDetector(Watching())):
             for culprit, arguments in (('80 x 80', (image, np.ones((80, 80), np.uint8))),
                                        ('the mask has type CV_32F', (image, np.ones((80, 100), np.float32))),
-                                       ('1 dimension', (image.ravel(),))):
+                                       ('2 or 3 dimensions', (image.ravel(),))):
                 with self.subTest(culprit), self.assertRaisesRegex(opencv_iib.error, culprit):
                     detector.detect(*arguments)
             mask = np.ones((80, 100), bool)
             self.assertEqual(len(detector.detect(image, mask)), len(detector.detect(image, mask * np.uint8(255))))
-        with self.assertRaisesRegex(opencv_iib.error, '1 dimension'):
+        with self.assertRaisesRegex(opencv_iib.error, '2 or 3 dimensions'):
             IIB.create().compute(image.ravel(), [])
 
     def test_pickle_and_copy(self):
