@@ -158,10 +158,15 @@ void detectAndCompute(ByteSource& in)
     if (!iib)
         return;
     FUZZ_CHECK(iib->getDetector() == detector);
-    const Mat image = takeImage(in, takeSize(in), CV_8U, 1);
+    const Size size = takeSize(in);
+    const Mat image = takeImage(in, size, takeDepth(in), 1);
     std::vector<KeyPoint> expected, keypoints;
     Mat expectedDescriptors, descriptors;
-    detector->detect(image, expected);
+    FUZZ_CHECK(refused([&] { iib->detect(image, expected); }) == !isImage(image));
+    if (!isImage(image))
+        return;
+    if (image.depth() == CV_8U)  // FAST itself takes no other type
+        detector->detect(image, expected);
     std::vector<KeyPoint> detected = expected;
     iib->compute(image, expected, expectedDescriptors);
     iib->detectAndCompute(image, noArray(), keypoints, descriptors);

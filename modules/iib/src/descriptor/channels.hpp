@@ -6,8 +6,7 @@
 #define OPENCV_IIB_DESCRIPTOR_CHANNELS_HPP
 
 #include "kernels/kernels.hpp"
-#include "layout.hpp"
-#include "support_region.hpp"
+#include "regions.hpp"
 
 namespace cv {
 namespace iib {

@@ -9,11 +9,37 @@
 
 #include "channels.hpp"
 #include "keypoint_batches.hpp"
-#include "rotated_region.hpp"
+#include "regions.hpp"
+#include "rotation.hpp"
 #include "workspace.hpp"
 
 namespace cv {
 namespace iib {
+
+/** The grid of points over a region.
+@param n points in a row, up to MAX_SAMPLES_IN_ROW, `sub` x `sub` of them a cell. @param border one of IIB::Border. */
+inline SampleGrid gridOf(
+        const SupportRegion& region, const Rotation& rotation, int n, int sub, int border, Size image)
+{
+    SampleGrid g;
+    g.n = n;
+    g.sub = sub;
+    g.image = image;
+    g.reflect = circumscribed(region).bounds(image, border).size() != image;
+    const double spacing = std::min(region.side, LARGEST_ROTATED_SIDE) / g.n;
+    g.stepX = cvRound(rotation.cosine * spacing * 65536);
+    g.stepY = cvRound(rotation.sine * spacing * 65536);
+    const double far = 1 << 29;  // beyond any image
+    const auto fixedPoint = [far](float v) {
+        return (int64)std::floor(std::min(std::max((double)v, -far), far) * 131072 + 65536.5);
+    };
+    const int64 x = fixedPoint(region.centre.x), y = fixedPoint(region.centre.y);
+    g.x = (int)(x >> 17);
+    g.y = (int)(y >> 17);
+    g.fracX = (int)(x & 131071);
+    g.fracY = (int)(y & 131071);
+    return g;
+}
 
 /** The last rows of GROUP_CHANNELS channels, side by side in each pixel, to be sampled anywhere. Goes from the top of a
  rectangle of the image to its bottom. */
@@ -115,7 +141,7 @@ public:
                 else
                     readPlane<ushort>(pack[i], x, y, count, i);
             }
-        if (pack[0].kind != 0)
+        if (pack[0].kind == IIB::CHANNEL_SIGNED_GRAD_X)
             kernels.orientation(plane(0), plane(1), plane(2), count);
         const T* planes[GROUP_CHANNELS];
         for (int i = 0; i < GROUP_CHANNELS; i++)
@@ -164,7 +190,7 @@ template <typename T> class GridPixels
 public:
     GridPixels(const DescriptorKernels& all, const std::vector<std::vector<Channel>>& packs_,
             const KeyPointBatch& batch_, int border_, Workspace& workspace)
-        : kernels(all.pixels(T())), packs(packs_), batch(batch_), border(border_),
+        : kernels(all.pixels(T())), packs(packs_), batch(batch_), border(border_), count(0),
           sparsePixels(kernels.rows, workspace.sparsePixels)
     {
         const int rows = batch.rows + KeyPointBatch::BAND_ROWS;
@@ -176,38 +202,25 @@ public:
                     workspace.sourcePixels[i]));
     }
 
-    //! The pixels at the points of a grid; they hold until the next call.
-    class Points
+    //! Moves on to a grid over this region. Regions come in the order of the batch, and each may have several grids.
+    void moveTo(const SupportRegion& region, const SampleGrid& grid)
     {
-    public:
-        //! @return an array of pixels of this pack; those of the grid are at index().
-        const T* pixels(size_t pack) const
-        {
-            return owner.sparse ? owner.sparsePixels.read(owner.packs[pack], owner.x, owner.y, count)
-                                : owner.bands[pack].data();
-        }
-        const int* index() const { return owner.index; }
-
-    private:
-        friend class GridPixels;
-        Points(GridPixels& owner_, int count_) : owner(owner_), count(count_) {}
-
-        GridPixels& owner;
-        const int count;
-    };
-
-    //! @param grid over this region. Regions come in the order of the batch, and each may have several grids.
-    Points at(const SupportRegion& region, Point2f centre, const SampleGrid& grid)
-    {
-        const int end = batch.bandEnd(rotatedPixels(region, centre, border, grid.image).br().y);
+        count = grid.n * grid.n;
+        const int end = batch.bandEnd(rotatedPixels(region, border, grid.image).br().y);
         for (PixelBand<T>& band : bands)
             band.advance(end);
         if (sparse)
             kernels.rotated.places(grid, x, y);
         else
             kernels.rotated.indices(grid, bands[0].origin(), bands[0].step(), index);
-        return Points(*this, grid.n * grid.n);
     }
+
+    //! Pixels of a pack, until the next call. Those at the points of the grid have these indices.
+    const T* pixels(size_t pack)
+    {
+        return sparse ? sparsePixels.read(packs[pack], x, y, count) : bands[pack].data();
+    }
+    const int* indices() const { return index; }
 
 private:
     const PixelKernels<T>& kernels;
@@ -215,6 +228,7 @@ private:
     const KeyPointBatch& batch;
     const int border;
     bool sparse;
+    int count;  //!< points of the grid
     SparsePixels<T> sparsePixels;
     std::vector<PixelBand<T>> bands;
     int index[MAX_SAMPLES], x[MAX_SAMPLES], y[MAX_SAMPLES];

@@ -4,8 +4,6 @@
 
 #include "keypoint_batches.hpp"
 
-#include <numeric>
-
 namespace cv {
 namespace iib {
 
@@ -55,10 +53,9 @@ std::vector<Indices> splitAtGaps(
 }
 
 //! Splits along both axes in turn until there is no gap left or enough rounds have passed.
-std::vector<Indices> splitInRounds(const std::vector<Rect>& regions, int64& visits)
+std::vector<Indices> splitInRounds(const std::vector<Rect>& regions, const Indices& keypoints, int64& visits)
 {
-    std::vector<Indices> parts(1, Indices(regions.size()));
-    std::iota(parts[0].begin(), parts[0].end(), 0);
+    std::vector<Indices> parts(1, keypoints);
     bool lastSplit = true;  // whether the round before did
     for (int round = 0; round < MAX_CUTS; round++)
     {
@@ -126,12 +123,13 @@ void cutStrips(const std::vector<Rect>& regions, const Indices& keypoints, Rect 
 
 }  // namespace
 
-std::vector<Indices> cutBatches(const std::vector<Rect>& regions, int workers, int64* visits)
+std::vector<Indices> cutBatches(
+        const std::vector<Rect>& regions, const Indices& keypoints, int workers, int64* visits)
 {
-    if (regions.empty())
+    if (keypoints.empty())
         return std::vector<Indices>();
     int64 count = 0;
-    const std::vector<Indices> parts = splitInRounds(regions, count);
+    const std::vector<Indices> parts = splitInRounds(regions, keypoints, count);
     if (visits)
         *visits = count;
     std::vector<Indices> batches;

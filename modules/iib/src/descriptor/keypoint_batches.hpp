@@ -17,10 +17,7 @@ struct KeyPointBatch
     int rows;                    //!< of the highest region
     std::vector<int> keypoints;  //!< indices, by the band in which their region ends, then from left to right
 
-    enum
-    {
-        BAND_ROWS = 8
-    };  //!< neighbours in a band find each other's sums in the cache
+    static constexpr int BAND_ROWS = 8;  //!< neighbours in a band find each other's sums in the cache
 
     //! The end of the band in which row `end` of the image, exclusive, is the last.
     int bandEnd(int end) const
@@ -32,21 +29,20 @@ struct KeyPointBatch
 
 //! How often keypoints are cut at gaps, along both axes in turn. Without a limit, keypoints that are cut off one by one
 //! would take quadratic time.
-enum
-{
-    MAX_CUTS = 8
-};
+static constexpr int MAX_CUTS = 8;
 
 /** Cuts keypoints into those that are described together, so that pixels which no region touches are left out where a
  straight gap between the regions allows, in up to MAX_CUTS rounds, and so that none has much more than 1/workers of all
  pixels. Takes time linear in the keypoints and in the pixels of the image at most.
 
- @param regions the pixels that each keypoint needs, not empty.
+ @param regions the pixels that each keypoint of an image needs, not empty.
+ @param keypoints indices of those to cut.
  @param visits if not null, gets the number of keypoints and of positions along an axis that were looked at.
  @return indices of the keypoints of each batch. */
-std::vector<std::vector<int>> cutBatches(const std::vector<Rect>& regions, int workers, int64* visits = 0);
+std::vector<std::vector<int>> cutBatches(
+        const std::vector<Rect>& regions, const std::vector<int>& keypoints, int workers, int64* visits = 0);
 
-//! @param keypoints indices, one or more.
+//! @param regions of all keypoints of an image. @param keypoints their indices, one or more.
 KeyPointBatch makeBatch(const std::vector<Rect>& regions, const std::vector<int>& keypoints);
 
 }  // namespace iib

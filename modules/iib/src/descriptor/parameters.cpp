@@ -5,9 +5,10 @@
 #include "parameters.hpp"
 
 #include <array>
+#include <bitset>
 #include <set>
 
-#include "box_plan.hpp"
+#include "../boxes/grids.hpp"
 
 namespace cv {
 namespace iib {
@@ -21,7 +22,7 @@ static void require(bool ok, Error::Code code, const String& message)
 static void checkBoxes(const Parameters& p)
 {
     require(p.granularity <= BOX_LEVELS, Error::StsOutOfRange,
-            format("granularity is %d; of MAPPING_BOXES it must be 1 to %d", p.granularity, (int)BOX_LEVELS));
+            format("granularity is %d; of MAPPING_BOXES it must be 1 to %d", p.granularity, BOX_LEVELS));
     require((p.channels & IIB::CHANNEL_ORIENTATION) == 0 && p.extraChannels == 0, Error::StsBadArg,
             "MAPPING_BOXES takes neither CHANNEL_ORIENTATION nor extra channels; set others first");
     require(!p.overlap, Error::StsBadArg, "boxes always overlap; set overlap to false for MAPPING_BOXES");
@@ -29,6 +30,8 @@ static void checkBoxes(const Parameters& p)
 
 static void checkSelection(const Parameters& p)
 {
+    const std::vector<int> kinds = p.channelKinds();
+    const int channels = (int)kinds.size();
     int last = 1;
     std::set<std::array<int, 4>> seen;
     for (int i = 0; i < p.selection.rows; i++)
@@ -39,13 +42,13 @@ static void checkSelection(const Parameters& p)
         require(level >= last && level <= p.granularity, Error::StsOutOfRange,
                 where + format("level %d is not in %d..%d (levels must not descend)", level, last,
                                 p.granularity));
-        require(channel >= 0 && channel < p.channelCount(), Error::StsOutOfRange,
-                where + format("channel %d is not in 0..%d", channel, p.channelCount() - 1));
+        require(channel >= 0 && channel < channels, Error::StsOutOfRange,
+                where + format("channel %d is not in 0..%d", channel, channels - 1));
         const bool boxes = p.mapping == IIB::MAPPING_BOXES;
         const int end = boxes ? BOX_GRIDS[level - 1].n - 1 : (1 << level) - 2;
         require(row >= 0 && row <= end && col >= 0 && col <= end, Error::StsOutOfRange,
                 where + format("cell (%d, %d) is not in 0..%d", row, col, end));
-        const int mask = boxes ? boxMask(p, level, channel, row, col) : (1 << bitsPerQuad(p.mapping)) - 1;
+        const int mask = boxes ? boxMask(kinds[channel], level, row, col) : (1 << bitsPerQuad(p.mapping)) - 1;
         require(bits > 0 && (bits & ~mask) == 0, Error::StsOutOfRange,
                 where + format("bit mask %d is not in 1..%d, or not of bits that are there (%d)", bits, mask,
                                 mask));
@@ -66,12 +69,14 @@ int bitsPerQuad(int mapping)
     }
 }
 
-int Parameters::channelCount() const
+std::vector<int> Parameters::channelKinds() const
 {
-    int count = extraChannels;
-    for (int c = 1; c <= ALL_CHANNELS; c <<= 1)
-        count += (channels & c) != 0;
-    return count;
+    std::vector<int> kinds;
+    for (int kind = 1; kind <= ALL_CHANNELS; kind <<= 1)
+        if (channels & kind)
+            kinds.push_back(kind);
+    kinds.resize(kinds.size() + extraChannels, 0);
+    return kinds;
 }
 
 void Parameters::check() const
@@ -95,6 +100,62 @@ void Parameters::check() const
     if (mapping == IIB::MAPPING_BOXES)
         checkBoxes(*this);
     checkSelection(*this);
+}
+
+//! Bits of all quads or boxes of one channel at a level.
+static int bitsOfChannel(const Parameters& p, int level, int kind)
+{
+    if (p.mapping != IIB::MAPPING_BOXES)
+    {
+        const int side = p.overlap ? (1 << level) - 1 : 1 << (level - 1);  // quads in a row
+        return side * side * bitsPerQuad(p.mapping);
+    }
+    int bits = 0;
+    for (int row = 0; row < BOX_GRIDS[level - 1].n; row++)
+        for (int col = 0; col < BOX_GRIDS[level - 1].n; col++)
+            bits += (int)std::bitset<32>((unsigned)boxMask(kind, level, row, col)).count();
+    return bits;
+}
+
+//! Bits of a level that the channels before `end` make.
+static int bitsBefore(const Parameters& p, int level, int end)
+{
+    int bits = 0;
+    if (p.selection.empty())
+    {
+        const std::vector<int> kinds = p.channelKinds();
+        for (int channel = 0; channel < end; channel++)
+            bits += bitsOfChannel(p, level, kinds[channel]);
+    }
+    for (int i = 0; i < p.selection.rows; i++)
+        if (p.selection(i, 0) == level && p.selection(i, 1) < end)
+            bits += (int)std::bitset<32>((unsigned)p.selection(i, 4)).count();
+    return bits;
+}
+
+int bitsOfLevel(const Parameters& p, int level) { return bitsBefore(p, level, p.channelCount()); }
+
+std::vector<int> levelBytes(const Parameters& p)
+{
+    std::vector<int> bytes;
+    for (int level = 1; level <= p.granularity; level++)
+        if (const int bits = bitsOfLevel(p, level))
+            bytes.push_back((bits + 7) / 8);
+    return bytes;
+}
+
+int finestLevel(const Parameters& p)
+{
+    return p.selection.empty() ? p.granularity
+                               : p.selection(p.selection.rows - 1, 0);  // levels do not descend
+}
+
+int bitOffset(const Parameters& p, int level, int group)
+{
+    int bytes = 0;
+    for (int coarser = 1; coarser < level; coarser++)
+        bytes += (bitsOfLevel(p, coarser) + 7) / 8;
+    return 8 * bytes + bitsBefore(p, level, GROUP_CHANNELS * group);
 }
 
 }  // namespace iib

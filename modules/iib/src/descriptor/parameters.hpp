@@ -11,11 +11,7 @@
 namespace cv {
 namespace iib {
 
-enum
-{
-    MAX_EXTRA_CHANNELS = 16,
-    ALL_CHANNELS = 63
-};
+static constexpr int MAX_EXTRA_CHANNELS = 16, ALL_CHANNELS = 63;
 
 //! What create() is given; setters go through check() before anything changes.
 struct Parameters
@@ -34,11 +30,26 @@ struct Parameters
     void check() const;
 
     //! Image channels in use and extra channels.
-    int channelCount() const;
+    int channelCount() const { return (int)channelKinds().size(); }
+
+    //! Those channels: an IIB::Channel each, or 0 for an extra one.
+    std::vector<int> channelKinds() const;
 };
 
 //! Bits that a mapping makes of one quad.
 int bitsPerQuad(int mapping);
+
+//! Bits of a level before it is padded to whole bytes; the order of the bits is in descriptor.hpp.
+int bitsOfLevel(const Parameters& parameters, int level);
+
+//! Bytes of each level that has any, coarse first.
+std::vector<int> levelBytes(const Parameters& parameters);
+
+//! The finest level that has any bit.
+int finestLevel(const Parameters& parameters);
+
+//! The place in the descriptor of the first bit of a group of GROUP_CHANNELS channels at a level.
+int bitOffset(const Parameters& parameters, int level, int group);
 
 }  // namespace iib
 }  // namespace cv

@@ -6,11 +6,30 @@
 
 #include <numeric>
 
-#include "layout.hpp"
-#include "selection.hpp"
-
 namespace cv {
 namespace iib {
+
+ChosenBits chosenBits(const Parameters& p, int level, int group, int index)
+{
+    const QuadPhase phase(1 << level, index);
+    const int planes = bitsPerQuad(p.mapping), planeBits = 8 * phase.planeBytes();
+    std::vector<uint64> masks((phase.rows * planes * planeBits + 63) / 64, 0);
+    for (int i = 0; i < p.selection.rows; i++)
+    {
+        const int* quad = p.selection[i];
+        const int channel = quad[1], row = quad[2], col = quad[3];
+        if (quad[0] != level || channel / GROUP_CHANNELS != group || row % 2 != phase.dy ||
+                col % 2 != phase.dx)
+            continue;
+        for (int plane = 0; plane < planes; plane++)
+        {
+            const int bit = (row / 2 * planes + plane) * planeBits + col / 2 * GROUP_CHANNELS +
+                            channel % GROUP_CHANNELS;
+            masks[bit / 64] |= (uint64)(quad[4] >> plane & 1) << bit % 64;
+        }
+    }
+    return ChosenBits(masks);
+}
 
 static LevelShape levelShape(const Parameters& p, int finest, int level, int group, int channels)
 {
@@ -27,15 +46,10 @@ static LevelShape levelShape(const Parameters& p, int finest, int level, int gro
     return shape;
 }
 
-DescriptorPlan::DescriptorPlan(const Parameters& p)
-    : parameters(p), finest(finestLevel(p)), levelBytes(iib::levelBytes(p)),
-      bytes(std::accumulate(levelBytes.begin(), levelBytes.end(), 0)), kernels(descriptorKernels())
+//! The groups of channels of a descriptor of quads.
+static std::vector<ChannelGroup> groupsOf(const Parameters& p, int finest)
 {
-    if (p.mapping == IIB::MAPPING_BOXES)
-    {
-        boxes.reset(new BoxPlan(p));
-        return;
-    }
+    std::vector<ChannelGroup> groups;
     const int channels = p.channelCount();
     for (int first = 0; first < channels; first += GROUP_CHANNELS)
     {
@@ -44,6 +58,19 @@ DescriptorPlan::DescriptorPlan(const Parameters& p)
             group.levels.push_back(levelShape(p, finest, level, first / GROUP_CHANNELS, group.count));
         groups.push_back(group);
     }
+    return groups;
+}
+
+Ptr<const DescriptorPlan> makePlan(const Parameters& p)
+{
+    const std::vector<int> bytes = levelBytes(p);
+    DescriptorPlan plan = {p, finestLevel(p), bytes, std::accumulate(bytes.begin(), bytes.end(), 0), {},
+            BoxPlan(), descriptorKernels()};
+    if (plan.isOfBoxes())
+        plan.boxes = makeBoxPlan(p);
+    else
+        plan.groups = groupsOf(p, plan.finest);
+    return makePtr<const DescriptorPlan>(plan);
 }
 
 }  // namespace iib

@@ -5,9 +5,7 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_PLAN_HPP
 #define OPENCV_IIB_DESCRIPTOR_PLAN_HPP
 
-#include <memory>
-
-#include "box_plan.hpp"
+#include "../boxes/plan.hpp"
 #include "kernels/kernels.hpp"
 
 namespace cv {
@@ -20,23 +18,28 @@ struct ChannelGroup
     std::vector<LevelShape> levels;  //!< [0] is not in use
 };
 
-/** All that follows from the parameters alone. Made when they change; never changes itself, so that any number of calls
- and threads share it. */
+//! All that follows from the parameters alone. It never changes, so that any number of calls and threads share it.
 struct DescriptorPlan
 {
-    explicit DescriptorPlan(const Parameters& checked);
+    Parameters parameters;
+    int finest;  //!< the finest level that has bits
+    std::vector<int> levelBytes;
+    int bytes;                         //!< of a descriptor
+    std::vector<ChannelGroup> groups;  //!< of quads, unless isOfBoxes()
+    BoxPlan boxes;                     //!< if isOfBoxes()
+    const DescriptorKernels& kernels;
+
+    bool isOfBoxes() const { return parameters.mapping == IIB::MAPPING_BOXES; }
 
     //! Cells in a row at the finest level that has bits.
     int cellsInRow() const { return 1 << finest; }
-
-    const Parameters parameters;
-    const int finest;  //!< the finest level that has bits
-    const std::vector<int> levelBytes;
-    const int bytes;                       //!< of a descriptor
-    std::vector<ChannelGroup> groups;      //!< of quads
-    std::unique_ptr<const BoxPlan> boxes;  //!< of MAPPING_BOXES, which has no groups; else null
-    const DescriptorKernels& kernels;
 };
+
+//! @param checked parameters that have passed their check().
+Ptr<const DescriptorPlan> makePlan(const Parameters& checked);
+
+//! The bits that a selection chooses in a phase of a level. @param group which four of the channels.
+ChosenBits chosenBits(const Parameters& parameters, int level, int group, int phase);
 
 }  // namespace iib
 }  // namespace cv

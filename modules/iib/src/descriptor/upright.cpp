@@ -61,7 +61,7 @@ bool columnsAreFaster(const DescriptorPlan& plan, const std::vector<Channel>& ch
 
 }  // namespace
 
-void describeUpright(const DescriptorPlan& plan, const ChannelGroup& group,
+static void describeGroup(const DescriptorPlan& plan, const ChannelGroup& group,
         const std::vector<Channel>& channels, const KeyPointBatch& batch,
         const std::vector<SupportRegion>& regions, Workspace& workspace, Mat& descriptors)
 {
@@ -78,6 +78,18 @@ void describeUpright(const DescriptorPlan& plan, const ChannelGroup& group,
                                   ? describeBatch<ColumnBand, ushort>
                                   : describeBatch<IntegralBand<short, ushort>, ushort>;
     describe(plan, group, channels, batch, regions, workspace, descriptors);
+}
+
+void describeUpright(const DescriptorPlan& plan, const std::vector<Channel>& channels,
+        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions, Workspace& workspace,
+        Mat& descriptors)
+{
+    for (const ChannelGroup& group : plan.groups)
+    {
+        const auto first = channels.begin() + group.first;
+        describeGroup(plan, group, std::vector<Channel>(first, first + group.count), batch, regions,
+                workspace, descriptors);
+    }
 }
 
 }  // namespace iib

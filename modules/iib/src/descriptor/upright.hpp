@@ -7,20 +7,20 @@
 
 #include "channels.hpp"
 #include "keypoint_batches.hpp"
-#include "support_region.hpp"
+#include "regions.hpp"
 #include "workspace.hpp"
 
 namespace cv {
 namespace iib {
 
-/** The bits that one group of channels gives to the keypoints of a batch, their regions upright.
+/** The bits of the keypoints of a batch, all of whose regions are upright.
 
-@param channels those of the group.
+@param channels all channels of the descriptor.
 @param regions of all keypoints of the image.
 @param descriptors rows for all keypoints of the image. */
-void describeUpright(const DescriptorPlan& plan, const ChannelGroup& group,
-        const std::vector<Channel>& channels, const KeyPointBatch& batch,
-        const std::vector<SupportRegion>& regions, Workspace& workspace, Mat& descriptors);
+void describeUpright(const DescriptorPlan& plan, const std::vector<Channel>& channels,
+        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions, Workspace& workspace,
+        Mat& descriptors);
 
 }  // namespace iib
 }  // namespace cv

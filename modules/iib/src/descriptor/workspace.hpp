@@ -56,6 +56,31 @@ private:
     std::vector<std::unique_ptr<Workspace>> spare;
 };
 
+//! Calls work(job, workspace) for a range of jobs.
+template <typename Work> class Jobs CV_FINAL : public ParallelLoopBody
+{
+public:
+    Jobs(const Work& work_, WorkspacePool& pool_) : work(work_), pool(pool_) {}
+
+    void operator()(const Range& range) const CV_OVERRIDE
+    {
+        std::unique_ptr<Workspace> workspace = pool.borrow();
+        for (int job = range.start; job < range.end; job++)
+            work(job, *workspace);
+        pool.giveBack(std::move(workspace));
+    }
+
+private:
+    const Work& work;
+    WorkspacePool& pool;
+};
+
+//! Calls work(job, workspace) for each of `count` jobs, in parallel.
+template <typename Work> void parallelJobs(int count, WorkspacePool& pool, const Work& work)
+{
+    parallel_for_(Range(0, count), Jobs<Work>(work, pool));
+}
+
 }  // namespace iib
 }  // namespace cv
 

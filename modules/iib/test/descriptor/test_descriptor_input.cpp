@@ -188,26 +188,5 @@ TEST(IIB_Input, many_images_at_once)
         EXPECT_EQ(0, differingBits(describe(*iib, images[i], keypoints[i]), descriptors[i]));
 }
 
-// The output takes the image's place, or its memory: where it has the same shape, no new memory is allocated.
-TEST(IIB_Input, descriptors_may_replace_the_image_or_a_map)
-{
-    const Ptr<IIB> iib = IIB::create(1.f);
-    iib->setExtraChannels(1);
-    iib->setGranularity(2);
-    const int bytes = iib->descriptorSize();
-    for (const Size& size : {Size(60, 50), Size(bytes, 50)})
-    {
-        const Mat original = texture(size, CV_8U, 11), originalMap = texture(size, CV_8U, 12);
-        std::vector<KeyPoint> keypoints = scatter(size, 50, 4.f, 9.f, 13);
-        const Mat expected = describe(*iib, original, keypoints, std::vector<Mat>(1, originalMap));
-        Mat image = original.clone();
-        std::vector<Mat> maps(1, originalMap.clone());
-        iib->compute(image, maps, keypoints, image);
-        EXPECT_EQ(0, differingBits(expected, image));
-        iib->compute(original, maps, keypoints, maps[0]);
-        EXPECT_EQ(0, differingBits(expected, maps[0]));
-    }
-}
-
 }  // namespace
 }  // namespace opencv_test

@@ -5,8 +5,7 @@
 #include "../support/test_images.hpp"
 
 #include "../../src/descriptor/kernels/kernels.hpp"
-#include "../../src/descriptor/layout.hpp"
-#include "../../src/descriptor/selection.hpp"
+#include "../../src/descriptor/plan.hpp"
 
 namespace opencv_test {
 namespace {
@@ -377,7 +376,7 @@ TEST(IIB_DescriptorKernels, layout_counts_bits)
                         for (int x = 0; x + 1 < 1 << level; x++)
                             quads += overlap || (x % 2 == 0 && y % 2 == 0);
                     const int bits = quads * bitsPerQuad(mapping);
-                    EXPECT_EQ(bits * channels, levelBits(p, level));
+                    EXPECT_EQ(bits * channels, bitsOfLevel(p, level));
                     EXPECT_EQ((bits * channels + 7) / 8, levelBytes(p)[level - 1]);
                     for (int group = 0; 4 * group < channels; group++)
                         EXPECT_EQ(offset + 4 * group * bits, bitOffset(p, level, group));

@@ -6,6 +6,8 @@
 
 #include "../../src/descriptor/keypoint_batches.hpp"
 
+#include <numeric>
+
 namespace opencv_test {
 namespace {
 
@@ -20,13 +22,21 @@ Rect unionOf(const Regions& regions, const std::vector<int>& members)
     return all;
 }
 
+//! Of all regions.
+std::vector<std::vector<int>> cutBatches(const Regions& regions, int workers, int64* visits = 0)
+{
+    std::vector<int> all(regions.size());
+    std::iota(all.begin(), all.end(), 0);
+    return cv::iib::cutBatches(regions, all, workers, visits);
+}
+
 //! Every keypoint once, whatever the number of workers.
 void expectPartition(const Regions& regions)
 {
     for (int workers : {1, 2, 7})
     {
         std::vector<int> seen(regions.size(), 0);
-        for (const std::vector<int>& members : cv::iib::cutBatches(regions, workers))
+        for (const std::vector<int>& members : cutBatches(regions, workers))
         {
             ASSERT_FALSE(members.empty());
             for (int k : members)
@@ -50,10 +60,22 @@ Regions randomRegions(int count, Size image, int side, int seed)
 
 TEST(IIB_KeyPointBatches, every_keypoint_is_in_one_batch)
 {
-    EXPECT_TRUE(cv::iib::cutBatches(Regions(), 2).empty());
+    EXPECT_TRUE(cutBatches(Regions(), 2).empty());
     for (int count : {1, 2, 3, 17, 200})
         for (int side : {1, 5, 60})
             expectPartition(randomRegions(count, Size(300, 200), side, count + side));
+}
+
+TEST(IIB_KeyPointBatches, keypoints_that_are_not_asked_for_stay_out)
+{
+    const Regions regions = randomRegions(60, Size(300, 200), 30, 5);
+    std::vector<int> even, found;
+    for (int k = 0; k < 60; k += 2)
+        even.push_back(k);
+    for (const std::vector<int>& members : cv::iib::cutBatches(regions, even, 3))
+        found.insert(found.end(), members.begin(), members.end());
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(even, found);
 }
 
 // Whether any two pieces could still be cut apart by a straight line is asked point by point.
@@ -62,7 +84,7 @@ TEST(IIB_KeyPointBatches, gaps_cut_batches)
     for (int seed = 0; seed < 50; seed++)
     {
         const Regions regions = randomRegions(12, Size(300, 200), 40, seed);
-        for (const std::vector<int>& members : cv::iib::cutBatches(regions, 1))
+        for (const std::vector<int>& members : cutBatches(regions, 1))
         {
             const Rect all = unionOf(regions, members);
             for (int x = all.x; x < all.br().x; x++)
@@ -172,7 +194,7 @@ TEST(IIB_KeyPointBatches, work_and_memory_are_linear_for_every_layout)
             const Regions regions = layouts[i](root * root, image);
             int64 visits = 0;
             double pixels = 0;
-            for (const std::vector<int>& members : cv::iib::cutBatches(regions, 1, &visits))
+            for (const std::vector<int>& members : cutBatches(regions, 1, &visits))
                 pixels += unionOf(regions, members).area();
             const double work = (double)visits / (regions.size() + image.area());
             EXPECT_LE(work, cv::iib::MAX_CUTS * 3) << "layout " << i << ", " << regions.size();

@@ -5,7 +5,7 @@
 #include "../support/descriptor_oracle.hpp"
 #include "../support/test_images.hpp"
 
-#include "../../src/descriptor/rotated_region.hpp"
+#include "../../src/descriptor/grid_pixels.hpp"
 
 #include <memory>
 
@@ -61,8 +61,8 @@ TEST(IIB_Rotated, grid_has_the_same_steps_everywhere)
 {
     const KeyPoint keypoint(500, 400, 4246.43457f, 43.3051186f);
     const cv::iib::SupportRegion region(keypoint.pt, keypoint.size * 2.);
-    const cv::iib::SampleGrid grid = cv::iib::gridOf(region, keypoint.pt, cv::iib::Rotation(keypoint.angle),
-            64, 1, IIB::BORDER_REFLECT, Size(1000, 800));
+    const cv::iib::SampleGrid grid = cv::iib::gridOf(
+            region, cv::iib::Rotation(keypoint.angle), 64, 1, IIB::BORDER_REFLECT, Size(1000, 800));
     EXPECT_EQ(6328687, grid.stepX);
     EXPECT_EQ(5964921,
             grid.stepY);  // 5964920.5 and a little, or exactly that if the sine's last place were less

@@ -216,8 +216,7 @@ public:
     @param extraChannels as many single-channel maps as getExtraChannels(), each of the image's size, 8U,
     16U or 32F; a single one needs no list. A cell's value is the mean of the map.
     @param keypoints their order is kept; none is removed but by #BORDER_DROP.
-    @param descriptors keypoints.size() x descriptorSize(), CV_8U. Empty if the image or the keypoints are. It may
-    be the image or one of the maps, which it then replaces.
+    @param descriptors keypoints.size() x descriptorSize(), CV_8U. Empty if the image or the keypoints are.
     @throws cv::Exception for a wrong type, size or number of maps, for pixels that are NaN or infinite,
     and for keypoints with a NaN or infinite coordinate or a size that is not positive: such a keypoint has no region,
     and to leave it out would break the correspondence of keypoints and rows that the caller counts on.

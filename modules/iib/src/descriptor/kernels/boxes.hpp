@@ -35,9 +35,8 @@ enum RotatedBoxLane
 
 enum
 {
-    BOX_CELL = 2,    //!< pixels along the side of a cell
-    BOX_PLANES = 3,  //!< gx, gy and intensity of a row of pixels
-    BOX_LEVELS = 5,
+    BOX_CELL = 2,        //!< pixels along the side of a cell
+    BOX_PLANES = 3,      //!< gx, gy and intensity of a row of pixels
     BOX_MEAN_STEPS = 2,  //!< to one in the sum of a cell: means of 8-bit images, and sums of two, fit 16 bits
     MAX_BOXES_IN_ROW = 9,
     BOXES_TOGETHER = 4,  //!< kernels may work on that many in a row at a time

@@ -2,10 +2,12 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "gradient_orientation.hpp"
+#include "angles.hpp"
 
-#include <numeric>
+#include <array>
+#include <map>
 
+#include "grid_pixels.hpp"
 #include "kernels/orientation.hpp"
 
 namespace cv {
@@ -15,7 +17,8 @@ namespace {
 
 enum
 {
-    CELLS = ORIENTATION_CELLS,
+    CELLS = 32,         //!< in a row of the grid over a region whose gradients vote for its angle
+    SUB = 2,            //!< a cell has SUB x SUB points
     INNER = CELLS - 2,  // those with neighbours on all sides
     VOTES = INNER * INNER,
     BINS = 64,
@@ -51,7 +54,7 @@ void sumCells(const RotatedSampleKernels<T>& kernels, const T* pixels, const int
 {
     int planes[GROUP_CHANNELS][CELLS * CELLS];
     int* const sums[GROUP_CHANNELS] = {planes[0], planes[1], planes[2], planes[3]};
-    kernels.mapSums(pixels, index, CELLS, ORIENTATION_SUB * ORIENTATION_SUB, sums);
+    kernels.mapSums(pixels, index, CELLS, SUB * SUB, sums);
     const int* in = planes[3];
     for (int row = 0; row < CELLS; row++, out += CELLS)
         for (int parity = 0; parity < 2; parity++)
@@ -86,8 +89,10 @@ int peakOf(const int64 bins[BINS], int rank)
     return peaks[std::min(rank, count - 1)];
 }
 
-}  // namespace
-
+/** A peak of the smoothed histogram of the directions of gradients (Sobel 3x3) between cells.
+@param pixels, index of the points of CELLS x CELLS cells, as for mapSums; the fourth value of a pixel is its intensity.
+@param rank 0 for the highest peak, 1 for the next, and so on; the lowest if there are not so many.
+@return degrees, 0 <= angle < 360, clockwise in the image; 0 if there is no peak. */
 template <typename T>
 float prevailingAngle(const DescriptorKernels& kernels, const T* pixels, const int* index, int rank)
 {
@@ -121,8 +126,50 @@ float prevailingAngle(const DescriptorKernels& kernels, const T* pixels, const i
     return angle < 360 ? angle : 0;
 }
 
-template float prevailingAngle(const DescriptorKernels&, const short*, const int*, int);
-template float prevailingAngle(const DescriptorKernels&, const int*, const int*, int);
+//! How many earlier keypoints have the same position and size.
+std::vector<int> ranksOf(const std::vector<KeyPoint>& keypoints)
+{
+    std::map<std::array<float, 3>, int> seen;
+    std::vector<int> ranks;
+    ranks.reserve(keypoints.size());
+    for (const KeyPoint& kp : keypoints)
+        ranks.push_back(seen[{{kp.pt.x, kp.pt.y, kp.size}}]++);
+    return ranks;
+}
+
+template <typename T>
+void findInBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch,
+        const std::vector<int>& ranks, Workspace& workspace, std::vector<SupportRegion>& regions)
+{
+    const int border = plan.parameters.border;
+    const std::vector<std::vector<Channel>> packs(
+            1, std::vector<Channel>(1, Channel{IIB::CHANNEL_INTENSITY, grey}));
+    GridPixels<T> pixels(plan.kernels, packs, batch, border, workspace);
+    for (int k : batch.keypoints)
+    {
+        const SampleGrid grid = gridOf(regions[k], Rotation(0), CELLS * SUB, SUB, border, grey.size());
+        pixels.moveTo(regions[k], grid);
+        regions[k].angle = prevailingAngle(plan.kernels, pixels.pixels(0), pixels.indices(), ranks[k]);
+    }
+}
+
+}  // namespace
+
+void findAngles(const DescriptorPlan& plan, const Mat& grey, const std::vector<KeyPoint>& keypoints,
+        WorkspacePool& pool, std::vector<SupportRegion>& regions)
+{
+    std::vector<Rect> pixels;
+    for (const SupportRegion& region : regions)
+        pixels.push_back(rotatedPixels(region, plan.parameters.border, grey.size()));
+    const std::vector<int> ranks = ranksOf(keypoints);
+    std::vector<int> all(keypoints.size());
+    std::iota(all.begin(), all.end(), 0);
+    const std::vector<std::vector<int>> batches = cutBatches(pixels, all, getNumThreads());
+    const auto find = grey.depth() == CV_16U ? findInBatch<int> : findInBatch<short>;
+    parallelJobs((int)batches.size(), pool, [&](int i, Workspace& workspace) {
+        find(plan, grey, makeBatch(pixels, batches[i]), ranks, workspace, regions);
+    });
+}
 
 }  // namespace iib
 }  // namespace cv

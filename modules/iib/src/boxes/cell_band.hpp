@@ -2,11 +2,11 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DESCRIPTOR_CELL_BAND_HPP
-#define OPENCV_IIB_DESCRIPTOR_CELL_BAND_HPP
+#ifndef OPENCV_IIB_BOXES_CELL_BAND_HPP
+#define OPENCV_IIB_BOXES_CELL_BAND_HPP
 
-#include "channels.hpp"
-#include "row_ring.hpp"
+#include "../descriptor/channels.hpp"
+#include "../descriptor/row_ring.hpp"
 
 namespace cv {
 namespace iib {

@@ -2,10 +2,10 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "boxes.hpp"
+#include "describe.hpp"
 
+#include "../descriptor/rotation.hpp"
 #include "cell_band.hpp"
-#include "rotation.hpp"
 
 namespace cv {
 namespace iib {
@@ -72,34 +72,22 @@ double cellsInSide(double side, const BoxPlan::Level& level)
     return std::max(std::floor(side / BOX_CELL * level.side + 0.5), 1.);
 }
 
-//! Where the keypoints of a batch come from.
-struct BoxInput
-{
-    const Mat& image;
-    const KeyPointBatch& batch;
-    const std::vector<SupportRegion>& regions;
-    const std::vector<KeyPoint>& keypoints;
-    const std::vector<float>* angles;  //!< null: upright
-};
-
 template <typename T, typename Sum, typename Mean>
-void describeBatch(const DescriptorPlan& plan, const BoxInput& input,
-        typename SumCellRowFunc<T, Sum>::Type sumRow, Workspace& workspace, Mat& descriptors)
+void describeBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch, bool rotated,
+        const std::vector<SupportRegion>& regions, typename SumCellRowFunc<T, Sum>::Type sumRow,
+        Workspace& workspace, Mat& descriptors)
 {
-    const Mat& image = input.image;
-    const KeyPointBatch& batch = input.batch;
-    const bool rotated = input.angles != 0;
     const BoxKernels& kernels = plan.kernels.boxes;
     const BoxSumKernels<Sum, Mean>& sums = sumsOf<Sum, Mean>(kernels);
     const int border = plan.parameters.border;
-    const std::vector<Channel> source = {{IIB::CHANNEL_SIGNED_GRAD_X, image},
-            {IIB::CHANNEL_SIGNED_GRAD_Y, image}, {IIB::CHANNEL_INTENSITY, image}};
+    const std::vector<Channel> source = {{IIB::CHANNEL_SIGNED_GRAD_X, grey},
+            {IIB::CHANNEL_SIGNED_GRAD_Y, grey}, {IIB::CHANNEL_INTENSITY, grey}};
     CellBand<T, Sum> band(source, batch.area, batch.rows + KeyPointBatch::BAND_ROWS, plan.kernels, sumRow,
             workspace.channelRows, workspace.planes, workspace.ring);
     const BoxIntegral<Sum>& integral = band.integral();
     Mean* const means = workspace.boxMeans.get<Mean>(MAX_BOX_MEANS);
     BoxFrame frame;
-    frame.bounds = cellsOf(boundsOf(border, image.size()));
+    frame.bounds = cellsOf(boundsOf(border, grey.size()));
     frame.origin = integral.origin;
     frame.count = integral.count;
     BoxEdges edges;
@@ -108,18 +96,17 @@ void describeBatch(const DescriptorPlan& plan, const BoxInput& input,
 
     for (int k : batch.keypoints)
     {
-        const SupportRegion& region = input.regions[k];
-        const Point2f centre = input.keypoints[k].pt;
-        const Rotation rotation = rotated ? Rotation((*input.angles)[k]) : upright;
-        band.advance(batch.bandEnd(boxPixels(region, centre, rotated, border, image.size()).br().y));
-        frame.centre = Point2d((centre.x + 0.5) / BOX_CELL, (centre.y + 0.5) / BOX_CELL);
+        const SupportRegion& region = regions[k];
+        const Rotation rotation = rotated ? Rotation(region.angle) : upright;
+        band.advance(batch.bandEnd(boxPixels(region, border, grey.size()).br().y));
+        frame.centre = Point2d((region.centre.x + 0.5) / BOX_CELL, (region.centre.y + 0.5) / BOX_CELL);
         frame.side = region.side / BOX_CELL;
         frame.oldest = band.oldest();
         if (rotated)
             rotationMatrix(rotation, matrix);
         else
-            kernels.edges(frame, plan.boxes->edges, edges);
-        for (const BoxPlan::Level& level : plan.boxes->levels)
+            kernels.edges(frame, plan.boxes.edges, edges);
+        for (const BoxPlan::Level& level : plan.boxes.levels)
         {
             if (rotated)
             {
@@ -147,27 +134,27 @@ bool sumsAreShort(const BoxPlan& plan, const KeyPointBatch& batch, const std::ve
 
 }  // namespace
 
-Rect boxPixels(const SupportRegion& region, Point2f centre, bool rotated, int border, Size image)
+Rect boxPixels(const SupportRegion& region, int border, Size image)
 {
     // Corners of the outermost grids, whose boxes do not turn: (28 sqrt(2) + 12) / 40 at most. Four pixels more for roundings.
-    const SupportRegion extent(centre, region.side * (rotated ? 1.3 : 1) + 8);
+    const SupportRegion extent(region.centre, region.side * (region.isRotated() ? 1.3 : 1) + 8);
     const Rect cells = cellsOf(extent.pixels(boundsOf(border, image)));
     return Rect(cells.tl() * (int)BOX_CELL, cells.size() * (int)BOX_CELL);
 }
 
-void describeBoxes(const DescriptorPlan& plan, const Mat& image, const KeyPointBatch& batch,
-        const std::vector<SupportRegion>& regions, const std::vector<KeyPoint>& keypoints,
-        const std::vector<float>* angles, Workspace& workspace, Mat& descriptors)
+void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch, bool rotated,
+        const std::vector<SupportRegion>& regions, Workspace& workspace, Mat& descriptors)
 {
     const BoxKernels& k = plan.kernels.boxes;
-    const BoxInput input = {image, batch, regions, keypoints, angles};
-    const int rotated = angles != 0;
-    if (image.depth() == CV_16U)
-        describeBatch<int, int64, int>(plan, input, k.sumIntRow[rotated], workspace, descriptors);
-    else if (sumsAreShort(*plan.boxes, batch, regions))
-        describeBatch<short, unsigned, short>(plan, input, k.sumShortRow[rotated], workspace, descriptors);
+    if (grey.depth() == CV_16U)
+        describeBatch<int, int64, int>(
+                plan, grey, batch, rotated, regions, k.sumIntRow[rotated], workspace, descriptors);
+    else if (sumsAreShort(plan.boxes, batch, regions))
+        describeBatch<short, unsigned, short>(
+                plan, grey, batch, rotated, regions, k.sumShortRow[rotated], workspace, descriptors);
     else
-        describeBatch<short, int64, int>(plan, input, k.sumLongRow[rotated], workspace, descriptors);
+        describeBatch<short, int64, int>(
+                plan, grey, batch, rotated, regions, k.sumLongRow[rotated], workspace, descriptors);
 }
 
 }  // namespace iib

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DESCRIPTOR_SUPPORT_REGION_HPP
-#define OPENCV_IIB_DESCRIPTOR_SUPPORT_REGION_HPP
+#ifndef OPENCV_IIB_DESCRIPTOR_REGIONS_HPP
+#define OPENCV_IIB_DESCRIPTOR_REGIONS_HPP
 
 #include "parameters.hpp"
 
@@ -23,19 +23,17 @@ static inline Rect reflectedImage(Size image)
  geometry, in pixels of the image. */
 struct SupportRegion
 {
-    double x, y, side;  //!< top left corner and side; pixel i covers [i, i + 1)
+    Point2f centre;     //!< KeyPoint::pt, which counts from the centre of pixel 0
+    double x, y, side;  //!< top left corner of the upright region, and side; pixel i covers [i, i + 1)
+    float angle;        //!< in degrees, clockwise in the image; a negative one means upright
 
-    //! KeyPoint::pt counts from the centre of pixel 0.
-    SupportRegion(Point2f centre, double side_)
-        : x(centre.x + 0.5 - side_ / 2), y(centre.y + 0.5 - side_ / 2), side(side_)
+    SupportRegion(Point2f centre_, double side_, float angle_ = -1)
+        : centre(centre_), x(centre_.x + 0.5 - side_ / 2), y(centre_.y + 0.5 - side_ / 2), side(side_),
+          angle(angle_)
     {
     }
 
-    SupportRegion(const KeyPoint& keypoint, float scaleFactor, int granularity)
-        : SupportRegion(
-                  keypoint.pt, std::max((double)scaleFactor * keypoint.size, (double)(1 << granularity)))
-    {
-    }
+    bool isRotated() const { return angle >= 0; }
 
     //! Pixels that hold the part of the region inside some bounds; one of their border if there is none.
     Rect pixels(Rect bounds) const
@@ -86,6 +84,25 @@ static inline Range reflectedRange(int begin, int end, int size)
     }
     return Range(std::max(first, 0), std::min(last, size));
 }
+
+//! Of a keypoint; with ORIENTATION_GRADIENT still upright.
+inline SupportRegion regionOf(const KeyPoint& keypoint, const Parameters& p)
+{
+    const double side = std::max((double)p.scaleFactor * keypoint.size, (double)(1 << p.granularity));
+    return SupportRegion(keypoint.pt, side, p.orientation == IIB::ORIENTATION_KEYPOINT ? keypoint.angle : -1);
+}
+
+//! A rotated region is cut to this side, so that the offsets of its points fit 32 bits.
+static constexpr double LARGEST_ROTATED_SIDE = 16384;
+
+//! An upright square that holds the region at any angle, and two pixels for roundings.
+SupportRegion circumscribed(const SupportRegion& region);
+
+//! The pixels of the image that a region may sample at any angle, at least one. @param border one of IIB::Border.
+Rect rotatedPixels(const SupportRegion& region, int border, Size image);
+
+//! Whether no corner of a region rotated by `angle`, and so no sample, lies outside the image.
+bool isInsideRotated(const SupportRegion& region, float angle, Size image);
 
 }  // namespace iib
 }  // namespace cv

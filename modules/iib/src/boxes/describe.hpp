@@ -1,0 +1,33 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_BOXES_DESCRIBE_HPP
+#define OPENCV_IIB_BOXES_DESCRIBE_HPP
+
+#include "../descriptor/keypoint_batches.hpp"
+#include "../descriptor/regions.hpp"
+#include "../descriptor/workspace.hpp"
+
+namespace cv {
+namespace iib {
+
+//! The pixels that the boxes of a region cover, rotated by any angle or upright, in whole cells; some may be reflected.
+Rect boxPixels(const SupportRegion& region, int border, Size image);
+
+/** The descriptors of a batch by MAPPING_BOXES.
+
+Upright boxes lie on a grid, whose edges many of them share. A rotated keypoint needs no samples: the means of gx and gy
+are linear in them and so rotate as they do, and those of |gx| and |gy| come from the means of |gx|, |gy|, |gx + gy| and
+|gx - gy|, that is, of the gradient's magnitude in four directions. Boxes stay upright; only their centres turn.
+
+@param grey the image, CV_8U or CV_16U.
+@param rotated whether the regions of the batch are.
+@param regions of all keypoints, as are the rows of descriptors. */
+void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch, bool rotated,
+        const std::vector<SupportRegion>& regions, Workspace& workspace, Mat& descriptors);
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

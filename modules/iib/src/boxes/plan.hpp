@@ -1,0 +1,39 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_BOXES_PLAN_HPP
+#define OPENCV_IIB_BOXES_PLAN_HPP
+
+#include "../descriptor/kernels/boxes.hpp"
+#include "../descriptor/parameters.hpp"
+#include "grids.hpp"
+
+namespace cv {
+namespace iib {
+
+//! Which boxes and comparisons a descriptor of MAPPING_BOXES needs.
+struct BoxPlan
+{
+    //! One that has any bit.
+    struct Level
+    {
+        BoxGridShape shape;
+        double side;                  //!< of a box, in sides of the region
+        std::vector<double> centres;  //!< along either axis, in sides of the region from its centre
+        int offset;                   //!< of the first bit in the descriptor
+        ChosenBits chosen;
+    };
+
+    std::vector<Level> levels;
+    double edges[2][MAX_BOX_PLACES];  //!< where boxes begin and end, as centres; 0 behind the last one
+
+    BoxPlan() : edges() {}
+};
+
+BoxPlan makeBoxPlan(const Parameters& checked);
+
+}  // namespace iib
+}  // namespace cv
+
+#endif
