@@ -10,7 +10,8 @@ foreach(wing descriptor matcher detector)
 endforeach()
 # The boxes are a room of the descriptor: they use its channels and regions, and compute uses them.
 list(APPEND allowed_descriptor boxes)
-set(allowed_boxes boxes ${allowed_descriptor})
+set(allowed_boxes boxes boxes/kernels ${allowed_descriptor})
+set(allowed_boxes/kernels boxes/kernels descriptor/kernels common)
 set(allowed_ "")  # precomp.hpp, which all may include
 
 file(GLOB_RECURSE files RELATIVE "${MODULE}" "${MODULE}/*.hpp" "${MODULE}/*.cpp")

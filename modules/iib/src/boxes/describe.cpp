@@ -77,7 +77,7 @@ void describeBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBa
         const std::vector<SupportRegion>& regions, typename SumCellRowFunc<T, Sum>::Type sumRow,
         Workspace& workspace, Mat& descriptors)
 {
-    const BoxKernels& kernels = plan.kernels.boxes;
+    const BoxKernels& kernels = plan.boxKernels;
     const BoxSumKernels<Sum, Mean>& sums = sumsOf<Sum, Mean>(kernels);
     const int border = plan.parameters.border;
     const std::vector<Channel> source = {{IIB::CHANNEL_SIGNED_GRAD_X, grey},
@@ -145,7 +145,7 @@ Rect boxPixels(const SupportRegion& region, int border, Size image)
 void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch, bool rotated,
         const std::vector<SupportRegion>& regions, Workspace& workspace, Mat& descriptors)
 {
-    const BoxKernels& k = plan.kernels.boxes;
+    const BoxKernels& k = plan.boxKernels;
     if (grey.depth() == CV_16U)
         describeBatch<int, int64, int>(
                 plan, grey, batch, rotated, regions, k.sumIntRow[rotated], workspace, descriptors);

@@ -5,9 +5,9 @@
 #ifndef OPENCV_IIB_BOXES_PLAN_HPP
 #define OPENCV_IIB_BOXES_PLAN_HPP
 
-#include "../descriptor/kernels/boxes.hpp"
 #include "../descriptor/parameters.hpp"
 #include "grids.hpp"
+#include "kernels/boxes.hpp"
 
 namespace cv {
 namespace iib {

@@ -37,10 +37,6 @@ inline v_int32 subtractWhereLess(const v_int32& a, const v_int32& b, const v_int
 #endif
 }
 
-inline v_int16 absolute(const v_int16& v) { return v_reinterpret_as_s16(v_abs(v)); }
-
-inline v_int32 absolute(const v_int32& v) { return v_reinterpret_as_s32(v_abs(v)); }
-
 inline v_int16 addModulo(const v_int16& a, const v_int16& b) { return v_add_wrap(a, b); }
 inline v_int32 addModulo(const v_int32& a, const v_int32& b) { return a + b; }
 

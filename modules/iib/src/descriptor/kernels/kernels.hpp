@@ -5,7 +5,7 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_KERNELS_HPP
 #define OPENCV_IIB_DESCRIPTOR_KERNELS_KERNELS_HPP
 
-#include "boxes.hpp"
+#include "quads.hpp"
 
 namespace cv {
 namespace iib {
@@ -165,7 +165,6 @@ struct DescriptorKernels
             const int* yEdges, int n, CellGrid<ushort>& cells);
     SumKernels<unsigned> longSums;
     BitsKernels<double> doubleBits[MAPPINGS];  //!< where 32-bit integers are too small
-    BoxKernels boxes;
 
     //! The edges of n x n cells of a square with this top left corner and side, n a power of two, clamped to bounds.
     void (*cellEdges)(Point2d corner, double side, int n, Rect bounds, CellEdges& edges);

@@ -8,7 +8,6 @@
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "bits.simd.hpp"
-#include "boxes.simd.hpp"
 #include "cells.simd.hpp"
 #include "channel_rows.simd.hpp"
 #include "column_cells.simd.hpp"
@@ -58,7 +57,6 @@ DescriptorKernels makeTable()
         k.longSums.bits[mapping] = bitsKernels<unsigned>(mapping);
         k.doubleBits[mapping] = bitsKernels<double>(mapping);
     }
-    k.boxes = boxKernels();
     return k;
 }
 

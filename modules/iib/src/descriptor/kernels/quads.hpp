@@ -55,7 +55,7 @@ public:
     const std::vector<Word>& words() const { return chosen; }
 
     //! Appends them, in their order.
-    void append(const uchar* comparisons, BitAppender& out) const
+    CV_ALWAYS_INLINE void append(const uchar* comparisons, BitAppender& out) const
     {
         for (const Word& word : chosen)
             out.append(word.compressor(loadWord(comparisons + word.byte)), word.compressor.count);

@@ -2,10 +2,10 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_BOXES_HPP
-#define OPENCV_IIB_DESCRIPTOR_KERNELS_BOXES_HPP
+#ifndef OPENCV_IIB_BOXES_KERNELS_BOXES_HPP
+#define OPENCV_IIB_BOXES_KERNELS_BOXES_HPP
 
-#include "quads.hpp"
+#include "../../descriptor/kernels/quads.hpp"
 
 namespace cv {
 namespace iib {
@@ -60,10 +60,7 @@ struct BoxGridShape
     int comparisonBytes() const { return 3 * (n - 1) * quadBytes() + n * stride(); }
 };
 
-enum
-{
-    MAX_BOX_COMPARISONS = 4 * MAX_BOXES_IN_ROW * MAX_BOX_STRIDE
-};
+static constexpr int MAX_BOX_COMPARISONS = 4 * MAX_BOXES_IN_ROW * MAX_BOX_STRIDE;
 
 //! Integral image over cells: as IntegralRows, with BOX_LANES values a cell and rows and columns counted in cells.
 template <typename Sum> struct BoxIntegral
@@ -74,10 +71,7 @@ template <typename Sum> struct BoxIntegral
     Point origin;  //!< the first cell of a row
 };
 
-enum
-{
-    MAX_BOX_PLACES = 32  //!< of boxes along an axis, in all grids
-};
+static constexpr int MAX_BOX_PLACES = 32;  //!< of boxes along an axis, in all grids
 
 //! Where boxes begin and end in all grids of a keypoint; the products of weights are those of boxes.
 struct BoxEdges
@@ -101,10 +95,7 @@ struct BoxFrame
 //! A box anywhere, as the boxes of a rotated keypoint are.
 struct BoxPlaces
 {
-    enum
-    {
-        CAPACITY = MAX_BOXES_IN_ROW * MAX_BOXES_IN_ROW
-    };
+    static constexpr int CAPACITY = MAX_BOXES_IN_ROW * MAX_BOXES_IN_ROW;
     int above[CAPACITY];  //!< its top left corner in the integral image, in cells
     int below[CAPACITY];  //!< bottom left
     int right[CAPACITY];  //!< cells from there to the right corners
@@ -149,6 +140,9 @@ struct BoxKernels
     void (*places)(const BoxFrame& frame, const BoxGridShape& grid, const double* centres, Point2d direction,
             double side, int step, BoxPlaces& places);
 };
+
+//! Those for this machine, chosen as descriptorKernels().
+const BoxKernels& boxKernels();
 
 }  // namespace iib
 }  // namespace cv

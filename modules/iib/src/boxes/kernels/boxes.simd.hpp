@@ -2,17 +2,21 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_BOXES_SIMD_HPP
-#define OPENCV_IIB_DESCRIPTOR_KERNELS_BOXES_SIMD_HPP
-
-#include "bits_planes.simd.hpp"
 #include "boxes.hpp"
-#include "channel_rows.simd.hpp"
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+#include "../../common/vectors.hpp"
+#include "../../descriptor/kernels/bits_planes.simd.hpp"
+#endif
 
 namespace cv {
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+const BoxKernels& boxKernels();
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
 
@@ -421,20 +425,20 @@ template <typename Sum, typename Mean> BoxSumKernels<Sum, Mean> boxSumKernels()
     return k;
 }
 
-BoxKernels boxKernels()
+}  // namespace
+
+const BoxKernels& boxKernels()
 {
-    const BoxKernels k = {{sumCellRow<false>, sumCellRow<true>},
+    static const BoxKernels table = {{sumCellRow<false>, sumCellRow<true>},
             {sumLongCellRow<short, false>, sumLongCellRow<short, true>},
             {sumLongCellRow<int, false>, sumLongCellRow<int, true>}, boxSumKernels<unsigned, short>(),
             boxSumKernels<int64, int>(), boxEdges, boxPlaces};
-    return k;
+    return table;
 }
 
-}  // namespace
+#endif
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
 }  // namespace iib
 }  // namespace cv
-
-#endif
