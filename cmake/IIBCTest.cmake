@@ -70,6 +70,7 @@ add_test(NAME fast-math-undone COMMAND ${fast_math} ${IIB_FLAGS} ${source})
 find_program(IIB_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(IIB_PYTHON)
   add_test(NAME figures COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/figures.py" --check)
+  add_test(NAME examples COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/examples.py")
   add_test(NAME mutants COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/tools/mutation/mutate.py"
     --source "${PROJECT_SOURCE_DIR}" --check)
 endif()

@@ -22,9 +22,9 @@ struct UserError : std::runtime_error
 // One line an option, since scripts/demo.sh reads them too. A list of words in [] is all that the option takes.
 // clang-format off
 static const char* const OPTIONS =
-        "{detector    | ORB          | [FAST AGAST ORB BRISK AKAZE KAZE SIFT GFTT MSER SimpleBlob SURF]}"
-        "{preset      | default      | [default S128 S256 S512 ACCURATE COMPACT TINY BALANCED VIEWPOINT UNIVERSAL] of IIB}"
-        "{normalize   | no           | find the points on the locally normalized image, [no yes]}"
+        "{detector    | HESSIAN      | [HESSIAN FAST AGAST ORB BRISK AKAZE KAZE SIFT GFTT MSER SimpleBlob SURF]}"
+        "{preset      | UNIVERSAL    | [default S128 S256 S512 ACCURATE COMPACT TINY BALANCED VIEWPOINT UNIVERSAL] of IIB}"
+        "{normalize   | no           | find the points on the locally normalized image, as HESSIAN does by itself, [no yes]}"
         "{granularity | 4            | levels of IIB's default, [1 2 3 4 5 6]}"
         "{orientation | none         | IIB's regions: [none keypoint gradient], upright or rotated by such an angle}"
         "{homography  |              | file of 3x3 numbers from A to B, to judge by; without it MAGSAC estimates one}"
@@ -113,7 +113,8 @@ inline bool parseOptions(int argc, const char* const* argv, Options& options)
                     OPTIONS);
     if (parser.has("help"))
     {
-        parser.about("Matches two images of one scene with the detector's own descriptor and with IIB.");
+        parser.about(
+                "Matches two images of one scene with IIB, and with ORB or the detector's own descriptor.");
         parser.printMessage();
         return false;
     }
@@ -126,8 +127,7 @@ inline bool parseOptions(int argc, const char* const* argv, Options& options)
     options.normalize = oneOf("normalize", parser.get<std::string>("normalize")) == "yes";
     options.granularity = oneOf("granularity", parser.get<std::string>("granularity"))[0] - '0';
     if (options.preset != "default" && options.granularity != 4)
-        throw UserError(
-                "--granularity goes with the default descriptor alone, not with --preset=" + options.preset);
+        throw UserError("--granularity goes with --preset=default, not with --preset=" + options.preset);
     if (parser.has("homography"))
         options.homography = parser.get<std::string>("homography");
     options.out = parser.get<std::string>("out");

@@ -10,6 +10,7 @@
 #include "opencv2/imgproc.hpp"
 
 static const int HALF_WIDTH = 640;     // of the picture, pixels
+static const int MAX_DRAWN = 100;      // matches: more would hide the images
 static const int CAPTION_HEIGHT = 44;  // pixels
 // The pair of colours is distinct for colour-blind eyes too.
 static const cv::Scalar GOOD(150, 220, 60), OTHER(40, 90, 255), PAPER(32, 28, 26), INK(235, 235, 235);
@@ -54,12 +55,15 @@ inline cv::Mat drawResult(const Pair& pair, const Result& result, bool homograph
     for (int i = 0; i < 2; i++)
         halves[i].copyTo(canvas(cv::Rect(cv::Point(i * HALF_WIDTH, CAPTION_HEIGHT), halves[i].size())));
 
+    // Keypoints come strongest first: matches at equal steps are a fair choice.
+    const double step = std::max(1., (double)result.matches.size() / MAX_DRAWN);
     for (int good = 0; good < 2; good++)
     {
         cv::Mat lines = canvas.clone();
         const cv::Scalar color = good ? GOOD : OTHER;
-        for (size_t m = 0; m < result.matches.size(); m++)
+        for (double at = 0; at < (double)result.matches.size(); at += step)
         {
+            const size_t m = (size_t)at;
             if ((result.good[m] != 0) != (good != 0))
                 continue;
             const cv::Point2f a = result.keypoints[0][result.matches[m].queryIdx].pt * (float)scale[0];
@@ -70,8 +74,8 @@ inline cv::Mat drawResult(const Pair& pair, const Result& result, bool homograph
             cv::circle(canvas, from, 2, color, cv::FILLED, cv::LINE_AA);
             cv::circle(canvas, to, 2, color, cv::FILLED, cv::LINE_AA);
         }
-        // Transparent, or a few hundred lines would hide the images.
-        const double opacity = good ? 0.55 : 0.35;
+        // Transparent, so that the images are seen.
+        const double opacity = good ? 0.8 : 0.6;
         cv::addWeighted(lines, opacity, canvas, 1 - opacity, 0, canvas);
     }
     drawCaption(canvas, result, homographyGiven);

@@ -18,7 +18,7 @@
 #include "opencv2/xfeatures2d.hpp"
 #endif
 
-static const int MAX_KEYPOINTS = 2000;
+static const int MAX_KEYPOINTS = 1000;
 static const double MAX_ERROR = 3;  // pixels, in image B
 // MAGSAC's homography agrees with up to 6 of 20 to 2000 matches drawn at random; fewer than these say nothing.
 static const int MIN_CONSISTENT = 10;
@@ -32,6 +32,7 @@ struct Detector
 struct Pair
 {
     cv::Mat images[2];
+    std::string detector;
     std::vector<cv::KeyPoint> keypoints[2];
     double detectMs = 0;
 };
@@ -65,6 +66,8 @@ inline Detector createDetector(const std::string& name)
     using namespace cv::xfeatures2d;  // where OpenCV 5 has AGAST, AKAZE, BRISK and KAZE
 #endif
     using namespace cv;
+    if (name == "HESSIAN")
+        return Detector{iib::HessianDetector::create(MAX_KEYPOINTS), false};
     if (name == "FAST")
         return Detector{FastFeatureDetector::create(), false};
     if (name == "AGAST")
@@ -118,17 +121,17 @@ inline void detect(const Detector& detector, Pair& pair)
             cv::KeyPointsFilter::retainBest(pair.keypoints[i], MAX_KEYPOINTS);
         }
     });
+    for (int i = 0; i < 2; i++)
+        if (pair.keypoints[i].empty())
+            throw UserError(pair.detector + " finds no keypoint in image " + "AB"[i]);
 }
 
-//! Mutual nearest neighbours.
+//! What is recommended, for binary descriptors of any kind; for others mutual nearest neighbours.
 inline cv::Ptr<cv::DescriptorMatcher> createMatcher(const cv::Ptr<cv::Feature2D>& descriptor)
 {
     if (descriptor->descriptorType() != CV_8U)
         return cv::makePtr<cv::BFMatcher>(descriptor->defaultNorm(), true);
-    cv::Ptr<cv::iib::IIB> iib = descriptor.dynamicCast<cv::iib::IIB>();
-    const std::vector<int> levels =
-            iib ? iib->levelSizes() : std::vector<int>(1, descriptor->descriptorSize());
-    return cv::iib::HierarchicalMatcher::create(levels, cv::iib::HierarchicalMatcher::EXACT, 0.35f, true);
+    return cv::iib::HierarchicalMatcher::createRecommended();
 }
 
 //! H: from image A to B; empty: the one that MAGSAC finds in the matches themselves, if there is one.
