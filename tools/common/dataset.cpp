@@ -147,14 +147,15 @@ bool addPairFolders(const std::string& folder, std::vector<ImagePair>& pairs)
 
 void search(const std::string& folder, int depth, std::vector<ImagePair>& pairs)
 {
-    if (holdsViews(folder) || addSequence(folder, pairs) || addPairFolders(folder, pairs) || depth == 0)
+    const bool isWalk = fs::isDirectory(join(folder, "frames"));  // of tools/synthetic: the camera moves
+    if (isWalk || holdsViews(folder) || addSequence(folder, pairs) || addPairFolders(folder, pairs) ||
+            depth == 0)
         return;
     std::vector<cv::String> entries;
     fs::glob(folder, "*", entries, false, true);
     std::sort(entries.begin(), entries.end());
     for (const std::string& entry : entries)
-        if (fs::isDirectory(entry) &&
-                baseName(entry) != "frames")  // a walk of tools/synthetic: the camera moves
+        if (fs::isDirectory(entry))
             search(entry, depth - 1, pairs);
 }
 

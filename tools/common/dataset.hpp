@@ -49,7 +49,7 @@ struct LoadedPair
  - `1/<name>.png`, `2/<name>.png`, `h/<name>.txt` (EVD), a homography from the first to the second;
 and in list files: a head line `reference,target,homography,kind`, then one pair a line, paths relative to
 the list, the last two fields may be empty (identity, "light").
-Sequences without any H file are of a static camera; folders called `frames` (walks) and those of views.hpp are left
+Sequences without any H file are of a static camera; folders that hold `frames` (walks) and those of views.hpp are left
 out. The order is by path, numbers by value.
 @throws cv::Exception for a root that does not exist, a list without its head line, or two pairs of the
 same name. */

@@ -105,6 +105,9 @@ TEST(Dataset, static_camera_with_extra_maps)
     folder.makeFolder("walk/frames");
     writeImage(folder, "walk/frames/1.png");
     writeImage(folder, "walk/frames/2.png");
+    folder.makeFolder("walk/depth");
+    writeImage(folder, "walk/depth/1.png");
+    writeImage(folder, "walk/depth/2.png");
     for (const char* name : {"room/1.png", "room/2.png", "room/depth/1.png", "room/depth/2.png"})
         writeImage(folder, name);
     std::vector<ImagePair> pairs = findPairs({folder.path("")});
