@@ -10,7 +10,7 @@ import sys
 import cv2
 import numpy as np
 
-from render import DEPTH, DEPTH_SCALE, IMAGE, Task, povray, render_all, run, sensed, write
+from render import DEPTH, DEPTH_SCALE, IMAGE, Task, render_all, run_quickly
 from scenes import LIGHTS, SCENES, extrinsics, intrinsics, walk
 
 SCENE = "street"
@@ -74,19 +74,6 @@ def imu(seed):
         force = force + ACCEL_BIAS + random.standard_normal(3) * ACCEL_NOISE * np.sqrt(IMU_RATE)
         rows.append(",".join([str(round(time * 1e9)), *(f"{v:.9g}" for v in (*turn, *force))]))
     return "#timestamp [ns],w_x [rad s^-1],w_y,w_z,a_x [m s^-2],a_y,a_z\n" + "\n".join(rows) + "\n"
-
-
-# One ray a pixel is quicker than smoothing, which the blur of a lens stands in for.
-ONE_RAY, BLUR = ["+FN8", "-A"], 0.6
-
-
-def run_quickly(task, size):
-    if task.mode != IMAGE:
-        return run(task, size)
-    if not task.target.exists():
-        sharp = povray(task.scene, task.mode, task.light, task.pose, size, ONE_RAY)
-        write(task.target, sensed(cv2.GaussianBlur(sharp, (0, 0), BLUR), task.scene, task.light, task.frame))
-    return task.target
 
 
 def write_text(path, text):

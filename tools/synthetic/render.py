@@ -20,6 +20,8 @@ from scenes import LIGHTS, NOISE, NOISE_BY_DAY, SCENES, extrinsics, intrinsics, 
 HERE = pathlib.Path(__file__).resolve().parent
 DEPTH_SCALE = 0.004  # metres a step, as in common.inc
 IMAGE, DEPTH, LABELS = range(3)
+# One ray a pixel is quicker than smoothing, which the blur of a lens stands in for.
+ONE_RAY, BLUR = ["+FN8", "-A"], 0.6
 ATTEMPTS = 3  # POV-Ray 3.7 sometimes ends by a signal; the same scene then renders
 # A ray through the middle of the pixel gives depth and label; a picture is smoothed, without chance.
 OUTPUT = {IMAGE: ["+FN8", "+A0.15", "+AM1", "+R2", "-J"], DEPTH: ["+FN16", "-A"], LABELS: ["+FN8", "-A"]}
@@ -87,9 +89,12 @@ def write_camera(path, scene, poses, size):
 Task = namedtuple("Task", "target scene mode light pose frame copies")
 
 
-def run(task, size):
+def run(task, size, quickly=False):
     if not task.target.exists():
-        rendered = povray(task.scene, task.mode, task.light, task.pose, size)
+        blurred = quickly and task.mode == IMAGE
+        rendered = povray(task.scene, task.mode, task.light, task.pose, size, ONE_RAY if blurred else None)
+        if blurred:
+            rendered = cv2.GaussianBlur(rendered, (0, 0), BLUR)
         if task.mode == IMAGE:
             rendered = sensed(rendered, task.scene, task.light, task.frame)
         write(task.target, rendered)
@@ -97,6 +102,10 @@ def run(task, size):
         copy.parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(task.target, copy)
     return task.target
+
+
+def run_quickly(task, size):
+    return run(task, size, quickly=True)
 
 
 def still(folder, scene, size):
@@ -163,6 +172,8 @@ def main():
                         default=["noon", "dusk", "night", "winter"],
                         help="lights of the walks (noon dusk night winter)")
     parser.add_argument("--size", type=int, nargs=2, default=(640, 480), metavar=("WIDTH", "HEIGHT"))
+    parser.add_argument("--quick", action="store_true",
+                        help="one ray a pixel and the blur of a lens instead of smoothing")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="renderings at a time")
     options = parser.parse_args()
     if options.frames < 0 or min(options.size) < 16 or options.jobs < 1:
@@ -172,7 +183,7 @@ def main():
 
     size = tuple(options.size)
     tasks = list(plan(options.out, options.scenes, options.frames, options.path_lights, size))
-    render_all(tasks, size, options.jobs)
+    render_all(tasks, size, options.jobs, run_quickly if options.quick else run)
 
 
 if __name__ == "__main__":
