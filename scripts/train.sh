@@ -1,7 +1,8 @@
 #!/bin/sh
 # Learns a selection: scripts/train.sh --out=selection.yml FOLDER...; build/tools/training/iib_train --help lists the options.
 # With --presets first it trains the built-in presets on tilde_webcam and amos_daynight, which lie in
-# $OPENCV_TEST_DATA_PATH/illumination.
+# $OPENCV_TEST_DATA_PATH/illumination, and on the walks in FOLDER, which this renders:
+# scripts/helpers/synthetic.sh FOLDER --scenes room terrain --frames 20 --quick
 . "$(dirname "$0")/helpers/lib.sh"
 
 if [ "${1:-}" = --presets ]; then

@@ -25,10 +25,10 @@ Samples drawSamples(const CandidatePool& pool, const std::vector<DescribedPair>&
     std::vector<std::pair<const uchar*, const uchar*>> rows, negatives;
     const int perPair = std::max(1, MOST_POSITIVES / int(pairs.size()));
     for (const DescribedPair& pair : pairs)
-        for (int i = 0; i < std::min(perPair, pair.reference.rows); i++)
+        for (int i = 0; i < std::min(perPair, pair.partners); i++)
         {
-            const int point = rng.uniform(0, pair.reference.rows);
-            const int other = (point + rng.uniform(1, pair.reference.rows)) % pair.reference.rows;
+            const int point = rng.uniform(0, pair.partners);
+            const int other = (point + rng.uniform(1, pair.target.rows)) % pair.target.rows;
             rows.push_back(std::make_pair(pair.reference.ptr(point), pair.target.ptr(point)));
             negatives.push_back(std::make_pair(pair.reference.ptr(point), pair.target.ptr(other)));
         }

@@ -55,7 +55,7 @@ public:
     {
         std::map<std::string, std::vector<const DescribedPair*>> byScene;
         for (const DescribedPair& pair : pairs)
-            if (pair.reference.rows > NEGATIVES)
+            if (pair.partners > NEGATIVES)
                 byScene[pair.scene].push_back(&pair);
         for (const auto& scene : byScene)
             scenes.push_back(scene.second);
@@ -92,26 +92,29 @@ private:
         const bool forth = rng.uniform(0, 2) == 0;
         const cv::Mat &from = forth ? pair.reference : pair.target,
                       &to = forth ? pair.target : pair.reference;
+        const std::vector<cv::Point2f>& points = forth ? pair.targetPoints : pair.referencePoints;
         std::vector<int> anchors(ANCHORS_A_PAIR);
         cv::Mat anchorRows;
         for (int& anchor : anchors)
         {
-            anchor = rng.uniform(0, from.rows);
+            anchor = rng.uniform(0, pair.partners);
             anchorRows.push_back(from.row(anchor));
         }
         cv::Mat distances;
         cv::batchDistance(gather(anchorRows, positions), gather(to, positions), distances, CV_32S,
                 cv::noArray(), cv::NORM_HAMMING);
         for (int i = 0; i < ANCHORS_A_PAIR; i++)
-            addAnchor(pair.points, from, to, anchors[i], distances.ptr<int>(i), temperature);
+            addAnchor(points, pair.targetPoints[anchors[i]], from, to, anchors[i], distances.ptr<int>(i),
+                    pair.ratio, temperature);
     }
 
-    void addAnchor(const std::vector<cv::Point2f>& points, const cv::Mat& from, const cv::Mat& to, int anchor,
-            const int* distances, float temperature)
+    //! @param points of `to`. @param place of the anchor.
+    void addAnchor(const std::vector<cv::Point2f>& points, cv::Point2f place, const cv::Mat& from,
+            const cv::Mat& to, int anchor, const int* distances, float ratio, float temperature)
     {
         std::vector<std::pair<int, int>> others;  // distance with a random tie break, row
         for (int row = 0; row < to.rows; row++)
-            if (cv::norm(points[row] - points[anchor]) > SAME_POINT)
+            if (row != anchor && cv::norm(points[row] - place) > SAME_POINT)
                 others.push_back(std::make_pair(distances[row] * 16 + rng.uniform(0, 16), row));
         if (int(others.size()) < NEGATIVES)
             return;
@@ -121,14 +124,15 @@ private:
         for (int k = 0; k < NEGATIVES; k++)
         {
             odds[k] = std::exp(
-                    std::min(60.f, float(distances[anchor] - distances[others[k].second]) / temperature));
+                    std::min(60.f, (distances[anchor] - ratio * distances[others[k].second]) / temperature));
             sum += odds[k];
         }
         const float p = 1 / (1 + sum);
         const float slope = p * std::sqrt(p) / temperature;  // of the loss, along one unit of odds
         addDifferences(from.ptr(anchor), to.ptr(anchor), from.cols, -slope * sum, sums);
         for (int k = 0; k < NEGATIVES; k++)
-            addDifferences(from.ptr(anchor), to.ptr(others[k].second), from.cols, slope * odds[k], sums);
+            addDifferences(
+                    from.ptr(anchor), to.ptr(others[k].second), from.cols, slope * ratio * odds[k], sums);
     }
 
     const CandidatePool& pool;

@@ -28,19 +28,18 @@ std::vector<Recipe> presetRecipes()
     // boxes overlap, so that a moved camera shifts none wholly; see README.md
     const PoolParameters boxes = {values + IIB::CHANNEL_SIGNED_GRAD_X + IIB::CHANNEL_SIGNED_GRAD_Y,
             IIB::MAPPING_BOXES, 5, 1.25f, {}, false, IIB::BORDER_REFLECT};
-    const Warps wide = {0.9, 0.5, 22, 0.7, 1.43, 2.5, 0.1, 1.5, 5};
-    Warps universal = wide;
-    universal.share = 0.67;
+    const auto wide = [](double share) { return Warps{share, 0.5, 22, 0.7, 1.43, 2.5, 0.1, 1.5, 5}; };
     return {
-            {"S128", 128, paper, warpsOfShare(0), false, 12},
-            {"S256", 256, paper, warpsOfShare(0), false, 12},
-            {"S512", 512, paper, warpsOfShare(0), false, 12},
-            {"ACCURATE", 0, accurate, warpsOfShare(0), false, 12},
-            {"COMPACT", 512, still, warpsOfShare(0), false, 12},
-            {"TINY", 256, still, warpsOfShare(0), false, 12},
-            {"BALANCED", 512, moving, warpsOfShare(0.85), false, 24},
-            {"VIEWPOINT", 512, boxes, wide, false, 24},
-            {"UNIVERSAL", 1024, boxes, universal, false, 24},
+            {"S128", 128, paper, warpsOfShare(0), false, 12, 0},
+            {"S256", 256, paper, warpsOfShare(0), false, 12, 0},
+            {"S512", 512, paper, warpsOfShare(0), false, 12, 0},
+            {"ACCURATE", 0, accurate, warpsOfShare(0), false, 12, 0},
+            {"COMPACT", 512, still, warpsOfShare(0), false, 12, 0},
+            {"TINY", 256, still, warpsOfShare(0), false, 12, 0},
+            {"BALANCED", 512, moving, warpsOfShare(0.85), false, 24, 0},
+            {"VIEWPOINT", 512, boxes, wide(0.9), false, 24, 0},
+            {"UNIVERSAL", 1024, boxes, wide(0.4), false, 16, 0.5},
+            {"SMALL", 256, boxes, wide(0.67), false, 16, 0.6},
     };
 }
 

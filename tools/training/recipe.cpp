@@ -35,12 +35,13 @@ MeanScores scoresOf(const std::vector<DescribedPair>& pairs)
     std::vector<Counts> counts;
     for (const DescribedPair& pair : pairs)
     {
-        Counts count = {0, 0, int(pair.points.size())};
-        if (!pair.points.empty())
+        Counts count = {0, 0, pair.partners};
+        if (pair.partners > 0)
             for (const cv::DMatch& match : mutualMatches(pair.reference, pair.target, cv::NORM_HAMMING))
             {
                 count.putative++;
-                count.correct += cv::norm(pair.points[match.queryIdx] - pair.points[match.trainIdx]) <= 3;
+                count.correct += cv::norm(pair.referencePoints[match.queryIdx] -
+                                          pair.targetPoints[match.trainIdx]) <= 3;
             }
         counts.push_back(count);
     }
@@ -49,15 +50,14 @@ MeanScores scoresOf(const std::vector<DescribedPair>& pairs)
 
 }  // namespace
 
-cv::Ptr<IIB> train(
-        const Recipe& recipe, const std::vector<ImagePair>& pairs, uint64 seed, const Progress& progress)
+cv::Ptr<IIB> train(const Recipe& recipe, const TrainingSet& images, uint64 seed, const Progress& progress)
 {
     if (recipe.bits == 0)
         return IIB::create(
                 recipe.pool.scale, recipe.pool.granularity, recipe.pool.channels, recipe.pool.mapping);
     const CandidatePool pool = makePool(recipe.pool);
-    const std::vector<DescribedPair> described =
-            describeForTraining(pairs, pool.extractor, recipe.pairsPerScene, recipe.warps, seed, progress);
+    const std::vector<DescribedPair> described = describeForTraining(
+            images, pool.extractor, recipe.pairsPerScene, recipe.detected, recipe.warps, seed, progress);
     return selectedExtractor(pool, recipe.adaBoost
                                            ? selectByAdaBoost(pool, described, recipe.bits, seed, progress)
                                            : selectGreedily(pool, described, recipe.bits, seed, progress));
@@ -75,7 +75,7 @@ MeanScores judgeWarped(const std::vector<ImagePair>& pairs, const cv::Ptr<cv::Fe
     Warps all = warps;
     all.share = 1;
     const int pairsPerScene = 6;
-    return scoresOf(describeForTraining(pairs, extractor, pairsPerScene, all, seed, progress));
+    return scoresOf(describeForTraining({pairs, {}}, extractor, pairsPerScene, 0, all, seed, progress));
 }
 
 std::vector<ImagePair> foldOf(const std::vector<ImagePair>& pairs, int fold, int folds, bool inside)
@@ -92,7 +92,7 @@ std::vector<ImagePair> foldOf(const std::vector<ImagePair>& pairs, int fold, int
 }
 
 std::string presetsHeader(const std::vector<NamedExtractor>& presets, const std::string& command,
-        const std::vector<ImagePair>& pairs, uint64 seed)
+        const TrainingSet& images, uint64 seed)
 {
     std::ostringstream out;
     out << "// This file is part of OpenCV project.\n"
@@ -100,7 +100,10 @@ std::string presetsHeader(const std::vector<NamedExtractor>& presets, const std:
            "// of this distribution and at http://opencv.org/license.html.\n\n"
            "// Generated, do not edit: "
         << command << "\n// Seed " << seed << ", trained on:\n";
-    for (const std::string& name : sceneNames(pairs))
+    std::set<std::string> names = sceneNames(images.pairs);
+    for (const WalkPair& walk : images.walks)
+        names.insert(walk.scene + ", where points are detected");
+    for (const std::string& name : names)
         out << "//   " << name << "\n";
     out << "// A row a quad: level, channel, row, column, bit mask.\n\n";
 

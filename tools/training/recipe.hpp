@@ -23,6 +23,7 @@ struct Recipe
     Warps warps;
     bool adaBoost;  //!< selectByAdaBoost instead of selectGreedily
     int pairsPerScene;
+    double detected;  //!< share of the pairs whose points are detected, see describeForTraining
 };
 
 //! None, or as for BALANCED but for the share.
@@ -32,7 +33,7 @@ Warps warpsOfShare(double share);
 std::vector<Recipe> presetRecipes();
 //! Trains on all pairs given. Progress counts the pairs described, then the candidates chosen.
 cv::Ptr<cv::iib::IIBDescriptorExtractor> train(
-        const Recipe& recipe, const std::vector<ImagePair>& pairs, uint64 seed, const Progress& progress);
+        const Recipe& recipe, const TrainingSet& images, uint64 seed, const Progress& progress);
 
 //! mAP and mAR at fixed points, means over the pairs.
 MeanScores judge(const std::vector<ImagePair>& pairs, const cv::Ptr<cv::Feature2D>& extractor,
@@ -51,9 +52,9 @@ struct NamedExtractor
     cv::Ptr<cv::iib::IIBDescriptorExtractor> extractor;
 };
 
-//! The C++ header of the built-in presets; the command, the pairs' scenes and the seed go into its head.
+//! The C++ header of the built-in presets; the command, the images' scenes and the seed go into its head.
 std::string presetsHeader(const std::vector<NamedExtractor>& presets, const std::string& command,
-        const std::vector<ImagePair>& pairs, uint64 seed);
+        const TrainingSet& images, uint64 seed);
 
 }  // namespace iib_tools
 

@@ -2,19 +2,18 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "samples.hpp"
+#include "described_pair.hpp"
 
 #include <cmath>
 #include <map>
 
-#include "common/keypoints.hpp"
+#include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
 
 namespace iib_tools {
 namespace {
 
-const float RADIUS = 32;
-const int POINTS = 1000, FEWEST_POINTS = 100;
+const int FEWEST_POINTS = 100;
 
 cv::Matx33d rotation(double radians)
 {
@@ -43,19 +42,34 @@ LoadedPair drawPair(const std::vector<ImagePair>& scene, cv::RNG& rng)
     return pair;
 }
 
-void mirror(LoadedPair& pair)
+void mirror(Sample& sample)
 {
+    LoadedPair& pair = sample.pair;
     cv::flip(pair.reference, pair.reference, 1);
     cv::flip(pair.target, pair.target, 1);
+    if (sample.relief)
+        return sample.relief->mirror();
     const cv::Matx33d flipReference(-1, 0, pair.reference.cols - 1., 0, 1, 0, 0, 0, 1);
     const cv::Matx33d flipTarget(-1, 0, pair.target.cols - 1., 0, 1, 0, 0, 0, 1);
     pair.homography = flipTarget * pair.homography * flipReference;
 }
 
-void makeSelfPair(LoadedPair& pair)
+Sample drawWalk(const std::vector<WalkPair>& scene, cv::RNG& rng)
 {
-    pair.target = pair.reference;
-    pair.homography = cv::Matx33d::eye();
+    const WalkPair& drawn = scene[size_t(rng.uniform(0, int(scene.size())))];
+    Sample sample;
+    sample.pair.reference = readImage(drawn.referenceFile, cv::IMREAD_GRAYSCALE);
+    sample.pair.target = readImage(drawn.targetFile, cv::IMREAD_GRAYSCALE);
+    sample.pair.homography = cv::Matx33d::eye();
+    sample.relief = cv::makePtr<Relief>(loadRelief(drawn));
+    return sample;
+}
+
+void makeSelfPair(Sample& sample)
+{
+    sample.pair.target = sample.pair.reference;
+    sample.pair.homography = cv::Matx33d::eye();
+    sample.relief.release();
 }
 
 //! By a power, and with noise.
@@ -100,47 +114,51 @@ void warpTarget(LoadedPair& pair, const Warps& warps, cv::RNG& rng)
         changeGrey(pair.target, warps, rng);
 }
 
-DescribedPair describe(
-        const std::string& scene, const LoadedPair& pair, const cv::Ptr<cv::Feature2D>& extractor)
-{
-    SeedPoints seeds = fastSeeds(pair.reference, pair.target, pair.homography, RADIUS, POINTS);
-    DescribedPair described;
-    described.scene = scene;
-    cv::KeyPoint::convert(seeds.target, described.points);
-    extractor->compute(pair.reference, seeds.reference, described.reference);
-    extractor->compute(pair.target, seeds.target, described.target);
-    return described;
-}
-
 }  // namespace
 
-std::vector<DescribedPair> describeForTraining(const std::vector<ImagePair>& pairs,
-        const cv::Ptr<cv::Feature2D>& extractor, int pairsPerScene, const Warps& warps, uint64 seed,
-        const Progress& progress)
+std::vector<DescribedPair> describeForTraining(const TrainingSet& images,
+        const cv::Ptr<cv::Feature2D>& extractor, int pairsPerScene, double detected, const Warps& warps,
+        uint64 seed, const Progress& progress)
 {
     std::map<std::string, std::vector<ImagePair>> scenes;
-    for (const ImagePair& pair : pairs)
+    for (const ImagePair& pair : images.pairs)
         scenes[sceneOf(pair)].push_back(pair);
+    std::map<std::string, std::vector<WalkPair>> walks;
+    if (detected > 0)
+        for (const WalkPair& pair : images.walks)
+            walks[pair.scene].push_back(pair);
 
     cv::RNG rng(seed);
     std::vector<DescribedPair> described;
+    const int all = int(scenes.size() + walks.size()) * pairsPerScene;
     int done = 0;
+    const auto add = [&](const std::string& scene, Sample& sample) {
+        if (rng.uniform(0, 2) == 1)
+            mirror(sample);
+        if (rng.uniform(0., 1.) < warps.share)
+        {
+            if (rng.uniform(0., 1.) < warps.sameLight)
+                makeSelfPair(sample);
+            warpTarget(sample.pair, warps, rng);
+        }
+        const bool own = detected > 0 && (sample.relief || rng.uniform(0., 1.) < detected);
+        described.push_back(own ? describeDetected(scene, sample, extractor)
+                                : describeFixed(scene, sample.pair, extractor));
+        if (described.back().partners < FEWEST_POINTS)
+            described.pop_back();
+        progress(++done, all);
+    };
     for (const auto& scene : scenes)
         for (int i = 0; i < pairsPerScene; i++)
         {
-            LoadedPair pair = drawPair(scene.second, rng);
-            if (rng.uniform(0, 2) == 1)
-                mirror(pair);
-            if (rng.uniform(0., 1.) < warps.share)
-            {
-                if (rng.uniform(0., 1.) < warps.sameLight)
-                    makeSelfPair(pair);
-                warpTarget(pair, warps, rng);
-            }
-            described.push_back(describe(scene.first, pair, extractor));
-            if (int(described.back().points.size()) < FEWEST_POINTS)
-                described.pop_back();
-            progress(++done, int(scenes.size()) * pairsPerScene);
+            Sample sample = {drawPair(scene.second, rng), cv::Ptr<Relief>()};
+            add(scene.first, sample);
+        }
+    for (const auto& scene : walks)
+        for (int i = 0; i < pairsPerScene; i++)
+        {
+            Sample sample = drawWalk(scene.second, rng);
+            add(scene.first, sample);
         }
     return described;
 }
@@ -151,7 +169,7 @@ std::vector<DescribedPair> describeForTest(const std::vector<ImagePair>& pairs,
     std::vector<DescribedPair> described;
     for (const ImagePair& info : pairs)
     {
-        described.push_back(describe(sceneOf(info), loadPair(info), extractor));
+        described.push_back(describeFixed(sceneOf(info), loadPair(info), extractor));
         progress(int(described.size()), int(pairs.size()));
     }
     return described;

@@ -11,15 +11,26 @@
 
 #include "common/dataset.hpp"
 #include "opencv2/features2d.hpp"
+#include "walks.hpp"
 
 namespace iib_tools {
 
-//! The same points in two images of a scene: row i of both, described with a whole candidate pool.
+//! Points of two images of a scene, described with a whole candidate pool.
 struct DescribedPair
 {
-    std::string scene;                //!< "set/sequence"
-    std::vector<cv::Point2f> points;  //!< in the target, pixels; points nearer than 3 px are the same
-    cv::Mat reference, target;        //!< CV_8U, a row a point
+    std::string scene;  //!< "set/sequence"
+    int partners;       //!< rows i < partners of both images are the same point; the others have no partner
+    //! Where the rows' points are in the target, pixels; points nearer than 3 px are the same.
+    std::vector<cv::Point2f> referencePoints, targetPoints;
+    cv::Mat reference, target;  //!< CV_8U, a row a point
+    float ratio;                //!< a match counts if it is nearer than this times the next one
+};
+
+//! Where training images come from.
+struct TrainingSet
+{
+    std::vector<ImagePair> pairs;
+    std::vector<WalkPair> walks;  //!< for detected points alone
 };
 
 //! How training pairs are warped: about the target's centre, each number drawn anew for each pair.
@@ -38,12 +49,13 @@ struct Warps
 //! Called with the work done so far and the whole of it.
 typedef std::function<void(int done, int all)> Progress;
 
-/** The evaluation's fixed points (up to 1000 FAST corners a pair, ROS of radius 32) of `pairsPerScene` random pairs
-of images of every scene, half of them mirrored, so that scenes count the same and left is like right. Pairs with fewer
-than 100 points are left out. */
-std::vector<DescribedPair> describeForTraining(const std::vector<ImagePair>& pairs,
-        const cv::Ptr<cv::Feature2D>& extractor, int pairsPerScene, const Warps& warps, uint64 seed,
-        const Progress& progress);
+/** Random pairs of images of every scene, half of them mirrored, so that scenes count the same and left is like right.
+Their points are the evaluation's fixed ones (up to 1000 FAST corners a pair, ROS of radius 32) or, in a share `detected`
+of the pairs and in all walks, those that HessianDetector finds in each image by itself (up to 1000, with its scale
+factor): partners agree within 2 pixels and by a factor of 1.5 in size. Pairs with fewer than 100 partners are left out. */
+std::vector<DescribedPair> describeForTraining(const TrainingSet& images,
+        const cv::Ptr<cv::Feature2D>& extractor, int pairsPerScene, double detected, const Warps& warps,
+        uint64 seed, const Progress& progress);
 
 //! All pairs as they are, for judging.
 std::vector<DescribedPair> describeForTest(const std::vector<ImagePair>& pairs,

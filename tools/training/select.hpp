@@ -14,7 +14,7 @@ namespace iib_tools {
 
 /** Grows a selection for mutual matching. An anchor point at distance d0 from its partner and d1..d15 from
 its nearest other points of the same image is matched right with probability
-p = 1 / (1 + sum exp((d0 - dk) / T)), T = sqrt(bits) / 4; what is lost is 2 - 2 sqrt(p), which does not care
+p = 1 / (1 + sum exp((d0 - ratio dk) / T)), T = sqrt(bits) / 4; what is lost is 2 - 2 sqrt(p), which does not care
 much for hopeless points. Each step draws fresh anchors, finds the points that the bits chosen so far confuse
 them with, and takes those candidates along which the loss falls fastest, never two neighbours in one step.
 

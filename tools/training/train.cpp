@@ -13,6 +13,7 @@
 namespace {
 using namespace iib_tools;
 
+const int FARTHEST = 4;  // frames between the pictures of a pair of a walk
 const char* const ABOUT = "iib_train [OPTION...] FOLDER...\n"
                           "Learns which bits of IIB a short descriptor keeps, from folders of sequences.";
 const char* const KEYS =
@@ -29,6 +30,8 @@ const char* const KEYS =
         "{adaboost   |        | plain AdaBoost, as in the paper }"
         "{warp       | 0      | part of the pairs whose target is turned, scaled and tilted, 0 to 1 }"
         "{pairs      | 24     | training pairs a scene }"
+        "{detected   | 0      | part of the pairs whose points are detected in each image, 0 to 1; not 0: "
+        "walks, too }"
         "{seed       | 1      | seed of all random choices }"
         "{folds      | 0      | first cross-validate over that many groups of scenes }"
         "{presets    | <none> | train the built-in presets instead and write this C++ header }";
@@ -46,14 +49,15 @@ void add(MeanScores& sum, const MeanScores& scores, double share)
     sum.mar += scores.mar * share;
 }
 
-void crossValidate(const Recipe& recipe, const std::vector<ImagePair>& pairs, int folds, uint64 seed)
+void crossValidate(const Recipe& recipe, const std::vector<ImagePair>& pairs,
+        const std::vector<WalkPair>& walks, int folds, uint64 seed)
 {
     MeanScores plain = {0, 0}, warped = {0, 0};
     for (int fold = 0; fold < folds; fold++)
     {
         const std::vector<ImagePair> unseen = foldOf(pairs, fold, folds, true);
         const cv::Ptr<cv::iib::IIB> learned =
-                train(recipe, foldOf(pairs, fold, folds, false), seed, show("training"));
+                train(recipe, {foldOf(pairs, fold, folds, false), walks}, seed, show("training"));
         const double share = double(unseen.size()) / double(pairs.size());
         add(plain, judge(unseen, learned, show("judging")), share);
         add(warped, judgeWarped(unseen, learned, recipe.warps, seed, show("judging warped")), share);
@@ -62,13 +66,15 @@ void crossValidate(const Recipe& recipe, const std::vector<ImagePair>& pairs, in
               << warped.map << ", " << warped.mar << std::endl;
 }
 
-void writePresets(const std::string& file, const std::vector<ImagePair>& pairs, uint64 seed)
+void writePresets(const std::string& file, const TrainingSet& images, uint64 seed)
 {
+    if (images.walks.empty())
+        CV_Error(cv::Error::StsBadArg, "no walks in the folders; scripts/synthetic.sh renders them");
     std::vector<NamedExtractor> presets;
     for (const Recipe& recipe : presetRecipes())
-        presets.push_back({recipe.name, train(recipe, pairs, seed, show(recipe.name))});
+        presets.push_back({recipe.name, train(recipe, images, seed, show(recipe.name))});
     std::ofstream(file) << presetsHeader(
-            presets, cv::format("scripts/train.sh --presets --seed=%d", int(seed)), pairs, seed);
+            presets, cv::format("scripts/train.sh --presets --seed=%d WALKS", int(seed)), images, seed);
 }
 
 std::vector<int> windowsOf(const std::string& list)
@@ -93,7 +99,8 @@ int run(const CommandLine& line)
             {line.whole("channels", 1, 63), line.whole("mapping", 0, cv::iib::IIB::MAPPING_BOXES),
                     line.whole("granularity", 1, 6), float(line.number("scale", 0.01, 100)),
                     windowsOf(line.text("windows")), line.has("quads"), cv::iib::IIB::BORDER_REFLECT},
-            warpsOfShare(line.number("warp", 0, 1)), line.has("adaboost"), line.whole("pairs", 1, most)};
+            warpsOfShare(line.number("warp", 0, 1)), line.has("adaboost"), line.whole("pairs", 1, most),
+            line.number("detected", 0, 1)};
     const uint64 seed = uint64(line.whole("seed", 0, most));
     const int folds = line.whole("folds", 0, most);
     const std::string header = line.text("presets"), out = line.text("out");
@@ -101,18 +108,19 @@ int run(const CommandLine& line)
         CV_Error(cv::Error::StsBadArg, "no FOLDER of sequences (--help tells more)");
     if (header.empty() && out.empty() && folds < 2)
         CV_Error(cv::Error::StsBadArg, "nothing to do: give --out, --presets or --folds of 2 and more");
-    std::vector<ImagePair> pairs;
+    TrainingSet images;
     for (const ImagePair& pair : findPairs(line.positional()))
         if (pair.problem.empty())
-            pairs.push_back(pair);
+            images.pairs.push_back(pair);
         else
             std::cerr << pair.name() << ": " << pair.problem << "\n";
+    images.walks = findWalkPairs(line.positional(), FARTHEST);
     if (folds >= 2)
-        crossValidate(recipe, pairs, folds, seed);
+        crossValidate(recipe, images.pairs, images.walks, folds, seed);
     if (!header.empty())
-        writePresets(header, pairs, seed);
+        writePresets(header, images, seed);
     else if (!out.empty())
-        train(recipe, pairs, seed, show("training"))->save(out);
+        train(recipe, images, seed, show("training"))->save(out);
     return 0;
 }
 

@@ -31,25 +31,25 @@ protected:
             cv::imwrite(folder.path(scene) + "/1.png", reference);
             cv::imwrite(folder.path(scene) + "/2.png", target);
         }
-        pairs = findPairs({folder.path("set")});
+        images.pairs = findPairs({folder.path("set")});
     }
 
     static Recipe recipe(bool wholeQuads, bool adaBoost)
     {
         const int channels = IIB::CHANNEL_GRAD_X + IIB::CHANNEL_GRAD_Y + IIB::CHANNEL_SIGNED_GRAD_X;
         return {"test", 24, {channels, IIB::MAPPING_HAAR, 3, 1.f, {15}, wholeQuads, IIB::BORDER_REFLECT},
-                warpsOfShare(0), adaBoost, 3};
+                warpsOfShare(0), adaBoost, 3, 0};
     }
 
     static void ignore(int, int) {}
 
     cv::Ptr<IIB> learn(bool wholeQuads, bool adaBoost, uint64 seed = 1) const
     {
-        return train(recipe(wholeQuads, adaBoost), pairs, seed, ignore);
+        return train(recipe(wholeQuads, adaBoost), images, seed, ignore);
     }
 
     TestFolder folder;
-    std::vector<ImagePair> pairs;
+    TrainingSet images;
 };
 
 TEST_F(Training, keeps_what_survives_the_change_of_light)
@@ -97,17 +97,17 @@ TEST_F(Training, selection_goes_through_a_file)
     const cv::FileStorage file(folder.path("selection.yml"), cv::FileStorage::READ);
     loaded->read(file.getFirstTopLevelNode());
     EXPECT_EQ(0, cvtest::norm(learned->getSelection(), loaded->getSelection(), cv::NORM_L1));
-    const MeanScores scores = judge(pairs, loaded, ignore);
+    const MeanScores scores = judge(images.pairs, loaded, ignore);
     EXPECT_GT(scores.mar, 0.5);
-    EXPECT_EQ(scores.mar, judge(pairs, learned, ignore).mar);
+    EXPECT_EQ(scores.mar, judge(images.pairs, learned, ignore).mar);
 }
 
 TEST_F(Training, folds_split_scenes)
 {
-    ASSERT_EQ(2u, pairs.size());
-    EXPECT_EQ("a", foldOf(pairs, 0, 2, true).at(0).sequence);
-    EXPECT_EQ("b", foldOf(pairs, 0, 2, false).at(0).sequence);
-    EXPECT_EQ("b", foldOf(pairs, 1, 2, true).at(0).sequence);
+    ASSERT_EQ(2u, images.pairs.size());
+    EXPECT_EQ("a", foldOf(images.pairs, 0, 2, true).at(0).sequence);
+    EXPECT_EQ("b", foldOf(images.pairs, 0, 2, false).at(0).sequence);
+    EXPECT_EQ("b", foldOf(images.pairs, 1, 2, true).at(0).sequence);
 }
 
 TEST_F(Training, pool_bits_are_those_of_its_candidates)
@@ -159,11 +159,43 @@ TEST_F(Training, warped_pairs_match_less_but_match)
 {
     const Warps mild = {1, 1, 2, 0.98, 1.02, 1.02, 0, 1, 0}, warps = {1, 1, 22, 0.7, 1.43, 2.5, 0.1, 1.5, 5};
     const cv::Ptr<IIB> iib = IIB::createPreset(IIB::PRESET_BALANCED, 1.f);
-    const MeanScores nearlyStill = judgeWarped(pairs, iib, mild, 1, ignore),
-                     warped = judgeWarped(pairs, iib, warps, 1, ignore);
+    const MeanScores nearlyStill = judgeWarped(images.pairs, iib, mild, 1, ignore),
+                     warped = judgeWarped(images.pairs, iib, warps, 1, ignore);
     EXPECT_LT(warped.mar, nearlyStill.mar);
     EXPECT_GT(warped.mar, 0.1);
-    EXPECT_EQ(warped.mar, judgeWarped(pairs, iib, warps, 1, ignore).mar);
+    EXPECT_EQ(warped.mar, judgeWarped(images.pairs, iib, warps, 1, ignore).mar);
+}
+
+TEST_F(Training, detected_points_are_partners_where_place_and_size_agree)
+{
+    const CandidatePool pool = makePool(recipe(false, false).pool);
+    for (const DescribedPair& pair :
+            describeForTraining(images, pool.extractor, 4, 1, warpsOfShare(1), 1, ignore))
+    {
+        EXPECT_EQ(int(pair.referencePoints.size()), pair.reference.rows);
+        EXPECT_EQ(int(pair.targetPoints.size()), pair.target.rows);
+        EXPECT_GE(pair.partners, 100);
+        EXPECT_LT(pair.partners, pair.target.rows) << "a warped image has points of its own";
+        double error = 0;
+        for (int i = 0; i < pair.partners; i++)
+        {
+            const double distance = cv::norm(pair.referencePoints[i] - pair.targetPoints[i]);
+            EXPECT_LE(distance, 2);
+            error += distance / pair.partners;
+        }
+        EXPECT_GT(error, 0.05) << "each is detected by itself";
+    }
+}
+
+TEST_F(Training, learns_from_detected_points)
+{
+    Recipe detected = recipe(false, false);
+    detected.detected = 1;
+    const cv::Mat_<int> quads = train(detected, images, 1, ignore)->getSelection();
+    for (int i = 0; i < quads.rows; i++)
+        EXPECT_NE(2, quads(i, 1)) << "the negative reverses the order of the signed gradient";
+    const cv::Mat fixed = learn(false, false)->getSelection();
+    EXPECT_TRUE(quads.size() != fixed.size() || cvtest::norm(quads, fixed, cv::NORM_L1) > 0);
 }
 
 TEST_F(Training, quads_begin_only_where_they_may)
@@ -184,15 +216,94 @@ TEST_F(Training, impossible_wishes_are_refused)
 {
     Recipe tooLong = recipe(false, false);
     tooLong.bits = 100000;
-    EXPECT_THROW(train(tooLong, pairs, 1, ignore), cv::Exception);
+    EXPECT_THROW(train(tooLong, images, 1, ignore), cv::Exception);
     for (const std::vector<int>& windows : {std::vector<int>(), {0}, {1, 16}})
     {
         Recipe nowhere = recipe(false, false);
         nowhere.pool.windows = windows;
-        EXPECT_THROW(train(nowhere, pairs, 1, ignore), cv::Exception);
+        EXPECT_THROW(train(nowhere, images, 1, ignore), cv::Exception);
     }
     EXPECT_THROW(train(recipe(false, false), {}, 1, ignore), cv::Exception);
     EXPECT_THROW(train(recipe(false, true), {}, 1, ignore), cv::Exception);
+}
+
+//! A wall 2 m in front of a camera of 100 pixels focal length, with depth in millimetres.
+Relief wallSeenFrom(cv::Vec3d step)
+{
+    const cv::Matx33d camera(100, 0, 59.5, 0, 100, 39.5, 0, 0, 1);
+    const auto wall = [](double depth) {
+        return cv::Mat_<ushort>(80, 120, cv::saturate_cast<ushort>(depth));
+    };
+    return {wall(2000), wall(2000 + step[2]), camera, cv::Matx33d::eye(), step};
+}
+
+TEST(Training_Relief, moves_and_resizes_what_it_sees)
+{
+    const cv::KeyPoint point(70.f, 50.f, 8.f);
+    const cv::KeyPoint aside = wallSeenFrom(cv::Vec3d(200, 0, 0)).project(point);
+    EXPECT_NEAR(0, cv::norm(aside.pt - cv::Point2f(80, 50)), 1e-3);
+    EXPECT_FLOAT_EQ(8.f, aside.size);
+    const cv::KeyPoint nearer = wallSeenFrom(cv::Vec3d(0, 0, -1000)).project(point);
+    EXPECT_NEAR(0, cv::norm(nearer.pt - cv::Point2f(80.5f, 60.5f)), 1e-3);
+    EXPECT_FLOAT_EQ(16.f, nearer.size);
+}
+
+TEST(Training_Relief, what_is_hidden_or_outside_has_no_size)
+{
+    Relief relief = wallSeenFrom(cv::Vec3d(200, 0, 0));
+    EXPECT_EQ(0, relief.project(cv::KeyPoint(115.f, 50.f, 8.f)).size);
+    EXPECT_EQ(0, relief.project(cv::KeyPoint(-3.f, 50.f, 8.f)).size);
+    relief.target.colRange(78, 90).setTo(1000);
+    EXPECT_EQ(0, relief.project(cv::KeyPoint(70.f, 50.f, 8.f)).size);
+    relief.reference.setTo(0);
+    EXPECT_EQ(0, relief.project(cv::KeyPoint(30.f, 50.f, 8.f)).size);
+}
+
+TEST(Training_Relief, mirrored_pictures_show_mirrored_points)
+{
+    Relief relief = wallSeenFrom(cv::Vec3d(200, 50, -400));
+    relief.rotation = cv::Matx33d(0.8, 0.6, 0, -0.6, 0.8, 0, 0, 0, 1);
+    relief.target.setTo(1600);
+    const cv::KeyPoint seen = relief.project(cv::KeyPoint(30.f, 50.f, 8.f));
+    relief.mirror();
+    const cv::KeyPoint mirrored = relief.project(cv::KeyPoint(119.f - 30, 50.f, 8.f));
+    EXPECT_NEAR(0, cv::norm(mirrored.pt - cv::Point2f(119 - seen.pt.x, seen.pt.y)), 1e-3);
+    EXPECT_EQ(mirrored.size, seen.size);
+}
+
+TEST(Training_Walks, pairs_of_places_under_all_lights)
+{
+    const TestFolder folder;
+    for (const char* light : {"path/hut_noon", "path/hut_night"})
+    {
+        folder.makeFolder(light + std::string("/frames"));
+        folder.makeFolder(light + std::string("/depth"));
+        cv::FileStorage camera(folder.path(light) + "/camera.yml", cv::FileStorage::WRITE);
+        camera << "camera_matrix" << cv::Mat(cv::Matx33d(100, 0, 59.5, 0, 100, 39.5, 0, 0, 1))
+               << "depth_scale" << 0.001 << "poses"
+               << "[";
+        for (int frame = 1; frame <= 6; frame++)
+        {
+            camera << cv::Mat(cv::Matx34d(1, 0, 0, -0.1 * frame, 0, 1, 0, 0, 0, 0, 1, 0));
+            const std::string number = "/" + std::to_string(frame) + ".png";
+            cv::imwrite(folder.path(light) + "/frames" + number, cv::Mat(80, 120, CV_8U, cv::Scalar(99)));
+            cv::imwrite(folder.path(light) + "/depth" + number, cv::Mat(80, 120, CV_16U, cv::Scalar(2000)));
+        }
+        camera << "]";
+    }
+    // of frames 1, 2, 5 and 6, 1 and 6 are too far apart; in either direction, under four pairs of lights
+    const std::vector<WalkPair> pairs = findWalkPairs({folder.path("")}, 4);
+    ASSERT_EQ(5u * 2 * 4, pairs.size());
+    for (const WalkPair& pair : pairs)
+    {
+        EXPECT_EQ("path/hut", pair.scene);
+        EXPECT_GE(cv::norm(pair.translation), 99.9) << "millimetres";
+        EXPECT_LE(cv::norm(pair.translation), 400.1);
+    }
+    EXPECT_GT(loadRelief(pairs[0]).project(cv::KeyPoint(60.f, 40.f, 8.f)).size, 0);
+
+    folder.write("path/hut_noon/camera.yml", "%YAML:1.0\n---\ndepth_scale: 0.001\n");
+    EXPECT_THROW(findWalkPairs({folder.path("")}, 4), cv::Exception);
 }
 
 }  // namespace
