@@ -61,6 +61,7 @@ class IIBDescriptorExtractor:
     PRESET_BALANCED = 6
     PRESET_VIEWPOINT = 7
     PRESET_UNIVERSAL = 8
+    PRESET_SMALL = 9
 
     def __init__(self, scaleFactor: float = 2.0, granularity: int = 4, channels: int = CHANNELS_DEFAULT,
                  mapping: int = MAPPING_MEAN, overlap: bool = False, useOrientation: bool = False,

@@ -93,6 +93,7 @@ std::vector<Row> allRows(const Mat& image)
             rowOf("PRESET_BALANCED", IIB::createPreset(IIB::PRESET_BALANCED), image),
             rowOf("PRESET_VIEWPOINT", IIB::createPreset(IIB::PRESET_VIEWPOINT), image),
             rowOf("PRESET_UNIVERSAL", IIB::createPreset(IIB::PRESET_UNIVERSAL), image),
+            rowOf("PRESET_SMALL", IIB::createPreset(IIB::PRESET_SMALL), image),
             rowOf("2 extra channels", IIB::create(2.f, 4, all, IIB::MAPPING_MEAN, false, false, 2), image,
                     extra),
             rowOf("useOrientation", IIB::create(2.f, 4, all, IIB::MAPPING_MEAN, false, true), image),

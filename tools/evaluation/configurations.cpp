@@ -74,7 +74,7 @@ std::vector<Configuration> presets()
             withPreset("S512", IIB::PRESET_S512), withPreset("ACCURATE", IIB::PRESET_ACCURATE),
             withPreset("COMPACT", IIB::PRESET_COMPACT), withPreset("TINY", IIB::PRESET_TINY),
             withPreset("BALANCED", IIB::PRESET_BALANCED), withPreset("VIEWPOINT", IIB::PRESET_VIEWPOINT),
-            withPreset("UNIVERSAL", IIB::PRESET_UNIVERSAL)};
+            withPreset("UNIVERSAL", IIB::PRESET_UNIVERSAL), withPreset("SMALL", IIB::PRESET_SMALL)};
 }
 
 Configuration onPointsOf(Configuration c, const std::string& detector)
@@ -111,7 +111,7 @@ std::vector<Configuration> generalPresets()
 {
     return {withPreset("ACCURATE", IIB::PRESET_ACCURATE), withPreset("COMPACT", IIB::PRESET_COMPACT),
             withPreset("BALANCED", IIB::PRESET_BALANCED), withPreset("VIEWPOINT", IIB::PRESET_VIEWPOINT),
-            withPreset("UNIVERSAL", IIB::PRESET_UNIVERSAL)};
+            withPreset("UNIVERSAL", IIB::PRESET_UNIVERSAL), withPreset("SMALL", IIB::PRESET_SMALL)};
 }
 
 std::vector<Configuration> robustnessConfigurations()

@@ -23,7 +23,7 @@ struct UserError : std::runtime_error
 // clang-format off
 static const char* const OPTIONS =
         "{detector    | HESSIAN      | [HESSIAN FAST AGAST ORB BRISK AKAZE KAZE SIFT GFTT MSER SimpleBlob SURF]}"
-        "{preset      | UNIVERSAL    | [default S128 S256 S512 ACCURATE COMPACT TINY BALANCED VIEWPOINT UNIVERSAL] of IIB}"
+        "{preset      | UNIVERSAL    | [default S128 S256 S512 ACCURATE COMPACT TINY BALANCED VIEWPOINT UNIVERSAL SMALL] of IIB}"
         "{normalize   | no           | find the points on the locally normalized image, as HESSIAN does by itself, [no yes]}"
         "{granularity | 4            | levels of IIB's default, [1 2 3 4 5 6]}"
         "{orientation | none         | IIB's regions: [none keypoint gradient], upright or rotated by such an angle}"

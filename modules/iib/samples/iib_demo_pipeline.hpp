@@ -101,7 +101,8 @@ inline cv::Ptr<cv::Feature2D> createIIB(const Options& options)
     static const std::map<std::string, int> presets = {{"S128", IIB::PRESET_S128}, {"S256", IIB::PRESET_S256},
             {"S512", IIB::PRESET_S512}, {"ACCURATE", IIB::PRESET_ACCURATE}, {"COMPACT", IIB::PRESET_COMPACT},
             {"TINY", IIB::PRESET_TINY}, {"BALANCED", IIB::PRESET_BALANCED},
-            {"VIEWPOINT", IIB::PRESET_VIEWPOINT}, {"UNIVERSAL", IIB::PRESET_UNIVERSAL}};
+            {"VIEWPOINT", IIB::PRESET_VIEWPOINT}, {"UNIVERSAL", IIB::PRESET_UNIVERSAL},
+            {"SMALL", IIB::PRESET_SMALL}};
     const float factor = IIB::scaleFactorFor(options.detector);
     const cv::Ptr<IIB> iib = options.preset == "default"
                                      ? IIB::create(factor, options.granularity)

@@ -62,7 +62,7 @@ TEST(IIB_InstructionSets, calls_leave_no_upper_halves_in_use)
     const Mat image = texture(Size(160, 120), CV_8U, 1);
     std::vector<KeyPoint> keypoints = {KeyPoint(60, 60, 20), KeyPoint(80, 50, 20, 30)};
     Mat descriptors;
-    for (int preset = 0; preset <= IIB::PRESET_UNIVERSAL; preset++)
+    for (int preset = 0; preset <= IIB::PRESET_SMALL; preset++)
         for (int orientation : {IIB::ORIENTATION_NONE, IIB::ORIENTATION_KEYPOINT, IIB::ORIENTATION_GRADIENT})
         {
             const Ptr<IIB> iib = IIB::createPreset(preset);

@@ -30,8 +30,8 @@ std::vector<std::pair<std::string, cv::Ptr<IIB>>> descriptors()
     for (const auto& preset : std::vector<std::pair<std::string, int>>{{"ACCURATE", IIB::PRESET_ACCURATE},
                  {"COMPACT", IIB::PRESET_COMPACT}, {"TINY", IIB::PRESET_TINY},
                  {"BALANCED", IIB::PRESET_BALANCED}, {"VIEWPOINT", IIB::PRESET_VIEWPOINT},
-                 {"UNIVERSAL", IIB::PRESET_UNIVERSAL}, {"S512", IIB::PRESET_S512}, {"S256", IIB::PRESET_S256},
-                 {"S128", IIB::PRESET_S128}})
+                 {"UNIVERSAL", IIB::PRESET_UNIVERSAL}, {"SMALL", IIB::PRESET_SMALL},
+                 {"S512", IIB::PRESET_S512}, {"S256", IIB::PRESET_S256}, {"S128", IIB::PRESET_S128}})
         all.push_back({"IIB " + preset.first, IIB::createPreset(preset.second, factor)});
     return all;
 }

@@ -31,7 +31,7 @@ TEST(IIB_CreateFor, detector_factor_and_preset)
             EXPECT_EQ(detector, iib->getDetector());
             EXPECT_FLOAT_EQ(k.second, iib->getScaleFactor());
             EXPECT_EQ(170, iib->descriptorSize());
-            for (int preset = IIB::PRESET_S128; preset <= IIB::PRESET_UNIVERSAL; preset++)
+            for (int preset = IIB::PRESET_S128; preset <= IIB::PRESET_SMALL; preset++)
             {
                 const Ptr<IIB> expected = IIB::createPreset(preset, k.second),
                                actual = IIB::createFor(detector, preset);

@@ -153,13 +153,15 @@ public:
         PRESET_TINY,       //!< 32 bytes, a ROS 1.25 times as wide: 0.969 / 0.878
         PRESET_BALANCED,   //!< 64 bytes, for cameras that move, a ROS 1.125 times as wide: 0.949 / 0.827
         PRESET_VIEWPOINT,  //!< 64 bytes of #MAPPING_BOXES, for cameras that move far, a ROS 1.25 times as wide
-        PRESET_UNIVERSAL   //!< 128 bytes of #MAPPING_BOXES, for light and viewpoint, a ROS 1.25 times as wide
+        PRESET_UNIVERSAL,  //!< 128 bytes of #MAPPING_BOXES, for light and viewpoint, a ROS 1.25 times as wide
+        PRESET_SMALL  //!< 32 bytes of #MAPPING_BOXES, for the same where 256 bits are wanted, a ROS 1.25 times as wide
     };
 
     /** @brief Creates an extractor with a selection that comes with the library.
 
-    The selections were learned by tools/training on images of still cameras, those of PRESET_BALANCED, PRESET_VIEWPOINT and
-    PRESET_UNIVERSAL on warped ones. No image of the figures above was among them.
+    The selections were learned by tools/training on images of still cameras, those of PRESET_BALANCED, PRESET_VIEWPOINT,
+    PRESET_UNIVERSAL and PRESET_SMALL on warped ones; the last two also on rendered walks, and half of their points are those
+    that HessianDetector finds in each image. No image of the figures above was among them.
     The ROS of some is wider than `scaleFactor` says (see #Preset); getScaleFactor tells it.
 
     @param preset one of #Preset.
