@@ -6,7 +6,6 @@
 #define OPENCV_IIB_BOXES_CELL_BAND_HPP
 
 #include "../descriptor/channels.hpp"
-#include "../descriptor/row_ring.hpp"
 
 namespace cv {
 namespace iib {

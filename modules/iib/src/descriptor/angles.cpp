@@ -8,7 +8,6 @@
 #include <map>
 
 #include "grid_pixels.hpp"
-#include "kernels/orientation.hpp"
 
 namespace cv {
 namespace iib {

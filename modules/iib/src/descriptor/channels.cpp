@@ -4,8 +4,6 @@
 
 #include "channels.hpp"
 
-#include "kernels/orientation.hpp"
-
 namespace cv {
 namespace iib {
 

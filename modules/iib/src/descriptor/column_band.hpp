@@ -6,7 +6,6 @@
 #define OPENCV_IIB_DESCRIPTOR_COLUMN_BAND_HPP
 
 #include "channels.hpp"
-#include "row_ring.hpp"
 
 namespace cv {
 namespace iib {

@@ -6,7 +6,7 @@
 #define OPENCV_IIB_DESCRIPTOR_PARAMETERS_HPP
 
 #include "../precomp.hpp"
-#include "kernels/cell_grid.hpp"
+#include "kernels/quads.hpp"
 
 namespace cv {
 namespace iib {

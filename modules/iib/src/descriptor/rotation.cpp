@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "../precomp.hpp"
-#include "kernels/orientation.hpp"
+#include "kernels/kernels.hpp"
 
 namespace cv {
 namespace iib {

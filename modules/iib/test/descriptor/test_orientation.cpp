@@ -6,7 +6,7 @@
 #include "../support/test_images.hpp"
 
 #include "../../src/descriptor/kernels/kernels.hpp"
-#include "../../src/descriptor/kernels/orientation.hpp"
+#include "../../src/descriptor/kernels/kernels.hpp"
 
 namespace opencv_test {
 namespace {

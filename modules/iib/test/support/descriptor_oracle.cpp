@@ -10,7 +10,7 @@
 #include <functional>
 #include <map>
 
-#include "../../src/descriptor/kernels/orientation.hpp"
+#include "../../src/descriptor/kernels/kernels.hpp"
 #include "box_oracle.hpp"
 
 namespace oracle {

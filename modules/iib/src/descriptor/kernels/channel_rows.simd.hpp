@@ -7,7 +7,6 @@
 
 #include "../../common/vectors.hpp"
 #include "kernels.hpp"
-#include "orientation.hpp"
 
 namespace cv {
 namespace iib {
