@@ -60,6 +60,18 @@ Detector normalized(const std::string& name, const std::string& descriptorName,
     return d;
 }
 
+//! The library's own, which describes nothing.
+Detector hessian(int count)
+{
+    const auto detect = [=](const cv::Mat& image, const ImagePair&, const std::string&) {
+        Detection d;
+        cv::iib::HessianDetector::create(count)->detect(image, d.keypoints);
+        d.norm = 0;  // no descriptors
+        return d;
+    };
+    return {"Hessian", "", cv::iib::IIB::scaleFactorFor("Hessian"), detect, {}};
+}
+
 //! A detector that gives no size gets a ROS of radius DEEP_RADIUS.
 void giveMissingSizes(std::vector<cv::KeyPoint>& keypoints)
 {
@@ -148,6 +160,7 @@ std::vector<Detector> classicDetectors(int count)
     }
     for (const auto& k : known)
         all.push_back(normalized(k.name, k.descriptor, k.detector, k.own, count));
+    all.push_back(hessian(count));
     for (const Configuration& baseline : baselineConfigurations())
         if (baseline.name == "SURF")
             all.push_back(classic("SURF", "SURF", baseline.create, baseline.create, count));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "common/metrics.hpp"
 #include "common/views.hpp"
@@ -18,7 +19,7 @@
 namespace iib_tools {
 namespace {
 
-const double THRESHOLD = 2;  // of MAGSAC, pixels
+const double THRESHOLDS[] = {.75, 1, 2};  // of MAGSAC, pixels
 const double CONFIDENCE = 0.9999;
 const int ITERATIONS = 2000;
 const float RATIO_BITS = 0.9f, RATIO_FLOAT = 0.8f;  // a nearest neighbour's distance over the second's
@@ -35,7 +36,7 @@ struct Outcome
     double error;
     int inliers;
 };
-typedef std::function<Outcome(const Points&)> Estimator;
+typedef std::function<Outcome(const Points&, double threshold)> Estimator;
 
 std::vector<cv::DMatch> ratioMatches(const Described& reference, const Described& target)
 {
@@ -51,6 +52,25 @@ std::vector<cv::DMatch> ratioMatches(const Described& reference, const Described
     return kept;
 }
 
+//! Those that both choices hold.
+std::vector<cv::DMatch> inBoth(const std::vector<cv::DMatch>& a, const std::vector<cv::DMatch>& b)
+{
+    std::set<std::pair<int, int>> pairs;
+    for (const cv::DMatch& m : b)
+        pairs.insert({m.queryIdx, m.trainIdx});
+    std::vector<cv::DMatch> kept;
+    for (const cv::DMatch& m : a)
+        if (pairs.count({m.queryIdx, m.trainIdx}))
+            kept.push_back(m);
+    return kept;
+}
+
+//! A choice of matches and the estimator's threshold, as the table names them.
+std::string ruleName(const std::string& choice, double threshold)
+{
+    return choice + cv::format(" at %g px", threshold);
+}
+
 Points pointsOf(const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target)
 {
     Points points;
@@ -63,13 +83,13 @@ Points pointsOf(const std::vector<cv::DMatch>& matches, const Described& referen
 }
 
 //! Mean distance of the reference's corners from where they belong.
-Outcome homographyError(const Points& points, const cv::Matx33d& truth, cv::Size size)
+Outcome homographyError(const Points& points, const cv::Matx33d& truth, cv::Size size, double threshold)
 {
     if (points.reference.size() < 4)
         return {FAILED, 0};
     cv::Mat mask;
     const cv::Mat found = cv::findHomography(
-            points.reference, points.target, cv::USAC_MAGSAC, THRESHOLD, mask, ITERATIONS, CONFIDENCE);
+            points.reference, points.target, cv::USAC_MAGSAC, threshold, mask, ITERATIONS, CONFIDENCE);
     if (found.empty())
         return {FAILED, 0};
     double sum = 0;
@@ -91,7 +111,7 @@ std::vector<cv::Point2d> normalizedPoints(const std::vector<cv::Point2d>& points
 double degrees(double cosine) { return std::acos(std::max(-1., std::min(1., cosine))) * 180 / CV_PI; }
 
 //! The larger one of the errors in degrees of rotation and of the direction of the translation, its sign apart.
-Outcome poseError(const Points& points, const ViewPair& pair)
+Outcome poseError(const Points& points, const ViewPair& pair, double threshold)
 {
     if (points.reference.size() < 6)
         return {FAILED, 0};
@@ -100,7 +120,7 @@ Outcome poseError(const Points& points, const ViewPair& pair)
     const cv::Matx33d one = cv::Matx33d::eye();
     cv::Mat mask, rotation, translation;
     const cv::Mat essential = cv::findEssentialMat(
-            a, b, one, cv::USAC_MAGSAC, CONFIDENCE, THRESHOLD / pair.targetCamera(0, 0), mask);
+            a, b, one, cv::USAC_MAGSAC, CONFIDENCE, threshold / pair.targetCamera(0, 0), mask);
     if (essential.rows != 3)
         return {FAILED, 0};
     const int inliers = cv::countNonZero(mask);
@@ -113,13 +133,13 @@ Outcome poseError(const Points& points, const ViewPair& pair)
 }
 
 //! Mean distance of the known correspondences from their epipolar lines in the target.
-Outcome epipolarError(const Points& points, const std::vector<cv::Vec4d>& correspondences)
+Outcome epipolarError(const Points& points, const std::vector<cv::Vec4d>& correspondences, double threshold)
 {
     if (points.reference.size() < 8)
         return {FAILED, 0};
     cv::Mat mask;
     const cv::Mat found = cv::findFundamentalMat(
-            points.reference, points.target, cv::USAC_MAGSAC, THRESHOLD, CONFIDENCE, ITERATIONS, mask);
+            points.reference, points.target, cv::USAC_MAGSAC, threshold, CONFIDENCE, ITERATIONS, mask);
     if (found.rows != 3)
         return {FAILED, 0};
     const cv::Matx33d fundamental(found);
@@ -163,13 +183,20 @@ void evaluateImages(const std::string& task, const Images& images, const std::ve
         for (size_t i = 0; i < both.first->size(); i++)
         {
             const Described &r = (*both.first)[i], &t = (*both.second)[i];
-            const std::pair<const char*, std::vector<cv::DMatch>> rules[] = {{"ratio", ratioMatches(r, t)},
-                    {"mutual", mutualMatches(r.descriptors, t.descriptors, r.norm)}};
-            for (const auto& rule : rules)
+            const std::vector<cv::DMatch> ratio = ratioMatches(r, t),
+                                          mutual = mutualMatches(r.descriptors, t.descriptors, r.norm);
+            const std::pair<const char*, std::vector<cv::DMatch>> choices[] = {
+                    {"ratio", ratio}, {"mutual", mutual}, {"both", inBoth(ratio, mutual)}};
+            for (const auto& choice : choices)
             {
-                const Outcome o = estimate(pointsOf(rule.second, r, t));
-                run.table.append({task, images.names.set, images.names.sequence, images.names.target,
-                        detector.name, r.name, rule.first, text(o.error), std::to_string(o.inliers)});
+                const Points points = pointsOf(choice.second, r, t);
+                for (double threshold : THRESHOLDS)
+                {
+                    const Outcome o = estimate(points, threshold);
+                    run.table.append({task, images.names.set, images.names.sequence, images.names.target,
+                            detector.name, r.name, ruleName(choice.first, threshold), text(o.error),
+                            std::to_string(o.inliers)});
+                }
             }
         }
     }
@@ -180,7 +207,8 @@ std::vector<Detector> missing(const std::string& task, const ImagePair& names, c
 {
     std::vector<Detector> rest;
     for (const Detector& d : run.detectors)
-        if (!run.table.has({task, names.set, names.sequence, names.target, d.name, "IIB", "mutual"}))
+        if (!run.table.has({task, names.set, names.sequence, names.target, d.name, "IIB",
+                    ruleName("both", THRESHOLDS[2])}))
             rest.push_back(d);
     return rest;
 }
@@ -207,7 +235,9 @@ void addPoses(const Options& options, Run& run, std::vector<Task>& tasks)
         tasks.push_back({images.names.name(), [&run, pair, images, rest]() mutable {
                              images.reference = readImage(pair.referenceFile, cv::IMREAD_GRAYSCALE);
                              images.target = readImage(pair.targetFile, cv::IMREAD_GRAYSCALE);
-                             const auto estimate = [&](const Points& p) { return poseError(p, pair); };
+                             const auto estimate = [&](const Points& p, double threshold) {
+                                 return poseError(p, pair, threshold);
+                             };
                              evaluateImages("pose", images, rest, estimate, run);
                          }});
     }
@@ -224,10 +254,10 @@ void addImagePairs(const std::vector<ImagePair>& pairs, Run& run, std::vector<Ta
         tasks.push_back(
                 {pair.name(), [&run, pair, rest, task] {
                      const LoadedPair loaded = loadPair(pair);
-                     const auto estimate = [&](const Points& p) {
-                         return task == "epipolar"
-                                        ? epipolarError(p, loaded.correspondences)
-                                        : homographyError(p, loaded.homography, loaded.reference.size());
+                     const auto estimate = [&](const Points& p, double threshold) {
+                         return task == "epipolar" ? epipolarError(p, loaded.correspondences, threshold)
+                                                   : homographyError(p, loaded.homography,
+                                                             loaded.reference.size(), threshold);
                      };
                      evaluateImages(task, {pair, loaded.reference, loaded.target}, rest, estimate, run);
                  }});
@@ -242,7 +272,8 @@ int wholeTasks(const Options& options, const std::vector<ImagePair>& pairs)
     classic.keypoints.clear();
     classic.network.clear();
     if (classic.detectors.empty())
-        classic.detectors = {"ORB", "AKAZE", "SIFT", "ORB normalized", "AKAZE normalized", "SIFT normalized"};
+        classic.detectors = {
+                "ORB", "AKAZE", "SIFT", "ORB normalized", "AKAZE normalized", "SIFT normalized", "Hessian"};
     Run run(detectors(classic), options.out + "/whole_tasks.csv");
     std::vector<Task> tasks;
     addPoses(options, run, tasks);

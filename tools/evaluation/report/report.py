@@ -134,7 +134,8 @@ def task_line(task, key, rows):
 
 
 def whole_tasks(tables):
-    """Areas under the curve of the error, by task and kind of images, then detector, descriptor and matches."""
+    """Areas under the curve of the error, by task and kind of images, then detector and descriptor, each with the best choice
+    of matches and threshold; the table holds all."""
     kinds = {(r["set"], r["sequence"], r["target"]): r["kind"] for r in tables["fixed_points"]}
 
     def images(row):
@@ -152,7 +153,7 @@ def whole_tasks(tables):
         for line in lines:
             best.setdefault((line["detector"], line["descriptor"]), line)
         bars = [best[key] for key in descriptors.TASKS if key in best] if task != "epipolar" else []
-        found.append({"task": task, "images": which, "limits": LIMITS[task], "lines": lines,
+        found.append({"task": task, "images": which, "limits": LIMITS[task], "lines": list(best.values()),
                       "sequences": sorted({r["sequence"] for r in members}),
                       "pairs": max(line["pairs"] for line in lines),
                       "bars": sorted(bars, key=lambda line: -line["areas"][1][0])})
