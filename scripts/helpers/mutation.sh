@@ -6,7 +6,7 @@
 
 [ $# -eq 0 ] || [ "$1" = --only ] || fail "it takes no option but --only, not $1"
 for name in "$@"; do
-    [ "$name" = --only ] || grep -qxF -e "name: $name" "$root/tools/mutation/mutants.txt" ||
+    [ "$name" = --only ] || grep -q "^$name: " "$root/tools/mutation/mutants.txt" ||
         fail "there is no mutant $name in tools/mutation/mutants.txt"
 done
 # shellcheck disable=SC2086

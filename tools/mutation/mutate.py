@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Mutation testing: builds the library once with every mutant of mutants.txt switched off, then runs the tests with
-one of them switched on at a time: those in the folder of modules/iib/test with the name of the source's folder, or all
-of modules/iib_index. A mutant that none of them notices is a survivor.
+one of them switched on at a time: those in the folder of modules/iib/test with the name of its area, or all of
+modules/iib_index. A mutant that none of them notices is a survivor.
 
 mutate.py --source REPOSITORY --work FOLDER [--only NAME...]
 mutate.py --source REPOSITORY --check
@@ -30,34 +30,30 @@ const int iibChosenMutant = std::getenv("IIB_MUTANT") ? std::atoi(std::getenv("I
 
 
 def pattern(code):
-    """Finds code however its lines are broken and its spaces set."""
-    return re.compile(r"\s*".join(re.escape(token) for token in re.findall(r"\w+|\S", code)))
+    """A regular expression that finds code however its lines are broken and its spaces set."""
+    return r"\s*".join(re.escape(token) for token in re.findall(r"\w+|\S", code))
 
 
 class Mutant:
-    """`sources`: the text of every source, by path. The mutant belongs to the one that holds its context, wherever that has
-    been moved; `file` tells where several do."""
+    """`sources`: the text of every source, by path. The mutant belongs to the one that holds its code, wherever that has
+    been moved; the tests of `area` are to notice it."""
 
-    def __init__(self, number, fields, sources):
-        self.number, self.name, self.right, self.wrong = number, fields["name"], fields["right"], fields["wrong"]
-        self.context = pattern(fields["in"])
-        found = [path for path, text in sources.items() if self.context.search(text)]
-        if len(found) > 1:
-            found = [path for path in found if path == fields.get("file")]
-        if len(found) != 1 or len(self.context.findall(sources[found[0]])) != 1:
-            sys.exit(f"{self.name}: '{fields['in']}' is not in the sources once: bring mutants.txt up to date")
+    def __init__(self, number, line, area, sources):
+        fields = re.fullmatch(r"(\S+): (.*)\{\{(.+) => (.+)\}\}(.*)", line)
+        if not fields:
+            sys.exit(f"mutants.txt: '{line}' is not NAME: code {{{{right => wrong}}}} code")
+        self.name, before, right, self.wrong, after = fields.groups()
+        self.number, self.area = number, area
+        self.code = re.compile(r"\s*".join(f"({pattern(part)})" for part in (before, right, after)))
+        found = [path for path, text in sources.items() for _ in self.code.finditer(text)]
+        if len(found) != 1:
+            sys.exit(f"{self.name}: its code is in the sources {len(found)} times: bring mutants.txt up to date")
         self.path, = found
-        self.area = fields.get("tests", self.path.split("/")[1 if "/iib_index/" in self.path else 3])
 
     def applied(self, text):
-        """The source `text` with the switch around `right` within the context."""
-        def switched(context):
-            code, count = pattern(self.right).subn(
-                lambda right: f"IIB_MUTANT({self.number}, {right[0]}, {self.wrong})", context[0])
-            if count != 1:
-                sys.exit(f"{self.name}: '{self.right}' is not there once in its context")
-            return code
-        text, count = self.context.subn(switched, text)
+        """The source `text` with the switch around the right code."""
+        text, count = self.code.subn(
+            lambda found: f"{found[1]} IIB_MUTANT({self.number}, {found[2]}, {self.wrong}) {found[3]}", text)
         if count != 1:
             sys.exit(f"{self.name}: another mutant changes the same code")
         return text
@@ -69,15 +65,13 @@ def read_sources(repository):
 
 
 def read_mutants(path, sources):
-    """Blocks of lines `name: ...`, `in: ...`, `right: ...`, `wrong: ...`; `file: ...` if several sources hold what `in` says,
-    and `tests: ...` if the folder of the tests does not have the name of the source's folder
-    (`iib_index`: that module's)."""
-    mutants = []
-    for block in re.split(r"\n\s*\n", path.read_text()):
-        lines = [line for line in block.splitlines() if line and not line.startswith("#")]
-        if not lines:
-            continue
-        mutants.append(Mutant(len(mutants) + 1, dict(line.split(": ", 1) for line in lines), sources))
+    """A mutant a line, `NAME: code {{right => wrong}} code`, below `[AREA]`, whose tests are to notice it."""
+    mutants, area = [], None
+    for line in path.read_text().splitlines():
+        if line.startswith("["):
+            area = line.strip("[]")
+        elif line and not line.startswith("#"):
+            mutants.append(Mutant(len(mutants) + 1, line, area, sources))
     return mutants
 
 
