@@ -9,8 +9,8 @@ points, mean track length, reprojection error in pixels, and the median error of
 in per cent of the distance between the outermost of them. --document writes each line into FILE's table, in place of
 the one for the same scene, light and method if there is one.
 
-Methods: SIFT is COLMAP's own; ORB; IIB, or a preset's name, on ORB's keypoints; SIFT+IIB on those of cv2's SIFT;
-each but COLMAP's SIFT also as NAME/refined.
+Methods: SIFT is COLMAP's own; ORB; IIB, or a preset's name, on ORB's keypoints; SIFT+IIB on those of cv2's SIFT,
+HESSIAN+UNIVERSAL on HessianDetector's (the recommended chain); each but COLMAP's SIFT also as NAME/refined.
 """
 import argparse
 import os
@@ -150,7 +150,8 @@ def write_into(document, line):
 
 
 def main():
-    methods = 'SIFT,ORB,ORB/refined,IIB,IIB/refined,UNIVERSAL,UNIVERSAL/refined,SIFT+IIB'
+    methods = 'SIFT,ORB,ORB/refined,IIB,IIB/refined,UNIVERSAL,UNIVERSAL/refined,SIFT+IIB,HESSIAN+UNIVERSAL,' \
+              'HESSIAN+UNIVERSAL/refined'
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('scenes', type=Path, nargs='+', metavar='SCENE')
     parser.add_argument('--points', type=int, default=4000)

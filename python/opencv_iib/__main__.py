@@ -16,11 +16,12 @@ from opencv_iib.demo import demo
 
 
 def _features(parser: argparse.ArgumentParser, points: int) -> None:
-    parser.add_argument('--detector', default='ORB', choices=DETECTORS, help='a detector of cv2 (%(default)s)')
+    parser.add_argument('--detector', default=FeatureOptions.detector, choices=DETECTORS,
+                        help='HessianDetector, or a detector of cv2 (%(default)s)')
     parser.add_argument('--points', type=int, default=points, help='at most so many an image (%(default)s)')
-    parser.add_argument('--preset', default='DEFAULT', choices=sorted(preset_names()), help='descriptor (%(default)s)')
+    parser.add_argument('--preset', default=FeatureOptions.preset, choices=sorted(preset_names()), help='descriptor (%(default)s)')
     parser.add_argument('--orientation', action='store_true', help="turn regions by the keypoints' angles")
-    parser.add_argument('--normalize', action='store_true', help='detect with the local contrast evened out')
+    parser.add_argument('--normalize', action='store_true', help='detect with the local contrast evened out, as HESSIAN always does')
 
 
 def _feature_options(arguments: argparse.Namespace) -> FeatureOptions:
@@ -36,12 +37,12 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument('image_a')
     command.add_argument('image_b')
     command.add_argument('--out', default='opencv_iib_demo.png', help='picture to write (%(default)s)')
-    _features(command, 2000)
+    _features(command, 1000)
 
     command = commands.add_parser('colmap', help='describe and match a folder, for colmap mapper')
     command.add_argument('images', help='folder of images')
     command.add_argument('database', help='file to write; an interrupted run goes on from NAME.partial')
-    _features(command, 4000)
+    _features(command, FeatureOptions.points)
     command.add_argument('--camera-model', default='SIMPLE_RADIAL', choices=CAMERA_MODELS, help='(%(default)s)')
     command.add_argument('--focal', type=float, default=0, help='focal length in pixels, instead of EXIF')
     command.add_argument('--share-cameras', action='store_true', help='one camera for images of one size and focal')

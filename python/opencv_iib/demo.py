@@ -12,8 +12,8 @@ from opencv_iib.keypoints import array_to_keypoints
 from opencv_iib.matcher import HierarchicalMatcher
 
 
-def demo(image_a: str, image_b: str, out: str, options: FeatureOptions = FeatureOptions(points=2000)) -> str:
-    """Matches two images and draws what agrees with one epipolar geometry.
+def demo(image_a: str, image_b: str, out: str, options: FeatureOptions = FeatureOptions(points=1000)) -> str:
+    """Matches two images by the recommended chain and draws what agrees with one epipolar geometry, 100 at most.
 
     :param out: picture to write.
     :return: a line that says how many matches there are.
@@ -30,13 +30,13 @@ def demo(image_a: str, image_b: str, out: str, options: FeatureOptions = Feature
         keypoints, descriptors = features(images[-1])
         rows.append(keypoints)
         codes.append(descriptors)
-    matcher = HierarchicalMatcher.create(features.level_sizes(), crossCheck=True)
-    matches = matcher.match(codes[0], codes[1])
+    matches = HierarchicalMatcher.createRecommended().match(codes[0], codes[1])
     pairs = np.array([(m.queryIdx, m.trainIdx) for m in matches], int).reshape(-1, 2)
     agree, _ = magsac(rows[0][pairs[:, 0], :2], rows[1][pairs[:, 1], :2])
+    good = [m for m, agrees in zip(matches, agree) if agrees]
     picture: Any = cv2.drawMatches(  # type: ignore[call-overload,unused-ignore]
         images[0], array_to_keypoints(rows[0]), images[1], array_to_keypoints(rows[1]),
-        [m for m, good in zip(matches, agree) if good], None, flags=2)
+        good[::len(good) // 100 + 1], None, flags=2)
     if not cv2.imwrite(out, picture):
         raise ValueError(f'{out} cannot be written')
-    return f'{out}: {len(matches)} mutual matches, {int(agree.sum())} agree with one epipolar geometry'
+    return f'{out}: {len(matches)} matches, {len(good)} agree with one epipolar geometry'

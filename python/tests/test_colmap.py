@@ -12,6 +12,7 @@ from unittest import mock
 
 import numpy as np
 
+import opencv_iib
 from support import REPOSITORY, cv2, texture
 
 if cv2 is not None:
@@ -22,8 +23,8 @@ if cv2 is not None:
     from opencv_iib.colmap import refine
     from opencv_iib.colmap.alignment import Patches, combine, frames, offsets
     from opencv_iib.colmap.database import MAX_IMAGE_ID, Database, pair_id
-    from opencv_iib.colmap.features import to_colmap
-    from opencv_iib.colmap.images import exif_focal_length
+    from opencv_iib.colmap.features import Features, to_colmap
+    from opencv_iib.colmap.images import exif_focal_length, read_grey
     from opencv_iib.colmap.verify import magsac
 
 try:
@@ -61,8 +62,8 @@ class ColmapTest(unittest.TestCase):
             cv2.imwrite(os.path.join(self.images, name), world[20 * i:300 + 20 * i, 30 * i:400 + 30 * i])
         self.lines = []
 
-    def build(self, force=False, client=None, **options):
-        features = FeatureOptions(points=options.pop('points', 300))
+    def build(self, force=False, client=None, detector='HESSIAN', **options):
+        features = FeatureOptions(detector, points=options.pop('points', 300))
         with redirect_stderr(io.StringIO()):
             return build_database(self.images, self.database, Options(features, **{**FAST, **options}), force,
                                   workers=2, log=self.lines.append, client=client)
@@ -259,9 +260,9 @@ class ColmapTest(unittest.TestCase):
 
     def test_refinement_finds_fractions_of_a_pixel(self):
         self.move_b()
-        counts = self.build()
+        counts = self.build(detector='ORB')  # whose points lie on whole pixels of their octave
         plain = self.errors()
-        refined_counts = self.build(refine=True, force=True)
+        refined_counts = self.build(detector='ORB', refine=True, force=True)
         refined = self.errors()
         self.assertEqual(refined_counts['keypoints'], counts['keypoints'])
         self.assertGreater(len(refined), .7 * len(plain))
@@ -417,6 +418,19 @@ class ColmapTest(unittest.TestCase):
             with redirect_stderr(io.StringIO()) as err:
                 self.assertEqual(main(wrong), 1)
             self.assertEqual(err.getvalue().count('\n'), 1)
+
+    def test_the_recommended_chain_is_the_default(self):
+        features = Features(FeatureOptions(points=150))
+        image = read_grey(os.path.join(self.images, 'a.png'))
+        keypoints, codes = features(image)
+        iib = opencv_iib.IIB.createRecommended(150)
+        expected = iib.detectAndCompute(image)
+        np.testing.assert_array_equal(keypoints, opencv_iib.keypoints_to_array(expected[0]))
+        np.testing.assert_array_equal(codes, expected[1])
+        self.assertEqual((features.extractor.getScaleFactor(), features.level_sizes()),
+                         (iib.getScaleFactor(), iib.levelSizes()))
+        with self.assertRaisesRegex(ValueError, 'by itself'):
+            Features(FeatureOptions(normalize=True))
 
     def test_demo(self):
         out = os.path.join(self.folder.name, 'demo.png')

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from opencv_iib.descriptor import IIBDescriptorExtractor
-from opencv_iib.detectors import NormalizedDetector
+from opencv_iib.detectors import HessianDetector, NormalizedDetector
 from opencv_iib.keypoints import keypoints_to_array
 
-DETECTORS = ('AKAZE', 'BRISK', 'FAST', 'KAZE', 'ORB', 'SIFT')
+DETECTORS = ('HESSIAN', 'AKAZE', 'BRISK', 'FAST', 'KAZE', 'ORB', 'SIFT')
 
 
 def preset_names() -> dict[str, int]:
@@ -23,13 +23,13 @@ def preset_names() -> dict[str, int]:
 
 @dataclasses.dataclass(frozen=True)
 class FeatureOptions:
-    """What to find and how to describe it."""
+    """What to find and how to describe it; by default the recommended chain, with more points."""
 
-    detector: str = 'ORB'  #: one of DETECTORS, from cv2
+    detector: str = 'HESSIAN'  #: one of DETECTORS: HessianDetector, or one of cv2
     points: int = 4000  #: at most so many keypoints an image, those of the strongest response
-    preset: str = 'DEFAULT'  #: one of preset_names()
+    preset: str = 'UNIVERSAL'  #: one of preset_names()
     orientation: bool = False  #: turn the regions by the keypoints' angles
-    normalize: bool = False  #: detect on the image with its local contrast evened out
+    normalize: bool = False  #: detect with the local contrast evened out, as HESSIAN always does
 
     def check(self) -> None:
         """:raises ValueError: naming what is wrong, and what there is."""
@@ -39,11 +39,15 @@ class FeatureOptions:
             raise ValueError(f'no preset {self.preset}: there are {", ".join(preset_names())}')
         if self.preset == 'OWN' and self.detector not in ('AKAZE', 'BRISK', 'ORB'):
             raise ValueError(f'{self.detector} has no binary descriptor of its own: take AKAZE, BRISK or ORB')
+        if self.normalize and self.detector == 'HESSIAN':
+            raise ValueError('HESSIAN evens out the local contrast by itself: leave normalize out')
         if not 1 <= self.points:
             raise ValueError(f'points is {self.points}: it has to be at least 1')
 
 
 def _make_detector(name: str, points: int) -> Any:
+    if name == 'HESSIAN':
+        return HessianDetector(points)
     import cv2
     if name in ('ORB', 'SIFT'):
         return getattr(cv2, name + '_create')(points)
