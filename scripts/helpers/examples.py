@@ -17,6 +17,7 @@ DEFAULTS = {
     'modules/iib/samples/iib_demo_pipeline.hpp': ('HierarchicalMatcher::createRecommended()', 'MAX_KEYPOINTS = 1000;'),
     'python/opencv_iib/colmap/features.py': ("detector: str = 'HESSIAN'", "preset: str = 'UNIVERSAL'"),
     'python/opencv_iib/colmap/pipeline.py': ('ratio: float = .9', 'crossCheck=True'),
+    'apps/localization/src/features.cpp': ('detectors_ = {IIB::createRecommended(MAX_KEYPOINTS)}',),
     'python/opencv_iib/__main__.py': ('default=FeatureOptions.detector', 'default=FeatureOptions.preset'),
     'python/opencv_iib/demo.py': ('HierarchicalMatcher.createRecommended()',),
 }

@@ -11,10 +11,7 @@ namespace {
 
 using namespace cv::iib;
 
-//! Made for cameras that move. A map of another preset has to be built anew.
-constexpr int PRESET = IIB::PRESET_UNIVERSAL;
-
-constexpr int MAX_KEYPOINTS = 1000;  // a detector
+constexpr int MAX_KEYPOINTS = 2000;
 
 std::vector<cv::DMatch> matchEuclidean(const cv::Mat& query, const cv::Mat& train, float maxRatio)
 {
@@ -37,23 +34,20 @@ std::vector<cv::DMatch> matchEuclidean(const cv::Mat& query, const cv::Mat& trai
 
 FeatureMethod::FeatureMethod(const std::string& name) : name_(name)
 {
-    if (name == "sift")
-        detectors_ = {cv::SIFT::create(2 * MAX_KEYPOINTS)};
-    else if (name == "iib" || name == "own")
-        for (const cv::Ptr<cv::Feature2D>& detector : {cv::Ptr<cv::Feature2D>(cv::ORB::create(MAX_KEYPOINTS)),
-                     cv::Ptr<cv::Feature2D>(cv::AKAZE::create())})
-        {
-            const cv::Ptr<cv::Feature2D> normalized = NormalizedDetector::create(detector);
-            detectors_.push_back(
-                    name == "own" ? normalized : cv::Ptr<cv::Feature2D>(IIB::createFor(normalized, PRESET)));
-        }
+    if (name == "iib")
+        detectors_ = {IIB::createRecommended(MAX_KEYPOINTS)};
+    else if (name == "sift")
+        detectors_ = {NormalizedDetector::create(cv::SIFT::create(MAX_KEYPOINTS))};
+    else if (name == "own")
+        detectors_ = {NormalizedDetector::create(cv::ORB::create(MAX_KEYPOINTS / 2)),
+                NormalizedDetector::create(cv::AKAZE::create())};
     else
         CV_Error(cv::Error::StsBadArg, "features '" + name + "' are not one of iib, own and sift");
 }
 
 std::string FeatureMethod::description() const
 {
-    return name_ == "iib" ? "iib preset " + std::to_string(PRESET) : name_;
+    return name_ == "iib" ? "iib recommended 1" : name_;  // another number for other bits or points
 }
 
 Features FeatureMethod::extract(const cv::Mat& grey) const
@@ -66,8 +60,8 @@ Features FeatureMethod::extract(const cv::Mat& grey) const
         detector->detect(grey, keypoints);
         std::stable_sort(keypoints.begin(), keypoints.end(),
                 [](const cv::KeyPoint& a, const cv::KeyPoint& b) { return a.response > b.response; });
-        if (keypoints.size() > MAX_KEYPOINTS * 2 / detectors_.size())
-            keypoints.resize(MAX_KEYPOINTS * 2 / detectors_.size());
+        if (keypoints.size() > MAX_KEYPOINTS / detectors_.size())
+            keypoints.resize(MAX_KEYPOINTS / detectors_.size());
         detector->compute(grey, keypoints, codes);
         codes.convertTo(codes, CV_8U);  // SIFT's are whole numbers up to 255
         for (const cv::KeyPoint& k : keypoints)

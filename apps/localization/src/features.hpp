@@ -20,9 +20,9 @@ struct Features
 };
 
 /** Keypoints and how they are described and compared.
- - `iib`: ORB's and AKAZE's keypoints on the locally normalized image, IIB codes
- - `own`: the same keypoints with ORB's and AKAZE's own descriptors
- - `sift`: SIFT, with Euclidean distances */
+ - `iib`: the recommended chain, HessianDetector's keypoints and PRESET_UNIVERSAL
+ - `own`: ORB's and AKAZE's keypoints on the locally normalized image, their own descriptors
+ - `sift`: SIFT's keypoints on the locally normalized image, with Euclidean distances */
 class FeatureMethod
 {
 public:
