@@ -5,7 +5,12 @@
     keypoints, descriptors = iib.detectAndCompute(image)
     matches = opencv_iib.HierarchicalMatcher.createRecommended().match(descriptors, others)
 
-The OpenCV inside is its own: nothing but arrays and plain values passes between it and cv2.
+The same from arrays to arrays:
+
+    points, sizes, codes = opencv_iib.detect_and_describe(image)
+    pairs, distances = opencv_iib.match(codes, other_codes)
+
+Methods have OpenCV's names and those of Python's style: ``iib.detect_and_compute(image)``. The OpenCV inside is its own: nothing but arrays and plain values passes between it and cv2.
 """
 from typing import Any
 
@@ -14,14 +19,18 @@ from opencv_iib._core import error
 from opencv_iib._types import DMatch, KeyPoint
 from opencv_iib.descriptor import IIB, IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector, NormalizedDetector
+from opencv_iib.enums import Border, Channel, Mapping, Mode, Orientation, Preset
+from opencv_iib.functions import Features, Matches, detect_and_describe, match
 from opencv_iib.keypoints import array_to_keypoints, keypoints_to_array
 from opencv_iib.mapped_index import MappedIndex
 from opencv_iib.matcher import HierarchicalMatcher
 from opencv_iib.rotation import estimateRotation
 
-__all__ = ['DMatch', 'HessianDetector', 'HierarchicalMatcher', 'IIB', 'IIBDescriptorExtractor', 'KeyPoint', 'MappedIndex',
-           'NormalizedDetector', 'OPENCV_VERSION', 'array_to_keypoints', 'error', 'estimateRotation', 'getNumThreads',
-           'keypoints_to_array', 'setNumThreads']
+__all__ = ['Border', 'Channel', 'DMatch', 'Features', 'HessianDetector', 'HierarchicalMatcher', 'IIB',
+           'IIBDescriptorExtractor', 'KeyPoint', 'MappedIndex', 'Mapping', 'Matches', 'Mode', 'NormalizedDetector',
+           'OPENCV_VERSION', 'Orientation', 'Preset', 'array_to_keypoints', 'detect_and_describe', 'error',
+           'estimateRotation', 'estimate_rotation', 'getNumThreads', 'get_num_threads', 'keypoints_to_array', 'match',
+           'setNumThreads', 'set_num_threads']
 
 __version__: str = _core.VERSION
 #: Of the OpenCV inside.
@@ -47,3 +56,6 @@ def setNumThreads(nthreads: int) -> None:
 def getNumThreads() -> int:
     """Threads that a call may use."""
     return _core.getNumThreads()
+
+
+estimate_rotation, set_num_threads, get_num_threads = estimateRotation, setNumThreads, getNumThreads

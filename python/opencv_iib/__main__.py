@@ -1,4 +1,4 @@
-"""python -m opencv_iib: a picture of two matched images, a database for COLMAP, or files for hloc."""
+"""opencv-iib, or python -m opencv_iib: a picture of two matched images, a database for COLMAP, or files for hloc."""
 from __future__ import annotations
 
 import argparse
@@ -30,7 +30,7 @@ def _feature_options(arguments: argparse.Namespace) -> FeatureOptions:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='python -m opencv_iib', description=__doc__)
+    parser = argparse.ArgumentParser(prog='opencv-iib', description=__doc__)
     commands = parser.add_subparsers(dest='command', required=True)
 
     command = commands.add_parser('demo', help='match two images and write a picture')

@@ -1,9 +1,13 @@
 """From what users have to what the extension takes: C-contiguous arrays of native byte order."""
 from __future__ import annotations
 
-from typing import Any, Sequence
+from typing import Any, Optional, Sequence, Union
 
 import numpy as np
+from numpy.typing import ArrayLike
+
+#: An array, or a sequence of them.
+ArrayOrArrays = Union[ArrayLike, Sequence[ArrayLike]]
 
 
 def as_array(value: Any, what: str) -> np.ndarray:
@@ -24,7 +28,19 @@ def as_array(value: Any, what: str) -> np.ndarray:
     return np.ascontiguousarray(array)
 
 
-def as_arrays(values: Any, what: str) -> list[np.ndarray]:
+def as_image(value: ArrayLike) -> np.ndarray:
+    """An image; a tensor of torch or kornia (C x H x W or 1 x C x H x W, RGB) becomes H x W x C, BGR."""
+    image = as_array(value, 'the image')
+    if isinstance(value, np.ndarray) or not hasattr(value, '__dlpack__'):
+        return image
+    if image.ndim == 4 and len(image) == 1:
+        image = image[0]
+    if image.ndim == 3 and len(image) in (1, 3, 4) and image.shape[2] not in (1, 3, 4):
+        image = np.ascontiguousarray(np.moveaxis(image[[2, 1, 0, 3][:len(image)] if len(image) > 1 else [0]], 0, 2))
+    return image
+
+
+def as_arrays(values: Optional[ArrayOrArrays], what: str) -> list[np.ndarray]:
     """One array, or a sequence of them, as a list."""
     if values is None:
         return []

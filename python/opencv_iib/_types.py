@@ -2,7 +2,24 @@
 from __future__ import annotations
 
 import functools
-from typing import Any
+from typing import Any, Protocol, Sequence
+
+
+class KeyPointLike(Protocol):
+    """What is read of a keypoint: cv2.KeyPoint has it."""
+
+    @property
+    def pt(self) -> Sequence[float]: ...
+    @property
+    def size(self) -> float: ...
+    @property
+    def angle(self) -> float: ...
+    @property
+    def response(self) -> float: ...
+    @property
+    def octave(self) -> int: ...
+    @property
+    def class_id(self) -> int: ...
 
 
 class KeyPoint:

@@ -3,19 +3,22 @@ from __future__ import annotations
 
 import copy
 import os
-from typing import Any, TypeVar, Union
+from typing import Any, Optional, TypeVar, Union
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
-from opencv_iib._arrays import as_array, as_arrays
+from opencv_iib._arrays import ArrayOrArrays, as_array, as_arrays, as_image
+from opencv_iib._names import SnakeCase
 from opencv_iib.detectors import HessianDetector, MissingDetector, core_detector, detect, detector_name
+from opencv_iib.enums import Border, Channel, Mapping, Orientation, Preset
 from opencv_iib.keypoints import Keypoints, as_rows
 
 K = TypeVar('K', bound=Keypoints)
 
 
-class IIBDescriptorExtractor:
+class IIBDescriptorExtractor(SnakeCase):
     """Illumination-insensitive binary descriptor; names, keywords and bits are those of ``cv2.iib``.
 
     Images are H x W, H x W x 3 (BGR) or H x W x 4 (BGRA) arrays of uint8, uint16 or float32, of any strides.
@@ -27,41 +30,41 @@ class IIBDescriptorExtractor:
     Mistakes raise :class:`opencv_iib.error`, a TypeError if an argument is no array at all.
     """
 
-    CHANNEL_GRAD_X = 1
-    CHANNEL_GRAD_Y = 2
-    CHANNEL_ORIENTATION = 4
-    CHANNEL_INTENSITY = 8
-    CHANNEL_SIGNED_GRAD_X = 16
-    CHANNEL_SIGNED_GRAD_Y = 32
-    CHANNELS_DEFAULT = 15
+    CHANNEL_GRAD_X = Channel.GRAD_X
+    CHANNEL_GRAD_Y = Channel.GRAD_Y
+    CHANNEL_ORIENTATION = Channel.ORIENTATION
+    CHANNEL_INTENSITY = Channel.INTENSITY
+    CHANNEL_SIGNED_GRAD_X = Channel.SIGNED_GRAD_X
+    CHANNEL_SIGNED_GRAD_Y = Channel.SIGNED_GRAD_Y
+    CHANNELS_DEFAULT = Channel.DEFAULT
 
-    MAPPING_MEAN = 0
-    MAPPING_MAX = 1
-    MAPPING_MIN = 2
-    MAPPING_QUARTILE = 3
-    MAPPING_SORT = 4
-    MAPPING_HAAR = 5
-    MAPPING_PAIRWISE = 6
-    MAPPING_BOXES = 7
+    MAPPING_MEAN = Mapping.MEAN
+    MAPPING_MAX = Mapping.MAX
+    MAPPING_MIN = Mapping.MIN
+    MAPPING_QUARTILE = Mapping.QUARTILE
+    MAPPING_SORT = Mapping.SORT
+    MAPPING_HAAR = Mapping.HAAR
+    MAPPING_PAIRWISE = Mapping.PAIRWISE
+    MAPPING_BOXES = Mapping.BOXES
 
-    BORDER_CLAMP = 0
-    BORDER_DROP = 1
-    BORDER_REFLECT = 2
+    BORDER_CLAMP = Border.CLAMP
+    BORDER_DROP = Border.DROP
+    BORDER_REFLECT = Border.REFLECT
 
-    ORIENTATION_NONE = 0
-    ORIENTATION_KEYPOINT = 1
-    ORIENTATION_GRADIENT = 2
+    ORIENTATION_NONE = Orientation.NONE
+    ORIENTATION_KEYPOINT = Orientation.KEYPOINT
+    ORIENTATION_GRADIENT = Orientation.GRADIENT
 
-    PRESET_S128 = 0
-    PRESET_S256 = 1
-    PRESET_S512 = 2
-    PRESET_ACCURATE = 3
-    PRESET_COMPACT = 4
-    PRESET_TINY = 5
-    PRESET_BALANCED = 6
-    PRESET_VIEWPOINT = 7
-    PRESET_UNIVERSAL = 8
-    PRESET_SMALL = 9
+    PRESET_S128 = Preset.S128
+    PRESET_S256 = Preset.S256
+    PRESET_S512 = Preset.S512
+    PRESET_ACCURATE = Preset.ACCURATE
+    PRESET_COMPACT = Preset.COMPACT
+    PRESET_TINY = Preset.TINY
+    PRESET_BALANCED = Preset.BALANCED
+    PRESET_VIEWPOINT = Preset.VIEWPOINT
+    PRESET_UNIVERSAL = Preset.UNIVERSAL
+    PRESET_SMALL = Preset.SMALL
 
     def __init__(self, scaleFactor: float = 2.0, granularity: int = 4, channels: int = CHANNELS_DEFAULT,
                  mapping: int = MAPPING_MEAN, overlap: bool = False, useOrientation: bool = False,
@@ -131,7 +134,7 @@ class IIBDescriptorExtractor:
         known = detectorName if detector is None else detector
         return _core.Extractor.scaleFactorFor(known if isinstance(known, str) else core_detector(known))
 
-    def compute(self, image: Any, keypoints: K) -> tuple[K, np.ndarray]:
+    def compute(self, image: ArrayLike, keypoints: K) -> tuple[K, NDArray[np.uint8]]:
         """Describes keypoints.
 
         :return: the keypoints as they were given (those left, if BORDER_DROP removed some), and N x
@@ -139,30 +142,31 @@ class IIBDescriptorExtractor:
         """
         return self.computeWithChannels(image, [], keypoints)
 
-    def computeWithChannels(self, image: Any, extraChannels: Any, keypoints: K) -> tuple[K, np.ndarray]:
+    def computeWithChannels(self, image: ArrayLike, extraChannels: ArrayOrArrays, keypoints: K) -> tuple[K, NDArray[np.uint8]]:
         """Describes keypoints with the image and with further maps of it, such as depth or labels.
 
         :param extraChannels: getExtraChannels() arrays, each H x W, of uint8, uint16 or float32.
         :return: as compute.
         """
-        descriptors, kept = self._core.compute(as_array(image, 'the image'), np.ascontiguousarray(as_rows(keypoints)),
+        descriptors, kept = self._core.compute(as_image(image), np.ascontiguousarray(as_rows(keypoints)),
                                                as_arrays(extraChannels, 'an extra channel'))
         if kept is None:
             return keypoints, descriptors
         indices = kept.ravel()
-        left: Any = keypoints[indices] if isinstance(keypoints, np.ndarray) else [keypoints[i] for i in indices]
+        given: Any = keypoints
+        left: Any = given[indices] if isinstance(given, np.ndarray) else [given[i] for i in indices]
         if isinstance(keypoints, tuple):
             left = tuple(left)
         return left, descriptors
 
-    def detect(self, image: Any, mask: Any = None) -> tuple[Any, ...]:
+    def detect(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> tuple[Any, ...]:
         """Keypoints of the detector (see setDetector), as cv2.KeyPoint if cv2 is there.
 
         :param mask: H x W uint8, 0 where nothing is to be found.
         """
-        return detect(self._core, image, mask)
+        return detect(self, image, mask)
 
-    def detectAndCompute(self, image: Any, mask: Any = None) -> tuple[tuple[Any, ...], np.ndarray]:
+    def detectAndCompute(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> tuple[tuple[Any, ...], NDArray[np.uint8]]:
         """detect, then compute."""
         return self.compute(image, self.detect(image, mask))
 
@@ -218,17 +222,17 @@ class IIBDescriptorExtractor:
         """A sum of CHANNEL_ values; may be 0 if there are extra channels."""
         self._core.setChannels(channels)
 
-    def getChannels(self) -> int:
+    def getChannels(self) -> Channel:
         """A sum of CHANNEL_ values."""
-        return self._core.getChannels()
+        return Channel(self._core.getChannels())
 
     def setMapping(self, mapping: int) -> None:
         """One of MAPPING_."""
         self._core.setMapping(mapping)
 
-    def getMapping(self) -> int:
+    def getMapping(self) -> Mapping:
         """One of MAPPING_."""
-        return self._core.getMapping()
+        return Mapping(self._core.getMapping())
 
     def setOverlap(self, overlap: bool) -> None:
         """Whether the windows of 2 x 2 cells slide by one cell instead of two."""
@@ -250,9 +254,9 @@ class IIBDescriptorExtractor:
         """How the described squares are turned: one of ORIENTATION_."""
         self._core.setOrientation(mode)
 
-    def getOrientation(self) -> int:
+    def getOrientation(self) -> Orientation:
         """One of ORIENTATION_."""
-        return self._core.getOrientation()
+        return Orientation(self._core.getOrientation())
 
     def setExtraChannels(self, extraChannels: int) -> None:
         """Number of maps that computeWithChannels is given, 0 to 16."""
@@ -266,18 +270,18 @@ class IIBDescriptorExtractor:
         """One of BORDER_."""
         self._core.setBorder(border)
 
-    def getBorder(self) -> int:
+    def getBorder(self) -> Border:
         """One of BORDER_."""
-        return self._core.getBorder()
+        return Border(self._core.getBorder())
 
-    def setSelection(self, quads: Any) -> None:
+    def setSelection(self, quads: ArrayLike) -> None:
         """Restricts the descriptor to chosen quads.
 
         :param quads: Q x 5 int32: level, channel, row, column, bits to keep. Empty: all quads again.
         """
         self._core.setSelection(as_array(quads, 'the selection'))
 
-    def getSelection(self) -> np.ndarray:
+    def getSelection(self) -> NDArray[np.int32]:
         """Q x 5 int32, as setSelection takes it; 0 x 5 if there is no selection."""
         return self._core.getSelection()
 

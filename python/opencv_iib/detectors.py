@@ -5,9 +5,11 @@ import weakref
 from typing import Any, Callable, Optional
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
-from opencv_iib._arrays import as_array
+from opencv_iib._arrays import as_array, as_image
+from opencv_iib._names import SnakeCase
 from opencv_iib.keypoints import Keypoints, array_to_keypoints, as_rows
 
 
@@ -43,10 +45,16 @@ def core_detector(detector: Any) -> _core.Detector:
     return _core.Detector.foreign(found, detector_name(detector).rsplit('.', 1)[-1])
 
 
-def detect(core: _core.Detector, image: Any, mask: Any) -> tuple[Any, ...]:
-    """Keypoints as cv2.KeyPoint if cv2 is there."""
+def detect_rows(owner: Any, image: ArrayLike, mask: Optional[ArrayLike]) -> NDArray[np.float32]:
+    """Keypoints of a detector or extractor of this package as N x 7, see keypoints_to_array."""
     allowed = np.empty((0, 0), np.uint8) if mask is None else as_array(mask, 'the mask')
-    return array_to_keypoints(core.detect(as_array(image, 'the image'), allowed))
+    rows: NDArray[np.float32] = owner._core.detect(as_image(image), allowed)
+    return rows
+
+
+def detect(owner: Any, image: ArrayLike, mask: Optional[ArrayLike]) -> tuple[Any, ...]:
+    """Keypoints as cv2.KeyPoint if cv2 is there."""
+    return array_to_keypoints(detect_rows(owner, image, mask))
 
 
 class MissingDetector:
@@ -56,13 +64,15 @@ class MissingDetector:
         self.name = name
 
     def getDefaultName(self) -> str:
+        """The name of the one that is missing."""
         return self.name
 
-    def detect(self, image: Any, mask: Any = None) -> Any:
+    def detect(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> Any:
+        """Raises: there is none."""
         raise RuntimeError(f'the detector {self.name} was not pickled with the object that used it: set it again')
 
 
-class HessianDetector:
+class HessianDetector(SnakeCase):
     """Finds blobs of the locally normalized image: maxima over place and scale of the determinant of its Hessian.
 
     Names, keywords and keypoints are those of ``cv2.iib``. ``IIB.createRecommended()`` puts it together with the
@@ -88,12 +98,12 @@ class HessianDetector:
         """
         return cls(maxFeatures, threshold, scales, sigma, normalizationSigma)
 
-    def detect(self, image: Any, mask: Any = None) -> tuple[Any, ...]:
+    def detect(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> tuple[Any, ...]:
         """Keypoints, as cv2.KeyPoint if cv2 is there.
 
         :param mask: H x W uint8, 0 where nothing is to be found.
         """
-        return detect(self._core, image, mask)
+        return detect(self, image, mask)
 
     def setMaxFeatures(self, maxFeatures: int) -> None:
         """The strongest that are kept; 0 keeps all."""
@@ -155,7 +165,7 @@ class HessianDetector:
         return f'{type(self).__name__}(maxFeatures={self.getMaxFeatures()}, sigma={self.getSigma():g})'
 
 
-class NormalizedDetector:
+class NormalizedDetector(SnakeCase):
     """Finds the keypoints of another detector on the locally normalized image, where light changes them less.
 
     Names, keywords and keypoints are those of ``cv2.iib``. Descriptors are best computed on the plain image:
@@ -176,12 +186,12 @@ class NormalizedDetector:
         """
         return cls(detector, sigma)
 
-    def detect(self, image: Any, mask: Any = None) -> tuple[Any, ...]:
+    def detect(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> tuple[Any, ...]:
         """Keypoints, as cv2.KeyPoint if cv2 is there.
 
         :param mask: H x W uint8, 0 where nothing is to be found.
         """
-        return detect(self._core, image, mask)
+        return detect(self, image, mask)
 
     def compute(self, image: Any, keypoints: Any) -> Any:
         """The descriptors of the detector inside, on the plain image: what its own ``compute`` gives."""
@@ -190,7 +200,7 @@ class NormalizedDetector:
                               'them with another object, such as IIBDescriptorExtractor.createFor')
         return self._detector.compute(image, keypoints)
 
-    def detectAndCompute(self, image: Any, mask: Any = None) -> Any:
+    def detectAndCompute(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> Any:
         """detect, then compute."""
         return self.compute(image, self.detect(image, mask))
 

@@ -1,19 +1,20 @@
 """Keypoints: objects like cv2.KeyPoint, or arrays with a row a keypoint."""
 from __future__ import annotations
 
-from typing import Any, Sequence, Union
+from typing import Any, Iterable, Sequence, Union
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arrays import as_array
-from opencv_iib._types import keypoint_type
+from opencv_iib._types import KeyPointLike, keypoint_type
 
 #: A sequence of objects like cv2.KeyPoint, or an N x 3, N x 4 or N x 7 array.
-Keypoints = Union[Sequence[Any], np.ndarray]
+Keypoints = Union[Sequence[KeyPointLike], ArrayLike]
 
 
-def keypoints_to_array(keypoints: Keypoints) -> np.ndarray:
+def keypoints_to_array(keypoints: Iterable[KeyPointLike]) -> NDArray[np.float32]:
     """An N x 7 float32 array: x, y, size (pixels), angle (degrees), response, octave, class_id.
 
     :param keypoints: objects with the attributes of cv2.KeyPoint, of any cv2 or none.
@@ -23,18 +24,17 @@ def keypoints_to_array(keypoints: Keypoints) -> np.ndarray:
     """
     if not isinstance(keypoints, (list, tuple)):
         keypoints = list(keypoints)
-    rows: np.ndarray = _core.readKeyPoints(keypoints)
-    return rows
+    return _core.readKeyPoints(keypoints)
 
 
-def array_to_keypoints(rows: Any) -> tuple[Any, ...]:
+def array_to_keypoints(rows: ArrayLike) -> tuple[Any, ...]:
     """What :func:`keypoints_to_array` gave, as cv2.KeyPoint if cv2 is there, else :class:`opencv_iib.KeyPoint`."""
     make = keypoint_type()
     return tuple(make(x, y, size, angle, response, int(octave), int(class_id))
                  for x, y, size, angle, response, octave, class_id in np.asarray(rows, np.float32).tolist())
 
 
-def as_rows(keypoints: Keypoints) -> np.ndarray:
+def as_rows(keypoints: Any) -> NDArray[np.float32]:
     """Rows of 3, 4 or 7 float32 columns for the extension."""
     if isinstance(keypoints, (list, tuple)) and not (len(keypoints) and isinstance(keypoints[0], np.ndarray)):
         return keypoints_to_array(keypoints)

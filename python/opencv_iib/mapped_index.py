@@ -5,14 +5,16 @@ import os
 from typing import Any, Optional, Sequence, Union
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
-from opencv_iib._arrays import as_array, as_arrays
+from opencv_iib._arrays import ArrayOrArrays, as_array, as_arrays
+from opencv_iib._names import SnakeCase
 
 Folder = Union[str, os.PathLike[str]]
 
 
-class MappedIndex:
+class MappedIndex(SnakeCase):
     """Binary codes in a folder of files that are mapped into memory, as C++'s cv::iib::MappedIndex writes and reads them.
 
     For more codes than memory should hold, for several processes that search the same codes, and for programs that should
@@ -71,11 +73,11 @@ class MappedIndex:
         """The first row of an image."""
         return self._core.firstRow(image)
 
-    def descriptors(self, image: int) -> np.ndarray:
+    def descriptors(self, image: int) -> NDArray[np.uint8]:
         """A copy of the descriptors of an image."""
         return self._core.descriptors(image)
 
-    def add(self, descriptors: Any) -> None:
+    def add(self, descriptors: ArrayOrArrays) -> None:
         """Adds the descriptors of one image (an array) or of several (a sequence of arrays), and commits them.
 
         They become one file. Add many images at once: searches like files of 100,000 rows and more.
@@ -90,7 +92,8 @@ class MappedIndex:
         """Goes on to the last commit."""
         self._core.refresh()
 
-    def search(self, queryDescriptors: Any, k: int = 1, segment: Optional[int] = None) -> tuple[np.ndarray, np.ndarray]:
+    def search(self, queryDescriptors: ArrayLike, k: int = 1, segment: Optional[int] = None
+               ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
         """The k nearest rows of each query by Hamming distance, ties in the order of rows.
 
         :param segment: the number of the only file to search.

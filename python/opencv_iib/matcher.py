@@ -5,10 +5,13 @@ import os
 from typing import Any, Optional, Sequence, Union
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
-from opencv_iib._arrays import as_array, as_arrays
+from opencv_iib._arrays import ArrayOrArrays, as_array, as_arrays
+from opencv_iib._names import SnakeCase
 from opencv_iib._types import match_type
+from opencv_iib.enums import Mode
 
 Matches = tuple[tuple[Any, ...], ...]
 
@@ -21,11 +24,11 @@ def _masks(masks: Any) -> Optional[list[Optional[np.ndarray]]]:
     return [None if mask is None else as_array(mask, 'a mask') for mask in masks]
 
 
-def _descriptors(descriptors: Any) -> np.ndarray:
+def _descriptors(descriptors: ArrayLike) -> np.ndarray:
     return as_array(descriptors, 'descriptors')
 
 
-class HierarchicalMatcher:
+class HierarchicalMatcher(SnakeCase):
     """Matcher of binary descriptors by Hamming distance; names, keywords and matches are those of ``cv2.iib``.
 
     Descriptors are N x bytes uint8 arrays. ``trainDescriptors`` given to a call are searched instead of those added.
@@ -36,9 +39,9 @@ class HierarchicalMatcher:
     descriptors or changes parameters. Mistakes raise :class:`opencv_iib.error`.
     """
 
-    EXACT = 0
-    THRESHOLD = 1
-    ADAPTIVE = 2
+    EXACT = Mode.EXACT
+    THRESHOLD = Mode.THRESHOLD
+    ADAPTIVE = Mode.ADAPTIVE
 
     def __init__(self, levelSizes: Optional[Sequence[int]] = None, mode: int = EXACT, threshold: float = 0.35,
                  crossCheck: bool = False) -> None:
@@ -77,14 +80,14 @@ class HierarchicalMatcher:
         """
         return cls._of(_core.Matcher.createRecommended())
 
-    def match(self, queryDescriptors: Any, trainDescriptors: Any = None, mask: Any = None,
-              masks: Any = None) -> tuple[Any, ...]:
+    def match(self, queryDescriptors: ArrayLike, trainDescriptors: Optional[ArrayLike] = None, mask: Optional[ArrayLike] = None,
+              masks: Optional[Sequence[ArrayLike]] = None) -> tuple[Any, ...]:
         """The nearest train descriptor of each query that has one, in the order of the queries."""
         rows = self.knnMatch(queryDescriptors, trainDescriptors, 1, mask, True, masks)
         return tuple(row[0] for row in rows)
 
-    def knnMatch(self, queryDescriptors: Any, trainDescriptors: Any = None, k: int = 1, mask: Any = None,
-                 compactResult: bool = False, masks: Any = None) -> Matches:
+    def knnMatch(self, queryDescriptors: ArrayLike, trainDescriptors: Optional[ArrayLike] = None, k: int = 1, mask: Optional[ArrayLike] = None,
+                 compactResult: bool = False, masks: Optional[Sequence[ArrayLike]] = None) -> Matches:
         """The k nearest of each query, nearest first; with compactResult, without the queries that have none.
 
         ``knnMatch(queries, k=2)`` searches the descriptors added, ``knnMatch(queries, train, 2)`` those given.
@@ -94,8 +97,8 @@ class HierarchicalMatcher:
         return self._core.knnMatch(_descriptors(queryDescriptors), self._train(trainDescriptors), k,
                                    _masks(mask if masks is None else masks), compactResult, match_type())
 
-    def radiusMatch(self, queryDescriptors: Any, trainDescriptors: Any = None, maxDistance: float = 0,
-                    mask: Any = None, compactResult: bool = False, masks: Any = None) -> Matches:
+    def radiusMatch(self, queryDescriptors: ArrayLike, trainDescriptors: Optional[ArrayLike] = None, maxDistance: float = 0,
+                    mask: Optional[ArrayLike] = None, compactResult: bool = False, masks: Optional[Sequence[ArrayLike]] = None) -> Matches:
         """All within maxDistance bits of each query, nearest first.
 
         ``radiusMatch(queries, maxDistance=64)`` searches the descriptors added.
@@ -105,8 +108,8 @@ class HierarchicalMatcher:
         return self._core.radiusMatch(_descriptors(queryDescriptors), self._train(trainDescriptors), maxDistance,
                                       _masks(mask if masks is None else masks), compactResult, match_type())
 
-    def knnMatchArrays(self, queryDescriptors: Any, trainDescriptors: Any = None, k: int = 1,
-                       mask: Any = None, masks: Any = None) -> tuple[np.ndarray, ...]:
+    def knnMatchArrays(self, queryDescriptors: ArrayLike, trainDescriptors: Optional[ArrayLike] = None, k: int = 1,
+                       mask: Optional[ArrayLike] = None, masks: Optional[Sequence[ArrayLike]] = None) -> tuple[NDArray[np.int32], ...]:
         """knnMatch with arrays for results: many times faster than tuples of DMatch.
 
         :return: indices and distances, queries x k int32, -1 where there is none; among the descriptors added, the
@@ -116,10 +119,10 @@ class HierarchicalMatcher:
                                          _masks(mask if masks is None else masks))
 
     @staticmethod
-    def _train(descriptors: Any) -> Optional[np.ndarray]:
+    def _train(descriptors: Optional[ArrayLike]) -> Optional[np.ndarray]:
         return None if descriptors is None else _descriptors(descriptors)
 
-    def add(self, descriptors: Any) -> None:
+    def add(self, descriptors: ArrayOrArrays) -> None:
         """Adds the descriptors of one image (an array) or of several (a sequence of arrays); they are copied."""
         self._core.add(as_arrays(descriptors, 'descriptors'))
 
@@ -138,7 +141,7 @@ class HierarchicalMatcher:
         """True."""
         return True
 
-    def getTrainDescriptors(self) -> tuple[np.ndarray, ...]:
+    def getTrainDescriptors(self) -> tuple[NDArray[np.uint8], ...]:
         """Copies of the descriptors added, an array an image."""
         return tuple(self._core.trainDescriptors())
 
@@ -154,9 +157,9 @@ class HierarchicalMatcher:
         """EXACT, THRESHOLD or ADAPTIVE."""
         self._core.setMode(mode)
 
-    def getMode(self) -> int:
+    def getMode(self) -> Mode:
         """EXACT, THRESHOLD or ADAPTIVE."""
-        return self._core.getMode()
+        return Mode(self._core.getMode())
 
     def setThresholds(self, thresholds: Sequence[float]) -> None:
         """Of THRESHOLD, 0 to 1: one for every level but the last, or a single one for all."""

@@ -1,16 +1,17 @@
 """The angle between two images."""
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Sequence, Union
 
 import numpy as np
+from numpy.typing import NDArray
 
 from opencv_iib import _core
 from opencv_iib._arrays import as_array
 from opencv_iib.keypoints import Keypoints, as_rows
 
 
-def estimateRotation(keypoints1: Keypoints, keypoints2: Keypoints, matches1to2: Any) -> float:
+def estimateRotation(keypoints1: Keypoints, keypoints2: Keypoints, matches1to2: Union[Sequence[Any], NDArray[Any]]) -> float:
     """Angle by which most of the matched points of one image are turned in another, as ``cv2.iib.estimateRotation``.
 
     :param keypoints1: of the first image: objects like cv2.KeyPoint, or an array with 3, 4 or 7 columns.

@@ -1,12 +1,14 @@
 """Everything that the C++ headers offer to Python is there, by the same name and value."""
 import importlib.metadata
 import inspect
+import pkgutil
 import pydoc
 import re
 import traceback
 import unittest
 
 import opencv_iib
+from opencv_iib._names import snake_case
 from support import REPOSITORY
 
 HEADERS = {'IIBDescriptorExtractor': 'descriptor.hpp', 'HierarchicalMatcher': 'matcher.hpp',
@@ -22,23 +24,27 @@ def header(name):
 
 
 def enumerators(text):
-    """Names and values of the enums' members."""
-    for body in re.findall(r'enum \w+\s*\{(.*?)\}', text, re.S):
+    """Names of the enums, and names and values of their members."""
+    for owner, body in re.findall(r'enum (\w+)\s*\{(.*?)\}', text, re.S):
         value = -1
         for member in filter(None, (m.strip() for m in body.split(','))):
             name, _, given = (part.strip() for part in member.partition('='))
             value = int(given, 0) if given else value + 1
-            yield name, value
+            yield owner, name, value
 
 
 class Names(unittest.TestCase):
 
     def test_constants(self):
         for owner, file in HEADERS.items():
-            found = dict(enumerators(header(file)))
+            found = list(enumerators(header(file)))
             self.assertGreater(len(found), -1 if owner.endswith('Detector') else 2)
-            for name, value in found.items():
+            for enum in {enum for enum, _, _ in found}:
+                self.assertEqual(len(getattr(opencv_iib, enum).__members__), [e for e, _, _ in found].count(enum))
+            for enum, name, value in found:
                 with self.subTest(name):
+                    short = re.sub(f'^{enum}S?_', '', name, flags=re.I)
+                    self.assertIs(getattr(getattr(opencv_iib, owner), name), getattr(opencv_iib, enum)[short])
                     self.assertEqual(getattr(getattr(opencv_iib, owner), name), value)
                     self.assertEqual(getattr(opencv_iib, f'{owner}_{name}'), value)
 
@@ -52,6 +58,7 @@ class Names(unittest.TestCase):
                 method = getattr(getattr(opencv_iib, owner), alias or name, None)
                 with self.subTest(alias or name):
                     self.assertIsNotNone(method)
+                    self.assertEqual(getattr(getattr(opencv_iib, owner), snake_case(alias or name)), method)
                     inputs = re.findall(r'(?:^|, )(?!OutputArray|CV_OUT (?!CV_IN_OUT))[^,]*?(\w+)(?: = [^,]*)?(?=,|$)',
                                         arguments)
                     keywords = method.__code__.co_varnames if hasattr(method, '__code__') else \
@@ -75,8 +82,17 @@ class Names(unittest.TestCase):
         self.assertEqual(opencv_iib.__version__, importlib.metadata.version('opencv-iib'))
         self.assertRegex(opencv_iib.OPENCV_VERSION, r'^[45]\.\d')
 
+    def test_the_program(self):
+        program, = [e for e in importlib.metadata.distribution('opencv-iib').entry_points if e.group == 'console_scripts']
+        self.assertEqual((program.name, program.load().__name__), ('opencv-iib', 'main'))
+
     def test_every_public_name_is_documented(self):
-        public = {name: getattr(opencv_iib, name) for name in opencv_iib.__all__}
+        modules = [importlib.import_module(m.name) for m in pkgutil.walk_packages(opencv_iib.__path__, 'opencv_iib.')
+                   if '._' not in m.name]
+        self.assertGreater(len(modules), 20)
+        public = {f'{module.__name__}.{name}': value for module in [opencv_iib, *modules]
+                  for name, value in vars(module).items()
+                  if not name.startswith('_') and getattr(value, '__module__', '') == module.__name__}
         for name, value in list(public.items()):
             if inspect.isclass(value):
                 public.update({f'{name}.{member}': getattr(value, member) for member in vars(value)

@@ -58,13 +58,25 @@ class Stubs(unittest.TestCase):
         self.assertEqual(stubs(), signatures())
 
     @unittest.skipIf(mypy is None, 'no mypy')
-    def test_a_strict_program_sees_the_names(self):
-        program = '\n'.join(['import opencv_iib', *(f'print(opencv_iib.{name})' for name in opencv_iib.__all__),
-                             'iib: opencv_iib.IIB = opencv_iib.IIB.create()'])
+    def test_a_strict_program_sees_the_names_and_types(self):
+        program = '''
+import numpy as np
+import opencv_iib
+from numpy.typing import NDArray
+iib: opencv_iib.IIB = opencv_iib.IIB.create_preset(opencv_iib.Preset.UNIVERSAL)
+codes: NDArray[np.uint8] = iib.detect_and_compute(np.zeros((9, 9), np.uint8))[1]
+rows: NDArray[np.float32] = iib.compute([[0, 0, 0]], np.zeros((9, 3), np.float32))[0]
+pairs: NDArray[np.int32] = opencv_iib.match(codes, codes).pairs
+mode: opencv_iib.Mode = opencv_iib.HierarchicalMatcher.create_recommended().get_mode()
+''' + '\n'.join(f'print(opencv_iib.{name})' for name in opencv_iib.__all__)
+        wrong = ("iib.set_border('drop')", 'text: str = iib.descriptor_size()', 'iib.detect_and_computes(codes)',
+                 'opencv_iib.match(codes)')
         with tempfile.TemporaryDirectory() as folder:
-            done = subprocess.run([sys.executable, '-m', 'mypy', '--strict', '-c', program], capture_output=True, text=True,
-                                  cwd=folder)
-        self.assertEqual((done.returncode, done.stderr), (0, ''), done.stdout)
+            done = subprocess.run([sys.executable, '-m', 'mypy', '--strict', '-c', program + '\n' + '\n'.join(wrong)],
+                                  capture_output=True, text=True, cwd=folder)
+        first = program.count('\n') + 2
+        self.assertEqual([int(line) for line in re.findall(r'^<string>:(\d+): error', done.stdout, re.M)],
+                         list(range(first, first + len(wrong))), done.stdout + done.stderr)
 
     @unittest.skipIf(mypy is None, 'no mypy')
     def test_stubtest(self):

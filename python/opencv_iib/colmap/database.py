@@ -118,6 +118,7 @@ class Database:
         self.close()
 
     def close(self) -> None:
+        """Closes the file."""
         self._db.close()
 
     def finish(self) -> None:
@@ -168,9 +169,11 @@ class Database:
                              (camera,))
 
     def image_ids(self) -> dict[str, int]:
+        """Numbers of the images by name, in the order of the names."""
         return dict(self._db.execute('SELECT name, image_id FROM images ORDER BY name'))
 
     def find_camera(self, model: int, width: int, height: int, params: np.ndarray, prior: bool) -> Optional[int]:
+        """The number of a camera with these values; None if there is none."""
         row = self._db.execute('SELECT camera_id FROM cameras WHERE model=? AND width=? AND height=? AND params=? AND '
                                'prior_focal_length=?', (model, width, height, params.tobytes(), int(prior))).fetchone()
         return None if row is None else int(row[0])
@@ -211,6 +214,7 @@ class Database:
     # Pairs
 
     def has_pair(self, a: int, b: int) -> bool:
+        """Whether the pair was matched, also without a match."""
         return self._db.execute('SELECT 1 FROM matches WHERE pair_id=?', (pair_id(a, b),)).fetchone() is not None
 
     def pairs(self) -> Iterator[tuple[int, int]]:
@@ -251,6 +255,7 @@ class Database:
     # Refinement
 
     def refined(self) -> set[int]:
+        """Numbers of the images whose keypoints were refined."""
         return {image for image, in self._db.execute('SELECT image_id FROM iib_refined')}
 
     def matches_with_later(self, image: int, verified: bool) -> dict[int, np.ndarray]:

@@ -20,6 +20,7 @@ class Threads:
         self._count = count
 
     def executor(self) -> concurrent.futures.Executor:
+        """What jobs are submitted to."""
         return concurrent.futures.ThreadPoolExecutor(self._count)
 
     def ahead(self) -> int:
@@ -40,14 +41,17 @@ class Cluster:
         self._client = client
 
     def executor(self) -> concurrent.futures.Executor:
+        """What jobs are submitted to."""
         executor: concurrent.futures.Executor = self._client.get_executor(pure=False)
         return executor
 
     def ahead(self) -> int:
+        """How many jobs may wait or run at once."""
         threads: dict[str, int] = self._client.nthreads()  # workers come and go
         return 2 * max(1, sum(threads.values()))
 
     def hold(self, *arrays: np.ndarray) -> Any:
+        """What a job takes for the arrays, as one argument or within one."""
         # A worker keeps and hands on what it was given once. As a task and not as scattered data: if the worker vanishes,
         # the scheduler gives the arrays to another.
         return self._client.submit(tuple, arrays, pure=False)

@@ -138,12 +138,7 @@ def _matcher(level_sizes: tuple[int, ...], ratio: float) -> HierarchicalMatcher:
 def match_pair(matcher: HierarchicalMatcher, verify: str, image_a: Any, image_b: Any) -> tuple[Any, ...]:
     """Arguments of Database.add_pair, from codes and points of both."""
     (codes_a, points_a), (codes_b, points_b) = image_a, image_b
-    if not len(codes_a) or not len(codes_b):
-        matches = np.empty((0, 2), np.int32)
-    else:
-        nearest = matcher.knnMatchArrays(codes_a, codes_b)[0].ravel()
-        queries = np.flatnonzero(nearest >= 0)
-        matches = np.stack([queries, nearest[queries]], axis=1)
+    matches = opencv_iib.match(codes_a, codes_b, matcher).pairs
     if verify != 'magsac':
         return matches, None, None
     inliers, matrix = magsac(points_a[matches[:, 0]], points_b[matches[:, 1]])

@@ -7,6 +7,7 @@ from typing import Optional, TextIO
 
 
 def clock(seconds: float) -> str:
+    """Hours, minutes and seconds, as in 1:02:03 or 2:03."""
     minutes, s = divmod(int(seconds + .5), 60)
     hours, m = divmod(minutes, 60)
     return f'{hours}:{m:02}:{s:02}' if hours else f'{m}:{s:02}'
@@ -22,6 +23,7 @@ class Progress:
         self.start = self.shown = time.monotonic()
 
     def step(self, count: int = 1) -> None:
+        """So many more are done."""
         self.done += count
         now = time.monotonic()
         if now - self.shown >= (.2 if self.live else 30):
@@ -29,6 +31,7 @@ class Progress:
             self._write('\r' if self.live else '', '' if self.live else '\n')
 
     def close(self) -> None:
+        """Ends the line."""
         self._write('\r' if self.live else '', '\n')
 
     def _write(self, begin: str, end: str) -> None:

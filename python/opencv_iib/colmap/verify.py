@@ -37,6 +37,7 @@ def magsac(points_a: np.ndarray, points_b: np.ndarray, threshold: float = 1.5
 
 
 def colmap_binary() -> Optional[str]:
+    """The path of COLMAP's program; None without it."""
     return shutil.which('colmap')
 
 

@@ -1,0 +1,50 @@
+"""The recommended chain in two calls, from arrays to arrays."""
+from __future__ import annotations
+
+from typing import NamedTuple, Optional
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from opencv_iib.descriptor import IIBDescriptorExtractor
+from opencv_iib.detectors import detect_rows
+from opencv_iib.matcher import HierarchicalMatcher
+
+
+class Features(NamedTuple):
+    """What :func:`detect_and_describe` finds, a row a keypoint, the strongest first."""
+
+    points: NDArray[np.float32]  #: N x 2: x, y in pixels, the centre of the first pixel is 0
+    sizes: NDArray[np.float32]  #: N: diameters in pixels
+    codes: NDArray[np.uint8]  #: N x bytes
+
+
+class Matches(NamedTuple):
+    """What :func:`match` finds, a row a match."""
+
+    pairs: NDArray[np.int32]  #: M x 2: rows of both arrays of codes
+    distances: NDArray[np.int32]  #: M: bits that differ
+
+
+def detect_and_describe(image: ArrayLike, n: int = 1000, mask: Optional[ArrayLike] = None) -> Features:
+    """Finds and describes the n strongest points of an image: ``IIB.createRecommended(n)``.
+
+    :param image: as IIBDescriptorExtractor takes it.
+    :param n: 0 keeps all.
+    :param mask: H x W uint8, 0 where nothing is to be found.
+    """
+    iib = IIBDescriptorExtractor.createRecommended(n)
+    rows = detect_rows(iib, image, mask)
+    return Features(rows[:, :2], rows[:, 2], iib.compute(image, rows)[1])
+
+
+def match(a: ArrayLike, b: ArrayLike, matcher: Optional[HierarchicalMatcher] = None) -> Matches:
+    """Matches the codes of two images, in the order of the first's.
+
+    :param a: N x bytes uint8, of any binary descriptor.
+    :param b: M x bytes uint8.
+    :param matcher: None for ``HierarchicalMatcher.createRecommended()``.
+    """
+    nearest, distances = (matcher or HierarchicalMatcher.createRecommended()).knnMatchArrays(a, b)
+    queries, _ = found = np.nonzero(nearest >= 0)
+    return Matches(np.stack([queries.astype(np.int32), nearest[found]], axis=1), distances[found])

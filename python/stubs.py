@@ -1,0 +1,34 @@
+#!/usr/bin/env python3
+"""Writes type stubs of the modules whose classes get names in snake_case when they are loaded: stubs.py PACKAGE OUT
+
+CMake runs it, so that the wheel has the stubs beside the modules; a source tree has none.
+"""
+import ast
+import copy
+import pathlib
+import sys
+
+sys.path.insert(0, sys.argv[1])
+from _names import snake_case
+
+
+def stub(body, aliases):
+    """Signatures and docstrings alone."""
+    for node in list(body):
+        if isinstance(node, ast.ClassDef):
+            stub(node.body, any(ast.unparse(base) == 'SnakeCase' for base in node.bases))
+        elif isinstance(node, ast.FunctionDef):
+            node.body = node.body[:1] if ast.get_docstring(node) else [ast.Expr(ast.Constant(...))]
+            if aliases and not node.name.startswith('_') and snake_case(node.name) != node.name:
+                twin = copy.deepcopy(node)
+                twin.name = snake_case(node.name)
+                body.append(twin)
+
+
+for path in sorted(pathlib.Path(sys.argv[1]).glob('*.py')):
+    text = path.read_text(encoding='utf-8')
+    if '(SnakeCase):' in text:
+        tree = ast.parse(text)
+        stub(tree.body, False)
+        pathlib.Path(sys.argv[2]).mkdir(parents=True, exist_ok=True)
+        pathlib.Path(sys.argv[2], path.stem + '.pyi').write_text(ast.unparse(tree) + '\n', encoding='utf-8')

@@ -1,0 +1,99 @@
+"""Functions from arrays to arrays, values by name, and tensors."""
+import unittest
+
+import numpy as np
+
+import opencv_iib
+from support import texture
+
+
+class Tensor:
+    """What torch and kornia hand over: no array, but DLPack and the array interface."""
+
+    def __init__(self, array):
+        self.array = array
+
+    def __array__(self, dtype=None, copy=None):
+        return self.array
+
+    def __dlpack__(self, **keywords):
+        return self.array.__dlpack__(**keywords)
+
+
+class Functions(unittest.TestCase):
+
+    def setUp(self):
+        self.image = np.kron(texture(80, 60), np.ones((4, 4), np.uint8))
+
+    def test_they_are_the_recommended_chain(self):
+        other = np.roll(self.image, (7, 5), (0, 1))
+        iib, expected, found = opencv_iib.IIB.createRecommended(200), [], []
+        for image in (self.image, other):
+            keypoints, codes = iib.detectAndCompute(image)
+            rows = opencv_iib.keypoints_to_array(keypoints)
+            features = opencv_iib.detect_and_describe(image, 200)
+            for array, same in zip(features, (rows[:, :2], rows[:, 2], codes)):
+                self.assertEqual(array.dtype, same.dtype)
+                np.testing.assert_array_equal(array, same)
+            found.append(features.codes)
+        self.assertEqual(len(found[0]), 200)
+        pairs, distances = opencv_iib.match(*found)
+        expected = opencv_iib.HierarchicalMatcher.createRecommended().match(*found)
+        self.assertGreater(len(expected), 50)
+        self.assertEqual(pairs.tolist(), [[m.queryIdx, m.trainIdx] for m in expected])
+        self.assertEqual(distances.tolist(), [m.distance for m in expected])
+        every = opencv_iib.match(*found, opencv_iib.HierarchicalMatcher())
+        self.assertEqual(every.pairs[:, 0].tolist(), list(range(200)))
+
+    def test_nothing_found(self):
+        points, sizes, codes = opencv_iib.detect_and_describe(np.zeros((100, 100), np.uint8))
+        self.assertEqual((points.shape, sizes.shape, codes.shape), ((0, 2), (0,), (0, 128)))
+        some = opencv_iib.detect_and_describe(self.image).codes
+        for a, b in ((codes, codes), (codes, some), (some, codes)):
+            pairs, distances = opencv_iib.match(a, b)
+            self.assertEqual((pairs.shape, pairs.dtype, distances.shape), ((0, 2), np.int32, (0,)))
+
+    def test_masks(self):
+        mask = np.zeros_like(self.image)
+        mask[:, 160:] = 1
+        points = opencv_iib.detect_and_describe(self.image, mask=mask).points
+        self.assertGreater(len(points), 20)
+        self.assertGreaterEqual(points[:, 0].min(), 159.5)
+
+    def test_tensors_with_channels_first(self):
+        blue, green, red = (np.roll(self.image, 9 * i, 1) for i in range(3))
+        for planes, rows in (((self.image,), self.image), ((red, green, blue), np.dstack([blue, green, red])),
+                             ((red, green, blue, red), np.dstack([blue, green, red, red]))):
+            expected = opencv_iib.detect_and_describe(rows)
+            for tensor in (np.stack(planes), np.stack(planes)[None]):
+                features = opencv_iib.detect_and_describe(Tensor(tensor))
+                for found, same in zip(features, expected):
+                    np.testing.assert_array_equal(found, same)
+            np.testing.assert_array_equal(opencv_iib.detect_and_describe(Tensor(rows)).codes, expected.codes)
+        codes = opencv_iib.detect_and_describe(self.image).codes
+        self.assertEqual(len(opencv_iib.match(Tensor(codes), codes).pairs), len(codes))
+        with self.assertRaises(opencv_iib.error):
+            opencv_iib.detect_and_describe(np.stack([red, green, blue]))  # whose order numpy does not tell
+
+    def test_values_by_name(self):
+        iib = opencv_iib.IIB.createPreset(opencv_iib.Preset.SMALL)
+        self.assertEqual(iib.descriptorSize(), opencv_iib.IIB.createPreset(9).descriptorSize())
+        iib.setOrientation(opencv_iib.Orientation.GRADIENT)
+        self.assertIs(iib.getOrientation(), opencv_iib.Orientation.GRADIENT)
+        iib.setBorder(1)
+        self.assertIs(iib.getBorder(), opencv_iib.Border.DROP)
+        iib.setChannels(opencv_iib.Channel.GRAD_X | opencv_iib.Channel.SIGNED_GRAD_Y)
+        self.assertEqual(iib.getChannels(), 33)
+        matcher = opencv_iib.HierarchicalMatcher(mode=opencv_iib.Mode.ADAPTIVE)
+        self.assertIs(matcher.get_mode(), opencv_iib.HierarchicalMatcher.ADAPTIVE)
+
+    def test_a_subclass_is_called_by_both_names(self):
+        class Mine(opencv_iib.IIB):
+            def levelSizes(self):
+                return ()
+        self.assertEqual(Mine().level_sizes(), ())
+        self.assertEqual(opencv_iib.IIB().level_sizes(), opencv_iib.IIB().levelSizes())
+
+
+if __name__ == '__main__':
+    unittest.main()
