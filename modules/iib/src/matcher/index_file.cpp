@@ -2,70 +2,101 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../precomp.hpp"
 #include "index_file.hpp"
+#include "opencv2/iib/checked_file.private.hpp"
 
 namespace cv {
 namespace iib {
 
 static const FileKind KIND = {"IIBINDEX", 1, "an index of HierarchicalMatcher"};
+static const size_t CHUNK_ROWS = 4096;  // what is unpacked or packed at once
 
-IndexWriter::IndexWriter(const String& filename, const IndexHeader& header) : file(filename, KIND)
+void saveCodes(const String& filename, const MatcherParameters& p, const PackedCodes& codes)
 {
-    const MatcherParameters& p = header.parameters;
-    file.number(p.levelSizes.size(), 4);
-    for (size_t i = 0; i < p.levelSizes.size(); i++)
-        file.number(p.levelSizes[i], 4);
+    CheckedWriter file(filename, KIND);
+    const std::vector<int>& levelSizes = codes.layout().levelSizes();
+    file.number(levelSizes.size(), 4);
+    for (int size : levelSizes)
+        file.number(size, 4);
     file.number(p.mode, 4);
     file.number(p.crossCheck, 4);
     file.real(p.maxRatio);
-    for (size_t i = 0; i < p.thresholds.size(); i++)
-        file.real(p.thresholds[i]);
-    file.number(header.rows.size(), 8);
-    for (size_t i = 0; i < header.rows.size(); i++)
-        file.number(header.rows[i], 8);
-}
-
-void IndexWriter::finish()
-{
+    for (float threshold : p.thresholds)
+        file.real(threshold);
+    file.number(codes.images(), 8);
+    for (size_t i = 0; i < codes.images(); i++)
+        file.number(codes.rows(i), 8);
+    for (size_t i = 0; i < codes.images(); i++)
+        for (size_t row = 0; row < codes.rows(i); row += CHUNK_ROWS)
+        {
+            const Mat chunk = codes.descriptors(i, row, std::min(row + CHUNK_ROWS, codes.rows(i)));
+            file.bytes(chunk.data, chunk.total());
+        }
     file.seal();
     file.commit();
 }
 
-IndexReader::IndexReader(const String& filename) : file(filename, KIND)
+static MatcherParameters readParameters(CheckedReader& file)
 {
-    MatcherParameters& p = head.parameters;
+    MatcherParameters p;
     const unsigned levels = file.word();
     file.expect(levels, 4);
-    uint64 width = 0;
     for (unsigned i = 0; i < levels; i++)
-    {
         p.levelSizes.push_back((int)file.word());
-        width += (unsigned)p.levelSizes.back();
-    }
     p.mode = (int)file.word();
     p.crossCheck = file.word() != 0;
     p.maxRatio = file.real();
     for (unsigned i = 1; i < levels; i++)
         p.thresholds.push_back(file.real());
-
-    const uint64 images = file.number(8);
-    file.expect(images, 8);
-    head.rows.resize((size_t)images);
-    uint64 total = 0;
-    for (size_t i = 0; i < head.rows.size(); i++)
-    {
-        total += head.rows[i] = file.number(8);
-        if (head.rows[i] > INT_MAX || width > INT_MAX || (width == 0 && head.rows[i] > 0))
-            file.fail("its numbers do not make sense");
-        file.expect(total, width);
-    }
+    return p;
 }
 
-void IndexReader::finish()
+static std::vector<size_t> readRows(CheckedReader& file, uint64 width)
 {
+    const uint64 images = file.number(8);
+    file.expect(images, 8);
+    std::vector<size_t> rows((size_t)images);
+    uint64 total = 0;
+    for (size_t& count : rows)
+    {
+        const uint64 number = file.number(8);
+        total += number;
+        if (number > INT_MAX || width > INT_MAX || (width == 0 && number > 0))
+            file.fail("its numbers do not make sense");
+        file.expect(total, width);
+        count = (size_t)number;
+    }
+    return rows;
+}
+
+Ptr<PackedCodes> loadCodes(const String& filename, MatcherParameters& parameters)
+{
+    CheckedReader file(filename, KIND);
+    parameters = readParameters(file);
+    uint64 width = 0, total = 0;
+    for (int size : parameters.levelSizes)
+        width += (unsigned)size;
+    const std::vector<size_t> rows = readRows(file, width);
+    checkLevelSizesGiven(parameters.levelSizes);
+    check(parameters);
+    for (size_t count : rows)
+        total += count;
+    const Ptr<PackedCodes> codes = makePtr<PackedCodes>(parameters.levelSizes);
+    codes->reserve(rows.size(), (size_t)total);
+    Mat chunk;
+    for (size_t count : rows)
+    {
+        codes->add(Mat());
+        for (size_t row = 0; row < count; row += chunk.rows)
+        {
+            chunk.create((int)std::min(CHUNK_ROWS, count - row), (int)width, CV_8U);
+            file.bytes(chunk.data, chunk.total());
+            codes->append(chunk);
+        }
+    }
     file.seal();
     file.expectEnd();
+    return codes;
 }
 
 }  // namespace iib

@@ -5,7 +5,7 @@
 #ifndef OPENCV_IIB_MATCHER_INDEX_FILE_HPP
 #define OPENCV_IIB_MATCHER_INDEX_FILE_HPP
 
-#include "opencv2/iib/checked_file.private.hpp"
+#include "packed_codes.hpp"
 #include "parameters.hpp"
 
 namespace cv {
@@ -15,42 +15,11 @@ namespace iib {
 each threshold; u64: number of images, each image's rows; the descriptors of all images. Descriptors pass through in
 pieces, so that no second copy of them is in memory. */
 
-//! What stands before the descriptors.
-struct IndexHeader
-{
-    MatcherParameters parameters;
-    std::vector<uint64> rows;  //!< of each image
-};
+//! @param parameters with or without level sizes; the file gets those of the codes.
+void saveCodes(const String& filename, const MatcherParameters& parameters, const PackedCodes& codes);
 
-class IndexWriter
-{
-public:
-    IndexWriter(const String& filename, const IndexHeader& header);
-    //! Writes the next descriptors, continuous CV_8U; what image they belong to follows from the header.
-    void write(const Mat& descriptors) { file.bytes(descriptors.data, descriptors.total()); }
-    //! Puts the file in its place.
-    void finish();
-
-private:
-    CheckedWriter file;
-};
-
-//! Checks that the file is whole and that its numbers make sense together; whether they are valid parameters is for the
-//! matcher to say.
-class IndexReader
-{
-public:
-    explicit IndexReader(const String& filename);
-    const IndexHeader& header() const { return head; }
-    //! Fills a continuous matrix with the next descriptors.
-    void read(Mat& descriptors) { file.bytes(descriptors.data, descriptors.total()); }
-    //! Throws unless all was read and the checksum fits.
-    void finish();
-
-private:
-    CheckedReader file;
-    IndexHeader head;
-};
+//! Reads what saveCodes wrote. @throws cv::Exception unless the file is whole and its parameters are valid.
+Ptr<PackedCodes> loadCodes(const String& filename, MatcherParameters& parameters);
 
 }  // namespace iib
 }  // namespace cv

@@ -2,113 +2,220 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "matcher_impl.hpp"
-#include "input.hpp"
+#include "arguments.hpp"
+#include "index_file.hpp"
+#include "search.hpp"
+
+#include <atomic>
 
 namespace cv {
 namespace iib {
 
-HierarchicalMatcherImpl::HierarchicalMatcherImpl(const MatcherParameters& p)
-    : parameters(p), counters(makePtr<CostCounters>())
-{
-    if (!p.levelSizes.empty())
-        index = makePtr<PackedCodes>(p.levelSizes);
-}
+namespace {
 
-std::vector<int> HierarchicalMatcherImpl::levelSizes() const
+//! Shared by an object and its clones without train data, with which calls with two sets match.
+struct CostCounters
 {
-    return index ? index->layout().levelSizes() : parameters.levelSizes;
-}
+    CostCounters() : compared(0), all(0) {}
+    std::atomic<uint64> compared, all;
+};
 
-void HierarchicalMatcherImpl::set(const MatcherParameters& changed)
+//! Glue between DescriptorMatcher's interface and the search. Tests reach its ScanBlocks by dynamic_cast.
+class HierarchicalMatcherImpl CV_FINAL : public HierarchicalMatcher, public ScanBlocks
 {
-    check(changed);
-    MatcherParameters copy = changed;
-    std::swap(parameters, copy);  // which cannot fail half-way
-}
+public:
+    explicit HierarchicalMatcherImpl(const MatcherParameters& p)
+        : parameters(p), counters(makePtr<CostCounters>())
+    {
+        clear();
+    }
+    HierarchicalMatcherImpl(const MatcherParameters& p, const Ptr<PackedCodes>& codes)
+        : parameters(p), index(codes), counters(makePtr<CostCounters>())
+    {
+        trainDescCollection.resize(codes->images());
+    }
 
-void HierarchicalMatcherImpl::setMode(int mode)
-{
-    MatcherParameters changed = parameters;
-    changed.mode = mode;
-    set(changed);
-}
+    std::vector<int> levelSizes() const CV_OVERRIDE
+    {
+        return index ? index->layout().levelSizes() : parameters.levelSizes;
+    }
+    void setMode(int mode) CV_OVERRIDE { set(&MatcherParameters::mode, mode); }
+    int getMode() const CV_OVERRIDE { return parameters.mode; }
+    void setThresholds(const std::vector<float>& thresholds) CV_OVERRIDE
+    {
+        for (float threshold : thresholds)
+            checkThreshold(threshold);  // also where no level needs one
+        const bool one = thresholds.size() == 1;
+        set(&MatcherParameters::thresholds,
+                one ? std::vector<float>(parameters.stages(), thresholds[0]) : thresholds);
+    }
+    std::vector<float> getThresholds() const CV_OVERRIDE { return parameters.thresholds; }
+    void setCrossCheck(bool crossCheck) CV_OVERRIDE { parameters.crossCheck = crossCheck; }
+    bool getCrossCheck() const CV_OVERRIDE { return parameters.crossCheck; }
+    void setMaxRatio(float maxRatio) CV_OVERRIDE { set(&MatcherParameters::maxRatio, maxRatio); }
+    float getMaxRatio() const CV_OVERRIDE { return parameters.maxRatio; }
+    double matchCost() const CV_OVERRIDE
+    {
+        const uint64 all = counters->all;
+        return all ? (double)counters->compared / (double)all : 0;
+    }
+    void resetCost() CV_OVERRIDE
+    {
+        counters->compared = 0;
+        counters->all = 0;
+    }
 
-void HierarchicalMatcherImpl::setThresholds(const std::vector<float>& thresholds)
-{
-    for (size_t i = 0; i < thresholds.size(); i++)
-        checkThreshold(thresholds[i]);  // also where no level needs one
-    MatcherParameters changed = parameters;
-    changed.thresholds =
-            thresholds.size() == 1 ? std::vector<float>(parameters.stages(), thresholds[0]) : thresholds;
-    set(changed);
-}
+    bool isMaskSupported() const CV_OVERRIDE { return true; }
+    void add(InputArrayOfArrays descriptors) CV_OVERRIDE;
+    void clear() CV_OVERRIDE
+    {
+        index = parameters.levelSizes.empty() ? Ptr<PackedCodes>()
+                                              : makePtr<PackedCodes>(parameters.levelSizes);
+        trainDescCollection.clear();
+    }
+    std::vector<Mat> getTrainDescriptors() const CV_OVERRIDE
+    {
+        std::vector<Mat> all(trainDescCollection.size());
+        for (size_t i = 0; index && i < all.size(); i++)
+            all[i] = index->descriptors(i, 0, index->rows(i));
+        return all;
+    }
+    Ptr<DescriptorMatcher> clone(bool emptyTrainData) const CV_OVERRIDE;
 
-void HierarchicalMatcherImpl::setMaxRatio(float maxRatio)
-{
-    MatcherParameters changed = parameters;
-    changed.maxRatio = maxRatio;
-    set(changed);
-}
+    using HierarchicalMatcher::read;
+    using HierarchicalMatcher::write;
+    void read(const FileNode& node) CV_OVERRIDE;
+    void write(FileStorage& fs) const CV_OVERRIDE { writeParameters(fs, parameters); }
+    String getDefaultName() const CV_OVERRIDE { return "HierarchicalMatcher"; }
+    void saveIndex(const String& filename) const CV_OVERRIDE
+    {
+        if (!index)
+            CV_Error(Error::StsBadArg, "There is nothing to save: a matcher without level sizes knows them "
+                                       "only after descriptors were added");
+        saveCodes(filename, parameters, *index);
+    }
 
-double HierarchicalMatcherImpl::matchCost() const
-{
-    const uint64 all = counters->all;
-    return all ? (double)counters->compared / (double)all : 0;
-}
+    void match(InputArray queries_, std::vector<DMatch>& matches, InputArrayOfArrays masks) CV_OVERRIDE
+    {
+        const Mat queries = queries_.getMat();
+        const Ptr<const PackedCodes> trains = trainCodes(queries);
+        toBestMatches(*trains, nearest(*trains, queries, 1, masks), matches);
+    }
+    void match(InputArray queries, InputArray trains, std::vector<DMatch>& matches,
+            InputArray mask) const CV_OVERRIDE
+    {
+        with(trains)->match(queries, matches, singleMask(mask));
+    }
+    void knnMatch(InputArray queries_, std::vector<std::vector<DMatch>>& matches, int k,
+            InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE
+    {
+        const Mat queries = queries_.getMat();
+        const Ptr<const PackedCodes> trains = trainCodes(queries);
+        toMatches(*trains, nearest(*trains, queries, k, masks), compactResult, matches);
+    }
+    void knnMatch(InputArray queries, InputArray trains, std::vector<std::vector<DMatch>>& matches, int k,
+            InputArray mask, bool compactResult) const CV_OVERRIDE
+    {
+        with(trains)->knnMatch(queries, matches, k, singleMask(mask), compactResult);
+    }
+    void radiusMatch(InputArray queries, std::vector<std::vector<DMatch>>& matches, float maxDistance,
+            InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE;
+    void radiusMatch(InputArray queries, InputArray trains, std::vector<std::vector<DMatch>>& matches,
+            float maxDistance, InputArray mask, bool compactResult) const CV_OVERRIDE
+    {
+        with(trains)->radiusMatch(queries, matches, maxDistance, singleMask(mask), compactResult);
+    }
+    void knnMatchArrays(InputArray queries_, OutputArray indices, OutputArray distances, int k,
+            InputArrayOfArrays masks, OutputArray imageIndices) const CV_OVERRIDE
+    {
+        const Mat queries = queries_.getMat();
+        const Ptr<const PackedCodes> trains = trainCodes(queries);
+        toArrays(*trains, nearest(*trains, queries, k, masks), k, indices, distances, imageIndices);
+    }
+    void knnMatchArrays(InputArray queries, InputArray trains, OutputArray indices, OutputArray distances,
+            int k, InputArray mask) const CV_OVERRIDE
+    {
+        with(trains)->knnMatchArrays(queries, indices, distances, k, singleMask(mask), noArray());
+    }
 
-void HierarchicalMatcherImpl::resetCost()
-{
-    counters->compared = 0;
-    counters->all = 0;
-}
+protected:
+    void knnMatchImpl(InputArray queries, std::vector<std::vector<DMatch>>& matches, int k,
+            InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE
+    {
+        knnMatch(queries, matches, k, masks, compactResult);
+    }
+    void radiusMatchImpl(InputArray queries, std::vector<std::vector<DMatch>>& matches, float maxDistance,
+            InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE
+    {
+        radiusMatch(queries, matches, maxDistance, masks, compactResult);
+    }
 
-void HierarchicalMatcherImpl::makeIndex(int width)
-{
-    if (index)
-        return;
-    Ptr<PackedCodes> made = makePtr<PackedCodes>(levelSizesFor(parameters, width));
-    for (size_t i = 0; i < trainDescCollection.size(); i++)  // images without rows came before
-        made->add(Mat());
-    index = made;
-}
+private:
+    template <typename T> void set(T MatcherParameters::*member, const T& value)
+    {
+        MatcherParameters changed = parameters;
+        changed.*member = value;
+        check(changed);
+        std::swap(parameters, changed);  // which cannot fail half-way
+    }
+
+    //! An index for codes of that width, which holds the images without rows that came before it.
+    Ptr<PackedCodes> indexFor(int width) const
+    {
+        const Ptr<PackedCodes> codes = makePtr<PackedCodes>(levelSizesFor(parameters, width));
+        for (size_t i = 0; i < trainDescCollection.size(); i++)
+            codes->add(Mat());
+        return codes;
+    }
+
+    Ptr<const PackedCodes> trainCodes(const Mat& queries) const
+    {
+        return index ? index : indexFor(std::max(queries.cols, 1));
+    }
+
+    //! A matcher that has these train descriptors in place of its own.
+    Ptr<HierarchicalMatcher> with(InputArrayOfArrays trains) const
+    {
+        const Ptr<HierarchicalMatcher> other = copy(true);
+        other->add(trains);
+        return other;
+    }
+
+    //! The masks of a call with two sets: one or none.
+    static std::vector<Mat> singleMask(InputArray mask)
+    {
+        return std::vector<Mat>(mask.empty() ? 0 : 1, mask.getMat());
+    }
+
+    KnnTable nearest(const PackedCodes& trains, const Mat& queries, int k, InputArrayOfArrays masks) const;
+    PruningPolicy policy(const CodeLayout& layout) const;
+
+    void count(const SearchCost& cost) const
+    {
+        counters->compared += cost.compared;
+        counters->all += cost.all;
+    }
+
+    MatcherParameters parameters;
+    Ptr<PackedCodes> index;  //!< null while the width of codes is not known
+    Ptr<CostCounters> counters;
+};
 
 void HierarchicalMatcherImpl::add(InputArrayOfArrays descriptors)
 {
-    std::vector<Mat> images = imagesOf(descriptors);
-    const int width = index ? index->layout().bytes() : widthOf(images);
-    for (size_t i = 0; i < images.size(); i++)
-        images[i] = checkedDescriptors(images[i], width, parameters.levelSizes.empty());
-    if (width > 0)
-        makeIndex(width);
-    for (size_t i = 0; i < images.size(); i++)
+    std::vector<Mat> added = imagesOf(descriptors);
+    const int width = index ? index->layout().bytes() : widthOf(added);
+    for (Mat& image : added)
+        image = checkedDescriptors(image, width, parameters.levelSizes.empty());
+    if (!index && width > 0)
+        index = indexFor(width);
+    trainDescCollection.reserve(trainDescCollection.size() + added.size());
+    for (const Mat& image : added)
     {
+        if (index)
+            index->add(image);
         trainDescCollection.push_back(Mat());  // DescriptorMatcher counts its entries
-        try
-        {
-            if (index)
-                index->add(images[i]);
-        }
-        catch (...)  // out of memory: list and index stay of one length
-        {
-            trainDescCollection.pop_back();
-            throw;
-        }
     }
-}
-
-void HierarchicalMatcherImpl::clear()
-{
-    HierarchicalMatcher::clear();
-    index = parameters.levelSizes.empty() ? Ptr<PackedCodes>() : makePtr<PackedCodes>(parameters.levelSizes);
-}
-
-std::vector<Mat> HierarchicalMatcherImpl::getTrainDescriptors() const
-{
-    std::vector<Mat> images(trainDescCollection.size());
-    for (size_t i = 0; index && i < images.size(); i++)
-        images[i] = index->descriptors(i, 0, index->rows(i));
-    return images;
 }
 
 Ptr<DescriptorMatcher> HierarchicalMatcherImpl::clone(bool emptyTrainData) const
@@ -125,6 +232,63 @@ Ptr<DescriptorMatcher> HierarchicalMatcherImpl::clone(bool emptyTrainData) const
     }
     return result;
 }
+
+void HierarchicalMatcherImpl::read(const FileNode& node)
+{
+    MatcherParameters p = readParameters(node, getDefaultName(), parameters);
+    const bool others = p.levelSizes != parameters.levelSizes;
+    if (others && index && index->rows() > 0)
+        CV_Error(Error::StsBadArg,
+                "Other level sizes cannot be read while there are train descriptors: clear() first");
+    std::swap(parameters, p);
+    if (others)
+        clear();
+}
+
+PruningPolicy HierarchicalMatcherImpl::policy(const CodeLayout& layout) const
+{
+    switch (parameters.mode)
+    {
+    case THRESHOLD: return thresholdPolicy(layout, parameters.thresholds);
+    case ADAPTIVE: return adaptivePolicy(layout);
+    default: return PruningPolicy();
+    }
+}
+
+KnnTable HierarchicalMatcherImpl::nearest(
+        const PackedCodes& trains, const Mat& queries_, int k, InputArrayOfArrays masks_) const
+{
+    if (k <= 0)
+        CV_Error_(Error::StsOutOfRange, ("k is %d: it has to be > 0", k));
+    const Mat queries = checkedDescriptors(queries_, trains.layout().bytes(), parameters.levelSizes.empty());
+    const PruningPolicy pruning = policy(trains.layout());
+    const std::vector<Mat> masks = checkedMasks(masks_, queries.rows, trains);
+    const SearchInput input(trains, queries, pruning, masks, *this);
+    SearchCost cost;
+    KnnTable found = findNearest(input, k, parameters.crossCheck, parameters.maxRatio, cost);
+    count(cost);
+    return found;
+}
+
+void HierarchicalMatcherImpl::radiusMatch(InputArray queries_, std::vector<std::vector<DMatch>>& matches,
+        float maxDistance, InputArrayOfArrays masks_, bool compactResult)
+{
+    if (!(maxDistance > std::numeric_limits<float>::epsilon()))
+        CV_Error_(Error::StsOutOfRange, ("maxDistance is %g: it has to be > 0", maxDistance));
+    const Ptr<const PackedCodes> trains = trainCodes(queries_.getMat());
+    const CodeLayout& layout = trains->layout();
+    const Mat queries = checkedDescriptors(queries_.getMat(), layout.bytes(), parameters.levelSizes.empty());
+    const int radius = cvFloor(std::min((double)maxDistance, 8. * layout.bytes()));
+    const PruningPolicy pruning =
+            parameters.mode == THRESHOLD ? policy(layout) : radiusPolicy(layout, radius);
+    const std::vector<Mat> masks = checkedMasks(masks_, queries.rows, *trains);
+    const SearchInput input(*trains, queries, pruning, masks, *this);
+    SearchCost cost;
+    toMatches(*trains, findWithin(input, radius, cost), compactResult, matches);
+    count(cost);
+}
+
+}  // namespace
 
 Ptr<HierarchicalMatcher> HierarchicalMatcher::copy(bool emptyTrainData) const
 {
@@ -156,6 +320,13 @@ Ptr<HierarchicalMatcher> HierarchicalMatcher::createRecommended()
     p.crossCheck = true;
     p.maxRatio = 0.9f;
     return makePtr<HierarchicalMatcherImpl>(p);
+}
+
+Ptr<HierarchicalMatcher> HierarchicalMatcher::loadIndex(const String& filename)
+{
+    MatcherParameters parameters;
+    const Ptr<PackedCodes> codes = loadCodes(filename, parameters);
+    return makePtr<HierarchicalMatcherImpl>(parameters, codes);
 }
 
 }  // namespace iib

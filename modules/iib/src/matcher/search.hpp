@@ -72,6 +72,15 @@ SearchCost addNearest(const SearchInput& input, KnnTable& forQueries);
 //! Finds all within a radius, in ascending order for each query.
 std::vector<std::vector<MatchKey>> findWithin(const SearchInput& input, int radius, SearchCost& cost);
 
+/* Where comparisons may end: pruning.cpp. */
+
+//! A pair within `radius` is found; levels whose sum is beyond it end the comparison.
+PruningPolicy radiusPolicy(const CodeLayout& layout, int radius);
+//! The paper's rule; one threshold for each level but the last.
+PruningPolicy thresholdPolicy(const CodeLayout& layout, const std::vector<float>& thresholds);
+//! Bounds relative to the query's least distances so far.
+PruningPolicy adaptivePolicy(const CodeLayout& layout);
+
 /* One pass over all pairs of some queries with all train codes, block by block, on one thread: pair_scan.cpp. */
 
 //! Puts the nearest into tables of all queries and of all train codes; forTrains is null when nobody asks for that

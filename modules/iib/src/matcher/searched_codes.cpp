@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../precomp.hpp"
-#include "input.hpp"
+#include "arguments.hpp"
 #include "opencv2/iib/searched_codes.private.hpp"
 #include "parameters.hpp"
 #include "search.hpp"

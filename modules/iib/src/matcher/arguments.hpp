@@ -2,13 +2,16 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_MATCHER_INPUT_HPP
-#define OPENCV_IIB_MATCHER_INPUT_HPP
+#ifndef OPENCV_IIB_MATCHER_ARGUMENTS_HPP
+#define OPENCV_IIB_MATCHER_ARGUMENTS_HPP
 
+#include "knn_table.hpp"
 #include "packed_codes.hpp"
 
 namespace cv {
 namespace iib {
+
+/* What DescriptorMatcher's calls are given, checked, and what they return. */
 
 //! One matrix of descriptors, or several, of one image each.
 std::vector<Mat> imagesOf(InputArrayOfArrays descriptors);
@@ -22,6 +25,19 @@ Mat checkedDescriptors(const Mat& descriptors, int width, bool byFirstCodes);
 
 //! A mask for each image of the index, or none if all are empty; throws where one does not fit.
 std::vector<Mat> checkedMasks(InputArrayOfArrays masks, int queries, const PackedCodes& index);
+
+//! The nearest of each query that has one.
+void toBestMatches(const PackedCodes& trains, const KnnTable& found, std::vector<DMatch>& matches);
+
+//! A row for each query; with `compact`, only for those that have a match.
+void toMatches(const PackedCodes& trains, const KnnTable& found, bool compact,
+        std::vector<std::vector<DMatch>>& matches);
+void toMatches(const PackedCodes& trains, const std::vector<std::vector<MatchKey>>& found, bool compact,
+        std::vector<std::vector<DMatch>>& matches);
+
+//! CV_32S matrices of k columns, -1 where there is no neighbour.
+void toArrays(const PackedCodes& trains, const KnnTable& found, int k, OutputArray indices,
+        OutputArray distances, OutputArray imageIndices);
 
 }  // namespace iib
 }  // namespace cv
