@@ -7,7 +7,7 @@
 #ifndef OPENCV_IIB_MATCHER_KERNELS_SCANNER_SIMD_HPP
 #define OPENCV_IIB_MATCHER_KERNELS_SCANNER_SIMD_HPP
 
-#include "../../common/vectors.hpp"
+#include "count_vectors.simd.hpp"
 #include "hamming.hpp"
 
 // Tile compares some queries with a CodeBlock, TileQueries prepares these queries, PACKING is the packing that both
