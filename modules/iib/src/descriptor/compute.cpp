@@ -6,9 +6,6 @@
 
 #include "../boxes/describe.hpp"
 #include "../common/image_input.hpp"
-#include "angles.hpp"
-#include "rotated.hpp"
-#include "upright.hpp"
 
 namespace cv {
 namespace iib {

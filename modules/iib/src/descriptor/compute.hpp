@@ -5,7 +5,9 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_COMPUTE_HPP
 #define OPENCV_IIB_DESCRIPTOR_COMPUTE_HPP
 
-#include "plan.hpp"
+#include "channels.hpp"
+#include "keypoint_batches.hpp"
+#include "workspace.hpp"
 
 namespace cv {
 namespace iib {
@@ -20,6 +22,29 @@ bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image);
  */
 void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Mat>& extra,
         const std::vector<KeyPoint>& keypoints, Mat& descriptors);
+
+/** Sets the angles of regions as ORIENTATION_GRADIENT: the direction that prevails among the gradients between 32 x 32
+ cells, each of which counts by its magnitude and by a Gaussian of half the region's radius around the centre.
+
+@param grey CV_8U or CV_16U.
+@param keypoints of the regions: of those with the same position and size, the second gets the second highest peak of the
+directions, and so on. */
+void findAngles(const DescriptorPlan& plan, const Mat& grey, const std::vector<KeyPoint>& keypoints,
+        WorkspacePool& pool, std::vector<SupportRegion>& regions);
+
+/** The bits of the keypoints of a batch, all of whose regions are upright.
+
+@param channels all channels of the descriptor.
+@param regions of all keypoints of the image, as are the rows of descriptors. */
+void describeUpright(const DescriptorPlan& plan, const std::vector<Channel>& channels,
+        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions, Workspace& workspace,
+        Mat& descriptors);
+
+/** The same where all are rotated by the keypoint's angle. Integral images cannot serve, since |gx| does not rotate with the
+ region: it is sampled on a grid of points, and the gradient is rotated at each. */
+void describeRotated(const DescriptorPlan& plan, const std::vector<Channel>& channels,
+        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions, Workspace& workspace,
+        Mat& descriptors);
 
 }  // namespace iib
 }  // namespace cv

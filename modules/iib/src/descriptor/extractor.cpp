@@ -2,11 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../common/detector_file.hpp"
-#include "../common/detector_input.hpp"
+#include "../common/detectors.hpp"
 #include "../common/image_input.hpp"
 #include "compute.hpp"
-#include "parameters_file.hpp"
 #include "regions.hpp"
 
 #include "opencv2/core/utils/trace.hpp"

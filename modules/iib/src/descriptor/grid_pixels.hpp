@@ -10,7 +10,6 @@
 #include "channels.hpp"
 #include "keypoint_batches.hpp"
 #include "regions.hpp"
-#include "rotation.hpp"
 #include "workspace.hpp"
 
 namespace cv {

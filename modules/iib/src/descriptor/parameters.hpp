@@ -51,6 +51,13 @@ int finestLevel(const Parameters& parameters);
 //! The place in the descriptor of the first bit of a group of GROUP_CHANNELS channels at a level.
 int bitOffset(const Parameters& parameters, int level, int group);
 
+//! As keys of the map that is open in `fs`.
+void writeParameters(FileStorage& fs, const Parameters& parameters);
+
+/** What writeParameters wrote; `present` is kept where a number is missing.
+ @throws cv::Exception for another format and for what is no parameter or out of its range. */
+Parameters readParameters(const FileNode& node, const Parameters& present);
+
 }  // namespace iib
 }  // namespace cv
 

@@ -40,5 +40,80 @@ Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::createPreset(int preset, flo
     return extractor;
 }
 
+namespace {
+
+struct DetectorScale
+{
+    const char* name;
+    float scaleFactor;
+};
+
+/* Paper, "Experiments Combined with Feature Detectors", for AKAZE to SURF. FAST, AGAST (size 7) and GFTT
+ (size 3) find corners of one size: a region of 64 pixels, as in "Predefined Feature Points". The sizes of MSER
+ and SimpleBlob are the diameters of what they found; the region of support takes in its surroundings. HessianDetector: the right matches of
+ PRESET_UNIVERSAL where light and camera change (16 and 20 are as good). */
+const DetectorScale detectorScales[] = {{"akaze", 12.f}, {"orb", 2.f}, {"brisk", 4.f}, {"sift", 20.f},
+        {"kaze", 20.f}, {"surf", 4.f}, {"fast", 64.f / 7}, {"agast", 64.f / 7}, {"gftt", 64.f / 3},
+        {"mser", 2.f}, {"simpleblob", 4.f}, {"hessian", 18.f}};
+
+}  // namespace
+
+float IIBDescriptorExtractor::scaleFactorFor(const String& detectorName)
+{
+    String name;
+    for (size_t i = 0; i < detectorName.size(); i++)
+        name += (char)tolower((unsigned char)detectorName[i]);
+    name = name.substr(name.rfind('.') == String::npos ? 0 : name.rfind('.') + 1);
+    // Algorithm names of OpenCV that are not the short name
+    for (const char* ending : {"featuredetector", "detector"})
+    {
+        const size_t at = name.rfind(ending);
+        if (at != String::npos && at > 0 && at + strlen(ending) == name.size())
+            name.resize(at);
+    }
+
+    String known;
+    for (const DetectorScale& d : detectorScales)
+    {
+        if (name == d.name)
+            return d.scaleFactor;
+        known += String(known.empty() ? "" : ", ") + d.name;
+    }
+    CV_Error(Error::StsBadArg, "no scale factor is known for the detector \"" + detectorName +
+                                       "\", only for " + known +
+                                       "; give create() the ROS side divided by KeyPoint::size, and the "
+                                       "detector to setDetector()");
+}
+
+float IIBDescriptorExtractor::scaleFactorFor(const char* detectorName)
+{
+    if (!detectorName)
+        CV_Error(Error::StsNullPtr, "the detector's name is null");
+    return scaleFactorFor(String(detectorName));
+}
+
+float IIBDescriptorExtractor::scaleFactorFor(const Ptr<Feature2D>& detector)
+{
+    if (!detector)
+        CV_Error(Error::StsNullPtr, "the detector is null");
+    if (const Ptr<NormalizedDetector> wrapper = detector.dynamicCast<NormalizedDetector>())
+        return scaleFactorFor(wrapper->getDetector());
+    return scaleFactorFor(detector->getDefaultName());
+}
+
+Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::createRecommended(int maxFeatures)
+{
+    return createFor(HessianDetector::create(maxFeatures), PRESET_UNIVERSAL);
+}
+
+Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::createFor(const Ptr<Feature2D>& detector, int preset)
+{
+    const float scaleFactor = scaleFactorFor(detector);
+    const Ptr<IIBDescriptorExtractor> extractor =
+            preset == -1 ? create(scaleFactor) : createPreset(preset, scaleFactor);
+    extractor->setDetector(detector);
+    return extractor;
+}
+
 }  // namespace iib
 }  // namespace cv

@@ -10,6 +10,17 @@
 namespace cv {
 namespace iib {
 
+/** A keypoint's angle. The functions of the C library differ in the last place from machine to machine, and with it
+ samples and bits: here, only doubles are added and multiplied, in one order, after an exact reduction. */
+struct Rotation
+{
+    double cosine, sine;  //!< error below 1e-15
+    int steps;            //!< the angle in ORIENTATION_STEPS a turn
+
+    //! @param degrees clockwise in the image; any finite number.
+    explicit Rotation(float degrees);
+};
+
 //! A bound of the lengths of the n cells in a row of a support region.
 static inline double longestCell(double side, int n) { return std::ceil(side / n); }
 

@@ -2,10 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "upright.hpp"
+#include "compute.hpp"
 
-#include "column_band.hpp"
-#include "integral_band.hpp"
+#include "bands.hpp"
 
 namespace cv {
 namespace iib {

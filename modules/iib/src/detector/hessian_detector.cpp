@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../common/detector_input.hpp"
+#include "../common/detectors.hpp"
 #include "../common/file_numbers.hpp"
 #include "../common/image_input.hpp"
 #include "blobs.hpp"

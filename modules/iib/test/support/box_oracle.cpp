@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../src/descriptor/rotation.hpp"
+#include "../../src/descriptor/regions.hpp"
 
 namespace oracle {
 
