@@ -19,25 +19,31 @@ namespace {
  there is no portable form, a macro says whether it exists. */
 
 //! Number of set bits.
-inline int countBits(unsigned word)
+inline int countBits(uint64 word)
 {
-#if CV_POPCNT
-    return _mm_popcnt_u32(word);
+#if CV_POPCNT && (defined __x86_64__ || defined _M_X64)
+    return (int)_mm_popcnt_u64(word);
 #else
-    int count = 0;
-    for (; word; word &= word - 1)
-        count++;
-    return count;
+    word -= word >> 1 & CV_BIG_UINT(0x5555555555555555);
+    word = (word & CV_BIG_UINT(0x3333333333333333)) + (word >> 2 & CV_BIG_UINT(0x3333333333333333));
+    return (int)(((word + (word >> 4)) & CV_BIG_UINT(0x0f0f0f0f0f0f0f0f)) * CV_BIG_UINT(0x0101010101010101) >>
+                 56);
 #endif
 }
 
-// Counts the bits of 64-bit words by one instruction.
-#if CV_POPCNT && (defined __x86_64__ || defined _M_X64)
-#define IIB_COUNTS_64_BITS 1
-inline int countBits64(uint64 word) { return (int)_mm_popcnt_u64(word); }
-#else
-#define IIB_COUNTS_64_BITS 0
-#endif
+//! Of two arrays of words.
+inline int countDifferences(const unsigned* a, const unsigned* b, int words)
+{
+    int count = words % 2 ? countBits(a[words - 1] ^ b[words - 1]) : 0;
+    for (int i = 0; i + 1 < words; i += 2)
+    {
+        uint64 x, y;
+        memcpy(&x, a + i, sizeof(x));
+        memcpy(&y, b + i, sizeof(y));
+        count += countBits(x ^ y);
+    }
+    return count;
+}
 
 // v_popcount(v_uint32) is one instruction; elsewhere counting bytes is cheaper.
 #if CV_AVX512_ICL && IIB_NATIVE_VECTORS

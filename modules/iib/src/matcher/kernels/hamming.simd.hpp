@@ -5,7 +5,6 @@
 #include "hamming.hpp"
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-#include "scan_full.simd.hpp"
 #include "scan_nearest.simd.hpp"
 #include "scan_pruned.simd.hpp"
 #endif

@@ -21,7 +21,7 @@ class NearestScanner : public Scanner
 public:
     explicit NearestScanner(const NearestScan& s)
         : Scanner(s.pairs), scan(s), trains(s.ofTrains.distances ? s.pairs.paddedTrains() : 0),
-          trainKeys(trains), early(earlyEnd(trains == 0))
+          trainKeys(trains)
     {
         std::fill(trainKeys.data(), trainKeys.data() + trains, int(NO_KEY));
     }
@@ -30,28 +30,11 @@ public:
     template <int Q> void row(int query)
     {
         setQueries<Q>(query);
-        Counts nearest[Tile<Q>::SIZE], limits[Q];
+        Counts nearest[Tile<Q>::SIZE];
         for (int i = 0; i < Tile<Q>::SIZE; i++)
             nearest[i] = vx_setall_s32(NO_KEY);
-        for (int q = 0; q < Q; q++)
-            limits[q] = vx_setall_s32(scan.ofQueries.distances[query + q]);
-        // An early end pays for several looks that were in vain.
-        for (int block = 0, looks = 0; block < blocks; block++)
-        {
-            if (block % 8 == 0 && early < layout.words())
-            {
-                looks = std::max(looks, 1);
-                for (int q = 0; q < Q; q++)
-                    limits[q] =
-                            v_min(limits[q], vx_setall_s32(leastKey(nearest + q * VECTORS) >> INDEX_BITS));
-            }
-            if (looks == 0)
-                compare<Q>(query, block, layout.words(), limits, nearest);
-            else if (compare<Q>(query, block, early, limits, nearest))
-                looks++;
-            else
-                looks--;
-        }
+        for (int block = 0; block < blocks; block++)
+            compare<Q>(query, block, nearest);
         for (int q = 0; q < Q; q++)
             keepOfQuery(query + q, nearest + q * VECTORS);
     }
@@ -67,24 +50,12 @@ private:
     static constexpr int INDEX_BITS = NearestScan::INDEX_BITS, INDEX_MASK = (1 << INDEX_BITS) - 1,
                          NO_KEY = INT_MAX;
 
-    //! Returns whether the tile ended after `end` words, before the last, since no pair is within its limit.
-    template <int Q>
-    CV_ALWAYS_INLINE bool compare(int query, int block, int end, const Counts* limits, Counts* nearest)
+    template <int Q> CV_ALWAYS_INLINE void compare(int query, int block, Counts* nearest)
     {
         Tile<Q> tile;
         Counts keys[Tile<Q>::SIZE];
-        tile.start(queries, codes(block), end);
+        tile.start(queries, codes(block), layout.words());
         tile.distances(keys);
-        if (end < layout.words())
-        {
-            Counts slack = vx_setzero_s32();
-            for (int i = 0; i < Tile<Q>::SIZE; i++)
-                slack = slack | (keys[i] - limits[i / VECTORS]);
-            if (!v_check_any(slack))
-                return true;
-            tile.advance(queries, codes(block), end, layout.words());
-            tile.distances(keys);
-        }
         for (int i = 0; i < Tile<Q>::SIZE; i++)
             keys[i] = keys[i] << INDEX_BITS;
         if (incomplete(block))
@@ -101,22 +72,14 @@ private:
                 least = v_min(least, keys[q * VECTORS + v] | vx_setall_s32(query + q));
             v_store(ofTrains, least);
         }
-        return false;
-    }
-
-    //! Over the vectors of one query.
-    static int leastKey(const Counts* keys)
-    {
-        Counts least = keys[0];
-        for (int v = 1; v < VECTORS; v++)
-            least = v_min(least, keys[v]);
-        return v_reduce_min(least);
     }
 
     void keepOfQuery(int query, const Counts* keys) const
     {
-        const int least = leastKey(keys);
-        Counts others[VECTORS];
+        Counts nearest = keys[0], others[VECTORS];
+        for (int v = 1; v < VECTORS; v++)
+            nearest = v_min(nearest, keys[v]);
+        const int least = v_reduce_min(nearest);
         for (int v = 0; v < VECTORS; v++)
             others[v] = vx_setall_s32(least) - keys[v];
         const int lane = trailingZeros32(ALL_LANES & ~negativeLanes(others));
@@ -134,7 +97,6 @@ private:
     const NearestScan& scan;
     const int trains;  // 0 if only queries have neighbours
     AlignedBuffer<int> trainKeys;
-    const int early;
 };
 
 }  // namespace

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// The distances of some queries to all train codes of a scan, and lists of those that pass a stage.
+// What a pruned scan keeps of some queries and all train codes.
 
 #ifndef OPENCV_IIB_MATCHER_KERNELS_SHORTLISTS_SIMD_HPP
 #define OPENCV_IIB_MATCHER_KERNELS_SHORTLISTS_SIMD_HPP
@@ -17,53 +17,44 @@ namespace {
 
 const int NEVER = INT_MAX;  // the distance of pairs that ended
 
+//! Distances, and lists of the train codes that pass a stage.
 class Shortlists
 {
 public:
-    explicit Shortlists(int blocks)
-        : rowSize((size_t)blocks * CODES_PER_BLOCK), listSize(rowSize + CODES_PER_BLOCK),
-          values(QUERIES * rowSize), lists(QUERIES * listSize), stored(blocks), storedCount(0)
+    explicit Shortlists(int blocks_)
+        : blocks(blocks_), rowSize((size_t)blocks * CODES_PER_BLOCK), listSize(rowSize + CODES_PER_BLOCK),
+          values(QUERIES * rowSize), lists(QUERIES * listSize)
     {
     }
 
-    //! Call this before storing distances. Those of blocks that are not appended afterwards count as NEVER.
-    void clear() { storedCount = 0; }
     void store(int q, int block, int v, const Counts& distance)
     {
         v_store(distances(q) + block * CODES_PER_BLOCK + v * WIDTH, distance);
     }
-    void append(int block) { stored[storedCount++] = block; }
     Counts load(int q, int block, int v) const
     {
         return vx_load(values.data() + q * rowSize + block * CODES_PER_BLOCK + v * WIDTH);
     }
 
-    //! Lists the train codes of each query whose distance is at most its limit.
+    //! Lists the train codes whose distance to each query is at most its limit, and counts them.
     template <int Q> void select(const int* limits, int* counts)
     {
-        const int* distance[Q];
         int* end[Q];
         for (int q = 0; q < Q; q++)
-        {
-            distance[q] = distances(q);
             end[q] = list(q);
-        }
-        for (int i = 0; i < storedCount; i++)
-        {
-            const int train = stored[i] * CODES_PER_BLOCK;
-            Counts trains[VECTORS];
-            for (int v = 0; v < VECTORS; v++)
-                trains[v] = laneNumbers() + vx_setall_s32(train + v * WIDTH);
-            for (int q = 0; q < Q; q++)
+        for (int block = 0; block < blocks; block++)
+            for (int q = 0; q < Q; q++)  // several at a time, whose steps overlap
             {
-                Counts slack[VECTORS];
+                Counts trains[VECTORS], slack[VECTORS];
                 for (int v = 0; v < VECTORS; v++)
-                    slack[v] = vx_setall_s32(limits[q]) - vx_load(distance[q] + train + v * WIDTH);
+                {
+                    trains[v] = laneNumbers() + vx_setall_s32(block * CODES_PER_BLOCK + v * WIDTH);
+                    slack[v] = vx_setall_s32(limits[q]) - load(q, block, v);
+                }
                 const int lanes = ALL_LANES & ~negativeLanes(slack);
                 storeLanes(end[q], trains, lanes);
-                end[q] += countBits(lanes);
+                end[q] += countBits((unsigned)lanes);
             }
-        }
         for (int q = 0; q < Q; q++)
             counts[q] = (int)(end[q] - list(q));
     }
@@ -73,10 +64,36 @@ public:
     int* list(int q) { return lists.data() + q * listSize; }
 
 private:
+    const int blocks;
     const size_t rowSize, listSize;
     AlignedBuffer<int> values, lists;
-    AutoBuffer<int> stored;  // blocks, ascending
-    int storedCount;
+};
+
+//! The plain words of train codes, each unpacked when it is asked for.
+class PlainCodes
+{
+public:
+    explicit PlainCodes(const CodePairs& p)
+        : pairs(p), known(p.trainCount), words((size_t)p.trainCount * p.layout.words())
+    {
+        std::fill_n(known.data(), p.trainCount, (uchar)0);
+    }
+
+    const unsigned* operator[](int train)
+    {
+        const CodeLayout& layout = pairs.layout;
+        unsigned* const code = words.data() + (size_t)train * layout.words();
+        if (!known[train])
+            layout.fetch(pairs.trains + train / CODES_PER_BLOCK * layout.blockWords(),
+                    train % CODES_PER_BLOCK, code);
+        known[train] = 1;
+        return code;
+    }
+
+private:
+    const CodePairs& pairs;
+    AutoBuffer<uchar> known;
+    AlignedBuffer<unsigned> words;
 };
 
 }  // namespace
