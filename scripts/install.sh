@@ -19,7 +19,7 @@ esac
 
 # shellcheck disable=SC2086
 need $build_packages
-build_library opencv_iib
+build_library opencv_iib opencv_iib_index
 
 # The nearest folder that exists decides whether root is needed.
 existing="$prefix"
