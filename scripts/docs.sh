@@ -1,16 +1,21 @@
 #!/bin/sh
-# Makes the site of the documentation with Doxygen in build/docs/html; any warning is an error.
+# Makes the site of the documentation in build/docs/html: guides, tutorials and the C++ reference with Doxygen, the reference of
+# the Python package, and the pages of results and of localization. Any warning and any dead link is an error.
 . "$(dirname "$0")/helpers/lib.sh"
 
 [ $# = 0 ] || fail "takes no argument"
-need doxygen
+need doxygen python3
 version=$(sed -n 's/^project(opencv_iib VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
 rm -rf "$build/docs"
 mkdir -p "$build/docs"
 cd "$root"
+python3 scripts/helpers/python_api.py >"$build/docs/python_api.md"
 {
     cat doc/Doxyfile
     echo "PROJECT_NUMBER = $version"
     echo "OUTPUT_DIRECTORY = \"$build/docs\""
+    echo "INPUT += \"$build/docs/python_api.md\""
 } | doxygen -
+cp -R doc/results doc/localization CITATION.cff "$build/docs/html"
+python3 scripts/helpers/links_test.py "$build/docs/html"
 say "the documentation: $build/docs/html/index.html"

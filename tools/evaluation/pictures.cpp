@@ -112,8 +112,8 @@ void drawPair(const Options& options, const ImagePair& pair, const Choice& choic
             std::to_string(m.counts.putative), std::to_string(m.counts.correspondences), file});
 }
 
-//! The mutual matches of one descriptor at the detector's points, and how many are right.
-void drawDetected(const Options& options, const ImagePair& pair, const Detector& detector,
+//! A row for each mutual match of these descriptors at the detector's points.
+void listMatches(const Options& options, const ImagePair& pair, const Detector& detector,
         const std::vector<std::string>& descriptors, ResultTable& table)
 {
     const LoadedPair loaded = loadPair(pair);
@@ -128,14 +128,17 @@ void drawDetected(const Options& options, const ImagePair& pair, const Detector&
         const Described &r = reference[i], &t = target[i];
         if (std::find(descriptors.begin(), descriptors.end(), r.name) == descriptors.end())
             continue;
-        Drawn drawn = {r.keypoints, t.keypoints, mutualMatches(r.descriptors, t.descriptors, r.norm), {}};
-        drawn.correct = correctByLocation(
-                drawn.matches, drawn.reference, drawn.target, loaded.homography, options.tolerance);
-        const Counts n = countsOf(drawn.correct, 0);
-        const std::string file = "pictures/" + pair.set + "_" + detector.name + "_" + r.name + ".jpg";
-        writePicture(options.out + "/" + file, draw(loaded, drawn));
-        table.append({pair.set, pair.target, detector.name, r.name, std::to_string(n.correct),
-                std::to_string(n.putative), file});
+        const std::vector<cv::DMatch> matches = mutualMatches(r.descriptors, t.descriptors, r.norm);
+        const std::vector<bool> correct =
+                correctByLocation(matches, r.keypoints, t.keypoints, loaded.homography, options.tolerance);
+        for (size_t m = 0; m < matches.size(); m++)
+        {
+            const cv::Point2f a = r.keypoints[matches[m].queryIdx].pt,
+                              b = t.keypoints[matches[m].trainIdx].pt;
+            table.append({pair.set, pair.target, detector.name, r.name, cv::format("%.1f", a.x),
+                    cv::format("%.1f", a.y), cv::format("%.1f", b.x), cv::format("%.1f", b.y),
+                    correct[m] ? "1" : "0"});
+        }
     }
 }
 
@@ -148,21 +151,25 @@ int comparison(const Options& options, const std::vector<ImagePair>&)
     cv::utils::fs::createDirectories(options.out + "/pictures");
     const std::string file = options.out + "/comparison.csv";
     std::remove(file.c_str());
-    ResultTable table(file, {"set", "target", "detector", "descriptor", "correct", "putative", "file"}, 4);
+    ResultTable table(file,
+            {"set", "target", "detector", "descriptor", "x", "y", "target_x", "target_y", "correct"}, 8);
     Options classic = options;
     classic.keypoints.clear();
     classic.network.clear();
-    classic.detectors = {"ORB", "SIFT"};
+    classic.detectors = {"Hessian", "ORB", "SIFT"};
     std::vector<Task> tasks;
     for (const ImagePair& pair : findPairs({options.compare}))
+    {
+        writePicture(
+                options.out + "/pictures/reference.jpg", readImage(pair.referenceFile, cv::IMREAD_COLOR));
+        writePicture(options.out + "/pictures/target.jpg", readImage(pair.targetFile, cv::IMREAD_COLOR));
         for (const Detector& detector : detectors(classic))
             tasks.push_back({pair.name() + " " + detector.name, [&options, &table, pair, detector] {
-                                 const std::vector<std::string> at =
-                                         detector.name == "ORB"
-                                                 ? std::vector<std::string>{"ORB", "BEBLID-512", "IIB"}
-                                                 : std::vector<std::string>{"SIFT"};
-                                 drawDetected(options, pair, detector, at, table);
+                                 listMatches(options, pair, detector,
+                                         {detector.name == "Hessian" ? "IIB UNIVERSAL" : detector.name},
+                                         table);
                              }});
+    }
     const int skipped = runTasks("comparison", tasks);
     table.finish();
     return skipped;

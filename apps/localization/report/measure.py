@@ -16,7 +16,7 @@ import time
 import cv2
 import numpy as np
 
-METHODS = {"iib": "IIB", "own": "ORB and AKAZE", "sift": "SIFT"}
+METHODS = {"iib": "recommended chain", "own": "ORB and AKAZE, normalized", "sift": "SIFT, normalized"}
 LIMITS = [(0.05, 0.5), (0.10, 1.0), (0.25, 2.0)]  # metres, degrees
 STAGES = ["features", "retrieval", "matching", "pose", "lines"]
 POINTS_ONLY = ", points only"  # after the kind of map, of a run without lines

@@ -11,7 +11,6 @@ from measure import distance, read_poses
 
 ABOVE = (720, 180)  # sizes of the drawings
 OVER_TIME = (720, 200)
-MAX_ERROR = 0.10  # metres, the top of the drawing over time
 FRAME = (480, 360)  # size of an image in a picture
 VIDEO = (640, 240)  # noise of the night is smoothed, or the file would be large
 VIDEO_RATE = 4  # frames a second
@@ -33,15 +32,18 @@ def from_above(truth, keyframes, located):
 
 
 def over_time(single, inertial):
-    """Errors of images alone as dots; with the IMU as lines, from all images and from some. Names are times."""
+    """Errors of images alone as dots; with the IMU as lines, from all images and from some. Names are times. The top is
+    the first of 1, 2, 5, 10, 20 ... cm that no error reaches."""
+    largest = max((distance(row) for rows in [single, *inertial.values()] for row in rows if "pose" in row), default=0)
+    top = next(m * 10.0 ** e for e in range(-2, 5) for m in (1, 2, 5) if m * 10.0 ** e > largest)
     end = max(float(row["name"]) for rows in [single, *inertial.values()] for row in rows) or 1.0
 
     def at(row):
         return (round(float(row["name"]) / end * OVER_TIME[0], 1),
-                round(OVER_TIME[1] * (1 - min(distance(row) / MAX_ERROR, 1)), 1))
+                round(OVER_TIME[1] * (1 - distance(row) / top), 1))
 
     lines = {kind: " ".join("%g,%g" % at(row) for row in rows if "pose" in row) for kind, rows in inertial.items()}
-    return {"size": OVER_TIME, "top_cm": round(100 * MAX_ERROR), "seconds": end,
+    return {"size": OVER_TIME, "top_cm": round(100 * top), "seconds": end,
             "dots": [at(row) for row in single if "pose" in row], "lines": lines}
 
 

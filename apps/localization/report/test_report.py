@@ -84,7 +84,9 @@ class Page(unittest.TestCase):
         located = [row(0.05, name="1.0"), row(0.3, name="2.0"), {"name": "4.0"}]
         drawing = pictures.over_time(located, {"depth, IMU": located})
         width, height = drawing["size"]
-        self.assertEqual(drawing["dots"], [(width / 4, height / 2), (width / 2, 0)])
+        self.assertEqual(drawing["top_cm"], 50)
+        self.assertEqual(drawing["dots"], [(width / 4, height * .9), (width / 2, height * .4)])
+        self.assertEqual(pictures.over_time([row(0.011, name="1.0")], {})["top_cm"], 2)
         truth = {"a": (np.array([0, 0, 0.0]), TURNED), "b": (np.array([2, 0, 10.0]), TURNED)}
         above = pictures.from_above(truth, truth, [row(0)])
         self.assertAlmostEqual(above["found"][0][0], above["metre"])

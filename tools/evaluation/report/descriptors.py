@@ -5,7 +5,7 @@
 """What the page tells of a descriptor besides its results."""
 
 # Sets on whose images the presets of IIB were trained.
-TRAINED_ON = ("tilde_webcam", "amos_daynight")
+TRAINED_ON = ("tilde_webcam", "amos_daynight", "walk_room", "walk_terrain")
 
 OPENCV, CONTRIB = "Apache-2.0 (OpenCV)", "Apache-2.0 (opencv_contrib)"
 
@@ -17,7 +17,8 @@ SHOWN = {
     "IIB COMPACT": (("ORB", "IIB COMPACT"), True, "Apache-2.0"),
     "IIB BALANCED": (("ORB", "IIB BALANCED"), True, "Apache-2.0"),
     "IIB VIEWPOINT": (("ORB", "IIB VIEWPOINT"), True, "Apache-2.0"),
-    "IIB UNIVERSAL": (("ORB", "IIB UNIVERSAL"), True, "Apache-2.0"),
+    "IIB UNIVERSAL": (("Hessian", "IIB UNIVERSAL"), True, "Apache-2.0"),
+    "IIB SMALL": (("Hessian", "IIB SMALL"), True, "Apache-2.0"),
     "ORB": (("ORB", "ORB"), True, OPENCV),
     "BRISK": (("BRISK", "BRISK"), False, OPENCV),
     "AKAZE-486": (("AKAZE", "AKAZE"), False, OPENCV),
@@ -40,7 +41,7 @@ SHOWN = {
     "SURF": (("SURF", "SURF"), False, "patented until 2020, non-free build"),
 }
 
-# The bars at the head of the page; of two sizes of a point, the better one.
+# The bars of descriptors alone; of two sizes of a point, the better one.
 HEADLINE = ("IIB", "IIB COMPACT", "SIFT", "KAZE", "AKAZE-486", "BEBLID-512", "TEBLID-512", "LATCH-512", "ORB",
             "BRIEF-512", "BRISK", "FREAK")
 
@@ -64,4 +65,11 @@ TASKS = (("SIFT", "SIFT"), ("SIFT", "IIB UNIVERSAL"), ("SIFT normalized", "SIFT"
          ("SIFT normalized", "IIB VIEWPOINT"), ("AKAZE", "AKAZE"), ("AKAZE", "IIB UNIVERSAL"),
          ("AKAZE normalized", "AKAZE"), ("AKAZE normalized", "IIB UNIVERSAL"), ("AKAZE normalized", "IIB VIEWPOINT"),
          ("ORB", "ORB"), ("ORB", "BEBLID-512"), ("ORB", "IIB"), ("ORB", "IIB UNIVERSAL"),
-         ("ORB normalized", "ORB"), ("ORB normalized", "IIB UNIVERSAL"))
+         ("ORB normalized", "ORB"), ("ORB normalized", "IIB UNIVERSAL"), ("Hessian", "IIB"), ("Hessian", "IIB SMALL"),
+         ("Hessian", "IIB UNIVERSAL"))
+
+# Those of them at the head of the page, as people call them.
+POSES = {("Hessian", "IIB UNIVERSAL"): "recommended chain", ("Hessian", "IIB SMALL"): "recommended chain, 32 bytes",
+         ("SIFT normalized", "SIFT"): "SIFT, normalized image", ("AKAZE normalized", "AKAZE"): "AKAZE, normalized image",
+         ("SIFT", "SIFT"): "SIFT", ("AKAZE", "AKAZE"): "AKAZE", ("ORB", "BEBLID-512"): "ORB's points, BEBLID",
+         ("ORB", "ORB"): "ORB"}

@@ -143,7 +143,7 @@ def whole_tasks(tables):
             return kinds.get((row["set"], row["sequence"], row["target"]), "illumination") == "illumination"
         return domain(row)
 
-    rows = [dict(row, images=images(row)) for row in tables["whole_tasks"]]
+    rows = [dict(row, images=images(row)) for row in tables["whole_tasks"] if row["set"] not in descriptors.TRAINED_ON]
     found = []
     for (task, which), members in group(rows, "task", "images").items():
         lines = [task_line(task, key, mine)
@@ -158,6 +158,30 @@ def whole_tasks(tables):
                       "pairs": max(line["pairs"] for line in lines),
                       "bars": sorted(bars, key=lambda line: -line["areas"][1][0])})
     return sorted(found, key=lambda t: (list(LIMITS).index(t["task"]), str(t["images"])))
+
+
+def pose_headline(tasks):
+    """Poses in other light at detected points: the bars at the head of the page."""
+    for task in tasks:
+        if (task["task"], task["images"]) == ("pose", "rendered"):
+            return dict(task, bars=[dict(bar, name=descriptors.POSES[bar["detector"], bar["descriptor"]]) for bar in task["bars"]
+                                    if (bar["detector"], bar["descriptor"]) in descriptors.POSES])
+    return None
+
+
+DRAWN = 100  # matches of a method on the slider
+
+
+def slider(tables):
+    """The matches that the slider between day and night shows, as the page's script takes them."""
+    found = []
+    for (detector, descriptor), rows in group(tables["comparison"], "detector", "descriptor").items():
+        right = sum(row["correct"] == "1" for row in rows)
+        step = len(rows) // DRAWN + 1
+        found.append({"name": descriptors.POSES[detector, descriptor], "right": right, "wrong": len(rows) - right, "step": step,
+                      "matches": [[float(row[c]) for c in ("x", "y", "target_x", "target_y")] + [int(row["correct"])]
+                                  for row in rows[::step]]})
+    return sorted(found, key=lambda method: -method["right"])
 
 
 def paper_tables(tables):
@@ -228,14 +252,14 @@ def main():
     rows = overview(tables)
     headline = [max(same, key=lambda r: r["score"]["recall"]) for same in
                 ([r for r in rows if r["name"] in (name, name + " 5x")] for name in descriptors.HEADLINE) if same]
+    tasks = whole_tasks(tables)
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     page = environment.get_template("page.html.j2").render(
         overview=rows, networks=networks(tables), headline=sorted(headline, key=lambda r: -r["score"]["recall"]),
         detectors=detectors(tables), curves=detector_curves(tables), changes=changes(tables), warps=warp_charts(tables),
-        tasks=whole_tasks(tables), paper=paper_tables(tables), orders=paper_orders(tables), maps=maps(tables),
+        tasks=tasks, poses=pose_headline(tasks), slider=slider(tables), paper=paper_tables(tables), orders=paper_orders(tables), maps=maps(tables),
         matching=matching(tables), scenes=scenes(tables), cost=tables["cost"], pictures=read(folder, "pictures"),
-        comparison=sorted(tables["comparison"], key=lambda r: -int(r["correct"])),
         all_pairs=score(by_name(illumination(tables["fixed_points"])).get("IIB", [])), settings=settings(folder),
         files=[file_name(name) for name in CSV_FILES if tables[name]])
     path = os.path.join(folder, "index.html")

@@ -30,8 +30,8 @@ def read(folder, name):
 
 
 def domain(row):
-    """'rendered' for sets whose name begins with synthetic or lights (tools/synthetic), 'natural' for all others."""
-    return "rendered" if row["set"].startswith(("synthetic", "lights")) else "natural"
+    """'rendered' for sets whose name begins with synthetic, lights or walk (tools/synthetic), 'natural' for all others."""
+    return "rendered" if row["set"].startswith(("synthetic", "lights", "walk")) else "natural"
 
 
 def mean(values):

@@ -27,7 +27,8 @@ for name in ("IIB", "IIB BALANCED", "ORB", "SIFT", "AKAZE-486"):
                      text), name
 for meaning in re.findall(r"<dd>(.*?)</dd>", text):
     assert meaning.endswith(".") and ". " not in meaning, meaning  # a metric is told in one sentence
-assert text.count("Matches of IIB between day and night") == 1
+for method in ("recommended chain", "ORB"):
+    assert re.search('"name": "%s"' % method, text) and '>%s</button>' % method in text, method
 for link in re.findall(r'(?:src|href)="([^"#]+)"', text):
     assert os.path.exists(os.path.join(results, link)), link
 assert len(text) < 200000, len(text)

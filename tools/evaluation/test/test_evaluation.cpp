@@ -109,8 +109,10 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
     for (size_t i = 0; i < tables.size(); i++)
         EXPECT_EQ(first[i], contents(options.out + "/" + tables[i] + ".csv")) << tables[i];
     EXPECT_FALSE(cv::imread(options.out + "/pictures/set_still_2.jpg").empty());
-    for (const char* drawn : {"ORB_IIB", "ORB_ORB", "SIFT_SIFT"})
-        EXPECT_FALSE(cv::imread(options.out + "/pictures/pairs_" + drawn + ".jpg").empty()) << drawn;
+    for (const char* picture : {"reference", "target"})
+        EXPECT_FALSE(cv::imread(options.out + "/pictures/" + picture + ".jpg").empty()) << picture;
+    for (const char* method : {"Hessian,IIB UNIVERSAL", "ORB,ORB"})
+        EXPECT_NE(std::string::npos, first.back().find(method)) << method;
 
     options.points = 100;
     EXPECT_NE(std::string::npos, messageOf([&] { evaluate(options); }).find("settings"));
