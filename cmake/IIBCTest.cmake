@@ -70,6 +70,7 @@ add_test(NAME fast-math-undone COMMAND ${fast_math} ${IIB_FLAGS} ${source})
 find_program(IIB_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(IIB_PYTHON)
   add_test(NAME figures COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/figures.py" --check)
+  add_test(NAME figures-test COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/figures_test.py")
   add_test(NAME pages COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/pages_test.py"
     "${PROJECT_SOURCE_DIR}/doc/results/index.html" "${PROJECT_SOURCE_DIR}/doc/localization/index.html")
   set_tests_properties(pages PROPERTIES SKIP_REGULAR_EXPRESSION "is not installed")

@@ -2,16 +2,19 @@
 """Summaries of an evaluation for doc/results, from which figures.py makes its tables: summaries.py FOLDER
 
 FOLDER: results of scripts/evaluate.sh and, as ratios.csv, of iib_ratios, with a row for each pair of images. Written are
-means over the pairs of a group, one row each, with their number.
+means over the pairs of a group, one row each, with their number; of poses also the ends of the mean's 95 % confidence
+interval (low, high; bootstrap over the pairs).
 """
 import collections
 import csv
 import pathlib
+import random
 import sys
 
 OUT = pathlib.Path(__file__).resolve().parents[2] / 'doc/results'
-TRAINED_ON = {'tilde_webcam', 'amos_daynight'}  # by the presets
+TRAINED_ON = {'tilde_webcam', 'amos_daynight', 'walk_room', 'walk_terrain'}  # by the presets
 RENDERED = {'lights'}
+DRAWS = 1000  # of the bootstrap
 
 
 def place(row):
@@ -28,8 +31,20 @@ def pose_score(row):
     return max(0, 1 - float(row['error']) / 10)
 
 
+def pose_place(row):
+    """Photographs of buildings by day, or rendered walks in two lights."""
+    return 'buildings' if row['set'] == 'strecha' else 'walks'
+
+
 def column(name):
     return lambda row: float(row[name])
+
+
+def interval(values):
+    """Ends of the 95 % confidence interval of the mean."""
+    chance = random.Random(1)
+    sums = sorted(sum(chance.choices(values, k=len(values))) for _ in range(DRAWS))
+    return [sums[at] / len(values) for at in (DRAWS // 40, DRAWS - 1 - DRAWS // 40)]
 
 
 # File: which rows count, what makes a group, what is averaged.
@@ -41,8 +56,9 @@ PLANS = {
     'robustness.csv': (lambda row: row['kind'] == 'turn' and row['set'] not in TRAINED_ON,
                        {'configuration': None, 'target': None},
                        {'precision': column('precision'), 'recall': column('recall')}),
-    'whole_tasks.csv': (lambda row: row['task'] == 'pose',
-                        {'set': None, 'detector': None, 'descriptor': None, 'matching': None}, {'score': pose_score}),
+    'whole_tasks.csv': (lambda row: row['task'] == 'pose' and row['set'] not in TRAINED_ON,
+                        {'place': pose_place, 'detector': None, 'descriptor': None, 'matching': None},
+                        {'score': pose_score}),
     'ratios.csv': (lambda row: True, {'place': place, 'descriptor': None, 'rule': None},
                    {'correct': column('correct'), 'given': column('given')}),
 }
@@ -56,10 +72,11 @@ def summarize(source, target, chosen, keys, values):
                 groups[tuple(key(row) if key else row[name] for name, key in keys.items())].append(row)
     with open(target, 'w', newline='') as file:
         writer = csv.writer(file, lineterminator='\n')
-        writer.writerow(list(keys) + ['pairs'] + list(values))
+        writer.writerow(list(keys) + ['pairs'] + list(values) + (['low', 'high'] if 'score' in values else []))
         for group, rows in sorted(groups.items()):
-            writer.writerow(list(group) + [len(rows)] +
-                            [repr(sum(value(row) for row in rows) / len(rows)) for value in values.values()])
+            found = [[value(row) for row in rows] for value in values.values()]
+            ends = ['%.4f' % end for end in interval(found[0])] if 'score' in values else []
+            writer.writerow(list(group) + [len(rows)] + [repr(sum(of) / len(rows)) for of in found] + ends)
 
 
 def main():

@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+"""Tests of figures.py and summaries.py: which rows count, and how sure the means are."""
+import collections
+import csv
+import pathlib
+import tempfile
+import unittest
+from unittest import mock
+
+import figures
+import summaries
+
+
+class Figures(unittest.TestCase):
+
+    def test_no_preset_is_judged_by_scenes_that_it_was_trained_on(self):
+        real = figures.grouped
+
+        def of_trained_scenes(*arguments):
+            found = collections.defaultdict(list)
+            for key, rows in real(*arguments).items():
+                found[key] = [{**row, 'place': 'trained'} for row in rows]
+            return found
+        for function in (figures.presets, figures.ratios, figures.all_ratios, figures.fixed_points, figures.poses,
+                         figures.pose_claim, figures.pose_rules):
+            function()
+            with mock.patch.object(figures, 'grouped', of_trained_scenes), self.assertRaisesRegex(SystemExit, 'trained'):
+                function()
+
+    def test_poses_leave_out_walks_that_presets_were_trained_on(self):
+        heads = 'task', 'set', 'detector', 'descriptor', 'matching', 'error'
+        errors = {'strecha': (0, 5), 'walk_street': (10, 90), 'walk_facade': (2,), 'walk_room': (0,), 'walk_terrain': (0,)}
+        with tempfile.TemporaryDirectory() as folder:
+            source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
+            with open(source, 'w', newline='') as file:
+                csv.writer(file).writerows([heads] + [('pose', name, 'Hessian', 'IIB', 'both', error)
+                                                      for name, some in errors.items() for error in some])
+            summaries.summarize(source, target, *summaries.PLANS['whole_tasks.csv'])
+            with open(target, newline='') as file:
+                found = {row['place']: row for row in csv.DictReader(file)}
+        self.assertEqual({place: (row['pairs'], round(float(row['score']), 3)) for place, row in found.items()},
+                         {'buildings': ('2', .75), 'walks': ('3', .267)})
+        self.assertEqual((found['buildings']['low'], found['buildings']['high']), ('0.5000', '1.0000'))
+
+    def test_intervals(self):
+        self.assertEqual(summaries.interval([.5] * 9), [.5, .5])
+        low, high = summaries.interval([0, 1] * 50)
+        self.assertAlmostEqual(low, .5 - 1.96 * .05, delta=.015)
+        self.assertAlmostEqual(high, .5 + 1.96 * .05, delta=.015)
+
+
+if __name__ == '__main__':
+    unittest.main()
