@@ -1,4 +1,4 @@
-"""opencv-iib, or python -m opencv_iib: a picture of two matched images, a database for COLMAP, or files for hloc."""
+"""opencv-iib, or python -m opencv_iib: two matched images, databases for COLMAP, files for hloc, maps and poses in them."""
 from __future__ import annotations
 
 import argparse
@@ -63,7 +63,56 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument('matches', help='HDF5 file to write')
     command.add_argument('pairs', help='list of pairs to write')
     command.add_argument('--force', action='store_true', help='replace files that are there')
+    _add_localization(commands)
     return parser
+
+
+def _add_localization(commands: Any) -> None:
+    def command(name: str, description: str, *, localizes: bool) -> argparse.ArgumentParser:
+        parser: argparse.ArgumentParser = commands.add_parser(name, help=description)
+        if localizes:
+            parser.add_argument('--map', required=True, help='folder that the command map wrote')
+        parser.add_argument('--images', required=True, help='folder of images, also in folders below it')
+        parser.add_argument('--workers', type=int, help='threads (one a core)')
+        if localizes:
+            parser.add_argument('--camera', metavar='MODEL,WIDTH,HEIGHT,PARAMS',
+                                help="COLMAP's name and parameters of the camera of all images, instead of EXIF")
+        return parser
+
+    mapping = command('map', 'make a map for localization of a COLMAP model', localizes=False)
+    mapping.add_argument('--model', required=True, help='folder of a COLMAP model, binary or text')
+    mapping.add_argument('--out', required=True, help='folder to write; an interrupted run goes on from NAME.partial')
+    mapping.add_argument('--points', type=int, default=2000, help='at most so many an image (%(default)s)')
+    localizing = command('localize', 'find where images were taken; status 0: all, 4: some, 3: none', localizes=True)
+    localizing.add_argument('--out', required=True, help='folder to write; older results there are replaced')
+    localizing.add_argument('--pictures', action='store_true', help='write each image with the points that agree')
+    updating = command('update', 'add the light of images to a map', localizes=True)
+    updating.add_argument('--out', help='folder of the new map, instead of the old one')
+
+
+SOME_FOUND, NONE_FOUND = 4, 3  # status of localize
+
+
+def _localization(arguments: argparse.Namespace) -> int:
+    from opencv_iib import localization
+    from opencv_iib.localization._pycolmap import pycolmap
+    pycolmap.logging.minloglevel = pycolmap.logging.FATAL.value  # its errors come as exceptions
+    if arguments.workers is not None and arguments.workers < 1:
+        raise ValueError(f'workers is {arguments.workers}: at least 1 is needed')
+    if arguments.command == 'map':
+        model = localization.build_map(arguments.model, arguments.images, arguments.out, arguments.points,
+                                       arguments.workers).model
+        print(f'{arguments.out}: {model.num_reg_images()} images, {model.num_points3D()} points')
+        return 0
+    camera = None if arguments.camera is None else localization.parse_camera(arguments.camera)
+    if arguments.command == 'update':
+        counts = localization.update_map(arguments.map, arguments.images, camera, arguments.out, arguments.workers)
+        print(f'{arguments.out or arguments.map}: ' + ', '.join(f'{count} {name}' for name, count in counts.items()))
+        return 0
+    found, count = localization.localize_images(arguments.map, arguments.images, arguments.out, camera, arguments.pictures,
+                                                arguments.workers)
+    print(f'{arguments.out}: {found} of {count} images have a pose')
+    return 0 if found == count else SOME_FOUND if found else NONE_FOUND
 
 
 def _client(scheduler: Optional[str]) -> contextlib.AbstractContextManager[Any]:
@@ -92,6 +141,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     try:
         if arguments.command == 'demo':
             print(demo(arguments.image_a, arguments.image_b, arguments.out, _feature_options(arguments)))
+        elif arguments.command in ('map', 'localize', 'update'):
+            return _localization(arguments)
         elif arguments.command == 'hloc':
             count = hloc.export(arguments.database, arguments.features, arguments.matches, arguments.pairs,
                                 arguments.force)

@@ -172,6 +172,10 @@ class Database:
         """Numbers of the images by name, in the order of the names."""
         return dict(self._db.execute('SELECT name, image_id FROM images ORDER BY name'))
 
+    def sizes(self) -> Iterator[tuple[str, int, int]]:
+        """Name, width and height of each image."""
+        yield from self._db.execute('SELECT name, width, height FROM images NATURAL JOIN cameras ORDER BY name')
+
     def find_camera(self, model: int, width: int, height: int, params: np.ndarray, prior: bool) -> Optional[int]:
         """The number of a camera with these values; None if there is none."""
         row = self._db.execute('SELECT camera_id FROM cameras WHERE model=? AND width=? AND height=? AND params=? AND '

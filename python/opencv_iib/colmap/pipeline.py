@@ -6,7 +6,7 @@ import functools
 import os
 import socket
 import sys
-from typing import Any, Callable, Iterator, Optional
+from typing import Any, Callable, Iterable, Iterator, Optional
 
 import numpy as np
 
@@ -79,12 +79,14 @@ def describe_image(folder: str, options: Options, name: str
     return to_colmap(rows), codes, width, height, options.focal or exif_focal_length(path, width, height)
 
 
-def describe_images(database: Database, folder: str, options: Options, crew: Crew, log: Callable[[str], None]) -> int:
+def describe_images(database: Database, folder: str, names: Iterable[str], options: Options, crew: Crew,
+                    log: Callable[[str], None]) -> int:
     """Describes the images that the database does not know, and removes those that were changed or are gone.
 
+    :param names: of images in the folder.
     :return: how many are broken; each is a line in `log`.
     """
-    stamps = {name: stamp(os.path.join(folder, name)) for name in find_images(folder)}
+    stamps = {name: stamp(os.path.join(folder, name)) for name in names}
     for name, known in database.stamps().items():
         if stamps.get(name) != known:
             database.forget(name)
@@ -152,11 +154,15 @@ def match_tile(level_sizes: tuple[int, ...], ratio: float, verify: str,
     return [match_pair(_matcher(level_sizes, ratio), verify, images[a], images[b]) for a, b in pairs]
 
 
-def match_pairs(database: Database, options: Options, level_sizes: tuple[int, ...], verify: str, crew: Crew) -> None:
-    """Matches, and with magsac verifies, the pairs that the database does not hold."""
+def match_pairs(database: Database, listed: tuple[Iterable[tuple[int, int]], Optional[int]], ratio: float,
+                level_sizes: tuple[int, ...], verify: str, crew: Crew) -> None:
+    """Matches, and with magsac verifies, the pairs that the database does not hold.
+
+    :param listed: pairs of image ids, and how many there are if that is known.
+    """
     images = Cache(lambda i: crew.hold(database.load_codes(i), database.load_keypoints(i)[:, :2]),
                    2 * pair_lists.BLOCK + 2)
-    pairs, total = list_pairs(database, options, level_sizes)
+    pairs, total = listed
     progress = Progress('matching', total)
     begun: set[tuple[int, int]] = set()
 
@@ -172,7 +178,7 @@ def match_pairs(database: Database, options: Options, level_sizes: tuple[int, ..
         for tile in pair_lists.tiles(missing(), crew.tile_side):
             yield tile, {image: images[image] for pair in tile for image in pair}
 
-    match = functools.partial(match_tile, level_sizes, options.ratio, verify)
+    match = functools.partial(match_tile, level_sizes, ratio, verify)
     for (tile, _), results in in_parallel(match, jobs(), crew):
         if isinstance(results, Exception):
             raise results
@@ -232,9 +238,10 @@ def build_database(images: str, database: str, options: Options = Options(), for
     if os.path.exists(database) and not force:
         raise FileExistsError(f'{database} is there already: remove it, or pass force (--force)')
     with only_writer(database + '.partial'), Database(database, settings, force) as target:
-        failed = describe_images(target, images, options, crew, log)
+        failed = describe_images(target, images, names, options, crew, log)
         features = _features(options.features)
-        match_pairs(target, options, features.level_sizes(), verify, crew)
+        sizes = features.level_sizes()
+        match_pairs(target, list_pairs(target, options, sizes), options.ratio, sizes, verify, crew)
         verify_pairs(target, binary, log)
         if options.refine:
             refine_images(target, images, features, verify, threads)

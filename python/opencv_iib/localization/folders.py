@@ -1,0 +1,55 @@
+"""Folders that appear whole."""
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import fnmatch
+import os
+import shutil
+from typing import Iterator, Sequence
+
+from opencv_iib._lock import only_writer
+
+AT_FDCWD, RENAME_EXCHANGE = -100, 2  # of Linux
+
+
+def _move(source: str, target: str) -> None:
+    """In one step on Linux, also where the target is there: it is at `source` then."""
+    if not os.path.exists(target):
+        os.rename(source, target)
+        return
+    exchange = getattr(ctypes.CDLL(None), 'renameat2', None) if os.name == 'posix' else None
+    if exchange and exchange(AT_FDCWD, os.fsencode(source), AT_FDCWD, os.fsencode(target), RENAME_EXCHANGE) == 0:
+        return
+    old = source + '.old'
+    os.rename(target, old)
+    os.rename(source, target)
+    os.rename(old, source)
+
+
+@contextlib.contextmanager
+def new_folder(target: str, own: Sequence[str]) -> Iterator[str]:
+    """A folder to write to, ``target.partial``, which becomes `target` when the block ends without an error.
+
+    After an error it stays, and the next call goes on with what it holds.
+
+    :param own: patterns of the names that it may hold, the first of which it always holds: a folder that is there is
+        replaced only if it holds nothing else.
+    :raises FileExistsError: for a folder that holds something else.
+    :raises BlockingIOError: if another process is writing it.
+    """
+    target = os.path.abspath(target)
+    if os.path.exists(target):
+        if not os.path.isdir(target):
+            raise FileExistsError(f'{target} is a file: choose another folder')
+        names = os.listdir(target)
+        foreign = [name for name in names if not any(fnmatch.fnmatch(name, pattern) for pattern in own)]
+        if foreign or (names and own[0] not in names):
+            raise FileExistsError(f'{target} holds {(foreign or names)[0]} and was not written by this command: choose '
+                                  'another folder')
+    partial = target + '.partial'
+    os.makedirs(partial, exist_ok=True)
+    with only_writer(partial):
+        yield partial
+        _move(partial, target)
+        shutil.rmtree(partial, ignore_errors=True)  # what was at the target before

@@ -1,0 +1,57 @@
+"""Which images of many an image resembles, by votes of its codes."""
+from __future__ import annotations
+
+from typing import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+TABLES = 16
+STRONGEST = 400  #: codes of an image that are in the tables
+COARSE = 4  #: bits are taken from the first of so many parts of a code: coarse cells change least
+FREQUENT = 64  #: codes that share a key: what is that frequent tells nothing
+
+
+class Votes:
+    """Tables of the images' codes by a few of their bits; threads may share one."""
+
+    def __init__(self, codes: Sequence[NDArray[np.uint8]]) -> None:
+        """
+        :param codes: of each image, the strongest first.
+        """
+        samples = [c[:STRONGEST] for c in codes]
+        self.images = len(codes)
+        count = sum(map(len, samples))
+        bits = max(8, min(24, count.bit_length()))  # about one code a key; float32 has 24
+        self._bytes = codes[0].shape[1] // COARSE
+        random = np.random.default_rng(1)
+        self._weights = np.zeros((8 * self._bytes, TABLES), np.float32)
+        for table in range(TABLES):
+            self._weights[random.permutation(8 * self._bytes)[:bits], table] = 2. ** np.arange(bits)
+        self._begins = np.empty((TABLES, (1 << bits) + 1), np.uint32)
+        self._entries = np.empty((TABLES, count), np.uint32)
+        owner = np.repeat(np.arange(self.images, dtype=np.uint32), list(map(len, samples)))
+        keys = np.concatenate([self._keys(s) for s in samples])
+        for table in range(TABLES):
+            order = np.argsort(keys[:, table], kind='stable')
+            self._begins[table, 0] = 0
+            np.cumsum(np.bincount(keys[:, table], minlength=1 << bits), out=self._begins[table, 1:])
+            self._entries[table] = owner[order]
+
+    def _keys(self, codes: NDArray[np.uint8]) -> NDArray[np.int32]:
+        ones = np.unpackbits(np.ascontiguousarray(codes[:, :self._bytes]), axis=1)
+        return (ones.astype(np.float32) @ self._weights).astype(np.int32)
+
+    def __call__(self, codes: NDArray[np.uint8]) -> NDArray[np.float64]:
+        """Votes for each image: each key of a code has one, shared among the codes of the same key."""
+        keys = self._keys(codes).T
+        tables = np.arange(TABLES)[:, None]
+        begins = self._begins[tables, keys].astype(np.int64)
+        counts = self._begins[tables, keys + 1] - begins
+        rare = (counts > 0) & (counts <= FREQUENT)
+        counts = counts[rare]
+        begins = (begins + tables * self._entries.shape[1])[rare]
+        if not len(counts):
+            return np.zeros(self.images)
+        places = np.arange(counts.sum()) + np.repeat(begins - np.cumsum(counts) + counts, counts)
+        return np.asarray(np.bincount(self._entries.ravel()[places], np.repeat(1 / counts, counts), self.images), np.float64)

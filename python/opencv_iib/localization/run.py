@@ -1,0 +1,153 @@
+"""A folder of images, localized in a map; what is written about it."""
+from __future__ import annotations
+
+import csv
+import functools
+import os
+from typing import Any, Iterable, Iterator, Optional
+
+import numpy as np
+
+from opencv_iib.colmap.images import find_images, read_grey
+from opencv_iib.colmap.parallel import Threads, in_parallel
+from opencv_iib.colmap.progress import Progress
+from opencv_iib.localization._pycolmap import pycolmap
+from opencv_iib.localization.folders import new_folder
+from opencv_iib.localization.localizer import Localizer, Location, project
+from opencv_iib.localization.map import Map
+
+OWN = ('frames.csv', 'trajectory.txt', 'cameras.bin', 'images.bin', 'points3D.bin', 'rigs.bin', 'frames.bin', 'matches')
+AXES = ('x', 'y', 'z', 'rx', 'ry', 'rz')
+
+
+def parse_camera(text: str) -> Any:
+    """pycolmap.Camera of ``MODEL,WIDTH,HEIGHT,PARAMS``, as COLMAP names models and parameters.
+
+    :raises ValueError: saying what is wrong, and which models there are.
+    """
+    model, _, numbers = text.partition(',')
+    models = [name for name in pycolmap.CameraModelId.__members__ if name != 'INVALID']
+    if model not in models:
+        raise ValueError(f'no camera model {model}: there are {", ".join(models)}')
+    try:
+        width, height, *params = [float(number) for number in numbers.split(',')]
+        camera = pycolmap.Camera(model=model, width=int(width), height=int(height), params=params)
+        valid = camera.verify_params() and width >= 1 and height >= 1 and np.isfinite(params).all()
+    except ValueError:
+        valid = False
+    if not valid:
+        needed = pycolmap.Camera.create_from_model_name(0, model, 1., 1, 1).params_info
+        raise ValueError(f'camera {text}: {model},WIDTH,HEIGHT and then {needed} are needed')
+    return camera
+
+
+def find_camera(path: str, width: int, height: int) -> Any:
+    """pycolmap.Camera by the focal length that an image's EXIF data tell.
+
+    :raises ValueError: if they tell none.
+    """
+    camera = pycolmap.infer_camera_from_image(path)
+    if not camera.has_prior_focal_length or (camera.width, camera.height) != (width, height):
+        raise ValueError('its EXIF data tell no focal length: give --camera MODEL,WIDTH,HEIGHT,PARAMS')
+    return camera
+
+
+def _localize(localizer: Localizer, folder: str, camera: Any, name: str) -> tuple[Any, Location]:
+    path = os.path.join(folder, name)
+    grey = read_grey(path)
+    own = camera or find_camera(path, grey.shape[1], grey.shape[0])
+    return own, localizer.localize(grey, own)
+
+
+def locate(localizer: Localizer, folder: str, names: list[str], camera: Any, workers: Optional[int]
+           ) -> Iterator[tuple[str, Any, Location]]:
+    """Name, camera (None if the image cannot be read or has none) and location of each image, in order."""
+    progress = Progress('localizing', len(names))
+    job = functools.partial(_localize, localizer, folder, camera)
+    for name, result in in_parallel(job, names, Threads(workers or os.cpu_count() or 1)):
+        if isinstance(result, Exception) and not isinstance(result, (ValueError, OSError)):
+            raise result
+        yield (name, None, Location(str(result))) if isinstance(result, Exception) else (name, *result)
+        progress.step()
+    progress.close()
+
+
+def images_of(folder: str) -> list[str]:
+    """Names of the images below a folder.
+
+    :raises ValueError: if there are none.
+    """
+    names = find_images(folder) if os.path.isdir(folder) else []
+    if not names:
+        raise ValueError(f'no images below {folder}')
+    return names
+
+
+def _write_picture(path: str, image: str, camera: Any, location: Location) -> None:
+    import cv2
+    picture = cv2.cvtColor(read_grey(image), cv2.COLOR_GRAY2BGR)
+    for seen, mapped in zip(location.pixels, camera.img_from_cam(project(location.cam_from_world, location.points))):
+        begin, end = ([round(8 * (v - .5)) for v in place] for place in (seen, mapped))  # eighths of pixels, see shift
+        cv2.line(picture, begin, end, (0, 0, 255), 1, cv2.LINE_AA, 3)
+        cv2.circle(picture, begin, 3 * 8, (0, 200, 0), 1, cv2.LINE_AA, 3)
+    if not cv2.imwrite(path, picture):
+        raise OSError(f'{path} cannot be written')
+
+
+def add_images(model: Any, found: Iterable[tuple[str, Any, Location]]) -> list[int]:
+    """Adds localized images, with the keypoints that agree, to a pycolmap.Reconstruction; their new ids."""
+    cameras = {camera.params_to_string() + f'{camera.model_name} {camera.width} {camera.height}': camera.camera_id
+               for camera in model.cameras.values() if camera.camera_id in model.rigs}
+    ids, number = [], max(model.images, default=0)
+    number = max(number, max(model.frames, default=0))
+    for name, camera, location in found:
+        key = camera.params_to_string() + f'{camera.model_name} {camera.width} {camera.height}'
+        if key not in cameras:
+            cameras[key] = max((*model.cameras, *model.rigs, 0)) + 1
+            model.add_camera_with_trivial_rig(pycolmap.Camera(
+                camera_id=cameras[key], model=camera.model, width=camera.width, height=camera.height, params=camera.params))
+        number += 1
+        image = pycolmap.Image(name, location.pixels, cameras[key], number)
+        model.add_image_with_trivial_frame(image, location.cam_from_world)
+        ids.append(number)
+    return ids
+
+
+def localize_images(map: str | Map, images: str, out: str, camera: Any = None, pictures: bool = False,
+                    workers: Optional[int] = None) -> tuple[int, int]:
+    """Localizes the images below a folder and writes what was found.
+
+    :param map: folder of a map, or what read_map gave.
+    :param out: folder to write: ``trajectory.txt``, ``frames.csv``, a COLMAP model of the localized images and, with
+        `pictures`, ``matches/``. It appears whole; older results there are replaced.
+    :param camera: pycolmap.Camera of all images; None for each one's own, by its EXIF data.
+    :param workers: threads; None for one a core.
+    :return: how many images have a pose, and of how many.
+    """
+    names = images_of(images)
+    localizer = Localizer(map)
+    model = pycolmap.Reconstruction()
+    with new_folder(out, OWN) as partial:
+        os.makedirs(os.path.join(partial, 'matches'), exist_ok=True)
+        with open(os.path.join(partial, 'trajectory.txt'), 'w', encoding='utf-8') as trajectory, \
+                open(os.path.join(partial, 'frames.csv'), 'w', encoding='utf-8', newline='') as file:
+            frames = csv.writer(file)
+            trajectory.write('# name tx ty tz qx qy qz qw\n')
+            frames.writerow(['name', 'found', 'reason', 'matches', 'inliers',
+                             *(f'{a}_{b}' for n, a in enumerate(AXES) for b in AXES[n:])])
+            for name, own, location in locate(localizer, images, names, camera, workers):
+                found = location.cam_from_world is not None
+                covariance = location.covariance[np.triu_indices(6)] if location.covariance is not None else ()
+                frames.writerow([name, int(found), location.reason, location.matches, location.inliers,
+                                 *(f'{value:.6g}' for value in covariance if found)])
+                if not found:
+                    continue
+                pose = location.cam_from_world.inverse()
+                numbers = [repr(float(v)) for v in (*pose.translation, *pose.rotation.quat)]
+                trajectory.write(f'{os.path.splitext(name)[0]} {" ".join(numbers)}\n')
+                add_images(model, [(name, own, location)])
+                if pictures:
+                    flat = name.replace('/', '-') + '.png'
+                    _write_picture(os.path.join(partial, 'matches', flat), os.path.join(images, name), own, location)
+        model.write(partial)
+    return model.num_images(), len(names)

@@ -1,0 +1,344 @@
+import csv
+import io
+import os
+import shutil
+import tempfile
+import unittest
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import redirect_stderr, redirect_stdout
+from unittest import mock
+
+import numpy as np
+
+from support import cv2, texture
+
+try:
+    import pycolmap
+except ImportError:
+    pycolmap = None
+
+if cv2 is not None:
+    from opencv_iib.__main__ import main
+    from opencv_iib.colmap import pipeline
+    from opencv_iib.localization import Localizer, build_map, parse_camera, read_map, update
+    from opencv_iib.localization.folders import new_folder
+    from opencv_iib.localization.localizer import camera_covariance
+    from opencv_iib.localization.map import compact
+    from opencv_iib.localization.retrieval import Votes
+
+SIZE = WIDTH, HEIGHT = 320, 240
+CAMERA = f'PINHOLE,{WIDTH},{HEIGHT},300,300,160,120'
+PLACES = [(-1.5, 0), (-1, .3), (-.5, 0), (0, .3), (.5, 0), (1, .3)]  #: x and y in front of a wall at z = 5
+
+
+def wall(seed):
+    """1200 x 900, a hundred pixels a metre."""
+    return cv2.resize(texture(240, 180, seed=seed), (1200, 900), interpolation=cv2.INTER_CUBIC)
+
+
+def pose(x, y):
+    """Camera from world, turned towards the middle of the wall."""
+    turn = cv2.Rodrigues(np.array([.05 * y, .1 * x, 0]))[0]
+    return pycolmap.Rigid3d(pycolmap.Rotation3d(turn), -turn @ np.array([x, y, 0]))
+
+
+def photograph(picture, x, y, lit=lambda grey: grey):
+    matrix = pose(x, y).matrix()
+    camera = np.array([[300, 0, 159.5], [0, 300, 119.5], [0, 0, 1]])
+    from_wall = camera @ (np.stack([matrix[:, 0], matrix[:, 1], 5 * matrix[:, 2] + matrix[:, 3]], axis=1))
+    from_pixels = np.array([[.01, 0, -6], [0, .01, -4.5], [0, 0, 1]])  # to metres
+    return lit(cv2.warpPerspective(picture, from_wall @ from_pixels, SIZE))
+
+
+def evening(grey):
+    shade = np.linspace(10, 40, WIDTH) * (grey / 255) ** 1.5
+    return np.clip(shade + np.random.default_rng(1).normal(5, 2, grey.shape), 0, 255).astype(np.uint8)
+
+
+def write_model(folder, names, unit=1., text=False):
+    model = pycolmap.Reconstruction()
+    camera = parse_camera(CAMERA)
+    camera.camera_id = 1
+    model.add_camera_with_trivial_rig(camera)
+    for i, (name, place) in enumerate(zip(names, PLACES), 1):
+        if text and ' ' in name:  # which COLMAP's text cannot hold
+            continue
+        cam_from_world = pose(*place)
+        cam_from_world.translation = cam_from_world.translation * unit
+        model.add_image_with_trivial_frame(pycolmap.Image(name, np.zeros((0, 2)), 1, i), cam_from_world)
+    os.makedirs(folder, exist_ok=True)
+    model.write_text(folder) if text else model.write(folder)
+
+
+def run(*arguments):
+    """Status and what was written to standard error."""
+    errors = io.StringIO()
+    with redirect_stderr(errors), redirect_stdout(io.StringIO()):
+        status = main(list(arguments))
+    return status, errors.getvalue()
+
+
+@unittest.skipIf(cv2 is None, 'no cv2')
+@unittest.skipIf(pycolmap is None, 'no pycolmap')
+class Localization(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls):
+        temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(temporary.cleanup)
+        cls.folder = temporary.name
+        cls.images, cls.model, cls.map, cls.dark = (os.path.join(cls.folder, name) for name in
+                                                    ('images', 'model', 'map', 'dark'))
+        cls.names = [f'left side/{i} of 6.png' for i in range(3)] + [f'{i}.png' for i in range(3)]
+        os.makedirs(os.path.join(cls.images, 'left side'))
+        os.makedirs(cls.dark)
+        picture = wall(3)
+        for name, place in zip(cls.names, PLACES):
+            cv2.imwrite(os.path.join(cls.images, name), photograph(picture, *place))
+        cls.truth = {'a': (-.8, .1), 'b': (-.2, .2), 'c': (.3, .1)}
+        for name, place in cls.truth.items():
+            cv2.imwrite(os.path.join(cls.dark, name + '.png'), photograph(picture, *place, evening))
+        write_model(cls.model, cls.names)
+        assert run('map', '--model', cls.model, '--images', cls.images, '--out', cls.map, '--points', '400')[0] == 0
+
+    def path(self, name):
+        return os.path.join(tempfile.mkdtemp(dir=self.folder), name)
+
+    def grey(self, name):
+        return cv2.imread(os.path.join(self.dark, name + '.png'), cv2.IMREAD_GRAYSCALE)
+
+    def check(self, location, name, unit=1.):
+        self.assertEqual(location.reason, '')
+        found, true = location.cam_from_world.inverse(), pose(*self.truth[name]).inverse()
+        self.assertLess(np.linalg.norm(found.translation / unit - true.translation), .05)
+        self.assertLess(found.rotation.angle_to(true.rotation), .01)
+
+    def check_error(self, pattern, *arguments):
+        status, errors = run(*arguments)
+        self.assertEqual(status, 1)
+        self.assertRegex(errors.splitlines()[-1], pattern)
+        self.assertNotIn('Traceback', errors)
+
+    def test_a_map_is_a_model_of_points_that_its_keypoints_see(self):
+        made = read_map(self.map)
+        model = pycolmap.Reconstruction(self.map)
+        self.assertEqual({image.name for image in model.images.values()}, set(self.names))
+        self.assertGreater(model.num_points3D(), 200)
+        self.assertLess(model.compute_mean_reprojection_error(), 1)
+        depths = np.array([point.xyz[2] for point in made.model.points3D.values()])
+        self.assertLess(np.median(np.abs(depths - 5)), .02)  # on the wall
+        for i, codes in made.codes.items():
+            self.assertEqual(codes.shape, (made.model.image(i).num_points2D(), 128))
+            self.assertEqual(made.model.image(i).num_points3D, len(codes))
+
+    def test_another_light_is_localized_and_written(self):
+        out = self.path('out')
+        for _ in range(2):  # the second replaces the first
+            status, _ = run('localize', '--map', self.map, '--images', self.dark, '--camera', CAMERA, '--out', out,
+                            '--pictures')
+            self.assertEqual(status, 0)
+        self.assertEqual(sorted(os.listdir(os.path.join(out, 'matches'))), ['a.png.png', 'b.png.png', 'c.png.png'])
+        lines = open(os.path.join(out, 'trajectory.txt')).read().splitlines()
+        self.assertEqual(lines[0], '# name tx ty tz qx qy qz qw')
+        for line, (name, place) in zip(lines[1:], self.truth.items()):
+            word, *numbers = line.split()
+            numbers = np.array([float(number) for number in numbers])
+            true = pose(*place).inverse()
+            self.assertEqual(word, name)
+            self.assertLess(np.linalg.norm(numbers[:3] - true.translation), .05)
+            self.assertGreater(abs(numbers[3:] @ true.rotation.quat), .9999)
+        rows = list(csv.DictReader(open(os.path.join(out, 'frames.csv'))))
+        self.assertEqual([row['found'] for row in rows], ['1'] * 3)
+        self.assertGreater(int(rows[0]['inliers']), 15)
+        self.assertLess(float(rows[0]['x_x']) ** .5, .05)
+        model = pycolmap.Reconstruction(out)
+        self.assertEqual((model.num_reg_images(), model.num_cameras()), (3, 1))
+
+    def test_status_counts_the_images_with_a_pose(self):
+        mixed = self.path('mixed')
+        shutil.copytree(self.dark, mixed)
+        cv2.imwrite(os.path.join(mixed, 'elsewhere.png'), photograph(wall(9), 0, 0))
+        out = self.path('out')
+        arguments = 'localize', '--map', self.map, '--camera', CAMERA, '--out', out
+        self.assertEqual(run(*arguments, '--images', mixed)[0], 4)
+        rows = {row['name']: row for row in csv.DictReader(open(os.path.join(out, 'frames.csv')))}
+        self.assertRegex(rows['elsewhere.png']['reason'], 'too few matches')
+        for name in self.truth:
+            os.unlink(os.path.join(mixed, name + '.png'))
+        with open(os.path.join(mixed, 'broken.png'), 'wb') as file:
+            file.write(b'nothing')
+        self.assertEqual(run(*arguments, '--images', mixed)[0], 3)
+        self.assertEqual(run('localize', '--map', self.map, '--images', self.dark, '--out', out)[0], 3)
+        self.assertIn('give --camera', open(os.path.join(out, 'frames.csv')).read())
+
+    def test_text_models_and_any_unit(self):
+        model, out = self.path('model'), self.path('map')
+        write_model(model, self.names, unit=1000., text=True)
+        made = build_map(model, self.images, out, 400)
+        self.check(Localizer(made).localize(self.grey('c'), parse_camera(CAMERA)), 'c', 1000.)
+
+    def test_pairs_are_those_that_share_points(self):
+        model, out = self.path('model'), self.path('map')
+        pycolmap.Reconstruction(self.map).write(os.path.dirname(model))
+        made = build_map(os.path.dirname(model), self.images, out, 400)
+        self.check(Localizer(made).localize(self.grey('b'), parse_camera(CAMERA)), 'b')
+
+    def test_a_prior_gates_and_is_not_needed(self):
+        localizer, camera = Localizer(self.map), parse_camera(CAMERA)
+        with mock.patch.object(Localizer, '_similar', side_effect=AssertionError):
+            self.check(localizer.localize(self.grey('b'), camera, pose(*self.truth['a'])), 'b')
+        self.check(localizer.localize(self.grey('b'), camera, pose(40, 0)), 'b')
+
+    def test_threads_share_a_localizer(self):
+        localizer, camera = Localizer(self.map), parse_camera(CAMERA)
+        with ThreadPoolExecutor(2) as pool:
+            found = list(pool.map(lambda name: localizer.localize(self.grey(name), camera), 'abcabc'))
+        for name, location in zip('abcabc', found):
+            self.check(location, name)
+        np.testing.assert_array_equal(found[0].cam_from_world.params, found[3].cam_from_world.params)
+
+    def test_the_covariance_is_that_of_repeated_measurements(self):
+        localizer, camera = Localizer(self.map), parse_camera(CAMERA)
+        location = localizer.localize(self.grey('b'), camera)
+        true, random, scatter = location.cam_from_world, np.random.default_rng(1), []
+        exact = camera.img_from_cam(location.points @ true.matrix()[:, :3].T + true.translation)
+        far = np.array([30., 10, -20])  # from the world's origin, as coordinates of a country are
+        points = location.points + far
+        true.translation = true.translation - true.rotation.matrix() @ far
+        for _ in range(200):
+            noisy = exact + random.normal(0, .2, exact.shape)
+            found = pycolmap.refine_absolute_pose(true, noisy, points, np.ones(len(noisy), bool), camera,
+                                                  return_covariance=True)
+            moved = found['cam_from_world'].inverse()
+            turn = cv2.Rodrigues(moved.rotation.matrix() @ true.rotation.matrix())[0].ravel()
+            scatter.append([*(moved.translation - true.inverse().translation), *turn])
+        covariance = .2 ** 2 * camera_covariance(true, found['covariance'])
+        np.testing.assert_allclose(np.std(scatter, axis=0), np.sqrt(np.diag(covariance)), rtol=.25)
+
+    def test_an_interrupted_run_goes_on(self):
+        out = self.path('map')
+        arguments = self.model, self.images, out, 400
+        with redirect_stderr(io.StringIO()), mock.patch('opencv_iib.localization.build.match_pairs',
+                                                        side_effect=KeyboardInterrupt):
+            with self.assertRaises(KeyboardInterrupt):
+                build_map(*arguments)
+        self.assertFalse(os.path.exists(out))
+        with redirect_stderr(io.StringIO()), mock.patch.object(pipeline, 'describe_image', side_effect=AssertionError):
+            build_map(*arguments)
+        self.assertEqual(sorted(os.listdir(out)), sorted(os.listdir(self.map)))
+        self.assertFalse(os.path.exists(out + '.partial'))
+
+    def test_wrong_models_get_one_line(self):
+        arguments = '--images', self.images, '--out', self.path('map')
+        self.check_error('no folder', 'map', '--model', self.path('none'), *arguments)
+        self.check_error('no COLMAP model', 'map', '--model', self.images, *arguments)
+        model = self.path('model')
+        shutil.copytree(self.map, model)
+        for name in ('cameras.bin', 'images.bin', 'points3D.bin', 'rigs.bin', 'frames.bin'):
+            with self.subTest(name):
+                whole = open(os.path.join(model, name), 'rb').read()
+                with open(os.path.join(model, name), 'wb') as file:
+                    file.write(whole[:-5])
+                self.check_error(f'^map: {model}: (no COLMAP model, or a damaged one|{name} is cut off)', 'map', '--model',
+                                 model, *arguments)
+                with open(os.path.join(model, name), 'wb') as file:
+                    file.write(whole)
+        write_model(model + '1', [*self.names[:-1], 'missing.png'])
+        self.check_error('missing.png is missing, one of 1', 'map', '--model', model + '1', *arguments)
+        with mock.patch(__name__ + '.PLACES', [(y, x) for x, y in PLACES]):
+            write_model(model + '2', self.names)
+        self.check_error('fit the poses', 'map', '--model', model + '2', *arguments)
+
+    def test_images_of_another_size_get_one_line(self):
+        images = self.path('images')
+        shutil.copytree(self.images, images)
+        cv2.imwrite(os.path.join(images, '0.png'), np.zeros((HEIGHT // 2, WIDTH // 2), np.uint8))
+        self.check_error('0.png has 160 x 120 pixels and its camera in the model 320 x 240', 'map', '--model', self.model,
+                         '--images', images, '--out', self.path('map'))
+
+    def test_damaged_maps_get_one_line(self):
+        arguments = '--images', self.dark, '--camera', CAMERA, '--out', self.path('out')
+        self.check_error('is no map', 'localize', '--map', self.images, *arguments)
+        for name in os.listdir(self.map):
+            with self.subTest(name):
+                damaged = self.path('map')
+                shutil.copytree(self.map, damaged)
+                with open(os.path.join(damaged, name), 'r+b') as file:
+                    file.seek(-9, os.SEEK_END)
+                    file.write(b'#')
+                self.check_error('or a damaged one', 'localize', '--map', damaged, *arguments)
+
+    def test_wrong_cameras_get_one_line(self):
+        for text, pattern in (('FISH,1,2,3', 'no camera model FISH: there are SIMPLE_PINHOLE, '),
+                              ('PINHOLE,640,480,500', 'PINHOLE,WIDTH,HEIGHT and then fx, fy, cx, cy are needed'),
+                              ('PINHOLE', 'are needed'), ('PINHOLE,640,480,a,b,c,d', 'are needed')):
+            self.check_error(pattern, 'localize', '--map', self.map, '--images', self.dark, '--camera', text, '--out',
+                             self.path('out'))
+
+    def test_foreign_folders_are_left_alone(self):
+        foreign = self.path('mine')
+        os.makedirs(foreign)
+        open(os.path.join(foreign, 'letter.txt'), 'w').close()
+        self.check_error('holds letter.txt', 'map', '--model', self.model, '--images', self.images, '--out', foreign)
+        with self.assertRaisesRegex(RuntimeError, 'middle'), new_folder(self.path('new'), ['a']) as partial:
+            raise RuntimeError('middle')
+        self.assertTrue(os.path.isdir(partial))
+
+    def test_updates_add_a_light_once_and_stay_bounded(self):
+        out, camera = self.path('map'), parse_camera(CAMERA)
+        with redirect_stderr(io.StringIO()), mock.patch.object(update, 'KNOWN', .9):
+            first = update.update_map(self.map, self.dark, camera, out)
+            self.assertGreaterEqual(first['added'], 2)
+            grown = read_map(out)
+            self.check(Localizer(grown).localize(self.grey('a'), camera), 'a')
+            old = Localizer(self.map).localize(self.grey('a'), camera).inliers
+            self.assertGreater(Localizer(grown).localize(self.grey('a'), camera).inliers, 1.2 * old)
+            with mock.patch.object(update, 'LIGHTS', 2):
+                for _ in range(3):
+                    update.update_map(out, self.dark, camera)
+        again = read_map(out)
+        self.assertEqual(again.updates, 4)
+        self.assertLessEqual(len(again.codes), len(self.names) + 2 * first['added'])
+        self.assertTrue({image.name for image in again.model.images.values()} > set(self.names))
+        with redirect_stderr(io.StringIO()), mock.patch.object(update, 'KNOWN', 0.):
+            self.assertEqual(update.update_map(out, self.dark, camera)['added'], 0)  # it knows this light
+
+    def test_codes_that_nobody_finds_are_dropped(self):
+        out, camera = self.path('map'), parse_camera(CAMERA)
+        with redirect_stderr(io.StringIO()), mock.patch.object(update, 'PATIENCE', 2), mock.patch.object(update, 'KNOWN', 0.):
+            self.assertEqual(update.update_map(self.map, self.dark, camera, out)['codes dropped'], 0)
+            self.assertGreater(update.update_map(out, self.dark, camera)['codes dropped'], 0)
+        before, after = read_map(self.map), read_map(out)
+        self.assertLess(sum(map(len, after.codes.values())), sum(map(len, before.codes.values())))
+        for name in self.truth:
+            self.check(Localizer(after).localize(self.grey(name), camera), name)
+
+    def test_compact_keeps_points_and_tracks(self):
+        made = read_map(self.map)
+        codes = dict(made.codes)
+        before = {tuple(p.xyz): p.track.length() for p in made.model.points3D.values()}
+        compact(made.model, codes)
+        self.assertEqual({tuple(p.xyz): p.track.length() for p in made.model.points3D.values()}, before)
+        self.assertTrue(all(np.array_equal(codes[i], made.codes[i]) for i in codes))
+
+    def test_an_image_has_most_votes_of_its_own_codes(self):
+        random = np.random.default_rng(5)
+        codes = [random.integers(0, 256, (count, 128), np.uint8) for count in (300, 0, 300, 300)]
+        votes = Votes(codes)
+        for n in (0, 2, 3):
+            noisy = codes[n] ^ (random.random(codes[n].shape) < .02).astype(np.uint8)
+            self.assertEqual(np.argmax(votes(noisy)), n)
+        self.assertEqual(votes(codes[1]).tolist(), [0, 0, 0, 0])
+
+
+@unittest.skipIf(cv2 is None, 'no cv2')
+@unittest.skipIf(pycolmap is not None, 'pycolmap is there')
+class WithoutPycolmap(unittest.TestCase):
+
+    def test_the_commands_say_what_to_install(self):
+        status, errors = run('map', '--model', 'a', '--images', 'b', '--out', 'c')
+        self.assertEqual((status, 'pip install opencv-iib[localization]' in errors), (1, True))
+
+
+if __name__ == '__main__':
+    unittest.main()
