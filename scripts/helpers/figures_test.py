@@ -27,6 +27,12 @@ class Figures(unittest.TestCase):
             with mock.patch.object(figures, 'grouped', of_trained_scenes), self.assertRaisesRegex(SystemExit, 'trained'):
                 function()
 
+    def test_two_presets_have_seen_rendered_scenes(self):
+        row = {'place': 'rendered', 'configuration': 'IIB SMALL', 'pairs': '1', 'recall': '1'}
+        with self.assertRaisesRegex(SystemExit, 'trained'):
+            figures.mean([row], 'recall')
+        self.assertEqual(figures.mean([{**row, 'configuration': 'IIB TINY'}], 'recall'), 1)
+
     def test_poses_leave_out_walks_that_presets_were_trained_on(self):
         heads = 'task', 'set', 'detector', 'descriptor', 'matching', 'error'
         errors = {'strecha': (0, 5), 'walk_street': (10, 90), 'walk_facade': (2,), 'walk_room': (0,), 'walk_terrain': (0,)}
