@@ -4,7 +4,8 @@ import argparse
 import json
 
 
-def finish(axis, label):
+def finish(axis, title, label):
+    axis.set_title(title)
     axis.set_xlabel(label)
     axis.set_ylabel("ms")
     axis.grid(True, linewidth=0.4)
@@ -13,19 +14,22 @@ def finish(axis, label):
 
 def draw_pixels(axis, data):
     points = data["pixels"]
-    axis.plot([p["megapixels"] for p in points], [p["milliseconds"] for p in points], marker="o", label="IIB")
+    for key, label in (("milliseconds", "IIB"), ("orb_milliseconds", "ORB")):
+        found = [p for p in points if key in p]  # ORB's are in newer files alone
+        if found:
+            axis.plot([p["megapixels"] for p in found], [p[key] for p in found], marker="o", label=label)
     axis.set_xlim(left=0)
     axis.set_ylim(bottom=0)
-    finish(axis, f"megapixels ({points[0]['keypoints']} keypoints)")
+    finish(axis, "Describe: larger images", f"megapixels ({points[0]['keypoints']} keypoints)")
 
 
 def draw_keypoints(axis, data):
-    for name, label in (("default", "IIB"), ("cv::ORB", "ORB")):
+    for name, label in (("default", "IIB"), ("PRESET_UNIVERSAL", "IIB UNIVERSAL"), ("cv::ORB", "ORB"), ("BEBLID-512", "BEBLID-512")):
         row = next(r for r in data["rows"] if r["name"] == name)
         axis.plot(data["keypoints"], row["milliseconds"], marker="o", label=label)
     axis.set_xlim(left=0)
     axis.set_ylim(bottom=0)
-    finish(axis, f"keypoints ({data['width']} x {data['height']})")
+    finish(axis, "Describe: more points", f"keypoints ({data['width']} x {data['height']})")
 
 
 def draw_codes(axis, data):
@@ -35,7 +39,7 @@ def draw_codes(axis, data):
         axis.plot([m["codes"] for m in found], [m["milliseconds"] for m in found], marker="o", label=label)
     axis.set_xscale("log")
     axis.set_yscale("log")
-    finish(axis, "codes on either side, cross-check")
+    finish(axis, "Match", "codes on either side, cross-check")
 
 
 def main():

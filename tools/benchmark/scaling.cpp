@@ -58,10 +58,11 @@ struct Task
 void measure(const std::vector<Task>& tasks, int rounds)
 {
     const Ptr<IIB> iib = IIB::create();
+    const Ptr<Feature2D> orb = ORB::create();
     Mat descriptors;
     for (const Task& task : tasks)
     {
-        const Scaling::Point begun = {megapixels(task.image), (int)task.keypoints.size(), DBL_MAX};
+        const Scaling::Point begun = {megapixels(task.image), (int)task.keypoints.size(), DBL_MAX, DBL_MAX};
         *task.result = begun;
     }
     for (int round = 0; round < rounds; round++)
@@ -73,6 +74,12 @@ void measure(const std::vector<Task>& tasks, int rounds)
             iib->compute(task.image, keypoints, descriptors);
             meter.stop();
             task.result->milliseconds = std::min(task.result->milliseconds, meter.getTimeMilli());
+            keypoints = task.keypoints;
+            meter.reset();
+            meter.start();
+            orb->compute(task.image, keypoints, descriptors);
+            meter.stop();
+            task.result->orbMilliseconds = std::min(task.result->orbMilliseconds, meter.getTimeMilli());
         }
 }
 
@@ -96,13 +103,14 @@ void write(FileStorage& fs, const String& name, const std::vector<Scaling::Point
     for (const Scaling::Point& p : points)
         fs << "{"
            << "megapixels" << p.megapixels << "keypoints" << p.keypoints << "milliseconds" << p.milliseconds
-           << "}";
+           << "orb_milliseconds" << p.orbMilliseconds << "}";
     fs << "]";
 }
 
 void print(const Scaling::Point& p)
 {
-    printf("%8.2f Mpx %6d keypoints %8.3f ms\n", p.megapixels, p.keypoints, p.milliseconds);
+    printf("%8.2f Mpx %6d keypoints %8.3f ms, ORB %8.3f ms\n", p.megapixels, p.keypoints, p.milliseconds,
+            p.orbMilliseconds);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ struct Scaling
     {
         double megapixels;
         int keypoints;
-        double milliseconds;  //!< least of all rounds
+        double milliseconds, orbMilliseconds;  //!< least of all rounds, and cv::ORB's on the same keypoints
     };
 
     std::vector<Point> pixels;     //!< 1000 keypoints on ever larger images
