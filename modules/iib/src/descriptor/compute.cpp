@@ -69,14 +69,14 @@ void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Ma
         const std::vector<KeyPoint>& keypoints, Mat& descriptors)
 {
     const Parameters& p = plan.parameters;
-    WorkspacePool pool;
+    Workspaces workspaces;
     const Mat grey = integerMap(image, Rect(Point(), image.size()));
     std::vector<SupportRegion> regions;
     regions.reserve(keypoints.size());
     for (const KeyPoint& kp : keypoints)
         regions.push_back(regionOf(kp, p));
     if (p.orientation == IIB::ORIENTATION_GRADIENT && p.channels != 0)
-        findAngles(plan, grey, keypoints, pool, regions);
+        findAngles(plan, grey, keypoints, workspaces, regions);
     std::vector<Rect> pixels;
     pixels.reserve(keypoints.size());
     for (const SupportRegion& region : regions)
@@ -84,7 +84,7 @@ void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Ma
 
     const std::vector<Channel> channels = channelsOf(p, grey, extra);
     const std::vector<Job> jobs = cutJobs(regions, pixels);
-    parallelJobs((int)jobs.size(), pool, [&](int i, Workspace& workspace) {
+    parallelJobs((int)jobs.size(), workspaces, [&](int i, Workspace& workspace) {
         const KeyPointBatch batch = makeBatch(pixels, jobs[i].keypoints);
         if (plan.isOfBoxes())
             describeBoxes(plan, grey, batch, jobs[i].rotated, regions, workspace, descriptors);

@@ -30,7 +30,7 @@ void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Ma
 @param keypoints of the regions: of those with the same position and size, the second gets the second highest peak of the
 directions, and so on. */
 void findAngles(const DescriptorPlan& plan, const Mat& grey, const std::vector<KeyPoint>& keypoints,
-        WorkspacePool& pool, std::vector<SupportRegion>& regions);
+        Workspaces& workspaces, std::vector<SupportRegion>& regions);
 
 /** The bits of the keypoints of a batch, all of whose regions are upright.
 
@@ -45,6 +45,17 @@ void describeUpright(const DescriptorPlan& plan, const std::vector<Channel>& cha
 void describeRotated(const DescriptorPlan& plan, const std::vector<Channel>& channels,
         const KeyPointBatch& batch, const std::vector<SupportRegion>& regions, Workspace& workspace,
         Mat& descriptors);
+
+/** The bits of one group of channels, level by level, from the sums over the finest cells of a keypoint; the groups before
+ have written theirs. Products of sums and weights are integers of 32 bits at the finest levels, as far as these surely fit,
+ and doubles at the others.
+
+@param cells of ushort, unsigned, or double where no unsigned holds the sums.
+@param longestCell a bound of the difference of neighbouring edges.
+@param maxValue the largest value that is summed. */
+template <typename Sum>
+void writeBits(const DescriptorPlan& plan, const ChannelGroup& group, const CellGrid<Sum>& cells,
+        const CellEdges& edges, double longestCell, int maxValue, Workspace& workspace, uchar* descriptor);
 
 }  // namespace iib
 }  // namespace cv

@@ -4,7 +4,6 @@
 
 #include "compute.hpp"
 
-#include "bit_encoder.hpp"
 #include "grid_pixels.hpp"
 
 namespace cv {
@@ -119,7 +118,7 @@ public:
             const int largest = interleave(group, grid, *cells[0]);
             for (; cells[0]->size() > n; std::swap(cells[0], cells[1]))
                 parentSums(*cells[0], *cells[1]);
-            BitEncoder(plan, group, largest, workspace.encoder).write(*cells[0], edges, cell, descriptor);
+            writeBits(plan, group, *cells[0], edges, cell, largest, workspace, descriptor);
         }
     }
 

@@ -20,7 +20,7 @@ void describeBatch(const DescriptorPlan& plan, const ChannelGroup& group,
     const Size image = channels[0].map.size();
     const int n = plan.cellsInRow();
     CellGrid<Sum>& cells = workspace.cellsOf(Sum());
-    const BitEncoder encoder(plan, group, maxValue(channels, maxGradient(channels)), workspace.encoder);
+    const int largest = maxValue(channels, maxGradient(channels));
     Band band(channels, batch.area, batch.rows + KeyPointBatch::BAND_ROWS + 1, plan.kernels,
             workspace.channelRows, workspace.ring);
     CellEdges edges;
@@ -32,7 +32,8 @@ void describeBatch(const DescriptorPlan& plan, const ChannelGroup& group,
                 region.bounds(image, plan.parameters.border), edges);
         band.advance(batch.bandEnd(std::max(edges.y[n], batch.area.y)));
         band.cells(edges, n, cells);
-        encoder.write(cells, edges, longestCell(region.side, n), descriptors.ptr(k));
+        writeBits(plan, group, cells, edges, longestCell(region.side, n), largest, workspace,
+                descriptors.ptr(k));
     }
 }
 

@@ -5,9 +5,9 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_WORKSPACE_HPP
 #define OPENCV_IIB_DESCRIPTOR_WORKSPACE_HPP
 
-#include <memory>
+#include "plan.hpp"
 
-#include "bit_encoder.hpp"
+#include "opencv2/core/utils/tls.hpp"
 
 namespace cv {
 namespace iib {
@@ -26,59 +26,22 @@ struct Workspace
     CellGrid<ushort>& cellsOf(ushort) { return shortCells; }
     CellGrid<unsigned>& cellsOf(unsigned) { return cells; }
     CellGrid<double>& cellsOf(double) { return doubleCells; }
-    BitEncoder::Workspace encoder;
+    CellGrid<unsigned> sums[MAX_GRANULARITY];  //!< over the cells of each level but the finest
+    CellGrid<double> doubleSums[MAX_GRANULARITY + 1];
     ScratchMemory boxMeans;
     BoxPlaces boxPlaces;
 };
 
-//! The workspaces of a call; threads borrow them.
-class WorkspacePool
-{
-public:
-    std::unique_ptr<Workspace> borrow()
-    {
-        AutoLock lock(mutex);
-        if (spare.empty())
-            return std::unique_ptr<Workspace>(new Workspace);
-        std::unique_ptr<Workspace> workspace = std::move(spare.back());
-        spare.pop_back();
-        return workspace;
-    }
-
-    void giveBack(std::unique_ptr<Workspace> workspace)
-    {
-        AutoLock lock(mutex);
-        spare.push_back(std::move(workspace));
-    }
-
-private:
-    Mutex mutex;
-    std::vector<std::unique_ptr<Workspace>> spare;
-};
-
-//! Calls work(job, workspace) for a range of jobs.
-template <typename Work> class Jobs CV_FINAL : public ParallelLoopBody
-{
-public:
-    Jobs(const Work& work_, WorkspacePool& pool_) : work(work_), pool(pool_) {}
-
-    void operator()(const Range& range) const CV_OVERRIDE
-    {
-        std::unique_ptr<Workspace> workspace = pool.borrow();
-        for (int job = range.start; job < range.end; job++)
-            work(job, *workspace);
-        pool.giveBack(std::move(workspace));
-    }
-
-private:
-    const Work& work;
-    WorkspacePool& pool;
-};
+//! Those of a call, one for each thread.
+typedef TLSData<Workspace> Workspaces;
 
 //! Calls work(job, workspace) for each of `count` jobs, in parallel.
-template <typename Work> void parallelJobs(int count, WorkspacePool& pool, const Work& work)
+template <typename Work> void parallelJobs(int count, Workspaces& workspaces, const Work& work)
 {
-    parallel_for_(Range(0, count), Jobs<Work>(work, pool));
+    parallel_for_(Range(0, count), [&](const Range& range) {
+        for (int job = range.start; job < range.end; job++)
+            work(job, workspaces.getRef());
+    });
 }
 
 }  // namespace iib

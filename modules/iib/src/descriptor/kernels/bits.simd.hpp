@@ -6,7 +6,6 @@
 #define OPENCV_IIB_DESCRIPTOR_KERNELS_BITS_SIMD_HPP
 
 #include "bits_planes.simd.hpp"
-#include "bits_quads.simd.hpp"
 #include "kernels.hpp"
 #include "mappings.hpp"
 
@@ -16,6 +15,209 @@ namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
+
+/* Stores groups of four lanes, every other one to `even` and to `odd`; `lane` counts the lanes that were stored before, and
+ a vector may be as small as one. */
+inline void storeAlternately(unsigned* even, unsigned* odd, int lane, const v_int32& v)
+{
+    const v_uint32 u = v_reinterpret_as_u32(v);
+#if CV_AVX512_SKX
+    const v_uint32 sorted(_mm512_shuffle_i32x4(u.val, u.val, 0xd8));  // groups 0, 2, 1, 3
+    v_store_low(even + lane / 2, sorted);
+    v_store_high(odd + lane / 2, sorted);
+#elif CV_AVX2
+    v_store_low(even + lane / 2, u);
+    v_store_high(odd + lane / 2, u);
+#else
+    v_store((lane % 8 < 4 ? even : odd) + lane / 8 * 4, u);
+#endif
+}
+
+inline void storeAlternately(double* even, double* odd, int lane, const v_doubles& v)
+{
+#if CV_AVX512_SKX
+    v_store_low(even + lane / 2, v);
+    v_store_high(odd + lane / 2, v);
+#else
+    v_store((lane % 8 < 4 ? even : odd) + lane / 8 * 4 + lane % 4, v);
+#endif
+}
+
+/* Four numbers, each repeated four times, as 16 / v_int32 lanes vectors. Not by way of memory, where what was stored in
+ parts could not be read whole until all stores before it are done. */
+inline void repeatEachFourTimes(const v_int32x4& n, v_int32 out[])
+{
+#if CV_AVX512_SKX
+    const __m512i places = _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
+    out[0] = v_int32(_mm512_permutexvar_epi32(places, _mm512_castsi128_si512(n.val)));
+#elif CV_AVX2
+    const __m256i twice = _mm256_broadcastsi128_si256(n.val);
+    out[0] = v_int32(_mm256_permutevar8x32_epi32(twice, _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1)));
+    out[1] = v_int32(_mm256_permutevar8x32_epi32(twice, _mm256_setr_epi32(2, 2, 2, 2, 3, 3, 3, 3)));
+#else
+    out[0] = v_broadcast_element<0>(n);
+    out[1] = v_broadcast_element<1>(n);
+    out[2] = v_broadcast_element<2>(n);
+    out[3] = v_broadcast_element<3>(n);
+#endif
+}
+
+//! A chunk in vectors V.
+template <typename V> struct Chunk
+{
+    static constexpr int LANES = VTraits<V>::max_nlanes, VECTORS = CHUNK / LANES;
+};
+
+inline v_int32 loadCells(const ushort* p) { return v_reinterpret_as_s32(vx_load_expand(p)); }
+inline v_int32 loadCells(const unsigned* p) { return v_reinterpret_as_s32(vx_load(p)); }
+inline v_doubles loadCells(const double* p) { return loadDoubles(p); }
+
+inline v_int32 repeated(int v, const v_int32&) { return vx_setall_s32(v); }
+inline v_doubles repeated(int v, const v_doubles&) { return repeatedDouble(v); }
+
+//! A vector whose comparisons are bits, a bit a lane.
+template <typename V> struct Lanes
+{
+    V v;
+
+    Lanes() {}
+    Lanes(const V& vector) : v(vector) {}
+};
+
+template <typename V> inline Lanes<V> operator+(const Lanes<V>& a, const Lanes<V>& b) { return a.v + b.v; }
+template <typename V> inline Lanes<V> operator-(const Lanes<V>& a, const Lanes<V>& b) { return a.v - b.v; }
+template <typename V> inline Lanes<V> least(const Lanes<V>& a, const Lanes<V>& b) { return v_min(a.v, b.v); }
+template <typename V> inline Lanes<V> greatest(const Lanes<V>& a, const Lanes<V>& b)
+{
+    return v_max(a.v, b.v);
+}
+template <typename V> inline unsigned operator>(const Lanes<V>& a, const Lanes<V>& b)
+{
+    return greaterMask(a.v, b.v);
+}
+template <typename V> inline unsigned operator>=(const Lanes<V>& a, const Lanes<V>& b)
+{
+    return greaterEqualMask(a.v, b.v);
+}
+template <typename V> inline unsigned operator==(const Lanes<V>& a, const Lanes<V>& b)
+{
+    return equalMask(a.v, b.v);
+}
+
+inline Lanes<v_int32> fourTimes(const Lanes<v_int32>& a) { return a.v << 2; }
+inline Lanes<v_doubles> fourTimes(const Lanes<v_doubles>& a) { return a.v * repeatedDouble(4); }
+
+//! floor(a / 4) is as good as a / 4: an integer is greater than both or than neither.
+inline Lanes<v_int32> quarter(const Lanes<v_int32>& a) { return a.v >> 2; }
+inline Lanes<v_doubles> quarter(const Lanes<v_doubles>& a) { return a.v * repeatedDouble(0.25); }
+
+//! Collects comparisons, from a lane on.
+struct Put
+{
+    unsigned* planes;
+    int lane;
+
+    void operator()(int plane, unsigned bits) const { planes[plane] |= bits << lane; }
+};
+
+//! The cells of a chunk of quads, and of those in the rows below it.
+template <typename Cell> class QuadRows
+{
+public:
+    typedef decltype(loadCells((const Cell*)0)) V;
+
+    //! Begins with quads whose top left cells are in row dy and columns dx, dx + 2, ..., at value `first`.
+    QuadRows(const CellGrid<Cell>& cells, int dy, int dx, int first)
+        : left(cells.row(dy, dx) + first), right(cells.row(dy, 1 - dx) + dx * GROUP_CHANNELS + first),
+          step(cells.rowStep())  // next to an odd column is an even one
+    {
+    }
+
+    void load(int lane, V x[4]) const
+    {
+        x[0] = loadCells(left + lane);
+        x[1] = loadCells(right + lane);
+        x[2] = loadCells(left + step + lane);
+        x[3] = loadCells(right + step + lane);
+    }
+
+    void next()
+    {
+        left += 2 * step;
+        right += 2 * step;
+    }
+
+private:
+    const Cell *left, *right;
+    const size_t step;
+};
+
+//! Where the sums over such quads go: the cells of the next coarser level.
+template <typename Parent> class ParentRows
+{
+public:
+    ParentRows(CellGrid<Parent>& parents, int first)
+        : even(parents.row(0, 0) + first / 2), odd(parents.row(0, 1) + first / 2), step(parents.rowStep())
+    {
+    }
+
+    template <typename V> void store(int lane, const V x[4]) const
+    {
+        storeAlternately(even, odd, lane, (x[0] + x[1]) + (x[2] + x[3]));
+    }
+
+    void next()
+    {
+        even += step;
+        odd += step;
+    }
+
+private:
+    Parent *even, *odd;
+    const size_t step;
+};
+
+//! Weights of a chunk of quads along a row.
+template <typename V> struct ColumnWeights;
+
+template <> struct ColumnWeights<v_int32>
+{
+    v_int32 left[Chunk<v_int32>::VECTORS], right[Chunk<v_int32>::VECTORS];
+
+    //! @param x the first column.
+    CV_ALWAYS_INLINE ColumnWeights(const Axis& axis, int x)
+    {
+        const int* const e = axis.edges + x * axis.step;
+        const int s = axis.step;
+        const v_int32x4 begin(e[0], e[2 * s], e[4 * s], e[6 * s]),
+                end(e[2 * s], e[4 * s], e[6 * s], e[8 * s]);
+        const v_int32x4 middle(e[s], e[3 * s], e[5 * s], e[7 * s]);
+        const v_int32x4 lefts = middle - begin, rights = end - middle, same = lefts == rights;
+        repeatEachFourTimes(v_select(same, v_setall_s32(1), rights), left);
+        repeatEachFourTimes(v_select(same, v_setall_s32(1), lefts), right);
+    }
+};
+
+template <> struct ColumnWeights<v_doubles>
+{
+    v_doubles left[Chunk<v_doubles>::VECTORS], right[Chunk<v_doubles>::VECTORS];
+
+    ColumnWeights(const Axis& axis, int x)
+    {
+        double lefts[CHUNK], rights[CHUNK];
+        for (int lane = 0; lane < CHUNK; lane++)
+        {
+            const Weights weights(axis, x + lane / GROUP_CHANNELS * 2);
+            lefts[lane] = weights.first;
+            rights[lane] = weights.second;
+        }
+        for (int i = 0; i < Chunk<v_doubles>::VECTORS; i++)
+        {
+            left[i] = loadDoubles(lefts + i * Chunk<v_doubles>::LANES);
+            right[i] = loadDoubles(rights + i * Chunk<v_doubles>::LANES);
+        }
+    }
+};
 
 constexpr int MAX_QUADS = 1 << (MAX_GRANULARITY - 1), MAX_LANES = MAX_QUADS * GROUP_CHANNELS;
 
@@ -112,6 +314,7 @@ void writeLevel(const CellGrid<Cell>& cells, const LevelShape& shape, const Cell
         CellGrid<Parent>& parents, uchar* descriptor)
 {
     BitWriter out(descriptor, shape.offset);
+    parents.create(shape.n / 2);
     if (shape.uses(0))
         writePhase<Mapping, true>(cells, shape, edges, 0, parents, out);
     else

@@ -7,7 +7,8 @@
 
 // Where comparisons lie in memory, and how they become bits of a descriptor.
 
-#include "bits_quads.simd.hpp"
+#include "../../common/vectors.hpp"
+#include "quads.hpp"
 
 namespace cv {
 namespace iib {
@@ -15,6 +16,9 @@ namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
+
+//! Lanes, one for each channel of a quad, that are mapped at a time.
+constexpr int CHUNK = QuadPhase::CHUNK;
 
 /* PEXT, which packs the bits of a mask at the low end. It is fast on all processors with AVX-512; on some with AVX2 it is
  slower than a dozen shifts. */
@@ -43,14 +47,8 @@ struct PlaneRows
     //! A chunk of each plane of a row.
     template <int PLANES> void storeRow(const unsigned chunks[PLANES])
     {
-        if (PLANES % 4 == 0 && plane == CHUNK / 8)  // whole words, which are fast to read back
-            for (int p = 0; p + 3 < PLANES; p += 4)
-                storeBytes((uint64)(ushort)chunks[p] | (uint64)(ushort)chunks[p + 1] << 16 |
-                                   (uint64)(ushort)chunks[p + 2] << 32 | (uint64)(ushort)chunks[p + 3] << 48,
-                        8, first + p * plane);
-        else
-            for (int p = 0; p < PLANES; p++)
-                storeBytes(chunks[p], CHUNK / 8, first + p * plane);
+        for (int p = 0; p < PLANES; p++)
+            storeBytes(chunks[p], CHUNK / 8, first + p * plane);
         first += row;
     }
 

@@ -143,7 +143,7 @@ template <typename Sum> struct BitsKernels
 
     /** Writes the bits of the levels from `finest` down to `coarsest`, in the order of descriptor.hpp.
      @param cells of the finest one. @param shapes of each level.
-     @param sums of each level: gets those of the coarser ones, down to coarsest - 1. Their grids have been created. */
+     @param sums of each level: gets those of the coarser ones, down to coarsest - 1. */
     void (*write)(const CellGrid<Sum>& cells, const LevelShape shapes[], const CellEdges& edges, int finest,
             int coarsest, CellGrid<Parent> sums[], uchar* descriptor);
 

@@ -9,10 +9,8 @@
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "bits.simd.hpp"
 #include "cells.simd.hpp"
-#include "channel_rows.simd.hpp"
-#include "column_cells.simd.hpp"
-#include "integral.simd.hpp"
 #include "rotated_samples.simd.hpp"
+#include "rows.simd.hpp"
 #endif
 
 namespace cv {

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "bit_encoder.hpp"
+#include "compute.hpp"
 
 namespace cv {
 namespace iib {
@@ -35,7 +35,8 @@ double largestWeight(const LevelShape& shape, const CellEdges& edges)
     return largestWeight(x, shape.n) * largestWeight(y, shape.n);
 }
 
-//! Whether four times the largest weighted sum of a level surely fits an int, where no cell is longer than `longest`.
+//! Whether the largest weighted sum of a level surely fits an int, where no value exceeds `largest` and no cell is longer
+//! than `longest`.
 bool fitsInt(const LevelShape& shape, const CellEdges& edges, double largest, double longest)
 {
     const double area = longest * longest;
@@ -44,25 +45,29 @@ bool fitsInt(const LevelShape& shape, const CellEdges& edges, double largest, do
 
 }  // namespace
 
-BitEncoder::BitEncoder(
-        const DescriptorPlan& plan_, const ChannelGroup& group_, int maxValue, Workspace& workspace_)
-    : plan(plan_), group(group_), largest(4. * maxValue), workspace(workspace_)
+//! The bits of the levels from `finest` on.
+static void writeDoubles(const DescriptorPlan& plan, const ChannelGroup& group, int finest,
+        const CellGrid<double>& cells, const CellEdges& edges, Workspace& workspace, uchar* descriptor)
 {
-    for (int level = 0; level < plan.finest; level++)
-    {
-        workspace.sums[level].create(1 << level);
-        workspace.doubleSums[level].create(1 << level);
-    }
+    plan.kernels.doubleBits[plan.parameters.mapping].write(
+            cells, group.levels.data(), edges, finest, 1, workspace.doubleSums, descriptor);
+}
+
+template <>
+void writeBits(const DescriptorPlan& plan, const ChannelGroup& group, const CellGrid<double>& cells,
+        const CellEdges& edges, double, int, Workspace& workspace, uchar* descriptor)
+{
+    writeDoubles(plan, group, plan.finest, cells, edges, workspace, descriptor);
 }
 
 template <typename Sum>
-void BitEncoder::write(
-        const CellGrid<Sum>& cells, const CellEdges& edges, double longestCell, uchar* descriptor) const
+void writeBits(const DescriptorPlan& plan, const ChannelGroup& group, const CellGrid<Sum>& cells,
+        const CellEdges& edges, double longestCell, int maxValue, Workspace& workspace, uchar* descriptor)
 {
     const LevelShape* const shapes = group.levels.data();
     const int finest = plan.finest;
     int level = finest;  // the finest that needs doubles; 0 if none does
-    for (double l = longestCell; level > 0 && fitsInt(shapes[level], edges, largest, l); l *= 2)
+    for (double l = longestCell; level > 0 && fitsInt(shapes[level], edges, 4. * maxValue, l); l *= 2)
         level--;
     CellGrid<double>& wide = workspace.doubleSums[level];
     if (level == finest)
@@ -74,18 +79,13 @@ void BitEncoder::write(
         return;
     if (level < finest)
         widen(workspace.sums[level], wide);
-    writeDoubles(level, wide, edges, descriptor);
+    writeDoubles(plan, group, level, wide, edges, workspace, descriptor);
 }
 
-void BitEncoder::writeDoubles(
-        int finest, const CellGrid<double>& cells, const CellEdges& edges, uchar* descriptor) const
-{
-    plan.kernels.doubleBits[plan.parameters.mapping].write(
-            cells, group.levels.data(), edges, finest, 1, workspace.doubleSums, descriptor);
-}
-
-template void BitEncoder::write(const CellGrid<ushort>&, const CellEdges&, double, uchar*) const;
-template void BitEncoder::write(const CellGrid<unsigned>&, const CellEdges&, double, uchar*) const;
+template void writeBits(const DescriptorPlan&, const ChannelGroup&, const CellGrid<ushort>&, const CellEdges&,
+        double, int, Workspace&, uchar*);
+template void writeBits(const DescriptorPlan&, const ChannelGroup&, const CellGrid<unsigned>&,
+        const CellEdges&, double, int, Workspace&, uchar*);
 
 }  // namespace iib
 }  // namespace cv
