@@ -1,10 +1,10 @@
 #!/bin/sh
 # What describing costs beside cv::ORB on this machine, how time and memory grow, what matching costs beside BFMatcher and,
 # where python3 has faiss and opencv_iib, beside faiss's flat index, what small work costs, and how much slower all that is
-# without AVX-512 and without AVX2: prints tables and writes iib_benchmark.json. With --document the results go to
+# without AVX-512 and without AVX2: prints tables and writes build/benchmark*.json. With --document the results go to
 # doc/results, from where the tables of README.md and doc/performance.md and their picture are made anew. --contrib adds
 # BEBLID, TEBLID and LATCH of opencv_contrib, whose source pip brings.
-#   scripts/bench.sh [--contrib] [--document] [--rounds=N] [--json=FILE]
+#   scripts/bench.sh [--contrib] [--document] [--rounds=N]
 . "$(dirname "$0")/helpers/lib.sh"
 
 contrib=""
@@ -12,29 +12,27 @@ if [ "${1:-}" = --contrib ]; then
     contrib=yes
     shift
 fi
-document=""
+results="$build"
 if [ "${1:-}" = --document ]; then
-    document="$root/doc/results"
+    results="$root/doc/results"
     shift
 fi
 check_options "$root/tools/benchmark/benchmark.cpp" "$@"
 [ "$operands" = 0 ] || fail "takes options alone (--help tells more)"
+document="${results#"$build"}"
 # shellcheck disable=SC2086
-need $build_packages ${document:+python3-matplotlib}
+need $build_packages python3 ${document:+python3-matplotlib}
 [ -z "$contrib" ] || contrib=$(contrib_argument)
 build_tools ${contrib:+"$contrib"} iib_benchmark
-benchmark="$build/tools/benchmark/iib_benchmark"
-[ -z "$document" ] || set -- "$@" "--json=$document/benchmark.json"
-for without in AVX512-SKX,AVX512-ICL AVX2,AVX512-SKX,AVX512-ICL; do
-    case "$without" in AVX2*) narrow=avx2 ;; *) narrow=avx512 ;; esac
-    narrow="${document:-$build}/benchmark_without_$narrow.json"
-    OPENCV_CPU_DISABLE=$without "$benchmark" "$@" --json="$narrow" >/dev/null
+for without in "" _without_avx512:AVX512-SKX,AVX512-ICL _without_avx2:AVX2,AVX512-SKX,AVX512-ICL; do
+    say "measuring${without:+ without ${without#*:}}"
+    OPENCV_CPU_DISABLE=${without#*:} "$build/tools/benchmark/iib_benchmark" "$@" --json="$results/benchmark${without%:*}.json"
 done
-"$benchmark" "$@" --against="$narrow"
+/usr/bin/python3 "$root/scripts/helpers/figures.py" --print "$results"
 if python3 -c "import faiss, opencv_iib" 2>/dev/null; then
     python3 "$root/tools/scale/measure.py" --flat
 fi
 if [ -n "$document" ]; then
-    /usr/bin/python3 "$root/tools/benchmark/plot.py" "$document/benchmark.json" "$root/doc/speed.svg"
+    /usr/bin/python3 "$root/tools/benchmark/plot.py" "$results/benchmark.json" "$root/doc/speed.svg"
     /usr/bin/python3 "$root/scripts/helpers/figures.py" --write
 fi

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Tables of README.md and of pages in doc from the committed results in doc/results: figures.py --check | --write
+"""Tables of README.md and of pages in doc from the committed results in doc/results: figures.py --check | --write | --print FOLDER
 
 A table stands between the lines `<!-- figures NAME -->` and `<!-- end of figures -->`, NAME being a function below.
---write puts each anew, --check ends with an error where one differs from the results, which ctest runs.
+--write puts each anew, --check ends with an error where one differs from the results, which ctest runs. --print prints the
+tables of scripts/bench.sh from results in another FOLDER.
 """
 import argparse
 import collections
@@ -14,11 +15,12 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TRAINED_ON_RENDERED = {'IIB UNIVERSAL', 'IIB SMALL'}  # walks through two of the rendered scenes
+results = ROOT / 'doc/results'
 LIGHT = {'light', 'trained'}  # places of summaries.py: real images under changed light
 
 
 def rows(name):
-    with open(ROOT / 'doc/results' / name, newline='') as file:
+    with open(results / name, newline='') as file:
         return list(csv.DictReader(file))
 
 
@@ -223,7 +225,7 @@ def all_costs():
 
 def benchmark(name):
     """What iib_benchmark wrote."""
-    return json.loads((ROOT / 'doc/results' / name).read_text())
+    return json.loads((results / name).read_text())
 
 
 WIDE, AVX2, NARROW = 'benchmark.json', 'benchmark_without_avx512.json', 'benchmark_without_avx2.json'
@@ -302,6 +304,16 @@ def small_work():
               'one point of it described, us', 'one code matched with one, us',
               'describe 5000 points: times as fast on two threads', 'match 5000 with 5000, cross-check: the same')
     return table(['', 'AVX-512', 'AVX2', 'SSE4.2'], zip(labels, *(column(name) for name in (WIDE, AVX2, NARROW))))
+
+
+def growth():
+    """Time of the default descriptor and ORB as pixels and keypoints grow, and the same keypoints on a crop and on the whole."""
+    data = benchmark(WIDE)
+    points = data['pixels'] + data['more_keypoints'] + data['crop_and_whole']
+    memory = '%.2f bytes of memory a pixel' % data['bytes_per_pixel']
+    return table(['megapixels', 'keypoints', 'ms', 'ORB, ms', memory],
+                 [['%.2f' % p['megapixels'], str(p['keypoints']), '%.3f' % p['milliseconds'], '%.3f' % p['orb_milliseconds'], '']
+                  for p in points])
 
 
 SCALE = 'scale.json'
@@ -390,7 +402,13 @@ def main():
     mode = parser.add_mutually_exclusive_group(required=True)
     mode.add_argument('--check', action='store_true')
     mode.add_argument('--write', action='store_true')
+    mode.add_argument('--print', type=pathlib.Path, metavar='FOLDER')
     arguments = parser.parse_args()
+    if arguments.print:
+        global results
+        results = arguments.print
+        print(*(make() for make in (describing, growth, matching, small_work)), sep='\n\n')
+        return
     for page, makers in PAGES.items():
         before, after = filled(page, makers)
         if arguments.write:

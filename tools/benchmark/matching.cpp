@@ -2,126 +2,121 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "matching.hpp"
-
-#include "scene.hpp"
-#include "timing.hpp"
-
-#include "opencv2/iib.hpp"
-
-#include <cstdio>
+#include "benchmark.hpp"
 
 using namespace cv;
-using cv::iib::HierarchicalMatcher;
-using cv::iib::IIB;
+using namespace cv::iib;
 
 namespace iib_tools {
 namespace {
 
-//! One way to match, and on what.
-struct Work
+//! The descriptors of the same points in a large image and in other light.
+struct Codes
 {
-    Matching::Row row;
-    Ptr<DescriptorMatcher> matcher;
+    explicit Codes(int count)
+    {
+        const Ptr<IIB> iib = IIB::create();
+        trainImage = cornerImage(Size(2560, 1440));
+        queryImage = relit(trainImage);
+        keypoints = corners(trainImage, count);
+        CV_Assert((int)keypoints.size() == count);
+        trains = described(iib, trainImage, keypoints);
+        queries = described(iib, queryImage, keypoints);
+    }
+
+    Mat trainImage, queryImage, trains, queries;
+    std::vector<KeyPoint> keypoints;
 };
 
-std::vector<Work> allWork()
+//! One way to match, and on what.
+struct Row
+{
+    String name;
+    Ptr<DescriptorMatcher> matcher;
+    int codes;
+    bool crossCheck;
+    double right;  //!< part of the queries that found their own point
+};
+
+std::vector<Row> allRows()
 {
     const std::vector<int> levels = IIB::create()->levelSizes();
-    std::vector<Work> all;
+    const float unused = 0.3f;  // no threshold counts in these modes
+    std::vector<Row> rows;
     for (int codes : {100, 500, 1000, 10000})
         for (bool crossCheck : {false, true})
         {
-            const auto add = [&](const String& name, const Ptr<DescriptorMatcher>& matcher) {
-                all.push_back({{name, codes, crossCheck, DBL_MAX, 0}, matcher});
+            const auto hierarchical = [&](int mode) {
+                return HierarchicalMatcher::create(levels, mode, unused, crossCheck);
             };
-            const float unused = 0.3f;  // no threshold counts in these modes
-            add("EXACT", HierarchicalMatcher::create(levels, HierarchicalMatcher::EXACT, unused, crossCheck));
+            rows.push_back({"EXACT", hierarchical(HierarchicalMatcher::EXACT), codes, crossCheck, 0});
             if (codes == 10000)
-                add("ADAPTIVE", HierarchicalMatcher::create(
-                                        levels, HierarchicalMatcher::ADAPTIVE, unused, crossCheck));
-            add("BFMatcher", BFMatcher::create(NORM_HAMMING, crossCheck));
+                rows.push_back(
+                        {"ADAPTIVE", hierarchical(HierarchicalMatcher::ADAPTIVE), codes, crossCheck, 0});
+            rows.push_back({"BFMatcher", BFMatcher::create(NORM_HAMMING, crossCheck), codes, crossCheck, 0});
         }
-    return all;
+    return rows;
 }
 
 }  // namespace
 
-Matching measureMatching(int rounds)
+void measureMatching(FileStorage& fs, int rounds)
 {
-    const Mat image = cornerImage(Size(2560, 1440)), other = relit(image);
-    const Ptr<IIB> iib = IIB::create();
-    const std::vector<KeyPoint> keypoints = corners(image, 10000);
-    CV_Assert(keypoints.size() == 10000);
-    const Mat trains = described(iib, image, keypoints), queries = described(iib, other, keypoints);
-
-    setNumThreads(1);
-    std::vector<Work> all = allWork();
+    const Codes codes(10000);
+    std::vector<Row> rows = allRows();
+    std::vector<Task> tasks;
     std::vector<DMatch> matches;
-    // The rounds go through all rows, so that a slow moment of the machine meets them alike; the long ones less often.
-    for (int round = 0; round < rounds; round++)
-        for (Work& work : all)
-        {
-            Matching::Row& row = work.row;
-            if (row.codes == 10000 && round % 10 != 0)
-                continue;
-            const Mat from = queries.rowRange(0, row.codes), to = trains.rowRange(0, row.codes);
-            const auto run = [&] { work.matcher->match(from, to, matches); };
-            if (row.codes < 10000)
-                run();  // not timed, as in benchmark.cpp: what the row before left in the caches is no matter of this one
-            row.milliseconds = std::min(row.milliseconds, timeOf(run));
-            int right = 0;
-            for (const DMatch& match : matches)
-                right += match.queryIdx == match.trainIdx;
-            row.right = double(right) / row.codes;
-        }
-
-    Matching result;
-    for (const Work& work : all)
-        result.rows.push_back(work.row);
-    return result;
-}
-
-void Matching::print() const
-{
-    const auto find = [&](const String& name, int codes, bool crossCheck) {
-        for (const Row& row : rows)
-            if (row.name == name && row.codes == codes && row.crossCheck == crossCheck)
-                return row.milliseconds / codes / codes * 1e6;
-        return 0.;
-    };
-    printf("\nMatching codes of 170 bytes with those of the same points in other light, one thread\n\n");
-    printf("%-10s %6s %5s %10s %8s %14s %14s %6s\n", "", "codes", "cross", "ms", "ns/pair", "over 10,000's",
-            "BFMatcher over", "right");
-    for (const Row& row : rows)
+    for (Row& row : rows)
     {
-        const double perPair = find(row.name, row.codes, row.crossCheck);
-        printf("%-10s %6d %5s %10.3f %8.3f %14.2f %14.1f %6.3f\n", row.name.c_str(), row.codes,
-                row.crossCheck ? "yes" : "", row.milliseconds, perPair,
-                perPair / find(row.name, 10000, row.crossCheck),
-                find("BFMatcher", row.codes, row.crossCheck) / perPair, row.right);
+        const Mat from = codes.queries.rowRange(0, row.codes), to = codes.trains.rowRange(0, row.codes);
+        tasks.push_back(
+                {[=, &matches] { row.matcher->match(from, to, matches); }, 1, row.codes == 10000 ? 10 : 1});
+        tasks.back().run();
+        for (const DMatch& match : matches)
+            row.right += double(match.queryIdx == match.trainIdx) / row.codes;
     }
-}
-
-void Matching::printAgainst(const FileNode& others) const
-{
-    for (const FileNode& other : others)
-        for (const Row& row : rows)
-            if (row.name == (String)other["name"] && row.codes == (int)other["codes"] &&
-                    row.crossCheck == ((int)other["cross_check"] != 0))
-                printf("%-10s %6d %4s %8.2f\n", row.name.c_str(), row.codes, row.crossCheck ? "yes" : "",
-                        (double)other["milliseconds"] / row.milliseconds);
-}
-
-void Matching::write(FileStorage& fs) const
-{
+    const std::vector<double> milliseconds = measure(tasks, rounds);
     fs << "matching"
        << "[";
-    for (const Row& row : rows)
+    for (size_t i = 0; i < rows.size(); i++)
         fs << "{"
-           << "name" << row.name << "codes" << row.codes << "cross_check" << row.crossCheck << "milliseconds"
-           << row.milliseconds << "right" << row.right << "}";
+           << "name" << rows[i].name << "codes" << rows[i].codes << "cross_check" << rows[i].crossCheck
+           << "milliseconds" << milliseconds[i] << "right" << rows[i].right << "}";
     fs << "]";
+}
+
+void measureFrames(FileStorage& fs, int rounds)
+{
+    const Mat image = cornerImage(Size(640, 480)), next = relit(image);
+    const Ptr<ORB> orb = ORB::create(1000);
+    std::vector<KeyPoint> keypoints;
+    orb->detect(image, keypoints);
+    const std::vector<KeyPoint> one(keypoints.begin(), keypoints.begin() + 1);
+    const Ptr<IIB> iib = IIB::createFor(orb), upright = IIB::create();
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create();
+    matcher->setCrossCheck(true);
+    const Ptr<BFMatcher> bruteForce = BFMatcher::create(NORM_HAMMING, true);
+    const Mat ofOrb = described(orb, image, keypoints), ofIib = described(iib, image, keypoints);
+    const Codes many(5000);
+
+    std::vector<DMatch> matches;
+    const auto describeMany = [&] { described(upright, many.queryImage, many.keypoints); };
+    const auto matchMany = [&] { matcher->match(many.queries, many.trains, matches); };
+    const std::vector<double> milliseconds =
+            measure({{[&] { bruteForce->match(described(orb, next, keypoints), ofOrb, matches); }, 2, 1},
+                            {[&] { matcher->match(described(iib, next, keypoints), ofIib, matches); }, 2, 1},
+                            {[&] { described(iib, next, one); }, 1, 1},
+                            {[&] { matcher->match(ofIib.row(0), ofIib.row(1), matches); }, 1, 1},
+                            {describeMany, 1, 1}, {describeMany, 2, 1}, {matchMany, 1, 1}, {matchMany, 2, 1}},
+                    rounds);
+    fs << "frames"
+       << "{"
+       << "orb" << milliseconds[0] << "iib" << milliseconds[1] << "one_keypoint" << milliseconds[2]
+       << "one_code" << milliseconds[3] << "describe"
+       << "[" << milliseconds[4] << milliseconds[5] << "]"
+       << "match"
+       << "[" << milliseconds[6] << milliseconds[7] << "]"
+       << "}";
 }
 
 }  // namespace iib_tools

@@ -1,0 +1,97 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "benchmark.hpp"
+
+#include "opencv2/core/utility.hpp"
+#include "opencv2/opencv_modules.hpp"
+#if defined(IIB_WITH_CONTRIB) || (defined(HAVE_OPENCV_XFEATURES2D) &&                                        \
+                                         CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407)  // with TEBLID
+#define IIB_HAVE_XFEATURES2D
+#include "opencv2/xfeatures2d.hpp"
+#endif
+
+using namespace cv;
+using cv::iib::IIB;
+
+namespace iib_tools {
+namespace {
+
+struct Row
+{
+    String name;
+    Ptr<Feature2D> feature;
+    std::vector<Mat> extraChannels;
+    int threads;
+};
+
+std::vector<Row> allRows(const Mat& image)
+{
+    const int all = IIB::CHANNELS_DEFAULT, mean = IIB::MAPPING_MEAN;
+    std::vector<Row> rows = {{"cv::ORB", ORB::create(), {}, 1}, {"default", IIB::create(), {}, 1},
+            {"granularity 5", IIB::create(2.f, 5), {}, 1},
+            {"overlap", IIB::create(2.f, 4, all, mean, true), {}, 1}};
+    const std::vector<std::pair<const char*, int>> mappings = {{"MAX", IIB::MAPPING_MAX},
+            {"QUARTILE", IIB::MAPPING_QUARTILE}, {"SORT", IIB::MAPPING_SORT}, {"HAAR", IIB::MAPPING_HAAR},
+            {"PAIRWISE", IIB::MAPPING_PAIRWISE}};
+    for (const auto& mapping : mappings)
+        rows.push_back({mapping.first, IIB::create(2.f, 4, all, mapping.second), {}, 1});
+    const std::vector<std::pair<const char*, int>> presets = {{"COMPACT", IIB::PRESET_COMPACT},
+            {"BALANCED", IIB::PRESET_BALANCED}, {"VIEWPOINT", IIB::PRESET_VIEWPOINT},
+            {"UNIVERSAL", IIB::PRESET_UNIVERSAL}, {"SMALL", IIB::PRESET_SMALL}};
+    for (const auto& preset : presets)
+        rows.push_back({String("PRESET_") + preset.first, IIB::createPreset(preset.second), {}, 1});
+    rows.push_back({"2 extra channels", IIB::create(2.f, 4, all, mean, false, false, 2), {image, image}, 1});
+    rows.push_back({"useOrientation", IIB::create(2.f, 4, all, mean, false, true), {}, 1});
+    rows.push_back({"default, 2 threads", IIB::create(), {}, 2});
+#ifdef IIB_HAVE_XFEATURES2D
+    using namespace cv::xfeatures2d;
+    rows.push_back({"BEBLID-256", BEBLID::create(1.f, BEBLID::SIZE_256_BITS), {}, 1});
+    rows.push_back({"BEBLID-512", BEBLID::create(1.f, BEBLID::SIZE_512_BITS), {}, 1});
+    rows.push_back({"TEBLID-512", TEBLID::create(1.f, TEBLID::SIZE_512_BITS), {}, 1});
+    rows.push_back({"LATCH-512", LATCH::create(64, false), {}, 1});
+#endif
+    return rows;
+}
+
+}  // namespace
+
+void measureDescribing(FileStorage& fs, int rounds)
+{
+    const Size size(1280, 720);
+    const int counts[] = {1000, 5000};
+    const Mat image = cornerImage(size);
+    const std::vector<Row> rows = allRows(image);
+    std::vector<KeyPoint> keypoints;
+    Mat descriptors;
+    std::vector<Task> tasks;
+    for (const Row& row : rows)
+        for (int count : counts)
+        {
+            const std::vector<KeyPoint> chosen = corners(image, count);
+            CV_Assert((int)chosen.size() == count);
+            const Ptr<IIB> iib = row.feature.dynamicCast<IIB>();
+            tasks.push_back({[&, chosen, iib] {
+                                 keypoints = chosen;
+                                 if (iib)
+                                     iib->compute(image, row.extraChannels, keypoints, descriptors);
+                                 else
+                                     row.feature->compute(image, keypoints, descriptors);
+                             },
+                    row.threads, 1});
+        }
+    const std::vector<double> milliseconds = measure(tasks, rounds);
+    fs << "width" << size.width << "height" << size.height << "keypoints"
+       << "[" << counts[0] << counts[1] << "]"
+       << "rows"
+       << "[";
+    for (size_t i = 0; i < rows.size(); i++)
+        fs << "{"
+           << "name" << rows[i].name << "threads" << rows[i].threads << "milliseconds"
+           << "[" << milliseconds[2 * i] << milliseconds[2 * i + 1] << "]"
+           << "}";
+    fs << "]";
+}
+
+}  // namespace iib_tools
