@@ -58,6 +58,7 @@ def main():
             queries[name] = described(iib, images[-1], arguments.queries)
     with psycopg.connect(os.environ['IIB_POSTGRES'], autocommit=True) as connection:
         connection.execute('CREATE EXTENSION vector')
+        pgvector, = connection.execute("SELECT extversion FROM pg_extension WHERE extname = 'vector'").fetchone()
         server, = connection.execute('SHOW server_version').fetchone()
         places = Places(connection, 'walk', iib.descriptorSize())
         for name, codes in walk.items():
@@ -68,7 +69,7 @@ def main():
         connection.execute('VACUUM ANALYZE')
         table, index = connection.execute("SELECT pg_table_size('walk_codes'), pg_relation_size('walk_codes_prefix')").fetchone()
         count = sum(len(codes) for codes in walk.values())
-        result = {'server': server.split()[0], 'pgvector': '.'.join(map(str, places.pgvector())), 'places': len(walk),
+        result = {'server': server.split()[0], 'pgvector': pgvector, 'places': len(walk),
                   'codes': count, 'queries': arguments.queries, 'at': AT, 'index_seconds': built,
                   'table_bytes_a_code': table / count, 'index_bytes_a_code': index / count}
         print(result, flush=True)
