@@ -1,6 +1,4 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
+// SPDX-License-Identifier: Apache-2.0
 
 #include "detectors.hpp"
 
@@ -231,7 +229,7 @@ std::vector<Described> describeAll(const Detector& detector, const Detection& de
     for (const Configuration& c : generalPresets())
     {
         const cv::Ptr<cv::iib::IIB> iib = c.create().dynamicCast<cv::iib::IIB>();
-        iib->setScaleFactor(detector.scaleFactor);
+        iib->setScaleFactor(iib->getScaleFactor() * detector.scaleFactor);  // a preset may look wider
         all.push_back(describeWith(c.name, iib, detection, image));
     }
     all.push_back(describeWith("IIB", defaultIIB(detector.scaleFactor), detection, image));

@@ -1,15 +1,15 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
+// SPDX-License-Identifier: Apache-2.0
 
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 
+#include "../detectors.hpp"
 #include "../experiments.hpp"
 #include "../results.hpp"
 #include "../tasks.hpp"
+#include "opencv2/iib.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
 #include "common/test/npy_text.hpp"
@@ -269,6 +269,33 @@ TEST_F(EvaluationTest, mistakes_are_told)
     folder.makeFolder("empty");
     options.roots = {folder.path("empty")};
     EXPECT_NE(std::string::npos, messageOf([&] { evaluate(options); }).find("no image sequences"));
+}
+
+// As createFor and createRecommended make them for users, with the ROS that the preset was learned for.
+TEST(Detectors, presets_are_described_with_their_own_scale)
+{
+    cv::Mat image(200, 260, CV_8U);
+    cv::RNG(1).fill(image, cv::RNG::UNIFORM, 0, 256);
+    cv::GaussianBlur(image, image, cv::Size(), 2);
+    Options options;
+    options.points = 50;
+    options.detectors = {"ORB"};
+    const Detector detector = detectors(options).at(0);
+    const Detection detection = detector.detect(image, ImagePair(), "");
+    const cv::Ptr<cv::iib::IIB> iib =
+            cv::iib::IIB::createPreset(cv::iib::IIB::PRESET_UNIVERSAL, detector.scaleFactor);
+    std::vector<cv::KeyPoint> keypoints = detection.keypoints;
+    cv::Mat expected;
+    iib->cv::Feature2D::compute(image, keypoints, expected);
+    ASSERT_GT(expected.rows, 20);
+    bool described = false;
+    for (const Described& d : describeAll(detector, detection, image))
+        if (d.name == "IIB UNIVERSAL")
+        {
+            described = true;
+            EXPECT_EQ(0, cv::norm(expected, d.descriptors, cv::NORM_HAMMING));
+        }
+    EXPECT_TRUE(described);
 }
 
 TEST(Results, a_line_cut_short_is_left_out)
