@@ -1,6 +1,4 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
+// SPDX-License-Identifier: Apache-2.0
 
 // Every allocation of the library, and of OpenCV beneath it, fails in turn: the call that needed it throws, and the
 // object goes on as if it had not been called. Exit code 1 and a line for what does not hold.
