@@ -28,10 +28,10 @@ fail() {
 }
 
 # check_options SOURCE ARGUMENT...: whether the tool with these KEYS in its source takes the options, to be asked before
-# anything is installed for it; an option whose default is a number takes numbers. Sets operands to the number of the other
-# arguments, files or folders that must be there.
+# anything is installed for it; an option whose default is a number takes numbers, one with a list of words in [] takes one of
+# these in any case. Sets operands to the number of the other arguments, files or folders that must be there.
 check_options() {
-    keys=$(sed -n 's/^ *"{\([a-z-]*\) *| *\([^| ]*\).*/\1|\2/p' "$1")
+    keys=$(sed -n 's/^ *"{\([a-z-]*\) *| *\([^| ]*\)[^|]*|\(.*\)/\1|\2|\3/p' "$1")
     shift
     operands=0 name="" given=""  # an option that waits for its value
     for argument in "$@"; do
@@ -58,7 +58,7 @@ check_options() {
         *=*) check_value "${argument#*=}" ;;
         *)
             # A switch; or the value follows.
-            ! echo "$keys" | grep -qxF -e "$name|" || name=""
+            ! echo "$keys" | grep -q -e "^$name||" || name=""
             continue
             ;;
         esac
@@ -69,7 +69,9 @@ check_options() {
 
 # check_value VALUE: of the option given, whose key is name.
 check_value() {
-    default=$(echo "$keys" | sed -n "s/^$name|//p")
+    default=$(echo "$keys" | sed -n "s/^$name|\([^|]*\)|.*/\1/p")
+    words=$(echo "$keys" | sed -n "s/^$name|.*\[\(.*\)\].*/\1/p")
+    [ -z "$words" ] || echo "$words" | tr ' ' '\n' | grep -qixF -e "$1" || fail "$given takes one of $words, not '$1'"
     case "$default,$1" in
     [0-9]*,*[!0-9.,-]* | [0-9]*,) fail "option $given takes a number, not '$1'" ;;
     esac

@@ -27,7 +27,7 @@ static const char* const OPTIONS =
         "{normalize   | no           | find the points on the locally normalized image, as HESSIAN does by itself, [no yes]}"
         "{granularity | 4            | levels of IIB's default, [1 2 3 4 5 6]}"
         "{orientation | none         | IIB's regions: [none keypoint gradient], upright or rotated by such an angle}"
-        "{homography  |              | file of 3x3 numbers from A to B, to judge by; without it MAGSAC estimates one}"
+        "{homography  | <none>       | file of 3x3 numbers from A to B, to judge by; without it MAGSAC estimates one}"
         "{out         | iib_demo.png | the picture}";
 // clang-format on
 
