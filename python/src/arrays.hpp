@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef OPENCV_IIB_PYTHON_ARRAYS_HPP
-#define OPENCV_IIB_PYTHON_ARRAYS_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -25,5 +21,3 @@ cv::Mat viewOf(const Array& array, const char* what);
 nb::object toNumpy(const cv::Mat& matrix);
 
 }  // namespace iib_python
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef OPENCV_IIB_PYTHON_BINDINGS_HPP
-#define OPENCV_IIB_PYTHON_BINDINGS_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <nanobind/nanobind.h>
 
@@ -17,5 +13,3 @@ void bindMatcher(nanobind::module_& m);
 void bindMappedIndex(nanobind::module_& m);
 
 }  // namespace iib_python
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef OPENCV_IIB_PYTHON_FOREIGN_DETECTOR_HPP
-#define OPENCV_IIB_PYTHON_FOREIGN_DETECTOR_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "keypoints.hpp"
 
@@ -36,5 +32,3 @@ private:
 };
 
 }  // namespace iib_python
-
-#endif

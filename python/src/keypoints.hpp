@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef OPENCV_IIB_PYTHON_KEYPOINTS_HPP
-#define OPENCV_IIB_PYTHON_KEYPOINTS_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "arrays.hpp"
 
@@ -27,5 +23,3 @@ std::vector<cv::KeyPoint> toKeyPoints(const cv::Mat& rows);
 cv::Mat toRows(const std::vector<cv::KeyPoint>& keypoints);
 
 }  // namespace iib_python
-
-#endif
