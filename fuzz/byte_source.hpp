@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef OPENCV_IIB_FUZZ_BYTE_SOURCE_HPP
-#define OPENCV_IIB_FUZZ_BYTE_SOURCE_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "opencv2/core.hpp"
 
@@ -106,5 +102,3 @@ template <typename Target> inline int runTarget(const Target& target, const ucha
     target(in);
     return 0;
 }
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef OPENCV_IIB_FUZZ_FILE_HPP
-#define OPENCV_IIB_FUZZ_FILE_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "opencv2/core/utility.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
@@ -35,5 +31,3 @@ struct ScratchFolder
     ScratchFolder() : name(cv::tempfile(".folder")) { cv::utils::fs::createDirectory(name); }
     ~ScratchFolder() { cv::utils::fs::remove_all(name); }
 };
-
-#endif

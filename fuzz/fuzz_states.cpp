@@ -1,6 +1,4 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
+// SPDX-License-Identifier: Apache-2.0
 
 // Sequences of calls on matchers and their copies, each compared with a model that is searched pair by pair:
 // what is added, copied, cleared, saved, loaded or set must be all that later answers depend on.

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef OPENCV_IIB_FUZZ_IMAGES_HPP
-#define OPENCV_IIB_FUZZ_IMAGES_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "byte_source.hpp"
 
@@ -74,5 +70,3 @@ inline bool isMap(const Mat& m)
 inline bool isImage(const Mat& m) { return isMap(m) && m.channels() != 2 && m.channels() <= 4; }
 
 }  // namespace fuzz
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef OPENCV_IIB_BENCHMARK_BENCHMARK_HPP
-#define OPENCV_IIB_BENCHMARK_BENCHMARK_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "opencv2/features2d.hpp"
 #include "opencv2/iib.hpp"
@@ -48,5 +44,3 @@ cv::Mat described(
         const cv::Ptr<cv::Feature2D>& extractor, const cv::Mat& image, std::vector<cv::KeyPoint> keypoints);
 
 }  // namespace iib_tools
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_COMMAND_LINE_HPP
-#define IIB_TOOLS_COMMAND_LINE_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <cmath>
 #include <cstdio>
@@ -170,5 +166,3 @@ inline int runTool(int argc, const char* const* argv, const std::string& about, 
 }
 
 }  // namespace iib_tools
-
-#endif

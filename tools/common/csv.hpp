@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_CSV_HPP
-#define IIB_TOOLS_CSV_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <string>
 #include <vector>
@@ -23,5 +19,3 @@ inline std::vector<std::string> splitFields(const std::string& line)
 }
 
 }  // namespace iib_tools
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_DATASET_HPP
-#define IIB_TOOLS_DATASET_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <string>
 #include <vector>
@@ -65,5 +61,3 @@ cv::Matx33d readHomography(const std::string& file);
 cv::Mat readImage(const std::string& file, int flags);
 
 }  // namespace iib_tools
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_KEYPOINTS_HPP
-#define IIB_TOOLS_KEYPOINTS_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <string>
 #include <vector>
@@ -47,5 +43,3 @@ void orientByCentroid(const cv::Mat& image, float radius, std::vector<cv::KeyPoi
 std::vector<cv::KeyPoint> readKeypoints(const std::string& file);
 
 }  // namespace iib_tools
-
-#endif

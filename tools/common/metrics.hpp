@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_METRICS_HPP
-#define IIB_TOOLS_METRICS_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <vector>
 
@@ -72,5 +68,3 @@ std::vector<CurvePoint> matchCurve(const std::vector<cv::DMatch>& matches, const
         const std::vector<float>& thresholds);
 
 }  // namespace iib_tools
-
-#endif

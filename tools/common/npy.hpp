@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_NPY_HPP
-#define IIB_TOOLS_NPY_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <string>
 
@@ -16,5 +12,3 @@ namespace iib_tools {
 cv::Mat readNpy(const std::string& file);
 
 }  // namespace iib_tools
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_VIEWS_HPP
-#define IIB_TOOLS_VIEWS_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <string>
 #include <vector>
@@ -35,5 +31,3 @@ an image are left out. An image is paired with the next three of its folder; whe
 std::vector<ViewPair> findViewPairs(const std::vector<std::string>& roots);
 
 }  // namespace iib_tools
-
-#endif

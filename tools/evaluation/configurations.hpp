@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_CONFIGURATIONS_HPP
-#define IIB_TOOLS_CONFIGURATIONS_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <functional>
 #include <string>
@@ -58,5 +54,3 @@ Description describe(const Configuration& configuration, const cv::Mat& image,
 int descriptorBytes(const cv::Feature2D& feature);
 
 }  // namespace iib_tools
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_DETECTORS_HPP
-#define IIB_TOOLS_DETECTORS_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <functional>
 #include <string>
@@ -61,5 +57,3 @@ std::vector<std::string> describedNames(const Detector& detector);
 std::vector<std::pair<std::string, std::string>> digests(const Options& options);
 
 }  // namespace iib_tools
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_EXPERIMENTS_HPP
-#define IIB_TOOLS_EXPERIMENTS_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <string>
 #include <vector>
@@ -61,5 +57,3 @@ holds results of other settings. */
 int evaluate(const Options& options);
 
 }  // namespace iib_tools
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_RESULTS_HPP
-#define IIB_TOOLS_RESULTS_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <map>
 #include <mutex>
@@ -46,5 +42,3 @@ private:
 std::string text(double value);
 
 }  // namespace iib_tools
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_SEEDED_HPP
-#define IIB_TOOLS_SEEDED_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <map>
 
@@ -49,5 +45,3 @@ struct SeededMatches
 SeededMatches matchSeeds(const Configuration& configuration, const SeededPair& pair, double tolerance);
 
 }  // namespace iib_tools
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_TASKS_HPP
-#define IIB_TOOLS_TASKS_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <functional>
 #include <string>
@@ -24,5 +20,3 @@ in one line and counted, and the others go on.
 int runTasks(const std::string& title, const std::vector<Task>& tasks);
 
 }  // namespace iib_tools
-
-#endif

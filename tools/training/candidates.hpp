@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_CANDIDATES_HPP
-#define IIB_TOOLS_CANDIDATES_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <vector>
 
@@ -55,5 +51,3 @@ cv::Ptr<cv::iib::IIBDescriptorExtractor> selectedExtractor(
         const CandidatePool& pool, const std::vector<int>& chosen);
 
 }  // namespace iib_tools
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_DESCRIBED_PAIR_HPP
-#define IIB_TOOLS_DESCRIBED_PAIR_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <string>
 
@@ -27,5 +23,3 @@ DescribedPair describeDetected(
         const std::string& scene, const Sample& sample, const cv::Ptr<cv::Feature2D>& extractor);
 
 }  // namespace iib_tools
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_RECIPE_HPP
-#define IIB_TOOLS_RECIPE_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <map>
 #include <string>
@@ -57,5 +53,3 @@ std::string presetsHeader(const std::vector<NamedExtractor>& presets, const std:
         const TrainingSet& images, uint64 seed);
 
 }  // namespace iib_tools
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_SAMPLES_HPP
-#define IIB_TOOLS_SAMPLES_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <functional>
 #include <string>
@@ -62,5 +58,3 @@ std::vector<DescribedPair> describeForTest(const std::vector<ImagePair>& pairs,
         const cv::Ptr<cv::Feature2D>& extractor, const Progress& progress);
 
 }  // namespace iib_tools
-
-#endif

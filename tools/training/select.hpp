@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_SELECT_HPP
-#define IIB_TOOLS_SELECT_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <vector>
 
@@ -40,5 +36,3 @@ std::vector<int> fillBytes(const CandidatePool& pool, const std::vector<int>& ch
         const std::vector<double>& benefit, int bits);
 
 }  // namespace iib_tools
-
-#endif

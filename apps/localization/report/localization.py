@@ -1,7 +1,5 @@
 #!/usr/bin/python3
-# This file is part of OpenCV project.
-# It is subject to the license terms in the LICENSE file found in the top-level directory
-# of this distribution and at http://opencv.org/license.html.
+# SPDX-License-Identifier: Apache-2.0
 
 """Maps and localizes what tools/synthetic/localization.py rendered, and real photographs if there are any, and writes
 results.csv, growth.csv and a page with pictures and a video."""

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_BUNDLE_HPP
-#define IIB_LOCALIZATION_BUNDLE_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <vector>
 
@@ -54,5 +50,3 @@ void adjustBundle(const std::vector<Sight>& sights, std::vector<Pose>& poses,
         std::vector<Eigen::Vector3d>& points, bool refinePoses);
 
 }  // namespace iib_localization
-
-#endif

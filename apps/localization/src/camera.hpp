@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_CAMERA_HPP
-#define IIB_LOCALIZATION_CAMERA_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <map>
 #include <string>
@@ -41,5 +37,3 @@ Cameras readCameras(const std::string& path);
 void writeCameras(const std::string& path, const Cameras& cameras);
 
 }  // namespace iib_localization
-
-#endif

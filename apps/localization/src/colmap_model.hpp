@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_COLMAP_MODEL_HPP
-#define IIB_LOCALIZATION_COLMAP_MODEL_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "camera.hpp"
 
@@ -33,5 +29,3 @@ Model readModel(const std::string& folder);
 void writeModel(const std::string& folder, const Model& model);
 
 }  // namespace iib_localization
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_FEATURES_HPP
-#define IIB_LOCALIZATION_FEATURES_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <string>
 #include <vector>
@@ -53,5 +49,3 @@ private:
 };
 
 }  // namespace iib_localization
-
-#endif

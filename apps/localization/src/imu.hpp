@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_IMU_HPP
-#define IIB_LOCALIZATION_IMU_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <cstdint>
 #include <vector>
@@ -50,5 +46,3 @@ bool preintegrate(const std::vector<ImuReading>& readings, int64_t from, int64_t
         Preintegration& result);
 
 }  // namespace iib_localization
-
-#endif

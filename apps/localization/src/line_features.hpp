@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_LINE_FEATURES_HPP
-#define IIB_LOCALIZATION_LINE_FEATURES_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <vector>
 
@@ -28,5 +24,3 @@ LineFeatures extractLines(const cv::Mat& grey);
 std::vector<Segment> undistorted(const std::vector<Segment>& segments, const Camera& camera);
 
 }  // namespace iib_localization
-
-#endif

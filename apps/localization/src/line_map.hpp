@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_LINE_MAP_HPP
-#define IIB_LOCALIZATION_LINE_MAP_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <string>
 #include <vector>
@@ -45,5 +41,3 @@ std::vector<MapLine> readLines(const std::string& path, size_t keyframes);
 void writeLines(const std::string& path, const std::vector<MapLine>& lines);
 
 }  // namespace iib_localization
-
-#endif

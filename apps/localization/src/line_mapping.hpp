@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_LINE_MAPPING_HPP
-#define IIB_LOCALIZATION_LINE_MAPPING_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <optional>
 
@@ -24,5 +20,3 @@ void addLinesFromDepth(LineMap& map, const LineFeatures& features, const Camera&
         const cv::Mat& millimetres);
 
 }  // namespace iib_localization
-
-#endif

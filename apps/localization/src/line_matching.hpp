@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_LINE_MATCHING_HPP
-#define IIB_LOCALIZATION_LINE_MATCHING_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <optional>
 
@@ -47,5 +43,3 @@ std::vector<LineObservation> agreeing(
 double deviation(const std::vector<LineObservation>& lines, const Pinhole& camera, const Pose& pose);
 
 }  // namespace iib_localization
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_LINE_TRACKS_HPP
-#define IIB_LOCALIZATION_LINE_TRACKS_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "colmap_model.hpp"
 #include "line_features.hpp"
@@ -17,5 +13,3 @@ line, where the planes through the cameras and the segments cross; it stays if t
 LineMap triangulateLines(const std::vector<LineFeatures>& features, const Model& model);
 
 }  // namespace iib_localization
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_MAP_HPP
-#define IIB_LOCALIZATION_MAP_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "colmap_model.hpp"
 #include "line_map.hpp"
@@ -39,5 +35,3 @@ void writeMap(NewFolder&& place, const Map& map);
 Map readMap(const std::string& folder);
 
 }  // namespace iib_localization
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_MAP_BUILDER_HPP
-#define IIB_LOCALIZATION_MAP_BUILDER_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "features.hpp"
 #include "map.hpp"
@@ -33,5 +29,3 @@ bool triangulate(
         const std::vector<Pose>& poses, const std::vector<Eigen::Vector3d>& rays, Eigen::Vector3d& point);
 
 }  // namespace iib_localization
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_PNP_HPP
-#define IIB_LOCALIZATION_PNP_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <vector>
 
@@ -19,5 +15,3 @@ std::vector<Observation> agreeing(
         const std::vector<Observation>& matches, const Pinhole& camera, const Pose& pose);
 
 }  // namespace iib_localization
-
-#endif

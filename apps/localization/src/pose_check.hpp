@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_POSE_CHECK_HPP
-#define IIB_LOCALIZATION_POSE_CHECK_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "colmap_model.hpp"
 #include "features.hpp"
@@ -16,5 +12,3 @@ geometry, the share that also agrees with the one of the poses. 1 if there are n
 double poseAgreement(const FeatureMethod& method, const std::vector<Features>& features, const Model& model);
 
 }  // namespace iib_localization
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_RESIDUALS_HPP
-#define IIB_LOCALIZATION_RESIDUALS_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <ceres/ceres.h>
 
@@ -190,5 +186,3 @@ struct StatePrior
 };
 
 }  // namespace iib_localization
-
-#endif

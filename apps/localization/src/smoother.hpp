@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_SMOOTHER_HPP
-#define IIB_LOCALIZATION_SMOOTHER_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <optional>
 
@@ -28,5 +24,3 @@ std::vector<std::optional<Pose>> smooth(const Pinhole& camera, const std::vector
         const std::vector<ImuReading>& readings);
 
 }  // namespace iib_localization
-
-#endif

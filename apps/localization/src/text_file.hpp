@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_TEXT_FILE_HPP
-#define IIB_LOCALIZATION_TEXT_FILE_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <fstream>
 #include <string>
@@ -51,5 +47,3 @@ std::ofstream createFile(const std::string& path);
 void finishFile(std::ofstream& stream, const std::string& path);
 
 }  // namespace iib_localization
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_TRACKS_HPP
-#define IIB_LOCALIZATION_TRACKS_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <set>
 
@@ -23,5 +19,3 @@ std::vector<std::vector<int>> triangulateTracks(
         const FeatureMethod& method, const std::vector<Features>& features, bool refinePoses, Model& model);
 
 }  // namespace iib_localization
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_TRAJECTORY_HPP
-#define IIB_LOCALIZATION_TRAJECTORY_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <optional>
 #include <string>
@@ -33,5 +29,3 @@ const Pose* findPose(const std::vector<NamedPose>& poses, const std::string& nam
 std::vector<ImuReading> readImu(const std::string& path);
 
 }  // namespace iib_localization
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_LOCALIZATION_TEST_WALL_HPP
-#define IIB_LOCALIZATION_TEST_WALL_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "../src/localizer.hpp"
 #include "../src/map_builder.hpp"
@@ -122,5 +118,3 @@ protected:
 };
 
 }  // namespace iib_localization
-
-#endif

@@ -1,8 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-#ifndef OPENCV_IIB_INDEX_INDEX_COMMIT_HPP
-#define OPENCV_IIB_INDEX_INDEX_COMMIT_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "manifest.hpp"
 
@@ -41,5 +38,3 @@ void checkNumber(int64 number, uint64 count, const char* what);
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef OPENCV_IIB_INDEX_MANIFEST_HPP
-#define OPENCV_IIB_INDEX_MANIFEST_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "code_segment.hpp"
 #include "opencv2/iib/checked_file.private.hpp"
@@ -41,5 +37,3 @@ Manifest readManifest(const String& filename);
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

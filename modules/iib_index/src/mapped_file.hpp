@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef OPENCV_IIB_INDEX_MAPPED_FILE_HPP
-#define OPENCV_IIB_INDEX_MAPPED_FILE_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "opencv2/core.hpp"
 
@@ -48,5 +44,3 @@ private:
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -1,12 +1,6 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef OPENCV_IIB_INDEX_PRECOMP_HPP
-#define OPENCV_IIB_INDEX_PRECOMP_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "opencv2/core.hpp"
 #include "opencv2/core/utility.hpp"
 #include "opencv2/iib_index.hpp"
-
-#endif

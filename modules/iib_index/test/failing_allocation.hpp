@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef OPENCV_IIB_INDEX_TEST_FAILING_ALLOCATION_HPP
-#define OPENCV_IIB_INDEX_TEST_FAILING_ALLOCATION_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 // Sanitizers of addresses and threads have allocators of their own, which must see both ends of each allocation.
 #if defined __linux__ && !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__
@@ -22,5 +18,3 @@ struct FailingAllocation
 };
 
 }  // namespace opencv_test
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef OPENCV_IIB_INDEX_TEST_INDEX_FIXTURE_HPP
-#define OPENCV_IIB_INDEX_TEST_INDEX_FIXTURE_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include "test_precomp.hpp"
 
@@ -83,5 +79,3 @@ struct IndexFixture : public testing::Test
 };
 
 }  // namespace opencv_test
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_TEST_NPY_TEXT_HPP
-#define IIB_TOOLS_TEST_NPY_TEXT_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <string>
 
@@ -21,5 +17,3 @@ inline std::string npyText(const cv::Mat& array, int version = 1)
         text += char(header.size() >> 8 * i);
     return text + header + std::string(array.ptr<char>(), array.total() * array.elemSize());
 }
-
-#endif

@@ -1,9 +1,5 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
-
-#ifndef IIB_TOOLS_TEST_FOLDER_HPP
-#define IIB_TOOLS_TEST_FOLDER_HPP
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
 
 #include <fstream>
 #include <string>
@@ -42,5 +38,3 @@ template <typename Statement> std::string messageOf(Statement statement)
     }
     return "";
 }
-
-#endif

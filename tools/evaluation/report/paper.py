@@ -1,6 +1,4 @@
-# This file is part of OpenCV project.
-# It is subject to the license terms in the LICENSE file found in the top-level directory
-# of this distribution and at http://opencv.org/license.html.
+# SPDX-License-Identifier: Apache-2.0
 
 """The figures of Lin et al., "Illumination-insensitive Binary Descriptor for Visual Measurement Based on Local
 Inter-patch Invariance": natural mAP, natural mAR, synthetic mAP, synthetic mAR, by the names of our results."""

@@ -1,7 +1,5 @@
 #!/usr/bin/env python3
-# This file is part of OpenCV project.
-# It is subject to the license terms in the LICENSE file found in the top-level directory
-# of this distribution and at http://opencv.org/license.html.
+# SPDX-License-Identifier: Apache-2.0
 
 """One page, index.html, from the CSV files of iib_evaluation: report.py RESULTS. Needs python3-jinja2."""
 import argparse

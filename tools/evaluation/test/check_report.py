@@ -1,7 +1,5 @@
 #!/usr/bin/env python3
-# This file is part of OpenCV project.
-# It is subject to the license terms in the LICENSE file found in the top-level directory
-# of this distribution and at http://opencv.org/license.html.
+# SPDX-License-Identifier: Apache-2.0
 
 """check_report.py REPORT RESULTS: the page of a reduced run has its sections and figures, fetches nothing from
 elsewhere, and its links lead to files."""
