@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Summaries of an evaluation for doc/results, from which figures.py makes its tables: summaries.py FOLDER
 
-FOLDER: results of scripts/evaluate.sh and, as ratios.csv, of iib_ratios, with a row for each pair of images. Written are
-means over the pairs of a group, one row each, with their number; of poses also the ends of the mean's 95 % confidence
-interval (low, high; bootstrap over the pairs).
+FOLDER: results of scripts/evaluate.sh, with a row for each pair of images. Written are means over the pairs of a group, one
+row each, with their number; of poses also the ends of the mean's 95 % confidence interval (low, high; bootstrap over the
+pairs).
 """
 import collections
 import csv

@@ -66,15 +66,6 @@ Configuration withPreset(const std::string& name, int preset)
     return c;
 }
 
-std::vector<Configuration> presets()
-{
-    return {withPreset("S128", IIB::PRESET_S128), withPreset("S256", IIB::PRESET_S256),
-            withPreset("S512", IIB::PRESET_S512), withPreset("ACCURATE", IIB::PRESET_ACCURATE),
-            withPreset("COMPACT", IIB::PRESET_COMPACT), withPreset("TINY", IIB::PRESET_TINY),
-            withPreset("BALANCED", IIB::PRESET_BALANCED), withPreset("VIEWPOINT", IIB::PRESET_VIEWPOINT),
-            withPreset("UNIVERSAL", IIB::PRESET_UNIVERSAL), withPreset("SMALL", IIB::PRESET_SMALL)};
-}
-
 Configuration onPointsOf(Configuration c, const std::string& detector)
 {
     c.name += " on " + detector + " points";
@@ -83,6 +74,15 @@ Configuration onPointsOf(Configuration c, const std::string& detector)
 }
 
 }  // namespace
+
+std::vector<Configuration> presetConfigurations()
+{
+    return {withPreset("S128", IIB::PRESET_S128), withPreset("S256", IIB::PRESET_S256),
+            withPreset("S512", IIB::PRESET_S512), withPreset("ACCURATE", IIB::PRESET_ACCURATE),
+            withPreset("COMPACT", IIB::PRESET_COMPACT), withPreset("TINY", IIB::PRESET_TINY),
+            withPreset("BALANCED", IIB::PRESET_BALANCED), withPreset("VIEWPOINT", IIB::PRESET_VIEWPOINT),
+            withPreset("UNIVERSAL", IIB::PRESET_UNIVERSAL), withPreset("SMALL", IIB::PRESET_SMALL)};
+}
 
 std::vector<Configuration> iibConfigurations()
 {
@@ -100,7 +100,7 @@ std::vector<Configuration> iibConfigurations()
             iib("IIB +labels", Parameters(), {"labels"}),
             iib("IIB +depth+labels", Parameters(), {"depth", "labels"}), onPointsOf(standard, "AKAZE"),
             onPointsOf(standard, "KAZE")};
-    const std::vector<Configuration> learned = presets();
+    const std::vector<Configuration> learned = presetConfigurations();
     all.insert(all.end(), learned.begin(), learned.end());
     return all;
 }
@@ -121,7 +121,7 @@ std::vector<Configuration> robustnessConfigurations()
     oriented.create = []() -> cv::Ptr<cv::Feature2D> {
         return IIB::create(1.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, true);
     };
-    std::vector<Configuration> all = presets();
+    std::vector<Configuration> all = presetConfigurations();
     all.insert(all.begin(), {upright, oriented});
     for (const Configuration& baseline : baselineConfigurations())
         if (baseline.name == "BEBLID-512" || baseline.name == "TEBLID-512" || baseline.name == "LATCH-512")

@@ -26,6 +26,8 @@ struct Configuration
 //! All tables of the paper on IIB: channels, mappings, overlap, granularity, extra channels; and the presets.
 std::vector<Configuration> iibConfigurations();
 
+std::vector<Configuration> presetConfigurations();
+
 //! The presets that detected points are described with: those for any light or view at more than 60 bytes.
 std::vector<Configuration> generalPresets();
 

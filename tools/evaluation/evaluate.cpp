@@ -21,8 +21,8 @@ struct Experiment
 };
 
 const Experiment EXPERIMENTS[] = {{"fixed_points", fixedPoints}, {"detected_points", detectedPoints},
-        {"whole_tasks", wholeTasks}, {"matching", matchingStudy}, {"robustness", robustness}, {"cost", cost},
-        {"pictures", pictures}, {"comparison", comparison}};
+        {"whole_tasks", wholeTasks}, {"matching", matchingStudy}, {"robustness", robustness},
+        {"ratios", ratios}, {"cost", cost}, {"pictures", pictures}, {"comparison", comparison}};
 
 //! Results of other settings must not be mixed with these; a further detector from files or a network may join.
 void checkSettings(const Options& options)

@@ -39,6 +39,8 @@ int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs);
 int wholeTasks(const Options& options, const std::vector<ImagePair>& pairs);
 int matchingStudy(const Options& options, const std::vector<ImagePair>& pairs);
 int robustness(const Options& options, const std::vector<ImagePair>& pairs);
+//! What a ratio test leaves of the right matches of the presets, for AKAZE's points detected in both images.
+int ratios(const Options& options, const std::vector<ImagePair>& pairs);
 int cost(const Options& options, const std::vector<ImagePair>& pairs);
 //! Pictures of the worst and best pairs of each set, by recall in `<out>/fixed_points.csv`.
 int pictures(const Options& options, const std::vector<ImagePair>& pairs);

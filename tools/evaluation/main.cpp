@@ -13,7 +13,8 @@ const char ABOUT[] = "The paper's experiments, and more, on image sequences: iib
 
 const char KEYS[] =
         "{out         |<none>|folder of the results; a run that was interrupted goes on there}"
-        "{only        |<none>|fixed_points, detected_points, whole_tasks, matching, robustness, cost, "
+        "{only        |<none>|fixed_points, detected_points, whole_tasks, matching, robustness, ratios, "
+        "cost, "
         "pictures "
         "or comparison; may be repeated}"
         "{compare     |<none>|list file of pairs to draw the matches of IIB and others on}"

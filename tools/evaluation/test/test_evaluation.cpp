@@ -24,6 +24,13 @@ std::string contents(const std::string& file)
     return std::string((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
 }
 
+//! The number that follows `start` in a table, -1 without it.
+int valueAfter(const std::string& table, const std::string& start)
+{
+    const size_t at = table.find("\n" + start);
+    return at == std::string::npos ? -1 : std::atoi(table.c_str() + at + 1 + start.size());
+}
+
 //! Two sequences of random blocks under changing light: a still camera with depth, and one that shifts.
 class EvaluationTest : public ::testing::Test
 {
@@ -101,7 +108,7 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
     EXPECT_GT(recallOf("still", "IIB +depth"), 0.9);
 
     const std::vector<std::string> tables = {"fixed_points", "detected_points", "whole_tasks", "matching",
-            "robustness", "cost", "pictures", "comparison"};
+            "robustness", "ratios", "cost", "pictures", "comparison"};
     std::vector<std::string> first;
     for (const std::string& name : tables)
         first.push_back(contents(options.out + "/" + name + ".csv"));
@@ -116,6 +123,22 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
 
     options.points = 100;
     EXPECT_NE(std::string::npos, messageOf([&] { evaluate(options); }).find("settings"));
+}
+
+TEST_F(EvaluationTest, ratio_tests_at_points_of_akaze)
+{
+    folder.makeFolder("bright/set/still");
+    const cv::Mat image = cv::imread(folder.path("data/set/still/1.png"), cv::IMREAD_GRAYSCALE);
+    cv::imwrite(folder.path("bright/set/still/1.png"), image);
+    cv::imwrite(folder.path("bright/set/still/2.png"), image * 0.7);
+    options.roots = {folder.path("bright")};
+    options.experiments = {"ratios"};
+    EXPECT_EQ(0, evaluate(options));
+    const std::string table = contents(options.out + "/ratios.csv"), start = "set,still,2,light,IIB S256,";
+    const int mutual = valueAfter(table, start + "mutual,"), sure = valueAfter(table, start + "0.7,");
+    EXPECT_GT(sure, 10);
+    EXPECT_LE(sure, mutual);
+    EXPECT_GT(valueAfter(table, "set,still,2,light,IIB,mutual,"), 10);
 }
 
 TEST_F(EvaluationTest, an_interrupted_run_goes_on_to_the_same_result)
@@ -147,13 +170,6 @@ TEST_F(EvaluationTest, broken_files_are_counted_and_the_rest_goes_on)
     options.experiments = {"fixed_points"};
     EXPECT_EQ(2, evaluate(options));
     EXPECT_GT(recallOf("still", "IIB"), 0.9);
-}
-
-//! The number that follows `start` in a table, -1 without it.
-int valueAfter(const std::string& table, const std::string& start)
-{
-    const size_t at = table.find("\n" + start);
-    return at == std::string::npos ? -1 : std::atoi(table.c_str() + at + 1 + start.size());
 }
 
 class KeypointFilesTest : public EvaluationTest
