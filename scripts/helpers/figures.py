@@ -116,6 +116,11 @@ def best_poses(places=('buildings', 'walks')):
             for row in POSES]
 
 
+def score(row):
+    """With its 95 % confidence interval."""
+    return '%.2f (%.2f to %.2f)' % tuple(float(row[column]) for column in ('score', 'low', 'high'))
+
+
 def pose_table(cell):
     chosen = best_poses()
     pairs = [best['pairs'] for best in chosen[0][1]]
@@ -126,13 +131,13 @@ def pose_table(cell):
 
 
 def poses():
-    """Area under the curve of the error of the relative pose up to 10 degrees, with its 95 % confidence interval."""
-    return pose_table(lambda best: '%.2f (%.2f to %.2f)' % tuple(float(best[c]) for c in ('score', 'low', 'high')))
+    """Area under the curve of the error of the relative pose up to 10 degrees."""
+    return pose_table(score)
 
 
 def pose_claim():
     """The README's sentence on poses."""
-    found = {row: '%.2f (%.2f to %.2f)' % tuple(float(best[1][c]) for c in ('score', 'low', 'high')) for row, best in best_poses()}
+    found = {row: score(best[1]) for row, best in best_poses()}
     return ("- **Better poses.** Where light and camera both change, the score of relative poses (table below) is %s with the\n"
             "  recommended chain; with ORB %s, with SIFT %s." %
             (found['Hessian', 'IIB UNIVERSAL'], found['ORB', 'ORB'], found['SIFT', 'SIFT']))
@@ -141,6 +146,17 @@ def pose_claim():
 def pose_rules():
     """The choice of matches and the threshold behind each figure of poses."""
     return pose_table(lambda best: best['matching'])
+
+
+def pose_by_rule():
+    """Poses of the recommended chain by the choice of matches and MAGSAC's threshold."""
+    found = grouped('whole_tasks.csv', ('detector', 'descriptor', 'place', 'matching'))
+    limits, lines = ('0.75', '1', '2'), []
+    for place in ('buildings', 'walks'):
+        for label, rule in (('mutual', 'mutual'), ('a ratio of .9', 'ratio'), ('both', 'both')):
+            chosen = [unseen(found['Hessian', 'IIB UNIVERSAL', place, '%s at %s px' % (rule, limit)])[0] for limit in limits]
+            lines.append([place, label] + [score(row) for row in chosen])
+    return table(['', ''] + [limit + ' px' for limit in limits], lines)
 
 
 def elsewhere():
@@ -380,7 +396,7 @@ def place_recognition():
 
 
 PAGES = {'README.md': (pose_claim, poses),
-         'doc/guide.md': (ratios, presets),
+         'doc/guide.md': (pose_by_rule, ratios, presets),
          'doc/performance.md': (describing, matching, matching_speed, small_work, costs, all_costs),
          'doc/scale.md': (mapped_index, flat_search, approximate_search, on_paper, place_recognition),
          'doc/results/README.md': (pose_rules, elsewhere, extra_channels, all_ratios, detected_points, fixed_points, turned)}

@@ -22,7 +22,8 @@ class Figures(unittest.TestCase):
                 found[key] = [{**row, 'place': 'trained'} for row in rows]
             return found
         for function in (figures.presets, figures.ratios, figures.all_ratios, figures.fixed_points, figures.poses,
-                         figures.pose_claim, figures.pose_rules):
+                         figures.pose_claim, figures.pose_rules,
+                         figures.pose_by_rule):
             function()
             with mock.patch.object(figures, 'grouped', of_trained_scenes), self.assertRaisesRegex(SystemExit, 'trained'):
                 function()
