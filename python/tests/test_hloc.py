@@ -1,0 +1,66 @@
+import importlib.util
+import sys
+import types
+import unittest
+from unittest import mock
+
+import numpy as np
+
+import opencv_iib
+from support import REPOSITORY, texture
+
+EXAMPLE = REPOSITORY / 'python/examples/hloc_iib.py'
+
+
+class Tensor(np.ndarray):
+    def cpu(self):
+        return self
+
+    def numpy(self):
+        return np.asarray(self)
+
+
+def extractor():
+    """The example's class, with as much of torch and hloc as it uses."""
+    torch, base = types.ModuleType('torch'), types.ModuleType('hloc.utils.base_model')
+    torch.from_numpy = lambda array: array.view(Tensor)
+    base.BaseModel = object
+    stand_ins = {'torch': torch, 'hloc': types.ModuleType('hloc'), 'hloc.utils': types.ModuleType('hloc.utils'), base.__name__: base}
+    spec = importlib.util.spec_from_file_location('hloc_iib', EXAMPLE)
+    module = importlib.util.module_from_spec(spec)
+    with mock.patch.dict(sys.modules, stand_ins):
+        spec.loader.exec_module(module)
+    made = module.IIB()
+    made.conf = {'max_keypoints': 300}
+    return made
+
+
+def nearest(similarity, ratio):
+    """What hloc's nearest_neighbor finds in one direction."""
+    best = np.argsort(-similarity, axis=1, kind='stable')[:, :2]
+    first, second = (2 * (1 - np.take_along_axis(similarity, best, 1))).T
+    return np.where(first <= ratio ** 2 * second, best[:, 0], -1)
+
+
+@unittest.skipUnless(EXAMPLE.exists(), 'the examples are not beside these tests')
+class Hloc(unittest.TestCase):
+
+    def test_hlocs_matcher_finds_what_the_recommended_matcher_finds_both_ways(self):
+        images = texture(320, 240, seed=4), texture(320, 240, seed=4)[3:, 5:] // 2
+        found = [extractor()._forward({'image': (image[None, None] / np.float32(255)).view(Tensor)}) for image in images]
+        a, b = (f['descriptors'][0] for f in found)
+        self.assertEqual((a.dtype, len(a), len(found[0]['scores'][0])), (np.float32, 1024, a.shape[1]))
+        np.testing.assert_array_equal(a.astype(np.float16), a)
+        similarity = a.T.astype(np.float64) @ b
+        forward, backward = nearest(similarity, .9 ** .5), nearest(similarity.T, .9 ** .5)
+        mutual = [(i, j) for i, j in enumerate(forward) if j >= 0 and backward[j] == i]
+        codes = [opencv_iib.detect_and_describe(image, 300) for image in images]
+        np.testing.assert_array_equal(found[0]['keypoints'][0], codes[0].points)
+        there = opencv_iib.match(codes[0].codes, codes[1].codes).pairs
+        back = opencv_iib.match(codes[1].codes, codes[0].codes).pairs
+        self.assertGreater(len(mutual), 50)
+        self.assertEqual(set(mutual), set(map(tuple, there.tolist())) & {(i, j) for j, i in back.tolist()})
+
+
+if __name__ == '__main__':
+    unittest.main()
