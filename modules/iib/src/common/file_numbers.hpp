@@ -58,6 +58,21 @@ template <typename T> void readNumber(const FileNode& node, const char* name, T&
         value = numberOf<T>(number, name);
 }
 
+//! The node that write() made under a name, or `node` if it is that one itself: users give either.
+inline FileNode nodeNamed(const FileNode& node, const char* name)
+{
+    const FileNode inner = node.isMap() ? node[name] : FileNode();
+    return inner.isMap() ? inner : node;
+}
+
+//! Algorithm::save() of one whose getDefaultName() holds a dot, which a node's name may not: what write() writes, alone.
+inline void saveAlone(const Algorithm& algorithm, const String& filename)
+{
+    FileStorage fs(filename, FileStorage::WRITE);
+    CV_Assert(fs.isOpened());
+    algorithm.write(fs);
+}
+
 }  // namespace iib
 }  // namespace cv
 

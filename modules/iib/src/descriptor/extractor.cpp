@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../common/detectors.hpp"
+#include "../common/file_numbers.hpp"
 #include "../common/image_input.hpp"
 #include "compute.hpp"
 #include "regions.hpp"
@@ -88,10 +89,7 @@ public:
             CV_Error(Error::StsBadArg,
                     "a selection is CV_32S with 5 columns (level, channel, row, column, bits), not " +
                             typeToString(q.type()) + format(" with %d", q.cols));
-        Parameters changed = plan->parameters;
-        changed.selection = q.empty() ? Mat_<int>() : Mat_<int>(q.clone());
-        changed.check();
-        plan = makePlan(changed);
+        set(&Parameters::selection, q.empty() ? Mat_<int>() : Mat_<int>(q.clone()));
     }
     Mat getSelection() const CV_OVERRIDE { return plan->parameters.selection.clone(); }
 
@@ -100,13 +98,7 @@ public:
     void write(FileStorage& fs) const CV_OVERRIDE;
     using Feature2D::read;
     void read(const FileNode& fn) CV_OVERRIDE;
-    void save(const String& filename) const CV_OVERRIDE
-    {
-        // a node's name may not hold the dot of getDefaultName()
-        FileStorage fs(filename, FileStorage::WRITE);
-        CV_Assert(fs.isOpened());
-        write(fs);
-    }
+    void save(const String& filename) const CV_OVERRIDE { saveAlone(*this, filename); }
 
 private:
     //! Whether `feature` is this extractor, or a class of this library that holds it.
@@ -121,12 +113,17 @@ private:
         return feature.get() == this;
     }
 
-    template <typename T> void set(T Parameters::*member, T value)
+    void set(const Parameters& changed)
+    {
+        changed.check();
+        plan = makePlan(changed);
+    }
+
+    template <typename T> void set(T Parameters::*member, const T& value)
     {
         Parameters changed = plan->parameters;
         changed.*member = value;
-        changed.check();
-        plan = makePlan(changed);
+        set(changed);
     }
 
     //! Sets a parameter that the rows of a selection refer to; another value removes the selection.
@@ -136,8 +133,7 @@ private:
         if (changed.*member != value)
             changed.selection.release();
         changed.*member = value;
-        changed.check();
-        plan = makePlan(changed);
+        set(changed);
     }
 
     Ptr<const DescriptorPlan> plan;
@@ -196,9 +192,7 @@ void IIBDescriptorExtractor_Impl::write(FileStorage& fs) const
 
 void IIBDescriptorExtractor_Impl::read(const FileNode& node)
 {
-    // The node that write() made, or what holds it: the root of a file, or a node around it.
-    const FileNode inner = node.isMap() ? node["IIB"] : FileNode();
-    const FileNode fn = inner.isMap() ? inner : node;
+    const FileNode fn = nodeNamed(node, "IIB");
     const Parameters parameters = readParameters(fn, plan->parameters);
     const FileNode detectorNode = fn["detector"];  // not in files of the first versions
     const Ptr<Feature2D> d = detectorNode.empty() ? detector : readDetector(detectorNode, detector);

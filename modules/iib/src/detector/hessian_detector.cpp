@@ -95,9 +95,7 @@ public:
     using Feature2D::read;
     void read(const FileNode& node) CV_OVERRIDE
     {
-        // The node that write() made, or what holds it: the root of a file, or a node around it.
-        const FileNode inner = node.isMap() ? node["HessianDetector"] : FileNode();
-        const FileNode fn = inner.isMap() ? inner : node;
+        const FileNode fn = nodeNamed(node, "HessianDetector");
         int version = 0;
         if (fn.isMap() && !fn["format"].empty())
             readNumber(fn, "format", version);
@@ -114,13 +112,7 @@ public:
         p = r;
     }
 
-    void save(const String& filename) const CV_OVERRIDE
-    {
-        // a node's name may not hold the dot of getDefaultName()
-        FileStorage fs(filename, FileStorage::WRITE);
-        CV_Assert(fs.isOpened());
-        write(fs);
-    }
+    void save(const String& filename) const CV_OVERRIDE { saveAlone(*this, filename); }
 
 private:
     static void refuseToDescribe()

@@ -183,9 +183,9 @@ SearchCost scanSingle(
     const int queries = block.pairs.queries.rows, trains = block.pairs.trainCount;
     std::vector<int> queryIndices(queries, -1), trainIndices(forTrains ? trains : 0, -1);
     NearestScan scan(
-            block.pairs, NearestCodes(forQueries.thresholds() + block.firstQuery, queryIndices.data()));
+            block.pairs, NearestCodes{forQueries.thresholds() + block.firstQuery, queryIndices.data()});
     if (forTrains)
-        scan.ofTrains = NearestCodes(forTrains->thresholds() + block.firstTrain, trainIndices.data());
+        scan.ofTrains = NearestCodes{forTrains->thresholds() + block.firstTrain, trainIndices.data()};
     input.trains.kernels().nearest(scan);
     keep(scan.ofQueries, queries, block.firstIndex(), forQueries, block.firstQuery);
     if (forTrains)

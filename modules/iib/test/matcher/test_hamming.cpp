@@ -198,9 +198,9 @@ TEST(IIB_Hamming, nearest_as_the_naive_loop)
                                 expected[3][t] = q;
                             }
                         }
-                    NearestScan scan(data.pairs(), NearestCodes(queryBest.data(), queryIndex.data()));
+                    NearestScan scan(data.pairs(), NearestCodes{queryBest.data(), queryIndex.data()});
                     if (both)
-                        scan.ofTrains = NearestCodes(trainBest.data(), trainIndex.data());
+                        scan.ofTrains = NearestCodes{trainBest.data(), trainIndex.data()};
                     if (masked)
                         scan.pairs.allowed = mask.data;
                     data.kernels.nearest(scan);

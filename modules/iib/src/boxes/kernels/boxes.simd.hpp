@@ -5,7 +5,7 @@
 #include "boxes.hpp"
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-#include "../../common/vectors.hpp"
+#include "../../common/vectors.simd.hpp"
 #include "../../descriptor/kernels/bits_planes.simd.hpp"
 #endif
 

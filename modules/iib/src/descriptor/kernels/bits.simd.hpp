@@ -10,6 +10,33 @@
 #include "mappings.hpp"
 
 namespace cv {
+
+CV_CPU_OPTIMIZATION_HAL_NAMESPACE_BEGIN
+
+/* Doubles, or one of them where there are no such vectors (ARMv7, WebAssembly). */
+#if CV_SIMD_64F
+typedef v_float64 v_doubles;
+
+inline v_doubles loadDoubles(const double* p) { return vx_load(p); }
+inline v_doubles repeatedDouble(double v) { return vx_setall_f64(v); }
+#else
+typedef double v_doubles;
+
+template <> struct VTraits<double>
+{
+    static constexpr int max_nlanes = 1;
+};
+inline double loadDoubles(const double* p) { return *p; }
+inline double repeatedDouble(double v) { return v; }
+inline void v_store(double* p, double v) { *p = v; }
+inline double v_min(double a, double b) { return std::min(a, b); }
+inline double v_max(double a, double b) { return std::max(a, b); }
+//! As if a comparison gave a lane of all ones or zeros.
+inline int v_signmask(bool comparison) { return comparison; }
+#endif
+
+CV_CPU_OPTIMIZATION_HAL_NAMESPACE_END
+
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN

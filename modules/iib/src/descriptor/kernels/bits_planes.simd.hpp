@@ -7,7 +7,7 @@
 
 // Where comparisons lie in memory, and how they become bits of a descriptor.
 
-#include "../../common/vectors.hpp"
+#include "../../common/vectors.simd.hpp"
 #include "quads.hpp"
 
 namespace cv {

@@ -5,7 +5,7 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_ROWS_SIMD_HPP
 #define OPENCV_IIB_DESCRIPTOR_KERNELS_ROWS_SIMD_HPP
 
-#include "../../common/vectors.hpp"
+#include "../../common/vectors.simd.hpp"
 #include "kernels.hpp"
 
 namespace cv {

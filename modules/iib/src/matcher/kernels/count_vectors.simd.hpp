@@ -7,7 +7,7 @@
 #ifndef OPENCV_IIB_MATCHER_KERNELS_COUNT_VECTORS_SIMD_HPP
 #define OPENCV_IIB_MATCHER_KERNELS_COUNT_VECTORS_SIMD_HPP
 
-#include "../../common/vectors.hpp"
+#include "../../common/vectors.simd.hpp"
 #include "code_layout.hpp"
 
 namespace cv {

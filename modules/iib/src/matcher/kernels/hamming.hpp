@@ -39,7 +39,6 @@ struct CodePairs
 //! The nearest code of the other side for each code; a scan replaces an entry when it finds a nearer one.
 struct NearestCodes
 {
-    NearestCodes(int* distances_, int* indices_) : distances(distances_), indices(indices_) {}
     int* distances;  //!< INT_MAX where there is none so far
     int* indices;    //!< index in the scan
 };
@@ -55,7 +54,7 @@ struct NearestScan
                pairs.layout.bytes() < 1 << (31 - INDEX_BITS - 3);
     }
     NearestScan(const CodePairs& pairs_, const NearestCodes& ofQueries_)
-        : pairs(pairs_), ofQueries(ofQueries_), ofTrains(0, 0)
+        : pairs(pairs_), ofQueries(ofQueries_), ofTrains()
     {
     }
     CodePairs pairs;

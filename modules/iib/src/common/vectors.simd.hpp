@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_COMMON_VECTORS_HPP
-#define OPENCV_IIB_COMMON_VECTORS_HPP
+#ifndef OPENCV_IIB_COMMON_VECTORS_SIMD_HPP
+#define OPENCV_IIB_COMMON_VECTORS_SIMD_HPP
 
 #include "opencv2/core/version.hpp"
 
@@ -113,28 +113,6 @@ inline v_float32 exactRoot(const v_float32& v)
 inline v_float32 exactQuotient(const v_float32& a, const v_float32& b) { return a / b; }
 template <typename V> inline auto nearestInt(const V& v) -> decltype(v_round(v)) { return v_round(v); }
 template <typename V> inline V exactRoot(const V& v) { return v_sqrt(v); }
-#endif
-
-/* Doubles, or one of them where there are no such vectors (ARMv7, WebAssembly). */
-#if CV_SIMD_64F
-typedef v_float64 v_doubles;
-
-inline v_doubles loadDoubles(const double* p) { return vx_load(p); }
-inline v_doubles repeatedDouble(double v) { return vx_setall_f64(v); }
-#else
-typedef double v_doubles;
-
-template <> struct VTraits<double>
-{
-    static constexpr int max_nlanes = 1;
-};
-inline double loadDoubles(const double* p) { return *p; }
-inline double repeatedDouble(double v) { return v; }
-inline void v_store(double* p, double v) { *p = v; }
-inline double v_min(double a, double b) { return std::min(a, b); }
-inline double v_max(double a, double b) { return std::max(a, b); }
-//! As if a comparison gave a lane of all ones or zeros.
-inline int v_signmask(bool comparison) { return comparison; }
 #endif
 
 /* Vectors of 256 bits at most, for values that come from many places. */
