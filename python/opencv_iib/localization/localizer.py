@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 from opencv_iib.functions import detect_and_describe
 from opencv_iib.localization._pycolmap import pycolmap
 from opencv_iib.localization.map import Map, read_map
-from opencv_iib.localization.retrieval import STRONGEST, Votes
+from opencv_iib.localization.retrieval import Votes
 from opencv_iib.matcher import HierarchicalMatcher
 
 SHORTLIST, CANDIDATES = 20, 5  #: of the map's images: by votes, and of these by matches
+NEAREST = 3  #: of the map's images, to a prior
+RANKING = 200  #: strongest codes of an image, whose matches rank the shortlist
 SUREST = 300  #: matches of the fewest different bits, among which the pose is looked for; it is refined with all
 RANSAC = {'random_seed': 1}
 GATE = .1  #: of the longer side: how far from where a prior has them points are looked for
@@ -52,8 +54,9 @@ class Localizer:
         self.points = points or self.map.points
         model, self._ids = self.map.model, sorted(self.map.codes)
         xyz = {number: point.xyz for number, point in model.points3D.items()}
-        self._points = [np.array([xyz[p.point3D_id] for p in model.image(i).points2D]).reshape(-1, 3) for i in self._ids]
-        self._codes = [self.map.codes[i] for i in self._ids]
+        self._numbers = [np.array([p.point3D_id for p in model.image(i).points2D], np.int64) for i in self._ids]
+        self._points = [np.array([xyz[number] for number in numbers]).reshape(-1, 3) for numbers in self._numbers]
+        self._codes = [np.asarray(self.map.codes[i]) for i in self._ids]
         self._centres = np.array([model.image(i).projection_center() for i in self._ids])
         self._directions = np.array([model.image(i).viewing_direction() for i in self._ids])
         self._depths = np.array([np.median(np.linalg.norm(points - centre, axis=1)) if len(points) else 1.
@@ -76,7 +79,7 @@ class Localizer:
         pixels = features.points.astype(np.float64) + .5
         location = Location('too few matches')
         if len(pixels) and prior is not None:
-            location = self._locate(pixels, features.codes, camera, self.near(prior)[:CANDIDATES], prior)
+            location = self._locate(pixels, features.codes, camera, self.near(prior)[:NEAREST], prior)
         if len(pixels) and location.cam_from_world is None:
             location = self._locate(pixels, features.codes, camera, self._similar(features.codes), None)
         return location
@@ -94,8 +97,7 @@ class Localizer:
     def _similar(self, codes: NDArray[np.uint8]) -> list[int]:
         votes = self._votes(codes)
         best = np.argsort(-votes, kind='stable')[:SHORTLIST]
-        strongest = codes[:STRONGEST]
-        counts = [np.count_nonzero(self._matcher.knnMatchArrays(strongest, self._codes[k])[0] >= 0)
+        counts = [np.count_nonzero(self._matcher.knnMatchArrays(codes[:RANKING], self._codes[k])[0] >= 0)
                   if votes[k] and len(self._codes[k]) else 0 for k in best]
         return [best[n] for n in np.argsort(-np.array(counts), kind='stable')[:CANDIDATES] if counts[n]]
 
@@ -104,11 +106,12 @@ class Localizer:
         """Keypoints, the rows of the map's image that they match, and bits that differ."""
         rows, mask = np.arange(len(self._codes[k])), None
         if prior is not None:
-            gate = GATE * max(camera.width, camera.height)
+            gate = round(GATE * max(camera.width, camera.height))
             places = camera.img_from_cam(project(prior, self._points[k]))  # NaN behind the camera
             rows = np.flatnonzero(((places > -gate) & (places < (camera.width + gate, camera.height + gate))).all(1))
-            found, mapped = pixels.astype(np.int16), places[rows].astype(np.int16)
-            mask = np.logical_and(*(np.abs(found[:, axis, None] - mapped[:, axis]) < gate for axis in (0, 1))).view(np.uint8)
+            seen, first = pixels.T.astype(np.int16), (places[rows].T - gate).astype(np.int16, order='C')
+            near = [(seen[axis, :, None] - first[axis]).view(np.uint16) < 2 * gate for axis in (0, 1)]  # negative is large
+            mask = (near[0] & near[1]).view(np.uint8)
         if not len(rows):
             return rows, rows, rows.astype(np.int32)
         nearest, bits = (a[:, 0] for a in self._matcher.knnMatchArrays(codes, self._codes[k][rows], mask=mask))
@@ -120,13 +123,16 @@ class Localizer:
         location = Location('too few matches', images=[self._ids[k] for k in candidates])
         matched = [self._matched(pixels, codes, camera, k, prior) for k in candidates]
         queries = np.concatenate([np.empty(0, np.int64), *(m[0] for m in matched)])
-        owners = [(k, row) for k, m in zip(candidates, matched) for row in m[1]]
-        location.matches = len(queries)
         if len(queries) < LEAST_INLIERS:
             return location
-        xy, xyz = pixels[queries], np.array([self._points[k][row] for k, row in owners])
+        # A keypoint that matches a point in several images of the map counts once.
+        numbers = np.concatenate([self._numbers[k][m[1]] for k, m in zip(candidates, matched)])
+        _, first, match = np.unique(np.stack([queries, numbers]), axis=1, return_index=True, return_inverse=True)
+        queries = queries[first]
+        location.matches = len(queries)
+        xy, xyz = pixels[queries], np.concatenate([self._points[k][m[1]] for k, m in zip(candidates, matched)])[first]
         limit = MAX_ERROR * max(camera.width, camera.height)
-        surest = np.argsort(np.concatenate([m[2] for m in matched]), kind='stable')[:SUREST]
+        surest = np.argsort(np.concatenate([m[2] for m in matched])[first], kind='stable')[:SUREST]
         found = pycolmap.estimate_absolute_pose(xy[surest], xyz[surest], camera, {'ransac': {**RANSAC, 'max_error': limit}})
         location.reason = 'too few matches agree'
         if found is None:
@@ -146,15 +152,15 @@ class Localizer:
             if location.inliers < LEAST_INLIERS + LEAST_SHARE * len(queries):
                 return location
         deviation = max(LEAST_DEVIATION, np.median(errors[inliers]) / 1.1774)  # of a Rayleigh distribution
-        repeated = inliers.sum() / location.inliers  # matches with several images of the map tell the same
-        location.covariance = repeated * deviation ** 2 * camera_covariance(pose, refined['covariance'])
+        location.covariance = deviation ** 2 * camera_covariance(pose, refined['covariance'])
         depth = np.median(np.linalg.norm(project(pose, xyz[inliers]), axis=1))
         if not 3 * np.sqrt(np.linalg.eigvalsh(location.covariance[:3, :3])[2]) <= MAX_BOUND * depth:
             location.reason = 'the pose is uncertain'
             return location
         location.reason, location.cam_from_world = '', pose
         location.pixels, location.points = xy[inliers], xyz[inliers]
-        location.hits = [(self._ids[owners[n][0]], int(owners[n][1])) for n in np.flatnonzero(inliers)]
+        owners = [(self._ids[k], int(row)) for k, m in zip(candidates, matched) for row in m[1]]
+        location.hits = [owners[n] for n in np.flatnonzero(inliers[match.ravel()])]
         return location
 
 
