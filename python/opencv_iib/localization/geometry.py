@@ -79,4 +79,3 @@ def triangulate(model: Any, graph: Any, images: Iterable[int], step: Callable[[]
         if model.num_points3D():
             pycolmap.create_default_bundle_adjuster(refinement, everything, model).solve()
     manager.filter_all_points3D(MAX_ERROR, MIN_ANGLE)
-    model.update_point_3d_errors()

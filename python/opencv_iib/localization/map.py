@@ -74,6 +74,7 @@ def compact(model: Any, codes: dict[int, NDArray[Any]]) -> dict[int, NDArray[np.
         model.image(i).points2D = pycolmap.Point2DList([pycolmap.Point2D(place) for place in places])
     for xyz, color, track in points:
         model.add_point3D(xyz, pycolmap.Track([pycolmap.TrackElement(*element) for element in track]), color)
+    model.update_point_3d_errors()
     for i, rows in kept.items():
         codes[i] = codes[i][rows]
     return kept

@@ -4,9 +4,10 @@ from __future__ import annotations
 import csv
 import functools
 import os
-from typing import Any, Iterable, Iterator, Optional
+from typing import Any, Iterator, Optional
 
 import numpy as np
+from numpy.typing import NDArray
 
 from opencv_iib.colmap.images import find_images, read_grey
 from opencv_iib.colmap.parallel import Threads, in_parallel
@@ -94,23 +95,20 @@ def _write_picture(path: str, image: str, camera: Any, location: Location) -> No
         raise OSError(f'{path} cannot be written')
 
 
-def add_images(model: Any, found: Iterable[tuple[str, Any, Location]]) -> list[int]:
-    """Adds localized images, with the keypoints that agree, to a pycolmap.Reconstruction; their new ids."""
-    cameras = {camera.params_to_string() + f'{camera.model_name} {camera.width} {camera.height}': camera.camera_id
-               for camera in model.cameras.values() if camera.camera_id in model.rigs}
-    ids, number = [], max(model.images, default=0)
-    number = max(number, max(model.frames, default=0))
-    for name, camera, location in found:
-        key = camera.params_to_string() + f'{camera.model_name} {camera.width} {camera.height}'
-        if key not in cameras:
-            cameras[key] = max((*model.cameras, *model.rigs, 0)) + 1
-            model.add_camera_with_trivial_rig(pycolmap.Camera(
-                camera_id=cameras[key], model=camera.model, width=camera.width, height=camera.height, params=camera.params))
-        number += 1
-        image = pycolmap.Image(name, location.pixels, cameras[key], number)
-        model.add_image_with_trivial_frame(image, location.cam_from_world)
-        ids.append(number)
-    return ids
+def add_image(model: Any, name: str, camera: Any, pixels: NDArray[np.float64], cam_from_world: Any) -> int:
+    """Adds an image with its pose to a pycolmap.Reconstruction, and its camera unless that is there; the image's id."""
+    def key(camera: Any) -> tuple[Any, ...]:
+        return camera.model, camera.width, camera.height, *camera.params
+
+    known = [c.camera_id for c in model.cameras.values() if key(c) == key(camera) and c.camera_id in model.rigs and
+             model.rig(c.camera_id).sensor_ids() == {c.sensor_id}]
+    if not known:
+        known = [max((*model.cameras, *model.rigs, 0)) + 1]
+        model.add_camera_with_trivial_rig(pycolmap.Camera(camera_id=known[0], model=camera.model, width=camera.width,
+                                                          height=camera.height, params=camera.params))
+    number = max((*model.images, *model.frames, 0)) + 1
+    model.add_image_with_trivial_frame(pycolmap.Image(name, pixels, known[0], number), cam_from_world)
+    return number
 
 
 def localize_images(map: str | Map, images: str, out: str, camera: Any = None, pictures: bool = False,
@@ -145,7 +143,7 @@ def localize_images(map: str | Map, images: str, out: str, camera: Any = None, p
                 pose = location.cam_from_world.inverse()
                 numbers = [repr(float(v)) for v in (*pose.translation, *pose.rotation.quat)]
                 trajectory.write(f'{os.path.splitext(name)[0]} {" ".join(numbers)}\n')
-                add_images(model, [(name, own, location)])
+                add_image(model, name, own, location.pixels, location.cam_from_world)
                 if pictures:
                     flat = name.replace('/', '-') + '.png'
                     _write_picture(os.path.join(partial, 'matches', flat), os.path.join(images, name), own, location)

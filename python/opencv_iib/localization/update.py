@@ -15,7 +15,7 @@ from opencv_iib.localization.folders import new_folder
 from opencv_iib.localization.geometry import fitting, graph_of, triangulate
 from opencv_iib.localization.localizer import Localizer, Location, project
 from opencv_iib.localization.map import OWN, Map, compact, read_map, write_map
-from opencv_iib.localization.run import add_images, images_of, locate
+from opencv_iib.localization.run import add_image, images_of, locate
 
 KNOWN = .2  #: share of an image's keypoints: with more inliers, the map knows its light
 APART = .1  #: of two images that one update adds: their distance over that of what they see, plus the angle in radians
@@ -126,8 +126,8 @@ def update_map(map: str, images: str, camera: Any = None, out: Optional[str] = N
         added: dict[int, Location] = {}
         for name, own, location in chosen:
             features = detect_and_describe(read_grey(os.path.join(images, name)), known.points)
-            whole = dataclasses.replace(location, pixels=features.points.astype(np.float64) + .5)
-            i, = add_images(known.model, [(f'{ADDED}{known.updates}/{name}', own, whole)])
+            pixels = features.points.astype(np.float64) + .5
+            i = add_image(known.model, f'{ADDED}{known.updates}/{name}', own, pixels, location.cam_from_world)
             added[i] = location
             known.codes[i], known.misses[i] = features.codes, np.zeros(len(features.codes), np.uint8)
             known.used[i] = known.updates
