@@ -100,13 +100,13 @@ def add_image(model: Any, name: str, camera: Any, pixels: NDArray[np.float64], c
     def key(camera: Any) -> tuple[Any, ...]:
         return camera.model, camera.width, camera.height, *camera.params
 
-    known = [c.camera_id for c in model.cameras.values() if key(c) == key(camera) and c.camera_id in model.rigs and
+    known: list[int] = [c.camera_id for c in model.cameras.values() if key(c) == key(camera) and c.camera_id in model.rigs and
              model.rig(c.camera_id).sensor_ids() == {c.sensor_id}]
     if not known:
         known = [max((*model.cameras, *model.rigs, 0)) + 1]
         model.add_camera_with_trivial_rig(pycolmap.Camera(camera_id=known[0], model=camera.model, width=camera.width,
                                                           height=camera.height, params=camera.params))
-    number = max((*model.images, *model.frames, 0)) + 1
+    number = 1 + int(max((*model.images, *model.frames, 0)))
     model.add_image_with_trivial_frame(pycolmap.Image(name, pixels, known[0], number), cam_from_world)
     return number
 
