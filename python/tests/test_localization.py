@@ -317,7 +317,11 @@ class Localization(unittest.TestCase):
         self.check_error('holds letter.txt', 'map', '--model', self.model, '--images', self.images, '--out', foreign)
         with self.assertRaisesRegex(RuntimeError, 'middle'), new_folder(self.path('new'), ['a']) as partial:
             raise RuntimeError('middle')
-        self.assertTrue(os.path.isdir(partial))
+        open(os.path.join(partial, 'half'), 'w').close()
+        for resume, left in ((True, ['half']), (False, [])):
+            with self.assertRaises(KeyboardInterrupt), new_folder(partial[:-len('.partial')], ['a'], resume) as folder:
+                self.assertEqual((folder, os.listdir(folder)), (partial, left))
+                raise KeyboardInterrupt
 
     def test_updates_add_a_light_once_and_stay_bounded(self):
         out, camera = self.path('map'), parse_camera(CAMERA)

@@ -116,7 +116,7 @@ def build_map(model: str, images: str, out: str, points: int = 2000, workers: Op
     poses = hashlib.sha256(repr([(n, known.image(i).cam_from_world().params.tolist()) for n, i in sorted(names.items())]
                                 ).encode()).hexdigest()
     settings = {'images': os.path.abspath(images), 'points': points, 'model': poses, 'version': opencv_iib.__version__}
-    with new_folder(out, OWN) as partial:
+    with new_folder(out, OWN, resume=True) as partial:
         work = os.path.join(partial, WORK)
         with Database(work, settings, force=True) as database:
             width = _match(known, names, images, database, workers or os.cpu_count() or 1, points, log)

@@ -28,13 +28,12 @@ def _move(source: str, target: str) -> None:
 
 
 @contextlib.contextmanager
-def new_folder(target: str, own: Sequence[str]) -> Iterator[str]:
+def new_folder(target: str, own: Sequence[str], resume: bool = False) -> Iterator[str]:
     """A folder to write to, ``target.partial``, which becomes `target` when the block ends without an error.
-
-    After an error it stays, and the next call goes on with what it holds.
 
     :param own: patterns of the names that it may hold, the first of which it always holds: a folder that is there is
         replaced only if it holds nothing else.
+    :param resume: go on with what an interrupted call left in ``target.partial``, instead of removing it.
     :raises FileExistsError: for a folder that holds something else.
     :raises BlockingIOError: if another process is writing it.
     """
@@ -50,6 +49,8 @@ def new_folder(target: str, own: Sequence[str]) -> Iterator[str]:
     partial = target + '.partial'
     os.makedirs(partial, exist_ok=True)
     with only_writer(partial):
+        for entry in [] if resume else list(os.scandir(partial)):
+            shutil.rmtree(entry.path) if entry.is_dir(follow_symlinks=False) else os.unlink(entry.path)
         yield partial
         _move(partial, target)
         shutil.rmtree(partial, ignore_errors=True)  # what was at the target before
