@@ -96,29 +96,6 @@ private:
     T* const pixels;
 };
 
-//! One channel's values at a sample: pixels beyond the image repeat its border.
-template <typename Pixel> struct Neighbourhood
-{
-    const Mat& map;
-    int x0, x1, x2, y;
-
-    Neighbourhood(const Mat& map_, int x, int y_)
-        : map(map_), x0(std::max(x - 1, 0)), x1(x), x2(std::min(x + 1, map_.cols - 1)), y(y_)
-    {
-    }
-
-    int centre() const { return map.ptr<Pixel>(y)[x1]; }
-
-    //! Sobel 3x3.
-    void gradient(int& gx, int& gy) const
-    {
-        const Pixel *a = map.ptr<Pixel>(std::max(y - 1, 0)), *m = map.ptr<Pixel>(y),
-                    *b = map.ptr<Pixel>(std::min(y + 1, map.rows - 1));
-        gx = (a[x2] - a[x0]) + 2 * (m[x2] - m[x0]) + (b[x2] - b[x0]);
-        gy = (b[x0] - a[x0]) + 2 * (b[x1] - a[x1]) + (b[x2] - a[x2]);
-    }
-};
-
 /** The samples of one keypoint read from the maps themselves, as pixels in the order of the places. For grids that touch
  few pixels of the area that they span. */
 template <typename T> class SparsePixels
@@ -152,22 +129,24 @@ public:
 private:
     T* plane(int i) { return values + (size_t)i * (MAX_SAMPLES + ROW_PADDING); }
 
-    //! A channel; with the horizontal gradient comes the vertical one, as the next plane.
+    //! A channel; with the horizontal gradient comes the vertical one, as the next plane. Sobel 3x3, where pixels beyond the
+    //! image repeat its border.
     template <typename Pixel>
     void readPlane(const Channel& c, const int* x, const int* y, int count, int index)
     {
+        const Mat& map = c.map;
         for (int s = 0; s < count; s++)
         {
-            const Neighbourhood<Pixel> around(c.map, x[s], y[s]);
+            const int x0 = std::max(x[s] - 1, 0), x1 = x[s], x2 = std::min(x1 + 1, map.cols - 1);
+            const Pixel *a = map.ptr<Pixel>(std::max(y[s] - 1, 0)), *m = map.ptr<Pixel>(y[s]),
+                        *b = map.ptr<Pixel>(std::min(y[s] + 1, map.rows - 1));
             if (usesGradient(c))
             {
-                int gx, gy;
-                around.gradient(gx, gy);
-                plane(index)[s] = (T)gx;
-                plane(index + 1)[s] = (T)gy;
+                plane(index)[s] = (T)((a[x2] - a[x0]) + 2 * (m[x2] - m[x0]) + (b[x2] - b[x0]));
+                plane(index + 1)[s] = (T)((b[x0] - a[x0]) + 2 * (b[x1] - a[x1]) + (b[x2] - a[x2]));
             }
             else
-                plane(index)[s] = (T)around.centre();
+                plane(index)[s] = (T)m[x1];
         }
     }
 

@@ -13,37 +13,19 @@ namespace iib {
 namespace {
 
 //! Cuts queries in parts, which threads scan, and adds up the work. `scan` takes a Range of queries.
-template <class Scan> class ParallelScan CV_FINAL : public ParallelLoopBody
-{
-public:
-    ParallelScan(int queries_, int parts, const Scan& scan_)
-        : queries(queries_), size(std::max((queries + parts - 1) / parts, 4)),  // a tile's queries
-          scan(scan_)
-    {
-    }
-    SearchCost run() const
-    {
-        const int parts = (queries + size - 1) / size;
-        parallel_for_(Range(0, parts), *this, parts);
-        return cost;
-    }
-    void operator()(const Range& parts) const CV_OVERRIDE
-    {
-        const SearchCost work = scan(Range(parts.start * size, std::min(parts.end * size, queries)));
-        std::lock_guard<std::mutex> guard(lock);
-        cost += work;
-    }
-
-private:
-    const int queries, size;
-    const Scan& scan;
-    mutable std::mutex lock;
-    mutable SearchCost cost;
-};
-
 template <class Scan> SearchCost scanInParts(int queries, int parts, const Scan& scan)
 {
-    return ParallelScan<Scan>(queries, parts, scan).run();
+    const int size = std::max((queries + parts - 1) / parts, 4);  // a tile's queries
+    const int count = (queries + size - 1) / size;
+    SearchCost cost;
+    std::mutex lock;
+    const auto scanSome = [&](const Range& some) {
+        const SearchCost work = scan(Range(some.start * size, std::min(some.end * size, queries)));
+        std::lock_guard<std::mutex> guard(lock);
+        cost += work;
+    };
+    parallel_for_(Range(0, count), scanSome, count);
+    return cost;
 }
 
 // Some parts for each thread, so that all are done at about the same time.

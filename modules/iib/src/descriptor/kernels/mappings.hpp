@@ -27,27 +27,17 @@ struct MeanMapping
     }
 };
 
-struct MaxMapping
+//! x_i is the largest of the four, or the smallest.
+template <bool LARGEST> struct ExtremeMapping
 {
     static constexpr int BITS = 4;
 
     template <typename V, typename Put> static void map(const V x[4], const Put& put)
     {
-        const V top = greatest(greatest(x[0], x[1]), greatest(x[2], x[3]));
+        const V extreme = LARGEST ? greatest(greatest(x[0], x[1]), greatest(x[2], x[3]))
+                                  : least(least(x[0], x[1]), least(x[2], x[3]));
         for (int i = 0; i < 4; i++)
-            put(i, x[i] == top);
-    }
-};
-
-struct MinMapping
-{
-    static constexpr int BITS = 4;
-
-    template <typename V, typename Put> static void map(const V x[4], const Put& put)
-    {
-        const V bottom = least(least(x[0], x[1]), least(x[2], x[3]));
-        for (int i = 0; i < 4; i++)
-            put(i, x[i] == bottom);
+            put(i, x[i] == extreme);
     }
 };
 
@@ -128,8 +118,8 @@ inline auto visitMapping(int mapping, const Visitor& visitor)
 {
     switch (mapping)
     {
-    case IIB::MAPPING_MAX: return visitor.template visit<MaxMapping>();
-    case IIB::MAPPING_MIN: return visitor.template visit<MinMapping>();
+    case IIB::MAPPING_MAX: return visitor.template visit<ExtremeMapping<true>>();
+    case IIB::MAPPING_MIN: return visitor.template visit<ExtremeMapping<false>>();
     case IIB::MAPPING_QUARTILE: return visitor.template visit<QuartileMapping>();
     case IIB::MAPPING_SORT: return visitor.template visit<SortMapping>();
     case IIB::MAPPING_HAAR: return visitor.template visit<HaarMapping>();
