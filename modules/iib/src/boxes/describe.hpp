@@ -7,7 +7,7 @@
 
 #include "../descriptor/keypoint_batches.hpp"
 #include "../descriptor/regions.hpp"
-#include "../descriptor/workspace.hpp"
+#include "../descriptor/plan.hpp"
 
 namespace cv {
 namespace iib {

@@ -7,7 +7,7 @@
 
 #include "channels.hpp"
 #include "keypoint_batches.hpp"
-#include "workspace.hpp"
+#include "plan.hpp"
 
 namespace cv {
 namespace iib {

@@ -10,7 +10,7 @@
 #include "channels.hpp"
 #include "keypoint_batches.hpp"
 #include "regions.hpp"
-#include "workspace.hpp"
+#include "plan.hpp"
 
 namespace cv {
 namespace iib {

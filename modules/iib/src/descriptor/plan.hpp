@@ -8,6 +8,8 @@
 #include "../boxes/plan.hpp"
 #include "kernels/kernels.hpp"
 
+#include "opencv2/core/utils/tls.hpp"
+
 namespace cv {
 namespace iib {
 
@@ -41,6 +43,38 @@ Ptr<const DescriptorPlan> makePlan(const Parameters& checked);
 
 //! The bits that a selection chooses in a phase of a level. @param group which four of the channels.
 ChosenBits chosenBits(const Parameters& parameters, int level, int group, int phase);
+
+//! Memory that one thread uses again for each batch of keypoints. What it holds means nothing between two batches.
+struct Workspace
+{
+    static constexpr int MAX_PACKS = 1 + (MAX_EXTRA_CHANNELS + GROUP_CHANNELS - 1) / GROUP_CHANNELS;
+
+    ScratchMemory channelRows, ring;
+    ScratchMemory sourceRows[MAX_PACKS], sourcePixels[MAX_PACKS], sparsePixels,
+            planes;  //!< of rotated regions
+    CellGrid<ushort> shortCells;
+    CellGrid<unsigned> cells, parentCells;
+    CellGrid<double> doubleCells;
+    CellGrid<ushort>& cellsOf(ushort) { return shortCells; }
+    CellGrid<unsigned>& cellsOf(unsigned) { return cells; }
+    CellGrid<double>& cellsOf(double) { return doubleCells; }
+    CellGrid<unsigned> sums[MAX_GRANULARITY];  //!< over the cells of each level but the finest
+    CellGrid<double> doubleSums[MAX_GRANULARITY + 1];
+    ScratchMemory boxMeans;
+    BoxPlaces boxPlaces;
+};
+
+//! Those of a call, one for each thread.
+typedef TLSData<Workspace> Workspaces;
+
+//! Calls work(job, workspace) for each of `count` jobs, in parallel.
+template <typename Work> void parallelJobs(int count, Workspaces& workspaces, const Work& work)
+{
+    parallel_for_(Range(0, count), [&](const Range& range) {
+        for (int job = range.start; job < range.end; job++)
+            work(job, workspaces.getRef());
+    });
+}
 
 }  // namespace iib
 }  // namespace cv
