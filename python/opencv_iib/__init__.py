@@ -24,13 +24,13 @@ from opencv_iib.functions import Features, Matches, detect_and_describe, match
 from opencv_iib.keypoints import array_to_keypoints, keypoints_to_array
 from opencv_iib.mapped_index import MappedIndex
 from opencv_iib.matcher import HierarchicalMatcher
-from opencv_iib.rotation import estimateRotation
+from opencv_iib.rotation import estimateRotation, matchRotated
 
 __all__ = ['Border', 'Channel', 'DMatch', 'Features', 'HessianDetector', 'HierarchicalMatcher', 'IIB',
            'IIBDescriptorExtractor', 'KeyPoint', 'MappedIndex', 'Mapping', 'Matches', 'Mode', 'NormalizedDetector',
            'OPENCV_VERSION', 'Orientation', 'Preset', 'array_to_keypoints', 'detect_and_describe', 'error',
            'estimateRotation', 'estimate_rotation', 'getNumThreads', 'get_num_threads', 'keypoints_to_array', 'match',
-           'setNumThreads', 'set_num_threads']
+           'matchRotated', 'match_rotated', 'setNumThreads', 'set_num_threads']
 
 __version__: str = _core.VERSION
 #: Of the OpenCV inside.
@@ -58,4 +58,5 @@ def getNumThreads() -> int:
     return _core.getNumThreads()
 
 
-estimate_rotation, set_num_threads, get_num_threads = estimateRotation, setNumThreads, getNumThreads
+estimate_rotation, match_rotated = estimateRotation, matchRotated
+set_num_threads, get_num_threads = setNumThreads, getNumThreads

@@ -1,14 +1,17 @@
 """The angle between two images."""
 from __future__ import annotations
 
-from typing import Any, Sequence, Union
+from typing import Any, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import _core
 from opencv_iib._arrays import as_array
-from opencv_iib.keypoints import Keypoints, as_rows
+from opencv_iib._types import match_type
+from opencv_iib.descriptor import IIBDescriptorExtractor
+from opencv_iib.keypoints import Keypoints, array_to_keypoints, as_rows
+from opencv_iib.matcher import HierarchicalMatcher
 
 
 def estimateRotation(keypoints1: Keypoints, keypoints2: Keypoints, matches1to2: Union[Sequence[Any], NDArray[Any]]) -> float:
@@ -26,3 +29,36 @@ def estimateRotation(keypoints1: Keypoints, keypoints2: Keypoints, matches1to2: 
         pairs = pairs.astype(np.int32)
     return _core.estimateRotation(np.ascontiguousarray(as_rows(keypoints1)), np.ascontiguousarray(as_rows(keypoints2)),
                                   pairs)
+
+
+def matchRotated(image1: Any, image2: Any, extractor: IIBDescriptorExtractor, matcher: HierarchicalMatcher,
+                 rotation: float = -1, keypoints1: Optional[Keypoints] = None,
+                 keypoints2: Optional[Keypoints] = None) -> tuple[float, Any, Any, Any]:
+    """Matches two images of which one may be rotated in the image plane, and finds the angle.
+
+    A few of the strongest keypoints, tried at several angles, tell by how much; then all are described with this one
+    angle and matched. In ``cv2.iib`` the keypoints of an image follow it: (image1, keypoints1, image2, keypoints2, ...).
+
+    :param extractor: with ORIENTATION_KEYPOINT.
+    :param matcher: such as ``HierarchicalMatcher.createRecommended()``.
+    :param rotation: in degrees, clockwise in the image, 0 or more and less than 360, where it is known; -1 to find it.
+    :param keypoints1: objects like cv2.KeyPoint, or an array with 3, 4 or 7 columns. None: those that the extractor
+        detects.
+    :param keypoints2: as keypoints1.
+    :return: the rotation; the keypoints of both images, with the angles that they were described with (-1: upright), as
+        N x 7 where an array was given; matches as cv2.DMatch if cv2 is there, but M x 3 int32 (queryIdx, trainIdx,
+        distance) where keypoints1 is an array.
+    """
+    points = [extractor.detect(image) if given is None else given
+              for image, given in ((image1, keypoints1), (image2, keypoints2))]
+    rows = [np.ascontiguousarray(as_rows(given)) for given in points]
+    rotation, first, second, matches = _core.matchRotated(
+        as_array(image1, 'the image'), rows[0], as_array(image2, 'the image'), rows[1], extractor._core, matcher._core,
+        rotation)
+    found = [described if isinstance(given, np.ndarray) else array_to_keypoints(described)
+             for given, described in zip(points, (first, second))]
+    if isinstance(keypoints1, np.ndarray):
+        return rotation, found[0], found[1], matches
+    make = match_type()
+    return rotation, found[0], found[1], tuple(make(query, train, 0, float(distance))
+                                               for query, train, distance in matches.tolist())

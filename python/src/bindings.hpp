@@ -11,5 +11,6 @@ void bindDetectors(nanobind::module_& m);  // first: it has the base class of Ex
 void bindExtractor(nanobind::module_& m);
 void bindMatcher(nanobind::module_& m);
 void bindMappedIndex(nanobind::module_& m);
+void bindRotation(nanobind::module_& m);
 
 }  // namespace iib_python

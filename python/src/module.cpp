@@ -29,6 +29,7 @@ NB_MODULE(_core, m)
     bindExtractor(m);
     bindMatcher(m);
     bindMappedIndex(m);
+    bindRotation(m);
 
     m.attr("VERSION") = IIB_VERSION;
     m.attr("OPENCV_VERSION") = CV_VERSION;

@@ -7,7 +7,8 @@ import weakref
 import numpy as np
 
 import opencv_iib
-from opencv_iib import HessianDetector, HierarchicalMatcher, IIB, NormalizedDetector, estimateRotation
+from opencv_iib import (HessianDetector, HierarchicalMatcher, IIB, NormalizedDetector, estimateRotation,
+                        matchRotated)
 from support import cv2, texture
 
 
@@ -211,6 +212,64 @@ class Rotation(unittest.TestCase):
                         self.matches.ravel(), []):
             with self.assertRaises(opencv_iib.error):
                 estimateRotation(self.points, self.turned, matches)
+
+
+class MatchRotated(unittest.TestCase):
+
+    def setUp(self):
+        image = texture(320, 320)
+        self.images = image, np.ascontiguousarray(np.rot90(image, -1))  # clockwise
+        self.extractor = IIB.createPreset(IIB.PRESET_UNIVERSAL, 2)
+        self.extractor.setOrientation(IIB.ORIENTATION_KEYPOINT)
+        self.matcher = HierarchicalMatcher.createRecommended()
+        places = np.stack(np.meshgrid(np.arange(40, 280, 12), np.arange(40, 280, 12)), 2).reshape(-1, 2)
+        turned = np.stack([319 - places[:, 1], places[:, 0]], 1)
+        self.rows = [np.hstack([p, np.full((len(p), 1), 24)]).astype(np.float32) for p in (places, turned)]
+
+    def call(self, rotation=-1, **keypoints):
+        return matchRotated(*self.images, self.extractor, self.matcher, rotation, **keypoints)
+
+    def test_arrays(self):
+        rotation, first, second, matches = self.call(keypoints1=self.rows[0], keypoints2=self.rows[1])
+        self.assertLess(abs(rotation - 90), 1)
+        self.assertGreater(len(matches), 0.9 * len(first))
+        self.assertGreater(np.mean(matches[:, 0] == matches[:, 1]), 0.95)
+        for given, described, angle in zip(self.rows, (first, second), (-1, rotation)):
+            np.testing.assert_array_equal(described[:, :3], given)
+            np.testing.assert_array_equal(described[:, 3], np.float32(angle))
+        # the same by hand
+        codes = [self.extractor.compute(image, rows)[1] for image, rows in zip(self.images, (first, second))]
+        by_hand = self.matcher.match(*codes)
+        self.assertEqual([(m.queryIdx, m.trainIdx, m.distance) for m in by_hand], [tuple(m) for m in matches.tolist()])
+
+    def test_objects_are_as_arrays(self):
+        keypoints = [[opencv_iib.KeyPoint(*row) for row in rows.tolist()] for rows in self.rows]
+        rotation, first, second, matches = self.call(keypoints1=keypoints[0], keypoints2=keypoints[1])
+        expected = self.call(keypoints1=self.rows[0], keypoints2=self.rows[1])
+        self.assertEqual(rotation, expected[0])
+        for objects, rows in zip((first, second), expected[1:3]):
+            np.testing.assert_array_equal(opencv_iib.keypoints_to_array(objects), rows)
+        self.assertEqual([[m.queryIdx, m.trainIdx, m.distance] for m in matches], expected[3].tolist())
+
+    def test_it_detects(self):
+        rotation, first, second, matches = self.call()
+        self.assertLess(abs(rotation - 90), 2)
+        self.assertEqual([k.pt for k in first], [k.pt for k in self.extractor.detect(self.images[0])])
+        self.assertEqual({k.angle for k in first}, {-1})
+        self.assertGreater(len(matches), 50)
+
+    def test_a_known_rotation(self):
+        rotation, first, _, matches = self.call(90, keypoints1=self.rows[0], keypoints2=self.rows[1])
+        self.assertEqual((rotation, len(first)), (90, len(self.rows[0])))
+        self.assertGreater(len(matches), 0.9 * len(first))
+
+    def test_mistakes_raise(self):
+        for rotation in (-10, 360, float('nan')):
+            with self.assertRaises(opencv_iib.error):
+                self.call(rotation)
+        self.extractor.setOrientation(IIB.ORIENTATION_NONE)
+        with self.assertRaises(opencv_iib.error):
+            self.call()
 
 
 if __name__ == '__main__':

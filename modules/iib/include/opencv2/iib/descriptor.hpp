@@ -251,9 +251,9 @@ public:
     /** @brief Sets how ROS and gradients are rotated: one of #Orientation, #ORIENTATION_NONE by default.
 
     Rotation costs matches by changed light, since the angles change with the light as well. So where cameras stay
-    upright, none is best. Where they turn, the best angles are those that do not come from the image: set
-    KeyPoint::angle to the direction of gravity (from an IMU), or to the angle that estimateRotation finds between two
-    images, and use #ORIENTATION_KEYPOINT.
+    upright, none is best. Where they turn, the best angles are those that do not come from single keypoints: matchRotated
+    finds one angle between two images; or set KeyPoint::angle to the direction of gravity (from an IMU), and use
+    #ORIENTATION_KEYPOINT.
 
     #ORIENTATION_GRADIENT ignores KeyPoint::angle and leaves it as it is. The angle is the peak of a smoothed histogram
     of the directions of gradients in the circle within the ROS, weighted by their magnitudes and by a Gaussian of half

@@ -129,6 +129,25 @@ class DescriptorTest(unittest.TestCase):
                 call()
 
 
+class MatchRotatedTest(unittest.TestCase):
+
+    def test_of_images_and_of_keypoints(self):
+        first = noise(10, (240, 240))
+        second = np.ascontiguousarray(np.rot90(first, -1))  # clockwise
+        iib = cv2.iib.IIBDescriptorExtractor.createPreset(cv2.iib.IIBDescriptorExtractor_PRESET_UNIVERSAL)
+        iib.setOrientation(cv2.iib.IIBDescriptorExtractor_ORIENTATION_KEYPOINT)
+        matcher = cv2.iib.HierarchicalMatcher.createRecommended()
+        rotation, a, b, matches = cv2.iib.matchRotated(first, second, iib, matcher)
+        self.assertLess(abs(rotation - 90), 2)
+        self.assertGreater(len(matches), 20)
+        again = cv2.iib.matchRotated(first, iib.detect(first), second, iib.detect(second), iib, matcher)
+        self.assertEqual(rotation, again[0])
+        for one, other in zip((a, b), again[1:3]):
+            self.assertEqual([(k.pt, k.angle) for k in one], [(k.pt, k.angle) for k in other])
+        self.assertEqual([(m.queryIdx, m.trainIdx) for m in matches], [(m.queryIdx, m.trainIdx) for m in again[3]])
+        self.assertEqual(cv2.iib.matchRotated(first, second, iib, matcher, 90.0)[0], 90)
+
+
 class MatcherTest(unittest.TestCase):
 
     def setUp(self):

@@ -1,0 +1,245 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/test_errors.hpp"
+#include "../support/test_images.hpp"
+
+namespace opencv_test {
+namespace {
+
+const double UNKNOWN = -1;
+
+Ptr<IIB> rotating()
+{
+    const Ptr<IIB> iib = IIB::createPreset(IIB::PRESET_UNIVERSAL, 2.f);
+    iib->setOrientation(IIB::ORIENTATION_KEYPOINT);
+    return iib;
+}
+
+//! A scene, and the same by other light, rotated clockwise about its centre.
+struct RotatedPair
+{
+    Mat images[2], affine;
+    std::vector<KeyPoint> keypoints[2];
+
+    explicit RotatedPair(double degrees)
+    {
+        images[0] = scene(Size(400, 400), 7);
+        affine = getRotationMatrix2D(Point2f(199.5f, 199.5f), -degrees, 1);
+        Mat rotated;
+        warpAffine(images[0], rotated, affine, images[0].size(), INTER_CUBIC, cv::BORDER_REFLECT_101);
+        images[1] = relit(rotated, 8);
+        for (int i = 0; i < 2; i++)
+            ORB::create(600)->detect(images[i], keypoints[i]);
+    }
+
+    int correct(const std::vector<DMatch>& matches) const
+    {
+        int count = 0;
+        for (const DMatch& m : matches)
+        {
+            const Point2f p = keypoints[0][m.queryIdx].pt, q = keypoints[1][m.trainIdx].pt;
+            const Mat projected = affine * (Mat_<double>(3, 1) << p.x, p.y, 1);
+            count += std::hypot(projected.at<double>(0) - q.x, projected.at<double>(1) - q.y) <= 3;
+        }
+        return count;
+    }
+
+    //! By hand: the first image upright, all keypoints of the second with one angle.
+    std::vector<DMatch> matchedWith(float angle, const DescriptorMatcher& matcher) const
+    {
+        const Ptr<IIB> iib = rotating();
+        std::vector<KeyPoint> angled[] = {keypoints[0], keypoints[1]};
+        Mat codes[2];
+        for (int i = 0; i < 2; i++)
+        {
+            for (KeyPoint& kp : angled[i])
+                kp.angle = i ? angle : -1;
+            iib->compute(images[i], angled[i], codes[i]);
+        }
+        std::vector<DMatch> matches;
+        matcher.match(codes[0], codes[1], matches);
+        return matches;
+    }
+};
+
+void expectSameMatches(const std::vector<DMatch>& expected, const std::vector<DMatch>& actual)
+{
+    ASSERT_EQ(expected.size(), actual.size());
+    for (size_t i = 0; i < expected.size(); i++)
+    {
+        EXPECT_EQ(expected[i].queryIdx, actual[i].queryIdx);
+        EXPECT_EQ(expected[i].trainIdx, actual[i].trainIdx);
+        EXPECT_EQ(expected[i].distance, actual[i].distance);
+    }
+}
+
+void expectAngles(float expected, const std::vector<KeyPoint>& keypoints)
+{
+    for (const KeyPoint& kp : keypoints)
+        ASSERT_EQ(expected, kp.angle);
+}
+
+TEST(IIB_MatchRotated, finds_the_angle_and_matches_with_it)
+{
+    const Ptr<IIB> iib = rotating();
+    const Ptr<DescriptorMatcher> matchers[] = {
+            HierarchicalMatcher::createRecommended(), cv::BFMatcher::create(NORM_HAMMING)};
+    for (double degrees : {0., 30., 45., 90., 137., 180., 345.})
+    {
+        SCOPED_TRACE(degrees);
+        RotatedPair pair(degrees);
+        const std::vector<KeyPoint> before[] = {pair.keypoints[0], pair.keypoints[1]};
+        for (const Ptr<DescriptorMatcher>& matcher : matchers)
+        {
+            std::vector<DMatch> matches;
+            const double found = matchRotated(pair.images[0], pair.keypoints[0], pair.images[1],
+                    pair.keypoints[1], iib, matcher, matches, UNKNOWN);
+            EXPECT_GE(found, 0);
+            EXPECT_LT(found, 360);
+            const double error = std::abs(found - degrees);
+            EXPECT_LE(std::min(error, 360 - error), 1.5) << found;
+
+            const float angles[] = {-1, degrees == 0 ? -1.f : (float)found};
+            expectSameMatches(pair.matchedWith(angles[1], *matcher), matches);
+            for (int i = 0; i < 2; i++)
+            {
+                expectAngles(angles[i], pair.keypoints[i]);
+                std::vector<KeyPoint> others = before[i];
+                for (KeyPoint& kp : others)
+                    kp.angle = angles[i];
+                expectSameKeyPoints(others, pair.keypoints[i]);
+            }
+            const int ideal = pair.correct(pair.matchedWith(degrees == 0 ? -1.f : (float)degrees, *matcher));
+            EXPECT_GE(ideal, 100);
+            EXPECT_GE(pair.correct(matches), 0.95 * ideal);
+        }
+    }
+}
+
+TEST(IIB_MatchRotated, with_a_known_rotation)
+{
+    RotatedPair pair(137);
+    const Ptr<IIB> iib = rotating();
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
+    std::vector<DMatch> matches;
+    for (double known : {137., 20., 2., 0., 358.})  // it is believed, right or wrong
+    {
+        EXPECT_EQ(known, matchRotated(pair.images[0], pair.keypoints[0], pair.images[1], pair.keypoints[1],
+                                 iib, matcher, matches, known));
+        const bool upright = known < 10 || known > 350;
+        expectAngles(-1, pair.keypoints[0]);
+        expectAngles(upright ? -1.f : (float)known, pair.keypoints[1]);
+        expectSameMatches(pair.matchedWith(pair.keypoints[1][0].angle, *matcher), matches);
+    }
+}
+
+TEST(IIB_MatchRotated, detects_keypoints_itself)
+{
+    RotatedPair pair(60);
+    const Ptr<IIB> iib = rotating();
+    iib->setDetector(ORB::create(600));
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
+    std::vector<DMatch> expected, actual;
+    const double rotation = matchRotated(
+            pair.images[0], pair.keypoints[0], pair.images[1], pair.keypoints[1], iib, matcher, expected);
+    std::vector<KeyPoint> keypoints[2];
+    EXPECT_EQ(rotation,
+            matchRotated(pair.images[0], pair.images[1], iib, matcher, keypoints[0], keypoints[1], actual));
+    EXPECT_NEAR(60, rotation, 1.5);
+    expectSameMatches(expected, actual);
+    for (int i = 0; i < 2; i++)
+        expectSameKeyPoints(pair.keypoints[i], keypoints[i]);
+}
+
+TEST(IIB_MatchRotated, tries_the_strongest_keypoints)
+{
+    RotatedPair pair(60);
+    const Ptr<IIB> iib = rotating();
+    std::vector<DMatch> matches;
+    for (std::vector<KeyPoint>& keypoints : pair.keypoints)
+    {
+        std::reverse(keypoints.begin(), keypoints.end());
+        for (KeyPoint weak : scatter(Size(400, 400), 300, 20.f, 40.f, 3))
+        {
+            weak.response = NOT_A_NUMBER;
+            keypoints.insert(keypoints.begin(), weak);
+        }
+    }
+    EXPECT_NEAR(60,
+            matchRotated(pair.images[0], pair.keypoints[0], pair.images[1], pair.keypoints[1], iib,
+                    HierarchicalMatcher::createRecommended(), matches),
+            1.5);
+}
+
+TEST(IIB_MatchRotated, drops_keypoints_as_the_extractor_does)
+{
+    RotatedPair pair(45);
+    const Ptr<IIB> iib = rotating();
+    iib->setBorder(IIB::BORDER_DROP);
+    for (std::vector<KeyPoint>& keypoints : pair.keypoints)
+        keypoints.insert(keypoints.begin(), {KeyPoint(1, 1, 31, -1, 1e9f), KeyPoint(200, 399, 31, -1, 1e9f)});
+    std::vector<DMatch> matches;
+    EXPECT_NEAR(45,
+            matchRotated(pair.images[0], pair.keypoints[0], pair.images[1], pair.keypoints[1], iib,
+                    HierarchicalMatcher::createRecommended(), matches),
+            1.5);
+    EXPECT_LT(pair.keypoints[0].size(), 602u);
+    EXPECT_EQ(-1, pair.keypoints[0][0].angle);
+    EXPECT_GE(pair.correct(matches), 100);
+}
+
+TEST(IIB_MatchRotated, without_anything_to_match)
+{
+    RotatedPair pair(60);
+    const Ptr<IIB> iib = rotating();
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
+    std::vector<KeyPoint> none, one(1, KeyPoint(50, 50, 10));
+    std::vector<DMatch> matches(3);
+    EXPECT_EQ(
+            0, matchRotated(pair.images[0], pair.keypoints[0], pair.images[1], none, iib, matcher, matches));
+    EXPECT_TRUE(matches.empty());
+    matches.resize(3);
+    EXPECT_EQ(0,
+            matchRotated(pair.images[0], pair.keypoints[0], Mat(), pair.keypoints[1], iib, matcher, matches));
+    EXPECT_TRUE(matches.empty());
+    EXPECT_EQ(0, matchRotated(pair.images[0], one, pair.images[0], one, iib, matcher, matches));
+    EXPECT_EQ(1u, matches.size());
+    EXPECT_EQ(0, matchRotated(Mat(), Mat(), iib, matcher, none, one, matches));
+    EXPECT_TRUE(matches.empty());
+}
+
+TEST(IIB_MatchRotated, errors)
+{
+    RotatedPair pair(60);
+    const Ptr<IIB> iib = rotating();
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
+    std::vector<KeyPoint> first = pair.keypoints[0], second = pair.keypoints[1];
+    std::vector<DMatch> matches;
+    const auto call = [&](const Ptr<IIB>& extractor, const Ptr<HierarchicalMatcher>& m, double rotation) {
+        return [&, extractor, m, rotation] {
+            matchRotated(pair.images[0], first, pair.images[1], second, extractor, m, matches, rotation);
+        };
+    };
+    expectError(Error::StsNullPtr, "no extractor", call(Ptr<IIB>(), matcher, -1));
+    expectError(Error::StsNullPtr, "no matcher", call(iib, Ptr<HierarchicalMatcher>(), -1));
+    expectError(Error::StsNullPtr, "no extractor", [&] {
+        matchRotated(pair.images[0], pair.images[1], Ptr<IIB>(), matcher, first, second, matches);
+    });
+    for (double rotation : {-10., 360., (double)NOT_A_NUMBER, (double)ENDLESS})
+        expectError(Error::StsOutOfRange, "rotation is", call(iib, matcher, rotation));
+    for (int orientation : {IIB::ORIENTATION_NONE, IIB::ORIENTATION_GRADIENT})
+    {
+        iib->setOrientation(orientation);
+        expectError(Error::StsBadArg, "ORIENTATION_KEYPOINT", call(iib, matcher, -1));
+    }
+    iib->setOrientation(IIB::ORIENTATION_KEYPOINT);
+    const Ptr<IIB> withMap = IIB::create(2.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, true, 1);
+    expectError(Error::StsBadArg, "extra channel", call(withMap, matcher, -1));
+    second[3].pt.x = NOT_A_NUMBER;
+    expectError(Error::StsBadArg, "keypoint", call(rotating(), matcher, 10));
+}
+
+}  // namespace
+}  // namespace opencv_test
