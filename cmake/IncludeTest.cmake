@@ -12,6 +12,7 @@ endforeach()
 list(APPEND allowed_descriptor boxes)
 set(allowed_boxes boxes boxes/kernels ${allowed_descriptor})
 set(allowed_boxes/kernels boxes/kernels descriptor/kernels common)
+set(allowed_rotation rotation common)
 set(allowed_ "")  # precomp.hpp, which all may include
 
 file(GLOB_RECURSE files RELATIVE "${MODULE}" "${MODULE}/*.hpp" "${MODULE}/*.cpp")

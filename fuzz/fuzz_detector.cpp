@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // NormalizedDetector with any image and sigma: a cv::Exception, or what the detector inside sees is the image that the
-// naive oracle makes. estimateRotation with any keypoints and matches: a cv::Exception or an angle. Detectors by name
-// and of extractors: a factor, keypoints with descriptors, or a cv::Exception.
+// naive oracle makes. estimateRotation with any keypoints and matches: a cv::Exception or an angle; matchRotated of any
+// images likewise. Detectors by name and of extractors: a factor, keypoints with descriptors, or a cv::Exception.
 
 #include "images.hpp"
 #include "detector/hessian_oracle.hpp"
@@ -109,6 +109,36 @@ void rotation(ByteSource& in)
     FUZZ_CHECK(!thrown || !positions || !areApart(first, second, matches));
 }
 
+//! Any images and keypoints, of which few are refused.
+void matchImages(ByteSource& in)
+{
+    const Ptr<IIB> iib = IIB::createPreset(in.between(0, 9), 2.f);
+    iib->setOrientation(IIB::ORIENTATION_KEYPOINT);
+    iib->setBorder(in.between(0, 2));
+    Mat images[2];
+    std::vector<KeyPoint> keypoints[2];
+    for (int i = 0; i < 2; i++)
+    {
+        const Size size = takeSize(in);
+        images[i] = takeImage(in, size, takeDepth(in), 1);
+        for (int k = in.between(0, 12); k > 0; k--)
+        {
+            const float x = in.rarely(64) ? in.number() : (float)in.between(0, size.width);
+            const float y = (float)in.between(0, size.height);
+            keypoints[i].push_back(KeyPoint(x, y, 1.f + in.between(0, 40)));
+        }
+    }
+    std::vector<DMatch> matches;
+    double rotation = 0;
+    const bool thrown = refused([&] {
+        rotation = matchRotated(images[0], keypoints[0], images[1], keypoints[1], iib,
+                HierarchicalMatcher::createRecommended(), matches);
+    });
+    FUZZ_CHECK(thrown || (rotation >= 0 && rotation < 360));
+    for (const DMatch& m : matches)
+        FUZZ_CHECK(m.queryIdx < (int)keypoints[0].size() && m.trainIdx < (int)keypoints[1].size());
+}
+
 //! A detector's name, perhaps misspelt.
 void scaleFactor(ByteSource& in)
 {
@@ -178,6 +208,7 @@ void run(ByteSource& in)
 {
     switch (in.between(0, 8))
     {
+    case 7: matchImages(in); break;
     case 8: blobs(in); break;
     case 0: scaleFactor(in); break;
     case 1: chain(in); break;

@@ -23,10 +23,10 @@ struct RotatedPair
     Mat images[2], affine;
     std::vector<KeyPoint> keypoints[2];
 
-    explicit RotatedPair(double degrees)
+    explicit RotatedPair(double degrees, double zoom = 1)
     {
         images[0] = scene(Size(400, 400), 7);
-        affine = getRotationMatrix2D(Point2f(199.5f, 199.5f), -degrees, 1);
+        affine = getRotationMatrix2D(Point2f(199.5f, 199.5f), -degrees, zoom);
         Mat rotated;
         warpAffine(images[0], rotated, affine, images[0].size(), INTER_CUBIC, cv::BORDER_REFLECT_101);
         images[1] = relit(rotated, 8);
@@ -153,6 +153,45 @@ TEST(IIB_MatchRotated, detects_keypoints_itself)
         expectSameKeyPoints(pair.keypoints[i], keypoints[i]);
 }
 
+TEST(IIB_MatchRotated, of_another_scale)
+{
+    for (double zoom : {0.6, 1.6})
+    {
+        RotatedPair pair(200, zoom);
+        std::vector<DMatch> matches;
+        EXPECT_NEAR(200,
+                matchRotated(pair.images[0], pair.keypoints[0], pair.images[1], pair.keypoints[1], rotating(),
+                        HierarchicalMatcher::createRecommended(), matches),
+                2)
+                << zoom;
+        EXPECT_GE(pair.correct(matches), 40);
+    }
+}
+
+TEST(IIB_MatchRotated, of_images_of_any_size_and_type)
+{
+    const RotatedPair pair(60);
+    for (Size size : {Size(1, 1), Size(1, 7), Size(33, 3), Size(399, 397)})
+        for (int type : {CV_8UC1, CV_8UC4, CV_16UC3, CV_32FC1})
+        {
+            Mat images[2];
+            std::vector<KeyPoint> keypoints[2];
+            for (int i = 0; i < 2; i++)
+            {
+                Mat grey;
+                pair.images[i](Rect(Point(), size)).convertTo(grey, type);
+                merge(std::vector<Mat>(CV_MAT_CN(type), grey), images[i]);
+                for (const KeyPoint& kp : pair.keypoints[i])
+                    if (Rect2f(Point2f(), Size2f(size)).contains(kp.pt))
+                        keypoints[i].push_back(kp);
+            }
+            std::vector<DMatch> matches;
+            const double rotation = matchRotated(images[0], keypoints[0], images[1], keypoints[1], rotating(),
+                    HierarchicalMatcher::createRecommended(), matches);
+            EXPECT_TRUE(size.area() < 1000 || std::abs(rotation - 60) <= 1.5) << type << ": " << rotation;
+        }
+}
+
 TEST(IIB_MatchRotated, tries_the_strongest_keypoints)
 {
     RotatedPair pair(60);
@@ -238,7 +277,16 @@ TEST(IIB_MatchRotated, errors)
     const Ptr<IIB> withMap = IIB::create(2.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, true, 1);
     expectError(Error::StsBadArg, "extra channel", call(withMap, matcher, -1));
     second[3].pt.x = NOT_A_NUMBER;
-    expectError(Error::StsBadArg, "keypoint", call(rotating(), matcher, 10));
+    for (double rotation : {-1., 10.})
+        expectError(Error::StsBadArg, "keypoint 3", call(rotating(), matcher, rotation));
+    second[3].pt.x = 0;
+    pair.images[1].convertTo(pair.images[1], CV_32F);
+    pair.images[1].at<float>(30, 20) = NOT_A_NUMBER;
+    for (double rotation : {-1., 10.})
+        expectError(Error::StsBadArg, "(20, 30)", call(rotating(), matcher, rotation));
+    pair.images[1].convertTo(pair.images[1], CV_32S);
+    for (double rotation : {-1., 10.})
+        expectError(Error::StsUnsupportedFormat, "32S", call(rotating(), matcher, rotation));
 }
 
 }  // namespace

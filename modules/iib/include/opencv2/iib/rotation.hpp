@@ -31,10 +31,11 @@ CV_EXPORTS_W double estimateRotation(const std::vector<KeyPoint>& keypoints1,
 /** @brief Matches two images of which one may be rotated in the image plane, and finds the angle.
 
 Angles of single keypoints change with the light, but a camera that turns moves all keypoints by the same angle. First the
-150 strongest keypoints of each image are matched mutually, with those of the second image at twelve angles, of which 0 is upright.
-The angle at which most pairs of matches agree is made exact by estimateRotation. Then all keypoints are described with
-this one angle, and matched. Where cameras do not turn at all, or each keypoint has a reliable angle of its own, a match
-without this is as good and takes half the time.
+200 strongest keypoints of each image are described at half the resolution, at three angles in the first image and at four
+in the second, so that they differ by all multiples of 30 degrees. Of each mutual matching, every two matches whose distance
+changes as KeyPoint::size does vote for the angle between their directions, 0 as any other. Then all keypoints are described
+with the one angle that most vote for, and matched. Where cameras do not turn at all a match without this is as good and
+takes half the time.
 
 @param image1, image2 as in IIBDescriptorExtractor::compute.
 @param keypoints1, keypoints2 of the first and the second image. Their order is kept; none is removed but by

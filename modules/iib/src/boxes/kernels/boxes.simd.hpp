@@ -201,7 +201,7 @@ void boxEdges(const BoxFrame& f, const double (&offsets)[2][MAX_BOX_PLACES], Box
         }
 }
 
-//! The compiler makes vectors of the inner loop, with this file's instruction set.
+//! The compiler makes vectors of the last loop, with this file's instruction set.
 void boxPlaces(const BoxFrame& f, const BoxGridShape& grid, const double* centres, Point2d direction,
         double side, int step, BoxPlaces& places)
 {
@@ -210,20 +210,24 @@ void boxPlaces(const BoxFrame& f, const BoxGridShape& grid, const double* centre
     const double cosine = direction.x * f.side, sine = direction.y * f.side;
     const double left = f.bounds.x, right = f.bounds.x + f.bounds.width;
     const double top = f.bounds.y, bottom = f.bounds.y + f.bounds.height;
+    double boxX[BoxPlaces::CAPACITY], boxY[BoxPlaces::CAPACITY];
     for (int row = 0; row < grid.n; row++)
         for (int col = 0; col < grid.n; col++)
         {
-            const double boxX = f.centre.x + (cosine * centres[col] - sine * centres[row]) - half;
-            const double boxY = f.centre.y + (sine * centres[col] + cosine * centres[row]) - half;
-            const int x0 = boxEdge(boxX, left, right), x1 = boxEdge(boxX + side, left, right);
-            const int y0 = boxEdge(boxY, top, bottom), y1 = boxEdge(boxY + side, top, bottom);
             const int i = row * grid.n + col;
-            places.above[i] = ringRow(y0 - first, f.count) * step + (x0 - f.origin.x);
-            places.below[i] = ringRow(y1 - first, f.count) * step + (x0 - f.origin.x);
-            places.right[i] = x1 - x0;
-            places.weight[i] =
-                    (float)BOX_MEAN_STEPS / ((float)std::max(x1 - x0, 1) * (float)std::max(y1 - y0, 1));
+            boxX[i] = f.centre.x + (cosine * centres[col] - sine * centres[row]) - half;
+            boxY[i] = f.centre.y + (sine * centres[col] + cosine * centres[row]) - half;
         }
+    for (int i = 0; i < grid.n * grid.n; i++)
+    {
+        const int x0 = boxEdge(boxX[i], left, right), x1 = boxEdge(boxX[i] + side, left, right);
+        const int y0 = boxEdge(boxY[i], top, bottom), y1 = boxEdge(boxY[i] + side, top, bottom);
+        places.above[i] = ringRow(y0 - first, f.count) * step + (x0 - f.origin.x);
+        places.below[i] = ringRow(y1 - first, f.count) * step + (x0 - f.origin.x);
+        places.right[i] = x1 - x0;
+        places.weight[i] =
+                (float)BOX_MEAN_STEPS / ((float)std::max(x1 - x0, 1) * (float)std::max(y1 - y0, 1));
+    }
 }
 
 void boxMeans(

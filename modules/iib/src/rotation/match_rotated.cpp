@@ -2,24 +2,25 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "precomp.hpp"
+#include "../common/image_input.hpp"
+#include "votes.hpp"
 
 #include "opencv2/iib/matcher.hpp"
 #include "opencv2/iib/rotation.hpp"
+#include "opencv2/imgproc.hpp"
 
 namespace cv {
 namespace iib {
 
 namespace {
 
-enum
-{
-    TRIED_POINTS = 150,  //!< of each image, the strongest
-    TRIED_ANGLES = 12    //!< bits bear half of the step between them
-};
-
-const float UPRIGHT = -1, STEP = 360.f / TRIED_ANGLES;
-const double UPRIGHT_WITHIN = 3;  //!< degrees that upright regions bear
+static constexpr int TRIED_POINTS = 200;  //!< of each image, the strongest
+static constexpr float UPRIGHT = -1;
+static constexpr double UPRIGHT_WITHIN = 3;  //!< degrees that upright regions bear
+// All multiples of 30 are differences of one of each, and bits bear half of that.
+const float FIRST_ANGLES[] = {UPRIGHT, 30, 60}, SECOND_ANGLES[] = {UPRIGHT, 90, 180, 270};
+static constexpr float ANGLE_TOLERANCE = 18;      //!< degrees
+static constexpr double LENGTH_TOLERANCE = 1.25;  //!< by which keypoints farther from the camera differ
 
 struct Described
 {
@@ -27,42 +28,54 @@ struct Described
     Mat codes;
 };
 
-std::vector<KeyPoint> strongest(std::vector<KeyPoint> keypoints)
-{
-    const auto strength = [](const KeyPoint& kp) { return cvIsNaN(kp.response) ? -FLT_MAX : kp.response; };
-    std::stable_sort(keypoints.begin(), keypoints.end(),
-            [&](const KeyPoint& a, const KeyPoint& b) { return strength(a) > strength(b); });
-    keypoints.resize(std::min(keypoints.size(), (size_t)TRIED_POINTS));
-    return keypoints;
-}
-
 void setAngle(std::vector<KeyPoint>& keypoints, float angle)
 {
     for (KeyPoint& kp : keypoints)
         kp.angle = angle;
 }
 
-//! The keypoints at each of the angles, one angle after the other.
-Described describe(IIBDescriptorExtractor& extractor, const Mat& image, std::vector<KeyPoint> keypoints,
-        const std::vector<float>& angles)
+void keepStrongest(std::vector<KeyPoint>& keypoints)
 {
-    Described all;
+    const auto strength = [](const KeyPoint& kp) { return cvIsNaN(kp.response) ? -FLT_MAX : kp.response; };
+    std::stable_sort(keypoints.begin(), keypoints.end(),
+            [&](const KeyPoint& a, const KeyPoint& b) { return strength(a) > strength(b); });
+    keypoints.resize(std::min(keypoints.size(), (size_t)TRIED_POINTS));
+}
+
+//! The strongest keypoints at each angle, in the image at half its resolution, where all takes less time.
+template <size_t N>
+std::vector<Described> describeHalf(IIBDescriptorExtractor& extractor, const Mat& image,
+        std::vector<KeyPoint> keypoints, const float (&angles)[N])
+{
+    checkImage(image);
+    checkKeyPoints(keypoints);
+    keepStrongest(keypoints);
+    Mat half;
+    resize(image, half, Size(std::max(image.cols / 2, 1), std::max(image.rows / 2, 1)), 0, 0, INTER_AREA);
+    for (KeyPoint& kp : keypoints)
+    {
+        kp.pt = (kp.pt + Point2f(0.5f, 0.5f)) / 2 - Point2f(0.5f, 0.5f);
+        kp.size /= 2;
+    }
+    std::vector<KeyPoint> all;
     for (float angle : angles)
     {
         setAngle(keypoints, angle);
-        all.keypoints.insert(all.keypoints.end(), keypoints.begin(), keypoints.end());
+        all.insert(all.end(), keypoints.begin(), keypoints.end());
     }
-    extractor.compute(image, all.keypoints, all.codes);
-    return all;
-}
-
-Described atAngle(const Described& all, float angle)
-{
-    const auto has = [angle](const KeyPoint& kp) { return kp.angle == angle; };
-    const auto begin = std::find_if(all.keypoints.begin(), all.keypoints.end(), has);
-    const auto end = std::find_if_not(begin, all.keypoints.end(), has);
-    const int first = (int)(begin - all.keypoints.begin()), last = (int)(end - all.keypoints.begin());
-    return {std::vector<KeyPoint>(begin, end), first == last ? Mat() : all.codes.rowRange(first, last)};
+    Mat codes;
+    extractor.compute(half, all, codes);
+    std::vector<Described> described;
+    for (int i = 0, end = 0; i < (int)N; i++)
+    {
+        // which may be fewer, under BORDER_DROP
+        const int begin = end;
+        while (end < (int)all.size() && all[end].angle == angles[i])
+            end++;
+        described.push_back({{all.begin() + begin, all.begin() + end},
+                begin == end ? Mat() : codes.rowRange(begin, end)});
+    }
+    return described;
 }
 
 std::vector<DMatch> match(const DescriptorMatcher& matcher, const Mat& codes1, const Mat& codes2)
@@ -73,55 +86,48 @@ std::vector<DMatch> match(const DescriptorMatcher& matcher, const Mat& codes1, c
     return matches;
 }
 
-//! Pairs of matches between which the direction turns by `angle`, within half a step.
-int agreement(
-        const Described& first, const Described& second, const std::vector<DMatch>& matches, float angle)
+/** Each pair of matches votes for the angle between its directions, if that is near the one that the descriptors were
+ rotated by and lengths change as sizes do. */
+void vote(const Described& first, const Described& second, const std::vector<DMatch>& matches, float angle,
+        RotationVotes& votes)
 {
-    const double radians = angle * CV_PI / 180, within = std::cos(STEP / 2 * CV_PI / 180);
-    const Point2d axis(std::cos(radians), std::sin(radians));
-    int pairs = 0;
     for (size_t i = 0; i < matches.size(); i++)
         for (size_t j = 0; j < i; j++)
         {
-            const Point2d v =
-                    first.keypoints[matches[i].queryIdx].pt - first.keypoints[matches[j].queryIdx].pt;
-            const Point2d to =
-                    second.keypoints[matches[i].trainIdx].pt - second.keypoints[matches[j].trainIdx].pt;
-            const Point2d from(v.x * axis.x - v.y * axis.y, v.x * axis.y + v.y * axis.x);
-            const double lengths = std::sqrt(from.dot(from) * to.dot(to));
-            pairs += lengths > 0 && from.dot(to) >= within * lengths;
+            const KeyPoint &a = first.keypoints[matches[i].queryIdx],
+                           &b = first.keypoints[matches[j].queryIdx],
+                           &c = second.keypoints[matches[i].trainIdx],
+                           &d = second.keypoints[matches[j].trainIdx];
+            const Point2f from = b.pt - a.pt, to = d.pt - c.pt;
+            const double lengths[] = {from.ddot(from) * c.size * d.size, to.ddot(to) * a.size * b.size};
+            const double most = LENGTH_TOLERANCE * LENGTH_TOLERANCE * std::min(lengths[0], lengths[1]);
+            if (std::max(lengths[0], lengths[1]) >= most)
+                continue;
+            const float rotation = fastAtan2((float)from.cross(to), from.dot(to));
+            const float error = std::abs(rotation - angle);
+            if (std::min(error, 360 - error) <= ANGLE_TOLERANCE)
+                votes.add(rotation);
         }
-    return pairs;
 }
 
-//! Degrees; 0 if there is no agreement at any angle.
+//! Degrees; 0 if nothing votes.
 double findRotation(IIBDescriptorExtractor& extractor, const Mat& image1,
         const std::vector<KeyPoint>& keypoints1, const Mat& image2, const std::vector<KeyPoint>& keypoints2)
 {
     // Without a ratio: so few matches and so many angles need none, since wrong matches do not agree.
     const Ptr<HierarchicalMatcher> mutual = HierarchicalMatcher::create();
     mutual->setCrossCheck(true);
-    std::vector<float> angles(1, UPRIGHT);
-    for (int i = 1; i < TRIED_ANGLES; i++)
-        angles.push_back(i * STEP);
-    const Described first = describe(extractor, image1, strongest(keypoints1), {UPRIGHT});
-    const Described all = describe(extractor, image2, strongest(keypoints2), angles);
-    int most = 0;
-    Described best;
-    std::vector<DMatch> bestMatches;
-    for (float angle : angles)
-    {
-        const Described second = atAngle(all, angle);
-        const std::vector<DMatch> matches = match(*mutual, first.codes, second.codes);
-        const int agree = agreement(first, second, matches, std::max(angle, 0.f));
-        if (agree > most)
+    const std::vector<Described> first = describeHalf(extractor, image1, keypoints1, FIRST_ANGLES);
+    const std::vector<Described> second = describeHalf(extractor, image2, keypoints2, SECOND_ANGLES);
+    RotationVotes votes;
+    for (size_t i = 0; i < first.size(); i++)
+        for (size_t j = 0; j < second.size(); j++)
         {
-            most = agree;
-            best = second;
-            bestMatches = matches;
+            const float angle = std::max(SECOND_ANGLES[j], 0.f) - std::max(FIRST_ANGLES[i], 0.f);
+            vote(first[i], second[j], match(*mutual, first[i].codes, second[j].codes),
+                    angle < 0 ? angle + 360 : angle, votes);
         }
-    }
-    return most ? estimateRotation(first.keypoints, best.keypoints, bestMatches) : 0;
+    return votes.empty() ? 0 : votes.peak();
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../precomp.hpp"
+#include "votes.hpp"
 
 #include "opencv2/iib/rotation.hpp"
 
@@ -11,12 +11,7 @@ namespace iib {
 
 namespace {
 
-enum
-{
-    BINS = 360,
-    REACH = 4,          //!< a vote counts for the bins this near, less for farther ones
-    MAX_VOTES = 200000  //!< more pairs of matches would not change the result
-};
+static constexpr int MAX_VOTES = 200000;  //!< more pairs of matches would not change the result
 
 //! Degrees from 0 to 360.
 double directionOf(Point2d v)
@@ -24,54 +19,6 @@ double directionOf(Point2d v)
     const double degrees = std::atan2(v.y, v.x) * 180 / CV_PI;
     return degrees < 0 ? degrees + 360 : degrees;
 }
-
-//! Votes of angles, whole degrees apart; with the sums of their parts of degrees.
-class Votes
-{
-public:
-    Votes() : counts(BINS), sums(BINS), any(false) {}
-
-    void add(double degrees)
-    {
-        const int bin = std::min((int)degrees, BINS - 1);
-        counts[bin]++;
-        sums[bin] += degrees - bin;
-        any = true;
-    }
-
-    bool empty() const { return !any; }
-
-    //! The mean of the votes around the peak.
-    double peak() const
-    {
-        int best = 0;
-        double most = -1;
-        for (int i = 0; i < BINS; i++)
-        {
-            double score = 0;
-            for (int j = -REACH; j <= REACH; j++)
-                score += (REACH + 1 - std::abs(j)) * counts[(i + j + BINS) % BINS];
-            if (score > most)
-            {
-                most = score;
-                best = i;
-            }
-        }
-        double count = 0, sum = 0;
-        for (int j = -REACH; j <= REACH; j++)
-        {
-            const int bin = (best + j + BINS) % BINS;
-            count += counts[bin];
-            sum += counts[bin] * j + sums[bin];
-        }
-        const double angle = std::fmod(best + sum / count + 360, 360);
-        return angle < 360 ? angle : 0;
-    }
-
-private:
-    std::vector<double> counts, sums;
-    bool any;
-};
 
 // The position of a keypoint that a match refers to.
 Point2d positionOf(const KeyPoint& kp, int index)
@@ -100,7 +47,7 @@ double estimateRotation(const std::vector<KeyPoint>& keypoints1, const std::vect
     }
     const size_t n = from.size();
     const size_t offsets = n < 2 ? 0 : std::min(n - 1, std::max(MAX_VOTES / n, (size_t)1));
-    Votes votes;
+    RotationVotes votes;
     for (size_t k = 1; k <= offsets; k++)
     {
         const size_t offset = k * (n - 1) / offsets;
