@@ -59,7 +59,7 @@ Detector normalized(const std::string& name, const std::string& descriptorName,
 }
 
 //! The library's own, which describes nothing.
-Detector hessian(int count)
+Detector hessian(const std::string& name, int count)
 {
     const auto detect = [=](const cv::Mat& image, const ImagePair&, const std::string&) {
         Detection d;
@@ -67,7 +67,7 @@ Detector hessian(int count)
         d.norm = 0;  // no descriptors
         return d;
     };
-    return {"Hessian", "", cv::iib::IIB::scaleFactorFor("Hessian"), detect, {}};
+    return {name, "", cv::iib::IIB::scaleFactorFor("Hessian"), detect, {}};
 }
 
 //! A detector that gives no size gets a ROS of radius DEEP_RADIUS.
@@ -158,7 +158,8 @@ std::vector<Detector> classicDetectors(int count)
     }
     for (const auto& k : known)
         all.push_back(normalized(k.name, k.descriptor, k.detector, k.own, count));
-    all.push_back(hessian(count));
+    all.push_back(hessian("Hessian", count));
+    all.push_back(hessian("Hessian x2", 2 * count));  // twice as many points
     for (const Configuration& baseline : baselineConfigurations())
         if (baseline.name == "SURF")
             all.push_back(classic("SURF", "SURF", baseline.create, baseline.create, count));
