@@ -270,8 +270,8 @@ int wholeTasks(const Options& options, const std::vector<ImagePair>& pairs)
     classic.keypoints.clear();
     classic.network.clear();
     if (classic.detectors.empty())
-        classic.detectors = {
-                "ORB", "AKAZE", "SIFT", "ORB normalized", "AKAZE normalized", "SIFT normalized", "Hessian", "Hessian x2"};
+        classic.detectors = {"ORB", "AKAZE", "SIFT", "ORB normalized", "AKAZE normalized", "SIFT normalized",
+                "Hessian", "Hessian x2"};
     Run run(detectors(classic), options.out + "/whole_tasks.csv");
     std::vector<Task> tasks;
     addPoses(options, run, tasks);
