@@ -4,6 +4,7 @@
 . "$(dirname "$0")/helpers/lib.sh"
 
 [ $# = 0 ] || fail "takes no argument"
+case "$root" in *" "*) fail "Doxygen links no pages in a folder with a blank in its path: $root" ;; esac
 need doxygen python3
 version=$(sed -n 's/^project(opencv_iib VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
 rm -rf "$build/docs"
