@@ -136,19 +136,19 @@ inline v_means v_load_means(const float* p) { return v_load(p); }
 inline v_means v_setall_means(float v) { return v_setall_f32(v); }
 #endif
 
+//! A bit for each lane, all of whose bits are equal.
+template <typename V> inline unsigned laneBits(const V& lanes) { return (unsigned)v_signmask(lanes); }
+#if CV_AVX512_SKX  // of a mask of eight lanes that it keeps in memory, GCC 12 may store one byte and read four
+inline unsigned laneBits(const v_float64& lanes)
+{
+    return (unsigned)_mm_movemask_epi8(_mm512_cvtepi64_epi8(_mm512_castpd_si512(lanes.val)));
+}
+#endif
+
 //! A bit for each lane where the comparison holds.
-template <typename V> inline unsigned greaterMask(const V& a, const V& b)
-{
-    return (unsigned)v_signmask(a > b);
-}
-template <typename V> inline unsigned greaterEqualMask(const V& a, const V& b)
-{
-    return (unsigned)v_signmask(a >= b);
-}
-template <typename V> inline unsigned equalMask(const V& a, const V& b)
-{
-    return (unsigned)v_signmask(a == b);
-}
+template <typename V> inline unsigned greaterMask(const V& a, const V& b) { return laneBits(a > b); }
+template <typename V> inline unsigned greaterEqualMask(const V& a, const V& b) { return laneBits(a >= b); }
+template <typename V> inline unsigned equalMask(const V& a, const V& b) { return laneBits(a == b); }
 #if CV_AVX512_SKX  // the above turns its masks into vectors and back
 inline unsigned greaterMask(const v_int32& a, const v_int32& b)
 {
