@@ -5,10 +5,10 @@
 #ifndef OPENCV_IIB_DESCRIPTOR_PLAN_HPP
 #define OPENCV_IIB_DESCRIPTOR_PLAN_HPP
 
+#include <memory>
+
 #include "../boxes/plan.hpp"
 #include "kernels/kernels.hpp"
-
-#include "opencv2/core/utils/tls.hpp"
 
 namespace cv {
 namespace iib {
@@ -64,15 +64,39 @@ struct Workspace
     BoxPlaces boxPlaces;
 };
 
-//! Those of a call, one for each thread.
-typedef TLSData<Workspace> Workspaces;
+//! The workspaces of a call; threads borrow them. OpenCV's TLSData takes memory when it is destroyed, which may fail.
+class Workspaces
+{
+public:
+    std::unique_ptr<Workspace> borrow()
+    {
+        AutoLock lock(mutex);
+        if (spare.empty())
+            return std::unique_ptr<Workspace>(new Workspace);
+        std::unique_ptr<Workspace> workspace = std::move(spare.back());
+        spare.pop_back();
+        return workspace;
+    }
+
+    void giveBack(std::unique_ptr<Workspace> workspace)
+    {
+        AutoLock lock(mutex);
+        spare.push_back(std::move(workspace));
+    }
+
+private:
+    Mutex mutex;
+    std::vector<std::unique_ptr<Workspace>> spare;
+};
 
 //! Calls work(job, workspace) for each of `count` jobs, in parallel.
 template <typename Work> void parallelJobs(int count, Workspaces& workspaces, const Work& work)
 {
     parallel_for_(Range(0, count), [&](const Range& range) {
+        std::unique_ptr<Workspace> workspace = workspaces.borrow();
         for (int job = range.start; job < range.end; job++)
-            work(job, workspaces.getRef());
+            work(job, *workspace);
+        workspaces.giveBack(std::move(workspace));
     });
 }
 
