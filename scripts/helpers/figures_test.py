@@ -46,7 +46,7 @@ class Figures(unittest.TestCase):
             with open(target, newline='') as file:
                 found = {row['place']: row for row in csv.DictReader(file)}
         self.assertEqual({place: (row['pairs'], round(float(row['score']), 3)) for place, row in found.items()},
-                         {'buildings': ('2', .75), 'walks': ('3', .267)})
+                         {'buildings': ('2', .75), 'street': ('2', 0), 'facade': ('1', .8)})
         self.assertEqual((found['buildings']['low'], found['buildings']['high']), ('0.5000', '1.0000'))
 
     def test_intervals(self):

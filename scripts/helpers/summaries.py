@@ -32,8 +32,9 @@ def pose_score(row):
 
 
 def pose_place(row):
-    """Photographs of buildings by day, or rendered walks in two lights."""
-    return 'buildings' if row['set'] == 'strecha' else 'walks'
+    """Photographs of buildings by day, or what a rendered walk in two lights passes: a facade is nearly a plane, from which
+    the pose is hardly known."""
+    return 'buildings' if row['set'] == 'strecha' else 'facade' if row['set'] == 'walk_facade' else 'street'
 
 
 def column(name):
