@@ -28,7 +28,7 @@ protected:
     //! The exit status; `error` gets the standard error.
     int run(const std::string& command)
     {
-        const std::string line = IIB_PROGRAMS "/" + command + " >'" + folder.path("said") + "' 2>'" +
+        const std::string line = "'" IIB_PROGRAMS "'/" + command + " >'" + folder.path("said") + "' 2>'" +
                                  folder.path("error") + "'";
         const int status = std::system(line.c_str());
         error = textOf(folder.path("error"));
