@@ -153,12 +153,16 @@ double matchRotated(InputArray image1, std::vector<KeyPoint>& keypoints1, InputA
                            ? 0
                            : findRotation(*extractor, images[0], keypoints1, images[1], keypoints2);
     const bool upright = std::min(rotation, 360 - rotation) <= UPRIGHT_WITHIN;
-    setAngle(keypoints1, UPRIGHT);
-    setAngle(keypoints2, upright ? UPRIGHT : (float)rotation);
+    // copies, so that what the caller gave stays if something is wrong
+    std::vector<KeyPoint> first = keypoints1, second = keypoints2;
+    setAngle(first, UPRIGHT);
+    setAngle(second, upright ? UPRIGHT : (float)rotation);
     Mat codes[2];
-    extractor->compute(images[0], keypoints1, codes[0]);
-    extractor->compute(images[1], keypoints2, codes[1]);
+    extractor->compute(images[0], first, codes[0]);
+    extractor->compute(images[1], second, codes[1]);
     matches1to2 = match(*matcher, codes[0], codes[1]);
+    keypoints1.swap(first);
+    keypoints2.swap(second);
     return rotation;
 }
 

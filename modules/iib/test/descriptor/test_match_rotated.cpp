@@ -256,6 +256,7 @@ TEST(IIB_MatchRotated, errors)
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
     std::vector<KeyPoint> first = pair.keypoints[0], second = pair.keypoints[1];
     std::vector<DMatch> matches;
+    first[0].angle = second[0].angle = 77;
     const auto call = [&](const Ptr<IIB>& extractor, const Ptr<HierarchicalMatcher>& m, double rotation) {
         return [&, extractor, m, rotation] {
             matchRotated(pair.images[0], first, pair.images[1], second, extractor, m, matches, rotation);
@@ -287,6 +288,9 @@ TEST(IIB_MatchRotated, errors)
     pair.images[1].convertTo(pair.images[1], CV_32S);
     for (double rotation : {-1., 10.})
         expectError(Error::StsUnsupportedFormat, "32S", call(rotating(), matcher, rotation));
+    // what was given stays
+    EXPECT_EQ(77, first[0].angle);
+    EXPECT_EQ(77, second[0].angle);
 }
 
 }  // namespace
