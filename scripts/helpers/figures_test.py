@@ -55,6 +55,17 @@ class Figures(unittest.TestCase):
         self.assertAlmostEqual(low, .5 - 1.96 * .05, delta=.015)
         self.assertAlmostEqual(high, .5 + 1.96 * .05, delta=.015)
 
+    def test_gains_are_of_the_same_pairs(self):
+        rows = [('tilde_webcam', target, 'ORB', descriptor, 'light', correct)
+                for descriptor, counts in (('ORB', (10, 30)), ('IIB', (20, 30, 99))) for target, correct in enumerate(counts)]
+        heads = 'set', 'target', 'detector', 'descriptor', 'kind', 'correct', 'sequence'
+        with tempfile.TemporaryDirectory() as folder:
+            source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
+            with open(source, 'w', newline='') as file:
+                csv.writer(file).writerows([heads, *((*row, 's') for row in rows), ('graf', 1, 'ORB', 'ORB', 'viewpoint', 9, 's')])
+            summaries.summarize_gains(source, target)
+            self.assertEqual(target.read_text().splitlines()[1:], ['ORB,2,1.2500,1.0000,2.0000'])
+
 
 if __name__ == '__main__':
     unittest.main()

@@ -41,11 +41,15 @@ def column(name):
     return lambda row: float(row[name])
 
 
-def interval(values):
-    """Ends of the 95 % confidence interval of the mean."""
+def mean(values):
+    return sum(values) / len(values)
+
+
+def interval(values, statistic=mean):
+    """Ends of the 95 % confidence interval of the mean, or of another statistic."""
     chance = random.Random(1)
-    sums = sorted(sum(chance.choices(values, k=len(values))) for _ in range(DRAWS))
-    return [sums[at] / len(values) for at in (DRAWS // 40, DRAWS - 1 - DRAWS // 40)]
+    drawn = sorted(statistic(chance.choices(values, k=len(values))) for _ in range(DRAWS))
+    return [drawn[at] for at in (DRAWS // 40, DRAWS - 1 - DRAWS // 40)]
 
 
 # File: which rows count, what makes a group, what is averaged.
@@ -80,6 +84,27 @@ def summarize(source, target, chosen, keys, values):
             writer.writerow(list(group) + [len(rows)] + [repr(sum(of) / len(rows)) for of in found] + ends)
 
 
+def gain(pairs):
+    """How many times as many right matches the second of each pair of counts is, of all."""
+    return sum(ours for _, ours in pairs) / sum(own for own, _ in pairs)
+
+
+def summarize_gains(source, target):
+    """Right matches of the default descriptor over those of a detector's own, at its points, of pairs in changed light."""
+    counts = collections.defaultdict(dict)
+    with open(source, newline='') as file:
+        for row in csv.DictReader(file):
+            if place(row) in ('light', 'trained'):
+                counts[row['detector'], row['descriptor']][row['set'], row['sequence'], row['target']] = int(row['correct'])
+    with open(target, 'w', newline='') as file:
+        writer = csv.writer(file, lineterminator='\n')
+        writer.writerow(['detector', 'pairs', 'gain', 'low', 'high'])
+        for detector in sorted(detector for detector, descriptor in counts if detector == descriptor):
+            own, ours = counts[detector, detector], counts[detector, 'IIB']
+            pairs = [(own[pair], ours[pair]) for pair in sorted(own) if pair in ours]
+            writer.writerow([detector, len(pairs)] + ['%.4f' % v for v in (gain(pairs), *interval(pairs, gain))])
+
+
 def main():
     if len(sys.argv) != 2 or not pathlib.Path(sys.argv[1]).is_dir():
         print(__doc__.split('\n\n')[0] + '; FOLDER must be one', file=sys.stderr)
@@ -89,6 +114,8 @@ def main():
         if (folder / name).is_file():
             summarize(folder / name, OUT / name, *plan)
             print('doc/results/' + name)
+    if (folder / 'detected_points.csv').is_file():
+        summarize_gains(folder / 'detected_points.csv', OUT / 'gains.csv')
     return 0
 
 
