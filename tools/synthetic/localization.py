@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Renders data to test visual localization with: the street mapped at noon with depth, then visited under other
+"""Renders data to test visual localization with: the street mapped at noon, then visited under other
 lights on another path, with an IMU. See README.md."""
 
 import argparse
@@ -10,7 +10,7 @@ import sys
 import cv2
 import numpy as np
 
-from render import DEPTH, DEPTH_SCALE, IMAGE, Task, render_all, run_quickly
+from render import IMAGE, Task, render_all, run_quickly
 from scenes import LIGHTS, SCENES, extrinsics, intrinsics, walk
 
 SCENE = "street"
@@ -106,7 +106,6 @@ def plan(out, keyframes, queries, lights, size):
     write_text(out / "map" / "poses.txt", tum(names, poses))
     for name, pose, frame in zip(names, poses, range(keyframes)):
         yield Task(out / "map" / "images" / f"{name}.png", SCENE, IMAGE, MAP_LIGHT, pose, frame, [])
-        yield Task(out / "map" / "steps" / f"{name}.png", SCENE, DEPTH, MAP_LIGHT, pose, frame, [])
     times = np.linspace(0, DURATION, queries)
     poses = visit(times)
     names = [f"{time:09.6f}" for time in times]
@@ -117,14 +116,6 @@ def plan(out, keyframes, queries, lights, size):
     for k in spread(queries):
         for light in lights:
             yield Task(out / light / "images" / f"{names[k]}.png", SCENE, IMAGE, light, poses[k], 1000 + k, [])
-
-
-def write_millimetres(out):
-    """map/depth: what `steps` holds, in millimetres; 0 where that is beyond 16 bits."""
-    for path in sorted((out / "map" / "steps").glob("[0-9]*.png")):
-        metres = cv2.imread(str(path), cv2.IMREAD_UNCHANGED) * DEPTH_SCALE
-        millimetres = np.rint(metres * 1000)
-        write(out / "map" / "depth" / path.name, np.where(millimetres <= 65535, millimetres, 0).astype(np.uint16))
 
 
 def main():
@@ -142,10 +133,7 @@ def main():
         sys.exit("povray is not installed: apt-get install povray")
     size = tuple(options.size)
     tasks = list(plan(options.out, options.keyframes, options.queries, options.lights, size))
-    mapping = [task for task in tasks if task.target.parent.parent.name == "map"]
-    render_all(mapping, size, options.jobs, run_quickly)
-    write_millimetres(options.out)
-    render_all([task for task in tasks if task.target.parent.parent.name != "map"], size, options.jobs, run_quickly)
+    render_all(tasks, size, options.jobs, run_quickly)
 
 
 if __name__ == "__main__":
