@@ -202,27 +202,17 @@ def presets():
     return table(['preset', 'bytes', 'light', 'rendered', 'wall', 'graf', 'turned', 'when'], lines)
 
 
-def ratio_table(descriptors):
+def ratios():
+    """Correct / given matches a pair of AKAZE's points, under mutual matching and under ratio tests."""
     rules = ('mutual', '0.95', '0.9', '0.85', '0.8', '0.75')
     found = grouped('ratios.csv', ('place', 'descriptor', 'rule'))
     lines = []
     for label, place in (('changed light', 'light'), ('`wall`', 'wall'), ('`graf`', 'graf')):
-        for name in descriptors:
+        for name in ('default', 'ACCURATE', 'COMPACT', 'BALANCED', 'UNIVERSAL'):
             full = 'IIB ' + name if name != 'default' else 'IIB'
             chosen = [found[place, full, rule] for rule in rules]
             lines.append([label, name] + ['%.0f / %.0f' % (mean(some, 'correct'), mean(some, 'given')) for some in chosen])
     return table(['', '', 'mutual'] + list(rules[1:]), lines)
-
-
-def ratios():
-    """Correct / given matches a pair of AKAZE's points, under mutual matching and under ratio tests."""
-    return ratio_table(['default', 'ACCURATE', 'COMPACT', 'BALANCED', 'UNIVERSAL'])
-
-
-def all_ratios():
-    """The same for all presets."""
-    return ratio_table(['default', 'ACCURATE', 'COMPACT', 'TINY', 'BALANCED', 'VIEWPOINT', 'UNIVERSAL', 'S512', 'S256',
-                        'S128'])
 
 
 def costs():
@@ -236,18 +226,6 @@ def costs():
             return '%.2f' % (float(found[name][column]) / float(found['ORB'][column]))
         lines.append([label, found[name]['bytes'], ratio('milliseconds'), ratio('microseconds_per_further_keypoint')])
     return table(['', 'bytes', '1000 points', 'a point more'], lines)
-
-
-def all_costs():
-    """Every descriptor's time for 1000 points and for one more, and the first as a ratio to ORB's."""
-    lines = []
-    found = sorted(rows('cost.csv'), key=lambda row: float(row['milliseconds']))
-    orb = next(float(row['milliseconds']) for row in found if row['configuration'] == 'ORB')
-    for row in found:
-        time, further = float(row['milliseconds']), float(row['microseconds_per_further_keypoint'])
-        lines.append([row['configuration'], row['bytes'], '%.2f' % time, '%.2f' % (time / orb),
-                      '%.2f' % further if further > 0 else 'lost in the noise'])
-    return table(['', 'bytes', 'ms', 'ratio to ORB', 'us a point more'], lines)
 
 
 def benchmark(name):
@@ -287,15 +265,6 @@ def matching():
                       '%.3f' % m['right']])
     return table(['', 'codes', 'cross-check', 'ms', 'ns a pair', 'times as fast as BFMatcher', 'the same without AVX2',
                   'right'], lines)
-
-
-def matching_speed():
-    """The default mode, times as fast as BFMatcher."""
-    wide, narrow, lines = speeds(WIDE), speeds(NARROW), []
-    for codes in sorted({key[1] for key in wide}):
-        lines.append(['{0:,} x {0:,}'.format(codes)] + ['%.0f' % found['EXACT', codes, cross]
-                                                       for found in (wide, narrow) for cross in (0, 1)])
-    return table(['codes', 'AVX-512', 'and cross-check', 'without AVX2', 'and cross-check'], lines)
 
 
 def small_work():
@@ -408,9 +377,9 @@ def place_recognition():
 
 PAGES = {'README.md': (match_claim, pose_claim, poses),
          'doc/guide.md': (pose_by_rule, ratios, presets),
-         'doc/performance.md': (describing, matching, matching_speed, small_work, costs, all_costs),
+         'doc/performance.md': (describing, matching, small_work, costs),
          'doc/scale.md': (mapped_index, flat_search, approximate_search, on_paper, place_recognition),
-         'doc/results/README.md': (pose_rules, elsewhere, extra_channels, all_ratios, detected_points, fixed_points, turned)}
+         'doc/results/README.md': (pose_rules, elsewhere, extra_channels, detected_points, fixed_points, turned)}
 
 
 def filled(page, makers):
