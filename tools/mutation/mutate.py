@@ -140,7 +140,7 @@ def main():
     parser.add_argument("--source", type=pathlib.Path, required=True, help="the repository")
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("--work", type=pathlib.Path, help="folder for the copy and its build")
-    what.add_argument("--check", action="store_true", help="only see whether each mutant stands in the source, once")
+    what.add_argument("--check", action="store_true", help="only see whether each mutant stands in the source, once, and has tests")
     parser.add_argument("--only", nargs="*", default=[], help="names of mutants; all by default")
     options = parser.parse_args()
 
@@ -150,6 +150,8 @@ def main():
     if unknown:
         sys.exit(f"no such mutants: {', '.join(sorted(unknown))}")
     changed = switched(sources, mutants)
+    for area in {mutant.area for mutant in mutants}:
+        suites(options.source, area)
     if options.check:
         return 0
     source, build = options.work / "source", options.work / "build"
