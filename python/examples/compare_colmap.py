@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 """COLMAP's SIFT, ORB and IIB on photographs with known poses, as they are and with every second one relit.
 
-    python compare_colmap.py SCENE... [--points 4000] [--methods SIFT,ORB,IIB,UNIVERSAL/refined] [--document FILE]
+    python compare_colmap.py SCENE... [--points 4000] [--methods SIFT,ORB,IIB,UNIVERSAL/refined]
 
 A SCENE holds ``images/`` and ``poses.txt`` (TUM: name or time, camera centre in metres, quaternion; in the order of the
 images' names). Needs the program colmap (Debian's package) and opencv_iib[colmap]. Prints a table: registered images,
 points, mean track length, reprojection error in pixels, and the median error of the camera centres after alignment,
-in per cent of the distance between the outermost of them. --document writes each line into FILE's table, in place of
-the one for the same scene, light and method if there is one.
+in per cent of the distance between the outermost of them.
 
 Methods: SIFT is COLMAP's own; ORB; IIB, or a preset's name, on ORB's keypoints; SIFT+IIB on those of cv2's SIFT,
 HESSIAN+UNIVERSAL on HessianDetector's (the recommended chain); each but COLMAP's SIFT also as NAME/refined.
@@ -135,20 +134,6 @@ def compare(scene, light, methods, points):
                    f'{float(row[3]):.2f} | {row[4]:.2f} |')
 
 
-def write_into(document, line):
-    """Puts a line into the table: in place of the one of the same scene, light and method, else as the last."""
-    text = document.read_text()
-    if HEAD not in text:
-        sys.exit(f'{document} has no table with the head\n{HEAD}')
-    begin = text.index(HEAD) + len(HEAD)
-    end = text.find('\n\n', begin)
-    rows = text[begin:end].splitlines()[1:]
-    key = line.split('|')[1:4]
-    same = [i for i, row in enumerate(rows) if row.split('|')[1:4] == key]
-    rows[same[0] if same else len(rows):(same[0] if same else len(rows)) + 1] = [line]
-    document.write_text(text[:begin] + '\n' + '\n'.join(rows) + text[end:])
-
-
 def main():
     methods = 'SIFT,ORB,ORB/refined,IIB,IIB/refined,UNIVERSAL,UNIVERSAL/refined,SIFT+IIB,HESSIAN+UNIVERSAL,' \
               'HESSIAN+UNIVERSAL/refined'
@@ -156,7 +141,6 @@ def main():
     parser.add_argument('scenes', type=Path, nargs='+', metavar='SCENE')
     parser.add_argument('--points', type=int, default=4000)
     parser.add_argument('--methods', default=methods, help='also any preset of opencv_iib (%(default)s)')
-    parser.add_argument('--document', type=Path, help='file with the table to write into')
     arguments = parser.parse_args()
     if not shutil.which('colmap'):
         sys.exit('there is no program colmap: install it (Debian: apt-get install colmap)')
@@ -165,8 +149,6 @@ def main():
         for light in ('plain', 'relit'):
             for line in compare(scene, light, arguments.methods.split(','), arguments.points):
                 print(line, flush=True)
-                if arguments.document:
-                    write_into(arguments.document, line)
 
 
 if __name__ == '__main__':

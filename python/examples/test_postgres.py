@@ -130,7 +130,3 @@ class PlacesTest(unittest.TestCase):
         places.create_index()
         for codes in self.night.values():
             self.assertEqual(places.vote(codes, candidates=1000), plain_votes(self.walk, codes))
-
-
-if __name__ == '__main__':
-    unittest.main()

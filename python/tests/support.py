@@ -89,6 +89,21 @@ def brute_force(query, train, k):
     return order, np.take_along_axis(bits, order, 1)
 
 
+def by_four_threads(call, times):
+    """What each of four threads got of its last call."""
+    found = [None] * 4
+
+    def work(i):
+        for _ in range(times):
+            found[i] = call()
+    threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return found
+
+
 def steps_meanwhile(call):
     """How often another thread runs Python in the middle half of the time that `call` takes: 0 if that holds the GIL.
 

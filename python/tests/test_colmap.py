@@ -44,8 +44,6 @@ try:
 except ImportError:
     PIL = None
 
-FAST = dict(verify='magsac')
-
 
 @unittest.skipIf(cv2 is None, 'no cv2')
 @unittest.skipIf(cv2 is not None and PIL is None, 'no pillow')
@@ -61,12 +59,13 @@ class ColmapTest(unittest.TestCase):
         for i, name in enumerate(('a.png', 'b.png', 'more/c.png')):
             cv2.imwrite(os.path.join(self.images, name), world[20 * i:300 + 20 * i, 30 * i:400 + 30 * i])
         self.lines = []
+        self.hloc = [os.path.join(self.folder.name, name) for name in ('features.h5', 'matches.h5', 'list.txt')]
 
-    def build(self, force=False, client=None, detector='HESSIAN', **options):
+    def build(self, force=False, client=None, detector='HESSIAN', workers=2, **options):
         features = FeatureOptions(detector, points=options.pop('points', 300))
         with redirect_stderr(io.StringIO()):
-            return build_database(self.images, self.database, Options(features, **{**FAST, **options}), force,
-                                  workers=2, log=self.lines.append, client=client)
+            return build_database(self.images, self.database, Options(features, **{'verify': 'magsac', **options}), force,
+                                  workers=workers, log=self.lines.append, client=client)
 
     def dump(self):
         """Every row of every table, and removes the database."""
@@ -132,8 +131,7 @@ class ColmapTest(unittest.TestCase):
                 raise KeyboardInterrupt
             return real(*arguments)
         with mock.patch.object(pipeline, 'magsac', magsac_or_not), self.assertRaises(KeyboardInterrupt):
-            with redirect_stderr(io.StringIO()):
-                build_database(self.images, self.database, Options(FeatureOptions(points=300), **FAST), workers=1)
+            self.build(workers=1)
 
     def test_an_interrupted_run_goes_on(self):
         self.interrupt()
@@ -196,9 +194,8 @@ class ColmapTest(unittest.TestCase):
         Path(listing).write_text('# a comment\nb 1.png more/c.png\n\n')
         self.assertEqual(self.build(pairs=listing, force=True)['pairs'], 1)
         if h5py is not None:
-            files = [os.path.join(self.folder.name, name) for name in ('features.h5', 'matches.h5', 'list.txt')]
             with self.assertRaisesRegex(ValueError, 'hloc.*rename'):
-                hloc.export(self.database, *files)
+                hloc.export(self.database, *self.hloc)
 
     def test_files_that_are_no_images_are_left_out(self):
         image = cv2.imread(os.path.join(self.images, 'a.png'))
@@ -239,11 +236,9 @@ class ColmapTest(unittest.TestCase):
 
     def test_one_run_equals_any_number_of_workers(self):
         self.build()
-        one = self.query('SELECT pair_id, data FROM matches ORDER BY pair_id')
-        os.unlink(self.database)
-        with redirect_stderr(io.StringIO()):
-            build_database(self.images, self.database, Options(FeatureOptions(points=300), **FAST), workers=5)
-        self.assertEqual(self.query('SELECT pair_id, data FROM matches ORDER BY pair_id'), one)
+        one = self.dump()
+        self.build(workers=5)
+        self.assertEqual(self.dump(), one)
 
     def errors(self):
         """Of verified matches, in pixels along both axes, where b.png lies at (30.4, 20.7) of a.png."""
@@ -481,31 +476,25 @@ class ColmapTest(unittest.TestCase):
     @unittest.skipIf(h5py is None, 'no h5py')
     def test_hloc_keeps_its_files_until_all_are_new(self):
         self.build()
-        files = [os.path.join(self.folder.name, name) for name in ('features.h5', 'matches.h5', 'pairs.txt')]
-        for file in files:
+        for file in self.hloc:
             Path(file).write_bytes(b'precious')
         before = sorted(os.listdir(self.folder.name))
         with mock.patch.object(hloc, '_pair', side_effect=OSError('no space left')), self.assertRaises(OSError):
-            hloc.export(self.database, *files, force=True)
-        self.assertEqual([Path(file).read_bytes() for file in files], [b'precious'] * 3)
+            hloc.export(self.database, *self.hloc, force=True)
+        self.assertEqual([Path(file).read_bytes() for file in self.hloc], [b'precious'] * 3)
         self.assertEqual(sorted(os.listdir(self.folder.name)), before)
 
     @unittest.skipIf(h5py is None, 'no h5py')
     def test_hloc(self):
         self.build()
-        files = [os.path.join(self.folder.name, name) for name in ('features.h5', 'matches.h5', 'pairs.txt')]
         for expected in (0, 1):
             with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
-                self.assertEqual(main(['hloc', self.database, *files]), expected)
+                self.assertEqual(main(['hloc', self.database, *self.hloc]), expected)
         rows, data = self.query('SELECT rows, data FROM keypoints WHERE image_id=1')[0]
-        with h5py.File(files[0]) as features, h5py.File(files[1]) as matches:
+        with h5py.File(self.hloc[0]) as features, h5py.File(self.hloc[1]) as matches:
             np.testing.assert_array_equal(features['a.png']['keypoints'][:] + np.float32(.5),
                                           np.frombuffer(data, np.float32).reshape(rows, 4)[:, :2])
             nearest = matches['a.png/more-c.png']['matches0']
             self.assertEqual((nearest.dtype, nearest.shape), (np.int16, (rows,)))
             self.assertTrue((nearest[:] >= -1).all())
-        self.assertEqual(len(Path(files[2]).read_text().splitlines()), 3)
-
-
-if __name__ == '__main__':
-    unittest.main()
+        self.assertEqual(len(Path(self.hloc[2]).read_text().splitlines()), 3)

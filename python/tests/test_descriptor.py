@@ -1,7 +1,6 @@
 import copy
 import pickle
 import tempfile
-import threading
 import unittest
 from pathlib import Path
 
@@ -9,7 +8,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import IIB
-from support import cv2, fnv1a, golden_hashes, grid, scatter, steps_meanwhile, texture
+from support import by_four_threads, cv2, fnv1a, golden_hashes, grid, scatter, steps_meanwhile, texture
 
 GOLDEN = {
     'default': {},
@@ -263,17 +262,8 @@ class Objects(unittest.TestCase):
     def test_threads_share_an_extractor(self):
         iib, image = IIB.create(), texture(320, 240)
         keypoints = scatter(320, 240, 500, 3, 40, 2)
-        expected, found = iib.compute(image, keypoints)[1], [None] * 4
-
-        def work(i):
-            for _ in range(5):
-                found[i] = iib.compute(image, keypoints)[1]
-        threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
-        for descriptors in found:
+        expected = iib.compute(image, keypoints)[1]
+        for descriptors in by_four_threads(lambda: iib.compute(image, keypoints)[1], 5):
             np.testing.assert_array_equal(descriptors, expected)
 
 
@@ -314,7 +304,3 @@ class BesideCv2(unittest.TestCase):
             IIB.create(granularity=9)
         with self.assertRaises(cv2.error):
             cv2.ORB_create().detect(np.zeros((3, 3, 7), np.float64))
-
-
-if __name__ == '__main__':
-    unittest.main()

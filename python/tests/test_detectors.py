@@ -270,7 +270,3 @@ class MatchRotated(unittest.TestCase):
         self.extractor.setOrientation(IIB.ORIENTATION_NONE)
         with self.assertRaises(opencv_iib.error):
             self.call()
-
-
-if __name__ == '__main__':
-    unittest.main()

@@ -40,7 +40,3 @@ class Documentation(unittest.TestCase):
                 os.chdir(where)
         self.assertGreater(len(names['pairs']), 100)
         self.assertEqual(names['matched_a'].shape, names['matched_b'].shape)
-
-
-if __name__ == '__main__':
-    unittest.main()

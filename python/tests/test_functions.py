@@ -93,7 +93,3 @@ class Functions(unittest.TestCase):
                 return ()
         self.assertEqual(Mine().level_sizes(), ())
         self.assertEqual(opencv_iib.IIB().level_sizes(), opencv_iib.IIB().levelSizes())
-
-
-if __name__ == '__main__':
-    unittest.main()

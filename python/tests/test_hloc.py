@@ -60,7 +60,3 @@ class Hloc(unittest.TestCase):
         back = opencv_iib.match(codes[1].codes, codes[0].codes).pairs
         self.assertGreater(len(mutual), 50)
         self.assertEqual(set(mutual), set(map(tuple, there.tolist())) & {(i, j) for j, i in back.tolist()})
-
-
-if __name__ == '__main__':
-    unittest.main()

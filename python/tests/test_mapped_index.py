@@ -77,7 +77,3 @@ class MappedIndexTest(unittest.TestCase):
         self.index.add(codes)
         queries = np.concatenate([codes] * 3)
         self.assertGreater(steps_meanwhile(lambda: self.index.search(queries)), 2)
-
-
-if __name__ == '__main__':
-    unittest.main()

@@ -2,7 +2,6 @@ import copy
 import pickle
 import signal
 import tempfile
-import threading
 import time
 import unittest
 from pathlib import Path
@@ -11,7 +10,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import HierarchicalMatcher
-from support import brute_force, cv2, steps_meanwhile
+from support import brute_force, by_four_threads, cv2, steps_meanwhile
 
 LEVELS = (2, 8, 32, 128)
 
@@ -168,17 +167,8 @@ class MatcherTest(unittest.TestCase):
 
     def test_threads_share_a_matcher(self):
         self.matcher.add(self.train)
-        expected, found = self.matcher.knnMatchArrays(self.query)[0], [None] * 4
-
-        def work(i):
-            for _ in range(20):
-                found[i] = self.matcher.knnMatchArrays(self.query)[0]
-        threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
-        for indices in found:
+        expected = self.matcher.knnMatchArrays(self.query)[0]
+        for indices in by_four_threads(lambda: self.matcher.knnMatchArrays(self.query)[0], 20):
             np.testing.assert_array_equal(indices, expected)
 
     @unittest.skipIf(cv2 is None, 'no cv2')
@@ -232,7 +222,3 @@ class MatcherTest(unittest.TestCase):
             self.assertLess(time.monotonic() - begin, 60 * block)
         finally:
             signal.signal(signal.SIGALRM, old)
-
-
-if __name__ == '__main__':
-    unittest.main()

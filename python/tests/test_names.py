@@ -115,7 +115,3 @@ class Names(unittest.TestCase):
             opencv_iib.IIB.create(-1)
         self.assertRegex(traceback.format_exception_only(opencv_iib.error, caught.exception)[0], '^opencv_iib.error: scaleFactor')
         self.assertNotIn('/', str(caught.exception))
-
-
-if __name__ == '__main__':
-    unittest.main()

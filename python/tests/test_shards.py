@@ -172,7 +172,3 @@ class ShardsTest(unittest.TestCase):
         thread.join(60)
         self.assertFalse(thread.is_alive())
         return found[0]
-
-
-if __name__ == '__main__':
-    unittest.main()

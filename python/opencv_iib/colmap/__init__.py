@@ -1,4 +1,4 @@
-"""COLMAP, hloc and OpenSfM: whole collections of images, described and matched. See doc/colmap.md."""
+"""COLMAP and hloc: whole collections of images, described and matched. See doc/colmap.md."""
 from opencv_iib.colmap.database import SettingsChanged
 from opencv_iib.colmap.features import FeatureOptions
 from opencv_iib.colmap.pipeline import Options, build_database
