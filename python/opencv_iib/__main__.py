@@ -76,7 +76,7 @@ def _add_localization(commands: Any) -> None:
         parser.add_argument('--workers', type=int, help='threads (one a core)')
         if localizes:
             parser.add_argument('--camera', metavar='MODEL,WIDTH,HEIGHT,PARAMS',
-                                help="COLMAP's name and parameters of the camera of all images, instead of EXIF")
+                                help="COLMAP's name and parameters of the camera of all images, instead of the map's or EXIF's")
         return parser
 
     mapping = command('map', 'make a map for localization of a COLMAP model', localizes=False)

@@ -1,5 +1,6 @@
 import csv
 import io
+import json
 import os
 import shutil
 import tempfile
@@ -20,9 +21,9 @@ except ImportError:
 if cv2 is not None:
     from opencv_iib.__main__ import main
     from opencv_iib.colmap import pipeline
-    from opencv_iib.localization import Localizer, build_map, parse_camera, read_map, update
+    from opencv_iib.localization import Localizer, build_map, find_camera, parse_camera, read_map, update
     from opencv_iib.localization.folders import new_folder
-    from opencv_iib.localization.localizer import camera_covariance
+    from opencv_iib.localization.geometry import refine_pose
     from opencv_iib.localization.map import compact
     from opencv_iib.localization.retrieval import Votes
 
@@ -166,8 +167,35 @@ class Localization(unittest.TestCase):
         with open(os.path.join(mixed, 'broken.png'), 'wb') as file:
             file.write(b'nothing')
         self.assertEqual(run(*arguments, '--images', mixed)[0], 3)
-        self.assertEqual(run('localize', '--map', self.map, '--images', self.dark, '--out', out)[0], 3)
-        self.assertIn('give --camera', open(os.path.join(out, 'frames.csv')).read())
+
+    def test_an_image_without_exif_takes_the_maps_only_camera_of_its_size(self):
+        out, images = self.path('out'), self.path('images')
+        arguments = 'localize', '--map', self.map, '--out', out, '--images'
+        self.assertEqual(run(*arguments, self.dark)[0], 0)
+        os.makedirs(images)
+        cv2.imwrite(os.path.join(images, 'small.png'), self.grey('a')[1:])
+        self.assertEqual(run(*arguments, images)[0], 3)
+        self.assertRegex(open(os.path.join(out, 'frames.csv')).read(), '0 cameras of the map have its size: give --camera')
+        near, far = (pycolmap.Camera(model='PINHOLE', width=WIDTH, height=HEIGHT, params=[f, f, 160, 120]) for f in (305, 400))
+        for told, taken in ((near, 300), (far, 400)):
+            told.has_prior_focal_length = True
+            with mock.patch('pycolmap.infer_camera_from_image', return_value=told):
+                self.assertEqual(find_camera('', WIDTH, HEIGHT, read_map(self.map).cameras).focal_length_x, taken)
+
+    def test_maps_without_the_arrays_of_their_geometry_open(self):
+        old = self.path('map')
+        shutil.copytree(self.map, old)
+        with open(os.path.join(old, 'map.json')) as file:
+            manifest = json.load(file)
+        del manifest['cameras']
+        for name in ('points.npy', 'sees.npy', 'views.npy'):
+            os.unlink(os.path.join(old, name))
+            del manifest['sha256'][name]
+        with open(os.path.join(old, 'map.json'), 'w') as file:
+            json.dump(manifest, file)
+        new = Localizer(self.map).localize(self.grey('a'), parse_camera(CAMERA))
+        found = Localizer(old).localize(self.grey('a'), read_map(old).cameras[0])
+        np.testing.assert_array_equal(found.cam_from_world.params, new.cam_from_world.params)
 
     def test_text_models_and_any_unit(self):
         model, out, images = self.path('model'), self.path('map'), self.path('images')
@@ -242,13 +270,11 @@ class Localization(unittest.TestCase):
         true.translation = true.translation - true.rotation.matrix() @ far
         for _ in range(200):
             noisy = exact + random.normal(0, .2, exact.shape)
-            found = pycolmap.refine_absolute_pose(true, noisy, points, np.ones(len(noisy), bool), camera,
-                                                  return_covariance=True)
-            moved = found['cam_from_world'].inverse()
+            found, covariance = refine_pose(true, camera, noisy, points)
+            moved = found.inverse()
             turn = cv2.Rodrigues(moved.rotation.matrix() @ true.rotation.matrix())[0].ravel()
             scatter.append([*(moved.translation - true.inverse().translation), *turn])
-        covariance = .2 ** 2 * camera_covariance(true, found['covariance'])
-        np.testing.assert_allclose(np.std(scatter, axis=0), np.sqrt(np.diag(covariance)), rtol=.25)
+        np.testing.assert_allclose(np.std(scatter, axis=0), .2 * np.sqrt(np.diag(covariance)), rtol=.25)
 
     def test_an_interrupted_run_goes_on(self):
         out = self.path('map')
@@ -272,11 +298,20 @@ class Localization(unittest.TestCase):
         for name in ('cameras.bin', 'images.bin', 'points3D.bin', 'rigs.bin', 'frames.bin'):
             with self.subTest(name):
                 whole = open(os.path.join(model, name), 'rb').read()
+                for damaged in (whole[:-5], whole + b'.', b'', b'\xff' * len(whole), np.random.default_rng(1).bytes(500)):
+                    with open(os.path.join(model, name), 'wb') as file:
+                        file.write(damaged)
+                    self.check_error(f'^map: {model}: {name} is damaged$', 'map', '--model', model, *arguments)
                 with open(os.path.join(model, name), 'wb') as file:
-                    file.write(whole[:-5])
-                self.check_error(f'^map: {model}: (no COLMAP model, or a damaged one|{name} is cut off)', 'map', '--model',
-                                 model, *arguments)
-                with open(os.path.join(model, name), 'wb') as file:
+                    file.write(whole)
+        write_model(model + '3', [f'{n}.png' for n in range(6)], text=True)
+        for name in ('cameras.txt', 'images.txt', 'rigs.txt', 'frames.txt'):
+            with self.subTest(name):
+                whole = open(os.path.join(model + '3', name)).read()
+                with open(os.path.join(model + '3', name), 'w') as file:
+                    file.write('no model\n1 2 three\n')
+                self.check_error(f'^map: {model}3: no COLMAP model, or a damaged one', 'map', '--model', model + '3', *arguments)
+                with open(os.path.join(model + '3', name), 'w') as file:
                     file.write(whole)
         write_model(model + '1', [*self.names[:-1], 'missing.png'])
         self.check_error('missing.png is missing, one of 1', 'map', '--model', model + '1', *arguments)
@@ -332,9 +367,10 @@ class Localization(unittest.TestCase):
             self.check(Localizer(grown).localize(self.grey('a'), camera), 'a')
             old = Localizer(self.map).localize(self.grey('a'), camera).inliers
             self.assertGreater(Localizer(grown).localize(self.grey('a'), camera).inliers, 1.2 * old)
-            with mock.patch.object(update, 'LIGHTS', 2):
-                for _ in range(3):
-                    update.update_map(out, self.dark, camera)
+            self.assertEqual(update.update_map(out, self.dark, camera)['added'], 0)
+            with mock.patch.object(update, 'LIGHTS', 2), mock.patch.object(update, 'KNOWN', 1.):
+                for _ in range(2):
+                    self.assertGreater(update.update_map(out, self.dark, camera)['added'], 0)
         again = read_map(out)
         self.assertEqual(again.updates, 4)
         self.assertLessEqual(len(again.codes), len(self.names) + 2 * first['added'])

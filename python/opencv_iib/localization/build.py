@@ -21,7 +21,7 @@ from opencv_iib.colmap.progress import Progress
 from opencv_iib.localization._pycolmap import pycolmap
 from opencv_iib.localization.folders import new_folder
 from opencv_iib.localization.geometry import fitting, graph_of, triangulate
-from opencv_iib.localization.map import OWN, Map, compact, read_model, write_map
+from opencv_iib.localization.map import OWN, Map, compact, read_map, read_model, write_map
 
 NEIGHBOURS = 20  #: images that each is matched with
 MAX_TRACK = 30  #: images of a point that count as seeing the same
@@ -136,9 +136,9 @@ def build_map(model: str, images: str, out: str, points: int = 2000, workers: Op
         if not known.num_points3D():
             raise ValueError(f'{model}: no point was seen from two places')
         compact(known, codes)
-        made = Map(known, codes, {i: np.zeros(len(c), np.uint8) for i, c in codes.items()}, dict.fromkeys(codes, 0), points)
-        write_map(made, partial)
+        write_map(partial, known, codes, {i: np.zeros(len(c), np.uint8) for i, c in codes.items()}, dict.fromkeys(codes, 0),
+                  points)
         for name in os.listdir(partial):
             if name.startswith(WORK):
                 os.unlink(os.path.join(partial, name))
-    return made
+    return read_map(out)

@@ -1,7 +1,7 @@
 """Points from matches of images whose poses are known."""
 from __future__ import annotations
 
-from typing import Any, Callable, Iterable
+from typing import Any, Callable, Iterable, Optional
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,9 @@ from opencv_iib.localization._pycolmap import pycolmap
 MAX_ERROR = 4.  #: pixels, of a match from its epipolar line and of a keypoint from its point
 FAR = .01  #: radians between rays that do not tell on which side they meet
 MIN_ANGLE = 1.5  #: degrees between the rays of a point
+STEPS = 10  #: of a pose's refinement
+SETTLED = .05  #: pixels that a step moves the points, after which there is none
+YZX, ZXY = [1, 2, 0], [2, 0, 1]
 
 
 def fitting(model: Any, a: int, points_a: NDArray[np.float64], b: int, points_b: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -79,3 +82,45 @@ def triangulate(model: Any, graph: Any, images: Iterable[int], step: Callable[[]
         if model.num_points3D():
             pycolmap.create_default_bundle_adjuster(refinement, everything, model).solve()
     manager.filter_all_points3D(MAX_ERROR, MIN_ANGLE)
+
+
+def project(cam_from_world: Any, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """N x 3 points of the world in a camera's axes."""
+    matrix = cam_from_world.matrix()
+    return np.asarray(points @ matrix[:, :3].T + matrix[:, 3])
+
+
+def _slopes(camera: Any, places: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Pixels of N x 3 places in the camera's axes, and their N x 2 x 3 derivatives by central differences."""
+    step = 1e-6 * np.linalg.norm(places, axis=1, keepdims=True)
+    moves = np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])[:, None]
+    pixels = camera.img_from_cam((places + step * moves).reshape(-1, 3)).reshape(7, -1, 2)
+    return pixels[0], ((pixels[1:4] - pixels[4:]) / (2 * step)).transpose(1, 2, 0)
+
+
+def refine_pose(cam_from_world: Any, camera: Any, pixels: NDArray[np.float64], points: NDArray[np.float64]
+                ) -> Optional[tuple[Any, NDArray[np.float64]]]:
+    """The pose that fits N pixels to the N points that they see: Gauss and Newton's steps, Cauchy's loss of one pixel.
+
+    :return: the pose, and 6 x 6 covariances of the camera's centre and of a small turn about the world's axes, for
+        pixels with a deviation of 1; None if the points do not determine them.
+    """
+    rotation, centre = cam_from_world.rotation.matrix(), cam_from_world.inverse().translation
+    for _ in range(STEPS):
+        rays = points - centre
+        seen, slopes = _slopes(camera, rays @ rotation.T)
+        errors = np.nan_to_num(seen - pixels)  # NaN behind the camera
+        by_ray, rays = np.nan_to_num(slopes) @ rotation, rays[:, None]
+        cross = by_ray[..., YZX] * rays[..., ZXY] - by_ray[..., ZXY] * rays[..., YZX]  # a turn w moves the ray r by r x w
+        jacobian = np.concatenate([-by_ray, cross], axis=2).reshape(-1, 6)
+        weighted = jacobian * np.repeat(1 / (1 + (errors ** 2).sum(1)), 2)[:, None]
+        try:
+            covariance = np.linalg.inv(weighted.T @ jacobian)
+        except np.linalg.LinAlgError:
+            return None
+        step = -covariance @ (weighted.T @ errors.ravel())
+        centre = centre + step[:3]
+        rotation = rotation @ pycolmap.Rotation3d(-step[3:]).matrix()
+        if np.abs(jacobian @ step).max() < SETTLED:
+            break
+    return pycolmap.Rigid3d(pycolmap.Rotation3d(rotation), -rotation @ centre), covariance

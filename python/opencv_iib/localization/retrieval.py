@@ -28,15 +28,13 @@ class Votes:
         self._weights = np.zeros((8 * self._bytes, TABLES), np.float32)
         for table in range(TABLES):
             self._weights[random.permutation(8 * self._bytes)[:bits], table] = 2. ** np.arange(bits)
-        self._begins = np.empty((TABLES, (1 << bits) + 1), np.uint32)
-        self._entries = np.empty((TABLES, count), np.uint32)
-        owner = np.repeat(np.arange(self.images, dtype=np.uint32), list(map(len, samples)))
+        self._begins = np.zeros((TABLES, (1 << bits) + 1), np.uint32)
+        self._entries = np.empty((TABLES, count), np.min_scalar_type(self.images))
+        owner = np.repeat(np.arange(self.images, dtype=np.int64), list(map(len, samples)))
         keys = np.concatenate([self._keys(s) for s in samples])
         for table in range(TABLES):
-            order = np.argsort(keys[:, table], kind='stable')
-            self._begins[table, 0] = 0
             np.cumsum(np.bincount(keys[:, table], minlength=1 << bits), out=self._begins[table, 1:])
-            self._entries[table] = owner[order]
+            self._entries[table] = np.sort(keys[:, table].astype(np.int64) << 32 | owner) & 0xffffffff
 
     def _keys(self, codes: NDArray[np.uint8]) -> NDArray[np.int32]:
         ones = np.unpackbits(np.ascontiguousarray(codes[:, :self._bytes]), axis=1)

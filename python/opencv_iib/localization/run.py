@@ -4,7 +4,7 @@ from __future__ import annotations
 import csv
 import functools
 import os
-from typing import Any, Iterator, Optional
+from typing import Any, Iterator, Optional, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +14,12 @@ from opencv_iib.colmap.parallel import Threads, in_parallel
 from opencv_iib.colmap.progress import Progress
 from opencv_iib.localization._pycolmap import pycolmap
 from opencv_iib.localization.folders import new_folder
-from opencv_iib.localization.localizer import Localizer, Location, project
+from opencv_iib.localization.geometry import project
+from opencv_iib.localization.localizer import Localizer, Location
 from opencv_iib.localization.map import Map
 
 OWN = ('frames.csv', 'trajectory.txt', 'cameras.bin', 'images.bin', 'points3D.bin', 'rigs.bin', 'frames.bin', 'matches')
+SAME_FOCAL = .05  #: of focal lengths, which EXIF tells roughly
 AXES = ('x', 'y', 'z', 'rx', 'ry', 'rz')
 
 
@@ -42,21 +44,27 @@ def parse_camera(text: str) -> Any:
     return camera
 
 
-def find_camera(path: str, width: int, height: int) -> Any:
-    """pycolmap.Camera by the focal length that an image's EXIF data tell.
+def find_camera(path: str, width: int, height: int, known: Sequence[Any] = ()) -> Any:
+    """pycolmap.Camera by the focal length that an image's EXIF data tell, or the only one of that size that is known.
 
-    :raises ValueError: if they tell none.
+    :param known: cameras of a map; one is taken if EXIF tells no focal length, or nearly the same.
+    :raises ValueError: if there is none.
     """
-    camera = pycolmap.infer_camera_from_image(path)
-    if not camera.has_prior_focal_length or (camera.width, camera.height) != (width, height):
-        raise ValueError('its EXIF data tell no focal length: give --camera MODEL,WIDTH,HEIGHT,PARAMS')
-    return camera
+    told = pycolmap.infer_camera_from_image(path)
+    told = told if told.has_prior_focal_length and (told.width, told.height) == (width, height) else None
+    same = [camera for camera in known if (camera.width, camera.height) == (width, height)]
+    if len(same) == 1 and (told is None or abs(told.mean_focal_length() / same[0].mean_focal_length() - 1) < SAME_FOCAL):
+        return same[0]
+    if told is None:
+        raise ValueError(f'its EXIF data tell no focal length, and {len(same)} cameras of the map have its size: give '
+                         '--camera MODEL,WIDTH,HEIGHT,PARAMS')
+    return told
 
 
 def _localize(localizer: Localizer, folder: str, camera: Any, name: str) -> tuple[Any, Location]:
     path = os.path.join(folder, name)
     grey = read_grey(path)
-    own = camera or find_camera(path, grey.shape[1], grey.shape[0])
+    own = camera or find_camera(path, grey.shape[1], grey.shape[0], localizer.map.cameras)
     return own, localizer.localize(grey, own)
 
 
@@ -118,7 +126,7 @@ def localize_images(map: str | Map, images: str, out: str, camera: Any = None, p
     :param map: folder of a map, or what read_map gave.
     :param out: folder to write: ``trajectory.txt``, ``frames.csv``, a COLMAP model of the localized images and, with
         `pictures`, ``matches/``. It appears whole; older results there are replaced.
-    :param camera: pycolmap.Camera of all images; None for each one's own, by its EXIF data.
+    :param camera: pycolmap.Camera of all images; None for each one's own, see find_camera.
     :param workers: threads; None for one a core.
     :return: how many images have a pose, and of how many.
     """

@@ -1,7 +1,7 @@
 """Seasons: images that were found in a map add what they see in their light."""
 from __future__ import annotations
 
-import dataclasses
+import collections
 import itertools
 import os
 from typing import Any, Iterator, Optional
@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from opencv_iib.colmap.images import read_grey
 from opencv_iib.functions import detect_and_describe, match
 from opencv_iib.localization.folders import new_folder
-from opencv_iib.localization.geometry import fitting, graph_of, triangulate
-from opencv_iib.localization.localizer import Localizer, Location, project
+from opencv_iib.localization.geometry import fitting, graph_of, project, triangulate
+from opencv_iib.localization.localizer import Localizer, Location
 from opencv_iib.localization.map import OWN, Map, compact, read_map, write_map
 from opencv_iib.localization.run import add_image, images_of, locate
 
-KNOWN = .2  #: share of an image's keypoints: with more inliers, the map knows its light
-APART = .1  #: of two images that one update adds: their distance over that of what they see, plus the angle in radians
+APART = .1  #: two images at one place: their distance over that of what they see, plus the angle in radians
+KNOWN = .5  #: share of the codes of one of the map's images at this place: with more inliers, the map knows the light
 LIGHTS = 8  #: added images that a map keeps so near each other
 PATIENCE = 8  #: updates in a row that look for a code and do not find it, before it is dropped
 NEIGHBOURS = 10  #: added images that each is matched with
@@ -47,8 +47,7 @@ class _Counter:
     def add(self, camera: Any, location: Location) -> None:
         """Counts the codes that an image was compared with and that its pose has inside it."""
         for i in location.images:
-            points = [self.map.model.point3D(p.point3D_id).xyz for p in self.map.model.image(i).points2D]
-            places = camera.img_from_cam(project(location.cam_from_world, np.array(points).reshape(-1, 3)))
+            places = camera.img_from_cam(project(location.cam_from_world, self.map.places[self.map.sees[i]]))
             self.looked[i] |= ((places >= 0) & (places < (camera.width, camera.height))).all(1)
         for i, row in location.hits:
             self.found[i][row] = True
@@ -68,11 +67,18 @@ class _Counter:
         return dropped
 
 
-def _chosen(found: list[Found], points: int) -> list[Found]:
+def _is_known(map: Map, location: Location) -> bool:
+    inliers = collections.Counter(i for i, _ in location.hits)
+    return any(count > KNOWN * len(map.codes[i]) and
+               _distance(location.cam_from_world, map.model.image(i).cam_from_world(), _depth(location)) <= APART
+               for i, count in inliers.items())
+
+
+def _chosen(found: list[Found], map: Map) -> list[Found]:
     """Those in a light that the map does not know, APART from each other."""
     chosen: list[Found] = []
     for name, camera, location in found:
-        if location.inliers < KNOWN * points and all(
+        if not _is_known(map, location) and all(
                 _distance(location.cam_from_world, other.cam_from_world, _depth(location)) > APART for _, _, other in chosen):
             chosen.append((name, camera, location))
     return chosen
@@ -122,7 +128,7 @@ def update_map(map: str, images: str, camera: Any = None, out: Optional[str] = N
         for _, own, location in found:
             counter.add(own, location)
         dropped = counter.finish()
-        chosen = _chosen(found, known.points)
+        chosen = _chosen(found, known)
         added: dict[int, Location] = {}
         for name, own, location in chosen:
             features = detect_and_describe(read_grey(os.path.join(images, name)), known.points)
@@ -137,5 +143,5 @@ def update_map(map: str, images: str, camera: Any = None, out: Optional[str] = N
         codes = {i: known.codes[i] for i in known.model.reg_image_ids()}
         kept = compact(known.model, codes)
         misses = {i: known.misses[i][rows] for i, rows in kept.items()}
-        write_map(dataclasses.replace(known, codes=codes, misses=misses), partial)
+        write_map(partial, known.model, codes, misses, known.used, known.points, known.updates)
     return {'images': len(names), 'localized': len(found), 'added': len(added), 'codes dropped': dropped}
