@@ -1,5 +1,5 @@
 #!/bin/sh
-# What describing costs beside cv::ORB on this machine, what matching costs beside BFMatcher and,
+# What describing costs beside cv::ORB on this machine, how time and memory grow, what matching costs beside BFMatcher and,
 # where python3 has faiss and opencv_iib, beside faiss's flat index, what small work costs, and how much slower all that is
 # without AVX-512 and without AVX2: prints tables and writes build/benchmark*.json. With --document the results go to
 # doc/results, from where the tables of README.md and doc/performance.md and their picture are made anew. --contrib adds

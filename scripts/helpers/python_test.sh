@@ -2,7 +2,7 @@
 # Installs the Python package into clean virtual environments and runs python/tests there: with pip's newest OpenCV, and
 # with Debian's (python3-opencv). Skips with a word where pip reaches no package index.
 #   scripts/helpers/python_test.sh [--servers] [LIBRARY]
-# --servers: with PostgreSQL too, where it can be had.
+# --servers: with PostgreSQL, and with Dask's workers in network namespaces, too, where these can be had.
 # LIBRARY: the module as a static library of position-independent code, built with the installed OpenCV, as ctest's entry
 # `python` has it; without it the whole package is built, which takes minutes.
 . "$(dirname "$0")/lib.sh"
@@ -47,6 +47,7 @@ check newest "$work"/*.whl opencv-python-headless pillow h5py pycolmap distribut
 if [ -n "$servers" ]; then
     "$work/newest/bin/pip" install --quiet "psycopg[binary]"
     "$root/scripts/helpers/postgres_test.sh" "$work/newest/bin/python"
+    "$root/scripts/helpers/network_test.sh" "$work/newest/bin/python"
 fi
 
 if /usr/bin/python3 -c 'import cv2' 2>"$work/log"; then

@@ -30,11 +30,15 @@ for script in scripts/*.sh scripts/helpers/*.sh .ci/run .ci/nightly; do
     case "$script" in */lib.sh) continue ;; esac
     refused "$script" --bogus-option
 done
+refused scripts/bench.sh --rounds=abc
+refused scripts/bench.sh --rounds abc
 refused scripts/bench.sh --rounds
 refused scripts/bench.sh folder
 refused scripts/demo.sh no-such.png no-such.png
+refused scripts/demo.sh --detector=SURFER
 refused scripts/evaluate.sh
 refused scripts/evaluate.sh no-such-folder
+refused scripts/evaluate.sh --points=many .
 refused scripts/fuzz.sh no-such-target
 refused scripts/fuzz.sh -s soon
 refused scripts/intree.sh --source=nowhere
@@ -43,11 +47,13 @@ refused scripts/test.sh --sanitize=nothing
 refused scripts/test.sh --all unknown
 refused scripts/train.sh
 refused scripts/train.sh --out=selection.yml
+refused scripts/train.sh --bits=few .
 refused scripts/upstream.sh no-such-folder
 refused scripts/wheel.sh no-such-python
 refused scripts/helpers/arm64.sh unknown
 refused scripts/helpers/colmap.sh no-such-scene
 refused scripts/helpers/mutation.sh --only no-such-mutant
+refused scripts/helpers/network_test.sh no-such-python
 refused scripts/helpers/newcomer.sh bookworm trixie
 refused scripts/helpers/opencv_contrib_source.sh 3
 refused scripts/helpers/opencv_source.sh unknown

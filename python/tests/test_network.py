@@ -1,0 +1,150 @@
+"""Workers of Dask on machines of their own, network namespaces, whose cable is cut: scripts/helpers/network_test.sh."""
+import io
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+from contextlib import redirect_stderr
+from unittest import mock
+
+import numpy as np
+
+from opencv_iib import shards
+from support import brute_force, cv2, texture
+
+NAMESPACE = os.environ.get('IIB_NETWORK')  # set in a network namespace that is the tests' own
+
+if NAMESPACE:
+    import dask
+    import distributed
+
+
+def ip(*arguments):
+    subprocess.run(['ip', *arguments], check=True)
+
+
+@unittest.skipUnless(NAMESPACE, 'no network namespace: scripts/helpers/network_test.sh makes one')
+class NetworkTest(unittest.TestCase):
+    """A scheduler here and three workers, all with a cable to the same switch."""
+
+    WORKERS = ('one', 'two', 'three')
+
+    @classmethod
+    def setUpClass(cls):
+        ip('link', 'add', 'switch', 'type', 'bridge')
+        ip('address', 'add', '10.231.0.1/24', 'dev', 'switch')
+        ip('link', 'set', 'switch', 'up')
+        for number, name in enumerate(cls.WORKERS):
+            ip('netns', 'add', name)
+            ip('link', 'add', name, 'type', 'veth', 'peer', 'name', 'cable', 'netns', name)
+            ip('link', 'set', name, 'master', 'switch')
+            ip('-n', name, 'address', 'add', f'10.231.0.{number + 2}/24', 'dev', 'cable')
+            for cable in ('lo', 'cable'):
+                ip('-n', name, 'link', 'set', cable, 'up')
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = temporary.name
+        for name in self.WORKERS:
+            ip('link', 'set', name, 'up')
+        # By default a connection without answers counts as lost after half a minute, a silent worker after five.
+        settings = {'distributed.comm.timeouts.tcp': '11s', 'distributed.comm.timeouts.connect': '4s',
+                    'distributed.scheduler.worker-ttl': '5s'}
+        configuration = dask.config.set(settings)
+        self.addCleanup(configuration.__exit__, None, None, None)
+        environment = {**os.environ, **{'DASK_' + name.upper().replace('.', '__').replace('-', '_'): value
+                                        for name, value in settings.items()}}
+        cluster = distributed.LocalCluster(n_workers=0, host='10.231.0.1', dashboard_address=None, silence_logs=50)
+        self.addCleanup(cluster.close)
+        self.client = distributed.Client(cluster)
+        self.addCleanup(self.client.close)
+        self.processes = {}
+        for name in self.WORKERS:
+            self.processes[name] = subprocess.Popen(
+                ['ip', 'netns', 'exec', name, sys.executable, '-m', 'distributed.cli.dask_worker',
+                 cluster.scheduler_address, '--no-nanny', '--nthreads', '1', '--no-dashboard', '--name', name],
+                env=environment, cwd=self.folder, stderr=subprocess.DEVNULL)
+            self.addCleanup(self.processes[name].wait)
+            self.addCleanup(self.processes[name].kill)
+        self.client.wait_for_workers(len(self.WORKERS), timeout=120)
+
+    def names(self):
+        return {worker['name'] for worker in self.client.scheduler_info(n_workers=-1)['workers'].values()}
+
+    def expect_left(self, *names):
+        """That the scheduler knows these workers alone, while the others still run."""
+        for _ in range(100):
+            if self.names() == set(names):
+                break
+            time.sleep(.1)
+        self.assertEqual(self.names(), set(names))
+
+    def test_search(self):
+        rng = np.random.default_rng(8)
+        codes, queries = rng.integers(0, 256, (400, 8), np.uint8), rng.integers(0, 256, (30, 8), np.uint8)
+        folder = os.path.join(self.folder, 'codes')
+        shards.write(folder, codes, 40)
+        expected = [array.tobytes() for array in shards.search(folder, queries)]
+        np.testing.assert_array_equal(shards.search(folder, queries)[0], brute_force(queries, codes, 5)[0])
+        found = []
+        self.processes['one'].send_signal(signal.SIGSTOP)  # so that it has its shards when the cable is cut
+        thread = threading.Thread(target=lambda: found.append(shards.search(folder, queries, 5, self.client)))
+        thread.start()
+        thread.join(1)
+        self.assertTrue(thread.is_alive())
+        ip('link', 'set', 'one', 'down')
+        self.processes['one'].send_signal(signal.SIGCONT)
+        thread.join(60)
+        self.assertFalse(thread.is_alive())
+        self.assertEqual([array.tobytes() for array in found[0]], expected)
+        self.expect_left('two', 'three')
+        ip('link', 'set', 'two', 'down')  # with nothing to do
+        self.assertEqual([array.tobytes() for array in shards.search(folder, queries, 5, self.client)], expected)
+        self.expect_left('three')
+
+    @unittest.skipIf(cv2 is None, 'no cv2')
+    def test_colmap(self):
+        from opencv_iib.colmap import FeatureOptions, Options, build_database, parallel, pipeline
+        images = os.path.join(self.folder, 'images')
+        os.mkdir(images)
+        world = cv2.resize(texture(160, 120, seed=3), (640, 480), interpolation=cv2.INTER_CUBIC)
+        for i in range(12):
+            cv2.imwrite(os.path.join(images, f'{i:02}.png'), world[5 * i:300 + 5 * i, 10 * i:400 + 10 * i])
+
+        def rows(client):
+            database = os.path.join(self.folder, 'database.db')
+            with redirect_stderr(io.StringIO()):
+                build_database(images, database, Options(FeatureOptions(points=300), verify='magsac'), client=client)
+            connection = sqlite3.connect(database)
+            try:
+                return list(connection.iterdump())
+            finally:
+                connection.close()
+                os.unlink(database)
+
+        def cutting(method, name, count):
+            """The method, which cuts a cable at its call of that number."""
+            original, calls = getattr(pipeline.Database, method), []
+
+            def call(*arguments):
+                calls.append(arguments)
+                if len(calls) == count:
+                    ip('link', 'set', name, 'down')
+                return original(*arguments)
+            return mock.patch.object(pipeline.Database, method, call)
+
+        expected = rows(None)
+        with mock.patch.object(parallel.Cluster, 'tile_side', 2), cutting('add_image', 'one', 3), \
+                cutting('add_pair', 'two', 10):
+            self.assertEqual(rows(self.client), expected)
+        self.expect_left('three')
+
+
+if __name__ == '__main__':
+    unittest.main()
