@@ -135,12 +135,11 @@ double cellsInSide(double side, const BoxPlan::Level& level)
 
 template <typename T, typename Sum, typename Mean>
 void describeBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch, bool rotated,
-        const std::vector<SupportRegion>& regions, typename SumCellRowFunc<T, Sum>::Type sumRow,
-        Workspace& workspace, Mat& descriptors)
+        const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels,
+        typename SumCellRowFunc<T, Sum>::Type sumRow, Workspace& workspace, Mat& descriptors)
 {
     const BoxKernels& kernels = plan.boxKernels;
     const BoxSumKernels<Sum, Mean>& sums = sumsOf<Sum, Mean>(kernels);
-    const int border = plan.parameters.border;
     const std::vector<Channel> source = {{IIB::CHANNEL_SIGNED_GRAD_X, grey},
             {IIB::CHANNEL_SIGNED_GRAD_Y, grey}, {IIB::CHANNEL_INTENSITY, grey}};
     CellBand<T, Sum> band(source, batch.area, batch.rows + KeyPointBatch::BAND_ROWS, plan.kernels, sumRow,
@@ -148,7 +147,7 @@ void describeBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBa
     const BoxIntegral<Sum>& integral = band.integral();
     Mean* const means = workspace.boxMeans.get<Mean>(MAX_BOX_MEANS);
     BoxFrame frame;
-    frame.bounds = cellsOf(boundsOf(border, grey.size()));
+    frame.bounds = cellsOf(boundsOf(plan.parameters.border, grey.size()));
     frame.origin = integral.origin;
     frame.count = integral.count;
     BoxEdges edges;
@@ -159,7 +158,7 @@ void describeBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBa
     {
         const SupportRegion& region = regions[k];
         const Rotation rotation = rotated ? Rotation(region.angle) : upright;
-        band.advance(batch.bandEnd(boxPixels(region, border, grey.size()).br().y));
+        band.advance(batch.bandEnd(pixels[k].br().y));
         frame.centre = Point2d((region.centre.x + 0.5) / BOX_CELL, (region.centre.y + 0.5) / BOX_CELL);
         frame.side = region.side / BOX_CELL;
         frame.oldest = band.oldest();
@@ -204,18 +203,19 @@ Rect boxPixels(const SupportRegion& region, int border, Size image)
 }
 
 void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch, bool rotated,
-        const std::vector<SupportRegion>& regions, Workspace& workspace, Mat& descriptors)
+        const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels, Workspace& workspace,
+        Mat& descriptors)
 {
     const BoxKernels& k = plan.boxKernels;
     if (grey.depth() == CV_16U)
         describeBatch<int, int64, int>(
-                plan, grey, batch, rotated, regions, k.sumIntRow[rotated], workspace, descriptors);
+                plan, grey, batch, rotated, regions, pixels, k.sumIntRow[rotated], workspace, descriptors);
     else if (sumsAreShort(plan.boxes, batch, regions))
         describeBatch<short, unsigned, short>(
-                plan, grey, batch, rotated, regions, k.sumShortRow[rotated], workspace, descriptors);
+                plan, grey, batch, rotated, regions, pixels, k.sumShortRow[rotated], workspace, descriptors);
     else
         describeBatch<short, int64, int>(
-                plan, grey, batch, rotated, regions, k.sumLongRow[rotated], workspace, descriptors);
+                plan, grey, batch, rotated, regions, pixels, k.sumLongRow[rotated], workspace, descriptors);
 }
 
 }  // namespace iib

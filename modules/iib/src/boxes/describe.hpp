@@ -23,9 +23,10 @@ are linear in them and so rotate as they do, and those of |gx| and |gy| come fro
 
 @param grey the image, CV_8U or CV_16U.
 @param rotated whether the regions of the batch are.
-@param regions of all keypoints, as are the rows of descriptors. */
+@param regions of all keypoints, as are their boxPixels() and the rows of descriptors. */
 void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch, bool rotated,
-        const std::vector<SupportRegion>& regions, Workspace& workspace, Mat& descriptors);
+        const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels, Workspace& workspace,
+        Mat& descriptors);
 
 }  // namespace iib
 }  // namespace cv

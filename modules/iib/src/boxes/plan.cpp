@@ -69,15 +69,6 @@ ChosenBits chosenOf(const Parameters& p, int level, const BoxGridShape& shape)
     return chosen.bits();
 }
 
-//! How many boxes on another one begins where it ends; n if there is none.
-int spanOf(const BoxGrid& grid)
-{
-    int span = 1;
-    while (span < grid.n && grid.edge(span, -1) != grid.edge(0, 1))
-        span++;
-    return span;
-}
-
 }  // namespace
 
 BoxPlan makeBoxPlan(const Parameters& p)
@@ -87,7 +78,7 @@ BoxPlan makeBoxPlan(const Parameters& p)
     for (int level = 1; level <= p.granularity; level++)
     {
         const BoxGrid& grid = BOX_GRIDS[level - 1];
-        const BoxGridShape shape = {grid.n, spanOf(grid), places};
+        const BoxGridShape shape = {grid.n, places};
         BoxPlan::Level l = {shape, grid.side / 80., {}, bitOffset(p, level, 0), chosenOf(p, level, shape)};
         if (l.chosen.none())
             continue;

@@ -87,7 +87,7 @@ void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Ma
     parallelJobs((int)jobs.size(), workspaces, [&](int i, Workspace& workspace) {
         const KeyPointBatch batch = makeBatch(pixels, jobs[i].keypoints);
         if (plan.isOfBoxes())
-            describeBoxes(plan, grey, batch, jobs[i].rotated, regions, workspace, descriptors);
+            describeBoxes(plan, grey, batch, jobs[i].rotated, regions, pixels, workspace, descriptors);
         else if (jobs[i].rotated)
             describeRotated(plan, channels, batch, regions, workspace, descriptors);
         else

@@ -44,15 +44,15 @@ enum
     MAX_BOX_MEANS = (MAX_BOXES_IN_ROW * MAX_BOX_STRIDE + BOXES_TOGETHER) * BOX_LANES
 };
 
-/** n x n boxes. Where span < n, box i ends where box i + span begins; else span is n. Means are in rows of stride() boxes, of
- which the last ones mean nothing, as do BOXES_TOGETHER boxes behind the last row.
+/** n x n boxes. Means are in rows of stride() boxes, of which the last ones mean nothing, as do BOXES_TOGETHER boxes behind
+ the last row.
 
  Comparisons lie in memory as bytes, with a bit for each lane: for each row of quads three times quadBytes(), one for each bit
  of MAPPING_HAAR and in it a byte for each quad; then a byte for each mean, with |gx| > |gy|, gx > gy, gy > 0, gx + gy > 0
  and gx > 0 in bits 0, 2, 3, 5 and 6. */
 struct BoxGridShape
 {
-    int n, span;
+    int n;
     int first;  //!< of its n places among those of all grids
 
     int stride() const { return (n + BOXES_TOGETHER - 1) / BOXES_TOGETHER * BOXES_TOGETHER; }
@@ -76,9 +76,9 @@ static constexpr int MAX_BOX_PLACES = 32;  //!< of boxes along an axis, in all g
 //! Where boxes begin and end in all grids of a keypoint; the products of weights are those of boxes.
 struct BoxEdges
 {
-    int x[2][MAX_BOX_PLACES];  //!< columns of the integral image
+    int x[2][MAX_BOX_PLACES];  //!< values from a row's beginning in the integral image
     int y[2][MAX_BOX_PLACES];  //!< rows of the ring
-    float xWeights[MAX_BOX_PLACES + 1], yWeights[MAX_BOX_PLACES];
+    float xWeights[MAX_BOX_PLACES], yWeights[MAX_BOX_PLACES];
 };
 
 //! A keypoint's region, in cells.

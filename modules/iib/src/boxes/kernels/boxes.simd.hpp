@@ -191,12 +191,11 @@ void boxEdges(const BoxFrame& f, const double (&offsets)[2][MAX_BOX_PLACES], Box
     }
     weightsOf(edges.x[0], edges.x[1], 1, edges.xWeights);
     weightsOf(edges.y[0], edges.y[1], BOX_MEAN_STEPS, edges.yWeights);
-    edges.xWeights[MAX_BOX_PLACES] = 0;  // kernels may look at one box more
     const int left = f.origin.x, first = firstRow(f), count = f.count;
     for (int end = 0; end < 2; end++)
         for (int i = 0; i < MAX_BOX_PLACES; i++)
         {
-            edges.x[end][i] -= left;
+            edges.x[end][i] = (edges.x[end][i] - left) * BOX_LANES;
             edges.y[end][i] = ringRow(edges.y[end][i] - first, count);
         }
 }
@@ -230,93 +229,44 @@ void boxPlaces(const BoxFrame& f, const BoxGridShape& grid, const double* centre
     }
 }
 
-void boxMeans(
-        const BoxIntegral<unsigned>& integral, const BoxGridShape& grid, const BoxEdges& edges, short* means)
-{
-    enum
-    {
-        LANES = VTraits<v_int32>::max_nlanes,
-        STRIPS = 2 * MAX_BOXES_IN_ROW
-    };
-    // Between the upper and lower edges of a row of boxes, and left of an edge. All are made first: to load a vector whose
-    // parts have just been stored, a processor waits until the stores are done.
-    int CV_DECL_ALIGNED(CACHE_LINE) strips[(MAX_BOXES_IN_ROW * STRIPS + 1) * BOX_LANES];
-    float CV_DECL_ALIGNED(CACHE_LINE) weights[(MAX_BOXES_IN_ROW + 1) * BOX_LANES];
-    size_t at[STRIPS];
-    const int n = grid.n, span = grid.span, count = n + span;
-    for (int i = 0; i < n; i++)
-        at[i] = (size_t)edges.x[0][grid.first + i] * BOX_LANES;
-    for (int i = 0; i < span; i++)
-        at[n + i] = (size_t)edges.x[1][grid.first + n - span + i] * BOX_LANES;
-    for (int i = 0; i <= n; i++)
-        for (int lane = 0; lane < BOX_LANES; lane += SAMPLE_LANES)
-            v_store(weights + i * BOX_LANES + lane, v_setall_means(edges.xWeights[grid.first + i]));
-    int* strip = strips;
-    for (int row = 0; row < n; row++)
-    {
-        const int* const top =
-                (const int*)integral.data + (size_t)edges.y[0][grid.first + row] * integral.step;
-        const int* const bottom =
-                (const int*)integral.data + (size_t)edges.y[1][grid.first + row] * integral.step;
-        for (int i = 0; i < count; i++, strip += BOX_LANES)
-            for (int lane = 0; lane < BOX_LANES; lane += SAMPLE_LANES)
-                v_store(strip + lane,
-                        v_load_samples(bottom + at[i] + lane) - v_load_samples(top + at[i] + lane));
-    }
-    for (int lane = 0; lane < BOX_LANES; lane += SAMPLE_LANES)
-        v_store(strip + lane, v_setall_samples(0));
-    for (int row = 0; row < n; row++)
-    {
-        const v_float32 weight = vx_setall_f32(edges.yWeights[grid.first + row]);
-        const int *const left = strips + row * count * BOX_LANES, *const right = left + span * BOX_LANES;
-        short* const out = means + row * grid.stride() * BOX_LANES;
-        for (int i = 0; i < n * BOX_LANES; i += LANES)
-        {
-            const v_int32 sums = vx_load(right + i) - vx_load(left + i);
-            v_pack_store(out + i, nearestInt(v_cvt_f32(sums) * vx_load(weights + i) * weight));
-        }
-    }
-}
-
-//! For 16-bit images and very large boxes.
-void boxMeans(const BoxIntegral<int64>& integral, const BoxGridShape& grid, const BoxEdges& edges, int* means)
-{
-    for (int row = 0; row < grid.n; row++)
-        for (int col = 0; col < grid.n; col++)
-        {
-            const int x = grid.first + col, y = grid.first + row;
-            const int64* const top = integral.data + (size_t)edges.y[0][y] * integral.step;
-            const int64* const bottom = integral.data + (size_t)edges.y[1][y] * integral.step;
-            const size_t left = (size_t)edges.x[0][x] * BOX_LANES, right = (size_t)edges.x[1][x] * BOX_LANES;
-            int* const mean = means + (row * grid.stride() + col) * BOX_LANES;
-            for (int lane = 0; lane < BOX_LANES; lane++)
-            {
-                const int64 sum =
-                        (bottom[right + lane] - top[right + lane]) - (bottom[left + lane] - top[left + lane]);
-                mean[lane] = cvRound((float)sum * edges.xWeights[x] * edges.yWeights[y]);
-            }
-        }
-}
-
-//! Corners of boxes as floats.
-inline v_means boxSums(const unsigned* above, const unsigned* below, size_t right)
+//! Sums over a box as floats, from rows of corners and the places of left and right ones in them.
+inline v_means boxSums(const unsigned* above, const unsigned* below, size_t left, size_t right)
 {
     const v_samples sum =
             (v_load_samples((const int*)below + right) - v_load_samples((const int*)above + right)) -
-            (v_load_samples((const int*)below) - v_load_samples((const int*)above));
+            (v_load_samples((const int*)below + left) - v_load_samples((const int*)above + left));
     return v_cvt_f32(sum);
 }
 
-inline v_means boxSums(const int64* above, const int64* below, size_t right)
+inline v_means boxSums(const int64* above, const int64* below, size_t left, size_t right)
 {
     float sums[SAMPLE_LANES];
     for (int i = 0; i < SAMPLE_LANES; i++)
-        sums[i] = (float)((below[right + i] - above[right + i]) - (below[i] - above[i]));
+        sums[i] = (float)((below[right + i] - above[right + i]) - (below[left + i] - above[left + i]));
     return v_load_means(sums);
 }
 
 inline void storeMeans(short* out, const v_means& m) { v_pack_store(out, nearestInt(m)); }
 inline void storeMeans(int* out, const v_means& m) { v_store(out, nearestInt(m)); }
+
+template <typename Sum, typename Mean>
+void boxMeans(const BoxIntegral<Sum>& integral, const BoxGridShape& grid, const BoxEdges& edges, Mean* means)
+{
+    const int n = grid.n, first = grid.first;
+    const int *const left = edges.x[0] + first, *const right = edges.x[1] + first;
+    const float* const weights = edges.xWeights + first;
+    for (int row = 0; row < n; row++)
+    {
+        const Sum* const above = integral.data + (size_t)edges.y[0][first + row] * integral.step;
+        const Sum* const below = integral.data + (size_t)edges.y[1][first + row] * integral.step;
+        const v_means weight = v_setall_means(edges.yWeights[first + row]);
+        Mean* out = means + row * grid.stride() * BOX_LANES;
+        for (int i = 0; i < n; i++, out += BOX_LANES)
+            for (int lane = 0; lane < BOX_LANES; lane += SAMPLE_LANES)
+                storeMeans(out + lane, boxSums(above + lane, below + lane, left[i], right[i]) *
+                                               v_setall_means(weights[i]) * weight);
+    }
+}
 
 template <typename Sum, typename Mean>
 void rotatedBoxMeans(const BoxIntegral<Sum>& integral, const BoxGridShape& grid, const BoxPlaces& places,
@@ -332,7 +282,7 @@ void rotatedBoxMeans(const BoxIntegral<Sum>& integral, const BoxGridShape& grid,
             const size_t right = (size_t)places.right[i] * BOX_LANES;
             const v_means weight = v_setall_means(places.weight[i]);
             for (int lane = 0; lane < BOX_LANES; lane += SAMPLE_LANES)
-                v_store(sums + lane, boxSums(above + lane, below + lane, right) * weight);
+                v_store(sums + lane, boxSums(above + lane, below + lane, 0, right) * weight);
             Mean* const out = means + (row * grid.stride() + col) * BOX_LANES;
             for (int lane = 0; lane < BOX_LANES; lane += SAMPLE_LANES)
             {
@@ -342,6 +292,19 @@ void rotatedBoxMeans(const BoxIntegral<Sum>& integral, const BoxGridShape& grid,
                 storeMeans(out + lane, rotated);
             }
         }
+}
+
+//! The boxes right of those of a vector. @param next the vector behind it.
+inline v_int16 nextBoxes(const v_int16& boxes, const v_int16& next)
+{
+#if CV_AVX512_SKX
+    return v_int16(_mm512_alignr_epi64(next.val, boxes.val, BOX_LANES / 4));
+#elif CV_AVX2
+    return v_int16(_mm256_permute2x128_si256(boxes.val, next.val, 0x21));
+#else
+    (void)boxes;  // one box
+    return next;
+#endif
 }
 
 //! A bit for each lane of as many boxes as make a vector.
@@ -362,17 +325,24 @@ void compareBoxes(const short* means, const BoxGridShape& grid, uchar* out)
     };
     const int bytes = grid.quadBytes(), below = grid.stride() * BOX_LANES;
     for (int row = 0; row + 1 < grid.n; row++, out += 3 * bytes)
+    {
+        // sums and differences of the upper and the lower boxes of a column
+        const short* m = means + row * below;
+        v_int16 sum = v_add_wrap(vx_load(m), vx_load(m + below));
+        v_int16 difference = v_sub_wrap(vx_load(m), vx_load(m + below));
         for (int col = 0; col < bytes; col += LANES / BOX_LANES)
         {
-            const short* const m = means + (row * grid.stride() + col) * BOX_LANES;
-            const v_int16 a = vx_load(m), b = vx_load(m + BOX_LANES), c = vx_load(m + below),
-                          d = vx_load(m + below + BOX_LANES);
-            const v_int16 left = v_add_wrap(a, c), right = v_add_wrap(b, d);
-            const v_int16 downLeft = v_sub_wrap(a, c), downRight = v_sub_wrap(b, d);
-            storeGreater(left, right, out + col);
-            storeGreater(downLeft, v_sub_wrap(vx_setzero_s16(), downRight), out + bytes + col);
-            storeGreater(downLeft, downRight, out + 2 * bytes + col);
+            m += LANES;
+            const v_int16 nextSum = v_add_wrap(vx_load(m), vx_load(m + below));
+            const v_int16 nextDifference = v_sub_wrap(vx_load(m), vx_load(m + below));
+            const v_int16 right = nextBoxes(difference, nextDifference);
+            storeGreater(sum, nextBoxes(sum, nextSum), out + col);
+            storeGreater(difference, v_sub_wrap(vx_setzero_s16(), right), out + bytes + col);
+            storeGreater(difference, right, out + 2 * bytes + col);
+            sum = nextSum;
+            difference = nextDifference;
         }
+    }
     const v_int16 partners = vx_load(NEXT_IS_PARTNER);
     for (int i = 0; i < grid.n * grid.stride(); i += LANES / BOX_LANES)
     {
@@ -425,7 +395,7 @@ void boxBits(
 
 template <typename Sum, typename Mean> BoxSumKernels<Sum, Mean> boxSumKernels()
 {
-    const BoxSumKernels<Sum, Mean> k = {boxMeans, rotatedBoxMeans<Sum, Mean>, boxBits<Mean>};
+    const BoxSumKernels<Sum, Mean> k = {boxMeans<Sum, Mean>, rotatedBoxMeans<Sum, Mean>, boxBits<Mean>};
     return k;
 }
 
