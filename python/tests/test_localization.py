@@ -365,8 +365,8 @@ class Localization(unittest.TestCase):
             self.assertGreaterEqual(first['added'], 2)
             grown = read_map(out)
             self.check(Localizer(grown).localize(self.grey('a'), camera), 'a')
-            old = Localizer(self.map).localize(self.grey('a'), camera).inliers
-            self.assertGreater(Localizer(grown).localize(self.grey('a'), camera).inliers, 1.2 * old)
+            old = Localizer(self.map, 400).localize(self.grey('a'), camera).inliers
+            self.assertGreater(Localizer(grown, 400).localize(self.grey('a'), camera).inliers, 1.2 * old)
             self.assertEqual(update.update_map(out, self.dark, camera)['added'], 0)
             with mock.patch.object(update, 'LIGHTS', 2), mock.patch.object(update, 'KNOWN', 1.):
                 for _ in range(2):

@@ -30,11 +30,14 @@ class Votes:
             self._weights[random.permutation(8 * self._bytes)[:bits], table] = 2. ** np.arange(bits)
         self._begins = np.zeros((TABLES, (1 << bits) + 1), np.uint32)
         self._entries = np.empty((TABLES, count), np.min_scalar_type(self.images))
-        owner = np.repeat(np.arange(self.images, dtype=np.int64), list(map(len, samples)))
-        keys = np.concatenate([self._keys(s) for s in samples])
+        owner = np.repeat(np.arange(self.images, dtype=self._entries.dtype), list(map(len, samples)))
+        rows = np.concatenate([self._keys(s) for s in samples])
         for table in range(TABLES):
-            np.cumsum(np.bincount(keys[:, table], minlength=1 << bits), out=self._begins[table, 1:])
-            self._entries[table] = np.sort(keys[:, table].astype(np.int64) << 32 | owner) & 0xffffffff
+            keys = rows[:, table].copy()
+            np.cumsum(np.bincount(keys, minlength=1 << bits), out=self._begins[table, 1:])
+            low = np.argsort(keys.astype(np.uint16), kind='stable')  # numpy sorts 16 bits and fewer by counting
+            high = np.argsort((keys >> 16).astype(np.uint8)[low], kind='stable')
+            self._entries[table] = owner[low][high]
 
     def _keys(self, codes: NDArray[np.uint8]) -> NDArray[np.int32]:
         ones = np.unpackbits(np.ascontiguousarray(codes[:, :self._bytes]), axis=1)

@@ -16,7 +16,7 @@ from opencv_iib.localization._pycolmap import pycolmap
 from opencv_iib.localization.folders import new_folder
 from opencv_iib.localization.geometry import project
 from opencv_iib.localization.localizer import Localizer, Location
-from opencv_iib.localization.map import Map
+from opencv_iib.localization.map import Map, read_map
 
 OWN = ('frames.csv', 'trajectory.txt', 'cameras.bin', 'images.bin', 'points3D.bin', 'rigs.bin', 'frames.bin', 'matches')
 SAME_FOCAL = .05  #: of focal lengths, which EXIF tells roughly
@@ -131,7 +131,8 @@ def localize_images(map: str | Map, images: str, out: str, camera: Any = None, p
     :return: how many images have a pose, and of how many.
     """
     names = images_of(images)
-    localizer = Localizer(map)
+    known = map if isinstance(map, Map) else read_map(map)
+    localizer = Localizer(known, known.points)
     model = pycolmap.Reconstruction()
     with new_folder(out, OWN) as partial:
         os.makedirs(os.path.join(partial, 'matches'), exist_ok=True)

@@ -120,7 +120,7 @@ def update_map(map: str, images: str, camera: Any = None, out: Optional[str] = N
     """
     names = images_of(images)
     known = read_map(map)
-    localizer = Localizer(known)
+    localizer = Localizer(known, known.points)
     with new_folder(out or map, OWN) as partial:
         found = [f for f in locate(localizer, images, names, camera, workers) if f[2].cam_from_world is not None]
         known.updates += 1
