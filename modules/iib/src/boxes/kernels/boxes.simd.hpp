@@ -387,7 +387,7 @@ template <typename Mean>
 void boxBits(
         const Mean* means, const BoxGridShape& grid, const ChosenBits& chosen, int offset, uchar* descriptor)
 {
-    uchar comparisons[MAX_BOX_COMPARISONS + 8];
+    uchar comparisons[MAX_BOX_COMPARISONS + ChosenBits::Group::SIZE];
     compareBoxes(means, grid, comparisons);
     BitWriter writer(descriptor, offset);
     appendChosen(chosen, comparisons, writer);

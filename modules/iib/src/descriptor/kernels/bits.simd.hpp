@@ -323,8 +323,8 @@ void writePhase(const CellGrid<Cell>& cells, const LevelShape& shape, const Cell
         return compareQuads<Mapping, WITH_PARENTS>(
                 cells, shape, edges, phase, parents, ShortRowWriter(out, phase.lanes(), shape.channels));
     const int rowBytes = Mapping::BITS * phase.planeBytes();
-    // words are read beyond the last plane
-    uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8 + 8], *whole = 0;
+    // groups of chosen bits are read beyond the last plane
+    uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8 + ChosenBits::Group::SIZE], *whole = 0;
     // Where all bits are in use and a row fills whole chunks, they need no shifting.
     if (shape.chosen.empty() && shape.channels == GROUP_CHANNELS && phase.lanes() % CHUNK == 0)
         whole = out.reserve(phase.rows * rowBytes);

@@ -20,24 +20,6 @@ namespace {
 //! Lanes, one for each channel of a quad, that are mapped at a time.
 constexpr int CHUNK = QuadPhase::CHUNK;
 
-/* PEXT, which packs the bits of a mask at the low end. It is fast on all processors with AVX-512; on some with AVX2 it is
- slower than a dozen shifts. */
-#if CV_AVX512_SKX && (defined __x86_64__ || defined _M_X64)
-#define IIB_HAS_FAST_BIT_COMPRESS 1
-#ifdef __GNUC__
-#define IIB_TARGET_BIT_COMPRESS __attribute__((target("bmi2")))
-#else
-#define IIB_TARGET_BIT_COMPRESS
-#endif
-IIB_TARGET_BIT_COMPRESS inline uint64 compressBits(uint64 bits, uint64 mask) { return _pext_u64(bits, mask); }
-/* To be called before a function that has this target: where one is the last that its caller calls, GCC 12 leaves the upper
- halves of vectors in use, and all code without AVX that follows, also of the library's user, runs at half the speed. */
-inline void freeUpperHalves() { _mm256_zeroupper(); }
-#else
-#define IIB_HAS_FAST_BIT_COMPRESS 0
-#define IIB_TARGET_BIT_COMPRESS
-#endif
-
 //! Writes the bits of chunks to planes in memory, two bytes for each plane.
 struct PlaneRows
 {
@@ -142,27 +124,36 @@ private:
     const unsigned mask;
 };
 
-#if IIB_HAS_FAST_BIT_COMPRESS
-IIB_TARGET_BIT_COMPRESS inline void compressChosen(
-        const ChosenBits& chosen, const uchar* comparisons, BitAppender& out)
+//! Packed at the low end. @param comparisons readable up to Group::SIZE bytes behind the group's first.
+inline unsigned bitsOf(const ChosenBits::Group& group, const uchar* comparisons)
 {
-    BitAppender writer = out;  // a copy, which stores to uchar* surely do not change
-    for (const ChosenBits::Word& word : chosen.words())
-        writer.append(
-                compressBits(loadWord(comparisons + word.byte), word.compressor.mask), word.compressor.count);
-    out = writer;
-}
+    const uchar* const bytes = comparisons + group.byte;
+#if CV_SSSE3 || (CV_NEON && defined __aarch64__)
+    const v_uint8x16 masks = v_load(group.masks);
+#if CV_SSSE3
+    const v_uint8x16 found(_mm_shuffle_epi8(v_load(bytes).val, v_load(group.places).val));
+#else
+    const v_uint8x16 found(vqtbl1q_u8(v_load(bytes).val, v_load(group.places).val));
 #endif
+    return (unsigned)v_signmask((found & masks) == masks);
+#else
+    unsigned bits = 0;
+    for (int i = 0; i < group.count; i++)
+        bits |= (unsigned)((bytes[group.places[i]] & group.masks[i]) != 0) << i;
+    return bits;
+#endif
+}
 
 //! Appends the chosen bits of a phase.
 inline void appendChosen(const ChosenBits& chosen, const uchar* comparisons, BitAppender& out)
 {
-#if IIB_HAS_FAST_BIT_COMPRESS
-    freeUpperHalves();
-    compressChosen(chosen, comparisons, out);
-#else
-    chosen.append(comparisons, out);
+#if CV_AVX512_SKX  // GCC 12 leaves upper halves in use; code without AVX that follows, also a user's, runs at half the speed
+    _mm256_zeroupper();
 #endif
+    BitAppender writer = out;  // a copy, which stores to uchar* surely do not change
+    for (const ChosenBits::Group& group : chosen.groups())
+        writer.append(bitsOf(group, comparisons), group.count);
+    out = writer;
 }
 
 }  // namespace

@@ -15,40 +15,24 @@ const DescriptorKernels& descriptorKernels()
     CV_CPU_DISPATCH(descriptorKernels, (), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-/* A parallel suffix: moves[i] holds the bits that go 2^i places down, after the moves before it.
- See H. S. Warren, Hacker's Delight, section 7-4 ("compress"). */
-BitCompressor::BitCompressor(uint64 mask_) : mask(mask_), count(0)
-{
-    for (uint64 m = mask; m; m &= m - 1)
-        count++;
-    uint64 left = mask, zerosBelow = ~mask << 1;
-    for (int i = 0; i < 6; i++)
-    {
-        uint64 odd = zerosBelow;  // bit k: whether the zeros below it are odd in number
-        for (int s = 1; s < 64; s *= 2)
-            odd ^= odd << s;
-        moves[i] = odd & left;
-        left = (left ^ moves[i]) | moves[i] >> (1 << i);
-        zerosBelow &= ~odd;
-    }
-}
-
-uint64 BitCompressor::operator()(uint64 bits) const
-{
-    bits &= mask;
-    for (int i = 0; i < 6; i++)
-    {
-        const uint64 moved = bits & moves[i];
-        bits = (bits ^ moved) | moved >> (1 << i);
-    }
-    return bits;
-}
-
 ChosenBits::ChosenBits(const std::vector<uint64>& masks)
 {
-    for (size_t i = 0; i < masks.size(); i++)
-        if (masks[i])
-            chosen.push_back(Word{8 * i, BitCompressor(masks[i])});
+    for (size_t bit = 0; bit < 64 * masks.size(); bit++)
+    {
+        if (!(masks[bit / 64] >> bit % 64 & 1))
+            continue;
+        const size_t byte = bit / 8;
+        if (none() || chosen.back().count == Group::SIZE || byte - chosen.back().byte >= Group::SIZE)
+        {
+            Group next = {byte, 0, {}, {}};
+            std::fill_n(next.places, (int)Group::SIZE, (uchar)128);
+            std::fill_n(next.masks, (int)Group::SIZE, (uchar)1);
+            chosen.push_back(next);
+        }
+        Group& group = chosen.back();
+        group.places[group.count] = (uchar)(byte - group.byte);
+        group.masks[group.count++] = (uchar)(1 << bit % 8);
+    }
 }
 
 }  // namespace iib

@@ -80,42 +80,28 @@ struct QuadPhase
     int planeBytes() const { return (lanes() + CHUNK - 1) / CHUNK * (CHUNK / 8); }
 };
 
-//! Takes the bits of a word that a mask has set, and packs them at the low end (PEXT).
-struct BitCompressor
-{
-    uint64 mask, moves[6];
-    int count;
-
-    explicit BitCompressor(uint64 mask);
-    uint64 operator()(uint64 bits) const;
-};
-
-//! The chosen bits of a phase (paper, "Reduction of the IIB Descriptor Size").
+//! The chosen bits of a phase (paper, "Reduction of the IIB Descriptor Size"), in their order.
 class ChosenBits
 {
 public:
-    //! Eight bytes of comparisons, with at least one chosen bit.
-    struct Word
+    //! Some that lie in SIZE bytes of comparisons.
+    struct Group
     {
-        size_t byte;
-        BitCompressor compressor;
+        static constexpr int SIZE = 16;
+        size_t byte;         //!< the first of those bytes
+        int count;           //!< bits, up to SIZE
+        uchar places[SIZE];  //!< bytes of the bits, counted from the first; 128 if there is no bit
+        uchar masks[SIZE];   //!< the bits in their bytes; 1 if there is none
     };
 
     //! @param masks a bit for each comparison of the phase, where the comparison lies in memory.
     explicit ChosenBits(const std::vector<uint64>& masks);
 
     bool none() const { return chosen.empty(); }
-    const std::vector<Word>& words() const { return chosen; }
-
-    //! Appends them, in their order.
-    CV_ALWAYS_INLINE void append(const uchar* comparisons, BitAppender& out) const
-    {
-        for (const Word& word : chosen)
-            out.append(word.compressor(loadWord(comparisons + word.byte)), word.compressor.count);
-    }
+    const std::vector<Group>& groups() const { return chosen; }
 
 private:
-    std::vector<Word> chosen;
+    std::vector<Group> chosen;
 };
 
 //! What the parameters say about a level, for one group of channels.
