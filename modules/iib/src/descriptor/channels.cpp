@@ -127,10 +127,17 @@ template <typename T> ImageRows<T> ChannelRows<T>::imageRows(int y)
 template <typename T> void ChannelRows<T>::reflect(T* out) const
 {
     const int width = channels[0].map.cols, end = area.x + area.width;
-    for (int x = area.x; x < std::min(end, 0); x++)
-        out[x - origin] = out[reflected(x, width) - origin];
-    for (int x = std::max(area.x, width); x < end; x++)
-        out[x - origin] = out[reflected(x, width) - origin];
+    T* const pixels = out - origin;
+    // Reflected once, by copies that the compiler makes vectors of. Cells at the bounds may hold a pixel that is so twice.
+    const int left = std::min(-area.x, width - 1), right = std::min(end - width, width - 1);
+    if (left > 0)
+        std::reverse_copy(pixels + 1, pixels + 1 + left, pixels - left);
+    if (right > 0)
+        std::reverse_copy(pixels + width - 1 - right, pixels + width - 1, pixels + width);
+    for (int x = area.x; x < -left; x++)
+        pixels[x] = pixels[reflected(x, width)];
+    for (int x = width + right; x < end; x++)
+        pixels[x] = pixels[reflected(x, width)];
 }
 
 template <typename T> const T* const* ChannelRows<T>::compute(int y)
