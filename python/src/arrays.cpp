@@ -46,6 +46,26 @@ cv::Mat viewOf(const Array& array, const char* what)
             const_cast<void*>(array.data()));
 }
 
+std::vector<cv::Mat> viewsOf(const std::vector<Array>& arrays, const char* what)
+{
+    std::vector<cv::Mat> views;
+    for (const Array& array : arrays)
+        views.push_back(viewOf(array, what));
+    return views;
+}
+
+std::string parametersOf(const cv::Algorithm& self)
+{
+    cv::FileStorage file(".json", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+    self.write(file);
+    return file.releaseAndGetString();
+}
+
+void setParameters(cv::Algorithm& self, const std::string& text)
+{
+    self.read(cv::FileStorage(text, cv::FileStorage::READ | cv::FileStorage::MEMORY).root());
+}
+
 nb::object toNumpy(const cv::Mat& matrix)
 {
     CV_Assert(matrix.channels() == 1 && (matrix.empty() || matrix.isContinuous()));

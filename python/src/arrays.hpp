@@ -3,10 +3,38 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include "opencv2/core.hpp"
 
 namespace nb = nanobind;
+
+namespace nanobind {
+namespace detail {
+
+//! OpenCV's pointers are shared ones.
+template <typename T> struct type_caster<cv::Ptr<T>>
+{
+    typedef make_caster<std::shared_ptr<T>> Shared;
+    NB_TYPE_CASTER(cv::Ptr<T>, make_caster<T>::Name)
+
+    bool from_python(handle source, uint32_t flags, cleanup_list* cleanup) noexcept
+    {
+        Shared shared;
+        const bool known = shared.from_python(source, flags, cleanup);
+        value = cv::Ptr<T>(shared.value);
+        return known;
+    }
+    static handle from_cpp(const cv::Ptr<T>& pointer, rv_policy policy, cleanup_list* cleanup) noexcept
+    {
+        return Shared::from_cpp(static_cast<const std::shared_ptr<T>&>(pointer), policy, cleanup);
+    }
+};
+
+}  // namespace detail
+}  // namespace nanobind
 
 namespace iib_python {
 
@@ -17,7 +45,13 @@ typedef nb::ndarray<nb::ro, nb::c_contig, nb::device::cpu> Array;
 //! @throws cv::Exception that names `what` for another number of dimensions or a type that a Mat has not.
 cv::Mat viewOf(const Array& array, const char* what);
 
+std::vector<cv::Mat> viewsOf(const std::vector<Array>& arrays, const char* what);
+
 //! A numpy array that owns the matrix's memory. The matrix has one channel and is continuous.
 nb::object toNumpy(const cv::Mat& matrix);
+
+//! What write() tells, as text.
+std::string parametersOf(const cv::Algorithm& self);
+void setParameters(cv::Algorithm& self, const std::string& text);
 
 }  // namespace iib_python

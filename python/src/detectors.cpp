@@ -3,9 +3,6 @@
 #include "bindings.hpp"
 #include "foreign_detector.hpp"
 
-#include <nanobind/stl/shared_ptr.h>
-#include <nanobind/stl/string.h>
-
 namespace iib_python {
 
 namespace {
@@ -31,28 +28,17 @@ std::shared_ptr<cv::Feature2D> foreignDetector(nb::callable function, const std:
     return std::make_shared<ForeignDetector>(function, name);
 }
 
-std::shared_ptr<Normalized> createNormalized(std::shared_ptr<cv::Feature2D> detector, float sigma)
-{
-    return Normalized::create(detector, sigma);
-}
-
-std::shared_ptr<Hessian> createHessian(
-        int maxFeatures, float threshold, int scales, float sigma, float normalizationSigma)
-{
-    return Hessian::create(maxFeatures, threshold, scales, sigma, normalizationSigma);
-}
-
 }  // namespace
 
 void bindDetectors(nb::module_& m)
 {
     nb::class_<cv::Feature2D>(m, "Detector").def_static("foreign", &foreignDetector).def("detect", &detect);
     nb::class_<Normalized, cv::Feature2D>(m, "NormalizedDetector")
-            .def_static("create", &createNormalized)
+            .def_static("create", &Normalized::create)
             .def("setSigma", &Normalized::setSigma)
             .def("getSigma", &Normalized::getSigma);
     nb::class_<Hessian, cv::Feature2D>(m, "HessianDetector")
-            .def_static("create", &createHessian)
+            .def_static("create", &Hessian::create)
             .def("setMaxFeatures", &Hessian::setMaxFeatures)
             .def("getMaxFeatures", &Hessian::getMaxFeatures)
             .def("setThreshold", &Hessian::setThreshold)

@@ -5,23 +5,11 @@
 
 #include "opencv2/iib.hpp"
 
-#include <nanobind/stl/shared_ptr.h>
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/vector.h>
-
 namespace iib_python {
 
 namespace {
 
 typedef cv::iib::IIBDescriptorExtractor Extractor;
-
-std::vector<cv::Mat> viewsOf(const std::vector<Array>& arrays, const char* what)
-{
-    std::vector<cv::Mat> views;
-    for (const Array& array : arrays)
-        views.push_back(viewOf(array, what));
-    return views;
-}
 
 // The descriptors, and which keypoints were kept if not all were.
 nb::tuple compute(Extractor& self, const Array& image, const Array& keypointRows,
@@ -59,50 +47,19 @@ cv::Ptr<Extractor> withoutDetector(const Extractor& self)
     return result;
 }
 
-std::string parameters(const Extractor& self)
-{
-    cv::FileStorage file(".json", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
-    withoutDetector(self)->write(file);
-    return file.releaseAndGetString();
-}
-
-void setParameters(Extractor& self, const std::string& text)
-{
-    self.read(cv::FileStorage(text, cv::FileStorage::READ | cv::FileStorage::MEMORY).root());
-}
-
-std::shared_ptr<Extractor> create(float scaleFactor, int granularity, int channels, int mapping, bool overlap,
-        bool useOrientation, int extraChannels)
-{
-    return Extractor::create(
-            scaleFactor, granularity, channels, mapping, overlap, useOrientation, extraChannels);
-}
-
 }  // namespace
 
 void bindExtractor(nb::module_& m)
 {
     nb::class_<Extractor, cv::Feature2D>(m, "Extractor")
-            .def_static("create", &create)
-            .def_static("createPreset",
-                    [](int preset, float scaleFactor) -> std::shared_ptr<Extractor> {
-                        return Extractor::createPreset(preset, scaleFactor);
-                    })
-            .def_static("createFor",
-                    [](std::shared_ptr<cv::Feature2D> detector, int preset) -> std::shared_ptr<Extractor> {
-                        return Extractor::createFor(detector, preset);
-                    })
+            .def_static("create", &Extractor::create)
+            .def_static("createPreset", &Extractor::createPreset)
+            .def_static("createFor", &Extractor::createFor)
+            .def_static("scaleFactorFor", nb::overload_cast<const cv::String&>(&Extractor::scaleFactorFor))
             .def_static("scaleFactorFor",
-                    [](const std::string& name) { return Extractor::scaleFactorFor(cv::String(name)); })
-            .def_static("scaleFactorFor",
-                    [](std::shared_ptr<cv::Feature2D> detector) {
-                        return Extractor::scaleFactorFor(cv::Ptr<cv::Feature2D>(detector));
-                    })
+                    nb::overload_cast<const cv::Ptr<cv::Feature2D>&>(&Extractor::scaleFactorFor))
             .def("compute", &compute)
-            .def("setDetector",
-                    [](Extractor& self, std::shared_ptr<cv::Feature2D> detector) {
-                        self.setDetector(detector);
-                    })
+            .def("setDetector", &Extractor::setDetector)
             .def("levelSizes", &Extractor::levelSizes)
             .def("descriptorSize", [](const Extractor& self) { return self.descriptorSize(); })
             .def("setScaleFactor", &Extractor::setScaleFactor)
@@ -141,8 +98,9 @@ void bindExtractor(nb::module_& m)
                     [](const Extractor& self, const std::string& file) {
                         static_cast<const cv::Feature2D&>(*withoutDetector(self)).write(file);
                     })
-            .def("parameters", &parameters)
-            .def("setParameters", &setParameters);
+            .def("parameters", [](const Extractor& self) { return parametersOf(*withoutDetector(self)); })
+            .def("setParameters",
+                    [](Extractor& self, const std::string& text) { setParameters(self, text); });
 }
 
 }  // namespace iib_python

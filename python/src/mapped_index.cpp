@@ -3,10 +3,6 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 
-#include <nanobind/stl/shared_ptr.h>
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/vector.h>
-
 #include "opencv2/iib_index.hpp"
 
 namespace iib_python {
@@ -15,22 +11,9 @@ namespace {
 
 typedef cv::iib::MappedIndex Index;
 
-std::shared_ptr<Index> create(const std::string& folder, const std::vector<int>& levelSizes)
-{
-    return Index::create(folder, levelSizes);
-}
-
-std::shared_ptr<Index> open(const std::string& folder)
-{
-    nb::gil_scoped_release release;
-    return Index::open(folder);
-}
-
 void add(Index& self, const std::vector<Array>& arrays)
 {
-    std::vector<cv::Mat> views;
-    for (const Array& array : arrays)
-        views.push_back(viewOf(array, "descriptors"));
+    const std::vector<cv::Mat> views = viewsOf(arrays, "descriptors");
     nb::gil_scoped_release release;
     self.add(views);
 }
@@ -67,8 +50,8 @@ nb::tuple search(const Index& self, const Array& queries_, int k, int segment)
 void bindMappedIndex(nb::module_& m)
 {
     nb::class_<Index>(m, "MappedIndex")
-            .def_static("create", &create)
-            .def_static("open", &open)
+            .def_static("create", &Index::create)
+            .def_static("open", &Index::open, nb::call_guard<nb::gil_scoped_release>())
             .def("levelSizes", &Index::levelSizes)
             .def("images", [](const Index& self) { return (int64_t)self.images(); })
             .def("rows", [](const Index& self) { return (int64_t)self.rows(); })

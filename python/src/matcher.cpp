@@ -3,10 +3,6 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 
-#include <nanobind/stl/shared_ptr.h>
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/vector.h>
-
 #include "opencv2/iib.hpp"
 
 namespace iib_python {
@@ -16,19 +12,17 @@ namespace {
 typedef cv::iib::HierarchicalMatcher Matcher;
 typedef std::vector<std::vector<cv::DMatch>> MatchRows;
 
-std::vector<cv::Mat> viewsOf(nb::object arrays, const char* what)
+std::vector<cv::Mat> masksOf(nb::object arrays)
 {
     std::vector<cv::Mat> views;
     if (!arrays.is_none())
         for (nb::handle array : arrays)
-            views.push_back(array.is_none() ? cv::Mat() : viewOf(nb::cast<Array>(array), what));
+            views.push_back(array.is_none() ? cv::Mat() : viewOf(nb::cast<Array>(array), "a mask"));
     return views;
 }
 
-const char DESCRIPTORS[] = "descriptors", MASK[] = "a mask";
-
 // Descriptors without rows of whatever width: nothing to find.
-cv::Mat descriptorsOf(const Array& array) { return viewOf(array, DESCRIPTORS); }
+cv::Mat descriptorsOf(const Array& array) { return viewOf(array, "descriptors"); }
 
 //! `type(queryIdx, trainIdx, imgIdx, distance)`, in a tuple of tuples.
 nb::object toPython(const MatchRows& rows, nb::handle type)
@@ -55,7 +49,7 @@ class Search
 {
 public:
     Search(Matcher& self, const Array& queries, nb::object train, nb::object masks)
-        : query_(descriptorsOf(queries)), masks_(viewsOf(masks, MASK)), searched_(&self)
+        : query_(descriptorsOf(queries)), masks_(masksOf(masks)), searched_(&self)
     {
         if (train.is_none())
             return;
@@ -175,37 +169,7 @@ nb::list trainDescriptors(const Matcher& self)
     return arrays;
 }
 
-std::string parameters(const Matcher& self)
-{
-    cv::FileStorage file(".json", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
-    self.write(file);
-    return file.releaseAndGetString();
-}
-
-void setParameters(Matcher& self, const std::string& text)
-{
-    self.read(cv::FileStorage(text, cv::FileStorage::READ | cv::FileStorage::MEMORY).root());
-}
-
-std::shared_ptr<Matcher> create(
-        const std::vector<int>& levelSizes, int mode, float threshold, bool crossCheck)
-{
-    return Matcher::create(levelSizes, mode, threshold, crossCheck);
-}
-
-std::shared_ptr<Matcher> loadIndex(const std::string& filename)
-{
-    nb::gil_scoped_release release;
-    return Matcher::loadIndex(filename);
-}
-
-void saveIndex(const Matcher& self, const std::string& filename)
-{
-    nb::gil_scoped_release release;
-    self.saveIndex(filename);
-}
-
-std::shared_ptr<Matcher> clone(const Matcher& self, bool emptyTrainData)
+cv::Ptr<Matcher> clone(const Matcher& self, bool emptyTrainData)
 {
     return self.clone(emptyTrainData).dynamicCast<Matcher>();
 }
@@ -215,12 +179,12 @@ std::shared_ptr<Matcher> clone(const Matcher& self, bool emptyTrainData)
 void bindMatcher(nb::module_& m)
 {
     nb::class_<Matcher>(m, "Matcher")
-            .def_static("create", &create)
-            .def_static("create", []() -> std::shared_ptr<Matcher> { return Matcher::create(); })
-            .def_static("createRecommended",
-                    []() -> std::shared_ptr<Matcher> { return Matcher::createRecommended(); })
-            .def_static("loadIndex", &loadIndex)
-            .def("saveIndex", &saveIndex)
+            .def_static(
+                    "create", nb::overload_cast<const std::vector<int>&, int, float, bool>(&Matcher::create))
+            .def_static("create", nb::overload_cast<>(&Matcher::create))
+            .def_static("createRecommended", &Matcher::createRecommended)
+            .def_static("loadIndex", &Matcher::loadIndex, nb::call_guard<nb::gil_scoped_release>())
+            .def("saveIndex", &Matcher::saveIndex, nb::call_guard<nb::gil_scoped_release>())
             .def("clone", &clone)
             .def("add", &add)
             .def("clear", [](Matcher& self) { self.clear(); })
@@ -242,8 +206,8 @@ void bindMatcher(nb::module_& m)
             .def("getMaxRatio", &Matcher::getMaxRatio)
             .def("matchCost", &Matcher::matchCost)
             .def("resetCost", &Matcher::resetCost)
-            .def("parameters", &parameters)
-            .def("setParameters", &setParameters);
+            .def("parameters", [](const Matcher& self) { return parametersOf(self); })
+            .def("setParameters", [](Matcher& self, const std::string& text) { setParameters(self, text); });
 }
 
 }  // namespace iib_python

@@ -3,8 +3,6 @@
 #include "bindings.hpp"
 #include "keypoints.hpp"
 
-#include <nanobind/stl/string.h>
-
 namespace nb = nanobind;
 using namespace iib_python;
 

@@ -7,8 +7,6 @@
 
 #include "opencv2/iib.hpp"
 
-#include <nanobind/stl/shared_ptr.h>
-
 namespace iib_python {
 
 namespace {
@@ -32,8 +30,8 @@ double estimateRotation(const Array& keypoints1, const Array& keypoints2, const 
 
 // Rotation, both images' keypoints, and matches as rows of three columns: those of estimateRotation, and the distance.
 nb::tuple matchRotated(const Array& image1, const Array& keypoints1, const Array& image2,
-        const Array& keypoints2, std::shared_ptr<cv::iib::IIB> extractor,
-        std::shared_ptr<cv::iib::HierarchicalMatcher> matcher, double rotation)
+        const Array& keypoints2, const cv::Ptr<cv::iib::IIB>& extractor,
+        const cv::Ptr<cv::iib::HierarchicalMatcher>& matcher, double rotation)
 {
     const cv::Mat view1 = viewOf(image1, "the image"), view2 = viewOf(image2, "the image");
     std::vector<cv::KeyPoint> first = toKeyPoints(viewOf(keypoints1, "keypoints")),
@@ -41,8 +39,7 @@ nb::tuple matchRotated(const Array& image1, const Array& keypoints1, const Array
     std::vector<cv::DMatch> matches;
     {
         nb::gil_scoped_release release;
-        rotation = cv::iib::matchRotated(view1, first, view2, second, extractor,
-                cv::Ptr<cv::iib::HierarchicalMatcher>(matcher), matches, rotation);
+        rotation = cv::iib::matchRotated(view1, first, view2, second, extractor, matcher, matches, rotation);
     }
     cv::Mat rows((int)matches.size(), 3, CV_32S);
     for (size_t i = 0; i < matches.size(); i++)
