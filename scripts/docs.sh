@@ -10,12 +10,14 @@ version=$(sed -n 's/^project(opencv_iib VERSION \([0-9.]*\).*/\1/p' "$root/CMake
 rm -rf "$build/docs"
 mkdir -p "$build/docs"
 cd "$root"
-python3 scripts/helpers/python_api.py >"$build/docs/python_api.md"
+for page in python_api python_examples; do
+    python3 "scripts/helpers/$page.py" >"$build/docs/$page.md"
+done
 {
     cat doc/Doxyfile
     echo "PROJECT_NUMBER = $version"
     echo "OUTPUT_DIRECTORY = \"$build/docs\""
-    echo "INPUT += \"$build/docs/python_api.md\""
+    echo "INPUT += \"$build/docs/python_api.md\" \"$build/docs/python_examples.md\""
 } | doxygen -
 cp -R doc/results doc/localization CITATION.cff "$build/docs/html"
 python3 scripts/helpers/links_test.py "$build/docs/html"

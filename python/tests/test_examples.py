@@ -1,0 +1,52 @@
+"""The examples run from top to bottom and find what they show."""
+import importlib.util
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from support import REPOSITORY
+
+EXAMPLES = REPOSITORY / 'python/examples'
+
+
+class Examples(unittest.TestCase):
+
+    def run_example(self, name, pattern, *arguments, needs=('cv2',)):
+        missing = [module for module in needs if importlib.util.find_spec(module) is None]
+        if missing or not (REPOSITORY / 'tools/synthetic').is_dir():
+            self.skipTest('%s is missing' % (', '.join(missing) or 'the clone'))
+        text = (EXAMPLES / name).read_text()
+        self.assertGreaterEqual(text.count('\n# %% '), 4)
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([sys.executable, '-B', EXAMPLES / name, *arguments], cwd=folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        found = re.search(pattern, done.stdout)
+        self.assertTrue(found, done.stdout)
+        return [float(number) for number in found.groups()]
+
+    def test_day_night(self):
+        matches, agree = self.run_example('day_night.py', r'(\d+) matches, (\d+) agree')
+        self.assertGreater(agree, 200)
+        self.assertGreater(agree, .8 * matches)
+
+    def test_poses(self):
+        number = r' *([-\d.]+) *'
+        right, down, ahead, _, turn, _ = self.run_example('poses.py', r'towards \[%s\] turned by \[%s\]' % (number * 3, number * 3))
+        self.assertGreater(right, .98)
+        self.assertAlmostEqual(turn, -5, delta=1)
+
+    def test_reconstruction(self):
+        images, = self.run_example('reconstruction.py', r'num_reg_frames = (\d+)', needs=('cv2', 'pycolmap'))
+        self.assertEqual(images, 9)
+
+    def test_million_codes(self):
+        best, of, votes, next_, same = self.run_example(
+            'million_codes.py', r'image (\d+) of (\d+) has (\d+) votes, the next (\d+); (\d+) are', '20000')
+        self.assertEqual((best, of), (100, 101))
+        self.assertGreater(same, 250)
+
+
+if __name__ == '__main__':
+    unittest.main()
