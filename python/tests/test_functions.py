@@ -75,6 +75,28 @@ class Functions(unittest.TestCase):
         with self.assertRaises(opencv_iib.error):
             opencv_iib.detect_and_describe(np.stack([red, green, blue]))  # whose order numpy does not tell
 
+    def test_tensors_of_torch(self):
+        try:
+            import torch
+        except ImportError:
+            self.skipTest('torch is not installed')
+        rows = np.dstack([np.roll(self.image, 9 * i, 1) for i in range(3)])  # blue, green, red
+        planes = torch.from_numpy(rows[..., ::-1].copy()).permute(2, 0, 1)  # as kornia has images, and not contiguous
+        for image, tensors in ((rows, (planes, planes[None], planes.contiguous())),
+                               (self.image, [torch.from_numpy(self.image)[(None,) * n] for n in range(3)]),
+                               (rows.astype(np.float32) / 255, (planes.float() / 255, (planes.float() / 255)[None]))):
+            expected = opencv_iib.detect_and_describe(image)
+            for tensor in tensors:
+                found = opencv_iib.detect_and_describe(tensor)
+                self.assertTrue(all(map(np.array_equal, found, expected)), tensor.shape)
+        codes = torch.from_numpy(expected.codes)
+        self.assertEqual(opencv_iib.match(codes, codes).pairs.tolist(), opencv_iib.match(expected.codes, expected.codes).pairs.tolist())
+        keypoints = np.column_stack([expected.points, expected.sizes])
+        iib = opencv_iib.IIB()
+        np.testing.assert_array_equal(iib.compute(self.image, torch.from_numpy(keypoints))[1], iib.compute(self.image, keypoints)[1])
+        with self.assertRaisesRegex((RuntimeError, TypeError, opencv_iib.error), 'grad'):
+            opencv_iib.detect_and_describe((planes.float() / 255).requires_grad_())
+
     def test_values_by_name(self):
         iib = opencv_iib.IIB.createPreset(opencv_iib.Preset.SMALL)
         self.assertEqual(iib.descriptorSize(), opencv_iib.IIB.createPreset(9).descriptorSize())
