@@ -2,8 +2,8 @@
 """Uses pages as a reader does, in headless Chromium without a network: pages_test.py PAGE... [--screenshots FOLDER]
 
 At 1400 and 400 pixels: nothing is wider than the window, every column of a table can be scrolled to, every head of a sortable
-table sorts both ways, a slider slides, matches answer to clicks, nothing is fetched but files, no script fails. Says
-"chromium is not installed" and ends well without it. Needs Python alone: Chromium is spoken to by its debugging pipe.
+table sorts both ways, a slider slides, matches answer to clicks, a map in 3-D turns, nothing is fetched but files, no script
+fails. Says "chromium is not installed" and ends well without it. Needs Python alone: Chromium is spoken to by its debugging pipe.
 """
 import argparse
 import base64
@@ -150,6 +150,22 @@ def slide(browser):
         yield 'a click on a match tells nothing'
 
 
+def turn(browser):
+    """What is wrong with the map in 3-D."""
+    if not browser.value('!!document.querySelector("#world")'):
+        return
+    x, y, _ = browser.place('#world')
+    seen = [browser.value('document.querySelector("#world").toDataURL()')]
+    for kind, where in (('mousePressed', x), ('mouseMoved', x + 60), ('mouseReleased', x + 60)):
+        browser.call('Input.dispatchMouseEvent', type=kind, x=where, y=y, button='left', buttons=1, clickCount=1)
+    seen.append(browser.value('document.querySelector("#world").toDataURL()'))
+    for selector in ('#nearer', 'label input'):
+        browser.click(*browser.place(selector)[:2])
+        seen.append(browser.value('document.querySelector("#world").toDataURL()'))
+    if len(set(seen)) != len(seen):
+        yield 'the map in 3-D does not turn, come nearer or change its lights'
+
+
 def problems(browser, page, width):
     browser.open(page, width)
     if browser.value(TOO_WIDE) > 0:
@@ -160,6 +176,7 @@ def problems(browser, page, width):
         if found:
             yield '%s: %s' % (what, found)
     yield from slide(browser)
+    yield from turn(browser)
     if browser.failures():
         yield 'failures: %s' % browser.failures()
 
