@@ -95,25 +95,17 @@ if(NOT output MATCHES "^1000 matches in [^\n]*day.png\n0 matches in [^\n]*night.
 endif()
 
 # The other library of the package, by CMake and by pkg-config.
-set(index_project "${WORK}/index project")
-file(WRITE "${index_project}/index.cpp" "#include <opencv2/iib_index.hpp>
+file(WRITE "${project}/index.cpp" "#include <opencv2/iib_index.hpp>
 int main(int, char** arguments)
 {
     cv::iib::MappedIndex::create(arguments[1], {8})->add(cv::Mat(3, 8, CV_8U, cv::Scalar(1)));
     return cv::iib::MappedIndex::open(arguments[1])->rows() == 3 ? 0 : 1;
 }
 ")
-file(WRITE "${index_project}/CMakeLists.txt" "cmake_minimum_required(VERSION 3.16)
-project(index CXX)
-find_package(opencv_iib REQUIRED)
-add_executable(index index.cpp)
-target_link_libraries(index opencv_iib_index)
-")
-run("${CMAKE_COMMAND}" -G "${GENERATOR}" -S "${index_project}" -B "${WORK}/index" "-DCMAKE_PREFIX_PATH=${prefix}"
-  "-DCMAKE_CXX_COMPILER=${CXX}" "-DCMAKE_CXX_FLAGS=${FLAGS}")
-run("${CMAKE_COMMAND}" --build "${WORK}/index")
-run("${WORK}/index/index" "${WORK}/codes by cmake")
-run("${CXX}" ${flags} "${index_project}/index.cpp" ${pc_flags} -o "${WORK}/index by pkg-config")
+file(APPEND "${project}/CMakeLists.txt" "\nadd_executable(index index.cpp)\ntarget_link_libraries(index opencv_iib_index)\n")
+run("${CMAKE_COMMAND}" --build "${WORK}/by cmake")
+run("${WORK}/by cmake/index" "${WORK}/codes by cmake")
+run("${CXX}" ${flags} "${project}/index.cpp" ${pc_flags} -o "${WORK}/index by pkg-config")
 run("${WORK}/index by pkg-config" "${WORK}/codes by pkg-config")
 
 # An OpenCV of another minor version is refused, and the message says why.
