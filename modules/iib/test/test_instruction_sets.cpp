@@ -30,13 +30,9 @@ String widestInstructionSet()
 }
 
 #if defined(__x86_64__) || defined(_M_X64)
-TEST(IIB_InstructionSets, descriptor_runs_on_the_widest)
+TEST(IIB_InstructionSets, the_widest_is_used)
 {
     EXPECT_EQ(widestInstructionSet(), descriptorKernels().instructionSet);
-}
-
-TEST(IIB_InstructionSets, matcher_runs_on_the_widest)
-{
     EXPECT_EQ(widestInstructionSet(), hammingKernels().instructionSet);
 }
 
@@ -87,15 +83,19 @@ TEST(IIB_InstructionSets, calls_leave_no_upper_halves_in_use)
 // What the environment took away must be gone: else the runs of all suites under pins would repeat the same kernels.
 TEST(IIB_InstructionSets, pins_work)
 {
-    const char* const disabled = getenv("OPENCV_CPU_DISABLE");
-    if (!disabled)
-        return;
-    const std::pair<const char*, int> sets[] = {{"AVX512-ICL", CPU_AVX512_ICL},
-            {"AVX512-SKX", CPU_AVX512_SKX}, {"AVX2", CPU_AVX2}, {"SSE4.2", CPU_SSE4_2}};
-    for (const auto& set : sets)
+    const char* pin = getenv("OPENCV_CPU_DISABLE");
+    std::stringstream names(pin ? pin : "");
+    String name;
+    while (std::getline(names, name, ','))
     {
-        const bool pinned = String(disabled).find(set.first) != String::npos;
-        EXPECT_FALSE(pinned && checkHardwareSupport(set.second)) << set.first;
+        bool known = false;
+        for (int feature = 1; feature < CV_HARDWARE_MAX_FEATURE; feature++)
+            if (getHardwareFeatureName(feature) == name)
+            {
+                known = true;
+                EXPECT_FALSE(checkHardwareSupport(feature)) << name;
+            }
+        EXPECT_TRUE(known) << "OPENCV_CPU_DISABLE: " << name;
     }
 }
 

@@ -2,7 +2,6 @@
 
 #include "failing_allocation.hpp"
 #include "index_fixture.hpp"
-#include "../../iib/test/support/disk.hpp"
 
 #include <atomic>
 #include <functional>

@@ -9,6 +9,13 @@ namespace {
 
 struct IIB_MappedIndex_Files : public IndexFixture
 {
+    //! That the folder opens, and each search throws and names the file.
+    void expectRefused(const String& name, int code = Error::StsParseError) const
+    {
+        const Ptr<MappedIndex> opened = MappedIndex::open(folder.name);
+        for (int i = 0; i < 2; i++)  // not only the first time
+            expectError(code, name, [&] { search(*opened, queries, 1); });
+    }
 };
 
 //! The files of an index of two levels, 1 and 20 bytes, with three images of 1, 0 and 2 rows of goldenRow(), the first image
@@ -153,24 +160,17 @@ TEST_F(IIB_MappedIndex_Files, altered_files_are_named)
             std::string altered = file.bytes;
             altered[position] ^= 4;
             file.write(altered);
-            const Ptr<MappedIndex> opened = MappedIndex::open(folder.name);
-            for (int i = 0; i < 2; i++)  // not only the first time
-                expectError(Error::StsParseError, file.name, [&] { search(*opened, queries, 1); });
+            expectRefused(file.name);
         }
         for (size_t length : {(size_t)0, (size_t)40, size - 1})
         {
             file.write(file.bytes.substr(0, length));
-            const Ptr<MappedIndex> opened = MappedIndex::open(folder.name);
-            expectError(Error::StsParseError, file.name, [&] { search(*opened, queries, 1); });
+            expectRefused(file.name);
         }
-        {
-            file.write(file.bytes + "x");
-            const Ptr<MappedIndex> opened = MappedIndex::open(folder.name);
-            expectError(Error::StsParseError, file.name, [&] { search(*opened, queries, 1); });
-        }
+        file.write(file.bytes + "x");
+        expectRefused(file.name);
         std::remove(file.name.c_str());
-        const Ptr<MappedIndex> opened = MappedIndex::open(folder.name);
-        expectError(Error::StsError, file.name, [&] { search(*opened, queries, 1); });
+        expectRefused(file.name, Error::StsError);
     }
     {
         // another index's, of the same shape
@@ -178,8 +178,7 @@ TEST_F(IIB_MappedIndex_Files, altered_files_are_named)
         MappedIndex::create(other.name, LEVELS)->add(Mat(randomDescriptors(99, 1, BYTES)));
         const RestoredFile file(segment(2));
         file.write(readFile(other.name + "/segment-000001.iib"));
-        const Ptr<MappedIndex> opened = MappedIndex::open(folder.name);
-        expectError(Error::StsParseError, file.name, [&] { search(*opened, queries, 1); });
+        expectRefused(file.name);
     }
     const RestoredFile manifest(folder.name + "/manifest.iib");
     for (size_t position = 0; position < manifest.bytes.size(); position += 7)
@@ -232,8 +231,7 @@ TEST_F(IIB_MappedIndex_Files, impossible_numbers_are_refused)
                  {entries + 8, (uint64)1 << 39}, {entries + 16, (uint64)1 << 39}})
     {
         manifest.write(sealed(with(manifest.bytes, change.first, change.second), seal));
-        const Ptr<MappedIndex> opened = MappedIndex::open(folder.name);
-        expectError(Error::StsParseError, first.name, [&] { search(*opened, queries, 1); });
+        expectRefused(first.name);
     }
 
     const size_t checkedBlocks = 8 + 4 + 4 + 3 * 4 + 4, rows = checkedBlocks + 4 + 8,
@@ -245,13 +243,11 @@ TEST_F(IIB_MappedIndex_Files, impossible_numbers_are_refused)
     };
     // rows whose sum is right beyond 64 bits
     writeBoth(with(with(with(first.bytes, rows, (uint64)1 << 63), rows + 8, (uint64)1 << 63), rows + 16, 57));
-    const Ptr<MappedIndex> opened = MappedIndex::open(folder.name);
-    expectError(Error::StsParseError, first.name, [&] { search(*opened, queries, 1); });
+    expectRefused(first.name);
     for (int layout : {0, 3, 1 << 24})
     {
         writeBoth(with(first.bytes, checkedBlocks - 4, layout, 4));
-        const Ptr<MappedIndex> unknown = MappedIndex::open(folder.name);
-        expectError(Error::StsParseError, first.name, [&] { search(*unknown, queries, 1); });
+        expectRefused(first.name);
     }
     // one checksum for all: unusual, but right
     writeBoth(with(first.bytes, checkedBlocks, INT_MAX, 4));

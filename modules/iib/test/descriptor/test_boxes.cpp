@@ -2,7 +2,6 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../support/descriptor_oracle.hpp"
 #include "../support/test_errors.hpp"
 #include "../support/test_images.hpp"
 
@@ -17,28 +16,17 @@ Ptr<IIB> boxes(int granularity = 5, int channels = ALL)
     return IIB::create(1.f, granularity, channels, IIB::MAPPING_BOXES);
 }
 
-void expectOracle(IIB& iib, const Mat& image, const std::vector<KeyPoint>& keypoints, const String& what)
-{
-    const Mat expected = oracle::describe(iib, image, std::vector<Mat>(), keypoints);
-    const Mat descriptors = describe(iib, image, keypoints);
-    ASSERT_EQ(expected.size(), descriptors.size()) << what;
-    for (int i = 0; i < expected.rows; i++)
-        ASSERT_EQ(0, differingBits(expected.row(i), descriptors.row(i)))
-                << what << ", keypoint " << i << " at " << keypoints[i].pt << " size " << keypoints[i].size
-                << " angle " << keypoints[i].angle;
-}
-
 TEST(IIB_Boxes, bits_as_the_oracle)
 {
     for (int depth : {CV_8U, CV_16U})
         for (int granularity = 1; granularity <= 5; granularity++)
             for (int border : {IIB::BORDER_CLAMP, IIB::BORDER_REFLECT})
             {
+                SCOPED_TRACE(format("depth %d G %d border %d", depth, granularity, border));
                 const Mat image = texture(Size(150, 131), depth, granularity);
                 const Ptr<IIB> iib = boxes(granularity);
                 iib->setBorder(border);
-                expectOracle(*iib, image, scatter(image.size(), 12, 2.f, 120.f, granularity),
-                        format("depth %d G %d border %d", depth, granularity, border));
+                expectOracle(*iib, image, scatter(image.size(), 12, 2.f, 120.f, granularity));
             }
 }
 
@@ -47,8 +35,10 @@ TEST(IIB_Boxes, every_set_of_channels)
     const Mat image = texture(Size(101, 97), CV_8U, 2);
     for (int channels = 1; channels < 64; channels++)
         if ((channels & IIB::CHANNEL_ORIENTATION) == 0)
-            expectOracle(*boxes(2, channels), image, scatter(image.size(), 4, 8.f, 70.f, channels),
-                    format("channels %d", channels));
+        {
+            SCOPED_TRACE(channels);
+            expectOracle(*boxes(2, channels), image, scatter(image.size(), 4, 8.f, 70.f, channels));
+        }
 }
 
 TEST(IIB_Boxes, images_of_every_width)
@@ -56,11 +46,11 @@ TEST(IIB_Boxes, images_of_every_width)
     for (int width = 1; width < 140; width += width < 20 ? 1 : 7)
         for (int border : {IIB::BORDER_CLAMP, IIB::BORDER_REFLECT})
         {
+            SCOPED_TRACE(format("width %d, border %d", width, border));
             const Mat image = texture(Size(width, 1 + width % 23), CV_8U, width);
             const Ptr<IIB> iib = boxes(4);
             iib->setBorder(border);
-            expectOracle(*iib, image, scatter(image.size(), 3, 4.f, 50.f, width),
-                    format("width %d, border %d", width, border));
+            expectOracle(*iib, image, scatter(image.size(), 3, 4.f, 50.f, width));
         }
 }
 
@@ -93,8 +83,8 @@ TEST(IIB_Boxes, large_regions)
         const Ptr<IIB> iib = boxes(2);
         iib->setBorder(border);
         for (const KeyPoint& kp : keypoints)
-            expectOracle(*iib, image, std::vector<KeyPoint>(1, kp), format("size %g", kp.size));
-        expectOracle(*iib, image, keypoints, "together");
+            expectOracle(*iib, image, {kp});
+        expectOracle(*iib, image, keypoints);
     }
 }
 
@@ -104,12 +94,11 @@ TEST(IIB_Boxes, largest_sums)
     Mat image(1500, 1500, CV_8U, Scalar(0));
     for (int x = 2; x < image.cols; x += x % 4 == 2 ? 1 : 3)
         image.col(x).setTo(255);
-    const std::vector<KeyPoint> keypoints(1, KeyPoint(749.5f, 749.5f, 3800.f));
     const Ptr<IIB> iib = boxes(1);
     iib->setBorder(IIB::BORDER_CLAMP);
-    expectOracle(*iib, image, keypoints, "upright");
     iib->setUseOrientation(true);
-    expectOracle(*iib, image, {KeyPoint(749.5f, 749.5f, 3800.f, 0.f)}, "rotated");
+    for (float angle : {-1.f, 0.f})
+        expectOracle(*iib, image, {KeyPoint(749.5f, 749.5f, 3800.f, angle)});
 }
 
 TEST(IIB_Boxes, rotated)
@@ -118,13 +107,14 @@ TEST(IIB_Boxes, rotated)
         for (int orientation : {IIB::ORIENTATION_KEYPOINT, IIB::ORIENTATION_GRADIENT})
             for (int border : {IIB::BORDER_CLAMP, IIB::BORDER_REFLECT})
             {
+                SCOPED_TRACE(format("depth %d, orientation %d, border %d", depth, orientation, border));
                 const Mat image = texture(Size(200, 180), depth, 6);
                 std::vector<KeyPoint> keypoints = scatter(image.size(), 15, 8.f, 150.f, 7);
                 keypoints.push_back(keypoints[3]);  // by ORIENTATION_GRADIENT at another angle
                 const Ptr<IIB> iib = boxes();
                 iib->setOrientation(orientation);
                 iib->setBorder(border);
-                expectOracle(*iib, image, keypoints, format("depth %d, %d, %d", depth, orientation, border));
+                expectOracle(*iib, image, keypoints);
             }
 }
 
@@ -134,10 +124,10 @@ TEST(IIB_Boxes, rotated_small_regions)
     const Mat image = texture(Size(60, 50), CV_8U, 14);
     for (int granularity = 1; granularity <= 5; granularity++)
     {
+        SCOPED_TRACE(granularity);
         const Ptr<IIB> iib = boxes(granularity);
         iib->setUseOrientation(true);
-        expectOracle(
-                *iib, image, scatter(image.size(), 20, 0.5f, 4.f, granularity), format("G %d", granularity));
+        expectOracle(*iib, image, scatter(image.size(), 20, 0.5f, 4.f, granularity));
     }
 }
 
@@ -145,97 +135,49 @@ TEST(IIB_Boxes, rotated_small_regions)
 TEST(IIB_Boxes, rotated_large_regions)
 {
     const Mat image = texture(Size(700, 640), CV_8U, 11);
-    std::vector<KeyPoint> keypoints;
-    for (float angle : {0.f, 45.f, 225.f})
-        keypoints.push_back(KeyPoint(350.f, 320.f, 420.f, angle));
     const Ptr<IIB> iib = boxes(2);
     iib->setUseOrientation(true);
-    for (const KeyPoint& kp : keypoints)
-        expectOracle(*iib, image, std::vector<KeyPoint>(1, kp), format("angle %g", kp.angle));
-}
-
-TEST(IIB_Boxes, angle_0_is_nearly_upright)
-{
-    const Mat image = texture(Size(200, 180), CV_8U, 8);
-    const std::vector<KeyPoint> upright(1, KeyPoint(100.25f, 90.5f, 60.f)),
-            rotated(1, KeyPoint(100.25f, 90.5f, 60.f, 0.f));
-    const Ptr<IIB> iib = boxes();
-    const Mat expected = describe(*iib, image, upright);
-    iib->setUseOrientation(true);
-    EXPECT_LT(differingBits(expected, describe(*iib, image, rotated)), iib->descriptorSize() * 8 * 0.15);
-    EXPECT_EQ(0, differingBits(expected, describe(*iib, image, upright))) << "angle -1";
-}
-
-// Rotated and upright ones are described apart.
-TEST(IIB_Boxes, some_keypoints_rotated)
-{
-    const Mat image = texture(Size(300, 280), CV_8U, 12);
-    std::vector<KeyPoint> keypoints = scatter(image.size(), 12, 8.f, 100.f, 13);
-    for (size_t i = 0; i < keypoints.size(); i += 2)
-        keypoints[i].angle = -1;
-    const Ptr<IIB> iib = boxes();
-    iib->setUseOrientation(true);
-    expectOracle(*iib, image, keypoints, "every second one");
+    for (float angle : {0.f, 45.f, 225.f})
+        expectOracle(*iib, image, {KeyPoint(350.f, 320.f, 420.f, angle)});
 }
 
 TEST(IIB_Boxes, rotated_image_has_nearly_the_same_bits)
 {
-    const Mat image = scene(Size(400, 400), 9);
+    const RotatedPair pair(35);
     std::vector<KeyPoint> keypoints = scatter(Size(160, 160), 60, 40.f, 60.f, 10), turned;
-    const float degrees = 35;
-    Mat affine = getRotationMatrix2D(Point2f(199.5f, 199.5f), -degrees, 1), rotatedImage;  // clockwise
-    warpAffine(image, rotatedImage, affine, image.size(), INTER_LINEAR, BORDER_REFLECT);
     for (KeyPoint& kp : keypoints)
     {
         kp.pt += Point2f(120, 120);
         kp.angle = 0;
-        const Matx33d a(affine.at<double>(0, 0), affine.at<double>(0, 1), affine.at<double>(0, 2),
-                affine.at<double>(1, 0), affine.at<double>(1, 1), affine.at<double>(1, 2), 0, 0, 1);
-        const Vec3d p = a * Vec3d(kp.pt.x, kp.pt.y, 1);
-        turned.push_back(KeyPoint((float)p[0], (float)p[1], kp.size, degrees));
+        const Vec3d p = pair.homography * Vec3d(kp.pt.x, kp.pt.y, 1);
+        turned.push_back(KeyPoint((float)p[0], (float)p[1], kp.size, 35));
     }
     const Ptr<IIB> iib = boxes();
     iib->setUseOrientation(true);
-    const int bits = (int)keypoints.size() * iib->descriptorSize() * 8;
-    const int differing =
-            differingBits(describe(*iib, image, keypoints), describe(*iib, rotatedImage, turned));
-    EXPECT_LT(differing, bits * 0.15);
+    const Mat expected = describe(*iib, pair.images[0], keypoints);
+    const int differing = differingBits(expected, describe(*iib, pair.images[1], turned));
+    EXPECT_LT(differing, expected.total() * 8 * 0.2);
     for (KeyPoint& kp : turned)
         kp.angle = -1;
-    EXPECT_GT(differingBits(describe(*iib, image, keypoints), describe(*iib, rotatedImage, turned)),
-            2 * differing);
+    EXPECT_GT(differingBits(expected, describe(*iib, pair.images[1], turned)), 2 * differing);
 }
 
 TEST(IIB_Boxes, selections)
 {
     const Mat image = texture(Size(300, 280), CV_8U, 8);
-    const int sizes[] = {3, 5, 7, 9, 7};
     for (int count = 1; count < 400; count *= 3)
     {
-        RNG rng(count);
-        std::set<std::vector<int>> places;
-        for (int i = 0; i < count; i++)
-        {
-            const int level = rng.uniform(1, 6), end = sizes[level - 1] - 1;
-            places.insert({level, rng.uniform(0, 5), rng.uniform(0, end), rng.uniform(0, end)});
-        }
-        Mat_<int> selection;
-        for (const std::vector<int>& place : places)
-        {
-            // |gx|, |gy|, intensity, gx, gy
-            const int masks[] = {15, 7, 7, 31, 31};
-            const int mask = std::max(rng.uniform(0, 32) & masks[place[1]], 1);
-            selection.push_back(Mat_<int>({place[0], place[1], place[2], place[3], mask}).reshape(1, 1));
-        }
+        SCOPED_TRACE(count);
         const Ptr<IIB> iib = boxes();
-        iib->setSelection(selection);
-        expectOracle(*iib, image, scatter(image.size(), 6, 10.f, 200.f, count), format("%d places", count));
+        // of |gx|, |gy|, intensity, gx, gy
+        iib->setSelection(randomSelection(count, {2, 4, 6, 8, 6}, {15, 7, 7, 31, 31}));
+        expectOracle(*iib, image, scatter(image.size(), 6, 10.f, 200.f, count));
     }
     const Ptr<IIB> last = boxes();
     const Mat single = (Mat_<int>(2, 5) << 4, 3, 8, 8, 8, 5, 4, 0, 6, 16);
     last->setSelection(single);
     EXPECT_EQ((std::vector<int>{1, 1}), last->levelSizes());
-    expectOracle(*last, image, scatter(image.size(), 6, 10.f, 200.f, 1), "single boxes");
+    expectOracle(*last, image, scatter(image.size(), 6, 10.f, 200.f, 1));
 }
 
 TEST(IIB_Boxes, sizes)

@@ -2,24 +2,10 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../support/descriptor_oracle.hpp"
 #include "../support/test_images.hpp"
 
 namespace opencv_test {
 namespace {
-
-void expectOracle(IIB& iib, const Mat& image, const std::vector<Mat>& extra, std::vector<KeyPoint> keypoints,
-        const String& what)
-{
-    const Mat expected = oracle::describe(iib, image, extra, keypoints);
-    Mat descriptors;
-    iib.compute(image, extra, keypoints, descriptors);
-    ASSERT_EQ(expected.size(), descriptors.size()) << what;
-    for (int i = 0; i < expected.rows; i++)
-        ASSERT_EQ(0, cvtest::norm(expected.row(i), descriptors.row(i), NORM_HAMMING))
-                << what << ", keypoint " << i << " at " << keypoints[i].pt << " size " << keypoints[i].size
-                << " angle " << keypoints[i].angle;
-}
 
 typedef testing::TestWithParam<int> IIB_Bits_Mapping;
 
@@ -29,10 +15,10 @@ TEST_P(IIB_Bits_Mapping, as_the_equations)
     for (int granularity = 1; granularity <= 6; granularity++)
         for (int overlap = 0; overlap < 2; overlap++)
         {
+            SCOPED_TRACE(format("G %d overlap %d", granularity, overlap));
             const Ptr<IIB> iib =
                     IIB::create(2.f, granularity, IIB::CHANNELS_DEFAULT, GetParam(), overlap != 0);
-            expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 12, 1.f, 60.f, granularity),
-                    format("G %d overlap %d", granularity, overlap));
+            expectOracle(*iib, image, scatter(image.size(), 12, 1.f, 60.f, granularity));
         }
 }
 
@@ -44,9 +30,8 @@ TEST(IIB_Bits, every_set_of_channels)
     const Mat image = texture(Size(101, 97), CV_8U, 2);
     for (int channels = 1; channels < 64; channels++)
     {
-        const Ptr<IIB> iib = IIB::create(1.f, 3, channels);
-        expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 10, 8.f, 70.f, channels),
-                format("channels %d", channels));
+        SCOPED_TRACE(channels);
+        expectOracle(*IIB::create(1.f, 3, channels), image, scatter(image.size(), 10, 8.f, 70.f, channels));
     }
 }
 
@@ -61,33 +46,24 @@ TEST(IIB_Bits, extra_channels_of_any_depth)
                 extra.push_back(texture(image.size(), i % 2 ? CV_16U : CV_8U, 10 + i));
             for (int channels = 0; channels < 16; channels += 5)
             {
+                SCOPED_TRACE(format("depth %d channels %d extra %d", depth, channels, count));
                 const Ptr<IIB> iib = IIB::create(1.f, 4, channels, IIB::MAPPING_HAAR, false, false, count);
-                expectOracle(*iib, image, extra, scatter(image.size(), 10, 10.f, 90.f, count),
-                        format("depth %d channels %d extra %d", depth, channels, count));
+                expectOracle(*iib, image, scatter(image.size(), 10, 10.f, 90.f, count), extra);
             }
         }
-}
-
-TEST(IIB_Bits, sixteen_bit_images)
-{
-    const Mat image = texture(Size(300, 280), CV_16U, 4);
-    for (int mapping = 0; mapping <= IIB::MAPPING_PAIRWISE; mapping++)
-    {
-        const Ptr<IIB> iib = IIB::create(1.f, 4, 63, mapping);
-        expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 10, 10.f, 400.f, mapping),
-                format("mapping %d", mapping));
-    }
 }
 
 TEST(IIB_Bits, images_of_every_width)
 {
     const Ptr<IIB> iib = IIB::create(1.f, 3);
     for (int width = 1; width < 140; width++)
-    {
-        const Mat image = texture(Size(width, 1 + width % 23), CV_8U, width);
-        expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 6, 4.f, 50.f, width),
-                format("width %d", width));
-    }
+        for (int orientation = IIB::ORIENTATION_NONE; orientation <= IIB::ORIENTATION_GRADIENT; orientation++)
+        {
+            SCOPED_TRACE(format("width %d, orientation %d", width, orientation));
+            iib->setOrientation(orientation);
+            const Mat image = texture(Size(width, 1 + width % 23), CV_8U, width);
+            expectOracle(*iib, image, scatter(image.size(), 6, 4.f, 50.f, width));
+        }
 }
 
 TEST(IIB_Bits, large_regions_of_support)
@@ -95,9 +71,9 @@ TEST(IIB_Bits, large_regions_of_support)
     const Mat image = texture(Size(700, 640), CV_8U, 5);
     for (int granularity = 1; granularity <= 5; granularity += 2)
     {
+        SCOPED_TRACE(granularity);
         const Ptr<IIB> iib = IIB::create(1.f, granularity, 63);
-        expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 6, 100.f, 900.f, granularity),
-                format("G %d", granularity));
+        expectOracle(*iib, image, scatter(image.size(), 6, 100.f, 900.f, granularity));
     }
 }
 
@@ -106,7 +82,7 @@ TEST(IIB_Bits, large_regions_of_16_bit_images)
 {
     const Mat image = texture(Size(420, 400), CV_16U, 5);
     const Ptr<IIB> iib = IIB::create(1.f, 1, 63);
-    expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 6, 300.f, 1500.f, 1), "large");
+    expectOracle(*iib, image, scatter(image.size(), 6, 300.f, 1500.f, 1));
 }
 
 // Regions at which products of level 1 or 2 just leave 32 bits, where doubles take over.
@@ -115,6 +91,7 @@ TEST(IIB_Bits, sums_at_the_edge_of_32_bits)
     for (int mapping = IIB::MAPPING_MEAN; mapping <= IIB::MAPPING_PAIRWISE; mapping++)
         for (int depth : {CV_8U, CV_16U})
         {
+            SCOPED_TRACE(mapping);
             Mat image = texture(Size(260, 240), depth, mapping);
             image.colRange(130, 260).setTo(0);  // sums of all sizes
             const Ptr<IIB> iib = IIB::create(1.f, 3, 63, mapping);
@@ -122,7 +99,7 @@ TEST(IIB_Bits, sums_at_the_edge_of_32_bits)
             for (float size : {13.f, 27.f, 45.f, 67.f, 81.f, 103.f, 133.f, 201.f})
                 for (int i = 0; i < 3; i++)
                     keypoints.push_back(KeyPoint(100.25f + 30 * i, 90.75f + 20 * i, size));
-            expectOracle(*iib, image, std::vector<Mat>(), keypoints, format("mapping %d", mapping));
+            expectOracle(*iib, image, keypoints);
         }
 }
 
@@ -132,29 +109,14 @@ TEST(IIB_Bits, selections)
     for (int mapping = 0; mapping <= IIB::MAPPING_PAIRWISE; mapping++)
         for (int count = 1; count < 400; count *= 3)
         {
+            SCOPED_TRACE(format("mapping %d, %d quads", mapping, count));
             const Ptr<IIB> iib = IIB::create(1.f, 5, 63, mapping);
             const int bits = mapping == IIB::MAPPING_HAAR                                       ? 3
                              : mapping == IIB::MAPPING_QUARTILE || mapping == IIB::MAPPING_SORT ? 8
                                                                                                 : 4;
-            RNG rng(count);
-            std::set<std::vector<int>> quads;
-            for (int i = 0; i < count; i++)
-            {
-                const int level = rng.uniform(1, 6), end = (1 << level) - 1;
-                const int quad[] = {level, rng.uniform(0, 6), rng.uniform(0, end), rng.uniform(0, end)};
-                quads.insert(std::vector<int>(quad, quad + 4));
-            }
-            Mat_<int> selection;
-            for (const std::vector<int>& quad : quads)
-            {
-                Mat_<int> row(1, 5);
-                std::copy(quad.begin(), quad.end(), row.begin());
-                row(0, 4) = rng.uniform(1, 1 << bits);
-                selection.push_back(row);
-            }
-            iib->setSelection(selection);
-            expectOracle(*iib, image, std::vector<Mat>(), scatter(image.size(), 10, 10.f, 400.f, mapping),
-                    format("mapping %d, %d quads", mapping, selection.rows));
+            iib->setSelection(
+                    randomSelection(count, {1, 3, 7, 15, 31}, std::vector<int>(6, (1 << bits) - 1)));
+            expectOracle(*iib, image, scatter(image.size(), 10, 10.f, 400.f, mapping));
         }
 }
 
@@ -163,15 +125,14 @@ TEST(IIB_Bits, rotated_regions_of_support)
     for (int depth = 0; depth < 2; depth++)
         for (int granularity = 1; granularity <= 6; granularity++)
         {
+            SCOPED_TRACE(format("depth %d G %d", depth, granularity));
             const Mat image = texture(Size(200, 180), depth ? CV_16U : CV_8U, 6);
             const std::vector<Mat> extra(2, texture(image.size(), CV_8U, 7));
             const Ptr<IIB> iib =
                     IIB::create(1.f, granularity, 63, granularity, granularity % 2 == 0, true, 2);
-            expectOracle(*iib, image, extra, scatter(image.size(), 10, 8.f, 200.f, granularity),
-                    format("depth %d G %d", depth, granularity));
+            expectOracle(*iib, image, scatter(image.size(), 10, 8.f, 200.f, granularity), extra);
             iib->setChannels(0);
-            expectOracle(*iib, image, extra, scatter(image.size(), 5, 8.f, 200.f, granularity),
-                    format("depth %d G %d, extra channels alone", depth, granularity));
+            expectOracle(*iib, image, scatter(image.size(), 5, 8.f, 200.f, granularity), extra);
         }
 }
 

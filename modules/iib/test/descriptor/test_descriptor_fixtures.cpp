@@ -2,7 +2,6 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../support/descriptor_oracle.hpp"
 #include "../support/test_images.hpp"
 
 #include <fstream>
@@ -60,57 +59,6 @@ INSTANTIATE_TEST_CASE_P(IIB, DescriptorScaleInvariance,
         testing::Values(pairedWith(ORB::create(), 0.98f), pairedWith(SIFT::create(400), 0.98f),
                 pairedWith(KAZE::create(false, false, 0.005f), 0.98f), pairedWith(BRISK::create(), 0.8f),
                 pairedWith(AKAZE::create(), 0.8f)));
-
-const std::string FEATURES2D_DIR = "cv/features2d",
-                  DESCRIPTOR_DIR = FEATURES2D_DIR + "/descriptor_extractors";
-const std::string IMAGE_FILENAME = "tsukuba.png";
-
-}  // namespace
-}  // namespace opencv_test
-
-#if CV_VERSION_MAJOR >= 5
-#include "features/test/test_descriptors_regression.impl.hpp"
-#else
-#include "features2d/test/test_descriptors_regression.impl.hpp"
-#endif
-
-namespace opencv_test {
-namespace {
-
-//! The reference comes from the oracle instead of a file, which the fixture would write where it is missing.
-class RegressionTest : public CV_DescriptorExtractorTest<Hamming>
-{
-public:
-    explicit RegressionTest(const Ptr<IIB>& extractor)
-        : CV_DescriptorExtractorTest<Hamming>("descriptor-iib", 0, extractor), iib(extractor)
-    {
-    }
-
-    void emptyData() { emptyDataTest(); }
-
-    Mat readDescriptors() CV_OVERRIDE
-    {
-        const std::string data = ts->get_data_path() + FEATURES2D_DIR + "/";
-        Mat grey;
-        cvtColor(imread(data + IMAGE_FILENAME), grey, COLOR_BGR2GRAY);
-        std::vector<KeyPoint> keypoints;
-        FileStorage fs(data + "keypoints.xml.gz", FileStorage::READ);
-        read(fs.getFirstTopLevelNode(), keypoints);
-        return oracle::describe(*iib, grey, std::vector<Mat>(), keypoints);
-    }
-
-private:
-    Ptr<IIB> iib;
-};
-
-TEST(IIB_Fixtures, empty_data) { RegressionTest(IIB::create()).emptyData(); }
-
-TEST(IIB_Fixtures, regression)
-{
-    cvtest::findDataFile("cv/features2d/keypoints.xml.gz", false);
-    cvtest::findDataFile("cv/features2d/tsukuba.png", false);
-    RegressionTest(IIB::create()).safe_run();
-}
 
 }  // namespace
 }  // namespace opencv_test

@@ -94,6 +94,20 @@ template <typename Sum> struct Ring
                 total = (Sum)(total + map(y, x)[c]);
         return total;
     }
+
+    //! Cells between edges; further channels repeat the last.
+    void expectCells(const CellGrid<Sum>& cells, const std::vector<int>& x, const std::vector<int>& y, int n,
+            int channels = GROUP_CHANNELS) const
+    {
+        const Point o = rows.origin;
+        for (int r = 0; r < n; r++)
+            for (int c = 0; c < n; c++)
+                for (int i = 0; i < GROUP_CHANNELS; i++)
+                    ASSERT_EQ(sum(x[c] - o.x, y[r] - o.y, x[c + 1] - o.x, y[r + 1] - o.y,
+                                      std::min(i, channels - 1)),
+                            cells.cell(r, c)[i])
+                            << n << ": " << r << ", " << c;
+    }
 };
 
 template <typename Sum> void checkCells(int limit)
@@ -117,13 +131,7 @@ template <typename Sum> void checkCells(int limit)
             descriptorKernels().sums(Sum()).cells(ring.rows, x.data(), y.data(), n, cells);
             CellGrid<unsigned> parents;
             descriptorKernels().sums(Sum()).bits[0].parentSums(cells, parents);
-            for (int r = 0; r < n; r++)
-                for (int c = 0; c < n; c++)
-                    for (int i = 0; i < 4; i++)
-                        ASSERT_EQ(ring.sum(x[c] - area.x, y[r] - area.y, x[c + 1] - area.x, y[r + 1] - area.y,
-                                          i),
-                                cells.cell(r, c)[i])
-                                << n << ": " << r << ", " << c;
+            ring.expectCells(cells, x, y, n);
             for (int r = 0; r < n / 2; r++)
                 for (int c = 0; c < n / 2; c++)
                     for (int i = 0; i < 4; i++)
@@ -169,13 +177,7 @@ void checkColumnCells(int channels, int widest)
             x.resize(paddedEdges(n), x[n]);
             CellGrid<ushort> cells;
             descriptorKernels().columnCells(rows, places, x.data(), y.data(), n, cells);
-            for (int r = 0; r < n; r++)
-                for (int c = 0; c < n; c++)
-                    for (int i = 0; i < GROUP_CHANNELS; i++)
-                        ASSERT_EQ(ring.sum(x[c] - area.x, y[r] - area.y, x[c + 1] - area.x, y[r + 1] - area.y,
-                                          std::min(i, channels - 1)),
-                                cells.cell(r, c)[i])
-                                << n << ": " << r << ", " << c;
+            ring.expectCells(cells, x, y, n, channels);
         }
 }
 

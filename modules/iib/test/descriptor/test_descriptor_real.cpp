@@ -11,14 +11,6 @@
 namespace opencv_test {
 namespace {
 
-Mat readImage(const String& sequence, int number, int flags)
-{
-    const String name = "illumination/" + sequence + format("/%d.png", number);
-    const Mat image = imread(cvtest::findDataFile(name, false), flags);
-    EXPECT_FALSE(image.empty()) << sequence << " " << number;
-    return image;
-}
-
 String textFile(const String& name) { return cvtest::findDataFile("illumination/" + name, false); }
 
 //! The paper's seed points; they count from 1.
@@ -53,40 +45,17 @@ TEST(IIB_Real, paper_scene)
     ASSERT_EQ(1000u, keypoints.size());
     for (int flags : {(int)IMREAD_COLOR, (int)IMREAD_GRAYSCALE})
     {
-        const Mat reference = describe(*iib, readImage(sequence, 1, flags), keypoints);
+        const Mat reference = describe(*iib, readIllumination(sequence + "/1.png", flags), keypoints);
         for (int k = 2; k <= 3; k++)
         {
             int correct = 0;
-            for (const DMatch& m :
-                    mutualMatches(reference, describe(*iib, readImage(sequence, k, flags), keypoints)))
+            for (const DMatch& m : mutualMatches(reference,
+                         describe(*iib, readIllumination(sequence + format("/%d.png", k), flags), keypoints)))
                 correct += m.queryIdx == m.trainIdx;
             std::cout << format("[          ] 1 - %d: %d correct\n", k, correct);
             EXPECT_GE(correct, k == 2 ? 808 : 574);
         }
     }
-}
-
-struct Score
-{
-    int correct, matches;
-
-    double precision() const { return (double)correct / matches; }
-};
-
-//! Matches whose error under h is at most 3 pixels.
-Score scoreOf(const Mat& a, const Mat& b, const std::vector<KeyPoint>& pointsA,
-        const std::vector<KeyPoint>& pointsB, const Matx33d& h)
-{
-    Score score = Score();
-    for (const DMatch& m : mutualMatches(a, b))
-    {
-        const Point2d p = pointsA[m.queryIdx].pt, q = pointsB[m.trainIdx].pt;
-        const Vec3d projected = h * Vec3d(p.x, p.y, 1);
-        score.matches++;
-        score.correct +=
-                std::hypot(projected[0] / projected[2] - q.x, projected[1] / projected[2] - q.y) <= 3;
-    }
-    return score;
 }
 
 TEST(IIB_Real, leuven_with_orb_keypoints)
@@ -98,19 +67,21 @@ TEST(IIB_Real, leuven_with_orb_keypoints)
     Mat own[6], ours[6];
     for (int k = 0; k < 6; k++)
     {
-        const Mat image = readImage(sequence, k + 1, IMREAD_GRAYSCALE);
+        const Mat image = readIllumination(sequence + format("/%d.png", k + 1));
         orb->detectAndCompute(image, noArray(), keypoints[k], own[k]);
         ours[k] = describe(*iib, image, keypoints[k]);
     }
     for (int k = 1; k < 6; k++)
     {
         const Matx33d h = readHomography(textFile(sequence + format("/H_1_%d", k + 1)));
-        const Score orbScore = scoreOf(own[0], own[k], keypoints[0], keypoints[k], h);
-        const Score iibScore = scoreOf(ours[0], ours[k], keypoints[0], keypoints[k], h);
-        std::cout << format("[          ] 1 - %d: ORB %d of %d, IIB %d of %d correct\n", k + 1,
-                orbScore.correct, orbScore.matches, iibScore.correct, iibScore.matches);
-        EXPECT_GT(iibScore.correct, orbScore.correct);
-        EXPECT_GT(iibScore.precision(), orbScore.precision());
+        const std::vector<DMatch> byOrb = mutualMatches(own[0], own[k]),
+                                  byIib = mutualMatches(ours[0], ours[k]);
+        const int orbs = countCorrect(byOrb, keypoints[0], keypoints[k], h),
+                  iibs = countCorrect(byIib, keypoints[0], keypoints[k], h);
+        std::cout << format("[          ] 1 - %d: ORB %d of %d, IIB %d of %d correct\n", k + 1, orbs,
+                (int)byOrb.size(), iibs, (int)byIib.size());
+        EXPECT_GT(iibs, orbs);
+        EXPECT_GT((double)iibs / byIib.size(), (double)orbs / byOrb.size());
     }
 }
 

@@ -65,14 +65,17 @@ TEST(IIB_DetectorFile, reading_leaves_the_callers_detector_alone)
 class OwnDetector : public Feature2D
 {
 public:
-    explicit OwnDetector(int parameter_ = 0) : parameter(parameter_) {}
-    String getDefaultName() const CV_OVERRIDE { return "Feature2D.Own"; }
+    explicit OwnDetector(int parameter_ = 0, const String& name_ = "Own") : parameter(parameter_), name(name_)
+    {
+    }
+    String getDefaultName() const CV_OVERRIDE { return "Feature2D." + name; }
     using Feature2D::write;
     void write(FileStorage& fs) const CV_OVERRIDE { fs << "parameter" << parameter; }
     using Feature2D::read;
     void read(const FileNode& fn) CV_OVERRIDE { parameter = (int)fn["parameter"]; }
 
     int parameter;
+    const String name;
 };
 
 TEST(IIB_DetectorFile, an_unknown_detector_reads_its_parameters_or_is_an_error)
@@ -93,7 +96,6 @@ TEST(IIB_DetectorFile, an_unknown_detector_reads_its_parameters_or_is_an_error)
     }
 }
 
-//! As Python's wrappers of a detector are.
 // OpenCV's own detectors write nothing of themselves, or not all.
 TEST(IIB_DetectorFile, detectors_of_other_classes_are_set_before_reading)
 {
@@ -112,15 +114,9 @@ TEST(IIB_DetectorFile, detectors_of_other_classes_are_set_before_reading)
     }
 }
 
-class AnotherOrb : public Feature2D
-{
-public:
-    String getDefaultName() const CV_OVERRIDE { return "Feature2D.ORB"; }
-};
-
 TEST(IIB_DetectorFile, another_class_of_the_same_name)
 {
-    const String text = parametersOf(makePtr<AnotherOrb>());
+    const String text = parametersOf(makePtr<OwnDetector>(0, "ORB"));
     expectError(Error::StsParseError, "the ORB detector's", [&] { Algorithm::loadFromString<IIB>(text); });
 }
 
@@ -134,14 +130,10 @@ TEST(IIB_DetectorFile, damage_throws_and_changes_nothing)
             {"sigma: 7.5", "sigma: wide # 7.5"}};
     for (const auto& r : replacements)
     {
-        String damaged = good;
-        const size_t at = damaged.find(r[0]);
-        ASSERT_NE(String::npos, at) << r[0] << " is not in\n" << good;
-        damaged.replace(at, strlen(r[0]), r[1]);
         const Ptr<Feature2D> mine = AKAZE::create();
         const Ptr<IIB> iib = IIB::create(3.5f);
         iib->setDetector(mine);
-        const FileStorage fs(damaged, FileStorage::READ | FileStorage::MEMORY);
+        const FileStorage fs(replaced(good, r[0], r[1]), FileStorage::READ | FileStorage::MEMORY);
         EXPECT_THROW(iib->read(fs["IIB"]), cv::Exception) << r[1];
         EXPECT_EQ(mine, iib->getDetector()) << r[1];
         EXPECT_EQ(3.5f, iib->getScaleFactor()) << r[1];

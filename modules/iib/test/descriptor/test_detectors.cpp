@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../support/detected_matches.hpp"
+#include "../support/test_images.hpp"
 #include "../support/test_errors.hpp"
 
 namespace opencv_test {
@@ -43,6 +43,7 @@ TEST_P(IIB_Detectors, detect_compute_and_match)
     const DetectorCase& p = GetParam();
     const Ptr<Feature2D> detector = p.create();
     EXPECT_FLOAT_EQ(p.scaleFactor, IIB::scaleFactorFor(detector));
+    EXPECT_FLOAT_EQ(p.scaleFactor, IIB::createFor(NormalizedDetector::create(detector))->getScaleFactor());
     EXPECT_FLOAT_EQ(p.scaleFactor, IIB::scaleFactorFor(p.name));
     EXPECT_FLOAT_EQ(p.scaleFactor, IIB::scaleFactorFor(cv::toLowerCase(p.name)));
     EXPECT_FLOAT_EQ(p.scaleFactor, IIB::scaleFactorFor(detector->getDefaultName()));

@@ -2,7 +2,6 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../support/descriptor_oracle.hpp"
 #include "../support/test_errors.hpp"
 #include "../support/test_images.hpp"
 
@@ -38,9 +37,8 @@ TEST(IIB_GradientOrientation, bits_as_the_oracle)
         {
             const Ptr<IIB> iib = IIB::create(1.f, granularity, 63);
             iib->setOrientation(IIB::ORIENTATION_GRADIENT);
-            EXPECT_EQ(0, differingBits(oracle::describe(*iib, image, std::vector<Mat>(), keypoints),
-                                 describe(*iib, image, keypoints)))
-                    << "depth " << depth << " granularity " << granularity;
+            SCOPED_TRACE(format("depth %d granularity %d", depth, granularity));
+            expectOracle(*iib, image, keypoints);
         }
     }
     // Nothing but extra channels: upright.
@@ -81,13 +79,8 @@ TEST(IIB_GradientOrientation, border_drop_keeps_what_is_inside_at_any_angle)
 
 TEST(IIB_GradientOrientation, finds_matches_in_a_rotated_image)
 {
-    const Mat image = scene(Size(400, 400), 7);
-    Mat rotated;
-    const Mat affine = getRotationMatrix2D(Point2f(199.5f, 199.5f), -40, 1);  // clockwise in the image
-    warpAffine(image, rotated, affine, image.size(), INTER_CUBIC, cv::BORDER_REFLECT_101);
-    const Mat images[] = {image, relit(rotated, 8)};
-    const Ptr<IIB> iib = IIB::createFor(ORB::create(600));
-    std::vector<KeyPoint> keypoints[2];
+    RotatedPair pair(40);
+    const Ptr<IIB> iib = IIB::create(2.f);
     Mat descriptors[2];
     std::vector<DMatch> matches;
     const Ptr<HierarchicalMatcher> matcher =
@@ -95,26 +88,17 @@ TEST(IIB_GradientOrientation, finds_matches_in_a_rotated_image)
     const auto correct = [&](int orientation) {
         iib->setOrientation(orientation);
         for (int i = 0; i < 2; i++)
-            descriptors[i] = describe(*iib, images[i], keypoints[i]);
+            descriptors[i] = describe(*iib, pair.images[i], pair.keypoints[i]);
         matcher->match(descriptors[0], descriptors[1], matches);
-        int count = 0;
-        for (const DMatch& m : matches)
-        {
-            const Point2f p = keypoints[0][m.queryIdx].pt, q = keypoints[1][m.trainIdx].pt;
-            const Mat projected = affine * (Mat_<double>(3, 1) << p.x, p.y, 1);
-            count += std::hypot(projected.at<double>(0) - q.x, projected.at<double>(1) - q.y) <= 3;
-        }
-        return count;
+        return pair.correct(matches);
     };
-    for (int i = 0; i < 2; i++)
-        iib->detect(images[i], keypoints[i]);
     const int upright = correct(IIB::ORIENTATION_NONE);
     const int gradient = correct(IIB::ORIENTATION_GRADIENT);
-    const double degrees = estimateRotation(keypoints[0], keypoints[1], matches);
+    const double degrees = estimateRotation(pair.keypoints[0], pair.keypoints[1], matches);
     EXPECT_NEAR(40, degrees, 1);
-    for (KeyPoint& kp : keypoints[0])
+    for (KeyPoint& kp : pair.keypoints[0])
         kp.angle = 0;
-    for (KeyPoint& kp : keypoints[1])
+    for (KeyPoint& kp : pair.keypoints[1])
         kp.angle = (float)degrees;
     const int again = correct(IIB::ORIENTATION_KEYPOINT);
     std::cout << format("[          ] correct: upright %d, gradient %d, estimated rotation %d\n", upright,

@@ -2,6 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
+#include "../support/matcher_oracle.hpp"
 #include "../support/test_errors.hpp"
 #include "../support/test_images.hpp"
 
@@ -17,39 +18,24 @@ Ptr<IIB> rotating()
     return iib;
 }
 
-//! A scene, and the same by other light, rotated clockwise about its centre.
-struct RotatedPair
+//! A pair and what matchRotated makes of it.
+struct MatchedPair : public RotatedPair
 {
-    Mat images[2], affine;
-    std::vector<KeyPoint> keypoints[2];
+    Ptr<IIB> iib;
+    std::vector<DMatch> matches;
 
-    explicit RotatedPair(double degrees, double zoom = 1)
-    {
-        images[0] = scene(Size(400, 400), 7);
-        affine = getRotationMatrix2D(Point2f(199.5f, 199.5f), -degrees, zoom);
-        Mat rotated;
-        warpAffine(images[0], rotated, affine, images[0].size(), INTER_CUBIC, cv::BORDER_REFLECT_101);
-        images[1] = relit(rotated, 8);
-        for (int i = 0; i < 2; i++)
-            ORB::create(600)->detect(images[i], keypoints[i]);
-    }
+    explicit MatchedPair(double degrees, double zoom = 1) : RotatedPair(degrees, zoom), iib(rotating()) {}
 
-    int correct(const std::vector<DMatch>& matches) const
+    double match(double rotation = UNKNOWN,
+            const Ptr<DescriptorMatcher>& matcher = HierarchicalMatcher::createRecommended())
     {
-        int count = 0;
-        for (const DMatch& m : matches)
-        {
-            const Point2f p = keypoints[0][m.queryIdx].pt, q = keypoints[1][m.trainIdx].pt;
-            const Mat projected = affine * (Mat_<double>(3, 1) << p.x, p.y, 1);
-            count += std::hypot(projected.at<double>(0) - q.x, projected.at<double>(1) - q.y) <= 3;
-        }
-        return count;
+        return matchRotated(
+                images[0], keypoints[0], images[1], keypoints[1], iib, matcher, matches, rotation);
     }
 
     //! By hand: the first image upright, all keypoints of the second with one angle.
     std::vector<DMatch> matchedWith(float angle, const DescriptorMatcher& matcher) const
     {
-        const Ptr<IIB> iib = rotating();
         std::vector<KeyPoint> angled[] = {keypoints[0], keypoints[1]};
         Mat codes[2];
         for (int i = 0; i < 2; i++)
@@ -58,21 +44,15 @@ struct RotatedPair
                 kp.angle = i ? angle : -1;
             iib->compute(images[i], angled[i], codes[i]);
         }
-        std::vector<DMatch> matches;
-        matcher.match(codes[0], codes[1], matches);
-        return matches;
+        std::vector<DMatch> result;
+        matcher.match(codes[0], codes[1], result);
+        return result;
     }
 };
 
 void expectSameMatches(const std::vector<DMatch>& expected, const std::vector<DMatch>& actual)
 {
-    ASSERT_EQ(expected.size(), actual.size());
-    for (size_t i = 0; i < expected.size(); i++)
-    {
-        EXPECT_EQ(expected[i].queryIdx, actual[i].queryIdx);
-        EXPECT_EQ(expected[i].trainIdx, actual[i].trainIdx);
-        EXPECT_EQ(expected[i].distance, actual[i].distance);
-    }
+    expectEqual(Matches(1, expected), Matches(1, actual));
 }
 
 void expectAngles(float expected, const std::vector<KeyPoint>& keypoints)
@@ -83,26 +63,23 @@ void expectAngles(float expected, const std::vector<KeyPoint>& keypoints)
 
 TEST(IIB_MatchRotated, finds_the_angle_and_matches_with_it)
 {
-    const Ptr<IIB> iib = rotating();
     const Ptr<DescriptorMatcher> matchers[] = {
             HierarchicalMatcher::createRecommended(), cv::BFMatcher::create(NORM_HAMMING)};
     for (double degrees : {0., 30., 45., 90., 137., 180., 345.})
     {
         SCOPED_TRACE(degrees);
-        RotatedPair pair(degrees);
+        MatchedPair pair(degrees);
         const std::vector<KeyPoint> before[] = {pair.keypoints[0], pair.keypoints[1]};
         for (const Ptr<DescriptorMatcher>& matcher : matchers)
         {
-            std::vector<DMatch> matches;
-            const double found = matchRotated(pair.images[0], pair.keypoints[0], pair.images[1],
-                    pair.keypoints[1], iib, matcher, matches, UNKNOWN);
+            const double found = pair.match(UNKNOWN, matcher);
             EXPECT_GE(found, 0);
             EXPECT_LT(found, 360);
             const double error = std::abs(found - degrees);
             EXPECT_LE(std::min(error, 360 - error), 1.5) << found;
 
             const float angles[] = {-1, degrees == 0 ? -1.f : (float)found};
-            expectSameMatches(pair.matchedWith(angles[1], *matcher), matches);
+            expectSameMatches(pair.matchedWith(angles[1], *matcher), pair.matches);
             for (int i = 0; i < 2; i++)
             {
                 expectAngles(angles[i], pair.keypoints[i]);
@@ -113,42 +90,37 @@ TEST(IIB_MatchRotated, finds_the_angle_and_matches_with_it)
             }
             const int ideal = pair.correct(pair.matchedWith(degrees == 0 ? -1.f : (float)degrees, *matcher));
             EXPECT_GE(ideal, 100);
-            EXPECT_GE(pair.correct(matches), 0.95 * ideal);
+            EXPECT_GE(pair.correct(pair.matches), 0.95 * ideal);
         }
     }
 }
 
 TEST(IIB_MatchRotated, with_a_known_rotation)
 {
-    RotatedPair pair(137);
-    const Ptr<IIB> iib = rotating();
+    MatchedPair pair(137);
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
-    std::vector<DMatch> matches;
     for (double known : {137., 20., 2., 0., 358.})  // it is believed, right or wrong
     {
-        EXPECT_EQ(known, matchRotated(pair.images[0], pair.keypoints[0], pair.images[1], pair.keypoints[1],
-                                 iib, matcher, matches, known));
+        EXPECT_EQ(known, pair.match(known, matcher));
         const bool upright = known < 10 || known > 350;
         expectAngles(-1, pair.keypoints[0]);
         expectAngles(upright ? -1.f : (float)known, pair.keypoints[1]);
-        expectSameMatches(pair.matchedWith(pair.keypoints[1][0].angle, *matcher), matches);
+        expectSameMatches(pair.matchedWith(pair.keypoints[1][0].angle, *matcher), pair.matches);
     }
 }
 
 TEST(IIB_MatchRotated, detects_keypoints_itself)
 {
-    RotatedPair pair(60);
-    const Ptr<IIB> iib = rotating();
-    iib->setDetector(ORB::create(600));
-    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
-    std::vector<DMatch> expected, actual;
-    const double rotation = matchRotated(
-            pair.images[0], pair.keypoints[0], pair.images[1], pair.keypoints[1], iib, matcher, expected);
+    MatchedPair pair(60);
+    pair.iib->setDetector(ORB::create(600));
+    const double rotation = pair.match();
     std::vector<KeyPoint> keypoints[2];
-    EXPECT_EQ(rotation,
-            matchRotated(pair.images[0], pair.images[1], iib, matcher, keypoints[0], keypoints[1], actual));
+    std::vector<DMatch> actual;
+    EXPECT_EQ(
+            rotation, matchRotated(pair.images[0], pair.images[1], pair.iib,
+                              HierarchicalMatcher::createRecommended(), keypoints[0], keypoints[1], actual));
     EXPECT_NEAR(60, rotation, 1.5);
-    expectSameMatches(expected, actual);
+    expectSameMatches(pair.matches, actual);
     for (int i = 0; i < 2; i++)
         expectSameKeyPoints(pair.keypoints[i], keypoints[i]);
 }
@@ -157,46 +129,37 @@ TEST(IIB_MatchRotated, of_another_scale)
 {
     for (double zoom : {0.6, 1.6})
     {
-        RotatedPair pair(200, zoom);
-        std::vector<DMatch> matches;
-        EXPECT_NEAR(200,
-                matchRotated(pair.images[0], pair.keypoints[0], pair.images[1], pair.keypoints[1], rotating(),
-                        HierarchicalMatcher::createRecommended(), matches),
-                2)
-                << zoom;
-        EXPECT_GE(pair.correct(matches), 40);
+        MatchedPair pair(200, zoom);
+        EXPECT_NEAR(200, pair.match(), 2) << zoom;
+        EXPECT_GE(pair.correct(pair.matches), 40);
     }
 }
 
 TEST(IIB_MatchRotated, of_images_of_any_size_and_type)
 {
-    const RotatedPair pair(60);
+    const MatchedPair whole(60);
     for (Size size : {Size(1, 1), Size(1, 7), Size(33, 3), Size(399, 397)})
         for (int type : {CV_8UC1, CV_8UC4, CV_16UC3, CV_32FC1})
         {
-            Mat images[2];
-            std::vector<KeyPoint> keypoints[2];
+            MatchedPair part = whole;
             for (int i = 0; i < 2; i++)
             {
                 Mat grey;
-                pair.images[i](Rect(Point(), size)).convertTo(grey, type);
-                merge(std::vector<Mat>(CV_MAT_CN(type), grey), images[i]);
-                for (const KeyPoint& kp : pair.keypoints[i])
+                whole.images[i](Rect(Point(), size)).convertTo(grey, type);
+                merge(std::vector<Mat>(CV_MAT_CN(type), grey), part.images[i]);
+                part.keypoints[i].clear();
+                for (const KeyPoint& kp : whole.keypoints[i])
                     if (Rect2f(Point2f(), Size2f(size)).contains(kp.pt))
-                        keypoints[i].push_back(kp);
+                        part.keypoints[i].push_back(kp);
             }
-            std::vector<DMatch> matches;
-            const double rotation = matchRotated(images[0], keypoints[0], images[1], keypoints[1], rotating(),
-                    HierarchicalMatcher::createRecommended(), matches);
+            const double rotation = part.match();
             EXPECT_TRUE(size.area() < 1000 || std::abs(rotation - 60) <= 1.5) << type << ": " << rotation;
         }
 }
 
 TEST(IIB_MatchRotated, tries_the_strongest_keypoints)
 {
-    RotatedPair pair(60);
-    const Ptr<IIB> iib = rotating();
-    std::vector<DMatch> matches;
+    MatchedPair pair(60);
     for (std::vector<KeyPoint>& keypoints : pair.keypoints)
     {
         std::reverse(keypoints.begin(), keypoints.end());
@@ -206,27 +169,19 @@ TEST(IIB_MatchRotated, tries_the_strongest_keypoints)
             keypoints.insert(keypoints.begin(), weak);
         }
     }
-    EXPECT_NEAR(60,
-            matchRotated(pair.images[0], pair.keypoints[0], pair.images[1], pair.keypoints[1], iib,
-                    HierarchicalMatcher::createRecommended(), matches),
-            1.5);
+    EXPECT_NEAR(60, pair.match(), 1.5);
 }
 
 TEST(IIB_MatchRotated, drops_keypoints_as_the_extractor_does)
 {
-    RotatedPair pair(45);
-    const Ptr<IIB> iib = rotating();
-    iib->setBorder(IIB::BORDER_DROP);
+    MatchedPair pair(45);
+    pair.iib->setBorder(IIB::BORDER_DROP);
     for (std::vector<KeyPoint>& keypoints : pair.keypoints)
         keypoints.insert(keypoints.begin(), {KeyPoint(1, 1, 31, -1, 1e9f), KeyPoint(200, 399, 31, -1, 1e9f)});
-    std::vector<DMatch> matches;
-    EXPECT_NEAR(45,
-            matchRotated(pair.images[0], pair.keypoints[0], pair.images[1], pair.keypoints[1], iib,
-                    HierarchicalMatcher::createRecommended(), matches),
-            1.5);
+    EXPECT_NEAR(45, pair.match(), 1.5);
     EXPECT_LT(pair.keypoints[0].size(), 602u);
     EXPECT_EQ(-1, pair.keypoints[0][0].angle);
-    EXPECT_GE(pair.correct(matches), 100);
+    EXPECT_GE(pair.correct(pair.matches), 100);
 }
 
 TEST(IIB_MatchRotated, without_anything_to_match)

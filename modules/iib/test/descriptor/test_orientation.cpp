@@ -6,7 +6,6 @@
 #include "../support/test_images.hpp"
 
 #include "../../src/descriptor/kernels/kernels.hpp"
-#include "../../src/descriptor/kernels/kernels.hpp"
 
 namespace opencv_test {
 namespace {
@@ -64,29 +63,9 @@ TEST(IIB_Orientation, channel_rows_of_every_width_and_alignment)
             for (int y = 0; y + 1 < height; y++)
                 for (int x = 0; x < width; x++)
                     keypoints.push_back(KeyPoint(x + 0.5f, y + 0.5f, 2));
-            ASSERT_EQ(0, differingBits(oracle::describe(*iib, image, extra, keypoints),
-                                 describe(*iib, image, keypoints, extra)))
-                    << "width " << width << " alignment " << left;
+            SCOPED_TRACE(format("width %d alignment %d", width, left));
+            expectOracle(*iib, image, keypoints, extra);
         }
-    }
-}
-
-// As checkHardwareSupport sees it, and with it the dispatch of all kernels.
-TEST(IIB_Cpu, what_is_disabled_is_off)
-{
-    const char* pin = getenv("OPENCV_CPU_DISABLE");
-    std::stringstream names(pin ? pin : "");
-    String name;
-    while (std::getline(names, name, ','))
-    {
-        bool known = false;
-        for (int feature = 1; feature < CV_HARDWARE_MAX_FEATURE; feature++)
-            if (getHardwareFeatureName(feature) == name)
-            {
-                known = true;
-                EXPECT_FALSE(checkHardwareSupport(feature)) << name;
-            }
-        EXPECT_TRUE(known) << "OPENCV_CPU_DISABLE: " << name;
     }
 }
 

@@ -2,7 +2,6 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../support/descriptor_oracle.hpp"
 #include "../support/test_images.hpp"
 
 #include "../../src/descriptor/grid_pixels.hpp"
@@ -67,10 +66,7 @@ TEST(IIB_Rotated, grid_has_the_same_steps_everywhere)
     EXPECT_EQ(5964921,
             grid.stepY);  // 5964920.5 and a little, or exactly that if the sine's last place were less
     const Ptr<IIB> iib = rotating(6);
-    const Mat image = texture(grid.image, CV_8U, 5);
-    const std::vector<KeyPoint> keypoints(1, keypoint);
-    EXPECT_EQ(0, differingBits(oracle::describe(*iib, image, std::vector<Mat>(), keypoints),
-                         describe(*iib, image, keypoints)));
+    expectOracle(*iib, texture(grid.image, CV_8U, 5), {keypoint});
 }
 
 // What is kept does not depend on anything outside the image; what is removed has a corner there.
@@ -124,7 +120,7 @@ TEST(IIB_Rotated, sparse_and_dense_grids_give_the_same_bits)
         for (int i = 0; i < 3; i++)
             keypoints.push_back(KeyPoint(100.f + 450 * i, 900.f - 380 * i, 500.f, 100.f * i + 9));
         const Mat sparse = describe(*iib, image, keypoints, extra);
-        EXPECT_EQ(0, differingBits(oracle::describe(*iib, image, extra, keypoints), sparse));
+        expectOracle(*iib, image, keypoints, extra);
         for (int i = 0; i < 60; i++)
             keypoints.push_back(keypoints[i % 3]);
         EXPECT_EQ(0, differingBits(sparse, describe(*iib, image, keypoints, extra).rowRange(0, 3)));

@@ -11,14 +11,6 @@ using namespace cv;
 
 namespace {
 
-typedef Mat_<int> Map;
-
-//! The nearest value of the map.
-int at(const Map& m, int y, int x)
-{
-    return m(std::min(std::max(y, 0), m.rows - 1), std::min(std::max(x, 0), m.cols - 1));
-}
-
 //! Adds a variance: twice (w, 1 - 2 w, w), `spacing` apart, in 2^-16 rounded down.
 Map smoothed(const Map& m, double variance, Point direction)
 {

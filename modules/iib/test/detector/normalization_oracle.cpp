@@ -10,14 +10,6 @@ using namespace cv;
 
 namespace {
 
-typedef Mat_<int> Map;
-
-//! The nearest value of the map.
-int at(const Map& m, int y, int x)
-{
-    return m(std::min(std::max(y, 0), m.rows - 1), std::min(std::max(x, 0), m.cols - 1));
-}
-
 //! Grey levels in 2^-7.
 Map greyLevels(const Mat& grey)
 {

@@ -2,7 +2,6 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../support/detected_matches.hpp"
 #include "../support/temporary_file.hpp"
 #include "../support/test_errors.hpp"
 #include "../support/test_images.hpp"
@@ -140,10 +139,11 @@ TEST(IIB_HessianDetector, takes_every_type_of_image)
     const std::vector<KeyPoint> expected = found(*detector, grey);
     ASSERT_GT(expected.size(), 100u);
     Mat colour, framed;
-    merge(std::vector<Mat>(3, grey), colour);
-    expectSameKeyPoints(expected, found(*detector, colour));
-    merge(std::vector<Mat>(4, grey), colour);
-    expectSameKeyPoints(expected, found(*detector, colour));
+    for (int channels : {3, 4})
+    {
+        merge(std::vector<Mat>(channels, grey), colour);
+        expectSameKeyPoints(expected, found(*detector, colour));
+    }
     UMat onDevice;
     grey.copyTo(onDevice);
     expectSameKeyPoints(expected, found(*detector, onDevice));
@@ -152,8 +152,8 @@ TEST(IIB_HessianDetector, takes_every_type_of_image)
     Mat wide, real;
     grey.convertTo(wide, CV_16U, 257);
     grey.convertTo(real, CV_32F, 1 / 255.);
-    EXPECT_GT(found(*detector, wide).size(), 100u);
-    EXPECT_GT(found(*detector, real).size(), 100u);
+    for (const Mat& image : {wide, real})
+        EXPECT_GT(found(*detector, image).size(), 100u);
     EXPECT_TRUE(found(*detector, Mat()).empty());
     EXPECT_TRUE(found(*detector, Mat(1, 40, CV_8U, Scalar(7))).empty());
     EXPECT_TRUE(found(*detector, Mat(90, 90, CV_8U, Scalar(7))).empty());
@@ -225,22 +225,21 @@ TEST(IIB_HessianDetector, parameters_and_files)
         EXPECT_EQ(2.5f, copy->getSigma());
         EXPECT_EQ(7.f, copy->getNormalizationSigma());
     };
-    const String file = cv::tempfile(".yml");
     for (bool saved : {true, false})
     {
+        const TemporaryFile file(".yml");
         if (saved)
-            detector->save(file);
+            detector->save(file.name);
         else
-            detector->Feature2D::write(file);
+            detector->Feature2D::write(file.name);
         const Ptr<HessianDetector> copy = HessianDetector::create();
-        copy->Feature2D::read(file);
+        copy->Feature2D::read(file.name);
         expectSame(copy);
-        FileStorage fs(file, FileStorage::READ);
+        const FileStorage fs(file.name, FileStorage::READ);
         const Ptr<HessianDetector> other = HessianDetector::create();
         other->read(fs.getFirstTopLevelNode());
         expectSame(other);
     }
-    std::remove(file.c_str());
     const Ptr<HessianDetector> other = HessianDetector::create();
     expectError(Error::StsParseError, "HessianDetector", [&] { other->read(FileNode()); });
     FileStorage wrong("{\"format\": 1, \"scales\": 99}", FileStorage::READ | FileStorage::MEMORY);

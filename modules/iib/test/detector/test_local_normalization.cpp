@@ -9,16 +9,19 @@
 namespace opencv_test {
 namespace {
 
+void expectOracle(const Mat& image, float sigma)
+{
+    ASSERT_EQ(0, differingBits(oracle::normalizeLocally(image, sigma), normalized(image, sigma)))
+            << image.size() << ", sigma " << sigma;
+}
+
 TEST(IIB_Normalization, as_the_oracle_for_every_size_and_alignment)
 {
     const Mat whole = texture(Size(220, 40), CV_8U, 1);
     for (int width = 1; width <= 200; width += width < 70 ? 1 : 13)
     {
         const int left = width % 3 == 0 ? 0 : width % 3 == 1 ? 1 : 7;
-        const int height = 1 + width % 37;
-        const Mat image = whole(Rect(left, width % 3, width, height));
-        ASSERT_EQ(0, differingBits(oracle::normalizeLocally(image, 4), normalized(image, 4.f)))
-                << width << " x " << height << ", alignment " << left;
+        expectOracle(whole(Rect(left, width % 3, width, 1 + width % 37)), 4);
     }
 }
 
@@ -28,8 +31,7 @@ TEST(IIB_Normalization, as_the_oracle_for_every_sigma_and_depth)
     {
         const Mat image = texture(Size(150, 97), depth, 2);
         for (float sigma : {1.f, 1.3f, 1.99f, 2.f, 3.f, 4.f, 5.5f, 8.f, 20.f, 100.f, 256.f})
-            EXPECT_EQ(0, differingBits(oracle::normalizeLocally(image, sigma), normalized(image, sigma)))
-                    << "depth " << depth << " sigma " << sigma;
+            expectOracle(image, sigma);
     }
 }
 
@@ -39,12 +41,11 @@ TEST(IIB_Normalization, as_the_oracle_at_the_largest_contrast)
     Mat image = texture(Size(130, 70), CV_8U, 3);
     cv::threshold(image, image, 127, 255, THRESH_BINARY);
     for (float sigma : {1.f, 2.f, 4.f, 9.f})
-        EXPECT_EQ(0, differingBits(oracle::normalizeLocally(image, sigma), normalized(image, sigma)))
-                << sigma;
+        expectOracle(image, sigma);
     Mat point(64, 64, CV_8U, Scalar(0));
     point.at<uchar>(30, 30) = 255;
-    EXPECT_EQ(0, differingBits(oracle::normalizeLocally(point, 4), normalized(point, 4.f)));
-    EXPECT_EQ(0, differingBits(oracle::normalizeLocally(255 - point, 4), normalized(255 - point, 4.f)));
+    expectOracle(point, 4);
+    expectOracle(255 - point, 4);
 }
 
 TEST(IIB_Normalization, is_near_its_definition)

@@ -77,6 +77,7 @@ struct ScanData
     }
 };
 
+// Code by code; and a whole block at once, out of rows that are not continuous.
 TEST(IIB_Hamming, layout_comes_back)
 {
     for (CodePacking packing : {PACKING_ADDERS, PACKING_TABLES})
@@ -84,7 +85,8 @@ TEST(IIB_Hamming, layout_comes_back)
                 {Levels{1}, Levels{2, 8, 32, 128}, Levels{8, 24}, Levels{3, 5, 7}, Levels{4}})
         {
             const CodeLayout layout(levels, packing);
-            const Mat descriptor = randomDescriptors(1, 1, layout.bytes());
+            const Mat wide = randomDescriptors(1, 16, layout.bytes() + 5),
+                      descriptors = wide.colRange(3, 3 + layout.bytes()), descriptor = descriptors.row(5);
             std::vector<unsigned> block(layout.blockWords()), plain(layout.words());
             Mat back(1, layout.bytes(), CV_8U, Scalar(0));
             layout.store(descriptor.ptr(), block.data(), 5);
@@ -97,19 +99,6 @@ TEST(IIB_Hamming, layout_comes_back)
             EXPECT_EQ(8 * layout.bytes(), bits);
             for (int level = 0; level + 1 < layout.levels(); level++)
                 EXPECT_EQ(8 * levels[level], layout.bits(level));
-        }
-}
-
-// A whole block at once, out of rows that are not continuous, against code by code.
-TEST(IIB_Hamming, blocks_are_stored_as_single_codes)
-{
-    for (CodePacking packing : {PACKING_ADDERS, PACKING_TABLES})
-        for (const Levels& levels :
-                {Levels{1}, Levels{2, 8, 32, 128}, Levels{8, 24}, Levels{3, 5, 7}, Levels{4}})
-        {
-            const CodeLayout layout(levels, packing);
-            const Mat wide = randomDescriptors(1, 16, layout.bytes() + 5),
-                      descriptors = wide.colRange(3, 3 + layout.bytes());
             std::vector<unsigned> expected(layout.blockWords()), actual(layout.blockWords());
             for (int i = 0; i < 16; i++)
                 layout.store(descriptors.ptr(i), expected.data(), i);

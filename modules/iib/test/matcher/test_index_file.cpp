@@ -2,7 +2,6 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../support/disk.hpp"
 #include "../support/matcher_oracle.hpp"
 #include "../support/temporary_file.hpp"
 #include "../support/test_errors.hpp"
@@ -24,6 +23,74 @@ Ptr<HierarchicalMatcher> matcherOf(int rows)
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({2, 6});
     matcher->add(randomDescriptors(1, rows, 8));
     return matcher;
+}
+
+TEST(IIB_MatcherFile, comes_back_whole)
+{
+    const TemporaryFile file;
+    const Ptr<HierarchicalMatcher> matcher =
+            HierarchicalMatcher::create({3, 8, 31}, HierarchicalMatcher::THRESHOLD);
+    matcher->setThresholds({0.4f, 0.45f});
+    matcher->setMaxRatio(0.9f);
+    matcher->add(std::vector<Mat>{randomDescriptors(1, 33, 42), Mat(), randomDescriptors(2, 5, 42)});
+    matcher->saveIndex(file.name);
+    const Ptr<HierarchicalMatcher> loaded = HierarchicalMatcher::loadIndex(file.name);
+    expectSameParameters(*matcher, *loaded);
+    ASSERT_EQ(3u, loaded->getTrainDescriptors().size());
+    EXPECT_EQ(0, cvtest::norm(matcher->getTrainDescriptors()[2], loaded->getTrainDescriptors()[2], NORM_INF));
+    Matches expected, actual;
+    const Mat queries = randomDescriptors(3, 20, 42);
+    const std::vector<Mat> masks = {randomMask(4, 20, 33, 0.5), Mat(), Mat()};
+    matcher->knnMatch(queries, expected, 3, masks);
+    loaded->knnMatch(queries, actual, 3, masks);
+    expectEqual(expected, actual);
+}
+
+TEST(IIB_MatcherFile, truncated_altered_or_foreign_throws)
+{
+    const TemporaryFile file;
+    matcherOf(3)->saveIndex(file.name);
+    const std::string whole = file.read();
+    for (size_t size = 0; size < whole.size(); size++)
+    {
+        file.write(whole.substr(0, size));
+        EXPECT_THROW(HierarchicalMatcher::loadIndex(file.name), cv::Exception) << size;
+        std::string altered = whole;
+        for (int change : {1, 128, 255})
+        {
+            altered[size] = (char)(whole[size] ^ change);
+            file.write(altered);
+            EXPECT_THROW(HierarchicalMatcher::loadIndex(file.name), cv::Exception) << size;
+        }
+    }
+    file.write(whole + "x");
+    EXPECT_THROW(HierarchicalMatcher::loadIndex(file.name), cv::Exception);
+    file.write("%YAML:1.0\n---\nlevelSizes: [ 2, 8 ]\n");
+    EXPECT_THROW(HierarchicalMatcher::loadIndex(file.name), cv::Exception);
+    EXPECT_THROW(HierarchicalMatcher::loadIndex(file.name + ".missing"), cv::Exception);
+    EXPECT_THROW(matcherOf(3)->saveIndex(file.name + ".missing/file"), cv::Exception);
+    file.write(whole);
+    EXPECT_EQ(3, HierarchicalMatcher::loadIndex(file.name)->getTrainDescriptors()[0].rows);
+}
+
+// A file as format 1 wrote it: levels {1, 2}, THRESHOLD at 0.25, cross-check, ratio 0.5, an image of two rows.
+TEST(IIB_MatcherFile, format_1_stays_readable)
+{
+    const uchar bytes[] = {'I', 'I', 'B', 'I', 'N', 'D', 'E', 'X', 1, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 0, 2, 0,
+            0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 63, 0, 0, 128, 62, 1, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0,
+            0, 0, 0, 1, 2, 3, 250, 251, 252, 208, 162, 232, 181, 226, 157, 225, 67};
+    const TemporaryFile file;
+    file.write(std::string((const char*)bytes, sizeof(bytes)));
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::loadIndex(file.name);
+    EXPECT_EQ((std::vector<int>{1, 2}), matcher->levelSizes());
+    EXPECT_EQ(HierarchicalMatcher::THRESHOLD, matcher->getMode());
+    EXPECT_EQ(std::vector<float>(1, 0.25f), matcher->getThresholds());
+    EXPECT_TRUE(matcher->getCrossCheck());
+    EXPECT_EQ(0.5f, matcher->getMaxRatio());
+    const Mat expected = (Mat_<uchar>(2, 3) << 1, 2, 3, 250, 251, 252);
+    EXPECT_EQ(0, cvtest::norm(expected, matcher->getTrainDescriptors()[0], NORM_INF));
+    matcher->saveIndex(file.name);
+    EXPECT_EQ(std::string((const char*)bytes, sizeof(bytes)), file.read());
 }
 
 TEST(IIB_IndexFile, load_never_sees_half_a_file)
@@ -61,20 +128,18 @@ TEST(IIB_IndexFile, savers_at_the_same_time_leave_a_whole_file)
 #ifdef __linux__
 TEST(IIB_IndexFile, full_disk_keeps_the_old_file)
 {
-    const String folder = cv::tempfile(".folder"), name = folder + "/index.iib";
-    ASSERT_EQ(0, mkdir(folder.c_str(), 0700));
+    const TemporaryFolder folder;
+    const String name = folder.name + "/index.iib";
     matcherOf(40)->saveIndex(name);
     {
         const FullDisk full(100);
         EXPECT_THROW(matcherOf(41)->saveIndex(name), cv::Exception);
-        EXPECT_THROW(matcherOf(1000)->saveIndex(folder + "/new.iib"), cv::Exception);
+        EXPECT_THROW(matcherOf(1000)->saveIndex(folder.name + "/new.iib"), cv::Exception);
     }
     EXPECT_EQ(40, HierarchicalMatcher::loadIndex(name)->getTrainDescriptors()[0].rows);
     std::vector<String> files;
-    cv::glob(folder + "/*", files);
+    cv::glob(folder.name + "/*", files);
     EXPECT_EQ(std::vector<String>(1, name), files);  // nothing half-written is left
-    std::remove(name.c_str());
-    rmdir(folder.c_str());
 }
 
 TEST(IIB_IndexFile, devices_links_and_rights_stay_what_they_are)

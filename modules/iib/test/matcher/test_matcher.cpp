@@ -80,16 +80,11 @@ TEST(IIB_Matcher, all_together_as_the_oracle)
         for (int bits = 0; bits < 16; bits++)
         {
             SCOPED_TRACE(format("k %d, setting %d", k, bits));
-            const bool threshold = (bits & 8) != 0;
             oracle.crossCheck = (bits & 1) != 0;
             oracle.masks = bits & 2 ? masks : std::vector<Mat>();
             oracle.maxRatio = bits & 4 ? 0.8f : 1.f;
-            oracle.thresholds = threshold ? std::vector<float>(2, 0.35f) : std::vector<float>();
-            const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(oracle.levelSizes,
-                    threshold ? HierarchicalMatcher::THRESHOLD : HierarchicalMatcher::EXACT, 0.35f,
-                    oracle.crossCheck);
-            matcher->setMaxRatio(oracle.maxRatio);
-            matcher->add(oracle.images);
+            oracle.thresholds = bits & 8 ? std::vector<float>(2, 0.35f) : std::vector<float>();
+            const Ptr<HierarchicalMatcher> matcher = oracle.matcher();
             expectKnnAsOracle(*matcher, oracle, queries, k);
             if (k == 1)
                 expectRadiusAsOracle(*matcher, oracle, queries);

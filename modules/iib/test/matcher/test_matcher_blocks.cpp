@@ -17,15 +17,6 @@ void setBlocks(HierarchicalMatcher& matcher, int size)
     blocks.queryCount = blocks.codeBlocks = blocks.codeBlocksOfLimits = size;
 }
 
-Ptr<HierarchicalMatcher> createMatcher(const MatcherOracle& oracle, int mode, int blocks)
-{
-    const Ptr<HierarchicalMatcher> matcher =
-            HierarchicalMatcher::create(oracle.levelSizes, mode, 0.35f, oracle.crossCheck);
-    setBlocks(*matcher, blocks);
-    matcher->setMaxRatio(oracle.maxRatio);
-    return matcher;
-}
-
 TEST_P(IIB_Matcher_Blocks, as_the_oracle)
 {
     const int size = std::get<0>(GetParam()), mode = std::get<1>(GetParam());
@@ -43,8 +34,8 @@ TEST_P(IIB_Matcher_Blocks, as_the_oracle)
             oracle.crossCheck = (bits & 1) != 0;
             oracle.masks = bits & 2 ? masks : std::vector<Mat>();
             oracle.maxRatio = bits & 4 ? 0.8f : 1.f;
-            const Ptr<HierarchicalMatcher> matcher = createMatcher(oracle, mode, size);
-            matcher->add(oracle.images);
+            const Ptr<HierarchicalMatcher> matcher = oracle.matcher();
+            setBlocks(*matcher, size);
             expectKnnAsOracle(*matcher, oracle, queries, k);
             // clones keep the size of blocks
             Matches ofClone;
@@ -64,13 +55,11 @@ INSTANTIATE_TEST_CASE_P(/**/, IIB_Matcher_Blocks,
 TEST(IIB_Matcher_Adaptive, does_not_depend_on_blocks)
 {
     const Mat queries = randomDescriptors(1, 30, 64), trains = randomDescriptors(2, 5000, 64);
-    const Ptr<HierarchicalMatcher> matcher =
-            HierarchicalMatcher::create({16, 48}, HierarchicalMatcher::ADAPTIVE);
     MatcherOracle oracle;
     oracle.levelSizes = {16, 48};
     oracle.images.push_back(trains);
     oracle.adaptiveBlock = 2048;
-    matcher->add(trains);
+    const Ptr<HierarchicalMatcher> matcher = oracle.matcher();
     for (int size : {1, 100, 1000})
     {
         ScanBlocks& blocks = dynamic_cast<ScanBlocks&>(*matcher);

@@ -18,10 +18,7 @@ TEST(IIB_MatcherClone, keeps_parameters)
     for (bool empty : {false, true})
     {
         const Ptr<HierarchicalMatcher> copy = matcher->copy(empty);
-        EXPECT_EQ(HierarchicalMatcher::THRESHOLD, copy->getMode());
-        EXPECT_EQ((std::vector<float>{0.1f, 0.2f}), copy->getThresholds());
-        EXPECT_TRUE(copy->getCrossCheck());
-        EXPECT_EQ(0.5f, copy->getMaxRatio());
+        expectSameParameters(*matcher, *copy);
         EXPECT_EQ(empty, copy->empty());
     }
 }

@@ -3,6 +3,10 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/matcher_oracle.hpp"
+#include "../support/test_errors.hpp"
+#include "../../src/matcher/knn_table.hpp"
+
+#include <numeric>
 
 namespace opencv_test {
 namespace {
@@ -20,14 +24,29 @@ Ptr<HierarchicalMatcher> matcherOf(const std::vector<Mat>& images)
     return matcher;
 }
 
-// Descriptor i has its first i bits set: the distance between two is the difference of their numbers.
-Mat ladder(int first, int rows)
+//! A code of some bytes whose first bits are set, for each number of bits.
+Mat codesOfBits(const std::vector<int>& counts, int bytes)
 {
-    Mat result(rows, BYTES, CV_8U, Scalar(0));
-    for (int i = 0; i < rows; i++)
-        for (int bit = 0; bit < first + i; bit++)
-            result.at<uchar>(i, bit / 8) |= (uchar)(1 << bit % 8);
-    return result;
+    Mat codes((int)counts.size(), bytes, CV_8U, Scalar(0));
+    for (int i = 0; i < codes.rows; i++)
+        for (int bit = 0; bit < counts[i]; bit++)
+            codes.at<uchar>(i, bit / 8) |= (uchar)(1 << bit % 8);
+    return codes;
+}
+
+// Descriptor i has its first i bits set: the distance between two is the difference of their numbers.
+Mat ladder(int first, int rows, int bytes = BYTES)
+{
+    std::vector<int> counts(rows);
+    std::iota(counts.begin(), counts.end(), first);
+    return codesOfBits(counts, bytes);
+}
+
+TEST(IIB_KnnTable, what_memory_cannot_hold_is_an_error_that_names_k)
+{
+    expectError(Error::StsNoMem, format("k is %d", INT_MAX), [] { KnnTable(INT_MAX, INT_MAX); });
+    expectError(
+            Error::StsNoMem, format("k is %d", INT_MAX), [] { forNeighbours<int64>(INT_MAX, INT_MAX, -1); });
 }
 
 TEST(IIB_MatcherEdges, more_neighbours_asked_for_than_there_are)
@@ -36,19 +55,6 @@ TEST(IIB_MatcherEdges, more_neighbours_asked_for_than_there_are)
     matcherOf({ladder(0, 3)})->knnMatch(ladder(1, 2), matches, INT_MAX);
     ASSERT_EQ(2u, matches.size());
     EXPECT_EQ(3u, matches[0].size());
-}
-
-TEST(IIB_MatcherEdges, ties_go_to_the_first_image_and_lowest_index)
-{
-    Matches matches;
-    matcherOf({ladder(9, 1), ladder(5, 1), ladder(5, 1), ladder(4, 3)})->knnMatch(ladder(5, 1), matches, 3);
-    ASSERT_EQ(3u, matches[0].size());
-    for (int i = 0; i < 3; i++)
-    {
-        EXPECT_EQ(0, matches[0][i].distance);
-        EXPECT_EQ(i + 1, matches[0][i].imgIdx);
-        EXPECT_EQ(i == 2 ? 1 : 0, matches[0][i].trainIdx);
-    }
 }
 
 // Codes too wide for a scan that keeps a distance and an index in 31 bits.
@@ -61,29 +67,8 @@ TEST(IIB_MatcherEdges, very_wide_codes)
     for (bool crossCheck : {false, true})
     {
         oracle.crossCheck = crossCheck;
-        const Ptr<HierarchicalMatcher> matcher =
-                HierarchicalMatcher::create(oracle.levelSizes, HierarchicalMatcher::EXACT, 0.3f, crossCheck);
-        matcher->add(oracle.images);
-        Matches found;
-        matcher->knnMatch(queries, found, 1);
-        expectEqual(oracle.knn(queries, 1), found);
+        expectKnnAsOracle(*oracle.matcher(), oracle, queries, 1);
     }
-}
-
-TEST(IIB_MatcherEdges, train_set_empty)
-{
-    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(LEVELS);
-    std::vector<DMatch> best(3);
-    matcher->match(ladder(0, 5), Mat(), best);
-    EXPECT_TRUE(best.empty());
-    Matches matches(7);
-    matcher->radiusMatch(ladder(0, 5), Mat(0, BYTES, CV_8U), matches, 10);
-    expectEqual(Matches(5), matches);
-    matcher->knnMatch(ladder(0, 5), Mat(), matches, 2, noArray(), true);
-    expectEqual(Matches(), matches);
-    Mat indices, distances;
-    matcher->knnMatchArrays(ladder(0, 5), Mat(), indices, distances, 2);
-    EXPECT_EQ(0, cvtest::norm(indices, Mat(5, 2, CV_32S, Scalar(-1)), NORM_INF));
 }
 
 TEST(IIB_MatcherEdges, empty_image_among_several_is_skipped)
@@ -104,15 +89,6 @@ TEST(IIB_MatcherEdges, empty_image_among_several_is_skipped)
     EXPECT_EQ(1, matches[0].imgIdx);
 }
 
-// opencv#4600
-TEST(IIB_MatcherEdges, small_image_does_not_limit_k)
-{
-    Matches matches;
-    matcherOf({ladder(0, 7), ladder(100, 1)})->knnMatch(ladder(0, 4), matches, 3);
-    for (size_t q = 0; q < matches.size(); q++)
-        EXPECT_EQ(3u, matches[q].size());
-}
-
 TEST(IIB_MatcherEdges, least_distance_at_the_ratio_is_refused)
 {
     const Ptr<HierarchicalMatcher> matcher = matcherOf({ladder(0, 1), ladder(12, 1)});
@@ -121,16 +97,6 @@ TEST(IIB_MatcherEdges, least_distance_at_the_ratio_is_refused)
     matcher->match(ladder(3, 2), matches);  // distances 3 and 9, 4 and 8
     ASSERT_EQ(1u, matches.size());
     EXPECT_EQ(0, matches[0].queryIdx);
-}
-
-//! A code of some bytes whose first bits are set, for each number of bits.
-Mat codesOfBits(const std::vector<int>& counts, int bytes)
-{
-    Mat codes((int)counts.size(), bytes, CV_8U, Scalar(0));
-    for (int i = 0; i < codes.rows; i++)
-        for (int bit = 0; bit < counts[i]; bit++)
-            codes.at<uchar>(i, bit / 8) |= 1 << bit % 8;
-    return codes;
 }
 
 // Also where the float is above the hundredth that it stands for.
@@ -151,10 +117,7 @@ TEST(IIB_MatcherEdges, ties_at_any_hundredth_are_refused)
 
 TEST(IIB_MatcherEdges, ties_at_any_hundredth_are_within_the_threshold)
 {
-    std::vector<int> counts;
-    for (int i = 0; i <= 160; i++)
-        counts.push_back(i);
-    const Mat codes = codesOfBits(counts, 21);
+    const Mat codes = ladder(0, 161, 21);
     for (int hundredth = 0; hundredth <= 100; hundredth++)
     {
         Matches matches;
@@ -206,18 +169,6 @@ TEST(IIB_MatcherEdges, radius_includes_its_bound_and_zero_throws)
     EXPECT_THROW(matcher->radiusMatch(ladder(20, 1), matches, 0.f), cv::Exception);
 }
 
-// opencv#22398
-TEST(IIB_MatcherEdges, second_call_does_not_append)
-{
-    Matches matches;
-    const Ptr<HierarchicalMatcher> matcher = matcherOf({ladder(0, 9)});
-    for (int i = 0; i < 2; i++)
-    {
-        matcher->knnMatch(ladder(0, 5), matches, 2);
-        EXPECT_EQ(5u, matches.size());
-    }
-}
-
 // More rows than BFMatcher's 262,144 an image, more images than its 8,191.
 TEST(IIB_MatcherEdges, no_limit_on_rows_and_images)
 {
@@ -238,34 +189,6 @@ TEST(IIB_MatcherEdges, no_limit_on_rows_and_images)
     matcher->match(many.row(8999), matches);
     EXPECT_EQ(8999, matches[0].imgIdx);
     EXPECT_EQ(0, matches[0].trainIdx);
-}
-
-// The core's matcher test: two add()s, local trainIdx, imgIdx; masks that shift the result by one.
-TEST(IIB_MatcherEdges, two_images_with_masks)
-{
-    const Mat train = ladder(0, 60), queries = ladder(0, 30);
-    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(LEVELS);
-    matcher->add(train.rowRange(0, 25));
-    matcher->add(train.rowRange(25, 60));
-    std::vector<DMatch> matches;
-    matcher->match(queries, matches);
-    for (int q = 0; q < 30; q++)
-    {
-        EXPECT_EQ(0, matches[q].distance);
-        EXPECT_EQ(q < 25 ? 0 : 1, matches[q].imgIdx);
-        EXPECT_EQ(q < 25 ? q : q - 25, matches[q].trainIdx);
-    }
-    // Without itself and all below, the nearest is the next.
-    std::vector<Mat> masks = {Mat(30, 25, CV_8U, Scalar(0)), Mat(30, 35, CV_8U, Scalar(0))};
-    for (int q = 0; q < 30; q++)
-        for (int t = q + 1; t < 60; t++)
-            (t < 25 ? masks[0].at<uchar>(q, t) : masks[1].at<uchar>(q, t - 25)) = 255;
-    matcher->match(queries, matches, masks);
-    for (int q = 0; q < 30; q++)
-    {
-        EXPECT_EQ(1, matches[q].distance);
-        EXPECT_EQ(q + 1, matches[q].trainIdx + 25 * matches[q].imgIdx);
-    }
 }
 
 // opencv#11855
@@ -292,12 +215,7 @@ TEST(IIB_MatcherEdges, cross_check_with_more_neighbours_than_trains)
     oracle.levelSizes = LEVELS;
     oracle.images = {ladder(7, 3)};
     oracle.crossCheck = true;
-    const Ptr<HierarchicalMatcher> matcher = matcherOf(oracle.images);
-    matcher->setCrossCheck(true);
-    Matches matches;
-    matcher->knnMatch(ladder(0, 20), matches, 16);
-    expectEqual(oracle.knn(ladder(0, 20), 16), matches);
-    EXPECT_EQ(3u, matches[8].size());
+    expectKnnAsOracle(*oracle.matcher(), oracle, ladder(0, 20), 16);
 }
 
 TEST(IIB_MatcherEdges, umat_queries_trains_and_masks)

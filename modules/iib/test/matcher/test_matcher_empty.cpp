@@ -19,17 +19,23 @@ const Matches OLD_ROWS(7, std::vector<DMatch>(2));
 TEST(IIB_MatcherEmpty, without_train_descriptors_rows_are_empty)
 {
     const Ptr<HierarchicalMatcher> matcher = createMatcher();
-    std::vector<DMatch> best = OLD;
-    matcher->match(SOME, best);
+    std::vector<DMatch> best;
+    matcher->match(SOME, best = OLD);
     EXPECT_TRUE(best.empty());
-    Matches rows = OLD_ROWS;
-    matcher->knnMatch(SOME, rows, 2);
+    matcher->match(SOME, NONE, best = OLD);
+    EXPECT_TRUE(best.empty());
+    Matches rows;
+    matcher->knnMatch(SOME, rows = OLD_ROWS, 2);
     expectEqual(Matches(5), rows);
-    rows = OLD_ROWS;
-    matcher->radiusMatch(SOME, rows, 10);
+    matcher->radiusMatch(SOME, rows = OLD_ROWS, 10);
+    expectEqual(Matches(5), rows);
+    matcher->radiusMatch(SOME, Mat(0, 42, CV_8U), rows = OLD_ROWS, 10);
     expectEqual(Matches(5), rows);
     matcher->knnMatch(SOME, rows = OLD_ROWS, 2, noArray(), true);
     EXPECT_TRUE(rows.empty());
+    Mat indices, distances;
+    matcher->knnMatchArrays(SOME, NONE, indices, distances, 2);
+    EXPECT_EQ(0, cvtest::norm(indices, Mat(5, 2, CV_32S, Scalar(-1)), NORM_INF));
 }
 
 TEST(IIB_MatcherEmpty, without_queries_nothing_is_left)

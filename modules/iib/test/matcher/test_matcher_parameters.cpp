@@ -9,6 +9,7 @@
 namespace opencv_test {
 namespace {
 
+// As the first version wrote them.
 const String GOOD = "%YAML:1.0\n---\nlevelSizes: [ 8, 24 ]\nmode: 2\nthresholds: [ 3.0000001192092896e-01 ]\n"
                     "crossCheck: 1\nmaxRatio: 7.5000000000000000e-01\n";
 
@@ -19,17 +20,18 @@ Ptr<HierarchicalMatcher> readText(const String& text)
     return matcher;
 }
 
-String replaced(const String& from, const String& to)
+TEST(IIB_MatcherParameters, first_parameters_stay_readable)
 {
-    String text = GOOD;
-    const size_t at = text.find(from);
-    CV_Assert(at != String::npos);
-    return text.replace(at, from.size(), to);
+    const Ptr<HierarchicalMatcher> matcher = readText(GOOD);
+    EXPECT_EQ((std::vector<int>{8, 24}), matcher->levelSizes());
+    EXPECT_EQ(HierarchicalMatcher::ADAPTIVE, matcher->getMode());
+    EXPECT_EQ(std::vector<float>(1, 0.3f), matcher->getThresholds());
+    EXPECT_TRUE(matcher->getCrossCheck());
+    EXPECT_EQ(0.75f, matcher->getMaxRatio());
 }
 
 TEST(IIB_MatcherParameters, damaged_values_throw_and_are_named)
 {
-    EXPECT_EQ((std::vector<int>{8, 24}), readText(GOOD)->levelSizes());
     const char* const cases[][3] = {// from, to, what the error names
             {"crossCheck: 1", "crossCheck: \"false\"", "crossCheck"},
             {"crossCheck: 1", "crossCheck: 2", "crossCheck"},
@@ -50,7 +52,8 @@ TEST(IIB_MatcherParameters, damaged_values_throw_and_are_named)
         const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({4});
         try
         {
-            matcher->read(FileStorage(replaced(c[0], c[1]), FileStorage::READ | FileStorage::MEMORY).root());
+            matcher->read(
+                    FileStorage(replaced(GOOD, c[0], c[1]), FileStorage::READ | FileStorage::MEMORY).root());
             ADD_FAILURE() << "no exception";
         }
         catch (const cv::Exception& e)
@@ -67,8 +70,10 @@ TEST(IIB_MatcherParameters, whole_numbers_beyond_32_bits)
     const FileStorage probe("%YAML:1.0\n---\nnumber: 4294967304\n", FileStorage::READ | FileStorage::MEMORY);
     if ((double)probe["number"] == 8)
         return;
-    expectError(Error::StsParseError, "levelSizes", [] { readText(replaced("[ 8,", "[ 4294967304,")); });
-    expectError(Error::StsParseError, "mode", [] { readText(replaced("mode: 2", "mode: 4294967297")); });
+    expectError(
+            Error::StsParseError, "levelSizes", [] { readText(replaced(GOOD, "[ 8,", "[ 4294967304,")); });
+    expectError(
+            Error::StsParseError, "mode", [] { readText(replaced(GOOD, "mode: 2", "mode: 4294967297")); });
 }
 
 TEST(IIB_MatcherParameters, files_of_others_are_refused)

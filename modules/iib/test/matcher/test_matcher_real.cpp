@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/matcher_oracle.hpp"
+#include "../support/test_images.hpp"
 
 /* The matcher on descriptors of real images, below OPENCV_TEST_DATA_PATH; without them these tests skip. */
 namespace opencv_test {
@@ -17,7 +18,8 @@ struct RealPair
 
     RealPair(int second, size_t count)
     {
-        const Mat images[] = {read(1), read(second)};
+        const Mat images[] = {readIllumination("iib_demo/scene/1.png"),
+                readIllumination(format("iib_demo/scene/%d.png", second))};
         std::vector<KeyPoint> all;
         FAST(images[0], all, 1);
         for (size_t i = 0; i < count; i++)
@@ -26,12 +28,6 @@ struct RealPair
         levels = iib->levelSizes();
         iib->compute(images[0], keypoints, queries);
         iib->compute(images[1], keypoints, trains);
-    }
-
-    static Mat read(int number)
-    {
-        return imread(cvtest::findDataFile(format("illumination/iib_demo/scene/%d.png", number), false),
-                IMREAD_GRAYSCALE);
     }
 
     //! The train code found for each query within 3 pixels, -1 where there is none.
@@ -47,28 +43,6 @@ struct RealPair
     }
 };
 
-TEST(IIB_Real, exact_matches_as_BFMatcher)
-{
-    const RealPair pair(3, 2000);
-    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(pair.levels);
-    Matches expected, actual;
-    BFMatcher(NORM_HAMMING).knnMatch(pair.queries, pair.trains, expected, 3);
-    matcher->knnMatch(pair.queries, pair.trains, actual, 3);
-    expectEqual(expected, actual);
-
-    std::vector<DMatch> mutual, found;
-    BFMatcher(NORM_HAMMING, true).match(pair.queries, pair.trains, mutual);
-    matcher->setCrossCheck(true);
-    matcher->match(pair.queries, pair.trains, found);
-    expectEqual(Matches(1, mutual), Matches(1, found));
-
-    expected.clear();
-    BFMatcher(NORM_HAMMING).radiusMatch(pair.queries, pair.trains, expected, 400);
-    matcher->radiusMatch(pair.queries, pair.trains, actual, 400);
-    for (size_t q = 0; q < expected.size(); q++)
-        ASSERT_EQ(expected[q].size(), actual[q].size());
-}
-
 TEST(IIB_Real, threshold_is_the_papers_rule)
 {
     const RealPair pair(2, 600);
@@ -78,13 +52,8 @@ TEST(IIB_Real, threshold_is_the_papers_rule)
     for (float threshold : {0.25f, 0.35f, 0.45f, 0.6f})
     {
         oracle.thresholds.assign(3, threshold);
-        oracle.compared = oracle.all = 0;
-        const Ptr<HierarchicalMatcher> matcher =
-                HierarchicalMatcher::create(pair.levels, HierarchicalMatcher::THRESHOLD, threshold);
-        Matches matches;
-        matcher->knnMatch(pair.queries, pair.trains, matches, 2);
-        expectEqual(oracle.knn(pair.queries, 2), matches);
-        EXPECT_EQ(oracle.compared / oracle.all, matcher->matchCost());
+        const Ptr<HierarchicalMatcher> matcher = oracle.matcher();
+        expectKnnAsOracle(*matcher, oracle, pair.queries, 2);
         if (threshold == 0.35f)
         {
             EXPECT_LE(matcher->matchCost(), 0.07);

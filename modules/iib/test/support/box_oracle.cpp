@@ -36,31 +36,13 @@ enum Value
     VALUES
 };
 
-int pixel(const Mat& m, int y, int x)
-{
-    y = std::min(std::max(y, 0), m.rows - 1);
-    x = std::min(std::max(x, 0), m.cols - 1);
-    return m.depth() == CV_8U ? m.at<uchar>(y, x) : m.at<ushort>(y, x);
-}
-
-int reflect(int v, int size)
-{
-    v = std::abs(v);
-    return std::max(std::min(v, 2 * (size - 1) - v), 0);
-}
-
 void addPixel(const Mat& grey, int y, int x, int64 sums[VALUES])
 {
-    y = reflect(y, grey.rows);
-    x = reflect(x, grey.cols);
-    int gx = 0, gy = 0;
-    for (int i = -1; i <= 1; i++)
-    {
-        gx += (2 - i * i) * (pixel(grey, y + i, x + 1) - pixel(grey, y + i, x - 1));
-        gy += (2 - i * i) * (pixel(grey, y + 1, x + i) - pixel(grey, y - 1, x + i));
-    }
-    const int values[VALUES] = {std::abs(gx), std::abs(gy), gx, gy, pixel(grey, y, x), gx + gy,
-            std::abs(gx + gy), std::abs(gx - gy)};
+    y = (int)reflectTo(y, grey.rows);
+    x = (int)reflectTo(x, grey.cols);
+    const Point g = gradient(grey, y, x);
+    const int values[VALUES] = {std::abs(g.x), std::abs(g.y), g.x, g.y, pixel(grey, y, x), g.x + g.y,
+            std::abs(g.x + g.y), std::abs(g.x - g.y)};
     for (int i = 0; i < VALUES; i++)
         sums[i] += values[i];
 }

@@ -33,48 +33,48 @@ int orientation(int gx, int gy)
     return steps % turn;
 }
 
-namespace {
-
-int at(const Mat& m, int y, int x)
+int pixel(const Mat& m, int y, int x)
 {
     y = std::min(std::max(y, 0), m.rows - 1);
     x = std::min(std::max(x, 0), m.cols - 1);
-    return m.depth() == CV_8U ? m.at<uchar>(y, x) : m.at<ushort>(y, x);
+    return m.depth() == CV_8U    ? m.at<uchar>(y, x)
+           : m.depth() == CV_16U ? m.at<ushort>(y, x)
+                                 : m.at<int>(y, x);
 }
 
-int gradX(const Mat& m, int y, int x)
+Point gradient(const Mat& m, int y, int x)
 {
-    return at(m, y - 1, x + 1) + 2 * at(m, y, x + 1) + at(m, y + 1, x + 1) - at(m, y - 1, x - 1) -
-           2 * at(m, y, x - 1) - at(m, y + 1, x - 1);
+    Point g;
+    for (int i = -1; i <= 1; i++)
+    {
+        g.x += (2 - i * i) * (pixel(m, y + i, x + 1) - pixel(m, y + i, x - 1));
+        g.y += (2 - i * i) * (pixel(m, y + 1, x + i) - pixel(m, y - 1, x + i));
+    }
+    return g;
 }
 
-int gradY(const Mat& m, int y, int x)
+int64 reflectTo(int64 v, int limit)
 {
-    return at(m, y + 1, x - 1) + 2 * at(m, y + 1, x) + at(m, y + 1, x + 1) - at(m, y - 1, x - 1) -
-           2 * at(m, y - 1, x) - at(m, y - 1, x + 1);
+    v = std::abs(v);
+    return std::max<int64>(std::min<int64>(v, 2 * (limit - 1) - v), 0);
 }
+
+namespace {
 
 //! The values of all channels in use at one pixel, given its gradient.
 std::vector<int> valuesOf(
-        int enabled, const Mat& grey, int gx, int gy, int steps, const std::vector<Mat>& extra, int y, int x)
+        int enabled, const Mat& grey, Point g, int steps, const std::vector<Mat>& extra, int y, int x)
 {
     const int offset = grey.depth() == CV_8U ? 6 * 255 : 6 * 65535;  // keeps signed gradients positive
+    // in the order of CHANNEL_ values, which are 1, 2, 4 and so on
+    const int values[] = {std::abs(g.x), std::abs(g.y), steps, pixel(grey, y, x), g.x + offset, g.y + offset};
     std::vector<int> v;
     v.reserve(6 + extra.size());
-    if (enabled & IIB::CHANNEL_GRAD_X)
-        v.push_back(std::abs(gx));
-    if (enabled & IIB::CHANNEL_GRAD_Y)
-        v.push_back(std::abs(gy));
-    if (enabled & IIB::CHANNEL_ORIENTATION)
-        v.push_back(steps);
-    if (enabled & IIB::CHANNEL_INTENSITY)
-        v.push_back(at(grey, y, x));
-    if (enabled & IIB::CHANNEL_SIGNED_GRAD_X)
-        v.push_back(gx + offset);
-    if (enabled & IIB::CHANNEL_SIGNED_GRAD_Y)
-        v.push_back(gy + offset);
+    for (int i = 0; i < 6; i++)
+        if (enabled >> i & 1)
+            v.push_back(values[i]);
     for (size_t i = 0; i < extra.size(); i++)
-        v.push_back(at(extra[i], y, x));
+        v.push_back(pixel(extra[i], y, x));
     return v;
 }
 
@@ -105,13 +105,6 @@ int edge(double start, double side, int k, int n, int limit, bool reflect)
 {
     const double least = reflect ? 1 - limit : 0, most = reflect ? 2 * limit - 1 : limit;
     return (int)std::min(std::max(std::floor(start + side / n * k + 0.5), least), most);
-}
-
-//! BORDER_REFLECT_101, which is never needed more than twice; what is further is the first pixel.
-int64 reflectTo(int64 v, int limit)
-{
-    v = std::abs(v);
-    return std::max<int64>(std::min<int64>(v, 2 * (limit - 1) - v), 0);
 }
 
 Cell uprightCell(const Channel& c, const SupportRegion& r, int n, int row, int col, bool reflect)
@@ -154,7 +147,7 @@ float prevailingAngle(const IIB& iib, const Mat& grey, const KeyPoint& kp, size_
             const int u = 2 * col + 1 - samples, v = 2 * row + 1 - samples;
             const int x = insideOf(iib, (fixedPoint(kp.pt.x) + u * step) >> 17, grey.cols);
             const int y = insideOf(iib, (fixedPoint(kp.pt.y) + v * step) >> 17, grey.rows);
-            cells(row / 2, col / 2) += at(grey, y, x);
+            cells(row / 2, col / 2) += pixel(grey, y, x);
         }
     std::vector<int64> histogram(bins, 0);
     for (int row = 1; row < n - 1; row++)
@@ -164,14 +157,9 @@ float prevailingAngle(const IIB& iib, const Mat& grey, const KeyPoint& kp, size_
             if (dx * dx + dy * dy > 1)
                 continue;
             const int weight = cvRound(32 * std::exp(-2 * dx * dx)) * cvRound(32 * std::exp(-2 * dy * dy));
-            int gx = 0, gy = 0;
-            for (int i = -1; i <= 1; i++)
-            {
-                gx += (2 - i * i) * (cells(row + i, col + 1) - cells(row + i, col - 1));
-                gy += (2 - i * i) * (cells(row + 1, col + i) - cells(row - 1, col + i));
-            }
-            const float x = (float)gx, y = (float)gy;
-            histogram[orientation(gx, gy) / 16] += cvRound(std::sqrt(x * x + y * y) * (float)weight);
+            const Point g = gradient(cells, row, col);
+            const float x = (float)g.x, y = (float)g.y;
+            histogram[orientation(g.x, g.y) / 16] += cvRound(std::sqrt(x * x + y * y) * (float)weight);
         }
     for (int pass = 0; pass < 6; pass++)
     {
@@ -221,14 +209,11 @@ struct RotatedRegion
                 const int u = 2 * col + 1 - samples, v = 2 * row + 1 - samples;
                 const int x = insideOf(iib, (x0 + u * stepX - v * stepY) >> 17, grey.cols);
                 const int y = insideOf(iib, (y0 + u * stepY + v * stepX) >> 17, grey.rows);
-                const int gx = gradX(grey, y, x), gy = gradY(grey, y, x);
-                const int rotatedX = (cosine * gx + sine * gy + 2048) >> 12;
-                const int rotatedY = (cosine * gy - sine * gx + 2048) >> 12;
-                const bool flat = gx == 0 && gy == 0;
-                const int rotatedO =
-                        flat ? 0 : (orientation(gx, gy) + turn) & (cv::iib::ORIENTATION_STEPS - 1);
-                const std::vector<int> all =
-                        valuesOf(iib.getChannels(), grey, rotatedX, rotatedY, rotatedO, extra, y, x);
+                const Point g = gradient(grey, y, x), rotated((cosine * g.x + sine * g.y + 2048) >> 12,
+                                                              (cosine * g.y - sine * g.x + 2048) >> 12);
+                const int steps =
+                        g == Point() ? 0 : (orientation(g.x, g.y) + turn) & (cv::iib::ORIENTATION_STEPS - 1);
+                const std::vector<int> all = valuesOf(iib.getChannels(), grey, rotated, steps, extra, y, x);
                 while (values.size() < all.size())
                     values.push_back(Channel(samples, samples));
                 for (size_t c = 0; c < all.size(); c++)
@@ -274,30 +259,19 @@ std::vector<bool> mapQuad(int mapping, const std::array<int64, 4>& x)
             code = 4 * (x[i] - lo) > 3 * (hi - lo) ? 3
                    : 2 * (x[i] - lo) > hi - lo     ? 2
                                                    : 4 * (x[i] - lo) > hi - lo;
-            bits.push_back((code & 2) != 0);
-            bits.push_back((code & 1) != 0);
             break;
         case IIB::MAPPING_SORT:
             for (int j = 0; j < 4; j++)
                 code += x[j] < x[i] || (x[j] == x[i] && j < i);
-            bits.push_back((code & 2) != 0);
-            bits.push_back((code & 1) != 0);
             break;
         }
+        if (mapping == IIB::MAPPING_QUARTILE || mapping == IIB::MAPPING_SORT)
+            bits.insert(bits.end(), {(code & 2) != 0, (code & 1) != 0});
     }
     if (mapping == IIB::MAPPING_HAAR)
-    {
-        bits.push_back(x[0] + x[2] > x[1] + x[3]);
-        bits.push_back(x[0] + x[1] > x[2] + x[3]);
-        bits.push_back(x[0] + x[3] > x[1] + x[2]);
-    }
+        return {x[0] + x[2] > x[1] + x[3], x[0] + x[1] > x[2] + x[3], x[0] + x[3] > x[1] + x[2]};
     if (mapping == IIB::MAPPING_PAIRWISE)
-    {
-        bits.push_back(x[0] > x[1]);
-        bits.push_back(x[1] > x[3]);
-        bits.push_back(x[3] > x[2]);
-        bits.push_back(x[2] > x[0]);
-    }
+        return {x[0] > x[1], x[1] > x[3], x[3] > x[2], x[2] > x[0]};
     return bits;
 }
 
@@ -388,9 +362,9 @@ std::vector<Channel> channelsOf(const IIB& iib, const Mat& grey, const std::vect
     for (int y = 0; y < grey.rows; y++)
         for (int x = 0; x < grey.cols; x++)
         {
-            const int gx = gradX(grey, y, x), gy = gradY(grey, y, x);
+            const Point g = gradient(grey, y, x);
             const std::vector<int> v =
-                    valuesOf(iib.getChannels(), grey, gx, gy, orientation(gx, gy), extra, y, x);
+                    valuesOf(iib.getChannels(), grey, g, orientation(g.x, g.y), extra, y, x);
             while (channels.size() < v.size())
                 channels.push_back(Channel(grey.size()));
             for (size_t c = 0; c < v.size(); c++)

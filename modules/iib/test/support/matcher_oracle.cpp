@@ -153,6 +153,18 @@ Matches MatcherOracle::radius(const Mat& queries, int radius)
     return result;
 }
 
+Ptr<HierarchicalMatcher> MatcherOracle::matcher() const
+{
+    const int mode = !thresholds.empty() ? HierarchicalMatcher::THRESHOLD
+                     : adaptiveBlock > 0 ? HierarchicalMatcher::ADAPTIVE
+                                         : HierarchicalMatcher::EXACT;
+    const Ptr<HierarchicalMatcher> result = HierarchicalMatcher::create(
+            levelSizes, mode, thresholds.empty() ? 0.35f : thresholds[0], crossCheck);
+    result->setMaxRatio(maxRatio);
+    result->add(images);
+    return result;
+}
+
 MatcherOracle oracleOfSeveralImages()
 {
     MatcherOracle oracle;
@@ -186,6 +198,15 @@ void expectEqual(const Matches& expected, const Matches& actual)
             ASSERT_EQ(e.queryIdx, a.queryIdx);
         }
     }
+}
+
+void expectSameParameters(const HierarchicalMatcher& a, const HierarchicalMatcher& b)
+{
+    EXPECT_EQ(a.levelSizes(), b.levelSizes());
+    EXPECT_EQ(a.getMode(), b.getMode());
+    EXPECT_EQ(a.getThresholds(), b.getThresholds());
+    EXPECT_EQ(a.getCrossCheck(), b.getCrossCheck());
+    EXPECT_EQ(a.getMaxRatio(), b.getMaxRatio());
 }
 
 void expectKnnAsOracle(HierarchicalMatcher& matcher, MatcherOracle& oracle, const Mat& queries, int k)

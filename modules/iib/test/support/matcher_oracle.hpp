@@ -29,6 +29,8 @@ struct MatcherOracle
     MatcherOracle() : adaptiveBlock(0), crossCheck(false), maxRatio(1), compared(0), all(0) {}
     Matches knn(const Mat& queries, int k);
     Matches radius(const Mat& queries, int radius);
+    //! With these images and parameters.
+    Ptr<HierarchicalMatcher> matcher() const;
 
 private:
     Matches candidates(const Mat& queries);
@@ -43,6 +45,8 @@ MatcherOracle oracleOfSeveralImages();
 std::vector<Mat> masksOfSeveralImages(const MatcherOracle& oracle, int queries);
 
 void expectEqual(const Matches& expected, const Matches& actual);
+
+void expectSameParameters(const HierarchicalMatcher& a, const HierarchicalMatcher& b);
 
 //! The k nearest by the matcher and by the oracle, and the share of bits that were compared.
 void expectKnnAsOracle(HierarchicalMatcher& matcher, MatcherOracle& oracle, const Mat& queries, int k);

@@ -11,6 +11,11 @@
 
 #include <fstream>
 
+#ifdef __linux__
+#include <csignal>
+#include <sys/resource.h>
+#endif
+
 namespace opencv_test {
 
 inline void writeFile(const String& name, const std::string& bytes)
@@ -51,6 +56,23 @@ struct RestoredFile
     ~RestoredFile() { write(bytes); }
     void write(const std::string& altered) const { writeFile(name, altered); }
 };
+
+#ifdef __linux__
+//! No file grows beyond this many bytes, as on a full disk.
+struct FullDisk
+{
+    rlimit before;
+    explicit FullDisk(rlim_t bytes)
+    {
+        getrlimit(RLIMIT_FSIZE, &before);
+        rlimit limit = before;
+        limit.rlim_cur = bytes;
+        signal(SIGXFSZ, SIG_IGN);
+        setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before); }
+};
+#endif
 
 }  // namespace opencv_test
 

@@ -27,6 +27,14 @@ template <typename Call> void expectError(int code, const String& culprit, const
     }
 }
 
+//! A text with another piece in place of one that it has.
+inline String replaced(String text, const String& from, const String& to)
+{
+    const size_t at = text.find(from);
+    CV_Assert(at != String::npos);
+    return text.replace(at, from.size(), to);
+}
+
 }  // namespace opencv_test
 
 #endif

@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "test_images.hpp"
+#include "descriptor_oracle.hpp"
 
 #include <fstream>
 
@@ -83,6 +84,13 @@ Mat scene(Size size, int seed)
     return image;
 }
 
+Mat readIllumination(const String& name, int flags)
+{
+    const Mat image = imread(cvtest::findDataFile("illumination/" + name, false), flags);
+    EXPECT_FALSE(image.empty()) << name;
+    return image;
+}
+
 Matx33d readHomography(const String& file)
 {
     std::ifstream in(file.c_str());
@@ -126,6 +134,25 @@ std::vector<KeyPoint> scatter(Size size, int count, float smallest, float larges
     return keypoints;
 }
 
+Mat_<int> randomSelection(int count, const std::vector<int>& ends, const std::vector<int>& masksOfChannels)
+{
+    RNG rng(count);
+    std::set<std::vector<int>> quads;
+    for (int i = 0; i < count; i++)
+    {
+        const int level = rng.uniform(1, 6), end = ends[level - 1];
+        quads.insert({level, rng.uniform(0, (int)masksOfChannels.size()), rng.uniform(0, end),
+                rng.uniform(0, end)});
+    }
+    Mat_<int> selection;
+    for (const std::vector<int>& quad : quads)
+    {
+        const int mask = std::max(rng.uniform(0, 256) & masksOfChannels[quad[1]], 1);
+        selection.push_back(Mat_<int>({quad[0], quad[1], quad[2], quad[3], mask}).reshape(1, 1));
+    }
+    return selection;
+}
+
 Mat describe(IIB& iib, InputArray image, const std::vector<KeyPoint>& keypoints, InputArrayOfArrays extra)
 {
     std::vector<KeyPoint> copy = keypoints;
@@ -135,6 +162,18 @@ Mat describe(IIB& iib, InputArray image, const std::vector<KeyPoint>& keypoints,
     EXPECT_EQ(Size(iib.descriptorSize(), (int)keypoints.size()), descriptors.size());
     EXPECT_EQ(CV_8U, descriptors.type());
     return descriptors;
+}
+
+void expectOracle(
+        IIB& iib, const Mat& image, const std::vector<KeyPoint>& keypoints, const std::vector<Mat>& extra)
+{
+    const Mat expected = oracle::describe(iib, image, extra, keypoints),
+              actual = describe(iib, image, keypoints, extra);
+    ASSERT_EQ(expected.size(), actual.size());
+    for (int i = 0; i < expected.rows; i++)
+        ASSERT_EQ(0, differingBits(expected.row(i), actual.row(i)))
+                << "keypoint " << i << " at " << keypoints[i].pt << " size " << keypoints[i].size << " angle "
+                << keypoints[i].angle;
 }
 
 int differingBits(const Mat& a, const Mat& b)
@@ -155,6 +194,54 @@ void expectSameKeyPoints(const std::vector<KeyPoint>& expected, const std::vecto
         EXPECT_EQ(expected[i].octave, actual[i].octave);
         EXPECT_EQ(expected[i].class_id, actual[i].class_id);
     }
+}
+
+int countCorrect(const std::vector<DMatch>& matches, const std::vector<KeyPoint>& queries,
+        const std::vector<KeyPoint>& trains, const Matx33d& homography)
+{
+    int count = 0;
+    for (const DMatch& m : matches)
+    {
+        const Point2d p = queries[m.queryIdx].pt, q = trains[m.trainIdx].pt;
+        const Vec3d there = homography * Vec3d(p.x, p.y, 1);
+        count += std::hypot(there[0] / there[2] - q.x, there[1] / there[2] - q.y) <= 3;
+    }
+    return count;
+}
+
+DetectedMatches matchDetected(const Ptr<Feature2D>& detector, const Mat images[2], int most)
+{
+    const Ptr<IIB> iib = IIB::create(IIB::scaleFactorFor(detector));
+    std::vector<KeyPoint> keypoints[2];
+    Mat descriptors[2];
+    for (int i = 0; i < 2; i++)
+    {
+        detector->detect(images[i], keypoints[i]);
+        KeyPointsFilter::retainBest(keypoints[i], most);
+        descriptors[i] = describe(*iib, images[i], keypoints[i]);
+    }
+    std::vector<DMatch> matches;
+    HierarchicalMatcher::create(iib->levelSizes(), HierarchicalMatcher::EXACT, 0.35f, true)
+            ->match(descriptors[0], descriptors[1], matches);
+    return {{keypoints[0].size(), keypoints[1].size()}, matches.size(),
+            countCorrect(matches, keypoints[0], keypoints[1])};
+}
+
+RotatedPair::RotatedPair(double degrees, double zoom) : homography(Matx33d::eye())
+{
+    images[0] = scene(Size(400, 400), 7);
+    const Mat affine = getRotationMatrix2D(Point2f(199.5f, 199.5f), -degrees, zoom);
+    affine.copyTo(Mat(homography, false).rowRange(0, 2));
+    Mat rotated;
+    warpAffine(images[0], rotated, affine, images[0].size(), INTER_CUBIC, cv::BORDER_REFLECT_101);
+    images[1] = relit(rotated, 8);
+    for (int i = 0; i < 2; i++)
+        ORB::create(600)->detect(images[i], keypoints[i]);
+}
+
+int RotatedPair::correct(const std::vector<DMatch>& matches) const
+{
+    return countCorrect(matches, keypoints[0], keypoints[1], homography);
 }
 
 }  // namespace opencv_test

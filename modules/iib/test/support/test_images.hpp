@@ -30,6 +30,9 @@ Mat texture(Size size, int depth, int seed);
 //! Polygons and ellipses in front of each other, CV_8U.
 Mat scene(Size size, int seed);
 
+//! A grey image below OPENCV_TEST_DATA_PATH; the test skips where it is not there.
+Mat readIllumination(const String& name, int flags = IMREAD_GRAYSCALE);
+
 //! Nine numbers of a text file; the identity if there is no such file.
 Matx33d readHomography(const String& file);
 
@@ -39,14 +42,48 @@ Mat relit(const Mat& image, int seed);
 //! Keypoints in and around an image, of all sizes and directions, some of them -1. Quarters of pixels, whole degrees.
 std::vector<KeyPoint> scatter(Size size, int count, float smallest, float largest, int seed);
 
+//! For setSelection(): up to `count` quads of levels 1 to 5, each with some of the bits that its channel may have there.
+//! @param ends of their rows and columns on each level
+Mat_<int> randomSelection(int count, const std::vector<int>& ends, const std::vector<int>& masksOfChannels);
+
 //! Computes descriptors and expects that the keypoints stay as they are.
 Mat describe(IIB& iib, InputArray image, const std::vector<KeyPoint>& keypoints,
         InputArrayOfArrays extra = noArray());
+
+//! Describes the keypoints as the oracle does, and expects the same bits.
+void expectOracle(IIB& iib, const Mat& image, const std::vector<KeyPoint>& keypoints,
+        const std::vector<Mat>& extra = std::vector<Mat>());
 
 //! Number of bits that differ; fails if the sizes or types do.
 int differingBits(const Mat& a, const Mat& b);
 
 void expectSameKeyPoints(const std::vector<KeyPoint>& expected, const std::vector<KeyPoint>& actual);
+
+//! How many matches lead at most 3 pixels away from where a homography takes their point.
+int countCorrect(const std::vector<DMatch>& matches, const std::vector<KeyPoint>& queries,
+        const std::vector<KeyPoint>& trains, const Matx33d& homography = Matx33d::eye());
+
+//! What matching two images of the same view gave.
+struct DetectedMatches
+{
+    size_t keypoints[2];
+    size_t matches;
+    int correct;
+};
+
+//! Detects up to `most` points in both images, describes them with the detector's scale factor, matches mutually.
+DetectedMatches matchDetected(const Ptr<Feature2D>& detector, const Mat images[2], int most);
+
+//! A scene, and the same by other light, rotated clockwise about its centre; 600 of ORB's points in each.
+struct RotatedPair
+{
+    Mat images[2];
+    Matx33d homography;
+    std::vector<KeyPoint> keypoints[2];
+
+    explicit RotatedPair(double degrees, double zoom = 1);
+    int correct(const std::vector<DMatch>& matches) const;
+};
 
 }  // namespace opencv_test
 
