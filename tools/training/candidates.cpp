@@ -69,18 +69,8 @@ void addQuads(const PoolParameters& p, CandidatePool& pool)
         while (last < pool.quads.rows && inOneRow(pool.quads[first], pool.quads[last]))
             last++;
         for (int quad = first; quad < last; quad++)
-        {
-            Candidate whole = {quad, (1 << bits) - 1, {}};
             for (int bit = 0; bit < bits; bit++)
-            {
-                const int position = start + bit * (last - first) + quad - first;
-                whole.positions.push_back(position);
-                if (!p.wholeQuads)
-                    pool.candidates.push_back({quad, 1 << bit, {position}});
-            }
-            if (p.wholeQuads)
-                pool.candidates.push_back(whole);
-        }
+                pool.candidates.push_back({quad, 1 << bit, start + bit * (last - first) + quad - first});
         start += (last - first) * bits;
         first = last;
     }
@@ -105,7 +95,7 @@ void addBoxes(const PoolParameters& p, CandidatePool& pool)
         if (quad.second)
             pool.quads.push_back(cv::Mat_<int>({level, index, row, column, 0}).reshape(1, 1));
         pool.quads(quad.first->second, 4) |= 1 << bit;
-        pool.candidates.push_back({quad.first->second, 1 << bit, {position++}});
+        pool.candidates.push_back({quad.first->second, 1 << bit, position++});
     };
     for (int level = 1; level <= p.granularity; level++)
     {
@@ -136,11 +126,6 @@ bool CandidatePool::areNeighbours(const Candidate& a, const Candidate& b) const
 
 CandidatePool makePool(const PoolParameters& p)
 {
-    if (p.mapping != IIB::MAPPING_BOXES &&
-            (p.windows.empty() ||
-                    std::any_of(p.windows.begin(), p.windows.end(), [](int w) { return w < 1 || w > 15; })))
-        CV_Error(cv::Error::StsOutOfRange,
-                "where quads begin is a number of 1 to 15 for each level, as 1,15,15");
     CandidatePool pool;
     pool.extractor = IIB::create(p.scale, p.granularity, p.channels, p.mapping);
     pool.extractor->setBorder(p.border);

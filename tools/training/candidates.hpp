@@ -15,16 +15,15 @@ struct PoolParameters
     /** Where a level's quads begin, coarse first, the last number for all finer levels too: a sum of 1 (even rows and
     columns), 2 (even rows, odd columns), 4 (odd rows, even columns) and 8 (odd rows and columns). */
     std::vector<int> windows;
-    bool wholeQuads;  //!< quads are chosen with all their bits, as in the paper; otherwise bit by bit
-    int border;       //!< IIBDescriptorExtractor::Border of the regions that are trained on
+    int border;  //!< IIBDescriptorExtractor::Border of the regions that are trained on
 };
 
-//! The smallest thing that is chosen or not: a quad, or one bit of a quad.
+//! What is chosen or not: one bit of a quad.
 struct Candidate
 {
-    int quad;                    //!< row of CandidatePool::quads
-    int mask;                    //!< its bits, as in setSelection
-    std::vector<int> positions;  //!< the same bits in a descriptor of the pool
+    int quad;      //!< row of CandidatePool::quads
+    int mask;      //!< the bit, as in setSelection
+    int position;  //!< the same bit in a descriptor of the pool
 };
 
 //! All quads of an extractor, described at once.
@@ -34,13 +33,11 @@ struct CandidatePool
     cv::Ptr<cv::iib::IIBDescriptorExtractor> extractor;  //!< with all of them selected
     std::vector<Candidate> candidates;                   //!< by level, then by place
 
-    int bitsPerCandidate() const { return int(candidates[0].positions.size()); }
     int level(const Candidate& candidate) const { return quads(candidate.quad, 0); }
-    //! Same level, channel and bits, and the quads touch or overlap: such bits repeat each other.
+    //! Same level, channel and bit, and the quads touch or overlap: such bits repeat each other.
     bool areNeighbours(const Candidate& a, const Candidate& b) const;
 };
 
-//! @throws cv::Exception if there are no windows or one is not 1 to 15.
 CandidatePool makePool(const PoolParameters& parameters);
 
 //! The rows for setSelection, by level, channel and place, the chosen bits of a quad in one mask.

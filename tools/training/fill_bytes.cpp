@@ -11,22 +11,14 @@ namespace {
 
 typedef std::array<int, 8> Levels;  // indexed by level, 0 and 7 stay empty
 
-int candidatesPerByte(const CandidatePool& pool)
-{
-    int count = 1;
-    while (count * pool.bitsPerCandidate() % 8 != 0)
-        count *= 2;
-    return count;
-}
-
 //! Whole bytes nearest to the wanted numbers, within what the pool has and `most` in all.
-Levels roundLevels(const Levels& wanted, const Levels& available, int step, int most)
+Levels roundLevels(const Levels& wanted, const Levels& available, int most)
 {
     Levels rounded = {}, order = {};
     int sum = 0;
     for (size_t level = 0; level < wanted.size(); level++)
     {
-        rounded[level] = wanted[level] / step * step;
+        rounded[level] = wanted[level] / 8 * 8;
         sum += rounded[level];
     }
     std::iota(order.begin(), order.end(), 0);
@@ -36,10 +28,10 @@ Levels roundLevels(const Levels& wanted, const Levels& available, int step, int 
     {
         grown = false;
         for (int level : order)
-            if (sum + step <= most && wanted[level] > 0 && rounded[level] + step <= available[level])
+            if (sum + 8 <= most && wanted[level] > 0 && rounded[level] + 8 <= available[level])
             {
-                rounded[level] += step;
-                sum += step;
+                rounded[level] += 8;
+                sum += 8;
                 grown = true;
             }
     }
@@ -47,15 +39,6 @@ Levels roundLevels(const Levels& wanted, const Levels& available, int step, int 
 }
 
 }  // namespace
-
-int candidateCount(const CandidatePool& pool, int bits)
-{
-    const int count = bits / pool.bitsPerCandidate(), most = int(pool.candidates.size());
-    if (count < 1 || count > most)
-        CV_Error(cv::Error::StsOutOfRange, cv::format("%d bits are not 1 to %d candidates of %d bits", bits,
-                                                   most, pool.bitsPerCandidate()));
-    return count;
-}
 
 std::vector<int> fillBytes(const CandidatePool& pool, const std::vector<int>& chosen,
         const std::vector<double>& benefit, int bits)
@@ -69,7 +52,7 @@ std::vector<int> fillBytes(const CandidatePool& pool, const std::vector<int>& ch
     }
     for (size_t i = 0; i < pool.candidates.size(); i++)
         available[pool.level(pool.candidates[i])] += isChosen[i] || benefit[i] > 0;
-    Levels left = roundLevels(wanted, available, candidatesPerByte(pool), bits / pool.bitsPerCandidate());
+    Levels left = roundLevels(wanted, available, bits);
 
     // the chosen ones first, then the others, each by benefit
     std::vector<int> order(pool.candidates.size()), filled;

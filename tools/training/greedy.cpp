@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "select.hpp"
 
@@ -66,10 +65,9 @@ public:
     {
         std::vector<int> positions;
         for (int i : chosen)
-            positions.insert(positions.end(), pool.candidates[i].positions.begin(),
-                    pool.candidates[i].positions.end());
+            positions.push_back(pool.candidates[i].position);
         if (positions.empty())
-            positions = pool.candidates[0].positions;  // any bits: all points are equally near
+            positions.push_back(pool.candidates[0].position);  // any bit: all points are equally near
         sums.assign(size_t(pool.extractor->descriptorSize()) * 8, 0.f);
         const float temperature = 0.25f * std::sqrt(std::max(float(positions.size()), 24.f));
         for (int i = 0; i < PAIRS_A_STEP; i++)
@@ -79,8 +77,7 @@ public:
         }
         std::vector<double> result;
         for (const Candidate& candidate : pool.candidates)
-            result.push_back(std::accumulate(candidate.positions.begin(), candidate.positions.end(), 0.,
-                    [&](double sum, int position) { return sum + sums[position]; }));
+            result.push_back(sums[candidate.position]);
         return result;
     }
 
@@ -167,16 +164,18 @@ void addBest(const CandidatePool& pool, const std::vector<double>& benefits, int
 std::vector<int> selectGreedily(const CandidatePool& pool, const std::vector<DescribedPair>& pairs, int bits,
         uint64 seed, const Progress& progress)
 {
-    const int wanted = candidateCount(pool, bits);
+    if (bits < 1 || bits > int(pool.candidates.size()))
+        CV_Error(cv::Error::StsOutOfRange,
+                cv::format("%d bits are not 1 to %d", bits, int(pool.candidates.size())));
     Growth growth(pool, pairs, seed);
     std::vector<bool> isChosen(pool.candidates.size());
     std::vector<int> chosen;
-    while (int(chosen.size()) < wanted)
+    while (int(chosen.size()) < bits)
     {
         // a twelfth at a time: the more bits there are, the less each step changes the distances
-        const int count = std::min(std::max(1, int(chosen.size()) / 12), wanted - int(chosen.size()));
+        const int count = std::min(std::max(1, int(chosen.size()) / 12), bits - int(chosen.size()));
         addBest(pool, growth.benefits(chosen), count, isChosen, chosen);
-        progress(int(chosen.size()), wanted);
+        progress(int(chosen.size()), bits);
     }
     return fillBytes(pool, chosen, growth.benefits(chosen), bits);
 }

@@ -4,8 +4,6 @@
 
 namespace iib_tools {
 
-Warps warpsOfShare(double share) { return {share, 0.4, 20, 0.7, 1.4, 2, 0, 1, 0}; }
-
 std::vector<Recipe> presetRecipes()
 {
     using cv::iib::IIB;
@@ -15,29 +13,30 @@ std::vector<Recipe> presetRecipes()
     // Quads were learned before BORDER_REFLECT was the default, and keep their bits.
     const int zeros = IIB::BORDER_CLAMP;
     // the default's quads but those of the orientation, whose bits are seldom worth what it costs to compute
-    const PoolParameters paper = {values, IIB::MAPPING_MEAN, 4, 1.f, {1}, false, zeros};
+    const PoolParameters paper = {values, IIB::MAPPING_MEAN, 4, 1.f, {1}, zeros};
     // a wider ROS pays while the camera stands still; at 1.25 sums over its cells still have 16 bits
-    const PoolParameters still = {gradients, IIB::MAPPING_HAAR, 4, 1.25f, {1}, false, zeros};
+    const PoolParameters still = {gradients, IIB::MAPPING_HAAR, 4, 1.25f, {1}, zeros};
     PoolParameters accurate = still;
     accurate.mapping = IIB::MAPPING_PAIRWISE;
     // coarse quads stand a moved camera: level 2 begins them at every cell; a fourth channel costs next to nothing
     const PoolParameters moving = {
-            values + IIB::CHANNEL_SIGNED_GRAD_Y, IIB::MAPPING_MEAN, 4, 1.125f, {1, 15, 1}, false, zeros};
+            values + IIB::CHANNEL_SIGNED_GRAD_Y, IIB::MAPPING_MEAN, 4, 1.125f, {1, 15, 1}, zeros};
     // boxes overlap, so that a moved camera shifts none wholly; see README.md
     const PoolParameters boxes = {values + IIB::CHANNEL_SIGNED_GRAD_X + IIB::CHANNEL_SIGNED_GRAD_Y,
-            IIB::MAPPING_BOXES, 5, 1.25f, {}, false, IIB::BORDER_REFLECT};
+            IIB::MAPPING_BOXES, 5, 1.25f, {}, IIB::BORDER_REFLECT};
+    const Warps none = {};
     const auto wide = [](double share) { return Warps{share, 0.5, 22, 0.7, 1.43, 2.5, 0.1, 1.5, 5}; };
     return {
-            {"S128", 128, paper, warpsOfShare(0), false, 12, 0},
-            {"S256", 256, paper, warpsOfShare(0), false, 12, 0},
-            {"S512", 512, paper, warpsOfShare(0), false, 12, 0},
-            {"ACCURATE", 0, accurate, warpsOfShare(0), false, 12, 0},
-            {"COMPACT", 512, still, warpsOfShare(0), false, 12, 0},
-            {"TINY", 256, still, warpsOfShare(0), false, 12, 0},
-            {"BALANCED", 512, moving, warpsOfShare(0.85), false, 24, 0},
-            {"VIEWPOINT", 512, boxes, wide(0.9), false, 24, 0},
-            {"UNIVERSAL", 1024, boxes, wide(0.4), false, 16, 0.5},
-            {"SMALL", 256, boxes, wide(0.67), false, 16, 0.6},
+            {"S128", 128, paper, none, 12, 0},
+            {"S256", 256, paper, none, 12, 0},
+            {"S512", 512, paper, none, 12, 0},
+            {"ACCURATE", 0, accurate, none, 12, 0},
+            {"COMPACT", 512, still, none, 12, 0},
+            {"TINY", 256, still, none, 12, 0},
+            {"BALANCED", 512, moving, {0.85, 0.4, 20, 0.7, 1.4, 2, 0, 1, 0}, 24, 0},
+            {"VIEWPOINT", 512, boxes, wide(0.9), 24, 0},
+            {"UNIVERSAL", 1024, boxes, wide(0.4), 16, 0.5},
+            {"SMALL", 256, boxes, wide(0.67), 16, 0.6},
     };
 }
 

@@ -28,24 +28,6 @@ std::string tableRows(const cv::Mat_<int>& quads)
     return text;
 }
 
-MeanScores scoresOf(const std::vector<DescribedPair>& pairs)
-{
-    std::vector<Counts> counts;
-    for (const DescribedPair& pair : pairs)
-    {
-        Counts count = {0, 0, pair.partners};
-        if (pair.partners > 0)
-            for (const cv::DMatch& match : mutualMatches(pair.reference, pair.target, cv::NORM_HAMMING))
-            {
-                count.putative++;
-                count.correct += cv::norm(pair.referencePoints[match.queryIdx] -
-                                          pair.targetPoints[match.trainIdx]) <= 3;
-            }
-        counts.push_back(count);
-    }
-    return meanScores(counts);
-}
-
 }  // namespace
 
 cv::Ptr<IIB> train(const Recipe& recipe, const TrainingSet& images, uint64 seed, const Progress& progress)
@@ -56,37 +38,7 @@ cv::Ptr<IIB> train(const Recipe& recipe, const TrainingSet& images, uint64 seed,
     const CandidatePool pool = makePool(recipe.pool);
     const std::vector<DescribedPair> described = describeForTraining(
             images, pool.extractor, recipe.pairsPerScene, recipe.detected, recipe.warps, seed, progress);
-    return selectedExtractor(pool, recipe.adaBoost
-                                           ? selectByAdaBoost(pool, described, recipe.bits, seed, progress)
-                                           : selectGreedily(pool, described, recipe.bits, seed, progress));
-}
-
-MeanScores judge(const std::vector<ImagePair>& pairs, const cv::Ptr<cv::Feature2D>& extractor,
-        const Progress& progress)
-{
-    return scoresOf(describeForTest(pairs, extractor, progress));
-}
-
-MeanScores judgeWarped(const std::vector<ImagePair>& pairs, const cv::Ptr<cv::Feature2D>& extractor,
-        const Warps& warps, uint64 seed, const Progress& progress)
-{
-    Warps all = warps;
-    all.share = 1;
-    const int pairsPerScene = 6;
-    return scoresOf(describeForTraining({pairs, {}}, extractor, pairsPerScene, 0, all, seed, progress));
-}
-
-std::vector<ImagePair> foldOf(const std::vector<ImagePair>& pairs, int fold, int folds, bool inside)
-{
-    const std::set<std::string> names = sceneNames(pairs);
-    std::vector<ImagePair> result;
-    for (const ImagePair& pair : pairs)
-    {
-        const auto scene = names.find(pair.set + "/" + pair.sequence);
-        if ((std::distance(names.begin(), scene) % folds == fold) == inside)
-            result.push_back(pair);
-    }
-    return result;
+    return selectedExtractor(pool, selectGreedily(pool, described, recipe.bits, seed, progress));
 }
 
 std::string presetsHeader(const std::vector<NamedExtractor>& presets, const std::string& command,

@@ -161,16 +161,4 @@ std::vector<DescribedPair> describeForTraining(const TrainingSet& images,
     return described;
 }
 
-std::vector<DescribedPair> describeForTest(const std::vector<ImagePair>& pairs,
-        const cv::Ptr<cv::Feature2D>& extractor, const Progress& progress)
-{
-    std::vector<DescribedPair> described;
-    for (const ImagePair& info : pairs)
-    {
-        described.push_back(describeFixed(sceneOf(info), loadPair(info), extractor));
-        progress(int(described.size()), int(pairs.size()));
-    }
-    return described;
-}
-
 }  // namespace iib_tools

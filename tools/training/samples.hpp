@@ -53,8 +53,4 @@ std::vector<DescribedPair> describeForTraining(const TrainingSet& images,
         const cv::Ptr<cv::Feature2D>& extractor, int pairsPerScene, double detected, const Warps& warps,
         uint64 seed, const Progress& progress);
 
-//! All pairs as they are, for judging.
-std::vector<DescribedPair> describeForTest(const std::vector<ImagePair>& pairs,
-        const cv::Ptr<cv::Feature2D>& extractor, const Progress& progress);
-
 }  // namespace iib_tools

@@ -14,24 +14,14 @@ p = 1 / (1 + sum exp((d0 - ratio dk) / T)), T = sqrt(bits) / 4; what is lost is 
 much for hopeless points. Each step draws fresh anchors, finds the points that the bits chosen so far confuse
 them with, and takes those candidates along which the loss falls fastest, never two neighbours in one step.
 
-@param bits size.
-@return candidates of that many bits in all at most, every level a whole number of bytes.
+@return that many candidates at most, every level a whole number of bytes.
 @throws cv::Exception if the pairs are too few or the pool has too few bits. */
 std::vector<int> selectGreedily(const CandidatePool& pool, const std::vector<DescribedPair>& pairs, int bits,
         uint64 seed, const Progress& progress);
 
-/** As in the paper (section "Reduction of the IIB Descriptor Size"): discrete AdaBoost on partners against as
-many pairs of other points; a weak learner is a candidate, which says "same" up to some Hamming distance; no
-candidate is taken twice. Parameters, return value and exceptions as above. */
-std::vector<int> selectByAdaBoost(const CandidatePool& pool, const std::vector<DescribedPair>& pairs,
-        int bits, uint64 seed, const Progress& progress);
-
-//! Number of candidates for a size in bits. @throws cv::Exception if the pool has fewer, or it is none.
-int candidateCount(const CandidatePool& pool, int bits);
-
 /** Makes every level a whole number of bytes, so that no bit is padding: levels are rounded and then keep or
-gain the candidates with the largest benefit. `benefit` is one number a candidate of the pool; those that are not chosen need a
-positive one. */
+gain the candidates with the largest benefit, `bits` at most. `benefit` is one number a candidate of the pool; those that
+are not chosen need a positive one. */
 std::vector<int> fillBytes(const CandidatePool& pool, const std::vector<int>& chosen,
         const std::vector<double>& benefit, int bits);
 
