@@ -3,7 +3,7 @@
 // The library under stress, each result compared with one got the easy way; see ABOUT. Prints time and memory; exit
 // code 1 and a line for what does not hold.
 
-#include "opencv2/iib.hpp"
+#include "stress.hpp"
 
 #include "common/command_line.hpp"
 
@@ -11,20 +11,14 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
-#include <stdexcept>
 #include <thread>
 
 namespace {
 
 using namespace cv;
+using namespace stress;
 using cv::iib::HierarchicalMatcher;
 using cv::iib::IIB;
-
-void require(bool condition, const char* what)
-{
-    if (!condition)
-        throw std::logic_error(what);
-}
 
 //! Of this process, in MB: "VmRSS" now, "VmHWM" at its highest.
 double memory(const std::string& name)
@@ -37,27 +31,14 @@ double memory(const std::string& name)
     return 0;
 }
 
-//! Prints the time and memory that what was done since it was made has taken.
-struct Report
+//! Prints the time and memory that the work has taken.
+void timed(const std::string& what, const std::function<void()>& work)
 {
-    const std::string what;
     const int64 start = getTickCount();
-
-    explicit Report(const std::string& what_) : what(what_) {}
-    ~Report()
-    {
-        std::printf("%s: %.2f s, memory %.0f MB, at its highest %.0f MB\n", what.c_str(),
-                (double)(getTickCount() - start) / getTickFrequency(), memory("VmRSS"), memory("VmHWM"));
-        std::fflush(stdout);
-    }
-};
-
-Mat noise(Size size, int type, int seed)
-{
-    Mat image(size, type);
-    RNG rng(seed);
-    rng.fill(image, RNG::UNIFORM, 0, CV_MAT_DEPTH(type) == CV_8U ? 256 : 65536);
-    return image;
+    work();
+    std::printf("%s: %.2f s, memory %.0f MB, at its highest %.0f MB\n", what.c_str(),
+            (double)(getTickCount() - start) / getTickFrequency(), memory("VmRSS"), memory("VmHWM"));
+    std::fflush(stdout);
 }
 
 //! Rotated keypoints of sizes 8 to 64.
@@ -71,6 +52,11 @@ std::vector<KeyPoint> scatter(Size size, int count)
     return keypoints;
 }
 
+Ptr<IIB> extractor(bool rotated)
+{
+    return IIB::create(1.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, rotated);
+}
+
 //! Descriptors of all the keypoints.
 Mat describe(IIB& iib, const Mat& image, std::vector<KeyPoint> keypoints)
 {
@@ -81,20 +67,16 @@ Mat describe(IIB& iib, const Mat& image, std::vector<KeyPoint> keypoints)
     return descriptors;
 }
 
-bool equal(const Mat& a, const Mat& b) { return a.size() == b.size() && norm(a, b, NORM_INF) == 0; }
-
 void manyKeypoints(int count)
 {
     const Mat image = noise(Size(1280, 720), CV_8U, 1);
     const std::vector<KeyPoint> keypoints = scatter(image.size(), count);
     for (const bool rotated : {false, true})
     {
-        const Ptr<IIB> iib = IIB::create(1.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, rotated);
+        const Ptr<IIB> iib = extractor(rotated);
         Mat descriptors;
-        {
-            const Report report(format("%d keypoints on 1280 x 720%s", count, rotated ? ", rotated" : ""));
-            descriptors = describe(*iib, image, keypoints);
-        }
+        timed(format("%d keypoints on 1280 x 720%s", count, rotated ? ", rotated" : ""),
+                [&] { descriptors = describe(*iib, image, keypoints); });
         for (int i = 0; i < 1000; i++)
         {
             const int k = (int)((int64)i * count / 1000);
@@ -114,24 +96,18 @@ void largeImages(int megapixels)
             std::vector<KeyPoint> keypoints = scatter(size - Size(200, 200), 2000);
             keypoints.push_back(
                     KeyPoint((float)size.width / 2, (float)size.height / 2, (float)size.width, 10));
-            const Ptr<IIB> iib =
-                    IIB::create(1.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, rotated);
+            const Ptr<IIB> iib = extractor(rotated);
             Mat descriptors;
+            timed(format("%d x %d, %s%s", size.width, size.height, typeToString(type).c_str(),
+                          rotated ? ", rotated" : ""),
+                    [&] { descriptors = describe(*iib, image, keypoints); });
+            // The steps of 32F depend on the whole image.
+            for (int k = 0; k < 2000 && type != CV_32FC1; k += 10)
             {
-                const Report report(format("%d x %d, %s%s", size.width, size.height,
-                        typeToString(type).c_str(), rotated ? ", rotated" : ""));
-                descriptors = describe(*iib, image, keypoints);
-            }
-            if (type == CV_32FC1)
-                continue;  // its steps depend on the whole image
-            for (int k = 0; k < 2000; k += 10)
-            {
-                const Point corner(
-                        std::max((int)keypoints[k].pt.x - 150, 0), std::max((int)keypoints[k].pt.y - 150, 0));
-                const Rect around = Rect(corner, Size(300, 300)) & Rect(Point(), size);
                 KeyPoint kp = keypoints[k];
-                kp.pt.x -= (float)corner.x;
-                kp.pt.y -= (float)corner.y;
+                const Point corner(std::max((int)kp.pt.x - 150, 0), std::max((int)kp.pt.y - 150, 0));
+                const Rect around = Rect(corner, Size(300, 300)) & Rect(Point(), size);
+                kp.pt -= Point2f(corner);
                 require(equal(descriptors.row(k),
                                 describe(*iib, image(around).clone(), std::vector<KeyPoint>(1, kp))),
                         "a part of the image is described otherwise");
@@ -139,46 +115,11 @@ void largeImages(int megapixels)
         }
 }
 
-int distance(const uchar* a, const uchar* b, int bytes)
-{
-    int sum = 0;
-    for (int i = 0; i < bytes; i++)
-        for (int bits = a[i] ^ b[i]; bits; bits &= bits - 1)
-            sum++;
-    return sum;
-}
-
-void manyCodes(int count)
-{
-    const Mat train = noise(Size(170, count), CV_8U, 1);
-    Mat queries = noise(Size(170, 20), CV_8U, 2);
-    train.row(count - 1).copyTo(queries.row(7));
-    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({2, 8, 32, 128});
-    {
-        const Report report(format("%d train descriptors added", count));
-        matcher->add(train);
-    }
-    std::vector<DMatch> matches;
-    {
-        const Report report(format("%d queries against them", queries.rows));
-        matcher->match(queries, matches);
-    }
-    require(matches[7].distance == 0 && matches[7].trainIdx == count - 1, "a copy is not found");
-    for (const DMatch& m : matches)
-        for (int t = 0; t < count; t++)
-        {
-            const int d = m.queryIdx % 5 ? (int)m.distance
-                                         : distance(queries.ptr(m.queryIdx), train.ptr(t), train.cols);
-            require(d > m.distance || (d == m.distance && (m.queryIdx % 5 || t >= m.trainIdx)),
-                    "a nearer one is missed");
-        }
-}
-
 void manyThreads(int seconds)
 {
     const Mat image = noise(Size(320, 240), CV_8U, 1);
     const std::vector<KeyPoint> keypoints = scatter(image.size(), 200);
-    const Ptr<IIB> iib = IIB::create(1.f, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, true);
+    const Ptr<IIB> iib = extractor(true);
     const Ptr<HierarchicalMatcher> matcher =
             HierarchicalMatcher::create(iib->levelSizes(), HierarchicalMatcher::EXACT, 0.35f, true);
     setNumThreads(1);
@@ -203,13 +144,9 @@ void manyThreads(int seconds)
                 rounds++;
             }
         }));
-    double early = 0;
-    for (int s = 0; s < seconds; s++)
-    {
-        std::this_thread::sleep_for(std::chrono::seconds(1));
-        if (s == seconds / 5)
-            early = memory("VmRSS");
-    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(200 * seconds));
+    const double early = memory("VmRSS");
+    std::this_thread::sleep_for(std::chrono::milliseconds(800 * seconds));
     const double late = memory("VmRSS");
     stop = true;
     for (std::thread& thread : threads)
@@ -222,18 +159,18 @@ void manyThreads(int seconds)
 
 const char ABOUT[] =
         "The library under stress: iib_stress [--amount=N] WHAT\n"
-        "keypoints  N keypoints on one image, 1,000,000 unless said\n"
-        "codes      N train descriptors, 1,000,000 unless said\n"
-        "pixels     images of every type and of N megapixels, 100 unless said\n"
-        "threads    24 threads that share one extractor and one matcher, for N seconds, 120 unless said";
+        "keypoints    N keypoints on one image, 1,000,000 unless said\n"
+        "pixels       images of every type and of N megapixels, 100 unless said\n"
+        "threads      24 threads that share one extractor and one matcher, for N seconds, 120 unless said\n"
+        "allocations  each fails in turn";
 
 const struct
 {
     const char* name;
     void (*run)(int);
     int amount;
-} STRESSES[] = {{"keypoints", manyKeypoints, 1000000}, {"codes", manyCodes, 1000000},
-        {"pixels", largeImages, 100}, {"threads", manyThreads, 120}};
+} STRESSES[] = {{"keypoints", manyKeypoints, 1000000}, {"pixels", largeImages, 100},
+        {"threads", manyThreads, 120}, {"allocations", failingAllocations, 0}};
 
 int run(const iib_tools::CommandLine& line)
 {
@@ -243,17 +180,8 @@ int run(const iib_tools::CommandLine& line)
     for (const auto& stress : STRESSES)
         if (what == stress.name)
         {
-            const int amount = line.has("amount") ? line.whole("amount", 1, 100000000) : stress.amount;
-            try
-            {
-                stress.run(amount);
-                return 0;
-            }
-            catch (const std::exception& e)
-            {
-                std::fprintf(stderr, "%s: %s\n", stress.name, e.what());
-                return 1;
-            }
+            stress.run(line.has("amount") ? line.whole("amount", 1, 100000000) : stress.amount);
+            return 0;
         }
     CV_Error(Error::StsBadArg, "there is no " + what + " (--help tells what there is)");
 }
@@ -262,5 +190,13 @@ int run(const iib_tools::CommandLine& line)
 
 int main(int argc, char** argv)
 {
-    return iib_tools::runTool(argc, argv, ABOUT, "{amount|<none>|how much}", run);
+    try
+    {
+        return iib_tools::runTool(argc, argv, ABOUT, "{amount|<none>|how much}", run);
+    }
+    catch (const std::logic_error& e)
+    {
+        std::fprintf(stderr, "%s\n", e.what());
+        return 1;
+    }
 }

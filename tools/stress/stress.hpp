@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "opencv2/iib.hpp"
+
+#include <stdexcept>
+#include <string>
+
+namespace stress {
+
+inline void require(bool condition, const std::string& what)
+{
+    if (!condition)
+        throw std::logic_error(what);
+}
+
+inline bool equal(const cv::Mat& a, const cv::Mat& b)
+{
+    return a.size() == b.size() && (a.empty() || cv::norm(a, b, cv::NORM_INF) == 0);
+}
+
+inline cv::Mat noise(cv::Size size, int type, int seed)
+{
+    cv::Mat image(size, type);
+    cv::RNG(seed).fill(image, cv::RNG::UNIFORM, 0, CV_MAT_DEPTH(type) == CV_8U ? 256 : 65536);
+    return image;
+}
+
+/** Every allocation of the library, and of OpenCV beneath it, fails in turn: the call that needed it throws, and the
+object goes on as if it had not been called. @throws std::logic_error that says what does not hold. */
+void failingAllocations(int unused);
+
+}  // namespace stress
