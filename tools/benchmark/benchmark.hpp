@@ -23,8 +23,8 @@ std::vector<double> measure(const std::vector<Task>& tasks, int rounds);
 
 //! What descriptors cost beside cv::ORB on the same keypoints.
 void measureDescribing(cv::FileStorage& fs, int rounds);
-//! How the default descriptor's time, beside ORB's, and memory grow with pixels and keypoints, on one thread.
-void measureGrowth(cv::FileStorage& fs, int rounds);
+//! How the default descriptor's time grows with pixels beside ORB's, 1000 keypoints each, on one thread.
+void measurePixels(cv::FileStorage& fs, int rounds);
 //! What it costs to match an image's codes of 170 bytes with those of the same points under other light, on one thread.
 void measureMatching(cv::FileStorage& fs, int rounds);
 //! What small work costs, of which a video has much, and what a second thread brings.

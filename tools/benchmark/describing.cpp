@@ -43,6 +43,7 @@ std::vector<Row> allRows(const Mat& image)
     rows.push_back({"2 extra channels", IIB::create(2.f, 4, all, mean, false, false, 2), {image, image}, 1});
     rows.push_back({"useOrientation", IIB::create(2.f, 4, all, mean, false, true), {}, 1});
     rows.push_back({"default, 2 threads", IIB::create(), {}, 2});
+    rows.push_back({"cv::SIFT", SIFT::create(), {}, 1});
 #ifdef IIB_HAVE_XFEATURES2D
     using namespace cv::xfeatures2d;
     rows.push_back({"BEBLID-256", BEBLID::create(1.f, BEBLID::SIZE_256_BITS), {}, 1});
@@ -77,7 +78,7 @@ void measureDescribing(FileStorage& fs, int rounds)
                                  else
                                      row.feature->compute(image, keypoints, descriptors);
                              },
-                    row.threads, 1});
+                    row.threads, row.name == "cv::SIFT" ? 10 : 1});
         }
     const std::vector<double> milliseconds = measure(tasks, rounds);
     fs << "width" << size.width << "height" << size.height << "keypoints"
@@ -89,6 +90,36 @@ void measureDescribing(FileStorage& fs, int rounds)
            << "name" << rows[i].name << "threads" << rows[i].threads << "milliseconds"
            << "[" << milliseconds[2 * i] << milliseconds[2 * i + 1] << "]"
            << "}";
+    fs << "]";
+}
+
+void measurePixels(FileStorage& fs, int rounds)
+{
+    const Mat large = cornerImage(Size(6000, 4000));
+    const Ptr<Feature2D> features[] = {IIB::create(), ORB::create()};
+    std::vector<Mat> images;
+    std::vector<KeyPoint> keypoints;
+    Mat descriptors;
+    std::vector<Task> tasks;
+    for (double side : {0.125, 0.25, 0.375, 0.5, 0.75, 1.})
+    {
+        const Mat image = large(Rect(0, 0, cvRound(large.cols * side), cvRound(large.rows * side)));
+        const std::vector<KeyPoint> scattered = corners(image, 1000);
+        images.push_back(image);
+        for (const Ptr<Feature2D>& feature : features)
+            tasks.push_back({[&, image, scattered, feature] {
+                                 keypoints = scattered;
+                                 feature->compute(image, keypoints, descriptors);
+                             },
+                    1, 1});
+    }
+    const std::vector<double> milliseconds = measure(tasks, rounds);
+    fs << "pixels"
+       << "[";
+    for (size_t i = 0; i < images.size(); i++)
+        fs << "{"
+           << "megapixels" << images[i].total() * 1e-6 << "keypoints" << 1000 << "milliseconds"
+           << milliseconds[2 * i] << "orb_milliseconds" << milliseconds[2 * i + 1] << "}";
     fs << "]";
 }
 

@@ -15,9 +15,7 @@ def finish(axis, title, label):
 def draw_pixels(axis, data):
     points = data["pixels"]
     for key, label in (("milliseconds", "IIB"), ("orb_milliseconds", "ORB")):
-        found = [p for p in points if key in p]  # ORB's are in newer files alone
-        if found:
-            axis.plot([p["megapixels"] for p in found], [p[key] for p in found], marker="o", label=label)
+        axis.plot([p["megapixels"] for p in points], [p[key] for p in points], marker="o", label=label)
     axis.set_xlim(left=0)
     axis.set_ylim(bottom=0)
     finish(axis, "Describe: larger images", f"megapixels ({points[0]['keypoints']} keypoints)")
