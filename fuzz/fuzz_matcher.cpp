@@ -3,8 +3,7 @@
 // HierarchicalMatcher with any level sizes, train images, masks, k, radius and mode: a cv::Exception, or what the
 // naive oracle finds.
 
-#include "byte_source.hpp"
-#include "support/matcher_oracle.hpp"
+#include "matches.hpp"
 #include "../src/matcher/search.hpp"
 
 #include <numeric>
@@ -14,22 +13,6 @@ namespace {
 using namespace cv;
 using namespace opencv_test;
 using cv::iib::HierarchicalMatcher;
-
-bool equal(const Matches& a, const Matches& b)
-{
-    if (a.size() != b.size())
-        return false;
-    for (size_t q = 0; q < a.size(); q++)
-    {
-        if (a[q].size() != b[q].size())
-            return false;
-        for (size_t i = 0; i < a[q].size(); i++)
-            if (a[q][i].distance != b[q][i].distance || a[q][i].queryIdx != b[q][i].queryIdx ||
-                    a[q][i].imgIdx != b[q][i].imgIdx || a[q][i].trainIdx != b[q][i].trainIdx)
-                return false;
-    }
-    return true;
-}
 
 //! ADAPTIVE may miss neighbours; what it reports is right and in order.
 bool isPartOf(const Matches& some, const MatcherOracle& oracle, const Mat& queries, size_t k)

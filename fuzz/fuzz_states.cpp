@@ -3,10 +3,9 @@
 // Sequences of calls on matchers and their copies, each compared with a model that is searched pair by pair:
 // what is added, copied, cleared, saved, loaded or set must be all that later answers depend on.
 
-#include "byte_source.hpp"
 #include "file.hpp"
+#include "matches.hpp"
 #include "../modules/iib/src/matcher/search.hpp"
-#include "support/matcher_oracle.hpp"
 
 #include <numeric>
 
@@ -78,28 +77,21 @@ public:
 private:
     void step(Subject& s)
     {
-        switch (in.between(0, 21))
+        switch (in.between(0, 16))
         {
         case 0:
         case 1:
         case 2: add(s); break;
-        case 3: refuse(s); break;
-        case 4: clear(s); break;
-        case 5: copy(s, in.flag()); break;
-        case 6: reload(s); break;
-        case 7: reread(s); break;
-        case 8: setUseOptimized(in.flag()); break;
-        case 9: setParameters(s); break;
-        case 10: overwrite(s); break;
-        case 11: askWithTrainSet(s); break;
-        case 12: askWithin(s); break;
-        case 13: askForArrays(s); break;
-        case 14: askForBest(s); break;
-        case 15: inspect(s); break;
-        case 16: setBlocks(s); break;
-        case 17: useThreads(in.rarely(4) ? 3 : 1); break;
-        case 18:
-        case 19: askWithMasks(s); break;
+        case 3: clear(s); break;
+        case 4: copy(s, in.flag()); break;
+        case 5: reload(s); break;
+        case 6: reread(s); break;
+        case 7: setUseOptimized(in.flag()); break;
+        case 8: setParameters(s); break;
+        case 9: overwrite(s); break;
+        case 10: inspect(s); break;
+        case 11: setBlocks(s); break;
+        case 12: useThreads(in.rarely(4) ? 3 : 1); break;
         default: ask(s); break;
         }
     }
@@ -124,14 +116,9 @@ private:
         }
         s.model.images.push_back(codes.clone());
         added.push_back(codes);
-    }
-
-    //! Codes of another width throw and leave everything as it was.
-    void refuse(Subject& s)
-    {
-        if (!s.knowsLevels())
-            return;
-        FUZZ_CHECK(refused([&] { s.matcher->add(Mat(2, width + 1, CV_8U, Scalar(1))); }));
+        // Codes of another width throw and leave everything as it was.
+        if (in.rarely(4) && s.knowsLevels())
+            FUZZ_CHECK(refused([&] { s.matcher->add(Mat(2, width + 1, CV_8U, Scalar(1))); }));
     }
 
     void clear(Subject& s)
@@ -209,68 +196,82 @@ private:
                 m.setTo(1);
     }
 
-    void ask(Subject& s)
-    {
-        const Mat queries = takeDescriptors(width);
-        const int k = in.between(1, 4);
-        Matches found(2);
-        s.matcher->knnMatch(queries, found, k);
-        expect(s.model.knn(queries, k), found);
-    }
-
-    void askWithMasks(const Subject& s)
+    //! One of the searches, among the codes that were added or in given ones.
+    void ask(const Subject& s)
     {
         const Mat queries = takeDescriptors(width);
         MatcherOracle model = s.model;
-        for (const Mat& image : model.images)
-            model.masks.push_back(
+        const bool given = in.rarely(4);
+        if (given)
+            model.images.assign(1, takeDescriptors(width));
+        else if (in.flag())
+            model.masks = takeMasks(model.images, queries);
+        const int k = in.between(1, 4);
+        switch (in.between(0, 3))
+        {
+        case 0: return askWithin(s, queries, model, given);
+        case 1: return askForBest(s, queries, model, given);
+        case 2: return askForArrays(s, queries, model, given, k);
+        }
+        Matches found(2);
+        if (given)
+            s.matcher->knnMatch(queries, model.images[0], found, k);
+        else
+            s.matcher->knnMatch(queries, found, k, model.masks);
+        FUZZ_CHECK(equal(model.knn(queries, k), found));
+    }
+
+    std::vector<Mat> takeMasks(const std::vector<Mat>& images, const Mat& queries)
+    {
+        std::vector<Mat> masks;
+        for (const Mat& image : images)
+            masks.push_back(
                     in.flag() || queries.empty() || image.empty()
                             ? Mat()
                             : randomMask(in.take<uchar>(), queries.rows, image.rows, in.between(0, 4) / 4.));
-        const int k = in.between(1, 4);
-        Matches found(2);
-        s.matcher->knnMatch(queries, found, k, model.masks);
-        expect(model.knn(queries, k), found);
+        return masks;
     }
 
-    void askWithTrainSet(Subject& s)
+    void askWithin(const Subject& s, const Mat& queries, MatcherOracle& model, bool given)
     {
-        const Mat queries = takeDescriptors(width);
-        MatcherOracle model = s.model;
-        model.images.assign(1, takeDescriptors(width));
+        const int radius = in.between(1, 8 * width);
         Matches found(1);
-        switch (in.between(0, 2))
-        {
-        case 0: {
-            const int radius = in.between(1, 8 * width);
-            model.adaptiveBlock = 0;  // radiusMatch is exact
+        model.adaptiveBlock = 0;  // radiusMatch is exact
+        if (given)
             s.matcher->radiusMatch(queries, model.images[0], found, (float)radius);
-            return expect(model.radius(queries, radius), found);
-        }
-        case 1: {
-            std::vector<DMatch> best(1);
-            s.matcher->match(queries, model.images[0], best);
-            return expectBest(model.knn(queries, 1), best);
-        }
-        default: s.matcher->knnMatch(queries, model.images[0], found, 2);
-        }
-        expect(model.knn(queries, 2), found);
+        else
+            s.matcher->radiusMatch(queries, found, (float)radius, model.masks);
+        FUZZ_CHECK(equal(model.radius(queries, radius), found));
     }
 
-    void askForBest(Subject& s)
+    void askForBest(const Subject& s, const Mat& queries, MatcherOracle& model, bool given)
     {
-        const Mat queries = takeDescriptors(width);
         std::vector<DMatch> best(1);
-        s.matcher->match(queries, best);
-        expectBest(s.model.knn(queries, 1), best);
-    }
-
-    static void expectBest(const Matches& expected, const std::vector<DMatch>& best)
-    {
+        if (given)
+            s.matcher->match(queries, model.images[0], best);
+        else
+            s.matcher->match(queries, best, model.masks);
+        const Matches expected = model.knn(queries, 1);
         Matches found(expected.size());
         for (const DMatch& m : best)
             found[m.queryIdx].push_back(m);
-        expect(expected, found);
+        FUZZ_CHECK(equal(expected, found));
+    }
+
+    void askForArrays(const Subject& s, const Mat& queries, MatcherOracle& model, bool given, int k)
+    {
+        Mat_<int> indices, distances, images;
+        model.masks.clear();
+        if (given)
+            s.matcher->knnMatchArrays(queries, model.images[0], indices, distances, k);
+        else
+            s.matcher->knnMatchArrays(queries, indices, distances, k, noArray(), images);
+        Matches found(queries.rows);
+        for (int q = 0; q < indices.rows; q++)
+            for (int i = 0; i < k && indices(q, i) >= 0; i++)
+                found[q].push_back(
+                        DMatch(q, indices(q, i), given ? 0 : images(q, i), (float)distances(q, i)));
+        FUZZ_CHECK(equal(model.knn(queries, k), found));
     }
 
     //! What is set is what is reported.
@@ -287,52 +288,6 @@ private:
         FUZZ_CHECK(s.matcher->empty() == s.model.images.empty());
         s.matcher->resetCost();
         FUZZ_CHECK(s.matcher->matchCost() == 0);
-    }
-
-    void askWithin(Subject& s)
-    {
-        const Mat queries = takeDescriptors(width);
-        const int radius = in.between(1, 8 * width);
-        Matches found(1);
-        MatcherOracle model = s.model;
-        model.adaptiveBlock = 0;  // radiusMatch is exact
-        s.matcher->radiusMatch(queries, found, (float)radius);
-        expect(model.radius(queries, radius), found);
-    }
-
-    void askForArrays(const Subject& s)
-    {
-        const Mat queries = takeDescriptors(width);
-        const int k = in.between(1, 4);
-        MatcherOracle model = s.model;
-        const bool ownTrains = in.flag();
-        Mat_<int> indices, distances, images;
-        if (ownTrains)
-        {
-            model.images.assign(1, takeDescriptors(width));
-            s.matcher->knnMatchArrays(queries, model.images[0], indices, distances, k);
-        }
-        else
-            s.matcher->knnMatchArrays(queries, indices, distances, k, noArray(), images);
-        Matches found(queries.rows);
-        for (int q = 0; q < indices.rows; q++)
-            for (int i = 0; i < k && indices(q, i) >= 0; i++)
-                found[q].push_back(
-                        DMatch(q, indices(q, i), ownTrains ? 0 : images(q, i), (float)distances(q, i)));
-        expect(model.knn(queries, k), found);
-    }
-
-    static void expect(const Matches& expected, const Matches& found)
-    {
-        FUZZ_CHECK(expected.size() == found.size());
-        for (size_t q = 0; q < found.size(); q++)
-        {
-            FUZZ_CHECK(expected[q].size() == found[q].size());
-            for (size_t i = 0; i < found[q].size(); i++)
-                FUZZ_CHECK(expected[q][i].distance == found[q][i].distance &&
-                           expected[q][i].imgIdx == found[q][i].imgIdx &&
-                           expected[q][i].trainIdx == found[q][i].trainIdx);
-        }
     }
 
     ByteSource& in;
