@@ -166,9 +166,4 @@
             translate <-2.6 + 0.75 * I, 0, 11.9> }
     #end
 }
-#if (Mode = IMAGE)
-    DomeLights()
-    SunLight()
-    SkyAndFog()
-#end
-Finish(Scene)
+FinishOutdoors(Scene)

@@ -139,9 +139,4 @@
 #end
 
 #include "street_scene.inc"
-#if (Mode = IMAGE)
-    DomeLights()
-    SunLight()
-    SkyAndFog()
-#end
-Finish(Scene)
+FinishOutdoors(Scene)

@@ -139,9 +139,4 @@
 }
 
 #include "terrain_scene.inc"
-#if (Mode = IMAGE)
-    DomeLights()
-    SunLight()
-    SkyAndFog()
-#end
-Finish(Scene)
+FinishOutdoors(Scene)
