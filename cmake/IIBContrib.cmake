@@ -14,7 +14,7 @@ endforeach()
 
 find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc features2d)
 add_library(iib_contrib STATIC)
-foreach(name beblid brief daisy freak latch lucid)
+foreach(name beblid brief daisy freak latch)
   target_sources(iib_contrib PRIVATE "${xfeatures2d}/src/${name}.cpp")
 endforeach()
 target_compile_definitions(iib_contrib PRIVATE __OPENCV_BUILD=1 INTERFACE IIB_WITH_CONTRIB)

@@ -31,7 +31,8 @@ need $build_packages python3-jinja2
 [ -z "$contrib" ] || contrib=$(contrib_argument)
 build_tools ${contrib:+"$contrib"} iib_evaluation
 
-"$build/tools/evaluation/iib_evaluation" --out "$out" --compare "$root/tools/synthetic/day_night.csv" "$@"
+"$build/tools/evaluation/iib_evaluation" --out "$out" --compare "$root/tools/synthetic/day.png" \
+    --compare "$root/tools/synthetic/night.png" "$@"
 {
     echo "commit $(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo unknown)"
     echo "date $(date -u +%Y-%m-%d)"
@@ -45,7 +46,7 @@ page=$(/usr/bin/python3 "$root/tools/evaluation/report/report.py" "$out")
 say "results and page: $page"
 if [ -n "$document" ]; then
     /usr/bin/python3 "$root/scripts/helpers/summaries.py" "$out"
-    for file in index.html cost.csv run.txt settings.txt pictures; do
+    for file in index.html run.txt settings.txt pictures; do
         [ ! -e "$out/$file" ] || cp -r "$out/$file" "$root/doc/results"
     done
     /usr/bin/python3 "$root/scripts/helpers/figures.py" --write

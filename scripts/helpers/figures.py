@@ -215,19 +215,6 @@ def ratios():
     return table(['', '', 'mutual'] + list(rules[1:]), lines)
 
 
-def costs():
-    """Time to describe 1000 points of one image, in times of ORB's, and what a point more takes."""
-    found = {row['configuration']: row for row in rows('cost.csv')}
-    lines = []
-    for label, name in (('IIB', 'IIB'), ('IIB, `PRESET_BALANCED`', 'IIB BALANCED'),
-                        ('IIB, `PRESET_UNIVERSAL`', 'IIB UNIVERSAL'), ('IIB, `overlap`', 'IIB overlap'),
-                        ('ORB', 'ORB'), ('BRISK', 'BRISK'), ('SIFT', 'SIFT'), ('AKAZE', 'AKAZE-486')):
-        def ratio(column):
-            return '%.2f' % (float(found[name][column]) / float(found['ORB'][column]))
-        lines.append([label, found[name]['bytes'], ratio('milliseconds'), ratio('microseconds_per_further_keypoint')])
-    return table(['', 'bytes', '1000 points', 'a point more'], lines)
-
-
 def benchmark(name):
     """What iib_benchmark wrote."""
     return json.loads((results / name).read_text())
@@ -377,7 +364,7 @@ def place_recognition():
 
 PAGES = {'README.md': (match_claim, pose_claim, poses),
          'doc/guide.md': (pose_by_rule, ratios, presets),
-         'doc/performance.md': (describing, matching, small_work, costs),
+         'doc/performance.md': (describing, matching, small_work),
          'doc/scale.md': (mapped_index, flat_search, approximate_search, on_paper, place_recognition),
          'doc/results/README.md': (pose_rules, elsewhere, extra_channels, detected_points, fixed_points, turned)}
 

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <map>
 #include <set>
 
-#include "csv.hpp"
 #include "views.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
 
@@ -43,36 +41,21 @@ Kind kindOf(const std::string& sequence)
     return sequence.compare(0, 2, "v_") == 0 ? "viewpoint" : "light";
 }
 
-//! The images of a folder, sorted by name.
-std::vector<std::string> imagesOf(const std::string& folder, const std::string& prefix = "")
-{
-    static const std::set<std::string> extensions = {"png", "ppm", "pgm", "jpg", "jpeg", "tif", "tiff"};
-    std::vector<cv::String> files;
-    std::vector<std::string> images;
-    fs::glob(folder, prefix + "*", files);
-    std::sort(files.begin(), files.end());
-    for (const std::string& file : files)
-    {
-        const size_t dot = baseName(file).find('.');
-        if (dot != std::string::npos && extensions.count(baseName(file).substr(dot + 1)))
-            images.push_back(file);
-    }
-    return images;
-}
-
 //! The images `<prefix>k.<extension>` of a folder, by k; empty without k = 1.
 std::map<int, std::string> numberedImages(const std::string& folder, const std::string& prefix)
 {
+    static const std::set<std::string> extensions = {"png", "ppm", "pgm", "jpg", "jpeg", "tif", "tiff"};
+    std::vector<cv::String> files;
+    fs::glob(folder, prefix + "*", files);
     std::map<int, std::string> images;
-    for (const std::string& file : imagesOf(folder, prefix))
+    for (const std::string& file : files)
     {
         const std::string name = baseName(file);
         const size_t dot = name.find('.');
         const std::string number = name.substr(prefix.size(), dot - prefix.size());
-        if (number.empty() || number.size() > 6 ||
-                number.find_first_not_of("0123456789") != std::string::npos)
-            continue;
-        images.insert(std::make_pair(std::atoi(number.c_str()), file));
+        if (dot != std::string::npos && extensions.count(name.substr(dot + 1)) && !number.empty() &&
+                number.size() <= 6 && number.find_first_not_of("0123456789") == std::string::npos)
+            images.insert(std::make_pair(std::atoi(number.c_str()), file));
     }
     return images.count(1) ? images : std::map<int, std::string>();
 }
@@ -99,7 +82,6 @@ bool addSequence(const std::string& folder, std::vector<ImagePair>& pairs)
         if (fs::exists(join(join(folder, extra), "1.png")))
             common.extraNames.push_back(extra);
 
-    const std::string correspondences = join(folder, "corrs.txt");
     std::vector<cv::String> homographies;
     fs::glob(folder, oxford ? "H1to*" : "H_1_*", homographies);
     for (const auto& image : images)
@@ -111,33 +93,6 @@ bool addSequence(const std::string& folder, std::vector<ImagePair>& pairs)
         pair.targetFile = image.second;
         if (!homographies.empty())
             pair.homographyFile = join(folder, oxford ? "H1to" + pair.target + "p" : "H_1_" + pair.target);
-        else if (fs::exists(correspondences))
-        {
-            pair.correspondencesFile = correspondences;
-            pair.kind = "wide";
-        }
-        pairs.push_back(pair);
-    }
-    return true;
-}
-
-//! Appends the pairs of a folder laid out as EVD: images of one name in `1` and `2`, homographies in `h`.
-bool addPairFolders(const std::string& folder, std::vector<ImagePair>& pairs)
-{
-    const std::string homographies = join(folder, "h");
-    if (!fs::isDirectory(homographies))
-        return false;
-    for (const std::string& reference : imagesOf(join(folder, "1")))
-    {
-        const std::string name = baseName(reference);
-        ImagePair pair;
-        pair.set = baseName(folder);
-        pair.sequence = name.substr(0, name.find('.'));
-        pair.target = "2";
-        pair.kind = "viewpoint";
-        pair.referenceFile = reference;
-        pair.targetFile = join(join(folder, "2"), name);
-        pair.homographyFile = join(homographies, pair.sequence + ".txt");
         pairs.push_back(pair);
     }
     return true;
@@ -146,8 +101,7 @@ bool addPairFolders(const std::string& folder, std::vector<ImagePair>& pairs)
 void search(const std::string& folder, int depth, std::vector<ImagePair>& pairs)
 {
     const bool isWalk = fs::isDirectory(join(folder, "frames"));  // of tools/synthetic: the camera moves
-    if (isWalk || holdsViews(folder) || addSequence(folder, pairs) || addPairFolders(folder, pairs) ||
-            depth == 0)
+    if (isWalk || holdsViews(folder) || addSequence(folder, pairs) || depth == 0)
         return;
     std::vector<cv::String> entries;
     fs::glob(folder, "*", entries, false, true);
@@ -155,45 +109,6 @@ void search(const std::string& folder, int depth, std::vector<ImagePair>& pairs)
     for (const std::string& entry : entries)
         if (fs::isDirectory(entry))
             search(entry, depth - 1, pairs);
-}
-
-void addList(const std::string& file, std::vector<ImagePair>& pairs)
-{
-    static const std::set<Kind> kinds = {"light", "blur", "jpeg", "viewpoint", "zoom"};
-    const std::vector<std::string> head = {"reference", "target", "homography", "kind"};
-    std::ifstream in(file);
-    std::string line;
-    if (!std::getline(in, line) || splitFields(line) != head)
-        CV_Error(cv::Error::StsParseError,
-                file + ": a list begins with the line reference,target,homography,kind");
-
-    const std::string folder = folderOf(file);
-    const std::string stem = baseName(file).substr(0, baseName(file).find_last_of('.'));
-    for (int number = 2; std::getline(in, line); number++)
-    {
-        if (line.empty())
-            continue;
-        const std::vector<std::string> f = splitFields(line);
-        ImagePair pair;
-        pair.set = stem;
-        pair.kind = f.size() == 4 && !f[3].empty() ? f[3] : "light";
-        if (f.size() == 4 && !f[0].empty() && !f[1].empty() && kinds.count(pair.kind))
-        {
-            pair.referenceFile = join(folder, f[0]);
-            pair.targetFile = join(folder, f[1]);
-            pair.homographyFile = f[2].empty() ? "" : join(folder, f[2]);
-            pair.sequence = baseName(folderOf(pair.referenceFile));
-            pair.target = f[1];
-            std::replace(pair.target.begin(), pair.target.end(), '/', '_');
-        }
-        else
-        {
-            pair.target = "line" + std::to_string(number);
-            pair.problem = file + ", line " + std::to_string(number) +
-                           ": not reference,target,homography,kind with a known kind";
-        }
-        pairs.push_back(pair);
-    }
 }
 
 }  // namespace
@@ -205,12 +120,9 @@ std::vector<ImagePair> findPairs(const std::vector<std::string>& roots)
     std::vector<ImagePair> pairs;
     for (const std::string& root : roots)
     {
-        if (!fs::exists(root))
-            CV_Error(cv::Error::StsObjectNotFound, root + ": no such folder or list file");
-        if (fs::isDirectory(root))
-            search(fs::canonical(root), 4, pairs);
-        else
-            addList(fs::canonical(root), pairs);
+        if (!fs::isDirectory(root))
+            CV_Error(cv::Error::StsObjectNotFound, root + ": no such folder");
+        search(fs::canonical(root), 4, pairs);
     }
     std::set<std::string> names;
     for (const ImagePair& pair : pairs)

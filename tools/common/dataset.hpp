@@ -8,24 +8,21 @@
 
 namespace iib_tools {
 
-/** What changes between the images of a sequence: "light", "blur", "jpeg", "viewpoint", "zoom" (with
-rotation) or, with correspondences instead of a homography, "wide". Known for the sequences of Oxford by name, for
-HPatches by the prefix `v_` and for EVD; "light" otherwise. */
+/** What changes between the images of a sequence: "light", "blur", "jpeg", "viewpoint" or "zoom" (with rotation). Known
+for the sequences of Oxford by name and for HPatches by the prefix `v_`; "light" otherwise. */
 typedef std::string Kind;
 
 //! A reference image and a target image of the same scene; files are read by loadPair alone.
 struct ImagePair
 {
-    std::string set;       //!< name of the folder above the sequence, or of the list file
+    std::string set;       //!< name of the folder above the sequence
     std::string sequence;  //!< name of the sequence's folder
     std::string target;    //!< the target's number, or its file name in a list
     Kind kind;
     std::string referenceFile, targetFile;
-    std::string homographyFile;       //!< empty: static camera, identity
-    std::string correspondencesFile;  //!< not empty: known points instead of a homography
+    std::string homographyFile;  //!< empty: static camera, identity
     //! Maps of the image's size that lie beside reference and target: "depth", "labels", in this order.
     std::vector<std::string> extraNames;
-    std::string problem;  //!< why the pair cannot be used, empty if nothing is known against it
 
     std::string name() const;  //!< "set/sequence/target", unique in a data set
 };
@@ -34,21 +31,15 @@ struct LoadedPair
 {
     cv::Mat reference, target;                         //!< CV_8UC1
     cv::Matx33d homography;                            //!< reference to target, pixels
-    std::vector<cv::Vec4d> correspondences;            //!< x, y in the reference, x, y in the target
     std::vector<cv::Mat> referenceExtra, targetExtra;  //!< one an ImagePair::extraNames, 8U or 16U
 };
 
 /** Finds all pairs (1, k) below the given folders, up to four levels deep, in the layouts
  - `1.png`, `H_1_k` (also .ppm, .pgm, .jpg, .tif: HPatches), with `depth/k.png`, `labels/k.png` if any;
  - `img1.ppm`, `H1to2p` (original Oxford);
- - `1.png`, `2.png`, or `01.png`, `02.png`, `corrs.txt` (WxBS) with x1 y1 x2 y2 a line;
- - `1/<name>.png`, `2/<name>.png`, `h/<name>.txt` (EVD), a homography from the first to the second;
-and in list files: a head line `reference,target,homography,kind`, then one pair a line, paths relative to
-the list, the last two fields may be empty (identity, "light").
 Sequences without any H file are of a static camera; folders that hold `frames` (walks) and those of views.hpp are left
 out. The order is by path, numbers by value.
-@throws cv::Exception for a root that does not exist, a list without its head line, or two pairs of the
-same name. */
+@throws cv::Exception for a root that is no folder, or two pairs of the same name. */
 std::vector<ImagePair> findPairs(const std::vector<std::string>& roots);
 
 //! @throws cv::Exception, in one line with the file's name, for a broken image or H file.

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "csv.hpp"
 #include "metrics.hpp"
 #include "opencv2/features2d.hpp"
 
@@ -19,24 +20,18 @@ bool rosInside(const cv::Point2d& centre, float radius, cv::Size size)
            centre.y <= size.height - radius;
 }
 
-//! Splits at commas into numbers; empty if a field is none.
+//! The numbers of a line; empty if a field is none.
 std::vector<float> parseNumbers(const std::string& line)
 {
     std::vector<float> values;
-    const char* at = line.c_str();
-    for (;;)
+    for (const std::string& field : splitFields(line))
     {
         char* end = nullptr;
-        const float value = std::strtof(at, &end);
-        if (end == at || !std::isfinite(value))
+        values.push_back(std::strtof(field.c_str(), &end));
+        if (end == field.c_str() || *end != '\0' || !std::isfinite(values.back()))
             return std::vector<float>();
-        values.push_back(value);
-        if (*end == '\0' || *end == '\r')
-            return values;
-        if (*end != ',')
-            return std::vector<float>();
-        at = end + 1;
     }
+    return values;
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 #include "dataset.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
@@ -22,39 +21,13 @@ cv::Mat readExtra(const std::string& imageFile, const std::string& name, cv::Siz
     return map;
 }
 
-std::vector<cv::Vec4d> readCorrespondences(const std::string& file)
-{
-    std::ifstream in(file);
-    std::vector<cv::Vec4d> found;
-    std::string line;
-    for (int number = 1; std::getline(in, line); number++)
-    {
-        std::istringstream words(line);
-        cv::Vec4d c;
-        std::string rest;
-        if (line.find_first_not_of(" \t\r") == std::string::npos)
-            continue;
-        if (!(words >> c[0] >> c[1] >> c[2] >> c[3]) || words >> rest)
-            CV_Error(cv::Error::StsParseError,
-                    cv::format("%s, line %d: not x1 y1 x2 y2", file.c_str(), number));
-        found.push_back(c);
-    }
-    if (found.empty())
-        CV_Error(cv::Error::StsParseError, file + ": no correspondences");
-    return found;
-}
-
 }  // namespace
 
 LoadedPair loadPair(const ImagePair& pair)
 {
-    if (!pair.problem.empty())
-        CV_Error(cv::Error::StsParseError, pair.problem);
     LoadedPair loaded;
     loaded.homography =
             pair.homographyFile.empty() ? cv::Matx33d::eye() : readHomography(pair.homographyFile);
-    if (!pair.correspondencesFile.empty())
-        loaded.correspondences = readCorrespondences(pair.correspondencesFile);
     loaded.reference = readImage(pair.referenceFile, cv::IMREAD_GRAYSCALE);
     loaded.target = readImage(pair.targetFile, cv::IMREAD_GRAYSCALE);
     for (const std::string& name : pair.extraNames)

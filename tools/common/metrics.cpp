@@ -42,17 +42,6 @@ double recall(const Counts& counts)
     return counts.correspondences > 0 ? double(counts.correct) / counts.correspondences : 0;
 }
 
-MeanScores meanScores(const std::vector<Counts>& pairs)
-{
-    MeanScores mean = {0, 0};
-    for (const Counts& pair : pairs)
-    {
-        mean.map += precision(pair) / pairs.size();
-        mean.mar += recall(pair) / pairs.size();
-    }
-    return mean;
-}
-
 std::vector<cv::DMatch> mutualMatches(const cv::Mat& query, const cv::Mat& train, int norm)
 {
     std::vector<cv::DMatch> matches;
@@ -129,24 +118,6 @@ int countCorrespondences(const std::vector<cv::KeyPoint>& reference, const std::
     for (size_t i = 0; i < reference.size(); i++)
         count += findPartner(int(i), candidates, partner, visitedBy, int(i));
     return count;
-}
-
-std::vector<CurvePoint> matchCurve(const std::vector<cv::DMatch>& matches, const std::vector<bool>& correct,
-        const std::vector<float>& thresholds)
-{
-    std::vector<CurvePoint> curve;
-    for (float threshold : thresholds)
-    {
-        CurvePoint point = {0, 0};
-        for (size_t i = 0; i < matches.size(); i++)
-            if (matches[i].distance <= threshold)
-            {
-                point.putative++;
-                point.correct += correct[i];
-            }
-        curve.push_back(point);
-    }
-    return curve;
 }
 
 }  // namespace iib_tools

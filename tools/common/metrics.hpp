@@ -21,13 +21,6 @@ double precision(const Counts& counts);
 //! correct / correspondences; 0 without correspondences.
 double recall(const Counts& counts);
 
-//! mAP and mAR: means over pairs, every pair with the same weight; 0 for no pairs.
-struct MeanScores
-{
-    double map, mar;
-};
-MeanScores meanScores(const std::vector<Counts>& pairs);
-
 //! Pairs of rows that are each other's nearest; norm as BFMatcher's, whose matches these are.
 std::vector<cv::DMatch> mutualMatches(const cv::Mat& query, const cv::Mat& train, int norm);
 
@@ -57,14 +50,5 @@ bool correspond(const cv::KeyPoint& reference, const cv::KeyPoint& target, const
 //! The largest number of correspondences with every keypoint in one of them at most.
 int countCorrespondences(const std::vector<cv::KeyPoint>& reference, const std::vector<cv::KeyPoint>& target,
         const cv::Matx33d& homography, double tolerance);
-
-//! One point of the recall against 1-precision curve: the matches with distance <= threshold.
-struct CurvePoint
-{
-    int correct, putative;
-};
-//! One point a threshold, in the thresholds' order.
-std::vector<CurvePoint> matchCurve(const std::vector<cv::DMatch>& matches, const std::vector<bool>& correct,
-        const std::vector<float>& thresholds);
 
 }  // namespace iib_tools

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "configurations.hpp"
-#include "opencv2/imgproc.hpp"
 #include "opencv2/opencv_modules.hpp"
 #if defined(HAVE_OPENCV_XFEATURES2D) || defined(IIB_WITH_CONTRIB)
 #define IIB_HAVE_XFEATURES2D
@@ -16,13 +15,7 @@ typedef cv::Ptr<cv::Feature2D> Feature;
 Configuration baseline(const std::string& name, float seedSize, const std::function<Feature()>& create,
         const std::string& seeds = "FAST")
 {
-    Configuration c;
-    c.name = name;
-    c.create = create;
-    c.seedSize = seedSize;
-    c.seeds = seeds;
-    c.oriented = false;
-    return c;
+    return {name, create, seedSize, seeds, {}, false};
 }
 
 Configuration akaze(int bits)
@@ -34,25 +27,6 @@ Configuration akaze(int bits)
 }
 
 #ifdef IIB_HAVE_XFEATURES2D
-//! LUCID takes colour images alone.
-class GreyLUCID CV_FINAL : public cv::Feature2D
-{
-public:
-    void compute(cv::InputArray image, std::vector<cv::KeyPoint>& keypoints,
-            cv::OutputArray descriptors) CV_OVERRIDE
-    {
-        cv::Mat colour;
-        cv::cvtColor(image, colour, cv::COLOR_GRAY2BGR);
-        lucid_->compute(colour, keypoints, descriptors);
-    }
-    int descriptorSize() const CV_OVERRIDE { return lucid_->descriptorSize(); }
-    int descriptorType() const CV_OVERRIDE { return lucid_->descriptorType(); }
-    int defaultNorm() const CV_OVERRIDE { return lucid_->defaultNorm(); }
-
-private:
-    Feature lucid_ = cv::xfeatures2d::LUCID::create();
-};
-
 //! As OpenCV's documentation recommends for corners: five times their size, 35 pixels.
 const float CORNER_SIZE = 7, CORNER_SCALE = 5;
 
@@ -87,34 +61,8 @@ void addXfeatures2d(std::vector<Configuration>& baselines)
     addBeblid<TEBLID>("TEBLID", 512, TEBLID::SIZE_512_BITS, baselines);
 #endif
     baselines.push_back(baseline("DAISY", side, []() -> Feature { return DAISY::create(SEED_RADIUS); }));
-    baselines.push_back(baseline("LUCID", side, []() -> Feature { return cv::makePtr<GreyLUCID>(); }));
-#ifdef HAVE_OPENCV_XFEATURES2D
-    const int boost[][2] = {
-            {64, BoostDesc::BINBOOST_64}, {128, BoostDesc::BINBOOST_128}, {256, BoostDesc::BINBOOST_256}};
-    for (const auto& b : boost)
-    {
-        const int type = b[1];
-        baselines.push_back(baseline("BOOST-" + std::to_string(b[0]), side,
-                [type]() -> Feature { return BoostDesc::create(type, true, 1.f); }));
-    }
-    // The window is 20 times 1.2 / 9 of the size.
-    baselines.push_back(baseline(
-            "SURF", side * 9 / 24, []() -> Feature { return SURF::create(100, 4, 3, false, true); }));
-#endif
 }
 #endif
-
-bool isAvailable(const Configuration& c)
-{
-    try
-    {
-        return !c.create().empty();
-    }
-    catch (const cv::Exception&)  // the module was built without it, as SURF without NONFREE
-    {
-        return false;
-    }
-}
 
 }  // namespace
 
@@ -132,11 +80,7 @@ std::vector<Configuration> baselineConfigurations()
 #ifdef IIB_HAVE_XFEATURES2D
     addXfeatures2d(all);
 #endif
-    std::vector<Configuration> available;
-    for (const Configuration& c : all)
-        if (isAvailable(c))
-            available.push_back(c);
-    return available;
+    return all;
 }
 
 }  // namespace iib_tools

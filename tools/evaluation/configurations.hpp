@@ -16,7 +16,7 @@ const float DEEP_RADIUS = 64;  //!< the same around keypoints of deep detectors
 struct Configuration
 {
     std::string name;
-    std::function<cv::Ptr<cv::Feature2D>()> create;  //!< throws if this OpenCV lacks it
+    std::function<cv::Ptr<cv::Feature2D>()> create;
     float seedSize;     //!< KeyPoint::size at which it looks at the ROS of radius SEED_RADIUS
     std::string seeds;  //!< detector of the seed points: "FAST", or "AKAZE", "KAZE" that need their own
     std::vector<std::string> extraNames;  //!< maps it is given besides the image
@@ -39,9 +39,6 @@ std::vector<Configuration> robustnessConfigurations();
 
 //! An IIB extractor as IIBDescriptorExtractor::save wrote it, selection included; named by its file.
 Configuration savedConfiguration(const std::string& file);
-
-//! Default IIB with the given scale factor.
-cv::Ptr<cv::Feature2D> defaultIIB(float scaleFactor);
 
 //! Descriptors of the keypoints that a configuration keeps; KeyPoint::response tells which those are.
 struct Description

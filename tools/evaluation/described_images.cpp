@@ -27,15 +27,4 @@ DescribedImages::Result DescribedImages::get(
     return result;
 }
 
-std::pair<DescribedImages::Result, DescribedImages::Result> DescribedImages::both(
-        const Detector& detector, const cv::Mat& reference, const cv::Mat& target, const ImagePair& pair)
-{
-    const Result r = get(detector, reference, pair, pair.referenceFile),
-                 t = get(detector, target, pair, pair.targetFile);
-    if (r->size() != t->size())
-        CV_Error(cv::Error::StsUnmatchedSizes,
-                pair.name() + ": own descriptors of " + detector.name + " for one image of two");
-    return {r, t};
-}
-
 }  // namespace iib_tools

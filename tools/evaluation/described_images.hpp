@@ -24,11 +24,6 @@ public:
     Result get(
             const Detector& detector, const cv::Mat& image, const ImagePair& pair, const std::string& file);
 
-    /** Of both images of a pair, the same descriptors in the same order.
-    @throws cv::Exception StsUnmatchedSizes if one of two files of keypoints has descriptors beside it. */
-    std::pair<Result, Result> both(
-            const Detector& detector, const cv::Mat& reference, const cv::Mat& target, const ImagePair& pair);
-
 private:
     typedef std::pair<std::string, std::string> Key;  // detector, file
 

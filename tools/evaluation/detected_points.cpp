@@ -1,48 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <cmath>
-
 #include "described_images.hpp"
 #include "experiments.hpp"
-#include "common/metrics.hpp"
 #include "results.hpp"
 #include "tasks.hpp"
 
 namespace iib_tools {
 namespace {
-
-const int THRESHOLDS = 64;
-
-//! Thresholds in equal steps up to the largest distance: all bits, or opposite corners of a unit sphere's octant.
-std::vector<float> thresholds(const Described& reference)
-{
-    double largest = 8. * reference.bytes;
-    if (reference.norm != cv::NORM_HAMMING)
-    {
-        largest = 0;
-        for (int i = 0; i < reference.descriptors.rows; i++)
-            largest += std::sqrt(2.) * cv::norm(reference.descriptors.row(i)) / reference.descriptors.rows;
-    }
-    std::vector<float> steps;
-    for (int i = 1; i <= THRESHOLDS; i++)
-        steps.push_back(float(largest * i / THRESHOLDS));
-    return steps;
-}
-
-//! "correct:putative" of each threshold, separated by blanks.
-std::string curveText(const std::vector<CurvePoint>& curve)
-{
-    std::string out;
-    for (const CurvePoint& p : curve)
-        out += (out.empty() ? "" : " ") + std::to_string(p.correct) + ":" + std::to_string(p.putative);
-    return out;
-}
-
-//! Whether the page shows how its recall grows with the distance.
-bool hasCurve(const Detector& detector, const std::string& descriptor)
-{
-    return descriptor == "IIB" || descriptor == detector.descriptor || descriptor == "BEBLID-512";
-}
 
 void evaluatePair(const Options& options, const ImagePair& pair, const std::vector<Detector>& detectors,
         DescribedImages& described, ResultTable& table)
@@ -50,8 +14,11 @@ void evaluatePair(const Options& options, const ImagePair& pair, const std::vect
     const LoadedPair loaded = loadPair(pair);
     for (const Detector& detector : detectors)
     {
-        const auto both = described.both(detector, loaded.reference, loaded.target, pair);
-        const std::vector<Described>&reference = *both.first, &target = *both.second;
+        const DescribedImages::Result ofReference = described.get(
+                                              detector, loaded.reference, pair, pair.referenceFile),
+                                      ofTarget =
+                                              described.get(detector, loaded.target, pair, pair.targetFile);
+        const std::vector<Described>&reference = *ofReference, &target = *ofTarget;
         // IIB, the last one, keeps every point.
         const int correspondences = countCorrespondences(
                 reference.back().keypoints, target.back().keypoints, loaded.homography, options.tolerance);
@@ -64,11 +31,9 @@ void evaluatePair(const Options& options, const ImagePair& pair, const std::vect
                 correct.push_back(correspond(r.keypoints[m.queryIdx], t.keypoints[m.trainIdx],
                         loaded.homography, options.tolerance));
             const Counts n = countsOf(correct, correspondences);
-            table.append({pair.set, pair.sequence, pair.target, detector.name, r.name, pair.kind,
-                    std::to_string(r.bytes), std::to_string(n.correct), std::to_string(n.putative),
-                    std::to_string(n.correspondences), text(precision(n)), text(recall(n)),
-                    hasCurve(detector, r.name) ? curveText(matchCurve(matches, correct, thresholds(r)))
-                                               : ""});
+            table.append(withCounts({pair.set, pair.sequence, pair.target, detector.name, r.name, pair.kind,
+                                            std::to_string(r.bytes)},
+                    n));
         }
     }
 }
@@ -90,7 +55,7 @@ int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs)
     const std::vector<Detector> all = detectors(options);
     ResultTable table(options.out + "/detected_points.csv",
             {"set", "sequence", "target", "detector", "descriptor", "kind", "bytes", "correct", "putative",
-                    "correspondences", "precision", "recall", "curve"},
+                    "correspondences", "precision", "recall"},
             5);
     DescribedImages described;
     std::vector<Task> tasks;

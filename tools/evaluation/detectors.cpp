@@ -3,14 +3,9 @@
 #include "detectors.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <tuple>
 
-#include "common/fnv1a.hpp"
 #include "common/keypoints.hpp"
-#include "common/npy.hpp"
-#include "deep_keypoints.hpp"
-#include "opencv2/core/utils/filesystem.hpp"
 #include "opencv2/iib.hpp"
 
 namespace iib_tools {
@@ -62,64 +57,28 @@ Detector normalized(const std::string& name, const std::string& descriptorName,
 Detector hessian(const std::string& name, int count)
 {
     const auto detect = [=](const cv::Mat& image, const ImagePair&, const std::string&) {
-        Detection d;
+        Detection d = {};
         cv::iib::HessianDetector::create(count)->detect(image, d.keypoints);
-        d.norm = 0;  // no descriptors
         return d;
     };
     return {name, "", cv::iib::IIB::scaleFactorFor("Hessian"), detect, {}};
 }
 
-//! A detector that gives no size gets a ROS of radius DEEP_RADIUS.
-void giveMissingSizes(std::vector<cv::KeyPoint>& keypoints)
-{
-    for (cv::KeyPoint& keypoint : keypoints)
-        if (!(keypoint.size > 0))
-            keypoint.size = 2 * DEEP_RADIUS;
-}
-
-/** Keypoints of a detector from `<set>/<sequence>/<image>.csv` below the folder, and its own descriptors, row by row,
-from the file beside it that ends with .npy, if there is one. */
+//! From `<set>/<sequence>/<image>.csv` below the folder; keypoints without a size get a ROS of radius DEEP_RADIUS.
 Detector fromFiles(const KeypointFolder& source, int count)
 {
     const auto detect = [=](const cv::Mat&, const ImagePair& pair, const std::string& imageFile) {
         const size_t start = imageFile.find_last_of('/') + 1;
         const std::string image = imageFile.substr(start, imageFile.find('.', start) - start);
         const std::string file = source.folder + "/" + pair.set + "/" + pair.sequence + "/" + image;
-        Detection d;
-        d.keypoints = readKeypoints(file + ".csv");
-        for (size_t i = 0; i < d.keypoints.size(); i++)
-            d.keypoints[i].class_id = int(i);
-        const size_t all = d.keypoints.size();
-        giveMissingSizes(d.keypoints);
-        selectStrongest(d.keypoints, count);
-        d.norm = 0;  // no descriptors
-        if (!cv::utils::fs::exists(file + ".npy"))
-            return d;
-        const cv::Mat rows = readNpy(file + ".npy");
-        if (size_t(rows.rows) != all)
-            CV_Error(cv::Error::StsUnmatchedSizes,
-                    cv::format("%s.npy: %d rows for %d keypoints", file.c_str(), rows.rows, int(all)));
-        d.descriptors.create(0, rows.cols, rows.type());
-        for (const cv::KeyPoint& k : d.keypoints)
-            d.descriptors.push_back(rows.row(k.class_id));
-        d.norm = rows.type() == CV_32F ? int(cv::NORM_L2) : int(cv::NORM_HAMMING);
-        return d;
-    };
-    return {source.name, source.name, 1.f, detect, {}};
-}
-
-Detector fromNetwork(const std::string& file, int count)
-{
-    const cv::Ptr<DeepDetector> network = cv::makePtr<DeepDetector>(file);
-    const auto detect = [=](const cv::Mat& image, const ImagePair&, const std::string&) {
-        const DeepKeypoints found = network->detect(image, count);
-        Detection d = {found.keypoints, found.descriptors, cv::NORM_L2};
+        Detection d = {readKeypoints(file + ".csv"), cv::Mat(), 0};
         for (cv::KeyPoint& keypoint : d.keypoints)
-            keypoint.size = 2 * DEEP_RADIUS;
+            if (!(keypoint.size > 0))
+                keypoint.size = 2 * DEEP_RADIUS;
+        selectStrongest(d.keypoints, count);
         return d;
     };
-    return {"network", network->hasDescriptors() ? "network" : "", 1.f, detect, {}};
+    return {source.name, "", 1.f, detect, {}};
 }
 
 //! What people describe ORB's points with instead; the patches that have a fixed size are of about ORB's.
@@ -160,27 +119,17 @@ std::vector<Detector> classicDetectors(int count)
         all.push_back(normalized(k.name, k.descriptor, k.detector, k.own, count));
     all.push_back(hessian("Hessian", count));
     all.push_back(hessian("Hessian x2", 2 * count));  // twice as many points
-    for (const Configuration& baseline : baselineConfigurations())
-        if (baseline.name == "SURF")
-            all.push_back(classic("SURF", "SURF", baseline.create, baseline.create, count));
     return all;
 }
 
-Described describeWith(
-        const std::string& name, const Feature& feature, const Detection& detection, const cv::Mat& image)
+//! What describes a detector's points, but for its own descriptor: the others, the presets, and last the default.
+std::vector<Configuration> describersOf(const Detector& detector)
 {
-    Described d = {name, detection.keypoints, cv::Mat(), feature->defaultNorm(), descriptorBytes(*feature)};
-    feature->compute(image, d.keypoints, d.descriptors);
-    return d;
-}
-
-void addFile(const std::string& file, cv::iib::Fnv1a& hash)
-{
-    std::ifstream in(file, std::ios::binary);
-    if (!in)
-        CV_Error(cv::Error::StsObjectNotFound, file + ": cannot be read");
-    const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    hash.add(bytes.data(), bytes.size());
+    std::vector<Configuration> all = detector.others;
+    for (const Configuration& c : generalPresets())
+        all.push_back(c);
+    all.push_back(iibConfigurations().front());
+    return all;
 }
 
 }  // namespace
@@ -203,66 +152,35 @@ std::vector<Detector> detectors(const Options& options)
         chosen = all;
     for (const KeypointFolder& source : options.keypoints)
         chosen.push_back(fromFiles(source, options.points));
-    if (!options.network.empty())
-        chosen.push_back(fromNetwork(options.network, options.points));
     return chosen;
 }
 
 std::vector<std::string> describedNames(const Detector& detector)
 {
     std::vector<std::string> names;
-    for (const Configuration& c : detector.others)
+    for (const Configuration& c : describersOf(detector))
         names.push_back(c.name);
-    for (const Configuration& c : generalPresets())
-        names.push_back(c.name);
-    names.push_back("IIB");
     return names;
 }
 
 std::vector<Described> describeAll(const Detector& detector, const Detection& detection, const cv::Mat& image)
 {
     std::vector<Described> all;
-    if (!detector.descriptor.empty() && detection.norm != 0)
+    if (!detector.descriptor.empty())
         all.push_back({detector.descriptor, detection.keypoints, detection.descriptors, detection.norm,
                 int(detection.descriptors.cols * detection.descriptors.elemSize())});
-    for (const Configuration& c : detector.others)
-        all.push_back(describeWith(c.name, c.create(), detection, image));
-    for (const Configuration& c : generalPresets())
+    for (const Configuration& c : describersOf(detector))
     {
-        const cv::Ptr<cv::iib::IIB> iib = c.create().dynamicCast<cv::iib::IIB>();
-        iib->setScaleFactor(iib->getScaleFactor() * detector.scaleFactor);  // a preset may look wider
-        all.push_back(describeWith(c.name, iib, detection, image));
+        const Feature feature = c.create();
+        const cv::Ptr<cv::iib::IIB> iib = feature.dynamicCast<cv::iib::IIB>();
+        if (iib)
+            iib->setScaleFactor(iib->getScaleFactor() * detector.scaleFactor);  // a preset may look wider
+        Described d = {
+                c.name, detection.keypoints, cv::Mat(), feature->defaultNorm(), descriptorBytes(*feature)};
+        feature->compute(image, d.keypoints, d.descriptors);
+        all.push_back(d);
     }
-    all.push_back(describeWith("IIB", defaultIIB(detector.scaleFactor), detection, image));
     return all;
-}
-
-std::vector<std::pair<std::string, std::string>> digests(const Options& options)
-{
-    std::vector<std::pair<std::string, std::string>> found;
-    for (const KeypointFolder& source : options.keypoints)
-    {
-        std::vector<cv::String> files;
-        cv::utils::fs::glob_relative(source.folder, "", files, true);
-        std::sort(files.begin(), files.end());
-        cv::iib::Fnv1a hash;
-        for (const std::string& file : files)
-        {
-            hash.add(file.c_str(), file.size() + 1);
-            addFile(source.folder + "/" + file, hash);
-        }
-        if (files.empty())
-            CV_Error(cv::Error::StsObjectNotFound, source.folder + ": no files of keypoints");
-        found.push_back(
-                {"keypoints " + source.name, cv::format("%016llx", (unsigned long long)hash.value())});
-    }
-    if (!options.network.empty())
-    {
-        cv::iib::Fnv1a hash;
-        addFile(options.network, hash);
-        found.push_back({"network", cv::format("%016llx", (unsigned long long)hash.value())});
-    }
-    return found;
 }
 
 }  // namespace iib_tools

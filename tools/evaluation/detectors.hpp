@@ -15,7 +15,7 @@ struct Detection
 {
     std::vector<cv::KeyPoint> keypoints;
     cv::Mat descriptors;
-    int norm;  //!< 0: none were given
+    int norm;
 };
 
 //! A detector of the experiments with detected points (paper, "Experiments Combined with Feature Detectors").
@@ -30,8 +30,8 @@ struct Detector
 };
 
 /** FAST, AGAST (both with ORB's descriptor), ORB, BRISK, AKAZE, KAZE, SIFT, the same seven on the locally normalized
-image ("ORB normalized"), SURF where present; of these the ones that Options::detectors names; keypoints from files and
-from a network where the options name them. Each gives at most Options::points keypoints, the strongest.
+image ("ORB normalized"), HessianDetector; of these the ones that Options::detectors names; keypoints from files
+where the options name them. Each gives at most Options::points keypoints, the strongest.
 @throws cv::Exception for an unknown name. */
 std::vector<Detector> detectors(const Options& options);
 
@@ -44,16 +44,12 @@ struct Described
     int norm, bytes;
 };
 
-/** The detector's own descriptors if it has some, those of Detector::others, IIB's presets and last IIB's default. In
-the same order for every image of a detector, but the own ones may be missing in files. */
+/** The detector's own descriptors if it has some, those of Detector::others, IIB's presets and last IIB's default: in
+the same order for every image of a detector. */
 std::vector<Described> describeAll(
         const Detector& detector, const Detection& detection, const cv::Mat& image);
 
 //! Names of what describeAll gives for every image, without the detector's own.
 std::vector<std::string> describedNames(const Detector& detector);
-
-/** What decides the results of the detectors from files and networks: a name, and a digest of the data.
-@throws cv::Exception if something cannot be read. */
-std::vector<std::pair<std::string, std::string>> digests(const Options& options);
 
 }  // namespace iib_tools

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iostream>
-#include <iterator>
+#include <sstream>
 
 #include "common/views.hpp"
 #include "detectors.hpp"
@@ -22,36 +22,20 @@ struct Experiment
 
 const Experiment EXPERIMENTS[] = {{"fixed_points", fixedPoints}, {"detected_points", detectedPoints},
         {"whole_tasks", wholeTasks}, {"matching", matchingStudy}, {"robustness", robustness},
-        {"ratios", ratios}, {"cost", cost}, {"pictures", pictures}, {"comparison", comparison}};
+        {"ratios", ratios}, {"comparison", comparison}};
 
-//! Results of other settings must not be mixed with these; a further detector from files or a network may join.
+//! Results of other settings must not be mixed with these.
 void checkSettings(const Options& options)
 {
-    std::vector<std::pair<std::string, std::string>> settings = {{"points", std::to_string(options.points)},
-            {"tolerance", std::to_string(options.tolerance)}, {"opencv", CV_VERSION}};
-    for (const auto& digest : digests(options))
-        settings.push_back(digest);
-    const std::string file = options.out + "/settings.txt";
-    std::ifstream in(file);
-    for (std::string line; std::getline(in, line);)
-    {
-        const size_t blank = line.find_last_of(' ');
-        const std::string name = line.substr(0, blank),
-                          value = blank == std::string::npos ? "" : line.substr(blank + 1);
-        const auto known = std::find_if(settings.begin(), settings.end(),
-                [&](const std::pair<std::string, std::string>& s) { return s.first == name; });
-        if (known == settings.end())
-            settings.push_back({name, value});
-        else if (known->second != value)
-            CV_Error(cv::Error::StsBadArg, file + " tells of other settings (" + name + " " + value +
-                                                   "): choose another output folder");
-    }
-    in.close();
-    std::ofstream out(file);
-    for (const auto& setting : settings)
-        out << setting.first << " " << setting.second << "\n";
-    if (!out.flush())
-        CV_Error(cv::Error::StsError, file + ": cannot be written");
+    const std::string file = options.out + "/settings.txt",
+                      settings = "points " + std::to_string(options.points) + "\ntolerance " +
+                                 std::to_string(options.tolerance) + "\nopencv " CV_VERSION "\n";
+    std::ostringstream known;
+    known << std::ifstream(file).rdbuf();
+    if (known.str().empty())
+        std::ofstream(file) << settings;
+    else if (known.str().compare(0, settings.size(), settings) != 0)
+        CV_Error(cv::Error::StsBadArg, file + " tells of other settings: choose another output folder");
 }
 
 //! The pairs whose files can be read; the others are told, one line each.
@@ -99,15 +83,11 @@ int evaluate(const Options& options)
     if (readable.empty() && !pairs.empty())
         CV_Error(cv::Error::StsObjectNotFound,
                 "none of the " + std::to_string(pairs.size()) + " image pairs can be read");
-    std::vector<ImagePair> planar;  // all but those of known points
-    for (const ImagePair& pair : readable)
-        if (pair.correspondencesFile.empty())
-            planar.push_back(pair);
     int skipped = int(pairs.size() - readable.size());
     for (const Experiment& e : EXPERIMENTS)
         if (options.experiments.empty() || std::find(options.experiments.begin(), options.experiments.end(),
                                                    e.name) != options.experiments.end())
-            skipped += e.run(options, e.run == wholeTasks ? readable : planar);
+            skipped += e.run(options, readable);
     std::cerr << "evaluated " << readable.size() << " of " << pairs.size() << " image pairs, skipped "
               << skipped << " pieces of work" << std::endl;
     return skipped;

@@ -8,7 +8,7 @@
 
 namespace iib_tools {
 
-//! Files `<set>/<sequence>/<image>.csv`, and .npy of descriptors, of a detector.
+//! Files `<set>/<sequence>/<image>.csv` of a detector's keypoints.
 struct KeypointFolder
 {
     std::string name, folder;
@@ -16,17 +16,15 @@ struct KeypointFolder
 
 struct Options
 {
-    std::vector<std::string> roots;        //!< folders of sequences and list files
+    std::vector<std::string> roots;        //!< folders of sequences
     std::string out;                       //!< folder of the results, made if need be
     int points = 1000;                     //!< keypoints an image
     double tolerance = 3;                  //!< pixels
-    int worst = 5;                         //!< worst and best pairs a set to draw; 0: no pictures
     std::vector<std::string> experiments;  //!< names of experiments to run; empty: all
     std::vector<std::string> saved;        //!< files of saved IIB extractors to compare
     std::vector<std::string> detectors;    //!< of OpenCV's; empty: all
     std::vector<KeypointFolder> keypoints;
-    std::string network;  //!< ONNX file of a keypoint detector, or empty
-    std::string compare;  //!< list file of pairs to draw the matches of several descriptors on, or empty
+    std::vector<std::string> compare;  //!< none, or two images to list the matches of several descriptors of
 };
 
 /** Each experiment appends to `<out>/<name>.csv` what is not there yet.
@@ -34,17 +32,13 @@ struct Options
 int fixedPoints(const Options& options, const std::vector<ImagePair>& pairs);
 //! Of pairs whose light changes, as the paper's.
 int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs);
-/** Homographies of the pairs, epipolar geometry of those with correspondences, and poses of the views below the roots
-(common/views.hpp), estimated from matches. */
+//! Poses of the views below the roots (common/views.hpp), estimated from matches.
 int wholeTasks(const Options& options, const std::vector<ImagePair>& pairs);
 int matchingStudy(const Options& options, const std::vector<ImagePair>& pairs);
 int robustness(const Options& options, const std::vector<ImagePair>& pairs);
 //! What a ratio test leaves of the right matches of the presets, for AKAZE's points detected in both images.
 int ratios(const Options& options, const std::vector<ImagePair>& pairs);
-int cost(const Options& options, const std::vector<ImagePair>& pairs);
-//! Pictures of the worst and best pairs of each set, by recall in `<out>/fixed_points.csv`.
-int pictures(const Options& options, const std::vector<ImagePair>& pairs);
-//! Pictures of the matches of IIB and others on the pairs of Options::compare, at detected points.
+//! Matches of IIB and others on the images of Options::compare, taken by a still camera, at detected points.
 int comparison(const Options& options, const std::vector<ImagePair>& pairs);
 
 //! Columns of `<out>/fixed_points.csv`.

@@ -10,19 +10,20 @@
 namespace iib_tools {
 namespace {
 
-//! The maps a configuration takes, in its order.
-void selectExtras(const Configuration& configuration, const ImagePair& pair, const LoadedPair& loaded,
-        SeededPair& seeded)
+//! The images with the maps that a configuration takes, in its order.
+LoadedPair withExtras(const LoadedPair& all, const ImagePair& pair, const Configuration& configuration)
 {
-    seeded.referenceExtra.clear();
-    seeded.targetExtra.clear();
+    LoadedPair chosen = all;
+    chosen.referenceExtra.clear();
+    chosen.targetExtra.clear();
     for (const std::string& wanted : configuration.extraNames)
         for (size_t i = 0; i < pair.extraNames.size(); i++)
             if (pair.extraNames[i] == wanted)
             {
-                seeded.referenceExtra.push_back(loaded.referenceExtra[i]);
-                seeded.targetExtra.push_back(loaded.targetExtra[i]);
+                chosen.referenceExtra.push_back(all.referenceExtra[i]);
+                chosen.targetExtra.push_back(all.targetExtra[i]);
             }
+    return chosen;
 }
 
 bool hasExtras(const Configuration& configuration, const ImagePair& pair)
@@ -37,20 +38,13 @@ void evaluatePair(const Options& options, const ImagePair& pair,
         const std::vector<Configuration>& configurations, ResultTable& table)
 {
     const LoadedPair loaded = loadPair(pair);
-    SeededPair seeded;
-    seeded.reference = loaded.reference;
-    seeded.target = loaded.target;
-    seeded.homography = loaded.homography;
     SeedSource source(loaded.reference, options.points);
     for (const Configuration& c : configurations)
     {
-        selectExtras(c, pair, loaded, seeded);
-        seeded.seeds = source.seeds(c, loaded.target.size(), loaded.homography);
-        const Counts n = matchSeeds(c, seeded, options.tolerance).counts;
-        table.append({pair.set, pair.sequence, pair.target, c.name, pair.kind,
-                std::to_string(descriptorBytes(*c.create())), std::to_string(n.correct),
-                std::to_string(n.putative), std::to_string(n.correspondences), text(precision(n)),
-                text(recall(n))});
+        const SeedPoints seeds = source.seeds(c, loaded.target.size(), loaded.homography);
+        table.append(withCounts({pair.set, pair.sequence, pair.target, c.name, pair.kind,
+                                        std::to_string(descriptorBytes(*c.create()))},
+                matchSeeds(c, withExtras(loaded, pair, c), seeds, options.tolerance)));
     }
 }
 

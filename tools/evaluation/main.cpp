@@ -9,25 +9,21 @@ using namespace iib_tools;
 
 const char ABOUT[] = "The paper's experiments, and more, on image sequences: iib_evaluation --out FOLDER "
                      "[options] DATA...\n"
-                     "DATA: folders of image sequences, or list files (layouts: README.md beside the source)";
+                     "DATA: folders of image sequences (layouts: README.md beside the source)";
 
 const char KEYS[] =
         "{out         |<none>|folder of the results; a run that was interrupted goes on there}"
-        "{only        |<none>|fixed_points, detected_points, whole_tasks, matching, robustness, ratios, "
-        "cost, "
-        "pictures "
-        "or comparison; may be repeated}"
-        "{compare     |<none>|list file of pairs to draw the matches of IIB and others on}"
+        "{only        |<none>|fixed_points, detected_points, whole_tasks, matching, robustness, ratios or "
+        "comparison; may be repeated}"
+        "{compare     |<none>|image of a still camera; given twice: to list the matches of IIB and others}"
         "{points      |1000  |keypoints an image}"
         "{tolerance   |3     |of a correct match, in pixels}"
         "{threads     |<none>|all processors, unless said}"
-        "{no-pictures |      |no pictures of the worst and best pairs}"
         "{descriptor  |<none>|an extractor saved by IIBDescriptorExtractor::save, to compare; may be "
         "repeated}"
         "{detectors   |<none>|one of OpenCV's for detected points, instead of all; may be repeated}"
         "{keypoints   |<none>|NAME=FOLDER of a detector, with <set>/<sequence>/<image>.csv: "
-        "x,y,size,angle,response, and <image>.npy of its descriptors, if any; may be repeated}"
-        "{network     |<none>|ONNX file of a keypoint detector, such as SuperPoint or ALIKE}";
+        "x,y,size,angle,response; may be repeated}";
 
 KeypointFolder keypointFolder(const std::string& given)
 {
@@ -50,14 +46,13 @@ int run(const CommandLine& line)
     options.tolerance = line.number("tolerance", 0, 1e3);
     if (line.has("threads"))
         cv::setNumThreads(line.whole("threads", 1, 1024));
-    if (line.has("no-pictures"))
-        options.worst = 0;
     options.saved = line.all("descriptor");
     options.detectors = line.all("detectors");
     for (const std::string& given : line.all("keypoints"))
         options.keypoints.push_back(keypointFolder(given));
-    options.network = line.text("network");
-    options.compare = line.text("compare");
+    options.compare = line.all("compare");
+    if (options.compare.size() != 0 && options.compare.size() != 2)
+        CV_Error(cv::Error::StsBadArg, "--compare is given twice or not at all");
     evaluate(options);
     return 0;
 }

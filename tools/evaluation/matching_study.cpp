@@ -53,9 +53,9 @@ void evaluatePair(const Options& options, const ImagePair& pair, ResultTable& ta
         const Counts n = countsOf(correctByLocation(matches, query.keypoints, train.keypoints,
                                           loaded.homography, options.tolerance),
                 int(seeds.reference.size()));
-        table.append({pair.set, pair.sequence, pair.target, m.name, std::to_string(n.correct),
-                std::to_string(n.putative), std::to_string(n.correspondences), text(precision(n)),
-                text(recall(n)), text(matcher->matchCost())});
+        Fields row = withCounts({pair.set, pair.sequence, pair.target, m.name}, n);
+        row.push_back(text(matcher->matchCost()));
+        table.append(row);
     }
 }
 

@@ -78,6 +78,14 @@ void ResultTable::write() const
         CV_Error(cv::Error::StsError, file_ + ": cannot be written");
 }
 
+Fields withCounts(Fields key, const Counts& counts)
+{
+    for (const std::string& field : {std::to_string(counts.correct), std::to_string(counts.putative),
+                 std::to_string(counts.correspondences), text(precision(counts)), text(recall(counts))})
+        key.push_back(field);
+    return key;
+}
+
 std::string text(double value)
 {
     char buffer[32];

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "common/metrics.hpp"
+
 namespace iib_tools {
 
 typedef std::vector<std::string> Fields;
@@ -37,6 +39,9 @@ private:
     std::map<Fields, Fields> rows_;
     mutable std::mutex mutex_;
 };
+
+//! The row `key` with correct, putative, correspondences, precision and recall behind it.
+Fields withCounts(Fields key, const Counts& counts);
 
 //! A number with at most six significant digits, the same on every machine.
 std::string text(double value);

@@ -28,12 +28,12 @@ std::vector<Warp> warps()
     return all;
 }
 
-SeededPair warpedPair(const cv::Mat& reference, const Warp& warp)
+LoadedPair warpedPair(const cv::Mat& reference, const Warp& warp)
 {
     const cv::Point2f centre(float(reference.cols - 1) / 2, float(reference.rows - 1) / 2);
     const bool turn = warp.kind == "turn";
     const cv::Mat affine = cv::getRotationMatrix2D(centre, turn ? warp.amount : 0, turn ? 1 : warp.amount);
-    SeededPair pair;
+    LoadedPair pair;
     pair.reference = reference;
     // Smaller images are averaged, larger ones interpolated, as a camera's lens and sensor would do.
     cv::Mat source = reference;
@@ -47,28 +47,16 @@ SeededPair warpedPair(const cv::Mat& reference, const Warp& warp)
     return pair;
 }
 
-//! Those that the table does not have yet.
-std::vector<Configuration> missing(const Fields& key, const ResultTable& table)
-{
-    std::vector<Configuration> rest;
-    for (const Configuration& c : robustnessConfigurations())
-        if (!table.has({key[0], key[1], key[2], key[3], c.name}))
-            rest.push_back(c);
-    return rest;
-}
-
-void evaluatePair(const Options& options, SeededPair pair, const Fields& key, ResultTable& table)
+void evaluateWarp(const Options& options, const LoadedPair& pair,
+        const std::vector<Configuration>& configurations, const Fields& key, ResultTable& table)
 {
     SeedSource source(pair.reference, options.points);
-    for (const Configuration& c : missing(key, table))
+    for (const Configuration& c : configurations)
     {
-        pair.seeds = source.seeds(c, pair.target.size(), pair.homography);
-        const Counts n = matchSeeds(c, pair, options.tolerance).counts;
+        const SeedPoints seeds = source.seeds(c, pair.target.size(), pair.homography);
         Fields row = key;
-        for (const std::string& field : {c.name, std::to_string(n.correct), std::to_string(n.putative),
-                     std::to_string(n.correspondences), text(precision(n)), text(recall(n))})
-            row.push_back(field);
-        table.append(row);
+        row.push_back(c.name);
+        table.append(withCounts(row, matchSeeds(c, pair, seeds, options.tolerance)));
     }
 }
 
@@ -84,29 +72,20 @@ int robustness(const Options& options, const std::vector<ImagePair>& pairs)
     std::set<std::string> turned;  // one sequence a set
     for (const ImagePair& pair : pairs)
     {
-        if (pair.kind != "light")
-        {
-            const Fields key = {pair.set, pair.sequence, pair.target, pair.kind};
-            if (!missing(key, table).empty())
-                tasks.push_back({pair.name(), [&options, &table, pair, key] {
-                                     const LoadedPair loaded = loadPair(pair);
-                                     SeededPair seeded;
-                                     seeded.reference = loaded.reference;
-                                     seeded.target = loaded.target;
-                                     seeded.homography = loaded.homography;
-                                     evaluatePair(options, seeded, key, table);
-                                 }});
-        }
         if (!turned.insert(pair.set).second)
             continue;
         for (const Warp& warp : warps())
         {
             const Fields key = {pair.set, pair.sequence, text(warp.amount), warp.kind};
-            if (!missing(key, table).empty())
+            std::vector<Configuration> missing;
+            for (const Configuration& c : robustnessConfigurations())
+                if (!table.has({key[0], key[1], key[2], key[3], c.name}))
+                    missing.push_back(c);
+            if (!missing.empty())
                 tasks.push_back({pair.set + "/" + pair.sequence + " " + warp.kind,
-                        [&options, &table, pair, warp, key] {
-                            const SeededPair seeded = warpedPair(loadPair(pair).reference, warp);
-                            evaluatePair(options, seeded, key, table);
+                        [&options, &table, pair, warp, missing, key] {
+                            evaluateWarp(
+                                    options, warpedPair(loadPair(pair).reference, warp), missing, key, table);
                         }});
         }
     }

@@ -40,23 +40,23 @@ SeedPoints SeedSource::seeds(
     return projectSeeds(points, homography, reference_.size(), targetSize, SEED_RADIUS, count_);
 }
 
-SeededMatches matchSeeds(const Configuration& configuration, const SeededPair& pair, double tolerance)
+Counts matchSeeds(
+        const Configuration& configuration, const LoadedPair& images, SeedPoints seeds, double tolerance)
 {
-    SeedPoints seeds = pair.seeds;
+    const int correspondences = int(seeds.reference.size());
     if (configuration.oriented)
     {
-        orientByCentroid(pair.reference, SEED_RADIUS, seeds.reference);
-        orientByCentroid(pair.target, SEED_RADIUS, seeds.target);
+        orientByCentroid(images.reference, SEED_RADIUS, seeds.reference);
+        orientByCentroid(images.target, SEED_RADIUS, seeds.target);
     }
-    SeededMatches m;
-    m.reference = describe(configuration, pair.reference, pair.referenceExtra, seeds.reference);
-    m.target = describe(configuration, pair.target, pair.targetExtra, seeds.target);
-    m.matches = mutualMatches(
-            m.reference.descriptors, m.target.descriptors, configuration.create()->defaultNorm());
-    m.correct = correctByLocation(
-            m.matches, m.reference.keypoints, m.target.keypoints, pair.homography, tolerance);
-    m.counts = countsOf(m.correct, int(pair.seeds.reference.size()));
-    return m;
+    const Description reference = describe(
+                              configuration, images.reference, images.referenceExtra, seeds.reference),
+                      target = describe(configuration, images.target, images.targetExtra, seeds.target);
+    const std::vector<cv::DMatch> matches =
+            mutualMatches(reference.descriptors, target.descriptors, configuration.create()->defaultNorm());
+    return countsOf(
+            correctByLocation(matches, reference.keypoints, target.keypoints, images.homography, tolerance),
+            correspondences);
 }
 
 }  // namespace iib_tools

@@ -4,19 +4,11 @@
 #include <map>
 
 #include "configurations.hpp"
+#include "common/dataset.hpp"
 #include "common/keypoints.hpp"
 #include "common/metrics.hpp"
 
 namespace iib_tools {
-
-//! Two images, seed points of the reference's and where they really are in the target.
-struct SeededPair
-{
-    cv::Mat reference, target;
-    std::vector<cv::Mat> referenceExtra, targetExtra;  //!< maps for the configuration, if it takes any
-    cv::Matx33d homography;
-    SeedPoints seeds;
-};
 
 //! Seed points in one reference image, detected once for all configurations that ask for the same.
 class SeedSource
@@ -34,14 +26,9 @@ private:
     std::map<std::string, std::vector<cv::KeyPoint>> points_;  // by detector
 };
 
-//! Descriptions of both images and their mutual matches.
-struct SeededMatches
-{
-    Description reference, target;
-    std::vector<cv::DMatch> matches;
-    std::vector<bool> correct;
-    Counts counts;  //!< every seed is a correspondence, whether the descriptor kept it or not
-};
-SeededMatches matchSeeds(const Configuration& configuration, const SeededPair& pair, double tolerance);
+/** What the mutual matches of a configuration's descriptors make of the seeds: every seed is a correspondence, whether the
+descriptor kept it or not. The images' maps are those that the configuration takes. */
+Counts matchSeeds(
+        const Configuration& configuration, const LoadedPair& images, SeedPoints seeds, double tolerance);
 
 }  // namespace iib_tools

@@ -14,7 +14,7 @@ struct Task
     std::function<void()> run;
 };
 
-/** Runs the tasks on cv::getNumThreads() threads, one line of progress on stderr. A task that throws is told
+/** Runs the tasks on cv::getNumThreads() threads, told on stderr by tenths. A task that throws is told
 in one line and counted, and the others go on.
 @return how many failed. */
 int runTasks(const std::string& title, const std::vector<Task>& tasks);

@@ -34,9 +34,6 @@ SHOWN = {
     "BRIEF-512": (("ORB", "BRIEF-512"), False, CONTRIB),
     "FREAK": (("ORB", "FREAK"), True, CONTRIB),
     "DAISY": (None, False, CONTRIB),
-    "LUCID": (None, False, CONTRIB),
-    "BOOST-256": (None, True, CONTRIB),
-    "SURF": (("SURF", "SURF"), False, "patented until 2020, non-free build"),
 }
 
 # The bars of descriptors alone; of two sizes of a point, the better one.

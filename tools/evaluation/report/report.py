@@ -13,10 +13,10 @@ import charts
 import descriptors
 import paper
 from paper_orders import orders
-from results import areas, column, curve, domain, file_name, group, interval, mean, mean_accuracy, read
+from results import areas, column, describing_times, domain, file_name, group, interval, mean, mean_accuracy, read
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-CSV_FILES = ("fixed_points", "detected_points", "whole_tasks", "matching", "robustness", "cost", "learned", "comparison")
+CSV_FILES = ("fixed_points", "detected_points", "whole_tasks", "matching", "robustness", "learned", "comparison")
 
 
 def score(rows):
@@ -42,11 +42,11 @@ def overview(tables):
     """The rows of the main table: pairs that no preset of IIB was trained on."""
     fixed = by_name(illumination(tables["fixed_points"], unseen=True))
     detected = group(illumination(tables["detected_points"], unseen=True), "detector", "descriptor")
-    cost = {r["configuration"]: float(r["milliseconds"]) for r in tables["cost"]}
+    times = describing_times()
     found = []
     for name, (points, learned, licence) in descriptors.SHOWN.items():
         if name in fixed:
-            found.append({"name": name, "learned": learned, "licence": licence, "time": cost.get(name),
+            found.append({"name": name, "learned": learned, "licence": licence, "time": times.get(name),
                           "score": score(fixed[name]), "points": points and points[0],
                           "detected": score(detected.get(points, [])), "ours": name.startswith("IIB")})
     return found
@@ -76,23 +76,6 @@ def detectors(tables):
     return found
 
 
-def detector_curves(tables):
-    """Recall against 1 - precision of some detectors, own descriptor and IIB."""
-    rows = illumination(tables["detected_points"])
-    found = []
-    for detector in ("ORB", "AKAZE", "SIFT", "BRISK"):
-        series = {}
-        for (name, descriptor), mine in group(rows, "detector", "descriptor").items():
-            if name == detector and (descriptor in ("IIB", "BEBLID-512", detector)):
-                series[descriptor] = curve(mine)
-        series = dict(sorted(series.items(), key=lambda item: item[0] != "IIB"))
-        if series:
-            ticks = [(x / 5, "%.1f" % (x / 5)) for x in range(6)]
-            found.append((detector, charts.lines(series, "wrong matches (1 - precision)", "recall", ticks,
-                                                 x_range=(0, 1))))
-    return found
-
-
 def changes(tables):
     """Moved cameras, blur and compression: the scores of the compared descriptors by kind of change."""
     scores = group([r for r in tables["fixed_points"] if r["kind"] in descriptors.CHANGES], "configuration", "kind")
@@ -119,49 +102,42 @@ def warp_charts(tables):
     return found
 
 
-# Task: limits of the error for the areas under its curve.
-LIMITS = {"pose": (5, 10, 20), "homography": (3, 5, 10), "epipolar": (1, 3, 5)}
+# Of the error of a pose, degrees, for the areas under its curve.
+LIMITS = (5, 10, 20)
 
 
-def task_line(task, key, rows):
-    errors, limits = column(rows, "error"), LIMITS[task]
-    parts = [areas(errors, limit) for limit in limits]
+def task_line(key, rows):
+    errors = column(rows, "error")
+    parts = [areas(errors, limit) for limit in LIMITS]
     return {"detector": key[0], "descriptor": key[1], "matching": key[2], "pairs": len(errors),
             "areas": [(mean(p), interval(p)) for p in parts],
-            "accuracy": mean_accuracy(errors, range(1, limits[-1] + 1)), "inliers": mean(column(rows, "inliers"))}
+            "accuracy": mean_accuracy(errors, range(1, LIMITS[-1] + 1)), "inliers": mean(column(rows, "inliers"))}
 
 
 def whole_tasks(tables):
-    """Areas under the curve of the error, by task and kind of images, then detector and descriptor, each with the best choice
+    """Areas under the curve of the error of poses, by kind of images, then detector and descriptor, each with the best choice
     of matches and threshold; the table holds all."""
-    kinds = {(r["set"], r["sequence"], r["target"]): r["kind"] for r in tables["fixed_points"]}
-
-    def images(row):
-        if row["task"] == "homography":
-            return kinds.get((row["set"], row["sequence"], row["target"]), "illumination") == "illumination"
-        return domain(row)
-
-    rows = [dict(row, images=images(row)) for row in tables["whole_tasks"] if row["set"] not in descriptors.TRAINED_ON]
+    rows = [dict(row, images=domain(row)) for row in tables["whole_tasks"]
+            if row["task"] == "pose" and row["set"] not in descriptors.TRAINED_ON]
     found = []
-    for (task, which), members in group(rows, "task", "images").items():
-        lines = [task_line(task, key, mine)
-                 for key, mine in group(members, "detector", "descriptor", "matching").items()]
+    for (which,), members in sorted(group(rows, "images").items()):
+        lines = [task_line(key, mine) for key, mine in group(members, "detector", "descriptor", "matching").items()]
         lines.sort(key=lambda line: -line["areas"][1][0])
         best = {}
         for line in lines:
             best.setdefault((line["detector"], line["descriptor"]), line)
-        bars = [best[key] for key in descriptors.TASKS if key in best] if task != "epipolar" else []
-        found.append({"task": task, "images": which, "limits": LIMITS[task], "lines": list(best.values()),
+        bars = [best[key] for key in descriptors.TASKS if key in best]
+        found.append({"images": which, "limits": LIMITS, "lines": list(best.values()),
                       "sequences": sorted({r["sequence"] for r in members}),
                       "pairs": max(line["pairs"] for line in lines),
                       "bars": sorted(bars, key=lambda line: -line["areas"][1][0])})
-    return sorted(found, key=lambda t: (list(LIMITS).index(t["task"]), str(t["images"])))
+    return found
 
 
 def pose_headline(tasks):
     """Poses in other light at detected points: the bars at the head of the page."""
     for task in tasks:
-        if (task["task"], task["images"]) == ("pose", "rendered"):
+        if task["images"] == "rendered":
             return dict(task, bars=[dict(bar, name=descriptors.POSES[bar["detector"], bar["descriptor"]]) for bar in task["bars"]
                                     if (bar["detector"], bar["descriptor"]) in descriptors.POSES])
     return None
@@ -255,9 +231,9 @@ def main():
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     page = environment.get_template("page.html.j2").render(
         overview=rows, networks=networks(tables), headline=sorted(headline, key=lambda r: -r["score"]["recall"]),
-        detectors=detectors(tables), curves=detector_curves(tables), changes=changes(tables), warps=warp_charts(tables),
+        detectors=detectors(tables), changes=changes(tables), warps=warp_charts(tables),
         tasks=tasks, poses=pose_headline(tasks), slider=slider(tables), paper=paper_tables(tables), orders=paper_orders(tables), maps=maps(tables),
-        matching=matching(tables), scenes=scenes(tables), cost=tables["cost"], pictures=read(folder, "pictures"),
+        matching=matching(tables), scenes=scenes(tables),
         all_pairs=score(by_name(illumination(tables["fixed_points"])).get("IIB", [])), settings=settings(folder),
         files=[file_name(name) for name in CSV_FILES if tables[name]])
     path = os.path.join(folder, "index.html")

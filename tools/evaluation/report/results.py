@@ -2,9 +2,12 @@
 
 """Reads the evaluation's CSV files and forms means over image pairs, every pair with the same weight."""
 import csv
+import json
 import math
 import os
+import pathlib
 
+BENCHMARK = pathlib.Path(__file__).resolve().parents[3] / "doc/results/benchmark.json"  # of scripts/bench.sh
 
 # Kinds of change that the evaluation calls otherwise.
 KINDS = {"light": "illumination", "turn": "rotation"}
@@ -25,6 +28,13 @@ def read(folder, name):
         if "kind" in row:
             row["kind"] = KINDS.get(row["kind"], row["kind"])
     return rows
+
+
+def describing_times():
+    """Milliseconds for 1000 points, by the names of the evaluation's configurations."""
+    rows = json.loads(BENCHMARK.read_text())["rows"]
+    return {row["name"].replace("cv::", "").replace("default", "IIB").replace("PRESET_", "IIB "): row["milliseconds"][0]
+            for row in rows}
 
 
 def domain(row):
@@ -56,16 +66,6 @@ def group(rows, *columns):
     for row in rows:
         groups.setdefault(tuple(row[c] for c in columns), []).append(row)
     return groups
-
-
-def curve(rows):
-    """1 - precision and recall at each threshold, counts summed over the pairs, from a hundredth of the matches on."""
-    correspondences = sum(int(r["correspondences"]) for r in rows)
-    sums = None
-    for row in rows:
-        points = [tuple(map(int, p.split(":"))) for p in row["curve"].split()]
-        sums = points if sums is None else [(a + c, b + d) for (a, b), (c, d) in zip(sums, points)]
-    return [(1 - c / p, c / correspondences) for c, p in sums or [] if p * 100 > sums[-1][1] and correspondences > 0]
 
 
 def areas(errors, limit):

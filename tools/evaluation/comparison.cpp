@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <cstdio>
+
+#include "common/metrics.hpp"
+#include "detectors.hpp"
+#include "experiments.hpp"
+#include "opencv2/core/utils/filesystem.hpp"
+#include "opencv2/imgcodecs.hpp"
+#include "results.hpp"
+#include "tasks.hpp"
+
+namespace iib_tools {
+namespace {
+
+void writePicture(const std::string& file, const cv::Mat& picture)
+{
+    if (!cv::imwrite(file, picture, {cv::IMWRITE_JPEG_QUALITY, 75}))
+        CV_Error(cv::Error::StsError, file + ": cannot be written");
+}
+
+//! A row for each mutual match of these descriptors at the detector's points.
+void listMatches(const Options& options, const ImagePair& pair, const Detector& detector,
+        const std::string& descriptor, ResultTable& table)
+{
+    const LoadedPair loaded = loadPair(pair);
+    const std::vector<Described> reference = describeAll(detector,
+                                         detector.detect(loaded.reference, pair, pair.referenceFile),
+                                         loaded.reference),
+                                 target = describeAll(detector,
+                                         detector.detect(loaded.target, pair, pair.targetFile),
+                                         loaded.target);
+    for (size_t i = 0; i < reference.size(); i++)
+    {
+        const Described &r = reference[i], &t = target[i];
+        if (r.name != descriptor)
+            continue;
+        const std::vector<cv::DMatch> matches = mutualMatches(r.descriptors, t.descriptors, r.norm);
+        const std::vector<bool> correct =
+                correctByLocation(matches, r.keypoints, t.keypoints, loaded.homography, options.tolerance);
+        for (size_t m = 0; m < matches.size(); m++)
+        {
+            const cv::Point2f a = r.keypoints[matches[m].queryIdx].pt,
+                              b = t.keypoints[matches[m].trainIdx].pt;
+            table.append({detector.name, r.name, cv::format("%.1f", a.x), cv::format("%.1f", a.y),
+                    cv::format("%.1f", b.x), cv::format("%.1f", b.y), correct[m] ? "1" : "0"});
+        }
+    }
+}
+
+}  // namespace
+
+int comparison(const Options& options, const std::vector<ImagePair>&)
+{
+    if (options.compare.empty())
+        return 0;
+    cv::utils::fs::createDirectories(options.out + "/pictures");
+    const std::string file = options.out + "/comparison.csv";
+    std::remove(file.c_str());
+    ResultTable table(file, {"detector", "descriptor", "x", "y", "target_x", "target_y", "correct"}, 6);
+    Options classic = options;
+    classic.keypoints.clear();
+    classic.detectors = {"Hessian", "ORB", "SIFT"};
+    std::vector<Task> tasks;
+    ImagePair pair;  // of a still camera
+    pair.referenceFile = options.compare[0];
+    pair.targetFile = options.compare[1];
+    writePicture(options.out + "/pictures/reference.jpg", readImage(pair.referenceFile, cv::IMREAD_COLOR));
+    writePicture(options.out + "/pictures/target.jpg", readImage(pair.targetFile, cv::IMREAD_COLOR));
+    for (const Detector& detector : detectors(classic))
+        tasks.push_back({detector.name, [&, detector] {
+                             listMatches(options, pair, detector,
+                                     detector.name == "Hessian" ? "IIB UNIVERSAL" : detector.name, table);
+                         }});
+    const int skipped = runTasks("comparison", tasks);
+    table.finish();
+    return skipped;
+}
+
+}  // namespace iib_tools
