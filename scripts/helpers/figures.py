@@ -353,19 +353,10 @@ def on_paper():
         ['on 8 machines of 32 cores, s', '%.1f' % (seconds / 256)]])
 
 
-def place_recognition():
-    """Places in PostgreSQL: the plain scan, and the index at several numbers of candidates."""
-    data = benchmark('places.json')
-    head = '%d places, %s codes' % (data['places'], format(data['codes'], ','))
-    return table([head] + ['recall at %d' % at for at in data['at']] + ['ms an image'],
-                 [['%d candidates' % r['candidates'] if r['candidates'] else 'plain scan'] +
-                  ['%.2f' % recall for recall in r['recall']] + ['%.0f' % (1000 * r['seconds_an_image'])] for r in data['rows']])
-
-
 PAGES = {'README.md': (match_claim, pose_claim, poses),
          'doc/guide.md': (pose_by_rule, ratios, presets),
          'doc/performance.md': (describing, matching, small_work),
-         'doc/scale.md': (mapped_index, flat_search, approximate_search, on_paper, place_recognition),
+         'doc/scale.md': (mapped_index, flat_search, approximate_search, on_paper),
          'doc/results/README.md': (pose_rules, elsewhere, extra_channels, detected_points, fixed_points, turned)}
 
 

@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
-"""Measures searches among many codes, beside faiss: measure.py --out FILE [--images FOLDER] [--codes N] [--mapped N]
+"""Measures searches among many codes, beside faiss: measure.py --out FILE [--images FOLDER] [--codes N,...] [--mapped N]
 
 Writes JSON: exact search at several widths, approximate indices of faiss at a recall of .95, the folder of a MappedIndex
-of --mapped codes, and Dask's workers on it. Everything that is compared takes turns, and the least time counts. With
---approximate N the approximate indices of N codes alone, beside what FILE has of other numbers. --flat prints the exact
-search alone.
+of --mapped codes, and Dask's workers on it. Everything that is compared takes turns, and the least time counts. --flat
+prints the exact search alone.
 """
 import argparse
 import json
@@ -216,30 +215,22 @@ def main():
     wanted.add_argument('--out', metavar='FILE')
     wanted.add_argument('--flat', action='store_true')
     parser.add_argument('--images', help='folder of SET/SEQUENCE/1.png and so on; none: random codes alone')
-    parser.add_argument('--codes', type=int, default=300000, help='in approximate indices (%(default)s)')
-    parser.add_argument('--approximate', type=int, help='measure approximate indices of so many codes alone')
+    parser.add_argument('--codes', default='300000,1000000,10000000', help='in approximate indices (%(default)s)')
     parser.add_argument('--mapped', type=int, default=10**7, help='in the MappedIndex (%(default)s)')
     parser.add_argument('--rounds', type=int, default=4, help='(%(default)s)')
     arguments = parser.parse_args()
     if arguments.flat:
         flat(100000, 512, arguments.rounds)
         return
-    out = pathlib.Path(arguments.out)
-    if arguments.approximate:
-        result = json.loads(out.read_text())
-        others = [one for one in result['approximate'] if one['codes'] != arguments.approximate]
-        result['approximate'] = sorted(
-            others + [all_approximate(arguments.approximate, arguments.images, arguments.rounds)], key=lambda one: one['codes'])
-        out.write_text(json.dumps(result, indent=1) + '\n')
-        return
     result = {'faiss': faiss.__version__, 'faiss_options': faiss.get_compile_options().strip(),
               'flat': flat(100000, 512, arguments.rounds),
-              'approximate': [all_approximate(arguments.codes, arguments.images, arguments.rounds)]}
+              'approximate': [all_approximate(int(codes), arguments.images, arguments.rounds)
+                              for codes in arguments.codes.split(',')]}
     with tempfile.TemporaryDirectory() as folder:
         name = str(pathlib.Path(folder) / 'codes')
         result['mapped'] = mapped(name, arguments.mapped)
         result['workers'] = workers(name, 1000, arguments.rounds)
-    out.write_text(json.dumps(result, indent=1) + '\n')
+    pathlib.Path(arguments.out).write_text(json.dumps(result, indent=1) + '\n')
 
 
 if __name__ == '__main__':
