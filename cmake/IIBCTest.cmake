@@ -55,7 +55,7 @@ foreach(name g++ clang++)
 endforeach()
 list(REMOVE_DUPLICATES compilers)
 add_test(NAME headers COMMAND "${CMAKE_COMMAND}" "-DCOMPILERS=${compilers}"
-  "-DINCLUDE=${IIB_DIR}/include;${IIB_INDEX_DIR}/include"
+  "-DINCLUDE=${IIB_DIR}/include;${IIB_INDEX_DIR}/include;${PROJECT_SOURCE_DIR}/apps/localization/include"
   "-DOPENCV_INCLUDE=${OpenCV_INCLUDE_DIRS}" -P "${PROJECT_SOURCE_DIR}/cmake/HeaderTest.cmake")
 # No source compiles with -ffast-math, and the build's own flags undo it where a user's flags hold it.
 set(fast_math "${CMAKE_CXX_COMPILER}" -std=c++11 -ffast-math)
@@ -81,7 +81,11 @@ endif()
 # The Python package, linked with what is built here already. The script skips by itself where there is no package index.
 if(UNIX AND NOT APPLE)
   add_library(opencv_iib_static STATIC $<TARGET_OBJECTS:opencv_iib> $<TARGET_OBJECTS:opencv_iib_index>)
-  add_test(NAME python COMMAND "${CMAKE_COMMAND}" -E env "OpenCV_DIR=${OpenCV_DIR}"
+  set(programs "")
+  if(IIB_BUILD_APPS)
+    set(programs "IIB_PROGRAMS=${PROJECT_BINARY_DIR}/apps/localization")
+  endif()
+  add_test(NAME python COMMAND "${CMAKE_COMMAND}" -E env "OpenCV_DIR=${OpenCV_DIR}" ${programs}
     "${PROJECT_SOURCE_DIR}/scripts/helpers/python_test.sh" "$<TARGET_FILE:opencv_iib_static>")
   set_tests_properties(python PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: python tests \\("
     COST 1000)  # begun first, so that nothing waits for it at the end
@@ -89,6 +93,9 @@ if(UNIX AND NOT APPLE)
     "-DCHANGELOG=${PROJECT_SOURCE_DIR}/CHANGELOG.md" -P "${PROJECT_SOURCE_DIR}/cmake/SymbolTest.cmake")
   add_test(NAME symbols COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib>" ${symbol_test})
   add_test(NAME symbols-index COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib_index>" ${symbol_test})
+  if(IIB_BUILD_APPS)
+    add_test(NAME symbols-localization COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib_localization>" ${symbol_test})
+  endif()
 endif()
 # Other compilers and unoptimized builds inline less.
 if(IIB_DISPATCH AND NOT IIB_SANITIZE AND CMAKE_BUILD_TYPE STREQUAL "Release" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

@@ -4,16 +4,19 @@ include(CMakePackageConfigHelpers)
 set(include_dir "${CMAKE_INSTALL_INCLUDEDIR}/opencv4")
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/opencv_iib")
 
-foreach(target opencv_iib opencv_iib_index)
+# The library opencv_NAME and the headers of a folder.
+function(iib_install_library name dir)
+  set(target opencv_${name})
   target_include_directories(${target} INTERFACE "$<INSTALL_INTERFACE:${include_dir}>")
-endforeach()
-# Outside of the system's folders, the one library finds the other beside itself.
-if(UNIX AND NOT APPLE AND NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr")
-  set_target_properties(opencv_iib_index PROPERTIES INSTALL_RPATH "\$ORIGIN")
-endif()
-install(TARGETS opencv_iib opencv_iib_index EXPORT opencv_iib LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
-install(DIRECTORY "${IIB_DIR}/include/opencv2" "${IIB_INDEX_DIR}/include/opencv2" DESTINATION "${include_dir}"
-  PATTERN "*.private.hpp" EXCLUDE)
+  # Outside of the system's folders, one library finds the other beside itself.
+  if(UNIX AND NOT APPLE AND NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr" AND NOT name STREQUAL "iib")
+    set_target_properties(${target} PROPERTIES INSTALL_RPATH "\$ORIGIN")
+  endif()
+  install(TARGETS ${target} EXPORT opencv_iib LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+  install(DIRECTORY "${dir}/include/opencv2" DESTINATION "${include_dir}" PATTERN "*.private.hpp" EXCLUDE)
+endfunction()
+iib_install_library(iib "${IIB_DIR}")
+iib_install_library(iib_index "${IIB_INDEX_DIR}")
 install(EXPORT opencv_iib FILE opencv_iibTargets.cmake DESTINATION "${package_dir}")
 
 configure_package_config_file(cmake/opencv_iibConfig.cmake.in opencv_iibConfig.cmake

@@ -108,6 +108,39 @@ run("${WORK}/by cmake/index" "${WORK}/codes by cmake")
 run("${CXX}" ${flags} "${project}/index.cpp" ${pc_flags} -o "${WORK}/index by pkg-config")
 run("${WORK}/index by pkg-config" "${WORK}/codes by pkg-config")
 
+# The library of apps/localization, where it was built; its errors say what is wrong.
+if(EXISTS "${prefix}/include/opencv4/opencv2/iib/localization.hpp")
+  set(localizer "${WORK}/localizer project")
+  file(WRITE "${localizer}/localizer.cpp" "#include <opencv2/iib/localization.hpp>
+#include <iostream>
+int main(int, char** arguments)
+{
+    try
+    {
+        const cv::iib::Camera camera = cv::iib::Camera::parse(\"PINHOLE,640,480,500,500,320,240\");
+        cv::iib::Localizer(arguments[1]).localize(cv::Mat(camera.size, CV_8U), camera);
+    }
+    catch (const cv::Exception& e)
+    {
+        std::cout << e.err;
+    }
+}
+")
+  file(WRITE "${localizer}/CMakeLists.txt" "cmake_minimum_required(VERSION 3.16)
+project(localizer CXX)
+find_package(opencv_iib REQUIRED COMPONENTS localization)
+add_executable(localizer localizer.cpp)
+target_link_libraries(localizer opencv_iib_localization)
+")
+  run("${CMAKE_COMMAND}" -G "${GENERATOR}" -S "${localizer}" -B "${WORK}/localizer" "-DCMAKE_PREFIX_PATH=${prefix}"
+    "-DCMAKE_CXX_COMPILER=${CXX}" "-DCMAKE_CXX_FLAGS=${FLAGS}")
+  run("${CMAKE_COMMAND}" --build "${WORK}/localizer")
+  execute_process(COMMAND "${WORK}/localizer/localizer" nowhere OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT output STREQUAL "nowhere is no map, or a damaged one: it has no map.json")
+    message(FATAL_ERROR "localizer: '${output}'")
+  endif()
+endif()
+
 # An OpenCV of another minor version is refused, and the message says why.
 file(WRITE "${WORK}/other/OpenCVConfig.cmake" "set(OpenCV_VERSION 4.99.0)\n")
 file(WRITE "${WORK}/other/OpenCVConfigVersion.cmake" "set(PACKAGE_VERSION 4.99.0)\nset(PACKAGE_VERSION_COMPATIBLE TRUE)\n")

@@ -19,7 +19,10 @@ esac
 
 # shellcheck disable=SC2086
 need $build_packages
-build_library opencv_iib opencv_iib_index
+localization=""
+! grep -qs '^IIB_BUILD_APPS:BOOL=ON' "$build/CMakeCache.txt" || localization="opencv_iib_localization iib_localize"
+# shellcheck disable=SC2086
+build_library opencv_iib opencv_iib_index $localization
 
 # The nearest folder that exists decides whether root is needed.
 existing="$prefix"

@@ -68,8 +68,8 @@ every)
 valgrind) memcheck "$@" ;;
 ?*) sanitize "$kind" "$@" ;;
 *)
-    # the synthetic data, the evaluation's report, the Python package and apps/localization are tested where these are
-    need povray python3-opencv python3-jinja2 python3-venv python3-dev python3-numpy libceres-dev libunwind-dev
+    # the synthetic data, the evaluation's report, and the Python package are tested where these are
+    need povray python3-opencv python3-jinja2 python3-venv python3-dev python3-numpy
     run "$root/build" -DIIB_BUILD_TOOLS=ON -DIIB_BUILD_APPS=ON "$@"
     ;;
 esac

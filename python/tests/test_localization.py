@@ -3,6 +3,7 @@ import io
 import json
 import os
 import shutil
+import subprocess
 import tempfile
 import unittest
 from concurrent.futures import ThreadPoolExecutor
@@ -29,6 +30,7 @@ if cv2 is not None:
 
 SIZE = WIDTH, HEIGHT = 320, 240
 CAMERA = f'PINHOLE,{WIDTH},{HEIGHT},300,300,160,120'
+STRECHA = os.path.join(os.environ.get('OPENCV_TEST_DATA_PATH', ''), 'strecha', 'Herz-Jesus-P8')
 PLACES = [(-1.5, 0), (-1, .3), (-.5, 0), (0, .3), (.5, 0), (1, .3)]  #: x and y in front of a wall at z = 5
 
 
@@ -75,6 +77,23 @@ def run(*arguments):
     with redirect_stderr(errors), redirect_stdout(io.StringIO()):
         status = main(list(arguments))
     return status, errors.getvalue()
+
+
+def cpp(*arguments):
+    program = os.path.join(os.environ['IIB_PROGRAMS'], 'iib_localize')
+    subprocess.run([program, *arguments], check=True, stdout=subprocess.DEVNULL)
+
+
+def poses(folder, name='trajectory.txt'):
+    """By names without blanks: centre, quaternion x y z w."""
+    lines = [line.split() for line in open(os.path.join(folder, name)) if line[0] != '#']
+    return {line[0]: np.array(line[1:], float) for line in lines}
+
+
+def dimmed(picture, seed):
+    """Gamma 2.2, a ramp to a quarter across the image, half the light, and noise."""
+    light = (picture / 255) ** 2.2 * np.linspace(.5, .125, picture.shape[1])[:, None] * 255
+    return np.clip(light + np.random.default_rng(seed).normal(0, 2, picture.shape), 0, 255).astype(np.uint8)
 
 
 @unittest.skipIf(cv2 is None, 'no cv2')
@@ -152,6 +171,51 @@ class Localization(unittest.TestCase):
         self.assertLess(float(rows[0]['x_x']) ** .5, .05)
         model = pycolmap.Reconstruction(out)
         self.assertEqual((model.num_reg_images(), model.num_cameras()), (3, 1))
+
+    @unittest.skipUnless(os.environ.get('IIB_PROGRAMS'), 'no IIB_PROGRAMS, the folder of iib_localize')
+    def test_the_program_in_cpp_reads_the_map(self):
+        ours, theirs = self.path('ours'), self.path('theirs')
+        run('localize', '--map', self.map, '--images', self.dark, '--camera', CAMERA, '--out', ours)
+        cpp('--map', self.map, '--images', self.dark, '--out', theirs)  # with the map's camera
+        expected, found = poses(ours), poses(theirs)
+        self.assertEqual(expected.keys(), found.keys())
+        for name in expected:
+            np.testing.assert_allclose(found[name][:3], expected[name][:3], atol=.01)
+            self.assertGreater(abs(found[name][3:] @ expected[name][3:]), .99999)
+        heads = [open(os.path.join(folder, 'frames.csv')).readline().strip() for folder in (ours, theirs)]
+        self.assertEqual(*heads)
+
+    @unittest.skipUnless(os.environ.get('IIB_PROGRAMS'), 'no IIB_PROGRAMS, the folder of iib_localize')
+    @unittest.skipUnless(os.path.isdir(STRECHA), 'OPENCV_TEST_DATA_PATH has no strecha/Herz-Jesus-P8')
+    def test_photographs_in_cpp_within_five_centimetres_also_relit(self):
+        truth = poses(STRECHA, 'poses.txt')
+        camera = open(os.path.join(STRECHA, 'cameras.txt')).read().splitlines()[-1].split()
+        model, names = pycolmap.Reconstruction(), sorted(os.listdir(os.path.join(STRECHA, 'images')))
+        images, sparse, made, plain, relit, out = (self.path(name) for name in ('images', 'sparse', 'map', 'a', 'b', 'out'))
+        for folder in (images, sparse, plain, relit):
+            os.makedirs(folder)
+        model.add_camera_with_trivial_rig(pycolmap.Camera(camera_id=1, model=camera[1], width=int(camera[2]),
+                                                          height=int(camera[3]), params=[float(v) for v in camera[4:]]))
+        for i, name in enumerate(names, 1):
+            picture = cv2.imread(os.path.join(STRECHA, 'images', name))
+            if i % 2 == 0:
+                cv2.imwrite(os.path.join(plain, name), picture)
+                cv2.imwrite(os.path.join(relit, name), dimmed(picture, i))
+                continue
+            cv2.imwrite(os.path.join(images, name), picture)
+            place = truth[os.path.splitext(name)[0]]
+            turn = pycolmap.Rotation3d(place[3:])
+            model.add_image_with_trivial_frame(pycolmap.Image(name, np.zeros((0, 2)), 1, i),
+                                               pycolmap.Rigid3d(turn, place[:3]).inverse())
+        model.write(sparse)
+        self.assertEqual(run('map', '--model', sparse, '--images', images, '--out', made)[0], 0)
+        for folder in (plain, relit):
+            cpp('--map', made, '--images', folder, '--out', out)
+            found = poses(out)
+            self.assertEqual(len(found), len(names) // 2)
+            for name, place in found.items():
+                self.assertLess(np.linalg.norm(place[:3] - truth[name][:3]), .05, name)
+                self.assertGreater(abs(place[3:] @ truth[name][3:]), np.cos(np.radians(.25)), name)
 
     def test_status_counts_the_images_with_a_pose(self):
         mixed = self.path('mixed')

@@ -3,7 +3,7 @@
 
 A block of code of README.md, doc or the tutorials, or a sample, that makes an extractor or a matcher does so by
 createRecommended. A block may make others beside it, or stand beside OpenCV's BFMatcher, whose place the matcher takes.
-scripts/demo.sh, the Python package's commands and iib_map have the same chain as their default.
+scripts/demo.sh, the Python package's commands and iib_localize have the same chain as their default.
 """
 import pathlib
 import re
@@ -17,7 +17,7 @@ DEFAULTS = {
     'modules/iib/samples/iib_demo_pipeline.hpp': ('HierarchicalMatcher::createRecommended()', 'MAX_KEYPOINTS = 1000;'),
     'python/opencv_iib/colmap/features.py': ("detector: str = 'HESSIAN'", "preset: str = 'UNIVERSAL'"),
     'python/opencv_iib/colmap/pipeline.py': ('ratio: float = .9', 'crossCheck=True'),
-    'apps/localization/src/features.cpp': ('detectors_ = {IIB::createRecommended(MAX_KEYPOINTS)}',),
+    'apps/localization/src/localizer.cpp': ('IIB::createRecommended(', 'HierarchicalMatcher::createRecommended()'),
     'python/opencv_iib/__main__.py': ('default=FeatureOptions.detector', 'default=FeatureOptions.preset'),
     'python/opencv_iib/demo.py': ('HierarchicalMatcher.createRecommended()',),
 }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Builds the Debian packages libopencv-iib0.1 and libopencv-iib-dev in build/debian from a clean copy of what git knows,
+# Builds the Debian packages libopencv-iib0.1, libopencv-iib-dev and opencv-iib-tools in build/debian from a clean copy of what git knows,
 # and checks them with lintian; an error of lintian is one here.
 . "$(dirname "$0")/lib.sh"
 

@@ -1,272 +1,290 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "localizer.hpp"
-
 #include <algorithm>
 #include <numeric>
+#include <set>
 
-#include "line_features.hpp"
-#include "pnp.hpp"
+#include "map.hpp"
+#include "opencv2/iib.hpp"
+#include "pose.hpp"
+#include "retrieval.hpp"
 
+// The steps and numbers are those of Python's opencv_iib.localization.
 namespace iib_localization {
 namespace {
 
-constexpr size_t SHORTLIST = 20;  // keyframes by votes, of which
-constexpr size_t CANDIDATES = 5;  // keyframes that an image is matched with
-constexpr int STRONGEST = 400;    // of an image and detector, whose matches rank the shortlist
-constexpr size_t MIN_MATCHES = 12;
-// In an unknown place up to 20 of 1100 matches agree by chance. A pose needs 15 and a share of the matches.
-constexpr size_t MIN_INLIERS = 15;
-constexpr double MIN_INLIER_SHARE = 0.02;
-constexpr double MAX_BOUND = 1;  // metres
-constexpr size_t MIN_LINES = 5;  // fewer do not tell their noise
-constexpr double MAX_LINE_WEIGHT = 3;
-constexpr double LINE_GATE = 4;  // pixels, of a line from where the pose of the points has it
+using cv::iib::Location;
 
-//! Milliseconds since the last call.
-class Stopwatch
+constexpr size_t SHORTLIST = 20, CANDIDATES = 5;  // of the map's images: by votes, and of these by matches
+constexpr size_t NEAREST = 2;                     // of the map's images, to a prior
+constexpr int RANKING = 200;    // strongest codes of an image, whose matches rank the shortlist
+constexpr size_t SUREST = 300;  // matches of the fewest different bits, among which the pose is looked for
+constexpr double GATE = .1;  // of the longer side: how far from where a prior has them points are looked for
+constexpr double MAX_ERROR =
+        .006;  // of the longer side: an inlier's distance from where the pose has its point
+constexpr double LEAST_INLIERS = 15, LEAST_SHARE = .02;  // in an unknown place a few matches agree by chance
+constexpr double MAX_BOUND = .1;  // of the distance to the points: three standard deviations of the place
+constexpr double LEAST_DEVIATION = .2;  // pixels
+
+//! An image of the map.
+struct View
 {
-public:
-    void lap(Location& location)
-    {
-        const int64 now = cv::getTickCount();
-        location.times.push_back(double(now - last_) / cv::getTickFrequency() * 1e3);
-        last_ = now;
-    }
-
-private:
-    int64 last_ = cv::getTickCount();
+    cv::Mat codes;
+    std::vector<int64_t> numbers;  // of the points, for each code
+    std::vector<cv::Point3d> points;
+    cv::Affine3d pose;
+    double depth = 1;  // of what it sees
 };
 
-//! The residuals' standard deviation in a coordinate, from their median, so that a few wrong ones do not count.
-double deviation(const std::vector<Observation>& inliers, const Pinhole& camera, const Pose& pose)
+struct Features
 {
-    std::vector<double> errors;
-    for (const Observation& o : inliers)
-        errors.push_back((camera.project(pose.toCamera(o.point)) - o.pixel).norm());
-    std::nth_element(errors.begin(), errors.begin() + std::ptrdiff_t(errors.size() / 2), errors.end());
-    return errors[errors.size() / 2] / 1.1774;  // the median of a Rayleigh distribution
+    std::vector<cv::Point2d> pixels;
+    cv::Mat codes;
+};
+
+double median(std::vector<double> values)
+{
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
 }
 
-double worstDeviation(const Eigen::Matrix3d& covariance)
+double medianDistance(const std::vector<cv::Point3d>& pointsInCamera)
 {
-    return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
-                             .eigenvalues()[2]);
+    std::vector<double> distances;
+    for (const cv::Point3d& p : pointsInCamera)
+        distances.push_back(cv::norm(p));
+    return median(distances);
 }
 
-}  // namespace
-
-const std::vector<std::string>& Location::stages()
+//! What sorts first, of so many.
+template <typename Before> std::vector<size_t> best(size_t all, size_t count, Before before)
 {
-    static const std::vector<std::string> names = {"features", "retrieval", "matching", "pose", "lines"};
-    return names;
-}
-
-Localizer::Localizer(const Map& map, const Camera& camera, Lines lines)
-    : map_(map), camera_(camera), pinhole_(camera.pinhole()), method_(map.features)
-{
-    if (map.description != method_.description())
-        CV_Error(cv::Error::StsError, "the map is of '" + map.description + "', this program makes '" +
-                                              method_.description() + "': build the map again");
-    for (size_t d = 0; method_.binary() && d < method_.detectors(); d++)
-    {
-        std::vector<cv::Mat> codes;
-        for (const std::vector<cv::Mat>& keyframe : map.codes)
-            codes.push_back(keyframe[d]);
-        retrievals_.emplace_back(codes);
-    }
-    if (lines == Lines::ON && linesAvailable() && !map.lines.lines.empty())
-        linesOf_ = linesOfKeyframes(map.lines.lines, map.model.keyframes.size());
-}
-
-size_t Localizer::retrievalBytes() const
-{
-    size_t sum = 0;
-    for (const Retrieval& retrieval : retrievals_)
-        sum += retrieval.bytes();
-    return sum;
-}
-
-std::vector<size_t> Localizer::candidates(const Features& features, const Pose* prior) const
-{
-    const std::vector<Keyframe>& keyframes = map_.model.keyframes;
-    std::vector<size_t> order(keyframes.size());
+    std::vector<size_t> order(all);
     std::iota(order.begin(), order.end(), size_t(0));
-    std::vector<float> votes(keyframes.size(), 0.f);
-    for (size_t k = 0; prior && k < votes.size(); k++)
-    {
-        // a metre counts as much as 30 degrees
-        const Pose& pose = keyframes[k].pose;
-        votes[k] = -float((pose.position - prior->position).norm() +
-                          pose.rotation.angularDistance(prior->rotation) * 6 / CV_PI);
-    }
-    for (size_t d = 0; !prior && d < retrievals_.size(); d++)
-        retrievals_[d].vote(features.codes[d], votes);
-    const auto keepBest = [&](size_t limit) {
-        const size_t count = std::min(order.size(), limit);
-        std::partial_sort(order.begin(), order.begin() + std::ptrdiff_t(count), order.end(),
-                [&](size_t a, size_t b) { return votes[a] > votes[b]; });
-        order.resize(count);
-    };
-    if (!prior)
-    {
-        if (!retrievals_.empty())  // without binary codes there is no vote: all keyframes are ranked
-            keepBest(SHORTLIST);
-        for (size_t k : order)
-            votes[k] = float(countSureMatches(features, k));
-    }
-    keepBest(CANDIDATES);
+    std::stable_sort(order.begin(), order.end(), before);
+    order.resize(std::min(all, count));
     return order;
 }
 
-size_t Localizer::countSureMatches(const Features& features, size_t keyframe) const
+//! Keypoints that match a point in several images of the map count once.
+void removeRepeated(std::vector<Match>& matches)
 {
-    size_t count = 0;
-    for (size_t d = 0; d < method_.detectors(); d++)
-    {
-        const cv::Mat &query = features.codes[d], &train = map_.codes[keyframe][d];
-        const cv::Range rows(0, std::min(query.rows, STRONGEST));
-        const cv::Range columns(0, method_.coarseColumns(query.cols));
-        if (!query.empty() && !train.empty())
-            count += method_.match(query(rows, columns), train.colRange(columns), method_.sureRatio()).size();
-    }
-    return count;
+    const auto key = [](const Match& m) { return std::make_pair(m.keypoint, m.number); };
+    std::stable_sort(
+            matches.begin(), matches.end(), [&](const Match& a, const Match& b) { return key(a) < key(b); });
+    const auto same = [&](const Match& a, const Match& b) { return key(a) == key(b); };
+    matches.erase(std::unique(matches.begin(), matches.end(), same), matches.end());
 }
 
-std::vector<Observation> Localizer::match(
-        const Features& features, const std::vector<size_t>& keyframes) const
+//! The matches within a limit of where a pose has their points.
+std::vector<Match> agreeing(
+        const std::vector<Match>& matches, const Lens& lens, const cv::Affine3d& pose, double limit)
 {
-    const std::vector<Eigen::Vector2d> pixels = camera_.undistorted(features.pixels);
-    std::vector<Observation> matches;
-    for (size_t k : keyframes)
-    {
-        int firstQuery = 0, firstTrain = 0;  // row of the detector's first keypoint
-        for (size_t d = 0; d < method_.detectors(); d++)
-        {
-            for (const cv::DMatch& m :
-                    method_.match(features.codes[d], map_.codes[k][d], method_.poseRatio()))
-                matches.push_back({map_.model.points[map_.model.keyframes[k].points[firstTrain + m.trainIdx]],
-                        pixels[firstQuery + m.queryIdx]});
-            firstQuery += features.codes[d].rows;
-            firstTrain += map_.codes[k][d].rows;
-        }
-    }
-    return matches;
+    const std::vector<double> errors = errorsOf(matches, lens, pose);
+    std::vector<Match> inliers;
+    for (size_t i = 0; i < matches.size(); i++)
+        if (errors[i] < limit)  // not NaN, behind the camera
+            inliers.push_back(matches[i]);
+    return inliers;
 }
 
-bool Localizer::estimate(Location& location) const
+int keypointsOf(const std::vector<Match>& matches)
 {
-    RefinedPose& refined = location.estimate;
-    if (!poseByRansac(location.matched, pinhole_, refined.pose))
+    std::set<int> keypoints;
+    for (const Match& m : matches)
+        keypoints.insert(m.keypoint);
+    return int(keypoints.size());
+}
+
+//! Finds the pose that matches agree on, and whether it is one.
+void locate(std::vector<Match> matches, const Camera& camera, Location& location)
+{
+    removeRepeated(matches);
+    location.matches = int(matches.size());
+    const Lens lens(camera);
+    const double limit = MAX_ERROR * std::max(camera.size.width, camera.size.height);
+    std::vector<Match> surest;
+    for (size_t i : best(matches.size(), SUREST,
+                 [&](size_t a, size_t b) { return matches[a].bits < matches[b].bits; }))
+        surest.push_back(matches[i]);
+    cv::Affine3d& pose = location.cameraFromWorld;
+    location.reason = "too few matches agree";
+    if (!poseByRansac(surest, lens, limit, pose))
+        return;
+    std::vector<Match> inliers;
+    for (int round = 0; round < 3; round++)  // what agrees is looked for again after each refinement
     {
-        location.reason = "no pose that the matches agree on";
-        return false;
-    }
-    // what agrees is looked for again after each refinement
-    for (int round = 0; round < 3; round++)
-    {
-        location.inliers = agreeing(location.matched, pinhole_, refined.pose);
-        if (location.inliers.size() < MIN_INLIERS)
-        {
-            location.reason = "too few matches agree";
-            return false;
-        }
-        if (!refinePose(pinhole_, location.inliers, refined))
+        if (round > 0 && !refinePose(inliers, lens, pose, location.covariance))
         {
             location.reason = "the points do not determine the pose";
-            return false;
+            return;
         }
+        inliers = agreeing(matches, lens, pose, limit);
+        location.inliers = keypointsOf(inliers);
+        if (location.inliers < LEAST_INLIERS + LEAST_SHARE * double(matches.size()))
+            return;
     }
-    return true;
+    for (const Match& m : inliers)
+    {
+        location.pixels.push_back(m.pixel);
+        location.points.push_back(m.point);
+    }
+    // of a Rayleigh distribution
+    const double deviation = std::max(LEAST_DEVIATION, median(errorsOf(inliers, lens, pose)) / 1.1774);
+    location.covariance *= deviation * deviation;
+    cv::Vec3d variances;
+    cv::eigen(location.covariance.get_minor<3, 3>(0, 0), variances);
+    location.found =
+            3 * std::sqrt(variances[0]) <= MAX_BOUND * medianDistance(inCamera(location.points, pose));
+    location.reason = location.found ? "" : "the pose is uncertain";
 }
 
-void Localizer::addLines(Location& location, const cv::Mat& grey, const std::vector<size_t>& keyframes) const
+}  // namespace
+}  // namespace iib_localization
+
+using namespace iib_localization;
+
+struct cv::iib::Localizer::Impl
 {
-    const LineFeatures features = extractLines(grey);
-    const DescribedSegments image = {undistorted(features.segments, camera_), features.codes};
-    std::vector<LineObservation> matches;
-    for (size_t k : keyframes)
+    explicit Impl(const Map& map, int points)
+        : iib(IIB::createRecommended(points ? points : map.points)),
+          matcher(HierarchicalMatcher::createRecommended())
     {
-        std::vector<Line3> lines;
-        for (size_t i = 0; i < linesOf_[k].size(); i++)
+        std::vector<Mat> codes;
+        for (const auto& [id, image] : map.model.images)
         {
-            const MapLine& line = map_.lines.lines[size_t(linesOf_[k][i])];
-            lines.push_back({line.begin, line.end, map_.lines.codes[k].ptr(int(i))});
+            const Mat& known = map.codes.at(id);
+            if (!known.empty() && (known.type() != CV_8U || known.cols != iib->descriptorSize()))
+                CV_Error(Error::StsError, "the map's codes are not those of this version: make it again");
+            View view = {map.codes.at(id), image.points, {}, image.cameraFromWorld};
+            for (int64_t number : image.points)
+                view.points.push_back(map.model.points.at(number));
+            if (!view.points.empty())
+                view.depth = medianDistance(inCamera(view.points, view.pose));
+            codes.push_back(view.codes);
+            views.push_back(view);
         }
-        const std::vector<LineObservation> found =
-                matchLines(lines, image, pinhole_, location.estimate.pose, LINE_GATE);
-        matches.insert(matches.end(), found.begin(), found.end());
+        votes = std::make_unique<Retrieval>(codes);
+        const auto same = [](const Camera& a, const Camera& b) {
+            return a.model == b.model && a.size == b.size && a.parameters == b.parameters;
+        };
+        for (const auto& [id, camera] : map.model.cameras)
+            if (std::none_of(cameras.begin(), cameras.end(),
+                        [&, &c = camera](const Camera& o) { return same(o, c); }))
+                cameras.push_back(camera);
     }
-    Location refined = location;
-    for (int round = 0; round < 3; round++)
-    {
-        const Pose& pose = refined.estimate.pose;
-        refined.inliers = agreeing(location.matched, pinhole_, pose);
-        refined.lineInliers = round == 0 ? matches : agreeing(matches, pinhole_, pose);
-        if (refined.lineInliers.size() < MIN_LINES || refined.inliers.size() < MIN_INLIERS)
-            return;
-        // each kind counts by its own noise
-        const double weight =
-                deviation(refined.inliers, pinhole_, pose) / deviation(refined.lineInliers, pinhole_, pose);
-        if (!refinePose(pinhole_, refined.inliers, refined.estimate, refined.lineInliers,
-                    std::clamp(weight, 1 / MAX_LINE_WEIGHT, MAX_LINE_WEIGHT)))
-            return;
-    }
-    location = refined;
-}
 
-void Localizer::judge(Location& location) const
-{
-    RefinedPose& refined = location.estimate;
-    const double sigma = std::max(0.2, deviation(location.inliers, pinhole_, refined.pose));
-    refined.covariance *= sigma * sigma / POINT_WEIGHT;
-    location.metres = 3 * worstDeviation(refined.covariance.topLeftCorner<3, 3>());
-    location.degrees = 3 * worstDeviation(refined.covariance.bottomRightCorner<3, 3>()) * 180 / CV_PI;
-    const double needed = double(MIN_INLIERS) + MIN_INLIER_SHARE * double(location.matched.size());
-    if (double(location.inliers.size()) < needed)
-        location.reason = "too few matches agree";
-    else if (location.metres > MAX_BOUND)
-        location.reason = "the pose is uncertain";
-    else
-        location.found = true;
-}
+    Features extract(const Mat& image) const
+    {
+        Features features;
+        std::vector<KeyPoint> keypoints;
+        iib->detectAndCompute(image, noArray(), keypoints, features.codes);
+        for (const KeyPoint& k : keypoints)
+            features.pixels.emplace_back(k.pt);
+        return features;
+    }
 
-Location Localizer::locate(const cv::Mat& grey, const Pose* prior) const
-{
-    Location location;
-    if (grey.empty())
+    //! The images of the map nearest to a pose: a turn in radians counts as much as a way by their depth.
+    std::vector<size_t> near(const Affine3d& pose) const
     {
-        location.reason = "the image cannot be read";
-        return location;
+        std::vector<double> distances;
+        const Vec3d centre = pose.inv().translation();
+        for (const View& v : views)
+        {
+            const double cosine = pose.rotation().row(2).dot(v.pose.rotation().row(2));
+            distances.push_back(norm(centre - v.pose.inv().translation()) / v.depth +
+                                std::acos(std::clamp(cosine, -1., 1.)));
+        }
+        return best(views.size(), NEAREST, [&](size_t a, size_t b) { return distances[a] < distances[b]; });
     }
-    if (grey.size() != camera_.size)
+
+    std::vector<size_t> similar(const Mat& codes) const
     {
-        location.reason = cv::format("the image has %d x %d pixels and the camera %d x %d", grey.cols,
-                grey.rows, camera_.size.width, camera_.size.height);
-        return location;
+        const std::vector<float> voted = votes->vote(codes);
+        std::vector<size_t> counts(views.size());
+        for (size_t k :
+                best(views.size(), SHORTLIST, [&](size_t a, size_t b) { return voted[a] > voted[b]; }))
+            if (voted[k] > 0)
+            {
+                std::vector<DMatch> found;
+                matcher->match(codes.rowRange(0, std::min(codes.rows, RANKING)), views[k].codes, found);
+                counts[k] = found.size();
+            }
+        std::vector<size_t> order =
+                best(views.size(), CANDIDATES, [&](size_t a, size_t b) { return counts[a] > counts[b]; });
+        order.erase(std::find_if(order.begin(), order.end(), [&](size_t k) { return counts[k] == 0; }),
+                order.end());
+        return order;
     }
-    Stopwatch watch;
-    const Features features = method_.extract(grey);
-    watch.lap(location);
-    const std::vector<size_t> keyframes = candidates(features, prior);
-    watch.lap(location);
-    location.matched = match(features, keyframes);
-    watch.lap(location);
-    if (location.matched.size() < MIN_MATCHES)
+
+    //! Which keypoints (rows) may match which points (columns): those near where the prior has them.
+    static Mat gate(const Features& features, const View& view, const Camera& camera, const Affine3d& prior)
     {
+        const double limit = std::round(GATE * std::max(camera.size.width, camera.size.height));
+        const std::vector<Point2d> places = Lens(camera).project(inCamera(view.points, prior));
+        Mat mask(int(features.pixels.size()), int(places.size()), CV_8U);
+        for (int y = 0; y < mask.rows; y++)
+            for (int x = 0; x < mask.cols; x++)
+            {
+                const Point2d way = places[size_t(x)] - features.pixels[size_t(y)];
+                mask.at<uchar>(y, x) = std::abs(way.x) < limit && std::abs(way.y) < limit ? 255 : 0;
+            }
+        return mask;
+    }
+
+    Location locate(const Features& features, const Camera& camera, const std::vector<size_t>& candidates,
+            const Affine3d* prior) const
+    {
+        Location location;
         location.reason = "too few matches";
+        std::vector<Match> matches;
+        for (size_t k : candidates)
+        {
+            const View& view = views[k];
+            std::vector<DMatch> found;
+            if (!view.points.empty())
+                matcher->match(features.codes, view.codes, found,
+                        prior ? gate(features, view, camera, *prior) : Mat());
+            for (const DMatch& m : found)
+                matches.push_back({features.pixels[size_t(m.queryIdx)], view.points[size_t(m.trainIdx)],
+                        view.numbers[size_t(m.trainIdx)], m.queryIdx, int(m.distance)});
+        }
+        if (matches.size() >= LEAST_INLIERS)
+            iib_localization::locate(std::move(matches), camera, location);
         return location;
     }
-    const bool estimated = estimate(location);
-    watch.lap(location);
-    if (estimated && !linesOf_.empty())
-    {
-        addLines(location, grey, keyframes);
-        watch.lap(location);
-    }
-    if (estimated)
-        judge(location);
+
+    Ptr<IIB> iib;
+    Ptr<HierarchicalMatcher> matcher;
+    std::vector<View> views;
+    std::unique_ptr<Retrieval> votes;
+    std::vector<Camera> cameras;
+};
+
+cv::iib::Localizer::Localizer(const std::string& map, int points)
+    : impl_(std::make_unique<const Impl>(readMap(map), points))
+{
+}
+
+cv::iib::Localizer::~Localizer() = default;
+
+const std::vector<cv::iib::Camera>& cv::iib::Localizer::cameras() const { return impl_->cameras; }
+
+cv::iib::Location cv::iib::Localizer::localize(
+        InputArray input, const Camera& camera, const Affine3d* prior) const
+{
+    const Lens checked(camera);
+    const Mat image = input.getMat();
+    if (image.size() != camera.size)
+        CV_Error(Error::StsBadArg, format("the image has %d x %d pixels and the camera %d x %d", image.cols,
+                                           image.rows, camera.size.width, camera.size.height));
+    const Features features = impl_->extract(image);
+    Location location;
+    location.reason = "too few matches";
+    if (!features.pixels.empty() && prior)
+        location = impl_->locate(features, camera, impl_->near(*prior), prior);
+    if (!features.pixels.empty() && !location.found)
+        location = impl_->locate(features, camera, impl_->similar(features.codes), nullptr);
     return location;
 }
-
-}  // namespace iib_localization

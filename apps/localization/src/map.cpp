@@ -2,172 +2,67 @@
 
 #include "map.hpp"
 
-#include <filesystem>
+#include <fstream>
+#include <sstream>
 
-#include "common/fnv1a.hpp"
-#include "opencv2/iib.hpp"
-#include "text_file.hpp"
+#include "common/npy.hpp"
+#include "sha256.hpp"
 
 namespace iib_localization {
 namespace {
 
-namespace fs = std::filesystem;
+constexpr int FORMAT = 1;
 
-const char* const HEADER = "map.txt";
-const char* const MAGIC = "iib_localization_map";
-constexpr int VERSION = 1;
-
-std::string hashOf(const std::string& path)
+Map readFiles(const std::string& folder)
 {
-    std::ifstream stream(path, std::ios::binary);
+    std::ifstream stream(folder + "/map.json");
     if (!stream)
-        CV_Error(cv::Error::StsError, path + " is missing: the map is not whole");
-    cv::iib::Fnv1a hash;
-    std::vector<char> block(1 << 20);
-    while (stream.read(block.data(), std::streamsize(block.size())) || stream.gcount() > 0)
-        hash.add(block.data(), size_t(stream.gcount()));
-    return cv::format("%016llx", (unsigned long long)hash.value());
-}
-
-std::string codesFile(size_t detector) { return "codes_" + std::to_string(detector) + ".iib"; }
-const char* const LINES = "lines3D.txt";
-const char* const LINE_CODES = "codes_lines.iib";
-
-//! @param codes of each keyframe.
-void writeCodes(const std::string& path, const std::vector<cv::Mat>& codes)
-{
-    const cv::Ptr<cv::iib::HierarchicalMatcher> index = cv::iib::HierarchicalMatcher::create();
-    index->add(codes);
-    index->saveIndex(path);
-}
-
-std::vector<cv::Mat> readCodes(const std::string& path, size_t keyframes)
-{
-    const std::vector<cv::Mat> codes = cv::iib::HierarchicalMatcher::loadIndex(path)->getTrainDescriptors();
-    if (codes.size() != keyframes)
-        CV_Error(cv::Error::StsError, path + " is not of as many keyframes as images.txt");
-    return codes;
-}
-
-LineMap readLineMap(const std::string& folder, const Model& model)
-{
-    LineMap map;
-    map.lines = readLines(folder + "/" + LINES, model.keyframes.size());
-    map.codes = readCodes(folder + "/" + LINE_CODES, model.keyframes.size());
-    const std::vector<std::vector<int>> seen = linesOfKeyframes(map.lines, map.codes.size());
-    for (size_t k = 0; k < seen.size(); k++)
-        if (map.codes[k].rows != int(seen[k].size()))
-            CV_Error(cv::Error::StsError,
-                    folder + ": " + model.keyframes[k].name + " has not a code for each line");
+        CV_Error(cv::Error::StsError, "it has no map.json");
+    std::stringstream text;
+    text << stream.rdbuf();
+    const cv::FileStorage manifest(
+            text.str(), cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_JSON);
+    if (!manifest["format"].isInt() || int(manifest["format"]) != FORMAT)
+        CV_Error(cv::Error::StsError, "its format is unknown to this version");
+    for (const cv::FileNode& file : manifest["sha256"])
+        if (sha256OfFile(folder + "/" + file.name()) != std::string(file))
+            CV_Error(cv::Error::StsError, file.name() + " is damaged");
+    Map map;
+    map.points = int(manifest["points"]);
+    map.model = readModel(folder);
+    const cv::Mat codes = iib_tools::readNpy(folder + "/codes.npy");
+    int row = 0;
+    for (const cv::FileNode& image : manifest["images"])
+    {
+        const int id = int(image[0]), rows = int(image[1]);
+        const auto found = map.model.images.find(id);
+        if (found == map.model.images.end() || rows < 0 || rows > codes.rows - row ||
+                found->second.points.size() != size_t(rows))
+            CV_Error(cv::Error::StsError, cv::format("image %d has not a code for each point", id));
+        for (int64_t point : found->second.points)
+            if (point < 0)
+                CV_Error(cv::Error::StsError, found->second.name + " has a code without a point");
+        map.codes[id] = codes.rowRange(row, row + rows);
+        row += rows;
+    }
+    if (map.codes.empty() || map.codes.size() != map.model.images.size() || row != codes.rows ||
+            map.points < 1)
+        CV_Error(cv::Error::StsError, "it does not have the codes of its images");
     return map;
-}
-
-void writeFiles(const std::string& folder, const Map& map)
-{
-    std::vector<std::string> files = {"cameras.txt", "images.txt", "points3D.txt"};
-    writeModel(folder, map.model);
-    for (size_t d = 0; d < map.codes.at(0).size(); d++)
-    {
-        std::vector<cv::Mat> codes;
-        for (const std::vector<cv::Mat>& keyframe : map.codes)
-            codes.push_back(keyframe[d]);
-        files.push_back(codesFile(d));
-        writeCodes(folder + "/" + files.back(), codes);
-    }
-    if (!map.lines.lines.empty())
-    {
-        files.insert(files.end(), {LINES, LINE_CODES});
-        writeLines(folder + "/" + LINES, map.lines.lines);
-        writeCodes(folder + "/" + LINE_CODES, map.lines.codes);
-    }
-    const std::string header = folder + "/" + HEADER;
-    std::ofstream stream = createFile(header);
-    stream << MAGIC << " " << VERSION << "\nfeatures " << map.features << "\ndescription " << map.description
-           << "\n";
-    stream << "detectors " << map.codes[0].size() << "\n";
-    for (const std::string& file : files)
-        stream << "file " << file << " " << hashOf(folder + "/" + file) << "\n";
-    finishFile(stream, header);
 }
 
 }  // namespace
 
-size_t Map::codeBytes() const
-{
-    size_t bytes = 0;
-    for (const std::vector<cv::Mat>& keyframe : codes)
-        for (const cv::Mat& c : keyframe)
-            bytes += c.total() * c.elemSize();
-    return bytes;
-}
-
-size_t Map::pointBytes() const
-{
-    size_t bytes = model.points.size() * sizeof(model.points[0]);
-    for (const Keyframe& k : model.keyframes)
-        bytes += k.points.size() * (sizeof(k.points[0]) + sizeof(k.pixels[0]));
-    return bytes;
-}
-
-NewFolder placeOfMap(const std::string& folder)
-{
-    return {folder, {HEADER, "cameras.txt", "images.txt", "points3D.txt", LINES, "codes_*.iib"}};
-}
-
-void writeMap(NewFolder&& place, const Map& map)
-{
-    writeFiles(place.path(), map);
-    place.publish();
-}
-
 Map readMap(const std::string& folder)
 {
-    if (!fs::exists(fs::path(folder) / HEADER))
-        CV_Error(cv::Error::StsError, folder + " is no map: it has no " + HEADER);
-    TextFile header(folder + "/" + HEADER);
-    if (!header.next() || header.word(0) != MAGIC)
-        header.fail("not the header of a map");
-    if (header.whole(1, 1, INT_MAX) > VERSION)
-        header.fail("the map is of a newer version of this program");
-    Map map;
-    int64_t detectors = 0;
-    bool lines = false;
-    while (header.next())
+    try
     {
-        if (header.word(0) == "features")
-            map.features = header.word(1);
-        else if (header.word(0) == "description")
-            for (size_t i = 1; i < header.size(); i++)
-                map.description += (i > 1 ? " " : "") + header.word(i);
-        else if (header.word(0) == "detectors")
-            detectors = header.whole(1, 1, 16);
-        else if (header.word(0) != "file")
-            header.fail("'" + header.word(0) + "' is not known");
-        else if (hashOf(folder + "/" + header.word(1)) != header.word(2))
-            CV_Error(cv::Error::StsError, folder + "/" + header.word(1) + " is damaged: build the map again");
-        else
-            lines |= header.word(1) == LINES;
+        return readFiles(folder);
     }
-    map.model = readModel(folder);
-    map.codes.assign(map.model.keyframes.size(), std::vector<cv::Mat>(size_t(detectors)));
-    for (size_t d = 0; d < size_t(detectors); d++)
+    catch (const cv::Exception& e)
     {
-        const std::vector<cv::Mat> codes = readCodes(folder + "/" + codesFile(d), map.codes.size());
-        for (size_t k = 0; k < codes.size(); k++)
-            map.codes[k][d] = codes[k];
+        CV_Error(cv::Error::StsError, folder + " is no map, or a damaged one: " + e.err);
     }
-    if (lines)
-        map.lines = readLineMap(folder, map.model);
-    for (size_t i = 0; i < map.codes.size(); i++)
-    {
-        size_t rows = 0;
-        for (const cv::Mat& c : map.codes[i])
-            rows += size_t(c.rows);
-        if (rows != map.model.keyframes[i].pixels.size())
-            CV_Error(cv::Error::StsError,
-                    folder + ": " + map.model.keyframes[i].name + " has not a code for each point");
-    }
-    return map;
 }
 
 }  // namespace iib_localization

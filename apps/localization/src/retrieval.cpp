@@ -10,7 +10,7 @@ namespace {
 
 constexpr int TABLES = 16;
 constexpr int COARSE = 4;  // the first part of a code that bits are taken from: coarse cells change least
-constexpr int STRONGEST = 400;        // codes a keyframe and detector that take part
+constexpr int STRONGEST = 400;        // codes an image that take part
 constexpr uint32_t MAX_ENTRIES = 64;  // of a key: what is that frequent tells nothing
 
 int participating(const cv::Mat& codes) { return std::min(codes.rows, STRONGEST); }
@@ -25,13 +25,14 @@ uint32_t Retrieval::keyOf(const uchar* code, const std::vector<int>& bits)
     return key;
 }
 
-Retrieval::Retrieval(const std::vector<cv::Mat>& codes)
+Retrieval::Retrieval(const std::vector<cv::Mat>& codes) : images_(codes.size())
 {
     size_t count = 0;
+    int bytes = 0;
     for (const cv::Mat& c : codes)
     {
         count += size_t(participating(c));
-        bytes_ = std::max(bytes_, c.cols);
+        bytes = std::max(bytes, c.cols);
     }
     if (count == 0)
         return;
@@ -43,26 +44,26 @@ Retrieval::Retrieval(const std::vector<cv::Mat>& codes)
     {
         Table table;
         for (int i = 0; i < keyBits; i++)
-            table.bits.push_back(int(random() % uint32_t(8 * bytes_ / COARSE)));
+            table.bits.push_back(int(random() % uint32_t(8 * bytes / COARSE)));
         table.begins.assign((size_t(1) << keyBits) + 1, 0);
         for (const cv::Mat& c : codes)
             for (int row = 0; row < participating(c); row++)
                 table.begins[keyOf(c.ptr(row), table.bits) + 1]++;
         for (size_t key = 1; key < table.begins.size(); key++)
             table.begins[key] += table.begins[key - 1];
-        table.keyframes.resize(count);
+        table.images.resize(count);
         std::vector<uint32_t> next(table.begins.begin(), table.begins.end() - 1);
         for (size_t k = 0; k < codes.size(); k++)
             for (int row = 0; row < participating(codes[k]); row++)
-                table.keyframes[next[keyOf(codes[k].ptr(row), table.bits)]++] = uint32_t(k);
+                table.images[next[keyOf(codes[k].ptr(row), table.bits)]++] = uint32_t(k);
         tables_.push_back(std::move(table));
     }
 }
 
-size_t Retrieval::vote(const cv::Mat& codes, std::vector<float>& votes) const
+std::vector<float> Retrieval::vote(const cv::Mat& codes, size_t* visited) const
 {
-    size_t visited = 0;
-    CV_Assert(codes.empty() || tables_.empty() || codes.cols == bytes_);
+    std::vector<float> votes(images_, 0.f);
+    size_t seen = 0;
     for (const Table& table : tables_)
         for (int row = 0; row < codes.rows; row++)
         {
@@ -70,19 +71,13 @@ size_t Retrieval::vote(const cv::Mat& codes, std::vector<float>& votes) const
             const uint32_t begin = table.begins[key], end = table.begins[key + 1];
             if (end - begin > MAX_ENTRIES)
                 continue;
-            visited += end - begin;
+            seen += end - begin;
             for (uint32_t i = begin; i < end; i++)
-                votes[table.keyframes[i]] += 1.f / float(end - begin);
+                votes[table.images[i]] += 1.f / float(end - begin);
         }
-    return visited;
-}
-
-size_t Retrieval::bytes() const
-{
-    size_t sum = 0;
-    for (const Table& table : tables_)
-        sum += sizeof(uint32_t) * (table.begins.size() + table.keyframes.size());
-    return sum;
+    if (visited)
+        *visited = seen;
+    return votes;
 }
 
 }  // namespace iib_localization

@@ -1,25 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "../src/images.hpp"
-#include "../src/new_folder.hpp"
-#include "common/test/test_folder.hpp"
+#include <filesystem>
+
+#include "images.hpp"
+#include "new_folder.hpp"
+#include "wall.hpp"
 
 namespace {
 using namespace iib_localization;
 
-const std::vector<std::string> OWN = {"index", "*.part"};
+const std::vector<std::string> OWN = {"index", "[a-z].part", "sub", "sub/?.part"};
 
 void publish(const std::string& target, const std::string& text)
 {
     NewFolder made(target, OWN);
     std::ofstream(made.path() + "/index") << text;
     made.publish();
-}
-
-std::string textOf(const std::string& path)
-{
-    std::ifstream stream(path);
-    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 TEST(NewFolder, appears_whole_and_replaces_its_like)
@@ -33,10 +29,10 @@ TEST(NewFolder, appears_whole_and_replaces_its_like)
     EXPECT_FALSE(cv::utils::fs::exists(target));
     EXPECT_FALSE(cv::utils::fs::exists(target + ".iib_partial"));
     publish(target, "one");
-    std::ofstream(target + "/old.part") << "old";
+    std::ofstream(target + "/o.part") << "old";
     publish(target + "/", "two");
     EXPECT_EQ("two", textOf(target + "/index"));
-    EXPECT_FALSE(cv::utils::fs::exists(target + "/old.part"));
+    EXPECT_FALSE(cv::utils::fs::exists(target + "/o.part"));
     EXPECT_FALSE(cv::utils::fs::exists(target + ".iib_partial"));
     folder.makeFolder("empty");
     publish(folder.path("empty"), "three");
@@ -63,8 +59,13 @@ TEST(NewFolder, replaces_nothing_else)
         EXPECT_EQ("precious", textOf(folder.path("out/") + name));
         std::remove((folder.path("out/") + name).c_str());
     }
-    folder.makeFolder("out/folder.part");
-    EXPECT_NE("", error());
+    folder.makeFolder("out/sub");
+    folder.write("out/sub/a.part", "old");
+    EXPECT_EQ("", error());
+    folder.makeFolder("out/sub");
+    folder.write("out/sub/thesis", "precious");
+    EXPECT_NE(std::string::npos, error().find(" holds sub/thesis, which is no result")) << error();
+    EXPECT_EQ("precious", textOf(folder.path("out/sub/thesis")));
     folder.write("file", "precious");
     EXPECT_NE("", messageOf([&] { publish(folder.path("file"), "new"); }));
     EXPECT_EQ("precious", textOf(folder.path("file")));
@@ -76,9 +77,9 @@ TEST(NewFolder, what_a_killed_run_left_is_removed_but_not_what_is_being_written)
 {
     const TestFolder folder;
     folder.makeFolder("out.iib_partial");
-    folder.write("out.iib_partial/left.part", "of a killed run");
+    folder.write("out.iib_partial/l.part", "of a killed run");
     NewFolder one(folder.path("out"), OWN);
-    EXPECT_FALSE(cv::utils::fs::exists(folder.path("out.iib_partial/left.part")));
+    EXPECT_FALSE(cv::utils::fs::exists(folder.path("out.iib_partial/l.part")));
     std::ofstream(one.path() + "/index") << "one";
     EXPECT_EQ(folder.path("out") + " is being written by another process: wait until it has ended",
             messageOf([&] { publish(folder.path("out"), "other"); }));
@@ -88,22 +89,23 @@ TEST(NewFolder, what_a_killed_run_left_is_removed_but_not_what_is_being_written)
 
 TEST(Images, names_that_results_cannot_hold)
 {
-    for (const char* name : {"a b.png", "a,b.png", "a\"b.png", "#a.png"})
-    {
-        const TestFolder folder;
-        folder.write(name, "");
-        EXPECT_EQ(folder.path(name) +
-                          ": rename it, without blanks, commas, quotes and a leading #: files of poses "
-                          "cannot hold these",
-                messageOf([&] { listImages(folder.path("")); }));
-    }
     const TestFolder folder;
-    folder.write("0.jpg", "");
-    folder.write("1.jpg", "");
-    EXPECT_EQ(2u, listImages(folder.path("")).size());
-    folder.write("0.png", "");
-    EXPECT_EQ(folder.path("0.png") + " and 0.jpg would have one pose: rename one of them",
+    folder.makeFolder("b");
+    for (const char* name : {"a b.png", "a,b.PNG", "a\"b.jpg", "b/#1.png", "b/0.jpg", "0.png", "notes.txt"})
+        folder.write(name, "");
+    const std::vector<std::string> expected = {
+            "0.png", "a b.png", "a\"b.jpg", "a,b.PNG", "b/#1.png", "b/0.jpg"};
+    EXPECT_EQ(expected, listImages(folder.path("")));
+    const TestFolder links;
+    std::filesystem::create_symlink(folder.path("0.png"), links.path("2.png"));
+    EXPECT_EQ(std::vector<std::string>{"2.png"}, listImages(links.path(""))) << "by its name here";
+    folder.write("b/0.png", "");
+    EXPECT_EQ("b/0.png and b/0.jpg would have one pose: rename one of them",
             messageOf([&] { listImages(folder.path("")); }));
+    folder.write("#a.png", "");
+    EXPECT_EQ("#a.png: rename it, without a leading # and line breaks: a trajectory cannot hold these",
+            messageOf([&] { listImages(folder.path("")); }));
+    EXPECT_EQ(folder.path("none") + " cannot be read", messageOf([&] { listImages(folder.path("none")); }));
 }
 
 }  // namespace

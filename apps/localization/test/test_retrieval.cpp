@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "../src/retrieval.hpp"
+#include "retrieval.hpp"
 #include "opencv2/ts.hpp"
 
 namespace {
@@ -17,54 +17,50 @@ cv::Mat noisy(const cv::Mat& codes, double probability, cv::RNG& random)
     return result;
 }
 
-TEST(Retrieval, finds_the_keyframe_of_noisy_codes_among_many)
+TEST(Retrieval, finds_the_image_of_noisy_codes_among_many)
 {
     cv::RNG random(1);
-    std::vector<cv::Mat> keyframes(300);
-    for (size_t k = 0; k < keyframes.size(); k++)
+    std::vector<cv::Mat> images(300);
+    for (size_t k = 0; k < images.size(); k++)
     {
-        keyframes[k].create(k % 7 == 3 ? 0 : 100, 64, CV_8U);
-        if (!keyframes[k].empty())
-            random.fill(keyframes[k], cv::RNG::UNIFORM, 0, 256);
+        images[k].create(k % 7 == 3 ? 0 : 100, 64, CV_8U);
+        if (!images[k].empty())
+            random.fill(images[k], cv::RNG::UNIFORM, 0, 256);
     }
-    const Retrieval retrieval(keyframes);
+    const Retrieval retrieval(images);
     for (size_t k : {0, 151, 299})
     {
-        std::vector<float> votes(keyframes.size(), 0.f);
-        retrieval.vote(noisy(keyframes[k], 0.12, random), votes);
+        const std::vector<float> votes = retrieval.vote(noisy(images[k], 0.12, random));
         EXPECT_EQ(std::ptrdiff_t(k), std::max_element(votes.begin(), votes.end()) - votes.begin());
         EXPECT_EQ(0, votes[3]) << "has no codes";
     }
 }
 
-// A map a hundred times as large takes as many votes, and its memory grows with it.
-TEST(Retrieval, looks_at_no_more_codes_of_ten_thousand_keyframes)
+// A map a hundred times as large takes as many votes.
+TEST(Retrieval, looks_at_no_more_codes_of_ten_thousand_images)
 {
     cv::RNG random(1);
-    std::vector<cv::Mat> keyframes(10000);
-    for (cv::Mat& codes : keyframes)
+    std::vector<cv::Mat> images(10000);
+    for (cv::Mat& codes : images)
     {
         codes.create(40, 64, CV_8U);
         random.fill(codes, cv::RNG::UNIFORM, 0, 256);
     }
-    const Retrieval large(keyframes), small(std::vector<cv::Mat>(keyframes.begin(), keyframes.begin() + 100));
-    EXPECT_LT(large.bytes(), 150 * small.bytes());
-    const cv::Mat query = noisy(keyframes[50], 0.1, random);
-    std::vector<float> votes(100, 0.f), manyVotes(keyframes.size(), 0.f);
-    const size_t visited = small.vote(query, votes), manyVisited = large.vote(query, manyVotes);
+    const Retrieval large(images), small(std::vector<cv::Mat>(images.begin(), images.begin() + 100));
+    const cv::Mat query = noisy(images[50], 0.1, random);
+    size_t visited = 0, manyVisited = 0;
+    small.vote(query, &visited);
+    const std::vector<float> manyVotes = large.vote(query, &manyVisited);
     EXPECT_GT(visited, 0u);
-    EXPECT_LT(manyVisited, 1.5 * visited);
+    EXPECT_LT(double(manyVisited), 1.5 * double(visited));
     EXPECT_EQ(50, std::max_element(manyVotes.begin(), manyVotes.end()) - manyVotes.begin());
 }
 
 TEST(Retrieval, without_codes_there_are_no_votes)
 {
-    std::vector<float> votes(2, 0.f);
-    Retrieval({cv::Mat(), cv::Mat()}).vote(cv::Mat(5, 64, CV_8U, cv::Scalar(1)), votes);
-    EXPECT_EQ(0, votes[0]);
-    const std::vector<cv::Mat> codes(2, cv::Mat(5, 64, CV_8U, cv::Scalar(1)));
-    Retrieval(codes).vote(cv::Mat(), votes);
-    EXPECT_EQ(0, votes[0]);
+    const cv::Mat none, some(5, 64, CV_8U, cv::Scalar(1));
+    EXPECT_EQ(std::vector<float>(2), Retrieval({none, none}).vote(some));
+    EXPECT_EQ(std::vector<float>(2), Retrieval({some, some}).vote(none));
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "../src/localizer.hpp"
-#include "../src/map_builder.hpp"
-#include "../src/trajectory.hpp"
 #include "common/test/test_folder.hpp"
+#include "lens.hpp"
+#include "map_writer.hpp"
+#include "opencv2/iib.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
 
@@ -12,6 +12,18 @@ namespace iib_localization {
 
 inline const cv::Size SIZE(320, 240);
 inline const Camera CAMERA = {"PINHOLE", SIZE, {260, 260, 160, 120}};
+
+inline std::string textOf(const std::string& path)
+{
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+//! World from camera, turned to the right.
+inline cv::Affine3d poseAt(double x, double y, double yaw)
+{
+    return cv::Affine3d(cv::Vec3d(0, yaw, 0), cv::Vec3d(x, y, 0.2 * x));
+}
 
 /** A textured wall that a camera in any pose near the origin sees, 4 m away and slanted:
 points (x, y, 4 + 0.4 x) for each pixel (120 a metre) of the texture. */
@@ -31,90 +43,64 @@ public:
         texture_.convertTo(texture_, CV_8U);
     }
 
-    explicit Wall(const cv::Mat& texture) : texture_(texture) {}
-
-    cv::Mat image(const Pose& pose) const
+    cv::Mat image(const cv::Affine3d& worldFromCamera) const
     {
+        cv::Matx33d wall(1 / 120., 0, -5, 0, 1 / 120., -3.75, 0.4 / 120, 0, 4 - 0.4 * 5);  // texture to world
+        for (int i = 0; i < 3; i++)
+            wall(i, 2) -= worldFromCamera.translation()[i];
         cv::Mat result;
-        cv::warpPerspective(texture_, result, textureToImage(pose), SIZE, cv::INTER_AREA);
+        cv::warpPerspective(texture_, result, Lens(CAMERA).matrix() * worldFromCamera.rotation().t() * wall,
+                SIZE, cv::INTER_AREA);
         return result;
     }
 
-    //! In millimetres.
-    static cv::Mat depth(const Pose& pose)
+    //! What a camera sees at a pixel.
+    static cv::Point3d point(const cv::Affine3d& worldFromCamera, const cv::Point2f& pixel)
     {
-        cv::Mat result(SIZE, CV_16U);
-        // the wall is n x = 4
-        const Eigen::Vector3d n(-0.4, 0, 1);
-        for (int y = 0; y < SIZE.height; y++)
-            for (int x = 0; x < SIZE.width; x++)
-            {
-                const Eigen::Vector3d ray = CAMERA.pinhole().ray({x, y});
-                const double z = (4 - n.dot(pose.position)) / n.dot(pose.rotation * ray);
-                result.at<ushort>(y, x) = cv::saturate_cast<ushort>(z * 1000);
-            }
-        return result;
+        const cv::Vec3d normal(-0.4, 0, 1);  // the wall is normal * x = 4
+        const cv::Vec3d ray =
+                worldFromCamera.rotation() * Lens(CAMERA).matrix().inv() * cv::Vec3d(pixel.x, pixel.y, 1);
+        const cv::Vec3d centre = worldFromCamera.translation();
+        return centre + ray * ((4 - normal.dot(centre)) / normal.dot(ray));
     }
 
 private:
-    static cv::Mat textureToImage(const Pose& pose)
-    {
-        const Pinhole p = CAMERA.pinhole();
-        Eigen::Matrix3d k, wall;
-        k << p.fx, 0, p.cx, 0, p.fy, p.cy, 0, 0, 1;
-        // texture (u, v, 1) to the world
-        wall << 1 / 120., 0, -5, 0, 1 / 120., -3.75, 0.4 / 120, 0, 4 - 0.4 * 5;
-        wall.col(2) -= pose.position;
-        const Eigen::Matrix3d h = k * pose.rotation.conjugate().toRotationMatrix() * wall;
-        cv::Mat result(3, 3, CV_64F);
-        for (int i = 0; i < 9; i++)
-            result.at<double>(i / 3, i % 3) = h(i / 3, i % 3);
-        return result;
-    }
-
     cv::Mat texture_;
 };
 
-inline Pose poseAt(double x, double y, double yaw)
-{
-    return {Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitY())), {x, y, 0.2 * x}};
-}
-
-//! Six keyframes along the wall.
-class Localization : public testing::Test
+//! Six images along the wall, some below a folder, and a map of them whose points lie on it.
+class WallTest : public testing::Test
 {
 protected:
-    explicit Localization(const Wall& pictured = Wall(1)) : wall(pictured)
+    WallTest() : wall(1)
     {
-        folder.makeFolder("images");
-        folder.makeFolder("depth");
-        std::vector<NamedPose> poses;
+        folder.makeFolder("images/left side");
+        Map map;
+        map.points = 1000;
+        map.model.cameras[1] = CAMERA;
+        const auto iib = cv::iib::IIB::createRecommended(map.points);
         for (int i = 0; i < 6; i++)
         {
-            const NamedPose p = {"k" + std::to_string(i), poseAt(0.3 * i - 0.8, 0.05 * (i % 2), 0.03 * i)};
-            cv::imwrite(folder.path("images/" + p.name + ".png"), wall.image(p.pose));
-            cv::imwrite(folder.path("depth/" + p.name + ".png"), Wall::depth(p.pose));
-            poses.push_back(p);
+            const cv::Affine3d pose = poseAt(0.3 * i - 0.8, 0.05 * (i % 2), 0.03 * i);
+            ModelImage& image = map.model.images[i + 1];
+            image.name = (i < 3 ? "left side/" : "") + std::to_string(i) + ".png";
+            image.cameraFromWorld = pose.inv();
+            const cv::Mat picture = wall.image(pose);
+            cv::imwrite(folder.path("images/" + image.name), picture);
+            std::vector<cv::KeyPoint> keypoints;
+            iib->detectAndCompute(picture, cv::noArray(), keypoints, map.codes[i + 1]);
+            for (const cv::KeyPoint& k : keypoints)
+            {
+                image.points.push_back(int64_t(map.model.points.size()));
+                map.model.points[image.points.back()] = Wall::point(pose, k.pt);
+            }
         }
-        writeCameras(folder.path("cameras.txt"), {{1, CAMERA}});
-        writeTrajectory(folder.path("poses.txt"), poses);
-        sources.images = folder.path("images");
-        sources.cameras = folder.path("cameras.txt");
-        sources.poses = folder.path("poses.txt");
-    }
-
-    void expectFound(const Map& map, const cv::Mat& image, const Pose& truth, double metres)
-    {
-        const Location location = Localizer(map, CAMERA).locate(image);
-        ASSERT_TRUE(location.found) << location.reason;
-        EXPECT_LT((location.estimate.pose.position - truth.position).norm(), metres);
-        EXPECT_LT(location.metres, 0.05);
-        EXPECT_LT(location.estimate.pose.rotation.angularDistance(truth.rotation), 0.5 * CV_PI / 180);
+        folder.makeFolder("map");
+        writeMap(folder.path("map"), map);
     }
 
     const TestFolder folder;
     const Wall wall;
-    MapSources sources;
 };
 
 }  // namespace iib_localization

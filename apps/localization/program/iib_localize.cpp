@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <limits>
+#include <optional>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+#include "common/command_line.hpp"
+#include "images.hpp"
+#include "lens.hpp"
+#include "new_folder.hpp"
+#include "opencv2/imgcodecs.hpp"
+#include "opencv2/imgproc.hpp"
+#include "pose.hpp"
+#include "progress.hpp"
+#include "smoother.hpp"
+#include "trajectory.hpp"
+
+namespace {
+using namespace iib_localization;
+using cv::iib::Localizer;
+using cv::iib::Location;
+
+constexpr int NOTHING_FOUND = 3, SOME_FOUND = 4;  // status
+
+int statusOf(size_t found, size_t all) { return found == all ? 0 : found > 0 ? SOME_FOUND : NOTHING_FOUND; }
+
+//! A field of a CSV file (RFC 4180).
+std::string quoted(const std::string& text)
+{
+    if (text.find_first_of(",\"\r\n") == std::string::npos)
+        return text;
+    std::string result = "\"";
+    for (char c : text)
+        result += c == '"' ? "\"\"" : std::string(1, c);
+    return result + "\"";
+}
+
+//! Calls what is to be done with each place and name of the upper triangle of the covariance.
+template <typename Action> void forUpper(Action action)
+{
+    static const char* const axes[] = {"x", "y", "z", "rx", "ry", "rz"};
+    for (int i = 0; i < 6; i++)
+        for (int k = i; k < 6; k++)
+            action(i, k, std::string(axes[i]) + "_" + axes[k]);
+}
+
+std::string csvHeader()
+{
+    std::string header = "name,found,reason,matches,inliers";
+    forUpper([&](int, int, const std::string& name) { header += "," + name; });
+    return header + "\n";
+}
+
+std::string csvRow(const std::string& name, const Location& location)
+{
+    std::string row =
+            quoted(name) + cv::format(",%d,%s,%d,%d", location.found, quoted(location.reason).c_str(),
+                                   location.matches, location.inliers);
+    forUpper([&](int i, int k, const std::string&) {
+        row += location.found ? cv::format(",%.6g", location.covariance(i, k)) : ",";
+    });
+    return row + "\n";
+}
+
+//! The image with the points of the map that agree: where they are seen in green, where the pose has them in red.
+void writePicture(
+        const std::string& path, const cv::Mat& grey, const Location& location, const Camera& camera)
+{
+    cv::Mat picture;
+    cv::cvtColor(grey, picture, cv::COLOR_GRAY2BGR);
+    const std::vector<cv::Point2d> mapped =
+            Lens(camera).project(inCamera(location.points, location.cameraFromWorld));
+    for (size_t i = 0; i < mapped.size(); i++)
+    {
+        cv::line(picture, location.pixels[i], mapped[i], {0, 0, 255});
+        cv::circle(picture, location.pixels[i], 3, {0, 200, 0}, 1, cv::LINE_AA);
+    }
+    if (!cv::imwrite(path, picture))
+        CV_Error(cv::Error::StsError, path + " cannot be written");
+}
+
+//! The cameras that images may have; each has that of its size.
+std::vector<Camera> chooseCameras(const iib_tools::CommandLine& line, const Localizer& localizer)
+{
+    return line.has("camera") ? std::vector<Camera>{Camera::parse(line.text("camera"))} : localizer.cameras();
+}
+
+//! Of an image file; what is wrong with it is the reason. @param camera gets that of the image.
+Location locate(const Localizer& localizer, const std::vector<Camera>& cameras, const cv::Mat& grey,
+        const cv::Affine3d* prior, Camera& camera)
+{
+    const auto fits = [&](const Camera& c) { return c.size == grey.size(); };
+    const auto found = std::find_if(cameras.begin(), cameras.end(), fits);
+    Location location;
+    if (grey.empty())
+        location.reason = "the image cannot be read";
+    else if (found == cameras.end())
+        location.reason = cv::format("no camera of %d x %d pixels: give --camera", grey.cols, grey.rows);
+    else if (std::any_of(found + 1, cameras.end(), fits))
+        location.reason = cv::format(
+                "the map has several cameras of %d x %d pixels: give --camera", grey.cols, grey.rows);
+    else
+    {
+        camera = *found;
+        location = localizer.localize(grey, camera, prior);
+    }
+    return location;
+}
+
+//! A path a line on standard input, a pose a line on standard output.
+int stream(const Localizer& localizer, const std::vector<Camera>& cameras)
+{
+    size_t all = 0, found = 0;
+    std::optional<cv::Affine3d> last;
+    for (std::string path; std::getline(std::cin, path); all++)
+    {
+        Camera camera;
+        const Location location = locate(
+                localizer, cameras, cv::imread(path, cv::IMREAD_GRAYSCALE), last ? &*last : nullptr, camera);
+        if (location.found)
+            std::cout << trajectoryLine(path, location.cameraFromWorld.inv());
+        else
+            std::cout << "# " << path << ": " << location.reason << "\n";
+        std::cout << std::flush;
+        last = location.found ? std::optional<cv::Affine3d>(location.cameraFromWorld) : std::nullopt;
+        found += location.found;
+    }
+    return statusOf(found, all);
+}
+
+//! In nanoseconds, as the smoother takes them.
+std::vector<int64_t> timesOf(const std::vector<std::string>& names)
+{
+    std::vector<int64_t> times;
+    for (const std::string& name : names)
+    {
+        const std::optional<int64_t> time = nanoseconds(withoutExtension(name));
+        if (!time || (!times.empty() && *time <= times.back()))
+            CV_Error(cv::Error::StsError,
+                    name + ": with --imu the images must be named by their times, in seconds or "
+                           "nanoseconds, in order");
+        times.push_back(*time);
+    }
+    return times;
+}
+
+//! Keeps the buffers of one image for the next: to give their pages back and to fetch them again takes 40 % of the time.
+void keepFreedMemory()
+{
+#ifdef __GLIBC__
+    mallopt(M_MMAP_THRESHOLD, 1 << 25);
+    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+#endif
+}
+
+void finish(std::ofstream& stream, const std::string& path)
+{
+    stream.close();
+    if (!stream)
+        CV_Error(cv::Error::StsError, path + " cannot be written");
+}
+
+int run(const iib_tools::CommandLine& line)
+{
+    keepFreedMemory();
+    const bool streaming = line.has("stream");
+    for (const char* option : {"images", "out", "imu", "pictures"})
+        if (streaming && line.has(option))
+            CV_Error(cv::Error::StsBadArg, cv::format("--stream goes without --%s", option));
+    for (const char* needed : {"map", "images", "out"})
+        if (!line.has(needed) && !(streaming && line.has("map")))
+            CV_Error(cv::Error::StsBadArg, cv::format("--%s is needed (--help tells more)", needed));
+    if (streaming)
+    {
+        const Localizer localizer(line.text("map"));
+        return stream(localizer, chooseCameras(line, localizer));
+    }
+    const std::string folder = line.text("images");
+    const std::vector<std::string> names = listImages(folder);
+    const bool imu = line.has("imu");
+    const std::vector<ImuReading> readings = imu ? readImu(line.text("imu")) : std::vector<ImuReading>();
+    const std::vector<int64_t> times = imu ? timesOf(names) : std::vector<int64_t>();
+    const cv::Affine3d imuFromCamera = parsePose(line.text("imu-from-camera"));
+    const Localizer localizer(line.text("map"), 0);
+    const std::vector<Camera> cameras = chooseCameras(line, localizer);
+
+    NewFolder results(line.text("out"), {"frames.csv", "trajectory.txt", "matches", "matches/*.png"});
+    const std::string &out = results.path(), table = out + "/frames.csv", path = out + "/trajectory.txt";
+    if (line.has("pictures"))
+        std::filesystem::create_directory(out + "/matches");
+    std::ofstream csv(table);
+    csv << csvHeader();
+    std::vector<VisualFrame> frames(names.size());
+    std::vector<std::string> rows(names.size());
+    Progress progress("localizing", names.size());
+    // Several images at once: the steps of one leave most threads idle.
+    cv::parallel_for_(cv::Range(0, int(names.size())), [&](const cv::Range& range) {
+        for (size_t i = size_t(range.start); i < size_t(range.end); i++)
+        {
+            const cv::Mat grey = cv::imread(folder + "/" + names[i], cv::IMREAD_GRAYSCALE);
+            Camera camera;
+            const Location location = locate(localizer, cameras, grey, nullptr, camera);
+            if (imu)
+                frames[i].nanoseconds = times[i];
+            if (location.found)
+                frames[i].pose = location.cameraFromWorld.inv();
+            frames[i].covariance = location.covariance;
+            rows[i] = csvRow(names[i], location);
+            std::string flat = names[i] + ".png";
+            std::replace(flat.begin(), flat.end(), '/', '-');
+            if (line.has("pictures") && location.found)
+                writePicture(out + "/matches/" + flat, grey, location, camera);
+            progress.step();
+        }
+    });
+    for (const std::string& row : rows)
+        csv << row;
+    finish(csv, table);
+    std::vector<std::optional<cv::Affine3d>> poses;
+    for (const VisualFrame& frame : frames)
+        poses.push_back(frame.pose);
+    if (imu)
+        poses = smooth(frames, readings, imuFromCamera);
+    std::ofstream trajectory(path);
+    trajectory << "# name tx ty tz qx qy qz qw\n";
+    size_t found = 0;
+    for (size_t i = 0; i < names.size(); i++)
+        if (poses[i])
+        {
+            trajectory << trajectoryLine(withoutExtension(names[i]), *poses[i]);
+            found++;
+        }
+    finish(trajectory, path);
+    results.publish();
+    std::cout << found << " of " << names.size() << " images have a pose\n";
+    return statusOf(found, names.size());
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    return iib_tools::runTool(argc, argv,
+            "Finds where images were taken, in a map that Python's opencv-iib made.\n"
+            "  iib_localize --map MAP --images DIR --out OUT [--camera MODEL,WIDTH,HEIGHT,PARAMETERS]\n"
+            "  iib_localize --map MAP --stream [--camera ...]\n"
+            "OUT/trajectory.txt has the poses (TUM's format), OUT/frames.csv what became of each image.\n"
+            "The status is 0 if all have a pose, 4 if some have, 3 if none has.",
+            "{map|<none>|the map, a folder}"
+            "{images|<none>|folder of the images}"
+            "{camera|<none>|of all images, as COLMAP names models and parameters; without it, the map's of "
+            "the same size}"
+            "{imu|<none>|EuRoC's imu.csv; images must be named by their times}"
+            "{imu-from-camera|0,0,0,0,0,0,1|where the camera is in the IMU's axes: tx,ty,tz,qx,qy,qz,qw}"
+            "{pictures||write each image with the points that agree, as OUT/matches/NAME.png}"
+            "{stream||read the path of an image a line, and write its pose a line: `PATH tx ty tz qx qy qz "
+            "qw`, or "
+            "`# PATH: why not`}"
+            "{out|<none>|folder for the results; older results there are replaced}",
+            run);
+}

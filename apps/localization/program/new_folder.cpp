@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "new_folder.hpp"
+
+#include <fcntl.h>
+#include <fnmatch.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "opencv2/core.hpp"
+
+namespace iib_localization {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const std::string& what) { CV_Error(cv::Error::StsError, what); }
+
+//! Throws unless the folder may be replaced.
+void checkContents(const std::string& folder, const std::vector<std::string>& ownFiles)
+{
+    std::string foreign;
+    bool known = false;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+    {
+        const std::string name = entry.path().lexically_relative(folder).string();
+        const auto isName = [&](const std::string& pattern) {
+            return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
+        };
+        if (std::none_of(ownFiles.begin(), ownFiles.end(), isName))
+            fail(folder + " holds " + name + ", which is no result of this program: choose another folder");
+        known |= isName(ownFiles[0]);
+        foreign = name;
+    }
+    if (!known && !foreign.empty())
+        fail(folder + " holds " + foreign + " but no " + ownFiles[0] +
+                ", so that it is no result of this program: choose another folder");
+}
+
+//! A mount point cannot be moved.
+bool isMountPoint(const std::string& folder)
+{
+    struct stat own, parent;
+    return ::stat(folder.c_str(), &own) == 0 && ::stat((folder + "/..").c_str(), &parent) == 0 &&
+           own.st_dev != parent.st_dev;
+}
+
+std::string targetOf(const std::string& folder)
+{
+    const fs::path path = fs::weakly_canonical(folder);
+    return (path.has_filename() ? path : path.parent_path()).string();  // without a slash at its end
+}
+
+}  // namespace
+
+NewFolder::NewFolder(const std::string& target, const std::vector<std::string>& ownFiles)
+{
+    try
+    {
+        target_ = targetOf(target);
+        partial_ = target_ + ".iib_partial";
+        if (isMountPoint(target_))
+            fail(target + " is a mount point: give a folder inside it");
+        if (fs::exists(target_))
+            checkContents(target_, ownFiles);
+        fs::create_directories(partial_);
+        lock_ = ::open(partial_.c_str(), O_RDONLY | O_CLOEXEC);
+        if (lock_ < 0 || ::flock(lock_, LOCK_EX | LOCK_NB) != 0)
+        {
+            ::close(lock_);
+            lock_ = -1;
+            fail(target + " is being written by another process: wait until it has ended");
+        }
+        for (const auto& entry : fs::directory_iterator(partial_))
+            fs::remove_all(entry.path());
+    }
+    catch (const fs::filesystem_error& e)
+    {
+        fail(target + " cannot be written: " + e.code().message());
+    }
+}
+
+NewFolder::~NewFolder()
+{
+    std::error_code error;
+    if (!partial_.empty())
+        fs::remove_all(partial_, error);
+    if (lock_ >= 0)
+        ::close(lock_);
+}
+
+void NewFolder::publish()
+{
+    std::error_code error;
+    const bool moved = fs::exists(target_, error) ? ::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD,
+                                                            target_.c_str(), RENAME_EXCHANGE) == 0
+                                                  : std::rename(partial_.c_str(), target_.c_str()) == 0;
+    if (!moved)
+        fail(target_ + " cannot be replaced by " + partial_);
+    fs::remove_all(partial_, error);  // what was at the target before
+    partial_.clear();
+}
+
+}  // namespace iib_localization

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "smoother.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace iib_localization {
+namespace {
+
+// Noise densities of a good MEMS sensor (EuRoC's sensor.yaml), twice as large for what the model leaves out.
+constexpr double RATE_NOISE = 2 * 1.7e-4;              // rad/s/sqrt(Hz)
+constexpr double FORCE_NOISE = 2 * 2.0e-3;             // m/s^2/sqrt(Hz)
+constexpr double RATE_WALK = 1e-4, FORCE_WALK = 2e-3;  // of the biases in a second
+constexpr int64_t MAX_GAP = 100000000,
+                  MAX_ALONE = int64_t(3e9);           // nanoseconds: between readings, without an image
+constexpr size_t FIRST_FRAMES = 8, LEAST_FRAMES = 4;  // with poses, that the start is found from
+constexpr double GRAVITY = 9.81;                      // m/s^2
+constexpr double TOGETHER = 5;        // points of the map err together: variances are so many times as large
+constexpr double MAX_SQUARED = 16.8;  // of six standard normal numbers: one in a hundred is larger
+
+//! Places of an error's parts: turn about the world's axes, position, velocity, biases of rate and force, gravity.
+enum Part
+{
+    TURN = 0,
+    POSITION = 3,
+    VELOCITY = 6,
+    RATE = 9,
+    FORCE = 12,
+    DOWN = 15,
+    SIZE = 18
+};
+typedef cv::Vec<double, SIZE> Error;
+typedef cv::Matx<double, SIZE, SIZE> Square;
+
+struct State
+{
+    cv::Matx33d rotation = cv::Matx33d::eye();  // world from IMU
+    cv::Vec3d position, velocity, rate, force, gravity;
+};
+
+cv::Matx33d turnBy(const cv::Vec3d& vector) { return cv::Affine3d(vector).rotation(); }
+
+cv::Matx33d cross(const cv::Vec3d& v) { return {0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0}; }
+
+void setBlock(Square& matrix, int row, int column, const cv::Matx33d& block)
+{
+    for (int y = 0; y < 3; y++)
+        for (int x = 0; x < 3; x++)
+            matrix(row + y, column + x) = block(y, x);
+}
+
+cv::Vec3d part(const Error& error, int begin) { return cv::Vec3d(error.val + begin); }
+
+State plus(const State& s, const Error& e)
+{
+    return {turnBy(part(e, TURN)) * s.rotation, s.position + part(e, POSITION),
+            s.velocity + part(e, VELOCITY), s.rate + part(e, RATE), s.force + part(e, FORCE),
+            s.gravity + part(e, DOWN)};
+}
+
+Error minus(const State& a, const State& b)
+{
+    Error e;
+    const cv::Vec3d parts[] = {cv::Affine3d(a.rotation * b.rotation.t(), cv::Vec3d()).rvec(),
+            a.position - b.position, a.velocity - b.velocity, a.rate - b.rate, a.force - b.force,
+            a.gravity - b.gravity};
+    for (int i = 0; i < SIZE; i++)
+        e[i] = parts[i / 3][i % 3];
+    return e;
+}
+
+//! Moves a state by a reading that holds for dt seconds; `change` gets how errors change.
+void move(State& s, const cv::Vec3d& rate, const cv::Vec3d& force, double dt, Square& change)
+{
+    const cv::Vec3d turn = (rate - s.rate) * dt;
+    const cv::Matx33d middle = s.rotation * turnBy(turn / 2), one = cv::Matx33d::eye();
+    const cv::Vec3d felt = middle * (force - s.force);
+    change = Square::eye();
+    setBlock(change, TURN, RATE, -dt * middle);
+    setBlock(change, POSITION, TURN, -dt * dt / 2 * cross(felt));
+    setBlock(change, POSITION, VELOCITY, dt * one);
+    setBlock(change, POSITION, FORCE, -dt * dt / 2 * middle);
+    setBlock(change, POSITION, DOWN, dt * dt / 2 * one);
+    setBlock(change, VELOCITY, TURN, -dt * cross(felt));
+    setBlock(change, VELOCITY, FORCE, -dt * middle);
+    setBlock(change, VELOCITY, DOWN, dt * one);
+    const cv::Vec3d acceleration = felt + s.gravity;
+    s.position += s.velocity * dt + acceleration * (dt * dt / 2);
+    s.velocity += acceleration * dt;
+    s.rotation = s.rotation * turnBy(turn);
+}
+
+/** Moves a state and its covariance from one time to another; readings are linear between their times. False if they do not
+reach that far or have a gap. @param change how errors change on the way. */
+bool follow(const std::vector<ImuReading>& readings, int64_t from, int64_t to, State& state,
+        Square& covariance, Square& change)
+{
+    change = Square::eye();
+    if (readings.empty() || readings.front().nanoseconds > from || readings.back().nanoseconds < to)
+        return false;
+    const auto later = [](int64_t time, const ImuReading& r) { return time < r.nanoseconds; };
+    auto next = std::upper_bound(readings.begin(), readings.end(), from, later);
+    for (int64_t now = from; now < to; ++next)
+    {
+        const ImuReading &a = *(next - 1), &b = *next;
+        const int64_t end = std::min(to, b.nanoseconds);
+        if (b.nanoseconds - a.nanoseconds > MAX_GAP)
+            return false;
+        // the mean over the step of what is linear is its value in the middle
+        const double share = (.5 * double(now - a.nanoseconds) + .5 * double(end - a.nanoseconds)) /
+                             double(b.nanoseconds - a.nanoseconds);
+        const double dt = double(end - now) * 1e-9;
+        Square step;
+        move(state, a.rate + share * (b.rate - a.rate), a.force + share * (b.force - a.force), dt, step);
+        covariance = step * covariance * step.t();
+        for (int i = 0; i < 3; i++)
+        {
+            covariance(TURN + i, TURN + i) += RATE_NOISE * RATE_NOISE * dt;
+            covariance(VELOCITY + i, VELOCITY + i) += FORCE_NOISE * FORCE_NOISE * dt;
+            covariance(RATE + i, RATE + i) += RATE_WALK * RATE_WALK * dt;
+            covariance(FORCE + i, FORCE + i) += FORCE_WALK * FORCE_WALK * dt;
+        }
+        change = step * change;
+        now = end;
+    }
+    return true;
+}
+
+//! A frame of the IMU's, as the filter has it before and after its image, and how errors came there.
+struct Step
+{
+    State expected, state;
+    Square expectedCovariance, covariance, change;
+};
+
+//! Takes a measured pose into a state: position and turn about the world's axes with their covariance.
+void update(const cv::Affine3d& pose, const cv::Matx66d& measured, State& state, Square& covariance)
+{
+    State seen = state;
+    seen.rotation = pose.rotation();
+    seen.position = pose.translation();
+    const Error difference = minus(seen, state);
+    cv::Matx66d sum;
+    cv::Matx<double, SIZE, 6> columns;
+    cv::Vec6d offset;
+    const auto place = [](int i) {
+        return i < 3 ? POSITION + i : TURN + i - 3;
+    };  // in the order of `measured`
+    for (int i = 0; i < 6; i++)
+    {
+        offset[i] = difference[place(i)];
+        for (int row = 0; row < SIZE; row++)
+            columns(row, i) = covariance(row, place(i));
+        for (int k = 0; k < 6; k++)
+            sum(i, k) = covariance(place(i), place(k)) + TOGETHER * measured(i, k);
+    }
+    cv::Matx66d inverse = sum.inv(cv::DECOMP_CHOLESKY);
+    // A pose that is too far off counts as little as it takes to be likely.
+    if (const double squared = offset.dot(inverse * offset); squared > MAX_SQUARED)
+        inverse *= MAX_SQUARED / squared;
+    const cv::Matx<double, SIZE, 6> gain = columns * inverse;
+    state = plus(state, gain * offset);
+    covariance -= gain * columns.t();
+    covariance = .5 * (covariance + covariance.t());
+}
+
+/** Gravity and the first velocity, by linear least squares: rotations are known, and positions and velocities are linear in
+both. */
+bool findStart(const std::vector<int64_t>& times, const std::vector<cv::Affine3d>& poses,
+        const std::vector<ImuReading>& readings, State& start)
+{
+    const int n = int(times.size());
+    cv::Mat a(6 * (n - 1), 3 * n + 3, CV_64F, cv::Scalar(0)), b(6 * (n - 1), 1, CV_64F), x;
+    for (int i = 0; i + 1 < n; i++)
+    {
+        const cv::Affine3d &from = poses[size_t(i)], &to = poses[size_t(i) + 1];
+        State moved;  // without gravity and velocity
+        moved.rotation = from.rotation();
+        moved.position = from.translation();
+        Square covariance, change;
+        if (!follow(readings, times[size_t(i)], times[size_t(i) + 1], moved, covariance, change))
+            return false;
+        const double seconds = double(times[size_t(i) + 1] - times[size_t(i)]) * 1e-9;
+        for (int axis = 0; axis < 3; axis++)
+        {
+            const int row = 6 * i + axis;
+            a.at<double>(row, 3 * i + axis) = seconds;
+            a.at<double>(row, 3 * n + axis) = seconds * seconds / 2;
+            b.at<double>(row) = to.translation()[axis] - moved.position[axis];
+            a.at<double>(row + 3, 3 * i + axis) = -1;
+            a.at<double>(row + 3, 3 * i + 3 + axis) = 1;
+            a.at<double>(row + 3, 3 * n + axis) = -seconds;
+            b.at<double>(row + 3) = moved.velocity[axis];
+        }
+    }
+    if (!cv::solve(a, b, x, cv::DECOMP_SVD))
+        return false;
+    start.velocity = cv::Vec3d(x.ptr<double>(0));
+    start.gravity = cv::Vec3d(x.ptr<double>(3 * n));
+    // far from what it should be, the poses are wrong, or the IMU has other axes
+    const double length = cv::norm(start.gravity);
+    start.gravity *= GRAVITY / length;
+    return std::abs(length - GRAVITY) <= 2;
+}
+
+//! Smooths frames from `first` on, which has a pose; poses are those of the IMU. Returns where it had to stop.
+size_t smoothRun(const std::vector<VisualFrame>& frames, const std::vector<ImuReading>& readings,
+        size_t first, std::vector<std::optional<cv::Affine3d>>& poses)
+{
+    std::vector<int64_t> times;
+    std::vector<cv::Affine3d> seen;
+    for (size_t i = first; i < frames.size() && seen.size() < FIRST_FRAMES; i++)
+        if (frames[i].pose)
+        {
+            times.push_back(frames[i].nanoseconds);
+            seen.push_back(*frames[i].pose);
+        }
+    poses[first] = seen[0];
+    Step step;
+    step.state.rotation = seen[0].rotation();
+    step.state.position = seen[0].translation();
+    if (seen.size() < LEAST_FRAMES || !findStart(times, seen, readings, step.state))
+        return first + 1;
+    const double ofParts[] = {1, 1, 1, .02, .2, .2};
+    for (int i = 0; i < SIZE; i++)
+        step.covariance(i, i) = ofParts[i / 3] * ofParts[i / 3];
+    update(seen[0], frames[first].covariance, step.state, step.covariance);
+    std::vector<Step> steps = {step};
+    int64_t last = frames[first].nanoseconds;
+    for (size_t i = first + 1; i < frames.size() && frames[i].nanoseconds - last <= MAX_ALONE; i++)
+    {
+        if (!follow(readings, frames[i - 1].nanoseconds, frames[i].nanoseconds, step.state, step.covariance,
+                    step.change))
+            break;
+        step.expected = step.state;
+        step.expectedCovariance = step.covariance;
+        if (frames[i].pose)
+        {
+            update(*frames[i].pose, frames[i].covariance, step.state, step.covariance);
+            last = frames[i].nanoseconds;
+        }
+        steps.push_back(step);
+    }
+    for (size_t i = steps.size(); i-- > 0;)
+    {
+        State& state = steps[i].state;
+        if (i + 1 < steps.size())
+        {
+            const Step& next = steps[i + 1];
+            const Square gain =
+                    steps[i].covariance * next.change.t() * next.expectedCovariance.inv(cv::DECOMP_CHOLESKY);
+            state = plus(state, gain * minus(next.state, next.expected));
+        }
+        poses[first + i] = cv::Affine3d(state.rotation, state.position);
+    }
+    return first + steps.size();
+}
+
+//! A frame's pose as the IMU's.
+VisualFrame imuFrame(const VisualFrame& frame, const cv::Affine3d& cameraFromImu)
+{
+    VisualFrame moved = frame;
+    if (!frame.pose)
+        return moved;
+    moved.pose = *frame.pose * cameraFromImu;
+    const cv::Matx33d lever = -cross(frame.pose->rotation() * cameraFromImu.translation());
+    cv::Matx66d byCamera = cv::Matx66d::eye();
+    for (int y = 0; y < 3; y++)
+        for (int x = 0; x < 3; x++)
+            byCamera(y, 3 + x) = lever(y, x);
+    moved.covariance = byCamera * frame.covariance * byCamera.t();
+    return moved;
+}
+
+}  // namespace
+
+std::vector<std::optional<cv::Affine3d>> smooth(const std::vector<VisualFrame>& frames,
+        const std::vector<ImuReading>& readings, const cv::Affine3d& imuFromCamera)
+{
+    std::vector<VisualFrame> moved;
+    for (const VisualFrame& frame : frames)
+        moved.push_back(imuFrame(frame, imuFromCamera.inv()));
+    std::vector<std::optional<cv::Affine3d>> poses(frames.size());
+    for (size_t i = 0; i < frames.size();)
+        i = moved[i].pose ? smoothRun(moved, readings, i, poses) : i + 1;
+    for (std::optional<cv::Affine3d>& pose : poses)
+        if (pose)
+            pose = *pose * imuFromCamera;
+    return poses;
+}
+
+}  // namespace iib_localization

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "numbers.hpp"
+#include "opencv2/core/quaternion.hpp"
+
+namespace iib_localization {
+namespace {
+
+//! Reads as many numbers as there are, separated by commas.
+template <int n> bool readNumbers(const std::string& text, cv::Vec<double, n>& values)
+{
+    size_t from = 0;
+    for (int i = 0; i < n; i++)
+    {
+        const size_t to = std::min(text.find(',', from), text.size());
+        if (from > to || !readNumber(text.substr(from, to - from), values[i]))
+            return false;
+        from = to + 1;
+    }
+    return from == text.size() + 1;
+}
+
+}  // namespace
+
+std::string trajectoryLine(const std::string& name, const cv::Affine3d& worldFromCamera)
+{
+    const cv::Quatd q = cv::Quatd::createFromRotMat(worldFromCamera.rotation());
+    const cv::Vec3d t = worldFromCamera.translation();
+    std::string line = name;
+    for (double v : {t[0], t[1], t[2], q.x, q.y, q.z, q.w})
+        line += " " + shortest(v);
+    return line + "\n";
+}
+
+cv::Affine3d parsePose(const std::string& text)
+{
+    cv::Vec<double, 7> values;
+    const bool valid = readNumbers(text, values);
+    const cv::Quatd q(values[6], values[3], values[4], values[5]);
+    if (!valid || !(std::abs(q.norm() - 1) <= 1e-2))
+        CV_Error(cv::Error::StsBadArg, text + " is not tx,ty,tz,qx,qy,qz,qw with a quaternion of length 1");
+    return {q.normalize().toRotMat3x3(), cv::Vec3d(values.val)};
+}
+
+std::optional<int64_t> nanoseconds(const std::string& name)
+{
+    const size_t point = std::min(name.find('.'), name.size());
+    const std::string whole = name.substr(0, point), fraction = name.substr(std::min(point + 1, name.size()));
+    const auto digits = [](const std::string& s) {
+        return s.find_first_not_of("0123456789") == std::string::npos;
+    };
+    if (whole.empty() || !digits(whole) || !digits(fraction))
+        return std::nullopt;
+    if (whole.size() >= 15 && whole.size() <= 19 && std::stoull(whole) <= INT64_MAX)
+        return std::stoll(whole);
+    if (whole.size() > 10)  // neither seconds nor nanoseconds of our time
+        return std::nullopt;
+    return std::stoll(whole) * 1000000000 + std::stoll((fraction + "000000000").substr(0, 9));
+}
+
+std::vector<ImuReading> readImu(const std::string& path)
+{
+    std::ifstream stream(path);
+    if (!stream)
+        CV_Error(cv::Error::StsError, path + " cannot be opened");
+    std::vector<ImuReading> readings;
+    int number = 0;
+    for (std::string line; std::getline(stream, line);)
+    {
+        number++;
+        if (line.empty() || line[0] == '#')
+            continue;
+        cv::Vec<double, 7> values;
+        const std::string where = path + ":" + std::to_string(number) + ": ";
+        if (!readNumbers(line.substr(0, line.find('\r')), values))
+            CV_Error(cv::Error::StsError, where + "not a time and six numbers");
+        const int64_t time = int64_t(values[0]);  // to a quarter of a microsecond
+        if (!readings.empty() && time <= readings.back().nanoseconds)
+            CV_Error(cv::Error::StsError, where + "the time does not rise");
+        readings.push_back({time, cv::Vec3d(values.val + 1), cv::Vec3d(values.val + 4)});
+    }
+    return readings;
+}
+
+}  // namespace iib_localization

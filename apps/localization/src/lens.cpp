@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "lens.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "numbers.hpp"
+#include "opencv2/calib3d.hpp"
+
+namespace iib_localization {
+namespace {
+
+//! By COLMAP's numbers; those from KNOWN on are only read.
+const CameraModel MODELS[] = {{"SIMPLE_PINHOLE", 3}, {"PINHOLE", 4}, {"SIMPLE_RADIAL", 4}, {"RADIAL", 5},
+        {"OPENCV", 8}, {"OPENCV_FISHEYE", 8}, {"FULL_OPENCV", 12}, {"FOV", 5}, {"SIMPLE_RADIAL_FISHEYE", 4},
+        {"RADIAL_FISHEYE", 5}, {"THIN_PRISM_FISHEYE", 12}, {"RAD_TAN_THIN_PRISM_FISHEYE", 16}};
+constexpr int KNOWN = 6;
+
+[[noreturn]] void fail(const std::string& what) { CV_Error(cv::Error::StsBadArg, what); }
+
+//! Models with one focal length for both axes.
+bool isSimple(const std::string& model)
+{
+    return model == "SIMPLE_PINHOLE" || model == "SIMPLE_RADIAL" || model == "RADIAL";
+}
+
+const Camera& checked(const Camera& camera)
+{
+    const auto model = std::find_if(
+            MODELS, MODELS + KNOWN, [&](const CameraModel& m) { return m.name == camera.model; });
+    const std::vector<double>& p = camera.parameters;
+    if (model == MODELS + KNOWN)
+        fail("camera model " + camera.model +
+                " is not one of SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV and OPENCV_FISHEYE");
+    if (p.size() != model->parameters)
+        fail(cv::format("camera model %s has %d parameters, not %d", camera.model.c_str(),
+                int(model->parameters), int(p.size())));
+    if (camera.size.empty() || !(p[0] > 0) || !(isSimple(camera.model) || p[1] > 0))
+        fail("a camera's size and focal length must be positive");
+    return camera;
+}
+
+}  // namespace
+
+CameraModel cameraModel(int number)
+{
+    if (number < 0 || size_t(number) >= std::size(MODELS))
+        fail("there is no camera model of number " + std::to_string(number));
+    return MODELS[number];
+}
+
+Lens::Lens(const Camera& camera)
+{
+    const std::vector<double>& p = checked(camera).parameters;
+    const bool simple = isSimple(camera.model);
+    const size_t centre = simple ? 1 : 2;
+    fisheye_ = camera.model == "OPENCV_FISHEYE";
+    matrix_ = {p[0], 0, p[centre] - .5, 0, p[simple ? 0 : 1], p[centre + 1] - .5, 0, 0, 1};
+    distortion_.assign(p.begin() + std::ptrdiff_t(centre + 2), p.end());
+    if (!distortion_.empty())
+        distortion_.resize(4, 0);  // k1, k2, p1, p2, or of a fisheye k1 to k4
+}
+
+std::vector<cv::Point2d> Lens::undistorted(const std::vector<cv::Point2d>& pixels) const
+{
+    if (distortion_.empty() || pixels.empty())
+        return pixels;
+    std::vector<cv::Point2d> straight;
+    if (fisheye_)
+        cv::fisheye::undistortPoints(pixels, straight, matrix_, distortion_, cv::noArray(), matrix_);
+    else
+        cv::undistortPoints(pixels, straight, matrix_, distortion_, cv::noArray(), matrix_,
+                cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-3));
+    return straight;
+}
+
+std::vector<cv::Point2d> Lens::project(const std::vector<cv::Point3d>& points, cv::Mat* jacobian) const
+{
+    std::vector<cv::Point2d> pixels;
+    if (points.empty())
+        return pixels;
+    cv::Mat all;
+    const cv::_OutputArray wanted = jacobian ? cv::_OutputArray(all) : cv::_OutputArray();
+    if (fisheye_)
+        cv::fisheye::projectPoints(points, pixels, cv::Vec3d(), cv::Vec3d(), matrix_, distortion_, 0, wanted);
+    else
+        cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), matrix_, distortion_, pixels, wanted);
+    if (jacobian)  // by the translation
+        *jacobian = all.colRange(fisheye_ ? 11 : 3, fisheye_ ? 14 : 6).clone();
+    for (size_t i = 0; i < points.size(); i++)
+        if (!(points[i].z > 0))
+            pixels[i].x = pixels[i].y = std::numeric_limits<double>::quiet_NaN();
+    return pixels;
+}
+
+}  // namespace iib_localization
+
+cv::iib::Camera cv::iib::Camera::parse(const std::string& text)
+{
+    std::vector<std::string> words;
+    for (size_t from = 0; from <= text.size();)
+    {
+        const size_t to = std::min(text.find(',', from), text.size());
+        words.push_back(text.substr(from, to - from));
+        from = to + 1;
+    }
+    double width = 0, height = 0;
+    std::vector<double> parameters(words.size() < 3 ? 0 : words.size() - 3);
+    bool valid = words.size() > 3 && iib_localization::readNumber(words[1], width) &&
+                 iib_localization::readNumber(words[2], height) && std::max(width, height) < 1 << 16;
+    for (size_t i = 3; i < words.size(); i++)
+        valid = valid && iib_localization::readNumber(words[i], parameters[i - 3]);
+    if (!valid)
+        CV_Error(Error::StsBadArg, "camera " + text + " is not MODEL,WIDTH,HEIGHT,PARAMETERS");
+    return iib_localization::checked({words[0], Size(int(width), int(height)), parameters});
+}

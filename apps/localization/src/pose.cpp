@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "pose.hpp"
+
+#include "opencv2/calib3d.hpp"
+
+namespace iib_localization {
+namespace {
+
+constexpr int ROUNDS = 20;
+
+//! A matrix that multiplies as the cross product from the left.
+cv::Matx33d cross(const cv::Vec3d& v) { return {0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0}; }
+
+std::vector<cv::Point3d> pointsOf(const std::vector<Match>& matches)
+{
+    std::vector<cv::Point3d> points;
+    for (const Match& m : matches)
+        points.push_back(m.point);
+    return points;
+}
+
+}  // namespace
+
+std::vector<cv::Point3d> inCamera(const std::vector<cv::Point3d>& points, const cv::Affine3d& pose)
+{
+    std::vector<cv::Point3d> moved;
+    for (const cv::Point3d& p : points)
+        moved.push_back(pose * p);
+    return moved;
+}
+
+std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens, const cv::Affine3d& pose)
+{
+    const std::vector<cv::Point2d> mapped = lens.project(inCamera(pointsOf(matches), pose));
+    std::vector<double> errors;
+    for (size_t i = 0; i < matches.size(); i++)
+        errors.push_back(cv::norm(mapped[i] - matches[i].pixel));
+    return errors;
+}
+
+bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double limit, cv::Affine3d& pose)
+{
+    std::vector<cv::Point2d> pixels;
+    for (const Match& m : matches)
+        pixels.push_back(m.pixel);
+    cv::UsacParams parameters;
+    parameters.score = cv::SCORE_METHOD_MAGSAC;
+    parameters.threshold = limit;
+    parameters.confidence = .999;
+    parameters.maxIterations = 10000;
+    cv::Mat matrix(lens.matrix()), rotation, translation, inliers;
+    if (!cv::solvePnPRansac(pointsOf(matches), lens.undistorted(pixels), matrix, cv::noArray(), rotation,
+                translation, inliers, parameters))
+        return false;
+    pose = {cv::Vec3d(rotation.ptr<double>()), cv::Vec3d(translation.ptr<double>())};
+    return cv::checkRange(cv::Mat(pose.matrix));
+}
+
+bool refinePose(
+        const std::vector<Match>& matches, const Lens& lens, cv::Affine3d& pose, cv::Matx66d& covariance)
+{
+    const std::vector<cv::Point3d> points = pointsOf(matches);
+    for (int round = 0; round < ROUNDS; round++)
+    {
+        cv::Mat byPoint;
+        const std::vector<cv::Point2d> mapped = lens.project(inCamera(points, pose), &byPoint);
+        const cv::Matx33d rotation = pose.rotation();
+        const cv::Vec3d centre = pose.inv().translation();
+        cv::Matx66d normal = cv::Matx66d::zeros();
+        cv::Vec6d gradient;
+        for (size_t i = 0; i < points.size(); i++)
+        {
+            const cv::Point2d error = matches[i].pixel - mapped[i];
+            const double weight = 1 / (1 + error.dot(error));
+            if (std::isnan(weight))
+                continue;
+            const cv::Matx23d byMoved = cv::Matx23d(byPoint.ptr<double>(2 * int(i))) *
+                                        rotation;  // of the point in the world's axes
+            const cv::Matx23d byTurn = byMoved * cross(cv::Vec3d(points[i]) - centre);
+            cv::Matx<double, 2, 6> jacobian;
+            for (int row = 0; row < 2; row++)
+                for (int column = 0; column < 3; column++)
+                {
+                    jacobian(row, column) = -byMoved(row, column);
+                    jacobian(row, 3 + column) = byTurn(row, column);
+                }
+            normal += weight * jacobian.t() * jacobian;
+            gradient += weight * (jacobian.t() * cv::Vec2d(error.x, error.y));
+        }
+        cv::Vec6d step;
+        if (!cv::solve(normal, gradient, step, cv::DECOMP_CHOLESKY) || !cv::checkRange(step))
+            return false;
+        const cv::Vec3d moved(step.val), turned(step.val + 3);
+        const cv::Matx33d next = rotation * cv::Affine3d(-turned).rotation();
+        pose = {next, -(next * (centre + moved))};
+        bool regular = false;
+        covariance = normal.inv(cv::DECOMP_CHOLESKY, &regular);
+        if (!regular)
+            return false;
+        if (cv::norm(turned) < 1e-8)
+            break;
+    }
+    return true;
+}
+
+}  // namespace iib_localization

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "lens.hpp"
+
+namespace iib_localization {
+
+//! A point of the map and where it may be seen.
+struct Match
+{
+    cv::Point2d pixel;
+    cv::Point3d point;
+    int64_t number = 0;  //!< of the point
+    int keypoint = 0;    //!< the image's
+    int bits = 0;        //!< in which the codes differ
+};
+
+//! Camera from world that most matches agree on to `limit` pixels, not refined (USAC with MAGSAC's score). False if there is none.
+bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double limit, cv::Affine3d& pose);
+
+/** Moves a pose to the least reprojection error with Cauchy's loss, which cv::solvePnPRefineLM has not.
+@param covariance of the camera's centre and of a small turn about the world's axes, for errors of one pixel.
+@return false if the matches do not determine the pose. */
+bool refinePose(
+        const std::vector<Match>& matches, const Lens& lens, cv::Affine3d& pose, cv::Matx66d& covariance);
+
+//! How far each match is from where a pose has its point, in pixels; NaN behind the camera.
+std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens, const cv::Affine3d& pose);
+
+//! Where a pose has points of the world, in the camera's axes.
+std::vector<cv::Point3d> inCamera(const std::vector<cv::Point3d>& points, const cv::Affine3d& pose);
+
+}  // namespace iib_localization
