@@ -155,7 +155,7 @@ struct cv::iib::Localizer::Impl
         for (const auto& [id, image] : map.model.images)
         {
             const Mat& known = map.codes.at(id);
-            if (!known.empty() && (known.type() != CV_8U || known.cols != iib->descriptorSize()))
+            if (!known.empty() && known.cols != iib->descriptorSize())
                 CV_Error(Error::StsError, "the map's codes are not those of this version: make it again");
             View view = {map.codes.at(id), image.points, {}, image.cameraFromWorld};
             for (int64_t number : image.points)

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "common/npy.hpp"
+#include "npy.hpp"
 #include "sha256.hpp"
 
 namespace iib_localization {
@@ -30,7 +30,7 @@ Map readFiles(const std::string& folder)
     Map map;
     map.points = int(manifest["points"]);
     map.model = readModel(folder);
-    const cv::Mat codes = iib_tools::readNpy(folder + "/codes.npy");
+    const cv::Mat codes = readNpy(folder + "/codes.npy");
     int row = 0;
     for (const cv::FileNode& image : manifest["images"])
     {

@@ -128,6 +128,15 @@ TEST_F(DamagedMap, files_that_are_cut_off_or_longer)
     files["codes.npy"].pop_back();
     writeFiles(map, files, whole);
     EXPECT_EQ(map + "/codes.npy: not as many bytes as its header says", error());
+    files["codes.npy"] = npy("3, 32", std::string(96, ' ')).replace(22, 1, "f");  // |f1
+    writeFiles(map, files, whole);
+    EXPECT_EQ(map + "/codes.npy: not a two-dimensional array of uint8 in C order", error());
+    for (const char* content : {"", "no array", "\x93NUMPY\x02"})
+    {
+        files["codes.npy"] = content;
+        writeFiles(map, files, whole);
+        EXPECT_EQ(map + "/codes.npy: not a readable .npy file", error());
+    }
 }
 
 TEST_F(DamagedMap, contents_that_contradict_each_other)
