@@ -31,8 +31,10 @@ need $build_packages python3-jinja2
 [ -z "$contrib" ] || contrib=$(contrib_argument)
 build_tools ${contrib:+"$contrib"} iib_evaluation
 
-"$build/tools/evaluation/iib_evaluation" --out "$out" --compare "$root/tools/synthetic/day.png" \
-    --compare "$root/tools/synthetic/night.png" "$@"
+for image in day.png night.png street_noon.jpg street_winter.jpg facade_noon.jpg facade_night.jpg facade_noon.jpg facade_turned.jpg; do
+    set -- "$@" --compare "$root/tools/synthetic/$image"
+done
+"$build/tools/evaluation/iib_evaluation" --out "$out" "$@"
 {
     echo "commit $(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo unknown)"
     echo "date $(date -u +%Y-%m-%d)"

@@ -128,7 +128,7 @@ class Browser:
 
 
 def slide(browser):
-    """What is wrong with the slider between two pictures, and with the matches on it."""
+    """What is wrong with the slider between two pictures, the scenes, and the matches on them."""
     if not browser.value('!!document.querySelector("#wipe")'):
         return
     x, y, half = browser.place('#wipe')
@@ -138,16 +138,28 @@ def slide(browser):
         shown.append(browser.value('getComputedStyle(document.querySelector("#night")).clipPath'))
     if shown[0] == shown[1]:
         yield 'the slider does not change what is shown: %s' % shown
-    for chosen in range(browser.value('document.querySelectorAll("#methods button").length')):
-        browser.click(*browser.place('#methods button:nth-of-type(%d)' % (chosen + 1))[:2])
-        drawn = browser.value('document.querySelectorAll("#matches g").length')
-        right, wrong, _, step = map(int, re.findall(r'\d+', browser.value('document.querySelector("#told").textContent')))
-        if drawn != -(-(right + wrong) // step) or not drawn:
-            yield 'method %d draws %d of %d matches' % (chosen, drawn, right + wrong)
-    before = browser.value('document.querySelector("#told").textContent')
-    browser.click(*browser.place('#matches g.right .hit')[:2])
-    if browser.value('document.querySelector("#told").textContent') == before:
-        yield 'a click on a match tells nothing'
+
+    def told():
+        return browser.value('document.querySelector("#told").textContent')
+
+    pictures = set()
+    for scene in range(browser.value('document.querySelectorAll("#scenes button").length')):
+        browser.click(*browser.place('#scenes button:nth-of-type(%d)' % (scene + 1))[:2])
+        pictures.add(browser.value('document.querySelector("#night").src'))
+        if browser.value('Promise.all([...document.querySelectorAll("#frame img")].map(i => i.decode())).then(() => 0, () => 1)'):
+            yield 'scene %d lacks a picture' % scene
+        for chosen in range(browser.value('document.querySelectorAll("#methods button").length')):
+            browser.click(*browser.place('#methods button:nth-of-type(%d)' % (chosen + 1))[:2])
+            drawn = browser.value('document.querySelectorAll("#matches g").length')
+            right, wrong, _, step = map(int, re.findall(r'\d+', told()))
+            if drawn != -(-(right + wrong) // step) or not drawn:
+                yield 'scene %d, method %d draws %d of %d matches' % (scene, chosen, drawn, right + wrong)
+        before = told()
+        browser.click(*browser.place('#matches g .hit')[:2])
+        if told() == before:
+            yield 'scene %d: a click on a match tells nothing' % scene
+    if len(pictures) != scene + 1:
+        yield '%d scenes have %d pictures' % (scene + 1, len(pictures))
 
 
 def turn(browser):

@@ -19,6 +19,13 @@ void writePicture(const std::string& file, const cv::Mat& picture)
         CV_Error(cv::Error::StsError, file + ": cannot be written");
 }
 
+//! A file's name without folder and extension.
+std::string stem(const std::string& file)
+{
+    const std::string name = file.substr(file.find_last_of('/') + 1);
+    return name.substr(0, name.rfind('.'));
+}
+
 //! A row for each mutual match of these descriptors at the detector's points.
 void listMatches(const Options& options, const ImagePair& pair, const Detector& detector,
         const std::string& descriptor, ResultTable& table)
@@ -42,8 +49,9 @@ void listMatches(const Options& options, const ImagePair& pair, const Detector& 
         {
             const cv::Point2f a = r.keypoints[matches[m].queryIdx].pt,
                               b = t.keypoints[matches[m].trainIdx].pt;
-            table.append({detector.name, r.name, cv::format("%.1f", a.x), cv::format("%.1f", a.y),
-                    cv::format("%.1f", b.x), cv::format("%.1f", b.y), correct[m] ? "1" : "0"});
+            table.append({stem(pair.referenceFile), stem(pair.targetFile), detector.name, r.name,
+                    cv::format("%.1f", a.x), cv::format("%.1f", a.y), cv::format("%.1f", b.x),
+                    cv::format("%.1f", b.y), correct[m] ? "1" : "0"});
         }
     }
 }
@@ -57,21 +65,31 @@ int comparison(const Options& options, const std::vector<ImagePair>&)
     cv::utils::fs::createDirectories(options.out + "/pictures");
     const std::string file = options.out + "/comparison.csv";
     std::remove(file.c_str());
-    ResultTable table(file, {"detector", "descriptor", "x", "y", "target_x", "target_y", "correct"}, 6);
+    ResultTable table(file,
+            {"reference", "target", "detector", "descriptor", "x", "y", "target_x", "target_y", "correct"},
+            8);
     Options classic = options;
     classic.keypoints.clear();
     classic.detectors = {"Hessian", "ORB", "SIFT"};
     std::vector<Task> tasks;
-    ImagePair pair;  // of a still camera
-    pair.referenceFile = options.compare[0];
-    pair.targetFile = options.compare[1];
-    writePicture(options.out + "/pictures/reference.jpg", readImage(pair.referenceFile, cv::IMREAD_COLOR));
-    writePicture(options.out + "/pictures/target.jpg", readImage(pair.targetFile, cv::IMREAD_COLOR));
-    for (const Detector& detector : detectors(classic))
-        tasks.push_back({detector.name, [&, detector] {
-                             listMatches(options, pair, detector,
-                                     detector.name == "Hessian" ? "IIB UNIVERSAL" : detector.name, table);
-                         }});
+    for (size_t i = 0; i + 1 < options.compare.size(); i += 2)
+    {
+        ImagePair pair;
+        pair.referenceFile = options.compare[i];
+        pair.targetFile = options.compare[i + 1];
+        const std::string& target = pair.targetFile;
+        const std::string homography = target.substr(0, target.find_last_of('/') + 1) + "H_" + stem(target);
+        if (cv::utils::fs::exists(homography))
+            pair.homographyFile = homography;
+        for (const std::string& image : {pair.referenceFile, pair.targetFile})
+            writePicture(
+                    options.out + "/pictures/" + stem(image) + ".jpg", readImage(image, cv::IMREAD_COLOR));
+        for (const Detector& detector : detectors(classic))
+            tasks.push_back({stem(target) + " " + detector.name, [&, pair, detector] {
+                                 listMatches(options, pair, detector,
+                                         detector.name == "Hessian" ? "IIB UNIVERSAL" : detector.name, table);
+                             }});
+    }
     const int skipped = runTasks("comparison", tasks);
     table.finish();
     return skipped;

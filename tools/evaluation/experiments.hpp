@@ -24,7 +24,7 @@ struct Options
     std::vector<std::string> saved;        //!< files of saved IIB extractors to compare
     std::vector<std::string> detectors;    //!< of OpenCV's; empty: all
     std::vector<KeypointFolder> keypoints;
-    std::vector<std::string> compare;  //!< none, or two images to list the matches of several descriptors of
+    std::vector<std::string> compare;  //!< pairs of images to list the matches of several descriptors of
 };
 
 /** Each experiment appends to `<out>/<name>.csv` what is not there yet.
@@ -38,7 +38,8 @@ int matchingStudy(const Options& options, const std::vector<ImagePair>& pairs);
 int robustness(const Options& options, const std::vector<ImagePair>& pairs);
 //! What a ratio test leaves of the right matches of the presets, for AKAZE's points detected in both images.
 int ratios(const Options& options, const std::vector<ImagePair>& pairs);
-//! Matches of IIB and others on the images of Options::compare, taken by a still camera, at detected points.
+//! Matches of IIB and others on the pairs of Options::compare at detected points. Beside the second image, whose name begins
+//! with N, there may be its homography, H_N; else the camera stood still.
 int comparison(const Options& options, const std::vector<ImagePair>& pairs);
 
 //! Columns of `<out>/fixed_points.csv`.

@@ -15,7 +15,8 @@ const char KEYS[] =
         "{out         |<none>|folder of the results; a run that was interrupted goes on there}"
         "{only        |<none>|fixed_points, detected_points, whole_tasks, matching, robustness, ratios or "
         "comparison; may be repeated}"
-        "{compare     |<none>|image of a still camera; given twice: to list the matches of IIB and others}"
+        "{compare     |<none>|image; given twice for each pair of which the matches of IIB and others are "
+        "listed}"
         "{points      |1000  |keypoints an image}"
         "{tolerance   |3     |of a correct match, in pixels}"
         "{threads     |<none>|all processors, unless said}"
@@ -51,8 +52,8 @@ int run(const CommandLine& line)
     for (const std::string& given : line.all("keypoints"))
         options.keypoints.push_back(keypointFolder(given));
     options.compare = line.all("compare");
-    if (options.compare.size() != 0 && options.compare.size() != 2)
-        CV_Error(cv::Error::StsBadArg, "--compare is given twice or not at all");
+    if (options.compare.size() % 2 != 0)
+        CV_Error(cv::Error::StsBadArg, "--compare is given twice for each pair of images");
     evaluate(options);
     return 0;
 }

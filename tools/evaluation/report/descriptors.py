@@ -68,3 +68,12 @@ POSES = {("Hessian", "IIB UNIVERSAL"): "recommended chain", ("Hessian", "IIB SMA
          ("SIFT normalized", "SIFT"): "SIFT, normalized image", ("AKAZE normalized", "AKAZE"): "AKAZE, normalized image",
          ("SIFT", "SIFT"): "SIFT", ("AKAZE", "AKAZE"): "AKAZE", ("ORB", "BEBLID-512"): "ORB's points, BEBLID",
          ("ORB", "ORB"): "ORB"}
+
+# Pairs of the slider by their second image: title, and what is to be said of it.
+SCENES = {
+    "night": ("street, noon and night", "The light comes from lamps and windows in place of the sun."),
+    "street_winter": ("street, noon and winter", "A low sun: what lay in the shade is lit, and the other way round."),
+    "facade_night": ("block of flats, noon and night", "One bay over and over: most of what looks alike is wrong."),
+    "facade_turned": ("a failure: turned by 40 degrees",
+                      "The camera is turned between noon and dusk. All are described upright here, and hardly anything is left. "
+                      "matchRotated() is for such images: it finds the turn and describes the second image anew.")}

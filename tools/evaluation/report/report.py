@@ -147,15 +147,21 @@ DRAWN = 100  # matches of a method on the slider
 
 
 def slider(tables):
-    """The matches that the slider between day and night shows, as the page's script takes them."""
-    found = []
-    for (detector, descriptor), rows in group(tables["comparison"], "detector", "descriptor").items():
-        right = sum(row["correct"] == "1" for row in rows)
-        step = len(rows) // DRAWN + 1
-        found.append({"name": descriptors.POSES[detector, descriptor], "right": right, "wrong": len(rows) - right, "step": step,
-                      "matches": [[float(row[c]) for c in ("x", "y", "target_x", "target_y")] + [int(row["correct"])]
-                                  for row in rows[::step]]})
-    return sorted(found, key=lambda method: -method["right"])
+    """The pairs of images that the slider shows, each with the matches of all methods, as the page's script takes them."""
+    scenes = []
+    for (reference, target), members in group(tables["comparison"], "reference", "target").items():
+        methods = []
+        for (detector, descriptor), rows in group(members, "detector", "descriptor").items():
+            right = sum(row["correct"] == "1" for row in rows)
+            step = len(rows) // DRAWN + 1
+            methods.append({"name": descriptors.POSES[detector, descriptor], "right": right, "wrong": len(rows) - right, "step": step,
+                            "matches": [[float(row[c]) for c in ("x", "y", "target_x", "target_y")] + [int(row["correct"])]
+                                        for row in rows[::step]]})
+        title, about = descriptors.SCENES.get(target, ("%s and %s" % (reference, target), ""))
+        scenes.append({"title": title, "about": about, "pictures": ["pictures/%s.jpg" % reference, "pictures/%s.jpg" % target],
+                       "methods": sorted(methods, key=lambda method: -method["right"])})
+    known = [title for title, _ in descriptors.SCENES.values()]
+    return sorted(scenes, key=lambda scene: known.index(scene["title"]) if scene["title"] in known else len(known))
 
 
 def paper_tables(tables):

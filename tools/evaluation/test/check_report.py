@@ -26,7 +26,7 @@ for name in ("IIB", "IIB BALANCED", "ORB", "SIFT", "AKAZE-486"):
 for meaning in re.findall(r"<dd>(.*?)</dd>", text):
     assert meaning.endswith(".") and ". " not in meaning, meaning  # a metric is told in one sentence
 for method in ("recommended chain", "ORB"):
-    assert re.search('"name": "%s"' % method, text) and '>%s</button>' % method in text, method
+    assert '"name": "%s"' % method in text, method
 for link in re.findall(r'(?:src|href)="([^"#]+)"', text):
     assert os.path.exists(os.path.join(results, link)), link
 assert len(text) < 200000, len(text)
