@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_COMMON_BIT_IO_HPP
-#define OPENCV_IIB_COMMON_BIT_IO_HPP
+#pragma once
 
 #include <cstring>
 
@@ -101,5 +100,3 @@ public:
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

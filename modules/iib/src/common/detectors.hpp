@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_COMMON_DETECTORS_HPP
-#define OPENCV_IIB_COMMON_DETECTORS_HPP
+#pragma once
 
 #include "../precomp.hpp"
 
@@ -31,5 +30,3 @@ Ptr<Feature2D> readDetector(const FileNode& node, const Ptr<Feature2D>& present)
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

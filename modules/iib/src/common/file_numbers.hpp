@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_COMMON_FILE_NUMBERS_HPP
-#define OPENCV_IIB_COMMON_FILE_NUMBERS_HPP
+#pragma once
 
 #include "../precomp.hpp"
 
@@ -75,5 +74,3 @@ inline void saveAlone(const Algorithm& algorithm, const String& filename)
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

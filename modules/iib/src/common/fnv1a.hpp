@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_COMMON_FNV1A_HPP
-#define OPENCV_IIB_COMMON_FNV1A_HPP
+#pragma once
 
 #include "opencv2/core.hpp"
 
@@ -28,5 +27,3 @@ private:
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_COMMON_IMAGE_INPUT_HPP
-#define OPENCV_IIB_COMMON_IMAGE_INPUT_HPP
+#pragma once
 
 #include "../precomp.hpp"
 
@@ -35,5 +34,3 @@ void checkKeyPoints(const std::vector<KeyPoint>& keypoints);
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_COMMON_VECTORS_SIMD_HPP
-#define OPENCV_IIB_COMMON_VECTORS_SIMD_HPP
+#pragma once
 
 #include "opencv2/core/version.hpp"
 
@@ -171,5 +170,3 @@ inline unsigned greaterMask(const v_int16& a, const v_int16& b)
 CV_CPU_OPTIMIZATION_HAL_NAMESPACE_END
 
 }  // namespace cv
-
-#endif

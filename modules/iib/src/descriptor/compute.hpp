@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DESCRIPTOR_COMPUTE_HPP
-#define OPENCV_IIB_DESCRIPTOR_COMPUTE_HPP
+#pragma once
 
 #include "channels.hpp"
 #include "keypoint_batches.hpp"
@@ -59,5 +58,3 @@ void writeBits(const DescriptorPlan& plan, const ChannelGroup& group, const Cell
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DESCRIPTOR_GRID_PIXELS_HPP
-#define OPENCV_IIB_DESCRIPTOR_GRID_PIXELS_HPP
+#pragma once
 
 #include <numeric>
 
@@ -214,5 +213,3 @@ private:
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DESCRIPTOR_KEYPOINT_BATCHES_HPP
-#define OPENCV_IIB_DESCRIPTOR_KEYPOINT_BATCHES_HPP
+#pragma once
 
 #include "../precomp.hpp"
 
@@ -47,5 +46,3 @@ KeyPointBatch makeBatch(const std::vector<Rect>& regions, const std::vector<int>
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DESCRIPTOR_PARAMETERS_HPP
-#define OPENCV_IIB_DESCRIPTOR_PARAMETERS_HPP
+#pragma once
 
 #include "../precomp.hpp"
 #include "kernels/quads.hpp"
@@ -60,5 +59,3 @@ Parameters readParameters(const FileNode& node, const Parameters& present);
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DESCRIPTOR_PLAN_HPP
-#define OPENCV_IIB_DESCRIPTOR_PLAN_HPP
+#pragma once
 
 #include <memory>
 
@@ -102,5 +101,3 @@ template <typename Work> void parallelJobs(int count, Workspaces& workspaces, co
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

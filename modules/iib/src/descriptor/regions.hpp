@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DESCRIPTOR_REGIONS_HPP
-#define OPENCV_IIB_DESCRIPTOR_REGIONS_HPP
+#pragma once
 
 #include "parameters.hpp"
 
@@ -117,5 +116,3 @@ bool isInsideRotated(const SupportRegion& region, float angle, Size image);
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

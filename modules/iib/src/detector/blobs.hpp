@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DETECTOR_BLOBS_HPP
-#define OPENCV_IIB_DETECTOR_BLOBS_HPP
+#pragma once
 
 #include "../precomp.hpp"
 
@@ -30,5 +29,3 @@ std::vector<KeyPoint> findBlobs(const Mat& normalized, const HessianParameters& 
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

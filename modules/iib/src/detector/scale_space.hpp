@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DETECTOR_SCALE_SPACE_HPP
-#define OPENCV_IIB_DETECTOR_SCALE_SPACE_HPP
+#pragma once
 
 #include "../common/aligned_buffer.hpp"
 #include "kernels/hessian.hpp"
@@ -89,5 +88,3 @@ private:
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

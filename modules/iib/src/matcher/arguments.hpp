@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_MATCHER_ARGUMENTS_HPP
-#define OPENCV_IIB_MATCHER_ARGUMENTS_HPP
+#pragma once
 
 #include "knn_table.hpp"
 #include "packed_codes.hpp"
@@ -41,5 +40,3 @@ void toArrays(const PackedCodes& trains, const KnnTable& found, int k, OutputArr
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

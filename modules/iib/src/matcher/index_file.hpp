@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_MATCHER_INDEX_FILE_HPP
-#define OPENCV_IIB_MATCHER_INDEX_FILE_HPP
+#pragma once
 
 #include "packed_codes.hpp"
 #include "parameters.hpp"
@@ -23,5 +22,3 @@ Ptr<PackedCodes> loadCodes(const String& filename, MatcherParameters& parameters
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

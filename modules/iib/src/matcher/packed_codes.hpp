@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_MATCHER_PACKED_CODES_HPP
-#define OPENCV_IIB_MATCHER_PACKED_CODES_HPP
+#pragma once
 
 #include "kernels/hamming.hpp"
 
@@ -68,5 +67,3 @@ private:
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

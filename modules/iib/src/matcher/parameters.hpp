@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_MATCHER_PARAMETERS_HPP
-#define OPENCV_IIB_MATCHER_PARAMETERS_HPP
+#pragma once
 
 #include "../precomp.hpp"
 
@@ -38,5 +37,3 @@ MatcherParameters readParameters(const FileNode& node, const String& name, const
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_MATCHER_SEARCH_HPP
-#define OPENCV_IIB_MATCHER_SEARCH_HPP
+#pragma once
 
 #include "knn_table.hpp"
 #include "packed_codes.hpp"
@@ -94,5 +93,3 @@ SearchCost scanWithin(const SearchInput& input, const Range& queries, int radius
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

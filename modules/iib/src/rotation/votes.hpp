@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_ROTATION_VOTES_HPP
-#define OPENCV_IIB_ROTATION_VOTES_HPP
+#pragma once
 
 #include "../precomp.hpp"
 
@@ -64,5 +63,3 @@ private:
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_BITS_SIMD_HPP
-#define OPENCV_IIB_DESCRIPTOR_KERNELS_BITS_SIMD_HPP
+#pragma once
 
 #include "bits_planes.simd.hpp"
 #include "kernels.hpp"
@@ -381,5 +380,3 @@ CV_CPU_OPTIMIZATION_NAMESPACE_END
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_KERNELS_HPP
-#define OPENCV_IIB_DESCRIPTOR_KERNELS_KERNELS_HPP
+#pragma once
 
 #include "quads.hpp"
 
@@ -194,5 +193,3 @@ const DescriptorKernels& descriptorKernels();
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

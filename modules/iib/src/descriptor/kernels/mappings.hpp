@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_MAPPINGS_HPP
-#define OPENCV_IIB_DESCRIPTOR_KERNELS_MAPPINGS_HPP
+#pragma once
 
 #include "../../precomp.hpp"
 
@@ -130,5 +129,3 @@ inline auto visitMapping(int mapping, const Visitor& visitor)
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_QUADS_HPP
-#define OPENCV_IIB_DESCRIPTOR_KERNELS_QUADS_HPP
+#pragma once
 
 #include "../../common/aligned_buffer.hpp"
 #include "../../common/bit_io.hpp"
@@ -146,5 +145,3 @@ struct Weights
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

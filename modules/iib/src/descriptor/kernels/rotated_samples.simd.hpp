@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DESCRIPTOR_KERNELS_ROTATED_SAMPLES_SIMD_HPP
-#define OPENCV_IIB_DESCRIPTOR_KERNELS_ROTATED_SAMPLES_SIMD_HPP
+#pragma once
 
 #include "../../common/vectors.simd.hpp"
 #include "kernels.hpp"
@@ -260,5 +259,3 @@ CV_CPU_OPTIMIZATION_NAMESPACE_END
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

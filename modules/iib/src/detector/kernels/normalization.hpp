@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_DETECTOR_KERNELS_NORMALIZATION_HPP
-#define OPENCV_IIB_DETECTOR_KERNELS_NORMALIZATION_HPP
+#pragma once
 
 #include "../../precomp.hpp"
 
@@ -43,5 +42,3 @@ const NormalizationKernels& normalizationKernels();
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_MATCHER_KERNELS_CODE_LAYOUT_HPP
-#define OPENCV_IIB_MATCHER_KERNELS_CODE_LAYOUT_HPP
+#pragma once
 
 #include "opencv2/core.hpp"
 
@@ -89,5 +88,3 @@ private:
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

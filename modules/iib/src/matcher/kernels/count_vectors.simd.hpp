@@ -4,8 +4,7 @@
 
 // Vectors of one value for each code of a CodeBlock, which all kernels of the matcher share.
 
-#ifndef OPENCV_IIB_MATCHER_KERNELS_COUNT_VECTORS_SIMD_HPP
-#define OPENCV_IIB_MATCHER_KERNELS_COUNT_VECTORS_SIMD_HPP
+#pragma once
 
 #include "../../common/vectors.simd.hpp"
 #include "code_layout.hpp"
@@ -151,5 +150,3 @@ CV_ALWAYS_INLINE void storeLanes(int* to, const Counts* values, int lanes)
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_MATCHER_KERNELS_HAMMING_HPP
-#define OPENCV_IIB_MATCHER_KERNELS_HAMMING_HPP
+#pragma once
 
 #include "code_layout.hpp"
 
@@ -133,5 +132,3 @@ const HammingKernels& hammingKernels();
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

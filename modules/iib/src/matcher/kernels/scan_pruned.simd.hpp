@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_MATCHER_KERNELS_SCAN_PRUNED_SIMD_HPP
-#define OPENCV_IIB_MATCHER_KERNELS_SCAN_PRUNED_SIMD_HPP
+#pragma once
 
 #include "shortlists.simd.hpp"
 
@@ -278,5 +277,3 @@ private:
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -4,8 +4,7 @@
 
 // What all scans share: the queries of a row of tiles, and which pairs exist.
 
-#ifndef OPENCV_IIB_MATCHER_KERNELS_SCANNER_SIMD_HPP
-#define OPENCV_IIB_MATCHER_KERNELS_SCANNER_SIMD_HPP
+#pragma once
 
 #include "count_vectors.simd.hpp"
 #include "hamming.hpp"
@@ -76,5 +75,3 @@ private:
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 }  // namespace iib
 }  // namespace cv
-
-#endif

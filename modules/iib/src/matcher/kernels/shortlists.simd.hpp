@@ -4,8 +4,7 @@
 
 // What a pruned scan keeps of some queries and all train codes.
 
-#ifndef OPENCV_IIB_MATCHER_KERNELS_SHORTLISTS_SIMD_HPP
-#define OPENCV_IIB_MATCHER_KERNELS_SHORTLISTS_SIMD_HPP
+#pragma once
 
 #include "../../common/aligned_buffer.hpp"
 #include "scanner.simd.hpp"
@@ -100,5 +99,3 @@ private:
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 }  // namespace iib
 }  // namespace cv
-
-#endif

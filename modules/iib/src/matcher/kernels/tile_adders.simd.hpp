@@ -5,8 +5,7 @@
 // Comparison of codes packed as PACKING_ADDERS, for instruction sets that count the bits of a word fast, or that have no
 // tables in registers.
 
-#ifndef OPENCV_IIB_MATCHER_KERNELS_TILE_ADDERS_SIMD_HPP
-#define OPENCV_IIB_MATCHER_KERNELS_TILE_ADDERS_SIMD_HPP
+#pragma once
 
 #include "count_vectors.simd.hpp"
 
@@ -130,5 +129,3 @@ private:
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -5,8 +5,7 @@
 // Comparison of codes packed as PACKING_TABLES, for instruction sets that look bytes up in registers faster than they
 // count bits.
 
-#ifndef OPENCV_IIB_MATCHER_KERNELS_TILE_TABLES_SIMD_HPP
-#define OPENCV_IIB_MATCHER_KERNELS_TILE_TABLES_SIMD_HPP
+#pragma once
 
 #include "../../common/aligned_buffer.hpp"
 #include "count_vectors.simd.hpp"
@@ -198,5 +197,3 @@ private:
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 }  // namespace iib
 }  // namespace cv
-
-#endif
