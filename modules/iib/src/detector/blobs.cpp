@@ -91,7 +91,7 @@ private:
     void find(int first, int last, std::vector<Extremum>& found) const
     {
         ScaleSpace space(normalized, steps, first, last);
-        const HessianKernels& kernels = hessianKernels();
+        const DetectorKernels& kernels = detectorKernels();
         const size_t scales = sigmas.size();
         std::vector<int> columns(normalized.cols);
         for (int y = first; y <= last; y++)

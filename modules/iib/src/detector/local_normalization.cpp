@@ -5,25 +5,25 @@
 #include "local_normalization.hpp"
 
 #include "../common/aligned_buffer.hpp"
-#include "kernels/normalization.hpp"
+#include "kernels/kernels.hpp"
 
 namespace cv {
 namespace iib {
 
 namespace {
 
-//! Rows that begin on a cache line and have NORMALIZATION_PADDING values on either side.
+//! Rows that begin on a cache line and have DETECTOR_PADDING values on either side.
 template <typename T> class Plane
 {
 public:
     explicit Plane(Size size_)
-        : size(size_), step(wholeLines<T>(size_.width + 1) + 2 * NORMALIZATION_PADDING),
+        : size(size_), step(wholeLines<T>(size_.width + 1) + 2 * DETECTOR_PADDING),
           values(step * size_.height)
     {
     }
 
-    T* row(int y) { return values.data() + step * y + NORMALIZATION_PADDING; }
-    const T* row(int y) const { return values.data() + step * y + NORMALIZATION_PADDING; }
+    T* row(int y) { return values.data() + step * y + DETECTOR_PADDING; }
+    const T* row(int y) const { return values.data() + step * y + DETECTOR_PADDING; }
 
     //! Repeats the ends of a row of `width` values.
     void extend(int y, int width)
@@ -67,7 +67,7 @@ class Normalizer
 public:
     //! Of an image as it is, or of one at half its resolution.
     Normalizer(const Mat& grey_, bool halved_, double sigma)
-        : kernels(normalizationKernels()), grey(grey_), halved(halved_), blurs(sigma),
+        : kernels(detectorKernels()), grey(grey_), halved(halved_), blurs(sigma),
           size(halved ? Size(grey.cols / 2, grey.rows / 2) : grey.size()), factor(0)
     {
         sizes.push_back(size);
@@ -243,7 +243,7 @@ private:
         kernels.upsample(between.row(0), out, width);
     }
 
-    const NormalizationKernels& kernels;
+    const DetectorKernels& kernels;
     const Mat& grey;
     const bool halved;
     const Blurs blurs;

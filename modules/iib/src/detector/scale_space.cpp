@@ -14,7 +14,8 @@ SmoothingStep stepOf(double variance)
 {
     const int spacing = cvCeil(std::sqrt(.75 * variance));  // w is 1/3 at the most: one peak
     const double w = variance / (4 * spacing * spacing);
-    const BlurWeights weights = {(short)cvRound(2 * w * (1 - 2 * w) * 65536), (short)cvRound(w * w * 65536)};
+    const SmoothingWeights weights = {
+            (short)cvRound(2 * w * (1 - 2 * w) * 65536), (short)cvRound(w * w * 65536)};
     return {spacing, weights, 0, 0};
 }
 
@@ -43,7 +44,7 @@ std::vector<SmoothingStep> smoothingSteps(const std::vector<double>& sigmas)
 
 ScaleSpace::ScaleSpace(
         const Mat& normalized_, const std::vector<SmoothingStep>& steps_, int first_, int last_)
-    : kernels(hessianKernels()), normalized(normalized_), steps(steps_), first(first_), last(last_),
+    : kernels(detectorKernels()), normalized(normalized_), steps(steps_), first(first_), last(last_),
       next(first_ - 2), ahead(steps_.size() + 1, 0), earliest(steps_.size() + 1, first_ - 1)
 {
     const int width = normalized.cols;
@@ -109,11 +110,11 @@ void ScaleSpace::makeRow(size_t image, int y)
             rows[i] = images[image - 1].row(
                     std::min(std::max(y + (i - 2) * s.spacing, 0), normalized.rows - 1));
         short* const down = smoothedDown[0].row(0);
-        kernels.blur(rows, s.weights, down, width);
+        kernels.smooth(rows, s.weights, down, width);
         smoothedDown[0].repeatEnds(0);
         for (int i = 0; i < 5; i++)
             rows[i] = down + (i - 2) * s.spacing;
-        kernels.blur(rows, s.weights, out, width);
+        kernels.smooth(rows, s.weights, out, width);
     }
     images[image].repeatEnds(y);
 }

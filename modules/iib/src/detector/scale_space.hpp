@@ -5,7 +5,7 @@
 #pragma once
 
 #include "../common/aligned_buffer.hpp"
-#include "kernels/hessian.hpp"
+#include "kernels/kernels.hpp"
 
 namespace cv {
 namespace iib {
@@ -14,7 +14,7 @@ namespace iib {
 struct SmoothingStep
 {
     int spacing;  //!< of the filter's five taps
-    BlurWeights weights;
+    SmoothingWeights weights;
     int distance;  //!< of the Hessian's differences; 0: only on the way to a scale
     float factor;  //!< of the determinant of these differences, see HessianDetector
 };
@@ -24,13 +24,14 @@ struct SmoothingStep
 std::vector<SmoothingStep> smoothingSteps(const std::vector<double>& sigmas);
 
 /** The last rows of an image that is made from top to bottom. Kernels may read `reach` pixels beyond both ends, where
- the row's ends are repeated, and HESSIAN_PADDING more. */
+ the row's ends are repeated, and DETECTOR_PADDING more. */
 template <typename T> class RecentRows
 {
 public:
     RecentRows(int capacity_, int width_, int reach_)
-        : capacity(capacity_), width(width_), reach(reach_), padding(wholeLines<T>(reach_ + HESSIAN_PADDING)),
-          step(wholeLines<T>(width_) + 2 * padding), values(step * capacity_)
+        : capacity(capacity_), width(width_), reach(reach_),
+          padding(wholeLines<T>(reach_ + DETECTOR_PADDING)), step(wholeLines<T>(width_) + 2 * padding),
+          values(step * capacity_)
     {
         std::fill_n(values.data(), step * capacity, T());
     }
@@ -72,7 +73,7 @@ private:
     void makeRow(size_t image, int y);
     void makeResponses(int y);
 
-    const HessianKernels& kernels;
+    const DetectorKernels& kernels;
     const Mat& normalized;
     const std::vector<SmoothingStep>& steps;
     const int first, last;

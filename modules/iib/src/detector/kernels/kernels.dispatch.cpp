@@ -4,13 +4,13 @@
 
 #include "../../precomp.hpp"
 
-#include "hessian.simd.hpp"
-#include "detector/kernels/hessian.simd_declarations.hpp"
+#include "kernels.simd.hpp"
+#include "detector/kernels/kernels.simd_declarations.hpp"
 
 namespace cv {
 namespace iib {
 
-const HessianKernels& hessianKernels() { CV_CPU_DISPATCH(hessianKernels, (), CV_CPU_DISPATCH_MODES_ALL); }
+const DetectorKernels& detectorKernels() { CV_CPU_DISPATCH(detectorKernels, (), CV_CPU_DISPATCH_MODES_ALL); }
 
 }  // namespace iib
 }  // namespace cv

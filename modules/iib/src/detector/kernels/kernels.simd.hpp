@@ -4,20 +4,22 @@
 
 #include "../../common/vectors.simd.hpp"
 
-#include "normalization.hpp"
+#include "kernels.hpp"
 
 namespace cv {
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-const NormalizationKernels& normalizationKernels();
+const DetectorKernels& detectorKernels();
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
 
 constexpr int SHORTS = VTraits<v_int16>::max_nlanes, INTS = VTraits<v_int32>::max_nlanes;
+
+/* Local normalization. */
 
 void widen(const uchar* pixels, short* out, int width)
 {
@@ -133,12 +135,100 @@ void scale(const short* differences, const short* gains, uchar* pixels, int widt
         pixels[x] = saturate_cast<uchar>((((differences[x] * gains[x] >> 16) + 1) >> 1) + 128);
 }
 
+/* Blobs. */
+
+void centre(const uchar* pixels, short* out, int width)
+{
+    int x = 0;
+    for (; x <= width - SHORTS; x += SHORTS)
+    {
+        const v_int16 pixel = v_reinterpret_as_s16(vx_load_expand(pixels + x));
+        v_store(out + x, v_max(pixel - vx_setall_s16(128), vx_setall_s16(-127)) << CONTRAST_BITS);
+    }
+    for (; x < width; x++)
+        out[x] = (short)(std::max(pixels[x] - 128, -127) * (1 << CONTRAST_BITS));
+}
+
+void smooth(const short* const rows[5], SmoothingWeights weights, short* out, int width)
+{
+    const v_int16 near = vx_setall_s16(weights.near), far = vx_setall_s16(weights.far);
+    for (int x = 0; x < width; x += SHORTS)
+    {
+        const v_int16 c = vx_load(rows[2] + x), twice = c + c;
+        const v_int16 nearer = vx_load(rows[1] + x) + vx_load(rows[3] + x) - twice;
+        const v_int16 farther = vx_load(rows[0] + x) + vx_load(rows[4] + x) - twice;
+        v_store(out + x, c + v_mul_hi(nearer, near) + v_mul_hi(farther, far));
+    }
+}
+
+inline v_float32 determinant(const v_int32& xx, const v_int32& yy, const v_int32& xy)
+{
+    const v_float32 x = v_cvt_f32(xx), y = v_cvt_f32(yy), mixed = v_cvt_f32(xy);
+    return x * y - mixed * mixed * vx_setall_f32(1.f / 16);
+}
+
+void response(const short* const rows[3], int distance, float factor, float* out, int width)
+{
+    const v_float32 scale = vx_setall_f32(factor);
+    const short *above = rows[0], *row = rows[1], *below = rows[2];
+    for (int x = 0; x < width; x += SHORTS)
+    {
+        const int l = x - distance, r = x + distance;
+        const v_int16 c = vx_load(row + x), twice = c + c;
+        const v_int16 xx = vx_load(row + l) + vx_load(row + r) - twice;
+        const v_int16 yy = vx_load(above + x) + vx_load(below + x) - twice;
+        const v_int16 xy =
+                (vx_load(above + l) + vx_load(below + r)) - (vx_load(above + r) + vx_load(below + l));
+        v_int32 xx0, xx1, yy0, yy1, xy0, xy1;
+        v_expand(xx, xx0, xx1);
+        v_expand(yy, yy0, yy1);
+        v_expand(xy, xy0, xy1);
+        v_store(out + x, determinant(xx0, yy0, xy0) * scale);
+        v_store(out + x + INTS, determinant(xx1, yy1, xy1) * scale);
+    }
+}
+
+inline v_float32 largestOfColumn(const float* const rows[3], int x)
+{
+    return v_max(v_max(vx_load(rows[0] + x), vx_load(rows[1] + x)), vx_load(rows[2] + x));
+}
+
+void largest(const float* const rows[3], float* out, int width)
+{
+    for (int x = 0; x < width; x += INTS)
+        v_store(out + x, v_max(v_max(largestOfColumn(rows, x - 1), largestOfColumn(rows, x)),
+                                 largestOfColumn(rows, x + 1)));
+}
+
+//! The bits of floats, which as integers have the same order where the larger one is positive.
+inline v_int32 bits(const float* values) { return v_reinterpret_as_s32(vx_load(values)); }
+
+int maxima(
+        const float* values, const float* const bounds[3], float threshold, int begin, int end, int* columns)
+{
+    int n = 0;
+    const v_int32 least = v_reinterpret_as_s32(vx_setall_f32(threshold));
+    for (int x = 0; x < end; x += INTS)
+    {
+        const v_int32 v = bits(values + x);
+        const v_int32 bound =
+                v_max(v_max(bits(bounds[0] + x), least), v_max(bits(bounds[1] + x), bits(bounds[2] + x)));
+        for (unsigned found = greaterEqualMask(v, bound); found; found &= found - 1)
+        {
+            const int column = x + (int)trailingZeros32(found);
+            if (column >= begin && column < end)
+                columns[n++] = column;
+        }
+    }
+    return n;
+}
+
 }  // namespace
 
-const NormalizationKernels& normalizationKernels()
+const DetectorKernels& detectorKernels()
 {
-    static const NormalizationKernels kernels = {
-            widen, halveShorts, halveInts, interpolate, upsample, blur, subtract, squares, gain, scale};
+    static const DetectorKernels kernels = {widen, halveShorts, halveInts, interpolate, upsample, blur,
+            subtract, squares, gain, scale, centre, smooth, response, largest, maxima};
     return kernels;
 }
 
