@@ -31,7 +31,7 @@ Mat imageFor(const Feature2D& detector, const Mat& image)
     checkImage(image);
     if (image.depth() == CV_8U)
         return image;
-    return stretchedTo8Bits(integerMap(image, Rect(Point(), image.size())));
+    return stretchedTo8Bits(integerMap(image));
 }
 
 Mat maskFor(InputArray maskArray, Size imageSize)

@@ -36,7 +36,7 @@ static double grey(const float* pixel, int channels)
     return channels == 1 ? pixel[0] : 0.114 * pixel[0] + 0.587 * pixel[1] + 0.299 * pixel[2];
 }
 
-static Mat quantized(const Mat& image, Rect area)
+static Mat quantized(const Mat& image)
 {
     double lo = DBL_MAX, hi = -DBL_MAX;
     const int cn = image.channels();
@@ -48,27 +48,26 @@ static Mat quantized(const Mat& image, Rect area)
             hi = std::max(hi, v);
         }
 
-    Mat result(area.size(), CV_16U);
+    Mat result(image.size(), CV_16U);
     const double range = hi > lo ? hi - lo : 1;
-    for (int y = 0; y < area.height; y++)
+    for (int y = 0; y < result.rows; y++)
     {
-        const float* src = image.ptr<float>(area.y + y) + area.x * cn;
+        const float* src = image.ptr<float>(y);
         // a quotient, not a product with the inverse: equal ratios then round alike
-        for (int x = 0; x < area.width; x++)
+        for (int x = 0; x < result.cols; x++)
             result.at<ushort>(y, x) = (ushort)cvRound((grey(src + x * cn, cn) - lo) / range * 65535);
     }
     return result;
 }
 
-Mat integerMap(const Mat& image, Rect area)
+Mat integerMap(const Mat& image)
 {
     if (image.depth() == CV_32F)
-        return quantized(image, area);
-    const Mat part = image(area);
+        return quantized(image);
     if (image.channels() == 1)
-        return part;
+        return image;
     Mat result;
-    cvtColor(part, result, image.channels() == 3 ? COLOR_BGR2GRAY : COLOR_BGRA2GRAY);
+    cvtColor(image, result, image.channels() == 3 ? COLOR_BGR2GRAY : COLOR_BGRA2GRAY);
     return result;
 }
 

@@ -18,9 +18,9 @@ void checkPixels(const Mat& m, const String& what);
 //! Throws unless the image is 8U, 16U or 32F with 1, 3 or 4 channels and finite.
 void checkImage(const Mat& image);
 
-/** The part `area` of an image as a grey map. 8U and 16U stay what they are; 32F is cut into 65535 steps
- between the minimum and maximum of the whole image, so that a gain and an offset change nothing. */
-Mat integerMap(const Mat& image, Rect area);
+/** An image as a grey map. 8U and 16U stay what they are; 32F is cut into 65535 steps between its minimum and its
+ maximum, so that a gain and an offset change nothing. */
+Mat integerMap(const Mat& image);
 
 /** Makes one map of the rows of a single map. Python's bindings take an array of two dimensions where several maps are
  expected for a list, and hand over each of its rows, until OpenCV 5 as a column. */

@@ -17,6 +17,13 @@
 #endif
 #include "opencv2/core/hal/intrin.hpp"
 
+//! The name of the instruction set that a file is compiled for.
+#ifdef CV_CPU_DISPATCH_MODE
+#define IIB_INSTRUCTION_SET CVAUX_STR(CV_CPU_DISPATCH_MODE)
+#else
+#define IIB_INSTRUCTION_SET "baseline"
+#endif
+
 /* OpenCV's universal intrinsics as all versions from 4.6 on have them: vectors with operators, and VTraits, whose
  max_nlanes replaces ::nlanes. Operators went from OpenCV with 4.11 (for NEON earlier), in favour of functions; where
  there are both, OpenCV's own operator is the better match. */

@@ -155,7 +155,7 @@ void findInBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatc
 }  // namespace
 
 void findAngles(const DescriptorPlan& plan, const Mat& grey, const std::vector<KeyPoint>& keypoints,
-        Workspaces& workspaces, std::vector<SupportRegion>& regions)
+        std::vector<SupportRegion>& regions)
 {
     std::vector<Rect> pixels;
     for (const SupportRegion& region : regions)
@@ -165,7 +165,7 @@ void findAngles(const DescriptorPlan& plan, const Mat& grey, const std::vector<K
     std::iota(all.begin(), all.end(), 0);
     const std::vector<std::vector<int>> batches = cutBatches(pixels, all, getNumThreads());
     const auto find = grey.depth() == CV_16U ? findInBatch<int> : findInBatch<short>;
-    parallelJobs((int)batches.size(), workspaces, [&](int i, Workspace& workspace) {
+    parallelJobs((int)batches.size(), [&](int i, Workspace& workspace) {
         find(plan, grey, makeBatch(pixels, batches[i]), ranks, workspace, regions);
     });
 }

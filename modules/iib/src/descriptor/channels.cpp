@@ -4,17 +4,19 @@
 
 #include "channels.hpp"
 
+#include "../common/image_input.hpp"
+
 namespace cv {
 namespace iib {
 
-std::vector<Channel> channelsInUse(const Parameters& p, const Mat& image, const std::vector<Mat>& extra)
+std::vector<Channel> channelsInUse(const Parameters& p, const Mat& grey, const std::vector<Mat>& extra)
 {
     std::vector<Channel> channels;
     for (int kind = 1; kind <= ALL_CHANNELS; kind <<= 1)
         if (p.channels & kind)
-            channels.push_back(Channel{kind, image});
+            channels.push_back(Channel{kind, grey});
     for (const Mat& map : extra)
-        channels.push_back(Channel{0, map});
+        channels.push_back(Channel{0, integerMap(map)});
     return channels;
 }
 

@@ -17,9 +17,9 @@ struct Channel
     Mat map;   //!< the image (all kinds but 0) or the extra map, CV_8U or CV_16U
 };
 
-//! The channels in use, in the order of the descriptor.
+//! The channels in use, in the order of the descriptor. @param grey the image as a map. @param extra maps as given.
 std::vector<Channel> channelsInUse(
-        const Parameters& parameters, const Mat& image, const std::vector<Mat>& extra);
+        const Parameters& parameters, const Mat& grey, const std::vector<Mat>& extra);
 
 //! Largest pixel value of CV_8U or CV_16U.
 inline int maxPixel(int depth) { return depth == CV_8U ? 255 : 65535; }

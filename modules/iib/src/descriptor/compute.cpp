@@ -44,15 +44,6 @@ std::vector<Job> cutJobs(const std::vector<SupportRegion>& regions, const std::v
     return jobs;
 }
 
-//! All channels of the descriptor, and extra maps as whole numbers.
-std::vector<Channel> channelsOf(const Parameters& p, const Mat& grey, const std::vector<Mat>& extra)
-{
-    std::vector<Mat> maps;
-    for (const Mat& m : extra)
-        maps.push_back(integerMap(m, Rect(Point(), m.size())));
-    return channelsInUse(p, grey, maps);
-}
-
 }  // namespace
 
 bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image)
@@ -69,22 +60,21 @@ void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Ma
         const std::vector<KeyPoint>& keypoints, Mat& descriptors)
 {
     const Parameters& p = plan.parameters;
-    Workspaces workspaces;
-    const Mat grey = integerMap(image, Rect(Point(), image.size()));
+    const Mat grey = integerMap(image);
     std::vector<SupportRegion> regions;
     regions.reserve(keypoints.size());
     for (const KeyPoint& kp : keypoints)
         regions.push_back(regionOf(kp, p));
     if (p.orientation == IIB::ORIENTATION_GRADIENT && p.channels != 0)
-        findAngles(plan, grey, keypoints, workspaces, regions);
+        findAngles(plan, grey, keypoints, regions);
     std::vector<Rect> pixels;
     pixels.reserve(keypoints.size());
     for (const SupportRegion& region : regions)
         pixels.push_back(pixelsOf(plan, region, image.size()));
 
-    const std::vector<Channel> channels = channelsOf(p, grey, extra);
+    const std::vector<Channel> channels = channelsInUse(p, grey, extra);
     const std::vector<Job> jobs = cutJobs(regions, pixels);
-    parallelJobs((int)jobs.size(), workspaces, [&](int i, Workspace& workspace) {
+    parallelJobs((int)jobs.size(), [&](int i, Workspace& workspace) {
         const KeyPointBatch batch = makeBatch(pixels, jobs[i].keypoints);
         if (plan.isOfBoxes())
             describeBoxes(plan, grey, batch, jobs[i].rotated, regions, pixels, workspace, descriptors);

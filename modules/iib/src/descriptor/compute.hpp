@@ -29,7 +29,7 @@ void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Ma
 @param keypoints of the regions: of those with the same position and size, the second gets the second highest peak of the
 directions, and so on. */
 void findAngles(const DescriptorPlan& plan, const Mat& grey, const std::vector<KeyPoint>& keypoints,
-        Workspaces& workspaces, std::vector<SupportRegion>& regions);
+        std::vector<SupportRegion>& regions);
 
 /** The bits of the keypoints of a batch, all of whose regions are upright.
 

@@ -4,8 +4,6 @@
 
 #pragma once
 
-#include <memory>
-
 #include "../boxes/plan.hpp"
 #include "kernels/kernels.hpp"
 
@@ -63,39 +61,13 @@ struct Workspace
     BoxPlaces boxPlaces;
 };
 
-//! The workspaces of a call; threads borrow them. OpenCV's TLSData takes memory when it is destroyed, which may fail.
-class Workspaces
-{
-public:
-    std::unique_ptr<Workspace> borrow()
-    {
-        AutoLock lock(mutex);
-        if (spare.empty())
-            return std::unique_ptr<Workspace>(new Workspace);
-        std::unique_ptr<Workspace> workspace = std::move(spare.back());
-        spare.pop_back();
-        return workspace;
-    }
-
-    void giveBack(std::unique_ptr<Workspace> workspace)
-    {
-        AutoLock lock(mutex);
-        spare.push_back(std::move(workspace));
-    }
-
-private:
-    Mutex mutex;
-    std::vector<std::unique_ptr<Workspace>> spare;
-};
-
 //! Calls work(job, workspace) for each of `count` jobs, in parallel.
-template <typename Work> void parallelJobs(int count, Workspaces& workspaces, const Work& work)
+template <typename Work> void parallelJobs(int count, const Work& work)
 {
     parallel_for_(Range(0, count), [&](const Range& range) {
-        std::unique_ptr<Workspace> workspace = workspaces.borrow();
+        Workspace workspace;
         for (int job = range.start; job < range.end; job++)
-            work(job, *workspace);
-        workspaces.giveBack(std::move(workspace));
+            work(job, workspace);
     });
 }
 

@@ -46,7 +46,7 @@ public:
             return keypoints.clear();
         checkImage(image);
         const Mat mask = maskFor(maskArray, image.size());
-        const Mat grey = integerMap(image, Rect(Point(), image.size()));
+        const Mat grey = integerMap(image);
         if (image.rows < 2 || image.cols < 2)
             return keypoints.clear();
         keypoints = findBlobs(normalizeHalf(grey, p.normalizationSigma), p, mask);

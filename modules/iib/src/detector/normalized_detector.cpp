@@ -40,7 +40,7 @@ public:
         if (image.empty())
             return keypoints.clear();
         checkImage(image);
-        const Mat grey = integerMap(image, Rect(Point(), image.size()));
+        const Mat grey = integerMap(image);
         detector->detect(normalizeLocally(grey, sigma), keypoints, maskFor(mask, image.size()));
     }
 

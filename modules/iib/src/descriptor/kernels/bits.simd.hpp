@@ -359,19 +359,25 @@ void writeLevels(const CellGrid<Cell>& cells, const LevelShape shapes[], const C
         writeLevel<Mapping>(sums[level], shapes[level], edges, sums[level - 1], descriptor);
 }
 
-template <typename Cell> struct BitsKernelsOf
+template <typename Mapping, typename Cell> BitsKernels<Cell> bitsKernels()
 {
-    template <typename Mapping> BitsKernels<Cell> visit() const
-    {
-        const BitsKernels<Cell> k = {
-                writeLevels<Mapping, Cell, typename BitsKernels<Cell>::Parent>, parentSums<Cell>};
-        return k;
-    }
-};
+    const BitsKernels<Cell> k = {
+            writeLevels<Mapping, Cell, typename BitsKernels<Cell>::Parent>, parentSums<Cell>};
+    return k;
+}
 
 template <typename Cell> BitsKernels<Cell> bitsKernels(int mapping)
 {
-    return visitMapping(mapping, BitsKernelsOf<Cell>());
+    switch (mapping)
+    {
+    case IIB::MAPPING_MAX: return bitsKernels<ExtremeMapping<true>, Cell>();
+    case IIB::MAPPING_MIN: return bitsKernels<ExtremeMapping<false>, Cell>();
+    case IIB::MAPPING_QUARTILE: return bitsKernels<QuartileMapping, Cell>();
+    case IIB::MAPPING_SORT: return bitsKernels<SortMapping, Cell>();
+    case IIB::MAPPING_HAAR: return bitsKernels<HaarMapping, Cell>();
+    case IIB::MAPPING_PAIRWISE: return bitsKernels<PairwiseMapping, Cell>();
+    default: return bitsKernels<MeanMapping, Cell>();
+    }
 }
 
 }  // namespace

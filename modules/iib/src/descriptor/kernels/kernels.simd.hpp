@@ -24,12 +24,6 @@ const DescriptorKernels& descriptorKernels();
 
 namespace {
 
-#ifdef CV_CPU_DISPATCH_MODE
-#define IIB_INSTRUCTION_SET CVAUX_STR(CV_CPU_DISPATCH_MODE)
-#else
-#define IIB_INSTRUCTION_SET "baseline"
-#endif
-
 DescriptorKernels makeTable()
 {
     DescriptorKernels k;
@@ -57,8 +51,6 @@ DescriptorKernels makeTable()
     }
     return k;
 }
-
-#undef IIB_INSTRUCTION_SET
 
 }  // namespace
 

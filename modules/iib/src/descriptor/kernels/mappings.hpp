@@ -110,22 +110,5 @@ struct PairwiseMapping
     }
 };
 
-//! visitor.visit<M>() with the type M of a mapping.
-template <typename Visitor>
-inline auto visitMapping(int mapping, const Visitor& visitor)
-        -> decltype(visitor.template visit<MeanMapping>())
-{
-    switch (mapping)
-    {
-    case IIB::MAPPING_MAX: return visitor.template visit<ExtremeMapping<true>>();
-    case IIB::MAPPING_MIN: return visitor.template visit<ExtremeMapping<false>>();
-    case IIB::MAPPING_QUARTILE: return visitor.template visit<QuartileMapping>();
-    case IIB::MAPPING_SORT: return visitor.template visit<SortMapping>();
-    case IIB::MAPPING_HAAR: return visitor.template visit<HaarMapping>();
-    case IIB::MAPPING_PAIRWISE: return visitor.template visit<PairwiseMapping>();
-    default: return visitor.template visit<MeanMapping>();
-    }
-}
-
 }  // namespace iib
 }  // namespace cv
