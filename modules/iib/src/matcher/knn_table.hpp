@@ -4,25 +4,12 @@
 
 #pragma once
 
-#include "opencv2/core.hpp"
-
-#include <algorithm>
-#include <climits>
 #include <new>
+
+#include "kernels/hamming.hpp"
 
 namespace cv {
 namespace iib {
-
-//! Of the number of a train code among all images.
-static constexpr int INDEX_BITS = 40;
-
-//! A neighbour as one number: distance above, index below, so that ties go to the lowest index.
-typedef uint64 MatchKey;
-const MatchKey NO_MATCH = ~(MatchKey)0;
-
-inline MatchKey matchKey(int distance, size_t index) { return (MatchKey)distance << INDEX_BITS | index; }
-inline int distanceOf(MatchKey n) { return (int)(n >> INDEX_BITS); }
-inline size_t indexOf(MatchKey n) { return (size_t)(n & (((MatchKey)1 << INDEX_BITS) - 1)); }
 
 //! A value for each of k neighbours of each row; throws StsNoMem, with k, if memory does not hold them.
 template <typename T> std::vector<T> forNeighbours(size_t rows, int k, T value)

@@ -16,9 +16,9 @@ class PairBlocks
 {
 public:
     PairBlocks(const SearchInput& input_, const Range& range_)
-        : pairs(input_.trains.layout(), Mat(), 0, 0), firstQuery(range_.start), firstTrain(0), pairCount(0),
-          input(input_), range(range_), step(input.blocks.codeBlocksFor(input.policy)), nextBlock(0),
-          limits(range.size(), input.policy.limit)
+        : pairs{input_.trains.layout(), Mat(), 0, 0, 0}, firstQuery(range_.start), firstTrain(0),
+          pairCount(0), input(input_), range(range_), step(input.blocks.codeBlocksFor(input.policy)),
+          nextBlock(0), limits(range.size(), input.policy.limit)
     {
     }
 
@@ -151,9 +151,8 @@ SearchCost scanPruned(const SearchInput& input, PairBlocks& block, HammingSink& 
     const std::vector<PruneStage>& stages = input.policy.stages;
     const CodeLayout& layout = input.trains.layout();
     std::vector<int64> passed(stages.size(), 0);
-    PrunedScan scan(block.pairs, input.policy, sink);
-    scan.passed = passed.data();
-    scan.limits = stages.size() == 1 ? block.limitsOfQueries() : 0;
+    const PrunedScan scan = {
+            block.pairs, input.policy, sink, passed.data(), stages.size() == 1 ? block.limitsOfQueries() : 0};
     input.trains.kernels().pruned(scan);
 
     SearchCost cost;
@@ -168,28 +167,13 @@ SearchCost scanPruned(const SearchInput& input, PairBlocks& block, HammingSink& 
     return cost;
 }
 
-// Puts the nearest of a scan into a table of theirs, in which the first of the other side is `firstOther`.
-void keep(const NearestCodes& nearest, int count, size_t firstOther, KnnTable& table, size_t first)
-{
-    for (int i = 0; i < count; i++)
-        if (nearest.indices[i] >= 0)
-            table.insert(first + i, matchKey(nearest.distances[i], firstOther + nearest.indices[i]));
-}
-
 // For tables of a single column, without stages.
 SearchCost scanSingle(
         const SearchInput& input, const PairBlocks& block, KnnTable& forQueries, KnnTable* forTrains)
 {
-    const int queries = block.pairs.queries.rows, trains = block.pairs.trainCount;
-    std::vector<int> queryIndices(queries, -1), trainIndices(forTrains ? trains : 0, -1);
-    NearestScan scan(
-            block.pairs, NearestCodes{forQueries.thresholds() + block.firstQuery, queryIndices.data()});
-    if (forTrains)
-        scan.ofTrains = NearestCodes{forTrains->thresholds() + block.firstTrain, trainIndices.data()};
+    const NearestScan scan = {block.pairs, forQueries[block.firstQuery],
+            forTrains ? (*forTrains)[block.firstTrain] : 0, (size_t)block.firstQuery, block.firstIndex()};
     input.trains.kernels().nearest(scan);
-    keep(scan.ofQueries, queries, block.firstIndex(), forQueries, block.firstQuery);
-    if (forTrains)
-        keep(scan.ofTrains, trains, block.firstQuery, *forTrains, block.firstTrain);
     SearchCost cost;
     cost.compared = cost.all = (uint64)block.pairCount * 8 * input.trains.layout().bytes();
     return cost;

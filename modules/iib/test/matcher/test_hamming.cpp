@@ -58,15 +58,13 @@ struct ScanData
         }
     }
 
-    CodePairs pairs() const { return CodePairs(layout, queries, blocks.data(), trains.rows); }
+    CodePairs pairs() const { return {layout, queries, blocks.data(), trains.rows, 0}; }
 
     PrunedScan scan(const std::vector<PruneStage>& stages, HammingSink& sink)
     {
         policy.stages = stages;
         passed.assign(stages.size(), 0);
-        PrunedScan result(pairs(), policy, sink);
-        result.passed = passed.data();
-        return result;
+        return {pairs(), policy, sink, passed.data(), 0};
     }
 
     //! Bits that differ up to the end of a segment.
@@ -166,37 +164,29 @@ TEST(IIB_Hamming, nearest_as_the_naive_loop)
                     Mat mask = Mat::ones(queryCount, (rows + 15) / 16 * 16, CV_8U);
                     if (masked)
                         mask = randomMask(5, mask.rows, mask.cols, 0.5);
-                    const int start = before ? bytes * 4 : INT_MAX;
-                    std::vector<int> queryBest(queryCount, start), queryIndex(queryCount, -1),
-                            trainBest(mask.cols, start), trainIndex(mask.cols, -1);
-                    std::vector<int> expected[] = {queryBest, queryIndex, trainBest, trainIndex};
+                    const MatchKey start = before ? matchKey(bytes * 4, 0) : NO_MATCH;
+                    const size_t firstQuery = 1000, firstTrain = (size_t)1 << 33;
+                    std::vector<MatchKey> ofQueries(queryCount, start), ofTrains(rows, start),
+                            expectedOfQueries = ofQueries, expectedOfTrains = ofTrains;
                     for (int q = 0; q < queryCount; q++)
                         for (int t = 0; t < rows; t++)
                         {
                             const int d = hammingDistance(data.queries.ptr(q), data.trains.ptr(t), bytes);
                             if (!mask.at<uchar>(q, t))
                                 continue;
-                            if (d < expected[0][q])
-                            {
-                                expected[0][q] = d;
-                                expected[1][q] = t;
-                            }
-                            if (both && d < expected[2][t])
-                            {
-                                expected[2][t] = d;
-                                expected[3][t] = q;
-                            }
+                            expectedOfQueries[q] =
+                                    std::min(expectedOfQueries[q], matchKey(d, firstTrain + t));
+                            if (both)
+                                expectedOfTrains[t] =
+                                        std::min(expectedOfTrains[t], matchKey(d, firstQuery + q));
                         }
-                    NearestScan scan(data.pairs(), NearestCodes{queryBest.data(), queryIndex.data()});
-                    if (both)
-                        scan.ofTrains = NearestCodes{trainBest.data(), trainIndex.data()};
+                    NearestScan scan = {data.pairs(), ofQueries.data(), both ? ofTrains.data() : 0,
+                            firstQuery, firstTrain};
                     if (masked)
                         scan.pairs.allowed = mask.data;
                     data.kernels.nearest(scan);
-                    EXPECT_EQ(expected[0], queryBest);
-                    EXPECT_EQ(expected[1], queryIndex);
-                    EXPECT_EQ(expected[2], trainBest);
-                    EXPECT_EQ(expected[3], trainIndex);
+                    EXPECT_EQ(expectedOfQueries, ofQueries);
+                    EXPECT_EQ(expectedOfTrains, ofTrains);
                 }
 }
 

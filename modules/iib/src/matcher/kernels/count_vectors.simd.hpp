@@ -30,20 +30,6 @@ inline int countBits(uint64 word)
 #endif
 }
 
-//! Of two arrays of words.
-inline int countDifferences(const unsigned* a, const unsigned* b, int words)
-{
-    int count = words % 2 ? countBits(a[words - 1] ^ b[words - 1]) : 0;
-    for (int i = 0; i + 1 < words; i += 2)
-    {
-        uint64 x, y;
-        memcpy(&x, a + i, sizeof(x));
-        memcpy(&y, b + i, sizeof(y));
-        count += countBits(x ^ y);
-    }
-    return count;
-}
-
 // v_popcount(v_uint32) is one instruction; elsewhere counting bytes is cheaper.
 #if CV_AVX512_ICL && IIB_NATIVE_VECTORS
 #define IIB_COUNTS_LANES 1
@@ -67,46 +53,6 @@ inline v_uint32 fullAdder(v_uint32& parity, const v_uint32& x, const v_uint32& a
 #endif
 }
 
-// lookUp16 picks bytes out of tables of 16, a table for each 16 bytes of the vector; an index is 0 to 15.
-#if CV_AVX512_SKX && IIB_NATIVE_VECTORS
-#define IIB_LOOKS_UP_16 1
-inline v_uint8 lookUp16(const v_uint8& table, const v_uint8& index)
-{
-    return v_uint8(_mm512_shuffle_epi8(table.val, index.val));
-}
-#elif CV_AVX2 && IIB_NATIVE_VECTORS
-#define IIB_LOOKS_UP_16 1
-inline v_uint8 lookUp16(const v_uint8& table, const v_uint8& index)
-{
-    return v_uint8(_mm256_shuffle_epi8(table.val, index.val));
-}
-#elif CV_SSSE3 && IIB_NATIVE_VECTORS
-#define IIB_LOOKS_UP_16 1
-inline v_uint8 lookUp16(const v_uint8& table, const v_uint8& index)
-{
-    return v_uint8(_mm_shuffle_epi8(table.val, index.val));
-}
-#elif CV_NEON && defined __aarch64__ && IIB_NATIVE_VECTORS
-#define IIB_LOOKS_UP_16 1
-inline v_uint8 lookUp16(const v_uint8& table, const v_uint8& index)
-{
-    return v_uint8(vqtbl1q_u8(table.val, index.val));
-}
-#else
-#define IIB_LOOKS_UP_16 0
-#endif
-
-// Moves the chosen lanes to the front of a vector.
-#if CV_AVX512_SKX && IIB_NATIVE_VECTORS
-#define IIB_COMPRESSES_LANES 1
-inline v_int32 compressLanes(const v_int32& values, int lanes)
-{
-    return v_int32(_mm512_maskz_compress_epi32((__mmask16)lanes, values.val));
-}
-#else
-#define IIB_COMPRESSES_LANES 0
-#endif
-
 typedef v_uint32 Words;
 typedef v_int32 Counts;
 const int CODES_PER_BLOCK = CodeLayout::CODES_PER_BLOCK, WIDTH = VTraits<Words>::max_nlanes,
@@ -126,24 +72,6 @@ CV_ALWAYS_INLINE int negativeLanes(const Counts* values)
     for (int v = 0; v < VECTORS; v++)
         lanes |= v_signmask(values[v]) << v * WIDTH;
     return lanes;
-}
-
-//! Writes the values of some lanes, and may write CODES_PER_BLOCK values whatever their number.
-CV_ALWAYS_INLINE void storeLanes(int* to, const Counts* values, int lanes)
-{
-#if IIB_COMPRESSES_LANES
-    for (int v = 0; v < VECTORS; v++, lanes >>= WIDTH)
-    {
-        v_store(to, compressLanes(values[v], lanes));
-        to += countBits((unsigned)lanes & ((1u << WIDTH) - 1));
-    }
-#else
-    int all[CODES_PER_BLOCK];
-    for (int v = 0; v < VECTORS; v++)
-        v_store(all + v * WIDTH, values[v]);
-    for (; lanes; lanes &= lanes - 1)
-        *to++ = all[trailingZeros32(lanes)];
-#endif
 }
 
 }  // namespace

@@ -13,14 +13,23 @@
 namespace cv {
 namespace iib {
 
+//! Of the number of a train code among all images.
+static constexpr int INDEX_BITS = 40;
+
+//! A neighbour as one number: distance above, index below, so that ties go to the lowest index.
+typedef uint64 MatchKey;
+const MatchKey NO_MATCH = ~(MatchKey)0;
+
+static inline MatchKey matchKey(int distance, size_t index)
+{
+    return (MatchKey)distance << INDEX_BITS | index;
+}
+static inline int distanceOf(MatchKey n) { return (int)(n >> INDEX_BITS); }
+static inline size_t indexOf(MatchKey n) { return (size_t)(n & (((MatchKey)1 << INDEX_BITS) - 1)); }
+
 //! The pairs that a scan compares: some queries with some train codes.
 struct CodePairs
 {
-    CodePairs(const CodeLayout& layout_, const Mat& queries_, const unsigned* trains_, int trainCount_)
-        : layout(layout_), queries(queries_), trains(trains_), trainCount(trainCount_), allowed(0)
-    {
-    }
-
     int blocks() const
     {
         return (trainCount + CodeLayout::CODES_PER_BLOCK - 1) / CodeLayout::CODES_PER_BLOCK;
@@ -35,30 +44,20 @@ struct CodePairs
     const uchar* allowed;  //!< queries.rows x paddedTrains(), 0 for pairs that are masked; null: none is
 };
 
-//! The nearest code of the other side for each code; a scan replaces an entry when it finds a nearer one.
-struct NearestCodes
-{
-    int* distances;  //!< INT_MAX where there is none so far
-    int* indices;    //!< index in the scan
-};
-
 //! Finds the nearest train code of each query. Only for pairs that fit.
 struct NearestScan
 {
-    static constexpr int INDEX_BITS = 12;  //!< of the 31 that index and distance share
+    static constexpr int SMALL_INDEX_BITS = 12;  //!< of the 31 that index and distance share
     //! Whether there are few enough of them, of codes short enough.
     static bool fits(const CodePairs& pairs)
     {
-        return std::max(pairs.queries.rows, pairs.blocks()) <= 1 << INDEX_BITS &&
-               pairs.layout.bytes() < 1 << (31 - INDEX_BITS - 3);
-    }
-    NearestScan(const CodePairs& pairs_, const NearestCodes& ofQueries_)
-        : pairs(pairs_), ofQueries(ofQueries_), ofTrains()
-    {
+        return std::max(pairs.queries.rows, pairs.blocks()) <= 1 << SMALL_INDEX_BITS &&
+               pairs.layout.bytes() < 1 << (31 - SMALL_INDEX_BITS - 3);
     }
     CodePairs pairs;
-    NearestCodes ofQueries;
-    NearestCodes ofTrains;  //!< of paddedTrains() codes; null: not wanted
+    MatchKey* ofQueries;            //!< the nearest of each so far, which a nearer one replaces
+    MatchKey* ofTrains;             //!< the same of train codes; null: not wanted
+    size_t firstQuery, firstTrain;  //!< the first indices in keys
 };
 
 //! Takes the pairs that a scan finds, and says how near they have to be.
@@ -104,10 +103,6 @@ struct PruningPolicy
 //! Finds all pairs that are near enough and that no stage gives up. Without stages, all are compared to the end.
 struct PrunedScan
 {
-    PrunedScan(const CodePairs& pairs_, const PruningPolicy& policy_, HammingSink& sink_)
-        : pairs(pairs_), policy(policy_), sink(sink_), passed(0), limits(0)
-    {
-    }
     CodePairs pairs;
     const PruningPolicy& policy;
     HammingSink& sink;

@@ -47,11 +47,7 @@ void scanPruned(const PrunedScan& scan)
 
 const HammingKernels& hammingKernels()
 {
-#ifdef CV_CPU_DISPATCH_MODE
-    static const HammingKernels kernels = {PACKING, scanNearest, scanPruned, CVAUX_STR(CV_CPU_DISPATCH_MODE)};
-#else
-    static const HammingKernels kernels = {PACKING, scanNearest, scanPruned, "baseline"};
-#endif
+    static const HammingKernels kernels = {PACKING, scanNearest, scanPruned, IIB_INSTRUCTION_SET};
     return kernels;
 }
 

@@ -19,8 +19,7 @@ class NearestScanner : public Scanner
 {
 public:
     explicit NearestScanner(const NearestScan& s)
-        : Scanner(s.pairs), scan(s), trains(s.ofTrains.distances ? s.pairs.paddedTrains() : 0),
-          trainKeys(trains)
+        : Scanner(s.pairs), scan(s), trains(s.ofTrains ? s.pairs.paddedTrains() : 0), trainKeys(trains)
     {
         std::fill(trainKeys.data(), trainKeys.data() + trains, int(NO_KEY));
     }
@@ -41,13 +40,13 @@ public:
     //! After the last row.
     void keepOfTrains() const
     {
-        for (int train = 0; train < trains; train++)
-            keep(scan.ofTrains, train, trainKeys.data()[train], trainKeys.data()[train] & INDEX_MASK);
+        for (int train = 0; trains > 0 && train < pairs.trainCount; train++)
+            keep(scan.ofTrains[train], trainKeys.data()[train],
+                    scan.firstQuery + (trainKeys.data()[train] & INDEX_MASK));
     }
 
 private:
-    static constexpr int INDEX_BITS = NearestScan::INDEX_BITS, INDEX_MASK = (1 << INDEX_BITS) - 1,
-                         NO_KEY = INT_MAX;
+    static constexpr int BITS = NearestScan::SMALL_INDEX_BITS, INDEX_MASK = (1 << BITS) - 1, NO_KEY = INT_MAX;
 
     template <int Q> CV_ALWAYS_INLINE void compare(int query, int block, Counts* nearest)
     {
@@ -56,7 +55,7 @@ private:
         tile.start(queries, codes(block), layout.words());
         tile.distances(keys);
         for (int i = 0; i < Tile<Q>::SIZE; i++)
-            keys[i] = keys[i] << INDEX_BITS;
+            keys[i] = keys[i] << BITS;
         if (incomplete(block))
             for (int i = 0; i < Tile<Q>::SIZE; i++)
                 keys[i] = v_select(missing(query + i / VECTORS, block, i % VECTORS) < vx_setzero_s32(),
@@ -82,15 +81,13 @@ private:
         for (int v = 0; v < VECTORS; v++)
             others[v] = vx_setall_s32(least) - keys[v];
         const int lane = trailingZeros32(ALL_LANES & ~negativeLanes(others));
-        keep(scan.ofQueries, query, least, (least & INDEX_MASK) * CODES_PER_BLOCK + lane);
+        keep(scan.ofQueries[query], least, scan.firstTrain + (least & INDEX_MASK) * CODES_PER_BLOCK + lane);
     }
 
-    static void keep(const NearestCodes& nearest, int i, int key, int index)
+    static void keep(MatchKey& nearest, int key, size_t index)
     {
-        if (key == NO_KEY || key >> INDEX_BITS >= nearest.distances[i])
-            return;
-        nearest.distances[i] = key >> INDEX_BITS;
-        nearest.indices[i] = index;
+        if (key != NO_KEY)
+            nearest = std::min(nearest, matchKey(key >> BITS, index));
     }
 
     const NearestScan& scan;

@@ -106,6 +106,20 @@ private:
     int early;  //!< words after which a tile may be left if no pair is near enough so far, since distances only grow
 };
 
+//! Of two arrays of words.
+inline int countDifferences(const unsigned* a, const unsigned* b, int words)
+{
+    int count = words % 2 ? countBits(a[words - 1] ^ b[words - 1]) : 0;
+    for (int i = 0; i + 1 < words; i += 2)
+    {
+        uint64 x, y;
+        memcpy(&x, a + i, sizeof(x));
+        memcpy(&y, b + i, sizeof(y));
+        count += countBits(x ^ y);
+    }
+    return count;
+}
+
 //! Gives pairs up at the stages of a scan.
 class PrunedScanner : public SinkScanner
 {

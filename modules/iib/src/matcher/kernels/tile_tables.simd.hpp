@@ -22,6 +22,20 @@ const int QUERIES = 4;
 typedef v_uint8 Bytes;
 const int BYTES = VTraits<Bytes>::max_nlanes, POSITIONS = BYTES / CODES_PER_BLOCK;
 
+//! Picks bytes out of tables of 16, a table for each 16 bytes of the vector; an index is 0 to 15.
+inline v_uint8 lookUp16(const v_uint8& table, const v_uint8& index)
+{
+#if CV_AVX512_SKX
+    return v_uint8(_mm512_shuffle_epi8(table.val, index.val));
+#elif CV_AVX2
+    return v_uint8(_mm256_shuffle_epi8(table.val, index.val));
+#elif CV_SSSE3
+    return v_uint8(_mm_shuffle_epi8(table.val, index.val));
+#else
+    return v_uint8(vqtbl1q_u8(table.val, index.val));
+#endif
+}
+
 inline Bytes lowHalves(const Bytes& x) { return x & vx_setall_u8(15); }
 inline Bytes highHalves(const Bytes& x)
 {
