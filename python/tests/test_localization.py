@@ -371,7 +371,8 @@ class Localization(unittest.TestCase):
         write_model(model + '3', [f'{n}.png' for n in range(6)], text=True)
         for name in ('cameras.txt', 'images.txt', 'rigs.txt', 'frames.txt'):
             with self.subTest(name):
-                whole = open(os.path.join(model + '3', name)).read()
+                with open(os.path.join(model + '3', name)) as file:
+                    whole = file.read()
                 with open(os.path.join(model + '3', name), 'w') as file:
                     file.write('no model\n1 2 three\n')
                 self.check_error(f'^map: {model}3: no COLMAP model, or a damaged one', 'map', '--model', model + '3', *arguments)
