@@ -1,7 +1,7 @@
 #!/bin/sh
-# What describing costs beside cv::ORB on this machine, how time and memory grow, what matching costs beside BFMatcher and,
-# where python3 has faiss and opencv_iib, beside faiss's flat index, what small work costs, and how much slower all that is
-# without AVX-512 and without AVX2: prints tables and writes build/benchmark*.json. With --document the results go to
+# What describing costs beside cv::ORB on this machine, what matching costs beside BFMatcher and, where python3 has faiss and
+# opencv_iib, beside faiss's flat index, what small work costs, and how much slower all that is without AVX-512 and without
+# AVX2: prints tables and writes build/benchmark*.json. With --document the results go to
 # doc/results, from where the tables of README.md and doc/performance.md and their picture are made anew. --contrib adds
 # BEBLID, TEBLID and LATCH of opencv_contrib, whose source pip brings.
 #   scripts/bench.sh [--contrib] [--document] [--rounds=N]

@@ -289,16 +289,6 @@ def small_work():
     return table(['', 'AVX-512', 'AVX2', 'SSE4.2'], zip(labels, *(column(name) for name in (WIDE, AVX2, NARROW))))
 
 
-def growth():
-    """Time of the default descriptor and ORB as pixels and keypoints grow, and the same keypoints on a crop and on the whole."""
-    data = benchmark(WIDE)
-    points = data['pixels'] + data['more_keypoints'] + data['crop_and_whole']
-    memory = '%.2f bytes of memory a pixel' % data['bytes_per_pixel']
-    return table(['megapixels', 'keypoints', 'ms', 'ORB, ms', memory],
-                 [['%.2f' % p['megapixels'], str(p['keypoints']), '%.3f' % p['milliseconds'], '%.3f' % p['orb_milliseconds'], '']
-                  for p in points])
-
-
 SCALE = 'scale.json'
 
 
@@ -381,7 +371,7 @@ def main():
     if arguments.print:
         global results
         results = arguments.print
-        print(*(make() for make in (describing, growth, matching, small_work)), sep='\n\n')
+        print(*(make() for make in (describing, matching, small_work)), sep='\n\n')
         return
     for page, makers in PAGES.items():
         before, after = filled(page, makers)
