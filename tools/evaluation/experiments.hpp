@@ -34,7 +34,6 @@ int fixedPoints(const Options& options, const std::vector<ImagePair>& pairs);
 int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs);
 //! Poses of the views below the roots (common/views.hpp), estimated from matches.
 int wholeTasks(const Options& options, const std::vector<ImagePair>& pairs);
-int matchingStudy(const Options& options, const std::vector<ImagePair>& pairs);
 int robustness(const Options& options, const std::vector<ImagePair>& pairs);
 //! What a ratio test leaves of the right matches of the presets, for AKAZE's points detected in both images.
 int ratios(const Options& options, const std::vector<ImagePair>& pairs);

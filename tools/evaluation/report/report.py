@@ -16,7 +16,7 @@ from paper_orders import orders
 from results import areas, column, describing_times, domain, file_name, group, interval, mean, mean_accuracy, read
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-CSV_FILES = ("fixed_points", "detected_points", "whole_tasks", "matching", "robustness", "learned", "comparison")
+CSV_FILES = ("fixed_points", "detected_points", "whole_tasks", "robustness", "learned", "comparison")
 
 
 def score(rows):
@@ -194,13 +194,6 @@ def maps(tables):
             if name in chosen and with_maps]
 
 
-def matching(tables):
-    lines = []
-    for name, members in by_name([r for r in tables["matching"] if domain(r) == "natural"], "matcher").items():
-        lines.append((name, score(members), mean(column(members, "cost"))))
-    return lines
-
-
 def scenes(tables):
     """Recall by sequence, all descriptors."""
     names = list(by_name(tables["fixed_points"]))
@@ -239,7 +232,7 @@ def main():
         overview=rows, networks=networks(tables), headline=sorted(headline, key=lambda r: -r["score"]["recall"]),
         detectors=detectors(tables), changes=changes(tables), warps=warp_charts(tables),
         tasks=tasks, poses=pose_headline(tasks), slider=slider(tables), paper=paper_tables(tables), orders=paper_orders(tables), maps=maps(tables),
-        matching=matching(tables), scenes=scenes(tables),
+        scenes=scenes(tables),
         all_pairs=score(by_name(illumination(tables["fixed_points"])).get("IIB", [])), settings=settings(folder),
         files=[file_name(name) for name in CSV_FILES if tables[name]])
     path = os.path.join(folder, "index.html")

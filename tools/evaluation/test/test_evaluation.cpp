@@ -110,8 +110,8 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
     EXPECT_GT(recallOf("still", "IIB"), recallOf("still", "IIB g2"));
     EXPECT_GT(recallOf("still", "IIB +depth"), 0.9);
 
-    const std::vector<std::string> tables = {"fixed_points", "detected_points", "whole_tasks", "matching",
-            "robustness", "ratios", "comparison"};
+    const std::vector<std::string> tables = {"fixed_points", "detected_points", "whole_tasks", "robustness",
+            "ratios", "comparison"};
     std::vector<std::string> first;
     for (const std::string& name : tables)
         first.push_back(contents(options.out + "/" + name + ".csv"));
