@@ -202,19 +202,6 @@ def presets():
     return table(['preset', 'bytes', 'light', 'rendered', 'wall', 'graf', 'turned', 'when'], lines)
 
 
-def ratios():
-    """Correct / given matches a pair of AKAZE's points, under mutual matching and under ratio tests."""
-    rules = ('mutual', '0.95', '0.9', '0.85', '0.8', '0.75')
-    found = grouped('ratios.csv', ('place', 'descriptor', 'rule'))
-    lines = []
-    for label, place in (('changed light', 'light'), ('`wall`', 'wall'), ('`graf`', 'graf')):
-        for name in ('default', 'ACCURATE', 'COMPACT', 'BALANCED', 'UNIVERSAL'):
-            full = 'IIB ' + name if name != 'default' else 'IIB'
-            chosen = [found[place, full, rule] for rule in rules]
-            lines.append([label, name] + ['%.0f / %.0f' % (mean(some, 'correct'), mean(some, 'given')) for some in chosen])
-    return table(['', '', 'mutual'] + list(rules[1:]), lines)
-
-
 def benchmark(name):
     """What iib_benchmark wrote."""
     return json.loads((results / name).read_text())
@@ -354,7 +341,7 @@ def on_paper():
 
 
 PAGES = {'README.md': (match_claim, pose_claim, speed_claim, poses),
-         'doc/guide.md': (pose_by_rule, ratios, presets),
+         'doc/guide.md': (pose_by_rule, presets),
          'doc/performance.md': (describing, matching, small_work),
          'doc/scale.md': (mapped_index, flat_search, approximate_search, on_paper),
          'doc/results/README.md': (pose_rules, elsewhere, extra_channels, detected_points, fixed_points, turned)}

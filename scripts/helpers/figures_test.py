@@ -21,7 +21,7 @@ class Figures(unittest.TestCase):
             for key, rows in real(*arguments).items():
                 found[key] = [{**row, 'place': 'trained'} for row in rows]
             return found
-        for function in (figures.presets, figures.ratios, figures.fixed_points, figures.poses, figures.pose_claim,
+        for function in (figures.presets, figures.fixed_points, figures.poses, figures.pose_claim,
                          figures.pose_rules, figures.pose_by_rule):
             function()
             with mock.patch.object(figures, 'grouped', of_trained_scenes), self.assertRaisesRegex(SystemExit, 'trained'):

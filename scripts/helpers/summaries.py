@@ -64,8 +64,6 @@ PLANS = {
     'whole_tasks.csv': (lambda row: row['task'] == 'pose' and row['set'] not in TRAINED_ON,
                         {'place': pose_place, 'detector': None, 'descriptor': None, 'matching': None},
                         {'score': pose_score}),
-    'ratios.csv': (lambda row: True, {'place': place, 'descriptor': None, 'rule': None},
-                   {'correct': column('correct'), 'given': column('given')}),
 }
 
 

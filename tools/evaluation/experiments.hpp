@@ -35,8 +35,6 @@ int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs);
 //! Poses of the views below the roots (common/views.hpp), estimated from matches.
 int wholeTasks(const Options& options, const std::vector<ImagePair>& pairs);
 int robustness(const Options& options, const std::vector<ImagePair>& pairs);
-//! What a ratio test leaves of the right matches of the presets, for AKAZE's points detected in both images.
-int ratios(const Options& options, const std::vector<ImagePair>& pairs);
 //! Matches of IIB and others on the pairs of Options::compare at detected points. Beside the second image, whose name begins
 //! with N, there may be its homography, H_N; else the camera stood still.
 int comparison(const Options& options, const std::vector<ImagePair>& pairs);

@@ -110,8 +110,8 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
     EXPECT_GT(recallOf("still", "IIB"), recallOf("still", "IIB g2"));
     EXPECT_GT(recallOf("still", "IIB +depth"), 0.9);
 
-    const std::vector<std::string> tables = {"fixed_points", "detected_points", "whole_tasks", "robustness",
-            "ratios", "comparison"};
+    const std::vector<std::string> tables = {
+            "fixed_points", "detected_points", "whole_tasks", "robustness", "comparison"};
     std::vector<std::string> first;
     for (const std::string& name : tables)
         first.push_back(contents(options.out + "/" + name + ".csv"));
@@ -125,19 +125,6 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
 
     options.points = 100;
     EXPECT_NE(std::string::npos, messageOf([&] { evaluate(options); }).find("settings"));
-}
-
-TEST_F(EvaluationTest, ratio_tests_at_points_of_akaze)
-{
-    const cv::Mat image = cv::imread(folder.path("data/set/still/1.png"), cv::IMREAD_GRAYSCALE);
-    write("still/2.png", image * 0.7);
-    options.experiments = {"ratios"};
-    EXPECT_EQ(0, evaluate(options));
-    const std::string table = contents(options.out + "/ratios.csv"), start = "set,still,2,light,IIB S256,";
-    const int mutual = valueAfter(table, start + "mutual,"), sure = valueAfter(table, start + "0.7,");
-    EXPECT_GT(sure, 10);
-    EXPECT_LE(sure, mutual);
-    EXPECT_GT(valueAfter(table, "set,still,2,light,IIB,mutual,"), 10);
 }
 
 TEST_F(EvaluationTest, an_interrupted_run_goes_on_to_the_same_result)
