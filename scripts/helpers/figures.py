@@ -304,14 +304,6 @@ def flat_search():
     return table(['bytes', 'k', 'ns a pair', faiss, 'times', '2 threads', faiss, 'times'], lines)
 
 
-def approximate_search():
-    """faiss's approximate indices with the least setting that reaches the recall, beside the exact scan."""
-    return table(['codes', 'of', '', '', 'recall', 'queries a second', 'bytes a code', 'built in s'],
-                 [[format(data['codes'], ','), r['data'], r['index'], r['setting'], '%.3f' % r['recall'], '%.0f' % r['queries_a_second'],
-                   '%.0f' % r['bytes_a_code'], '%.0f' % r['build_seconds']]
-                  for data in benchmark(SCALE)['approximate'] for r in data['rows']])
-
-
 def mapped_index():
     """A MappedIndex opened in a fresh process, and the same search by one worker of Dask and by two."""
     data = benchmark(SCALE)
@@ -330,12 +322,9 @@ def mapped_index():
 def on_paper():
     """What 10^9 codes of 64 bytes need, by the time a pair takes one thread here."""
     pair, = [r['iib_ns'] for r in benchmark(SCALE)['flat']['rows'] if (r['bytes'], r['k'], r['threads']) == (64, 1, 1)]
-    ivf, = [r['bytes_a_code'] for r in benchmark(SCALE)['approximate'][0]['rows']
-            if 'IVF' in r['index'] and r['data'] == 'photographs']
     seconds = 500 * pair  # 500 queries x 10^9 codes
     return table(['10^9 codes of 64 bytes', ''], [
         ['a folder, and memory of all machines together, GB', '64'],
-        ['the same in IndexBinaryIVF, GB', '%.0f' % ivf],
         ['exact, an image of 500 codes, one core, s', '%.0f' % seconds],
         ['on 8 machines of 32 cores, s', '%.1f' % (seconds / 256)]])
 
@@ -343,7 +332,7 @@ def on_paper():
 PAGES = {'README.md': (match_claim, pose_claim, speed_claim, poses),
          'doc/guide.md': (pose_by_rule, presets),
          'doc/performance.md': (describing, matching, small_work),
-         'doc/scale.md': (mapped_index, flat_search, approximate_search, on_paper),
+         'doc/scale.md': (mapped_index, flat_search, on_paper),
          'doc/results/README.md': (pose_rules, elsewhere, extra_channels, detected_points, fixed_points, turned)}
 
 

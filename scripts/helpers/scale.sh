@@ -1,9 +1,8 @@
 #!/bin/sh
-# Measures searches among many codes beside faiss, and prints the figures: exact at several widths, faiss's approximate
-# indices, a mapped index of ten million codes, Dask's workers. Takes about an hour, and pip's package index.
+# Measures searches among many codes, and prints the figures: exact at several widths beside faiss's, a mapped index of ten
+# million codes, Dask's workers. Takes some minutes, and pip's package index.
 # With --document the results go to doc/results, from where the tables of doc/scale.md are made anew.
-#   scripts/helpers/scale.sh [--document] [--images=FOLDER] [--codes=N,...] [--mapped=N] [--rounds=N]
-# FOLDER: SET/SEQUENCE/1.png, 2.png and so on, of places in changing light; without it random codes alone are searched.
+#   scripts/helpers/scale.sh [--document] [--mapped=N] [--rounds=N]
 . "$(dirname "$0")/lib.sh"
 
 out="$build/scale.json"
@@ -13,10 +12,9 @@ if [ "${1:-}" = --document ]; then
 fi
 for argument in "$@"; do
     case "$argument" in
-    --images=*) check_folders "${argument#--images=}" ;;
-    --codes=*[!0-9,]* | --mapped=*[!0-9]* | --rounds=*[!0-9]*) fail "$argument is no number" ;;
-    --codes=?* | --mapped=?* | --rounds=?*) ;;
-    *) fail "unknown option $argument; there are --images=, --codes=, --mapped=, --rounds=" ;;
+    --mapped=*[!0-9]* | --rounds=*[!0-9]*) fail "$argument is no number" ;;
+    --mapped=?* | --rounds=?*) ;;
+    *) fail "unknown option $argument; there are --mapped=, --rounds=" ;;
     esac
 done
 # shellcheck disable=SC2086

@@ -59,8 +59,7 @@ refused scripts/helpers/opencv_contrib_source.sh 3
 refused scripts/helpers/opencv_source.sh unknown
 refused scripts/helpers/postgres_test.sh no-such-python
 refused scripts/helpers/python_test.sh no-such-library
-refused scripts/helpers/scale.sh --codes=many
-refused scripts/helpers/scale.sh --images=no-such-folder
+refused scripts/helpers/scale.sh --mapped=many
 refused scripts/helpers/static_opencv.sh unknown
 refused scripts/helpers/synthetic.sh
 refused scripts/helpers/versions.sh trixie/

@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
-"""Measures searches among many codes, beside faiss: measure.py --out FILE [--images FOLDER] [--codes N,...] [--mapped N]
+"""Measures searches among many codes, beside faiss: measure.py --out FILE [--mapped N]
 
-Writes JSON: exact search at several widths, approximate indices of faiss at a recall of .95, the folder of a MappedIndex
-of --mapped codes, and Dask's workers on it. Everything that is compared takes turns, and the least time counts. --flat
-prints the exact search alone.
+Writes JSON: exact search at several widths, the folder of a MappedIndex of --mapped codes, and Dask's workers on it.
+Everything that is compared takes turns, and the least time counts. --flat prints the exact search alone.
 """
 import argparse
 import json
@@ -13,26 +12,17 @@ import sys
 import tempfile
 import time
 
-import cv2
 import faiss
 import numpy as np
 import opencv_iib
-from opencv_iib import HierarchicalMatcher, IIB, MappedIndex, shards
+from opencv_iib import HierarchicalMatcher, MappedIndex, shards
 
 WIDTHS = (16, 32, 64, 128, 170)
 BYTES = 64
-RECALL = .95
-PATIENCE = 60  # seconds: no parameter is raised further once a search of all queries takes longer
 
 
 def random_codes(seed, rows, width=BYTES):
     return np.random.default_rng(seed).integers(0, 256, (rows, width), np.uint8)
-
-
-def flipped(codes, share, seed):
-    """The codes with that share of their bits changed."""
-    random = np.random.default_rng(seed)
-    return codes ^ np.packbits(random.random((len(codes), codes.shape[1] * 8)) < share, axis=1)
 
 
 def least_seconds(calls, rounds):
@@ -72,90 +62,6 @@ def flat(trains, queries, rounds):
                              'faiss_ns': min(theirs) / pairs})
                 print(rows[-1], flush=True)
     return {'codes': trains, 'queries': queries, 'rows': rows}
-
-
-def photographs(folder, count, queries):
-    """Codes of images, turned and zoomed until there are enough, and of the same places in other light."""
-    iib = IIB.createPreset(IIB.PRESET_COMPACT)
-    random = np.random.default_rng(3)
-
-    def describe(image, points):
-        found = cv2.goodFeaturesToTrack(image, points, .0001, 3)[:, 0]
-        return iib.compute(image, np.column_stack([found, np.full(len(found), 32)]).astype(np.float32))[1]
-
-    sequences = [sorted(sequence.glob('*.png'), key=lambda path: int(path.stem))
-                 for sequence in sorted(pathlib.Path(folder).glob('*/*')) if (sequence / '1.png').exists()]
-    trains, total = [], 0
-    while total < count:
-        for images in sequences:
-            image = cv2.imread(str(images[0]), cv2.IMREAD_GRAYSCALE)
-            height, width = image.shape
-            if trains and total >= len(sequences) * 2000:  # the first round is of the images as they are
-                turn = cv2.getRotationMatrix2D((width / 2, height / 2), random.uniform(0, 360), random.uniform(.7, 1.4))
-                image = cv2.warpAffine(image, turn, (width, height), borderMode=cv2.BORDER_REFLECT)
-            trains.append(describe(image, 2000))
-            total += len(trains[-1])
-    others = np.concatenate([describe(cv2.imread(str(images[-1]), cv2.IMREAD_GRAYSCALE), 200) for images in sequences])
-    return np.concatenate(trains)[:count], others[random.permutation(len(others))[:queries]]
-
-
-def settings(codes):
-    """Approximate indices of faiss: name, how to make one, and values of the parameter that trades time for recall. No
-    graph of more than a million codes: it would be slower to build and to search than all others, as it is with fewer."""
-    bits = 8 * BYTES
-    power = round(np.log2(2 * codes ** .5))
-
-    def ivf():
-        return faiss.IndexBinaryIVF(faiss.IndexBinaryFlat(bits), bits, 2 ** power)
-
-    def hash_index():
-        return faiss.IndexBinaryMultiHash(bits, 16, 18)
-    indices = [('IndexBinaryIVF, %d lists' % 2 ** power, ivf, 'nprobe', [2 ** i for i in range(power + 1)]),
-               ('IndexBinaryMultiHash, 16 of 18 bits', hash_index, 'nflip', [0, 1, 2, 3])]
-    if codes <= 10**6:
-        indices.insert(1, ('IndexBinaryHNSW, M 16', lambda: faiss.IndexBinaryHNSW(bits, 16), 'efSearch',
-                           [2 ** i for i in range(3, 12)]))
-    return indices
-
-
-def approximate(name, train, query, rounds):
-    """Each index with the least parameter that has the recall; without one that has it, with the greatest."""
-    set_threads(2)
-    matcher = HierarchicalMatcher([BYTES])
-    matcher.add(train)
-    exact = matcher.knnMatchArrays(query)[1].ravel()
-    seconds, = least_seconds([lambda: matcher.knnMatchArrays(query)], rounds)
-    rows = [{'data': name, 'index': 'exact (HierarchicalMatcher)', 'setting': '', 'recall': 1, 'build_seconds': 0,
-             'queries_a_second': len(query) / seconds, 'bytes_a_code': BYTES}]
-    print(rows[-1], flush=True)
-    for label, make, parameter, values in settings(len(train)):
-        begin = time.perf_counter()
-        index = make()
-        if not index.is_trained:
-            index.train(train[np.random.default_rng(4).permutation(len(train))[:min(40 * index.nlist, 100000)]])
-        index.add(train)
-        build = time.perf_counter() - begin
-        for value in values:
-            setattr(index.hnsw if parameter == 'efSearch' else index, parameter, value)
-            begin = time.perf_counter()
-            recall = float(np.mean(index.search(query, 1)[0].ravel() == exact))
-            if recall >= RECALL or time.perf_counter() - begin > PATIENCE:
-                break
-        seconds, = least_seconds([lambda: index.search(query, 1)], rounds)
-        rows.append({'data': name, 'index': label, 'setting': f'{parameter} {value}', 'recall': recall,
-                     'build_seconds': build, 'queries_a_second': len(query) / seconds,
-                     'bytes_a_code': faiss.serialize_index_binary(index).nbytes / len(train)})
-        print(rows[-1], flush=True)
-    return rows
-
-
-def all_approximate(codes, images, rounds):
-    train = random_codes(1, codes)
-    rows = approximate('random, a tenth of the bits flipped', train, flipped(train[::len(train) // 1000][:1000], .1, 5),
-                       rounds)
-    if images:
-        rows += approximate('photographs', *photographs(images, codes, 1000), rounds)
-    return {'codes': codes, 'rows': rows}
 
 
 OPENING = '''
@@ -214,8 +120,6 @@ def main():
     wanted = parser.add_mutually_exclusive_group(required=True)
     wanted.add_argument('--out', metavar='FILE')
     wanted.add_argument('--flat', action='store_true')
-    parser.add_argument('--images', help='folder of SET/SEQUENCE/1.png and so on; none: random codes alone')
-    parser.add_argument('--codes', default='300000,1000000,10000000', help='in approximate indices (%(default)s)')
     parser.add_argument('--mapped', type=int, default=10**7, help='in the MappedIndex (%(default)s)')
     parser.add_argument('--rounds', type=int, default=4, help='(%(default)s)')
     arguments = parser.parse_args()
@@ -223,9 +127,7 @@ def main():
         flat(100000, 512, arguments.rounds)
         return
     result = {'faiss': faiss.__version__, 'faiss_options': faiss.get_compile_options().strip(),
-              'flat': flat(100000, 512, arguments.rounds),
-              'approximate': [all_approximate(int(codes), arguments.images, arguments.rounds)
-                              for codes in arguments.codes.split(',')]}
+              'flat': flat(100000, 512, arguments.rounds)}
     with tempfile.TemporaryDirectory() as folder:
         name = str(pathlib.Path(folder) / 'codes')
         result['mapped'] = mapped(name, arguments.mapped)
