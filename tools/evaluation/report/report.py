@@ -11,11 +11,13 @@ import jinja2
 
 import charts
 import descriptors
-import paper
 from paper_orders import orders
 from results import areas, column, describing_times, domain, file_name, group, interval, mean, mean_accuracy, read
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+# The figures of Lin et al., "Illumination-insensitive Binary Descriptor for Visual Measurement Based on Local Inter-patch
+# Invariance", by the questions that its tables answer and the names of our results; those that it lacks are empty.
+PAPER = read(HERE, "paper")
 CSV_FILES = ("fixed_points", "detected_points", "whole_tasks", "robustness", "learned", "comparison")
 
 
@@ -168,12 +170,14 @@ def paper_tables(tables):
     """The tables of the paper: ours, by domain, beside the paper's figures."""
     rows = {where: by_name(illumination(tables["fixed_points"], where)) for where in ("natural", "rendered")}
     found = []
-    for title, figures, plain in paper.TABLES:
+    for (title,), members in group(PAPER, "question").items():
         lines = []
-        for name, theirs in figures.items():
-            ours = [score(rows[where].get(name, [])) for where in ("natural", "rendered")]
+        for row in members:
+            ours = [score(rows[where].get(row["configuration"], [])) for where in ("natural", "rendered")]
+            theirs = row["natural_map"] and [[float(row[which + "_" + metric]) for metric in ("map", "mar")]
+                                             for which in ("natural", "synthetic")]
             if any(ours):
-                lines.append((name, plain.get(name), ours, theirs and (theirs[0:2], theirs[2:4])))
+                lines.append((row["configuration"], row["plain"], ours, theirs))
         if lines:
             found.append((title, lines))
     return found
@@ -182,7 +186,7 @@ def paper_tables(tables):
 def paper_orders(tables):
     scores = {name: score(members) for name, members in by_name(illumination(tables["fixed_points"])).items()}
     return orders({n: s["recall"] for n, s in scores.items()}, {n: s["precision"] for n, s in scores.items()},
-                  paper.BASELINES)
+                  [row["configuration"] for row in PAPER])
 
 
 def maps(tables):
