@@ -105,7 +105,7 @@ float prevailingAngle(const DescriptorKernels& kernels, const T* pixels, const i
     {
         const int* const above = cells + row * CELLS;
         const ImageChannelRows<int> out = {0, gx + row * INNER, gy + row * INNER, 0, 0, steps + row * INNER};
-        rows.imageChannels({above, above + CELLS, above + 2 * CELLS}, 0, out, INNER);
+        rows.imageChannels({above, above + CELLS, above + 2 * CELLS}, 0, out, 0, INNER);
     }
     kernels.pixels(T()).rotated.gradientVotes(gx, gy, weights.of, VOTES, votes);
     int64 bins[BINS] = {};

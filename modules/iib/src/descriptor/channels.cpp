@@ -146,7 +146,7 @@ template <typename T> const T* const* ChannelRows<T>::compute(int y)
 {
     y = reflected(y, channels[0].map.rows);
     if (gradientOf)
-        kernels.imageChannels(imageRows(y), signedOffset, imageChannels(row(FIRST_PLANE)), source.size());
+        kernels.imageChannels(imageRows(y), signedOffset, imageChannels(row(FIRST_PLANE)), 0, source.size());
     for (size_t i = 0; i < channels.size(); i++)
     {
         T* const out = row(FIRST_PLANE + (int)i);
@@ -160,7 +160,7 @@ template <typename T> const T* const* ChannelRows<T>::compute(int y)
 template <typename T> void ChannelRows<T>::add(int y, const T* above, T* out)
 {
     y = reflected(y, channels[0].map.rows);
-    kernels.addImageChannels(imageRows(y), signedOffset, imageChannels(out), above - out, source.size());
+    kernels.imageChannels(imageRows(y), signedOffset, imageChannels(out), above - out, source.size());
     for (size_t i = 0; i < channels.size(); i++)
         reflect(out + i * step);
 }

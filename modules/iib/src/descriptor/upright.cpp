@@ -4,7 +4,7 @@
 
 #include "compute.hpp"
 
-#include "channels.hpp"
+#include "columns.hpp"
 
 namespace cv {
 namespace iib {
@@ -77,37 +77,6 @@ private:
     const int longestPart;  //!< a Sum holds the sums over as many rows of as many pixels
 };
 
-//! As IntegralBand, with sums down the columns alone: they are cheaper to make, and to add up where cells are narrow.
-class ColumnBand
-{
-public:
-    //! @param channels 1 to GROUP_CHANNELS of the image; they, the kernels and the memory outlive the band.
-    //! @param rows how many rows, the newest included, a reader looks at.
-    ColumnBand(const std::vector<Channel>& channels, Rect area, int rows, const DescriptorKernels& kernels_,
-            ScratchMemory& rowMemory, ScratchMemory& ringMemory)
-        : channelRows(channels, area, maxGradient(channels), kernels_.pixels(short()).rows, rowMemory),
-          ring(area.tl(), rows, channelRows.rowSize() + ROW_PADDING, 0, ringMemory), kernels(kernels_)
-    {
-    }
-
-    //! Adds the image's rows up to and without y, area.y <= y <= area.y + area.height.
-    void advance(int y)
-    {
-        ring.advance(y, [&](int row, const short* above, short* out) { channelRows.add(row, above, out); });
-    }
-
-    //! Sums over n x n cells.
-    void cells(const CellEdges& edges, int n, CellGrid<ushort>& sums) const
-    {
-        kernels.columnCells(ring.rows(), channelRows.places(), edges.x, edges.y, n, sums);
-    }
-
-private:
-    ChannelRows<short> channelRows;
-    RowRing<short> ring;
-    const DescriptorKernels& kernels;
-};
-
 //! By sums over cells that a Band makes.
 template <typename Band, typename Sum>
 void describeBatch(const DescriptorPlan& plan, const ChannelGroup& group,
@@ -140,20 +109,6 @@ double largestSide(const KeyPointBatch& batch, const std::vector<SupportRegion>&
     for (int k : batch.keypoints)
         side = std::max(side, regions[k].side);
     return side;
-}
-
-//! Whether sums down the columns take less time than integral images: where cells are narrow, and keypoints are few.
-bool columnsAreFaster(const DescriptorPlan& plan, const std::vector<Channel>& channels,
-        const KeyPointBatch& batch, double side)
-{
-    const double pixelsOfKeyPoint = 256;  // so many make up for the longer time that a keypoint's cells take
-    bool ofImage = maxGradient(channels) > 0;
-    for (const Channel& c : channels)
-        ofImage = ofImage && c.kind != 0;
-    const int n = plan.cellsInRow();
-    // 7 * (64.f / 7), the region of FAST's keypoints, is a little more than 64
-    return plan.kernels.columnCells && ofImage && n % 8 == 0 && side <= NARROW_CELL * n * 1.000001 &&
-           pixelsOfKeyPoint * (double)batch.keypoints.size() <= (double)batch.area.width * batch.area.height;
 }
 
 void describeGroup(const DescriptorPlan& plan, const ChannelGroup& group,

@@ -208,9 +208,9 @@ template <typename T> void checkAddedChannels(int limit)
                     p, p + step, p + 2 * step, p + 3 * step, p + 4 * step, p + 5 * step};
             return out;
         };
-        kernels.imageChannels(rows, (T)(4 * limit), planes(alone.data()), width);
+        kernels.imageChannels(rows, (T)(4 * limit), planes(alone.data()), 0, width);
         T* const added = sums.data() + 6 * step;
-        kernels.addImageChannels(rows, (T)(4 * limit), planes(added), -6 * (ptrdiff_t)step, width);
+        kernels.imageChannels(rows, (T)(4 * limit), planes(added), -6 * (ptrdiff_t)step, width);
         for (int i = 0; i < 6; i++)
             for (int x = 0; x < width; x++)
                 ASSERT_EQ((T)(sums[i * step + x] + alone[i * step + x]), added[i * step + x])

@@ -46,10 +46,9 @@ template <typename T> struct ImageChannelRows
 template <typename T> struct RowKernels
 {
     /** Sobel 3x3.
-     @param offset added to the gradients with signs. */
-    void (*imageChannels)(const ImageRows<T>& rows, T offset, const ImageChannelRows<T>& out, int width);
-    //! The same, and adds to each value, modulo 2^16 or 2^32, the one that is `above` places behind its own.
-    void (*addImageChannels)(
+     @param offset added to the gradients with signs.
+     @param above if not 0, each value has the one so many places behind its own added, modulo 2^16 or 2^32. */
+    void (*imageChannels)(
             const ImageRows<T>& rows, T offset, const ImageChannelRows<T>& out, ptrdiff_t above, int width);
     //! The orientation alone.
     void (*orientation)(const T* gx, const T* gy, T* steps, int width);

@@ -8,7 +8,7 @@
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "bits.simd.hpp"
-#include "cells.simd.hpp"
+#include "columns.simd.hpp"
 #include "rotated_samples.simd.hpp"
 #include "rows.simd.hpp"
 #endif
@@ -37,11 +37,7 @@ DescriptorKernels makeTable()
     k.sumIntRow = sumRowOf16Bit;
     k.cellEdges = cellEdges;
     k.shortSums.cells = cellSums<ushort>;
-#if IIB_SUMS_SEGMENTS
     k.columnCells = columnCells;
-#else
-    k.columnCells = 0;
-#endif
     k.longSums.cells = cellSums<unsigned>;
     for (int mapping = 0; mapping < MAPPINGS; mapping++)
     {

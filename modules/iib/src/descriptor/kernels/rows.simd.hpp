@@ -137,37 +137,24 @@ template <typename T> void orientationRow(const T* gx, const T* gy, T* steps, in
     }
 }
 
-//! Stores the values of a channel.
-struct Store
-{
-    template <typename T, typename V> void operator()(T* out, const V& values) const { v_store(out, values); }
-};
-
-//! Adds the values of a channel to others, and stores the sums.
-struct AddTo
-{
-    ptrdiff_t above;
-
-    template <typename T, typename V> void operator()(T* out, const V& values) const
-    {
-        v_store(out, addModulo(values, vx_load(out + above)));
-    }
-};
-
 //! Two vectors at once, so that their divisions overlap.
-template <typename T, typename Put>
-inline void imageChannelRows(
-        const ImageRows<T>& in, T signedOffset, ImageChannelRows<T> out, int width, const Put& put)
+template <typename T>
+void imageChannelRows(
+        const ImageRows<T>& in, T signedOffset, const ImageChannelRows<T>& to, ptrdiff_t above, int width)
 {
     typedef decltype(setAll(T())) V;
     constexpr int N = VTraits<V>::max_nlanes;
-    const ImageRows<T> rows = in;  // a copy, which stores surely do not change
+    const ImageRows<T> rows = in;  // copies, which stores surely do not change
+    const ImageChannelRows<T> out = to;
     const V offset = setAll(signedOffset);
     for (int x = 0; x < width; x += 2 * N)
     {
-        const T *const above = rows.above + x, *const middle = rows.middle + x, *const below = rows.below + x;
-        const auto g = Gradient<T, V>::sobel(above, middle, below);
-        const auto h = Gradient<T, V>::sobel(above + N, middle + N, below + N);
+        const T *const top = rows.above + x, *const middle = rows.middle + x, *const below = rows.below + x;
+        const auto g = Gradient<T, V>::sobel(top, middle, below);
+        const auto h = Gradient<T, V>::sobel(top + N, middle + N, below + N);
+        const auto put = [above](T* to, const V& values) {
+            v_store(to, above ? addModulo(values, vx_load(to + above)) : values);
+        };
         const auto putBoth = [&](T* row, const V& first, const V& second) {
             put(row + x, first);
             put(row + x + N, second);
@@ -188,20 +175,6 @@ inline void imageChannelRows(
             putBoth(out.steps, g.orientation(first()), h.orientation(second()));
         }
     }
-}
-
-template <typename T>
-void imageChannelRows(const ImageRows<T>& rows, T signedOffset, const ImageChannelRows<T>& out, int width)
-{
-    imageChannelRows(rows, signedOffset, out, width, Store());
-}
-
-template <typename T>
-void addImageChannelRows(
-        const ImageRows<T>& rows, T signedOffset, const ImageChannelRows<T>& out, ptrdiff_t above, int width)
-{
-    const AddTo put = {above};
-    imageChannelRows(rows, signedOffset, out, width, put);
 }
 
 //! The last vector may overlap the one before: nothing past the last pixel is read.
@@ -393,8 +366,7 @@ void sumRowOf16Bit(const int* const planes[GROUP_CHANNELS], int width, const uns
 
 template <typename T> RowKernels<T> rowKernels()
 {
-    const RowKernels<T> k = {imageChannelRows<T>, addImageChannelRows<T>, orientationRow<T>, widenRow,
-            widenRow, interleaveRow<T>};
+    const RowKernels<T> k = {imageChannelRows<T>, orientationRow<T>, widenRow, widenRow, interleaveRow<T>};
     return k;
 }
 
