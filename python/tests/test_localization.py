@@ -246,21 +246,6 @@ class Localization(unittest.TestCase):
             with mock.patch('pycolmap.infer_camera_from_image', return_value=told):
                 self.assertEqual(find_camera('', WIDTH, HEIGHT, read_map(self.map).cameras).focal_length_x, taken)
 
-    def test_maps_without_the_arrays_of_their_geometry_open(self):
-        old = self.path('map')
-        shutil.copytree(self.map, old)
-        with open(os.path.join(old, 'map.json')) as file:
-            manifest = json.load(file)
-        del manifest['cameras']
-        for name in ('points.npy', 'sees.npy', 'views.npy'):
-            os.unlink(os.path.join(old, name))
-            del manifest['sha256'][name]
-        with open(os.path.join(old, 'map.json'), 'w') as file:
-            json.dump(manifest, file)
-        new = Localizer(self.map).localize(self.grey('a'), parse_camera(CAMERA))
-        found = Localizer(old).localize(self.grey('a'), read_map(old).cameras[0])
-        np.testing.assert_array_equal(found.cam_from_world.params, new.cam_from_world.params)
-
     def test_text_models_and_any_unit(self):
         model, out, images = self.path('model'), self.path('map'), self.path('images')
         shutil.copytree(self.images, images)
@@ -402,6 +387,11 @@ class Localization(unittest.TestCase):
                     file.seek(-9, os.SEEK_END)
                     file.write(b'#')
                 self.check_error('or a damaged one', 'localize', '--map', damaged, *arguments)
+        older = self.path('map')
+        os.makedirs(older)
+        with open(os.path.join(older, 'map.json'), 'w') as file:
+            json.dump({'format': 1}, file)
+        self.check_error('its format is not that of this version: make it again$', 'localize', '--map', older, *arguments)
 
     def test_wrong_cameras_get_one_line(self):
         for text, pattern in (('FISH,1,2,3', 'no camera model FISH: there are SIMPLE_PINHOLE, '),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include "numbers.hpp"
 #include "opencv2/calib3d.hpp"
@@ -11,11 +12,8 @@
 namespace iib_localization {
 namespace {
 
-//! By COLMAP's numbers; those from KNOWN on are only read.
-const CameraModel MODELS[] = {{"SIMPLE_PINHOLE", 3}, {"PINHOLE", 4}, {"SIMPLE_RADIAL", 4}, {"RADIAL", 5},
-        {"OPENCV", 8}, {"OPENCV_FISHEYE", 8}, {"FULL_OPENCV", 12}, {"FOV", 5}, {"SIMPLE_RADIAL_FISHEYE", 4},
-        {"RADIAL_FISHEYE", 5}, {"THIN_PRISM_FISHEYE", 12}, {"RAD_TAN_THIN_PRISM_FISHEYE", 16}};
-constexpr int KNOWN = 6;
+const std::map<std::string, size_t> MODELS = {{"SIMPLE_PINHOLE", 3}, {"PINHOLE", 4}, {"SIMPLE_RADIAL", 4},
+        {"RADIAL", 5}, {"OPENCV", 8}, {"OPENCV_FISHEYE", 8}};  // and how many parameters they have
 
 [[noreturn]] void fail(const std::string& what) { CV_Error(cv::Error::StsBadArg, what); }
 
@@ -27,28 +25,20 @@ bool isSimple(const std::string& model)
 
 const Camera& checked(const Camera& camera)
 {
-    const auto model = std::find_if(
-            MODELS, MODELS + KNOWN, [&](const CameraModel& m) { return m.name == camera.model; });
+    const auto model = MODELS.find(camera.model);
     const std::vector<double>& p = camera.parameters;
-    if (model == MODELS + KNOWN)
+    if (model == MODELS.end())
         fail("camera model " + camera.model +
                 " is not one of SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV and OPENCV_FISHEYE");
-    if (p.size() != model->parameters)
-        fail(cv::format("camera model %s has %d parameters, not %d", camera.model.c_str(),
-                int(model->parameters), int(p.size())));
+    if (p.size() != model->second)
+        fail(cv::format("camera model %s has %d parameters, not %d", camera.model.c_str(), int(model->second),
+                int(p.size())));
     if (camera.size.empty() || !(p[0] > 0) || !(isSimple(camera.model) || p[1] > 0))
         fail("a camera's size and focal length must be positive");
     return camera;
 }
 
 }  // namespace
-
-CameraModel cameraModel(int number)
-{
-    if (number < 0 || size_t(number) >= std::size(MODELS))
-        fail("there is no camera model of number " + std::to_string(number));
-    return MODELS[number];
-}
 
 Lens::Lens(const Camera& camera)
 {

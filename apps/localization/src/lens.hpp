@@ -7,15 +7,6 @@ namespace iib_localization {
 
 using cv::iib::Camera;
 
-//! A camera model by COLMAP's number.
-struct CameraModel
-{
-    std::string name;
-    size_t parameters;
-};
-//! @throws cv::Exception for a number that COLMAP does not have.
-CameraModel cameraModel(int number);
-
 /** What a camera does to rays, by OpenCV's functions. Here and everywhere but in COLMAP's files, the centre of the first pixel
 is (0, 0). */
 class Lens

@@ -26,16 +26,6 @@ constexpr double LEAST_INLIERS = 15, LEAST_SHARE = .02;  // in an unknown place 
 constexpr double MAX_BOUND = .1;  // of the distance to the points: three standard deviations of the place
 constexpr double LEAST_DEVIATION = .2;  // pixels
 
-//! An image of the map.
-struct View
-{
-    cv::Mat codes;
-    std::vector<int64_t> numbers;  // of the points, for each code
-    std::vector<cv::Point3d> points;
-    cv::Affine3d pose;
-    double depth = 1;  // of what it sees
-};
-
 struct Features
 {
     std::vector<cv::Point2d> pixels;
@@ -147,32 +137,16 @@ using namespace iib_localization;
 
 struct cv::iib::Localizer::Impl
 {
-    explicit Impl(const Map& map, int points)
-        : iib(IIB::createRecommended(points ? points : map.points)),
+    Impl(Map&& read, int points)
+        : map(std::move(read)), iib(IIB::createRecommended(points ? points : map.keypoints)),
           matcher(HierarchicalMatcher::createRecommended())
     {
+        if (map.codes.cols != iib->descriptorSize())
+            CV_Error(Error::StsError, "the map's codes are not those of this version: make it again");
         std::vector<Mat> codes;
-        for (const auto& [id, image] : map.model.images)
-        {
-            const Mat& known = map.codes.at(id);
-            if (!known.empty() && known.cols != iib->descriptorSize())
-                CV_Error(Error::StsError, "the map's codes are not those of this version: make it again");
-            View view = {map.codes.at(id), image.points, {}, image.cameraFromWorld};
-            for (int64_t number : image.points)
-                view.points.push_back(map.model.points.at(number));
-            if (!view.points.empty())
-                view.depth = medianDistance(inCamera(view.points, view.pose));
-            codes.push_back(view.codes);
-            views.push_back(view);
-        }
+        for (const View& v : map.views)
+            codes.push_back(map.codes.rowRange(v.rows));
         votes = std::make_unique<Retrieval>(codes);
-        const auto same = [](const Camera& a, const Camera& b) {
-            return a.model == b.model && a.size == b.size && a.parameters == b.parameters;
-        };
-        for (const auto& [id, camera] : map.model.cameras)
-            if (std::none_of(cameras.begin(), cameras.end(),
-                        [&, &c = camera](const Camera& o) { return same(o, c); }))
-                cameras.push_back(camera);
     }
 
     Features extract(const Mat& image) const
@@ -190,39 +164,41 @@ struct cv::iib::Localizer::Impl
     {
         std::vector<double> distances;
         const Vec3d centre = pose.inv().translation();
-        for (const View& v : views)
-        {
-            const double cosine = pose.rotation().row(2).dot(v.pose.rotation().row(2));
-            distances.push_back(norm(centre - v.pose.inv().translation()) / v.depth +
-                                std::acos(std::clamp(cosine, -1., 1.)));
-        }
-        return best(views.size(), NEAREST, [&](size_t a, size_t b) { return distances[a] < distances[b]; });
+        const Matx33d rotation = pose.rotation();
+        const Vec3d direction(rotation.val + 6);
+        for (const View& v : map.views)
+            distances.push_back(norm(centre - v.centre) / v.depth +
+                                std::acos(std::clamp(direction.dot(v.direction), -1., 1.)));
+        return best(
+                map.views.size(), NEAREST, [&](size_t a, size_t b) { return distances[a] < distances[b]; });
     }
 
     std::vector<size_t> similar(const Mat& codes) const
     {
         const std::vector<float> voted = votes->vote(codes);
-        std::vector<size_t> counts(views.size());
+        std::vector<size_t> counts(map.views.size());
         for (size_t k :
-                best(views.size(), SHORTLIST, [&](size_t a, size_t b) { return voted[a] > voted[b]; }))
+                best(counts.size(), SHORTLIST, [&](size_t a, size_t b) { return voted[a] > voted[b]; }))
             if (voted[k] > 0)
             {
                 std::vector<DMatch> found;
-                matcher->match(codes.rowRange(0, std::min(codes.rows, RANKING)), views[k].codes, found);
+                matcher->match(codes.rowRange(0, std::min(codes.rows, RANKING)),
+                        map.codes.rowRange(map.views[k].rows), found);
                 counts[k] = found.size();
             }
         std::vector<size_t> order =
-                best(views.size(), CANDIDATES, [&](size_t a, size_t b) { return counts[a] > counts[b]; });
+                best(counts.size(), CANDIDATES, [&](size_t a, size_t b) { return counts[a] > counts[b]; });
         order.erase(std::find_if(order.begin(), order.end(), [&](size_t k) { return counts[k] == 0; }),
                 order.end());
         return order;
     }
 
     //! Which keypoints (rows) may match which points (columns): those near where the prior has them.
-    static Mat gate(const Features& features, const View& view, const Camera& camera, const Affine3d& prior)
+    static Mat gate(const Features& features, const std::vector<Point3d>& points, const Camera& camera,
+            const Affine3d& prior)
     {
         const double limit = std::round(GATE * std::max(camera.size.width, camera.size.height));
-        const std::vector<Point2d> places = Lens(camera).project(inCamera(view.points, prior));
+        const std::vector<Point2d> places = Lens(camera).project(inCamera(points, prior));
         Mat mask(int(features.pixels.size()), int(places.size()), CV_8U);
         for (int y = 0; y < mask.rows; y++)
             for (int x = 0; x < mask.cols; x++)
@@ -241,25 +217,28 @@ struct cv::iib::Localizer::Impl
         std::vector<Match> matches;
         for (size_t k : candidates)
         {
-            const View& view = views[k];
+            const Range rows = map.views[k].rows;
+            const int* const numbers = map.sees.ptr<int>(rows.start);
+            std::vector<Point3d> points;
+            for (int i = 0; i < rows.size(); i++)
+                points.push_back(map.point(numbers[i]));
             std::vector<DMatch> found;
-            if (!view.points.empty())
-                matcher->match(features.codes, view.codes, found,
-                        prior ? gate(features, view, camera, *prior) : Mat());
+            if (!points.empty())
+                matcher->match(features.codes, map.codes.rowRange(rows), found,
+                        prior ? gate(features, points, camera, *prior) : Mat());
             for (const DMatch& m : found)
-                matches.push_back({features.pixels[size_t(m.queryIdx)], view.points[size_t(m.trainIdx)],
-                        view.numbers[size_t(m.trainIdx)], m.queryIdx, int(m.distance)});
+                matches.push_back({features.pixels[size_t(m.queryIdx)], points[size_t(m.trainIdx)],
+                        numbers[m.trainIdx], m.queryIdx, int(m.distance)});
         }
         if (matches.size() >= LEAST_INLIERS)
             iib_localization::locate(std::move(matches), camera, location);
         return location;
     }
 
+    const Map map;
     Ptr<IIB> iib;
     Ptr<HierarchicalMatcher> matcher;
-    std::vector<View> views;
     std::unique_ptr<Retrieval> votes;
-    std::vector<Camera> cameras;
 };
 
 cv::iib::Localizer::Localizer(const std::string& map, int points)
@@ -269,7 +248,7 @@ cv::iib::Localizer::Localizer(const std::string& map, int points)
 
 cv::iib::Localizer::~Localizer() = default;
 
-const std::vector<cv::iib::Camera>& cv::iib::Localizer::cameras() const { return impl_->cameras; }
+const std::vector<cv::iib::Camera>& cv::iib::Localizer::cameras() const { return impl_->map.cameras; }
 
 cv::iib::Location cv::iib::Localizer::localize(
         InputArray input, const Camera& camera, const Affine3d* prior) const

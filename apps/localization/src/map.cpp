@@ -6,12 +6,11 @@
 #include <sstream>
 
 #include "npy.hpp"
-#include "sha256.hpp"
 
 namespace iib_localization {
 namespace {
 
-constexpr int FORMAT = 1;
+constexpr int FORMAT = 2;
 
 Map readFiles(const std::string& folder)
 {
@@ -23,31 +22,35 @@ Map readFiles(const std::string& folder)
     const cv::FileStorage manifest(
             text.str(), cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_JSON);
     if (!manifest["format"].isInt() || int(manifest["format"]) != FORMAT)
-        CV_Error(cv::Error::StsError, "its format is unknown to this version");
-    for (const cv::FileNode& file : manifest["sha256"])
-        if (sha256OfFile(folder + "/" + file.name()) != std::string(file))
-            CV_Error(cv::Error::StsError, file.name() + " is damaged");
+        CV_Error(cv::Error::StsError, "its format is not that of this version: make it again");
+    const auto array = [&](const std::string& name, int type) {
+        return readNpy(folder + "/" + name, type, std::string(manifest["crc32"][name]));
+    };
     Map map;
-    map.points = int(manifest["points"]);
-    map.model = readModel(folder);
-    const cv::Mat codes = readNpy(folder + "/codes.npy");
-    int row = 0;
-    for (const cv::FileNode& image : manifest["images"])
+    map.keypoints = int(manifest["points"]);
+    map.codes = array("codes.npy", CV_8U);
+    map.sees = array("sees.npy", CV_32S);
+    map.points = array("points.npy", CV_64F);
+    const cv::Mat views = array("views.npy", CV_64F);
+    for (const cv::FileNode& c : manifest["cameras"])
     {
-        const int id = int(image[0]), rows = int(image[1]);
-        const auto found = map.model.images.find(id);
-        if (found == map.model.images.end() || rows < 0 || rows > codes.rows - row ||
-                found->second.points.size() != size_t(rows))
-            CV_Error(cv::Error::StsError, cv::format("image %d has not a code for each point", id));
-        for (int64_t point : found->second.points)
-            if (point < 0)
-                CV_Error(cv::Error::StsError, found->second.name + " has a code without a point");
-        map.codes[id] = codes.rowRange(row, row + rows);
-        row += rows;
+        map.cameras.push_back({std::string(c[0]), {int(c[1]), int(c[2])}, {}});
+        c[3] >> map.cameras.back().parameters;
     }
-    if (map.codes.empty() || map.codes.size() != map.model.images.size() || row != codes.rows ||
-            map.points < 1)
-        CV_Error(cv::Error::StsError, "it does not have the codes of its images");
+    const cv::FileNode images = manifest["images"];
+    bool valid = map.keypoints > 0 && views.rows > 0 && views.rows == int(images.size()) && views.cols == 7 &&
+                 map.points.cols == 3 && map.sees.cols == 1 && map.sees.rows == map.codes.rows &&
+                 cv::checkRange(map.sees, true, nullptr, 0, map.points.rows);
+    for (int i = 0, row = 0; valid && i < views.rows; i++)
+    {
+        const double* v = views.ptr<double>(i);
+        const int end = row + int(images[i][1]);
+        valid = end >= row && (i + 1 < views.rows ? end <= map.codes.rows : end == map.codes.rows);
+        map.views.push_back({{row, end}, cv::Vec3d(v), cv::Vec3d(v + 3), v[6]});
+        row = end;
+    }
+    if (!valid)
+        CV_Error(cv::Error::StsError, "its files contradict each other");
     return map;
 }
 

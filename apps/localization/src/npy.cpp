@@ -2,52 +2,50 @@
 
 #include "npy.hpp"
 
-#include <cstdint>
+#include <zlib.h>
+
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 
 namespace iib_localization {
 namespace {
 
 const std::string MAGIC("\x93NUMPY\x01\0", 8);
+constexpr size_t FRONT = 10;  // magic and length of the header
 
-//! What stands after a key of the header, which is written as a Python dictionary, blanks left out.
-std::string valueOf(const std::string& header, const std::string& key)
+//! An array to read into, empty for another header than that of the type.
+cv::Mat arrayOf(const std::string& header, int type)
 {
-    const size_t at = header.find("'" + key + "':");
-    return at == std::string::npos ? std::string() : header.substr(at + key.size() + 3);
+    const std::string name = type == CV_8U ? "|u1" : type == CV_32S ? "<i4" : "<f8";
+    const std::string shape = "{'descr': '" + name + "', 'fortran_order': False, 'shape': (%d,%d";
+    int rows = 0, columns = 1;
+    const bool valid = std::sscanf(header.c_str(), shape.c_str(), &rows, &columns) >= 1;
+    return valid && rows > 0 && columns > 0 ? cv::Mat(rows, columns, type) : cv::Mat();
 }
 
 }  // namespace
 
-cv::Mat readNpy(const std::string& file)
+cv::Mat readNpy(const std::string& file, int type, const std::string& checksum)
 {
     std::ifstream in(file, std::ios::binary);
-    std::string magic(MAGIC.size(), ' '), header, packed;
-    unsigned char size[2] = {};
-    in.read(&magic[0], std::streamsize(magic.size()));
-    in.read(reinterpret_cast<char*>(size), sizeof(size));
-    header.resize(size[0] | size_t(size[1]) << 8);
-    if (!in.read(&header[0], std::streamsize(header.size())) || magic != MAGIC)
-        CV_Error(cv::Error::StsParseError, file + ": not a readable .npy file");
-    for (char c : header)
-        if (c != ' ')
-            packed += c;
-    int rows = 0, columns = 0;
-    char closing = 0;
-    const bool flat =
-            std::sscanf(valueOf(packed, "shape").c_str(), "(%d,%d%c", &rows, &columns, &closing) == 3;
-    if (valueOf(packed, "descr").find("'|u1'") != 0 || valueOf(packed, "fortran_order").find("False") != 0 ||
-            !flat || closing != ')' || rows < 0 || columns < 1)
-        CV_Error(cv::Error::StsUnsupportedFormat, file + ": not a two-dimensional array of uint8 in C order");
-    const std::streampos start = in.tellg();
-    in.seekg(0, std::ios::end);
-    if (!in || uint64_t(in.tellg() - start) != uint64_t(rows) * uint64_t(columns))
-        CV_Error(cv::Error::StsParseError, file + ": not as many bytes as its header says");
-    in.seekg(start);
-    cv::Mat array(rows, columns, CV_8U);
-    if (!in.read(array.ptr<char>(), std::streamsize(array.total())))
-        CV_Error(cv::Error::StsParseError, file + ": cannot be read to its end");
+    std::string head(FRONT, ' ');
+    std::error_code error;
+    const uint64_t size = std::filesystem::file_size(file, error);
+    cv::Mat array;
+    if (!error && in.read(&head[0], FRONT) && head.compare(0, MAGIC.size(), MAGIC) == 0)
+    {
+        head.resize(FRONT + (uchar(head[8]) | size_t(uchar(head[9])) << 8));
+        in.read(&head[FRONT], std::streamsize(head.size() - FRONT));
+        array = arrayOf(head.substr(FRONT), type);
+    }
+    const size_t bytes = array.total() * array.elemSize();
+    if (array.empty() || size != head.size() + bytes || !in.read(array.ptr<char>(), std::streamsize(bytes)))
+        CV_Error(cv::Error::StsParseError, file + " is missing or damaged");
+    uLong sum = ::crc32_z(0, reinterpret_cast<const uchar*>(head.data()), head.size());
+    sum = ::crc32_z(sum, array.ptr(), bytes);
+    if (cv::format("%08lx", sum) != checksum)
+        CV_Error(cv::Error::StsParseError, file + " is damaged");
     return array;
 }
 

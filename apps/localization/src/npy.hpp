@@ -7,8 +7,10 @@
 
 namespace iib_localization {
 
-/** A two-dimensional array of bytes of NumPy's `.npy` format, version 1, in C order.
+/** An array of one or two dimensions of NumPy's `.npy` format, version 1, in C order.
+@param type CV_8U, CV_32S or CV_64F: that of the array.
+@param checksum CRC-32 of the file, in eight hexadecimal digits.
 @throws cv::Exception with the file's name for anything else. */
-cv::Mat readNpy(const std::string& file);
+cv::Mat readNpy(const std::string& file, int type, const std::string& checksum);
 
 }  // namespace iib_localization

@@ -10,9 +10,9 @@ struct Match
 {
     cv::Point2d pixel;
     cv::Point3d point;
-    int64_t number = 0;  //!< of the point
-    int keypoint = 0;    //!< the image's
-    int bits = 0;        //!< in which the codes differ
+    int number = 0;    //!< of the point
+    int keypoint = 0;  //!< the image's
+    int bits = 0;      //!< in which the codes differ
 };
 
 //! Camera from world that most matches agree on to `limit` pixels, not refined (USAC with MAGSAC's score). False if there is none.

@@ -9,62 +9,25 @@ using namespace iib_localization;
 Map smallMap()
 {
     Map map;
-    map.points = 500;
-    map.model.cameras[3] = {"PINHOLE", {640, 480}, {500, 500, 320, 240}};
-    map.model.points = {{7, {0, 0, 5}}, {8, {1, 0, 5}}, {9, {0.1, 1, 6}}};
-    cv::Mat codes(3, 128, CV_8U);
-    cv::RNG(1).fill(codes, cv::RNG::UNIFORM, 0, 256);
-    const cv::Affine3d pose(cv::Vec3d(0.1, -0.2, 0.3), cv::Vec3d(1, 2, 3));
-    map.model.images = {
-            {2, {"a b/c.png", pose, {7, 9}}}, {5, {"none.png", pose, {}}}, {6, {"b.png", pose, {8}}}};
-    map.codes = {{2, codes.rowRange(0, 2)}, {5, cv::Mat(0, 128, CV_8U)}, {6, codes.rowRange(2, 3)}};
+    map.keypoints = 500;
+    map.cameras = {{"PINHOLE", {640, 480}, {500, 500, 320, 240.5}}, {"FOV", {64, 48}, {50, 50, 32, 24, .5}}};
+    map.points = (cv::Mat_<double>(3, 3) << 0, 0, 5, 1, 0, 5, .1, 1, 6);
+    map.sees = (cv::Mat_<int>(3, 1) << 0, 2, 1);
+    map.codes.create(3, 128, CV_8U);
+    cv::RNG(1).fill(map.codes, cv::RNG::UNIFORM, 0, 256);
+    const cv::Vec3d centre(1, 2, 3), ahead(0, 0, 1);
+    map.views = {{{0, 2}, centre, ahead, 4}, {{2, 2}, centre, ahead, 1}, {{2, 3}, -centre, ahead, 5}};
     return map;
 }
 
-TEST(Sha256, of_known_texts)
+bool equal(const cv::Mat& a, const cv::Mat& b)
 {
-    // FIPS 180-2, appendix B; the third by Python's hashlib
-    const TestFolder folder;
-    folder.write("abc", "abc");
-    folder.write("two", "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq");
-    folder.write("large", std::string(1 << 20, 'a'));
-    EXPECT_EQ("ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad",
-            sha256OfFile(folder.path("abc")));
-    EXPECT_EQ("248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1",
-            sha256OfFile(folder.path("two")));
-    EXPECT_EQ("9bc1b2a288b26af7257a36277ae3816a7d4f16e89c1e7e77d0a5c48bad62b360",
-            sha256OfFile(folder.path("large")));
-    EXPECT_EQ("", sha256OfFile(folder.path("none")));
+    return a.type() == b.type() && a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
 
-TEST(Map, read_as_written)
+struct SmallMap : public testing::Test
 {
-    const TestFolder folder;
-    folder.makeFolder("map");
-    const Map map = smallMap();
-    writeMap(folder.path("map"), map);
-    const Map back = readMap(folder.path("map"));
-    EXPECT_EQ(map.model.points, back.model.points);
-    EXPECT_EQ("PINHOLE", back.model.cameras.at(3).model);
-    EXPECT_EQ(cv::Size(640, 480), back.model.cameras.at(3).size);
-    EXPECT_EQ(map.model.cameras.at(3).parameters, back.model.cameras.at(3).parameters);
-    EXPECT_EQ(500, back.points);
-    ASSERT_EQ(3u, back.model.images.size());
-    for (const auto& [id, image] : map.model.images)
-    {
-        const ModelImage& other = back.model.images.at(id);
-        EXPECT_EQ(image.name, other.name);
-        EXPECT_EQ(image.points, other.points);
-        EXPECT_LT(cv::norm(image.cameraFromWorld.matrix - other.cameraFromWorld.matrix), 1e-12);
-        const cv::Mat &codes = map.codes.at(id), &read = back.codes.at(id);
-        ASSERT_EQ(codes.rows, read.rows);
-        EXPECT_TRUE(codes.empty() || cv::countNonZero(codes != read) == 0);
-    }
-}
-
-struct DamagedMap : public testing::Test
-{
-    DamagedMap() : map(folder.path("map")), whole(smallMap()), files(filesOf(whole))
+    SmallMap() : map(folder.path("map")), whole(smallMap()), files(filesOf(whole))
     {
         folder.makeFolder("map");
     }
@@ -80,98 +43,96 @@ struct DamagedMap : public testing::Test
 
     const TestFolder folder;
     const std::string map;
-    Map whole;
-    Files files;
+    const Map whole;
+    const Files files;
 };
 
-TEST_F(DamagedMap, files_that_are_altered_or_missing)
+TEST_F(SmallMap, read_as_written)
+{
+    writeMap(map, whole);
+    const Map back = readMap(map);
+    ASSERT_EQ(2u, back.cameras.size());
+    for (size_t i = 0; i < 2; i++)
+    {
+        EXPECT_EQ(whole.cameras[i].model, back.cameras[i].model);
+        EXPECT_EQ(whole.cameras[i].size, back.cameras[i].size);
+        EXPECT_EQ(whole.cameras[i].parameters, back.cameras[i].parameters);
+    }
+    EXPECT_EQ(500, back.keypoints);
+    EXPECT_TRUE(equal(whole.codes, back.codes));
+    EXPECT_TRUE(equal(whole.sees, back.sees));
+    EXPECT_TRUE(equal(whole.points, back.points));
+    EXPECT_EQ(cv::Point3d(.1, 1, 6), back.point(2));
+    ASSERT_EQ(3u, back.views.size());
+    for (size_t i = 0; i < 3; i++)
+    {
+        EXPECT_EQ(whole.views[i].rows, back.views[i].rows);
+        EXPECT_EQ(whole.views[i].centre, back.views[i].centre);
+        EXPECT_EQ(whole.views[i].direction, back.views[i].direction);
+        EXPECT_EQ(whole.views[i].depth, back.views[i].depth);
+    }
+}
+
+TEST_F(SmallMap, damaged_or_missing_files)
 {
     EXPECT_EQ("it has no map.json", error());
     for (const auto& [file, content] : files)
     {
+        const std::string path = map + "/" + file, missing = path + " is missing or damaged";
         writeFiles(map, files, whole);
-        std::ofstream(map + "/" + file, std::ios::app) << " ";
-        EXPECT_EQ(file + " is damaged", error());
-        ASSERT_EQ(0, std::remove((map + "/" + file).c_str()));
-        EXPECT_EQ(file + " is damaged", error());
+        std::string damaged = content;
+        damaged.back() ^= 1;
+        folder.write("map/" + file, damaged);
+        EXPECT_EQ(path + " is damaged", error());
+        for (size_t size = 0; size < content.size(); size += 3)
+        {
+            folder.write("map/" + file, content.substr(0, size));
+            EXPECT_EQ(missing, error()) << size;
+        }
+        folder.write("map/" + file, content + ' ');
+        EXPECT_EQ(missing, error());
+        ASSERT_EQ(0, std::remove(path.c_str()));
+        EXPECT_EQ(missing, error());
+        // The sums say nothing of a file that was written wrongly.
+        Files wrong = files;
+        for (size_t i : {0, 6, 8, 22, 24, 45, 61})
+        {
+            wrong[file][i]++;
+            writeFiles(map, wrong, whole);
+            EXPECT_EQ(missing, error()) << i;
+            wrong[file] = content;
+        }
     }
-    for (const char* text : {"", "{\"format\": 1", "[1]", "{\"format\": 1}"})
+    for (const char* text : {"", "{\"format\": 2", "[1]", "{\"format\": 2}"})
     {
         folder.write("map/map.json", text);
         EXPECT_NE("", error()) << text;
     }
-    folder.write("map/map.json", "{\"format\": 7}");
-    EXPECT_EQ("its format is unknown to this version", error());
+    folder.write("map/map.json", "{\"format\": 1}");
+    EXPECT_EQ("its format is not that of this version: make it again", error());
 }
 
-// The sums say nothing of a file that was written wrongly.
-TEST_F(DamagedMap, files_that_are_cut_off_or_longer)
+TEST_F(SmallMap, files_that_contradict_each_other)
 {
-    for (const char* file : {"cameras.bin", "images.bin", "points3D.bin"})
-    {
-        const std::string content = files[file], path = map + "/" + file;
-        for (size_t size = 0; size < content.size(); size += 3)
-        {
-            files[file] = content.substr(0, size);
-            writeFiles(map, files, whole);
-            EXPECT_EQ(0u, error().find(path)) << size;
-        }
-        files[file] = content + ' ';
-        writeFiles(map, files, whole);
-        EXPECT_EQ(path + " is longer than what it holds", error());
-        files[file] = content;
-        files[file][6] = '\x7f';  // says that more follows than memory can hold
-        writeFiles(map, files, whole);
-        EXPECT_EQ(path + " is cut off", error());
-        files[file] = content;
-    }
-    files["codes.npy"].pop_back();
-    writeFiles(map, files, whole);
-    EXPECT_EQ(map + "/codes.npy: not as many bytes as its header says", error());
-    files["codes.npy"] = npy("3, 32", std::string(96, ' ')).replace(22, 1, "f");  // |f1
-    writeFiles(map, files, whole);
-    EXPECT_EQ(map + "/codes.npy: not a two-dimensional array of uint8 in C order", error());
-    for (const char* content : {"", "no array", "\x93NUMPY\x02"})
-    {
-        files["codes.npy"] = content;
-        writeFiles(map, files, whole);
-        EXPECT_EQ(map + "/codes.npy: not a readable .npy file", error());
-    }
-}
-
-TEST_F(DamagedMap, contents_that_contradict_each_other)
-{
-    const auto errorOf = [&](const Map& wrong) {
-        writeFiles(map, filesOf(wrong), wrong);
+    const auto errorOf = [&](const auto& change) {
+        Map wrong = smallMap();
+        change(wrong);
+        writeMap(map, wrong);
         return error();
     };
-    Map wrong = whole;
-    wrong.codes[2] = wrong.codes[2].rowRange(0, 1);
-    EXPECT_EQ("image 2 has not a code for each point", errorOf(wrong));
-    wrong = whole;
-    wrong.model.images[6].points[0] = -1;
-    EXPECT_EQ("b.png has a code without a point", errorOf(wrong));
-    wrong = whole;
-    wrong.model.points.erase(8);
-    EXPECT_EQ(map + "/images.bin has a point that points3D.bin has not, in image b.png", errorOf(wrong));
-    wrong = whole;
-    wrong.codes.erase(6);
+    const std::string said = "its files contradict each other";
+    EXPECT_EQ(said, errorOf([](Map& m) { m.keypoints = 0; }));
+    EXPECT_EQ(said, errorOf([](Map& m) { m.views[2].rows.end = 4; }));
+    EXPECT_EQ(said, errorOf([](Map& m) { m.views[2].rows.start = 3; }));
+    EXPECT_EQ(said, errorOf([](Map& m) { m.views[0].rows.end = -1; }));
+    EXPECT_EQ(said, errorOf([](Map& m) { m.sees.at<int>(1) = 3; }));
+    EXPECT_EQ(said, errorOf([](Map& m) { m.sees.at<int>(1) = -1; }));
+    EXPECT_EQ(said, errorOf([](Map& m) { m.sees.pop_back(); }));
+    EXPECT_EQ(said, errorOf([](Map& m) { m.points = m.points.reshape(1, 9); }));
+    Map wrong = smallMap();
+    wrong.views.pop_back();
     writeFiles(map, files, wrong);
-    EXPECT_EQ("it does not have the codes of its images", error());
-    files["cameras.bin"][12] = 77;
-    writeFiles(map, files, whole);
-    EXPECT_EQ("there is no camera model of number 77", error());
-}
-
-TEST(Map, cameras_that_are_not_known_are_read)
-{
-    const TestFolder folder;
-    folder.makeFolder("map");
-    Files files = filesOf(smallMap());
-    files["cameras.bin"][12] = 7;
-    files["cameras.bin"] += bytes(0.5);  // of FOV
-    writeFiles(folder.path("map"), files, smallMap());
-    EXPECT_EQ("FOV", readMap(folder.path("map")).model.cameras.at(3).model);
+    EXPECT_EQ(said, error());
 }
 
 }  // namespace

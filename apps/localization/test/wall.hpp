@@ -76,23 +76,26 @@ protected:
     {
         folder.makeFolder("images/left side");
         Map map;
-        map.points = 1000;
-        map.model.cameras[1] = CAMERA;
-        const auto iib = cv::iib::IIB::createRecommended(map.points);
+        map.keypoints = 1000;
+        map.cameras = {CAMERA};
+        const auto iib = cv::iib::IIB::createRecommended(map.keypoints);
         for (int i = 0; i < 6; i++)
         {
             const cv::Affine3d pose = poseAt(0.3 * i - 0.8, 0.05 * (i % 2), 0.03 * i);
-            ModelImage& image = map.model.images[i + 1];
-            image.name = (i < 3 ? "left side/" : "") + std::to_string(i) + ".png";
-            image.cameraFromWorld = pose.inv();
             const cv::Mat picture = wall.image(pose);
-            cv::imwrite(folder.path("images/" + image.name), picture);
+            cv::imwrite(folder.path("images/" + std::string(i < 3 ? "left side/" : "") + std::to_string(i) +
+                                    ".png"),
+                    picture);
             std::vector<cv::KeyPoint> keypoints;
-            iib->detectAndCompute(picture, cv::noArray(), keypoints, map.codes[i + 1]);
+            cv::Mat codes;
+            iib->detectAndCompute(picture, cv::noArray(), keypoints, codes);
+            map.views.push_back({{map.codes.rows, map.codes.rows + codes.rows}, pose.translation(),
+                    cv::Vec3d(pose.rotation().col(2).val), 4});
+            map.codes.push_back(codes);
             for (const cv::KeyPoint& k : keypoints)
             {
-                image.points.push_back(int64_t(map.model.points.size()));
-                map.model.points[image.points.back()] = Wall::point(pose, k.pt);
+                map.sees.push_back(map.points.rows);
+                map.points.push_back(cv::Mat(cv::Matx13d(cv::Vec3d(Wall::point(pose, k.pt)).val)));
             }
         }
         folder.makeFolder("map");

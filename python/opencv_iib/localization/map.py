@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import hashlib
 import json
 import os
+import zlib
 from typing import Any, Sequence
 
 import numpy as np
@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from opencv_iib.localization._pycolmap import pycolmap
 
 MANIFEST, CODES, MISSES = 'map.json', 'codes.npy', 'misses.npy'
-GEOMETRY = ('points.npy', 'sees.npy', 'views.npy')  #: what a Localizer needs of the model; maps may be without
+GEOMETRY = ('points.npy', 'sees.npy', 'views.npy')  #: what a Localizer needs of the model
 MODEL = ('cameras.bin', 'images.bin', 'points3D.bin', 'rigs.bin', 'frames.bin')
 OWN = (MANIFEST, CODES, MISSES, *GEOMETRY, *MODEL)  #: files of a map
-FORMAT = 1
+FORMAT = 2
 
 
 @dataclasses.dataclass
@@ -124,12 +124,12 @@ def compact(model: Any, codes: dict[int, NDArray[Any]]) -> dict[int, NDArray[np.
     return kept
 
 
-def _digest(path: str) -> str:
-    digest = hashlib.sha256()
+def _checksum(path: str) -> str:
+    checksum = 0
     with open(path, 'rb') as file:
         while block := file.read(1 << 20):
-            digest.update(block)
-    return digest.hexdigest()
+            checksum = zlib.crc32(block, checksum)
+    return f'{checksum:08x}'
 
 
 def _geometry(model: Any, images: Sequence[int]) -> tuple[NDArray[Any], ...]:
@@ -155,8 +155,8 @@ def write_map(folder: str, model: Any, codes: dict[int, NDArray[np.uint8]], miss
         np.save(os.path.join(folder, name), array)
     manifest = {'format': FORMAT, 'points': points, 'updates': updates,
                 'images': [[i, len(codes[i]), used[i]] for i in images],
-                'cameras': [[c.model.name, c.width, c.height, c.params.tolist()] for c in model.cameras.values()],
-                'sha256': {name: _digest(os.path.join(folder, name)) for name in OWN[1:]}}
+                'cameras': list(dict.fromkeys((c.model.name, c.width, c.height, tuple(c.params)) for c in model.cameras.values())),
+                'crc32': {name: _checksum(os.path.join(folder, name)) for name in OWN[1:]}}
     with open(os.path.join(folder, MANIFEST), 'w', encoding='utf-8') as file:
         json.dump(manifest, file)
 
@@ -170,17 +170,13 @@ def read_map(folder: str) -> Map:
         with open(os.path.join(folder, MANIFEST), encoding='utf-8') as file:
             manifest = json.load(file)
         if manifest['format'] != FORMAT:
-            raise ValueError(f"format {manifest['format']} is unknown to this version")
-        for name, digest in manifest['sha256'].items():
-            if name not in OWN or _digest(os.path.join(folder, name)) != digest:
+            raise ValueError('its format is not that of this version: make it again')
+        for name in OWN[1:]:
+            if _checksum(os.path.join(folder, name)) != manifest['crc32'][name]:
                 raise ValueError(f'{name} is damaged')
         images, rows, used = zip(*manifest['images'])
-        if GEOMETRY[0] in manifest['sha256']:
-            places, sees, views = (np.load(os.path.join(folder, name)) for name in GEOMETRY)
-            cameras = [pycolmap.Camera(model=m, width=w, height=h, params=p) for m, w, h, p in manifest['cameras']]
-        else:
-            model = pycolmap.Reconstruction(folder)
-            (places, sees, views), cameras = _geometry(model, images), list(model.cameras.values())
+        places, sees, views = (np.load(os.path.join(folder, name)) for name in GEOMETRY)
+        cameras = [pycolmap.Camera(model=m, width=w, height=h, params=p) for m, w, h, p in manifest['cameras']]
         arrays = np.load(os.path.join(folder, CODES), mmap_mode='r'), np.load(os.path.join(folder, MISSES)), sees
         codes, misses, seen = (dict(zip(images, np.split(array, np.cumsum(rows)[:-1]))) for array in arrays)
         return Map(folder, codes, misses, dict(zip(images, used)), manifest['points'], manifest['updates'], places, seen, views,
