@@ -4,8 +4,7 @@
 
 #pragma once
 
-#include "knn_table.hpp"
-#include "packed_codes.hpp"
+#include "search.hpp"
 
 namespace cv {
 namespace iib {

@@ -6,31 +6,21 @@
 #include "index_file.hpp"
 #include "search.hpp"
 
-#include <atomic>
-
 namespace cv {
 namespace iib {
 
 namespace {
 
-//! Shared by an object and its clones without train data, with which calls with two sets match.
-struct CostCounters
-{
-    CostCounters() : compared(0), all(0) {}
-    std::atomic<uint64> compared, all;
-};
-
 //! Glue between DescriptorMatcher's interface and the search. Tests reach its ScanBlocks by dynamic_cast.
 class HierarchicalMatcherImpl CV_FINAL : public HierarchicalMatcher, public ScanBlocks
 {
 public:
-    explicit HierarchicalMatcherImpl(const MatcherParameters& p)
-        : parameters(p), counters(makePtr<CostCounters>())
+    explicit HierarchicalMatcherImpl(const MatcherParameters& p) : parameters(p), cost(makePtr<SearchCost>())
     {
         clear();
     }
     HierarchicalMatcherImpl(const MatcherParameters& p, const Ptr<PackedCodes>& codes)
-        : parameters(p), index(codes), counters(makePtr<CostCounters>())
+        : parameters(p), index(codes), cost(makePtr<SearchCost>())
     {
         trainDescCollection.resize(codes->images());
     }
@@ -56,14 +46,10 @@ public:
     float getMaxRatio() const CV_OVERRIDE { return parameters.maxRatio; }
     double matchCost() const CV_OVERRIDE
     {
-        const uint64 all = counters->all;
-        return all ? (double)counters->compared / (double)all : 0;
+        const uint64 all = cost->all;
+        return all ? (double)cost->compared / (double)all : 0;
     }
-    void resetCost() CV_OVERRIDE
-    {
-        counters->compared = 0;
-        counters->all = 0;
-    }
+    void resetCost() CV_OVERRIDE { cost->compared = cost->all = 0; }
 
     bool isMaskSupported() const CV_OVERRIDE { return true; }
     void add(InputArrayOfArrays descriptors) CV_OVERRIDE;
@@ -188,17 +174,13 @@ private:
     }
 
     KnnTable nearest(const PackedCodes& trains, const Mat& queries, int k, InputArrayOfArrays masks) const;
-    PruningPolicy policy(const CodeLayout& layout) const;
-
-    void count(const SearchCost& cost) const
-    {
-        counters->compared += cost.compared;
-        counters->all += cost.all;
-    }
+    //! Checked. The policy is that of the mode if it is THRESHOLD, else the given one.
+    SearchInput inputFor(const PackedCodes& trains, const Mat& queries, InputArrayOfArrays masks,
+            const PruningPolicy& policy) const;
 
     MatcherParameters parameters;
     Ptr<PackedCodes> index;  //!< null while the width of codes is not known
-    Ptr<CostCounters> counters;
+    Ptr<SearchCost> cost;    //!< shared with clones without train data, with which calls with two sets match
 };
 
 void HierarchicalMatcherImpl::add(InputArrayOfArrays descriptors)
@@ -223,7 +205,7 @@ Ptr<DescriptorMatcher> HierarchicalMatcherImpl::clone(bool emptyTrainData) const
     Ptr<HierarchicalMatcherImpl> result = makePtr<HierarchicalMatcherImpl>(parameters);
     static_cast<ScanBlocks&>(*result) = *this;
     if (emptyTrainData)
-        result->counters = counters;
+        result->cost = cost;
     else
     {
         if (index)
@@ -245,47 +227,38 @@ void HierarchicalMatcherImpl::read(const FileNode& node)
         clear();
 }
 
-PruningPolicy HierarchicalMatcherImpl::policy(const CodeLayout& layout) const
+SearchInput HierarchicalMatcherImpl::inputFor(const PackedCodes& trains, const Mat& queries,
+        InputArrayOfArrays masks, const PruningPolicy& policy) const
 {
-    switch (parameters.mode)
-    {
-    case THRESHOLD: return thresholdPolicy(layout, parameters.thresholds);
-    case ADAPTIVE: return adaptivePolicy(layout);
-    default: return PruningPolicy();
-    }
+    const CodeLayout& layout = trains.layout();
+    const Mat checked = checkedDescriptors(queries, layout.bytes(), parameters.levelSizes.empty());
+    const bool byLevels = parameters.mode == THRESHOLD;
+    return {trains, checked, byLevels ? thresholdPolicy(layout, parameters.thresholds) : policy,
+            checkedMasks(masks, checked.rows, trains), {}, 0, *this, *cost};
 }
 
 KnnTable HierarchicalMatcherImpl::nearest(
-        const PackedCodes& trains, const Mat& queries_, int k, InputArrayOfArrays masks_) const
+        const PackedCodes& trains, const Mat& queries, int k, InputArrayOfArrays masks) const
 {
     if (k <= 0)
         CV_Error_(Error::StsOutOfRange, ("k is %d: it has to be > 0", k));
-    const Mat queries = checkedDescriptors(queries_, trains.layout().bytes(), parameters.levelSizes.empty());
-    const PruningPolicy pruning = policy(trains.layout());
-    const std::vector<Mat> masks = checkedMasks(masks_, queries.rows, trains);
-    const SearchInput input(trains, queries, pruning, masks, *this);
-    SearchCost cost;
-    KnnTable found = findNearest(input, k, parameters.crossCheck, parameters.maxRatio, cost);
-    count(cost);
-    return found;
+    const PruningPolicy policy =
+            parameters.mode == ADAPTIVE ? adaptivePolicy(trains.layout()) : PruningPolicy();
+    return findNearest(
+            inputFor(trains, queries, masks, policy), k, parameters.crossCheck, parameters.maxRatio);
 }
 
 void HierarchicalMatcherImpl::radiusMatch(InputArray queries_, std::vector<std::vector<DMatch>>& matches,
-        float maxDistance, InputArrayOfArrays masks_, bool compactResult)
+        float maxDistance, InputArrayOfArrays masks, bool compactResult)
 {
     if (!(maxDistance > std::numeric_limits<float>::epsilon()))
         CV_Error_(Error::StsOutOfRange, ("maxDistance is %g: it has to be > 0", maxDistance));
-    const Ptr<const PackedCodes> trains = trainCodes(queries_.getMat());
+    const Mat queries = queries_.getMat();
+    const Ptr<const PackedCodes> trains = trainCodes(queries);
     const CodeLayout& layout = trains->layout();
-    const Mat queries = checkedDescriptors(queries_.getMat(), layout.bytes(), parameters.levelSizes.empty());
     const int radius = cvFloor(std::min((double)maxDistance, 8. * layout.bytes()));
-    const PruningPolicy pruning =
-            parameters.mode == THRESHOLD ? policy(layout) : radiusPolicy(layout, radius);
-    const std::vector<Mat> masks = checkedMasks(masks_, queries.rows, *trains);
-    const SearchInput input(*trains, queries, pruning, masks, *this);
-    SearchCost cost;
-    toMatches(*trains, findWithin(input, radius, cost), compactResult, matches);
-    count(cost);
+    const SearchInput input = inputFor(*trains, queries, masks, radiusPolicy(layout, radius));
+    toMatches(*trains, findWithin(input, radius), compactResult, matches);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include "../precomp.hpp"
 #include "packed_codes.hpp"
-#include "knn_table.hpp"
 
 namespace cv {
 namespace iib {
@@ -99,18 +98,13 @@ void PackedCodes::add(const Mat& descriptors)
         starts.reserve(2 * starts.size());
     grow(blocksFor(rows() + descriptors.rows));
     starts.push_back(rows());
-    store(descriptors);
+    append(descriptors);
 }
 
 void PackedCodes::append(const Mat& descriptors)
 {
     CV_Assert(images() > 0);
     grow(blocksFor(rows() + descriptors.rows));
-    store(descriptors);
-}
-
-void PackedCodes::store(const Mat& descriptors)
-{
     for (int i = 0; i < descriptors.rows;)
     {
         const size_t row = rows() + i;

@@ -56,7 +56,6 @@ private:
     void grow(int blocks);
     //! Makes memory for that many blocks.
     void allocate(int blocks);
-    void store(const Mat& descriptors);
 
     const HammingKernels& scans;
     const CodeLayout format;

@@ -40,13 +40,10 @@ public:
         pairs.trainCount =
                 (int)std::min(input.trains.rows() - firstTrain, (size_t)count * CodeLayout::CODES_PER_BLOCK);
         nextBlock += count;
+        pairs.allowed = 0;
+        pairCount = (size_t)pairs.queries.rows * pairs.trainCount;
         if (needsFlags())
             fillFlags();
-        else
-        {
-            pairs.allowed = 0;
-            pairCount = (size_t)pairs.queries.rows * pairs.trainCount;
-        }
         return true;
     }
 
@@ -64,10 +61,10 @@ private:
     //! Whether some pairs of the block may be left out.
     bool needsFlags() const
     {
-        if (!input.masks.empty() || !input.hidden)
+        if (!input.masks.empty() || input.hidden.empty())
             return !input.masks.empty();
-        const auto first = input.hidden->begin() + input.trains.imageOf(firstTrain),
-                   end = input.hidden->begin() + input.trains.imageOf(firstTrain + pairs.trainCount - 1) + 1;
+        const auto first = input.hidden.begin() + input.trains.imageOf(firstTrain),
+                   end = input.hidden.begin() + input.trains.imageOf(firstTrain + pairs.trainCount - 1) + 1;
         return std::find(first, end, true) != end;
     }
 
@@ -82,7 +79,7 @@ private:
         for (size_t row = firstTrain; row < end;)
         {
             const size_t image = trains.imageOf(row), count = std::min(trains.start(image + 1), end) - row;
-            const bool shown = !input.hidden || !(*input.hidden)[image];
+            const bool shown = input.hidden.empty() || !input.hidden[image];
             for (int query = 0; shown && query < pairs.queries.rows; query++)
             {
                 uchar* to = flags.data() + query * width + (row - firstTrain);
@@ -105,48 +102,7 @@ private:
     std::vector<uchar> flags;
 };
 
-//! Puts the pairs of a block into tables of any k.
-class TableSink CV_FINAL : public HammingSink
-{
-public:
-    TableSink(const PairBlocks& block_, KnnTable& forQueries_, KnnTable* forTrains_)
-        : HammingSink(forQueries_.thresholds() + block_.firstQuery,
-                  forTrains_ ? forTrains_->thresholds() + block_.firstTrain : 0),
-          block(block_), forQueries(forQueries_), forTrains(forTrains_)
-    {
-    }
-    void found(int query, int train, int distance) CV_OVERRIDE
-    {
-        forQueries.insert(block.firstQuery + query, matchKey(distance, block.firstIndex() + train));
-        if (forTrains)
-            forTrains->insert(block.firstTrain + train, matchKey(distance, block.firstQuery + query));
-    }
-
-private:
-    const PairBlocks& block;
-    KnnTable& forQueries;
-    KnnTable* forTrains;
-};
-
-//! Lists all pairs of a block that are below one threshold.
-class ListSink CV_FINAL : public HammingSink
-{
-public:
-    ListSink(const PairBlocks& block_, const int* thresholds, std::vector<std::vector<MatchKey>>& lists_)
-        : HammingSink(thresholds, 0), block(block_), lists(lists_)
-    {
-    }
-    void found(int query, int train, int distance) CV_OVERRIDE
-    {
-        lists[block.firstQuery + query].push_back(matchKey(distance, block.firstIndex() + train));
-    }
-
-private:
-    const PairBlocks& block;
-    std::vector<std::vector<MatchKey>>& lists;
-};
-
-SearchCost scanPruned(const SearchInput& input, PairBlocks& block, HammingSink& sink)
+void scanPruned(const SearchInput& input, PairBlocks& block, const HammingSink& sink)
 {
     const std::vector<PruneStage>& stages = input.policy.stages;
     const CodeLayout& layout = input.trains.layout();
@@ -155,60 +111,62 @@ SearchCost scanPruned(const SearchInput& input, PairBlocks& block, HammingSink& 
             block.pairs, input.policy, sink, passed.data(), stages.size() == 1 ? block.limitsOfQueries() : 0};
     input.trains.kernels().pruned(scan);
 
-    SearchCost cost;
-    cost.all = (uint64)block.pairCount * 8 * layout.bytes();
+    input.cost.all += (uint64)block.pairCount * 8 * layout.bytes();
     uint64 alive = block.pairCount;
     for (size_t segment = 0, stage = 0; segment < (size_t)layout.segments(); segment++)
     {
-        cost.compared += alive * layout.bits((int)segment);
+        input.cost.compared += alive * layout.bits((int)segment);
         if (stage < stages.size() && stages[stage].segment == (int)segment)
             alive = passed[stage++];
     }
-    return cost;
 }
 
 // For tables of a single column, without stages.
-SearchCost scanSingle(
-        const SearchInput& input, const PairBlocks& block, KnnTable& forQueries, KnnTable* forTrains)
+void scanSingle(const SearchInput& input, const PairBlocks& block, KnnTable& forQueries, KnnTable* forTrains)
 {
     const NearestScan scan = {block.pairs, forQueries[block.firstQuery],
             forTrains ? (*forTrains)[block.firstTrain] : 0, (size_t)block.firstQuery, block.firstIndex()};
     input.trains.kernels().nearest(scan);
-    SearchCost cost;
-    cost.compared = cost.all = (uint64)block.pairCount * 8 * input.trains.layout().bytes();
-    return cost;
+    const uint64 bits = (uint64)block.pairCount * 8 * input.trains.layout().bytes();
+    input.cost.compared += bits;
+    input.cost.all += bits;
 }
 
 }  // namespace
 
-SearchCost scanNearest(
-        const SearchInput& input, const Range& queries, KnnTable& forQueries, KnnTable* forTrains)
+void scanNearest(const SearchInput& input, const Range& queries, KnnTable& forQueries, KnnTable* forTrains)
 {
     const bool single =
             forQueries.size() == 1 && (!forTrains || forTrains->size() == 1) && input.policy.stages.empty();
-    SearchCost cost;
     for (PairBlocks block(input, queries); block.next();)
         if (single && NearestScan::fits(block.pairs))
-            cost += scanSingle(input, block, forQueries, forTrains);
+            scanSingle(input, block, forQueries, forTrains);
         else
         {
-            TableSink sink(block, forQueries, forTrains);
-            cost += scanPruned(input, block, sink);
+            // Copies: it runs for each pair, and the compiler cannot know that nobody changes the block meanwhile.
+            const size_t query0 = block.firstQuery, train0 = block.firstTrain, index0 = block.firstIndex();
+            const auto insert = [=, &forQueries](int query, int train, int distance) {
+                forQueries.insert(query0 + query, matchKey(distance, index0 + train));
+                if (forTrains)
+                    forTrains->insert(train0 + train, matchKey(distance, query0 + query));
+            };
+            scanPruned(input, block,
+                    {forQueries.thresholds() + block.firstQuery,
+                            forTrains ? forTrains->thresholds() + block.firstTrain : 0, insert});
         }
-    return cost;
 }
 
-SearchCost scanWithin(
+void scanWithin(
         const SearchInput& input, const Range& queries, int radius, std::vector<std::vector<MatchKey>>& lists)
 {
     const std::vector<int> thresholds(std::min(queries.size(), input.blocks.queryCount), radius + 1);
-    SearchCost cost;
     for (PairBlocks block(input, queries); block.next();)
     {
-        ListSink sink(block, thresholds.data(), lists);
-        cost += scanPruned(input, block, sink);
+        const auto list = [&](int query, int train, int distance) {
+            lists[block.firstQuery + query].push_back(matchKey(distance, block.firstIndex() + train));
+        };
+        scanPruned(input, block, {thresholds.data(), 0, list});
     }
-    return cost;
 }
 
 }  // namespace iib

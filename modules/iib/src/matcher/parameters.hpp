@@ -12,12 +12,11 @@ namespace iib {
 struct MatcherParameters
 {
     std::vector<int> levelSizes;  //!< empty: a single level, as wide as the first codes
-    int mode;
+    int mode = 0;
     std::vector<float> thresholds;  //!< one for each level but the last
-    bool crossCheck;
-    float maxRatio;
+    bool crossCheck = false;
+    float maxRatio = 1;
 
-    MatcherParameters() : mode(0), crossCheck(false), maxRatio(1) {}
     //! How many thresholds there have to be.
     size_t stages() const { return std::max(levelSizes.size(), (size_t)1) - 1; }
 };

@@ -12,20 +12,15 @@ namespace iib {
 
 namespace {
 
-//! Cuts queries in parts, which threads scan, and adds up the work. `scan` takes a Range of queries.
-template <class Scan> SearchCost scanInParts(int queries, int parts, const Scan& scan)
+//! Cuts queries in parts, which threads scan. `scan` takes a Range of queries.
+template <class Scan> void scanInParts(int queries, int parts, const Scan& scan)
 {
     const int size = std::max((queries + parts - 1) / parts, 4);  // a tile's queries
     const int count = (queries + size - 1) / size;
-    SearchCost cost;
-    std::mutex lock;
     const auto scanSome = [&](const Range& some) {
-        const SearchCost work = scan(Range(some.start * size, std::min(some.end * size, queries)));
-        std::lock_guard<std::mutex> guard(lock);
-        cost += work;
+        scan(Range(some.start * size, std::min(some.end * size, queries)));
     };
     parallel_for_(Range(0, count), scanSome, count);
-    return cost;
 }
 
 // Some parts for each thread, so that all are done at about the same time.
@@ -38,15 +33,14 @@ int evenParts(const SearchInput& input)
 
 // In the other direction each part has neighbours of its own, merged by their order, so that the result does not depend
 // on which is done first. Few parts, since each begins without thresholds.
-SearchCost addNearestOfBoth(const SearchInput& input, KnnTable& forQueries, KnnTable& forTrains)
+void addNearestOfBoth(const SearchInput& input, KnnTable& forQueries, KnnTable& forTrains)
 {
     std::mutex lock;
-    return scanInParts(input.queries.rows, getNumThreads(), [&](const Range& queries) {
+    scanInParts(input.queries.rows, getNumThreads(), [&](const Range& queries) {
         KnnTable own(forTrains.rows(), forTrains.size(), CodeLayout::CODES_PER_BLOCK);
-        const SearchCost cost = scanNearest(input, queries, forQueries, &own);
+        scanNearest(input, queries, forQueries, &own);
         std::lock_guard<std::mutex> guard(lock);
         forTrains.merge(own);
-        return cost;
     });
 }
 
@@ -84,13 +78,13 @@ KnnTable afterRatio(const KnnTable& found, int k, float maxRatio)
 
 }  // namespace
 
-SearchCost addNearest(const SearchInput& input, KnnTable& forQueries)
+void addNearest(const SearchInput& input, KnnTable& forQueries)
 {
-    return scanInParts(input.queries.rows, evenParts(input),
-            [&](const Range& queries) { return scanNearest(input, queries, forQueries, 0); });
+    scanInParts(input.queries.rows, evenParts(input),
+            [&](const Range& queries) { scanNearest(input, queries, forQueries, 0); });
 }
 
-KnnTable findNearest(const SearchInput& input, int k, bool mutual, float maxRatio, SearchCost& cost)
+KnnTable findNearest(const SearchInput& input, int k, bool mutual, float maxRatio)
 {
     // Each direction has as many neighbours as the other side has codes, at most.
     const size_t trains = input.trains.rows();
@@ -99,7 +93,7 @@ KnnTable findNearest(const SearchInput& input, int k, bool mutual, float maxRati
     const bool ratio = maxRatio < 1;
     KnnTable forQueries(queries, std::max(k, ratio ? 2 : 1));
     KnnTable forTrains(mutual ? trains : 0, backK);
-    cost += mutual ? addNearestOfBoth(input, forQueries, forTrains) : addNearest(input, forQueries);
+    mutual ? addNearestOfBoth(input, forQueries, forTrains) : addNearest(input, forQueries);
     if (ratio)
         forQueries = afterRatio(forQueries, k, maxRatio);
     if (mutual)
@@ -107,11 +101,11 @@ KnnTable findNearest(const SearchInput& input, int k, bool mutual, float maxRati
     return forQueries;
 }
 
-std::vector<std::vector<MatchKey>> findWithin(const SearchInput& input, int radius, SearchCost& cost)
+std::vector<std::vector<MatchKey>> findWithin(const SearchInput& input, int radius)
 {
     std::vector<std::vector<MatchKey>> result(input.queries.rows);
-    cost += scanInParts(input.queries.rows, evenParts(input),
-            [&](const Range& queries) { return scanWithin(input, queries, radius, result); });
+    scanInParts(input.queries.rows, evenParts(input),
+            [&](const Range& queries) { scanWithin(input, queries, radius, result); });
     for (size_t query = 0; query < result.size(); query++)
         std::sort(result[query].begin(), result[query].end());
     return result;

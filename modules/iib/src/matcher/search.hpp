@@ -4,23 +4,18 @@
 
 #pragma once
 
-#include "knn_table.hpp"
 #include "packed_codes.hpp"
+
+#include <atomic>
+#include <new>
 
 namespace cv {
 namespace iib {
 
-//! Work of a search, in bits.
+//! Work of searches, in bits, to which any thread adds.
 struct SearchCost
 {
-    SearchCost() : compared(0), all(0) {}
-    SearchCost& operator+=(const SearchCost& other)
-    {
-        compared += other.compared;
-        all += other.all;
-        return *this;
-    }
-    uint64 compared, all;
+    std::atomic<uint64> compared{0}, all{0};
 };
 
 /** How many queries and CodeBlocks of train codes are scanned at once. The train codes of 170 bytes fill 352 KB, so that
@@ -28,48 +23,99 @@ they stay in a second-level cache of 512 KB while the queries, 704 KB, pass by. 
 crosses the boundaries. */
 struct ScanBlocks
 {
-    ScanBlocks() : queryCount(4096), codeBlocks(128), codeBlocksOfLimits(PruningPolicy::CODE_BLOCKS_OF_LIMITS)
-    {
-    }
     virtual ~ScanBlocks() {}
     //! CodeBlocks that are scanned at once by a policy.
     int codeBlocksFor(const PruningPolicy& policy) const
     {
         return policy.margin >= 0 ? codeBlocksOfLimits : codeBlocks;
     }
-    int queryCount, codeBlocks, codeBlocksOfLimits;
+    int queryCount = 4096, codeBlocks = 128, codeBlocksOfLimits = PruningPolicy::CODE_BLOCKS_OF_LIMITS;
 };
 
 //! What a search looks for and among which pairs.
 struct SearchInput
 {
-    SearchInput(const PackedCodes& trains_, const Mat& queries_, const PruningPolicy& policy_,
-            const std::vector<Mat>& masks_, const ScanBlocks& blocks_ = ScanBlocks())
-        : trains(trains_), queries(queries_), policy(policy_), masks(masks_), blocks(blocks_), hidden(0),
-          firstIndex(0)
+    const PackedCodes& trains;
+    Mat queries;               //!< CV_8U, as wide as the train codes
+    PruningPolicy policy;      //!< made for the layout of the train codes
+    std::vector<Mat> masks;    //!< none, or one for each image, empty or queries x rows(image)
+    std::vector<bool> hidden;  //!< of each image, whether its rows are left out; empty: none is
+    size_t firstIndex;         //!< what the first of the train codes is called in results
+    ScanBlocks blocks;
+    SearchCost& cost;  //!< what the search takes is added to it
+};
+
+//! A value for each of k neighbours of each row; throws StsNoMem, with k, if memory does not hold them.
+template <typename T> std::vector<T> forNeighbours(size_t rows, int k, T value)
+{
+    try
+    {
+        if ((uint64)rows * k <= std::vector<T>().max_size())
+            return std::vector<T>(rows * k, value);
+    }
+    catch (const std::bad_alloc&)
+    {
+    }
+    CV_Error_(
+            Error::StsNoMem, ("k is %d: memory does not hold as many neighbours of each of %llu descriptors",
+                                     k, (unsigned long long)rows));
+}
+
+//! The k nearest neighbours of each of many codes, in ascending order; NO_MATCH where there are fewer.
+class KnnTable
+{
+public:
+    //! `padding` more entries are there for vectors that read thresholds() past the end.
+    KnnTable(size_t rows, int k_, size_t padding = 0)
+        : k(k_), keys(forNeighbours(rows, k_, NO_MATCH)), nearest(rows + padding, INT_MAX)
     {
     }
 
-    const PackedCodes& trains;
-    const Mat& queries;             //!< CV_8U, as wide as the train codes
-    const PruningPolicy& policy;    //!< made for the layout of the train codes
-    const std::vector<Mat>& masks;  //!< none, or one for each image, empty or queries x rows(image)
-    ScanBlocks blocks;
-    const std::vector<bool>* hidden;  //!< of each image, whether its rows are left out; null: none is
-    size_t firstIndex;                //!< what the first of the train codes is called in results
+    int size() const { return k; }
+    size_t rows() const { return keys.size() / k; }
+    MatchKey* operator[](size_t row) { return &keys[row * k]; }
+    const MatchKey* operator[](size_t row) const { return &keys[row * k]; }
+    //! For each row: a new neighbour with a higher index has to be nearer than this.
+    const int* thresholds() const { return nearest.data(); }
+    int* thresholds() { return nearest.data(); }
+
+    void insert(size_t row, MatchKey n)
+    {
+        MatchKey* first = (*this)[row];
+        MatchKey* last = first + k - 1;
+        if (n >= *last)
+            return;
+        MatchKey* place = std::upper_bound(first, last, n);
+        std::copy_backward(place, last, last + 1);
+        *place = n;
+        if (*last != NO_MATCH)
+            nearest[row] = distanceOf(*last);
+    }
+
+    void merge(const KnnTable& other)
+    {
+        for (size_t row = 0; row < rows(); row++)
+            for (int i = 0; i < k; i++)
+                insert(row, other[row][i]);
+    }
+
+private:
+    int k;
+    std::vector<MatchKey> keys;
+    std::vector<int> nearest;  // distance of the k-th
 };
 
 /* Searches run on several threads; results do not depend on their number. */
 
 /** Finds the k nearest for each query; with `mutual`, only pairs that are among the k nearest in both directions. A row
 stays empty unless its least distance is below maxRatio times the second, if that is under 1. */
-KnnTable findNearest(const SearchInput& input, int k, bool mutual, float maxRatio, SearchCost& cost);
+KnnTable findNearest(const SearchInput& input, int k, bool mutual, float maxRatio);
 
 //! Puts the nearest of each query into a table, which may hold some of other train codes, of lower indices, already.
-SearchCost addNearest(const SearchInput& input, KnnTable& forQueries);
+void addNearest(const SearchInput& input, KnnTable& forQueries);
 
 //! Finds all within a radius, in ascending order for each query.
-std::vector<std::vector<MatchKey>> findWithin(const SearchInput& input, int radius, SearchCost& cost);
+std::vector<std::vector<MatchKey>> findWithin(const SearchInput& input, int radius);
 
 /* Where comparisons may end: pruning.cpp. */
 
@@ -84,11 +130,10 @@ PruningPolicy adaptivePolicy(const CodeLayout& layout);
 
 //! Puts the nearest into tables of all queries and of all train codes; forTrains is null when nobody asks for that
 //! direction, and else has room for whole CodeBlocks.
-SearchCost scanNearest(
-        const SearchInput& input, const Range& queries, KnnTable& forQueries, KnnTable* forTrains);
+void scanNearest(const SearchInput& input, const Range& queries, KnnTable& forQueries, KnnTable* forTrains);
 
 //! Adds the pairs within a radius to the list of each query, in the order of train codes.
-SearchCost scanWithin(const SearchInput& input, const Range& queries, int radius,
+void scanWithin(const SearchInput& input, const Range& queries, int radius,
         std::vector<std::vector<MatchKey>>& lists);
 
 }  // namespace iib

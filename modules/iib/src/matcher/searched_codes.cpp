@@ -83,19 +83,15 @@ void SearchedCodes::findNearest(const std::vector<int>& levelSizes, const std::v
     const Mat queries = checkedDescriptors(queries_.getMat(), width, false);
     if (k <= 0)
         CV_Error_(Error::StsOutOfRange, ("k is %d: it has to be > 0", k));
-    const PruningPolicy policy;
-    const std::vector<Mat> masks;
     size_t count = 0;
     for (const Part& part : parts)
         count += part.codes->rows();
     KnnTable found(queries.rows, (int)std::min((size_t)k, std::max(count, (size_t)1)));
+    SearchCost cost;
     for (const Part& part : parts)
-    {
-        SearchInput input(*part.codes->packed, queries, policy, masks);
-        input.firstIndex = part.firstRow;
-        input.hidden = part.hidden.empty() ? 0 : &part.hidden;
-        addNearest(input, found);
-    }
+        addNearest({*part.codes->packed, queries, PruningPolicy(), {}, part.hidden, part.firstRow,
+                           ScanBlocks(), cost},
+                found);
 
     rows = forNeighbours<int64>(queries.rows, k, -1);
     distances = forNeighbours<int>(queries.rows, k, -1);

@@ -11,21 +11,15 @@ namespace {
 typedef std::vector<int> Levels;
 typedef std::map<std::pair<int, int>, int> Distances;  // of (query, train code)
 
-struct AllPairs : public HammingSink
+HammingSink sinkFor(Distances& found, const int* queryThresholds, const int* trainThresholds)
 {
-    Distances distances;
-    AllPairs(const int* queryThresholds_, const int* trainThresholds_)
-        : HammingSink(queryThresholds_, trainThresholds_)
-    {
-    }
-    void found(int query, int train, int distance) CV_OVERRIDE
-    {
-        const Distances::const_iterator next = distances.lower_bound(std::make_pair(query, train));
-        EXPECT_TRUE(next == distances.end() || next->first.first > query)
-                << "train codes not in ascending order";
-        distances[std::make_pair(query, train)] = distance;
-    }
-};
+    return {queryThresholds, trainThresholds, [&](int query, int train, int distance) {
+                const Distances::const_iterator next = found.lower_bound(std::make_pair(query, train));
+                EXPECT_TRUE(next == found.end() || next->first.first > query)
+                        << "train codes not in ascending order";
+                found[std::make_pair(query, train)] = distance;
+            }};
+}
 
 //! Everything a scan needs, and the naive distances.
 struct ScanData
@@ -60,7 +54,7 @@ struct ScanData
 
     CodePairs pairs() const { return {layout, queries, blocks.data(), trains.rows, 0}; }
 
-    PrunedScan scan(const std::vector<PruneStage>& stages, HammingSink& sink)
+    PrunedScan scan(const std::vector<PruneStage>& stages, const HammingSink& sink)
     {
         policy.stages = stages;
         passed.assign(stages.size(), 0);
@@ -130,10 +124,10 @@ TEST(IIB_Hamming, scan_as_the_naive_loop)
                     ScanData data(Levels(1, bytes), queryCount, 16 + queryCount * 5);
                     std::fill(data.queryThresholds.begin(), data.queryThresholds.end(), below);
                     data.trainThresholds[3] = bytes * 8 + 1;
-                    AllPairs sink(
-                            data.queryThresholds.data(), bothDirections ? data.trainThresholds.data() : 0);
+                    Distances expected, found;
+                    const HammingSink sink = sinkFor(found, data.queryThresholds.data(),
+                            bothDirections ? data.trainThresholds.data() : 0);
                     data.kernels.pruned(data.scan(std::vector<PruneStage>(), sink));
-                    Distances expected;
                     for (int q = 0; q < queryCount; q++)
                         for (int t = 0; t < data.trains.rows; t++)
                         {
@@ -142,9 +136,8 @@ TEST(IIB_Hamming, scan_as_the_naive_loop)
                             if (distance < below || (bothDirections && t == 3))
                                 expected[std::make_pair(q, t)] = distance;
                         }
-                    ASSERT_EQ(expected, sink.distances)
-                            << bytes << " bytes, " << queryCount << " queries, below " << below
-                            << ", both directions " << bothDirections;
+                    ASSERT_EQ(expected, found) << bytes << " bytes, " << queryCount << " queries, below "
+                                               << below << ", both directions " << bothDirections;
                 }
 }
 
@@ -204,11 +197,12 @@ TEST(IIB_Hamming, stops_as_the_naive_loop)
                 for (int level = 0; level + 1 < (int)levels.size(); level++)
                     stages.push_back(PruneStage{level, levels[level] * 8 * share / 100});
                 const Mat mask = randomMask(3, data.queries.rows, 6 * 16, 0.7);
-                AllPairs sink(data.queryThresholds.data(), data.trainThresholds.data());
+                Distances expected, found;
+                const HammingSink sink =
+                        sinkFor(found, data.queryThresholds.data(), data.trainThresholds.data());
                 PrunedScan scan = data.scan(stages, sink);
                 scan.pairs.allowed = masked ? mask.data : 0;
                 data.kernels.pruned(scan);
-                Distances expected;
                 std::vector<int64> passed(stages.size(), 0);
                 for (int q = 0; q < data.queries.rows; q++)
                     for (int t = 0; t < data.trains.rows; t++)
@@ -227,7 +221,7 @@ TEST(IIB_Hamming, stops_as_the_naive_loop)
                         if (stage == stages.size())
                             expected[std::make_pair(q, t)] = data.distance(q, t, data.layout.segments() - 1);
                     }
-                EXPECT_EQ(expected, sink.distances);
+                EXPECT_EQ(expected, found);
                 EXPECT_EQ(passed, data.passed);
             }
 }
@@ -246,12 +240,12 @@ TEST(IIB_Hamming, limits_as_the_naive_loop)
         for (size_t q = 0; q < limits.size(); q++)
             limits[q] = step + step * (int)q;
         expectedLimits = limits;
-        AllPairs sink(data.queryThresholds.data(), data.trainThresholds.data());
+        Distances expected, found;
+        const HammingSink sink = sinkFor(found, data.queryThresholds.data(), data.trainThresholds.data());
         PrunedScan scan = data.scan(stages, sink);
         scan.limits = limits.data();
         data.policy.margin = margin;
         data.kernels.pruned(scan);
-        Distances expected;
         for (int q = 0; q < data.queries.rows; q++)
         {
             for (int t = 0; margin >= 0 && t < data.trains.rows; t++)
@@ -260,7 +254,7 @@ TEST(IIB_Hamming, limits_as_the_naive_loop)
                 if (data.distance(q, t, 3) <= expectedLimits[q])
                     expected[std::make_pair(q, t)] = data.distance(q, t, 4);
         }
-        EXPECT_EQ(expected, sink.distances);
+        EXPECT_EQ(expected, found);
         EXPECT_EQ(expectedLimits, limits);
         EXPECT_EQ((int64)expected.size(), data.passed[0]);
     }

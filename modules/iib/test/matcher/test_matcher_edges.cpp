@@ -4,7 +4,7 @@
 
 #include "../support/matcher_oracle.hpp"
 #include "../support/test_errors.hpp"
-#include "../../src/matcher/knn_table.hpp"
+#include "../../src/matcher/search.hpp"
 
 #include <numeric>
 

@@ -64,37 +64,35 @@ void CodeLayout::restore(const unsigned* plain, uchar* descriptor) const
             descriptor[places[i].from + b] = ((const uchar*)(plain + i))[b];
 }
 
+// PACKING_ADDERS of a code whose word i is word(i), to words that lie `step` apart.
+template <class Word> static void combine(int words, const Word& word, unsigned* packed, int step)
+{
+    unsigned parity = packed[0] = word(0);
+    for (int i = 1; i < words; i += 2)
+    {
+        const unsigned first = word(i), both = first ^ word(i + 1);
+        packed[i * step] = parity ^ first;
+        packed[(i + 1) * step] = both;
+        parity ^= both;
+    }
+}
+
 void CodeLayout::pack(const unsigned* plain, unsigned* packed) const
 {
-    unsigned parity = packed[0] = plain[0];
-    for (int i = 1; i < words(); i += 2)
-    {
-        packed[i] = parity ^ plain[i];
-        packed[i + 1] = plain[i] ^ plain[i + 1];
-        parity ^= packed[i + 1];
-    }
+    combine(
+            words(), [&](int i) { return plain[i]; }, packed, 1);
 }
 
 void CodeLayout::store(const uchar* descriptor, unsigned* block, int lane) const
 {
-    if (packing == PACKING_TABLES)
+    if (packing == PACKING_ADDERS)
+        return combine(
+                words(), [&](int i) { return word(i, descriptor); }, block + lane, CODES_PER_BLOCK);
+    for (int i = 0; i < words(); i++)
     {
-        for (int i = 0; i < words(); i++)
-        {
-            const unsigned plain = word(i, descriptor);
-            uchar* to = (uchar*)(block + i * CODES_PER_BLOCK) + lane;
-            for (int b = 0; b < WORD; b++)
-                to[b * CODES_PER_BLOCK] = ((const uchar*)&plain)[b];
-        }
-        return;
-    }
-    unsigned parity = block[lane] = word(0, descriptor);
-    for (int i = 1; i < words(); i += 2)
-    {
-        const unsigned first = word(i, descriptor), second = word(i + 1, descriptor);
-        block[i * CODES_PER_BLOCK + lane] = parity ^ first;
-        block[(i + 1) * CODES_PER_BLOCK + lane] = first ^ second;
-        parity ^= first ^ second;
+        const unsigned plain = word(i, descriptor);
+        for (int b = 0; b < WORD; b++)
+            ((uchar*)block)[(i * WORD + b) * CODES_PER_BLOCK + lane] = ((const uchar*)&plain)[b];
     }
 }
 
@@ -144,23 +142,18 @@ bool CodeLayout::fillsWithZeros(const unsigned* block, int codes) const
         unsigned filling = ~0u;  // the bits of a word that are none of the descriptor's
         std::memset(&filling, 0, places[i].bytes);
         if (packing == PACKING_TABLES)
-            for (int n = places[i].bytes * CODES_PER_BLOCK; n < WORD * CODES_PER_BLOCK; n++)
-                wrong |= ((const uchar*)packed)[n];
+            for (int n = 0; n < WORD * CODES_PER_BLOCK; n++)
+                wrong |= n / CODES_PER_BLOCK < places[i].bytes && n % CODES_PER_BLOCK < codes
+                                 ? 0
+                                 : ((const uchar*)packed)[n];
         else
             for (int lane = 0; lane < CODES_PER_BLOCK; lane++)
             {
                 const unsigned plain = (i % 2 ? parity : before)[lane] ^ packed[lane];
-                wrong |= plain & filling;
+                wrong |= plain & (lane < codes ? filling : ~0u);
                 before[lane] = plain;
                 parity[lane] ^= i % 2 ? 0 : packed[lane];
             }
-    }
-    AutoBuffer<unsigned> plain(words());
-    for (int lane = codes; lane < CODES_PER_BLOCK; lane++)
-    {
-        fetch(block, lane, plain.data());
-        for (int i = 0; i < words(); i++)
-            wrong |= plain[i];
     }
     return wrong == 0;
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <climits>
+#include <functional>
 #include <vector>
 
 namespace cv {
@@ -60,22 +61,13 @@ struct NearestScan
     size_t firstQuery, firstTrain;  //!< the first indices in keys
 };
 
-//! Takes the pairs that a scan finds, and says how near they have to be.
-class HammingSink
+//! Takes the pairs that a scan finds: those whose distance is below the threshold of the query or of the train code.
+struct HammingSink
 {
-public:
-    //! A pair is found if its distance is below that of its query, or below that of its train code. The latter
-    //! has room for whole CodeBlocks, or is null.
-    HammingSink(const int* queryThresholds_, const int* trainThresholds_)
-        : queryThresholds(queryThresholds_), trainThresholds(trainThresholds_)
-    {
-    }
-    virtual ~HammingSink() {}
+    const int* queryThresholds;
+    const int* trainThresholds;  //!< with room for whole CodeBlocks, or null
     //! Indices count from the first of the scan. May lower the thresholds.
-    virtual void found(int query, int train, int distance) = 0;
-
-    const int* const queryThresholds;
-    const int* const trainThresholds;
+    std::function<void(int query, int train, int distance)> found;
 };
 
 //! Where a scan may give a pair up: after a segment, not the last one, and later than that of the stage before.
@@ -94,10 +86,8 @@ struct PruningPolicy
     static constexpr int CODE_BLOCKS_OF_LIMITS = 128;
 
     std::vector<PruneStage> stages;
-    int limit;   //!< with a single stage, the most bits that may differ there
-    int margin;  //!< if >= 0, the limit of a query comes down to its least difference there plus this
-
-    PruningPolicy() : limit(INT_MAX), margin(-1) {}
+    int limit = INT_MAX;  //!< with a single stage, the most bits that may differ there
+    int margin = -1;  //!< if >= 0, the limit of a query comes down to its least difference there plus this
 };
 
 //! Finds all pairs that are near enough and that no stage gives up. Without stages, all are compared to the end.
@@ -105,7 +95,7 @@ struct PrunedScan
 {
     CodePairs pairs;
     const PruningPolicy& policy;
-    HammingSink& sink;
+    const HammingSink& sink;
     int64* passed;  //!< for each stage: adds up the pairs that went on there
     int* limits;    //!< null, or with a single stage: for each query the most bits that may differ there
 };
