@@ -54,15 +54,15 @@ SegmentEntry writeSegment(
     forEachPart(blocks, checkedBlocks, [&](int i, const Mat& part) { sums[i] = wordHash(part); });
     CheckedWriter file(filename, KIND);
     file.number(levels.size(), 4);
-    for (size_t i = 0; i < levels.size(); i++)
-        file.number(levels[i], 4);
+    for (int size : levels)
+        file.number(size, 4);
     file.number(codes.layout(), 4);
     file.number(checkedBlocks, 4);
     file.number(codes.images(), 8);
     for (size_t i = 0; i < codes.images(); i++)
         file.number(codes.rows(i), 8);
-    for (size_t i = 0; i < sums.size(); i++)
-        file.number(sums[i], 8);
+    for (uint64 sum : sums)
+        file.number(sum, 8);
     const SegmentEntry entry = {number, codes.rows(), codes.images(), file.seal()};
     const std::vector<uchar> zeros((size_t)(aligned(file.size()) - file.size()), 0);
     file.unchecked(zeros.data(), zeros.size());
@@ -130,8 +130,8 @@ void CodeSegment::map()
     const uint64 sums = (blocks + checkedBlocks - 1) / checkedBlocks;
     header.expect(sums, 8);
     std::vector<uint64> checksums((size_t)sums);
-    for (size_t i = 0; i < checksums.size(); i++)
-        checksums[i] = header.number(8);
+    for (uint64& sum : checksums)
+        sum = header.number(8);
     if (header.seal() != expected.checksum)
         header.fail("it is not the one that the manifest names");
 

@@ -8,22 +8,21 @@ namespace iib {
 
 static const FileKind KIND = {"IIBSHARD", 1, "the manifest of a MappedIndex"};
 
-ManifestFile::ManifestFile(const String& filename, Manifest& manifest) : file(filename, KIND)
+CheckedWriter writeManifest(const String& filename, Manifest& manifest)
 {
+    CheckedWriter file(filename, KIND);
     file.number(manifest.levelSizes.size(), 4);
-    for (size_t i = 0; i < manifest.levelSizes.size(); i++)
-        file.number(manifest.levelSizes[i], 4);
+    for (int size : manifest.levelSizes)
+        file.number(size, 4);
     file.number(manifest.segments.size(), 8);
-    for (size_t i = 0; i < manifest.segments.size(); i++)
-    {
-        const SegmentEntry& segment = manifest.segments[i];
+    for (const SegmentEntry& segment : manifest.segments)
         for (uint64 value : {segment.number, segment.rows, segment.images, segment.checksum})
             file.number(value, 8);
-    }
     file.number(manifest.removed.size(), 8);
-    for (size_t i = 0; i < manifest.removed.size(); i++)
-        file.number(manifest.removed[i], 8);
+    for (uint64 image : manifest.removed)
+        file.number(image, 8);
     manifest.checksum = file.seal();
+    return file;
 }
 
 // What every commit keeps to, whose numbers are added up without a further look.

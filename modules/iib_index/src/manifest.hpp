@@ -13,25 +13,14 @@ number (of its file's name, ascending), rows, images, checksum; number of remove
 //! What a commit of MappedIndex holds: the segments in the order of their rows, and which images are hidden.
 struct Manifest
 {
-    Manifest() : checksum(0) {}
     std::vector<int> levelSizes;
     std::vector<SegmentEntry> segments;
     std::vector<uint64> removed;  //!< images, ascending
-    uint64 checksum;              //!< of the file that it was read from
+    uint64 checksum = 0;          //!< of the file that it was read from
 };
 
-//! A manifest that is written beside the old one.
-class ManifestFile
-{
-public:
-    //! Fills in the manifest's checksum.
-    ManifestFile(const String& filename, Manifest& manifest);
-    //! Replaces the old one in one step.
-    void commit() { file.commit(); }
-
-private:
-    CheckedWriter file;
-};
+//! Writes a manifest beside the old one, which commit() replaces in one step, and fills in its checksum.
+CheckedWriter writeManifest(const String& filename, Manifest& manifest);
 
 Manifest readManifest(const String& filename);
 

@@ -85,7 +85,7 @@ private:
         removeUnfinished(folder);
         Manifest next = readManifest(manifestOf(folder));
         change(next);
-        ManifestFile file(manifestOf(folder), next);
+        CheckedWriter file = writeManifest(manifestOf(folder), next);
         IndexCommit after(folder, next, &last);
         file.commit();
         last = std::move(after);
@@ -109,7 +109,7 @@ Ptr<MappedIndex> MappedIndex::create(const String& folder, const std::vector<int
     checkEmpty(folder);
     Manifest manifest;
     manifest.levelSizes = levelSizes;
-    ManifestFile file(manifestOf(folder), manifest);
+    CheckedWriter file = writeManifest(manifestOf(folder), manifest);
     const Ptr<MappedIndex> index = makePtr<MappedIndexImpl>(folder, manifest);
     file.commit();
     return index;
