@@ -2,7 +2,7 @@
 
 // NormalizedDetector with any image and sigma: a cv::Exception, or what the detector inside sees is the image that the
 // naive oracle makes. estimateRotation with any keypoints and matches: a cv::Exception or an angle; matchRotated of any
-// images likewise. Detectors by name and of extractors: a factor, keypoints with descriptors, or a cv::Exception.
+// images likewise. Detectors of extractors: keypoints with descriptors, or a cv::Exception.
 
 #include "images.hpp"
 #include "detector/hessian_oracle.hpp"
@@ -122,41 +122,6 @@ void matchImages(ByteSource& in)
         FUZZ_CHECK(m.queryIdx < (int)keypoints[0].size() && m.trainIdx < (int)keypoints[1].size());
 }
 
-//! A detector's name, perhaps misspelt.
-void scaleFactor(ByteSource& in)
-{
-    const char* const names[] = {"AKAZE", "Feature2D.ORB", "brisk", "SIFT", "Feature2D.FastFeatureDetector",
-            "AgastFeatureDetector", "GFTTDetector", "SimpleBlobDetector", "mser", "HessianDetector"};
-    const String right = names[in.between(0, 9)];
-    String name = right;
-    for (int i = in.between(0, 2); i > 0; i--)
-        name[in.between(0, (int)name.size() - 1)] = in.take<char>();
-    float factor = 0;
-    const bool thrown = refused([&] { factor = IIB::scaleFactorFor(name); });
-    FUZZ_CHECK(thrown ? name != right : factor > 0);
-}
-
-//! Extractors as the detectors of each other: whatever would go in a circle is refused.
-void chain(ByteSource& in)
-{
-    const int count = 4;
-    Ptr<IIB> extractors[count];
-    std::vector<int> next(count, -1);  // -1: the detector that it was made with
-    for (Ptr<IIB>& extractor : extractors)
-        extractor = IIB::create();
-    for (int i = in.between(0, 9); i > 0; i--)
-    {
-        const int from = in.between(0, count - 1), to = in.between(0, count - 1);
-        bool circle = false;
-        for (int at = to; at >= 0; at = next[at])
-            circle = circle || at == from;
-        FUZZ_CHECK(refused([&] { extractors[from]->setDetector(extractors[to]); }) == circle);
-        if (!circle)
-            next[from] = to;
-        FUZZ_CHECK((extractors[from]->getDetector() == Ptr<Feature2D>(extractors[to])) == (next[from] == to));
-    }
-}
-
 //! detectAndCompute is detect of the detector, then compute.
 void detectAndCompute(ByteSource& in)
 {
@@ -189,12 +154,10 @@ void detectAndCompute(ByteSource& in)
 
 void run(ByteSource& in)
 {
-    switch (in.between(0, 8))
+    switch (in.between(0, 6))
     {
-    case 7: matchImages(in); break;
-    case 8: blobs(in); break;
-    case 0: scaleFactor(in); break;
-    case 1: chain(in); break;
+    case 0: matchImages(in); break;
+    case 1: blobs(in); break;
     case 2: detectAndCompute(in); break;
     case 3: rotation(in); break;
     default: normalize(in); break;

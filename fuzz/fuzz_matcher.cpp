@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// HierarchicalMatcher with any level sizes, train images, masks, k, radius and mode: a cv::Exception, or what the
-// naive oracle finds.
+// HierarchicalMatcher with any level sizes, mode, thresholds, images, masks, k and radius: a cv::Exception where the header
+// says so, else what a model finds that is searched pair by pair. Calls come in sequences on matchers and their copies: what
+// is added, copied, cleared, saved, loaded or set must be all that later answers depend on.
 
-#include "matches.hpp"
-#include "../src/matcher/search.hpp"
+#include "byte_source.hpp"
+#include "file.hpp"
+#include "support/matcher_oracle.hpp"
+#include "../modules/iib/src/matcher/search.hpp"
 
 #include <numeric>
 
@@ -14,175 +17,365 @@ using namespace cv;
 using namespace opencv_test;
 using cv::iib::HierarchicalMatcher;
 
-//! ADAPTIVE may miss neighbours; what it reports is right and in order.
-bool isPartOf(const Matches& some, const MatcherOracle& oracle, const Mat& queries, size_t k)
+//! Whether two answers hold the same matches in the same order.
+bool equal(const Matches& a, const Matches& b)
 {
-    for (const std::vector<DMatch>& row : some)
-    {
-        for (size_t i = 0; i < row.size(); i++)
-        {
-            const DMatch& m = row[i];
-            const Mat& image = oracle.images[m.imgIdx];
-            if (m.distance != hammingDistance(queries.ptr(m.queryIdx), image.ptr(m.trainIdx), queries.cols) ||
-                    (i > 0 && row[i - 1].distance > m.distance))
-                return false;
-            if (!oracle.masks.empty() && !oracle.masks[m.imgIdx].empty() &&
-                    !oracle.masks[m.imgIdx].at<uchar>(m.queryIdx, m.trainIdx))
-                return false;
-        }
-        if (row.size() > k)
-            return false;
-    }
-    return true;
+    const auto sameMatch = [](const DMatch& x, const DMatch& y) {
+        return x.distance == y.distance && x.queryIdx == y.queryIdx && x.imgIdx == y.imgIdx &&
+               x.trainIdx == y.trainIdx;
+    };
+    const auto sameRow = [&](const std::vector<DMatch>& x, const std::vector<DMatch>& y) {
+        return x.size() == y.size() && std::equal(x.begin(), x.end(), y.begin(), sameMatch);
+    };
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), sameRow);
 }
 
-int takeRows(ByteSource& in)
+//! A matcher and what it should be.
+struct Subject
 {
-    // few, since time counts; some beyond a block of 16 codes. Blocks of the search are small, see takeMatcher()
-    return in.between(0, in.rarely(16) ? 40 : 7);
-}
-
-Mat takeDescriptors(ByteSource& in, int bytes)
-{
-    Mat descriptors = randomDescriptors(in.take<ushort>(), takeRows(in), bytes);
-    for (int i = in.between(0, 4); i > 0 && !descriptors.empty(); i--)
-        descriptors.at<uchar>(in.between(0, descriptors.rows - 1), in.between(0, bytes - 1)) =
-                in.take<uchar>();
-    return descriptors;
-}
-
-std::vector<Mat> takeMasks(ByteSource& in, const std::vector<Mat>& images, int queries)
-{
-    std::vector<Mat> masks;
-    const bool wrong = in.between(0, 15) == 15;
-    for (size_t i = 0; i < images.size() + wrong * in.between(0, 1); i++)
-    {
-        const int rows = queries + wrong * in.between(0, 1), cols = i < images.size() ? images[i].rows : 1;
-        masks.push_back(in.flag() || rows * cols == 0
-                                ? Mat()
-                                : randomMask(in.take<uchar>(), rows, cols, in.between(0, 10) / 10.));
-        if (wrong && in.flag())
-            masks.back().convertTo(masks.back(), CV_32S);
-    }
-    return masks;
-}
-
-bool areValid(const std::vector<Mat>& masks, const std::vector<Mat>& images, int queries)
-{
-    if (!masks.empty() && masks.size() != images.size())
-        return false;
-    for (size_t i = 0; i < masks.size(); i++)
-        if (!masks[i].empty() &&
-                (masks[i].type() != CV_8UC1 || masks[i].size() != Size(images[i].rows, queries)))
-            return false;
-    return true;
-}
-
-Ptr<HierarchicalMatcher> takeMatcher(ByteSource& in, bool wild, MatcherOracle& oracle)
-{
-    for (int i = in.between(1 - wild, 4); i > 0; i--)
-        oracle.levelSizes.push_back(in.between(1 - 2 * wild, in.rarely(8) ? 70 : 9));
-    const int mode = in.between(-wild, 2 + wild);
-    oracle.crossCheck = in.flag();
-    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(
-            oracle.levelSizes, mode, wild ? in.number() : in.between(0, 64) / 64.f, oracle.crossCheck);
-    if (in.flag())
-    {
-        std::vector<float> thresholds;
-        for (size_t i = wild; i < oracle.levelSizes.size(); i++)
-            thresholds.push_back(wild ? in.number() : in.between(0, 64) / 64.f);
-        if (thresholds.size() > 1)
-            thresholds.pop_back();
-        if (!thresholds.empty())
-            matcher->setThresholds(thresholds);
-    }
-    oracle.maxRatio = wild ? in.number() : in.between(1, 16) / 16.f;
-    matcher->setMaxRatio(oracle.maxRatio);
-    // small blocks, so that the few codes of an input cross their boundaries
-    cv::iib::ScanBlocks& blocks = dynamic_cast<cv::iib::ScanBlocks&>(*matcher);
-    blocks.queryCount = in.between(1, 9);
-    blocks.codeBlocks = blocks.codeBlocksOfLimits = in.between(1, 3);
-    if (mode == HierarchicalMatcher::THRESHOLD)
-        oracle.thresholds = matcher->getThresholds();
-    // The oracle knows which part of a last level of more than a word is looked at first.
-    if (mode == HierarchicalMatcher::ADAPTIVE && oracle.levelSizes.back() > 4)
-        oracle.adaptiveBlock = 16 * blocks.codeBlocksOfLimits;
-    return matcher;
-}
-
-void checkRadius(HierarchicalMatcher& matcher, const Mat& queries, float radius, MatcherOracle& oracle)
-{
-    Matches found(3);
-    // also for a radius that is no number
-    const bool thrown = refused([&] { matcher.radiusMatch(queries, found, radius, oracle.masks); });
-    FUZZ_CHECK(thrown == !(radius > FLT_EPSILON));
-    if (thrown)
-        return;
-    oracle.adaptiveBlock = 0;  // radiusMatch is exact
-    FUZZ_CHECK(equal(oracle.radius(queries, cvFloor(std::min((double)radius, 8. * queries.cols))), found));
-}
-
-void run(ByteSource& in)
-{
-    MatcherOracle oracle;
     Ptr<HierarchicalMatcher> matcher;
-    const bool wild = in.between(0, 7) == 7;  // parameters that may be refused
-    if (refused([&] { matcher = takeMatcher(in, wild, oracle); }))
+    MatcherOracle model;
+    bool ofAnyWidth = false;  //!< create() without level sizes, which takes the width of the first codes
+    int codeBlocks = cv::iib::ScanBlocks().codeBlocksOfLimits;
+    bool isKnown = true;  //!< whether the model finds what the matcher's mode does
+
+    //! Whether the matcher knows the level sizes already.
+    bool knowsLevels() const
     {
-        FUZZ_CHECK(wild);
-        return;
+        return !ofAnyWidth ||
+               std::any_of(model.images.begin(), model.images.end(), [](const Mat& m) { return m.rows > 0; });
     }
-    const int width = std::accumulate(oracle.levelSizes.begin(), oracle.levelSizes.end(), 0);
-    const Mat queries = takeDescriptors(in, width);
-    size_t trains = 0;
-    for (int i = in.between(0, 4); i > 0; i--)
+
+    //! As the matcher's mode is; the model knows ADAPTIVE's sample only within a last level of more than a word.
+    void setMode(int mode)
     {
-        oracle.images.push_back(takeDescriptors(in, width));
-        trains += oracle.images.back().rows;
+        matcher->setMode(mode);
+        isKnown = mode != HierarchicalMatcher::ADAPTIVE || model.levelSizes.back() > 4;
+        model.thresholds =
+                mode == HierarchicalMatcher::THRESHOLD ? matcher->getThresholds() : std::vector<float>();
+        model.adaptiveBlock = mode == HierarchicalMatcher::ADAPTIVE ? 16 * codeBlocks : 0;
+    }
+
+    //! A new matcher of the same parameters and codes.
+    void replace(const Ptr<HierarchicalMatcher>& other)
+    {
+        matcher = other;
+        codeBlocks = cv::iib::ScanBlocks().codeBlocksOfLimits;
+        setMode(matcher->getMode());
+    }
+};
+
+class Session
+{
+public:
+    explicit Session(ByteSource& source) : in(source) {}
+
+    void run()
+    {
+        const bool wild = in.rarely(8);  // parameters that may be refused
+        if (refused([&] { subjects.assign(1, takeFirst(wild)); }))
+        {
+            FUZZ_CHECK(wild);
+            return;
+        }
+        for (int calls = 0; calls < 16 && in.left() > 0; calls++)
+            step(subjects[in.between(0, (int)subjects.size() - 1)]);
+        for (Subject& s : subjects)
+            ask(s);
+        setUseOptimized(true);
+    }
+
+private:
+    Subject takeFirst(bool wild)
+    {
+        Subject s;
+        s.ofAnyWidth = !wild && in.rarely(4);
+        for (int i = s.ofAnyWidth ? 1 : in.between(1, 4); i > 0; i--)
+            s.model.levelSizes.push_back(in.between(1 - 2 * wild, in.rarely(8) ? 70 : 9));
+        width = std::accumulate(s.model.levelSizes.begin(), s.model.levelSizes.end(), 0);
+        s.model.crossCheck = in.flag() && !s.ofAnyWidth;
+        s.matcher = s.ofAnyWidth ? HierarchicalMatcher::create()
+                                 : HierarchicalMatcher::create(s.model.levelSizes,
+                                           in.between(-wild, 2 + wild), takeShare(wild), s.model.crossCheck);
+        s.setMode(s.matcher->getMode());
         if (in.flag())
-            matcher->add(oracle.images.back());
-        else
-            matcher->add(std::vector<Mat>(1, oracle.images.back()));
+            setBlocks(s);
+        return s;
     }
-    if (in.flag())
-        oracle.masks = takeMasks(in, oracle.images, queries.rows);
-    const int k = in.rarely(16) ? INT_MAX : in.between(1, 20);
-    const float radius = in.number();
-    const bool compact = in.flag(), wrongWidth = in.between(0, 31) == 31;
-    useThreads(in.rarely(128) ? 3 : 1);
 
-    Matches found(2), again;
-    const bool thrown = refused([&] {
-        matcher->knnMatch(
-                wrongWidth ? Mat(3, width + 1, CV_8U, Scalar(1)) : queries, found, k, oracle.masks, compact);
-    });
-    if (queries.empty() || trains == 0)
-        return;  // DescriptorMatcher has returned before asking
-    FUZZ_CHECK(thrown == (wrongWidth || !areValid(oracle.masks, oracle.images, queries.rows)));
-    if (thrown)
-        return;
+    //! 0 to 1, or anything.
+    float takeShare(bool wild) { return wild ? in.number() : in.between(0, 64) / 64.f; }
 
-    // ADAPTIVE has nothing to go by in a single small level
-    const bool known = matcher->getMode() != HierarchicalMatcher::ADAPTIVE || oracle.adaptiveBlock > 0 ||
-                       (oracle.levelSizes.size() == 1 && width <= 4);
-    if (known)
+    void step(Subject& s)
     {
-        Matches expected = oracle.knn(queries, k);
+        switch (in.between(0, 16))
+        {
+        case 0:
+        case 1:
+        case 2: add(s); break;
+        case 3: clear(s); break;
+        case 4: copy(s, in.flag()); break;
+        case 5: reload(s); break;
+        case 6: reread(s); break;
+        case 7: setUseOptimized(in.flag()); break;
+        case 8: setParameters(s); break;
+        case 9: overwrite(s); break;
+        case 10: inspect(s); break;
+        case 11: setBlocks(s); break;
+        case 12: useThreads(in.rarely(4) ? 3 : 1); break;
+        default: ask(s); break;
+        }
+    }
+
+    Mat takeDescriptors(int bytes)
+    {
+        Mat codes = randomDescriptors(in.take<uchar>(), in.between(0, in.rarely(32) ? 70 : 7), bytes);
+        for (int i = in.between(0, 4); i > 0 && !codes.empty(); i--)
+            codes.at<uchar>(in.between(0, codes.rows - 1), in.between(0, bytes - 1)) = in.take<uchar>();
+        return codes;
+    }
+
+    void add(Subject& s)
+    {
+        const Mat codes = takeDescriptors(width);
+        switch (in.between(0, 2))
+        {
+        case 0: s.matcher->add(codes); break;
+        case 1: s.matcher->add(std::vector<Mat>(1, codes)); break;
+        default: {
+            UMat mapped;
+            codes.copyTo(mapped);
+            s.matcher->add(mapped);
+        }
+        }
+        s.model.images.push_back(codes.clone());
+        added.push_back(codes);
+        // Codes of another width throw and leave everything as it was.
+        if (in.rarely(4) && s.knowsLevels())
+            FUZZ_CHECK(refused([&] { s.matcher->add(Mat(2, width + 1, CV_8U, Scalar(1))); }));
+    }
+
+    void clear(Subject& s)
+    {
+        s.matcher->clear();
+        s.model.images.clear();
+    }
+
+    void copy(const Subject& s, bool emptyTrainData)
+    {
+        if (subjects.size() >= 4)
+            return;
+        Subject other = s;
+        other.matcher = s.matcher->clone(emptyTrainData).dynamicCast<HierarchicalMatcher>();
+        if (emptyTrainData)
+            other.model.images.clear();
+        subjects.push_back(other);
+    }
+
+    //! An index has the level sizes of its codes.
+    void reload(Subject& s)
+    {
+        static const ScratchFile file;
+        if (!s.knowsLevels())
+            return;
+        s.matcher->saveIndex(file.name);
+        s.replace(HierarchicalMatcher::loadIndex(file.name));
+        s.ofAnyWidth = false;
+    }
+
+    //! Parameters go through a file into a matcher of the same codes.
+    void reread(Subject& s)
+    {
+        FileStorage out(".yml", FileStorage::WRITE | FileStorage::MEMORY);
+        out << "m"
+            << "{";
+        s.matcher->write(out);
+        out << "}";
+        const FileStorage saved(out.releaseAndGetString(), FileStorage::READ | FileStorage::MEMORY);
+        const Ptr<HierarchicalMatcher> other = HierarchicalMatcher::create(std::vector<int>(1, 3));
+        other->read(saved["m"]);
+        other->add(s.model.images);
+        s.replace(other);
+    }
+
+    void setBlocks(Subject& s)
+    {
+        cv::iib::ScanBlocks& blocks = dynamic_cast<cv::iib::ScanBlocks&>(*s.matcher);
+        blocks.queryCount = in.between(1, 9);
+        blocks.codeBlocks = blocks.codeBlocksOfLimits = in.between(1, 3);
+        s.codeBlocks = blocks.codeBlocksOfLimits;
+        s.setMode(s.matcher->getMode());
+    }
+
+    void setParameters(Subject& s)
+    {
+        s.model.crossCheck = in.flag();
+        s.matcher->setCrossCheck(s.model.crossCheck);
+        // What is refused changes nothing.
+        const bool wild = in.rarely(8);
+        const float maxRatio = wild ? in.number() : in.between(1, 16) / 16.f;
+        const bool valid = maxRatio > 0 && maxRatio <= 1;
+        FUZZ_CHECK(refused([&] { s.matcher->setMaxRatio(maxRatio); }) == !valid);
+        s.model.maxRatio = valid ? maxRatio : s.model.maxRatio;
+        std::vector<float> thresholds(in.flag() ? 1 : s.model.levelSizes.size() - !wild);
+        for (float& threshold : thresholds)
+            threshold = takeShare(wild);
+        if (!thresholds.empty())
+            FUZZ_CHECK(!refused([&] { s.matcher->setThresholds(thresholds); }) || wild || s.ofAnyWidth);
+        const int mode = in.between(HierarchicalMatcher::EXACT - wild, HierarchicalMatcher::ADAPTIVE + wild);
+        s.setMode(refused([&] { s.matcher->setMode(mode); }) ? s.matcher->getMode() : mode);
+    }
+
+    //! Values are copied when they are added; what becomes of the caller's matrices has no effect.
+    void overwrite(const Subject& s)
+    {
+        for (Mat& m : added)
+            if (!m.empty())
+                m.setTo(in.take<uchar>());
+        const Ptr<DescriptorMatcher> copy = s.matcher->clone(false);
+        for (Mat m : copy->getTrainDescriptors())
+            if (!m.empty())
+                m.setTo(1);
+    }
+
+    //! What does not fit the codes is refused, where there are any.
+    void askWrongly(const Subject& s)
+    {
+        std::vector<Mat> masks(s.model.images.size());
+        size_t image = 0;
+        while (image < masks.size() && s.model.images[image].empty())
+            image++;
+        if (image == masks.size())
+            return;
+        const int wrong = in.between(0, 3), rows = s.model.images[image].rows;
+        const Mat queries(3, width + (wrong == 0), CV_8U, Scalar(1));
+        if (wrong == 1)
+            masks.push_back(Mat());
+        else if (wrong > 1)
+            masks[image] = Mat(3 + (wrong == 2), rows, wrong == 2 ? CV_8U : CV_32S, Scalar(1));
+        Matches found;
+        FUZZ_CHECK(refused([&] { s.matcher->knnMatch(queries, found, 2, masks); }));
+    }
+
+    //! One of the searches, among the codes that were added or in given ones.
+    void ask(const Subject& s)
+    {
+        if (in.rarely(16))
+            askWrongly(s);
+        const Mat queries = takeDescriptors(width);
+        MatcherOracle model = s.model;
+        const bool given = in.rarely(4);
+        if (given)
+            model.images.assign(1, takeDescriptors(width));
+        else if (in.flag())
+            model.masks = takeMasks(model.images, queries);
+        const int k = in.rarely(16) ? INT_MAX : in.between(1, 20);
+        switch (in.between(0, 3))
+        {
+        case 0: return askWithin(s, queries, model, given);
+        case 1: return askForBest(s, queries, model, given);
+        case 2: return askForArrays(s, queries, model, given, std::min(k, 20));
+        }
+        Matches found(2), expected = model.knn(queries, k);
+        const bool compact = in.flag();
+        if (given)
+            s.matcher->knnMatch(queries, model.images[0], found, k, noArray(), compact);
+        else
+            s.matcher->knnMatch(queries, found, k, model.masks, compact);
         if (compact)
             expected.erase(std::remove_if(expected.begin(), expected.end(),
                                    [](const std::vector<DMatch>& row) { return row.empty(); }),
                     expected.end());
-        FUZZ_CHECK(equal(expected, found));
+        FUZZ_CHECK(!s.isKnown || equal(expected, found));
     }
-    FUZZ_CHECK(isPartOf(found, oracle, queries, k));
-    const double cost = matcher->matchCost();
-    FUZZ_CHECK(cost >= 0 && cost <= 1);
-    if (in.flag())
-        return checkRadius(*matcher, queries, radius, oracle);
-    matcher->clone(false)->knnMatch(queries, again, k, oracle.masks, compact);
-    FUZZ_CHECK(equal(found, again));
-}
+
+    std::vector<Mat> takeMasks(const std::vector<Mat>& images, const Mat& queries)
+    {
+        std::vector<Mat> masks;
+        for (const Mat& image : images)
+            masks.push_back(
+                    in.flag() || queries.empty() || image.empty()
+                            ? Mat()
+                            : randomMask(in.take<uchar>(), queries.rows, image.rows, in.between(0, 4) / 4.));
+        return masks;
+    }
+
+    void askWithin(const Subject& s, const Mat& queries, MatcherOracle& model, bool given)
+    {
+        const float radius = in.rarely(4) ? in.number() : (float)in.between(1, 8 * width);
+        Matches found(1);
+        model.adaptiveBlock = 0;  // radiusMatch is exact
+        const bool thrown = refused([&] {
+            if (given)
+                s.matcher->radiusMatch(queries, model.images[0], found, radius);
+            else
+                s.matcher->radiusMatch(queries, found, radius, model.masks);
+        });
+        FUZZ_CHECK(!thrown || !(radius > FLT_EPSILON));  // also one that is no number
+        if (radius > FLT_EPSILON)
+            FUZZ_CHECK(equal(model.radius(queries, cvFloor(std::min((double)radius, 8. * width))), found));
+    }
+
+    void askForBest(const Subject& s, const Mat& queries, MatcherOracle& model, bool given)
+    {
+        std::vector<DMatch> best(1);
+        if (given)
+            s.matcher->match(queries, model.images[0], best);
+        else
+            s.matcher->match(queries, best, model.masks);
+        const Matches expected = model.knn(queries, 1);
+        Matches found(expected.size());
+        for (const DMatch& m : best)
+            found[m.queryIdx].push_back(m);
+        FUZZ_CHECK(!s.isKnown || equal(expected, found));
+    }
+
+    void askForArrays(const Subject& s, const Mat& queries, MatcherOracle& model, bool given, int k)
+    {
+        Mat_<int> indices, distances, images;
+        model.masks.clear();
+        if (given)
+            s.matcher->knnMatchArrays(queries, model.images[0], indices, distances, k);
+        else
+            s.matcher->knnMatchArrays(queries, indices, distances, k, noArray(), images);
+        Matches found(queries.rows);
+        for (int q = 0; q < indices.rows; q++)
+            for (int i = 0; i < k && indices(q, i) >= 0; i++)
+                found[q].push_back(
+                        DMatch(q, indices(q, i), given ? 0 : images(q, i), (float)distances(q, i)));
+        FUZZ_CHECK(!s.isKnown || equal(model.knn(queries, k), found));
+    }
+
+    //! What is set is what is reported.
+    void inspect(const Subject& s)
+    {
+        const std::vector<Mat> images = s.matcher->getTrainDescriptors();
+        FUZZ_CHECK(s.matcher->levelSizes() == (s.knowsLevels() ? s.model.levelSizes : std::vector<int>()));
+        FUZZ_CHECK(images.size() == s.model.images.size());
+        for (size_t i = 0; i < images.size(); i++)
+            FUZZ_CHECK(images[i].rows == s.model.images[i].rows &&
+                       (images[i].empty() || cv::norm(images[i], s.model.images[i], NORM_INF) == 0));
+        FUZZ_CHECK(s.matcher->getCrossCheck() == s.model.crossCheck &&
+                   s.matcher->getMaxRatio() == s.model.maxRatio && s.matcher->isMaskSupported());
+        FUZZ_CHECK(s.matcher->empty() == s.model.images.empty());
+        const double cost = s.matcher->matchCost();
+        FUZZ_CHECK(cost >= 0 && cost <= 1);
+        s.matcher->resetCost();
+        FUZZ_CHECK(s.matcher->matchCost() == 0);
+    }
+
+    ByteSource& in;
+    int width = 0;
+    std::vector<Subject> subjects;
+    std::vector<Mat> added;  //!< the matrices as their owner sees them
+};
+
+void run(ByteSource& in) { Session(in).run(); }
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size) { return runTarget(run, data, size); }
+extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
+{
+    useThreads(1);
+    return runTarget(run, data, size);
+}

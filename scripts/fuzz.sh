@@ -20,7 +20,7 @@ if [ "${1:-}" = -s ]; then
     seconds=$2
     shift 2
 fi
-known=$(sed -n 's/^set(fuzz_targets \(.*\))$/\1/p' "$root/fuzz/CMakeLists.txt")" tools"
+known=$(sed -n 's/^set(fuzz_targets \(.*\))$/\1/p' "$root/fuzz/CMakeLists.txt")
 # shellcheck disable=SC2086
 [ $# -gt 0 ] || set -- $known
 for target in "$@"; do
