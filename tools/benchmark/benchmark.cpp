@@ -10,7 +10,7 @@ using namespace cv;
 
 namespace iib_tools {
 
-std::vector<double> measure(const std::vector<Task>& tasks, int rounds)
+std::vector<double> measure(const std::vector<Timed>& tasks, int rounds)
 {
     std::vector<double> least(tasks.size(), DBL_MAX);
     for (int round = 0; round < rounds; round++)

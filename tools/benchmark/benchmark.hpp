@@ -8,7 +8,7 @@
 
 namespace iib_tools {
 
-struct Task
+struct Timed
 {
     std::function<void()> run;
     int threads;
@@ -17,7 +17,7 @@ struct Task
 
 /** Milliseconds of each task, least of all rounds. The rounds go through all tasks, so that a slow moment of the machine
 meets them alike. */
-std::vector<double> measure(const std::vector<Task>& tasks, int rounds);
+std::vector<double> measure(const std::vector<Timed>& tasks, int rounds);
 
 // Each measures its tasks and writes them.
 

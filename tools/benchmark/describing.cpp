@@ -2,13 +2,8 @@
 
 #include "benchmark.hpp"
 
+#include "evaluation/configurations.hpp"
 #include "opencv2/core/utility.hpp"
-#include "opencv2/opencv_modules.hpp"
-#if defined(IIB_WITH_CONTRIB) || (defined(HAVE_OPENCV_XFEATURES2D) &&                                        \
-                                         CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407)  // with TEBLID
-#define IIB_HAVE_XFEATURES2D
-#include "opencv2/xfeatures2d.hpp"
-#endif
 
 using namespace cv;
 using cv::iib::IIB;
@@ -44,13 +39,10 @@ std::vector<Row> allRows(const Mat& image)
     rows.push_back({"useOrientation", IIB::create(2.f, 4, all, mean, false, true), {}, 1});
     rows.push_back({"default, 2 threads", IIB::create(), {}, 2});
     rows.push_back({"cv::SIFT", SIFT::create(), {}, 1});
-#ifdef IIB_HAVE_XFEATURES2D
-    using namespace cv::xfeatures2d;
-    rows.push_back({"BEBLID-256", BEBLID::create(1.f, BEBLID::SIZE_256_BITS), {}, 1});
-    rows.push_back({"BEBLID-512", BEBLID::create(1.f, BEBLID::SIZE_512_BITS), {}, 1});
-    rows.push_back({"TEBLID-512", TEBLID::create(1.f, TEBLID::SIZE_512_BITS), {}, 1});
-    rows.push_back({"LATCH-512", LATCH::create(64, false), {}, 1});
-#endif
+    for (const char* name : {"BEBLID-256", "BEBLID-512", "TEBLID-512", "LATCH-512"})
+        for (const Configuration& c : baselineConfigurations())
+            if (c.name == name)
+                rows.push_back({name, c.create(), {}, 1});
     return rows;
 }
 
@@ -64,7 +56,7 @@ void measureDescribing(FileStorage& fs, int rounds)
     const std::vector<Row> rows = allRows(image);
     std::vector<KeyPoint> keypoints;
     Mat descriptors;
-    std::vector<Task> tasks;
+    std::vector<Timed> tasks;
     for (const Row& row : rows)
         for (int count : counts)
         {
@@ -100,7 +92,7 @@ void measurePixels(FileStorage& fs, int rounds)
     std::vector<Mat> images;
     std::vector<KeyPoint> keypoints;
     Mat descriptors;
-    std::vector<Task> tasks;
+    std::vector<Timed> tasks;
     for (double side : {0.125, 0.25, 0.375, 0.5, 0.75, 1.})
     {
         const Mat image = large(Rect(0, 0, cvRound(large.cols * side), cvRound(large.rows * side)));

@@ -62,7 +62,7 @@ void measureMatching(FileStorage& fs, int rounds)
 {
     const Codes codes(10000);
     std::vector<Row> rows = allRows();
-    std::vector<Task> tasks;
+    std::vector<Timed> tasks;
     std::vector<DMatch> matches;
     for (Row& row : rows)
     {
