@@ -189,15 +189,6 @@ def paper_orders(tables):
                   [row["configuration"] for row in PAPER])
 
 
-def maps(tables):
-    """Depth and labels as further channels, on the pairs that have them."""
-    rows = illumination(tables["fixed_points"], "rendered") + illumination(tables["fixed_points"])
-    with_maps = {(r["set"], r["sequence"], r["target"]) for r in rows if r["configuration"].startswith("IIB +")}
-    chosen = by_name([r for r in rows if (r["set"], r["sequence"], r["target"]) in with_maps])
-    return [(name, score(chosen[name])) for name in ("IIB", "IIB +depth", "IIB +labels", "IIB +depth+labels")
-            if name in chosen and with_maps]
-
-
 def scenes(tables):
     """Recall by sequence, all descriptors."""
     names = list(by_name(tables["fixed_points"]))
@@ -235,7 +226,7 @@ def main():
     page = environment.get_template("page.html.j2").render(
         overview=rows, networks=networks(tables), headline=sorted(headline, key=lambda r: -r["score"]["recall"]),
         detectors=detectors(tables), changes=changes(tables), warps=warp_charts(tables),
-        tasks=tasks, poses=pose_headline(tasks), slider=slider(tables), paper=paper_tables(tables), orders=paper_orders(tables), maps=maps(tables),
+        tasks=tasks, poses=pose_headline(tasks), slider=slider(tables), paper=paper_tables(tables), orders=paper_orders(tables),
         scenes=scenes(tables),
         all_pairs=score(by_name(illumination(tables["fixed_points"])).get("IIB", [])), settings=settings(folder),
         files=[file_name(name) for name in CSV_FILES if tables[name]])
