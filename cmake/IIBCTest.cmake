@@ -26,7 +26,6 @@ foreach(program opencv_test_iib opencv_test_iib_index)
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${suites}")
 endforeach()
 
-add_test(NAME includes COMMAND "${CMAKE_COMMAND}" "-DMODULE=${IIB_DIR}" -P "${PROJECT_SOURCE_DIR}/cmake/IncludeTest.cmake")
 if(TARGET iib_demo)
   add_test(NAME demo COMMAND "${CMAKE_COMMAND}" "-DDEMO=$<TARGET_FILE:iib_demo>"
     "-DWORK=${PROJECT_BINARY_DIR}/demo-test" "-DOPENCV=${OpenCV_VERSION}" -P "${PROJECT_SOURCE_DIR}/cmake/DemoTest.cmake")
@@ -69,6 +68,7 @@ set_tests_properties(fast-math-refused PROPERTIES PASS_REGULAR_EXPRESSION "error
 add_test(NAME fast-math-undone COMMAND ${fast_math} ${IIB_FLAGS} ${source})
 find_program(IIB_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(IIB_PYTHON)
+  add_test(NAME includes COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/includes_test.py" "${IIB_DIR}")
   add_test(NAME figures COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/figures.py" --check)
   add_test(NAME figures-test COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/figures_test.py")
   add_test(NAME pages COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/pages_test.py"

@@ -1,0 +1,63 @@
+#!/usr/bin/env python3
+"""The picture of includes of a module: includes_test.py FOLDER
+
+Arrows between folders point downwards only, no file includes itself by way of others, where a header and the source of the same
+name count as one, nothing leaves the module, and raw intrinsics stand in vector code alone, *.simd.hpp.
+"""
+import pathlib
+import re
+import sys
+
+# What a folder below src may include, besides precomp.hpp; the rest of the module includes what it likes.
+ALLOWED = {'': set(), 'common': {'common'}, 'rotation': {'rotation', 'common'}}
+for wing in ('descriptor', 'matcher', 'detector'):
+    ALLOWED[wing + '/kernels'] = {wing + '/kernels', 'common'}
+    ALLOWED[wing] = {wing, wing + '/kernels', 'common'}
+# The boxes are a room of the descriptor: they use its channels and regions, and compute uses them.
+ALLOWED['descriptor'].add('boxes')
+ALLOWED['boxes'] = {'boxes/kernels'} | ALLOWED['descriptor']
+ALLOWED['boxes/kernels'] = {'boxes/kernels', 'descriptor/kernels', 'common'}
+INTRINSICS = re.compile(r'(?:^|[^a-zA-Z_])(?:_mm[0-9]*_|__m(?:128|256|512)|v[a-z]+q_[a-z]*[0-9])', re.MULTILINE)
+
+
+def folder(path):
+    return re.sub('^src/?', '', path.parent.as_posix())
+
+
+def mistakes(module):
+    files = sorted(module.rglob('*.[ch]pp'))
+    if len(files) < 80:
+        yield 'only %d files below %s' % (len(files), module)
+    units = {}  # of src, and which they include
+    for file in files:
+        text, name = file.read_text(), file.relative_to(module)
+        included = []
+        for path in re.findall(r'^#include "([^"]*)"', text, re.MULTILINE):
+            target = (file.parent / path).resolve()
+            if module not in target.parents:
+                yield '%s includes %s, which is not of the module' % (name, path)
+            elif target.exists():
+                included.append(target.relative_to(module))
+        if name.parts[0] != 'src':
+            continue
+        layer = folder(name)
+        allowed = ALLOWED.get(layer, set())
+        for path in included:
+            if folder(path) and folder(path) not in allowed:
+                yield '%s includes %s: %s may include only %s' % (name, path, layer, ', '.join(sorted(allowed)))
+        unit = name.with_suffix('')
+        units.setdefault(unit, set()).update({path.with_suffix('') for path in included} - {unit})
+        if INTRINSICS.search(text) and not name.name.endswith('.simd.hpp'):
+            yield '%s has raw intrinsics; give them a name in a .simd.hpp beside their user' % name
+    # Units that include no other one still there are taken away, until none is left: what remains are circles.
+    while True:
+        free = {unit for unit, included in units.items() if not included & units.keys()}
+        if not free:
+            break
+        units = {unit: included for unit, included in units.items() if unit not in free}
+    if units:
+        yield 'these files include each other in a circle, or include some that do: ' + ', '.join(map(str, sorted(units)))
+
+
+if __name__ == '__main__':
+    sys.exit('\n'.join(mistakes(pathlib.Path(sys.argv[1]).resolve())) or 0)
