@@ -22,6 +22,6 @@ case $operands in
 esac
 
 # shellcheck disable=SC2086
-need $demo_packages
+need $build_packages
 build_library iib_demo
 exec "$build/iib_demo" "$@"

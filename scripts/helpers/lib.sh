@@ -130,8 +130,6 @@ need() {
 # The stand-alone build of the whole project.
 compiler_packages="g++ cmake ninja-build"
 build_packages="$compiler_packages pkg-config libopencv-dev"
-# The library and the demo do without libopencv-dev, which brings 47 packages more, see cmake/split_opencv.
-demo_packages="$compiler_packages libopencv-calib3d-dev libopencv-imgcodecs-dev"
 
 # The one build folder of demo, installation, tests and tools, so that the library is compiled once.
 build="$root/build"
