@@ -73,7 +73,7 @@ check_value() {
     words=$(echo "$keys" | sed -n "s/^$name|.*\[\(.*\)\].*/\1/p")
     [ -z "$words" ] || echo "$words" | tr ' ' '\n' | grep -qixF -e "$1" || fail "$given takes one of $words, not '$1'"
     case "$default,$1" in
-    [0-9]*,*[!0-9.,-]* | [0-9]*,) fail "option $given takes a number, not '$1'" ;;
+    [0-9]*,*[!0-9.]* | [0-9]*, | [0-9]*,0) fail "option $given takes a number above 0, not '$1'" ;;
     esac
 }
 

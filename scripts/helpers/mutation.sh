@@ -5,6 +5,7 @@
 . "$(dirname "$0")/lib.sh"
 
 [ $# -eq 0 ] || [ "$1" = --only ] || fail "it takes no option but --only, not $1"
+[ $# -ne 1 ] || fail "--only takes names of mutants"
 for name in "$@"; do
     [ "$name" = --only ] || grep -q "^$name: " "$root/tools/mutation/mutants.txt" ||
         fail "there is no mutant $name in tools/mutation/mutants.txt"

@@ -12,7 +12,7 @@ if [ "${1:-}" = --document ]; then
 fi
 for argument in "$@"; do
     case "$argument" in
-    --mapped=*[!0-9]* | --rounds=*[!0-9]*) fail "$argument is no number" ;;
+    --mapped=*[!0-9]* | --rounds=*[!0-9]* | --*=0) fail "$argument is no number above 0" ;;
     --mapped=?* | --rounds=?*) ;;
     *) fail "unknown option $argument; there are --mapped=, --rounds=" ;;
     esac

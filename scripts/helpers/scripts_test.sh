@@ -33,12 +33,15 @@ done
 refused scripts/bench.sh --rounds=abc
 refused scripts/bench.sh --rounds abc
 refused scripts/bench.sh --rounds
+refused scripts/bench.sh --rounds=-1
+refused scripts/bench.sh --rounds=0
 refused scripts/bench.sh folder
 refused scripts/demo.sh no-such.png no-such.png
 refused scripts/demo.sh --detector=SURFER
 refused scripts/evaluate.sh
 refused scripts/evaluate.sh no-such-folder
 refused scripts/evaluate.sh --points=many .
+refused scripts/evaluate.sh --points=-1 .
 refused scripts/fuzz.sh no-such-target
 refused scripts/fuzz.sh -s soon
 refused scripts/intree.sh --source=nowhere
@@ -48,10 +51,12 @@ refused scripts/test.sh --all unknown
 refused scripts/train.sh
 refused scripts/train.sh --out=selection.yml
 refused scripts/train.sh --bits=few .
+refused scripts/train.sh --bits=-3 .
 refused scripts/upstream.sh no-such-folder
 refused scripts/wheel.sh no-such-python
 refused scripts/helpers/arm64.sh unknown
 refused scripts/helpers/colmap.sh no-such-scene
+refused scripts/helpers/mutation.sh --only
 refused scripts/helpers/mutation.sh --only no-such-mutant
 refused scripts/helpers/network_test.sh no-such-python
 refused scripts/helpers/newcomer.sh bookworm trixie
@@ -60,6 +65,7 @@ refused scripts/helpers/opencv_source.sh unknown
 refused scripts/helpers/postgres_test.sh no-such-python
 refused scripts/helpers/python_test.sh no-such-library
 refused scripts/helpers/scale.sh --mapped=many
+refused scripts/helpers/scale.sh --mapped=0
 refused scripts/helpers/static_opencv.sh unknown
 refused scripts/helpers/synthetic.sh
 refused scripts/helpers/versions.sh trixie/

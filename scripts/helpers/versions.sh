@@ -6,6 +6,7 @@
 check_suites "$@"
 [ "$(id -u)" = 0 ] || fail "a root of another release can only be made and entered as root"
 need debootstrap
+mkdir -p "$cache"
 [ $# -gt 0 ] || set -- trixie
 for suite in "$@"; do
     base="$cache/debian-$suite"
