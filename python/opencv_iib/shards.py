@@ -40,11 +40,11 @@ def write(folder: Folder, codes: Union[np.ndarray, Iterable[np.ndarray]], rows_p
     if rows_per_shard < 1:
         raise ValueError(f'rows_per_shard is {rows_per_shard}: at least 1 is needed')
     folder = os.path.normpath(folder)  # without a slash at its end
+    if os.path.exists(folder) and (not os.path.isdir(folder) or os.listdir(folder)):
+        raise FileExistsError(f'{folder} is there already: choose another folder, or add to it with MappedIndex')
     partial = folder + '.partial'
     os.makedirs(partial, exist_ok=True)
     with only_writer(partial):
-        if os.path.isdir(folder) and os.listdir(folder):
-            raise FileExistsError(f'{folder} is there already: choose another folder, or add to it with MappedIndex')
         index = _write(partial, _images(codes, rows_per_shard), rows_per_shard, level_sizes)
         del index
         os.rename(partial, folder)

@@ -92,8 +92,12 @@ class ShardsTest(unittest.TestCase):
             with self.assertRaisesRegex(BlockingIOError, 'another process'):
                 shards.write(self.folder, self.codes)
         shards.write(self.folder, images(), 10)
-        with self.assertRaises(FileExistsError):
-            shards.write(self.folder, self.codes)
+        file = self.folder + '-file'
+        Path(file).write_bytes(b'precious')
+        for name in (self.folder, file):
+            with self.assertRaises(FileExistsError):
+                shards.write(name, self.codes)
+            self.assertFalse(os.path.exists(name + '.partial'))
         self.expect_found(shards.search(self.folder, self.queries), 5)
 
     def test_a_slash_at_the_end(self):

@@ -1,7 +1,7 @@
 """COLMAP's database file: the schema of COLMAP 3.8, which every later version upgrades when it opens it.
 
 While it is made it is called ``NAME.partial`` and has tables of its own, for the codes, the state of the image files and
-the settings; finish() drops them and moves the file to its name in one step.
+the settings; finish() makes a copy without them, which gets the name in one step.
 """
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ SCHEMA_VERSION = 3800
 MAX_IMAGE_ID = 2147483647
 
 SCHEMA = '''
+CREATE TABLE IF NOT EXISTS iib_settings (settings TEXT NOT NULL);
 CREATE TABLE IF NOT EXISTS cameras (camera_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, model INTEGER NOT NULL,
   width INTEGER NOT NULL, height INTEGER NOT NULL, params BLOB, prior_focal_length INTEGER NOT NULL);
 CREATE TABLE IF NOT EXISTS images (image_id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, name TEXT NOT NULL UNIQUE,
@@ -37,7 +38,6 @@ CREATE TABLE IF NOT EXISTS iib_codes (image_id INTEGER PRIMARY KEY NOT NULL, row
   cols INTEGER NOT NULL, data BLOB);
 CREATE TABLE IF NOT EXISTS iib_files (name TEXT PRIMARY KEY NOT NULL, stamp TEXT NOT NULL);
 CREATE TABLE IF NOT EXISTS iib_refined (image_id INTEGER PRIMARY KEY NOT NULL);
-CREATE TABLE IF NOT EXISTS iib_settings (settings TEXT NOT NULL);
 '''
 
 #: COLMAP's camera models that a prior focal length alone fills: number, parameters after the focal length(s).
@@ -101,6 +101,9 @@ class Database:
     def _begin(self, settings: dict[str, Any]) -> None:
         self._db.execute('PRAGMA journal_mode=WAL')
         self._db.execute('PRAGMA synchronous=NORMAL')
+        tables = {name for name, in self._db.execute('SELECT name FROM sqlite_master')}
+        if tables and 'iib_settings' not in tables:
+            raise SettingsChanged(f'{self.partial} is another database')
         self._db.executescript(SCHEMA)
         if self._db.execute('PRAGMA user_version').fetchone()[0] == 0:  # not where a newer COLMAP has been at it
             self._db.execute(f'PRAGMA user_version={SCHEMA_VERSION}')
@@ -122,16 +125,23 @@ class Database:
         self._db.close()
 
     def finish(self) -> None:
-        """Drops what COLMAP does not know and moves the file to its name."""
-        for table in ('iib_codes', 'iib_files', 'iib_refined', 'iib_settings'):
-            self._db.execute(f'DROP TABLE {table}')
-        self._db.execute('PRAGMA wal_checkpoint(TRUNCATE)')
-        self._db.execute('PRAGMA journal_mode=DELETE')
-        self._db.execute('VACUUM')
-        self._db.close()
-        with open(self.partial, 'rb') as file:
-            os.fsync(file.fileno())
-        os.replace(self.partial, self.path)
+        """Makes the file, without what COLMAP does not know. Until it is whole, a later run can still go on."""
+        new = self.path + '.new'
+        try:
+            with contextlib.closing(sqlite3.connect(new, isolation_level=None)) as db:
+                self._db.backup(db)
+                db.execute('PRAGMA journal_mode=DELETE')
+                for table in ('iib_codes', 'iib_files', 'iib_refined', 'iib_settings'):
+                    db.execute(f'DROP TABLE {table}')
+                db.execute('VACUUM')
+            with open(new, 'rb') as file:
+                os.fsync(file.fileno())
+            os.replace(new, self.path)
+        finally:
+            if os.path.exists(new):
+                os.unlink(new)
+        self.close()
+        os.unlink(self.partial)
 
     @contextlib.contextmanager
     def _transaction(self) -> Iterator[None]:

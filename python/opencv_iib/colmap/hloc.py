@@ -68,11 +68,13 @@ def export(database: str, features: str, matches: str, pairs: str, force: bool =
     :param pairs: text file to write, two names a line.
     :return: number of pairs.
     :raises FileExistsError: for a file that is there, unless force is set.
-    :raises ValueError: for an image's name that the list of pairs cannot hold.
+    :raises ValueError: for an image's name that the list of pairs cannot hold, or one file given twice.
 
     Files that are there are replaced when all three are complete.
     """
     paths = (features, matches, pairs)
+    if len(set(map(os.path.abspath, paths))) < 3:
+        raise ValueError('features, matches and pairs are three files: give each a name of its own')
     for path in paths:
         if os.path.exists(path) and not force:
             raise FileExistsError(f'{path} is there already: remove it, or pass force (--force)')

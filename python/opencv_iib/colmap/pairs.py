@@ -2,7 +2,8 @@
 from __future__ import annotations
 
 import itertools
-from typing import Callable, Iterable, Iterator, Sequence
+import re
+from typing import Callable, Iterable, Iterator, Mapping, Optional, Sequence
 
 import numpy as np
 
@@ -39,24 +40,20 @@ def sequential(count: int, overlap: int) -> Iterator[Pair]:
             yield a, b
 
 
-def from_file(path: str, numbers: dict[str, int]) -> Iterator[Pair]:
+def from_file(path: str, numbers: Mapping[str, Optional[int]]) -> Iterator[Pair]:
     """Pairs of a text file with two names a line, as COLMAP and hloc write them; '#' begins a line of comment.
 
+    :param numbers: of the images by name; None for those that could not be described, whose pairs are left out.
     :raises ValueError: naming file and line, for a line that is not the names of two images.
     """
-    with open(path, encoding='utf-8') as file:
-        for number, line in enumerate(file, 1):
-            words = line.split()
-            if not words or words[0].startswith('#'):
-                continue
-            for cut in range(1, len(words)):  # names may have blanks in them
-                a, b = ' '.join(words[:cut]), ' '.join(words[cut:])
-                if a in numbers and b in numbers:
-                    break
-            else:
-                raise ValueError(f'{path}:{number}: not the names of two images that were described')
-            if a != b:
-                yield numbers[a], numbers[b]
+    with open(path, encoding='utf-8-sig') as file:
+        for number, line in enumerate(map(str.strip, file), 1):
+            cuts = ((line[:blank.start()], line[blank.end():]) for blank in re.finditer(r'\s+', line))  # names may have blanks
+            a, b = next((cut for cut in cuts if numbers.keys() >= set(cut)), ('', ''))
+            if a and a != b and None not in (numbers[a], numbers[b]):
+                yield numbers[a], numbers[b]  # type: ignore[misc]
+            elif not a and line and not line.startswith('#'):
+                raise ValueError(f'{path}:{number}: not the names of two images')
 
 
 def retrieval(count: int, load: Callable[[int], np.ndarray], level_sizes: Sequence[int], neighbours: int,
@@ -70,15 +67,10 @@ def retrieval(count: int, load: Callable[[int], np.ndarray], level_sizes: Sequen
     matcher.add([load(i)[:sample] for i in range(count)])
     for a in range(count):
         codes = load(a)[:sample]
-        votes = np.zeros(count, np.int64)
-        if len(codes):
-            # an image's own codes come first, at distance 0
-            images = matcher.knnMatchArrays(codes, k=3)[2]
-            others = np.where(images == a, -1, images)
-            for row in others:
-                found = row[row >= 0]
-                if len(found):
-                    votes[found[0]] += 1
+        images = matcher.knnMatchArrays(codes, k=3)[2]  # an image's own codes come first, at distance 0
+        others = (images >= 0) & (images != a)
+        first = np.take_along_axis(images, others.argmax(axis=1)[:, None], 1)[others.any(axis=1)]
+        votes = np.bincount(first.ravel(), minlength=count)
         for b in np.argsort(-votes, kind='stable')[:neighbours]:
             if votes[b] > 0:
                 yield min(a, int(b)), max(a, int(b))

@@ -13,7 +13,6 @@ import numpy as np
 import opencv_iib
 from opencv_iib._lock import only_writer
 from opencv_iib.colmap import pairs as pair_lists
-from opencv_iib.colmap.cache import Cache
 from opencv_iib.colmap.database import CAMERA_MODELS, Database
 from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
 from opencv_iib.colmap.images import exif_focal_length, find_images, is_listable, is_utf8, read_grey, stamp
@@ -44,6 +43,8 @@ class Options:
     def check(self) -> None:
         """:raises ValueError: naming what is wrong, and what there is."""
         self.features.check()
+        if not 0 <= self.focal < float('inf'):
+            raise ValueError(f'focal is {self.focal}: it has to be a number of pixels, or 0')
         if self.camera_model not in CAMERA_MODELS:
             raise ValueError(f'no camera model {self.camera_model}: there are {", ".join(CAMERA_MODELS)}')
         if self.pairs not in PAIRS and not os.path.isfile(self.pairs):
@@ -111,7 +112,7 @@ def describe_images(database: Database, folder: str, names: Iterable[str], optio
     return failed
 
 
-def list_pairs(database: Database, options: Options, level_sizes: tuple[int, ...]
+def list_pairs(database: Database, names: Iterable[str], options: Options, level_sizes: tuple[int, ...]
                ) -> tuple[Iterator[tuple[int, int]], Optional[int]]:
     """Pairs of image ids, and how many there are if that is known."""
     numbers = database.image_ids()
@@ -126,7 +127,7 @@ def list_pairs(database: Database, options: Options, level_sizes: tuple[int, ...
         chosen, total = pair_lists.retrieval(count, lambda i: database.load_codes(ids[i]), level_sizes,
                                              options.neighbours), None
     else:
-        return pair_lists.from_file(options.pairs, numbers), None
+        return pair_lists.from_file(options.pairs, {**dict.fromkeys(names), **numbers}), None
     return ((ids[a], ids[b]) for a, b in chosen), total
 
 
@@ -160,8 +161,8 @@ def match_pairs(database: Database, listed: tuple[Iterable[tuple[int, int]], Opt
 
     :param listed: pairs of image ids, and how many there are if that is known.
     """
-    images = Cache(lambda i: crew.hold(database.load_codes(i), database.load_keypoints(i)[:, :2]),
-                   2 * pair_lists.BLOCK + 2)
+    images = functools.lru_cache(2 * pair_lists.BLOCK + 2)(
+        lambda i: crew.hold(database.load_codes(i), database.load_keypoints(i)[:, :2]))
     pairs, total = listed
     progress = Progress('matching', total)
     begun: set[tuple[int, int]] = set()
@@ -176,7 +177,7 @@ def match_pairs(database: Database, listed: tuple[Iterable[tuple[int, int]], Opt
 
     def jobs() -> Iterator[tuple[list[tuple[int, int]], dict[int, Any]]]:
         for tile in pair_lists.tiles(missing(), crew.tile_side):
-            yield tile, {image: images[image] for pair in tile for image in pair}
+            yield tile, {image: images(image) for pair in tile for image in pair}
 
     match = functools.partial(match_tile, level_sizes, ratio, verify)
     for (tile, _), results in in_parallel(match, jobs(), crew):
@@ -223,6 +224,9 @@ def build_database(images: str, database: str, options: Options = Options(), for
     names = find_images(images)
     if not names:
         raise ValueError(f'no images below {images}')
+    if options.pairs not in PAIRS:
+        for _ in pair_lists.from_file(options.pairs, dict.fromkeys(names)):
+            pass  # a mistake in it is told before work begins
     threads = workers or os.cpu_count() or 1
     crew = Threads(threads) if client is None else Cluster(client)
     verify = options.verify
@@ -241,7 +245,7 @@ def build_database(images: str, database: str, options: Options = Options(), for
         failed = describe_images(target, images, names, options, crew, log)
         features = _features(options.features)
         sizes = features.level_sizes()
-        match_pairs(target, list_pairs(target, options, sizes), options.ratio, sizes, verify, crew)
+        match_pairs(target, list_pairs(target, names, options, sizes), options.ratio, sizes, verify, crew)
         verify_pairs(target, binary, log)
         if options.refine:
             refine_images(target, images, features, verify, threads)

@@ -2,13 +2,13 @@
 from __future__ import annotations
 
 import concurrent.futures
+import functools
 import os
 from typing import Any
 
 import numpy as np
 
 from opencv_iib.colmap.alignment import Patches, combine, frames, offsets
-from opencv_iib.colmap.cache import Cache
 from opencv_iib.colmap.database import Database
 from opencv_iib.colmap.features import Features
 from opencv_iib.colmap.images import read_grey
@@ -36,7 +36,7 @@ def refine_images(database: Database, folder: str, features: Features, verify: s
     """
     numbers = database.image_ids()
     names = {number: name for name, number in numbers.items()}
-    images = Cache(lambda number: _patches(folder, names[number]), IMAGES_KEPT)
+    images = functools.lru_cache(IMAGES_KEPT)(lambda number: _patches(folder, names[number]))
     done = database.refined()
     progress = Progress('refining', len(numbers), len(done))
 
@@ -51,7 +51,7 @@ def refine_images(database: Database, folder: str, features: Features, verify: s
             wanted = [np.empty((0, 2))]
             others = list(matches)
             for begin in range(0, len(others), IMAGES_KEPT):
-                jobs = [pool.submit(offsets, images[number], own[matches[other][:, 0]], images[other],
+                jobs = [pool.submit(offsets, images(number), own[matches[other][:, 0]], images(other),
                                     framed(database.load_keypoints(other))[matches[other][:, 1]])
                         for other in others[begin:begin + IMAGES_KEPT]]
                 wanted += [job.result() for job in jobs]

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import collections
+import functools
 import hashlib
 import itertools
 import os
@@ -12,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import opencv_iib
-from opencv_iib.colmap.cache import Cache
 from opencv_iib.colmap.database import Database
 from opencv_iib.colmap.features import FeatureOptions, Features
 from opencv_iib.colmap.parallel import Threads
@@ -82,11 +82,11 @@ def _fitting_matches(model: Any, names: dict[str, int], database: Database) -> I
     :raises ValueError: at the end, if hardly any did.
     """
     numbers = {number: names[name] for name, number in database.image_ids().items()}
-    keypoints = Cache(lambda i: database.load_keypoints(i)[:, :2].astype(np.float64), 1000)
+    keypoints = functools.lru_cache(1000)(lambda i: database.load_keypoints(i)[:, :2].astype(np.float64))
     all_matches = fit = 0
     for a in sorted(numbers):
         for b, pairs in database.matches_with_later(a, False).items():
-            kept = pairs[fitting(model, numbers[a], keypoints[a][pairs[:, 0]], numbers[b], keypoints[b][pairs[:, 1]])]
+            kept = pairs[fitting(model, numbers[a], keypoints(a)[pairs[:, 0]], numbers[b], keypoints(b)[pairs[:, 1]])]
             all_matches, fit = all_matches + len(pairs), fit + len(kept)
             yield numbers[a], numbers[b], kept
     if fit <= LEAST_FITTING * all_matches:
