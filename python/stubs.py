@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes type stubs of the modules whose classes get names in snake_case when they are loaded: stubs.py PACKAGE OUT
+"""Writes type stubs of the modules whose classes get methods when they are loaded (see _names.py): stubs.py PACKAGE OUT
 
 CMake runs it, so that the wheel has the stubs beside the modules; a source tree has none.
 """
@@ -9,11 +9,16 @@ import pathlib
 import sys
 
 sys.path.insert(0, sys.argv[1])
-from _names import snake_case
+from _names import accessors, snake_case
 
 
 def stub(body, aliases):
     """Signatures and docstrings alone."""
+    for node in list(body):
+        if isinstance(node, ast.Assign) and ast.unparse(node.value).startswith('Parameter('):
+            kind, meaning = node.value.args
+            at = body.index(node)
+            body[at:at + 1] = ast.parse(accessors(node.targets[0].id, kind.id, meaning.value)).body
     for node in list(body):
         if isinstance(node, ast.ClassDef):
             if 'self._core' in ast.unparse(node):  # what other modules of the package read

@@ -1,6 +1,7 @@
 """KeyPoint and DMatch: those of cv2 where it is there, plain ones otherwise."""
 from __future__ import annotations
 
+import dataclasses
 import functools
 from typing import Any, Protocol, Sequence
 
@@ -25,38 +26,26 @@ class KeyPointLike(Protocol):
 class KeyPoint:
     """A keypoint with the attributes of cv2.KeyPoint; pixels and degrees, angle -1 for none."""
 
-    __slots__ = ('pt', 'size', 'angle', 'response', 'octave', 'class_id')
-
     def __init__(self, x: float, y: float, size: float, angle: float = -1, response: float = 0,
                  octave: int = 0, class_id: int = -1) -> None:
-        self.pt = (x, y)
-        self.size = size
-        self.angle = angle
-        self.response = response
-        self.octave = octave
-        self.class_id = class_id
+        self.pt, self.size, self.angle = (x, y), size, angle
+        self.response, self.octave, self.class_id = response, octave, class_id
 
     def __repr__(self) -> str:
         return f'KeyPoint(pt={self.pt}, size={self.size}, angle={self.angle})'
 
 
+@dataclasses.dataclass(eq=False)
 class DMatch:
     """A match with the attributes of cv2.DMatch; the distance is in bits."""
 
-    __slots__ = ('queryIdx', 'trainIdx', 'imgIdx', 'distance')
+    queryIdx: int
+    trainIdx: int
+    imgIdx: int
+    distance: float
 
-    def __init__(self, queryIdx: int, trainIdx: int, imgIdx: int, distance: float) -> None:
-        self.queryIdx = queryIdx
-        self.trainIdx = trainIdx
-        self.imgIdx = imgIdx
-        self.distance = distance
-
-    def __lt__(self, other: 'DMatch') -> bool:
+    def __lt__(self, other: DMatch) -> bool:
         return self.distance < other.distance
-
-    def __repr__(self) -> str:
-        return (f'DMatch(queryIdx={self.queryIdx}, trainIdx={self.trainIdx}, imgIdx={self.imgIdx}, '
-                f'distance={self.distance})')
 
 
 @functools.lru_cache(maxsize=None)

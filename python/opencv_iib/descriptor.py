@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arrays import ArrayOrArrays, as_array, as_arrays, as_image
-from opencv_iib._names import SnakeCase
-from opencv_iib.detectors import HessianDetector, MissingDetector, core_detector, detect, detector_name
+from opencv_iib._names import Parameter, SnakeCase
+from opencv_iib.detectors import HessianDetector, core_detector, detect, for_pickle
 from opencv_iib.enums import Border, Channel, Mapping, Orientation, Preset
 from opencv_iib.keypoints import Keypoints, as_rows
 
@@ -202,77 +202,22 @@ class IIBDescriptorExtractor(SnakeCase):
         """False: an extractor is always ready."""
         return False
 
-    def setScaleFactor(self, scaleFactor: float) -> None:
-        """Side of the described square in units of a keypoint's size, > 0."""
-        self._core.setScaleFactor(scaleFactor)
-
-    def getScaleFactor(self) -> float:
-        """Side of the described square in units of a keypoint's size."""
-        return self._core.getScaleFactor()
-
-    def setGranularity(self, granularity: int) -> None:
-        """Number of levels, 1 to 6. Another one ends a selection, as other channels, mapping or overlap do."""
-        self._core.setGranularity(granularity)
-
-    def getGranularity(self) -> int:
-        """Number of levels."""
-        return self._core.getGranularity()
-
-    def setChannels(self, channels: int) -> None:
-        """A sum of CHANNEL_ values; may be 0 if there are extra channels."""
-        self._core.setChannels(channels)
-
-    def getChannels(self) -> Channel:
-        """A sum of CHANNEL_ values."""
-        return Channel(self._core.getChannels())
-
-    def setMapping(self, mapping: int) -> None:
-        """One of MAPPING_."""
-        self._core.setMapping(mapping)
-
-    def getMapping(self) -> Mapping:
-        """One of MAPPING_."""
-        return Mapping(self._core.getMapping())
-
-    def setOverlap(self, overlap: bool) -> None:
-        """Whether the windows of 2 x 2 cells slide by one cell instead of two."""
-        self._core.setOverlap(overlap)
-
-    def getOverlap(self) -> bool:
-        """Whether the windows of 2 x 2 cells slide by one cell instead of two."""
-        return self._core.getOverlap()
-
-    def setUseOrientation(self, useOrientation: bool) -> None:
-        """True: ORIENTATION_KEYPOINT, False: ORIENTATION_NONE."""
-        self._core.setUseOrientation(useOrientation)
-
-    def getUseOrientation(self) -> bool:
-        """Whether there is any orientation but ORIENTATION_NONE."""
-        return self._core.getUseOrientation()
+    scaleFactor = Parameter(float, "Side of the described square in units of a keypoint's size, > 0.")
+    granularity = Parameter(int, 'Number of levels, 1 to 6. Another one ends a selection, as other channels, mapping or overlap do.')
+    channels = Parameter(Channel, 'A sum of CHANNEL_ values; may be 0 if there are extra channels.')
+    mapping = Parameter(Mapping, 'One of MAPPING_.')
+    overlap = Parameter(bool, 'Whether the windows of 2 x 2 cells slide by one cell instead of two.')
+    useOrientation = Parameter(bool, 'True: ORIENTATION_KEYPOINT, False: ORIENTATION_NONE.')
+    extraChannels = Parameter(int, 'Number of maps that computeWithChannels is given, 0 to 16.')
+    border = Parameter(Border, 'One of BORDER_.')
 
     def setOrientation(self, mode: int) -> None:
         """How the described squares are turned: one of ORIENTATION_."""
-        self._core.setOrientation(mode)
+        self._core.orientation = mode
 
     def getOrientation(self) -> Orientation:
         """One of ORIENTATION_."""
-        return Orientation(self._core.getOrientation())
-
-    def setExtraChannels(self, extraChannels: int) -> None:
-        """Number of maps that computeWithChannels is given, 0 to 16."""
-        self._core.setExtraChannels(extraChannels)
-
-    def getExtraChannels(self) -> int:
-        """Number of maps that computeWithChannels is given."""
-        return self._core.getExtraChannels()
-
-    def setBorder(self, border: int) -> None:
-        """One of BORDER_."""
-        self._core.setBorder(border)
-
-    def getBorder(self) -> Border:
-        """One of BORDER_."""
-        return Border(self._core.getBorder())
+        return Orientation(self._core.orientation)
 
     def setSelection(self, quads: ArrayLike) -> None:
         """Restricts the descriptor to chosen quads.
@@ -302,25 +247,18 @@ class IIBDescriptorExtractor(SnakeCase):
         self._core.read(os.fspath(fileName))
 
     def __getstate__(self) -> dict[str, Any]:
-        # A detector of cv2 cannot be pickled; describing, which workers are sent an extractor for, needs none.
-        detector = self._detector
-        if detector is not None and not isinstance(detector, HessianDetector):
-            detector = detector_name(detector)
-        return {'parameters': self._core.parameters(), 'detector': detector}
+        return {'parameters': self._core.parameters(), 'detector': for_pickle(self._detector)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self._core = _core.Extractor.create(2.0, 4, 15, 0, False, False, 0)
         self._core.setParameters(state['parameters'])
         self._detector = None
-        detector = state['detector']
-        if detector is not None:
-            self.setDetector(MissingDetector(detector) if isinstance(detector, str) else detector)
+        if state['detector'] is not None:
+            self.setDetector(state['detector'])
 
     def __copy__(self) -> IIBDescriptorExtractor:
         twin = type(self).__new__(type(self))
-        twin.__setstate__({'parameters': self._core.parameters(), 'detector': None})
-        if self._detector is not None:
-            twin.setDetector(self._detector)
+        twin.__setstate__({'parameters': self._core.parameters(), 'detector': self._detector})
         return twin
 
     def __deepcopy__(self, memo: Any) -> IIBDescriptorExtractor:

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arrays import as_array, as_image
-from opencv_iib._names import SnakeCase
+from opencv_iib._names import Parameter, SnakeCase
 from opencv_iib.keypoints import Keypoints, array_to_keypoints, as_rows
 
 
@@ -72,6 +72,11 @@ class MissingDetector:
         raise RuntimeError(f'the detector {self.name} was not pickled with the object that used it: set it again')
 
 
+def for_pickle(detector: Any) -> Any:
+    """What a pickle holds: detectors of this package. One of cv2 cannot be pickled, and describing needs none."""
+    return detector if detector is None or hasattr(detector, '_core') else MissingDetector(detector_name(detector))
+
+
 class HessianDetector(SnakeCase):
     """Finds blobs of the locally normalized image: maxima over place and scale of the determinant of its Hessian.
 
@@ -105,45 +110,11 @@ class HessianDetector(SnakeCase):
         """
         return detect(self, image, mask)
 
-    def setMaxFeatures(self, maxFeatures: int) -> None:
-        """The strongest that are kept; 0 keeps all."""
-        self._core.setMaxFeatures(maxFeatures)
-
-    def getMaxFeatures(self) -> int:
-        """As setMaxFeatures says."""
-        return self._core.getMaxFeatures()
-
-    def setThreshold(self, threshold: float) -> None:
-        """Smallest response, 0 or more."""
-        self._core.setThreshold(threshold)
-
-    def getThreshold(self) -> float:
-        """As setThreshold says."""
-        return self._core.getThreshold()
-
-    def setScales(self, scales: int) -> None:
-        """Number of scales, 1 to 8."""
-        self._core.setScales(scales)
-
-    def getScales(self) -> int:
-        """As setScales says."""
-        return self._core.getScales()
-
-    def setSigma(self, sigma: float) -> None:
-        """Of the smallest scale in pixels, 1.5 to 8."""
-        self._core.setSigma(sigma)
-
-    def getSigma(self) -> float:
-        """As setSigma says."""
-        return self._core.getSigma()
-
-    def setNormalizationSigma(self, normalizationSigma: float) -> None:
-        """Of the local normalization's Gaussian in pixels, 2 to 256."""
-        self._core.setNormalizationSigma(normalizationSigma)
-
-    def getNormalizationSigma(self) -> float:
-        """As setNormalizationSigma says."""
-        return self._core.getNormalizationSigma()
+    maxFeatures = Parameter(int, 'The strongest that are kept; 0 keeps all.')
+    threshold = Parameter(float, 'Smallest response, 0 or more.')
+    scales = Parameter(int, 'Number of scales, 1 to 8, each sqrt(2) times the one before.')
+    sigma = Parameter(float, 'Of the smallest scale in pixels, 1.5 to 8.')
+    normalizationSigma = Parameter(float, "Of the local normalization's Gaussian in pixels, 2 to 256.")
 
     def descriptorSize(self) -> int:
         """0: it describes nothing."""
@@ -208,13 +179,7 @@ class NormalizedDetector(SnakeCase):
         """The detector inside."""
         return self._detector
 
-    def setSigma(self, sigma: float) -> None:
-        """Of the Gaussian filter in pixels, 1 to 256."""
-        self._core.setSigma(sigma)
-
-    def getSigma(self) -> float:
-        """Of the Gaussian filter in pixels."""
-        return self._core.getSigma()
+    sigma = Parameter(float, 'Of the Gaussian filter in pixels, 1 to 256.')
 
     def descriptorSize(self) -> int:
         """Of the detector inside; 0 if it describes nothing."""
@@ -236,11 +201,8 @@ class NormalizedDetector(SnakeCase):
         """As in cv2.iib."""
         return 'Feature2D.NormalizedDetector'
 
-    def __getstate__(self) -> dict[str, Any]:
-        return {'detector': detector_name(self._detector), 'sigma': self.getSigma()}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__init__(MissingDetector(state['detector']), state['sigma'])  # type: ignore[misc]
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (for_pickle(self._detector), self.getSigma())
 
     def __copy__(self) -> NormalizedDetector:
         return type(self)(self._detector, self.getSigma())

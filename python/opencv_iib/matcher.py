@@ -2,14 +2,14 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Optional, Sequence, Union
+from typing import Any, Iterable, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arrays import ArrayOrArrays, as_array, as_arrays
-from opencv_iib._names import SnakeCase
+from opencv_iib._names import Parameter, SnakeCase
 from opencv_iib._types import match_type
 from opencv_iib.enums import Mode
 
@@ -26,6 +26,14 @@ def _masks(masks: Any) -> Optional[list[Optional[np.ndarray]]]:
 
 def _descriptors(descriptors: ArrayLike) -> np.ndarray:
     return as_array(descriptors, 'descriptors')
+
+
+def _objects(matches: Iterable[Sequence[int]], queries: int, compact: bool) -> Matches:
+    """A tuple for each query, empty ones left out if that is asked for, of its matches: (query, train, image, distance)."""
+    make, rows = match_type(), [[] for _ in range(queries)]  # type: ignore[var-annotated]
+    for query, train, image, distance in matches:
+        rows[query].append(make(query, train, image, float(distance)))
+    return tuple(tuple(row) for row in rows if row or not compact)
 
 
 class HierarchicalMatcher(SnakeCase):
@@ -50,8 +58,7 @@ class HierarchicalMatcher(SnakeCase):
             self._core = _core.Matcher.create(list(levelSizes), mode, threshold, crossCheck)
         else:
             self._core = _core.Matcher.create()
-            self._core.setMode(mode)
-            self._core.setCrossCheck(crossCheck)
+            self._core.mode, self._core.crossCheck = mode, crossCheck
 
     @classmethod
     def _of(cls, core: _core.Matcher) -> HierarchicalMatcher:
@@ -94,8 +101,11 @@ class HierarchicalMatcher(SnakeCase):
         """
         if isinstance(trainDescriptors, (int, np.integer)):  # cv2's order of arguments without a train set
             return self.knnMatch(queryDescriptors, None, int(trainDescriptors), mask, compactResult, masks)
-        return self._core.knnMatch(_descriptors(queryDescriptors), self._train(trainDescriptors), k,
-                                   _masks(mask if masks is None else masks), compactResult, match_type())
+        indices, distances, *images = self.knnMatchArrays(queryDescriptors, trainDescriptors, k, mask, masks)
+        queries, _ = found = np.nonzero(indices >= 0)
+        image = images[0][found] if images else np.zeros_like(queries)
+        return _objects(zip(*(array.tolist() for array in (queries, indices[found], image, distances[found]))), len(indices),
+                        compactResult)
 
     def radiusMatch(self, queryDescriptors: ArrayLike, trainDescriptors: Optional[ArrayLike] = None, maxDistance: float = 0,
                     mask: Optional[ArrayLike] = None, compactResult: bool = False, masks: Optional[Sequence[ArrayLike]] = None) -> Matches:
@@ -105,8 +115,10 @@ class HierarchicalMatcher(SnakeCase):
         """
         if isinstance(trainDescriptors, (int, float, np.number)):
             return self.radiusMatch(queryDescriptors, None, float(trainDescriptors), mask, compactResult, masks)
-        return self._core.radiusMatch(_descriptors(queryDescriptors), self._train(trainDescriptors), maxDistance,
-                                      _masks(mask if masks is None else masks), compactResult, match_type())
+        queries = _descriptors(queryDescriptors)
+        found = self._core.radiusMatch(queries, self._train(trainDescriptors), maxDistance,
+                                       _masks(mask if masks is None else masks))
+        return _objects(found.tolist(), len(queries), compactResult)
 
     def knnMatchArrays(self, queryDescriptors: ArrayLike, trainDescriptors: Optional[ArrayLike] = None, k: int = 1,
                        mask: Optional[ArrayLike] = None, masks: Optional[Sequence[ArrayLike]] = None) -> tuple[NDArray[np.int32], ...]:
@@ -153,37 +165,19 @@ class HierarchicalMatcher(SnakeCase):
         """Bytes of each level, coarse first; empty while a matcher created without them has seen no descriptors."""
         return tuple(self._core.levelSizes())
 
-    def setMode(self, mode: int) -> None:
-        """EXACT, THRESHOLD or ADAPTIVE."""
-        self._core.setMode(mode)
-
-    def getMode(self) -> Mode:
-        """EXACT, THRESHOLD or ADAPTIVE."""
-        return Mode(self._core.getMode())
+    mode = Parameter(Mode, 'EXACT, THRESHOLD or ADAPTIVE.')
 
     def setThresholds(self, thresholds: Sequence[float]) -> None:
         """Of THRESHOLD, 0 to 1: one for every level but the last, or a single one for all."""
-        self._core.setThresholds([float(t) for t in thresholds])
+        self._core.thresholds = [float(t) for t in thresholds]
 
     def getThresholds(self) -> tuple[float, ...]:
         """Of THRESHOLD, one a level."""
-        return tuple(self._core.getThresholds())
+        return tuple(self._core.thresholds)
 
-    def setCrossCheck(self, crossCheck: bool) -> None:
-        """Whether to report only pairs that are among each other's nearest."""
-        self._core.setCrossCheck(crossCheck)
-
-    def getCrossCheck(self) -> bool:
-        """Whether only pairs that are among each other's nearest are reported."""
-        return self._core.getCrossCheck()
-
-    def setMaxRatio(self, maxRatio: float) -> None:
-        """Ratio test in match, knnMatch and knnMatchArrays, in (0, 1]; 1 turns it off."""
-        self._core.setMaxRatio(maxRatio)
-
-    def getMaxRatio(self) -> float:
-        """Of the distances to the nearest and the second nearest; 1: no test."""
-        return self._core.getMaxRatio()
+    crossCheck = Parameter(bool, "Whether to report only pairs that are among each other's nearest.")
+    maxRatio = Parameter(float, 'Of the distances to the nearest and the second nearest, the largest in match, knnMatch and '
+                                'knnMatchArrays, in (0, 1]; 1 turns the test off.')
 
     def matchCost(self) -> float:
         """The paper's MC: bits compared / bits brute force would compare, since resetCost(); 0 before any call."""

@@ -54,4 +54,24 @@ nb::object toNumpy(const cv::Mat& matrix);
 std::string parametersOf(const cv::Algorithm& self);
 void setParameters(cv::Algorithm& self, const std::string& text);
 
+//! Queries that are searched at once: with a million codes, less than a second on one core.
+static constexpr int BLOCK = 512;
+
+//! Calls `find(range)` for blocks of so many of the rows, at least once, without the GIL; Ctrl-C acts between two.
+template <typename Find> void inBlocks(int rows, int size, Find find)
+{
+    int first = 0;
+    do
+    {
+        const cv::Range block(first, std::min(first + size, rows));
+        {
+            nb::gil_scoped_release release;
+            find(block);
+        }
+        first = block.end;
+        if (PyErr_CheckSignals() != 0)
+            throw nb::python_error();
+    } while (first < rows);
+}
+
 }  // namespace iib_python

@@ -35,20 +35,15 @@ void bindDetectors(nb::module_& m)
     nb::class_<cv::Feature2D>(m, "Detector").def_static("foreign", &foreignDetector).def("detect", &detect);
     nb::class_<Normalized, cv::Feature2D>(m, "NormalizedDetector")
             .def_static("create", &Normalized::create)
-            .def("setSigma", &Normalized::setSigma)
-            .def("getSigma", &Normalized::getSigma);
+            .def_prop_rw("sigma", &Normalized::getSigma, &Normalized::setSigma);
     nb::class_<Hessian, cv::Feature2D>(m, "HessianDetector")
             .def_static("create", &Hessian::create)
-            .def("setMaxFeatures", &Hessian::setMaxFeatures)
-            .def("getMaxFeatures", &Hessian::getMaxFeatures)
-            .def("setThreshold", &Hessian::setThreshold)
-            .def("getThreshold", &Hessian::getThreshold)
-            .def("setScales", &Hessian::setScales)
-            .def("getScales", &Hessian::getScales)
-            .def("setSigma", &Hessian::setSigma)
-            .def("getSigma", &Hessian::getSigma)
-            .def("setNormalizationSigma", &Hessian::setNormalizationSigma)
-            .def("getNormalizationSigma", &Hessian::getNormalizationSigma);
+            .def_prop_rw("maxFeatures", &Hessian::getMaxFeatures, &Hessian::setMaxFeatures)
+            .def_prop_rw("threshold", &Hessian::getThreshold, &Hessian::setThreshold)
+            .def_prop_rw("scales", &Hessian::getScales, &Hessian::setScales)
+            .def_prop_rw("sigma", &Hessian::getSigma, &Hessian::setSigma)
+            .def_prop_rw(
+                    "normalizationSigma", &Hessian::getNormalizationSigma, &Hessian::setNormalizationSigma);
 }
 
 }  // namespace iib_python

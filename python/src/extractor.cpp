@@ -5,6 +5,8 @@
 
 #include "opencv2/iib.hpp"
 
+#include <fstream>
+
 namespace iib_python {
 
 namespace {
@@ -47,6 +49,13 @@ cv::Ptr<Extractor> withoutDetector(const Extractor& self)
     return result;
 }
 
+//! OpenCV goes on where it cannot open a file.
+void expect(const std::ios& opened, const std::string& file, const char* what)
+{
+    if (!opened)
+        CV_Error_(cv::Error::StsError, ("%s cannot be %s", file.c_str(), what));
+}
+
 }  // namespace
 
 void bindExtractor(nb::module_& m)
@@ -62,24 +71,15 @@ void bindExtractor(nb::module_& m)
             .def("setDetector", &Extractor::setDetector)
             .def("levelSizes", &Extractor::levelSizes)
             .def("descriptorSize", [](const Extractor& self) { return self.descriptorSize(); })
-            .def("setScaleFactor", &Extractor::setScaleFactor)
-            .def("getScaleFactor", &Extractor::getScaleFactor)
-            .def("setGranularity", &Extractor::setGranularity)
-            .def("getGranularity", &Extractor::getGranularity)
-            .def("setChannels", &Extractor::setChannels)
-            .def("getChannels", &Extractor::getChannels)
-            .def("setMapping", &Extractor::setMapping)
-            .def("getMapping", &Extractor::getMapping)
-            .def("setOverlap", &Extractor::setOverlap)
-            .def("getOverlap", &Extractor::getOverlap)
-            .def("setUseOrientation", &Extractor::setUseOrientation)
-            .def("getUseOrientation", &Extractor::getUseOrientation)
-            .def("setOrientation", &Extractor::setOrientation)
-            .def("getOrientation", &Extractor::getOrientation)
-            .def("setExtraChannels", &Extractor::setExtraChannels)
-            .def("getExtraChannels", &Extractor::getExtraChannels)
-            .def("setBorder", &Extractor::setBorder)
-            .def("getBorder", &Extractor::getBorder)
+            .def_prop_rw("scaleFactor", &Extractor::getScaleFactor, &Extractor::setScaleFactor)
+            .def_prop_rw("granularity", &Extractor::getGranularity, &Extractor::setGranularity)
+            .def_prop_rw("channels", &Extractor::getChannels, &Extractor::setChannels)
+            .def_prop_rw("mapping", &Extractor::getMapping, &Extractor::setMapping)
+            .def_prop_rw("overlap", &Extractor::getOverlap, &Extractor::setOverlap)
+            .def_prop_rw("useOrientation", &Extractor::getUseOrientation, &Extractor::setUseOrientation)
+            .def_prop_rw("orientation", &Extractor::getOrientation, &Extractor::setOrientation)
+            .def_prop_rw("extraChannels", &Extractor::getExtraChannels, &Extractor::setExtraChannels)
+            .def_prop_rw("border", &Extractor::getBorder, &Extractor::setBorder)
             .def("setSelection",
                     [](Extractor& self, const Array& quads) {
                         self.setSelection(viewOf(quads, "the selection"));
@@ -91,11 +91,18 @@ void bindExtractor(nb::module_& m)
                     })
             .def("getDefaultName", [](const Extractor& self) { return std::string(self.getDefaultName()); })
             .def("save",
-                    [](const Extractor& self, const std::string& file) { withoutDetector(self)->save(file); })
-            .def("read", [](Extractor& self,
-                                 const std::string& file) { static_cast<cv::Feature2D&>(self).read(file); })
+                    [](const Extractor& self, const std::string& file) {
+                        expect(std::ofstream(file), file, "written");
+                        withoutDetector(self)->save(file);
+                    })
+            .def("read",
+                    [](Extractor& self, const std::string& file) {
+                        expect(std::ifstream(file), file, "read");
+                        static_cast<cv::Feature2D&>(self).read(file);
+                    })
             .def("write",
                     [](const Extractor& self, const std::string& file) {
+                        expect(std::ofstream(file), file, "written");
                         static_cast<const cv::Feature2D&>(*withoutDetector(self)).write(file);
                     })
             .def("parameters", [](const Extractor& self) { return parametersOf(*withoutDetector(self)); })

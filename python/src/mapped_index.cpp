@@ -35,14 +35,16 @@ template <typename T> nb::object matrixOf(std::vector<T>&& values, size_t column
 nb::tuple search(const Index& self, const Array& queries_, int k, int segment)
 {
     const cv::Mat queries = viewOf(queries_, "queries");
-    std::vector<int64> rows;
+    std::vector<int64_t> rows;
     std::vector<int> distances;
-    {
-        nb::gil_scoped_release release;
-        self.knnSearch(queries, k, rows, distances, segment);
-    }
-    return nb::make_tuple(
-            matrixOf(std::vector<int64_t>(rows.begin(), rows.end()), k), matrixOf(std::move(distances), k));
+    inBlocks(queries.rows, BLOCK, [&](const cv::Range& block) {
+        std::vector<int64> foundRows;
+        std::vector<int> foundDistances;
+        self.knnSearch(queries.rowRange(block), k, foundRows, foundDistances, segment);
+        rows.insert(rows.end(), foundRows.begin(), foundRows.end());
+        distances.insert(distances.end(), foundDistances.begin(), foundDistances.end());
+    });
+    return nb::make_tuple(matrixOf(std::move(rows), k), matrixOf(std::move(distances), k));
 }
 
 }  // namespace

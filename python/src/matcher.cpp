@@ -10,7 +10,6 @@ namespace iib_python {
 namespace {
 
 typedef cv::iib::HierarchicalMatcher Matcher;
-typedef std::vector<std::vector<cv::DMatch>> MatchRows;
 
 std::vector<cv::Mat> masksOf(nb::object arrays)
 {
@@ -23,26 +22,6 @@ std::vector<cv::Mat> masksOf(nb::object arrays)
 
 // Descriptors without rows of whatever width: nothing to find.
 cv::Mat descriptorsOf(const Array& array) { return viewOf(array, "descriptors"); }
-
-//! `type(queryIdx, trainIdx, imgIdx, distance)`, in a tuple of tuples.
-nb::object toPython(const MatchRows& rows, nb::handle type)
-{
-    nb::object result = nb::steal(PyTuple_New((Py_ssize_t)rows.size()));
-    if (!result)
-        throw nb::python_error();
-    for (size_t i = 0; i < rows.size(); i++)
-    {
-        nb::object row = nb::steal(PyTuple_New((Py_ssize_t)rows[i].size()));
-        for (size_t k = 0; k < rows[i].size(); k++)
-        {
-            const cv::DMatch& m = rows[i][k];
-            nb::object match = type(m.queryIdx, m.trainIdx, m.imgIdx, m.distance);
-            PyTuple_SetItem(row.ptr(), (Py_ssize_t)k, match.release().ptr());
-        }
-        PyTuple_SetItem(result.ptr(), (Py_ssize_t)i, row.release().ptr());
-    }
-    return result;
-}
 
 //! A search in the train set given or, if that is None, in those added.
 class Search
@@ -62,77 +41,44 @@ public:
 
     bool inAdded() const { return !given_; }
 
-    /** Calls `find(matcher, queries, masks, number of the first query)` for blocks of queries; Ctrl-C acts between two. All
-    queries are one block for a cross-check, which has to know the others. */
+    //! Calls `find(matcher, queries, masks, number of the first query)` for blocks of queries. All queries are one block for a
+    //! cross-check, which has to know the others.
     template <typename Find> void inBlocks(Find find) const
     {
         bool whole = searched_->getCrossCheck();
         for (const cv::Mat& mask : masks_)
             whole |= !mask.empty() && mask.rows != query_.rows;  // a mistake, which the matcher tells
-        const int rows = whole ? query_.rows : BLOCK;
-        int first = 0;
-        do
-        {
-            const cv::Range block(first, std::min(first + rows, query_.rows));
+        iib_python::inBlocks(query_.rows, whole ? query_.rows : BLOCK, [&](const cv::Range& block) {
             std::vector<cv::Mat> masks;
             for (const cv::Mat& mask : masks_)
                 masks.push_back(mask.empty() || whole ? mask : mask.rowRange(block));
-            {
-                nb::gil_scoped_release release;
-                find(*searched_, query_.rowRange(block), masks, first);
-            }
-            first = block.end;
-            if (PyErr_CheckSignals() != 0)
-                throw nb::python_error();
-        } while (first < query_.rows);
+            find(*searched_, query_.rowRange(block), masks, block.start);
+        });
     }
 
 private:
-    static constexpr int BLOCK = 512;  // with a million codes, less than a second on one core
-
     const cv::Mat query_;
     const std::vector<cv::Mat> masks_;
     cv::Ptr<Matcher> given_;
     Matcher* searched_;
 };
 
-//! Adds the matches of a block whose first query has this number.
-void append(MatchRows& all, MatchRows& block, int first)
+// Rows of four columns: queryIdx, trainIdx, imgIdx, distance.
+nb::object radiusMatch(
+        Matcher& self, const Array& queries, nb::object train, float maxDistance, nb::object masks)
 {
-    for (std::vector<cv::DMatch>& row : block)
-    {
-        for (cv::DMatch& m : row)
-            m.queryIdx += first;
-        all.push_back(std::move(row));
-    }
-}
-
-nb::object knnMatch(Matcher& self, const Array& queries, nb::object train, int k, nb::object masks,
-        bool compact, nb::handle type)
-{
-    MatchRows all;
+    cv::Mat all(0, 4, CV_32S);
     Search(self, queries, train, masks)
             .inBlocks([&](Matcher& matcher, const cv::Mat& query, const std::vector<cv::Mat>& allowed,
                               int first) {
-                MatchRows block;
-                matcher.knnMatch(query, block, k, allowed, compact);
-                append(all, block, first);
+                std::vector<std::vector<cv::DMatch>> block;
+                matcher.radiusMatch(query, block, maxDistance, allowed, true);
+                for (const std::vector<cv::DMatch>& row : block)
+                    for (const cv::DMatch& m : row)
+                        all.push_back(cv::Mat(cv::Matx<int, 1, 4>(
+                                m.queryIdx + first, m.trainIdx, m.imgIdx, (int)m.distance)));
             });
-    return toPython(all, type);
-}
-
-nb::object radiusMatch(Matcher& self, const Array& queries, nb::object train, float maxDistance,
-        nb::object masks, bool compact, nb::handle type)
-{
-    MatchRows all;
-    Search(self, queries, train, masks)
-            .inBlocks([&](Matcher& matcher, const cv::Mat& query, const std::vector<cv::Mat>& allowed,
-                              int first) {
-                MatchRows block;
-                matcher.radiusMatch(query, block, maxDistance, allowed, compact);
-                append(all, block, first);
-            });
-    return toPython(all, type);
+    return toNumpy(all);
 }
 
 nb::tuple knnMatchArrays(Matcher& self, const Array& queries, nb::object train, int k, nb::object masks)
@@ -190,20 +136,13 @@ void bindMatcher(nb::module_& m)
             .def("clear", [](Matcher& self) { self.clear(); })
             .def("empty", [](const Matcher& self) { return self.empty(); })
             .def("trainDescriptors", &trainDescriptors)
-            .def("knnMatch", &knnMatch, nb::arg(), nb::arg().none(), nb::arg(), nb::arg().none(), nb::arg(),
-                    nb::arg())
-            .def("radiusMatch", &radiusMatch, nb::arg(), nb::arg().none(), nb::arg(), nb::arg().none(),
-                    nb::arg(), nb::arg())
+            .def("radiusMatch", &radiusMatch, nb::arg(), nb::arg().none(), nb::arg(), nb::arg().none())
             .def("knnMatchArrays", &knnMatchArrays, nb::arg(), nb::arg().none(), nb::arg(), nb::arg().none())
             .def("levelSizes", &Matcher::levelSizes)
-            .def("setMode", &Matcher::setMode)
-            .def("getMode", &Matcher::getMode)
-            .def("setThresholds", &Matcher::setThresholds)
-            .def("getThresholds", &Matcher::getThresholds)
-            .def("setCrossCheck", &Matcher::setCrossCheck)
-            .def("getCrossCheck", &Matcher::getCrossCheck)
-            .def("setMaxRatio", &Matcher::setMaxRatio)
-            .def("getMaxRatio", &Matcher::getMaxRatio)
+            .def_prop_rw("mode", &Matcher::getMode, &Matcher::setMode)
+            .def_prop_rw("thresholds", &Matcher::getThresholds, &Matcher::setThresholds)
+            .def_prop_rw("crossCheck", &Matcher::getCrossCheck, &Matcher::setCrossCheck)
+            .def_prop_rw("maxRatio", &Matcher::getMaxRatio, &Matcher::setMaxRatio)
             .def("matchCost", &Matcher::matchCost)
             .def("resetCost", &Matcher::resetCost)
             .def("parameters", [](const Matcher& self) { return parametersOf(self); })

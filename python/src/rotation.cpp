@@ -1,6 +1,4 @@
-// This file is part of OpenCV project.
-// It is subject to the license terms in the LICENSE file found in the top-level directory
-// of this distribution and at http://opencv.org/license.html.
+// SPDX-License-Identifier: Apache-2.0
 
 #include "bindings.hpp"
 #include "keypoints.hpp"

@@ -1,5 +1,6 @@
 """Images and keypoints made of integers alone, as modules/iib/test/support/test_images.cpp makes them."""
 import re
+import signal
 import threading
 import time
 from pathlib import Path
@@ -102,6 +103,20 @@ def by_four_threads(call, times):
     for thread in threads:
         thread.join()
     return found
+
+
+def seconds_until_interrupt(call, after):
+    """How long `call` takes if Ctrl-C is pressed after so many seconds; fails if it ends as if nothing had happened."""
+    old, begin = signal.signal(signal.SIGALRM, signal.default_int_handler), time.monotonic()
+    try:
+        signal.setitimer(signal.ITIMER_REAL, after)
+        call()
+    except KeyboardInterrupt:
+        return time.monotonic() - begin
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, old)
+    raise AssertionError('it was not interrupted')
 
 
 def steps_meanwhile(call):

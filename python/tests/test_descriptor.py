@@ -220,6 +220,10 @@ class Objects(unittest.TestCase):
             path = Path(folder) / 'iib.yml'
             iib.write(path)
             other.read(path)
+            nowhere = Path(folder) / 'nothing' / 'iib.yml'
+            for call, done in ((iib.write, 'written'), (iib.save, 'written'), (iib.read, 'read')):
+                with self.assertRaisesRegex(opencv_iib.error, f'nothing/iib.yml cannot be {done}'):
+                    call(nowhere)
         self.expect_same(iib, other)
 
     def test_a_pickled_detector_says_that_it_is_missing(self):

@@ -174,6 +174,8 @@ class Normalized(unittest.TestCase):
         self.assertEqual(other.getSigma(), 7)
         with self.assertRaisesRegex(RuntimeError, 'SIFT was not pickled'):
             other.detect(texture(60, 60))
+        iib = IIB.createFor(NormalizedDetector(HessianDetector(20)))
+        self.assertEqual(len(pickle.loads(pickle.dumps(iib)).detect(texture(160, 120))), 20)
 
     @unittest.skipIf(cv2 is None, 'no cv2')
     def test_it_describes_as_the_detector_inside(self):

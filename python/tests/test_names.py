@@ -4,6 +4,8 @@ import inspect
 import pkgutil
 import pydoc
 import re
+import subprocess
+import sys
 import traceback
 import unittest
 
@@ -109,6 +111,12 @@ class Names(unittest.TestCase):
         for name in (*HEADERS, 'IIB', 'MappedIndex', 'DMatch', 'KeyPoint', 'error', 'estimateRotation'):
             self.assertIn(name, names)
             self.assertIn(name, pydoc.plain(pydoc.render_doc(opencv_iib)))
+
+    def test_nothing_is_printed_of_what_another_thread_holds_at_the_end(self):
+        program = ('import threading, time, opencv_iib\nmatcher = opencv_iib.HierarchicalMatcher()\n'
+                   'threading.Thread(target=lambda: (time.sleep(60), matcher), daemon=True).start()')
+        done = subprocess.run([sys.executable, '-c', program], capture_output=True, text=True, check=True)
+        self.assertEqual(done.stdout + done.stderr, '')
 
     def test_an_error_is_what_went_wrong_without_paths(self):
         with self.assertRaises(opencv_iib.error) as caught:
