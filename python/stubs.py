@@ -23,7 +23,7 @@ def stub(body, aliases):
         if isinstance(node, ast.ClassDef):
             if 'self._core' in ast.unparse(node):  # what other modules of the package read
                 node.body.append(ast.parse('_core: Any').body[0])
-            stub(node.body, any(ast.unparse(base) == 'SnakeCase' for base in node.bases))
+            stub(node.body, any(ast.unparse(base) in ('SnakeCase', 'Detector') for base in node.bases))
         elif isinstance(node, ast.FunctionDef):
             node.body = node.body[:1] if ast.get_docstring(node) else [ast.Expr(ast.Constant(...))]
             if aliases and not node.name.startswith('_') and snake_case(node.name) != node.name:
@@ -34,7 +34,7 @@ def stub(body, aliases):
 
 for path in sorted(pathlib.Path(sys.argv[1]).glob('*.py')):
     text = path.read_text(encoding='utf-8')
-    if '(SnakeCase):' in text:
+    if 'SnakeCase):' in text or 'Detector):' in text:
         tree = ast.parse(text)
         stub(tree.body, False)
         pathlib.Path(sys.argv[2]).mkdir(parents=True, exist_ok=True)

@@ -3,13 +3,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from opencv_iib.colmap.features import FeatureOptions, Features
 from opencv_iib.colmap.images import read_grey
 from opencv_iib.colmap.verify import magsac
+from opencv_iib.functions import match
 from opencv_iib.keypoints import array_to_keypoints
-from opencv_iib.matcher import HierarchicalMatcher
 
 
 def demo(image_a: str, image_b: str, out: str, options: FeatureOptions = FeatureOptions(points=1000)) -> str:
@@ -30,13 +28,12 @@ def demo(image_a: str, image_b: str, out: str, options: FeatureOptions = Feature
         keypoints, descriptors = features(images[-1])
         rows.append(keypoints)
         codes.append(descriptors)
-    matches = HierarchicalMatcher.createRecommended().match(codes[0], codes[1])
-    pairs = np.array([(m.queryIdx, m.trainIdx) for m in matches], int).reshape(-1, 2)
+    pairs, _ = match(codes[0], codes[1])
     agree, _ = magsac(rows[0][pairs[:, 0], :2], rows[1][pairs[:, 1], :2])
-    good = [m for m, agrees in zip(matches, agree) if agrees]
+    good = [cv2.DMatch(a, b, 0) for a, b in pairs[agree].tolist()]
     picture: Any = cv2.drawMatches(  # type: ignore[call-overload,unused-ignore]
         images[0], array_to_keypoints(rows[0]), images[1], array_to_keypoints(rows[1]),
         good[::len(good) // 100 + 1], None, flags=2)
     if not cv2.imwrite(out, picture):
         raise ValueError(f'{out} cannot be written')
-    return f'{out}: {len(matches)} matches, {len(good)} agree with one epipolar geometry'
+    return f'{out}: {len(pairs)} matches, {len(good)} agree with one epipolar geometry'

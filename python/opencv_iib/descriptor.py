@@ -1,7 +1,6 @@
 """IIBDescriptorExtractor: the class of cv2.iib, for arrays and for the objects of any cv2."""
 from __future__ import annotations
 
-import copy
 import os
 from typing import Any, Optional, TypeVar, Union
 
@@ -10,15 +9,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arrays import ArrayOrArrays, as_array, as_arrays, as_image
-from opencv_iib._names import Parameter, SnakeCase
-from opencv_iib.detectors import HessianDetector, core_detector, detect, for_pickle
+from opencv_iib._names import Parameter
+from opencv_iib.detectors import Detector, HessianDetector, core_detector, for_pickle
 from opencv_iib.enums import Border, Channel, Mapping, Orientation, Preset
 from opencv_iib.keypoints import Keypoints, as_rows
 
 K = TypeVar('K', bound=Keypoints)
 
 
-class IIBDescriptorExtractor(SnakeCase):
+class IIBDescriptorExtractor(Detector):
     """Illumination-insensitive binary descriptor; names, keywords and bits are those of ``cv2.iib``.
 
     Images are H x W, H x W x 3 (BGR) or H x W x 4 (BGRA) arrays of uint8, uint16 or float32, of any strides.
@@ -159,13 +158,6 @@ class IIBDescriptorExtractor(SnakeCase):
             left = tuple(left)
         return left, descriptors
 
-    def detect(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> tuple[Any, ...]:
-        """Keypoints of the detector (see setDetector), as cv2.KeyPoint if cv2 is there.
-
-        :param mask: H x W uint8, 0 where nothing is to be found.
-        """
-        return detect(self, image, mask)
-
     def detectAndCompute(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> tuple[tuple[Any, ...], NDArray[np.uint8]]:
         """detect, then compute."""
         return self.compute(image, self.detect(image, mask))
@@ -186,10 +178,6 @@ class IIBDescriptorExtractor(SnakeCase):
         """Bytes of each level, coarse first; their sum is descriptorSize()."""
         return tuple(self._core.levelSizes())
 
-    def descriptorSize(self) -> int:
-        """Bytes of a descriptor."""
-        return self._core.descriptorSize()
-
     def descriptorType(self) -> int:
         """CV_8U, which is 0."""
         return 0
@@ -197,10 +185,6 @@ class IIBDescriptorExtractor(SnakeCase):
     def defaultNorm(self) -> int:
         """NORM_HAMMING, which is 6."""
         return 6
-
-    def empty(self) -> bool:
-        """False: an extractor is always ready."""
-        return False
 
     scaleFactor = Parameter(float, "Side of the described square in units of a keypoint's size, > 0.")
     granularity = Parameter(int, 'Number of levels, 1 to 6. Another one ends a selection, as other channels, mapping or overlap do.')
@@ -230,10 +214,6 @@ class IIBDescriptorExtractor(SnakeCase):
         """Q x 5 int32, as setSelection takes it; 0 x 5 if there is no selection."""
         return self._core.getSelection()
 
-    def getDefaultName(self) -> str:
-        """Feature2D.IIB, the name of the parameters in files."""
-        return self._core.getDefaultName()
-
     def save(self, filename: Union[str, os.PathLike[str]]) -> None:
         """Writes the parameters, but not the detector, to a .yml, .xml or .json file, as Algorithm::save does."""
         self._core.save(os.fspath(filename))
@@ -260,9 +240,6 @@ class IIBDescriptorExtractor(SnakeCase):
         twin = type(self).__new__(type(self))
         twin.__setstate__({'parameters': self._core.parameters(), 'detector': self._detector})
         return twin
-
-    def __deepcopy__(self, memo: Any) -> IIBDescriptorExtractor:
-        return copy.copy(self)
 
     def __repr__(self) -> str:
         return f'{type(self).__name__}({self.descriptorSize()} bytes, scaleFactor={self.getScaleFactor():g})'

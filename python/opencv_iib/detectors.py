@@ -1,6 +1,7 @@
 """Detectors of Python, such as those of a foreign cv2, behind the classes of this package; the package's own."""
 from __future__ import annotations
 
+import copy
 import weakref
 from typing import Any, Callable, Optional
 
@@ -52,9 +53,30 @@ def detect_rows(owner: Any, image: ArrayLike, mask: Optional[ArrayLike]) -> NDAr
     return rows
 
 
-def detect(owner: Any, image: ArrayLike, mask: Optional[ArrayLike]) -> tuple[Any, ...]:
-    """Keypoints as cv2.KeyPoint if cv2 is there."""
-    return array_to_keypoints(detect_rows(owner, image, mask))
+class Detector(SnakeCase):
+    """What finds keypoints: the base of the detectors and of the descriptor of this package."""
+
+    def detect(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> tuple[Any, ...]:
+        """Keypoints, as cv2.KeyPoint if cv2 is there.
+
+        :param mask: H x W uint8, 0 where nothing is to be found.
+        """
+        return array_to_keypoints(detect_rows(self, image, mask))
+
+    def descriptorSize(self) -> int:
+        """Bytes of a descriptor; 0 of a detector that describes nothing."""
+        return self._core.descriptorSize()
+
+    def empty(self) -> bool:
+        """False: it is always ready."""
+        return False
+
+    def getDefaultName(self) -> str:
+        """The name of its parameters in files, such as Feature2D.IIB."""
+        return self._core.getDefaultName()
+
+    def __deepcopy__(self, memo: Any) -> Any:
+        return copy.copy(self)
 
 
 class MissingDetector:
@@ -77,7 +99,7 @@ def for_pickle(detector: Any) -> Any:
     return detector if detector is None or hasattr(detector, '_core') else MissingDetector(detector_name(detector))
 
 
-class HessianDetector(SnakeCase):
+class HessianDetector(Detector):
     """Finds blobs of the locally normalized image: maxima over place and scale of the determinant of its Hessian.
 
     Names, keywords and keypoints are those of ``cv2.iib``. ``IIB.createRecommended()`` puts it together with the
@@ -103,30 +125,11 @@ class HessianDetector(SnakeCase):
         """
         return cls(maxFeatures, threshold, scales, sigma, normalizationSigma)
 
-    def detect(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> tuple[Any, ...]:
-        """Keypoints, as cv2.KeyPoint if cv2 is there.
-
-        :param mask: H x W uint8, 0 where nothing is to be found.
-        """
-        return detect(self, image, mask)
-
     maxFeatures = Parameter(int, 'The strongest that are kept; 0 keeps all.')
     threshold = Parameter(float, 'Smallest response, 0 or more.')
     scales = Parameter(int, 'Number of scales, 1 to 8, each sqrt(2) times the one before.')
     sigma = Parameter(float, 'Of the smallest scale in pixels, 1.5 to 8.')
     normalizationSigma = Parameter(float, "Of the local normalization's Gaussian in pixels, 2 to 256.")
-
-    def descriptorSize(self) -> int:
-        """0: it describes nothing."""
-        return 0
-
-    def empty(self) -> bool:
-        """False: a detector is always ready."""
-        return False
-
-    def getDefaultName(self) -> str:
-        """Feature2D.HessianDetector"""
-        return 'Feature2D.HessianDetector'
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.getMaxFeatures(), self.getThreshold(), self.getScales(), self.getSigma(),
@@ -136,7 +139,7 @@ class HessianDetector(SnakeCase):
         return f'{type(self).__name__}(maxFeatures={self.getMaxFeatures()}, sigma={self.getSigma():g})'
 
 
-class NormalizedDetector(SnakeCase):
+class NormalizedDetector(Detector):
     """Finds the keypoints of another detector on the locally normalized image, where light changes them less.
 
     Names, keywords and keypoints are those of ``cv2.iib``. Descriptors are best computed on the plain image:
@@ -156,13 +159,6 @@ class NormalizedDetector(SnakeCase):
         :param sigma: of the Gaussian filter in pixels, 1 to 256.
         """
         return cls(detector, sigma)
-
-    def detect(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> tuple[Any, ...]:
-        """Keypoints, as cv2.KeyPoint if cv2 is there.
-
-        :param mask: H x W uint8, 0 where nothing is to be found.
-        """
-        return detect(self, image, mask)
 
     def compute(self, image: Any, keypoints: Any) -> Any:
         """The descriptors of the detector inside, on the plain image: what its own ``compute`` gives."""
@@ -193,22 +189,11 @@ class NormalizedDetector(SnakeCase):
         """Of the detector inside."""
         return _number(self._detector, 'defaultNorm')
 
-    def empty(self) -> bool:
-        """False: a detector is always ready."""
-        return False
-
-    def getDefaultName(self) -> str:
-        """As in cv2.iib."""
-        return 'Feature2D.NormalizedDetector'
-
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (for_pickle(self._detector), self.getSigma())
 
     def __copy__(self) -> NormalizedDetector:
         return type(self)(self._detector, self.getSigma())
-
-    def __deepcopy__(self, memo: Any) -> NormalizedDetector:
-        return self.__copy__()
 
     def __repr__(self) -> str:
         return f'{type(self).__name__}({detector_name(self._detector)}, sigma={self.getSigma():g})'

@@ -115,10 +115,13 @@ def search(folder: Folder, queries: Any, k: int = 5, client: Any = None) -> Arra
     if client is None or index.segments() == 0:
         return index.search(queries, k)
     search_shard = functools.partial(_search_shard, os.path.abspath(os.fspath(folder)), index.version(), queries, k)
-    best = np.full((len(queries), k), _NONE)
+    best = np.full((len(queries), k), -1), np.full((len(queries), k), -1, np.int32)
     for found in _by_workers(client, search_shard, range(index.segments())):
-        best = np.sort(np.concatenate([best, _keys(*found)], 1), 1)[:, :k]
-    return _arrays(best)
+        indices, distances = (np.concatenate(arrays, 1) for arrays in zip(best, found))
+        # As in the C++ library: ties go to the lowest index; -1, where there are fewer, comes last.
+        order = np.lexsort((indices, np.where(indices < 0, np.iinfo(np.int32).max, distances)))[:, :k]
+        best = np.take_along_axis(indices, order, 1), np.take_along_axis(distances, order, 1)
+    return best
 
 
 def _by_workers(client: Any, call: Callable[[int], Arrays], shards: Iterable[int]) -> Iterator[Arrays]:
@@ -172,19 +175,3 @@ def _search_shard(folder: str, version: int, queries: np.ndarray, k: int, shard:
     if index.version() != version:
         raise RuntimeError(f'{folder} was changed meanwhile, or is not the same for all workers: search again')
     return index.search(queries, k, shard)
-
-
-# A neighbour as one number, as in the C++ library: distance above, index below, so that ties go to the lowest index.
-_INDEX_BITS = 40
-_NONE = np.uint64(2**64 - 1)
-
-
-def _keys(indices: np.ndarray, distances: np.ndarray) -> np.ndarray:
-    keys = distances.astype(np.uint64) << np.uint64(_INDEX_BITS) | indices.astype(np.uint64)
-    return np.where(indices < 0, _NONE, keys)
-
-
-def _arrays(keys: np.ndarray) -> Arrays:
-    none = keys == _NONE
-    indices = np.where(none, -1, (keys & np.uint64(2**_INDEX_BITS - 1)).astype(np.int64))
-    return indices, np.where(none, -1, (keys >> np.uint64(_INDEX_BITS)).astype(np.int32)).astype(np.int32)

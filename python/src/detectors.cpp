@@ -32,7 +32,12 @@ std::shared_ptr<cv::Feature2D> foreignDetector(nb::callable function, const std:
 
 void bindDetectors(nb::module_& m)
 {
-    nb::class_<cv::Feature2D>(m, "Detector").def_static("foreign", &foreignDetector).def("detect", &detect);
+    nb::class_<cv::Feature2D>(m, "Detector")
+            .def_static("foreign", &foreignDetector)
+            .def("detect", &detect)
+            .def("descriptorSize", [](const cv::Feature2D& self) { return self.descriptorSize(); })
+            .def("getDefaultName",
+                    [](const cv::Feature2D& self) { return std::string(self.getDefaultName()); });
     nb::class_<Normalized, cv::Feature2D>(m, "NormalizedDetector")
             .def_static("create", &Normalized::create)
             .def_prop_rw("sigma", &Normalized::getSigma, &Normalized::setSigma);

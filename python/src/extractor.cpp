@@ -70,7 +70,6 @@ void bindExtractor(nb::module_& m)
             .def("compute", &compute)
             .def("setDetector", &Extractor::setDetector)
             .def("levelSizes", &Extractor::levelSizes)
-            .def("descriptorSize", [](const Extractor& self) { return self.descriptorSize(); })
             .def_prop_rw("scaleFactor", &Extractor::getScaleFactor, &Extractor::setScaleFactor)
             .def_prop_rw("granularity", &Extractor::getGranularity, &Extractor::setGranularity)
             .def_prop_rw("channels", &Extractor::getChannels, &Extractor::setChannels)
@@ -89,7 +88,6 @@ void bindExtractor(nb::module_& m)
                         const cv::Mat quads = self.getSelection();
                         return toNumpy(quads.empty() ? cv::Mat(0, 5, CV_32S) : quads);
                     })
-            .def("getDefaultName", [](const Extractor& self) { return std::string(self.getDefaultName()); })
             .def("save",
                     [](const Extractor& self, const std::string& file) {
                         expect(std::ofstream(file), file, "written");

@@ -8,7 +8,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import IIB
-from support import by_four_threads, cv2, fnv1a, golden_hashes, grid, scatter, steps_meanwhile, texture
+from support import by_four_threads, cv2, fnv1a, golden_hashes, grid, scatter, texture
 
 GOLDEN = {
     'default': {},
@@ -57,10 +57,8 @@ class Bits(unittest.TestCase):
     def test_in_tree_cv2(self):
         image, keypoints = texture(160, 120), [cv2.KeyPoint(x, y, s, 30) for x, y, s in grid().tolist()]
         theirs = cv2.iib.IIBDescriptorExtractor
-        pairs = [(IIB.createPreset(getattr(IIB, name)), theirs.createPreset(getattr(IIB, name)))
-                 for name in dir(IIB) if name.startswith('PRESET_')]
-        for mapping in range(7):
-            pairs.append((IIB.create(mapping=mapping), theirs.create(mapping=mapping)))
+        pairs = [[kind.createPreset(preset) for kind in (IIB, theirs)] for preset in opencv_iib.Preset]
+        pairs += [[kind.create(mapping=mapping) for kind in (IIB, theirs)] for mapping in range(7)]
         for setter, values in (('setBorder', range(3)), ('setOrientation', range(3))):
             for value in values:
                 pairs.append((IIB.create(), theirs.create()))
@@ -89,10 +87,6 @@ class Arrays(unittest.TestCase):
         self.assertIs(kept, given)
         np.testing.assert_array_equal(descriptors, self.expected)
 
-    def test_shapes(self):
-        self.assertEqual(self.expected.shape, (48, 170))
-        self.assertEqual(self.expected.dtype, np.uint8)
-
     def test_strided_fortran_read_only_and_big_endian_images(self):
         wide = np.zeros((240, 320), np.uint8)
         wide[::2, ::2] = self.image
@@ -102,14 +96,10 @@ class Arrays(unittest.TestCase):
         locked = self.image.copy()
         locked.flags.writeable = False
         self.check(locked)
+        np.testing.assert_array_equal(locked, texture(160, 120))
         deep = self.image.astype(np.uint16) * 7
         np.testing.assert_array_equal(self.iib.compute(deep.astype('>u2'), grid())[1],
                                       self.iib.compute(deep.astype('<u2'), grid())[1])
-
-    def test_the_image_is_not_changed(self):
-        before = self.image.copy()
-        self.iib.compute(self.image, grid())
-        np.testing.assert_array_equal(self.image, before)
 
     def test_array_interface_and_dlpack(self):
         class Foreign:
@@ -138,9 +128,10 @@ class Arrays(unittest.TestCase):
         self.check(self.image, np.asfortranarray(seven))
 
     def test_keypoint_objects_come_back_themselves(self):
-        keypoints = [opencv_iib.KeyPoint(x, y, size) for x, y, size in grid().tolist()]
-        self.check(self.image, keypoints)
-        self.check(self.image, tuple(keypoints))
+        for make in filter(None, (opencv_iib.KeyPoint, cv2 and cv2.KeyPoint)):
+            keypoints = [make(x, y, size) for x, y, size in grid().tolist()]
+            self.check(self.image, keypoints)
+            self.check(self.image, tuple(keypoints))
 
     def test_border_drop_gives_back_what_is_left(self):
         self.iib.setBorder(IIB.BORDER_DROP)
@@ -202,17 +193,13 @@ class Objects(unittest.TestCase):
         iib = self.configured()
         for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
             self.expect_same(iib, pickle.loads(pickle.dumps(iib, protocol)))
+        for preset in map(IIB.createPreset, opencv_iib.Preset):
+            self.expect_same(preset, pickle.loads(pickle.dumps(preset)))
         self.expect_same(iib, copy.copy(iib))
         self.expect_same(iib, copy.deepcopy(iib))
         twin = copy.copy(iib)
         twin.setGranularity(2)
         self.assertEqual(iib.getGranularity(), 3)
-
-    def test_presets_pickle(self):
-        for name in dir(IIB):
-            if name.startswith('PRESET_'):
-                iib = IIB.createPreset(getattr(IIB, name), 2)
-                self.expect_same(iib, pickle.loads(pickle.dumps(iib)))
 
     def test_file(self):
         iib, other = self.configured(), IIB.create()
@@ -253,16 +240,6 @@ class Objects(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, 'detect'):
             iib.setDetector(object())
 
-    def test_the_default_detector_needs_no_cv2(self):
-        keypoints, descriptors = IIB.create().detectAndCompute(texture(320, 240))
-        self.assertGreater(len(keypoints), 10)
-        self.assertEqual(len(descriptors), len(keypoints))
-
-    def test_the_gil_is_released(self):
-        image, iib = np.tile(texture(320, 240), (4, 4)), IIB.create()
-        keypoints = scatter(1280, 960, 20000, 3, 40, 2)
-        self.assertGreater(steps_meanwhile(lambda: iib.compute(image, keypoints)), 2)
-
     def test_threads_share_an_extractor(self):
         iib, image = IIB.create(), texture(320, 240)
         keypoints = scatter(320, 240, 500, 3, 40, 2)
@@ -273,12 +250,6 @@ class Objects(unittest.TestCase):
 
 @unittest.skipIf(cv2 is None, 'no cv2')
 class BesideCv2(unittest.TestCase):
-
-    def test_keypoints_of_cv2_come_back_themselves(self):
-        image, keypoints = texture(160, 120), [cv2.KeyPoint(x, y, size) for x, y, size in grid().tolist()]
-        kept, descriptors = IIB.create().compute(image, keypoints)
-        self.assertIs(kept, keypoints)
-        np.testing.assert_array_equal(descriptors, IIB.create().compute(image, grid())[1])
 
     def test_keypoints_survive_the_array(self):
         keypoints = cv2.ORB_create(50).detect(texture(320, 240))

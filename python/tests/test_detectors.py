@@ -199,15 +199,12 @@ class Rotation(unittest.TestCase):
         self.matches = np.stack([np.arange(60)] * 2, axis=1)
         self.matches[:25, 1] = rng.permutation(60)[:25]
 
-    def test_the_angle_despite_wrong_matches(self):
-        self.assertLess(abs(estimateRotation(self.points, self.turned, self.matches) - 37), 2)
-        self.assertLess(abs(estimateRotation(self.turned, self.points, self.matches[25:]) - 323), 2)
-
-    def test_objects_and_arrays(self):
+    def test_the_angle_of_objects_and_of_arrays(self):
+        angle = estimateRotation(self.points, self.turned, self.matches.astype(np.int16))
+        self.assertLess(abs(angle - 37), 2)
         first, second = ([opencv_iib.KeyPoint(*row) for row in rows.tolist()] for rows in (self.points, self.turned))
         matches = [opencv_iib.DMatch(a, b, 0, 1.) for a, b in self.matches.tolist()]
-        self.assertEqual(estimateRotation(first, second, matches),
-                         estimateRotation(self.points, self.turned, self.matches.astype(np.int16)))
+        self.assertEqual(estimateRotation(first, second, matches), angle)
 
     def test_mistakes_raise(self):
         for matches in (self.matches[:1], self.matches + 1, self.matches - 1, self.matches.astype(np.float32),
@@ -259,11 +256,7 @@ class MatchRotated(unittest.TestCase):
         self.assertEqual([k.pt for k in first], [k.pt for k in self.extractor.detect(self.images[0])])
         self.assertEqual({k.angle for k in first}, {-1})
         self.assertGreater(len(matches), 50)
-
-    def test_a_known_rotation(self):
-        rotation, first, _, matches = self.call(90, keypoints1=self.rows[0], keypoints2=self.rows[1])
-        self.assertEqual((rotation, len(first)), (90, len(self.rows[0])))
-        self.assertGreater(len(matches), 0.9 * len(first))
+        self.assertEqual(self.call(90)[0], 90)
 
     def test_mistakes_raise(self):
         for rotation in (-10, 360, float('nan')):

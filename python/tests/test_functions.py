@@ -19,6 +19,9 @@ class Tensor:
     def __dlpack__(self, **keywords):
         return self.array.__dlpack__(**keywords)
 
+    def permute(self, *axes):
+        return Tensor(self.array.transpose(axes))
+
 
 class Functions(unittest.TestCase):
 
@@ -61,41 +64,29 @@ class Functions(unittest.TestCase):
         self.assertGreaterEqual(points[:, 0].min(), 159.5)
 
     def test_tensors_with_channels_first(self):
-        blue, green, red = (np.roll(self.image, 9 * i, 1) for i in range(3))
-        for planes, rows in (((self.image,), self.image), ((red, green, blue), np.dstack([blue, green, red])),
-                             ((red, green, blue, red), np.dstack([blue, green, red, red]))):
-            expected = opencv_iib.detect_and_describe(rows)
-            for tensor in (np.stack(planes), np.stack(planes)[None]):
-                features = opencv_iib.detect_and_describe(Tensor(tensor))
-                for found, same in zip(features, expected):
-                    np.testing.assert_array_equal(found, same)
-            np.testing.assert_array_equal(opencv_iib.detect_and_describe(Tensor(rows)).codes, expected.codes)
-        codes = opencv_iib.detect_and_describe(self.image).codes
-        self.assertEqual(len(opencv_iib.match(Tensor(codes), codes).pairs), len(codes))
-        with self.assertRaises(opencv_iib.error):
-            opencv_iib.detect_and_describe(np.stack([red, green, blue]))  # whose order numpy does not tell
-
-    def test_tensors_of_torch(self):
+        rows = np.dstack([np.roll(self.image, 9 * i, 1) for i in range(3)])  # blue, green, red
+        alpha = np.dstack([rows, self.image])
         try:
             import torch
+            tensors = Tensor, torch.from_numpy
         except ImportError:
-            self.skipTest('torch is not installed')
-        rows = np.dstack([np.roll(self.image, 9 * i, 1) for i in range(3)])  # blue, green, red
-        planes = torch.from_numpy(rows[..., ::-1].copy()).permute(2, 0, 1)  # as kornia has images, and not contiguous
-        for image, tensors in ((rows, (planes, planes[None], planes.contiguous())),
-                               (self.image, [torch.from_numpy(self.image)[(None,) * n] for n in range(3)]),
-                               (rows.astype(np.float32) / 255, (planes.float() / 255, (planes.float() / 255)[None]))):
-            expected = opencv_iib.detect_and_describe(image)
-            for tensor in tensors:
-                found = opencv_iib.detect_and_describe(tensor)
-                self.assertTrue(all(map(np.array_equal, found, expected)), tensor.shape)
-        codes = torch.from_numpy(expected.codes)
-        self.assertEqual(opencv_iib.match(codes, codes).pairs.tolist(), opencv_iib.match(expected.codes, expected.codes).pairs.tolist())
-        keypoints = np.column_stack([expected.points, expected.sizes])
-        iib = opencv_iib.IIB()
-        np.testing.assert_array_equal(iib.compute(self.image, torch.from_numpy(keypoints))[1], iib.compute(self.image, keypoints)[1])
-        with self.assertRaisesRegex((RuntimeError, TypeError, opencv_iib.error), 'grad'):
-            opencv_iib.detect_and_describe((planes.float() / 255).requires_grad_())
+            tensors = Tensor,
+        for tensor in tensors:
+            for image in (self.image, rows, alpha, rows.astype(np.float32) / 255):
+                expected = opencv_iib.detect_and_describe(image)
+                planes = image[None] if image.ndim == 2 else np.stack([image[..., i] for i in (2, 1, 0, 3)[:image.shape[2]]])
+                aside = tensor(np.ascontiguousarray(np.moveaxis(planes, 0, 2)))  # kornia's are not contiguous
+                for given in (tensor(planes), tensor(planes[None]), tensor(image), aside.permute(2, 0, 1)):
+                    self.assertTrue(all(map(np.array_equal, opencv_iib.detect_and_describe(given), expected)), planes.shape)
+            codes, keypoints = tensor(expected.codes), np.column_stack([expected.points, expected.sizes])
+            self.assertEqual(opencv_iib.match(codes, codes).pairs.tolist(), opencv_iib.match(*[expected.codes] * 2).pairs.tolist())
+            iib = opencv_iib.IIB()
+            np.testing.assert_array_equal(iib.compute(self.image, tensor(keypoints))[1], iib.compute(self.image, keypoints)[1])
+        with self.assertRaises(opencv_iib.error):
+            opencv_iib.detect_and_describe(planes)  # whose order numpy does not tell
+        if len(tensors) > 1:
+            with self.assertRaisesRegex((RuntimeError, TypeError, opencv_iib.error), 'grad'):
+                opencv_iib.detect_and_describe(torch.from_numpy(planes).requires_grad_())
 
     def test_values_by_name(self):
         iib = opencv_iib.IIB.createPreset(opencv_iib.Preset.SMALL)

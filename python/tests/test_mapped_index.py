@@ -7,7 +7,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import MappedIndex
-from support import brute_force, steps_meanwhile
+from support import brute_force
 
 
 class MappedIndexTest(unittest.TestCase):
@@ -71,9 +71,3 @@ class MappedIndexTest(unittest.TestCase):
                 call()
         with self.assertRaises(TypeError):
             self.index.search('codes')
-
-    def test_the_gil_is_released(self):
-        codes = np.random.default_rng(1).integers(0, 256, (6000, 42), np.uint8)
-        self.index.add(codes)
-        queries = np.concatenate([codes] * 3)
-        self.assertGreater(steps_meanwhile(lambda: self.index.search(queries)), 2)

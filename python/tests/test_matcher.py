@@ -9,7 +9,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import HierarchicalMatcher, MappedIndex
-from support import brute_force, by_four_threads, cv2, seconds_until_interrupt, steps_meanwhile
+from support import brute_force, by_four_threads, cv2, scatter, seconds_until_interrupt, steps_meanwhile, texture
 
 LEVELS = (2, 8, 32, 128)
 
@@ -149,20 +149,16 @@ class MatcherTest(unittest.TestCase):
         chosen = HierarchicalMatcher(mode=HierarchicalMatcher.ADAPTIVE, crossCheck=True)
         self.assertEqual((chosen.getMode(), chosen.getCrossCheck()), (HierarchicalMatcher.ADAPTIVE, True))
 
-    def test_match_cost(self):
-        self.matcher.match(self.query, self.train)
-        self.assertEqual(self.matcher.matchCost(), 1)
-        self.matcher.resetCost()
-        self.assertEqual(self.matcher.matchCost(), 0)
-        self.matcher.setMode(HierarchicalMatcher.THRESHOLD)
-        self.matcher.match(self.query, self.train)
-        self.assertTrue(0 < self.matcher.matchCost() < 1)
-
     def test_the_gil_is_released(self):
         codes = np.random.default_rng(1).integers(0, 256, (6000, 170), np.uint8)
         self.matcher.add(codes)
-        for call in (lambda: self.matcher.knnMatchArrays(codes, codes), lambda: self.matcher.knnMatchArrays(codes)):
-            self.assertGreater(steps_meanwhile(call), 2)
+        image, points, iib = np.tile(texture(320, 240), (4, 4)), scatter(1280, 960, 20000, 3, 40, 2), opencv_iib.IIB()
+        with tempfile.TemporaryDirectory() as folder:
+            index = MappedIndex.create(folder, LEVELS)
+            index.add(codes)
+            for call in (lambda: self.matcher.knnMatchArrays(codes, codes), lambda: self.matcher.knnMatchArrays(codes),
+                         lambda: index.search(codes), lambda: iib.compute(image, points)):
+                self.assertGreater(steps_meanwhile(call), 2)
 
     def test_threads_share_a_matcher(self):
         self.matcher.add(self.train)
@@ -189,6 +185,8 @@ class MatcherTest(unittest.TestCase):
         matcher = HierarchicalMatcher()
         np.testing.assert_array_equal(matcher.knnMatchArrays(queries, train, 3), [indices, distances])
         self.assertEqual(matcher.matchCost(), 1)
+        matcher.resetCost()
+        self.assertEqual(matcher.matchCost(), 0)
         found = matcher.knnMatch(queries, train, 3)
         self.assertEqual([[(m.queryIdx, m.trainIdx) for m in row] for row in found],
                          [[(q, t) for t in row] for q, row in enumerate(indices.tolist())])

@@ -9,7 +9,7 @@ import tempfile
 import threading
 import time
 import unittest
-from contextlib import redirect_stderr
+from contextlib import closing, redirect_stderr
 from unittest import mock
 
 import numpy as np
@@ -121,12 +121,10 @@ class NetworkTest(unittest.TestCase):
             database = os.path.join(self.folder, 'database.db')
             with redirect_stderr(io.StringIO()):
                 build_database(images, database, Options(FeatureOptions(points=300), verify='magsac'), client=client)
-            connection = sqlite3.connect(database)
-            try:
-                return list(connection.iterdump())
-            finally:
-                connection.close()
-                os.unlink(database)
+            with closing(sqlite3.connect(database)) as connection:
+                rows = list(connection.iterdump())
+            os.unlink(database)
+            return rows
 
         def cutting(method, name, count):
             """The method, which cuts a cable at its call of that number."""

@@ -63,7 +63,7 @@ def _array(row: Any, dtype: Any) -> np.ndarray:
     return np.frombuffer(row[2], dtype).reshape(row[0], row[1])
 
 
-class Database:
+class Database(contextlib.AbstractContextManager['Database']):
     """A database in the making. One process at a time, and one thread of it, uses it."""
 
     def __init__(self, path: str, settings: dict[str, Any], force: bool = False) -> None:
@@ -113,9 +113,6 @@ class Database:
             self._db.execute('INSERT INTO iib_settings VALUES (?)', (text,))
         elif row[0] != text:
             raise SettingsChanged(f'{self.partial} was begun with other settings, {row[0]}')
-
-    def __enter__(self) -> Database:
-        return self
 
     def __exit__(self, *exc: Any) -> None:
         self.close()
@@ -186,12 +183,6 @@ class Database:
         """Name, width and height of each image."""
         yield from self._db.execute('SELECT name, width, height FROM images NATURAL JOIN cameras ORDER BY name')
 
-    def find_camera(self, model: int, width: int, height: int, params: np.ndarray, prior: bool) -> Optional[int]:
-        """The number of a camera with these values; None if there is none."""
-        row = self._db.execute('SELECT camera_id FROM cameras WHERE model=? AND width=? AND height=? AND params=? AND '
-                               'prior_focal_length=?', (model, width, height, params.tobytes(), int(prior))).fetchone()
-        return None if row is None else int(row[0])
-
     def add_image(self, name: str, stamp: str, width: int, height: int, model: str, focal: float, prior: bool,
                   shared: bool, keypoints: np.ndarray, codes: np.ndarray) -> None:
         """An image with its camera, keypoints and codes, in one transaction.
@@ -203,12 +194,13 @@ class Database:
         """
         number, focals, others = CAMERA_MODELS[model]
         params = np.array([focal] * focals + [width / 2, height / 2] + [0] * others, np.float64)
+        values = number, width, height, params.tobytes(), int(prior)
         with self._transaction():
-            camera = self.find_camera(number, width, height, params, prior) if shared else None
-            if camera is None:
-                camera = self._db.execute(
-                    'INSERT INTO cameras (model, width, height, params, prior_focal_length) VALUES (?, ?, ?, ?, ?)',
-                    (number, width, height, params.tobytes(), int(prior))).lastrowid
+            same = self._db.execute('SELECT camera_id FROM cameras WHERE (model, width, height, params, prior_focal_length) = '
+                                    '(?, ?, ?, ?, ?)', values).fetchone() if shared else None
+            camera = same[0] if same else self._db.execute(
+                'INSERT INTO cameras (model, width, height, params, prior_focal_length) VALUES (?, ?, ?, ?, ?)',
+                values).lastrowid
             image = self._db.execute('INSERT INTO images (name, camera_id) VALUES (?, ?)', (name, camera)).lastrowid
             self._db.execute('INSERT INTO keypoints VALUES (?, ?, ?, ?)',
                              (image, *keypoints.shape, np.ascontiguousarray(keypoints, np.float32).tobytes()))

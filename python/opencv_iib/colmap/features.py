@@ -9,6 +9,7 @@ import numpy as np
 
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector, NormalizedDetector
+from opencv_iib.enums import Preset
 from opencv_iib.keypoints import keypoints_to_array
 
 DETECTORS = ('HESSIAN', 'AKAZE', 'BRISK', 'FAST', 'KAZE', 'ORB', 'SIFT')
@@ -16,9 +17,7 @@ DETECTORS = ('HESSIAN', 'AKAZE', 'BRISK', 'FAST', 'KAZE', 'ORB', 'SIFT')
 
 def preset_names() -> dict[str, int]:
     """The presets of IIBDescriptorExtractor, without their prefix, DEFAULT, and OWN: the detector's own descriptor."""
-    presets = {name[len('PRESET_'):]: getattr(IIBDescriptorExtractor, name)
-               for name in dir(IIBDescriptorExtractor) if name.startswith('PRESET_')}
-    return {'DEFAULT': -1, 'OWN': -2, **presets}
+    return {'DEFAULT': -1, 'OWN': -2, **Preset.__members__}
 
 
 @dataclasses.dataclass(frozen=True)
