@@ -16,18 +16,21 @@ namespace {
 const int LEAST_ROWS = 32;  // a thread's, since it smooths about 20 more above
 
 //! A pixel with the largest response among its neighbours in place and scale.
-struct Blob
+struct Extremum
 {
-    KeyPoint keypoint;  //!< refined
-    int y, x;
+    float response;
+    int scale, y, x;
+    float around[3][3];  //!< the responses
+    float smaller,
+            larger;  //!< those of the scales before and after at this pixel; of the first and last: its own
 };
 
 //! Strongest first; of the same response by scale and place.
-bool isBefore(const Blob& a, const Blob& b)
+bool isBefore(const Extremum& a, const Extremum& b)
 {
-    if (a.keypoint.response != b.keypoint.response)
-        return a.keypoint.response > b.keypoint.response;
-    return std::tie(a.keypoint.octave, a.y, a.x) < std::tie(b.keypoint.octave, b.y, b.x);
+    if (a.response != b.response)
+        return a.response > b.response;
+    return std::tie(a.scale, a.y, a.x) < std::tie(b.scale, b.y, b.x);
 }
 
 class BlobFinder
@@ -45,13 +48,13 @@ public:
     }
 
     //! In parts of the image.
-    std::vector<std::vector<Blob>> blobs() const
+    std::vector<std::vector<Extremum>> extrema() const
     {
         const int first = borders[0], rows = normalized.rows - 2 * first;
         if (rows <= 0 || normalized.cols <= 2 * first)
-            return std::vector<std::vector<Blob>>();
+            return std::vector<std::vector<Extremum>>();
         const int parts = std::max(std::min(getNumThreads(), rows / LEAST_ROWS), 1);
-        std::vector<std::vector<Blob>> found(parts);
+        std::vector<std::vector<Extremum>> found(parts);
         parallel_for_(Range(0, parts), [&](const Range& range) {
             for (int i = range.start; i < range.end; i++)
                 find(first + rows * i / parts, first + rows * (i + 1) / parts - 1, found[i]);
@@ -59,11 +62,33 @@ public:
         return found;
     }
 
+    //! Refined by quadratic fits: of the response in place, and of the response along the scales.
+    KeyPoint refined(const Extremum& e) const
+    {
+        const auto& r = e.around;
+        const float c = e.response;
+        const float dx = (r[1][2] - r[1][0]) / 2, dy = (r[2][1] - r[0][1]) / 2;
+        const float xx = r[1][2] + r[1][0] - 2 * c, yy = r[2][1] + r[0][1] - 2 * c;
+        const float xy = (r[2][2] + r[0][0] - r[0][2] - r[2][0]) / 4;
+        const float determinant = xx * yy - xy * xy;
+        Point2f offset;
+        if (determinant > 0)  // else the response has no peak here
+            offset = Point2f(within((xy * dy - yy * dx) / determinant, .7f),
+                    within((xy * dx - xx * dy) / determinant, .7f));
+        const float curvature = e.smaller + e.larger - 2 * c;
+        const float step = curvature < 0 ? within((e.smaller - e.larger) / (2 * curvature), .5f) : 0.f;
+        // 2^(step / 2), by its Taylor series: std::exp2 differs between systems
+        const float growth = 1 + step * (.34657359f + step * .06005663f);
+        // the centre of half-resolution pixel x lies between pixels 2 x and 2 x + 1
+        return KeyPoint(2 * (e.x + offset.x) + .5f, 2 * (e.y + offset.y) + .5f,
+                (float)(4 * sigmas[e.scale]) * growth, -1, e.response, e.scale);
+    }
+
 private:
     static float within(float value, float limit) { return std::max(-limit, std::min(limit, value)); }
 
     //! Adds those of rows `first` to `last`.
-    void find(int first, int last, std::vector<Blob>& found) const
+    void find(int first, int last, std::vector<Extremum>& found) const
     {
         ScaleSpace space(normalized, steps, first, last);
         const DetectorKernels& kernels = detectorKernels();
@@ -80,7 +105,7 @@ private:
                         normalized.cols - borders[s], columns.data());
                 for (int i = 0; i < n; i++)
                     if (!repeatsEarlier(space, s, y, columns[i]))
-                        found.push_back({refined(space, s, y, columns[i]), y, columns[i]});
+                        found.push_back(extremumAt(space, s, y, columns[i]));
             }
         }
     }
@@ -94,30 +119,19 @@ private:
                (s > 0 && space.largest(s - 1)[x] == value);
     }
 
-    //! Refined by quadratic fits: of the response in place, and of the response along the scales.
-    KeyPoint refined(const ScaleSpace& space, size_t s, int y, int x) const
+    Extremum extremumAt(const ScaleSpace& space, size_t s, int y, int x) const
     {
-        const float *above = space.response(s, y - 1) + x, *row = space.response(s, y) + x,
-                    *below = space.response(s, y + 1) + x;
-        const float c = row[0];
-        const float dx = (row[1] - row[-1]) / 2, dy = (below[0] - above[0]) / 2;
-        const float xx = row[1] + row[-1] - 2 * c, yy = below[0] + above[0] - 2 * c;
-        const float xy = (below[1] + above[-1] - above[1] - below[-1]) / 4;
-        const float determinant = xx * yy - xy * xy;
-        Point2f offset;
-        if (determinant > 0)  // else the response has no peak here
-            offset = Point2f(within((xy * dy - yy * dx) / determinant, .7f),
-                    within((xy * dx - xx * dy) / determinant, .7f));
+        Extremum e;
+        for (int dy = -1; dy <= 1; dy++)
+            std::copy_n(space.response(s, y + dy) + x - 1, 3, e.around[dy + 1]);
+        e.response = e.around[1][1];
+        e.scale = (int)s;
+        e.y = y;
+        e.x = x;
         const bool inside = s > 0 && s + 1 < sigmas.size();
-        const float smaller = inside ? space.response(s - 1, y)[x] : c,
-                    larger = inside ? space.response(s + 1, y)[x] : c;
-        const float curvature = smaller + larger - 2 * c;
-        const float step = curvature < 0 ? within((smaller - larger) / (2 * curvature), .5f) : 0.f;
-        // 2^(step / 2), by its Taylor series: std::exp2 differs between systems
-        const float growth = 1 + step * (.34657359f + step * .06005663f);
-        // the centre of half-resolution pixel x lies between pixels 2 x and 2 x + 1
-        return KeyPoint(2 * (x + offset.x) + .5f, 2 * (y + offset.y) + .5f, (float)(4 * sigmas[s]) * growth,
-                -1, c, (int)s);
+        e.smaller = inside ? space.response(s - 1, y)[x] : e.response;
+        e.larger = inside ? space.response(s + 1, y)[x] : e.response;
+        return e;
     }
 
     const Mat& normalized;
@@ -132,23 +146,27 @@ private:
 std::vector<KeyPoint> findBlobs(const Mat& normalized, const HessianParameters& parameters, const Mat& mask)
 {
     const BlobFinder finder(normalized, parameters);
-    const auto allowed = [&](const Blob& blob) {
-        return mask.empty() || mask.at<uchar>(cvRound(blob.keypoint.pt.y), cvRound(blob.keypoint.pt.x));
-    };
-    std::vector<Blob> blobs;
-    for (const std::vector<Blob>& part : finder.blobs())
-        std::copy_if(part.begin(), part.end(), std::back_inserter(blobs), allowed);
+    const std::vector<std::vector<Extremum>> parts = finder.extrema();
+    std::vector<const Extremum*> order;
+    for (const std::vector<Extremum>& part : parts)
+        for (const Extremum& e : part)
+        {
+            const Point2f pt = mask.empty() ? Point2f() : finder.refined(e).pt;
+            if (mask.empty() || mask.at<uchar>(cvRound(pt.y), cvRound(pt.x)))
+                order.push_back(&e);
+        }
+    const auto before = [](const Extremum* a, const Extremum* b) { return isBefore(*a, *b); };
     const size_t most = parameters.maxFeatures;
-    if (most > 0 && blobs.size() > most)
+    if (most > 0 && order.size() > most)
     {
-        std::nth_element(blobs.begin(), blobs.begin() + most, blobs.end(), isBefore);
-        blobs.resize(most);
+        std::nth_element(order.begin(), order.begin() + most, order.end(), before);
+        order.resize(most);
     }
-    std::sort(blobs.begin(), blobs.end(), isBefore);
+    std::sort(order.begin(), order.end(), before);
     std::vector<KeyPoint> keypoints;
-    keypoints.reserve(blobs.size());
-    for (const Blob& blob : blobs)
-        keypoints.push_back(blob.keypoint);
+    keypoints.reserve(order.size());
+    for (const Extremum* e : order)
+        keypoints.push_back(finder.refined(*e));
     return keypoints;
 }
 
