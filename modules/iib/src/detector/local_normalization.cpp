@@ -4,41 +4,12 @@
 
 #include "local_normalization.hpp"
 
-#include "../common/aligned_buffer.hpp"
-#include "kernels/kernels.hpp"
+#include "padded_rows.hpp"
 
 namespace cv {
 namespace iib {
 
 namespace {
-
-//! Rows that begin on a cache line and have DETECTOR_PADDING values on either side.
-template <typename T> class Plane
-{
-public:
-    explicit Plane(Size size_)
-        : size(size_), step(wholeLines<T>(size_.width + 1) + 2 * DETECTOR_PADDING),
-          values(step * size_.height)
-    {
-    }
-
-    T* row(int y) { return values.data() + step * y + DETECTOR_PADDING; }
-    const T* row(int y) const { return values.data() + step * y + DETECTOR_PADDING; }
-
-    //! Repeats the ends of a row of `width` values.
-    void extend(int y, int width)
-    {
-        T* r = row(y);
-        r[-1] = r[0];
-        r[width] = r[width - 1];
-    }
-
-    Size size;
-
-private:
-    size_t step;
-    AlignedBuffer<T> values;
-};
 
 template <typename T> using HalveFunc = void (*)(const T* upper, const T* lower, T* half, int halfWidth);
 
@@ -82,8 +53,8 @@ public:
 
     Mat run() const
     {
-        const Plane<short> differences = differencesTo(means());
-        const Plane<short> gains = gainsOf(differences);
+        const PaddedRows<short> differences = differencesTo(means());
+        const PaddedRows<short> gains = gainsOf(differences);
         Mat result(size, CV_8U);
         forRows(size.height, [&](int y, Scratch& scratch) {
             upsampleRow(gains, y, scratch.between, scratch.rows.row(0));
@@ -96,9 +67,9 @@ private:
     //! Rows that a thread works on.
     struct Scratch
     {
-        Plane<short> pixels;   //!< two rows of an image that is halved
-        Plane<short> rows;     //!< two rows of what is normalized
-        Plane<short> between;  //!< one of half as many values
+        PaddedRows<short> pixels;   //!< two rows of an image that is halved
+        PaddedRows<short> rows;     //!< two rows of what is normalized
+        PaddedRows<short> between;  //!< one of half as many values
 
         explicit Scratch(const Normalizer& n)
             : pixels(Size(n.grey.cols + 1, n.halved ? 2 : 0)), rows(Size(n.size.width + 1, 2)),
@@ -121,7 +92,7 @@ private:
     }
 
     //! Row y of what is normalized, at `out`.
-    void readRow(int y, Plane<short>& pixels, short* out) const
+    void readRow(int y, PaddedRows<short>& pixels, short* out) const
     {
         if (!halved)
             return readPixels(y, out);
@@ -140,19 +111,19 @@ private:
     }
 
     //! G*I at half the image's size.
-    Plane<short> means() const
+    PaddedRows<short> means() const
     {
-        Plane<short> halves(sizes[1]);
+        PaddedRows<short> halves(sizes[1]);
         forRows(halves.size.height, [&](int y, Scratch& scratch) {
             for (int i = 0; i < 2; i++)
             {
                 readRow(std::min(2 * y + i, size.height - 1), scratch.pixels, scratch.rows.row(i));
-                scratch.rows.extend(i, size.width);
+                scratch.rows.repeatEnds(i, size.width);
             }
             kernels.halveShorts(scratch.rows.row(0), scratch.rows.row(1), halves.row(y), halves.size.width);
         });
-        Plane<short> smallest = reduced(std::move(halves), 1, kernels.halveShorts);
-        Plane<int> sums(smallest.size);
+        PaddedRows<short> smallest = reduced(std::move(halves), 1, kernels.halveShorts);
+        PaddedRows<int> sums(smallest.size);
         for (int y = 0; y < sums.size.height; y++)
             std::copy_n(smallest.row(y), sums.size.width, sums.row(y));
         blur(sums);
@@ -162,42 +133,42 @@ private:
     }
 
     //! I - G*I.
-    Plane<short> differencesTo(const Plane<short>& means) const
+    PaddedRows<short> differencesTo(const PaddedRows<short>& means) const
     {
-        Plane<short> differences(size);
+        PaddedRows<short> differences(size);
         forRows(size.height, [&](int y, Scratch& scratch) {
             readRow(y, scratch.pixels, scratch.rows.row(0));
             upsampleRow(means, y, scratch.between, scratch.rows.row(1));
             kernels.subtract(scratch.rows.row(0), scratch.rows.row(1), differences.row(y), size.width);
-            differences.extend(y, size.width);
+            differences.repeatEnds(y, size.width);
         });
         return differences;
     }
 
     //! What differences are multiplied by, at half the image's size.
-    Plane<short> gainsOf(const Plane<short>& differences) const
+    PaddedRows<short> gainsOf(const PaddedRows<short>& differences) const
     {
-        Plane<int> halves(sizes[1]);
+        PaddedRows<int> halves(sizes[1]);
         forRows(halves.size.height, [&](int y, Scratch&) {
             kernels.squares(differences.row(2 * y), differences.row(std::min(2 * y + 1, size.height - 1)),
                     halves.row(y), halves.size.width);
         });
-        Plane<int> variances = reduced(std::move(halves), 1, kernels.halveInts);
+        PaddedRows<int> variances = reduced(std::move(halves), 1, kernels.halveInts);
         blur(variances);
-        Plane<short> gains(variances.size);
+        PaddedRows<short> gains(variances.size);
         for (int y = 0; y < gains.size.height; y++)
             kernels.gain(variances.row(y), gains.row(y), gains.size.width);
         return upsampled(std::move(gains), blurs.levels);
     }
 
     //! From sizes[level] down to the smallest.
-    template <typename T> Plane<T> reduced(Plane<T> plane, int level, HalveFunc<T> halve) const
+    template <typename T> PaddedRows<T> reduced(PaddedRows<T> plane, int level, HalveFunc<T> halve) const
     {
         if (level == blurs.levels)
             return plane;
-        Plane<T> half(sizes[level + 1]);
+        PaddedRows<T> half(sizes[level + 1]);
         for (int y = 0; y < plane.size.height; y++)
-            plane.extend(y, plane.size.width);
+            plane.repeatEnds(y, plane.size.width);
         for (int y = 0; y < half.size.height; y++)
             halve(plane.row(2 * y), plane.row(std::min(2 * y + 1, plane.size.height - 1)), half.row(y),
                     half.size.width);
@@ -205,25 +176,25 @@ private:
     }
 
     //! From sizes[level] up to half the image's size.
-    Plane<short> upsampled(Plane<short> plane, int level) const
+    PaddedRows<short> upsampled(PaddedRows<short> plane, int level) const
     {
         if (level == 1)
             return plane;
-        Plane<short> larger(sizes[level - 1]), between(Size(plane.size.width + 1, 1));
+        PaddedRows<short> larger(sizes[level - 1]), between(Size(plane.size.width + 1, 1));
         for (int y = 0; y < larger.size.height; y++)
             upsampleRow(plane, y, between, larger.row(y));
         return upsampled(std::move(larger), level - 1);
     }
 
-    void blur(Plane<int>& plane) const
+    void blur(PaddedRows<int>& plane) const
     {
         const int width = plane.size.width, height = plane.size.height;
-        Plane<int> out(plane.size);
+        PaddedRows<int> out(plane.size);
         for (int pass = 0; pass < blurs.passes; pass++)
         {
             for (int y = 0; y < height; y++)
             {
-                plane.extend(y, width);
+                plane.repeatEnds(y, width);
                 const int* row = plane.row(y);
                 kernels.blur(row - 1, row, row + 1, blurs.weight, out.row(y), width);
             }
@@ -234,12 +205,12 @@ private:
     }
 
     //! Row y of twice the plane's size.
-    void upsampleRow(const Plane<short>& half, int y, Plane<short>& between, short* out) const
+    void upsampleRow(const PaddedRows<short>& half, int y, PaddedRows<short>& between, short* out) const
     {
         const int width = half.size.width, other = y / 2 + (y % 2 ? 1 : -1);
         kernels.interpolate(half.row(y / 2), half.row(std::min(std::max(other, 0), half.size.height - 1)),
                 between.row(0), width);
-        between.extend(0, width);
+        between.repeatEnds(0, width);
         kernels.upsample(between.row(0), out, width);
     }
 

@@ -45,11 +45,10 @@ std::vector<SmoothingStep> smoothingSteps(const std::vector<double>& sigmas)
 ScaleSpace::ScaleSpace(
         const Mat& normalized_, const std::vector<SmoothingStep>& steps_, int first_, int last_)
     : kernels(detectorKernels()), normalized(normalized_), steps(steps_), first(first_), last(last_),
-      next(first_ - 2), ahead(steps_.size() + 1, 0), earliest(steps_.size() + 1, first_ - 1)
+      next(first_ - 2), reach(0), ahead(steps_.size() + 1, 0), earliest(steps_.size() + 1, first_ - 1)
 {
     const int width = normalized.cols;
     std::vector<int> oldest(ahead.size(), 0);  // row that is still needed, from advance()'s row
-    int reach = 0;
     for (size_t i = steps.size(); i-- > 0;)
     {
         const SmoothingStep& s = steps[i];
@@ -68,14 +67,14 @@ ScaleSpace::ScaleSpace(
     {
         earliest[i] = std::max(earliest[i], 0);
         next = std::min(next, earliest[i] - ahead[i]);
-        images.push_back(RecentRows<short>(ahead[i] - oldest[i] + 1, width, reach));
+        images.push_back(PaddedRows<short>(Size(width, ahead[i] - oldest[i] + 1), reach, true));
     }
-    smoothedDown.push_back(RecentRows<short>(1, width, reach));
+    smoothedDown.push_back(PaddedRows<short>(Size(width, 1), reach, true));
     for (const SmoothingStep& s : steps)
         if (s.distance)
         {
-            responses.push_back(RecentRows<float>(3, width, 1));
-            maxima.push_back(RecentRows<float>(1, width, 1));
+            responses.push_back(PaddedRows<float>(Size(width, 3), 1, true));
+            maxima.push_back(PaddedRows<float>(Size(width, 1), 1, true));
         }
 }
 
@@ -111,12 +110,12 @@ void ScaleSpace::makeRow(size_t image, int y)
                     std::min(std::max(y + (i - 2) * s.spacing, 0), normalized.rows - 1));
         short* const down = smoothedDown[0].row(0);
         kernels.smooth(rows, s.weights, down, width);
-        smoothedDown[0].repeatEnds(0);
+        smoothedDown[0].repeatEnds(0, width, reach);
         for (int i = 0; i < 5; i++)
             rows[i] = down + (i - 2) * s.spacing;
         kernels.smooth(rows, s.weights, out, width);
     }
-    images[image].repeatEnds(y);
+    images[image].repeatEnds(y, width, reach);
 }
 
 void ScaleSpace::makeResponses(int y)

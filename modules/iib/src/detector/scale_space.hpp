@@ -4,8 +4,7 @@
 
 #pragma once
 
-#include "../common/aligned_buffer.hpp"
-#include "kernels/kernels.hpp"
+#include "padded_rows.hpp"
 
 namespace cv {
 namespace iib {
@@ -22,36 +21,6 @@ struct SmoothingStep
 /** Steps from the normalized image to Gaussians of `sigmas` (in its pixels, increasing). A step at most doubles the
  variance, so that its taps are never farther apart than the image is smooth. */
 std::vector<SmoothingStep> smoothingSteps(const std::vector<double>& sigmas);
-
-/** The last rows of an image that is made from top to bottom. Kernels may read `reach` pixels beyond both ends, where
- the row's ends are repeated, and DETECTOR_PADDING more. */
-template <typename T> class RecentRows
-{
-public:
-    RecentRows(int capacity_, int width_, int reach_)
-        : capacity(capacity_), width(width_), reach(reach_),
-          padding(wholeLines<T>(reach_ + DETECTOR_PADDING)), step(wholeLines<T>(width_) + 2 * padding),
-          values(step * capacity_)
-    {
-        std::fill_n(values.data(), step * capacity, T());
-    }
-
-    T* row(int y) { return values.data() + y % capacity * step + padding; }
-    const T* row(int y) const { return values.data() + y % capacity * step + padding; }
-
-    //! To be called once row y is written.
-    void repeatEnds(int y)
-    {
-        T* const r = row(y);
-        std::fill_n(r - reach, reach, r[0]);
-        std::fill_n(r + width, reach, r[width - 1]);
-    }
-
-private:
-    int capacity, width, reach;
-    size_t padding, step;
-    AlignedBuffer<T> values;
-};
 
 /** Responses of all scales for a range of rows, from top to bottom. Only the rows that are still needed are held: they
  stay in the processor's cache. */
@@ -77,14 +46,15 @@ private:
     const Mat& normalized;
     const std::vector<SmoothingStep>& steps;
     const int first, last;
-    int next;  //!< the row that advance() has not made yet
+    int next;   //!< the row that advance() has not made yet
+    int reach;  //!< pixels that filters take beyond the ends of rows
 
     // Image 0 is the normalized one, image i + 1 what step i makes of image i.
     std::vector<int> ahead;     //!< by how many rows an image is ahead of advance()'s row
     std::vector<int> earliest;  //!< the first row of an image that is needed
-    std::vector<RecentRows<short>> images;
-    std::vector<RecentRows<short>> smoothedDown;  //!< one row, on the way from an image to the next
-    std::vector<RecentRows<float>> responses, maxima;
+    std::vector<PaddedRows<short>> images;
+    std::vector<PaddedRows<short>> smoothedDown;  //!< one row, on the way from an image to the next
+    std::vector<PaddedRows<float>> responses, maxima;
 };
 
 }  // namespace iib
