@@ -2,6 +2,7 @@ import csv
 import io
 import json
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -12,7 +13,7 @@ from unittest import mock
 
 import numpy as np
 
-from support import cv2, texture
+from support import REPOSITORY, cv2, texture
 
 try:
     import pycolmap
@@ -22,7 +23,7 @@ except ImportError:
 if cv2 is not None:
     from opencv_iib.__main__ import main
     from opencv_iib.colmap import pipeline
-    from opencv_iib.localization import Localizer, build_map, find_camera, parse_camera, read_map, update
+    from opencv_iib.localization import Localizer, build_map, find_camera, localizer, parse_camera, read_map, retrieval, update
     from opencv_iib.localization.folders import new_folder
     from opencv_iib.localization.geometry import refine_pose
     from opencv_iib.localization.map import compact
@@ -450,6 +451,15 @@ class Localization(unittest.TestCase):
         compact(made.model, codes)
         self.assertEqual({tuple(p.xyz): p.track.length() for p in made.model.points3D.values()}, before)
         self.assertTrue(all(np.array_equal(codes[i], made.codes[i]) for i in codes))
+
+    def test_the_numbers_are_those_of_cpp(self):
+        folder = REPOSITORY / 'apps/localization/src'
+        for python, name in ((localizer, 'localizer.cpp'), (retrieval, 'retrieval.cpp')):
+            text = (folder / name).read_text()
+            numbers = dict(re.findall(r'\b([A-Z_]{4,}) =\s*([\d.]+)[,;]', text))
+            self.assertEqual(len(numbers), len(re.findall(r'\b[A-Z_]{4,} =', text)))
+            for constant, number in numbers.items():
+                self.assertEqual(getattr(python, constant), float(number), constant)
 
     def test_an_image_has_most_votes_of_its_own_codes(self):
         random = np.random.default_rng(5)

@@ -10,8 +10,8 @@ namespace {
 
 constexpr int TABLES = 16;
 constexpr int COARSE = 4;  // the first part of a code that bits are taken from: coarse cells change least
-constexpr int STRONGEST = 400;        // codes an image that take part
-constexpr uint32_t MAX_ENTRIES = 64;  // of a key: what is that frequent tells nothing
+constexpr int STRONGEST = 400;     // codes an image that take part
+constexpr uint32_t FREQUENT = 64;  // of a key: what is that frequent tells nothing
 
 int participating(const cv::Mat& codes) { return std::min(codes.rows, STRONGEST); }
 
@@ -69,7 +69,7 @@ std::vector<float> Retrieval::vote(const cv::Mat& codes, size_t* visited) const
         {
             const uint32_t key = keyOf(codes.ptr(row), table.bits);
             const uint32_t begin = table.begins[key], end = table.begins[key + 1];
-            if (end - begin > MAX_ENTRIES)
+            if (end - begin > FREQUENT)
                 continue;
             seen += end - begin;
             for (uint32_t i = begin; i < end; i++)

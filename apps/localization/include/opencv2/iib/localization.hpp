@@ -46,13 +46,12 @@ struct Location
 The codes of an image vote for the map's images, and those that look most like it are matched with it. The pose comes from
 the points of the map that they see. It needs fifteen inliers and two in a hundred matches more, and a place that is
 known to a tenth of the distance to its points (three standard deviations), so that images of places that are not in the
-map get none.
-
-The images and codes are in memory. One object may serve many threads. */
+map get none. */
 class CV_EXPORTS Localizer
 {
 public:
-    /** @param map its folder.
+    /** @brief Reads a map into memory.
+    @param map its folder.
     @param points keypoints that are looked for in an image; 0: as many as in the map's images.
     @throws cv::Exception for what is no map, or a damaged one. */
     explicit Localizer(const std::string& map, int points = 1000);
@@ -63,7 +62,9 @@ public:
     //! The cameras of the map's images, each once.
     const std::vector<Camera>& cameras() const;
 
-    /** @param image 8-bit, grey or BGR, of the camera's size.
+    /** @brief Where an image was taken. Threads may call it at once.
+    @param image 8-bit, grey or BGR, of the camera's size.
+    @param camera that took it.
     @param prior camera from world, such as the last image's: only the two images of the map nearest to it are compared, and
     only points within a tenth of the longer side from where the prior has them. If that gives no pose, the image is looked for
     everywhere. Null: everywhere at once.
