@@ -55,7 +55,6 @@ refused scripts/train.sh --bits=-3 .
 refused scripts/upstream.sh no-such-folder
 refused scripts/wheel.sh no-such-python
 refused scripts/helpers/arm64.sh unknown
-refused scripts/helpers/colmap.sh no-such-scene
 refused scripts/helpers/mutation.sh --only
 refused scripts/helpers/mutation.sh --only no-such-mutant
 refused scripts/helpers/network_test.sh no-such-python

@@ -1,0 +1,185 @@
+#!/usr/bin/env python3
+"""Reconstructs photographs with COLMAP (pycolmap), by the recommended chain and by SIFT: the tables of doc/colmap.md.
+
+    python photographs.py SCENE... [--methods chain,SIFT] [--relit] [--other 'PATTERN,...'] [--points 4000] [--work DIR]
+
+A SCENE is a folder with images/. With poses.txt too (TUM: name, camera's centre, camera to world) the cameras are compared with
+the truth, else those of two methods with each other: after a robust similarity, the medians of a centre's distance in per cent
+of that to what the camera sees, and of the angle between both, and how many images are within 5 % and 5 degrees.
+
+`chain` is HessianDetector and UNIVERSAL, `refined` the same with --refine, `SIFT` COLMAP's own, and `normalized` OpenCV's SIFT at
+points of NormalizedDetector. All have the cameras that COLMAP infers, the pairs of the chain (each image with the twenty for
+which its codes vote), COLMAP's verification and its mapper; the largest component counts. With --relit every second image is
+darkened. With --other the images whose names fit no PATTERN become a map, with poses of the chain's reconstruction, and the
+others are looked for in it. Needs opencv_iib[colmap,localization]. Work that is there is not done again.
+"""
+import argparse
+import fnmatch
+import itertools
+import sys
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pycolmap
+
+import opencv_iib
+from opencv_iib.colmap import FeatureOptions, Options, build_database
+from opencv_iib.colmap.features import to_colmap
+from opencv_iib.keypoints import keypoints_to_array
+from opencv_iib.localization import Localizer, build_map
+
+FASTER = {'ba_global_frames_ratio': 1.2, 'ba_global_points_ratio': 1.2, 'ba_global_max_refinements': 2}
+
+
+def relit(image):
+    """Gamma 2.2, and a shade across to a quarter."""
+    return np.rint(255 * (image / 255) ** 2.2 * np.linspace(1, .25, image.shape[1])[:, None]).astype(np.uint8)
+
+
+def normalized_sift(image, points):
+    """SIFT's descriptors as COLMAP stores them: square roots of shares, times 512."""
+    sift = cv2.SIFT_create(points)
+    found = sorted(opencv_iib.NormalizedDetector(sift).detect(image), key=lambda point: -point.response)[:points]
+    found, floats = sift.compute(image, found)
+    roots = 512 * np.sqrt(floats / np.maximum(floats.sum(1, keepdims=True), 1e-9))
+    return to_colmap(keypoints_to_array(found)), np.rint(roots).clip(0, 255).astype(np.uint8)
+
+
+def make_database(method, images, points, folder, chain):
+    """Points, matches and two-view geometries; `chain` is the chain's database."""
+    file = folder / 'database.db'
+    if method in ('chain', 'refined'):
+        build_database(str(images), str(file), Options(FeatureOptions(points=points), pairs='retrieval', verify='none',
+                                                       refine=method == 'refined'))
+        with pycolmap.Database.open(file) as database:
+            for image in database.read_all_images():
+                camera = pycolmap.infer_camera_from_image(images / image.name)
+                camera.camera_id = image.camera_id
+                database.update_camera(camera)
+        pycolmap.geometric_verification(file)
+        return
+    with pycolmap.Database.open(chain) as database:
+        names = {image.image_id: image.name for image in database.read_all_images()}
+        listed = [pycolmap.pair_id_to_image_pair(pair) for pair in database.read_all_matches()[0]]
+    (folder / 'pairs.txt').write_text('\n'.join(f'{names[a]} {names[b]}' for a, b in listed))
+    if method == 'SIFT':
+        pycolmap.extract_features(file, images, camera_mode=pycolmap.CameraMode.PER_IMAGE, device='cpu',
+                                  extraction_options={'sift': {'max_num_features': points}})
+    else:
+        pycolmap.Database.open(file).close()
+        pycolmap.import_images(file, images, pycolmap.CameraMode.PER_IMAGE)
+        with pycolmap.Database.open(file) as database:
+            for image in database.read_all_images():
+                rows, floats = normalized_sift(cv2.imread(str(images / image.name), cv2.IMREAD_GRAYSCALE), points)
+                database.write_keypoints(image.image_id, rows)
+                database.write_descriptors(image.image_id, pycolmap.FeatureDescriptors(pycolmap.FeatureExtractorType.SIFT, floats))
+    pycolmap.match_image_pairs(file, pairing_options={'match_list_path': folder / 'pairs.txt'}, device='cpu')
+
+
+def reconstruct(method, images, points, work):
+    """The largest component; pycolmap.Reconstruction."""
+    folder = work / method
+    if not (folder / 'model').exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        if not (folder / 'database.db').exists():
+            make_database(method, images, points, folder, work / 'chain' / 'database.db')
+        found = pycolmap.incremental_mapping(folder / 'database.db', images, folder,
+                                             {'random_seed': 1, 'extract_colors': False, **FASTER})
+        (folder / 'model').mkdir()
+        max(found.values(), key=lambda model: model.num_reg_images()).write(folder / 'model')
+    return pycolmap.Reconstruction(folder / 'model')
+
+
+def poses(model):
+    """World from camera, and the median distance to what is seen, by name."""
+    found = {}
+    for image in map(model.image, model.reg_image_ids()):
+        seen = np.array([model.point3D(p.point3D_id).xyz for p in image.get_observation_points2D()]).reshape(-1, 3)
+        away = np.linalg.norm(seen - image.projection_center(), axis=1)
+        found[image.name] = image.cam_from_world().inverse(), np.median(away) if len(away) else np.nan
+    return found
+
+
+def true_poses(file):
+    rows = [line.split() for line in file.read_text().splitlines() if line.strip() and line[0] != '#']
+    return {name: pycolmap.Rigid3d(pycolmap.Rotation3d(np.array(v[3:], float)), np.array(v[:3], float)) for name, *v in rows}
+
+
+def told(found, truth):
+    """What a table says of poses of `found` beside those of `truth`, after the similarity that most of them agree on."""
+    both = sorted(set(found) & set(truth))
+    true, seen = np.array([truth[n].translation for n in both]), np.array([found[n][0].translation for n in both])
+    depths = np.array([found[name][1] for name in both])
+    limit = {'max_error': .02 * np.median(depths), 'random_seed': 1}
+    moved = pycolmap.estimate_sim3d_robust(true, seen, limit)['tgt_from_src']
+    away = np.linalg.norm(moved.scale * true @ moved.rotation.matrix().T + moved.translation - seen, axis=1) / depths
+    turned = np.degrees([(moved.rotation * truth[n].rotation).angle_to(found[n][0].rotation) for n in both])
+    return (f'{100 * np.median(away):.2f} | {np.median(turned):.2f} | {np.count_nonzero((away < .05) & (turned < 5))} of '
+            f'{len(both)} |')
+
+
+def find_others(images, other, model, points, work):
+    """What is said of the images of another light."""
+    asked = [(image.name, image.camera, image.cam_from_world().inverse()) for image in map(model.image, model.reg_image_ids())
+             if image.name in other]
+    depths = {name: depth for name, (_, depth) in poses(model).items()}
+    for image in list(map(model.image, model.reg_image_ids())):
+        if image.name in other:
+            model.deregister_frame(image.frame_id)
+    if not (work / 'MAP').exists():
+        (work / 'rest').mkdir(exist_ok=True)
+        model.write(work / 'rest')
+        build_map(str(work / 'rest'), str(images), str(work / 'MAP'), points)
+    localizer, errors = Localizer(work / 'MAP', points), []
+    for name, camera, truth in asked:
+        location = localizer.localize(cv2.imread(str(images / name)), camera)
+        if location.cam_from_world is not None:
+            away = np.linalg.norm(location.cam_from_world.inverse().translation - truth.translation)
+            errors.append((away / depths[name], np.degrees(location.cam_from_world.inverse().rotation.angle_to(truth.rotation))))
+    moved, turned = np.array(errors).reshape(-1, 2).T
+    return (f'Of {len(other)} images of another light {len(asked)} are in the reconstruction, and {len(errors)} are found in a map of '
+            f'the {model.num_reg_images()} others there: medians {100 * np.median(moved):.2f} % and {np.median(turned):.2f} degrees '
+            f'from where it has them, {np.count_nonzero((moved < .05) & (turned < 5))} within 5 % and 5 degrees')
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('scenes', type=Path, nargs='+', metavar='SCENE')
+    parser.add_argument('--methods', default='chain,refined,SIFT,normalized', help='the chain first (%(default)s)')
+    parser.add_argument('--relit', action='store_true')
+    parser.add_argument('--other', help='names of the images of another light, patterns with commas between them')
+    parser.add_argument('--points', type=int, default=4000)
+    parser.add_argument('--work', type=Path, default=Path('photographs'), help='folder for what is made (%(default)s)')
+    arguments = parser.parse_args()
+    pycolmap.logging.minloglevel = pycolmap.logging.WARNING.value
+    pycolmap.set_random_seed(1)
+    print('| scene | method | registered | points | track | reprojection | centres, % | degrees | within 5 % and 5 degrees |\n'
+          + '|---' * 9 + '|')
+    for scene in arguments.scenes:
+        images, work = scene / 'images', arguments.work / (scene.name + ' relit' * arguments.relit)
+        if arguments.relit:
+            (work / 'images').mkdir(parents=True, exist_ok=True)
+            for n, path in enumerate(sorted(images.iterdir())):
+                cv2.imwrite(str(work / 'images' / (path.stem + '.png')), (relit if n % 2 else np.copy)(cv2.imread(str(path))))
+            images = work / 'images'
+        truth, models = scene / 'poses.txt', {}
+        for method in arguments.methods.split(','):
+            model = models[method] = reconstruct(method, images, arguments.points, work)
+            errors = ' | | |'
+            if truth.exists():
+                errors = told({Path(name).stem: pose for name, pose in poses(model).items()}, true_poses(truth))
+            print(f'| {work.name} | {method} | {model.num_reg_images()} of {len(list(images.iterdir()))} | {model.num_points3D()} | '
+                  f'{model.compute_mean_track_length():.2f} | {model.compute_mean_reprojection_error():.2f} | {errors}', flush=True)
+        if not truth.exists():
+            for a, b in itertools.combinations(models, 2):
+                other = {name: pose for name, (pose, _) in poses(models[b]).items()}
+                print(f'| {work.name} | {a} and {b} | | | | | {told(poses(models[a]), other)}')
+        if arguments.other:
+            other = {path.name for path in images.iterdir()
+                     if any(fnmatch.fnmatch(path.name, pattern) for pattern in arguments.other.split(','))}
+            print('\n' + find_others(images, other, models['chain'], arguments.points, work))
+
+
+if __name__ == '__main__':
+    sys.exit(main())
