@@ -1,7 +1,7 @@
 #!/bin/sh
 # Shows long-term localization: scripts/localization.sh [OUT]
 # Renders the synthetic walk (once, about an hour of processor time, kept in the user's cache folder), maps it at noon, finds
-# the images of other lights by the Python package and, in the same protocol, by SIFT, and writes index.html with
+# the images of other lights by the Python package, by iib_localize and, in the same protocol, by SIFT, and writes index.html with
 # pictures, a video, and results.json to OUT (results-localization). With OPENCV_TEST_DATA_PATH set, also finds real
 # photographs (strecha) and looks for photographs of other places. pip brings pycolmap.
 . "$(dirname "$0")/helpers/lib.sh"
@@ -16,5 +16,6 @@ need $build_packages povray python3-opencv python3-venv python3-dev
 say "installing the Python package in $environment"
 /usr/bin/python3 -m venv "$environment"
 "$environment/bin/pip" install --quiet "$root[localization]" jinja2
-page=$("$environment/bin/python" -B "$root/apps/localization/report/page.py" "$data" "$out")
+build_tools -DIIB_BUILD_APPS=ON iib_localize
+page=$(IIB_PROGRAMS="$build/apps/localization" "$environment/bin/python" -B "$root/apps/localization/report/page.py" "$data" "$out")
 say "results and page: $page"

@@ -75,6 +75,8 @@ class Page(unittest.TestCase):
         rows = [r for r in results['rows'] if r['place'] == 'street']
         self.assertEqual([r['method'] for r in rows], list(measure.METHODS))
         self.assertEqual([r['within_5'] for r in rows if r['method'] == 'recommended chain'], [2])
+        self.assertEqual([r['within_5'] for r in results['rows'] if r['method'].startswith('iib_localize')],
+                         [2] if 'IIB_PROGRAMS' in os.environ else [])
         self.assertEqual(len(results['seasons']), 1)
         self.assertIn('<b>100 %</b> of 2 images taken at night', text)
         self.assertIn('"told": "0.png, night: ', text)

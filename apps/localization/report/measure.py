@@ -4,8 +4,11 @@
 
 A place is a folder with images/, cameras.txt (COLMAP, one camera) and poses.txt (TUM: image, camera's centre, camera to world).
 """
+import csv
 import functools
 import itertools
+import resource
+import subprocess
 import time
 
 import cv2
@@ -157,6 +160,30 @@ def street(data, work, lights):
             rows.append({'place': f'every {step}', 'method': 'recommended chain', 'light': light,
                          **summary(list(localize(localizer, data / light)))})
     return rows, seen, ours
+
+
+def program(path, data, work, lights):
+    """Rows of iib_localize in the chain's map, alone and where there is an IMU also with it; milliseconds of the whole run."""
+    rows = []
+    for light, imu in itertools.product(lights, ('', ' --imu')):
+        readings, out, poses = data / light / 'imu.csv', work / (light + imu), read_place(data / light)[1]
+        if imu and not readings.exists():
+            continue
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run([path, '--map', work / 'recommended chain/map', '--images', data / light / 'images', '--out', out,
+                        *(('--imu', readings) if imu else ())], check=False, stdout=subprocess.DEVNULL)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        used = 1000 * (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / len(poses)
+        errors = {}
+        for line in (out / 'trajectory.txt').read_text().splitlines()[1:]:
+            stem, *numbers = line.split()
+            place, turn = np.array(numbers, float)[:3], np.array(numbers, float)[3:]
+            name = next(name for name in poses if name.rpartition('.')[0] == stem)
+            errors[name] = error(pycolmap.Rigid3d(pycolmap.Rotation3d(turn), place).inverse(), poses[name])
+        with open(out / 'frames.csv', encoding='utf-8', newline='') as file:
+            located = [(row['name'], Location(inliers=int(row['inliers'])), errors.get(row['name']), used) for row in csv.DictReader(file)]
+        rows.append({'place': 'program', 'method': 'iib_localize' + imu, 'light': light, **summary(located)})
+    return rows
 
 
 def seasons(data, work, lights):

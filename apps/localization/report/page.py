@@ -4,7 +4,7 @@
 """Measures localization across lights and writes OUT/index.html with pictures, a video and results.json: page.py DATA OUT
 
 DATA: what tools/synthetic/localization.py rendered. Photographs, of other places too, are in the folder that
-OPENCV_TEST_DATA_PATH names, if it is set.
+OPENCV_TEST_DATA_PATH names, if it is set, and iib_localize in that of IIB_PROGRAMS.
 """
 import argparse
 import json
@@ -129,7 +129,7 @@ def write_page(out, results, world, pictures):
     by_light = [[row for row in results['rows'] if row['place'] == 'street' and row['light'] == light] for light in results['lights']]
     text = environment.get_template('page.html.j2').render(
         results, by_light=by_light, charts=[c for c in map(chart, by_light) if c], aims=aims(results), share=share, world=world,
-        pictures=pictures, size=CHART, photographs=sorted({row['place'] for row in results['rows']} - {'street', 'every 2', 'every 4'}))
+        pictures=pictures, size=CHART, photographs=sorted({row['place'] for row in results['rows']} - {'street', 'every 2', 'every 4', 'program'}))
     (out / 'index.html').write_text(text, encoding='utf-8')
 
 
@@ -146,6 +146,8 @@ def main():
     with tempfile.TemporaryDirectory() as work:
         work = pathlib.Path(work)
         rows, seen, ours = measure.street(options.data, work, lights)
+        if 'IIB_PROGRAMS' in os.environ:
+            rows += measure.program(pathlib.Path(os.environ['IIB_PROGRAMS'], 'iib_localize'), options.data, work, lights)
         results = {'rows': rows, 'lights': lights, 'seasons': measure.seasons(options.data, work, lights), 'unknown': None}
         if given:
             rows += measure.photographs(pathlib.Path(given) / 'strecha', work)
