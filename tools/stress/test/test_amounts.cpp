@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The library under stress, each result compared with one got the easy way; see ABOUT. Prints time and memory; exit
-// code 1 and a line for what does not hold.
+// Much at a time, each result compared with one got the easy way. Prints time and memory.
 
 #include "stress.hpp"
-
-#include "common/command_line.hpp"
 
 #include <atomic>
 #include <chrono>
@@ -16,9 +13,11 @@
 namespace {
 
 using namespace cv;
-using namespace stress;
 using cv::iib::HierarchicalMatcher;
 using cv::iib::IIB;
+
+//! How much: `small` unless the environment variable IIB_STRESS is set.
+int amount(int small, int real) { return std::getenv("IIB_STRESS") ? real : small; }
 
 //! Of this process, in MB: "VmRSS" now, "VmHWM" at its highest.
 double memory(const std::string& name)
@@ -63,12 +62,13 @@ Mat describe(IIB& iib, const Mat& image, std::vector<KeyPoint> keypoints)
     Mat descriptors;
     const size_t count = keypoints.size();
     iib.compute(image, keypoints, descriptors);
-    require(keypoints.size() == count && descriptors.rows == (int)count, "a keypoint is lost");
+    EXPECT_TRUE(keypoints.size() == count && descriptors.rows == (int)count) << "a keypoint is lost";
     return descriptors;
 }
 
-void manyKeypoints(int count)
+TEST(Stress, keypoints)
 {
+    const int count = amount(5000, 1000000);
     const Mat image = noise(Size(1280, 720), CV_8U, 1);
     const std::vector<KeyPoint> keypoints = scatter(image.size(), count);
     for (const bool rotated : {false, true})
@@ -80,15 +80,15 @@ void manyKeypoints(int count)
         for (int i = 0; i < 1000; i++)
         {
             const int k = (int)((int64)i * count / 1000);
-            require(equal(descriptors.row(k), describe(*iib, image, std::vector<KeyPoint>(1, keypoints[k]))),
-                    "a keypoint alone is described otherwise");
+            ASSERT_TRUE(equal(descriptors.row(k), describe(*iib, image, {keypoints[k]})))
+                    << "a keypoint alone is described otherwise";
         }
     }
 }
 
-void largeImages(int megapixels)
+TEST(Stress, pixels)
 {
-    const Size size(12500, megapixels * 80);
+    const Size size(12500, 80 * amount(4, 100));  // so many megapixels
     for (const int type : {CV_8UC1, CV_16UC1, CV_8UC3, CV_32FC1})
         for (const bool rotated : {false, true})
         {
@@ -108,15 +108,16 @@ void largeImages(int megapixels)
                 const Point corner(std::max((int)kp.pt.x - 150, 0), std::max((int)kp.pt.y - 150, 0));
                 const Rect around = Rect(corner, Size(300, 300)) & Rect(Point(), size);
                 kp.pt -= Point2f(corner);
-                require(equal(descriptors.row(k),
-                                describe(*iib, image(around).clone(), std::vector<KeyPoint>(1, kp))),
-                        "a part of the image is described otherwise");
+                ASSERT_TRUE(equal(descriptors.row(k), describe(*iib, image(around).clone(), {kp})))
+                        << "a part of the image is described otherwise";
             }
         }
 }
 
-void manyThreads(int seconds)
+//! They share one extractor and one matcher.
+TEST(Stress, threads)
 {
+    const int seconds = amount(2, 120);
     const Mat image = noise(Size(320, 240), CV_8U, 1);
     const std::vector<KeyPoint> keypoints = scatter(image.size(), 200);
     const Ptr<IIB> iib = extractor(true);
@@ -153,50 +154,8 @@ void manyThreads(int seconds)
         thread.join();
     std::printf("24 threads, %d s: %d rounds, memory %.1f MB after a fifth, %.1f MB at the end\n", seconds,
             (int)rounds, early, late);
-    require(!wrong, "a thread got another result than one alone");
-    require(late < early * 1.05 + 16, "memory grows");
-}
-
-const char ABOUT[] =
-        "The library under stress: iib_stress [--amount=N] WHAT\n"
-        "keypoints    N keypoints on one image, 1,000,000 unless said\n"
-        "pixels       images of every type and of N megapixels, 100 unless said\n"
-        "threads      24 threads that share one extractor and one matcher, for N seconds, 120 unless said\n"
-        "allocations  each fails in turn";
-
-const struct
-{
-    const char* name;
-    void (*run)(int);
-    int amount;
-} STRESSES[] = {{"keypoints", manyKeypoints, 1000000}, {"pixels", largeImages, 100},
-        {"threads", manyThreads, 120}, {"allocations", failingAllocations, 0}};
-
-int run(const iib_tools::CommandLine& line)
-{
-    if (line.positional().size() != 1)
-        CV_Error(Error::StsBadArg, "WHAT is needed (--help tells more)");
-    const std::string& what = line.positional()[0];
-    for (const auto& stress : STRESSES)
-        if (what == stress.name)
-        {
-            stress.run(line.has("amount") ? line.whole("amount", 1, 100000000) : stress.amount);
-            return 0;
-        }
-    CV_Error(Error::StsBadArg, "there is no " + what + " (--help tells what there is)");
+    EXPECT_FALSE(wrong) << "a thread got another result than one alone";
+    EXPECT_LT(late, early * 1.05 + 16) << "memory grows";
 }
 
 }  // namespace
-
-int main(int argc, char** argv)
-{
-    try
-    {
-        return iib_tools::runTool(argc, argv, ABOUT, "{amount|<none>|how much}", run);
-    }
-    catch (const std::logic_error& e)
-    {
-        std::fprintf(stderr, "%s\n", e.what());
-        return 1;
-    }
-}

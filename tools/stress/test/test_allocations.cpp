@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
+// Every allocation of the library, and of OpenCV beneath it, fails in turn: the call that needed it throws, and the object
+// goes on as if it had not been called.
+
 #include "stress.hpp"
 
 #include <cerrno>
@@ -44,7 +47,6 @@ extern "C" int posix_memalign(void** memory, std::size_t alignment, std::size_t 
 namespace {
 
 using namespace cv;
-using namespace stress;
 using cv::iib::HierarchicalMatcher;
 using cv::iib::IIB;
 
@@ -77,13 +79,14 @@ void failEachAllocation(
             }
             armed = false;
             check();
+            ASSERT_FALSE(testing::Test::HasFailure()) << what << ", allocation " << n;
             if (failed == 0)
                 break;
-            require(thrown, what + ": no exception of lacking memory, allocation " + std::to_string(n));
+            ASSERT_TRUE(thrown) << what << ": no exception of lacking memory, allocation " << n;
             failures++;
         }
     std::printf("%s: %d failures\n", what.c_str(), failures);
-    require(failures > 0, what + ": nothing was allocated");
+    EXPECT_GT(failures, 0) << what << ": nothing was allocated";
 }
 
 void describe(const std::string& what, const Ptr<IIB>& iib, int type)
@@ -101,7 +104,7 @@ void describe(const std::string& what, const Ptr<IIB>& iib, int type)
         std::vector<KeyPoint> k = given;
         Mat descriptors;
         iib->compute(image, extra, k, descriptors);
-        require(equal(expected, descriptors), what + ": other descriptors");
+        EXPECT_TRUE(equal(expected, descriptors)) << "other descriptors";
     };
     failEachAllocation(what, compute, compute);
 }
@@ -112,7 +115,7 @@ void changeExtractor()
     const Mat first = iib->getSelection(), second = first.rowRange(0, first.rows / 2).clone();
     const auto check = [&] {
         const Mat now = iib->getSelection();
-        require(equal(now, first) || equal(now, second), "setSelection: a third selection");
+        EXPECT_TRUE(equal(now, first) || equal(now, second)) << "a third selection";
         iib->setSelection(first);
     };
     failEachAllocation(
@@ -135,9 +138,9 @@ void match(const std::string& what, const HierarchicalMatcher& matcher,
         return fields;
     };
     const std::vector<float> expected = found();
-    const auto again = [&] { require(found() == expected, what + ": other matches"); };
+    const auto again = [&] { EXPECT_TRUE(found() == expected) << "other matches"; };
     failEachAllocation(what, again, again);
-    require(matcher.getTrainDescriptors().size() == 1, what + ": other train descriptors");
+    EXPECT_EQ(1u, matcher.getTrainDescriptors().size()) << what;
 }
 
 void matchAll()
@@ -166,10 +169,9 @@ void addToMatcher(int width)
         std::vector<DMatch> matches;
         const size_t images = matcher->getTrainDescriptors().size();
         matcher->match(train.row(1100), matches, std::vector<Mat>(images));
-        require(matches.size() == std::min(images, (size_t)1), "add: the index does not fit the descriptors");
-        require(images == 0 ||
-                        (matches[0].trainIdx == 1100 && matches[0].imgIdx == 0 && matches[0].distance == 0),
-                "add: other match");
+        ASSERT_EQ(std::min(images, (size_t)1), matches.size()) << "the index does not fit the descriptors";
+        EXPECT_TRUE(images == 0 ||
+                    (matches[0].trainIdx == 1100 && matches[0].imgIdx == 0 && matches[0].distance == 0));
         if (images > 3)
             matcher->clear();
     };
@@ -185,21 +187,20 @@ void changeMatcher()
     const auto check = [&] {
         const bool changed = matcher->levelSizes().size() == 3;
         const int mode = changed ? HierarchicalMatcher::THRESHOLD : HierarchicalMatcher::EXACT;
-        require(matcher->getThresholds().size() == (changed ? 2u : 1u) && matcher->getMode() == mode,
-                "read: half of the parameters");
+        EXPECT_TRUE(matcher->getThresholds().size() == (changed ? 2u : 1u) && matcher->getMode() == mode)
+                << "half of the parameters";
         const Mat code(1, changed ? 28 : 10, CV_8U, Scalar(0));
         std::vector<DMatch> matches;
         matcher->match(code, code, matches);
-        require(matches.size() == 1, "read: other matches");
+        EXPECT_EQ(1u, matches.size());
     };
     failEachAllocation(
             "read", [&] { matcher->read(fs.root()); }, check);
 }
 
-}  // namespace
-
-void stress::failingAllocations(int)
+TEST(Stress, allocations)
 {
+    const int threads = getNumThreads();
     setNumThreads(1);  // a thread pool's own allocations are not this library's
     describe("compute", IIB::create(), CV_8UC1);
     describe("compute, colour", IIB::create(), CV_8UC3);
@@ -212,4 +213,7 @@ void stress::failingAllocations(int)
     addToMatcher(10);
     addToMatcher(600);
     changeMatcher();
+    setNumThreads(threads);
 }
+
+}  // namespace
