@@ -319,20 +319,10 @@ def mapped_index():
         ['times as fast', '%.1f' % (workers['one_worker_seconds'] / workers['two_workers_seconds'])]])
 
 
-def on_paper():
-    """What 10^9 codes of 64 bytes need, by the time a pair takes one thread here."""
-    pair, = [r['iib_ns'] for r in benchmark(SCALE)['flat']['rows'] if (r['bytes'], r['k'], r['threads']) == (64, 1, 1)]
-    seconds = 500 * pair  # 500 queries x 10^9 codes
-    return table(['10^9 codes of 64 bytes', ''], [
-        ['a folder, and memory of all machines together, GB', '64'],
-        ['exact, an image of 500 codes, one core, s', '%.0f' % seconds],
-        ['on 8 machines of 32 cores, s', '%.1f' % (seconds / 256)]])
-
-
 PAGES = {'README.md': (match_claim, pose_claim, speed_claim, poses),
          'doc/guide.md': (pose_by_rule, presets),
          'doc/performance.md': (describing, matching, small_work),
-         'doc/scale.md': (mapped_index, flat_search, on_paper),
+         'doc/scale.md': (mapped_index, flat_search),
          'doc/results/README.md': (pose_rules, elsewhere, extra_channels, detected_points, fixed_points, turned)}
 
 

@@ -232,6 +232,14 @@ TEST_F(EvaluationTest, mistakes_are_told)
     folder.makeFolder("empty");
     options.roots = {folder.path("empty")};
     EXPECT_NE(std::string::npos, messageOf([&] { evaluate(options); }).find("no image sequences"));
+    folder.makeFolder("broken/set/sequence");
+    for (const char* image : {"1", "2"})
+        folder.write(std::string("broken/set/sequence/") + image + ".png", "no image");
+    options.roots = {folder.path("broken")};
+    testing::internal::CaptureStderr();
+    EXPECT_EQ("none of the 1 image pairs can be read", messageOf([&] { evaluate(options); }));
+    EXPECT_NE(
+            std::string::npos, testing::internal::GetCapturedStderr().find("1.png: not a readable image\n"));
 }
 
 // As createFor and createRecommended make them for users, with the ROS that the preset was learned for.
