@@ -6,7 +6,7 @@
 #define OPENCV_IIB_BOXES_DESCRIBE_HPP
 
 #include "../descriptor/keypoint_batches.hpp"
-#include "../descriptor/regions.hpp"
+#include "../descriptor/rotated_regions.hpp"
 #include "../descriptor/plan.hpp"
 
 namespace cv {

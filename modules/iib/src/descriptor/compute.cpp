@@ -6,6 +6,7 @@
 
 #include "../boxes/describe.hpp"
 #include "../common/image_input.hpp"
+#include "rotated_regions.hpp"
 
 namespace cv {
 namespace iib {

@@ -35,57 +35,64 @@ double largestWeight(const LevelShape& shape, const CellEdges& edges)
     return largestWeight(x, shape.n) * largestWeight(y, shape.n);
 }
 
-//! Whether the largest weighted sum of a level surely fits an int, where no value exceeds `largest` and no cell is longer
-//! than `longest`.
-bool fitsInt(const LevelShape& shape, const CellEdges& edges, double largest, double longest)
+//! The bits of a group of channels of one keypoint, where the values of a pixel of four cells sum up to `largest` at most.
+struct LevelWriter
 {
-    const double area = longest * longest;
-    return largest * area * area <= INT_MAX || largest * area * largestWeight(shape, edges) <= INT_MAX;
-}
+    const DescriptorPlan& plan;
+    const ChannelGroup& group;
+    const CellEdges& edges;
+    const double largest;
+    Workspace& workspace;
+    uchar* const descriptor;
+
+    //! Whether the largest weighted sum of a level surely fits an int, where no cell is longer than `longest`.
+    bool fitsInt(int level, double longest) const
+    {
+        const double sum = largest * longest * longest, area = longest * longest;
+        return sum * area <= INT_MAX || sum * largestWeight(group.levels[level], edges) <= INT_MAX;
+    }
+
+    //! A level and all coarser ones.
+    template <typename Sum> void write(int level, const CellGrid<Sum>& cells, double longest) const
+    {
+        auto& parents = workspace.sumsOf(typename BitsKernels<Sum>::Parent(), level - 1);
+        plan.kernels.bits(Sum()).write[plan.parameters.mapping](
+                cells, group.levels[level], edges, parents, descriptor);
+        if (level > 1)
+            writeFitting(level - 1, parents, 2 * longest);
+    }
+
+    //! The same, in doubles where integers are too small.
+    template <typename Sum> void writeFitting(int level, const CellGrid<Sum>& cells, double longest) const
+    {
+        if (fitsInt(level, longest))
+            return write(level, cells, longest);
+        CellGrid<double>& wide = workspace.sumsOf(double(), level);
+        widen(cells, wide);
+        write(level, wide, longest);
+    }
+    void writeFitting(int level, const CellGrid<double>& cells, double longest) const
+    {
+        write(level, cells, longest);
+    }
+};
 
 }  // namespace
-
-//! The bits of the levels from `finest` on.
-static void writeDoubles(const DescriptorPlan& plan, const ChannelGroup& group, int finest,
-        const CellGrid<double>& cells, const CellEdges& edges, Workspace& workspace, uchar* descriptor)
-{
-    plan.kernels.doubleBits[plan.parameters.mapping].write(
-            cells, group.levels.data(), edges, finest, 1, workspace.doubleSums, descriptor);
-}
-
-template <>
-void writeBits(const DescriptorPlan& plan, const ChannelGroup& group, const CellGrid<double>& cells,
-        const CellEdges& edges, double, int, Workspace& workspace, uchar* descriptor)
-{
-    writeDoubles(plan, group, plan.finest, cells, edges, workspace, descriptor);
-}
 
 template <typename Sum>
 void writeBits(const DescriptorPlan& plan, const ChannelGroup& group, const CellGrid<Sum>& cells,
         const CellEdges& edges, double longestCell, int maxValue, Workspace& workspace, uchar* descriptor)
 {
-    const LevelShape* const shapes = group.levels.data();
-    const int finest = plan.finest;
-    int level = finest;  // the finest that needs doubles; 0 if none does
-    for (double l = longestCell; level > 0 && fitsInt(shapes[level], edges, 4. * maxValue, l); l *= 2)
-        level--;
-    CellGrid<double>& wide = workspace.doubleSums[level];
-    if (level == finest)
-        widen(cells, wide);
-    else
-        plan.kernels.sums(Sum()).bits[plan.parameters.mapping].write(
-                cells, shapes, edges, finest, level + 1, workspace.sums, descriptor);
-    if (level == 0)
-        return;
-    if (level < finest)
-        widen(workspace.sums[level], wide);
-    writeDoubles(plan, group, level, wide, edges, workspace, descriptor);
+    const LevelWriter writer = {plan, group, edges, 4. * maxValue, workspace, descriptor};
+    writer.writeFitting(plan.finest, cells, longestCell);
 }
 
 template void writeBits(const DescriptorPlan&, const ChannelGroup&, const CellGrid<ushort>&, const CellEdges&,
         double, int, Workspace&, uchar*);
 template void writeBits(const DescriptorPlan&, const ChannelGroup&, const CellGrid<unsigned>&,
         const CellEdges&, double, int, Workspace&, uchar*);
+template void writeBits(const DescriptorPlan&, const ChannelGroup&, const CellGrid<double>&, const CellEdges&,
+        double, int, Workspace&, uchar*);
 
 }  // namespace iib
 }  // namespace cv

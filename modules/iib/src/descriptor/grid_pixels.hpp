@@ -8,7 +8,7 @@
 
 #include "channels.hpp"
 #include "keypoint_batches.hpp"
-#include "regions.hpp"
+#include "rotated_regions.hpp"
 #include "plan.hpp"
 
 namespace cv {
@@ -49,11 +49,11 @@ public:
 
     //! @param channels 1 to GROUP_CHANNELS; they, the kernels and the memory outlive the band.
     //! @param rows how many rows, the newest included, a reader looks at.
-    PixelBand(const std::vector<Channel>& channels, Rect area_, int rows, const RowKernels<T>& kernels_,
+    PixelBand(const std::vector<Channel>& channels, Rect area_, int rows, const PixelKernels<T>& kernels,
             ScratchMemory& rowMemory, ScratchMemory& pixelMemory)
-        : channelRows(channels, area_, 0, kernels_, rowMemory), kernels(kernels_), area(area_), kept(rows),
-          capacity(capacityFor(area_, rows)), top(area_.y), done(area_.y), pixelStep(rowStep(area_)),
-          pixels(pixelMemory.get<T>((size_t)pixelStep * capacity * GROUP_CHANNELS))
+        : channelRows(channels, area_, 0, kernels.rows, rowMemory), interleave(kernels.rotated.interleaveRow),
+          area(area_), kept(rows), capacity(capacityFor(area_, rows)), top(area_.y), done(area_.y),
+          pixelStep(rowStep(area_)), pixels(pixelMemory.get<T>((size_t)pixelStep * capacity * GROUP_CHANNELS))
     {
     }
 
@@ -63,7 +63,7 @@ public:
         if (end > top + capacity)
             moveTop(std::max(end - kept, area.y));
         for (; done < end; done++)
-            kernels.interleave(channelRows.compute(done), row(done), area.width);
+            interleave(channelRows.compute(done), row(done), area.width);
     }
 
     //! Pixels at hand, from the first row on, step() pixels from row to row; the first one is at origin() in the image.
@@ -87,7 +87,7 @@ private:
     }
 
     ChannelRows<T> channelRows;
-    const RowKernels<T>& kernels;
+    void (*const interleave)(const T* const planes[GROUP_CHANNELS], T* out, int width);
     const Rect area;
     const int kept, capacity;
     int top, done;  //!< rows of the image at hand: [top, done)
@@ -100,7 +100,7 @@ private:
 template <typename T> class SparsePixels
 {
 public:
-    SparsePixels(const RowKernels<T>& kernels_, ScratchMemory& memory)
+    SparsePixels(const RotatedSampleKernels<T>& kernels_, ScratchMemory& memory)
         : kernels(kernels_), values(memory.get<T>((size_t)(MAX_SAMPLES + ROW_PADDING) * 2 * GROUP_CHANNELS))
     {
     }
@@ -121,7 +121,7 @@ public:
         const T* planes[GROUP_CHANNELS];
         for (int i = 0; i < GROUP_CHANNELS; i++)
             planes[i] = plane(std::min(i, (int)pack.size() - 1));
-        kernels.interleave(planes, plane(GROUP_CHANNELS), count);
+        kernels.interleaveRow(planes, plane(GROUP_CHANNELS), count);
         return plane(GROUP_CHANNELS);
     }
 
@@ -149,7 +149,7 @@ private:
         }
     }
 
-    const RowKernels<T>& kernels;
+    const RotatedSampleKernels<T>& kernels;
     T* const values;
 };
 
@@ -168,15 +168,15 @@ public:
     GridPixels(const DescriptorKernels& all, const std::vector<std::vector<Channel>>& packs_,
             const KeyPointBatch& batch_, int border_, Workspace& workspace)
         : kernels(all.pixels(T())), packs(packs_), batch(batch_), border(border_), count(0),
-          sparsePixels(kernels.rows, workspace.sparsePixels)
+          sparsePixels(kernels.rotated, workspace.sparsePixels)
     {
         const int rows = batch.rows + KeyPointBatch::BAND_ROWS;
         sparse = isSparse(batch, PixelBand<T>::pixelsKept(batch.area, rows));
         if (sparse)
             std::iota(index, index + MAX_SAMPLES, 0);
         for (size_t i = 0; !sparse && i < packs.size(); i++)
-            bands.push_back(PixelBand<T>(packs[i], batch.area, rows, kernels.rows, workspace.sourceRows[i],
-                    workspace.sourcePixels[i]));
+            bands.push_back(PixelBand<T>(
+                    packs[i], batch.area, rows, kernels, workspace.sourceRows[i], workspace.sourcePixels[i]));
     }
 
     //! Moves on to a grid over this region. Regions come in the order of the batch, and each may have several grids.

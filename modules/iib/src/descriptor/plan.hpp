@@ -57,6 +57,8 @@ struct Workspace
     CellGrid<double>& cellsOf(double) { return doubleCells; }
     CellGrid<unsigned> sums[MAX_GRANULARITY];  //!< over the cells of each level but the finest
     CellGrid<double> doubleSums[MAX_GRANULARITY + 1];
+    CellGrid<unsigned>& sumsOf(unsigned, int level) { return sums[level]; }
+    CellGrid<double>& sumsOf(double, int level) { return doubleSums[level]; }
     ScratchMemory boxMeans;
     BoxPlaces boxPlaces;
 };

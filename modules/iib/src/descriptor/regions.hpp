@@ -9,17 +9,6 @@
 namespace cv {
 namespace iib {
 
-/** A keypoint's angle. The functions of the C library differ in the last place from machine to machine, and with it
- samples and bits: here, only doubles are added and multiplied, in one order, after an exact reduction. */
-struct Rotation
-{
-    double cosine, sine;  //!< error below 1e-15
-    int steps;            //!< the angle in ORIENTATION_STEPS a turn
-
-    //! @param degrees clockwise in the image; any finite number.
-    explicit Rotation(float degrees);
-};
-
 //! A bound of the lengths of the n cells in a row of a support region.
 static inline double longestCell(double side, int n) { return std::ceil(side / n); }
 
@@ -101,18 +90,6 @@ inline SupportRegion regionOf(const KeyPoint& keypoint, const Parameters& p)
     const double side = std::max((double)p.scaleFactor * keypoint.size, (double)(1 << p.granularity));
     return SupportRegion(keypoint.pt, side, p.orientation == IIB::ORIENTATION_KEYPOINT ? keypoint.angle : -1);
 }
-
-//! A rotated region is cut to this side, so that the offsets of its points fit 32 bits.
-static constexpr double LARGEST_ROTATED_SIDE = 16384;
-
-//! An upright square that holds the region at any angle, and two pixels for roundings.
-SupportRegion circumscribed(const SupportRegion& region);
-
-//! The pixels of the image that a region may sample at any angle, at least one. @param border one of IIB::Border.
-Rect rotatedPixels(const SupportRegion& region, int border, Size image);
-
-//! Whether no corner of a region rotated by `angle`, and so no sample, lies outside the image.
-bool isInsideRotated(const SupportRegion& region, float angle, Size image);
 
 }  // namespace iib
 }  // namespace cv

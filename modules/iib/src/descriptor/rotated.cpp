@@ -111,7 +111,7 @@ public:
     {
         const int n = plan.cellsInRow(), cell = grid.n / n;
         const CellEdges edges = equalEdges(n, cell);
-        const auto parentSums = plan.kernels.longSums.bits[plan.parameters.mapping].parentSums;
+        const auto parentSums = plan.kernels.longBits.parentSums;
         for (const ChannelGroup& group : plan.groups)
         {
             CellGrid<unsigned>* cells[2] = {&workspace.cells, &workspace.parentCells};

@@ -22,7 +22,7 @@ public:
         : channelRows(channels, area, maxGradient(channels), kernels.pixels(T()).rows, rowMemory),
           ring(area.tl(), rows, ((size_t)area.width + 1 + ROW_PADDING) * GROUP_CHANNELS, GROUP_CHANNELS,
                   ringMemory),
-          width(area.width), sumRow(kernels.sumRow(T(), Sum())), sumCells(kernels.sums(Sum()).cells),
+          width(area.width), sumRow(kernels.sumRow(T(), Sum())), sumCells(kernels.cells(Sum())),
           longestPart((int)std::sqrt(
                   (double)std::numeric_limits<Sum>::max() / maxValue(channels, maxGradient(channels))))
     {
@@ -73,7 +73,7 @@ private:
     RowRing<Sum> ring;
     const int width;
     const SumRowFunc<T, Sum> sumRow;
-    const typename SumKernels<Sum>::CellsFunc sumCells;
+    const CellsFunc<Sum> sumCells;
     const int longestPart;  //!< a Sum holds the sums over as many rows of as many pixels
 };
 

@@ -128,9 +128,9 @@ template <typename Sum> void checkCells(int limit)
             std::sort(y.begin(), y.end());
             x.resize(paddedEdges(n), x[n]);
             CellGrid<Sum> cells;
-            descriptorKernels().sums(Sum()).cells(ring.rows, x.data(), y.data(), n, cells);
+            descriptorKernels().cells(Sum())(ring.rows, x.data(), y.data(), n, cells);
             CellGrid<unsigned> parents;
-            descriptorKernels().sums(Sum()).bits[0].parentSums(cells, parents);
+            descriptorKernels().bits(Sum()).parentSums(cells, parents);
             ring.expectCells(cells, x, y, n);
             for (int r = 0; r < n / 2; r++)
                 for (int c = 0; c < n / 2; c++)
@@ -248,24 +248,32 @@ TEST(IIB_DescriptorKernels, cell_edges)
         }
 }
 
-//! Of all levels of random cells; sums that fit both kinds of kernels.
+//! Of all levels, finest first.
 template <typename Sum>
-std::vector<uchar> writeBits(const BitsKernels<Sum>& kernels, const std::vector<int>& values,
-        const std::vector<LevelShape>& shapes, const CellEdges& edges)
+void writeBits(int mapping, const CellGrid<Sum>& cells, const std::vector<LevelShape>& shapes,
+        const CellEdges& edges, int level, uchar* descriptor)
 {
-    typedef typename BitsKernels<Sum>::Parent Parent;
+    if (level == 0)
+        return;
+    CellGrid<typename BitsKernels<Sum>::Parent> parents;
+    descriptorKernels().bits(Sum()).write[mapping](cells, shapes[level], edges, parents, descriptor);
+    writeBits(mapping, parents, shapes, edges, level - 1, descriptor);
+}
+
+//! Of random cells; sums that fit both kinds of kernels.
+template <typename Sum>
+std::vector<uchar> bitsOf(int mapping, const std::vector<int>& values, const std::vector<LevelShape>& shapes,
+        const CellEdges& edges)
+{
     const int finest = (int)shapes.size() - 1, n = 1 << finest;
     CellGrid<Sum> cells;
-    CellGrid<Parent> sums[MAX_GRANULARITY];
     cells.create(n);
     for (int r = 0, i = 0; r < n; r++)
         for (int c = 0; c < n; c++)
             for (int channel = 0; channel < GROUP_CHANNELS; channel++)
                 cells.cell(r, c)[channel] = (Sum)values[i++];
-    for (int level = 0; level < finest; level++)
-        sums[level].create(1 << level);
     std::vector<uchar> descriptor(1 << 20, 0);
-    kernels.write(cells, shapes.data(), edges, finest, 1, sums, descriptor.data());
+    writeBits(mapping, cells, shapes, edges, finest, descriptor.data());
     return descriptor;
 }
 
@@ -292,11 +300,10 @@ TEST(IIB_DescriptorKernels, all_types_of_sums_give_the_same_bits)
                 std::vector<int> values(n * n * GROUP_CHANNELS);
                 for (int& v : values)
                     v = random.below(8);  // ties are frequent
-                const DescriptorKernels& k = descriptorKernels();
-                const std::vector<uchar> bits = writeBits(k.doubleBits[mapping], values, shapes, edges);
+                const std::vector<uchar> bits = bitsOf<double>(mapping, values, shapes, edges);
                 EXPECT_NE(0, std::count_if(bits.begin(), bits.end(), [](uchar b) { return b != 0; }));
-                EXPECT_EQ(bits, writeBits(k.shortSums.bits[mapping], values, shapes, edges));
-                EXPECT_EQ(bits, writeBits(k.longSums.bits[mapping], values, shapes, edges));
+                EXPECT_EQ(bits, bitsOf<ushort>(mapping, values, shapes, edges));
+                EXPECT_EQ(bits, bitsOf<unsigned>(mapping, values, shapes, edges));
             }
 }
 

@@ -37,7 +37,8 @@ TEST(IIB_Orientation, kernel_for_all_gradients_of_8_bits)
     for (int y = -largest; y <= largest; y++)
     {
         std::fill(gy.begin(), gy.end(), (short)y);
-        cv::iib::descriptorKernels().shortPixels.rows.orientation(gx.data(), gy.data(), steps.data(), width);
+        cv::iib::descriptorKernels().shortPixels.rotated.orientation(
+                gx.data(), gy.data(), steps.data(), width);
         for (int x = 0; x < width; x++)
             ASSERT_EQ(oracle::orientation(gx[x], y), steps[x]) << gx[x] << ", " << y;
     }

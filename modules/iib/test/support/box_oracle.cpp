@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../src/descriptor/regions.hpp"
+#include "../../src/descriptor/rotated_regions.hpp"
 
 namespace oracle {
 

@@ -350,34 +350,17 @@ void writeLevel(const CellGrid<Cell>& cells, const LevelShape& shape, const Cell
             writePhase<Mapping, false>(cells, shape, edges, i, parents, out);
 }
 
-template <typename Mapping, typename Cell, typename Parent>
-void writeLevels(const CellGrid<Cell>& cells, const LevelShape shapes[], const CellEdges& edges, int finest,
-        int coarsest, CellGrid<Parent> sums[], uchar* descriptor)
+//! In the order of IIB::Mapping.
+template <typename Cell> BitsKernels<Cell> bitsKernels()
 {
-    writeLevel<Mapping>(cells, shapes[finest], edges, sums[finest - 1], descriptor);
-    for (int level = finest - 1; level >= coarsest; level--)
-        writeLevel<Mapping>(sums[level], shapes[level], edges, sums[level - 1], descriptor);
-}
-
-template <typename Mapping, typename Cell> BitsKernels<Cell> bitsKernels()
-{
+    typedef typename BitsKernels<Cell>::Parent Parent;
     const BitsKernels<Cell> k = {
-            writeLevels<Mapping, Cell, typename BitsKernels<Cell>::Parent>, parentSums<Cell>};
+            {writeLevel<MeanMapping, Cell, Parent>, writeLevel<ExtremeMapping<true>, Cell, Parent>,
+                    writeLevel<ExtremeMapping<false>, Cell, Parent>,
+                    writeLevel<QuartileMapping, Cell, Parent>, writeLevel<SortMapping, Cell, Parent>,
+                    writeLevel<HaarMapping, Cell, Parent>, writeLevel<PairwiseMapping, Cell, Parent>},
+            parentSums<Cell>};
     return k;
-}
-
-template <typename Cell> BitsKernels<Cell> bitsKernels(int mapping)
-{
-    switch (mapping)
-    {
-    case IIB::MAPPING_MAX: return bitsKernels<ExtremeMapping<true>, Cell>();
-    case IIB::MAPPING_MIN: return bitsKernels<ExtremeMapping<false>, Cell>();
-    case IIB::MAPPING_QUARTILE: return bitsKernels<QuartileMapping, Cell>();
-    case IIB::MAPPING_SORT: return bitsKernels<SortMapping, Cell>();
-    case IIB::MAPPING_HAAR: return bitsKernels<HaarMapping, Cell>();
-    case IIB::MAPPING_PAIRWISE: return bitsKernels<PairwiseMapping, Cell>();
-    default: return bitsKernels<MeanMapping, Cell>();
-    }
 }
 
 }  // namespace

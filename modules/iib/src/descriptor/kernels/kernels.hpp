@@ -50,12 +50,8 @@ template <typename T> struct RowKernels
      @param above if not 0, each value has the one so many places behind its own added, modulo 2^16 or 2^32. */
     void (*imageChannels)(
             const ImageRows<T>& rows, T offset, const ImageChannelRows<T>& out, ptrdiff_t above, int width);
-    //! The orientation alone.
-    void (*orientation)(const T* gx, const T* gy, T* steps, int width);
     void (*widen8u)(const uchar* in, T* out, int width);
     void (*widen16u)(const ushort* in, T* out, int width);
-    //! Four planes side by side.
-    void (*interleave)(const T* const planes[GROUP_CHANNELS], T* out, int width);
 };
 
 template <typename T> struct PixelKernels
@@ -80,28 +76,23 @@ template <typename Sum> struct RingRows
 template <typename T, typename Sum>
 using SumRowFunc = void (*)(const T* const planes[GROUP_CHANNELS], int width, const Sum* above, Sum* out);
 
+//! Sums over n x n cells with the given edges, paddedEdges(n) and n + 1 of them, in pixels of the image.
+template <typename Sum>
+using CellsFunc = void (*)(
+        const RingRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells);
+
 //! For sums in double, all products and parent sums are doubles, else 32-bit integers, which they must fit.
 template <typename Sum> struct BitsKernels
 {
     typedef typename std::conditional<std::is_same<Sum, double>::value, double, unsigned>::type Parent;
 
-    /** Writes the bits of the levels from `finest` down to `coarsest`, in the order of descriptor.hpp.
-     @param cells of the finest one. @param shapes of each level.
-     @param sums of each level: gets those of the coarser ones, down to coarsest - 1. */
-    void (*write)(const CellGrid<Sum>& cells, const LevelShape shapes[], const CellEdges& edges, int finest,
-            int coarsest, CellGrid<Parent> sums[], uchar* descriptor);
+    /** By mapping: write the bits of a level, in the order of descriptor.hpp.
+     @param parents gets the sums over quads, which are the cells of the next coarser level. */
+    void (*write[MAPPINGS])(const CellGrid<Sum>& cells, const LevelShape& shape, const CellEdges& edges,
+            CellGrid<Parent>& parents, uchar* descriptor);
 
     //! The sums alone.
     void (*parentSums)(const CellGrid<Sum>& cells, CellGrid<Parent>& parents);
-};
-
-template <typename Sum> struct SumKernels
-{
-    //! Sums over n x n cells with the given edges, paddedEdges(n) and n + 1 of them, in pixels of the image.
-    typedef void (*CellsFunc)(
-            const RingRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells);
-    CellsFunc cells;
-    BitsKernels<Sum> bits[MAPPINGS];
 };
 
 struct DescriptorKernels
@@ -112,22 +103,27 @@ struct DescriptorKernels
     SumRowFunc<short, ushort> sumShortRow;
     SumRowFunc<short, unsigned> sumLongRow;
     SumRowFunc<int, unsigned> sumIntRow;
-    SumKernels<ushort> shortSums;
-    /** As shortSums.cells, from the sums down the columns, modulo 2^16. Null where it would be slow, as it is for cells
+    CellsFunc<ushort> shortCells;
+    CellsFunc<unsigned> longCells;
+    /** As shortCells, from the sums down the columns, modulo 2^16. Null where it would be slow, as it is for cells
      wider than NARROW_CELL. May read ROW_PADDING values past the end of a row.
      @param channels where in a row each channel has its pixel origin.x. @param n a multiple of 8. */
     void (*columnCells)(const RingRows<short>& rows, const size_t channels[GROUP_CHANNELS], const int* xEdges,
             const int* yEdges, int n, CellGrid<ushort>& cells);
-    SumKernels<unsigned> longSums;
-    BitsKernels<double> doubleBits[MAPPINGS];  //!< where 32-bit integers are too small
+    BitsKernels<ushort> shortBits;
+    BitsKernels<unsigned> longBits;
+    BitsKernels<double> doubleBits;  //!< where 32-bit integers are too small
 
     //! The edges of n x n cells of a square with this top left corner and side, n a power of two, clamped to bounds.
     void (*cellEdges)(Point2d corner, double side, int n, Rect bounds, CellEdges& edges);
 
     const PixelKernels<short>& pixels(short) const { return shortPixels; }
     const PixelKernels<int>& pixels(int) const { return intPixels; }
-    const SumKernels<ushort>& sums(ushort) const { return shortSums; }
-    const SumKernels<unsigned>& sums(unsigned) const { return longSums; }
+    CellsFunc<ushort> cells(ushort) const { return shortCells; }
+    CellsFunc<unsigned> cells(unsigned) const { return longCells; }
+    const BitsKernels<ushort>& bits(ushort) const { return shortBits; }
+    const BitsKernels<unsigned>& bits(unsigned) const { return longBits; }
+    const BitsKernels<double>& bits(double) const { return doubleBits; }
     SumRowFunc<short, ushort> sumRow(short, ushort) const { return sumShortRow; }
     SumRowFunc<short, unsigned> sumRow(short, unsigned) const { return sumLongRow; }
     SumRowFunc<int, unsigned> sumRow(int, unsigned) const { return sumIntRow; }

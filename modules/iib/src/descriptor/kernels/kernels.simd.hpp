@@ -36,15 +36,12 @@ DescriptorKernels makeTable()
     k.sumLongRow = sumRow32;
     k.sumIntRow = sumRowOf16Bit;
     k.cellEdges = cellEdges;
-    k.shortSums.cells = cellSums<ushort>;
+    k.shortCells = cellSums<ushort>;
+    k.longCells = cellSums<unsigned>;
     k.columnCells = columnCells;
-    k.longSums.cells = cellSums<unsigned>;
-    for (int mapping = 0; mapping < MAPPINGS; mapping++)
-    {
-        k.shortSums.bits[mapping] = bitsKernels<ushort>(mapping);
-        k.longSums.bits[mapping] = bitsKernels<unsigned>(mapping);
-        k.doubleBits[mapping] = bitsKernels<double>(mapping);
-    }
+    k.shortBits = bitsKernels<ushort>();
+    k.longBits = bitsKernels<unsigned>();
+    k.doubleBits = bitsKernels<double>();
     return k;
 }
 

@@ -61,6 +61,11 @@ template <typename T> struct RotatedSampleKernels
     //! Four planes as a grid of cells, each with a number added.
     void (*interleave)(const int* const sums[GROUP_CHANNELS], const int addends[GROUP_CHANNELS], int cells,
             CellGrid<unsigned>& grid);
+
+    //! The orientation of gradients. As rows of pixels, these and the next have ROW_PADDING values more than `width`.
+    void (*orientation)(const T* gx, const T* gy, T* steps, int width);
+    //! Four planes of pixels side by side.
+    void (*interleaveRow)(const T* const planes[GROUP_CHANNELS], T* out, int width);
 };
 
 }  // namespace iib

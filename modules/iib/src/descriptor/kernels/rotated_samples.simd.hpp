@@ -4,8 +4,7 @@
 
 #pragma once
 
-#include "../../common/vectors.simd.hpp"
-#include "kernels.hpp"
+#include "rows.simd.hpp"
 
 namespace cv {
 namespace iib {
@@ -246,10 +245,39 @@ void interleaveSums(const int* const sums[GROUP_CHANNELS], const int addends[GRO
             }
 }
 
+template <typename T> void orientationRow(const T* gx, const T* gy, T* steps, int width)
+{
+    typedef decltype(setAll(T())) V;
+    for (int x = 0; x < width; x += VTraits<V>::max_nlanes)
+    {
+        const Gradient<T, V> g(vx_load(gx + x), vx_load(gy + x));
+        v_store(steps + x, g.orientation(g.octant()()));
+    }
+}
+
+inline void storeInterleaved(short* out, const short* const planes[GROUP_CHANNELS], int x)
+{
+    v_store_interleave(out + GROUP_CHANNELS * x, v_load(planes[0] + x), v_load(planes[1] + x),
+            v_load(planes[2] + x), v_load(planes[3] + x));
+}
+
+inline void storeInterleaved(int* out, const int* const planes[GROUP_CHANNELS], int x)
+{
+    for (int half = x; half < x + 8; half += 4)
+        v_store_interleave(out + GROUP_CHANNELS * half, v_load(planes[0] + half), v_load(planes[1] + half),
+                v_load(planes[2] + half), v_load(planes[3] + half));
+}
+
+template <typename T> void interleaveRow(const T* const planes[GROUP_CHANNELS], T* out, int width)
+{
+    for (int x = 0; x < width; x += 8)
+        storeInterleaved(out, planes, x);
+}
+
 template <typename T> RotatedSampleKernels<T> rotatedSampleKernels()
 {
-    const RotatedSampleKernels<T> k = {
-            samplePlaces, sampleIndices, imageSums<T>, gradientVotes, mapSums<T>, interleaveSums};
+    const RotatedSampleKernels<T> k = {samplePlaces, sampleIndices, imageSums<T>, gradientVotes, mapSums<T>,
+            interleaveSums, orientationRow<T>, interleaveRow<T>};
     return k;
 }
 

@@ -127,16 +127,6 @@ template <typename T, typename V> struct Gradient
     }
 };
 
-template <typename T> void orientationRow(const T* gx, const T* gy, T* steps, int width)
-{
-    typedef decltype(setAll(T())) V;
-    for (int x = 0; x < width; x += VTraits<V>::max_nlanes)
-    {
-        const Gradient<T, V> g(vx_load(gx + x), vx_load(gy + x));
-        v_store(steps + x, g.orientation(g.octant()()));
-    }
-}
-
 //! Two vectors at once, so that their divisions overlap.
 template <typename T>
 void imageChannelRows(
@@ -195,25 +185,6 @@ template <typename Pixel, typename T> void widenRow(const Pixel* in, T* out, int
 {
     for (int x = 0; x < width; x++)
         out[x] = (T)in[x];
-}
-
-inline void storeInterleaved(short* out, const short* const planes[GROUP_CHANNELS], int x)
-{
-    v_store_interleave(out + GROUP_CHANNELS * x, v_load(planes[0] + x), v_load(planes[1] + x),
-            v_load(planes[2] + x), v_load(planes[3] + x));
-}
-
-inline void storeInterleaved(int* out, const int* const planes[GROUP_CHANNELS], int x)
-{
-    for (int half = x; half < x + 8; half += 4)
-        v_store_interleave(out + GROUP_CHANNELS * half, v_load(planes[0] + half), v_load(planes[1] + half),
-                v_load(planes[2] + half), v_load(planes[3] + half));
-}
-
-template <typename T> void interleaveRow(const T* const planes[GROUP_CHANNELS], T* out, int width)
-{
-    for (int x = 0; x < width; x += 8)
-        storeInterleaved(out, planes, x);
 }
 
 /* Interleaves four planes; out[0] gets the first pixels. Zipping is cheap only within 128 bits, so that wider vectors are
@@ -366,7 +337,7 @@ void sumRowOf16Bit(const int* const planes[GROUP_CHANNELS], int width, const uns
 
 template <typename T> RowKernels<T> rowKernels()
 {
-    const RowKernels<T> k = {imageChannelRows<T>, orientationRow<T>, widenRow, widenRow, interleaveRow<T>};
+    const RowKernels<T> k = {imageChannelRows<T>, widenRow, widenRow};
     return k;
 }
 
