@@ -19,8 +19,8 @@ public:
     //! @param source gx, gy and intensity of the image; outlives the band, as do the kernels and the memory.
     //! @param area of whole cells. @param rows of pixels, how many, the newest included, a reader looks at.
     CellBand(const std::vector<Channel>& source, Rect area, int rows, const DescriptorKernels& kernels,
-            typename SumCellRowFunc<T, Sum>::Type sumRow_, ScratchMemory& channelMemory,
-            ScratchMemory& planeMemory, ScratchMemory& ringMemory)
+            SumCellRowFunc<T, Sum> sumRow_, ScratchMemory& channelMemory, ScratchMemory& planeMemory,
+            ScratchMemory& ringMemory)
         : channelRows(source, area, 0, kernels.pixels(T()).rows, channelMemory), sumRow(sumRow_),
           width(area.width / BOX_CELL),
           ring(area.tl() / BOX_CELL, std::min(rows / BOX_CELL + 2, area.height / BOX_CELL + 1),
@@ -45,11 +45,7 @@ public:
         });
     }
 
-    BoxIntegral<Sum> integral() const
-    {
-        const RingRows<Sum>& r = ring.rows();
-        return BoxIntegral<Sum>{r.data, (int)r.step, r.count, r.origin};
-    }
+    const RingRows<Sum>& integral() const { return ring.rows(); }
 
     //! The first row of cells whose sums are at hand.
     int oldest() const { return ring.oldest(); }
@@ -66,7 +62,7 @@ private:
     }
 
     ChannelRows<T> channelRows;
-    const typename SumCellRowFunc<T, Sum>::Type sumRow;
+    const SumCellRowFunc<T, Sum> sumRow;
     const int width;  //!< in cells
     RowRing<Sum> ring;
     const size_t planeStep;
@@ -120,32 +116,25 @@ void rotationMatrix(const Rotation& rotation, float matrix[BOX_LANES][BOX_LANES]
     matrix[LANE_INTENSITY][LANE_INTENSITY] = 1;
 }
 
-template <typename Sum, typename Mean> const BoxSumKernels<Sum, Mean>& sumsOf(const BoxKernels& kernels);
-template <> const BoxSumKernels<unsigned, short>& sumsOf(const BoxKernels& kernels)
-{
-    return kernels.shortSums;
-}
-template <> const BoxSumKernels<int64, int>& sumsOf(const BoxKernels& kernels) { return kernels.longSums; }
-
 //! Cells along the side of a rotated keypoint's box, at least one.
 double cellsInSide(double side, const BoxPlan::Level& level)
 {
     return std::max(std::floor(side / BOX_CELL * level.side + 0.5), 1.);
 }
 
-template <typename T, typename Sum, typename Mean>
+template <typename T, typename Sum>
 void describeBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch, bool rotated,
         const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels,
-        typename SumCellRowFunc<T, Sum>::Type sumRow, Workspace& workspace, Mat& descriptors)
+        SumCellRowFunc<T, Sum> sumRow, Workspace& workspace, Mat& descriptors)
 {
     const BoxKernels& kernels = plan.boxKernels;
-    const BoxSumKernels<Sum, Mean>& sums = sumsOf<Sum, Mean>(kernels);
+    const BoxSumKernels<Sum>& sums = kernels.sums(Sum());
     const std::vector<Channel> source = {{IIB::CHANNEL_SIGNED_GRAD_X, grey},
             {IIB::CHANNEL_SIGNED_GRAD_Y, grey}, {IIB::CHANNEL_INTENSITY, grey}};
     CellBand<T, Sum> band(source, batch.area, batch.rows + KeyPointBatch::BAND_ROWS, plan.kernels, sumRow,
             workspace.channelRows, workspace.planes, workspace.ring);
-    const BoxIntegral<Sum>& integral = band.integral();
-    Mean* const means = workspace.boxMeans.get<Mean>(MAX_BOX_MEANS);
+    const RingRows<Sum>& integral = band.integral();
+    auto* const means = workspace.boxMeans.get<typename BoxSumKernels<Sum>::Mean>(MAX_BOX_MEANS);
     BoxFrame frame;
     frame.bounds = cellsOf(boundsOf(plan.parameters.border, grey.size()));
     frame.origin = integral.origin;
@@ -172,7 +161,7 @@ void describeBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBa
             {
                 kernels.places(frame, level.shape, level.centres.data(),
                         Point2d(rotation.cosine, rotation.sine), cellsInSide(region.side, level),
-                        integral.step / BOX_LANES, workspace.boxPlaces);
+                        (int)integral.step / BOX_LANES, workspace.boxPlaces);
                 sums.rotatedMeans(integral, level.shape, workspace.boxPlaces, matrix, means);
             }
             else
@@ -208,13 +197,13 @@ void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBa
 {
     const BoxKernels& k = plan.boxKernels;
     if (grey.depth() == CV_16U)
-        describeBatch<int, int64, int>(
+        describeBatch<int>(
                 plan, grey, batch, rotated, regions, pixels, k.sumIntRow[rotated], workspace, descriptors);
     else if (sumsAreShort(plan.boxes, batch, regions))
-        describeBatch<short, unsigned, short>(
+        describeBatch<short>(
                 plan, grey, batch, rotated, regions, pixels, k.sumShortRow[rotated], workspace, descriptors);
     else
-        describeBatch<short, int64, int>(
+        describeBatch<short>(
                 plan, grey, batch, rotated, regions, pixels, k.sumLongRow[rotated], workspace, descriptors);
 }
 

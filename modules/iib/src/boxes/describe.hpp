@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_BOXES_DESCRIBE_HPP
-#define OPENCV_IIB_BOXES_DESCRIBE_HPP
+#pragma once
 
 #include "../descriptor/keypoint_batches.hpp"
 #include "../descriptor/rotated_regions.hpp"
@@ -30,5 +29,3 @@ void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBa
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_BOXES_GRIDS_HPP
-#define OPENCV_IIB_BOXES_GRIDS_HPP
+#pragma once
 
 #include "../precomp.hpp"
 
@@ -53,5 +52,3 @@ inline int boxMask(int kind, int level, int row, int col)
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_BOXES_PLAN_HPP
-#define OPENCV_IIB_BOXES_PLAN_HPP
+#pragma once
 
 #include "../descriptor/parameters.hpp"
 #include "grids.hpp"
@@ -35,5 +34,3 @@ BoxPlan makeBoxPlan(const Parameters& checked);
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

@@ -11,6 +11,10 @@
 namespace cv {
 namespace iib {
 
+/** The maps that users pass beside the image. Throws unless there are `expected` single-channel maps of the image's size,
+ 8U, 16U or 32F and finite. */
+std::vector<Mat> extraMaps(InputArrayOfArrays arrays, int expected, Size imageSize);
+
 //! Whether the keypoint's support region, upright or rotated, lies inside the image.
 bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image);
 

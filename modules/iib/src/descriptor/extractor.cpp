@@ -6,7 +6,6 @@
 #include "../common/file_numbers.hpp"
 #include "../common/image_input.hpp"
 #include "compute.hpp"
-#include "regions.hpp"
 
 #include "opencv2/core/utils/trace.hpp"
 
@@ -146,13 +145,6 @@ void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArr
     CV_TRACE_FUNCTION();
 
     const Mat image = imageArray.getMat();
-    std::vector<Mat> extra;
-    if (extraArrays.isMat() || extraArrays.isUMat())
-        extra.push_back(extraArrays.getMat());  // not its rows
-    else if (!extraArrays.empty())
-        extraArrays.getMatVector(extra);
-    if (plan->parameters.extraChannels == 1)
-        joinRows(extra, image.size());
     checkKeyPoints(keypoints);
     if (image.empty())
     {
@@ -160,7 +152,7 @@ void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArr
         return;
     }
     checkImage(image);
-    checkExtraChannels(extra, plan->parameters.extraChannels, image.size());
+    const std::vector<Mat> extra = extraMaps(extraArrays, plan->parameters.extraChannels, image.size());
 
     if (plan->parameters.border == BORDER_DROP)
         keypoints.erase(std::remove_if(keypoints.begin(), keypoints.end(),

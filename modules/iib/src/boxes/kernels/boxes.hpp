@@ -2,16 +2,15 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_BOXES_KERNELS_BOXES_HPP
-#define OPENCV_IIB_BOXES_KERNELS_BOXES_HPP
+#pragma once
 
-#include "../../descriptor/kernels/quads.hpp"
+#include "../../descriptor/kernels/kernels.hpp"
 
 namespace cv {
 namespace iib {
 
 /* MAPPING_BOXES: means over boxes on overlapping grids, from an integral image over cells of BOX_CELL x BOX_CELL pixels
- with BOX_LANES values side by side, so that one vector (or two) holds a corner of a box in all channels. */
+ with BOX_LANES values side by side, so that one vector (or two) holds a corner of a box in all channels. RingRows of it count rows and columns in cells. */
 
 //! What is summed of upright regions, and compared of all.
 enum BoxLane
@@ -62,15 +61,6 @@ struct BoxGridShape
 
 static constexpr int MAX_BOX_COMPARISONS = 4 * MAX_BOXES_IN_ROW * MAX_BOX_STRIDE;
 
-//! Integral image over cells: as IntegralRows, with BOX_LANES values a cell and rows and columns counted in cells.
-template <typename Sum> struct BoxIntegral
-{
-    const Sum* data;
-    int step;      //!< values from row to row
-    int count;     //!< rows in the ring; (y - origin.y) % count has the sums above row y
-    Point origin;  //!< the first cell of a row
-};
-
 static constexpr int MAX_BOX_PLACES = 32;  //!< of boxes along an axis, in all grids
 
 //! Where boxes begin and end in all grids of a keypoint; the products of weights are those of boxes.
@@ -102,21 +92,22 @@ struct BoxPlaces
     float weight[CAPACITY];
 };
 
-template <typename T, typename Sum> struct SumCellRowFunc
-{
-    /** A row of the integral image from two rows of pixels: out = above + sums along the row; both begin left of the
-     first cell. @param rows ROW_PADDING values longer than the cells. */
-    typedef void (*Type)(const T* const rows[BOX_CELL][BOX_PLANES], int cells, const Sum* above, Sum* out);
-};
+/** A row of the integral image from two rows of pixels: out = above + sums along the row; both begin left of the
+ first cell. @param rows ROW_PADDING values longer than the cells. */
+template <typename T, typename Sum>
+using SumCellRowFunc = void (*)(
+        const T* const rows[BOX_CELL][BOX_PLANES], int cells, const Sum* above, Sum* out);
 
-//! A Mean is short if those of 8-bit images are looked for in a Sum of 32 bits, else int.
-template <typename Sum, typename Mean> struct BoxSumKernels
+//! Means of 8-bit images that are looked for in sums of 32 bits are short.
+template <typename Sum> struct BoxSumKernels
 {
+    typedef typename std::conditional<std::is_same<Sum, unsigned>::value, short, int>::type Mean;
+
     void (*means)(
-            const BoxIntegral<Sum>& integral, const BoxGridShape& grid, const BoxEdges& edges, Mean* means);
+            const RingRows<Sum>& integral, const BoxGridShape& grid, const BoxEdges& edges, Mean* means);
 
     //! mean = sum over j of matrix[j] * (box's sums * weight)[j], without the last lane.
-    void (*rotatedMeans)(const BoxIntegral<Sum>& integral, const BoxGridShape& grid, const BoxPlaces& places,
+    void (*rotatedMeans)(const RingRows<Sum>& integral, const BoxGridShape& grid, const BoxPlaces& places,
             const float matrix[BOX_LANES][BOX_LANES], Mean* means);
 
     //! BoxGridShape::comparisonBytes() of them, of which the chosen ones are written.
@@ -127,11 +118,13 @@ template <typename Sum, typename Mean> struct BoxSumKernels
 struct BoxKernels
 {
     //! Of upright and of rotated regions.
-    SumCellRowFunc<short, unsigned>::Type sumShortRow[2];
-    SumCellRowFunc<short, int64>::Type sumLongRow[2];
-    SumCellRowFunc<int, int64>::Type sumIntRow[2];
-    BoxSumKernels<unsigned, short> shortSums;
-    BoxSumKernels<int64, int> longSums;
+    SumCellRowFunc<short, unsigned> sumShortRow[2];
+    SumCellRowFunc<short, int64> sumLongRow[2];
+    SumCellRowFunc<int, int64> sumIntRow[2];
+    BoxSumKernels<unsigned> shortSums;
+    BoxSumKernels<int64> longSums;
+    const BoxSumKernels<unsigned>& sums(unsigned) const { return shortSums; }
+    const BoxSumKernels<int64>& sums(int64) const { return longSums; }
 
     //! @param offsets of begins and ends from the region's centre, in its sides.
     void (*edges)(const BoxFrame& frame, const double (&offsets)[2][MAX_BOX_PLACES], BoxEdges& edges);
@@ -146,5 +139,3 @@ const BoxKernels& boxKernels();
 
 }  // namespace iib
 }  // namespace cv
-
-#endif

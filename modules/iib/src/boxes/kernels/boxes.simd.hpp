@@ -5,8 +5,7 @@
 #include "boxes.hpp"
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-#include "../../common/vectors.simd.hpp"
-#include "../../descriptor/kernels/bits_planes.simd.hpp"
+#include "../../descriptor/kernels/chosen_bits.simd.hpp"
 #endif
 
 namespace cv {
@@ -91,20 +90,13 @@ inline void storeCells(const v_uint32 pairs[BOX_LANES / 2], short* out)
     }
 }
 
-enum
-{
-    SAMPLE_LANES = VTraits<v_samples>::max_nlanes,
-    LANE_VECTORS = BOX_LANES / SAMPLE_LANES
-};
+constexpr int SAMPLE_LANES = VTraits<v_samples>::max_nlanes, LANE_VECTORS = BOX_LANES / SAMPLE_LANES;
 
 template <bool ROTATED>
 void sumCellRow(
         const short* const rows[BOX_CELL][BOX_PLANES], int cells, const unsigned* above, unsigned* out)
 {
-    enum
-    {
-        CELLS = VTraits<v_int16>::max_nlanes / BOX_CELL
-    };
+    constexpr int CELLS = VTraits<v_int16>::max_nlanes / BOX_CELL;
     short CV_DECL_ALIGNED(CACHE_LINE) values[CELLS * BOX_LANES];
     v_samples sums[LANE_VECTORS];
     for (v_samples& sum : sums)
@@ -137,7 +129,7 @@ void sumCellRow(
             pairs[3] = pairSums(gx, vx_setzero_s16());
         }
         storeCells(pairs, values);
-        const int count = std::min((int)CELLS, cells - first);
+        const int count = std::min(CELLS, cells - first);
         for (int c = 0; c < count; c++)
         {
             const int at = BOX_LANES * (first + c + 1);
@@ -250,7 +242,7 @@ inline void storeMeans(short* out, const v_means& m) { v_pack_store(out, nearest
 inline void storeMeans(int* out, const v_means& m) { v_store(out, nearestInt(m)); }
 
 template <typename Sum, typename Mean>
-void boxMeans(const BoxIntegral<Sum>& integral, const BoxGridShape& grid, const BoxEdges& edges, Mean* means)
+void boxMeans(const RingRows<Sum>& integral, const BoxGridShape& grid, const BoxEdges& edges, Mean* means)
 {
     const int n = grid.n, first = grid.first;
     const int *const left = edges.x[0] + first, *const right = edges.x[1] + first;
@@ -269,7 +261,7 @@ void boxMeans(const BoxIntegral<Sum>& integral, const BoxGridShape& grid, const 
 }
 
 template <typename Sum, typename Mean>
-void rotatedBoxMeans(const BoxIntegral<Sum>& integral, const BoxGridShape& grid, const BoxPlaces& places,
+void rotatedBoxMeans(const RingRows<Sum>& integral, const BoxGridShape& grid, const BoxPlaces& places,
         const float matrix[BOX_LANES][BOX_LANES], Mean* means)
 {
     float sums[BOX_LANES];
@@ -319,10 +311,7 @@ const short NEXT_IS_PARTNER[BOXES_TOGETHER * BOX_LANES] = {-1, 0, -1, 0, 0, 0, 0
 
 void compareBoxes(const short* means, const BoxGridShape& grid, uchar* out)
 {
-    enum
-    {
-        LANES = VTraits<v_int16>::max_nlanes
-    };
+    constexpr int LANES = VTraits<v_int16>::max_nlanes;
     const int bytes = grid.quadBytes(), below = grid.stride() * BOX_LANES;
     for (int row = 0; row + 1 < grid.n; row++, out += 3 * bytes)
     {
@@ -393,9 +382,10 @@ void boxBits(
     appendChosen(chosen, comparisons, writer);
 }
 
-template <typename Sum, typename Mean> BoxSumKernels<Sum, Mean> boxSumKernels()
+template <typename Sum> BoxSumKernels<Sum> boxSumKernels()
 {
-    const BoxSumKernels<Sum, Mean> k = {boxMeans<Sum, Mean>, rotatedBoxMeans<Sum, Mean>, boxBits<Mean>};
+    typedef typename BoxSumKernels<Sum>::Mean Mean;
+    const BoxSumKernels<Sum> k = {boxMeans<Sum, Mean>, rotatedBoxMeans<Sum, Mean>, boxBits<Mean>};
     return k;
 }
 
@@ -405,8 +395,8 @@ const BoxKernels& boxKernels()
 {
     static const BoxKernels table = {{sumCellRow<false>, sumCellRow<true>},
             {sumLongCellRow<short, false>, sumLongCellRow<short, true>},
-            {sumLongCellRow<int, false>, sumLongCellRow<int, true>}, boxSumKernels<unsigned, short>(),
-            boxSumKernels<int64, int>(), boxEdges, boxPlaces};
+            {sumLongCellRow<int, false>, sumLongCellRow<int, true>}, boxSumKernels<unsigned>(),
+            boxSumKernels<int64>(), boxEdges, boxPlaces};
     return table;
 }
 

@@ -5,37 +5,12 @@
 #pragma once
 
 #include "bits_planes.simd.hpp"
+#include "chosen_bits.simd.hpp"
+#include "doubles.simd.hpp"
 #include "kernels.hpp"
 #include "mappings.hpp"
 
 namespace cv {
-
-CV_CPU_OPTIMIZATION_HAL_NAMESPACE_BEGIN
-
-/* Doubles, or one of them where there are no such vectors (ARMv7, WebAssembly). */
-#if CV_SIMD_64F
-typedef v_float64 v_doubles;
-
-inline v_doubles loadDoubles(const double* p) { return vx_load(p); }
-inline v_doubles repeatedDouble(double v) { return vx_setall_f64(v); }
-#else
-typedef double v_doubles;
-
-template <> struct VTraits<double>
-{
-    static constexpr int max_nlanes = 1;
-};
-inline double loadDoubles(const double* p) { return *p; }
-inline double repeatedDouble(double v) { return v; }
-inline void v_store(double* p, double v) { *p = v; }
-inline double v_min(double a, double b) { return std::min(a, b); }
-inline double v_max(double a, double b) { return std::max(a, b); }
-//! As if a comparison gave a lane of all ones or zeros.
-inline int v_signmask(bool comparison) { return comparison; }
-#endif
-
-CV_CPU_OPTIMIZATION_HAL_NAMESPACE_END
-
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
@@ -59,16 +34,6 @@ inline void storeAlternately(unsigned* even, unsigned* odd, int lane, const v_in
 #endif
 }
 
-inline void storeAlternately(double* even, double* odd, int lane, const v_doubles& v)
-{
-#if CV_AVX512_SKX
-    v_store_low(even + lane / 2, v);
-    v_store_high(odd + lane / 2, v);
-#else
-    v_store((lane % 8 < 4 ? even : odd) + lane / 8 * 4 + lane % 4, v);
-#endif
-}
-
 /* Four numbers, each repeated four times, as 16 / v_int32 lanes vectors. Not by way of memory, where what was stored in
  parts could not be read whole until all stores before it are done. */
 inline void repeatEachFourTimes(const v_int32x4& n, v_int32 out[])
@@ -88,18 +53,10 @@ inline void repeatEachFourTimes(const v_int32x4& n, v_int32 out[])
 #endif
 }
 
-//! A chunk in vectors V.
-template <typename V> struct Chunk
-{
-    static constexpr int LANES = VTraits<V>::max_nlanes, VECTORS = CHUNK / LANES;
-};
-
 inline v_int32 loadCells(const ushort* p) { return v_reinterpret_as_s32(vx_load_expand(p)); }
 inline v_int32 loadCells(const unsigned* p) { return v_reinterpret_as_s32(vx_load(p)); }
-inline v_doubles loadCells(const double* p) { return loadDoubles(p); }
 
 inline v_int32 repeated(int v, const v_int32&) { return vx_setall_s32(v); }
-inline v_doubles repeated(int v, const v_doubles&) { return repeatedDouble(v); }
 
 //! A vector whose comparisons are bits, a bit a lane.
 template <typename V> struct Lanes
@@ -203,9 +160,6 @@ private:
     const size_t step;
 };
 
-//! Weights of a chunk of quads along a row.
-template <typename V> struct ColumnWeights;
-
 template <> struct ColumnWeights<v_int32>
 {
     v_int32 left[Chunk<v_int32>::VECTORS], right[Chunk<v_int32>::VECTORS];
@@ -221,27 +175,6 @@ template <> struct ColumnWeights<v_int32>
         const v_int32x4 lefts = middle - begin, rights = end - middle, same = lefts == rights;
         repeatEachFourTimes(v_select(same, v_setall_s32(1), rights), left);
         repeatEachFourTimes(v_select(same, v_setall_s32(1), lefts), right);
-    }
-};
-
-template <> struct ColumnWeights<v_doubles>
-{
-    v_doubles left[Chunk<v_doubles>::VECTORS], right[Chunk<v_doubles>::VECTORS];
-
-    ColumnWeights(const Axis& axis, int x)
-    {
-        double lefts[CHUNK], rights[CHUNK];
-        for (int lane = 0; lane < CHUNK; lane++)
-        {
-            const Weights weights(axis, x + lane / GROUP_CHANNELS * 2);
-            lefts[lane] = weights.first;
-            rights[lane] = weights.second;
-        }
-        for (int i = 0; i < Chunk<v_doubles>::VECTORS; i++)
-        {
-            left[i] = loadDoubles(lefts + i * Chunk<v_doubles>::LANES);
-            right[i] = loadDoubles(rights + i * Chunk<v_doubles>::LANES);
-        }
     }
 };
 
@@ -267,49 +200,41 @@ void parentSums(const CellGrid<Cell>& cells, CellGrid<typename BitsKernels<Cell>
     }
 }
 
-//! Compares the first `lanes` of a chunk of quads and all those below it. WITH_PARENTS also stores the sums over quads.
-template <typename Mapping, bool WITH_PARENTS, typename Cell, typename V, typename Parent, typename Out>
-inline void compareColumns(QuadRows<Cell> quads, const ColumnWeights<V>& columns, const int* edges, int step,
-        int rows, int lanes, ParentRows<Parent> sums, Out out)
-{
-    for (int r = 0; r < rows; r++)
-    {
-        const Weights heights(edges[step] - edges[0], edges[2 * step] - edges[step]);
-        edges += 2 * step;
-        unsigned chunk[Mapping::BITS] = {};
-        for (int i = 0; i < Chunk<V>::VECTORS && i * Chunk<V>::LANES < lanes; i++)
-        {
-            V x[4], weights[] = {columns.left[i], columns.right[i], columns.left[i], columns.right[i]};
-            quads.load(i * Chunk<V>::LANES, x);
-            if (WITH_PARENTS)
-                sums.store(i * Chunk<V>::LANES, x);
-            if (!heights.equal())  // the columns of a chunk are seldom equally long, the two rows often
-                for (int k = 0; k < 4; k++)
-                    weights[k] = weights[k] * repeated(k < 2 ? heights.first : heights.second, V());
-            const Lanes<V> weighted[4] = {
-                    x[0] * weights[0], x[1] * weights[1], x[2] * weights[2], x[3] * weights[3]};
-            const Put put = {chunk, i * Chunk<V>::LANES};
-            Mapping::map(weighted, put);
-        }
-        out.template storeRow<Mapping::BITS>(chunk);
-        quads.next();
-        sums.next();
-    }
-}
-
-//! Compares all quads of a phase.
+//! Compares all quads of a phase, a chunk and those below it at a time. WITH_PARENTS also stores the sums over quads.
 template <typename Mapping, bool WITH_PARENTS, typename Cell, typename Parent, typename Out>
 void compareQuads(const CellGrid<Cell>& cells, const LevelShape& shape, const CellEdges& edges,
         const QuadPhase& phase, CellGrid<Parent>& parents, Out out)
 {
+    typedef typename QuadRows<Cell>::V V;
     const Axis x = {edges.x, shape.step};
-    const int* const rowEdges = edges.y + phase.dy * shape.step;
     for (int first = 0; first < phase.lanes(); first += CHUNK, out.nextChunk())
     {
-        const ColumnWeights<typename QuadRows<Cell>::V> columns(x, phase.dx + first / 2);
-        compareColumns<Mapping, WITH_PARENTS>(QuadRows<Cell>(cells, phase.dy, phase.dx, first), columns,
-                rowEdges, shape.step, phase.rows, phase.lanes() - first, ParentRows<Parent>(parents, first),
-                out);
+        const ColumnWeights<V> columns(x, phase.dx + first / 2);
+        QuadRows<Cell> quads(cells, phase.dy, phase.dx, first);
+        ParentRows<Parent> sums(parents, first);
+        Out rows = out;
+        const int* y = edges.y + phase.dy * shape.step;
+        for (int r = 0; r < phase.rows; r++, y += 2 * shape.step, quads.next(), sums.next())
+        {
+            const Weights heights(y[shape.step] - y[0], y[2 * shape.step] - y[shape.step]);
+            unsigned chunk[Mapping::BITS] = {};
+            for (int lane = 0; lane < std::min(phase.lanes() - first, CHUNK); lane += Chunk<V>::LANES)
+            {
+                const int i = lane / Chunk<V>::LANES;
+                V x[4], weights[] = {columns.left[i], columns.right[i], columns.left[i], columns.right[i]};
+                quads.load(lane, x);
+                if (WITH_PARENTS)
+                    sums.store(lane, x);
+                if (!heights.equal())  // the columns of a chunk are seldom equally long, the two rows often
+                    for (int k = 0; k < 4; k++)
+                        weights[k] = weights[k] * repeated(k < 2 ? heights.first : heights.second, V());
+                const Lanes<V> weighted[4] = {
+                        x[0] * weights[0], x[1] * weights[1], x[2] * weights[2], x[3] * weights[3]};
+                const Put put = {chunk, lane};
+                Mapping::map(weighted, put);
+            }
+            rows.template storeRow<Mapping::BITS>(chunk);
+        }
     }
 }
 

@@ -9,8 +9,8 @@
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "bits.simd.hpp"
 #include "columns.simd.hpp"
+#include "long_rows.simd.hpp"
 #include "rotated_samples.simd.hpp"
-#include "rows.simd.hpp"
 #endif
 
 namespace cv {

@@ -6,6 +6,7 @@
 
 #include "../../common/aligned_buffer.hpp"
 #include "../../common/bit_io.hpp"
+#include "chosen_bits.hpp"
 
 namespace cv {
 namespace iib {
@@ -77,30 +78,6 @@ struct QuadPhase
 
     int lanes() const { return quads * GROUP_CHANNELS; }
     int planeBytes() const { return (lanes() + CHUNK - 1) / CHUNK * (CHUNK / 8); }
-};
-
-//! The chosen bits of a phase (paper, "Reduction of the IIB Descriptor Size"), in their order.
-class ChosenBits
-{
-public:
-    //! Some that lie in SIZE bytes of comparisons.
-    struct Group
-    {
-        static constexpr int SIZE = 16;
-        size_t byte;         //!< the first of those bytes
-        int count;           //!< bits, up to SIZE
-        uchar places[SIZE];  //!< bytes of the bits, counted from the first; 128 if there is no bit
-        uchar masks[SIZE];   //!< the bits in their bytes; 1 if there is none
-    };
-
-    //! @param masks a bit for each comparison of the phase, where the comparison lies in memory.
-    explicit ChosenBits(const std::vector<uint64>& masks);
-
-    bool none() const { return chosen.empty(); }
-    const std::vector<Group>& groups() const { return chosen; }
-
-private:
-    std::vector<Group> chosen;
 };
 
 //! What the parameters say about a level, for one group of channels.

@@ -70,34 +70,8 @@ inline v_samples multiplySamples(const v_samples& v, const v_samples& factor, sh
 }
 inline v_samples multiplySamples(const v_samples& v, const v_samples& factor, int) { return v * factor; }
 
-//! Writes points as indices of pixels in a window.
-struct IndexWriter
-{
-    const v_samples originX, originY, step;
-    int* out;
-
-    void operator()(const v_samples& x, const v_samples& y)
-    {
-        v_store(out, (y - originY) * step + (x - originX));
-        out += VTraits<v_samples>::max_nlanes;
-    }
-};
-
-struct PlaceWriter
-{
-    int *x, *y;
-
-    void operator()(const v_samples& newX, const v_samples& newY)
-    {
-        v_store(x, newX);
-        v_store(y, newY);
-        x += VTraits<v_samples>::max_nlanes;
-        y += VTraits<v_samples>::max_nlanes;
-    }
-};
-
 //! Brings a coordinate into [0, last], by reflection or clamping.
-template <bool reflect> inline v_samples inside(const v_samples& place, const v_samples& last)
+inline v_samples inside(const v_samples& place, const v_samples& last, bool reflect)
 {
     const v_samples zero = v_setall_samples(0);
     if (!reflect)
@@ -106,7 +80,8 @@ template <bool reflect> inline v_samples inside(const v_samples& place, const v_
     return v_max(v_min(folded, last + last - folded), zero);
 }
 
-template <bool reflect, typename Writer> void visitPointsInside(const SampleGrid& g, Writer write)
+//! Calls write(x, y) with the pixels of one vector of points after another.
+template <typename Writer> void visitPoints(const SampleGrid& g, Writer write)
 {
     const int n = g.n, cells = g.cells(), lanes = VTraits<v_samples>::max_nlanes;
     const v_samples centreX = v_setall_samples(g.x), centreY = v_setall_samples(g.y);
@@ -132,30 +107,29 @@ template <bool reflect, typename Writer> void visitPointsInside(const SampleGrid
                 {
                     const v_samples x = centreX + ((v_load_samples(alongX + i) + downX) >> 17);
                     const v_samples y = centreY + ((v_load_samples(alongY + i) + downY) >> 17);
-                    write(inside<reflect>(x, right), inside<reflect>(y, bottom));
+                    write(inside(x, right, g.reflect), inside(y, bottom, g.reflect));
                 }
             }
 }
 
-template <typename Writer> void visitPoints(const SampleGrid& grid, Writer write)
-{
-    if (grid.reflect)
-        visitPointsInside<true>(grid, write);
-    else
-        visitPointsInside<false>(grid, write);
-}
-
 void samplePlaces(const SampleGrid& grid, int* x, int* y)
 {
-    const PlaceWriter writer = {x, y};
-    visitPoints(grid, writer);
+    visitPoints(grid, [=](const v_samples& newX, const v_samples& newY) mutable {
+        v_store(x, newX);
+        v_store(y, newY);
+        x += VTraits<v_samples>::max_nlanes;
+        y += VTraits<v_samples>::max_nlanes;
+    });
 }
 
 void sampleIndices(const SampleGrid& grid, Point origin, int step, int* index)
 {
-    const IndexWriter writer = {
-            v_setall_samples(origin.x), v_setall_samples(origin.y), v_setall_samples(step), index};
-    visitPoints(grid, writer);
+    const v_samples left = v_setall_samples(origin.x), top = v_setall_samples(origin.y),
+                    down = v_setall_samples(step);
+    visitPoints(grid, [=](const v_samples& x, const v_samples& y) mutable {
+        v_store(index, (y - top) * down + (x - left));
+        index += VTraits<v_samples>::max_nlanes;
+    });
 }
 
 template <typename T>

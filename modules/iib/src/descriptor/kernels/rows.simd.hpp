@@ -15,25 +15,17 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
 //! `whole` - v where a < b, else v.
-inline v_int16 subtractWhereLess(const v_int16& a, const v_int16& b, const v_int16& whole, const v_int16& v)
+template <typename V> inline V subtractWhereLess(const V& a, const V& b, const V& whole, const V& v)
 {
-#if CV_AVX512_SKX
-    return v_int16(_mm512_mask_sub_epi16(v.val, _mm512_cmplt_epi16_mask(a.val, b.val), whole.val, v.val));
-#else
-    const v_int16 mask = a < b;  // v ^ -1 is -v - 1
-    return (v ^ mask) + (mask & (whole + vx_setall_s16(1)));
-#endif
+    return v_select(a < b, whole - v, v);
 }
 
-inline v_int32 subtractWhereLess(const v_int32& a, const v_int32& b, const v_int32& whole, const v_int32& v)
+#if CV_AVX512_SKX  // the above turns its masks into vectors and back
+inline v_int16 subtractWhereLess(const v_int16& a, const v_int16& b, const v_int16& whole, const v_int16& v)
 {
-#if CV_AVX512_SKX
-    return v_int32(_mm512_mask_sub_epi32(v.val, _mm512_cmplt_epi32_mask(a.val, b.val), whole.val, v.val));
-#else
-    const v_int32 mask = a < b;  // v ^ -1 is -v - 1
-    return (v ^ mask) + (mask & (whole + vx_setall_s32(1)));
-#endif
+    return v_int16(_mm512_mask_sub_epi16(v.val, _mm512_cmplt_epi16_mask(a.val, b.val), whole.val, v.val));
 }
+#endif
 
 inline v_int16 addModulo(const v_int16& a, const v_int16& b) { return v_add_wrap(a, b); }
 inline v_int32 addModulo(const v_int32& a, const v_int32& b) { return a + b; }
@@ -256,17 +248,6 @@ inline v_uint16 repeatLastFour(const v_uint16& v)
 #endif
 }
 
-inline v_uint32 repeatLastFour(const v_uint32& v)
-{
-#if CV_AVX512_SKX
-    return v_uint32(_mm512_shuffle_i32x4(v.val, v.val, 0xff));
-#elif CV_AVX2
-    return v_uint32(_mm256_permute2x128_si256(v.val, v.val, 0x11));
-#else
-    return v;
-#endif
-}
-
 //! Running sums within each four pixels of a plane, from pixel x on.
 inline v_uint16 loadSums(const short* plane, int x)
 {
@@ -297,41 +278,6 @@ void sumRow16(const short* const planes[GROUP_CHANNELS], int width, const ushort
             if ((i + 1) * pixelsInVector % 4 == 0)
                 carry = repeatLastFour(sums);
         }
-    }
-}
-
-void sumRow32(const short* const planes[GROUP_CHANNELS], int width, const unsigned* above, unsigned* out)
-{
-    const int step = VTraits<v_uint16>::max_nlanes, pixelsInVector = step / GROUP_CHANNELS / 2;
-    v_uint32 carry = vx_setzero_u32();
-    for (int x = 0; x < width; x += step)
-    {
-        v_uint16 pixels[4];
-        interleave(planes, x, pixels);
-        for (int i = 0; i < 8; i += 2)
-        {
-            v_uint32 sums[2];
-            v_expand(pixels[i / 2], sums[0], sums[1]);
-            for (int j = 0; j < 2; j++)
-            {
-                const int at = (x + (i + j) * pixelsInVector + 1) * GROUP_CHANNELS;
-                v_store(out + at, sums[j] + carry + vx_load(above + at));
-                if ((i + j + 1) * pixelsInVector % 4 == 0)
-                    carry = carry + repeatLastFour(sums[j]);
-            }
-        }
-    }
-}
-
-//! Of 16-bit images, whose sums over four pixels exceed 16 bits. A pixel is one 128-bit vector here, on every machine.
-void sumRowOf16Bit(const int* const planes[GROUP_CHANNELS], int width, const unsigned* above, unsigned* out)
-{
-    v_uint32x4 sum = v_setzero_u32();
-    for (int x = 0; x < width; x++)
-    {
-        sum = sum + v_uint32x4((unsigned)planes[0][x], (unsigned)planes[1][x], (unsigned)planes[2][x],
-                            (unsigned)planes[3][x]);
-        v_store(out + 4 * (x + 1), sum + v_load(above + 4 * (x + 1)));
     }
 }
 

@@ -1,0 +1,55 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../common/image_input.hpp"
+#include "compute.hpp"
+
+namespace cv {
+namespace iib {
+
+/* Makes one map of the rows of a single map. Python's bindings take an array of two dimensions where several maps are
+ expected for a list, and hand over each of its rows, until OpenCV 5 as a column. */
+static void joinRows(std::vector<Mat>& maps, Size imageSize)
+{
+    const Size row(imageSize.width, 1), column(1, imageSize.width);
+    if ((int)maps.size() != imageSize.height || maps.size() < 2)
+        return;
+    for (const Mat& map : maps)
+        if (map.dims > 2 || (map.size() != row && map.size() != column) || map.type() != maps[0].type())
+            return;
+    Mat whole(imageSize, maps[0].type());
+    for (int y = 0; y < whole.rows; y++)
+        (maps[y].cols == 1 ? Mat(maps[y].t()) : maps[y]).copyTo(whole.row(y));
+    maps.assign(1, whole);
+}
+
+std::vector<Mat> extraMaps(InputArrayOfArrays arrays, int expected, Size imageSize)
+{
+    std::vector<Mat> maps;
+    if (arrays.isMat() || arrays.isUMat())
+        maps.push_back(arrays.getMat());  // not its rows
+    else if (!arrays.empty())
+        arrays.getMatVector(maps);
+    if (expected == 1)
+        joinRows(maps, imageSize);
+    if ((int)maps.size() != expected)
+        CV_Error(Error::StsBadArg, format("%d extra channels were given to an extractor of %d; "
+                                          "pass them to computeWithChannels or change setExtraChannels",
+                                           (int)maps.size(), expected));
+    for (size_t i = 0; i < maps.size(); i++)
+    {
+        const String what = format("extra channel %d", (int)i);
+        if (maps[i].dims > 2 || maps[i].channels() != 1)
+            CV_Error(Error::StsBadArg, what + format(" has %d channels; it must have 1", maps[i].channels()));
+        if (maps[i].size() != imageSize)
+            CV_Error(Error::StsUnmatchedSizes,
+                    what + format(" is %d x %d; the image is %d x %d", maps[i].cols, maps[i].rows,
+                                   imageSize.width, imageSize.height));
+        checkPixels(maps[i], what);
+    }
+    return maps;
+}
+
+}  // namespace iib
+}  // namespace cv
