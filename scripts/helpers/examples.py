@@ -19,7 +19,8 @@ DEFAULTS = {
     'python/opencv_iib/colmap/pipeline.py': ('ratio: float = .9', 'crossCheck=True'),
     'apps/localization/src/localizer.cpp': ('IIB::createRecommended(', 'HierarchicalMatcher::createRecommended()'),
     'python/opencv_iib/__main__.py': ('default=FeatureOptions.detector', 'default=FeatureOptions.preset'),
-    'python/opencv_iib/demo.py': ('HierarchicalMatcher.createRecommended()',),
+    'python/opencv_iib/demo.py': ('from opencv_iib.functions import match',),
+    'python/opencv_iib/functions.py': ('matcher or HierarchicalMatcher.createRecommended())',),
 }
 
 
