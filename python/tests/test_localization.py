@@ -232,6 +232,10 @@ class Localization(unittest.TestCase):
         with open(os.path.join(mixed, 'broken.png'), 'wb') as file:
             file.write(b'nothing')
         self.assertEqual(run(*arguments, '--images', mixed)[0], 3)
+        for name, culprit in (('broken.jpg', 'broken.jpg and broken.png would have one pose'), ('#1.png', "'#1.png': rename it")):
+            open(os.path.join(mixed, name), 'w').close()
+            self.check_error(culprit, *arguments, '--images', mixed)
+            os.unlink(os.path.join(mixed, name))
 
     def test_an_image_without_exif_takes_the_maps_only_camera_of_its_size(self):
         out, images = self.path('out'), self.path('images')

@@ -92,6 +92,17 @@ def images_of(folder: str) -> list[str]:
     return names
 
 
+def _check_names(names: Sequence[str]) -> None:
+    """:raises ValueError: for names that a trajectory, which has them without their suffixes, cannot hold."""
+    known: dict[str, str] = {}
+    for name in names:
+        if name.startswith('#') or len(name.splitlines()) > 1:
+            raise ValueError(f'{name!r}: rename it, without a leading # and line breaks: a trajectory cannot hold these')
+        other = known.setdefault(os.path.splitext(name)[0], name)
+        if other != name:
+            raise ValueError(f'{other} and {name} would have one pose: rename one of them')
+
+
 def _write_picture(path: str, image: str, camera: Any, location: Location) -> None:
     import cv2
     picture = cv2.cvtColor(read_grey(image), cv2.COLOR_GRAY2BGR)
@@ -131,6 +142,7 @@ def localize_images(map: str | Map, images: str, out: str, camera: Any = None, p
     :return: how many images have a pose, and of how many.
     """
     names = images_of(images)
+    _check_names(names)
     known = map if isinstance(map, Map) else read_map(map)
     localizer = Localizer(known, known.points)
     model = pycolmap.Reconstruction()
