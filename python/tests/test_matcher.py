@@ -152,7 +152,7 @@ class MatcherTest(unittest.TestCase):
     def test_the_gil_is_released(self):
         codes = np.random.default_rng(1).integers(0, 256, (6000, 170), np.uint8)
         self.matcher.add(codes)
-        image, points, iib = np.tile(texture(320, 240), (4, 4)), scatter(1280, 960, 20000, 3, 40, 2), opencv_iib.IIB()
+        image, points, iib = np.tile(texture(320, 240), (4, 4)), np.tile(scatter(1280, 960, 5000, 3, 40, 2), (20, 1)), opencv_iib.IIB()
         with tempfile.TemporaryDirectory() as folder:
             index = MappedIndex.create(folder, LEVELS)
             index.add(codes)
