@@ -24,22 +24,21 @@ namespace fs = std::filesystem;
 //! Throws unless the folder may be replaced.
 void checkContents(const std::string& folder, const std::vector<std::string>& ownFiles)
 {
-    std::string foreign;
-    bool known = false;
+    std::string seen;
+    bool known = false, foreign = false;
     for (const auto& entry : fs::recursive_directory_iterator(folder))
     {
-        const std::string name = entry.path().lexically_relative(folder).string();
+        seen = entry.path().lexically_relative(folder).string();
         const auto isName = [&](const std::string& pattern) {
-            return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
+            return ::fnmatch(pattern.c_str(), seen.c_str(), 0) == 0;
         };
-        if (std::none_of(ownFiles.begin(), ownFiles.end(), isName))
-            fail(folder + " holds " + name + ", which is no result of this program: choose another folder");
-        known |= isName(ownFiles[0]);
-        foreign = name;
+        known = known || isName(ownFiles[0]);
+        foreign = std::none_of(ownFiles.begin(), ownFiles.end(), isName);
+        if (foreign)
+            break;
     }
-    if (!known && !foreign.empty())
-        fail(folder + " holds " + foreign + " but no " + ownFiles[0] +
-                ", so that it is no result of this program: choose another folder");
+    if (foreign || (!known && !seen.empty()))
+        fail(folder + " holds " + seen + " and was not written by this program: choose another folder");
 }
 
 //! A mount point cannot be moved.
@@ -50,19 +49,14 @@ bool isMountPoint(const std::string& folder)
            own.st_dev != parent.st_dev;
 }
 
-std::string targetOf(const std::string& folder)
-{
-    const fs::path path = fs::weakly_canonical(folder);
-    return (path.has_filename() ? path : path.parent_path()).string();  // without a slash at its end
-}
-
 }  // namespace
 
 NewFolder::NewFolder(const std::string& target, const std::vector<std::string>& ownFiles)
 {
     try
     {
-        target_ = targetOf(target);
+        const fs::path path = fs::weakly_canonical(target);
+        target_ = (path.has_filename() ? path : path.parent_path()).string();  // without a slash at its end
         partial_ = target_ + ".iib_partial";
         if (isMountPoint(target_))
             fail(target + " is a mount point: give a folder inside it");

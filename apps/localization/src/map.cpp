@@ -19,8 +19,16 @@ Map readFiles(const std::string& folder)
         CV_Error(cv::Error::StsError, "it has no map.json");
     std::stringstream text;
     text << stream.rdbuf();
-    const cv::FileStorage manifest(
-            text.str(), cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_JSON);
+    cv::FileStorage manifest;
+    try
+    {
+        manifest.open(
+                text.str(), cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_JSON);
+    }
+    catch (const cv::Exception&)  // which says where in OpenCV's parser
+    {
+        CV_Error(cv::Error::StsParseError, "map.json is damaged");
+    }
     if (!manifest["format"].isInt() || int(manifest["format"]) != FORMAT)
         CV_Error(cv::Error::StsError, "its format is not that of this version: make it again");
     const auto array = [&](const std::string& name, int type) {

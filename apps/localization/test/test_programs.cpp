@@ -89,7 +89,7 @@ TEST_F(Programs, pictures_do_not_overwrite_photographs)
 {
     const std::string before = textOf(folder.path("images/3.png"));
     EXPECT_EQ(1, localize("images", "images", "--pictures"));
-    EXPECT_NE(std::string::npos, error.find("no result of this program: choose another folder\n")) << error;
+    EXPECT_NE(std::string::npos, error.find("not written by this program: choose another folder\n")) << error;
     EXPECT_EQ(before, textOf(folder.path("images/3.png")));
     EXPECT_EQ(0, localize("images", "out", "--pictures")) << error;
     EXPECT_FALSE(cv::imread(folder.path("out/matches/left side-0.png.png")).empty());
