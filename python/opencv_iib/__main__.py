@@ -21,12 +21,10 @@ def _features(parser: argparse.ArgumentParser, points: int) -> None:
     parser.add_argument('--points', type=int, default=points, help='at most so many an image (%(default)s)')
     parser.add_argument('--preset', default=FeatureOptions.preset, choices=sorted(preset_names()), help='descriptor (%(default)s)')
     parser.add_argument('--orientation', action='store_true', help="turn regions by the keypoints' angles")
-    parser.add_argument('--normalize', action='store_true', help='detect with the local contrast evened out, as HESSIAN always does')
 
 
 def _feature_options(arguments: argparse.Namespace) -> FeatureOptions:
-    return FeatureOptions(arguments.detector, arguments.points, arguments.preset, arguments.orientation,
-                          arguments.normalize)
+    return FeatureOptions(arguments.detector, arguments.points, arguments.preset, arguments.orientation)
 
 
 def _parser() -> argparse.ArgumentParser:

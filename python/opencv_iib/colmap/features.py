@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from opencv_iib.descriptor import IIBDescriptorExtractor
-from opencv_iib.detectors import HessianDetector, NormalizedDetector
+from opencv_iib.detectors import HessianDetector
 from opencv_iib.enums import Preset
 from opencv_iib.keypoints import keypoints_to_array
 
@@ -16,8 +16,8 @@ DETECTORS = ('HESSIAN', 'AKAZE', 'BRISK', 'FAST', 'KAZE', 'ORB', 'SIFT')
 
 
 def preset_names() -> dict[str, int]:
-    """The presets of IIBDescriptorExtractor, without their prefix, DEFAULT, and OWN: the detector's own descriptor."""
-    return {'DEFAULT': -1, 'OWN': -2, **Preset.__members__}
+    """The presets of IIBDescriptorExtractor, without their prefix, and DEFAULT, the paper's."""
+    return {'DEFAULT': -1, **Preset.__members__}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -28,7 +28,6 @@ class FeatureOptions:
     points: int = 4000  #: at most so many keypoints an image, those of the strongest response
     preset: str = 'UNIVERSAL'  #: one of preset_names()
     orientation: bool = False  #: turn the regions by the keypoints' angles
-    normalize: bool = False  #: detect with the local contrast evened out, as HESSIAN always does
 
     def check(self) -> None:
         """:raises ValueError: naming what is wrong, and what there is."""
@@ -36,10 +35,6 @@ class FeatureOptions:
             raise ValueError(f'no detector {self.detector}: there are {", ".join(DETECTORS)}')
         if self.preset not in preset_names():
             raise ValueError(f'no preset {self.preset}: there are {", ".join(preset_names())}')
-        if self.preset == 'OWN' and self.detector not in ('AKAZE', 'BRISK', 'ORB'):
-            raise ValueError(f'{self.detector} has no binary descriptor of its own: take AKAZE, BRISK or ORB')
-        if self.normalize and self.detector == 'HESSIAN':
-            raise ValueError('HESSIAN evens out the local contrast by itself: leave normalize out')
         if not 1 <= self.points:
             raise ValueError(f'points is {self.points}: it has to be at least 1')
 
@@ -65,7 +60,6 @@ class Features:
         options.check()
         self.options = options
         preset = preset_names()[options.preset]
-        self.own = preset == -2
         self.scale_factor = IIBDescriptorExtractor.scaleFactorFor(options.detector)
         self.extractor = (IIBDescriptorExtractor.create(self.scale_factor) if preset < 0 else
                           IIBDescriptorExtractor.createPreset(preset, self.scale_factor))
@@ -76,20 +70,12 @@ class Features:
     def __call__(self, image: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """:return: N x 7 float32 keypoints (see keypoints_to_array), strongest first, and N x bytes codes."""
         if not hasattr(self._local, 'detector'):
-            made = _make_detector(self.options.detector, self.options.points)
-            self._local.detector = NormalizedDetector(made) if self.options.normalize else made
-        detector = self._local.detector
-        found = sorted(detector.detect(image), key=lambda keypoint: -keypoint.response)[:self.options.points]
-        if not self.own:
-            keypoints, codes = self.extractor.compute(image, keypoints_to_array(found))
-            return keypoints, codes
-        left, codes = detector.compute(image, found)
-        return keypoints_to_array(left), codes if codes is not None else np.empty((0, self.level_sizes()[0]), np.uint8)
+            self._local.detector = _make_detector(self.options.detector, self.options.points)
+        found = sorted(self._local.detector.detect(image), key=lambda keypoint: -keypoint.response)[:self.options.points]
+        return self.extractor.compute(image, keypoints_to_array(found))
 
     def level_sizes(self) -> tuple[int, ...]:
         """Bytes of each level of the codes, coarse first."""
-        if self.own:
-            return (int(_make_detector(self.options.detector, 1).descriptorSize()),)
         return self.extractor.levelSizes()
 
 
