@@ -29,12 +29,7 @@ case "${1:-}" in
     shift
     ;;
 esac
-for argument in "$@"; do
-    case "$argument" in
-    -D?*) ;;
-    *) fail "$argument is not -DNAME=VALUE for CMake (--help tells more)" ;;
-    esac
-done
+check_definitions "$@"
 
 extra_modules="$root/modules"
 list=iib,iib_index,ts,python3,flann$calib3d

@@ -51,12 +51,7 @@ case "${1:-}" in
 --sanitize) kind=every ;;
 esac
 [ -z "$kind" ] || shift
-for argument in "$@"; do
-    case "$argument" in
-    -D?*) ;;
-    *) fail "$argument is not -DNAME=VALUE for CMake (--help tells more)" ;;
-    esac
-done
+check_definitions "$@"
 # shellcheck disable=SC2086
 need $build_packages xz-utils
 case "$kind" in

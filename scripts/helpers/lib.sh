@@ -77,6 +77,16 @@ check_value() {
     esac
 }
 
+# check_definitions ARGUMENT...: whether each is one for CMake.
+check_definitions() {
+    for argument in "$@"; do
+        case "$argument" in
+        -D?*) ;;
+        *) fail "$argument is not -DNAME=VALUE for CMake (--help tells more)" ;;
+        esac
+    done
+}
+
 # check_folders FOLDER...: whether each is one.
 check_folders() {
     for folder in "$@"; do

@@ -3,6 +3,7 @@
 lights on another path, with an IMU. See README.md."""
 
 import argparse
+import os
 import pathlib
 import shutil
 import sys
@@ -16,6 +17,7 @@ from scenes import LIGHTS, SCENES, extrinsics, intrinsics, walk
 SCENE = "street"
 MAP_LIGHT = "noon"
 QUERY_LIGHTS = ["night", "dusk", "winter", "overcast", "fog", "morning", "wet"]
+KEYFRAMES, QUERIES, SIZE = 16, 30, (640, 480)  # pictures of the map, 1.4 m apart, and of each other light
 DURATION = 14.5  # seconds; at 1.4 m/s a walk as long as the mapped one
 IMU_RATE = 200  # Hz
 GRAVITY = np.array([0, 9.81, 0])  # m/s^2, in the world of `extrinsics`: y points down
@@ -121,19 +123,11 @@ def plan(out, keyframes, queries, lights, size):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=pathlib.Path, help="folder to render into; what is there is kept")
-    parser.add_argument("--keyframes", type=int, default=16, help="pictures of the map (16: 1.4 m apart)")
-    parser.add_argument("--queries", type=int, default=30, help="pictures a light (30)")
-    parser.add_argument("--lights", nargs="+", choices=LIGHTS, default=QUERY_LIGHTS, metavar="LIGHT")
-    parser.add_argument("--size", type=int, nargs=2, default=(640, 480), metavar=("WIDTH", "HEIGHT"))
-    parser.add_argument("--jobs", type=int, default=2, help="renderings at a time")
-    options = parser.parse_args()
-    if options.keyframes < 2 or options.queries < 2 or min(options.size) < 16 or options.jobs < 1:
-        parser.error("--keyframes and --queries must be 2 or more, --size 16 or more each way, --jobs 1 or more")
+    out = parser.parse_args().out
     if shutil.which("povray") is None:
         sys.exit("povray is not installed: apt-get install povray")
-    size = tuple(options.size)
-    tasks = list(plan(options.out, options.keyframes, options.queries, options.lights, size))
-    render_all(tasks, size, options.jobs, run_quickly)
+    tasks = list(plan(out, KEYFRAMES, QUERIES, QUERY_LIGHTS, SIZE))
+    render_all(tasks, SIZE, os.cpu_count(), run_quickly)
 
 
 if __name__ == "__main__":
