@@ -51,7 +51,7 @@ COMPARED = ("IIB", "IIB COMPACT", "IIB BALANCED", "IIB VIEWPOINT", "IIB UNIVERSA
 NETWORKS = {"XFeat": "Apache-2.0", "SuperPoint": "noncommercial research only", "ALIKE-n": "BSD-3-Clause",
             "ALIKED-n16": "BSD-3-Clause"}
 
-# Lines of the charts of turned and scaled images.
+# Lines of the table of turned and scaled images.
 WARPED = ("IIB", "IIB oriented", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB oriented", "SIFT", "SIFT oriented",
           "BEBLID-512", "TEBLID-512", "LATCH-512")
 

@@ -3,13 +3,11 @@
 
 """One page, index.html, from the CSV files of iib_evaluation: report.py RESULTS. Needs python3-jinja2."""
 import argparse
-import math
 import os
 import sys
 
 import jinja2
 
-import charts
 import descriptors
 from paper_orders import orders
 from results import areas, column, describing_times, domain, file_name, group, interval, mean, mean_accuracy, read
@@ -88,20 +86,13 @@ def changes(tables):
                       for name in descriptors.COMPARED if any((name, kind) in scores for kind in kinds)]}
 
 
-def warp_charts(tables):
+def warps(tables):
     """Recall over rotations and scales of the reference itself."""
-    found = []
-    for kind, label, ticks, place in (
-            ("rotation", "degrees", [(a, "%d" % a) for a in (0, 45, 90, 135, 180)], lambda x: x),
-            ("scale", "factor, logarithmic", [(a, "%g" % a) for a in (0.5, 0.7, 1, 1.4, 2)], math.log)):
-        of_name = by_name([r for r in tables["robustness"] if r["kind"] == kind])
-        series = {name: sorted((float(target), mean(column(mine, "recall")))
-                               for target, mine in by_name(of_name[name], "target").items())
-                  for name in descriptors.WARPED if name in of_name}
-        if series:
-            x_range = (0, 180) if kind == "rotation" else (0.5, 2)
-            found.append((kind, charts.lines(series, label, "recall", ticks, x_range=x_range, place=place)))
-    return found
+    scores = group([r for r in tables["robustness"] if r["kind"] in ("rotation", "scale")], "configuration", "kind", "target")
+    changes = sorted({key[1:] for key in scores}, key=lambda change: (change[0], float(change[1])))
+    return {"changes": [amount + "\u00b0" if kind == "rotation" else "\u00d7 " + amount for kind, amount in changes],
+            "lines": [(name, [mean(column(scores[(name, *change)], "recall")) for change in changes])
+                      for name in descriptors.WARPED if changes and (name, *changes[0]) in scores]}
 
 
 # Of the error of a pose, degrees, for the areas under its curve.
@@ -225,7 +216,7 @@ def main():
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     page = environment.get_template("page.html.j2").render(
         overview=rows, networks=networks(tables), headline=sorted(headline, key=lambda r: -r["score"]["recall"]),
-        detectors=detectors(tables), changes=changes(tables), warps=warp_charts(tables),
+        detectors=detectors(tables), changes=changes(tables), warps=warps(tables),
         tasks=tasks, poses=pose_headline(tasks), slider=slider(tables), paper=paper_tables(tables), orders=paper_orders(tables),
         scenes=scenes(tables),
         all_pairs=score(by_name(illumination(tables["fixed_points"])).get("IIB", [])), settings=settings(folder),
