@@ -10,23 +10,6 @@
 #include "opencv2/core/quaternion.hpp"
 
 namespace iib_localization {
-namespace {
-
-//! Reads as many numbers as there are, separated by commas.
-template <int n> bool readNumbers(const std::string& text, cv::Vec<double, n>& values)
-{
-    size_t from = 0;
-    for (int i = 0; i < n; i++)
-    {
-        const size_t to = std::min(text.find(',', from), text.size());
-        if (from > to || !readNumber(text.substr(from, to - from), values[i]))
-            return false;
-        from = to + 1;
-    }
-    return from == text.size() + 1;
-}
-
-}  // namespace
 
 std::string trajectoryLine(const std::string& name, const cv::Affine3d& worldFromCamera)
 {
@@ -40,12 +23,13 @@ std::string trajectoryLine(const std::string& name, const cv::Affine3d& worldFro
 
 cv::Affine3d parsePose(const std::string& text)
 {
-    cv::Vec<double, 7> values;
-    const bool valid = readNumbers(text, values);
+    std::vector<double> values = numbersOf(text);
+    const bool valid = values.size() == 7;
+    values.resize(7);
     const cv::Quatd q(values[6], values[3], values[4], values[5]);
     if (!valid || !(std::abs(q.norm() - 1) <= 1e-2))
         CV_Error(cv::Error::StsBadArg, text + " is not tx,ty,tz,qx,qy,qz,qw with a quaternion of length 1");
-    return {q.normalize().toRotMat3x3(), cv::Vec3d(values.val)};
+    return {q.normalize().toRotMat3x3(), cv::Vec3d(values.data())};
 }
 
 std::optional<int64_t> nanoseconds(const std::string& name)
@@ -76,14 +60,14 @@ std::vector<ImuReading> readImu(const std::string& path)
         number++;
         if (line.empty() || line[0] == '#')
             continue;
-        cv::Vec<double, 7> values;
         const std::string where = path + ":" + std::to_string(number) + ": ";
-        if (!readNumbers(line.substr(0, line.find('\r')), values))
+        const std::vector<double> values = numbersOf(line.substr(0, line.find('\r')));
+        if (values.size() != 7)
             CV_Error(cv::Error::StsError, where + "not a time and six numbers");
         const int64_t time = int64_t(values[0]);  // to a quarter of a microsecond
         if (!readings.empty() && time <= readings.back().nanoseconds)
             CV_Error(cv::Error::StsError, where + "the time does not rise");
-        readings.push_back({time, cv::Vec3d(values.val + 1), cv::Vec3d(values.val + 4)});
+        readings.push_back({time, cv::Vec3d(&values[1]), cv::Vec3d(&values[4])});
     }
     return readings;
 }

@@ -88,20 +88,10 @@ std::vector<cv::Point2d> Lens::project(const std::vector<cv::Point3d>& points, c
 
 cv::iib::Camera cv::iib::Camera::parse(const std::string& text)
 {
-    std::vector<std::string> words;
-    for (size_t from = 0; from <= text.size();)
-    {
-        const size_t to = std::min(text.find(',', from), text.size());
-        words.push_back(text.substr(from, to - from));
-        from = to + 1;
-    }
-    double width = 0, height = 0;
-    std::vector<double> parameters(words.size() < 3 ? 0 : words.size() - 3);
-    bool valid = words.size() > 3 && iib_localization::readNumber(words[1], width) &&
-                 iib_localization::readNumber(words[2], height) && std::max(width, height) < 1 << 16;
-    for (size_t i = 3; i < words.size(); i++)
-        valid = valid && iib_localization::readNumber(words[i], parameters[i - 3]);
-    if (!valid)
+    const size_t comma = std::min(text.find(','), text.size() - 1);
+    const std::vector<double> values = iib_localization::numbersOf(text.substr(comma + 1));
+    if (values.size() < 3 || std::max(std::abs(values[0]), std::abs(values[1])) >= 1 << 16)
         CV_Error(Error::StsBadArg, "camera " + text + " is not MODEL,WIDTH,HEIGHT,PARAMETERS");
-    return iib_localization::checked({words[0], Size(int(width), int(height)), parameters});
+    return iib_localization::checked({text.substr(0, comma), Size(int(values[0]), int(values[1])),
+            std::vector<double>(values.begin() + 2, values.end())});
 }

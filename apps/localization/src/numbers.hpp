@@ -4,15 +4,25 @@
 #include <charconv>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace iib_localization {
 
-//! Reads the whole text as a finite number.
-inline bool readNumber(const std::string& text, double& value)
+//! The finite numbers that a text holds, separated by commas; none if it holds anything else.
+inline std::vector<double> numbersOf(const std::string& text)
 {
-    const char* const last = text.data() + text.size();
-    const auto [end, error] = std::from_chars(text.data(), last, value);
-    return error == std::errc() && end == last && std::isfinite(value);
+    std::vector<double> values;
+    for (const char *at = text.data(), *last = at + text.size();; at++)
+    {
+        double value = 0;
+        const auto [end, error] = std::from_chars(at, last, value);
+        if (error != std::errc() || !std::isfinite(value) || (end != last && *end != ','))
+            return {};
+        values.push_back(value);
+        if (end == last)
+            return values;
+        at = end;
+    }
 }
 
 //! The shortest decimal that reads back as the same number.

@@ -41,6 +41,9 @@ TEST(Lens, cameras_that_are_none)
 {
     const auto error = [](const char* text) { return messageOf([&] { Camera::parse(text); }); };
     EXPECT_EQ("camera PINHOLE,640,480 is not MODEL,WIDTH,HEIGHT,PARAMETERS", error("PINHOLE,640,480"));
+    for (const char* text :
+            {"", "PINHOLE", "PINHOLE,", "PINHOLE,640,480,1,", "PINHOLE,640,480,1 ,1", "PINHOLE,-1e99,1,1"})
+        EXPECT_EQ(std::string("camera ") + text + " is not MODEL,WIDTH,HEIGHT,PARAMETERS", error(text));
     EXPECT_EQ("camera PINHOLE,640,4e9,1,1,1,1 is not MODEL,WIDTH,HEIGHT,PARAMETERS",
             error("PINHOLE,640,4e9,1,1,1,1"));
     EXPECT_EQ("camera PINHOLE,640,480,x,1,1,1 is not MODEL,WIDTH,HEIGHT,PARAMETERS",
