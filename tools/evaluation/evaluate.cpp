@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <sstream>
 
 #include "common/views.hpp"
@@ -57,19 +58,11 @@ std::vector<ImagePair> readablePairs(const std::vector<ImagePair>& pairs)
 
 }  // namespace
 
-std::vector<std::string> experimentNames()
-{
-    std::vector<std::string> names;
-    for (const Experiment& e : EXPERIMENTS)
-        names.push_back(e.name);
-    return names;
-}
-
 int evaluate(const Options& options)
 {
-    const std::vector<std::string> known = experimentNames();
     for (const std::string& name : options.experiments)
-        if (std::find(known.begin(), known.end(), name) == known.end())
+        if (std::none_of(std::begin(EXPERIMENTS), std::end(EXPERIMENTS),
+                    [&](const Experiment& e) { return name == e.name; }))
             CV_Error(cv::Error::StsBadArg, "unknown experiment " + name);
     const std::vector<ImagePair> pairs = findPairs(options.roots);
     if (pairs.empty() && findViewPairs(options.roots).empty())

@@ -42,9 +42,6 @@ int comparison(const Options& options, const std::vector<ImagePair>& pairs);
 //! Columns of `<out>/fixed_points.csv`.
 std::vector<std::string> fixedPointsColumns();
 
-//! Names of the experiments in the order in which evaluate runs them.
-std::vector<std::string> experimentNames();
-
 /** Runs the experiments. @return how many tasks were skipped.
 @throws cv::Exception if there is nothing to evaluate, no image pair can be read, an experiment is unknown, or the folder
 holds results of other settings. */

@@ -2,43 +2,18 @@
 
 #include "tasks.hpp"
 
-#include <atomic>
 #include <iostream>
 #include <mutex>
 
 #include "opencv2/core.hpp"
 
 namespace iib_tools {
-namespace {
-
-//! Tells every tenth of the tasks, and failures.
-class Progress
-{
-public:
-    Progress(const std::string& title, size_t total) : title_(title), total_(total) {}
-
-    void done(const std::string& name, const std::string& failure)
-    {
-        std::lock_guard<std::mutex> lock(mutex_);
-        if (!failure.empty())
-            std::cerr << "skipped " << name << ": " << failure << std::endl;
-        done_++;
-        if (done_ * 10 / total_ > (done_ - 1) * 10 / total_)
-            std::cerr << title_ << ": " << done_ << "/" << total_ << ", " << name << std::endl;
-    }
-
-private:
-    std::string title_;
-    size_t total_, done_ = 0;
-    std::mutex mutex_;
-};
-
-}  // namespace
 
 int runTasks(const std::string& title, const std::vector<Task>& tasks)
 {
-    Progress progress(title, tasks.size());
-    std::atomic<int> failures(0);
+    std::mutex mutex;  // of what follows, and of what is told
+    int failures = 0;
+    size_t done = 0;
     const auto body = [&](const cv::Range& range) {
         for (int i = range.start; i < range.end; i++)
         {
@@ -49,10 +24,18 @@ int runTasks(const std::string& title, const std::vector<Task>& tasks)
             }
             catch (const cv::Exception& e)
             {
-                failures++;
                 failure = e.err;
             }
-            progress.done(tasks[i].name, failure);
+            const std::lock_guard<std::mutex> lock(mutex);
+            if (!failure.empty())
+            {
+                failures++;
+                std::cerr << "skipped " << tasks[i].name << ": " << failure << std::endl;
+            }
+            done++;
+            if (done * 10 / tasks.size() > (done - 1) * 10 / tasks.size())  // every tenth
+                std::cerr << title << ": " << done << "/" << tasks.size() << ", " << tasks[i].name
+                          << std::endl;
         }
     };
     cv::parallel_for_(cv::Range(0, int(tasks.size())), body, double(tasks.size()));
