@@ -22,10 +22,8 @@ std::vector<Channel> channelsInUse(const Parameters& p, const Mat& grey, const s
 
 bool is16Bit(const std::vector<Channel>& channels)
 {
-    for (const Channel& c : channels)
-        if (c.map.depth() == CV_16U)
-            return true;
-    return false;
+    return std::any_of(
+            channels.begin(), channels.end(), [](const Channel& c) { return c.map.depth() == CV_16U; });
 }
 
 int maxGradient(const std::vector<Channel>& channels)

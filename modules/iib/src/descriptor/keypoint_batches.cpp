@@ -102,11 +102,6 @@ Rect unionOf(const std::vector<Rect>& regions, const Indices& keypoints)
 void cutStrips(const std::vector<Rect>& regions, const Indices& keypoints, Rect area, int strips,
         std::vector<Indices>& batches)
 {
-    if (strips == 1)
-    {
-        batches.push_back(keypoints);
-        return;
-    }
     const bool vertical = area.height > area.width;
     const Range whole = extent(area, vertical);
     std::vector<Indices> parts(strips);

@@ -70,17 +70,7 @@ static inline int reflected(int place, int size)
 //! Pixels of a row (or column) of `size` pixels that hold all those of [begin, end), some of which may be reflected.
 static inline Range reflectedRange(int begin, int end, int size)
 {
-    int first = begin, last = end;
-    if (begin < 0)
-    {
-        first = 0;
-        last = std::max(end, 1 - begin);
-    }
-    if (end > size)
-    {
-        first = std::min(first, 2 * size - 1 - end);
-        last = size;
-    }
+    const int first = std::min(begin, 2 * size - 1 - end), last = std::max(end, 1 - begin);
     return Range(std::max(first, 0), std::min(last, size));
 }
 

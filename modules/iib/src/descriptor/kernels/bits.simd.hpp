@@ -135,31 +135,6 @@ private:
     const size_t step;
 };
 
-//! Where the sums over such quads go: the cells of the next coarser level.
-template <typename Parent> class ParentRows
-{
-public:
-    ParentRows(CellGrid<Parent>& parents, int first)
-        : even(parents.row(0, 0) + first / 2), odd(parents.row(0, 1) + first / 2), step(parents.rowStep())
-    {
-    }
-
-    template <typename V> void store(int lane, const V x[4]) const
-    {
-        storeAlternately(even, odd, lane, (x[0] + x[1]) + (x[2] + x[3]));
-    }
-
-    void next()
-    {
-        even += step;
-        odd += step;
-    }
-
-private:
-    Parent *even, *odd;
-    const size_t step;
-};
-
 template <> struct ColumnWeights<v_int32>
 {
     v_int32 left[Chunk<v_int32>::VECTORS], right[Chunk<v_int32>::VECTORS];
@@ -186,16 +161,17 @@ void parentSums(const CellGrid<Cell>& cells, CellGrid<typename BitsKernels<Cell>
     typedef typename QuadRows<Cell>::V V;
     const int n = cells.size() / 2;
     parents.create(n);
+    const size_t step = parents.rowStep();
     for (int first = 0; first < n * GROUP_CHANNELS; first += CHUNK)
     {
         QuadRows<Cell> quads(cells, 0, 0, first);
-        ParentRows<typename BitsKernels<Cell>::Parent> sums(parents, first);
-        for (int r = 0; r < n; r++, quads.next(), sums.next())
+        auto *even = parents.row(0, 0) + first / 2, *odd = parents.row(0, 1) + first / 2;
+        for (int r = 0; r < n; r++, quads.next(), even += step, odd += step)
             for (int lane = 0; lane < CHUNK; lane += Chunk<V>::LANES)
             {
                 V x[4];
                 quads.load(lane, x);
-                sums.store(lane, x);
+                storeAlternately(even, odd, lane, (x[0] + x[1]) + (x[2] + x[3]));
             }
     }
 }
@@ -207,24 +183,25 @@ void compareQuads(const CellGrid<Cell>& cells, const LevelShape& shape, const Ce
 {
     typedef typename QuadRows<Cell>::V V;
     const Axis x = {edges.x, shape.step};
+    const size_t step = parents.rowStep();
     for (int first = 0; first < phase.lanes(); first += CHUNK, out.nextChunk())
     {
         const ColumnWeights<V> columns(x, phase.dx + first / 2);
         QuadRows<Cell> quads(cells, phase.dy, phase.dx, first);
-        ParentRows<Parent> sums(parents, first);
+        Parent *even = parents.row(0, 0) + first / 2, *odd = parents.row(0, 1) + first / 2;
         Out rows = out;
         const int* y = edges.y + phase.dy * shape.step;
-        for (int r = 0; r < phase.rows; r++, y += 2 * shape.step, quads.next(), sums.next())
+        for (int r = 0; r < phase.rows; r++, y += 2 * shape.step, quads.next(), even += step, odd += step)
         {
             const Weights heights(y[shape.step] - y[0], y[2 * shape.step] - y[shape.step]);
             unsigned chunk[Mapping::BITS] = {};
-            for (int lane = 0; lane < std::min(phase.lanes() - first, CHUNK); lane += Chunk<V>::LANES)
+            for (int i = 0; i < Chunk<V>::VECTORS && first + i * Chunk<V>::LANES < phase.lanes(); i++)
             {
-                const int i = lane / Chunk<V>::LANES;
+                const int lane = i * Chunk<V>::LANES;
                 V x[4], weights[] = {columns.left[i], columns.right[i], columns.left[i], columns.right[i]};
                 quads.load(lane, x);
                 if (WITH_PARENTS)
-                    sums.store(lane, x);
+                    storeAlternately(even, odd, lane, (x[0] + x[1]) + (x[2] + x[3]));
                 if (!heights.equal())  // the columns of a chunk are seldom equally long, the two rows often
                     for (int k = 0; k < 4; k++)
                         weights[k] = weights[k] * repeated(k < 2 ? heights.first : heights.second, V());

@@ -42,26 +42,15 @@ struct PlaneRows
     void nextChunk() { first += CHUNK / 8; }
 };
 
-/* Squeezes the channels in use together, out of each group of four lanes: neighbouring fields of `channels` bits
- are merged, then neighbouring pairs, and so on. */
+//! Squeezes the channels in use together, out of each group of four lanes: first neighbouring groups, then pairs of groups.
 inline unsigned dropLanes(unsigned chunk, int channels)
 {
-    switch (channels)
-    {
-    case 1:
-        chunk &= 0x1111;
-        chunk = (chunk | chunk >> 3) & 0x0303;
-        return (chunk | chunk >> 6) & 0x000f;
-    case 2:
-        chunk &= 0x3333;
-        chunk = (chunk | chunk >> 2) & 0x0f0f;
-        return (chunk | chunk >> 4) & 0x00ff;
-    case 3:
-        chunk &= 0x7777;
-        chunk = (chunk & 0x0707) | (chunk >> 1 & 0x3838);
-        return (chunk & 0x003f) | (chunk >> 2 & 0x0fc0);
-    default: return chunk;
-    }
+    if (channels == GROUP_CHANNELS)
+        return chunk;
+    const int unused = GROUP_CHANNELS - channels;
+    const unsigned groups = 0x0101 * ((1u << channels) - 1), pair = (1u << 2 * channels) - 1;
+    chunk = (chunk & groups) | (chunk >> unused & groups << channels);
+    return (chunk & pair) | (chunk >> 2 * unused & pair << 2 * channels);
 }
 
 //! Appends the lowest `lanes` bits of a chunk without those of channels that are not in use.

@@ -229,23 +229,11 @@ template <typename T> void orientationRow(const T* gx, const T* gy, T* steps, in
     }
 }
 
-inline void storeInterleaved(short* out, const short* const planes[GROUP_CHANNELS], int x)
-{
-    v_store_interleave(out + GROUP_CHANNELS * x, v_load(planes[0] + x), v_load(planes[1] + x),
-            v_load(planes[2] + x), v_load(planes[3] + x));
-}
-
-inline void storeInterleaved(int* out, const int* const planes[GROUP_CHANNELS], int x)
-{
-    for (int half = x; half < x + 8; half += 4)
-        v_store_interleave(out + GROUP_CHANNELS * half, v_load(planes[0] + half), v_load(planes[1] + half),
-                v_load(planes[2] + half), v_load(planes[3] + half));
-}
-
 template <typename T> void interleaveRow(const T* const planes[GROUP_CHANNELS], T* out, int width)
 {
-    for (int x = 0; x < width; x += 8)
-        storeInterleaved(out, planes, x);
+    for (int x = 0; x < width; x += VTraits<decltype(v_load(out))>::max_nlanes)
+        v_store_interleave(out + GROUP_CHANNELS * x, v_load(planes[0] + x), v_load(planes[1] + x),
+                v_load(planes[2] + x), v_load(planes[3] + x));
 }
 
 template <typename T> RotatedSampleKernels<T> rotatedSampleKernels()
