@@ -60,19 +60,13 @@ SearchedCodes::Part IndexCommit::part(int segment) const
 {
     // First: a manifest may claim more images than memory has bits for.
     const SearchedCodes& codes = opened[segment]->codes();
-    return {&codes, firstRows[segment], hiddenOf(segment)};
-}
-
-// Which images of a segment were removed; empty if none was.
-std::vector<bool> IndexCommit::hiddenOf(size_t segment) const
-{
     const std::vector<uint64>& removed = committed.removed;
     const auto first = std::lower_bound(removed.begin(), removed.end(), firstImages[segment]),
                end = std::lower_bound(first, removed.end(), firstImages[segment + 1]);
     std::vector<bool> hidden(first == end ? 0 : firstImages[segment + 1] - firstImages[segment], false);
     for (auto image = first; image != end; ++image)
         hidden[(size_t)*image - firstImages[segment]] = true;
-    return hidden;
+    return {&codes, firstRows[segment], hidden};
 }
 
 }  // namespace iib

@@ -26,8 +26,6 @@ public:
     SearchedCodes::Part part(int segment) const;
 
 private:
-    std::vector<bool> hiddenOf(size_t segment) const;
-
     Manifest committed;
     std::vector<Ptr<CodeSegment>> opened;
     std::vector<size_t> firstRows, firstImages;  //!< of each segment, and the number of all

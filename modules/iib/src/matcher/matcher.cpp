@@ -145,10 +145,14 @@ private:
         std::swap(parameters, changed);  // which cannot fail half-way
     }
 
-    //! An index for codes of that width, which holds the images without rows that came before it.
+    //! Where there are no level sizes: an index for codes of that width, which holds the images without rows that
+    //! came before it.
     Ptr<PackedCodes> indexFor(int width) const
     {
-        const Ptr<PackedCodes> codes = makePtr<PackedCodes>(levelSizesFor(parameters, width));
+        MatcherParameters complete = parameters;
+        complete.levelSizes.assign(1, width);
+        check(complete);
+        const Ptr<PackedCodes> codes = makePtr<PackedCodes>(complete.levelSizes);
         for (size_t i = 0; i < trainDescCollection.size(); i++)
             codes->add(Mat());
         return codes;

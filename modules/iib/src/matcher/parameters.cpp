@@ -48,15 +48,6 @@ void check(const MatcherParameters& p)
         CV_Error_(Error::StsOutOfRange, ("maxRatio is %g: it has to be above 0 and at most 1", p.maxRatio));
 }
 
-std::vector<int> levelSizesFor(const MatcherParameters& p, int width)
-{
-    MatcherParameters complete = p;
-    if (complete.levelSizes.empty())
-        complete.levelSizes.assign(1, width);
-    check(complete);
-    return complete.levelSizes;
-}
-
 template <typename T> static std::vector<T> readList(const FileNode& node, const char* key)
 {
     // In XML, a list of one is that number, and an empty list a node without anything.

@@ -26,9 +26,6 @@ void checkThreshold(float threshold);
 void checkLevelSizesGiven(const std::vector<int>& levelSizes);
 void check(const MatcherParameters& p);
 
-//! Those of the parameters or, if there are none, a single level of that width.
-std::vector<int> levelSizesFor(const MatcherParameters& p, int width);
-
 void writeParameters(FileStorage& fs, const MatcherParameters& p);
 //! Those of a node that writeParameters filled, or of one that holds such a node under `name`, as Algorithm::save
 //! writes it. What the node does not have stays as it was; levelSizes it must have.
