@@ -37,20 +37,6 @@ TEST(IIB_CreateFor, detector_factor_and_preset)
     }
 }
 
-TEST(IIB_CreateFor, describes_what_its_detector_finds_on_the_plain_image)
-{
-    const Mat image = relit(scene(Size(320, 240), 3), 4);
-    const Ptr<Feature2D> detector = NormalizedDetector::create(ORB::create(200));
-    const Ptr<IIB> iib = IIB::createFor(detector);
-    std::vector<KeyPoint> expected, keypoints;
-    Mat descriptors;
-    detector->detect(image, expected);
-    iib->detectAndCompute(image, noArray(), keypoints, descriptors);
-    ASSERT_GT(expected.size(), 50u);
-    expectSameKeyPoints(expected, keypoints);
-    EXPECT_EQ(0, differingBits(describe(*IIB::create(2.f), image, expected), descriptors));
-}
-
 TEST(IIB_CreateFor, recommended_is_hessian_and_universal)
 {
     const Mat image = relit(scene(Size(320, 240), 3), 4);

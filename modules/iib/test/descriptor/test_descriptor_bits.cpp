@@ -77,6 +77,15 @@ TEST(IIB_Bits, large_regions_of_support)
     }
 }
 
+// The region of FAST's keypoints is a little wider than 64 pixels: 15 columns of cells have 4 of them, one has 5.
+TEST(IIB_Bits, cells_of_four_pixels_and_of_five)
+{
+    const Mat image = texture(Size(150, 131), CV_8U, 9);
+    for (int granularity : {4, 5})
+        expectOracle(*IIB::create(IIB::scaleFactorFor("FAST"), granularity), image,
+                {KeyPoint(40, 60, 7), KeyPoint(71, 50, 7), KeyPoint(90, 75.5f, 14), KeyPoint(60, 65, 14)});
+}
+
 // Sums of 16-bit pixels leave 32 bits soon: cells are put together from parts.
 TEST(IIB_Bits, large_regions_of_16_bit_images)
 {

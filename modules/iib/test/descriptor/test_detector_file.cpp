@@ -43,13 +43,6 @@ TEST(IIB_DetectorFile, a_loaded_extractor_has_the_detector)
     }
 }
 
-TEST(IIB_DetectorFile, parameters_are_no_defaults_that_only_look_stored)
-{
-    const String text = parametersOf(NormalizedDetector::create(ORB::create(321), 7.5f));
-    for (const char* line : {"class: \"Feature2D.NormalizedDetector\"", "sigma: 7.5", "maxFeatures: 321"})
-        EXPECT_NE(String::npos, text.find(line)) << line << " is not in\n" << text;
-}
-
 TEST(IIB_DetectorFile, reading_leaves_the_callers_detector_alone)
 {
     const Ptr<ORB> mine = ORB::create(10);

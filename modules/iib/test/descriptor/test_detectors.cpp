@@ -68,11 +68,12 @@ TEST(IIB_Detector, behind_detect_and_compute)
 {
     const Mat image = texture(Size(200, 180), CV_8U, 3);
     const Ptr<IIB> iib = IIB::create();
-    for (int i = 0; i < 2; i++)
+    const Ptr<Feature2D> orb = ORB::create();  // the default
+    for (const Ptr<Feature2D>& detector :
+            {orb, Ptr<Feature2D>(BRISK::create()), Ptr<Feature2D>(NormalizedDetector::create(orb))})
     {
-        Ptr<Feature2D> detector = ORB::create();  // the default
-        if (i == 1)
-            iib->setDetector(detector = BRISK::create());
+        if (detector != orb)
+            iib->setDetector(detector);
         std::vector<KeyPoint> expected, detected, keypoints(5);
         detector->detect(image, expected);
         ASSERT_GT(expected.size(), 10u);

@@ -4,11 +4,7 @@
 
 #include "../support/test_images.hpp"
 
-#include <cstdlib>
-#include <fstream>
 #include <numeric>
-
-#include "opencv2/imgcodecs.hpp"
 
 namespace opencv_test {
 namespace {
@@ -29,11 +25,12 @@ struct Counts
     int correct, putative, points;
 };
 
-Counts matchPair(const Ptr<IIB>& iib, const std::string& folder, int target, int fastThreshold)
+Counts matchPair(const Ptr<IIB>& iib, const String& sequence, int target, int fastThreshold)
 {
-    const Mat image1 = imread(folder + "/1.png", IMREAD_GRAYSCALE);
-    const Mat image2 = imread(folder + format("/%d.png", target), IMREAD_GRAYSCALE);
-    const Matx33d h = readHomography(folder + format("/H_1_%d", target));
+    const Mat image1 = readIllumination(sequence + "/1.png");
+    const Mat image2 = readIllumination(sequence + format("/%d.png", target));
+    const Matx33d h =
+            readHomography(cvtest::findDataDirectory("illumination/" + sequence) + format("/H_1_%d", target));
 
     const float radius = 32;
     const auto inside = [&](Point2f p, Size size) {
@@ -75,25 +72,18 @@ Counts matchPair(const Ptr<IIB>& iib, const std::string& folder, int target, int
     return {countCorrect(matches, sample2, sample2), int(matches.size()), int(count)};
 }
 
-/** mAP and mAR over the targets of the sequences; empty if the data is not there.
+/** mAP and mAR over the targets of a sequence; skips if the data is not there.
  @param fastThreshold where corners are sought first; lower ones follow until there are enough. */
-std::vector<double> meanScores(const Ptr<IIB>& iib, const std::vector<std::string>& sequences, int lastTarget,
-        int fastThreshold = 20)
+Vec2d meanScores(const Ptr<IIB>& iib, const String& sequence, int lastTarget, int fastThreshold = 20)
 {
-    const char* data = std::getenv("OPENCV_TEST_DATA_PATH");
-    if (!data || !std::ifstream(data + std::string("/illumination/") + sequences[0] + "/1.png"))
-        return std::vector<double>();
-    std::vector<double> sum(2);
-    for (const std::string& sequence : sequences)
-        for (int target = 2; target <= lastTarget; target++)
-        {
-            const Counts counts =
-                    matchPair(iib, data + std::string("/illumination/") + sequence, target, fastThreshold);
-            const double pairs = double(sequences.size()) * (lastTarget - 1);
-            sum[0] += counts.correct / std::max(1., double(counts.putative)) / pairs;
-            sum[1] += counts.correct / std::max(1., double(counts.points)) / pairs;
-        }
-    return sum;
+    Vec2d sum;
+    for (int target = 2; target <= lastTarget; target++)
+    {
+        const Counts counts = matchPair(iib, sequence, target, fastThreshold);
+        sum += Vec2d(counts.correct / std::max(1., double(counts.putative)),
+                counts.correct / std::max(1., double(counts.points)));
+    }
+    return sum / (lastTarget - 1.);
 }
 
 typedef testing::TestWithParam<PresetCase> IIBPresets;
@@ -116,10 +106,7 @@ TEST_P(IIBPresets, scale_factor_is_proportional)
 
 TEST_P(IIBPresets, accuracy_on_changed_light)
 {
-    const std::vector<double> scores =
-            meanScores(IIB::createPreset(GetParam().preset, 1.f), {"photometric_stereo/frog"}, 8);
-    if (scores.empty())
-        throw SkipTestException("no OPENCV_TEST_DATA_PATH/illumination");
+    const Vec2d scores = meanScores(IIB::createPreset(GetParam().preset, 1.f), "photometric_stereo/frog", 8);
     EXPECT_GE(scores[0], GetParam().map);
     EXPECT_GE(scores[1], GetParam().mar);
 }
@@ -153,10 +140,8 @@ TEST(IIBPreset, some_stand_a_moved_camera)
     {
         SCOPED_TRACE(format("preset %d, FAST from %d on", bar.preset, bar.fastThreshold));
         const Ptr<IIB> iib = IIB::createPreset(bar.preset, 1.f);
-        const std::vector<double> wall = meanScores(iib, {"oxford_affine/wall"}, 6, bar.fastThreshold);
-        const std::vector<double> graf = meanScores(iib, {"oxford_affine/graf"}, 6, bar.fastThreshold);
-        if (wall.empty())
-            throw SkipTestException("no OPENCV_TEST_DATA_PATH/illumination");
+        const Vec2d wall = meanScores(iib, "oxford_affine/wall", 6, bar.fastThreshold),
+                    graf = meanScores(iib, "oxford_affine/graf", 6, bar.fastThreshold);
         EXPECT_GE(wall[0], bar.wallPrecision);
         EXPECT_GE(wall[1], bar.wallRecall);
         EXPECT_GE(graf[0], bar.grafPrecision);

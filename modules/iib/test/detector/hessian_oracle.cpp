@@ -22,9 +22,10 @@ Map smoothed(const Map& m, double variance, Point direction)
     for (int y = 0; y < m.rows; y++)
         for (int x = 0; x < m.cols; x++)
         {
-            const int nearer = at(m, y - step.y, x - step.x) + at(m, y + step.y, x + step.x) - 2 * m(y, x);
-            const int farther = at(m, y - 2 * step.y, x - 2 * step.x) +
-                                at(m, y + 2 * step.y, x + 2 * step.x) - 2 * m(y, x);
+            const int nearer =
+                    pixel(m, y - step.y, x - step.x) + pixel(m, y + step.y, x + step.x) - 2 * m(y, x);
+            const int farther = pixel(m, y - 2 * step.y, x - 2 * step.x) +
+                                pixel(m, y + 2 * step.y, x + 2 * step.x) - 2 * m(y, x);
             result(y, x) = m(y, x) + (int)((near * nearer) >> 16) + (int)((far * farther) >> 16);
         }
     return result;
@@ -39,10 +40,10 @@ Mat_<float> responsesOf(const Map& m, double sigma)
     for (int y = 0; y < m.rows; y++)
         for (int x = 0; x < m.cols; x++)
         {
-            const float xx = (float)(at(m, y, x - d) + at(m, y, x + d) - 2 * m(y, x));
-            const float yy = (float)(at(m, y - d, x) + at(m, y + d, x) - 2 * m(y, x));
-            const float xy = (float)(at(m, y - d, x - d) + at(m, y + d, x + d) - at(m, y - d, x + d) -
-                                     at(m, y + d, x - d));
+            const float xx = (float)(pixel(m, y, x - d) + pixel(m, y, x + d) - 2 * m(y, x));
+            const float yy = (float)(pixel(m, y - d, x) + pixel(m, y + d, x) - 2 * m(y, x));
+            const float xy = (float)(pixel(m, y - d, x - d) + pixel(m, y + d, x + d) -
+                                     pixel(m, y - d, x + d) - pixel(m, y + d, x - d));
             result(y, x) = (xx * yy - xy * xy * (1.f / 16)) * factor;
         }
     return result;

@@ -30,8 +30,8 @@ Map halved(const Map& m)
     Map half((m.rows + 1) / 2, (m.cols + 1) / 2);
     for (int y = 0; y < half.rows; y++)
         for (int x = 0; x < half.cols; x++)
-            half(y, x) = (at(m, 2 * y, 2 * x) + at(m, 2 * y, 2 * x + 1) + at(m, 2 * y + 1, 2 * x) +
-                                 at(m, 2 * y + 1, 2 * x + 1) + 2) >>
+            half(y, x) = (pixel(m, 2 * y, 2 * x) + pixel(m, 2 * y, 2 * x + 1) + pixel(m, 2 * y + 1, 2 * x) +
+                                 pixel(m, 2 * y + 1, 2 * x + 1) + 2) >>
                          2;
     return half;
 }
@@ -42,10 +42,11 @@ Map doubled(const Map& m, Size size)
     Map rows(size.height, m.cols), result(size);
     for (int y = 0; y < size.height; y++)
         for (int x = 0; x < m.cols; x++)
-            rows(y, x) = m(y / 2, x) + ((at(m, y / 2 + (y % 2 ? 1 : -1), x) - m(y / 2, x)) >> 2);
+            rows(y, x) = m(y / 2, x) + ((pixel(m, y / 2 + (y % 2 ? 1 : -1), x) - m(y / 2, x)) >> 2);
     for (int y = 0; y < size.height; y++)
         for (int x = 0; x < size.width; x++)
-            result(y, x) = rows(y, x / 2) + ((at(rows, y, x / 2 + (x % 2 ? 1 : -1)) - rows(y, x / 2)) >> 2);
+            result(y, x) =
+                    rows(y, x / 2) + ((pixel(rows, y, x / 2 + (x % 2 ? 1 : -1)) - rows(y, x / 2)) >> 2);
     return result;
 }
 
@@ -55,7 +56,7 @@ Map blurredOnce(const Map& m, int weight, Point step)
     for (int y = 0; y < m.rows; y++)
         for (int x = 0; x < m.cols; x++)
         {
-            const int neighbours = at(m, y - step.y, x - step.x) + at(m, y + step.y, x + step.x);
+            const int neighbours = pixel(m, y - step.y, x - step.x) + pixel(m, y + step.y, x + step.x);
             result(y, x) = m(y, x) + ((weight * (neighbours - 2 * m(y, x)) + 128) >> 8);
         }
     return result;

@@ -5,17 +5,12 @@
 #ifndef OPENCV_IIB_TEST_DETECTOR_NORMALIZATION_ORACLE_HPP
 #define OPENCV_IIB_TEST_DETECTOR_NORMALIZATION_ORACLE_HPP
 
+#include "../support/box_oracle.hpp"
 #include "../test_precomp.hpp"
 
 namespace oracle {
 
 typedef cv::Mat_<int> Map;
-
-//! The nearest value of the map.
-inline int at(const Map& m, int y, int x)
-{
-    return m(std::min(std::max(y, 0), m.rows - 1), std::min(std::max(x, 0), m.cols - 1));
-}
 
 //! Local normalization once more, pixel by pixel: of CV_8U or CV_16U, the same integers as the library's.
 cv::Mat normalizeLocally(const cv::Mat& grey, double sigma);

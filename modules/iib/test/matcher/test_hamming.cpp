@@ -21,52 +21,30 @@ HammingSink sinkFor(Distances& found, const int* queryThresholds, const int* tra
             }};
 }
 
-//! Everything a scan needs, and the naive distances.
+//! Everything a scan needs.
 struct ScanData
 {
     const HammingKernels& kernels;
     CodeLayout layout;
     Mat queries, trains;
-    std::vector<unsigned> plainQueries, plainTrains, blocks;
-    PruningPolicy policy;
-    std::vector<int64> passed;
+    std::vector<unsigned> blocks;
     std::vector<int> queryThresholds, trainThresholds;
 
-    ScanData(const Levels& levels, int queryCount, int rows)
-        : kernels(hammingKernels()), layout(levels, kernels.packing),
-          queries(randomDescriptors(1, queryCount, layout.bytes())),
-          trains(randomDescriptors(2, rows, layout.bytes())), plainQueries(queryCount * layout.words()),
-          plainTrains(rows * layout.words()), blocks((rows + 15) / 16 * layout.blockWords()),
-          queryThresholds(queryCount, INT_MAX), trainThresholds((rows + 15) / 16 * 16, 0)
+    ScanData(int bytes, int queryCount, int rows)
+        : kernels(hammingKernels()), layout(Levels(1, bytes), kernels.packing),
+          queries(randomDescriptors(1, queryCount, bytes)), trains(randomDescriptors(2, rows, bytes)),
+          blocks((rows + 15) / 16 * layout.blockWords()), queryThresholds(queryCount, INT_MAX),
+          trainThresholds((rows + 15) / 16 * 16, 0)
     {
         // All bits differ, for two queries that may share tables: what adds up in bytes is as large as can be.
         queries.rowRange(0, std::min(queryCount, 2)).setTo(255);
         trains.row(3).setTo(0);
         trains.row(7).setTo(255);
-        for (int i = 0; i < queryCount; i++)
-            layout.arrange(queries.ptr(i), &plainQueries[i * layout.words()]);
         for (int i = 0; i < rows; i++)
-        {
-            layout.arrange(trains.ptr(i), &plainTrains[i * layout.words()]);
             layout.store(trains.ptr(i), &blocks[i / 16 * layout.blockWords()], i % 16);
-        }
     }
 
     CodePairs pairs() const { return {layout, queries, blocks.data(), trains.rows, 0}; }
-
-    PrunedScan scan(const std::vector<PruneStage>& stages, const HammingSink& sink)
-    {
-        policy.stages = stages;
-        passed.assign(stages.size(), 0);
-        return {pairs(), policy, sink, passed.data(), 0};
-    }
-
-    //! Bits that differ up to the end of a segment.
-    int distance(int query, int train, int segment) const
-    {
-        return hammingDistance((const uchar*)&plainQueries[query * layout.words()],
-                (const uchar*)&plainTrains[train * layout.words()], layout.end(segment) * 4);
-    }
 };
 
 // Code by code; and a whole block at once, out of rows that are not continuous.
@@ -121,13 +99,13 @@ TEST(IIB_Hamming, scan_as_the_naive_loop)
             for (int below : {bytes * 4, bytes * 2})
                 for (bool bothDirections : {false, true})
                 {
-                    ScanData data(Levels(1, bytes), queryCount, 16 + queryCount * 5);
+                    ScanData data(bytes, queryCount, 16 + queryCount * 5);
                     std::fill(data.queryThresholds.begin(), data.queryThresholds.end(), below);
                     data.trainThresholds[3] = bytes * 8 + 1;
                     Distances expected, found;
                     const HammingSink sink = sinkFor(found, data.queryThresholds.data(),
                             bothDirections ? data.trainThresholds.data() : 0);
-                    data.kernels.pruned(data.scan(std::vector<PruneStage>(), sink));
+                    data.kernels.pruned({data.pairs(), PruningPolicy(), sink, 0, 0});
                     for (int q = 0; q < queryCount; q++)
                         for (int t = 0; t < data.trains.rows; t++)
                         {
@@ -153,7 +131,7 @@ TEST(IIB_Hamming, nearest_as_the_naive_loop)
                                before = (setting & 4) != 0;
                     SCOPED_TRACE(format(
                             "%d bytes, %d rows, %d queries, setting %d", bytes, rows, queryCount, setting));
-                    const ScanData data(Levels(1, bytes), queryCount, rows);
+                    const ScanData data(bytes, queryCount, rows);
                     Mat mask = Mat::ones(queryCount, (rows + 15) / 16 * 16, CV_8U);
                     if (masked)
                         mask = randomMask(5, mask.rows, mask.cols, 0.5);
@@ -181,83 +159,6 @@ TEST(IIB_Hamming, nearest_as_the_naive_loop)
                     EXPECT_EQ(expectedOfQueries, ofQueries);
                     EXPECT_EQ(expectedOfTrains, ofTrains);
                 }
-}
-
-// Levels that end one soon after the other and far apart, bounds that hardly any pair and that most pairs pass.
-TEST(IIB_Hamming, stops_as_the_naive_loop)
-{
-    for (const Levels& levels : {Levels{2, 8, 32, 128}, Levels{16, 48}, Levels{40, 40, 40}})
-        for (int share : {0, 10, 25, 35, 50, 100})
-            for (int masked = 0; masked < 2; masked++)
-            {
-                SCOPED_TRACE(
-                        format("%d levels, %d %% of the bits, masked %d", (int)levels.size(), share, masked));
-                ScanData data(levels, 9, 6 * 16 - 5);
-                std::vector<PruneStage> stages;
-                for (int level = 0; level + 1 < (int)levels.size(); level++)
-                    stages.push_back(PruneStage{level, levels[level] * 8 * share / 100});
-                const Mat mask = randomMask(3, data.queries.rows, 6 * 16, 0.7);
-                Distances expected, found;
-                const HammingSink sink =
-                        sinkFor(found, data.queryThresholds.data(), data.trainThresholds.data());
-                PrunedScan scan = data.scan(stages, sink);
-                scan.pairs.allowed = masked ? mask.data : 0;
-                data.kernels.pruned(scan);
-                std::vector<int64> passed(stages.size(), 0);
-                for (int q = 0; q < data.queries.rows; q++)
-                    for (int t = 0; t < data.trains.rows; t++)
-                    {
-                        size_t stage = 0;
-                        if (masked && !mask.at<uchar>(q, t))
-                            continue;
-                        for (int before = 0; stage < stages.size(); stage++)
-                        {
-                            const int distance = data.distance(q, t, stages[stage].segment);
-                            if (distance - before > stages[stage].most)
-                                break;
-                            before = distance;
-                            passed[stage]++;
-                        }
-                        if (stage == stages.size())
-                            expected[std::make_pair(q, t)] = data.distance(q, t, data.layout.segments() - 1);
-                    }
-                EXPECT_EQ(expected, found);
-                EXPECT_EQ(passed, data.passed);
-            }
-}
-
-// A single stage with limits, as they are and lowered by a margin; limits so low that tiles end early among them.
-TEST(IIB_Hamming, limits_as_the_naive_loop)
-{
-    for (int setting = 0; setting < 15; setting++)
-    {
-        const int margin = std::vector<int>{-1, 0, 10, 40, 400}[setting % 5],
-                  step = 60 / (1 + setting / 5 * 3);
-        SCOPED_TRACE(format("margin %d, steps of %d", margin, step));
-        ScanData data({2, 8, 32, 128}, 7, 40 * 16 - 3);
-        const std::vector<PruneStage> stages(1, PruneStage{3, PruneStage::NO_MAX});
-        std::vector<int> limits(data.queries.rows), expectedLimits;
-        for (size_t q = 0; q < limits.size(); q++)
-            limits[q] = step + step * (int)q;
-        expectedLimits = limits;
-        Distances expected, found;
-        const HammingSink sink = sinkFor(found, data.queryThresholds.data(), data.trainThresholds.data());
-        PrunedScan scan = data.scan(stages, sink);
-        scan.limits = limits.data();
-        data.policy.margin = margin;
-        data.kernels.pruned(scan);
-        for (int q = 0; q < data.queries.rows; q++)
-        {
-            for (int t = 0; margin >= 0 && t < data.trains.rows; t++)
-                expectedLimits[q] = std::min(expectedLimits[q], data.distance(q, t, 3) + margin);
-            for (int t = 0; t < data.trains.rows; t++)
-                if (data.distance(q, t, 3) <= expectedLimits[q])
-                    expected[std::make_pair(q, t)] = data.distance(q, t, 4);
-        }
-        EXPECT_EQ(expected, found);
-        EXPECT_EQ(expectedLimits, limits);
-        EXPECT_EQ((int64)expected.size(), data.passed[0]);
-    }
 }
 
 }  // namespace

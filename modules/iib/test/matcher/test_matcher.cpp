@@ -4,6 +4,8 @@
 
 #include "../support/matcher_oracle.hpp"
 
+#include <numeric>
+
 namespace opencv_test {
 namespace {
 
@@ -89,6 +91,26 @@ TEST(IIB_Matcher, all_together_as_the_oracle)
             if (k == 1)
                 expectRadiusAsOracle(*matcher, oracle, queries);
         }
+}
+
+// Levels that end one soon after the other and far apart, thresholds that hardly any pair and that most pairs pass.
+TEST(IIB_Matcher, any_thresholds_as_the_oracle)
+{
+    for (const std::vector<int>& levels :
+            {std::vector<int>{2, 8, 32, 128}, std::vector<int>{16, 48}, std::vector<int>{40, 40, 40}})
+        for (float threshold : {0.f, 0.1f, 0.25f, 0.35f, 0.5f, 1.f})
+            for (bool masked : {false, true})
+            {
+                SCOPED_TRACE(format("%d levels, %g, masked %d", (int)levels.size(), threshold, masked));
+                const int bytes = std::accumulate(levels.begin(), levels.end(), 0), rows = 91;
+                MatcherOracle oracle;
+                oracle.levelSizes = levels;
+                oracle.thresholds.assign(levels.size() - 1, threshold);
+                oracle.images.push_back(randomDescriptors(2, rows, bytes));
+                if (masked)
+                    oracle.masks.push_back(randomMask(3, 9, rows, 0.7));
+                expectKnnAsOracle(*oracle.matcher(), oracle, randomDescriptors(1, 9, bytes), rows);
+            }
 }
 
 }  // namespace

@@ -89,16 +89,6 @@ TEST(IIB_MatcherEdges, empty_image_among_several_is_skipped)
     EXPECT_EQ(1, matches[0].imgIdx);
 }
 
-TEST(IIB_MatcherEdges, least_distance_at_the_ratio_is_refused)
-{
-    const Ptr<HierarchicalMatcher> matcher = matcherOf({ladder(0, 1), ladder(12, 1)});
-    matcher->setMaxRatio(0.5f);
-    std::vector<DMatch> matches;
-    matcher->match(ladder(3, 2), matches);  // distances 3 and 9, 4 and 8
-    ASSERT_EQ(1u, matches.size());
-    EXPECT_EQ(0, matches[0].queryIdx);
-}
-
 // Also where the float is above the hundredth that it stands for.
 TEST(IIB_MatcherEdges, ties_at_any_hundredth_are_refused)
 {
@@ -148,27 +138,6 @@ TEST(IIB_MatcherEdges, arrays_hold_what_knnMatch_finds)
         }
 }
 
-TEST(IIB_MatcherEdges, compact_result_drops_rows_without_a_match)
-{
-    Matches matches;
-    const Ptr<HierarchicalMatcher> matcher = matcherOf({ladder(0, 3)});
-    matcher->radiusMatch(ladder(1, 300), matches, 4, noArray(), true);
-    ASSERT_EQ(6u, matches.size());  // queries 1 to 6 are within 4 of 0, 1 or 2
-    for (size_t q = 0; q < matches.size(); q++)
-        EXPECT_FALSE(matches[q].empty());
-}
-
-TEST(IIB_MatcherEdges, radius_includes_its_bound_and_zero_throws)
-{
-    Matches matches;
-    const Ptr<HierarchicalMatcher> matcher = matcherOf({ladder(0, 50)});
-    matcher->radiusMatch(ladder(20, 1), matches, 3.f);
-    EXPECT_EQ(7u, matches[0].size());
-    matcher->radiusMatch(ladder(20, 1), matches, 2.9f);
-    EXPECT_EQ(5u, matches[0].size());
-    EXPECT_THROW(matcher->radiusMatch(ladder(20, 1), matches, 0.f), cv::Exception);
-}
-
 // More rows than BFMatcher's 262,144 an image, more images than its 8,191.
 TEST(IIB_MatcherEdges, no_limit_on_rows_and_images)
 {
@@ -207,7 +176,6 @@ TEST(IIB_MatcherEdges, cross_check_with_compact_result)
     EXPECT_TRUE(matches[0].empty());
 }
 
-// opencv#17771
 // Found by fuzzing: the train descriptors had no more than as many neighbours as there were of themselves.
 TEST(IIB_MatcherEdges, cross_check_with_more_neighbours_than_trains)
 {

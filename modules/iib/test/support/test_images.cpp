@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "test_images.hpp"
+#include "box_oracle.hpp"
 #include "descriptor_oracle.hpp"
 
 #include <fstream>
@@ -27,8 +28,7 @@ static Mat_<int> blurred(const Mat_<int>& m, Point direction)
         {
             int sum = 8;
             for (int i = -2; i <= 2; i++)
-                sum += weights[i + 2] * m(std::min(std::max(y + i * direction.y, 0), m.rows - 1),
-                                                std::min(std::max(x + i * direction.x, 0), m.cols - 1));
+                sum += weights[i + 2] * oracle::pixel(m, y + i * direction.y, x + i * direction.x);
             result(y, x) = sum / 16;
         }
     return result;
