@@ -102,7 +102,48 @@ private:
     std::vector<uchar> flags;
 };
 
-void scanPruned(const SearchInput& input, PairBlocks& block, const HammingSink& sink)
+//! Puts the pairs of a block into tables of any k.
+class TableSink CV_FINAL : public HammingSink
+{
+public:
+    TableSink(const PairBlocks& block_, KnnTable& forQueries_, KnnTable* forTrains_)
+        : HammingSink(forQueries_.thresholds() + block_.firstQuery,
+                  forTrains_ ? forTrains_->thresholds() + block_.firstTrain : 0),
+          block(block_), forQueries(forQueries_), forTrains(forTrains_)
+    {
+    }
+    void found(int query, int train, int distance) CV_OVERRIDE
+    {
+        forQueries.insert(block.firstQuery + query, matchKey(distance, block.firstIndex() + train));
+        if (forTrains)
+            forTrains->insert(block.firstTrain + train, matchKey(distance, block.firstQuery + query));
+    }
+
+private:
+    const PairBlocks& block;
+    KnnTable& forQueries;
+    KnnTable* forTrains;
+};
+
+//! Lists all pairs of a block that are below one threshold.
+class ListSink CV_FINAL : public HammingSink
+{
+public:
+    ListSink(const PairBlocks& block_, const int* thresholds, std::vector<std::vector<MatchKey>>& lists_)
+        : HammingSink(thresholds, 0), block(block_), lists(lists_)
+    {
+    }
+    void found(int query, int train, int distance) CV_OVERRIDE
+    {
+        lists[block.firstQuery + query].push_back(matchKey(distance, block.firstIndex() + train));
+    }
+
+private:
+    const PairBlocks& block;
+    std::vector<std::vector<MatchKey>>& lists;
+};
+
+void scanPruned(const SearchInput& input, PairBlocks& block, HammingSink& sink)
 {
     const std::vector<PruneStage>& stages = input.policy.stages;
     const CodeLayout& layout = input.trains.layout();
@@ -143,16 +184,8 @@ void scanNearest(const SearchInput& input, const Range& queries, KnnTable& forQu
             scanSingle(input, block, forQueries, forTrains);
         else
         {
-            // Copies: it runs for each pair, and the compiler cannot know that nobody changes the block meanwhile.
-            const size_t query0 = block.firstQuery, train0 = block.firstTrain, index0 = block.firstIndex();
-            const auto insert = [=, &forQueries](int query, int train, int distance) {
-                forQueries.insert(query0 + query, matchKey(distance, index0 + train));
-                if (forTrains)
-                    forTrains->insert(train0 + train, matchKey(distance, query0 + query));
-            };
-            scanPruned(input, block,
-                    {forQueries.thresholds() + block.firstQuery,
-                            forTrains ? forTrains->thresholds() + block.firstTrain : 0, insert});
+            TableSink sink(block, forQueries, forTrains);
+            scanPruned(input, block, sink);
         }
 }
 
@@ -162,10 +195,8 @@ void scanWithin(
     const std::vector<int> thresholds(std::min(queries.size(), input.blocks.queryCount), radius + 1);
     for (PairBlocks block(input, queries); block.next();)
     {
-        const auto list = [&](int query, int train, int distance) {
-            lists[block.firstQuery + query].push_back(matchKey(distance, block.firstIndex() + train));
-        };
-        scanPruned(input, block, {thresholds.data(), 0, list});
+        ListSink sink(block, thresholds.data(), lists);
+        scanPruned(input, block, sink);
     }
 }
 

@@ -11,15 +11,21 @@ namespace {
 typedef std::vector<int> Levels;
 typedef std::map<std::pair<int, int>, int> Distances;  // of (query, train code)
 
-HammingSink sinkFor(Distances& found, const int* queryThresholds, const int* trainThresholds)
+struct AllPairs : public HammingSink
 {
-    return {queryThresholds, trainThresholds, [&](int query, int train, int distance) {
-                const Distances::const_iterator next = found.lower_bound(std::make_pair(query, train));
-                EXPECT_TRUE(next == found.end() || next->first.first > query)
-                        << "train codes not in ascending order";
-                found[std::make_pair(query, train)] = distance;
-            }};
-}
+    Distances distances;
+    AllPairs(const int* queryThresholds_, const int* trainThresholds_)
+        : HammingSink(queryThresholds_, trainThresholds_)
+    {
+    }
+    void found(int query, int train, int distance) CV_OVERRIDE
+    {
+        const Distances::const_iterator next = distances.lower_bound(std::make_pair(query, train));
+        EXPECT_TRUE(next == distances.end() || next->first.first > query)
+                << "train codes not in ascending order";
+        distances[std::make_pair(query, train)] = distance;
+    }
+};
 
 //! Everything a scan needs.
 struct ScanData
@@ -102,9 +108,9 @@ TEST(IIB_Hamming, scan_as_the_naive_loop)
                     ScanData data(bytes, queryCount, 16 + queryCount * 5);
                     std::fill(data.queryThresholds.begin(), data.queryThresholds.end(), below);
                     data.trainThresholds[3] = bytes * 8 + 1;
-                    Distances expected, found;
-                    const HammingSink sink = sinkFor(found, data.queryThresholds.data(),
-                            bothDirections ? data.trainThresholds.data() : 0);
+                    Distances expected;
+                    AllPairs sink(
+                            data.queryThresholds.data(), bothDirections ? data.trainThresholds.data() : 0);
                     data.kernels.pruned({data.pairs(), PruningPolicy(), sink, 0, 0});
                     for (int q = 0; q < queryCount; q++)
                         for (int t = 0; t < data.trains.rows; t++)
@@ -114,8 +120,9 @@ TEST(IIB_Hamming, scan_as_the_naive_loop)
                             if (distance < below || (bothDirections && t == 3))
                                 expected[std::make_pair(q, t)] = distance;
                         }
-                    ASSERT_EQ(expected, found) << bytes << " bytes, " << queryCount << " queries, below "
-                                               << below << ", both directions " << bothDirections;
+                    ASSERT_EQ(expected, sink.distances)
+                            << bytes << " bytes, " << queryCount << " queries, below " << below
+                            << ", both directions " << bothDirections;
                 }
 }
 

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <climits>
-#include <functional>
 #include <vector>
 
 namespace cv {
@@ -64,10 +63,17 @@ struct NearestScan
 //! Takes the pairs that a scan finds: those whose distance is below the threshold of the query or of the train code.
 struct HammingSink
 {
-    const int* queryThresholds;
-    const int* trainThresholds;  //!< with room for whole CodeBlocks, or null
+    //! The thresholds of train codes have room for whole CodeBlocks, or are null.
+    HammingSink(const int* queryThresholds_, const int* trainThresholds_)
+        : queryThresholds(queryThresholds_), trainThresholds(trainThresholds_)
+    {
+    }
+    virtual ~HammingSink() {}
     //! Indices count from the first of the scan. May lower the thresholds.
-    std::function<void(int query, int train, int distance)> found;
+    virtual void found(int query, int train, int distance) = 0;
+
+    const int* const queryThresholds;
+    const int* const trainThresholds;
 };
 
 //! Where a scan may give a pair up: after a segment, not the last one, and later than that of the stage before.
@@ -95,7 +101,7 @@ struct PrunedScan
 {
     CodePairs pairs;
     const PruningPolicy& policy;
-    const HammingSink& sink;
+    HammingSink& sink;
     int64* passed;  //!< for each stage: adds up the pairs that went on there
     int* limits;    //!< null, or with a single stage: for each query the most bits that may differ there
 };

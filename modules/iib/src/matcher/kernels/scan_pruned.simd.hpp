@@ -15,7 +15,7 @@ namespace {
 class SinkScanner : public Scanner
 {
 public:
-    SinkScanner(const CodePairs& p, const HammingSink& s) : Scanner(p), sink(s) {}
+    SinkScanner(const CodePairs& p, HammingSink& s) : Scanner(p), sink(s) {}
 
 protected:
     //! Negative where a distance is small enough to be found.
@@ -46,14 +46,14 @@ protected:
             sink.found(query, block * CODES_PER_BLOCK + trailingZeros32(lanes), near[i++]);
     }
 
-    const HammingSink& sink;
+    HammingSink& sink;
 };
 
 //! Exhaustive scan; skips the rest of a tile once no pair in it can qualify.
 class FullScanner : public SinkScanner
 {
 public:
-    FullScanner(const CodePairs& p, const HammingSink& s) : SinkScanner(p, s), early(layout.words())
+    FullScanner(const CodePairs& p, HammingSink& s) : SinkScanner(p, s), early(layout.words())
     {
         // In both directions some pair is nearly always near enough. PACKING_ADDERS wants an odd number.
         if (!s.trainThresholds && layout.bytes() > 64)
