@@ -182,11 +182,11 @@ void compareQuads(const CellGrid<Cell>& cells, const LevelShape& shape, const Ce
         const QuadPhase& phase, CellGrid<Parent>& parents, Out out)
 {
     typedef typename QuadRows<Cell>::V V;
-    const Axis x = {edges.x, shape.step};
+    const Axis axis = {edges.x, shape.step};
     const size_t step = parents.rowStep();
     for (int first = 0; first < phase.lanes(); first += CHUNK, out.nextChunk())
     {
-        const ColumnWeights<V> columns(x, phase.dx + first / 2);
+        const ColumnWeights<V> columns(axis, phase.dx + first / 2);
         QuadRows<Cell> quads(cells, phase.dy, phase.dx, first);
         Parent *even = parents.row(0, 0) + first / 2, *odd = parents.row(0, 1) + first / 2;
         Out rows = out;

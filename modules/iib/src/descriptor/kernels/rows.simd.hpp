@@ -134,8 +134,8 @@ void imageChannelRows(
         const T *const top = rows.above + x, *const middle = rows.middle + x, *const below = rows.below + x;
         const auto g = Gradient<T, V>::sobel(top, middle, below);
         const auto h = Gradient<T, V>::sobel(top + N, middle + N, below + N);
-        const auto put = [above](T* to, const V& values) {
-            v_store(to, above ? addModulo(values, vx_load(to + above)) : values);
+        const auto put = [above](T* row, const V& values) {
+            v_store(row, above ? addModulo(values, vx_load(row + above)) : values);
         };
         const auto putBoth = [&](T* row, const V& first, const V& second) {
             put(row + x, first);
