@@ -3,7 +3,6 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../common/image_input.hpp"
-#include "votes.hpp"
 
 #include "opencv2/iib/matcher.hpp"
 #include "opencv2/iib/rotation.hpp"
@@ -14,6 +13,7 @@ namespace iib {
 
 namespace {
 
+static constexpr int MAX_VOTES = 200000;  //!< more pairs of matches would not change estimateRotation()
 static constexpr int TRIED_POINTS = 200;  //!< of each image, the strongest
 static constexpr float UPRIGHT = -1;
 static constexpr double UPRIGHT_WITHIN = 3;  //!< degrees that upright regions bear
@@ -21,6 +21,56 @@ static constexpr double UPRIGHT_WITHIN = 3;  //!< degrees that upright regions b
 const float FIRST_ANGLES[] = {UPRIGHT, 30, 60}, SECOND_ANGLES[] = {UPRIGHT, 90, 180, 270};
 static constexpr float ANGLE_TOLERANCE = 18;      //!< degrees
 static constexpr double LENGTH_TOLERANCE = 1.25;  //!< by which keypoints farther from the camera differ
+
+//! Votes of angles, whole degrees apart; with the sums of their parts of degrees.
+class RotationVotes
+{
+public:
+    RotationVotes() : counts(BINS), sums(BINS) {}
+
+    //! @param degrees from 0 to 360.
+    void add(double degrees)
+    {
+        const int bin = std::min((int)degrees, BINS - 1);
+        counts[bin]++;
+        sums[bin] += degrees - bin;
+    }
+
+    //! Degrees, 0 or more and less than 360: the mean of the votes around the peak; -1 without votes.
+    double peak() const
+    {
+        int best = -1;
+        double most = 0;
+        for (int i = 0; i < BINS; i++)
+        {
+            double score = 0;
+            for (int j = -REACH; j <= REACH; j++)
+                score += (REACH + 1 - std::abs(j)) * counts[(i + j + BINS) % BINS];
+            if (score > most)
+            {
+                most = score;
+                best = i;
+            }
+        }
+        if (best < 0)
+            return -1;
+        double count = 0, sum = 0;
+        for (int j = -REACH; j <= REACH; j++)
+        {
+            const int bin = (best + j + BINS) % BINS;
+            count += counts[bin];
+            sum += counts[bin] * j + sums[bin];
+        }
+        const double angle = std::fmod(best + sum / count + 360, 360);
+        return angle < 360 ? angle : 0;
+    }
+
+private:
+    static constexpr int BINS = 360;
+    static constexpr int REACH = 4;  //!< a vote counts for the bins this near, less for farther ones
+
+    std::vector<double> counts, sums;
+};
 
 struct Described
 {
@@ -34,22 +84,20 @@ void setAngle(std::vector<KeyPoint>& keypoints, float angle)
         kp.angle = angle;
 }
 
-void keepStrongest(std::vector<KeyPoint>& keypoints)
-{
-    const auto strength = [](const KeyPoint& kp) { return cvIsNaN(kp.response) ? -FLT_MAX : kp.response; };
-    std::stable_sort(keypoints.begin(), keypoints.end(),
-            [&](const KeyPoint& a, const KeyPoint& b) { return strength(a) > strength(b); });
-    keypoints.resize(std::min(keypoints.size(), (size_t)TRIED_POINTS));
-}
-
-//! The strongest keypoints at each angle, in the image at half its resolution, where all takes less time.
+//! The strongest keypoints at each angle, in the image at half its resolution, where all takes less time; none of an
+//! empty image.
 template <size_t N>
 std::vector<Described> describeHalf(IIBDescriptorExtractor& extractor, const Mat& image,
         std::vector<KeyPoint> keypoints, const float (&angles)[N])
 {
+    if (image.empty())
+        return {};
     checkImage(image);
     checkKeyPoints(keypoints);
-    keepStrongest(keypoints);
+    const auto strength = [](const KeyPoint& kp) { return cvIsNaN(kp.response) ? -FLT_MAX : kp.response; };
+    std::stable_sort(keypoints.begin(), keypoints.end(),
+            [&](const KeyPoint& a, const KeyPoint& b) { return strength(a) > strength(b); });
+    keypoints.resize(std::min(keypoints.size(), (size_t)TRIED_POINTS));
     Mat half;
     resize(image, half, Size(std::max(image.cols / 2, 1), std::max(image.rows / 2, 1)), 0, 0, INTER_AREA);
     for (KeyPoint& kp : keypoints)
@@ -127,10 +175,54 @@ double findRotation(IIBDescriptorExtractor& extractor, const Mat& image1,
             vote(first[i], second[j], match(*mutual, first[i].codes, second[j].codes),
                     angle < 0 ? angle + 360 : angle, votes);
         }
-    return votes.empty() ? 0 : votes.peak();
+    return std::max(votes.peak(), 0.);
+}
+
+// The position of the keypoint that a match refers to.
+Point2d positionOf(const std::vector<KeyPoint>& keypoints, int index)
+{
+    if (index < 0 || (size_t)index >= keypoints.size())
+        CV_Error(Error::StsOutOfRange,
+                format("a match is of keypoint %d; there are %d", index, (int)keypoints.size()));
+    const Point2f pt = keypoints[index].pt;
+    if (!(std::abs(pt.x) <= FLT_MAX && std::abs(pt.y) <= FLT_MAX))
+        CV_Error(Error::StsBadArg,
+                format("keypoint %d is at (%g, %g); positions must be finite", index, pt.x, pt.y));
+    return pt;
 }
 
 }  // namespace
+
+double estimateRotation(const std::vector<KeyPoint>& keypoints1, const std::vector<KeyPoint>& keypoints2,
+        const std::vector<DMatch>& matches)
+{
+    std::vector<Point2d> from, to;
+    for (const DMatch& m : matches)
+    {
+        from.push_back(positionOf(keypoints1, m.queryIdx));
+        to.push_back(positionOf(keypoints2, m.trainIdx));
+    }
+    const size_t n = from.size();
+    const size_t offsets = n < 2 ? 0 : std::min(n - 1, std::max(MAX_VOTES / n, (size_t)1));
+    RotationVotes votes;
+    for (size_t k = 1; k <= offsets; k++)
+    {
+        const size_t offset = k * (n - 1) / offsets;
+        for (size_t i = 0; i < n; i++)
+        {
+            const size_t j = (i + offset) % n;
+            const Point2d before = from[j] - from[i], after = to[j] - to[i];
+            if (before == Point2d() || after == Point2d())
+                continue;
+            const double angle = std::atan2(before.cross(after), before.dot(after)) * 180 / CV_PI;
+            votes.add(angle < 0 ? angle + 360 : angle);
+        }
+    }
+    const double angle = votes.peak();
+    if (angle < 0)
+        CV_Error(Error::StsBadArg, format("%d matches; a rotation needs two whose positions differ", (int)n));
+    return angle;
+}
 
 double matchRotated(InputArray image1, std::vector<KeyPoint>& keypoints1, InputArray image2,
         std::vector<KeyPoint>& keypoints2, const Ptr<IIBDescriptorExtractor>& extractor,
@@ -149,9 +241,7 @@ double matchRotated(InputArray image1, std::vector<KeyPoint>& keypoints1, InputA
                         rotation));
     const Mat images[] = {image1.getMat(), image2.getMat()};
     if (rotation < 0)
-        rotation = images[0].empty() || images[1].empty()
-                           ? 0
-                           : findRotation(*extractor, images[0], keypoints1, images[1], keypoints2);
+        rotation = findRotation(*extractor, images[0], keypoints1, images[1], keypoints2);
     const bool upright = std::min(rotation, 360 - rotation) <= UPRIGHT_WITHIN;
     // copies, so that what the caller gave stays if something is wrong
     std::vector<KeyPoint> first = keypoints1, second = keypoints2;
