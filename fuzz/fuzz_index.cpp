@@ -6,7 +6,7 @@
 #include "byte_source.hpp"
 #include "file.hpp"
 
-#include "../modules/iib/src/common/fnv1a.hpp"
+#include "opencv2/iib/checked_file.private.hpp"
 #include "opencv2/iib.hpp"
 
 namespace {

@@ -53,9 +53,7 @@ SegmentEntry writeSegment(
     std::vector<uint64> sums((size_t)(((int64)blocks.rows + checkedBlocks - 1) / checkedBlocks));
     forEachPart(blocks, checkedBlocks, [&](int i, const Mat& part) { sums[i] = wordHash(part); });
     CheckedWriter file(filename, KIND);
-    file.number(levels.size(), 4);
-    for (int size : levels)
-        file.number(size, 4);
+    file.list(levels, 4);
     file.number(codes.layout(), 4);
     file.number(checkedBlocks, 4);
     file.number(codes.images(), 8);
@@ -106,10 +104,7 @@ static unsigned readLayout(CheckedReader& header)
 void CodeSegment::map()
 {
     CheckedReader header(name, KIND);
-    bool fits = header.word() == levels.size();
-    for (size_t i = 0; fits && i < levels.size(); i++)
-        fits = (int)header.word() == levels[i];
-    if (!fits)
+    if (header.list<int>(4) != levels)
         header.fail("its levels are not those of the manifest");
     const unsigned layout = readLayout(header);
     const int checkedBlocks = (int)header.word();

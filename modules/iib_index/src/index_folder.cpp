@@ -21,7 +21,7 @@ String segmentOf(const String& folder, uint64 number)
 
 String lockOf(const String& folder) { return folder + "/" + LOCK; }
 
-// ReplacedFile writes NAME.PROCESS-NUMBER.tmp. Formatted again, the numbers have to give the same name.
+// CheckedWriter writes NAME.PROCESS-NUMBER.tmp. Formatted again, the numbers have to give the same name.
 static bool isUnfinished(const String& name)
 {
     const size_t end = name.find(".iib.");

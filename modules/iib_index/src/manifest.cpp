@@ -11,16 +11,12 @@ static const FileKind KIND = {"IIBSHARD", 1, "the manifest of a MappedIndex"};
 CheckedWriter writeManifest(const String& filename, Manifest& manifest)
 {
     CheckedWriter file(filename, KIND);
-    file.number(manifest.levelSizes.size(), 4);
-    for (int size : manifest.levelSizes)
-        file.number(size, 4);
+    file.list(manifest.levelSizes, 4);
     file.number(manifest.segments.size(), 8);
     for (const SegmentEntry& segment : manifest.segments)
         for (uint64 value : {segment.number, segment.rows, segment.images, segment.checksum})
             file.number(value, 8);
-    file.number(manifest.removed.size(), 8);
-    for (uint64 image : manifest.removed)
-        file.number(image, 8);
+    file.list(manifest.removed, 8);
     manifest.checksum = file.seal();
     return file;
 }
@@ -48,10 +44,7 @@ Manifest readManifest(const String& filename)
 {
     CheckedReader file(filename, KIND);
     Manifest manifest;
-    const unsigned levels = file.word();
-    file.expect(levels, 4);
-    for (unsigned i = 0; i < levels; i++)
-        manifest.levelSizes.push_back((int)file.word());
+    manifest.levelSizes = file.list<int>(4);
     const uint64 segments = file.number(8);
     file.expect(segments, 4 * 8);
     for (uint64 i = 0; i < segments; i++)
@@ -61,10 +54,7 @@ Manifest readManifest(const String& filename)
             *value = file.number(8);
         manifest.segments.push_back(segment);
     }
-    const uint64 removed = file.number(8);
-    file.expect(removed, 8);
-    for (uint64 i = 0; i < removed; i++)
-        manifest.removed.push_back(file.number(8));
+    manifest.removed = file.list<uint64>(8);
     manifest.checksum = file.seal();
     file.expectEnd();
     if (!fits(manifest))

@@ -2,7 +2,7 @@
 
 #include "index_fixture.hpp"
 
-#include "../../iib/src/common/fnv1a.hpp"
+#include "opencv2/iib/checked_file.private.hpp"
 
 namespace opencv_test {
 namespace {

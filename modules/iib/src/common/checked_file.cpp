@@ -3,19 +3,143 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../precomp.hpp"
-#include "fnv1a.hpp"
 #include "opencv2/iib/checked_file.private.hpp"
-#include "replaced_file.hpp"
 
+#include <atomic>
+#include <cstdio>
 #include <cstring>
+
+#include <sys/stat.h>
+#ifdef _WIN32
+#define NOMINMAX
+#include <io.h>
+#include <process.h>
+#include <windows.h>
+#else
+#include <cstdlib>
+#include <fcntl.h>
+#include <unistd.h>
+#endif
 
 namespace cv {
 namespace iib {
 
-static const size_t LETTERS = 8;
+namespace {
+
+const size_t LETTERS = 8;
+
+#ifdef _WIN32
+int processId() { return _getpid(); }
+String withoutLinks(const String& name) { return name; }
+void keepRights(std::FILE*, const struct stat&) {}
+bool flushToDisk(std::FILE* file) { return std::fflush(file) == 0 && _commit(_fileno(file)) == 0; }
+bool replace(const String& from, const String& to, const String&)
+{
+    return MoveFileExA(from.c_str(), to.c_str(), MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) != 0;
+}
+#else
+int processId() { return (int)getpid(); }
+
+String withoutLinks(const String& name)
+{
+    char* const resolved = realpath(name.c_str(), 0);
+    const String result = resolved ? resolved : name.c_str();
+    std::free(resolved);
+    return result;
+}
+
+// Rights that cannot be kept are no reason to lose the data.
+void keepRights(std::FILE* file, const struct stat& status)
+{
+    if (fchmod(fileno(file), status.st_mode & 07777) != 0)
+        return;
+}
+
+bool flushToDisk(std::FILE* file) { return std::fflush(file) == 0 && fsync(fileno(file)) == 0; }
+
+bool replace(const String& from, const String& to, const String& folder)
+{
+    if (std::rename(from.c_str(), to.c_str()) != 0)
+        return false;
+    // The new name is safe once the folder is on the disk too; some file systems cannot do that.
+    const int descriptor = ::open(folder.c_str(), O_RDONLY);
+    if (descriptor >= 0)
+    {
+        fsync(descriptor);
+        close(descriptor);
+    }
+    return true;
+}
+#endif
+
+}  // namespace
+
+//! A file that takes the place of another when it is whole: written beside it, flushed to the disk, renamed.
+class ReplacedFile
+{
+public:
+    explicit ReplacedFile(const String& filename) : name(filename), target(withoutLinks(filename)), stream(0)
+    {
+        struct stat status;
+        const bool exists = stat(target.c_str(), &status) == 0;
+        if (exists && (status.st_mode & S_IFMT) != S_IFREG)
+            stream = std::fopen(target.c_str(), "wb");
+        else
+        {
+            static std::atomic<int> counter(0);
+            for (int attempt = 0; attempt < 100 && !stream; attempt++)  // another's name in use
+            {
+                temporary = format("%s.%d-%d.tmp", target.c_str(), processId(), counter++);
+                stream = std::fopen(temporary.c_str(), "wbx");
+            }
+        }
+        if (!stream)
+            CV_Error(Error::StsError, "Cannot write " + name + ": check the folder and its rights");
+        if (exists && !temporary.empty())
+            keepRights(stream, status);
+    }
+    ReplacedFile(const ReplacedFile&) = delete;
+    ReplacedFile& operator=(const ReplacedFile&) = delete;
+    ~ReplacedFile()
+    {
+        if (stream)
+            std::fclose(stream);
+        if (!temporary.empty())
+            std::remove(temporary.c_str());
+    }
+
+    void write(const void* data, size_t size)
+    {
+        if (size > 0)  // fwrite takes no null pointer, not even for nothing
+            std::fwrite(data, 1, size, stream);
+    }
+
+    void commit()
+    {
+        // Before anything is done, since memory may lack.
+        const size_t slash = target.rfind('/');
+        const String folder = slash == String::npos ? String(".") : target.substr(0, slash + 1);
+        bool good =
+                !std::ferror(stream) && (temporary.empty() ? std::fflush(stream) == 0 : flushToDisk(stream));
+        good = std::fclose(stream) == 0 && good;
+        stream = 0;
+        if (good && !temporary.empty())
+            good = replace(temporary, target, folder);
+        if (!good)
+            CV_Error(Error::StsError,
+                    "Cannot write " + name + ": check the folder, its rights and the free space");
+        temporary.clear();
+    }
+
+private:
+    const String name;    //!< as given, for errors
+    const String target;  //!< with links resolved
+    String temporary;     //!< what the destructor removes; empty if the target is written directly
+    std::FILE* stream;
+};
 
 CheckedWriter::CheckedWriter(const String& filename, const FileKind& kind)
-    : file(makePtr<ReplacedFile>(filename)), hash(makePtr<Fnv1a>()), written(0)
+    : file(makePtr<ReplacedFile>(filename)), written(0)
 {
     bytes(kind.letters, LETTERS);
     number(kind.version, 4);
@@ -23,7 +147,7 @@ CheckedWriter::CheckedWriter(const String& filename, const FileKind& kind)
 
 void CheckedWriter::bytes(const void* data, size_t size)
 {
-    hash->add(data, size);
+    hash.add(data, size);
     unchecked(data, size);
 }
 
@@ -43,14 +167,14 @@ void CheckedWriter::number(uint64 value, int size)
 
 void CheckedWriter::real(float value)
 {
-    unsigned word;
-    std::memcpy(&word, &value, sizeof(word));
-    number(word, 4);
+    Cv32suf bits;
+    bits.f = value;
+    number(bits.u, 4);
 }
 
 uint64 CheckedWriter::seal()
 {
-    const uint64 value = hash->value();
+    const uint64 value = hash.value();
     number(value, 8);
     return value;
 }
@@ -58,8 +182,8 @@ uint64 CheckedWriter::seal()
 void CheckedWriter::commit() { file->commit(); }
 
 CheckedReader::CheckedReader(const String& filename, const FileKind& kind)
-    : name(filename), kindName(kind.name), stream(filename.c_str(), std::ios::binary), hash(makePtr<Fnv1a>()),
-      whole(0), rest(0), format(0)
+    : name(filename), kindName(kind.name), stream(filename.c_str(), std::ios::binary), whole(0), rest(0),
+      format(0)
 {
     stream.seekg(0, std::ios::end);
     const std::streamoff end = stream.tellg();
@@ -80,7 +204,7 @@ CheckedReader::CheckedReader(const String& filename, const FileKind& kind)
 
 uint64 CheckedReader::seal()
 {
-    const uint64 expected = hash->value();
+    const uint64 expected = hash.value();
     if (number(8) != expected)
         fail("it is altered: its checksum does not fit");
     return expected;
@@ -104,7 +228,7 @@ void CheckedReader::bytes(void* data, size_t size)
     stream.read((char*)data, size);
     if (!stream)
         fail("it is truncated");
-    hash->add(data, size);
+    hash.add(data, size);
     rest -= size;
 }
 
@@ -120,10 +244,9 @@ uint64 CheckedReader::number(int size)
 
 float CheckedReader::real()
 {
-    const unsigned bits = word();
-    float value;
-    std::memcpy(&value, &bits, sizeof(value));
-    return value;
+    Cv32suf bits;
+    bits.u = word();
+    return bits.f;
 }
 
 void CheckedReader::fail(const String& why) const

@@ -14,10 +14,7 @@ static const size_t CHUNK_ROWS = 4096;  // what is unpacked or packed at once
 void saveCodes(const String& filename, const MatcherParameters& p, const PackedCodes& codes)
 {
     CheckedWriter file(filename, KIND);
-    const std::vector<int>& levelSizes = codes.layout().levelSizes();
-    file.number(levelSizes.size(), 4);
-    for (int size : levelSizes)
-        file.number(size, 4);
+    file.list(codes.layout().levelSizes(), 4);
     file.number(p.mode, 4);
     file.number(p.crossCheck, 4);
     file.real(p.maxRatio);
@@ -39,14 +36,11 @@ void saveCodes(const String& filename, const MatcherParameters& p, const PackedC
 static MatcherParameters readParameters(CheckedReader& file)
 {
     MatcherParameters p;
-    const unsigned levels = file.word();
-    file.expect(levels, 4);
-    for (unsigned i = 0; i < levels; i++)
-        p.levelSizes.push_back((int)file.word());
+    p.levelSizes = file.list<int>(4);
     p.mode = (int)file.word();
     p.crossCheck = file.word() != 0;
     p.maxRatio = file.real();
-    for (unsigned i = 1; i < levels; i++)
+    for (size_t i = 0; i < p.stages(); i++)
         p.thresholds.push_back(file.real());
     return p;
 }

@@ -12,11 +12,27 @@
 namespace cv {
 namespace iib {
 
-class Fnv1a;
-class ReplacedFile;
+/* Not installed: for this library and for modules that depend on it. Binary files that do not depend on the machine and
+tell when they are altered: eight letters that name the kind of file, u32 version, little-endian numbers and bytes, u64
+FNV-1a hash of all before. */
 
-/* Not installed: for this library and for modules that depend on it. Binary files that do not depend on the machine and tell when they are altered: eight letters that name the kind of
-file, u32 version, little-endian numbers and bytes, u64 FNV-1a hash of all before. */
+//! The 64-bit FNV-1a hash of a sequence of bytes.
+class Fnv1a
+{
+public:
+    Fnv1a() : state(CV_BIG_UINT(0xcbf29ce484222325)) {}
+    void add(const void* data, size_t size)
+    {
+        for (size_t i = 0; i < size; i++)
+            state = (state ^ static_cast<const uchar*>(data)[i]) * CV_BIG_UINT(0x100000001b3);
+    }
+    uint64 value() const { return state; }
+
+private:
+    uint64 state;
+};
+
+class ReplacedFile;
 
 //! The eight letters, the newest version that is understood, and what errors call such a file.
 struct FileKind
@@ -26,6 +42,9 @@ struct FileKind
     const char* name;
 };
 
+/** Writes beside the file of that name, which stays as it is until commit(), and if anything fails: who reads meanwhile gets
+the old one or the new one. What a symbolic link points to is replaced, not the link. What is no regular file, a device or
+a pipe, is written directly. */
 class CV_EXPORTS CheckedWriter
 {
 public:
@@ -33,18 +52,25 @@ public:
     void bytes(const void* data, size_t size);
     void number(uint64 value, int size);
     void real(float value);
+    //! How many there are, and each of them: all numbers of that size.
+    template <typename T> void list(const std::vector<T>& values, int size)
+    {
+        number(values.size(), size);
+        for (T value : values)
+            number((uint64)value, size);
+    }
     //! Writes the hash of all so far, and returns it.
     uint64 seal();
     //! Writes what no hash covers, after seal().
     void unchecked(const void* data, size_t size);
     //! Bytes so far.
     uint64 size() const { return written; }
-    //! Puts the file in its place.
+    //! Puts the file in its place, once it is on the disk. Throws if any write failed.
     void commit();
 
 private:
     Ptr<ReplacedFile> file;
-    Ptr<Fnv1a> hash;
+    Fnv1a hash;
     uint64 written;
 };
 
@@ -56,6 +82,15 @@ public:
     uint64 number(int size);
     unsigned word() { return (unsigned)number(4); }
     float real();
+    template <typename T> std::vector<T> list(int size)
+    {
+        const uint64 count = number(size);
+        expect(count, size);
+        std::vector<T> values;
+        for (uint64 i = 0; i < count; i++)
+            values.push_back((T)number(size));
+        return values;
+    }
     //! Reads the hash of all so far, and returns it; throws if it does not fit.
     uint64 seal();
     //! The file's version, from 1 to the newest that is understood.
@@ -74,7 +109,7 @@ private:
     String name;
     const char* kindName;
     std::ifstream stream;
-    Ptr<Fnv1a> hash;
+    Fnv1a hash;
     uint64 whole, rest;
     unsigned format;
 };
