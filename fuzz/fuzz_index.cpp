@@ -4,7 +4,7 @@
 // index that works and is the same when saved and loaded again.
 
 #include "byte_source.hpp"
-#include "file.hpp"
+#include "support/temporary_file.hpp"
 
 #include "opencv2/iib/checked_file.private.hpp"
 #include "opencv2/iib.hpp"
@@ -26,7 +26,7 @@ std::string withChecksum(std::string bytes)
 
 void checkIndex(const Ptr<HierarchicalMatcher>& matcher)
 {
-    const ScratchFile copy;
+    const opencv_test::TemporaryFile copy;
     matcher->saveIndex(copy.name);
     const Ptr<HierarchicalMatcher> again = HierarchicalMatcher::loadIndex(copy.name);
     FUZZ_CHECK(matcher->levelSizes() == again->levelSizes() &&
@@ -50,7 +50,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
     useThreads(1);
     const bool honest = size > 0 && (data[0] & 1) != 0;
     const std::string bytes = size > 0 ? std::string((const char*)data + 1, size - 1) : std::string();
-    static const ScratchFile file;
+    static const opencv_test::TemporaryFile file;
     file.write(honest ? withChecksum(bytes) : bytes);
     Ptr<HierarchicalMatcher> matcher;
     if (!refused([&] { matcher = HierarchicalMatcher::loadIndex(file.name); }))

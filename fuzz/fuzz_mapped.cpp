@@ -4,7 +4,7 @@
 // index that finds what brute force finds.
 
 #include "byte_source.hpp"
-#include "file.hpp"
+#include "support/temporary_file.hpp"
 
 #include "opencv2/iib/checked_file.private.hpp"
 #include "opencv2/iib_index.hpp"
@@ -83,14 +83,11 @@ bool write(ByteSource& in, const String& folder)
         rows.push_back(in.between(0, 20));
         all += rows.back();
     }
-    const bool tables = in.flag(), oldFormat = in.flag();
-    FileOf codes(in, "IIBCODES", oldFormat ? 1 : 2);
+    const bool tables = in.flag();
+    FileOf codes(in, "IIBCODES", 2);
     codes.number(1, 4);
     codes.number(levelBytes, 4);
-    if (oldFormat)
-        codes.bytes(tables ? "TABLES  " : "ADDERS  ");
-    else
-        codes.number(tables ? 2 : 1, 4);
+    codes.number(tables ? 2 : 1, 4);
     codes.number(checkedBlocks, 4);
     codes.number(images, 8);
     for (int count : rows)
@@ -110,7 +107,7 @@ bool write(ByteSource& in, const String& folder)
     codes.bytes(std::string((4096 - codes.size() % 4096) % 4096, '\0') + blocks);
     const int segments = in.between(0, 3);  // of the same codes
     for (int i = 1; i <= segments; i++)
-        writeFile(folder + format("/segment-%06d.iib", i), codes.whole());
+        opencv_test::writeFile(folder + format("/segment-%06d.iib", i), codes.whole());
 
     FileOf commit(in, "IIBSHARD", 1);
     commit.number(1, 4);
@@ -128,7 +125,7 @@ bool write(ByteSource& in, const String& folder)
     for (int i = 0; i < removed; i++)
         commit.number(i * 2, 8);
     commit.seal();
-    writeFile(folder + "/manifest.iib", commit.whole());
+    opencv_test::writeFile(folder + "/manifest.iib", commit.whole());
     return codes.isAltered() || commit.isAltered() || filled || 2 * (removed - 1) >= segments * images;
 }
 
@@ -169,7 +166,7 @@ void check(const MappedIndex& index)
 extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
 {
     useThreads(1);
-    static const ScratchFolder folder;
+    static const opencv_test::TemporaryFolder folder;
     return runTarget(
             [](ByteSource& in) {
                 const bool mayBeRefused = write(in, folder.name);

@@ -5,8 +5,8 @@
 // is added, copied, cleared, saved, loaded or set must be all that later answers depend on.
 
 #include "byte_source.hpp"
-#include "file.hpp"
 #include "support/matcher_oracle.hpp"
+#include "support/temporary_file.hpp"
 #include "../modules/iib/src/matcher/search.hpp"
 
 #include <numeric>
@@ -175,7 +175,7 @@ private:
     //! An index has the level sizes of its codes.
     void reload(Subject& s)
     {
-        static const ScratchFile file;
+        static const TemporaryFile file;
         if (!s.knowsLevels())
             return;
         s.matcher->saveIndex(file.name);

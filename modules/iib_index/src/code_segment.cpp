@@ -4,16 +4,12 @@
 #include "code_segment.hpp"
 #include "opencv2/iib/checked_file.private.hpp"
 
-#include <cstring>
-
 namespace cv {
 namespace iib {
 
 static const FileKind KIND = {"IIBCODES", 2, "a segment of MappedIndex"};
 static const size_t ALIGNMENT = 4096;
 static const size_t CHECKED_BYTES = 1 << 20;
-static const size_t LETTERS = 8;
-static const char* const LETTERS_OF_LAYOUTS[] = {"ADDERS  ", "TABLES  "};  // of 1 and 2, in format 1
 
 static uint64 aligned(uint64 offset) { return (offset + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT; }
 
@@ -83,30 +79,16 @@ const SearchedCodes& CodeSegment::codes()
     return *packed;
 }
 
-static unsigned readLayout(CheckedReader& header)
-{
-    unsigned layout = 0;
-    if (header.version() == 1)
-    {
-        char letters[LETTERS];
-        header.bytes(letters, LETTERS);
-        for (unsigned i = 1; i <= 2; i++)
-            if (std::memcmp(letters, LETTERS_OF_LAYOUTS[i - 1], LETTERS) == 0)
-                layout = i;
-    }
-    else
-        layout = header.word();
-    if (!SearchedCodes::knows(layout))
-        header.fail("its layout is unknown");
-    return layout;
-}
-
 void CodeSegment::map()
 {
     CheckedReader header(name, KIND);
+    if (header.version() == 1)
+        header.fail("no release wrote its format 1: make the index anew");
     if (header.list<int>(4) != levels)
         header.fail("its levels are not those of the manifest");
-    const unsigned layout = readLayout(header);
+    const unsigned layout = header.word();
+    if (!SearchedCodes::knows(layout))
+        header.fail("its layout is unknown");
     const int checkedBlocks = (int)header.word();
     const uint64 images = header.number(8);
     header.expect(images, 8);

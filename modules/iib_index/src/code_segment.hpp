@@ -12,8 +12,7 @@ namespace iib {
 /* Format 2 of a segment, a checked file: u32: number of levels, each level's bytes, layout, checked blocks: blocks of
 SearchedCodes that a checksum is for; u64: number of images, each image's rows, a checksum for each of the checked blocks; the
 hash. Then zeros up to a multiple of 4096 bytes, and from there the blocks of SearchedCodes. Checksums are FNV-1a of
-little-endian words of 64 bits.
-Format 1 has eight letters in place of the layout: "ADDERS  " for 1, "TABLES  " for 2. */
+little-endian words of 64 bits. */
 
 //! What the manifest says of a segment.
 struct SegmentEntry
