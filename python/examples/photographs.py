@@ -7,7 +7,7 @@ A SCENE is a folder with images/. With poses.txt too (TUM: name, camera's centre
 the truth, else those of two methods with each other: after a robust similarity, the medians of a centre's distance in per cent
 of that to what the camera sees, and of the angle between both, and how many images are within 5 % and 5 degrees.
 
-`chain` is HessianDetector and UNIVERSAL, `refined` the same with --refine, `SIFT` COLMAP's own, and `normalized` OpenCV's SIFT at
+`chain` is HessianDetector and UNIVERSAL, `SIFT` COLMAP's own, and `normalized` OpenCV's SIFT at
 points of NormalizedDetector. All have the cameras that COLMAP infers, the pairs of the chain (each image with the twenty for
 which its codes vote), COLMAP's verification and its mapper; the largest component counts. With --relit every second image is
 darkened. With --other the images whose names fit no PATTERN become a map, with poses of the chain's reconstruction, and the
@@ -49,9 +49,8 @@ def normalized_sift(image, points):
 def make_database(method, images, points, folder, chain):
     """Points, matches and two-view geometries; `chain` is the chain's database."""
     file = folder / 'database.db'
-    if method in ('chain', 'refined'):
-        build_database(str(images), str(file), Options(FeatureOptions(points=points), pairs='retrieval', verify='none',
-                                                       refine=method == 'refined'))
+    if method == 'chain':
+        build_database(str(images), str(file), Options(FeatureOptions(points=points), pairs='retrieval', verify='none'))
         with pycolmap.Database.open(file) as database:
             for image in database.read_all_images():
                 camera = pycolmap.infer_camera_from_image(images / image.name)
@@ -146,7 +145,7 @@ def find_others(images, other, model, points, work):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('scenes', type=Path, nargs='+', metavar='SCENE')
-    parser.add_argument('--methods', default='chain,refined,SIFT,normalized', help='the chain first (%(default)s)')
+    parser.add_argument('--methods', default='chain,SIFT,normalized', help='the chain first (%(default)s)')
     parser.add_argument('--relit', action='store_true')
     parser.add_argument('--other', help='names of the images of another light, patterns with commas between them')
     parser.add_argument('--points', type=int, default=4000)

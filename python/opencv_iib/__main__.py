@@ -49,8 +49,6 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument('--neighbours', type=int, default=20, help='of sequential and retrieval (%(default)s)')
     command.add_argument('--ratio', type=float, default=.9, help='ratio test beside the cross-check (%(default)s; 1: none)')
     command.add_argument('--verify', default='auto', choices=VERIFIERS, help='two-view geometry (%(default)s)')
-    command.add_argument('--refine', action='store_true',
-                         help='move matched keypoints to where their surroundings fit, drop matches that do not')
     command.add_argument('--workers', type=int, help='threads (one a core)')
     command.add_argument('--scheduler', metavar='ADDRESS', help="have the workers of Dask's scheduler there do it")
     command.add_argument('--force', action='store_true', help='replace a database that is there')
@@ -148,7 +146,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         else:
             options = Options(_feature_options(arguments), arguments.camera_model, arguments.focal,
                               arguments.share_cameras, arguments.pairs, arguments.neighbours, arguments.ratio,
-                              arguments.verify, arguments.refine)
+                              arguments.verify)
             with _client(arguments.scheduler) as client:
                 counts = build_database(arguments.images, arguments.database, options, arguments.force,
                                         arguments.workers, client=client)

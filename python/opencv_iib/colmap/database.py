@@ -37,7 +37,6 @@ CREATE TABLE IF NOT EXISTS two_view_geometries (pair_id INTEGER PRIMARY KEY NOT 
 CREATE TABLE IF NOT EXISTS iib_codes (image_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER NOT NULL,
   cols INTEGER NOT NULL, data BLOB);
 CREATE TABLE IF NOT EXISTS iib_files (name TEXT PRIMARY KEY NOT NULL, stamp TEXT NOT NULL);
-CREATE TABLE IF NOT EXISTS iib_refined (image_id INTEGER PRIMARY KEY NOT NULL);
 '''
 
 #: COLMAP's camera models that a prior focal length alone fills: number, parameters after the focal length(s).
@@ -128,7 +127,7 @@ class Database(contextlib.AbstractContextManager['Database']):
             with contextlib.closing(sqlite3.connect(new, isolation_level=None)) as db:
                 self._db.backup(db)
                 db.execute('PRAGMA journal_mode=DELETE')
-                for table in ('iib_codes', 'iib_files', 'iib_refined', 'iib_settings'):
+                for table in ('iib_codes', 'iib_files', 'iib_settings'):
                     db.execute(f'DROP TABLE {table}')
                 db.execute('VACUUM')
             with open(new, 'rb') as file:
@@ -158,12 +157,7 @@ class Database(contextlib.AbstractContextManager['Database']):
         return dict(self._db.execute('SELECT name, stamp FROM iib_files'))
 
     def forget(self, name: str) -> None:
-        """Removes an image and its pairs.
-
-        :raises SettingsChanged: if it has a part in keypoints that were refined.
-        """
-        if self.refined():
-            raise SettingsChanged(f'{name} was changed or removed after keypoints were refined by it')
+        """Removes an image and its pairs."""
         with self._transaction():
             image, camera = self._db.execute('SELECT image_id, camera_id FROM images WHERE name=?', (name,)).fetchone()
             self._db.execute('DELETE FROM iib_files WHERE name=?', (name,))
@@ -240,53 +234,25 @@ class Database(contextlib.AbstractContextManager['Database']):
             a, b, matches = b, a, matches[:, ::-1]
             inliers = None if inliers is None else inliers[:, ::-1]
             fundamental = None if fundamental is None else fundamental.T
-        with self._transaction():
-            self._put_pair(a, b, matches, inliers, fundamental)
-
-    def _put_pair(self, a: int, b: int, matches: np.ndarray, inliers: Optional[np.ndarray],
-                  fundamental: Optional[np.ndarray]) -> None:
         key = pair_id(a, b)
-        self._db.execute('INSERT OR REPLACE INTO matches VALUES (?, ?, 2, ?)',
-                         (key, len(matches), np.ascontiguousarray(matches, np.uint32).tobytes()))
-        self._db.execute('DELETE FROM two_view_geometries WHERE pair_id=?', (key,))
-        if inliers is not None:
-            zero = np.zeros((3, 3))
-            matrix = zero if fundamental is None else np.ascontiguousarray(fundamental, np.float64)
-            self._db.execute('INSERT INTO two_view_geometries (pair_id, rows, cols, data, config, F, E, H, qvec, tvec) '
-                             'VALUES (?, ?, 2, ?, ?, ?, ?, ?, ?, ?)',
-                             (key, len(inliers), np.ascontiguousarray(inliers, np.uint32).tobytes(),
-                              UNCALIBRATED if len(inliers) else 0, matrix.tobytes(), zero.tobytes(),
-                              zero.tobytes(), np.array([1., 0, 0, 0]).tobytes(), np.zeros(3).tobytes()))
-
-    # Refinement
-
-    def refined(self) -> set[int]:
-        """Numbers of the images whose keypoints were refined."""
-        return {image for image, in self._db.execute('SELECT image_id FROM iib_refined')}
-
-    def matches_with_later(self, image: int, verified: bool) -> dict[int, np.ndarray]:
-        """Matches with images of larger numbers, M x 2 indices of keypoints of `image` and of theirs.
-
-        :param verified: those of the two-view geometries.
-        """
-        first = image * MAX_IMAGE_ID
-        table = 'two_view_geometries' if verified else 'matches'
-        return {key - first: _array(row, np.uint32) for key, *row in self._db.execute(
-            f'SELECT pair_id, rows, cols, data FROM {table} WHERE pair_id > ? AND pair_id < ? AND rows > 0 '
-            'ORDER BY pair_id', (first, first + MAX_IMAGE_ID))}
-
-    def add_refined(self, image: int, keypoints: np.ndarray, pairs: list[tuple[Any, ...]]) -> None:
-        """An image's moved keypoints, and what is left of its pairs with later ones, in one transaction.
-
-        :param keypoints: N x 4, as add_image takes them.
-        :param pairs: arguments of add_pair, the image itself the first of each pair.
-        """
         with self._transaction():
-            self._db.execute('UPDATE keypoints SET data=? WHERE image_id=?',
-                             (np.ascontiguousarray(keypoints, np.float32).tobytes(), image))
-            for pair in pairs:
-                self._put_pair(*pair)
-            self._db.execute('INSERT INTO iib_refined VALUES (?)', (image,))
+            self._db.execute('INSERT INTO matches VALUES (?, ?, 2, ?)',
+                             (key, len(matches), np.ascontiguousarray(matches, np.uint32).tobytes()))
+            if inliers is not None:
+                zero = np.zeros((3, 3))
+                matrix = zero if fundamental is None else np.ascontiguousarray(fundamental, np.float64)
+                self._db.execute('INSERT INTO two_view_geometries (pair_id, rows, cols, data, config, F, E, H, qvec, tvec) '
+                                 'VALUES (?, ?, 2, ?, ?, ?, ?, ?, ?, ?)',
+                                 (key, len(inliers), np.ascontiguousarray(inliers, np.uint32).tobytes(),
+                                  UNCALIBRATED if len(inliers) else 0, matrix.tobytes(), zero.tobytes(),
+                                  zero.tobytes(), np.array([1., 0, 0, 0]).tobytes(), np.zeros(3).tobytes()))
+
+    def matches_with_later(self, image: int) -> dict[int, np.ndarray]:
+        """Matches with images of larger numbers, M x 2 indices of keypoints of `image` and of theirs."""
+        first = image * MAX_IMAGE_ID
+        return {key - first: _array(row, np.uint32) for key, *row in self._db.execute(
+            'SELECT pair_id, rows, cols, data FROM matches WHERE pair_id > ? AND pair_id < ? AND rows > 0 ORDER BY pair_id',
+            (first, first + MAX_IMAGE_ID))}
 
     def counts(self) -> dict[str, int]:
         """Images, keypoints, pairs with matches, matches, verified pairs and verified matches."""

@@ -18,7 +18,6 @@ from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
 from opencv_iib.colmap.images import exif_focal_length, find_images, is_listable, is_utf8, read_grey, stamp
 from opencv_iib.colmap.parallel import Cluster, Crew, Threads, in_parallel
 from opencv_iib.colmap.progress import Progress
-from opencv_iib.colmap.refine import refine_images
 from opencv_iib.colmap.verify import colmap_binary, magsac, matches_importer
 from opencv_iib.matcher import HierarchicalMatcher
 
@@ -38,7 +37,6 @@ class Options:
     neighbours: int = 20  #: images that each is paired with (sequential, retrieval)
     ratio: float = .9  #: ratio test, as HierarchicalMatcher.setMaxRatio; 1: none. Matches are always mutual.
     verify: str = 'auto'  #: one of VERIFIERS; auto: COLMAP's program if it is there, else MAGSAC
-    refine: bool = False  #: move matched keypoints to where their surroundings fit best, and drop matches that do not
 
     def check(self) -> None:
         """:raises ValueError: naming what is wrong, and what there is."""
@@ -209,7 +207,7 @@ def build_database(images: str, database: str, options: Options = Options(), for
     :param force: replace a database that is there, and begin anew if an unfinished one had other options.
     :param workers: threads; None for one a core.
     :param client: a ``distributed.Client`` whose workers describe and match instead. They read the images by the same
-        name; the database is written here, and is the same row for row. Refining is done here too.
+        name; the database is written here, and is the same row for row.
     :return: counts of images, keypoints, pairs, matches, and of images that failed.
     :raises FileExistsError: if the database is there and force is not set.
     :raises ValueError: for options that are none, and for a folder without images.
@@ -227,8 +225,7 @@ def build_database(images: str, database: str, options: Options = Options(), for
     if options.pairs not in PAIRS:
         for _ in pair_lists.from_file(options.pairs, dict.fromkeys(names)):
             pass  # a mistake in it is told before work begins
-    threads = workers or os.cpu_count() or 1
-    crew = Threads(threads) if client is None else Cluster(client)
+    crew = Threads(workers or os.cpu_count() or 1) if client is None else Cluster(client)
     verify = options.verify
     if verify == 'auto':
         verify = 'colmap' if colmap_binary() and all(map(is_listable, names)) else 'magsac'
@@ -243,13 +240,9 @@ def build_database(images: str, database: str, options: Options = Options(), for
         raise FileExistsError(f'{database} is there already: remove it, or pass force (--force)')
     with only_writer(database + '.partial'), Database(database, settings, force) as target:
         failed = describe_images(target, images, names, options, crew, log)
-        features = _features(options.features)
-        sizes = features.level_sizes()
+        sizes = _features(options.features).level_sizes()
         match_pairs(target, list_pairs(target, names, options, sizes), options.ratio, sizes, verify, crew)
         verify_pairs(target, binary, log)
-        if options.refine:
-            refine_images(target, images, features, verify, threads)
-            verify_pairs(target, binary, log)
         counts = {**target.counts(), 'failed': failed}
         target.finish()
     return counts

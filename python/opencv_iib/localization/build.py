@@ -85,7 +85,7 @@ def _fitting_matches(model: Any, names: dict[str, int], database: Database) -> I
     keypoints = functools.lru_cache(1000)(lambda i: database.load_keypoints(i)[:, :2].astype(np.float64))
     all_matches = fit = 0
     for a in sorted(numbers):
-        for b, pairs in database.matches_with_later(a, False).items():
+        for b, pairs in database.matches_with_later(a).items():
             kept = pairs[fitting(model, numbers[a], keypoints(a)[pairs[:, 0]], numbers[b], keypoints(b)[pairs[:, 1]])]
             all_matches, fit = all_matches + len(pairs), fit + len(kept)
             yield numbers[a], numbers[b], kept
