@@ -3,11 +3,7 @@
 #include "keypoints.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <fstream>
 
-#include "csv.hpp"
 #include "metrics.hpp"
 #include "opencv2/features2d.hpp"
 
@@ -18,20 +14,6 @@ bool rosInside(const cv::Point2d& centre, float radius, cv::Size size)
 {
     return centre.x >= radius && centre.y >= radius && centre.x <= size.width - radius &&
            centre.y <= size.height - radius;
-}
-
-//! The numbers of a line; empty if a field is none.
-std::vector<float> parseNumbers(const std::string& line)
-{
-    std::vector<float> values;
-    for (const std::string& field : splitFields(line))
-    {
-        char* end = nullptr;
-        values.push_back(std::strtof(field.c_str(), &end));
-        if (end == field.c_str() || *end != '\0' || !std::isfinite(values.back()))
-            return std::vector<float>();
-    }
-    return values;
 }
 
 }  // namespace
@@ -108,28 +90,6 @@ void orientByCentroid(const cv::Mat& image, float radius, std::vector<cv::KeyPoi
             }
         keypoint.angle = cv::fastAtan2(float(my), float(mx));
     }
-}
-
-std::vector<cv::KeyPoint> readKeypoints(const std::string& file)
-{
-    std::ifstream in(file);
-    if (!in)
-        CV_Error(cv::Error::StsObjectNotFound, file + ": cannot be read");
-    std::vector<cv::KeyPoint> keypoints;
-    std::string line;
-    for (int number = 1; std::getline(in, line); number++)
-    {
-        const std::vector<float> v = parseNumbers(line);
-        const bool names = number == 1 && line.compare(0, 3, "x,y") == 0;
-        if (names || line.empty())
-            continue;
-        if (v.size() < 2 || v.size() > 5 || (v.size() > 2 && v[2] < 0))
-            CV_Error(cv::Error::StsParseError, file + ", line " + std::to_string(number) +
-                                                       ": not x,y[,size[,angle[,response]]] with size >= 0");
-        keypoints.push_back(cv::KeyPoint(v[0], v[1], v.size() > 2 ? v[2] : 0.f, v.size() > 3 ? v[3] : -1.f,
-                v.size() > 4 ? v[4] : 0.f));
-    }
-    return keypoints;
 }
 
 }  // namespace iib_tools

@@ -37,9 +37,4 @@ SeedPoints fastSeeds(const cv::Mat& reference, const cv::Mat& target, const cv::
 //! Sets every angle to the direction from the centre to the intensity centroid of a disc, degrees clockwise.
 void orientByCentroid(const cv::Mat& image, float radius, std::vector<cv::KeyPoint>& keypoints);
 
-/** Reads lines `x,y,size,angle,response` (pixels, pixels, degrees or -1); trailing fields may be missing
-(size 0, angle -1, response 0), and a first line of names is skipped.
-@throws cv::Exception with file and line for anything else. */
-std::vector<cv::KeyPoint> readKeypoints(const std::string& file);
-
 }  // namespace iib_tools

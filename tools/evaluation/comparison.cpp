@@ -31,12 +31,8 @@ void listMatches(const Options& options, const ImagePair& pair, const Detector& 
         const std::string& descriptor, ResultTable& table)
 {
     const LoadedPair loaded = loadPair(pair);
-    const std::vector<Described> reference = describeAll(detector,
-                                         detector.detect(loaded.reference, pair, pair.referenceFile),
-                                         loaded.reference),
-                                 target = describeAll(detector,
-                                         detector.detect(loaded.target, pair, pair.targetFile),
-                                         loaded.target);
+    const std::vector<Described> reference = describeAll(detector, loaded.reference),
+                                 target = describeAll(detector, loaded.target);
     for (size_t i = 0; i < reference.size(); i++)
     {
         const Described &r = reference[i], &t = target[i];
@@ -69,7 +65,6 @@ int comparison(const Options& options, const std::vector<ImagePair>&)
             {"reference", "target", "detector", "descriptor", "x", "y", "target_x", "target_y", "correct"},
             8);
     Options classic = options;
-    classic.keypoints.clear();
     classic.detectors = {"Hessian", "ORB", "SIFT"};
     std::vector<Task> tasks;
     for (size_t i = 0; i + 1 < options.compare.size(); i += 2)

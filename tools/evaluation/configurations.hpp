@@ -10,7 +10,6 @@
 namespace iib_tools {
 
 const float SEED_RADIUS = 32;  //!< pixels; half the side of the ROS of fixed points
-const float DEEP_RADIUS = 64;  //!< the same around keypoints of deep detectors
 
 //! A descriptor with its parameters, under the name that result files carry.
 struct Configuration

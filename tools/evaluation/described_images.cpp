@@ -5,7 +5,7 @@
 namespace iib_tools {
 
 DescribedImages::Result DescribedImages::get(
-        const Detector& detector, const cv::Mat& image, const ImagePair& pair, const std::string& file)
+        const Detector& detector, const cv::Mat& image, const std::string& file)
 {
     const Key key(detector.name, file);
     {
@@ -14,8 +14,7 @@ DescribedImages::Result DescribedImages::get(
         if (found != known_.end())
             return found->second;
     }
-    const Result result = std::make_shared<std::vector<Described>>(
-            describeAll(detector, detector.detect(image, pair, file), image));
+    const Result result = std::make_shared<std::vector<Described>>(describeAll(detector, image));
     const std::lock_guard<std::mutex> lock(mutex_);
     if (known_.emplace(key, result).second)
         order_.push_back(key);

@@ -20,9 +20,8 @@ public:
     //! Keeps so many images of one detector each, of about a megabyte.
     explicit DescribedImages(size_t most = 200) : most_(most) {}
 
-    //! Of the image of a file that belongs to a pair. Two threads that ask for the same at once may both compute it.
-    Result get(
-            const Detector& detector, const cv::Mat& image, const ImagePair& pair, const std::string& file);
+    //! Of the image of a file. Two threads that ask for the same at once may both compute it.
+    Result get(const Detector& detector, const cv::Mat& image, const std::string& file);
 
 private:
     typedef std::pair<std::string, std::string> Key;  // detector, file

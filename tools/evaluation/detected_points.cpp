@@ -14,10 +14,9 @@ void evaluatePair(const Options& options, const ImagePair& pair, const std::vect
     const LoadedPair loaded = loadPair(pair);
     for (const Detector& detector : detectors)
     {
-        const DescribedImages::Result ofReference = described.get(
-                                              detector, loaded.reference, pair, pair.referenceFile),
-                                      ofTarget =
-                                              described.get(detector, loaded.target, pair, pair.targetFile);
+        const DescribedImages::Result ofReference =
+                                              described.get(detector, loaded.reference, pair.referenceFile),
+                                      ofTarget = described.get(detector, loaded.target, pair.targetFile);
         const std::vector<Described>&reference = *ofReference, &target = *ofTarget;
         // IIB, the last one, keeps every point.
         const int correspondences = countCorrespondences(

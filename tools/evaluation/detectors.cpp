@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <tuple>
 
-#include "common/keypoints.hpp"
 #include "opencv2/iib.hpp"
 
 namespace iib_tools {
@@ -31,7 +30,7 @@ void selectStrongest(std::vector<cv::KeyPoint>& keypoints, int count)
 Detector classic(const std::string& name, const std::string& descriptorName,
         const std::function<Feature()>& detector, const std::function<Feature()>& descriptor, int count)
 {
-    const auto detect = [=](const cv::Mat& image, const ImagePair&, const std::string&) {
+    const auto detect = [=](const cv::Mat& image) {
         Detection d;
         detector()->detect(image, d.keypoints);
         selectStrongest(d.keypoints, count);
@@ -56,29 +55,12 @@ Detector normalized(const std::string& name, const std::string& descriptorName,
 //! The library's own, which describes nothing.
 Detector hessian(const std::string& name, int count)
 {
-    const auto detect = [=](const cv::Mat& image, const ImagePair&, const std::string&) {
+    const auto detect = [=](const cv::Mat& image) {
         Detection d = {};
         cv::iib::HessianDetector::create(count)->detect(image, d.keypoints);
         return d;
     };
     return {name, "", cv::iib::IIB::scaleFactorFor("Hessian"), detect, {}};
-}
-
-//! From `<set>/<sequence>/<image>.csv` below the folder; keypoints without a size get a ROS of radius DEEP_RADIUS.
-Detector fromFiles(const KeypointFolder& source, int count)
-{
-    const auto detect = [=](const cv::Mat&, const ImagePair& pair, const std::string& imageFile) {
-        const size_t start = imageFile.find_last_of('/') + 1;
-        const std::string image = imageFile.substr(start, imageFile.find('.', start) - start);
-        const std::string file = source.folder + "/" + pair.set + "/" + pair.sequence + "/" + image;
-        Detection d = {readKeypoints(file + ".csv"), cv::Mat(), 0};
-        for (cv::KeyPoint& keypoint : d.keypoints)
-            if (!(keypoint.size > 0))
-                keypoint.size = 2 * DEEP_RADIUS;
-        selectStrongest(d.keypoints, count);
-        return d;
-    };
-    return {source.name, "", 1.f, detect, {}};
 }
 
 //! What people describe ORB's points with instead; the patches that have a fixed size are of about ORB's.
@@ -148,11 +130,7 @@ std::vector<Detector> detectors(const Options& options)
             CV_Error(cv::Error::StsBadArg, "unknown detector " + name + "; there are " + known);
         chosen.push_back(*found);
     }
-    if (options.detectors.empty())
-        chosen = all;
-    for (const KeypointFolder& source : options.keypoints)
-        chosen.push_back(fromFiles(source, options.points));
-    return chosen;
+    return options.detectors.empty() ? all : chosen;
 }
 
 std::vector<std::string> describedNames(const Detector& detector)
@@ -163,8 +141,9 @@ std::vector<std::string> describedNames(const Detector& detector)
     return names;
 }
 
-std::vector<Described> describeAll(const Detector& detector, const Detection& detection, const cv::Mat& image)
+std::vector<Described> describeAll(const Detector& detector, const cv::Mat& image)
 {
+    const Detection detection = detector.detect(image);
     std::vector<Described> all;
     if (!detector.descriptor.empty())
         all.push_back({detector.descriptor, detection.keypoints, detection.descriptors, detection.norm,

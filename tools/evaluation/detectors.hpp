@@ -24,14 +24,13 @@ struct Detector
     std::string name;
     std::string descriptor;  //!< name of its own descriptor, empty if there is none to compare with
     float scaleFactor;       //!< of IIB on its keypoints
-    //! From an 8-bit grey image, the pair it belongs to and the image's file.
-    std::function<Detection(const cv::Mat&, const ImagePair&, const std::string&)> detect;
-    std::vector<Configuration> others;  //!< of other makers, described at the same points
+    std::function<Detection(const cv::Mat&)> detect;  //!< from an 8-bit grey image
+    std::vector<Configuration> others;                //!< of other makers, described at the same points
 };
 
 /** FAST, AGAST (both with ORB's descriptor), ORB, BRISK, AKAZE, KAZE, SIFT, the same seven on the locally normalized
-image ("ORB normalized"), HessianDetector; of these the ones that Options::detectors names; keypoints from files
-where the options name them. Each gives at most Options::points keypoints, the strongest.
+image ("ORB normalized"), HessianDetector; of these the ones that Options::detectors names. Each gives at most
+Options::points keypoints, the strongest.
 @throws cv::Exception for an unknown name. */
 std::vector<Detector> detectors(const Options& options);
 
@@ -44,10 +43,9 @@ struct Described
     int norm, bytes;
 };
 
-/** The detector's own descriptors if it has some, those of Detector::others, IIB's presets and last IIB's default: in
+/** What describes the detector's points of an image: its own descriptors if it has some, those of Detector::others, IIB's presets and last IIB's default: in
 the same order for every image of a detector. */
-std::vector<Described> describeAll(
-        const Detector& detector, const Detection& detection, const cv::Mat& image);
+std::vector<Described> describeAll(const Detector& detector, const cv::Mat& image);
 
 //! Names of what describeAll gives for every image, without the detector's own.
 std::vector<std::string> describedNames(const Detector& detector);

@@ -8,12 +8,6 @@
 
 namespace iib_tools {
 
-//! Files `<set>/<sequence>/<image>.csv` of a detector's keypoints.
-struct KeypointFolder
-{
-    std::string name, folder;
-};
-
 struct Options
 {
     std::vector<std::string> roots;        //!< folders of sequences
@@ -23,8 +17,7 @@ struct Options
     std::vector<std::string> experiments;  //!< names of experiments to run; empty: all
     std::vector<std::string> saved;        //!< files of saved IIB extractors to compare
     std::vector<std::string> detectors;    //!< of OpenCV's; empty: all
-    std::vector<KeypointFolder> keypoints;
-    std::vector<std::string> compare;  //!< pairs of images to list the matches of several descriptors of
+    std::vector<std::string> compare;      //!< pairs of images to list the matches of several descriptors of
 };
 
 /** Each experiment appends to `<out>/<name>.csv` what is not there yet.

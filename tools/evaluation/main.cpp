@@ -22,18 +22,7 @@ const char KEYS[] =
         "{threads     |<none>|all processors, unless said}"
         "{descriptor  |<none>|an extractor saved by IIBDescriptorExtractor::save, to compare; may be "
         "repeated}"
-        "{detectors   |<none>|one of OpenCV's for detected points, instead of all; may be repeated}"
-        "{keypoints   |<none>|NAME=FOLDER of a detector, with <set>/<sequence>/<image>.csv: "
-        "x,y,size,angle,response; may be repeated}";
-
-KeypointFolder keypointFolder(const std::string& given)
-{
-    const size_t equals = given.find('=');
-    if (equals == 0 || equals == std::string::npos || equals + 1 == given.size() || given.find(',') < equals)
-        CV_Error(
-                cv::Error::StsBadArg, "--keypoints " + given + ": not NAME=FOLDER, the name without a comma");
-    return {given.substr(0, equals), given.substr(equals + 1)};
-}
+        "{detectors   |<none>|one of OpenCV's for detected points, instead of all; may be repeated}";
 
 int run(const CommandLine& line)
 {
@@ -49,8 +38,6 @@ int run(const CommandLine& line)
         cv::setNumThreads(line.whole("threads", 1, 1024));
     options.saved = line.all("descriptor");
     options.detectors = line.all("detectors");
-    for (const std::string& given : line.all("keypoints"))
-        options.keypoints.push_back(keypointFolder(given));
     options.compare = line.all("compare");
     if (options.compare.size() % 2 != 0)
         CV_Error(cv::Error::StsBadArg, "--compare is given twice for each pair of images");

@@ -111,16 +111,15 @@ Outcome poseError(const Points& points, const ViewPair& pair, double threshold)
     return {std::max(degrees((cv::trace(rest) - 1) / 2), direction), inliers};
 }
 
-void evaluatePair(const ViewPair& pair, const ImagePair& names, const std::vector<Detector>& detectors,
-        DescribedImages& described, ResultTable& table)
+void evaluatePair(const ViewPair& pair, const std::vector<Detector>& detectors, DescribedImages& described,
+        ResultTable& table)
 {
     const cv::Mat reference = readImage(pair.referenceFile, cv::IMREAD_GRAYSCALE),
                   target = readImage(pair.targetFile, cv::IMREAD_GRAYSCALE);
     for (const Detector& detector : detectors)
     {
-        const DescribedImages::Result ofReference =
-                                              described.get(detector, reference, names, names.referenceFile),
-                                      ofTarget = described.get(detector, target, names, names.targetFile);
+        const DescribedImages::Result ofReference = described.get(detector, reference, pair.referenceFile),
+                                      ofTarget = described.get(detector, target, pair.targetFile);
         for (size_t i = 0; i < ofReference->size(); i++)
         {
             const Described &r = (*ofReference)[i], &t = (*ofTarget)[i];
@@ -134,7 +133,7 @@ void evaluatePair(const ViewPair& pair, const ImagePair& names, const std::vecto
                 for (double threshold : THRESHOLDS)
                 {
                     const Outcome o = poseError(points, pair, threshold);
-                    table.append({"pose", names.set, names.sequence, names.target, detector.name, r.name,
+                    table.append({"pose", pair.set, pair.sequence, pair.target, detector.name, r.name,
                             ruleName(choice.first, threshold), text(o.error), std::to_string(o.inliers)});
                 }
             }
@@ -147,7 +146,6 @@ void evaluatePair(const ViewPair& pair, const ImagePair& names, const std::vecto
 int wholeTasks(const Options& options, const std::vector<ImagePair>&)
 {
     Options classic = options;
-    classic.keypoints.clear();
     if (classic.detectors.empty())
         classic.detectors = {"ORB", "AKAZE", "SIFT", "ORB normalized", "AKAZE normalized", "SIFT normalized",
                 "Hessian", "Hessian x2"};
@@ -159,20 +157,14 @@ int wholeTasks(const Options& options, const std::vector<ImagePair>&)
     std::vector<Task> tasks;
     for (const ViewPair& pair : findViewPairs(options.roots))
     {
-        ImagePair names;
-        names.set = pair.set;
-        names.sequence = pair.sequence;
-        names.target = pair.target;
-        names.referenceFile = pair.referenceFile;
-        names.targetFile = pair.targetFile;
         std::vector<Detector> missing;  // those of which the table lacks the row that is written last
         for (const Detector& d : all)
-            if (!table.has({"pose", names.set, names.sequence, names.target, d.name, "IIB",
+            if (!table.has({"pose", pair.set, pair.sequence, pair.target, d.name, "IIB",
                         ruleName("both", THRESHOLDS[2])}))
                 missing.push_back(d);
         if (!missing.empty())
-            tasks.push_back({names.name(),
-                    [&, pair, names, missing] { evaluatePair(pair, names, missing, described, table); }});
+            tasks.push_back({pair.set + "/" + pair.sequence + "/" + pair.target,
+                    [&, pair, missing] { evaluatePair(pair, missing, described, table); }});
     }
     const int skipped = runTasks("whole tasks", tasks);
     table.finish();

@@ -2,7 +2,7 @@
 
 #include "../keypoints.hpp"
 #include "opencv2/imgproc.hpp"
-#include "test_folder.hpp"
+#include "opencv2/ts.hpp"
 
 namespace {
 using namespace iib_tools;
@@ -65,28 +65,6 @@ TEST(Keypoints, centroid_angle_turns_with_the_image)
     cv::rotate(image, turned, cv::ROTATE_90_CLOCKWISE);
     orientByCentroid(turned, 32, centre);
     EXPECT_NEAR(90, centre[0].angle, 0.5);
-}
-
-TEST(Keypoints, read_from_a_file)
-{
-    TestFolder folder;
-    folder.write("k.csv", "x,y,size,angle,response\n1.5,2,7,90,0.5\r\n3,4,8\n5,6\n7,8,0\n");
-    const std::vector<cv::KeyPoint> keypoints = readKeypoints(folder.path("k.csv"));
-    ASSERT_EQ(4u, keypoints.size());
-    EXPECT_EQ(8, keypoints[1].size);
-    EXPECT_EQ(0, keypoints[2].size);
-    EXPECT_EQ(0, keypoints[3].size);
-    EXPECT_EQ(1.5f, keypoints[0].pt.x);
-    EXPECT_EQ(90, keypoints[0].angle);
-    EXPECT_EQ(0.5f, keypoints[0].response);
-    EXPECT_EQ(-1, keypoints[1].angle);
-    for (const char* line : {"1", "1,2,-1", "1,2,nan", "a,b,c", "1,2,3,4,5,6", "1,2,3,", "1;2;3"})
-    {
-        folder.write("k.csv", std::string("1,2,3\n") + line + "\n");
-        EXPECT_NE(std::string::npos, messageOf([&] { readKeypoints(folder.path("k.csv")); }).find("line 2"))
-                << line;
-    }
-    EXPECT_NE("", messageOf([&] { readKeypoints(folder.path("missing")); }));
 }
 
 }  // namespace

@@ -53,10 +53,8 @@ def overview(tables):
 
 
 def networks(tables):
-    """Learned descriptors at their own points, for the end of the main table, with IIB's figure at the same points."""
-    detected = group(illumination(tables["detected_points"]), "detector", "descriptor")
-    return [dict(row, licence=descriptors.NETWORKS[row["descriptor"]],
-                 iib=score(detected.get((row["detector"], "IIB"), []))) for row in tables["learned"]]
+    """Learned descriptors at their own points, for the end of the main table."""
+    return [dict(row, licence=descriptors.NETWORKS[row["descriptor"]]) for row in tables["learned"]]
 
 
 def detectors(tables):
@@ -64,13 +62,8 @@ def detectors(tables):
     rows = illumination(tables["detected_points"])
     found = []
     for (detector,), members in group(rows, "detector").items():
-        lines = [{"name": name, "ours": name.startswith("IIB"), "score": score(mine), "learned": False,
-                  "source": None} for name, mine in by_name(members, "descriptor").items()]
-        for row in tables["learned"]:
-            if row["detector"] == detector:
-                lines.append({"name": row["descriptor"], "ours": False, "learned": True, "source": row,
-                              "score": {"correct": float(row["correct"]), "pairs": int(row["pairs"]),
-                                        "bytes": row["bytes"]}})
+        lines = [{"name": name, "ours": name.startswith("IIB"), "score": score(mine)}
+                 for name, mine in by_name(members, "descriptor").items()]
         found.append({"name": detector, "normalized": detector.endswith(" normalized"),
                       "lines": sorted(lines, key=lambda r: -r["score"]["correct"])})
     return found
@@ -197,7 +190,7 @@ def settings(folder):
         path = os.path.join(folder, name)
         if os.path.exists(path):
             with open(path) as file:
-                found += [line.strip() for line in file if line.strip() and not line.startswith("keypoints ")]
+                found += [line.strip() for line in file if line.strip()]
     return found
 
 

@@ -158,56 +158,17 @@ TEST_F(EvaluationTest, broken_files_are_counted_and_the_rest_goes_on)
     EXPECT_GT(recallOf("still", "IIB"), 0.9);
 }
 
-class KeypointFilesTest : public EvaluationTest
-{
-protected:
-    void SetUp() CV_OVERRIDE
-    {
-        EvaluationTest::SetUp();
-        options.experiments = {"detected_points"};
-        options.detectors = {"ORB"};
-        addPoints("plain", "x,y\n", "");
-        addPoints("large", "x,y,size\n", ",128");
-        addPoints("small", "x,y,size\n", ",5");
-    }
-
-    //! The same 150 points in both images of `still`, and of no other sequence.
-    void addPoints(const std::string& name, std::string list, const std::string& size)
-    {
-        folder.makeFolder(name + "/set/still");
-        for (int y = 40; y < 200; y += 16)
-            for (int x = 40; x < 280; x += 16)
-                list += std::to_string(x) + "," + std::to_string(y) + size + "\n";
-        for (const char* image : {"1", "2"})
-            folder.write(name + "/set/still/" + image + ".csv", list);
-        options.keypoints.push_back({name, folder.path(name)});
-    }
-
-    std::string table() const { return contents(options.out + "/detected_points.csv"); }
-};
-
-TEST_F(KeypointFilesTest, several_folders_and_their_sizes)
-{
-    write("still/3.png", cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
-    write("still/depth/3.png", cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
-    EXPECT_EQ(1, evaluate(options));  // the third image has no such file; v_shift is not of changed light
-    const int plain = valueAfter(table(), "set,still,2,plain,IIB,light,170,");
-    EXPECT_GT(plain, 100);
-    EXPECT_EQ(plain, valueAfter(table(), "set,still,2,large,IIB,light,170,"));
-    EXPECT_LT(valueAfter(table(), "set,still,2,small,IIB,light,170,"), plain);
-    EXPECT_EQ(-1, valueAfter(table(), "set,still,2,plain,plain,light,"));
-    EXPECT_GT(valueAfter(table(), "set,still,2,ORB,IIB UNIVERSAL,light,"), 0);
-    EXPECT_EQ(std::string::npos, table().find(",SIFT,"));
-    EXPECT_EQ(0, valueAfter(table(), "set,still,3,ORB,ORB,light,32,"));  // nothing is seen in the third image
-}
-
 TEST_F(EvaluationTest, results_without_a_descriptor_are_completed)
 {
     options.experiments = {"detected_points"};
     options.detectors = {"FAST", "FAST normalized"};
+    write("still/3.png", cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
+    write("still/depth/3.png", cv::Mat(240, 320, CV_8UC1, cv::Scalar(90)));
     evaluate(options);
     const std::string file = options.out + "/detected_points.csv", whole = contents(file);
     EXPECT_GT(valueAfter(whole, "set,still,2,FAST normalized,ORB,light,32,"), 0);
+    EXPECT_EQ(0, valueAfter(whole, "set,still,3,FAST,ORB,light,32,"));  // nothing is seen in the third image
+    EXPECT_EQ(std::string::npos, whole.find(",SIFT,"));
     EXPECT_GT(valueAfter(whole, "set,still,2,FAST normalized,IIB UNIVERSAL,light,128,"), 20);
     std::istringstream lines(whole);
     std::string rest;
@@ -252,13 +213,12 @@ TEST(Detectors, presets_are_described_with_their_own_scale)
     options.points = 50;
     options.detectors = {"ORB"};
     const Detector detector = detectors(options).at(0);
-    const Detection detection = detector.detect(image, ImagePair(), "");
-    std::vector<cv::KeyPoint> keypoints = detection.keypoints;
+    std::vector<cv::KeyPoint> keypoints = detector.detect(image).keypoints;
     cv::iib::IIB::createPreset(cv::iib::IIB::PRESET_UNIVERSAL, detector.scaleFactor)
             ->cv::Feature2D::compute(image, keypoints, expected);
     ASSERT_GT(expected.rows, 20);
     cv::Mat found;
-    for (const Described& d : describeAll(detector, detection, image))
+    for (const Described& d : describeAll(detector, image))
         if (d.name == "IIB UNIVERSAL")
             found = d.descriptors;
     ASSERT_EQ(expected.size(), found.size());

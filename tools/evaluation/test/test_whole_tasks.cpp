@@ -109,14 +109,14 @@ TEST(DescribedImages, the_last_ones_are_kept)
     Detector detector;
     detector.name = "counted";
     detector.scaleFactor = 1;
-    detector.detect = [&](const cv::Mat&, const ImagePair&, const std::string&) {
+    detector.detect = [&](const cv::Mat&) {
         detections++;
         return Detection{{cv::KeyPoint(50, 50, 20)}, cv::Mat(), 0};
     };
     const cv::Mat image(100, 100, CV_8U, cv::Scalar(90));
     DescribedImages described(2);
     const auto detectionsAfter = [&](const char* file) {
-        EXPECT_EQ("IIB", described.get(detector, image, ImagePair(), file)->back().name);
+        EXPECT_EQ("IIB", described.get(detector, image, file)->back().name);
         return detections;
     };
     EXPECT_EQ(1, detectionsAfter("a"));
