@@ -8,22 +8,6 @@
 namespace cv {
 namespace iib {
 
-/* Makes one map of the rows of a single map. Python's bindings take an array of two dimensions where several maps are
- expected for a list, and hand over each of its rows, until OpenCV 5 as a column. */
-static void joinRows(std::vector<Mat>& maps, Size imageSize)
-{
-    const Size row(imageSize.width, 1), column(1, imageSize.width);
-    if ((int)maps.size() != imageSize.height || maps.size() < 2)
-        return;
-    for (const Mat& map : maps)
-        if (map.dims > 2 || (map.size() != row && map.size() != column) || map.type() != maps[0].type())
-            return;
-    Mat whole(imageSize, maps[0].type());
-    for (int y = 0; y < whole.rows; y++)
-        (maps[y].cols == 1 ? Mat(maps[y].t()) : maps[y]).copyTo(whole.row(y));
-    maps.assign(1, whole);
-}
-
 std::vector<Mat> extraMaps(InputArrayOfArrays arrays, int expected, Size imageSize)
 {
     std::vector<Mat> maps;
@@ -31,12 +15,11 @@ std::vector<Mat> extraMaps(InputArrayOfArrays arrays, int expected, Size imageSi
         maps.push_back(arrays.getMat());  // not its rows
     else if (!arrays.empty())
         arrays.getMatVector(maps);
-    if (expected == 1)
-        joinRows(maps, imageSize);
     if ((int)maps.size() != expected)
-        CV_Error(Error::StsBadArg, format("%d extra channels were given to an extractor of %d; "
-                                          "pass them to computeWithChannels or change setExtraChannels",
-                                           (int)maps.size(), expected));
+        CV_Error(Error::StsBadArg,
+                format("%d extra channels were given to an extractor of %d; pass computeWithChannels a list "
+                       "of maps, also of one, or change setExtraChannels",
+                        (int)maps.size(), expected));
     for (size_t i = 0; i < maps.size(); i++)
     {
         const String what = format("extra channel %d", (int)i);

@@ -88,29 +88,6 @@ TEST(IIB_Input, region_of_interest_as_its_copy)
     }
 }
 
-// As Python's bindings hand over one array of two dimensions.
-TEST(IIB_Input, the_rows_of_a_single_extra_map)
-{
-    const Mat image = texture(Size(90, 70), CV_8U, 1);
-    for (int type : {CV_8U, CV_16U, CV_32F})
-    {
-        Mat map;
-        texture(image.size(), CV_8U, 2).convertTo(map, type);
-        std::vector<Mat> rows;
-        for (int y = 0; y < map.rows; y++)
-            rows.push_back(map.row(y).t());
-        const Ptr<IIB> iib = IIB::create();
-        iib->setExtraChannels(1);
-        std::vector<KeyPoint> keypoints = scatter(image.size(), 20, 3.f, 9.f, 3);
-        Mat expected, actual;
-        iib->compute(image, std::vector<Mat>(1, map), keypoints, expected);
-        iib->compute(image, rows, keypoints, actual);
-        EXPECT_EQ(0, differingBits(expected, actual));
-        rows.pop_back();
-        EXPECT_THROW(iib->compute(image, rows, keypoints, actual), cv::Exception);
-    }
-}
-
 TEST(IIB_Input, extra_maps_may_be_regions_and_umats)
 {
     const Mat image = texture(SIZE, CV_8U, 5), whole = texture(Size(250, 220), CV_16U, 6);

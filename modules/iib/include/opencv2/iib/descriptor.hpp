@@ -216,7 +216,7 @@ public:
     @param image 8U, 16U or 32F with 1, 3 (BGR) or 4 (BGRA) channels. Float values are cut into 65535
     steps between the image's own minimum and maximum.
     @param extraChannels as many single-channel maps as getExtraChannels(), each of the image's size, 8U,
-    16U or 32F; a single one needs no list. A cell's value is the mean of the map.
+    16U or 32F; in C++ a single one needs no list. A cell's value is the mean of the map.
     @param keypoints their order is kept; none is removed but by #BORDER_DROP.
     @param descriptors keypoints.size() x descriptorSize(), CV_8U. Empty if the image or the keypoints are.
     @throws cv::Exception for a wrong type, size or number of maps, for pixels that are NaN or infinite,
