@@ -17,7 +17,7 @@ iib_add_test_program(perf iib)
 iib_add_test_program(test iib_index)
 
 # Suites of internals link what the library does not show.
-target_sources(opencv_test_iib PRIVATE "$<FILTER:$<TARGET_OBJECTS:opencv_iib>,INCLUDE,/(matcher/kernels/.*|boxes/(plan|kernels/.*)|descriptor/(kernels/.*|keypoint_batches|parameters|plan|rotated_regions))[.]>")
+target_sources(opencv_test_iib PRIVATE "$<FILTER:$<TARGET_OBJECTS:opencv_iib>,INCLUDE,/(matcher/kernels/.*|boxes/plan|descriptor/(kernels/.*|keypoint_batches|parameters|plan))[.]>")
 
 # The naive oracles are not under test; sanitized, they would take most of the time. Nobody asks for the speed then.
 if(IIB_SANITIZE)

@@ -15,8 +15,7 @@ for wing in ('descriptor', 'matcher', 'detector'):
     ALLOWED[wing] = {wing, wing + '/kernels', 'common'}
 # The boxes are a room of the descriptor: they use its channels and regions, and compute uses them.
 ALLOWED['descriptor'].add('boxes')
-ALLOWED['boxes'] = {'boxes/kernels'} | ALLOWED['descriptor']
-ALLOWED['boxes/kernels'] = {'boxes/kernels', 'descriptor/kernels', 'common'}
+ALLOWED['boxes'] = ALLOWED['descriptor']
 INTRINSICS = re.compile(r'(?:^|[^a-zA-Z_])(?:_mm[0-9]*_|__m(?:128|256|512)|v[a-z]+q_[a-z]*[0-9])', re.MULTILINE)
 
 

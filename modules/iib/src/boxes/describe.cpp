@@ -2,9 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "describe.hpp"
-
-#include "../descriptor/channels.hpp"
+#include "../descriptor/compute.hpp"
 
 namespace cv {
 namespace iib {
@@ -127,7 +125,7 @@ void describeBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBa
         const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels,
         SumCellRowFunc<T, Sum> sumRow, Workspace& workspace, Mat& descriptors)
 {
-    const BoxKernels& kernels = plan.boxKernels;
+    const BoxKernels& kernels = plan.kernels.boxes;
     const BoxSumKernels<Sum>& sums = kernels.sums(Sum());
     const std::vector<Channel> source = {{IIB::CHANNEL_SIGNED_GRAD_X, grey},
             {IIB::CHANNEL_SIGNED_GRAD_Y, grey}, {IIB::CHANNEL_INTENSITY, grey}};
@@ -195,7 +193,7 @@ void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBa
         const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels, Workspace& workspace,
         Mat& descriptors)
 {
-    const BoxKernels& k = plan.boxKernels;
+    const BoxKernels& k = plan.kernels.boxes;
     if (grey.depth() == CV_16U)
         describeBatch<int>(
                 plan, grey, batch, rotated, regions, pixels, k.sumIntRow[rotated], workspace, descriptors);

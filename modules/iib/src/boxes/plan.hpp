@@ -4,9 +4,8 @@
 
 #pragma once
 
+#include "../descriptor/kernels/boxes.hpp"
 #include "../descriptor/parameters.hpp"
-#include "grids.hpp"
-#include "kernels/boxes.hpp"
 
 namespace cv {
 namespace iib {

@@ -4,9 +4,7 @@
 
 #include "compute.hpp"
 
-#include "../boxes/describe.hpp"
 #include "../common/image_input.hpp"
-#include "rotated_regions.hpp"
 
 namespace cv {
 namespace iib {
@@ -21,6 +19,12 @@ struct Job
     bool rotated;
     Indices keypoints;
 };
+
+//! Whether angles come from the image. Without a channel of it, regions stay upright.
+bool findsAngles(const Parameters& p)
+{
+    return p.orientation == IIB::ORIENTATION_GRADIENT && p.channels != 0;
+}
 
 //! The pixels that the descriptor of a region needs.
 Rect pixelsOf(const DescriptorPlan& plan, const SupportRegion& region, Size image)
@@ -49,12 +53,16 @@ std::vector<Job> cutJobs(const std::vector<SupportRegion>& regions, const std::v
 
 bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image)
 {
-    const Parameters& p = plan.parameters;
-    const SupportRegion region = regionOf(keypoint, p);
-    // an angle that is not known yet may be the one that reaches farthest
-    if (p.orientation == IIB::ORIENTATION_GRADIENT && p.channels != 0)
-        return isInsideRotated(region, 45, image);
-    return region.isRotated() ? isInsideRotated(region, region.angle, image) : region.isInside(image);
+    const SupportRegion region = regionOf(keypoint, plan.parameters);
+    const bool unknown = findsAngles(plan.parameters);
+    if (!unknown && !region.isRotated())
+        return region.isInside(image);
+    const Rotation rotation(
+            unknown ? 45 : region.angle);  // an unknown angle may be the one that reaches farthest
+    const double half = std::min(region.side, LARGEST_ROTATED_SIDE) / 2;
+    const double reach = half * (std::abs(rotation.cosine) + std::abs(rotation.sine));
+    const double x = region.centre.x + 0.5, y = region.centre.y + 0.5;
+    return x - reach >= 0 && x + reach <= image.width && y - reach >= 0 && y + reach <= image.height;
 }
 
 void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Mat>& extra,
@@ -66,7 +74,7 @@ void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Ma
     regions.reserve(keypoints.size());
     for (const KeyPoint& kp : keypoints)
         regions.push_back(regionOf(kp, p));
-    if (p.orientation == IIB::ORIENTATION_GRADIENT && p.channels != 0)
+    if (findsAngles(p))
         findAngles(plan, grey, keypoints, regions);
     std::vector<Rect> pixels;
     pixels.reserve(keypoints.size());

@@ -11,10 +11,6 @@
 namespace cv {
 namespace iib {
 
-/** The maps that users pass beside the image. Throws unless there are `expected` single-channel maps of the image's size,
- 8U, 16U or 32F and finite. */
-std::vector<Mat> extraMaps(InputArrayOfArrays arrays, int expected, Size imageSize);
-
 //! Whether the keypoint's support region, upright or rotated, lies inside the image.
 bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image);
 
@@ -47,6 +43,22 @@ void describeUpright(const DescriptorPlan& plan, const std::vector<Channel>& cha
  region: it is sampled on a grid of points, and the gradient is rotated at each. */
 void describeRotated(const DescriptorPlan& plan, const std::vector<Channel>& channels,
         const KeyPointBatch& batch, const std::vector<SupportRegion>& regions, Workspace& workspace,
+        Mat& descriptors);
+
+//! The pixels that the boxes of a region cover, rotated by any angle or upright, in whole cells; some may be reflected.
+Rect boxPixels(const SupportRegion& region, int border, Size image);
+
+/** The descriptors of a batch by MAPPING_BOXES.
+
+Upright boxes lie on a grid, whose edges many of them share. A rotated keypoint needs no samples: the means of gx and gy
+are linear in them and so rotate as they do, and those of |gx| and |gy| come from the means of |gx|, |gy|, |gx + gy| and
+|gx - gy|, that is, of the gradient's magnitude in four directions. Boxes stay upright; only their centres turn.
+
+@param grey the image, CV_8U or CV_16U.
+@param rotated whether the regions of the batch are.
+@param regions of all keypoints, as are their boxPixels() and the rows of descriptors. */
+void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch, bool rotated,
+        const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels, Workspace& workspace,
         Mat& descriptors);
 
 /** The bits of one group of channels, level by level, from the sums over the finest cells of a keypoint; the groups before

@@ -14,6 +14,34 @@ namespace iib {
 
 namespace {
 
+/** The maps that users pass beside the image. Throws unless there are `expected` single-channel maps of the image's size,
+ 8U, 16U or 32F and finite. */
+std::vector<Mat> extraMaps(InputArrayOfArrays arrays, int expected, Size imageSize)
+{
+    std::vector<Mat> maps;
+    if (arrays.isMat() || arrays.isUMat())
+        maps.push_back(arrays.getMat());  // not its rows
+    else if (!arrays.empty())
+        arrays.getMatVector(maps);
+    if ((int)maps.size() != expected)
+        CV_Error(Error::StsBadArg,
+                format("%d extra channels were given to an extractor of %d; pass computeWithChannels "
+                       "a list of maps, also of one, or change setExtraChannels",
+                        (int)maps.size(), expected));
+    for (size_t i = 0; i < maps.size(); i++)
+    {
+        const String what = format("extra channel %d", (int)i);
+        if (maps[i].dims > 2 || maps[i].channels() != 1)
+            CV_Error(Error::StsBadArg, what + format(" has %d channels; it must have 1", maps[i].channels()));
+        if (maps[i].size() != imageSize)
+            CV_Error(Error::StsUnmatchedSizes,
+                    what + format(" is %d x %d; the image is %d x %d", maps[i].cols, maps[i].rows,
+                                   imageSize.width, imageSize.height));
+        checkPixels(maps[i], what);
+    }
+    return maps;
+}
+
 class IIBDescriptorExtractor_Impl CV_FINAL : public IIBDescriptorExtractor
 {
 public:

@@ -8,7 +8,6 @@
 
 #include "channels.hpp"
 #include "keypoint_batches.hpp"
-#include "rotated_regions.hpp"
 #include "plan.hpp"
 
 namespace cv {

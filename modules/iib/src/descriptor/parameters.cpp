@@ -8,8 +8,8 @@
 #include <bitset>
 #include <set>
 
-#include "../boxes/grids.hpp"
 #include "../common/file_numbers.hpp"
+#include "kernels/boxes.hpp"
 
 namespace cv {
 namespace iib {

@@ -65,7 +65,7 @@ Ptr<const DescriptorPlan> makePlan(const Parameters& p)
 {
     const std::vector<int> bytes = levelBytes(p);
     DescriptorPlan plan = {p, finestLevel(p), bytes, std::accumulate(bytes.begin(), bytes.end(), 0), {},
-            BoxPlan(), descriptorKernels(), boxKernels()};
+            BoxPlan(), descriptorKernels()};
     if (plan.isOfBoxes())
         plan.boxes = makeBoxPlan(p);
     else

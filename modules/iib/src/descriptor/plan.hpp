@@ -27,7 +27,6 @@ struct DescriptorPlan
     std::vector<ChannelGroup> groups;  //!< of quads, unless isOfBoxes()
     BoxPlan boxes;                     //!< if isOfBoxes()
     const DescriptorKernels& kernels;
-    const BoxKernels& boxKernels;
 
     bool isOfBoxes() const { return parameters.mapping == IIB::MAPPING_BOXES; }
 

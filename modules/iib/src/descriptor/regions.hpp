@@ -4,16 +4,17 @@
 
 #pragma once
 
+#include "kernels/kernels.hpp"
 #include "parameters.hpp"
 
 namespace cv {
 namespace iib {
 
 //! A bound of the lengths of the n cells in a row of a support region.
-static inline double longestCell(double side, int n) { return std::ceil(side / n); }
+inline double longestCell(double side, int n) { return std::ceil(side / n); }
 
 //! The pixels of an image reflected once at each side: three times as many in a row and in a column, less those of the border.
-static inline Rect reflectedImage(Size image)
+inline Rect reflectedImage(Size image)
 {
     return Rect(1 - image.width, 1 - image.height, 3 * image.width - 2, 3 * image.height - 2);
 }
@@ -61,14 +62,14 @@ struct SupportRegion
 };
 
 //! The place in [0, size) of a pixel that BORDER_REFLECT_101 brings there at the first reflection or the second.
-static inline int reflected(int place, int size)
+inline int reflected(int place, int size)
 {
     const int folded = std::abs(place);
     return std::max(std::min(folded, 2 * (size - 1) - folded), 0);
 }
 
 //! Pixels of a row (or column) of `size` pixels that hold all those of [begin, end), some of which may be reflected.
-static inline Range reflectedRange(int begin, int end, int size)
+inline Range reflectedRange(int begin, int end, int size)
 {
     const int first = std::min(begin, 2 * size - 1 - end), last = std::max(end, 1 - begin);
     return Range(std::max(first, 0), std::min(last, size));
@@ -79,6 +80,61 @@ inline SupportRegion regionOf(const KeyPoint& keypoint, const Parameters& p)
 {
     const double side = std::max((double)p.scaleFactor * keypoint.size, (double)(1 << p.granularity));
     return SupportRegion(keypoint.pt, side, p.orientation == IIB::ORIENTATION_KEYPOINT ? keypoint.angle : -1);
+}
+
+/** A keypoint's angle. The functions of the C library differ in the last place from machine to machine, and with it
+ samples and bits: here, only doubles are added and multiplied, in one order, after an exact reduction. */
+struct Rotation
+{
+    double cosine, sine;  //!< error below 1e-15
+    int steps;            //!< the angle in ORIENTATION_STEPS a turn
+
+    //! @param degrees clockwise in the image; any finite number.
+    explicit Rotation(float degrees)
+    {
+        double angle = std::fmod(degrees, 360.f);  // exact; rounding a huge angle would depend on the machine
+        steps = cvRound((float)angle * ORIENTATION_STEPS / 360);
+        if (angle < 0)
+            angle += 360;
+        const int quadrant = (int)(angle / 90) & 3;
+        const double rest = angle - 90 * quadrant;
+        const bool upper = rest > 45;  // there the sine is the cosine of what is left to 90 degrees
+        const double radians = (upper ? 90 - rest : rest) * (CV_PI / 180);
+        const double small = radians * series(radians, 14), large = series(radians, 15);
+        const double s = upper ? large : small, c = upper ? small : large;
+        const double sines[] = {s, c, -s, -c};
+        sine = sines[quadrant];
+        cosine = sines[(quadrant + 1) & 3];
+    }
+
+private:
+    //! Taylor's, on [0, pi / 4]: from last = 14 on that of sin(x) / x, from 15 on cos(x), where the first term left out is below 1e-16.
+    static double series(double x, int last)
+    {
+        double sum = 1;
+        for (int k = last; k > 0; k -= 2)
+            sum = 1 - x * x * sum / (k * (k + 1));
+        return sum;
+    }
+};
+
+//! A rotated region is cut to this side, so that the offsets of its points fit 32 bits.
+static constexpr double LARGEST_ROTATED_SIDE = 16384;
+
+//! An upright square that holds the region at any angle, and two pixels for roundings.
+inline SupportRegion circumscribed(const SupportRegion& region)
+{
+    return SupportRegion(region.centre, 2 * (std::min(region.side, LARGEST_ROTATED_SIDE) * 0.7072 + 2));
+}
+
+//! The pixels of the image that a region may sample at any angle, at least one. @param border one of IIB::Border.
+inline Rect rotatedPixels(const SupportRegion& region, int border, Size image)
+{
+    const SupportRegion square = circumscribed(region);
+    const Rect r = square.pixels(square.bounds(image, border));
+    const Range x = reflectedRange(r.x, r.x + r.width, image.width),
+                y = reflectedRange(r.y, r.y + r.height, image.height);
+    return Rect(x.start, y.start, x.size(), y.size());
 }
 
 }  // namespace iib

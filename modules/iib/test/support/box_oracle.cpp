@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../../src/descriptor/rotated_regions.hpp"
+#include "../../src/descriptor/regions.hpp"
 
 namespace oracle {
 

@@ -4,6 +4,7 @@
 
 #pragma once
 
+#include "boxes.hpp"
 #include "rotated_samples.hpp"
 
 namespace cv {
@@ -60,18 +61,6 @@ template <typename T> struct PixelKernels
     RotatedSampleKernels<T> rotated;
 };
 
-/** What a reader sees of sums of GROUP_CHANNELS channels: the last rows, in a ring. Row (y - origin.y) % count holds the sums
- over the image's rows [origin.y, y): those of an integral image, side by side in each pixel, left of the pixels origin.x,
- origin.x + 1, ...; or those down the columns, a plane for each channel. A cell's sum, as the difference of its corners, is
- right if a Sum can hold it, however large the image. */
-template <typename Sum> struct RingRows
-{
-    const Sum* data;
-    size_t step;   //!< elements from row to row
-    int count;     //!< rows in the ring
-    Point origin;  //!< in the image
-};
-
 //! From a row of each channel: out = above + sums along the row; both begin left of the first pixel, with 0.
 template <typename T, typename Sum>
 using SumRowFunc = void (*)(const T* const planes[GROUP_CHANNELS], int width, const Sum* above, Sum* out);
@@ -113,6 +102,7 @@ struct DescriptorKernels
     BitsKernels<ushort> shortBits;
     BitsKernels<unsigned> longBits;
     BitsKernels<double> doubleBits;  //!< where 32-bit integers are too small
+    BoxKernels boxes;
 
     //! The edges of n x n cells of a square with this top left corner and side, n a power of two, clamped to bounds.
     void (*cellEdges)(Point2d corner, double side, int n, Rect bounds, CellEdges& edges);

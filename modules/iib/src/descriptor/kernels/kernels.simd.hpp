@@ -7,9 +7,8 @@
 #include "kernels.hpp"
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-#include "bits.simd.hpp"
+#include "boxes.simd.hpp"
 #include "columns.simd.hpp"
-#include "long_rows.simd.hpp"
 #include "rotated_samples.simd.hpp"
 #endif
 
@@ -42,6 +41,7 @@ DescriptorKernels makeTable()
     k.shortBits = bitsKernels<ushort>();
     k.longBits = bitsKernels<unsigned>();
     k.doubleBits = bitsKernels<double>();
+    k.boxes = boxKernels();
     return k;
 }
 

@@ -4,16 +4,57 @@
 
 #pragma once
 
-// Rows of integral images whose sums 16 bits are too small for: of large cells, and of 16-bit images.
+// Cells whose sums 16 bits are too small for, those of 16-bit images too: rows of integral images of 32 bits, and vectors
+// of doubles in place of v_int32 where sums or products of 32 bits are too small.
 
 #include "rows.simd.hpp"
 
 namespace cv {
+
+CV_CPU_OPTIMIZATION_HAL_NAMESPACE_BEGIN
+
+/* Doubles, or one of them where there are no such vectors (ARMv7, WebAssembly). */
+#if CV_SIMD_64F
+typedef v_float64 v_doubles;
+
+inline v_doubles loadDoubles(const double* p) { return vx_load(p); }
+inline v_doubles repeatedDouble(double v) { return vx_setall_f64(v); }
+#else
+typedef double v_doubles;
+
+template <> struct VTraits<double>
+{
+    static constexpr int max_nlanes = 1;
+};
+inline double loadDoubles(const double* p) { return *p; }
+inline double repeatedDouble(double v) { return v; }
+inline void v_store(double* p, double v) { *p = v; }
+inline double v_min(double a, double b) { return std::min(a, b); }
+inline double v_max(double a, double b) { return std::max(a, b); }
+//! As if a comparison gave a lane of all ones or zeros.
+inline int v_signmask(bool comparison) { return comparison; }
+#endif
+
+CV_CPU_OPTIMIZATION_HAL_NAMESPACE_END
+
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
+
+inline v_doubles loadCells(const double* p) { return loadDoubles(p); }
+inline v_doubles repeated(int v, const v_doubles&) { return repeatedDouble(v); }
+
+inline void storeAlternately(double* even, double* odd, int lane, const v_doubles& v)
+{
+#if CV_AVX512_SKX
+    v_store_low(even + lane / 2, v);
+    v_store_high(odd + lane / 2, v);
+#else
+    v_store((lane % 8 < 4 ? even : odd) + lane / 8 * 4 + lane % 4, v);
+#endif
+}
 
 inline v_uint32 repeatLastFour(const v_uint32& v)
 {

@@ -2,20 +2,15 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "boxes.hpp"
+#pragma once
 
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-#include "../../descriptor/kernels/chosen_bits.simd.hpp"
-#endif
+#include "bits.simd.hpp"
+#include "boxes.hpp"
 
 namespace cv {
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
-const BoxKernels& boxKernels();
-
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
 
@@ -389,18 +384,16 @@ template <typename Sum> BoxSumKernels<Sum> boxSumKernels()
     return k;
 }
 
-}  // namespace
-
-const BoxKernels& boxKernels()
+BoxKernels boxKernels()
 {
-    static const BoxKernels table = {{sumCellRow<false>, sumCellRow<true>},
+    const BoxKernels k = {{sumCellRow<false>, sumCellRow<true>},
             {sumLongCellRow<short, false>, sumLongCellRow<short, true>},
             {sumLongCellRow<int, false>, sumLongCellRow<int, true>}, boxSumKernels<unsigned>(),
             boxSumKernels<int64>(), boxEdges, boxPlaces};
-    return table;
+    return k;
 }
 
-#endif
+}  // namespace
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
