@@ -10,18 +10,6 @@
 namespace cv {
 namespace iib {
 
-static Mat stretchedTo8Bits(const Mat& map)
-{
-    double lowest = 0, highest = 0;
-    minMaxLoc(map, &lowest, &highest);
-    const int first = (int)lowest, range = std::max((int)(highest - lowest), 1);
-    Mat result(map.size(), CV_8U);
-    for (int y = 0; y < map.rows; y++)
-        for (int x = 0; x < map.cols; x++)
-            result.at<uchar>(y, x) = (uchar)(((map.at<ushort>(y, x) - first) * 255 + range / 2) / range);
-    return result;
-}
-
 Mat imageFor(const Feature2D& detector, const Mat& image)
 {
     if (image.empty() || dynamic_cast<const IIBDescriptorExtractor*>(&detector) ||
@@ -31,7 +19,15 @@ Mat imageFor(const Feature2D& detector, const Mat& image)
     checkImage(image);
     if (image.depth() == CV_8U)
         return image;
-    return stretchedTo8Bits(integerMap(image));
+    const Mat map = integerMap(image);
+    double lowest = 0, highest = 0;
+    minMaxLoc(map, &lowest, &highest);
+    const int first = (int)lowest, range = std::max((int)(highest - lowest), 1);
+    Mat result(map.size(), CV_8U);
+    for (int y = 0; y < map.rows; y++)
+        for (int x = 0; x < map.cols; x++)
+            result.at<uchar>(y, x) = (uchar)(((map.at<ushort>(y, x) - first) * 255 + range / 2) / range);
+    return result;
 }
 
 Mat maskFor(InputArray maskArray, Size imageSize)

@@ -26,17 +26,6 @@ inline String describeNode(const FileNode& node)
     return "a map of: " + keys;
 }
 
-//! Whether a number of a file is one of this type.
-inline bool holds(double number, double) { return std::abs(number) <= DBL_MAX; }
-inline bool holds(double number, float) { return std::abs(number) <= FLT_MAX; }
-inline bool holds(double number, int) { return number == std::floor(number) && std::abs(number) <= INT_MAX; }
-inline bool holds(double number, bool) { return number == 0 || number == 1; }
-
-inline const char* expected(double) { return "a number"; }
-inline const char* expected(float) { return "a number"; }
-inline const char* expected(int) { return "a whole number"; }
-inline const char* expected(bool) { return "0 or 1"; }
-
 /** The number of a node, which must be one of type T, else this throws StsParseError with the name.
 
 Where OpenCV's FileStorage has no 64-bit numbers, as in 4.6, it cuts whole numbers of a file to 32 bits, and nothing can
@@ -44,9 +33,14 @@ tell that afterwards.
  */
 template <typename T> T numberOf(const FileNode& node, const String& name)
 {
-    if (!(node.isInt() || node.isReal()) || !holds((double)node, T()))
-        CV_Error(Error::StsParseError, name + " is " + describeNode(node) + "; it must be " + expected(T()));
-    return (T)(double)node;
+    typedef std::numeric_limits<T> Limits;
+    const double number = node.isInt() || node.isReal() ? (double)node : NAN;
+    const double least = (double)Limits::lowest(), most = (double)Limits::max();
+    if (!(number >= least && number <= most) || (Limits::is_integer && number != std::floor(number)))
+        CV_Error(Error::StsParseError, name + " is " + describeNode(node) +
+                                               format("; it must be a %snumber from %g to %g",
+                                                       Limits::is_integer ? "whole " : "", least, most));
+    return (T)number;
 }
 
 //! Reads the number of this name. One that is missing keeps its value.
@@ -62,6 +56,19 @@ inline FileNode nodeNamed(const FileNode& node, const char* name)
 {
     const FileNode inner = node.isMap() ? node[name] : FileNode();
     return inner.isMap() ? inner : node;
+}
+
+//! nodeNamed(), which must be of format 1; throws StsParseError otherwise.
+inline FileNode nodeOfFormat1(const FileNode& node, const char* name)
+{
+    const FileNode fn = nodeNamed(node, name);
+    int version = 0;
+    if (fn.isMap())
+        readNumber(fn, "format", version);
+    if (version != 1)
+        CV_Error(Error::StsParseError,
+                String("the node holds no ") + name + " parameters of format 1: it is " + describeNode(node));
+    return fn;
 }
 
 //! Algorithm::save() of one whose getDefaultName() holds a dot, which a node's name may not: what write() writes, alone.

@@ -86,22 +86,15 @@ public:
     {
         // One node, which is then the first of a file: Algorithm::load() reads what Feature2D::write(file) wrote.
         fs << "HessianDetector"
-           << "{";
-        fs << "format" << 1 << "maxFeatures" << p.maxFeatures << "threshold" << p.threshold << "scales"
-           << p.scales << "sigma" << p.sigma << "normalizationSigma" << p.normalizationSigma;
-        fs << "}";
+           << "{"
+           << "format" << 1 << "maxFeatures" << p.maxFeatures << "threshold" << p.threshold << "scales"
+           << p.scales << "sigma" << p.sigma << "normalizationSigma" << p.normalizationSigma << "}";
     }
 
     using Feature2D::read;
     void read(const FileNode& node) CV_OVERRIDE
     {
-        const FileNode fn = nodeNamed(node, "HessianDetector");
-        int version = 0;
-        if (fn.isMap() && !fn["format"].empty())
-            readNumber(fn, "format", version);
-        if (version != 1)
-            CV_Error(Error::StsParseError,
-                    "the node holds no HessianDetector parameters of format 1: it is " + describeNode(node));
+        const FileNode fn = nodeOfFormat1(node, "HessianDetector");
         HessianParameters r = p;
         readNumber(fn, "maxFeatures", r.maxFeatures);
         readNumber(fn, "threshold", r.threshold);

@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../common/detectors.hpp"
+#include "../common/file_numbers.hpp"
 #include "../common/image_input.hpp"
 #include "local_normalization.hpp"
 
@@ -82,32 +83,26 @@ public:
     using Feature2D::write;
     void write(FileStorage& fs) const CV_OVERRIDE
     {
-        fs << "format" << 1;
+        // one node, as HessianDetector's
+        fs << "NormalizedDetector"
+           << "{"
+           << "format" << 1;
         writeDetector(fs, *this);
+        fs << "}";
     }
 
     using Feature2D::read;
-    void read(const FileNode& fn) CV_OVERRIDE
+    void read(const FileNode& node) CV_OVERRIDE
     {
-        int format = 0;
-        cv::read(fn["format"], format, 0);
-        if (format != 1 || (String)fn["class"] != getDefaultName())
-            CV_Error(Error::StsParseError, "the node holds no NormalizedDetector parameters of format 1");
+        const FileNode fn = nodeOfFormat1(node, "NormalizedDetector");
         const Ptr<NormalizedDetector> other = readDetector(fn, detector).dynamicCast<NormalizedDetector>();
+        if (!other)
+            CV_Error(Error::StsParseError, "the node holds no NormalizedDetector but another class");
         detector = other->getDetector();
         sigma = other->getSigma();
     }
 
-    void save(const String& filename) const CV_OVERRIDE
-    {
-        // a node's name may not hold the dot of getDefaultName()
-        FileStorage fs(filename, FileStorage::WRITE);
-        CV_Assert(fs.isOpened());
-        fs << "NormalizedDetector"
-           << "{";
-        write(fs);
-        fs << "}";
-    }
+    void save(const String& filename) const CV_OVERRIDE { saveAlone(*this, filename); }
 
 private:
     Ptr<Feature2D> detector;

@@ -221,7 +221,7 @@ Ptr<DescriptorMatcher> HierarchicalMatcherImpl::clone(bool emptyTrainData) const
 
 void HierarchicalMatcherImpl::read(const FileNode& node)
 {
-    MatcherParameters p = readParameters(node, getDefaultName(), parameters);
+    MatcherParameters p = readParameters(node, "HierarchicalMatcher", parameters);
     const bool others = p.levelSizes != parameters.levelSizes;
     if (others && index && index->rows() > 0)
         CV_Error(Error::StsBadArg,

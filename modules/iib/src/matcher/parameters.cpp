@@ -51,11 +51,8 @@ void check(const MatcherParameters& p)
 template <typename T> static std::vector<T> readList(const FileNode& node, const char* key)
 {
     // In XML, a list of one is that number, and an empty list a node without anything.
-    if (node.isInt() || node.isReal())
-        return std::vector<T>(1, numberOf<T>(node, key));
     if (!node.isSeq() && node.size() > 0)
-        CV_Error(Error::StsParseError,
-                String(key) + " is " + describeNode(node) + "; it must be a list of numbers");
+        return std::vector<T>(1, numberOf<T>(node, key));
     std::vector<T> values;
     for (const FileNode& number : node)
         values.push_back(numberOf<T>(number, key));
@@ -68,29 +65,22 @@ void writeParameters(FileStorage& fs, const MatcherParameters& p)
        << p.crossCheck << "maxRatio" << p.maxRatio;
 }
 
-static bool has(const FileNode& node, const String& key)
+MatcherParameters readParameters(const FileNode& node, const char* name, const MatcherParameters& before)
 {
-    if (!node.isMap())
-        return false;
-    const std::vector<String> keys = node.keys();
-    return std::find(keys.begin(), keys.end(), key) != keys.end();
-}
-
-MatcherParameters readParameters(const FileNode& node, const String& name, const MatcherParameters& before)
-{
-    if (has(node, name) && !has(node, "levelSizes"))
-        return readParameters(node[name], name, before);
-    if (!has(node, "levelSizes"))
-        CV_Error(Error::StsParseError, "These are not the parameters of " + name +
+    const FileNode fn = nodeNamed(node, name);
+    const std::vector<String> keys = fn.isMap() ? fn.keys() : std::vector<String>();
+    const auto has = [&](const char* key) { return std::find(keys.begin(), keys.end(), key) != keys.end(); };
+    if (!has("levelSizes"))
+        CV_Error(Error::StsParseError, String("These are not the parameters of ") + name +
                                                ", which have levelSizes: there is " + describeNode(node));
     MatcherParameters p = before;
-    p.levelSizes = readList<int>(node["levelSizes"], "levelSizes");
+    p.levelSizes = readList<int>(fn["levelSizes"], "levelSizes");
     p.thresholds.assign(p.stages(), 0.35f);
-    if (has(node, "thresholds"))
-        p.thresholds = readList<float>(node["thresholds"], "thresholds");
-    readNumber(node, "mode", p.mode);
-    readNumber(node, "crossCheck", p.crossCheck);
-    readNumber(node, "maxRatio", p.maxRatio);
+    if (has("thresholds"))
+        p.thresholds = readList<float>(fn["thresholds"], "thresholds");
+    readNumber(fn, "mode", p.mode);
+    readNumber(fn, "crossCheck", p.crossCheck);
+    readNumber(fn, "maxRatio", p.maxRatio);
     check(p);
     return p;
 }

@@ -29,7 +29,7 @@ void check(const MatcherParameters& p);
 void writeParameters(FileStorage& fs, const MatcherParameters& p);
 //! Those of a node that writeParameters filled, or of one that holds such a node under `name`, as Algorithm::save
 //! writes it. What the node does not have stays as it was; levelSizes it must have.
-MatcherParameters readParameters(const FileNode& node, const String& name, const MatcherParameters& before);
+MatcherParameters readParameters(const FileNode& node, const char* name, const MatcherParameters& before);
 
 }  // namespace iib
 }  // namespace cv
