@@ -154,12 +154,14 @@ void scanPruned(const SearchInput& input, PairBlocks& block, HammingSink& sink)
 
     input.cost.all += (uint64)block.pairCount * 8 * layout.bytes();
     uint64 alive = block.pairCount;
-    for (size_t segment = 0, stage = 0; segment < (size_t)layout.segments(); segment++)
+    int bits = 0;
+    for (size_t i = 0; i < stages.size(); i++)
     {
-        input.cost.compared += alive * layout.bits((int)segment);
-        if (stage < stages.size() && stages[stage].segment == (int)segment)
-            alive = passed[stage++];
+        input.cost.compared += alive * (layout.bits(stages[i].words) - bits);
+        bits = layout.bits(stages[i].words);
+        alive = passed[i];
     }
+    input.cost.compared += alive * (8 * layout.bytes() - bits);
 }
 
 // For tables of a single column, without stages.

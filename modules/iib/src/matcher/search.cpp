@@ -76,7 +76,41 @@ KnnTable afterRatio(const KnnTable& found, int k, float maxRatio)
     return result;
 }
 
+//! Random differences of n bits spread by sqrt(n) / 2 around n / 2.
+double spread(int bits) { return std::sqrt((double)bits) / 2; }
+
 }  // namespace
+
+// One stage, as soon as most pairs are beyond the radius; none where that is late or never.
+PruningPolicy radiusPolicy(const CodeLayout& layout, int radius)
+{
+    PruningPolicy policy;
+    policy.limit = radius;
+    for (int words = 1; words * 8 <= layout.words() * 7 && policy.stages.empty(); words += 2)
+        if (radius < layout.bits(words) / 2 - 5 * spread(layout.bits(words)))
+            policy.stages.push_back({words, PruneStage::NO_MAX});
+    return policy;
+}
+
+// The number meant by a float such as .35f is within FLT_EPSILON of it, so that what ties by that number passes.
+PruningPolicy thresholdPolicy(const CodeLayout& layout, const std::vector<float>& thresholds)
+{
+    PruningPolicy policy;
+    for (int level = 0; level + 1 < layout.levels(); level++)
+        policy.stages.push_back({layout.end(level),
+                cvFloor(thresholds[level] * (1. + FLT_EPSILON) * 8 * layout.levelSizes()[level])});
+    return policy;
+}
+
+PruningPolicy adaptivePolicy(const CodeLayout& layout)
+{
+    PruningPolicy policy;
+    if (layout.segments() < 2)
+        return policy;
+    policy.stages.push_back({layout.end(layout.segments() - 2), PruneStage::NO_MAX});
+    policy.margin = cvRound(1.75 * spread(layout.bits(policy.stages[0].words)));
+    return policy;
+}
 
 void addNearest(const SearchInput& input, KnnTable& forQueries)
 {

@@ -117,7 +117,7 @@ void addNearest(const SearchInput& input, KnnTable& forQueries);
 //! Finds all within a radius, in ascending order for each query.
 std::vector<std::vector<MatchKey>> findWithin(const SearchInput& input, int radius);
 
-/* Where comparisons may end: pruning.cpp. */
+/* Where comparisons may end. */
 
 //! A pair within `radius` is found; levels whose sum is beyond it end the comparison.
 PruningPolicy radiusPolicy(const CodeLayout& layout, int radius);

@@ -69,12 +69,9 @@ TEST(IIB_Hamming, layout_comes_back)
             layout.fetch(block.data(), 5, plain.data());
             layout.restore(plain.data(), back.ptr());
             EXPECT_EQ(0, cvtest::norm(descriptor, back, NORM_INF));
-            int bits = 0;
-            for (int segment = 0; segment < layout.segments(); segment++)
-                bits += layout.bits(segment);
-            EXPECT_EQ(8 * layout.bytes(), bits);
-            for (int level = 0; level + 1 < layout.levels(); level++)
-                EXPECT_EQ(8 * levels[level], layout.bits(level));
+            EXPECT_EQ(8 * layout.bytes(), layout.bits(layout.words()));
+            for (int level = 0, bits = 0; level + 1 < layout.levels(); level++)
+                EXPECT_EQ(bits += 8 * levels[level], layout.bits(layout.end(level)));
             std::vector<unsigned> expected(layout.blockWords()), actual(layout.blockWords());
             for (int i = 0; i < 16; i++)
                 layout.store(descriptors.ptr(i), expected.data(), i);
@@ -87,7 +84,7 @@ TEST(IIB_Hamming, last_level_begins_with_every_fourth_word)
 {
     const CodeLayout layout({2, 32}, PACKING_TABLES);
     ASSERT_EQ(3, layout.segments());
-    EXPECT_EQ(64, layout.bits(1));
+    EXPECT_EQ(16 + 64, layout.bits(layout.end(1)));
     Mat descriptor(1, 34, CV_8U, Scalar(0));
     descriptor.colRange(2 + 16, 2 + 20).setTo(255);  // word 4 of the last level
     std::vector<unsigned> plain(layout.words());
@@ -96,8 +93,8 @@ TEST(IIB_Hamming, last_level_begins_with_every_fourth_word)
 }
 
 // The whole kernel against a loop over bits: every number of words, more than fit a vector of bytes included,
-// queries that do and do not fill a tile, one block and several, the last one full or not; bounds that about half the pairs are within, and that
-// hardly any is, so that tiles are left early.
+// queries that do and do not fill a tile, one block and several, the last one full or not; bounds that about half the pairs
+// are within, and that hardly any is.
 TEST(IIB_Hamming, scan_as_the_naive_loop)
 {
     for (int bytes : {1, 4, 5, 12, 31, 32, 64, 68, 170, 248, 252, 256, 260, 682, 1000})

@@ -189,8 +189,8 @@ public:
     resetCost; 0 before any call.
 
     A pair counts with the bits of the levels it was taken to, as if it had been alone, not with those
-    that a vector of pairs reads together; masked pairs count nowhere. So in EXACT mode all bits count, though
-    vectors of pairs that are surely too far apart are left before their end. Calls with a train set of their own
+    that a vector of pairs reads together; masked pairs count nowhere. So in EXACT mode all bits count, but for
+    radiusMatch, which leaves pairs that are too far apart before their end. Calls with a train set of their own
     count as well, since clones with empty train data share the counters. Safe to call from any thread.
      */
     CV_WRAP virtual double matchCost() const = 0;

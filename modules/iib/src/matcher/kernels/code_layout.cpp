@@ -21,21 +21,18 @@ CodeLayout::CodeLayout(const std::vector<int>& levelSizes, CodePacking packing_)
         const bool split = level + 1 == levels() && size > WORD;
         for (int segment = 0; segment < (split ? 2 : 1); segment++)
         {
-            int bits = 0;
             for (int i = 0; i < size; i += WORD)
                 if (!split || (i / WORD % SAMPLE == 0) == (segment == 0))
-                {
-                    const Place place(width + i, std::min(size - i, WORD));
-                    places.push_back(place);
-                    bits += 8 * place.bytes;
-                }
+                    places.push_back({width + i, std::min(size - i, WORD)});
             if (packing == PACKING_ADDERS && places.size() % 2 == 0)
-                places.push_back(Place(0, 0));
+                places.push_back({0, 0});
             ends.push_back((int)places.size());
-            segmentBits.push_back(bits);
         }
         width += size;
     }
+    bitsBefore.push_back(0);
+    for (const Place& place : places)
+        bitsBefore.push_back(bitsBefore.back() + 8 * place.bytes);
 }
 
 // Inlined: it runs for each word of each code.

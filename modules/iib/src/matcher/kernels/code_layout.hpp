@@ -46,8 +46,8 @@ public:
     int segments() const { return (int)ends.size(); }
     //! Words up to the end of a segment; PACKING_ADDERS makes it odd.
     int end(int segment) const { return ends[segment]; }
-    //! Bits of descriptors in a segment.
-    int bits(int segment) const { return segmentBits[segment]; }
+    //! Bits of descriptors in the first words.
+    int bits(int count) const { return bitsBefore[count]; }
     //! Words of a code.
     int words() const { return ends.back(); }
     //! Words of a CodeBlock.
@@ -73,15 +73,14 @@ private:
     struct Place
     {
         int from, bytes;
-
-        Place(int from_, int bytes_) : from(from_), bytes(bytes_) {}
     };
 
     //! Word i of a descriptor's code, plain.
     unsigned word(int i, const uchar* descriptor) const;
 
-    std::vector<int> sizes, ends, segmentBits;
-    std::vector<Place> places;  // of each word
+    std::vector<int> sizes, ends;
+    std::vector<Place> places;    // of each word
+    std::vector<int> bitsBefore;  // each word, and in all
     int width;
     CodePacking packing;
 };

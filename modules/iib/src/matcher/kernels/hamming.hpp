@@ -76,12 +76,12 @@ struct HammingSink
     const int* const trainThresholds;
 };
 
-//! Where a scan may give a pair up: after a segment, not the last one, and later than that of the stage before.
+//! Where a scan may give a pair up: later than at the stage before, and before the end.
 struct PruneStage
 {
     static constexpr int NO_MAX = 1 << 28;
-    int segment;
-    int most;  //!< bits that may differ since the stage before
+    int words;  //!< of a code, an odd number
+    int most;   //!< bits that may differ since the stage before
 };
 
 //! Where pairs are given up on the way from coarse to fine; without stages, never.

@@ -35,13 +35,7 @@ void scanNearest(const NearestScan& scan)
     scanner.keepOfTrains();
 }
 
-void scanPruned(const PrunedScan& scan)
-{
-    if (!scan.policy.stages.empty())
-        scanAll(PrunedScanner(scan), scan.pairs.queries.rows);
-    else
-        scanAll(FullScanner(scan.pairs, scan.sink), scan.pairs.queries.rows);
-}
+void scanPruned(const PrunedScan& scan) { scanAll(PrunedScanner(scan), scan.pairs.queries.rows); }
 
 }  // namespace
 

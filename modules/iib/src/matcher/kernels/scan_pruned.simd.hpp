@@ -11,101 +11,6 @@ namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
-//! Hands pairs that are near enough to a sink.
-class SinkScanner : public Scanner
-{
-public:
-    SinkScanner(const CodePairs& p, HammingSink& s) : Scanner(p), sink(s) {}
-
-protected:
-    //! Negative where a distance is small enough to be found.
-    CV_ALWAYS_INLINE Counts slack(int query, int block, int v, const Counts& distance) const
-    {
-        Counts threshold = vx_setall_s32(sink.queryThresholds[query]);
-        if (sink.trainThresholds)
-            threshold = v_max(threshold, vx_load(sink.trainThresholds + block * CODES_PER_BLOCK + v * WIDTH));
-        return distance - threshold;
-    }
-
-    //! Hands on the pairs whose slack is negative.
-    void collect(int query, int block, const Counts* distances, const Counts* slacks)
-    {
-        int lanes = negativeLanes(slacks);
-        if (!lanes)
-            return;
-        if (incomplete(block))
-        {
-            Counts missed[VECTORS];
-            for (int v = 0; v < VECTORS; v++)
-                missed[v] = missing(query, block, v);
-            lanes &= ~negativeLanes(missed);
-        }
-        int near[CODES_PER_BLOCK];
-        storeLanes(near, distances, lanes);
-        for (int i = 0; lanes; lanes &= lanes - 1)
-            sink.found(query, block * CODES_PER_BLOCK + trailingZeros32(lanes), near[i++]);
-    }
-
-    HammingSink& sink;
-};
-
-//! Exhaustive scan; skips the rest of a tile once no pair in it can qualify.
-class FullScanner : public SinkScanner
-{
-public:
-    FullScanner(const CodePairs& p, HammingSink& s) : SinkScanner(p, s), early(layout.words())
-    {
-        // In both directions some pair is nearly always near enough. PACKING_ADDERS wants an odd number.
-        if (!s.trainThresholds && layout.bytes() > 64)
-            early = layout.words() * 7 / 10 | 1;
-    }
-
-    //! Some queries against all blocks.
-    template <int Q> void row(int query)
-    {
-        setQueries<Q>(query);
-        // A look costs about a sixth of what an early end saves: stop looking where too few tiles end early.
-        for (int block = 0, ended = 0; block < blocks; block++)
-            ended += compare<Q>(query, block, block <= 8 + 6 * ended ? early : layout.words());
-    }
-
-private:
-    //! Returns whether the tile ended after `end` words, before the last.
-    template <int Q> CV_ALWAYS_INLINE bool compare(int query, int block, int end)
-    {
-        Tile<Q> tile;
-        Counts distance[Tile<Q>::SIZE], slacks[Tile<Q>::SIZE];
-        tile.start(queries, codes(block), end);
-        bool near = anyNear<Q>(tile, query, block, distance, slacks);
-        if (end < layout.words())
-        {
-            if (!near)
-                return true;
-            tile.advance(queries, codes(block), end, layout.words());
-            near = anyNear<Q>(tile, query, block, distance, slacks);
-        }
-        for (int q = 0; q < Q && near; q++)
-            collect(query + q, block, distance + q * VECTORS, slacks + q * VECTORS);
-        return false;
-    }
-
-    template <int Q>
-    CV_ALWAYS_INLINE bool anyNear(
-            const Tile<Q>& tile, int query, int block, Counts* distance, Counts* slacks) const
-    {
-        Counts any = vx_setzero_s32();
-        tile.distances(distance);
-        for (int i = 0; i < Tile<Q>::SIZE; i++)
-        {
-            slacks[i] = slack(query + i / VECTORS, block, i % VECTORS, distance[i]);
-            any = any | slacks[i];
-        }
-        return v_check_any(any);
-    }
-
-    int early;  //!< words after which a tile may be left if no pair is near enough so far, since distances only grow
-};
-
 //! Of two arrays of words.
 inline int countDifferences(const unsigned* a, const unsigned* b, int words)
 {
@@ -120,16 +25,16 @@ inline int countDifferences(const unsigned* a, const unsigned* b, int words)
     return count;
 }
 
-//! Gives pairs up at the stages of a scan.
-class PrunedScanner : public SinkScanner
+//! Gives pairs up at the stages of a scan, and hands those that are near enough to its sink.
+class PrunedScanner : public Scanner
 {
 public:
     explicit PrunedScanner(const PrunedScan& s)
-        : SinkScanner(s.pairs, s.sink), scan(s), policy(s.policy), stageCount((int)policy.stages.size()),
-          lists(blocks), trains(s.pairs), words(stageCount + 1)
+        : Scanner(s.pairs), scan(s), policy(s.policy), stageCount((int)policy.stages.size()), lists(blocks),
+          trains(s.pairs), words(stageCount + 1)
     {
         for (int stage = 0; stage < stageCount; stage++)
-            words[stage] = layout.end(policy.stages[stage].segment);
+            words[stage] = policy.stages[stage].words;
         words[stageCount] = layout.words();
     }
 
@@ -140,7 +45,7 @@ public:
         setQueries<Q>(query);
         // Two stages in one go if the second comes soon after the first, where hardly any tile would end.
         int stage = stageCount > 1 && words[1] - words[0] <= 4 ? 1 : 0;
-        stage == 0 ? compareTo<Q, 0>(query, 0, -1) : compareTo<Q, 1>(query, 1, 0);
+        stage == 1 ? compareTo<Q, 1>(query, 1, 0) : compareTo<Q, ANY>(query, 0, -1);
         for (; stage < stageCount; compareTo<Q, ANY>(query, ++stage, -1))
         {
             int counts[Q], limits[Q], pairCount = 0;
@@ -158,18 +63,30 @@ public:
         }
         for (int q = 0; q < Q; q++)
             for (int block = 0; block < blocks; block++)
-            {
-                Counts distance[VECTORS], slacks[VECTORS];
-                for (int v = 0; v < VECTORS; v++)
-                {
-                    distance[v] = lists.load(q, block, v);
-                    slacks[v] = slack(query + q, block, v, distance[v]);
-                }
-                collect(query + q, block, distance, slacks);
-            }
+                collect(query + q, q, block);
     }
 
 private:
+    //! Hands on the pairs of a block that are near enough.
+    void collect(int query, int q, int block)
+    {
+        Counts distances[VECTORS], slack[VECTORS];
+        for (int v = 0; v < VECTORS; v++)
+        {
+            distances[v] = lists.load(q, block, v);
+            Counts threshold = vx_setall_s32(scan.sink.queryThresholds[query]);
+            if (const int* ofTrains = scan.sink.trainThresholds)
+                threshold = v_max(threshold, vx_load(ofTrains + block * CODES_PER_BLOCK + v * WIDTH));
+            slack[v] = distances[v] - threshold;
+        }
+        int lanes = negativeLanes(slack), near[CODES_PER_BLOCK];
+        if (!lanes)
+            return;
+        storeLanes(near, distances, lanes);
+        for (int i = 0; lanes; lanes &= lanes - 1)
+            scan.sink.found(query, block * CODES_PER_BLOCK + trailingZeros32(lanes), near[i++]);
+    }
+
     //! Writes the distances up to a stage, or to the end; NEVER for pairs that ended on the way or there. Adds up the
     //! pairs that go on at stage `counted`, before this one, unless it is negative. STAGE is the stage, or ANY.
     template <int Q, int STAGE> void compareTo(int query, int anyStage, int counted)
@@ -250,6 +167,7 @@ private:
             if (stage + 1 < stageCount)
                 scan.passed[stage + 1] += count;
         }
+        HammingSink& sink = scan.sink;
         const int *list = lists.list(q), *distance = lists.distances(q),
                   *queryThreshold = sink.queryThresholds + query;
         const int* trainThresholds = sink.trainThresholds;
