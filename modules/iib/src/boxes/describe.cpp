@@ -135,7 +135,7 @@ void describeBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBa
     auto* const means = workspace.boxMeans.get<typename BoxSumKernels<Sum>::Mean>(MAX_BOX_MEANS);
     BoxFrame frame;
     frame.bounds = cellsOf(boundsOf(plan.parameters.border, grey.size()));
-    frame.origin = integral.origin;
+    frame.left = integral.origin.x;
     frame.count = integral.count;
     BoxEdges edges;
     const Rotation upright(0);
@@ -148,7 +148,7 @@ void describeBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBa
         band.advance(batch.bandEnd(pixels[k].br().y));
         frame.centre = Point2d((region.centre.x + 0.5) / BOX_CELL, (region.centre.y + 0.5) / BOX_CELL);
         frame.side = region.side / BOX_CELL;
-        frame.oldest = band.oldest();
+        frame.shift = integral.shift(band.oldest());
         if (rotated)
             rotationMatrix(rotation, matrix);
         else

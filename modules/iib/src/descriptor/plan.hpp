@@ -46,8 +46,7 @@ struct Workspace
     static constexpr int MAX_PACKS = 1 + (MAX_EXTRA_CHANNELS + GROUP_CHANNELS - 1) / GROUP_CHANNELS;
 
     ScratchMemory channelRows, ring;
-    ScratchMemory sourceRows[MAX_PACKS], sourcePixels[MAX_PACKS], sparsePixels,
-            planes;  //!< of rotated regions
+    ScratchMemory sourceRows[MAX_PACKS], sourcePixels[MAX_PACKS], planes;  //!< of rotated regions
     CellGrid<ushort> shortCells;
     CellGrid<unsigned> cells, parentCells;
     CellGrid<double> doubleCells;

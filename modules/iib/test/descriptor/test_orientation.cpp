@@ -27,20 +27,25 @@ TEST(IIB_Orientation, as_atan2_for_all_gradients_of_8_bits)
     EXPECT_EQ(0, oracle::orientation(0, 0));
 }
 
-// Every gradient of an 8-bit image, by this machine's kernel.
+// Every gradient that an 8-bit image can have, by this machine's kernel: both components are even, or both are odd.
 TEST(IIB_Orientation, kernel_for_all_gradients_of_8_bits)
 {
-    const int largest = 4 * 255, width = 2 * largest + 1;
-    std::vector<short> gx(width + cv::iib::ROW_PADDING), gy(gx.size()), steps(gx.size());
-    for (int x = 0; x < width; x++)
-        gx[x] = (short)(x - largest);
-    for (int y = -largest; y <= largest; y++)
+    const int largest = 4 * 255, count = largest + 1;
+    std::vector<short> above(3 * count + 2 + cv::iib::ROW_PADDING), middle = above, below = above,
+                                                                    steps = above;
+    for (int gy = -largest; gy <= largest; gy++)
     {
-        std::fill(gy.begin(), gy.end(), (short)y);
-        cv::iib::descriptorKernels().shortPixels.rotated.orientation(
-                gx.data(), gy.data(), steps.data(), width);
-        for (int x = 0; x < width; x++)
-            ASSERT_EQ(oracle::orientation(gx[x], y), steps[x]) << gx[x] << ", " << y;
+        const int odd = gy & 1;
+        for (int i = 0; i < count; i++)
+        {
+            middle[3 * i + 2] = (short)(i - largest / 2);
+            below[3 * i + 1] = (short)((gy - odd) / 2);
+            below[3 * i + 2] = (short)odd;
+        }
+        cv::iib::descriptorKernels().shortPixels.rows.imageChannels(
+                {above.data(), middle.data(), below.data()}, 0, {0, 0, 0, 0, 0, steps.data()}, 0, 3 * count);
+        for (int i = 0; i < count - odd; i++)
+            ASSERT_EQ(oracle::orientation(2 * i - largest + odd, gy), steps[3 * i]) << i << ", " << gy;
     }
 }
 

@@ -113,7 +113,9 @@ TEST(IIB_Rotated, sparse_and_dense_grids_give_the_same_bits)
     for (int depth : {CV_8U, CV_16U})
     {
         const Mat image = texture(Size(1200, 1000), depth, 3);
-        const std::vector<Mat> extra(5, texture(image.size(), CV_8U, 4));
+        std::vector<Mat> extra;
+        for (int i = 0; i < 5; i++)
+            extra.push_back(texture(image.size(), i % 2 ? CV_8U : depth, 4 + i));
         const Ptr<IIB> iib = rotating(4, 63);
         iib->setExtraChannels(5);
         std::vector<KeyPoint> keypoints;

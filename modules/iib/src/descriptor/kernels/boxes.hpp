@@ -115,10 +115,10 @@ struct BoxFrame
 {
     Point2d centre;
     double side;
-    Rect bounds;   //!< the cells that count
-    Point origin;  //!< of the integral image, and its
-    int count;     //!< rows in the ring, and
-    int oldest;    //!< which row of the image is the first at hand
+    Rect bounds;  //!< the cells that count
+    int left;     //!< column of the integral image that is its first
+    int count;    //!< its rows in the ring, and
+    int shift;    //!< where they are there, see RingRows
 };
 
 //! A box anywhere, as the boxes of a rotated keypoint are.

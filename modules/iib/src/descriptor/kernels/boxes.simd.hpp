@@ -147,11 +147,8 @@ inline int boxEdge(double position, double first, double limit)
     return (int)(std::min(std::max(position + 0.5, first), limit) + shift) - shift;
 }
 
-//! The row of the ring for one of the image; `row` counts from the first at hand and is less than twice their number.
-inline int ringRow(int row, int count) { return row - (row >= count ? count : 0); }
-
-//! The row of the image, at hand or not, that was in the ring's first row before those at hand.
-inline int firstRow(const BoxFrame& f) { return f.oldest - (f.oldest - f.origin.y) % f.count; }
+//! The row of the ring for one of the image at hand.
+inline int ringRow(int y, int shift, int count) { return y + shift - (y + shift >= count ? count : 0); }
 
 //! The compiler makes vectors of the loops, with this file's instruction set.
 void edgesAlong(double centre, double side, Range bounds, const double* offsets, int* edges)
@@ -178,12 +175,12 @@ void boxEdges(const BoxFrame& f, const double (&offsets)[2][MAX_BOX_PLACES], Box
     }
     weightsOf(edges.x[0], edges.x[1], 1, edges.xWeights);
     weightsOf(edges.y[0], edges.y[1], BOX_MEAN_STEPS, edges.yWeights);
-    const int left = f.origin.x, first = firstRow(f), count = f.count;
+    const int left = f.left, shift = f.shift, count = f.count;
     for (int end = 0; end < 2; end++)
         for (int i = 0; i < MAX_BOX_PLACES; i++)
         {
             edges.x[end][i] = (edges.x[end][i] - left) * BOX_LANES;
-            edges.y[end][i] = ringRow(edges.y[end][i] - first, count);
+            edges.y[end][i] = ringRow(edges.y[end][i], shift, count);
         }
 }
 
@@ -191,7 +188,6 @@ void boxEdges(const BoxFrame& f, const double (&offsets)[2][MAX_BOX_PLACES], Box
 void boxPlaces(const BoxFrame& f, const BoxGridShape& grid, const double* centres, Point2d direction,
         double side, int step, BoxPlaces& places)
 {
-    const int first = firstRow(f);
     const double half = side / 2;
     const double cosine = direction.x * f.side, sine = direction.y * f.side;
     const double left = f.bounds.x, right = f.bounds.x + f.bounds.width;
@@ -208,8 +204,8 @@ void boxPlaces(const BoxFrame& f, const BoxGridShape& grid, const double* centre
     {
         const int x0 = boxEdge(boxX[i], left, right), x1 = boxEdge(boxX[i] + side, left, right);
         const int y0 = boxEdge(boxY[i], top, bottom), y1 = boxEdge(boxY[i] + side, top, bottom);
-        places.above[i] = ringRow(y0 - first, f.count) * step + (x0 - f.origin.x);
-        places.below[i] = ringRow(y1 - first, f.count) * step + (x0 - f.origin.x);
+        places.above[i] = ringRow(y0, f.shift, f.count) * step + (x0 - f.left);
+        places.below[i] = ringRow(y1, f.shift, f.count) * step + (x0 - f.left);
         places.right[i] = x1 - x0;
         places.weight[i] =
                 (float)BOX_MEAN_STEPS / ((float)std::max(x1 - x0, 1) * (float)std::max(y1 - y0, 1));

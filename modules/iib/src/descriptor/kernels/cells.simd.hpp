@@ -107,7 +107,7 @@ template <typename Sum> class RowFinder
 {
 public:
     RowFinder(const RingRows<Sum>& rows, int top)
-        : data(rows.data), step(rows.step), count(rows.count), shift((top - rows.origin.y) % count - top)
+        : data(rows.data), step(rows.step), count(rows.count), shift(rows.shift(top))
     {
     }
 

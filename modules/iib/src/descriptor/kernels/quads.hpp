@@ -48,8 +48,8 @@ private:
     AlignedBuffer<T> values;
 };
 
-/** What a reader sees of sums of GROUP_CHANNELS channels: the last rows, in a ring. Row (y - origin.y) % count holds the sums
- over the image's rows [origin.y, y): those of an integral image, side by side in each pixel, left of the pixels origin.x,
+/** What a reader sees of the last rows of GROUP_CHANNELS channels, in a ring. Row (y - origin.y) % count holds the pixels of row y
+ of the image, side by side; or the sums over its rows [origin.y, y): those of an integral image, side by side in each pixel, left of the pixels origin.x,
  origin.x + 1, ...; or those down the columns, a plane for each channel. A cell's sum, as the difference of its corners, is
  right if a Sum can hold it, however large the image. */
 template <typename Sum> struct RingRows
@@ -58,6 +58,9 @@ template <typename Sum> struct RingRows
     size_t step;   //!< elements from row to row
     int count;     //!< rows in the ring
     Point origin;  //!< in the image
+
+    //! A row y from `oldest` on, the first at hand, is in place y + shift, less count unless that is smaller.
+    int shift(int oldest) const { return (oldest - origin.y) % count - oldest; }
 };
 
 //! The edge of pixels nearest to a position, in [first, limit]: on positive numbers the cast is a floor.

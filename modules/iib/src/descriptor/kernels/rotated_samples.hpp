@@ -39,10 +39,8 @@ struct GradientRotation
  column, and the column, as in a CellGrid. Sums are in planes, with cells in the same order. */
 template <typename T> struct RotatedSampleKernels
 {
-    //! The pixels of the image nearest to the points.
-    void (*places)(const SampleGrid& grid, int* x, int* y);
-    //! Their indices in a window, `step` pixels from row to row, that begins at a pixel of the image and holds them all.
-    void (*indices)(const SampleGrid& grid, Point origin, int step, int* index);
+    //! The places of the pixels nearest to the points among those of `rows`, which hold them all. @param oldest row at hand.
+    void (*indices)(const SampleGrid& grid, const RingRows<T>& rows, int oldest, int* index);
 
     /** Rotates gradients: x' = c x + s y, y' = c y - s x, rounded. The orientation becomes (steps + its own) modulo
      ORIENTATION_STEPS, but 0 where there is no gradient, as upright.
@@ -62,9 +60,7 @@ template <typename T> struct RotatedSampleKernels
     void (*interleave)(const int* const sums[GROUP_CHANNELS], const int addends[GROUP_CHANNELS], int cells,
             CellGrid<unsigned>& grid);
 
-    //! The orientation of gradients. As rows of pixels, these and the next have ROW_PADDING values more than `width`.
-    void (*orientation)(const T* gx, const T* gy, T* steps, int width);
-    //! Four planes of pixels side by side.
+    //! Four planes of pixels side by side. They have ROW_PADDING values more than `width`.
     void (*interleaveRow)(const T* const planes[GROUP_CHANNELS], T* out, int width);
 };
 

@@ -80,13 +80,18 @@ inline v_samples inside(const v_samples& place, const v_samples& last, bool refl
     return v_max(v_min(folded, last + last - folded), zero);
 }
 
-//! Calls write(x, y) with the pixels of one vector of points after another.
-template <typename Writer> void visitPoints(const SampleGrid& g, Writer write)
+template <typename T>
+void sampleIndices(const SampleGrid& grid, const RingRows<T>& rows, int oldest, int* index)
 {
+    const SampleGrid g = grid;  // a copy, which stores to int* surely do not change
     const int n = g.n, cells = g.cells(), lanes = VTraits<v_samples>::max_nlanes;
     const v_samples centreX = v_setall_samples(g.x), centreY = v_setall_samples(g.y);
     const v_samples right = v_setall_samples(g.image.width - 1),
                     bottom = v_setall_samples(g.image.height - 1);
+    const v_samples left = v_setall_samples(rows.origin.x), shift = v_setall_samples(rows.shift(oldest)),
+                    step = v_setall_samples((int)rows.step / GROUP_CHANNELS);
+    // Below 0, the difference is the larger one without signs.
+    const auto count = v_reinterpret_as_u32(v_setall_samples(rows.count));
     // along a row, in the order of the points: first by dx, then by the parity of the cell
     int alongX[MAX_SAMPLES_IN_ROW], alongY[MAX_SAMPLES_IN_ROW];
     for (int dx = 0, i = 0; dx < g.sub; dx++)
@@ -103,33 +108,17 @@ template <typename Writer> void visitPoints(const SampleGrid& g, Writer write)
             {
                 const int v = 2 * (row * g.sub + dy) + 1 - n;
                 const v_samples downX = v_setall_samples(-v * g.stepY), downY = v_setall_samples(v * g.stepX);
-                for (int i = dx * cells; i < (dx + 1) * cells; i += lanes)
+                for (int i = dx * cells; i < (dx + 1) * cells; i += lanes, index += lanes)
                 {
-                    const v_samples x = centreX + ((v_load_samples(alongX + i) + downX) >> 17);
-                    const v_samples y = centreY + ((v_load_samples(alongY + i) + downY) >> 17);
-                    write(inside(x, right, g.reflect), inside(y, bottom, g.reflect));
+                    const v_samples x =
+                            inside(centreX + ((v_load_samples(alongX + i) + downX) >> 17), right, g.reflect);
+                    const v_samples y =
+                            inside(centreY + ((v_load_samples(alongY + i) + downY) >> 17), bottom, g.reflect);
+                    const auto place = v_reinterpret_as_u32(y + shift);
+                    const v_samples inRing = v_reinterpret_as_s32(v_min(place, place - count));
+                    v_store(index, inRing * step + (x - left));
                 }
             }
-}
-
-void samplePlaces(const SampleGrid& grid, int* x, int* y)
-{
-    visitPoints(grid, [=](const v_samples& newX, const v_samples& newY) mutable {
-        v_store(x, newX);
-        v_store(y, newY);
-        x += VTraits<v_samples>::max_nlanes;
-        y += VTraits<v_samples>::max_nlanes;
-    });
-}
-
-void sampleIndices(const SampleGrid& grid, Point origin, int step, int* index)
-{
-    const v_samples left = v_setall_samples(origin.x), top = v_setall_samples(origin.y),
-                    down = v_setall_samples(step);
-    visitPoints(grid, [=](const v_samples& x, const v_samples& y) mutable {
-        v_store(index, (y - top) * down + (x - left));
-        index += VTraits<v_samples>::max_nlanes;
-    });
 }
 
 template <typename T>
@@ -219,16 +208,6 @@ void interleaveSums(const int* const sums[GROUP_CHANNELS], const int addends[GRO
             }
 }
 
-template <typename T> void orientationRow(const T* gx, const T* gy, T* steps, int width)
-{
-    typedef decltype(setAll(T())) V;
-    for (int x = 0; x < width; x += VTraits<V>::max_nlanes)
-    {
-        const Gradient<T, V> g(vx_load(gx + x), vx_load(gy + x));
-        v_store(steps + x, g.orientation(g.octant()()));
-    }
-}
-
 template <typename T> void interleaveRow(const T* const planes[GROUP_CHANNELS], T* out, int width)
 {
     for (int x = 0; x < width; x += VTraits<decltype(v_load(out))>::max_nlanes)
@@ -238,8 +217,8 @@ template <typename T> void interleaveRow(const T* const planes[GROUP_CHANNELS], 
 
 template <typename T> RotatedSampleKernels<T> rotatedSampleKernels()
 {
-    const RotatedSampleKernels<T> k = {samplePlaces, sampleIndices, imageSums<T>, gradientVotes, mapSums<T>,
-            interleaveSums, orientationRow<T>, interleaveRow<T>};
+    const RotatedSampleKernels<T> k = {
+            sampleIndices<T>, imageSums<T>, gradientVotes, mapSums<T>, interleaveSums, interleaveRow<T>};
     return k;
 }
 
