@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes type stubs of the modules whose classes get methods when they are loaded (see _names.py): stubs.py PACKAGE OUT
+"""Writes type stubs of the modules whose classes get methods when they are loaded (see _names.py): stubs.py OUT
 
 CMake runs it, so that the wheel has the stubs beside the modules; a source tree has none.
 """
@@ -8,34 +8,50 @@ import copy
 import pathlib
 import sys
 
-sys.path.insert(0, sys.argv[1])
-from _names import accessors, snake_case
+PACKAGE = pathlib.Path(__file__).resolve().parent / 'opencv_iib'
+sys.path.insert(0, str(PACKAGE))
+import enums
+from _names import accessors, constants, method, snake_case
+
+TEXTS = {'Method': method, 'Parameter': accessors}
 
 
-def stub(body, aliases):
-    """Signatures and docstrings alone."""
-    for node in list(body):
-        if isinstance(node, ast.Assign) and ast.unparse(node.value).startswith('Parameter('):
-            kind, meaning = node.value.args
-            at = body.index(node)
-            body[at:at + 1] = ast.parse(accessors(node.targets[0].id, kind.id, meaning.value)).body
-    for node in list(body):
-        if isinstance(node, ast.ClassDef):
-            if 'self._core' in ast.unparse(node):  # what other modules of the package read
-                node.body.append(ast.parse('_core: Any').body[0])
-            stub(node.body, any(ast.unparse(base) in ('SnakeCase', 'Detector') for base in node.bases))
-        elif isinstance(node, ast.FunctionDef):
+def written(node, owner):
+    """What stands in a class for a statement of its source: methods and constants."""
+    call = getattr(getattr(node, 'value', None), 'func', None)
+    if getattr(call, 'id', '') in TEXTS:
+        arguments = [getattr(argument, 'id', None) or argument.value for argument in node.value.args]
+        return ast.parse(TEXTS[call.id](node.targets[0].id, *arguments)).body
+    if getattr(node, 'name', '') != '__init__' or any(getattr(other, 'name', '') == 'create' for other in owner.body):
+        return [node]
+    create = copy.deepcopy(node)
+    create.name, create.args.args[0].arg, create.returns = 'create', 'cls', ast.Name(owner.name)
+    create.decorator_list = [ast.Name('classmethod')]
+    return [node, create]
+
+
+def stub(tree, aliases=True):
+    """Makes signatures and docstrings of a module's tree, with second names or without, and returns it."""
+    for owner in ast.walk(tree):
+        if isinstance(owner, ast.ClassDef) and {'SnakeCase', 'Detector'} & {ast.unparse(base) for base in owner.bases}:
+            kinds = [kind.id for keyword in owner.keywords for kind in keyword.value.elts]
+            owner.body = [made for node in owner.body for made in written(node, owner)] + ast.parse('_core: Any\n' + '\n'.join(
+                f'{name} = {kind}.{member}' for kind in kinds for name, member, _ in constants(getattr(enums, kind)))).body
+            owner.keywords = []
+            for node in list(owner.body):
+                if aliases and isinstance(node, ast.FunctionDef) and node.name[0] != '_' and snake_case(node.name) != node.name:
+                    owner.body.append(copy.deepcopy(node))
+                    owner.body[-1].name = snake_case(node.name)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef):
             node.body = node.body[:1] if ast.get_docstring(node) else [ast.Expr(ast.Constant(...))]
-            if aliases and not node.name.startswith('_') and snake_case(node.name) != node.name:
-                twin = copy.deepcopy(node)
-                twin.name = snake_case(node.name)
-                body.append(twin)
+    return tree
 
 
-for path in sorted(pathlib.Path(sys.argv[1]).glob('*.py')):
-    text = path.read_text(encoding='utf-8')
-    if 'SnakeCase):' in text or 'Detector):' in text:
-        tree = ast.parse(text)
-        stub(tree.body, False)
-        pathlib.Path(sys.argv[2]).mkdir(parents=True, exist_ok=True)
-        pathlib.Path(sys.argv[2], path.stem + '.pyi').write_text(ast.unparse(tree) + '\n', encoding='utf-8')
+if __name__ == '__main__':
+    out = pathlib.Path(sys.argv[1])
+    out.mkdir(parents=True, exist_ok=True)
+    for path in sorted(PACKAGE.glob('*.py')):
+        source = path.read_text(encoding='utf-8')
+        if 'import Method' in source:
+            (out / (path.stem + '.pyi')).write_text(ast.unparse(stub(ast.parse(source))) + '\n', encoding='utf-8')

@@ -1,15 +1,14 @@
 """IIBDescriptorExtractor: the class of cv2.iib, for arrays and for the objects of any cv2."""
 from __future__ import annotations
 
-import os
-from typing import Any, Optional, TypeVar, Union
+from typing import Any, Optional, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arrays import ArrayOrArrays, as_array, as_arrays, as_image
-from opencv_iib._names import Parameter
+from opencv_iib._names import Method, Parameter, Path
 from opencv_iib.detectors import Detector, HessianDetector, core_detector, for_pickle
 from opencv_iib.enums import Border, Channel, Mapping, Orientation, Preset
 from opencv_iib.keypoints import Keypoints, as_rows
@@ -17,7 +16,7 @@ from opencv_iib.keypoints import Keypoints, as_rows
 K = TypeVar('K', bound=Keypoints)
 
 
-class IIBDescriptorExtractor(Detector):
+class IIBDescriptorExtractor(Detector, enums=(Channel, Mapping, Border, Orientation, Preset)):
     """Illumination-insensitive binary descriptor; names, keywords and bits are those of ``cv2.iib``.
 
     Images are H x W, H x W x 3 (BGR) or H x W x 4 (BGRA) arrays of uint8, uint16 or float32, of any strides.
@@ -29,61 +28,9 @@ class IIBDescriptorExtractor(Detector):
     Mistakes raise :class:`opencv_iib.error`, a TypeError if an argument is no array at all.
     """
 
-    CHANNEL_GRAD_X = Channel.GRAD_X
-    CHANNEL_GRAD_Y = Channel.GRAD_Y
-    CHANNEL_ORIENTATION = Channel.ORIENTATION
-    CHANNEL_INTENSITY = Channel.INTENSITY
-    CHANNEL_SIGNED_GRAD_X = Channel.SIGNED_GRAD_X
-    CHANNEL_SIGNED_GRAD_Y = Channel.SIGNED_GRAD_Y
-    CHANNELS_DEFAULT = Channel.DEFAULT
-
-    MAPPING_MEAN = Mapping.MEAN
-    MAPPING_MAX = Mapping.MAX
-    MAPPING_MIN = Mapping.MIN
-    MAPPING_QUARTILE = Mapping.QUARTILE
-    MAPPING_SORT = Mapping.SORT
-    MAPPING_HAAR = Mapping.HAAR
-    MAPPING_PAIRWISE = Mapping.PAIRWISE
-    MAPPING_BOXES = Mapping.BOXES
-
-    BORDER_CLAMP = Border.CLAMP
-    BORDER_DROP = Border.DROP
-    BORDER_REFLECT = Border.REFLECT
-
-    ORIENTATION_NONE = Orientation.NONE
-    ORIENTATION_KEYPOINT = Orientation.KEYPOINT
-    ORIENTATION_GRADIENT = Orientation.GRADIENT
-
-    PRESET_S128 = Preset.S128
-    PRESET_S256 = Preset.S256
-    PRESET_S512 = Preset.S512
-    PRESET_ACCURATE = Preset.ACCURATE
-    PRESET_COMPACT = Preset.COMPACT
-    PRESET_TINY = Preset.TINY
-    PRESET_BALANCED = Preset.BALANCED
-    PRESET_VIEWPOINT = Preset.VIEWPOINT
-    PRESET_UNIVERSAL = Preset.UNIVERSAL
-    PRESET_SMALL = Preset.SMALL
-
-    def __init__(self, scaleFactor: float = 2.0, granularity: int = 4, channels: int = CHANNELS_DEFAULT,
-                 mapping: int = MAPPING_MEAN, overlap: bool = False, useOrientation: bool = False,
+    def __init__(self, scaleFactor: float = 2.0, granularity: int = 4, channels: int = Channel.DEFAULT,
+                 mapping: int = Mapping.MEAN, overlap: bool = False, useOrientation: bool = False,
                  extraChannels: int = 0) -> None:
-        """As :meth:`create`."""
-        self._core = _core.Extractor.create(scaleFactor, granularity, channels, mapping, overlap, useOrientation,
-                                            extraChannels)
-        self._detector: Any = None
-
-    @classmethod
-    def _of(cls, core: _core.Extractor) -> IIBDescriptorExtractor:
-        extractor = cls.__new__(cls)
-        extractor._core = core
-        extractor._detector = None
-        return extractor
-
-    @classmethod
-    def create(cls, scaleFactor: float = 2.0, granularity: int = 4, channels: int = CHANNELS_DEFAULT,
-               mapping: int = MAPPING_MEAN, overlap: bool = False, useOrientation: bool = False,
-               extraChannels: int = 0) -> IIBDescriptorExtractor:
         """Creates an extractor.
 
         :param scaleFactor: side of the described square in units of a keypoint's size, > 0; see scaleFactorFor.
@@ -94,8 +41,8 @@ class IIBDescriptorExtractor(Detector):
         :param useOrientation: turn the square by a keypoint's angle.
         :param extraChannels: number of maps that computeWithChannels is given, 0 to 16.
         """
-        return cls._of(_core.Extractor.create(scaleFactor, granularity, channels, mapping, overlap, useOrientation,
-                                              extraChannels))
+        self._core = _core.Extractor.create(scaleFactor, granularity, channels, mapping, overlap, useOrientation,
+                                            extraChannels)
 
     @classmethod
     def createPreset(cls, preset: int, scaleFactor: float = 2.0) -> IIBDescriptorExtractor:
@@ -121,7 +68,7 @@ class IIBDescriptorExtractor(Detector):
 
         :param maxFeatures: keypoints of an image, the strongest; 0 keeps all.
         """
-        return cls.createFor(HessianDetector(maxFeatures), cls.PRESET_UNIVERSAL)
+        return cls.createFor(HessianDetector(maxFeatures), Preset.UNIVERSAL)
 
     @staticmethod
     def scaleFactorFor(detectorName: Any = None, detector: Any = None) -> float:
@@ -174,17 +121,9 @@ class IIBDescriptorExtractor(Detector):
         """What setDetector was given; None for the default, the ORB of the OpenCV inside."""
         return self._detector
 
-    def levelSizes(self) -> tuple[int, ...]:
-        """Bytes of each level, coarse first; their sum is descriptorSize()."""
-        return tuple(self._core.levelSizes())
-
-    def descriptorType(self) -> int:
-        """CV_8U, which is 0."""
-        return 0
-
-    def defaultNorm(self) -> int:
-        """NORM_HAMMING, which is 6."""
-        return 6
+    levelSizes = Method('() -> tuple[int, ...]', 'Bytes of each level, coarse first; their sum is descriptorSize().')
+    descriptorType = Method('() -> int', 'CV_8U, which is 0.')
+    defaultNorm = Method('() -> int', 'NORM_HAMMING, which is 6.')
 
     scaleFactor = Parameter(float, "Side of the described square in units of a keypoint's size, > 0.")
     granularity = Parameter(int, 'Number of levels, 1 to 6. Another one ends a selection, as other channels, mapping or overlap do.')
@@ -195,13 +134,7 @@ class IIBDescriptorExtractor(Detector):
     extraChannels = Parameter(int, 'Number of maps that computeWithChannels is given, 0 to 16.')
     border = Parameter(Border, 'One of BORDER_.')
 
-    def setOrientation(self, mode: int) -> None:
-        """How the described squares are turned: one of ORIENTATION_."""
-        self._core.orientation = mode
-
-    def getOrientation(self) -> Orientation:
-        """One of ORIENTATION_."""
-        return Orientation(self._core.orientation)
+    orientation = Parameter(Orientation, 'How the described squares are turned: one of ORIENTATION_.', 'mode')
 
     def setSelection(self, quads: ArrayLike) -> None:
         """Restricts the descriptor to chosen quads.
@@ -210,21 +143,12 @@ class IIBDescriptorExtractor(Detector):
         """
         self._core.setSelection(as_array(quads, 'the selection'))
 
-    def getSelection(self) -> NDArray[np.int32]:
-        """Q x 5 int32, as setSelection takes it; 0 x 5 if there is no selection."""
-        return self._core.getSelection()
-
-    def save(self, filename: Union[str, os.PathLike[str]]) -> None:
-        """Writes the parameters, but not the detector, to a .yml, .xml or .json file, as Algorithm::save does."""
-        self._core.save(os.fspath(filename))
-
-    def write(self, fileName: Union[str, os.PathLike[str]]) -> None:
-        """Writes the parameters, but not the detector, to a .yml, .xml or .json file, which read() and C++ read."""
-        self._core.write(os.fspath(fileName))
-
-    def read(self, fileName: Union[str, os.PathLike[str]]) -> None:
-        """Reads what write() or C++ wrote."""
-        self._core.read(os.fspath(fileName))
+    getSelection = Method('() -> NDArray[np.int32]', 'Q x 5 int32, as setSelection takes it; 0 x 5 if there is no selection.')
+    save = Method('(filename: Path) -> None', 'Writes the parameters, but not the detector, to a .yml, .xml or .json file, as '
+                  'Algorithm::save does.')
+    write = Method('(fileName: Path) -> None', 'Writes the parameters, but not the detector, to a .yml, .xml or .json file, '
+                   'which read() and C++ read.')
+    read = Method('(fileName: Path) -> None', 'Reads what write() or C++ wrote.')
 
     def __getstate__(self) -> dict[str, Any]:
         return {'parameters': self._core.parameters(), 'detector': for_pickle(self._detector)}
@@ -232,7 +156,6 @@ class IIBDescriptorExtractor(Detector):
     def __setstate__(self, state: dict[str, Any]) -> None:
         self._core = _core.Extractor.create(2.0, 4, 15, 0, False, False, 0)
         self._core.setParameters(state['parameters'])
-        self._detector = None
         if state['detector'] is not None:
             self.setDetector(state['detector'])
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arrays import as_array, as_image
-from opencv_iib._names import Parameter, SnakeCase
+from opencv_iib._names import Method, Parameter, SnakeCase
 from opencv_iib.keypoints import Keypoints, array_to_keypoints, as_rows
 
 
@@ -56,6 +56,8 @@ def detect_rows(owner: Any, image: ArrayLike, mask: Optional[ArrayLike]) -> NDAr
 class Detector(SnakeCase):
     """What finds keypoints: the base of the detectors and of the descriptor of this package."""
 
+    _detector: Any = None  #: what its user gave it
+
     def detect(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> tuple[Any, ...]:
         """Keypoints, as cv2.KeyPoint if cv2 is there.
 
@@ -63,17 +65,9 @@ class Detector(SnakeCase):
         """
         return array_to_keypoints(detect_rows(self, image, mask))
 
-    def descriptorSize(self) -> int:
-        """Bytes of a descriptor; 0 of a detector that describes nothing."""
-        return self._core.descriptorSize()
-
-    def empty(self) -> bool:
-        """False: it is always ready."""
-        return False
-
-    def getDefaultName(self) -> str:
-        """The name of its parameters in files, such as Feature2D.IIB."""
-        return self._core.getDefaultName()
+    descriptorSize = Method('() -> int', 'Bytes of a descriptor; 0 of a detector that describes nothing.')
+    empty = Method('() -> bool', 'False: it is always ready.')
+    getDefaultName = Method('() -> str', 'The name of its parameters in files, such as Feature2D.IIB.')
 
     def __deepcopy__(self, memo: Any) -> Any:
         return copy.copy(self)
@@ -109,12 +103,6 @@ class HessianDetector(Detector):
 
     def __init__(self, maxFeatures: int = 1000, threshold: float = 0.0, scales: int = 5, sigma: float = 2.2,
                  normalizationSigma: float = 5.0) -> None:
-        """As :meth:`create`."""
-        self._core = _core.HessianDetector.create(maxFeatures, threshold, scales, sigma, normalizationSigma)
-
-    @classmethod
-    def create(cls, maxFeatures: int = 1000, threshold: float = 0.0, scales: int = 5, sigma: float = 2.2,
-               normalizationSigma: float = 5.0) -> HessianDetector:
         """Creates a detector.
 
         :param maxFeatures: the strongest that are kept; 0 keeps all.
@@ -123,7 +111,7 @@ class HessianDetector(Detector):
         :param sigma: of the smallest scale in pixels, 1.5 to 8.
         :param normalizationSigma: of the local normalization's Gaussian in pixels, 2 to 256.
         """
-        return cls(maxFeatures, threshold, scales, sigma, normalizationSigma)
+        self._core = _core.HessianDetector.create(maxFeatures, threshold, scales, sigma, normalizationSigma)
 
     maxFeatures = Parameter(int, 'The strongest that are kept; 0 keeps all.')
     threshold = Parameter(float, 'Smallest response, 0 or more.')
@@ -147,18 +135,13 @@ class NormalizedDetector(Detector):
     """
 
     def __init__(self, detector: Any, sigma: float = 4.0) -> None:
-        """As :meth:`create`."""
-        self._core = _core.NormalizedDetector.create(core_detector(detector), sigma)
-        self._detector = detector
-
-    @classmethod
-    def create(cls, detector: Any, sigma: float = 4.0) -> NormalizedDetector:
         """Wraps a detector.
 
         :param detector: of any cv2, or any object with ``detect(image, mask)``.
         :param sigma: of the Gaussian filter in pixels, 1 to 256.
         """
-        return cls(detector, sigma)
+        self._core = _core.NormalizedDetector.create(core_detector(detector), sigma)
+        self._detector = detector
 
     def compute(self, image: Any, keypoints: Any) -> Any:
         """The descriptors of the detector inside, on the plain image: what its own ``compute`` gives."""

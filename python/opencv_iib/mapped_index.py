@@ -2,16 +2,14 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Optional, Sequence, Union
+from typing import Any, Optional, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arrays import ArrayOrArrays, as_array, as_arrays
-from opencv_iib._names import SnakeCase
-
-Folder = Union[str, os.PathLike[str]]
+from opencv_iib._names import Method, Path, SnakeCase
 
 
 class MappedIndex(SnakeCase):
@@ -26,56 +24,35 @@ class MappedIndex(SnakeCase):
     GIL; threads may share an object as long as none adds, removes or refreshes. A pickle holds the folder's name alone.
     """
 
-    def __init__(self, folder: Folder) -> None:
+    def __init__(self, folder: Path) -> None:
         """As :meth:`open`."""
-        self._core = _core.MappedIndex.open(os.fspath(folder))
         self._folder = os.fspath(folder)
+        self._core = _core.MappedIndex.open(self._folder)
 
     @classmethod
-    def open(cls, folder: Folder) -> MappedIndex:
+    def open(cls, folder: Path) -> MappedIndex:
         """Opens the last commit; the codes are mapped when they are first searched, and then checked once."""
         return cls(folder)
 
     @classmethod
-    def create(cls, folder: Folder, levelSizes: Sequence[int]) -> MappedIndex:
+    def create(cls, folder: Path, levelSizes: Sequence[int]) -> MappedIndex:
         """Makes a folder, whose parent has to exist, or takes an empty one, with an index without images.
 
         :param levelSizes: bytes of each level, coarse first, as of HierarchicalMatcher; one level is enough.
         """
-        _core.MappedIndex.create(os.fspath(folder), list(levelSizes))
+        _core.MappedIndex.create(os.fspath(folder), levelSizes)
         return cls(folder)
 
-    def levelSizes(self) -> tuple[int, ...]:
-        """Bytes of each level, coarse first."""
-        return tuple(self._core.levelSizes())
-
-    def images(self) -> int:
-        """Images ever added."""
-        return self._core.images()
-
-    def rows(self) -> int:
-        """Rows ever added."""
-        return self._core.rows()
-
-    def segments(self) -> int:
-        """Files of codes, one for each call of :meth:`add`."""
-        return self._core.segments()
-
-    def version(self) -> int:
-        """A number that changes with every commit."""
-        return self._core.version()
-
-    def imageOf(self, row: int) -> int:
-        """The image of a row."""
-        return self._core.imageOf(row)
-
-    def firstRow(self, image: int) -> int:
-        """The first row of an image."""
-        return self._core.firstRow(image)
-
-    def descriptors(self, image: int) -> NDArray[np.uint8]:
-        """A copy of the descriptors of an image."""
-        return self._core.descriptors(image)
+    levelSizes = Method('() -> tuple[int, ...]', 'Bytes of each level, coarse first.')
+    images = Method('() -> int', 'Images ever added.')
+    rows = Method('() -> int', 'Rows ever added.')
+    segments = Method('() -> int', 'Files of codes, one for each call of :meth:`add`.')
+    version = Method('() -> int', 'A number that changes with every commit.')
+    imageOf = Method('(row: int) -> int', 'The image of a row.')
+    firstRow = Method('(image: int) -> int', 'The first row of an image.')
+    descriptors = Method('(image: int) -> NDArray[np.uint8]', 'A copy of the descriptors of an image.')
+    remove = Method('(images: Sequence[int]) -> None', 'Hides images from all searches; their codes stay on the disk.')
+    refresh = Method('() -> None', 'Goes on to the last commit.')
 
     def add(self, descriptors: ArrayOrArrays) -> None:
         """Adds the descriptors of one image (an array) or of several (a sequence of arrays), and commits them.
@@ -83,14 +60,6 @@ class MappedIndex(SnakeCase):
         They become one file. Add many images at once: searches like files of 100,000 rows and more.
         """
         self._core.add(as_arrays(descriptors, 'descriptors'))
-
-    def remove(self, images: Sequence[int]) -> None:
-        """Hides images from all searches; their codes stay on the disk."""
-        self._core.remove([int(image) for image in images])
-
-    def refresh(self) -> None:
-        """Goes on to the last commit."""
-        self._core.refresh()
 
     def search(self, queryDescriptors: ArrayLike, k: int = 1, segment: Optional[int] = None
                ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:

@@ -2,14 +2,14 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Iterable, Optional, Sequence, Union
+from typing import Any, Iterable, Optional, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arrays import ArrayOrArrays, as_array, as_arrays
-from opencv_iib._names import Parameter, SnakeCase
+from opencv_iib._names import Method, Parameter, Path, SnakeCase
 from opencv_iib._types import match_type
 from opencv_iib.enums import Mode
 
@@ -53,22 +53,6 @@ class HierarchicalMatcher(SnakeCase):
 
     def __init__(self, levelSizes: Optional[Sequence[int]] = None, mode: int = EXACT, threshold: float = 0.35,
                  crossCheck: bool = False) -> None:
-        """As :meth:`create`."""
-        if levelSizes is not None:
-            self._core = _core.Matcher.create(list(levelSizes), mode, threshold, crossCheck)
-        else:
-            self._core = _core.Matcher.create()
-            self._core.mode, self._core.crossCheck = mode, crossCheck
-
-    @classmethod
-    def _of(cls, core: _core.Matcher) -> HierarchicalMatcher:
-        matcher = cls.__new__(cls)
-        matcher._core = core
-        return matcher
-
-    @classmethod
-    def create(cls, levelSizes: Optional[Sequence[int]] = None, mode: int = EXACT, threshold: float = 0.35,
-               crossCheck: bool = False) -> HierarchicalMatcher:
         """Creates a matcher.
 
         :param levelSizes: bytes of each level, coarse first; their sum is the descriptors' width. None: descriptors of
@@ -77,7 +61,11 @@ class HierarchicalMatcher(SnakeCase):
         :param threshold: of THRESHOLD, for every level, 0 to 1.
         :param crossCheck: report only pairs that are among each other's nearest.
         """
-        return cls(levelSizes, mode, threshold, crossCheck)
+        if levelSizes is not None:
+            self._core = _core.Matcher.create(list(levelSizes), mode, threshold, crossCheck)
+        else:
+            self._core = _core.Matcher.create()
+            self._core.mode, self._core.crossCheck = mode, crossCheck
 
     @classmethod
     def createRecommended(cls) -> HierarchicalMatcher:
@@ -138,13 +126,8 @@ class HierarchicalMatcher(SnakeCase):
         """Adds the descriptors of one image (an array) or of several (a sequence of arrays); they are copied."""
         self._core.add(as_arrays(descriptors, 'descriptors'))
 
-    def clear(self) -> None:
-        """Forgets all train descriptors."""
-        self._core.clear()
-
-    def empty(self) -> bool:
-        """True without train descriptors."""
-        return self._core.empty()
+    clear = Method('() -> None', 'Forgets all train descriptors.')
+    empty = Method('() -> bool', 'True without train descriptors.')
 
     def train(self) -> None:
         """Nothing: the index is ready after add()."""
@@ -153,46 +136,30 @@ class HierarchicalMatcher(SnakeCase):
         """True."""
         return True
 
-    def getTrainDescriptors(self) -> tuple[NDArray[np.uint8], ...]:
-        """Copies of the descriptors added, an array an image."""
-        return tuple(self._core.trainDescriptors())
+    getTrainDescriptors = Method('() -> tuple[NDArray[np.uint8], ...]', 'Copies of the descriptors added, an array an image.')
 
     def clone(self, emptyTrainData: bool = False) -> HierarchicalMatcher:
         """A copy; with emptyTrainData, of the parameters alone."""
         return self._of(self._core.clone(emptyTrainData))
 
-    def levelSizes(self) -> tuple[int, ...]:
-        """Bytes of each level, coarse first; empty while a matcher created without them has seen no descriptors."""
-        return tuple(self._core.levelSizes())
-
+    levelSizes = Method('() -> tuple[int, ...]', 'Bytes of each level, coarse first; empty while a matcher created without them '
+                        'has seen no descriptors.')
     mode = Parameter(Mode, 'EXACT, THRESHOLD or ADAPTIVE.')
-
-    def setThresholds(self, thresholds: Sequence[float]) -> None:
-        """Of THRESHOLD, 0 to 1: one for every level but the last, or a single one for all."""
-        self._core.thresholds = [float(t) for t in thresholds]
-
-    def getThresholds(self) -> tuple[float, ...]:
-        """Of THRESHOLD, one a level."""
-        return tuple(self._core.thresholds)
-
+    setThresholds = Method('(thresholds: Sequence[float]) -> None', 'Of THRESHOLD, 0 to 1: one for every level but the last, or a '
+                           'single one for all.')
+    getThresholds = Method('() -> tuple[float, ...]', 'Of THRESHOLD, one a level.')
     crossCheck = Parameter(bool, "Whether to report only pairs that are among each other's nearest.")
     maxRatio = Parameter(float, 'Of the distances to the nearest and the second nearest, the largest in match, knnMatch and '
                                 'knnMatchArrays, in (0, 1]; 1 turns the test off.')
 
-    def matchCost(self) -> float:
-        """The paper's MC: bits compared / bits brute force would compare, since resetCost(); 0 before any call."""
-        return self._core.matchCost()
-
-    def resetCost(self) -> None:
-        """Begins a new count for matchCost()."""
-        self._core.resetCost()
-
-    def saveIndex(self, filename: Union[str, os.PathLike[str]]) -> None:
-        """Writes level sizes, parameters and all train descriptors to a binary file, the same as C++ writes."""
-        self._core.saveIndex(os.fspath(filename))
+    matchCost = Method('() -> float', "The paper's MC: bits compared / bits brute force would compare, since resetCost(); 0 "
+                       'before any call.')
+    resetCost = Method('() -> None', 'Begins a new count for matchCost().')
+    saveIndex = Method('(filename: Path) -> None', 'Writes level sizes, parameters and all train descriptors to a binary file, the '
+                       'same as C++ writes.')
 
     @classmethod
-    def loadIndex(cls, filename: Union[str, os.PathLike[str]]) -> HierarchicalMatcher:
+    def loadIndex(cls, filename: Path) -> HierarchicalMatcher:
         """Reads what saveIndex wrote, here or in C++."""
         return cls._of(_core.Matcher.loadIndex(os.fspath(filename)))
 

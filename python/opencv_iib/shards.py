@@ -18,12 +18,13 @@ import numpy as np
 
 from opencv_iib._arrays import as_array
 from opencv_iib._lock import only_writer
-from opencv_iib.mapped_index import Folder, MappedIndex
+from opencv_iib._names import Path
+from opencv_iib.mapped_index import MappedIndex
 
 Arrays = tuple[np.ndarray, np.ndarray]
 
 
-def write(folder: Folder, codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per_shard: int = 1 << 20,
+def write(folder: Path, codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per_shard: int = 1 << 20,
           level_sizes: Optional[Sequence[int]] = None) -> MappedIndex:
     """Writes codes to a new folder, shard by shard; it appears when it is complete.
 
@@ -97,7 +98,7 @@ def _skip(index: MappedIndex, images: Iterator[np.ndarray], folder: str) -> None
             raise ValueError(f'{folder} was begun with other codes or another rows_per_shard: remove it to begin anew')
 
 
-def search(folder: Folder, queries: Any, k: int = 5, client: Any = None) -> Arrays:
+def search(folder: Path, queries: Any, k: int = 5, client: Any = None) -> Arrays:
     """The k nearest codes of each query by Hamming distance, in all shards; ties in the order of the codes.
 
     The result is the same, byte for byte, without a client and for any number of shards and workers. A worker that

@@ -35,7 +35,10 @@ void bindDetectors(nb::module_& m)
     nb::class_<cv::Feature2D>(m, "Detector")
             .def_static("foreign", &foreignDetector)
             .def("detect", &detect)
-            .def("descriptorSize", [](const cv::Feature2D& self) { return self.descriptorSize(); })
+            .def("descriptorSize", &cv::Feature2D::descriptorSize)
+            .def("descriptorType", &cv::Feature2D::descriptorType)
+            .def("defaultNorm", &cv::Feature2D::defaultNorm)
+            .def("empty", &cv::Feature2D::empty)
             .def("getDefaultName",
                     [](const cv::Feature2D& self) { return std::string(self.getDefaultName()); });
     nb::class_<Normalized, cv::Feature2D>(m, "NormalizedDetector")
