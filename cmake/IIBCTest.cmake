@@ -26,9 +26,10 @@ foreach(program opencv_test_iib opencv_test_iib_index)
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${suites}")
 endforeach()
 
-if(TARGET iib_demo)
-  add_test(NAME demo COMMAND "${CMAKE_COMMAND}" "-DDEMO=$<TARGET_FILE:iib_demo>"
-    "-DWORK=${PROJECT_BINARY_DIR}/demo-test" "-DOPENCV=${OpenCV_VERSION}" -P "${PROJECT_SOURCE_DIR}/cmake/DemoTest.cmake")
+find_program(IIB_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
+if(TARGET iib_demo AND IIB_PYTHON)
+  add_test(NAME demo COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/demo_test.py" "$<TARGET_FILE:iib_demo>"
+    "${OpenCV_VERSION}")
   if(IIB_SANITIZE)
     set_tests_properties(demo PROPERTIES LABELS nightly)
   endif()
@@ -39,9 +40,6 @@ if(IIB_SANITIZE)
 endif()
 
 add_test(NAME perf-smoke COMMAND opencv_perf_iib --perf_min_samples=1 --perf_force_samples=1)
-add_test(NAME readme COMMAND "${CMAKE_COMMAND}" "-DBUILD=${PROJECT_BINARY_DIR}"
-  "-DWORK=${PROJECT_BINARY_DIR}/readme-test" "-DCXX=${CMAKE_CXX_COMPILER}" "-DFLAGS=${CMAKE_CXX_FLAGS}"
-  "-DGENERATOR=${CMAKE_GENERATOR}" -P "${PROJECT_SOURCE_DIR}/cmake/ReadmeTest.cmake")
 if(UNIX)
   add_test(NAME scripts COMMAND "${PROJECT_SOURCE_DIR}/scripts/helpers/scripts_test.sh")
 endif()
@@ -66,8 +64,9 @@ list(APPEND source "${IIB_DIR}/src/precomp.hpp")
 add_test(NAME fast-math-refused COMMAND ${fast_math} ${source})
 set_tests_properties(fast-math-refused PROPERTIES PASS_REGULAR_EXPRESSION "error: .*-ffast-math lets NaN through")
 add_test(NAME fast-math-undone COMMAND ${fast_math} ${IIB_FLAGS} ${source})
-find_program(IIB_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
 if(IIB_PYTHON)
+  add_test(NAME readme COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/readme_test.py" "${PROJECT_BINARY_DIR}"
+    "${CMAKE_CXX_COMPILER}" "${CMAKE_CXX_FLAGS}" "${CMAKE_GENERATOR}")
   add_test(NAME includes COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/includes_test.py" "${IIB_DIR}")
   add_test(NAME figures COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/figures.py" --check)
   add_test(NAME figures-test COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/figures_test.py")

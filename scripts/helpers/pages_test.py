@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
-"""Uses pages as a reader does, in headless Chromium without a network: pages_test.py PAGE... [--screenshots FOLDER]
+"""Uses pages as a reader does, in headless Chromium without a network: pages_test.py PAGE...
 
 At 1400 and 400 pixels: nothing is wider than the window, every column of a table can be scrolled to, every head of a sortable
 table sorts both ways, a slider slides, matches answer to clicks, a map in 3-D turns, nothing is fetched but files, no script
 fails. Says "chromium is not installed" and ends well without it. Needs Python alone: Chromium is spoken to by its debugging pipe.
 """
 import argparse
-import base64
 import json
 import os
 import pathlib
@@ -120,12 +119,6 @@ class Browser:
         return [event['params'] for event in self.events if event['method'] == 'Runtime.exceptionThrown' or
                 event['method'] == 'Log.entryAdded' and event['params']['entry']['level'] == 'error']
 
-    def screenshot(self, path):
-        height = self.value('document.documentElement.scrollHeight')
-        data = self.call('Page.captureScreenshot', format='png', captureBeyondViewport=True, clip={
-            'x': 0, 'y': 0, 'width': self.value('innerWidth'), 'height': min(height, 8000), 'scale': 1})['data']
-        path.write_bytes(base64.b64decode(data))
-
 
 def slide(browser):
     """What is wrong with the slider between two pictures, the scenes, and the matches on them."""
@@ -196,7 +189,6 @@ def problems(browser, page, width):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('pages', type=pathlib.Path, nargs='+', metavar='PAGE')
-    parser.add_argument('--screenshots', type=pathlib.Path, metavar='FOLDER')
     arguments = parser.parse_args()
     program = shutil.which('chromium')
     if not program:
@@ -208,9 +200,6 @@ def main():
             for page in arguments.pages:
                 for width in WIDTHS:
                     wrong += ['%s at %d pixels: %s' % (page, width, what) for what in problems(browser, page, width)]
-                    if arguments.screenshots:
-                        name = '%s_%d.png' % (page.resolve().parent.name, width)
-                        browser.screenshot(arguments.screenshots / name)
         finally:
             browser.process.kill()
             browser.process.wait()
