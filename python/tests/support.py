@@ -90,21 +90,6 @@ def brute_force(query, train, k):
     return order, np.take_along_axis(bits, order, 1)
 
 
-def by_four_threads(call, times):
-    """What each of four threads got of its last call."""
-    found = [None] * 4
-
-    def work(i):
-        for _ in range(times):
-            found[i] = call()
-    threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    return found
-
-
 def seconds_until_interrupt(call, after):
     """How long `call` takes if Ctrl-C is pressed after so many seconds; fails if it ends as if nothing had happened."""
     old, begin = signal.signal(signal.SIGALRM, signal.default_int_handler), time.monotonic()

@@ -8,7 +8,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import IIB
-from support import by_four_threads, cv2, fnv1a, golden_hashes, grid, scatter, texture
+from support import cv2, fnv1a, golden_hashes, grid, scatter, texture
 
 GOLDEN = {
     'default': {},
@@ -52,27 +52,6 @@ class Bits(unittest.TestCase):
                     iib.setBorder(border)
                     _, descriptors = iib.computeWithChannels(image, extra, keypoints)
                     self.assertEqual(fnv1a(descriptors), expected)
-
-    @unittest.skipIf(cv2 is None or not hasattr(cv2, 'iib'), 'this cv2 has no iib')
-    def test_in_tree_cv2(self):
-        image, keypoints = texture(160, 120), [cv2.KeyPoint(x, y, s, 30) for x, y, s in grid().tolist()]
-        theirs = cv2.iib.IIBDescriptorExtractor
-        pairs = [[kind.createPreset(preset) for kind in (IIB, theirs)] for preset in opencv_iib.Preset]
-        pairs += [[kind.create(mapping=mapping) for kind in (IIB, theirs)] for mapping in range(7)]
-        for setter, values in (('setBorder', range(3)), ('setOrientation', range(3))):
-            for value in values:
-                pairs.append((IIB.create(), theirs.create()))
-                for extractor in pairs[-1]:
-                    getattr(extractor, setter)(value)
-        for a, b in pairs:
-            np.testing.assert_array_equal(a.compute(image, keypoints)[1], b.compute(image, keypoints)[1])
-        found, expected = ([k.pt for k in wrap.create(cv2.ORB_create(100), 5).detect(image)]
-                           for wrap in (opencv_iib.NormalizedDetector, cv2.iib.NormalizedDetector))
-        self.assertEqual(found, expected)
-        codes = IIB.create().compute(image, keypoints)[1]
-        for ours, other in zip(*(kind.create(IIB.create().levelSizes()).knnMatchArrays(codes[::-1].copy(), codes, k=3)[:2]
-                                 for kind in (opencv_iib.HierarchicalMatcher, cv2.iib.HierarchicalMatcher))):
-            np.testing.assert_array_equal(ours, other)
 
 
 class Arrays(unittest.TestCase):
@@ -239,13 +218,6 @@ class Objects(unittest.TestCase):
         self.assertEqual(descriptors.shape, (1, 170))
         with self.assertRaisesRegex(TypeError, 'detect'):
             iib.setDetector(object())
-
-    def test_threads_share_an_extractor(self):
-        iib, image = IIB.create(), texture(320, 240)
-        keypoints = scatter(320, 240, 500, 3, 40, 2)
-        expected = iib.compute(image, keypoints)[1]
-        for descriptors in by_four_threads(lambda: iib.compute(image, keypoints)[1], 5):
-            np.testing.assert_array_equal(descriptors, expected)
 
 
 @unittest.skipIf(cv2 is None, 'no cv2')

@@ -39,17 +39,6 @@ class Hessian(unittest.TestCase):
         with self.assertRaisesRegex(opencv_iib.error, 'scales'):
             detector.setScales(9)
 
-    def test_strongest_first_and_masks(self):
-        image = texture(160, 120)
-        keypoints = HessianDetector.create(30).detect(image)
-        self.assertEqual(len(keypoints), 30)
-        self.assertEqual(sorted((k.response for k in keypoints), reverse=True), [k.response for k in keypoints])
-        mask = np.zeros(image.shape, np.uint8)
-        mask[:, :80] = 1
-        self.assertTrue(all(k.pt[0] < 80 for k in HessianDetector(0).detect(image, mask)))
-        with self.assertRaisesRegex(opencv_iib.error, 'mask'):
-            HessianDetector().detect(image, mask[:5])
-
 
 class Recommended(unittest.TestCase):
 
@@ -73,24 +62,14 @@ class Recommended(unittest.TestCase):
 
 class Normalized(unittest.TestCase):
 
-    def test_the_detector_sees_the_image_without_its_light(self):
-        detector, image = Watching(), texture(160, 120)
-        normalized = NormalizedDetector.create(detector, 6)
-        self.assertEqual([k.pt for k in normalized.detect(image)], [(20, 30)])
-        seen = detector.image
-        self.assertEqual((seen.shape, seen.dtype), (image.shape, np.uint8))
-        # the mean of what is evened out is 128 wherever one looks; that of the image is not
-        self.assertLess(abs(seen.mean() - 128), 4)
-        normalized.detect((image // 2 + 90).astype(np.uint8))
-        self.assertLess(np.abs(seen.astype(int) - detector.image).mean(), 4)
-        self.assertGreater(np.abs(seen.astype(int) - image).mean(), 10)
-
     def test_sigma_and_mask_get_there(self):
         detector, image = Watching(), texture(160, 120)
         normalized = NormalizedDetector(detector)
         self.assertEqual(normalized.getSigma(), 4)
-        normalized.detect(image)
+        self.assertEqual([k.pt for k in normalized.detect(image // 4)], [(20, 30)])
         seen = detector.image
+        self.assertEqual((seen.shape, seen.dtype), (image.shape, np.uint8))
+        self.assertLess(abs(seen.mean() - 128), 4)  # evened out
         normalized.setSigma(9)
         mask = np.zeros((120, 160), np.uint8)
         mask[3, 5] = 255

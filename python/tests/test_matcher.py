@@ -9,7 +9,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import HierarchicalMatcher, MappedIndex
-from support import brute_force, by_four_threads, cv2, scatter, seconds_until_interrupt, steps_meanwhile, texture
+from support import brute_force, cv2, scatter, seconds_until_interrupt, steps_meanwhile, texture
 
 LEVELS = (2, 8, 32, 128)
 
@@ -26,13 +26,6 @@ class MatcherTest(unittest.TestCase):
         self.train = rng.integers(0, 256, (70, 170), np.uint8)
         self.train[10:60] = self.query ^ (rng.random((50, 170)) < .1)
         self.matcher = HierarchicalMatcher.create(LEVELS)
-
-    def test_arrays_equal_brute_force(self):
-        indices, distances = self.matcher.knnMatchArrays(self.query, self.train, k=3)
-        expected = brute_force(self.query, self.train, 3)
-        np.testing.assert_array_equal(indices, expected[0])
-        np.testing.assert_array_equal(distances, expected[1])
-        self.assertEqual((indices.dtype, distances.dtype), (np.int32, np.int32))
 
     def test_the_three_kinds_of_matches_agree(self):
         indices, distances = brute_force(self.query, self.train, 2)
@@ -160,12 +153,6 @@ class MatcherTest(unittest.TestCase):
                          lambda: index.search(codes), lambda: iib.compute(image, points)):
                 self.assertGreater(steps_meanwhile(call), 2)
 
-    def test_threads_share_a_matcher(self):
-        self.matcher.add(self.train)
-        expected = self.matcher.knnMatchArrays(self.query)[0]
-        for indices in by_four_threads(lambda: self.matcher.knnMatchArrays(self.query)[0], 20):
-            np.testing.assert_array_equal(indices, expected)
-
     @unittest.skipIf(cv2 is None, 'no cv2')
     def test_matches_are_those_of_cv2(self):
         for cross_check in (False, True):
@@ -183,7 +170,9 @@ class MatcherTest(unittest.TestCase):
         queries, train = rng.integers(0, 256, (1100, 4), np.uint8), rng.integers(0, 256, (60, 4), np.uint8)
         indices, distances = brute_force(queries, train, 3)
         matcher = HierarchicalMatcher()
-        np.testing.assert_array_equal(matcher.knnMatchArrays(queries, train, 3), [indices, distances])
+        arrays = matcher.knnMatchArrays(queries, train, 3)
+        np.testing.assert_array_equal(arrays, [indices, distances])
+        self.assertEqual({array.dtype for array in arrays}, {np.dtype(np.int32)})
         self.assertEqual(matcher.matchCost(), 1)
         matcher.resetCost()
         self.assertEqual(matcher.matchCost(), 0)
