@@ -14,7 +14,7 @@ namespace {
 using namespace cv;
 using cv::iib::HierarchicalMatcher;
 
-//! Appends what index_file.hpp ends a file with: FNV-1a of all before, little-endian.
+//! Appends what saveIndex ends a file with: FNV-1a of all before, little-endian.
 std::string withChecksum(std::string bytes)
 {
     cv::iib::Fnv1a hash;

@@ -17,14 +17,6 @@ std::vector<Mat> imagesOf(InputArrayOfArrays descriptors)
     return images;
 }
 
-int widthOf(const std::vector<Mat>& images)
-{
-    for (size_t i = 0; i < images.size(); i++)
-        if (!images[i].empty())
-            return images[i].cols;
-    return 0;
-}
-
 Mat checkedDescriptors(const Mat& descriptors, int width, bool byFirstCodes)
 {
     if (descriptors.empty())
@@ -32,16 +24,12 @@ Mat checkedDescriptors(const Mat& descriptors, int width, bool byFirstCodes)
     if (descriptors.dims != 2 || descriptors.type() != CV_8U)
         CV_Error(Error::StsUnsupportedFormat,
                 "Descriptors have to be a matrix of type CV_8U, a row a descriptor");
-    if (descriptors.cols != width && byFirstCodes)
-        CV_Error_(Error::StsUnmatchedSizes, ("Descriptors have %d columns, but the first ones had %d: "
-                                             "clear() the matcher before it takes "
-                                             "others",
-                                                    descriptors.cols, width));
     if (descriptors.cols != width)
         CV_Error_(Error::StsUnmatchedSizes,
-                ("Descriptors have %d columns, but the level sizes add up to %d: create "
-                 "the matcher with the level sizes of these descriptors",
-                        descriptors.cols, width));
+                ("Descriptors have %d columns, but %s %d: %s", descriptors.cols,
+                        byFirstCodes ? "the first ones had" : "the level sizes add up to", width,
+                        byFirstCodes ? "clear() the matcher before it takes others"
+                                     : "create the matcher with the level sizes of these descriptors"));
     return descriptors;
 }
 
@@ -82,7 +70,7 @@ void toBestMatches(const PackedCodes& trains, const KnnTable& found, std::vector
             matches.push_back(toMatch(trains, query, found[query][0]));
 }
 
-static void addRow(const PackedCodes& trains, int query, const MatchKey* begin, const MatchKey* end,
+void addMatches(const PackedCodes& trains, int query, const MatchKey* begin, const MatchKey* end,
         bool compact, std::vector<std::vector<DMatch>>& matches)
 {
     if (compact && begin == end)
@@ -91,28 +79,6 @@ static void addRow(const PackedCodes& trains, int query, const MatchKey* begin, 
     matches.back().reserve(end - begin);
     for (; begin != end; ++begin)
         matches.back().push_back(toMatch(trains, query, *begin));
-}
-
-void toMatches(const PackedCodes& trains, const KnnTable& found, bool compact,
-        std::vector<std::vector<DMatch>>& matches)
-{
-    matches.clear();
-    matches.reserve(found.rows());
-    for (int query = 0; query < (int)found.rows(); query++)
-    {
-        const MatchKey *begin = found[query], *end = begin + found.size();
-        addRow(trains, query, begin, std::find(begin, end, NO_MATCH), compact, matches);
-    }
-}
-
-void toMatches(const PackedCodes& trains, const std::vector<std::vector<MatchKey>>& found, bool compact,
-        std::vector<std::vector<DMatch>>& matches)
-{
-    matches.clear();
-    matches.reserve(found.size());
-    for (int query = 0; query < (int)found.size(); query++)
-        addRow(trains, query, found[query].data(), found[query].data() + found[query].size(), compact,
-                matches);
 }
 
 void toArrays(const PackedCodes& trains, const KnnTable& found, int k, OutputArray indices_,

@@ -14,9 +14,6 @@ namespace iib {
 //! One matrix of descriptors, or several, of one image each.
 std::vector<Mat> imagesOf(InputArrayOfArrays descriptors);
 
-//! Bytes of a descriptor of the first image that has any; 0 if none has.
-int widthOf(const std::vector<Mat>& images);
-
 //! The descriptors if they are of `width` bytes each, 0 x width if there are none; throws otherwise. `byFirstCodes`
 //! tells the error where the width came from: from the codes that came first, or from level sizes.
 Mat checkedDescriptors(const Mat& descriptors, int width, bool byFirstCodes);
@@ -27,11 +24,9 @@ std::vector<Mat> checkedMasks(InputArrayOfArrays masks, int queries, const Packe
 //! The nearest of each query that has one.
 void toBestMatches(const PackedCodes& trains, const KnnTable& found, std::vector<DMatch>& matches);
 
-//! A row for each query; with `compact`, only for those that have a match.
-void toMatches(const PackedCodes& trains, const KnnTable& found, bool compact,
-        std::vector<std::vector<DMatch>>& matches);
-void toMatches(const PackedCodes& trains, const std::vector<std::vector<MatchKey>>& found, bool compact,
-        std::vector<std::vector<DMatch>>& matches);
+//! Adds a row of the matches of a query; with `compact`, only if it has any.
+void addMatches(const PackedCodes& trains, int query, const MatchKey* begin, const MatchKey* end,
+        bool compact, std::vector<std::vector<DMatch>>& matches);
 
 //! CV_32S matrices of k columns, -1 where there is no neighbour.
 void toArrays(const PackedCodes& trains, const KnnTable& found, int k, OutputArray indices,

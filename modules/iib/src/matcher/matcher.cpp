@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "arguments.hpp"
-#include "index_file.hpp"
+#include "parameters.hpp"
 #include "search.hpp"
 
 namespace cv {
@@ -15,13 +15,15 @@ namespace {
 class HierarchicalMatcherImpl CV_FINAL : public HierarchicalMatcher, public ScanBlocks
 {
 public:
-    explicit HierarchicalMatcherImpl(const MatcherParameters& p) : parameters(p), cost(makePtr<SearchCost>())
+    //! @param codes null: there are none yet.
+    explicit HierarchicalMatcherImpl(
+            const MatcherParameters& p, const Ptr<PackedCodes>& codes = Ptr<PackedCodes>())
+        : parameters(p), cost(makePtr<SearchCost>())
     {
         clear();
-    }
-    HierarchicalMatcherImpl(const MatcherParameters& p, const Ptr<PackedCodes>& codes)
-        : parameters(p), index(codes), cost(makePtr<SearchCost>())
-    {
+        if (!codes)
+            return;
+        index = codes;
         trainDescCollection.resize(codes->images());
     }
 
@@ -52,7 +54,25 @@ public:
     void resetCost() CV_OVERRIDE { cost->compared = cost->all = 0; }
 
     bool isMaskSupported() const CV_OVERRIDE { return true; }
-    void add(InputArrayOfArrays descriptors) CV_OVERRIDE;
+    void add(InputArrayOfArrays descriptors) CV_OVERRIDE
+    {
+        std::vector<Mat> added = imagesOf(descriptors);
+        int width = index ? index->layout().bytes() : 0;
+        for (Mat& image : added)
+        {
+            width = width == 0 && !image.empty() ? image.cols : width;
+            image = checkedDescriptors(image, width, parameters.levelSizes.empty());
+        }
+        if (!index && width > 0)
+            index = indexFor(width);
+        trainDescCollection.reserve(trainDescCollection.size() + added.size());
+        for (const Mat& image : added)
+        {
+            if (index)
+                index->add(image);
+            trainDescCollection.push_back(Mat());  // DescriptorMatcher counts its entries
+        }
+    }
     void clear() CV_OVERRIDE
     {
         index = parameters.levelSizes.empty() ? Ptr<PackedCodes>()
@@ -66,11 +86,34 @@ public:
             all[i] = index->descriptors(i, 0, index->rows(i));
         return all;
     }
-    Ptr<DescriptorMatcher> clone(bool emptyTrainData) const CV_OVERRIDE;
+    Ptr<DescriptorMatcher> clone(bool emptyTrainData) const CV_OVERRIDE
+    {
+        Ptr<HierarchicalMatcherImpl> result = makePtr<HierarchicalMatcherImpl>(parameters);
+        static_cast<ScanBlocks&>(*result) = *this;
+        if (emptyTrainData)
+            result->cost = cost;
+        else
+        {
+            if (index)
+                result->index = makePtr<PackedCodes>(*index);
+            result->trainDescCollection = trainDescCollection;
+        }
+        return result;
+    }
 
     using HierarchicalMatcher::read;
     using HierarchicalMatcher::write;
-    void read(const FileNode& node) CV_OVERRIDE;
+    void read(const FileNode& node) CV_OVERRIDE
+    {
+        MatcherParameters p = readParameters(node, "HierarchicalMatcher", parameters);
+        const bool others = p.levelSizes != parameters.levelSizes;
+        if (others && index && index->rows() > 0)
+            CV_Error(Error::StsBadArg,
+                    "Other level sizes cannot be read while there are train descriptors: clear() first");
+        std::swap(parameters, p);
+        if (others)
+            clear();
+    }
     void write(FileStorage& fs) const CV_OVERRIDE { writeParameters(fs, parameters); }
     String getDefaultName() const CV_OVERRIDE { return "HierarchicalMatcher"; }
     void saveIndex(const String& filename) const CV_OVERRIDE
@@ -97,15 +140,34 @@ public:
     {
         const Mat queries = queries_.getMat();
         const Ptr<const PackedCodes> trains = trainCodes(queries);
-        toMatches(*trains, nearest(*trains, queries, k, masks), compactResult, matches);
+        const KnnTable found = nearest(*trains, queries, k, masks);
+        matches.clear();
+        matches.reserve(found.rows());
+        for (int query = 0; query < (int)found.rows(); query++)
+            addMatches(*trains, query, found[query],
+                    std::find(found[query], found[query] + found.size(), NO_MATCH), compactResult, matches);
     }
     void knnMatch(InputArray queries, InputArray trains, std::vector<std::vector<DMatch>>& matches, int k,
             InputArray mask, bool compactResult) const CV_OVERRIDE
     {
         with(trains)->knnMatch(queries, matches, k, singleMask(mask), compactResult);
     }
-    void radiusMatch(InputArray queries, std::vector<std::vector<DMatch>>& matches, float maxDistance,
-            InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE;
+    void radiusMatch(InputArray queries_, std::vector<std::vector<DMatch>>& matches, float maxDistance,
+            InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE
+    {
+        if (!(maxDistance > std::numeric_limits<float>::epsilon()))
+            CV_Error_(Error::StsOutOfRange, ("maxDistance is %g: it has to be > 0", maxDistance));
+        const Mat queries = queries_.getMat();
+        const Ptr<const PackedCodes> trains = trainCodes(queries);
+        const CodeLayout& layout = trains->layout();
+        const int radius = cvFloor(std::min((double)maxDistance, 8. * layout.bytes()));
+        const SearchInput input = inputFor(*trains, queries, masks, radiusPolicy(layout, radius));
+        const std::vector<std::vector<MatchKey>> found = findWithin(input, radius);
+        matches.clear();
+        for (int query = 0; query < (int)found.size(); query++)
+            addMatches(*trains, query, found[query].data(), found[query].data() + found[query].size(),
+                    compactResult, matches);
+    }
     void radiusMatch(InputArray queries, InputArray trains, std::vector<std::vector<DMatch>>& matches,
             float maxDistance, InputArray mask, bool compactResult) const CV_OVERRIDE
     {
@@ -177,93 +239,31 @@ private:
         return std::vector<Mat>(mask.empty() ? 0 : 1, mask.getMat());
     }
 
-    KnnTable nearest(const PackedCodes& trains, const Mat& queries, int k, InputArrayOfArrays masks) const;
     //! Checked. The policy is that of the mode if it is THRESHOLD, else the given one.
     SearchInput inputFor(const PackedCodes& trains, const Mat& queries, InputArrayOfArrays masks,
-            const PruningPolicy& policy) const;
+            const PruningPolicy& policy) const
+    {
+        const CodeLayout& layout = trains.layout();
+        const Mat checked = checkedDescriptors(queries, layout.bytes(), parameters.levelSizes.empty());
+        const bool byLevels = parameters.mode == THRESHOLD;
+        return {trains, checked, byLevels ? thresholdPolicy(layout, parameters.thresholds) : policy,
+                checkedMasks(masks, checked.rows, trains), {}, 0, *this, *cost};
+    }
+
+    KnnTable nearest(const PackedCodes& trains, const Mat& queries, int k, InputArrayOfArrays masks) const
+    {
+        if (k <= 0)
+            CV_Error_(Error::StsOutOfRange, ("k is %d: it has to be > 0", k));
+        const PruningPolicy policy =
+                parameters.mode == ADAPTIVE ? adaptivePolicy(trains.layout()) : PruningPolicy();
+        return findNearest(
+                inputFor(trains, queries, masks, policy), k, parameters.crossCheck, parameters.maxRatio);
+    }
 
     MatcherParameters parameters;
     Ptr<PackedCodes> index;  //!< null while the width of codes is not known
     Ptr<SearchCost> cost;    //!< shared with clones without train data, with which calls with two sets match
 };
-
-void HierarchicalMatcherImpl::add(InputArrayOfArrays descriptors)
-{
-    std::vector<Mat> added = imagesOf(descriptors);
-    const int width = index ? index->layout().bytes() : widthOf(added);
-    for (Mat& image : added)
-        image = checkedDescriptors(image, width, parameters.levelSizes.empty());
-    if (!index && width > 0)
-        index = indexFor(width);
-    trainDescCollection.reserve(trainDescCollection.size() + added.size());
-    for (const Mat& image : added)
-    {
-        if (index)
-            index->add(image);
-        trainDescCollection.push_back(Mat());  // DescriptorMatcher counts its entries
-    }
-}
-
-Ptr<DescriptorMatcher> HierarchicalMatcherImpl::clone(bool emptyTrainData) const
-{
-    Ptr<HierarchicalMatcherImpl> result = makePtr<HierarchicalMatcherImpl>(parameters);
-    static_cast<ScanBlocks&>(*result) = *this;
-    if (emptyTrainData)
-        result->cost = cost;
-    else
-    {
-        if (index)
-            result->index = makePtr<PackedCodes>(*index);
-        result->trainDescCollection = trainDescCollection;
-    }
-    return result;
-}
-
-void HierarchicalMatcherImpl::read(const FileNode& node)
-{
-    MatcherParameters p = readParameters(node, "HierarchicalMatcher", parameters);
-    const bool others = p.levelSizes != parameters.levelSizes;
-    if (others && index && index->rows() > 0)
-        CV_Error(Error::StsBadArg,
-                "Other level sizes cannot be read while there are train descriptors: clear() first");
-    std::swap(parameters, p);
-    if (others)
-        clear();
-}
-
-SearchInput HierarchicalMatcherImpl::inputFor(const PackedCodes& trains, const Mat& queries,
-        InputArrayOfArrays masks, const PruningPolicy& policy) const
-{
-    const CodeLayout& layout = trains.layout();
-    const Mat checked = checkedDescriptors(queries, layout.bytes(), parameters.levelSizes.empty());
-    const bool byLevels = parameters.mode == THRESHOLD;
-    return {trains, checked, byLevels ? thresholdPolicy(layout, parameters.thresholds) : policy,
-            checkedMasks(masks, checked.rows, trains), {}, 0, *this, *cost};
-}
-
-KnnTable HierarchicalMatcherImpl::nearest(
-        const PackedCodes& trains, const Mat& queries, int k, InputArrayOfArrays masks) const
-{
-    if (k <= 0)
-        CV_Error_(Error::StsOutOfRange, ("k is %d: it has to be > 0", k));
-    const PruningPolicy policy =
-            parameters.mode == ADAPTIVE ? adaptivePolicy(trains.layout()) : PruningPolicy();
-    return findNearest(
-            inputFor(trains, queries, masks, policy), k, parameters.crossCheck, parameters.maxRatio);
-}
-
-void HierarchicalMatcherImpl::radiusMatch(InputArray queries_, std::vector<std::vector<DMatch>>& matches,
-        float maxDistance, InputArrayOfArrays masks, bool compactResult)
-{
-    if (!(maxDistance > std::numeric_limits<float>::epsilon()))
-        CV_Error_(Error::StsOutOfRange, ("maxDistance is %g: it has to be > 0", maxDistance));
-    const Mat queries = queries_.getMat();
-    const Ptr<const PackedCodes> trains = trainCodes(queries);
-    const CodeLayout& layout = trains->layout();
-    const int radius = cvFloor(std::min((double)maxDistance, 8. * layout.bytes()));
-    const SearchInput input = inputFor(*trains, queries, masks, radiusPolicy(layout, radius));
-    toMatches(*trains, findWithin(input, radius), compactResult, matches);
-}
 
 }  // namespace
 

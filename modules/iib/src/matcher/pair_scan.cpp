@@ -102,49 +102,20 @@ private:
     std::vector<uchar> flags;
 };
 
-//! Puts the pairs of a block into tables of any k.
-class TableSink CV_FINAL : public HammingSink
+//! Calls found(query, train, distance) for the pairs of a block that are below a threshold; thresholds as HammingSink's.
+template <class Found>
+void scanPruned(const SearchInput& input, PairBlocks& block, const int* queryThresholds,
+        const int* trainThresholds, const Found& report)
 {
-public:
-    TableSink(const PairBlocks& block_, KnnTable& forQueries_, KnnTable* forTrains_)
-        : HammingSink(forQueries_.thresholds() + block_.firstQuery,
-                  forTrains_ ? forTrains_->thresholds() + block_.firstTrain : 0),
-          block(block_), forQueries(forQueries_), forTrains(forTrains_)
+    struct Sink CV_FINAL : public HammingSink
     {
-    }
-    void found(int query, int train, int distance) CV_OVERRIDE
-    {
-        forQueries.insert(block.firstQuery + query, matchKey(distance, block.firstIndex() + train));
-        if (forTrains)
-            forTrains->insert(block.firstTrain + train, matchKey(distance, block.firstQuery + query));
-    }
-
-private:
-    const PairBlocks& block;
-    KnnTable& forQueries;
-    KnnTable* forTrains;
-};
-
-//! Lists all pairs of a block that are below one threshold.
-class ListSink CV_FINAL : public HammingSink
-{
-public:
-    ListSink(const PairBlocks& block_, const int* thresholds, std::vector<std::vector<MatchKey>>& lists_)
-        : HammingSink(thresholds, 0), block(block_), lists(lists_)
-    {
-    }
-    void found(int query, int train, int distance) CV_OVERRIDE
-    {
-        lists[block.firstQuery + query].push_back(matchKey(distance, block.firstIndex() + train));
-    }
-
-private:
-    const PairBlocks& block;
-    std::vector<std::vector<MatchKey>>& lists;
-};
-
-void scanPruned(const SearchInput& input, PairBlocks& block, HammingSink& sink)
-{
+        Sink(const int* ofQueries, const int* ofTrains, const Found& report_)
+            : HammingSink(ofQueries, ofTrains), report(report_)
+        {
+        }
+        void found(int query, int train, int distance) CV_OVERRIDE { report(query, train, distance); }
+        const Found& report;
+    } sink(queryThresholds, trainThresholds, report);
     const std::vector<PruneStage>& stages = input.policy.stages;
     const CodeLayout& layout = input.trains.layout();
     std::vector<int64> passed(stages.size(), 0);
@@ -185,10 +156,15 @@ void scanNearest(const SearchInput& input, const Range& queries, KnnTable& forQu
         if (single && NearestScan::fits(block.pairs))
             scanSingle(input, block, forQueries, forTrains);
         else
-        {
-            TableSink sink(block, forQueries, forTrains);
-            scanPruned(input, block, sink);
-        }
+            scanPruned(input, block, forQueries.thresholds() + block.firstQuery,
+                    forTrains ? forTrains->thresholds() + block.firstTrain : 0,
+                    [&](int query, int train, int distance) {
+                        forQueries.insert(
+                                block.firstQuery + query, matchKey(distance, block.firstIndex() + train));
+                        if (forTrains)
+                            forTrains->insert(
+                                    block.firstTrain + train, matchKey(distance, block.firstQuery + query));
+                    });
 }
 
 void scanWithin(
@@ -196,10 +172,9 @@ void scanWithin(
 {
     const std::vector<int> thresholds(std::min(queries.size(), input.blocks.queryCount), radius + 1);
     for (PairBlocks block(input, queries); block.next();)
-    {
-        ListSink sink(block, thresholds.data(), lists);
-        scanPruned(input, block, sink);
-    }
+        scanPruned(input, block, thresholds.data(), 0, [&](int query, int train, int distance) {
+            lists[block.firstQuery + query].push_back(matchKey(distance, block.firstIndex() + train));
+        });
 }
 
 }  // namespace iib
