@@ -21,17 +21,9 @@ struct Extremum
     float response;
     int scale, y, x;
     float around[3][3];  //!< the responses
-    float smaller,
-            larger;  //!< those of the scales before and after at this pixel; of the first and last: its own
+    //! Those of the scales before and after at this pixel; of the first and last: its own.
+    float smaller, larger;
 };
-
-//! Strongest first; of the same response by scale and place.
-bool isBefore(const Extremum& a, const Extremum& b)
-{
-    if (a.response != b.response)
-        return a.response > b.response;
-    return std::tie(a.scale, a.y, a.x) < std::tie(b.scale, b.y, b.x);
-}
 
 class BlobFinder
 {
@@ -155,13 +147,13 @@ std::vector<KeyPoint> findBlobs(const Mat& normalized, const HessianParameters& 
             if (mask.empty() || mask.at<uchar>(cvRound(pt.y), cvRound(pt.x)))
                 order.push_back(&e);
         }
-    const auto before = [](const Extremum* a, const Extremum* b) { return isBefore(*a, *b); };
-    const size_t most = parameters.maxFeatures;
-    if (most > 0 && order.size() > most)
-    {
-        std::nth_element(order.begin(), order.begin() + most, order.end(), before);
-        order.resize(most);
-    }
+    // strongest first; of the same response by scale and place
+    const auto before = [](const Extremum* a, const Extremum* b) {
+        return std::tie(b->response, a->scale, a->y, a->x) < std::tie(a->response, b->scale, b->y, b->x);
+    };
+    const size_t most = parameters.maxFeatures, kept = most > 0 ? std::min(most, order.size()) : order.size();
+    std::nth_element(order.begin(), order.begin() + kept, order.end(), before);
+    order.resize(kept);
     std::sort(order.begin(), order.end(), before);
     std::vector<KeyPoint> keypoints;
     keypoints.reserve(order.size());

@@ -4,7 +4,7 @@
 
 #include "local_normalization.hpp"
 
-#include "padded_rows.hpp"
+#include "kernels/kernels.hpp"
 
 namespace cv {
 namespace iib {

@@ -7,20 +7,6 @@
 namespace cv {
 namespace iib {
 
-namespace {
-
-//! Five taps `spacing` apart that add this variance: twice (w, 1 - 2 w, w), of which each adds 2 w spacing^2.
-SmoothingStep stepOf(double variance)
-{
-    const int spacing = cvCeil(std::sqrt(.75 * variance));  // w is 1/3 at the most: one peak
-    const double w = variance / (4 * spacing * spacing);
-    const SmoothingWeights weights = {
-            (short)cvRound(2 * w * (1 - 2 * w) * 65536), (short)cvRound(w * w * 65536)};
-    return {spacing, weights, 0, 0};
-}
-
-}  // namespace
-
 std::vector<SmoothingStep> smoothingSteps(const std::vector<double>& sigmas)
 {
     const double unit = 40 << CONTRAST_BITS;  // a local standard deviation
@@ -32,7 +18,11 @@ std::vector<SmoothingStep> smoothingSteps(const std::vector<double>& sigmas)
         while (wanted - variance > 1e-9)
         {
             const double added = std::min(wanted - variance, std::max(variance, 4. / 3));
-            steps.push_back(stepOf(added));
+            // Five taps, twice (w, 1 - 2 w, w), of which each adds 2 w spacing^2. w is 1/3 at the most: one peak.
+            const int spacing = cvCeil(std::sqrt(.75 * added));
+            const double w = added / (4 * spacing * spacing);
+            steps.push_back({spacing,
+                    {(short)cvRound(2 * w * (1 - 2 * w) * 65536), (short)cvRound(w * w * 65536)}, 0, 0});
             variance += added;
         }
         const int distance = std::max(cvRound(.75 * sigma), 1);

@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "padded_rows.hpp"
+#include "kernels/kernels.hpp"
 
 namespace cv {
 namespace iib {

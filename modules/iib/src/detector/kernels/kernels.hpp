@@ -4,16 +4,50 @@
 
 #pragma once
 
-#include "../../precomp.hpp"
+#include "../../common/aligned_buffer.hpp"
 
 namespace cv {
 namespace iib {
 
 constexpr int DETECTOR_PADDING = 64;  //!< values that kernels may read and write on either side of a row
-constexpr int GREY_BITS =
-        7;  //!< of what is normalized: pixels, means and differences are grey levels of 0..255 in 2^-7
+//! What is normalized, pixels, means and differences, are grey levels of 0..255 in 2^-7.
+constexpr int GREY_BITS = 7;
 constexpr int WHITE = 255 << GREY_BITS;
 constexpr int CONTRAST_BITS = 6;  //!< smoothed rows are normalized grey levels in 2^-6
+
+/** Rows of an image as kernels take them: each begins on a cache line, with room for `reach` values and DETECTOR_PADDING
+more on either side. They may be fewer than the image has: then the last ones, of those made from top to bottom. */
+template <typename T> class PaddedRows
+{
+public:
+    //! Not initialized, or zeros.
+    explicit PaddedRows(Size size_, int reach = 0, bool zeros = false)
+        : size(size_), padding(wholeLines<T>(reach + DETECTOR_PADDING)),
+          step(wholeLines<T>(size_.width + 1) + 2 * padding), values(step * size_.height)
+    {
+        if (zeros)
+            std::fill_n(values.data(), step * size.height, T());
+    }
+
+    T* row(int y) { return values.data() + place(y) * step + padding; }
+    const T* row(int y) const { return values.data() + place(y) * step + padding; }
+
+    //! Repeats the ends of a row of `width` values.
+    void repeatEnds(int y, int width, int times = 1)
+    {
+        T* const r = row(y);
+        std::fill_n(r - times, times, r[0]);
+        std::fill_n(r + width, times, r[width - 1]);
+    }
+
+    Size size;
+
+private:
+    int place(int y) const { return y < size.height ? y : y % size.height; }
+
+    size_t padding, step;
+    AlignedBuffer<T> values;
+};
 
 //! Weights of (near: 1, far: 2 spacings away) in a smoothing, in 2^-16; 0 to 16384.
 struct SmoothingWeights
