@@ -36,11 +36,15 @@ class HessianDetector_Impl CV_FINAL : public HessianDetector
 public:
     explicit HessianDetector_Impl(const HessianParameters& parameters) : p(parameters) { p.check(); }
 
-    using Feature2D::detect;
-    void detect(InputArray imageArray, std::vector<KeyPoint>& keypoints, InputArray maskArray) CV_OVERRIDE
+    void detectAndCompute(InputArray imageArray, InputArray maskArray, std::vector<KeyPoint>& keypoints,
+            OutputArray descriptors, bool useProvidedKeypoints) CV_OVERRIDE
     {
         CV_TRACE_FUNCTION();
 
+        if (descriptors.needed() || useProvidedKeypoints)
+            CV_Error(Error::StsNotImplemented,
+                    "HessianDetector finds keypoints but does not describe them; describe them with "
+                    "IIBDescriptorExtractor::createFor(detector)");
         const Mat image = imageArray.getMat();
         if (image.empty())
             return keypoints.clear();
@@ -50,17 +54,6 @@ public:
         if (image.rows < 2 || image.cols < 2)
             return keypoints.clear();
         keypoints = findBlobs(normalizeHalf(grey, p.normalizationSigma), p, mask);
-    }
-
-    using Feature2D::compute;
-    void compute(InputArray, std::vector<KeyPoint>&, OutputArray) CV_OVERRIDE { refuseToDescribe(); }
-
-    void detectAndCompute(InputArray image, InputArray mask, std::vector<KeyPoint>& keypoints,
-            OutputArray descriptors, bool useProvidedKeypoints) CV_OVERRIDE
-    {
-        if (descriptors.needed() || useProvidedKeypoints)
-            refuseToDescribe();
-        detect(image, keypoints, mask);
     }
 
     bool empty() const CV_OVERRIDE { return false; }
@@ -108,13 +101,6 @@ public:
     void save(const String& filename) const CV_OVERRIDE { saveAlone(*this, filename); }
 
 private:
-    static void refuseToDescribe()
-    {
-        CV_Error(Error::StsNotImplemented,
-                "HessianDetector finds keypoints but does not describe them; describe "
-                "them with IIBDescriptorExtractor::createFor(detector)");
-    }
-
     template <typename T> void set(T HessianParameters::*member, T value)
     {
         HessianParameters changed = p;

@@ -32,37 +32,28 @@ public:
         checkSigma(sigma);
     }
 
-    using Feature2D::detect;
-    void detect(InputArray imageArray, std::vector<KeyPoint>& keypoints, InputArray mask) CV_OVERRIDE
+    void detectAndCompute(InputArray imageArray, InputArray mask, std::vector<KeyPoint>& keypoints,
+            OutputArray descriptors, bool useProvidedKeypoints) CV_OVERRIDE
     {
         CV_TRACE_FUNCTION();
 
         const Mat image = imageArray.getMat();
-        if (image.empty())
-            return keypoints.clear();
-        checkImage(image);
-        const Mat grey = integerMap(image);
-        detector->detect(normalizeLocally(grey, sigma), keypoints, maskFor(mask, image.size()));
-    }
-
-    using Feature2D::compute;
-    void compute(InputArray image, std::vector<KeyPoint>& keypoints, OutputArray descriptors) CV_OVERRIDE
-    {
+        if (!useProvidedKeypoints)
+            keypoints.clear();
+        if (!useProvidedKeypoints && !image.empty())
+        {
+            checkImage(image);
+            const Mat grey = integerMap(image);
+            detector->detect(normalizeLocally(grey, sigma), keypoints, maskFor(mask, image.size()));
+        }
+        if (!descriptors.needed())
+            return;
         if (detector->descriptorSize() == 0)
             CV_Error(Error::StsNotImplemented,
                     detector->getDefaultName() +
                             " finds keypoints but does not describe them; describe them with "
                             "another Feature2D, such as IIBDescriptorExtractor::createFor");
-        detector->compute(imageFor(*detector, image.getMat()), keypoints, descriptors);
-    }
-
-    void detectAndCompute(InputArray image, InputArray mask, std::vector<KeyPoint>& keypoints,
-            OutputArray descriptors, bool useProvidedKeypoints) CV_OVERRIDE
-    {
-        if (!useProvidedKeypoints)
-            detect(image, keypoints, mask);
-        if (descriptors.needed())
-            compute(image, keypoints, descriptors);
+        detector->compute(imageFor(*detector, image), keypoints, descriptors);
     }
 
     int descriptorSize() const CV_OVERRIDE { return detector->descriptorSize(); }
