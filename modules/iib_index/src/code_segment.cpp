@@ -90,17 +90,14 @@ void CodeSegment::map()
     if (!SearchedCodes::knows(layout))
         header.fail("its layout is unknown");
     const int checkedBlocks = (int)header.word();
-    const uint64 images = header.number(8);
-    header.expect(images, 8);
     std::vector<size_t> starts(1, 0);
-    for (uint64 i = 0; i < images; i++)
+    for (uint64 rows : header.list<uint64>(8))
     {
-        const uint64 rows = header.number(8);
         if (rows > expected.rows - starts.back())
             header.fail("it is not the one that the manifest names");
         starts.push_back(starts.back() + (size_t)rows);
     }
-    if (images != expected.images || starts.back() != expected.rows || checkedBlocks <= 0)
+    if (starts.size() - 1 != expected.images || starts.back() != expected.rows || checkedBlocks <= 0)
         header.fail("it is not the one that the manifest names");
     const uint64 blocks =
             (expected.rows + SearchedCodes::CODES_PER_BLOCK - 1) / SearchedCodes::CODES_PER_BLOCK;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "precomp.hpp"
-#include "index_commit.hpp"
 #include "index_folder.hpp"
+#include "manifest.hpp"
 
 #include "opencv2/core/utils/filesystem.hpp"
 
@@ -12,6 +12,88 @@ namespace cv {
 namespace iib {
 
 namespace {
+
+//! @throws cv::Exception (StsOutOfRange) unless 0 <= number < count.
+void checkNumber(int64 number, uint64 count, const char* what)
+{
+    if (number < 0 || (uint64)number >= count)
+        CV_Error_(
+                Error::StsOutOfRange, ("%s %lld: there are %lld", what, (long long)number, (long long)count));
+}
+
+// The last segment that begins at or before a number; `firsts` ends with the number of all.
+size_t segmentHolding(int64 number, const std::vector<size_t>& firsts, const char* what)
+{
+    checkNumber(number, firsts.back(), what);
+    return std::upper_bound(firsts.begin(), firsts.end(), (size_t)number) - firsts.begin() - 1;
+}
+
+//! A commit of an index, ready to be searched.
+class IndexCommit
+{
+public:
+    //! Takes segments over from an earlier commit, which may have them mapped.
+    //! @throws cv::Exception if the manifest's level sizes make no sense.
+    IndexCommit(const String& folder, const Manifest& manifest, const IndexCommit* before)
+        : committed(manifest), firstRows(1, 0), firstImages(1, 0)
+    {
+        SearchedCodes::check(manifest.levelSizes);
+        const size_t known = before ? before->opened.size() : 0;
+        for (size_t i = 0; i < manifest.segments.size(); i++)
+        {
+            const SegmentEntry& entry = manifest.segments[i];
+            const bool same = i < known && before->opened[i]->entry().number == entry.number &&
+                              before->opened[i]->entry().checksum == entry.checksum;
+            opened.push_back(
+                    same ? before->opened[i]
+                         : makePtr<CodeSegment>(segmentOf(folder, entry.number), entry, manifest.levelSizes));
+            firstRows.push_back(firstRows.back() + (size_t)entry.rows);
+            firstImages.push_back(firstImages.back() + (size_t)entry.images);
+        }
+    }
+
+    const Manifest& manifest() const { return committed; }
+    int segments() const { return (int)opened.size(); }
+    int64 images() const { return (int64)firstImages.back(); }
+    int64 rows() const { return (int64)firstRows.back(); }
+
+    int64 imageOf(int64 row) const
+    {
+        const size_t i = segmentHolding(row, firstRows, "row");
+        return (int64)(firstImages[i] + opened[i]->codes().imageOf((size_t)row - firstRows[i]));
+    }
+
+    int64 firstRow(int64 image) const
+    {
+        const size_t i = segmentHolding(image, firstImages, "image");
+        return (int64)(firstRows[i] + opened[i]->codes().start((size_t)image - firstImages[i]));
+    }
+
+    Mat descriptors(int64 image) const
+    {
+        const size_t i = segmentHolding(image, firstImages, "image");
+        return opened[i]->codes().descriptors((size_t)image - firstImages[i]);
+    }
+
+    //! A segment's part of a search.
+    SearchedCodes::Part part(int segment) const
+    {
+        // First: a manifest may claim more images than memory has bits for.
+        const SearchedCodes& codes = opened[segment]->codes();
+        const std::vector<uint64>& removed = committed.removed;
+        const auto first = std::lower_bound(removed.begin(), removed.end(), firstImages[segment]),
+                   end = std::lower_bound(first, removed.end(), firstImages[segment + 1]);
+        std::vector<bool> hidden(first == end ? 0 : firstImages[segment + 1] - firstImages[segment], false);
+        for (auto image = first; image != end; ++image)
+            hidden[(size_t)*image - firstImages[segment]] = true;
+        return {&codes, firstRows[segment], hidden};
+    }
+
+private:
+    Manifest committed;
+    std::vector<Ptr<CodeSegment>> opened;
+    std::vector<size_t> firstRows, firstImages;  //!< of each segment, and the number of all
+};
 
 uint64 imagesOf(const Manifest& manifest)
 {

@@ -47,45 +47,31 @@ static MatcherParameters readParameters(CheckedReader& file)
     return p;
 }
 
-static std::vector<size_t> readRows(CheckedReader& file, uint64 width)
-{
-    const uint64 images = file.number(8);
-    file.expect(images, 8);
-    std::vector<size_t> rows((size_t)images);
-    uint64 total = 0;
-    for (size_t& count : rows)
-    {
-        const uint64 number = file.number(8);
-        total += number;
-        if (number > INT_MAX || width > INT_MAX || (width == 0 && number > 0))
-            file.fail("its numbers do not make sense");
-        file.expect(total, width);
-        count = (size_t)number;
-    }
-    return rows;
-}
-
 Ptr<PackedCodes> loadCodes(const String& filename, MatcherParameters& parameters)
 {
     CheckedReader file(filename, KIND);
     parameters = readParameters(file);
-    uint64 width = 0, total = 0;
-    for (int size : parameters.levelSizes)
-        width += (unsigned)size;
-    const std::vector<size_t> rows = readRows(file, width);
     checkLevelSizesGiven(parameters.levelSizes);
     check(parameters);
-    for (size_t count : rows)
-        total += count;
     const Ptr<PackedCodes> codes = makePtr<PackedCodes>(parameters.levelSizes);
+    const int width = codes->layout().bytes();
+    const std::vector<uint64> rows = file.list<uint64>(8);
+    uint64 total = 0;
+    for (uint64 count : rows)
+    {
+        total += count;
+        if (count > INT_MAX)
+            file.fail("its numbers do not make sense");
+        file.expect(total, width);
+    }
     codes->reserve(rows.size(), (size_t)total);
     Mat chunk;
-    for (size_t count : rows)
+    for (uint64 count : rows)
     {
         codes->add(Mat());
-        for (size_t row = 0; row < count; row += chunk.rows)
+        for (uint64 row = 0; row < count; row += chunk.rows)
         {
-            chunk.create((int)std::min(CHUNK_ROWS, count - row), (int)width, CV_8U);
+            chunk.create((int)std::min((uint64)CHUNK_ROWS, count - row), width, CV_8U);
             file.bytes(chunk.data, chunk.total());
             codes->append(chunk);
         }
