@@ -11,20 +11,20 @@ namespace {
 
 /** The last rows of an integral image over cells of BOX_CELL x BOX_CELL pixels, from the top of a rectangle of the image,
  reflected at its border, to its bottom. */
-template <typename T, typename Sum> class CellBand
+template <typename T> class CellBand
 {
 public:
-    //! @param source gx, gy and intensity of the image; outlives the band, as do the kernels and the memory.
+    typedef typename BoxSumKernels<T>::Sum Sum;
+
+    //! @param source gx, gy and intensity of the image; outlives the band, as do the kernels and the workspace.
     //! @param area of whole cells. @param rows of pixels, how many, the newest included, a reader looks at.
     CellBand(const std::vector<Channel>& source, Rect area, int rows, const DescriptorKernels& kernels,
-            SumCellRowFunc<T, Sum> sumRow_, ScratchMemory& channelMemory, ScratchMemory& planeMemory,
-            ScratchMemory& ringMemory)
-        : channelRows(source, area, 0, kernels.pixels(T()).rows, channelMemory), sumRow(sumRow_),
-          width(area.width / BOX_CELL),
+            bool rotated, Workspace& workspace)
+        : channelRows(source, area, 0, kernels.pixels(T()).rows, workspace.channelRows),
+          sumRow(kernels.boxes.sums(T()).sumRow[rotated]), width(area.width / BOX_CELL),
           ring(area.tl() / BOX_CELL, std::min(rows / BOX_CELL + 2, area.height / BOX_CELL + 1),
-                  ((size_t)width + 1) * BOX_LANES, BOX_LANES, ringMemory),
-          planeStep(wholeLines<T>((size_t)area.width + ROW_PADDING)),
-          planes(planeMemory.get<T>(BOX_PLANES * planeStep))
+                  ((size_t)width + 1) * BOX_LANES, BOX_LANES, workspace.ring),
+          planes(workspace.planes.get<T>(BOX_CELL * channelRows.rowSize()))
     {
     }
 
@@ -35,9 +35,10 @@ public:
             const T* rows[BOX_CELL][BOX_PLANES];
             for (int r = 0; r < BOX_CELL; r++)
             {
-                std::copy_n(channelRows.compute(y * BOX_CELL + r), (int)BOX_PLANES, rows[r]);
-                if (r == 0)
-                    keepPlanes(rows[r]);
+                T* const row = planes + r * channelRows.rowSize();
+                channelRows.compute(y * BOX_CELL + r, row);
+                for (int i = 0; i < BOX_PLANES; i++)
+                    rows[r][i] = row + channelRows.places()[i];
             }
             sumRow(rows, width, above, out);
         });
@@ -49,21 +50,10 @@ public:
     int oldest() const { return ring.oldest(); }
 
 private:
-    //! The planes are overwritten by those of the next row.
-    void keepPlanes(const T* rowPlanes[BOX_PLANES])
-    {
-        for (int i = 0; i < BOX_PLANES; i++)
-        {
-            memcpy(planes + i * planeStep, rowPlanes[i], (size_t)width * BOX_CELL * sizeof(T));
-            rowPlanes[i] = planes + i * planeStep;
-        }
-    }
-
     ChannelRows<T> channelRows;
-    const SumCellRowFunc<T, Sum> sumRow;
+    void (*const sumRow)(const T* const rows[BOX_CELL][BOX_PLANES], int cells, const Sum* above, Sum* out);
     const int width;  //!< in cells
     RowRing<Sum> ring;
-    const size_t planeStep;
     T* const planes;
 };
 
@@ -77,14 +67,15 @@ Rect cellsOf(Rect pixels)
             first, Point(floorHalf(pixels.x + pixels.width + 1), floorHalf(pixels.y + pixels.height + 1)));
 }
 
-//! The pixels that count, for a region that may leave the image by a rounding.
+//! The pixels of whole cells.
+Rect pixelsOf(Rect cells) { return Rect(cells.tl() * (int)BOX_CELL, cells.size() * (int)BOX_CELL); }
+
+//! The cells that count, for a region that may leave the image by a rounding.
 Rect boundsOf(int border, Size image)
 {
-    Rect all = border == IIB::BORDER_REFLECT ? reflectedImage(image) : Rect(Point(), image);
     if (border == IIB::BORDER_CLAMP)  // without the cells that an odd image cuts, unless there are no others
-        all = Rect(0, 0, std::max(image.width & ~1, 1), std::max(image.height & ~1, 1));
-    const Rect cells = cellsOf(all);
-    return Rect(cells.tl() * (int)BOX_CELL, cells.size() * (int)BOX_CELL);
+        return Rect(0, 0, std::max(image.width / BOX_CELL, 1), std::max(image.height / BOX_CELL, 1));
+    return cellsOf(border == IIB::BORDER_REFLECT ? reflectedImage(image) : Rect(Point(), image));
 }
 
 /* The matrix that turns means, a row for each lane that is read. The mean of |gx cos a + gy sin a| has period 180 degrees;
@@ -120,21 +111,21 @@ double cellsInSide(double side, const BoxPlan::Level& level)
     return std::max(std::floor(side / BOX_CELL * level.side + 0.5), 1.);
 }
 
-template <typename T, typename Sum>
+template <typename T>
 void describeBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch, bool rotated,
-        const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels,
-        SumCellRowFunc<T, Sum> sumRow, Workspace& workspace, Mat& descriptors)
+        const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels, Workspace& workspace,
+        Mat& descriptors)
 {
     const BoxKernels& kernels = plan.kernels.boxes;
-    const BoxSumKernels<Sum>& sums = kernels.sums(Sum());
+    const BoxSumKernels<T>& sums = kernels.sums(T());
     const std::vector<Channel> source = {{IIB::CHANNEL_SIGNED_GRAD_X, grey},
             {IIB::CHANNEL_SIGNED_GRAD_Y, grey}, {IIB::CHANNEL_INTENSITY, grey}};
-    CellBand<T, Sum> band(source, batch.area, batch.rows + KeyPointBatch::BAND_ROWS, plan.kernels, sumRow,
-            workspace.channelRows, workspace.planes, workspace.ring);
-    const RingRows<Sum>& integral = band.integral();
-    auto* const means = workspace.boxMeans.get<typename BoxSumKernels<Sum>::Mean>(MAX_BOX_MEANS);
+    CellBand<T> band(
+            source, batch.area, batch.rows + KeyPointBatch::BAND_ROWS, plan.kernels, rotated, workspace);
+    const auto& integral = band.integral();
+    T* const means = workspace.boxMeans.get<T>(MAX_BOX_MEANS);
     BoxFrame frame;
-    frame.bounds = cellsOf(boundsOf(plan.parameters.border, grey.size()));
+    frame.bounds = boundsOf(plan.parameters.border, grey.size());
     frame.left = integral.origin.x;
     frame.count = integral.count;
     BoxEdges edges;
@@ -185,24 +176,16 @@ Rect boxPixels(const SupportRegion& region, int border, Size image)
 {
     // Corners of the outermost grids, whose boxes do not turn: (28 sqrt(2) + 12) / 40 at most. Four pixels more for roundings.
     const SupportRegion extent(region.centre, region.side * (region.isRotated() ? 1.3 : 1) + 8);
-    const Rect cells = cellsOf(extent.pixels(boundsOf(border, image)));
-    return Rect(cells.tl() * (int)BOX_CELL, cells.size() * (int)BOX_CELL);
+    return pixelsOf(cellsOf(extent.pixels(pixelsOf(boundsOf(border, image)))));
 }
 
 void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch, bool rotated,
         const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels, Workspace& workspace,
         Mat& descriptors)
 {
-    const BoxKernels& k = plan.kernels.boxes;
-    if (grey.depth() == CV_16U)
-        describeBatch<int>(
-                plan, grey, batch, rotated, regions, pixels, k.sumIntRow[rotated], workspace, descriptors);
-    else if (sumsAreShort(plan.boxes, batch, regions))
-        describeBatch<short>(
-                plan, grey, batch, rotated, regions, pixels, k.sumShortRow[rotated], workspace, descriptors);
-    else
-        describeBatch<short>(
-                plan, grey, batch, rotated, regions, pixels, k.sumLongRow[rotated], workspace, descriptors);
+    const bool isShort = grey.depth() == CV_8U && sumsAreShort(plan.boxes, batch, regions);
+    const auto describe = isShort ? describeBatch<short> : describeBatch<int>;
+    describe(plan, grey, batch, rotated, regions, pixels, workspace, descriptors);
 }
 
 }  // namespace iib

@@ -12,11 +12,9 @@ namespace iib {
 std::vector<Channel> channelsInUse(const Parameters& p, const Mat& grey, const std::vector<Mat>& extra)
 {
     std::vector<Channel> channels;
-    for (int kind = 1; kind <= ALL_CHANNELS; kind <<= 1)
-        if (p.channels & kind)
-            channels.push_back(Channel{kind, grey});
-    for (const Mat& map : extra)
-        channels.push_back(Channel{0, integerMap(map)});
+    size_t maps = 0;
+    for (int kind : p.channelKinds())
+        channels.push_back(Channel{kind, kind ? grey : integerMap(extra[maps++])});
     return channels;
 }
 
@@ -142,25 +140,21 @@ template <typename T> void ChannelRows<T>::reflect(T* out) const
 
 template <typename T> const T* const* ChannelRows<T>::compute(int y)
 {
+    compute(y, row(FIRST_PLANE));
+    return planes;
+}
+
+template <typename T> void ChannelRows<T>::compute(int y, T* out, ptrdiff_t above)
+{
     y = reflected(y, channels[0].map.rows);
     if (gradientOf)
-        kernels.imageChannels(imageRows(y), signedOffset, imageChannels(row(FIRST_PLANE)), 0, source.size());
-    for (size_t i = 0; i < channels.size(); i++)
+        kernels.imageChannels(imageRows(y), signedOffset, imageChannels(out), above, source.size());
+    for (size_t i = 0; i < channels.size(); i++, out += step)
     {
-        T* const out = row(FIRST_PLANE + (int)i);
         if (channels[i].kind == 0 || !gradientOf)
             widen(kernels, channels[i].map, y, source.start, out + (source.start - origin), source.size());
         reflect(out);
     }
-    return planes;
-}
-
-template <typename T> void ChannelRows<T>::add(int y, const T* above, T* out)
-{
-    y = reflected(y, channels[0].map.rows);
-    kernels.imageChannels(imageRows(y), signedOffset, imageChannels(out), above - out, source.size());
-    for (size_t i = 0; i < channels.size(); i++)
-        reflect(out + i * step);
 }
 
 template class ChannelRows<short>;

@@ -59,9 +59,10 @@ public:
     //! @return GROUP_CHANNELS channels in the row, at the pixels of the rectangle; missing ones repeat the last.
     const T* const* compute(int y);
 
-    /** Adds row y of the channels, all of them the image's, to other rows, modulo 2^16 or 2^32.
-     @param above, out rowSize() values. */
-    void add(int y, const T* above, T* out);
+    /** The same into memory of the caller, rowSize() values.
+     @param above if not 0, each value has the one so many places behind its own added, modulo 2^16 or 2^32; for channels
+     of the image alone. */
+    void compute(int y, T* out, ptrdiff_t above = 0);
 
     //! Values in a row of all channels that the caller keeps, and where each has the rectangle's first pixel in it.
     size_t rowSize() const { return GROUP_CHANNELS * step; }

@@ -28,7 +28,8 @@ public:
     //! Adds the image's rows up to and without y, area.y <= y <= area.y + area.height.
     void advance(int y)
     {
-        ring.advance(y, [&](int row, const short* above, short* out) { channelRows.add(row, above, out); });
+        ring.advance(y,
+                [&](int row, const short* above, short* out) { channelRows.compute(row, out, above - out); });
     }
 
     //! Sums over n x n cells.

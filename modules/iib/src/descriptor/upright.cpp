@@ -52,22 +52,22 @@ public:
                 double* const sum = sums.cell(r, c);
                 std::fill_n(sum, GROUP_CHANNELS, 0.);
                 for (int y = edges.y[r]; y < edges.y[r + 1]; y += longestPart)
+                {
+                    const Sum *const top = ring.row(y), *const bottom = ring.row(
+                                                                std::min(y + longestPart, edges.y[r + 1]));
                     for (int x = edges.x[c]; x < edges.x[c + 1]; x += longestPart)
-                        addPart(Range(x, std::min(x + longestPart, edges.x[c + 1])),
-                                Range(y, std::min(y + longestPart, edges.y[r + 1])), sum);
+                    {
+                        const size_t left = at(x), right = at(std::min(x + longestPart, edges.x[c + 1]));
+                        for (int i = 0; i < GROUP_CHANNELS; i++)
+                            sum[i] += (Sum)(bottom[right + i] - bottom[left + i] - top[right + i] +
+                                            top[left + i]);
+                    }
+                }
             }
     }
 
 private:
-    void addPart(Range x, Range y, double* sum) const
-    {
-        const int first = ring.rows().origin.x;
-        const Sum *const top = ring.row(y.start), *const bottom = ring.row(y.end);
-        const size_t left = (size_t)(x.start - first) * GROUP_CHANNELS,
-                     right = (size_t)(x.end - first) * GROUP_CHANNELS;
-        for (int i = 0; i < GROUP_CHANNELS; i++)
-            sum[i] += (Sum)(bottom[right + i] - bottom[left + i] - top[right + i] + top[left + i]);
-    }
+    size_t at(int x) const { return (size_t)(x - ring.rows().origin.x) * GROUP_CHANNELS; }
 
     ChannelRows<T> channelRows;
     RowRing<Sum> ring;
@@ -119,11 +119,10 @@ void describeGroup(const DescriptorPlan& plan, const ChannelGroup& group,
     const double pixels = std::min(cell * cell, (double)batch.area.width * batch.area.height);
     const double largestSum = maxValue(channels, maxGradient(channels)) * pixels;
     const bool fits16Bits = largestSum <= USHRT_MAX, fits32Bits = largestSum <= UINT_MAX;
-    const bool is16 = is16Bit(channels);
-    const auto describe = is16 && !fits32Bits ? describeBatch<IntegralBand<int, unsigned>, double>
-                          : is16              ? describeBatch<IntegralBand<int, unsigned>, unsigned>
-                          : !fits32Bits       ? describeBatch<IntegralBand<short, unsigned>, double>
-                          : !fits16Bits       ? describeBatch<IntegralBand<short, unsigned>, unsigned>
+    const bool isShort = !is16Bit(channels) && fits32Bits;
+    const auto describe = !fits32Bits   ? describeBatch<IntegralBand<int, unsigned>, double>
+                          : !isShort    ? describeBatch<IntegralBand<int, unsigned>, unsigned>
+                          : !fits16Bits ? describeBatch<IntegralBand<short, unsigned>, unsigned>
                           : columnsAreFaster(plan, channels, batch, side)
                                   ? describeBatch<ColumnBand, ushort>
                                   : describeBatch<IntegralBand<short, ushort>, ushort>;

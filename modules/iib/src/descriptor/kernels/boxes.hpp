@@ -131,39 +131,33 @@ struct BoxPlaces
     float weight[CAPACITY];
 };
 
-/** A row of the integral image from two rows of pixels: out = above + sums along the row; both begin left of the
- first cell. @param rows ROW_PADDING values longer than the cells. */
-template <typename T, typename Sum>
-using SumCellRowFunc = void (*)(
-        const T* const rows[BOX_CELL][BOX_PLANES], int cells, const Sum* above, Sum* out);
-
-//! Means of 8-bit images that are looked for in sums of 32 bits are short.
-template <typename Sum> struct BoxSumKernels
+/** Of pixels' values T, short or int: means are T as well, and sums unsigned, as long as 32 bits hold those of all boxes
+ in 8-bit images, or 64-bit integers. */
+template <typename T> struct BoxSumKernels
 {
-    typedef typename std::conditional<std::is_same<Sum, unsigned>::value, short, int>::type Mean;
+    typedef typename std::conditional<std::is_same<T, short>::value, unsigned, int64>::type Sum;
 
-    void (*means)(
-            const RingRows<Sum>& integral, const BoxGridShape& grid, const BoxEdges& edges, Mean* means);
+    /** Of upright and of rotated regions: a row of the integral image from two rows of pixels, out = above + sums along the row;
+     both begin left of the first cell. @param rows ROW_PADDING values longer than the cells. */
+    void (*sumRow[2])(const T* const rows[BOX_CELL][BOX_PLANES], int cells, const Sum* above, Sum* out);
+
+    void (*means)(const RingRows<Sum>& integral, const BoxGridShape& grid, const BoxEdges& edges, T* means);
 
     //! mean = sum over j of matrix[j] * (box's sums * weight)[j], without the last lane.
     void (*rotatedMeans)(const RingRows<Sum>& integral, const BoxGridShape& grid, const BoxPlaces& places,
-            const float matrix[BOX_LANES][BOX_LANES], Mean* means);
+            const float matrix[BOX_LANES][BOX_LANES], T* means);
 
     //! BoxGridShape::comparisonBytes() of them, of which the chosen ones are written.
-    void (*bits)(const Mean* means, const BoxGridShape& grid, const ChosenBits& chosen, int offset,
+    void (*bits)(const T* means, const BoxGridShape& grid, const ChosenBits& chosen, int offset,
             uchar* descriptor);
 };
 
 struct BoxKernels
 {
-    //! Of upright and of rotated regions.
-    SumCellRowFunc<short, unsigned> sumShortRow[2];
-    SumCellRowFunc<short, int64> sumLongRow[2];
-    SumCellRowFunc<int, int64> sumIntRow[2];
-    BoxSumKernels<unsigned> shortSums;
-    BoxSumKernels<int64> longSums;
-    const BoxSumKernels<unsigned>& sums(unsigned) const { return shortSums; }
-    const BoxSumKernels<int64>& sums(int64) const { return longSums; }
+    BoxSumKernels<short> shortSums;
+    BoxSumKernels<int> longSums;
+    const BoxSumKernels<short>& sums(short) const { return shortSums; }
+    const BoxSumKernels<int>& sums(int) const { return longSums; }
 
     //! @param offsets of begins and ends from the region's centre, in its sides.
     void (*edges)(const BoxFrame& frame, const double (&offsets)[2][MAX_BOX_PLACES], BoxEdges& edges);

@@ -29,8 +29,8 @@ inline void zipPairs(const v_uint32& a, const v_uint32& b, v_uint32& low, v_uint
 }
 
 //! Sums that 32 bits do not hold: rare, so written plainly.
-template <typename T, bool ROTATED>
-void sumLongCellRow(const T* const rows[BOX_CELL][BOX_PLANES], int cells, const int64* above, int64* out)
+template <bool ROTATED>
+void sumCellRow(const int* const rows[BOX_CELL][BOX_PLANES], int cells, const int64* above, int64* out)
 {
     int64 sums[BOX_LANES] = {};
     for (int c = 0; c < cells; c++)
@@ -373,19 +373,17 @@ void boxBits(
     appendChosen(chosen, comparisons, writer);
 }
 
-template <typename Sum> BoxSumKernels<Sum> boxSumKernels()
+template <typename T> BoxSumKernels<T> boxSumKernels()
 {
-    typedef typename BoxSumKernels<Sum>::Mean Mean;
-    const BoxSumKernels<Sum> k = {boxMeans<Sum, Mean>, rotatedBoxMeans<Sum, Mean>, boxBits<Mean>};
+    typedef typename BoxSumKernels<T>::Sum Sum;
+    const BoxSumKernels<T> k = {
+            {sumCellRow<false>, sumCellRow<true>}, boxMeans<Sum, T>, rotatedBoxMeans<Sum, T>, boxBits<T>};
     return k;
 }
 
 BoxKernels boxKernels()
 {
-    const BoxKernels k = {{sumCellRow<false>, sumCellRow<true>},
-            {sumLongCellRow<short, false>, sumLongCellRow<short, true>},
-            {sumLongCellRow<int, false>, sumLongCellRow<int, true>}, boxSumKernels<unsigned>(),
-            boxSumKernels<int64>(), boxEdges, boxPlaces};
+    const BoxKernels k = {boxSumKernels<short>(), boxSumKernels<int>(), boxEdges, boxPlaces};
     return k;
 }
 
