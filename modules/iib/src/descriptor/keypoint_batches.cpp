@@ -88,14 +88,10 @@ template <typename Key> void countingSort(Indices& indices, int keyCount, const 
 
 Rect unionOf(const std::vector<Rect>& regions, const Indices& keypoints)
 {
-    Point begin = regions[keypoints[0]].tl(), end = regions[keypoints[0]].br();
+    Rect all = regions[keypoints[0]];
     for (int k : keypoints)
-    {
-        const Rect& r = regions[k];
-        begin = Point(std::min(begin.x, r.x), std::min(begin.y, r.y));
-        end = Point(std::max(end.x, r.x + r.width), std::max(end.y, r.y + r.height));
-    }
-    return Rect(begin, end);
+        all |= regions[k];
+    return all;
 }
 
 //! Cuts keypoints across the longer side of their area, where fewer regions are cut, into strips of equal height or width.

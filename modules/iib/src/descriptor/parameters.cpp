@@ -61,13 +61,8 @@ static void checkSelection(const Parameters& p)
 
 int bitsPerQuad(int mapping)
 {
-    switch (mapping)
-    {
-    case IIB::MAPPING_QUARTILE:
-    case IIB::MAPPING_SORT: return 8;
-    case IIB::MAPPING_HAAR: return 3;
-    default: return 4;
-    }
+    static const int bits[] = {4, 4, 4, 8, 8, 3, 4};  // in the order of IIB::Mapping
+    return bits[mapping];
 }
 
 std::vector<int> Parameters::channelKinds() const
@@ -134,7 +129,8 @@ static int bitsBefore(const Parameters& p, int level, int end)
     return bits;
 }
 
-int bitsOfLevel(const Parameters& p, int level) { return bitsBefore(p, level, p.channelCount()); }
+//! Before they are padded to whole bytes.
+static int bitsOfLevel(const Parameters& p, int level) { return bitsBefore(p, level, p.channelCount()); }
 
 std::vector<int> levelBytes(const Parameters& p)
 {
@@ -143,12 +139,6 @@ std::vector<int> levelBytes(const Parameters& p)
         if (const int bits = bitsOfLevel(p, level))
             bytes.push_back((bits + 7) / 8);
     return bytes;
-}
-
-int finestLevel(const Parameters& p)
-{
-    return p.selection.empty() ? p.granularity
-                               : p.selection(p.selection.rows - 1, 0);  // levels do not descend
 }
 
 int bitOffset(const Parameters& p, int level, int group)

@@ -38,14 +38,8 @@ struct Parameters
 //! Bits that a mapping makes of one quad.
 int bitsPerQuad(int mapping);
 
-//! Bits of a level before it is padded to whole bytes; the order of the bits is in descriptor.hpp.
-int bitsOfLevel(const Parameters& parameters, int level);
-
-//! Bytes of each level that has any, coarse first.
+//! Bytes of each level that has any, coarse first; the order of the bits is in descriptor.hpp.
 std::vector<int> levelBytes(const Parameters& parameters);
-
-//! The finest level that has any bit.
-int finestLevel(const Parameters& parameters);
 
 //! The place in the descriptor of the first bit of a group of GROUP_CHANNELS channels at a level.
 int bitOffset(const Parameters& parameters, int level, int group);

@@ -9,7 +9,8 @@
 namespace cv {
 namespace iib {
 
-ChosenBits chosenBits(const Parameters& p, int level, int group, int index)
+//! The bits that a selection chooses in a phase of a level. @param group which four of the channels.
+static ChosenBits chosenBits(const Parameters& p, int level, int group, int index)
 {
     const QuadPhase phase(1 << level, index);
     const int planes = bitsPerQuad(p.mapping), planeBits = 8 * phase.planeBytes();
@@ -64,8 +65,9 @@ static std::vector<ChannelGroup> groupsOf(const Parameters& p, int finest)
 Ptr<const DescriptorPlan> makePlan(const Parameters& p)
 {
     const std::vector<int> bytes = levelBytes(p);
-    DescriptorPlan plan = {p, finestLevel(p), bytes, std::accumulate(bytes.begin(), bytes.end(), 0), {},
-            BoxPlan(), descriptorKernels()};
+    const Mat_<int>& s = p.selection;  // levels do not descend
+    DescriptorPlan plan = {p, s.empty() ? p.granularity : s(s.rows - 1, 0), bytes,
+            std::accumulate(bytes.begin(), bytes.end(), 0), {}, BoxPlan(), descriptorKernels()};
     if (plan.isOfBoxes())
         plan.boxes = makeBoxPlan(p);
     else

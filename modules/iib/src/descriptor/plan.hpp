@@ -37,9 +37,6 @@ struct DescriptorPlan
 //! @param checked parameters that have passed their check().
 Ptr<const DescriptorPlan> makePlan(const Parameters& checked);
 
-//! The bits that a selection chooses in a phase of a level. @param group which four of the channels.
-ChosenBits chosenBits(const Parameters& parameters, int level, int group, int phase);
-
 //! Memory that one thread uses again for each batch of keypoints. What it holds means nothing between two batches.
 struct Workspace
 {

@@ -11,51 +11,22 @@ namespace iib {
 
 namespace {
 
-/** What the channels of a descriptor are sampled from, GROUP_CHANNELS values to a pixel: what the image's channels are
- made of comes first, extra maps follow. */
-struct SampledChannels
+/** What the channels of a descriptor are sampled from, up to GROUP_CHANNELS values to a pixel: first what those of the image are
+ made of, if there are any, then extra maps. @param channels of the image before the extra ones. */
+std::vector<std::vector<Channel>> packsOf(const std::vector<Channel>& channels)
 {
-    bool hasImage;
     std::vector<std::vector<Channel>> packs;
-    std::vector<int> planeOf;  //!< of each channel, in the planes of sums
-    int planes;
-};
-
-//! The place of a single IIB::Channel among them.
-int planeOfKind(int kind)
-{
-    int plane = 0;
-    while (kind >> plane > 1)
-        plane++;
-    return plane;
-}
-
-//! @param channels of the image, if any, before the extra ones.
-SampledChannels sampledChannels(const std::vector<Channel>& channels)
-{
-    SampledChannels s = {channels[0].kind != 0, {}, {}, 0};
-    if (s.hasImage)
+    const auto end = channels.end();
+    auto next = std::find_if(channels.begin(), end, [](const Channel& c) { return c.kind == 0; });
+    if (next != channels.begin())
     {
-        s.planes = IMAGE_PLANES;
         const Mat& image = channels[0].map;
-        s.packs.push_back({{IIB::CHANNEL_SIGNED_GRAD_X, image}, {IIB::CHANNEL_SIGNED_GRAD_Y, image},
+        packs.push_back({{IIB::CHANNEL_SIGNED_GRAD_X, image}, {IIB::CHANNEL_SIGNED_GRAD_Y, image},
                 {IIB::CHANNEL_ORIENTATION, image}, {IIB::CHANNEL_INTENSITY, image}});
     }
-    int maps = 0;
-    for (const Channel& c : channels)
-        if (c.kind != 0)
-            s.planeOf.push_back(planeOfKind(c.kind));
-        else
-        {
-            if (maps++ % GROUP_CHANNELS == 0)
-            {
-                s.packs.push_back(std::vector<Channel>());
-                s.planes += GROUP_CHANNELS;
-            }
-            s.packs.back().push_back(c);
-            s.planeOf.push_back((s.hasImage ? IMAGE_PLANES : 0) + maps - 1);
-        }
-    return s;
+    for (; next != end; next += packs.back().size())
+        packs.push_back(std::vector<Channel>(next, next + std::min<ptrdiff_t>(end - next, GROUP_CHANNELS)));
+    return packs;
 }
 
 //! Both components of a gradient are 4 times the largest pixel at most; rotated, one is sqrt(2) times that at most.
@@ -76,27 +47,32 @@ template <typename T> class CellSampler
 {
 public:
     CellSampler(const DescriptorPlan& plan_, const std::vector<Channel>& channels_, Workspace& workspace_)
-        : plan(plan_), channels(channels_), sampled(sampledChannels(channels_)), workspace(workspace_),
-          kernels(plan_.kernels.pixels(T()).rotated),
-          sums(workspace_.planes.get<int>((size_t)sampled.planes * MAX_SAMPLES))
+        : plan(plan_), channels(channels_), workspace(workspace_), kernels(plan_.kernels.pixels(T()).rotated)
     {
+        const int kinds = (int)channels.size();
+        for (int i = 0, maps = IMAGE_PLANES; i < kinds; i++)
+        {
+            int place = 0;  // of a kind, in the order of IIB::Channel
+            while (channels[i].kind >> place > 1)
+                place++;
+            planeOf[i] = channels[i].kind ? place : maps++;
+        }
+        sums = workspace.planes.get<int>((size_t)(IMAGE_PLANES + kinds + GROUP_CHANNELS) * MAX_SAMPLES);
     }
 
-    const std::vector<std::vector<Channel>>& packs() const { return sampled.packs; }
-
     //! All planes of sums. @param points of the grid.
-    void sum(GridPixels<T>& points, const SampleGrid& grid, const Rotation& rotation)
+    void sum(const GridPixels<T>& points, const std::vector<std::vector<Channel>>& packs,
+            const SampleGrid& grid, const Rotation& rotation)
     {
         const GradientRotation gradients = {
                 cvRound(rotation.cosine * 4096), cvRound(rotation.sine * 4096), rotation.steps};
         int* planes[IMAGE_PLANES];
-        int next = 0;
-        for (size_t i = 0; i < packs().size(); i++)
+        int next = IMAGE_PLANES;
+        for (size_t i = 0; i < packs.size(); i++)
         {
-            const bool image = sampled.hasImage && i == 0;
-            const int count = image ? IMAGE_PLANES : GROUP_CHANNELS;
-            for (int p = 0; p < count; p++)
-                planes[p] = plane(next++);
+            const bool image = packs[i][0].kind != 0;
+            for (int p = 0; p < (image ? (int)IMAGE_PLANES : GROUP_CHANNELS); p++)
+                planes[p] = plane(image ? p : next++);
             if (image)
                 kernels.imageSums(points.pixels(i), points.indices(), grid.cells(), grid.sub * grid.sub,
                         gradients, planes);
@@ -133,7 +109,7 @@ private:
         for (int i = 0; i < GROUP_CHANNELS; i++)
         {
             const int c = group.first + std::min(i, group.count - 1);
-            planes[i] = plane(sampled.planeOf[c]);
+            planes[i] = plane(planeOf[c]);
             const int kind = channels[c].kind;
             const bool isSigned = kind == IIB::CHANNEL_SIGNED_GRAD_X || kind == IIB::CHANNEL_SIGNED_GRAD_Y;
             const int largest = maxRotatedGradient(channels[c].map.depth());
@@ -147,10 +123,10 @@ private:
 
     const DescriptorPlan& plan;
     const std::vector<Channel>& channels;
-    const SampledChannels sampled;
     Workspace& workspace;
     const RotatedSampleKernels<T>& kernels;
-    int* const sums;
+    int planeOf[IMAGE_PLANES + MAX_EXTRA_CHANNELS];  //!< of each channel, in the planes of sums
+    int* sums;
 };
 
 int samplesInRow(const SupportRegion& region, int granularity)
@@ -165,8 +141,9 @@ void describeBatch(const DescriptorPlan& plan, const std::vector<Channel>& chann
 {
     const Parameters& p = plan.parameters;
     const Size image = channels[0].map.size();
+    const std::vector<std::vector<Channel>> packs = packsOf(channels);
     CellSampler<T> sampler(plan, channels, workspace);
-    GridPixels<T> pixels(plan.kernels, sampler.packs(), batch, p.border, workspace);
+    GridPixels<T> pixels(plan.kernels, packs, batch, p.border, workspace);
     for (int k : batch.keypoints)
     {
         const SupportRegion& region = regions[k];
@@ -176,7 +153,7 @@ void describeBatch(const DescriptorPlan& plan, const std::vector<Channel>& chann
         const int sub = plan.cellsInRow() == n ? 1 : 2;
         const SampleGrid grid = gridOf(region, rotation, n, sub, p.border, image);
         pixels.moveTo(region, grid);
-        sampler.sum(pixels, grid, rotation);
+        sampler.sum(pixels, packs, grid, rotation);
         sampler.write(grid, descriptors.ptr(k));
     }
 }

@@ -147,9 +147,6 @@ inline int boxEdge(double position, double first, double limit)
     return (int)(std::min(std::max(position + 0.5, first), limit) + shift) - shift;
 }
 
-//! The row of the ring for one of the image at hand.
-inline int ringRow(int y, int shift, int count) { return y + shift - (y + shift >= count ? count : 0); }
-
 //! The compiler makes vectors of the loops, with this file's instruction set.
 void edgesAlong(double centre, double side, Range bounds, const double* offsets, int* edges)
 {
@@ -180,7 +177,7 @@ void boxEdges(const BoxFrame& f, const double (&offsets)[2][MAX_BOX_PLACES], Box
         for (int i = 0; i < MAX_BOX_PLACES; i++)
         {
             edges.x[end][i] = (edges.x[end][i] - left) * BOX_LANES;
-            edges.y[end][i] = ringRow(edges.y[end][i], shift, count);
+            edges.y[end][i] = RingRows<int>::place(edges.y[end][i] + shift, count);
         }
 }
 
@@ -204,8 +201,8 @@ void boxPlaces(const BoxFrame& f, const BoxGridShape& grid, const double* centre
     {
         const int x0 = boxEdge(boxX[i], left, right), x1 = boxEdge(boxX[i] + side, left, right);
         const int y0 = boxEdge(boxY[i], top, bottom), y1 = boxEdge(boxY[i] + side, top, bottom);
-        places.above[i] = ringRow(y0, f.shift, f.count) * step + (x0 - f.left);
-        places.below[i] = ringRow(y1, f.shift, f.count) * step + (x0 - f.left);
+        places.above[i] = RingRows<int>::place(y0 + f.shift, f.count) * step + (x0 - f.left);
+        places.below[i] = RingRows<int>::place(y1 + f.shift, f.count) * step + (x0 - f.left);
         places.right[i] = x1 - x0;
         places.weight[i] =
                 (float)BOX_MEAN_STEPS / ((float)std::max(x1 - x0, 1) * (float)std::max(y1 - y0, 1));

@@ -102,33 +102,13 @@ template <typename V> struct RowSums
     }
 };
 
-//! The row of the ring that ends above row y of the image.
-template <typename Sum> class RowFinder
-{
-public:
-    RowFinder(const RingRows<Sum>& rows, int top)
-        : data(rows.data), step(rows.step), count(rows.count), shift(rows.shift(top))
-    {
-    }
-
-    const Sum* operator()(int y) const
-    {
-        const int place = y + shift;
-        return data + (place < count ? place : place - count) * step;
-    }
-
-private:
-    const Sum* const data;
-    const size_t step;
-    const int count, shift;
-};
-
 template <typename Sum>
 void cellSums(const RingRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells)
 {
     typedef decltype(loadGroups(rows.data, (const size_t*)0)) V;
     constexpr int COLUMNS = 2 * VTraits<V>::max_nlanes / GROUP_CHANNELS;
-    const RowFinder<Sum> row(rows, yEdges[0]);
+    const int count = rows.count, shift = rows.shift(yEdges[0]);
+    const auto row = [&](int y) { return rows.data + rows.place(y + shift, count) * rows.step; };
     AutoBuffer<const Sum*, 64> lines(n);
     for (int r = 0; r < n; r++)
         lines[r] = row(yEdges[r + 1]);

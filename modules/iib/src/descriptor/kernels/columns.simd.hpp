@@ -123,10 +123,11 @@ void columnCells(const RingRows<short>& rows, const size_t channels[GROUP_CHANNE
         const int* yEdges, int n, CellGrid<ushort>& cells)
 {
     static_assert(NARROW_CELL == SegmentSums::LONGEST, "wider cells take longer");
-    const RowFinder<short> row(rows, yEdges[0]);
+    const int shift = rows.shift(yEdges[0]);
     AutoBuffer<const ushort*, 72> lines(n + 1);
     for (int r = 0; r <= n; r++)
-        lines[r] = reinterpret_cast<const ushort*>(row(yEdges[r]));
+        lines[r] = reinterpret_cast<const ushort*>(
+                rows.data + rows.place(yEdges[r] + shift, rows.count) * rows.step);
     cells.create(n);
     const size_t step = cells.row(0, 1) - cells.row(0, 0);
     for (int c = 0; c < n; c += SegmentSums::COUNT)

@@ -21,35 +21,13 @@ const DescriptorKernels& descriptorKernels();
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
-namespace {
-
-DescriptorKernels makeTable()
-{
-    DescriptorKernels k;
-    k.instructionSet = IIB_INSTRUCTION_SET;
-    k.shortPixels.rows = rowKernels<short>();
-    k.shortPixels.rotated = rotatedSampleKernels<short>();
-    k.intPixels.rows = rowKernels<int>();
-    k.intPixels.rotated = rotatedSampleKernels<int>();
-    k.sumShortRow = sumRow16;
-    k.sumLongRow = sumRow32;
-    k.sumIntRow = sumRowOf16Bit;
-    k.cellEdges = cellEdges;
-    k.shortCells = cellSums<ushort>;
-    k.longCells = cellSums<unsigned>;
-    k.columnCells = columnCells;
-    k.shortBits = bitsKernels<ushort>();
-    k.longBits = bitsKernels<unsigned>();
-    k.doubleBits = bitsKernels<double>();
-    k.boxes = boxKernels();
-    return k;
-}
-
-}  // namespace
-
 const DescriptorKernels& descriptorKernels()
 {
-    static const DescriptorKernels table = makeTable();
+    static const DescriptorKernels table = {IIB_INSTRUCTION_SET,
+            {rowKernels<short>(), rotatedSampleKernels<short>()},
+            {rowKernels<int>(), rotatedSampleKernels<int>()}, sumRow16, sumRow32, sumRowOf16Bit,
+            cellSums<ushort>, cellSums<unsigned>, columnCells, bitsKernels<ushort>(), bitsKernels<unsigned>(),
+            bitsKernels<double>(), boxKernels(), cellEdges};
     return table;
 }
 

@@ -59,8 +59,10 @@ template <typename Sum> struct RingRows
     int count;     //!< rows in the ring
     Point origin;  //!< in the image
 
-    //! A row y from `oldest` on, the first at hand, is in place y + shift, less count unless that is smaller.
+    //! What to add to rows of the image from `oldest` on, the first at hand, before place() puts them into the ring.
     int shift(int oldest) const { return (oldest - origin.y) % count - oldest; }
+
+    static int place(int shifted, int count) { return shifted < count ? shifted : shifted - count; }
 };
 
 //! The edge of pixels nearest to a position, in [first, limit]: on positive numbers the cast is a floor.
