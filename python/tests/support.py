@@ -1,4 +1,5 @@
 """Images and keypoints made of integers alone, as modules/iib/test/support/test_images.cpp makes them."""
+import importlib
 import re
 import signal
 import threading
@@ -9,10 +10,16 @@ import numpy as np
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 
-try:
-    import cv2
-except ImportError:
-    cv2 = None
+
+def optional(name):
+    """A module, or None where it is not installed."""
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        return None
+
+
+cv2 = optional('cv2')
 
 
 class Integers:

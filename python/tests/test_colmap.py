@@ -13,7 +13,7 @@ from unittest import mock
 import numpy as np
 
 import opencv_iib
-from support import REPOSITORY, cv2, texture
+from support import REPOSITORY, cv2, optional, texture
 
 if cv2 is not None:
     from opencv_iib._lock import only_writer
@@ -25,26 +25,11 @@ if cv2 is not None:
     from opencv_iib.colmap.images import exif_focal_length, read_grey
     from opencv_iib.colmap.verify import magsac
 
-try:
-    import distributed
-except ImportError:
-    distributed = None
-try:
-    import h5py
-except ImportError:
-    h5py = None
-try:
-    import pycolmap
-except ImportError:
-    pycolmap = None
-try:
-    import PIL.Image
-except ImportError:
-    PIL = None
+distributed, h5py, pycolmap, pillow = map(optional, ('distributed', 'h5py', 'pycolmap', 'PIL.Image'))
 
 
 @unittest.skipIf(cv2 is None, 'no cv2')
-@unittest.skipIf(cv2 is not None and PIL is None, 'no pillow')
+@unittest.skipIf(cv2 is not None and pillow is None, 'no pillow')
 class ColmapTest(unittest.TestCase):
 
     def setUp(self):
@@ -298,7 +283,7 @@ class ColmapTest(unittest.TestCase):
 
     def test_exif(self):
         path = os.path.join(self.folder.name, 'x.jpg')
-        image = PIL.Image.new('L', (600, 400))
+        image = pillow.new('L', (600, 400))
         # little-endian TIFF: one entry that points to the EXIF directory, and there a focal length of 28 mm
         exif = b'Exif\0\0II*\0' + struct.pack('<IHHHIIIHHHIHHI', 8, 1, 0x8769, 4, 1, 26, 0, 1, 0xA405, 3, 1, 28, 0, 0)
         image.save(path, exif=exif)

@@ -13,12 +13,9 @@ from unittest import mock
 
 import numpy as np
 
-from support import REPOSITORY, cv2, texture
+from support import REPOSITORY, cv2, optional, texture
 
-try:
-    import pycolmap
-except ImportError:
-    pycolmap = None
+pycolmap = optional('pycolmap')
 
 if cv2 is not None:
     from opencv_iib.__main__ import main

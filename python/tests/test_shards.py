@@ -10,12 +10,9 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import MappedIndex, shards
-from support import brute_force
+from support import brute_force, optional
 
-try:
-    import distributed
-except ImportError:
-    distributed = None
+distributed = optional('distributed')
 
 
 class Interrupted(Exception):

@@ -6,11 +6,9 @@ import tempfile
 import unittest
 
 import opencv_iib
+from support import optional
 
-try:
-    import mypy
-except ImportError:
-    mypy = None
+mypy = optional('mypy')
 
 # What nanobind's functions and classes are not, of what stubtest looks for; and lru_cache.
 UNREADABLE = re.compile(r'opencv_iib\._core\.\S+ (is not a function|is inconsistent, stub is a staticmethod but runtime is '

@@ -87,13 +87,6 @@ check_definitions() {
     done
 }
 
-# check_folders FOLDER...: whether each is one.
-check_folders() {
-    for folder in "$@"; do
-        [ -d "$folder" ] || fail "$folder is no folder"
-    done
-}
-
 # check_suites SUITE...: whether each may be the name of a release of Debian or Ubuntu.
 check_suites() {
     for suite in "$@"; do
@@ -144,23 +137,26 @@ build_packages="$compiler_packages pkg-config libopencv-dev"
 # The one build folder of demo, installation, tests and tools, so that the library is compiled once.
 build="$root/build"
 
-# configure CMAKE_ARGUMENT...: says only what a person should read. A folder that exists keeps its generator.
+# configure CMAKE_ARGUMENT...: says only what a person should read. A folder that exists keeps its generator and what it builds.
+new_folder=""
 configure() {
-    [ -f "$build/CMakeCache.txt" ] || set -- -G Ninja "$@"
+    # shellcheck disable=SC2086
+    [ -f "$build/CMakeCache.txt" ] || set -- -G Ninja $new_folder "$@"
     say "configuring $build"
     cmake -S "$root" -B "$build" --log-level=NOTICE "$@"
 }
 
-# build_library TARGET...: the library and what needs no more than that. A new folder gets neither tests nor tools; one
-# that has them keeps them.
-build_library() {
-    if [ -f "$build/CMakeCache.txt" ]; then
-        configure
-    else
-        configure -DIIB_BUILD_TESTS=OFF -DIIB_BUILD_TOOLS=OFF
-    fi
+# build_targets TARGET...: of the folder that was configured.
+build_targets() {
     say "building $*"
     cmake --build "$build" --target "$@"
+}
+
+# build_library TARGET...: the library and what needs no more than that. A new folder gets neither tests nor tools.
+build_library() {
+    new_folder="-DIIB_BUILD_TESTS=OFF -DIIB_BUILD_TOOLS=OFF"
+    configure
+    build_targets "$@"
 }
 
 # The argument of configure with which the tools have the descriptors of opencv_contrib.
@@ -170,19 +166,15 @@ contrib_argument() {
     echo "-DIIB_CONTRIB_SOURCE=$contrib"
 }
 
-# build_tools TARGET...: programs of tools/, below $build/tools; an argument of configure may stand before them.
+# build_tools [-DNAME=VALUE] TARGET...: programs of tools/, below $build/tools.
 build_tools() {
-    option=""
-    case "$1" in -D*)
-        option="$1"
+    new_folder="-DIIB_BUILD_TESTS=OFF"
+    case "$1" in
+    -D*)
+        configure -DIIB_BUILD_TOOLS=ON "$1"
         shift
         ;;
+    *) configure -DIIB_BUILD_TOOLS=ON ;;
     esac
-    if [ -f "$build/CMakeCache.txt" ]; then
-        configure -DIIB_BUILD_TOOLS=ON ${option:+"$option"}
-    else
-        configure -DIIB_BUILD_TESTS=OFF -DIIB_BUILD_TOOLS=ON ${option:+"$option"}
-    fi
-    say "building $*"
-    cmake --build "$build" --target "$@"
+    build_targets "$@"
 }

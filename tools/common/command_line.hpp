@@ -21,12 +21,12 @@ class CommandLine
 {
 public:
     /** @param keys as cv::CommandLineParser takes them, options only. An empty default makes a switch; every other
-    option takes a value, `<none>` stands for no default. `help` and `h` are added.
+    option takes a value, `<none>` stands for no default. `help` is added, `-h` for short.
     @throws cv::Exception, code StsBadArg, for an unknown option, a missing or a superfluous value. */
     CommandLine(int argc, const char* const* argv, const std::string& about, const std::string& keys)
     {
-        const std::string all = "{help h||prints this}" + keys;
-        const std::map<std::string, Option> options = optionsOf(all);
+        const std::string all = "{help||prints this, as -h}" + keys;
+        const std::map<std::string, bool> options = optionsOf(all);
         std::vector<std::string> kept(1, argc > 0 ? argv[0] : "");
         bool optionsOver = false;
         for (int i = 1; i < argc; i++)
@@ -42,19 +42,19 @@ public:
                 continue;
             const size_t equals = word.find('=');
             const std::string given = word.substr(0, equals);
-            const auto found = options.find(given.substr(given[1] == '-' ? 2 : 1));
-            if (found == options.end())
+            const std::string name = given == "-h" ? "help" : given.substr(given[1] == '-' ? 2 : 1);
+            if (options.count(name) == 0)
                 CV_Error(cv::Error::StsBadArg, "unknown option " + given + " (--help lists them)");
-            const Option& option = found->second;
+            const bool takesValue = options.at(name);
             std::string value = equals == std::string::npos ? "" : word.substr(equals + 1);
-            if (!option.takesValue && equals != std::string::npos)
+            if (!takesValue && equals != std::string::npos)
                 CV_Error(cv::Error::StsBadArg, "option " + given + " takes no value");
-            if (option.takesValue && equals == std::string::npos && ++i < argc)
+            if (takesValue && equals == std::string::npos && ++i < argc)
                 value = argv[i];
-            if (option.takesValue && value.empty())
+            if (takesValue && value.empty())
                 CV_Error(cv::Error::StsBadArg, "option " + given + " needs a value");
-            values_[option.name].push_back(value);
-            kept.push_back("--" + option.name + (option.takesValue ? "=" + value : ""));
+            values_[name].push_back(value);
+            kept.push_back("--" + name + (takesValue ? "=" + value : ""));
         }
         std::vector<const char*> words;
         for (const std::string& word : kept)
@@ -111,36 +111,23 @@ public:
     void printHelp() const { parser_->printMessage(); }
 
 private:
-    struct Option
+    //! Whether an option takes a value, by name, from `{name|default|help}...`.
+    static std::map<std::string, bool> optionsOf(const std::string& keys)
     {
-        std::string name;  //!< the first of its names
-        bool takesValue;
-    };
-
-    //! By each name, from `{name other|default|help}...`.
-    static std::map<std::string, Option> optionsOf(const std::string& keys)
-    {
-        std::map<std::string, Option> options;
+        std::map<std::string, bool> options;
         for (size_t at = keys.find('{'); at != std::string::npos; at = keys.find('{', at + 1))
         {
             const size_t bar = keys.find('|', at), second = keys.find('|', bar + 1);
             CV_Assert(bar != std::string::npos && second != std::string::npos);
-            const bool takesValue = keys.find_first_not_of(' ', bar + 1) < second;
-            std::string first;
-            for (size_t from = keys.find_first_not_of(' ', at + 1); from < bar;
-                    from = keys.find_first_not_of(' ', keys.find_first_of(" |", from)))
-            {
-                const std::string name = keys.substr(from, keys.find_first_of(" |", from) - from);
-                first = first.empty() ? name : first;
-                options[name] = {first, takesValue};
-            }
+            options[keys.substr(at + 1, keys.find_first_of(" |", at) - at - 1)] =
+                    keys.find_first_not_of(' ', bar + 1) < second;
         }
         return options;
     }
 
     cv::Ptr<cv::CommandLineParser> parser_;
     std::vector<std::string> positional_;
-    std::map<std::string, std::vector<std::string>> values_;  // by an option's first name
+    std::map<std::string, std::vector<std::string>> values_;  // by option
 };
 
 /** The main() of a tool: `--help` prints the help and gives 0; a mistake in the command line is one line on stderr and

@@ -3,14 +3,8 @@ from __future__ import annotations
 
 import sys
 import time
+from datetime import timedelta
 from typing import Optional, TextIO
-
-
-def clock(seconds: float) -> str:
-    """Hours, minutes and seconds, as in 1:02:03 or 2:03."""
-    minutes, s = divmod(int(seconds + .5), 60)
-    hours, m = divmod(minutes, 60)
-    return f'{hours}:{m:02}:{s:02}' if hours else f'{m}:{s:02}'
 
 
 class Progress:
@@ -41,6 +35,6 @@ class Progress:
             text += f'/{self.total}'
             fresh = self.done - self.first
             if fresh and self.done < self.total:
-                text += f', {clock(passed / fresh * (self.total - self.done))} left'
-        self.stream.write(f'{begin}{text}, {clock(passed)}   {end}')
+                text += f', {timedelta(seconds=round(passed / fresh * (self.total - self.done)))} left'
+        self.stream.write(f'{begin}{text}, {timedelta(seconds=round(passed))}   {end}')
         self.stream.flush()

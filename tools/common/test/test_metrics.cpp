@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "../metrics.hpp"
-#include "opencv2/features2d.hpp"
 #include "opencv2/ts.hpp"
 
 namespace {
@@ -19,24 +18,6 @@ TEST(Metrics, precision_and_recall)
     const Counts none = {0, 0, 0};
     EXPECT_EQ(0, precision(none));
     EXPECT_EQ(0, recall(none));
-}
-
-TEST(Metrics, mutual_matches_are_those_of_brute_force)
-{
-    cv::Mat query(300, 20, CV_8U), train(350, 20, CV_8U);
-    cv::randu(query, 0, 256);
-    cv::randu(train, 0, 256);
-    EXPECT_TRUE(mutualMatches(cv::Mat(), train, cv::NORM_HAMMING).empty());
-    std::vector<cv::DMatch> expected;
-    cv::BFMatcher(cv::NORM_HAMMING, true).match(query, train, expected);
-    const std::vector<cv::DMatch> matches = mutualMatches(query, train, cv::NORM_HAMMING);
-    ASSERT_EQ(expected.size(), matches.size());
-    for (size_t i = 0; i < matches.size(); i++)
-    {
-        EXPECT_EQ(expected[i].queryIdx, matches[i].queryIdx);
-        EXPECT_EQ(expected[i].trainIdx, matches[i].trainIdx);
-        EXPECT_EQ(expected[i].distance, matches[i].distance);
-    }
 }
 
 TEST(Metrics, projection_and_its_scale)
