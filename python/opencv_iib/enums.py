@@ -19,50 +19,28 @@ class Channel(IntFlag):
 class Mapping(IntEnum):
     """How the four cells of a quad become bits."""
 
-    MEAN = 0
-    MAX = 1
-    MIN = 2
-    QUARTILE = 3
-    SORT = 4
-    HAAR = 5
-    PAIRWISE = 6
-    BOXES = 7
+    MEAN, MAX, MIN, QUARTILE, SORT, HAAR, PAIRWISE, BOXES = range(8)
 
 
 class Border(IntEnum):
     """What happens to keypoints whose region leaves the image."""
 
-    CLAMP = 0
-    DROP = 1
-    REFLECT = 2
+    CLAMP, DROP, REFLECT = range(3)
 
 
 class Orientation(IntEnum):
     """How the described squares are turned."""
 
-    NONE = 0
-    KEYPOINT = 1
-    GRADIENT = 2
+    NONE, KEYPOINT, GRADIENT = range(3)
 
 
 class Preset(IntEnum):
     """Descriptors whose bits were learned."""
 
-    S128 = 0
-    S256 = 1
-    S512 = 2
-    ACCURATE = 3
-    COMPACT = 4
-    TINY = 5
-    BALANCED = 6
-    VIEWPOINT = 7
-    UNIVERSAL = 8
-    SMALL = 9
+    S128, S256, S512, ACCURATE, COMPACT, TINY, BALANCED, VIEWPOINT, UNIVERSAL, SMALL = range(10)
 
 
 class Mode(IntEnum):
     """How the matcher searches."""
 
-    EXACT = 0
-    THRESHOLD = 1
-    ADAPTIVE = 2
+    EXACT, THRESHOLD, ADAPTIVE = range(3)

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "bindings.hpp"
-#include "foreign_detector.hpp"
+#include "keypoints.hpp"
+
+#include "opencv2/iib.hpp"
 
 namespace iib_python {
 
@@ -9,6 +11,44 @@ namespace {
 
 typedef cv::iib::NormalizedDetector Normalized;
 typedef cv::iib::HessianDetector Hessian;
+
+//! A copy as numpy has images: rows x columns, and channels if there are several.
+nb::object imageToNumpy(const cv::Mat& image)
+{
+    nb::object array = toNumpy(image.clone().reshape(1));
+    return image.channels() == 1 ? array : array.attr("reshape")(image.rows, image.cols, image.channels());
+}
+
+/** @brief A detector of Python, for instance of a foreign cv2, as this OpenCV's Feature2D.
+
+`function(image, mask or None)` gives rows of keypoints (keypoints.hpp). Only arrays cross; the image that it gets is
+a copy, since a detector may keep it. Any thread may call it. It computes no descriptors.
+ */
+class ForeignDetector CV_FINAL : public cv::Feature2D
+{
+public:
+    ForeignDetector(nb::callable function_, const std::string& name_) : function(function_), name(name_) {}
+    ~ForeignDetector()
+    {
+        nb::gil_scoped_acquire gil;
+        function.reset();
+    }
+
+    void detect(cv::InputArray image, std::vector<cv::KeyPoint>& keypoints, cv::InputArray mask) CV_OVERRIDE
+    {
+        nb::gil_scoped_acquire gil;
+        const cv::Mat allowed = mask.getMat();
+        const nb::object rows =
+                function(imageToNumpy(image.getMat()), allowed.empty() ? nb::none() : imageToNumpy(allowed));
+        keypoints = toKeyPoints(viewOf(nb::cast<Array>(rows), "keypoints"));
+    }
+    bool empty() const CV_OVERRIDE { return false; }
+    cv::String getDefaultName() const CV_OVERRIDE { return "Feature2D." + name; }
+
+private:
+    nb::object function;
+    std::string name;
+};
 
 nb::object detect(cv::Feature2D& self, const Array& image, const Array& mask)
 {

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Renders the synthetic data (tools/synthetic/README.md) into a folder:
-# scripts/helpers/synthetic.sh FOLDER [--frames N] [--scenes SCENE...] [--path-lights LIGHT...] [--size W H] [--jobs N]
+# scripts/helpers/synthetic.sh FOLDER [--frames N] [--scenes SCENE...] [--size W H] [--jobs N]
 . "$(dirname "$0")/lib.sh"
 
 [ $# -gt 0 ] || fail "a FOLDER is needed (--help tells more)"

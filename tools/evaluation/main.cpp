@@ -19,7 +19,6 @@ const char KEYS[] =
         "listed}"
         "{points      |1000  |keypoints an image}"
         "{tolerance   |3     |of a correct match, in pixels}"
-        "{threads     |<none>|all processors, unless said}"
         "{descriptor  |<none>|an extractor saved by IIBDescriptorExtractor::save, to compare; may be "
         "repeated}"
         "{detectors   |<none>|one of OpenCV's for detected points, instead of all; may be repeated}";
@@ -34,8 +33,6 @@ int run(const CommandLine& line)
     options.experiments = line.all("only");
     options.points = line.whole("points", 1, 1000000);
     options.tolerance = line.number("tolerance", 0, 1e3);
-    if (line.has("threads"))
-        cv::setNumThreads(line.whole("threads", 1, 1024));
     options.saved = line.all("descriptor");
     options.detectors = line.all("detectors");
     options.compare = line.all("compare");

@@ -5,11 +5,22 @@
 #include <cstdio>
 #include <fstream>
 
-#include "common/csv.hpp"
 #include "opencv2/core.hpp"
 
 namespace iib_tools {
 namespace {
+
+//! Between its commas, which nothing quotes; a carriage return at its end is no part of them.
+Fields splitFields(const std::string& line)
+{
+    Fields fields(1);
+    for (char c : line.substr(0, line.find_last_not_of('\r') + 1))
+        if (c == ',')
+            fields.push_back("");
+        else
+            fields.back() += c;
+    return fields;
+}
 
 std::string joinFields(const Fields& fields)
 {

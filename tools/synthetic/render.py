@@ -22,6 +22,7 @@ DEPTH_SCALE = 0.004  # metres a step, as in common.inc
 IMAGE, DEPTH, LABELS = range(3)
 # One ray a pixel is quicker than smoothing, which the blur of a lens stands in for.
 ONE_RAY, BLUR = ["+FN8", "-A"], 0.6
+PATH_LIGHTS = ["noon", "dusk", "night", "winter"]  # of the walks
 ATTEMPTS = 3  # POV-Ray 3.7 sometimes ends by a signal; the same scene then renders
 # A ray through the middle of the pixel gives depth and label; a picture is smoothed, without chance.
 OUTPUT = {IMAGE: ["+FN8", "+A0.15", "+AM1", "+R2", "-J"], DEPTH: ["+FN16", "-A"], LABELS: ["+FN8", "-A"]}
@@ -114,7 +115,6 @@ def still(folder, scene, size):
     numbers = range(1, len(lights) + 1)
     for k in numbers[1:]:
         (folder / f"H_1_{k}").write_text("1 0 0\n0 1 0\n0 0 1\n")
-    (folder / "LIGHTS.txt").write_text("".join(f"{k} {light}\n" for k, light in zip(numbers, lights)))
     write_camera(folder / "camera.yml", scene, [pose] * len(lights), size)
     for mode, name in ((DEPTH, "depth"), (LABELS, "labels")):
         yield Task(folder / name / "1.png", scene, mode, "noon", pose, 0,
@@ -128,7 +128,6 @@ def walked(folders, scene, size, frames):
     poses = walk(SCENES[scene].path, frames)
     first, *others = folders.values()
     for light, folder in folders.items():
-        (folder / "LIGHTS.txt").write_text("".join(f"{k} {light}\n" for k in range(1, frames + 1)))
         write_camera(folder / "camera.yml", scene, poses, size)
     for k, pose in enumerate(poses, 1):
         for mode, name in ((DEPTH, "depth"), (LABELS, "labels")):
@@ -138,13 +137,13 @@ def walked(folders, scene, size, frames):
             yield Task(folder / "frames" / f"{k}.png", scene, IMAGE, light, pose, k, [])
 
 
-def plan(out, scenes, frames, path_lights, size):
+def plan(out, scenes, frames, size):
     for scene in scenes:
         folder = out / "lights" / scene
         folder.mkdir(parents=True, exist_ok=True)
         yield from still(folder, scene, size)
     for scene in scenes if frames else []:
-        folders = {light: out / "path" / f"{scene}_{light}" for light in path_lights}
+        folders = {light: out / "path" / f"{scene}_{light}" for light in PATH_LIGHTS}
         for folder in folders.values():
             folder.mkdir(parents=True, exist_ok=True)
         yield from walked(folders, scene, size, frames)
@@ -168,9 +167,6 @@ def main():
                         help=f"some of: {', '.join(SCENES)} (all)")
     parser.add_argument("--frames", type=int, default=0,
                         help="also render walks of this many frames (0: none)")
-    parser.add_argument("--path-lights", nargs="+", choices=LIGHTS, metavar="LIGHT",
-                        default=["noon", "dusk", "night", "winter"],
-                        help="lights of the walks (noon dusk night winter)")
     parser.add_argument("--size", type=int, nargs=2, default=(640, 480), metavar=("WIDTH", "HEIGHT"))
     parser.add_argument("--quick", action="store_true",
                         help="one ray a pixel and the blur of a lens instead of smoothing")
@@ -182,7 +178,7 @@ def main():
         sys.exit("povray is not installed: apt-get install povray")
 
     size = tuple(options.size)
-    tasks = list(plan(options.out, options.scenes, options.frames, options.path_lights, size))
+    tasks = list(plan(options.out, options.scenes, options.frames, size))
     render_all(tasks, size, options.jobs, run_quickly if options.quick else run)
 
 
