@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,9 +30,9 @@ struct ImagePair
 
 struct LoadedPair
 {
-    cv::Mat reference, target;                         //!< CV_8UC1
-    cv::Matx33d homography;                            //!< reference to target, pixels
-    std::vector<cv::Mat> referenceExtra, targetExtra;  //!< one an ImagePair::extraNames, 8U or 16U
+    cv::Mat reference, target;                                   //!< CV_8UC1
+    cv::Matx33d homography;                                      //!< reference to target, pixels
+    std::map<std::string, cv::Mat> referenceExtra, targetExtra;  //!< by ImagePair::extraNames, 8U or 16U
 };
 
 /** Finds all pairs (1, k) below the given folders, up to four levels deep, in the layouts

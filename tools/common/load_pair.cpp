@@ -32,8 +32,8 @@ LoadedPair loadPair(const ImagePair& pair)
     loaded.target = readImage(pair.targetFile, cv::IMREAD_GRAYSCALE);
     for (const std::string& name : pair.extraNames)
     {
-        loaded.referenceExtra.push_back(readExtra(pair.referenceFile, name, loaded.reference.size()));
-        loaded.targetExtra.push_back(readExtra(pair.targetFile, name, loaded.target.size()));
+        loaded.referenceExtra[name] = readExtra(pair.referenceFile, name, loaded.reference.size());
+        loaded.targetExtra[name] = readExtra(pair.targetFile, name, loaded.target.size());
     }
     return loaded;
 }

@@ -8,6 +8,7 @@
 #include <functional>
 #include <sstream>
 
+#include "opencv2/core/quaternion.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
 
 namespace iib_tools {
@@ -65,14 +66,6 @@ cv::Matx33d readCamera(const std::string& file)
     return camera;
 }
 
-cv::Matx33d rotationOf(const cv::Vec4d& q)
-{
-    const double x = q[0], y = q[1], z = q[2], w = q[3];
-    return cv::Matx33d(1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), 2 * (x * y + z * w),
-            1 - 2 * (x * x + z * z), 2 * (y * z - x * w), 2 * (x * z - y * w), 2 * (y * z + x * w),
-            1 - 2 * (x * x + y * y));
-}
-
 std::vector<View> readViews(const std::string& folder)
 {
     std::vector<View> views;
@@ -83,7 +76,7 @@ std::vector<View> readViews(const std::string& folder)
                     q[3]) ||
                 !(std::abs(cv::norm(q) - 1) < 1e-2))
             return false;
-        v.rotation = rotationOf(q / cv::norm(q));
+        v.rotation = cv::Quatd(q[3], q[0], q[1], q[2]).normalize().toRotMat3x3();
         for (const char* extension : {".png", ".jpg"})
             if (fs::exists(fs::join(folder, "images/" + v.name + extension)))
                 v.file = fs::join(folder, "images/" + v.name + extension);

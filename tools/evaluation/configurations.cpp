@@ -54,8 +54,8 @@ std::vector<Configuration> presetConfigurations()
     std::vector<Configuration> all = {withPreset("S128", IIB::PRESET_S128),
             withPreset("S256", IIB::PRESET_S256), withPreset("S512", IIB::PRESET_S512),
             withPreset("TINY", IIB::PRESET_TINY)};
-    const std::vector<Configuration> general = generalPresets();
-    all.insert(all.end(), general.begin(), general.end());
+    for (const Configuration& c : generalPresets())
+        all.push_back(c);
     return all;
 }
 
@@ -74,8 +74,8 @@ std::vector<Configuration> iibConfigurations()
             iib("IIB g3", 3), iib("IIB g5", 5), withExtras("IIB +depth", {"depth"}),
             withExtras("IIB +labels", {"labels"}), withExtras("IIB +depth+labels", {"depth", "labels"}),
             onPointsOf("AKAZE"), onPointsOf("KAZE")};
-    const std::vector<Configuration> learned = presetConfigurations();
-    all.insert(all.end(), learned.begin(), learned.end());
+    for (const Configuration& c : presetConfigurations())
+        all.push_back(c);
     return all;
 }
 
@@ -90,8 +90,8 @@ std::vector<Configuration> robustnessConfigurations()
 {
     std::vector<Configuration> all = {
             iib("IIB"), iib("IIB oriented", 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, true)};
-    const std::vector<Configuration> learned = presetConfigurations();
-    all.insert(all.end(), learned.begin(), learned.end());
+    for (const Configuration& c : presetConfigurations())
+        all.push_back(c);
     for (const Configuration& baseline : baselineConfigurations())
         if (baseline.name == "BEBLID-512" || baseline.name == "TEBLID-512" || baseline.name == "LATCH-512")
             all.push_back(baseline);
@@ -119,19 +119,6 @@ Configuration savedConfiguration(const std::string& file)
         return extractor;
     };
     return c;
-}
-
-Description describe(const Configuration& configuration, const cv::Mat& image,
-        const std::vector<cv::Mat>& extras, const std::vector<cv::KeyPoint>& keypoints)
-{
-    Description d;
-    d.keypoints = keypoints;
-    const cv::Ptr<cv::Feature2D> feature = configuration.create();
-    if (configuration.extraNames.empty())
-        feature->compute(image, d.keypoints, d.descriptors);
-    else
-        feature.dynamicCast<IIB>()->compute(image, extras, d.keypoints, d.descriptors);
-    return d;
 }
 
 int descriptorBytes(const cv::Feature2D& feature)

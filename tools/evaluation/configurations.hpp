@@ -39,15 +39,6 @@ std::vector<Configuration> robustnessConfigurations();
 //! An IIB extractor as IIBDescriptorExtractor::save wrote it, selection included; named by its file.
 Configuration savedConfiguration(const std::string& file);
 
-//! Descriptors of the keypoints that a configuration keeps; KeyPoint::response tells which those are.
-struct Description
-{
-    std::vector<cv::KeyPoint> keypoints;
-    cv::Mat descriptors;
-};
-Description describe(const Configuration& configuration, const cv::Mat& image,
-        const std::vector<cv::Mat>& extras, const std::vector<cv::KeyPoint>& keypoints);
-
 //! Bytes of a descriptor.
 int descriptorBytes(const cv::Feature2D& feature);
 

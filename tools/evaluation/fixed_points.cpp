@@ -10,22 +10,6 @@
 namespace iib_tools {
 namespace {
 
-//! The images with the maps that a configuration takes, in its order.
-LoadedPair withExtras(const LoadedPair& all, const ImagePair& pair, const Configuration& configuration)
-{
-    LoadedPair chosen = all;
-    chosen.referenceExtra.clear();
-    chosen.targetExtra.clear();
-    for (const std::string& wanted : configuration.extraNames)
-        for (size_t i = 0; i < pair.extraNames.size(); i++)
-            if (pair.extraNames[i] == wanted)
-            {
-                chosen.referenceExtra.push_back(all.referenceExtra[i]);
-                chosen.targetExtra.push_back(all.targetExtra[i]);
-            }
-    return chosen;
-}
-
 bool hasExtras(const Configuration& configuration, const ImagePair& pair)
 {
     for (const std::string& wanted : configuration.extraNames)
@@ -44,7 +28,7 @@ void evaluatePair(const Options& options, const ImagePair& pair,
         const SeedPoints seeds = source.seeds(c, loaded.target.size(), loaded.homography);
         table.append(withCounts({pair.set, pair.sequence, pair.target, c.name, pair.kind,
                                         std::to_string(descriptorBytes(*c.create()))},
-                matchSeeds(c, withExtras(loaded, pair, c), seeds, options.tolerance)));
+                matchSeeds(c, loaded, seeds, options.tolerance)));
     }
 }
 

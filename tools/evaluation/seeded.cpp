@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "opencv2/iib.hpp"
+
 namespace iib_tools {
 namespace {
 
@@ -22,6 +24,22 @@ std::vector<cv::KeyPoint> detectSeeds(const std::string& name, const cv::Mat& im
     std::stable_sort(keypoints.begin(), keypoints.end(),
             [](const cv::KeyPoint& a, const cv::KeyPoint& b) { return a.pt.y < b.pt.y; });
     return keypoints;
+}
+
+//! Describes an image's points, of which it leaves those that the descriptor keeps.
+cv::Mat describe(const Configuration& configuration, const cv::Mat& image,
+        const std::map<std::string, cv::Mat>& maps, std::vector<cv::KeyPoint>& points)
+{
+    std::vector<cv::Mat> extras;
+    for (const std::string& name : configuration.extraNames)
+        extras.push_back(maps.at(name));
+    cv::Mat descriptors;
+    const cv::Ptr<cv::Feature2D> feature = configuration.create();
+    if (extras.empty())
+        feature->compute(image, points, descriptors);
+    else
+        feature.dynamicCast<cv::iib::IIB>()->compute(image, extras, points, descriptors);
+    return descriptors;
 }
 
 }  // namespace
@@ -49,13 +67,12 @@ Counts matchSeeds(
         orientByCentroid(images.reference, SEED_RADIUS, seeds.reference);
         orientByCentroid(images.target, SEED_RADIUS, seeds.target);
     }
-    const Description reference = describe(
-                              configuration, images.reference, images.referenceExtra, seeds.reference),
-                      target = describe(configuration, images.target, images.targetExtra, seeds.target);
+    const cv::Mat reference =
+                          describe(configuration, images.reference, images.referenceExtra, seeds.reference),
+                  target = describe(configuration, images.target, images.targetExtra, seeds.target);
     const std::vector<cv::DMatch> matches =
-            mutualMatches(reference.descriptors, target.descriptors, configuration.create()->defaultNorm());
-    return countsOf(
-            correctByLocation(matches, reference.keypoints, target.keypoints, images.homography, tolerance),
+            mutualMatches(reference, target, configuration.create()->defaultNorm());
+    return countsOf(correctByLocation(matches, seeds.reference, seeds.target, images.homography, tolerance),
             correspondences);
 }
 

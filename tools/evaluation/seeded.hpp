@@ -27,7 +27,7 @@ private:
 };
 
 /** What the mutual matches of a configuration's descriptors make of the seeds: every seed is a correspondence, whether the
-descriptor kept it or not. The images' maps are those that the configuration takes. */
+descriptor kept it or not. */
 Counts matchSeeds(
         const Configuration& configuration, const LoadedPair& images, SeedPoints seeds, double tolerance);
 

@@ -11,7 +11,7 @@ import sys
 import cv2
 import numpy as np
 
-from render import IMAGE, Task, render_all, run_quickly
+from render import IMAGE, Task, render_all, run_quickly, write_text
 from scenes import LIGHTS, SCENES, extrinsics, intrinsics, walk
 
 SCENE = "street"
@@ -76,14 +76,6 @@ def imu(seed):
         force = force + ACCEL_BIAS + random.standard_normal(3) * ACCEL_NOISE * np.sqrt(IMU_RATE)
         rows.append(",".join([str(round(time * 1e9)), *(f"{v:.9g}" for v in (*turn, *force))]))
     return "#timestamp [ns],w_x [rad s^-1],w_y,w_z,a_x [m s^-2],a_y,a_z\n" + "\n".join(rows) + "\n"
-
-
-def write_text(path, text):
-    """Refuses a file that says otherwise, or old and new pictures would be mixed."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    if path.exists() and path.read_text() != text:
-        raise RuntimeError(f"{path} is of another size or walk: choose another folder")
-    path.write_text(text)
 
 
 def cameras(size):

@@ -66,8 +66,15 @@ def write(path, array):
     os.replace(aside, path)
 
 
+def write_text(path, text):
+    """Refuses a file that says otherwise, or old and new pictures would be mixed."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if path.exists() and path.read_text() != text:
+        raise RuntimeError(f"{path} is of another size or walk: choose another folder")
+    path.write_text(text)
+
+
 def write_camera(path, scene, poses, size):
-    """The camera file; one that is there must say the same, or old and new pictures would be mixed."""
     storage = cv2.FileStorage(path.name, cv2.FILE_STORAGE_WRITE | cv2.FILE_STORAGE_MEMORY)
     storage.write("image_width", size[0])
     storage.write("image_height", size[1])
@@ -79,10 +86,7 @@ def write_camera(path, scene, poses, size):
     for pose in poses:
         storage.write("", extrinsics(pose))
     storage.endWriteStruct()
-    text = storage.releaseAndGetString()
-    if path.exists() and path.read_text() != text:
-        raise RuntimeError(f"{path} is of another size or walk: choose another folder")
-    path.write_text(text)
+    write_text(path, storage.releaseAndGetString())
 
 
 # A file to be rendered, and where else it belongs: light moves nothing, so that depth and labels are of
