@@ -94,16 +94,29 @@ TEST(IIB_NormalizedDetector, parameters_and_files)
     EXPECT_EQ(6.5f, detector->getSigma());
     EXPECT_EQ("Feature2D.NormalizedDetector", detector->getDefaultName());
 
-    const TemporaryFile file(".yml");
-    detector->save(file.name);
     const Ptr<NormalizedDetector> copy = NormalizedDetector::create(ORB::create());
-    const FileStorage fs(file.name, FileStorage::READ);
-    copy->read(fs.getFirstTopLevelNode());
-    EXPECT_EQ(6.5f, copy->getSigma());
-    const Ptr<ORB> orb = copy->getDetector().dynamicCast<ORB>();
-    ASSERT_TRUE(orb);
-    EXPECT_EQ(77, orb->getMaxFeatures());
+    for (bool saved : {true, false})
+    {
+        const TemporaryFile file(".yml");
+        if (saved)
+            detector->save(file.name);
+        else
+            detector->Feature2D::write(file.name);
+        const FileStorage fs(file.name, FileStorage::READ);
+        for (const FileNode& node : {fs.root(), fs.getFirstTopLevelNode()})
+        {
+            copy->setSigma(1);
+            copy->read(node);
+            EXPECT_EQ(6.5f, copy->getSigma());
+            const Ptr<ORB> orb = copy->getDetector().dynamicCast<ORB>();
+            ASSERT_TRUE(orb);
+            EXPECT_EQ(77, orb->getMaxFeatures());
+        }
+    }
     expectError(Error::StsParseError, "NormalizedDetector", [&] { copy->read(FileNode()); });
+    const FileStorage other(
+            "{\"format\": 1, \"class\": \"Feature2D.ORB\"}", FileStorage::READ | FileStorage::MEMORY);
+    EXPECT_THROW(copy->read(other.root()), cv::Exception);
 }
 
 struct DetectorGain
