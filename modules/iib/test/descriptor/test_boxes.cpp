@@ -30,30 +30,6 @@ TEST(IIB_Boxes, bits_as_the_oracle)
             }
 }
 
-TEST(IIB_Boxes, every_set_of_channels)
-{
-    const Mat image = texture(Size(101, 97), CV_8U, 2);
-    for (int channels = 1; channels < 64; channels++)
-        if ((channels & IIB::CHANNEL_ORIENTATION) == 0)
-        {
-            SCOPED_TRACE(channels);
-            expectOracle(*boxes(2, channels), image, scatter(image.size(), 4, 8.f, 70.f, channels));
-        }
-}
-
-TEST(IIB_Boxes, images_of_every_width)
-{
-    for (int width = 1; width < 140; width += width < 20 ? 1 : 7)
-        for (int border : {IIB::BORDER_CLAMP, IIB::BORDER_REFLECT})
-        {
-            SCOPED_TRACE(format("width %d, border %d", width, border));
-            const Mat image = texture(Size(width, 1 + width % 23), CV_8U, width);
-            const Ptr<IIB> iib = boxes(4);
-            iib->setBorder(border);
-            expectOracle(*iib, image, scatter(image.size(), 3, 4.f, 50.f, width));
-        }
-}
-
 // The last row and column of an odd image belong to squares whose other half a reflection would make.
 TEST(IIB_Boxes, no_pixel_from_outside_counts_when_clamped)
 {

@@ -32,6 +32,9 @@ TEST(IIB_Bits, every_set_of_channels)
     {
         SCOPED_TRACE(channels);
         expectOracle(*IIB::create(1.f, 3, channels), image, scatter(image.size(), 10, 8.f, 70.f, channels));
+        if ((channels & IIB::CHANNEL_ORIENTATION) == 0)
+            expectOracle(*IIB::create(1.f, 2, channels, IIB::MAPPING_BOXES), image,
+                    scatter(image.size(), 4, 8.f, 70.f, channels));
     }
 }
 
@@ -55,14 +58,18 @@ TEST(IIB_Bits, extra_channels_of_any_depth)
 
 TEST(IIB_Bits, images_of_every_width)
 {
-    const Ptr<IIB> iib = IIB::create(1.f, 3);
+    const Ptr<IIB> quads = IIB::create(1.f, 3),
+                   boxes = IIB::create(1.f, 4, 63 - IIB::CHANNEL_ORIENTATION, IIB::MAPPING_BOXES);
     for (int width = 1; width < 140; width++)
         for (int orientation = IIB::ORIENTATION_NONE; orientation <= IIB::ORIENTATION_GRADIENT; orientation++)
         {
             SCOPED_TRACE(format("width %d, orientation %d", width, orientation));
-            iib->setOrientation(orientation);
-            const Mat image = texture(Size(width, 1 + width % 23), CV_8U, width);
-            expectOracle(*iib, image, scatter(image.size(), 6, 4.f, 50.f, width));
+            const Mat image = texture(Size(width, 1 + (width - 1) % 23), CV_8U, width);
+            quads->setOrientation(orientation);
+            expectOracle(*quads, image, scatter(image.size(), 6, 4.f, 50.f, width));
+            boxes->setBorder(width % 2 ? IIB::BORDER_CLAMP : IIB::BORDER_REFLECT);
+            if (orientation == IIB::ORIENTATION_NONE)
+                expectOracle(*boxes, image, scatter(image.size(), 3, 4.f, 50.f, width));
         }
 }
 
@@ -120,11 +127,9 @@ TEST(IIB_Bits, selections)
         {
             SCOPED_TRACE(format("mapping %d, %d quads", mapping, count));
             const Ptr<IIB> iib = IIB::create(1.f, 5, 63, mapping);
-            const int bits = mapping == IIB::MAPPING_HAAR                                       ? 3
-                             : mapping == IIB::MAPPING_QUARTILE || mapping == IIB::MAPPING_SORT ? 8
-                                                                                                : 4;
+            const int bits[] = {4, 4, 4, 8, 8, 3, 4};
             iib->setSelection(
-                    randomSelection(count, {1, 3, 7, 15, 31}, std::vector<int>(6, (1 << bits) - 1)));
+                    randomSelection(count, {1, 3, 7, 15, 31}, std::vector<int>(6, (1 << bits[mapping]) - 1)));
             expectOracle(*iib, image, scatter(image.size(), 10, 10.f, 400.f, mapping));
         }
 }

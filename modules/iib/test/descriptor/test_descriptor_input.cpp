@@ -152,18 +152,5 @@ TEST(IIB_Input, float_colour_weighs_channels_as_cvtColor)
         }
 }
 
-TEST(IIB_Input, many_images_at_once)
-{
-    const Ptr<IIB> iib = IIB::create(1.f);
-    const std::vector<Mat> images = {texture(SIZE, CV_8U, 14), texture(Size(70, 90), CV_16U, 15)};
-    std::vector<std::vector<KeyPoint>> keypoints = {
-            scatter(SIZE, 20, 8.f, 60.f, 16), scatter(Size(70, 90), 30, 8.f, 60.f, 17)};
-    std::vector<Mat> descriptors;
-    Ptr<Feature2D>(iib)->compute(images, keypoints, descriptors);
-    ASSERT_EQ(2u, descriptors.size());
-    for (int i = 0; i < 2; i++)
-        EXPECT_EQ(0, differingBits(describe(*iib, images[i], keypoints[i]), descriptors[i]));
-}
-
 }  // namespace
 }  // namespace opencv_test

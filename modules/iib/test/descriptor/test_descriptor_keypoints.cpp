@@ -108,14 +108,5 @@ TEST(IIB_KeyPoints, tiny_and_huge_sizes)
     }
 }
 
-TEST(IIB_KeyPoints, images_of_one_pixel)
-{
-    const Mat image(1, 1, CV_8U, Scalar(9));
-    const Ptr<IIB> iib = IIB::create(1.f, 4, 63, IIB::MAPPING_MEAN, false, true);
-    const std::vector<KeyPoint> keypoints = {
-            KeyPoint(0, 0, 5), KeyPoint(0, 0, 500, 45), KeyPoint(3, 3, 1, 0)};
-    EXPECT_EQ(0, countNonZero(describe(*iib, image, keypoints)));
-}
-
 }  // namespace
 }  // namespace opencv_test

@@ -62,22 +62,6 @@ TEST(IIB_Property, linear_illumination_changes_no_bit)
     }
 }
 
-TEST(IIB_Property, sixteen_bits_as_eight)
-{
-    const Mat image = texture(SIZE, CV_8U, 5);
-    const std::vector<KeyPoint> keypoints = scatter(SIZE, 60, 8.f, 90.f, 6);
-    const Ptr<IIB> iib = IIB::create(1.f, 5, GRADIENTS_AND_INTENSITY, IIB::MAPPING_QUARTILE);
-    const Mat expected = describe(*iib, image, keypoints);
-    const int illumination[][2] = {{1, 0}, {257, 0}, {100, 4000}, {256, 255}};
-    for (const int* l : illumination)
-    {
-        Mat image16;
-        image.convertTo(image16, CV_16U, l[0], l[1]);
-        EXPECT_EQ(0, differingBits(expected, describe(*iib, image16, keypoints)))
-                << l[0] << " * I + " << l[1];
-    }
-}
-
 // The samples fall on the same pixels, and the gradient rotates exactly; where there is none, nothing rotates.
 TEST(IIB_Property, rotated_with_the_image)
 {
@@ -118,22 +102,6 @@ TEST(IIB_Property, rotated_with_the_image)
                     0.2 * 8 * expected.total());
         }
     }
-}
-
-// Also beyond integers.
-TEST(IIB_Property, whole_turns_change_nothing)
-{
-    const Mat image = texture(SIZE, CV_8U, 11);
-    std::vector<KeyPoint> keypoints = scatter(SIZE, 40, 20.f, 60.f, 12), reduced;
-    const Ptr<IIB> iib = IIB::create(1.f, 4, ALL_CHANNELS, IIB::MAPPING_MEAN, false, true);
-    for (KeyPoint& kp : keypoints)
-    {
-        const int i = (int)reduced.size();
-        kp.angle = i < 20 ? std::abs(kp.angle) + 720 : std::ldexp(std::abs(kp.angle) + 1, 20 + i);
-        reduced.push_back(kp);
-        reduced.back().angle = std::fmod(kp.angle, 360.f);
-    }
-    EXPECT_EQ(0, differingBits(describe(*iib, image, reduced), describe(*iib, image, keypoints)));
 }
 
 }  // namespace

@@ -31,7 +31,14 @@ TEST(IIB_Rotated, sine_and_cosine_are_exact)
         EXPECT_EQ(quarters[i][0], cv::iib::Rotation(90.f * i).cosine);
         EXPECT_EQ(quarters[i][1], cv::iib::Rotation(90.f * i).sine);
     }
-    EXPECT_EQ(cv::iib::Rotation(30.f).sine, cv::iib::Rotation(30.f + 360 * 4096).sine);
+    // whole turns change nothing, also beyond integers
+    for (float degrees : {30.f + 360 * 4096, std::ldexp(31.f, 20), std::ldexp(211.f, 59)})
+    {
+        const cv::iib::Rotation whole(degrees), reduced(std::fmod(degrees, 360.f));
+        EXPECT_EQ(reduced.sine, whole.sine);
+        EXPECT_EQ(reduced.cosine, whole.cosine);
+        EXPECT_EQ(reduced.steps, whole.steps);
+    }
 }
 
 // To the last place, where the C library of another machine may differ (glibc 2.36's does, for all of these).
@@ -69,34 +76,26 @@ TEST(IIB_Rotated, grid_has_the_same_steps_everywhere)
     expectOracle(*iib, texture(grid.image, CV_8U, 5), {keypoint});
 }
 
-// What is kept does not depend on anything outside the image; what is removed has a corner there.
+// What is removed has a corner outside.
 TEST(IIB_Rotated, border_drop_looks_at_the_rotated_region)
 {
-    const Size size(200, 160);
-    const Rect inner(40, 40, size.width - 80, size.height - 80);
-    Mat image = texture(size, CV_8U, 1);
-    const Ptr<IIB> iib = rotating(3, IIB::CHANNEL_INTENSITY);  // a gradient looks one pixel further
+    const Size size(120, 80);
+    const Ptr<IIB> iib = rotating(3);
     iib->setBorder(IIB::BORDER_DROP);
     std::vector<KeyPoint> keypoints;
     for (int i = 0; i < 400; i++)
         keypoints.push_back(KeyPoint(i % 20 * 6.f + 2, i / 20 * 4.f + 2, 15.f, i * 7.f));
     Mat descriptors;
     std::vector<KeyPoint> kept = keypoints;
-    iib->compute(image(inner), kept, descriptors);
+    iib->compute(texture(size, CV_8U, 1), kept, descriptors);
     ASSERT_GT(kept.size(), 20u);
     ASSERT_LT(kept.size(), keypoints.size());
-
-    std::vector<KeyPoint> moved = kept;
-    for (KeyPoint& kp : moved)
-        kp.pt += Point2f(inner.tl());
-    EXPECT_EQ(0, differingBits(descriptors, describe(*iib, image, moved)));
-
     for (const KeyPoint& kp : keypoints)
     {
         const double radians = kp.angle * CV_PI / 180,
                      reach = 15 * (std::abs(std::cos(radians)) + std::abs(std::sin(radians)));
-        const double gap = std::min(std::min(kp.pt.x + 0.5, inner.width - kp.pt.x - 0.5),
-                                   std::min(kp.pt.y + 0.5, inner.height - kp.pt.y - 0.5)) -
+        const double gap = std::min(std::min(kp.pt.x + 0.5, size.width - kp.pt.x - 0.5),
+                                   std::min(kp.pt.y + 0.5, size.height - kp.pt.y - 0.5)) -
                            reach;
         if (std::abs(gap) > 1e-3)
         {
