@@ -112,10 +112,11 @@ double cellsInSide(double side, const BoxPlan::Level& level)
 }
 
 template <typename T>
-void describeBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch, bool rotated,
+void describeBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch,
         const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels, Workspace& workspace,
         Mat& descriptors)
 {
+    const bool rotated = regions[batch.keypoints[0]].isRotated();
     const BoxKernels& kernels = plan.kernels.boxes;
     const BoxSumKernels<T>& sums = kernels.sums(T());
     const std::vector<Channel> source = {{IIB::CHANNEL_SIGNED_GRAD_X, grey},
@@ -179,13 +180,13 @@ Rect boxPixels(const SupportRegion& region, int border, Size image)
     return pixelsOf(cellsOf(extent.pixels(pixelsOf(boundsOf(border, image)))));
 }
 
-void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch, bool rotated,
+void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch,
         const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels, Workspace& workspace,
         Mat& descriptors)
 {
     const bool isShort = grey.depth() == CV_8U && sumsAreShort(plan.boxes, batch, regions);
     const auto describe = isShort ? describeBatch<short> : describeBatch<int>;
-    describe(plan, grey, batch, rotated, regions, pixels, workspace, descriptors);
+    describe(plan, grey, batch, regions, pixels, workspace, descriptors);
 }
 
 }  // namespace iib

@@ -23,17 +23,11 @@ int laneOf(int kind)
 }
 
 //! Which comparisons are chosen, where they lie in memory.
-class ChosenComparisons
+ChosenBits chosenOf(const Parameters& p, int level, const BoxGridShape& shape)
 {
-public:
-    explicit ChosenComparisons(const BoxGridShape& shape_)
-        : shape(shape_), masks((shape_.comparisonBytes() + 7) / 8, 0)
-    {
-    }
-
-    //! @param mask as in a selection.
-    void add(int kind, int row, int col, int mask)
-    {
+    std::vector<uint64> masks((shape.comparisonBytes() + 7) / 8, 0);
+    const auto choose = [&](int byte, int lane) { masks[byte / 8] |= (uint64)1 << (8 * (byte % 8) + lane); };
+    const auto add = [&](int kind, int row, int col, int mask) {
         const int lane = laneOf(kind);
         for (int bit = 0; bit < BOX_HAAR_BITS; bit++)
             if (mask >> bit & 1)
@@ -43,30 +37,17 @@ public:
             choose(own, lane == LANE_GRADIENT_X ? (int)LANE_GRADIENT_X_AGAIN : lane);
         if (mask & BOX_SECOND_OWN_BIT)
             choose(own, lane == LANE_GRADIENT_Y ? (int)LANE_GRADIENT_SUM : lane);
-    }
-
-    ChosenBits bits() const { return ChosenBits(masks); }
-
-private:
-    void choose(int byte, int lane) { masks[byte / 8] |= (uint64)1 << (8 * (byte % 8) + lane); }
-
-    const BoxGridShape& shape;
-    std::vector<uint64> masks;
-};
-
-ChosenBits chosenOf(const Parameters& p, int level, const BoxGridShape& shape)
-{
+    };
     const std::vector<int> kinds = p.channelKinds();
-    ChosenComparisons chosen(shape);
     for (int i = 0; i < p.selection.rows; i++)
         if (p.selection(i, 0) == level)
-            chosen.add(kinds[p.selection(i, 1)], p.selection(i, 2), p.selection(i, 3), p.selection(i, 4));
+            add(kinds[p.selection(i, 1)], p.selection(i, 2), p.selection(i, 3), p.selection(i, 4));
     if (p.selection.empty())
         for (int kind : kinds)
             for (int row = 0; row < shape.n; row++)
                 for (int col = 0; col < shape.n; col++)
-                    chosen.add(kind, row, col, boxMask(kind, level, row, col));
-    return chosen.bits();
+                    add(kind, row, col, boxMask(kind, level, row, col));
+    return ChosenBits(masks);
 }
 
 }  // namespace

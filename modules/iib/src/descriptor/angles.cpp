@@ -32,21 +32,18 @@ enum
 const int GAUSSIAN[CELLS / 2 - 1] = {32, 31, 30, 29, 27, 25, 23, 21, 18, 16, 14, 11, 9, 8, 6};
 
 //! The weight of each inner cell, 0 outside the circle.
-struct CellWeights
+std::vector<int> cellWeights()
 {
-    int of[VOTES + ROW_PADDING];
-
-    CellWeights() : of()
-    {
-        for (int row = 0; row < INNER; row++)
-            for (int col = 0; col < INNER; col++)
-            {
-                const int u = std::abs(2 * col + 1 - INNER), v = std::abs(2 * row + 1 - INNER);
-                if (u * u + v * v <= CELLS * CELLS)
-                    of[row * INNER + col] = GAUSSIAN[u / 2] * GAUSSIAN[v / 2];
-            }
-    }
-};
+    std::vector<int> weights(VOTES + ROW_PADDING, 0);
+    for (int row = 0; row < INNER; row++)
+        for (int col = 0; col < INNER; col++)
+        {
+            const int u = std::abs(2 * col + 1 - INNER), v = std::abs(2 * row + 1 - INNER);
+            if (u * u + v * v <= CELLS * CELLS)
+                weights[row * INNER + col] = GAUSSIAN[u / 2] * GAUSSIAN[v / 2];
+        }
+    return weights;
+}
 
 //! The sums of intensities of all cells, row by row.
 template <typename T>
@@ -96,7 +93,7 @@ int peakOf(const int64 bins[BINS], int rank)
 template <typename T>
 float prevailingAngle(const DescriptorKernels& kernels, const T* pixels, const int* index, int rank)
 {
-    static const CellWeights weights;
+    static const std::vector<int> weights = cellWeights();
     int cells[CELLS * CELLS + ROW_PADDING];
     sumCells(kernels.pixels(T()).rotated, pixels, index, cells);
     const RowKernels<int>& rows = kernels.pixels(int()).rows;
@@ -108,7 +105,7 @@ float prevailingAngle(const DescriptorKernels& kernels, const T* pixels, const i
         const ImageChannelRows<int> out = {0, gx + row * INNER, gy + row * INNER, 0, 0, steps + row * INNER};
         rows.imageChannels({above, above + CELLS, above + 2 * CELLS}, 0, out, 0, INNER);
     }
-    kernels.pixels(T()).rotated.gradientVotes(gx, gy, weights.of, VOTES, votes);
+    kernels.pixels(T()).rotated.gradientVotes(gx, gy, weights.data(), VOTES, votes);
     int64 bins[BINS] = {};
     for (int i = 0; i < VOTES; i++)
         bins[steps[i] / STEPS_PER_BIN] += votes[i];

@@ -13,13 +13,6 @@ namespace {
 
 typedef std::vector<int> Indices;
 
-//! Keypoints near each other that are described together, all upright or all rotated.
-struct Job
-{
-    bool rotated;
-    Indices keypoints;
-};
-
 //! Whether angles come from the image. Without a channel of it, regions stay upright.
 bool findsAngles(const Parameters& p)
 {
@@ -36,16 +29,15 @@ Rect pixelsOf(const DescriptorPlan& plan, const SupportRegion& region, Size imag
                               : region.pixels(region.bounds(image, border));
 }
 
-//! @param pixels that each keypoint needs.
-std::vector<Job> cutJobs(const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels)
+//! Keypoints near each other that are described together, all upright or all rotated. @param pixels that each keypoint needs.
+std::vector<Indices> cutJobs(const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels)
 {
     Indices members[2];  // upright, rotated
     for (int k = 0; k < (int)regions.size(); k++)
         members[regions[k].isRotated()].push_back(k);
-    std::vector<Job> jobs;
-    for (int rotated = 0; rotated < 2; rotated++)
-        for (const Indices& batch : cutBatches(pixels, members[rotated], getNumThreads()))
-            jobs.push_back({rotated != 0, batch});
+    std::vector<Indices> jobs = cutBatches(pixels, members[0], getNumThreads());
+    const std::vector<Indices> rotated = cutBatches(pixels, members[1], getNumThreads());
+    jobs.insert(jobs.end(), rotated.begin(), rotated.end());
     return jobs;
 }
 
@@ -57,8 +49,8 @@ bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image)
     const bool unknown = findsAngles(plan.parameters);
     if (!unknown && !region.isRotated())
         return region.isInside(image);
-    const Rotation rotation(
-            unknown ? 45 : region.angle);  // an unknown angle may be the one that reaches farthest
+    // an unknown angle may be the one that reaches farthest
+    const Rotation rotation(unknown ? 45 : region.angle);
     const double half = std::min(region.side, LARGEST_ROTATED_SIDE) / 2;
     const double reach = half * (std::abs(rotation.cosine) + std::abs(rotation.sine));
     const double x = region.centre.x + 0.5, y = region.centre.y + 0.5;
@@ -82,12 +74,12 @@ void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Ma
         pixels.push_back(pixelsOf(plan, region, image.size()));
 
     const std::vector<Channel> channels = channelsInUse(p, grey, extra);
-    const std::vector<Job> jobs = cutJobs(regions, pixels);
+    const std::vector<Indices> jobs = cutJobs(regions, pixels);
     parallelJobs((int)jobs.size(), [&](int i, Workspace& workspace) {
-        const KeyPointBatch batch = makeBatch(pixels, jobs[i].keypoints);
+        const KeyPointBatch batch = makeBatch(pixels, jobs[i]);
         if (plan.isOfBoxes())
-            describeBoxes(plan, grey, batch, jobs[i].rotated, regions, pixels, workspace, descriptors);
-        else if (jobs[i].rotated)
+            describeBoxes(plan, grey, batch, regions, pixels, workspace, descriptors);
+        else if (regions[jobs[i][0]].isRotated())
             describeRotated(plan, channels, batch, regions, workspace, descriptors);
         else
             describeUpright(plan, channels, batch, regions, workspace, descriptors);

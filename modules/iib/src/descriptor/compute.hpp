@@ -48,16 +48,15 @@ void describeRotated(const DescriptorPlan& plan, const std::vector<Channel>& cha
 //! The pixels that the boxes of a region cover, rotated by any angle or upright, in whole cells; some may be reflected.
 Rect boxPixels(const SupportRegion& region, int border, Size image);
 
-/** The descriptors of a batch by MAPPING_BOXES.
+/** The descriptors of a batch by MAPPING_BOXES, whose regions are all upright or all rotated.
 
 Upright boxes lie on a grid, whose edges many of them share. A rotated keypoint needs no samples: the means of gx and gy
 are linear in them and so rotate as they do, and those of |gx| and |gy| come from the means of |gx|, |gy|, |gx + gy| and
 |gx - gy|, that is, of the gradient's magnitude in four directions. Boxes stay upright; only their centres turn.
 
 @param grey the image, CV_8U or CV_16U.
-@param rotated whether the regions of the batch are.
 @param regions of all keypoints, as are their boxPixels() and the rows of descriptors. */
-void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch, bool rotated,
+void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch,
         const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels, Workspace& workspace,
         Mat& descriptors);
 

@@ -44,14 +44,11 @@ struct Workspace
 
     ScratchMemory channelRows, ring;
     ScratchMemory sourceRows[MAX_PACKS], sourcePixels[MAX_PACKS], planes;  //!< of rotated regions
-    CellGrid<ushort> shortCells;
-    CellGrid<unsigned> cells, parentCells;
-    CellGrid<double> doubleCells;
-    CellGrid<ushort>& cellsOf(ushort) { return shortCells; }
-    CellGrid<unsigned>& cellsOf(unsigned) { return cells; }
-    CellGrid<double>& cellsOf(double) { return doubleCells; }
-    CellGrid<unsigned> sums[MAX_GRANULARITY];  //!< over the cells of each level but the finest
+    CellGrid<ushort> shortSums;                                            //!< over the finest cells
+    CellGrid<unsigned> sums[MAX_GRANULARITY + 1];                          //!< over the cells of each level
     CellGrid<double> doubleSums[MAX_GRANULARITY + 1];
+    CellGrid<unsigned> samples;  //!< sums of rotated regions, over cells as fine as their grids
+    CellGrid<ushort>& sumsOf(ushort, int) { return shortSums; }
     CellGrid<unsigned>& sumsOf(unsigned, int level) { return sums[level]; }
     CellGrid<double>& sumsOf(double, int level) { return doubleSums[level]; }
     ScratchMemory boxMeans;

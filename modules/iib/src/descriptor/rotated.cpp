@@ -29,9 +29,6 @@ std::vector<std::vector<Channel>> packsOf(const std::vector<Channel>& channels)
     return packs;
 }
 
-//! Both components of a gradient are 4 times the largest pixel at most; rotated, one is sqrt(2) times that at most.
-int maxRotatedGradient(int depth) { return 6 * maxPixel(depth); }
-
 //! Edges of n x n cells of the same size.
 CellEdges equalEdges(int n, int cell)
 {
@@ -90,7 +87,7 @@ public:
         const auto parentSums = plan.kernels.longBits.parentSums;
         for (const ChannelGroup& group : plan.groups)
         {
-            CellGrid<unsigned>* cells[2] = {&workspace.cells, &workspace.parentCells};
+            CellGrid<unsigned>* cells[2] = {&workspace.samples, &workspace.sums[plan.finest]};
             const int largest = interleave(group, grid, *cells[0]);
             for (; cells[0]->size() > n; std::swap(cells[0], cells[1]))
                 parentSums(*cells[0], *cells[1]);
@@ -112,7 +109,8 @@ private:
             planes[i] = plane(planeOf[c]);
             const int kind = channels[c].kind;
             const bool isSigned = kind == IIB::CHANNEL_SIGNED_GRAD_X || kind == IIB::CHANNEL_SIGNED_GRAD_Y;
-            const int largest = maxRotatedGradient(channels[c].map.depth());
+            // Both components are 4 times the largest pixel at most; rotated, one is sqrt(2) times that at most.
+            const int largest = 6 * maxPixel(channels[c].map.depth());
             addends[i] = isSigned ? largest * grid.sub * grid.sub : 0;
             if (usesGradient(channels[c]))
                 gradient = largest;

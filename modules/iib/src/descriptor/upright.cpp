@@ -17,12 +17,12 @@ template <typename T, typename Sum> class IntegralBand
 public:
     //! @param channels 1 to GROUP_CHANNELS; they, the kernels and the memory outlive the band.
     //! @param rows how many rows, the newest included, a reader looks at.
-    IntegralBand(const std::vector<Channel>& channels, Rect area, int rows, const DescriptorKernels& kernels,
+    IntegralBand(const std::vector<Channel>& channels, Rect area, int rows, const DescriptorKernels& all,
             ScratchMemory& rowMemory, ScratchMemory& ringMemory)
-        : channelRows(channels, area, maxGradient(channels), kernels.pixels(T()).rows, rowMemory),
+        : channelRows(channels, area, maxGradient(channels), all.pixels(T()).rows, rowMemory),
           ring(area.tl(), rows, ((size_t)area.width + 1 + ROW_PADDING) * GROUP_CHANNELS, GROUP_CHANNELS,
                   ringMemory),
-          width(area.width), sumRow(kernels.sumRow(T(), Sum())), sumCells(kernels.cells(Sum())),
+          width(area.width), kernels(all.integral(T(), Sum())),
           longestPart((int)std::sqrt(
                   (double)std::numeric_limits<Sum>::max() / maxValue(channels, maxGradient(channels))))
     {
@@ -32,14 +32,14 @@ public:
     void advance(int y)
     {
         ring.advance(y, [&](int row, const Sum* above, Sum* out) {
-            sumRow(channelRows.compute(row), width, above, out);
+            kernels.sumRow(channelRows.compute(row), width, above, out);
         });
     }
 
     //! Sums over n x n cells, each of which a Sum must hold.
     void cells(const CellEdges& edges, int n, CellGrid<Sum>& sums) const
     {
-        sumCells(ring.rows(), edges.x, edges.y, n, sums);
+        kernels.cells(ring.rows(), edges.x, edges.y, n, sums);
     }
 
     //! Sums over larger cells: those over parts of them are added up.
@@ -72,8 +72,7 @@ private:
     ChannelRows<T> channelRows;
     RowRing<Sum> ring;
     const int width;
-    const SumRowFunc<T, Sum> sumRow;
-    const CellsFunc<Sum> sumCells;
+    const IntegralKernels<T, Sum>& kernels;
     const int longestPart;  //!< a Sum holds the sums over as many rows of as many pixels
 };
 
@@ -85,7 +84,7 @@ void describeBatch(const DescriptorPlan& plan, const ChannelGroup& group,
 {
     const Size image = channels[0].map.size();
     const int n = plan.cellsInRow();
-    CellGrid<Sum>& cells = workspace.cellsOf(Sum());
+    CellGrid<Sum>& cells = workspace.sumsOf(Sum(), plan.finest);
     const int largest = maxValue(channels, maxGradient(channels));
     Band band(channels, batch.area, batch.rows + KeyPointBatch::BAND_ROWS + 1, plan.kernels,
             workspace.channelRows, workspace.ring);
@@ -103,43 +102,30 @@ void describeBatch(const DescriptorPlan& plan, const ChannelGroup& group,
     }
 }
 
-double largestSide(const KeyPointBatch& batch, const std::vector<SupportRegion>& regions)
+}  // namespace
+
+void describeUpright(const DescriptorPlan& plan, const std::vector<Channel>& allChannels,
+        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions, Workspace& workspace,
+        Mat& descriptors)
 {
     double side = 0;
     for (int k : batch.keypoints)
         side = std::max(side, regions[k].side);
-    return side;
-}
-
-void describeGroup(const DescriptorPlan& plan, const ChannelGroup& group,
-        const std::vector<Channel>& channels, const KeyPointBatch& batch,
-        const std::vector<SupportRegion>& regions, Workspace& workspace, Mat& descriptors)
-{
-    const double side = largestSide(batch, regions), cell = longestCell(side, plan.cellsInRow());
+    const double cell = longestCell(side, plan.cellsInRow());
     const double pixels = std::min(cell * cell, (double)batch.area.width * batch.area.height);
-    const double largestSum = maxValue(channels, maxGradient(channels)) * pixels;
-    const bool fits16Bits = largestSum <= USHRT_MAX, fits32Bits = largestSum <= UINT_MAX;
-    const bool isShort = !is16Bit(channels) && fits32Bits;
-    const auto describe = !fits32Bits   ? describeBatch<IntegralBand<int, unsigned>, double>
-                          : !isShort    ? describeBatch<IntegralBand<int, unsigned>, unsigned>
-                          : !fits16Bits ? describeBatch<IntegralBand<short, unsigned>, unsigned>
-                          : columnsAreFaster(plan, channels, batch, side)
-                                  ? describeBatch<ColumnBand, ushort>
-                                  : describeBatch<IntegralBand<short, ushort>, ushort>;
-    describe(plan, group, channels, batch, regions, workspace, descriptors);
-}
-
-}  // namespace
-
-void describeUpright(const DescriptorPlan& plan, const std::vector<Channel>& channels,
-        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions, Workspace& workspace,
-        Mat& descriptors)
-{
     for (const ChannelGroup& group : plan.groups)
     {
-        const auto first = channels.begin() + group.first;
-        describeGroup(plan, group, std::vector<Channel>(first, first + group.count), batch, regions,
-                workspace, descriptors);
+        const auto first = allChannels.begin() + group.first;
+        const std::vector<Channel> channels(first, first + group.count);
+        const double largestSum = maxValue(channels, maxGradient(channels)) * pixels;
+        const bool fits16Bits = largestSum <= USHRT_MAX, fits32Bits = largestSum <= UINT_MAX;
+        const auto describe = !fits32Bits         ? describeBatch<IntegralBand<int, unsigned>, double>
+                              : is16Bit(channels) ? describeBatch<IntegralBand<int, unsigned>, unsigned>
+                              : !fits16Bits       ? describeBatch<IntegralBand<short, unsigned>, unsigned>
+                              : columnsAreFaster(plan, channels, batch, side)
+                                      ? describeBatch<ColumnBand, ushort>
+                                      : describeBatch<IntegralBand<short, ushort>, ushort>;
+        describe(plan, group, channels, batch, regions, workspace, descriptors);
     }
 }
 

@@ -61,14 +61,15 @@ template <typename T> struct PixelKernels
     RotatedSampleKernels<T> rotated;
 };
 
-//! From a row of each channel: out = above + sums along the row; both begin left of the first pixel, with 0.
-template <typename T, typename Sum>
-using SumRowFunc = void (*)(const T* const planes[GROUP_CHANNELS], int width, const Sum* above, Sum* out);
+template <typename T, typename Sum> struct IntegralKernels
+{
+    //! From a row of each channel: out = above + sums along the row; both begin left of the first pixel, with 0.
+    void (*sumRow)(const T* const planes[GROUP_CHANNELS], int width, const Sum* above, Sum* out);
 
-//! Sums over n x n cells with the given edges, paddedEdges(n) and n + 1 of them, in pixels of the image.
-template <typename Sum>
-using CellsFunc = void (*)(
-        const RingRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells);
+    //! Sums over n x n cells with the given edges, paddedEdges(n) and n + 1 of them, in pixels of the image.
+    void (*cells)(
+            const RingRows<Sum>& rows, const int* xEdges, const int* yEdges, int n, CellGrid<Sum>& cells);
+};
 
 //! For sums in double, all products and parent sums are doubles, else 32-bit integers, which they must fit.
 template <typename Sum> struct BitsKernels
@@ -89,12 +90,10 @@ struct DescriptorKernels
     const char* instructionSet;  //!< for which they were compiled
     PixelKernels<short> shortPixels;
     PixelKernels<int> intPixels;
-    SumRowFunc<short, ushort> sumShortRow;
-    SumRowFunc<short, unsigned> sumLongRow;
-    SumRowFunc<int, unsigned> sumIntRow;
-    CellsFunc<ushort> shortCells;
-    CellsFunc<unsigned> longCells;
-    /** As shortCells, from the sums down the columns, modulo 2^16. Null where it would be slow, as it is for cells
+    IntegralKernels<short, ushort> shortIntegral;
+    IntegralKernels<short, unsigned> longIntegral;
+    IntegralKernels<int, unsigned> intIntegral;
+    /** As shortIntegral.cells, from the sums down the columns, modulo 2^16. Null where it would be slow, as it is for cells
      wider than NARROW_CELL. May read ROW_PADDING values past the end of a row.
      @param channels where in a row each channel has its pixel origin.x. @param n a multiple of 8. */
     void (*columnCells)(const RingRows<short>& rows, const size_t channels[GROUP_CHANNELS], const int* xEdges,
@@ -109,14 +108,12 @@ struct DescriptorKernels
 
     const PixelKernels<short>& pixels(short) const { return shortPixels; }
     const PixelKernels<int>& pixels(int) const { return intPixels; }
-    CellsFunc<ushort> cells(ushort) const { return shortCells; }
-    CellsFunc<unsigned> cells(unsigned) const { return longCells; }
     const BitsKernels<ushort>& bits(ushort) const { return shortBits; }
     const BitsKernels<unsigned>& bits(unsigned) const { return longBits; }
     const BitsKernels<double>& bits(double) const { return doubleBits; }
-    SumRowFunc<short, ushort> sumRow(short, ushort) const { return sumShortRow; }
-    SumRowFunc<short, unsigned> sumRow(short, unsigned) const { return sumLongRow; }
-    SumRowFunc<int, unsigned> sumRow(int, unsigned) const { return sumIntRow; }
+    const IntegralKernels<short, ushort>& integral(short, ushort) const { return shortIntegral; }
+    const IntegralKernels<short, unsigned>& integral(short, unsigned) const { return longIntegral; }
+    const IntegralKernels<int, unsigned>& integral(int, unsigned) const { return intIntegral; }
 };
 
 //! Those for this machine, the fastest that cv::setUseOptimized and OPENCV_CPU_DISABLE allow.

@@ -25,9 +25,9 @@ const DescriptorKernels& descriptorKernels()
 {
     static const DescriptorKernels table = {IIB_INSTRUCTION_SET,
             {rowKernels<short>(), rotatedSampleKernels<short>()},
-            {rowKernels<int>(), rotatedSampleKernels<int>()}, sumRow16, sumRow32, sumRowOf16Bit,
-            cellSums<ushort>, cellSums<unsigned>, columnCells, bitsKernels<ushort>(), bitsKernels<unsigned>(),
-            bitsKernels<double>(), boxKernels(), cellEdges};
+            {rowKernels<int>(), rotatedSampleKernels<int>()}, {sumRow16, cellSums<ushort>},
+            {sumRow32, cellSums<unsigned>}, {sumRowOf16Bit, cellSums<unsigned>}, columnCells,
+            bitsKernels<ushort>(), bitsKernels<unsigned>(), bitsKernels<double>(), boxKernels(), cellEdges};
     return table;
 }
 
