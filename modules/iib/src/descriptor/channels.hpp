@@ -40,11 +40,6 @@ int maxGradient(const std::vector<Channel>& channels);
  which changes no comparison and keeps them positive. */
 int maxValue(const Channel* channels, int count, int gradient);
 
-inline int maxValue(const std::vector<Channel>& channels, int gradient)
-{
-    return maxValue(channels.data(), (int)channels.size(), gradient);
-}
-
 /** The rows of a group of channels over a rectangle, one at a time from the top. Where the rectangle leaves the image, the
  channels are reflected (BORDER_REFLECT_101). */
 template <typename T> class ChannelRows

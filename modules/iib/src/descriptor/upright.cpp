@@ -23,8 +23,8 @@ public:
           ring(area.tl(), rows, ((size_t)area.width + 1 + ROW_PADDING) * GROUP_CHANNELS, GROUP_CHANNELS,
                   ringMemory),
           width(area.width), kernels(all.integral(T(), Sum())),
-          longestPart((int)std::sqrt(
-                  (double)std::numeric_limits<Sum>::max() / maxValue(channels, maxGradient(channels))))
+          longestPart((int)std::sqrt((double)std::numeric_limits<Sum>::max() /
+                                     maxValue(channels.data(), (int)channels.size(), maxGradient(channels))))
     {
     }
 
@@ -85,7 +85,7 @@ void describeBatch(const DescriptorPlan& plan, const ChannelGroup& group,
     const Size image = channels[0].map.size();
     const int n = plan.cellsInRow();
     CellGrid<Sum>& cells = workspace.sumsOf(Sum(), plan.finest);
-    const int largest = maxValue(channels, maxGradient(channels));
+    const int largest = maxValue(channels.data(), (int)channels.size(), maxGradient(channels));
     Band band(channels, batch.area, batch.rows + KeyPointBatch::BAND_ROWS + 1, plan.kernels,
             workspace.channelRows, workspace.ring);
     CellEdges edges;
@@ -117,7 +117,8 @@ void describeUpright(const DescriptorPlan& plan, const std::vector<Channel>& all
     {
         const auto first = allChannels.begin() + group.first;
         const std::vector<Channel> channels(first, first + group.count);
-        const double largestSum = maxValue(channels, maxGradient(channels)) * pixels;
+        const double largestSum =
+                maxValue(channels.data(), (int)channels.size(), maxGradient(channels)) * pixels;
         const bool fits16Bits = largestSum <= USHRT_MAX, fits32Bits = largestSum <= UINT_MAX;
         const auto describe = !fits32Bits         ? describeBatch<IntegralBand<int, unsigned>, double>
                               : is16Bit(channels) ? describeBatch<IntegralBand<int, unsigned>, unsigned>
