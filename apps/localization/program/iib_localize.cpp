@@ -166,6 +166,23 @@ void finish(std::ofstream& stream, const std::string& path)
         CV_Error(cv::Error::StsError, path + " cannot be written");
 }
 
+//! In the map, or in one of the model. @param points as Localizer takes them.
+Localizer open(const iib_tools::CommandLine& line, int points)
+{
+    if (line.has("map"))
+        return Localizer(line.text("map"), points);
+    std::optional<Progress> progress;
+    return Localizer(line.text("model"), line.text("photographs"), points,
+            [&](size_t, size_t all, const std::string& problem) {
+                if (!progress)
+                    progress.emplace("mapping", all);
+                if (problem.empty())
+                    progress->step();
+                else
+                    std::cerr << problem << "\n";
+            });
+}
+
 int run(const iib_tools::CommandLine& line)
 {
     keepFreedMemory();
@@ -173,12 +190,15 @@ int run(const iib_tools::CommandLine& line)
     for (const char* option : {"images", "out", "imu", "pictures"})
         if (streaming && line.has(option))
             CV_Error(cv::Error::StsBadArg, cv::format("--stream goes without --%s", option));
-    for (const char* needed : {"map", "images", "out"})
-        if (!line.has(needed) && !(streaming && line.has("map")))
+    if (line.has("map") == line.has("model") || line.has("model") != line.has("photographs"))
+        CV_Error(cv::Error::StsBadArg,
+                "either --map or --model and --photographs are needed (--help tells more)");
+    for (const char* needed : {"images", "out"})
+        if (!line.has(needed) && !streaming)
             CV_Error(cv::Error::StsBadArg, cv::format("--%s is needed (--help tells more)", needed));
     if (streaming)
     {
-        const Localizer localizer(line.text("map"));
+        const Localizer localizer = open(line, 1000);
         return stream(localizer, chooseCameras(line, localizer));
     }
     const std::string folder = line.text("images");
@@ -187,7 +207,7 @@ int run(const iib_tools::CommandLine& line)
     const std::vector<ImuReading> readings = imu ? readImu(line.text("imu")) : std::vector<ImuReading>();
     const std::vector<int64_t> times = imu ? timesOf(names) : std::vector<int64_t>();
     const cv::Affine3d imuFromCamera = parsePose(line.text("imu-from-camera"));
-    const Localizer localizer(line.text("map"), 0);
+    const Localizer localizer = open(line, 0);
     const std::vector<Camera> cameras = chooseCameras(line, localizer);
 
     NewFolder results(line.text("out"), {"frames.csv", "trajectory.txt", "matches", "matches/*.png"});
@@ -247,12 +267,15 @@ int run(const iib_tools::CommandLine& line)
 int main(int argc, char** argv)
 {
     return iib_tools::runTool(argc, argv,
-            "Finds where images were taken, in a map that Python's opencv-iib made.\n"
+            "Finds where images were taken, in a map that Python's opencv-iib made, or in a COLMAP model.\n"
             "  iib_localize --map MAP --images DIR --out OUT [--camera MODEL,WIDTH,HEIGHT,PARAMETERS]\n"
+            "  iib_localize --model SPARSE --photographs DIR --images DIR --out OUT [--camera ...]\n"
             "  iib_localize --map MAP --stream [--camera ...]\n"
             "OUT/trajectory.txt has the poses (TUM's format), OUT/frames.csv what became of each image.\n"
             "The status is 0 if all have a pose, 4 if some have, 3 if none has.",
             "{map|<none>|the map, a folder}"
+            "{model|<none>|in place of --map: COLMAP's model in binary form, a folder, which is mapped first}"
+            "{photographs|<none>|with --model: folder of the images that it was made of}"
             "{images|<none>|folder of the images}"
             "{camera|<none>|of all images, as COLMAP names models and parameters; without it, the map's of "
             "the same size}"

@@ -4,8 +4,9 @@
 #include <numeric>
 #include <set>
 
-#include "map.hpp"
-#include "opencv2/iib.hpp"
+#include "features.hpp"
+#include "mapping.hpp"
+#include "numbers.hpp"
 #include "pose.hpp"
 #include "retrieval.hpp"
 
@@ -25,19 +26,6 @@ constexpr double MAX_ERROR =
 constexpr double LEAST_INLIERS = 15, LEAST_SHARE = .02;  // in an unknown place a few matches agree by chance
 constexpr double MAX_BOUND = .1;  // of the distance to the points: three standard deviations of the place
 constexpr double LEAST_DEVIATION = .2;  // pixels
-
-struct Features
-{
-    std::vector<cv::Point2d> pixels;
-    cv::Mat codes;
-};
-
-double median(std::vector<double> values)
-{
-    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 double medianDistance(const std::vector<cv::Point3d>& pointsInCamera)
 {
@@ -149,16 +137,6 @@ struct cv::iib::Localizer::Impl
         votes = std::make_unique<Retrieval>(codes);
     }
 
-    Features extract(const Mat& image) const
-    {
-        Features features;
-        std::vector<KeyPoint> keypoints;
-        iib->detectAndCompute(image, noArray(), keypoints, features.codes);
-        for (const KeyPoint& k : keypoints)
-            features.pixels.emplace_back(k.pt);
-        return features;
-    }
-
     //! The images of the map nearest to a pose: a turn in radians counts as much as a way by their depth.
     std::vector<size_t> near(const Affine3d& pose) const
     {
@@ -246,6 +224,12 @@ cv::iib::Localizer::Localizer(const std::string& map, int points)
 {
 }
 
+cv::iib::Localizer::Localizer(
+        const std::string& model, const std::string& photographs, int points, const Report& report)
+    : impl_(std::make_unique<const Impl>(buildMap(model, photographs, report), points))
+{
+}
+
 cv::iib::Localizer::~Localizer() = default;
 
 const std::vector<cv::iib::Camera>& cv::iib::Localizer::cameras() const { return impl_->map.cameras; }
@@ -258,7 +242,7 @@ cv::iib::Location cv::iib::Localizer::localize(
     if (image.size() != camera.size)
         CV_Error(Error::StsBadArg, format("the image has %d x %d pixels and the camera %d x %d", image.cols,
                                            image.rows, camera.size.width, camera.size.height));
-    const Features features = impl_->extract(image);
+    const Features features = extract(*impl_->iib, image);
     Location location;
     location.reason = "too few matches";
     if (!features.pixels.empty() && prior)

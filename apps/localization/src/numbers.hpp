@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string>
@@ -30,6 +31,14 @@ inline std::string shortest(double value)
 {
     char text[32];
     return std::string(text, std::to_chars(text, text + sizeof(text), value).ptr);
+}
+
+//! Of one number or more.
+inline double median(std::vector<double> values)
+{
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
 }
 
 }  // namespace iib_localization

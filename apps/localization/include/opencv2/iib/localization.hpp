@@ -3,6 +3,7 @@
 #ifndef OPENCV_IIB_LOCALIZATION_HPP
 #define OPENCV_IIB_LOCALIZATION_HPP
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -55,6 +56,21 @@ public:
     @param points keypoints that are looked for in an image; 0: as many as in the map's images.
     @throws cv::Exception for what is no map, or a damaged one. */
     explicit Localizer(const std::string& map, int points = 1000);
+
+    /** @brief Told by one thread at a time of each step in the making of a map: how many of all are done, and what is wrong with
+    a photograph, without which the map is made (else empty). */
+    typedef std::function<void(size_t done, size_t all, const std::string& problem)> Report;
+
+    /** @brief Makes a map in memory of a COLMAP model: 2000 keypoints of each photograph are described, matched with those of
+    the photographs that see the same, and triangulated with the model's poses. Where Python is, `opencv-iib map` makes it
+    once, for all runs.
+    @param model folder of a model in binary form, in any unit; its cameras are of the models that Camera has.
+    @param photographs folder that the names of the model's images are relative to.
+    @param points keypoints that are looked for in an image to be localized; 0: as many as in the photographs.
+    @param report if not empty: told of the progress.
+    @throws cv::Exception for a model that is damaged or not that of the photographs. */
+    Localizer(const std::string& model, const std::string& photographs, int points = 1000,
+            const Report& report = Report());
     ~Localizer();
     Localizer(const Localizer&) = delete;
     Localizer& operator=(const Localizer&) = delete;
