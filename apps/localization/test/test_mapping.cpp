@@ -110,8 +110,9 @@ TEST_F(Mapping, a_damaged_model)
             const bool damaged = length != content.size();
             EXPECT_EQ(damaged, error(files).find(begin) == 0) << name << " of " << length << " bytes";
         }
-    for (const auto& [name, place, value] : {std::make_tuple("cameras.bin", 12, 'c'), {"images.bin", 18, '\x7f'},
-                 {"images.bin", 68, '\1'}, {"points3D.bin", 59, '\1'}, {"points3D.bin", 57, '\1'}})
+    for (const auto& [name, place, value] :
+            {std::make_tuple("cameras.bin", 12, 'c'), {"images.bin", 18, '\x7f'}, {"images.bin", 68, '\1'},
+                    {"points3D.bin", 59, '\1'}, {"points3D.bin", 57, '\1'}})
     {
         Files files = whole;
         files[name][size_t(place)] = value;
@@ -122,11 +123,14 @@ TEST_F(Mapping, a_damaged_model)
 TEST_F(Mapping, a_model_of_others)
 {
     EXPECT_NE(std::string::npos, error(model(1, 2, FOV)).find("FOV"));
-    EXPECT_EQ("none of the model's images can be read below " + folder.path("map"), error(model(1, 2), "map"));
+    EXPECT_EQ(
+            "none of the model's images can be read below " + folder.path("map"), error(model(1, 2), "map"));
     cv::imwrite(folder.path("images/3.png"), cv::Mat(240, 300, CV_8U, cv::Scalar(9)));
-    EXPECT_NE(std::string::npos, error(model(1, 2)).find("3.png has 300 x 240 pixels and its camera in the model 320 x 240"));
+    EXPECT_NE(std::string::npos,
+            error(model(1, 2)).find("3.png has 300 x 240 pixels and its camera in the model 320 x 240"));
     for (int i = 0; i < 6; i++)  // in another order
-        cv::imwrite(folder.path("images/" + std::string(i < 3 ? "left side/" : "") + std::to_string(i) + ".png"),
+        cv::imwrite(
+                folder.path("images/" + std::string(i < 3 ? "left side/" : "") + std::to_string(i) + ".png"),
                 wall.image(poseAt(0.9 - 0.4 * (i * 4 % 6), 0.3 * (i * 5 % 3), -0.1 * i)));
     EXPECT_NE(std::string::npos, error(model(1, 2)).find("is this the model of these images?"));
 }
