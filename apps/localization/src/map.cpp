@@ -52,10 +52,10 @@ Map readFiles(const std::string& folder)
     for (int i = 0, row = 0; valid && i < views.rows; i++)
     {
         const double* v = views.ptr<double>(i);
-        const int end = row + int(images[i][1]);
-        valid = end >= row && (i + 1 < views.rows ? end <= map.codes.rows : end == map.codes.rows);
-        map.views.push_back({{row, end}, cv::Vec3d(v), cv::Vec3d(v + 3), v[6]});
-        row = end;
+        const int count = int(images[i][1]), left = map.codes.rows - row;
+        valid = count >= 0 && (i + 1 < views.rows ? count <= left : count == left);
+        map.views.push_back({{row, valid ? row + count : row}, cv::Vec3d(v), cv::Vec3d(v + 3), v[6]});
+        row = map.views.back().rows.end;
     }
     if (!valid)
         CV_Error(cv::Error::StsError, "its files contradict each other");

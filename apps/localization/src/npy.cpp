@@ -14,14 +14,16 @@ namespace {
 const std::string MAGIC("\x93NUMPY\x01\0", 8);
 constexpr size_t FRONT = 10;  // magic and length of the header
 
-//! An array to read into, empty for another header than that of the type.
-cv::Mat arrayOf(const std::string& header, int type)
+//! An array of so many bytes to read into, empty for another header than that of the type.
+cv::Mat arrayOf(const std::string& header, int type, uint64_t bytes)
 {
     const std::string name = type == CV_8U ? "|u1" : type == CV_32S ? "<i4" : "<f8";
     const std::string shape = "{'descr': '" + name + "', 'fortran_order': False, 'shape': (%d,%d";
     int rows = 0, columns = 1;
     const bool valid = std::sscanf(header.c_str(), shape.c_str(), &rows, &columns) >= 1;
-    return valid && rows > 0 && columns > 0 ? cv::Mat(rows, columns, type) : cv::Mat();
+    const bool fits = valid && rows > 0 && columns > 0 &&
+                      uint64_t(rows) * uint64_t(columns) * uint64_t(CV_ELEM_SIZE(type)) == bytes;
+    return fits ? cv::Mat(rows, columns, type) : cv::Mat();
 }
 
 }  // namespace
@@ -37,10 +39,10 @@ cv::Mat readNpy(const std::string& file, int type, const std::string& checksum)
     {
         head.resize(FRONT + (uchar(head[8]) | size_t(uchar(head[9])) << 8));
         in.read(&head[FRONT], std::streamsize(head.size() - FRONT));
-        array = arrayOf(head.substr(FRONT), type);
+        array = arrayOf(head.substr(FRONT), type, size - std::min(uint64_t(head.size()), size));
     }
     const size_t bytes = array.total() * array.elemSize();
-    if (array.empty() || size != head.size() + bytes || !in.read(array.ptr<char>(), std::streamsize(bytes)))
+    if (array.empty() || !in.read(array.ptr<char>(), std::streamsize(bytes)))
         CV_Error(cv::Error::StsParseError, file + " is missing or damaged");
     uLong sum = ::crc32_z(0, reinterpret_cast<const uchar*>(head.data()), head.size());
     sum = ::crc32_z(sum, array.ptr(), bytes);

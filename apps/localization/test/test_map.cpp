@@ -126,6 +126,7 @@ TEST_F(SmallMap, files_that_contradict_each_other)
     EXPECT_EQ(said, errorOf([](Map& m) { m.keypoints = 0; }));
     EXPECT_EQ(said, errorOf([](Map& m) { m.views[2].rows.end = 4; }));
     EXPECT_EQ(said, errorOf([](Map& m) { m.views[2].rows.start = 3; }));
+    EXPECT_EQ(said, errorOf([](Map& m) { m.views[2].rows = {1, INT_MAX}; }));
     EXPECT_EQ(said, errorOf([](Map& m) { m.views[0].rows.end = -1; }));
     EXPECT_EQ(said, errorOf([](Map& m) { m.sees.at<int>(1) = 3; }));
     EXPECT_EQ(said, errorOf([](Map& m) { m.sees.at<int>(1) = -1; }));
