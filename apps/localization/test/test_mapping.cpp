@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "opencv2/core/quaternion.hpp"
 #include "wall.hpp"
 
 namespace {
@@ -8,60 +7,11 @@ using namespace iib_localization;
 using cv::iib::Localizer;
 using cv::iib::Location;
 
-constexpr uint32_t PINHOLE = 1, FOV = 7;  // COLMAP's numbers
+constexpr uint32_t FOV = 7;  // COLMAP's number
 
-template <typename T> void put(std::string& file, T value)
-{
-    file.append(reinterpret_cast<const char*>(&value), sizeof(value));
-}
-
-//! COLMAP's model, in binary form, of the six images of the wall and of one that is gone.
 class Mapping : public WallTest
 {
 protected:
-    Mapping() { folder.makeFolder("sparse 0"); }
-
-    //! @param points of the model, each seen by all images.
-    Files model(double unit, int points, uint32_t camera = PINHOLE) const
-    {
-        Files files;
-        std::string &cameras = files["cameras.bin"], &images = files["images.bin"],
-                    &seen = files["points3D.bin"];
-        put<uint64_t>(cameras, 1);
-        for (uint32_t number : {5u, camera})
-            put(cameras, number);
-        for (int side : {SIZE.width, SIZE.height})
-            put<uint64_t>(cameras, uint64_t(side));
-        for (double parameter : CAMERA.parameters)
-            put(cameras, parameter);
-        put<uint64_t>(images, 7);
-        for (uint32_t i = 0; i < 7; i++)
-        {
-            const cv::Affine3d pose = poseAt(0.3 * i - 0.8, 0.05 * (i % 2), 0.03 * i).inv();
-            put(images, 10 + i);
-            put(images, cv::Quatd::createFromRotMat(pose.rotation()).toVec());
-            put(images, cv::Vec3d(pose.translation() * unit));
-            put<uint32_t>(images, 5);
-            images += (i < 3 ? "left side/" : "") + std::to_string(i) + ".png" + '\0';
-            put<uint64_t>(images, 0);
-        }
-        put<uint64_t>(seen, uint64_t(points));
-        for (int point = 0; point < points; point++)
-        {
-            seen += std::string(43, '\1');  // id, place, colour and error
-            put<uint64_t>(seen, 7);
-            for (uint32_t i = 0; i < 7; i++)
-                put(seen, cv::Vec<uint32_t, 2>(10 + i, 0));
-        }
-        return files;
-    }
-
-    void write(const Files& files) const
-    {
-        for (const auto& [name, content] : files)
-            std::ofstream(folder.path("sparse 0/" + name), std::ios::binary) << content;
-    }
-
     std::string error(const Files& files, const std::string& photographs = "images") const
     {
         write(files);

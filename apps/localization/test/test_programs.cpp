@@ -2,7 +2,6 @@
 
 #include <cstdlib>
 
-#include "opencv2/core/quaternion.hpp"
 #include "wall.hpp"
 
 namespace {
@@ -83,6 +82,30 @@ TEST_F(Programs, names_with_blanks_commas_and_quotes)
     EXPECT_GT(std::stod(fields.at(6)), 0) << "variance of x, behind a name with a comma";
     EXPECT_EQ(0u, rows[2].find("none.png,0,the image cannot be read,0,0,,")) << rows[2];
     EXPECT_FALSE(cv::imread(folder.path("out/matches/1 of 2, \"left\".png.png")).empty());
+}
+
+TEST_F(Programs, a_model_in_place_of_a_map)
+{
+    write(model(1, 2));
+    const std::string sparse = "--model '" + folder.path("sparse 0") + "' ",
+                      made = sparse + "--photographs " + folder.path("images") + " ",
+                      rest = "--images " + folder.path("dark") + " --out " + folder.path("out");
+    EXPECT_EQ(4, run("iib_localize " + made + rest)) << error;
+    EXPECT_EQ(folder.path("images/6.png") + " cannot be read: left out of the map\n", error);
+    const std::vector<std::string> lines = split(textOf(folder.path("out/trajectory.txt")), '\n');
+    expectPose(split(lines.at(1), ' '), "1 of 2, \"left\"", poseAt(0.1, -0.1, 0.1));
+
+    for (const std::string& wrong : {sparse, made + "--map " + folder.path("map") + " ", std::string()})
+    {
+        EXPECT_EQ(2, run("iib_localize " + wrong + rest));
+        EXPECT_EQ("iib_localize: either --map or --model and --photographs are needed (--help tells more)\n",
+                error);
+    }
+    folder.write("sparse 0/images.bin", "");
+    EXPECT_EQ(1, run("iib_localize " + made + rest));
+    EXPECT_EQ("iib_localize: " + folder.path("sparse 0") + " is no COLMAP model",
+            error.substr(0, error.find(" in binary")));
+    EXPECT_EQ(error.size() - 1, error.find('\n')) << "one line";
 }
 
 TEST_F(Programs, pictures_do_not_overwrite_photographs)

@@ -4,6 +4,7 @@
 #include "common/test/test_folder.hpp"
 #include "lens.hpp"
 #include "map_writer.hpp"
+#include "opencv2/core/quaternion.hpp"
 #include "opencv2/iib.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
@@ -68,6 +69,11 @@ private:
     cv::Mat texture_;
 };
 
+template <typename T> void put(std::string& file, T value)
+{
+    file.append(reinterpret_cast<const char*>(&value), sizeof(value));
+}
+
 //! Six images along the wall, some below a folder, and a map of them whose points lie on it.
 class WallTest : public testing::Test
 {
@@ -100,6 +106,50 @@ protected:
         }
         folder.makeFolder("map");
         writeMap(folder.path("map"), map);
+    }
+
+    /** COLMAP's model, in binary form, of the six images and of one that is gone.
+    @param points of the model, each seen by all images.
+    @param camera COLMAP's number of its model; PINHOLE. */
+    Files model(double unit, int points, uint32_t camera = 1) const
+    {
+        Files files;
+        std::string &cameras = files["cameras.bin"], &images = files["images.bin"],
+                    &seen = files["points3D.bin"];
+        put<uint64_t>(cameras, 1);
+        for (uint32_t number : {5u, camera})
+            put(cameras, number);
+        for (int side : {SIZE.width, SIZE.height})
+            put<uint64_t>(cameras, uint64_t(side));
+        for (double parameter : CAMERA.parameters)
+            put(cameras, parameter);
+        put<uint64_t>(images, 7);
+        for (uint32_t i = 0; i < 7; i++)
+        {
+            const cv::Affine3d pose = poseAt(0.3 * i - 0.8, 0.05 * (i % 2), 0.03 * i).inv();
+            put(images, 10 + i);
+            put(images, cv::Quatd::createFromRotMat(pose.rotation()).toVec());
+            put(images, cv::Vec3d(pose.translation() * unit));
+            put<uint32_t>(images, 5);
+            images += (i < 3 ? "left side/" : "") + std::to_string(i) + ".png" + '\0';
+            put<uint64_t>(images, 0);
+        }
+        put<uint64_t>(seen, uint64_t(points));
+        for (int point = 0; point < points; point++)
+        {
+            seen += std::string(43, '\1');  // id, place, colour and error
+            put<uint64_t>(seen, 7);
+            for (uint32_t i = 0; i < 7; i++)
+                put(seen, cv::Vec<uint32_t, 2>(10 + i, 0));
+        }
+        return files;
+    }
+
+    void write(const Files& files) const
+    {
+        folder.makeFolder("sparse 0");
+        for (const auto& [name, content] : files)
+            std::ofstream(folder.path("sparse 0/" + name), std::ios::binary) << content;
     }
 
     const TestFolder folder;
