@@ -21,8 +21,9 @@ cv::Mat arrayOf(const std::string& header, int type, uint64_t bytes)
     const std::string shape = "{'descr': '" + name + "', 'fortran_order': False, 'shape': (%d,%d";
     int rows = 0, columns = 1;
     const bool valid = std::sscanf(header.c_str(), shape.c_str(), &rows, &columns) >= 1;
-    const bool fits = valid && rows > 0 && columns > 0 &&
-                      uint64_t(rows) * uint64_t(columns) * uint64_t(CV_ELEM_SIZE(type)) == bytes;
+    const uint64_t column = uint64_t(std::max(rows, 1)) * uint64_t(CV_ELEM_SIZE(type));  // bytes
+    const bool fits =
+            valid && rows > 0 && columns > 0 && bytes % column == 0 && bytes / column == uint64_t(columns);
     return fits ? cv::Mat(rows, columns, type) : cv::Mat();
 }
 
