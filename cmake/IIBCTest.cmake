@@ -1,5 +1,5 @@
-# ctest entries: one for each test suite of opencv_test_iib and opencv_test_iib_index, once with all instruction sets and
-# once under each pin WIDEST=DISABLED; a smoke run of the perf tests; the README on the installation; the demo. Those with the label
+# ctest entries: one for each suite of the modules' programs of tests, once with all instruction sets and once under each
+# pin WIDEST=DISABLED; a smoke run of the perf tests; the README on the installation; the demo. Those with the label
 # `nightly` are for scripts/test.sh --all.
 if(CMAKE_CROSSCOMPILING)
   return()  # scripts/helpers/arm64.sh runs the test program in an emulator
@@ -13,11 +13,12 @@ endif()
 # takes ten times as long, the others run once by day, and under each pin by night.
 set(kernels_of_opencv_test_iib Kernels Hamming Bits Boxes Rotated GradientOrientation Normalization Matcher_Sizes Golden InstructionSets)
 set(kernels_of_opencv_test_iib_index MappedIndex)
+set(kernels_of_opencv_test_iib_geometry Localiz)
 set(label "")
 if(IIB_SANITIZE)
   set(label nightly)
 endif()
-foreach(program opencv_test_iib opencv_test_iib_index)
+foreach(program opencv_test_iib opencv_test_iib_index opencv_test_iib_geometry)
   set(suites "${PROJECT_BINARY_DIR}/${program}.suites.cmake")
   add_custom_command(TARGET ${program} POST_BUILD
     COMMAND "${CMAKE_COMMAND}" "-DEXE=$<TARGET_FILE:${program}>" "-DOUT=${suites}" "-DPINS=${pins}"
@@ -52,7 +53,7 @@ foreach(name g++ clang++)
 endforeach()
 list(REMOVE_DUPLICATES compilers)
 add_test(NAME headers COMMAND "${CMAKE_COMMAND}" "-DCOMPILERS=${compilers}"
-  "-DINCLUDE=${IIB_DIR}/include;${IIB_INDEX_DIR}/include;${PROJECT_SOURCE_DIR}/apps/localization/include"
+  "-DINCLUDE=${IIB_DIR}/include;${IIB_INDEX_DIR}/include;${IIB_GEOMETRY_DIR}/include"
   "-DOPENCV_INCLUDE=${OpenCV_INCLUDE_DIRS}" -P "${PROJECT_SOURCE_DIR}/cmake/HeaderTest.cmake")
 # No source compiles with -ffast-math, and the build's own flags undo it where a user's flags hold it.
 set(fast_math "${CMAKE_CXX_COMPILER}" -std=c++11 -ffast-math)
@@ -92,9 +93,7 @@ if(UNIX AND NOT APPLE)
     "-DCHANGELOG=${PROJECT_SOURCE_DIR}/CHANGELOG.md" -P "${PROJECT_SOURCE_DIR}/cmake/SymbolTest.cmake")
   add_test(NAME symbols COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib>" ${symbol_test})
   add_test(NAME symbols-index COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib_index>" ${symbol_test})
-  if(IIB_BUILD_APPS)
-    add_test(NAME symbols-localization COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib_localization>" ${symbol_test})
-  endif()
+  add_test(NAME symbols-geometry COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib_geometry>" ${symbol_test})
 endif()
 # Other compilers and unoptimized builds inline less.
 if(IIB_DISPATCH AND NOT IIB_SANITIZE AND CMAKE_BUILD_TYPE STREQUAL "Release" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

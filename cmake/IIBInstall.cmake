@@ -4,6 +4,8 @@ include(CMakePackageConfigHelpers)
 set(include_dir "${CMAKE_INSTALL_INCLUDEDIR}/opencv4")
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/opencv_iib")
 
+add_custom_target(iib_installed)  # all that `cmake --install` needs
+
 # The library opencv_NAME and the headers of a folder.
 function(iib_install_library name dir)
   set(target opencv_${name})
@@ -12,11 +14,17 @@ function(iib_install_library name dir)
   if(UNIX AND NOT APPLE AND NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr" AND NOT name STREQUAL "iib")
     set_target_properties(${target} PROPERTIES INSTALL_RPATH "\$ORIGIN")
   endif()
+  add_dependencies(iib_installed ${target})
   install(TARGETS ${target} EXPORT opencv_iib LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
   install(DIRECTORY "${dir}/include/opencv2" DESTINATION "${include_dir}" PATTERN "*.private.hpp" EXCLUDE)
 endfunction()
 iib_install_library(iib "${IIB_DIR}")
 iib_install_library(iib_index "${IIB_INDEX_DIR}")
+set(pc_libraries "-lopencv_iib_index -lopencv_iib")
+if(TARGET opencv_iib_geometry)
+  iib_install_library(iib_geometry "${IIB_GEOMETRY_DIR}")
+  set(pc_libraries "-lopencv_iib_geometry ${pc_libraries}")
+endif()
 install(EXPORT opencv_iib FILE opencv_iibTargets.cmake DESTINATION "${package_dir}")
 
 configure_package_config_file(cmake/opencv_iibConfig.cmake.in opencv_iibConfig.cmake

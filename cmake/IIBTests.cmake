@@ -1,4 +1,4 @@
-# opencv_test_iib, opencv_test_iib_index and opencv_perf_iib on OpenCV's own test framework.
+# The modules' programs of tests, and opencv_perf_iib, on OpenCV's own test framework.
 find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc features2d flann calib3d imgcodecs videoio highgui)
 include(IIBOpenCVTs)
 
@@ -15,9 +15,13 @@ endfunction()
 iib_add_test_program(test iib)
 iib_add_test_program(perf iib)
 iib_add_test_program(test iib_index)
+iib_add_test_program(test iib_geometry)
 
 # Suites of internals link what the library does not show.
 target_sources(opencv_test_iib PRIVATE "$<FILTER:$<TARGET_OBJECTS:opencv_iib>,INCLUDE,/(matcher/kernels/.*|boxes/plan|descriptor/(kernels/.*|keypoint_batches|parameters|plan))[.]>")
+target_sources(opencv_test_iib_geometry PRIVATE "$<FILTER:$<TARGET_OBJECTS:opencv_iib_geometry>,EXCLUDE,/localizer[.]>")
+target_include_directories(opencv_test_iib_geometry PRIVATE "${IIB_GEOMETRY_DIR}/src")
+target_compile_features(opencv_test_iib_geometry PRIVATE cxx_std_17)
 
 # The naive oracles are not under test; sanitized, they would take most of the time. Nobody asks for the speed then.
 if(IIB_SANITIZE)
@@ -32,6 +36,7 @@ function(iib_add_tool_test name target library)
   list(APPEND sources "${PROJECT_SOURCE_DIR}/tools/common/test/test_main.cpp")
   list(REMOVE_DUPLICATES sources)
   add_executable(${target} ${sources})
+  target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/modules")  # their support
   target_link_libraries(${target} PRIVATE ${library} opencv_ts)
   add_test(NAME ${name} COMMAND ${target})
 endfunction()

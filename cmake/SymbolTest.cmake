@@ -1,4 +1,4 @@
-# The dynamic symbols of LIBRARY, one of opencv_iib, opencv_iib_index and opencv_iib_localization, are those of the API and of *.private.hpp alone, its soname and changelog agree on the version, and it is hardened.
+# The dynamic symbols of LIBRARY, one of opencv_iib, opencv_iib_index and opencv_iib_geometry, are those of the API and of *.private.hpp alone, its soname and changelog agree on the version, and it is hardened.
 # cmake -DLIBRARY=<file> -DNM=<nm> -DREADELF=<readelf> -DVERSION=<x.y.z> -DCHANGELOG=<file> -P SymbolTest.cmake
 # Without VERSION, of a library that OpenCV's own build made: only its symbols, and none of the standard library's
 # templates, which OpenCV's build lets through as weak ones.
@@ -8,7 +8,7 @@ string(REGEX REPLACE "[;\n]+" ";" symbols "${symbols}")
 set(classes "cv::iib::(IIBDescriptorExtractor|HessianDetector|HierarchicalMatcher|NormalizedDetector|CheckedReader|CheckedWriter|SearchedCodes)")
 if(LIBRARY MATCHES "opencv_iib_index[^/]*$")
   set(classes "cv::iib::(MappedIndex)")
-elseif(LIBRARY MATCHES "opencv_iib_localization[^/]*$")
+elseif(LIBRARY MATCHES "opencv_iib_geometry[^/]*$")
   set(classes "cv::iib::(Camera|Localizer)")
 endif()
 set(api 0)
@@ -32,7 +32,7 @@ endif()
 
 string(REGEX MATCH "^[0-9]+[.][0-9]+" soversion "${VERSION}")
 execute_process(COMMAND "${READELF}" -d "${LIBRARY}" OUTPUT_VARIABLE dynamic COMMAND_ERROR_IS_FATAL ANY)
-if(NOT dynamic MATCHES "SONAME[^\n]*\\[libopencv_iib(_index|_localization)?\\.so\\.${soversion}\\]")
+if(NOT dynamic MATCHES "SONAME[^\n]*\\[libopencv_iib(_index|_geometry)?\\.so\\.${soversion}\\]")
   message(SEND_ERROR "the soname of ${LIBRARY} is not that of version ${VERSION}")
 endif()
 if(NOT dynamic MATCHES "BIND_NOW")

@@ -19,10 +19,7 @@ esac
 
 # shellcheck disable=SC2086
 need $build_packages
-localization=""
-! grep -qs '^IIB_BUILD_APPS:BOOL=ON' "$build/CMakeCache.txt" || localization="opencv_iib_localization iib_localize"
-# shellcheck disable=SC2086
-build_library opencv_iib opencv_iib_index $localization
+build_library iib_installed
 
 # The nearest folder that exists decides whether root is needed.
 existing="$prefix"

@@ -3,17 +3,17 @@
 # (a smoke run) and of Python there.
 #   scripts/intree.sh [--short] [--source debian|contrib|contrib-5] [options of CMake]
 # --short: what scripts/test.sh has not shown of the same sources: that they build here, give the same bits (golden tests)
-# and the API of C++ and Python; OpenCV is built with little optimization, for AVX512_ICL alone, which it has no code for
-# itself, and without calib3d, which samples alone need.
+# and the API of C++ and Python; OpenCV is built with little optimization, for AVX512_ICL alone, for which it has no code
+# itself.
 # debian: the distribution's source of its OpenCV. contrib: the newest OpenCV 4 with opencv_contrib's xfeatures2d,
 # from the source distribution of opencv-contrib-python; contrib-5: the newest OpenCV 5 in the same way.
 # JOBS limits the parallel jobs. The last line tells the build's folder.
 . "$(dirname "$0")/helpers/lib.sh"
 
 dispatch="SSE4_1;SSE4_2;AVX;FP16;AVX2;AVX512_SKX;AVX512_ICL"
-flags=-O3 tests="*" short="" calib3d=,calib3d
+flags=-O3 tests="*" short=""
 if [ "${1:-}" = --short ]; then
-    dispatch="AVX512_ICL" flags=-O1 short=.short calib3d=""
+    dispatch="AVX512_ICL" flags=-O1 short=.short
     tests="IIB_Golden*:IIB_IO*:IIB_Errors*:IIB_Input*:IIB_KeyPoints*:IIB_MatcherCreate*:IIB_MatcherEdges*:IIB_IndexFile*:IIB_InstructionSets*"
     tests="$tests-*upper_halves*" # which compilers free from -O2 on
     shift
@@ -32,7 +32,7 @@ esac
 check_definitions "$@"
 
 extra_modules="$root/modules"
-list=iib,iib_index,ts,python3,flann$calib3d
+list=iib,iib_index,iib_geometry,ts,python3,flann,calib3d,imgcodecs
 case "$kind" in
 debian)
     need $build_packages xz-utils libpng-dev zlib1g-dev python3-dev python3-numpy
@@ -80,15 +80,16 @@ cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
     tail -n 30 "$build.log" >&2
     exit 1
 }
-cmake --build "$build" --parallel "${JOBS:-$jobs}" --target opencv_test_iib opencv_test_iib_index opencv_perf_iib opencv_python3
+cmake --build "$build" --parallel "${JOBS:-$jobs}" --target opencv_test_iib opencv_test_iib_index opencv_test_iib_geometry opencv_perf_iib opencv_python3
 
 say "the libraries' symbols, in-tree"
-for library in iib iib_index; do
+for library in iib iib_index iib_geometry; do
     cmake "-DLIBRARY=$build/lib/libopencv_$library.so" -DNM=nm -P "$root/cmake/SymbolTest.cmake"
 done
-say "opencv_test_iib and opencv_test_iib_index, in-tree"
+say "the modules' tests, in-tree"
 "$build/bin/opencv_test_iib" --gtest_filter="$tests"
 "$build/bin/opencv_test_iib_index"
+"$build/bin/opencv_test_iib_geometry"
 say "opencv_perf_iib, in-tree, a smoke run"
 "$build/bin/opencv_perf_iib" --perf_min_samples=1 --perf_force_samples=1
 say "cv2.iib"

@@ -454,7 +454,7 @@ class Localization(unittest.TestCase):
         self.assertTrue(all(np.array_equal(codes[i], made.codes[i]) for i in codes))
 
     def test_the_numbers_are_those_of_cpp(self):
-        folder = REPOSITORY / 'apps/localization/src'
+        folder = REPOSITORY / 'modules/iib_geometry/src'
         for python, name in ((localizer, 'localizer.cpp'), (retrieval, 'retrieval.cpp')):
             text = (folder / name).read_text()
             numbers = dict(re.findall(r'\b([A-Z_]{4,}) =\s*([\d.]+)[,;]', text))

@@ -17,7 +17,7 @@ DEFAULTS = {
     'modules/iib/samples/iib_demo_pipeline.hpp': ('HierarchicalMatcher::createRecommended()', 'MAX_KEYPOINTS = 1000;'),
     'python/opencv_iib/colmap/features.py': ("detector: str = 'HESSIAN'", "preset: str = 'UNIVERSAL'"),
     'python/opencv_iib/colmap/pipeline.py': ('ratio: float = .9', 'crossCheck=True'),
-    'apps/localization/src/localizer.cpp': ('IIB::createRecommended(', 'HierarchicalMatcher::createRecommended()'),
+    'modules/iib_geometry/src/localizer.cpp': ('IIB::createRecommended(', 'HierarchicalMatcher::createRecommended()'),
     'python/opencv_iib/__main__.py': ('default=FeatureOptions.detector', 'default=FeatureOptions.preset'),
     'python/opencv_iib/demo.py': ('from opencv_iib.functions import match',),
     'python/opencv_iib/functions.py': ('matcher or HierarchicalMatcher.createRecommended())',),

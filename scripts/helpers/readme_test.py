@@ -24,7 +24,7 @@ int main(int, char** arguments)
     return cv::iib::MappedIndex::open(arguments[1])->rows() == 3 ? 0 : 1;
 }
 '''
-LOCALIZER = '''#include <opencv2/iib/localization.hpp>
+LOCALIZER = '''#include <opencv2/iib_geometry.hpp>
 #include <iostream>
 int main(int, char** arguments)
 {
@@ -105,15 +105,15 @@ target_link_libraries(index opencv_iib_index)
     if not (work / 'pose.png').exists():
         sys.exit('relative_pose writes no picture')
 
-    # The library of apps/localization, where it was built; its errors say what is wrong.
+    # The errors of iib_geometry, where it was built, say what is wrong.
     if (prefix / 'include/opencv4/opencv2/iib/localization.hpp').exists():
         (work / 'localizer').mkdir()
         (work / 'localizer/localizer.cpp').write_text(LOCALIZER)
         (work / 'localizer/CMakeLists.txt').write_text('''cmake_minimum_required(VERSION 3.16)
 project(localizer CXX)
-find_package(opencv_iib REQUIRED COMPONENTS localization)
+find_package(opencv_iib REQUIRED COMPONENTS geometry)
 add_executable(localizer localizer.cpp)
-target_link_libraries(localizer opencv_iib_localization)
+target_link_libraries(localizer opencv_iib_geometry)
 ''')
         configure(work / 'localizer', 'localizer by cmake')
         run('cmake', '--build', work / 'localizer by cmake')

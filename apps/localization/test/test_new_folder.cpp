@@ -4,7 +4,7 @@
 
 #include "images.hpp"
 #include "new_folder.hpp"
-#include "wall.hpp"
+#include "iib_geometry/test/wall.hpp"
 
 namespace {
 using namespace iib_localization;

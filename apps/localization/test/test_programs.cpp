@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "wall.hpp"
+#include "iib_geometry/test/wall.hpp"
 
 namespace {
 using namespace iib_localization;

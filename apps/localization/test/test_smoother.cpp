@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "common/test/test_folder.hpp"
+#include "iib_geometry/test/test_folder.hpp"
 #include "smoother.hpp"
 #include "trajectory.hpp"
 

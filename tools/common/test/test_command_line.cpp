@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "../command_line.hpp"
-#include "test_folder.hpp"
+#include "iib_geometry/test/test_folder.hpp"
 
 namespace {
 using namespace iib_tools;

@@ -2,7 +2,7 @@
 
 #include "../dataset.hpp"
 #include "opencv2/imgcodecs.hpp"
-#include "test_folder.hpp"
+#include "iib_geometry/test/test_folder.hpp"
 
 namespace {
 using namespace iib_tools;

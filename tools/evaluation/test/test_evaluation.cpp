@@ -12,7 +12,7 @@
 #include "opencv2/iib.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
-#include "common/test/test_folder.hpp"
+#include "iib_geometry/test/test_folder.hpp"
 
 namespace {
 using namespace iib_tools;

@@ -6,7 +6,7 @@
 #include "../described_images.hpp"
 #include "../experiments.hpp"
 #include "../results.hpp"
-#include "common/test/test_folder.hpp"
+#include "iib_geometry/test/test_folder.hpp"
 #include "opencv2/calib3d.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"

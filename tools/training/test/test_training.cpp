@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "../recipe.hpp"
-#include "common/test/test_folder.hpp"
+#include "iib_geometry/test/test_folder.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
 

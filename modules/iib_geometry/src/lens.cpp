@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include "precomp.hpp"
+
 #include "lens.hpp"
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 #include <map>
 
 #include "numbers.hpp"
-#include "opencv2/calib3d.hpp"
 
 namespace iib_localization {
 namespace {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <zlib.h>
-
 #include <fstream>
 #include <map>
 
 #include "map.hpp"
+#include "npy.hpp"
 
 namespace iib_localization {
 
@@ -55,8 +54,8 @@ inline void writeFiles(const std::string& folder, const Files& files, const Map&
     for (const auto& [name, content] : files)
     {
         std::ofstream(folder + "/" + name, std::ios::binary) << content;
-        const uLong sum = ::crc32_z(0, reinterpret_cast<const uchar*>(content.data()), content.size());
-        separated(sums) += cv::format("\"%s\": \"%08lx\"", name.c_str(), sum);
+        separated(sums) +=
+                cv::format("\"%s\": \"%08x\"", name.c_str(), crc32(content.data(), content.size()));
     }
     std::ofstream(folder + "/map.json")
             << "{\"format\": 2, \"points\": " << map.keypoints << ", \"updates\": 0, \"images\": [" << images

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "pose.hpp"
+#include "precomp.hpp"
 
-#include "opencv2/calib3d.hpp"
+#include "pose.hpp"
 
 namespace iib_localization {
 namespace {

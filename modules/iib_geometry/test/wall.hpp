@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/test/test_folder.hpp"
+#include "test_folder.hpp"
 #include "lens.hpp"
 #include "map_writer.hpp"
 #include "opencv2/core/quaternion.hpp"

@@ -2,8 +2,7 @@
 
 #include "npy.hpp"
 
-#include <zlib.h>
-
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -29,6 +28,24 @@ cv::Mat arrayOf(const std::string& header, int type, uint64_t bytes)
 
 }  // namespace
 
+uint32_t crc32(const void* data, size_t size, uint32_t sum)
+{
+    static const std::array<uint32_t, 256> table = [] {
+        std::array<uint32_t, 256> made{};
+        for (uint32_t i = 0; i < made.size(); i++)
+        {
+            made[i] = i;
+            for (int bit = 0; bit < 8; bit++)
+                made[i] = made[i] >> 1 ^ (made[i] & 1 ? 0xedb88320u : 0);
+        }
+        return made;
+    }();
+    sum = ~sum;
+    for (const uchar *at = static_cast<const uchar*>(data), *end = at + size; at < end; at++)
+        sum = sum >> 8 ^ table[(sum ^ *at) & 255];
+    return ~sum;
+}
+
 cv::Mat readNpy(const std::string& file, int type, const std::string& checksum)
 {
     std::ifstream in(file, std::ios::binary);
@@ -45,9 +62,7 @@ cv::Mat readNpy(const std::string& file, int type, const std::string& checksum)
     const size_t bytes = array.total() * array.elemSize();
     if (array.empty() || !in.read(array.ptr<char>(), std::streamsize(bytes)))
         CV_Error(cv::Error::StsParseError, file + " is missing or damaged");
-    uLong sum = ::crc32_z(0, reinterpret_cast<const uchar*>(head.data()), head.size());
-    sum = ::crc32_z(sum, array.ptr(), bytes);
-    if (cv::format("%08lx", sum) != checksum)
+    if (cv::format("%08x", crc32(array.ptr(), bytes, crc32(head.data(), head.size()))) != checksum)
         CV_Error(cv::Error::StsParseError, file + " is damaged");
     return array;
 }

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef OPENCV_IIB_GEOMETRY_HPP
+#define OPENCV_IIB_GEOMETRY_HPP
+
+#include "opencv2/iib/localization.hpp"
+
+/** @defgroup iib_geometry Poses from matches of the illumination-insensitive binary descriptor */
+
+#endif
