@@ -13,9 +13,11 @@ ALLOWED = {'': set(), 'common': {'common'}, 'rotation': {'rotation', 'common'}}
 for wing in ('descriptor', 'matcher', 'detector'):
     ALLOWED[wing + '/kernels'] = {wing + '/kernels', 'common'}
     ALLOWED[wing] = {wing, wing + '/kernels', 'common'}
+ALLOWED['descriptor'].add('detector')  # an extractor writes and reads the file of its detector
 # The boxes are a room of the descriptor: they use its channels and regions, and compute uses them.
-ALLOWED['descriptor'].add('boxes')
-ALLOWED['boxes'] = ALLOWED['descriptor']
+ALLOWED['descriptor'] |= {'descriptor/boxes', 'descriptor/boxes/kernels'}
+ALLOWED['descriptor/boxes'] = ALLOWED['descriptor']
+ALLOWED['descriptor/boxes/kernels'] = ALLOWED['descriptor/kernels'] | {'descriptor/boxes/kernels'}
 INTRINSICS = re.compile(r'(?:^|[^a-zA-Z_])(?:_mm[0-9]*_|__m(?:128|256|512)|v[a-z]+q_[a-z]*[0-9])', re.MULTILINE)
 
 

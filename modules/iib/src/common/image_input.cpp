@@ -86,5 +86,49 @@ void checkKeyPoints(const std::vector<KeyPoint>& keypoints)
     }
 }
 
+Point2d positionOf(const std::vector<KeyPoint>& keypoints, int index)
+{
+    if (index < 0 || (size_t)index >= keypoints.size())
+        CV_Error(Error::StsOutOfRange,
+                format("a match is of keypoint %d; there are %d", index, (int)keypoints.size()));
+    const Point2f pt = keypoints[index].pt;
+    if (!(std::abs(pt.x) <= FLT_MAX && std::abs(pt.y) <= FLT_MAX))
+        CV_Error(Error::StsBadArg,
+                format("keypoint %d is at (%g, %g); positions must be finite", index, pt.x, pt.y));
+    return pt;
+}
+
+Mat imageFor(const Feature2D& detector, const Mat& image)
+{
+    if (image.empty() || dynamic_cast<const AnyImage*>(&detector))
+        return image;
+    checkImage(image);
+    if (image.depth() == CV_8U)
+        return image;
+    const Mat map = integerMap(image);
+    double lowest = 0, highest = 0;
+    minMaxLoc(map, &lowest, &highest);
+    const int first = (int)lowest, range = std::max((int)(highest - lowest), 1);
+    Mat result(map.size(), CV_8U);
+    for (int y = 0; y < map.rows; y++)
+        for (int x = 0; x < map.cols; x++)
+            result.at<uchar>(y, x) = (uchar)(((map.at<ushort>(y, x) - first) * 255 + range / 2) / range);
+    return result;
+}
+
+Mat maskFor(InputArray maskArray, Size imageSize)
+{
+    const Mat mask = maskArray.getMat();
+    if (mask.empty())
+        return mask;
+    if (mask.type() != CV_8U || mask.dims > 2)
+        CV_Error(Error::StsUnsupportedFormat,
+                "the mask has type " + typeToString(mask.type()) + "; it must be CV_8UC1");
+    if (mask.size() != imageSize)
+        CV_Error(Error::StsUnmatchedSizes, format("the mask is %d x %d; the image is %d x %d", mask.cols,
+                                                   mask.rows, imageSize.width, imageSize.height));
+    return mask != 0;
+}
+
 }  // namespace iib
 }  // namespace cv

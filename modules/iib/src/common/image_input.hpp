@@ -25,5 +25,23 @@ Mat integerMap(const Mat& image);
 //! Throws unless position and size of every keypoint are finite and the size is positive.
 void checkKeyPoints(const std::vector<KeyPoint>& keypoints);
 
+//! The position of the keypoint that a match refers to; throws if there is none or it is not finite.
+Point2d positionOf(const std::vector<KeyPoint>& keypoints, int index);
+
+//! A base of detectors that take images of all types that checkImage() lets pass.
+struct AnyImage
+{
+    virtual ~AnyImage() {}
+};
+
+/** An image as a detector takes it, to find keypoints or to describe them: 8U as it is; 16U and 32F, which most detectors of
+ OpenCV refuse or read wrongly, as 8-bit grey from the image's own minimum to its maximum. Those of
+ type AnyImage take all types. Throws as checkImage(). */
+Mat imageFor(const Feature2D& detector, const Mat& image);
+
+/** A detection's mask with 255 where it is not 0: detectors that scale it would lose a 1.
+ @throws cv::Exception unless it is empty or CV_8UC1 of the image's size. */
+Mat maskFor(InputArray mask, Size imageSize);
+
 }  // namespace iib
 }  // namespace cv

@@ -5,6 +5,10 @@
 #include "compute.hpp"
 
 #include "../common/image_input.hpp"
+#include "angles.hpp"
+#include "boxes/describe.hpp"
+#include "rotated.hpp"
+#include "upright.hpp"
 
 namespace cv {
 namespace iib {

@@ -2,10 +2,10 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../common/detectors.hpp"
 #include "../common/file_numbers.hpp"
 #include "../common/image_input.hpp"
 #include "compute.hpp"
+#include "../detector/detector_file.hpp"
 
 #include "opencv2/core/utils/trace.hpp"
 
@@ -42,7 +42,7 @@ std::vector<Mat> extraMaps(InputArrayOfArrays arrays, int expected, Size imageSi
     return maps;
 }
 
-class IIBDescriptorExtractor_Impl CV_FINAL : public IIBDescriptorExtractor
+class IIBDescriptorExtractor_Impl CV_FINAL : public IIBDescriptorExtractor, public AnyImage
 {
 public:
     //! @param checked parameters that have passed their check.

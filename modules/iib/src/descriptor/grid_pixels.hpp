@@ -6,7 +6,7 @@
 
 #include "channels.hpp"
 #include "keypoint_batches.hpp"
-#include "plan.hpp"
+#include "workspace.hpp"
 
 namespace cv {
 namespace iib {

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "../common/file_numbers.hpp"
-#include "kernels/boxes.hpp"
+#include "boxes/kernels/boxes.hpp"
 
 namespace cv {
 namespace iib {

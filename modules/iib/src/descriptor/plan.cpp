@@ -67,10 +67,9 @@ Ptr<const DescriptorPlan> makePlan(const Parameters& p)
     const std::vector<int> bytes = levelBytes(p);
     const Mat_<int>& s = p.selection;  // levels do not descend
     DescriptorPlan plan = {p, s.empty() ? p.granularity : s(s.rows - 1, 0), bytes,
-            std::accumulate(bytes.begin(), bytes.end(), 0), {}, BoxPlan(), descriptorKernels()};
-    if (plan.isOfBoxes())
-        plan.boxes = makeBoxPlan(p);
-    else
+            std::accumulate(bytes.begin(), bytes.end(), 0), {},
+            p.mapping == IIB::MAPPING_BOXES ? makeBoxPlan(p) : BoxPlan(), descriptorKernels()};
+    if (!plan.isOfBoxes())
         plan.groups = groupsOf(p, plan.finest);
     return makePtr<const DescriptorPlan>(plan);
 }

@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "kernels/kernels.hpp"
+#include "../common/geometry.hpp"
 #include "parameters.hpp"
 
 namespace cv {
@@ -61,62 +61,12 @@ struct SupportRegion
     }
 };
 
-//! The place in [0, size) of a pixel that BORDER_REFLECT_101 brings there at the first reflection or the second.
-inline int reflected(int place, int size)
-{
-    const int folded = std::abs(place);
-    return std::max(std::min(folded, 2 * (size - 1) - folded), 0);
-}
-
-//! Pixels of a row (or column) of `size` pixels that hold all those of [begin, end), some of which may be reflected.
-inline Range reflectedRange(int begin, int end, int size)
-{
-    const int first = std::min(begin, 2 * size - 1 - end), last = std::max(end, 1 - begin);
-    return Range(std::max(first, 0), std::min(last, size));
-}
-
 //! Of a keypoint; with ORIENTATION_GRADIENT still upright.
 inline SupportRegion regionOf(const KeyPoint& keypoint, const Parameters& p)
 {
     const double side = std::max((double)p.scaleFactor * keypoint.size, (double)(1 << p.granularity));
     return SupportRegion(keypoint.pt, side, p.orientation == IIB::ORIENTATION_KEYPOINT ? keypoint.angle : -1);
 }
-
-/** A keypoint's angle. The functions of the C library differ in the last place from machine to machine, and with it
- samples and bits: here, only doubles are added and multiplied, in one order, after an exact reduction. */
-struct Rotation
-{
-    double cosine, sine;  //!< error below 1e-15
-    int steps;            //!< the angle in ORIENTATION_STEPS a turn
-
-    //! @param degrees clockwise in the image; any finite number.
-    explicit Rotation(float degrees)
-    {
-        double angle = std::fmod(degrees, 360.f);  // exact; rounding a huge angle would depend on the machine
-        steps = cvRound((float)angle * ORIENTATION_STEPS / 360);
-        if (angle < 0)
-            angle += 360;
-        const int quadrant = (int)(angle / 90) & 3;
-        const double rest = angle - 90 * quadrant;
-        const bool upper = rest > 45;  // there the sine is the cosine of what is left to 90 degrees
-        const double radians = (upper ? 90 - rest : rest) * (CV_PI / 180);
-        const double small = radians * series(radians, 14), large = series(radians, 15);
-        const double s = upper ? large : small, c = upper ? small : large;
-        const double sines[] = {s, c, -s, -c};
-        sine = sines[quadrant];
-        cosine = sines[(quadrant + 1) & 3];
-    }
-
-private:
-    //! Taylor's, on [0, pi / 4]: from last = 14 on that of sin(x) / x, from 15 on cos(x), where the first term left out is below 1e-16.
-    static double series(double x, int last)
-    {
-        double sum = 1;
-        for (int k = last; k > 0; k -= 2)
-            sum = 1 - x * x * sum / (k * (k + 1));
-        return sum;
-    }
-};
 
 //! A rotated region is cut to this side, so that the offsets of its points fit 32 bits.
 static constexpr double LARGEST_ROTATED_SIDE = 16384;

@@ -2,8 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "compute.hpp"
+#include "rotated.hpp"
 
+#include "encode.hpp"
 #include "grid_pixels.hpp"
 
 namespace cv {
@@ -57,12 +58,13 @@ public:
         sums = workspace.planes.get<int>((size_t)(IMAGE_PLANES + kinds + GROUP_CHANNELS) * MAX_SAMPLES);
     }
 
-    //! All planes of sums. @param points of the grid.
+    //! All planes of sums. @param points of the grid. @param angle of its rotation, in degrees.
     void sum(const GridPixels<T>& points, const std::vector<std::vector<Channel>>& packs,
-            const SampleGrid& grid, const Rotation& rotation)
+            const SampleGrid& grid, const Rotation& rotation, float angle)
     {
+        const int steps = cvRound(std::fmod(angle, 360.f) * ORIENTATION_STEPS / 360);
         const GradientRotation gradients = {
-                cvRound(rotation.cosine * 4096), cvRound(rotation.sine * 4096), rotation.steps};
+                cvRound(rotation.cosine * 4096), cvRound(rotation.sine * 4096), steps};
         int* planes[IMAGE_PLANES];
         int next = IMAGE_PLANES;
         for (size_t i = 0; i < packs.size(); i++)
@@ -151,7 +153,7 @@ void describeBatch(const DescriptorPlan& plan, const std::vector<Channel>& chann
         const int sub = plan.cellsInRow() == n ? 1 : 2;
         const SampleGrid grid = gridOf(region, rotation, n, sub, p.border, image);
         pixels.moveTo(region, grid);
-        sampler.sum(pixels, packs, grid, rotation);
+        sampler.sum(pixels, packs, grid, rotation, region.angle);
         sampler.write(grid, descriptors.ptr(k));
     }
 }

@@ -2,9 +2,10 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "compute.hpp"
+#include "upright.hpp"
 
 #include "columns.hpp"
+#include "encode.hpp"
 
 namespace cv {
 namespace iib {

@@ -2,7 +2,6 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../common/detectors.hpp"
 #include "../common/file_numbers.hpp"
 #include "../common/image_input.hpp"
 #include "blobs.hpp"
@@ -31,7 +30,7 @@ void HessianParameters::check() const
 
 namespace {
 
-class HessianDetector_Impl CV_FINAL : public HessianDetector
+class HessianDetector_Impl CV_FINAL : public HessianDetector, public AnyImage
 {
 public:
     explicit HessianDetector_Impl(const HessianParameters& parameters) : p(parameters) { p.check(); }

@@ -2,9 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../common/detectors.hpp"
 #include "../common/file_numbers.hpp"
 #include "../common/image_input.hpp"
+#include "detector_file.hpp"
 #include "local_normalization.hpp"
 
 #include "opencv2/core/utils/trace.hpp"
@@ -21,7 +21,7 @@ void checkSigma(float sigma)
         CV_Error(Error::StsOutOfRange, format("sigma is %g; it must be 1 to 256 pixels", sigma));
 }
 
-class NormalizedDetector_Impl CV_FINAL : public NormalizedDetector
+class NormalizedDetector_Impl CV_FINAL : public NormalizedDetector, public AnyImage
 {
 public:
     NormalizedDetector_Impl(const Ptr<Feature2D>& detector_, float sigma_)

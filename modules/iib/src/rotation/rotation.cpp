@@ -178,19 +178,6 @@ double findRotation(IIBDescriptorExtractor& extractor, const Mat& image1,
     return std::max(votes.peak(), 0.);
 }
 
-// The position of the keypoint that a match refers to.
-Point2d positionOf(const std::vector<KeyPoint>& keypoints, int index)
-{
-    if (index < 0 || (size_t)index >= keypoints.size())
-        CV_Error(Error::StsOutOfRange,
-                format("a match is of keypoint %d; there are %d", index, (int)keypoints.size()));
-    const Point2f pt = keypoints[index].pt;
-    if (!(std::abs(pt.x) <= FLT_MAX && std::abs(pt.y) <= FLT_MAX))
-        CV_Error(Error::StsBadArg,
-                format("keypoint %d is at (%g, %g); positions must be finite", index, pt.x, pt.y));
-    return pt;
-}
-
 }  // namespace
 
 double estimateRotation(const std::vector<KeyPoint>& keypoints1, const std::vector<KeyPoint>& keypoints2,

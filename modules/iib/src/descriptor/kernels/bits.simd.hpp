@@ -4,6 +4,7 @@
 
 #pragma once
 
+#include "chosen_bits.simd.hpp"
 #include "large_cells.simd.hpp"
 #include "mappings.hpp"
 
@@ -84,38 +85,6 @@ inline void append(PlaneRows planes, const QuadPhase& phase, int bits, int chann
     for (int r = 0; r < phase.rows; r++, planes.first += planes.row)
         for (int plane = 0; plane < bits; plane++)
             append(planes.first + plane * planes.plane, phase.lanes(), channels, writer);
-    out = writer;
-}
-
-//! Packed at the low end. @param comparisons readable up to Group::SIZE bytes behind the group's first.
-inline unsigned bitsOf(const ChosenBits::Group& group, const uchar* comparisons)
-{
-    const uchar* const bytes = comparisons + group.byte;
-#if CV_SSSE3 || (CV_NEON && defined __aarch64__)
-    const v_uint8x16 masks = v_load(group.masks);
-#if CV_SSSE3
-    const v_uint8x16 found(_mm_shuffle_epi8(v_load(bytes).val, v_load(group.places).val));
-#else
-    const v_uint8x16 found(vqtbl1q_u8(v_load(bytes).val, v_load(group.places).val));
-#endif
-    return (unsigned)v_signmask((found & masks) == masks);
-#else
-    unsigned bits = 0;
-    for (int i = 0; i < group.count; i++)
-        bits |= (unsigned)((bytes[group.places[i]] & group.masks[i]) != 0) << i;
-    return bits;
-#endif
-}
-
-//! Appends the chosen bits of a phase.
-inline void appendChosen(const ChosenBits& chosen, const uchar* comparisons, BitAppender& out)
-{
-#if CV_AVX512_SKX  // GCC 12 leaves upper halves in use; code without AVX that follows, also a user's, runs at half the speed
-    _mm256_zeroupper();
-#endif
-    BitAppender writer = out;  // a copy, which stores to uchar* surely do not change
-    for (const ChosenBits::Group& group : chosen.groups())
-        writer.append(bitsOf(group, comparisons), group.count);
     out = writer;
 }
 

@@ -7,7 +7,7 @@
 #include "kernels.hpp"
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-#include "boxes.simd.hpp"
+#include "bits.simd.hpp"
 #include "columns.simd.hpp"
 #include "rotated_samples.simd.hpp"
 #endif
@@ -27,7 +27,7 @@ const DescriptorKernels& descriptorKernels()
             {rowKernels<short>(), rotatedSampleKernels<short>()},
             {rowKernels<int>(), rotatedSampleKernels<int>()}, {sumRow16, cellSums<ushort>},
             {sumRow32, cellSums<unsigned>}, {sumRowOf16Bit, cellSums<unsigned>}, columnCells,
-            bitsKernels<ushort>(), bitsKernels<unsigned>(), bitsKernels<double>(), boxKernels(), cellEdges};
+            bitsKernels<ushort>(), bitsKernels<unsigned>(), bitsKernels<double>(), cellEdges};
     return table;
 }
 

@@ -6,7 +6,6 @@
 
 #include "../../common/aligned_buffer.hpp"
 #include "../../common/bit_io.hpp"
-#include "chosen_bits.hpp"
 
 namespace cv {
 namespace iib {
@@ -48,23 +47,6 @@ private:
     AlignedBuffer<T> values;
 };
 
-/** What a reader sees of the last rows of GROUP_CHANNELS channels, in a ring. Row (y - origin.y) % count holds the pixels of row y
- of the image, side by side; or the sums over its rows [origin.y, y): those of an integral image, side by side in each pixel, left of the pixels origin.x,
- origin.x + 1, ...; or those down the columns, a plane for each channel. A cell's sum, as the difference of its corners, is
- right if a Sum can hold it, however large the image. */
-template <typename Sum> struct RingRows
-{
-    const Sum* data;
-    size_t step;   //!< elements from row to row
-    int count;     //!< rows in the ring
-    Point origin;  //!< in the image
-
-    //! What to add to rows of the image from `oldest` on, the first at hand, before place() puts them into the ring.
-    int shift(int oldest) const { return (oldest - origin.y) % count - oldest; }
-
-    static int place(int shifted, int count) { return shifted < count ? shifted : shifted - count; }
-};
-
 //! The edge of pixels nearest to a position, in [first, limit]: on positive numbers the cast is a floor.
 static inline int edgeAt(double position, int first, int limit)
 {
@@ -95,6 +77,48 @@ struct QuadPhase
 
     int lanes() const { return quads * GROUP_CHANNELS; }
     int planeBytes() const { return (lanes() + CHUNK - 1) / CHUNK * (CHUNK / 8); }
+};
+
+//! The chosen bits of a phase (paper, "Reduction of the IIB Descriptor Size"), in their order.
+class ChosenBits
+{
+public:
+    //! Some that lie in SIZE bytes of comparisons.
+    struct Group
+    {
+        static constexpr int SIZE = 16;
+        size_t byte;         //!< the first of those bytes
+        int count;           //!< bits, up to SIZE
+        uchar places[SIZE];  //!< bytes of the bits, counted from the first; 128 if there is no bit
+        uchar masks[SIZE];   //!< the bits in their bytes; 1 if there is none
+    };
+
+    //! @param masks a bit for each comparison of the phase, where the comparison lies in memory.
+    explicit ChosenBits(const std::vector<uint64>& masks)
+    {
+        for (size_t bit = 0; bit < 64 * masks.size(); bit++)
+        {
+            if (!(masks[bit / 64] >> bit % 64 & 1))
+                continue;
+            const size_t byte = bit / 8;
+            if (none() || chosen.back().count == Group::SIZE || byte - chosen.back().byte >= Group::SIZE)
+            {
+                Group next = {byte, 0, {}, {}};
+                std::fill_n(next.places, (int)Group::SIZE, (uchar)128);
+                std::fill_n(next.masks, (int)Group::SIZE, (uchar)1);
+                chosen.push_back(next);
+            }
+            Group& group = chosen.back();
+            group.places[group.count] = (uchar)(byte - group.byte);
+            group.masks[group.count++] = (uchar)(1 << bit % 8);
+        }
+    }
+
+    bool none() const { return chosen.empty(); }
+    const std::vector<Group>& groups() const { return chosen; }
+
+private:
+    std::vector<Group> chosen;
 };
 
 //! What the parameters say about a level, for one group of channels.

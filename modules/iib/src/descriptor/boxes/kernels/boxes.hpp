@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "quads.hpp"
+#include "../../kernels/kernels.hpp"
 
 namespace cv {
 namespace iib {
@@ -166,6 +166,9 @@ struct BoxKernels
     void (*places)(const BoxFrame& frame, const BoxGridShape& grid, const double* centres, Point2d direction,
             double side, int step, BoxPlaces& places);
 };
+
+//! As descriptorKernels().
+const BoxKernels& boxKernels();
 
 }  // namespace iib
 }  // namespace cv

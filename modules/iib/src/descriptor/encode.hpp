@@ -2,12 +2,12 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "compute.hpp"
+#pragma once
+
+#include "workspace.hpp"
 
 namespace cv {
 namespace iib {
-
-namespace {
 
 template <typename Cell> void widen(const CellGrid<Cell>& cells, CellGrid<double>& wide)
 {
@@ -18,7 +18,7 @@ template <typename Cell> void widen(const CellGrid<Cell>& cells, CellGrid<double
 }
 
 //! The largest factor by which Weights multiplies a sum, along one axis.
-double largestWeight(const Axis& axis, int n)
+inline double largestWeight(const Axis& axis, int n)
 {
     int smallest = INT_MAX, largest = 0;
     for (int i = 0; i < n; i++)
@@ -29,7 +29,7 @@ double largestWeight(const Axis& axis, int n)
     return smallest == largest ? 1 : largest;
 }
 
-double largestWeight(const LevelShape& shape, const CellEdges& edges)
+inline double largestWeight(const LevelShape& shape, const CellEdges& edges)
 {
     const Axis x = {edges.x, shape.step}, y = {edges.y, shape.step};
     return largestWeight(x, shape.n) * largestWeight(y, shape.n);
@@ -77,8 +77,13 @@ struct LevelWriter
     }
 };
 
-}  // namespace
+/** The bits of one group of channels, level by level, from the sums over the finest cells of a keypoint; the groups before
+ have written theirs. Products of sums and weights are integers of 32 bits at the finest levels, as far as these surely fit,
+ and doubles at the others.
 
+@param cells of ushort, unsigned, or double where no unsigned holds the sums.
+@param longestCell a bound of the difference of neighbouring edges.
+@param maxValue the largest value that is summed. */
 template <typename Sum>
 void writeBits(const DescriptorPlan& plan, const ChannelGroup& group, const CellGrid<Sum>& cells,
         const CellEdges& edges, double longestCell, int maxValue, Workspace& workspace, uchar* descriptor)
@@ -86,13 +91,6 @@ void writeBits(const DescriptorPlan& plan, const ChannelGroup& group, const Cell
     const LevelWriter writer = {plan, group, edges, 4. * maxValue, workspace, descriptor};
     writer.writeFitting(plan.finest, cells, longestCell);
 }
-
-template void writeBits(const DescriptorPlan&, const ChannelGroup&, const CellGrid<ushort>&, const CellEdges&,
-        double, int, Workspace&, uchar*);
-template void writeBits(const DescriptorPlan&, const ChannelGroup&, const CellGrid<unsigned>&,
-        const CellEdges&, double, int, Workspace&, uchar*);
-template void writeBits(const DescriptorPlan&, const ChannelGroup&, const CellGrid<double>&, const CellEdges&,
-        double, int, Workspace&, uchar*);
 
 }  // namespace iib
 }  // namespace cv

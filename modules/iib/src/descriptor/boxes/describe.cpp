@@ -2,7 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../descriptor/compute.hpp"
+#include "describe.hpp"
+
+#include "../channels.hpp"
 
 namespace cv {
 namespace iib {
@@ -18,10 +20,10 @@ public:
 
     //! @param source gx, gy and intensity of the image; outlives the band, as do the kernels and the workspace.
     //! @param area of whole cells. @param rows of pixels, how many, the newest included, a reader looks at.
-    CellBand(const std::vector<Channel>& source, Rect area, int rows, const DescriptorKernels& kernels,
+    CellBand(const std::vector<Channel>& source, Rect area, int rows, const DescriptorPlan& plan,
             bool rotated, Workspace& workspace)
-        : channelRows(source, area, 0, kernels.pixels(T()).rows, workspace.channelRows),
-          sumRow(kernels.boxes.sums(T()).sumRow[rotated]), width(area.width / BOX_CELL),
+        : channelRows(source, area, 0, plan.kernels.pixels(T()).rows, workspace.channelRows),
+          sumRow(plan.boxes.kernels.sums(T()).sumRow[rotated]), width(area.width / BOX_CELL),
           ring(area.tl() / BOX_CELL, std::min(rows / BOX_CELL + 2, area.height / BOX_CELL + 1),
                   ((size_t)width + 1) * BOX_LANES, BOX_LANES, workspace.ring),
           planes(workspace.planes.get<T>(BOX_CELL * channelRows.rowSize()))
@@ -117,12 +119,11 @@ void describeBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBa
         Mat& descriptors)
 {
     const bool rotated = regions[batch.keypoints[0]].isRotated();
-    const BoxKernels& kernels = plan.kernels.boxes;
+    const BoxKernels& kernels = plan.boxes.kernels;
     const BoxSumKernels<T>& sums = kernels.sums(T());
     const std::vector<Channel> source = {{IIB::CHANNEL_SIGNED_GRAD_X, grey},
             {IIB::CHANNEL_SIGNED_GRAD_Y, grey}, {IIB::CHANNEL_INTENSITY, grey}};
-    CellBand<T> band(
-            source, batch.area, batch.rows + KeyPointBatch::BAND_ROWS, plan.kernels, rotated, workspace);
+    CellBand<T> band(source, batch.area, batch.rows + KeyPointBatch::BAND_ROWS, plan, rotated, workspace);
     const auto& integral = band.integral();
     T* const means = workspace.boxMeans.get<T>(MAX_BOX_MEANS);
     BoxFrame frame;

@@ -2,15 +2,20 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#pragma once
-
-#include "bits.simd.hpp"
 #include "boxes.hpp"
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+#include "../../kernels/chosen_bits.simd.hpp"
+#endif
 
 namespace cv {
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+const BoxKernels& boxKernels();
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
 
@@ -378,13 +383,15 @@ template <typename T> BoxSumKernels<T> boxSumKernels()
     return k;
 }
 
-BoxKernels boxKernels()
+}  // namespace
+
+const BoxKernels& boxKernels()
 {
-    const BoxKernels k = {boxSumKernels<short>(), boxSumKernels<int>(), boxEdges, boxPlaces};
-    return k;
+    static const BoxKernels table = {boxSumKernels<short>(), boxSumKernels<int>(), boxEdges, boxPlaces};
+    return table;
 }
 
-}  // namespace
+#endif
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 

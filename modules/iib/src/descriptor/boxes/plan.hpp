@@ -4,8 +4,8 @@
 
 #pragma once
 
-#include "../descriptor/kernels/boxes.hpp"
-#include "../descriptor/parameters.hpp"
+#include "../parameters.hpp"
+#include "kernels/boxes.hpp"
 
 namespace cv {
 namespace iib {
@@ -26,7 +26,9 @@ struct BoxPlan
     std::vector<Level> levels;
     double edges[2][MAX_BOX_PLACES];  //!< where boxes begin and end, as centres; 0 behind the last one
 
-    BoxPlan() : edges() {}
+    const BoxKernels& kernels;
+
+    BoxPlan() : edges(), kernels(boxKernels()) {}
 };
 
 BoxPlan makeBoxPlan(const Parameters& checked);

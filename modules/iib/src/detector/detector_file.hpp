@@ -9,15 +9,6 @@
 namespace cv {
 namespace iib {
 
-/** An image as a detector takes it, to find keypoints or to describe them: 8U as it is; 16U and 32F, which most detectors of
- OpenCV refuse or read wrongly, as 8-bit grey from the image's own minimum to its maximum. Detectors of this library take
- all types. Throws as checkImage(). */
-Mat imageFor(const Feature2D& detector, const Mat& image);
-
-/** A detection's mask with 255 where it is not 0: detectors that scale it would lose a 1.
- @throws cv::Exception unless it is empty or CV_8UC1 of the image's size. */
-Mat maskFor(InputArray mask, Size imageSize);
-
 /* The detector of an extractor in a file. Files hold HessianDetector, NormalizedDetector and ORB, which create()
  starts with and which writes nothing of itself; of others they hold the name, and what those write themselves. */
 
