@@ -87,6 +87,12 @@ void copyPatches(const Mat& map, const int* x, const int* y, int count, Mat& pat
     }
 }
 
+//! Whether maps of one size have the same pixels because they lie in the same memory.
+inline bool isSame(const Mat& a, const Mat& b)
+{
+    return a.data == b.data && a.step == b.step && a.type() == b.type();
+}
+
 /* A pixel of a band costs about a sixteenth of what a point costs whose patch is copied. The limit on the band keeps memory and
  indices small: a few large regions may span billions of pixels. */
 inline bool isSparse(const KeyPointBatch& batch)
@@ -154,7 +160,7 @@ private:
             {
                 const Mat& map = packs[pack][i].map;
                 Mat& out = patches[pack][i].map;
-                if (i > 0 && map.data == packs[pack][i - 1].map.data)
+                if (i > 0 && isSame(map, packs[pack][i - 1].map))
                     out = patches[pack][i - 1].map;
                 else
                     (map.depth() == CV_8U ? copyPatches<uchar> : copyPatches<ushort>)(map, index, y, count,

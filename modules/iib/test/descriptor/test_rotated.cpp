@@ -114,6 +114,25 @@ TEST(IIB_Rotated, whole_turns_change_no_bits)
     EXPECT_EQ(0, differingBits(bits.row(0), bits.row(1)));
 }
 
+// Maps may share memory and yet differ, in their step or their type.
+TEST(IIB_Rotated, maps_that_begin_at_the_same_byte_are_not_the_same)
+{
+    const Size size(400, 300);
+    const Mat memory = texture(Size(2 * size.width, 2 * size.height), CV_8U, 7);
+    const Mat even(size, CV_8U, memory.data, size.width), odd(size, CV_8U, memory.data, 2 * size.width),
+            wide(size, CV_16U, memory.data, 2 * size.width);
+    const Mat image = texture(size, CV_8U, 8);
+    const std::vector<KeyPoint> keypoints = {KeyPoint(200, 150, 300, 20)};
+    for (const Mat& other : {odd, wide})
+    {
+        const Ptr<IIB> iib = rotating();
+        iib->setExtraChannels(2);
+        const std::vector<Mat> maps = {even, other}, clones = {even.clone(), other.clone()};
+        EXPECT_EQ(0, differingBits(describe(*iib, image, keypoints, clones),
+                             describe(*iib, image, keypoints, maps)));
+    }
+}
+
 // A grid that spans many pixels is read point by point: the bits are the same, whoever else is described.
 TEST(IIB_Rotated, sparse_and_dense_grids_give_the_same_bits)
 {
