@@ -21,6 +21,12 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND CMAKE_SIZEOF_VOID
   set(IIB_AVX512_ICL_FEATURES ${IIB_AVX512_SKX_FEATURES} AVX512_ICL)
   set(IIB_AVX512_ICL_FLAGS
     "${IIB_AVX512_SKX_FLAGS} -mavx512ifma -mavx512vbmi -mavx512vnni -mavx512vbmi2 -mavx512bitalg -mavx512vpopcntdq")
+  if(MSVC)  # whose intrinsics need no flag: it tells what the compiler may use by itself
+    set(IIB_SSE4_2_FLAGS "")
+    set(IIB_AVX2_FLAGS /arch:AVX2)
+    set(IIB_AVX512_SKX_FLAGS /arch:AVX512)
+    set(IIB_AVX512_ICL_FLAGS /arch:AVX512)
+  endif()
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64|ARM64)$")
   set(IIB_BASELINE NEON)
 endif()

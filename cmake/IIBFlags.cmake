@@ -5,8 +5,21 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 
 # A fused multiply-add rounds once instead of twice and would change bits of the descriptor; -ffast-math in the user's
 # flags would do so too, and let NaN through all checks.
-set(IIB_BIT_FLAGS -fno-fast-math -ffp-contract=off)
+if(MSVC)
+  set(IIB_BIT_FLAGS /fp:strict)
+  set(IIB_WARNINGS /W3 /utf-8 /bigobj)
+else()
+  set(IIB_BIT_FLAGS -fno-fast-math -ffp-contract=off)
+  set(IIB_WARNINGS -Wall -Wextra -Wshadow -Wmissing-declarations)
+endif()
 set(IIB_FLAGS ${IIB_BIT_FLAGS})
+
+# The kernels add numbers in neighbouring lanes by shifts of wider lanes: other bits where the high byte comes first.
+include(TestBigEndian)
+test_big_endian(IIB_BIG_ENDIAN)
+if(IIB_BIG_ENDIAN)
+  message(FATAL_ERROR "opencv_iib needs a little-endian processor: descriptors would differ on this one")
+endif()
 
 # For example address,undefined or thread, or fuzzer,address,undefined: then fuzz is for libFuzzer.
 set(IIB_SANITIZE "" CACHE STRING "Argument of -fsanitize=, empty for none")
@@ -45,4 +58,4 @@ function(iib_harden target)
   endif()
 endfunction()
 
-add_compile_options(${IIB_FLAGS} -Wall -Wextra -Wshadow -Wmissing-declarations)
+add_compile_options(${IIB_FLAGS} ${IIB_WARNINGS})

@@ -26,22 +26,23 @@ set(ts_dir "${cache}/ts-${key}")
 
 file(MAKE_DIRECTORY "${cache}")
 file(LOCK "${ts_dir}.lock" GUARD FILE)
-if(NOT EXISTS "${ts_dir}/libopencv_ts.a")
+if(NOT EXISTS "${ts_dir}/complete")
   message(STATUS "iib: building opencv_ts in ${ts_dir}")
   cmake_host_system_information(RESULT cores QUERY NUMBER_OF_LOGICAL_CORES)
   file(REMOVE_RECURSE "${ts_dir}")
   execute_process(COMMAND "${CMAKE_COMMAND}" -G "${CMAKE_GENERATOR}" -S "${PROJECT_SOURCE_DIR}/cmake/ts" -B "${ts_dir}"
       "-DOPENCV_SOURCE_DIR=${OPENCV_SOURCE_DIR}" "-DOpenCV_DIR=${OpenCV_DIR}" "-DCMAKE_CXX_FLAGS=${flags}"
       "-DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}" -DCMAKE_BUILD_TYPE=Release
+      "-DCMAKE_TOOLCHAIN_FILE=${CMAKE_TOOLCHAIN_FILE}"
     COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
-  execute_process(COMMAND "${CMAKE_COMMAND}" --build "${ts_dir}" --parallel ${cores}
+  execute_process(COMMAND "${CMAKE_COMMAND}" --build "${ts_dir}" --config Release --parallel ${cores}
     COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
+  file(TOUCH "${ts_dir}/complete")
 endif()
 file(LOCK "${ts_dir}.lock" RELEASE)
 
-add_library(opencv_ts STATIC IMPORTED)
-set_target_properties(opencv_ts PROPERTIES IMPORTED_LOCATION "${ts_dir}/libopencv_ts.a"
-  INTERFACE_INCLUDE_DIRECTORIES "${OPENCV_SOURCE_DIR}/modules/ts/include;${ts_dir}/stubs")
+include("${ts_dir}/opencv_ts.cmake")
+target_include_directories(opencv_ts INTERFACE "${OPENCV_SOURCE_DIR}/modules/ts/include" "${ts_dir}/stubs")
 find_package(Threads REQUIRED)
 target_link_libraries(opencv_ts INTERFACE
   opencv_core opencv_imgproc opencv_imgcodecs opencv_videoio opencv_highgui Threads::Threads)
