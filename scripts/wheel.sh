@@ -104,10 +104,10 @@ for python in "$@"; do
     [ "$(minor "$python")" -gt 11 ] || check "$python" "" "numpy==1.24.*"
     check "$python" "" "numpy>=2"
     for kind in opencv-python opencv-contrib-python opencv-python-headless; do
-        check "$python" "" "$kind" pillow
+        check "$python" "" "$kind"
     done
 done
 debian=/usr/bin/python3
 if "$debian" -c 'import cv2' 2>"$work/log" && [ -n "$(ls "$wheels"/*"-cp3$(minor $debian)-"* 2>"$work/log")" ]; then
-    check "$debian" --system-site-packages pillow
+    check "$debian"
 fi

@@ -11,7 +11,7 @@ of that to what the camera sees, and of the angle between both, and how many ima
 points of NormalizedDetector. All have the cameras that COLMAP infers, the pairs of the chain (each image with the twenty for
 which its codes vote), COLMAP's verification and its mapper; the largest component counts. With --relit every second image is
 darkened. With --other the images whose names fit no PATTERN become a map, with poses of the chain's reconstruction, and the
-others are looked for in it. Needs opencv_iib[colmap,localization]. Work that is there is not done again.
+others are looked for in it. Needs pycolmap. Work that is there is not done again.
 """
 import argparse
 import fnmatch

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import logging
 import sqlite3
 import sys
 from typing import Any, Optional, Sequence
@@ -20,11 +21,14 @@ def _features(parser: argparse.ArgumentParser, points: int) -> None:
                         help='HessianDetector, or a detector of cv2 (%(default)s)')
     parser.add_argument('--points', type=int, default=points, help='at most so many an image (%(default)s)')
     parser.add_argument('--preset', default=FeatureOptions.preset, choices=sorted(preset_names()), help='descriptor (%(default)s)')
-    parser.add_argument('--orientation', action='store_true', help="turn regions by the keypoints' angles")
+    parser.add_argument('--orientation', action='store_true', help='turn what is described by its direction')
+    parser.add_argument('--max-size', type=int, default=0, metavar='PIXELS',
+                        help='reduce larger images to this longer side; points stay in their own pixels')
 
 
 def _feature_options(arguments: argparse.Namespace) -> FeatureOptions:
-    return FeatureOptions(arguments.detector, arguments.points, arguments.preset, arguments.orientation)
+    return FeatureOptions(arguments.detector, arguments.points, arguments.preset, arguments.orientation,
+                          arguments.max_size)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -98,16 +102,16 @@ def _localization(arguments: argparse.Namespace) -> int:
     if arguments.command == 'map':
         model = localization.build_map(arguments.model, arguments.images, arguments.out, arguments.points,
                                        arguments.workers).model
-        print(f'{arguments.out}: {model.num_reg_images()} images, {model.num_points3D()} points')
+        _say(f'{arguments.out}: {model.num_reg_images()} images, {model.num_points3D()} points')
         return 0
     camera = None if arguments.camera is None else localization.parse_camera(arguments.camera)
     if arguments.command == 'update':
         counts = localization.update_map(arguments.map, arguments.images, camera, arguments.out, arguments.workers)
-        print(f'{arguments.out or arguments.map}: ' + ', '.join(f'{count} {name}' for name, count in counts.items()))
+        _say(f'{arguments.out or arguments.map}: ' + ', '.join(f'{count} {name}' for name, count in counts.items()))
         return 0
     found, count = localization.localize_images(arguments.map, arguments.images, arguments.out, camera, arguments.pictures,
                                                 arguments.workers)
-    print(f'{arguments.out}: {found} of {count} images have a pose')
+    _say(f'{arguments.out}: {found} of {count} images have a pose')
     return 0 if found == count else SOME_FOUND if found else NONE_FOUND
 
 
@@ -119,6 +123,7 @@ def _client(scheduler: Optional[str]) -> contextlib.AbstractContextManager[Any]:
         from distributed import Client
     except ImportError as e:
         raise ImportError(f'{e}: --scheduler needs pip install opencv-iib[distributed]') from None
+    logging.getLogger('distributed.client').setLevel(logging.CRITICAL)  # what matters of it comes as an exception
     client: contextlib.AbstractContextManager[Any] = Client(scheduler)  # type: ignore[no-untyped-call,unused-ignore]
     return client
 
@@ -131,18 +136,23 @@ def _cv2_error() -> type[Exception]:
     return cv2.error
 
 
+def _say(text: str) -> None:
+    """Prints, also paths that are not UTF-8."""
+    print(text.encode('utf-8', 'backslashreplace').decode())
+
+
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Runs a command; the exit status."""
     arguments = _parser().parse_args(argv)
     try:
         if arguments.command == 'demo':
-            print(demo(arguments.image_a, arguments.image_b, arguments.out, _feature_options(arguments)))
+            _say(demo(arguments.image_a, arguments.image_b, arguments.out, _feature_options(arguments)))
         elif arguments.command in ('map', 'localize', 'update'):
             return _localization(arguments)
         elif arguments.command == 'hloc':
             count = hloc.export(arguments.database, arguments.features, arguments.matches, arguments.pairs,
                                 arguments.force)
-            print(f'{arguments.matches}: {count} pairs')
+            _say(f'{arguments.matches}: {count} pairs')
         else:
             options = Options(_feature_options(arguments), arguments.camera_model, arguments.focal,
                               arguments.share_cameras, arguments.pairs, arguments.neighbours, arguments.ratio,
@@ -150,7 +160,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
             with _client(arguments.scheduler) as client:
                 counts = build_database(arguments.images, arguments.database, options, arguments.force,
                                         arguments.workers, client=client)
-            print(f'{arguments.database}: ' + ', '.join(f'{count} {name}' for name, count in counts.items()))
+            _say(f'{arguments.database}: ' + ', '.join(f'{count} {name}' for name, count in counts.items()))
     except KeyboardInterrupt:
         print('interrupted; the same command goes on from here', file=sys.stderr)
         return 130

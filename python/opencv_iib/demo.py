@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Any
 
 from opencv_iib.colmap.features import FeatureOptions, Features
-from opencv_iib.colmap.images import read_grey
+from opencv_iib.colmap.images import read_grey, write_picture
 from opencv_iib.colmap.verify import magsac
 from opencv_iib.functions import match
 from opencv_iib.keypoints import array_to_keypoints
@@ -34,6 +34,5 @@ def demo(image_a: str, image_b: str, out: str, options: FeatureOptions = Feature
     picture: Any = cv2.drawMatches(  # type: ignore[call-overload,unused-ignore]
         images[0], array_to_keypoints(rows[0]), images[1], array_to_keypoints(rows[1]),
         good[::len(good) // 100 + 1], None, flags=2)
-    if not cv2.imwrite(out, picture):
-        raise ValueError(f'{out} cannot be written')
+    write_picture(out, picture)
     return f'{out}: {len(pairs)} matches, {len(good)} agree with one epipolar geometry'

@@ -43,7 +43,7 @@ set -- "--config-settings=build-dir=$work/build"
 "$work/newest/bin/pip" wheel --quiet --no-deps --wheel-dir "$work" "$@" "$root"
 
 say "python tests with pip's newest OpenCV"
-check newest "$work"/*.whl opencv-python-headless pillow h5py pycolmap jinja2 distributed mypy
+check newest "$work"/*.whl opencv-python-headless h5py pycolmap jinja2 distributed mypy
 if [ -n "$servers" ]; then
     "$work/newest/bin/pip" install --quiet "psycopg[binary]"
     "$root/scripts/helpers/postgres_test.sh" "$work/newest/bin/python"

@@ -73,6 +73,7 @@ class Database(contextlib.AbstractContextManager['Database']):
         """
         self.path = path
         self.partial = path + '.partial'
+        self._finished = False
         try:
             self._open(settings)
         except SettingsChanged:
@@ -85,16 +86,16 @@ class Database(contextlib.AbstractContextManager['Database']):
             self._open(settings)
 
     def _open(self, settings: dict[str, Any]) -> None:
-        self._db = sqlite3.connect(self.partial, isolation_level=None)
+        self._db = sqlite3.connect(os.fsencode(self.partial), isolation_level=None)
         try:
             self._begin(settings)
         except sqlite3.DatabaseError as e:
-            self.close()
+            self._db.close()
             if type(e) is not sqlite3.DatabaseError:  # such as a full disk
                 raise
             raise SettingsChanged(f'{self.partial}: {e}') from None
         except SettingsChanged:
-            self.close()
+            self._db.close()
             raise
 
     def _begin(self, settings: dict[str, Any]) -> None:
@@ -114,17 +115,17 @@ class Database(contextlib.AbstractContextManager['Database']):
             raise SettingsChanged(f'{self.partial} was begun with other settings, {row[0]}')
 
     def __exit__(self, *exc: Any) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Closes the file."""
+        """Closes the file, and removes it if there is nothing to go on from."""
+        useless = self._finished or not self.stamps()
         self._db.close()
+        if useless:
+            os.unlink(self.partial)
 
     def finish(self) -> None:
         """Makes the file, without what COLMAP does not know. Until it is whole, a later run can still go on."""
         new = self.path + '.new'
         try:
-            with contextlib.closing(sqlite3.connect(new, isolation_level=None)) as db:
+            with contextlib.closing(sqlite3.connect(os.fsencode(new), isolation_level=None)) as db:
                 self._db.backup(db)
                 db.execute('PRAGMA journal_mode=DELETE')
                 for table in ('iib_codes', 'iib_files', 'iib_settings'):
@@ -136,8 +137,7 @@ class Database(contextlib.AbstractContextManager['Database']):
         finally:
             if os.path.exists(new):
                 os.unlink(new)
-        self.close()
-        os.unlink(self.partial)
+        self._finished = True
 
     @contextlib.contextmanager
     def _transaction(self) -> Iterator[None]:
@@ -255,13 +255,14 @@ class Database(contextlib.AbstractContextManager['Database']):
             (first, first + MAX_IMAGE_ID))}
 
     def counts(self) -> dict[str, int]:
-        """Images, keypoints, pairs with matches, matches, verified pairs and verified matches."""
+        """Images, keypoints, pairs that were matched, those with matches, matches, verified pairs and verified matches."""
         def one(sql: str) -> int:
             return int(self._db.execute(sql).fetchone()[0] or 0)
 
         return {'images': one('SELECT COUNT(*) FROM images'),
                 'keypoints': one('SELECT SUM(rows) FROM keypoints'),
-                'pairs': one('SELECT COUNT(*) FROM matches WHERE rows > 0'),
+                'pairs': one('SELECT COUNT(*) FROM matches'),
+                'pairs with matches': one('SELECT COUNT(*) FROM matches WHERE rows > 0'),
                 'matches': one('SELECT SUM(rows) FROM matches'),
                 'verified pairs': one('SELECT COUNT(*) FROM two_view_geometries WHERE rows > 0'),
                 'verified matches': one('SELECT SUM(rows) FROM two_view_geometries')}

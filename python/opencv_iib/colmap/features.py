@@ -9,10 +9,13 @@ import numpy as np
 
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector
-from opencv_iib.enums import Preset
+from opencv_iib.enums import Orientation, Preset
 from opencv_iib.keypoints import keypoints_to_array
 
 DETECTORS = ('HESSIAN', 'AKAZE', 'BRISK', 'FAST', 'KAZE', 'ORB', 'SIFT')
+WITHOUT_ANGLES = ('HESSIAN', 'FAST')
+MAX_POINTS = 1 << 30  # what a detector's int holds
+MIN_SIZE = 32  # pixels
 
 
 def preset_names() -> dict[str, int]:
@@ -27,7 +30,9 @@ class FeatureOptions:
     detector: str = 'HESSIAN'  #: one of DETECTORS: HessianDetector, or one of cv2
     points: int = 4000  #: at most so many keypoints an image, those of the strongest response
     preset: str = 'UNIVERSAL'  #: one of preset_names()
-    orientation: bool = False  #: turn the regions by the keypoints' angles
+    #: turn the regions by the keypoints' angles, or by the gradients within them for detectors that tell no angle
+    orientation: bool = False
+    max_size: int = 0  #: pixels of the longer side to which larger images are reduced; 0: they are not
 
     def check(self) -> None:
         """:raises ValueError: naming what is wrong, and what there is."""
@@ -35,22 +40,31 @@ class FeatureOptions:
             raise ValueError(f'no detector {self.detector}: there are {", ".join(DETECTORS)}')
         if self.preset not in preset_names():
             raise ValueError(f'no preset {self.preset}: there are {", ".join(preset_names())}')
-        if not 1 <= self.points:
-            raise ValueError(f'points is {self.points}: it has to be at least 1')
+        if not 1 <= self.points <= MAX_POINTS:
+            raise ValueError(f'points is {self.points}: it has to be 1 to {MAX_POINTS}')
+        if self.max_size and not MIN_SIZE <= self.max_size:
+            raise ValueError(f'max_size is {self.max_size}: it has to be at least {MIN_SIZE} pixels, or 0')
 
 
 def _make_detector(name: str, points: int) -> Any:
     if name == 'HESSIAN':
         return HessianDetector(points)
     import cv2
-    if name in ('ORB', 'SIFT'):
-        return getattr(cv2, name + '_create')(points)
-    create = getattr(cv2, name + '_create', None) or getattr(getattr(cv2, name, None), 'create', None)
+    function = ('FastFeatureDetector' if name == 'FAST' else name) + '_create'
+    create = getattr(cv2, function, None) or getattr(getattr(cv2, 'xfeatures2d', None), function, None)
     if create is None:
-        create = getattr(getattr(cv2, 'xfeatures2d', None), name + '_create', None)
-    if create is None:
-        raise ValueError(f'this cv2, {cv2.__version__}, has no {name}: take another detector, or opencv-contrib')
-    return create(20) if name == 'FAST' else create()
+        raise ValueError(f'cv2 {cv2.__version__} has no {name}: take another detector, or OpenCV 4 or opencv_contrib')
+    return create(points) if name in ('ORB', 'SIFT') else create()
+
+
+def _reduced(image: np.ndarray, max_size: int) -> np.ndarray:
+    height, width = image.shape
+    longer = max(width, height)
+    if not 0 < max_size < longer:
+        return image
+    import cv2
+    size = [max(1, round(side * max_size / longer)) for side in (width, height)]
+    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA))
 
 
 class Features:
@@ -64,15 +78,23 @@ class Features:
         self.extractor = (IIBDescriptorExtractor.create(self.scale_factor) if preset < 0 else
                           IIBDescriptorExtractor.createPreset(preset, self.scale_factor))
         if options.orientation:
-            self.extractor.setUseOrientation(True)
+            gradient = options.detector in WITHOUT_ANGLES
+            self.extractor.setOrientation(Orientation.GRADIENT if gradient else Orientation.KEYPOINT)
         self._local = threading.local()
+        self._local.detector = _make_detector(options.detector, options.points)  # raises here, not at the first image
 
     def __call__(self, image: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """:return: N x 7 float32 keypoints (see keypoints_to_array), strongest first, and N x bytes codes."""
         if not hasattr(self._local, 'detector'):
             self._local.detector = _make_detector(self.options.detector, self.options.points)
-        found = sorted(self._local.detector.detect(image), key=lambda keypoint: -keypoint.response)[:self.options.points]
-        return self.extractor.compute(image, keypoints_to_array(found))
+        small = _reduced(image, self.options.max_size)
+        found = sorted(self._local.detector.detect(small), key=lambda keypoint: -keypoint.response)[:self.options.points]
+        rows, codes = self.extractor.compute(small, keypoints_to_array(found))
+        if small is not image:
+            scale = np.array(image.shape[::-1]) / small.shape[::-1]
+            rows[:, :2] = (rows[:, :2] + .5) * scale - .5  # the centre of the first pixel is 0
+            rows[:, 2] *= scale.max()
+        return rows, codes
 
     def level_sizes(self) -> tuple[int, ...]:
         """Bytes of each level of the codes, coarse first."""

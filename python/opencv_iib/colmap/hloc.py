@@ -3,9 +3,11 @@ from __future__ import annotations
 
 import os
 import sqlite3
+from pathlib import Path
 
 import numpy as np
 
+from opencv_iib._files import output_file
 from opencv_iib.colmap.database import MAX_IMAGE_ID
 from opencv_iib.colmap.images import is_listable
 
@@ -72,8 +74,8 @@ def export(database: str, features: str, matches: str, pairs: str, force: bool =
 
     Files that are there are replaced when all three are complete.
     """
-    paths = (features, matches, pairs)
-    if len(set(map(os.path.abspath, paths))) < 3:
+    paths = [output_file(path) for path in (features, matches, pairs)]
+    if len(set(paths)) < 3:
         raise ValueError('features, matches and pairs are three files: give each a name of its own')
     for path in paths:
         if os.path.exists(path) and not force:
@@ -81,7 +83,7 @@ def export(database: str, features: str, matches: str, pairs: str, force: bool =
     if not os.path.isfile(database):
         raise FileNotFoundError(f'no database {database}')
     partial = [path + '.partial' for path in paths]
-    connection = sqlite3.connect(f'file:{os.path.abspath(database)}?mode=ro', uri=True)
+    connection = sqlite3.connect(f'{Path(database).absolute().as_uri()}?mode=ro', uri=True)
     try:
         names, counts = _write_features(connection, partial[0])
         total = _write_matches(connection, partial[1], partial[2], names, counts)

@@ -33,6 +33,16 @@ def tiles(pairs: Iterable[Pair], side: int) -> Iterator[list[Pair]]:
             yield list(found)
 
 
+def distinct(pairs: Iterable[Pair]) -> Iterator[Pair]:
+    """Each pair once, whichever image comes first."""
+    seen: set[Pair] = set()
+    for a, b in pairs:
+        pair = min(a, b), max(a, b)
+        if pair not in seen:
+            seen.add(pair)
+            yield pair
+
+
 def sequential(count: int, overlap: int) -> Iterator[Pair]:
     """Each image with the `overlap` that come after it by name."""
     for a in range(count):
@@ -73,4 +83,4 @@ def retrieval(count: int, load: Callable[[int], np.ndarray], level_sizes: Sequen
         votes = np.bincount(first.ravel(), minlength=count)
         for b in np.argsort(-votes, kind='stable')[:neighbours]:
             if votes[b] > 0:
-                yield min(a, int(b)), max(a, int(b))
+                yield a, int(b)

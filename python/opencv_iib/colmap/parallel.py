@@ -15,6 +15,7 @@ class Threads:
     """Of this process."""
 
     tile_side = 1  #: images that a job matches with as many others
+    lost: tuple[type[Exception], ...] = ()  #: what is raised, by no job, when those who work have gone
 
     def __init__(self, count: int) -> None:
         self._count = count
@@ -38,7 +39,9 @@ class Cluster:
     tile_side = 8
 
     def __init__(self, client: Any) -> None:
+        from distributed.comm.core import CommClosedError
         self._client = client
+        self.lost: tuple[type[Exception], ...] = (CommClosedError, concurrent.futures.CancelledError)
 
     def executor(self) -> concurrent.futures.Executor:
         """What jobs are submitted to."""
@@ -61,23 +64,30 @@ Crew = Union[Threads, Cluster]
 
 
 def in_parallel(function: Callable[[T], R], jobs: Iterable[T], crew: Crew) -> Iterator[tuple[T, Any]]:
-    """Has jobs done, a few ahead: (job, result or exception), in order, in bounded memory."""
-    with crew.executor() as pool:
-        waiting: collections.deque[tuple[T, concurrent.futures.Future[R]]] = collections.deque()
+    """Has jobs done, a few ahead: (job, result or exception), in order, in bounded memory.
 
-        def first() -> tuple[T, Any]:
-            job, future = waiting.popleft()
-            failed = future.exception()
-            if failed is not None and not isinstance(failed, Exception):
-                raise failed
-            return job, future.result() if failed is None else failed
-        try:
-            for job in jobs:
-                waiting.append((job, pool.submit(function, job)))
-                while len(waiting) >= crew.ahead():
+    :raises ConnectionError: if those who work have gone.
+    """
+    waiting: collections.deque[tuple[T, concurrent.futures.Future[R]]] = collections.deque()
+
+    def first() -> tuple[T, Any]:
+        job, future = waiting.popleft()
+        failed = future.exception()
+        if failed is not None and not isinstance(failed, Exception):
+            raise failed
+        return job, future.result() if failed is None else failed
+
+    try:
+        with crew.executor() as pool:
+            try:
+                for job in jobs:
+                    waiting.append((job, pool.submit(function, job)))
+                    while len(waiting) >= crew.ahead():
+                        yield first()
+                while waiting:
                     yield first()
-            while waiting:
-                yield first()
-        finally:
-            for _, future in waiting:
-                future.cancel()
+            finally:
+                for _, future in waiting:
+                    future.cancel()
+    except crew.lost:
+        raise ConnectionError('the scheduler has gone: when it is back, the same command goes on from here') from None

@@ -11,11 +11,12 @@ from typing import Any, Callable, Iterable, Iterator, Optional
 import numpy as np
 
 import opencv_iib
-from opencv_iib._lock import only_writer
+from opencv_iib._files import only_writer, output_file
 from opencv_iib.colmap import pairs as pair_lists
 from opencv_iib.colmap.database import CAMERA_MODELS, Database
 from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
-from opencv_iib.colmap.images import exif_focal_length, find_images, is_listable, is_utf8, read_grey, stamp
+from opencv_iib.colmap.images import (decode_grey, exif_focal_length, find_images, import_cv2, is_listable, is_utf8,
+                                     read_bytes, stamp)
 from opencv_iib.colmap.parallel import Cluster, Crew, Threads, in_parallel
 from opencv_iib.colmap.progress import Progress
 from opencv_iib.colmap.verify import colmap_binary, magsac, matches_importer
@@ -41,6 +42,7 @@ class Options:
     def check(self) -> None:
         """:raises ValueError: naming what is wrong, and what there is."""
         self.features.check()
+        import_cv2()
         if not 0 <= self.focal < float('inf'):
             raise ValueError(f'focal is {self.focal}: it has to be a number of pixels, or 0')
         if self.camera_model not in CAMERA_MODELS:
@@ -71,11 +73,11 @@ def describe_image(folder: str, options: Options, name: str
                                 'by the same name')
     if not is_utf8(name):
         raise ValueError('its name is not UTF-8')
-    path = os.path.join(folder, name)
-    image = read_grey(path)
+    data = read_bytes(os.path.join(folder, name))
+    image = decode_grey(data)
     rows, codes = _features(options.features)(image)
     height, width = image.shape
-    return to_colmap(rows), codes, width, height, options.focal or exif_focal_length(path, width, height)
+    return to_colmap(rows), codes, width, height, options.focal or exif_focal_length(data, width, height)
 
 
 def describe_images(database: Database, folder: str, names: Iterable[str], options: Options, crew: Crew,
@@ -122,10 +124,10 @@ def list_pairs(database: Database, names: Iterable[str], options: Options, level
         chosen, total = pair_lists.sequential(count, options.neighbours), sum(
             min(options.neighbours, count - 1 - i) for i in range(count))
     elif options.pairs == 'retrieval':
-        chosen, total = pair_lists.retrieval(count, lambda i: database.load_codes(ids[i]), level_sizes,
-                                             options.neighbours), None
+        chosen, total = pair_lists.distinct(pair_lists.retrieval(
+            count, lambda i: database.load_codes(ids[i]), level_sizes, options.neighbours)), None
     else:
-        return pair_lists.from_file(options.pairs, {**dict.fromkeys(names), **numbers}), None
+        return pair_lists.distinct(pair_lists.from_file(options.pairs, {**dict.fromkeys(names), **numbers})), None
     return ((ids[a], ids[b]) for a, b in chosen), total
 
 
@@ -157,21 +159,19 @@ def match_pairs(database: Database, listed: tuple[Iterable[tuple[int, int]], Opt
                 level_sizes: tuple[int, ...], verify: str, crew: Crew) -> None:
     """Matches, and with magsac verifies, the pairs that the database does not hold.
 
-    :param listed: pairs of image ids, and how many there are if that is known.
+    :param listed: pairs of image ids, each once, and how many there are if that is known.
     """
     images = functools.lru_cache(2 * pair_lists.BLOCK + 2)(
         lambda i: crew.hold(database.load_codes(i), database.load_keypoints(i)[:, :2]))
     pairs, total = listed
     progress = Progress('matching', total)
-    begun: set[tuple[int, int]] = set()
 
     def missing() -> Iterator[tuple[int, int]]:
         for a, b in pairs:
-            if database.has_pair(a, b) or (a, b) in begun or (b, a) in begun:
+            if database.has_pair(a, b):
                 progress.step()
-                continue
-            begun.add((a, b))
-            yield a, b
+            else:
+                yield a, b
 
     def jobs() -> Iterator[tuple[list[tuple[int, int]], dict[int, Any]]]:
         for tile in pair_lists.tiles(missing(), crew.tile_side):
@@ -183,7 +183,6 @@ def match_pairs(database: Database, listed: tuple[Iterable[tuple[int, int]], Opt
             raise results
         for pair, result in zip(tile, results):
             database.add_pair(*pair, *result)
-            begun.discard(pair)
             progress.step()
     progress.close()
 
@@ -208,13 +207,14 @@ def build_database(images: str, database: str, options: Options = Options(), for
     :param workers: threads; None for one a core.
     :param client: a ``distributed.Client`` whose workers describe and match instead. They read the images by the same
         name; the database is written here, and is the same row for row.
-    :return: counts of images, keypoints, pairs, matches, and of images that failed.
+    :return: counts of images, keypoints, pairs, matches, and of images that failed; see Database.counts.
     :raises FileExistsError: if the database is there and force is not set.
     :raises ValueError: for options that are none, and for a folder without images.
     :raises SettingsChanged: if an unfinished database had other options and force is not set.
     :raises BlockingIOError: if another process is writing the database.
     """
     options.check()
+    database = output_file(database)
     if workers is not None and workers < 1:
         raise ValueError(f'workers is {workers}: at least 1 is needed')
     if not os.path.isdir(images):
@@ -238,9 +238,11 @@ def build_database(images: str, database: str, options: Options = Options(), for
                 'version': opencv_iib.__version__}
     if os.path.exists(database) and not force:
         raise FileExistsError(f'{database} is there already: remove it, or pass force (--force)')
+    sizes = _features(options.features).level_sizes()  # raises for a detector that cv2 lacks
     with only_writer(database + '.partial'), Database(database, settings, force) as target:
         failed = describe_images(target, images, names, options, crew, log)
-        sizes = _features(options.features).level_sizes()
+        if failed == len(names):
+            raise ValueError(f'none of the {failed} images below {images} can be described')
         match_pairs(target, list_pairs(target, names, options, sizes), options.ratio, sizes, verify, crew)
         verify_pairs(target, binary, log)
         counts = {**target.counts(), 'failed': failed}

@@ -8,7 +8,7 @@ import os
 import shutil
 from typing import Iterator, Sequence
 
-from opencv_iib._lock import only_writer
+from opencv_iib._files import only_writer
 
 AT_FDCWD, RENAME_EXCHANGE = -100, 2  # of Linux
 

@@ -1,4 +1,4 @@
-"""One writer at a time, also among processes."""
+"""Files that are written: where, and by one process at a time."""
 from __future__ import annotations
 
 import os
@@ -9,6 +9,19 @@ try:
     import fcntl
 except ImportError:  # not on Windows
     fcntl = None  # type: ignore[assignment,unused-ignore]
+
+
+def output_file(path: str) -> str:
+    """Where a file is written: at the end of a link, also if nothing is there yet.
+
+    :raises OSError: for a folder, or within a folder that is missing.
+    """
+    target = os.path.realpath(path)
+    if os.path.isdir(target):
+        raise IsADirectoryError(f'{path or target} is a folder: give the name of a file')
+    if not os.path.isdir(os.path.dirname(target)):
+        raise FileNotFoundError(f'{path}: there is no folder {os.path.dirname(target)}')
+    return target
 
 
 @contextmanager
