@@ -27,17 +27,24 @@ std::vector<Recipe> presetRecipes()
     const Warps none = {};
     const auto wide = [](double share) { return Warps{share, 0.5, 22, 0.7, 1.43, 2.5, 0.1, 1.5, 5}; };
     return {
-            {"S128", 128, paper, none, 12, 0},
-            {"S256", 256, paper, none, 12, 0},
-            {"S512", 512, paper, none, 12, 0},
-            {"ACCURATE", 0, accurate, none, 12, 0},
-            {"COMPACT", 512, still, none, 12, 0},
-            {"TINY", 256, still, none, 12, 0},
-            {"BALANCED", 512, moving, {0.85, 0.4, 20, 0.7, 1.4, 2, 0, 1, 0}, 24, 0},
-            {"VIEWPOINT", 512, boxes, wide(0.9), 24, 0},
-            {"UNIVERSAL", 1024, boxes, wide(0.4), 16, 0.5},
-            {"SMALL", 256, boxes, wide(0.67), 16, 0.6},
+            {"S128", 128, paper, none, 12, 0, false},
+            {"S256", 256, paper, none, 12, 0, false},
+            {"S512", 512, paper, none, 12, 0, false},
+            {"ACCURATE", 0, accurate, none, 12, 0, false},
+            {"COMPACT", 512, still, none, 12, 0, false},
+            {"TINY", 256, still, none, 12, 0, false},
+            {"BALANCED", 512, moving, {0.85, 0.4, 20, 0.7, 1.4, 2, 0, 1, 0}, 24, 0, false},
+            {"VIEWPOINT", 512, boxes, wide(0.9), 24, 0, false},
+            {"UNIVERSAL", 1024, boxes, wide(0.4), 16, 0.5, false},
+            {"SMALL", 256, boxes, wide(0.67), 16, 0.6, false},
     };
+}
+
+Recipe paperRecipe()
+{
+    using cv::iib::IIB;
+    return {"AdaBoost", 512, {IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, 4, 1.f, {1}, IIB::BORDER_CLAMP},
+            Warps(), 12, 0, true};
 }
 
 }  // namespace iib_tools

@@ -38,7 +38,8 @@ cv::Ptr<IIB> train(const Recipe& recipe, const TrainingSet& images, uint64 seed,
     const CandidatePool pool = makePool(recipe.pool);
     const std::vector<DescribedPair> described = describeForTraining(
             images, pool.extractor, recipe.pairsPerScene, recipe.detected, recipe.warps, seed, progress);
-    return selectedExtractor(pool, selectGreedily(pool, described, recipe.bits, seed, progress));
+    const auto select = recipe.adaboost ? selectByAdaBoost : selectGreedily;
+    return selectedExtractor(pool, select(pool, described, recipe.bits, seed, progress));
 }
 
 std::string presetsHeader(const std::vector<NamedExtractor>& presets, const std::string& command,

@@ -17,10 +17,15 @@ struct Recipe
     Warps warps;
     int pairsPerScene;
     double detected;  //!< share of the pairs whose points are detected, see describeForTraining
+    bool adaboost;    //!< choose whole quads by AdaBoost, as in the paper, instead of bits one by one
 };
 
 //! How the built-in presets are made, in the order of IIBDescriptorExtractor::Preset.
 std::vector<Recipe> presetRecipes();
+
+//! The paper's own: AdaBoost over the quads of all four channels.
+Recipe paperRecipe();
+
 //! Trains on all pairs given. Progress counts the pairs described, then the candidates chosen.
 cv::Ptr<cv::iib::IIBDescriptorExtractor> train(
         const Recipe& recipe, const TrainingSet& images, uint64 seed, const Progress& progress);

@@ -19,6 +19,15 @@ them with, and takes those candidates along which the loss falls fastest, never 
 std::vector<int> selectGreedily(const CandidatePool& pool, const std::vector<DescribedPair>& pairs, int bits,
         uint64 seed, const Progress& progress);
 
+/** The paper's selection ("Reduction of the IIB Descriptor Size"): AdaBoost over whole quads of 4 bits. A sample is two
+points, the same one or two different ones of a pair, as many of each; a weak learner says "same" if at most so many bits
+of its quad differ. Quads are kept in the order in which AdaBoost takes them.
+
+@return whole quads, bits / 4 at most, every level a whole number of bytes.
+@throws cv::Exception as selectGreedily, and for a mapping of other quads. */
+std::vector<int> selectByAdaBoost(const CandidatePool& pool, const std::vector<DescribedPair>& pairs,
+        int bits, uint64 seed, const Progress& progress);
+
 /** Makes every level a whole number of bytes, so that no bit is padding: levels are rounded and then keep or
 gain the candidates with the largest benefit, `bits` at most. `benefit` is one number a candidate of the pool; those that
 are not chosen need a positive one. */

@@ -14,8 +14,11 @@ const int FARTHEST = 4;  // frames between the pictures of a pair of a walk
 const char* const ABOUT = "iib_train [OPTION...] FOLDER...\n"
                           "Learns which bits of IIB a short descriptor keeps, from folders of sequences.";
 const char* const KEYS =
-        "{out        | <none> | YAML file for the selection, which IIBDescriptorExtractor::read takes }"
+        "{out        | <none> | file (.yml or .json) for the selection, which IIBDescriptorExtractor::read "
+        "takes }"
         "{like       | COMPACT | preset whose recipe is followed: channels, mapping, warps and points }"
+        "{adaboost   |        | choose whole quads of the paper's default descriptor by AdaBoost, as the "
+        "paper does }"
         "{bits       | 256    | bits of the selection }"
         "{seed       | 1      | seed of all random choices }"
         "{presets    | <none> | train the built-in presets instead and write this C++ header }";
@@ -53,7 +56,7 @@ Recipe recipeOf(const std::string& preset)
 int run(const CommandLine& line)
 {
     const int most = std::numeric_limits<int>::max();
-    Recipe recipe = recipeOf(line.text("like"));
+    Recipe recipe = line.has("adaboost") ? paperRecipe() : recipeOf(line.text("like"));
     recipe.bits = line.whole("bits", 1, most);
     const uint64 seed = uint64(line.whole("seed", 0, most));
     const std::string header = line.text("presets"), out = line.text("out");

@@ -35,7 +35,8 @@ protected:
     static Recipe recipe()
     {
         const int channels = IIB::CHANNEL_GRAD_X + IIB::CHANNEL_GRAD_Y + IIB::CHANNEL_SIGNED_GRAD_X;
-        return {"test", 24, {channels, IIB::MAPPING_HAAR, 3, 1.f, {15}, IIB::BORDER_REFLECT}, Warps(), 3, 0};
+        return {"test", 24, {channels, IIB::MAPPING_HAAR, 3, 1.f, {15}, IIB::BORDER_REFLECT}, Warps(), 3, 0,
+                false};
     }
 
     static void ignore(int, int) {}
@@ -53,6 +54,31 @@ TEST_F(Training, keeps_what_survives_the_change_of_light)
     ASSERT_EQ(3, learned->descriptorSize());
     for (int i = 0; i < quads.rows; i++)
         EXPECT_NE(2, quads(i, 1)) << "the negative reverses the order of the signed gradient";
+}
+
+// The targets are negatives: their signed gradient turns round, the magnitudes stay.
+TEST_F(Training, adaboost_keeps_whole_quads_that_survive)
+{
+    Recipe paper = recipe();
+    paper.adaboost = true;
+    paper.bits = 32;
+    paper.pool.mapping = IIB::MAPPING_MEAN;
+    paper.pool.windows = {1};
+    const cv::Ptr<IIB> learned = train(paper, images, 1, ignore);
+    const cv::Mat_<int> quads = learned->getSelection();
+    ASSERT_EQ(4, learned->descriptorSize());
+    ASSERT_EQ(8, quads.rows);
+    for (int i = 0; i < quads.rows; i++)
+    {
+        EXPECT_EQ(15, quads(i, 4)) << "a whole quad";
+        EXPECT_NE(2, quads(i, 1)) << "the negative reverses the order of the signed gradient";
+    }
+    EXPECT_EQ(0, cvtest::norm(quads, train(paper, images, 1, ignore)->getSelection(), cv::NORM_L1));
+
+    paper.pool.mapping = IIB::MAPPING_HAAR;
+    EXPECT_NE(std::string::npos, messageOf([&] { train(paper, images, 1, ignore); }).find("quads of 4 bits"));
+    paper.pool.mapping = IIB::MAPPING_MEAN;
+    EXPECT_NE("", messageOf([&] { train(paper, {}, 1, ignore); }));
 }
 
 TEST_F(Training, fills_whole_bytes)
