@@ -1,6 +1,6 @@
 # Target iib_contrib: the descriptors of opencv_contrib's xfeatures2d, which no Debian package has, from the source that
 # scripts/helpers/opencv_contrib_source.sh brings, against the OpenCV at hand. Only what cv::Feature2D describes with: no OpenCL,
-# no SURF (not free), no tables of BoostDesc and VGG, which OpenCV's own build would download.
+# no tables of BoostDesc and VGG, which OpenCV's own build would download; SURF, which is not free, for who asks for it.
 set(xfeatures2d "${IIB_CONTRIB_SOURCE}/opencv_contrib/modules/xfeatures2d")
 if(NOT EXISTS "${xfeatures2d}/src/beblid.cpp")
   message(FATAL_ERROR "IIB_CONTRIB_SOURCE is to be the folder that scripts/helpers/opencv_contrib_source.sh prints, "
@@ -17,6 +17,10 @@ add_library(iib_contrib STATIC)
 foreach(name beblid brief daisy freak latch)
   target_sources(iib_contrib PRIVATE "${xfeatures2d}/src/${name}.cpp")
 endforeach()
+if(IIB_CONTRIB_NONFREE)
+  target_sources(iib_contrib PRIVATE "${xfeatures2d}/src/surf.cpp")
+  target_compile_definitions(iib_contrib PRIVATE OPENCV_ENABLE_NONFREE INTERFACE IIB_WITH_SURF)
+endif()
 target_compile_definitions(iib_contrib PRIVATE __OPENCV_BUILD=1 INTERFACE IIB_WITH_CONTRIB)
 target_compile_options(iib_contrib PRIVATE -w)  # not ours to mend
 # The installed headers come first: of the source tree's core only the private ones are wanted.

@@ -1,9 +1,9 @@
 #!/bin/sh
 # Reproduces the paper's experiments on folders of image sequences and writes CSV files and one page.
-#   scripts/evaluate.sh [--document] [--contrib] [--out FOLDER] [options of iib_evaluation] DATA...
+#   scripts/evaluate.sh [--document] [--contrib [--nonfree]] [--out FOLDER] [options of iib_evaluation] DATA...
 # Results go to results/ unless --out says otherwise; an interrupted run goes on where it stopped. --document puts their
 # summaries and the page into doc/results, from where tables of the README are made anew; --contrib adds the descriptors of
-# opencv_contrib, whose source pip brings (BEBLID, TEBLID, LATCH and more).
+# opencv_contrib, whose source pip brings (BEBLID, TEBLID, LATCH and more), --nonfree SURF, whose licence is not free.
 . "$(dirname "$0")/helpers/lib.sh"
 
 document=""
@@ -14,6 +14,12 @@ fi
 contrib=""
 if [ "${1:-}" = --contrib ]; then
     contrib=yes
+    shift
+fi
+nonfree=OFF
+if [ "${1:-}" = --nonfree ]; then
+    [ -n "$contrib" ] || fail "--nonfree needs --contrib before it"
+    nonfree=ON
     shift
 fi
 check_options "$root/tools/evaluation/main.cpp" "$@"
@@ -29,7 +35,7 @@ done
 # shellcheck disable=SC2086
 need $build_packages python3-jinja2
 [ -z "$contrib" ] || contrib=$(contrib_argument)
-build_tools ${contrib:+"$contrib"} iib_evaluation
+build_tools ${contrib:+"$contrib" -DIIB_CONTRIB_NONFREE=$nonfree} iib_evaluation
 
 for image in day.png night.png street_noon.jpg street_winter.jpg facade_noon.jpg facade_night.jpg facade_noon.jpg facade_turned.jpg; do
     set -- "$@" --compare "$root/tools/synthetic/$image"

@@ -166,15 +166,15 @@ contrib_argument() {
     echo "-DIIB_CONTRIB_SOURCE=$contrib"
 }
 
-# build_tools [-DNAME=VALUE] TARGET...: programs of tools/, below $build/tools.
+# build_tools [-DNAME=VALUE]... TARGET...: programs of tools/, below $build/tools.
 build_tools() {
     new_folder="-DIIB_BUILD_TESTS=OFF"
-    case "$1" in
-    -D*)
-        configure -DIIB_BUILD_TOOLS=ON "$1"
+    definitions=""
+    while [ "${1#-D}" != "$1" ]; do
+        definitions="$definitions $1"
         shift
-        ;;
-    *) configure -DIIB_BUILD_TOOLS=ON ;;
-    esac
+    done
+    # shellcheck disable=SC2086
+    configure -DIIB_BUILD_TOOLS=ON $definitions
     build_targets "$@"
 }

@@ -3,6 +3,10 @@
 #include "keypoints.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
 
 #include "metrics.hpp"
 #include "opencv2/features2d.hpp"
@@ -89,6 +93,39 @@ void orientByCentroid(const cv::Mat& image, float radius, std::vector<cv::KeyPoi
                 my += dy * image.at<uchar>(at);
             }
         keypoint.angle = cv::fastAtan2(float(my), float(mx));
+    }
+}
+
+void readKeypoints(const std::string& file, std::vector<cv::KeyPoint>& keypoints, cv::Mat& descriptors)
+{
+    std::ifstream in(file);
+    if (!in)
+        CV_Error(cv::Error::StsObjectNotFound, file + ": cannot be read");
+    keypoints.clear();
+    descriptors.release();
+    std::string line, field;
+    for (int number = 1; std::getline(in, line); number++)
+    {
+        std::vector<float> v;
+        bool bad = false;
+        std::istringstream fields(line.substr(0, line.find_last_not_of('\r') + 1));
+        while (std::getline(fields, field, ','))
+        {
+            char* end = nullptr;
+            v.push_back(std::strtof(field.c_str(), &end));
+            bad = bad || end == field.c_str() || *end != '\0' || !std::isfinite(v.back());
+        }
+        if (number == 1 && line.compare(0, 3, "x,y") == 0)
+            continue;
+        if (bad || v.size() < 5 || v[2] <= 0 || (descriptors.rows && int(v.size()) != descriptors.cols + 5) ||
+                (v.size() > 5 && int(keypoints.size()) != descriptors.rows))
+            CV_Error(cv::Error::StsParseError,
+                    file + ", line " + std::to_string(number) +
+                            ": not x,y,size,angle,response with a size above 0, and "
+                            "as many numbers behind it as in other lines");
+        keypoints.push_back(cv::KeyPoint(v[0], v[1], v[2], v[3], v[4]));
+        if (v.size() > 5)
+            descriptors.push_back(cv::Mat(v, true).reshape(1, 1).colRange(5, int(v.size())));
     }
 }
 

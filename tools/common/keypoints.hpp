@@ -37,4 +37,9 @@ SeedPoints fastSeeds(const cv::Mat& reference, const cv::Mat& target, const cv::
 //! Sets every angle to the direction from the centre to the intensity centroid of a disc, degrees clockwise.
 void orientByCentroid(const cv::Mat& image, float radius, std::vector<cv::KeyPoint>& keypoints);
 
+/** Reads lines `x,y,size,angle,response` (pixels; degrees or -1) below a line of names, each with the numbers of the point's
+own descriptor behind them, or none of them: one row of CV_32F each, else `descriptors` stays empty.
+@throws cv::Exception with file and line for anything else. */
+void readKeypoints(const std::string& file, std::vector<cv::KeyPoint>& keypoints, cv::Mat& descriptors);
+
 }  // namespace iib_tools

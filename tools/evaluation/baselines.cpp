@@ -5,6 +5,9 @@
 #if defined(HAVE_OPENCV_XFEATURES2D) || defined(IIB_WITH_CONTRIB)
 #define IIB_HAVE_XFEATURES2D
 #include "opencv2/xfeatures2d.hpp"
+#ifdef IIB_WITH_SURF
+#include "opencv2/xfeatures2d/nonfree.hpp"
+#endif
 #endif
 
 namespace iib_tools {
@@ -59,6 +62,11 @@ void addXfeatures2d(std::vector<Configuration>& baselines)
 #if defined(IIB_WITH_CONTRIB) || CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407
     addBeblid<TEBLID>("TEBLID", 256, TEBLID::SIZE_256_BITS, baselines);
     addBeblid<TEBLID>("TEBLID", 512, TEBLID::SIZE_512_BITS, baselines);
+#endif
+#ifdef IIB_WITH_SURF
+    // The window is 20 times 1.2 / 9 of the size.
+    baselines.push_back(baseline(
+            "SURF", side * 9 / 24, []() -> Feature { return SURF::create(100, 4, 3, false, true); }));
 #endif
     baselines.push_back(baseline("DAISY", side, []() -> Feature { return DAISY::create(SEED_RADIUS); }));
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 
 #include "common/metrics.hpp"
 #include "detectors.hpp"
@@ -26,17 +28,27 @@ std::string stem(const std::string& file)
     return name.substr(0, name.rfind('.'));
 }
 
-//! A row for each mutual match of these descriptors at the detector's points.
-void listMatches(const Options& options, const ImagePair& pair, const Detector& detector,
-        const std::string& descriptor, ResultTable& table)
+//! Points of a detector, and what describes them.
+struct Method
+{
+    std::string detector, descriptor;
+};
+
+//! Those of the paper's figures, and the recommended chain.
+const Method METHODS[] = {{"Hessian", "IIB UNIVERSAL"}, {"AKAZE", "IIB"}, {"AKAZE", "AKAZE"}, {"ORB", "ORB"},
+        {"ORB", "BEBLID-512"}, {"BRISK", "BRISK"}, {"SIFT", "SIFT"}};
+
+//! A row for each mutual match of these methods at the detector's points.
+void listMatches(const Options& options, const ImagePair& pair, const Detector& detector, ResultTable& table)
 {
     const LoadedPair loaded = loadPair(pair);
-    const std::vector<Described> reference = describeAll(detector, loaded.reference),
-                                 target = describeAll(detector, loaded.target);
+    const std::vector<Described> reference = describeAll(detector, loaded.reference, pair.referenceFile),
+                                 target = describeAll(detector, loaded.target, pair.targetFile);
     for (size_t i = 0; i < reference.size(); i++)
     {
         const Described &r = reference[i], &t = target[i];
-        if (r.name != descriptor)
+        if (std::none_of(std::begin(METHODS), std::end(METHODS),
+                    [&](const Method& m) { return m.detector == detector.name && m.descriptor == r.name; }))
             continue;
         const std::vector<cv::DMatch> matches = mutualMatches(r.descriptors, t.descriptors, r.norm);
         const std::vector<bool> correct =
@@ -65,7 +77,8 @@ int comparison(const Options& options, const std::vector<ImagePair>&)
             {"reference", "target", "detector", "descriptor", "x", "y", "target_x", "target_y", "correct"},
             8);
     Options classic = options;
-    classic.detectors = {"Hessian", "ORB", "SIFT"};
+    classic.detectors = {"Hessian", "AKAZE", "ORB", "BRISK", "SIFT"};
+    classic.keypoints.clear();
     std::vector<Task> tasks;
     for (size_t i = 0; i + 1 < options.compare.size(); i += 2)
     {
@@ -80,10 +93,8 @@ int comparison(const Options& options, const std::vector<ImagePair>&)
             writePicture(
                     options.out + "/pictures/" + stem(image) + ".jpg", readImage(image, cv::IMREAD_COLOR));
         for (const Detector& detector : detectors(classic))
-            tasks.push_back({stem(target) + " " + detector.name, [&, pair, detector] {
-                                 listMatches(options, pair, detector,
-                                         detector.name == "Hessian" ? "IIB UNIVERSAL" : detector.name, table);
-                             }});
+            tasks.push_back({stem(target) + " " + detector.name,
+                    [&, pair, detector] { listMatches(options, pair, detector, table); }});
     }
     const int skipped = runTasks("comparison", tasks);
     table.finish();

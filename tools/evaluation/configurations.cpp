@@ -73,7 +73,7 @@ std::vector<Configuration> iibConfigurations()
             iib("IIB overlap", 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, true), iib("IIB g2", 2),
             iib("IIB g3", 3), iib("IIB g5", 5), withExtras("IIB +depth", {"depth"}),
             withExtras("IIB +labels", {"labels"}), withExtras("IIB +depth+labels", {"depth", "labels"}),
-            onPointsOf("AKAZE"), onPointsOf("KAZE")};
+            withExtras("IIB +texture", {TEXTURE}), onPointsOf("AKAZE"), onPointsOf("KAZE")};
     for (const Configuration& c : presetConfigurations())
         all.push_back(c);
     return all;

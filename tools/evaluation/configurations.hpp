@@ -11,6 +11,8 @@ namespace iib_tools {
 
 const float SEED_RADIUS = 32;  //!< pixels; half the side of the ROS of fixed points
 
+const char TEXTURE[] = "texture";  //!< a map that is computed from the image: local binary patterns
+
 //! A descriptor with its parameters, under the name that result files carry.
 struct Configuration
 {

@@ -14,7 +14,7 @@ DescribedImages::Result DescribedImages::get(
         if (found != known_.end())
             return found->second;
     }
-    const Result result = std::make_shared<std::vector<Described>>(describeAll(detector, image));
+    const Result result = std::make_shared<std::vector<Described>>(describeAll(detector, image, file));
     const std::lock_guard<std::mutex> lock(mutex_);
     if (known_.emplace(key, result).second)
         order_.push_back(key);

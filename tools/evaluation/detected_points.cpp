@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <cmath>
+
 #include "described_images.hpp"
 #include "experiments.hpp"
 #include "results.hpp"
@@ -7,6 +9,38 @@
 
 namespace iib_tools {
 namespace {
+
+const int THRESHOLDS = 32;
+
+//! A distance as of descriptors that have nothing to do with each other: half of the bits differ, or a right angle.
+double unrelated(const Described& d)
+{
+    if (d.norm == cv::NORM_HAMMING)
+        return 4. * d.bytes;
+    double sum = 0;
+    for (int i = 0; i < d.descriptors.rows; i++)
+        sum += std::sqrt(2.) * cv::norm(d.descriptors.row(i)) / d.descriptors.rows;
+    return sum;
+}
+
+/** Right and all matches no farther apart than 1/32, 2/32 ... of the distance of unrelated descriptors, as "right:all",
+separated by blanks (paper, "Experiments Combined with Feature Detectors"). */
+std::string curve(const std::vector<cv::DMatch>& matches, const std::vector<bool>& correct, double largest)
+{
+    std::string out;
+    for (int step = 1; step <= THRESHOLDS; step++)
+    {
+        int right = 0, all = 0;
+        for (size_t i = 0; i < matches.size(); i++)
+            if (matches[i].distance <= largest * step / THRESHOLDS)
+            {
+                right += correct[i];
+                all++;
+            }
+        out += cv::format("%s%d:%d", out.empty() ? "" : " ", right, all);
+    }
+    return out;
+}
 
 void evaluatePair(const Options& options, const ImagePair& pair, const std::vector<Detector>& detectors,
         DescribedImages& described, ResultTable& table)
@@ -30,9 +64,11 @@ void evaluatePair(const Options& options, const ImagePair& pair, const std::vect
                 correct.push_back(correspond(r.keypoints[m.queryIdx], t.keypoints[m.trainIdx],
                         loaded.homography, options.tolerance));
             const Counts n = countsOf(correct, correspondences);
-            table.append(withCounts({pair.set, pair.sequence, pair.target, detector.name, r.name, pair.kind,
+            Fields row = withCounts({pair.set, pair.sequence, pair.target, detector.name, r.name, pair.kind,
                                             std::to_string(r.bytes)},
-                    n));
+                    n);
+            row.push_back(curve(matches, correct, unrelated(r)));
+            table.append(row);
         }
     }
 }
@@ -54,7 +90,7 @@ int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs)
     const std::vector<Detector> all = detectors(options);
     ResultTable table(options.out + "/detected_points.csv",
             {"set", "sequence", "target", "detector", "descriptor", "kind", "bytes", "correct", "putative",
-                    "correspondences", "precision", "recall"},
+                    "correspondences", "precision", "recall", "curve"},
             5);
     DescribedImages described;
     std::vector<Task> tasks;
@@ -62,7 +98,8 @@ int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs)
     {
         std::vector<Detector> missing;
         for (const Detector& d : all)
-            if (pair.kind == "light" && !isComplete(table, pair, d))
+            if (pair.kind == "light" && d.knows(pair.referenceFile) && d.knows(pair.targetFile) &&
+                    !isComplete(table, pair, d))
                 missing.push_back(d);
         if (!missing.empty())
             tasks.push_back({pair.name(),

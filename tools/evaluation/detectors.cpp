@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "common/keypoints.hpp"
+#include "opencv2/core/utils/filesystem.hpp"
 #include "opencv2/iib.hpp"
 
 namespace iib_tools {
@@ -30,7 +32,7 @@ void selectStrongest(std::vector<cv::KeyPoint>& keypoints, int count)
 Detector classic(const std::string& name, const std::string& descriptorName,
         const std::function<Feature()>& detector, const std::function<Feature()>& descriptor, int count)
 {
-    const auto detect = [=](const cv::Mat& image) {
+    const auto detect = [=](const cv::Mat& image, const std::string&) {
         Detection d;
         detector()->detect(image, d.keypoints);
         selectStrongest(d.keypoints, count);
@@ -39,7 +41,7 @@ Detector classic(const std::string& name, const std::string& descriptorName,
         d.norm = own->defaultNorm();
         return d;
     };
-    return {name, descriptorName, cv::iib::IIB::scaleFactorFor(name), detect, {}};
+    return {name, descriptorName, cv::iib::IIB::scaleFactorFor(name), detect, {}, ""};
 }
 
 //! Found on the locally normalized image; the plain image is described.
@@ -55,12 +57,42 @@ Detector normalized(const std::string& name, const std::string& descriptorName,
 //! The library's own, which describes nothing.
 Detector hessian(const std::string& name, int count)
 {
-    const auto detect = [=](const cv::Mat& image) {
+    const auto detect = [=](const cv::Mat& image, const std::string&) {
         Detection d = {};
         cv::iib::HessianDetector::create(count)->detect(image, d.keypoints);
         return d;
     };
-    return {name, "", cv::iib::IIB::scaleFactorFor("Hessian"), detect, {}};
+    return {name, "", cv::iib::IIB::scaleFactorFor("Hessian"), detect, {}, ""};
+}
+
+//! `<set>/<sequence>/<image>.csv` below the folder, for the image of that set and sequence.
+std::string keypointFile(const std::string& folder, const std::string& imageFile)
+{
+    size_t start = imageFile.size();
+    for (int i = 0; i < 3 && start > 0 && start != std::string::npos; i++)
+        start = imageFile.find_last_of('/', start - 1);
+    const std::string name = start == std::string::npos ? "/" + imageFile : imageFile.substr(start);
+    return folder + name.substr(0, name.find_last_of('.')) + ".csv";
+}
+
+//! A detector whose keypoints, and descriptors if there are some, are in files.
+Detector fromFiles(const std::string& folder, int count)
+{
+    const auto detect = [=](const cv::Mat&, const std::string& imageFile) {
+        Detection d = {{}, cv::Mat(), cv::NORM_L2};
+        cv::Mat rows;
+        readKeypoints(keypointFile(folder, imageFile), d.keypoints, rows);
+        for (size_t i = 0; i < d.keypoints.size(); i++)
+            d.keypoints[i].class_id = int(i);
+        selectStrongest(d.keypoints, count);
+        for (const cv::KeyPoint& k : d.keypoints)
+            if (!rows.empty())
+                d.descriptors.push_back(rows.row(k.class_id));
+        return d;
+    };
+    const std::string trimmed = folder.substr(0, folder.find_last_not_of('/') + 1),
+                      name = trimmed.substr(trimmed.find_last_of('/') + 1);
+    return {name, name, 1.f, detect, {}, trimmed};
 }
 
 //! What people describe ORB's points with instead; the patches that have a fixed size are of about ORB's.
@@ -97,6 +129,9 @@ std::vector<Detector> classicDetectors(int count)
         if (all.back().name == "ORB")
             all.back().others = othersOnORB();
     }
+    for (const Configuration& c : baselineConfigurations())
+        if (c.name == "SURF")
+            all.push_back(classic("SURF", "SURF", c.create, c.create, count));
     for (const auto& k : known)
         all.push_back(normalized(k.name, k.descriptor, k.detector, k.own, count));
     all.push_back(hessian("Hessian", count));
@@ -130,7 +165,16 @@ std::vector<Detector> detectors(const Options& options)
             CV_Error(cv::Error::StsBadArg, "unknown detector " + name + "; there are " + known);
         chosen.push_back(*found);
     }
-    return options.detectors.empty() ? all : chosen;
+    if (options.detectors.empty())
+        chosen = all;
+    for (const std::string& folder : options.keypoints)
+        chosen.push_back(fromFiles(folder, options.points));
+    return chosen;
+}
+
+bool Detector::knows(const std::string& imageFile) const
+{
+    return folder.empty() || cv::utils::fs::exists(keypointFile(folder, imageFile));
 }
 
 std::vector<std::string> describedNames(const Detector& detector)
@@ -141,11 +185,11 @@ std::vector<std::string> describedNames(const Detector& detector)
     return names;
 }
 
-std::vector<Described> describeAll(const Detector& detector, const cv::Mat& image)
+std::vector<Described> describeAll(const Detector& detector, const cv::Mat& image, const std::string& file)
 {
-    const Detection detection = detector.detect(image);
+    const Detection detection = detector.detect(image, file);
     std::vector<Described> all;
-    if (!detector.descriptor.empty())
+    if (!detector.descriptor.empty() && (detector.folder.empty() || !detection.descriptors.empty()))
         all.push_back({detector.descriptor, detection.keypoints, detection.descriptors, detection.norm,
                 int(detection.descriptors.cols * detection.descriptors.elemSize())});
     for (const Configuration& c : describersOf(detector))

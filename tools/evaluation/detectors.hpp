@@ -24,13 +24,18 @@ struct Detector
     std::string name;
     std::string descriptor;  //!< name of its own descriptor, empty if there is none to compare with
     float scaleFactor;       //!< of IIB on its keypoints
-    std::function<Detection(const cv::Mat&)> detect;  //!< from an 8-bit grey image
-    std::vector<Configuration> others;                //!< of other makers, described at the same points
+    //! From an 8-bit grey image and the name of its file.
+    std::function<Detection(const cv::Mat&, const std::string&)> detect;
+    std::vector<Configuration> others;  //!< of other makers, described at the same points
+    std::string folder;                 //!< of lists of keypoints, one an image; empty: it looks at the image
+
+    //! Whether it has keypoints of the image of this file.
+    bool knows(const std::string& imageFile) const;
 };
 
 /** FAST, AGAST (both with ORB's descriptor), ORB, BRISK, AKAZE, KAZE, SIFT, the same seven on the locally normalized
-image ("ORB normalized"), HessianDetector; of these the ones that Options::detectors names. Each gives at most
-Options::points keypoints, the strongest.
+image ("ORB normalized"), HessianDetector, SURF if it was built; of these the ones that Options::detectors names; and those
+of Options::keypoints, by their folders' names. Each gives at most Options::points keypoints, the strongest.
 @throws cv::Exception for an unknown name. */
 std::vector<Detector> detectors(const Options& options);
 
@@ -45,7 +50,7 @@ struct Described
 
 /** What describes the detector's points of an image: its own descriptors if it has some, those of Detector::others, IIB's presets and last IIB's default: in
 the same order for every image of a detector. */
-std::vector<Described> describeAll(const Detector& detector, const cv::Mat& image);
+std::vector<Described> describeAll(const Detector& detector, const cv::Mat& image, const std::string& file);
 
 //! Names of what describeAll gives for every image, without the detector's own.
 std::vector<std::string> describedNames(const Detector& detector);

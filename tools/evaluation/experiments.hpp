@@ -17,6 +17,7 @@ struct Options
     std::vector<std::string> experiments;  //!< names of experiments to run; empty: all
     std::vector<std::string> saved;        //!< files of saved IIB extractors to compare
     std::vector<std::string> detectors;    //!< of OpenCV's; empty: all
+    std::vector<std::string> keypoints;    //!< folders of other detectors' keypoints
     std::vector<std::string> compare;      //!< pairs of images to list the matches of several descriptors of
 };
 
@@ -27,6 +28,8 @@ int fixedPoints(const Options& options, const std::vector<ImagePair>& pairs);
 int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs);
 //! Poses of the views below the roots (common/views.hpp), estimated from matches.
 int wholeTasks(const Options& options, const std::vector<ImagePair>& pairs);
+//! HierarchicalMatcher's modes and the paper's thresholds (paper, "Fast Hierarchical vs. Brute-force Matching").
+int matching(const Options& options, const std::vector<ImagePair>& pairs);
 int robustness(const Options& options, const std::vector<ImagePair>& pairs);
 //! Matches of IIB and others on the pairs of Options::compare at detected points. Beside the second image, whose name begins
 //! with N, there may be its homography, H_N; else the camera stood still.

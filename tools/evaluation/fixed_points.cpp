@@ -13,7 +13,8 @@ namespace {
 bool hasExtras(const Configuration& configuration, const ImagePair& pair)
 {
     for (const std::string& wanted : configuration.extraNames)
-        if (std::find(pair.extraNames.begin(), pair.extraNames.end(), wanted) == pair.extraNames.end())
+        if (wanted != TEXTURE &&
+                std::find(pair.extraNames.begin(), pair.extraNames.end(), wanted) == pair.extraNames.end())
             return false;
     return true;
 }

@@ -13,15 +13,18 @@ const char ABOUT[] = "The paper's experiments, and more, on image sequences: iib
 
 const char KEYS[] =
         "{out         |<none>|folder of the results; a run that was interrupted goes on there}"
-        "{only        |<none>|fixed_points, detected_points, whole_tasks, robustness or comparison; may be "
-        "repeated}"
+        "{only        |<none>|fixed_points, detected_points, whole_tasks, matching, robustness or "
+        "comparison; may "
+        "be repeated}"
         "{compare     |<none>|image; given twice for each pair of which the matches of IIB and others are "
         "listed}"
         "{points      |1000  |keypoints an image}"
         "{tolerance   |3     |of a correct match, in pixels}"
         "{descriptor  |<none>|an extractor saved by IIBDescriptorExtractor::save, to compare; may be "
         "repeated}"
-        "{detectors   |<none>|one of OpenCV's for detected points, instead of all; may be repeated}";
+        "{detectors   |<none>|one of OpenCV's for detected points, instead of all; may be repeated}"
+        "{keypoints   |<none>|folder with the keypoints of another detector, of the folder's name; may be "
+        "repeated}";
 
 int run(const CommandLine& line)
 {
@@ -35,6 +38,7 @@ int run(const CommandLine& line)
     options.tolerance = line.number("tolerance", 0, 1e3);
     options.saved = line.all("descriptor");
     options.detectors = line.all("detectors");
+    options.keypoints = line.all("keypoints");
     options.compare = line.all("compare");
     if (options.compare.size() % 2 != 0)
         CV_Error(cv::Error::StsBadArg, "--compare is given twice for each pair of images");

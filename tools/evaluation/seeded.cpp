@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "opencv2/iib.hpp"
+#include "opencv2/imgproc.hpp"
 
 namespace iib_tools {
 namespace {
@@ -26,13 +27,27 @@ std::vector<cv::KeyPoint> detectSeeds(const std::string& name, const cv::Mat& im
     return keypoints;
 }
 
-//! Describes an image's points, of which it leaves those that the descriptor keeps.
+/** Local binary patterns (Ojala, Pietikainen and Maenpaa 2002, radius 1), each by the number of its bits, so that means
+of them say something: how many of the eight neighbours are no darker than the pixel. */
+cv::Mat localBinaryPatterns(const cv::Mat& image)
+{
+    cv::Mat around, patterns = cv::Mat::zeros(image.size(), CV_8U);
+    cv::copyMakeBorder(image, around, 1, 1, 1, 1, cv::BORDER_REFLECT_101);
+    for (int y = 0; y < 3; y++)
+        for (int x = 0; x < 3; x++)
+            if (x != 1 || y != 1)
+                patterns += (around(cv::Rect(x, y, image.cols, image.rows)) >= image) / 255;
+    return patterns;
+}
+
+}  // namespace
+
 cv::Mat describe(const Configuration& configuration, const cv::Mat& image,
         const std::map<std::string, cv::Mat>& maps, std::vector<cv::KeyPoint>& points)
 {
     std::vector<cv::Mat> extras;
     for (const std::string& name : configuration.extraNames)
-        extras.push_back(maps.at(name));
+        extras.push_back(name == TEXTURE ? localBinaryPatterns(image) : maps.at(name));
     cv::Mat descriptors;
     const cv::Ptr<cv::Feature2D> feature = configuration.create();
     if (extras.empty())
@@ -41,8 +56,6 @@ cv::Mat describe(const Configuration& configuration, const cv::Mat& image,
         feature.dynamicCast<cv::iib::IIB>()->compute(image, extras, points, descriptors);
     return descriptors;
 }
-
-}  // namespace
 
 SeedPoints SeedSource::seeds(
         const Configuration& configuration, cv::Size targetSize, const cv::Matx33d& homography)

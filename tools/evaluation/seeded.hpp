@@ -26,6 +26,10 @@ private:
     std::map<std::string, std::vector<cv::KeyPoint>> points_;  // by detector
 };
 
+//! Describes an image's points, of which it leaves those that the descriptor keeps; maps are those of extraNames.
+cv::Mat describe(const Configuration& configuration, const cv::Mat& image,
+        const std::map<std::string, cv::Mat>& maps, std::vector<cv::KeyPoint>& points);
+
 /** What the mutual matches of a configuration's descriptors make of the seeds: every seed is a correspondence, whether the
 descriptor kept it or not. */
 Counts matchSeeds(

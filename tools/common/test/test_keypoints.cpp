@@ -2,7 +2,7 @@
 
 #include "../keypoints.hpp"
 #include "opencv2/imgproc.hpp"
-#include "opencv2/ts.hpp"
+#include "iib_geometry/test/test_folder.hpp"
 
 namespace {
 using namespace iib_tools;
@@ -65,6 +65,34 @@ TEST(Keypoints, centroid_angle_turns_with_the_image)
     cv::rotate(image, turned, cv::ROTATE_90_CLOCKWISE);
     orientByCentroid(turned, 32, centre);
     EXPECT_NEAR(90, centre[0].angle, 0.5);
+}
+
+TEST(Keypoints, read_from_a_file)
+{
+    TestFolder folder;
+    std::vector<cv::KeyPoint> keypoints;
+    cv::Mat descriptors;
+    folder.write("k.csv", "x,y,size,angle,response\n1.5,2,7,90,0.5\r\n3,4,8,-1,0\n");
+    readKeypoints(folder.path("k.csv"), keypoints, descriptors);
+    ASSERT_EQ(2u, keypoints.size());
+    EXPECT_EQ(1.5f, keypoints[0].pt.x);
+    EXPECT_EQ(7, keypoints[0].size);
+    EXPECT_EQ(0.5f, keypoints[0].response);
+    EXPECT_EQ(-1, keypoints[1].angle);
+    EXPECT_TRUE(descriptors.empty());
+    folder.write("k.csv", "1,2,3,-1,0,.5,.25\n1,2,3,-1,0,-1,2\n");
+    readKeypoints(folder.path("k.csv"), keypoints, descriptors);
+    EXPECT_EQ(0, cvtest::norm(descriptors, cv::Mat(cv::Matx22f(.5f, .25f, -1, 2)), cv::NORM_INF));
+    for (const char* line :
+            {"1", "1,2,0,-1,0,1", "1,2,nan,0,0,1", "a,b,c", "1,2,3,-1,0", "1,2,3,-1,0,1,2", "1;2;3"})
+    {
+        folder.write("k.csv", std::string("1,2,3,-1,0,5\n") + line + "\n");
+        EXPECT_NE(std::string::npos, messageOf([&] {
+            readKeypoints(folder.path("k.csv"), keypoints, descriptors);
+        }).find("line 2"))
+                << line;
+    }
+    EXPECT_NE("", messageOf([&] { readKeypoints(folder.path("missing"), keypoints, descriptors); }));
 }
 
 }  // namespace

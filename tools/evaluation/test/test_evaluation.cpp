@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <sstream>
 
 #include "../detectors.hpp"
@@ -109,9 +110,10 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
     EXPECT_GT(recallOf("v_shift", "IIB"), 0.9);
     EXPECT_GT(recallOf("still", "IIB"), recallOf("still", "IIB g2"));
     EXPECT_GT(recallOf("still", "IIB +depth"), 0.9);
+    EXPECT_GT(recallOf("still", "IIB +texture"), 0.9);
 
     const std::vector<std::string> tables = {
-            "fixed_points", "detected_points", "whole_tasks", "robustness", "comparison"};
+            "fixed_points", "detected_points", "whole_tasks", "matching", "robustness", "comparison"};
     std::vector<std::string> first;
     for (const std::string& name : tables)
         first.push_back(contents(options.out + "/" + name + ".csv"));
@@ -181,6 +183,60 @@ TEST_F(EvaluationTest, results_without_a_descriptor_are_completed)
     EXPECT_EQ(whole, contents(file));
 }
 
+TEST_F(EvaluationTest, thresholds_cost_less_and_lose_matches)
+{
+    options.experiments = {"matching"};
+    evaluate(options);
+    std::map<std::string, Fields> rows;
+    for (const Fields& row : readRows(options.out + "/matching.csv",
+                 {"set", "sequence", "target", "matcher", "kind", "correct", "putative", "correspondences",
+                         "precision", "recall", "cost", "milliseconds"}))
+        if (row[1] == "still")
+            rows[row[3]] = row;
+    ASSERT_EQ(10u, rows.size());
+    EXPECT_EQ(rows["BFMatcher"][5], rows["EXACT"][5]);
+    for (const char* column : {"H-t-0.20", "H-t-0.35"})
+    {
+        EXPECT_LT(std::atof(rows[column][10].c_str()), std::atof(rows["H-t-0.50"][10].c_str())) << column;
+        EXPECT_LE(std::atoi(rows[column][5].c_str()), std::atoi(rows["H-t-0.50"][5].c_str())) << column;
+    }
+    EXPECT_LE(std::atof(rows["H-t-0.50"][10].c_str()), 1);
+    for (const auto& row : rows)
+        EXPECT_GT(std::atof(row.second[11].c_str()), 0) << row.first;
+}
+
+TEST_F(EvaluationTest, keypoints_of_files_are_described)
+{
+    folder.makeFolder("network/set/still");
+    std::string own, plain;
+    for (int i = 0; i < 40; i++)
+    {
+        const cv::String point = cv::format("%d,%d,64,-1,%d", 40 + i % 8 * 30, 40 + i / 8 * 30, i);
+        plain += point + "\n";
+        own += point + cv::format(",%d,%d\n", i, i * i);
+    }
+    folder.write("network/set/still/1.csv", "x,y,size,angle,response\n" + own);
+    folder.write("network/set/still/2.csv", "x,y,size,angle,response\n" + own);
+    options.experiments = {"detected_points"};
+    options.detectors = {"FAST"};
+    options.keypoints = {folder.path("network/")};
+    EXPECT_EQ(0, evaluate(options));
+    const std::string file = options.out + "/detected_points.csv";
+    EXPECT_EQ(40, valueAfter(contents(file), "set,still,2,network,network,light,8,"));
+    EXPECT_GT(valueAfter(contents(file), "set,still,2,network,IIB,light,170,"), 30);
+    // Of equal descriptors all are right at the least threshold.
+    EXPECT_NE(std::string::npos, contents(file).find("network,network,light,8,40,40,40,1,1,40:40 40:40"));
+    EXPECT_EQ(std::string::npos, contents(file).find("v_shift,2,network"));
+
+    folder.write("network/set/still/1.csv", plain);
+    folder.write("network/set/still/2.csv", plain);
+    options.out = folder.path("plain");
+    EXPECT_EQ(0, evaluate(options));
+    const std::string without = contents(options.out + "/detected_points.csv");
+    EXPECT_EQ(std::string::npos, without.find("network,network"));
+    EXPECT_NE(std::string::npos, without.find("network,IIB,light,170,"));
+}
+
 TEST_F(EvaluationTest, mistakes_are_told)
 {
     options.experiments = {"unknown_points"};
@@ -213,12 +269,12 @@ TEST(Detectors, presets_are_described_with_their_own_scale)
     options.points = 50;
     options.detectors = {"ORB"};
     const Detector detector = detectors(options).at(0);
-    std::vector<cv::KeyPoint> keypoints = detector.detect(image).keypoints;
+    std::vector<cv::KeyPoint> keypoints = detector.detect(image, "").keypoints;
     cv::iib::IIB::createPreset(cv::iib::IIB::PRESET_UNIVERSAL, detector.scaleFactor)
             ->cv::Feature2D::compute(image, keypoints, expected);
     ASSERT_GT(expected.rows, 20);
     cv::Mat found;
-    for (const Described& d : describeAll(detector, image))
+    for (const Described& d : describeAll(detector, image, ""))
         if (d.name == "IIB UNIVERSAL")
             found = d.descriptors;
     ASSERT_EQ(expected.size(), found.size());

@@ -109,7 +109,7 @@ TEST(DescribedImages, the_last_ones_are_kept)
     Detector detector;
     detector.name = "counted";
     detector.scaleFactor = 1;
-    detector.detect = [&](const cv::Mat&) {
+    detector.detect = [&](const cv::Mat&, const std::string&) {
         detections++;
         return Detection{{cv::KeyPoint(50, 50, 20)}, cv::Mat(), 0};
     };
