@@ -6,7 +6,7 @@
 
 #include "images.hpp"
 #include "detector/hessian_oracle.hpp"
-#include "detector/normalization_oracle.hpp"
+#include "normalization/normalization_oracle.hpp"
 
 #include <cmath>
 

@@ -4,8 +4,8 @@
 
 #include "../common/file_numbers.hpp"
 #include "../common/image_input.hpp"
+#include "../normalization/local_normalization.hpp"
 #include "blobs.hpp"
-#include "local_normalization.hpp"
 
 #include "opencv2/core/utils/trace.hpp"
 #include "opencv2/iib/hessian_detector.hpp"

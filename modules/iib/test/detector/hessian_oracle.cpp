@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
+#include "../normalization/normalization_oracle.hpp"
 #include "hessian_oracle.hpp"
-#include "normalization_oracle.hpp"
 
 namespace oracle {
 

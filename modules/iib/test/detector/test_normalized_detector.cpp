@@ -5,7 +5,7 @@
 #include "../support/temporary_file.hpp"
 #include "../support/test_errors.hpp"
 #include "../support/test_images.hpp"
-#include "normalization_oracle.hpp"
+#include "../normalization/normalization_oracle.hpp"
 
 namespace opencv_test {
 namespace {

@@ -12,7 +12,6 @@ namespace iib {
 /* What is compiled for each instruction set, as one table of functions. A pixel's value T is short for 8-bit images
  and int for 16-bit ones; a Sum is ushort or unsigned, modulo 2^16 or 2^32. */
 
-constexpr int ROW_PADDING = 64;  //!< kernels may read and write up to this many values past the end of a row
 constexpr int MAPPINGS = IIB::MAPPING_PAIRWISE + 1;  //!< of quads
 constexpr int NARROW_CELL = 4;  //!< pixels; sums down the columns add up wider ones slowly
 

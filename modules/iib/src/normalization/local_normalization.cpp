@@ -38,7 +38,7 @@ class Normalizer
 public:
     //! Of an image as it is, or of one at half its resolution.
     Normalizer(const Mat& grey_, bool halved_, double sigma)
-        : kernels(detectorKernels()), grey(grey_), halved(halved_), blurs(sigma),
+        : kernels(normalizationKernels()), grey(grey_), halved(halved_), blurs(sigma),
           size(halved ? Size(grey.cols / 2, grey.rows / 2) : grey.size()), factor(0)
     {
         sizes.push_back(size);
@@ -214,7 +214,7 @@ private:
         kernels.upsample(between.row(0), out, width);
     }
 
-    const DetectorKernels& kernels;
+    const NormalizationKernels& kernels;
     const Mat& grey;
     const bool halved;
     const Blurs blurs;

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_TEST_DETECTOR_NORMALIZATION_ORACLE_HPP
-#define OPENCV_IIB_TEST_DETECTOR_NORMALIZATION_ORACLE_HPP
+#ifndef OPENCV_IIB_TEST_NORMALIZATION_ORACLE_HPP
+#define OPENCV_IIB_TEST_NORMALIZATION_ORACLE_HPP
 
 #include "../support/box_oracle.hpp"
 #include "../test_precomp.hpp"

@@ -1,0 +1,45 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#pragma once
+
+#include "../../common/padded_rows.hpp"
+
+namespace cv {
+namespace iib {
+
+//! What is normalized, pixels, means and differences, are grey levels of 0..255 in 2^-7.
+constexpr int GREY_BITS = 7;
+constexpr int WHITE = 255 << GREY_BITS;
+
+/* What local normalization does with rows. Pixels of 8 bits have no padding. A `half` row has half as many values as those
+ it comes from or goes to. All is on integers but gain, floats in one order of operations, whose square root and quotient
+ IEEE 754 rounds in one way. */
+struct NormalizationKernels
+{
+    //! Grey levels from 8-bit pixels.
+    void (*widen)(const uchar* pixels, short* out, int width);
+    //! Means of 2 x 2 values, rounded.
+    void (*halveShorts)(const short* upper, const short* lower, short* half, int halfWidth);
+    void (*halveInts)(const int* upper, const int* lower, int* half, int halfWidth);
+    //! A quarter of the way from one row to another.
+    void (*interpolate)(const short* from, const short* to, short* out, int width);
+    //! Twice as many values, linearly interpolated; half[-1] and half[halfWidth] are read.
+    void (*upsample)(const short* half, short* out, int halfWidth);
+    //! out = centre + weight / 256 * (before + after - 2 * centre), rounded.
+    void (*blur)(const int* before, const int* centre, const int* after, int weight, int* out, int width);
+    void (*subtract)(const short* pixels, const short* means, short* out, int width);
+    //! Means of the squares of 2 x 2 differences, in 2^-6 squared grey levels.
+    void (*squares)(const short* upper, const short* lower, int* half, int halfWidth);
+    //! 1024 * 40 / (standard deviation + 2).
+    void (*gain)(const int* variance, short* out, int width);
+    //! 128 + difference * gain as 8-bit pixels.
+    void (*scale)(const short* differences, const short* gains, uchar* pixels, int width);
+};
+
+//! The kernels for this machine.
+const NormalizationKernels& normalizationKernels();
+
+}  // namespace iib
+}  // namespace cv

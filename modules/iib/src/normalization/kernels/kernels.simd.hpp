@@ -1,0 +1,150 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../../common/vectors.simd.hpp"
+
+#include "kernels.hpp"
+
+namespace cv {
+namespace iib {
+
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+
+const NormalizationKernels& normalizationKernels();
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
+
+namespace {
+
+constexpr int SHORTS = VTraits<v_int16>::max_nlanes, INTS = VTraits<v_int32>::max_nlanes;
+
+void widen(const uchar* pixels, short* out, int width)
+{
+    int x = 0;
+    for (; x <= width - SHORTS; x += SHORTS)
+        v_store(out + x, v_reinterpret_as_s16(vx_load_expand(pixels + x)) << GREY_BITS);
+    for (; x < width; x++)
+        out[x] = (short)(pixels[x] << GREY_BITS);
+}
+
+//! The sums of neighbours in two rows.
+inline v_int32 sumOfFour(const short* upper, const short* lower)
+{
+    const v_int16 one = vx_setall_s16(1);
+    return v_dotprod(vx_load(upper), one) + v_dotprod(vx_load(lower), one);
+}
+
+inline v_int32 quarter(const v_int32& sum) { return (sum + vx_setall_s32(2)) >> 2; }
+
+void halveShorts(const short* upper, const short* lower, short* half, int halfWidth)
+{
+    for (int x = 0; x < halfWidth; x += SHORTS)
+    {
+        const v_int32 left = sumOfFour(upper + 2 * x, lower + 2 * x);
+        const v_int32 right = sumOfFour(upper + 2 * x + SHORTS, lower + 2 * x + SHORTS);
+        v_store(half + x, v_pack(quarter(left), quarter(right)));
+    }
+}
+
+void halveInts(const int* upper, const int* lower, int* half, int halfWidth)
+{
+    for (int x = 0; x < halfWidth; x += INTS)
+    {
+        v_int32 a, b, c, d;
+        v_load_deinterleave(upper + 2 * x, a, b);
+        v_load_deinterleave(lower + 2 * x, c, d);
+        v_store(half + x, quarter((a + b) + (c + d)));
+    }
+}
+
+void interpolate(const short* from, const short* to, short* out, int width)
+{
+    for (int x = 0; x < width; x += SHORTS)
+    {
+        const v_int16 a = vx_load(from + x), b = vx_load(to + x);
+        v_store(out + x, a + ((b - a) >> 2));
+    }
+}
+
+void upsample(const short* half, short* out, int halfWidth)
+{
+    for (int x = 0; x < halfWidth; x += SHORTS)
+    {
+        const v_int16 left = vx_load(half + x - 1), centre = vx_load(half + x), right = vx_load(half + x + 1);
+        v_store_interleave(out + 2 * x, centre + ((left - centre) >> 2), centre + ((right - centre) >> 2));
+    }
+}
+
+// The compiler makes vectors of this loop, with this file's instruction set.
+void blur(const int* before, const int* centre, const int* after, int weight, int* out, int width)
+{
+    for (int x = 0; x < width; x++)
+        out[x] = centre[x] + ((weight * (before[x] + after[x] - 2 * centre[x]) + 128) >> 8);
+}
+
+void subtract(const short* pixels, const short* means, short* out, int width)
+{
+    for (int x = 0; x < width; x += SHORTS)
+        v_store(out + x, vx_load(pixels + x) - vx_load(means + x));
+}
+
+//! In eighths of a grey level, so that the sum of four squares fits 32 bits.
+inline v_int16 eighths(const short* differences)
+{
+    return (vx_load(differences) + vx_setall_s16(1 << (GREY_BITS - 4))) >> (GREY_BITS - 3);
+}
+
+void squares(const short* upper, const short* lower, int* half, int halfWidth)
+{
+    for (int x = 0; x < halfWidth; x += INTS)
+    {
+        const v_int16 a = eighths(upper + 2 * x), b = eighths(lower + 2 * x);
+        v_store(half + x, quarter(v_dotprod(a, a) + v_dotprod(b, b)));
+    }
+}
+
+inline v_int32 gainOf(const int* variance)
+{
+    const v_float32 deviation = exactRoot(v_cvt_f32(vx_load(variance)));  // in eighths
+    return nearestInt(exactQuotient(vx_setall_f32(1024 * 40 * 8), deviation + vx_setall_f32(2 * 8)));
+}
+
+void gain(const int* variance, short* out, int width)
+{
+    for (int x = 0; x < width; x += SHORTS)
+        v_store(out + x, v_pack(gainOf(variance + x), gainOf(variance + x + INTS)));
+}
+
+//! Half-units of the output; >> 16 takes away the bits of GREY_BITS and all but one of gain's ten.
+inline v_int16 scaled(const short* differences, const short* gains)
+{
+    const v_int16 product = v_mul_hi(vx_load(differences), vx_load(gains));
+    return ((product + vx_setall_s16(1)) >> 1) + vx_setall_s16(128);
+}
+
+void scale(const short* differences, const short* gains, uchar* pixels, int width)
+{
+    int x = 0;
+    for (; x <= width - 2 * SHORTS; x += 2 * SHORTS)
+        v_store(pixels + x, v_pack_u(scaled(differences + x, gains + x),
+                                    scaled(differences + x + SHORTS, gains + x + SHORTS)));
+    for (; x < width; x++)
+        pixels[x] = saturate_cast<uchar>((((differences[x] * gains[x] >> 16) + 1) >> 1) + 128);
+}
+
+}  // namespace
+
+const NormalizationKernels& normalizationKernels()
+{
+    static const NormalizationKernels kernels = {
+            widen, halveShorts, halveInts, interpolate, upsample, blur, subtract, squares, gain, scale};
+    return kernels;
+}
+
+#endif
+
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+
+}  // namespace iib
+}  // namespace cv
