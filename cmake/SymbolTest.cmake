@@ -1,11 +1,11 @@
-# The dynamic symbols of LIBRARY, one of opencv_iib, opencv_iib_index and opencv_iib_geometry, are those of the API and of *.private.hpp alone, its soname and changelog agree on the version, and it is hardened.
+# The dynamic symbols of LIBRARY, one of opencv_iib, opencv_iib_index and opencv_iib_geometry, are those of the API and of what iib_index builds on alone, its soname and changelog agree on the version, and it is hardened.
 # cmake -DLIBRARY=<file> -DNM=<nm> -DREADELF=<readelf> -DVERSION=<x.y.z> -DCHANGELOG=<file> -P SymbolTest.cmake
 # Without VERSION, of a library that OpenCV's own build made: only its symbols, and none of the standard library's
 # templates, which OpenCV's build lets through as weak ones.
 execute_process(COMMAND "${NM}" -DC --defined-only "${LIBRARY}" OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
 string(STRIP "${symbols}" symbols)
 string(REGEX REPLACE "[;\n]+" ";" symbols "${symbols}")
-set(classes "cv::iib::(IIBDescriptorExtractor|HessianDetector|HierarchicalMatcher|NormalizedDetector|CheckedReader|CheckedWriter|SearchedCodes)")
+set(classes "cv::iib::(IIBDescriptorExtractor|HessianDetector|HierarchicalMatcher|NormalizedDetector|CheckedReader|CheckedWriter|PackedCodes)")
 if(LIBRARY MATCHES "opencv_iib_index[^/]*$")
   set(classes "cv::iib::(MappedIndex)")
 elseif(LIBRARY MATCHES "opencv_iib_geometry[^/]*$")

@@ -2,7 +2,7 @@
 
 #include "precomp.hpp"
 #include "code_segment.hpp"
-#include "opencv2/iib/checked_file.private.hpp"
+#include "../../iib/src/common/checked_file.hpp"
 
 namespace cv {
 namespace iib {
@@ -41,16 +41,16 @@ template <typename Visit> static void forEachPart(const Mat& blocks, int checked
 }
 
 SegmentEntry writeSegment(
-        const String& filename, uint64 number, const std::vector<int>& levels, const SearchedCodes& codes)
+        const String& filename, uint64 number, const std::vector<int>& levels, const PackedCodes& codes)
 {
-    const Mat blocks = codes.blocks();
-    const size_t blockBytes = SearchedCodes::blockBytes(levels, codes.layout());
+    const Mat blocks = codes.stored();
+    const size_t blockBytes = PackedCodes::blockBytes(levels, codes.packing());
     const int checkedBlocks = (int)std::max(CHECKED_BYTES / blockBytes, (size_t)1);
     std::vector<uint64> sums((size_t)(((int64)blocks.rows + checkedBlocks - 1) / checkedBlocks));
     forEachPart(blocks, checkedBlocks, [&](int i, const Mat& part) { sums[i] = wordHash(part); });
     CheckedWriter file(filename, KIND);
     file.list(levels, 4);
-    file.number(codes.layout(), 4);
+    file.number(codes.packing(), 4);
     file.number(checkedBlocks, 4);
     file.number(codes.images(), 8);
     for (size_t i = 0; i < codes.images(); i++)
@@ -71,7 +71,7 @@ CodeSegment::CodeSegment(
 {
 }
 
-const SearchedCodes& CodeSegment::codes()
+const PackedCodes& CodeSegment::codes()
 {
     std::lock_guard<std::mutex> guard(lock);
     if (!packed)
@@ -87,7 +87,7 @@ void CodeSegment::map()
     if (header.list<int>(4) != levels)
         header.fail("its levels are not those of the manifest");
     const unsigned layout = header.word();
-    if (!SearchedCodes::knows(layout))
+    if (!PackedCodes::knows(layout))
         header.fail("its layout is unknown");
     const int checkedBlocks = (int)header.word();
     std::vector<size_t> starts(1, 0);
@@ -99,8 +99,7 @@ void CodeSegment::map()
     }
     if (starts.size() - 1 != expected.images || starts.back() != expected.rows || checkedBlocks <= 0)
         header.fail("it is not the one that the manifest names");
-    const uint64 blocks =
-            (expected.rows + SearchedCodes::CODES_PER_BLOCK - 1) / SearchedCodes::CODES_PER_BLOCK;
+    const uint64 blocks = (expected.rows + CodeLayout::CODES_PER_BLOCK - 1) / CodeLayout::CODES_PER_BLOCK;
     const uint64 sums = (blocks + checkedBlocks - 1) / checkedBlocks;
     header.expect(sums, 8);
     std::vector<uint64> checksums((size_t)sums);
@@ -111,7 +110,7 @@ void CodeSegment::map()
 
     const uint64 offset = aligned(header.position());
     const Ptr<MappedFile> bytes = makePtr<MappedFile>(name);
-    const size_t blockBytes = SearchedCodes::blockBytes(levels, layout);
+    const size_t blockBytes = PackedCodes::blockBytes(levels, layout);
     if (blocks > INT_MAX || bytes->size() != offset + blocks * blockBytes)
         header.fail("it is truncated or altered");
     const Mat lying(
@@ -119,17 +118,15 @@ void CodeSegment::map()
     if (std::count(bytes->data() + header.position(), bytes->data() + offset, 0) !=
             (int64)(offset - header.position()))
         header.fail("it is altered: there is something between its header and its codes");
-    const size_t partRows = (size_t)checkedBlocks * SearchedCodes::CODES_PER_BLOCK;
+    const size_t partRows = (size_t)checkedBlocks * CodeLayout::CODES_PER_BLOCK;
     std::vector<uchar> right(checksums.size());
-    forEachPart(lying, checkedBlocks, [&](int i, const Mat& part) {
-        right[i] = wordHash(part) == checksums[i] &&
-                   SearchedCodes::fillsWithZeros(levels, layout, expected.rows - i * partRows, part);
-    });
+    forEachPart(
+            lying, checkedBlocks, [&](int i, const Mat& part) { right[i] = wordHash(part) == checksums[i]; });
     const size_t wrong = std::find(right.begin(), right.end(), 0) - right.begin();
     if (wrong < right.size())
         header.fail(format("it is altered: its rows from %lld on are not as they were written",
                 (long long)(wrong * partRows)));
-    packed = makePtr<SearchedCodes>(levels, layout, starts, lying);
+    packed = makePtr<PackedCodes>(levels, layout, starts, lying);
     file = bytes;
 }
 

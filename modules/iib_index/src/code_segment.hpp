@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mapped_file.hpp"
-#include "opencv2/iib/searched_codes.private.hpp"
+#include "../../iib/src/matcher/packed_codes.hpp"
 
 #include <mutex>
 
@@ -10,8 +10,8 @@ namespace cv {
 namespace iib {
 
 /* Format 2 of a segment, a checked file: u32: number of levels, each level's bytes, layout, checked blocks: blocks of
-SearchedCodes that a checksum is for; u64: number of images, each image's rows, a checksum for each of the checked blocks; the
-hash. Then zeros up to a multiple of 4096 bytes, and from there the blocks of SearchedCodes. Checksums are FNV-1a of
+PackedCodes that a checksum is for; u64: number of images, each image's rows, a checksum for each of the checked blocks; the
+hash. Then zeros up to a multiple of 4096 bytes, and from there the blocks of PackedCodes. Checksums are FNV-1a of
 little-endian words of 64 bits. */
 
 //! What the manifest says of a segment.
@@ -22,7 +22,7 @@ struct SegmentEntry
 
 //! Writes codes to a file, which appears when it is whole and on the disk.
 SegmentEntry writeSegment(
-        const String& filename, uint64 number, const std::vector<int>& levels, const SearchedCodes& codes);
+        const String& filename, uint64 number, const std::vector<int>& levels, const PackedCodes& codes);
 
 //! A segment's file, mapped and checked when its codes are first asked for.
 class CodeSegment
@@ -31,7 +31,7 @@ public:
     CodeSegment(const String& filename, const SegmentEntry& entry, const std::vector<int>& levelSizes);
     const SegmentEntry& entry() const { return expected; }
     //! @throws cv::Exception that names the file if it is missing, altered, or not the one that the entry tells of.
-    const SearchedCodes& codes();
+    const PackedCodes& codes();
 
 private:
     void map();
@@ -41,7 +41,7 @@ private:
     const std::vector<int> levels;
     std::mutex lock;
     Ptr<MappedFile> file;
-    Ptr<SearchedCodes> packed;  // null until it is checked
+    Ptr<PackedCodes> packed;  // null until it is checked
 };
 
 }  // namespace iib

@@ -24,7 +24,7 @@ CheckedWriter writeManifest(const String& filename, Manifest& manifest)
 // What every commit keeps to, whose numbers are added up without a further look.
 static bool fits(const Manifest& manifest)
 {
-    const uint64 limit = (uint64)1 << SearchedCodes::ROW_BITS;
+    const uint64 limit = (uint64)1 << INDEX_BITS;
     uint64 rows = 0, images = 0, last = 0;
     for (const SegmentEntry& segment : manifest.segments)
     {

@@ -37,7 +37,7 @@ public:
     IndexCommit(const String& folder, const Manifest& manifest, const IndexCommit* before)
         : committed(manifest), firstRows(1, 0), firstImages(1, 0)
     {
-        SearchedCodes::check(manifest.levelSizes);
+        PackedCodes::check(manifest.levelSizes);
         const size_t known = before ? before->opened.size() : 0;
         for (size_t i = 0; i < manifest.segments.size(); i++)
         {
@@ -76,10 +76,10 @@ public:
     }
 
     //! A segment's part of a search.
-    SearchedCodes::Part part(int segment) const
+    CodePart part(int segment) const
     {
         // First: a manifest may claim more images than memory has bits for.
-        const SearchedCodes& codes = opened[segment]->codes();
+        const PackedCodes& codes = opened[segment]->codes();
         const std::vector<uint64>& removed = committed.removed;
         const auto first = std::lower_bound(removed.begin(), removed.end(), firstImages[segment]),
                    end = std::lower_bound(first, removed.end(), firstImages[segment + 1]);
@@ -122,7 +122,7 @@ public:
 
     void add(InputArrayOfArrays descriptors) CV_OVERRIDE
     {
-        const SearchedCodes codes(levelSizes(), descriptors);
+        const PackedCodes codes(levelSizes(), descriptors);
         if (codes.images() == 0)
             return;
         commit([&](Manifest& next) {
@@ -153,10 +153,10 @@ public:
     {
         if (segment < -1 || segment >= segments())
             CV_Error_(Error::StsOutOfRange, ("segment is %d: there are %d", segment, segments()));
-        std::vector<SearchedCodes::Part> parts;
+        std::vector<CodePart> parts;
         for (int i = segment < 0 ? 0 : segment, end = segment < 0 ? segments() : segment + 1; i < end; i++)
             parts.push_back(last.part(i));
-        SearchedCodes::findNearest(levelSizes(), parts, queries, k, found, distances);
+        PackedCodes::findNearest(levelSizes(), parts, queries, k, found, distances);
     }
 
 private:
@@ -183,7 +183,7 @@ MappedIndex::~MappedIndex() {}
 
 Ptr<MappedIndex> MappedIndex::create(const String& folder, const std::vector<int>& levelSizes)
 {
-    SearchedCodes::check(levelSizes);
+    PackedCodes::check(levelSizes);
     if (!utils::fs::isDirectory(folder) && !utils::fs::createDirectory(folder))
         CV_Error(Error::StsError, "Cannot make the folder " + folder + ": check its parent and the rights");
     checkEmpty(folder);  // before the lock is in it

@@ -2,7 +2,7 @@
 
 #include "index_fixture.hpp"
 
-#include "opencv2/iib/checked_file.private.hpp"
+#include "../../iib/src/common/checked_file.hpp"
 
 namespace opencv_test {
 namespace {
@@ -237,42 +237,6 @@ TEST_F(IIB_MappedIndex_Files, impossible_numbers_are_refused)
     // one checksum for all: unusual, but right
     writeBoth(with(first.bytes, checkedBlocks, INT_MAX, 4));
     EXPECT_TRUE(expected(images, queries, 3, {1, 5}) == search(*MappedIndex::open(folder.name), queries, 3));
-}
-
-//! The checksum of codes, as code_segment.hpp says.
-uint64 wordHash(const std::string& codes)
-{
-    uint64 state = CV_BIG_UINT(0xcbf29ce484222325);
-    for (size_t i = 0; i < codes.size(); i += 8)
-    {
-        uint64 word = 0;
-        for (int b = 0; b < 8; b++)
-            word |= (uint64)(uchar)codes[i + b] << 8 * b;
-        state = (state ^ word) * CV_BIG_UINT(0x100000001b3);
-    }
-    return state;
-}
-
-// They would count in distances. All checksums are right.
-TEST_F(IIB_MappedIndex_Files, bits_that_fill_codes_up_have_to_be_zero)
-{
-    // The word of the first level, a code that is not there, and the last word, which makes their number odd in layout 1.
-    const std::vector<int> filling[] = {{1, 3, 11, 12, 60, 64 + 63, 384, 395}, {16, 63, 3, 15, 383}};
-    for (int layout : {1, 2})
-        for (int position : filling[layout - 1])
-        {
-            SCOPED_TRACE(format("layout %d, byte %d", layout, position));
-            std::string codes = codesOf(layout), header = fromHex(GOLDENS[layout - 1].segment),
-                        manifest = fromHex(GOLDENS[layout - 1].manifest);
-            codes[position] ^= 16;
-            header = sealed(with(header, header.size() - 16, wordHash(codes)), header.size() - 8);
-            manifest.replace(8 + 4 + 3 * 4 + 4 * 8, 8, header.substr(header.size() - 8));
-            const TemporaryFolder own;
-            writeIndex(own.name, segmentOf(header, codes), sealed(manifest, manifest.size() - 8));
-            const Ptr<MappedIndex> opened = MappedIndex::open(own.name);
-            expectError(
-                    Error::StsParseError, "segment-000001.iib", [&] { search(*opened, goldenRow(0), 1); });
-        }
 }
 
 // A file that is mapped must not be shortened; to delete or replace it is harmless.

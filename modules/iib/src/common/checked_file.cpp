@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../precomp.hpp"
-#include "opencv2/iib/checked_file.private.hpp"
+#include "checked_file.hpp"
 
 #include <atomic>
 #include <cstdio>

@@ -2,10 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
+#include "../common/checked_file.hpp"
 #include "packed_codes.hpp"
 #include "parameters.hpp"
-
-#include "opencv2/iib/checked_file.private.hpp"
 
 namespace cv {
 namespace iib {

@@ -2,9 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "arguments.hpp"
 #include "parameters.hpp"
-#include "search.hpp"
+#include "results.hpp"
 
 namespace cv {
 namespace iib {

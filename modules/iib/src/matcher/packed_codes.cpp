@@ -5,14 +5,39 @@
 #include "../precomp.hpp"
 #include "packed_codes.hpp"
 
+#include "parameters.hpp"
+
 namespace cv {
 namespace iib {
 
 static const int CODES_PER_BLOCK = CodeLayout::CODES_PER_BLOCK;
 
+void PackedCodes::check(const std::vector<int>& levelSizes)
+{
+    checkLevelSizesGiven(levelSizes);
+    MatcherParameters p;
+    p.levelSizes = levelSizes;
+    p.thresholds.assign(p.stages(), 0.f);
+    iib::check(p);
+}
+
+bool PackedCodes::knows(unsigned packing) { return packing == PACKING_ADDERS || packing == PACKING_TABLES; }
+
+size_t PackedCodes::blockBytes(const std::vector<int>& levelSizes, unsigned packing)
+{
+    return CodeLayout(levelSizes, (CodePacking)packing).blockWords() * sizeof(unsigned);
+}
+
 PackedCodes::PackedCodes(const std::vector<int>& levelSizes)
     : scans(hammingKernels()), format(levelSizes, scans.packing), starts(1, 0), filled(0)
 {
+}
+
+PackedCodes::PackedCodes(const std::vector<int>& levelSizes, InputArrayOfArrays descriptors)
+    : PackedCodes(levelSizes)
+{
+    for (const Mat& image : imagesOf(descriptors))
+        add(checkedDescriptors(image, format.bytes(), false));
 }
 
 static int blocksFor(size_t rows)
@@ -45,14 +70,14 @@ static Mat repacked(const Mat& blocks, const CodeLayout& from, const CodeLayout&
     return result;
 }
 
-PackedCodes::PackedCodes(const std::vector<int>& levelSizes, CodePacking packing,
+PackedCodes::PackedCodes(const std::vector<int>& levelSizes, unsigned packing,
         const std::vector<size_t>& starts_, const Mat& blocks)
     : scans(hammingKernels()), format(levelSizes, scans.packing), starts(starts_), codes(blocks),
       filled(blocks.rows)
 {
     CV_Assert(filled == blocksFor(rows()));
     if (packing != scans.packing)
-        codes = repacked(blocks, CodeLayout(levelSizes, packing), format);
+        codes = repacked(blocks, CodeLayout(levelSizes, (CodePacking)packing), format);
 }
 
 PackedCodes::PackedCodes(const PackedCodes& other)

@@ -9,17 +9,37 @@
 namespace cv {
 namespace iib {
 
-//! Train codes of several images, one after the other. Those that are added are packed for the kernels that were the best
-//! when it was made.
-class PackedCodes
+class PackedCodes;
+
+//! Some codes of a search over several.
+struct CodePart
+{
+    const PackedCodes* codes;
+    size_t firstRow;           //!< what results call the first of its rows
+    std::vector<bool> hidden;  //!< of each image, whether it is left out; empty: none is
+};
+
+/** Train codes of several images, one after the other. Those that are added are packed for the kernels that were the best
+when it was made. The module iib_index keeps such codes in files. */
+class CV_EXPORTS PackedCodes
 {
 public:
+    //! @throws cv::Exception for level sizes that HierarchicalMatcher::create does not take, and for none.
+    static void check(const std::vector<int>& levelSizes);
+    //! Whether a number in a file is a CodePacking.
+    static bool knows(unsigned packing);
+    //! Bytes of a CodeBlock.
+    static size_t blockBytes(const std::vector<int>& levelSizes, unsigned packing);
+
     explicit PackedCodes(const std::vector<int>& levelSizes);
+    //! Those of CV_8U descriptors, a matrix for each image or a single one. @throws cv::Exception if their width is wrong.
+    PackedCodes(const std::vector<int>& levelSizes, InputArrayOfArrays descriptors);
     /** Codes that lie elsewhere, and stay there if they are packed as the kernels want them; if not, they are copied. They
     are only read.
+    @param packing a known one
     @param starts first row of each image, and the number of all rows
-    @param blocks a row a CodeBlock, CV_32S, aligned for vectors */
-    PackedCodes(const std::vector<int>& levelSizes, CodePacking packing, const std::vector<size_t>& starts,
+    @param blocks a row a CodeBlock, CV_32S, aligned to 64 bytes */
+    PackedCodes(const std::vector<int>& levelSizes, unsigned packing, const std::vector<size_t>& starts,
             const Mat& blocks);
     PackedCodes(const PackedCodes& other);
     PackedCodes& operator=(const PackedCodes&) = delete;
@@ -27,6 +47,7 @@ public:
     const CodeLayout& layout() const { return format; }
     //! The kernels that layout() is for; others would misread it.
     const HammingKernels& kernels() const { return scans; }
+    CodePacking packing() const { return scans.packing; }
 
     size_t rows() const { return starts.back(); }
     size_t images() const { return starts.size() - 1; }
@@ -38,8 +59,11 @@ public:
     int blocks() const { return filled; }
     //! The CodeBlocks of layout() from one on, without a gap. Lanes beyond rows() are zeros.
     const unsigned* block(int first) const { return codes.ptr<unsigned>(first); }
-    //! All of them, a row each.
-    Mat stored() const { return filled > 0 ? codes.rowRange(0, filled) : Mat(); }
+    //! All of them, CV_32S, a row each, continuous.
+    Mat stored() const
+    {
+        return filled > 0 ? codes.rowRange(0, filled) : Mat(0, (int)format.blockWords(), CV_32S);
+    }
 
     //! Adds an image's descriptors: CV_8U, layout().bytes() columns, any number of rows. Changes nothing if it throws.
     void add(const Mat& descriptors);
@@ -50,6 +74,15 @@ public:
 
     //! Rows `from` to `to` of an image as they were added.
     Mat descriptors(size_t image, size_t from, size_t to) const;
+    Mat descriptors(size_t image) const { return descriptors(image, 0, rows(image)); }
+
+    /** The k nearest rows of each query, nearest first, ties in the order of rows.
+    @param parts codes of the same level sizes, firstRow ascending
+    @param rows queries x k, -1 where there are fewer
+    @param distances as many
+    @throws cv::Exception for queries that do not fit, and for k < 1 */
+    static void findNearest(const std::vector<int>& levelSizes, const std::vector<CodePart>& parts,
+            InputArray queries, int k, std::vector<int64>& rows, std::vector<int>& distances);
 
 private:
     //! Makes that many blocks filled ones; the new ones are zeros. Changes nothing if it throws.

@@ -48,6 +48,32 @@ void check(const MatcherParameters& p)
         CV_Error_(Error::StsOutOfRange, ("maxRatio is %g: it has to be above 0 and at most 1", p.maxRatio));
 }
 
+std::vector<Mat> imagesOf(InputArrayOfArrays descriptors)
+{
+    std::vector<Mat> images;
+    if (descriptors.isMatVector() || descriptors.isUMatVector())
+        descriptors.getMatVector(images);
+    else
+        images.push_back(descriptors.getMat());
+    return images;
+}
+
+Mat checkedDescriptors(const Mat& descriptors, int width, bool byFirstCodes)
+{
+    if (descriptors.empty())
+        return Mat(0, width, CV_8U);
+    if (descriptors.dims != 2 || descriptors.type() != CV_8U)
+        CV_Error(Error::StsUnsupportedFormat,
+                "Descriptors have to be a matrix of type CV_8U, a row a descriptor");
+    if (descriptors.cols != width)
+        CV_Error_(Error::StsUnmatchedSizes,
+                ("Descriptors have %d columns, but %s %d: %s", descriptors.cols,
+                        byFirstCodes ? "the first ones had" : "the level sizes add up to", width,
+                        byFirstCodes ? "clear() the matcher before it takes others"
+                                     : "create the matcher with the level sizes of these descriptors"));
+    return descriptors;
+}
+
 template <typename T> static std::vector<T> readList(const FileNode& node, const char* key)
 {
     // In XML, a list of one is that number, and an empty list a node without anything.

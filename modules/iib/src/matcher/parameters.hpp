@@ -28,6 +28,15 @@ void checkThreshold(float threshold);
 void checkLevelSizesGiven(const std::vector<int>& levelSizes);
 void check(const MatcherParameters& p);
 
+/* The arguments of DescriptorMatcher's calls. */
+
+//! One matrix of descriptors, or several, of one image each.
+std::vector<Mat> imagesOf(InputArrayOfArrays descriptors);
+
+//! The descriptors if they are of `width` bytes each, 0 x width if there are none; throws otherwise. `byFirstCodes`
+//! tells the error where the width came from: from the codes that came first, or from level sizes.
+Mat checkedDescriptors(const Mat& descriptors, int width, bool byFirstCodes);
+
 void writeParameters(FileStorage& fs, const MatcherParameters& p);
 //! Those of a node that writeParameters filled, or of one that holds such a node under `name`, as Algorithm::save
 //! writes it. What the node does not have stays as it was; levelSizes it must have.

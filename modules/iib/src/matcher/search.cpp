@@ -6,6 +6,9 @@
 #include "search.hpp"
 
 #include <mutex>
+#include <numeric>
+
+#include "parameters.hpp"
 
 namespace cv {
 namespace iib {
@@ -81,6 +84,28 @@ double spread(int bits) { return std::sqrt((double)bits) / 2; }
 
 }  // namespace
 
+std::vector<Mat> checkedMasks(InputArrayOfArrays masks_, int queries, const PackedCodes& index)
+{
+    std::vector<Mat> masks;
+    masks_.getMatVector(masks);
+    if (!masks.empty() && masks.size() != index.images())
+        CV_Error_(Error::StsBadSize,
+                ("%d masks for %d train images: give one for each, empty for \"all allowed\"",
+                        (int)masks.size(), (int)index.images()));
+    bool any = false;
+    for (size_t i = 0; i < masks.size(); i++)
+    {
+        any = any || !masks[i].empty();
+        if (!masks[i].empty() && (masks[i].type() != CV_8UC1 || masks[i].rows != queries ||
+                                         (size_t)masks[i].cols != index.rows(i)))
+            CV_Error_(Error::StsBadMask,
+                    ("masks[%d] has to be CV_8UC1 with %d rows (queries) and %d columns (train "
+                     "rows)",
+                            (int)i, queries, (int)index.rows(i)));
+    }
+    return any ? masks : std::vector<Mat>();
+}
+
 // One stage, as soon as most pairs are beyond the radius; none where that is late or never.
 PruningPolicy radiusPolicy(const CodeLayout& layout, int radius)
 {
@@ -133,6 +158,33 @@ KnnTable findNearest(const SearchInput& input, int k, bool mutual, float maxRati
     if (mutual)
         keepMutual(forQueries, forTrains);
     return forQueries;
+}
+
+void PackedCodes::findNearest(const std::vector<int>& levelSizes, const std::vector<CodePart>& parts,
+        InputArray queries_, int k, std::vector<int64>& rows, std::vector<int>& distances)
+{
+    const int width = std::accumulate(levelSizes.begin(), levelSizes.end(), 0);
+    const Mat queries = checkedDescriptors(queries_.getMat(), width, false);
+    if (k <= 0)
+        CV_Error_(Error::StsOutOfRange, ("k is %d: it has to be > 0", k));
+    size_t count = 0;
+    for (const CodePart& part : parts)
+        count += part.codes->rows();
+    KnnTable found(queries.rows, (int)std::min((size_t)k, std::max(count, (size_t)1)));
+    SearchCost cost;
+    for (const CodePart& part : parts)
+        iib::addNearest(
+                {*part.codes, queries, PruningPolicy(), {}, part.hidden, part.firstRow, ScanBlocks(), cost},
+                found);
+
+    rows = forNeighbours<int64>(queries.rows, k, -1);
+    distances = forNeighbours<int>(queries.rows, k, -1);
+    for (size_t query = 0; query < (size_t)queries.rows; query++)
+        for (int i = 0; i < found.size() && found[query][i] != NO_MATCH; i++)
+        {
+            rows[query * k + i] = (int64)indexOf(found[query][i]);
+            distances[query * k + i] = distanceOf(found[query][i]);
+        }
 }
 
 std::vector<std::vector<MatchKey>> findWithin(const SearchInput& input, int radius)

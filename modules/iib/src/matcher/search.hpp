@@ -45,6 +45,9 @@ struct SearchInput
     SearchCost& cost;  //!< what the search takes is added to it
 };
 
+//! A mask for each image of the index, or none if all are empty; throws where one does not fit.
+std::vector<Mat> checkedMasks(InputArrayOfArrays masks, int queries, const PackedCodes& index);
+
 //! A value for each of k neighbours of each row; throws StsNoMem, with k, if memory does not hold them.
 template <typename T> std::vector<T> forNeighbours(size_t rows, int k, T value)
 {

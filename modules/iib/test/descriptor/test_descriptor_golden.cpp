@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/test_images.hpp"
-#include "opencv2/iib/checked_file.private.hpp"
+#include "../../src/common/checked_file.hpp"
 
 /* The exact bits, which no build, machine or later version may change without a new major version: descriptors in
  files would no longer match. A test that fails prints its line of the table. All lines:

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "opencv2/iib/checked_file.private.hpp"
+#include "../../src/common/checked_file.hpp"
 #include "../support/test_images.hpp"
 #include "normalization_oracle.hpp"
 

@@ -129,32 +129,6 @@ void CodeLayout::storeBlock(const uchar* descriptors, size_t step, unsigned* blo
     }
 }
 
-// Loops over all lanes, which compilers make vectors of.
-bool CodeLayout::fillsWithZeros(const unsigned* block, int codes) const
-{
-    unsigned parity[CODES_PER_BLOCK] = {}, before[CODES_PER_BLOCK] = {}, wrong = 0;
-    for (int i = 0; i < words(); i++)
-    {
-        const unsigned* const packed = block + i * CODES_PER_BLOCK;
-        unsigned filling = ~0u;  // the bits of a word that are none of the descriptor's
-        std::memset(&filling, 0, places[i].bytes);
-        if (packing == PACKING_TABLES)
-            for (int n = 0; n < WORD * CODES_PER_BLOCK; n++)
-                wrong |= n / CODES_PER_BLOCK < places[i].bytes && n % CODES_PER_BLOCK < codes
-                                 ? 0
-                                 : ((const uchar*)packed)[n];
-        else
-            for (int lane = 0; lane < CODES_PER_BLOCK; lane++)
-            {
-                const unsigned plain = (i % 2 ? parity : before)[lane] ^ packed[lane];
-                wrong |= plain & (lane < codes ? filling : ~0u);
-                before[lane] = plain;
-                parity[lane] ^= i % 2 ? 0 : packed[lane];
-            }
-    }
-    return wrong == 0;
-}
-
 void CodeLayout::fetch(const unsigned* block, int lane, unsigned* plain) const
 {
     if (packing == PACKING_TABLES)

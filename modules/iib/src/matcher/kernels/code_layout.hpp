@@ -63,8 +63,6 @@ public:
     void store(const uchar* descriptor, unsigned* block, int lane) const;
     //! Fills a whole CodeBlock with CODES_PER_BLOCK descriptors that lie `step` bytes apart.
     void storeBlock(const uchar* descriptors, size_t step, unsigned* block) const;
-    //! Whether a CodeBlock with that many codes is zero wherever no bit of a descriptor lies.
-    bool fillsWithZeros(const unsigned* block, int codes) const;
     //! Gets the plain words of a code.
     void fetch(const unsigned* block, int lane, unsigned* plain) const;
 

@@ -9,17 +9,7 @@
 namespace cv {
 namespace iib {
 
-/* What DescriptorMatcher's calls are given, checked, and what they return. */
-
-//! One matrix of descriptors, or several, of one image each.
-std::vector<Mat> imagesOf(InputArrayOfArrays descriptors);
-
-//! The descriptors if they are of `width` bytes each, 0 x width if there are none; throws otherwise. `byFirstCodes`
-//! tells the error where the width came from: from the codes that came first, or from level sizes.
-Mat checkedDescriptors(const Mat& descriptors, int width, bool byFirstCodes);
-
-//! A mask for each image of the index, or none if all are empty; throws where one does not fit.
-std::vector<Mat> checkedMasks(InputArrayOfArrays masks, int queries, const PackedCodes& index);
+/* What a search found, as DescriptorMatcher's calls return it. */
 
 //! The nearest of each query that has one.
 void toBestMatches(const PackedCodes& trains, const KnnTable& found, std::vector<DMatch>& matches);

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_CHECKED_FILE_PRIVATE_HPP
-#define OPENCV_IIB_CHECKED_FILE_PRIVATE_HPP
+#pragma once
 
 #include "opencv2/core.hpp"
 
@@ -12,7 +11,7 @@
 namespace cv {
 namespace iib {
 
-/* Not installed: for this library and for modules that depend on it. Binary files that do not depend on the machine and
+/* For this library and for the module iib_index. Binary files that do not depend on the machine and
 tell when they are altered: eight letters that name the kind of file, u32 version, little-endian numbers and bytes, u64
 FNV-1a hash of all before. */
 
@@ -116,5 +115,3 @@ private:
 
 }  // namespace iib
 }  // namespace cv
-
-#endif
