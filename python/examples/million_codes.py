@@ -12,9 +12,8 @@ count = int(sys.argv[1]) if len(sys.argv) > 1 else 1_000_000
 
 # %% Codes of 32 bytes of a street by day and by night, at the same points.
 day, night = scene.PICTURES.values()
-points, sizes, _ = opencv_iib.detect_and_describe(day, 500)
-small = opencv_iib.IIB.createPreset(opencv_iib.Preset.SMALL)
-keypoints = np.column_stack([points, sizes])
+small = opencv_iib.IIB.createFor(opencv_iib.HessianDetector(500), 'SMALL')
+keypoints = small.detect(day)
 by_day, by_night = (small.compute(image, keypoints)[1] for image in (day, night))
 
 # %% An index in a folder: a hundred "images" of random codes, then the street by day. Each call of `add` is whole or nothing.

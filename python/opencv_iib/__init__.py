@@ -10,12 +10,12 @@ The same from arrays to arrays:
     points, sizes, codes = opencv_iib.detect_and_describe(image)
     pairs, distances = opencv_iib.match(codes, other_codes)
 
-Methods have OpenCV's names and those of Python's style: ``iib.detect_and_compute(image)``. The OpenCV inside is its own: nothing but arrays and plain values passes between it and cv2.
+Classes, their methods and constants have the names of ``cv2.iib``; functions from arrays to arrays have Python's. The OpenCV
+inside is its own: nothing but arrays and plain values passes between it and cv2.
 """
-from typing import Any
-
 from opencv_iib import _core
 from opencv_iib._core import error
+from opencv_iib._arguments import integer
 from opencv_iib._types import DMatch, KeyPoint
 from opencv_iib.descriptor import IIB, IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector, NormalizedDetector
@@ -29,34 +29,19 @@ from opencv_iib.rotation import estimateRotation, matchRotated
 __all__ = ['Border', 'Channel', 'DMatch', 'Features', 'HessianDetector', 'HierarchicalMatcher', 'IIB',
            'IIBDescriptorExtractor', 'KeyPoint', 'MappedIndex', 'Mapping', 'Matches', 'Mode', 'NormalizedDetector',
            'OPENCV_VERSION', 'Orientation', 'Preset', 'array_to_keypoints', 'detect_and_describe', 'error',
-           'estimateRotation', 'estimate_rotation', 'getNumThreads', 'get_num_threads', 'keypoints_to_array', 'match',
-           'matchRotated', 'match_rotated', 'setNumThreads', 'set_num_threads']
+           'estimateRotation', 'getNumThreads', 'keypoints_to_array', 'match', 'matchRotated', 'setNumThreads']
 
 __version__: str = _core.VERSION
 #: Of the OpenCV inside.
 OPENCV_VERSION: str = _core.OPENCV_VERSION
 
-_FLAT_OWNERS = {'IIBDescriptorExtractor': IIBDescriptorExtractor, 'IIB': IIB, 'HierarchicalMatcher': HierarchicalMatcher,
-                'HessianDetector': HessianDetector, 'NormalizedDetector': NormalizedDetector}
-
-
-def __getattr__(name: str) -> Any:
-    """The flat names that cv2.iib has as well, such as IIB_create and IIBDescriptorExtractor_BORDER_DROP."""
-    owner, _, member = name.partition('_')
-    if owner in _FLAT_OWNERS and member and not member.startswith('_') and hasattr(_FLAT_OWNERS[owner], member):
-        return getattr(_FLAT_OWNERS[owner], member)
-    raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
-
 
 def setNumThreads(nthreads: int) -> None:
     """Threads of the OpenCV inside, as cv2.setNumThreads: 0 or 1 for the caller's alone, negative for the default."""
-    _core.setNumThreads(nthreads)
+    _core.setNumThreads(integer(nthreads, 'nthreads'))
 
 
 def getNumThreads() -> int:
     """Threads that a call may use."""
     return _core.getNumThreads()
 
-
-estimate_rotation, match_rotated = estimateRotation, matchRotated
-set_num_threads, get_num_threads = setNumThreads, getNumThreads

@@ -1,10 +1,13 @@
 """From what users have to what the extension takes: C-contiguous arrays of native byte order."""
 from __future__ import annotations
 
-from typing import Any, Optional, Sequence, Union
+import os
+from typing import Any, Callable, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
+
+from opencv_iib import _core
 
 #: An array, or a sequence of them.
 ArrayOrArrays = Union[ArrayLike, Sequence[ArrayLike]]
@@ -23,6 +26,8 @@ def as_array(value: Any, what: str) -> np.ndarray:
         raise TypeError(f'{what}: {type(value).__name__} is no array that numpy can read ({e})') from None
     if array.dtype.kind not in 'buif' or array.ndim == 0:
         raise TypeError(f'{what}: an array of numbers is needed, not {type(value).__name__} of {array.dtype}')
+    if array.dtype.itemsize > 8:  # a longdouble
+        array = array.astype(np.float64)
     if not array.dtype.isnative:
         array = array.astype(array.dtype.newbyteorder('='))
     return np.ascontiguousarray(array)
@@ -30,8 +35,14 @@ def as_array(value: Any, what: str) -> np.ndarray:
 
 def as_image(value: ArrayLike) -> np.ndarray:
     """An image; a tensor of torch or kornia (C x H x W or 1 x C x H x W, RGB) becomes H x W x C, BGR."""
+    if value is None:
+        raise TypeError('the image is None: did cv2.imread find the file?')
+    if isinstance(value, (str, os.PathLike)):
+        raise TypeError(f'the image is a path, {value!s}: pass the image, as cv2.imread reads it')
     image = as_array(value, 'the image')
     if isinstance(value, np.ndarray) or not hasattr(value, '__dlpack__'):
+        if image.ndim == 3 and image.shape[2] > 4 and len(image) in (1, 3, 4):
+            raise _core.error(f'the image has the shape {image.shape}: channels come last, as np.moveaxis(image, 0, 2) has them')
         return image
     if image.ndim == 4 and len(image) == 1:
         image = image[0]
@@ -40,10 +51,22 @@ def as_image(value: ArrayLike) -> np.ndarray:
     return image
 
 
-def as_arrays(values: Optional[ArrayOrArrays], what: str) -> list[np.ndarray]:
+def as_codes(value: ArrayLike, what: str) -> np.ndarray:
+    """Rows of bytes.
+
+    :raises opencv_iib.error: for other numbers, such as SIFT's descriptors.
+    """
+    codes = as_array(value, what)
+    if codes.size and codes.dtype not in (np.uint8, bool):
+        raise _core.error(f'{what}: binary codes are uint8, not {codes.dtype}; Hamming distances of other numbers mean nothing')
+    return codes
+
+
+def as_arrays(values: Optional[ArrayOrArrays], what: str, check: Callable[[Any, str], np.ndarray] = as_array
+              ) -> list[np.ndarray]:
     """One array, or a sequence of them, as a list."""
     if values is None:
         return []
     if isinstance(values, np.ndarray) or not isinstance(values, Sequence):
-        return [as_array(values, what)]
-    return [as_array(value, what) for value in values]
+        return [check(values, what)]
+    return [check(value, what) for value in values]

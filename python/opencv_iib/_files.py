@@ -2,7 +2,9 @@
 from __future__ import annotations
 
 import os
-from contextlib import contextmanager
+import shutil
+import uuid
+from contextlib import contextmanager, suppress
 from typing import Iterator
 
 try:
@@ -22,6 +24,28 @@ def output_file(path: str) -> str:
     if not os.path.isdir(os.path.dirname(target)):
         raise FileNotFoundError(f'{path}: there is no folder {os.path.dirname(target)}')
     return target
+
+
+def write_whole(path: str, content: bytes) -> None:
+    """Writes a file beside the old one, and puts it in its place when all of it is on the disk.
+
+    :raises OSError: for a full disk too; the old file stays.
+    """
+    target = output_file(path)
+    # A device, such as /dev/stdout, is no file that could be replaced.
+    part = target if os.path.exists(target) and not os.path.isfile(target) else f'{target}.{uuid.uuid4().hex[:8]}'
+    try:
+        with open(part, 'wb') as file:
+            file.write(content)
+        if part != target:
+            if os.path.exists(target):
+                shutil.copymode(target, part)
+            os.replace(part, target)
+    except OSError as e:
+        if part != target:
+            with suppress(OSError):
+                os.unlink(part)
+        raise type(e)(f'{path} cannot be written: {e.strerror}') from None
 
 
 @contextmanager

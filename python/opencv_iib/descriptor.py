@@ -1,22 +1,26 @@
 """IIBDescriptorExtractor: the class of cv2.iib, for arrays and for the objects of any cv2."""
 from __future__ import annotations
 
-from typing import Any, Optional, TypeVar
+import gzip
+import os
+import warnings
+from typing import Any, Optional, TypeVar, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
+from opencv_iib._arguments import Path, integer, number
 from opencv_iib._arrays import ArrayOrArrays, as_array, as_arrays, as_image
-from opencv_iib._names import Method, Parameter, Path
+from opencv_iib._files import write_whole
 from opencv_iib.detectors import Detector, HessianDetector, core_detector, for_pickle
-from opencv_iib.enums import Border, Channel, Mapping, Orientation, Preset
+from opencv_iib.enums import Border, Channel, Mapping, Orientation, Preset, preset_number
 from opencv_iib.keypoints import Keypoints, as_rows
 
 K = TypeVar('K', bound=Keypoints)
 
 
-class IIBDescriptorExtractor(Detector, enums=(Channel, Mapping, Border, Orientation, Preset)):
+class IIBDescriptorExtractor(Detector):
     """Illumination-insensitive binary descriptor; names, keywords and bits are those of ``cv2.iib``.
 
     Images are H x W, H x W x 3 (BGR) or H x W x 4 (BGRA) arrays of uint8, uint16 or float32, of any strides.
@@ -27,6 +31,16 @@ class IIBDescriptorExtractor(Detector, enums=(Channel, Mapping, Border, Orientat
     One object may serve several threads as long as none changes its parameters; the GIL is released meanwhile.
     Mistakes raise :class:`opencv_iib.error`, a TypeError if an argument is no array at all.
     """
+
+    CHANNEL_GRAD_X, CHANNEL_GRAD_Y, CHANNEL_ORIENTATION = Channel.GRAD_X, Channel.GRAD_Y, Channel.ORIENTATION
+    CHANNEL_INTENSITY, CHANNEL_SIGNED_GRAD_X = Channel.INTENSITY, Channel.SIGNED_GRAD_X
+    CHANNEL_SIGNED_GRAD_Y, CHANNELS_DEFAULT = Channel.SIGNED_GRAD_Y, Channel.DEFAULT
+    (MAPPING_MEAN, MAPPING_MAX, MAPPING_MIN, MAPPING_QUARTILE, MAPPING_SORT, MAPPING_HAAR, MAPPING_PAIRWISE,
+     MAPPING_BOXES) = Mapping
+    BORDER_CLAMP, BORDER_DROP, BORDER_REFLECT = Border
+    ORIENTATION_NONE, ORIENTATION_KEYPOINT, ORIENTATION_GRADIENT = Orientation
+    (PRESET_S128, PRESET_S256, PRESET_S512, PRESET_ACCURATE, PRESET_COMPACT, PRESET_TINY, PRESET_BALANCED,
+     PRESET_VIEWPOINT, PRESET_UNIVERSAL, PRESET_SMALL) = Preset
 
     def __init__(self, scaleFactor: float = 2.0, granularity: int = 4, channels: int = Channel.DEFAULT,
                  mapping: int = Mapping.MEAN, overlap: bool = False, useOrientation: bool = False,
@@ -41,22 +55,41 @@ class IIBDescriptorExtractor(Detector, enums=(Channel, Mapping, Border, Orientat
         :param useOrientation: turn the square by a keypoint's angle.
         :param extraChannels: number of maps that computeWithChannels is given, 0 to 16.
         """
-        self._core = _core.Extractor.create(scaleFactor, granularity, channels, mapping, overlap, useOrientation,
-                                            extraChannels)
+        self._core = _core.Extractor.create(
+            number(scaleFactor, 'scaleFactor'), integer(granularity, 'granularity'), integer(channels, 'channels'),
+            integer(mapping, 'mapping'), bool(overlap), bool(useOrientation), integer(extraChannels, 'extraChannels'))
 
     @classmethod
-    def createPreset(cls, preset: int, scaleFactor: float = 2.0) -> IIBDescriptorExtractor:
-        """Creates an extractor with a learned selection: one of PRESET_."""
-        return cls._of(_core.Extractor.createPreset(preset, scaleFactor))
+    def create(cls, scaleFactor: float = 2.0, granularity: int = 4, channels: int = Channel.DEFAULT,
+               mapping: int = Mapping.MEAN, overlap: bool = False, useOrientation: bool = False,
+               extraChannels: int = 0) -> IIBDescriptorExtractor:
+        """Creates an extractor, as the class itself does."""
+        return cls(scaleFactor, granularity, channels, mapping, overlap, useOrientation, extraChannels)
 
     @classmethod
-    def createFor(cls, detector: Any, preset: int = -1) -> IIBDescriptorExtractor:
+    def createPreset(cls, preset: Union[int, str], scaleFactor: Optional[float] = None) -> IIBDescriptorExtractor:
+        """Creates an extractor with a learned selection, for keypoints that you have.
+
+        :param preset: one of PRESET_, of :class:`Preset`, or its name: 'COMPACT'.
+        :param scaleFactor: what the detector's keypoints need, see scaleFactorFor. Without one it is 2, ORB's, and there is
+            a warning, since other detectors' keypoints lose most matches by it: ``createFor(detector, preset)`` knows the
+            detector's own.
+        """
+        if scaleFactor is None:
+            warnings.warn("createPreset without a scaleFactor takes 2, ORB's: for other keypoints say "
+                          "scaleFactor=IIB.scaleFactorFor('AKAZE'), or use createFor(detector, preset)", stacklevel=2)
+            scaleFactor = 2.0
+        return cls._of(_core.Extractor.createPreset(integer(preset_number(preset), 'preset'),
+                                                    number(scaleFactor, 'scaleFactor')))
+
+    @classmethod
+    def createFor(cls, detector: Any, preset: Union[int, str] = -1) -> IIBDescriptorExtractor:
         """Creates an extractor for a detector object, of any cv2: with its scale factor, and it detects.
 
         :param detector: has ``detect(image, mask)``; its ``getDefaultName()`` or its class's name gives the factor.
-        :param preset: one of PRESET_; -1 for the paper's default descriptor.
+        :param preset: one of PRESET_, of :class:`Preset`, or its name; -1 for the paper's default descriptor.
         """
-        extractor = cls._of(_core.Extractor.createFor(core_detector(detector), preset))
+        extractor = cls._of(_core.Extractor.createFor(core_detector(detector), integer(preset_number(preset), 'preset')))
         extractor._detector = detector
         return extractor
 
@@ -121,20 +154,89 @@ class IIBDescriptorExtractor(Detector, enums=(Channel, Mapping, Border, Orientat
         """What setDetector was given; None for the default, the ORB of the OpenCV inside."""
         return self._detector
 
-    levelSizes = Method('() -> tuple[int, ...]', 'Bytes of each level, coarse first; their sum is descriptorSize().')
-    descriptorType = Method('() -> int', 'CV_8U, which is 0.')
-    defaultNorm = Method('() -> int', 'NORM_HAMMING, which is 6.')
+    def levelSizes(self) -> tuple[int, ...]:
+        """Bytes of each level, coarse first; their sum is descriptorSize()."""
+        return tuple(self._core.levelSizes())
 
-    scaleFactor = Parameter(float, "Side of the described square in units of a keypoint's size, > 0.")
-    granularity = Parameter(int, 'Number of levels, 1 to 6. Another one ends a selection, as other channels, mapping or overlap do.')
-    channels = Parameter(Channel, 'A sum of CHANNEL_ values; may be 0 if there are extra channels.')
-    mapping = Parameter(Mapping, 'One of MAPPING_.')
-    overlap = Parameter(bool, 'Whether the windows of 2 x 2 cells slide by one cell instead of two.')
-    useOrientation = Parameter(bool, 'True: ORIENTATION_KEYPOINT, False: ORIENTATION_NONE.')
-    extraChannels = Parameter(int, 'Number of maps that computeWithChannels is given, 0 to 16.')
-    border = Parameter(Border, 'One of BORDER_.')
+    def descriptorType(self) -> int:
+        """CV_8U, which is 0."""
+        return self._core.descriptorType()
 
-    orientation = Parameter(Orientation, 'How the described squares are turned: one of ORIENTATION_.', 'mode')
+    def defaultNorm(self) -> int:
+        """NORM_HAMMING, which is 6."""
+        return self._core.defaultNorm()
+
+    def setScaleFactor(self, scaleFactor: float) -> None:
+        """Side of the described square in units of a keypoint's size, > 0."""
+        self._core.scaleFactor = number(scaleFactor, 'scaleFactor')
+
+    def getScaleFactor(self) -> float:
+        """See setScaleFactor."""
+        return self._core.scaleFactor
+
+    def setGranularity(self, granularity: int) -> None:
+        """Number of levels, 1 to 6. Another one ends a selection, as other channels, mapping or overlap do."""
+        self._core.granularity = integer(granularity, 'granularity')
+
+    def getGranularity(self) -> int:
+        """See setGranularity."""
+        return self._core.granularity
+
+    def setChannels(self, channels: int) -> None:
+        """A sum of CHANNEL_ values; may be 0 if there are extra channels."""
+        self._core.channels = integer(channels, 'channels')
+
+    def getChannels(self) -> Channel:
+        """See setChannels."""
+        return Channel(self._core.channels)
+
+    def setMapping(self, mapping: int) -> None:
+        """One of MAPPING_."""
+        self._core.mapping = integer(mapping, 'mapping')
+
+    def getMapping(self) -> Mapping:
+        """See setMapping."""
+        return Mapping(self._core.mapping)
+
+    def setOverlap(self, overlap: bool) -> None:
+        """Whether the windows of 2 x 2 cells slide by one cell instead of two."""
+        self._core.overlap = bool(overlap)
+
+    def getOverlap(self) -> bool:
+        """See setOverlap."""
+        return self._core.overlap
+
+    def setUseOrientation(self, useOrientation: bool) -> None:
+        """True: ORIENTATION_KEYPOINT, False: ORIENTATION_NONE."""
+        self._core.useOrientation = bool(useOrientation)
+
+    def getUseOrientation(self) -> bool:
+        """Whether the orientation is another than ORIENTATION_NONE."""
+        return self._core.useOrientation
+
+    def setOrientation(self, mode: int) -> None:
+        """How the described squares are turned: one of ORIENTATION_."""
+        self._core.orientation = integer(mode, 'orientation')
+
+    def getOrientation(self) -> Orientation:
+        """See setOrientation."""
+        return Orientation(self._core.orientation)
+
+    def setExtraChannels(self, extraChannels: int) -> None:
+        """Number of maps that computeWithChannels is given, 0 to 16."""
+        self._core.extraChannels = integer(extraChannels, 'extraChannels')
+
+    def getExtraChannels(self) -> int:
+        """See setExtraChannels."""
+        return self._core.extraChannels
+
+    def setBorder(self, border: int) -> None:
+        """One of BORDER_."""
+        self._core.border = integer(border, 'border')
+
+    def getBorder(self) -> Border:
+        """See setBorder."""
+        return Border(self._core.border)
 
     def setSelection(self, quads: ArrayLike) -> None:
         """Restricts the descriptor to chosen quads.
@@ -143,26 +245,43 @@ class IIBDescriptorExtractor(Detector, enums=(Channel, Mapping, Border, Orientat
         """
         self._core.setSelection(as_array(quads, 'the selection'))
 
-    getSelection = Method('() -> NDArray[np.int32]', 'Q x 5 int32, as setSelection takes it; 0 x 5 if there is no selection.')
-    save = Method('(filename: Path) -> None', 'Writes the parameters, but not the detector, to a .yml, .xml or .json file, as '
-                  'Algorithm::save does.')
-    write = Method('(fileName: Path) -> None', 'Writes the parameters, but not the detector, to a .yml, .xml or .json file, '
-                   'which read() and C++ read.')
-    read = Method('(fileName: Path) -> None', 'Reads what write() or C++ wrote.')
+    def getSelection(self) -> NDArray[np.int32]:
+        """Q x 5 int32, as setSelection takes it; 0 x 5 if there is no selection."""
+        return self._core.getSelection()
+
+    def save(self, filename: Path) -> None:
+        """As write()."""
+        self.write(filename)
+
+    def write(self, fileName: Path) -> None:
+        """Writes the parameters, but not the detector, to a .yml, .xml or .json file, which read() and C++ read.
+
+        :raises opencv_iib.error: if it cannot be written whole; an older file is there then as it was.
+        """
+        name = os.fsdecode(fileName)
+        packed = name.endswith('.gz')
+        content = self._core.parameters(os.path.splitext(name[:-3] if packed else name)[1]).encode()
+        try:
+            write_whole(name, gzip.compress(content) if packed else content)
+        except OSError as e:
+            raise _core.error(str(e)) from None
+
+    def read(self, fileName: Path) -> None:
+        """Reads what write() or C++ wrote."""
+        self._core.read(fileName)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {'parameters': self._core.parameters(), 'detector': for_pickle(self._detector)}
+        return {**super().__getstate__(), '_detector': for_pickle(self._detector)}
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self._core = _core.Extractor.create(2.0, 4, 15, 0, False, False, 0)
-        self._core.setParameters(state['parameters'])
-        if state['detector'] is not None:
-            self.setDetector(state['detector'])
+    def _parameters(self) -> str:
+        return self._core.parameters('.json')
 
-    def __copy__(self) -> IIBDescriptorExtractor:
-        twin = type(self).__new__(type(self))
-        twin.__setstate__({'parameters': self._core.parameters(), 'detector': self._detector})
-        return twin
+    def _restored(self, parameters: str) -> Any:
+        core = _core.Extractor.create(2.0, 4, 15, 0, False, False, 0)
+        core.setParameters(parameters)
+        if self._detector is not None:
+            core.setDetector(core_detector(self._detector))
+        return core
 
     def __repr__(self) -> str:
         return f'{type(self).__name__}({self.descriptorSize()} bytes, scaleFactor={self.getScaleFactor():g})'

@@ -1,7 +1,6 @@
 """Detectors of Python, such as those of a foreign cv2, behind the classes of this package; the package's own."""
 from __future__ import annotations
 
-import copy
 import weakref
 from typing import Any, Callable, Optional
 
@@ -9,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
+from opencv_iib._arguments import integer, number
 from opencv_iib._arrays import as_array, as_image
-from opencv_iib._names import Method, Parameter, SnakeCase
+from opencv_iib._core_object import CoreObject
 from opencv_iib.keypoints import Keypoints, array_to_keypoints, as_rows
 
 
@@ -30,6 +30,9 @@ def core_detector(detector: Any) -> _core.Detector:
     core = getattr(detector, '_core', None)
     if isinstance(core, _core.Detector):
         return core
+    if isinstance(detector, (str, type)):
+        name = detector if isinstance(detector, str) else detector.__name__
+        raise TypeError(f'a detector is needed, not the name of one or a class: pass an object, such as cv2.{name}_create()')
     if not callable(getattr(detector, 'detect', None)):
         raise TypeError(f'a detector has a method detect(image, mask), and {type(detector).__name__} has none')
     # The object that detects keeps it alive; the garbage collector could not see a reference from within the extension.
@@ -53,7 +56,7 @@ def detect_rows(owner: Any, image: ArrayLike, mask: Optional[ArrayLike]) -> NDAr
     return rows
 
 
-class Detector(SnakeCase):
+class Detector(CoreObject):
     """What finds keypoints: the base of the detectors and of the descriptor of this package."""
 
     _detector: Any = None  #: what its user gave it
@@ -65,12 +68,17 @@ class Detector(SnakeCase):
         """
         return array_to_keypoints(detect_rows(self, image, mask))
 
-    descriptorSize = Method('() -> int', 'Bytes of a descriptor; 0 of a detector that describes nothing.')
-    empty = Method('() -> bool', 'False: it is always ready.')
-    getDefaultName = Method('() -> str', 'The name of its parameters in files, such as Feature2D.IIB.')
+    def descriptorSize(self) -> int:
+        """Bytes of a descriptor; 0 of a detector that describes nothing."""
+        return self._core.descriptorSize()
 
-    def __deepcopy__(self, memo: Any) -> Any:
-        return copy.copy(self)
+    def empty(self) -> bool:
+        """False: it is always ready."""
+        return self._core.empty()
+
+    def getDefaultName(self) -> str:
+        """The name of its parameters in files, such as Feature2D.IIB."""
+        return self._core.getDefaultName()
 
 
 class MissingDetector:
@@ -111,17 +119,62 @@ class HessianDetector(Detector):
         :param sigma: of the smallest scale in pixels, 1.5 to 8.
         :param normalizationSigma: of the local normalization's Gaussian in pixels, 2 to 256.
         """
-        self._core = _core.HessianDetector.create(maxFeatures, threshold, scales, sigma, normalizationSigma)
+        self._core = _core.HessianDetector.create(
+            integer(maxFeatures, 'maxFeatures'), number(threshold, 'threshold'), integer(scales, 'scales'),
+            number(sigma, 'sigma'), number(normalizationSigma, 'normalizationSigma'))
 
-    maxFeatures = Parameter(int, 'The strongest that are kept; 0 keeps all.')
-    threshold = Parameter(float, 'Smallest response, 0 or more.')
-    scales = Parameter(int, 'Number of scales, 1 to 8, each sqrt(2) times the one before.')
-    sigma = Parameter(float, 'Of the smallest scale in pixels, 1.5 to 8.')
-    normalizationSigma = Parameter(float, "Of the local normalization's Gaussian in pixels, 2 to 256.")
+    @classmethod
+    def create(cls, maxFeatures: int = 1000, threshold: float = 0.0, scales: int = 5, sigma: float = 2.2,
+               normalizationSigma: float = 5.0) -> HessianDetector:
+        """Creates a detector, as the class itself does."""
+        return cls(maxFeatures, threshold, scales, sigma, normalizationSigma)
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self.getMaxFeatures(), self.getThreshold(), self.getScales(), self.getSigma(),
-                            self.getNormalizationSigma())
+    def setMaxFeatures(self, maxFeatures: int) -> None:
+        """The strongest that are kept; 0 keeps all."""
+        self._core.maxFeatures = integer(maxFeatures, 'maxFeatures')
+
+    def getMaxFeatures(self) -> int:
+        """See setMaxFeatures."""
+        return self._core.maxFeatures
+
+    def setThreshold(self, threshold: float) -> None:
+        """Smallest response, 0 or more."""
+        self._core.threshold = number(threshold, 'threshold')
+
+    def getThreshold(self) -> float:
+        """See setThreshold."""
+        return self._core.threshold
+
+    def setScales(self, scales: int) -> None:
+        """Number of scales, 1 to 8, each sqrt(2) times the one before."""
+        self._core.scales = integer(scales, 'scales')
+
+    def getScales(self) -> int:
+        """See setScales."""
+        return self._core.scales
+
+    def setSigma(self, sigma: float) -> None:
+        """Of the smallest scale in pixels, 1.5 to 8."""
+        self._core.sigma = number(sigma, 'sigma')
+
+    def getSigma(self) -> float:
+        """See setSigma."""
+        return self._core.sigma
+
+    def setNormalizationSigma(self, normalizationSigma: float) -> None:
+        """Of the local normalization's Gaussian in pixels, 2 to 256."""
+        self._core.normalizationSigma = number(normalizationSigma, 'normalizationSigma')
+
+    def getNormalizationSigma(self) -> float:
+        """See setNormalizationSigma."""
+        return self._core.normalizationSigma
+
+    def _parameters(self) -> tuple[Any, ...]:
+        return (self.getMaxFeatures(), self.getThreshold(), self.getScales(), self.getSigma(),
+                self.getNormalizationSigma())
+
+    def _restored(self, parameters: tuple[Any, ...]) -> Any:
+        return _core.HessianDetector.create(*parameters)
 
     def __repr__(self) -> str:
         return f'{type(self).__name__}(maxFeatures={self.getMaxFeatures()}, sigma={self.getSigma():g})'
@@ -140,8 +193,13 @@ class NormalizedDetector(Detector):
         :param detector: of any cv2, or any object with ``detect(image, mask)``.
         :param sigma: of the Gaussian filter in pixels, 1 to 256.
         """
-        self._core = _core.NormalizedDetector.create(core_detector(detector), sigma)
+        self._core = _core.NormalizedDetector.create(core_detector(detector), number(sigma, 'sigma'))
         self._detector = detector
+
+    @classmethod
+    def create(cls, detector: Any, sigma: float = 4.0) -> NormalizedDetector:
+        """Wraps a detector, as the class itself does."""
+        return cls(detector, sigma)
 
     def compute(self, image: Any, keypoints: Any) -> Any:
         """The descriptors of the detector inside, on the plain image: what its own ``compute`` gives."""
@@ -158,7 +216,13 @@ class NormalizedDetector(Detector):
         """The detector inside."""
         return self._detector
 
-    sigma = Parameter(float, 'Of the Gaussian filter in pixels, 1 to 256.')
+    def setSigma(self, sigma: float) -> None:
+        """Of the Gaussian filter in pixels, 1 to 256."""
+        self._core.sigma = number(sigma, 'sigma')
+
+    def getSigma(self) -> float:
+        """See setSigma."""
+        return self._core.sigma
 
     def descriptorSize(self) -> int:
         """Of the detector inside; 0 if it describes nothing."""
@@ -172,11 +236,14 @@ class NormalizedDetector(Detector):
         """Of the detector inside."""
         return _number(self._detector, 'defaultNorm')
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (for_pickle(self._detector), self.getSigma())
+    def __getstate__(self) -> dict[str, Any]:
+        return {**super().__getstate__(), '_detector': for_pickle(self._detector)}
 
-    def __copy__(self) -> NormalizedDetector:
-        return type(self)(self._detector, self.getSigma())
+    def _parameters(self) -> float:
+        return self.getSigma()
+
+    def _restored(self, parameters: float) -> Any:
+        return _core.NormalizedDetector.create(core_detector(self._detector), parameters)
 
     def __repr__(self) -> str:
         return f'{type(self).__name__}({detector_name(self._detector)}, sigma={self.getSigma():g})'

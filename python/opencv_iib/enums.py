@@ -1,10 +1,18 @@
 """Values of parameters by name; each is the integer of ``cv2.iib`` as well."""
 from __future__ import annotations
 
-from enum import IntEnum, IntFlag
+from enum import EnumMeta, IntEnum, IntFlag
+from typing import Union
 
 
-class Channel(IntFlag):
+class _OnlyMembers(EnumMeta):
+    """help() and dir() show an enum's members, and not the methods of int."""
+
+    def __dir__(cls) -> list[str]:
+        return ['__doc__', '__module__', *cls.__members__]
+
+
+class Channel(IntFlag, metaclass=_OnlyMembers):
     """What of the image is compared; a sum of these."""
 
     GRAD_X = 1
@@ -16,31 +24,56 @@ class Channel(IntFlag):
     DEFAULT = 15
 
 
-class Mapping(IntEnum):
+class Mapping(IntEnum, metaclass=_OnlyMembers):
     """How the four cells of a quad become bits."""
 
     MEAN, MAX, MIN, QUARTILE, SORT, HAAR, PAIRWISE, BOXES = range(8)
 
 
-class Border(IntEnum):
+class Border(IntEnum, metaclass=_OnlyMembers):
     """What happens to keypoints whose region leaves the image."""
 
     CLAMP, DROP, REFLECT = range(3)
 
 
-class Orientation(IntEnum):
+class Orientation(IntEnum, metaclass=_OnlyMembers):
     """How the described squares are turned."""
 
     NONE, KEYPOINT, GRADIENT = range(3)
 
 
-class Preset(IntEnum):
-    """Descriptors whose bits were learned."""
+class Preset(IntEnum, metaclass=_OnlyMembers):
+    """Descriptors whose bits were learned.
+
+    ========= ===== ==============================================================================================
+    name      bytes for
+    ========= ===== ==============================================================================================
+    UNIVERSAL 128   light and camera both change, or you do not know yet
+    SMALL     32    the same where memory is scarce
+    VIEWPOINT 64    the camera moves far
+    BALANCED  64    the camera moves, and the light changes more than the view
+    ACCURATE  170   a still camera, and every match counts
+    COMPACT   64    a still camera, many images to keep
+    TINY      32    a still camera, and memory is scarce
+    S512      64    the paper's default, shortened; likewise S256 (32 bytes) and S128 (16)
+    ========= ===== ==============================================================================================
+    """
 
     S128, S256, S512, ACCURATE, COMPACT, TINY, BALANCED, VIEWPOINT, UNIVERSAL, SMALL = range(10)
 
 
-class Mode(IntEnum):
+class Mode(IntEnum, metaclass=_OnlyMembers):
     """How the matcher searches."""
 
     EXACT, THRESHOLD, ADAPTIVE = range(3)
+
+
+def preset_number(preset: Union[int, str]) -> Union[int, str]:
+    """A preset's number, of its name in any case, with PRESET_ before it or without; what is no name stays as it is."""
+    if not isinstance(preset, str):
+        return preset
+    name = preset.upper()
+    name = name[len('PRESET_'):] if name.startswith('PRESET_') else name
+    if name not in Preset.__members__:
+        raise ValueError(f'there is no preset {preset!r}, but {", ".join(Preset.__members__)}')
+    return Preset[name]

@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
-from opencv_iib._arrays import ArrayOrArrays, as_array, as_arrays
-from opencv_iib._names import Method, Path, SnakeCase
+from opencv_iib._arguments import Path, integer, integers
+from opencv_iib._arrays import ArrayOrArrays, as_arrays, as_codes
+from opencv_iib._core_object import CoreObject
 
 
-class MappedIndex(SnakeCase):
+class MappedIndex(CoreObject):
     """Binary codes in a folder of files that are mapped into memory, as C++'s cv::iib::MappedIndex writes and reads them.
 
     For more codes than memory should hold, for several processes that search the same codes, and for programs that should
@@ -40,26 +41,55 @@ class MappedIndex(SnakeCase):
 
         :param levelSizes: bytes of each level, coarse first, as of HierarchicalMatcher; one level is enough.
         """
-        _core.MappedIndex.create(os.fspath(folder), levelSizes)
+        _core.MappedIndex.create(folder, integers(levelSizes, 'levelSizes'))
         return cls(folder)
 
-    levelSizes = Method('() -> tuple[int, ...]', 'Bytes of each level, coarse first.')
-    images = Method('() -> int', 'Images ever added.')
-    rows = Method('() -> int', 'Rows ever added.')
-    segments = Method('() -> int', 'Files of codes, one for each call of :meth:`add`.')
-    version = Method('() -> int', 'A number that changes with every commit.')
-    imageOf = Method('(row: int) -> int', 'The image of a row.')
-    firstRow = Method('(image: int) -> int', 'The first row of an image.')
-    descriptors = Method('(image: int) -> NDArray[np.uint8]', 'A copy of the descriptors of an image.')
-    remove = Method('(images: Sequence[int]) -> None', 'Hides images from all searches; their codes stay on the disk.')
-    refresh = Method('() -> None', 'Goes on to the last commit.')
+    def levelSizes(self) -> tuple[int, ...]:
+        """Bytes of each level, coarse first."""
+        return tuple(self._core.levelSizes())
+
+    def images(self) -> int:
+        """Images ever added."""
+        return self._core.images()
+
+    def rows(self) -> int:
+        """Rows ever added."""
+        return self._core.rows()
+
+    def segments(self) -> int:
+        """Files of codes, one for each call of :meth:`add`."""
+        return self._core.segments()
+
+    def version(self) -> int:
+        """A number that changes with every commit."""
+        return self._core.version()
+
+    def imageOf(self, row: int) -> int:
+        """The image of a row."""
+        return self._core.imageOf(integer(row, 'row', 64))
+
+    def firstRow(self, image: int) -> int:
+        """The first row of an image."""
+        return self._core.firstRow(integer(image, 'image', 64))
+
+    def descriptors(self, image: int) -> NDArray[np.uint8]:
+        """A copy of the descriptors of an image."""
+        return self._core.descriptors(integer(image, 'image', 64))
+
+    def remove(self, images: Sequence[int]) -> None:
+        """Hides images from all searches; their codes stay on the disk."""
+        self._core.remove(integers(images, 'images', 64))
+
+    def refresh(self) -> None:
+        """Goes on to the last commit."""
+        self._core.refresh()
 
     def add(self, descriptors: ArrayOrArrays) -> None:
         """Adds the descriptors of one image (an array) or of several (a sequence of arrays), and commits them.
 
         They become one file. Add many images at once: searches like files of 100,000 rows and more.
         """
-        self._core.add(as_arrays(descriptors, 'descriptors'))
+        self._core.add(as_arrays(descriptors, 'descriptors', as_codes))
 
     def search(self, queryDescriptors: ArrayLike, k: int = 1, segment: Optional[int] = None
                ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
@@ -68,10 +98,14 @@ class MappedIndex(SnakeCase):
         :param segment: the number of the only file to search.
         :return: rows (int64) and distances (int32), queries x k, -1 where there are fewer.
         """
-        return self._core.search(as_array(queryDescriptors, 'queries'), k, -1 if segment is None else segment)
+        return self._core.search(as_codes(queryDescriptors, 'queries'), integer(k, 'k'),
+                                 -1 if segment is None else integer(segment, 'segment'))
 
-    def __reduce__(self) -> Any:
-        return type(self), (self._folder,)
+    def _parameters(self) -> Any:
+        return self._folder
+
+    def _restored(self, parameters: Any) -> Any:
+        return _core.MappedIndex.open(parameters)
 
     def __repr__(self) -> str:
         return f'{type(self).__name__}({self._folder!r})'

@@ -1,15 +1,15 @@
 """HierarchicalMatcher: the class of cv2.iib, on arrays."""
 from __future__ import annotations
 
-import os
 from typing import Any, Iterable, Optional, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
-from opencv_iib._arrays import ArrayOrArrays, as_array, as_arrays
-from opencv_iib._names import Method, Parameter, Path, SnakeCase
+from opencv_iib._arguments import Path, integer, integers, number
+from opencv_iib._arrays import ArrayOrArrays, as_array, as_arrays, as_codes
+from opencv_iib._core_object import CoreObject
 from opencv_iib._types import match_type
 from opencv_iib.enums import Mode
 
@@ -24,10 +24,6 @@ def _masks(masks: Any) -> Optional[list[Optional[np.ndarray]]]:
     return [None if mask is None else as_array(mask, 'a mask') for mask in masks]
 
 
-def _descriptors(descriptors: ArrayLike) -> np.ndarray:
-    return as_array(descriptors, 'descriptors')
-
-
 def _objects(matches: Iterable[Sequence[int]], queries: int, compact: bool) -> Matches:
     """A tuple for each query, empty ones left out if that is asked for, of its matches: (query, train, image, distance)."""
     make, rows = match_type(), [[] for _ in range(queries)]  # type: ignore[var-annotated]
@@ -36,7 +32,7 @@ def _objects(matches: Iterable[Sequence[int]], queries: int, compact: bool) -> M
     return tuple(tuple(row) for row in rows if row or not compact)
 
 
-class HierarchicalMatcher(SnakeCase):
+class HierarchicalMatcher(CoreObject):
     """Matcher of binary descriptors by Hamming distance; names, keywords and matches are those of ``cv2.iib``.
 
     Descriptors are N x bytes uint8 arrays. ``trainDescriptors`` given to a call are searched instead of those added.
@@ -62,10 +58,18 @@ class HierarchicalMatcher(SnakeCase):
         :param crossCheck: report only pairs that are among each other's nearest.
         """
         if levelSizes is not None:
-            self._core = _core.Matcher.create(list(levelSizes), mode, threshold, crossCheck)
+            self._core = _core.Matcher.create(integers(levelSizes, 'levelSizes'), integer(mode, 'mode'),
+                                              number(threshold, 'threshold'), bool(crossCheck))
         else:
             self._core = _core.Matcher.create()
-            self._core.mode, self._core.crossCheck = mode, crossCheck
+            self.setMode(mode)
+            self.setCrossCheck(crossCheck)
+
+    @classmethod
+    def create(cls, levelSizes: Optional[Sequence[int]] = None, mode: int = EXACT, threshold: float = 0.35,
+               crossCheck: bool = False) -> HierarchicalMatcher:
+        """Creates a matcher, as the class itself does."""
+        return cls(levelSizes, mode, threshold, crossCheck)
 
     @classmethod
     def createRecommended(cls) -> HierarchicalMatcher:
@@ -103,8 +107,8 @@ class HierarchicalMatcher(SnakeCase):
         """
         if isinstance(trainDescriptors, (int, float, np.number)):
             return self.radiusMatch(queryDescriptors, None, float(trainDescriptors), mask, compactResult, masks)
-        queries = _descriptors(queryDescriptors)
-        found = self._core.radiusMatch(queries, self._train(trainDescriptors), maxDistance,
+        queries = as_codes(queryDescriptors, 'descriptors')
+        found = self._core.radiusMatch(queries, self._train(trainDescriptors), number(maxDistance, 'maxDistance'),
                                        _masks(mask if masks is None else masks))
         return _objects(found.tolist(), len(queries), compactResult)
 
@@ -115,19 +119,24 @@ class HierarchicalMatcher(SnakeCase):
         :return: indices and distances, queries x k int32, -1 where there is none; among the descriptors added, the
             number of the image as well.
         """
-        return self._core.knnMatchArrays(_descriptors(queryDescriptors), self._train(trainDescriptors), k,
+        return self._core.knnMatchArrays(as_codes(queryDescriptors, 'descriptors'), self._train(trainDescriptors), integer(k, 'k'),
                                          _masks(mask if masks is None else masks))
 
     @staticmethod
     def _train(descriptors: Optional[ArrayLike]) -> Optional[np.ndarray]:
-        return None if descriptors is None else _descriptors(descriptors)
+        return None if descriptors is None else as_codes(descriptors, 'descriptors')
 
     def add(self, descriptors: ArrayOrArrays) -> None:
         """Adds the descriptors of one image (an array) or of several (a sequence of arrays); they are copied."""
-        self._core.add(as_arrays(descriptors, 'descriptors'))
+        self._core.add(as_arrays(descriptors, 'descriptors', as_codes))
 
-    clear = Method('() -> None', 'Forgets all train descriptors.')
-    empty = Method('() -> bool', 'True without train descriptors.')
+    def clear(self) -> None:
+        """Forgets all train descriptors."""
+        self._core.clear()
+
+    def empty(self) -> bool:
+        """True without train descriptors."""
+        return self._core.empty()
 
     def train(self) -> None:
         """Nothing: the index is ready after add()."""
@@ -136,46 +145,76 @@ class HierarchicalMatcher(SnakeCase):
         """True."""
         return True
 
-    getTrainDescriptors = Method('() -> tuple[NDArray[np.uint8], ...]', 'Copies of the descriptors added, an array an image.')
+    def getTrainDescriptors(self) -> tuple[NDArray[np.uint8], ...]:
+        """Copies of the descriptors added, an array an image."""
+        return tuple(self._core.getTrainDescriptors())
 
     def clone(self, emptyTrainData: bool = False) -> HierarchicalMatcher:
         """A copy; with emptyTrainData, of the parameters alone."""
-        return self._of(self._core.clone(emptyTrainData))
+        return self._of(self._core.clone(bool(emptyTrainData)))
 
-    levelSizes = Method('() -> tuple[int, ...]', 'Bytes of each level, coarse first; empty while a matcher created without them '
-                        'has seen no descriptors.')
-    mode = Parameter(Mode, 'EXACT, THRESHOLD or ADAPTIVE.')
-    setThresholds = Method('(thresholds: Sequence[float]) -> None', 'Of THRESHOLD, 0 to 1: one for every level but the last, or a '
-                           'single one for all.')
-    getThresholds = Method('() -> tuple[float, ...]', 'Of THRESHOLD, one a level.')
-    crossCheck = Parameter(bool, "Whether to report only pairs that are among each other's nearest.")
-    maxRatio = Parameter(float, 'Of the distances to the nearest and the second nearest, the largest in match, knnMatch and '
-                                'knnMatchArrays, in (0, 1]; 1 turns the test off.')
+    def levelSizes(self) -> tuple[int, ...]:
+        """Bytes of each level, coarse first; empty while a matcher created without them has seen no descriptors."""
+        return tuple(self._core.levelSizes())
 
-    matchCost = Method('() -> float', "The paper's MC: bits compared / bits brute force would compare, since resetCost(); 0 "
-                       'before any call.')
-    resetCost = Method('() -> None', 'Begins a new count for matchCost().')
-    saveIndex = Method('(filename: Path) -> None', 'Writes level sizes, parameters and all train descriptors to a binary file, the '
-                       'same as C++ writes.')
+    def setMode(self, mode: int) -> None:
+        """EXACT, THRESHOLD or ADAPTIVE."""
+        self._core.mode = integer(mode, 'mode')
+
+    def getMode(self) -> Mode:
+        """See setMode."""
+        return Mode(self._core.mode)
+
+    def setThresholds(self, thresholds: Sequence[float]) -> None:
+        """Of THRESHOLD, 0 to 1: one for every level but the last, or a single one for all."""
+        self._core.setThresholds([number(threshold, 'a threshold') for threshold in thresholds])
+
+    def getThresholds(self) -> tuple[float, ...]:
+        """Of THRESHOLD, one a level."""
+        return tuple(self._core.getThresholds())
+
+    def setCrossCheck(self, crossCheck: bool) -> None:
+        """Whether to report only pairs that are among each other's nearest."""
+        self._core.crossCheck = bool(crossCheck)
+
+    def getCrossCheck(self) -> bool:
+        """See setCrossCheck."""
+        return self._core.crossCheck
+
+    def setMaxRatio(self, maxRatio: float) -> None:
+        """Of the distances to the nearest and the second nearest, the largest in match, knnMatch and knnMatchArrays,
+        in (0, 1]; 1 turns the test off."""
+        self._core.maxRatio = number(maxRatio, 'maxRatio')
+
+    def getMaxRatio(self) -> float:
+        """See setMaxRatio."""
+        return self._core.maxRatio
+
+    def matchCost(self) -> float:
+        """The paper's MC: bits compared / bits brute force would compare, since resetCost(); 0 before any call."""
+        return self._core.matchCost()
+
+    def resetCost(self) -> None:
+        """Begins a new count for matchCost()."""
+        self._core.resetCost()
+
+    def saveIndex(self, filename: Path) -> None:
+        """Writes level sizes, parameters and all train descriptors to a binary file, the same as C++ writes."""
+        self._core.saveIndex(filename)
 
     @classmethod
     def loadIndex(cls, filename: Path) -> HierarchicalMatcher:
         """Reads what saveIndex wrote, here or in C++."""
-        return cls._of(_core.Matcher.loadIndex(os.fspath(filename)))
+        return cls._of(_core.Matcher.loadIndex(filename))
 
-    def __getstate__(self) -> dict[str, Any]:
-        return {'parameters': self._core.parameters(), 'descriptors': self.getTrainDescriptors()}
+    def _parameters(self) -> tuple[str, tuple[NDArray[np.uint8], ...]]:
+        return self._core.parameters(), self.getTrainDescriptors()
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self._core = _core.Matcher.create()
-        self._core.setParameters(state['parameters'])
-        self._core.add(list(state['descriptors']))
-
-    def __copy__(self) -> HierarchicalMatcher:
-        return self.clone()
-
-    def __deepcopy__(self, memo: Any) -> HierarchicalMatcher:
-        return self.clone()
+    def _restored(self, parameters: tuple[str, Sequence[NDArray[np.uint8]]]) -> Any:
+        core = _core.Matcher.create()
+        core.setParameters(parameters[0])
+        core.add(list(parameters[1]))
+        return core
 
     def __repr__(self) -> str:
         return f'{type(self).__name__}(levelSizes={list(self.levelSizes())})'

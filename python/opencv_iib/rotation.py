@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import _core
-from opencv_iib._arrays import as_array
+from opencv_iib._arguments import number
+from opencv_iib._arrays import as_array, as_image
 from opencv_iib._types import match_type
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.keypoints import Keypoints, array_to_keypoints, as_rows
@@ -26,7 +27,7 @@ def estimateRotation(keypoints1: Keypoints, keypoints2: Keypoints, matches1to2: 
         matches1to2 = np.array([(m.queryIdx, m.trainIdx) for m in matches1to2], np.int32).reshape(-1, 2)
     pairs = as_array(matches1to2, 'matches')
     if pairs.dtype.kind in 'iu':
-        pairs = pairs.astype(np.int32)
+        pairs = pairs.clip(-1, np.iinfo(np.int32).max).astype(np.int32)  # too large is as wrong as negative
     return _core.estimateRotation(np.ascontiguousarray(as_rows(keypoints1)), np.ascontiguousarray(as_rows(keypoints2)),
                                   pairs)
 
@@ -49,12 +50,16 @@ def matchRotated(image1: Any, image2: Any, extractor: IIBDescriptorExtractor, ma
         N x 7 where an array was given; matches as cv2.DMatch if cv2 is there, but M x 3 int32 (queryIdx, trainIdx,
         distance) where keypoints1 is an array.
     """
+    for given, name, kind in ((extractor, 'extractor', IIBDescriptorExtractor), (matcher, 'matcher', HierarchicalMatcher)):
+        if not isinstance(given, kind):
+            raise TypeError(f'{name}: an object of {kind.__name__} is needed, not {type(given).__name__}')
+    images, rotation, none = (as_image(image1), as_image(image2)), number(rotation, 'rotation'), as_rows([])
+    _core.matchRotated(images[0], none, images[1], none, extractor._core, matcher._core, rotation)  # mistakes, before it detects
     points = [extractor.detect(image) if given is None else given
-              for image, given in ((image1, keypoints1), (image2, keypoints2))]
+              for image, given in zip(images, (keypoints1, keypoints2))]
     rows = [np.ascontiguousarray(as_rows(given)) for given in points]
-    rotation, first, second, matches = _core.matchRotated(
-        as_array(image1, 'the image'), rows[0], as_array(image2, 'the image'), rows[1], extractor._core, matcher._core,
-        rotation)
+    rotation, first, second, matches = _core.matchRotated(images[0], rows[0], images[1], rows[1], extractor._core,
+                                                          matcher._core, rotation)
     found = [described if isinstance(given, np.ndarray) else array_to_keypoints(described)
              for given, described in zip(points, (first, second))]
     if isinstance(keypoints1, np.ndarray):

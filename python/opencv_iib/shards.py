@@ -16,9 +16,9 @@ from typing import Any, Callable, Iterable, Iterator, Optional, Sequence, Union
 
 import numpy as np
 
+from opencv_iib._arguments import Path
 from opencv_iib._arrays import as_array
 from opencv_iib._files import only_writer
-from opencv_iib._names import Path
 from opencv_iib.mapped_index import MappedIndex
 
 Arrays = tuple[np.ndarray, np.ndarray]

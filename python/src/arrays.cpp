@@ -54,9 +54,9 @@ std::vector<cv::Mat> viewsOf(const std::vector<Array>& arrays, const char* what)
     return views;
 }
 
-std::string parametersOf(const cv::Algorithm& self)
+std::string parametersOf(const cv::Algorithm& self, const std::string& extension)
 {
-    cv::FileStorage file(".json", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+    cv::FileStorage file("parameters" + extension, cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
     self.write(file);
     return file.releaseAndGetString();
 }
@@ -64,6 +64,15 @@ std::string parametersOf(const cv::Algorithm& self)
 void setParameters(cv::Algorithm& self, const std::string& text)
 {
     self.read(cv::FileStorage(text, cv::FileStorage::READ | cv::FileStorage::MEMORY).root());
+}
+
+std::string pathOf(nb::handle path)
+{
+    PyObject* bytes = nullptr;
+    if (!PyUnicode_FSConverter(path.ptr(), &bytes))
+        throw nb::python_error();
+    const nb::bytes name = nb::steal<nb::bytes>(bytes);
+    return std::string(name.c_str(), name.size());
 }
 
 nb::object toNumpy(const cv::Mat& matrix)

@@ -47,11 +47,14 @@ cv::Mat viewOf(const Array& array, const char* what);
 
 std::vector<cv::Mat> viewsOf(const std::vector<Array>& arrays, const char* what);
 
+//! A file's name as the system has it, of a str, bytes or os.PathLike. What is none raises Python's own exceptions.
+std::string pathOf(nb::handle path);
+
 //! A numpy array that owns the matrix's memory. The matrix has one channel and is continuous.
 nb::object toNumpy(const cv::Mat& matrix);
 
-//! What write() tells, as text.
-std::string parametersOf(const cv::Algorithm& self);
+//! What write() tells, as text in the format of a file with this extension.
+std::string parametersOf(const cv::Algorithm& self, const std::string& extension = ".json");
 void setParameters(cv::Algorithm& self, const std::string& text);
 
 //! Queries that are searched at once: with a million codes, less than a second on one core.

@@ -49,13 +49,6 @@ cv::Ptr<Extractor> withoutDetector(const Extractor& self)
     return result;
 }
 
-//! OpenCV goes on where it cannot open a file.
-void expect(const std::ios& opened, const std::string& file, const char* what)
-{
-    if (!opened)
-        CV_Error_(cv::Error::StsError, ("%s cannot be %s", file.c_str(), what));
-}
-
 }  // namespace
 
 void bindExtractor(nb::module_& m)
@@ -88,22 +81,19 @@ void bindExtractor(nb::module_& m)
                         const cv::Mat quads = self.getSelection();
                         return toNumpy(quads.empty() ? cv::Mat(0, 5, CV_32S) : quads);
                     })
-            .def("save",
-                    [](const Extractor& self, const std::string& file) {
-                        expect(std::ofstream(file), file, "written");
-                        withoutDetector(self)->save(file);
+            .def(
+                    "read",
+                    [](Extractor& self, nb::object file) {
+                        const std::string name = pathOf(file);
+                        if (!std::ifstream(name))  // OpenCV goes on where it cannot open a file
+                            CV_Error_(cv::Error::StsError, ("%s cannot be read", name.c_str()));
+                        static_cast<cv::Feature2D&>(self).read(name);
+                    },
+                    nb::arg().none())
+            .def("parameters",
+                    [](const Extractor& self, const std::string& extension) {
+                        return parametersOf(*withoutDetector(self), extension);
                     })
-            .def("read",
-                    [](Extractor& self, const std::string& file) {
-                        expect(std::ifstream(file), file, "read");
-                        static_cast<cv::Feature2D&>(self).read(file);
-                    })
-            .def("write",
-                    [](const Extractor& self, const std::string& file) {
-                        expect(std::ofstream(file), file, "written");
-                        static_cast<const cv::Feature2D&>(*withoutDetector(self)).write(file);
-                    })
-            .def("parameters", [](const Extractor& self) { return parametersOf(*withoutDetector(self)); })
             .def("setParameters",
                     [](Extractor& self, const std::string& text) { setParameters(self, text); });
 }

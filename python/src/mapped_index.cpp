@@ -52,8 +52,16 @@ nb::tuple search(const Index& self, const Array& queries_, int k, int segment)
 void bindMappedIndex(nb::module_& m)
 {
     nb::class_<Index>(m, "MappedIndex")
-            .def_static("create", &Index::create)
-            .def_static("open", &Index::open, nb::call_guard<nb::gil_scoped_release>())
+            .def_static("create",
+                    [](nb::object folder, const std::vector<int>& levelSizes) {
+                        Index::create(pathOf(folder), levelSizes);
+                    })
+            .def_static("open",
+                    [](nb::object folder) {
+                        const std::string name = pathOf(folder);
+                        nb::gil_scoped_release release;
+                        return Index::open(name);
+                    })
             .def("levelSizes", &Index::levelSizes)
             .def("images", [](const Index& self) { return (int64_t)self.images(); })
             .def("rows", [](const Index& self) { return (int64_t)self.rows(); })

@@ -129,8 +129,22 @@ void bindMatcher(nb::module_& m)
                     "create", nb::overload_cast<const std::vector<int>&, int, float, bool>(&Matcher::create))
             .def_static("create", nb::overload_cast<>(&Matcher::create))
             .def_static("createRecommended", &Matcher::createRecommended)
-            .def_static("loadIndex", &Matcher::loadIndex, nb::call_guard<nb::gil_scoped_release>())
-            .def("saveIndex", &Matcher::saveIndex, nb::call_guard<nb::gil_scoped_release>())
+            .def_static(
+                    "loadIndex",
+                    [](nb::object file) {
+                        const std::string name = pathOf(file);
+                        nb::gil_scoped_release release;
+                        return Matcher::loadIndex(name);
+                    },
+                    nb::arg().none())
+            .def(
+                    "saveIndex",
+                    [](const Matcher& self, nb::object file) {
+                        const std::string name = pathOf(file);
+                        nb::gil_scoped_release release;
+                        self.saveIndex(name);
+                    },
+                    nb::arg().none())
             .def("clone", &clone)
             .def("add", &add)
             .def("clear", &Matcher::clear)

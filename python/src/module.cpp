@@ -19,7 +19,9 @@ NB_MODULE(_core, m)
                 }
                 catch (const cv::Exception& e)  // what() has paths of the machine that built this
                 {
-                    PyErr_SetString(static_cast<PyObject*>(type), e.err.c_str());
+                    // Names of files may be no UTF-8.
+                    const nb::object text = nb::steal(PyUnicode_DecodeFSDefault(e.err.c_str()));
+                    PyErr_SetObject(static_cast<PyObject*>(type), text.ptr());
                 }
             },
             error.ptr());

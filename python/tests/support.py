@@ -1,6 +1,8 @@
 """Images and keypoints made of integers alone, as modules/iib/test/support/test_images.cpp makes them."""
+import contextlib
 import importlib
 import re
+import resource
 import signal
 import threading
 import time
@@ -131,3 +133,15 @@ def steps_meanwhile(call):
     thread.join()
     begin, end = span
     return sum(abs(step - (begin + end) / 2) < (end - begin) / 4 for step in steps)
+
+
+@contextlib.contextmanager
+def files_end_at(size):
+    """As on a full disk: no file can grow to more than so many bytes."""
+    limits, old = resource.getrlimit(resource.RLIMIT_FSIZE), signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        signal.signal(signal.SIGXFSZ, old)

@@ -1,4 +1,5 @@
 import copy
+import os
 import pickle
 import tempfile
 import unittest
@@ -8,7 +9,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import IIB
-from support import cv2, fnv1a, golden_hashes, grid, scatter, texture
+from support import cv2, files_end_at, fnv1a, golden_hashes, grid, scatter, texture
 
 GOLDEN = {
     'default': {},
@@ -151,6 +152,13 @@ class Arrays(unittest.TestCase):
             self.iib.compute(self.image, [object()])
 
 
+class MyIIB(IIB): pass
+class MyHessian(opencv_iib.HessianDetector): pass
+class MyNormalized(opencv_iib.NormalizedDetector): pass
+class MyMatcher(opencv_iib.HierarchicalMatcher): pass
+class MyIndex(opencv_iib.MappedIndex): pass
+
+
 class Objects(unittest.TestCase):
 
     def configured(self):
@@ -172,13 +180,31 @@ class Objects(unittest.TestCase):
         iib = self.configured()
         for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
             self.expect_same(iib, pickle.loads(pickle.dumps(iib, protocol)))
-        for preset in map(IIB.createPreset, opencv_iib.Preset):
+        for preset in opencv_iib.Preset:
+            preset = IIB.createPreset(preset, 2)
             self.expect_same(preset, pickle.loads(pickle.dumps(preset)))
         self.expect_same(iib, copy.copy(iib))
         self.expect_same(iib, copy.deepcopy(iib))
         twin = copy.copy(iib)
         twin.setGranularity(2)
         self.assertEqual(iib.getGranularity(), 3)
+
+    def test_a_deep_copy_has_a_detector_of_its_own(self):
+        iib = IIB.createRecommended(50)
+        self.assertIs(copy.copy(iib).getDetector(), iib.getDetector())
+        copy.deepcopy(iib).getDetector().setMaxFeatures(3)
+        self.assertEqual(len(iib.detect(texture(160, 120))), 50)
+
+    def test_a_subclass_keeps_what_it_adds(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        opencv_iib.MappedIndex.create(folder.name, [8])
+        for made in (MyIIB(), MyIIB.createRecommended(), MyHessian(), MyNormalized(MyHessian()), MyMatcher(), MyIndex(folder.name)):
+            made.notes = ['mine']
+            for twin in (copy.copy(made), copy.deepcopy(made), pickle.loads(pickle.dumps(made))):
+                self.assertEqual((type(twin), twin.notes), (type(made), ['mine']))
+            self.assertIs(copy.copy(made).notes, made.notes)
+            self.assertIsNot(copy.deepcopy(made).notes, made.notes)
 
     def test_file(self):
         iib, other = self.configured(), IIB.create()
@@ -187,9 +213,20 @@ class Objects(unittest.TestCase):
             iib.write(path)
             other.read(path)
             nowhere = Path(folder) / 'nothing' / 'iib.yml'
-            for call, done in ((iib.write, 'written'), (iib.save, 'written'), (iib.read, 'read')):
-                with self.assertRaisesRegex(opencv_iib.error, f'nothing/iib.yml cannot be {done}'):
+            for call, wrong in ((iib.write, ': there is no folder'), (iib.save, ': there is no folder'), (iib.read, ' cannot be read')):
+                with self.assertRaisesRegex(opencv_iib.error, f'nothing/iib.yml{wrong}'):
                     call(nowhere)
+            for name in ('iib.xml', 'iib.json.gz', os.fsdecode(b'\xe9.yml')):
+                again = IIB.create()
+                iib.save(os.path.join(folder, name))
+                again.read(os.path.join(folder, name))
+                self.expect_same(iib, again)
+            before = path.read_bytes()
+            for size in (0, 100, len(before) - 1):
+                with self.subTest(size), files_end_at(size), self.assertRaisesRegex(opencv_iib.error, 'iib.yml cannot be written'):
+                    iib.save(path)
+                self.assertEqual(path.read_bytes(), before)
+            self.assertEqual(len(os.listdir(folder)), 4)
         self.expect_same(iib, other)
 
     def test_a_pickled_detector_says_that_it_is_missing(self):

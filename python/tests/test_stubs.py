@@ -26,13 +26,13 @@ class Stubs(unittest.TestCase):
 import numpy as np
 import opencv_iib
 from numpy.typing import NDArray
-iib: opencv_iib.IIB = opencv_iib.IIB.create_preset(opencv_iib.Preset.UNIVERSAL)
-codes: NDArray[np.uint8] = iib.detect_and_compute(np.zeros((9, 9), np.uint8))[1]
+iib: opencv_iib.IIB = opencv_iib.IIB.createPreset(opencv_iib.Preset.UNIVERSAL, 18)
+codes: NDArray[np.uint8] = iib.detectAndCompute(np.zeros((9, 9), np.uint8))[1]
 rows: NDArray[np.float32] = iib.compute([[0, 0, 0]], np.zeros((9, 3), np.float32))[0]
 pairs: NDArray[np.int32] = opencv_iib.match(codes, codes).pairs
-mode: opencv_iib.Mode = opencv_iib.HierarchicalMatcher.create_recommended().get_mode()
+mode: opencv_iib.Mode = opencv_iib.HierarchicalMatcher.createRecommended().getMode()
 ''' + '\n'.join(f'print(opencv_iib.{name})' for name in opencv_iib.__all__)
-        wrong = ("iib.set_border('drop')", 'text: str = iib.descriptor_size()', 'iib.detect_and_computes(codes)',
+        wrong = ("iib.setBorder('drop')", 'text: str = iib.descriptorSize()', 'iib.detect_and_compute(codes)',
                  'opencv_iib.match(codes)')
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run([sys.executable, '-m', 'mypy', '--strict', '-c', program + '\n' + '\n'.join(wrong)],

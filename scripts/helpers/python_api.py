@@ -2,10 +2,8 @@
 """Prints the Python package's reference as a page of Markdown, from its sources: python_api.py"""
 import ast
 import pathlib
-import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'python'))
-from stubs import PACKAGE, stub
+PACKAGE = pathlib.Path(__file__).resolve().parents[2] / 'python/opencv_iib'
 
 
 def entry(node, owner=''):
@@ -23,7 +21,7 @@ def main():
     for path in sorted(PACKAGE.rglob('*.py')):
         if path.name.startswith('_') and path.name != '__init__.py':
             continue
-        tree = stub(ast.parse(path.read_text(encoding='utf-8')), aliases=False)
+        tree = ast.parse(path.read_text(encoding='utf-8'))
         name = '.'.join(path.relative_to(PACKAGE.parent).with_suffix('').parts).replace('.__init__', '')
         print('## %s\n\n```text\n%s\n```\n' % (name, ast.get_docstring(tree) or ''))
         for node in tree.body:

@@ -1,0 +1,34 @@
+"""Plain values in calls, checked here, so that a mistake is told by its name and not by C++ types."""
+from __future__ import annotations
+
+import operator
+import os
+from typing import Any, Iterable, Union
+
+#: A file or folder.
+Path = Union[str, os.PathLike[str]]
+
+
+def integer(value: Any, name: str, bits: int = 32) -> int:
+    """:raises TypeError: if it is no integer. :raises ValueError: if it has more than so many bits."""
+    try:
+        whole = operator.index(value)
+    except TypeError:
+        raise TypeError(f'{name}: an integer is needed, not {value!r}') from None
+    if not -1 << (bits - 1) <= whole < 1 << (bits - 1):
+        raise ValueError(f'{name} is {whole}: at most {(1 << (bits - 1)) - 1} can be had')
+    return whole
+
+
+def integers(values: Iterable[Any], name: str, bits: int = 32) -> list[int]:
+    """A list of them."""
+    if isinstance(values, (str, bytes)) or not hasattr(values, '__iter__'):
+        raise TypeError(f'{name}: a sequence of integers is needed, not {values!r}')
+    return [integer(value, name, bits) for value in values]
+
+
+def number(value: Any, name: str) -> float:
+    """:raises TypeError: if it is no number."""
+    if isinstance(value, (str, bytes)) or not hasattr(value, '__float__'):
+        raise TypeError(f'{name}: a number is needed, not {value!r}')
+    return float(value)

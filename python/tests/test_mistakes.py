@@ -1,0 +1,132 @@
+"""What a user gets wrong is told in words of Python: what it is, and what to do."""
+import inspect
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import numpy as np
+
+import opencv_iib
+from opencv_iib import HessianDetector, HierarchicalMatcher, IIB, MappedIndex, NormalizedDetector
+from support import cv2, grid, texture
+
+
+class Texts(unittest.TestCase):
+
+    def expect(self, kind, text, call):
+        with self.subTest(text), self.assertRaisesRegex(kind, text):
+            call()
+
+    def test_images(self):
+        planes = np.zeros((3, 40, 60), np.uint8)
+        for use in (lambda image: IIB().compute(image, grid()), opencv_iib.detect_and_describe, HessianDetector().detect,
+                    IIB().detectAndCompute, lambda image: opencv_iib.matchRotated(image, image, IIB(), HierarchicalMatcher())):
+            self.expect(TypeError, 'did cv2.imread find the file', lambda: use(None))
+            for path in ('a.png', Path('a.png')):
+                self.expect(TypeError, 'pass the image', lambda: use(path))
+            self.expect(opencv_iib.error, 'channels come last', lambda: use(planes))
+
+    def test_detectors_and_codes(self):
+        for make in (IIB.createFor, IIB().setDetector, NormalizedDetector):
+            self.expect(TypeError, r'cv2.ORB_create\(\)', lambda: make('ORB'))
+        if cv2 is not None:
+            self.expect(TypeError, r'cv2.SIFT_create\(\)', lambda: IIB.createFor(cv2.SIFT))
+        floats, codes = np.zeros((5, 128), np.float32), np.zeros((5, 128), np.uint8)
+        for use in (lambda a: opencv_iib.match(a, codes), lambda a: opencv_iib.match(codes, a), HierarchicalMatcher().add):
+            self.expect(opencv_iib.error, 'uint8, not float32', lambda: use(floats))
+        self.expect(TypeError, 'HierarchicalMatcher is needed, not IIB',
+                    lambda: opencv_iib.matchRotated(texture(40, 40), texture(40, 40), IIB(), IIB()))
+
+    @mock.patch('warnings.warn')
+    def test_no_call_shows_the_types_of_cpp(self, _):
+        with tempfile.TemporaryDirectory() as folder:
+            index = MappedIndex.create(folder, [8])
+            index.add(np.zeros((3, 8), np.uint8))
+            owners = (IIB(), HessianDetector(), NormalizedDetector(HessianDetector()), HierarchicalMatcher(), index)
+            functions = [getattr(opencv_iib, name) for name in opencv_iib.__all__ if inspect.isfunction(getattr(opencv_iib, name))]
+            methods = [method for owner in owners for name, method in inspect.getmembers(owner, inspect.isroutine)
+                       if not name.startswith('_')] + [type(owner) for owner in owners] + functions
+            calls = 0
+            for method in methods:
+                parameters = list(inspect.signature(method).parameters.values())
+                for wrong in (object(), 'x', 1 << 70, -1.5, None, [object()], float('nan')):
+                    for place in range(len(parameters)):
+                        arguments = {}
+                        for i, parameter in enumerate(parameters):
+                            if i == place or parameter.default is inspect.Parameter.empty:
+                                arguments[parameter.name] = wrong if i == place else np.zeros((3, 8), np.uint8)
+                        if parameters[place].name.lower() == 'filename':
+                            arguments[parameters[place].name] = object() if isinstance(wrong, str) else wrong
+                        calls += 1
+                        try:
+                            method(**arguments)
+                        except Exception as e:
+                            with self.subTest(method=method, arguments=arguments):
+                                self.assertNotIn('incompatible function arguments', str(e))
+                                self.assertNotIn('std::', str(e))
+            self.assertGreater(calls, 500)
+
+    def test_numbers(self):
+        self.expect(ValueError, 'maxFeatures is 3000000000', lambda: HessianDetector(3000000000))
+        self.expect(TypeError, 'granularity: an integer is needed, not 2.5', lambda: IIB(granularity=2.5))
+        self.expect(TypeError, "sigma: a number is needed, not '3'", lambda: HessianDetector().setSigma('3'))
+        image = np.zeros((40, 40), np.longdouble)
+        self.expect(opencv_iib.error, 'CV_64F', lambda: IIB().compute(image, grid()))
+        np.testing.assert_array_equal(IIB().compute(texture(40, 40), grid().astype(np.longdouble))[1],
+                                      IIB().compute(texture(40, 40), grid())[1])
+        points = grid()
+        for index in (1 << 32, -(1 << 32)):
+            self.expect(opencv_iib.error, 'match', lambda: opencv_iib.estimateRotation(points, points, np.array([[0, 0], [1, 1], [index, 2]])))
+
+    def test_presets_by_name(self):
+        for name in ('COMPACT', 'compact', 'PRESET_Compact'):
+            self.assertEqual(IIB.createFor(HessianDetector(), name).descriptorSize(), 64)
+            self.assertEqual(IIB.createPreset(name, 3).descriptorSize(), 64)
+        self.expect(ValueError, "no preset 'LARGE', but S128, .*SMALL", lambda: IIB.createFor(HessianDetector(), 'LARGE'))
+
+    def test_a_preset_takes_the_scale_factor_of_orb_with_a_word(self):
+        with self.assertWarnsRegex(UserWarning, 'scaleFactorFor'):
+            self.assertEqual(IIB.createPreset(IIB.PRESET_BALANCED).getScaleFactor(), 2.25)
+
+    def test_paths(self):
+        matcher = HierarchicalMatcher([8])
+        matcher.add(np.zeros((3, 8), np.uint8))
+        with tempfile.TemporaryDirectory() as folder:
+            for name in (b'\xe9', 'caf\xe9'.encode()):
+                path = Path(folder) / name.decode('utf-8', 'surrogateescape')
+                MappedIndex.create(path, [8]).add(np.zeros((3, 8), np.uint8))
+                self.assertEqual(MappedIndex(path).rows(), 3)
+                matcher.saveIndex(path.with_suffix('.iib'))
+                self.assertEqual(HierarchicalMatcher.loadIndex(path.with_suffix('.iib')).levelSizes(), (8,))
+                self.expect(opencv_iib.error, str(path), lambda: MappedIndex(path / 'none'))
+            kept = sorted(Path(folder).iterdir())
+            for use in (IIB().save, IIB().write, IIB().read, matcher.saveIndex, HierarchicalMatcher.loadIndex, MappedIndex,
+                        lambda path: MappedIndex.create(path, [8])):
+                self.expect(ValueError, 'null', lambda: use(folder + '/a\0b.yml'))
+                self.expect(TypeError, 'str, bytes or os.PathLike', lambda: use(7.5))
+            self.assertEqual(sorted(Path(folder).iterdir()), kept)
+
+
+class Tensors(unittest.TestCase):
+
+    def test_match_rotated_reads_them_as_compute_does(self):
+        from test_functions import Tensor
+        image = np.dstack([texture(160, 120, seed=seed) for seed in (1, 2, 3)])
+        planes = Tensor(np.ascontiguousarray(np.moveaxis(image[..., ::-1], 2, 0)))
+        iib = IIB.createRecommended(100)
+        iib.setOrientation(IIB.ORIENTATION_KEYPOINT)
+        found = [opencv_iib.matchRotated(one, one, iib, HierarchicalMatcher.createRecommended()) for one in (image, planes)]
+        self.assertGreater(len(found[0][3]), 50)
+        self.assertEqual(*[[(m.queryIdx, m.trainIdx) for m in one[3]] for one in found])
+
+    def test_match_rotated_is_told_mistakes_before_it_detects(self):
+        class Never:
+            def detect(self, image, mask):
+                raise AssertionError('it detects')
+        iib = IIB()
+        iib.setDetector(Never())
+        for rotation, orientation in ((400, IIB.ORIENTATION_KEYPOINT), (-1, IIB.ORIENTATION_NONE)):
+            iib.setOrientation(orientation)
+            with self.assertRaisesRegex(opencv_iib.error, 'rotation|orientation'):
+                opencv_iib.matchRotated(texture(40, 40), texture(40, 40), iib, HierarchicalMatcher(), rotation)
