@@ -4,6 +4,7 @@
 #define OPENCV_IIB_GEOMETRY_HPP
 
 #include "opencv2/iib/localization.hpp"
+#include "opencv2/iib/relative_pose.hpp"
 
 /** @defgroup iib_geometry Poses from matches of the illumination-insensitive binary descriptor */
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENCV_IIB_RELATIVE_POSE_HPP
+#define OPENCV_IIB_RELATIVE_POSE_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv {
+namespace iib {
+
+//! @addtogroup iib_geometry
+//! @{
+
+/** @brief Finds where camera 2 stands, seen from camera 1, from matched points.
+
+A point \f$X\f$ in the axes of camera 1 is \f$RX + \lambda t\f$ in those of camera 2; matches do not tell the length
+\f$\lambda\f$. Samples of five matches propose poses (Nister, PAMI 2004). Those that many
+matches agree with are fitted to all matches by Levenberg-Marquardt on Sampson's error (Hartley and Zisserman 2004, equation
+11.9) under Cauchy's loss, cut off at three scales, and the pose of the least loss is the answer. Wrong matches are expected; the same input gives the same answer, whatever the number of threads.
+
+Points must be free of lens distortion: `cv::undistortPoints(points, undistorted, K, distortion, noArray(), K)` first.
+Matches that cv::iib::refineMatches refined make the pose two to three times as accurate.
+
+@param points1 the points in image 1: N x 2, or N of two channels, CV_32F or CV_64F; pixels, whole at the centres
+@param points2 their matches in image 2, of the same number and type
+@param cameraMatrix1 3 x 3, CV_32F or CV_64F, of camera 1: [fx 0 cx; 0 fy cy; 0 0 1], pixels
+@param cameraMatrix2 the same of camera 2
+@param R 3 x 3, CV_64F: from the axes of camera 1 to those of camera 2
+@param t 3 x 1, CV_64F, of length 1: direction of the translation, in the axes of camera 2
+@param inliers N x 1, CV_8U: 1 for matches within three scales of the pose, and in front of both cameras; else 0
+@param scale Cauchy's scale in pixels, over 0: about the standard deviation of the points; .25 for refined matches,
+    .5 for points as they were detected
+@param covariance 5 x 5, CV_64F, of the errors of the pose in radians: three numbers of a rotation vector \f$w\f$ in the
+    axes of camera 2, where the true rotation is \f$\exp([w]_\times) R\f$; two of the direction of t, along \f$b\f$ and
+    \f$t \times b\f$, where \f$b\f$ is the unit vector along \f$t \times e\f$ and \f$e\f$ the axis along which t is
+    shortest. Where the cameras hardly moved apart, or all the points are far away, the last two are large.
+@return false, with R, t and covariance empty and all inliers 0, if there are fewer than five matches, or no pose that
+    five matches or more agree with
+@throws cv::Exception for points of a wrong type or of different numbers, points that are not finite, matrices that are
+    not a camera's, or a scale that is not over 0 */
+CV_EXPORTS_W bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraMatrix1,
+        InputArray cameraMatrix2, OutputArray R, OutputArray t, OutputArray inliers = noArray(),
+        double scale = .25, OutputArray covariance = noArray());
+
+//! @}
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef IIB_GEOMETRY_TWO_VIEWS_HPP
+#define IIB_GEOMETRY_TWO_VIEWS_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv {
+namespace iib {
+
+//! From the axes of camera 1 to those of camera 2, t of length 1.
+struct RelativePose
+{
+    Matx33d R;
+    Vec3d t;
+};
+
+inline Matx33d crossProduct(const Vec3d& t)
+{
+    return Matx33d(0, -t[2], t[1], t[2], 0, -t[0], -t[1], t[0], 0);
+}
+
+inline Matx33d essentialOf(const RelativePose& pose) { return crossProduct(pose.t) * pose.R; }
+
+//! Two unit vectors that span with t a right-handed system: b and t x b of findRelativePose's documentation.
+Matx<double, 3, 2> tangentsOf(const Vec3d& t);
+
+//! The pose moved by a rotation vector in the axes of camera 2, and by two angles along the tangents of t.
+RelativePose moved(const RelativePose& pose, const Vec<double, 5>& step);
+
+//! The four poses of an essential matrix.
+void posesOf(const Matx33d& essential, RelativePose (&poses)[4]);
+
+//! Whether the point seen at `first` and `second` lies in front of both cameras.
+bool inFront(const RelativePose& pose, const Point2d& first, const Point2d& second);
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

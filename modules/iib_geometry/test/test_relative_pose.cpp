@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "five_points.hpp"
+#include "polish.hpp"
+#include "real_roots.hpp"
+#include "test_precomp.hpp"
+
+namespace opencv_test {
+namespace {
+using namespace cv::iib;
+
+const Matx33d CAMERA(500, 0, 320, 0, 510, 240, 0, 0, 1);
+
+RelativePose randomPose(RNG& random, double turn)
+{
+    Vec3d w, t;
+    random.fill(w, RNG::UNIFORM, -turn, turn);
+    random.fill(t, RNG::NORMAL, 0, 1);
+    Vec<double, 5> step(w[0], w[1], w[2]);
+    return moved({Matx33d::eye(), normalize(t)}, step);
+}
+
+//! Points in front of both cameras, 4 to 12 lengths of t away, seen with noise; `wrong` of them anywhere.
+struct Views
+{
+    Views(RNG& random, const RelativePose& pose, int count, int wrong, double noise)
+        : points1(count, 2, CV_64F), points2(count, 2, CV_64F)
+    {
+        for (int i = 0; i < count;)
+        {
+            const double depth = random.uniform(4., 12.);
+            const Vec3d pixel(random.uniform(0., 640.), random.uniform(0., 480.), 1);
+            const Vec3d X = depth * (CAMERA.inv() * pixel), Y = pose.R * X + pose.t, seen = CAMERA * Y;
+            if (Y[2] < 1)
+                continue;
+            const bool astray = i < wrong;
+            for (int k = 0; k < 2; k++)
+            {
+                points1.at<double>(i, k) = pixel[k] + random.gaussian(noise);
+                points2.at<double>(i, k) =
+                        astray ? random.uniform(0., 480.) : seen[k] / seen[2] + random.gaussian(noise);
+            }
+            i++;
+        }
+    }
+    Mat points1, points2;
+};
+
+//! The step of `moved` from a pose to the truth.
+Vec<double, 5> errorOf(const RelativePose& pose, const RelativePose& truth)
+{
+    const Matx33d rest = truth.R * pose.R.t();
+    const Vec2d along = tangentsOf(pose.t).t() * (truth.t - pose.t);
+    return Vec<double, 5>((rest(2, 1) - rest(1, 2)) / 2, (rest(0, 2) - rest(2, 0)) / 2,
+            (rest(1, 0) - rest(0, 1)) / 2, along[0], along[1]);
+}
+
+TEST(RelativePose, real_roots_are_found_inside_and_outside_of_the_unit_interval)
+{
+    const double wanted[] = {-7.5, -.9, -.25, 0, .3, .31, .8, 2, 40};
+    double p[10] = {-1}, roots[9];  // their product, constant first
+    for (int k = 0; k < 9; k++)
+        for (int i = k + 1; i >= 0; i--)
+            p[i] = (i ? p[i - 1] : 0) - wanted[k] * p[i];
+    ASSERT_EQ(9, realRoots(p, 9, roots));
+    std::sort(roots, roots + 9);
+    for (int k = 0; k < 9; k++)
+        EXPECT_NEAR(wanted[k], roots[k], 1e-6 * (1 + std::abs(wanted[k])));
+    const double none[] = {1, 0, 3, 0, 1};
+    EXPECT_EQ(0, realRoots(none, 4, roots));
+}
+
+TEST(RelativePose, five_points_give_essential_matrices_and_the_true_one_among_them)
+{
+    RNG random(1);
+    int found = 0;
+    for (int trial = 0; trial < 500; trial++)
+    {
+        const RelativePose truth = randomPose(random, .6);
+        const Views views(random, truth, 5, 0, 0);
+        Point2d first[5], second[5];
+        for (int i = 0; i < 5; i++)
+        {
+            const Vec3d u = CAMERA.inv() *
+                            Vec3d(views.points1.at<double>(i, 0), views.points1.at<double>(i, 1), 1),
+                        v = CAMERA.inv() *
+                            Vec3d(views.points2.at<double>(i, 0), views.points2.at<double>(i, 1), 1);
+            first[i] = Point2d(u[0], u[1]);
+            second[i] = Point2d(v[0], v[1]);
+        }
+        std::vector<Matx33d> essentials;
+        fivePointEssentials(first, second, essentials);
+        const Matx33d expected = essentialOf(truth) * (1 / std::sqrt(2.));
+        double nearest = 1;
+        for (const Matx33d& E : essentials)
+        {
+            for (int i = 0; i < 5; i++)
+                EXPECT_NEAR(0, Vec3d(second[i].x, second[i].y, 1).dot(E * Vec3d(first[i].x, first[i].y, 1)),
+                        1e-6);
+            nearest = std::min({nearest, cv::norm(E - expected), cv::norm(E + expected)});
+        }
+        found += nearest < 1e-4;
+    }
+    EXPECT_GE(found, 490);
+}
+
+TEST(RelativePose, the_four_poses_of_an_essential_matrix_hold_the_true_one)
+{
+    RNG random(2);
+    for (int trial = 0; trial < 100; trial++)
+    {
+        const RelativePose truth = randomPose(random, 3);
+        RelativePose poses[4];
+        posesOf(essentialOf(truth) * random.uniform(-5., 5.), poses);
+        double nearest = 9;
+        for (const RelativePose& pose : poses)
+            nearest = std::min(nearest, cv::norm(pose.R - truth.R) + cv::norm(pose.t - truth.t));
+        EXPECT_LT(nearest, 1e-7);
+    }
+}
+
+TEST(RelativePose, derivatives_are_those_of_finite_differences)
+{
+    RNG random(3);
+    const RelativePose truth = randomPose(random, .3);
+    const Views views(random, truth, 60, 10, .3);
+    const Matx33d other(700, 0, 300, 0, 650, 200, 0, 0, 1);
+    const EpipolarLoss loss(views.points1, views.points2, CAMERA, other, 40);
+    std::vector<EpipolarLoss::Row> rows;
+    loss.linearize(truth, rows);
+    EpipolarLoss::Step gradient;
+    for (const EpipolarLoss::Row& row : rows)
+        gradient += 2 * row.r / (1 + row.r * row.r) * row.J;
+    for (int k = 0; k < 5; k++)
+    {
+        const double h = 1e-6;
+        EpipolarLoss::Step step = EpipolarLoss::Step::all(0);
+        step[k] = h;
+        const double up = loss.at(essentialOf(moved(truth, step)), DBL_MAX),
+                     down = loss.at(essentialOf(moved(truth, -step)), DBL_MAX);
+        EXPECT_NEAR((up - down) / (2 * h), gradient[k], 1e-4 * (1 + std::abs(gradient[k])));
+    }
+}
+
+TEST(RelativePose, is_found_among_wrong_matches)
+{
+    RNG random(4);
+    for (int wrong : {0, 60, 130})
+        for (int trial = 0; trial < 10; trial++)
+        {
+            const RelativePose truth = randomPose(random, trial % 2 ? .3 : .02);
+            const Views views(random, truth, 200, wrong, .2);
+            Mat R, t, inliers;
+            ASSERT_TRUE(
+                    findRelativePose(views.points1, views.points2, Mat(CAMERA), Mat(CAMERA), R, t, inliers));
+            EXPECT_EQ(CV_64F, R.type());
+            EXPECT_EQ(Size(1, 3), t.size());
+            EXPECT_NEAR(1, cv::norm(t), 1e-12);
+            EXPECT_NEAR(0, cv::norm(Matx33d(R) * Matx33d(R).t() - Matx33d::eye()), 1e-12);
+            EXPECT_LT(cv::norm(errorOf({R, Vec3d(t)}, truth)), .03) << wrong << ' ' << trial;
+            ASSERT_EQ(Size(1, 200), inliers.size());
+            EXPECT_GT(countNonZero(inliers.rowRange(wrong, 200)), .85 * (200 - wrong));
+            EXPECT_LE(countNonZero(inliers.rowRange(0, wrong)), 10);
+        }
+}
+
+// Of the errors that the covariance foretells, half lie within the median of chi-squared with five degrees of freedom.
+TEST(RelativePose, covariance_foretells_the_errors)
+{
+    RNG random(5);
+    const int trials = 200;
+    int within = 0, far = 0;
+    for (int trial = 0; trial < trials; trial++)
+    {
+        const RelativePose truth = randomPose(random, .2);
+        const Views views(random, truth, 150, 20, .2);
+        Mat R, t, covariance;
+        ASSERT_TRUE(findRelativePose(
+                views.points1, views.points2, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), .25, covariance));
+        ASSERT_EQ(Size(5, 5), covariance.size());
+        const Mat error(errorOf({R, Vec3d(t)}, truth));
+        const double distance = Mat(error.t() * covariance.inv() * error).at<double>(0);
+        within += distance < 4.351;
+        far += distance > 15.09;  // 1 %
+    }
+    EXPECT_GT(within, .38 * trials);
+    EXPECT_LT(within, .62 * trials);
+    EXPECT_LT(far, .08 * trials);
+}
+
+TEST(RelativePose, is_the_same_again_in_both_depths_and_layouts)
+{
+    RNG random(6);
+    const Views views(random, randomPose(random, .2), 100, 30, .2);
+    Mat first, second, R[2], t[2];
+    views.points1.convertTo(first, CV_32F);
+    views.points2.convertTo(second, CV_32F);
+    std::vector<Point2d> pairs1, pairs2;
+    for (int i = 0; i < first.rows; i++)
+    {
+        pairs1.push_back(first.at<Point2f>(i));
+        pairs2.push_back(second.at<Point2f>(i));
+    }
+    ASSERT_TRUE(findRelativePose(first, second, Mat(CAMERA), Mat(CAMERA), R[0], t[0]));
+    ASSERT_TRUE(findRelativePose(pairs1, pairs2, CAMERA, Matx33f(CAMERA), R[1], t[1]));
+    EXPECT_EQ(0, cvtest::norm(R[0], R[1], NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(t[0], t[1], NORM_INF));
+}
+
+TEST(RelativePose, too_few_matches_are_no_pose)
+{
+    RNG random(7);
+    const Views views(random, randomPose(random, .2), 4, 0, 0);
+    Mat R = Mat::eye(3, 3, CV_64F), t(3, 1, CV_64F), inliers, covariance = R;
+    EXPECT_FALSE(findRelativePose(
+            views.points1, views.points2, Mat(CAMERA), Mat(CAMERA), R, t, inliers, .25, covariance));
+    EXPECT_TRUE(R.empty() && t.empty() && covariance.empty());
+    EXPECT_EQ(0, countNonZero(inliers));
+    EXPECT_EQ(4, inliers.rows);
+    EXPECT_FALSE(findRelativePose(Mat(), std::vector<Point2f>(), Mat(CAMERA), Mat(CAMERA), R, t, inliers));
+    EXPECT_TRUE(inliers.empty());
+}
+
+TEST(RelativePose, degenerate_matches_end_without_nonsense)
+{
+    const Mat one(50, 2, CV_32F, Scalar(100));
+    Mat line(50, 2, CV_32F), R, t, covariance;
+    for (int i = 0; i < 50; i++)
+        line.at<Point2f>(i) = Point2f(10.f * i, 5.f * i);
+    for (const Mat& points : {one, line})  // the same point over and over, and a camera that did not move
+    {
+        findRelativePose(points, points, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), .25, covariance);
+        EXPECT_TRUE(checkRange(R) && checkRange(t) && checkRange(covariance));
+    }
+}
+
+TEST(RelativePose, mistakes_are_told)
+{
+    const Mat points(10, 2, CV_32F, Scalar(1)), camera(CAMERA);
+    Mat R, t, broken = points.clone(), skewed = camera.clone(), flat = camera.clone();
+    broken.at<float>(3, 1) = std::numeric_limits<float>::quiet_NaN();
+    skewed.at<double>(0, 1) = 1;
+    flat.at<double>(1, 1) = 0;
+    EXPECT_THROW(findRelativePose(points, points.rowRange(1, 10), camera, camera, R, t), cv::Exception);
+    EXPECT_THROW(findRelativePose(Mat(10, 3, CV_32F), points, camera, camera, R, t), cv::Exception);
+    EXPECT_THROW(findRelativePose(Mat(10, 2, CV_32S), points, camera, camera, R, t), cv::Exception);
+    EXPECT_THROW(findRelativePose(points, broken, camera, camera, R, t), cv::Exception);
+    EXPECT_THROW(findRelativePose(points, points, skewed, camera, R, t), cv::Exception);
+    EXPECT_THROW(findRelativePose(points, points, camera, flat, R, t), cv::Exception);
+    EXPECT_THROW(findRelativePose(points, points, camera, Mat(), R, t), cv::Exception);
+    EXPECT_THROW(findRelativePose(points, points, Mat(3, 3, CV_32S), camera, R, t), cv::Exception);
+    for (double scale :
+            {0., -1., std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
+        EXPECT_THROW(findRelativePose(points, points, camera, camera, R, t, noArray(), scale), cv::Exception);
+}
+
+}  // namespace
+}  // namespace opencv_test
