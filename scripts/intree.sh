@@ -96,7 +96,7 @@ say "cv2.iib"
 export PYTHONPATH="$build/python_loader"
 /usr/bin/python3 "$root/modules/iib/misc/python/test/test_iib.py" -v
 say "the guide's Python program, on the demo's pair"
-sed -n '/^```python$/,/^```$/{/^```/!p}' "$root/doc/guide.md" >"$build/guide.py"
+sed -n '/^```python$/,/^```$/{/^```/!{/^import opencv_iib$/d;s/^# opencv_iib = /opencv_iib = /;p}}' "$root/doc/guide.md" >"$build/guide.py"
 pair="$root/tools/synthetic"
 /usr/bin/python3 "$build/guide.py" "$pair/day.png" "$pair/night.png" | grep -x '[1-9][0-9]* matches'
 say "done: $build"

@@ -1,42 +1,87 @@
-"""The programs of the README and of doc/python.md run as they stand there, with this package."""
-import os
+"""Every program in Python of every page runs as it stands there, with this package."""
+import importlib.util
 import re
 import subprocess
 import sys
 import tempfile
 import unittest
+from pathlib import Path
+
+import numpy as np
 
 from support import REPOSITORY, cv2
 
-PAIR = [REPOSITORY / 'tools/synthetic' / name for name in ('day.png', 'night.png')]
+PAGES = [REPOSITORY / 'README.md', *sorted((REPOSITORY / 'doc').glob('*.md')), *sorted(REPOSITORY.glob('modules/*/*.md')),
+         *sorted(REPOSITORY.glob('modules/*/tutorials/*.markdown')), *sorted(REPOSITORY.glob('apps/*/*.md'))]
+# Of each page, for each of its programs: arguments and what it prints; or of a piece of one: what stands before it, what after
+# it, and what that prints; or where else it is run.
+RUNS = {
+    'README.md': [('day.png night.png', r'^\d{3} matches\n$')],
+    'guide.md': [('day.png night.png', r'^\d{3} matches\n$')],
+    'python.md': [('', 'print(len(matches))', r'^\d{3}\n'),
+                  ('image_a, image_b = day, night', 'print(len(pairs), matched_a.shape == matched_b.shape)', r'^\d{3} True\n')],
+    'scale.md': [('folder, codes, queries = "codes", codes_day, codes_night', 'print(indices.shape)', r'^\(1000, 5\)\n'),
+                 ('import faiss; codes, queries = np.repeat(codes_day, 41, 0), codes_night', 'print(rows.shape)', r'^\(1000, 5\)\n'),
+                 ('python/examples/test_postgres.py',), ('python/examples/test_postgres.py',)],
+    'colmap.md': [('import os; os.mkdir("images"); os.rename("day.png", "images/a.png"); os.rename("night.png", "images/b.png")',
+                   'print(counts)', "'images': 2")],
+    'maps.md': [('python/tests/test_localization.py',)],
+    'iib_day_night.markdown': [('day.png night.png', r'^\d{3} of \d{3} matches agree')],
+    'iib_relative_pose.markdown': [('day.png night.png 400 picture.png', r'^\d{2,} of \d{3} matches agree')],
+    'iib_presets.markdown': [('', r'^128 bytes.*\n64 bytes')],
+    'iib_localization.markdown': [('day.png depth.png night.png 400', r'^True \d{3} of \d{3} points agree')],
+    'iib_saving_index.markdown': [('night.png day.png', r'^\d{3} matches in day.png\n')],
+}
+BEFORE = '''
+import cv2, opencv_iib, numpy as np
+day, night = cv2.imread('day.png'), cv2.imread('night.png')
+codes_day, codes_night = (opencv_iib.detect_and_describe(image, 1000).codes for image in (day, night))
+'''
 
 
 def programs(page):
-    return re.findall('^```python\n(.*?)^```', (REPOSITORY / page).read_text(), re.S | re.M)
+    return re.findall('^```(?:python|py)\n(.*?)^```', page.read_text(), re.S | re.M)
 
 
 @unittest.skipIf(cv2 is None, 'no cv2')
-@unittest.skipUnless(PAIR[0].exists(), 'the documentation is not beside these tests')
+@unittest.skipUnless((REPOSITORY / 'tools/synthetic/day.png').exists(), 'the documentation is not beside these tests')
 class Documentation(unittest.TestCase):
 
-    def test_the_program_of_the_readme(self):
-        program, = programs('README.md')
-        done = subprocess.run([sys.executable, '-c', program, *map(str, PAIR)], capture_output=True, text=True)
-        self.assertRegex(done.stdout, r'^\d{3} matches\n$', done.stderr)
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+        self.images = {name: cv2.imread(str(REPOSITORY / f'tools/synthetic/{name}.png')) for name in ('day', 'night')}
+        for name, image in self.images.items():
+            for suffix in ('png', 'jpg'):
+                cv2.imwrite(str(self.folder / f'{name}.{suffix}'), image)
+        depth = np.add.outer(np.arange(image.shape[0]), np.arange(image.shape[1])) % 997 + 2000
+        cv2.imwrite(str(self.folder / 'depth.png'), depth.astype(np.uint16))
 
-    def test_the_programs_of_the_package(self):
-        first, second = programs('doc/python.md')
-        with tempfile.TemporaryDirectory() as folder:
-            images = [cv2.imread(str(path)) for path in PAIR]
-            for name, image in zip(('day.jpg', 'night.jpg'), images):
-                cv2.imwrite(os.path.join(folder, name), image)
-            where, names = os.getcwd(), dict(zip(('image_a', 'image_b'), images))
-            os.chdir(folder)
-            try:
-                exec(first, names)
-                self.assertGreater(len(names['matches']), 100)
-                exec(second, names)
-            finally:
-                os.chdir(where)
-        self.assertGreater(len(names['pairs']), 100)
-        self.assertEqual(names['matched_a'].shape, names['matched_b'].shape)
+    def run_program(self, program, *run):
+        if len(run) == 1:
+            self.skipTest(f'in {run[0]}, which has what it needs')
+        if len(run) == 3:
+            program = '\n'.join([BEFORE, run[0], program, run[1]])
+            program = 'def main():\n' + re.sub('^', '    ', program, flags=re.M) + "\nif __name__ == '__main__':\n    main()\n"
+            program = program.replace("'scheduler:8786'", 'distributed.LocalCluster(n_workers=1, dashboard_address=None)')
+        for module in re.findall(r'^ *import (\w+)', program, re.M):
+            if importlib.util.find_spec(module) is None:
+                self.skipTest(f'no {module}')
+        (self.folder / 'program.py').write_text(program)
+        arguments = run[0].split() if len(run) == 2 else []
+        done = subprocess.run([sys.executable, 'program.py', *arguments], capture_output=True, text=True, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, run[-1])
+
+    def test_every_program_is_known(self):
+        self.assertGreater(len(PAGES), 15)
+        self.assertEqual({page.name: len(programs(page)) for page in PAGES if programs(page)},
+                         {page: len(runs) for page, runs in RUNS.items()})
+
+    def test_programs(self):
+        for page in PAGES:
+            for program, run in zip(programs(page), RUNS.get(page.name, ())):
+                with self.subTest(page=page.name, run=run):
+                    self.setUp()
+                    self.run_program(program, *run)
