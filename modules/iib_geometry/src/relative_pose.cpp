@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "opencv2/iib/relative_pose.hpp"
 
-#include "polish.hpp"
-#include "pose_search.hpp"
+#include "epipolar_problem.hpp"
 
 namespace cv {
 namespace iib {
@@ -61,11 +60,11 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
                         first.rows, second.rows));
     if (!(scale > 0) || cvIsInf(scale))
         CV_Error(Error::StsOutOfRange, "findRelativePose: scale, in pixels, must be over 0 and finite");
-    const EpipolarLoss loss(first, second, cameraMatrix(cameraMatrix1, "cameraMatrix1"),
+    const EpipolarProblem problem(first, second, cameraMatrix(cameraMatrix1, "cameraMatrix1"),
             cameraMatrix(cameraMatrix2, "cameraMatrix2"), scale);
     RelativePose pose;
     std::vector<uchar> agree;
-    const bool found = searchPose(loss, pose, agree);
+    const bool found = robustFit(problem, pose, agree);
     if (inliers.needed())
         Mat(agree, true).copyTo(inliers);
     if (!found)
@@ -78,7 +77,7 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
     Mat(pose.R).copyTo(R);
     Mat(pose.t).copyTo(t);
     if (covariance.needed())
-        Mat(covarianceOf(loss, pose)).copyTo(covariance);
+        Mat(covarianceOf(problem, pose)).copyTo(covariance);
     return true;
 }
 

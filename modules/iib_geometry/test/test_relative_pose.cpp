@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include "epipolar_problem.hpp"
 #include "five_points.hpp"
-#include "polish.hpp"
 #include "real_roots.hpp"
 #include "test_precomp.hpp"
 
@@ -125,19 +125,19 @@ TEST(RelativePose, derivatives_are_those_of_finite_differences)
     const RelativePose truth = randomPose(random, .3);
     const Views views(random, truth, 60, 10, .3);
     const Matx33d other(700, 0, 300, 0, 650, 200, 0, 0, 1);
-    const EpipolarLoss loss(views.points1, views.points2, CAMERA, other, 40);
-    std::vector<EpipolarLoss::Row> rows;
-    loss.linearize(truth, rows);
-    EpipolarLoss::Step gradient;
-    for (const EpipolarLoss::Row& row : rows)
+    const EpipolarProblem problem(views.points1, views.points2, CAMERA, other, 40);
+    std::vector<Row<EpipolarProblem::Step>> rows;
+    problem.linearize(truth, rows);
+    EpipolarProblem::Step gradient;
+    for (const Row<EpipolarProblem::Step>& row : rows)
         gradient += 2 * row.r / (1 + row.r * row.r) * row.J;
     for (int k = 0; k < 5; k++)
     {
         const double h = 1e-6;
-        EpipolarLoss::Step step = EpipolarLoss::Step::all(0);
+        EpipolarProblem::Step step = EpipolarProblem::Step::all(0);
         step[k] = h;
-        const double up = loss.at(essentialOf(moved(truth, step)), DBL_MAX),
-                     down = loss.at(essentialOf(moved(truth, -step)), DBL_MAX);
+        const double up = problem.loss(moved(truth, step), DBL_MAX),
+                     down = problem.loss(moved(truth, -step), DBL_MAX);
         EXPECT_NEAR((up - down) / (2 * h), gradient[k], 1e-4 * (1 + std::abs(gradient[k])));
     }
 }

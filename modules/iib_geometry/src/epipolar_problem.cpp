@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "epipolar_loss.hpp"
+#include "epipolar_problem.hpp"
 
 #include <algorithm>
 #include <cmath>
+
+#include "five_points.hpp"
 
 namespace cv {
 namespace iib {
@@ -26,9 +28,7 @@ double square(double x) { return x * x; }
 
 }  // namespace
 
-const double EpipolarLoss::FARTHEST = 9;  // three scales
-
-EpipolarLoss::EpipolarLoss(
+EpipolarProblem::EpipolarProblem(
         const Mat& points1, const Mat& points2, const Matx33d& camera1, const Matx33d& camera2, double scale)
     : first_(directions(points1, camera1)),
       second_(directions(points2, camera2)), weights_{square(scale / camera2(0, 0)),
@@ -38,7 +38,7 @@ EpipolarLoss::EpipolarLoss(
 {
 }
 
-double EpipolarLoss::squaredError(const Matx33d& E, int i) const
+double EpipolarProblem::squaredError(const Matx33d& E, int i) const
 {
     const Point2d &u = first_[i], &v = second_[i];
     const double line0 = E(0, 0) * u.x + E(0, 1) * u.y + E(0, 2),
@@ -52,8 +52,35 @@ double EpipolarLoss::squaredError(const Matx33d& E, int i) const
     return error * error / (length2 + NOWHERE);
 }
 
-double EpipolarLoss::at(const Matx33d& essential, double limit) const
+void EpipolarProblem::propose(const std::vector<int>& sample, std::vector<RelativePose>& poses) const
 {
+    Point2d first[5], second[5];
+    for (int k = 0; k < 5; k++)
+    {
+        first[k] = first_[sample[k]];
+        second[k] = second_[sample[k]];
+    }
+    poses.clear();
+    std::vector<Matx33d> essentials;
+    fivePointEssentials(first, second, essentials);
+    for (const Matx33d& essential : essentials)
+    {
+        RelativePose four[4];
+        posesOf(essential, four);
+        for (const RelativePose& pose : four)
+        {
+            int k = 0;
+            while (k < 5 && inFront(pose, first[k], second[k]))
+                k++;
+            if (k == 5)
+                poses.push_back(pose);
+        }
+    }
+}
+
+double EpipolarProblem::loss(const RelativePose& pose, double limit) const
+{
+    const Matx33d essential = essentialOf(pose);
     double loss = 0;
     for (int begin = 0; begin < size() && loss <= limit; begin += BLOCK)
     {
@@ -65,7 +92,7 @@ double EpipolarLoss::at(const Matx33d& essential, double limit) const
     return loss;
 }
 
-double EpipolarLoss::at(const RelativePose& pose) const
+double EpipolarProblem::verdict(const RelativePose& pose) const
 {
     const Matx33d essential = essentialOf(pose);
     double loss = 0;
@@ -77,7 +104,7 @@ double EpipolarLoss::at(const RelativePose& pose) const
     return loss;
 }
 
-int EpipolarLoss::inliers(const RelativePose& pose, std::vector<uchar>& mask) const
+int EpipolarProblem::inliers(const RelativePose& pose, std::vector<uchar>& mask) const
 {
     const Matx33d essential = essentialOf(pose);
     int count = 0;
@@ -89,7 +116,7 @@ int EpipolarLoss::inliers(const RelativePose& pose, std::vector<uchar>& mask) co
     return count;
 }
 
-void EpipolarLoss::linearize(const RelativePose& pose, std::vector<Row>& rows) const
+void EpipolarProblem::linearize(const RelativePose& pose, std::vector<Row<Step>>& rows) const
 {
     rows.clear();
     const Matx33d E = essentialOf(pose), cross = crossProduct(pose.t);
@@ -121,8 +148,9 @@ void EpipolarLoss::linearize(const RelativePose& pose, std::vector<Row>& rows) c
                     (v[k / 3] * u[k % 3] -
                             r * inverse * (weightedLine[k / 3] * u[k % 3] + weightedBack[k % 3] * v[k / 3])) *
                     inverse;
-        Row row;
+        Row<Step> row;
         row.r = r;
+        row.r2 = r * r;
         for (int k = 0; k < 5; k++)
         {
             row.J[k] = 0;
