@@ -89,12 +89,10 @@ def _write(folder: str, images: Iterator[np.ndarray], rows_per_shard: int,
 
 
 def _skip(index: MappedIndex, images: Iterator[np.ndarray], folder: str) -> None:
-    """Drops the images that an interrupted call has written; the first of each shard tells whether they are the same."""
+    """Drops the images that an interrupted call has written."""
     for number in range(index.images()):
         image = next(images, None)
-        last = number + 1 == index.images()
-        rows = (index.rows() if last else index.firstRow(number + 1)) - index.firstRow(number)
-        if image is None or len(image) != rows or (last and not np.array_equal(image, index.descriptors(number))):
+        if image is None or not np.array_equal(image, index.descriptors(number)):
             raise ValueError(f'{folder} was begun with other codes or another rows_per_shard: remove it to begin anew')
 
 
@@ -138,9 +136,14 @@ def _by_workers(client: Any, call: Callable[[int], Arrays], shards: Iterable[int
                         'FIRST_COMPLETED').done
         except TimeoutError:
             done = ()
+        found = []
         for future in done:
+            try:
+                found.append(future.result(_PATIENCE))
+            except TimeoutError:  # its worker vanished with it, or the way is slow: the next round tells
+                continue
             del waiting[future]
-            yield future.result()
+        yield from found
         alive = client.nthreads()
         if alive:
             seen = time.monotonic()
@@ -148,7 +151,7 @@ def _by_workers(client: Any, call: Callable[[int], Arrays], shards: Iterable[int
             raise RuntimeError(f'no worker has been there for {_WITHOUT_WORKERS} s: start some and search again')
         # If all workers vanish at once, the scheduler keeps their tasks for them, whatever workers come later.
         for future, shard in list(waiting.items()):
-            if alive and not done and shard in place and place[shard] not in alive:
+            if alive and not found and shard in place and place[shard] not in alive:
                 del waiting[future], place[shard]
                 waiting[client.submit(call, shard, pure=False)] = shard
 

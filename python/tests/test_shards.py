@@ -74,7 +74,7 @@ class ShardsTest(unittest.TestCase):
         inode = os.stat(first).st_ino
         with self.assertRaisesRegex(ValueError, 'level sizes'):
             shards.write(self.folder, images, 60, (4, 4))
-        for others in (images[:7], images[1:], [self.codes[::-1][i:i + 30] for i in range(0, 400, 30)]):
+        for others in (images[:7], images[1:], [images[0] ^ 1, *images[1:]], [self.codes[::-1][i:i + 30] for i in range(0, 400, 30)]):
             with self.assertRaisesRegex(ValueError, 'other codes'):
                 shards.write(self.folder, others, 60)
         index = shards.write(self.folder, images, 60)
@@ -157,6 +157,27 @@ class ShardsTest(unittest.TestCase):
                 distributed.Client(cluster) as client, mock.patch.object(shards, '_WITHOUT_WORKERS', 1), \
                 self.assertRaisesRegex(RuntimeError, 'no worker'):
             shards.search(self.folder, self.queries, 5, client)
+
+    @unittest.skipIf(distributed is None, 'no dask.distributed')
+    def test_all_workers_die_before_a_result_is_fetched(self):
+        shards.write(self.folder, self.codes, 57)
+        wait = distributed.wait
+        with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None,
+                                      silence_logs=50) as cluster, distributed.Client(cluster) as client:
+            processes = list(client.run(os.getpid).values())
+
+            def wait_and_kill(*arguments):
+                finished = wait(*arguments)
+                while processes:
+                    os.kill(processes.pop(), signal.SIGKILL)
+                return finished
+            found = []
+            with mock.patch('distributed.wait', wait_and_kill):
+                thread = threading.Thread(target=lambda: found.append(shards.search(self.folder, self.queries, 5, client)), daemon=True)
+                thread.start()
+                thread.join(60)
+            self.assertFalse(thread.is_alive())
+            self.expect_found(found[0], 5)
 
     def while_workers_die(self, client, count):
         """A search meanwhile: the workers are stopped before it, and killed when they have been given their shards."""
