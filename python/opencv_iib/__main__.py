@@ -8,7 +8,7 @@ import sqlite3
 import sys
 from typing import Any, Optional, Sequence
 
-from opencv_iib import error
+from opencv_iib import __version__, error
 from opencv_iib.colmap import hloc
 from opencv_iib.colmap.database import CAMERA_MODELS
 from opencv_iib.colmap.features import DETECTORS, FeatureOptions, preset_names
@@ -17,10 +17,10 @@ from opencv_iib.demo import demo
 
 
 def _features(parser: argparse.ArgumentParser, points: int) -> None:
-    parser.add_argument('--detector', default=FeatureOptions.detector, choices=DETECTORS,
+    parser.add_argument('--detector', default=FeatureOptions.detector, choices=DETECTORS, type=str.upper,
                         help='HessianDetector, or a detector of cv2 (%(default)s)')
     parser.add_argument('--points', type=int, default=points, help='at most so many an image (%(default)s)')
-    parser.add_argument('--preset', default=FeatureOptions.preset, choices=sorted(preset_names()), help='descriptor (%(default)s)')
+    parser.add_argument('--preset', default=FeatureOptions.preset, choices=sorted(preset_names()), type=str.upper, help='descriptor (%(default)s)')
     parser.add_argument('--orientation', action='store_true', help='turn what is described by its direction')
     parser.add_argument('--max-size', type=int, default=0, metavar='PIXELS',
                         help='reduce larger images to this longer side; points stay in their own pixels')
@@ -33,9 +33,10 @@ def _feature_options(arguments: argparse.Namespace) -> FeatureOptions:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog='opencv-iib', description=__doc__)
+    parser.add_argument('--version', action='version', version=f'opencv_iib {__version__}')
     commands = parser.add_subparsers(dest='command', required=True)
 
-    command = commands.add_parser('demo', help='match two images and write a picture')
+    command = commands.add_parser('demo', help='match two images and write a picture; status 3: nothing agrees')
     command.add_argument('image_a')
     command.add_argument('image_b')
     command.add_argument('--out', default='opencv_iib_demo.png', help='picture to write (%(default)s)')
@@ -90,7 +91,17 @@ def _add_localization(commands: Any) -> None:
     updating.add_argument('--out', help='folder of the new map, instead of the old one')
 
 
-SOME_FOUND, NONE_FOUND = 4, 3  # status of localize
+SOME_FOUND, NONE_FOUND = 4, 3  # status of localize; NONE_FOUND of demo too
+
+
+def _demo(arguments: argparse.Namespace) -> int:
+    results = demo(arguments.image_a, arguments.image_b, arguments.out, _feature_options(arguments))
+    _say(f'{", ".join(map(str, results))}\npicture: {arguments.out}')
+    if results[0].good.any():
+        return 0
+    print('demo: nothing agrees; do both images show the same place? Try --max-size 1000 if they are large, more --points, '
+          'or --orientation if one of them is turned', file=sys.stderr)
+    return NONE_FOUND
 
 
 def _localization(arguments: argparse.Namespace) -> int:
@@ -146,7 +157,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     arguments = _parser().parse_args(argv)
     try:
         if arguments.command == 'demo':
-            _say(demo(arguments.image_a, arguments.image_b, arguments.out, _feature_options(arguments)))
+            return _demo(arguments)
         elif arguments.command in ('map', 'localize', 'update'):
             return _localization(arguments)
         elif arguments.command == 'hloc':

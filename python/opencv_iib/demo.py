@@ -1,38 +1,106 @@
-"""Two images matched, as a picture."""
+"""Two images matched by IIB and, beside it, by ORB or the detector's own descriptor: a picture and a line, as scripts/demo.sh's."""
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple, Optional
 
-from opencv_iib.colmap.features import FeatureOptions, Features
-from opencv_iib.colmap.images import read_grey, write_picture
-from opencv_iib.colmap.verify import magsac
+import numpy as np
+
+from opencv_iib.colmap.features import FeatureOptions, Features, make_detector
+from opencv_iib.colmap.images import import_cv2, read_colour, write_picture
 from opencv_iib.functions import match
-from opencv_iib.keypoints import array_to_keypoints
+from opencv_iib.keypoints import keypoints_to_array
+
+MAX_ERROR = 3  # pixels from the homography, in the second image
+MIN_CONSISTENT = 10  # a homography agrees with up to 6 of matches drawn at random
+HALF_WIDTH, MAX_DRAWN, CAPTION_HEIGHT = 640, 100, 44  # of the picture, in pixels; lines, since more would hide the images
+GOOD, OTHER, PAPER, INK = (150, 220, 60), (40, 90, 255), (32, 28, 26), (235, 235, 235)  # distinct for colour-blind eyes too
 
 
-def demo(image_a: str, image_b: str, out: str, options: FeatureOptions = FeatureOptions(points=1000)) -> str:
-    """Matches two images by the recommended chain and draws what agrees with one epipolar geometry, 100 at most.
+class Result(NamedTuple):
+    """Matches of one descriptor."""
+
+    name: str
+    points_a: np.ndarray  #: M x 2, pixels
+    points_b: np.ndarray  #: M x 2
+    good: np.ndarray  #: M: whether it agrees with the homography; none does where no homography was found
+
+    def __str__(self) -> str:
+        if self.good.any():
+            return f'{self.name} {self.good.sum()} of {len(self.good)} consistent'
+        return f'{self.name}: no homography found in {len(self.good)} matches'
+
+
+def demo(image_a: str, image_b: str, out: str, options: FeatureOptions = FeatureOptions(points=1000)) -> list[Result]:
+    """Matches two images by the recommended chain, and by ORB or what the detector has; draws both, IIB below.
+
+    *Consistent* are matches within 3 pixels of the homography that most agree with, if those are ten.
 
     :param out: picture to write.
-    :return: a line that says how many matches there are.
+    :return: of IIB first.
     :raises ValueError: for a file that is no image, or one that cannot be written.
     """
-    import cv2
-    features = Features(options)
-    images, rows, codes = [], [], []
-    for path in (image_a, image_b):
-        try:
-            images.append(read_grey(path))
-        except ValueError as e:
-            raise ValueError(f'{path}: {e}') from None
-        keypoints, descriptors = features(images[-1])
-        rows.append(keypoints)
-        codes.append(descriptors)
-    pairs, _ = match(codes[0], codes[1])
-    agree, _ = magsac(rows[0][pairs[:, 0], :2], rows[1][pairs[:, 1], :2])
-    good = [cv2.DMatch(a, b, 0) for a, b in pairs[agree].tolist()]
-    picture: Any = cv2.drawMatches(  # type: ignore[call-overload,unused-ignore]
-        images[0], array_to_keypoints(rows[0]), images[1], array_to_keypoints(rows[1]),
-        good[::len(good) // 100 + 1], None, flags=2)
-    write_picture(out, picture)
-    return f'{out}: {len(pairs)} matches, {len(good)} agree with one epipolar geometry'
+    images = [read_colour(path) for path in (image_a, image_b)]
+    described = list(map(Features(options), images))
+    results = [_result('IIB', [rows for rows, _ in described], match(described[0][1], described[1][1]).pairs)]
+    other = _own_descriptor('ORB' if options.detector == 'HESSIAN' else options.detector, images, options.points)
+    if other is not None:
+        results.append(other)
+    write_picture(out, np.vstack([draw(images, result) for result in reversed(results)]))
+    return results
+
+
+def _result(name: str, rows: list[np.ndarray], pairs: np.ndarray) -> Result:
+    cv2 = import_cv2()
+    a, b = (each[pairs[:, side], :2] for side, each in enumerate(rows))
+    good = np.zeros(len(pairs), bool)
+    matrix = cv2.findHomography(a, b, cv2.USAC_MAGSAC, MAX_ERROR)[0] if len(pairs) >= 4 else None
+    if matrix is not None:
+        good = np.linalg.norm(cv2.perspectiveTransform(a[:, None].astype(float), matrix)[:, 0] - b, axis=1) <= MAX_ERROR
+    return Result(name, a, b, good if good.sum() >= MIN_CONSISTENT else np.zeros_like(good))
+
+
+def _own_descriptor(name: str, images: list[np.ndarray], points: int) -> Optional[Result]:
+    cv2 = import_cv2()
+    detector = make_detector(name, points)
+    if not detector.descriptorSize():
+        return None
+    rows, codes = [], []
+    for image in images:
+        found = sorted(detector.detect(image), key=lambda keypoint: -keypoint.response)[:points]
+        found, described = detector.compute(image, found)
+        rows.append(keypoints_to_array(found))
+        codes.append(np.zeros((0, detector.descriptorSize()), np.uint8) if described is None else described)
+    if codes[0].dtype == np.uint8 or not len(codes[0]) * len(codes[1]):
+        return _result(name, rows, match(codes[0], codes[1]).pairs)
+    nearest = cv2.BFMatcher(detector.defaultNorm(), crossCheck=True).match(*codes)
+    return _result(name, rows, np.array([(m.queryIdx, m.trainIdx) for m in nearest]).reshape(-1, 2))
+
+
+def draw(images: list[np.ndarray], result: Result) -> np.ndarray:
+    """Both images side by side under a caption, a line for each match; those that agree lie above the others."""
+    cv2 = import_cv2()
+    scales = [HALF_WIDTH / image.shape[1] for image in images]
+    halves = [cv2.resize(image, (HALF_WIDTH, max(1, round(image.shape[0] * scale))), interpolation=cv2.INTER_AREA)
+              for image, scale in zip(images, scales)]
+    canvas: Any = np.full((CAPTION_HEIGHT + max(map(len, halves)), 2 * HALF_WIDTH, 3), PAPER, np.uint8)
+    for side, half in enumerate(halves):
+        canvas[CAPTION_HEIGHT:CAPTION_HEIGHT + len(half), side * HALF_WIDTH:(side + 1) * HALF_WIDTH] = half
+    drawn = np.arange(0, len(result.good), max(1, len(result.good) / MAX_DRAWN)).astype(int)  # a fair choice: strongest first
+    ends = [np.rint(points * scale + (side * HALF_WIDTH, CAPTION_HEIGHT)).astype(int)
+            for side, (points, scale) in enumerate(zip((result.points_a, result.points_b), scales))]
+    for colour, opacity, wanted in ((OTHER, .6, False), (GOOD, .8, True)):
+        lines = canvas.copy()
+        for k in drawn[result.good[drawn] == wanted]:
+            a, b = (tuple(map(int, end[k])) for end in ends)
+            cv2.line(lines, a, b, colour, 1, cv2.LINE_AA)
+            cv2.circle(canvas, a, 2, colour, cv2.FILLED, cv2.LINE_AA)
+            cv2.circle(canvas, b, 2, colour, cv2.FILLED, cv2.LINE_AA)
+        canvas = cv2.addWeighted(lines, opacity, canvas, 1 - opacity, 0)  # so that the images are seen
+    count, at = len(result.good), 14
+    told = [(f'{result.name}:  ', INK), (f'{result.good.sum()} consistent', GOOD),
+            (f'  {count - result.good.sum()} others', OTHER), (f'  {100 * result.good.mean():.0f} %', INK)
+            ] if result.good.any() else [(f'{result.name}:  ', INK), (f'{count} matches, no homography found', OTHER)]
+    for text, colour in told:
+        cv2.putText(canvas, text, (at, CAPTION_HEIGHT - 15), cv2.FONT_HERSHEY_DUPLEX, .68, colour, 1, cv2.LINE_AA)
+        at += cv2.getTextSize(text, cv2.FONT_HERSHEY_DUPLEX, .68, 1)[0][0]
+    return canvas

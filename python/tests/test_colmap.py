@@ -26,6 +26,7 @@ if cv2 is not None:
     from opencv_iib.colmap.features import DETECTORS, Features, to_colmap
     from opencv_iib.colmap.images import exif_focal_length, read_grey, write_picture
     from opencv_iib.colmap.verify import magsac
+    from opencv_iib.demo import demo
 
 distributed, h5py, pycolmap = map(optional, ('distributed', 'h5py', 'pycolmap'))
 
@@ -427,9 +428,34 @@ class ColmapTest(unittest.TestCase):
         out = os.path.join(self.folder.name, 'demo.png')
         with redirect_stdout(io.StringIO()) as text:
             self.assertEqual(main(['demo', os.path.join(self.images, 'a.png'), os.path.join(self.images, 'b.png'),
-                                   '--points', '200', '--out', out]), 0)
-        self.assertIn('agree', text.getvalue())
-        self.assertEqual(cv2.imread(out).shape[1], 2 * 400)
+                                   '--points', '200', '--out', out, '--preset', 'small', '--detector', 'orb']), 0)
+        self.assertRegex(text.getvalue(), r'^IIB \d+ of \d+ consistent, ORB\b.*\npicture: .*demo.png\n$')
+        self.assertEqual(cv2.imread(out).shape, (2 * (44 + 640 * 300 // 400), 2 * 640, 3))
+        noise = os.path.join(self.folder.name, 'noise.png')
+        cv2.imwrite(noise, np.random.default_rng(1).integers(0, 256, (200, 200), np.uint8))
+        with redirect_stdout(io.StringIO()) as text, redirect_stderr(io.StringIO()) as hint:
+            self.assertEqual(main(['demo', os.path.join(self.images, 'a.png'), noise, '--out', out]), 3)
+        self.assertRegex(text.getvalue(), r'^IIB: no homography found in \d+ matches, ORB')
+        self.assertIn('same place', hint.getvalue())
+        for arguments, told in (([self.images + '/a.png', self.images + '/b.png', '--points', '3000000000'], 'points is 3000000000'),
+                                ([self.images + '/gone.png', noise], 'gone.png: there is no such file'),
+                                ([noise, noise, '--out', 'x.foo'], 'x.foo: end its name in .png')):
+            with redirect_stderr(io.StringIO()) as err:
+                self.assertEqual(main(['demo', *arguments]), 1)
+            self.assertRegex(err.getvalue(), f'^demo: [^\n]*{told}[^\n]*\n$')
+
+    @unittest.skipUnless((REPOSITORY / 'tools/synthetic/day.png').exists(), 'the images are not beside these tests')
+    def test_the_demo_counts_as_that_of_cpp(self):
+        pair = [str(REPOSITORY / f'tools/synthetic/{name}.png') for name in ('day', 'night')]
+        iib, orb = demo(*pair, os.path.join(self.folder.name, 'demo.png'))
+        claim = re.search(r'`IIB (\d+) of (\d+) correct, ORB', (REPOSITORY / 'README.md').read_text())
+        self.assertEqual((iib.name, len(iib.good), orb.name), ('IIB', int(claim[2]), 'ORB'))
+        self.assertLess(abs(iib.good.sum() - int(claim[1])), 5)  # here a homography of the matches, there the true one
+
+    def test_version(self):
+        with redirect_stdout(io.StringIO()) as text, self.assertRaises(SystemExit):
+            main(['--version'])
+        self.assertEqual(text.getvalue(), f'opencv_iib {opencv_iib.__version__}\n')
 
     @unittest.skipUnless((REPOSITORY / 'doc/colmap.md').exists(), 'the documentation is not beside these tests')
     def test_the_example_of_the_documentation(self):

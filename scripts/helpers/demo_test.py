@@ -2,6 +2,7 @@
 """Runs the demo on its pair, and with each mistake a user can make (one line, exit code 2): demo_test.py DEMO OPENCV_VERSION"""
 import os
 import pathlib
+import random
 import re
 import subprocess
 import sys
@@ -36,7 +37,7 @@ def run(*arguments):
 def shown(options):
     """What the demo prints of its pair, with the last lines a person reads."""
     done = run(DAY, NIGHT, '--out', 'picture.png', *options.split())
-    if done.returncode or not re.search(r'\n[^\n]*IIB[^\n]*\npicture: [^\n]*picture.png\n$', done.stdout) or \
+    if done.returncode != (3 if '\nIIB 0 of' in done.stdout else 0) or not re.search(r'\n[^\n]*IIB[^\n]*\npicture: [^\n]*picture.png\n$', done.stdout) or \
             not (folder / 'picture.png').exists():
         wrong.append(f'{options}: no summary or no picture: {done}')
     (folder / 'picture.png').unlink(missing_ok=True)
@@ -48,6 +49,11 @@ with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
     for file, text in FILES.items():
         (folder / file).write_text(text)
+    noise = random.Random(1)
+    (folder / 'noise.ppm').write_text('P3 200 200 255\n' + ' '.join(str(noise.randrange(256)) for _ in range(3 * 200 * 200)) + '\n')
+    done = run(DAY, 'noise.ppm')
+    if done.returncode != 3 or not re.fullmatch('iib_demo: nothing agrees[^\n]+\n', done.stderr) or 'no homography' not in done.stdout:
+        wrong.append(f'nothing to match: {done}')
     for mistake in MISTAKES:
         done = run(*mistake)
         if done.returncode != 2 or done.stdout or not re.fullmatch('iib_demo: [^\n]+\n', done.stderr):

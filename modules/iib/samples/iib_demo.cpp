@@ -16,9 +16,12 @@
 
 #include <cstdio>
 
+static const int NONE_FOUND = 3;  // exit status
+
 static cv::Mat readImage(const std::string& path)
 {
-    cv::Mat image = cv::imread(path, cv::IMREAD_COLOR);
+    // as it lies in the file: EXIF data do not turn it
+    cv::Mat image = cv::imread(path, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
     if (image.empty())
         throw UserError("cannot read the image " + path);
     return image;
@@ -90,7 +93,8 @@ static Pair detectedPair(const std::string& name, const Detector& detector, cons
     return pair;
 }
 
-static void run(const Options& options)
+//! The exit status.
+static int run(const Options& options)
 {
     cv::Mat images[2];
     for (int i = 0; i < 2; i++)
@@ -120,6 +124,12 @@ static void run(const Options& options)
     writePicture(options.out, picture);
     printTable(options, pairs, results);
     printSummary(options, results);
+    if (results.back().goodCount() > 0)
+        return 0;
+    std::fprintf(stderr,
+            "iib_demo: nothing agrees; do both images show the same place? Large ones are better reduced to "
+            "about 1000 pixels, and turned ones need --orientation keypoint or gradient\n");
+    return NONE_FOUND;
 }
 
 int main(int argc, char** argv)
@@ -130,7 +140,7 @@ int main(int argc, char** argv)
     {
         Options options;
         if (parseOptions(argc, argv, options))
-            run(options);
+            return run(options);
     }
     catch (const UserError& e)
     {

@@ -46,7 +46,8 @@ class FeatureOptions:
             raise ValueError(f'max_size is {self.max_size}: it has to be at least {MIN_SIZE} pixels, or 0')
 
 
-def _make_detector(name: str, points: int) -> Any:
+def make_detector(name: str, points: int) -> Any:
+    """One of DETECTORS that keeps about so many keypoints, if it can."""
     if name == 'HESSIAN':
         return HessianDetector(points)
     import cv2
@@ -58,7 +59,7 @@ def _make_detector(name: str, points: int) -> Any:
 
 
 def _reduced(image: np.ndarray, max_size: int) -> np.ndarray:
-    height, width = image.shape
+    height, width = image.shape[:2]
     longer = max(width, height)
     if not 0 < max_size < longer:
         return image
@@ -81,17 +82,17 @@ class Features:
             gradient = options.detector in WITHOUT_ANGLES
             self.extractor.setOrientation(Orientation.GRADIENT if gradient else Orientation.KEYPOINT)
         self._local = threading.local()
-        self._local.detector = _make_detector(options.detector, options.points)  # raises here, not at the first image
+        self._local.detector = make_detector(options.detector, options.points)  # raises here, not at the first image
 
     def __call__(self, image: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """:return: N x 7 float32 keypoints (see keypoints_to_array), strongest first, and N x bytes codes."""
         if not hasattr(self._local, 'detector'):
-            self._local.detector = _make_detector(self.options.detector, self.options.points)
+            self._local.detector = make_detector(self.options.detector, self.options.points)
         small = _reduced(image, self.options.max_size)
         found = sorted(self._local.detector.detect(small), key=lambda keypoint: -keypoint.response)[:self.options.points]
         rows, codes = self.extractor.compute(small, keypoints_to_array(found))
         if small is not image:
-            scale = np.array(image.shape[::-1]) / small.shape[::-1]
+            scale = np.array(image.shape[1::-1]) / small.shape[1::-1]
             rows[:, :2] = (rows[:, :2] + .5) * scale - .5  # the centre of the first pixel is 0
             rows[:, 2] *= scale.max()
         return rows, codes

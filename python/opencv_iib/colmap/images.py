@@ -7,6 +7,8 @@ from typing import Any, Iterator, Optional
 
 import numpy as np
 
+from opencv_iib._files import write_whole
+
 SUFFIXES = ('.jpg', '.jpeg', '.png', '.tif', '.tiff', '.bmp', '.webp', '.ppm', '.pgm')
 # Numbers of EXIF tags.
 EXIF_IFD, FOCAL_LENGTH, FOCAL_LENGTH_35MM, PLANE_X_RESOLUTION, PLANE_UNIT = 0x8769, 0x920A, 0xA405, 0xA20E, 0xA210
@@ -70,16 +72,31 @@ def read_grey(path: str) -> np.ndarray:
     return decode_grey(read_bytes(path))
 
 
-def decode_grey(data: bytes) -> np.ndarray:
-    """As read_grey, of a file's bytes: cv2 itself takes no path that is not UTF-8.
+def read_colour(path: str) -> np.ndarray:
+    """H x W x 3 uint8, BGR; otherwise as read_grey.
 
-    :raises ValueError: if it cannot be read, also if it is a JPEG without its end, which cv2 would fill with grey.
+    :raises ValueError: naming the file.
+    """
+    try:
+        return _decode(read_bytes(path), colour=True)
+    except ValueError as e:
+        raise ValueError(f'{path}: {e}') from None
+
+
+def decode_grey(data: bytes) -> np.ndarray:
+    """As read_grey, of a file's bytes: cv2 itself takes no path that is not UTF-8."""
+    return _decode(data, colour=False)
+
+
+def _decode(data: bytes, colour: bool) -> np.ndarray:
+    """:raises ValueError: if it cannot be read, also if it is a JPEG without its end, which cv2 would fill with grey.
     """
     cv2 = import_cv2()
     image = None
     if data and not _is_cut_off(data):
         try:
-            image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION)
+            image = cv2.imdecode(np.frombuffer(data, np.uint8),
+                                 (cv2.IMREAD_COLOR if colour else cv2.IMREAD_GRAYSCALE) | cv2.IMREAD_IGNORE_ORIENTATION)
         except cv2.error:  # such as more pixels than it takes
             pass
     if image is None:
@@ -96,8 +113,7 @@ def write_picture(path: str, picture: np.ndarray) -> None:
         written = False
     if not written:
         raise ValueError(f'{path}: end its name in .png or .jpg')
-    with open(path, 'wb') as file:
-        file.write(data)
+    write_whole(path, data.tobytes())
 
 
 def _jpeg_segments(data: bytes) -> Iterator[tuple[int, int, int]]:
