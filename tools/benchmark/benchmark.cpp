@@ -41,6 +41,7 @@ static int run(const CommandLine& line)
         CV_Error(Error::StsError, "cannot write " + file);
     fs << "opencv" << CV_VERSION << "cpu" << getCPUFeaturesLine();
     measureDescribing(fs, rounds);
+    measureChains(fs, rounds);
     measurePixels(fs, rounds);
     measureMatching(fs, rounds);
     measureFrames(fs, rounds);

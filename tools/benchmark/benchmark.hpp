@@ -23,6 +23,9 @@ std::vector<double> measure(const std::vector<Timed>& tasks, int rounds);
 
 //! What descriptors cost beside cv::ORB on the same keypoints.
 void measureDescribing(cv::FileStorage& fs, int rounds);
+/** What finding points and describing them costs, each method on its own points of a rendered picture, and what describing
+the same points of AKAZE costs; on one thread. */
+void measureChains(cv::FileStorage& fs, int rounds);
 //! How the default descriptor's time grows with pixels beside ORB's, 1000 keypoints each, on one thread.
 void measurePixels(cv::FileStorage& fs, int rounds);
 //! What it costs to match an image's codes of 170 bytes with those of the same points under other light, on one thread.

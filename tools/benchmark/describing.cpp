@@ -38,7 +38,6 @@ std::vector<Row> allRows(const Mat& image)
     rows.push_back({"2 extra channels", IIB::create(2.f, 4, all, mean, false, false, 2), {image, image}, 1});
     rows.push_back({"useOrientation", IIB::create(2.f, 4, all, mean, false, true), {}, 1});
     rows.push_back({"default, 2 threads", IIB::create(), {}, 2});
-    rows.push_back({"cv::SIFT", SIFT::create(), {}, 1});
     for (const char* name : {"BEBLID-256", "BEBLID-512", "TEBLID-512", "LATCH-512"})
         for (const Configuration& c : baselineConfigurations())
             if (c.name == name)
@@ -70,7 +69,7 @@ void measureDescribing(FileStorage& fs, int rounds)
                                  else
                                      row.feature->compute(image, keypoints, descriptors);
                              },
-                    row.threads, row.name == "cv::SIFT" ? 10 : 1});
+                    row.threads, 1});
         }
     const std::vector<double> milliseconds = measure(tasks, rounds);
     fs << "width" << size.width << "height" << size.height << "keypoints"

@@ -2,11 +2,13 @@
 """Measures searches among many codes, beside faiss: measure.py --out FILE [--mapped N]
 
 Writes JSON: exact search at several widths, the folder of a MappedIndex of --mapped codes, and Dask's workers on it.
-Everything that is compared takes turns, and the least time counts. --flat prints the exact search alone.
+Everything that is compared takes turns, with one thread and with two; the median counts. A result in which two threads
+are more than twice as fast as one is refused: the machine was not idle. --flat prints the exact search alone.
 """
 import argparse
 import json
 import pathlib
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -25,20 +27,26 @@ def random_codes(seed, rows, width=BYTES):
     return np.random.default_rng(seed).integers(0, 256, (rows, width), np.uint8)
 
 
-def least_seconds(calls, rounds):
+def median_seconds(calls, rounds):
     """Of each call, which take turns."""
-    seconds = [float('inf')] * len(calls)
+    seconds = [[] for _ in calls]
     for _ in range(rounds):
-        for i, call in enumerate(calls):
+        for call, times in zip(calls, seconds):
             begin = time.perf_counter()
             call()
-            seconds[i] = min(seconds[i], time.perf_counter() - begin)
-    return seconds
+            times.append(time.perf_counter() - begin)
+    return [statistics.median(times) for times in seconds]
 
 
 def set_threads(threads):
     opencv_iib.setNumThreads(threads)
     faiss.omp_set_num_threads(threads)
+
+
+def refuse_more_than_threads(times, threads):
+    """Two threads are no faster than twice one, but for what a median is unsure of."""
+    if times > 1.1 * threads:
+        sys.exit('%.1f times as fast by %d threads: the machine was not idle, measure again' % (times, threads))
 
 
 def flat(trains, queries, rounds):
@@ -53,14 +61,17 @@ def flat(trains, queries, rounds):
             index.add(train)
         for k in (1, 5):
             np.testing.assert_array_equal(matcher.knnMatchArrays(query, k=k)[1], heap.search(query, k)[0])
+            calls = []
             for threads in (1, 2):
-                set_threads(threads)
-                ours, *theirs = least_seconds([lambda: matcher.knnMatchArrays(query, k=k), lambda: heap.search(query, k),
-                                               lambda: counting.search(query, k)], rounds)
-                pairs = 1e-9 * trains * queries
-                rows.append({'bytes': width, 'k': k, 'threads': threads, 'iib_ns': ours / pairs,
-                             'faiss_ns': min(theirs) / pairs})
+                for search in (lambda: matcher.knnMatchArrays(query, k=k), lambda: heap.search(query, k),
+                               lambda: counting.search(query, k)):
+                    calls.append(lambda search=search, threads=threads: (set_threads(threads), search()))
+            seconds = median_seconds(calls, rounds)
+            pairs = 1e-9 * trains * queries
+            for threads, (ours, *theirs) in ((1, seconds[:3]), (2, seconds[3:])):
+                rows.append({'bytes': width, 'k': k, 'threads': threads, 'iib_ns': ours / pairs, 'faiss_ns': min(theirs) / pairs})
                 print(rows[-1], flush=True)
+            refuse_more_than_threads(seconds[0] / seconds[3], 2)
     return {'codes': trains, 'queries': queries, 'rows': rows}
 
 
@@ -107,9 +118,10 @@ def workers(folder, queries, rounds):
         clusters += [client, cluster]
         shards.search(folder, query[:1], 1, client)  # maps and checks
         calls.append(lambda client=client: shards.search(folder, query, 5, client))
-    one, two = least_seconds(calls, rounds)
+    one, two = median_seconds(calls, rounds)
     for each in clusters:
         each.close()
+    refuse_more_than_threads(one / two, 2)
     result = {'queries': queries, 'one_worker_seconds': one, 'two_workers_seconds': two}
     print(result, flush=True)
     return result
@@ -121,7 +133,7 @@ def main():
     wanted.add_argument('--out', metavar='FILE')
     wanted.add_argument('--flat', action='store_true')
     parser.add_argument('--mapped', type=int, default=10**7, help='in the MappedIndex (%(default)s)')
-    parser.add_argument('--rounds', type=int, default=4, help='(%(default)s)')
+    parser.add_argument('--rounds', type=int, default=15, help='(%(default)s)')
     arguments = parser.parse_args()
     if arguments.flat:
         flat(100000, 512, arguments.rounds)
