@@ -1,5 +1,5 @@
 #!/bin/sh
-# Reproduces the paper's experiments on folders of image sequences and writes CSV files and one page.
+# Reproduces the paper's experiments on folders of image sequences and writes CSV files, means and one page.
 #   scripts/evaluate.sh [--document] [--contrib [--nonfree]] [--out FOLDER] [options of iib_evaluation] DATA...
 # Results go to results/ unless --out says otherwise; an interrupted run goes on where it stopped. --document puts their
 # summaries and the page into doc/results, from where tables of the README are made anew; --contrib adds the descriptors of
@@ -31,16 +31,21 @@ for argument in "$@"; do
     case "$argument" in --out=*) out="${argument#--out=}" ;; esac
     previous="$argument"
 done
+pairs="$out/pairs"
 
 # shellcheck disable=SC2086
 need $build_packages python3-jinja2
 [ -z "$contrib" ] || contrib=$(contrib_argument)
 build_tools ${contrib:+"$contrib" -DIIB_CONTRIB_NONFREE=$nonfree} iib_evaluation
 
-for image in day.png night.png street_noon.jpg street_winter.jpg facade_noon.jpg facade_night.jpg facade_noon.jpg facade_turned.jpg; do
+for image in view_noon.jpg view_overcast.jpg day.png night.png view_noon.jpg view_panned.jpg street_noon.jpg street_winter.jpg facade_noon.jpg facade_night.jpg facade_noon.jpg facade_turned.jpg; do
     set -- "$@" --compare "$root/tools/synthetic/$image"
 done
-"$build/tools/evaluation/iib_evaluation" --out "$out" "$@"
+for selection in "$root"/doc/results/AdaBoost-*.json; do
+    set -- "$@" --descriptor "$selection"
+done
+"$build/tools/evaluation/iib_evaluation" "$@" --out "$pairs"
+[ -z "$document" ] || out="$root/doc/results"
 {
     echo "commit $(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo unknown)"
     echo "date $(date -u +%Y-%m-%d)"
@@ -48,14 +53,9 @@ done
     [ -z "$contrib" ] ||
         echo "opencv_contrib $(sed -n 's/^Version: \([0-9]*[.][0-9]*[.][0-9]*\).*/\1/p' "${contrib#*=}/PKG-INFO")"
 } >"$out/run.txt"
-# Learned descriptors, which are not measured here.
-[ -z "$document" ] || cp "$root/doc/results/learned.csv" "$out"
-page=$(/usr/bin/python3 "$root/tools/evaluation/report/report.py" "$out")
-say "results and page: $page"
-if [ -n "$document" ]; then
-    /usr/bin/python3 "$root/scripts/helpers/summaries.py" "$out"
-    for file in index.html run.txt settings.txt pictures; do
-        [ ! -e "$out/$file" ] || cp -r "$out/$file" "$root/doc/results"
-    done
-    /usr/bin/python3 "$root/scripts/helpers/figures.py" --write
-fi
+for file in settings.txt pictures; do
+    [ ! -e "$pairs/$file" ] || cp -r "$pairs/$file" "$out"
+done
+/usr/bin/python3 "$root/scripts/helpers/summaries.py" "$pairs" "$out"
+say "results and page: $(/usr/bin/python3 "$root/tools/evaluation/report/report.py" "$out"), of each pair of images: $pairs"
+[ -z "$document" ] || /usr/bin/python3 "$root/scripts/helpers/figures.py" --write

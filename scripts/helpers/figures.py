@@ -1,43 +1,31 @@
 #!/usr/bin/env python3
-"""Tables of README.md and of pages in doc from the committed results in doc/results: figures.py --check | --write | --print FOLDER
+"""Tables of README.md and of pages in doc, and the page doc/results/index.html, from the committed results in doc/results:
+figures.py --check | --write | --print FOLDER
 
-A table stands between the lines `<!-- figures NAME -->` and `<!-- end of figures -->`, NAME being a function below.
---write puts each anew, --check ends with an error where one differs from the results, which ctest runs. --print prints the
-tables of scripts/bench.sh from results in another FOLDER.
+A table stands between the lines `<!-- figures NAME -->` and `<!-- end of figures -->`, NAME being a function below or one of
+TABLES. --write puts each anew, --check ends with an error where one differs from the results, which ctest runs. --print prints
+the tables of scripts/bench.sh from results in another FOLDER.
 """
 import argparse
 import collections
-import csv
+import functools
+import importlib.util
 import json
 import pathlib
 import re
+import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-TRAINED_ON_RENDERED = {'IIB UNIVERSAL', 'IIB SMALL'}  # walks through two of the rendered scenes
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'tools/evaluation/report'))
+import paper_orders as orders  # noqa: E402
+import results as summaries  # noqa: E402
+
+ROOT = summaries.ROOT
 results = ROOT / 'doc/results'
-LIGHT = {'light', 'trained'}  # places of summaries.py: real images under changed light
 
 
 def rows(name):
-    with open(results / name, newline='') as file:
-        return list(csv.DictReader(file))
-
-
-def unseen(chosen):
-    """These rows; no preset is judged by scenes that it was trained on."""
-    for row in chosen:
-        name = row.get('configuration') or row['descriptor']
-        if (row.get('place') == 'trained' and re.match('IIB [A-Z]+[0-9]*$', name) or
-                row.get('place') == 'rendered' and name in TRAINED_ON_RENDERED):
-            sys.exit(name + ' was trained on scenes of this figure')
-    return chosen
-
-
-def mean(chosen, column):
-    """Of all pairs of images that these rows sum up."""
-    unseen(chosen)
-    return sum(int(r['pairs']) * float(r[column]) for r in chosen) / sum(int(r['pairs']) for r in chosen)
+    return summaries.read(results / name)
 
 
 def table(head, lines):
@@ -45,8 +33,8 @@ def table(head, lines):
     return '\n'.join(text + ['| ' + ' | '.join(line) + ' |' for line in lines])
 
 
-def precision_recall(chosen):
-    return '%.3f / %.3f' % (mean(chosen, 'precision'), mean(chosen, 'recall')) if chosen else '–'
+def precision_recall(row):
+    return '%.3f / %.3f' % (float(row['precision']), float(row['recall'])) if row else '–'
 
 
 def grouped(name, key, chosen=lambda row: True):
@@ -54,53 +42,101 @@ def grouped(name, key, chosen=lambda row: True):
     found = collections.defaultdict(list)
     for row in rows(name):
         if chosen(row):
-            found[tuple(row[column] for column in key) if len(key) > 1 else row[key[0]]].append(row)
+            found[tuple(row[column] for column in key)].append(row)
     return found
 
 
 def detected_points():
-    """Points detected in both images, all pairs of real images under changed light."""
-    found = grouped('detected_points.csv', ('detector', 'descriptor'), lambda row: row['place'] in LIGHT)
-
-    def cells(detector, descriptor):
-        chosen = found[detector, descriptor]
-        return ['%.0f' % mean(chosen, 'correct'), '%.0f %%' % (100 * mean(chosen, 'precision'))]
-
-    lines = []
-    for detector, own in (('ORB', 'ORB'), ('AKAZE', 'AKAZE'), ('SIFT', 'SIFT'), ('BRISK', 'BRISK'), ('KAZE', 'KAZE'),
+    """Points detected in both images: all photographs under changed light, and rendered scenes."""
+    found, lines = summaries.by(rows('detected_points.csv'), 'place', 'detector', 'descriptor'), []
+    for detector, own in (('ORB', 'ORB'), ('AKAZE', 'AKAZE'), ('SIFT', 'SIFT'), ('BRISK', 'BRISK'), ('KAZE', 'KAZE'), ('SURF', 'SURF'),
                           ('FAST', 'ORB'), ('AGAST', 'ORB')):
-        lines.append([detector, own] + cells(detector, own) + ['**%s**' % c for c in cells(detector, 'IIB')])
-    return table(['points of', 'descriptor', 'correct a pair', 'precision', 'IIB: correct', 'IIB: precision'], lines)
+        cells = []
+        for place in ('natural', 'rendered'):
+            for descriptor in (own, 'IIB'):
+                row = found[place, detector, descriptor]
+                cells.append('%.0f, %.0f %%' % (float(row['correct']), 100 * float(row['precision'])))
+        lines.append([detector, own, cells[0], '**%s**' % cells[1], cells[2], '**%s**' % cells[3]])
+    return table(['points of', 'descriptor', 'photographs', 'IIB', 'rendered', 'IIB'], lines)
+
+
+def learned_points():
+    """What the networks' own descriptors and IIB's default match at the networks' points."""
+    return table(['points of', 'pairs', 'own descriptor, bytes', 'correct a pair', 'IIB: correct'],
+                 [[row[c] for c in ('detector', 'pairs', 'bytes', 'correct', 'iib')] for row in rows('learned.csv')])
 
 
 def fixed_points():
     """The same 1000 points in both images: light, and the two sequences of Oxford's set whose camera moves."""
-    found = grouped('fixed_points.csv', ('configuration', 'place'))
-    lines = []
+    found, lines = summaries.by(rows('fixed_points.csv'), 'configuration', 'place'), []
     for label, name in (('IIB', 'IIB'), ('IIB, `PRESET_BALANCED`', 'IIB BALANCED'), ('SIFT', 'SIFT'),
                         ('KAZE', 'KAZE'), ('AKAZE', 'AKAZE-486'), ('BEBLID', 'BEBLID-512'),
                         ('BEBLID, 35 px', 'BEBLID-512 5x'), ('TEBLID', 'TEBLID-512'),
                         ('TEBLID, 35 px', 'TEBLID-512 5x'), ('LATCH', 'LATCH-512'), ('ORB', 'ORB'),
                         ('BRIEF', 'BRIEF-512'), ('FREAK', 'FREAK'), ('BRISK', 'BRISK')):
-        light = found[name, 'light']
-        lines.append([label, light[0]['bytes']] +
-                     [precision_recall(chosen) for chosen in (light, found[name, 'wall'], found[name, 'graf'])])
-    return table(['', 'bytes', 'changed light', '`wall`', '`graf`'], lines)
+        lines.append([label, found[name, 'light']['bytes']] +
+                     [precision_recall(found[name, place]) for place in ('light', 'rendered', 'wall', 'graf')])
+    return table(['', 'bytes', 'changed light', 'rendered light', '`wall`', '`graf`'], lines)
 
 
-def extra_channels():
-    """Fixed points of rendered scenes: depth and labels of what is seen as further channels."""
-    found = grouped('fixed_points.csv', ('configuration',), lambda row: row['place'] == 'rendered')
-    return table(['', 'rendered scenes'],
-                 [[name, precision_recall(found[name])] for name in ('IIB', 'IIB +depth', 'IIB +labels', 'IIB +depth+labels')])
+def paper(question):
+    """One of the paper's tables: our figures beside its own."""
+    def both(pair):
+        return ' / '.join(pair) if all(pair) else '–'
+    lines = [[plain or name, '`%s`' % name, (natural or rendered or {}).get('bytes', '–'), precision_recall(natural), both(theirs[0]),
+              precision_recall(rendered), both(theirs[1])]
+             for name, plain, natural, rendered, theirs in summaries.paper_table(question, rows('fixed_points.csv'))]
+    return table([question.lower(), 'row', 'bytes', 'photographs', 'paper, natural', 'rendered', 'paper, synthetic'], lines)
 
 
-def turned():
-    """Fixed points: the reference turned about its centre, in the same light, of scenes that no preset was trained on."""
-    found = grouped('robustness.csv', ('configuration', 'target'))
-    lines = [[name] + [precision_recall(found[name, degrees]) for degrees in ('5', '10', '15', '30')]
-             for name in ('IIB', 'IIB BALANCED', 'IIB oriented', 'ORB', 'ORB oriented', 'SIFT', 'SIFT oriented')]
-    return table(['', '5 degrees', '10', '15', '30'], lines)
+def matching_modes():
+    """Hierarchical matching by the paper's thresholds, beside brute force."""
+    found, lines = summaries.by(rows('matching.csv'), 'place', 'matcher'), []
+    for matcher in sorted({key[1] for key in found}):
+        line = [matcher]
+        for place in ('natural', 'rendered'):
+            row, brute = found[place, matcher], found[place, 'BFMatcher']
+            line += [precision_recall(row), '%.3f' % float(row['cost']), '%.3f' % (float(row['milliseconds']) / float(brute['milliseconds']))]
+        lines.append(line)
+    return table(['matcher', 'photographs', 'cost', 'time', 'rendered', 'cost', 'time'], lines)
+
+
+LEVELS = 4
+
+
+def operations():
+    """Of one channel of the default descriptor: sums of cells from an integral image, and the comparison of four with their sum."""
+    cells = 2 ** LEVELS
+    finest = (cells + 1) * cells + cells * cells  # differences along rows, then along columns
+    quads = sum(4 ** level for level in range(LEVELS))
+    lines = [('sums of the %d finest cells, by differences of %d corners' % (cells ** 2, (cells + 1) ** 2), finest),
+             ('sums of %d quads, which are those of the coarser cells' % quads, 3 * quads), ('means of the quads, by a shift', quads),
+             ('algebraic operations in all (the paper: 4 a bit; LDB: 6)', finest + 4 * quads), ('comparisons (the paper and LDB: 1)', 4 * quads)]
+    return table(['of one channel', 'operations', 'a bit'], [[what, str(n), '%.2f' % (n / (4 * quads))] for what, n in lines])
+
+
+def memory():
+    """Of channels, whole as the paper has them and as they are held here; LDB's are those of one level of AKAZE's scale space."""
+    width, height, side, channels = 1280, 720, 64, 4
+    band = int(re.search(r'BAND_ROWS = (\d+)', (ROOT / 'modules/iib/src/descriptor/keypoint_batches.hpp').read_text())[1])
+    lines = [('IIB here: 16-bit sums of 4 channels, a ring of %d rows' % (side + band + 1), 2 * channels, side + band + 1),
+             ('IIB, whole integral images of 32 bits', 4 * channels, height),
+             ('LDB in AKAZE: intensity and two derivatives, floats', 4 * 3, height)]
+    return table(['', 'bytes a pixel', 'kB in all'], [[what, str(size), '%.0f' % (size * width * rows / 1e3)] for what, size, rows in lines])
+
+
+def localization_systems():
+    """The paper's table of localization systems, as it quotes them."""
+    found = summaries.read(summaries.PAPER.with_name('paper_localization.csv'))
+    return table(['system', 'inputs', 'lateral', 'longitudinal', 'altitude'], [[value or '–' for value in row.values()] for row in found])
+
+
+def paper_orders():
+    """Whether the orders that the paper's tables show hold for our figures."""
+    natural = summaries.by(rows('fixed_points.csv'), 'configuration', place='natural')
+    found = orders.orders({n: float(r['recall']) for n, r in natural.items()}, {n: float(r['precision']) for n, r in natural.items()},
+                          [row['configuration'] for row in summaries.read(summaries.PAPER)])
+    return table(['statement', 'holds', 'figures'], [[statement, 'yes' if holds else 'no', figures] for statement, holds, figures in found])
 
 
 # Points and descriptor of a row of poses, as the results name them, and as people do.
@@ -113,8 +149,7 @@ POSES = (('ORB', 'ORB'), ('ORB', 'BEBLID-512'), ('ORB', 'IIB'), ('AKAZE', 'AKAZE
 def best_poses(places=('buildings', 'street', 'facade')):
     """For each row of poses and each place, the results under the rule that scores best there."""
     found = grouped('whole_tasks.csv', ('detector', 'descriptor', 'place'))
-    return [(row, [max(unseen(found[row + (place,)]), key=lambda rule: float(rule['score'])) for place in places])
-            for row in POSES]
+    return [(row, [max(found[row + (place,)], key=lambda rule: float(rule['score'])) for place in places]) for row in POSES]
 
 
 def score(row):
@@ -165,7 +200,7 @@ def pose_by_rule():
     limits, lines = ('0.75', '1', '2'), []
     for place in ('buildings', 'street'):
         for label, rule in (('mutual', 'mutual'), ('a ratio of .9', 'ratio'), ('both', 'both')):
-            chosen = [unseen(found['Hessian', 'IIB UNIVERSAL', place, '%s at %s px' % (rule, limit)])[0] for limit in limits]
+            chosen = [found['Hessian', 'IIB UNIVERSAL', place, '%s at %s px' % (rule, limit)][0] for limit in limits]
             lines.append([place, label] + [score(row) for row in chosen])
     return table(['', ''] + [limit + ' px' for limit in limits], lines)
 
@@ -190,15 +225,11 @@ def presets():
            ('IIB S512', '`PRESET_S512`', 'the default, shortened'),
            ('IIB S256', '`PRESET_S256`', 'the default, shortened'),
            ('IIB S128', '`PRESET_S128`', 'the default, shortened'))
-    found, turns = grouped('fixed_points.csv', ('configuration', 'place')), grouped('robustness.csv', ('configuration', 'target'))
-    lines = []
-    for name, label, when in use:
-        if (name, 'light') not in found:
-            continue
-        places = [() if place == 'rendered' and name in TRAINED_ON_RENDERED else found[name, place]
-                  for place in ('light', 'rendered', 'wall', 'graf')]
-        lines.append([label, found[name, 'light'][0]['bytes']] + [precision_recall(chosen) for chosen in places] +
-                     [precision_recall(turns[name, '10']), when])
+    found = summaries.by(rows('fixed_points.csv'), 'configuration', 'place')
+    turns = summaries.by(rows('robustness.csv'), 'configuration', 'target', kind='turn')
+    lines = [[label, found[name, 'light']['bytes']] +
+             [precision_recall(found.get((name, place))) for place in ('light', 'rendered', 'wall', 'graf')] +
+             [precision_recall(turns[name, '10']), when] for name, label, when in use if (name, 'light') in found]
     return table(['preset', 'bytes', 'light', 'rendered', 'wall', 'graf', 'turned', 'when'], lines)
 
 
@@ -215,12 +246,28 @@ def describing():
     data, narrow = benchmark(WIDE), benchmark(NARROW)
     few, many = data['keypoints']
     orb, lines = data['rows'][0]['milliseconds'], []
-    for row, slow in zip(data['rows'], narrow['rows']):
+    slow = {row['name']: row['milliseconds'][0] for row in narrow['rows']}
+    for row in data['rows']:
         first, second = row['milliseconds']
         lines.append([row['name'], '%.2f' % first, '%.2f' % (first / orb[0]),
                       '%.2f' % ((second - first) * 1000 / (many - few)), '%.2f' % ((second - first) / (orb[1] - orb[0])),
-                      '%.1f' % (slow['milliseconds'][0] / first)])
+                      '%.1f' % (slow[row['name']] / first)])
     return table(['', 'ms', 'ratio to ORB', 'us a point more', 'ratio', 'without AVX2, times'], lines)
+
+
+def chains():
+    """Finding and describing, each method on its own points of a rendered picture."""
+    data = benchmark(WIDE)['chains']
+    orb = data[0]['milliseconds']
+    return table(['', 'points', 'ms', 'ratio to ORB'],
+                 [[r['name'], str(r['points']), '%.1f' % r['milliseconds'], '%.2f' % (r['milliseconds'] / orb)] for r in data])
+
+
+def same_points():
+    """Describing the same points of AKAZE."""
+    data = benchmark(WIDE)['same_points']
+    return table(['', 'points', 'ms', 'ratio to IIB'],
+                 [[r['name'], str(r['points']), '%.2f' % r['milliseconds'], '%.2f' % (r['milliseconds'] / data[0]['milliseconds'])] for r in data])
 
 
 def speeds(name):
@@ -319,22 +366,37 @@ def mapped_index():
         ['times as fast', '%.1f' % (workers['one_worker_seconds'] / workers['two_workers_seconds'])]])
 
 
+# Tables of the paper by the questions of tools/evaluation/report/paper.csv.
+TABLES = {'paper_' + name: functools.partial(paper, question)
+          for name, question in zip(('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), summaries.questions())}
+
 PAGES = {'README.md': (match_claim, pose_claim, speed_claim, poses),
          'doc/guide.md': (pose_by_rule, presets),
-         'doc/performance.md': (describing, matching, small_work),
+         'doc/performance.md': (describing, chains, same_points, matching, small_work),
          'doc/scale.md': (mapped_index, flat_search),
-         'doc/results/README.md': (pose_rules, elsewhere, extra_channels, detected_points, fixed_points, turned)}
+         'doc/paper.md': (matching_modes, operations, memory, learned_points, paper_orders, localization_systems),
+         'doc/results/README.md': (pose_rules, elsewhere, detected_points, fixed_points)}
 
 
 def filled(page, makers):
     """The page's text, before and with its tables made anew."""
     before = (ROOT / page).read_text()
-    named = {function.__name__: function for function in makers}
+    named = {**{function.__name__: function for function in makers}, **TABLES}
     after, count = re.subn(r'(<!-- figures (\w+) -->\n).*?(?=<!-- end of figures -->)',
                            lambda match: match[1] + named[match[2]]() + '\n', before, flags=re.DOTALL)
-    if count != len(makers):
+    if count != len(makers) + sum('<!-- figures %s -->' % name in before for name in TABLES):
         sys.exit('%s holds %d tables of figures, not %d' % (page, count, len(makers)))
     return before, after
+
+
+def write_page():
+    """doc/results/index.html; whether it differs from what was there. Without jinja2 it stays."""
+    page = results / 'index.html'
+    before = page.read_text()
+    if importlib.util.find_spec('jinja2'):
+        subprocess.run([sys.executable, '-B', ROOT / 'tools/evaluation/report/report.py', results], check=True,
+                       stdout=subprocess.DEVNULL)
+    return page.read_text() != before
 
 
 def main():
@@ -347,7 +409,7 @@ def main():
     if arguments.print:
         global results
         results = arguments.print
-        print(*(make() for make in (describing, matching, small_work)), sep='\n\n')
+        print(*(make() for make in (describing, chains, same_points, matching, small_work)), sep='\n\n')
         return
     for page, makers in PAGES.items():
         before, after = filled(page, makers)
@@ -355,6 +417,8 @@ def main():
             (ROOT / page).write_text(after)
         elif after != before:
             sys.exit(page + ' differs from doc/results: run scripts/helpers/figures.py --write')
+    if write_page() and arguments.check:
+        sys.exit('doc/results/index.html differed from its results, and was written anew')
 
 
 if __name__ == '__main__':

@@ -1,29 +1,46 @@
 #!/usr/bin/env python3
-"""Summaries of an evaluation for doc/results, from which figures.py makes its tables: summaries.py FOLDER
+"""Summaries of an evaluation, from which figures.py and the page are made: summaries.py PAIRS OUT
 
-FOLDER: results of scripts/evaluate.sh, with a row for each pair of images. Written are means over the pairs of a group, one
-row each, with their number; of poses also the ends of the mean's 95 % confidence interval (low, high; bootstrap over the
-pairs).
+PAIRS: the folder of iib_evaluation's results, with a row for each pair of images. OUT gets means over the pairs of a group, one
+row each, with their number and the ends of the 95 % confidence interval of what is named last (low, high; bootstrap over scenes).
 """
 import collections
 import csv
 import pathlib
 import random
+import re
 import sys
 
-OUT = pathlib.Path(__file__).resolve().parents[2] / 'doc/results'
 TRAINED_ON = {'tilde_webcam', 'amos_daynight', 'walk_room', 'walk_terrain'}  # by the presets
 RENDERED = {'lights'}
-DRAWS = 1000  # of the bootstrap
+TRAINED_ON_RENDERED = {'IIB UNIVERSAL', 'IIB SMALL'}  # on walks through these scenes
+UNSEEN_SCENES = {'street', 'facade'}  # rendered scenes without them
+DRAWS = 400  # of the bootstrap
 
 
-def place(row):
-    """What a pair shows: light of scenes that presets were trained on or not, rendered light, or the moved camera."""
+def is_learned(name):
+    """Whether images chose its bits: presets of IIB and selections, such as IIB S128 or IIB AdaBoost-128."""
+    return bool(re.match('IIB [A-Z][A-Za-z]*-?[0-9]*$', name))
+
+
+def places(row):
+    """Groups that a pair counts in: `natural`, all photographs under changed light; `light`, those of them that nothing was
+    trained on; `rendered` light; or what moved or blurred the image, by kind and by sequence. What was trained on some pairs is
+    judged by the others alone."""
+    name = row.get('configuration') or row.get('descriptor') or ''
     if row['set'] in RENDERED:
-        return 'rendered'
+        return [] if name in TRAINED_ON_RENDERED else ['rendered']
     if row['kind'] != 'light':
-        return row['sequence']
-    return 'trained' if row['set'] in TRAINED_ON else 'light'
+        return [row['kind'], row['sequence']]
+    return [] if row['set'] in TRAINED_ON and is_learned(name) else [
+        'natural'] * (not is_learned(name)) + ['light'] * (row['set'] not in TRAINED_ON)
+
+
+def curve_places(row):
+    """The same for curves, which lie in one picture: all of scenes that nobody was trained on."""
+    if row['set'] in RENDERED:
+        return ['rendered'] * (row['sequence'] in UNSEEN_SCENES)
+    return ['light'] * (row['kind'] == 'light' and row['set'] not in TRAINED_ON)
 
 
 def pose_score(row):
@@ -34,7 +51,9 @@ def pose_score(row):
 def pose_place(row):
     """Photographs of buildings by day, or what a rendered walk in two lights passes: a facade is nearly a plane, from which
     the pose is hardly known."""
-    return 'buildings' if row['set'] == 'strecha' else 'facade' if row['set'] == 'walk_facade' else 'street'
+    if row['task'] != 'pose' or row['set'] in TRAINED_ON:
+        return []
+    return ['buildings' if row['set'] == 'strecha' else 'facade' if row['set'] == 'walk_facade' else 'street']
 
 
 def column(name):
@@ -45,75 +64,139 @@ def mean(values):
     return sum(values) / len(values)
 
 
-def interval(values, statistic=mean):
-    """Ends of the 95 % confidence interval of the mean, or of another statistic."""
-    chance = random.Random(1)
-    drawn = sorted(statistic(chance.choices(values, k=len(values))) for _ in range(DRAWS))
+def interval(scenes, statistic=mean):
+    """Ends of the 95 % confidence interval of the mean, or of another statistic, of all values: `scenes` has a list a scene."""
+    chance, scenes = random.Random(1), list(scenes)
+    drawn = sorted(statistic([v for scene in chance.choices(scenes, k=len(scenes)) for v in scene]) for _ in range(DRAWS))
     return [drawn[at] for at in (DRAWS // 40, DRAWS - 1 - DRAWS // 40)]
 
 
-# File: which rows count, what makes a group, what is averaged.
+def columns(*names):
+    return {name: column(name) for name in names}
+
+
+# File: groups that a row counts in, further columns that make a group, what is averaged.
 PLANS = {
-    'detected_points.csv': (lambda row: True, {'place': place, 'detector': None, 'descriptor': None},
-                            {'correct': column('correct'), 'precision': column('precision')}),
-    'fixed_points.csv': (lambda row: True, {'place': place, 'configuration': None, 'bytes': None},
-                         {'precision': column('precision'), 'recall': column('recall')}),
-    'robustness.csv': (lambda row: row['kind'] == 'turn' and row['set'] not in TRAINED_ON,
-                       {'configuration': None, 'target': None},
-                       {'precision': column('precision'), 'recall': column('recall')}),
-    'whole_tasks.csv': (lambda row: row['task'] == 'pose' and row['set'] not in TRAINED_ON,
-                        {'place': pose_place, 'detector': None, 'descriptor': None, 'matching': None},
-                        {'score': pose_score}),
+    'fixed_points.csv': (places, ('configuration', 'bytes'), columns('precision', 'recall')),
+    'detected_points.csv': (places, ('detector', 'descriptor', 'bytes'), columns('precision', 'recall', 'correct')),
+    'matching.csv': (places, ('matcher',), columns('precision', 'cost', 'milliseconds', 'recall')),
+    'robustness.csv': (lambda row: ['turned'] * (row['set'] not in TRAINED_ON), ('kind', 'configuration', 'target'),
+                       columns('precision', 'recall')),
+    'whole_tasks.csv': (pose_place, ('detector', 'descriptor', 'matching'), {'score': pose_score}),
 }
 
 
-def summarize(source, target, chosen, keys, values):
-    groups = collections.defaultdict(list)
-    with open(source, newline='') as file:
-        for row in csv.DictReader(file):
-            if chosen(row):
-                groups[tuple(key(row) if key else row[name] for name, key in keys.items())].append(row)
-    with open(target, 'w', newline='') as file:
-        writer = csv.writer(file, lineterminator='\n')
-        writer.writerow(list(keys) + ['pairs'] + list(values) + (['low', 'high'] if 'score' in values else []))
-        for group, rows in sorted(groups.items()):
-            found = [[value(row) for row in rows] for value in values.values()]
-            ends = ['%.4f' % end for end in interval(found[0])] if 'score' in values else []
-            writer.writerow(list(group) + [len(rows)] + [repr(sum(of) / len(rows)) for of in found] + ends)
+def read(file):
+    with open(file, newline='') as opened:
+        yield from csv.DictReader(opened)
+
+
+def write(file, heads, rows):
+    with open(file, 'w', newline='') as opened:
+        csv.writer(opened, lineterminator='\n').writerows([heads, *rows])
+
+
+def summarize(source, target, groups_of, keys, values):
+    groups = collections.defaultdict(lambda: collections.defaultdict(list))
+    for row in read(source):
+        for place in groups_of(row):
+            groups[(place, *(row[key] for key in keys))][row['set'], row.get('sequence')].append(
+                [value(row) for value in values.values()])
+    lines = []
+    for group, scenes in sorted(groups.items()):
+        every = [pair for scene in scenes.values() for pair in scene]
+        ends = interval([[pair[-1] for pair in scene] for scene in scenes.values()])
+        lines.append([*group, len(every), *('%.5g' % mean(of) for of in zip(*every)), *('%.4g' % end for end in ends)])
+    write(target, ['place', *keys, 'pairs', *values, 'low', 'high'], lines)
 
 
 def gain(pairs):
     """How many times as many right matches the second of each pair of counts is, of all."""
-    return sum(ours for _, ours in pairs) / sum(own for own, _ in pairs)
+    return sum(ours for _, ours in pairs) / max(1, sum(own for own, _ in pairs))
 
 
 def summarize_gains(source, target):
     """Right matches of the default descriptor over those of a detector's own, at its points, of pairs in changed light."""
     counts = collections.defaultdict(dict)
-    with open(source, newline='') as file:
-        for row in csv.DictReader(file):
-            if place(row) in ('light', 'trained'):
-                counts[row['detector'], row['descriptor']][row['set'], row['sequence'], row['target']] = int(row['correct'])
-    with open(target, 'w', newline='') as file:
-        writer = csv.writer(file, lineterminator='\n')
-        writer.writerow(['detector', 'pairs', 'gain', 'low', 'high'])
-        for detector in sorted(detector for detector, descriptor in counts if detector == descriptor):
-            own, ours = counts[detector, detector], counts[detector, 'IIB']
-            pairs = [(own[pair], ours[pair]) for pair in sorted(own) if pair in ours]
-            writer.writerow([detector, len(pairs)] + ['%.4f' % v for v in (gain(pairs), *interval(pairs, gain))])
+    for row in read(source):
+        if 'natural' in places(row):
+            counts[row['detector'], row['descriptor']][row['set'], row['sequence'], row['target']] = int(row['correct'])
+    lines = []
+    for detector in sorted(detector for detector, descriptor in counts if detector == descriptor):
+        own, ours, scenes = counts[detector, detector], counts[detector, 'IIB'], collections.defaultdict(list)
+        for pair in sorted(own.keys() & ours):
+            scenes[pair[:2]].append((own[pair], ours[pair]))
+        pairs = [pair for scene in scenes.values() for pair in scene]
+        lines.append([detector, len(pairs)] + ['%.4f' % v for v in (gain(pairs), *interval(scenes.values(), gain))])
+    write(target, ['detector', 'pairs', 'gain', 'low', 'high'], lines)
+
+
+def summarize_curves(source, target):
+    """Right matches, recall and 1 - precision against the threshold: a step is 1/32 of the distance of unrelated descriptors."""
+    groups = collections.defaultdict(list)
+    for row in read(source):
+        if row['descriptor'] in (row['detector'], 'IIB', 'IIB UNIVERSAL'):
+            for place in curve_places(row):
+                steps = [[int(count) for count in step.split(':')] for step in row['curve'].split()]
+                groups[place, row['detector'], row['descriptor']].append((steps, max(1, int(row['correspondences']))))
+    lines = []
+    for group, pairs in sorted(groups.items()):
+        for step in range(len(pairs[0][0])):
+            right = [steps[step][0] for steps, _ in pairs]
+            wrong = [1 - steps[step][0] / steps[step][1] if steps[step][1] else 0 for steps, _ in pairs]
+            recall = [steps[step][0] / correspondences for steps, correspondences in pairs]
+            lines.append([*group, step + 1, len(pairs), *('%.4g' % mean(v) for v in (right, recall, wrong))])
+    write(target, ['place', 'detector', 'descriptor', 'threshold', 'pairs', 'right', 'recall', 'one_minus_precision'], lines)
+
+
+DRAWN = 10  # one in so many matches is drawn
+
+
+def summarize_comparison(source, target):
+    """How many matches of each method are right, and every tenth: x, y, x and y of the other image, whether it is right."""
+    heads, groups = ('reference', 'target', 'detector', 'descriptor'), collections.defaultdict(list)
+    for row in read(source):
+        groups[tuple(row[head] for head in heads)].append([row[c] for c in ('x', 'y', 'target_x', 'target_y', 'correct')])
+    write(target, [*heads, 'right', 'wrong', 'matches'], (
+        [*group, sum(m[-1] == '1' for m in rows), sum(m[-1] != '1' for m in rows), ' '.join(' '.join(m) for m in rows[::DRAWN])]
+        for group, rows in sorted(groups.items())))
+
+
+def summarize_learned(source, target):
+    """Puts what IIB finds at the points of learned detectors, and what their own descriptors find where files hold some, into
+    the list of what these are known to find."""
+    if not target.is_file():
+        return
+    found = collections.defaultdict(list)
+    for row in read(source):
+        if 'natural' in places(row):
+            found[row['detector'].lower(), row['descriptor']].append(int(row['correct']))
+    lines = list(read(target))
+    for line in lines:
+        name = line['detector'].lower()
+        own = next((counts for (detector, descriptor), counts in found.items() if detector == descriptor.lower() == name), None)
+        if found[name, 'IIB']:
+            line.update(iib='%.0f' % mean(found[name, 'IIB']), pairs=len(found[name, 'IIB']))
+        if own:
+            line.update(correct='%.0f' % mean(own), source='measured here')
+    write(target, list(lines[0]), (line.values() for line in lines))
+
+
+OTHERS = {'gains.csv': ('detected_points.csv', summarize_gains), 'curves.csv': ('detected_points.csv', summarize_curves),
+          'learned.csv': ('detected_points.csv', summarize_learned), 'comparison.csv': ('comparison.csv', summarize_comparison)}
 
 
 def main():
-    if len(sys.argv) != 2 or not pathlib.Path(sys.argv[1]).is_dir():
-        print(__doc__.split('\n\n')[0] + '; FOLDER must be one', file=sys.stderr)
+    if len(sys.argv) != 3 or not pathlib.Path(sys.argv[1]).is_dir():
+        print(__doc__.split('\n\n')[0] + '; PAIRS must be one', file=sys.stderr)
         return 2
-    folder = pathlib.Path(sys.argv[1])
+    pairs, out = map(pathlib.Path, sys.argv[1:])
     for name, plan in PLANS.items():
-        if (folder / name).is_file():
-            summarize(folder / name, OUT / name, *plan)
-            print('doc/results/' + name)
-    if (folder / 'detected_points.csv').is_file():
-        summarize_gains(folder / 'detected_points.csv', OUT / 'gains.csv')
+        if (pairs / name).is_file():
+            summarize(pairs / name, out / name, *plan)
+    for name, (source, make) in OTHERS.items():
+        if (pairs / source).is_file():
+            make(pairs / source, out / name)
     return 0
 
 

@@ -2,9 +2,6 @@
 
 """What the page tells of a descriptor besides its results."""
 
-# Sets on whose images the presets of IIB were trained.
-TRAINED_ON = ("tilde_webcam", "amos_daynight", "walk_room", "walk_terrain")
-
 OPENCV, CONTRIB = "Apache-2.0 (OpenCV)", "Apache-2.0 (opencv_contrib)"
 
 # Name in the results of fixed points: (detected points it is shown with, learned, licence). The table of the page has
@@ -40,7 +37,7 @@ SHOWN = {
 HEADLINE = ("IIB", "IIB COMPACT", "SIFT", "KAZE", "AKAZE-486", "BEBLID-512", "TEBLID-512", "LATCH-512", "ORB",
             "BRIEF-512", "BRISK", "FREAK")
 
-# Kinds of change besides light, as the page calls them.
+# What changes besides light, kinds of change first, as the page calls it.
 CHANGES = {"viewpoint": "other viewpoint", "zoom": "zoom and rotation", "blur": "blur", "jpeg": "compression"}
 
 # Those that the table of moved cameras and blur compares.
@@ -55,25 +52,31 @@ NETWORKS = {"XFeat": "Apache-2.0", "SuperPoint": "noncommercial research only", 
 WARPED = ("IIB", "IIB oriented", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB oriented", "SIFT", "SIFT oriented",
           "BEBLID-512", "TEBLID-512", "LATCH-512")
 
-# Bars of whole tasks: points of a detector, and what describes them.
-TASKS = (("SIFT", "SIFT"), ("SIFT", "IIB UNIVERSAL"), ("SIFT normalized", "SIFT"), ("SIFT normalized", "IIB UNIVERSAL"),
-         ("SIFT normalized", "IIB VIEWPOINT"), ("AKAZE", "AKAZE"), ("AKAZE", "IIB UNIVERSAL"),
-         ("AKAZE normalized", "AKAZE"), ("AKAZE normalized", "IIB UNIVERSAL"), ("AKAZE normalized", "IIB VIEWPOINT"),
-         ("ORB", "ORB"), ("ORB", "BEBLID-512"), ("ORB", "IIB"), ("ORB", "IIB UNIVERSAL"),
-         ("ORB normalized", "ORB"), ("ORB normalized", "IIB UNIVERSAL"), ("Hessian", "IIB"), ("Hessian", "IIB SMALL"),
-         ("Hessian", "IIB UNIVERSAL"))
-
-# Those of them at the head of the page, as people call them.
+# Bars of poses: points of a detector and what describes them, as people call them.
 POSES = {("Hessian", "IIB UNIVERSAL"): "recommended chain", ("Hessian", "IIB SMALL"): "recommended chain, 32 bytes",
+         ("SIFT normalized", "IIB UNIVERSAL"): "SIFT's points on the normalized image, UNIVERSAL",
          ("SIFT normalized", "SIFT"): "SIFT, normalized image", ("AKAZE normalized", "AKAZE"): "AKAZE, normalized image",
          ("SIFT", "SIFT"): "SIFT", ("AKAZE", "AKAZE"): "AKAZE", ("ORB", "BEBLID-512"): "ORB's points, BEBLID",
          ("ORB", "ORB"): "ORB"}
 
+# Whose matches the slider draws.
+METHODS = {("Hessian", "IIB UNIVERSAL"): "recommended chain", ("AKAZE", "IIB"): "IIB at AKAZE's points", ("AKAZE", "AKAZE"): "AKAZE",
+           ("ORB", "ORB"): "ORB", ("BRISK", "BRISK"): "BRISK", ("ORB", "BEBLID-512"): "BEBLID at ORB's points",
+           ("SIFT", "SIFT"): "SIFT"}
+
+# The paper's nine detectors as far as they, or the next of their kind, can be had.
+SUITS = ("AKAZE", "ORB", "BRISK", "SIFT", "SURF", "KAZE", "superpoint", "alike-n", "aliked-n16", "xfeat")
+
+# Bars of further channels.
+EXTRAS = ("IIB", "IIB +depth", "IIB +labels", "IIB +depth+labels", "IIB +texture")
+
 # Pairs of the slider by their second image: title, and what is to be said of it.
 SCENES = {
+    "view_overcast": ("street, sun and clouds", "The light is much the same, and soft: what the paper's first picture shows beside the next scene."),
     "night": ("street, noon and night", "The light comes from lamps and windows in place of the sun."),
     "street_winter": ("street, noon and winter", "A low sun: what lay in the shade is lit, and the other way round."),
     "facade_night": ("block of flats, noon and night", "One bay over and over: most of what looks alike is wrong."),
+    "view_panned": ("street, noon and dusk, camera turned", "The camera turned by ten degrees to the left and three upwards."),
     "facade_turned": ("a failure: turned by 40 degrees",
                       "The camera is turned between noon and dusk. All are described upright here, and hardly anything is left. "
                       "matchRotated() is for such images: it finds the turn and describes the second image anew.")}

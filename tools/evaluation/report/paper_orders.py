@@ -2,37 +2,25 @@
 
 """The orders that the paper's tables show, and whether the results have them."""
 
+ONE, TWO, THREE = ("IIB x", "IIB y", "IIB i", "IIB o"), ("IIB x+y", "IIB o+i"), ("IIB x+y+i", "IIB x+y+o")
+# The best of each group finds more than the best of the next one.
+ORDERS = {"x+y above every single channel": (("IIB x+y",), ONE), "4 channels above 3 above 2 above 1": (("IIB",), THREE, TWO, ONE),
+          "QUARTILE above MEAN": (("IIB quartile",), ("IIB",)), "overlap above none": (("IIB overlap",), ("IIB",)),
+          "MAX below MEAN": (("IIB",), ("IIB max",)), "MIN below MEAN": (("IIB",), ("IIB min",)),
+          "g5 above g4 above g3 above g2": (("IIB g5",), ("IIB",), ("IIB g3",), ("IIB g2",))}
 
-def orders(mar, map_, others):
+
+def orders(mar, map_, names):
     """[(statement, holds, figures)] from mAR and mAP by configuration."""
+    def line(statement, values, chosen, margin=0):
+        return (statement, all(values[a] - values[b] > margin for a, b in zip(chosen, chosen[1:])),
+                ", ".join("%s %.3f" % (name, values[name]) for name in chosen))
     found = []
-
-    def check(statement, values):
-        names = [n for n, _ in values]
-        if all(v is not None for _, v in values):
-            numbers = [v for _, v in values]
-            found.append((statement, all(a > b for a, b in zip(numbers, numbers[1:])),
-                          ", ".join("%s %.3f" % pair for pair in zip(names, numbers))))
-
-    def of(*names):
-        return [(n, mar.get(n)) for n in names]
-
-    singles = [n for n in ("IIB x", "IIB y", "IIB i", "IIB o") if n in mar]
-    if singles:
-        best = max(singles, key=mar.get)
-        check("x+y above every single channel (the best of them shown)", of("IIB x+y", best))
-    three = max((n for n in ("IIB x+y+i", "IIB x+y+o") if n in mar), key=mar.get, default="IIB x+y+i")
-    two = max((n for n in ("IIB x+y", "IIB o+i") if n in mar), key=mar.get, default="IIB x+y")
-    one = max(singles, key=mar.get, default="IIB x")
-    check("4 channels above 3 above 2 above 1 (the best of each number)", of("IIB", three, two, one))
-    check("QUARTILE above MEAN", of("IIB quartile", "IIB"))
-    check("overlap above none", of("IIB overlap", "IIB"))
-    check("MAX below MEAN", of("IIB", "IIB max"))
-    check("MIN below MEAN", of("IIB", "IIB min"))
-    check("g5 above g4 above g3 above g2", of("IIB g5", "IIB", "IIB g3", "IIB g2"))
-    rivals = [n for n in others if n in map_ and not n.startswith("IIB")]
-    if rivals and "IIB" in map_:
-        best = max(rivals, key=map_.get)
-        found.append(("IIB at least 0.1 precision above every other descriptor (the best of them shown)",
-                      map_["IIB"] - map_[best] >= 0.1, "IIB %.3f, %s %.3f" % (map_["IIB"], best, map_[best])))
+    for statement, groups in ORDERS.items():
+        best = [max((name for name in members if name in mar), key=mar.get, default=None) for members in groups]
+        if None not in best:
+            found.append(line(statement, mar, best))
+    others = [name for name in names if name in map_ and not name.startswith("IIB")]
+    if others and "IIB" in map_:
+        found.append(line("0.1 precision above every other descriptor", map_, ["IIB", max(others, key=map_.get)], 0.1))
     return found

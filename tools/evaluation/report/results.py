@@ -1,63 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
 
-"""Reads the evaluation's CSV files and forms means over image pairs, every pair with the same weight."""
+"""Reads the summaries of an evaluation, as scripts/helpers/summaries.py writes them. Needs Python alone."""
 import csv
 import json
-import math
-import os
 import pathlib
 
-BENCHMARK = pathlib.Path(__file__).resolve().parents[3] / "doc/results/benchmark.json"  # of scripts/bench.sh
-
-# Kinds of change that the evaluation calls otherwise.
-KINDS = {"light": "illumination", "turn": "rotation"}
-
-
-def file_name(name):
-    return name + ".csv"
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+RESULTS = ROOT / "doc/results"
+# The figures of Lin et al., "Illumination-insensitive Binary Descriptor for Visual Measurement Based on Local Inter-patch
+# Invariance", by the questions that its tables answer and the names of our results; those that it lacks are empty.
+PAPER = pathlib.Path(__file__).with_name("paper.csv")
 
 
-def read(folder, name):
-    """Rows of an experiment's CSV file as dictionaries; empty if it has not been run."""
-    path = os.path.join(folder, file_name(name))
-    if not os.path.exists(path):
+def read(file):
+    """Rows of a CSV file as dictionaries; empty if there is none."""
+    if not file.is_file():
         return []
-    with open(path, newline="") as file:
-        rows = list(csv.DictReader(file))
-    for row in rows:
-        if "kind" in row:
-            row["kind"] = KINDS.get(row["kind"], row["kind"])
-    return rows
-
-
-def describing_times():
-    """Milliseconds for 1000 points, by the names of the evaluation's configurations."""
-    rows = json.loads(BENCHMARK.read_text())["rows"]
-    return {row["name"].replace("cv::", "").replace("default", "IIB").replace("PRESET_", "IIB "): row["milliseconds"][0]
-            for row in rows}
-
-
-def domain(row):
-    """'rendered' for sets whose name begins with synthetic, lights or walk (tools/synthetic), 'natural' for all others."""
-    return "rendered" if row["set"].startswith(("synthetic", "lights", "walk")) else "natural"
-
-
-def mean(values):
-    values = list(values)
-    return sum(values) / len(values) if values else 0.0
-
-
-def interval(values):
-    """Half the width of the 95 % confidence interval of the mean."""
-    values = list(values)
-    if len(values) < 2:
-        return 0.0
-    centre = mean(values)
-    return 1.96 * math.sqrt(sum((v - centre) ** 2 for v in values) / (len(values) - 1) / len(values))
-
-
-def column(rows, name):
-    return [float(r[name]) for r in rows]
+    with open(file, newline="") as opened:
+        return list(csv.DictReader(opened))
 
 
 def group(rows, *columns):
@@ -68,11 +28,27 @@ def group(rows, *columns):
     return groups
 
 
-def areas(errors, limit):
-    """For each pair the part of 0 to the limit that lies above its error; their mean is the area under the curve."""
-    return [max(0.0, limit - error) / limit for error in errors]
+def by(rows, *columns, **where):
+    """The one row of each value of the columns, or of each combination of theirs, among those with the values of `where`."""
+    chosen = [row for row in rows if all(row[c] == v for c, v in where.items())]
+    return {key if len(columns) > 1 else key[0]: members[0] for key, members in group(chosen, *columns).items()}
 
 
-def mean_accuracy(errors, limits):
-    """The share of pairs whose error is at most a limit, averaged over the limits."""
-    return mean(mean(error <= limit for error in errors) for limit in limits)
+def describing_times(file=RESULTS / "benchmark.json"):
+    """Milliseconds for 1000 points, by the names of the evaluation's configurations; of scripts/bench.sh."""
+    return {row["name"].replace("cv::", "").replace("default", "IIB").replace("PRESET_", "IIB "): row["milliseconds"][0]
+            for row in json.loads(file.read_text())["rows"]}
+
+
+def paper_table(question, fixed):
+    """Lines of one of the paper's tables: name, in plain words, our rows of photographs and of rendered scenes, and the paper's
+    means (precision, recall) of natural and synthetic images. Where bits were learned, on scenes that they were not learned on."""
+    natural, light, rendered = (by(fixed, "configuration", place=place) for place in ("natural", "light", "rendered"))
+    natural = light if "learning" in question else {**light, **natural}
+    return [(row["configuration"], row["plain"], natural.get(row["configuration"]), rendered.get(row["configuration"]),
+             [[row[data + measure] for measure in ("_map", "_mar")] for data in ("natural", "synthetic")])
+            for row in read(PAPER) if row["question"] == question]
+
+
+def questions():
+    return [question for question, in group(read(PAPER), "question")]

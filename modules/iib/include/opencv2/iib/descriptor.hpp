@@ -141,17 +141,16 @@ public:
             int mapping = IIBDescriptorExtractor::MAPPING_MEAN, bool overlap = false,
             bool useOrientation = false, int extraChannels = 0);
 
-    /** Learned descriptors for createPreset, with mean precision / recall over 40 pairs of changed light that they
-    were not trained on; the default of 170 bytes has 0.978 / 0.903 there. */
+    //! Learned descriptors for createPreset; doc/guide.md has what each finds in scenes that it was not trained on.
     enum Preset
     {
-        PRESET_S128,  //!< 16 bytes of the default's bits (paper, "Reduction of the IIB Descriptor Size"): 0.902 / 0.748
-        PRESET_S256,       //!< 32 bytes of the default's bits: 0.948 / 0.824
-        PRESET_S512,       //!< 64 bytes of the default's bits: 0.973 / 0.878
-        PRESET_ACCURATE,   //!< 170 bytes, a ROS 1.25 times as wide, all quads: 0.988 / 0.946
-        PRESET_COMPACT,    //!< 64 bytes, a ROS 1.25 times as wide: 0.982 / 0.918
-        PRESET_TINY,       //!< 32 bytes, a ROS 1.25 times as wide: 0.969 / 0.878
-        PRESET_BALANCED,   //!< 64 bytes, for cameras that move, a ROS 1.125 times as wide: 0.949 / 0.827
+        PRESET_S128,       //!< 16 bytes of the default's bits (paper, "Reduction of the IIB Descriptor Size")
+        PRESET_S256,       //!< 32 bytes of the default's bits
+        PRESET_S512,       //!< 64 bytes of the default's bits
+        PRESET_ACCURATE,   //!< 170 bytes, a ROS 1.25 times as wide, all quads
+        PRESET_COMPACT,    //!< 64 bytes, a ROS 1.25 times as wide
+        PRESET_TINY,       //!< 32 bytes, a ROS 1.25 times as wide
+        PRESET_BALANCED,   //!< 64 bytes, for cameras that move, a ROS 1.125 times as wide
         PRESET_VIEWPOINT,  //!< 64 bytes of #MAPPING_BOXES, for cameras that move far, a ROS 1.25 times as wide
         PRESET_UNIVERSAL,  //!< 128 bytes of #MAPPING_BOXES, for light and viewpoint, a ROS 1.25 times as wide
         PRESET_SMALL  //!< 32 bytes of #MAPPING_BOXES, for the same where 256 bits are wanted, a ROS 1.25 times as wide
