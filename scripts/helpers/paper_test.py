@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""Looks up what doc/paper.md names: paper_test.py [PAGE]
+
+Files of links and the symbol that a link's text names in them; anchors; scripts, their options and experiments; columns of CSV files
+and rows of them, as in "rows `a.csv`: `NAME`, `NAME`"; and that the drawings are those of drawings.py. Then each kind of name is
+broken in a copy of the page, and that has to be found.
+"""
+import pathlib
+import re
+import sys
+import tempfile
+
+import drawings
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+OPTIONS = {'evaluate.sh': 'tools/evaluation/main.cpp', 'train.sh': 'tools/training/train.cpp', 'bench.sh': 'tools/benchmark/benchmark.cpp'}
+MANY = 40  # names that a page has at least of links
+
+
+def anchors(text):
+    heads = re.findall(r'^#+ (.*)$', text, re.M)
+    return {re.sub(r'[^\w -]', '', head.lower()).replace(' ', '-') for head in heads} | set(re.findall(r'id="([^"]+)"', text))
+
+
+def wrong_links(text, page):
+    for words, target in re.findall(r'\[([^]]*)\]\(([^)]*)\)', text):
+        if target.startswith('http'):
+            continue
+        name, _, anchor = target.partition('#')
+        file = (page.parent / name).resolve() if name else page
+        if not file.exists():
+            yield 'there is no ' + target
+        elif anchor and anchor not in anchors(text if file == page else file.read_text()):
+            yield 'no anchor ' + target
+        elif file.suffix in ('.cpp', '.hpp') and not re.search(r'\b%s\b' % words.strip('`'), file.read_text()):
+            yield '%s is not in %s' % (words, name)
+
+
+def wrong_commands(text):
+    for command in re.findall(r'`(scripts/[^`]*)`', text):
+        script, *words = command.split()
+        if not (ROOT / script).is_file():
+            yield 'there is no ' + script
+            continue
+        known = (ROOT / script).read_text()
+        tool = OPTIONS.get(pathlib.Path(script).name)
+        keys = (ROOT / tool).read_text() if tool else ''
+        for word in words:
+            option = word.partition('=')[0]
+            if option.startswith('--') and option not in known and not re.search(r'"\{%s *\|' % option[2:], keys):
+                yield '%s has no option %s' % (script, option)
+        for experiment in re.findall(r'--only (\S+)', command):
+            if '{"%s", ' % experiment not in (ROOT / 'tools/evaluation/evaluate.cpp').read_text():
+                yield 'there is no experiment ' + experiment
+
+
+def wrong_rows(text):
+    for name, listed in re.findall(r'rows? `(\w+\.csv)`: ((?:`[^`]+`(?:, )?)+)', text):
+        file = ROOT / 'doc/results' / name
+        fields = {field for line in file.read_text().splitlines() for field in line.split(',')} if file.is_file() else set()
+        for row in re.findall('`([^`]+)`', listed):
+            if row not in fields:
+                yield '%s has no row %s' % (name, row)
+    for column, name in re.findall(r'column `(\w+)` of `(\w+\.csv)`', text):
+        file = ROOT / 'doc/results' / name
+        if not file.is_file() or column not in file.read_text().split('\n', 1)[0].split(','):
+            yield '%s has no column %s' % (name, column)
+
+
+def wrong(text, page):
+    return [*wrong_links(text, page), *wrong_commands(text), *wrong_rows(text)]
+
+
+def broken(text):
+    """Copies of the page with one name altered in each, and what has to be said of it."""
+    for pattern, new, said in ((r'/mappings\.hpp\)', '/gone.hpp)', 'there is no'), ('`SortMapping`', '`GoneMapping`', 'is not in'),
+                               (r'index\.html#curves', 'index.html#gone', 'no anchor'), (r'\(#fewer-bits\)', '(#gone)', 'no anchor'),
+                               ('--adaboost', '--gone', 'no option'), ('--only matching', '--only gone', 'no experiment'),
+                               ('`IIB quartile`', '`IIB gone`', 'no row'), ('column `cost`', 'column `gone`', 'no column'),
+                               (r'scripts/demo\.sh', 'scripts/gone.sh', 'there is no')):
+        yield re.subn(pattern, new, text, count=1), said
+
+
+def main():
+    page = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / 'doc/paper.md').resolve()
+    text = page.read_text()
+    found = wrong(text, page)
+    if len(re.findall(r'\]\(', text)) < MANY:
+        found.append('the page names hardly anything')
+    for (altered, count), said in broken(text):
+        if not count or not any(said in what for what in wrong(altered, page)):
+            found.append('a name that is not there is not found: "%s"' % said)
+    with tempfile.TemporaryDirectory() as folder:
+        for make in (drawings.observation, drawings.formation, drawings.bit_rules, drawings.channels):
+            name = make.__name__ + '.svg'
+            make().write(pathlib.Path(folder, name))
+            if pathlib.Path(folder, name).read_text() != (ROOT / 'doc/paper' / name).read_text():
+                found.append('doc/paper/%s is not what scripts/helpers/drawings.py draws' % name)
+    sys.exit('\n'.join(found) or 0)
+
+
+if __name__ == '__main__':
+    main()
