@@ -52,7 +52,7 @@ class Preset(IntEnum, metaclass=_OnlyMembers):
     SMALL     32    the same where memory is scarce
     VIEWPOINT 64    the camera moves far
     BALANCED  64    the camera moves, and the light changes more than the view
-    ACCURATE  170   a still camera, and every match counts
+    ACCURATE  170   a still camera, at points of another detector than HessianDetector
     COMPACT   64    a still camera, many images to keep
     TINY      32    a still camera, and memory is scarce
     S512      64    the paper's default, shortened; likewise S256 (32 bytes) and S128 (16)

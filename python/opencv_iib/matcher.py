@@ -89,6 +89,10 @@ class HierarchicalMatcher(CoreObject):
                  compactResult: bool = False, masks: Optional[Sequence[ArrayLike]] = None) -> Matches:
         """The k nearest of each query, nearest first; with compactResult, without the queries that have none.
 
+        A row is shorter than k, or empty, where fewer pass the masks, the cross-check and the maximal ratio, such as those
+        of :meth:`createRecommended`. ``for nearest, second in knnMatch(...)``, as tutorials on ratio tests have it, needs a
+        plain ``HierarchicalMatcher()``; :meth:`match` of the recommended one has done that test.
+
         ``knnMatch(queries, k=2)`` searches the descriptors added, ``knnMatch(queries, train, 2)`` those given.
         """
         if isinstance(trainDescriptors, (int, np.integer)):  # cv2's order of arguments without a train set
@@ -182,8 +186,11 @@ class HierarchicalMatcher(CoreObject):
         return self._core.crossCheck
 
     def setMaxRatio(self, maxRatio: float) -> None:
-        """Of the distances to the nearest and the second nearest, the largest in match, knnMatch and knnMatchArrays,
-        in (0, 1]; 1 turns the test off."""
+        """Ratio test of match, knnMatch and knnMatchArrays: a query keeps its matches only if its least distance is less
+        than maxRatio times its second least.
+
+        :param maxRatio: in (0, 1]; 1 turns the test off. An exact tie does not pass: 9 and 10 bits do not at .9.
+        """
         self._core.maxRatio = number(maxRatio, 'maxRatio')
 
     def getMaxRatio(self) -> float:

@@ -21,7 +21,6 @@ RUNS = {
     'python.md': [('', 'print(len(matches))', r'^\d{3}\n'),
                   ('image_a, image_b = day, night', 'print(len(pairs), matched_a.shape == matched_b.shape)', r'^\d{3} True\n')],
     'scale.md': [('folder, codes, queries = "codes", codes_day, codes_night', 'print(indices.shape)', r'^\(1000, 5\)\n'),
-                 ('import faiss; codes, queries = np.repeat(codes_day, 41, 0), codes_night', 'print(rows.shape)', r'^\(1000, 5\)\n'),
                  ('python/examples/test_postgres.py',), ('python/examples/test_postgres.py',)],
     'colmap.md': [('import os; os.mkdir("images"); os.rename("day.png", "images/a.png"); os.rename("night.png", "images/b.png")',
                    'print(counts)', "'images': 2")],

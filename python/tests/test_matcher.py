@@ -62,6 +62,21 @@ class MatcherTest(unittest.TestCase):
         self.train[0] = self.train[10]  # as near as the right one
         self.assertEqual([m.queryIdx for m in matcher.match(self.query, self.train)], list(range(1, 50)))
 
+    def test_rows_of_the_recommended_matcher_are_what_passes_its_tests(self):
+        query = np.zeros((3, 8), np.uint8)
+        query[1], query[2] = 0xff, 0xf0
+        train = np.vstack([query[:2], query[:1] ^ 1])
+        self.assertEqual({len(row) for row in HierarchicalMatcher.createRecommended().knnMatch(query, train, 2)}, {0, 1, 2})
+        self.assertEqual({len(row) for row in HierarchicalMatcher().knnMatch(query, train, 2)}, {2})
+
+    def test_a_ratio_on_a_tie_does_not_pass(self):
+        train = np.zeros((2, 8), np.uint8)
+        train[0, :2], train[1, :2] = (0xff, 0x01), (0xff, 0x03)  # 9 and 10 bits
+        matcher = HierarchicalMatcher()
+        for ratio, count in ((.9, 0), (.91, 1)):
+            matcher.setMaxRatio(ratio)
+            self.assertEqual(len(matcher.match(np.zeros((1, 8), np.uint8), train)), count)
+
     def test_what_is_added_is_a_copy(self):
         train = self.train.copy()
         self.matcher.add(train)

@@ -215,7 +215,7 @@ def elsewhere():
 def presets():
     """Fixed points: light that no preset was trained on, rendered light, moved cameras, turned images."""
     use = (('IIB', 'default', 'a still camera, the paper as it is'),
-           ('IIB ACCURATE', '`PRESET_ACCURATE`', 'a still camera, and every match counts'),
+           ('IIB ACCURATE', '`PRESET_ACCURATE`', 'a still camera, points of another detector'),
            ('IIB COMPACT', '`PRESET_COMPACT`', 'a still camera, many images to keep'),
            ('IIB TINY', '`PRESET_TINY`', 'a still camera, and memory is scarce'),
            ('IIB BALANCED', '`PRESET_BALANCED`', 'the camera moves between the images'),

@@ -9,7 +9,8 @@ NAMES = ('day_night', 'poses', 'reconstruction', 'million_codes')
 
 def main():
     print('# The Python package: examples {#opencv_iib_python_examples}\n\nThey lie in `python/examples` of a clone and need no data; '
-          'editors show their cells (`# %%`) as those of a notebook.\n')
+          '`python day_night.py` runs one from a shell; VS Code, '
+          'Spyder and PyCharm run its cells (`# %%`), and `jupytext --to notebook day_night.py` makes a notebook of it.\n')
     for name in NAMES:
         text = (EXAMPLES / (name + '.py')).read_text(encoding='utf-8')
         head, *cells = text.split('\n# %% ')

@@ -110,6 +110,9 @@ public:
     CV_WRAP virtual std::vector<Mat> getTrainDescriptors() const = 0;
 
     /** @name Matching
+    A query's row is shorter than `k`, or empty, where fewer pass masks, cross-check and maximal ratio (those of
+    createRecommended, for instance): code that takes two of each row needs a matcher of create().
+
     As in DescriptorMatcher, whose documentation holds, but old results never survive a call, and arguments are checked
     also where there is nothing to match. */
     //! @{
