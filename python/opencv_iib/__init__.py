@@ -24,12 +24,14 @@ from opencv_iib.functions import Features, Matches, detect_and_describe, match
 from opencv_iib.keypoints import array_to_keypoints, keypoints_to_array
 from opencv_iib.mapped_index import MappedIndex
 from opencv_iib.matcher import HierarchicalMatcher
+from opencv_iib.refinement import RefinedMatches, refineMatches
 from opencv_iib.rotation import estimateRotation, matchRotated
 
 __all__ = ['Border', 'Channel', 'DMatch', 'Features', 'HessianDetector', 'HierarchicalMatcher', 'IIB',
            'IIBDescriptorExtractor', 'KeyPoint', 'MappedIndex', 'Mapping', 'Matches', 'Mode', 'NormalizedDetector',
-           'OPENCV_VERSION', 'Orientation', 'Preset', 'array_to_keypoints', 'detect_and_describe', 'error',
-           'estimateRotation', 'getNumThreads', 'keypoints_to_array', 'match', 'matchRotated', 'setNumThreads']
+           'OPENCV_VERSION', 'Orientation', 'Preset', 'RefinedMatches', 'array_to_keypoints', 'detect_and_describe', 'error',
+           'estimateRotation', 'getNumThreads', 'keypoints_to_array', 'match', 'matchRotated', 'refineMatches',
+           'setNumThreads']
 
 __version__: str = _core.VERSION
 #: Of the OpenCV inside.

@@ -12,6 +12,8 @@ from opencv_iib._types import KeyPointLike, keypoint_type
 
 #: A sequence of objects like cv2.KeyPoint, or an N x 3, N x 4 or N x 7 array.
 Keypoints = Union[Sequence[KeyPointLike], ArrayLike]
+#: A sequence of objects like cv2.DMatch, or an M x 2 array of integers (queryIdx, trainIdx).
+MatchesOfKeypoints = Union[Sequence[Any], NDArray[Any]]
 
 
 def keypoints_to_array(keypoints: Iterable[KeyPointLike]) -> NDArray[np.float32]:
@@ -39,3 +41,13 @@ def as_rows(keypoints: Any) -> NDArray[np.float32]:
     if isinstance(keypoints, (list, tuple)) and not (len(keypoints) and isinstance(keypoints[0], np.ndarray)):
         return keypoints_to_array(keypoints)
     return as_array(keypoints, 'keypoints').astype(np.float32, copy=False)
+
+
+def as_pairs(matches: MatchesOfKeypoints) -> NDArray[Any]:
+    """Rows of 2 int32 columns (queryIdx, trainIdx) for the extension."""
+    if not isinstance(matches, np.ndarray):
+        matches = np.array([(m.queryIdx, m.trainIdx) for m in matches], np.int32).reshape(-1, 2)
+    pairs = as_array(matches, 'matches')
+    if pairs.dtype.kind in 'iu':
+        pairs = pairs.clip(-1, np.iinfo(np.int32).max).astype(np.int32)  # too large is as wrong as negative
+    return pairs

@@ -1,21 +1,20 @@
 """The angle between two images."""
 from __future__ import annotations
 
-from typing import Any, Optional, Sequence, Union
+from typing import Any, Optional
 
 import numpy as np
-from numpy.typing import NDArray
 
 from opencv_iib import _core
 from opencv_iib._arguments import number
-from opencv_iib._arrays import as_array, as_image
+from opencv_iib._arrays import as_image
 from opencv_iib._types import match_type
 from opencv_iib.descriptor import IIBDescriptorExtractor
-from opencv_iib.keypoints import Keypoints, array_to_keypoints, as_rows
+from opencv_iib.keypoints import Keypoints, MatchesOfKeypoints, array_to_keypoints, as_pairs, as_rows
 from opencv_iib.matcher import HierarchicalMatcher
 
 
-def estimateRotation(keypoints1: Keypoints, keypoints2: Keypoints, matches1to2: Union[Sequence[Any], NDArray[Any]]) -> float:
+def estimateRotation(keypoints1: Keypoints, keypoints2: Keypoints, matches1to2: MatchesOfKeypoints) -> float:
     """Angle by which most of the matched points of one image are turned in another, as ``cv2.iib.estimateRotation``.
 
     :param keypoints1: of the first image: objects like cv2.KeyPoint, or an array with 3, 4 or 7 columns.
@@ -23,13 +22,8 @@ def estimateRotation(keypoints1: Keypoints, keypoints2: Keypoints, matches1to2: 
     :param matches1to2: objects like cv2.DMatch, or an M x 2 array of integers (queryIdx, trainIdx).
     :return: degrees, 0 to 360, clockwise in the image.
     """
-    if not isinstance(matches1to2, np.ndarray):
-        matches1to2 = np.array([(m.queryIdx, m.trainIdx) for m in matches1to2], np.int32).reshape(-1, 2)
-    pairs = as_array(matches1to2, 'matches')
-    if pairs.dtype.kind in 'iu':
-        pairs = pairs.clip(-1, np.iinfo(np.int32).max).astype(np.int32)  # too large is as wrong as negative
     return _core.estimateRotation(np.ascontiguousarray(as_rows(keypoints1)), np.ascontiguousarray(as_rows(keypoints2)),
-                                  pairs)
+                                  as_pairs(matches1to2))
 
 
 def matchRotated(image1: Any, image2: Any, extractor: IIBDescriptorExtractor, matcher: HierarchicalMatcher,

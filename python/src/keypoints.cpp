@@ -79,6 +79,18 @@ std::vector<cv::KeyPoint> toKeyPoints(const cv::Mat& rows)
     return keypoints;
 }
 
+std::vector<cv::DMatch> toMatches(const cv::Mat& pairs)
+{
+    if (!pairs.empty() && (pairs.type() != CV_32S || pairs.cols != 2))
+        CV_Error(cv::Error::StsBadArg,
+                "matches are objects like cv2.DMatch or an array of 2 columns of integers "
+                "(queryIdx, trainIdx)");
+    std::vector<cv::DMatch> matches;
+    for (int i = 0; i < pairs.rows; i++)
+        matches.push_back(cv::DMatch(pairs.at<int>(i, 0), pairs.at<int>(i, 1), 0));
+    return matches;
+}
+
 cv::Mat toRows(const std::vector<cv::KeyPoint>& keypoints)
 {
     cv::Mat rows((int)keypoints.size(), KEYPOINT_COLUMNS, CV_32F);

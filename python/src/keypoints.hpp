@@ -20,6 +20,9 @@ cv::Mat readKeyPoints(nb::sequence objects);
 //! @throws cv::Exception for another shape or type.
 std::vector<cv::KeyPoint> toKeyPoints(const cv::Mat& rows);
 
+//! Matches of an array of 2 columns, index into the first keypoints and into the second, CV_32S.
+std::vector<cv::DMatch> toMatches(const cv::Mat& pairs);
+
 cv::Mat toRows(const std::vector<cv::KeyPoint>& keypoints);
 
 }  // namespace iib_python

@@ -30,6 +30,7 @@ NB_MODULE(_core, m)
     bindExtractor(m);
     bindMatcher(m);
     bindMappedIndex(m);
+    bindRefinement(m);
     bindRotation(m);
 
     m.attr("VERSION") = IIB_VERSION;

@@ -9,17 +9,9 @@ namespace iib_python {
 
 namespace {
 
-// Matches are rows of two columns: index into the first keypoints, index into the second.
 double estimateRotation(const Array& keypoints1, const Array& keypoints2, const Array& matches1to2)
 {
-    const cv::Mat pairs = viewOf(matches1to2, "matches");
-    if (!pairs.empty() && (pairs.type() != CV_32S || pairs.cols != 2))
-        CV_Error(cv::Error::StsBadArg,
-                "matches are objects like cv2.DMatch or an array of 2 columns of integers "
-                "(queryIdx, trainIdx)");
-    std::vector<cv::DMatch> matches;
-    for (int i = 0; i < pairs.rows; i++)
-        matches.push_back(cv::DMatch(pairs.at<int>(i, 0), pairs.at<int>(i, 1), 0));
+    const std::vector<cv::DMatch> matches = toMatches(viewOf(matches1to2, "matches"));
     const std::vector<cv::KeyPoint> first = toKeyPoints(viewOf(keypoints1, "keypoints"));
     const std::vector<cv::KeyPoint> second = toKeyPoints(viewOf(keypoints2, "keypoints"));
     nb::gil_scoped_release release;

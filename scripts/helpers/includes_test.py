@@ -10,10 +10,11 @@ import sys
 
 # What a folder below src may include, besides precomp.hpp; the rest of the module includes what it likes.
 ALLOWED = {'': set(), 'common': {'common'}, 'rotation': {'rotation', 'common'}}
-for wing in ('descriptor', 'matcher', 'detector', 'normalization'):
+for wing in ('descriptor', 'matcher', 'detector', 'normalization', 'refinement'):
     ALLOWED[wing + '/kernels'] = {wing + '/kernels', 'common'}
     ALLOWED[wing] = {wing, wing + '/kernels', 'common'}
-ALLOWED['detector'].add('normalization')
+for wing in ('detector', 'refinement'):
+    ALLOWED[wing].add('normalization')
 ALLOWED['descriptor'].add('detector')  # an extractor writes and reads the file of its detector
 # The boxes are a room of the descriptor: they use its channels and regions, and compute uses them.
 ALLOWED['descriptor'] |= {'descriptor/boxes', 'descriptor/boxes/kernels'}

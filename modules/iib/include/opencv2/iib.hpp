@@ -17,6 +17,7 @@ keypoint's region of support, and a Hamming matcher that reads its levels from c
 #include "opencv2/iib/hessian_detector.hpp"
 #include "opencv2/iib/matcher.hpp"
 #include "opencv2/iib/normalized_detector.hpp"
+#include "opencv2/iib/refinement.hpp"
 #include "opencv2/iib/rotation.hpp"
 
 #endif

@@ -1,0 +1,48 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_REFINEMENT_HPP
+#define OPENCV_IIB_REFINEMENT_HPP
+
+#include "opencv2/iib/features.hpp"
+
+namespace cv {
+namespace iib {
+
+//! @addtogroup iib
+//! @{
+
+/** @brief Moves the second point of each match to where the surroundings of both points agree best, and tells how sure that
+is: least-squares matching, to a tenth of a pixel and better, also where the light changed.
+
+Both images are normalized locally. The patch around the point of the first image, about 30 pixels wide, stays where it is.
+It is laid onto the second image, turned and scaled as the keypoints' angles and sizes say, and moved and deformed (six
+parameters of an affine map, besides contrast and brightness) until the squared differences are least: the adjustment of
+@cite Foerstner1982 and @cite Gruen1985, solved with the matrix of the first patch alone, as the inverse compositional
+algorithm of @cite BakerMatthews2004 does. A match is refused where that moves its point by 2 pixels or more, or where the
+patches do not agree better after it, or not well enough: then it stays as it was detected.
+
+@param image1, image2 as in IIBDescriptorExtractor::compute.
+@param keypoints1, keypoints2 of the first and the second image. Angles count where both keypoints of a match have one
+(-1: none), and only their difference does, as only the ratio of the sizes does.
+@param matches1to2 queryIdx into keypoints1, trainIdx into keypoints2.
+@param points1 N x 2, CV_32F, a row for each match, in pixels: the first points, as they were detected.
+@param points2 N x 2, CV_32F, in pixels: the second points, refined, or as they were detected where that was refused.
+@param covariances N x 3, CV_32F: xx, xy and yy of points2 given points1, in squared pixels, from the differences that
+remain. Of refused matches 1, 0 and 1.
+@param similarities N x 1, CV_32F: the correlation of the two patches where they agree best, above 0.5 up to 1; -1 where
+the match was refused.
+@throws cv::Exception (StsOutOfRange) for indices without a keypoint, (StsBadArg) for an empty image, and as
+IIBDescriptorExtractor::compute for images and keypoints. Without matches all outputs are empty.
+ */
+CV_EXPORTS_W void refineMatches(InputArray image1, const std::vector<KeyPoint>& keypoints1, InputArray image2,
+        const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches1to2, OutputArray points1,
+        OutputArray points2, OutputArray covariances = noArray(), OutputArray similarities = noArray());
+
+//! @}
+
+}  // namespace iib
+}  // namespace cv
+
+#endif

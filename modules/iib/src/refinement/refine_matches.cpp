@@ -1,0 +1,107 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../common/geometry.hpp"
+#include "../common/image_input.hpp"
+#include "../normalization/local_normalization.hpp"
+#include "patch_aligner.hpp"
+
+#include "opencv2/iib/refinement.hpp"
+
+namespace cv {
+namespace iib {
+
+namespace {
+
+const double NORMALIZATION_SIGMA = 8;
+const double LARGEST_MOVE = 2;  //!< in pixels
+const double MATCHES_OF_A_THREAD = 8;
+
+Mat preparedImage(InputArray image, int number)
+{
+    const Mat pixels = image.getMat();
+    if (pixels.empty())
+        CV_Error(Error::StsBadArg, format("image %d is empty, but there are matches", number));
+    checkImage(pixels);
+    return smoothedForAlignment(normalizeLocally(integerMap(pixels), NORMALIZATION_SIGMA));
+}
+
+const KeyPoint& keypointOf(const std::vector<KeyPoint>& keypoints, int index, int image)
+{
+    if (index < 0 || (size_t)index >= keypoints.size())
+        CV_Error(Error::StsOutOfRange, format("a match is of keypoint %d of image %d, which has %d", index,
+                                               image, (int)keypoints.size()));
+    return keypoints[index];
+}
+
+bool isInside(const KeyPoint& keypoint, const Mat& image)
+{
+    const Point2f p = keypoint.pt;
+    return p.x >= 0 && p.y >= 0 && p.x <= image.cols - 1 && p.y <= image.rows - 1;
+}
+
+//! Patches of as many pixels in the finer image; samples are nowhere farther apart than pixels.
+void startingPlaces(const KeyPoint& first, const KeyPoint& second, PatchPlace& place1, PatchPlace& place2)
+{
+    const double scale = (double)second.size / first.size, spacing = std::min(1., 1 / scale);
+    const bool rotated = first.angle >= 0 && second.angle >= 0;
+    const Rotation rotation(rotated ? second.angle - first.angle : 0);
+    const double c = scale * spacing * rotation.cosine, s = scale * spacing * rotation.sine;
+    place1 = {first.pt.x, first.pt.y, Matx22d(spacing, 0, 0, spacing)};
+    place2 = {second.pt.x, second.pt.y, Matx22d(c, -s, s, c)};
+}
+
+}  // namespace
+
+void refineMatches(InputArray image1, const std::vector<KeyPoint>& keypoints1, InputArray image2,
+        const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches1to2, OutputArray points1,
+        OutputArray points2, OutputArray covariances, OutputArray similarities)
+{
+    const int n = (int)matches1to2.size();
+    Mat first(n, 2, CV_32F), second(n, 2, CV_32F), covariance(n, 3, CV_32F), similarity(n, 1, CV_32F);
+    if (n > 0)
+    {
+        checkKeyPoints(keypoints1);
+        checkKeyPoints(keypoints2);
+        for (const DMatch& match : matches1to2)
+        {
+            keypointOf(keypoints1, match.queryIdx, 1);
+            keypointOf(keypoints2, match.trainIdx, 2);
+        }
+        const Mat prepared1 = preparedImage(image1, 1), prepared2 = preparedImage(image2, 2);
+        parallel_for_(
+                Range(0, n),
+                [&](const Range& range) {
+                    PatchAligner aligner;
+                    for (int i = range.start; i < range.end; i++)
+                    {
+                        const KeyPoint& a = keypoints1[matches1to2[i].queryIdx];
+                        const KeyPoint& b = keypoints2[matches1to2[i].trainIdx];
+                        PatchAlignment found = {false, b.pt.x, b.pt.y, -1, {1, 0, 1}};
+                        if (isInside(a, prepared1) && isInside(b, prepared2))
+                        {
+                            PatchPlace place1, place2;
+                            startingPlaces(a, b, place1, place2);
+                            found = aligner.align(prepared1, place1, prepared2, place2,
+                                    LARGEST_MOVE * std::max(1.f, b.size / a.size));
+                        }
+                        first.at<Point2f>(i) = a.pt;
+                        second.at<Point2f>(i) = Point2f((float)found.x, (float)found.y);
+                        similarity.at<float>(i) = (float)found.similarity;
+                        for (int k = 0; k < 3; k++)
+                            covariance.at<float>(i, k) = (float)found.covariance[k];
+                    }
+                },
+                n / MATCHES_OF_A_THREAD);
+    }
+    first.copyTo(points1);
+    second.copyTo(points2);
+    if (covariances.needed())
+        covariance.copyTo(covariances);
+    if (similarities.needed())
+        similarity.copyTo(similarities);
+}
+
+}  // namespace iib
+}  // namespace cv

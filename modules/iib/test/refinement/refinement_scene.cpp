@@ -1,0 +1,81 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "refinement_scene.hpp"
+
+#include "../support/test_images.hpp"
+
+#include "opencv2/imgproc.hpp"
+
+namespace opencv_test {
+
+namespace {
+
+const int FINE = 4;  //!< a camera's pixel is the mean of so many times so many
+const Size SIZE(640, 480);
+
+Mat photographed(const Mat& fine)
+{
+    Mat image;
+    resize(fine, image, SIZE, 0, 0, INTER_AREA);
+    return image;
+}
+
+Mat noisy(const Mat& image, int seed)
+{
+    RNG rng(seed);
+    Mat noise(image.size(), CV_32F), result;
+    rng.fill(noise, RNG::NORMAL, 0, 2);
+    cv::add(image, noise, result, noArray(), CV_8U);
+    return result;
+}
+
+}  // namespace
+
+RefinementScene::RefinementScene(int seed)
+{
+    Mat fine, grain;
+    resize(scene(SIZE * 2, seed), fine, SIZE * FINE, 0, 0, INTER_CUBIC);
+    resize(texture(SIZE * 2, CV_8U, seed), grain, SIZE * FINE, 0, 0, INTER_CUBIC);
+    addWeighted(fine, .6, grain, .3, 20, fine, CV_32F);
+    GaussianBlur(fine, fine, Size(), 2);
+    images[0] = noisy(photographed(fine), 2 * seed + 1);
+
+    Integers integers(seed);
+    const auto upTo = [&](double limit) { return limit * integers.between(-1000, 1001) / 1000; };
+    const double angle = upTo(5) * CV_PI / 180, c = std::cos(angle), s = std::sin(angle);
+    linear = Matx22d(c, -s, s, c) * Matx22d(1 + upTo(.1), upTo(.1), upTo(.1), 1 + upTo(.1));
+    const Vec2d centre(SIZE.width / 2., SIZE.height / 2.);
+    shift = centre + Vec2d(upTo(3), upTo(3)) - linear * centre;
+    // the same between fine pixels, whose centres are at (x + .5) / FINE - .5
+    const Vec2d half((FINE - 1) / 2., (FINE - 1) / 2.), fineShift = shift * FINE + half - linear * half;
+    const Matx23d map(linear(0, 0), linear(0, 1), fineShift[0], linear(1, 0), linear(1, 1), fineShift[1]);
+    Mat moved;
+    warpAffine(fine, moved, map, fine.size(), INTER_CUBIC, BORDER_REFLECT);
+    Mat lit = photographed(moved);
+    for (int y = 0; y < lit.rows; y++)
+        for (int x = 0; x < lit.cols; x++)
+            lit.at<float>(y, x) = lit.at<float>(y, x) * (.5f + .4f * x / lit.cols) + 15;
+    images[1] = noisy(lit, 2 * seed + 2);
+
+    std::vector<KeyPoint> detected;
+    HessianDetector::create(300)->detect(images[0], detected);
+    for (KeyPoint keypoint : detected)
+    {
+        const Point2f place = truth(keypoint.pt);
+        if (!Rect2f(20, 20, SIZE.width - 40, SIZE.height - 40).contains(place))
+            continue;
+        matches.push_back(DMatch((int)matches.size(), (int)matches.size(), 0));
+        keypoints[0].push_back(keypoint);
+        keypoint.pt = place + Point2f((float)upTo(.6), (float)upTo(.6));
+        keypoints[1].push_back(keypoint);
+    }
+}
+
+Point2d RefinementScene::truth(const Point2f& point) const
+{
+    return Point2d(linear * Vec2d(point.x, point.y) + shift);
+}
+
+}  // namespace opencv_test

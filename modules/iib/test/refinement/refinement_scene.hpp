@@ -1,0 +1,29 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_IIB_TEST_REFINEMENT_SCENE_HPP
+#define OPENCV_IIB_TEST_REFINEMENT_SCENE_HPP
+
+#include "../test_precomp.hpp"
+
+namespace opencv_test {
+
+/** Two views of one scene, 640 x 480: the second is deformed by an affine map (10 %, 5 degrees) and darker, with a gradient
+ of light and an offset; both with noise of 2 grey levels. Matches of true places, moved by up to .6 pixels in x and y. */
+struct RefinementScene
+{
+    Mat images[2];
+    std::vector<KeyPoint> keypoints[2];
+    std::vector<DMatch> matches;
+    Matx22d linear;  //!< of the map from the first image to the second
+    Vec2d shift;
+
+    explicit RefinementScene(int seed);
+    //! Where a point of the first image is in the second.
+    Point2d truth(const Point2f& point) const;
+};
+
+}  // namespace opencv_test
+
+#endif

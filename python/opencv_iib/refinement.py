@@ -1,0 +1,37 @@
+"""Matches refined to a fraction of a pixel."""
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from opencv_iib import _core
+from opencv_iib._arrays import as_image
+from opencv_iib.keypoints import Keypoints, MatchesOfKeypoints, as_pairs, as_rows
+
+
+class RefinedMatches(NamedTuple):
+    """What :func:`refineMatches` gives, a row a match; pixels, the centre of the first pixel is 0."""
+
+    points1: NDArray[np.float32]  #: N x 2: of the first image, as detected
+    points2: NDArray[np.float32]  #: N x 2: of the second image, refined; as detected where that was refused
+    covariances: NDArray[np.float32]  #: N x 3: xx, xy, yy of points2 given points1, squared pixels; 1, 0, 1 where refused
+    similarities: NDArray[np.float32]  #: N: correlation of the patches; -1 where refused
+
+
+def refineMatches(image1: ArrayLike, keypoints1: Keypoints, image2: ArrayLike, keypoints2: Keypoints,
+                  matches1to2: MatchesOfKeypoints) -> RefinedMatches:
+    """Moves the second point of each match to where the surroundings of both points agree best, as
+    ``cv2.iib.refineMatches``.
+
+    :param image1: as IIBDescriptorExtractor takes it.
+    :param keypoints1: objects like cv2.KeyPoint, or an array with 3, 4 or 7 columns: x, y, size, angle. Only differences of
+        angles and ratios of sizes count.
+    :param matches1to2: objects like cv2.DMatch, or an M x 2 array of integers (queryIdx, trainIdx), as the pairs of
+        :func:`opencv_iib.match`.
+    :raises opencv_iib.error: for a match without a keypoint, and for images and keypoints that cannot be described.
+    """
+    return RefinedMatches(*_core.refineMatches(
+        as_image(image1), np.ascontiguousarray(as_rows(keypoints1)), as_image(image2),
+        np.ascontiguousarray(as_rows(keypoints2)), as_pairs(matches1to2)))

@@ -1,0 +1,55 @@
+import unittest
+
+import numpy as np
+from support import texture
+
+import opencv_iib
+from opencv_iib import DMatch, KeyPoint, refineMatches
+
+
+class Refinement(unittest.TestCase):
+    """The same picture, moved by whole pixels and in another light."""
+
+    def setUp(self):
+        whole = texture(420, 320, seed=5)
+        self.images = whole[10:310, 10:410], (whole[13:313, 12:412] * .6 + 20).astype(np.uint8)
+        self.rows = opencv_iib.keypoints_to_array(opencv_iib.HessianDetector.create(100).detect(self.images[0]))
+        self.rows = self.rows[np.all((self.rows[:, :2] > 30) & (self.rows[:, :2] < 270), axis=1)]
+        self.moved = self.rows.copy()
+        self.moved[:, :2] += np.float32([-2.4, -2.7])
+        self.pairs = np.stack([np.arange(len(self.rows), dtype=np.int32)] * 2, axis=1)
+
+    def refine(self):
+        return refineMatches(self.images[0], self.rows, self.images[1], self.moved, self.pairs)
+
+    def test_arrays(self):
+        points1, points2, covariances, similarities = self.refine()
+        n = len(self.rows)
+        self.assertGreater(n, 20)
+        self.assertEqual([a.shape for a in (points1, points2, covariances, similarities)], [(n, 2), (n, 2), (n, 3), (n,)])
+        np.testing.assert_array_equal(points1, self.rows[:, :2])
+        refined = similarities > 0
+        self.assertGreater(np.mean(refined), .9)
+        self.assertLess(np.median(np.abs(points2 - points1 - np.float32([-2, -3]))[refined]), .05)
+        self.assertTrue(np.all(covariances[refined][:, [0, 2]] > 0))
+
+    def test_objects_give_the_same(self):
+        keypoints = [[KeyPoint(*row[:4].tolist()) for row in rows] for rows in (self.rows, self.moved)]
+        matches = [DMatch(int(i), int(j), 0, 0.) for i, j in self.pairs]
+        for expected, found in zip(self.refine(), refineMatches(self.images[0], keypoints[0], self.images[1], keypoints[1],
+                                                                matches)):
+            np.testing.assert_array_equal(expected, found)
+
+    def test_no_matches(self):
+        found = refineMatches(self.images[0], self.rows, self.images[1], self.moved, [])
+        self.assertEqual([a.shape for a in found], [(0, 2), (0, 2), (0, 3), (0,)])
+
+    def test_mistakes(self):
+        with self.assertRaisesRegex(opencv_iib.error, 'a match is of keypoint 999 of image 1'):
+            refineMatches(self.images[0], self.rows, self.images[1], self.moved, np.int32([[999, 0]]))
+        with self.assertRaisesRegex(opencv_iib.error, 'array of 2 columns'):
+            refineMatches(self.images[0], self.rows, self.images[1], self.moved, np.float32([[0, 0]]))
+
+
+if __name__ == '__main__':
+    unittest.main()
