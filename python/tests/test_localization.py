@@ -2,7 +2,6 @@ import csv
 import io
 import json
 import os
-import re
 import shutil
 import subprocess
 import tempfile
@@ -13,14 +12,14 @@ from unittest import mock
 
 import numpy as np
 
-from support import REPOSITORY, cv2, optional, texture
+from support import cv2, optional, texture
 
 pycolmap = optional('pycolmap')
 
 if cv2 is not None:
     from opencv_iib.__main__ import main
     from opencv_iib.colmap import pipeline
-    from opencv_iib.localization import Localizer, build_map, find_camera, localizer, parse_camera, read_map, retrieval, update
+    from opencv_iib.localization import Localizer, build_map, find_camera, parse_camera, read_map, update
     from opencv_iib.localization.folders import new_folder
     from opencv_iib.localization.geometry import refine_pose
     from opencv_iib.localization.map import compact
@@ -171,25 +170,12 @@ class Localization(unittest.TestCase):
         self.assertEqual((model.num_reg_images(), model.num_cameras()), (3, 1))
 
     @unittest.skipUnless(os.environ.get('IIB_PROGRAMS'), 'no IIB_PROGRAMS, the folder of iib_localize')
-    def test_the_program_in_cpp_reads_the_map(self):
-        ours, theirs = self.path('ours'), self.path('theirs')
-        run('localize', '--map', self.map, '--images', self.dark, '--camera', CAMERA, '--out', ours)
-        cpp('--map', self.map, '--images', self.dark, '--out', theirs)  # with the map's camera
-        expected, found = poses(ours), poses(theirs)
-        self.assertEqual(expected.keys(), found.keys())
-        for name in expected:
-            np.testing.assert_allclose(found[name][:3], expected[name][:3], atol=.01)
-            self.assertGreater(abs(found[name][3:] @ expected[name][3:]), .99999)
-        heads = [open(os.path.join(folder, 'frames.csv')).readline().strip() for folder in (ours, theirs)]
-        self.assertEqual(*heads)
-
-    @unittest.skipUnless(os.environ.get('IIB_PROGRAMS'), 'no IIB_PROGRAMS, the folder of iib_localize')
     @unittest.skipUnless(os.path.isdir(STRECHA), 'OPENCV_TEST_DATA_PATH has no strecha/Herz-Jesus-P8')
     def test_photographs_in_cpp_within_five_centimetres_also_relit(self):
         truth = poses(STRECHA, 'poses.txt')
         camera = open(os.path.join(STRECHA, 'cameras.txt')).read().splitlines()[-1].split()
         model, names = pycolmap.Reconstruction(), sorted(os.listdir(os.path.join(STRECHA, 'images')))
-        images, sparse, made, plain, relit, out = (self.path(name) for name in ('images', 'sparse', 'map', 'a', 'b', 'out'))
+        images, sparse, plain, relit, out = (self.path(name) for name in ('images', 'sparse', 'a', 'b', 'out'))
         for folder in (images, sparse, plain, relit):
             os.makedirs(folder)
         model.add_camera_with_trivial_rig(pycolmap.Camera(camera_id=1, model=camera[1], width=int(camera[2]),
@@ -206,9 +192,8 @@ class Localization(unittest.TestCase):
             model.add_image_with_trivial_frame(pycolmap.Image(name, np.zeros((0, 2)), 1, i),
                                                pycolmap.Rigid3d(turn, place[:3]).inverse())
         model.write(sparse)
-        self.assertEqual(run('map', '--model', sparse, '--images', images, '--out', made)[0], 0)
         for folder in (plain, relit):
-            cpp('--map', made, '--images', folder, '--out', out)
+            cpp('--model', sparse, '--photographs', images, '--images', folder, '--out', out)
             found = poses(out)
             self.assertEqual(len(found), len(names) // 2)
             for name, place in found.items():
@@ -452,15 +437,6 @@ class Localization(unittest.TestCase):
         compact(made.model, codes)
         self.assertEqual({tuple(p.xyz): p.track.length() for p in made.model.points3D.values()}, before)
         self.assertTrue(all(np.array_equal(codes[i], made.codes[i]) for i in codes))
-
-    def test_the_numbers_are_those_of_cpp(self):
-        folder = REPOSITORY / 'modules/iib_geometry/src'
-        for python, name in ((localizer, 'localizer.cpp'), (retrieval, 'retrieval.cpp')):
-            text = (folder / name).read_text()
-            numbers = dict(re.findall(r'\b([A-Z_]{4,}) =\s*([\d.]+)[,;]', text))
-            self.assertEqual(len(numbers), len(re.findall(r'\b[A-Z_]{4,} =', text)))
-            for constant, number in numbers.items():
-                self.assertEqual(getattr(python, constant), float(number), constant)
 
     def test_an_image_has_most_votes_of_its_own_codes(self):
         random = np.random.default_rng(5)

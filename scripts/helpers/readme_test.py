@@ -117,7 +117,7 @@ target_link_libraries(localizer opencv_iib_geometry)
 ''')
         configure(work / 'localizer', 'localizer by cmake')
         run('cmake', '--build', work / 'localizer by cmake')
-        run(work / 'localizer by cmake/localizer', 'nowhere', prints='nowhere is no map, or a damaged one: it has no map.json')
+        run(work / 'localizer by cmake/localizer', 'nowhere', prints='nowhere is no map: it has no map.iib')
 
     # An OpenCV of another minor version is refused, and the message says why.
     (work / 'other').mkdir()

@@ -12,7 +12,6 @@
 
 #include "common/command_line.hpp"
 #include "images.hpp"
-#include "lens.hpp"
 #include "new_folder.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
@@ -75,7 +74,7 @@ void writePicture(
     cv::Mat picture;
     cv::cvtColor(grey, picture, cv::COLOR_GRAY2BGR);
     const std::vector<cv::Point2d> mapped =
-            Lens(camera).project(inCamera(location.points, location.cameraFromWorld));
+            camera.project(inCamera(location.points, location.cameraFromWorld));
     for (size_t i = 0; i < mapped.size(); i++)
     {
         cv::line(picture, location.pixels[i], mapped[i], {0, 0, 255});
@@ -121,10 +120,10 @@ int stream(const Localizer& localizer, const std::vector<Camera>& cameras)
     for (std::string path; std::getline(std::cin, path); all++)
     {
         Camera camera;
-        const Location location = locate(
-                localizer, cameras, cv::imread(path, cv::IMREAD_GRAYSCALE), last ? &*last : nullptr, camera);
+        const Location location =
+                locate(localizer, cameras, readImage(path), last ? &*last : nullptr, camera);
         if (location.found)
-            std::cout << trajectoryLine(path, location.cameraFromWorld.inv());
+            std::cout << trajectoryLine(path, inverse(location.cameraFromWorld));
         else
             std::cout << "# " << path << ": " << location.reason << "\n";
         std::cout << std::flush;
@@ -172,7 +171,10 @@ Localizer open(const iib_tools::CommandLine& line, int points)
     if (line.has("map"))
         return Localizer(line.text("map"), points);
     std::optional<Progress> progress;
-    return Localizer(line.text("model"), line.text("photographs"), points,
+    const std::string photographs = line.text("photographs");
+    return Localizer(
+            line.text("model"), [&](const std::string& name) { return readImage(photographs + "/" + name); },
+            points,
             [&](size_t, size_t all, const std::string& problem) {
                 if (!progress)
                     progress.emplace("mapping", all);
@@ -223,13 +225,13 @@ int run(const iib_tools::CommandLine& line)
     cv::parallel_for_(cv::Range(0, int(names.size())), [&](const cv::Range& range) {
         for (size_t i = size_t(range.start); i < size_t(range.end); i++)
         {
-            const cv::Mat grey = cv::imread(folder + "/" + names[i], cv::IMREAD_GRAYSCALE);
+            const cv::Mat grey = readImage(folder + "/" + names[i]);
             Camera camera;
             const Location location = locate(localizer, cameras, grey, nullptr, camera);
             if (imu)
                 frames[i].nanoseconds = times[i];
             if (location.found)
-                frames[i].pose = location.cameraFromWorld.inv();
+                frames[i].pose = inverse(location.cameraFromWorld);
             frames[i].covariance = location.covariance;
             rows[i] = csvRow(names[i], location);
             std::string flat = names[i] + ".png";

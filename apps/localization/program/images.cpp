@@ -6,13 +6,28 @@
 #include <filesystem>
 #include <map>
 
-#include "opencv2/core.hpp"
+#include "opencv2/imgcodecs.hpp"
 
 namespace iib_localization {
 
 namespace fs = std::filesystem;
 
 std::string withoutExtension(const std::string& name) { return fs::path(name).replace_extension().string(); }
+
+cv::Mat readImage(const std::string& path)
+{
+    std::error_code error;
+    if (!fs::is_regular_file(path, error))  // a pipe would not end
+        return cv::Mat();
+    try
+    {
+        return cv::imread(path, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+    }
+    catch (const cv::Exception&)  // a header that asks for more pixels than OpenCV reads
+    {
+        return cv::Mat();
+    }
+}
 
 std::vector<std::string> listImages(const std::string& folder)
 {

@@ -170,7 +170,7 @@ def program(path, data, work, lights):
         if imu and not readings.exists():
             continue
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        subprocess.run([path, '--map', work / 'recommended chain/map', '--images', data / light / 'images', '--out', out,
+        subprocess.run([path, '--model', work / 'recommended chain/model', '--photographs', data / 'map/images', '--images', data / light / 'images', '--out', out,
                         *(('--imu', readings) if imu else ())], check=False, stdout=subprocess.DEVNULL)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         used = 1000 * (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / len(poses)

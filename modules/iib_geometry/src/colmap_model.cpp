@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <sstream>
+#include <unordered_map>
 
 #include "lens.hpp"
 #include "opencv2/core/quaternion.hpp"
@@ -12,24 +14,20 @@
 namespace iib_localization {
 namespace {
 
-//! By COLMAP's numbers.
-const char* const MODELS[] = {"SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV",
-        "OPENCV_FISHEYE", "FULL_OPENCV", "FOV", "SIMPLE_RADIAL_FISHEYE", "RADIAL_FISHEYE",
-        "THIN_PRISM_FISHEYE", "RAD_TAN_THIN_PRISM_FISHEYE", "SIMPLE_DIVISION", "DIVISION", "SIMPLE_FISHEYE",
-        "FISHEYE", "EUCM", "EQUIRECTANGULAR"};
-constexpr size_t PARAMETERS[] = {3, 4, 4, 5, 8, 8};  // of the first ones; Lens knows no others
-constexpr size_t MAX_TRACK = 30;                     // images of a point that count as seeing the same
+namespace fs = std::filesystem;
 
-//! The numbers of a file, one after another, lowest byte first as on every machine that this runs on.
+//! Opens a file of a model and says what is wrong with it.
 class Reader
 {
 public:
-    Reader(const std::string& folder, const std::string& name)
-        : name_(name), stream_(folder + "/" + name, std::ios::binary)
+    Reader(const std::string& folder, const std::string& name) : name_(name)
     {
+        const std::string path = folder + "/" + name;
         std::error_code error;
-        left_ = std::filesystem::file_size(folder + "/" + name, error);
-        expect(!error);
+        expect(fs::is_regular_file(path, error));  // a pipe would not end
+        left_ = fs::file_size(path, error);
+        stream_.open(path, std::ios::binary);
+        expect(!error && stream_);
     }
 
     void expect(bool valid) const
@@ -38,18 +36,23 @@ public:
             CV_Error(cv::Error::StsParseError, name_ + " is missing or damaged");
     }
 
+protected:
+    const std::string name_;
+    std::ifstream stream_;
+    uint64_t left_ = 0;
+};
+
+//! The numbers of a file, one after another, lowest byte first as on every machine that this runs on.
+class BinaryReader : public Reader
+{
+public:
+    using Reader::Reader;
+
     template <typename T> T next()
     {
         T value{};
         expect(sizeof(T) <= left_ && stream_.read(reinterpret_cast<char*>(&value), sizeof(T)));
         left_ -= sizeof(T);
-        return value;
-    }
-
-    double number()
-    {
-        const double value = next<double>();
-        expect(std::isfinite(value));
         return value;
     }
 
@@ -61,106 +64,255 @@ public:
         return things;
     }
 
-    void skip(uint64_t bytes)
-    {
-        expect(bytes <= left_ && stream_.seekg(std::streamoff(bytes), std::ios::cur));
-        left_ -= bytes;
-    }
-
     void finish() const { expect(left_ == 0); }
-
-private:
-    const std::string name_;
-    std::ifstream stream_;
-    uint64_t left_ = 0;
 };
 
-std::map<uint32_t, Camera> readCameras(Reader&& file)
+//! The lines of a file but for comments.
+class TextReader : public Reader
 {
-    std::map<uint32_t, Camera> cameras;
-    for (uint64_t left = file.count(24); left > 0; left--)
+public:
+    using Reader::Reader;
+
+    bool next(std::istringstream& line)
     {
-        Camera& camera = cameras[file.next<uint32_t>()];
-        const uint32_t model = file.next<uint32_t>();
-        const uint64_t width = file.next<uint64_t>(), height = file.next<uint64_t>();
-        file.expect(model < std::size(MODELS) && std::max(width, height) < 1 << 16);
-        camera = {MODELS[model], {int(width), int(height)}, {}};
-        for (size_t i = 0; model < std::size(PARAMETERS) && i < PARAMETERS[model]; i++)
-            camera.parameters.push_back(file.number());
+        std::string text;
+        do
+            if (!std::getline(stream_, text))
+                return false;
+        while (!text.empty() && text[0] == '#');
+        line.clear();
+        line.str(text);
+        return true;
+    }
+
+    //! The next line that is not blank.
+    bool nextFilled(std::istringstream& line)
+    {
+        while (next(line))
+            if (!(line >> std::ws).eof())
+                return true;
+        return false;
+    }
+
+    template <typename T> T take(std::istringstream& line) const
+    {
+        T value{};
+        expect(bool(line >> value));
+        return value;
+    }
+};
+
+//! A model as its files are read.
+class Model
+{
+public:
+    void addCamera(const Reader& file, uint32_t id, const Camera& camera)
+    {
+        file.expect(camera.size.width > 0 && camera.size.height > 0 &&
+                    std::max(camera.size.width, camera.size.height) < 1 << 16);
         Lens checked(camera);
+        file.expect(cameras_.emplace(id, camera).second);
     }
-    file.finish();
-    return cameras;
-}
 
-typedef std::map<uint32_t, size_t> Numbers;  // of images, by their ids in the model
-
-std::vector<ModelImage> readImages(Reader&& file, const std::map<uint32_t, Camera>& cameras, Numbers& numbers)
-{
-    std::vector<ModelImage> images;
-    for (uint64_t left = file.count(73); left > 0; left--)
+    //! @param pose quaternion w x y z, translation.
+    PosedImage& addImage(
+            const Reader& file, const double (&pose)[7], uint32_t camera, const std::string& name)
     {
-        ModelImage image;
-        numbers[file.next<uint32_t>()] = images.size();
-        double pose[7];  // quaternion w x y z, translation
-        for (double& value : pose)
-            value = file.number();
         const cv::Quatd rotation(pose[0], pose[1], pose[2], pose[3]);
-        const auto camera = cameras.find(file.next<uint32_t>());
-        file.expect(camera != cameras.end() && std::abs(rotation.norm() - 1) < 1e-2);
-        image.cameraFromWorld = {rotation.toRotMat3x3(), cv::Vec3d(pose + 4)};
-        image.camera = camera->second;
-        while (const char c = file.next<char>())
-            image.name += c;
-        file.skip(24 * file.count(24));  // its points: x, y, id
-        images.push_back(std::move(image));
+        const auto known = cameras_.find(camera);
+        file.expect(known != cameras_.end() && !name.empty() && std::abs(rotation.norm() - 1) < 1e-2 &&
+                    names_.insert(name).second);
+        for (double value : pose)
+            file.expect(std::isfinite(value));
+        images.push_back({name, known->second, {rotation.toRotMat3x3(), cv::Vec3d(pose + 4)}, {}, {}});
+        return images.back();
     }
-    file.finish();
-    file.expect(!images.empty());
-    return images;
+
+    void addKeypoint(PosedImage& image, double x, double y, int64_t point)
+    {
+        image.pixels.emplace_back(x - .5, y - .5);
+        image.sees.push_back(point < 0 ? -1 : points_.emplace(point, int(points_.size())).first->second);
+    }
+
+    std::vector<PosedImage> images;
+
+private:
+    std::unordered_map<uint32_t, Camera> cameras_;
+    std::unordered_map<int64_t, int> points_;
+    std::set<std::string> names_;
+};
+
+Model readBinary(const std::string& folder)
+{
+    Model model;
+    BinaryReader cameras(folder, "cameras.bin"), images(folder, "images.bin");
+    for (uint64_t left = cameras.count(24); left > 0; left--)
+    {
+        const uint32_t id = cameras.next<uint32_t>(), number = cameras.next<uint32_t>();
+        const uint64_t width = cameras.next<uint64_t>(), height = cameras.next<uint64_t>();
+        if (!modelName(number))
+            CV_Error(cv::Error::StsError, cv::format("camera model %u is not known", number));
+        cameras.expect(std::max(width, height) < 1 << 16);
+        Camera camera = {modelName(number), {int(width), int(height)}, {}};
+        for (size_t i = parametersOf(camera.model); i > 0; i--)
+            camera.parameters.push_back(cameras.next<double>());
+        model.addCamera(cameras, id, camera);
+    }
+    cameras.finish();
+    for (uint64_t left = images.count(73); left > 0; left--)
+    {
+        images.next<uint32_t>();  // its id
+        double pose[7];
+        for (double& value : pose)
+            value = images.next<double>();
+        const uint32_t camera = images.next<uint32_t>();
+        std::string name;
+        while (const char c = images.next<char>())
+            name += c;
+        PosedImage& image = model.addImage(images, pose, camera, name);
+        for (uint64_t keypoints = images.count(24); keypoints > 0; keypoints--)
+        {
+            const double x = images.next<double>(), y = images.next<double>();
+            model.addKeypoint(image, x, y, images.next<int64_t>());
+        }
+    }
+    images.finish();
+    return model;
 }
 
-void countShared(Reader&& file, const Numbers& numbers, std::vector<ModelImage>& images)
+Model readText(const std::string& folder)
 {
-    for (uint64_t left = file.count(51); left > 0; left--)
+    Model model;
+    TextReader cameras(folder, "cameras.txt"), images(folder, "images.txt");
+    std::istringstream line;
+    while (cameras.nextFilled(line))
     {
-        file.skip(43);  // id, place, colour and error
-        std::set<size_t> seeing;
-        for (uint64_t views = file.count(8); views > 0; views--)
-        {
-            const auto image = numbers.find(file.next<uint32_t>());
-            file.expect(image != numbers.end());
-            if (seeing.size() < MAX_TRACK)
-                seeing.insert(image->second);
-            file.skip(4);  // which of its points
-        }
-        for (size_t a : seeing)
-            for (size_t b : seeing)
-                images[a].shared[b] += a != b;
+        const uint32_t id = cameras.take<uint32_t>(line);
+        Camera camera = {cameras.take<std::string>(line), {}, {}};
+        camera.size.width = cameras.take<int>(line);
+        camera.size.height = cameras.take<int>(line);
+        for (double value; line >> value;)
+            camera.parameters.push_back(value);
+        model.addCamera(cameras, id, camera);
     }
-    file.finish();
+    while (images.nextFilled(line))
+    {
+        images.take<uint32_t>(line);  // its id
+        double pose[7];
+        for (double& value : pose)
+            value = images.take<double>(line);
+        const uint32_t camera = images.take<uint32_t>(line);
+        std::string name;
+        std::getline(line >> std::ws, name);  // it may have blanks
+        name.erase(name.find_last_not_of(" \r") + 1);
+        PosedImage& image = model.addImage(images, pose, camera, name);
+        images.expect(images.next(line));
+        for (double x; line >> x;)
+        {
+            const double y = images.take<double>(line);
+            model.addKeypoint(image, x, y, images.take<int64_t>(line));
+        }
+        images.expect(line.eof());
+    }
+    return model;
+}
+
+//! Adds numbers to the end of a file, lowest byte first.
+template <typename... Ts> void put(std::string& file, Ts... values)
+{
+    (file.append(reinterpret_cast<const char*>(&values), sizeof(values)), ...);
+}
+
+void writeWhole(const std::string& path, const std::string& content)
+{
+    const std::string beside = path + ".tmp";
+    std::ofstream stream(beside, std::ios::binary);
+    stream << content;
+    stream.close();
+    std::error_code error;
+    if (stream)
+        fs::rename(beside, path, error);
+    if (!stream || error)
+    {
+        fs::remove(beside, error);
+        CV_Error(cv::Error::StsError,
+                path + " cannot be written: check the folder, its rights and the free space");
+    }
 }
 
 }  // namespace
 
-std::vector<ModelImage> readModel(const std::string& folder)
+std::vector<PosedImage> readModel(const std::string& folder)
 {
+    std::error_code error;
+    std::string hint;
+    for (const char* part : {"/0", "/sparse/0", "/sparse"})
+        if (hint.empty() && (fs::exists(folder + part + "/cameras.bin", error) ||
+                                    fs::exists(folder + part + "/cameras.txt", error)))
+            hint = ": did you mean " + folder + part + "?";
     try
     {
-        Numbers numbers;
-        const std::map<uint32_t, Camera> cameras = readCameras({folder, "cameras.bin"});
-        std::vector<ModelImage> images = readImages({folder, "images.bin"}, cameras, numbers);
-        countShared({folder, "points3D.bin"}, numbers, images);
-        return images;
+        const bool text =
+                fs::exists(folder + "/cameras.txt", error) && !fs::exists(folder + "/cameras.bin", error);
+        Model model = text ? readText(folder) : readBinary(folder);
+        if (model.images.empty())
+            CV_Error(cv::Error::StsError, "no image has a pose");
+        return std::move(model.images);
     }
     catch (const cv::Exception& e)
     {
-        CV_Error(cv::Error::StsError, folder +
-                                              " is no COLMAP model in binary form (colmap model_converter "
-                                              "makes one of a text model), or a "
-                                              "damaged one: " +
-                                              e.err);
+        CV_Error(cv::Error::StsError, folder + " is no COLMAP model, or a damaged one: " + e.err + hint);
     }
 }
 
 }  // namespace iib_localization
+
+void cv::iib::writeModel(
+        const std::string& folder, const std::vector<PosedImage>& images, const std::vector<Point3d>& points)
+{
+    using namespace iib_localization;
+    std::string cameras, posed, seen;
+    std::vector<std::pair<Camera, uint32_t>> known;
+    std::vector<std::string> tracks(points.size());
+    put(posed, uint64_t(images.size()));
+    for (size_t i = 0; i < images.size(); i++)
+    {
+        const PosedImage& image = images[i];
+        auto camera = std::find_if(
+                known.begin(), known.end(), [&](const auto& k) { return same(k.first, image.camera); });
+        if (camera == known.end())
+        {
+            Lens checked(image.camera);
+            known.emplace_back(image.camera, uint32_t(known.size() + 1));
+            camera = known.end() - 1;
+            put(cameras, camera->second, modelNumber(image.camera.model), uint64_t(image.camera.size.width),
+                    uint64_t(image.camera.size.height));
+            for (double parameter : image.camera.parameters)
+                put(cameras, parameter);
+        }
+        const Quatd q = Quatd::createFromRotMat(image.cameraFromWorld.rotation());
+        const Vec3d t = image.cameraFromWorld.translation();
+        put(posed, uint32_t(i + 1), q.w, q.x, q.y, q.z, t[0], t[1], t[2], camera->second);
+        posed += image.name + '\0';
+        put(posed, uint64_t(image.pixels.size()));
+        for (size_t k = 0; k < image.pixels.size(); k++)
+        {
+            const int point = k < image.sees.size() ? image.sees[k] : -1;
+            put(posed, image.pixels[k].x + .5, image.pixels[k].y + .5, int64_t(point < 0 ? -1 : point + 1));
+            if (point >= 0)
+                put(tracks.at(size_t(point)), uint32_t(i + 1), uint32_t(k));
+        }
+    }
+    put(seen, uint64_t(points.size()));
+    for (size_t i = 0; i < points.size(); i++)
+    {
+        put(seen, uint64_t(i + 1), points[i].x, points[i].y, points[i].z, uchar(0), uchar(0), uchar(0), -1.,
+                uint64_t(tracks[i].size() / 8));
+        seen += tracks[i];
+    }
+    std::string count;
+    put(count, uint64_t(known.size()));
+    writeWhole(folder + "/cameras.bin", count + cameras);
+    writeWhole(folder + "/images.bin", posed);
+    writeWhole(folder + "/points3D.bin", seen);
+}

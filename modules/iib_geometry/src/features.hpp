@@ -22,4 +22,24 @@ inline Features extract(cv::iib::IIB& iib, const cv::Mat& image)
     return features;
 }
 
+//! @throws cv::Exception for an image that is not of a camera's size, or not 8-bit, grey or BGR.
+inline void checkImage(const cv::Mat& image, const cv::Size& size)
+{
+    if (image.type() != CV_8UC1 && image.type() != CV_8UC3)
+        CV_Error(cv::Error::StsBadArg,
+                "an image is 8-bit, grey or BGR, not " + cv::typeToString(image.type()));
+    if (image.size() != size)
+        CV_Error(cv::Error::StsBadArg, cv::format("the image has %d x %d pixels and its camera %d x %d",
+                                               image.cols, image.rows, size.width, size.height));
+}
+
+//! Calls an action with each index, several at once.
+template <typename Action> void inParallel(size_t count, Action action)
+{
+    cv::parallel_for_(cv::Range(0, int(count)), [&](const cv::Range& range) {
+        for (int i = range.start; i < range.end; i++)
+            action(size_t(i));
+    });
+}
+
 }  // namespace iib_localization

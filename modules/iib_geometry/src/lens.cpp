@@ -1,87 +1,188 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "precomp.hpp"
-
 #include "lens.hpp"
 
 #include <algorithm>
 #include <limits>
-#include <map>
 
 #include "numbers.hpp"
 
 namespace iib_localization {
 namespace {
 
-const std::map<std::string, size_t> MODELS = {{"SIMPLE_PINHOLE", 3}, {"PINHOLE", 4}, {"SIMPLE_RADIAL", 4},
-        {"RADIAL", 5}, {"OPENCV", 8}, {"OPENCV_FISHEYE", 8}};  // and how many parameters they have
+enum Kind
+{
+    STRAIGHT,
+    POLYNOMIAL,
+    FISHEYE,
+    FIELD_OF_VIEW,
+    THIN_PRISM,
+    RAD_TAN_THIN_PRISM,
+    DIVISION,
+    UNIFIED
+};
+
+struct Model
+{
+    const char* name;
+    size_t focals, others;  // focal lengths, and what follows the centre
+    Kind kind;
+};
+
+//! By COLMAP's numbers.
+const Model MODELS[] = {{"SIMPLE_PINHOLE", 1, 0, STRAIGHT}, {"PINHOLE", 2, 0, STRAIGHT},
+        {"SIMPLE_RADIAL", 1, 1, POLYNOMIAL}, {"RADIAL", 1, 2, POLYNOMIAL}, {"OPENCV", 2, 4, POLYNOMIAL},
+        {"OPENCV_FISHEYE", 2, 4, FISHEYE}, {"FULL_OPENCV", 2, 8, POLYNOMIAL}, {"FOV", 2, 1, FIELD_OF_VIEW},
+        {"SIMPLE_RADIAL_FISHEYE", 1, 1, FISHEYE}, {"RADIAL_FISHEYE", 1, 2, FISHEYE},
+        {"THIN_PRISM_FISHEYE", 2, 8, THIN_PRISM}, {"RAD_TAN_THIN_PRISM_FISHEYE", 2, 12, RAD_TAN_THIN_PRISM},
+        {"SIMPLE_DIVISION", 1, 1, DIVISION}, {"DIVISION", 2, 1, DIVISION}, {"SIMPLE_FISHEYE", 1, 0, FISHEYE},
+        {"FISHEYE", 2, 0, FISHEYE}, {"EUCM", 2, 2, UNIFIED}};
+constexpr double MAX_RATIO = 1000;  // of a focal length and the longer side
+constexpr int ROUNDS = 50;
 
 [[noreturn]] void fail(const std::string& what) { CV_Error(cv::Error::StsBadArg, what); }
 
-//! Models with one focal length for both axes.
-bool isSimple(const std::string& model)
+const Model& modelOf(const Camera& camera)
 {
-    return model == "SIMPLE_PINHOLE" || model == "SIMPLE_RADIAL" || model == "RADIAL";
-}
-
-const Camera& checked(const Camera& camera)
-{
-    const auto model = MODELS.find(camera.model);
+    const int number = modelNumber(camera.model);
+    if (number < 0)
+    {
+        std::string names;
+        for (const Model& m : MODELS)
+            names += (names.empty() ? "" : ", ") + std::string(m.name);
+        fail("camera model " + camera.model + " is not one of " + names);
+    }
+    const Model& model = MODELS[number];
     const std::vector<double>& p = camera.parameters;
-    if (model == MODELS.end())
-        fail("camera model " + camera.model +
-                " is not one of SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV and OPENCV_FISHEYE");
-    if (p.size() != model->second)
-        fail(cv::format("camera model %s has %d parameters, not %d", camera.model.c_str(), int(model->second),
-                int(p.size())));
-    if (camera.size.empty() || !(p[0] > 0) || !(isSimple(camera.model) || p[1] > 0))
+    if (p.size() != parametersOf(camera.model))
+        fail(cv::format("camera model %s has %d parameters, not %d", model.name,
+                int(parametersOf(camera.model)), int(p.size())));
+    const double side = std::max(camera.size.width, camera.size.height);
+    for (size_t i = 0; i < p.size(); i++)
+    {
+        const bool focal = i < model.focals, centre = !focal && i < model.focals + 2;
+        if (focal && !(p[i] * MAX_RATIO > side && p[i] < MAX_RATIO * side))
+            fail("a camera's size and focal length must be positive, and not a thousand times each other");
+        if (!std::isfinite(p[i]) || (centre && std::abs(p[i]) > MAX_RATIO * side))
+            fail("a camera's parameters must be finite, and its centre not a thousand widths away");
+    }
+    if (camera.size.empty())
         fail("a camera's size and focal length must be positive");
-    return camera;
+    return model;
 }
 
 }  // namespace
 
+int modelNumber(const std::string& name)
+{
+    for (size_t i = 0; i < std::size(MODELS); i++)
+        if (name == MODELS[i].name)
+            return int(i);
+    return -1;
+}
+
+const char* modelName(uint64 number) { return number < std::size(MODELS) ? MODELS[number].name : nullptr; }
+
+size_t parametersOf(const std::string& model)
+{
+    const Model& m = MODELS[modelNumber(model)];
+    return m.focals + 2 + m.others;
+}
+
 Lens::Lens(const Camera& camera)
 {
-    const std::vector<double>& p = checked(camera).parameters;
-    const bool simple = isSimple(camera.model);
-    const size_t centre = simple ? 1 : 2;
-    fisheye_ = camera.model == "OPENCV_FISHEYE";
-    matrix_ = {p[0], 0, p[centre] - .5, 0, p[simple ? 0 : 1], p[centre + 1] - .5, 0, 0, 1};
-    distortion_.assign(p.begin() + std::ptrdiff_t(centre + 2), p.end());
-    if (!distortion_.empty())
-        distortion_.resize(4, 0);  // k1, k2, p1, p2, or of a fisheye k1 to k4
+    const Model& model = modelOf(camera);
+    const double* const p = camera.parameters.data();
+    const double *const centre = p + model.focals, *const others = centre + 2;
+    matrix_ = {p[0], 0, centre[0] - .5, 0, p[model.focals - 1], centre[1] - .5, 0, 0, 1};
+    kind_ = model.kind;
+    std::copy(others, others + model.others, k_.val);
+}
+
+//! The formulas are COLMAP's (src/colmap/sensor/models.h); a ray is (x / z, y / z).
+cv::Vec2d Lens::distorted(const cv::Vec2d& ray) const
+{
+    const double r = cv::norm(ray), r2 = r * r;
+    const auto shifted = [](const cv::Vec2d& at, double p1, double p2) {
+        const double xy = 2 * at[0] * at[1], square = at.dot(at);
+        return cv::Vec2d(
+                p1 * xy + p2 * (square + 2 * at[0] * at[0]), p2 * xy + p1 * (square + 2 * at[1] * at[1]));
+    };
+    if (r == 0 || kind_ == STRAIGHT)
+        return ray;
+    if (kind_ == POLYNOMIAL)
+    {
+        const double above = 1 + r2 * (k_[0] + r2 * (k_[1] + r2 * k_[4])),
+                     below = 1 + r2 * (k_[5] + r2 * (k_[6] + r2 * k_[7]));
+        return ray * (above / below) + shifted(ray, k_[2], k_[3]);
+    }
+    if (kind_ == FIELD_OF_VIEW)
+        return k_[0] == 0 ? ray : ray * (std::atan(2 * r * std::tan(k_[0] / 2)) / (r * k_[0]));
+    if (kind_ == DIVISION)
+        return ray * (2 / (1 + std::sqrt(1 - 4 * k_[0] * r2)));
+    if (kind_ == UNIFIED)
+        return ray * (1 / (k_[0] * std::sqrt(k_[1] * r2 + 1) + 1 - k_[0]));
+    const cv::Vec2d bent = ray * (std::atan(r) / r);  // equidistant
+    const double t2 = bent.dot(bent);
+    if (kind_ == FISHEYE)
+        return bent * (1 + t2 * (k_[0] + t2 * (k_[1] + t2 * (k_[2] + t2 * k_[3]))));
+    if (kind_ == THIN_PRISM)
+        return bent * (1 + t2 * (k_[0] + t2 * (k_[1] + t2 * (k_[4] + t2 * k_[5])))) +
+               shifted(bent, k_[2], k_[3]) + cv::Vec2d(k_[6], k_[7]) * t2;
+    const double radial =
+            1 + t2 * (k_[0] + t2 * (k_[1] + t2 * (k_[2] + t2 * (k_[3] + t2 * (k_[4] + t2 * k_[5])))));
+    const cv::Vec2d at = bent * radial;
+    const double s2 = at.dot(at);
+    return at + shifted(at, k_[7], k_[6]) + s2 * cv::Vec2d(k_[8] + s2 * k_[9], k_[10] + s2 * k_[11]);
+}
+
+//! By central differences.
+cv::Matx22d Lens::slope(const cv::Vec2d& ray) const
+{
+    if (kind_ == STRAIGHT)
+        return cv::Matx22d::eye();
+    const double step = 1e-5 * (1 + cv::norm(ray));
+    const cv::Vec2d x(step, 0), y(0, step), byX = (distorted(ray + x) - distorted(ray - x)) / (2 * step),
+                                            byY = (distorted(ray + y) - distorted(ray - y)) / (2 * step);
+    return {byX[0], byY[0], byX[1], byY[1]};
 }
 
 std::vector<cv::Point2d> Lens::undistorted(const std::vector<cv::Point2d>& pixels) const
 {
-    if (distortion_.empty() || pixels.empty())
-        return pixels;
     std::vector<cv::Point2d> straight;
-    if (fisheye_)
-        cv::fisheye::undistortPoints(pixels, straight, matrix_, distortion_, cv::noArray(), matrix_);
-    else
-        cv::undistortPoints(pixels, straight, matrix_, distortion_, cv::noArray(), matrix_,
-                cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 50, 1e-3));
+    for (const cv::Point2d& p : pixels)
+    {
+        const cv::Vec2d seen((p.x - matrix_(0, 2)) / matrix_(0, 0), (p.y - matrix_(1, 2)) / matrix_(1, 1));
+        cv::Vec2d ray = seen, step(1, 1);
+        for (int round = 0; round < ROUNDS && cv::norm(step) > 1e-12 * (1 + cv::norm(ray));
+                round++)  // Newton's
+        {
+            step = slope(ray).inv() * (seen - distorted(ray));
+            ray += step;
+        }
+        if (!(cv::norm(distorted(ray) - seen) < 1e-8))
+            ray = cv::Vec2d::all(std::numeric_limits<double>::quiet_NaN());
+        straight.emplace_back(matrix_(0, 0) * ray[0] + matrix_(0, 2), matrix_(1, 1) * ray[1] + matrix_(1, 2));
+    }
     return straight;
 }
 
-std::vector<cv::Point2d> Lens::project(const std::vector<cv::Point3d>& points, cv::Mat* jacobian) const
+std::vector<cv::Point2d> Lens::project(
+        const std::vector<cv::Point3d>& points, std::vector<cv::Matx23d>* jacobians) const
 {
     std::vector<cv::Point2d> pixels;
-    if (points.empty())
-        return pixels;
-    cv::Mat all;
-    const cv::_OutputArray wanted = jacobian ? cv::_OutputArray(all) : cv::_OutputArray();
-    if (fisheye_)
-        cv::fisheye::projectPoints(points, pixels, cv::Vec3d(), cv::Vec3d(), matrix_, distortion_, 0, wanted);
-    else
-        cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), matrix_, distortion_, pixels, wanted);
-    if (jacobian)  // by the translation
-        *jacobian = all.colRange(fisheye_ ? 11 : 3, fisheye_ ? 14 : 6).clone();
-    for (size_t i = 0; i < points.size(); i++)
-        if (!(points[i].z > 0))
-            pixels[i].x = pixels[i].y = std::numeric_limits<double>::quiet_NaN();
+    if (jacobians)
+        jacobians->clear();
+    for (const cv::Point3d& p : points)
+    {
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        const cv::Vec2d ray = p.z > 0 ? cv::Vec2d(p.x / p.z, p.y / p.z) : cv::Vec2d(nan, nan);
+        const cv::Vec2d seen = distorted(ray);
+        pixels.emplace_back(matrix_(0, 0) * seen[0] + matrix_(0, 2), matrix_(1, 1) * seen[1] + matrix_(1, 2));
+        if (jacobians)
+            jacobians->push_back(cv::Matx22d(matrix_(0, 0), 0, 0, matrix_(1, 1)) * slope(ray) *
+                                 cv::Matx23d(1, 0, -ray[0], 0, 1, -ray[1]) * (1 / p.z));
+    }
     return pixels;
 }
 
@@ -91,8 +192,19 @@ cv::iib::Camera cv::iib::Camera::parse(const std::string& text)
 {
     const size_t comma = std::min(text.find(','), text.size() - 1);
     const std::vector<double> values = iib_localization::numbersOf(text.substr(comma + 1));
-    if (values.size() < 3 || std::max(std::abs(values[0]), std::abs(values[1])) >= 1 << 16)
+    if (values.size() < 3)
         CV_Error(Error::StsBadArg, "camera " + text + " is not MODEL,WIDTH,HEIGHT,PARAMETERS");
-    return iib_localization::checked({text.substr(0, comma), Size(int(values[0]), int(values[1])),
-            std::vector<double>(values.begin() + 2, values.end())});
+    const double width = values[0], height = values[1];
+    if (!(width >= 1 && height >= 1 && std::max(width, height) < 1 << 16) || width != std::floor(width) ||
+            height != std::floor(height))
+        CV_Error(Error::StsBadArg, "camera " + text + ": width and height are whole numbers of pixels");
+    const Camera camera = {text.substr(0, comma), Size(int(width), int(height)),
+            std::vector<double>(values.begin() + 2, values.end())};
+    iib_localization::Lens checked(camera);
+    return camera;
+}
+
+std::vector<cv::Point2d> cv::iib::Camera::project(const std::vector<Point3d>& points) const
+{
+    return iib_localization::Lens(*this).project(points);
 }

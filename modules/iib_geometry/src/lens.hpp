@@ -7,8 +7,7 @@ namespace iib_localization {
 
 using cv::iib::Camera;
 
-/** What a camera does to rays, by OpenCV's functions. Here and everywhere but in COLMAP's files, the centre of the first pixel
-is (0, 0). */
+//! What a camera does to rays. The centre of the first pixel is (0, 0), here and everywhere but in COLMAP's files.
 class Lens
 {
 public:
@@ -17,16 +16,31 @@ public:
 
     //! Of a camera without distortion that undistorted() gives the pixels of.
     const cv::Matx33d& matrix() const { return matrix_; }
+    //! NaN for pixels that no point before the camera is seen at.
     std::vector<cv::Point2d> undistorted(const std::vector<cv::Point2d>& pixels) const;
     /** Where points in the camera's axes are seen; NaN behind it.
-    @param jacobian if not null: 2 N x 3, of the pixels by the points. */
+    @param jacobians if not null: of the pixels by the points. */
     std::vector<cv::Point2d> project(
-            const std::vector<cv::Point3d>& points, cv::Mat* jacobian = nullptr) const;
+            const std::vector<cv::Point3d>& points, std::vector<cv::Matx23d>* jacobians = nullptr) const;
 
 private:
+    cv::Vec2d distorted(const cv::Vec2d& ray) const;
+    cv::Matx22d slope(const cv::Vec2d& ray) const;
+
     cv::Matx33d matrix_;
-    bool fisheye_;
-    std::vector<double> distortion_;
+    int kind_;
+    cv::Vec<double, 12> k_;  //!< parameters of the distortion, in COLMAP's order
 };
+
+inline bool same(const Camera& a, const Camera& b)
+{
+    return a.model == b.model && a.size == b.size && a.parameters == b.parameters;
+}
+
+//! COLMAP's number of a camera model, or -1; of a number its name, or null.
+int modelNumber(const std::string& name);
+const char* modelName(uint64 number);
+//! How many parameters a model has.
+size_t parametersOf(const std::string& model);
 
 }  // namespace iib_localization

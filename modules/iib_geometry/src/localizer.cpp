@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include "localizer.hpp"
+
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <set>
 
-#include "features.hpp"
 #include "mapping.hpp"
 #include "numbers.hpp"
-#include "pose.hpp"
-#include "retrieval.hpp"
 
-// The steps and numbers are those of Python's opencv_iib.localization.
 namespace iib_localization {
 namespace {
-
-using cv::iib::Location;
 
 constexpr size_t SHORTLIST = 20, CANDIDATES = 5;  // of the map's images: by votes, and of these by matches
 constexpr size_t NEAREST = 2;                     // of the map's images, to a prior
@@ -27,14 +24,6 @@ constexpr double LEAST_INLIERS = 15, LEAST_SHARE = .02;  // in an unknown place 
 constexpr double MAX_BOUND = .1;  // of the distance to the points: three standard deviations of the place
 constexpr double LEAST_DEVIATION = .2;  // pixels
 
-double medianDistance(const std::vector<cv::Point3d>& pointsInCamera)
-{
-    std::vector<double> distances;
-    for (const cv::Point3d& p : pointsInCamera)
-        distances.push_back(cv::norm(p));
-    return median(distances);
-}
-
 //! What sorts first, of so many.
 template <typename Before> std::vector<size_t> best(size_t all, size_t count, Before before)
 {
@@ -46,18 +35,19 @@ template <typename Before> std::vector<size_t> best(size_t all, size_t count, Be
 }
 
 //! Keypoints that match a point in several images of the map count once.
-void removeRepeated(std::vector<Match>& matches)
+std::vector<Match> withoutRepeated(std::vector<Match> matches)
 {
     const auto key = [](const Match& m) { return std::make_pair(m.keypoint, m.number); };
     std::stable_sort(
             matches.begin(), matches.end(), [&](const Match& a, const Match& b) { return key(a) < key(b); });
-    const auto same = [&](const Match& a, const Match& b) { return key(a) == key(b); };
-    matches.erase(std::unique(matches.begin(), matches.end(), same), matches.end());
+    const auto repeated = [&](const Match& a, const Match& b) { return key(a) == key(b); };
+    matches.erase(std::unique(matches.begin(), matches.end(), repeated), matches.end());
+    return matches;
 }
 
 //! The matches within a limit of where a pose has their points.
-std::vector<Match> agreeing(
-        const std::vector<Match>& matches, const Lens& lens, const cv::Affine3d& pose, double limit)
+std::vector<Match> within(
+        double limit, const std::vector<Match>& matches, const Lens& lens, const cv::Affine3d& pose)
 {
     const std::vector<double> errors = errorsOf(matches, lens, pose);
     std::vector<Match> inliers;
@@ -75,148 +65,200 @@ int keypointsOf(const std::vector<Match>& matches)
     return int(keypoints.size());
 }
 
-//! Finds the pose that matches agree on, and whether it is one.
-void locate(std::vector<Match> matches, const Camera& camera, Location& location)
+//! Finds the pose that matches with points of a map agree on, and whether it is one.
+void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Found& found)
 {
-    removeRepeated(matches);
-    location.matches = int(matches.size());
+    const Frame frame(all);
+    for (Match& m : all)
+        m.point = frame.toLocal(m.point);
+    const std::vector<Match> matches = withoutRepeated(all);
+    found.matches = int(matches.size());
     const Lens lens(camera);
     const double limit = MAX_ERROR * std::max(camera.size.width, camera.size.height);
     std::vector<Match> surest;
     for (size_t i : best(matches.size(), SUREST,
                  [&](size_t a, size_t b) { return matches[a].bits < matches[b].bits; }))
         surest.push_back(matches[i]);
-    cv::Affine3d& pose = location.cameraFromWorld;
-    location.reason = "too few matches agree";
+    cv::Affine3d pose;
+    cv::Matx66d covariance;
+    found.reason = "too few matches agree";
     if (!poseByRansac(surest, lens, limit, pose))
         return;
     std::vector<Match> inliers;
     for (int round = 0; round < 3; round++)  // what agrees is looked for again after each refinement
     {
-        if (round > 0 && !refinePose(inliers, lens, pose, location.covariance))
+        if (round > 0 && !refinePose(inliers, lens, pose, covariance))
         {
-            location.reason = "the points do not determine the pose";
+            found.reason = "the points do not determine the pose";
             return;
         }
-        inliers = agreeing(matches, lens, pose, limit);
-        location.inliers = keypointsOf(inliers);
-        if (location.inliers < LEAST_INLIERS + LEAST_SHARE * double(matches.size()))
+        inliers = within(limit, matches, lens, pose);
+        found.inliers = keypointsOf(inliers);
+        if (found.inliers < LEAST_INLIERS + LEAST_SHARE * double(matches.size()))
             return;
-    }
-    for (const Match& m : inliers)
-    {
-        location.pixels.push_back(m.pixel);
-        location.points.push_back(m.point);
     }
     // of a Rayleigh distribution
     const double deviation = std::max(LEAST_DEVIATION, median(errorsOf(inliers, lens, pose)) / 1.1774);
-    location.covariance *= deviation * deviation;
+    covariance *= deviation * deviation;
     cv::Vec3d variances;
-    cv::eigen(location.covariance.get_minor<3, 3>(0, 0), variances);
-    location.found =
-            3 * std::sqrt(variances[0]) <= MAX_BOUND * medianDistance(inCamera(location.points, pose));
-    location.reason = location.found ? "" : "the pose is uncertain";
+    cv::eigen(covariance.get_minor<3, 3>(0, 0), variances);
+    std::vector<cv::Point3d> points;
+    for (const Match& m : inliers)
+        points.push_back(m.point);
+    found.reason = "the pose is uncertain";
+    if (!(3 * std::sqrt(variances[0]) <= MAX_BOUND * medianDistance(inCamera(points, pose))))
+        return;
+    found.found = true;
+    found.reason = "";
+    found.cameraFromWorld = frame.toWorld(pose);
+    found.covariance = frame.toWorld(covariance);
+    for (const Match& m : inliers)
+    {
+        found.pixels.push_back(m.pixel);
+        found.points.push_back(map.points[size_t(m.number)]);
+    }
+    found.agreeing = within(limit, all, lens, pose);
+}
+
+//! Which keypoints (rows) may match which points (columns): those near where the prior has them.
+cv::Mat gate(const Features& features, const std::vector<cv::Point3d>& points, const Camera& camera,
+        const cv::Affine3d& prior)
+{
+    const double limit = std::round(GATE * std::max(camera.size.width, camera.size.height));
+    const std::vector<cv::Point2d> places = Lens(camera).project(inCamera(points, prior));
+    cv::Mat mask(int(features.pixels.size()), int(places.size()), CV_8U);
+    for (int y = 0; y < mask.rows; y++)
+        for (int x = 0; x < mask.cols; x++)
+        {
+            const cv::Point2d way = places[size_t(x)] - features.pixels[size_t(y)];
+            mask.at<uchar>(y, x) = std::abs(way.x) < limit && std::abs(way.y) < limit ? 255 : 0;
+        }
+    return mask;
+}
+
+std::vector<cv::Mat> codesOf(const Map& map)
+{
+    std::vector<cv::Mat> codes;
+    for (const MapImage& image : map.images)
+        codes.push_back(image.codes);
+    return codes;
 }
 
 }  // namespace
+
+double medianDistance(const std::vector<cv::Point3d>& points)
+{
+    std::vector<double> distances;
+    for (const cv::Point3d& p : points)
+        distances.push_back(cv::norm(p));
+    return median(distances);
+}
+
+Finder::Finder(const Map& map, int points)
+    : map_(map), iib_(cv::iib::IIB::createRecommended(points ? points : map.keypoints)),
+      matcher_(cv::iib::HierarchicalMatcher::createRecommended()), votes_(codesOf(map))
+{
+    for (const MapImage& image : map.images)
+    {
+        if (image.codes.cols != iib_->descriptorSize())
+            CV_Error(cv::Error::StsError, "the map's codes are not those of this version: make it again");
+        std::vector<cv::Point3d> seen;
+        for (int number : image.sees)
+            seen.push_back(map.points[size_t(number)]);
+        const cv::Affine3d pose = inverse(image.cameraFromWorld);
+        views_.push_back({pose.translation(), cv::Vec3d(pose.rotation().col(2).val),
+                medianDistance(inCamera(seen, image.cameraFromWorld))});
+    }
+}
+
+//! The images of the map nearest to a pose: a turn in radians counts as much as a way by their depth.
+std::vector<size_t> Finder::near(const cv::Affine3d& pose) const
+{
+    std::vector<double> distances;
+    const cv::Vec3d centre = inverse(pose).translation();
+    const cv::Matx33d rotation = pose.rotation();
+    const cv::Vec3d direction(rotation.val + 6);
+    for (const View& v : views_)
+        distances.push_back(v.depth > 0 ? cv::norm(centre - v.centre) / v.depth +
+                                                  std::acos(std::clamp(direction.dot(v.direction), -1., 1.))
+                                        : std::numeric_limits<double>::infinity());
+    return best(views_.size(), NEAREST, [&](size_t a, size_t b) { return distances[a] < distances[b]; });
+}
+
+std::vector<size_t> Finder::similar(const cv::Mat& codes) const
+{
+    const std::vector<float> voted = votes_.vote(codes);
+    std::vector<size_t> counts(voted.size());
+    for (size_t k : best(counts.size(), SHORTLIST, [&](size_t a, size_t b) { return voted[a] > voted[b]; }))
+        if (voted[k] > 0)
+        {
+            std::vector<cv::DMatch> found;
+            matcher_->match(codes.rowRange(0, std::min(codes.rows, RANKING)), map_.images[k].codes, found);
+            counts[k] = found.size();
+        }
+    std::vector<size_t> order =
+            best(counts.size(), CANDIDATES, [&](size_t a, size_t b) { return counts[a] > counts[b]; });
+    order.erase(
+            std::find_if(order.begin(), order.end(), [&](size_t k) { return counts[k] == 0; }), order.end());
+    return order;
+}
+
+void Finder::locate(const Camera& camera, const cv::Affine3d* prior, Found& found) const
+{
+    std::vector<Match> matches;
+    for (size_t k : found.compared)
+    {
+        const MapImage& image = map_.images[k];
+        std::vector<cv::Point3d> points;
+        for (int number : image.sees)
+            points.push_back(map_.points[size_t(number)]);
+        std::vector<cv::DMatch> matched;
+        if (!points.empty())
+            matcher_->match(found.features.codes, image.codes, matched,
+                    prior ? gate(found.features, points, camera, *prior) : cv::Mat());
+        for (const cv::DMatch& m : matched)
+            matches.push_back({found.features.pixels[size_t(m.queryIdx)], points[size_t(m.trainIdx)],
+                    image.sees[size_t(m.trainIdx)], m.queryIdx, int(m.distance), int(k), m.trainIdx});
+    }
+    found.reason = "too few matches";
+    found.matches = found.inliers = 0;
+    if (matches.size() >= LEAST_INLIERS)
+        findPose(std::move(matches), map_, camera, found);
+}
+
+Found Finder::find(const cv::Mat& image, const Camera& camera, const cv::Affine3d* prior) const
+{
+    checkImage(image, camera.size);
+    const Lens checked(camera);
+    Found found;
+    found.features = extract(*iib_, image);
+    found.reason = "too few matches";
+    if (found.features.pixels.empty())
+        return found;
+    if (prior)
+    {
+        found.compared = near(*prior);
+        locate(camera, prior, found);
+    }
+    if (!found.found)
+    {
+        found.compared = similar(found.features.codes);
+        locate(camera, nullptr, found);
+    }
+    return found;
+}
+
 }  // namespace iib_localization
 
 using namespace iib_localization;
 
 struct cv::iib::Localizer::Impl
 {
-    Impl(Map&& read, int points)
-        : map(std::move(read)), iib(IIB::createRecommended(points ? points : map.keypoints)),
-          matcher(HierarchicalMatcher::createRecommended())
-    {
-        if (map.codes.cols != iib->descriptorSize())
-            CV_Error(Error::StsError, "the map's codes are not those of this version: make it again");
-        std::vector<Mat> codes;
-        for (const View& v : map.views)
-            codes.push_back(map.codes.rowRange(v.rows));
-        votes = std::make_unique<Retrieval>(codes);
-    }
-
-    //! The images of the map nearest to a pose: a turn in radians counts as much as a way by their depth.
-    std::vector<size_t> near(const Affine3d& pose) const
-    {
-        std::vector<double> distances;
-        const Vec3d centre = pose.inv().translation();
-        const Matx33d rotation = pose.rotation();
-        const Vec3d direction(rotation.val + 6);
-        for (const View& v : map.views)
-            distances.push_back(norm(centre - v.centre) / v.depth +
-                                std::acos(std::clamp(direction.dot(v.direction), -1., 1.)));
-        return best(
-                map.views.size(), NEAREST, [&](size_t a, size_t b) { return distances[a] < distances[b]; });
-    }
-
-    std::vector<size_t> similar(const Mat& codes) const
-    {
-        const std::vector<float> voted = votes->vote(codes);
-        std::vector<size_t> counts(map.views.size());
-        for (size_t k :
-                best(counts.size(), SHORTLIST, [&](size_t a, size_t b) { return voted[a] > voted[b]; }))
-            if (voted[k] > 0)
-            {
-                std::vector<DMatch> found;
-                matcher->match(codes.rowRange(0, std::min(codes.rows, RANKING)),
-                        map.codes.rowRange(map.views[k].rows), found);
-                counts[k] = found.size();
-            }
-        std::vector<size_t> order =
-                best(counts.size(), CANDIDATES, [&](size_t a, size_t b) { return counts[a] > counts[b]; });
-        order.erase(std::find_if(order.begin(), order.end(), [&](size_t k) { return counts[k] == 0; }),
-                order.end());
-        return order;
-    }
-
-    //! Which keypoints (rows) may match which points (columns): those near where the prior has them.
-    static Mat gate(const Features& features, const std::vector<Point3d>& points, const Camera& camera,
-            const Affine3d& prior)
-    {
-        const double limit = std::round(GATE * std::max(camera.size.width, camera.size.height));
-        const std::vector<Point2d> places = Lens(camera).project(inCamera(points, prior));
-        Mat mask(int(features.pixels.size()), int(places.size()), CV_8U);
-        for (int y = 0; y < mask.rows; y++)
-            for (int x = 0; x < mask.cols; x++)
-            {
-                const Point2d way = places[size_t(x)] - features.pixels[size_t(y)];
-                mask.at<uchar>(y, x) = std::abs(way.x) < limit && std::abs(way.y) < limit ? 255 : 0;
-            }
-        return mask;
-    }
-
-    Location locate(const Features& features, const Camera& camera, const std::vector<size_t>& candidates,
-            const Affine3d* prior) const
-    {
-        Location location;
-        location.reason = "too few matches";
-        std::vector<Match> matches;
-        for (size_t k : candidates)
-        {
-            const Range rows = map.views[k].rows;
-            const int* const numbers = map.sees.ptr<int>(rows.start);
-            std::vector<Point3d> points;
-            for (int i = 0; i < rows.size(); i++)
-                points.push_back(map.point(numbers[i]));
-            std::vector<DMatch> found;
-            if (!points.empty())
-                matcher->match(features.codes, map.codes.rowRange(rows), found,
-                        prior ? gate(features, points, camera, *prior) : Mat());
-            for (const DMatch& m : found)
-                matches.push_back({features.pixels[size_t(m.queryIdx)], points[size_t(m.trainIdx)],
-                        numbers[m.trainIdx], m.queryIdx, int(m.distance)});
-        }
-        if (matches.size() >= LEAST_INLIERS)
-            iib_localization::locate(std::move(matches), camera, location);
-        return location;
-    }
+    Impl(Map&& read, int points) : map(std::move(read)), finder(map, points), cameras(map.cameras()) {}
 
     const Map map;
-    Ptr<IIB> iib;
-    Ptr<HierarchicalMatcher> matcher;
-    std::unique_ptr<Retrieval> votes;
+    const Finder finder;
+    const std::vector<Camera> cameras;
 };
 
 cv::iib::Localizer::Localizer(const std::string& map, int points)
@@ -225,29 +267,17 @@ cv::iib::Localizer::Localizer(const std::string& map, int points)
 }
 
 cv::iib::Localizer::Localizer(
-        const std::string& model, const std::string& photographs, int points, const Report& report)
-    : impl_(std::make_unique<const Impl>(buildMap(model, photographs, report), points))
+        const std::string& model, const ImageReader& images, int points, const MappingReport& report)
+    : impl_(std::make_unique<const Impl>(makeMap(model, images, 2000, report), points))
 {
 }
 
 cv::iib::Localizer::~Localizer() = default;
 
-const std::vector<cv::iib::Camera>& cv::iib::Localizer::cameras() const { return impl_->map.cameras; }
+const std::vector<cv::iib::Camera>& cv::iib::Localizer::cameras() const { return impl_->cameras; }
 
 cv::iib::Location cv::iib::Localizer::localize(
-        InputArray input, const Camera& camera, const Affine3d* prior) const
+        InputArray image, const Camera& camera, const Affine3d* prior) const
 {
-    const Lens checked(camera);
-    const Mat image = input.getMat();
-    if (image.size() != camera.size)
-        CV_Error(Error::StsBadArg, format("the image has %d x %d pixels and the camera %d x %d", image.cols,
-                                           image.rows, camera.size.width, camera.size.height));
-    const Features features = extract(*impl_->iib, image);
-    Location location;
-    location.reason = "too few matches";
-    if (!features.pixels.empty() && prior)
-        location = impl_->locate(features, camera, impl_->near(*prior), prior);
-    if (!features.pixels.empty() && !location.found)
-        location = impl_->locate(features, camera, impl_->similar(features.codes), nullptr);
-    return location;
+    return impl_->finder.find(image.getMat(), camera, prior);
 }

@@ -2,78 +2,299 @@
 
 #include "map.hpp"
 
-#include <fstream>
-#include <sstream>
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <set>
 
-#include "npy.hpp"
+#ifndef _WIN32
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+#endif
+
+#include "lens.hpp"
+#include "../../iib/src/common/checked_file.hpp"
 
 namespace iib_localization {
 namespace {
 
-constexpr int FORMAT = 2;
+namespace fs = std::filesystem;
 
-Map readFiles(const std::string& folder)
+const char* const FILE_NAME = "/map.iib";
+const cv::iib::FileKind KIND = {"IIB_MAP_", 1, "a map of opencv_iib"};
+
+//! What a folder of a map holds, and one of an earlier version; the first names tell that it is one.
+const std::vector<std::string> OWN = {"map.iib", "cameras.bin", "images.bin", "points3D.bin"};
+const std::vector<std::string> EARLIER = {"map.json", "codes.npy", "misses.npy", "points.npy", "sees.npy",
+        "views.npy", "rigs.bin", "frames.bin"};
+
+//! Whether a file has one of these names, or that of one which a killed process has not finished.
+bool isOf(const std::vector<std::string>& names, const std::string& name)
 {
-    std::ifstream stream(folder + "/map.json");
-    if (!stream)
-        CV_Error(cv::Error::StsError, "it has no map.json");
-    std::stringstream text;
-    text << stream.rdbuf();
-    cv::FileStorage manifest;
+    const bool unfinished = fs::path(name).extension() == ".tmp";
+    return std::any_of(names.begin(), names.end(), [&](const std::string& own) {
+        return name == own || (unfinished && name.compare(0, own.size() + 1, own + ".") == 0);
+    });
+}
+
+void writeReal(cv::iib::CheckedWriter& file, double value)
+{
+    uint64 bits = 0;
+    std::memcpy(&bits, &value, sizeof(bits));
+    file.number(bits, 8);
+}
+
+double readReal(cv::iib::CheckedReader& file)
+{
+    const uint64 bits = file.number(8);
+    double value = 0;
+    std::memcpy(&value, &bits, sizeof(value));
+    if (!std::isfinite(value))
+        file.fail("it has a number that is none");
+    return value;
+}
+
+void writeText(cv::iib::CheckedWriter& file, const std::string& text)
+{
+    file.number(text.size(), 4);
+    file.bytes(text.data(), text.size());
+}
+
+std::string readText(cv::iib::CheckedReader& file)
+{
+    const unsigned size = file.word();
+    file.expect(size, 1);
+    std::string text(size, ' ');
+    file.bytes(&text[0], text.size());
+    return text;
+}
+
+void writeCamera(cv::iib::CheckedWriter& file, const Camera& camera)
+{
+    writeText(file, camera.model);
+    file.number(uint64(camera.size.width), 4);
+    file.number(uint64(camera.size.height), 4);
+    for (double parameter : camera.parameters)
+        writeReal(file, parameter);
+}
+
+Camera readCamera(cv::iib::CheckedReader& file)
+{
+    Camera camera;
+    camera.model = readText(file);
+    camera.size.width = int(file.word());
+    camera.size.height = int(file.word());
+    if (modelNumber(camera.model) < 0)
+        file.fail("it has a camera of an unknown model");
+    for (size_t i = parametersOf(camera.model); i > 0; i--)
+        camera.parameters.push_back(readReal(file));
     try
     {
-        manifest.open(
-                text.str(), cv::FileStorage::READ | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_JSON);
+        Lens checked(camera);
     }
-    catch (const cv::Exception&)  // which says where in OpenCV's parser
+    catch (const cv::Exception& e)
     {
-        CV_Error(cv::Error::StsParseError, "map.json is damaged");
+        file.fail(e.err);
     }
-    if (!manifest["format"].isInt() || int(manifest["format"]) != FORMAT)
-        CV_Error(cv::Error::StsError, "its format is not that of this version: make it again");
-    const auto array = [&](const std::string& name, int type) {
-        return readNpy(folder + "/" + name, type, std::string(manifest["crc32"][name]));
-    };
-    Map map;
-    map.keypoints = int(manifest["points"]);
-    map.codes = array("codes.npy", CV_8U);
-    map.sees = array("sees.npy", CV_32S);
-    map.points = array("points.npy", CV_64F);
-    const cv::Mat views = array("views.npy", CV_64F);
-    for (const cv::FileNode& c : manifest["cameras"])
+    return camera;
+}
+
+void writeImage(cv::iib::CheckedWriter& file, const MapImage& image, size_t camera)
+{
+    writeText(file, image.name);
+    file.number(camera, 4);
+    for (double value : cv::Matx34d(image.cameraFromWorld.matrix.get_minor<3, 4>(0, 0)).val)
+        writeReal(file, value);
+    file.number(image.used, 4);
+    file.number(image.added, 1);
+    file.number(image.sees.size(), 4);
+    for (size_t k = 0; k < image.sees.size(); k++)
     {
-        map.cameras.push_back({std::string(c[0]), {int(c[1]), int(c[2])}, {}});
-        c[3] >> map.cameras.back().parameters;
+        file.real(float(image.pixels[k].x));
+        file.real(float(image.pixels[k].y));
+        file.number(uint64(image.sees[k]), 4);
     }
-    const cv::FileNode images = manifest["images"];
-    bool valid = map.keypoints > 0 && views.rows > 0 && views.rows == int(images.size()) && views.cols == 7 &&
-                 map.points.cols == 3 && map.sees.cols == 1 && map.sees.rows == map.codes.rows &&
-                 cv::checkRange(map.sees, true, nullptr, 0, map.points.rows);
-    for (int i = 0, row = 0; valid && i < views.rows; i++)
+    file.bytes(image.misses.data(), image.misses.size());
+    file.bytes(image.codes.data, image.codes.total());
+}
+
+MapImage readImage(cv::iib::CheckedReader& file, const std::vector<Camera>& cameras, int bytes, size_t points)
+{
+    MapImage image;
+    image.name = readText(file);
+    const unsigned camera = file.word();
+    cv::Matx34d pose;
+    for (double& value : pose.val)
+        value = readReal(file);
+    image.used = file.word();
+    image.added = file.number(1) != 0;
+    const uint64 count = file.word();
+    file.expect(count, uint64(bytes) + 13);
+    for (uint64 k = 0; k < count; k++)
     {
-        const double* v = views.ptr<double>(i);
-        const int count = int(images[i][1]), left = map.codes.rows - row;
-        valid = count >= 0 && (i + 1 < views.rows ? count <= left : count == left);
-        map.views.push_back({{row, valid ? row + count : row}, cv::Vec3d(v), cv::Vec3d(v + 3), v[6]});
-        row = map.views.back().rows.end;
+        const float x = file.real(), y = file.real();
+        image.pixels.emplace_back(x, y);
+        image.sees.push_back(int(file.word()));
+        if (!(std::abs(x) + std::abs(y) < 1 << 20) || image.sees.back() < 0 ||
+                size_t(image.sees.back()) >= points)
+            file.fail("a keypoint sees nothing");
     }
-    if (!valid)
-        CV_Error(cv::Error::StsError, "its files contradict each other");
-    return map;
+    image.misses.resize(count);
+    file.bytes(image.misses.data(), count);
+    image.codes.create(int(count), bytes, CV_8U);
+    file.bytes(image.codes.data, image.codes.total());
+    const cv::Matx33d rotation = pose.get_minor<3, 3>(0, 0);
+    if (camera >= cameras.size() || cv::norm(rotation * rotation.t() - cv::Matx33d::eye()) > 1e-6)
+        file.fail("an image has no camera or no pose");
+    image.camera = cameras[camera];
+    image.cameraFromWorld = cv::Affine3d(rotation, cv::Vec3d(pose(0, 3), pose(1, 3), pose(2, 3)));
+    return image;
 }
 
 }  // namespace
 
+void Map::compact()
+{
+    std::vector<int> numbers(points.size(), -1);
+    std::vector<cv::Point3d> seen;
+    for (MapImage& image : images)
+    {
+        MapImage kept = image;
+        kept.pixels.clear();
+        kept.sees.clear();
+        kept.misses.clear();
+        kept.codes = cv::Mat(0, image.codes.cols, CV_8U);
+        for (size_t k = 0; k < image.sees.size(); k++)
+        {
+            if (image.sees[k] < 0)
+                continue;
+            int& number = numbers[size_t(image.sees[k])];
+            if (number < 0)
+            {
+                number = int(seen.size());
+                seen.push_back(points[size_t(image.sees[k])]);
+            }
+            kept.sees.push_back(number);
+            kept.pixels.push_back(image.pixels[k]);
+            kept.misses.push_back(image.misses[k]);
+            kept.codes.push_back(image.codes.row(int(k)));
+        }
+        image = std::move(kept);
+    }
+    points = std::move(seen);
+}
+
+std::vector<Camera> Map::cameras() const
+{
+    std::vector<Camera> cameras;
+    for (const MapImage& image : images)
+        if (std::none_of(
+                    cameras.begin(), cameras.end(), [&](const Camera& c) { return same(c, image.camera); }))
+            cameras.push_back(image.camera);
+    return cameras;
+}
+
 Map readMap(const std::string& folder)
 {
-    try
+    std::error_code error;
+    if (!fs::is_regular_file(folder + FILE_NAME, error))
+        CV_Error(cv::Error::StsError,
+                folder + (fs::exists(folder + "/map.json", error)
+                                         ? " is a map of an earlier version: make it again"
+                                         : " is no map: it has no map.iib"));
+    cv::iib::CheckedReader file(folder + FILE_NAME, KIND);
+    Map map;
+    map.keypoints = int(file.word());
+    map.updates = file.word();
+    const int bytes = int(file.word());
+    const uint64 points = file.number(8);
+    file.expect(points, 24);
+    for (uint64 i = 0; i < points; i++)
     {
-        return readFiles(folder);
+        const double x = readReal(file), y = readReal(file);
+        map.points.emplace_back(x, y, readReal(file));
     }
-    catch (const cv::Exception& e)
+    std::vector<Camera> cameras;
+    for (unsigned left = file.word(); left > 0; left--)
+        cameras.push_back(readCamera(file));
+    std::set<std::string> names;
+    for (unsigned left = file.word(); left > 0; left--)
     {
-        CV_Error(cv::Error::StsError, folder + " is no map, or a damaged one: " + e.err);
+        map.images.push_back(readImage(file, cameras, bytes, map.points.size()));
+        if (!names.insert(map.images.back().name).second)
+            file.fail("two images have one name");
     }
+    file.seal();
+    file.expectEnd();
+    if (map.keypoints < 1 || map.images.empty())
+        file.fail("it has no images");
+    return map;
+}
+
+MapFolder::MapFolder(const std::string& folder) : folder_(folder)
+{
+    std::error_code error;
+    fs::create_directories(folder, error);
+    bool known = false, any = false;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    {
+        const std::string name = entry->path().filename().string();
+        any = true;
+        known = known || isOf({OWN[0], EARLIER[0]}, name);
+        if (!isOf(OWN, name) && !isOf(EARLIER, name))
+            CV_Error(
+                    cv::Error::StsError, folder + " holds " + name + " and is no map: choose another folder");
+    }
+    if (error)
+        CV_Error(cv::Error::StsError, folder + " cannot be written: " + error.message());
+    if (any && !known)
+        CV_Error(cv::Error::StsError, folder + " holds a COLMAP model and is no map: choose another folder");
+#ifndef _WIN32
+    lock_ = ::open(folder.c_str(), O_RDONLY | O_CLOEXEC);
+    if (lock_ < 0 || ::flock(lock_, LOCK_EX | LOCK_NB) != 0)
+    {
+        if (lock_ >= 0)
+            ::close(lock_);
+        CV_Error(cv::Error::StsError,
+                folder + " is being written by another process: wait until it has ended");
+    }
+#endif
+}
+
+MapFolder::~MapFolder()
+{
+#ifndef _WIN32
+    ::close(lock_);
+#endif
+}
+
+void MapFolder::write(const Map& map) const
+{
+    cv::iib::CheckedWriter file(folder_ + FILE_NAME, KIND);
+    file.number(uint64(map.keypoints), 4);
+    file.number(map.updates, 4);
+    file.number(uint64(map.images.empty() ? 0 : map.images[0].codes.cols), 4);
+    file.number(map.points.size(), 8);
+    for (const cv::Point3d& p : map.points)
+        for (double value : {p.x, p.y, p.z})
+            writeReal(file, value);
+    const std::vector<Camera> cameras = map.cameras();
+    file.number(cameras.size(), 4);
+    for (const Camera& camera : cameras)
+        writeCamera(file, camera);
+    file.number(map.images.size(), 4);
+    for (const MapImage& image : map.images)
+        writeImage(file, image, size_t(std::find_if(cameras.begin(), cameras.end(), [&](const Camera& c) {
+            return same(c, image.camera);
+        }) - cameras.begin()));
+    file.seal();
+    cv::iib::writeModel(folder_, {map.images.begin(), map.images.end()}, map.points);
+    file.commit();
+    std::error_code error;
+    for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error))
+        if (std::count(OWN.begin(), OWN.end(), entry->path().filename().string()) == 0)
+            fs::remove(entry->path(), error);  // of an earlier version or a killed process
 }
 
 }  // namespace iib_localization

@@ -5,28 +5,51 @@
 
 namespace iib_localization {
 
-//! An image of a map.
-struct View
+using cv::iib::Camera;
+
+//! An image of a map; each of its keypoints sees a point, and the strongest come first.
+struct MapImage : cv::iib::PosedImage
 {
-    cv::Range rows;               //!< of Map::codes and Map::sees; the strongest keypoints first
-    cv::Vec3d centre, direction;  //!< of its camera, in the world
-    double depth = 1;             //!< median distance to what it sees
+    cv::Mat codes;              //!< N x bytes, CV_8U
+    std::vector<uchar> misses;  //!< of each code: updates in a row that looked for it and did not find it
+    uint32_t used = 0;          //!< the last update in which the image helped
+    bool added = false;         //!< by an update
 };
 
-//! A map as Python's opencv_iib.localization writes it; see doc/maps.md.
+//! A map, in memory as on the disk.
 struct Map
 {
     int keypoints = 2000;  //!< that are looked for in an image
-    std::vector<cv::iib::Camera> cameras;
-    std::vector<View> views;
-    cv::Mat codes;   //!< N x bytes, CV_8U
-    cv::Mat sees;    //!< N x 1, CV_32S: the row of `points` that each keypoint sees
-    cv::Mat points;  //!< P x 3, CV_64F
+    uint32_t updates = 0;  //!< so far
+    std::vector<MapImage> images;
+    std::vector<cv::Point3d> points;
 
-    const cv::Point3d& point(int number) const { return *points.ptr<cv::Point3d>(number); }
+    //! Removes keypoints that see no point, and points that nothing sees.
+    void compact();
+    //! The images' cameras, each once.
+    std::vector<Camera> cameras() const;
 };
 
 //! @throws cv::Exception for what is no map, or a damaged one.
 Map readMap(const std::string& folder);
+
+//! A folder that a map is written to; no other process can write it meanwhile.
+class MapFolder
+{
+public:
+    //! @throws cv::Exception if the folder holds anything but a map, cannot be made, or is locked.
+    explicit MapFolder(const std::string& folder);
+    ~MapFolder();
+    MapFolder(const MapFolder&) = delete;
+    MapFolder& operator=(const MapFolder&) = delete;
+
+    /** Writes the map's file and, for other programs, a COLMAP model. Who reads the map meanwhile gets the old one or the new.
+    @throws cv::Exception if it cannot be written; the old map stays then. */
+    void write(const Map& map) const;
+
+private:
+    const std::string folder_;
+    int lock_ = -1;
+};
 
 }  // namespace iib_localization

@@ -5,10 +5,8 @@
 
 namespace iib_localization {
 
-/** Makes a map of a COLMAP model, as Python's opencv_iib.localization does, but for the adjustment of all points together.
-@param photographs folder that the names of the model's images are relative to.
-@throws cv::Exception for a model that is damaged or not that of the photographs. */
-Map buildMap(
-        const std::string& model, const std::string& photographs, const cv::iib::Localizer::Report& report);
+//! As cv::iib::buildMap does, in memory.
+Map makeMap(const std::string& model, const cv::iib::ImageReader& images, int points,
+        const cv::iib::MappingReport& report);
 
 }  // namespace iib_localization

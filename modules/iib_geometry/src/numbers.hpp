@@ -33,9 +33,11 @@ inline std::string shortest(double value)
     return std::string(text, std::to_chars(text, text + sizeof(text), value).ptr);
 }
 
-//! Of one number or more.
+//! Of one number or more; of none, 0.
 inline double median(std::vector<double> values)
 {
+    if (values.empty())
+        return 0;
     const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;

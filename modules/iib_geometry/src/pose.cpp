@@ -2,6 +2,7 @@
 
 #include "precomp.hpp"
 
+#include "numbers.hpp"
 #include "pose.hpp"
 
 namespace iib_localization {
@@ -22,6 +23,39 @@ std::vector<cv::Point3d> pointsOf(const std::vector<Match>& matches)
 
 }  // namespace
 
+Frame::Frame(const std::vector<Match>& matches)
+{
+    std::vector<double> axes[3], distances;
+    for (const Match& m : matches)
+        for (int i = 0; i < 3; i++)
+            axes[i].push_back(cv::Vec3d(m.point)[i]);
+    centre = {median(axes[0]), median(axes[1]), median(axes[2])};
+    for (const Match& m : matches)
+        distances.push_back(cv::norm(cv::Vec3d(m.point) - centre));
+    const double typical = median(distances);
+    unit = typical > 0 ? typical : 1;
+}
+
+cv::Point3d Frame::toLocal(const cv::Point3d& point) const
+{
+    return (cv::Vec3d(point) - centre) * (1 / unit);
+}
+
+cv::Affine3d Frame::toWorld(const cv::Affine3d& cameraFromLocal) const
+{
+    const cv::Matx33d rotation = cameraFromLocal.rotation();
+    return {rotation, cameraFromLocal.translation() * unit - rotation * centre};
+}
+
+cv::Matx66d Frame::toWorld(const cv::Matx66d& covariance) const
+{
+    cv::Matx66d scaled = covariance;
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k < 6; k++)
+            scaled(i, k) *= (i < 3 ? unit : 1) * (k < 3 ? unit : 1);
+    return scaled;
+}
+
 std::vector<cv::Point3d> inCamera(const std::vector<cv::Point3d>& points, const cv::Affine3d& pose)
 {
     std::vector<cv::Point3d> moved;
@@ -41,17 +75,27 @@ std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens
 
 bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double limit, cv::Affine3d& pose)
 {
-    std::vector<cv::Point2d> pixels;
+    std::vector<cv::Point2d> pixels, seen;
     for (const Match& m : matches)
-        pixels.push_back(m.pixel);
+        seen.push_back(m.pixel);
+    std::vector<cv::Point3d> points;
+    const std::vector<cv::Point2d> straight = lens.undistorted(seen);
+    for (size_t i = 0; i < matches.size(); i++)
+        if (std::isfinite(straight[i].x))
+        {
+            pixels.push_back(straight[i]);
+            points.push_back(matches[i].point);
+        }
+    if (points.size() < 4)
+        return false;
     cv::UsacParams parameters;
     parameters.score = cv::SCORE_METHOD_MAGSAC;
     parameters.threshold = limit;
     parameters.confidence = .999;
     parameters.maxIterations = 10000;
     cv::Mat matrix(lens.matrix()), rotation, translation, inliers;
-    if (!cv::solvePnPRansac(pointsOf(matches), lens.undistorted(pixels), matrix, cv::noArray(), rotation,
-                translation, inliers, parameters))
+    if (!cv::solvePnPRansac(
+                points, pixels, matrix, cv::noArray(), rotation, translation, inliers, parameters))
         return false;
     pose = {cv::Vec3d(rotation.ptr<double>()), cv::Vec3d(translation.ptr<double>())};
     return cv::checkRange(cv::Mat(pose.matrix));
@@ -63,10 +107,10 @@ bool refinePose(
     const std::vector<cv::Point3d> points = pointsOf(matches);
     for (int round = 0; round < ROUNDS; round++)
     {
-        cv::Mat byPoint;
+        std::vector<cv::Matx23d> byPoint;
         const std::vector<cv::Point2d> mapped = lens.project(inCamera(points, pose), &byPoint);
         const cv::Matx33d rotation = pose.rotation();
-        const cv::Vec3d centre = pose.inv().translation();
+        const cv::Vec3d centre = inverse(pose).translation();
         cv::Matx66d normal = cv::Matx66d::zeros();
         cv::Vec6d gradient;
         for (size_t i = 0; i < points.size(); i++)
@@ -75,8 +119,7 @@ bool refinePose(
             const double weight = 1 / (1 + error.dot(error));
             if (std::isnan(weight))
                 continue;
-            const cv::Matx23d byMoved = cv::Matx23d(byPoint.ptr<double>(2 * int(i))) *
-                                        rotation;  // of the point in the world's axes
+            const cv::Matx23d byMoved = byPoint[i] * rotation;  // of the point in the world's axes
             const cv::Matx23d byTurn = byMoved * cross(cv::Vec3d(points[i]) - centre);
             cv::Matx<double, 2, 6> jacobian;
             for (int row = 0; row < 2; row++)

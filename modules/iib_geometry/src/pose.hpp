@@ -13,12 +13,36 @@ struct Match
     int number = 0;    //!< of the point
     int keypoint = 0;  //!< the image's
     int bits = 0;      //!< in which the codes differ
+    int view = 0;      //!< image of the map that sees the point so
+    int row = 0;       //!< of that image's codes
 };
 
-//! Camera from world that most matches agree on to `limit` pixels, not refined (USAC with MAGSAC's score). False if there is none.
+//! Of a rigid motion. cv::Affine3d::inv() goes through an SVD, which far from the origin leaves no digit.
+inline cv::Affine3d inverse(const cv::Affine3d& pose)
+{
+    const cv::Matx33d back = pose.rotation().t();
+    return {back, -(back * pose.translation())};
+}
+
+//! Axes in which points lie about the origin at distances of about 1, wherever and in whatever unit they are given.
+struct Frame
+{
+    cv::Vec3d centre;
+    double unit = 1;
+
+    explicit Frame(const std::vector<Match>& matches);
+    cv::Point3d toLocal(const cv::Point3d& point) const;
+    cv::Affine3d toWorld(const cv::Affine3d& cameraFromLocal) const;
+    //! Of the camera's centre and of a turn.
+    cv::Matx66d toWorld(const cv::Matx66d& covariance) const;
+};
+
+/** Camera from world that most matches agree on to `limit` pixels, not refined (USAC with MAGSAC's score). False if there is none.
+@param matches in a Frame's axes. */
 bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double limit, cv::Affine3d& pose);
 
 /** Moves a pose to the least reprojection error with Cauchy's loss, which cv::solvePnPRefineLM has not.
+@param matches in a Frame's axes.
 @param covariance of the camera's centre and of a small turn about the world's axes, for errors of one pixel.
 @return false if the matches do not determine the pose. */
 bool refinePose(

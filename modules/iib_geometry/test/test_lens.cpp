@@ -7,52 +7,95 @@
 namespace {
 using namespace iib_localization;
 
+//! Pixels of two points in cameras of 640 x 480 pixels by pycolmap 4.2.1, Camera.img_from_cam, minus half a pixel.
 TEST(Lens, of_colmaps_definitions)
 {
-    // a point at (u, v) at depth 1, and where COLMAP's equations have it
-    const double u = 0.4, v = -0.3, r2 = 0.25, angle = std::atan(0.5), radial = 1 - 0.1 * r2 + 0.05 * r2 * r2;
-    const double fisheye = angle / 0.5 * (1 + 0.02 * std::pow(angle, 2) - 0.01 * std::pow(angle, 8));
+    const std::vector<cv::Point3d> points = {{.5, -.4, 1}, {-1.2, .8, 1.5}};
     const struct
     {
         const char* camera;
-        cv::Point2d seen;
-    } cases[] = {{"SIMPLE_PINHOLE,640,480,500,320.5,240.5", {500 * u + 320, 500 * v + 240}},
-            {"PINHOLE,640,480,500,510,320.5,240.5", {500 * u + 320, 510 * v + 240}},
-            {"SIMPLE_RADIAL,640,480,500,320.5,240.5,-0.1", {500 * 0.975 * u + 320, 500 * 0.975 * v + 240}},
-            {"RADIAL,640,480,500,320.5,240.5,-0.1,0.05", {500 * radial * u + 320, 500 * radial * v + 240}},
-            {"OPENCV,640,480,500,510,320.5,240.5,-0.1,0.05,0.001,-0.002",
-                    {500 * (radial * u + 2 * 0.001 * u * v - 0.002 * (r2 + 2 * u * u)) + 320,
-                            510 * (radial * v + 0.001 * (r2 + 2 * v * v) - 2 * 0.002 * u * v) + 240}},
-            {"OPENCV_FISHEYE,640,480,500,510,320.5,240.5,0.02,0,0,-0.01",
-                    {500 * fisheye * u + 320, 510 * fisheye * v + 240}}};
+        double seen[4];
+    } cases[] = {
+            {"SIMPLE_PINHOLE,640,480,500,320,240", {569.5, 39.5, -80.5, 506.1666666667}},
+            {"PINHOLE,640,480,500,510,320,240", {569.5, 35.5, -80.5, 511.5}},
+            {"SIMPLE_RADIAL,640,480,500,320,240,0.1",
+                    {579.7500000000, 31.3000000000, -117.4777777778, 530.8185185185}},
+            {"RADIAL,640,480,500,320,240,0.1,-0.05",
+                    {577.6487500000, 32.9810000000, -100.3858271605, 519.4238847737}},
+            {"OPENCV,640,480,500,510,320,240,0.1,-0.05,0.01,-0.02",
+                    {566.5487500000, 36.6536200000, -126.6969382716, 541.3423624691}},
+            {"OPENCV_FISHEYE,640,480,500,510,320,240,0.05,-0.02,0.01,-0.003",
+                    {545.0729994052, 55.4324324854, -6.7555225391, 461.3537553266}},
+            {"FULL_OPENCV,640,480,500,510,320,240,0.1,-0.05,0.01,-0.02,0.03,0.02,-0.01,0.005",
+                    {565.3023810330, 37.6706570770, -130.2938059060, 543.7882324605}},
+            {"FOV,640,480,500,510,320,240,0.9",
+                    {559.8309151878, 43.3899732068, -26.5184021608, 474.7925134693}},
+            {"SIMPLE_RADIAL_FISHEYE,640,480,500,320,240,0.05",
+                    {545.4724218834, 58.7220624933, -8.4170539646, 458.1113693097}},
+            {"RADIAL_FISHEYE,640,480,500,320,240,0.05,-0.02",
+                    {545.0044934849, 59.0964052121, -6.2261647060, 456.6507764707}},
+            {"THIN_PRISM_FISHEYE,640,480,500,510,320,240,0.05,-0.02,0.01,-0.02,0.01,-0.003,0.004,-0.005",
+                    {536.9400178225, 60.7786020423, -22.2723678022, 470.2105360458}},
+            {"RAD_TAN_THIN_PRISM_FISHEYE,640,480,500,510,320,240,0.05,-0.02,0.01,-0.003,0.002,-0.001,0.01,-0."
+             "02,0.004,-0.005,0.003,-0.002",
+                    {552.4242818266, 48.1054649258, 6.5097118804, 448.8991047259}},
+            {"SIMPLE_DIVISION,640,480,500,320,240,-0.1",
+                    {560.0131607954, 47.0894713637, -49.0998863802, 485.2332575868}},
+            {"DIVISION,640,480,500,510,320,240,-0.1",
+                    {560.0131607954, 43.2412607909, -49.0998863802, 490.1479227385}},
+            {"SIMPLE_FISHEYE,640,480,500,320,240",
+                    {541.8659804740, 61.6072156208, 0.9234884263, 451.8843410491}},
+            {"FISHEYE,640,480,500,510,320,240",
+                    {541.8659804740, 58.0493599332, 0.9234884263, 456.1320278701}},
+            {"EUCM,640,480,500,510,320,240,0.6,1.1",
+                    {542.1685949245, 57.8024265416, 0.0375352423, 456.7344760353}},
+    };
     for (const auto& c : cases)
     {
-        const Lens lens(Camera::parse(c.camera));
-        const cv::Point2d seen = lens.project({{2 * u, 2 * v, 2}})[0];
-        EXPECT_LT(cv::norm(seen - c.seen), 1e-9) << c.camera;
-        const cv::Vec3d straight = lens.matrix() * cv::Vec3d(u, v, 1);
-        EXPECT_LT(cv::norm(lens.undistorted({seen})[0] - cv::Point2d(straight[0], straight[1])), 1e-2)
-                << c.camera;
-        EXPECT_TRUE(std::isnan(lens.project({{0, 0, -1}})[0].x)) << "behind";
+        SCOPED_TRACE(c.camera);
+        const Camera camera = Camera::parse(c.camera);
+        const Lens lens(camera);
+        const std::vector<cv::Point2d> seen = camera.project(points);
+        for (size_t i = 0; i < 2; i++)
+        {
+            EXPECT_NEAR(c.seen[2 * i], seen[i].x, 1e-8);
+            EXPECT_NEAR(c.seen[2 * i + 1], seen[i].y, 1e-8);
+        }
+        const cv::Vec3d straight = lens.matrix() * (cv::Vec3d(points[0]) * (1 / points[0].z));
+        EXPECT_LT(cv::norm(lens.undistorted(seen)[0] - cv::Point2d(straight[0], straight[1])), 1e-6);
+        EXPECT_TRUE(std::isnan(camera.project({{0, 0, -1}})[0].x)) << "behind";
+        std::vector<cv::Matx23d> slopes;
+        lens.project(points, &slopes);
+        const cv::Vec3d step(1e-6, -2e-6, 3e-6);
+        const cv::Point2d moved = lens.project({cv::Vec3d(points[1]) + step})[0] - seen[1];
+        EXPECT_LT(cv::norm(slopes[1] * step - cv::Vec2d(moved.x, moved.y)), 1e-7);
     }
+    EXPECT_TRUE(
+            std::isnan(Lens(Camera::parse("FISHEYE,640,480,100,100,320,240")).undistorted({{700, 240}})[0].x))
+            << "more than a right angle from the axis";
 }
 
 TEST(Lens, cameras_that_are_none)
 {
     const auto error = [](const char* text) { return messageOf([&] { Camera::parse(text); }); };
     EXPECT_EQ("camera PINHOLE,640,480 is not MODEL,WIDTH,HEIGHT,PARAMETERS", error("PINHOLE,640,480"));
-    for (const char* text :
-            {"", "PINHOLE", "PINHOLE,", "PINHOLE,640,480,1,", "PINHOLE,640,480,1 ,1", "PINHOLE,-1e99,1,1"})
+    for (const char* text : {"", "PINHOLE", "PINHOLE,", "PINHOLE,640,480,1,", "PINHOLE,640,480,1 ,1",
+                 "PINHOLE,640,480,inf,1,1,1"})
         EXPECT_EQ(std::string("camera ") + text + " is not MODEL,WIDTH,HEIGHT,PARAMETERS", error(text));
-    EXPECT_EQ("camera PINHOLE,640,4e9,1,1,1,1 is not MODEL,WIDTH,HEIGHT,PARAMETERS",
-            error("PINHOLE,640,4e9,1,1,1,1"));
+    for (const char* size : {"640,4e9", "640.5,480", "0,480", "-640,480"})
+        EXPECT_EQ(std::string("camera PINHOLE,") + size +
+                          ",1,1,1,1: width and height are whole numbers of pixels",
+                error((std::string("PINHOLE,") + size + ",1,1,1,1").c_str()));
     EXPECT_EQ("camera PINHOLE,640,480,x,1,1,1 is not MODEL,WIDTH,HEIGHT,PARAMETERS",
             error("PINHOLE,640,480,x,1,1,1"));
-    EXPECT_EQ("camera model PINHOLE has 4 parameters, not 3", error("PINHOLE,640,480,1,1,1"));
-    EXPECT_EQ("a camera's size and focal length must be positive", error("PINHOLE,640,480,1,0,1,1"));
-    EXPECT_EQ("a camera's size and focal length must be positive", error("RADIAL,0,480,1,1,1,0,0"));
-    EXPECT_EQ(0u,
-            error("FOV,640,480,1,1,1,1,1").find("camera model FOV is not one of SIMPLE_PINHOLE, PINHOLE"));
+    EXPECT_EQ("camera model PINHOLE has 4 parameters, not 3", error("PINHOLE,640,480,500,320,240"));
+    for (const char* focal : {"500,0", "-500,500", "1e30,500", "500,.1"})
+        EXPECT_EQ("a camera's size and focal length must be positive, and not a thousand times each other",
+                error((std::string("PINHOLE,640,480,") + focal + ",320,240").c_str()));
+    EXPECT_EQ("a camera's parameters must be finite, and its centre not a thousand widths away",
+            error("PINHOLE,640,480,500,500,1e30,240"));
+    EXPECT_EQ(0u, error("EQUIRECTANGULAR,640,480,1,1")
+                          .find("camera model EQUIRECTANGULAR is not one of SIMPLE_PINHOLE, PINHOLE"));
 }
 
 TEST(Pose, refined_to_the_truth_among_wrong_matches)
@@ -71,14 +114,14 @@ TEST(Pose, refined_to_the_truth_among_wrong_matches)
                     random.uniform(-2., 2.), random.uniform(-1.5, 1.5), random.uniform(4., 9.));
             const cv::Point2d wrong(random.uniform(-30., 30.), random.uniform(-30., 30.));
             matches.push_back(
-                    {lens.project({seen})[0] + (i % 4 == 0 ? wrong : cv::Point2d()), truth.inv() * seen});
+                    {lens.project({seen})[0] + (i % 4 == 0 ? wrong : cv::Point2d()), inverse(truth) * seen});
         }
         cv::Affine3d pose;
         ASSERT_TRUE(poseByRansac(matches, lens, 4, pose));
         cv::Matx66d covariance;
         ASSERT_TRUE(refinePose(matches, lens, pose, covariance));
-        EXPECT_LT(cv::norm((pose * truth.inv()).translation()), 0.01) << text;
-        EXPECT_LT(cv::norm((pose * truth.inv()).rvec()), 0.002) << text;
+        EXPECT_LT(cv::norm((pose * inverse(truth)).translation()), 0.01) << text;
+        EXPECT_LT(cv::norm((pose * inverse(truth)).rvec()), 0.002) << text;
     }
 }
 

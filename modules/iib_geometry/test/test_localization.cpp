@@ -14,7 +14,7 @@ void expectAt(const cv::Affine3d& truth, const Location& location, double metres
     ASSERT_TRUE(location.found) << location.reason;
     EXPECT_EQ("", location.reason);
     const cv::Affine3d difference = truth * location.cameraFromWorld;
-    EXPECT_LT(cv::norm(location.cameraFromWorld.inv().translation() - truth.translation()), metres);
+    EXPECT_LT(cv::norm(inverse(location.cameraFromWorld).translation() - truth.translation()), metres);
     EXPECT_LT(cv::norm(difference.rvec()), 0.5 * CV_PI / 180);
     EXPECT_GE(int(location.pixels.size()), location.inliers);
     EXPECT_EQ(location.pixels.size(), location.points.size());
@@ -76,7 +76,7 @@ TEST_F(Localization, covariance_is_that_of_repeated_measurements)
         cv::add(image, noise, noisy, cv::noArray(), CV_8U);
         const Location location = localizer.localize(noisy, CAMERA);
         ASSERT_TRUE(location.found) << location.reason;
-        const cv::Vec3d moved = location.cameraFromWorld.inv().translation() - TRUTH.translation();
+        const cv::Vec3d moved = inverse(location.cameraFromWorld).translation() - TRUTH.translation();
         const cv::Vec3d turned = cv::Affine3d((TRUTH * location.cameraFromWorld).rotation().t()).rvec();
         for (int k = 0; k < 3; k++)
         {
@@ -117,7 +117,8 @@ TEST_F(Localization, threads_share_a_localizer)
 TEST_F(Localization, a_prior_gates_and_is_not_needed)
 {
     const Localizer localizer(folder.path("map"));
-    const cv::Affine3d prior = poseAt(0.15, -0.05, 0.1).inv(), away = poseAt(0.1, -0.1, 0.1 + CV_PI).inv();
+    const cv::Affine3d prior = inverse(poseAt(0.15, -0.05, 0.1)),
+                       away = inverse(poseAt(0.1, -0.1, 0.1 + CV_PI));
     const cv::Mat image = wall.image(TRUTH);
     const Location free = localizer.localize(image, CAMERA),
                    gated = localizer.localize(image, CAMERA, &prior);
@@ -134,18 +135,21 @@ TEST_F(Localization, an_unknown_place_and_empty_images_get_no_pose)
     for (uint64 seed = 2; seed < 7; seed++)
         EXPECT_FALSE(localizer.localize(Wall(seed).image(poseAt(0, 0, 0)), CAMERA).found);
     EXPECT_EQ("too few matches", localizer.localize(cv::Mat(SIZE, CV_8U, cv::Scalar(7)), CAMERA).reason);
-    EXPECT_EQ("the image has 64 x 48 pixels and the camera 320 x 240",
+    EXPECT_EQ("the image has 64 x 48 pixels and its camera 320 x 240",
             messageOf([&] { localizer.localize(cv::Mat(48, 64, CV_8U), CAMERA); }));
     Camera camera = CAMERA;
     camera.model = "FOV";
     EXPECT_NE("", messageOf([&] { localizer.localize(cv::Mat(SIZE, CV_8U), camera); }));
+    for (int type : {CV_16UC1, CV_32FC1, CV_8UC4})
+        EXPECT_EQ("an image is 8-bit, grey or BGR, not " + cv::typeToString(type),
+                messageOf([&] { localizer.localize(cv::Mat(SIZE, type, cv::Scalar()), CAMERA); }));
 }
 
 TEST_F(Localization, codes_of_another_descriptor_are_refused)
 {
-    Map map = readMap(folder.path("map"));
-    map.codes = map.codes.colRange(0, 64).clone();
-    writeMap(folder.path("map"), map);
+    for (MapImage& image : map.images)
+        image.codes = image.codes.colRange(0, 64).clone();
+    MapFolder(folder.path("map")).write(map);
     EXPECT_EQ("the map's codes are not those of this version: make it again",
             messageOf([&] { Localizer(folder.path("map")); }));
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "map_writer.hpp"
+#include <atomic>
+#include <fstream>
+#include <thread>
+
 #include "wall.hpp"
 
 namespace {
@@ -10,132 +13,163 @@ Map smallMap()
 {
     Map map;
     map.keypoints = 500;
-    map.cameras = {{"PINHOLE", {640, 480}, {500, 500, 320, 240.5}}, {"FOV", {64, 48}, {50, 50, 32, 24, .5}}};
-    map.points = (cv::Mat_<double>(3, 3) << 0, 0, 5, 1, 0, 5, .1, 1, 6);
-    map.sees = (cv::Mat_<int>(3, 1) << 0, 2, 1);
-    map.codes.create(3, 128, CV_8U);
-    cv::RNG(1).fill(map.codes, cv::RNG::UNIFORM, 0, 256);
-    const cv::Vec3d centre(1, 2, 3), ahead(0, 0, 1);
-    map.views = {{{0, 2}, centre, ahead, 4}, {{2, 2}, centre, ahead, 1}, {{2, 3}, -centre, ahead, 5}};
+    map.updates = 3;
+    map.points = {{0, 0, 5}, {1, 0, 5}, {.1, 1, 6}};
+    const Camera cameras[] = {
+            {"PINHOLE", {640, 480}, {500, 500, 320, 240.5}}, {"FOV", {64, 48}, {50, 50, 32, 24, .5}}};
+    const std::vector<std::vector<int>> sees = {{0, 2}, {}, {1}};
+    for (int i = 0; i < 3; i++)
+    {
+        MapImage image;
+        image.name = "a b/" + std::to_string(i) + ".png";
+        image.camera = cameras[i / 2];
+        image.cameraFromWorld = cv::Affine3d(cv::Vec3d(.1 * i, .2, .3), cv::Vec3d(1, 2, i));
+        image.sees = sees[size_t(i)];
+        for (size_t k = 0; k < image.sees.size(); k++)
+            image.pixels.emplace_back(20 + 10. * double(k), 30.25);
+        image.misses.assign(image.sees.size(), uchar(i));
+        image.codes.create(int(image.sees.size()), 128, CV_8U);
+        if (!image.codes.empty())
+            cv::RNG(uint64(i) + 1).fill(image.codes, cv::RNG::UNIFORM, 0, 256);
+        image.used = 2;
+        image.added = i == 2;
+        map.images.push_back(image);
+    }
     return map;
-}
-
-bool equal(const cv::Mat& a, const cv::Mat& b)
-{
-    return a.type() == b.type() && a.size() == b.size() && cv::norm(a, b, cv::NORM_INF) == 0;
 }
 
 struct SmallMap : public testing::Test
 {
-    SmallMap() : map(folder.path("map")), whole(smallMap()), files(filesOf(whole))
-    {
-        folder.makeFolder("map");
-    }
+    SmallMap() : name(folder.path("map")) {}
 
-    //! What is said of a map, behind its name.
-    std::string error()
+    void write(const Map& map) const { MapFolder(name).write(map); }
+    std::string error() const
     {
-        const std::string said = messageOf([&] { readMap(map); }),
-                          begin = map + " is no map, or a damaged one: ";
-        EXPECT_EQ(0u, said.find(begin)) << said;
-        return said.substr(std::min(begin.size(), said.size()));
+        return messageOf([&] { readMap(name); });
     }
 
     const TestFolder folder;
-    const std::string map;
-    const Map whole;
-    const Files files;
+    const std::string name;
 };
 
 TEST_F(SmallMap, read_as_written)
 {
-    writeMap(map, whole);
-    const Map back = readMap(map);
-    ASSERT_EQ(2u, back.cameras.size());
-    for (size_t i = 0; i < 2; i++)
-    {
-        EXPECT_EQ(whole.cameras[i].model, back.cameras[i].model);
-        EXPECT_EQ(whole.cameras[i].size, back.cameras[i].size);
-        EXPECT_EQ(whole.cameras[i].parameters, back.cameras[i].parameters);
-    }
+    const Map map = smallMap();
+    write(map);
+    const Map back = readMap(name);
     EXPECT_EQ(500, back.keypoints);
-    EXPECT_TRUE(equal(whole.codes, back.codes));
-    EXPECT_TRUE(equal(whole.sees, back.sees));
-    EXPECT_TRUE(equal(whole.points, back.points));
-    EXPECT_EQ(cv::Point3d(.1, 1, 6), back.point(2));
-    ASSERT_EQ(3u, back.views.size());
+    EXPECT_EQ(3u, back.updates);
+    EXPECT_EQ(map.points, back.points);
+    ASSERT_EQ(3u, back.images.size());
     for (size_t i = 0; i < 3; i++)
     {
-        EXPECT_EQ(whole.views[i].rows, back.views[i].rows);
-        EXPECT_EQ(whole.views[i].centre, back.views[i].centre);
-        EXPECT_EQ(whole.views[i].direction, back.views[i].direction);
-        EXPECT_EQ(whole.views[i].depth, back.views[i].depth);
+        const MapImage &a = map.images[i], &b = back.images[i];
+        EXPECT_EQ(a.name, b.name);
+        EXPECT_TRUE(same(a.camera, b.camera));
+        EXPECT_EQ(a.cameraFromWorld.matrix, b.cameraFromWorld.matrix);
+        EXPECT_EQ(a.pixels, b.pixels);
+        EXPECT_EQ(a.sees, b.sees);
+        EXPECT_EQ(a.misses, b.misses);
+        EXPECT_EQ(a.used, b.used);
+        EXPECT_EQ(a.added, b.added);
+        EXPECT_EQ(a.codes.size(), b.codes.size());
+        EXPECT_EQ(0, a.codes.empty() ? 0 : cv::norm(a.codes, b.codes, cv::NORM_INF));
     }
+    EXPECT_EQ(2u, back.cameras().size());
 }
 
-TEST_F(SmallMap, damaged_or_missing_files)
+TEST_F(SmallMap, every_altered_byte_and_every_length_is_noticed)
 {
-    EXPECT_EQ("it has no map.json", error());
-    for (const auto& [file, content] : files)
+    write(smallMap());
+    const std::string whole = textOf(name + "/map.iib"),
+                      begin = name + "/map.iib cannot be read as a map of opencv_iib: ";
+    for (size_t i = 0; i < whole.size(); i++)
     {
-        const std::string path = map + "/" + file, missing = path + " is missing or damaged";
-        writeFiles(map, files, whole);
-        std::string damaged = content;
-        damaged.back() ^= 1;
-        folder.write("map/" + file, damaged);
-        EXPECT_EQ(path + " is damaged", error());
-        for (size_t size = 0; size < content.size(); size += 3)
-        {
-            folder.write("map/" + file, content.substr(0, size));
-            EXPECT_EQ(missing, error()) << size;
-        }
-        folder.write("map/" + file, content + ' ');
-        EXPECT_EQ(missing, error());
-        ASSERT_EQ(0, std::remove(path.c_str()));
-        EXPECT_EQ(missing, error());
-        // The sums say nothing of a file that was written wrongly.
-        Files wrong = files;
-        for (size_t i : {0, 6, 8, 22, 24, 45, 61})
-        {
-            wrong[file][i]++;
-            writeFiles(map, wrong, whole);
-            EXPECT_EQ(missing, error()) << i;
-            wrong[file] = content;
-        }
+        std::string damaged = whole;
+        damaged[i] ^= 4;
+        folder.write("map/map.iib", damaged);
+        EXPECT_EQ(0u, error().find(begin)) << "byte " << i << ": " << error();
+        folder.write("map/map.iib", whole.substr(0, i));
+        EXPECT_EQ(0u, error().find(begin)) << i << " bytes: " << error();
     }
-    for (const char* text : {"", "{\"format\": 2"})
-    {
-        folder.write("map/map.json", text);
-        EXPECT_EQ("map.json is damaged", error()) << text;
-    }
-    folder.write("map/map.json", "{\"format\": 2}");
-    EXPECT_EQ(map + "/codes.npy is damaged", error()) << "has no sum";
-    folder.write("map/map.json", "{\"format\": 1}");
-    EXPECT_EQ("its format is not that of this version: make it again", error());
+    folder.write("map/map.iib", whole + ' ');
+    EXPECT_EQ(0u, error().find(begin));
+    folder.write("map/map.iib", whole);
+    EXPECT_EQ("", error());
 }
 
-TEST_F(SmallMap, files_that_contradict_each_other)
+TEST_F(SmallMap, what_contradicts_itself_though_its_sum_is_right)
 {
     const auto errorOf = [&](const auto& change) {
         Map wrong = smallMap();
         change(wrong);
-        writeMap(map, wrong);
-        return error();
+        write(wrong);
+        return error().substr(
+                name.size() + std::string("/map.iib cannot be read as a map of opencv_iib: ").size());
     };
-    const std::string said = "its files contradict each other";
-    EXPECT_EQ(said, errorOf([](Map& m) { m.keypoints = 0; }));
-    EXPECT_EQ(said, errorOf([](Map& m) { m.views[2].rows.end = 4; }));
-    EXPECT_EQ(said, errorOf([](Map& m) { m.views[2].rows.start = 3; }));
-    EXPECT_EQ(said, errorOf([](Map& m) { m.views[2].rows = {1, INT_MAX}; }));
-    EXPECT_EQ(said, errorOf([](Map& m) { m.views[0].rows.end = -1; }));
-    EXPECT_EQ(said, errorOf([](Map& m) { m.sees.at<int>(1) = 3; }));
-    EXPECT_EQ(said, errorOf([](Map& m) { m.sees.at<int>(1) = -1; }));
-    EXPECT_EQ(said, errorOf([](Map& m) { m.sees.pop_back(); }));
-    EXPECT_EQ(said, errorOf([](Map& m) { m.points = m.points.reshape(1, 9); }));
-    Map wrong = smallMap();
-    wrong.views.pop_back();
-    writeFiles(map, files, wrong);
-    EXPECT_EQ(said, error());
+    EXPECT_EQ("it has no images", errorOf([](Map& m) { m.keypoints = 0; }));
+    EXPECT_EQ("it has no images", errorOf([](Map& m) { m.images.clear(); }));
+    EXPECT_EQ("two images have one name", errorOf([](Map& m) { m.images[1].name = m.images[0].name; }));
+    EXPECT_EQ("a keypoint sees nothing", errorOf([](Map& m) { m.images[2].sees[0] = -1; }));
+    EXPECT_EQ("an image has no camera or no pose",
+            errorOf([](Map& m) { m.images[2].cameraFromWorld.matrix(0, 0) = 2; }));
+    EXPECT_EQ("it has a number that is none", errorOf([](Map& m) { m.points[1].x = std::nan(""); }));
+}
+
+TEST_F(SmallMap, folders_that_are_no_maps)
+{
+    EXPECT_EQ(name + " is no map: it has no map.iib", error());
+    folder.makeFolder("map");
+    folder.write("map/map.json", "{}");
+    EXPECT_EQ(name + " is a map of an earlier version: make it again", error());
+    folder.write("map/codes.npy", "");
+    folder.write("map/map.iib.1-0.tmp", "of a killed process");
+    write(smallMap());
+    EXPECT_EQ("", error()) << "is replaced";
+    for (const char* gone : {"map.json", "codes.npy", "map.iib.1-0.tmp"})
+        EXPECT_FALSE(cv::utils::fs::exists(name + "/" + gone)) << gone;
+    EXPECT_TRUE(cv::utils::fs::exists(name + "/points3D.bin"));
+    const std::string before = textOf(name + "/map.iib");
+    folder.write("map/thesis.tex", "precious");
+    EXPECT_EQ(name + " holds thesis.tex and is no map: choose another folder",
+            messageOf([&] { write(smallMap()); }));
+    folder.makeFolder("sparse");
+    folder.write("sparse/cameras.bin", "precious");
+    EXPECT_EQ(folder.path("sparse") + " holds a COLMAP model and is no map: choose another folder",
+            messageOf([&] { MapFolder other(folder.path("sparse")); }));
+    folder.write("file", "precious");
+    EXPECT_NE("", messageOf([&] { MapFolder other(folder.path("file")); }));
+    EXPECT_EQ("precious", textOf(folder.path("file")));
+    EXPECT_EQ(before, textOf(name + "/map.iib"));
+}
+
+TEST_F(SmallMap, one_process_writes_at_a_time)
+{
+    const MapFolder one(name);
+    EXPECT_EQ(name + " is being written by another process: wait until it has ended",
+            messageOf([&] { MapFolder other(name); }));
+}
+
+TEST_F(SmallMap, a_reader_gets_one_of_two_maps_that_replace_each_other)
+{
+    Map maps[] = {smallMap(), smallMap()};
+    maps[1].images.pop_back();
+    maps[1].updates = 4;
+    const MapFolder target(name);
+    target.write(maps[0]);
+    std::atomic<bool> over(false);
+    std::thread writer([&] {
+        for (int i = 0; i < 100; i++)
+            target.write(maps[i % 2]);
+        over = true;
+    });
+    while (!over)
+    {
+        Map read;
+        EXPECT_EQ("", messageOf([&] { read = readMap(name); }));
+        EXPECT_EQ(read.updates == 3 ? 3u : 2u, read.images.size());
+    }
+    writer.join();
 }
 
 }  // namespace

@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <filesystem>
+
+#include "colmap_model.hpp"
 #include "wall.hpp"
+
+#ifndef _WIN32
+#include <sys/stat.h>
+#endif
 
 namespace {
 using namespace iib_localization;
 using cv::iib::Localizer;
 using cv::iib::Location;
 
-constexpr uint32_t FOV = 7;  // COLMAP's number
+constexpr uint32_t EQUIRECTANGULAR = 17;  // COLMAP's number
 
 class Mapping : public WallTest
 {
@@ -15,69 +22,173 @@ protected:
     std::string error(const Files& files, const std::string& photographs = "images") const
     {
         write(files);
-        return messageOf([&] { Localizer(folder.path("sparse 0"), folder.path(photographs)); });
+        return messageOf([&] { Localizer(folder.path("sparse 0"), images(photographs)); });
     }
 };
 
 TEST_F(Mapping, images_are_found_in_a_model)
 {
+    write(model(1, 40));
+    size_t last = 0, all = 0;
+    std::string told;
+    const Localizer localizer(
+            folder.path("sparse 0"), images(), 1000, [&](size_t done, size_t of, const std::string& problem) {
+                EXPECT_EQ(last + 1, done);
+                last = done;
+                all = of;
+                told += problem;
+            });
+    EXPECT_EQ(7u + 21u, all);
+    EXPECT_EQ(all, last);
+    EXPECT_EQ("6.png cannot be read: left out of the map", told);
+    const cv::Affine3d truth = poseAt(0.1, -0.1, 0.1);
+    const Location location = localizer.localize(wall.image(truth) * 0.3, CAMERA);
+    ASSERT_TRUE(location.found) << location.reason;
+    EXPECT_LT(cv::norm(inverse(location.cameraFromWorld).translation() - truth.translation()), 0.01);
+    EXPECT_GT(location.inliers, 200);
+}
+
+//! Of the wall's size, 4 m: errors and deviations scale with the unit, wherever the origin is.
+TEST_F(Mapping, in_any_unit_and_far_from_the_origin)
+{
     const cv::Affine3d truth = poseAt(0.1, -0.1, 0.1);
     const cv::Mat image = wall.image(truth);
-    for (double unit : {1., 250.})
+    for (const auto& [unit, far] : {std::make_pair(1e-8, 0.), {1e-5, 0.}, {250., 0.}, {1e9, 0.}, {1e12, 0.},
+                 {1., 1e4}, {1., 1e6}, {1., 1e8}, {1e-3, 1e3}, {1e4, 1e11}})
         for (int points : {0, 40})
         {
-            SCOPED_TRACE(cv::format("unit %g, %d points", unit, points));
-            write(model(unit, points));
-            size_t last = 0, all = 0;
-            std::string told;
-            const Localizer localizer(folder.path("sparse 0"), folder.path("images"), 1000,
-                    [&](size_t done, size_t of, const std::string& problem) {
-                        EXPECT_LE(last, done);
-                        last = done;
-                        all = of;
-                        told += problem;
-                    });
-            EXPECT_EQ(7u + 21u, all);
-            EXPECT_EQ(all, last);
-            EXPECT_EQ(folder.path("images/6.png") + " cannot be read: left out of the map", told);
-            const Location location = localizer.localize(image * 0.3, CAMERA);
+            SCOPED_TRACE(cv::format("unit %g, %g away, %d points", unit, far, points));
+            const cv::Vec3d origin(far, -.7 * far, .3 * far);
+            write(model(unit, points, 1, origin));
+            const Localizer localizer(folder.path("sparse 0"), images());
+            const Location location = localizer.localize(image, CAMERA);
             ASSERT_TRUE(location.found) << location.reason;
-            const cv::Vec3d away = location.cameraFromWorld.inv().translation() - unit * truth.translation();
+            const cv::Vec3d away =
+                    inverse(location.cameraFromWorld).translation() - unit * truth.translation() - origin;
             EXPECT_LT(cv::norm(away), 0.01 * unit);
-            EXPECT_GT(location.inliers, 200);
+            EXPECT_GT(location.inliers, 300);
+            for (int i = 0; i < 3; i++)
+                EXPECT_LT(std::abs(away[i]), 5 * std::sqrt(location.covariance(i, i))) << i;
+            const Location again = localizer.localize(image, CAMERA, &location.cameraFromWorld);
+            EXPECT_TRUE(again.found && again.matches < location.matches) << "near its prior";
         }
+}
+
+TEST_F(Mapping, a_map_on_disk_finds_what_one_in_memory_does)
+{
+    write(model(1, 40));
+    const std::string made = folder.path("new/map");
+    cv::iib::buildMap(folder.path("sparse 0"), images(), made);
+    const cv::Mat image = wall.image(poseAt(0.1, -0.1, 0.1));
+    const Location first = Localizer(folder.path("sparse 0"), images()).localize(image, CAMERA),
+                   second = Localizer(made).localize(image, CAMERA);
+    EXPECT_TRUE(first.found);
+    EXPECT_EQ(first.cameraFromWorld.matrix, second.cameraFromWorld.matrix);
+    EXPECT_EQ(first.covariance, second.covariance);
+    // It is a COLMAP model too.
+    const std::vector<PosedImage> back = readModel(made);
+    ASSERT_EQ(7u, back.size());
+    EXPECT_EQ("left side/1.png", back[1].name);
+    EXPECT_TRUE(same(CAMERA, back[1].camera));
+    EXPECT_LT(
+            cv::norm(cv::Mat(back[1].cameraFromWorld.matrix - inverse(poseAt(-.5, .05, .03)).matrix)), 1e-9);
+    EXPECT_GT(back[1].sees.size(), 200u);
+}
+
+TEST_F(Mapping, images_that_share_no_points_are_paired_with_the_nearest)
+{
+    Files files = model(1, 1);
+    std::string& posed = files["images.bin"];
+    for (size_t image = 0, at = 8; image < 7; image++)  // each image sees a point of its own
+    {
+        at = posed.find('\0', at + 64) + 1 + 8 + 16;
+        posed[at] = char(image);
+        at += 8;
+    }
+    write(files);
+    EXPECT_EQ("", messageOf([&] { Localizer(folder.path("sparse 0"), images()); }));
+}
+
+TEST_F(Mapping, models_as_text)
+{
+    const std::string sparse = folder.path("text");
+    folder.makeFolder("text");
+    folder.write("text/cameras.txt", "# Cameras\n5 PINHOLE 320 240 260 260 160 120\n");
+    std::string text = "# Images\n#\n";
+    for (int i = 0; i < 6; i++)
+    {
+        const cv::Affine3d pose = inverse(poseAt(0.3 * i - 0.8, 0.05 * (i % 2), 0.03 * i));
+        const cv::Quatd q = cv::Quatd::createFromRotMat(pose.rotation());
+        const cv::Vec3d t = pose.translation();
+        text += cv::format("%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g 5 %s%d.png\r\n%s\n", i + 1, q.w, q.x,
+                q.y, q.z, t[0], t[1], t[2], i < 3 ? "left side/" : "", i, i == 2 ? "" : "7.5 8.25 3 9 9 -1");
+    }
+    folder.write("text/images.txt", text);
+    const std::vector<PosedImage> read = readModel(sparse);
+    ASSERT_EQ(6u, read.size());
+    EXPECT_EQ("left side/2.png", read[2].name);
+    EXPECT_TRUE(read[2].sees.empty());
+    EXPECT_EQ((std::vector<int>{0, -1}), read[3].sees);
+    EXPECT_EQ(cv::Point2d(7, 7.75), read[3].pixels[0]);
+    EXPECT_TRUE(Localizer(sparse, images()).localize(wall.image(poseAt(0.1, -0.1, 0.1)), CAMERA).found);
+    for (const auto& [part, other] :
+            {std::make_pair("5 3.png", "6 3.png"), {"5 3.png", "5 4.png"}, {"9 9 -1", "9 9"},
+                    {"5 5.png\r\n7.5 8.25 3 9 9 -1\n", "5 5.png\r\n"}, {"5 5.png", "5"}, {" 8.25", " x"}})
+    {
+        std::string wrong = text;
+        wrong.replace(wrong.rfind(part), std::string(part).size(), other);
+        folder.write("text/images.txt", wrong);
+        EXPECT_EQ(sparse + " is no COLMAP model, or a damaged one: images.txt is missing or damaged",
+                messageOf([&] { readModel(sparse); }))
+                << other;
+    }
 }
 
 TEST_F(Mapping, a_damaged_model)
 {
-    const std::string begin = folder.path("sparse 0") + " is no COLMAP model in binary form";
+    const std::string begin = folder.path("sparse 0") + " is no COLMAP model, or a damaged one: ";
     const Files whole = model(1, 2);
     for (const auto& [name, content] : whole)
         for (size_t length = 0; length <= content.size() + 1; length++)
         {
             Files files = whole;
             files[name].resize(length, '\2');
-            const bool damaged = length != content.size();
-            EXPECT_EQ(damaged, error(files).find(begin) == 0) << name << " of " << length << " bytes";
+            write(files);
+            const std::string said = messageOf([&] { readModel(folder.path("sparse 0")); });
+            EXPECT_EQ(length != content.size(), said.find(begin) == 0)
+                    << name << " of " << length << " bytes";
         }
     for (const auto& [name, place, value] :
-            {std::make_tuple("cameras.bin", 12, 'c'), {"images.bin", 18, '\x7f'}, {"images.bin", 68, '\1'},
-                    {"points3D.bin", 59, '\1'}, {"points3D.bin", 57, '\1'}})
+            {std::make_tuple("cameras.bin", 12, 'c'), {"images.bin", 18, '\x7f'}, {"images.bin", 68, '\1'}})
     {
         Files files = whole;
         files[name][size_t(place)] = value;
         EXPECT_EQ(0u, error(files).find(begin)) << name << ", byte " << place;
     }
+    folder.makeFolder("above");
+    std::filesystem::rename(folder.path("sparse 0"), folder.path("above/0"));
+    EXPECT_EQ(folder.path("above") +
+                      " is no COLMAP model, or a damaged one: cameras.bin is missing or damaged: did you "
+                      "mean " +
+                      folder.path("above") + "/0?",
+            messageOf([&] { readModel(folder.path("above")); }));
+#ifndef _WIN32
+    write(whole);
+    std::filesystem::remove(folder.path("sparse 0/images.bin"));
+    ASSERT_EQ(0, ::mkfifo(folder.path("sparse 0/images.bin").c_str(), 0600));
+    EXPECT_EQ(begin + "images.bin is missing or damaged",
+            messageOf([&] { readModel(folder.path("sparse 0")); }));
+#endif
 }
 
 TEST_F(Mapping, a_model_of_others)
 {
-    EXPECT_NE(std::string::npos, error(model(1, 2, FOV)).find("FOV"));
-    EXPECT_EQ(
-            "none of the model's images can be read below " + folder.path("map"), error(model(1, 2), "map"));
+    EXPECT_NE(std::string::npos, error(model(1, 2, EQUIRECTANGULAR)).find("camera model 17 is not known"));
+    EXPECT_EQ("none of the model's images can be read, or they are empty", error(model(1, 2), "map"));
     cv::imwrite(folder.path("images/3.png"), cv::Mat(240, 300, CV_8U, cv::Scalar(9)));
-    EXPECT_NE(std::string::npos,
-            error(model(1, 2)).find("3.png has 300 x 240 pixels and its camera in the model 320 x 240"));
+    EXPECT_EQ("3.png: the image has 300 x 240 pixels and its camera 320 x 240: give the images of which the "
+              "model was made",
+            error(model(1, 2)));
     for (int i = 0; i < 6; i++)  // in another order
         cv::imwrite(
                 folder.path("images/" + std::string(i < 3 ? "left side/" : "") + std::to_string(i) + ".png"),

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
+
 #include "test_folder.hpp"
 #include "lens.hpp"
-#include "map_writer.hpp"
+#include "map.hpp"
 #include "opencv2/core/quaternion.hpp"
 #include "opencv2/iib.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
+#include "pose.hpp"
 
 namespace iib_localization {
 
@@ -74,6 +77,9 @@ template <typename T> void put(std::string& file, T value)
     file.append(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
+//! Files and what is in them.
+typedef std::map<std::string, std::string> Files;
+
 //! Six images along the wall, some below a folder, and a map of them whose points lie on it.
 class WallTest : public testing::Test
 {
@@ -81,41 +87,47 @@ protected:
     WallTest() : wall(1)
     {
         folder.makeFolder("images/left side");
-        Map map;
         map.keypoints = 1000;
-        map.cameras = {CAMERA};
         const auto iib = cv::iib::IIB::createRecommended(map.keypoints);
         for (int i = 0; i < 6; i++)
         {
             const cv::Affine3d pose = poseAt(0.3 * i - 0.8, 0.05 * (i % 2), 0.03 * i);
             const cv::Mat picture = wall.image(pose);
-            cv::imwrite(folder.path("images/" + std::string(i < 3 ? "left side/" : "") + std::to_string(i) +
-                                    ".png"),
-                    picture);
+            MapImage image;
+            image.name = (i < 3 ? "left side/" : "") + std::to_string(i) + ".png";
+            image.camera = CAMERA;
+            image.cameraFromWorld = inverse(pose);
+            cv::imwrite(folder.path("images/" + image.name), picture);
             std::vector<cv::KeyPoint> keypoints;
-            cv::Mat codes;
-            iib->detectAndCompute(picture, cv::noArray(), keypoints, codes);
-            map.views.push_back({{map.codes.rows, map.codes.rows + codes.rows}, pose.translation(),
-                    cv::Vec3d(pose.rotation().col(2).val), 4});
-            map.codes.push_back(codes);
+            iib->detectAndCompute(picture, cv::noArray(), keypoints, image.codes);
             for (const cv::KeyPoint& k : keypoints)
             {
-                map.sees.push_back(map.points.rows);
-                map.points.push_back(cv::Mat(cv::Matx13d(cv::Vec3d(Wall::point(pose, k.pt)).val)));
+                image.sees.push_back(int(map.points.size()));
+                image.pixels.emplace_back(k.pt);
+                map.points.push_back(Wall::point(pose, k.pt));
             }
+            image.misses.assign(keypoints.size(), 0);
+            map.images.push_back(image);
         }
-        folder.makeFolder("map");
-        writeMap(folder.path("map"), map);
+        MapFolder(folder.path("map")).write(map);
     }
 
-    /** COLMAP's model, in binary form, of the six images and of one that is gone.
+    //! Gives the images below a folder.
+    cv::iib::ImageReader images(const std::string& below = "images") const
+    {
+        return [this, below](const std::string& name) {
+            const std::string path = folder.path(below + "/" + name);
+            return cv::utils::fs::exists(path) ? cv::imread(path, cv::IMREAD_GRAYSCALE) : cv::Mat();
+        };
+    }
+
+    /** The images of COLMAP's model, in binary form, of the six images and of one that is gone.
     @param points of the model, each seen by all images.
     @param camera COLMAP's number of its model; PINHOLE. */
-    Files model(double unit, int points, uint32_t camera = 1) const
+    Files model(double unit, int points, uint32_t camera = 1, const cv::Vec3d& origin = cv::Vec3d()) const
     {
         Files files;
-        std::string &cameras = files["cameras.bin"], &images = files["images.bin"],
-                    &seen = files["points3D.bin"];
+        std::string &cameras = files["cameras.bin"], &posed = files["images.bin"];
         put<uint64_t>(cameras, 1);
         for (uint32_t number : {5u, camera})
             put(cameras, number);
@@ -123,24 +135,22 @@ protected:
             put<uint64_t>(cameras, uint64_t(side));
         for (double parameter : CAMERA.parameters)
             put(cameras, parameter);
-        put<uint64_t>(images, 7);
+        put<uint64_t>(posed, 7);
         for (uint32_t i = 0; i < 7; i++)
         {
-            const cv::Affine3d pose = poseAt(0.3 * i - 0.8, 0.05 * (i % 2), 0.03 * i).inv();
-            put(images, 10 + i);
-            put(images, cv::Quatd::createFromRotMat(pose.rotation()).toVec());
-            put(images, cv::Vec3d(pose.translation() * unit));
-            put<uint32_t>(images, 5);
-            images += (i < 3 ? "left side/" : "") + std::to_string(i) + ".png" + '\0';
-            put<uint64_t>(images, 0);
-        }
-        put<uint64_t>(seen, uint64_t(points));
-        for (int point = 0; point < points; point++)
-        {
-            seen += std::string(43, '\1');  // id, place, colour and error
-            put<uint64_t>(seen, 7);
-            for (uint32_t i = 0; i < 7; i++)
-                put(seen, cv::Vec<uint32_t, 2>(10 + i, 0));
+            const cv::Affine3d world = poseAt(0.3 * i - 0.8, 0.05 * (i % 2), 0.03 * i);
+            const cv::Matx33d rotation = world.rotation().t();
+            put(posed, 10 + i);
+            put(posed, cv::Quatd::createFromRotMat(rotation).toVec());
+            put(posed, cv::Vec3d(-(rotation * (world.translation() * unit + origin))));
+            put<uint32_t>(posed, 5);
+            posed += (i < 3 ? "left side/" : "") + std::to_string(i) + ".png" + '\0';
+            put<uint64_t>(posed, uint64_t(points));
+            for (int64_t point = 0; point < points; point++)
+            {
+                put(posed, cv::Vec2d(7, 8));
+                put(posed, 100 + point);
+            }
         }
         return files;
     }
@@ -154,6 +164,7 @@ protected:
 
     const TestFolder folder;
     const Wall wall;
+    Map map;
 };
 
 }  // namespace iib_localization

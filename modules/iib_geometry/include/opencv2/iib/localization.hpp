@@ -14,19 +14,68 @@
 namespace cv {
 namespace iib {
 
-/** @brief A camera as COLMAP describes it.
+//! @addtogroup iib_geometry
+//! @{
 
-Models: SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV and OPENCV_FISHEYE. */
+/** @brief A camera as COLMAP describes it: any of its models that look ahead.
+
+Images are taken as their files store them, as COLMAP does: EXIF's orientation is ignored everywhere. */
 struct CV_EXPORTS Camera
 {
-    std::string model;
+    std::string model;  //!< COLMAP's name of it, such as `PINHOLE`
     Size size;
     std::vector<double> parameters;  //!< COLMAP's, in its order; the centre of the first pixel is (0.5, 0.5)
 
     /** @brief From `MODEL,WIDTH,HEIGHT,PARAMETERS`, separated by commas.
     @throws cv::Exception (StsBadArg) that says what is wrong, and which models there are. */
     static Camera parse(const std::string& text);
+
+    /** @brief Where points are seen.
+    @param points in the camera's axes: x right, y down, z forward.
+    @return pixels; here and below the centre of the first pixel is (0, 0). NaN for points that are not before the camera.
+    @throws cv::Exception (StsBadArg) for a camera that is none. */
+    std::vector<Point2d> project(const std::vector<Point3d>& points) const;
 };
+
+//! @brief An image of a COLMAP model.
+struct PosedImage
+{
+    std::string name;  //!< its file, below the folder of the images
+    Camera camera;
+    Affine3d cameraFromWorld;
+    std::vector<Point2d> pixels;  //!< of its keypoints
+    std::vector<int> sees;        //!< of each keypoint, the index of the point that it sees, or -1
+};
+
+/** @brief Writes a COLMAP model in binary form: `cameras.bin`, `images.bin` and `points3D.bin`, each whole or not at all.
+@param folder that is there.
+@param images with distinct names. @param points that their keypoints see.
+@throws cv::Exception for what cannot be written. */
+CV_EXPORTS void writeModel(const std::string& folder, const std::vector<PosedImage>& images,
+        const std::vector<Point3d>& points = std::vector<Point3d>());
+
+/** @brief Gives an image by its name in a model: 8-bit, grey or BGR, as its file stores it, such as
+`cv::imread(folder + "/" + name, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION)`; empty for one that cannot be read. Threads
+call it at once. What it throws ends the mapping. */
+typedef std::function<Mat(const std::string& name)> ImageReader;
+
+/** @brief Told by one thread at a time of each step in the making of a map: how many of all are done, and what is wrong with
+an image, without which the map is made (else empty). What it throws ends the mapping. */
+typedef std::function<void(size_t done, size_t all, const std::string& problem)> MappingReport;
+
+/** @brief Makes a map of a COLMAP model and its images.
+
+Keypoints of each image are described, matched with those of the images that see the same, and triangulated with the model's
+poses, which stay as they are.
+@param model folder of a model, binary or text, in any unit and at any distance from its origin.
+@param images gives the model's images.
+@param map folder to write: `map.iib`, and a COLMAP model of the same points. A map that is there is replaced: who reads
+meanwhile gets the old one or the new one. A folder that holds anything else is refused before work begins.
+@param points keypoints that are looked for in an image.
+@param report if not empty: told of the progress.
+@throws cv::Exception for a model that is damaged or not that of the images. */
+CV_EXPORTS void buildMap(const std::string& model, const ImageReader& images, const std::string& map,
+        int points = 2000, const MappingReport& report = MappingReport());
 
 //! @brief What Localizer::localize finds.
 struct Location
@@ -38,11 +87,11 @@ struct Location
     Matx66d covariance;
     int matches = 0;              //!< of keypoints with points of the map
     int inliers = 0;              //!< keypoints that agree with the pose
-    std::vector<Point2d> pixels;  //!< of the matches that agree; the centre of the first pixel is (0, 0)
+    std::vector<Point2d> pixels;  //!< of the matches that agree
     std::vector<Point3d> points;  //!< of the map, that are seen there
 };
 
-/** @brief Finds images in a map that Python's `opencv-iib map` made.
+/** @brief Finds images in a map.
 
 The codes of an image vote for the map's images, and those that look most like it are matched with it. The pose comes from
 the points of the map that they see. It needs fifteen inliers and two in a hundred matches more, and a place that is
@@ -57,20 +106,9 @@ public:
     @throws cv::Exception for what is no map, or a damaged one. */
     explicit Localizer(const std::string& map, int points = 1000);
 
-    /** @brief Told by one thread at a time of each step in the making of a map: how many of all are done, and what is wrong with
-    a photograph, without which the map is made (else empty). */
-    typedef std::function<void(size_t done, size_t all, const std::string& problem)> Report;
-
-    /** @brief Makes a map in memory of a COLMAP model: 2000 keypoints of each photograph are described, matched with those of
-    the photographs that see the same, and triangulated with the model's poses. Where Python is, `opencv-iib map` makes it
-    once, for all runs.
-    @param model folder of a model in binary form, in any unit; its cameras are of the models that Camera has.
-    @param photographs folder that the names of the model's images are relative to.
-    @param points keypoints that are looked for in an image to be localized; 0: as many as in the photographs.
-    @param report if not empty: told of the progress.
-    @throws cv::Exception for a model that is damaged or not that of the photographs. */
-    Localizer(const std::string& model, const std::string& photographs, int points = 1000,
-            const Report& report = Report());
+    //! @brief Makes a map in memory, as buildMap does with 2000 keypoints an image.
+    Localizer(const std::string& model, const ImageReader& images, int points = 1000,
+            const MappingReport& report = MappingReport());
     ~Localizer();
     Localizer(const Localizer&) = delete;
     Localizer& operator=(const Localizer&) = delete;
@@ -91,6 +129,48 @@ private:
     struct Impl;
     std::unique_ptr<const Impl> impl_;
 };
+
+/** @brief Adds to a map what images see in their light.
+
+The images are localized; those in a light that the map does not know (none of its images at that place has more than half of
+its codes among the inliers) become a part of it: their points are matched with the map's and each other's and triangulated.
+Codes that eight updates in a row looked for and did not find are dropped, and of more than eight added images at one place
+the one that has not helped for longest, so that a map of a place does not grow for ever. The model's own images stay. */
+class CV_EXPORTS MapUpdate
+{
+public:
+    /** @brief Reads a map; until the object goes, no other process can change what will be written.
+    @param map its folder. @param out folder of the new map, as buildMap takes it; empty: that of the old one.
+    @throws cv::Exception for what is no map, or one that another process is changing. */
+    explicit MapUpdate(const std::string& map, const std::string& out = std::string());
+    ~MapUpdate();
+    MapUpdate(const MapUpdate&) = delete;
+    MapUpdate& operator=(const MapUpdate&) = delete;
+
+    //! The cameras of the map's images, each once.
+    const std::vector<Camera>& cameras() const;
+
+    /** @brief Localizes an image and keeps what it sees (about 300 kB) until commit(). Threads may call it at once.
+    @param name of the image in the map, distinct among those of this update.
+    @param image, camera as Localizer::localize takes them. */
+    Location add(const std::string& name, InputArray image, const Camera& camera);
+
+    //! @brief What commit() did.
+    struct Counts
+    {
+        int localized = 0;  //!< images
+        int added = 0;      //!< images, which are a part of the map now
+        int dropped = 0;    //!< codes that nobody finds any more
+    };
+    //! @brief Writes the map. At most once. @throws cv::Exception if it cannot be written; the old one stays then.
+    Counts commit();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+//! @}
 
 }  // namespace iib
 }  // namespace cv

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "features.hpp"
+#include "map.hpp"
+#include "pose.hpp"
+#include "retrieval.hpp"
+
+namespace iib_localization {
+
+//! What a Finder finds, and what of the map showed it.
+struct Found : cv::iib::Location
+{
+    Features features;
+    std::vector<size_t> compared;  //!< images of the map
+    std::vector<Match> agreeing;   //!< every code of the map that agrees, also several of one keypoint
+};
+
+//! Finds images in a map; what cv::iib::Localizer and MapUpdate share. Threads may share one.
+class Finder
+{
+public:
+    //! @param points keypoints that are looked for in an image; 0: as many as in the map's images.
+    Finder(const Map& map, int points);
+
+    Found find(const cv::Mat& image, const Camera& camera, const cv::Affine3d* prior) const;
+
+private:
+    std::vector<size_t> near(const cv::Affine3d& pose) const;
+    std::vector<size_t> similar(const cv::Mat& codes) const;
+    void locate(const Camera& camera, const cv::Affine3d* prior, Found& found) const;
+
+    //! Where an image of the map was taken: of its camera in the world, and how far what it sees lies.
+    struct View
+    {
+        cv::Vec3d centre, direction;
+        double depth;
+    };
+
+    const Map& map_;
+    std::vector<View> views_;
+    cv::Ptr<cv::iib::IIB> iib_;
+    cv::Ptr<cv::iib::HierarchicalMatcher> matcher_;
+    Retrieval votes_;
+};
+
+//! Median distance of points in a camera's axes.
+double medianDistance(const std::vector<cv::Point3d>& points);
+
+}  // namespace iib_localization

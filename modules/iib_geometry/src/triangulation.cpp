@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "triangulation.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "lens.hpp"
+#include "pose.hpp"
+
+namespace iib_localization {
+namespace {
+
+constexpr double MAX_ERROR = 4;  // pixels, of a match from its epipolar line and of a keypoint from its point
+constexpr double FAR = .01;      // radians between rays that do not tell on which side they meet
+constexpr double MIN_ANGLE = 1.5;  // degrees between the rays of a point
+constexpr int ROUNDS = 5;          // of a point's refinement
+
+double angleOf(const Ray& a, const Ray& b)
+{
+    return std::atan2(cv::norm(a.direction.cross(b.direction)), a.direction.dot(b.direction));
+}
+
+//! The point nearest to rays by angle, with Cauchy's loss of a pixel.
+cv::Vec3d meetingPoint(const std::vector<Ray>& track)
+{
+    const cv::Vec3d origin = track[0].centre;  // which may lie far from the world's
+    cv::Vec3d point;
+    std::vector<double> weights(track.size(), 1);
+    for (int round = 0; round < ROUNDS; round++)
+    {
+        cv::Matx33d normal = cv::Matx33d::zeros();
+        cv::Vec3d sum;
+        for (size_t i = 0; i < track.size(); i++)
+        {
+            const cv::Vec3d& along = track[i].direction;
+            const cv::Matx33d across = weights[i] / weights[0] * (cv::Matx33d::eye() - along * along.t());
+            normal += across;
+            sum += across * (track[i].centre - origin);
+        }
+        point = origin + normal.solve(sum, cv::DECOMP_LU);
+        for (size_t i = 0; i < track.size(); i++)
+        {
+            const cv::Vec3d way = point - track[i].centre;
+            const double error = track[i].error(point);
+            weights[i] = 1 / (way.dot(way) * (1 + error * error));
+        }
+    }
+    return point;
+}
+
+}  // namespace
+
+double Ray::error(const cv::Vec3d& at) const
+{
+    const cv::Vec3d way = at - centre;
+    return scale * std::atan2(cv::norm(way.cross(direction)), way.dot(direction));
+}
+
+std::vector<Ray> raysOf(size_t number, const cv::iib::PosedImage& image)
+{
+    const Lens lens(image.camera);
+    const cv::Affine3d pose = inverse(image.cameraFromWorld);
+    const cv::Matx33d toWorld = pose.rotation() * lens.matrix().inv();
+    std::vector<Ray> rays;
+    for (const cv::Point2d& p : lens.undistorted(image.pixels))
+    {
+        const int keypoint = int(rays.size());
+        const int point = image.sees.empty() ? -1 : image.sees[size_t(keypoint)];
+        rays.push_back({number, keypoint, pose.translation(), cv::normalize(toWorld * cv::Vec3d(p.x, p.y, 1)),
+                lens.matrix()(0, 0), point});
+    }
+    return rays;
+}
+
+bool fitting(const Ray& a, const Ray& b)
+{
+    const cv::Vec3d way = b.centre - a.centre, across = a.direction.cross(b.direction);
+    const cv::Vec3d planeA = way.cross(b.direction), planeB = way.cross(a.direction);
+    const double product = std::abs(a.direction.dot(planeA));
+    return a.scale * product < MAX_ERROR * cv::norm(planeA) &&
+           b.scale * product < MAX_ERROR * cv::norm(planeB) &&
+           (cv::norm(across) < FAR || (across.dot(planeA) > 0 && across.dot(planeB) > 0));
+}
+
+std::vector<std::vector<Ray>> joined(const std::vector<Ray>& rays, std::vector<Link> links)
+{
+    std::stable_sort(
+            links.begin(), links.end(), [](const Link& a, const Link& b) { return a.bits < b.bits; });
+    std::vector<size_t> trackOf(rays.size());
+    std::iota(trackOf.begin(), trackOf.end(), size_t(0));
+    std::vector<std::vector<size_t>> tracks;
+    for (size_t k : trackOf)
+        tracks.push_back({k});
+    const auto join = [&](size_t a, size_t b) {
+        std::vector<size_t>&into = tracks[trackOf[a]], &from = tracks[trackOf[b]];
+        const auto clashes = [&](size_t k) {
+            return std::any_of(into.begin(), into.end(), [&](size_t o) {
+                return rays[o].image == rays[k].image ||
+                       (rays[o].point >= 0 && rays[k].point >= 0 && rays[o].point != rays[k].point);
+            });
+        };
+        if (std::any_of(from.begin(), from.end(), clashes))  // also if they are one already
+            return;
+        for (size_t k : from)
+            trackOf[k] = trackOf[a];
+        into.insert(into.end(), from.begin(), from.end());
+        from.clear();
+    };
+    std::map<int, size_t> known;  // rays of points
+    for (size_t k = 0; k < rays.size(); k++)
+        if (rays[k].point >= 0)
+            join(known.emplace(rays[k].point, k).first->second, k);
+    for (const Link& link : links)
+        join(link.a, link.b);
+    std::vector<std::vector<Ray>> found;
+    for (const std::vector<size_t>& track : tracks)
+        if (track.size() > 1)
+        {
+            found.emplace_back();
+            for (size_t k : track)
+                found.back().push_back(rays[k]);
+        }
+    return found;
+}
+
+bool place(std::vector<Ray>& track, cv::Point3d& point)
+{
+    for (; track.size() > 1;)
+    {
+        point = meetingPoint(track);
+        const auto worst = std::max_element(track.begin(), track.end(),
+                [&](const Ray& a, const Ray& b) { return a.error(point) < b.error(point); });
+        if (worst->error(point) < MAX_ERROR)
+            break;
+        track.erase(worst);
+    }
+    double widest = 0;
+    for (const Ray& a : track)
+        for (const Ray& b : track)
+            widest = std::max(widest, angleOf(a, b));
+    return widest * 180 / CV_PI >= MIN_ANGLE;
+}
+
+}  // namespace iib_localization

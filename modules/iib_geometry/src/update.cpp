@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+#include <mutex>
+#include <set>
+
+#include "localizer.hpp"
+#include "triangulation.hpp"
+
+namespace iib_localization {
+namespace {
+
+constexpr double APART =
+        .1;  // two images at one place: their distance over that of what they see, plus the angle
+constexpr double KNOWN = .5;  // share of an image's codes: with more inliers, the map knows the light there
+constexpr size_t LIGHTS = 8;  // added images that a map keeps so near each other
+constexpr uchar PATIENCE =
+        8;  // updates in a row that look for a code and do not find it, before it is dropped
+constexpr size_t NEIGHBOURS = 10;  // added images that each is matched with
+
+//! An image of an update that was found in the map.
+struct Seen
+{
+    std::string name;
+    Camera camera;
+    Found found;
+    double depth;  //!< median distance of what it sees
+};
+
+double distance(const cv::Affine3d& a, const cv::Affine3d& b, double depth)
+{
+    const cv::Affine3d turn = a * inverse(b);
+    const double way = cv::norm(inverse(a).translation() - inverse(b).translation());
+    return way / depth + std::acos(std::clamp(turn.rotation()(2, 2), -1., 1.));
+}
+
+//! Counts for each code whether this update looked for it and found it; returns how many nobody finds any more.
+int countMisses(Map& map, const std::vector<Seen>& all)
+{
+    std::vector<std::vector<uchar>> looked, hit;
+    for (const MapImage& image : map.images)
+    {
+        looked.emplace_back(image.sees.size(), uchar(0));
+        hit.emplace_back(image.sees.size(), uchar(0));
+    }
+    for (const Seen& seen : all)
+    {
+        const cv::Rect2d picture(cv::Point2d(-.5, -.5), cv::Size2d(seen.camera.size));
+        for (size_t i : seen.found.compared)
+        {
+            std::vector<cv::Point3d> points;
+            for (int number : map.images[i].sees)
+                points.push_back(map.points[size_t(number)]);
+            const std::vector<cv::Point2d> places =
+                    Lens(seen.camera).project(inCamera(points, seen.found.cameraFromWorld));
+            for (size_t k = 0; k < places.size(); k++)
+                looked[i][k] |= picture.contains(places[k]);  // not NaN, behind the camera
+        }
+        for (const Match& m : seen.found.agreeing)
+            hit[size_t(m.view)][size_t(m.row)] = 1;
+    }
+    int dropped = 0;
+    for (size_t i = 0; i < map.images.size(); i++)
+        for (size_t k = 0; k < hit[i].size(); k++)
+        {
+            uchar& misses = map.images[i].misses[k];
+            if (hit[i][k])
+            {
+                misses = 0;
+                map.images[i].used = map.updates;
+            }
+            else if (looked[i][k] && ++misses >= PATIENCE)
+            {
+                map.images[i].sees[k] = -1;
+                dropped++;
+            }
+        }
+    return dropped;
+}
+
+bool isKnown(const Map& map, const Seen& seen)
+{
+    std::vector<size_t> hits(map.images.size());
+    for (const Match& m : seen.found.agreeing)
+        hits[size_t(m.view)]++;
+    for (size_t i = 0; i < hits.size(); i++)
+        if (double(hits[i]) > KNOWN * double(map.images[i].sees.size()) &&
+                distance(seen.found.cameraFromWorld, map.images[i].cameraFromWorld, seen.depth) <= APART)
+            return true;
+    return false;
+}
+
+//! Those in a light that the map does not know, APART from each other.
+std::vector<const Seen*> chosen(const Map& map, const std::vector<Seen>& all)
+{
+    std::vector<const Seen*> result;
+    for (const Seen& seen : all)
+        if (!isKnown(map, seen) && std::all_of(result.begin(), result.end(), [&](const Seen* other) {
+                return distance(seen.found.cameraFromWorld, other->found.cameraFromWorld, seen.depth) > APART;
+            }))
+            result.push_back(&seen);
+    return result;
+}
+
+/** Pairs of images to be matched: each added one with those of the map that it was compared with and with added ones near it.
+@param first of the added images, which are the map's last. */
+std::vector<std::pair<size_t, size_t>> pairsOf(
+        const Map& map, size_t first, const std::vector<const Seen*>& added)
+{
+    std::vector<std::pair<size_t, size_t>> pairs;
+    for (size_t n = 0; n < added.size(); n++)
+    {
+        std::vector<std::pair<double, size_t>> near;
+        for (size_t other = n + 1; other < added.size(); other++)
+            near.emplace_back(distance(map.images[first + n].cameraFromWorld,
+                                      map.images[first + other].cameraFromWorld, added[n]->depth),
+                    first + other);
+        std::sort(near.begin(), near.end());
+        for (size_t k : added[n]->found.compared)
+            pairs.emplace_back(first + n, k);
+        for (size_t k = 0; k < std::min(near.size(), NEIGHBOURS); k++)
+            pairs.emplace_back(first + n, near[k].second);
+    }
+    return pairs;
+}
+
+//! Matches the last images of a map with others, and places what their keypoints see.
+void triangulate(Map& map, const std::vector<std::pair<size_t, size_t>>& pairs)
+{
+    std::set<size_t> involved;
+    for (const auto& [a, b] : pairs)
+        involved.insert({a, b});
+    std::vector<Ray> rays;
+    std::vector<size_t> first(map.images.size());
+    for (size_t i : involved)
+    {
+        first[i] = rays.size();
+        const std::vector<Ray> own = raysOf(i, map.images[i]);
+        rays.insert(rays.end(), own.begin(), own.end());
+    }
+    const cv::Ptr<cv::iib::HierarchicalMatcher> matcher = cv::iib::HierarchicalMatcher::createRecommended();
+    std::vector<std::vector<cv::DMatch>> matches(pairs.size());
+    inParallel(pairs.size(), [&](size_t n) {
+        const cv::Mat &a = map.images[pairs[n].first].codes, &b = map.images[pairs[n].second].codes;
+        if (!a.empty() && !b.empty())
+            matcher->match(a, b, matches[n]);
+    });
+    std::vector<Link> links;
+    std::set<int> touched;  // points that new keypoints may see
+    for (size_t n = 0; n < pairs.size(); n++)
+        for (const cv::DMatch& m : matches[n])
+        {
+            const size_t a = first[pairs[n].first] + size_t(m.queryIdx),
+                         b = first[pairs[n].second] + size_t(m.trainIdx);
+            if (!fitting(rays[a], rays[b]))
+                continue;
+            links.push_back({m.distance, a, b});
+            touched.insert(rays[b].point);
+        }
+    touched.erase(-1);
+    for (size_t i = 0; i < map.images.size(); i++)
+    {
+        const std::vector<int>& sees = map.images[i].sees;
+        if (involved.count(i) == 0 &&
+                std::any_of(sees.begin(), sees.end(), [&](int p) { return touched.count(p) != 0; }))
+            for (const Ray& ray : raysOf(i, map.images[i]))
+                if (touched.count(ray.point) != 0)
+                    rays.push_back(ray);
+    }
+    for (std::vector<Ray>& track : joined(rays, links))
+    {
+        const auto known =
+                std::find_if(track.begin(), track.end(), [](const Ray& r) { return r.point >= 0; });
+        const int number = known == track.end() ? int(map.points.size()) : known->point;
+        if (std::all_of(track.begin(), track.end(), [](const Ray& r) { return r.point >= 0; }))
+            continue;  // nothing new
+        for (const Ray& ray : track)
+            map.images[ray.image].sees[size_t(ray.keypoint)] = -1;
+        cv::Point3d point;
+        if (!place(track, point))
+            continue;
+        if (known == track.end())
+            map.points.push_back(point);
+        map.points[size_t(number)] = point;
+        for (const Ray& ray : track)
+            map.images[ray.image].sees[size_t(ray.keypoint)] = number;
+    }
+}
+
+//! Of more than LIGHTS added images at one place, removes the one that has not helped for longest.
+void makeRoom(Map& map, const std::vector<const Seen*>& added)
+{
+    for (const Seen* seen : added)
+    {
+        std::vector<std::pair<uint32_t, std::string>> here;
+        for (const MapImage& image : map.images)
+            if (image.added &&
+                    distance(seen->found.cameraFromWorld, image.cameraFromWorld, seen->depth) <= APART)
+                here.emplace_back(image.used, image.name);
+        std::sort(here.begin(), here.end());
+        for (size_t n = 0; n + LIGHTS < here.size(); n++)
+            map.images.erase(std::find_if(map.images.begin(), map.images.end(),
+                    [&](const MapImage& image) { return image.name == here[n].second; }));
+    }
+}
+
+}  // namespace
+}  // namespace iib_localization
+
+using namespace iib_localization;
+
+struct cv::iib::MapUpdate::Impl
+{
+    Impl(const std::string& from, const std::string& to)
+        : folder(to), map(readMap(from)), finder(map, 0), cameras(map.cameras())
+    {
+    }
+
+    const MapFolder folder;  // is locked before the map is read
+    Map map;
+    const Finder finder;
+    const std::vector<Camera> cameras;
+    std::mutex mutex;
+    std::set<std::string> names;
+    std::vector<Seen> seen;
+};
+
+cv::iib::MapUpdate::MapUpdate(const std::string& map, const std::string& out)
+    : impl_(std::make_unique<Impl>(map, out.empty() ? map : out))
+{
+}
+
+cv::iib::MapUpdate::~MapUpdate() = default;
+
+const std::vector<cv::iib::Camera>& cv::iib::MapUpdate::cameras() const { return impl_->cameras; }
+
+cv::iib::Location cv::iib::MapUpdate::add(const std::string& name, InputArray image, const Camera& camera)
+{
+    {
+        const std::lock_guard<std::mutex> lock(impl_->mutex);
+        if (name.empty() || !impl_->names.insert(name).second)
+            CV_Error(Error::StsBadArg, "an image of the name '" + name + "' is a part of the update already");
+    }
+    const Found found = impl_->finder.find(image.getMat(), camera, nullptr);
+    if (found.found)
+    {
+        const double depth = medianDistance(inCamera(found.points, found.cameraFromWorld));
+        const std::lock_guard<std::mutex> lock(impl_->mutex);
+        impl_->seen.push_back({name, camera, found, depth});
+    }
+    return found;
+}
+
+cv::iib::MapUpdate::Counts cv::iib::MapUpdate::commit()
+{
+    Map& map = impl_->map;
+    std::vector<Seen>& seen = impl_->seen;
+    // The order in which threads came changes nothing.
+    std::sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) { return a.name < b.name; });
+    Counts counts;
+    counts.localized = int(seen.size());
+    map.updates++;
+    const std::vector<const Seen*> added = chosen(map, seen);
+    counts.added = int(added.size());
+    counts.dropped = countMisses(map, seen);
+    const size_t first = map.images.size();
+    std::string folder = cv::format("updates/%u/", map.updates);
+    const auto taken = [&](const MapImage& image) {
+        return image.name.compare(0, folder.size(), folder) == 0;
+    };
+    while (std::any_of(map.images.begin(), map.images.end(), taken))  // the model's own may be called so
+        folder = "updates/" + folder;
+    for (const Seen* s : added)
+    {
+        const Features& features = s->found.features;
+        const size_t count = features.pixels.size();
+        MapImage image;
+        static_cast<PosedImage&>(image) = {folder + s->name, s->camera, s->found.cameraFromWorld,
+                features.pixels, std::vector<int>(count, -1)};
+        image.codes = features.codes;
+        image.misses.assign(count, 0);
+        image.used = map.updates;
+        image.added = true;
+        map.images.push_back(std::move(image));
+    }
+    triangulate(map, pairsOf(map, first, added));
+    makeRoom(map, added);
+    map.compact();
+    impl_->folder.write(map);
+    return counts;
+}

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "numbers.hpp"
+#include "wall.hpp"
+
+namespace {
+using namespace iib_localization;
+using cv::iib::Localizer;
+using cv::iib::MapUpdate;
+
+class Update : public WallTest
+{
+protected:
+    Update() : name(folder.path("map")), truth(poseAt(0.1, -0.1, 0.1)) {}
+
+    //! The wall in a light of its own: shadows that the map does not know.
+    cv::Mat relit(const cv::Affine3d& pose, int seed) const
+    {
+        const cv::Mat image = wall.image(pose), other = Wall(uint64(seed)).image(pose);
+        cv::Mat mixed;
+        cv::addWeighted(image, .48, other, .52, 0, mixed);
+        return mixed;
+    }
+
+    size_t codes() const
+    {
+        size_t count = 0;
+        for (const MapImage& image : readMap(name).images)
+            count += image.sees.size();
+        return count;
+    }
+
+    const std::string name;
+    const cv::Affine3d truth;
+};
+
+TEST_F(Update, an_unknown_light_is_learnt)
+{
+    std::vector<cv::Affine3d> poses;
+    for (int i = 0; i < 4; i++)
+        poses.push_back(poseAt(0.45 * i - 0.6, 0.02, 0.03 * i));
+    const int before = Localizer(name).localize(relit(truth, 9), CAMERA).inliers;
+    const std::string out = folder.path("new");
+    MapUpdate update(name, out);
+    EXPECT_EQ(1u, update.cameras().size());
+    for (size_t i = 0; i < poses.size(); i++)
+        EXPECT_TRUE(update.add("dusk/" + std::to_string(i) + ".png", relit(poses[i], 9), CAMERA).found);
+    EXPECT_FALSE(update.add("elsewhere", Wall(5).image(truth), CAMERA).found);
+    EXPECT_EQ("an image of the name 'elsewhere' is a part of the update already",
+            messageOf([&] { update.add("elsewhere", Wall(5).image(truth), CAMERA); }));
+    const MapUpdate::Counts counts = update.commit();
+    EXPECT_EQ(4, counts.localized);
+    EXPECT_EQ(4, counts.added);
+    EXPECT_EQ(0, counts.dropped);
+    EXPECT_EQ(6u, readMap(name).images.size()) << "the old map stays";
+    const Map learnt = readMap(out);
+    ASSERT_EQ(10u, learnt.images.size());
+    EXPECT_EQ("updates/1/dusk/0.png", learnt.images[6].name);
+    EXPECT_EQ(1u, learnt.updates);
+    const cv::iib::Location location = Localizer(out).localize(relit(truth, 9), CAMERA);
+    ASSERT_TRUE(location.found);
+    EXPECT_GT(location.inliers, before * 5 / 4);
+    EXPECT_LT(cv::norm(inverse(location.cameraFromWorld).translation() - truth.translation()), 0.01);
+    std::vector<double> away;  // of the added images' points from the wall; a pixel of one is 20 cm
+    for (size_t i = 6; i < learnt.images.size(); i++)
+        for (int number : learnt.images[i].sees)
+        {
+            const cv::Point3d p = learnt.points[size_t(number)];
+            away.push_back(std::abs(p.z - .4 * p.x - 4));
+        }
+    EXPECT_GT(away.size(), 800u);
+    EXPECT_LT(median(away), .06);
+}
+
+TEST_F(Update, a_known_light_adds_nothing)
+{
+    MapUpdate update(name);
+    EXPECT_TRUE(update.add("again", wall.image(poseAt(0.1, 0.05, 0.09)), CAMERA).found);
+    const MapUpdate::Counts counts = update.commit();
+    EXPECT_EQ(1, counts.localized);
+    EXPECT_EQ(0, counts.added);
+    EXPECT_EQ(6u, readMap(name).images.size());
+}
+
+TEST_F(Update, what_eight_updates_do_not_find_is_dropped)
+{
+    const size_t before = codes();
+    const cv::Mat half = wall.image(truth);
+    half.colRange(0, SIZE.width / 2).setTo(90);  // built over
+    int dropped = 0;
+    for (int i = 0; i < 8; i++)
+    {
+        EXPECT_EQ(0, dropped) << i;
+        MapUpdate update(name);
+        update.add("half", half, CAMERA);
+        dropped = update.commit().dropped;
+    }
+    EXPECT_GT(dropped, int(before / 10));
+    EXPECT_GE(before - size_t(dropped), codes() - 8 * 500) << "but for what the images of the update added";
+    EXPECT_TRUE(Localizer(name).localize(half, CAMERA).found);
+}
+
+TEST_F(Update, keeps_eight_lights_of_a_place_and_the_models_own_images)
+{
+    map.images[0].name = "updates/1/own.png";
+    MapFolder(name).write(map);
+    for (int i = 0; i < 10; i++)
+    {
+        MapUpdate update(name);
+        ASSERT_TRUE(update.add("light", relit(truth, 20 + i), CAMERA).found);
+        update.commit();
+    }
+    const Map learnt = readMap(name);
+    size_t added = 0, own = 0;
+    for (const MapImage& image : learnt.images)
+    {
+        added += image.added;
+        own += !image.added;
+    }
+    EXPECT_EQ(6u, own);
+    EXPECT_LE(added, 8u);
+    EXPECT_GE(added, 6u);
+}
+
+TEST_F(Update, one_at_a_time)
+{
+    MapUpdate first(name);
+    EXPECT_EQ(name + " is being written by another process: wait until it has ended",
+            messageOf([&] { MapUpdate second(name); }));
+    EXPECT_EQ("", messageOf([&] { MapUpdate second(name, folder.path("other")); })) << "only reads it";
+    first.add("light", relit(truth, 9), CAMERA);
+    first.commit();
+    EXPECT_EQ(1u, readMap(name).updates);
+}
+
+}  // namespace
