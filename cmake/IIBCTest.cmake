@@ -80,8 +80,9 @@ if(IIB_PYTHON)
     --source "${PROJECT_SOURCE_DIR}" --check)
 endif()
 # The Python package, linked with what is built here already. The script skips by itself where there is no package index.
-if(UNIX AND NOT APPLE)
-  add_library(opencv_iib_static STATIC $<TARGET_OBJECTS:opencv_iib> $<TARGET_OBJECTS:opencv_iib_index>)
+if(UNIX AND NOT APPLE AND TARGET opencv_iib_geometry)  # which the package has, and whose OpenCV may be missing
+  add_library(opencv_iib_static STATIC $<TARGET_OBJECTS:opencv_iib> $<TARGET_OBJECTS:opencv_iib_index>
+    $<TARGET_OBJECTS:opencv_iib_geometry>)
   set(programs "")
   if(IIB_BUILD_APPS)
     set(programs "IIB_PROGRAMS=${PROJECT_BINARY_DIR}/apps/localization")
@@ -90,6 +91,8 @@ if(UNIX AND NOT APPLE)
     "${PROJECT_SOURCE_DIR}/scripts/helpers/python_test.sh" "$<TARGET_FILE:opencv_iib_static>")
   set_tests_properties(python PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: python tests \\("
     COST 1000)  # begun first, so that nothing waits for it at the end
+endif()
+if(UNIX AND NOT APPLE)
   set(symbol_test "-DNM=${CMAKE_NM}" "-DREADELF=${CMAKE_READELF}" "-DVERSION=${PROJECT_VERSION}"
     "-DCHANGELOG=${PROJECT_SOURCE_DIR}/CHANGELOG.md" -P "${PROJECT_SOURCE_DIR}/cmake/SymbolTest.cmake")
   add_test(NAME symbols COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib>" ${symbol_test})

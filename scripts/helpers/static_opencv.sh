@@ -1,5 +1,5 @@
 #!/bin/sh
-# Prints the folder of a small static OpenCV (core, imgproc, features2d, flann) for the Python package, and builds it into
+# Prints the folder of a small static OpenCV (core, imgproc, features2d, flann, calib3d) for the Python package, and builds it into
 # the cache the first time, from the source that scripts/helpers/opencv_contrib_source.sh brings. Installs nothing with apt.
 #   scripts/helpers/static_opencv.sh [CMAKE_ARGUMENT...]
 # CMAKE in the environment names another cmake. Delete the folder from the cache to build a newer one.
@@ -24,7 +24,7 @@ if [ ! -d "$prefix" ]; then
     # pip's isolated build hides other packages from every Python it starts, those of a new environment too.
     source=$(env -u PYTHONPATH "$root/scripts/helpers/opencv_contrib_source.sh" 4)
     work="$prefix.build"  # stays if this is interrupted, so that the next call goes on from there
-    # What CMake would look for on this machine, download, or build beside the four modules.
+    # What CMake would look for on this machine, download, or build beside these modules.
     for feature in IPP ITT OPENCL LAPACK EIGEN VA KLEIDICV PROTOBUF FLATBUFFERS ADE QUIRC OBSENSOR 1394 FFMPEG GSTREAMER \
         V4L GTK JPEG PNG TIFF WEBP OPENJPEG JASPER OPENEXR AVIF; do
         set -- "$@" -DWITH_$feature=OFF
@@ -35,7 +35,7 @@ if [ ! -d "$prefix" ]; then
     say "building a static OpenCV in $work (once, about ten minutes)" >&2
     {
         "$cmake" -S "$source/opencv" -B "$work" "$@" -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_LIBDIR=lib \
-            -DBUILD_LIST=core,imgproc,features2d,flann -DBUILD_SHARED_LIBS=OFF -DENABLE_PIC=ON -DBUILD_ZLIB=ON \
+            -DBUILD_LIST=core,imgproc,features2d,flann,calib3d -DBUILD_SHARED_LIBS=OFF -DENABLE_PIC=ON -DBUILD_ZLIB=ON \
             -DOPENCV_GENERATE_PKGCONFIG=OFF &&
             "$cmake" --build "$work" --parallel "$jobs" &&
             "$cmake" --install "$work" --prefix "$prefix.new" &&
