@@ -45,7 +45,7 @@ def set_threads(threads):
 
 def refuse_more_than_threads(times, threads):
     """Two threads are no faster than twice one, but for what a median is unsure of."""
-    if times > 1.1 * threads:
+    if times > 1.05 * threads:
         sys.exit('%.1f times as fast by %d threads: the machine was not idle, measure again' % (times, threads))
 
 

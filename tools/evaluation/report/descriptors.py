@@ -2,36 +2,18 @@
 
 """What the page tells of a descriptor besides its results."""
 
-OPENCV, CONTRIB = "Apache-2.0 (OpenCV)", "Apache-2.0 (opencv_contrib)"
-
-# Name in the results of fixed points: (detected points it is shown with, learned, licence). The table of the page has
-# these in this order, those of them that were measured.
+# Descriptors of the main table in its order, those of them that were measured, by whose code they are: the name in the results of
+# fixed points, and whose points they are shown with where these are detected.
+ORB, HESSIAN, OWN = "ORB", "Hessian", ""
 SHOWN = {
-    "IIB": (("ORB", "IIB"), False, "Apache-2.0"),
-    "IIB ACCURATE": (("ORB", "IIB ACCURATE"), True, "Apache-2.0"),
-    "IIB COMPACT": (("ORB", "IIB COMPACT"), True, "Apache-2.0"),
-    "IIB BALANCED": (("ORB", "IIB BALANCED"), True, "Apache-2.0"),
-    "IIB VIEWPOINT": (("ORB", "IIB VIEWPOINT"), True, "Apache-2.0"),
-    "IIB UNIVERSAL": (("Hessian", "IIB UNIVERSAL"), True, "Apache-2.0"),
-    "IIB SMALL": (("Hessian", "IIB SMALL"), True, "Apache-2.0"),
-    "ORB": (("ORB", "ORB"), True, OPENCV),
-    "BRISK": (("BRISK", "BRISK"), False, OPENCV),
-    "AKAZE-486": (("AKAZE", "AKAZE"), False, OPENCV),
-    "KAZE": (("KAZE", "KAZE"), False, OPENCV),
-    "SIFT": (("SIFT", "SIFT"), False, OPENCV),
-    "BEBLID-256": (None, True, CONTRIB),
-    "BEBLID-256 5x": (None, True, CONTRIB),
-    "BEBLID-512": (("ORB", "BEBLID-512"), True, CONTRIB),
-    "BEBLID-512 5x": (None, True, CONTRIB),
-    "TEBLID-256": (None, True, CONTRIB),
-    "TEBLID-256 5x": (None, True, CONTRIB),
-    "TEBLID-512": (("ORB", "TEBLID-512"), True, CONTRIB),
-    "TEBLID-512 5x": (None, True, CONTRIB),
-    "LATCH-512": (("ORB", "LATCH-512"), True, CONTRIB),
-    "BRIEF-512": (("ORB", "BRIEF-512"), False, CONTRIB),
-    "FREAK": (("ORB", "FREAK"), True, CONTRIB),
-    "DAISY": (None, False, CONTRIB),
-}
+    "Apache-2.0": {"IIB": ORB, "IIB ACCURATE": ORB, "IIB COMPACT": ORB, "IIB BALANCED": ORB, "IIB VIEWPOINT": ORB,
+                   "IIB UNIVERSAL": HESSIAN, "IIB SMALL": HESSIAN},
+    "Apache-2.0 (OpenCV)": {"ORB": ORB, "BRISK": OWN, "AKAZE-486": OWN, "KAZE": OWN, "SIFT": OWN},
+    "Apache-2.0 (opencv_contrib)": {"BEBLID-256": None, "BEBLID-256 5x": None, "BEBLID-512": ORB, "BEBLID-512 5x": None, "TEBLID-256": None,
+                                    "TEBLID-256 5x": None, "TEBLID-512": ORB, "TEBLID-512 5x": None, "LATCH-512": ORB,
+                                    "BRIEF-512": ORB, "FREAK": ORB, "DAISY": None},
+    "not free": {"SURF": OWN}}
+NOT_LEARNED = {"IIB", "BRISK", "AKAZE-486", "KAZE", "SIFT", "BRIEF-512", "DAISY", "SURF"}
 
 # The bars of descriptors alone; of two sizes of a point, the better one.
 HEADLINE = ("IIB", "IIB COMPACT", "SIFT", "KAZE", "AKAZE-486", "BEBLID-512", "TEBLID-512", "LATCH-512", "ORB",

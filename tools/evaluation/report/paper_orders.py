@@ -6,6 +6,7 @@ ONE, TWO, THREE = ("IIB x", "IIB y", "IIB i", "IIB o"), ("IIB x+y", "IIB o+i"), 
 # The best of each group finds more than the best of the next one.
 ORDERS = {"x+y above every single channel": (("IIB x+y",), ONE), "4 channels above 3 above 2 above 1": (("IIB",), THREE, TWO, ONE),
           "QUARTILE above MEAN": (("IIB quartile",), ("IIB",)), "overlap above none": (("IIB overlap",), ("IIB",)),
+          "SORT below MEAN": (("IIB",), ("IIB sort",)),
           "MAX below MEAN": (("IIB",), ("IIB max",)), "MIN below MEAN": (("IIB",), ("IIB min",)),
           "g5 above g4 above g3 above g2": (("IIB g5",), ("IIB",), ("IIB g3",), ("IIB g2",))}
 

@@ -25,9 +25,16 @@ def overview(tables):
     fixed = by(tables["fixed_points"], "configuration", place="light")
     detected = by(tables["detected_points"], "detector", "descriptor", place="light")
     times = describing_times()
-    return [{"name": name, "learned": learned, "licence": licence, "time": times.get(name), "score": fixed[name],
-             "points": points and points[0], "detected": detected.get(points), "ours": name.startswith("IIB")}
-            for name, (points, learned, licence) in descriptors.SHOWN.items() if name in fixed]
+    found = []
+    for licence, names in descriptors.SHOWN.items():
+        for name, points in names.items():
+            if name in fixed:
+                own = name.partition("-")[0]  # AKAZE-486 is AKAZE's own
+                key = (points or own, own if points == descriptors.OWN else name)
+                found.append({"name": name, "learned": name not in descriptors.NOT_LEARNED, "licence": licence, "time": times.get(name),
+                              "score": fixed[name], "points": key[0], "detected": points is not None and detected.get(key),
+                              "ours": name.startswith("IIB")})
+    return found
 
 
 def headline(rows):
