@@ -4,7 +4,7 @@
 
 #include "image_input.hpp"
 
-#include "opencv2/imgproc.hpp"
+#include "grey.hpp"
 
 namespace cv {
 namespace iib {
@@ -14,11 +14,21 @@ void checkPixels(const Mat& m, const String& what)
     if (m.depth() != CV_8U && m.depth() != CV_16U && m.depth() != CV_32F)
         CV_Error(Error::StsUnsupportedFormat,
                 what + " has type " + typeToString(m.type()) + "; convert it to 8U, 16U or 32F");
-    Point bad;
-    if (m.depth() == CV_32F && !checkRange(m, true, &bad))
+    for (int y = 0; m.depth() == CV_32F && y < m.rows; y++)
+    {
+        const float* const row = m.ptr<float>(y);
+        const int values = m.cols * m.channels();
+        int wrong = 0;  // a sum, of which the compiler makes vectors
+        for (int i = 0; i < values; i++)
+            wrong += !(std::abs(row[i]) <= FLT_MAX);
+        if (wrong == 0)
+            continue;
+        const float* const bad =
+                std::find_if(row, row + values, [](float v) { return !(std::abs(v) <= FLT_MAX); });
         CV_Error(Error::StsBadArg,
-                what + format(" is NaN or infinite at (%d, %d); replace such pixels (patchNaNs)", bad.x,
-                               bad.y));
+                what + format(" is NaN or infinite at (%d, %d); replace such pixels (patchNaNs)",
+                               (int)(bad - row) / m.channels(), y));
+    }
 }
 
 void checkImage(const Mat& image)
@@ -30,7 +40,7 @@ void checkImage(const Mat& image)
     checkPixels(image, "the image");
 }
 
-//! Colour weights in one fixed order: cvtColor's float code differs between instruction sets.
+//! Of float pixels, in one fixed order: cvtColor's code differs between instruction sets.
 static double grey(const float* pixel, int channels)
 {
     return channels == 1 ? pixel[0] : 0.114 * pixel[0] + 0.587 * pixel[1] + 0.299 * pixel[2];
@@ -66,18 +76,17 @@ Mat integerMap(const Mat& image)
         return quantized(image);
     if (image.channels() == 1)
         return image;
-    Mat result;
-    cvtColor(image, result, image.channels() == 3 ? COLOR_BGR2GRAY : COLOR_BGRA2GRAY);
-    return result;
+    return greyOf(image);
 }
 
-void checkKeyPoints(const std::vector<KeyPoint>& keypoints)
+void checkKeyPoints(const std::vector<KeyPoint>& keypoints, bool withAngles)
 {
     for (size_t i = 0; i < keypoints.size(); i++)
     {
         const KeyPoint& kp = keypoints[i];
         // written so that NaN fails
-        if (!(std::abs(kp.pt.x) <= FLT_MAX && std::abs(kp.pt.y) <= FLT_MAX && std::abs(kp.angle) <= FLT_MAX &&
+        const float angle = withAngles ? kp.angle : 0;
+        if (!(std::abs(kp.pt.x) <= FLT_MAX && std::abs(kp.pt.y) <= FLT_MAX && std::abs(angle) <= FLT_MAX &&
                     kp.size > 0 && kp.size <= FLT_MAX))
             CV_Error(Error::StsBadArg,
                     format("keypoint %d is at (%g, %g) with size %g and angle %g; all must be "

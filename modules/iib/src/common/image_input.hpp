@@ -18,12 +18,13 @@ void checkPixels(const Mat& m, const String& what);
 //! Throws unless the image is 8U, 16U or 32F with 1, 3 or 4 channels and finite.
 void checkImage(const Mat& image);
 
-/** An image as a grey map. 8U and 16U stay what they are; 32F is cut into 65535 steps between its minimum and its
+/** An image as a grey map. 8U and 16U stay what they are, those in colour by greyOf(); 32F is cut into 65535 steps between its minimum and its
  maximum, so that a gain and an offset change nothing. */
 Mat integerMap(const Mat& image);
 
-//! Throws unless position and size of every keypoint are finite and the size is positive.
-void checkKeyPoints(const std::vector<KeyPoint>& keypoints);
+//! Throws unless position and size of every keypoint are finite and the size is positive. @param withAngles whether angles are
+//! used and so must be finite.
+void checkKeyPoints(const std::vector<KeyPoint>& keypoints, bool withAngles);
 
 //! The position of the keypoint that a match refers to; throws if there is none or it is not finite.
 Point2d positionOf(const std::vector<KeyPoint>& keypoints, int index);

@@ -42,6 +42,9 @@ std::vector<Mat> extraMaps(InputArrayOfArrays arrays, int expected, Size imageSi
     return maps;
 }
 
+//! Whether matrices may share memory.
+bool overlap(const Mat& a, const Mat& b) { return a.datastart < b.dataend && b.datastart < a.dataend; }
+
 class IIBDescriptorExtractor_Impl CV_FINAL : public IIBDescriptorExtractor, public AnyImage
 {
 public:
@@ -125,7 +128,7 @@ public:
     void write(FileStorage& fs) const CV_OVERRIDE;
     using Feature2D::read;
     void read(const FileNode& fn) CV_OVERRIDE;
-    void save(const String& filename) const CV_OVERRIDE { saveAlone(*this, filename); }
+    void save(const String& filename) const CV_OVERRIDE { saveWhole(*this, filename); }
 
 private:
     //! Whether `feature` is this extractor, or a class of this library that holds it.
@@ -173,7 +176,7 @@ void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArr
     CV_TRACE_FUNCTION();
 
     const Mat image = imageArray.getMat();
-    checkKeyPoints(keypoints);
+    checkKeyPoints(keypoints, plan->parameters.orientation == ORIENTATION_KEYPOINT);
     if (image.empty())
     {
         descriptors.release();
@@ -193,8 +196,15 @@ void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArr
     }
 
     descriptors.create((int)keypoints.size(), descriptorSize(), CV_8U);
-    Mat rows = descriptors.getMat();
+    const Mat result = descriptors.getMat();
+    // not where the image is still read
+    Mat rows = overlap(result, image) || std::any_of(extra.begin(), extra.end(),
+                                                 [&](const Mat& map) { return overlap(result, map); })
+                       ? Mat(result.size(), CV_8U)
+                       : result;
     describe(*plan, image, extra, keypoints, rows);
+    if (rows.data != result.data)
+        rows.copyTo(descriptors);
 }
 
 void IIBDescriptorExtractor_Impl::write(FileStorage& fs) const

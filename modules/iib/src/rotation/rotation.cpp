@@ -93,7 +93,7 @@ std::vector<Described> describeHalf(IIBDescriptorExtractor& extractor, const Mat
     if (image.empty())
         return {};
     checkImage(image);
-    checkKeyPoints(keypoints);
+    checkKeyPoints(keypoints, false);
     const auto strength = [](const KeyPoint& kp) { return cvIsNaN(kp.response) ? -FLT_MAX : kp.response; };
     std::stable_sort(keypoints.begin(), keypoints.end(),
             [&](const KeyPoint& a, const KeyPoint& b) { return strength(a) > strength(b); });
@@ -103,7 +103,7 @@ std::vector<Described> describeHalf(IIBDescriptorExtractor& extractor, const Mat
     for (KeyPoint& kp : keypoints)
     {
         kp.pt = (kp.pt + Point2f(0.5f, 0.5f)) / 2 - Point2f(0.5f, 0.5f);
-        kp.size /= 2;
+        kp.size = std::max(kp.size / 2, FLT_MIN);  // half the least number would be 0
     }
     std::vector<KeyPoint> all;
     for (float angle : angles)
@@ -178,6 +178,22 @@ double findRotation(IIBDescriptorExtractor& extractor, const Mat& image1,
     return std::max(votes.peak(), 0.);
 }
 
+void checkArguments(
+        const Ptr<IIBDescriptorExtractor>& extractor, const Ptr<DescriptorMatcher>& matcher, double rotation)
+{
+    if (!extractor || !matcher)
+        CV_Error(Error::StsNullPtr, "there is no " + String(extractor ? "matcher" : "extractor"));
+    if (extractor->getOrientation() != IIBDescriptorExtractor::ORIENTATION_KEYPOINT)
+        CV_Error(Error::StsBadArg,
+                format("the extractor's orientation is %d; call setOrientation(ORIENTATION_KEYPOINT), which "
+                       "describes keypoints of angle -1 upright as before",
+                        extractor->getOrientation()));
+    if (!(rotation == -1 || (rotation >= 0 && rotation < 360)))
+        CV_Error(Error::StsOutOfRange,
+                format("the rotation is %g; it is 0 or more and less than 360 degrees, or -1 to find it",
+                        rotation));
+}
+
 }  // namespace
 
 double estimateRotation(const std::vector<KeyPoint>& keypoints1, const std::vector<KeyPoint>& keypoints2,
@@ -215,17 +231,7 @@ double matchRotated(InputArray image1, std::vector<KeyPoint>& keypoints1, InputA
         std::vector<KeyPoint>& keypoints2, const Ptr<IIBDescriptorExtractor>& extractor,
         const Ptr<DescriptorMatcher>& matcher, std::vector<DMatch>& matches1to2, double rotation)
 {
-    if (!extractor || !matcher)
-        CV_Error(Error::StsNullPtr, "there is no " + String(extractor ? "matcher" : "extractor"));
-    if (extractor->getOrientation() != IIBDescriptorExtractor::ORIENTATION_KEYPOINT)
-        CV_Error(Error::StsBadArg,
-                format("the extractor's orientation is %d; call setOrientation(ORIENTATION_KEYPOINT), which "
-                       "describes keypoints of angle -1 upright as before",
-                        extractor->getOrientation()));
-    if (!(rotation == -1 || (rotation >= 0 && rotation < 360)))
-        CV_Error(Error::StsOutOfRange,
-                format("the rotation is %g; it is 0 or more and less than 360 degrees, or -1 to find it",
-                        rotation));
+    checkArguments(extractor, matcher, rotation);
     const Mat images[] = {image1.getMat(), image2.getMat()};
     if (rotation < 0)
         rotation = findRotation(*extractor, images[0], keypoints1, images[1], keypoints2);
@@ -247,11 +253,14 @@ double matchRotated(InputArray image1, InputArray image2, const Ptr<IIBDescripto
         const Ptr<DescriptorMatcher>& matcher, std::vector<KeyPoint>& keypoints1,
         std::vector<KeyPoint>& keypoints2, std::vector<DMatch>& matches1to2, double rotation)
 {
-    if (!extractor)
-        CV_Error(Error::StsNullPtr, "there is no extractor");
-    extractor->detect(image1, keypoints1);
-    extractor->detect(image2, keypoints2);
-    return matchRotated(image1, keypoints1, image2, keypoints2, extractor, matcher, matches1to2, rotation);
+    checkArguments(extractor, matcher, rotation);
+    std::vector<KeyPoint> first, second;  // what the caller has stays if something is wrong
+    extractor->detect(image1, first);
+    extractor->detect(image2, second);
+    rotation = matchRotated(image1, first, image2, second, extractor, matcher, matches1to2, rotation);
+    keypoints1.swap(first);
+    keypoints2.swap(second);
+    return rotation;
 }
 
 }  // namespace iib

@@ -93,11 +93,31 @@ TEST(IIB_Errors, keypoints)
     for (float bad : {NOT_A_NUMBER, ENDLESS, -ENDLESS})
         for (const KeyPoint& kp :
                 {KeyPoint(bad, 1, 9), KeyPoint(1, bad, 9), KeyPoint(1, 1, bad), KeyPoint(1, 1, 9, bad)})
-            expectComputeError(*IIB::create(), Error::StsBadArg, "keypoint 1 is at", image,
-                    std::vector<Mat>(), {KeyPoint(1, 1, 9), kp});
+        {
+            const Ptr<IIB> iib = IIB::create();
+            iib->setUseOrientation(true);
+            expectComputeError(*iib, Error::StsBadArg, "keypoint 1 is at", image, std::vector<Mat>(),
+                    {KeyPoint(1, 1, 9), kp});
+        }
     for (float size : {0.f, -1.f})
         expectComputeError(*IIB::create(), Error::StsBadArg, format("with size %g", size), image,
                 std::vector<Mat>(), {KeyPoint(1, 1, 9), KeyPoint(1, 1, 9), KeyPoint(1, 1, size)});
+}
+
+// Detectors leave them at anything; bits are those of any other angle.
+TEST(IIB_Errors, angles_that_nobody_reads_may_be_anything)
+{
+    const Mat image = texture(SIZE, CV_8U, 1);
+    const Ptr<IIB> iib = IIB::create();
+    for (int orientation : {IIB::ORIENTATION_NONE, IIB::ORIENTATION_GRADIENT})
+        for (float angle : {NOT_A_NUMBER, ENDLESS})
+        {
+            iib->setOrientation(orientation);
+            std::vector<KeyPoint> keypoints = {KeyPoint(30, 20, 9, angle)};
+            Mat bits;
+            iib->compute(image, keypoints, bits);
+            EXPECT_EQ(0, differingBits(describe(*iib, image, {KeyPoint(30, 20, 9, 5)}), bits));
+        }
 }
 
 TEST(IIB_Errors, detectors_without_a_scale_factor)

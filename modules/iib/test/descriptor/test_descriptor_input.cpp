@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/test_images.hpp"
+#include "../../src/common/grey.hpp"
 
 #include <thread>
 
@@ -150,6 +151,81 @@ TEST(IIB_Input, float_colour_weighs_channels_as_cvtColor)
             else  // alpha has no weight
                 EXPECT_EQ(0, differingBits(Mat::zeros(expected.size(), CV_8U), descriptors));
         }
+}
+
+// FLT_MAX is a number, and usual for "no depth".
+TEST(IIB_Input, the_largest_float_is_finite)
+{
+    const Ptr<IIB> iib = IIB::create(1.f, 4, 15, IIB::MAPPING_MEAN, false, false, 1);
+    Mat image, depth;
+    texture(SIZE, CV_8U, 1).convertTo(image, CV_32F);
+    texture(SIZE, CV_8U, 2).convertTo(depth, CV_32F);
+    image.at<float>(70, 90) = -FLT_MAX;
+    depth(Rect(80, 60, 20, 20)) = FLT_MAX;
+    Mat ranked = Mat::zeros(SIZE, CV_32F);  // all but the largest are the least, of 65535 steps
+    ranked(Rect(80, 60, 20, 20)) = 1;
+    const std::vector<KeyPoint> keypoints = {KeyPoint(90, 70, 40)};
+    EXPECT_EQ(0, differingBits(describe(*iib, image, keypoints, std::vector<Mat>(1, depth)),
+                         describe(*iib, image, keypoints, std::vector<Mat>(1, ranked))));
+}
+
+// An image may be as large as its descriptors, of their type.
+TEST(IIB_Input, descriptors_may_go_where_the_image_is)
+{
+    const Ptr<IIB> iib = IIB::create(1.f, 4, 15, IIB::MAPPING_MEAN, false, false, 1);
+    const Size size(iib->descriptorSize(), 150);
+    const Mat image = texture(size, CV_8U, 1), map = texture(size, CV_8U, 2);
+    const std::vector<KeyPoint> keypoints = scatter(size, size.height, 16.f, 60.f, 3);
+    const Mat expected = describe(*iib, image, keypoints, std::vector<Mat>(1, map));
+    for (bool intoMap : {false, true})
+    {
+        const Mat images[] = {image.clone(), map.clone()};
+        Mat descriptors = images[intoMap];
+        std::vector<KeyPoint> copy = keypoints;
+        iib->compute(images[0], std::vector<Mat>(1, images[1]), copy, descriptors);
+        EXPECT_EQ(0, differingBits(expected, descriptors));
+        EXPECT_EQ(images[intoMap].data, descriptors.data);
+    }
+}
+
+//! What descriptor.hpp says of colour.
+Mat plainGrey(const Mat& image)
+{
+    Mat grey(image.size(), image.depth());
+    for (int y = 0; y < image.rows; y++)
+        for (int x = 0; x < image.cols; x++)
+        {
+            double sum = 0;
+            const double weights[] = {3735, 19235, 9798};
+            for (int c = 0; c < 3; c++)
+            {
+                const int i = x * image.channels() + c;
+                sum += weights[c] *
+                       (image.depth() == CV_8U ? image.ptr<uchar>(y)[i] : image.ptr<ushort>(y)[i]);
+            }
+            const int value = (int)std::floor((sum + 16384) / 32768);
+            if (image.depth() == CV_8U)
+                grey.at<uchar>(y, x) = (uchar)value;
+            else
+                grey.at<ushort>(y, x) = (ushort)value;
+        }
+    return grey;
+}
+
+TEST(IIB_Input, colour_becomes_grey_by_whole_numbers)
+{
+    for (int depth : {CV_8U, CV_16U})
+        for (int channels : {3, 4})
+            for (int width = 1; width <= 150; width += width < 70 ? 1 : 19)
+            {
+                Mat image(5, width + 3, CV_MAKETYPE(depth, channels));
+                randu(image, 0, depth == CV_8U ? 256 : 65536);
+                image.row(1).setTo(Scalar::all(0));
+                image.row(2).setTo(Scalar::all(depth == CV_8U ? 255 : 65535));
+                const Mat part = image.colRange(2, 2 + width);
+                EXPECT_EQ(0, cvtest::norm(plainGrey(part), greyOf(part), NORM_INF))
+                        << width << " " << part.type();
+            }
 }
 
 }  // namespace

@@ -246,6 +246,31 @@ TEST(IIB_MatchRotated, errors)
     // what was given stays
     EXPECT_EQ(77, first[0].angle);
     EXPECT_EQ(77, second[0].angle);
+    const size_t count = first.size();
+    const auto detecting = [&](const Ptr<IIB>& extractor, const Ptr<HierarchicalMatcher>& m,
+                                   double rotation) {
+        return [&, extractor, m, rotation] {
+            matchRotated(pair.images[0], pair.images[0], extractor, m, first, second, matches, rotation);
+        };
+    };
+    expectError(Error::StsNullPtr, "no matcher", detecting(rotating(), Ptr<HierarchicalMatcher>(), -1));
+    expectError(Error::StsOutOfRange, "rotation is", detecting(rotating(), matcher, 400));
+    expectError(Error::StsBadArg, "ORIENTATION_KEYPOINT", detecting(IIB::create(), matcher, -1));
+    expectError(Error::StsBadArg, "extra channel", detecting(withMap, matcher, -1));
+    EXPECT_EQ(count, first.size());
+    EXPECT_EQ(77, first[0].angle);
+    EXPECT_EQ(77, second[0].angle);
+}
+
+// Half of it, for the image of half the size, would be 0.
+TEST(IIB_MatchRotated, the_least_size_is_one)
+{
+    RotatedPair pair(60);
+    std::vector<DMatch> matches;
+    pair.keypoints[0][3].size = std::numeric_limits<float>::denorm_min();
+    pair.keypoints[0][3].response = FLT_MAX;  // among the strongest, which are tried
+    EXPECT_NO_THROW(matchRotated(pair.images[0], pair.keypoints[0], pair.images[1], pair.keypoints[1],
+            rotating(), HierarchicalMatcher::createRecommended(), matches));
 }
 
 }  // namespace
