@@ -30,7 +30,7 @@ const size_t LETTERS = 8;
 
 #ifdef _WIN32
 int processId() { return _getpid(); }
-String withoutLinks(const String& name) { return name; }
+String fileOf(const String& name) { return name; }
 void keepRights(std::FILE*, const struct stat&) {}
 bool flushToDisk(std::FILE* file) { return std::fflush(file) == 0 && _commit(_fileno(file)) == 0; }
 bool replace(const String& from, const String& to, const String&)
@@ -40,11 +40,16 @@ bool replace(const String& from, const String& to, const String&)
 #else
 int processId() { return (int)getpid(); }
 
-String withoutLinks(const String& name)
+String fileOf(const String& name)
 {
+    struct stat status;
+    if (lstat(name.c_str(), &status) != 0 || !S_ISLNK(status.st_mode))
+        return name;
     char* const resolved = realpath(name.c_str(), 0);
-    const String result = resolved ? resolved : name.c_str();
+    const String result = resolved ? resolved : "";
     std::free(resolved);
+    if (result.empty())
+        CV_Error(Error::StsError, "Cannot write " + name + ": it is a link that leads to no file");
     return result;
 }
 
@@ -72,30 +77,36 @@ bool replace(const String& from, const String& to, const String& folder)
 }
 #endif
 
+//! Whoever opens a file by a C string would open another one.
+void checkName(const String& name)
+{
+    if (name.find('\0') != String::npos)
+        CV_Error(Error::StsBadArg,
+                format("the name of a file that begins with %s holds a zero byte", name.c_str()));
+}
+
 }  // namespace
 
 //! A file that takes the place of another when it is whole: written beside it, flushed to the disk, renamed.
 class ReplacedFile
 {
 public:
-    explicit ReplacedFile(const String& filename) : name(filename), target(withoutLinks(filename)), stream(0)
+    explicit ReplacedFile(const String& filename) : name(filename), target(fileOf(filename)), stream(0)
     {
+        checkName(filename);
         struct stat status;
         const bool exists = stat(target.c_str(), &status) == 0;
         if (exists && (status.st_mode & S_IFMT) != S_IFREG)
-            stream = std::fopen(target.c_str(), "wb");
-        else
+            CV_Error(Error::StsError, "Cannot write " + name + ": it is a folder, a device or a pipe");
+        static std::atomic<int> counter(0);
+        for (int attempt = 0; attempt < 100 && !stream; attempt++)  // another's name in use
         {
-            static std::atomic<int> counter(0);
-            for (int attempt = 0; attempt < 100 && !stream; attempt++)  // another's name in use
-            {
-                temporary = format("%s.%d-%d.tmp", target.c_str(), processId(), counter++);
-                stream = std::fopen(temporary.c_str(), "wbx");
-            }
+            temporary = format("%s.%d-%d.tmp", target.c_str(), processId(), counter++);
+            stream = std::fopen(temporary.c_str(), "wbx");
         }
         if (!stream)
             CV_Error(Error::StsError, "Cannot write " + name + ": check the folder and its rights");
-        if (exists && !temporary.empty())
+        if (exists)
             keepRights(stream, status);
     }
     ReplacedFile(const ReplacedFile&) = delete;
@@ -104,7 +115,7 @@ public:
     {
         if (stream)
             std::fclose(stream);
-        if (!temporary.empty())
+        if (!committed)
             std::remove(temporary.c_str());
     }
 
@@ -119,24 +130,28 @@ public:
         // Before anything is done, since memory may lack.
         const size_t slash = target.rfind('/');
         const String folder = slash == String::npos ? String(".") : target.substr(0, slash + 1);
-        bool good =
-                !std::ferror(stream) && (temporary.empty() ? std::fflush(stream) == 0 : flushToDisk(stream));
-        good = std::fclose(stream) == 0 && good;
+        const bool good = !std::ferror(stream) && flushToDisk(stream), closed = std::fclose(stream) == 0;
         stream = 0;
-        if (good && !temporary.empty())
-            good = replace(temporary, target, folder);
-        if (!good)
+        committed = good && closed && replace(temporary, target, folder);
+        if (!committed)
             CV_Error(Error::StsError,
                     "Cannot write " + name + ": check the folder, its rights and the free space");
-        temporary.clear();
     }
 
 private:
     const String name;    //!< as given, for errors
     const String target;  //!< with links resolved
-    String temporary;     //!< what the destructor removes; empty if the target is written directly
+    String temporary;
     std::FILE* stream;
+    bool committed = false;
 };
+
+void writeText(const String& filename, const String& text)
+{
+    ReplacedFile file(filename);
+    file.write(text.c_str(), text.size());
+    file.commit();
+}
 
 CheckedWriter::CheckedWriter(const String& filename, const FileKind& kind)
     : file(makePtr<ReplacedFile>(filename)), written(0)
@@ -185,6 +200,7 @@ CheckedReader::CheckedReader(const String& filename, const FileKind& kind)
     : name(filename), kindName(kind.name), stream(filename.c_str(), std::ios::binary), whole(0), rest(0),
       format(0)
 {
+    checkName(filename);
     stream.seekg(0, std::ios::end);
     const std::streamoff end = stream.tellg();
     stream.seekg(0);

@@ -31,6 +31,9 @@ private:
     uint64 state;
 };
 
+//! Writes a whole file as CheckedWriter does. @throws cv::Exception if it cannot; the old file is then as it was.
+void writeText(const String& filename, const String& text);
+
 class ReplacedFile;
 
 //! The eight letters, the newest version that is understood, and what errors call such a file.
@@ -42,8 +45,8 @@ struct FileKind
 };
 
 /** Writes beside the file of that name, which stays as it is until commit(), and if anything fails: who reads meanwhile gets
-the old one or the new one. What a symbolic link points to is replaced, not the link. What is no regular file, a device or
-a pipe, is written directly. */
+the old one or the new one. A symbolic link is followed: the file that it leads to is replaced. A link that leads to none is
+refused, and so is what is no regular file: a folder, a device, a pipe. */
 class CV_EXPORTS CheckedWriter
 {
 public:

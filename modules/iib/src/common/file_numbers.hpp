@@ -5,6 +5,7 @@
 #pragma once
 
 #include "../precomp.hpp"
+#include "checked_file.hpp"
 
 namespace cv {
 namespace iib {
@@ -71,12 +72,22 @@ inline FileNode nodeOfFormat1(const FileNode& node, const char* name)
     return fn;
 }
 
-//! Algorithm::save() of one whose getDefaultName() holds a dot, which a node's name may not: what write() writes, alone.
-inline void saveAlone(const Algorithm& algorithm, const String& filename)
+/** Algorithm::save() that fails loudly, where OpenCV's own leaves half a file on a full disk. @param name of the node around
+ what write() writes; empty: none, for names that no node may have. */
+inline void saveWhole(const Algorithm& algorithm, const String& filename, const String& name = String())
 {
-    FileStorage fs(filename, FileStorage::WRITE);
+    const size_t dot = filename.rfind('.');
+    const bool packed =
+            dot != String::npos && filename.substr(dot) == ".gz";  // which OpenCV does in files alone
+    FileStorage fs(filename, FileStorage::WRITE + (packed ? 0 : FileStorage::MEMORY));
     CV_Assert(fs.isOpened());
+    if (!name.empty())
+        fs << name << "{";
     algorithm.write(fs);
+    if (!name.empty())
+        fs << "}";
+    if (!packed)
+        writeText(filename, fs.releaseAndGetString());
 }
 
 }  // namespace iib

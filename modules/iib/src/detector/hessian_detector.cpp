@@ -97,7 +97,7 @@ public:
         p = r;
     }
 
-    void save(const String& filename) const CV_OVERRIDE { saveAlone(*this, filename); }
+    void save(const String& filename) const CV_OVERRIDE { saveWhole(*this, filename); }
 
 private:
     template <typename T> void set(T HessianParameters::*member, T value)

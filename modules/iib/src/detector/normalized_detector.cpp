@@ -93,7 +93,7 @@ public:
         sigma = other->getSigma();
     }
 
-    void save(const String& filename) const CV_OVERRIDE { saveAlone(*this, filename); }
+    void save(const String& filename) const CV_OVERRIDE { saveWhole(*this, filename); }
 
 private:
     Ptr<Feature2D> detector;

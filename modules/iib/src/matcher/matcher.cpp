@@ -2,6 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
+#include "../common/file_numbers.hpp"
 #include "parameters.hpp"
 #include "results.hpp"
 
@@ -115,6 +116,7 @@ public:
     }
     void write(FileStorage& fs) const CV_OVERRIDE { writeParameters(fs, parameters); }
     String getDefaultName() const CV_OVERRIDE { return "HierarchicalMatcher"; }
+    void save(const String& filename) const CV_OVERRIDE { saveWhole(*this, filename, getDefaultName()); }
     void saveIndex(const String& filename) const CV_OVERRIDE
     {
         if (!index)

@@ -162,6 +162,55 @@ TEST(IIB_IndexFile, devices_links_and_rights_stay_what_they_are)
     ASSERT_EQ(0, stat(file.name.c_str(), &target));
     EXPECT_EQ(0640u, target.st_mode & 0777u);
     EXPECT_EQ(2, HierarchicalMatcher::loadIndex(file.name)->getTrainDescriptors()[0].rows);
+    // a link that leads to no file would be replaced itself, not what it names
+    ASSERT_EQ(0, std::remove(file.name.c_str()));
+    expectError(Error::StsError, "leads to no file", [&] { matcherOf(2)->saveIndex(link.name); });
+    ASSERT_EQ(0, lstat(link.name.c_str(), &entry));
+    EXPECT_TRUE(S_ISLNK(entry.st_mode));
+    const TemporaryFolder folder;
+    expectError(
+            Error::StsError, "a folder, a device or a pipe", [&] { matcherOf(2)->saveIndex(folder.name); });
+}
+
+// A C string ends at its first zero: another file would be opened.
+TEST(IIB_IndexFile, names_are_bytes_without_a_zero)
+{
+    const TemporaryFolder folder;
+    const String bytes = folder.name + "/\xff\xfe\x80.iib", zero = folder.name + String("/a\0b.yml", 8);
+    matcherOf(3)->saveIndex(bytes);
+    EXPECT_EQ(3, HierarchicalMatcher::loadIndex(bytes)->getTrainDescriptors()[0].rows);
+    expectError(Error::StsBadArg, "a zero byte", [&] { matcherOf(3)->saveIndex(zero); });
+    expectError(Error::StsBadArg, "a zero byte", [&] { HierarchicalMatcher::loadIndex(zero); });
+    expectError(Error::StsBadArg, "a zero byte", [&] { matcherOf(3)->save(zero); });
+    expectError(Error::StsBadArg, "a zero byte", [&] { IIB::create()->save(zero); });
+    std::vector<String> files;
+    cv::glob(folder.name + "/*", files);
+    EXPECT_EQ(std::vector<String>(1, bytes), files);
+}
+
+TEST(IIB_IndexFile, parameters_on_a_full_disk_keep_the_old_file)
+{
+    const TemporaryFolder folder;
+    const Ptr<Algorithm> savers[] = {IIB::createPreset(IIB::PRESET_S512), matcherOf(2),
+            HessianDetector::create(), NormalizedDetector::create(ORB::create())};
+    for (const char* extension : {".yml", ".xml", ".json"})
+        for (const Ptr<Algorithm>& saver : savers)
+        {
+            const String name = folder.name + "/parameters" + extension;
+            saver->save(name);
+            const std::string before = readFile(name);
+            ASSERT_GT(before.size(), 60u);
+            {
+                const FullDisk full(50);
+                EXPECT_THROW(saver->save(name), cv::Exception) << name;
+            }
+            EXPECT_EQ(before, readFile(name));
+        }
+    const Ptr<HierarchicalMatcher> matcher =
+            HierarchicalMatcher::create({2, 8}, HierarchicalMatcher::ADAPTIVE);
+    matcher->save(folder.name + "/m.yml.gz");  // which OpenCV writes
+    EXPECT_EQ(HierarchicalMatcher::ADAPTIVE,
+            Algorithm::load<HierarchicalMatcher>(folder.name + "/m.yml.gz")->getMode());
 }
 #endif
 

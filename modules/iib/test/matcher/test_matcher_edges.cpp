@@ -8,6 +8,12 @@
 
 #include <numeric>
 
+#ifdef __linux__
+#include <fstream>
+#include <sys/resource.h>
+#include <unistd.h>
+#endif
+
 namespace opencv_test {
 namespace {
 
@@ -241,6 +247,37 @@ TEST(IIB_MatcherEdges, bad_input_throws)
     EXPECT_THROW(HierarchicalMatcher::create({8, 0}), cv::Exception);
     EXPECT_THROW(HierarchicalMatcher::create({32}, HierarchicalMatcher::THRESHOLD, -1.f), cv::Exception);
 }
+
+#if defined __linux__ && !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__
+//! The process gets no more than so many bytes beside those that it has.
+struct LittleMemory
+{
+    rlimit before;
+    explicit LittleMemory(rlim_t bytes)
+    {
+        size_t pages = 0;
+        std::ifstream("/proc/self/statm") >> pages;
+        getrlimit(RLIMIT_AS, &before);
+        rlimit limit = before;
+        limit.rlim_cur = pages * sysconf(_SC_PAGESIZE) + bytes;
+        setrlimit(RLIMIT_AS, &limit);
+    }
+    ~LittleMemory() { setrlimit(RLIMIT_AS, &before); }
+};
+
+// Only stages take pairs one by one and need them unpacked: 128 MB here.
+TEST(IIB_MatcherEdges, long_codes_take_no_second_copy)
+{
+    const int bytes = 1 << 16, rows = 2048;
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(std::vector<int>(1, bytes));
+    matcher->add(randomDescriptors(1, rows, bytes));
+    const Mat query = randomDescriptors(2, 1, bytes);
+    Matches found;
+    matcher->knnMatch(query, found, 3);  // the threads, if there were none
+    const LittleMemory little(64 << 20);
+    EXPECT_NO_THROW(matcher->knnMatch(query, found, 2));
+}
+#endif
 
 }  // namespace
 }  // namespace opencv_test

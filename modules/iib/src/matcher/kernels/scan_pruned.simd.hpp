@@ -31,7 +31,7 @@ class PrunedScanner : public Scanner
 public:
     explicit PrunedScanner(const PrunedScan& s)
         : Scanner(s.pairs), scan(s), policy(s.policy), stageCount((int)policy.stages.size()), lists(blocks),
-          trains(s.pairs), words(stageCount + 1)
+          trains(s.pairs, stageCount > 0 ? s.pairs.trainCount : 0), words(stageCount + 1)
     {
         for (int stage = 0; stage < stageCount; stage++)
             words[stage] = policy.stages[stage].words;

@@ -86,10 +86,11 @@ private:
 class PlainCodes
 {
 public:
-    explicit PlainCodes(const CodePairs& p)
-        : pairs(p), known(p.trainCount), words((size_t)p.trainCount * p.layout.words())
+    //! @param count how many there may be to unpack: all or none.
+    PlainCodes(const CodePairs& p, int count)
+        : pairs(p), known(count), words((size_t)count * p.layout.words())
     {
-        std::fill_n(known.data(), p.trainCount, (uchar)0);
+        std::fill_n(known.data(), count, (uchar)0);
     }
 
     const unsigned* operator[](int train)
