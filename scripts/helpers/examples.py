@@ -13,8 +13,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 EXTRACTOR = re.compile(r'\bIIB(?:DescriptorExtractor)?(?:::|\.)(?:create\w*)\(')
 MATCHER = re.compile(r'\bHierarchicalMatcher(?:(?:::|\.)create\w*)?\(')
 DEFAULTS = {
-    'modules/iib/samples/iib_demo_options.hpp': ('{detector    | HESSIAN ', '{preset      | UNIVERSAL '),
-    'modules/iib/samples/iib_demo_pipeline.hpp': ('HierarchicalMatcher::createRecommended()', 'MAX_KEYPOINTS = 1000;'),
+    'modules/iib/samples/iib_demo.cpp': ('IIBDescriptorExtractor::createRecommended(MAX_KEYPOINTS)',
+                                         'HierarchicalMatcher::createRecommended()', 'MAX_KEYPOINTS = 1000,'),
     'python/opencv_iib/colmap/features.py': ("detector: str = 'HESSIAN'", "preset: str = 'UNIVERSAL'"),
     'python/opencv_iib/colmap/pipeline.py': ('ratio: float = .9', 'crossCheck=True'),
     'modules/iib_geometry/src/localizer.cpp': ('IIB::createRecommended(', 'HierarchicalMatcher::createRecommended()'),

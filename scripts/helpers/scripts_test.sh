@@ -37,7 +37,8 @@ refused scripts/bench.sh --rounds=-1
 refused scripts/bench.sh --rounds=0
 refused scripts/bench.sh folder
 refused scripts/demo.sh no-such.png no-such.png
-refused scripts/demo.sh --detector=SURFER
+refused scripts/demo.sh --detector=SURF
+refused scripts/demo.sh --out picture.png
 refused scripts/evaluate.sh
 refused scripts/evaluate.sh no-such-folder
 refused scripts/evaluate.sh --points=many .
