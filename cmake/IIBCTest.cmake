@@ -11,7 +11,7 @@ if(IIB_DISPATCH)
 endif()
 # Suites of kernels, which compare every instruction set with naive code over sizes and alignments. Sanitized, where all
 # takes ten times as long, the others run once by day, and under each pin by night.
-set(kernels_of_opencv_test_iib Kernels Hamming Bits Boxes Rotated GradientOrientation Normalization Matcher_Sizes Golden InstructionSets)
+set(kernels_of_opencv_test_iib Kernels Hamming Bits Boxes Rotated GradientOrientation Normalization Refinement Matcher_Sizes Golden InstructionSets)
 set(kernels_of_opencv_test_iib_index MappedIndex)
 set(kernels_of_opencv_test_iib_geometry Localiz)
 set(label "")

@@ -12,6 +12,8 @@ namespace {
 const double SIGMA = 7;            //!< of the weights, in units of the patch
 const double UNITS_OF_PLACE = 16;  //!< of PatchWeights::x and y
 const int MOST_STEPS = 12;
+const double DEFORMATION_MARGIN =
+        4;  //!< pixels that a patch may reach farther than where it starts, besides its move
 const double LAST_STEP = 1e-3;      //!< in units: no step follows one that is as short
 const double LEAST_DEVIATION = .5;  //!< normalized grey levels: without contrast there is nothing to match
 const double LEAST_SIMILARITY = .5;
@@ -123,7 +125,8 @@ Mat smoothedForAlignment(const Mat& normalized)
 }
 
 PatchAligner::PatchAligner()
-    : kernels(refinementKernels()), weights(patchWeights()), window(WINDOW * WINDOW), samples(PATCH_SAMPLES),
+    : kernels(refinementKernels()), weights(patchWeights()), window(WINDOW * WINDOW + WINDOW_PADDING),
+      samples(PATCH_SAMPLES), derivativesX(PATCH_SAMPLES), derivativesY(PATCH_SAMPLES),
       weightsOfSums(PATCH_SAMPLES * (SUMS - SUM_TEMPLATE))
 {
     weightsOf[SUM_SAMPLES] = weights.samples;
@@ -132,20 +135,38 @@ PatchAligner::PatchAligner()
         weightsOf[SUM_TEMPLATE + k] = templateWeights[k] = weightsOfSums.data() + k * PATCH_SAMPLES;
 }
 
-void PatchAligner::readWindow(const Mat& image, const PatchPlace& place)
+//! How far a patch reaches from its centre, in x and in y.
+static Point2d reachOf(const Matx22d& map)
 {
-    origin = Point(cvFloor(place.x) - WINDOW / 2, cvFloor(place.y) - WINDOW / 2);
-    for (int y = 0; y < WINDOW; y++)
-        for (int x = 0; x < WINDOW; x++)
+    const double halfColumns = (PATCH_COLUMNS - 1) / 2., halfRows = (PATCH_ROWS - 1) / 2.;
+    return Point2d(std::abs(map(0, 0)) * halfColumns + std::abs(map(0, 1)) * halfRows,
+            std::abs(map(1, 0)) * halfColumns + std::abs(map(1, 1)) * halfRows);
+}
+
+//! The surroundings of a place, beyond the image those of its border.
+void PatchAligner::readWindow(const Mat& image, const PatchPlace& place, double margin)
+{
+    const Point2d reach = reachOf(place.map);
+    const int halfWidth = cvCeil(std::min(reach.x + margin, WINDOW / 2 - 1.)) + 1;
+    const int halfHeight = cvCeil(std::min(reach.y + margin, WINDOW / 2 - 1.)) + 1;
+    pixels = Rect(cvFloor(place.x) + 1 - halfWidth, cvFloor(place.y) + 1 - halfHeight, 2 * halfWidth,
+            2 * halfHeight);
+    const bool inside = pixels.x >= 0 && pixels.x + pixels.width + WINDOW_PADDING <= image.cols;
+    uchar border[2][WINDOW + WINDOW_PADDING];
+    const uchar* rows[2];
+    for (int y = 0; y <= pixels.height; y++)
+    {
+        const uchar* row = image.ptr(std::min(std::max(pixels.y + y, 0), image.rows - 1));
+        rows[y & 1] = row + pixels.x;
+        if (!inside)
         {
-            const auto pixel = [&](int dy, int dx) {
-                const int row = std::min(std::max(origin.y + y + dy, 0), image.rows - 1);
-                const int column = std::min(std::max(origin.x + x + dx, 0), image.cols - 1);
-                return (unsigned)(image.at<uchar>(row, column) ^ 128);
-            };
-            window[y * WINDOW + x] =
-                    (int)(pixel(0, 0) | pixel(1, 0) << 8 | pixel(0, 1) << 16 | pixel(1, 1) << 24);
+            for (int x = 0; x <= pixels.width; x++)
+                border[y & 1][x] = row[std::min(std::max(pixels.x + x, 0), image.cols - 1)];
+            rows[y & 1] = border[y & 1];
         }
+        if (y > 0)
+            kernels.readWindow(rows[~y & 1], rows[y & 1], window.data() + (y - 1) * WINDOW, pixels.width);
+    }
 }
 
 //! False if a sample would be outside the window.
@@ -153,10 +174,9 @@ bool PatchAligner::sampleAt(const PatchPlace& place)
 {
     const double halfColumns = (PATCH_COLUMNS - 1) / 2., halfRows = (PATCH_ROWS - 1) / 2.;
     const Matx22d& m = place.map;
-    const double x = place.x - origin.x, y = place.y - origin.y;
-    const double reachX = std::abs(m(0, 0)) * halfColumns + std::abs(m(0, 1)) * halfRows + .01;
-    const double reachY = std::abs(m(1, 0)) * halfColumns + std::abs(m(1, 1)) * halfRows + .01;
-    if (!(x - reachX >= 0 && x + reachX < WINDOW && y - reachY >= 0 && y + reachY < WINDOW))
+    const double x = place.x - pixels.x, y = place.y - pixels.y;
+    const Point2d reach = reachOf(m) + Point2d(.01, .01);  // for roundings of positions
+    if (!(x - reach.x >= 0 && x + reach.x < pixels.width && y - reach.y >= 0 && y + reach.y < pixels.height))
         return false;
     const auto fixed = [](double value) { return cvRound(value * (1 << POSITION_BITS)); };
     const PatchGrid grid = {Point(fixed(x - m(0, 0) * halfColumns - m(0, 1) * halfRows),
@@ -166,16 +186,15 @@ bool PatchAligner::sampleAt(const PatchPlace& place)
     return true;
 }
 
-PatchAligner::Moments PatchAligner::momentsOf(int count) const
+PatchAligner::Moments PatchAligner::momentsOf(bool all) const
 {
     static const double squaresOfRoots = sumOf(weights.roots, 2) / 65536 / 65536;
     int sums[SUMS];
-    const double squares =
-            kernels.sum(samples.data(), weightsOf, count, weights.roots, sums) / squaresOfRoots;
+    const double squares = kernels.sum(samples.data(), weightsOf, all, weights.roots, sums) / squaresOfRoots;
     const double mean = sums[SUM_SAMPLES] / totals[SUM_SAMPLES];
     Moments moments;
     moments.sums[SUM_SAMPLES] = mean;
-    for (int k = SUM_TEMPLATE; k < count; k++)
+    for (int k = SUM_TEMPLATE; all && k < SUMS; k++)
         moments.sums[k] = sums[k] - mean * totals[k];
     moments.deviation = std::sqrt(std::max(squares - mean * mean, 0.));
     return moments;
@@ -185,12 +204,13 @@ PatchAligner::Moments PatchAligner::momentsOf(int count) const
 bool PatchAligner::makeTemplate()
 {
     static const std::vector<short> ones(PATCH_SAMPLES, 1);
-    ofTemplate = momentsOf(SUM_TEMPLATE);
+    ofTemplate = momentsOf(false);
     const double deviation = ofTemplate.deviation;
     if (!(deviation >= LEAST_DEVIATION * (1 << SAMPLE_BITS)))
         return false;
     float columns[COLUMN_SUMS][PATCH_COLUMNS];
-    kernels.sumColumns(samples.data(), weights, columns);
+    kernels.derive(samples.data(), derivativesX.data(), derivativesY.data());
+    kernels.sumColumns(derivativesX.data(), derivativesY.data(), weights, columns);
     // the sum of column sums, times weights and a power of x
     const auto total = [&](int sum, int power) {
         double result = 0;
@@ -225,11 +245,12 @@ bool PatchAligner::makeTemplate()
             return false;
         scales[1 + i] = (float)(LARGEST_SUM / std::sqrt(normal(i, i)));
     }
-    kernels.weigh(samples.data(), weights, (float)ofTemplate.sums[SUM_SAMPLES], scales, templateWeights);
+    kernels.weigh(samples.data(), derivativesX.data(), derivativesY.data(), weights,
+            (float)ofTemplate.sums[SUM_SAMPLES], scales, templateWeights);
     int ofOnes[SUMS];
-    kernels.sum(ones.data(), weightsOf, SUMS, weights.roots, ofOnes);
+    kernels.sum(ones.data(), weightsOf, true, weights.roots, ofOnes);
     std::copy(ofOnes + SUM_TEMPLATE, ofOnes + SUMS, totals + SUM_TEMPLATE);
-    ofTemplate = momentsOf(SUMS);
+    ofTemplate = momentsOf(true);
     double ofContrast[6];
     for (int i = 0; i < 6; i++)
     {
@@ -251,17 +272,17 @@ PatchAlignment PatchAligner::align(
 {
     const PatchPlace start = place;
     PatchAlignment result = {false, start.x, start.y, -1, {1, 0, 1}};
-    readWindow(image1, place1);
+    readWindow(image1, place1, 1);
     if (!sampleAt(place1) || !makeTemplate())
         return result;
-    readWindow(image2, place);
+    readWindow(image2, place, 2 * limit + DEFORMATION_MARGIN);
     double first = 0, similarity = 0;
     bool last = false;
     for (int step = 0;; step++)
     {
         if (!sampleAt(place))
             return result;
-        const Moments moments = momentsOf(SUMS);
+        const Moments moments = momentsOf(true);
         if (!(moments.deviation >= LEAST_DEVIATION * (1 << SAMPLE_BITS)))
             return result;
         const double contrast = moments.deviation / ofTemplate.deviation;

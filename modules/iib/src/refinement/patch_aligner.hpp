@@ -4,6 +4,7 @@
 
 #pragma once
 
+#include "../common/aligned_buffer.hpp"
 #include "kernels/kernels.hpp"
 
 namespace cv {
@@ -42,16 +43,16 @@ private:
         double deviation;
     };
 
-    void readWindow(const Mat& image, const PatchPlace& place);
+    void readWindow(const Mat& image, const PatchPlace& place, double margin);
     bool sampleAt(const PatchPlace& place);
-    Moments momentsOf(int count) const;
+    Moments momentsOf(bool all) const;
     bool makeTemplate();
 
     const RefinementKernels& kernels;
     const PatchWeights& weights;
-    Point origin;  //!< of the window
-    std::vector<int> window;
-    std::vector<short> samples, weightsOfSums;
+    Rect pixels;  //!< of the image that the window holds
+    AlignedBuffer<int> window;
+    AlignedBuffer<short> samples, derivativesX, derivativesY, weightsOfSums;
     const short* weightsOf[SUMS];
     short* templateWeights[SUMS - SUM_TEMPLATE];
     double totals[SUMS];  //!< of the weights

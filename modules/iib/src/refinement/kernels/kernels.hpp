@@ -12,7 +12,8 @@ namespace iib {
 /* Patches are rows of columns around a point; neighbours are one unit apart. All is exact on integers, or on floats in one
  order of operations. */
 constexpr int PATCH_COLUMNS = 32, PATCH_ROWS = 28, PATCH_SAMPLES = PATCH_COLUMNS * PATCH_ROWS;
-constexpr int WINDOW = 64;         //!< pixels in rows and columns of an image around a point
+constexpr int WINDOW = 64;  //!< most pixels in rows and columns of an image around a point
+constexpr int WINDOW_PADDING = 64;
 constexpr int POSITION_BITS = 16;  //!< positions in a window are pixels in 2^-16
 constexpr int SAMPLE_BITS = 6;     //!< samples are normalized grey levels of -128..127 in 2^-6
 
@@ -57,16 +58,21 @@ struct RefinementKernels
 {
     //! (1 2 1) / 4 in both directions; the ends of rows are repeated.
     void (*smooth)(const uchar* const rows[3], uchar* out, int width);
-    /** Samples of a window, bilinear. A pixel of the window is four bytes of the image, each less 128: its own, the one
-     below, the one to the right, the one below that. All samples must be inside. */
+    /** A row of a window: four bytes of the image a pixel, each less 128: its own, the one below, the one to the right, the
+     one below that. Reads WINDOW_PADDING pixels more than `width`, and writes full vectors. */
+    void (*readWindow)(const uchar* upper, const uchar* lower, int* out, int width);
+    //! Samples of a window, bilinear; all must be inside.
     void (*sample)(const int* window, const PatchGrid& grid, short* samples);
-    //! sums[k] of all samples times weights[k], for the first `count`; and returns that of squares, times weights in 2^-32.
-    int (*sum)(const short* samples, const short* const* weights, int count, const short* roots, int* sums);
-    //! Sums of columns; a derivative is the difference of two neighbours, of which one is the sample itself at the ends.
-    void (*sumColumns)(const short* samples, const PatchWeights& weights, float (*sums)[PATCH_COLUMNS]);
+    //! sums[k] of all samples times weights[k], for the first or for all; returns that of squares, times weights in 2^-32.
+    int (*sum)(const short* samples, const short* const* weights, bool all, const short* roots, int* sums);
+    //! Differences of the samples on both sides; at an end, one of these is the sample itself.
+    void (*derive)(const short* samples, short* x, short* y);
+    //! Sums of columns of products of derivatives.
+    void (*sumColumns)(
+            const short* x, const short* y, const PatchWeights& weights, float (*sums)[PATCH_COLUMNS]);
     //! The weights of SUM_TEMPLATE and after, each times a scale.
-    void (*weigh)(const short* samples, const PatchWeights& weights, float mean, const float* scales,
-            short* const* out);
+    void (*weigh)(const short* samples, const short* x, const short* y, const PatchWeights& weights,
+            float mean, const float* scales, short* const* out);
 };
 
 //! The kernels for this machine.

@@ -17,110 +17,184 @@ const RefinementKernels& refinementKernels();
 
 namespace {
 
+constexpr int SHORTS = VTraits<v_int16>::max_nlanes, INTS = VTraits<v_int32>::max_nlanes;
+
+// The compiler makes vectors of this loop, with this file's instruction set.
 void smooth(const uchar* const rows[3], uchar* out, int width)
 {
-    const auto sum = [&](int x) { return rows[0][x] + 2 * rows[1][x] + rows[2][x]; };
-    for (int x = 0; x < width; x++)
-        out[x] = (uchar)((sum(std::max(x - 1, 0)) + 2 * sum(x) + sum(std::min(x + 1, width - 1)) + 8) >> 4);
+    const uchar *a = rows[0], *b = rows[1], *c = rows[2];
+    const auto sum = [&](int x) { return a[x] + 2 * b[x] + c[x]; };
+    const auto rounded = [](int total) { return (uchar)((total + 8) >> 4); };
+    out[0] = rounded(3 * sum(0) + sum(std::min(1, width - 1)));
+    out[width - 1] = rounded(3 * sum(width - 1) + sum(std::max(width - 2, 0)));
+    for (int x = 1; x < width - 1; x++)
+        out[x] = rounded(sum(x - 1) + 2 * sum(x) + sum(x + 1));
 }
 
-//! Part of the way from a to b, in 2^-8.
-inline int between(int a, int b, int part) { return a * (256 - part) + b * part; }
+inline v_int32 pixels(const uchar* p) { return v_reinterpret_as_s32(vx_load_expand_q(p)); }
+
+void readWindow(const uchar* upper, const uchar* lower, int* out, int width)
+{
+    const v_int32 signs = vx_setall_s32((int)0x80808080);
+    for (int x = 0; x < width; x += INTS)
+    {
+        const v_int32 left = pixels(upper + x) | (pixels(lower + x) << 8);
+        const v_int32 right = pixels(upper + x + 1) | (pixels(lower + x + 1) << 8);
+        v_store(out + x, (left | (right << 16)) ^ signs);
+    }
+}
+
+//! Weights, in 2^-8, of two neighbours in the halves of each lane: what is left of a position below whole pixels.
+inline v_int32 weightsOf(const v_int32& position)
+{
+    const v_int32 part = (position >> (POSITION_BITS - 8)) & vx_setall_s32(255);
+    return (part << 16) + (vx_setall_s32(256) - part);
+}
+
+inline v_int32 dotProduct(const v_int16& a, const v_int32& pairs)
+{
+    return v_dotprod(a, v_reinterpret_as_s16(pairs));
+}
+
+inline v_int32 samplesAt(const int* window, const v_int32& x, const v_int32& y)
+{
+    const v_int32 places = (y >> POSITION_BITS) * vx_setall_s32(WINDOW) + (x >> POSITION_BITS);
+    const v_int16 four = v_reinterpret_as_s16(v_lut(window, places));
+    const v_int32 weightsX = weightsOf(x);
+    const v_int32 upper = dotProduct((four << 8) >> 8, weightsX), lower = dotProduct(four >> 8, weightsX);
+    const v_int32 both = (upper & vx_setall_s32(0xffff)) | (lower << 16);
+    const v_int32 sample = dotProduct(v_reinterpret_as_s16(both), weightsOf(y));
+    return (sample + vx_setall_s32(1 << (15 - SAMPLE_BITS))) >> (16 - SAMPLE_BITS);
+}
 
 void sample(const int* window, const PatchGrid& grid, short* samples)
 {
-    constexpr int ROUNDING = 1 << (15 - SAMPLE_BITS);
-    for (int i = 0; i < PATCH_SAMPLES; i++)
+    int columns[INTS];
+    for (int i = 0; i < INTS; i++)
+        columns[i] = i;
+    const v_int32 column = vx_load(columns);
+    const v_int32 x = column * vx_setall_s32(grid.column.x), y = column * vx_setall_s32(grid.column.y);
+    for (int r = 0; r < PATCH_ROWS; r++)
     {
-        const int column = i % PATCH_COLUMNS, row = i / PATCH_COLUMNS;
-        const int x = grid.first.x + column * grid.column.x + row * grid.row.x;
-        const int y = grid.first.y + column * grid.column.y + row * grid.row.y;
-        const int pixels = window[(y >> POSITION_BITS) * WINDOW + (x >> POSITION_BITS)];
-        const int partX = (x >> 8) & 255, partY = (y >> 8) & 255;
-        const int upper = between((schar)pixels, (schar)(pixels >> 16), partX);
-        const int lower = between((schar)(pixels >> 8), (schar)(pixels >> 24), partX);
-        samples[i] = (short)((between(upper, lower, partY) + ROUNDING) >> (16 - SAMPLE_BITS));
+        const Point row = grid.first + r * grid.row;
+        for (int c = 0; c < PATCH_COLUMNS; c += 2 * INTS)
+        {
+            const Point left = row + c * grid.column, right = left + INTS * grid.column;
+            v_store(samples + r * PATCH_COLUMNS + c,
+                    v_pack(samplesAt(window, x + vx_setall_s32(left.x), y + vx_setall_s32(left.y)),
+                            samplesAt(window, x + vx_setall_s32(right.x), y + vx_setall_s32(right.y))));
+        }
     }
 }
 
-int sum(const short* samples, const short* const* weights, int count, const short* roots, int* sums)
+template <int COUNT>
+int sumFirst(const short* samples, const short* const* weights, const short* roots, int* sums)
 {
-    for (int k = 0; k < count; k++)
+    v_int32 products[COUNT], squares = vx_setzero_s32();
+    for (int k = 0; k < COUNT; k++)
+        products[k] = vx_setzero_s32();
+    for (int i = 0; i < PATCH_SAMPLES; i += SHORTS)
     {
-        sums[k] = 0;
-        for (int i = 0; i < PATCH_SAMPLES; i++)
-            sums[k] += samples[i] * weights[k][i];
+        const v_int16 sample = vx_load(samples + i), root = v_mul_hi(sample, vx_load(roots + i));
+        squares += v_dotprod(root, root);
+        for (int k = 0; k < COUNT; k++)
+            products[k] += v_dotprod(sample, vx_load(weights[k] + i));
     }
-    int squares = 0;
-    for (int i = 0; i < PATCH_SAMPLES; i++)
-    {
-        const int root = samples[i] * roots[i] >> 16;
-        squares += root * root;
-    }
-    return squares;
+    for (int k = 0; k < COUNT; k++)
+        sums[k] = v_reduce_sum(products[k]);
+    return v_reduce_sum(squares);
 }
 
-//! Derivatives of a template at one of its samples.
-struct Derivatives
+int sum(const short* samples, const short* const* weights, bool all, const short* roots, int* sums)
 {
-    float x, y;
+    return all ? sumFirst<SUMS>(samples, weights, roots, sums) : sumFirst<1>(samples, weights, roots, sums);
+}
 
-    Derivatives(const short* samples, int row, int column)
+void derive(const short* samples, short* x, short* y)
+{
+    for (int r = 0; r < PATCH_ROWS; r++)
     {
-        const short* here = samples + row * PATCH_COLUMNS;
-        x = (float)(here[std::min(column + 1, PATCH_COLUMNS - 1)] - here[std::max(column - 1, 0)]);
-        y = (float)(samples[std::min(row + 1, PATCH_ROWS - 1) * PATCH_COLUMNS + column] -
-                    samples[std::max(row - 1, 0) * PATCH_COLUMNS + column]);
+        const short* row = samples + r * PATCH_COLUMNS;
+        const short* above = r > 0 ? row - PATCH_COLUMNS : row;
+        const short* below = r < PATCH_ROWS - 1 ? row + PATCH_COLUMNS : row;
+        short *outX = x + r * PATCH_COLUMNS, *outY = y + r * PATCH_COLUMNS;
+        for (int c = 0; c < PATCH_COLUMNS; c++)
+            outY[c] = (short)(below[c] - above[c]);
+        for (int c = 1; c < PATCH_COLUMNS - 1; c++)
+            outX[c] = (short)(row[c + 1] - row[c - 1]);
+        outX[0] = (short)(row[1] - row[0]);
+        outX[PATCH_COLUMNS - 1] = (short)(row[PATCH_COLUMNS - 1] - row[PATCH_COLUMNS - 2]);
+    }
+}
+
+inline v_float32 floats(const short* p) { return v_cvt_f32(vx_load_expand(p)); }
+
+void sumColumns(const short* x, const short* y, const PatchWeights& weights, float (*sums)[PATCH_COLUMNS])
+{
+    for (int c = 0; c < PATCH_COLUMNS; c += INTS)
+    {
+        v_float32 s[COLUMN_SUMS];
+        for (v_float32& sum : s)
+            sum = vx_setzero_f32();
+        for (int r = 0; r < PATCH_ROWS; r++)
+        {
+            const v_float32 dx = floats(x + r * PATCH_COLUMNS + c), dy = floats(y + r * PATCH_COLUMNS + c);
+            const v_float32 w = vx_setall_f32(weights.rows[r]), place = vx_setall_f32(weights.y[r]);
+            const v_float32 x1 = dx * w, y1 = dy * w, products[] = {x1 * dx, x1 * dy, y1 * dy};
+            for (int k = 0; k < 3; k++)
+            {
+                const v_float32 once = products[k] * place;
+                s[3 * k] += products[k];
+                s[3 * k + 1] += once;
+                s[3 * k + 2] += once * place;
+            }
+            s[COLUMN_X] += x1;
+            s[COLUMN_X + 1] += x1 * place;
+            s[COLUMN_Y] += y1;
+            s[COLUMN_Y + 1] += y1 * place;
+        }
+        for (int k = 0; k < COLUMN_SUMS; k++)
+            v_store(sums[k] + c, s[k]);
+    }
+}
+
+//! The weights of INTS samples, the template's and those of the derivatives.
+struct SampleWeights
+{
+    v_int32 values[SUMS - SUM_TEMPLATE];
+
+    SampleWeights(const short* samples, const short* x, const short* y, const PatchWeights& weights, int row,
+            int column, float mean, const float* scales)
+    {
+        const int i = row * PATCH_COLUMNS + column;
+        const v_float32 w = vx_load(weights.columns + column) * vx_setall_f32(weights.rows[row]);
+        const v_float32 placeX = vx_load(weights.x + column), placeY = vx_setall_f32(weights.y[row]);
+        const v_float32 dx = floats(x + i) * w, dy = floats(y + i) * w;
+        const v_float32 all[] = {(floats(samples + i) - vx_setall_f32(mean)) * w, dx, dy, dx * placeX,
+                dx * placeY, dy * placeX, dy * placeY};
+        for (int k = 0; k < SUMS - SUM_TEMPLATE; k++)
+            values[k] = nearestInt(all[k] * vx_setall_f32(scales[k]));
     }
 };
 
-void sumColumns(const short* samples, const PatchWeights& weights, float (*sums)[PATCH_COLUMNS])
+void weigh(const short* samples, const short* x, const short* y, const PatchWeights& weights, float mean,
+        const float* scales, short* const* out)
 {
-    for (int c = 0; c < PATCH_COLUMNS; c++)
-    {
-        float s[COLUMN_SUMS] = {};
-        for (int r = 0; r < PATCH_ROWS; r++)
+    for (int r = 0; r < PATCH_ROWS; r++)
+        for (int c = 0; c < PATCH_COLUMNS; c += SHORTS)
         {
-            const Derivatives d(samples, r, c);
-            const float y = weights.y[r], x1 = d.x * weights.rows[r], y1 = d.y * weights.rows[r];
-            const float products[] = {x1 * d.x, x1 * d.y, y1 * d.y};
-            for (int k = 0; k < 3; k++)
-            {
-                const float once = products[k] * y;
-                s[3 * k] += products[k];
-                s[3 * k + 1] += once;
-                s[3 * k + 2] += once * y;
-            }
-            s[COLUMN_X] += x1;
-            s[COLUMN_X + 1] += x1 * y;
-            s[COLUMN_Y] += y1;
-            s[COLUMN_Y + 1] += y1 * y;
+            const SampleWeights left(samples, x, y, weights, r, c, mean, scales);
+            const SampleWeights right(samples, x, y, weights, r, c + INTS, mean, scales);
+            for (int k = 0; k < SUMS - SUM_TEMPLATE; k++)
+                v_store(out[k] + r * PATCH_COLUMNS + c, v_pack(left.values[k], right.values[k]));
         }
-        for (int k = 0; k < COLUMN_SUMS; k++)
-            sums[k][c] = s[k];
-    }
-}
-
-void weigh(
-        const short* samples, const PatchWeights& weights, float mean, const float* scales, short* const* out)
-{
-    for (int i = 0; i < PATCH_SAMPLES; i++)
-    {
-        const int r = i / PATCH_COLUMNS, c = i % PATCH_COLUMNS;
-        const Derivatives d(samples, r, c);
-        const float w = weights.columns[c] * weights.rows[r], dx = d.x * w, dy = d.y * w;
-        const float values[] = {(samples[i] - mean) * w, dx, dy, dx * weights.x[c], dx * weights.y[r],
-                dy * weights.x[c], dy * weights.y[r]};
-        for (int k = 0; k < SUMS - SUM_TEMPLATE; k++)
-            out[k][i] = saturate_cast<short>(cvRound(values[k] * scales[k]));
-    }
 }
 
 }  // namespace
 
 const RefinementKernels& refinementKernels()
 {
-    static const RefinementKernels kernels = {smooth, sample, sum, sumColumns, weigh};
+    static const RefinementKernels kernels = {smooth, readWindow, sample, sum, derive, sumColumns, weigh};
     return kernels;
 }
 
