@@ -62,8 +62,8 @@ void refineMatches(InputArray image1, const std::vector<KeyPoint>& keypoints1, I
     Mat first(n, 2, CV_32F), second(n, 2, CV_32F), covariance(n, 3, CV_32F), similarity(n, 1, CV_32F);
     if (n > 0)
     {
-        checkKeyPoints(keypoints1);
-        checkKeyPoints(keypoints2);
+        checkKeyPoints(keypoints1, true);
+        checkKeyPoints(keypoints2, true);
         for (const DMatch& match : matches1to2)
         {
             keypointOf(keypoints1, match.queryIdx, 1);
