@@ -11,7 +11,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAIR = ROOT / 'tools/synthetic'
 DAY, NIGHT = str(PAIR / 'day.png'), str(PAIR / 'night.png')
 FILES = {'text.png': 'not an image', 'flat.pgm': 'P2 64 64 1\n' + 64 * 64 * '0 ', 'singular.txt': '1 0 0 0 1 0 0 0 0',
-         'noise.pgm': 'P2 160 120 255\n' + ' '.join(str(i * i * 7919 % 9973 % 256) for i in range(160 * 120)),
+         'noise.pgm': 'P2 160 120 255\n' + ' '.join(str(i * i * 7919 % 9973 % 256) for i in range(160 * 120)) + '\n',
          'short.txt': '1 0 0 0', 'true.txt': (PAIR / 'H_day_night').read_text()}
 MISTAKES = [[], [DAY], ['missing.png', NIGHT], ['text.png', NIGHT], ['flat.pgm', 'flat.pgm']] + [
     [DAY, NIGHT, option] for option in (
