@@ -1,5 +1,5 @@
 #!/bin/sh
-# Builds the module and its tests against the installed OpenCV, in build/, and runs them.
+# Builds the module and its tests against the installed OpenCV, in build/, and runs them; ends with what was skipped and why.
 #   scripts/test.sh [--all] [--sanitize[=KIND]] [-DNAME=VALUE for CMake]...
 # --all: those that take long too, which .ci/nightly runs (ctest's label `nightly`).
 # --sanitize: under the address and undefined-behaviour sanitizers, then under the thread sanitizer, each in a build folder
@@ -14,8 +14,15 @@ run() {
     say "building library, tests and tools"
     cmake --build "$build"
     [ -n "${OPENCV_TEST_DATA_PATH:-}" ] || say "OPENCV_TEST_DATA_PATH is not set: tests on real images skip"
+    status=0
     # shellcheck disable=SC2086
-    ctest --test-dir "$build" --output-on-failure --parallel "$jobs" $chosen
+    ctest --test-dir "$build" --output-on-failure --parallel "$jobs" $chosen || status=$?
+    say "skipped, and why"
+    # GoogleTest's tests by name, and what scripts say.
+    awk '/^\[ RUN / { name = $4 }
+        /^\[ +SKIP +\]/ { sub(/^\[ +SKIP +\] */, ""); print name ": " $0 }
+        /skipped: / { sub(/.*skipped: /, ""); print }' "$build/Testing/Temporary/LastTest.log" | sort -u
+    return $status
 }
 
 sanitize() {
