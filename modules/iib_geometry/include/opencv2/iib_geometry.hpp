@@ -3,6 +3,7 @@
 #ifndef OPENCV_IIB_GEOMETRY_HPP
 #define OPENCV_IIB_GEOMETRY_HPP
 
+#include "opencv2/iib/alignment.hpp"
 #include "opencv2/iib/localization.hpp"
 #include "opencv2/iib/relative_pose.hpp"
 

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "planar_problem.hpp"
+
+#include "opencv2/iib/alignment.hpp"
+
+namespace cv {
+namespace iib {
+namespace {
+
+Matx33d entry(int row, int column, double value = 1)
+{
+    Matx33d m;
+    m(row, column) = value;
+    return m;
+}
+
+std::vector<Matx33d> basisOf(int kind)
+{
+    std::vector<Matx33d> basis = {entry(0, 2), entry(1, 2)};
+    if (kind == ALIGN_SIMILARITY)
+        basis.insert(basis.end(), {entry(0, 0) + entry(1, 1), entry(1, 0) - entry(0, 1)});
+    if (kind >= ALIGN_AFFINE)
+        basis.insert(basis.end(), {entry(0, 0), entry(0, 1), entry(1, 0), entry(1, 1)});
+    if (kind == ALIGN_HOMOGRAPHY)
+        basis.insert(basis.end(), {entry(2, 0), entry(2, 1)});
+    return basis;
+}
+
+Vec2d meanOf(const Mat& points)
+{
+    const Scalar mean = cv::mean(points.reshape(2));
+    return Vec2d(mean[0], mean[1]);
+}
+
+std::vector<Vec3d> transformed(const Mat& points, const Matx33d& by)
+{
+    std::vector<Vec3d> result(points.rows);
+    for (int i = 0; i < points.rows; i++)
+        result[i] = by * Vec3d(points.at<double>(i, 0), points.at<double>(i, 1), 1);
+    return result;
+}
+
+}  // namespace
+
+PlanarProblem::PlanarProblem(const Mat& reference, const Mat& image, int kind, double scale)
+    : basis_(basisOf(kind))
+{
+    if (image.empty())
+        return;
+    // one unit for both, so that a translation stays one
+    const Vec2d from = meanOf(reference), to = meanOf(image);
+    double spread = 1;
+    for (int i = 0; i < image.rows; i++)
+        spread = std::max(spread, norm(image.at<Vec2d>(i) - to));
+    fromReference_ = Matx33d(1 / spread, 0, -from[0] / spread, 0, 1 / spread, -from[1] / spread, 0, 0, 1);
+    fromImage_ = Matx33d(1 / spread, 0, -to[0] / spread, 0, 1 / spread, -to[1] / spread, 0, 0, 1);
+    reference_ = transformed(reference, fromReference_);
+    image_ = transformed(image, fromImage_);
+    unit_ = spread / scale;
+    scale_ = scale;
+}
+
+// Of T p = w r, with T = 1 + sum of s_k G_k, two equations a match are linear in s, and w drops out.
+void PlanarProblem::propose(const std::vector<int>& sample, std::vector<Matx33d>& transforms) const
+{
+    transforms.clear();
+    const int n = parameters();
+    Mat A(n, n, CV_64F), b(n, 1, CV_64F), s;
+    for (int i = 0; i < n; i++)
+    {
+        const Vec3d &p = image_[sample[i / 2]], &r = reference_[sample[i / 2]];
+        const int c = i % 2;
+        b.at<double>(i) = r[c] - p[c];
+        for (int k = 0; k < n; k++)
+        {
+            const Vec3d moved = basis_[k] * p;
+            A.at<double>(i, k) = moved[c] - r[c] * moved[2];
+        }
+    }
+    if (!solve(A, b, s, DECOMP_LU))
+        return;
+    Step step;
+    std::copy(s.ptr<double>(), s.ptr<double>() + n, step.val);
+    const Matx33d transform = moved(Matx33d::eye(), step);
+    for (int i : sample)
+        if (squaredError(transform, i) >= FARTHEST)
+            return;  // beyond the horizon, or mirrored
+    transforms.push_back(transform);
+}
+
+PlanarProblem::Place PlanarProblem::placeOf(const Matx33d& transform, const Vec3d& point) const
+{
+    const Vec3d q = transform * point;
+    Place place;
+    place.at = Vec2d(q[0] / q[2], q[1] / q[2]);
+    for (int k = 0; k < parameters(); k++)
+    {
+        const Vec3d moved = basis_[k] * point;
+        for (int c = 0; c < 2; c++)
+            place.byStep(c, k) = (moved[c] - place.at[c] * moved[2]) / q[2];
+    }
+    return place;
+}
+
+double PlanarProblem::squaredError(const Matx33d& T, int i) const
+{
+    const Vec3d q = T * image_[i];
+    // the sign of the determinant of the derivatives by the point is that of det T / w^3
+    if (!(q[2] > 1e-6) || !(determinant(T) > 0))
+        return FARTHEST;
+    const double x = q[0] / q[2] - reference_[i][0], y = q[1] / q[2] - reference_[i][1];
+    return unit_ * unit_ * (x * x + y * y);
+}
+
+double PlanarProblem::loss(const Matx33d& transform, double limit) const
+{
+    double sum = 0;
+    for (int i = 0; i < size() && sum <= limit; i++)
+        sum += std::log1p(std::min(squaredError(transform, i), FARTHEST));
+    return sum;
+}
+
+void PlanarProblem::linearize(const Matx33d& transform, std::vector<Row<Step>>& rows) const
+{
+    rows.clear();
+    for (int i = 0; i < size(); i++)
+    {
+        const double r2 = squaredError(transform, i);
+        if (r2 >= FARTHEST)
+            continue;
+        const Place place = placeOf(transform, image_[i]);
+        for (int c = 0; c < 2; c++)
+        {
+            Row<Step> row;
+            row.r = unit_ * (place.at[c] - reference_[i][c]);
+            row.r2 = r2;
+            for (int k = 0; k < parameters(); k++)
+                row.J[k] = unit_ * place.byStep(c, k);
+            rows.push_back(row);
+        }
+    }
+}
+
+Matx33d PlanarProblem::moved(const Matx33d& transform, const Step& step) const
+{
+    Matx33d result = transform;
+    for (int k = 0; k < parameters(); k++)
+        result += basis_[k] * step[k];
+    return result;
+}
+
+int PlanarProblem::inliers(const Matx33d& transform, std::vector<uchar>& mask) const
+{
+    int count = 0;
+    for (int i = 0; i < size(); i++)
+    {
+        mask[i] = squaredError(transform, i) < FARTHEST;
+        count += mask[i];
+    }
+    return count;
+}
+
+Matx33d PlanarProblem::inPixels(const Matx33d& transform) const
+{
+    const Matx33d pixels = fromReference_.inv() * transform * fromImage_;
+    return pixels * (1 / pixels(2, 2));
+}
+
+double PlanarProblem::deviation(
+        const Matx33d& transform, const Square<Step>& covariance, const Point2d& pixel) const
+{
+    const Place place = placeOf(transform, fromImage_ * Vec3d(pixel.x, pixel.y, 1));
+    return std::sqrt(trace(place.byStep * covariance * place.byStep.t())) * unit_ * scale_;
+}
+
+}  // namespace iib
+}  // namespace cv

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "opencv2/imgproc.hpp"
+#include "planar_problem.hpp"
+#include "test_precomp.hpp"
+
+namespace opencv_test {
+namespace {
+using namespace cv::iib;
+
+const Size SIZE(400, 300);
+
+//! Patches of all sizes, another picture for each seed.
+Mat picture(int seed)
+{
+    RNG random(seed);
+    Mat image(SIZE, CV_8U, Scalar(120));
+    for (int i = 0; i < 700; i++)
+    {
+        const Point at(random.uniform(0, SIZE.width), random.uniform(0, SIZE.height));
+        const Size size(random.uniform(3, 30), random.uniform(3, 30));
+        ellipse(image, at, size, random.uniform(0., 180.), 0, 360, Scalar(random.uniform(20, 230)), FILLED,
+                LINE_AA);
+    }
+    GaussianBlur(image, image, Size(), .8);
+    return image;
+}
+
+//! Half as bright, darker to one side, and noisy.
+Mat inOtherLight(const Mat& image)
+{
+    Mat result = image.clone(), noise(image.size(), CV_16S);
+    RNG random(9);
+    random.fill(noise, RNG::NORMAL, 0, 2);
+    for (int y = 0; y < image.rows; y++)
+        for (int x = 0; x < image.cols; x++)
+            result.at<uchar>(y, x) = saturate_cast<uchar>(
+                    image.at<uchar>(y, x) * (.9 - .6 * x / image.cols) + 10 + noise.at<short>(y, x));
+    return result;
+}
+
+//! Moved by a transform from the picture's pixels to the result's, in another light.
+Mat moved(const Mat& picture, const Matx33d& transform)
+{
+    Mat result;
+    warpPerspective(picture, result, transform, SIZE, INTER_CUBIC, BORDER_REFLECT);
+    return inOtherLight(result);
+}
+
+std::vector<Point2d> corners(const Matx33d& transform)
+{
+    const double right = SIZE.width - 1, bottom = SIZE.height - 1;
+    std::vector<Point2d> result;
+    for (const Vec3d& corner :
+            {Vec3d(0, 0, 1), Vec3d(right, 0, 1), Vec3d(right, bottom, 1), Vec3d(0, bottom, 1)})
+    {
+        const Vec3d q = transform * corner;
+        result.push_back(Point2d(q[0] / q[2], q[1] / q[2]));
+    }
+    return result;
+}
+
+//! How far the corners of the image lie from the truth, at most, in pixels.
+double cornerError(const Mat& found, const Matx33d& truth)
+{
+    const std::vector<Point2d> a = corners(found), b = corners(truth);
+    double error = 0;
+    for (int k = 0; k < 4; k++)
+        error = std::max(error, cv::norm(a[k] - b[k]));
+    return error;
+}
+
+const Matx33d TRANSLATION(1, 0, 7.3, 0, 1, -4.6, 0, 0, 1), SIMILARITY(1.04, -.1, 9, .1, 1.04, -12, 0, 0, 1),
+        AFFINE(1.05, .03, 4, -.06, .97, 6, 0, 0, 1), HOMOGRAPHY(1.03, .04, 5, -.03, .98, 8, 1e-4, -8e-5, 1);
+
+TEST(Alignment, finds_each_kind_of_transform_in_another_light)
+{
+    const Mat reference = picture(1);
+    const std::pair<int, Matx33d> kinds[] = {{ALIGN_TRANSLATION, TRANSLATION}, {ALIGN_SIMILARITY, SIMILARITY},
+            {ALIGN_AFFINE, AFFINE}, {ALIGN_HOMOGRAPHY, HOMOGRAPHY}};
+    for (const auto& kind : kinds)
+    {
+        Mat transform, error, matches;
+        ASSERT_TRUE(
+                alignImages(reference, moved(reference, kind.second), transform, kind.first, error, matches));
+        ASSERT_EQ(CV_64F, transform.type());
+        EXPECT_EQ(1, transform.at<double>(2, 2));
+        EXPECT_LT(cornerError(transform, kind.second.inv()), .15) << kind.first;
+        ASSERT_EQ(Size(1, 4), error.size());
+        EXPECT_GT(cv::norm(error, NORM_INF), .001);
+        EXPECT_LT(cv::norm(error, NORM_INF), .15);
+        ASSERT_EQ(4, matches.cols);
+        ASSERT_GE(matches.rows, 50);
+        for (int i = 0; i < matches.rows; i++)
+        {
+            const Vec4f m = matches.at<Vec4f>(i);
+            const Vec3d q = Matx33d(transform) * Vec3d(m[2], m[3], 1);
+            EXPECT_LE(std::hypot(q[0] / q[2] - m[0], q[1] / q[2] - m[1]), 1.51);
+        }
+        const Matx33d T(transform);
+        EXPECT_TRUE(kind.first == ALIGN_HOMOGRAPHY || T(2, 0) == 0);
+        EXPECT_TRUE(kind.first != ALIGN_SIMILARITY || std::abs(T(0, 1) + T(1, 0)) < 1e-9);
+        EXPECT_TRUE(kind.first != ALIGN_TRANSLATION || std::abs(T(0, 0) - 1) < 1e-12);
+    }
+}
+
+TEST(Alignment, finds_images_that_are_turned)
+{
+    const Mat reference = picture(2);
+    for (double angle : {90., 150.})
+    {
+        const Mat by = getRotationMatrix2D(Point2f(200, 150), angle, 1);
+        Matx33d truth = Matx33d::eye();
+        by.copyTo(Mat(truth, false).rowRange(0, 2));
+        Mat transform;
+        ASSERT_TRUE(alignImages(reference, moved(reference, truth), transform, ALIGN_SIMILARITY)) << angle;
+        EXPECT_LT(cornerError(transform, truth.inv()), .3);
+    }
+}
+
+TEST(Alignment, refuses_images_of_other_scenes_and_without_points)
+{
+    Mat transform = Mat::eye(3, 3, CV_64F), error = transform, matches;
+    EXPECT_FALSE(alignImages(picture(3), picture(4), transform, ALIGN_HOMOGRAPHY, error, matches));
+    EXPECT_TRUE(transform.empty() && error.empty());
+    EXPECT_LT(matches.rows, 16);
+    EXPECT_FALSE(alignImages(picture(3), Mat(SIZE, CV_8U, Scalar(7)), transform));
+    EXPECT_FALSE(alignImages(Mat(), picture(3), transform));
+}
+
+TEST(Alignment, mistakes_are_told)
+{
+    Mat transform;
+    EXPECT_THROW(alignImages(picture(5), picture(5), transform, 4), cv::Exception);
+    EXPECT_THROW(alignImages(picture(5), picture(5), transform, -1), cv::Exception);
+    EXPECT_THROW(alignImages(picture(5), Mat(SIZE, CV_32S), transform), cv::Exception);
+}
+
+// The errors of the corners are as large as it says, on average over many noisy sets of matches.
+TEST(Alignment, deviation_foretells_the_errors_of_the_corners)
+{
+    RNG random(6);
+    for (int kind : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE, ALIGN_HOMOGRAPHY})
+    {
+        double squares = 0;
+        const int trials = 100;
+        for (int trial = 0; trial < trials; trial++)
+        {
+            Mat image(120, 2, CV_64F), reference(120, 2, CV_64F);
+            for (int i = 0; i < image.rows; i++)
+                for (int c = 0; c < 2; c++)
+                {
+                    image.at<double>(i, c) = random.uniform(0., 300.);
+                    reference.at<double>(i, c) =
+                            i < 20 ? random.uniform(0., 300.) : image.at<double>(i, c) + random.gaussian(.4);
+                }
+            const PlanarProblem problem(reference, image, kind, .5);
+            Matx33d model;
+            std::vector<uchar> inliers;
+            ASSERT_TRUE(robustFit(problem, model, inliers));
+            const Vec3d place = problem.inPixels(model) * Vec3d(300, 300, 1);
+            const double error = std::hypot(place[0] / place[2] - 300, place[1] / place[2] - 300);
+            const double deviation =
+                    problem.deviation(model, covarianceOf(problem, model), Point2d(300, 300));
+            squares += error * error / (deviation * deviation) / trials;
+        }
+        EXPECT_GT(squares, .6) << kind;
+        EXPECT_LT(squares, 1.6) << kind;
+    }
+}
+
+TEST(Alignment, derivatives_are_those_of_finite_differences)
+{
+    RNG random(7);
+    Mat image(40, 2, CV_64F), reference(40, 2, CV_64F);
+    random.fill(image, RNG::UNIFORM, 0, 300);
+    random.fill(reference, RNG::NORMAL, 0, 3);
+    reference += image;
+    const PlanarProblem problem(reference, image, ALIGN_HOMOGRAPHY, 5);
+    const Matx33d model(1.01, .02, .01, -.01, .99, -.01, .01, .02, 1);
+    std::vector<Row<PlanarProblem::Step>> rows;
+    problem.linearize(model, rows);
+    PlanarProblem::Step gradient;
+    for (const Row<PlanarProblem::Step>& row : rows)
+        gradient += 2 * row.r / (1 + row.r2) * row.J;
+    for (int k = 0; k < 8; k++)
+    {
+        PlanarProblem::Step step;
+        step[k] = 1e-6;
+        const double up = problem.verdict(problem.moved(model, step)),
+                     down = problem.verdict(problem.moved(model, -step));
+        EXPECT_NEAR((up - down) / 2e-6, gradient[k], 1e-3 * (1 + std::abs(gradient[k]))) << k;
+    }
+}
+
+}  // namespace
+}  // namespace opencv_test
