@@ -144,11 +144,13 @@ inline int runTool(int argc, const char* const* argv, const std::string& about, 
         line.printHelp();
         return 0;
     }
-    catch (const cv::Exception& e)
+    catch (const std::exception& e)  // also of the file system
     {
         const std::string path = argc > 0 ? argv[0] : "";
-        std::fprintf(stderr, "%s: %s\n", path.substr(path.find_last_of('/') + 1).c_str(), e.err.c_str());
-        return e.code == cv::Error::StsBadArg ? 2 : 1;
+        const auto* const ours = dynamic_cast<const cv::Exception*>(&e);
+        std::fprintf(stderr, "%s: %s\n", path.substr(path.find_last_of('/') + 1).c_str(),
+                ours ? ours->err.c_str() : e.what());
+        return ours && ours->code == cv::Error::StsBadArg ? 2 : 1;
     }
 }
 

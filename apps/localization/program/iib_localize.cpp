@@ -80,6 +80,7 @@ void writePicture(
         cv::line(picture, location.pixels[i], mapped[i], {0, 0, 255});
         cv::circle(picture, location.pixels[i], 3, {0, 200, 0}, 1, cv::LINE_AA);
     }
+    std::filesystem::create_directories(std::filesystem::path(path).parent_path());
     if (!cv::imwrite(path, picture))
         CV_Error(cv::Error::StsError, path + " cannot be written");
 }
@@ -120,31 +121,48 @@ int stream(const Localizer& localizer, const std::vector<Camera>& cameras)
     for (std::string path; std::getline(std::cin, path); all++)
     {
         Camera camera;
-        const Location location =
-                locate(localizer, cameras, readImage(path), last ? &*last : nullptr, camera);
+        Location location;
+        if (path[0] == '#')  // would look like a failure
+            location.reason = "a path must not begin with #: write ./ before it";
+        else
+            location = locate(localizer, cameras, readImage(path), last ? &*last : nullptr, camera);
         if (location.found)
             std::cout << trajectoryLine(path, inverse(location.cameraFromWorld));
         else
             std::cout << "# " << path << ": " << location.reason << "\n";
-        std::cout << std::flush;
+        if (!(std::cout << std::flush))
+            CV_Error(cv::Error::StsError, "standard output cannot be written");
         last = location.found ? std::optional<cv::Affine3d>(location.cameraFromWorld) : std::nullopt;
         found += location.found;
     }
     return statusOf(found, all);
 }
 
-//! In nanoseconds, as the smoother takes them.
-std::vector<int64_t> timesOf(const std::vector<std::string>& names)
+//! In nanoseconds, as the smoother takes them. Puts the names in the order of their times.
+std::vector<int64_t> timesOf(std::vector<std::string>& names, const std::vector<ImuReading>& readings)
 {
-    std::vector<int64_t> times;
+    std::vector<std::pair<int64_t, std::string>> timed;
     for (const std::string& name : names)
     {
         const std::optional<int64_t> time = nanoseconds(withoutExtension(name));
-        if (!time || (!times.empty() && *time <= times.back()))
+        if (!time)
             CV_Error(cv::Error::StsError,
-                    name + ": with --imu the images must be named by their times, in seconds or "
-                           "nanoseconds, in order");
-        times.push_back(*time);
+                    name + ": with --imu the images must be named by their times, in seconds or nanoseconds");
+        timed.emplace_back(*time, name);
+    }
+    std::sort(timed.begin(), timed.end());
+    if (timed.back().first < readings.front().nanoseconds ||
+            timed.front().first > readings.back().nanoseconds)
+        CV_Error(cv::Error::StsError,
+                timed.front().second + ": the images' times, in seconds or nanoseconds, are not those of the "
+                                       "IMU's readings, in nanoseconds");
+    std::vector<int64_t> times;
+    for (size_t i = 0; i < timed.size(); i++)
+    {
+        if (i > 0 && timed[i].first == timed[i - 1].first)
+            CV_Error(cv::Error::StsError, timed[i - 1].second + " and " + timed[i].second + " have one time");
+        times.push_back(timed[i].first);
+        names[i] = timed[i].second;
     }
     return times;
 }
@@ -189,6 +207,8 @@ int run(const iib_tools::CommandLine& line)
 {
     keepFreedMemory();
     const bool streaming = line.has("stream");
+    if (!line.positional().empty())
+        CV_Error(cv::Error::StsBadArg, line.positional()[0] + ": only options are taken (--help lists them)");
     for (const char* option : {"images", "out", "imu", "pictures"})
         if (streaming && line.has(option))
             CV_Error(cv::Error::StsBadArg, cv::format("--stream goes without --%s", option));
@@ -204,18 +224,17 @@ int run(const iib_tools::CommandLine& line)
         return stream(localizer, chooseCameras(line, localizer));
     }
     const std::string folder = line.text("images");
-    const std::vector<std::string> names = listImages(folder);
+    std::vector<std::string> names = listImages(folder, line.text("out"));
     const bool imu = line.has("imu");
     const std::vector<ImuReading> readings = imu ? readImu(line.text("imu")) : std::vector<ImuReading>();
-    const std::vector<int64_t> times = imu ? timesOf(names) : std::vector<int64_t>();
+    const std::vector<int64_t> times = imu ? timesOf(names, readings) : std::vector<int64_t>();
     const cv::Affine3d imuFromCamera = parsePose(line.text("imu-from-camera"));
     const Localizer localizer = open(line, 0);
     const std::vector<Camera> cameras = chooseCameras(line, localizer);
 
-    NewFolder results(line.text("out"), {"frames.csv", "trajectory.txt", "matches", "matches/*.png"});
+    NewFolder results(
+            line.text("out"), {"frames.csv", "trajectory.txt", "matches/", "matches/*/", "matches/*.png"});
     const std::string &out = results.path(), table = out + "/frames.csv", path = out + "/trajectory.txt";
-    if (line.has("pictures"))
-        std::filesystem::create_directory(out + "/matches");
     std::ofstream csv(table);
     csv << csvHeader();
     std::vector<VisualFrame> frames(names.size());
@@ -234,10 +253,8 @@ int run(const iib_tools::CommandLine& line)
                 frames[i].pose = inverse(location.cameraFromWorld);
             frames[i].covariance = location.covariance;
             rows[i] = csvRow(names[i], location);
-            std::string flat = names[i] + ".png";
-            std::replace(flat.begin(), flat.end(), '/', '-');
             if (line.has("pictures") && location.found)
-                writePicture(out + "/matches/" + flat, grey, location, camera);
+                writePicture(out + "/matches/" + names[i] + ".png", grey, location, camera);
             progress.step();
         }
     });

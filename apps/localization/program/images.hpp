@@ -15,8 +15,9 @@ std::string withoutExtension(const std::string& name);
 reason. */
 cv::Mat readImage(const std::string& path);
 
-/** The names of the images below a folder, in order.
+/** The names of the images below a folder, in order, but for those below folders of results.
+@param results such a folder, or empty.
 @throws cv::Exception if there are none, or for names that a trajectory cannot tell apart or cannot hold. */
-std::vector<std::string> listImages(const std::string& folder);
+std::vector<std::string> listImages(const std::string& folder, const std::string& results = "");
 
 }  // namespace iib_localization

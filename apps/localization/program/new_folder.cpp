@@ -28,7 +28,7 @@ void checkContents(const std::string& folder, const std::vector<std::string>& ow
     bool known = false, foreign = false;
     for (const auto& entry : fs::recursive_directory_iterator(folder))
     {
-        seen = entry.path().lexically_relative(folder).string();
+        seen = entry.path().lexically_relative(folder).string() + (entry.is_directory() ? "/" : "");
         const auto isName = [&](const std::string& pattern) {
             return ::fnmatch(pattern.c_str(), seen.c_str(), 0) == 0;
         };
@@ -41,12 +41,33 @@ void checkContents(const std::string& folder, const std::vector<std::string>& ow
         fail(folder + " holds " + seen + " and was not written by this program: choose another folder");
 }
 
-//! A mount point cannot be moved.
+//! A mount point cannot be moved, also not one of a folder of the same file system.
 bool isMountPoint(const std::string& folder)
 {
     struct stat own, parent;
-    return ::stat(folder.c_str(), &own) == 0 && ::stat((folder + "/..").c_str(), &parent) == 0 &&
-           own.st_dev != parent.st_dev;
+    if (::stat(folder.c_str(), &own) == 0 && ::stat((folder + "/..").c_str(), &parent) == 0 &&
+            own.st_dev != parent.st_dev)
+        return true;
+#ifdef STATX_ATTR_MOUNT_ROOT
+    struct statx status;
+    return ::statx(AT_FDCWD, folder.c_str(), 0, 0, &status) == 0 &&
+           (status.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0;
+#else
+    return false;
+#endif
+}
+
+//! In one step where the system can do that, else in two.
+bool exchangeFolders(const std::string& a, const std::string& b)
+{
+    if (::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0)
+        return true;
+    const std::string old = a + ".old";
+    if (std::rename(b.c_str(), old.c_str()) != 0)
+        return false;
+    if (std::rename(a.c_str(), b.c_str()) == 0)
+        return std::rename(old.c_str(), a.c_str()) == 0;
+    return std::rename(old.c_str(), b.c_str()) == 0 && false;
 }
 
 }  // namespace
@@ -58,6 +79,9 @@ NewFolder::NewFolder(const std::string& target, const std::vector<std::string>& 
         const fs::path path = fs::weakly_canonical(target);
         target_ = (path.has_filename() ? path : path.parent_path()).string();  // without a slash at its end
         partial_ = target_ + ".iib_partial";
+        for (const std::string& link : {target_, partial_})  // the target only if it leads nowhere
+            if (fs::is_symlink(link))
+                fail(link + " is a link" + (link == target_ ? " to nothing" : "") + ": remove it");
         if (isMountPoint(target_))
             fail(target + " is a mount point: give a folder inside it");
         if (fs::exists(target_))
@@ -91,13 +115,13 @@ NewFolder::~NewFolder()
 void NewFolder::publish()
 {
     std::error_code error;
-    const bool moved = fs::exists(target_, error) ? ::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD,
-                                                            target_.c_str(), RENAME_EXCHANGE) == 0
-                                                  : std::rename(partial_.c_str(), target_.c_str()) == 0;
+    const std::string partial = partial_;
+    partial_.clear();  // is not removed any more
+    const bool moved = fs::exists(target_, error) ? exchangeFolders(partial, target_)
+                                                  : std::rename(partial.c_str(), target_.c_str()) == 0;
     if (!moved)
-        fail(target_ + " cannot be replaced by " + partial_);
-    fs::remove_all(partial_, error);  // what was at the target before
-    partial_.clear();
+        fail(target_ + " cannot be replaced: the results are in " + partial);
+    fs::remove_all(partial, error);  // what was at the target before
 }
 
 }  // namespace iib_localization

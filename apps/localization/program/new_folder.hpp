@@ -12,7 +12,8 @@ class NewFolder
 {
 public:
     /** Makes the folder to write to; what a run that was killed left there is removed.
-    @param ownFiles patterns (fnmatch) of the names of files and folders in it; a folder without the first is none of these.
+    @param ownFiles patterns (fnmatch) of the names in it, of folders with a slash behind; a folder without the first is none of
+    these.
     @throws cv::Exception if TARGET may not be replaced or another process is writing it. */
     NewFolder(const std::string& target, const std::vector<std::string>& ownFiles);
     ~NewFolder();  //!< removes what was not published

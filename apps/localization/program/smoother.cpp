@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pose.hpp"
+
 namespace iib_localization {
 namespace {
 
@@ -280,7 +282,7 @@ std::vector<std::optional<cv::Affine3d>> smooth(const std::vector<VisualFrame>& 
 {
     std::vector<VisualFrame> moved;
     for (const VisualFrame& frame : frames)
-        moved.push_back(imuFrame(frame, imuFromCamera.inv()));
+        moved.push_back(imuFrame(frame, inverse(imuFromCamera)));
     std::vector<std::optional<cv::Affine3d>> poses(frames.size());
     for (size_t i = 0; i < frames.size();)
         i = moved[i].pose ? smoothRun(moved, readings, i, poses) : i + 1;

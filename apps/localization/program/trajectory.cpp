@@ -10,6 +10,12 @@
 #include "opencv2/core/quaternion.hpp"
 
 namespace iib_localization {
+namespace {
+
+constexpr double MAX_LEVER = 1000;           // metres from an IMU to its camera
+constexpr int64_t MAX_TIME = int64_t(4e18);  // nanoseconds: differences of times must not overflow
+
+}  // namespace
 
 std::string trajectoryLine(const std::string& name, const cv::Affine3d& worldFromCamera)
 {
@@ -27,8 +33,9 @@ cv::Affine3d parsePose(const std::string& text)
     const bool valid = values.size() == 7;
     values.resize(7);
     const cv::Quatd q(values[6], values[3], values[4], values[5]);
-    if (!valid || !(std::abs(q.norm() - 1) <= 1e-2))
-        CV_Error(cv::Error::StsBadArg, text + " is not tx,ty,tz,qx,qy,qz,qw with a quaternion of length 1");
+    if (!valid || !(std::abs(q.norm() - 1) <= 1e-2) || cv::norm(cv::Vec3d(values.data())) > MAX_LEVER)
+        CV_Error(cv::Error::StsBadArg,
+                text + " is not tx,ty,tz,qx,qy,qz,qw with a quaternion of length 1 and metres");
     return {q.normalize().toRotMat3x3(), cv::Vec3d(values.data())};
 }
 
@@ -41,7 +48,7 @@ std::optional<int64_t> nanoseconds(const std::string& name)
     };
     if (whole.empty() || !digits(whole) || !digits(fraction))
         return std::nullopt;
-    if (whole.size() >= 15 && whole.size() <= 19 && std::stoull(whole) <= INT64_MAX)
+    if (whole.size() >= 15 && whole.size() <= 19 && std::stoull(whole) <= uint64_t(MAX_TIME))
         return std::stoll(whole);
     if (whole.size() > 10)  // neither seconds nor nanoseconds of our time
         return std::nullopt;
@@ -51,8 +58,8 @@ std::optional<int64_t> nanoseconds(const std::string& name)
 std::vector<ImuReading> readImu(const std::string& path)
 {
     std::ifstream stream(path);
-    if (!stream)
-        CV_Error(cv::Error::StsError, path + " cannot be opened");
+    if (!stream || stream.peek() == EOF)
+        CV_Error(cv::Error::StsError, path + " cannot be opened, or is empty");
     std::vector<ImuReading> readings;
     int number = 0;
     for (std::string line; std::getline(stream, line);)
@@ -64,11 +71,15 @@ std::vector<ImuReading> readImu(const std::string& path)
         const std::vector<double> values = numbersOf(line.substr(0, line.find('\r')));
         if (values.size() != 7)
             CV_Error(cv::Error::StsError, where + "not a time and six numbers");
+        if (std::abs(values[0]) > double(MAX_TIME))
+            CV_Error(cv::Error::StsError, where + "the time is not in nanoseconds");
         const int64_t time = int64_t(values[0]);  // to a quarter of a microsecond
         if (!readings.empty() && time <= readings.back().nanoseconds)
             CV_Error(cv::Error::StsError, where + "the time does not rise");
         readings.push_back({time, cv::Vec3d(&values[1]), cv::Vec3d(&values[4])});
     }
+    if (readings.empty())
+        CV_Error(cv::Error::StsError, path + " has no readings");
     return readings;
 }
 

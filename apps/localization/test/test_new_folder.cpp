@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <filesystem>
 
 #include "images.hpp"
@@ -9,7 +13,9 @@
 namespace {
 using namespace iib_localization;
 
-const std::vector<std::string> OWN = {"index", "[a-z].part", "sub", "sub/?.part"};
+bool lacksExchange = false;
+
+const std::vector<std::string> OWN = {"index", "[a-z].part", "sub/", "sub/?.part"};
 
 void publish(const std::string& target, const std::string& text)
 {
@@ -37,6 +43,38 @@ TEST(NewFolder, appears_whole_and_replaces_its_like)
     folder.makeFolder("empty");
     publish(folder.path("empty"), "three");
     EXPECT_EQ("three", textOf(folder.path("empty/index")));
+}
+
+TEST(NewFolder, replaces_its_like_where_the_system_exchanges_no_names)
+{
+    const TestFolder folder;
+    publish(folder.path("out"), "one");
+    lacksExchange = true;
+    const std::string error = messageOf([&] { publish(folder.path("out"), "two"); });
+    lacksExchange = false;
+    EXPECT_EQ("", error);
+    EXPECT_EQ("two", textOf(folder.path("out/index")));
+    for (const char* left : {"out.iib_partial", "out.iib_partial.old"})
+        EXPECT_FALSE(cv::utils::fs::exists(folder.path(left))) << left;
+}
+
+TEST(NewFolder, links)
+{
+    const TestFolder folder;
+    folder.makeFolder("disk/out");
+    std::filesystem::create_symlink("disk/out", folder.path("good"));
+    publish(folder.path("good"), "one");
+    EXPECT_TRUE(std::filesystem::is_symlink(folder.path("good"))) << "is followed";
+    EXPECT_EQ("one", textOf(folder.path("disk/out/index")));
+    std::filesystem::create_symlink("nowhere", folder.path("dangling"));
+    EXPECT_EQ(folder.path("dangling") + " is a link to nothing: remove it",
+            messageOf([&] { NewFolder(folder.path("dangling"), OWN); }));
+    folder.makeFolder("precious");
+    folder.write("precious/thesis", "precious");
+    std::filesystem::create_symlink("precious", folder.path("new.iib_partial"));
+    EXPECT_EQ(folder.path("new.iib_partial") + " is a link: remove it",
+            messageOf([&] { NewFolder(folder.path("new"), OWN); }));
+    EXPECT_EQ("precious", textOf(folder.path("precious/thesis")));
 }
 
 TEST(NewFolder, replaces_nothing_else)
@@ -102,7 +140,19 @@ TEST(Images, names_that_results_cannot_hold)
     folder.write("#a.png", "");
     EXPECT_EQ("#a.png: rename it, without a leading # and line breaks: a trajectory cannot hold these",
             messageOf([&] { listImages(folder.path("")); }));
-    EXPECT_EQ(folder.path("none") + " cannot be read", messageOf([&] { listImages(folder.path("none")); }));
+    EXPECT_EQ(folder.path("none") + " or a folder in it cannot be read: No such file or directory",
+            messageOf([&] { listImages(folder.path("none")); }));
 }
 
 }  // namespace
+
+//! Stands before the C library's: file systems without RENAME_EXCHANGE.
+extern "C" int renameat2(int from, const char* a, int to, const char* b, unsigned flags) noexcept
+{
+    if (lacksExchange)
+    {
+        errno = EINVAL;
+        return -1;
+    }
+    return int(::syscall(SYS_renameat2, from, a, to, b, flags));
+}

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <sys/stat.h>
+
 #include <cstdlib>
+#include <filesystem>
 
 #include "iib_geometry/test/wall.hpp"
 
@@ -115,7 +118,7 @@ TEST_F(Programs, pictures_do_not_overwrite_photographs)
     EXPECT_NE(std::string::npos, error.find("not written by this program: choose another folder\n")) << error;
     EXPECT_EQ(before, textOf(folder.path("images/3.png")));
     EXPECT_EQ(0, localize("images", "out", "--pictures")) << error;
-    EXPECT_FALSE(cv::imread(folder.path("out/matches/left side-0.png.png")).empty());
+    EXPECT_FALSE(cv::imread(folder.path("out/matches/left side/0.png.png")).empty());
     EXPECT_EQ(before, textOf(folder.path("images/3.png")));
 }
 
@@ -124,14 +127,18 @@ TEST_F(Programs, older_results_stay_until_new_ones_are_whole)
     ASSERT_EQ(0, localize("images", "out", "--pictures")) << error;
     const std::string frames = textOf(folder.path("out/frames.csv"));
     EXPECT_EQ(1, localize("images", "out", "--imu " + folder.path("none.csv")));
-    EXPECT_EQ("iib_localize: " + folder.path("none.csv") + " cannot be opened\n", error);
+    EXPECT_EQ("iib_localize: " + folder.path("none.csv") + " cannot be opened, or is empty\n", error);
     folder.write("imu.csv", "0,0,0,0,0,0,0\n");
     EXPECT_EQ(1, localize("images", "out", "--imu " + folder.path("imu.csv")));
     EXPECT_NE(std::string::npos, error.find("must be named by their times")) << error;
     EXPECT_EQ(2, localize("images", "out", "--camera EQUIRECTANGULAR,1,1,1"));
+    EXPECT_EQ(2, localize("images", "out", "--imu-from-camera 1e300,0,0,0,0,0,1"));
+    EXPECT_EQ(2, localize("images", "out", "more"));
+    EXPECT_EQ("iib_localize: more: only options are taken (--help lists them)\n", error);
     EXPECT_EQ(2, localize("images", "out", "--imu-from-camera 0,0,0,1,1,1,1"));
-    EXPECT_EQ(
-            "iib_localize: 0,0,0,1,1,1,1 is not tx,ty,tz,qx,qy,qz,qw with a quaternion of length 1\n", error);
+    EXPECT_EQ("iib_localize: 0,0,0,1,1,1,1 is not tx,ty,tz,qx,qy,qz,qw with a quaternion of length 1 and "
+              "metres\n",
+            error);
     EXPECT_EQ(1, run("iib_localize --map " + folder.path("dark") + " --images " + folder.path("images") +
                          " --out " + folder.path("out")));
     EXPECT_EQ("iib_localize: " + folder.path("dark") + " is no map: it has no map.iib\n", error);
@@ -152,19 +159,27 @@ TEST_F(Programs, with_an_imu)
 {
     // the camera stands still, and its second image tells nothing
     folder.makeFolder("timed");
-    for (int i = 0; i < 6; i++)
-        cv::imwrite(folder.path("timed/0" + std::to_string(i) + ".500000.png"),
+    for (int i = 0; i < 6; i++)  // 8.5 to 13.5 seconds, which sort otherwise as text
+        cv::imwrite(folder.path("timed/" + std::to_string(8 + i) + ".500000.png"),
                 i == 1 ? cv::Mat(SIZE, CV_8U, cv::Scalar(7)) : wall.image(poseAt(0.1, -0.1, 0.1)));
     std::string readings;
     const cv::Vec3d felt = poseAt(0.1, -0.1, 0.1).rotation().t() * cv::Vec3d(0, -9.81, 0);
-    for (int64_t time = 0; time <= 6000000000; time += 5000000)
+    for (int64_t time = 8000000000; time <= 14000000000; time += 5000000)
         readings += cv::format("%lld,0,0,0,%.9f,%.9f,%.9f\n", (long long)time, felt[0], felt[1], felt[2]);
     folder.write("imu.csv", readings);
     EXPECT_EQ(4, localize("timed", "out"));
     EXPECT_EQ(0, localize("timed", "out", "--imu " + folder.path("imu.csv"))) << error;
     EXPECT_EQ("6 of 6 images have a pose\n", said);
     const std::vector<std::string> lines = split(textOf(folder.path("out/trajectory.txt")), '\n');
-    expectPose(split(lines.at(2), ' '), "01.500000", poseAt(0.1, -0.1, 0.1));
+    expectPose(split(lines.at(2), ' '), "9.500000", poseAt(0.1, -0.1, 0.1));
+    folder.makeFolder("later");
+    cv::imwrite(folder.path("later/1500000000000000.png"), wall.image(poseAt(0.1, -0.1, 0.1)));
+    EXPECT_EQ(1, localize("later", "out", "--imu " + folder.path("imu.csv"))) << "microseconds";
+    EXPECT_NE(std::string::npos, error.find("are not those of the IMU's readings")) << error;
+    folder.write("imu.csv", "# a head\n");
+    EXPECT_EQ(1, localize("timed", "out", "--imu " + folder.path("imu.csv")));
+    EXPECT_EQ("iib_localize: " + folder.path("imu.csv") + " has no readings\n", error);
+    EXPECT_EQ(1, localize("timed", "out", "--imu " + folder.path("timed")));
 }
 
 TEST_F(Programs, stream_a_path_and_a_pose_a_line)
@@ -184,6 +199,51 @@ TEST_F(Programs, stream_a_path_and_a_pose_a_line)
     EXPECT_EQ(2, run("iib_localize --stream --map " + folder.path("map") + " --out " + folder.path("out")));
     EXPECT_EQ("iib_localize: --stream goes without --out\n", error);
     EXPECT_EQ(2, run("iib_localize --map " + folder.path("map")));
+    folder.write("paths", "#a.png\n");
+    EXPECT_EQ(3, run("iib_localize --stream --map " + folder.path("map") + " <" + folder.path("paths")));
+    EXPECT_EQ("# #a.png: a path must not begin with #: write ./ before it\n", said);
+    EXPECT_EQ(1, run("iib_localize --stream --map " + folder.path("map") + " <" + folder.path("paths") +
+                         " >/dev/full; exit $?"));
+}
+
+TEST_F(Programs, images_that_cannot_be_read)
+{
+    folder.makeFolder("bad");
+    cv::imwrite(folder.path("bad/whole.jpg"), wall.image(poseAt(0.1, -0.1, 0.1)));
+    const std::string jpeg = textOf(folder.path("bad/whole.jpg"));
+    folder.write("bad/cut.jpg", jpeg.substr(0, jpeg.size() * 2 / 3));
+    folder.write("bad/huge.pgm", "P5\n100000 100000\n255\n");
+    ASSERT_EQ(0, ::mkfifo(folder.path("bad/pipe.png").c_str(), 0600));
+    std::filesystem::create_symlink("loop.png", folder.path("bad/loop.png"));
+    EXPECT_EQ(4, localize("bad", "out")) << error;
+    const std::vector<std::string> rows = split(textOf(folder.path("out/frames.csv")), '\n');
+    ASSERT_EQ(6u, rows.size());
+    for (size_t i = 1; i < 5; i++)
+        EXPECT_NE(std::string::npos, rows[i].find(",0,the image cannot be read,0,0,")) << rows[i];
+    EXPECT_EQ(0u, rows[5].find("whole.jpg,1,,")) << rows[5];
+}
+
+TEST_F(Programs, results_are_no_images)
+{
+    EXPECT_EQ(4, localize("dark", "dark/out", "--pictures")) << error;
+    folder.makeFolder("dark/out.iib_partial/matches");
+    cv::imwrite(folder.path("dark/out.iib_partial/matches/killed.png"), cv::Mat(SIZE, CV_8U, cv::Scalar(7)));
+    EXPECT_EQ(4, localize("dark", "dark/out", "--pictures")) << error;
+    EXPECT_EQ("1 of 2 images have a pose\n", said);
+}
+
+TEST_F(Programs, an_image_turned_by_exif_is_taken_as_it_is_stored)
+{
+    folder.makeFolder("turned");
+    cv::imwrite(folder.path("turned/a.jpg"), wall.image(poseAt(0.1, -0.1, 0.1)));
+    std::string jpeg = textOf(folder.path("turned/a.jpg"));
+    const std::string exif("\xff\xe1\0\x22"
+                           "Exif\0\0"
+                           "MM\0*\0\0\0\x08\0\1\x01\x12\0\3\0\0\0\1\0\6\0\0\0\0\0\0",
+            36);
+    folder.write("turned/a.jpg", jpeg.insert(2, exif));
+    EXPECT_EQ(cv::Size(SIZE.height, SIZE.width), cv::imread(folder.path("turned/a.jpg")).size());
+    EXPECT_EQ(0, localize("turned", "out")) << textOf(folder.path("out/frames.csv"));
 }
 
 }  // namespace

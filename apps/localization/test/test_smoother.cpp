@@ -158,8 +158,14 @@ TEST(Imu, reads_euroc)
     for (const char* wrong : {"5,0,0,,0,0,0", "5,0,0,0,0,0", "5,0,0,0,0,0,0,0", "x,0,0,0,0,0,0", ""})
     {
         folder.write("imu.csv", std::string("# of an IMU\n") + wrong + "\n");
-        EXPECT_EQ(*wrong ? path + ":2: not a time and six numbers" : "", messageOf([&] { readImu(path); }))
+        EXPECT_EQ(*wrong ? path + ":2: not a time and six numbers" : path + " has no readings",
+                messageOf([&] { readImu(path); }))
                 << wrong;
+    }
+    for (const char* time : {"9.3e18", "-9.3e18", "1e300"})
+    {
+        folder.write("imu.csv", std::string(time) + ",0,0,0,0,0,0\n");
+        EXPECT_EQ(path + ":1: the time is not in nanoseconds", messageOf([&] { readImu(path); })) << time;
     }
     folder.write("imu.csv", "5,0,0,0,0,0,0\n5,0,0,0,0,0,0\n");
     EXPECT_EQ(path + ":2: the time does not rise", messageOf([&] { readImu(path); }));
@@ -172,7 +178,8 @@ TEST(Imu, names_that_are_times)
     EXPECT_EQ(1403636579763555584, *nanoseconds("1403636579.763555584"));
     EXPECT_EQ(3000000000, *nanoseconds("0003"));
     EXPECT_FALSE(nanoseconds("left_0003"));
-    EXPECT_FALSE(nanoseconds("9999999999999999999"));
+    for (const char* late : {"9999999999999999999", "9223372036854775807"})  // differences would overflow
+        EXPECT_FALSE(nanoseconds(late));
     EXPECT_FALSE(nanoseconds(""));
 }
 
