@@ -15,7 +15,7 @@ need $build_packages povray python3-opencv python3-venv python3-dev
 /usr/bin/python3 "$root/tools/synthetic/localization.py" "$data"
 say "installing the Python package in $environment"
 /usr/bin/python3 -m venv "$environment"
-"$environment/bin/pip" install --quiet "$root[localization]" jinja2
+"$environment/bin/pip" install --quiet "$root" opencv-python-headless pycolmap jinja2
 build_tools -DIIB_BUILD_APPS=ON iib_localize
 page=$(IIB_PROGRAMS="$build/apps/localization" "$environment/bin/python" -B "$root/apps/localization/report/page.py" "$data" "$out")
 say "results and page: $page"

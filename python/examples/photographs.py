@@ -27,7 +27,7 @@ import opencv_iib
 from opencv_iib.colmap import FeatureOptions, Options, build_database
 from opencv_iib.colmap.features import to_colmap
 from opencv_iib.keypoints import keypoints_to_array
-from opencv_iib.localization import Localizer, build_map
+from opencv_iib.localization import Localizer, build
 
 FASTER = {'ba_global_frames_ratio': 1.2, 'ba_global_points_ratio': 1.2, 'ba_global_max_refinements': 2}
 
@@ -129,13 +129,14 @@ def find_others(images, other, model, points, work):
     if not (work / 'MAP').exists():
         (work / 'rest').mkdir(exist_ok=True)
         model.write(work / 'rest')
-        build_map(str(work / 'rest'), str(images), str(work / 'MAP'), points)
+        build(str(work / 'rest'), str(images), str(work / 'MAP'), points)
     localizer, errors = Localizer(work / 'MAP', points), []
     for name, camera, truth in asked:
-        location = localizer.localize(cv2.imread(str(images / name)), camera)
-        if location.cam_from_world is not None:
-            away = np.linalg.norm(location.cam_from_world.inverse().translation - truth.translation)
-            errors.append((away / depths[name], np.degrees(location.cam_from_world.inverse().rotation.angle_to(truth.rotation))))
+        found = localizer.localize(cv2.imread(str(images / name)), camera).cam_from_world
+        if found is not None:
+            pose = pycolmap.Rigid3d(found[:3]).inverse()
+            away = np.linalg.norm(pose.translation - truth.translation)
+            errors.append((away / depths[name], np.degrees(pose.rotation.angle_to(truth.rotation))))
     moved, turned = np.array(errors).reshape(-1, 2).T
     return (f'Of {len(other)} images of another light {len(asked)} are in the reconstruction, and {len(errors)} are found in a map of '
             f'the {model.num_reg_images()} others there: medians {100 * np.median(moved):.2f} % and {np.median(turned):.2f} degrees '

@@ -8,7 +8,7 @@ import sqlite3
 import sys
 from typing import Any, Optional, Sequence
 
-from opencv_iib import __version__, error
+from opencv_iib import __version__, error, localization
 from opencv_iib.colmap import hloc
 from opencv_iib.colmap.database import CAMERA_MODELS
 from opencv_iib.colmap.features import DETECTORS, FeatureOptions, preset_names
@@ -82,8 +82,9 @@ def _add_localization(commands: Any) -> None:
 
     mapping = command('map', 'make a map for localization of a COLMAP model', localizes=False)
     mapping.add_argument('--model', required=True, help='folder of a COLMAP model, binary or text')
-    mapping.add_argument('--out', required=True, help='folder to write; an interrupted run goes on from NAME.partial')
+    mapping.add_argument('--out', required=True, help='folder to write')
     mapping.add_argument('--points', type=int, default=2000, help='at most so many an image (%(default)s)')
+    mapping.add_argument('--force', action='store_true', help='replace a map that is there')
     localizing = command('localize', 'find where images were taken; status 0: all, 4: some, 3: none', localizes=True)
     localizing.add_argument('--out', required=True, help='folder to write; older results there are replaced')
     localizing.add_argument('--pictures', action='store_true', help='write each image with the points that agree')
@@ -105,25 +106,20 @@ def _demo(arguments: argparse.Namespace) -> int:
 
 
 def _localization(arguments: argparse.Namespace) -> int:
-    from opencv_iib import localization
-    from opencv_iib.localization._pycolmap import pycolmap
-    pycolmap.logging.minloglevel = pycolmap.logging.FATAL.value  # its errors come as exceptions
     if arguments.workers is not None and arguments.workers < 1:
         raise ValueError(f'workers is {arguments.workers}: at least 1 is needed')
+    if arguments.command == 'localize':
+        found, count = localization.localize_images(arguments.map, arguments.images, arguments.out, arguments.camera,
+                                                    arguments.pictures, arguments.workers)
+        _say(f'{arguments.out}: {found} of {count} images have a pose')
+        return 0 if found == count else SOME_FOUND if found else NONE_FOUND
     if arguments.command == 'map':
-        model = localization.build_map(arguments.model, arguments.images, arguments.out, arguments.points,
-                                       arguments.workers).model
-        _say(f'{arguments.out}: {model.num_reg_images()} images, {model.num_points3D()} points')
-        return 0
-    camera = None if arguments.camera is None else localization.parse_camera(arguments.camera)
-    if arguments.command == 'update':
-        counts = localization.update_map(arguments.map, arguments.images, camera, arguments.out, arguments.workers)
-        _say(f'{arguments.out or arguments.map}: ' + ', '.join(f'{count} {name}' for name, count in counts.items()))
-        return 0
-    found, count = localization.localize_images(arguments.map, arguments.images, arguments.out, camera, arguments.pictures,
-                                                arguments.workers)
-    _say(f'{arguments.out}: {found} of {count} images have a pose')
-    return 0 if found == count else SOME_FOUND if found else NONE_FOUND
+        counts = localization.build(arguments.model, arguments.images, arguments.out, arguments.points, arguments.workers,
+                                    arguments.force)
+    else:
+        counts = localization.update(arguments.map, arguments.images, arguments.camera, arguments.out, arguments.workers)
+    _say(f'{arguments.out or arguments.map}: ' + ', '.join(f'{count} {name}' for name, count in counts.items()))
+    return 0
 
 
 def _client(scheduler: Optional[str]) -> contextlib.AbstractContextManager[Any]:

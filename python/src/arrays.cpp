@@ -86,6 +86,7 @@ nb::object toNumpy(const cv::Mat& matrix)
     case CV_8U: return nb::cast(nb::ndarray<nb::numpy, uint8_t>(owned->data, 2, shape, owner));
     case CV_16U: return nb::cast(nb::ndarray<nb::numpy, uint16_t>(owned->data, 2, shape, owner));
     case CV_32S: return nb::cast(nb::ndarray<nb::numpy, int32_t>(owned->data, 2, shape, owner));
+    case CV_64F: return nb::cast(nb::ndarray<nb::numpy, double>(owned->data, 2, shape, owner));
     default:
         CV_Assert(matrix.depth() == CV_32F);
         return nb::cast(nb::ndarray<nb::numpy, float>(owned->data, 2, shape, owner));

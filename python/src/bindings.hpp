@@ -14,5 +14,6 @@ void bindMatcher(nanobind::module_& m);
 void bindMappedIndex(nanobind::module_& m);
 void bindRefinement(nanobind::module_& m);
 void bindRotation(nanobind::module_& m);
+void bindLocalization(nanobind::module_& m);
 
 }  // namespace iib_python

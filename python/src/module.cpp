@@ -32,6 +32,7 @@ NB_MODULE(_core, m)
     bindMappedIndex(m);
     bindRefinement(m);
     bindRotation(m);
+    bindLocalization(m);
 
     m.attr("VERSION") = IIB_VERSION;
     m.attr("OPENCV_VERSION") = CV_VERSION;

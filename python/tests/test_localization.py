@@ -1,29 +1,32 @@
 import csv
 import io
-import json
 import os
+import re
+import resource
 import shutil
+import struct
 import subprocess
 import tempfile
+import threading
 import unittest
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import redirect_stderr, redirect_stdout
+import zlib
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from pathlib import Path
 from unittest import mock
 
 import numpy as np
 
-from support import cv2, optional, texture
+import opencv_iib
+from opencv_iib import _core
+from opencv_iib.localization import Camera, Localizer, build, update
+from support import REPOSITORY, cv2, optional, seconds_until_interrupt, steps_meanwhile, texture
 
 pycolmap = optional('pycolmap')
 
 if cv2 is not None:
     from opencv_iib.__main__ import main
-    from opencv_iib.colmap import pipeline
-    from opencv_iib.localization import Localizer, build_map, find_camera, parse_camera, read_map, update
+    from opencv_iib.localization import maps, run as runs
     from opencv_iib.localization.folders import new_folder
-    from opencv_iib.localization.geometry import refine_pose
-    from opencv_iib.localization.map import compact
-    from opencv_iib.localization.retrieval import Votes
 
 SIZE = WIDTH, HEIGHT = 320, 240
 CAMERA = f'PINHOLE,{WIDTH},{HEIGHT},300,300,160,120'
@@ -36,36 +39,35 @@ def wall(seed):
     return cv2.resize(texture(240, 180, seed=seed), (1200, 900), interpolation=cv2.INTER_CUBIC)
 
 
+def rigid(turn, place):
+    """4 x 4, of a camera at a place."""
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = turn, -turn @ np.array(place)
+    return pose
+
+
 def pose(x, y):
     """Camera from world, turned towards the middle of the wall."""
-    turn = cv2.Rodrigues(np.array([.05 * y, .1 * x, 0]))[0]
-    return pycolmap.Rigid3d(pycolmap.Rotation3d(turn), -turn @ np.array([x, y, 0]))
+    return rigid(cv2.Rodrigues(np.array([.05 * y, .1 * x, 0]))[0], [x, y, 0])
 
 
 def photograph(picture, cam_from_world, lit=lambda grey: grey):
-    matrix = cam_from_world.matrix()
     camera = np.array([[300, 0, 159.5], [0, 300, 119.5], [0, 0, 1]])
+    matrix = cam_from_world[:3]
     from_wall = camera @ (np.stack([matrix[:, 0], matrix[:, 1], 5 * matrix[:, 2] + matrix[:, 3]], axis=1))
     from_pixels = np.array([[.01, 0, -6], [0, .01, -4.5], [0, 0, 1]])  # to metres
     return lit(cv2.warpPerspective(picture, from_wall @ from_pixels, SIZE))
 
 
-def evening(grey):
+def evening(grey, noise=2):
     shade = np.linspace(10, 40, WIDTH) * (grey / 255) ** 1.5
-    return np.clip(shade + np.random.default_rng(1).normal(5, 2, grey.shape), 0, 255).astype(np.uint8)
+    return np.clip(shade + np.random.default_rng(1).normal(5, noise, grey.shape), 0, 255).astype(np.uint8)
 
 
-def write_model(folder, names, unit=1., text=False):
-    model = pycolmap.Reconstruction()
-    camera = parse_camera(CAMERA)
-    camera.camera_id = 1
-    model.add_camera_with_trivial_rig(camera)
-    for i, (name, place) in enumerate(zip(names, PLACES), 1):
-        cam_from_world = pose(*place)
-        cam_from_world.translation = cam_from_world.translation * unit
-        model.add_image_with_trivial_frame(pycolmap.Image(name, np.zeros((0, 2)), 1, i), cam_from_world)
+def write_model(folder, poses, camera=CAMERA):
+    """A COLMAP model without points, of poses by name."""
     os.makedirs(folder, exist_ok=True)
-    model.write_text(folder) if text else model.write(folder)
+    _core.writeModel(os.fsencode(folder), [(name, Camera.parse(camera), pose, np.empty((0, 2))) for name, pose in poses.items()])
 
 
 def run(*arguments):
@@ -76,14 +78,9 @@ def run(*arguments):
     return status, errors.getvalue()
 
 
-def cpp(*arguments):
-    program = os.path.join(os.environ['IIB_PROGRAMS'], 'iib_localize')
-    subprocess.run([program, *arguments], check=True, stdout=subprocess.DEVNULL)
-
-
-def poses(folder, name='trajectory.txt'):
+def trajectory(folder, name='trajectory.txt'):
     """By names without blanks: centre, quaternion x y z w."""
-    lines = [line.split() for line in open(os.path.join(folder, name)) if line[0] != '#']
+    lines = [line.split() for line in Path(folder, name).read_text().splitlines() if line[0] != '#']
     return {line[0]: np.array(line[1:], float) for line in lines}
 
 
@@ -94,7 +91,6 @@ def dimmed(picture, seed):
 
 
 @unittest.skipIf(cv2 is None, 'no cv2')
-@unittest.skipIf(pycolmap is None, 'no pycolmap')
 class Localization(unittest.TestCase):
 
     @classmethod
@@ -104,29 +100,31 @@ class Localization(unittest.TestCase):
         cls.folder = temporary.name
         cls.images, cls.model, cls.map, cls.dark = (os.path.join(cls.folder, name) for name in
                                                     ('images', 'model', 'map', 'dark'))
-        cls.names = [f'left side/{i} of 6.png' for i in range(3)] + [f'{i}.png' for i in range(3)]
+        cls.poses = dict(zip([*(f'left side/{i} of 6.png' for i in range(3)), '0.png', '1.png', '2.png'],
+                             (pose(*place) for place in PLACES)))
         os.makedirs(os.path.join(cls.images, 'left side'))
-        os.makedirs(cls.dark)
+        os.makedirs(os.path.join(cls.dark, 'a'))
         picture = wall(3)
-        for name, place in zip(cls.names, PLACES):
-            cv2.imwrite(os.path.join(cls.images, name), photograph(picture, pose(*place)))
-        cls.truth = {'a': (-.8, .1), 'b': (-.2, .2), 'c': (.3, .1)}
+        for name, place in cls.poses.items():
+            cv2.imwrite(os.path.join(cls.images, name), photograph(picture, place))
+        cls.truth = {'a/b': (-.8, .1), 'a-b': (-.2, .2), 'c': (.3, .1)}
         for name, place in cls.truth.items():
             cv2.imwrite(os.path.join(cls.dark, name + '.png'), photograph(picture, pose(*place), evening))
-        write_model(cls.model, cls.names)
-        assert run('map', '--model', cls.model, '--images', cls.images, '--out', cls.map, '--points', '400')[0] == 0
+        write_model(cls.model, cls.poses)
+        status, errors = run('map', '--model', cls.model, '--images', cls.images, '--out', cls.map, '--points', '400')
+        assert status == 0, errors
 
     def path(self, name):
         return os.path.join(tempfile.mkdtemp(dir=self.folder), name)
 
-    def grey(self, name):
+    def grey(self, name='c'):
         return cv2.imread(os.path.join(self.dark, name + '.png'), cv2.IMREAD_GRAYSCALE)
 
-    def check(self, location, name, unit=1.):
+    def check(self, location, name='c'):
         self.assertEqual(location.reason, '')
-        found, true = location.cam_from_world.inverse(), pose(*self.truth[name]).inverse()
-        self.assertLess(np.linalg.norm(found.translation / unit - true.translation), .05)
-        self.assertLess(found.rotation.angle_to(true.rotation), .01)
+        error = location.cam_from_world @ np.linalg.inv(pose(*self.truth[name]))
+        self.assertLess(np.linalg.norm(error[:3, 3]), .05)
+        self.assertLess(np.linalg.norm(error[:3, :3] - np.eye(3)), .02)
 
     def check_error(self, pattern, *arguments):
         status, errors = run(*arguments)
@@ -134,327 +132,298 @@ class Localization(unittest.TestCase):
         self.assertRegex(errors.splitlines()[-1], pattern)
         self.assertNotIn('Traceback', errors)
 
-    def test_a_map_is_a_model_of_points_that_its_keypoints_see(self):
-        made = read_map(self.map)
-        model = pycolmap.Reconstruction(self.map)
-        self.assertEqual({image.name for image in model.images.values()}, set(self.names))
-        self.assertGreater(model.num_points3D(), 200)
-        self.assertTrue(0 < model.compute_mean_reprojection_error() < 1)
-        depths = np.array([point.xyz[2] for point in made.model.points3D.values()])
-        self.assertLess(np.median(np.abs(depths - 5)), .02)  # on the wall
-        for i, codes in made.codes.items():
-            self.assertEqual(codes.shape, (made.model.image(i).num_points2D(), 128))
-            self.assertEqual(made.model.image(i).num_points3D, len(codes))
+    def localize(self, out, *arguments, map=None, images=None):
+        return run('localize', '--map', map or self.map, '--images', images or self.dark, '--out', out, *arguments)
 
     def test_another_light_is_localized_and_written(self):
         out = self.path('out')
         for _ in range(2):  # the second replaces the first
-            status, _ = run('localize', '--map', self.map, '--images', self.dark, '--camera', CAMERA, '--out', out,
-                            '--pictures')
-            self.assertEqual(status, 0)
-        self.assertEqual(sorted(os.listdir(os.path.join(out, 'matches'))), ['a.png.png', 'b.png.png', 'c.png.png'])
-        lines = open(os.path.join(out, 'trajectory.txt')).read().splitlines()
-        self.assertEqual(lines[0], '# name tx ty tz qx qy qz qw')
-        for line, (name, place) in zip(lines[1:], self.truth.items()):
-            word, *numbers = line.split()
-            numbers = np.array([float(number) for number in numbers])
-            true = pose(*place).inverse()
-            self.assertEqual(word, name)
-            self.assertLess(np.linalg.norm(numbers[:3] - true.translation), .05)
-            self.assertGreater(abs(numbers[3:] @ true.rotation.quat), .9999)
-        rows = list(csv.DictReader(open(os.path.join(out, 'frames.csv'))))
+            self.assertEqual(self.localize(out, '--camera', CAMERA, '--pictures')[0], 0)
+        self.assertEqual(sorted(os.listdir(out)), ['cameras.bin', 'frames.csv', 'images.bin', 'matches', 'points3D.bin', 'trajectory.txt'])
+        for name in self.truth:  # a/b and a-b stay apart
+            self.assertEqual(cv2.imread(os.path.join(out, 'matches', name + '.png')).shape, (HEIGHT, WIDTH, 3))
+        self.assertEqual(Path(out, 'trajectory.txt').read_text().splitlines()[0], '# name tx ty tz qx qy qz qw')
+        found = trajectory(out)
+        self.assertEqual(list(found), sorted(self.truth))
+        for name, place in self.truth.items():
+            true = pose(*place)
+            self.assertLess(np.linalg.norm(found[name][:3] - [*place, 0]), .05)
+            half = cv2.Rodrigues(true[:3, :3].T)[0].ravel() / 2
+            self.assertGreater(found[name][3:] @ [*half, 1] / np.linalg.norm([*half, 1]), .9999)  # of small angles
+        rows = list(csv.DictReader(Path(out, 'frames.csv').read_text().splitlines()))
         self.assertEqual([row['found'] for row in rows], ['1'] * 3)
         self.assertGreater(int(rows[0]['inliers']), 15)
         self.assertLess(float(rows[0]['x_x']) ** .5, .05)
-        model = pycolmap.Reconstruction(out)
+
+    @unittest.skipIf(pycolmap is None, 'no pycolmap')
+    def test_colmap_reads_what_is_written_and_its_objects_are_taken(self):
+        out = self.path('out')
+        self.localize(out)
+        model, mapped = pycolmap.Reconstruction(out), pycolmap.Reconstruction(self.map)
         self.assertEqual((model.num_reg_images(), model.num_cameras()), (3, 1))
+        self.assertEqual({image.name for image in mapped.images.values()}, set(self.poses))
+        self.assertGreater(mapped.num_points3D(), 200)
+        self.assertLess(np.median([abs(point.xyz[2] - 5) for point in mapped.points3D.values()]), .02)  # on the wall
+        image = next(image for image in model.images.values() if image.name == 'c.png')
+        location = Localizer(self.map).localize(self.grey(), model.cameras[image.camera_id], image.cam_from_world().matrix())
+        self.check(location)
+        np.testing.assert_allclose(location.cam_from_world[:3], image.cam_from_world().matrix(), atol=.01)
 
-    @unittest.skipUnless(os.environ.get('IIB_PROGRAMS'), 'no IIB_PROGRAMS, the folder of iib_localize')
-    @unittest.skipUnless(os.path.isdir(STRECHA), 'OPENCV_TEST_DATA_PATH has no strecha/Herz-Jesus-P8')
-    def test_photographs_in_cpp_within_five_centimetres_also_relit(self):
-        truth = poses(STRECHA, 'poses.txt')
-        camera = open(os.path.join(STRECHA, 'cameras.txt')).read().splitlines()[-1].split()
-        model, names = pycolmap.Reconstruction(), sorted(os.listdir(os.path.join(STRECHA, 'images')))
-        images, sparse, plain, relit, out = (self.path(name) for name in ('images', 'sparse', 'a', 'b', 'out'))
-        for folder in (images, sparse, plain, relit):
-            os.makedirs(folder)
-        model.add_camera_with_trivial_rig(pycolmap.Camera(camera_id=1, model=camera[1], width=int(camera[2]),
-                                                          height=int(camera[3]), params=[float(v) for v in camera[4:]]))
-        for i, name in enumerate(names, 1):
-            picture = cv2.imread(os.path.join(STRECHA, 'images', name))
-            if i % 2 == 0:
-                cv2.imwrite(os.path.join(plain, name), picture)
-                cv2.imwrite(os.path.join(relit, name), dimmed(picture, i))
-                continue
-            cv2.imwrite(os.path.join(images, name), picture)
-            place = truth[os.path.splitext(name)[0]]
-            turn = pycolmap.Rotation3d(place[3:])
-            model.add_image_with_trivial_frame(pycolmap.Image(name, np.zeros((0, 2)), 1, i),
-                                               pycolmap.Rigid3d(turn, place[:3]).inverse())
-        model.write(sparse)
-        for folder in (plain, relit):
-            cpp('--model', sparse, '--photographs', images, '--images', folder, '--out', out)
-            found = poses(out)
-            self.assertEqual(len(found), len(names) // 2)
-            for name, place in found.items():
-                self.assertLess(np.linalg.norm(place[:3] - truth[name][:3]), .05, name)
-                self.assertGreater(abs(place[3:] @ truth[name][3:]), np.cos(np.radians(.25)), name)
+    def test_a_location(self):
+        localizer = Localizer(self.map)
+        location = localizer.localize(self.grey(), CAMERA)
+        self.check(location)
+        self.assertEqual((location.cam_from_world.shape, location.covariance.shape), ((4, 4), (6, 6)))
+        self.assertGreaterEqual(location.matches, location.inliers)
+        self.assertEqual(len(location.pixels), len(location.points))
+        own = location.cam_from_world
+        seen = Camera.parse(CAMERA).project(location.points @ own[:3, :3].T + own[:3, 3])
+        self.assertLess(np.abs(seen - location.pixels).max(), 2)
+        near = localizer.localize(cv2.cvtColor(self.grey(), cv2.COLOR_GRAY2BGR), localizer.cameras[0], prior=own[:3])
+        self.check(near)
+        nothing = localizer.localize(np.zeros((HEIGHT, WIDTH), np.uint8), CAMERA)
+        self.assertEqual((nothing.cam_from_world, nothing.covariance, nothing.inliers), (None, None, 0))
+        self.assertRegex(nothing.reason, 'too few')
 
-    def test_status_counts_the_images_with_a_pose(self):
-        mixed = self.path('mixed')
+    def test_threads_share_a_localizer_without_the_gil(self):
+        localizer, found = Localizer(self.map, 400), []
+        image = self.grey()
+        self.assertGreater(steps_meanwhile(lambda: [localizer.localize(image, CAMERA) for _ in range(20)]), 3)
+        threads = [threading.Thread(target=lambda: found.append(localizer.localize(image, CAMERA).cam_from_world)) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for other in found[1:]:
+            np.testing.assert_array_equal(other, found[0])
+
+    @unittest.skipUnless((REPOSITORY / 'doc/maps.md').exists(), 'the documentation is not beside these tests')
+    def test_the_program_of_the_page(self):
+        program, = re.findall('```python\n(.*?)```', (REPOSITORY / 'doc/maps.md').read_text(), re.S)
+        program = re.sub(r'PINHOLE[\d,.]+', CAMERA, program).replace("'MAP'", repr(self.map))
+        names = {'names': [os.path.join(self.dark, name + '.png') for name in sorted(self.truth)]}
+        exec(program, names)
+        self.check(names['location'])
+
+    def test_wrong_arguments(self):
+        localizer = Localizer(self.map)
+        for pattern, image, camera, prior in (
+                ('320 x 240 pixels and its camera 640 x 480', self.grey(), 'PINHOLE,640,480,300,300,320,240', None),
+                ('8-bit', self.grey().astype(np.float32), CAMERA, None), ('a pose is', self.grey(), CAMERA, np.eye(3)),
+                ('a pose is', self.grey(), CAMERA, np.full((4, 4), np.nan)), ('camera model FISH', self.grey(), 'FISH,1,2,3', None)):
+            with self.assertRaisesRegex((ValueError, opencv_iib.error), pattern):
+                localizer.localize(image, camera, prior)
+
+    def test_an_interrupted_map(self):
+        images, count = [], 40
+        for i in range(count):
+            images.append((f'{i}.png', pose(-1.5 + 3 * i / count, 0)))
+        model, folder, out = self.path('model'), self.path('images'), self.path('map')
+        write_model(model, dict(images))
+        os.makedirs(folder)
+        view = photograph(wall(3), pose(0, 0))
+        for name, _ in images:
+            cv2.imwrite(os.path.join(folder, name), view)
+        read = maps.read_grey
+
+        def slowly(path):
+            threading.Event().wait(.2)
+            return read(path)
+        with mock.patch.object(maps, 'read_grey', slowly), redirect_stderr(io.StringIO()):
+            self.assertLess(seconds_until_interrupt(lambda: build(model, folder, out, workers=1), .5), 2)
+        self.assertEqual(self.localize(self.path('out'), map=out)[0], 1)  # there is no map
+
+    def test_status_counts_the_images_with_a_pose_and_says_why(self):
+        mixed, out = self.path('mixed'), self.path('out')
         shutil.copytree(self.dark, mixed)
         cv2.imwrite(os.path.join(mixed, 'elsewhere.png'), photograph(wall(9), pose(0, 0)))
-        out = self.path('out')
-        arguments = 'localize', '--map', self.map, '--camera', CAMERA, '--out', out
-        self.assertEqual(run(*arguments, '--images', mixed)[0], 4)
-        rows = {row['name']: row for row in csv.DictReader(open(os.path.join(out, 'frames.csv')))}
+        status, errors = self.localize(out, '--camera', CAMERA, images=mixed)
+        self.assertEqual(status, 4)
+        self.assertRegex(errors, 'elsewhere.png: too few matches')
+        rows = {row['name']: row for row in csv.DictReader(Path(out, 'frames.csv').read_text().splitlines())}
         self.assertRegex(rows['elsewhere.png']['reason'], 'too few matches')
-        for name in self.truth:
-            os.unlink(os.path.join(mixed, name + '.png'))
-        with open(os.path.join(mixed, 'broken.png'), 'wb') as file:
-            file.write(b'nothing')
-        self.assertEqual(run(*arguments, '--images', mixed)[0], 3)
-        for name, culprit in (('broken.jpg', 'broken.jpg and broken.png would have one pose'), ('#1.png', "'#1.png': rename it")):
-            open(os.path.join(mixed, name), 'w').close()
-            self.check_error(culprit, *arguments, '--images', mixed)
+        shutil.rmtree(mixed)
+        os.makedirs(mixed)
+        huge = bytearray(cv2.imencode('.png', np.zeros((9, 9), np.uint8))[1].tobytes())
+        huge[16:24] = struct.pack('>II', 100000, 100000)
+        huge[29:33] = struct.pack('>I', zlib.crc32(huge[12:29]))
+        for name, data in (('broken.png', b'nothing'), ('huge.png', huge)):
+            Path(mixed, name).write_bytes(data)
+        status, errors = self.localize(out, '--camera', CAMERA, images=mixed)
+        self.assertEqual((status, errors.count('not an image')), (3, 2))
+        for name, culprit in (('broken.jpg', 'broken.jpg and broken.png would have one pose'), ('#1.png', "'#1.png': rename it"),
+                              ('caf\udce9.png', 'rename it, in UTF-8')):
+            Path(mixed, name).touch()
+            self.check_error(culprit, 'localize', '--map', self.map, '--images', mixed, '--out', out)
             os.unlink(os.path.join(mixed, name))
 
     def test_an_image_without_exif_takes_the_maps_only_camera_of_its_size(self):
         out, images = self.path('out'), self.path('images')
-        arguments = 'localize', '--map', self.map, '--out', out, '--images'
-        self.assertEqual(run(*arguments, self.dark)[0], 0)
+        self.assertEqual(self.localize(out)[0], 0)
         os.makedirs(images)
-        cv2.imwrite(os.path.join(images, 'small.png'), self.grey('a')[1:])
-        self.assertEqual(run(*arguments, images)[0], 3)
-        self.assertRegex(open(os.path.join(out, 'frames.csv')).read(), '0 cameras of the map have its size: give --camera')
-        near, far = (pycolmap.Camera(model='PINHOLE', width=WIDTH, height=HEIGHT, params=[f, f, 160, 120]) for f in (305, 400))
-        for told, taken in ((near, 300), (far, 400)):
-            told.has_prior_focal_length = True
-            with mock.patch('pycolmap.infer_camera_from_image', return_value=told):
-                self.assertEqual(find_camera('', WIDTH, HEIGHT, read_map(self.map).cameras).focal_length_x, taken)
+        cv2.imwrite(os.path.join(images, 'small.png'), self.grey()[1:])
+        self.assertEqual(self.localize(out, images=images)[0], 3)
+        self.assertRegex(Path(out, 'frames.csv').read_text(), '0 cameras of the map have its size: give --camera')
+        known = Localizer(self.map).cameras
+        for told, taken in ((305, 300), (400, 400)):
+            with mock.patch.object(runs, 'exif_focal_length', return_value=told):
+                self.assertEqual(runs.find_camera(b'', WIDTH, HEIGHT, known).params[0], taken)
+                self.assertEqual(runs.find_camera(b'', 640, 480, known).params, [told, 320, 240])
 
-    def test_text_models_and_any_unit(self):
-        model, out, images = self.path('model'), self.path('map'), self.path('images')
-        shutil.copytree(self.images, images)
-        os.rename(os.path.join(images, 'left side'), os.path.join(images, 'left'))
-        for name in os.listdir(os.path.join(images, 'left')):
-            os.rename(os.path.join(images, 'left', name), os.path.join(images, 'left', name[0] + '.png'))
-        names = [name.replace('left side', 'left').replace(' of 6', '') for name in self.names]  # COLMAP's text has no blanks
-        write_model(model, names, unit=1000., text=True)
-        made = build_map(model, images, out, 400)
-        self.check(Localizer(made).localize(self.grey('a'), parse_camera(CAMERA)), 'a', 1000.)
+    def test_mistakes_get_one_line(self):
+        out, empty = self.path('out'), self.path('empty')
+        os.makedirs(empty)
+        localize = '--map', self.map, '--images', self.dark, '--out', out
+        for text in ('FISH,1,2,3', 'PINHOLE,640,480,500', 'PINHOLE', 'PINHOLE,640,480,a,b,c,d', 'PINHOLE,640,480,inf,1,1,1',
+                     'PINHOLE,1e30,480,300,300,1,1', 'PINHOLE,320,-240,300,300,160,120', 'PINHOLE,320,240,-300,300,160,120',
+                     'PINHOLE,320,240,nan,300,160,120'):
+            self.check_error('camera', 'localize', *localize, '--camera', text)
+        self.check_error('is no map', 'localize', '--map', self.images, *localize[2:])
+        for name in ('no', os.path.join(self.map, 'map.iib')):
+            self.check_error('there is no folder', 'localize', '--map', self.map, '--images', name, '--out', out)
+        self.check_error('no images below', 'localize', '--map', self.map, '--images', empty, '--out', out)
+        mapping = 'map', '--images', self.images, '--out', out, '--model'
+        self.check_error('model', *mapping, self.images)
+        self.check_error('there is no folder', 'map', '--images', 'no', '--out', out, '--model', self.model)
+        missing = self.path('model')
+        write_model(missing, {**self.poses, 'missing.png': np.eye(4)})
+        self.check_error('missing.png is missing', *mapping, missing)
+        wrong = self.path('model')
+        write_model(wrong, dict(zip(self.poses, (pose(y, x) for x, y in PLACES))))
+        self.check_error('fit the poses', *mapping, wrong)
+        larger = self.path('model')
+        write_model(larger, self.poses, 'PINHOLE,640,480,300,300,320,240')
+        self.check_error('320 x 240.*640 x 480', *mapping, larger)
+        self.assertFalse(os.path.exists(out) and os.listdir(out))
 
-    def test_rigs_of_distorted_cameras(self):
-        model, images, out = pycolmap.Reconstruction(), self.path('images'), self.path('map')
-        os.makedirs(images)
-        rig = pycolmap.Rig(rig_id=1)  # also the number of a camera
-        right = pycolmap.Rigid3d(pycolmap.Rotation3d(), np.array([-.5, 0, 0]))
-        for number in (1, 2):
-            camera = parse_camera(f'OPENCV,{WIDTH},{HEIGHT},300,300,160,120,0,0,0,0')
-            camera.camera_id = number
-            model.add_camera(camera)
-            rig.add_ref_sensor(camera.sensor_id) if number == 1 else rig.add_sensor(camera.sensor_id, right)
-        model.add_rig(rig)
-        for number, x in enumerate((-1.5, -.5, .5), 1):
-            seen = [pycolmap.Image(f'{number} {k}.png', np.zeros((0, 2)), k, 10 * number + k) for k in (1, 2)]
-            frame = pycolmap.Frame(frame_id=number, rig_id=1, rig_from_world=pose(x, 0))
-            for image in seen:
-                image.frame_id = number
-                frame.add_data_id(image.data_id)
-            model.add_frame(frame)
-            for image in seen:
-                model.add_image(image)
-                view = photograph(wall(3), model.image(image.image_id).cam_from_world())
-                cv2.imwrite(os.path.join(images, image.name), view)
-            model.register_frame(number)
-        folder = self.path('')
-        model.write(folder)
-        made = build_map(folder, images, out, 400)
-        self.assertEqual(made.model.num_rigs(), 1)
-        self.check(Localizer(made).localize(self.grey('b'), parse_camera(CAMERA)), 'b')
-        with mock.patch.object(update, 'KNOWN', .9):
-            self.assertGreater(update.update_map(out, self.dark, made.model.camera(1))['added'], 0)
-        self.check(Localizer(out).localize(self.grey('b'), parse_camera(CAMERA)), 'b')
-
-    def test_pairs_are_those_that_share_points(self):
-        model, out = self.path('model'), self.path('map')
-        pycolmap.Reconstruction(self.map).write(os.path.dirname(model))
-        made = build_map(os.path.dirname(model), self.images, out, 400)
-        self.check(Localizer(made).localize(self.grey('b'), parse_camera(CAMERA)), 'b')
-
-    def test_a_prior_gates_and_is_not_needed(self):
-        localizer, camera = Localizer(self.map), parse_camera(CAMERA)
-        with mock.patch.object(Localizer, '_similar', side_effect=AssertionError):
-            self.check(localizer.localize(self.grey('b'), camera, pose(*self.truth['a'])), 'b')
-        self.check(localizer.localize(self.grey('b'), camera, pose(40, 0)), 'b')
-
-    def test_threads_share_a_localizer(self):
-        localizer, camera = Localizer(self.map), parse_camera(CAMERA)
-        with ThreadPoolExecutor(2) as pool:
-            found = list(pool.map(lambda name: localizer.localize(self.grey(name), camera), 'abcabc'))
-        for name, location in zip('abcabc', found):
-            self.check(location, name)
-        np.testing.assert_array_equal(found[0].cam_from_world.params, found[3].cam_from_world.params)
-
-    def test_the_covariance_is_that_of_repeated_measurements(self):
-        localizer, camera = Localizer(self.map), parse_camera(CAMERA)
-        location = localizer.localize(self.grey('b'), camera)
-        true, random, scatter = location.cam_from_world, np.random.default_rng(1), []
-        exact = camera.img_from_cam(location.points @ true.matrix()[:, :3].T + true.translation)
-        far = np.array([30., 10, -20])  # from the world's origin, as coordinates of a country are
-        points = location.points + far
-        true.translation = true.translation - true.rotation.matrix() @ far
-        for _ in range(200):
-            noisy = exact + random.normal(0, .2, exact.shape)
-            found, covariance = refine_pose(true, camera, noisy, points)
-            moved = found.inverse()
-            turn = cv2.Rodrigues(moved.rotation.matrix() @ true.rotation.matrix())[0].ravel()
-            scatter.append([*(moved.translation - true.inverse().translation), *turn])
-        np.testing.assert_allclose(np.std(scatter, axis=0), .2 * np.sqrt(np.diag(covariance)), rtol=.25)
-
-    def test_an_interrupted_run_goes_on(self):
+    def test_what_is_there_is_replaced_by_force_alone(self):
         out = self.path('map')
-        arguments = self.model, self.images, out, 400
-        with redirect_stderr(io.StringIO()), mock.patch('opencv_iib.localization.build.match_pairs',
-                                                        side_effect=KeyboardInterrupt):
-            with self.assertRaises(KeyboardInterrupt):
-                build_map(*arguments)
-        self.assertFalse(os.path.exists(out))
-        with redirect_stderr(io.StringIO()), mock.patch.object(pipeline, 'describe_image', side_effect=AssertionError):
-            build_map(*arguments)
-        self.assertEqual(sorted(os.listdir(out)), sorted(os.listdir(self.map)))
-        self.assertFalse(os.path.exists(out + '.partial'))
-
-    def test_wrong_models_get_one_line(self):
-        arguments = '--images', self.images, '--out', self.path('map')
-        self.check_error('no folder', 'map', '--model', self.path('none'), *arguments)
-        self.check_error('no COLMAP model', 'map', '--model', self.images, *arguments)
-        model = self.path('model')
-        shutil.copytree(self.map, model)
-        for name in ('cameras.bin', 'images.bin', 'points3D.bin', 'rigs.bin', 'frames.bin'):
-            with self.subTest(name):
-                whole = open(os.path.join(model, name), 'rb').read()
-                for damaged in (whole[:-5], whole + b'.', b'', b'\xff' * len(whole), np.random.default_rng(1).bytes(500)):
-                    with open(os.path.join(model, name), 'wb') as file:
-                        file.write(damaged)
-                    self.check_error(f'^map: {model}: {name} is damaged$', 'map', '--model', model, *arguments)
-                with open(os.path.join(model, name), 'wb') as file:
-                    file.write(whole)
-        write_model(model + '3', [f'{n}.png' for n in range(6)], text=True)
-        for name in ('cameras.txt', 'images.txt', 'rigs.txt', 'frames.txt'):
-            with self.subTest(name):
-                with open(os.path.join(model + '3', name)) as file:
-                    whole = file.read()
-                with open(os.path.join(model + '3', name), 'w') as file:
-                    file.write('no model\n1 2 three\n')
-                self.check_error(f'^map: {model}3: no COLMAP model, or a damaged one', 'map', '--model', model + '3', *arguments)
-                with open(os.path.join(model + '3', name), 'w') as file:
-                    file.write(whole)
-        write_model(model + '1', [*self.names[:-1], 'missing.png'])
-        self.check_error('missing.png is missing, one of 1', 'map', '--model', model + '1', *arguments)
-        with mock.patch(__name__ + '.PLACES', [(y, x) for x, y in PLACES]):
-            write_model(model + '2', self.names)
-        self.check_error('fit the poses', 'map', '--model', model + '2', *arguments)
-
-    def test_images_of_another_size_get_one_line(self):
-        images = self.path('images')
-        shutil.copytree(self.images, images)
-        cv2.imwrite(os.path.join(images, '0.png'), np.zeros((HEIGHT // 2, WIDTH // 2), np.uint8))
-        self.check_error('0.png has 160 x 120 pixels and its camera in the model 320 x 240', 'map', '--model', self.model,
-                         '--images', images, '--out', self.path('map'))
-
-    def test_damaged_maps_get_one_line(self):
-        arguments = '--images', self.dark, '--camera', CAMERA, '--out', self.path('out')
-        self.check_error('is no map', 'localize', '--map', self.images, *arguments)
-        for name in os.listdir(self.map):
-            with self.subTest(name):
-                damaged = self.path('map')
-                shutil.copytree(self.map, damaged)
-                with open(os.path.join(damaged, name), 'r+b') as file:
-                    file.seek(-9, os.SEEK_END)
-                    file.write(b'#')
-                self.check_error('or a damaged one', 'localize', '--map', damaged, *arguments)
-        older = self.path('map')
-        os.makedirs(older)
-        with open(os.path.join(older, 'map.json'), 'w') as file:
-            json.dump({'format': 1}, file)
-        self.check_error('its format is not that of this version: make it again$', 'localize', '--map', older, *arguments)
-
-    def test_wrong_cameras_get_one_line(self):
-        for text, pattern in (('FISH,1,2,3', 'no camera model FISH: there are SIMPLE_PINHOLE, '),
-                              ('PINHOLE,640,480,500', 'PINHOLE,WIDTH,HEIGHT and then fx, fy, cx, cy are needed'),
-                              ('PINHOLE', 'are needed'), ('PINHOLE,640,480,a,b,c,d', 'are needed')):
-            self.check_error(pattern, 'localize', '--map', self.map, '--images', self.dark, '--camera', text, '--out',
-                             self.path('out'))
-
-    def test_foreign_folders_are_left_alone(self):
+        shutil.copytree(self.map, out)
+        arguments = 'map', '--model', self.model, '--images', self.images, '--points', '300', '--out'
+        self.check_error('--force', *arguments, out)
+        self.assertEqual(run(*arguments, out, '--force')[0], 0)
         foreign = self.path('mine')
         os.makedirs(foreign)
-        open(os.path.join(foreign, 'letter.txt'), 'w').close()
-        self.check_error('holds letter.txt', 'map', '--model', self.model, '--images', self.images, '--out', foreign)
+        Path(foreign, 'letter.txt').touch()
+        self.check_error('letter.txt', *arguments, foreign, '--force')
+        self.check_error('holds letter.txt', 'localize', '--map', self.map, '--images', self.dark, '--out', foreign)
         with self.assertRaisesRegex(RuntimeError, 'middle'), new_folder(self.path('new'), ['a']) as partial:
+            Path(partial, 'half').touch()
             raise RuntimeError('middle')
-        open(os.path.join(partial, 'half'), 'w').close()
-        for resume, left in ((True, ['half']), (False, [])):
-            with self.assertRaises(KeyboardInterrupt), new_folder(partial[:-len('.partial')], ['a'], resume) as folder:
-                self.assertEqual((folder, os.listdir(folder)), (partial, left))
-                raise KeyboardInterrupt
+        with self.assertRaises(KeyboardInterrupt), new_folder(partial[:-len('.partial')], ['a']) as folder:
+            self.assertEqual((folder, os.listdir(folder)), (partial, []))
+            raise KeyboardInterrupt
 
-    def test_updates_add_a_light_once_and_stay_bounded(self):
-        out, camera = self.path('map'), parse_camera(CAMERA)
-        with redirect_stderr(io.StringIO()), mock.patch.object(update, 'KNOWN', .9):
-            first = update.update_map(self.map, self.dark, camera, out)
-            self.assertGreaterEqual(first['added'], 2)
-            grown = read_map(out)
-            self.check(Localizer(grown).localize(self.grey('a'), camera), 'a')
-            old = Localizer(self.map, 400).localize(self.grey('a'), camera).inliers
-            self.assertGreater(Localizer(grown, 400).localize(self.grey('a'), camera).inliers, 1.2 * old)
-            self.assertEqual(update.update_map(out, self.dark, camera)['added'], 0)
-            with mock.patch.object(update, 'LIGHTS', 2), mock.patch.object(update, 'KNOWN', 1.):
-                for _ in range(2):
-                    self.assertGreater(update.update_map(out, self.dark, camera)['added'], 0)
-        again = read_map(out)
-        self.assertEqual(again.updates, 4)
-        self.assertLessEqual(len(again.codes), len(self.names) + 2 * first['added'])
-        self.assertTrue({image.name for image in again.model.images.values()} > set(self.names))
-        with redirect_stderr(io.StringIO()), mock.patch.object(update, 'KNOWN', 0.):
-            self.assertEqual(update.update_map(out, self.dark, camera)['added'], 0)  # it knows this light
+    def test_links_are_followed_and_results_are_no_images(self):
+        folder = self.path('disk')
+        images, out = os.path.join(folder, 'images'), os.path.join(folder, 'images/out')
+        shutil.copytree(self.dark, images)
+        shutil.copytree(self.map, os.path.join(folder, 'map'))
+        os.symlink('disk/map', folder + 'map')
+        os.symlink('disk/images/out', folder + 'out')  # dangling
+        for _ in range(2):
+            self.assertEqual(self.localize(folder + 'out', '--pictures', images=images)[0], 0)
+            self.assertEqual(len(trajectory(out)), 3)
+            self.assertTrue(os.path.islink(folder + 'out'))
+        self.assertEqual(run('update', '--map', folder + 'map', '--images', self.dark)[0], 0)
+        self.assertTrue(os.path.islink(folder + 'map'))
 
-    def test_codes_that_nobody_finds_are_dropped(self):
-        out, camera = self.path('map'), parse_camera(CAMERA)
-        with redirect_stderr(io.StringIO()), mock.patch.object(update, 'PATIENCE', 2), mock.patch.object(update, 'KNOWN', 0.):
-            self.assertEqual(update.update_map(self.map, self.dark, camera, out)['codes dropped'], 0)
-            self.assertGreater(update.update_map(out, self.dark, camera)['codes dropped'], 0)
-        before, after = read_map(self.map), read_map(out)
-        self.assertLess(sum(map(len, after.codes.values())), sum(map(len, before.codes.values())))
-        for name in self.truth:
-            self.check(Localizer(after).localize(self.grey(name), camera), name)
+    def test_paths_that_are_not_utf8(self):
+        folder = self.path('x') + '/caf\udce9'
+        shutil.copytree(self.dark, folder + '/images')
+        shutil.copytree(self.images, folder + '/mapped')
+        self.assertEqual(run('map', '--model', self.model, '--images', folder + '/mapped', '--out', folder + '/map')[0], 0)
+        self.assertEqual(self.localize(folder + '/out', map=folder + '/map', images=folder + '/images')[0], 0)
+        self.assertEqual(run('update', '--map', folder + '/map', '--images', folder + '/images')[0], 0)
+        self.assertEqual(len(trajectory(folder + '/out')), 3)
 
-    def test_compact_keeps_points_and_tracks(self):
-        made = read_map(self.map)
-        codes = dict(made.codes)
-        before = {tuple(p.xyz): p.track.length() for p in made.model.points3D.values()}
-        compact(made.model, codes)
-        self.assertEqual({tuple(p.xyz): p.track.length() for p in made.model.points3D.values()}, before)
-        self.assertTrue(all(np.array_equal(codes[i], made.codes[i]) for i in codes))
+    @contextmanager
+    def files_of_at_most(self, size):
+        """As on a full disk, writing to a larger file fails."""
+        old = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, old[1]))
+        try:
+            yield
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, old)
 
-    def test_an_image_has_most_votes_of_its_own_codes(self):
-        random = np.random.default_rng(5)
-        codes = [random.integers(0, 256, (count, 128), np.uint8) for count in (300, 0, 300, 300)]
-        votes = Votes(codes)
-        for n in (0, 2, 3):
-            noisy = codes[n] ^ (random.random(codes[n].shape) < .02).astype(np.uint8)
-            self.assertEqual(np.argmax(votes(noisy)), n)
-        self.assertEqual(votes(codes[1]).tolist(), [0, 0, 0, 0])
+    def test_a_full_disk_leaves_the_old_results(self):
+        out, map = self.path('out'), self.path('map')
+        shutil.copytree(self.map, map)
+        self.assertEqual(self.localize(out, '--pictures')[0], 0)
+        largest = max(os.path.getsize(os.path.join(out, name)) for name in os.listdir(out))
+        before = trajectory(out), sorted(os.listdir(out))
+        for size in (0, 50, 200, 600, largest - 1):
+            with self.files_of_at_most(size):
+                status, _ = self.localize(out)
+            self.assertEqual((status, before[1]), (1, sorted(os.listdir(out))))
+        self.assertEqual(trajectory(out).keys(), before[0].keys())
+        largest = max(os.path.getsize(os.path.join(map, name)) for name in os.listdir(map))
+        for size in (0, 5000, largest // 2):
+            with self.files_of_at_most(size):
+                self.assertEqual(run('update', '--map', map, '--images', self.dark)[0], 1)
+            self.check(Localizer(map).localize(self.grey(), CAMERA))
 
+    def test_an_update_adds_a_light(self):
+        out, night = self.path('map'), self.path('night')
+        os.makedirs(night)
+        for name, place in self.truth.items():
+            view = photograph(wall(3), pose(*place), lambda grey: evening(grey, noise=6))
+            cv2.imwrite(os.path.join(night, name.replace('/', ' ') + '.png'), view)
+        with redirect_stderr(io.StringIO()):
+            counts = update(self.map, night, CAMERA, out)
+            self.assertEqual((counts['images'], counts['localized']), (3, 3))
+            self.assertGreater(counts['added'], 0)
+            self.check(Localizer(out).localize(self.grey(), CAMERA))
+            old, new = (Localizer(map, 400).localize(view, CAMERA).inliers for map in (self.map, out))
+            self.assertGreater(new, 1.2 * old)
+            again = update(out, night)
+        self.assertEqual((again['localized'], again['added']), (3, 0))
 
-@unittest.skipIf(cv2 is None, 'no cv2')
-@unittest.skipIf(pycolmap is not None, 'pycolmap is there')
-class WithoutPycolmap(unittest.TestCase):
+    def test_two_updates_at_once(self):
+        out = self.path('map')
+        shutil.copytree(self.map, out)
+        first = _core.MapUpdate(os.fsencode(out), b'')
+        self.check_error('another process|being', 'update', '--map', out, '--images', self.dark)
+        self.assertEqual(first.commit(), (0, 0, 0))
+        del first
+        self.assertEqual(run('update', '--map', out, '--images', self.dark)[0], 0)
 
-    def test_the_commands_say_what_to_install(self):
-        status, errors = run('map', '--model', 'a', '--images', 'b', '--out', 'c')
-        self.assertEqual((status, 'pip install opencv-iib[localization]' in errors), (1, True))
+    @unittest.skipUnless(os.environ.get('IIB_PROGRAMS'), 'no IIB_PROGRAMS, the folder of iib_localize')
+    def test_the_program_finds_the_same(self):
+        ours, theirs = self.path('ours'), self.path('theirs')
+        self.localize(ours)
+        program = os.path.join(os.environ['IIB_PROGRAMS'], 'iib_localize')
+        subprocess.run([program, '--map', self.map, '--images', self.dark, '--out', theirs], check=True, stdout=subprocess.DEVNULL)
+        expected, found = trajectory(ours), trajectory(theirs)
+        self.assertEqual(expected.keys(), found.keys())
+        for name in expected:
+            np.testing.assert_allclose(found[name][:3], expected[name][:3], atol=.01)
+            self.assertGreater(abs(found[name][3:] @ expected[name][3:]), .99999)
+        heads = [Path(folder, 'frames.csv').read_text().splitlines()[0] for folder in (ours, theirs)]
+        self.assertEqual(*heads)
+
+    @unittest.skipUnless(os.path.isdir(STRECHA), 'OPENCV_TEST_DATA_PATH has no strecha/Herz-Jesus-P8')
+    def test_photographs_within_five_centimetres_also_relit(self):
+        truth = trajectory(STRECHA, 'poses.txt')
+        camera = ','.join(Path(STRECHA, 'cameras.txt').read_text().splitlines()[-1].split()[1:])
+        model, made, poses = self.path('sparse'), self.path('map'), {}
+        for name in sorted(os.listdir(os.path.join(STRECHA, 'images'))):
+            numbers = truth[os.path.splitext(name)[0]]
+            sine = np.linalg.norm(numbers[3:6])
+            turn = cv2.Rodrigues(numbers[3:6] * 2 * np.arctan2(sine, numbers[6]) / sine)[0].T
+            poses[name] = rigid(turn, numbers[:3])
+        write_model(model, dict(list(poses.items())[::2]), camera)
+        with redirect_stderr(io.StringIO()):
+            self.assertEqual(build(model, os.path.join(STRECHA, 'images'), made)['images'], len(poses) - len(poses) // 2)
+        localizer = Localizer(made)
+        for n, (name, true) in enumerate(list(poses.items())[1::2]):
+            picture = cv2.imread(os.path.join(STRECHA, 'images', name))
+            for image in (picture, dimmed(picture, n)):
+                found = localizer.localize(image, camera).cam_from_world
+                error = found @ np.linalg.inv(true)
+                self.assertLess(np.linalg.norm(np.linalg.inv(found)[:3, 3] - np.linalg.inv(true)[:3, 3]), .05, name)
+                self.assertGreater((np.trace(error[:3, :3]) - 1) / 2, np.cos(np.radians(.25)), name)
 
 
 if __name__ == '__main__':

@@ -20,11 +20,11 @@ if not MISSING:
     sys.path.insert(0, str(REPOSITORY / 'apps/localization/report'))
     import measure
     import page
-    from opencv_iib.localization import Location
+    from sift import Found
 
 
 def row(place, light, errors, images, method='recommended chain'):
-    located = [('', Location(inliers=20), error, 5.) for error in errors] + [('', Location(), None, 5.)] * (images - len(errors))
+    located = [('', Found(inliers=20), error, 5.) for error in errors] + [('', Found(), None, 5.)] * (images - len(errors))
     return {'place': place, 'method': method, 'light': light, **measure.summary(located)}
 
 
@@ -61,8 +61,8 @@ class Page(unittest.TestCase):
                 lines = ['# name']
                 for n, place in enumerate(places):
                     cv2.imwrite(str(data / light / 'images' / ('%d.png' % n)), photograph(wall(3), pose(*place), lit))
-                    inverse = pose(*place).inverse()
-                    lines.append(' '.join(map(str, [n, *inverse.translation, *inverse.rotation.quat])))
+                    half = cv2.Rodrigues(pose(*place)[:3, :3].T)[0].ravel() / 2
+                    lines.append(' '.join(map(str, [n, *place, 0, *half, (1 - half @ half) ** .5])))  # of a small angle
                 (data / light / 'poses.txt').write_text('\n'.join(lines))
             with mock.patch.object(sys, 'argv', ['page.py', str(data), str(out)]), redirect_stderr(StringIO()), \
                     redirect_stdout(StringIO()), mock.patch.dict(os.environ), mock.patch.object(measure, 'POINTS', 400):

@@ -15,106 +15,62 @@ import cv2
 import numpy as np
 import pycolmap
 
-import opencv_iib
-from opencv_iib.localization import Location, Localizer, build_map, parse_camera, update_map
-from opencv_iib.localization.geometry import fitting, graph_of, triangulate
+from opencv_iib import _core
+from opencv_iib.localization import Camera, Localizer, build, update
+from sift import Found, Sift
 
 POINTS = 2000  # an image
-RATIO = .8  # of SIFT's distances
-COMPARED, MAX_ERROR, LEAST_INLIERS = 5, .006, 15  # of SIFT: images of the map; of the longer side; a pose
 SEASONS = ('morning', 'overcast', 'dusk')  # updates, in the order of a day
 
 
+def pose_of(numbers):
+    """Camera from world, 4 x 4, of a centre and a quaternion x y z w from the camera to the world."""
+    numbers = np.array(numbers, float)
+    sine = np.linalg.norm(numbers[3:6])
+    turn = cv2.Rodrigues(numbers[3:6] * (2 * np.arctan2(sine, numbers[6]) / sine if sine else 2))[0].T
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = turn, -turn @ numbers[:3]
+    return pose
+
+
 def read_place(folder, step=1):
-    """pycolmap.Camera, and Rigid3d (camera from world) of every step-th image that is there, by file name."""
+    """Camera, and 4 x 4 camera from world of every step-th image that is there, by file name."""
     lines = [line.split() for line in (folder / 'cameras.txt').read_text().splitlines() if not line.startswith('#')]
     poses = {}
     for line in (folder / 'poses.txt').read_text().splitlines():
         stem, *numbers = line.split()
         for path in (folder / 'images').glob(stem + '.*') if stem != '#' else ():
-            place, turn = np.array(numbers, float)[:3], np.array(numbers, float)[3:]
-            poses[path.name] = pycolmap.Rigid3d(pycolmap.Rotation3d(turn), place).inverse()
-    return parse_camera(','.join(lines[0][1:])), dict(sorted(poses.items())[::step])
+            poses[path.name] = pose_of(numbers)
+    return Camera.parse(','.join(lines[0][1:])), dict(sorted(poses.items())[::step])
 
 
 def write_model(folder, camera, poses):
     """A COLMAP model without points."""
-    model = pycolmap.Reconstruction()
-    camera.camera_id = 1
-    model.add_camera_with_trivial_rig(camera)
-    for number, (name, pose) in enumerate(poses.items(), 1):
-        model.add_image_with_trivial_frame(pycolmap.Image(name, np.zeros((0, 2)), 1, number), pose)
     folder.mkdir(parents=True, exist_ok=True)
-    model.write(folder)
-    return model
+    _core.writeModel(bytes(folder), [(name, camera, pose, np.empty((0, 2))) for name, pose in poses.items()])
 
 
 def chain(folder, work, step=1):
     """Localizer in a map of a place by the package, in the folder work/map."""
     write_model(work / 'model', *read_place(folder, step))
-    build_map(str(work / 'model'), str(folder / 'images'), str(work / 'map'), POINTS)
+    build(str(work / 'model'), str(folder / 'images'), str(work / 'map'), POINTS)
     return Localizer(work / 'map', POINTS)
 
 
-def matched(a, b):
-    """Mutual nearest neighbours under the ratio test."""
-    if min(len(a), len(b)) < 2:
-        return np.zeros((0, 2), int)
-    distances = (a * a).sum(1)[:, None] + (b * b).sum(1) - 2 * a @ b.T
-    rows, nearest, back = np.arange(len(a)), distances.argmin(1), distances.argmin(0)
-    first = distances[rows, nearest]
-    distances[rows, nearest] = np.inf
-    kept = (back[nearest] == rows) & (first <= RATIO ** 2 * distances.min(1))
-    return np.stack([rows[kept], nearest[kept]], axis=1)
+def sift(folder, work, normalized):
+    """Sift in a map of a place."""
+    write_model(work / 'model', *read_place(folder))
+    return Sift(work / 'model', folder / 'images', POINTS, normalized)
 
 
-class Sift:
-    """In the place of Localizer: all pairs of the map's images are matched, and an image with each of them."""
-
-    def __init__(self, folder, work, normalized):
-        self._sift = cv2.SIFT_create(POINTS)
-        self._detector = opencv_iib.NormalizedDetector(self._sift) if normalized else self._sift
-        model = write_model(work / 'model', *read_place(folder))
-        found = {i: self._describe(cv2.imread(str(folder / 'images' / model.image(i).name))) for i in model.reg_image_ids()}
-        for i, (places, _) in found.items():
-            model.image(i).points2D = pycolmap.Point2DList([pycolmap.Point2D(place) for place in places])
-        matches = []
-        for a, b in itertools.combinations(found, 2):
-            pairs = matched(found[a][1], found[b][1])
-            fit = fitting(model, a, found[a][0][pairs[:, 0]], b, found[b][0][pairs[:, 1]])
-            matches.append((a, b, pairs[fit]))
-        triangulate(model, graph_of(model, matches), list(found))
-        self._images = []
-        for i, (_, codes) in found.items():
-            seen = [(row, point.point3D_id) for row, point in enumerate(model.image(i).points2D) if point.has_point3D()]
-            if len(seen) > 1:
-                self._images.append((codes[[row for row, _ in seen]], np.array([model.point3D(p).xyz for _, p in seen])))
-
-    def _describe(self, image):
-        grey = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
-        keypoints, codes = self._sift.compute(grey, self._detector.detect(grey, None))
-        return np.array([k.pt for k in keypoints]).reshape(-1, 2) + .5, np.zeros((0, 128)) if codes is None else codes
-
-    def localize(self, image, camera):
-        places, codes = self._describe(image)
-        pairs = sorted(((matched(codes, known), points) for known, points in self._images), key=lambda m: -len(m[0]))[:COMPARED]
-        seen = np.concatenate([places[found[:, 0]] for found, _ in pairs])
-        points = np.concatenate([xyz[found[:, 1]] for found, xyz in pairs])
-        limit = {'ransac': {'max_error': MAX_ERROR * max(camera.width, camera.height), 'random_seed': 1}}
-        pose = pycolmap.estimate_and_refine_absolute_pose(seen, points, camera, limit) if len(seen) >= LEAST_INLIERS else None
-        if pose is None or pose['num_inliers'] < LEAST_INLIERS:
-            return Location('too few matches agree')
-        return Location('', pose['cam_from_world'], inliers=pose['num_inliers'])
-
-
-METHODS = {'recommended chain': chain, 'SIFT, normalized image': functools.partial(Sift, normalized=True),
-           'SIFT, plain image': functools.partial(Sift, normalized=False)}
+METHODS = {'recommended chain': chain, 'SIFT, normalized image': functools.partial(sift, normalized=True),
+           'SIFT, plain image': functools.partial(sift, normalized=False)}
 
 
 def error(found, truth):
     """Centimetres and degrees."""
-    turn = (found.rotation * truth.rotation.inverse()).angle()
-    return 100 * float(np.linalg.norm(found.inverse().translation - truth.inverse().translation)), float(np.degrees(turn))
+    turn = np.linalg.norm(cv2.Rodrigues(found[:3, :3] @ truth[:3, :3].T)[0])
+    return 100 * float(np.linalg.norm((np.linalg.inv(found) - np.linalg.inv(truth))[:3, 3])), float(np.degrees(turn))
 
 
 def localize(localizer, folder, names=None, lit=lambda image, name: image):
@@ -125,7 +81,8 @@ def localize(localizer, folder, names=None, lit=lambda image, name: image):
         begin = time.process_time()
         location = localizer.localize(image, camera)
         used = 1000 * (time.process_time() - begin)
-        yield name, location, location.cam_from_world and error(location.cam_from_world, poses[name]), used
+        pose = location.cam_from_world
+        yield name, location, None if pose is None else error(pose, poses[name]), used
 
 
 def relit(image, name):
@@ -177,23 +134,22 @@ def program(path, data, work, lights):
         errors = {}
         for line in (out / 'trajectory.txt').read_text().splitlines()[1:]:
             stem, *numbers = line.split()
-            place, turn = np.array(numbers, float)[:3], np.array(numbers, float)[3:]
             name = next(name for name in poses if name.rpartition('.')[0] == stem)
-            errors[name] = error(pycolmap.Rigid3d(pycolmap.Rotation3d(turn), place).inverse(), poses[name])
+            errors[name] = error(pose_of(numbers), poses[name])
         with open(out / 'frames.csv', encoding='utf-8', newline='') as file:
-            located = [(row['name'], Location(inliers=int(row['inliers'])), errors.get(row['name']), used) for row in csv.DictReader(file)]
+            located = [(row['name'], Found(inliers=int(row['inliers'])), errors.get(row['name']), used) for row in csv.DictReader(file)]
         rows.append({'place': 'program', 'method': 'iib_localize' + imu, 'light': light, **summary(located)})
     return rows
 
 
 def seasons(data, work, lights):
     """Night in a map of every fourth keyframe, and after updates with other lights."""
-    rows = []
+    rows, known = [], work / 'every 4/map'
     for light in ('noon', *(light for light in SEASONS if light in lights)):
-        counts = {} if light == 'noon' else update_map(str(work / 'every 4/map'), str(data / light / 'images'),
-                                                       read_place(data / light)[0])
-        localizer = Localizer(work / 'every 4/map', POINTS)
-        rows.append({'light': light, 'added': counts.get('added', 0), 'size': len(localizer.map.codes),
+        counts = {} if light == 'noon' else update(str(known), str(data / light / 'images'),
+                                                  read_place(data / light)[0])
+        localizer = Localizer(known, POINTS)
+        rows.append({'light': light, 'added': counts.get('added', 0), 'size': pycolmap.Reconstruction(known).num_images(),
                      'night': summary(list(localize(localizer, data / 'night')))})
     return rows
 

@@ -16,6 +16,7 @@ import tempfile
 import cv2
 import jinja2
 import numpy as np
+import pycolmap
 
 import measure
 import opencv_iib
@@ -70,20 +71,19 @@ def aims(results):
     return found
 
 
-def scene(localizer, folder, seen):
+def scene(model, folder, seen):
     """The map in 3-D: points with grey values, and the pyramids of the keyframes' and the found images' cameras."""
-    model = localizer.map.model
     model.extract_colors_for_all_images(str(folder / 'images'))
     points = [[*(round(float(v), 2) for v in p.xyz), int(p.color.mean())] for p in model.points3D.values() if p.track.length() > 2]
     cameras = []
 
     def add(light, name, pose, told):
-        inverse, corners = pose.inverse(), np.array([[0, 0, 0], [-.4, -.3, .5], [.4, -.3, .5], [.4, .3, .5], [-.4, .3, .5]])
+        inverse, corners = np.linalg.inv(pose), np.array([[0, 0, 0], [-.4, -.3, .5], [.4, -.3, .5], [.4, .3, .5], [-.4, .3, .5]])
         cameras.append({'light': light, 'told': '%s, %s' % (name, told), 'corners': (
-            corners @ inverse.rotation.matrix().T + inverse.translation).round(2).tolist()})
+            corners @ inverse[:3, :3].T + inverse[:3, 3]).round(2).tolist()})
 
-    for i in localizer.map.codes:
-        add('noon', model.image(i).name, model.image(i).cam_from_world(), 'of the map')
+    for image in model.images.values():
+        add('noon', image.name, np.concatenate([image.cam_from_world().matrix(), [[0, 0, 0, 1]]]), 'of the map')
     for light, located in seen.items():
         for name, location, error, _ in located:
             if error:
@@ -91,21 +91,21 @@ def scene(localizer, folder, seen):
     return {'points': points[::len(points) // DRAWN + 1], 'cameras': cameras, 'lights': ['noon', *seen]}
 
 
-def pairs(localizer, folder, data, located):
+def pairs(model, folder, data, located):
     """Of each image that was found: its number of inliers, and a picture of the nearest keyframe beside it."""
     camera = measure.read_place(data)[0]
     for name, location, error, _ in located:
         if not error:
             continue
         image = cv2.imread(str(data / 'images' / name))
-        matrix = location.cam_from_world.matrix()
-        places = camera.img_from_cam(location.points @ matrix[:, :3].T + matrix[:, 3])
+        pose = location.cam_from_world
+        places = camera.project(location.points @ pose[:3, :3].T + pose[:3, 3])
         for seen, mapped in zip(location.pixels, places):
             begin, end = (tuple(int(v) for v in place) for place in (seen, mapped))
             cv2.line(image, begin, end, (0, 0, 255), 2, cv2.LINE_AA)
             cv2.circle(image, begin, 3, (0, 220, 0), 1, cv2.LINE_AA)
-        centre = location.cam_from_world.inverse().translation
-        nearest = min(localizer.map.model.images.values(), key=lambda i: np.linalg.norm(i.projection_center() - centre)).name
+        centre = np.linalg.inv(pose)[:3, 3]
+        nearest = min(model.images.values(), key=lambda i: np.linalg.norm(i.projection_center() - centre)).name
         pair = [cv2.resize(p, FRAME, interpolation=cv2.INTER_AREA) for p in (cv2.imread(str(folder / 'images' / nearest)), image)]
         text = '%d points agree, %.1f cm off' % (location.inliers, error[0])
         cv2.putText(pair[1], text, (8, 20), cv2.FONT_HERSHEY_SIMPLEX, .5, (255, 255, 255), 1, cv2.LINE_AA)
@@ -155,13 +155,13 @@ def main():
             paths = paths[::len(paths) // UNKNOWN + 1]
             results['unknown'] = measure.unknown(ours, measure.read_place(folder)[0], paths), len(paths)
         (options.out / 'results.json').write_text(json.dumps(results, indent=1))
-        pictures = []
+        model, pictures = pycolmap.Reconstruction(work / 'recommended chain/map'), []
         for light in lights:
-            drawn = list(pairs(ours, folder, options.data / light, seen[light]))
+            drawn = list(pairs(model, folder, options.data / light, seen[light]))
             if drawn:
                 write_pictures(options.out, light, drawn)
                 pictures.append(light)
-        write_page(options.out, results, scene(ours, folder, seen), pictures)
+        write_page(options.out, results, scene(model, folder, seen), pictures)
     print(options.out / 'index.html')
 
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
+
 #include "opencv2/iib.hpp"
 
 namespace iib_localization {
@@ -33,12 +35,23 @@ inline void checkImage(const cv::Mat& image, const cv::Size& size)
                                                image.cols, image.rows, size.width, size.height));
 }
 
-//! Calls an action with each index, several at once.
+//! Calls an action with each index, several at once. What one throws is thrown, and ends the rest.
 template <typename Action> void inParallel(size_t count, Action action)
 {
+    std::atomic<bool> ended(false);
     cv::parallel_for_(cv::Range(0, int(count)), [&](const cv::Range& range) {
-        for (int i = range.start; i < range.end; i++)
-            action(size_t(i));
+        for (int i = range.start; i < range.end && !ended; i++)
+        {
+            try
+            {
+                action(size_t(i));
+            }
+            catch (...)
+            {
+                ended = true;
+                throw;
+            }
+        }
     });
 }
 

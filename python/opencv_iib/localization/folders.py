@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
-import fnmatch
 import os
 import shutil
 from typing import Iterator, Sequence
@@ -28,28 +27,28 @@ def _move(source: str, target: str) -> None:
 
 
 @contextlib.contextmanager
-def new_folder(target: str, own: Sequence[str], resume: bool = False) -> Iterator[str]:
+def new_folder(target: str, own: Sequence[str]) -> Iterator[str]:
     """A folder to write to, ``target.partial``, which becomes `target` when the block ends without an error.
 
-    :param own: patterns of the names that it may hold, the first of which it always holds: a folder that is there is
-        replaced only if it holds nothing else.
-    :param resume: go on with what an interrupted call left in ``target.partial``, instead of removing it.
+    :param target: a link is followed, also if nothing is at its end.
+    :param own: names that it may hold, the first of which it always holds: a folder that is there is replaced only if it
+        holds nothing else.
     :raises FileExistsError: for a folder that holds something else.
     :raises BlockingIOError: if another process is writing it.
     """
-    target = os.path.abspath(target)
+    target = os.path.realpath(target)
     if os.path.exists(target):
         if not os.path.isdir(target):
             raise FileExistsError(f'{target} is a file: choose another folder')
         names = os.listdir(target)
-        foreign = [name for name in names if not any(fnmatch.fnmatch(name, pattern) for pattern in own)]
+        foreign = [name for name in names if name not in own]
         if foreign or (names and own[0] not in names):
             raise FileExistsError(f'{target} holds {(foreign or names)[0]} and was not written by this command: choose '
                                   'another folder')
     partial = target + '.partial'
     os.makedirs(partial, exist_ok=True)
     with only_writer(partial):
-        for entry in [] if resume else list(os.scandir(partial)):
+        for entry in list(os.scandir(partial)):
             shutil.rmtree(entry.path) if entry.is_dir(follow_symlinks=False) else os.unlink(entry.path)
         yield partial
         _move(partial, target)

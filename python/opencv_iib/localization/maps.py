@@ -1,0 +1,103 @@
+"""Maps: made of a COLMAP model and its images, and updated with other light."""
+from __future__ import annotations
+
+import functools
+import os
+import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, Callable, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from opencv_iib import _core
+from opencv_iib.colmap.images import read_grey
+from opencv_iib.colmap.progress import Progress
+from opencv_iib.localization.localizer import AnyCamera
+from opencv_iib.localization.run import images_of, locate
+
+
+def _count(file: str) -> int:
+    """Of what a binary file of COLMAP holds."""
+    with open(file, 'rb') as opened:
+        return int.from_bytes(opened.read(8), 'little')
+
+
+def build(model: str, images: str, out: str, points: int = 2000, workers: Optional[int] = None, force: bool = False,
+          log: Callable[[str], None] = lambda line: print(line, file=sys.stderr)) -> dict[str, int]:
+    """Finds and describes points in the images of a COLMAP model, triangulates them with its poses, and writes a map.
+
+    :param model: folder of a model, binary or text; its poses and cameras are taken as they are, in any unit.
+    :param images: folder that the names of the model's images are relative to.
+    :param out: folder of the map.
+    :param points: at most so many keypoints an image.
+    :param workers: threads; None for one a core.
+    :param force: replace a map that is there. Who reads it meanwhile gets the old one or the new one.
+    :param log: told of each image that cannot be read; the map is made without it.
+    :return: counts of images and points.
+    :raises FileExistsError: if there is a map and force is not set.
+    :raises FileNotFoundError: naming an image that is missing.
+    :raises opencv_iib.error: for a model that is damaged or not that of the images, and for a folder that is no map's.
+    """
+    target = os.path.realpath(out)
+    if os.path.isdir(target) and os.listdir(target) and not force:
+        raise FileExistsError(f'{out} is there already: choose another folder, or pass force (--force) to replace a map')
+    if not os.path.isdir(images):
+        raise FileNotFoundError(f'there is no folder {images}')
+    stop = threading.Event()
+    progress: Optional[Progress] = None
+
+    def read(name: bytes) -> NDArray[np.uint8]:
+        if stop.is_set():
+            raise KeyboardInterrupt
+        path = os.path.join(images, os.fsdecode(name))
+        if not os.path.exists(path):
+            raise FileNotFoundError(f'{path} is missing, an image of the model')
+        try:
+            return read_grey(path)
+        except ValueError:
+            return np.empty((0, 0), np.uint8)
+
+    def report(done: int, total: int, problem: bytes) -> None:
+        nonlocal progress
+        if stop.is_set():
+            raise KeyboardInterrupt
+        if problem:
+            log(problem.decode(errors='backslashreplace'))
+        progress = progress or Progress('mapping', total)
+        progress.step(done - progress.done)
+
+    threads = _core.getNumThreads()
+    with ThreadPoolExecutor(1) as pool:  # not in this thread, which Ctrl-C reaches
+        try:
+            _core.setNumThreads(workers or os.cpu_count() or 1)
+            pool.submit(_core.buildMap, os.fsencode(model), read, os.fsencode(target), points, report).result()
+        finally:
+            stop.set()
+            _core.setNumThreads(threads)
+            if progress is not None:
+                progress.close()
+    return {'images': _count(os.path.join(target, 'images.bin')), 'points': _count(os.path.join(target, 'points3D.bin'))}
+
+
+def update(map: str, images: str, camera: Optional[AnyCamera] = None, out: Optional[str] = None,
+           workers: Optional[int] = None) -> dict[str, int]:
+    """Localizes the images below a folder; those that show the map in a light that it does not know become a part of it.
+
+    Their own points are matched with each other's and the map's and triangulated. Codes that eight updates in a row looked
+    for and did not find are dropped, and of more than eight added images at one place the one that has not helped for
+    longest, so that a map of a place does not grow for ever. The model's own images stay.
+
+    :param map: folder of a map.
+    :param camera: as localize_images takes it.
+    :param out: folder for the new map; None to replace the old one.
+    :return: counts of images, of those localized, of those added, and of codes dropped.
+    :raises opencv_iib.error: for what is no map, or one that another process is changing.
+    """
+    names = images_of(images)
+    changed = _core.MapUpdate(os.fsencode(os.path.realpath(map)), b'' if out is None else os.fsencode(os.path.realpath(out)))
+    for _ in locate(changed.add, changed.cameras(), images, names, camera, workers):
+        pass
+    localized, added, dropped = changed.commit()
+    return {'images': len(names), 'localized': localized, 'added': added, 'codes dropped': dropped}
