@@ -169,7 +169,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
                                         arguments.workers, client=client)
             _say(f'{arguments.database}: ' + ', '.join(f'{count} {name}' for name, count in counts.items()))
     except KeyboardInterrupt:
-        print('interrupted; the same command goes on from here', file=sys.stderr)
+        print('interrupted' + '; the same command goes on from here' * (arguments.command == 'colmap'), file=sys.stderr)
         return 130
     except Exception as e:
         if not isinstance(e, (OSError, ValueError, RuntimeError, ImportError, sqlite3.Error, error, _cv2_error())):
