@@ -15,6 +15,7 @@ for wing in ('descriptor', 'matcher', 'detector', 'normalization', 'refinement')
     ALLOWED[wing] = {wing, wing + '/kernels', 'common'}
 for wing in ('detector', 'refinement'):
     ALLOWED[wing].add('normalization')
+ALLOWED['detector'].add('normalization/kernels')  # halves the normalized image, too
 ALLOWED['descriptor'].add('detector')  # an extractor writes and reads the file of its detector
 # The boxes are a room of the descriptor: they use its channels and regions, and compute uses them.
 ALLOWED['descriptor'] |= {'descriptor/boxes', 'descriptor/boxes/kernels'}

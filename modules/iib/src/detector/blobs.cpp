@@ -15,41 +15,69 @@ namespace {
 
 const int LEAST_ROWS = 32;  // a thread's, since it smooths about 20 more above
 
+//! Scales from this sigma on, in pixels, are smooth enough for half the resolution.
+const double LEAST_HALVED_SIGMA = 4;
+
 //! A pixel with the largest response among its neighbours in place and scale.
 struct Extremum
 {
     float response;
-    int scale, y, x;
+    int scale, y, x;     //!< in pixels of its octave
     float around[3][3];  //!< the responses
     //! Those of the scales before and after at this pixel; of the first and last: its own.
     float smaller, larger;
 };
 
+/** Leaves the strongest, of which those of the same response are ordered by scale and place: at most `most`, or all if
+ that is 0. They are sorted. */
+void keepStrongest(std::vector<Extremum>& extrema, size_t most)
+{
+    const auto before = [](const Extremum& a, const Extremum& b) {
+        return std::tie(b.response, a.scale, a.y, a.x) < std::tie(a.response, b.scale, b.y, b.x);
+    };
+    if (most > 0 && extrema.size() > most)
+    {
+        std::nth_element(extrema.begin(), extrema.begin() + most, extrema.end(), before);
+        extrema.resize(most);
+    }
+    std::sort(extrema.begin(), extrema.end(), before);
+}
+
 class BlobFinder
 {
 public:
-    BlobFinder(const Mat& normalized_, const HessianParameters& p)
-        : normalized(normalized_), threshold(std::max(p.threshold, std::numeric_limits<float>::min()))
+    BlobFinder(const Mat& normalized_, const HessianParameters& p, const Mat& mask_)
+        : normalized(normalized_), mask(mask_), most(p.maxFeatures),
+          threshold(std::max(p.threshold, std::numeric_limits<float>::min())), fine(0)
     {
         for (int i = 0; i < p.scales; i++)
         {
-            sigmas.push_back(i == 0 ? p.sigma / 2. : sigmas.back() * std::sqrt(2.));
-            borders.push_back((int)(2 * sigmas.back()) + 2);
+            sigmas.push_back(i == 0 ? p.sigma : sigmas.back() * std::sqrt(2.));
+            fine += sigmas.back() < LEAST_HALVED_SIGMA;
         }
-        steps = smoothingSteps(sigmas);
+        if (fine > 0)
+            octaves.push_back(Octave(sigmas, 0, fine, false, normalized.size()));
+        if (fine < p.scales)
+            octaves.push_back(Octave(sigmas, fine, p.scales, true, normalized.size()));
     }
 
-    //! In parts of the image.
+    //! The strongest extrema, at least those that are wanted, in parts of the image.
     std::vector<std::vector<Extremum>> extrema() const
     {
-        const int first = borders[0], rows = normalized.rows - 2 * first;
-        if (rows <= 0 || normalized.cols <= 2 * first)
-            return std::vector<std::vector<Extremum>>();
-        const int parts = std::max(std::min(getNumThreads(), rows / LEAST_ROWS), 1);
-        std::vector<std::vector<Extremum>> found(parts);
-        parallel_for_(Range(0, parts), [&](const Range& range) {
+        std::vector<Part> parts;
+        for (const Octave& octave : octaves)
+        {
+            const int first = octave.borders[octave.begin], rows = octave.size.height - 2 * first;
+            if (rows <= 0 || octave.size.width <= 2 * first)
+                continue;
+            const int n = std::max(std::min(getNumThreads(), rows / LEAST_ROWS), 1);
+            for (int i = 0; i < n; i++)
+                parts.push_back({&octave, first + rows * i / n, first + rows * (i + 1) / n - 1});
+        }
+        std::vector<std::vector<Extremum>> found(parts.size());
+        parallel_for_(Range(0, (int)parts.size()), [&](const Range& range) {
             for (int i = range.start; i < range.end; i++)
-                find(first + rows * i / parts, first + rows * (i + 1) / parts - 1, found[i]);
+                find(parts[i], found[i]);
         });
         return found;
     }
@@ -71,35 +99,59 @@ public:
         const float step = curvature < 0 ? within((e.smaller - e.larger) / (2 * curvature), .5f) : 0.f;
         // 2^(step / 2), by its Taylor series: std::exp2 differs between systems
         const float growth = 1 + step * (.34657359f + step * .06005663f);
-        // the centre of half-resolution pixel x lies between pixels 2 x and 2 x + 1
-        return KeyPoint(2 * (e.x + offset.x) + .5f, 2 * (e.y + offset.y) + .5f,
-                (float)(4 * sigmas[e.scale]) * growth, -1, e.response, e.scale);
+        Point2f pt((float)e.x + offset.x, (float)e.y + offset.y);
+        if (e.scale >= fine)  // the centre of half-resolution pixel x lies between pixels 2 x and 2 x + 1
+            pt = 2 * pt + Point2f(.5f, .5f);
+        return KeyPoint(pt, (float)(2 * sigmas[e.scale]) * growth, -1, e.response, e.scale);
     }
 
 private:
     static float within(float value, float limit) { return std::max(-limit, std::min(limit, value)); }
 
-    //! Adds those of rows `first` to `last`.
-    void find(int first, int last, std::vector<Extremum>& found) const
+    //! Rows `first` to `last` of an octave.
+    struct Part
     {
-        ScaleSpace space(normalized, steps, first, last);
+        const Octave* octave;
+        int first, last;
+    };
+
+    void find(const Part& part, std::vector<Extremum>& found) const
+    {
+        const Octave& octave = *part.octave;
+        ScaleSpace space(normalized, octave, part.first);
         const DetectorKernels& kernels = detectorKernels();
-        const size_t scales = sigmas.size();
-        std::vector<int> columns(normalized.cols);
-        for (int y = first; y <= last; y++)
+        const int last = (int)octave.sigmas.size() - 1;
+        std::vector<int> columns(octave.size.width);
+        float least = threshold;  // rises once there are more than are wanted
+        for (int y = part.first; y <= part.last; y++)
         {
             space.advance(y);
-            for (size_t s = 0; s < scales && y >= borders[s] && y < normalized.rows - borders[s]; s++)
+            for (int s = octave.begin; s < octave.end; s++)
             {
-                const float* const bounds[] = {space.largest(s), space.largest(s ? s - 1 : s),
-                        space.largest(s + 1 < scales ? s + 1 : s)};
-                const int n = kernels.maxima(space.response(s, y), bounds, threshold, borders[s],
-                        normalized.cols - borders[s], columns.data());
+                const int border = octave.borders[s];
+                if (y < border || y >= octave.size.height - border)
+                    break;
+                const float* const bounds[] = {space.largest(s), space.largest(std::max(s - 1, 0)),
+                        space.largest(std::min(s + 1, last))};
+                const int n = kernels.maxima(space.response(s, y), bounds, least, border,
+                        octave.size.width - border, columns.data());
                 for (int i = 0; i < n; i++)
                     if (!repeatsEarlier(space, s, y, columns[i]))
-                        found.push_back(extremumAt(space, s, y, columns[i]));
+                        add(extremumAt(octave, space, s, y, columns[i]), found);
+            }
+            if (most > 0 && found.size() >= 2 * most)
+            {
+                keepStrongest(found, most);
+                least = std::max(least, found.back().response);
             }
         }
+    }
+
+    void add(const Extremum& e, std::vector<Extremum>& found) const
+    {
+        const Point2f pt = mask.empty() ? Point2f() : refined(e).pt;
+        if (mask.empty() || mask.at<uchar>(cvRound(pt.y), cvRound(pt.x)))
+            found.push_back(e);
     }
 
     //! Whether a neighbour that comes earlier has the same response.
@@ -111,54 +163,42 @@ private:
                (s > 0 && space.largest(s - 1)[x] == value);
     }
 
-    Extremum extremumAt(const ScaleSpace& space, size_t s, int y, int x) const
+    static Extremum extremumAt(const Octave& octave, const ScaleSpace& space, size_t s, int y, int x)
     {
         Extremum e;
         for (int dy = -1; dy <= 1; dy++)
             std::copy_n(space.response(s, y + dy) + x - 1, 3, e.around[dy + 1]);
         e.response = e.around[1][1];
-        e.scale = (int)s;
+        e.scale = octave.first + (int)s;
         e.y = y;
         e.x = x;
-        const bool inside = s > 0 && s + 1 < sigmas.size();
+        const bool inside = s > 0 && s + 1 < octave.sigmas.size();
         e.smaller = inside ? space.response(s - 1, y)[x] : e.response;
         e.larger = inside ? space.response(s + 1, y)[x] : e.response;
         return e;
     }
 
-    const Mat& normalized;
+    const Mat &normalized, &mask;
+    const size_t most;
     const float threshold;
-    std::vector<double> sigmas;  //!< of each scale, in pixels of `normalized`
-    std::vector<int> borders;    //!< pixels without keypoints on each side
-    std::vector<SmoothingStep> steps;
+    std::vector<double> sigmas;  //!< of all scales, in pixels of `normalized`
+    int fine;                    //!< scales at full resolution, the first
+    std::vector<Octave> octaves;
 };
 
 }  // namespace
 
 std::vector<KeyPoint> findBlobs(const Mat& normalized, const HessianParameters& parameters, const Mat& mask)
 {
-    const BlobFinder finder(normalized, parameters);
-    const std::vector<std::vector<Extremum>> parts = finder.extrema();
-    std::vector<const Extremum*> order;
-    for (const std::vector<Extremum>& part : parts)
-        for (const Extremum& e : part)
-        {
-            const Point2f pt = mask.empty() ? Point2f() : finder.refined(e).pt;
-            if (mask.empty() || mask.at<uchar>(cvRound(pt.y), cvRound(pt.x)))
-                order.push_back(&e);
-        }
-    // strongest first; of the same response by scale and place
-    const auto before = [](const Extremum* a, const Extremum* b) {
-        return std::tie(b->response, a->scale, a->y, a->x) < std::tie(a->response, b->scale, b->y, b->x);
-    };
-    const size_t most = parameters.maxFeatures, kept = most > 0 ? std::min(most, order.size()) : order.size();
-    std::nth_element(order.begin(), order.begin() + kept, order.end(), before);
-    order.resize(kept);
-    std::sort(order.begin(), order.end(), before);
+    const BlobFinder finder(normalized, parameters, mask);
+    std::vector<Extremum> found;
+    for (const std::vector<Extremum>& part : finder.extrema())
+        found.insert(found.end(), part.begin(), part.end());
+    keepStrongest(found, parameters.maxFeatures);
     std::vector<KeyPoint> keypoints;
-    keypoints.reserve(order.size());
-    for (const Extremum* e : order)
-        keypoints.push_back(finder.refined(*e));
+    keypoints.reserve(found.size());
+    for (const Extremum& e : found)
+        keypoints.push_back(finder.refined(e));
     return keypoints;
 }
 

@@ -23,7 +23,7 @@ struct HessianParameters
 
 /** The keypoints of HessianDetector.
 
-@param normalized CV_8U, the normalized image at half the resolution.
+@param normalized CV_8U, the normalized image.
 @param mask of the image: empty or CV_8U. */
 std::vector<KeyPoint> findBlobs(const Mat& normalized, const HessianParameters& parameters, const Mat& mask);
 

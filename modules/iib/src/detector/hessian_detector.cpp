@@ -50,9 +50,7 @@ public:
         checkImage(image);
         const Mat mask = maskFor(maskArray, image.size());
         const Mat grey = integerMap(image);
-        if (image.rows < 2 || image.cols < 2)
-            return keypoints.clear();
-        keypoints = findBlobs(normalizeHalf(grey, p.normalizationSigma), p, mask);
+        keypoints = findBlobs(normalizeLocally(grey, p.normalizationSigma), p, mask);
     }
 
     bool empty() const CV_OVERRIDE { return false; }

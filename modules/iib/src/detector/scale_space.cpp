@@ -4,14 +4,19 @@
 
 #include "scale_space.hpp"
 
+#include "../normalization/kernels/kernels.hpp"
+
 namespace cv {
 namespace iib {
 
-std::vector<SmoothingStep> smoothingSteps(const std::vector<double>& sigmas)
+namespace {
+
+/** Steps from an image that is smooth by `variance` to Gaussians of `sigmas` (increasing). A step at most doubles the
+ variance, so that its taps are never farther apart than the image is smooth. */
+std::vector<SmoothingStep> smoothingSteps(const std::vector<double>& sigmas, double variance)
 {
     const double unit = 40 << CONTRAST_BITS;  // a local standard deviation
     std::vector<SmoothingStep> steps;
-    double variance = 0;
     for (double sigma : sigmas)
     {
         const double wanted = sigma * sigma;
@@ -32,12 +37,27 @@ std::vector<SmoothingStep> smoothingSteps(const std::vector<double>& sigmas)
     return steps;
 }
 
-ScaleSpace::ScaleSpace(
-        const Mat& normalized_, const std::vector<SmoothingStep>& steps_, int first_, int last_)
-    : kernels(detectorKernels()), normalized(normalized_), steps(steps_), first(first_), last(last_),
-      next(first_ - 2), reach(0), ahead(steps_.size() + 1, 0), earliest(steps_.size() + 1, first_ - 1)
+}  // namespace
+
+Octave::Octave(const std::vector<double>& scales, int begin_, int end_, bool halved_, Size imageSize)
+    : halved(halved_), size(halved ? Size(imageSize.width / 2, imageSize.height / 2) : imageSize),
+      first(std::max(begin_ - 1, 0)), begin(begin_ - first), end(end_ - first)
 {
-    const int width = normalized.cols;
+    for (int i = first; i < std::min(end_ + 1, (int)scales.size()); i++)
+    {
+        sigmas.push_back(scales[i] / (halved ? 2 : 1));
+        borders.push_back((int)(2 * sigmas.back()) + 2);
+    }
+    steps = smoothingSteps(sigmas, halved ? 3. / 16 : 0.);  // the variance of the weights 1, 3, 3, 1
+}
+
+ScaleSpace::ScaleSpace(const Mat& normalized_, const Octave& octave_, int first_)
+    : kernels(detectorKernels()), normalized(normalized_), octave(octave_), first(first_), next(first_ - 2),
+      reach(0), pixels(Size(normalized_.cols, octave_.halved ? 4 : 0), 2, true),
+      ahead(octave_.steps.size() + 1, 0), earliest(octave_.steps.size() + 1, first_ - 1)
+{
+    const std::vector<SmoothingStep>& steps = octave.steps;
+    const int width = octave.size.width;
     std::vector<int> oldest(ahead.size(), 0);  // row that is still needed, from advance()'s row
     for (size_t i = steps.size(); i-- > 0;)
     {
@@ -73,7 +93,7 @@ void ScaleSpace::advance(int y)
     for (; next <= y; next++)
     {
         for (size_t i = 0; i < images.size(); i++)
-            if (next + ahead[i] >= earliest[i] && next + ahead[i] < normalized.rows)
+            if (next + ahead[i] >= earliest[i] && next + ahead[i] < octave.size.height)
                 makeRow(i, next + ahead[i]);
         if (next + 1 >= first - 1)
             makeResponses(next + 1);
@@ -81,23 +101,40 @@ void ScaleSpace::advance(int y)
     for (size_t i = 0; i < maxima.size(); i++)
     {
         const float* const rows[] = {response(i, y - 1), response(i, y), response(i, y + 1)};
-        kernels.largest(rows, maxima[i].row(0), normalized.cols);
+        kernels.largest(rows, maxima[i].row(0), octave.size.width);
     }
+}
+
+//! Row y of image 0.
+void ScaleSpace::readRow(int y, short* out)
+{
+    if (!octave.halved)
+        return kernels.centre(normalized.ptr(y), out, normalized.cols);
+    const short* rows[4];
+    for (int i = 0; i < 4; i++)
+    {
+        short* const row = pixels.row(i);
+        kernels.centre(normalized.ptr(std::min(std::max(2 * y + i - 1, 0), normalized.rows - 1)), row,
+                normalized.cols);
+        pixels.repeatEnds(i, normalized.cols, 2);
+        rows[i] = row;
+    }
+    normalizationKernels().halveShorts(rows, out, octave.size.width);
 }
 
 void ScaleSpace::makeRow(size_t image, int y)
 {
     short* const out = images[image].row(y);
-    const int width = normalized.cols;
+    const int width = octave.size.width;
     if (image == 0)
-        kernels.centre(normalized.ptr(y), out, width);
+        readRow(y, out);
     else
     {
-        const SmoothingStep& s = steps[image - 1];
+        const SmoothingStep& s = octave.steps[image - 1];
         const short* rows[5];
         for (int i = 0; i < 5; i++)
             rows[i] = images[image - 1].row(
-                    std::min(std::max(y + (i - 2) * s.spacing, 0), normalized.rows - 1));
+                    std::min(std::max(y + (i - 2) * s.spacing, 0), octave.size.height - 1));
         short* const down = smoothedDown[0].row(0);
         kernels.smooth(rows, s.weights, down, width);
         smoothedDown[0].repeatEnds(0, width, reach);
@@ -111,12 +148,12 @@ void ScaleSpace::makeRow(size_t image, int y)
 void ScaleSpace::makeResponses(int y)
 {
     size_t scale = 0;
-    for (size_t i = 0; i < steps.size(); i++)
-        if (const int d = steps[i].distance)
+    for (size_t i = 0; i < octave.steps.size(); i++)
+        if (const int d = octave.steps[i].distance)
         {
             const short* const rows[] = {images[i + 1].row(std::max(y - d, 0)), images[i + 1].row(y),
-                    images[i + 1].row(std::min(y + d, normalized.rows - 1))};
-            kernels.response(rows, d, steps[i].factor, responses[scale].row(y), normalized.cols);
+                    images[i + 1].row(std::min(y + d, octave.size.height - 1))};
+            kernels.response(rows, d, octave.steps[i].factor, responses[scale].row(y), octave.size.width);
             scale++;
         }
 }

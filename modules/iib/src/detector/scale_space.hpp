@@ -9,26 +9,37 @@
 namespace cv {
 namespace iib {
 
-//! A smoothing of the image before, and the Hessian that is taken there.
+//! Smooths the image before once more. Of the result a Hessian may be taken.
 struct SmoothingStep
 {
-    int spacing;  //!< of the filter's five taps
+    int spacing;  //!< of the filter's five taps, in pixels
     SmoothingWeights weights;
-    int distance;  //!< of the Hessian's differences; 0: only on the way to a scale
-    float factor;  //!< of the determinant of these differences, see HessianDetector
+    int distance;  //!< of the Hessian's differences, in pixels; 0: no scale ends with this step
+    float factor;  //!< by which the determinant of these differences is the response, see HessianDetector
 };
 
-/** Steps from the normalized image to Gaussians of `sigmas` (in its pixels, increasing). A step at most doubles the
- variance, so that its taps are never farther apart than the image is smooth. */
-std::vector<SmoothingStep> smoothingSteps(const std::vector<double>& sigmas);
+//! The scales of one resolution. The scales next to those with keypoints are among them, to be compared with.
+struct Octave
+{
+    bool halved;  //!< at half the normalized image's resolution
+    Size size;    //!< in its pixels, as all that follows
+    std::vector<double> sigmas;
+    std::vector<int> borders;  //!< pixels on each side without keypoints of a scale
+    std::vector<SmoothingStep> steps;
+    int first;       //!< the number, among all scales, of the first of these
+    int begin, end;  //!< those of `sigmas` whose keypoints are wanted
 
-/** Responses of all scales for a range of rows, from top to bottom. Only the rows that are still needed are held: they
+    //! Of `scales` (sigmas in the normalized image's pixels) those from `begin` to before `end`.
+    Octave(const std::vector<double>& scales, int begin, int end, bool halved, Size imageSize);
+};
+
+/** Responses of an octave's scales for a range of rows, from top to bottom. Only the rows that are still needed are held: they
  stay in the processor's cache. */
 class ScaleSpace
 {
 public:
-    //! For rows `first` to `last` of a normalized image, neither of them the image's own first or last.
-    ScaleSpace(const Mat& normalized, const std::vector<SmoothingStep>& steps, int first, int last);
+    //! For rows from `first` on, which is not the first of the octave; its last row is left out, too.
+    ScaleSpace(const Mat& normalized, const Octave& octave, int first);
 
     //! Makes ready what the other functions give for row y: `first`, then one more with each call.
     void advance(int y);
@@ -39,17 +50,19 @@ public:
     const float* largest(size_t scale) const { return maxima[scale].row(0); }
 
 private:
+    void readRow(int y, short* out);
     void makeRow(size_t image, int y);
     void makeResponses(int y);
 
     const DetectorKernels& kernels;
     const Mat& normalized;
-    const std::vector<SmoothingStep>& steps;
-    const int first, last;
+    const Octave& octave;
+    const int first;
     int next;   //!< the row that advance() has not made yet
     int reach;  //!< pixels that filters take beyond the ends of rows
 
-    // Image 0 is the normalized one, image i + 1 what step i makes of image i.
+    PaddedRows<short> pixels;  //!< four rows of the normalized image
+    // Image 0 is the normalized one, or half of it; image i + 1 is what step i makes of image i.
     std::vector<int> ahead;     //!< by how many rows an image is ahead of advance()'s row
     std::vector<int> earliest;  //!< the first row of an image that is needed
     std::vector<PaddedRows<short>> images;

@@ -6,12 +6,14 @@
 
 #include "kernels/kernels.hpp"
 
+#include <array>
+
 namespace cv {
 namespace iib {
 
 namespace {
 
-template <typename T> using HalveFunc = void (*)(const T* upper, const T* lower, T* half, int halfWidth);
+template <typename T> using HalveFunc = void (*)(const T* const rows[4], T* half, int halfWidth);
 
 Size halfOf(Size size) { return Size((size.width + 1) / 2, (size.height + 1) / 2); }
 
@@ -20,12 +22,12 @@ struct Blurs
 {
     int levels, passes, weight;
 
-    /* Halving and interpolating between sizes adds 1/4 + 3/4 of a squared pixel of the larger, so that all levels add
-     (4^levels - 1) / 3; a pass adds weight / 128, and weights above 256 / 3 have more than one peak. */
+    /* Halving and interpolating between sizes adds 3/4 + 3/4 of a squared pixel of the larger, so that all levels add
+     (4^levels - 1) / 2; a pass adds weight / 128, and weights above 256 / 3 have more than one peak. */
     explicit Blurs(double sigma) : levels(std::max((int)std::floor(std::log2(sigma)), 1))
     {
         const double scale = std::pow(4., levels);
-        const double variance = std::max(sigma * sigma - (scale - 1) / 3, 0.) / scale;
+        const double variance = std::max(sigma * sigma - (scale - 1) / 2, 0.) / scale;
         passes = cvCeil(variance * 1.5);
         weight = passes > 0 ? cvRound(128 * variance / passes) : 0;
     }
@@ -36,10 +38,8 @@ const double ROWS_OF_A_THREAD = 64;  // fewer cost more to hand out than to make
 class Normalizer
 {
 public:
-    //! Of an image as it is, or of one at half its resolution.
-    Normalizer(const Mat& grey_, bool halved_, double sigma)
-        : kernels(normalizationKernels()), grey(grey_), halved(halved_), blurs(sigma),
-          size(halved ? Size(grey.cols / 2, grey.rows / 2) : grey.size()), factor(0)
+    Normalizer(const Mat& grey_, double sigma)
+        : kernels(normalizationKernels()), grey(grey_), blurs(sigma), size(grey.size()), factor(0)
     {
         sizes.push_back(size);
         for (int i = 0; i < blurs.levels; i++)
@@ -53,27 +53,30 @@ public:
 
     Mat run() const
     {
-        const PaddedRows<short> differences = differencesTo(means());
-        const PaddedRows<short> gains = gainsOf(differences);
+        const PaddedRows<short> means = meansAtHalf(), gains = gainsAtHalf(means);
         Mat result(size, CV_8U);
         forRows(size.height, [&](int y, Scratch& scratch) {
-            upsampleRow(gains, y, scratch.between, scratch.rows.row(0));
-            kernels.scale(differences.row(y), scratch.rows.row(0), result.ptr(y), size.width);
+            short *differences = scratch.window.row(0), *gain = scratch.row.row(0);
+            makeDifferences(y, means, scratch, differences);
+            upsampleRow(gains, y, scratch.between, gain);
+            kernels.scale(differences, gain, result.ptr(y), size.width);
         });
         return result;
     }
 
 private:
+    template <typename T> using FourRows = std::array<const T*, 4>;
+
     //! Rows that a thread works on.
     struct Scratch
     {
-        PaddedRows<short> pixels;   //!< two rows of an image that is halved
-        PaddedRows<short> rows;     //!< two rows of what is normalized
-        PaddedRows<short> between;  //!< one of half as many values
+        PaddedRows<short> window;        //!< the last four that were made
+        PaddedRows<short> row, between;  //!< one, and one of half as many values
+        int next;                        //!< the first that was not made yet
 
-        explicit Scratch(const Normalizer& n)
-            : pixels(Size(n.grey.cols + 1, n.halved ? 2 : 0)), rows(Size(n.size.width + 1, 2)),
-              between(Size(n.size.width + 1, 1))
+        explicit Scratch(Size size)
+            : window(Size(size.width + 1, 4)), row(Size(size.width + 1, 1)), between(Size(size.width + 1, 1)),
+              next(0)
         {
         }
     };
@@ -84,7 +87,7 @@ private:
         parallel_for_(
                 Range(0, rows),
                 [&](const Range& range) {
-                    Scratch scratch(*this);
+                    Scratch scratch(size);
                     for (int y = range.start; y < range.end; y++)
                         work(y, scratch);
                 },
@@ -92,16 +95,7 @@ private:
     }
 
     //! Row y of what is normalized, at `out`.
-    void readRow(int y, PaddedRows<short>& pixels, short* out) const
-    {
-        if (!halved)
-            return readPixels(y, out);
-        readPixels(2 * y, pixels.row(0));
-        readPixels(2 * y + 1, pixels.row(1));
-        kernels.halveShorts(pixels.row(0), pixels.row(1), out, size.width);
-    }
-
-    void readPixels(int y, short* out) const
+    void readRow(int y, short* out) const
     {
         if (grey.depth() == CV_8U)
             return kernels.widen(grey.ptr(y), out, grey.cols);
@@ -110,17 +104,40 @@ private:
             out[x] = (short)(((int64)values[x] * factor + 32768) >> 16);
     }
 
+    //! Row y of I - G*I.
+    void makeDifferences(int y, const PaddedRows<short>& means, Scratch& scratch, short* out) const
+    {
+        short* const mean = scratch.row.row(0);
+        readRow(y, out);
+        upsampleRow(means, y, scratch.between, mean);
+        kernels.subtract(out, mean, out, size.width);
+    }
+
+    //! The rows around row y of half the size, by make(row, out). Calls come in the order of y.
+    template <typename Make> FourRows<short> rowsAround(int y, Scratch& scratch, const Make& make) const
+    {
+        FourRows<short> rows;
+        for (int i = 0; i < 4; i++)
+        {
+            const int row = within(2 * y + i - 1, size.height);
+            if (row >= scratch.next)
+            {
+                make(row, scratch.window.row(row));
+                scratch.window.repeatEnds(row, size.width, 2);
+                scratch.next = row + 1;
+            }
+            rows[i] = scratch.window.row(row);
+        }
+        return rows;
+    }
+
     //! G*I at half the image's size.
-    PaddedRows<short> means() const
+    PaddedRows<short> meansAtHalf() const
     {
         PaddedRows<short> halves(sizes[1]);
         forRows(halves.size.height, [&](int y, Scratch& scratch) {
-            for (int i = 0; i < 2; i++)
-            {
-                readRow(std::min(2 * y + i, size.height - 1), scratch.pixels, scratch.rows.row(i));
-                scratch.rows.repeatEnds(i, size.width);
-            }
-            kernels.halveShorts(scratch.rows.row(0), scratch.rows.row(1), halves.row(y), halves.size.width);
+            const auto rows = rowsAround(y, scratch, [&](int row, short* out) { readRow(row, out); });
+            kernels.halveShorts(rows.data(), halves.row(y), halves.size.width);
         });
         PaddedRows<short> smallest = reduced(std::move(halves), 1, kernels.halveShorts);
         PaddedRows<int> sums(smallest.size);
@@ -132,26 +149,14 @@ private:
         return upsampled(std::move(smallest), blurs.levels);
     }
 
-    //! I - G*I.
-    PaddedRows<short> differencesTo(const PaddedRows<short>& means) const
-    {
-        PaddedRows<short> differences(size);
-        forRows(size.height, [&](int y, Scratch& scratch) {
-            readRow(y, scratch.pixels, scratch.rows.row(0));
-            upsampleRow(means, y, scratch.between, scratch.rows.row(1));
-            kernels.subtract(scratch.rows.row(0), scratch.rows.row(1), differences.row(y), size.width);
-            differences.repeatEnds(y, size.width);
-        });
-        return differences;
-    }
-
     //! What differences are multiplied by, at half the image's size.
-    PaddedRows<short> gainsOf(const PaddedRows<short>& differences) const
+    PaddedRows<short> gainsAtHalf(const PaddedRows<short>& means) const
     {
         PaddedRows<int> halves(sizes[1]);
-        forRows(halves.size.height, [&](int y, Scratch&) {
-            kernels.squares(differences.row(2 * y), differences.row(std::min(2 * y + 1, size.height - 1)),
-                    halves.row(y), halves.size.width);
+        forRows(halves.size.height, [&](int y, Scratch& scratch) {
+            const auto rows = rowsAround(
+                    y, scratch, [&](int row, short* out) { makeDifferences(row, means, scratch, out); });
+            kernels.halveSquares(rows.data(), halves.row(y), halves.size.width);
         });
         PaddedRows<int> variances = reduced(std::move(halves), 1, kernels.halveInts);
         blur(variances);
@@ -161,6 +166,17 @@ private:
         return upsampled(std::move(gains), blurs.levels);
     }
 
+    static int within(int y, int height) { return std::min(std::max(y, 0), height - 1); }
+
+    //! The rows of which row y of half the plane's size is made.
+    template <typename T> static FourRows<T> rowsAround(const PaddedRows<T>& plane, int y)
+    {
+        FourRows<T> rows;
+        for (int i = 0; i < 4; i++)
+            rows[i] = plane.row(within(2 * y + i - 1, plane.size.height));
+        return rows;
+    }
+
     //! From sizes[level] down to the smallest.
     template <typename T> PaddedRows<T> reduced(PaddedRows<T> plane, int level, HalveFunc<T> halve) const
     {
@@ -168,10 +184,9 @@ private:
             return plane;
         PaddedRows<T> half(sizes[level + 1]);
         for (int y = 0; y < plane.size.height; y++)
-            plane.repeatEnds(y, plane.size.width);
+            plane.repeatEnds(y, plane.size.width, 2);
         for (int y = 0; y < half.size.height; y++)
-            halve(plane.row(2 * y), plane.row(std::min(2 * y + 1, plane.size.height - 1)), half.row(y),
-                    half.size.width);
+            halve(rowsAround(plane, y).data(), half.row(y), half.size.width);
         return reduced(std::move(half), level + 1, halve);
     }
 
@@ -208,15 +223,14 @@ private:
     void upsampleRow(const PaddedRows<short>& half, int y, PaddedRows<short>& between, short* out) const
     {
         const int width = half.size.width, other = y / 2 + (y % 2 ? 1 : -1);
-        kernels.interpolate(half.row(y / 2), half.row(std::min(std::max(other, 0), half.size.height - 1)),
-                between.row(0), width);
+        kernels.interpolate(
+                half.row(y / 2), half.row(within(other, half.size.height)), between.row(0), width);
         between.repeatEnds(0, width);
         kernels.upsample(between.row(0), out, width);
     }
 
     const NormalizationKernels& kernels;
     const Mat& grey;
-    const bool halved;
     const Blurs blurs;
     const Size size;          //!< of what is normalized
     std::vector<Size> sizes;  //!< that, half of it, and so on
@@ -225,9 +239,7 @@ private:
 
 }  // namespace
 
-Mat normalizeLocally(const Mat& grey, double sigma) { return Normalizer(grey, false, sigma).run(); }
-
-Mat normalizeHalf(const Mat& grey, double sigma) { return Normalizer(grey, true, sigma / 2).run(); }
+Mat normalizeLocally(const Mat& grey, double sigma) { return Normalizer(grey, sigma).run(); }
 
 }  // namespace iib
 }  // namespace cv

@@ -40,11 +40,12 @@ Mat_<float> responsesOf(const Map& m, double sigma)
     for (int y = 0; y < m.rows; y++)
         for (int x = 0; x < m.cols; x++)
         {
-            const float xx = (float)(pixel(m, y, x - d) + pixel(m, y, x + d) - 2 * m(y, x));
-            const float yy = (float)(pixel(m, y - d, x) + pixel(m, y + d, x) - 2 * m(y, x));
-            const float xy = (float)(pixel(m, y - d, x - d) + pixel(m, y + d, x + d) -
-                                     pixel(m, y - d, x + d) - pixel(m, y + d, x - d));
-            result(y, x) = (xx * yy - xy * xy * (1.f / 16)) * factor;
+            const int xx = pixel(m, y, x - d) + pixel(m, y, x + d) - 2 * m(y, x);
+            const int yy = pixel(m, y - d, x) + pixel(m, y + d, x) - 2 * m(y, x);
+            const int corners = pixel(m, y - d, x - d) + pixel(m, y + d, x + d) - pixel(m, y - d, x + d) -
+                                pixel(m, y + d, x - d);
+            const int xy = (corners + 2) >> 2;
+            result(y, x) = (float)(xx * yy - xy * xy) * factor;
         }
     return result;
 }
@@ -86,49 +87,103 @@ KeyPoint refined(const std::vector<Mat_<float>>& responses, int scale, int y, in
             step = within((before - after) / (2 * curvature), .5f);
     }
     const float growth = 1 + step * (.34657359f + step * .06005663f);  // 2^(step / 2), nearly
-    return KeyPoint(
-            2 * (x + offsetX) + .5f, 2 * (y + offsetY) + .5f, (float)(4 * sigma) * growth, -1, c, scale);
+    return KeyPoint(x + offsetX, y + offsetY, (float)(2 * sigma) * growth, -1, c, scale);
 }
+
+//! The scales of one resolution, from `first` on, of which those from `begin` to before `end` have keypoints.
+struct Octave
+{
+    int spacing;  //!< of its pixels, in pixels of the image
+    int first, begin, end;
+    std::vector<Mat_<float>> responses;
+
+    Octave(const Map& image, const std::vector<double>& sigmas, int begin_, int end_, int spacing_)
+        : spacing(spacing_), first(std::max(begin_ - 1, 0)), begin(begin_), end(end_)
+    {
+        Map map = spacing == 1 ? image : halvedMap(image);
+        double variance = spacing == 1 ? 0. : .75 / 4;
+        for (int scale = first; scale < std::min(end + 1, (int)sigmas.size()); scale++)
+        {
+            const double sigma = sigmas[scale] / spacing, wanted = sigma * sigma;
+            while (wanted - variance > 1e-9)
+            {
+                const double added = std::min(wanted - variance, std::max(variance, 4. / 3));
+                map = smoothed(smoothed(map, added, Point(0, 1)), added, Point(1, 0));
+                variance += added;
+            }
+            responses.push_back(responsesOf(map, sigma));
+        }
+    }
+
+    //! 16 pixels, weighted 1, 3, 3, 1 in both directions; grey levels in 2^-6 need no rounding.
+    static Map halvedMap(const Map& image)
+    {
+        const int weights[] = {1, 3, 3, 1};
+        Map half(image.rows / 2, image.cols / 2);
+        for (int y = 0; y < half.rows; y++)
+            for (int x = 0; x < half.cols; x++)
+            {
+                half(y, x) = 0;
+                for (int i = 0; i < 4; i++)
+                    for (int j = 0; j < 4; j++)
+                        half(y, x) +=
+                                weights[i] * weights[j] * pixel(image, 2 * y - 1 + i, 2 * x - 1 + j) / 64;
+            }
+        return half;
+    }
+};
 
 }  // namespace
 
 std::vector<KeyPoint> findBlobs(const Mat& grey, const iib::HessianDetector& p)
 {
-    Map image = normalizeHalf(grey, p.getNormalizationSigma());
+    Map image = normalizeLocally(grey, p.getNormalizationSigma());
     for (int& pixel : image)
         pixel = std::max(pixel - 128, -127) * 64;
     std::vector<double> sigmas;
-    std::vector<Mat_<float>> responses;
-    double variance = 0;
+    int fine = 0;
     for (int scale = 0; scale < p.getScales(); scale++)
     {
-        sigmas.push_back(scale == 0 ? p.getSigma() / 2. : sigmas.back() * std::sqrt(2.));
-        const double wanted = sigmas.back() * sigmas.back();
-        while (wanted - variance > 1e-9)
-        {
-            const double added = std::min(wanted - variance, std::max(variance, 4. / 3));
-            image = smoothed(smoothed(image, added, Point(0, 1)), added, Point(1, 0));
-            variance += added;
-        }
-        responses.push_back(responsesOf(image, sigmas.back()));
+        sigmas.push_back(scale == 0 ? p.getSigma() : sigmas.back() * std::sqrt(2.));
+        fine += sigmas.back() < 4;
     }
     std::vector<KeyPoint> keypoints;
-    for (int scale = 0; scale < p.getScales(); scale++)
-    {
-        const int border = (int)(2 * sigmas[scale]) + 2;
-        for (int y = border; y < image.rows - border; y++)
-            for (int x = border; x < image.cols - border; x++)
-            {
-                const float response = responses[scale](y, x);
-                if (response > 0 && response >= p.getThreshold() && isLargest(responses, scale, y, x))
-                    keypoints.push_back(refined(responses, scale, y, x, sigmas[scale]));
-            }
-    }
+    for (const Octave& octave :
+            {Octave(image, sigmas, 0, fine, 1), Octave(image, sigmas, fine, p.getScales(), 2)})
+        for (int scale = octave.begin; scale < octave.end; scale++)
+        {
+            const Mat_<float>& responses = octave.responses[scale - octave.first];
+            const int border = (int)(2 * sigmas[scale] / octave.spacing) + 2;
+            for (int y = border; y < responses.rows - border; y++)
+                for (int x = border; x < responses.cols - border; x++)
+                {
+                    const float response = responses(y, x);
+                    if (response <= 0 || response < p.getThreshold() ||
+                            !isLargest(octave.responses, scale - octave.first, y, x))
+                        continue;
+                    KeyPoint kp = refined(octave.responses, scale - octave.first, y, x, sigmas[scale]);
+                    if (octave.spacing == 2)
+                        kp.pt = 2 * kp.pt + Point2f(.5f, .5f);
+                    kp.octave = scale;
+                    keypoints.push_back(kp);
+                }
+        }
     std::stable_sort(keypoints.begin(), keypoints.end(),
             [](const KeyPoint& a, const KeyPoint& b) { return a.response > b.response; });
     if (p.getMaxFeatures() > 0 && (int)keypoints.size() > p.getMaxFeatures())
         keypoints.resize(p.getMaxFeatures());
     return keypoints;
+}
+
+Mat responsesByDefinition(const Mat& normalized, double sigma)
+{
+    Mat image, xx, yy, xy;
+    normalized.convertTo(image, CV_32F, sigma * sigma / 40);
+    GaussianBlur(image, image, Size(), sigma, 0, BORDER_REPLICATE);
+    filter2D(image, xx, CV_32F, Matx13f(1, -2, 1));
+    filter2D(image, yy, CV_32F, Matx31f(1, -2, 1));
+    filter2D(image, xy, CV_32F, Matx33f(.25f, 0, -.25f, 0, 0, 0, -.25f, 0, .25f));
+    return xx.mul(yy) - xy.mul(xy);
 }
 
 }  // namespace oracle

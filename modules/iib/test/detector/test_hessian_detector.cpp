@@ -5,6 +5,7 @@
 #include "../support/temporary_file.hpp"
 #include "../support/test_errors.hpp"
 #include "../support/test_images.hpp"
+#include "../normalization/normalization_oracle.hpp"
 #include "hessian_oracle.hpp"
 
 namespace opencv_test {
@@ -93,9 +94,8 @@ TEST(IIB_HessianDetector, the_same_for_every_number_of_threads)
 TEST(IIB_HessianDetector, finds_a_blob_where_it_is_and_how_large)
 {
     const Ptr<HessianDetector> detector = HessianDetector::create(1, 0.f, 6, 2.f, 256.f);
-    float sizeOfThree =
-            0;  // larger than 6: local normalization raises the flanks of a blob on a plain ground
-    for (double sigma : {3., 4., 5.5})
+    float sizeOfFour = 0;  // larger than 8: local normalization raises the flanks of a blob on a plain ground
+    for (double sigma : {4., 3., 5.5})
         for (const Point2d centre : {Point2d(60, 50), Point2d(60.5, 50.25), Point2d(61.3, 49.7)})
         {
             Mat image(100, 120, CV_32F);
@@ -109,12 +109,61 @@ TEST(IIB_HessianDetector, finds_a_blob_where_it_is_and_how_large)
                 ASSERT_EQ(1u, keypoints.size());
                 EXPECT_NEAR(centre.x, keypoints[0].pt.x, .15) << sigma;
                 EXPECT_NEAR(centre.y, keypoints[0].pt.y, .15) << sigma;
-                if (sizeOfThree == 0)
-                    sizeOfThree = keypoints[0].size;
-                EXPECT_NEAR(2 * (sigma - 3), keypoints[0].size - sizeOfThree, .8);
+                if (sizeOfFour == 0)
+                    sizeOfFour = keypoints[0].size;
+                EXPECT_NEAR(2 * (sigma - 4), keypoints[0].size - sizeOfFour, .8);
                 EXPECT_EQ(-1.f, keypoints[0].angle);
             }
         }
+}
+
+// SIFT finds .96 again within a quarter of a pixel and .98 within 1.5 pixels.
+TEST(IIB_HessianDetector, keypoints_move_with_the_picture)
+{
+    const Mat image = relit(scene(Size(520, 400), 9), 10);
+    const Size window(512, 392);
+    const Ptr<HessianDetector> detector = HessianDetector::create(500);
+    const std::vector<KeyPoint> first = found(*detector, image(Rect(Point(), window)));
+    for (const Point& shift : {Point(1, 0), Point(1, 1), Point(3, 5)})
+    {
+        const std::vector<KeyPoint> second = found(*detector, image(Rect(shift, window)));
+        int all = 0, within = 0, near = 0;
+        for (const KeyPoint& kp : first)
+        {
+            const Point2f expected = kp.pt - Point2f(shift);
+            if (!Rect(24, 24, window.width - 48, window.height - 48).contains(Point(expected)))
+                continue;
+            double distance = 1e9;
+            for (const KeyPoint& other : second)
+                distance = std::min(distance, cv::norm(other.pt - expected));
+            all++;
+            within += distance < .25;
+            near += distance < 1.5;
+        }
+        EXPECT_GE(within, .9 * all) << shift;
+        EXPECT_GE(near, .96 * all) << shift;
+    }
+}
+
+TEST(IIB_HessianDetector, responses_are_near_their_definition)
+{
+    const Mat image = relit(scene(Size(320, 240), 11), 12);
+    const Ptr<HessianDetector> detector = HessianDetector::create(300);
+    const Mat normalizedImage = oracle::normalizeByDefinition(image, detector->getNormalizationSigma());
+    std::vector<Mat> responses;
+    for (int scale = 0; scale < detector->getScales(); scale++)
+        responses.push_back(oracle::responsesByDefinition(
+                normalizedImage, detector->getSigma() * std::pow(2., .5 * scale)));
+    std::vector<double> ratios;
+    for (const KeyPoint& kp : found(*detector, image))
+        ratios.push_back(kp.response / responses[kp.octave].at<float>(Point(kp.pt + Point2f(.5f, .5f))));
+    std::sort(ratios.begin(), ratios.end());
+    std::cout << format("[          ] responses over their definition: %.2f, %.2f, %.2f\n", ratios[15],
+            ratios[150], ratios[285]);
+    // 8-bit pixels, differences for derivatives and places between pixels: all but a twentieth on either side are near.
+    EXPECT_NEAR(1, ratios[150], .05);
+    EXPECT_GE(ratios[15], .75);
+    EXPECT_LE(ratios[285], 1.35);
 }
 
 TEST(IIB_HessianDetector, strongest_first_and_fewer_are_the_first_of_more)

@@ -25,14 +25,20 @@ Map greyLevels(const Mat& grey)
     return m;
 }
 
+//! Means of 4 x 4 pixels around the corner between four of them, rounded.
 Map halved(const Map& m)
 {
+    const int weights[] = {1, 3, 3, 1};
     Map half((m.rows + 1) / 2, (m.cols + 1) / 2);
     for (int y = 0; y < half.rows; y++)
         for (int x = 0; x < half.cols; x++)
-            half(y, x) = (pixel(m, 2 * y, 2 * x) + pixel(m, 2 * y, 2 * x + 1) + pixel(m, 2 * y + 1, 2 * x) +
-                                 pixel(m, 2 * y + 1, 2 * x + 1) + 2) >>
-                         2;
+        {
+            int sum = 32;
+            for (int i = 0; i < 4; i++)
+                for (int j = 0; j < 4; j++)
+                    sum += weights[i] * weights[j] * pixel(m, 2 * y - 1 + i, 2 * x - 1 + j);
+            half(y, x) = sum >> 6;
+        }
     return half;
 }
 
@@ -67,7 +73,7 @@ Map smallest(Map m, double sigma, int levels)
 {
     for (int i = 1; i < levels; i++)
         m = halved(m);
-    const double scale = std::pow(4., levels), variance = (sigma * sigma - (scale - 1) / 3) / scale;
+    const double scale = std::pow(4., levels), variance = (sigma * sigma - (scale - 1) / 2) / scale;
     const int passes = cvCeil(std::max(variance, 0.) * 1.5);
     for (int pass = 0; pass < passes; pass++)
     {
@@ -87,9 +93,11 @@ Map enlarged(Map m, Size size, int levels)
     return m;
 }
 
-//! Of grey levels in 2^-7.
-Mat normalized(const Map& pixels, double sigma)
+}  // namespace
+
+Mat normalizeLocally(const Mat& grey, double sigma)
 {
+    const Map pixels = greyLevels(grey);
     const int levels = std::max((int)std::floor(std::log2(sigma)), 1);
     const Size size = pixels.size();
     const Map means = enlarged(smallest(halved(pixels), sigma, levels), size, levels);
@@ -112,16 +120,6 @@ Mat normalized(const Map& pixels, double sigma)
             result.at<uchar>(y, x) = saturate_cast<uchar>(((halves + 1) >> 1) + 128);
         }
     return result;
-}
-
-}  // namespace
-
-Mat normalizeLocally(const Mat& grey, double sigma) { return normalized(greyLevels(grey), sigma); }
-
-Mat normalizeHalf(const Mat& grey, double sigma)
-{
-    const Mat even = greyLevels(grey)(Rect(0, 0, grey.cols / 2 * 2, grey.rows / 2 * 2));
-    return normalized(halved(even), sigma / 2);
 }
 
 Mat normalizeByDefinition(const Mat& grey, double sigma)

@@ -15,9 +15,6 @@ typedef cv::Mat_<int> Map;
 //! Local normalization once more, pixel by pixel: of CV_8U or CV_16U, the same integers as the library's.
 cv::Mat normalizeLocally(const cv::Mat& grey, double sigma);
 
-//! The same of the means of 2 x 2 pixels; sigma in pixels of `grey`, at least 2 x 2.
-cv::Mat normalizeHalf(const cv::Mat& grey, double sigma);
-
 //! Its definition, with Gaussian filters in floats: 128 + 40 (I - G*I) / (sqrt(G*(I - G*I)^2) + 2) of CV_8U.
 cv::Mat normalizeByDefinition(const cv::Mat& grey, double sigma);
 

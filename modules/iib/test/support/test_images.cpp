@@ -191,6 +191,7 @@ void expectSameKeyPoints(const std::vector<KeyPoint>& expected, const std::vecto
         EXPECT_EQ(expected[i].pt, actual[i].pt);
         EXPECT_EQ(expected[i].size, actual[i].size);
         EXPECT_EQ(expected[i].angle, actual[i].angle);
+        EXPECT_EQ(expected[i].response, actual[i].response);
         EXPECT_EQ(expected[i].octave, actual[i].octave);
         EXPECT_EQ(expected[i].class_id, actual[i].class_id);
     }

@@ -17,11 +17,12 @@ namespace iib {
 2008) of the locally normalized image.
 
 Made for IIBDescriptorExtractor, where light and camera change; IIBDescriptorExtractor::createRecommended puts the two
-together. Works at half the image's resolution. The half image is normalized locally as NormalizedDetector does it (sigma
-of the Gaussian: `normalizationSigma`), and smoothed by Gaussians of `sigma`, `sigma` * sqrt(2), `sigma` * 2, ...,
-one for each scale. The response is `sigma^4 (Ixx Iyy - Ixy^2)` in units of the local standard deviation. A keypoint is a
-pixel whose response is positive, at least `threshold`, and the largest among its neighbours in place (3 x 3) and in the
-scales before and after; of neighbours with the same response, one stays.
+together. The image is normalized locally as NormalizedDetector does it (sigma of the Gaussian: `normalizationSigma`), and
+smoothed by Gaussians of `sigma`, `sigma` * sqrt(2), `sigma` * 2, ..., one for each scale. The response is
+`sigma^4 (Ixx Iyy - Ixy^2)` in units of the local standard deviation. A keypoint is a pixel whose response is positive, at
+least `threshold`, and the largest among its neighbours in place (3 x 3) and in the scales before and after; of neighbours
+with the same response, one stays. Scales of less than 4 pixels are searched at the image's resolution, so that a picture
+moved by a pixel has the same keypoints, moved by a pixel; larger scales at half the resolution, which is enough for them.
 
 Of a keypoint
 - `pt` is refined to fractions of a pixel by a quadratic fit of the response;

@@ -43,12 +43,6 @@ void smooth(const short* const rows[5], SmoothingWeights weights, short* out, in
     }
 }
 
-inline v_float32 determinant(const v_int32& xx, const v_int32& yy, const v_int32& xy)
-{
-    const v_float32 x = v_cvt_f32(xx), y = v_cvt_f32(yy), mixed = v_cvt_f32(xy);
-    return x * y - mixed * mixed * vx_setall_f32(1.f / 16);
-}
-
 void response(const short* const rows[3], int distance, float factor, float* out, int width)
 {
     const v_float32 scale = vx_setall_f32(factor);
@@ -61,12 +55,12 @@ void response(const short* const rows[3], int distance, float factor, float* out
         const v_int16 yy = vx_load(above + x) + vx_load(below + x) - twice;
         const v_int16 xy =
                 (vx_load(above + l) + vx_load(below + r)) - (vx_load(above + r) + vx_load(below + l));
-        v_int32 xx0, xx1, yy0, yy1, xy0, xy1;
-        v_expand(xx, xx0, xx1);
-        v_expand(yy, yy0, yy1);
-        v_expand(xy, xy0, xy1);
-        v_store(out + x, determinant(xx0, yy0, xy0) * scale);
-        v_store(out + x + INTS, determinant(xx1, yy1, xy1) * scale);
+        const v_int16 mixed = (xy + vx_setall_s16(2)) >> 2;
+        v_int16 first0, first1, second0, second1;
+        v_zip(xx, mixed, first0, first1);
+        v_zip(yy, vx_setzero_s16() - mixed, second0, second1);
+        v_store(out + x, v_cvt_f32(v_dotprod(first0, second0)) * scale);
+        v_store(out + x + INTS, v_cvt_f32(v_dotprod(first1, second1)) * scale);
     }
 }
 
@@ -77,9 +71,15 @@ inline v_float32 largestOfColumn(const float* const rows[3], int x)
 
 void largest(const float* const rows[3], float* out, int width)
 {
+    v_float32 before = largestOfColumn(rows, -INTS), columns = largestOfColumn(rows, 0);
     for (int x = 0; x < width; x += INTS)
-        v_store(out + x, v_max(v_max(largestOfColumn(rows, x - 1), largestOfColumn(rows, x)),
-                                 largestOfColumn(rows, x + 1)));
+    {
+        const v_float32 after = largestOfColumn(rows, x + INTS);
+        const v_float32 left = v_extract<INTS - 1>(before, columns), right = v_extract<1>(columns, after);
+        v_store(out + x, v_max(v_max(left, columns), right));
+        before = columns;
+        columns = after;
+    }
 }
 
 //! The bits of floats, which as integers have the same order where the larger one is positive.

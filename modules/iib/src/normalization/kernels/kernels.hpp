@@ -20,9 +20,10 @@ struct NormalizationKernels
 {
     //! Grey levels from 8-bit pixels.
     void (*widen)(const uchar* pixels, short* out, int width);
-    //! Means of 2 x 2 values, rounded.
-    void (*halveShorts)(const short* upper, const short* lower, short* half, int halfWidth);
-    void (*halveInts)(const int* upper, const int* lower, int* half, int halfWidth);
+    /** Means of 4 x 4 values with the weights 1, 3, 3, 1 in both directions, rounded: nothing is left that could alias.
+     Value x lies between values 2 x and 2 x + 1; rows[i][-1] to rows[i][2 * halfWidth] are read. */
+    void (*halveShorts)(const short* const rows[4], short* half, int halfWidth);
+    void (*halveInts)(const int* const rows[4], int* half, int halfWidth);
     //! A quarter of the way from one row to another.
     void (*interpolate)(const short* from, const short* to, short* out, int width);
     //! Twice as many values, linearly interpolated; half[-1] and half[halfWidth] are read.
@@ -30,8 +31,8 @@ struct NormalizationKernels
     //! out = centre + weight / 256 * (before + after - 2 * centre), rounded.
     void (*blur)(const int* before, const int* centre, const int* after, int weight, int* out, int width);
     void (*subtract)(const short* pixels, const short* means, short* out, int width);
-    //! Means of the squares of 2 x 2 differences, in 2^-6 squared grey levels.
-    void (*squares)(const short* upper, const short* lower, int* half, int halfWidth);
+    //! The same means of the squares of differences, in 2^-6 squared grey levels.
+    void (*halveSquares)(const short* const rows[4], int* half, int halfWidth);
     //! 1024 * 40 / (standard deviation + 2).
     void (*gain)(const int* variance, short* out, int width);
     //! 128 + difference * gain as 8-bit pixels.

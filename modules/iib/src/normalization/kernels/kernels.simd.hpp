@@ -28,34 +28,52 @@ void widen(const uchar* pixels, short* out, int width)
         out[x] = (short)(pixels[x] << GREY_BITS);
 }
 
-//! The sums of neighbours in two rows.
-inline v_int32 sumOfFour(const short* upper, const short* lower)
+//! first, second, first, second, ...
+inline v_int16 alternating(short first, short second)
 {
-    const v_int16 one = vx_setall_s16(1);
-    return v_dotprod(vx_load(upper), one) + v_dotprod(vx_load(lower), one);
+    v_int16 pairs, more;
+    v_zip(vx_setall_s16(first), vx_setall_s16(second), pairs, more);
+    return pairs;
 }
 
-inline v_int32 quarter(const v_int32& sum) { return (sum + vx_setall_s32(2)) >> 2; }
+inline v_int32 tripled(const v_int32& v) { return v + v + v; }
 
-void halveShorts(const short* upper, const short* lower, short* half, int halfWidth)
+//! Of the sums of four rows.
+inline v_int32 mean(const v_int32& outerRows, const v_int32& innerRows)
+{
+    return (outerRows + tripled(innerRows) + vx_setall_s32(32)) >> 6;
+}
+
+inline v_int32 weightedSum(const short* row)
+{
+    return v_dotprod(vx_load(row - 1), alternating(1, 3)) + v_dotprod(vx_load(row + 1), alternating(3, 1));
+}
+
+inline v_int32 meansOfFourRows(const short* const rows[4], int x)
+{
+    return mean(weightedSum(rows[0] + x) + weightedSum(rows[3] + x),
+            weightedSum(rows[1] + x) + weightedSum(rows[2] + x));
+}
+
+void halveShorts(const short* const rows[4], short* half, int halfWidth)
 {
     for (int x = 0; x < halfWidth; x += SHORTS)
-    {
-        const v_int32 left = sumOfFour(upper + 2 * x, lower + 2 * x);
-        const v_int32 right = sumOfFour(upper + 2 * x + SHORTS, lower + 2 * x + SHORTS);
-        v_store(half + x, v_pack(quarter(left), quarter(right)));
-    }
+        v_store(half + x, v_pack(meansOfFourRows(rows, 2 * x), meansOfFourRows(rows, 2 * x + SHORTS)));
 }
 
-void halveInts(const int* upper, const int* lower, int* half, int halfWidth)
+inline v_int32 weightedSum(const int* row)
+{
+    v_int32 a, b, c, d;
+    v_load_deinterleave(row - 1, a, b);
+    v_load_deinterleave(row + 1, c, d);
+    return a + d + tripled(b + c);
+}
+
+void halveInts(const int* const rows[4], int* half, int halfWidth)
 {
     for (int x = 0; x < halfWidth; x += INTS)
-    {
-        v_int32 a, b, c, d;
-        v_load_deinterleave(upper + 2 * x, a, b);
-        v_load_deinterleave(lower + 2 * x, c, d);
-        v_store(half + x, quarter((a + b) + (c + d)));
-    }
+        v_store(half + x, mean(weightedSum(rows[0] + 2 * x) + weightedSum(rows[3] + 2 * x),
+                                  weightedSum(rows[1] + 2 * x) + weightedSum(rows[2] + 2 * x)));
 }
 
 void interpolate(const short* from, const short* to, short* out, int width)
@@ -95,13 +113,18 @@ inline v_int16 eighths(const short* differences)
     return (vx_load(differences) + vx_setall_s16(1 << (GREY_BITS - 4))) >> (GREY_BITS - 3);
 }
 
-void squares(const short* upper, const short* lower, int* half, int halfWidth)
+inline v_int32 weightedSquares(const short* row)
+{
+    const v_int16 before = eighths(row - 1), after = eighths(row + 1);
+    return v_dotprod(before, v_mul_wrap(before, alternating(1, 3))) +
+           v_dotprod(after, v_mul_wrap(after, alternating(3, 1)));
+}
+
+void halveSquares(const short* const rows[4], int* half, int halfWidth)
 {
     for (int x = 0; x < halfWidth; x += INTS)
-    {
-        const v_int16 a = eighths(upper + 2 * x), b = eighths(lower + 2 * x);
-        v_store(half + x, quarter(v_dotprod(a, a) + v_dotprod(b, b)));
-    }
+        v_store(half + x, mean(weightedSquares(rows[0] + 2 * x) + weightedSquares(rows[3] + 2 * x),
+                                  weightedSquares(rows[1] + 2 * x) + weightedSquares(rows[2] + 2 * x)));
 }
 
 inline v_int32 gainOf(const int* variance)
@@ -138,7 +161,7 @@ void scale(const short* differences, const short* gains, uchar* pixels, int widt
 const NormalizationKernels& normalizationKernels()
 {
     static const NormalizationKernels kernels = {
-            widen, halveShorts, halveInts, interpolate, upsample, blur, subtract, squares, gain, scale};
+            widen, halveShorts, halveInts, interpolate, upsample, blur, subtract, halveSquares, gain, scale};
     return kernels;
 }
 
