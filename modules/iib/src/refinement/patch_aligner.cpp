@@ -11,10 +11,12 @@ namespace {
 
 const double SIGMA = 7;            //!< of the weights, in units of the patch
 const double UNITS_OF_PLACE = 16;  //!< of PatchWeights::x and y
-const int MOST_STEPS = 12;
+const int COARSE_ROW_STEP = 2;
+const int COARSE_STEPS = 6, MOST_STEPS = 12;  //!< all, and those that may look at some rows alone
 const double DEFORMATION_MARGIN =
         4;  //!< pixels that a patch may reach farther than where it starts, besides its move
-const double LAST_STEP = 1e-3;      //!< in units: no step follows one that is as short
+const double LAST_COARSE_STEP = .1,
+             LAST_STEP = .02;       //!< in units: no step of the same kind follows one that is shorter
 const double LEAST_DEVIATION = .5;  //!< normalized grey levels: without contrast there is nothing to match
 const double LEAST_SIMILARITY = .5;
 const double DAMPING_OF_PLACE = 1e-5, DAMPING_OF_MAP = 2e-2;
@@ -63,12 +65,26 @@ const PatchWeights& patchWeights()
     return weights;
 }
 
-template <typename T> double sumOf(const T (&values)[PATCH_SAMPLES], double power)
+//! The sum of a power of the values in each rowStep-th row.
+double sumOfPowers(const short* values, int power, int rowStep)
 {
     double sum = 0;
-    for (T value : values)
-        sum += std::pow((double)value, power);
+    for (int i = 0; i < PATCH_SAMPLES; i++)
+        if (i / PATCH_COLUMNS % rowStep == 0)
+            sum += power == 1 ? values[i] : values[i] * values[i];
     return sum;
+}
+
+//! The sum of all samples' products from those of columns, times a power of x.
+double total(const float* columns, const PatchWeights& weights, int power)
+{
+    double sums[4] = {};
+    for (int c = 0; c < PATCH_COLUMNS; c++)
+    {
+        const double x = weights.x[c];
+        sums[c % 4] += (double)columns[c] * weights.columns[c] * (power == 0 ? 1 : power == 1 ? x : x * x);
+    }
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
 //! The inverse of a positive definite matrix, by Cholesky's decomposition; false where it is not.
@@ -129,10 +145,16 @@ PatchAligner::PatchAligner()
       samples(PATCH_SAMPLES), derivativesX(PATCH_SAMPLES), derivativesY(PATCH_SAMPLES),
       weightsOfSums(PATCH_SAMPLES * (SUMS - SUM_TEMPLATE))
 {
+    std::fill_n(weightsOfSums.data(), PATCH_SAMPLES * (SUMS - SUM_TEMPLATE), (short)0);
     weightsOf[SUM_SAMPLES] = weights.samples;
-    totals[SUM_SAMPLES] = sumOf(weights.samples, 1);
     for (int k = 0; k < SUMS - SUM_TEMPLATE; k++)
         weightsOf[SUM_TEMPLATE + k] = templateWeights[k] = weightsOfSums.data() + k * PATCH_SAMPLES;
+    for (Level* level : {&coarse, &fine})
+    {
+        level->rowStep = level == &coarse ? COARSE_ROW_STEP : 1;
+        level->totals[SUM_SAMPLES] = sumOfPowers(weights.samples, 1, level->rowStep);
+        level->squaresOfRoots = sumOfPowers(weights.roots, 2, level->rowStep) / 65536 / 65536;
+    }
 }
 
 //! How far a patch reaches from its centre, in x and in y.
@@ -170,7 +192,7 @@ void PatchAligner::readWindow(const Mat& image, const PatchPlace& place, double 
 }
 
 //! False if a sample would be outside the window.
-bool PatchAligner::sampleAt(const PatchPlace& place)
+bool PatchAligner::sampleAt(const PatchPlace& place, const Level& level)
 {
     const double halfColumns = (PATCH_COLUMNS - 1) / 2., halfRows = (PATCH_ROWS - 1) / 2.;
     const Matx22d& m = place.map;
@@ -182,84 +204,85 @@ bool PatchAligner::sampleAt(const PatchPlace& place)
     const PatchGrid grid = {Point(fixed(x - m(0, 0) * halfColumns - m(0, 1) * halfRows),
                                     fixed(y - m(1, 0) * halfColumns - m(1, 1) * halfRows)),
             Point(fixed(m(0, 0)), fixed(m(1, 0))), Point(fixed(m(0, 1)), fixed(m(1, 1)))};
-    kernels.sample(window.data(), grid, samples.data());
+    kernels.sample(window.data(), grid, level.rowStep, samples.data());
     return true;
 }
 
-PatchAligner::Moments PatchAligner::momentsOf(bool all) const
+PatchAligner::Moments PatchAligner::momentsOf(const short* values, const Level& level) const
 {
-    static const double squaresOfRoots = sumOf(weights.roots, 2) / 65536 / 65536;
     int sums[SUMS];
-    const double squares = kernels.sum(samples.data(), weightsOf, all, weights.roots, sums) / squaresOfRoots;
-    const double mean = sums[SUM_SAMPLES] / totals[SUM_SAMPLES];
+    const double squares =
+            kernels.sum(values, weightsOf, weights.roots, level.rowStep, sums) / level.squaresOfRoots;
+    const double mean = sums[SUM_SAMPLES] / level.totals[SUM_SAMPLES];
     Moments moments;
     moments.sums[SUM_SAMPLES] = mean;
-    for (int k = SUM_TEMPLATE; all && k < SUMS; k++)
-        moments.sums[k] = sums[k] - mean * totals[k];
+    for (int k = SUM_TEMPLATE; k < SUMS; k++)
+        moments.sums[k] = sums[k] - mean * level.totals[k];
     moments.deviation = std::sqrt(std::max(squares - mean * mean, 0.));
     return moments;
+}
+
+//! The correlation with the template; 0 without contrast.
+double PatchAligner::similarityOf(const Moments& moments, const Level& level) const
+{
+    if (!(moments.deviation >= LEAST_DEVIATION * (1 << SAMPLE_BITS)))
+        return 0;
+    return moments.sums[SUM_TEMPLATE] * level.ofTemplate.deviation /
+           (level.ofTemplate.sums[SUM_TEMPLATE] * moments.deviation);
 }
 
 //! Of the samples; false where these cannot tell a place.
 bool PatchAligner::makeTemplate()
 {
-    static const std::vector<short> ones(PATCH_SAMPLES, 1);
-    ofTemplate = momentsOf(false);
-    const double deviation = ofTemplate.deviation;
+    const Moments moments = momentsOf(samples.data(), fine);
+    const double deviation = moments.deviation;
     if (!(deviation >= LEAST_DEVIATION * (1 << SAMPLE_BITS)))
         return false;
     float columns[COLUMN_SUMS][PATCH_COLUMNS];
     kernels.derive(samples.data(), derivativesX.data(), derivativesY.data());
     kernels.sumColumns(derivativesX.data(), derivativesY.data(), weights, columns);
-    // the sum of column sums, times weights and a power of x
-    const auto total = [&](int sum, int power) {
-        double result = 0;
-        for (int c = 0; c < PATCH_COLUMNS; c++)
-            result += columns[sum][c] * (double)weights.columns[c] *
-                      (power == 0          ? 1.
-                              : power == 1 ? weights.x[c]
-                                           : weights.x[c] * (double)weights.x[c]);
-        return result;
-    };
-    // parameters: x, y, xx, xy, yx, yy, the second letter the place that a derivative is multiplied by
+    // the derivative of each parameter, and what that is multiplied by: x and y of the place, and the linear map's four
     static const struct
     {
         int derivative, x, y;
     } parameters[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, 0, 1}};
+    static const int products[] = {COLUMN_XX, COLUMN_XY, COLUMN_YY};
     double means[6];
     float scales[SUMS - SUM_TEMPLATE] = {(float)(LARGEST_SUM / deviation)};
     Matx66d normal;
     for (int i = 0; i < 6; i++)
     {
         const auto& a = parameters[i];
-        means[i] = total((a.derivative ? COLUMN_Y : COLUMN_X) + a.y, a.x);
+        means[i] = total(columns[(a.derivative ? COLUMN_Y : COLUMN_X) + a.y], weights, a.x);
         for (int j = 0; j <= i; j++)
         {
             const auto& b = parameters[j];
-            const int products = a.derivative + b.derivative == 0   ? COLUMN_XX
-                                 : a.derivative + b.derivative == 1 ? COLUMN_XY
-                                                                    : COLUMN_YY;
-            normal(i, j) = total(products + a.y + b.y, a.x + b.x);
+            normal(i, j) =
+                    total(columns[products[a.derivative + b.derivative] + a.y + b.y], weights, a.x + b.x);
         }
         if (!(normal(i, i) > 0))
             return false;
         scales[1 + i] = (float)(LARGEST_SUM / std::sqrt(normal(i, i)));
+        factors[i] = scales[1 + i] * 2 * deviation;
     }
     kernels.weigh(samples.data(), derivativesX.data(), derivativesY.data(), weights,
-            (float)ofTemplate.sums[SUM_SAMPLES], scales, templateWeights);
-    int ofOnes[SUMS];
-    kernels.sum(ones.data(), weightsOf, true, weights.roots, ofOnes);
-    std::copy(ofOnes + SUM_TEMPLATE, ofOnes + SUMS, totals + SUM_TEMPLATE);
-    ofTemplate = momentsOf(true);
-    double ofContrast[6];
+            (float)moments.sums[SUM_SAMPLES], scales, templateWeights);
+    for (Level* level : {&coarse, &fine})
+    {
+        // up to roundings, which count only as far as the patches' means differ, and these are small
+        level->totals[SUM_TEMPLATE] = 0;
+        for (int i = 0; i < 6; i++)
+            level->totals[SUM_DERIVATIVES + i] = means[i] * scales[1 + i] / level->rowStep;
+        level->ofTemplate = momentsOf(samples.data(), *level);
+    }
     for (int i = 0; i < 6; i++)
     {
-        factors[i] = scales[1 + i] * 2 * deviation;
-        ofContrast[i] = ofTemplate.sums[SUM_DERIVATIVES + i] / (factors[i] * deviation);
+        // what a change of contrast explains, which is solved for as well
+        const double* contrast = fine.ofTemplate.sums + SUM_DERIVATIVES;
         for (int j = 0; j <= i; j++)
         {
             normal(i, j) = (normal(i, j) - means[i] * means[j]) / (4 * deviation * deviation) -
-                           ofContrast[i] * ofContrast[j];
+                           contrast[i] * contrast[j] / (factors[i] * factors[j] * deviation * deviation);
             normal(j, i) = normal(i, j);
         }
         normal(i, i) += i < 2 ? DAMPING_OF_PLACE : DAMPING_OF_MAP;
@@ -267,57 +290,82 @@ bool PatchAligner::makeTemplate()
     return invert(normal, inverse);
 }
 
-PatchAlignment PatchAligner::align(
-        const Mat& image1, const PatchPlace& place1, const Mat& image2, PatchPlace place, double limit)
+//! A step of Gauss and Newton, @cite BakerMatthews2004 Eq. (35); false where the map degenerates.
+bool PatchAligner::move(PatchPlace& place, const Moments& moments, const Level& level, double& distance) const
 {
-    const PatchPlace start = place;
-    PatchAlignment result = {false, start.x, start.y, -1, {1, 0, 1}};
+    const double contrast = moments.deviation / level.ofTemplate.deviation;
+    const double similarity = similarityOf(moments, level);
+    const double scale = level.totals[SUM_SAMPLES] / fine.totals[SUM_SAMPLES] * level.ofTemplate.deviation;
+    Vec6d gradient;
+    for (int i = 0; i < 6; i++)
+        gradient[i] = (moments.sums[SUM_DERIVATIVES + i] / contrast -
+                              similarity * level.ofTemplate.sums[SUM_DERIVATIVES + i]) /
+                      (factors[i] * scale);
+    const Vec6d d = inverse * gradient;
+    const Matx22d change(1 + d[2] / UNITS_OF_PLACE, d[3] / UNITS_OF_PLACE, d[4] / UNITS_OF_PLACE,
+            1 + d[5] / UNITS_OF_PLACE);
+    const double determinant = change(0, 0) * change(1, 1) - change(0, 1) * change(1, 0);
+    if (!(std::abs(determinant) > 1e-3))
+        return false;
+    const Matx22d back(change(1, 1) / determinant, -change(0, 1) / determinant, -change(1, 0) / determinant,
+            change(0, 0) / determinant);
+    place.map = place.map * back;
+    const Vec2d step = place.map * Vec2d(d[0], d[1]);
+    place.x -= step[0];
+    place.y -= step[1];
+    distance = std::sqrt(d[0] * d[0] + d[1] * d[1]);
+    return true;
+}
+
+PatchAlignment PatchAligner::align(const Mat& image1, const PatchPlace& place1, const Mat& image2,
+        const std::vector<PatchPlace>& starts, double limit)
+{
+    PatchPlace place = starts[0];
+    const Point2d detected(place.x, place.y);
+    const PatchAlignment refused = {false, place.x, place.y, -1, {1, 0, 1}};
     readWindow(image1, place1, 1);
-    if (!sampleAt(place1) || !makeTemplate())
-        return result;
-    readWindow(image2, place, 2 * limit + DEFORMATION_MARGIN);
-    double first = 0, similarity = 0;
-    bool last = false;
-    for (int step = 0;; step++)
+    if (!sampleAt(place1, fine) || !makeTemplate())
+        return refused;
+    const auto smaller = [](const PatchPlace& a, const PatchPlace& b) {
+        return reachOf(a.map).x < reachOf(b.map).x;
+    };
+    readWindow(image2, *std::max_element(starts.begin(), starts.end(), smaller), limit + DEFORMATION_MARGIN);
+    double first = -2;
+    for (const PatchPlace& start : starts)
     {
-        if (!sampleAt(place))
-            return result;
-        const Moments moments = momentsOf(true);
-        if (!(moments.deviation >= LEAST_DEVIATION * (1 << SAMPLE_BITS)))
-            return result;
-        const double contrast = moments.deviation / ofTemplate.deviation;
-        similarity = moments.sums[SUM_TEMPLATE] / (ofTemplate.sums[SUM_TEMPLATE] * contrast);
-        if (step == 0)
+        if (!sampleAt(start, coarse))
+            continue;
+        const double similarity = similarityOf(momentsOf(samples.data(), coarse), coarse);
+        if (similarity > first)
+        {
             first = similarity;
-        if (last || step == MOST_STEPS)
-            break;
-        Vec6d gradient;
-        for (int i = 0; i < 6; i++)
-            gradient[i] = (moments.sums[SUM_DERIVATIVES + i] / contrast -
-                                  similarity * ofTemplate.sums[SUM_DERIVATIVES + i]) /
-                          (factors[i] * ofTemplate.deviation);
-        const Vec6d d = inverse * gradient;
-        // the map is that of the template's step, inverted, and the one so far
-        const Matx22d change(1 + d[2] / UNITS_OF_PLACE, d[3] / UNITS_OF_PLACE, d[4] / UNITS_OF_PLACE,
-                1 + d[5] / UNITS_OF_PLACE);
-        const double determinant = change(0, 0) * change(1, 1) - change(0, 1) * change(1, 0);
-        if (!(std::abs(determinant) > 1e-3))
-            return result;
-        const Matx22d back(change(1, 1) / determinant, -change(0, 1) / determinant,
-                -change(1, 0) / determinant, change(0, 0) / determinant);
-        place.map = place.map * back;
-        const Vec2d move = place.map * Vec2d(d[0], d[1]);
-        place.x -= move[0];
-        place.y -= move[1];
-        last = d[0] * d[0] + d[1] * d[1] < LAST_STEP * LAST_STEP;
+            place = start;
+        }
     }
-    const double movedX = place.x - start.x, movedY = place.y - start.y;
-    if (!(movedX * movedX + movedY * movedY < limit * limit) || !(similarity > first) ||
-            !(similarity > LEAST_SIMILARITY))
-        return result;
-    const double effective = sumOf(weights.samples, 1) * sumOf(weights.samples, 1) /
-                             sumOf(weights.samples, 2) / SAMPLES_OF_INDEPENDENT;
-    const double variance = std::max(1 / (similarity * similarity) - 1, 0.) / effective;
+    double similarity = 0;
+    for (int step = 0; step < MOST_STEPS; step++)
+    {
+        Level& level = step < COARSE_STEPS ? coarse : fine;
+        if (!sampleAt(place, level))
+            return refused;
+        const Moments moments = momentsOf(samples.data(), level);
+        similarity = similarityOf(moments, level);
+        double distance;
+        if (!(similarity > 0) || !move(place, moments, level, distance))
+            return refused;
+        if (distance < (step < COARSE_STEPS ? LAST_COARSE_STEP : LAST_STEP))
+        {
+            if (step >= COARSE_STEPS)
+                break;
+            step = COARSE_STEPS - 1;
+        }
+    }
+    const Point2d moved = Point2d(place.x, place.y) - detected;
+    if (!(moved.dot(moved) < limit * limit) || !(similarity > first) || !(similarity > LEAST_SIMILARITY))
+        return refused;
+    static const double independent = std::pow(fine.totals[SUM_SAMPLES], 2) /
+                                      sumOfPowers(weights.samples, 2, 1) / SAMPLES_OF_INDEPENDENT;
+    const double variance = std::max(1 / (similarity * similarity) - 1, 0.) / independent;
     const Matx22d ofPlace(inverse(0, 0), inverse(0, 1), inverse(1, 0), inverse(1, 1));
     const Matx22d covariance = place.map * ofPlace * place.map.t() * variance;
     return {true, place.x, place.y, std::min(similarity, 1.),

@@ -32,9 +32,10 @@ public:
     PatchAligner();
 
     /** Finds where the patch of the first image is in the second one. Both images are normalized and smoothed, CV_8U.
+     @param starts places in the second image; the one that agrees best is taken.
      @param limit pixels that it may move in the second image. */
-    PatchAlignment align(
-            const Mat& image1, const PatchPlace& place1, const Mat& image2, PatchPlace place2, double limit);
+    PatchAlignment align(const Mat& image1, const PatchPlace& place1, const Mat& image2,
+            const std::vector<PatchPlace>& starts, double limit);
 
 private:
     struct Moments
@@ -43,10 +44,21 @@ private:
         double deviation;
     };
 
+    //! The first steps look at every second row alone.
+    struct Level
+    {
+        int rowStep;
+        double totals[SUMS];  //!< of the weights
+        double squaresOfRoots;
+        Moments ofTemplate;
+    };
+
     void readWindow(const Mat& image, const PatchPlace& place, double margin);
-    bool sampleAt(const PatchPlace& place);
-    Moments momentsOf(bool all) const;
+    bool sampleAt(const PatchPlace& place, const Level& level);
+    Moments momentsOf(const short* values, const Level& level) const;
+    double similarityOf(const Moments& moments, const Level& level) const;
     bool makeTemplate();
+    bool move(PatchPlace& place, const Moments& moments, const Level& level, double& distance) const;
 
     const RefinementKernels& kernels;
     const PatchWeights& weights;
@@ -55,10 +67,9 @@ private:
     AlignedBuffer<short> samples, derivativesX, derivativesY, weightsOfSums;
     const short* weightsOf[SUMS];
     short* templateWeights[SUMS - SUM_TEMPLATE];
-    double totals[SUMS];  //!< of the weights
-    double factors[6];    //!< that weights of derivatives hold
-    Moments ofTemplate;
-    Matx66d inverse;  //!< of the normal matrix
+    Level coarse, fine;
+    double factors[6];  //!< that weights of derivatives hold
+    Matx66d inverse;    //!< of the normal matrix
 };
 
 //! Smooths a normalized image for it.

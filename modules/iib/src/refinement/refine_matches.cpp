@@ -15,6 +15,8 @@ namespace iib {
 namespace {
 
 const double NORMALIZATION_SIGMA = 8;
+const double LARGEST_SPACING = 1.25;  //!< pixels from one sample to the next
+const double SAME_SIZE = 1.1;
 const double LARGEST_MOVE = 2;  //!< in pixels
 const double MATCHES_OF_A_THREAD = 8;
 
@@ -41,16 +43,31 @@ bool isInside(const KeyPoint& keypoint, const Mat& image)
     return p.x >= 0 && p.y >= 0 && p.x <= image.cols - 1 && p.y <= image.rows - 1;
 }
 
-//! Patches of as many pixels in the finer image; samples are nowhere farther apart than pixels.
-void startingPlaces(const KeyPoint& first, const KeyPoint& second, PatchPlace& place1, PatchPlace& place2)
+//! Places to align, the second one with all starts that are tried.
+struct Start
 {
-    const double scale = (double)second.size / first.size, spacing = std::min(1., 1 / scale);
-    const bool rotated = first.angle >= 0 && second.angle >= 0;
-    const Rotation rotation(rotated ? second.angle - first.angle : 0);
-    const double c = scale * spacing * rotation.cosine, s = scale * spacing * rotation.sine;
-    place1 = {first.pt.x, first.pt.y, Matx22d(spacing, 0, 0, spacing)};
-    place2 = {second.pt.x, second.pt.y, Matx22d(c, -s, s, c)};
-}
+    PatchPlace first;
+    std::vector<PatchPlace> second;
+    double limit;
+
+    /* Sizes of keypoints err by more than a tenth, so that patches may also be of the same size. Neighbouring samples are
+     farther apart than a pixel only if that is by little, in the second image of a pair of about the same size. */
+    Start(const KeyPoint& a, const KeyPoint& b)
+    {
+        const double ratio = (double)b.size / a.size, spacing = std::min(1., LARGEST_SPACING / ratio);
+        const bool rotated = a.angle >= 0 && b.angle >= 0;
+        const Rotation rotation(rotated ? b.angle - a.angle : 0);
+        first = {a.pt.x, a.pt.y, Matx22d(spacing, 0, 0, spacing)};
+        for (double scale : {ratio, 1.})
+        {
+            if (!second.empty() && std::max(ratio, 1 / ratio) < SAME_SIZE)
+                break;
+            const double c = scale * spacing * rotation.cosine, s = scale * spacing * rotation.sine;
+            second.push_back({b.pt.x, b.pt.y, Matx22d(c, -s, s, c)});
+        }
+        limit = LARGEST_MOVE * std::max(ratio, 1.);
+    }
+};
 
 }  // namespace
 
@@ -81,10 +98,9 @@ void refineMatches(InputArray image1, const std::vector<KeyPoint>& keypoints1, I
                         PatchAlignment found = {false, b.pt.x, b.pt.y, -1, {1, 0, 1}};
                         if (isInside(a, prepared1) && isInside(b, prepared2))
                         {
-                            PatchPlace place1, place2;
-                            startingPlaces(a, b, place1, place2);
-                            found = aligner.align(prepared1, place1, prepared2, place2,
-                                    LARGEST_MOVE * std::max(1.f, b.size / a.size));
+                            const Start start(a, b);
+                            found = aligner.align(
+                                    prepared1, start.first, prepared2, start.second, start.limit);
                         }
                         first.at<Point2f>(i) = a.pt;
                         second.at<Point2f>(i) = Point2f((float)found.x, (float)found.y);

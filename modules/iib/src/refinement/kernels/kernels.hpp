@@ -12,7 +12,7 @@ namespace iib {
 /* Patches are rows of columns around a point; neighbours are one unit apart. All is exact on integers, or on floats in one
  order of operations. */
 constexpr int PATCH_COLUMNS = 32, PATCH_ROWS = 28, PATCH_SAMPLES = PATCH_COLUMNS * PATCH_ROWS;
-constexpr int WINDOW = 64;  //!< most pixels in rows and columns of an image around a point
+constexpr int WINDOW_BITS = 6, WINDOW = 1 << WINDOW_BITS;  //!< most pixels in rows and columns around a point
 constexpr int WINDOW_PADDING = 64;
 constexpr int POSITION_BITS = 16;  //!< positions in a window are pixels in 2^-16
 constexpr int SAMPLE_BITS = 6;     //!< samples are normalized grey levels of -128..127 in 2^-6
@@ -61,10 +61,11 @@ struct RefinementKernels
     /** A row of a window: four bytes of the image a pixel, each less 128: its own, the one below, the one to the right, the
      one below that. Reads WINDOW_PADDING pixels more than `width`, and writes full vectors. */
     void (*readWindow)(const uchar* upper, const uchar* lower, int* out, int width);
-    //! Samples of a window, bilinear; all must be inside.
-    void (*sample)(const int* window, const PatchGrid& grid, short* samples);
-    //! sums[k] of all samples times weights[k], for the first or for all; returns that of squares, times weights in 2^-32.
-    int (*sum)(const short* samples, const short* const* weights, bool all, const short* roots, int* sums);
+    //! Samples of a window, bilinear, of each rowStep-th row; all must be inside.
+    void (*sample)(const int* window, const PatchGrid& grid, int rowStep, short* samples);
+    /** sums[k] of the samples of each rowStep-th row times weights[k]; and returns the sum of their squares, times weights in
+     2^-32. */
+    int (*sum)(const short* samples, const short* const* weights, const short* roots, int rowStep, int* sums);
     //! Differences of the samples on both sides; at an end, one of these is the sample itself.
     void (*derive)(const short* samples, short* x, short* y);
     //! Sums of columns of products of derivatives.

@@ -19,16 +19,22 @@ namespace {
 
 constexpr int SHORTS = VTraits<v_int16>::max_nlanes, INTS = VTraits<v_int32>::max_nlanes;
 
-// The compiler makes vectors of this loop, with this file's instruction set.
 void smooth(const uchar* const rows[3], uchar* out, int width)
 {
-    const uchar *a = rows[0], *b = rows[1], *c = rows[2];
-    const auto sum = [&](int x) { return a[x] + 2 * b[x] + c[x]; };
-    const auto rounded = [](int total) { return (uchar)((total + 8) >> 4); };
-    out[0] = rounded(3 * sum(0) + sum(std::min(1, width - 1)));
-    out[width - 1] = rounded(3 * sum(width - 1) + sum(std::max(width - 2, 0)));
-    for (int x = 1; x < width - 1; x++)
-        out[x] = rounded(sum(x - 1) + 2 * sum(x) + sum(x + 1));
+    const auto sum = [&](int x) { return rows[0][x] + 2 * rows[1][x] + rows[2][x]; };
+    const auto smoothed = [&](int x) {
+        return (uchar)((sum(std::max(x - 1, 0)) + 2 * sum(x) + sum(std::min(x + 1, width - 1)) + 8) >> 4);
+    };
+    const auto sums = [&](int x) {
+        return vx_load_expand(rows[0] + x) + vx_load_expand(rows[2] + x) + (vx_load_expand(rows[1] + x) << 1);
+    };
+    int x = 0;
+    for (; x < std::min(width, 1); x++)
+        out[x] = smoothed(x);
+    for (; x < width - SHORTS; x += SHORTS)
+        v_pack_store(out + x, (sums(x - 1) + sums(x + 1) + (sums(x) << 1) + vx_setall_u16(8)) >> 4);
+    for (; x < width; x++)
+        out[x] = smoothed(x);
 }
 
 inline v_int32 pixels(const uchar* p) { return v_reinterpret_as_s32(vx_load_expand_q(p)); }
@@ -58,7 +64,8 @@ inline v_int32 dotProduct(const v_int16& a, const v_int32& pairs)
 
 inline v_int32 samplesAt(const int* window, const v_int32& x, const v_int32& y)
 {
-    const v_int32 places = (y >> POSITION_BITS) * vx_setall_s32(WINDOW) + (x >> POSITION_BITS);
+    const v_int32 rows = (y >> (POSITION_BITS - WINDOW_BITS)) & vx_setall_s32(-WINDOW);
+    const v_int32 places = rows + (x >> POSITION_BITS);
     const v_int16 four = v_reinterpret_as_s16(v_lut(window, places));
     const v_int32 weightsX = weightsOf(x);
     const v_int32 upper = dotProduct((four << 8) >> 8, weightsX), lower = dotProduct(four >> 8, weightsX);
@@ -67,14 +74,14 @@ inline v_int32 samplesAt(const int* window, const v_int32& x, const v_int32& y)
     return (sample + vx_setall_s32(1 << (15 - SAMPLE_BITS))) >> (16 - SAMPLE_BITS);
 }
 
-void sample(const int* window, const PatchGrid& grid, short* samples)
+void sample(const int* window, const PatchGrid& grid, int rowStep, short* samples)
 {
     int columns[INTS];
     for (int i = 0; i < INTS; i++)
         columns[i] = i;
     const v_int32 column = vx_load(columns);
     const v_int32 x = column * vx_setall_s32(grid.column.x), y = column * vx_setall_s32(grid.column.y);
-    for (int r = 0; r < PATCH_ROWS; r++)
+    for (int r = 0; r < PATCH_ROWS; r += rowStep)
     {
         const Point row = grid.first + r * grid.row;
         for (int c = 0; c < PATCH_COLUMNS; c += 2 * INTS)
@@ -87,27 +94,22 @@ void sample(const int* window, const PatchGrid& grid, short* samples)
     }
 }
 
-template <int COUNT>
-int sumFirst(const short* samples, const short* const* weights, const short* roots, int* sums)
+int sum(const short* samples, const short* const* weights, const short* roots, int rowStep, int* sums)
 {
-    v_int32 products[COUNT], squares = vx_setzero_s32();
-    for (int k = 0; k < COUNT; k++)
-        products[k] = vx_setzero_s32();
-    for (int i = 0; i < PATCH_SAMPLES; i += SHORTS)
-    {
-        const v_int16 sample = vx_load(samples + i), root = v_mul_hi(sample, vx_load(roots + i));
-        squares += v_dotprod(root, root);
-        for (int k = 0; k < COUNT; k++)
-            products[k] += v_dotprod(sample, vx_load(weights[k] + i));
-    }
-    for (int k = 0; k < COUNT; k++)
+    v_int32 products[SUMS], squares = vx_setzero_s32();
+    for (v_int32& product : products)
+        product = vx_setzero_s32();
+    for (int r = 0; r < PATCH_ROWS; r += rowStep)
+        for (int i = r * PATCH_COLUMNS; i < (r + 1) * PATCH_COLUMNS; i += SHORTS)
+        {
+            const v_int16 sample = vx_load(samples + i), root = v_mul_hi(sample, vx_load(roots + i));
+            squares += v_dotprod(root, root);
+            for (int k = 0; k < SUMS; k++)
+                products[k] += v_dotprod(sample, vx_load(weights[k] + i));
+        }
+    for (int k = 0; k < SUMS; k++)
         sums[k] = v_reduce_sum(products[k]);
     return v_reduce_sum(squares);
-}
-
-int sum(const short* samples, const short* const* weights, bool all, const short* roots, int* sums)
-{
-    return all ? sumFirst<SUMS>(samples, weights, roots, sums) : sumFirst<1>(samples, weights, roots, sums);
 }
 
 void derive(const short* samples, short* x, short* y)
