@@ -12,6 +12,8 @@ const int FEATURES = 2000;
 const double SCALE = .5;  // Cauchy's, pixels
 const int FEWEST =
         16;  // matches that agree; images of other scenes have 9 at most (tools/evaluation, alignment)
+const double MOST_DEVIATION =
+        2;  // of a corner, pixels: what agrees is a part, such as a logo that both images hold
 const double LEAST_SHARE = .05;  // of all matches
 
 //! Refined matches, N x 2 each, CV_64F.
@@ -86,17 +88,17 @@ bool alignImages(InputArray reference, InputArray image, OutputArray transform, 
             agreed = agree;
         if (agree.rows < FEWEST || agree.rows < LEAST_SHARE * all.image.rows)
             continue;
+        const Square<PlanarProblem::Step> covariance = covarianceOf(problem, found);
+        const double right = second.cols - 1, bottom = second.rows - 1;
+        const Point2d corners[] = {{0, 0}, {right, 0}, {right, bottom}, {0, bottom}};
+        Mat deviations(4, 1, CV_64F);
+        for (int k = 0; k < 4; k++)
+            deviations.at<double>(k) = problem.deviation(found, covariance, corners[k]);
+        if (!checkRange(deviations, true, nullptr, 0, MOST_DEVIATION))
+            continue;
         Mat(problem.inPixels(found)).copyTo(transform);
         if (error.needed())
-        {
-            const Square<PlanarProblem::Step> covariance = covarianceOf(problem, found);
-            const double right = second.cols - 1, bottom = second.rows - 1;
-            const Point2d corners[] = {{0, 0}, {right, 0}, {right, bottom}, {0, bottom}};
-            Mat deviations(4, 1, CV_64F);
-            for (int k = 0; k < 4; k++)
-                deviations.at<double>(k) = problem.deviation(found, covariance, corners[k]);
             deviations.copyTo(error);
-        }
         if (matches.needed())
             agreed.copyTo(matches);
         return true;

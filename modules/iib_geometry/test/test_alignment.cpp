@@ -128,6 +128,16 @@ TEST(Alignment, refuses_images_of_other_scenes_and_without_points)
     EXPECT_FALSE(alignImages(Mat(), picture(3), transform));
 }
 
+TEST(Alignment, refuses_pictures_that_share_a_part_alone)
+{
+    Mat first = picture(11), second = picture(12), transform;
+    picture(13)(Rect(0, 0, 80, 80)).copyTo(first(Rect(10, 10, 80, 80)));
+    picture(13)(Rect(0, 0, 80, 80)).copyTo(second(Rect(10, 10, 80, 80)));
+    Mat matches;
+    EXPECT_FALSE(alignImages(first, second, transform, ALIGN_HOMOGRAPHY, noArray(), matches));
+    EXPECT_GE(matches.rows, 16) << "the part has enough of them";
+}
+
 TEST(Alignment, mistakes_are_told)
 {
     Mat transform;

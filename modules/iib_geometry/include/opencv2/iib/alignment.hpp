@@ -40,7 +40,8 @@ Cauchy's loss, cut off at three scales of half a pixel. The same input gives the
 @param matches N x 4, CV_32F: the matches that agree with the transform, x and y in the reference, x and y in the image,
     pixels; where the answer is false, those that agreed best
 @return false, with transform and error empty, if too few matches agree for the images to show the same, which are fewer
-    than 16 or than one in twenty; also for images without points
+    than 16 or than one in twenty, or if a corner's deviation is over 2 pixels, as where they share
+    nothing but a logo; also for images without points
 @throws cv::Exception for an unknown model, and as IIBDescriptorExtractor::compute for images */
 CV_EXPORTS_W bool alignImages(InputArray reference, InputArray image, OutputArray transform,
         int model = ALIGN_HOMOGRAPHY, OutputArray error = noArray(), OutputArray matches = noArray());
