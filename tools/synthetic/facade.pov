@@ -7,12 +7,13 @@
 #include "building.inc"
 #include "plants.inc"
 
-#declare Bay = 3.4;
-#declare Storey = 2.9;
+#declare Bay = Varied(3.4, 0.12);
+#declare Storey = Varied(2.9, 0.06);
 #declare Bays = 11;
 #declare Storeys = 6;
 #declare FrontAt = 17;
 #declare White = <0.80, 0.79, 0.76>;
+#declare Panel = <Varied(0.60, 0.3), Varied(0.57, 0.3), Varied(0.51, 0.3)>;
 
 #macro Washing(Width)
     cylinder { <0, 1.75, -0.9>, <Width, 1.75, -0.9>, 0.006 Surface(OBJECT, MetalTexture(0.5)) }
@@ -77,8 +78,8 @@
 
 // One bay of one storey: a panel with a window, or a balcony with a window and a door behind it.
 #macro BayFront(Index, Floor)
-    #local Tint = <0.60, 0.57, 0.51> * Any(0.85, 1.08);
-    #local Open = (mod(Index + int(Floor / 3), 3) = 1);
+    #local Tint = Panel * Any(0.85, 1.08);
+    #local Open = (mod(Index + int(Floor / 3) + Seed, 3) = 1);
     #local Wide = 1.7 + 0.7 * Open;
     #local Sill = 0.95 - 0.9 * Open;
     #local Left = (Bay - Wide) / 2;
@@ -154,10 +155,10 @@
     box { <-18, 0, FrontAt - 0.06>, <-18 + Bays * Bay, 1.2, FrontAt + 2>
         Surface(WALL, AshlarTexture(<0.38, 0.35, 0.33>, 7)) }
     Entrance(-8.5, "14") Entrance(1.7, "16") Entrance(11.9, "18")
-    Mast(-5.2, 11.5) Mast(4.6, 11.5) Mast(12.5, 11.5)
-    object { Tree(2.6, 1.7, <0.14, 0.27, 0.07>) translate <-11, 0, 13.6> }
-    object { Tree(1.8, 1.0, <0.25, 0.22, 0.05>) translate <6.6, 0, 13.8> }
-    object { Tree(2.2, 1.4, <0.12, 0.24, 0.09>) translate <14.5, 0, 14> }
+    Mast(Varied(-5.2, 0.4), 11.5) Mast(Varied(4.6, 0.4), 11.5) Mast(Varied(12.5, 0.2), 11.5)
+    object { Tree(2.6, 1.7, <0.14, 0.27, 0.07>) translate <Varied(-11, 0.3), 0, 13.6> }
+    object { Tree(1.8, 1.0, <0.25, 0.22, 0.05>) translate <Varied(6.6, 0.5), 0, 13.8> }
+    object { Tree(2.2, 1.4, <0.12, 0.24, 0.09>) translate <Varied(14.5, 0.2), 0, 14> }
     #for (I, 0, 13) object { Bush(Grown(0.35, 0.6), <Grown(0.1, 0.25), 0.26, 0.06>)
         translate <-14 + 2.1 * I + Grown(-0.6, 0.6), 0.1, 14.6> } #end
     #for (I, 0, 3)

@@ -78,9 +78,9 @@ def imu(seed):
     return "#timestamp [ns],w_x [rad s^-1],w_y,w_z,a_x [m s^-2],a_y,a_z\n" + "\n".join(rows) + "\n"
 
 
-def cameras(size):
+def cameras(scene, size):
     """COLMAP's cameras.txt, whose pixel centres lie at halves."""
-    matrix = intrinsics(SCENE, *size)
+    matrix = intrinsics(scene, *size)
     return ("# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n"
             f"1 PINHOLE {size[0]} {size[1]} {matrix[0, 0]:.9g} {matrix[1, 1]:.9g} "
             f"{matrix[0, 2] + 0.5:.9g} {matrix[1, 2] + 0.5:.9g}\n")
@@ -96,7 +96,7 @@ def plan(out, keyframes, queries, lights, size):
     """The tasks in the order of rendering; also writes the cameras, poses and IMU readings."""
     poses = walk(SCENES[SCENE].path, keyframes)
     names = [f"{k:04d}" for k in range(keyframes)]
-    write_text(out / "map" / "cameras.txt", cameras(size))
+    write_text(out / "map" / "cameras.txt", cameras(SCENE, size))
     write_text(out / "map" / "poses.txt", tum(names, poses))
     for name, pose, frame in zip(names, poses, range(keyframes)):
         yield Task(out / "map" / "images" / f"{name}.png", SCENE, IMAGE, MAP_LIGHT, pose, frame, [])
@@ -104,7 +104,7 @@ def plan(out, keyframes, queries, lights, size):
     poses = visit(times)
     names = [f"{time:09.6f}" for time in times]
     for light in lights:
-        write_text(out / light / "cameras.txt", cameras(size))
+        write_text(out / light / "cameras.txt", cameras(SCENE, size))
         write_text(out / light / "poses.txt", tum(names, poses))
         write_text(out / light / "imu.csv", imu(LIGHTS[light]))
     for k in spread(queries):

@@ -28,10 +28,10 @@ ATTEMPTS = 3  # POV-Ray 3.7 sometimes ends by a signal; the same scene then rend
 OUTPUT = {IMAGE: ["+FN8", "+A0.15", "+AM1", "+R2", "-J"], DEPTH: ["+FN16", "-A"], LABELS: ["+FN8", "-A"]}
 
 
-def povray(scene, mode, light, pose, size, output=None):
+def povray(scene, mode, light, pose, size, output=None, seed=0):
     """height x width x 3, BGR, 8U for a picture; height x width, 16U for depth and 8U for labels."""
     width, height = size
-    declared = dict(zip(("CamX", "CamY", "CamZ", "Yaw", "Pitch"), pose), Mode=mode, Light=LIGHTS[light],
+    declared = dict(zip(("CamX", "CamY", "CamZ", "Yaw", "Pitch"), pose), Mode=mode, Light=LIGHTS[light], Seed=seed,
                     Focal=intrinsics(scene, width, height)[0, 0])
     with tempfile.TemporaryDirectory() as folder:
         picture = os.path.join(folder, "frame.png")
@@ -91,13 +91,13 @@ def write_camera(path, scene, poses, size):
 
 # A file to be rendered, and where else it belongs: light moves nothing, so that depth and labels are of
 # a pose, not of a picture.
-Task = namedtuple("Task", "target scene mode light pose frame copies")
+Task = namedtuple("Task", "target scene mode light pose frame copies seed", defaults=[0])
 
 
 def run(task, size, quickly=False):
     if not task.target.exists():
         blurred = quickly and task.mode == IMAGE
-        rendered = povray(task.scene, task.mode, task.light, task.pose, size, ONE_RAY if blurred else None)
+        rendered = povray(task.scene, task.mode, task.light, task.pose, size, ONE_RAY if blurred else None, task.seed)
         if blurred:
             rendered = cv2.GaussianBlur(rendered, (0, 0), BLUR)
         if task.mode == IMAGE:

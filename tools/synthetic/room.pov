@@ -9,7 +9,7 @@
 #declare HalfWidth = 2.6;
 #declare Deep = 6.2;
 #declare High = 2.75;
-#declare RoomSeed = seed(41);
+#declare RoomSeed = seed(41 + 100 * Seed);
 #macro Any(From, To) (From + (To - From) * rand(RoomSeed)) #end
 #macro AnyTint(From, To) <Any(From, To), Any(From, To), Any(From, To)> #end
 
@@ -74,7 +74,7 @@
                 #local B = AnyTint(0.02, 0.5);
                 #local C = AnyTint(0.3, 0.95);
                 pigment {
-                    #switch (Kind)
+                    #switch (mod(Kind + Seed, 4))
                         #case (0) gradient y turbulence 0.25 scale 1.3 * Tall
                         translate -0.65 * Tall * y #break
                         #case (1) crackle scale 0.12 translate X #break
@@ -87,7 +87,7 @@
             })
         }
         rotate Any(-1.5, 1.5) * z
-        translate <X, Y, Deep>
+        translate <X, Y + Varied(0.12, 1) - 0.12, Deep>
     }
 #end
 

@@ -11,8 +11,19 @@
 #declare HalfStreet = 5.2;
 
 // A house on the left (Side -1) or right (Side 1), its near corner at Z.
-#macro House(Side, Z, Width, Floors, Columns, FloorHeight, Wall, Trim, Frame, Tint, Shutter, Name, Lit,
-    Setback)
+// The wall and the front of each house change with Seed.
+#macro House(Side, Z, Width, StatedFloors, StatedColumns, StatedHeight, StatedWall, Trim, Frame, Tint, Shutter, Name,
+    Lit, Setback)
+    #local Floors = max(2, VariedSteps(StatedFloors, 1));
+    #local Columns = max(2, VariedSteps(StatedColumns, 1));
+    #local FloorHeight = Varied(StatedHeight, 0.06);
+    #local Wall = StatedWall
+    #local Paint = <Varied(0.6, 0.4), Varied(0.5, 0.4), Varied(0.4, 0.4)>;
+    #switch (VariedSteps(-2, 1) * (Seed > 0))
+        #case (-1) #local Wall = BrickTexture(Paint * <0.9, 0.5, 0.4>, Z) #break
+        #case (-2) #local Wall = PlasterTexture(Paint * 1.2, Z) #break
+        #case (-3) #local Wall = AshlarTexture(Paint, Z) #break
+    #end
     union {
         Facade(Width, Floors, Columns, 3.3, FloorHeight, Wall, Trim, Frame, Shutter, Lit)
         Shop(Width, 3.3, Name, Wall, Tint, int(Lit + 0.65))

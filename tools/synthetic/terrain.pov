@@ -10,10 +10,10 @@
 #declare Side = 200;
 #declare Rise = 46;
 #declare Rough = function {
-    pigment { granite scale 1.1 translate <3.3, 1.7, 5.1> color_map { [0 rgb 0] [1 rgb 1] } } }
-#declare Folds = function { pigment { bozo scale 0.22 translate <8, 1, 2> color_map { [0 rgb 0] [1 rgb 1] } }
+    pigment { granite scale 1.1 translate <3.3, 1.7, 5.1> + SeedShift color_map { [0 rgb 0] [1 rgb 1] } } }
+#declare Folds = function { pigment { bozo scale 0.22 translate <8, 1, 2> + SeedShift color_map { [0 rgb 0] [1 rgb 1] } }
     }
-#declare Steps = function { pigment { wrinkles scale 0.07 translate 4.4 color_map { [0 rgb 0] [1 rgb 1] } } }
+#declare Steps = function { pigment { wrinkles scale 0.07 translate 4.4 + SeedShift color_map { [0 rgb 0] [1 rgb 1] } } }
 #declare Valley = function(u, v) {
     min(1, 0.9 * pow(min(1, max(0, abs(u - 0.5 - 0.02 * sin(9 * v - 0.4)) - 0.012) * 3.2),
         1.5) + 0.55 * pow(v, 3))
@@ -38,7 +38,7 @@
 
 #declare Grass = texture {
     pigment {
-        pigment_pattern { bozo turbulence 0.6 scale 5 }
+        pigment_pattern { bozo turbulence 0.6 scale 5 translate SeedShift }
         pigment_map {
             [0.3 granite scale 0.8
                 color_map { [0 rgb <0.05, 0.08, 0.02>] [0.5 rgb <0.16, 0.23, 0.06>]
@@ -52,7 +52,7 @@
 }
 #declare Cliff = texture {
     pigment {
-        pigment_pattern { gradient y turbulence 0.25 octaves 4 scale <6, 2.3, 6> rotate 8 * z }
+        pigment_pattern { gradient y turbulence 0.25 octaves 4 translate SeedShift scale <6, 2.3, 6> rotate 8 * z }
         pigment_map {
             [0 granite scale 2 color_map { [0 rgb <0.16, 0.14, 0.12>] [1 rgb <0.50, 0.46, 0.40>] }]
             [0.5 granite scale 1 color_map { [0 rgb <0.30, 0.25, 0.20>] [1 rgb <0.62, 0.56, 0.47>] }]
@@ -63,7 +63,7 @@
 }
 #declare Gravel = texture {
     pigment {
-        crackle solid scale 0.09
+        crackle solid scale 0.09 translate SeedShift
         color_map { [0 rgb <0.20, 0.16, 0.12>] [0.5 rgb <0.45, 0.38, 0.29>] [1 rgb <0.65, 0.58, 0.48>] }
     }
     normal { granite 0.8 scale 0.2 }

@@ -20,6 +20,7 @@ import numpy as np
 HERE = pathlib.Path(__file__).resolve().parent
 import render
 import scenes
+import views
 
 SIZE = (160, 120)
 WALL, WINDOW, LAMP = 3, 4, 8
@@ -107,6 +108,26 @@ class Scenes(unittest.TestCase):
             np.testing.assert_array_equal(depth == 0, labels == 0, name)
             self.assertGreater(len(np.unique(labels)), 8)
             self.assertGreater(len(np.unique(depth)), 300)
+
+
+    def test_a_seed_makes_another_instance_and_always_the_same(self):
+        for name in ("street", "room", "facade", "terrain"):
+            still = scenes.SCENES[name].still
+            first, second, again = (render.povray(name, render.LABELS, "noon", still, (80, 60), seed=seed)
+                                    for seed in (0, 1, 1))
+            np.testing.assert_array_equal(second, again, name)
+            self.assertGreater((first != second).mean(), 0.02, name)
+
+    def test_views_lie_near_the_walk_in_folders_that_the_evaluation_reads(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder)
+            tasks = list(views.plan(out, ["room"], [1, 2]))
+            self.assertEqual(len(tasks), 2 * (views.MAP_VIEWS + views.VIEWS * len(views.LIGHTS)))
+            walked = scenes.walk(scenes.SCENES["room"].path, 100)
+            for task in tasks:
+                self.assertLess(np.abs(walked[:, :3] - task.pose[:3]).max(axis=1).min(), 0.41)
+                self.assertTrue((task.target.parents[1] / "poses.txt").exists())
+            self.assertNotEqual(tasks[-1].pose.tolist(), tasks[len(tasks) // 2 - 1].pose.tolist())
 
 
 class Command(unittest.TestCase):

@@ -1,0 +1,62 @@
+#!/usr/bin/python3
+"""Renders views to judge poses on: other instances of each kind of scene, noon against other lights. See README.md."""
+
+import argparse
+import os
+import pathlib
+import shutil
+import sys
+
+import numpy as np
+
+from localization import MAP_LIGHT, SIZE, cameras, tum
+from render import IMAGE, Task, render_all, run_quickly, write_text
+from scenes import SCENES, walk
+
+LIGHTS = ["night", "dusk", "winter"]
+MAP_VIEWS, VIEWS = 5, 3  # pictures at noon along the walk, and of each other light beside it
+# Of the places of the other lights around the walk: metres to the side and upward, degrees of yaw and pitch.
+BESIDE = [0.4, 0.1, 5, 2]
+
+
+def beside(scene, light, seed):
+    """VIEWS x 5: poses near the walk, others for each light and seed."""
+    random = np.random.default_rng([seed, LIGHTS.index(light)])
+    poses = walk(SCENES[scene].path, 100)[np.sort(random.choice(100, VIEWS, replace=False))]
+    poses[:, [0, 1, 3, 4]] += random.uniform(-1, 1, (VIEWS, 4)) * BESIDE
+    return poses
+
+
+def plan(out, scenes, seeds):
+    for seed in seeds:
+        for scene in scenes:
+            views = {"map": (MAP_LIGHT, walk(SCENES[scene].path, MAP_VIEWS))}
+            views.update((light, (light, beside(scene, light, seed))) for light in LIGHTS)
+            for name, (light, poses) in views.items():
+                folder = out / f"{scene}_{seed}" / name
+                names = [f"{k:04d}" for k in range(len(poses))]
+                write_text(folder / "cameras.txt", cameras(scene, SIZE))
+                write_text(folder / "poses.txt", tum(names, poses))
+                for k, pose in enumerate(poses):
+                    yield Task(folder / "images" / f"{names[k]}.png", scene, IMAGE, light, pose, k, [], seed)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("out", type=pathlib.Path, help="folder to render into; what is there is kept")
+    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES), metavar="SCENE",
+                        help=f"some of: {', '.join(SCENES)} (all)")
+    parser.add_argument("--seed", nargs="+", type=int, default=[1, 2, 3],
+                        help="of the instances; 0 is the scene of the other programs (1 2 3)")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="renderings at a time")
+    options = parser.parse_args()
+    if shutil.which("povray") is None:
+        sys.exit("povray is not installed: apt-get install povray")
+    render_all(list(plan(options.out, options.scenes, options.seed)), SIZE, options.jobs, run_quickly)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (RuntimeError, OSError) as error:
+        sys.exit(str(error))
