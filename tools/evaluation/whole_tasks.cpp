@@ -10,6 +10,8 @@
 #include "described_images.hpp"
 #include "experiments.hpp"
 #include "opencv2/calib3d.hpp"
+#include "opencv2/iib.hpp"
+#include "opencv2/iib/relative_pose.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "results.hpp"
 #include "tasks.hpp"
@@ -25,7 +27,10 @@ const double FAILED = std::numeric_limits<double>::infinity();
 struct Points
 {
     std::vector<cv::Point2d> reference, target;
+    double scale;  // of findRelativePose
 };
+
+const double DETECTED = .5, REFINED = .25;  // scales, pixels
 
 //! What an estimate from matches errs, and how many of them agree with it.
 struct Outcome
@@ -61,15 +66,27 @@ std::vector<cv::DMatch> inBoth(const std::vector<cv::DMatch>& a, const std::vect
     return kept;
 }
 
-//! A choice of matches and the estimator's threshold, as the table names them.
+//! A choice of matches and MAGSAC's threshold, as the table names them.
 std::string ruleName(const std::string& choice, double threshold)
 {
     return choice + cv::format(" at %g px", threshold);
 }
 
+//! The recommended chain is judged by its own rule of matching alone, its competitors by the best of three.
+bool isOwnRule(const std::string& choice, const Detector& detector)
+{
+    return choice == "both" || detector.name.compare(0, 7, "Hessian") != 0;
+}
+
+//! Refinement and findRelativePose are judged with what a detector brings, and with what createRecommended describes with.
+bool isJudgedWhole(const std::string& descriptor, const Detector& detector)
+{
+    return descriptor == detector.descriptor || descriptor == "IIB UNIVERSAL";
+}
+
 Points pointsOf(const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target)
 {
-    Points points;
+    Points points = {{}, {}, DETECTED};
     for (const cv::DMatch& m : matches)
     {
         points.reference.push_back(reference.keypoints[m.queryIdx].pt);
@@ -87,10 +104,46 @@ std::vector<cv::Point2d> normalizedPoints(const std::vector<cv::Point2d>& points
     return rays;
 }
 
+//! The same with the target's points refined.
+Points refined(const cv::Mat& referenceImage, const cv::Mat& targetImage,
+        const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target)
+{
+    Points points = {{}, {}, REFINED};
+    if (matches.empty())
+        return points;
+    std::vector<cv::KeyPoint> first = reference.keypoints, second = target.keypoints;
+    for (std::vector<cv::KeyPoint>* keypoints : {&first, &second})
+        for (cv::KeyPoint& keypoint : *keypoints)
+            keypoint.angle = -1;  // described upright
+    cv::Mat moved1, moved2;
+    cv::iib::refineMatches(referenceImage, first, targetImage, second, matches, moved1, moved2);
+    moved1.reshape(2).convertTo(points.reference, CV_64F);
+    moved2.reshape(2).convertTo(points.target, CV_64F);
+    return points;
+}
+
 double degrees(double cosine) { return std::acos(std::max(-1., std::min(1., cosine))) * 180 / CV_PI; }
 
 //! The larger one of the errors in degrees of rotation and of the direction of the translation, its sign apart.
-Outcome poseError(const Points& points, const ViewPair& pair, double threshold)
+double poseError(const cv::Mat& rotation, const cv::Mat& translation, const ViewPair& pair)
+{
+    const cv::Matx33d rest = cv::Matx33d(rotation).t() * pair.rotation;
+    const cv::Vec3d found(translation);
+    const double direction =
+            degrees(std::abs(found.dot(pair.translation)) / cv::norm(found) / cv::norm(pair.translation));
+    return std::max(degrees((cv::trace(rest) - 1) / 2), direction);
+}
+
+Outcome byFindRelativePose(const Points& points, const ViewPair& pair)
+{
+    cv::Mat rotation, translation, mask;
+    if (!cv::iib::findRelativePose(points.reference, points.target, pair.referenceCamera, pair.targetCamera,
+                rotation, translation, mask, points.scale))
+        return {FAILED, 0};
+    return {poseError(rotation, translation, pair), cv::countNonZero(mask)};
+}
+
+Outcome byMagsac(const Points& points, const ViewPair& pair, double threshold)
 {
     if (points.reference.size() < 6)
         return {FAILED, 0};
@@ -104,11 +157,7 @@ Outcome poseError(const Points& points, const ViewPair& pair, double threshold)
         return {FAILED, 0};
     const int inliers = cv::countNonZero(mask);
     cv::recoverPose(essential, a, b, one, rotation, translation, mask);
-    const cv::Matx33d rest = cv::Matx33d(rotation).t() * pair.rotation;
-    const cv::Vec3d found(translation.at<double>(0), translation.at<double>(1), translation.at<double>(2));
-    const double direction =
-            degrees(std::abs(found.dot(pair.translation)) / cv::norm(found) / cv::norm(pair.translation));
-    return {std::max(degrees((cv::trace(rest) - 1) / 2), direction), inliers};
+    return {poseError(rotation, translation, pair), inliers};
 }
 
 void evaluatePair(const ViewPair& pair, const std::vector<Detector>& detectors, DescribedImages& described,
@@ -129,12 +178,23 @@ void evaluatePair(const ViewPair& pair, const std::vector<Detector>& detectors, 
                     {"ratio", ratio}, {"mutual", mutual}, {"both", inBoth(ratio, mutual)}};
             for (const auto& choice : choices)
             {
-                const Points points = pointsOf(choice.second, r, t);
-                for (double threshold : THRESHOLDS)
+                if (!isOwnRule(choice.first, detector))
+                    continue;
+                const auto tell = [&](const std::string& rule, const Outcome& o) {
+                    table.append({"pose", pair.set, pair.sequence, pair.target, detector.name, r.name, rule,
+                            text(o.error), std::to_string(o.inliers)});
+                };
+                std::vector<std::pair<std::string, Points>> kinds = {
+                        {choice.first, pointsOf(choice.second, r, t)}};
+                if (isJudgedWhole(r.name, detector))
+                    kinds.push_back({choice.first + std::string(" refined"),
+                            refined(reference, target, choice.second, r, t)});
+                for (const auto& kind : kinds)
                 {
-                    const Outcome o = poseError(points, pair, threshold);
-                    table.append({"pose", pair.set, pair.sequence, pair.target, detector.name, r.name,
-                            ruleName(choice.first, threshold), text(o.error), std::to_string(o.inliers)});
+                    if (kinds.size() > 1)
+                        tell(kind.first + " by findRelativePose", byFindRelativePose(kind.second, pair));
+                    for (double threshold : THRESHOLDS)
+                        tell(ruleName(kind.first, threshold), byMagsac(kind.second, pair, threshold));
                 }
             }
         }
