@@ -22,8 +22,7 @@ nb::tuple refineMatches(const Array& image1, const Array& keypoints1, const Arra
         cv::iib::refineMatches(
                 view1, first, view2, second, matches, points1, points2, covariances, similarities);
     }
-    return nb::make_tuple(
-            toNumpy(points1), toNumpy(points2), toNumpy(covariances), toNumpy(similarities.reshape(1, 1)));
+    return nb::make_tuple(toNumpy(points1), toNumpy(points2), toNumpy(covariances), toNumpy(similarities));
 }
 
 }  // namespace
