@@ -1,5 +1,6 @@
 # The modules' programs of tests, and opencv_perf_iib, on OpenCV's own test framework.
-find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc features2d flann calib3d imgcodecs videoio highgui)
+find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc features2d flann calib3d imgcodecs videoio highgui
+  OPTIONAL_COMPONENTS video)
 include(IIBOpenCVTs)
 
 # The program opencv_KIND_NAME of modules/NAME/KIND.
@@ -14,6 +15,10 @@ function(iib_add_test_program kind name)
 endfunction()
 iib_add_test_program(test iib)
 iib_add_test_program(perf iib)
+if(OpenCV_video_FOUND)  # has a peer of the refinement
+  target_link_libraries(opencv_perf_iib PRIVATE opencv_video)
+  target_compile_definitions(opencv_perf_iib PRIVATE IIB_PERF_VIDEO)
+endif()
 iib_add_test_program(test iib_index)
 iib_add_test_program(test iib_geometry)
 

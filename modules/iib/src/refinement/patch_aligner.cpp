@@ -9,13 +9,13 @@ namespace iib {
 
 namespace {
 
-const double SIGMA = 7;            //!< of the weights, in units of the patch
+const double SIGMA = 8;            //!< of the weights, in units of the patch
 const double UNITS_OF_PLACE = 16;  //!< of PatchWeights::x and y
 const int COARSE_ROW_STEP = 2;
 const int COARSE_STEPS = 6, MOST_STEPS = 12;  //!< all, and those that may look at some rows alone
 const double DEFORMATION_MARGIN =
         4;  //!< pixels that a patch may reach farther than where it starts, besides its move
-const double LAST_COARSE_STEP = .1,
+const double LAST_COARSE_STEP = .2,
              LAST_STEP = .02;       //!< in units: no step of the same kind follows one that is shorter
 const double LEAST_DEVIATION = .5;  //!< normalized grey levels: without contrast there is nothing to match
 const double LEAST_SIMILARITY = .5;

@@ -38,7 +38,7 @@ RefinementScene::RefinementScene(int seed)
     Mat fine, grain;
     resize(scene(SIZE * 2, seed), fine, SIZE * FINE, 0, 0, INTER_CUBIC);
     resize(texture(SIZE * 2, CV_8U, seed), grain, SIZE * FINE, 0, 0, INTER_CUBIC);
-    addWeighted(fine, .6, grain, .3, 20, fine, CV_32F);
+    addWeighted(fine, .8, grain, .4, 0, fine, CV_32F);
     GaussianBlur(fine, fine, Size(), 2);
     images[0] = noisy(photographed(fine), 2 * seed + 1);
 

@@ -55,7 +55,7 @@ TEST(IIB_RefinementAccuracy, errors_bias_and_covariances)
     EXPECT_GT(matches, 800);
     EXPECT_GT(n, .9 * matches);
     EXPECT_GT(median(plain), .35);
-    EXPECT_LT(median(errors), .055);
+    EXPECT_LT(median(errors), .04);
     EXPECT_LT(std::abs(median(x)), .01);
     EXPECT_LT(std::abs(median(y)), .01);
     EXPECT_GT(inside[0] / n, .30);
