@@ -51,13 +51,13 @@ struct Scene
         for (int i = 0; i < count; i++)
             keypoints.push_back(KeyPoint((float)rng.uniform(32, 1248), (float)rng.uniform(32, 688), 31.f,
                     rng.uniform(0.f, 360.f)));
-        setNumThreads(1);
     }
 
     void describe(const Ptr<Feature2D>& descriptor) { descriptor->compute(image, keypoints, descriptors); }
 
     Mat image, descriptors;
     std::vector<KeyPoint> keypoints;
+    const Threads one{1};
 };
 
 typedef perf::TestBaseWithParam<tuple<Descriptor, int>> IIB_Compute;  // descriptor, keypoints

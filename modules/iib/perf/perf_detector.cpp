@@ -44,7 +44,7 @@ PERF_TEST_P(IIB_Detect, hd, Detector::all())
     GaussianBlur(image, image, Size(5, 5), 1.);
     const Ptr<Feature2D> detector = createDetector(GetParam());
     std::vector<KeyPoint> keypoints;
-    setNumThreads(1);
+    const Threads one(1);
     TEST_CYCLE() detector->detect(image, keypoints);
     SANITY_CHECK_NOTHING();
 }

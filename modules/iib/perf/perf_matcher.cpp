@@ -65,7 +65,7 @@ PERF_TEST_P(IIB_Match, match_10000, testing::Combine(Method::all(), testing::Boo
 {
     const Pair& pair = Pair::get();
     const Ptr<DescriptorMatcher> matcher = createMatcher(get<0>(GetParam()), pair.levels, get<1>(GetParam()));
-    setNumThreads(get<2>(GetParam()));
+    const Threads threads(get<2>(GetParam()));
     std::vector<DMatch> matches;
     declare.time(60);
     TEST_CYCLE() matcher->match(pair.queries, pair.trains, matches);
@@ -87,7 +87,7 @@ PERF_TEST_P(
     }
     const Ptr<DescriptorMatcher> matcher =
             createMatcher(get<0>(GetParam()), Pair::get().levels, get<1>(GetParam()));
-    setNumThreads(1);
+    const Threads one(1);
     std::vector<DMatch> matches;
     TEST_CYCLE() matcher->match(queries, trains, matches);
     SANITY_CHECK_NOTHING();
@@ -102,7 +102,7 @@ PERF_TEST_P(IIB_MatchTwo, two_nearest_with_ratio,
     const Ptr<DescriptorMatcher> matcher = createMatcher(GetParam(), pair.levels, false);
     if (GetParam() != BRUTE_FORCE)
         matcher.dynamicCast<HierarchicalMatcher>()->setMaxRatio(0.8f);
-    setNumThreads(1);
+    const Threads one(1);
     std::vector<std::vector<DMatch>> matches;
     declare.time(60);
     TEST_CYCLE() matcher->knnMatch(pair.queries, pair.trains, matches, 2);
@@ -120,7 +120,7 @@ PERF_TEST_P(IIB_MatchShort, match_10000,
     const Mat trains = Pair::get().trains.colRange(0, bytes).clone();
     const Ptr<DescriptorMatcher> matcher =
             createMatcher(get<0>(GetParam()), std::vector<int>(1, bytes), false);
-    setNumThreads(1);
+    const Threads one(1);
     std::vector<DMatch> matches;
     declare.time(60);
     TEST_CYCLE() matcher->match(queries, trains, matches);
@@ -135,7 +135,7 @@ PERF_TEST(IIB_MatchMany, ten_against_a_million)
     randu(queries, 0, 256);
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(Pair::get().levels);
     matcher->add(trains);
-    setNumThreads(1);
+    const Threads one(1);
     std::vector<DMatch> matches;
     TEST_CYCLE() matcher->match(queries, matches);
     SANITY_CHECK_NOTHING();

@@ -11,6 +11,14 @@
 namespace opencv_test {
 using namespace cv::iib;
 using namespace perf;
+
+//! So many threads while the object lives.
+struct Threads
+{
+    const int before;
+    explicit Threads(int count) : before(getNumThreads()) { setNumThreads(count); }
+    ~Threads() { setNumThreads(before); }
+};
 }  // namespace opencv_test
 
 #endif
