@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "grey.hpp"
+#include "image_input.hpp"
 
 #include "grey.simd.hpp"
 #include "common/grey.simd_declarations.hpp"

@@ -4,8 +4,6 @@
 
 #include "image_input.hpp"
 
-#include "grey.hpp"
-
 namespace cv {
 namespace iib {
 

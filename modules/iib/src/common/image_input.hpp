@@ -18,6 +18,10 @@ void checkPixels(const Mat& m, const String& what);
 //! Throws unless the image is 8U, 16U or 32F with 1, 3 or 4 channels and finite.
 void checkImage(const Mat& image);
 
+/** The grey of a BGR or BGRA image of 8U or 16U: (3735 B + 19235 G + 9798 R + 2^14) >> 15, as cvtColor's in OpenCV 4.6. Not
+ cvtColor itself, whose bits versions and hardware layers (HAL) change. */
+Mat greyOf(const Mat& image);
+
 /** An image as a grey map. 8U and 16U stay what they are, those in colour by greyOf(); 32F is cut into 65535 steps between its minimum and its
  maximum, so that a gain and an offset change nothing. */
 Mat integerMap(const Mat& image);

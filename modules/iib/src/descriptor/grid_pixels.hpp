@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "channels.hpp"
+#include "bands.hpp"
 #include "keypoint_batches.hpp"
 #include "workspace.hpp"
 

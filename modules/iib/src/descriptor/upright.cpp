@@ -4,7 +4,7 @@
 
 #include "upright.hpp"
 
-#include "columns.hpp"
+#include "bands.hpp"
 #include "encode.hpp"
 
 namespace cv {
@@ -12,70 +12,19 @@ namespace iib {
 
 namespace {
 
-//! The last rows of an integral image of a group of channels, from the top of a rectangle of the image to its bottom.
-template <typename T, typename Sum> class IntegralBand
+//! Whether sums down the columns take less time than integral images: where cells are narrow, and keypoints are few.
+bool columnsAreFaster(const DescriptorPlan& plan, const std::vector<Channel>& channels,
+        const KeyPointBatch& batch, double side)
 {
-public:
-    //! @param channels 1 to GROUP_CHANNELS; they, the kernels and the memory outlive the band.
-    //! @param rows how many rows, the newest included, a reader looks at.
-    IntegralBand(const std::vector<Channel>& channels, Rect area, int rows, const DescriptorKernels& all,
-            ScratchMemory& rowMemory, ScratchMemory& ringMemory)
-        : channelRows(channels, area, maxGradient(channels), all.pixels(T()).rows, rowMemory),
-          ring(area.tl(), rows, ((size_t)area.width + 1 + ROW_PADDING) * GROUP_CHANNELS, GROUP_CHANNELS,
-                  ringMemory),
-          width(area.width), kernels(all.integral(T(), Sum())),
-          longestPart((int)std::sqrt((double)std::numeric_limits<Sum>::max() /
-                                     maxValue(channels.data(), (int)channels.size(), maxGradient(channels))))
-    {
-    }
-
-    //! Adds the image's rows up to and without y, area.y <= y <= area.y + area.height.
-    void advance(int y)
-    {
-        ring.advance(y, [&](int row, const Sum* above, Sum* out) {
-            kernels.sumRow(channelRows.compute(row), width, above, out);
-        });
-    }
-
-    //! Sums over n x n cells, each of which a Sum must hold.
-    void cells(const CellEdges& edges, int n, CellGrid<Sum>& sums) const
-    {
-        kernels.cells(ring.rows(), edges.x, edges.y, n, sums);
-    }
-
-    //! Sums over larger cells: those over parts of them are added up.
-    void cells(const CellEdges& edges, int n, CellGrid<double>& sums) const
-    {
-        sums.create(n);
-        for (int r = 0; r < n; r++)
-            for (int c = 0; c < n; c++)
-            {
-                double* const sum = sums.cell(r, c);
-                std::fill_n(sum, GROUP_CHANNELS, 0.);
-                for (int y = edges.y[r]; y < edges.y[r + 1]; y += longestPart)
-                {
-                    const Sum *const top = ring.row(y), *const bottom = ring.row(
-                                                                std::min(y + longestPart, edges.y[r + 1]));
-                    for (int x = edges.x[c]; x < edges.x[c + 1]; x += longestPart)
-                    {
-                        const size_t left = at(x), right = at(std::min(x + longestPart, edges.x[c + 1]));
-                        for (int i = 0; i < GROUP_CHANNELS; i++)
-                            sum[i] += (Sum)(bottom[right + i] - bottom[left + i] - top[right + i] +
-                                            top[left + i]);
-                    }
-                }
-            }
-    }
-
-private:
-    size_t at(int x) const { return (size_t)(x - ring.rows().origin.x) * GROUP_CHANNELS; }
-
-    ChannelRows<T> channelRows;
-    RowRing<Sum> ring;
-    const int width;
-    const IntegralKernels<T, Sum>& kernels;
-    const int longestPart;  //!< a Sum holds the sums over as many rows of as many pixels
-};
+    const double pixelsOfKeyPoint = 256;  // so many make up for the longer time that a keypoint's cells take
+    bool ofImage = maxGradient(channels) > 0;
+    for (const Channel& c : channels)
+        ofImage = ofImage && c.kind != 0;
+    const int n = plan.cellsInRow();
+    // 7 * (64.f / 7), the region of FAST's keypoints, is a little more than 64
+    return plan.kernels.columnCells && ofImage && n % 8 == 0 && side <= NARROW_CELL * n * 1.000001 &&
+           pixelsOfKeyPoint * (double)batch.keypoints.size() <= (double)batch.area.width * batch.area.height;
+}
 
 //! By sums over cells that a Band makes.
 template <typename Band, typename Sum>

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/test_images.hpp"
-#include "../../src/common/grey.hpp"
+#include "../../src/common/image_input.hpp"
 
 #include <thread>
 

@@ -4,7 +4,7 @@
 
 #include "describe.hpp"
 
-#include "../channels.hpp"
+#include "../bands.hpp"
 
 namespace cv {
 namespace iib {

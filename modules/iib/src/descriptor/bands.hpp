@@ -1,0 +1,155 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#pragma once
+
+#include "channels.hpp"
+
+namespace cv {
+namespace iib {
+
+/* Bands: the last rows of what is made of an image's channels, as much as fits the cache. */
+
+/** Rows of sums that are made one after another, each from the one above it, in a ring that keeps the last of them. The ring
+ stays in the cache while the keypoints that it holds are described. */
+template <typename Sum> class RowRing
+{
+public:
+    /** @param origin the first row, which is all zeros, and the first column behind the zeros at its left.
+     @param count rows that a reader looks at, the newest included.
+     @param values in a row, of which the first `zeros` are always 0. What follows them begins on a cache line. */
+    RowRing(Point origin, int count, size_t values, size_t zeros, ScratchMemory& memory) : newest(origin.y)
+    {
+        const size_t inLine = CACHE_LINE / sizeof(Sum);
+        // An odd number of cache lines: with an even one the corners of a column would share few cache sets.
+        view.step = ((values + inLine - 1) / inLine | 1) * inLine;
+        view.count = count;
+        view.origin = origin;
+        begin = memory.get<Sum>(count * view.step + inLine) + inLine - zeros;
+        view.data = begin;
+        std::fill(row(newest), row(newest) + view.step, (Sum)0);
+        for (int i = 0; i < count; i++)
+            std::fill(row(newest + i), row(newest + i) + zeros, (Sum)0);
+    }
+
+    //! Makes the rows after the newest one, up to row `last`: makeRow(y, row y, row y + 1) makes the latter.
+    template <typename MakeRow> void advance(int last, const MakeRow& makeRow)
+    {
+        for (; newest < last; newest++)
+            makeRow(newest, row(newest), row(newest + 1));
+    }
+
+    const RingRows<Sum>& rows() const { return view; }
+    const Sum* row(int y) const { return begin + (size_t)((y - view.origin.y) % view.count) * view.step; }
+    //! The first row at hand.
+    int oldest() const { return std::max(newest - view.count + 1, view.origin.y); }
+
+private:
+    Sum* row(int y) { return const_cast<Sum*>(static_cast<const RowRing*>(this)->row(y)); }
+
+    int newest;
+    Sum* begin;
+    RingRows<Sum> view;
+};
+
+//! The last rows of an integral image of a group of channels, from the top of a rectangle of the image to its bottom.
+template <typename T, typename Sum> class IntegralBand
+{
+public:
+    //! @param channels 1 to GROUP_CHANNELS; they, the kernels and the memory outlive the band.
+    //! @param rows how many rows, the newest included, a reader looks at.
+    IntegralBand(const std::vector<Channel>& channels, Rect area, int rows, const DescriptorKernels& all,
+            ScratchMemory& rowMemory, ScratchMemory& ringMemory)
+        : channelRows(channels, area, maxGradient(channels), all.pixels(T()).rows, rowMemory),
+          ring(area.tl(), rows, ((size_t)area.width + 1 + ROW_PADDING) * GROUP_CHANNELS, GROUP_CHANNELS,
+                  ringMemory),
+          width(area.width), kernels(all.integral(T(), Sum())),
+          longestPart((int)std::sqrt((double)std::numeric_limits<Sum>::max() /
+                                     maxValue(channels.data(), (int)channels.size(), maxGradient(channels))))
+    {
+    }
+
+    //! Adds the image's rows up to and without y, area.y <= y <= area.y + area.height.
+    void advance(int y)
+    {
+        ring.advance(y, [&](int row, const Sum* above, Sum* out) {
+            kernels.sumRow(channelRows.compute(row), width, above, out);
+        });
+    }
+
+    //! Sums over n x n cells, each of which a Sum must hold.
+    void cells(const CellEdges& edges, int n, CellGrid<Sum>& sums) const
+    {
+        kernels.cells(ring.rows(), edges.x, edges.y, n, sums);
+    }
+
+    //! Sums over larger cells: those over parts of them are added up.
+    void cells(const CellEdges& edges, int n, CellGrid<double>& sums) const
+    {
+        sums.create(n);
+        for (int r = 0; r < n; r++)
+            for (int c = 0; c < n; c++)
+            {
+                double* const sum = sums.cell(r, c);
+                std::fill_n(sum, GROUP_CHANNELS, 0.);
+                for (int y = edges.y[r]; y < edges.y[r + 1]; y += longestPart)
+                {
+                    const Sum *const top = ring.row(y), *const bottom = ring.row(
+                                                                std::min(y + longestPart, edges.y[r + 1]));
+                    for (int x = edges.x[c]; x < edges.x[c + 1]; x += longestPart)
+                    {
+                        const size_t left = at(x), right = at(std::min(x + longestPart, edges.x[c + 1]));
+                        for (int i = 0; i < GROUP_CHANNELS; i++)
+                            sum[i] += (Sum)(bottom[right + i] - bottom[left + i] - top[right + i] +
+                                            top[left + i]);
+                    }
+                }
+            }
+    }
+
+private:
+    size_t at(int x) const { return (size_t)(x - ring.rows().origin.x) * GROUP_CHANNELS; }
+
+    ChannelRows<T> channelRows;
+    RowRing<Sum> ring;
+    const int width;
+    const IntegralKernels<T, Sum>& kernels;
+    const int longestPart;  //!< side of the largest square whose sum surely fits a Sum
+};
+
+/** Sums down the columns of the last rows of an image's channels. They are cheaper to make than integral images, and to add
+ up where cells are narrow. */
+class ColumnBand
+{
+public:
+    //! @param channels 1 to GROUP_CHANNELS of the image; they, the kernels and the memory outlive the band.
+    //! @param rows how many rows, the newest included, a reader looks at.
+    ColumnBand(const std::vector<Channel>& channels, Rect area, int rows, const DescriptorKernels& kernels_,
+            ScratchMemory& rowMemory, ScratchMemory& ringMemory)
+        : channelRows(channels, area, maxGradient(channels), kernels_.pixels(short()).rows, rowMemory),
+          ring(area.tl(), rows, channelRows.rowSize() + ROW_PADDING, 0, ringMemory), kernels(kernels_)
+    {
+    }
+
+    //! Adds the image's rows up to and without y, area.y <= y <= area.y + area.height.
+    void advance(int y)
+    {
+        ring.advance(y,
+                [&](int row, const short* above, short* out) { channelRows.compute(row, out, above - out); });
+    }
+
+    //! Sums over n x n cells.
+    void cells(const CellEdges& edges, int n, CellGrid<ushort>& sums) const
+    {
+        kernels.columnCells(ring.rows(), channelRows.places(), edges.x, edges.y, n, sums);
+    }
+
+private:
+    ChannelRows<short> channelRows;
+    RowRing<short> ring;
+    const DescriptorKernels& kernels;
+};
+
+}  // namespace iib
+}  // namespace cv
