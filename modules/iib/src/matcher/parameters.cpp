@@ -64,7 +64,8 @@ Mat checkedDescriptors(const Mat& descriptors, int width, bool byFirstCodes)
         return Mat(0, width, CV_8U);
     if (descriptors.dims != 2 || descriptors.type() != CV_8U)
         CV_Error(Error::StsUnsupportedFormat,
-                "Descriptors have to be a matrix of type CV_8U, a row a descriptor");
+                "Descriptors have to be a matrix of type CV_8U (uint8), a row a descriptor, not " +
+                        typeToString(descriptors.type()) + "; for floats, as of SIFT, take BFMatcher");
     if (descriptors.cols != width)
         CV_Error_(Error::StsUnmatchedSizes,
                 ("Descriptors have %d columns, but %s %d: %s", descriptors.cols,

@@ -24,7 +24,8 @@ Mat preparedImage(InputArray image, int number)
 {
     const Mat pixels = image.getMat();
     if (pixels.empty())
-        CV_Error(Error::StsBadArg, format("image %d is empty, but there are matches", number));
+        CV_Error(Error::StsBadArg,
+                format("image %d is empty, but there are matches: did imread find the file?", number));
     checkImage(pixels);
     return smoothedForAlignment(normalizeLocally(integerMap(pixels), NORMALIZATION_SIGMA));
 }

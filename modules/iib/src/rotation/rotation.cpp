@@ -16,8 +16,8 @@ namespace {
 static constexpr int MAX_VOTES = 200000;  //!< more pairs of matches would not change estimateRotation()
 static constexpr int TRIED_POINTS = 200;  //!< of each image, the strongest
 static constexpr float UPRIGHT = -1;
-static constexpr double UPRIGHT_WITHIN = 3;  //!< degrees that upright regions bear
-// All multiples of 30 are differences of one of each, and bits bear half of that.
+static constexpr double UPRIGHT_WITHIN = 3;  //!< degrees; upright regions match up to there
+// Every multiple of 30 degrees is a second angle less a first one; descriptors still match 15 degrees off.
 const float FIRST_ANGLES[] = {UPRIGHT, 30, 60}, SECOND_ANGLES[] = {UPRIGHT, 90, 180, 270};
 static constexpr float ANGLE_TOLERANCE = 18;      //!< degrees
 static constexpr double LENGTH_TOLERANCE = 1.25;  //!< by which keypoints farther from the camera differ

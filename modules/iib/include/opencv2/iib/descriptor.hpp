@@ -70,11 +70,15 @@ Rotated boxes stay upright and take no samples: only their centres turn around t
 means of gx and gy are rotated as gradients are, and those of |gx| and |gy| are interpolated from four directions. So angle 0
 does not give the bits of angle -1.
 
+**Pixels.** Colour is turned to grey by whole numbers, (3735 B + 19235 G + 9798 R + 2^14) >> 15. Gradients are Sobel 3x3; at
+the image's edge its outermost pixels are repeated (BORDER_REPLICATE).
+
 The descriptors are CV_8U and compared with NORM_HAMMING. The same input gives the same bits for
 every instruction set, thread count and build. One object may serve several threads as long as none
 changes its parameters. As everywhere in OpenCV, cv::setNumThreads is not to be called meanwhile.
 
-**Files.** Algorithm::save and Feature2D::write store the parameters and the detector; Algorithm::load and
+**Files.** Algorithm::save and Feature2D::write store the parameters and the detector. save fails where the disk is full, and
+leaves the old file; of write(filename), which is OpenCV's, and of names that end in .gz that is not sure. Algorithm::load and
 Feature2D::read take either kind of file. ORB, HessianDetector and NormalizedDetector come back with their parameters. A detector of any
 other class must be set by setDetector before read: files hold its name and what its own write() tells, which its
 read() gets; read throws a cv::Exception if the detector that is set is of another class.
@@ -164,7 +168,9 @@ public:
     The ROS of some is wider than `scaleFactor` says (see #Preset); getScaleFactor tells it.
 
     @param preset one of #Preset.
-    @param scaleFactor as in create: what a detector's keypoints need, see scaleFactorFor.
+    @param scaleFactor as in create: what a detector's keypoints need, see scaleFactorFor. The default is that of ORB, which
+    detects for a new extractor: with keypoints of another detector it finds far fewer matches. createFor sets detector and
+    factor together, createRecommended takes the best ones.
     @throws cv::Exception (StsBadArg) for an unknown preset, (StsOutOfRange) for a scale factor that is not
     positive.
      */
@@ -175,7 +181,8 @@ public:
 
     @param detector one that scaleFactorFor knows, also within NormalizedDetector.
     @param preset one of #Preset, or -1 for the paper's default descriptor (as create). Take #PRESET_UNIVERSAL first: it
-    stands changed light nearly as well and moved cameras much better, in 128 bytes, but takes more time.
+    stands changed light nearly as well and moved cameras much better, in 128 bytes, but takes more time. At the points of
+    HessianDetector it also has more right matches than #PRESET_ACCURATE where cameras stand still, at a lower precision.
     @throws cv::Exception (StsBadArg) for an unknown detector or preset, (StsNullPtr) for no detector. For a detector that
     is not known use create(scaleFactor), with the side of the ROS by KeyPoint::size as its factor, and setDetector.
      */
@@ -217,10 +224,12 @@ public:
     @param extraChannels as many single-channel maps as getExtraChannels(), each of the image's size, 8U,
     16U or 32F; in C++ a single one needs no list. A cell's value is the mean of the map.
     @param keypoints their order is kept; none is removed but by #BORDER_DROP.
-    @param descriptors keypoints.size() x descriptorSize(), CV_8U. Empty if the image or the keypoints are.
+    @param descriptors keypoints.size() x descriptorSize(), CV_8U. Empty if the image or the keypoints are: after an image
+    that is empty ask whether imread found the file. It may be the matrix of the image or of a map.
     @throws cv::Exception for a wrong type, size or number of maps, for pixels that are NaN or infinite,
-    and for keypoints with a NaN or infinite coordinate or a size that is not positive: such a keypoint has no region,
-    and to leave it out would break the correspondence of keypoints and rows that the caller counts on.
+    and for keypoints with a NaN or infinite coordinate, a size that is not positive, or with #ORIENTATION_KEYPOINT such an
+    angle: such a keypoint has no region, and to leave it out would break the correspondence of keypoints and rows that the
+    caller counts on.
      */
     CV_WRAP_AS(computeWithChannels)
     virtual void compute(InputArray image, InputArrayOfArrays extraChannels,

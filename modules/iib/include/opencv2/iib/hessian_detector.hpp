@@ -13,8 +13,8 @@ namespace iib {
 //! @addtogroup iib
 //! @{
 
-/** @brief Finds blobs: maxima over place and scale of the determinant of the Hessian (Lindeberg 1998; Bay et al., SURF,
-2008) of the locally normalized image.
+/** @brief Finds blobs: maxima over place and scale of the determinant of the Hessian @cite Lindeberg1998 @cite Bay2008SURF
+of the locally normalized image.
 
 Made for IIBDescriptorExtractor, where light and camera change; IIBDescriptorExtractor::createRecommended puts the two
 together. The image is normalized locally as NormalizedDetector does it (sigma of the Gaussian: `normalizationSigma`), and

@@ -114,7 +114,9 @@ public:
     createRecommended, for instance): code that takes two of each row needs a matcher of create().
 
     As in DescriptorMatcher, whose documentation holds, but old results never survive a call, and arguments are checked
-    also where there is nothing to match. */
+    also where there is nothing to match. Rows of knnMatch have 0 to k matches: a cross-check, a ratio, a mask or few train
+    descriptors leave fewer, so look at a row's size before taking its second match. createRecommended() has
+    done the ratio test already: match() gives what passes. */
     //! @{
     CV_WRAP virtual void match(InputArray queryDescriptors, InputArray trainDescriptors,
             CV_OUT std::vector<DMatch>& matches, InputArray mask = noArray()) const = 0;
@@ -152,8 +154,8 @@ public:
     /** @brief Ratio test inside match, knnMatch and knnMatchArrays, over the same pairs as the search.
 
     @param maxRatio in (0, 1]. A query keeps its matches only if its least distance is less than maxRatio
-    times its second least: least < maxRatio * (1 - 2^-23) * second in double, so that ties of a decimal number do not
-    pass, such as 6 and 10 bits at 0.6. A query with a single candidate keeps it. 1, the default, turns the test off. The
+    times its second least: least < maxRatio * (1 - 2^-23) * second in double, with maxRatio as a float. So exact ties of a
+    decimal number do not pass, such as 6 and 10 bits at 0.6 or 9 and 10 at 0.9, in C++ and Python alike. A query with a single candidate keeps it. 1, the default, turns the test off. The
     0.75 to 0.8 that suit SIFT throw most right matches of long binary codes away where the view moves: take 0.9 to 0.95,
     or setCrossCheck instead.
      */
@@ -209,6 +211,9 @@ public:
     CV_WRAP virtual void saveIndex(const String& filename) const = 0;
 
     /** @brief Reads what saveIndex wrote, by this version of the module or an older one.
+
+    A file has level sizes: a matcher that was made without them (createRecommended) takes codes of any width, but what is
+    loaded of it only those of the width that was saved.
 
     @throws cv::Exception for a file that is missing, truncated, altered, of another kind or of a newer
     version.

@@ -50,7 +50,7 @@ that were added to it are not used.
 the sense that is returned, 0 or more and less than 360. Then there is nothing to find, and no time lost.
 @return degrees, 0 <= rotation < 360, clockwise in the image, as estimateRotation; 0 where no matches agree.
 @throws cv::Exception (StsNullPtr) without extractor or matcher, (StsBadArg) for another orientation,
-(StsOutOfRange) for another rotation, and as IIBDescriptorExtractor::compute.
+(StsOutOfRange) for another rotation, and as IIBDescriptorExtractor::compute. Keypoints and matches then stay as they were.
  */
 CV_EXPORTS_W double matchRotated(InputArray image1, CV_OUT CV_IN_OUT std::vector<KeyPoint>& keypoints1,
         InputArray image2, CV_OUT CV_IN_OUT std::vector<KeyPoint>& keypoints2,

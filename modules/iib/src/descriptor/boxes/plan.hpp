@@ -24,7 +24,8 @@ struct BoxPlan
     };
 
     std::vector<Level> levels;
-    double edges[2][MAX_BOX_PLACES];  //!< where boxes begin and end, as centres; 0 behind the last one
+    double edges
+            [2][MAX_BOX_PLACES];  //!< where boxes begin and end, in the unit of centres; unused entries are 0
 
     const BoxKernels& kernels;
 

@@ -21,8 +21,8 @@ class SegmentSums
 {
 public:
     static constexpr int COUNT = 8;
-    static constexpr int LONGEST = 4;  //!< values of a segment that are summed: the first ones,
-    static constexpr int REACH = 32;   //!< and only those among so many first ones of all segments
+    static constexpr int LONGEST = 4;  //!< at most this many values of a segment are summed
+    static constexpr int REACH = 32;   //!< all segments have to lie within this many values
 
     //! @param edges COUNT + 1 of them, where the segments begin and end.
     explicit SegmentSums(const int* edges)

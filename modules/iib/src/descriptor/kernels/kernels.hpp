@@ -63,7 +63,7 @@ template <typename T> struct RowKernels
 {
     /** Sobel 3x3.
      @param offset added to the gradients with signs.
-     @param above if not 0, each value has the one so many places behind its own added, modulo 2^16 or 2^32. */
+     @param above if not 0, out[above + i] is added to out[i], modulo 2^16 or 2^32: the sums of the row above. */
     void (*imageChannels)(
             const ImageRows<T>& rows, T offset, const ImageChannelRows<T>& out, ptrdiff_t above, int width);
     void (*widen8u)(const uchar* in, T* out, int width);

@@ -90,7 +90,7 @@ void sampleIndices(const SampleGrid& grid, const RingRows<T>& rows, int oldest, 
                     bottom = v_setall_samples(g.image.height - 1);
     const v_samples left = v_setall_samples(rows.origin.x), shift = v_setall_samples(rows.shift(oldest)),
                     step = v_setall_samples((int)rows.step / GROUP_CHANNELS);
-    // Below 0, the difference is the larger one without signs.
+    // place - count wraps to a large number if the place is already in the ring, so that the minimum of both is the place.
     const auto count = v_reinterpret_as_u32(v_setall_samples(rows.count));
     // along a row, in the order of the points: first by dx, then by the parity of the cell
     int alongX[MAX_SAMPLES_IN_ROW], alongY[MAX_SAMPLES_IN_ROW];

@@ -11,7 +11,7 @@ namespace iib {
 
 constexpr int CONTRAST_BITS = 6;  //!< smoothed rows are normalized grey levels in 2^-6
 
-//! Weights of (near: 1, far: 2 spacings away) in a smoothing, in 2^-16; 0 to 16384.
+//! Weights of a five-tap filter, in 2^-16, each 0 to 16384: of the two pixels 1 spacing away (near) and 2 spacings away (far).
 struct SmoothingWeights
 {
     short near, far;

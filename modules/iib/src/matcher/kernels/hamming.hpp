@@ -87,13 +87,14 @@ struct PruneStage
 //! Where pairs are given up on the way from coarse to fine; without stages, never.
 struct PruningPolicy
 {
-    //! With a margin, this many CodeBlocks of train codes, 2048 codes, are compared before limits come down. It is part of
-    //! ADAPTIVE's answers, and so not to be changed for speed.
+    //! With a margin, limits are lowered after each 128 CodeBlocks (2048 train codes). ADAPTIVE's answers depend on this
+    //! number, so it must not be tuned for speed.
     static constexpr int CODE_BLOCKS_OF_LIMITS = 128;
 
     std::vector<PruneStage> stages;
     int limit = INT_MAX;  //!< with a single stage, the most bits that may differ there
-    int margin = -1;  //!< if >= 0, the limit of a query comes down to its least difference there plus this
+    int margin =
+            -1;  //!< if >= 0, the limit of a query is lowered to its least difference at the stage plus this
 };
 
 //! Finds all pairs that are near enough and that no stage gives up. Without stages, all are compared to the end.
