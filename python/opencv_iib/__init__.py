@@ -19,19 +19,20 @@ from opencv_iib._arguments import integer
 from opencv_iib._types import DMatch, KeyPoint
 from opencv_iib.descriptor import IIB, IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector, NormalizedDetector
-from opencv_iib.enums import Border, Channel, Mapping, Mode, Orientation, Preset
+from opencv_iib.enums import AlignmentModel, Border, Channel, Mapping, Mode, Orientation, Preset
 from opencv_iib.functions import Features, Matches, detect_and_describe, match
+from opencv_iib.geometry import Alignment, FoundPose, alignImages, findRelativePose
 from opencv_iib.keypoints import array_to_keypoints, keypoints_to_array
 from opencv_iib.mapped_index import MappedIndex
 from opencv_iib.matcher import HierarchicalMatcher
 from opencv_iib.refinement import RefinedMatches, refineMatches
 from opencv_iib.rotation import estimateRotation, matchRotated
 
-__all__ = ['Border', 'Channel', 'DMatch', 'Features', 'HessianDetector', 'HierarchicalMatcher', 'IIB',
-           'IIBDescriptorExtractor', 'KeyPoint', 'MappedIndex', 'Mapping', 'Matches', 'Mode', 'NormalizedDetector',
-           'OPENCV_VERSION', 'Orientation', 'Preset', 'RefinedMatches', 'array_to_keypoints', 'detect_and_describe', 'error',
-           'estimateRotation', 'getNumThreads', 'keypoints_to_array', 'match', 'matchRotated', 'refineMatches',
-           'setNumThreads']
+__all__ = ['Alignment', 'AlignmentModel', 'Border', 'Channel', 'DMatch', 'Features', 'FoundPose', 'HessianDetector',
+           'HierarchicalMatcher', 'IIB', 'IIBDescriptorExtractor', 'KeyPoint', 'MappedIndex', 'Mapping', 'Matches',
+           'Mode', 'NormalizedDetector', 'OPENCV_VERSION', 'Orientation', 'Preset', 'RefinedMatches', 'alignImages',
+           'array_to_keypoints', 'detect_and_describe', 'error', 'estimateRotation', 'findRelativePose', 'getNumThreads',
+           'keypoints_to_array', 'match', 'matchRotated', 'refineMatches', 'setNumThreads']
 
 __version__: str = _core.VERSION
 #: Of the OpenCV inside.

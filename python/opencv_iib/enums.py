@@ -62,6 +62,12 @@ class Preset(IntEnum, metaclass=_OnlyMembers):
     S128, S256, S512, ACCURATE, COMPACT, TINY, BALANCED, VIEWPOINT, UNIVERSAL, SMALL = range(10)
 
 
+class AlignmentModel(IntEnum, metaclass=_OnlyMembers):
+    """What may lie between two images, each more than the one before: rotation and scale, shear, perspective."""
+
+    TRANSLATION, SIMILARITY, AFFINE, HOMOGRAPHY = range(4)
+
+
 class Mode(IntEnum, metaclass=_OnlyMembers):
     """How the matcher searches."""
 

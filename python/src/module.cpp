@@ -33,6 +33,7 @@ NB_MODULE(_core, m)
     bindRefinement(m);
     bindRotation(m);
     bindLocalization(m);
+    bindGeometry(m);
 
     m.attr("VERSION") = IIB_VERSION;
     m.attr("OPENCV_VERSION") = CV_VERSION;

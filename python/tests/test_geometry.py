@@ -1,0 +1,69 @@
+"""Poses and alignment, from arrays."""
+import unittest
+
+import numpy as np
+
+import opencv_iib
+from support import texture
+
+CAMERA = np.array([[500, 0, 320], [0, 500, 240], [0, 0, 1.0]])
+
+
+def views(count=100):
+    """N x 2 in two views of points; the second camera stands to the right and looks ahead, in steps of 1 along x."""
+    random = np.random.default_rng(1)
+    points = np.stack([*random.uniform(-3, 3, (2, count)), random.uniform(6, 12, count)], axis=1)
+    seen = [moved @ CAMERA.T for moved in (points, points - [1, 0, 0])]
+    return [(s[:, :2] / s[:, 2:]).astype(np.float32) for s in seen]
+
+
+class RelativePose(unittest.TestCase):
+
+    def test_a_camera_that_moved_to_the_right(self):
+        first, second = views()
+        second[:30] = second[29::-1]
+        found, R, t, inliers, covariance = opencv_iib.findRelativePose(first, second, CAMERA, CAMERA)
+        self.assertTrue(found)
+        np.testing.assert_allclose(R, np.eye(3), atol=1e-3)
+        np.testing.assert_allclose(t, [[-1], [0], [0]], atol=3e-3)
+        self.assertEqual((inliers.shape, covariance.shape), ((100, 1), (5, 5)))
+        self.assertGreaterEqual(inliers.sum(), 70)
+        self.assertLess(inliers[:30].sum(), 10)
+
+    def test_too_few(self):
+        first, second = views(4)
+        pose = opencv_iib.findRelativePose(first, second, CAMERA, CAMERA.tolist())
+        self.assertEqual((pose.found, pose.R, pose.t, pose.covariance), (False, None, None, None))
+        self.assertEqual(pose.inliers.tolist(), [[0]] * 4)
+
+    def test_mistakes(self):
+        first, second = views()
+        for wrong in ((first, second[1:], CAMERA, CAMERA), (first, second, CAMERA, CAMERA[:2]),
+                      (first * np.nan, second, CAMERA, CAMERA), (first[:, :1], second, CAMERA, CAMERA)):
+            self.assertRaisesRegex(opencv_iib.error, 'findRelativePose: ', opencv_iib.findRelativePose, *wrong)
+        self.assertRaisesRegex(TypeError, 'scale', opencv_iib.findRelativePose, first, second, CAMERA, CAMERA, 'x')
+
+
+class Alignment(unittest.TestCase):
+
+    def test_a_window_of_the_same_picture(self):
+        picture = texture(400, 300, seed=1)
+        found, transform, error, matches = opencv_iib.alignImages(
+            picture, picture[16:, 32:] // 2 + 40, opencv_iib.AlignmentModel.TRANSLATION)
+        self.assertTrue(found)
+        np.testing.assert_allclose(transform, [[1, 0, 32], [0, 1, 16], [0, 0, 1]], atol=.1)
+        self.assertEqual((error.shape, matches.shape[1]), ((4, 1), 4))
+        self.assertLess(error.max(), .2)
+        np.testing.assert_allclose(matches[:, 2:] + [32, 16], matches[:, :2], atol=2)
+
+    def test_other_pictures(self):
+        alignment = opencv_iib.alignImages(*(texture(640, 480, seed=seed)[290:] for seed in (1, 2)))  # below their rectangle
+        self.assertEqual((alignment.found, alignment.transform, alignment.error), (False, None, None))
+
+    def test_mistakes(self):
+        self.assertRaisesRegex(opencv_iib.error, 'model', opencv_iib.alignImages, texture(90, 90, seed=1), texture(90, 90, seed=1), 7)
+        self.assertRaisesRegex(TypeError, 'None', opencv_iib.alignImages, None, texture(90, 90, seed=1))
+
+
+if __name__ == '__main__':
+    unittest.main()
