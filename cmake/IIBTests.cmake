@@ -21,6 +21,7 @@ if(OpenCV_video_FOUND)  # has a peer of the refinement
 endif()
 iib_add_test_program(test iib_index)
 iib_add_test_program(test iib_geometry)
+iib_add_test_program(perf iib_geometry)
 
 # Suites of internals link what the library does not show.
 target_sources(opencv_test_iib PRIVATE "$<FILTER:$<TARGET_OBJECTS:opencv_iib>,INCLUDE,/(common/grey|matcher/kernels/.*|refinement/kernels/.*|descriptor/(boxes/plan|(boxes/)?kernels/.*|keypoint_batches|parameters|plan))[.]>")
