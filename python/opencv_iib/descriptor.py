@@ -97,7 +97,8 @@ class IIBDescriptorExtractor(Detector):
     def createRecommended(cls, maxFeatures: int = 1000) -> IIBDescriptorExtractor:
         """What to take first, where light, place or both change: HessianDetector and PRESET_UNIVERSAL.
 
-        ``detectAndCompute`` finds and describes; match with ``HierarchicalMatcher.createRecommended()``.
+        ``detectAndCompute`` finds and describes; match with ``HierarchicalMatcher.createRecommended()``. Photographs of many
+        megapixels are searched at a reduced size, see ``HessianDetector.setWorkingSize``.
 
         :param maxFeatures: keypoints of an image, the strongest; 0 keeps all.
         """

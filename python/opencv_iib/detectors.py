@@ -110,24 +110,27 @@ class HessianDetector(Detector):
     """
 
     def __init__(self, maxFeatures: int = 1000, threshold: float = 0.0, scales: int = 5, sigma: float = 2.2,
-                 normalizationSigma: float = 5.0) -> None:
+                 normalizationSigma: float = 5.0, workingSize: int = 1024) -> None:
         """Creates a detector.
 
         :param maxFeatures: the strongest that are kept; 0 keeps all.
         :param threshold: smallest response, 0 or more.
         :param scales: number of scales, 1 to 8, each sqrt(2) times the one before.
-        :param sigma: of the smallest scale in pixels, 1.5 to 8.
-        :param normalizationSigma: of the local normalization's Gaussian in pixels, 2 to 256.
+        :param sigma: of the smallest scale in pixels of the (reduced) image, 1.5 to 8.
+        :param normalizationSigma: of the local normalization's Gaussian in pixels of the (reduced) image, 2 to 256.
+        :param workingSize: of images, pixels of the longer side, 64 or more; larger ones are reduced by a whole factor
+            before points are found, which are in the image's own pixels all the same. 0 never reduces.
         """
         self._core = _core.HessianDetector.create(
             integer(maxFeatures, 'maxFeatures'), number(threshold, 'threshold'), integer(scales, 'scales'),
-            number(sigma, 'sigma'), number(normalizationSigma, 'normalizationSigma'))
+            number(sigma, 'sigma'), number(normalizationSigma, 'normalizationSigma'),
+            integer(workingSize, 'workingSize'))
 
     @classmethod
     def create(cls, maxFeatures: int = 1000, threshold: float = 0.0, scales: int = 5, sigma: float = 2.2,
-               normalizationSigma: float = 5.0) -> HessianDetector:
+               normalizationSigma: float = 5.0, workingSize: int = 1024) -> HessianDetector:
         """Creates a detector, as the class itself does."""
-        return cls(maxFeatures, threshold, scales, sigma, normalizationSigma)
+        return cls(maxFeatures, threshold, scales, sigma, normalizationSigma, workingSize)
 
     def setMaxFeatures(self, maxFeatures: int) -> None:
         """The strongest that are kept; 0 keeps all."""
@@ -169,9 +172,17 @@ class HessianDetector(Detector):
         """See setNormalizationSigma."""
         return self._core.normalizationSigma
 
+    def setWorkingSize(self, workingSize: int) -> None:
+        """Of images, pixels of the longer side, 64 or more; larger ones are reduced. 0 never reduces."""
+        self._core.workingSize = integer(workingSize, 'workingSize')
+
+    def getWorkingSize(self) -> int:
+        """See setWorkingSize."""
+        return self._core.workingSize
+
     def _parameters(self) -> tuple[Any, ...]:
         return (self.getMaxFeatures(), self.getThreshold(), self.getScales(), self.getSigma(),
-                self.getNormalizationSigma())
+                self.getNormalizationSigma(), self.getWorkingSize())
 
     def _restored(self, parameters: tuple[Any, ...]) -> Any:
         return _core.HessianDetector.create(*parameters)

@@ -91,7 +91,8 @@ void bindDetectors(nb::module_& m)
             .def_prop_rw("scales", &Hessian::getScales, &Hessian::setScales)
             .def_prop_rw("sigma", &Hessian::getSigma, &Hessian::setSigma)
             .def_prop_rw(
-                    "normalizationSigma", &Hessian::getNormalizationSigma, &Hessian::setNormalizationSigma);
+                    "normalizationSigma", &Hessian::getNormalizationSigma, &Hessian::setNormalizationSigma)
+            .def_prop_rw("workingSize", &Hessian::getWorkingSize, &Hessian::setWorkingSize);
 }
 
 }  // namespace iib_python

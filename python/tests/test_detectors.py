@@ -30,10 +30,12 @@ class Hessian(unittest.TestCase):
         detector.setScales(4)
         detector.setSigma(3)
         detector.setNormalizationSigma(6)
+        detector.setWorkingSize(700)
         for twin in (detector, copy.copy(detector), copy.deepcopy(detector), pickle.loads(pickle.dumps(detector))):
             self.assertEqual((twin.getMaxFeatures(), twin.getScales(), twin.getSigma(), twin.getNormalizationSigma()),
                              (50, 4, 3, 6))
             self.assertAlmostEqual(twin.getThreshold(), 0.01)
+            self.assertEqual(twin.getWorkingSize(), 700)
         detector.setMaxFeatures(0)
         self.assertEqual(detector.getMaxFeatures(), 0)
         with self.assertRaisesRegex(opencv_iib.error, 'scales'):

@@ -46,8 +46,8 @@ void keepStrongest(std::vector<Extremum>& extrema, size_t most)
 class BlobFinder
 {
 public:
-    BlobFinder(const Mat& normalized_, const HessianParameters& p, const Mat& mask_)
-        : normalized(normalized_), mask(mask_), most(p.maxFeatures),
+    BlobFinder(const Mat& normalized_, const HessianParameters& p, const Mat& mask_, int reduction_)
+        : normalized(normalized_), mask(mask_), reduction(reduction_), most(p.maxFeatures),
           threshold(std::max(p.threshold, std::numeric_limits<float>::min())), fine(0)
     {
         for (int i = 0; i < p.scales; i++)
@@ -102,7 +102,14 @@ public:
         Point2f pt((float)e.x + offset.x, (float)e.y + offset.y);
         if (e.scale >= fine)  // the centre of half-resolution pixel x lies between pixels 2 x and 2 x + 1
             pt = 2 * pt + Point2f(.5f, .5f);
-        return KeyPoint(pt, (float)(2 * sigmas[e.scale]) * growth, -1, e.response, e.scale);
+        float size = (float)(2 * sigmas[e.scale]) * growth;
+        if (reduction > 1)
+        {
+            const float centre = (reduction - 1) / 2.f;  // of a square of pixels
+            pt = (float)reduction * pt + Point2f(centre, centre);
+            size *= reduction;
+        }
+        return KeyPoint(pt, size, -1, e.response, e.scale);
     }
 
 private:
@@ -179,6 +186,7 @@ private:
     }
 
     const Mat &normalized, &mask;
+    const int reduction;
     const size_t most;
     const float threshold;
     std::vector<double> sigmas;  //!< of all scales, in pixels of `normalized`
@@ -188,9 +196,10 @@ private:
 
 }  // namespace
 
-std::vector<KeyPoint> findBlobs(const Mat& normalized, const HessianParameters& parameters, const Mat& mask)
+std::vector<KeyPoint> findBlobs(
+        const Mat& normalized, const HessianParameters& parameters, const Mat& mask, int reduction)
 {
-    const BlobFinder finder(normalized, parameters, mask);
+    const BlobFinder finder(normalized, parameters, mask, reduction);
     std::vector<Extremum> found;
     for (const std::vector<Extremum>& part : finder.extrema())
         found.insert(found.end(), part.begin(), part.end());

@@ -16,6 +16,7 @@ struct HessianParameters
     float threshold;
     int scales;
     float sigma, normalizationSigma;
+    int workingSize;
 
     //! Throws (StsOutOfRange) for values that HessianDetector::create does not take.
     void check() const;
@@ -24,8 +25,10 @@ struct HessianParameters
 /** The keypoints of HessianDetector.
 
 @param normalized CV_8U, the normalized image.
-@param mask of the image: empty or CV_8U. */
-std::vector<KeyPoint> findBlobs(const Mat& normalized, const HessianParameters& parameters, const Mat& mask);
+@param mask of the image: empty or CV_8U.
+@param reduction how many pixels of the image, in both directions, one of `normalized` stands for. */
+std::vector<KeyPoint> findBlobs(
+        const Mat& normalized, const HessianParameters& parameters, const Mat& mask, int reduction);
 
 }  // namespace iib
 }  // namespace cv

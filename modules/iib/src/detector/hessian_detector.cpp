@@ -10,6 +10,8 @@
 #include "opencv2/core/utils/trace.hpp"
 #include "opencv2/iib/hessian_detector.hpp"
 
+#include <numeric>
+
 namespace cv {
 namespace iib {
 
@@ -26,9 +28,36 @@ void HessianParameters::check() const
     require(sigma >= 1.5f && sigma <= 8, "sigma", sigma, "1.5 to 8 pixels");
     require(normalizationSigma >= 2 && normalizationSigma <= 256, "normalizationSigma", normalizationSigma,
             "2 to 256 pixels");
+    require(workingSize == 0 || workingSize >= 64, "workingSize", workingSize,
+            "64 pixels or more, or 0 (any)");
 }
 
 namespace {
+
+//! Means of `factor` x `factor` pixels, rounded; what is left at the right and below is left out.
+template <typename T> Mat reduced(const Mat& grey, int factor)
+{
+    Mat result(grey.rows / factor, grey.cols / factor, grey.type());
+    parallel_for_(Range(0, result.rows), [&](const Range& range) {
+        std::vector<unsigned> sums(grey.cols);
+        for (int y = range.start; y < range.end; y++)
+        {
+            std::fill(sums.begin(), sums.end(), 0u);
+            for (int i = 0; i < factor; i++)
+            {
+                const T* const row = grey.ptr<T>(factor * y + i);
+                for (int x = 0; x < grey.cols; x++)
+                    sums[x] += row[x];
+            }
+            T* const out = result.ptr<T>(y);
+            const uint64 area = (uint64)factor * factor;
+            for (int x = 0; x < result.cols; x++)
+                out[x] = (T)((std::accumulate(&sums[factor * x], &sums[factor * x] + factor, area / 2)) /
+                             area);
+        }
+    });
+    return result;
+}
 
 class HessianDetector_Impl CV_FINAL : public HessianDetector, public AnyImage
 {
@@ -49,8 +78,13 @@ public:
             return keypoints.clear();
         checkImage(image);
         const Mat mask = maskFor(maskArray, image.size());
-        const Mat grey = integerMap(image);
-        keypoints = findBlobs(normalizeLocally(grey, p.normalizationSigma), p, mask);
+        Mat grey = integerMap(image);
+        const int longer = std::max(grey.cols, grey.rows), shorter = std::min(grey.cols, grey.rows);
+        const int wanted = p.workingSize ? (int)(((int64)longer + p.workingSize - 1) / p.workingSize) : 1;
+        const int reduction = std::min(wanted, shorter);
+        if (reduction > 1)
+            grey = grey.depth() == CV_8U ? reduced<uchar>(grey, reduction) : reduced<ushort>(grey, reduction);
+        keypoints = findBlobs(normalizeLocally(grey, p.normalizationSigma), p, mask, reduction);
     }
 
     bool empty() const CV_OVERRIDE { return false; }
@@ -68,6 +102,8 @@ public:
         set(&HessianParameters::normalizationSigma, value);
     }
     float getNormalizationSigma() const CV_OVERRIDE { return p.normalizationSigma; }
+    void setWorkingSize(int value) CV_OVERRIDE { set(&HessianParameters::workingSize, value); }
+    int getWorkingSize() const CV_OVERRIDE { return p.workingSize; }
 
     String getDefaultName() const CV_OVERRIDE { return Feature2D::getDefaultName() + ".HessianDetector"; }
 
@@ -78,7 +114,8 @@ public:
         fs << "HessianDetector"
            << "{"
            << "format" << 1 << "maxFeatures" << p.maxFeatures << "threshold" << p.threshold << "scales"
-           << p.scales << "sigma" << p.sigma << "normalizationSigma" << p.normalizationSigma << "}";
+           << p.scales << "sigma" << p.sigma << "normalizationSigma" << p.normalizationSigma << "workingSize"
+           << p.workingSize << "}";
     }
 
     using Feature2D::read;
@@ -91,6 +128,7 @@ public:
         readNumber(fn, "scales", r.scales);
         readNumber(fn, "sigma", r.sigma);
         readNumber(fn, "normalizationSigma", r.normalizationSigma);
+        readNumber(fn, "workingSize", r.workingSize);
         r.check();
         p = r;
     }
@@ -112,9 +150,9 @@ private:
 }  // namespace
 
 Ptr<HessianDetector> HessianDetector::create(
-        int maxFeatures, float threshold, int scales, float sigma, float normalizationSigma)
+        int maxFeatures, float threshold, int scales, float sigma, float normalizationSigma, int workingSize)
 {
-    const HessianParameters p = {maxFeatures, threshold, scales, sigma, normalizationSigma};
+    const HessianParameters p = {maxFeatures, threshold, scales, sigma, normalizationSigma, workingSize};
     return makePtr<HessianDetector_Impl>(p);
 }
 

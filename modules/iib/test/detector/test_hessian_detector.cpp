@@ -166,6 +166,42 @@ TEST(IIB_HessianDetector, responses_are_near_their_definition)
     EXPECT_LE(ratios[285], 1.35);
 }
 
+// 700 pixels to at most 240: a third.
+TEST(IIB_HessianDetector, large_images_are_searched_at_the_working_size)
+{
+    for (int depth : {CV_8U, CV_16U})
+    {
+        const Mat image = texture(Size(700, 502), depth, 13);
+        Mat third(Size(233, 167), image.type());
+        for (int y = 0; y < third.rows; y++)
+            for (int x = 0; x < third.cols; x++)
+            {
+                const double mean = cv::mean(image(Rect(3 * x, 3 * y, 3, 3)))[0];
+                if (depth == CV_8U)
+                    third.at<uchar>(y, x) = (uchar)cvFloor(mean + .5);
+                else
+                    third.at<ushort>(y, x) = (ushort)cvFloor(mean + .5);
+            }
+        std::vector<KeyPoint> expected = found(*HessianDetector::create(0), third);
+        EXPECT_GT(expected.size(), 200u);
+        for (KeyPoint& kp : expected)
+        {
+            kp.pt = 3.f * kp.pt + Point2f(1, 1);
+            kp.size *= 3;
+        }
+        const Ptr<HessianDetector> detector = HessianDetector::create(0, 0.f, 5, 2.2f, 5.f, 240);
+        expectSameKeyPoints(expected, found(*detector, image));
+        Mat mask = Mat::zeros(image.size(), CV_8U);
+        mask.colRange(0, 350) = 255;
+        expected.erase(std::remove_if(expected.begin(), expected.end(),
+                               [](const KeyPoint& kp) { return cvRound(kp.pt.x) >= 350; }),
+                expected.end());
+        expectSameKeyPoints(expected, found(*detector, image, mask));
+        detector->setWorkingSize(0);
+        expectSameKeyPoints(found(*HessianDetector::create(0), image), found(*detector, image));
+    }
+}
+
 TEST(IIB_HessianDetector, strongest_first_and_fewer_are_the_first_of_more)
 {
     const Mat image = texture(Size(320, 240), CV_8U, 5);
@@ -238,6 +274,9 @@ TEST(IIB_HessianDetector, errors)
     for (float sigma : {1.9f, 257.f, NOT_A_NUMBER})
         expectError(Error::StsOutOfRange, "normalizationSigma",
                 [&] { HessianDetector::create(1, 0.f, 5, 2.f, sigma); });
+    for (int size : {-1, 63})
+        expectError(Error::StsOutOfRange, "workingSize",
+                [&] { HessianDetector::create(1, 0.f, 5, 2.f, 5.f, size); });
     const Ptr<HessianDetector> detector = HessianDetector::create();
     expectError(Error::StsOutOfRange, "sigma", [&] { detector->setSigma(0); });
     expectError(Error::StsOutOfRange, "scales", [&] { detector->setScales(0); });
@@ -265,6 +304,7 @@ TEST(IIB_HessianDetector, parameters_and_files)
     detector->setScales(3);
     detector->setSigma(2.5f);
     detector->setNormalizationSigma(7);
+    detector->setWorkingSize(1500);
     EXPECT_EQ("Feature2D.HessianDetector", detector->getDefaultName());
     const auto expectSame = [&](const Ptr<HessianDetector>& copy) {
         ASSERT_TRUE(copy);
@@ -273,6 +313,7 @@ TEST(IIB_HessianDetector, parameters_and_files)
         EXPECT_EQ(3, copy->getScales());
         EXPECT_EQ(2.5f, copy->getSigma());
         EXPECT_EQ(7.f, copy->getNormalizationSigma());
+        EXPECT_EQ(1500, copy->getWorkingSize());
     };
     for (bool saved : {true, false})
     {

@@ -190,7 +190,8 @@ public:
 
     /** @brief Creates what to take first, where light, place or both change: HessianDetector and #PRESET_UNIVERSAL.
 
-    detectAndCompute() finds and describes; match the codes with HierarchicalMatcher::createRecommended().
+    detectAndCompute() finds and describes; match the codes with HierarchicalMatcher::createRecommended(). Photographs of
+    many megapixels are searched at a reduced size, see HessianDetector::setWorkingSize.
 
     @param maxFeatures keypoints of an image, the strongest; 0 keeps all. 2000 give a little more accurate poses than 1000.
     @throws cv::Exception (StsOutOfRange) for a negative number.

@@ -26,8 +26,12 @@ moved by a pixel has the same keypoints, moved by a pixel; larger scales at half
 
 Of a keypoint
 - `pt` is refined to fractions of a pixel by a quadratic fit of the response;
-- `size` is twice the sigma, refined between scales in the same way (IIBDescriptorExtractor::scaleFactorFor: 18);
+- `size` is twice the sigma in pixels of the image, refined between scales in the same way (IIBDescriptorExtractor::scaleFactorFor: 18);
 - `angle` is -1 (none), `octave` the number of the scale, `response` the response.
+
+Images whose longer side has more than `workingSize` pixels are reduced first, by the smallest whole factor that is enough
+(means of its square of pixels): on photographs of many megapixels the smallest scales find noise and grass, and take
+most of the time. Keypoints are in the image's own pixels all the same.
 
 Keypoints come strongest first, those of the same response by scale, row and column. None lie within about 2 sigma + 4
 pixels of the border. They are the same on every instruction set and for every number of threads.
@@ -50,13 +54,14 @@ public:
     @param maxFeatures the strongest that are kept; 0 keeps all.
     @param threshold smallest response, 0 or more. 0 keeps every maximum; .01 leaves out the faintest.
     @param scales number of scales, 1 to 8, each sqrt(2) times the one before.
-    @param sigma of the smallest scale in pixels of the image, 1.5 to 8. Smaller blobs are found less reliably when light or
+    @param sigma of the smallest scale in pixels of the (reduced) image, 1.5 to 8. Smaller blobs are found less reliably when light or
     view change.
-    @param normalizationSigma of the local normalization's Gaussian in pixels of the image, 2 to 256.
+    @param normalizationSigma of the local normalization's Gaussian in pixels of the (reduced) image, 2 to 256.
+    @param workingSize of images, pixels of the longer side, 64 or more; larger ones are reduced. 0 never reduces.
     @throws cv::Exception (StsOutOfRange) for other values.
      */
     CV_WRAP static Ptr<HessianDetector> create(int maxFeatures = 1000, float threshold = 0.f, int scales = 5,
-            float sigma = 2.2f, float normalizationSigma = 5.f);
+            float sigma = 2.2f, float normalizationSigma = 5.f, int workingSize = 1024);
 
     CV_WRAP virtual void setMaxFeatures(int maxFeatures) = 0;
     CV_WRAP virtual int getMaxFeatures() const = 0;
@@ -68,6 +73,8 @@ public:
     CV_WRAP virtual float getSigma() const = 0;
     CV_WRAP virtual void setNormalizationSigma(float normalizationSigma) = 0;
     CV_WRAP virtual float getNormalizationSigma() const = 0;
+    CV_WRAP virtual void setWorkingSize(int workingSize) = 0;
+    CV_WRAP virtual int getWorkingSize() const = 0;
 };
 
 //! @}
