@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "opencv2/iib.hpp"
+#include "refined.hpp"
 
 namespace iib_localization {
 
@@ -11,7 +12,9 @@ namespace iib_localization {
 struct Features
 {
     std::vector<cv::Point2d> pixels;
+    std::vector<float> sizes;
     cv::Mat codes;  //!< a row each
+    Picture picture;
 };
 
 inline Features extract(cv::iib::IIB& iib, const cv::Mat& image)
@@ -20,7 +23,11 @@ inline Features extract(cv::iib::IIB& iib, const cv::Mat& image)
     std::vector<cv::KeyPoint> keypoints;
     iib.detectAndCompute(image, cv::noArray(), keypoints, features.codes);
     for (const cv::KeyPoint& k : keypoints)
+    {
         features.pixels.emplace_back(k.pt);
+        features.sizes.push_back(k.size);
+    }
+    features.picture = pictureOf(image);
     return features;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -22,7 +23,10 @@ constexpr double MAX_ERROR =
         .006;  // of the longer side: an inlier's distance from where the pose has its point
 constexpr double LEAST_INLIERS = 15, LEAST_SHARE = .02;  // in an unknown place a few matches agree by chance
 constexpr double MAX_BOUND = .1;  // of the distance to the points: three standard deviations of the place
-constexpr double LEAST_DEVIATION = .2;  // pixels
+constexpr double REFINED =
+        .3;  // pixels: deviation of a keypoint that refineMatches placed, with that of its point
+constexpr double LEAST_DEVIATION = .7;  // of the deviations that are assumed
+constexpr size_t WORTH = 16;            // matches with an image of the map, for which they are refined
 
 //! What sorts first, of so many.
 template <typename Before> std::vector<size_t> best(size_t all, size_t count, Before before)
@@ -65,13 +69,41 @@ int keypointsOf(const std::vector<Match>& matches)
     return int(keypoints.size());
 }
 
+//! Moves the keypoints of matches to what the map's images show.
+void refineMatches(std::vector<Match>& matches, const Map& map, const Features& features)
+{
+    std::map<int, std::vector<size_t>> byView;
+    for (size_t i = 0; i < matches.size(); i++)
+        byView[matches[i].view].push_back(i);
+    for (const auto& [view, numbers] : byView)
+    {
+        const MapImage& image = map.images[size_t(view)];
+        if (numbers.size() < WORTH || image.picture.pixels.empty())
+            continue;
+        KeypointPairs pairs;
+        for (size_t i : numbers)
+        {
+            const Match& m = matches[i];
+            pairs.fixed.emplace_back(image.pixels[size_t(m.row)], image.sizes[size_t(m.row)]);
+            pairs.moved.emplace_back(features.pixels[size_t(m.keypoint)], features.sizes[size_t(m.keypoint)]);
+        }
+        const std::vector<bool> placed = refine(image.picture, features.picture, pairs);
+        for (size_t k = 0; k < numbers.size(); k++)
+            if (placed[k])
+            {
+                matches[numbers[k]].pixel = pairs.moved[k].pt;
+                matches[numbers[k]].deviation = REFINED;
+            }
+    }
+}
+
 //! Finds the pose that matches with points of a map agree on, and whether it is one.
 void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Found& found)
 {
     const Frame frame(all);
     for (Match& m : all)
         m.point = frame.toLocal(m.point);
-    const std::vector<Match> matches = withoutRepeated(all);
+    std::vector<Match> matches = withoutRepeated(all);
     found.matches = int(matches.size());
     const Lens lens(camera);
     const double limit = MAX_ERROR * std::max(camera.size.width, camera.size.height);
@@ -85,7 +117,7 @@ void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Foun
     if (!poseByRansac(surest, lens, limit, pose))
         return;
     std::vector<Match> inliers;
-    for (int round = 0; round < 3; round++)  // what agrees is looked for again after each refinement
+    for (int round = 0; round < 4; round++)  // what agrees is looked for again after each refinement
     {
         if (round > 0 && !refinePose(inliers, lens, pose, covariance))
         {
@@ -94,11 +126,19 @@ void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Foun
         }
         inliers = within(limit, matches, lens, pose);
         found.inliers = keypointsOf(inliers);
-        if (found.inliers < LEAST_INLIERS + LEAST_SHARE * double(matches.size()))
+        if (found.inliers < LEAST_INLIERS + LEAST_SHARE * double(found.matches))
             return;
+        if (round == 1)
+        {
+            refineMatches(inliers, map, found.features);
+            matches = inliers;
+        }
     }
-    // of a Rayleigh distribution
-    const double deviation = std::max(LEAST_DEVIATION, median(errorsOf(inliers, lens, pose)) / 1.1774);
+    std::vector<double> errors = errorsOf(inliers, lens, pose);
+    for (size_t i = 0; i < errors.size(); i++)
+        errors[i] /= inliers[i].deviation;
+    // By Rayleigh's distribution; not much below what is assumed: matches of an image err together with the map's points.
+    const double deviation = std::max(LEAST_DEVIATION, median(errors) / 1.1774);
     covariance *= deviation * deviation;
     cv::Vec3d variances;
     cv::eigen(covariance.get_minor<3, 3>(0, 0), variances);

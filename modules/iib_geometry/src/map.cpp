@@ -113,10 +113,15 @@ void writeImage(cv::iib::CheckedWriter& file, const MapImage& image, size_t came
     {
         file.real(float(image.pixels[k].x));
         file.real(float(image.pixels[k].y));
+        file.real(image.sizes[k]);
         file.number(uint64(image.sees[k]), 4);
     }
     file.bytes(image.misses.data(), image.misses.size());
     file.bytes(image.codes.data, image.codes.total());
+    const cv::Mat& picture = image.picture.pixels;
+    file.number(uint64(picture.rows), 4);
+    file.number(uint64(picture.cols), 4);
+    file.bytes(picture.data, picture.total());
 }
 
 MapImage readImage(cv::iib::CheckedReader& file, const std::vector<Camera>& cameras, int bytes, size_t points)
@@ -130,14 +135,16 @@ MapImage readImage(cv::iib::CheckedReader& file, const std::vector<Camera>& came
     image.used = file.word();
     image.added = file.number(1) != 0;
     const uint64 count = file.word();
-    file.expect(count, uint64(bytes) + 13);
+    file.expect(count, uint64(bytes) + 17);
     for (uint64 k = 0; k < count; k++)
     {
         const float x = file.real(), y = file.real();
         image.pixels.emplace_back(x, y);
+        image.sizes.push_back(file.real());
         image.sees.push_back(int(file.word()));
-        if (!(std::abs(x) + std::abs(y) < 1 << 20) || image.sees.back() < 0 ||
-                size_t(image.sees.back()) >= points)
+        if (!(std::abs(x) + std::abs(y) < 1 << 20 && image.sizes.back() > 0 &&
+                    image.sizes.back() < 1 << 20) ||
+                image.sees.back() < 0 || size_t(image.sees.back()) >= points)
             file.fail("a keypoint sees nothing");
     }
     image.misses.resize(count);
@@ -148,6 +155,13 @@ MapImage readImage(cv::iib::CheckedReader& file, const std::vector<Camera>& came
     if (camera >= cameras.size() || cv::norm(rotation * rotation.t() - cv::Matx33d::eye()) > 1e-6)
         file.fail("an image has no camera or no pose");
     image.camera = cameras[camera];
+    const unsigned rows = file.word(), cols = file.word();
+    if (std::max(rows, cols) >= 1 << 16)
+        file.fail("an image is too large");
+    file.expect(uint64(rows) * cols, 1);
+    image.picture.pixels.create(int(rows), int(cols), CV_8U);
+    file.bytes(image.picture.pixels.data, image.picture.pixels.total());
+    image.picture.scale = double(cols) / image.camera.size.width;
     image.cameraFromWorld = cv::Affine3d(rotation, cv::Vec3d(pose(0, 3), pose(1, 3), pose(2, 3)));
     return image;
 }
@@ -163,6 +177,7 @@ void Map::compact()
         MapImage kept = image;
         kept.pixels.clear();
         kept.sees.clear();
+        kept.sizes.clear();
         kept.misses.clear();
         kept.codes = cv::Mat(0, image.codes.cols, CV_8U);
         for (size_t k = 0; k < image.sees.size(); k++)
@@ -177,6 +192,7 @@ void Map::compact()
             }
             kept.sees.push_back(number);
             kept.pixels.push_back(image.pixels[k]);
+            kept.sizes.push_back(image.sizes[k]);
             kept.misses.push_back(image.misses[k]);
             kept.codes.push_back(image.codes.row(int(k)));
         }

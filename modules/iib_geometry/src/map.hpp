@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "refined.hpp"
 #include "opencv2/iib/localization.hpp"
 
 namespace iib_localization {
@@ -10,10 +11,12 @@ using cv::iib::Camera;
 //! An image of a map; each of its keypoints sees a point, and the strongest come first.
 struct MapImage : cv::iib::PosedImage
 {
+    std::vector<float> sizes;   //!< of its keypoints
     cv::Mat codes;              //!< N x bytes, CV_8U
     std::vector<uchar> misses;  //!< of each code: updates in a row that looked for it and did not find it
     uint32_t used = 0;          //!< the last update in which the image helped
     bool added = false;         //!< by an update
+    Picture picture;            //!< that keypoints of other images are refined against; may be empty
 };
 
 //! A map, in memory as on the disk.

@@ -91,6 +91,7 @@ void describe(std::vector<MapImage>& images, const cv::iib::ImageReader& read, i
     inParallel(images.size(), [&](size_t i) {
         MapImage& image = images[i];
         image.pixels.clear();
+        image.sizes.clear();
         image.codes = cv::Mat(0, iib->descriptorSize(), CV_8U);
         const cv::Mat pixels = read(image.name);
         if (!pixels.empty())
@@ -105,6 +106,8 @@ void describe(std::vector<MapImage>& images, const cv::iib::ImageReader& read, i
             }
             Features found = extract(*iib, pixels);
             image.pixels = std::move(found.pixels);
+            image.sizes = std::move(found.sizes);
+            image.picture = found.picture;
             image.codes = found.codes.empty() ? image.codes : found.codes;
         }
         image.sees.assign(image.pixels.size(), -1);
@@ -169,7 +172,9 @@ Map makeMap(const std::string& model, const cv::iib::ImageReader& read, int poin
         const std::vector<Ray> own = raysOf(i, map.images[i]);
         rays.insert(rays.end(), own.begin(), own.end());
     }
-    for (std::vector<Ray>& track : joined(rays, link(map.images, pairs, rays, first, steps)))
+    std::vector<std::vector<Ray>> tracks = joined(rays, link(map.images, pairs, rays, first, steps));
+    refineTracks(tracks, map.images);
+    for (std::vector<Ray>& track : tracks)
     {
         cv::Point3d point;
         if (!place(track, point))

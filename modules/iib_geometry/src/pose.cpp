@@ -116,7 +116,7 @@ bool refinePose(
         for (size_t i = 0; i < points.size(); i++)
         {
             const cv::Point2d error = matches[i].pixel - mapped[i];
-            const double weight = 1 / (1 + error.dot(error));
+            const double weight = 1 / (matches[i].deviation * matches[i].deviation + error.dot(error));
             if (std::isnan(weight))
                 continue;
             const cv::Matx23d byMoved = byPoint[i] * rotation;  // of the point in the world's axes

@@ -10,11 +10,12 @@ struct Match
 {
     cv::Point2d pixel;
     cv::Point3d point;
-    int number = 0;    //!< of the point
-    int keypoint = 0;  //!< the image's
-    int bits = 0;      //!< in which the codes differ
-    int view = 0;      //!< image of the map that sees the point so
-    int row = 0;       //!< of that image's codes
+    int number = 0;        //!< of the point
+    int keypoint = 0;      //!< the image's
+    int bits = 0;          //!< in which the codes differ
+    int view = 0;          //!< image of the map that sees the point so
+    int row = 0;           //!< of that image's codes
+    double deviation = 1;  //!< of the pixel
 };
 
 //! Of a rigid motion. cv::Affine3d::inv() goes through an SVD, which far from the origin leaves no digit.
@@ -41,9 +42,10 @@ struct Frame
 @param matches in a Frame's axes. */
 bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double limit, cv::Affine3d& pose);
 
-/** Moves a pose to the least reprojection error with Cauchy's loss, which cv::solvePnPRefineLM has not.
+/** Moves a pose to the least reprojection error with Cauchy's loss of a
+deviation, which cv::solvePnPRefineLM has not.
 @param matches in a Frame's axes.
-@param covariance of the camera's centre and of a small turn about the world's axes, for errors of one pixel.
+@param covariance of the camera's centre and of a small turn about the world's axes, for errors of the matches' deviations.
 @return false if the matches do not determine the pose. */
 bool refinePose(
         const std::vector<Match>& matches, const Lens& lens, cv::Affine3d& pose, cv::Matx66d& covariance);

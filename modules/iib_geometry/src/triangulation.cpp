@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "features.hpp"
 #include "lens.hpp"
 #include "pose.hpp"
 
@@ -123,6 +124,51 @@ std::vector<std::vector<Ray>> joined(const std::vector<Ray>& rays, std::vector<L
                 found.back().push_back(rays[k]);
         }
     return found;
+}
+
+void refineTracks(std::vector<std::vector<Ray>>& tracks, std::vector<MapImage>& images)
+{
+    std::map<std::pair<size_t, size_t>, std::vector<std::pair<int, int>>> jobs;  // keypoints by images
+    for (std::vector<Ray>& track : tracks)
+    {
+        const auto strangeness = [&](const Ray& ray) {
+            double sum = 0;
+            for (const Ray& other : track)
+                sum += angleOf(ray, other);
+            return ray.point >= 0 ? -1 : sum;
+        };
+        const Ray& reference = *std::min_element(track.begin(), track.end(),
+                [&](const Ray& a, const Ray& b) { return strangeness(a) < strangeness(b); });
+        for (const Ray& ray : track)
+            if (ray.point < 0 && ray.image != reference.image)
+                jobs[{reference.image, ray.image}].emplace_back(reference.keypoint, ray.keypoint);
+    }
+    const std::vector<std::pair<std::pair<size_t, size_t>, std::vector<std::pair<int, int>>>> list(
+            jobs.begin(), jobs.end());
+    inParallel(list.size(), [&](size_t n) {
+        const MapImage& fixed = images[list[n].first.first];
+        MapImage& moved = images[list[n].first.second];
+        if (fixed.picture.pixels.empty() || moved.picture.pixels.empty())
+            return;
+        KeypointPairs pairs;
+        for (const auto& [a, b] : list[n].second)
+        {
+            pairs.fixed.emplace_back(fixed.pixels[size_t(a)], fixed.sizes[size_t(a)]);
+            pairs.moved.emplace_back(moved.pixels[size_t(b)], moved.sizes[size_t(b)]);
+        }
+        refine(fixed.picture, moved.picture, pairs);
+        for (size_t i = 0; i < pairs.moved.size(); i++)  // each keypoint is of one track
+            moved.pixels[size_t(list[n].second[i].second)] = pairs.moved[i].pt;
+    });
+    std::map<size_t, std::vector<Ray>> rays;
+    for (std::vector<Ray>& track : tracks)
+        for (Ray& ray : track)
+        {
+            std::vector<Ray>& own = rays[ray.image];
+            if (own.empty())
+                own = raysOf(ray.image, images[ray.image]);
+            ray.direction = own[size_t(ray.keypoint)].direction;
+        }
 }
 
 bool place(std::vector<Ray>& track, cv::Point3d& point)

@@ -35,6 +35,10 @@ struct Link
 or more. */
 std::vector<std::vector<Ray>> joined(const std::vector<Ray>& rays, std::vector<Link> links);
 
+/** Moves the keypoints of each track to what one of them shows, the reference: one that sees a point already, or that which looks
+least differently from the others. Those that see a point stay. */
+void refineTracks(std::vector<std::vector<Ray>>& tracks, std::vector<MapImage>& images);
+
 /** The point of a track; the rays farthest from it are left out until the others agree.
 @return false if too few agree, or look from nearly the same direction. */
 bool place(std::vector<Ray>& track, cv::Point3d& point);

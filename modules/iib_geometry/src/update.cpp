@@ -167,7 +167,9 @@ void triangulate(Map& map, const std::vector<std::pair<size_t, size_t>>& pairs)
                 if (touched.count(ray.point) != 0)
                     rays.push_back(ray);
     }
-    for (std::vector<Ray>& track : joined(rays, links))
+    std::vector<std::vector<Ray>> tracks = joined(rays, links);
+    refineTracks(tracks, map.images);
+    for (std::vector<Ray>& track : tracks)
     {
         const auto known =
                 std::find_if(track.begin(), track.end(), [](const Ray& r) { return r.point >= 0; });
@@ -278,6 +280,8 @@ cv::iib::MapUpdate::Counts cv::iib::MapUpdate::commit()
         static_cast<PosedImage&>(image) = {folder + s->name, s->camera, s->found.cameraFromWorld,
                 features.pixels, std::vector<int>(count, -1)};
         image.codes = features.codes;
+        image.sizes = features.sizes;
+        image.picture = features.picture;
         image.misses.assign(count, 0);
         image.used = map.updates;
         image.added = true;

@@ -26,13 +26,18 @@ Map smallMap()
         image.cameraFromWorld = cv::Affine3d(cv::Vec3d(.1 * i, .2, .3), cv::Vec3d(1, 2, i));
         image.sees = sees[size_t(i)];
         for (size_t k = 0; k < image.sees.size(); k++)
+        {
             image.pixels.emplace_back(20 + 10. * double(k), 30.25);
+            image.sizes.push_back(float(7 + k));
+        }
         image.misses.assign(image.sees.size(), uchar(i));
         image.codes.create(int(image.sees.size()), 128, CV_8U);
         if (!image.codes.empty())
             cv::RNG(uint64(i) + 1).fill(image.codes, cv::RNG::UNIFORM, 0, 256);
         image.used = 2;
         image.added = i == 2;
+        if (i < 2)
+            image.picture = pictureOf(cv::Mat(48 + i, 64, CV_8U, cv::Scalar(7 + i)));
         map.images.push_back(image);
     }
     return map;
@@ -69,7 +74,10 @@ TEST_F(SmallMap, read_as_written)
         EXPECT_EQ(a.cameraFromWorld.matrix, b.cameraFromWorld.matrix);
         EXPECT_EQ(a.pixels, b.pixels);
         EXPECT_EQ(a.sees, b.sees);
+        EXPECT_EQ(a.sizes, b.sizes);
         EXPECT_EQ(a.misses, b.misses);
+        EXPECT_EQ(a.picture.pixels.size(), b.picture.pixels.size());
+        EXPECT_EQ(0, i == 2 ? 0 : cv::norm(a.picture.pixels, b.picture.pixels, cv::NORM_INF));
         EXPECT_EQ(a.used, b.used);
         EXPECT_EQ(a.added, b.added);
         EXPECT_EQ(a.codes.size(), b.codes.size());

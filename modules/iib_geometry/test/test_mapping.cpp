@@ -95,6 +95,33 @@ TEST_F(Mapping, a_map_on_disk_finds_what_one_in_memory_does)
     EXPECT_GT(back[1].sees.size(), 200u);
 }
 
+TEST_F(Mapping, pictures_in_the_map_make_poses_more_accurate)
+{
+    write(model(1, 40));
+    const std::string with = folder.path("with"), without = folder.path("without");
+    cv::iib::buildMap(folder.path("sparse 0"), images(), with);
+    Map plain = readMap(with);
+    for (MapImage& image : plain.images)
+        image.picture = Picture();
+    MapFolder(without).write(plain);
+    const Localizer refined(with), detected(without);
+    double errors[2] = {0, 0};
+    for (int i = 0; i < 10; i++)
+    {
+        const cv::Affine3d truth = poseAt(0.08 * i - 0.4, -0.1, 0.01 * i);
+        const cv::Mat image = wall.image(truth) * 0.4;
+        int which = 0;
+        for (const Localizer* localizer : {&refined, &detected})
+        {
+            const Location location = localizer->localize(image, CAMERA);
+            ASSERT_TRUE(location.found) << location.reason;
+            errors[which++] +=
+                    cv::norm(inverse(location.cameraFromWorld).translation() - truth.translation());
+        }
+    }
+    EXPECT_LT(errors[0], .8 * errors[1]);
+}
+
 TEST_F(Mapping, images_that_share_no_points_are_paired_with_the_nearest)
 {
     Files files = model(1, 1);

@@ -104,9 +104,11 @@ protected:
             {
                 image.sees.push_back(int(map.points.size()));
                 image.pixels.emplace_back(k.pt);
+                image.sizes.push_back(k.size);
                 map.points.push_back(Wall::point(pose, k.pt));
             }
             image.misses.assign(keypoints.size(), 0);
+            image.picture = pictureOf(picture);
             map.images.push_back(image);
         }
         MapFolder(folder.path("map")).write(map);
