@@ -15,17 +15,20 @@ else:
     a, b = scene.view('day', (0, 0)), scene.view('night', (.6, 0), -5)
 matrix = scene.camera(a)
 
-# %% Points and matches by the recommended chain.
-points_a, _, codes_a = opencv_iib.detect_and_describe(a, 2000)
-points_b, _, codes_b = opencv_iib.detect_and_describe(b, 2000)
+# %% Points and matches by the recommended chain, and the places of the second points to a fraction of a pixel.
+points_a, sizes_a, codes_a = opencv_iib.detect_and_describe(a, 2000)
+points_b, sizes_b, codes_b = opencv_iib.detect_and_describe(b, 2000)
 pairs, _ = opencv_iib.match(codes_a, codes_b)
-from_a, from_b = points_a[pairs[:, 0]], points_b[pairs[:, 1]]
+matches = opencv_iib.refineMatches(a, np.column_stack([points_a, sizes_a]), b, np.column_stack([points_b, sizes_b]), pairs)
 
-# %% The essential matrix that most matches agree with within .75 pixels, and of its four poses the one with points in front.
-essential, agree = cv2.findEssentialMat(from_a, from_b, matrix, cv2.USAC_MAGSAC, .999, .75)
-count, rotation, translation, _ = cv2.recoverPose(essential, from_a, from_b, matrix, mask=agree)
+# %% The pose that most matches agree with; two cameras could have two matrices.
+pose = opencv_iib.findRelativePose(matches.points1, matches.points2, matrix, matrix)
+if not pose.found:
+    sys.exit('no pose')
 
 # %% Two images do not tell how far the camera moved, but whereto, in the axes of the first camera: right, down, ahead.
-direction = (-rotation.T @ translation).ravel()
-turn = np.degrees(cv2.Rodrigues(rotation)[0].ravel())
-print(f'{len(pairs)} matches, {count} agree: moved towards', direction.round(2), 'turned by', -turn.round(1), 'degrees')
+direction = (-pose.R.T @ pose.t).ravel()
+turn = np.degrees(cv2.Rodrigues(pose.R)[0].ravel())
+errors = np.degrees(np.sqrt(np.diag(pose.covariance)))
+print(f'{len(pairs)} matches, {pose.inliers.sum()} agree: moved towards', direction.round(2), 'turned by', -turn.round(2), 'degrees,',
+      f'with standard deviations of {np.linalg.norm(errors[3:]):.2f} and {np.linalg.norm(errors[:3]):.2f} degrees')

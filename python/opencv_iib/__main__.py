@@ -1,4 +1,4 @@
-"""opencv-iib, or python -m opencv_iib: two matched images, databases for COLMAP, files for hloc, maps and poses in them."""
+"""opencv-iib, or python -m opencv_iib: matches, poses and alignment of images, databases for COLMAP, files for hloc, maps and poses in them."""
 from __future__ import annotations
 
 import argparse
@@ -9,11 +9,17 @@ import sys
 from typing import Any, Optional, Sequence
 
 from opencv_iib import __version__, error, localization
+from opencv_iib.align import align
 from opencv_iib.colmap import hloc
 from opencv_iib.colmap.database import CAMERA_MODELS
 from opencv_iib.colmap.features import DETECTORS, FeatureOptions, preset_names
 from opencv_iib.colmap.pipeline import PAIRS, VERIFIERS, Options, build_database
 from opencv_iib.demo import demo
+from opencv_iib.enums import AlignmentModel
+from opencv_iib.measure import match_images
+
+
+CAMERA = 'MODEL,WIDTH,HEIGHT,PARAMS'
 
 
 def _features(parser: argparse.ArgumentParser, points: int) -> None:
@@ -41,6 +47,22 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument('image_b')
     command.add_argument('--out', default='opencv_iib_demo.png', help='picture to write (%(default)s)')
     _features(command, 1000)
+
+    command = commands.add_parser('match', help='match two images to a fraction of a pixel; status 3: no matches, or no pose')
+    command.add_argument('image_a')
+    command.add_argument('image_b')
+    command.add_argument('--out', default='matches.csv', help='file to write, a line a match (%(default)s)')
+    command.add_argument('--picture', help='picture to write')
+    command.add_argument('--camera', action='append', default=[], metavar=CAMERA,
+                         help="find the pose too, with COLMAP's name and parameters of the camera; twice for two cameras")
+    _features(command, 2000)
+
+    command = commands.add_parser('align', help='lay images onto a reference; status 0: all, 4: some, 3: none')
+    command.add_argument('reference')
+    command.add_argument('images', nargs='+', help='of a plane, or from the same place')
+    command.add_argument('--out', required=True, help='folder to write; older results there are replaced')
+    command.add_argument('--model', default='HOMOGRAPHY', choices=list(AlignmentModel.__members__), type=str.upper,
+                         help='the least that holds is the most accurate (%(default)s)')
 
     command = commands.add_parser('colmap', help='describe and match a folder, for colmap mapper')
     command.add_argument('images', help='folder of images')
@@ -76,7 +98,7 @@ def _add_localization(commands: Any) -> None:
         parser.add_argument('--images', required=True, help='folder of images, also in folders below it')
         parser.add_argument('--workers', type=int, help='threads (one a core)')
         if localizes:
-            parser.add_argument('--camera', metavar='MODEL,WIDTH,HEIGHT,PARAMS',
+            parser.add_argument('--camera', metavar=CAMERA,
                                 help="COLMAP's name and parameters of the camera of all images, instead of the map's or EXIF's")
         return parser
 
@@ -92,7 +114,7 @@ def _add_localization(commands: Any) -> None:
     updating.add_argument('--out', help='folder of the new map, instead of the old one')
 
 
-SOME_FOUND, NONE_FOUND = 4, 3  # status of localize; NONE_FOUND of demo too
+SOME_FOUND, NONE_FOUND = 4, 3  # status of localize and align; NONE_FOUND of demo and match too
 
 
 def _demo(arguments: argparse.Namespace) -> int:
@@ -105,6 +127,28 @@ def _demo(arguments: argparse.Namespace) -> int:
     return NONE_FOUND
 
 
+def _match(arguments: argparse.Namespace) -> int:
+    if len(arguments.camera) > 2:
+        raise ValueError(f'{len(arguments.camera)} cameras for two images')
+    measured = match_images(arguments.image_a, arguments.image_b, arguments.out, arguments.picture, arguments.camera,
+                            _feature_options(arguments))
+    _say(f'{arguments.out}: {measured}')
+    return 0 if measured.found else NONE_FOUND
+
+
+def _align(arguments: argparse.Namespace) -> int:
+    done = align(arguments.reference, arguments.images, arguments.out, AlignmentModel[arguments.model])
+    count = sum(bool(each.file) for each in done)
+    for each in done:
+        _say(f'{each.name}: {each}')
+    _say(f'{arguments.out}/index.html: {count} of {len(done)} images are aligned')
+    return _share(count, len(done))
+
+
+def _share(count: int, total: int) -> int:
+    return 0 if count == total else SOME_FOUND if count else NONE_FOUND
+
+
 def _localization(arguments: argparse.Namespace) -> int:
     if arguments.workers is not None and arguments.workers < 1:
         raise ValueError(f'workers is {arguments.workers}: at least 1 is needed')
@@ -112,7 +156,7 @@ def _localization(arguments: argparse.Namespace) -> int:
         found, count = localization.localize_images(arguments.map, arguments.images, arguments.out, arguments.camera,
                                                     arguments.pictures, arguments.workers)
         _say(f'{arguments.out}: {found} of {count} images have a pose')
-        return 0 if found == count else SOME_FOUND if found else NONE_FOUND
+        return _share(found, count)
     if arguments.command == 'map':
         counts = localization.build(arguments.model, arguments.images, arguments.out, arguments.points, arguments.workers,
                                     arguments.force)
@@ -154,6 +198,10 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     try:
         if arguments.command == 'demo':
             return _demo(arguments)
+        elif arguments.command == 'match':
+            return _match(arguments)
+        elif arguments.command == 'align':
+            return _align(arguments)
         elif arguments.command in ('map', 'localize', 'update'):
             return _localization(arguments)
         elif arguments.command == 'hloc':

@@ -45,7 +45,8 @@ def demo(image_a: str, image_b: str, out: str, options: FeatureOptions = Feature
     other = _own_descriptor('ORB' if options.detector == 'HESSIAN' else options.detector, images, options.points)
     if other is not None:
         results.append(other)
-    write_picture(out, np.vstack([draw(images, result) for result in reversed(results)]))
+    write_picture(out, np.vstack([draw(images, result.points_a, result.points_b, result.good, _caption(result))
+                                  for result in reversed(results)]))
     return results
 
 
@@ -76,8 +77,18 @@ def _own_descriptor(name: str, images: list[np.ndarray], points: int) -> Optiona
     return _result(name, rows, np.array([(m.queryIdx, m.trainIdx) for m in nearest]).reshape(-1, 2))
 
 
-def draw(images: list[np.ndarray], result: Result) -> np.ndarray:
-    """Both images side by side under a caption, a line for each match; those that agree lie above the others."""
+Caption = list[tuple[str, tuple[int, int, int]]]  # texts and their colours
+
+
+def _caption(result: Result) -> Caption:
+    count, good, name = len(result.good), result.good.sum(), (f'{result.name}:  ', INK)
+    if not good:
+        return [name, (f'{count} matches, no homography found', OTHER)]
+    return [name, (f'{good} consistent', GOOD), (f'  {count - good} others', OTHER), (f'  {100 * good / count:.0f} %', INK)]
+
+
+def draw(images: list[np.ndarray], points_a: np.ndarray, points_b: np.ndarray, good: np.ndarray, caption: Caption) -> np.ndarray:
+    """Both images side by side under a caption, a line for each match; good ones lie above the others."""
     cv2 = import_cv2()
     scales = [HALF_WIDTH / image.shape[1] for image in images]
     halves = [cv2.resize(image, (HALF_WIDTH, max(1, round(image.shape[0] * scale))), interpolation=cv2.INTER_AREA)
@@ -85,22 +96,19 @@ def draw(images: list[np.ndarray], result: Result) -> np.ndarray:
     canvas: Any = np.full((CAPTION_HEIGHT + max(map(len, halves)), 2 * HALF_WIDTH, 3), PAPER, np.uint8)
     for side, half in enumerate(halves):
         canvas[CAPTION_HEIGHT:CAPTION_HEIGHT + len(half), side * HALF_WIDTH:(side + 1) * HALF_WIDTH] = half
-    drawn = np.arange(0, len(result.good), max(1, len(result.good) / MAX_DRAWN)).astype(int)  # a fair choice: strongest first
+    drawn = np.arange(0, len(good), max(1, len(good) / MAX_DRAWN)).astype(int)  # a fair choice: strongest first
     ends = [np.rint(points * scale + (side * HALF_WIDTH, CAPTION_HEIGHT)).astype(int)
-            for side, (points, scale) in enumerate(zip((result.points_a, result.points_b), scales))]
+            for side, (points, scale) in enumerate(zip((points_a, points_b), scales))]
     for colour, opacity, wanted in ((OTHER, .6, False), (GOOD, .8, True)):
         lines = canvas.copy()
-        for k in drawn[result.good[drawn] == wanted]:
+        for k in drawn[good[drawn] == wanted]:
             a, b = (tuple(map(int, end[k])) for end in ends)
             cv2.line(lines, a, b, colour, 1, cv2.LINE_AA)
             cv2.circle(canvas, a, 2, colour, cv2.FILLED, cv2.LINE_AA)
             cv2.circle(canvas, b, 2, colour, cv2.FILLED, cv2.LINE_AA)
         canvas = cv2.addWeighted(lines, opacity, canvas, 1 - opacity, 0)  # so that the images are seen
-    count, at = len(result.good), 14
-    told = [(f'{result.name}:  ', INK), (f'{result.good.sum()} consistent', GOOD),
-            (f'  {count - result.good.sum()} others', OTHER), (f'  {100 * result.good.mean():.0f} %', INK)
-            ] if result.good.any() else [(f'{result.name}:  ', INK), (f'{count} matches, no homography found', OTHER)]
-    for text, colour in told:
+    at = 14
+    for text, colour in caption:
         cv2.putText(canvas, text, (at, CAPTION_HEIGHT - 15), cv2.FONT_HERSHEY_DUPLEX, .68, colour, 1, cv2.LINE_AA)
         at += cv2.getTextSize(text, cv2.FONT_HERSHEY_DUPLEX, .68, 1)[0][0]
     return canvas

@@ -452,6 +452,11 @@ class ColmapTest(unittest.TestCase):
         self.assertEqual((iib.name, len(iib.good), orb.name), ('IIB', int(claim[2]), 'ORB'))
         self.assertLess(abs(iib.good.sum() - int(claim[1])), 5)  # here a homography of the matches, there the true one
 
+    def test_names_in_any_case(self):
+        self.assertEqual(FeatureOptions('orb', preset=opencv_iib.Preset.SMALL), FeatureOptions('ORB', preset='small'))
+        with self.assertRaisesRegex(ValueError, 'no preset LARGE: there are DEFAULT, .*UNIVERSAL'):
+            FeatureOptions(preset='large').check()
+
     def test_version(self):
         with redirect_stdout(io.StringIO()) as text, self.assertRaises(SystemExit):
             main(['--version'])

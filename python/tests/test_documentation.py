@@ -29,6 +29,7 @@ RUNS = {
     'iib_relative_pose.markdown': [('day.png night.png 400 picture.png', r'^\d{2,} of \d{3} matches agree')],
     'iib_presets.markdown': [('', r'^128 bytes.*\n64 bytes')],
     'iib_localization.markdown': [('day.png depth.png night.png 400', r'^True \d{3} of \d{3} points agree')],
+    'iib_align.markdown': [('day.png night.png aligned.png', r'^\d{2,} matches agree')],
     'iib_saving_index.markdown': [('night.png day.png', r'^\d{3} matches in day.png\n')],
 }
 BEFORE = '''

@@ -34,6 +34,11 @@ class FeatureOptions:
     orientation: bool = False
     max_size: int = 0  #: pixels of the longer side to which larger images are reduced; 0: they are not
 
+    def __post_init__(self) -> None:
+        for field in ('detector', 'preset'):  # in any case, and members of Preset
+            name = getattr(self, field)
+            object.__setattr__(self, field, getattr(name, 'name', str(name)).upper())
+
     def check(self) -> None:
         """:raises ValueError: naming what is wrong, and what there is."""
         if self.detector not in DETECTORS:

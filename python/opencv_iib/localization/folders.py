@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import fnmatch
 import os
 import shutil
 from typing import Iterator, Sequence
@@ -31,8 +32,8 @@ def new_folder(target: str, own: Sequence[str]) -> Iterator[str]:
     """A folder to write to, ``target.partial``, which becomes `target` when the block ends without an error.
 
     :param target: a link is followed, also if nothing is at its end.
-    :param own: names that it may hold, the first of which it always holds: a folder that is there is replaced only if it
-        holds nothing else.
+    :param own: names that it may hold, or patterns such as ``*.png``, the first of which it always holds: a folder that is
+        there is replaced only if it holds nothing else.
     :raises FileExistsError: for a folder that holds something else.
     :raises BlockingIOError: if another process is writing it.
     """
@@ -41,7 +42,7 @@ def new_folder(target: str, own: Sequence[str]) -> Iterator[str]:
         if not os.path.isdir(target):
             raise FileExistsError(f'{target} is a file: choose another folder')
         names = os.listdir(target)
-        foreign = [name for name in names if name not in own]
+        foreign = [name for name in names if not any(fnmatch.fnmatchcase(name, pattern) for pattern in own)]
         if foreign or (names and own[0] not in names):
             raise FileExistsError(f'{target} holds {(foreign or names)[0]} and was not written by this command: choose '
                                   'another folder')

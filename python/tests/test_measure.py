@@ -1,0 +1,156 @@
+"""The commands match and align."""
+import csv
+import io
+import os
+import re
+import tempfile
+import unittest
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+
+import numpy as np
+
+from support import REPOSITORY, cv2, texture
+
+if cv2 is not None:
+    from opencv_iib.__main__ import main
+    from opencv_iib.align import align
+    from opencv_iib.measure import match_images
+
+SCENES = REPOSITORY / 'tools/synthetic'
+
+
+@unittest.skipIf(cv2 is None, 'no cv2')
+class Commands(unittest.TestCase):
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+
+    def write(self, name, image):
+        cv2.imwrite(str(self.folder / name), image)
+        return str(self.folder / name)
+
+    def run_command(self, *arguments):
+        with redirect_stdout(io.StringIO()) as out, redirect_stderr(io.StringIO()) as err:
+            status = main([str(argument) for argument in arguments])
+        return status, out.getvalue(), err.getvalue()
+
+    def rows(self, name):
+        with open(self.folder / name, newline='') as file:
+            return list(csv.DictReader(file))
+
+
+class Match(Commands):
+
+    def world(self, depth, camera_x=0., yaw=0., focal=400., distortion=0.):
+        """Two textured walls, and a lens."""
+        big = cv2.resize(texture(200, 200, seed=5), (1600, 1600), interpolation=cv2.INTER_CUBIC)
+        height, width = 360, 480
+        y, x = np.mgrid[:height, :width].astype(float)
+        rays = np.stack([(x - (width - 1) / 2) / focal, (y - (height - 1) / 2) / focal], 2)
+        ideal = rays.copy()
+        for _ in range(20):
+            ideal = rays / (1 + distortion * (ideal ** 2).sum(2, keepdims=True))
+        angle = np.radians(yaw)
+        turn = np.array([[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]])
+        ray = np.concatenate([ideal, np.ones((height, width, 1))], 2) @ turn.T
+        seen = np.zeros((height, width), np.uint8)
+        for z, half in ((depth[1], ray[..., 0] > -9), (depth[0], ray[..., 0] / ray[..., 2] * depth[0] + camera_x < 0)):
+            hit = ray / ray[..., 2:] * z
+            u, v = ((hit[..., k] + (camera_x if k == 0 else 0)) * 130 + 800 for k in range(2))
+            wall = cv2.remap(big, u.astype(np.float32), v.astype(np.float32), cv2.INTER_LINEAR)
+            seen = np.where(half, wall, seen)
+        return seen
+
+    def test_matches_and_pose(self):
+        lens = .08
+        a = self.write('a.png', self.world((4, 6), distortion=lens))
+        b = self.write('b.png', self.world((4, 6), .5, 3, distortion=lens) // 2 + 20)
+        camera = f'SIMPLE_RADIAL,480,360,400,240,180,{lens}'
+        status, out, err = self.run_command('match', a, b, '--out', self.folder / 'm.csv', '--picture', self.folder / 'm.png',
+                                            '--camera', camera)
+        self.assertEqual((status, err), (0, ''))
+        rows = self.rows('m.csv')
+        count, refined, agree = map(int, re.search(r'(\d+) matches, (\d+) refined.*\npose: (\d+) agree', out).groups())
+        self.assertEqual((len(rows), sum(float(row['similarity']) >= 0 for row in rows), sum(int(row['agrees']) for row in rows)),
+                         (count, refined, agree))
+        self.assertGreater(agree, 100)
+        towards, turned = (np.array(text.split(), float) for text in re.findall(r'\[([^]]*)\]', out))
+        np.testing.assert_allclose(towards, [1, 0, 0], atol=.02)
+        np.testing.assert_allclose(turned, [0, 3, 0], atol=.1)
+        self.assertEqual(cv2.imread(str(self.folder / 'm.png')).shape, (44 + 480, 2 * 640, 3))
+        # a camera of twice the focal length and no distortion gives another pose
+        wrong = match_images(a, b, cameras=['PINHOLE,480,360,800,800,240,180'])
+        turn = np.degrees(np.arccos((np.trace(wrong.pose.R) - 1) / 2))
+        self.assertGreater(abs(turn - 3), .5)
+
+    def test_without_cameras(self):
+        picture = self.world((4, 4))
+        a, b = self.write('a.png', picture[:300, :400]), self.write('b.png', picture[20:320, 30:430])
+        status, out, _ = self.run_command('match', a, b, '--out', self.folder / 'm.csv')
+        self.assertEqual((status, 'pose' in out), (0, False))
+        moves = np.array([[float(row['x1']) - float(row['x2']), float(row['y1']) - float(row['y2'])] for row in self.rows('m.csv')
+                          if float(row['similarity']) > 0])
+        self.assertGreater(len(moves), 100)
+        np.testing.assert_allclose(np.median(moves, 0), [30, 20], atol=.02)
+
+    def test_nothing_found_and_mistakes(self):
+        a, flat = self.write('a.png', self.world((4, 4))), self.write('flat.png', np.zeros((360, 480), np.uint8))
+        out = self.folder / 'm.csv'
+        self.assertEqual(self.run_command('match', a, flat, '--out', out)[0], 3)
+        self.assertEqual(self.rows('m.csv'), [])
+        status, text, _ = self.run_command('match', a, flat, '--out', out, '--camera', 'PINHOLE,480,360,400,400,240,180')
+        self.assertEqual((status, text.splitlines()[-1]), (3, 'no pose'))
+        for arguments, told in ((['--camera', 'PINHOLE,480,360,400'], 'PINHOLE'), (['--camera', 'PINHOLE,9,9,400,400,240,180'], '480 x 360'),
+                                (['--camera', 'x'] * 3, '3 cameras'), (['--picture', self.folder / 'no.suffix'], 'end its name'),
+                                (['--out', self.folder / 'none/m.csv'], 'no folder')):
+            status, _, err = self.run_command('match', a, a, *(['--out', out] if '--out' not in arguments else []), *arguments)
+            self.assertEqual((status, err.count('\n')), (1, 1))
+            self.assertIn(told, err)
+
+
+class Align(Commands):
+
+    @unittest.skipUnless((SCENES / 'H_view_panned').exists(), 'the scenes are not beside these tests')
+    def test_a_camera_that_was_turned_and_other_light(self):
+        other = self.write('other.png', texture(640, 480, seed=8))
+        (self.folder / 'text.png').write_text('no image')
+        images = [SCENES / 'view_panned.jpg', SCENES / 'view_overcast.jpg', other, self.folder / 'text.png']
+        status, out, _ = self.run_command('align', SCENES / 'view_noon.jpg', *images, '--out', self.folder / 'out')
+        self.assertEqual(status, 4)
+        self.assertIn('2 of 4 images are aligned', out)
+        rows = self.rows('out/transforms.csv')
+        self.assertEqual([row['image'] for row in rows], [path.name if isinstance(path, Path) else 'other.png' for path in images])
+        self.assertEqual([row['verdict'] for row in rows][:3], ['aligned', 'aligned', 'nothing in common'])
+        true = np.linalg.inv(np.loadtxt(SCENES / 'H_view_panned'))
+        for row, expected in zip(rows, (true, np.eye(3))):
+            found = np.array([row[f't{r}{c}'] for r in '123' for c in '123'], float).reshape(3, 3)
+            corners = np.array([[0, 0], [639, 0], [639, 479], [0, 479]], float)[:, None]
+            away = np.linalg.norm(cv2.perspectiveTransform(corners, found) - cv2.perspectiveTransform(corners, expected), axis=2)
+            self.assertLess(away.max(), 2)
+            self.assertGreater(int(row['matches']), 50)
+            self.assertLess(float(row['error_top_left']), 1)
+            self.assertEqual(cv2.imread(str(self.folder / 'out' / row['file'])).shape,
+                             cv2.imread(str(self.folder / 'out/reference.png')).shape)
+        page = (self.folder / 'out/index.html').read_text()
+        self.assertEqual((page.count('type="range"'), page.count('<p>')), (2, 2))
+
+    def test_names_and_folders(self):
+        picture = cv2.resize(texture(160, 120, seed=3), (640, 480), interpolation=cv2.INTER_CUBIC)
+        os.mkdir(self.folder / 'more')
+        paths = [self.write(name, picture) for name in ('reference.png', 'a&b.png', 'more/a&b.jpg')]
+        out = self.folder / 'out'
+        for _ in range(2):
+            done = align(paths[0], paths, str(out), 0)
+            self.assertEqual([each.file for each in done], ['reference_2.png', 'a&b.png', 'a&b_2.png'])
+        self.assertIn('src="a%26b_2.png" alt="a&amp;b.jpg', (out / 'index.html').read_text())
+        (out / 'mine.txt').touch()
+        with self.assertRaises(FileExistsError):
+            align(paths[0], paths, str(out))
+        for arguments, told in ((['gone.png', paths[1]], 'gone.png'), ([paths[0], paths[1]], 'mine.txt')):
+            status, _, err = self.run_command('align', *arguments, '--out', out)
+            self.assertEqual((status, told in err), (1, True))
+        self.assertEqual(self.run_command('align', *paths[:2], '--out', self.folder / 'new', '--model', 'similarity')[0], 0)
+        self.assertEqual(self.run_command('align', paths[0], self.write('t.png', texture(300, 200, seed=9)), '--out', self.folder / 'n')[0], 3)
