@@ -43,7 +43,7 @@ PackedCodes::PackedCodes(const std::vector<int>& levelSizes, InputArrayOfArrays 
 static int blocksFor(size_t rows)
 {
     const size_t blocks = (rows + CODES_PER_BLOCK - 1) / CODES_PER_BLOCK;
-    CV_Assert(blocks <= INT_MAX && rows < (size_t)1 << INDEX_BITS);
+    CV_Assert(blocks <= INT_MAX && (uint64)rows < (uint64)1 << INDEX_BITS);
     return (int)blocks;
 }
 
