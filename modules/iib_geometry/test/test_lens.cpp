@@ -4,6 +4,7 @@
 #include "pose.hpp"
 #include "wall.hpp"
 
+namespace opencv_test {
 namespace {
 using namespace iib_localization;
 
@@ -126,3 +127,4 @@ TEST(Pose, refined_to_the_truth_among_wrong_matches)
 }
 
 }  // namespace
+}  // namespace opencv_test

@@ -2,6 +2,7 @@
 
 #include "wall.hpp"
 
+namespace opencv_test {
 namespace {
 using namespace iib_localization;
 using cv::iib::Localizer;
@@ -155,3 +156,4 @@ TEST_F(Localization, codes_of_another_descriptor_are_refused)
 }
 
 }  // namespace
+}  // namespace opencv_test

@@ -6,6 +6,7 @@
 
 #include "wall.hpp"
 
+namespace opencv_test {
 namespace {
 using namespace iib_localization;
 
@@ -181,3 +182,4 @@ TEST_F(SmallMap, a_reader_gets_one_of_two_maps_that_replace_each_other)
 }
 
 }  // namespace
+}  // namespace opencv_test

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #endif
 
+namespace opencv_test {
 namespace {
 using namespace iib_localization;
 using cv::iib::Localizer;
@@ -224,3 +225,4 @@ TEST_F(Mapping, a_model_of_others)
 }
 
 }  // namespace
+}  // namespace opencv_test

@@ -3,6 +3,7 @@
 #include "retrieval.hpp"
 #include "opencv2/ts.hpp"
 
+namespace opencv_test {
 namespace {
 using namespace iib_localization;
 
@@ -64,3 +65,4 @@ TEST(Retrieval, without_codes_there_are_no_votes)
 }
 
 }  // namespace
+}  // namespace opencv_test

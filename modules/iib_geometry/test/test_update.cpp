@@ -3,6 +3,7 @@
 #include "numbers.hpp"
 #include "wall.hpp"
 
+namespace opencv_test {
 namespace {
 using namespace iib_localization;
 using cv::iib::Localizer;
@@ -134,3 +135,4 @@ TEST_F(Update, one_at_a_time)
 }
 
 }  // namespace
+}  // namespace opencv_test
