@@ -253,7 +253,7 @@ def describing():
 
 def chains():
     """Finding and describing, each method on its own points of a rendered picture."""
-    data = benchmark(WIDE)['chains']
+    data = benchmark(AVX2)['chains']
     orb = data[0]['milliseconds']
     return table(['', 'points', 'ms', 'ratio to ORB'],
                  [[r['name'], str(r['points']), '%.1f' % r['milliseconds'], '%.2f' % (r['milliseconds'] / orb)] for r in data])
@@ -261,7 +261,7 @@ def chains():
 
 def same_points():
     """Describing the same points of AKAZE."""
-    data = benchmark(WIDE)['same_points']
+    data = benchmark(AVX2)['same_points']
     return table(['', 'points', 'ms', 'ratio to IIB'],
                  [[r['name'], str(r['points']), '%.2f' % r['milliseconds'], '%.2f' % (r['milliseconds'] / data[0]['milliseconds'])] for r in data])
 
