@@ -184,6 +184,7 @@ MappedIndex::~MappedIndex() {}
 Ptr<MappedIndex> MappedIndex::create(const String& folder, const std::vector<int>& levelSizes)
 {
     PackedCodes::check(levelSizes);
+    checkedName(folder);
     if (!utils::fs::isDirectory(folder) && !utils::fs::createDirectory(folder))
         CV_Error(Error::StsError, "Cannot make the folder " + folder + ": check its parent and the rights");
     checkEmpty(folder);  // before the lock is in it
