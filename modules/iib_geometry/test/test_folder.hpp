@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -13,7 +14,7 @@ class TestFolder
 {
 public:
     TestFolder() : path_(cv::tempfile()) { cv::utils::fs::createDirectories(path_); }
-    ~TestFolder() { cv::utils::fs::remove_all(path_); }
+    ~TestFolder() { std::filesystem::remove_all(path_); }  // links too
     TestFolder(const TestFolder&) = delete;
     TestFolder& operator=(const TestFolder&) = delete;
 
