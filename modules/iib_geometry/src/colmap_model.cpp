@@ -8,6 +8,7 @@
 #include <sstream>
 #include <unordered_map>
 
+#include "../../iib/src/common/checked_file.hpp"
 #include "lens.hpp"
 #include "opencv2/core/quaternion.hpp"
 
@@ -22,7 +23,7 @@ class Reader
 public:
     Reader(const std::string& folder, const std::string& name) : name_(name)
     {
-        const std::string path = folder + "/" + name;
+        const fs::path path = cv::iib::systemName(folder + "/" + name);
         std::error_code error;
         expect(fs::is_regular_file(path, error));  // a pipe would not end
         left_ = fs::file_size(path, error);
@@ -223,37 +224,21 @@ template <typename... Ts> void put(std::string& file, Ts... values)
     (file.append(reinterpret_cast<const char*>(&values), sizeof(values)), ...);
 }
 
-void writeWhole(const std::string& path, const std::string& content)
-{
-    const std::string beside = path + ".tmp";
-    std::ofstream stream(beside, std::ios::binary);
-    stream << content;
-    stream.close();
-    std::error_code error;
-    if (stream)
-        fs::rename(beside, path, error);
-    if (!stream || error)
-    {
-        fs::remove(beside, error);
-        CV_Error(cv::Error::StsError,
-                path + " cannot be written: check the folder, its rights and the free space");
-    }
-}
-
 }  // namespace
 
 std::vector<PosedImage> readModel(const std::string& folder)
 {
     std::error_code error;
     std::string hint;
-    for (const char* part : {"/0", "/sparse/0", "/sparse"})
-        if (hint.empty() && (fs::exists(folder + part + "/cameras.bin", error) ||
-                                    fs::exists(folder + part + "/cameras.txt", error)))
+    const auto exists = [&](const std::string& name) {
+        return fs::exists(cv::iib::systemName(folder + name), error);
+    };
+    for (const std::string part : {"/0", "/sparse/0", "/sparse"})
+        if (hint.empty() && (exists(part + "/cameras.bin") || exists(part + "/cameras.txt")))
             hint = ": did you mean " + folder + part + "?";
     try
     {
-        const bool text =
-                fs::exists(folder + "/cameras.txt", error) && !fs::exists(folder + "/cameras.bin", error);
+        const bool text = exists("/cameras.txt") && !exists("/cameras.bin");
         Model model = text ? readText(folder) : readBinary(folder);
         if (model.images.empty())
             CV_Error(cv::Error::StsError, "no image has a pose");
@@ -312,7 +297,7 @@ void cv::iib::writeModel(
     }
     std::string count;
     put(count, uint64_t(known.size()));
-    writeWhole(folder + "/cameras.bin", count + cameras);
-    writeWhole(folder + "/images.bin", posed);
-    writeWhole(folder + "/points3D.bin", seen);
+    cv::iib::writeText(folder + "/cameras.bin", count + cameras);
+    cv::iib::writeText(folder + "/images.bin", posed);
+    cv::iib::writeText(folder + "/points3D.bin", seen);
 }

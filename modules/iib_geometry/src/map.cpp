@@ -7,8 +7,12 @@
 #include <filesystem>
 #include <set>
 
-#ifndef _WIN32
 #include <fcntl.h>
+#ifdef _WIN32
+#include <io.h>
+#include <share.h>
+#include <sys/stat.h>
+#else
 #include <sys/file.h>
 #include <unistd.h>
 #endif
@@ -28,6 +32,22 @@ const cv::iib::FileKind KIND = {"IIB_MAP_", 1, "a map of opencv_iib"};
 const std::vector<std::string> OWN = {"map.iib", "cameras.bin", "images.bin", "points3D.bin"};
 const std::vector<std::string> EARLIER = {"map.json", "codes.npy", "misses.npy", "points.npy", "sees.npy",
         "views.npy", "rigs.bin", "frames.bin"};
+
+//! A descriptor that keeps other processes from locking the folder until it is closed; below 0 if one has locked it.
+int lockFolder(const fs::path& folder)
+{
+#ifdef _WIN32  // where no folder is locked: a file beside it, which goes when it is closed
+    return ::_wsopen((folder.wstring() + L".lock").c_str(), _O_CREAT | _O_RDWR | _O_TEMPORARY | _O_NOINHERIT,
+            _SH_DENYRW, _S_IREAD | _S_IWRITE);
+#else
+    const int lock = ::open(folder.c_str(), O_RDONLY | O_CLOEXEC);
+    if (lock >= 0 && ::flock(lock, LOCK_EX | LOCK_NB) == 0)
+        return lock;
+    if (lock >= 0)
+        ::close(lock);
+    return -1;
+#endif
+}
 
 //! Whether a file has one of these names, or that of one which a killed process has not finished.
 bool isOf(const std::vector<std::string>& names, const std::string& name)
@@ -251,11 +271,12 @@ Map readMap(const std::string& folder)
 MapFolder::MapFolder(const std::string& folder) : folder_(folder)
 {
     std::error_code error;
-    fs::create_directories(folder, error);
+    const fs::path path = cv::iib::systemName(folder);
+    fs::create_directories(path, error);
     bool known = false, any = false;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
     {
-        const std::string name = entry->path().filename().string();
+        const std::string name = entry->path().filename().u8string();
         any = true;
         known = known || isOf({OWN[0], EARLIER[0]}, name);
         if (!isOf(OWN, name) && !isOf(EARLIER, name))
@@ -266,24 +287,13 @@ MapFolder::MapFolder(const std::string& folder) : folder_(folder)
         CV_Error(cv::Error::StsError, folder + " cannot be written: " + error.message());
     if (any && !known)
         CV_Error(cv::Error::StsError, folder + " holds a COLMAP model and is no map: choose another folder");
-#ifndef _WIN32
-    lock_ = ::open(folder.c_str(), O_RDONLY | O_CLOEXEC);
-    if (lock_ < 0 || ::flock(lock_, LOCK_EX | LOCK_NB) != 0)
-    {
-        if (lock_ >= 0)
-            ::close(lock_);
+    lock_ = lockFolder(path);
+    if (lock_ < 0)
         CV_Error(cv::Error::StsError,
                 folder + " is being written by another process: wait until it has ended");
-    }
-#endif
 }
 
-MapFolder::~MapFolder()
-{
-#ifndef _WIN32
-    ::close(lock_);
-#endif
-}
+MapFolder::~MapFolder() { ::close(lock_); }
 
 void MapFolder::write(const Map& map) const
 {
@@ -308,8 +318,9 @@ void MapFolder::write(const Map& map) const
     cv::iib::writeModel(folder_, {map.images.begin(), map.images.end()}, map.points);
     file.commit();
     std::error_code error;
-    for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error))
-        if (std::count(OWN.begin(), OWN.end(), entry->path().filename().string()) == 0)
+    for (fs::directory_iterator entry(cv::iib::systemName(folder_), error), end; !error && entry != end;
+            entry.increment(error))
+        if (std::count(OWN.begin(), OWN.end(), entry->path().filename().u8string()) == 0)
             fs::remove(entry->path(), error);  // of an earlier version or a killed process
 }
 

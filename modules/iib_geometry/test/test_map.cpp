@@ -4,6 +4,7 @@
 #include <fstream>
 #include <thread>
 
+#include "colmap_model.hpp"
 #include "wall.hpp"
 
 namespace opencv_test {
@@ -150,6 +151,14 @@ TEST_F(SmallMap, folders_that_are_no_maps)
     EXPECT_NE("", messageOf([&] { MapFolder other(folder.path("file")); }));
     EXPECT_EQ("precious", textOf(folder.path("file")));
     EXPECT_EQ(before, textOf(name + "/map.iib"));
+}
+
+TEST_F(SmallMap, names_in_any_language)
+{
+    const std::string other = name + " \xc3\xa9\xe6\xbc\xa2\xd0\xb6";  // of no code page of Windows
+    MapFolder(other).write(smallMap());
+    EXPECT_EQ(3u, readMap(other).images.size());
+    EXPECT_EQ(3u, readModel(other).size());
 }
 
 TEST_F(SmallMap, one_process_writes_at_a_time)

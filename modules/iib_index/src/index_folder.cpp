@@ -2,7 +2,14 @@
 #include "precomp.hpp"
 #include "index_folder.hpp"
 
+#ifdef _WIN32
+#include "../../iib/src/common/checked_file.hpp"
+
+#define NOMINMAX 1  // as libstdc++ has it
+#include <windows.h>
+#else
 #include "opencv2/core/utils/filesystem.hpp"
+#endif
 
 #include <cstdio>
 
@@ -36,11 +43,52 @@ static bool isUnfinished(const String& name)
            (target == MANIFEST || target == format(SEGMENT, segment));
 }
 
-void checkEmpty(const String& folder)
+#ifdef _WIN32  // OpenCV's own functions take no name outside of the code page
+static void makeDirectory(const String& name) { CreateDirectoryW(systemName(name).c_str(), 0); }
+static bool isDirectory(const String& name)
+{
+    const DWORD attributes = GetFileAttributesW(systemName(name).c_str());
+    return attributes != INVALID_FILE_ATTRIBUTES && (attributes & FILE_ATTRIBUTE_DIRECTORY) != 0;
+}
+static void removeFile(const String& name) { DeleteFileW(systemName(name).c_str()); }
+static std::vector<String> namesIn(const String& folder)
+{
+    std::vector<String> names;
+    WIN32_FIND_DATAW found;
+    const HANDLE search = FindFirstFileW(systemName(folder + "/*").c_str(), &found);
+    for (bool more = search != INVALID_HANDLE_VALUE; more; more = FindNextFileW(search, &found) != 0)
+    {
+        char name[3 * MAX_PATH + 1];
+        WideCharToMultiByte(CP_UTF8, 0, found.cFileName, -1, name, sizeof(name), 0, 0);
+        if (name != String(".") && name != String(".."))
+            names.push_back(name);
+    }
+    FindClose(search);
+    return names;
+}
+#else
+static void makeDirectory(const String& name) { utils::fs::createDirectory(name); }
+static bool isDirectory(const String& name) { return utils::fs::isDirectory(name); }
+static void removeFile(const String& name) { std::remove(name.c_str()); }
+static std::vector<String> namesIn(const String& folder)
 {
     std::vector<String> names;
     utils::fs::glob_relative(folder, String(), names, false, true);
-    for (const String& name : names)
+    return names;
+}
+#endif
+
+void makeFolder(const String& folder)
+{
+    if (!isDirectory(folder))
+        makeDirectory(folder);
+    if (!isDirectory(folder))
+        CV_Error(Error::StsError, "Cannot make the folder " + folder + ": check its parent and the rights");
+}
+
+void checkEmpty(const String& folder)
+{
+    for (const String& name : namesIn(folder))
     {
         if (name == MANIFEST)
             CV_Error(Error::StsBadArg, folder + " holds an index already: open it, or take another folder");
@@ -51,11 +99,9 @@ void checkEmpty(const String& folder)
 
 void removeUnfinished(const String& folder)
 {
-    std::vector<String> names;
-    utils::fs::glob_relative(folder, String(), names);
-    for (const String& name : names)
+    for (const String& name : namesIn(folder))
         if (isUnfinished(name))
-            std::remove((folder + "/" + name).c_str());
+            removeFile(folder + "/" + name);
 }
 
 }  // namespace iib

@@ -13,6 +13,8 @@ String manifestOf(const String& folder);
 String segmentOf(const String& folder, uint64 number);
 String lockOf(const String& folder);
 
+//! Makes the folder unless it is there.
+void makeFolder(const String& folder);
 //! Throws if there is anything but the lock and unfinished files, which a killed create() leaves.
 void checkEmpty(const String& folder);
 //! Removes the unfinished files of an index and nothing else. Only under the lock.

@@ -2,9 +2,10 @@
 
 #include "precomp.hpp"
 #include "mapped_file.hpp"
+#include "../../iib/src/common/checked_file.hpp"
 
 #ifdef _WIN32
-#define NOMINMAX
+#define NOMINMAX 1  // as libstdc++ has it
 #include <windows.h>
 #else
 #include <cerrno>
@@ -22,12 +23,12 @@ namespace iib {
 
 MappedFile::MappedFile(const String& filename) : bytes(0), length(0)
 {
-    const HANDLE file = CreateFileA(filename.c_str(), GENERIC_READ, FILE_SHARE_READ | FILE_SHARE_DELETE, 0,
-            OPEN_EXISTING, FILE_ATTRIBUTE_NORMAL, 0);
+    const HANDLE file = CreateFileW(systemName(filename).c_str(), GENERIC_READ,
+            FILE_SHARE_READ | FILE_SHARE_DELETE, 0, OPEN_EXISTING, FILE_ATTRIBUTE_NORMAL, 0);
     LARGE_INTEGER size;
     const bool opened = file != INVALID_HANDLE_VALUE && GetFileSizeEx(file, &size);
     if (opened && size.QuadPart > 0)
-        if (const HANDLE mapping = CreateFileMappingA(file, 0, PAGE_READONLY, 0, 0, 0))
+        if (const HANDLE mapping = CreateFileMappingW(file, 0, PAGE_READONLY, 0, 0, 0))
         {
             bytes = (const uchar*)MapViewOfFile(mapping, FILE_MAP_READ, 0, 0, 0);
             CloseHandle(mapping);
@@ -43,8 +44,8 @@ MappedFile::~MappedFile() { UnmapViewOfFile(bytes); }
 
 FileLock::FileLock(const String& filename)
 {
-    while ((file = CreateFileA(filename.c_str(), GENERIC_WRITE, 0, 0, OPEN_ALWAYS, FILE_ATTRIBUTE_NORMAL,
-                    0)) == INVALID_HANDLE_VALUE)
+    while ((file = CreateFileW(systemName(filename).c_str(), GENERIC_WRITE, 0, 0, OPEN_ALWAYS,
+                    FILE_ATTRIBUTE_NORMAL, 0)) == INVALID_HANDLE_VALUE)
     {
         if (GetLastError() != ERROR_SHARING_VIOLATION)
             CV_Error(Error::StsError, "Cannot write " + filename + ": check the folder and its rights");

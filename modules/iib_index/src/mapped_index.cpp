@@ -3,8 +3,6 @@
 #include "index_folder.hpp"
 #include "manifest.hpp"
 
-#include "opencv2/core/utils/filesystem.hpp"
-
 #include <functional>
 #include <set>
 
@@ -184,9 +182,7 @@ MappedIndex::~MappedIndex() {}
 Ptr<MappedIndex> MappedIndex::create(const String& folder, const std::vector<int>& levelSizes)
 {
     PackedCodes::check(levelSizes);
-    checkedName(folder);
-    if (!utils::fs::isDirectory(folder) && !utils::fs::createDirectory(folder))
-        CV_Error(Error::StsError, "Cannot make the folder " + folder + ": check its parent and the rights");
+    makeFolder(folder);
     checkEmpty(folder);  // before the lock is in it
     const FileLock lock(lockOf(folder));
     checkEmpty(folder);

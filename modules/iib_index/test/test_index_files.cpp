@@ -116,6 +116,15 @@ TEST_F(IIB_MappedIndex_Files, are_written_as_documented)
     EXPECT_TRUE(fromHex(golden.manifest) == readFile(own.name + "/manifest.iib"));
 }
 
+TEST_F(IIB_MappedIndex_Files, names_in_any_language)
+{
+    const String name = folder.name + "/\xc3\xa9\xe6\xbc\xa2\xd0\xb6";  // of no code page of Windows
+    for (int i = 0; i < 2; i++)
+        (i == 0 ? MappedIndex::create(name, LEVELS) : MappedIndex::open(name))->add(images[0]);
+    EXPECT_EQ(2, MappedIndex::open(name)->images());
+    expectError(Error::StsBadArg, "already", [&] { MappedIndex::create(name, LEVELS); });
+}
+
 TEST_F(IIB_MappedIndex_Files, of_each_layout_are_read)
 {
     for (const Golden& golden : GOLDENS)
@@ -239,6 +248,7 @@ TEST_F(IIB_MappedIndex_Files, impossible_numbers_are_refused)
     EXPECT_TRUE(expected(images, queries, 3, {1, 5}) == search(*MappedIndex::open(folder.name), queries, 3));
 }
 
+#ifndef _WIN32  // which refuses to delete it
 // A file that is mapped must not be shortened; to delete or replace it is harmless.
 TEST_F(IIB_MappedIndex_Files, mapped_segments_outlive_their_names)
 {
@@ -247,16 +257,7 @@ TEST_F(IIB_MappedIndex_Files, mapped_segments_outlive_their_names)
     ASSERT_EQ(0, std::rename(segment(2).c_str(), segment(4).c_str()));
     EXPECT_TRUE(before == search(*index, queries, 3));
 }
-
-// A C string ends at its first zero: another folder would be made.
-TEST_F(IIB_MappedIndex_Files, names_of_folders_are_bytes_without_a_zero)
-{
-    const String zero = folder.name + String("/a\0b", 4);
-    expectError(Error::StsBadArg, "a zero byte", [&] { MappedIndex::create(zero, LEVELS); });
-    EXPECT_FALSE(utils::fs::exists(folder.name + "/a"));
-    MappedIndex::create(folder.name + "/a", LEVELS);
-    expectError(Error::StsBadArg, "a zero byte", [&] { MappedIndex::open(zero); });
-}
+#endif
 
 }  // namespace
 }  // namespace opencv_test

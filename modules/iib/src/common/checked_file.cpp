@@ -9,36 +9,85 @@
 #include <cstdio>
 #include <cstring>
 
-#include <sys/stat.h>
 #ifdef _WIN32
-#define NOMINMAX
+#define NOMINMAX 1  // as libstdc++ has it
+#include <fcntl.h>
 #include <io.h>
 #include <process.h>
+#include <sys/stat.h>
 #include <windows.h>
 #else
 #include <cstdlib>
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #endif
 
 namespace cv {
 namespace iib {
 
+#ifdef _WIN32
+std::wstring systemName(const String& name)
+{
+    std::wstring wide;
+    for (const unsigned page : {CP_UTF8, CP_ACP})
+        if (wide.empty())
+        {
+            wide.resize(MultiByteToWideChar(page, MB_ERR_INVALID_CHARS, name.data(), (int)name.size(), 0, 0));
+            MultiByteToWideChar(page, 0, name.data(), (int)name.size(), &wide[0], (int)wide.size());
+        }
+    return wide;
+}
+#endif
+
 namespace {
 
 const size_t LETTERS = 8;
 
+//! What is at a file's name.
+struct Present
+{
+    bool any, file;
+    int rights;
+};
+
 #ifdef _WIN32
 int processId() { return _getpid(); }
 String fileOf(const String& name) { return name; }
-void keepRights(std::FILE*, const struct stat&) {}
+Present presentAt(const String& name)
+{
+    const DWORD attributes = GetFileAttributesW(systemName(name).c_str());
+    return {attributes != INVALID_FILE_ATTRIBUTES, (attributes & FILE_ATTRIBUTE_DIRECTORY) == 0, 0};
+}
+void keepRights(std::FILE*, int) {}
+std::FILE* create(const String& name)
+{
+    const int file = _wopen(systemName(name).c_str(),
+            _O_CREAT | _O_EXCL | _O_WRONLY | _O_BINARY | _O_NOINHERIT, _S_IREAD | _S_IWRITE);
+    return file < 0 ? 0 : _fdopen(file, "wb");
+}
+void remove(const String& name) { _wremove(systemName(name).c_str()); }
 bool flushToDisk(std::FILE* file) { return std::fflush(file) == 0 && _commit(_fileno(file)) == 0; }
+
+// Who reads the old file, or a scanner of viruses, keeps it from being replaced, for a moment.
 bool replace(const String& from, const String& to, const String&)
 {
-    return MoveFileExA(from.c_str(), to.c_str(), MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) != 0;
+    for (int attempt = 0; attempt < 500; attempt++)
+    {
+        if (MoveFileExW(systemName(from).c_str(), systemName(to).c_str(),
+                    MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH))
+            return true;
+        const DWORD error = GetLastError();
+        if (error != ERROR_SHARING_VIOLATION && error != ERROR_ACCESS_DENIED)
+            return false;
+        Sleep(10);
+    }
+    return false;
 }
 #else
 int processId() { return (int)getpid(); }
+std::FILE* create(const String& name) { return std::fopen(name.c_str(), "wbx"); }
+void remove(const String& name) { std::remove(name.c_str()); }
 
 String fileOf(const String& name)
 {
@@ -53,10 +102,17 @@ String fileOf(const String& name)
     return result;
 }
 
-// Rights that cannot be kept are no reason to lose the data.
-void keepRights(std::FILE* file, const struct stat& status)
+Present presentAt(const String& name)
 {
-    if (fchmod(fileno(file), status.st_mode & 07777) != 0)
+    struct stat status;
+    const bool any = stat(name.c_str(), &status) == 0;
+    return {any, any && S_ISREG(status.st_mode), any ? int(status.st_mode & 07777) : 0};
+}
+
+// Rights that cannot be kept are no reason to lose the data.
+void keepRights(std::FILE* file, int rights)
+{
+    if (fchmod(fileno(file), (mode_t)rights) != 0)
         return;
 }
 
@@ -77,40 +133,12 @@ bool replace(const String& from, const String& to, const String& folder)
 }
 #endif
 
-// CRC-32 of IEEE 802.3, as gzip has it.
-unsigned crc32(const String& bytes)
+//! Whoever opens a file by a C string would open another one.
+void checkName(const String& name)
 {
-    unsigned crc = ~0u;
-    for (char byte : bytes)
-    {
-        crc ^= (uchar)byte;
-        for (int bit = 0; bit < 8; bit++)
-            crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0);
-    }
-    return ~crc;
-}
-
-//! A gzip file (RFC 1952) of stored blocks (RFC 1951): what these files save is too short to be worth more.
-String gzipped(const String& text)
-{
-    String file("\x1f\x8b\x08\0\0\0\0\0\0\xff", 10);
-    const auto number = [&](size_t value, int bytes) {
-        for (int i = 0; i < bytes; i++)
-            file += (char)(value >> 8 * i);
-    };
-    size_t at = 0;
-    do
-    {
-        const String block = text.substr(at, 0xffff);
-        at += block.size();
-        number(at == text.size(), 1);  // whether it is the last one
-        number(block.size(), 2);
-        number(~block.size(), 2);
-        file += block;
-    } while (at < text.size());
-    number(crc32(text), 4);
-    number(text.size(), 4);
-    return file;
+    if (name.find('\0') != String::npos)
+        CV_Error(Error::StsBadArg,
+                format("the name of a file that begins with %s holds a zero byte", name.c_str()));
 }
 
 }  // namespace
@@ -119,23 +147,22 @@ String gzipped(const String& text)
 class ReplacedFile
 {
 public:
-    explicit ReplacedFile(const String& filename)
-        : name(checkedName(filename)), target(fileOf(filename)), stream(0)
+    explicit ReplacedFile(const String& filename) : name(filename), target(fileOf(filename)), stream(0)
     {
-        struct stat status;
-        const bool exists = stat(target.c_str(), &status) == 0;
-        if (exists && (status.st_mode & S_IFMT) != S_IFREG)
+        checkName(filename);
+        const Present old = presentAt(target);
+        if (old.any && !old.file)
             CV_Error(Error::StsError, "Cannot write " + name + ": it is a folder, a device or a pipe");
         static std::atomic<int> counter(0);
         for (int attempt = 0; attempt < 100 && !stream; attempt++)  // another's name in use
         {
             temporary = format("%s.%d-%d.tmp", target.c_str(), processId(), counter++);
-            stream = std::fopen(temporary.c_str(), "wbx");
+            stream = create(temporary);
         }
         if (!stream)
             CV_Error(Error::StsError, "Cannot write " + name + ": check the folder and its rights");
-        if (exists)
-            keepRights(stream, status);
+        if (old.any)
+            keepRights(stream, old.rights);
     }
     ReplacedFile(const ReplacedFile&) = delete;
     ReplacedFile& operator=(const ReplacedFile&) = delete;
@@ -144,7 +171,7 @@ public:
         if (stream)
             std::fclose(stream);
         if (!committed)
-            std::remove(temporary.c_str());
+            remove(temporary);
     }
 
     void write(const void* data, size_t size)
@@ -176,10 +203,8 @@ private:
 
 void writeText(const String& filename, const String& text)
 {
-    const bool packed = filename.size() > 3 && filename.compare(filename.size() - 3, 3, ".gz") == 0;
-    const String content = packed ? gzipped(text) : text;
     ReplacedFile file(filename);
-    file.write(content.data(), content.size());
+    file.write(text.c_str(), text.size());
     file.commit();
 }
 
@@ -227,9 +252,11 @@ uint64 CheckedWriter::seal()
 void CheckedWriter::commit() { file->commit(); }
 
 CheckedReader::CheckedReader(const String& filename, const FileKind& kind)
-    : name(checkedName(filename)), kindName(kind.name), stream(filename.c_str(), std::ios::binary), whole(0),
-      rest(0), format(0)
+    : name(filename), kindName(kind.name), whole(0), rest(0), format(0)
 {
+    checkName(filename);
+    if (!stream.rdbuf()->open(systemName(name).c_str(), std::ios::in | std::ios::binary))
+        CV_Error(Error::StsError, "Cannot read " + name);
     stream.seekg(0, std::ios::end);
     const std::streamoff end = stream.tellg();
     stream.seekg(0);

@@ -15,6 +15,13 @@ namespace iib {
 tell when they are altered: eight letters that name the kind of file, u32 version, little-endian numbers and bytes, u64
 FNV-1a hash of all before. */
 
+//! A file's name as the system takes it. Windows: from UTF-8, as Python has it, else from the code page.
+#ifdef _WIN32
+CV_EXPORTS std::wstring systemName(const String& name);
+#else
+inline const String& systemName(const String& name) { return name; }
+#endif
+
 //! The 64-bit FNV-1a hash of a sequence of bytes.
 class Fnv1a
 {
@@ -31,18 +38,8 @@ private:
     uint64 state;
 };
 
-//! The name. @throws cv::Exception for one with a zero byte: who opens it by a C string would open another file.
-inline const String& checkedName(const String& name)
-{
-    if (name.find('\0') != String::npos)
-        CV_Error(Error::StsBadArg,
-                format("the name of a file that begins with %s holds a zero byte", name.c_str()));
-    return name;
-}
-
-//! Writes a whole file as CheckedWriter does, packed by gzip if its name ends in .gz. @throws cv::Exception if it cannot; the old
-//! file is then as it was.
-void writeText(const String& filename, const String& text);
+//! Writes a whole file as CheckedWriter does. @throws cv::Exception if it cannot; the old file is then as it was.
+CV_EXPORTS void writeText(const String& filename, const String& text);
 
 class ReplacedFile;
 
