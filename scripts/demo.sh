@@ -1,6 +1,6 @@
 #!/bin/sh
-# Matches two images of one scene, with IIB and with ORB, and writes a picture; without images the project's day and night
-# pair. The first run installs what is missing through apt and builds the library in build/.
+# Matches two images of one place with IIB, SIFT and ORB, and writes a picture; without images a pair of this project's, of
+# which the camera moves and the light goes from noon to night. The first run installs what is missing through apt and builds the library in build/.
 #   scripts/demo.sh [IMAGE_A IMAGE_B] [--OPTION=VALUE]...
 # The options, with their defaults:
 table="$(dirname "$0")/../modules/iib/samples/iib_demo.cpp"
@@ -21,7 +21,7 @@ done
 case $operands in
 0)
     pair="$root/tools/synthetic"
-    set -- "$pair/day.png" "$pair/night.png" --homography="$pair/H_day_night" "$@"
+    set -- "$pair/moved_noon.jpg" "$pair/moved_night.jpg" --fundamental="$pair/F_moved" "$@"
     ;;
 2) ;;
 *) fail "two images are needed, not $operands (--help)" ;;

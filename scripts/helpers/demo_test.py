@@ -10,28 +10,32 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAIR = ROOT / 'tools/synthetic'
 DAY, NIGHT = str(PAIR / 'day.png'), str(PAIR / 'night.png')
+MOVED = [str(PAIR / name) for name in ('moved_noon.jpg', 'moved_night.jpg')]
 FILES = {'text.png': 'not an image', 'flat.pgm': 'P2 64 64 1\n' + 64 * 64 * '0 ', 'singular.txt': '1 0 0 0 1 0 0 0 0',
          'noise.pgm': 'P2 160 120 255\n' + ' '.join(str(i * i * 7919 % 9973 % 256) for i in range(160 * 120)) + '\n',
          'short.txt': '1 0 0 0', 'true.txt': (PAIR / 'H_day_night').read_text()}
 MISTAKES = [[], [DAY], ['missing.png', NIGHT], ['text.png', NIGHT], ['flat.pgm', 'flat.pgm']] + [
     [DAY, NIGHT, option] for option in (
-        '--homography=missing.txt', '--homography=short.txt', '--homography=singular.txt', '--out=no-such-folder/picture.png',
+        '--homography=missing.txt', '--homography=short.txt', '--homography=singular.txt', '--fundamental=short.txt', '--out=no-such-folder/picture.png',
         '--out=picture.unknown')]
-# Judged by the true homography, matches are correct; by an estimated one, consistent.
-EXPECTED = [('', r'\nIIB \d+ of \d+ consistent, ORB \d+ of \d+ consistent\n'),
-            ('--homography=true.txt', r'\nIIB +128 .*\nORB +32 .*\ncorrect: within 3 px of true.txt\n\nIIB [1-9]\d\d of \d+ correct, ORB \d+ of \d+ correct\n')]
+# Judged by the truth, matches are correct; by an estimated homography, consistent. The chain wins in each.
+LINE = r'\nIIB ([1-9]\d+) of \d+ {0}, SIFT (\d+) of \d+ {0}, ORB (\d+) of \d+ {0}\n'
+EXPECTED = [([DAY, NIGHT], r'\nconsistent: within 3 pixels of a homography that MAGSAC[^\n]*\n' + LINE.format('consistent')),
+            ([DAY, NIGHT, '--homography=true.txt'], r'\ncorrect: within 3 pixels of the homography\n' + LINE.format('correct')),
+            ([*MOVED, '--fundamental=' + str(PAIR / 'F_moved')],
+             r'\ncorrect: within 3 pixels of the epipolar line\n' + LINE.format('correct'))]
 
 
 def run(*arguments):
     return subprocess.run([os.path.abspath(sys.argv[1]), *arguments], cwd=folder, capture_output=True, text=True)
 
 
-def shown(options):
-    """What the demo prints of its pair, with the last lines a person reads."""
-    done = run(DAY, NIGHT, '--out=picture.png', *options.split())
-    if done.returncode or not re.search(r'\n[^\n]*IIB[^\n]*\npicture: [^\n]*picture.png\n$', done.stdout) or \
+def shown(arguments):
+    """What the demo prints of two images, with the last lines a person reads."""
+    done = run(*arguments, '--out=picture.png')
+    if done.returncode or not re.search(r'\n[^\n]*IIB[^\n]*\npicture: picture.png\n$', done.stdout) or \
             not (folder / 'picture.png').exists():
-        wrong.append(f'{options}: no summary or no picture: {done}')
+        wrong.append(f'{arguments}: no summary or no picture: {done}')
     (folder / 'picture.png').unlink(missing_ok=True)
     return done.stdout
 
@@ -45,12 +49,16 @@ with tempfile.TemporaryDirectory() as name:
         done = run(*mistake)
         if done.returncode != 2 or done.stdout or not re.fullmatch('iib_demo: [^\n]+\n', done.stderr):
             wrong.append(f'a mistake: {done}')
-    if not re.search('--homography.*--out', run('--help').stdout, re.DOTALL):
+    if not re.search('--fundamental.*--homography.*--out', run('--help').stdout, re.DOTALL):
         wrong.append('--help does not list the options')
+    for arguments, pattern in EXPECTED:
+        found = re.search(pattern, shown(arguments))
+        if not found or int(found[1]) < 5 * max(1, int(found[2])) or int(found[1]) < 5 * int(found[3]):
+            wrong.append(f'{arguments}: not five times as many right matches as the others: {found}')
     if sys.argv[2].startswith('4.6.'):  # other versions may detect other points
-        claim = re.search('`(IIB [0-9]+ of [0-9]+ correct, ORB [^`]*)`', (ROOT / 'README.md').read_text())[1]
-        EXPECTED.append(('--homography=true.txt', re.escape(f'\n{claim}\n')))
-    wrong += [f'{options}: no {pattern}' for options, pattern in EXPECTED if not re.search(pattern, shown(options))]
+        claim = re.search('`(IIB [0-9]+ of [0-9]+ correct, SIFT [^`]*)`', (ROOT / 'README.md').read_text())[1]
+        if f'\n{claim}\n' not in shown(EXPECTED[-1][0]):
+            wrong.append(f'the README claims {claim}')
     # nothing in common
     done = run(DAY, 'noise.pgm', '--homography=true.txt', '--out=picture.png')
     if done.returncode != 3 or not re.fullmatch('iib_demo: nothing agrees[^\n]+\n', done.stderr):
