@@ -89,6 +89,15 @@ size_t parametersOf(const std::string& model)
     return m.focals + 2 + m.others;
 }
 
+Camera scaled(const Camera& camera, double scale, const cv::Size& size)
+{
+    Camera small = camera;
+    small.size = size;
+    for (size_t i = 0; i < modelOf(camera).focals + 2; i++)
+        small.parameters[i] *= scale;
+    return small;
+}
+
 Lens::Lens(const Camera& camera)
 {
     const Model& model = modelOf(camera);

@@ -37,6 +37,9 @@ inline bool same(const Camera& a, const Camera& b)
     return a.model == b.model && a.size == b.size && a.parameters == b.parameters;
 }
 
+//! The camera of an image that was reduced to a size by a scale.
+Camera scaled(const Camera& camera, double scale, const cv::Size& size);
+
 //! COLMAP's number of a camera model, or -1; of a number its name, or null.
 int modelNumber(const std::string& name);
 const char* modelName(uint64 number);

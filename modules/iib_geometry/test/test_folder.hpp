@@ -14,7 +14,7 @@ class TestFolder
 {
 public:
     TestFolder() : path_(cv::tempfile()) { cv::utils::fs::createDirectories(path_); }
-    ~TestFolder() { std::filesystem::remove_all(path_); }
+    ~TestFolder() { std::filesystem::remove_all(path_); }  // links too
     TestFolder(const TestFolder&) = delete;
     TestFolder& operator=(const TestFolder&) = delete;
 

@@ -56,11 +56,14 @@ TEST(Lens, of_colmaps_definitions)
         SCOPED_TRACE(c.camera);
         const Camera camera = Camera::parse(c.camera);
         const Lens lens(camera);
-        const std::vector<cv::Point2d> seen = camera.project(points);
+        const std::vector<cv::Point2d> seen = camera.project(points),
+                                       half = scaled(camera, .5, {320, 240}).project(points);
         for (size_t i = 0; i < 2; i++)
         {
             EXPECT_NEAR(c.seen[2 * i], seen[i].x, 1e-8);
             EXPECT_NEAR(c.seen[2 * i + 1], seen[i].y, 1e-8);
+            EXPECT_LT(cv::norm((seen[i] - cv::Point2d(.5, .5)) * .5 - half[i]), 1e-9)
+                    << "of a pixel's centre";
         }
         const cv::Vec3d straight = lens.matrix() * (cv::Vec3d(points[0]) * (1 / points[0].z));
         EXPECT_LT(cv::norm(lens.undistorted(seen)[0] - cv::Point2d(straight[0], straight[1])), 1e-6);

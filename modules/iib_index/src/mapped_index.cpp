@@ -182,7 +182,7 @@ MappedIndex::~MappedIndex() {}
 Ptr<MappedIndex> MappedIndex::create(const String& folder, const std::vector<int>& levelSizes)
 {
     PackedCodes::check(levelSizes);
-    makeFolder(folder);
+    makeFolder(checkedName(folder));
     checkEmpty(folder);  // before the lock is in it
     const FileLock lock(lockOf(folder));
     checkEmpty(folder);

@@ -259,5 +259,15 @@ TEST_F(IIB_MappedIndex_Files, mapped_segments_outlive_their_names)
 }
 #endif
 
+// A C string ends at its first zero: another folder would be made.
+TEST_F(IIB_MappedIndex_Files, names_of_folders_are_bytes_without_a_zero)
+{
+    const String zero = folder.name + String("/a\0b", 4);
+    expectError(Error::StsBadArg, "a zero byte", [&] { MappedIndex::create(zero, LEVELS); });
+    EXPECT_FALSE(utils::fs::exists(folder.name + "/a"));
+    MappedIndex::create(folder.name + "/a", LEVELS);
+    expectError(Error::StsBadArg, "a zero byte", [&] { MappedIndex::open(zero); });
+}
+
 }  // namespace
 }  // namespace opencv_test

@@ -133,12 +133,40 @@ bool replace(const String& from, const String& to, const String& folder)
 }
 #endif
 
-//! Whoever opens a file by a C string would open another one.
-void checkName(const String& name)
+// CRC-32 of IEEE 802.3, as gzip has it.
+unsigned crc32(const String& bytes)
 {
-    if (name.find('\0') != String::npos)
-        CV_Error(Error::StsBadArg,
-                format("the name of a file that begins with %s holds a zero byte", name.c_str()));
+    unsigned crc = ~0u;
+    for (char byte : bytes)
+    {
+        crc ^= (uchar)byte;
+        for (int bit = 0; bit < 8; bit++)
+            crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0);
+    }
+    return ~crc;
+}
+
+//! A gzip file (RFC 1952) of stored blocks (RFC 1951): what these files save is too short to be worth more.
+String gzipped(const String& text)
+{
+    String file("\x1f\x8b\x08\0\0\0\0\0\0\xff", 10);
+    const auto number = [&](size_t value, int bytes) {
+        for (int i = 0; i < bytes; i++)
+            file += (char)(value >> 8 * i);
+    };
+    size_t at = 0;
+    do
+    {
+        const String block = text.substr(at, 0xffff);
+        at += block.size();
+        number(at == text.size(), 1);  // whether it is the last one
+        number(block.size(), 2);
+        number(~block.size(), 2);
+        file += block;
+    } while (at < text.size());
+    number(crc32(text), 4);
+    number(text.size(), 4);
+    return file;
 }
 
 }  // namespace
@@ -147,9 +175,9 @@ void checkName(const String& name)
 class ReplacedFile
 {
 public:
-    explicit ReplacedFile(const String& filename) : name(filename), target(fileOf(filename)), stream(0)
+    explicit ReplacedFile(const String& filename)
+        : name(checkedName(filename)), target(fileOf(filename)), stream(0)
     {
-        checkName(filename);
         const Present old = presentAt(target);
         if (old.any && !old.file)
             CV_Error(Error::StsError, "Cannot write " + name + ": it is a folder, a device or a pipe");
@@ -203,8 +231,10 @@ private:
 
 void writeText(const String& filename, const String& text)
 {
+    const bool packed = filename.size() > 3 && filename.compare(filename.size() - 3, 3, ".gz") == 0;
+    const String content = packed ? gzipped(text) : text;
     ReplacedFile file(filename);
-    file.write(text.c_str(), text.size());
+    file.write(content.data(), content.size());
     file.commit();
 }
 
@@ -252,9 +282,8 @@ uint64 CheckedWriter::seal()
 void CheckedWriter::commit() { file->commit(); }
 
 CheckedReader::CheckedReader(const String& filename, const FileKind& kind)
-    : name(filename), kindName(kind.name), whole(0), rest(0), format(0)
+    : name(checkedName(filename)), kindName(kind.name), whole(0), rest(0), format(0)
 {
-    checkName(filename);
     if (!stream.rdbuf()->open(systemName(name).c_str(), std::ios::in | std::ios::binary))
         CV_Error(Error::StsError, "Cannot read " + name);
     stream.seekg(0, std::ios::end);

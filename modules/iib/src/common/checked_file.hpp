@@ -38,7 +38,17 @@ private:
     uint64 state;
 };
 
-//! Writes a whole file as CheckedWriter does. @throws cv::Exception if it cannot; the old file is then as it was.
+//! The name. @throws cv::Exception for one with a zero byte: who opens it by a C string would open another file.
+inline const String& checkedName(const String& name)
+{
+    if (name.find('\0') != String::npos)
+        CV_Error(Error::StsBadArg,
+                format("the name of a file that begins with %s holds a zero byte", name.c_str()));
+    return name;
+}
+
+//! Writes a whole file as CheckedWriter does, packed by gzip if its name ends in .gz. @throws cv::Exception if it cannot; the old
+//! file is then as it was.
 CV_EXPORTS void writeText(const String& filename, const String& text);
 
 class ReplacedFile;

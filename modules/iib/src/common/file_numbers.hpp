@@ -76,18 +76,14 @@ inline FileNode nodeOfFormat1(const FileNode& node, const char* name)
  what write() writes; empty: none, for names that no node may have. */
 inline void saveWhole(const Algorithm& algorithm, const String& filename, const String& name = String())
 {
-    const size_t dot = filename.rfind('.');
-    const bool packed =
-            dot != String::npos && filename.substr(dot) == ".gz";  // which OpenCV does in files alone
-    FileStorage fs(filename, FileStorage::WRITE + (packed ? 0 : FileStorage::MEMORY));
+    FileStorage fs(filename, FileStorage::WRITE + FileStorage::MEMORY);
     CV_Assert(fs.isOpened());
     if (!name.empty())
         fs << name << "{";
     algorithm.write(fs);
     if (!name.empty())
         fs << "}";
-    if (!packed)
-        writeText(filename, fs.releaseAndGetString());
+    writeText(filename, fs.releaseAndGetString());
 }
 
 }  // namespace iib

@@ -193,7 +193,7 @@ TEST(IIB_IndexFile, parameters_on_a_full_disk_keep_the_old_file)
     const TemporaryFolder folder;
     const Ptr<Algorithm> savers[] = {IIB::createPreset(IIB::PRESET_S512), matcherOf(2),
             HessianDetector::create(), NormalizedDetector::create(ORB::create())};
-    for (const char* extension : {".yml", ".xml", ".json"})
+    for (const char* extension : {".yml", ".xml", ".json", ".yml.gz"})
         for (const Ptr<Algorithm>& saver : savers)
         {
             const String name = folder.name + "/parameters" + extension;
@@ -206,13 +206,19 @@ TEST(IIB_IndexFile, parameters_on_a_full_disk_keep_the_old_file)
             }
             EXPECT_EQ(before, readFile(name));
         }
-    const Ptr<HierarchicalMatcher> matcher =
-            HierarchicalMatcher::create({2, 8}, HierarchicalMatcher::ADAPTIVE);
-    matcher->save(folder.name + "/m.yml.gz");  // which OpenCV writes
-    EXPECT_EQ(HierarchicalMatcher::ADAPTIVE,
-            Algorithm::load<HierarchicalMatcher>(folder.name + "/m.yml.gz")->getMode());
 }
 #endif
+
+TEST(IIB_IndexFile, parameters_packed_by_gzip)
+{
+    const TemporaryFile file(".json.gz");
+    const std::vector<int> levels(30000, 1);  // more than a block of gzip holds
+    HierarchicalMatcher::create(levels, HierarchicalMatcher::ADAPTIVE)->save(file.name);
+    EXPECT_EQ("\x1f\x8b\x08", file.read().substr(0, 3));
+    const Ptr<HierarchicalMatcher> loaded = Algorithm::load<HierarchicalMatcher>(file.name);
+    EXPECT_EQ(levels, loaded->levelSizes());
+    EXPECT_EQ(HierarchicalMatcher::ADAPTIVE, loaded->getMode());
+}
 
 #if defined __GLIBC__ && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 33)
 size_t bytesInUse()

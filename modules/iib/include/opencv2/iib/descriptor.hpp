@@ -78,7 +78,7 @@ every instruction set, thread count and build. One object may serve several thre
 changes its parameters. As everywhere in OpenCV, cv::setNumThreads is not to be called meanwhile.
 
 **Files.** Algorithm::save and Feature2D::write store the parameters and the detector. save fails where the disk is full, and
-leaves the old file; of write(filename), which is OpenCV's, and of names that end in .gz that is not sure. Algorithm::load and
+leaves the old file; write(filename) is OpenCV's own, which does not check what it writes. Algorithm::load and
 Feature2D::read take either kind of file. ORB, HessianDetector and NormalizedDetector come back with their parameters. A detector of any
 other class must be set by setDetector before read: files hold its name and what its own write() tells, which its
 read() gets; read throws a cv::Exception if the detector that is set is of another class.

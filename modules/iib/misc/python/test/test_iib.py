@@ -48,6 +48,13 @@ class DescriptorTest(unittest.TestCase):
         self.assertEqual(iib.getChannels(), cv2.iib.IIBDescriptorExtractor_CHANNELS_DEFAULT)
         self.assertAlmostEqual(IIB.scaleFactorFor('AKAZE'), 12)
 
+    def test_the_image_may_be_the_output(self):
+        iib = cv2.iib.IIBDescriptorExtractor.create()
+        image = noise(12, (48, iib.descriptorSize()))
+        expected = iib.compute(image, grid())[1]
+        self.assertEqual(expected.shape, image.shape)
+        np.testing.assert_array_equal(iib.compute(image, grid(), image)[1], expected)
+
     def test_extra_channels_change_the_descriptor(self):
         iib = cv2.iib.IIBDescriptorExtractor.create(extraChannels=1)
         depth = noise(3).astype(np.float32)

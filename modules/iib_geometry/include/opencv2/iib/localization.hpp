@@ -68,7 +68,8 @@ typedef std::function<void(size_t done, size_t all, const std::string& problem)>
 Keypoints of each image are described, matched with those of the images that see the same, refined against one of them
 (refineMatches), and triangulated with the model's poses, which stay as they are. The map holds 150 bytes a keypoint, and of each
 image its grey pixels, reduced to 1024 on the longer side: 0.3 MB for 640 x 480.
-@param model folder of a model, binary or text, in any unit and at any distance from its origin.
+@param model folder of a model, binary or text, in any unit and at any distance from its origin. Its points are not read: the
+images' keypoints tell which of them see the same.
 @param images gives the model's images.
 @param map folder to write: `map.iib`, and a COLMAP model of the same points. A map that is there is replaced: who reads
 meanwhile gets the old one or the new one. A folder that holds anything else is refused before work begins.
