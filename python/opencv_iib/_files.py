@@ -3,14 +3,15 @@ from __future__ import annotations
 
 import os
 import shutil
+import sys
 import uuid
 from contextlib import contextmanager, suppress
 from typing import Iterator
 
-try:
+if sys.platform == 'win32':
+    import msvcrt
+else:
     import fcntl
-except ImportError:  # not on Windows
-    fcntl = None  # type: ignore[assignment,unused-ignore]
 
 
 def output_file(path: str) -> str:
@@ -54,14 +55,17 @@ def only_writer(path: str) -> Iterator[None]:
 
     :raises BlockingIOError: if another process has it locked.
     """
-    if fcntl is None:
-        yield
-        return
-    descriptor = os.open(path, os.O_RDONLY if os.path.isdir(path) else os.O_RDWR | os.O_CREAT)
+    if sys.platform == 'win32':  # where no folder is locked: a file beside it, which goes with its last descriptor
+        descriptor = os.open(path + '.lock', os.O_RDWR | os.O_CREAT | os.O_TEMPORARY)
+    else:
+        descriptor = os.open(path, os.O_RDONLY if os.path.isdir(path) else os.O_RDWR | os.O_CREAT)
     try:
         try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
+            if sys.platform == 'win32':
+                msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+            else:
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except (BlockingIOError, PermissionError):
             raise BlockingIOError(f'{path} is being written by another process: wait until it has ended') from None
         yield
     finally:

@@ -10,7 +10,7 @@ import tempfile
 import threading
 import unittest
 import zlib
-from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from contextlib import contextmanager, redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
 from unittest import mock
 
@@ -313,6 +313,20 @@ class Localization(unittest.TestCase):
         with self.assertRaises(KeyboardInterrupt), new_folder(partial[:-len('.partial')], ['a']) as folder:
             self.assertEqual((folder, os.listdir(folder)), (partial, []))
             raise KeyboardInterrupt
+
+    def test_folders_where_the_system_exchanges_none(self):
+        def rename(source, target, rename=os.rename):
+            if fails and source.endswith('.partial'):
+                raise OSError('full')
+            rename(source, target)
+
+        target = self.path('new')
+        with mock.patch('opencv_iib.localization.folders._exchange', return_value=False), mock.patch('os.rename', rename):
+            for text, fails in ('old', False), ('new', False), ('lost', True):
+                with suppress(OSError), new_folder(target, ['a']) as partial:
+                    Path(partial, 'a').write_text(text)
+            self.assertEqual(Path(target, 'a').read_text(), 'new')
+            self.assertEqual(Path(partial, 'a').read_text(), 'lost')
 
     def test_links_are_followed_and_results_are_no_images(self):
         folder = self.path('disk')

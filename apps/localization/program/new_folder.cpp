@@ -60,8 +60,13 @@ bool isMountPoint(const std::string& folder)
 //! In one step where the system can do that, else in two.
 bool exchangeFolders(const std::string& a, const std::string& b)
 {
+#ifdef __APPLE__
+    if (::renamex_np(a.c_str(), b.c_str(), RENAME_SWAP) == 0)
+        return true;
+#elif defined RENAME_EXCHANGE
     if (::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0)
         return true;
+#endif
     const std::string old = a + ".old";
     if (std::rename(b.c_str(), old.c_str()) != 0)
         return false;

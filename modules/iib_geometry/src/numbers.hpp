@@ -2,8 +2,10 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <iomanip>
+#include <locale>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -12,25 +14,30 @@ namespace iib_localization {
 //! The finite numbers that a text holds, separated by commas; none if it holds anything else.
 inline std::vector<double> numbersOf(const std::string& text)
 {
+    std::istringstream stream(text);  // no std::from_chars: before macOS 26 it reads no numbers with a point
+    stream.imbue(std::locale::classic());
     std::vector<double> values;
-    for (const char *at = text.data(), *last = at + text.size();; at++)
+    do
     {
         double value = 0;
-        const auto [end, error] = std::from_chars(at, last, value);
-        if (error != std::errc() || !std::isfinite(value) || (end != last && *end != ','))
+        if (!(stream >> std::noskipws >> value) || !std::isfinite(value))
             return {};
         values.push_back(value);
-        if (end == last)
-            return values;
-        at = end;
-    }
+    } while (stream.get() == ',');
+    return stream.eof() ? values : std::vector<double>();
 }
 
-//! The shortest decimal that reads back as the same number.
+//! The decimal of the fewest digits, 15 at least but for zeros, that reads back as the same number.
 inline std::string shortest(double value)
 {
-    char text[32];
-    return std::string(text, std::to_chars(text, text + sizeof(text), value).ptr);
+    for (int digits = 15;; digits++)
+    {
+        std::ostringstream text;
+        text.imbue(std::locale::classic());
+        text << std::setprecision(digits) << value;
+        if (digits == 17 || numbersOf(text.str()) == std::vector<double>(1, value))
+            return text.str();
+    }
 }
 
 //! Of one number or more; of none, 0.

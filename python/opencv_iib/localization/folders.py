@@ -10,21 +10,33 @@ from typing import Iterator, Sequence
 
 from opencv_iib._files import only_writer
 
-AT_FDCWD, RENAME_EXCHANGE = -100, 2  # of Linux
+AT_FDCWD, EXCHANGE = -100, 2  # RENAME_EXCHANGE of Linux, RENAME_SWAP of macOS
+
+
+def _exchange(a: str, b: str) -> bool:
+    """In one step, where the system can do that."""
+    if os.name != 'posix':
+        return False
+    library = ctypes.CDLL(None)
+    names = os.fsencode(a), os.fsencode(b)
+    if hasattr(library, 'renameat2'):
+        return bool(library.renameat2(AT_FDCWD, names[0], AT_FDCWD, names[1], EXCHANGE) == 0)
+    return hasattr(library, 'renamex_np') and library.renamex_np(*names, EXCHANGE) == 0
 
 
 def _move(source: str, target: str) -> None:
-    """In one step on Linux, also where the target is there: it is at `source` then."""
+    """If the target is there, it is at `source` then."""
     if not os.path.exists(target):
         os.rename(source, target)
-        return
-    exchange = getattr(ctypes.CDLL(None), 'renameat2', None) if os.name == 'posix' else None
-    if exchange and exchange(AT_FDCWD, os.fsencode(source), AT_FDCWD, os.fsencode(target), RENAME_EXCHANGE) == 0:
-        return
-    old = source + '.old'
-    os.rename(target, old)
-    os.rename(source, target)
-    os.rename(old, source)
+    elif not _exchange(source, target):
+        old = source + '.old'
+        os.rename(target, old)
+        try:
+            os.rename(source, target)
+        except OSError:
+            os.rename(old, target)
+            raise
+        os.rename(old, source)
 
 
 @contextlib.contextmanager
