@@ -1,4 +1,4 @@
-"""Two images matched by IIB and, beside it, by ORB or the detector's own descriptor: a picture and a line, as scripts/demo.sh's."""
+"""Two images matched by IIB and, beside it, by SIFT and ORB or the detector's own descriptor: a picture and a line, as scripts/demo.sh's."""
 from __future__ import annotations
 
 from typing import Any, NamedTuple, Optional
@@ -31,7 +31,7 @@ class Result(NamedTuple):
 
 
 def demo(image_a: str, image_b: str, out: str, options: FeatureOptions = FeatureOptions(points=1000)) -> list[Result]:
-    """Matches two images by the recommended chain, and by ORB or what the detector has; draws both, IIB below.
+    """Matches two images by the recommended chain, and by SIFT and ORB or what the detector has; draws all, IIB below.
 
     *Consistent* are matches within 3 pixels of the homography that most agree with, if those are ten.
 
@@ -42,9 +42,10 @@ def demo(image_a: str, image_b: str, out: str, options: FeatureOptions = Feature
     images = [read_colour(path) for path in (image_a, image_b)]
     described = list(map(Features(options), images))
     results = [_result('IIB', [rows for rows, _ in described], match(described[0][1], described[1][1]).pairs)]
-    other = _own_descriptor('ORB' if options.detector == 'HESSIAN' else options.detector, images, options.points)
-    if other is not None:
-        results.append(other)
+    for name in ('SIFT', 'ORB') if options.detector == 'HESSIAN' else (options.detector,):
+        other = _own_descriptor(name, images, options.points)
+        if other is not None:
+            results.append(other)
     write_picture(out, np.vstack([draw(images, result.points_a, result.points_b, result.good, _caption(result))
                                   for result in reversed(results)]))
     return results

@@ -435,7 +435,7 @@ class ColmapTest(unittest.TestCase):
         cv2.imwrite(noise, np.random.default_rng(1).integers(0, 256, (200, 200), np.uint8))
         with redirect_stdout(io.StringIO()) as text, redirect_stderr(io.StringIO()) as hint:
             self.assertEqual(main(['demo', os.path.join(self.images, 'a.png'), noise, '--out', out]), 3)
-        self.assertRegex(text.getvalue(), r'^IIB: no homography found in \d+ matches, ORB')
+        self.assertRegex(text.getvalue(), r'^IIB: no homography found in \d+ matches, SIFT.*, ORB')
         self.assertIn('same place', hint.getvalue())
         for arguments, told in (([self.images + '/a.png', self.images + '/b.png', '--points', '3000000000'], 'points is 3000000000'),
                                 ([self.images + '/gone.png', noise], 'gone.png: there is no such file'),
@@ -446,11 +446,12 @@ class ColmapTest(unittest.TestCase):
 
     @unittest.skipUnless((REPOSITORY / 'tools/synthetic/day.png').exists(), 'the images are not beside these tests')
     def test_the_demo_counts_as_that_of_cpp(self):
-        pair = [str(REPOSITORY / f'tools/synthetic/{name}.png') for name in ('day', 'night')]
-        iib, orb = demo(*pair, os.path.join(self.folder.name, 'demo.png'))
-        claim = re.search(r'`IIB (\d+) of (\d+) correct, ORB', (REPOSITORY / 'README.md').read_text())
-        self.assertEqual((iib.name, len(iib.good), orb.name), ('IIB', int(claim[2]), 'ORB'))
-        self.assertLess(abs(iib.good.sum() - int(claim[1])), 5)  # here a homography of the matches, there the true one
+        pair = [str(REPOSITORY / f'tools/synthetic/moved_{light}.jpg') for light in ('noon', 'night')]
+        iib, sift, orb = demo(*pair, os.path.join(self.folder.name, 'demo.png'))
+        claim = re.search(r'`IIB \d+ of (\d+) correct, SIFT \d+ of \d+ correct, ORB \d+ of (\d+) correct`',
+                          (REPOSITORY / 'README.md').read_text())
+        self.assertEqual((iib.name, sift.name, orb.name), ('IIB', 'SIFT', 'ORB'))
+        self.assertEqual([len(iib.good), len(orb.good)], [int(claim[1]), int(claim[2])])
 
     def test_names_in_any_case(self):
         self.assertEqual(FeatureOptions('orb', preset=opencv_iib.Preset.SMALL), FeatureOptions('ORB', preset='small'))

@@ -12,6 +12,7 @@
 
 #include "common/command_line.hpp"
 #include "images.hpp"
+#include "lens.hpp"
 #include "new_folder.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
@@ -67,6 +68,13 @@ std::string csvRow(const std::string& name, const Location& location)
     return row + "\n";
 }
 
+void finish(std::ofstream& stream, const std::string& path)
+{
+    stream.close();
+    if (!stream)
+        CV_Error(cv::Error::StsError, path + " cannot be written");
+}
+
 //! The image with the points of the map that agree: where they are seen in green, where the pose has them in red.
 void writePicture(
         const std::string& path, const cv::Mat& grey, const Location& location, const Camera& camera)
@@ -81,8 +89,11 @@ void writePicture(
         cv::circle(picture, location.pixels[i], 3, {0, 200, 0}, 1, cv::LINE_AA);
     }
     std::filesystem::create_directories(std::filesystem::path(path).parent_path());
-    if (!cv::imwrite(path, picture))
-        CV_Error(cv::Error::StsError, path + " cannot be written");
+    std::vector<uchar> png;
+    cv::imencode(".png", picture, png);
+    std::ofstream file(path, std::ios::binary);  // imwrite would not tell of a full disk
+    file.write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
+    finish(file, path);
 }
 
 //! The cameras that images may have; each has that of its size.
@@ -91,9 +102,24 @@ std::vector<Camera> chooseCameras(const iib_tools::CommandLine& line, const Loca
     return line.has("camera") ? std::vector<Camera>{Camera::parse(line.text("camera"))} : localizer.cameras();
 }
 
+//! Localizes an image, reduced if its longer side has more than maxSize pixels (0: as it is); places are in its own pixels.
+Location localize(const Localizer& localizer, const cv::Mat& grey, const Camera& camera, int maxSize,
+        const cv::Affine3d* prior)
+{
+    const double scale = double(maxSize) / std::max(grey.cols, grey.rows);
+    if (scale == 0 || scale >= 1 || scale * std::min(grey.cols, grey.rows) < 1)
+        return localizer.localize(grey, camera, prior);
+    cv::Mat small;
+    cv::resize(grey, small, cv::Size(), scale, scale, cv::INTER_AREA);
+    Location location = localizer.localize(small, scaled(camera, scale, small.size()), prior);
+    for (cv::Point2d& pixel : location.pixels)  // whose first one has its centre at 0
+        pixel = (pixel + cv::Point2d(.5, .5)) / scale - cv::Point2d(.5, .5);
+    return location;
+}
+
 //! Of an image file; what is wrong with it is the reason. @param camera gets that of the image.
 Location locate(const Localizer& localizer, const std::vector<Camera>& cameras, const cv::Mat& grey,
-        const cv::Affine3d* prior, Camera& camera)
+        int maxSize, const cv::Affine3d* prior, Camera& camera)
 {
     const auto fits = [&](const Camera& c) { return c.size == grey.size(); };
     const auto found = std::find_if(cameras.begin(), cameras.end(), fits);
@@ -108,13 +134,13 @@ Location locate(const Localizer& localizer, const std::vector<Camera>& cameras, 
     else
     {
         camera = *found;
-        location = localizer.localize(grey, camera, prior);
+        location = localize(localizer, grey, camera, maxSize, prior);
     }
     return location;
 }
 
 //! A path a line on standard input, a pose a line on standard output.
-int stream(const Localizer& localizer, const std::vector<Camera>& cameras)
+int stream(const Localizer& localizer, const std::vector<Camera>& cameras, int maxSize)
 {
     size_t all = 0, found = 0;
     std::optional<cv::Affine3d> last;
@@ -125,7 +151,7 @@ int stream(const Localizer& localizer, const std::vector<Camera>& cameras)
         if (path[0] == '#')  // would look like a failure
             location.reason = "a path must not begin with #: write ./ before it";
         else
-            location = locate(localizer, cameras, readImage(path), last ? &*last : nullptr, camera);
+            location = locate(localizer, cameras, readImage(path), maxSize, last ? &*last : nullptr, camera);
         if (location.found)
             std::cout << trajectoryLine(path, inverse(location.cameraFromWorld));
         else
@@ -176,13 +202,6 @@ void keepFreedMemory()
 #endif
 }
 
-void finish(std::ofstream& stream, const std::string& path)
-{
-    stream.close();
-    if (!stream)
-        CV_Error(cv::Error::StsError, path + " cannot be written");
-}
-
 //! In the map, or in one of the model. @param points as Localizer takes them.
 Localizer open(const iib_tools::CommandLine& line, int points)
 {
@@ -218,10 +237,14 @@ int run(const iib_tools::CommandLine& line)
     for (const char* needed : {"images", "out"})
         if (!line.has(needed) && !streaming)
             CV_Error(cv::Error::StsBadArg, cv::format("--%s is needed (--help tells more)", needed));
+    const int maxSize = line.whole("max-size", 0, 1 << 16);
+    if (maxSize > 0 && maxSize < 32)
+        CV_Error(cv::Error::StsBadArg,
+                cv::format("--max-size is %d: at least 32 pixels are needed, or 0", maxSize));
     if (streaming)
     {
         const Localizer localizer = open(line, 1000);
-        return stream(localizer, chooseCameras(line, localizer));
+        return stream(localizer, chooseCameras(line, localizer), maxSize);
     }
     const std::string folder = line.text("images");
     std::vector<std::string> names = listImages(folder, line.text("out"));
@@ -246,7 +269,7 @@ int run(const iib_tools::CommandLine& line)
         {
             const cv::Mat grey = readImage(folder + "/" + names[i]);
             Camera camera;
-            const Location location = locate(localizer, cameras, grey, nullptr, camera);
+            const Location location = locate(localizer, cameras, grey, maxSize, nullptr, camera);
             if (imu)
                 frames[i].nanoseconds = times[i];
             if (location.found)
@@ -298,6 +321,7 @@ int main(int argc, char** argv)
             "{images|<none>|folder of the images}"
             "{camera|<none>|of all images, as COLMAP names models and parameters; without it, the map's of "
             "the same size}"
+            "{max-size|0|pixels of the longer side to which larger images are reduced; 0: they are not}"
             "{imu|<none>|EuRoC's imu.csv; images must be named by their times}"
             "{imu-from-camera|0,0,0,0,0,0,1|where the camera is in the IMU's axes: tx,ty,tz,qx,qy,qz,qw}"
             "{pictures||write each image with the points that agree, as OUT/matches/NAME.png}"

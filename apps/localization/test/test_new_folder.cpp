@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -106,6 +110,59 @@ TEST(NewFolder, replaces_nothing_else)
     EXPECT_EQ("precious", textOf(folder.path("file")));
 
     EXPECT_EQ("/proc is a mount point: give a folder inside it", messageOf([&] { NewFolder("/proc", OWN); }));
+}
+
+// Of the same file system: only the kernel tells.
+TEST(NewFolder, bind_mounts)
+{
+    const TestFolder folder;
+    folder.makeFolder("out");
+    const std::string out = folder.path("out");
+    constexpr int NO_RIGHT = 77;
+    const pid_t child = ::fork();  // whose mounts go with it
+    if (child == 0)
+    {
+        if (::unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0 ||
+                ::mount(out.c_str(), out.c_str(), nullptr, MS_BIND, nullptr) != 0)
+            ::_exit(NO_RIGHT);
+        const std::string error = messageOf([&] { NewFolder(out, OWN); });
+        ::_exit(error == out + " is a mount point: give a folder inside it" ? 0 : 1);
+    }
+    int status = 0;
+    ASSERT_EQ(child, ::waitpid(child, &status, 0));
+    if (WEXITSTATUS(status) == NO_RIGHT)
+        throw cvtest::SkipTestException("this user may mount nothing");
+    EXPECT_EQ(0, status);
+}
+
+// The file system's own exceptions are no cv::Exception.
+TEST(NewFolder, that_cannot_be_made)
+{
+    const TestFolder folder;
+    folder.write("file", "");
+    std::filesystem::create_symlink("loop", folder.path("loop"));
+    EXPECT_EQ(folder.path("file/out") + " cannot be written: Not a directory",
+            messageOf([&] { NewFolder(folder.path("file/out"), OWN); }));
+    EXPECT_EQ(folder.path("loop/out") + " cannot be written: Too many levels of symbolic links",
+            messageOf([&] { NewFolder(folder.path("loop/out"), OWN); }));
+}
+
+TEST(Images, folders_that_cannot_be_read)
+{
+    const TestFolder folder;
+    folder.makeFolder("locked");
+    folder.write("0.png", "");
+    std::filesystem::create_symlink("loop", folder.path("loop"));
+    const std::string told = " or a folder in it cannot be read: ";
+    EXPECT_EQ(folder.path("loop") + told + "Too many levels of symbolic links",
+            messageOf([&] { listImages(folder.path("loop")); }));
+    const bool root = ::geteuid() == 0;
+    ASSERT_EQ(0, ::chmod(folder.path("locked").c_str(), 0));
+    ASSERT_EQ(0, root ? ::seteuid(65534) : 0) << "root may read everything";
+    const std::string error = messageOf([&] { listImages(folder.path("")); });
+    ASSERT_EQ(0, root ? ::seteuid(0) : 0);
+    ::chmod(folder.path("locked").c_str(), 0700);
+    EXPECT_EQ(folder.path("") + told + "Permission denied", error);
 }
 
 TEST(NewFolder, what_a_killed_run_left_is_removed_but_not_what_is_being_written)

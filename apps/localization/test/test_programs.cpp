@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 
@@ -34,10 +36,11 @@ protected:
         folder.write("dark/none.png", "");
     }
 
-    //! The exit status; `said` and `error` get standard output and error.
-    int run(const std::string& command)
+    //! The exit status; `said` and `error` get standard output, unless it goes elsewhere, and error.
+    int run(const std::string& command, const std::string& output = "")
     {
-        const std::string line = "'" IIB_PROGRAMS "'/" + command + " >'" + folder.path("said") + "' 2>'" +
+        const std::string line = "'" IIB_PROGRAMS "'/" + command + " >'" +
+                                 (output.empty() ? folder.path("said") : output) + "' 2>'" +
                                  folder.path("error") + "'";
         const int status = std::system(line.c_str());
         said = textOf(folder.path("said"));
@@ -202,8 +205,61 @@ TEST_F(Programs, stream_a_path_and_a_pose_a_line)
     folder.write("paths", "#a.png\n");
     EXPECT_EQ(3, run("iib_localize --stream --map " + folder.path("map") + " <" + folder.path("paths")));
     EXPECT_EQ("# #a.png: a path must not begin with #: write ./ before it\n", said);
-    EXPECT_EQ(1, run("iib_localize --stream --map " + folder.path("map") + " <" + folder.path("paths") +
-                         " >/dev/full; exit $?"));
+    folder.write("paths", third + "\n");
+    EXPECT_EQ(1, run("iib_localize --stream --map " + folder.path("map") + " <" + folder.path("paths"),
+                         "/dev/full"));
+    EXPECT_EQ("iib_localize: standard output cannot be written\n", error);
+}
+
+TEST_F(Programs, large_images_are_reduced)
+{
+    const auto places = [&](const std::string& size) {
+        EXPECT_EQ(4, localize("dark", "out", "--pictures --max-size " + size)) << error;
+        const std::vector<std::string> lines = split(textOf(folder.path("out/trajectory.txt")), '\n');
+        expectPose(split(lines.at(1), ' '), "1 of 2, \"left\"", poseAt(0.1, -0.1, 0.1));
+        EXPECT_EQ(SIZE, cv::imread(folder.path("out/matches/1 of 2, \"left\".png.png")).size());
+        return lines.at(1);
+    };
+    const std::string whole = places("0");
+    EXPECT_EQ(whole, places("320")) << "no larger than that";
+    EXPECT_NE(whole, places("250"));
+    EXPECT_EQ(2, localize("dark", "out", "--max-size 31"));
+    EXPECT_EQ("iib_localize: --max-size is 31: at least 32 pixels are needed, or 0\n", error);
+}
+
+TEST_F(Programs, a_full_disk_keeps_older_results)
+{
+    ASSERT_EQ(0, localize("images", "out", "--pictures")) << error;
+    const std::string table = textOf(folder.path("out/frames.csv"));
+    rlimit before;
+    ::getrlimit(RLIMIT_FSIZE, &before);
+    ::signal(SIGXFSZ, SIG_IGN);
+    const std::pair<rlim_t, const char*> cases[] = {{600, ""}, {1200, ""}, {20000, "--pictures"}};
+    for (const auto& [size, options] : cases)  // no file may be larger
+    {
+        const rlimit limit = {size, before.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        const int status = localize("images", "out", options);
+        ::setrlimit(RLIMIT_FSIZE, &before);
+        EXPECT_EQ(1, status) << size;
+        EXPECT_NE(std::string::npos, error.find(" cannot be written\n")) << error;
+        EXPECT_EQ(table, textOf(folder.path("out/frames.csv")));
+        EXPECT_FALSE(cv::utils::fs::exists(folder.path("out.iib_partial")));
+    }
+}
+
+TEST_F(Programs, folders_that_cannot_be_made_or_read)
+{
+    folder.write("file", "");
+    std::filesystem::create_symlink("loop", folder.path("loop"));
+    for (const char* bad : {"file/out", "loop/out"})
+    {
+        EXPECT_EQ(1, localize("dark", bad)) << bad;
+        EXPECT_EQ(0u, error.find("iib_localize: " + folder.path(bad) + " cannot be written: ")) << error;
+    }
+    EXPECT_EQ(1, localize("loop", "out"));
+    EXPECT_EQ(0u, error.find("iib_localize: " + folder.path("loop") + " or a folder in it cannot be read: "))
+            << error;
 }
 
 TEST_F(Programs, images_that_cannot_be_read)
