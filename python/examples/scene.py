@@ -5,7 +5,8 @@ import cv2
 import numpy as np
 
 FOCAL = 400.
-PICTURES = {light: cv2.imread(str(Path(__file__).parents[2] / f'tools/synthetic/{light}.png')) for light in ('day', 'night')}
+FOLDER = Path(__file__).parents[2] / 'tools/synthetic'
+PICTURES = {light: cv2.imread(str(FOLDER / f'{light}.png')) for light in ('day', 'night')}
 
 
 def camera(picture):

@@ -33,6 +33,11 @@ class Examples(unittest.TestCase):
         self.assertGreater(agree, 200)  # 234 are right; OpenCV's estimators, by version, find 213 to 221 of them
         self.assertLess(matches, 1.3 * agree)
 
+    def test_align(self):
+        matches, error = self.run_example('align.py', r'(\d+) matches agree; .* by ([\d.]+) pixels')
+        self.assertGreater(matches, 200)
+        self.assertLess(error, .5)
+
     def test_poses(self):
         number = r' *([-\d.]+) *'
         right, down, ahead, _, turn, _ = self.run_example('poses.py', r'towards \[%s\] turned by \[%s\]' % (number * 3, number * 3))

@@ -4,7 +4,7 @@ import ast
 import pathlib
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / 'python/examples'
-NAMES = ('day_night', 'poses', 'reconstruction', 'million_codes')
+NAMES = ('day_night', 'align', 'poses', 'reconstruction', 'million_codes')
 
 
 def main():
