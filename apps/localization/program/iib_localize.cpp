@@ -68,9 +68,10 @@ std::string csvRow(const std::string& name, const Location& location)
     return row + "\n";
 }
 
-void finish(std::ofstream& stream, const std::string& path)
+void write(const std::string& path, const std::string& content)
 {
-    stream.close();
+    std::ofstream stream(path, std::ios::binary);
+    stream << content << std::flush;
     if (!stream)
         CV_Error(cv::Error::StsError, path + " cannot be written");
 }
@@ -91,9 +92,7 @@ void writePicture(
     std::filesystem::create_directories(std::filesystem::path(path).parent_path());
     std::vector<uchar> png;
     cv::imencode(".png", picture, png);
-    std::ofstream file(path, std::ios::binary);  // imwrite would not tell of a full disk
-    file.write(reinterpret_cast<const char*>(png.data()), std::streamsize(png.size()));
-    finish(file, path);
+    write(path, std::string(png.begin(), png.end()));  // imwrite would not tell of a full disk
 }
 
 //! The cameras that images may have; each has that of its size.
@@ -257,9 +256,6 @@ int run(const iib_tools::CommandLine& line)
 
     NewFolder results(
             line.text("out"), {"frames.csv", "trajectory.txt", "matches/", "matches/*/", "matches/*.png"});
-    const std::string &out = results.path(), table = out + "/frames.csv", path = out + "/trajectory.txt";
-    std::ofstream csv(table);
-    csv << csvHeader();
     std::vector<VisualFrame> frames(names.size());
     std::vector<std::string> rows(names.size());
     Progress progress("localizing", names.size());
@@ -277,28 +273,27 @@ int run(const iib_tools::CommandLine& line)
             frames[i].covariance = location.covariance;
             rows[i] = csvRow(names[i], location);
             if (line.has("pictures") && location.found)
-                writePicture(out + "/matches/" + names[i] + ".png", grey, location, camera);
+                writePicture(results.path() + "/matches/" + names[i] + ".png", grey, location, camera);
             progress.step();
         }
     });
+    std::string table = csvHeader(), trajectory = "# name tx ty tz qx qy qz qw\n";
     for (const std::string& row : rows)
-        csv << row;
-    finish(csv, table);
+        table += row;
     std::vector<std::optional<cv::Affine3d>> poses;
     for (const VisualFrame& frame : frames)
         poses.push_back(frame.pose);
     if (imu)
         poses = smooth(frames, readings, imuFromCamera);
-    std::ofstream trajectory(path);
-    trajectory << "# name tx ty tz qx qy qz qw\n";
     size_t found = 0;
     for (size_t i = 0; i < names.size(); i++)
         if (poses[i])
         {
-            trajectory << trajectoryLine(withoutExtension(names[i]), *poses[i]);
+            trajectory += trajectoryLine(withoutExtension(names[i]), *poses[i]);
             found++;
         }
-    finish(trajectory, path);
+    write(results.path() + "/frames.csv", table);
+    write(results.path() + "/trajectory.txt", trajectory);
     results.publish();
     std::cout << found << " of " << names.size() << " images have a pose\n";
     return statusOf(found, names.size());

@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 
 #include "opencv2/core.hpp"
@@ -57,24 +56,6 @@ bool isMountPoint(const std::string& folder)
 #endif
 }
 
-//! In one step where the system can do that, else in two.
-bool exchangeFolders(const std::string& a, const std::string& b)
-{
-#ifdef __APPLE__
-    if (::renamex_np(a.c_str(), b.c_str(), RENAME_SWAP) == 0)
-        return true;
-#elif defined RENAME_EXCHANGE
-    if (::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0)
-        return true;
-#endif
-    const std::string old = a + ".old";
-    if (std::rename(b.c_str(), old.c_str()) != 0)
-        return false;
-    if (std::rename(a.c_str(), b.c_str()) == 0)
-        return std::rename(old.c_str(), a.c_str()) == 0;
-    return std::rename(old.c_str(), b.c_str()) == 0 && false;
-}
-
 }  // namespace
 
 NewFolder::NewFolder(const std::string& target, const std::vector<std::string>& ownFiles)
@@ -120,13 +101,20 @@ NewFolder::~NewFolder()
 void NewFolder::publish()
 {
     std::error_code error;
-    const std::string partial = partial_;
+    const std::string partial = partial_, old = partial + ".old";
     partial_.clear();  // is not removed any more
-    const bool moved = fs::exists(target_, error) ? exchangeFolders(partial, target_)
-                                                  : std::rename(partial.c_str(), target_.c_str()) == 0;
-    if (!moved)
+    if (fs::exists(target_, error))
+    {
+        fs::remove_all(old, error);  // of a killed run
+        fs::rename(target_, old, error);
+    }
+    fs::rename(partial, target_, error);
+    if (error)
+    {
+        fs::rename(old, target_, error);
         fail(target_ + " cannot be replaced: the results are in " + partial);
-    fs::remove_all(partial, error);  // what was at the target before
+    }
+    fs::remove_all(old, error);
 }
 
 }  // namespace iib_localization

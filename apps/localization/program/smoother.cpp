@@ -6,9 +6,12 @@
 #include <cmath>
 
 #include "pose.hpp"
+#include "two_views.hpp"
 
 namespace iib_localization {
 namespace {
+
+using cv::iib::crossProduct;
 
 // Noise densities of a good MEMS sensor (EuRoC's sensor.yaml), twice as large for what the model leaves out.
 constexpr double RATE_NOISE = 2 * 1.7e-4;              // rad/s/sqrt(Hz)
@@ -42,8 +45,6 @@ struct State
 };
 
 cv::Matx33d turnBy(const cv::Vec3d& vector) { return cv::Affine3d(vector).rotation(); }
-
-cv::Matx33d cross(const cv::Vec3d& v) { return {0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0}; }
 
 void setBlock(Square& matrix, int row, int column, const cv::Matx33d& block)
 {
@@ -80,11 +81,11 @@ void move(State& s, const cv::Vec3d& rate, const cv::Vec3d& force, double dt, Sq
     const cv::Vec3d felt = middle * (force - s.force);
     change = Square::eye();
     setBlock(change, TURN, RATE, -dt * middle);
-    setBlock(change, POSITION, TURN, -dt * dt / 2 * cross(felt));
+    setBlock(change, POSITION, TURN, -dt * dt / 2 * crossProduct(felt));
     setBlock(change, POSITION, VELOCITY, dt * one);
     setBlock(change, POSITION, FORCE, -dt * dt / 2 * middle);
     setBlock(change, POSITION, DOWN, dt * dt / 2 * one);
-    setBlock(change, VELOCITY, TURN, -dt * cross(felt));
+    setBlock(change, VELOCITY, TURN, -dt * crossProduct(felt));
     setBlock(change, VELOCITY, FORCE, -dt * middle);
     setBlock(change, VELOCITY, DOWN, dt * one);
     const cv::Vec3d acceleration = felt + s.gravity;
@@ -266,7 +267,7 @@ VisualFrame imuFrame(const VisualFrame& frame, const cv::Affine3d& cameraFromImu
     if (!frame.pose)
         return moved;
     moved.pose = *frame.pose * cameraFromImu;
-    const cv::Matx33d lever = -cross(frame.pose->rotation() * cameraFromImu.translation());
+    const cv::Matx33d lever = -crossProduct(frame.pose->rotation() * cameraFromImu.translation());
     cv::Matx66d byCamera = cv::Matx66d::eye();
     for (int y = 0; y < 3; y++)
         for (int x = 0; x < 3; x++)

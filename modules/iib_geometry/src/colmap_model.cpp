@@ -9,7 +9,6 @@
 #include <unordered_map>
 
 #include "../../iib/src/common/checked_file.hpp"
-#include "lens.hpp"
 #include "opencv2/core/quaternion.hpp"
 
 namespace iib_localization {
@@ -18,10 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 
 //! Opens a file of a model and says what is wrong with it.
-class Reader
+class ModelFile
 {
 public:
-    Reader(const std::string& folder, const std::string& name) : name_(name)
+    ModelFile(const std::string& folder, const std::string& name) : name_(name)
     {
         const fs::path path = cv::iib::systemName(folder + "/" + name);
         std::error_code error;
@@ -43,11 +42,14 @@ protected:
     uint64_t left_ = 0;
 };
 
-//! The numbers of a file, one after another, lowest byte first as on every machine that this runs on.
-class BinaryReader : public Reader
+//! Numbers one after another, lowest byte first as on every machine that this runs on; before a list, how long it is.
+class BinaryFile : public ModelFile
 {
 public:
-    using Reader::Reader;
+    BinaryFile(const std::string& folder, const std::string& name, uint64_t leastBytes)
+        : ModelFile(folder, name + ".bin"), records_(count(leastBytes))
+    {
+    }
 
     template <typename T> T next()
     {
@@ -57,165 +59,159 @@ public:
         return value;
     }
 
+    //! Goes on to the next camera or image; false at the end.
+    bool nextRecord()
+    {
+        expect(records_ > 0 || left_ == 0);
+        return records_-- > 0;
+    }
+
+    std::string cameraModel()
+    {
+        const uint32_t number = next<uint32_t>();
+        if (!modelName(number))
+            CV_Error(cv::Error::StsError, cv::format("camera model %u is not known", number));
+        return modelName(number);
+    }
+
+    std::vector<double> parameters(const std::string& model)
+    {
+        std::vector<double> values;
+        for (size_t i = parametersOf(model); i > 0; i--)
+            values.push_back(next<double>());
+        return values;
+    }
+
+    //! Of an image; its keypoints follow.
+    std::string name()
+    {
+        std::string letters;
+        while (const char c = next<char>())
+            letters += c;
+        keypoints_ = count(24);
+        return letters;
+    }
+
+    //! Whether the image has one more keypoint.
+    bool more() { return keypoints_-- > 0; }
+
+private:
     //! How many things follow, each of so many bytes or more.
-    uint64_t count(uint64_t bytes)
+    uint64_t count(uint64_t leastBytes)
     {
         const uint64_t things = next<uint64_t>();
-        expect(things <= left_ / bytes);
+        expect(things <= left_ / leastBytes);
         return things;
     }
 
-    void finish() const { expect(left_ == 0); }
+    uint64_t records_, keypoints_ = 0;
 };
 
-//! The lines of a file but for comments.
-class TextReader : public Reader
+//! The same as text: a line each, but for comments, and an image's keypoints on one more.
+class TextFile : public ModelFile
 {
 public:
-    using Reader::Reader;
+    TextFile(const std::string& folder, const std::string& name, uint64_t) : ModelFile(folder, name + ".txt")
+    {
+    }
 
-    bool next(std::istringstream& line)
+    template <typename T> T next()
+    {
+        T value{};
+        expect(bool(line_ >> value));
+        return value;
+    }
+
+    bool nextRecord()
+    {
+        while (nextLine())
+            if (more())  // not blank
+                return true;
+        return false;
+    }
+
+    std::string cameraModel() { return next<std::string>(); }
+
+    std::vector<double> parameters(const std::string&)
+    {
+        std::vector<double> values;
+        while (more())
+            values.push_back(next<double>());
+        return values;
+    }
+
+    std::string name()
+    {
+        std::string text;
+        std::getline(line_ >> std::ws, text);  // it may have blanks
+        text.erase(text.find_last_not_of(" \r") + 1);
+        expect(nextLine());
+        return text;
+    }
+
+    //! Whether the line goes on.
+    bool more() { return !(line_ >> std::ws).eof(); }
+
+private:
+    bool nextLine()
     {
         std::string text;
         do
             if (!std::getline(stream_, text))
                 return false;
         while (!text.empty() && text[0] == '#');
-        line.clear();
-        line.str(text);
+        line_.clear();
+        line_.str(text);
         return true;
     }
 
-    //! The next line that is not blank.
-    bool nextFilled(std::istringstream& line)
-    {
-        while (next(line))
-            if (!(line >> std::ws).eof())
-                return true;
-        return false;
-    }
-
-    template <typename T> T take(std::istringstream& line) const
-    {
-        T value{};
-        expect(bool(line >> value));
-        return value;
-    }
+    std::istringstream line_;
 };
 
-//! A model as its files are read.
-class Model
+template <typename File> std::vector<PosedImage> readImages(const std::string& folder)
 {
-public:
-    void addCamera(const Reader& file, uint32_t id, const Camera& camera)
+    std::unordered_map<uint32_t, Camera> cameras;
+    File known(folder, "cameras", 24);
+    while (known.nextRecord())
     {
-        file.expect(camera.size.width > 0 && camera.size.height > 0 &&
-                    std::max(camera.size.width, camera.size.height) < 1 << 16);
+        const uint32_t id = known.template next<uint32_t>();
+        Camera camera = {known.cameraModel(), {}, {}};
+        const uint64_t width = known.template next<uint64_t>(), height = known.template next<uint64_t>();
+        known.expect(std::min(width, height) > 0 && std::max(width, height) < 1 << 16);
+        camera.size = cv::Size(int(width), int(height));
+        camera.parameters = known.parameters(camera.model);
         Lens checked(camera);
-        file.expect(cameras_.emplace(id, camera).second);
+        known.expect(cameras.emplace(id, camera).second);
     }
-
-    //! @param pose quaternion w x y z, translation.
-    PosedImage& addImage(
-            const Reader& file, const double (&pose)[7], uint32_t camera, const std::string& name)
-    {
-        const cv::Quatd rotation(pose[0], pose[1], pose[2], pose[3]);
-        const auto known = cameras_.find(camera);
-        file.expect(known != cameras_.end() && !name.empty() && std::abs(rotation.norm() - 1) < 1e-2 &&
-                    names_.insert(name).second);
-        for (double value : pose)
-            file.expect(std::isfinite(value));
-        images.push_back({name, known->second, {rotation.toRotMat3x3(), cv::Vec3d(pose + 4)}, {}, {}});
-        return images.back();
-    }
-
-    void addKeypoint(PosedImage& image, double x, double y, int64_t point)
-    {
-        image.pixels.emplace_back(x - .5, y - .5);
-        image.sees.push_back(point < 0 ? -1 : points_.emplace(point, int(points_.size())).first->second);
-    }
-
     std::vector<PosedImage> images;
-
-private:
-    std::unordered_map<uint32_t, Camera> cameras_;
-    std::unordered_map<int64_t, int> points_;
-    std::set<std::string> names_;
-};
-
-Model readBinary(const std::string& folder)
-{
-    Model model;
-    BinaryReader cameras(folder, "cameras.bin"), images(folder, "images.bin");
-    for (uint64_t left = cameras.count(24); left > 0; left--)
+    std::unordered_map<int64_t, int> points;
+    std::set<std::string> names;
+    File file(folder, "images", 73);
+    while (file.nextRecord())
     {
-        const uint32_t id = cameras.next<uint32_t>(), number = cameras.next<uint32_t>();
-        const uint64_t width = cameras.next<uint64_t>(), height = cameras.next<uint64_t>();
-        if (!modelName(number))
-            CV_Error(cv::Error::StsError, cv::format("camera model %u is not known", number));
-        cameras.expect(std::max(width, height) < 1 << 16);
-        Camera camera = {modelName(number), {int(width), int(height)}, {}};
-        for (size_t i = parametersOf(camera.model); i > 0; i--)
-            camera.parameters.push_back(cameras.next<double>());
-        model.addCamera(cameras, id, camera);
-    }
-    cameras.finish();
-    for (uint64_t left = images.count(73); left > 0; left--)
-    {
-        images.next<uint32_t>();  // its id
-        double pose[7];
+        file.template next<uint32_t>();  // its id
+        double pose[7];                  // quaternion w x y z, translation
         for (double& value : pose)
-            value = images.next<double>();
-        const uint32_t camera = images.next<uint32_t>();
-        std::string name;
-        while (const char c = images.next<char>())
-            name += c;
-        PosedImage& image = model.addImage(images, pose, camera, name);
-        for (uint64_t keypoints = images.count(24); keypoints > 0; keypoints--)
         {
-            const double x = images.next<double>(), y = images.next<double>();
-            model.addKeypoint(image, x, y, images.next<int64_t>());
+            value = file.template next<double>();
+            file.expect(std::isfinite(value));
+        }
+        const cv::Quatd rotation(pose[0], pose[1], pose[2], pose[3]);
+        const auto camera = cameras.find(file.template next<uint32_t>());
+        const std::string name = file.name();
+        file.expect(camera != cameras.end() && std::abs(rotation.norm() - 1) < 1e-2 && !name.empty() &&
+                    names.insert(name).second);
+        images.push_back({name, camera->second, {rotation.toRotMat3x3(), cv::Vec3d(pose + 4)}, {}, {}});
+        while (file.more())
+        {
+            const double x = file.template next<double>(), y = file.template next<double>();
+            const int64_t point = file.template next<int64_t>();
+            images.back().pixels.emplace_back(x - .5, y - .5);
+            images.back().sees.push_back(
+                    point < 0 ? -1 : points.emplace(point, int(points.size())).first->second);
         }
     }
-    images.finish();
-    return model;
-}
-
-Model readText(const std::string& folder)
-{
-    Model model;
-    TextReader cameras(folder, "cameras.txt"), images(folder, "images.txt");
-    std::istringstream line;
-    while (cameras.nextFilled(line))
-    {
-        const uint32_t id = cameras.take<uint32_t>(line);
-        Camera camera = {cameras.take<std::string>(line), {}, {}};
-        camera.size.width = cameras.take<int>(line);
-        camera.size.height = cameras.take<int>(line);
-        for (double value; line >> value;)
-            camera.parameters.push_back(value);
-        model.addCamera(cameras, id, camera);
-    }
-    while (images.nextFilled(line))
-    {
-        images.take<uint32_t>(line);  // its id
-        double pose[7];
-        for (double& value : pose)
-            value = images.take<double>(line);
-        const uint32_t camera = images.take<uint32_t>(line);
-        std::string name;
-        std::getline(line >> std::ws, name);  // it may have blanks
-        name.erase(name.find_last_not_of(" \r") + 1);
-        PosedImage& image = model.addImage(images, pose, camera, name);
-        images.expect(images.next(line));
-        for (double x; line >> x;)
-        {
-            const double y = images.take<double>(line);
-            model.addKeypoint(image, x, y, images.take<int64_t>(line));
-        }
-        images.expect(line.eof());
-    }
-    return model;
+    return images;
 }
 
 //! Adds numbers to the end of a file, lowest byte first.
@@ -239,10 +235,10 @@ std::vector<PosedImage> readModel(const std::string& folder)
     try
     {
         const bool text = exists("/cameras.txt") && !exists("/cameras.bin");
-        Model model = text ? readText(folder) : readBinary(folder);
-        if (model.images.empty())
+        std::vector<PosedImage> images = text ? readImages<TextFile>(folder) : readImages<BinaryFile>(folder);
+        if (images.empty())
             CV_Error(cv::Error::StsError, "no image has a pose");
-        return std::move(model.images);
+        return images;
     }
     catch (const cv::Exception& e)
     {
@@ -257,27 +253,25 @@ void cv::iib::writeModel(
 {
     using namespace iib_localization;
     std::string cameras, posed, seen;
-    std::vector<std::pair<Camera, uint32_t>> known;
+    const std::vector<Camera> known = camerasOf(images);
     std::vector<std::string> tracks(points.size());
+    put(cameras, uint64_t(known.size()));
+    for (size_t i = 0; i < known.size(); i++)
+    {
+        Lens checked(known[i]);
+        put(cameras, uint32_t(i + 1), modelNumber(known[i].model), uint64_t(known[i].size.width),
+                uint64_t(known[i].size.height));
+        for (double parameter : known[i].parameters)
+            put(cameras, parameter);
+    }
     put(posed, uint64_t(images.size()));
     for (size_t i = 0; i < images.size(); i++)
     {
         const PosedImage& image = images[i];
-        auto camera = std::find_if(
-                known.begin(), known.end(), [&](const auto& k) { return same(k.first, image.camera); });
-        if (camera == known.end())
-        {
-            Lens checked(image.camera);
-            known.emplace_back(image.camera, uint32_t(known.size() + 1));
-            camera = known.end() - 1;
-            put(cameras, camera->second, modelNumber(image.camera.model), uint64_t(image.camera.size.width),
-                    uint64_t(image.camera.size.height));
-            for (double parameter : image.camera.parameters)
-                put(cameras, parameter);
-        }
         const Quatd q = Quatd::createFromRotMat(image.cameraFromWorld.rotation());
         const Vec3d t = image.cameraFromWorld.translation();
-        put(posed, uint32_t(i + 1), q.w, q.x, q.y, q.z, t[0], t[1], t[2], camera->second);
+        put(posed, uint32_t(i + 1), q.w, q.x, q.y, q.z, t[0], t[1], t[2],
+                uint32_t(indexOf(image.camera, known) + 1));
         posed += image.name + '\0';
         put(posed, uint64_t(image.pixels.size()));
         for (size_t k = 0; k < image.pixels.size(); k++)
@@ -295,9 +289,7 @@ void cv::iib::writeModel(
                 uint64_t(tracks[i].size() / 8));
         seen += tracks[i];
     }
-    std::string count;
-    put(count, uint64_t(known.size()));
-    cv::iib::writeText(folder + "/cameras.bin", count + cameras);
-    cv::iib::writeText(folder + "/images.bin", posed);
-    cv::iib::writeText(folder + "/points3D.bin", seen);
+    writeText(folder + "/cameras.bin", cameras);
+    writeText(folder + "/images.bin", posed);
+    writeText(folder + "/points3D.bin", seen);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "opencv2/iib/localization.hpp"
+#include "lens.hpp"
 
 namespace iib_localization {
 
@@ -11,5 +11,15 @@ using cv::iib::PosedImage;
 share; where the points are is not read.
 @throws cv::Exception for what is none, is damaged, or has a camera that Lens does not know. */
 std::vector<PosedImage> readModel(const std::string& folder);
+
+//! The cameras of images, each once.
+template <typename Images> std::vector<Camera> camerasOf(const Images& images)
+{
+    std::vector<Camera> cameras;
+    for (const PosedImage& image : images)
+        if (indexOf(image.camera, cameras) == cameras.size())
+            cameras.push_back(image.camera);
+    return cameras;
+}
 
 }  // namespace iib_localization

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+
 #include "opencv2/iib/localization.hpp"
 
 namespace iib_localization {
@@ -32,9 +34,13 @@ private:
     cv::Vec<double, 12> k_;  //!< parameters of the distortion, in COLMAP's order
 };
 
-inline bool same(const Camera& a, const Camera& b)
+//! Of a camera among others; how many there are, if it is not there.
+inline size_t indexOf(const Camera& camera, const std::vector<Camera>& cameras)
 {
-    return a.model == b.model && a.size == b.size && a.parameters == b.parameters;
+    return size_t(std::find_if(cameras.begin(), cameras.end(), [&](const Camera& other) {
+        return camera.model == other.model && camera.size == other.size &&
+               camera.parameters == other.parameters;
+    }) - cameras.begin());
 }
 
 //! The camera of an image that was reduced to a size by a scale.

@@ -142,11 +142,8 @@ void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Foun
     covariance *= deviation * deviation;
     cv::Vec3d variances;
     cv::eigen(covariance.get_minor<3, 3>(0, 0), variances);
-    std::vector<cv::Point3d> points;
-    for (const Match& m : inliers)
-        points.push_back(m.point);
     found.reason = "the pose is uncertain";
-    if (!(3 * std::sqrt(variances[0]) <= MAX_BOUND * medianDistance(inCamera(points, pose))))
+    if (!(3 * std::sqrt(variances[0]) <= MAX_BOUND * medianDistance(inCamera(pointsOf(inliers), pose))))
         return;
     found.found = true;
     found.reason = "";
@@ -202,12 +199,9 @@ Finder::Finder(const Map& map, int points)
     {
         if (image.codes.cols != iib_->descriptorSize())
             CV_Error(cv::Error::StsError, "the map's codes are not those of this version: make it again");
-        std::vector<cv::Point3d> seen;
-        for (int number : image.sees)
-            seen.push_back(map.points[size_t(number)]);
         const cv::Affine3d pose = inverse(image.cameraFromWorld);
         views_.push_back({pose.translation(), cv::Vec3d(pose.rotation().col(2).val),
-                medianDistance(inCamera(seen, image.cameraFromWorld))});
+                medianDistance(inCamera(map.seenBy(image), image.cameraFromWorld))});
     }
 }
 
@@ -249,9 +243,7 @@ void Finder::locate(const Camera& camera, const cv::Affine3d* prior, Found& foun
     for (size_t k : found.compared)
     {
         const MapImage& image = map_.images[k];
-        std::vector<cv::Point3d> points;
-        for (int number : image.sees)
-            points.push_back(map_.points[size_t(number)]);
+        const std::vector<cv::Point3d> points = map_.seenBy(image);
         std::vector<cv::DMatch> matched;
         if (!points.empty())
             matcher_->match(found.features.codes, image.codes, matched,
@@ -294,7 +286,9 @@ using namespace iib_localization;
 
 struct cv::iib::Localizer::Impl
 {
-    Impl(Map&& read, int points) : map(std::move(read)), finder(map, points), cameras(map.cameras()) {}
+    Impl(Map&& read, int points) : map(std::move(read)), finder(map, points), cameras(camerasOf(map.images))
+    {
+    }
 
     const Map map;
     const Finder finder;

@@ -17,7 +17,6 @@
 #include <unistd.h>
 #endif
 
-#include "lens.hpp"
 #include "../../iib/src/common/checked_file.hpp"
 
 namespace iib_localization {
@@ -188,6 +187,14 @@ MapImage readImage(cv::iib::CheckedReader& file, const std::vector<Camera>& came
 
 }  // namespace
 
+std::vector<cv::Point3d> Map::seenBy(const MapImage& image) const
+{
+    std::vector<cv::Point3d> seen;
+    for (int number : image.sees)
+        seen.push_back(points[size_t(number)]);
+    return seen;
+}
+
 void Map::compact()
 {
     std::vector<int> numbers(points.size(), -1);
@@ -219,16 +226,6 @@ void Map::compact()
         image = std::move(kept);
     }
     points = std::move(seen);
-}
-
-std::vector<Camera> Map::cameras() const
-{
-    std::vector<Camera> cameras;
-    for (const MapImage& image : images)
-        if (std::none_of(
-                    cameras.begin(), cameras.end(), [&](const Camera& c) { return same(c, image.camera); }))
-            cameras.push_back(image.camera);
-    return cameras;
 }
 
 Map readMap(const std::string& folder)
@@ -305,15 +302,13 @@ void MapFolder::write(const Map& map) const
     for (const cv::Point3d& p : map.points)
         for (double value : {p.x, p.y, p.z})
             writeReal(file, value);
-    const std::vector<Camera> cameras = map.cameras();
+    const std::vector<Camera> cameras = camerasOf(map.images);
     file.number(cameras.size(), 4);
     for (const Camera& camera : cameras)
         writeCamera(file, camera);
     file.number(map.images.size(), 4);
     for (const MapImage& image : map.images)
-        writeImage(file, image, size_t(std::find_if(cameras.begin(), cameras.end(), [&](const Camera& c) {
-            return same(c, image.camera);
-        }) - cameras.begin()));
+        writeImage(file, image, indexOf(image.camera, cameras));
     file.seal();
     cv::iib::writeModel(folder_, {map.images.begin(), map.images.end()}, map.points);
     file.commit();

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "colmap_model.hpp"
 #include "refined.hpp"
-#include "opencv2/iib/localization.hpp"
 
 namespace iib_localization {
 
-using cv::iib::Camera;
-
 //! An image of a map; each of its keypoints sees a point, and the strongest come first.
-struct MapImage : cv::iib::PosedImage
+struct MapImage : PosedImage
 {
     std::vector<float> sizes;   //!< of its keypoints
     cv::Mat codes;              //!< N x bytes, CV_8U
@@ -27,10 +25,10 @@ struct Map
     std::vector<MapImage> images;
     std::vector<cv::Point3d> points;
 
+    //! The points that an image's keypoints see.
+    std::vector<cv::Point3d> seenBy(const MapImage& image) const;
     //! Removes keypoints that see no point, and points that nothing sees.
     void compact();
-    //! The images' cameras, each once.
-    std::vector<Camera> cameras() const;
 };
 
 //! @throws cv::Exception for what is no map, or a damaged one.

@@ -118,36 +118,6 @@ void describe(std::vector<MapImage>& images, const cv::iib::ImageReader& read, i
         CV_Error(cv::Error::StsError, "none of the model's images can be read, or they are empty");
 }
 
-//! Matches of the images' keypoints that fit the poses. @param first ray of each image.
-std::vector<Link> link(const std::vector<MapImage>& images, const Pairs& pairs, const std::vector<Ray>& rays,
-        const std::vector<size_t>& first, Steps& steps)
-{
-    const cv::Ptr<cv::iib::HierarchicalMatcher> matcher = cv::iib::HierarchicalMatcher::createRecommended();
-    std::vector<std::vector<cv::DMatch>> matches(pairs.size());
-    inParallel(pairs.size(), [&](size_t n) {
-        const auto [a, b] = pairs[n];
-        if (!images[a].codes.empty() && !images[b].codes.empty())
-            matcher->match(images[a].codes, images[b].codes, matches[n]);
-        steps.step();
-    });
-    std::vector<Link> links;
-    size_t all = 0;
-    for (size_t n = 0; n < pairs.size(); n++)
-        for (const cv::DMatch& m : matches[n])
-        {
-            const size_t a = first[pairs[n].first] + size_t(m.queryIdx),
-                         b = first[pairs[n].second] + size_t(m.trainIdx);
-            all++;
-            if (fitting(rays[a], rays[b]))
-                links.push_back({m.distance, a, b});
-        }
-    if (double(links.size()) <= LEAST_FITTING * double(all))
-        CV_Error(cv::Error::StsError,
-                cv::format("only %d of %d matches fit the poses: is this the model of these images?",
-                        int(links.size()), int(all)));
-    return links;
-}
-
 }  // namespace
 
 Map makeMap(const std::string& model, const cv::iib::ImageReader& read, int points,
@@ -164,25 +134,12 @@ Map makeMap(const std::string& model, const cv::iib::ImageReader& read, int poin
         static_cast<PosedImage&>(map.images.back()) = image;
     }
     describe(map.images, read, points, steps);
-    std::vector<Ray> rays;
-    std::vector<size_t> first;
-    for (size_t i = 0; i < map.images.size(); i++)
-    {
-        first.push_back(rays.size());
-        const std::vector<Ray> own = raysOf(i, map.images[i]);
-        rays.insert(rays.end(), own.begin(), own.end());
-    }
-    std::vector<std::vector<Ray>> tracks = joined(rays, link(map.images, pairs, rays, first, steps));
-    refineTracks(tracks, map.images);
-    for (std::vector<Ray>& track : tracks)
-    {
-        cv::Point3d point;
-        if (!place(track, point))
-            continue;
-        for (const Ray& ray : track)
-            map.images[ray.image].sees[size_t(ray.keypoint)] = int(map.points.size());
-        map.points.push_back(point);
-    }
+    const MatchedRays matched = matchPairs(map.images, pairs, [&] { steps.step(); });
+    if (double(matched.links.size()) <= LEAST_FITTING * double(matched.matches))
+        CV_Error(cv::Error::StsError,
+                cv::format("only %d of %d matches fit the poses: is this the model of these images?",
+                        int(matched.links.size()), int(matched.matches)));
+    triangulate(map, matched.rays, matched.links);
     if (map.points.empty())
         CV_Error(cv::Error::StsError, model + ": no point was seen from two places");
     map.compact();

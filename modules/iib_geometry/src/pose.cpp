@@ -4,14 +4,14 @@
 
 #include "numbers.hpp"
 #include "pose.hpp"
+#include "two_views.hpp"
 
 namespace iib_localization {
 namespace {
 
 constexpr int ROUNDS = 20;
 
-//! A matrix that multiplies as the cross product from the left.
-cv::Matx33d cross(const cv::Vec3d& v) { return {0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0}; }
+}  // namespace
 
 std::vector<cv::Point3d> pointsOf(const std::vector<Match>& matches)
 {
@@ -20,8 +20,6 @@ std::vector<cv::Point3d> pointsOf(const std::vector<Match>& matches)
         points.push_back(m.point);
     return points;
 }
-
-}  // namespace
 
 Frame::Frame(const std::vector<Match>& matches)
 {
@@ -120,7 +118,7 @@ bool refinePose(
             if (std::isnan(weight))
                 continue;
             const cv::Matx23d byMoved = byPoint[i] * rotation;  // of the point in the world's axes
-            const cv::Matx23d byTurn = byMoved * cross(cv::Vec3d(points[i]) - centre);
+            const cv::Matx23d byTurn = byMoved * cv::iib::crossProduct(cv::Vec3d(points[i]) - centre);
             cv::Matx<double, 2, 6> jacobian;
             for (int row = 0; row < 2; row++)
                 for (int column = 0; column < 3; column++)

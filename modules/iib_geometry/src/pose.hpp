@@ -53,6 +53,8 @@ bool refinePose(
 //! How far each match is from where a pose has its point, in pixels; NaN behind the camera.
 std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens, const cv::Affine3d& pose);
 
+std::vector<cv::Point3d> pointsOf(const std::vector<Match>& matches);
+
 //! Where a pose has points of the world, in the camera's axes.
 std::vector<cv::Point3d> inCamera(const std::vector<cv::Point3d>& points, const cv::Affine3d& pose);
 

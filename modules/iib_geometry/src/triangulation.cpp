@@ -7,16 +7,15 @@
 #include <numeric>
 
 #include "features.hpp"
-#include "lens.hpp"
-#include "pose.hpp"
 
 namespace iib_localization {
 namespace {
 
-constexpr double MAX_ERROR = 4;  // pixels, of a match from its epipolar line and of a keypoint from its point
-constexpr double FAR = .01;      // radians between rays that do not tell on which side they meet
+constexpr double MAX_ERROR = 4;    // pixels, of a keypoint from its point
 constexpr double MIN_ANGLE = 1.5;  // degrees between the rays of a point
 constexpr int ROUNDS = 5;          // of a point's refinement
+
+typedef std::vector<Ray> Track;
 
 double angleOf(const Ray& a, const Ray& b)
 {
@@ -24,7 +23,7 @@ double angleOf(const Ray& a, const Ray& b)
 }
 
 //! The point nearest to rays by angle, with Cauchy's loss of a pixel.
-cv::Vec3d meetingPoint(const std::vector<Ray>& track)
+cv::Vec3d meetingPoint(const Track& track)
 {
     const cv::Vec3d origin = track[0].centre;  // which may lie far from the world's
     cv::Vec3d point;
@@ -51,41 +50,8 @@ cv::Vec3d meetingPoint(const std::vector<Ray>& track)
     return point;
 }
 
-}  // namespace
-
-double Ray::error(const cv::Vec3d& at) const
-{
-    const cv::Vec3d way = at - centre;
-    return scale * std::atan2(cv::norm(way.cross(direction)), way.dot(direction));
-}
-
-std::vector<Ray> raysOf(size_t number, const cv::iib::PosedImage& image)
-{
-    const Lens lens(image.camera);
-    const cv::Affine3d pose = inverse(image.cameraFromWorld);
-    const cv::Matx33d toWorld = pose.rotation() * lens.matrix().inv();
-    std::vector<Ray> rays;
-    for (const cv::Point2d& p : lens.undistorted(image.pixels))
-    {
-        const int keypoint = int(rays.size());
-        const int point = image.sees.empty() ? -1 : image.sees[size_t(keypoint)];
-        rays.push_back({number, keypoint, pose.translation(), cv::normalize(toWorld * cv::Vec3d(p.x, p.y, 1)),
-                lens.matrix()(0, 0), point});
-    }
-    return rays;
-}
-
-bool fitting(const Ray& a, const Ray& b)
-{
-    const cv::Vec3d way = b.centre - a.centre, across = a.direction.cross(b.direction);
-    const cv::Vec3d planeA = way.cross(b.direction), planeB = way.cross(a.direction);
-    const double product = std::abs(a.direction.dot(planeA));
-    return a.scale * product < MAX_ERROR * cv::norm(planeA) &&
-           b.scale * product < MAX_ERROR * cv::norm(planeB) &&
-           (cv::norm(across) < FAR || (across.dot(planeA) > 0 && across.dot(planeB) > 0));
-}
-
-std::vector<std::vector<Ray>> joined(const std::vector<Ray>& rays, std::vector<Link> links)
+//! Those of two rays or more.
+std::vector<Track> joined(const std::vector<Ray>& rays, std::vector<Link> links)
 {
     std::stable_sort(
             links.begin(), links.end(), [](const Link& a, const Link& b) { return a.bits < b.bits; });
@@ -115,7 +81,7 @@ std::vector<std::vector<Ray>> joined(const std::vector<Ray>& rays, std::vector<L
             join(known.emplace(rays[k].point, k).first->second, k);
     for (const Link& link : links)
         join(link.a, link.b);
-    std::vector<std::vector<Ray>> found;
+    std::vector<Track> found;
     for (const std::vector<size_t>& track : tracks)
         if (track.size() > 1)
         {
@@ -126,10 +92,12 @@ std::vector<std::vector<Ray>> joined(const std::vector<Ray>& rays, std::vector<L
     return found;
 }
 
-void refineTracks(std::vector<std::vector<Ray>>& tracks, std::vector<MapImage>& images)
+/** Moves the keypoints of each track to what the reference shows: one that sees a point already, or that which looks least
+differently from the others. Those that see a point stay. */
+void refineTracks(std::vector<Track>& tracks, std::vector<MapImage>& images)
 {
     std::map<std::pair<size_t, size_t>, std::vector<std::pair<int, int>>> jobs;  // keypoints by images
-    for (std::vector<Ray>& track : tracks)
+    for (Track& track : tracks)
     {
         const auto strangeness = [&](const Ray& ray) {
             double sum = 0;
@@ -161,7 +129,7 @@ void refineTracks(std::vector<std::vector<Ray>>& tracks, std::vector<MapImage>& 
             moved.pixels[size_t(list[n].second[i].second)] = pairs.moved[i].pt;
     });
     std::map<size_t, std::vector<Ray>> rays;
-    for (std::vector<Ray>& track : tracks)
+    for (Track& track : tracks)
         for (Ray& ray : track)
         {
             std::vector<Ray>& own = rays[ray.image];
@@ -171,7 +139,8 @@ void refineTracks(std::vector<std::vector<Ray>>& tracks, std::vector<MapImage>& 
         }
 }
 
-bool place(std::vector<Ray>& track, cv::Point3d& point)
+//! False if too few rays agree, or look from nearly the same direction.
+bool place(Track& track, cv::Point3d& point)
 {
     for (; track.size() > 1;)
     {
@@ -187,6 +156,32 @@ bool place(std::vector<Ray>& track, cv::Point3d& point)
         for (const Ray& b : track)
             widest = std::max(widest, angleOf(a, b));
     return widest * 180 / CV_PI >= MIN_ANGLE;
+}
+
+}  // namespace
+
+void triangulate(Map& map, const std::vector<Ray>& rays, const std::vector<Link>& links)
+{
+    std::vector<Track> tracks = joined(rays, links);
+    refineTracks(tracks, map.images);
+    for (Track& track : tracks)
+    {
+        const auto known =
+                std::find_if(track.begin(), track.end(), [](const Ray& r) { return r.point >= 0; });
+        const int number = known == track.end() ? int(map.points.size()) : known->point;
+        if (std::all_of(track.begin(), track.end(), [](const Ray& r) { return r.point >= 0; }))
+            continue;  // nothing new
+        for (const Ray& ray : track)
+            map.images[ray.image].sees[size_t(ray.keypoint)] = -1;
+        cv::Point3d point;
+        if (!place(track, point))
+            continue;
+        if (known == track.end())
+            map.points.push_back(point);
+        map.points[size_t(number)] = point;
+        for (const Ray& ray : track)
+            map.images[ray.image].sees[size_t(ray.keypoint)] = number;
+    }
 }
 
 }  // namespace iib_localization

@@ -48,11 +48,9 @@ int countMisses(Map& map, const std::vector<Seen>& all)
         const cv::Rect2d picture(cv::Point2d(-.5, -.5), cv::Size2d(seen.camera.size));
         for (size_t i : seen.found.compared)
         {
-            std::vector<cv::Point3d> points;
-            for (int number : map.images[i].sees)
-                points.push_back(map.points[size_t(number)]);
             const std::vector<cv::Point2d> places =
-                    Lens(seen.camera).project(inCamera(points, seen.found.cameraFromWorld));
+                    Lens(seen.camera)
+                            .project(inCamera(map.seenBy(map.images[i]), seen.found.cameraFromWorld));
             for (size_t k = 0; k < places.size(); k++)
                 looked[i][k] |= picture.contains(places[k]);  // not NaN, behind the camera
         }
@@ -125,38 +123,15 @@ std::vector<std::pair<size_t, size_t>> pairsOf(
 }
 
 //! Matches the last images of a map with others, and places what their keypoints see.
-void triangulate(Map& map, const std::vector<std::pair<size_t, size_t>>& pairs)
+void addPoints(Map& map, const std::vector<std::pair<size_t, size_t>>& pairs)
 {
+    MatchedRays matched = matchPairs(map.images, pairs);
     std::set<size_t> involved;
     for (const auto& [a, b] : pairs)
         involved.insert({a, b});
-    std::vector<Ray> rays;
-    std::vector<size_t> first(map.images.size());
-    for (size_t i : involved)
-    {
-        first[i] = rays.size();
-        const std::vector<Ray> own = raysOf(i, map.images[i]);
-        rays.insert(rays.end(), own.begin(), own.end());
-    }
-    const cv::Ptr<cv::iib::HierarchicalMatcher> matcher = cv::iib::HierarchicalMatcher::createRecommended();
-    std::vector<std::vector<cv::DMatch>> matches(pairs.size());
-    inParallel(pairs.size(), [&](size_t n) {
-        const cv::Mat &a = map.images[pairs[n].first].codes, &b = map.images[pairs[n].second].codes;
-        if (!a.empty() && !b.empty())
-            matcher->match(a, b, matches[n]);
-    });
-    std::vector<Link> links;
     std::set<int> touched;  // points that new keypoints may see
-    for (size_t n = 0; n < pairs.size(); n++)
-        for (const cv::DMatch& m : matches[n])
-        {
-            const size_t a = first[pairs[n].first] + size_t(m.queryIdx),
-                         b = first[pairs[n].second] + size_t(m.trainIdx);
-            if (!fitting(rays[a], rays[b]))
-                continue;
-            links.push_back({m.distance, a, b});
-            touched.insert(rays[b].point);
-        }
+    for (const Link& link : matched.links)
+        touched.insert(matched.rays[link.b].point);
     touched.erase(-1);
     for (size_t i = 0; i < map.images.size(); i++)
     {
@@ -165,28 +140,9 @@ void triangulate(Map& map, const std::vector<std::pair<size_t, size_t>>& pairs)
                 std::any_of(sees.begin(), sees.end(), [&](int p) { return touched.count(p) != 0; }))
             for (const Ray& ray : raysOf(i, map.images[i]))
                 if (touched.count(ray.point) != 0)
-                    rays.push_back(ray);
+                    matched.rays.push_back(ray);
     }
-    std::vector<std::vector<Ray>> tracks = joined(rays, links);
-    refineTracks(tracks, map.images);
-    for (std::vector<Ray>& track : tracks)
-    {
-        const auto known =
-                std::find_if(track.begin(), track.end(), [](const Ray& r) { return r.point >= 0; });
-        const int number = known == track.end() ? int(map.points.size()) : known->point;
-        if (std::all_of(track.begin(), track.end(), [](const Ray& r) { return r.point >= 0; }))
-            continue;  // nothing new
-        for (const Ray& ray : track)
-            map.images[ray.image].sees[size_t(ray.keypoint)] = -1;
-        cv::Point3d point;
-        if (!place(track, point))
-            continue;
-        if (known == track.end())
-            map.points.push_back(point);
-        map.points[size_t(number)] = point;
-        for (const Ray& ray : track)
-            map.images[ray.image].sees[size_t(ray.keypoint)] = number;
-    }
+    triangulate(map, matched.rays, matched.links);
 }
 
 //! Of more than LIGHTS added images at one place, removes the one that has not helped for longest.
@@ -214,7 +170,7 @@ using namespace iib_localization;
 struct cv::iib::MapUpdate::Impl
 {
     Impl(const std::string& from, const std::string& to)
-        : folder(to), map(readMap(from)), finder(map, 0), cameras(map.cameras())
+        : folder(to), map(readMap(from)), finder(map, 0), cameras(camerasOf(map.images))
     {
     }
 
@@ -287,7 +243,7 @@ cv::iib::MapUpdate::Counts cv::iib::MapUpdate::commit()
         image.added = true;
         map.images.push_back(std::move(image));
     }
-    triangulate(map, pairsOf(map, first, added));
+    addPoints(map, pairsOf(map, first, added));
     makeRoom(map, added);
     map.compact();
     impl_->folder.write(map);

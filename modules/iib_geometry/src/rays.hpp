@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+#include "map.hpp"
+
+namespace iib_localization {
+
+//! A keypoint of an image, and where it is seen from and to in the world.
+struct Ray
+{
+    size_t image;
+    int keypoint;
+    cv::Vec3d centre, direction;
+    double scale;    //!< pixels a radian
+    int point = -1;  //!< that the keypoint sees already
+
+    //! Pixels from where the keypoint's point would be seen.
+    double error(const cv::Vec3d& at) const;
+};
+
+//! The rays of an image's keypoints; NaN for those that its lens sees nothing at.
+std::vector<Ray> raysOf(size_t number, const PosedImage& image);
+
+//! Two rays, by their indices, that match.
+struct Link
+{
+    float bits;
+    size_t a, b;
+};
+
+//! What matching of images gives.
+struct MatchedRays
+{
+    std::vector<Ray> rays;    //!< of the images of all pairs
+    std::vector<Link> links;  //!< the matches that fit the images' poses
+    size_t matches = 0;       //!< those that do not, too
+};
+
+//! Matches keypoints of pairs of images. @param step is called after each pair, by several threads.
+MatchedRays matchPairs(
+        const std::vector<MapImage>& images, const std::vector<std::pair<size_t, size_t>>& pairs,
+        const std::function<void()>& step = [] {});
+
+}  // namespace iib_localization
