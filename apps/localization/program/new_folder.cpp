@@ -4,14 +4,13 @@
 
 #include <fcntl.h>
 #include <fnmatch.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "opencv2/core.hpp"
+#include "map.hpp"
 
 namespace iib_localization {
 namespace {
@@ -73,13 +72,9 @@ NewFolder::NewFolder(const std::string& target, const std::vector<std::string>& 
         if (fs::exists(target_))
             checkContents(target_, ownFiles);
         fs::create_directories(partial_);
-        lock_ = ::open(partial_.c_str(), O_RDONLY | O_CLOEXEC);
-        if (lock_ < 0 || ::flock(lock_, LOCK_EX | LOCK_NB) != 0)
-        {
-            ::close(lock_);
-            lock_ = -1;
+        lock_ = lockFolder(partial_);
+        if (lock_ < 0)
             fail(target + " is being written by another process: wait until it has ended");
-        }
         for (const auto& entry : fs::directory_iterator(partial_))
             fs::remove_all(entry.path());
     }

@@ -199,24 +199,18 @@ Finder::Finder(const Map& map, int points)
     {
         if (image.codes.cols != iib_->descriptorSize())
             CV_Error(cv::Error::StsError, "the map's codes are not those of this version: make it again");
-        const cv::Affine3d pose = inverse(image.cameraFromWorld);
-        views_.push_back({pose.translation(), cv::Vec3d(pose.rotation().col(2).val),
-                medianDistance(inCamera(map.seenBy(image), image.cameraFromWorld))});
+        depths_.push_back(medianDistance(inCamera(map.seenBy(image), image.cameraFromWorld)));
     }
 }
 
-//! The images of the map nearest to a pose: a turn in radians counts as much as a way by their depth.
+//! The images of the map nearest to a pose.
 std::vector<size_t> Finder::near(const cv::Affine3d& pose) const
 {
     std::vector<double> distances;
-    const cv::Vec3d centre = inverse(pose).translation();
-    const cv::Matx33d rotation = pose.rotation();
-    const cv::Vec3d direction(rotation.val + 6);
-    for (const View& v : views_)
-        distances.push_back(v.depth > 0 ? cv::norm(centre - v.centre) / v.depth +
-                                                  std::acos(std::clamp(direction.dot(v.direction), -1., 1.))
-                                        : std::numeric_limits<double>::infinity());
-    return best(views_.size(), NEAREST, [&](size_t a, size_t b) { return distances[a] < distances[b]; });
+    for (size_t i = 0; i < depths_.size(); i++)
+        distances.push_back(depths_[i] > 0 ? distance(pose, map_.images[i].cameraFromWorld, depths_[i])
+                                           : std::numeric_limits<double>::infinity());
+    return best(depths_.size(), NEAREST, [&](size_t a, size_t b) { return distances[a] < distances[b]; });
 }
 
 std::vector<size_t> Finder::similar(const cv::Mat& codes) const

@@ -30,15 +30,9 @@ private:
     std::vector<size_t> similar(const cv::Mat& codes) const;
     void locate(const Camera& camera, const cv::Affine3d* prior, Found& found) const;
 
-    //! Where an image of the map was taken: of its camera in the world, and how far what it sees lies.
-    struct View
-    {
-        cv::Vec3d centre, direction;
-        double depth;
-    };
-
     const Map& map_;
-    std::vector<View> views_;
+    std::vector<double>
+            depths_;  //!< of each image of the map, how far what it sees lies; 0 if it sees nothing
     cv::Ptr<cv::iib::IIB> iib_;
     cv::Ptr<cv::iib::HierarchicalMatcher> matcher_;
     Retrieval votes_;

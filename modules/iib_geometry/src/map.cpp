@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <filesystem>
 #include <set>
 
 #include <fcntl.h>
@@ -31,22 +30,6 @@ const cv::iib::FileKind KIND = {"IIB_MAP_", 1, "a map of opencv_iib"};
 const std::vector<std::string> OWN = {"map.iib", "cameras.bin", "images.bin", "points3D.bin"};
 const std::vector<std::string> EARLIER = {"map.json", "codes.npy", "misses.npy", "points.npy", "sees.npy",
         "views.npy", "rigs.bin", "frames.bin"};
-
-//! A descriptor that keeps other processes from locking the folder until it is closed; below 0 if one has locked it.
-int lockFolder(const fs::path& folder)
-{
-#ifdef _WIN32  // where no folder is locked: a file beside it, which goes when it is closed
-    return ::_wsopen((folder.wstring() + L".lock").c_str(), _O_CREAT | _O_RDWR | _O_TEMPORARY | _O_NOINHERIT,
-            _SH_DENYRW, _S_IREAD | _S_IWRITE);
-#else
-    const int lock = ::open(folder.c_str(), O_RDONLY | O_CLOEXEC);
-    if (lock >= 0 && ::flock(lock, LOCK_EX | LOCK_NB) == 0)
-        return lock;
-    if (lock >= 0)
-        ::close(lock);
-    return -1;
-#endif
-}
 
 //! Whether a file has one of these names, or that of one which a killed process has not finished.
 bool isOf(const std::vector<std::string>& names, const std::string& name)
@@ -186,6 +169,21 @@ MapImage readImage(cv::iib::CheckedReader& file, const std::vector<Camera>& came
 }
 
 }  // namespace
+
+int lockFolder(const fs::path& folder)
+{
+#ifdef _WIN32  // where no folder is locked: a file beside it, which goes when it is closed
+    return ::_wsopen((folder.wstring() + L".lock").c_str(), _O_CREAT | _O_RDWR | _O_TEMPORARY | _O_NOINHERIT,
+            _SH_DENYRW, _S_IREAD | _S_IWRITE);
+#else
+    const int lock = ::open(folder.c_str(), O_RDONLY | O_CLOEXEC);
+    if (lock >= 0 && ::flock(lock, LOCK_EX | LOCK_NB) == 0)
+        return lock;
+    if (lock >= 0)
+        ::close(lock);
+    return -1;
+#endif
+}
 
 std::vector<cv::Point3d> Map::seenBy(const MapImage& image) const
 {

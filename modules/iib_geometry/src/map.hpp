@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+
 #include "colmap_model.hpp"
 #include "refined.hpp"
 
@@ -33,6 +35,9 @@ struct Map
 
 //! @throws cv::Exception for what is no map, or a damaged one.
 Map readMap(const std::string& folder);
+
+//! A descriptor that keeps other processes from locking the folder until it is closed; below 0 if one has locked it.
+int lockFolder(const std::filesystem::path& folder);
 
 //! A folder that a map is written to; no other process can write it meanwhile.
 class MapFolder

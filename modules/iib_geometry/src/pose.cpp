@@ -21,6 +21,13 @@ std::vector<cv::Point3d> pointsOf(const std::vector<Match>& matches)
     return points;
 }
 
+double distance(const cv::Affine3d& a, const cv::Affine3d& b, double depth)
+{
+    const cv::Affine3d turn = a * inverse(b);
+    const double way = cv::norm(inverse(a).translation() - inverse(b).translation());
+    return way / depth + std::acos(std::clamp(turn.rotation()(2, 2), -1., 1.));
+}
+
 Frame::Frame(const std::vector<Match>& matches)
 {
     std::vector<double> axes[3], distances;

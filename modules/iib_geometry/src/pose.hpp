@@ -25,6 +25,9 @@ inline cv::Affine3d inverse(const cv::Affine3d& pose)
     return {back, -(back * pose.translation())};
 }
 
+//! Of the cameras' centres over that of what they see, plus the angle between their directions in radians.
+double distance(const cv::Affine3d& a, const cv::Affine3d& b, double depth);
+
 //! Axes in which points lie about the origin at distances of about 1, wherever and in whatever unit they are given.
 struct Frame
 {

@@ -27,13 +27,6 @@ struct Seen
     double depth;  //!< median distance of what it sees
 };
 
-double distance(const cv::Affine3d& a, const cv::Affine3d& b, double depth)
-{
-    const cv::Affine3d turn = a * inverse(b);
-    const double way = cv::norm(inverse(a).translation() - inverse(b).translation());
-    return way / depth + std::acos(std::clamp(turn.rotation()(2, 2), -1., 1.));
-}
-
 //! Counts for each code whether this update looked for it and found it; returns how many nobody finds any more.
 int countMisses(Map& map, const std::vector<Seen>& all)
 {
