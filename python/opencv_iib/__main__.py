@@ -150,8 +150,6 @@ def _share(count: int, total: int) -> int:
 
 
 def _localization(arguments: argparse.Namespace) -> int:
-    if arguments.workers is not None and arguments.workers < 1:
-        raise ValueError(f'workers is {arguments.workers}: at least 1 is needed')
     if arguments.command == 'localize':
         found, count = localization.localize_images(arguments.map, arguments.images, arguments.out, arguments.camera,
                                                     arguments.pictures, arguments.workers)

@@ -1,11 +1,14 @@
 """Images and keypoints made of integers alone, as modules/iib/test/support/test_images.cpp makes them."""
 import contextlib
 import importlib
+import io
 import re
 import resource
 import signal
+import tempfile
 import threading
 import time
+import unittest
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +25,24 @@ def optional(name):
 
 
 cv2 = optional('cv2')
+
+
+class InFolder(unittest.TestCase):
+    """Each test has a folder of its own."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+
+
+def run_command(*arguments):
+    """Status, standard output and standard error of opencv-iib."""
+    from opencv_iib.__main__ import main
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        status = main([str(argument) for argument in arguments])
+    return status, out.getvalue(), err.getvalue()
 
 
 class Integers:

@@ -1,15 +1,13 @@
 import copy
 import os
 import pickle
-import tempfile
 import unittest
-from pathlib import Path
 
 import numpy as np
 
 import opencv_iib
 from opencv_iib import IIB
-from support import cv2, files_end_at, fnv1a, golden_hashes, grid, scatter, texture
+from support import InFolder, cv2, files_end_at, fnv1a, golden_hashes, grid, scatter, texture
 
 GOLDEN = {
     'default': {},
@@ -81,22 +79,11 @@ class Arrays(unittest.TestCase):
         np.testing.assert_array_equal(self.iib.compute(deep.astype('>u2'), grid())[1],
                                       self.iib.compute(deep.astype('<u2'), grid())[1])
 
-    def test_array_interface_and_dlpack(self):
+    def test_array_interface(self):
         class Foreign:
             __array_interface__ = self.image.__array_interface__
             keep = self.image
         self.check(Foreign())
-
-        class Capsule:
-            def __init__(self, array):
-                self.array = array
-
-            def __dlpack__(self, **arguments):
-                return self.array.__dlpack__()
-
-            def __dlpack_device__(self):
-                return self.array.__dlpack_device__()
-        self.check(Capsule(self.image))
 
     def test_keypoint_arrays(self):
         rows = grid()
@@ -159,7 +146,7 @@ class MyMatcher(opencv_iib.HierarchicalMatcher): pass
 class MyIndex(opencv_iib.MappedIndex): pass
 
 
-class Objects(unittest.TestCase):
+class Objects(InFolder):
 
     def configured(self):
         iib = IIB.create(scaleFactor=3.7, granularity=3, channels=51, mapping=IIB.MAPPING_PAIRWISE)
@@ -196,10 +183,8 @@ class Objects(unittest.TestCase):
         self.assertEqual(len(iib.detect(texture(160, 120))), 50)
 
     def test_a_subclass_keeps_what_it_adds(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        opencv_iib.MappedIndex.create(folder.name, [8])
-        for made in (MyIIB(), MyIIB.createRecommended(), MyHessian(), MyNormalized(MyHessian()), MyMatcher(), MyIndex(folder.name)):
+        opencv_iib.MappedIndex.create(self.folder, [8])
+        for made in (MyIIB(), MyIIB.createRecommended(), MyHessian(), MyNormalized(MyHessian()), MyMatcher(), MyIndex(self.folder)):
             made.notes = ['mine']
             for twin in (copy.copy(made), copy.deepcopy(made), pickle.loads(pickle.dumps(made))):
                 self.assertEqual((type(twin), twin.notes), (type(made), ['mine']))
@@ -207,26 +192,24 @@ class Objects(unittest.TestCase):
             self.assertIsNot(copy.deepcopy(made).notes, made.notes)
 
     def test_file(self):
-        iib, other = self.configured(), IIB.create()
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / 'iib.yml'
-            iib.write(path)
-            other.read(path)
-            nowhere = Path(folder) / 'nothing' / 'iib.yml'
-            for call, wrong in ((iib.write, ': there is no folder'), (iib.save, ': there is no folder'), (iib.read, ' cannot be read')):
-                with self.assertRaisesRegex(opencv_iib.error, f'nothing/iib.yml{wrong}'):
-                    call(nowhere)
-            for name in ('iib.xml', 'iib.json.gz', os.fsdecode(b'\xe9.yml')):
-                again = IIB.create()
-                iib.save(os.path.join(folder, name))
-                again.read(os.path.join(folder, name))
-                self.expect_same(iib, again)
-            before = path.read_bytes()
-            for size in (0, 100, len(before) - 1):
-                with self.subTest(size), files_end_at(size), self.assertRaisesRegex(opencv_iib.error, 'iib.yml cannot be written'):
-                    iib.save(path)
-                self.assertEqual(path.read_bytes(), before)
-            self.assertEqual(len(os.listdir(folder)), 4)
+        iib, other, path = self.configured(), IIB.create(), self.folder / 'iib.yml'
+        iib.write(path)
+        other.read(path)
+        nowhere = self.folder / 'nothing' / 'iib.yml'
+        for call, wrong in ((iib.write, ': there is no folder'), (iib.save, ': there is no folder'), (iib.read, ' cannot be read')):
+            with self.assertRaisesRegex(opencv_iib.error, f'nothing/iib.yml{wrong}'):
+                call(nowhere)
+        for name in ('iib.xml', 'iib.json.gz', os.fsdecode(b'\xe9.yml')):
+            again = IIB.create()
+            iib.save(self.folder / name)
+            again.read(self.folder / name)
+            self.expect_same(iib, again)
+        before = path.read_bytes()
+        for size in (0, 100, len(before) - 1):
+            with self.subTest(size), files_end_at(size), self.assertRaisesRegex(opencv_iib.error, 'iib.yml cannot be written'):
+                iib.save(path)
+            self.assertEqual(path.read_bytes(), before)
+        self.assertEqual(len(os.listdir(self.folder)), 4)
         self.expect_same(iib, other)
 
     def test_a_pickled_detector_says_that_it_is_missing(self):

@@ -38,8 +38,6 @@ class Hessian(unittest.TestCase):
             self.assertEqual(twin.getWorkingSize(), 700)
         detector.setMaxFeatures(0)
         self.assertEqual(detector.getMaxFeatures(), 0)
-        with self.assertRaisesRegex(opencv_iib.error, 'scales'):
-            detector.setScales(9)
 
 
 class Recommended(unittest.TestCase):
@@ -89,12 +87,8 @@ class Normalized(unittest.TestCase):
         np.testing.assert_array_equal(descriptors, IIB.create(20).compute(texture(160, 120), keypoints)[1])
 
     def test_mistakes_raise(self):
-        for culprit, call in (('sigma is 0', lambda: NormalizedDetector(Watching(), 0)),
-                              ('sigma is 257', lambda: NormalizedDetector(Watching()).setSigma(257)),
-                              ('does not describe', lambda: NormalizedDetector(Watching()).compute(texture(50, 50), [])),
-                              ('NaN', lambda: NormalizedDetector(Watching()).detect(np.full((9, 9), np.nan, np.float32)))):
-            with self.subTest(culprit), self.assertRaisesRegex(opencv_iib.error, culprit):
-                call()
+        with self.assertRaisesRegex(opencv_iib.error, 'does not describe'):
+            NormalizedDetector(Watching()).compute(texture(50, 50), [])
         with self.assertRaisesRegex(TypeError, 'detect'):
             NormalizedDetector(object())
 
@@ -187,12 +181,6 @@ class Rotation(unittest.TestCase):
         matches = [opencv_iib.DMatch(a, b, 0, 1.) for a, b in self.matches.tolist()]
         self.assertEqual(estimateRotation(first, second, matches), angle)
 
-    def test_mistakes_raise(self):
-        for matches in (self.matches[:1], self.matches + 1, self.matches - 1, self.matches.astype(np.float32),
-                        self.matches.ravel(), []):
-            with self.assertRaises(opencv_iib.error):
-                estimateRotation(self.points, self.turned, matches)
-
 
 class MatchRotated(unittest.TestCase):
 
@@ -238,11 +226,3 @@ class MatchRotated(unittest.TestCase):
         self.assertEqual({k.angle for k in first}, {-1})
         self.assertGreater(len(matches), 50)
         self.assertEqual(self.call(90)[0], 90)
-
-    def test_mistakes_raise(self):
-        for rotation in (-10, 360, float('nan')):
-            with self.assertRaises(opencv_iib.error):
-                self.call(rotation)
-        self.extractor.setOrientation(IIB.ORIENTATION_NONE)
-        with self.assertRaises(opencv_iib.error):
-            self.call()

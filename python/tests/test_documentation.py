@@ -3,13 +3,11 @@ import importlib.util
 import re
 import subprocess
 import sys
-import tempfile
 import unittest
-from pathlib import Path
 
 import numpy as np
 
-from support import REPOSITORY, cv2
+from support import REPOSITORY, InFolder, cv2
 
 PAGES = [REPOSITORY / 'README.md', *sorted((REPOSITORY / 'doc').glob('*.md')), *sorted(REPOSITORY.glob('modules/*/*.md')),
          *sorted(REPOSITORY.glob('modules/*/tutorials/*.markdown')), *sorted(REPOSITORY.glob('apps/*/*.md'))]
@@ -45,12 +43,10 @@ def programs(page):
 
 @unittest.skipIf(cv2 is None, 'no cv2')
 @unittest.skipUnless((REPOSITORY / 'tools/synthetic/day.png').exists(), 'the documentation is not beside these tests')
-class Documentation(unittest.TestCase):
+class Documentation(InFolder):
 
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
+        super().setUp()
         self.images = {name: cv2.imread(str(REPOSITORY / f'tools/synthetic/{name}.png')) for name in ('day', 'night')}
         for name, image in self.images.items():
             for suffix in ('png', 'jpg'):

@@ -1,4 +1,6 @@
+"""hloc: the files that opencv-iib hloc writes, and the extractor among the examples."""
 import importlib.util
+import shutil
 import sys
 import types
 import unittest
@@ -7,8 +9,11 @@ from unittest import mock
 import numpy as np
 
 import opencv_iib
-from support import REPOSITORY, texture
+from collection import Collection
+from opencv_iib.colmap import hloc
+from support import REPOSITORY, optional, run_command, texture
 
+h5py = optional('h5py')
 EXAMPLE = REPOSITORY / 'python/examples/hloc_iib.py'
 
 
@@ -43,7 +48,7 @@ def nearest(similarity, ratio):
 
 
 @unittest.skipUnless(EXAMPLE.exists(), 'the examples are not beside these tests')
-class Hloc(unittest.TestCase):
+class Extractor(unittest.TestCase):
 
     def test_hlocs_matcher_finds_what_the_recommended_matcher_finds_both_ways(self):
         images = texture(320, 240, seed=4), texture(320, 240, seed=4)[3:, 5:] // 2
@@ -60,3 +65,41 @@ class Hloc(unittest.TestCase):
         back = opencv_iib.match(codes[1].codes, codes[0].codes).pairs
         self.assertGreater(len(mutual), 50)
         self.assertEqual(set(mutual), set(map(tuple, there.tolist())) & {(i, j) for j, i in back.tolist()})
+
+
+@unittest.skipIf(h5py is None, 'no h5py')
+class Export(Collection):
+
+    def setUp(self):
+        super().setUp()
+        self.hloc = [self.folder / name for name in ('features.h5', 'matches.h5', 'list.txt')]
+        self.build()
+
+    def export(self, paths, **keywords):
+        return hloc.export(str(self.database), *map(str, paths), **keywords)
+
+    def test_files_are_kept_until_all_are_new(self):
+        for file in self.hloc:
+            file.write_bytes(b'precious')
+        before = self.files()
+        with mock.patch.object(hloc, '_pair', side_effect=OSError('no space left')), self.assertRaises(OSError):
+            self.export(self.hloc, force=True)
+        self.assertEqual([file.read_bytes() for file in self.hloc], [b'precious'] * 3)
+        with self.assertRaisesRegex(ValueError, 'three files'):
+            self.export(self.hloc[:1] * 3, force=True)
+        self.assertEqual(self.files(), before)
+
+    def test_what_is_written(self):
+        for expected in (0, 1):
+            self.assertEqual(run_command('hloc', self.database, *self.hloc)[0], expected)
+        for name in ('a#b.db', '100%41.db', 'what?.db'):
+            self.database = shutil.copy(self.database, self.folder / name)
+            self.assertEqual(self.export(self.hloc, force=True), 3)
+        rows, data = self.query('SELECT rows, data FROM keypoints WHERE image_id=1')[0]
+        with h5py.File(self.hloc[0]) as features, h5py.File(self.hloc[1]) as matches:
+            np.testing.assert_array_equal(features['a.png']['keypoints'][:] + np.float32(.5),
+                                          np.frombuffer(data, np.float32).reshape(rows, 4)[:, :2])
+            nearest = matches['a.png/more-c.png']['matches0']
+            self.assertEqual((nearest.dtype, nearest.shape), (np.int16, (rows,)))
+            self.assertTrue((nearest[:] >= -1).all())
+        self.assertEqual(len(self.hloc[2].read_text().splitlines()), 3)

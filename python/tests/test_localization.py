@@ -2,15 +2,11 @@ import csv
 import io
 import os
 import re
-import resource
 import shutil
-import struct
-import subprocess
 import tempfile
 import threading
 import unittest
-import zlib
-from contextlib import contextmanager, redirect_stderr, redirect_stdout, suppress
+from contextlib import redirect_stderr, suppress
 from pathlib import Path
 from unittest import mock
 
@@ -19,14 +15,11 @@ import numpy as np
 import opencv_iib
 from opencv_iib import _core
 from opencv_iib.localization import Camera, Localizer, build, update
-from support import REPOSITORY, cv2, optional, seconds_until_interrupt, steps_meanwhile, texture
+from opencv_iib.localization import maps, run as runs
+from opencv_iib.localization.folders import new_folder
+from support import REPOSITORY, cv2, files_end_at, optional, run_command, seconds_until_interrupt, steps_meanwhile, texture
 
 pycolmap = optional('pycolmap')
-
-if cv2 is not None:
-    from opencv_iib.__main__ import main
-    from opencv_iib.localization import maps, run as runs
-    from opencv_iib.localization.folders import new_folder
 
 SIZE = WIDTH, HEIGHT = 320, 240
 CAMERA = f'PINHOLE,{WIDTH},{HEIGHT},300,300,160,120'
@@ -70,14 +63,6 @@ def write_model(folder, poses, camera=CAMERA):
     _core.writeModel(os.fsencode(folder), [(name, Camera.parse(camera), pose, np.empty((0, 2))) for name, pose in poses.items()])
 
 
-def run(*arguments):
-    """Status and what was written to standard error."""
-    errors = io.StringIO()
-    with redirect_stderr(errors), redirect_stdout(io.StringIO()):
-        status = main(list(arguments))
-    return status, errors.getvalue()
-
-
 def trajectory(folder, name='trajectory.txt'):
     """By names without blanks: centre, quaternion x y z w."""
     lines = [line.split() for line in Path(folder, name).read_text().splitlines() if line[0] != '#']
@@ -111,7 +96,7 @@ class Localization(unittest.TestCase):
         for name, place in cls.truth.items():
             cv2.imwrite(os.path.join(cls.dark, name + '.png'), photograph(picture, pose(*place), evening))
         write_model(cls.model, cls.poses)
-        status, errors = run('map', '--model', cls.model, '--images', cls.images, '--out', cls.map, '--points', '400')
+        status, _, errors = run_command('map', '--model', cls.model, '--images', cls.images, '--out', cls.map, '--points', '400')
         assert status == 0, errors
 
     def path(self, name):
@@ -127,13 +112,13 @@ class Localization(unittest.TestCase):
         self.assertLess(np.linalg.norm(error[:3, :3] - np.eye(3)), .02)
 
     def check_error(self, pattern, *arguments):
-        status, errors = run(*arguments)
+        status, _, errors = run_command(*arguments)
         self.assertEqual(status, 1)
         self.assertRegex(errors.splitlines()[-1], pattern)
         self.assertNotIn('Traceback', errors)
 
     def localize(self, out, *arguments, map=None, images=None):
-        return run('localize', '--map', map or self.map, '--images', images or self.dark, '--out', out, *arguments)
+        return run_command('localize', '--map', map or self.map, '--images', images or self.dark, '--out', out, *arguments)[::2]
 
     def test_another_light_is_localized_and_written(self):
         out = self.path('out')
@@ -150,7 +135,9 @@ class Localization(unittest.TestCase):
             self.assertLess(np.linalg.norm(found[name][:3] - [*place, 0]), .05)
             half = cv2.Rodrigues(true[:3, :3].T)[0].ravel() / 2
             self.assertGreater(found[name][3:] @ [*half, 1] / np.linalg.norm([*half, 1]), .9999)  # of small angles
-        rows = list(csv.DictReader(Path(out, 'frames.csv').read_text().splitlines()))
+        lines = Path(out, 'frames.csv').read_text().splitlines()
+        self.assertRegex(lines[0], '^name,found,reason,matches,inliers,x_x,x_y,x_z,x_rx,')  # as iib_localize's
+        rows = list(csv.DictReader(lines))
         self.assertEqual([row['found'] for row in rows], ['1'] * 3)
         self.assertGreater(int(rows[0]['inliers']), 15)
         self.assertLess(float(rows[0]['x_x']) ** .5, .05)
@@ -185,17 +172,9 @@ class Localization(unittest.TestCase):
         self.assertEqual((nothing.cam_from_world, nothing.covariance, nothing.inliers), (None, None, 0))
         self.assertRegex(nothing.reason, 'too few')
 
-    def test_threads_share_a_localizer_without_the_gil(self):
-        localizer, found = Localizer(self.map, 400), []
-        image = self.grey()
+    def test_the_gil_is_released(self):
+        localizer, image = Localizer(self.map, 400), self.grey()
         self.assertGreater(steps_meanwhile(lambda: [localizer.localize(image, CAMERA) for _ in range(20)]), 3)
-        threads = [threading.Thread(target=lambda: found.append(localizer.localize(image, CAMERA).cam_from_world)) for _ in range(4)]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
-        for other in found[1:]:
-            np.testing.assert_array_equal(other, found[0])
 
     @unittest.skipUnless((REPOSITORY / 'doc/maps.md').exists(), 'the documentation is not beside these tests')
     def test_the_program_of_the_page(self):
@@ -244,13 +223,9 @@ class Localization(unittest.TestCase):
         self.assertRegex(rows['elsewhere.png']['reason'], 'too few matches')
         shutil.rmtree(mixed)
         os.makedirs(mixed)
-        huge = bytearray(cv2.imencode('.png', np.zeros((9, 9), np.uint8))[1].tobytes())
-        huge[16:24] = struct.pack('>II', 100000, 100000)
-        huge[29:33] = struct.pack('>I', zlib.crc32(huge[12:29]))
-        for name, data in (('broken.png', b'nothing'), ('huge.png', huge)):
-            Path(mixed, name).write_bytes(data)
+        Path(mixed, 'broken.png').write_bytes(b'nothing')
         status, errors = self.localize(out, '--camera', CAMERA, images=mixed)
-        self.assertEqual((status, errors.count('not an image')), (3, 2))
+        self.assertEqual((status, errors.count('not an image')), (3, 1))
         for name, culprit in (('broken.jpg', 'broken.jpg and broken.png would have one pose'), ('#1.png', "'#1.png': rename it"),
                               ('caf\udce9.png', 'rename it, in UTF-8')):
             Path(mixed, name).touch()
@@ -274,10 +249,7 @@ class Localization(unittest.TestCase):
         out, empty = self.path('out'), self.path('empty')
         os.makedirs(empty)
         localize = '--map', self.map, '--images', self.dark, '--out', out
-        for text in ('FISH,1,2,3', 'PINHOLE,640,480,500', 'PINHOLE', 'PINHOLE,640,480,a,b,c,d', 'PINHOLE,640,480,inf,1,1,1',
-                     'PINHOLE,1e30,480,300,300,1,1', 'PINHOLE,320,-240,300,300,160,120', 'PINHOLE,320,240,-300,300,160,120',
-                     'PINHOLE,320,240,nan,300,160,120'):
-            self.check_error('camera', 'localize', *localize, '--camera', text)
+        self.check_error('camera', 'localize', *localize, '--camera', 'FISH,1,2,3')
         self.check_error('is no map', 'localize', '--map', self.images, *localize[2:])
         for name in ('no', os.path.join(self.map, 'map.iib')):
             self.check_error('there is no folder', 'localize', '--map', self.map, '--images', name, '--out', out)
@@ -301,7 +273,7 @@ class Localization(unittest.TestCase):
         shutil.copytree(self.map, out)
         arguments = 'map', '--model', self.model, '--images', self.images, '--points', '300', '--out'
         self.check_error('--force', *arguments, out)
-        self.assertEqual(run(*arguments, out, '--force')[0], 0)
+        self.assertEqual(run_command(*arguments, out, '--force')[0], 0)
         foreign = self.path('mine')
         os.makedirs(foreign)
         Path(foreign, 'letter.txt').touch()
@@ -314,14 +286,14 @@ class Localization(unittest.TestCase):
             self.assertEqual((folder, os.listdir(folder)), (partial, []))
             raise KeyboardInterrupt
 
-    def test_folders_where_the_system_exchanges_none(self):
+    def test_a_folder_that_cannot_be_moved_leaves_the_old_one(self):
         def rename(source, target, rename=os.rename):
             if fails and source.endswith('.partial'):
                 raise OSError('full')
             rename(source, target)
 
         target = self.path('new')
-        with mock.patch('opencv_iib.localization.folders._exchange', return_value=False), mock.patch('os.rename', rename):
+        with mock.patch('os.rename', rename):
             for text, fails in ('old', False), ('new', False), ('lost', True):
                 with suppress(OSError), new_folder(target, ['a']) as partial:
                     Path(partial, 'a').write_text(text)
@@ -339,27 +311,17 @@ class Localization(unittest.TestCase):
             self.assertEqual(self.localize(folder + 'out', '--pictures', images=images)[0], 0)
             self.assertEqual(len(trajectory(out)), 3)
             self.assertTrue(os.path.islink(folder + 'out'))
-        self.assertEqual(run('update', '--map', folder + 'map', '--images', self.dark)[0], 0)
+        self.assertEqual(run_command('update', '--map', folder + 'map', '--images', self.dark)[0], 0)
         self.assertTrue(os.path.islink(folder + 'map'))
 
     def test_paths_that_are_not_utf8(self):
         folder = self.path('x') + '/caf\udce9'
         shutil.copytree(self.dark, folder + '/images')
         shutil.copytree(self.images, folder + '/mapped')
-        self.assertEqual(run('map', '--model', self.model, '--images', folder + '/mapped', '--out', folder + '/map')[0], 0)
+        self.assertEqual(run_command('map', '--model', self.model, '--images', folder + '/mapped', '--out', folder + '/map')[0], 0)
         self.assertEqual(self.localize(folder + '/out', map=folder + '/map', images=folder + '/images')[0], 0)
-        self.assertEqual(run('update', '--map', folder + '/map', '--images', folder + '/images')[0], 0)
+        self.assertEqual(run_command('update', '--map', folder + '/map', '--images', folder + '/images')[0], 0)
         self.assertEqual(len(trajectory(folder + '/out')), 3)
-
-    @contextmanager
-    def files_of_at_most(self, size):
-        """As on a full disk, writing to a larger file fails."""
-        old = resource.getrlimit(resource.RLIMIT_FSIZE)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (size, old[1]))
-        try:
-            yield
-        finally:
-            resource.setrlimit(resource.RLIMIT_FSIZE, old)
 
     def test_a_full_disk_leaves_the_old_results(self):
         out, map = self.path('out'), self.path('map')
@@ -368,14 +330,14 @@ class Localization(unittest.TestCase):
         largest = max(os.path.getsize(os.path.join(out, name)) for name in os.listdir(out))
         before = trajectory(out), sorted(os.listdir(out))
         for size in (0, 50, 200, 600, largest - 1):
-            with self.files_of_at_most(size):
+            with files_end_at(size):
                 status, _ = self.localize(out)
             self.assertEqual((status, before[1]), (1, sorted(os.listdir(out))))
         self.assertEqual(trajectory(out).keys(), before[0].keys())
         largest = max(os.path.getsize(os.path.join(map, name)) for name in os.listdir(map))
         for size in (0, 5000, largest // 2):
-            with self.files_of_at_most(size):
-                self.assertEqual(run('update', '--map', map, '--images', self.dark)[0], 1)
+            with files_end_at(size):
+                self.assertEqual(run_command('update', '--map', map, '--images', self.dark)[0], 1)
             self.check(Localizer(map).localize(self.grey(), CAMERA))
 
     def test_an_update_adds_a_light(self):
@@ -393,29 +355,6 @@ class Localization(unittest.TestCase):
             self.assertGreater(new, 1.2 * old)
             again = update(out, night)
         self.assertEqual((again['localized'], again['added']), (3, 0))
-
-    def test_two_updates_at_once(self):
-        out = self.path('map')
-        shutil.copytree(self.map, out)
-        first = _core.MapUpdate(os.fsencode(out), b'')
-        self.check_error('another process|being', 'update', '--map', out, '--images', self.dark)
-        self.assertEqual(first.commit(), (0, 0, 0))
-        del first
-        self.assertEqual(run('update', '--map', out, '--images', self.dark)[0], 0)
-
-    @unittest.skipUnless(os.environ.get('IIB_PROGRAMS'), 'no IIB_PROGRAMS, the folder of iib_localize')
-    def test_the_program_finds_the_same(self):
-        ours, theirs = self.path('ours'), self.path('theirs')
-        self.localize(ours)
-        program = os.path.join(os.environ['IIB_PROGRAMS'], 'iib_localize')
-        subprocess.run([program, '--map', self.map, '--images', self.dark, '--out', theirs], check=True, stdout=subprocess.DEVNULL)
-        expected, found = trajectory(ours), trajectory(theirs)
-        self.assertEqual(expected.keys(), found.keys())
-        for name in expected:
-            np.testing.assert_allclose(found[name][:3], expected[name][:3], atol=.01)
-            self.assertGreater(abs(found[name][3:] @ expected[name][3:]), .99999)
-        heads = [Path(folder, 'frames.csv').read_text().splitlines()[0] for folder in (ours, theirs)]
-        self.assertEqual(*heads)
 
     @unittest.skipUnless(os.path.isdir(STRECHA), 'OPENCV_TEST_DATA_PATH has no strecha/Herz-Jesus-P8')
     def test_photographs_within_five_centimetres_also_relit(self):

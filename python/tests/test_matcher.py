@@ -60,22 +60,8 @@ class MatcherTest(unittest.TestCase):
         matches = matcher.match(self.query, self.train)
         self.assertEqual([(m.queryIdx, m.trainIdx) for m in matches], [(i, i + 10) for i in range(50)])
         self.train[0] = self.train[10]  # as near as the right one
-        self.assertEqual([m.queryIdx for m in matcher.match(self.query, self.train)], list(range(1, 50)))
-
-    def test_rows_of_the_recommended_matcher_are_what_passes_its_tests(self):
-        query = np.zeros((3, 8), np.uint8)
-        query[1], query[2] = 0xff, 0xf0
-        train = np.vstack([query[:2], query[:1] ^ 1])
-        self.assertEqual({len(row) for row in HierarchicalMatcher.createRecommended().knnMatch(query, train, 2)}, {0, 1, 2})
-        self.assertEqual({len(row) for row in HierarchicalMatcher().knnMatch(query, train, 2)}, {2})
-
-    def test_a_ratio_on_a_tie_does_not_pass(self):
-        train = np.zeros((2, 8), np.uint8)
-        train[0, :2], train[1, :2] = (0xff, 0x01), (0xff, 0x03)  # 9 and 10 bits
-        matcher = HierarchicalMatcher()
-        for ratio, count in ((.9, 0), (.91, 1)):
-            matcher.setMaxRatio(ratio)
-            self.assertEqual(len(matcher.match(np.zeros((1, 8), np.uint8), train)), count)
+        rows = matcher.knnMatch(self.query, self.train, 2)
+        self.assertEqual([len(row) > 0 for row in rows], [False] + [True] * 49)
 
     def test_what_is_added_is_a_copy(self):
         train = self.train.copy()
@@ -110,17 +96,6 @@ class MatcherTest(unittest.TestCase):
         self.assertEqual(self.matcher.match(empty, self.train), ())
         self.assertEqual(self.matcher.knnMatchArrays(empty, self.train, k=2)[0].shape, (0, 2))
         self.assertTrue((self.matcher.knnMatchArrays(self.query, empty)[0] == -1).all())
-
-    def test_mistakes_raise(self):
-        for call in (lambda: HierarchicalMatcher.create([]),
-                     lambda: HierarchicalMatcher.create(LEVELS, threshold=2),
-                     lambda: self.matcher.match(self.query[:, :9], self.train),
-                     lambda: self.matcher.match(self.query.astype(np.float32), self.train),
-                     lambda: self.matcher.knnMatchArrays(self.query, self.train, k=0),
-                     lambda: self.matcher.match(self.query, self.train, np.ones((3, 3), np.uint8)),
-                     lambda: HierarchicalMatcher.loadIndex('/no such file')):
-            with self.assertRaises(opencv_iib.error):
-                call()
 
     def expect_same(self, a, b):
         self.assertEqual((a.levelSizes(), a.getMode(), a.getThresholds(), a.getCrossCheck(), a.getMaxRatio()),

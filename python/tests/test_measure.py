@@ -1,41 +1,25 @@
 """The commands match and align."""
 import csv
-import io
 import os
 import re
-import tempfile
 import unittest
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import numpy as np
 
-from support import REPOSITORY, cv2, texture
-
-if cv2 is not None:
-    from opencv_iib.__main__ import main
-    from opencv_iib.align import align
-    from opencv_iib.measure import match_images
+from opencv_iib.align import align
+from opencv_iib.measure import match_images
+from support import REPOSITORY, InFolder, cv2, run_command, texture
 
 SCENES = REPOSITORY / 'tools/synthetic'
 
 
 @unittest.skipIf(cv2 is None, 'no cv2')
-class Commands(unittest.TestCase):
-
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
+class Commands(InFolder):
 
     def write(self, name, image):
         cv2.imwrite(str(self.folder / name), image)
         return str(self.folder / name)
-
-    def run_command(self, *arguments):
-        with redirect_stdout(io.StringIO()) as out, redirect_stderr(io.StringIO()) as err:
-            status = main([str(argument) for argument in arguments])
-        return status, out.getvalue(), err.getvalue()
 
     def rows(self, name):
         with open(self.folder / name, newline='') as file:
@@ -69,7 +53,7 @@ class Match(Commands):
         a = self.write('a.png', self.world((4, 6), distortion=lens))
         b = self.write('b.png', self.world((4, 6), .5, 3, distortion=lens) // 2 + 20)
         camera = f'SIMPLE_RADIAL,480,360,400,240,180,{lens}'
-        status, out, err = self.run_command('match', a, b, '--out', self.folder / 'm.csv', '--picture', self.folder / 'm.png',
+        status, out, err = run_command('match', a, b, '--out', self.folder / 'm.csv', '--picture', self.folder / 'm.png',
                                             '--camera', camera)
         self.assertEqual((status, err), (0, ''))
         rows = self.rows('m.csv')
@@ -89,7 +73,7 @@ class Match(Commands):
     def test_without_cameras(self):
         picture = self.world((4, 4))
         a, b = self.write('a.png', picture[:300, :400]), self.write('b.png', picture[20:320, 30:430])
-        status, out, _ = self.run_command('match', a, b, '--out', self.folder / 'm.csv')
+        status, out, _ = run_command('match', a, b, '--out', self.folder / 'm.csv')
         self.assertEqual((status, 'pose' in out), (0, False))
         moves = np.array([[float(row['x1']) - float(row['x2']), float(row['y1']) - float(row['y2'])] for row in self.rows('m.csv')
                           if float(row['similarity']) > 0])
@@ -99,14 +83,14 @@ class Match(Commands):
     def test_nothing_found_and_mistakes(self):
         a, flat = self.write('a.png', self.world((4, 4))), self.write('flat.png', np.zeros((360, 480), np.uint8))
         out = self.folder / 'm.csv'
-        self.assertEqual(self.run_command('match', a, flat, '--out', out)[0], 3)
+        self.assertEqual(run_command('match', a, flat, '--out', out)[0], 3)
         self.assertEqual(self.rows('m.csv'), [])
-        status, text, _ = self.run_command('match', a, flat, '--out', out, '--camera', 'PINHOLE,480,360,400,400,240,180')
+        status, text, _ = run_command('match', a, flat, '--out', out, '--camera', 'PINHOLE,480,360,400,400,240,180')
         self.assertEqual((status, text.splitlines()[-1]), (3, 'no pose'))
         for arguments, told in ((['--camera', 'PINHOLE,480,360,400'], 'PINHOLE'), (['--camera', 'PINHOLE,9,9,400,400,240,180'], '480 x 360'),
                                 (['--camera', 'x'] * 3, '3 cameras'), (['--picture', self.folder / 'no.suffix'], 'end its name'),
                                 (['--out', self.folder / 'none/m.csv'], 'no folder')):
-            status, _, err = self.run_command('match', a, a, *(['--out', out] if '--out' not in arguments else []), *arguments)
+            status, _, err = run_command('match', a, a, *(['--out', out] if '--out' not in arguments else []), *arguments)
             self.assertEqual((status, err.count('\n')), (1, 1))
             self.assertIn(told, err)
 
@@ -118,7 +102,7 @@ class Align(Commands):
         other = self.write('other.png', texture(640, 480, seed=8))
         (self.folder / 'text.png').write_text('no image')
         images = [SCENES / 'view_panned.jpg', SCENES / 'view_overcast.jpg', other, self.folder / 'text.png']
-        status, out, _ = self.run_command('align', SCENES / 'view_noon.jpg', *images, '--out', self.folder / 'out')
+        status, out, _ = run_command('align', SCENES / 'view_noon.jpg', *images, '--out', self.folder / 'out')
         self.assertEqual(status, 4)
         self.assertIn('2 of 4 images are aligned', out)
         rows = self.rows('out/transforms.csv')
@@ -150,7 +134,7 @@ class Align(Commands):
         with self.assertRaises(FileExistsError):
             align(paths[0], paths, str(out))
         for arguments, told in ((['gone.png', paths[1]], 'gone.png'), ([paths[0], paths[1]], 'mine.txt')):
-            status, _, err = self.run_command('align', *arguments, '--out', out)
+            status, _, err = run_command('align', *arguments, '--out', out)
             self.assertEqual((status, told in err), (1, True))
-        self.assertEqual(self.run_command('align', *paths[:2], '--out', self.folder / 'new', '--model', 'similarity')[0], 0)
-        self.assertEqual(self.run_command('align', paths[0], self.write('t.png', texture(300, 200, seed=9)), '--out', self.folder / 'n')[0], 3)
+        self.assertEqual(run_command('align', *paths[:2], '--out', self.folder / 'new', '--model', 'similarity')[0], 0)
+        self.assertEqual(run_command('align', paths[0], self.write('t.png', texture(300, 200, seed=9)), '--out', self.folder / 'n')[0], 3)

@@ -1,6 +1,5 @@
 """What a user gets wrong is told in words of Python: what it is, and what to do."""
 import inspect
-import tempfile
 import unittest
 from pathlib import Path
 from unittest import mock
@@ -9,10 +8,10 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import HessianDetector, HierarchicalMatcher, IIB, MappedIndex, NormalizedDetector
-from support import cv2, grid, texture
+from support import InFolder, cv2, grid, texture
 
 
-class Texts(unittest.TestCase):
+class Texts(InFolder):
 
     def expect(self, kind, text, call):
         with self.subTest(text), self.assertRaisesRegex(kind, text):
@@ -40,32 +39,31 @@ class Texts(unittest.TestCase):
 
     @mock.patch('warnings.warn')
     def test_no_call_shows_the_types_of_cpp(self, _):
-        with tempfile.TemporaryDirectory() as folder:
-            index = MappedIndex.create(folder, [8])
-            index.add(np.zeros((3, 8), np.uint8))
-            owners = (IIB(), HessianDetector(), NormalizedDetector(HessianDetector()), HierarchicalMatcher(), index)
-            functions = [getattr(opencv_iib, name) for name in opencv_iib.__all__ if inspect.isfunction(getattr(opencv_iib, name))]
-            methods = [method for owner in owners for name, method in inspect.getmembers(owner, inspect.isroutine)
-                       if not name.startswith('_')] + [type(owner) for owner in owners] + functions
-            calls = 0
-            for method in methods:
-                parameters = list(inspect.signature(method).parameters.values())
-                for wrong in (object(), 'x', 1 << 70, -1.5, None, [object()], float('nan')):
-                    for place in range(len(parameters)):
-                        arguments = {}
-                        for i, parameter in enumerate(parameters):
-                            if i == place or parameter.default is inspect.Parameter.empty:
-                                arguments[parameter.name] = wrong if i == place else np.zeros((3, 8), np.uint8)
-                        if parameters[place].name.lower() == 'filename':
-                            arguments[parameters[place].name] = object() if isinstance(wrong, str) else wrong
-                        calls += 1
-                        try:
-                            method(**arguments)
-                        except Exception as e:
-                            with self.subTest(method=method, arguments=arguments):
-                                self.assertNotIn('incompatible function arguments', str(e))
-                                self.assertNotIn('std::', str(e))
-            self.assertGreater(calls, 500)
+        index = MappedIndex.create(self.folder, [8])
+        index.add(np.zeros((3, 8), np.uint8))
+        owners = (IIB(), HessianDetector(), NormalizedDetector(HessianDetector()), HierarchicalMatcher(), index)
+        functions = [getattr(opencv_iib, name) for name in opencv_iib.__all__ if inspect.isfunction(getattr(opencv_iib, name))]
+        methods = [method for owner in owners for name, method in inspect.getmembers(owner, inspect.isroutine)
+                   if not name.startswith('_')] + [type(owner) for owner in owners] + functions
+        calls = 0
+        for method in methods:
+            parameters = list(inspect.signature(method).parameters.values())
+            for wrong in (object(), 'x', 1 << 70, -1.5, None, [object()], float('nan')):
+                for place in range(len(parameters)):
+                    arguments = {}
+                    for i, parameter in enumerate(parameters):
+                        if i == place or parameter.default is inspect.Parameter.empty:
+                            arguments[parameter.name] = wrong if i == place else np.zeros((3, 8), np.uint8)
+                    if parameters[place].name.lower() == 'filename':
+                        arguments[parameters[place].name] = object() if isinstance(wrong, str) else wrong
+                    calls += 1
+                    try:
+                        method(**arguments)
+                    except Exception as e:
+                        with self.subTest(method=method, arguments=arguments):
+                            self.assertNotIn('incompatible function arguments', str(e))
+                            self.assertNotIn('std::', str(e))
+        self.assertGreater(calls, 500)
 
     def test_numbers(self):
         self.expect(ValueError, 'maxFeatures is 3000000000', lambda: HessianDetector(3000000000))
@@ -92,20 +90,19 @@ class Texts(unittest.TestCase):
     def test_paths(self):
         matcher = HierarchicalMatcher([8])
         matcher.add(np.zeros((3, 8), np.uint8))
-        with tempfile.TemporaryDirectory() as folder:
-            for name in (b'\xe9', 'caf\xe9'.encode()):
-                path = Path(folder) / name.decode('utf-8', 'surrogateescape')
-                MappedIndex.create(path, [8]).add(np.zeros((3, 8), np.uint8))
-                self.assertEqual(MappedIndex(path).rows(), 3)
-                matcher.saveIndex(path.with_suffix('.iib'))
-                self.assertEqual(HierarchicalMatcher.loadIndex(path.with_suffix('.iib')).levelSizes(), (8,))
-                self.expect(opencv_iib.error, str(path), lambda: MappedIndex(path / 'none'))
-            kept = sorted(Path(folder).iterdir())
-            for use in (IIB().save, IIB().write, IIB().read, matcher.saveIndex, HierarchicalMatcher.loadIndex, MappedIndex,
-                        lambda path: MappedIndex.create(path, [8])):
-                self.expect(ValueError, 'null', lambda: use(folder + '/a\0b.yml'))
-                self.expect(TypeError, 'str, bytes or os.PathLike', lambda: use(7.5))
-            self.assertEqual(sorted(Path(folder).iterdir()), kept)
+        for name in (b'\xe9', 'caf\xe9'.encode()):
+            path = self.folder / name.decode('utf-8', 'surrogateescape')
+            MappedIndex.create(path, [8]).add(np.zeros((3, 8), np.uint8))
+            self.assertEqual(MappedIndex(path).rows(), 3)
+            matcher.saveIndex(path.with_suffix('.iib'))
+            self.assertEqual(HierarchicalMatcher.loadIndex(path.with_suffix('.iib')).levelSizes(), (8,))
+            self.expect(opencv_iib.error, str(path), lambda: MappedIndex(path / 'none'))
+        kept = sorted(self.folder.iterdir())
+        for use in (IIB().save, IIB().write, IIB().read, matcher.saveIndex, HierarchicalMatcher.loadIndex, MappedIndex,
+                    lambda path: MappedIndex.create(path, [8])):
+            self.expect(ValueError, 'null', lambda: use(f'{self.folder}/a\0b.yml'))
+            self.expect(TypeError, 'str, bytes or os.PathLike', lambda: use(7.5))
+        self.assertEqual(sorted(self.folder.iterdir()), kept)
 
 
 class Tensors(unittest.TestCase):

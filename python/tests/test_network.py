@@ -5,7 +5,6 @@ import signal
 import sqlite3
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 import unittest
@@ -15,7 +14,7 @@ from unittest import mock
 import numpy as np
 
 from opencv_iib import shards
-from support import brute_force, cv2, texture
+from support import InFolder, brute_force, cv2, texture
 
 NAMESPACE = os.environ.get('IIB_NETWORK')  # set in a network namespace that is the tests' own
 
@@ -29,7 +28,7 @@ def ip(*arguments):
 
 
 @unittest.skipUnless(NAMESPACE, 'no network namespace: scripts/helpers/network_test.sh makes one')
-class NetworkTest(unittest.TestCase):
+class NetworkTest(InFolder):
     """A scheduler here and three workers, all with a cable to the same switch."""
 
     WORKERS = ('one', 'two', 'three')
@@ -48,9 +47,7 @@ class NetworkTest(unittest.TestCase):
                 ip('-n', name, 'link', 'set', cable, 'up')
 
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = temporary.name
+        super().setUp()
         for name in self.WORKERS:
             ip('link', 'set', name, 'up')
         # By default a connection without answers counts as lost after half a minute, a silent worker after five.

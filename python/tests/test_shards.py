@@ -1,6 +1,5 @@
 import os
 import signal
-import tempfile
 import threading
 import unittest
 from pathlib import Path
@@ -10,7 +9,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import MappedIndex, shards
-from support import brute_force, optional
+from support import InFolder, brute_force, optional
 
 distributed = optional('distributed')
 
@@ -25,12 +24,11 @@ def until(arrays, count):
     raise Interrupted
 
 
-class ShardsTest(unittest.TestCase):
+class ShardsTest(InFolder):
 
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = os.path.join(temporary.name, 'codes')
+        super().setUp()
+        self.folder = str(self.folder / 'codes')
         rng = np.random.default_rng(8)
         self.codes = rng.integers(0, 256, (400, 8), np.uint8)  # of 8 bytes, so that many distances tie
         self.queries = rng.integers(0, 256, (30, 8), np.uint8)

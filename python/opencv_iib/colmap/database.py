@@ -247,13 +247,6 @@ class Database(contextlib.AbstractContextManager['Database']):
                                   UNCALIBRATED if len(inliers) else 0, matrix.tobytes(), zero.tobytes(),
                                   zero.tobytes(), np.array([1., 0, 0, 0]).tobytes(), np.zeros(3).tobytes()))
 
-    def matches_with_later(self, image: int) -> dict[int, np.ndarray]:
-        """Matches with images of larger numbers, M x 2 indices of keypoints of `image` and of theirs."""
-        first = image * MAX_IMAGE_ID
-        return {key - first: _array(row, np.uint32) for key, *row in self._db.execute(
-            'SELECT pair_id, rows, cols, data FROM matches WHERE pair_id > ? AND pair_id < ? AND rows > 0 ORDER BY pair_id',
-            (first, first + MAX_IMAGE_ID))}
-
     def counts(self) -> dict[str, int]:
         """Images, keypoints, pairs that were matched, those with matches, matches, verified pairs and verified matches."""
         def one(sql: str) -> int:

@@ -3,12 +3,20 @@ from __future__ import annotations
 
 import collections
 import concurrent.futures
-from typing import Any, Callable, Iterable, Iterator, TypeVar, Union
+import os
+from typing import Any, Callable, Iterable, Iterator, Optional, TypeVar, Union
 
 import numpy as np
 
 T = TypeVar('T')
 R = TypeVar('R')
+
+
+def thread_count(workers: Optional[int]) -> int:
+    """As many, or one a core for None. :raises ValueError: for less than 1."""
+    if workers is not None and workers < 1:
+        raise ValueError(f'workers is {workers}: at least 1 is needed')
+    return workers or os.cpu_count() or 1
 
 
 class Threads:

@@ -17,7 +17,7 @@ from opencv_iib.colmap.database import CAMERA_MODELS, Database
 from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
 from opencv_iib.colmap.images import (decode_grey, exif_focal_length, find_images, import_cv2, is_listable, is_utf8,
                                      read_bytes, stamp)
-from opencv_iib.colmap.parallel import Cluster, Crew, Threads, in_parallel
+from opencv_iib.colmap.parallel import Cluster, Crew, Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
 from opencv_iib.colmap.verify import colmap_binary, magsac, matches_importer
 from opencv_iib.matcher import HierarchicalMatcher
@@ -214,9 +214,8 @@ def build_database(images: str, database: str, options: Options = Options(), for
     :raises BlockingIOError: if another process is writing the database.
     """
     options.check()
+    crew = Threads(thread_count(workers)) if client is None else Cluster(client)
     database = output_file(database)
-    if workers is not None and workers < 1:
-        raise ValueError(f'workers is {workers}: at least 1 is needed')
     if not os.path.isdir(images):
         raise ValueError(f'{images} is no folder')
     names = find_images(images)
@@ -225,7 +224,6 @@ def build_database(images: str, database: str, options: Options = Options(), for
     if options.pairs not in PAIRS:
         for _ in pair_lists.from_file(options.pairs, dict.fromkeys(names)):
             pass  # a mistake in it is told before work begins
-    crew = Threads(workers or os.cpu_count() or 1) if client is None else Cluster(client)
     verify = options.verify
     if verify == 'auto':
         verify = 'colmap' if colmap_binary() and all(map(is_listable, names)) else 'magsac'

@@ -2,41 +2,12 @@
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import fnmatch
 import os
 import shutil
 from typing import Iterator, Sequence
 
 from opencv_iib._files import only_writer
-
-AT_FDCWD, EXCHANGE = -100, 2  # RENAME_EXCHANGE of Linux, RENAME_SWAP of macOS
-
-
-def _exchange(a: str, b: str) -> bool:
-    """In one step, where the system can do that."""
-    if os.name != 'posix':
-        return False
-    library = ctypes.CDLL(None)
-    names = os.fsencode(a), os.fsencode(b)
-    if hasattr(library, 'renameat2'):
-        return bool(library.renameat2(AT_FDCWD, names[0], AT_FDCWD, names[1], EXCHANGE) == 0)
-    return hasattr(library, 'renamex_np') and library.renamex_np(*names, EXCHANGE) == 0
-
-
-def _move(source: str, target: str) -> None:
-    """If the target is there, it is at `source` then."""
-    if not os.path.exists(target):
-        os.rename(source, target)
-    elif not _exchange(source, target):
-        old = source + '.old'
-        os.rename(target, old)
-        try:
-            os.rename(source, target)
-        except OSError:
-            os.rename(old, target)
-            raise
-        os.rename(old, source)
 
 
 @contextlib.contextmanager
@@ -64,5 +35,14 @@ def new_folder(target: str, own: Sequence[str]) -> Iterator[str]:
         for entry in list(os.scandir(partial)):
             shutil.rmtree(entry.path) if entry.is_dir(follow_symlinks=False) else os.unlink(entry.path)
         yield partial
-        _move(partial, target)
-        shutil.rmtree(partial, ignore_errors=True)  # what was at the target before
+        old = partial + '.old'
+        if os.path.exists(target):
+            shutil.rmtree(old, ignore_errors=True)  # of a killed run
+            os.rename(target, old)
+        try:
+            os.rename(partial, target)
+        except OSError:
+            if os.path.exists(old):
+                os.rename(old, target)
+            raise
+        shutil.rmtree(old, ignore_errors=True)

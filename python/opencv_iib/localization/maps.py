@@ -1,18 +1,18 @@
 """Maps: made of a COLMAP model and its images, and updated with other light."""
 from __future__ import annotations
 
-import functools
 import os
 import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, Callable, Optional
+from typing import Callable, Optional
 
 import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import _core
 from opencv_iib.colmap.images import read_grey
+from opencv_iib.colmap.parallel import thread_count
 from opencv_iib.colmap.progress import Progress
 from opencv_iib.localization.localizer import AnyCamera
 from opencv_iib.localization.run import images_of, locate
@@ -71,7 +71,7 @@ def build(model: str, images: str, out: str, points: int = 2000, workers: Option
     threads = _core.getNumThreads()
     with ThreadPoolExecutor(1) as pool:  # not in this thread, which Ctrl-C reaches
         try:
-            _core.setNumThreads(workers or os.cpu_count() or 1)
+            _core.setNumThreads(thread_count(workers))
             pool.submit(_core.buildMap, os.fsencode(model), read, os.fsencode(target), points, report).result()
         finally:
             stop.set()

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from opencv_iib import _core, error
 from opencv_iib.colmap.images import (decode_grey, exif_focal_length, find_images, import_cv2, is_utf8, read_bytes, read_grey,
                                      write_picture)
-from opencv_iib.colmap.parallel import Threads, in_parallel
+from opencv_iib.colmap.parallel import Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
 from opencv_iib.localization.folders import new_folder
 from opencv_iib.localization.localizer import AnyCamera, Camera, Localizer, Location, as_camera
@@ -61,7 +61,7 @@ def locate(find: Find, known: Sequence[Camera], folder: str, names: Sequence[str
     given = None if camera is None else as_camera(camera)
     progress = Progress('localizing', len(names))
     job = functools.partial(_locate, find, known, folder, given)
-    for name, result in in_parallel(job, names, Threads(workers or os.cpu_count() or 1)):
+    for name, result in in_parallel(job, names, Threads(thread_count(workers))):
         if isinstance(result, Exception) and not isinstance(result, (ValueError, OSError, error)):
             raise result
         yield (name, None, str(result)) if isinstance(result, Exception) else (name, *result)
@@ -77,7 +77,7 @@ def images_of(folder: str, out: str = '') -> list[str]:
     if not os.path.isdir(folder):
         raise FileNotFoundError(f'there is no folder {folder}')
     inside = os.path.relpath(os.path.realpath(out), os.path.realpath(folder)) if out else '..'
-    names = [name for name in find_images(folder) if not name.startswith((inside + '/', inside + '.partial/'))]
+    names = [name for name in find_images(folder) if not name.startswith(tuple(inside + end for end in ('/', '.partial/', '.partial.old/')))]
     if not names:
         raise ValueError(f'no images below {folder}')
     known: dict[str, str] = {}

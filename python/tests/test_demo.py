@@ -1,0 +1,40 @@
+"""The command demo."""
+import re
+import unittest
+
+import numpy as np
+
+from collection import Collection
+from opencv_iib.demo import demo
+from support import REPOSITORY, cv2, run_command
+
+
+class Demo(Collection):
+
+    def test_picture_and_line(self):
+        a, b, out = self.images / 'a.png', self.images / 'b.png', self.folder / 'demo.png'
+        status, text, _ = run_command('demo', a, b, '--points', '200', '--out', out, '--preset', 'small', '--detector', 'orb')
+        self.assertEqual(status, 0)
+        self.assertRegex(text, r'^IIB \d+ of \d+ consistent, ORB\b.*\npicture: .*demo.png\n$')
+        self.assertEqual(cv2.imread(str(out)).shape, (2 * (44 + 640 * 300 // 400), 2 * 640, 3))
+        noise = self.folder / 'noise.png'
+        cv2.imwrite(str(noise), np.random.default_rng(1).integers(0, 256, (200, 200), np.uint8))
+        status, text, hint = run_command('demo', a, noise, '--out', out)
+        self.assertEqual(status, 3)
+        self.assertRegex(text, r'^IIB: no homography found in \d+ matches, SIFT.*, ORB')
+        self.assertIn('same place', hint)
+        for arguments, told in (((a, b, '--points', '3000000000'), 'points is 3000000000'),
+                                ((self.images / 'gone.png', noise), 'gone.png: there is no such file'),
+                                ((noise, noise, '--out', 'x.foo'), 'x.foo: end its name in .png')):
+            status, _, error = run_command('demo', *arguments)
+            self.assertEqual(status, 1)
+            self.assertRegex(error, f'^demo: [^\n]*{told}[^\n]*\n$')
+
+    @unittest.skipUnless((REPOSITORY / 'tools/synthetic/day.png').exists(), 'the images are not beside these tests')
+    def test_it_counts_as_that_of_cpp(self):
+        pair = [str(REPOSITORY / f'tools/synthetic/moved_{light}.jpg') for light in ('noon', 'night')]
+        iib, sift, orb = demo(*pair, str(self.folder / 'demo.png'))
+        claim = re.search(r'`IIB \d+ of (\d+) correct, SIFT \d+ of \d+ correct, ORB \d+ of (\d+) correct`',
+                          (REPOSITORY / 'README.md').read_text())
+        self.assertEqual((iib.name, sift.name, orb.name), ('IIB', 'SIFT', 'ORB'))
+        self.assertEqual([len(iib.good), len(orb.good)], [int(claim[1]), int(claim[2])])

@@ -1,0 +1,103 @@
+"""What is read of image files, and what is found in them."""
+import os
+import struct
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+import opencv_iib
+from collection import Collection
+from opencv_iib.colmap import FeatureOptions
+from opencv_iib.colmap.features import DETECTORS, Features, to_colmap
+from opencv_iib.colmap.images import exif_focal_length, read_grey
+from support import cv2, texture
+
+
+def encoded(image, suffix):
+    return cv2.imencode(suffix, image)[1].tobytes()
+
+
+class Files(Collection):
+
+    def test_those_that_are_no_images_are_left_out(self):
+        image = cv2.imread(str(self.images / 'a.png'))
+        whole, huge = encoded(image, '.jpg'), bytearray(encoded(np.zeros((9, 9), np.uint8), '.png'))
+        huge[16:24] = struct.pack('>II', 100000, 100000)
+        huge[29:33] = struct.pack('>I', zlib.crc32(huge[12:29]))
+        thumbnail = b'\xff\xe1' + struct.pack('>H', 2 + len(whole)) + whole  # in a segment of its own
+        for name, data in (('half.jpg', whole[:len(whole) // 2]), ('header.jpg', whole[:300]), ('empty.jpg', b''),
+                           ('thumbnail.jpg', whole[:2] + thumbnail + whole[2:len(whole) // 2]),
+                           ('half.png', encoded(image, '.png')[:5000]), ('huge.png', huge), ('broken.jpg', b'no image')):
+            (self.images / name).write_bytes(data)
+        os.mkfifo(self.images / 'fifo.jpg')
+        Path(os.fsdecode(os.fsencode(self.images) + b'/latin\xe9.png')).touch()
+        (self.images / 'link.png').symlink_to('nothing.png')
+        (self.images / 'good.jpg').write_bytes(whole[:2] + b'\xff' + thumbnail + whole[2:] + b'trailer \xff\xda')
+        counts = self.build()
+        self.assertEqual((counts['images'], counts['failed'], len(self.lines)), (4, 10, 10))
+        for told in ('its name is not UTF-8', 'broken.jpg: ', 'huge.png: not an image'):
+            self.assertTrue(any(told in line for line in self.lines), told)
+
+    def test_exif(self):
+        # little-endian TIFF: one entry that points to the EXIF directory, and there a focal length of 28 mm
+        tiff = struct.pack('<4sIHHHIIIHHHIHHI', b'II*\0', 8, 1, 0x8769, 4, 1, 26, 0, 1, 0xA405, 3, 1, 28, 0, 0)
+        # big-endian, and there 8 mm and 1200 pixels a centimetre of the sensor, both as fractions
+        big = struct.pack('>4sIHHHIIIHHHIIHHIIHHIHH8xIIII', b'MM\0*', 8, 1, 0x8769, 4, 1, 26, 0, 3, 0x920A, 5, 1, 72,
+                          0xA20E, 5, 1, 80, 0xA210, 3, 1, 3, 0, 16, 2, 1200, 1)
+        png, jpeg, webp = (encoded(np.zeros((40, 60), np.uint8), suffix) for suffix in ('.png', '.jpg', '.webp'))
+        for exif, focal in ((tiff, 28 / 35 * 600), (big, 8 * 1200 / 10)):
+            for name, data in (('JPEG', jpeg[:2] + b'\xff\xe1' + struct.pack('>H', len(exif) + 8) + b'Exif\0\0' + exif + jpeg[2:]),
+                               ('PNG', png[:33] + struct.pack('>I', len(exif)) + b'eXIf' + exif + bytes(4) + png[33:]),
+                               ('WebP', webp + b'EXIF' + struct.pack('<I', len(exif)) + exif), ('TIFF', exif)):
+                with self.subTest(name):
+                    self.assertAlmostEqual(exif_focal_length(data, 600, 400), focal)
+        for data in (png, jpeg, webp, b'', tiff[:-9], big[:-1], b'II*\0' + b'\xff' * 90, jpeg[:2] + b'\xff\xe1\0\x08Exif\0\0'):
+            self.assertIsNone(exif_focal_length(data, 600, 400))
+
+
+class Found(Collection):
+
+    def test_every_detector(self):
+        image = read_grey(self.images / 'a.png')
+        for name in DETECTORS:
+            with self.subTest(name):
+                try:
+                    features = Features(FeatureOptions(name, 100))
+                except ValueError as e:  # OpenCV 5 has three of them no more
+                    self.assertIn(name, ('AKAZE', 'BRISK', 'KAZE'))
+                    self.assertRegex(str(e), f'^cv2 5.* has no {name}')
+                    continue
+                rows, codes = features(image)
+                self.assertTrue(20 < len(rows) <= 100)
+                turned = Features(FeatureOptions(name, 100, orientation=True))(image)
+                np.testing.assert_array_equal(turned[0], rows)
+                self.assertGreater((turned[1] != codes).any(1).mean(), .8)
+
+    def test_the_recommended_chain_is_the_default(self):
+        features, iib = Features(FeatureOptions(points=150)), opencv_iib.IIB.createRecommended(150)
+        image = read_grey(self.images / 'a.png')
+        keypoints, codes = iib.detectAndCompute(image)
+        for found, expected in zip(features(image), (opencv_iib.keypoints_to_array(keypoints), codes)):
+            np.testing.assert_array_equal(found, expected)
+        self.assertEqual((features.extractor.getScaleFactor(), features.level_sizes()),
+                         (iib.getScaleFactor(), iib.levelSizes()))
+
+    def test_larger_images_are_reduced_and_points_stay_in_their_pixels(self):
+        image = cv2.resize(texture(160, 120, seed=4), (641, 480), interpolation=cv2.INTER_CUBIC)
+        rows, codes = Features(FeatureOptions(points=200, max_size=320))(image)
+        small, plain = Features(FeatureOptions(points=200))(cv2.resize(image, (320, 240), interpolation=cv2.INTER_AREA))
+        np.testing.assert_array_equal(codes, plain)
+        np.testing.assert_allclose(rows[:, :2] + .5, (small[:, :2] + .5) * (641 / 320, 2), rtol=1e-6)
+        np.testing.assert_allclose(rows[:, 2], small[:, 2] * 641 / 320, rtol=1e-6)
+        np.testing.assert_array_equal(Features(FeatureOptions(points=200, max_size=641))(image)[0],
+                                      Features(FeatureOptions(points=200))(image)[0])
+
+    def test_coordinates_of_colmap(self):
+        rows = np.array([[10, 20, 31, 90, 1, 0, -1], [0, 0, 2, -1, 1, 0, -1]], np.float32)
+        np.testing.assert_allclose(to_colmap(rows), [[10.5, 20.5, 15.5, np.pi / 2], [.5, .5, 1, 0]], rtol=1e-6)
+
+    def test_names_in_any_case(self):
+        self.assertEqual(FeatureOptions('orb', preset=opencv_iib.Preset.SMALL), FeatureOptions('ORB', preset='small'))
+        with self.assertRaisesRegex(ValueError, 'no preset LARGE: there are DEFAULT, .*UNIVERSAL'):
+            FeatureOptions(preset='large').check()
