@@ -57,9 +57,9 @@ def chain(folder, work, step=1):
     return Localizer(work / 'map', POINTS)
 
 
-def sift(folder, work, normalized):
+def sift(folder, work, step=1, *, normalized):
     """Sift in a map of a place."""
-    write_model(work / 'model', *read_place(folder))
+    write_model(work / 'model', *read_place(folder, step))
     return Sift(work / 'model', folder / 'images', POINTS, normalized)
 
 
@@ -158,18 +158,12 @@ def photographs(data, work):
     """Rows of real photographs: every other image mapped, the others found as they are and relit."""
     rows = []
     for folder in sorted(path.parent for path in data.glob('*/poses.txt')):
-        names = sorted(path.name for path in (folder / 'images').iterdir())
-        mapped = work / folder.name
-        (mapped / 'images').mkdir(parents=True, exist_ok=True)
-        for name in names[::2]:
-            (mapped / 'images' / name).write_bytes((folder / 'images' / name).read_bytes())
-        for text in ('cameras.txt', 'poses.txt'):
-            (mapped / text).write_bytes((folder / text).read_bytes())
+        others = list(read_place(folder)[1])[1::2]
         for method, make in METHODS.items():
-            localizer = make(mapped, work / f'{folder.name} {method}')
+            localizer = make(folder, work / f'{folder.name} {method}', 2)
             for light, lit in (('as they are', lambda image, name: image), ('relit', relit)):
                 rows.append({'place': folder.name, 'method': method, 'light': light,
-                             **summary(list(localize(localizer, folder, names[1::2], lit)))})
+                             **summary(list(localize(localizer, folder, others, lit)))})
     return rows
 
 
