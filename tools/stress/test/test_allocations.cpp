@@ -36,6 +36,7 @@ void* operator new(std::size_t size)
     return memory;
 }
 void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }  // called from C++14 on
 
 //! cv::fastMalloc's.
 extern "C" int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept
