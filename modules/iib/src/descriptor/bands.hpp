@@ -57,16 +57,15 @@ private:
 template <typename T, typename Sum> class IntegralBand
 {
 public:
-    //! @param channels 1 to GROUP_CHANNELS; they, the kernels and the memory outlive the band.
+    //! @param channels 1 to GROUP_CHANNELS; they, the kernels and the memory outlive the band. @param bounds of them.
     //! @param rows how many rows, the newest included, a reader looks at.
-    IntegralBand(const std::vector<Channel>& channels, Rect area, int rows, const DescriptorKernels& all,
-            ScratchMemory& rowMemory, ScratchMemory& ringMemory)
-        : channelRows(channels, area, maxGradient(channels), all.pixels(T()).rows, rowMemory),
+    IntegralBand(const std::vector<Channel>& channels, const ChannelBounds& bounds, Rect area, int rows,
+            const DescriptorKernels& all, ScratchMemory& rowMemory, ScratchMemory& ringMemory)
+        : channelRows(channels, area, bounds.gradient, all.pixels(T()).rows, rowMemory),
           ring(area.tl(), rows, ((size_t)area.width + 1 + ROW_PADDING) * GROUP_CHANNELS, GROUP_CHANNELS,
                   ringMemory),
           width(area.width), kernels(all.integral(T(), Sum())),
-          longestPart((int)std::sqrt((double)std::numeric_limits<Sum>::max() /
-                                     maxValue(channels.data(), (int)channels.size(), maxGradient(channels))))
+          longestPart((int)std::sqrt((double)std::numeric_limits<Sum>::max() / bounds.value))
     {
     }
 
@@ -123,11 +122,10 @@ private:
 class ColumnBand
 {
 public:
-    //! @param channels 1 to GROUP_CHANNELS of the image; they, the kernels and the memory outlive the band.
-    //! @param rows how many rows, the newest included, a reader looks at.
-    ColumnBand(const std::vector<Channel>& channels, Rect area, int rows, const DescriptorKernels& kernels_,
-            ScratchMemory& rowMemory, ScratchMemory& ringMemory)
-        : channelRows(channels, area, maxGradient(channels), kernels_.pixels(short()).rows, rowMemory),
+    //! As IntegralBand, of channels of the image.
+    ColumnBand(const std::vector<Channel>& channels, const ChannelBounds& bounds, Rect area, int rows,
+            const DescriptorKernels& kernels_, ScratchMemory& rowMemory, ScratchMemory& ringMemory)
+        : channelRows(channels, area, bounds.gradient, kernels_.pixels(short()).rows, rowMemory),
           ring(area.tl(), rows, channelRows.rowSize() + ROW_PADDING, 0, ringMemory), kernels(kernels_)
     {
     }

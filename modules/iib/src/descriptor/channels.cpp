@@ -24,14 +24,6 @@ bool is16Bit(const std::vector<Channel>& channels)
             channels.begin(), channels.end(), [](const Channel& c) { return c.map.depth() == CV_16U; });
 }
 
-int maxGradient(const std::vector<Channel>& channels)
-{
-    for (const Channel& c : channels)
-        if (usesGradient(c))
-            return 4 * maxPixel(c.map.depth());
-    return 0;
-}
-
 int maxValue(const Channel* channels, int count, int gradient)
 {
     int largest = 0;
@@ -48,6 +40,14 @@ int maxValue(const Channel* channels, int count, int gradient)
         largest = std::max(largest, value);
     }
     return largest;
+}
+
+ChannelBounds::ChannelBounds(const std::vector<Channel>& channels) : gradient(0)
+{
+    for (const Channel& c : channels)
+        if (usesGradient(c))
+            gradient = 4 * maxPixel(c.map.depth());
+    value = maxValue(channels.data(), (int)channels.size(), gradient);
 }
 
 template <typename T>

@@ -33,12 +33,18 @@ inline bool usesGradient(const Channel& channel)
 //! Whether any map has 16 bits.
 bool is16Bit(const std::vector<Channel>& channels);
 
-//! Largest absolute Sobel response of the image behind these channels; 0 if none needs its gradient.
-int maxGradient(const std::vector<Channel>& channels);
-
 /** The largest value of some channels, where no gradient exceeds `gradient`. Signed gradients have it added,
  which changes no comparison and keeps them positive. */
 int maxValue(const Channel* channels, int count, int gradient);
+
+//! What some channels do not exceed.
+struct ChannelBounds
+{
+    int gradient;  //!< the absolute Sobel response of the image behind them; 0 if none needs its gradient
+    int value;     //!< as maxValue()
+
+    explicit ChannelBounds(const std::vector<Channel>& channels);
+};
 
 /** The rows of a group of channels over a rectangle, one at a time from the top. Where the rectangle leaves the image, the
  channels are reflected (BORDER_REFLECT_101). */

@@ -2,13 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "compute.hpp"
+#include "steps.hpp"
 
 #include "../common/image_input.hpp"
-#include "angles.hpp"
-#include "boxes/describe.hpp"
-#include "rotated.hpp"
-#include "upright.hpp"
 
 namespace cv {
 namespace iib {

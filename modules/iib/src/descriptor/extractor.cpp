@@ -4,7 +4,7 @@
 
 #include "../common/file_numbers.hpp"
 #include "../common/image_input.hpp"
-#include "compute.hpp"
+#include "steps.hpp"
 #include "../detector/detector_file.hpp"
 
 #include "opencv2/core/utils/trace.hpp"

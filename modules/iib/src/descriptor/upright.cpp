@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "upright.hpp"
+#include "steps.hpp"
 
 #include "bands.hpp"
 #include "encode.hpp"
@@ -13,11 +13,10 @@ namespace iib {
 namespace {
 
 //! Whether sums down the columns take less time than integral images: where cells are narrow, and keypoints are few.
-bool columnsAreFaster(const DescriptorPlan& plan, const std::vector<Channel>& channels,
+bool columnsAreFaster(const DescriptorPlan& plan, const std::vector<Channel>& channels, bool ofImage,
         const KeyPointBatch& batch, double side)
 {
     const double pixelsOfKeyPoint = 256;  // so many make up for the longer time that a keypoint's cells take
-    bool ofImage = maxGradient(channels) > 0;
     for (const Channel& c : channels)
         ofImage = ofImage && c.kind != 0;
     const int n = plan.cellsInRow();
@@ -29,14 +28,13 @@ bool columnsAreFaster(const DescriptorPlan& plan, const std::vector<Channel>& ch
 //! By sums over cells that a Band makes.
 template <typename Band, typename Sum>
 void describeBatch(const DescriptorPlan& plan, const ChannelGroup& group,
-        const std::vector<Channel>& channels, const KeyPointBatch& batch,
+        const std::vector<Channel>& channels, const ChannelBounds& bounds, const KeyPointBatch& batch,
         const std::vector<SupportRegion>& regions, Workspace& workspace, Mat& descriptors)
 {
     const Size image = channels[0].map.size();
     const int n = plan.cellsInRow();
     CellGrid<Sum>& cells = workspace.sumsOf(Sum(), plan.finest);
-    const int largest = maxValue(channels.data(), (int)channels.size(), maxGradient(channels));
-    Band band(channels, batch.area, batch.rows + KeyPointBatch::BAND_ROWS + 1, plan.kernels,
+    Band band(channels, bounds, batch.area, batch.rows + KeyPointBatch::BAND_ROWS + 1, plan.kernels,
             workspace.channelRows, workspace.ring);
     CellEdges edges;
 
@@ -47,7 +45,7 @@ void describeBatch(const DescriptorPlan& plan, const ChannelGroup& group,
                 region.bounds(image, plan.parameters.border), edges);
         band.advance(batch.bandEnd(std::max(edges.y[n], batch.area.y)));
         band.cells(edges, n, cells);
-        writeBits(plan, group, cells, edges, longestCell(region.side, n), largest, workspace,
+        writeBits(plan, group, cells, edges, longestCell(region.side, n), bounds.value, workspace,
                 descriptors.ptr(k));
     }
 }
@@ -67,16 +65,16 @@ void describeUpright(const DescriptorPlan& plan, const std::vector<Channel>& all
     {
         const auto first = allChannels.begin() + group.first;
         const std::vector<Channel> channels(first, first + group.count);
-        const double largestSum =
-                maxValue(channels.data(), (int)channels.size(), maxGradient(channels)) * pixels;
+        const ChannelBounds bounds(channels);
+        const double largestSum = bounds.value * pixels;
         const bool fits16Bits = largestSum <= USHRT_MAX, fits32Bits = largestSum <= UINT_MAX;
         const auto describe = !fits32Bits         ? describeBatch<IntegralBand<int, unsigned>, double>
                               : is16Bit(channels) ? describeBatch<IntegralBand<int, unsigned>, unsigned>
                               : !fits16Bits       ? describeBatch<IntegralBand<short, unsigned>, unsigned>
-                              : columnsAreFaster(plan, channels, batch, side)
+                              : columnsAreFaster(plan, channels, bounds.gradient > 0, batch, side)
                                       ? describeBatch<ColumnBand, ushort>
                                       : describeBatch<IntegralBand<short, ushort>, ushort>;
-        describe(plan, group, channels, batch, regions, workspace, descriptors);
+        describe(plan, group, channels, bounds, batch, regions, workspace, descriptors);
     }
 }
 

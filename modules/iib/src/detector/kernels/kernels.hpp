@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "../../common/padded_rows.hpp"
+#include "../../common/aligned_buffer.hpp"
 
 namespace cv {
 namespace iib {

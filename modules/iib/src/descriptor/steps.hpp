@@ -1,0 +1,59 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#pragma once
+
+#include "channels.hpp"
+#include "keypoint_batches.hpp"
+#include "workspace.hpp"
+
+namespace cv {
+namespace iib {
+
+/* The steps of describing keypoints, each in a source of its own. Regions are those of all keypoints of the image, as are the
+rows of descriptors. */
+
+//! Whether the keypoint's support region, upright or rotated, lies inside the image.
+bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image);
+
+/** Describes keypoints by the other steps (paper, algorithm 1). All arguments have passed their checks.
+@param extra maps of the image's size.
+@param descriptors keypoints.size() rows of plan.bytes, CV_8U, allocated. */
+void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Mat>& extra,
+        const std::vector<KeyPoint>& keypoints, Mat& descriptors);
+
+/** Sets the angles of regions as ORIENTATION_GRADIENT: the direction that prevails among the gradients between 32 x 32
+ cells, each of which counts by its magnitude and by a Gaussian of half the region's radius around the centre.
+@param grey CV_8U or CV_16U.
+@param keypoints of the regions: of those with the same position and size, the second gets the second highest peak of the
+directions, and so on. */
+void findAngles(const DescriptorPlan& plan, const Mat& grey, const std::vector<KeyPoint>& keypoints,
+        std::vector<SupportRegion>& regions);
+
+//! The bits of the keypoints of a batch, all of whose regions are upright. @param channels all of the descriptor.
+void describeUpright(const DescriptorPlan& plan, const std::vector<Channel>& channels,
+        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions, Workspace& workspace,
+        Mat& descriptors);
+
+/** The same of regions that are all rotated. Integral images cannot serve, since |gx| does not rotate with the region: it is
+ sampled on a grid of points, and the gradient is rotated at each. */
+void describeRotated(const DescriptorPlan& plan, const std::vector<Channel>& channels,
+        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions, Workspace& workspace,
+        Mat& descriptors);
+
+//! The pixels that the boxes of a region cover, rotated by any angle or upright, in whole cells; some may be reflected.
+Rect boxPixels(const SupportRegion& region, int border, Size image);
+
+/** The descriptors of a batch by MAPPING_BOXES, whose regions are all upright or all rotated.
+
+Upright boxes lie on a grid, whose edges many of them share. A rotated keypoint needs no samples: the means of gx and gy
+are linear in them and so rotate as they do, and those of |gx| and |gy| come from the means of |gx|, |gy|, |gx + gy| and
+|gx - gy|, that is, of the gradient's magnitude in four directions. Boxes stay upright; only their centres turn.
+@param grey the image, CV_8U or CV_16U. @param pixels boxPixels() of all regions. */
+void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch,
+        const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels, Workspace& workspace,
+        Mat& descriptors);
+
+}  // namespace iib
+}  // namespace cv
