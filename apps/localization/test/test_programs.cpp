@@ -179,6 +179,9 @@ TEST_F(Programs, with_an_imu)
     cv::imwrite(folder.path("later/1500000000000000.png"), wall.image(poseAt(0.1, -0.1, 0.1)));
     EXPECT_EQ(1, localize("later", "out", "--imu " + folder.path("imu.csv"))) << "microseconds";
     EXPECT_NE(std::string::npos, error.find("are not those of the IMU's readings")) << error;
+    cv::imwrite(folder.path("timed/08.5.png"), cv::Mat(SIZE, CV_8U, cv::Scalar(7)));
+    EXPECT_EQ(1, localize("timed", "out", "--imu " + folder.path("imu.csv")));
+    EXPECT_EQ("iib_localize: 08.5.png and 8.500000.png have one time\n", error);
     folder.write("imu.csv", "# a head\n");
     EXPECT_EQ(1, localize("timed", "out", "--imu " + folder.path("imu.csv")));
     EXPECT_EQ("iib_localize: " + folder.path("imu.csv") + " has no readings\n", error);
@@ -213,16 +216,23 @@ TEST_F(Programs, stream_a_path_and_a_pose_a_line)
 
 TEST_F(Programs, large_images_are_reduced)
 {
+    int red = 0;  // pixels of the lines from where points are seen to where the pose has them
     const auto places = [&](const std::string& size) {
         EXPECT_EQ(4, localize("dark", "out", "--pictures --max-size " + size)) << error;
         const std::vector<std::string> lines = split(textOf(folder.path("out/trajectory.txt")), '\n');
         expectPose(split(lines.at(1), ' '), "1 of 2, \"left\"", poseAt(0.1, -0.1, 0.1));
-        EXPECT_EQ(SIZE, cv::imread(folder.path("out/matches/1 of 2, \"left\".png.png")).size());
+        const cv::Mat picture = cv::imread(folder.path("out/matches/1 of 2, \"left\".png.png"));
+        EXPECT_EQ(SIZE, picture.size());
+        cv::Mat isRed;
+        cv::inRange(picture, cv::Scalar(0, 0, 255), cv::Scalar(0, 0, 255), isRed);
+        red = cv::countNonZero(isRed);
         return lines.at(1);
     };
     const std::string whole = places("0");
     EXPECT_EQ(whole, places("320")) << "no larger than that";
+    const int before = red;
     EXPECT_NE(whole, places("250"));
+    EXPECT_LT(red, 3 * before) << "no longer than there";
     EXPECT_EQ(2, localize("dark", "out", "--max-size 31"));
     EXPECT_EQ("iib_localize: --max-size is 31: at least 32 pixels are needed, or 0\n", error);
 }

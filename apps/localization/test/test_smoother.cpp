@@ -108,6 +108,18 @@ TEST(Smoother, no_pose_long_after_the_last_image_nor_before_the_first)
     EXPECT_FALSE(poses[18]);
 }
 
+TEST(Smoother, no_pose_across_a_gap_of_the_readings)
+{
+    std::vector<ImuReading> readings = readingsUntil(14);
+    readings.erase(readings.begin() + 1220, readings.begin() + 1260);  // 0.2 seconds, after 6.1
+    std::vector<VisualFrame> frames = framesUntil(14);
+    for (size_t i = 12; i < frames.size(); i++)
+        frames[i].pose.reset();
+    const std::vector<std::optional<cv::Affine3d>> poses = smooth(frames, readings, cv::Affine3d::Identity());
+    EXPECT_TRUE(poses[12]) << "at 6 seconds";
+    EXPECT_FALSE(poses[13]);
+}
+
 TEST(Smoother, without_readings_the_images_poses_stay)
 {
     std::vector<VisualFrame> frames = framesUntil(4);
@@ -178,8 +190,9 @@ TEST(Imu, names_that_are_times)
     EXPECT_EQ(1403636579763555584, *nanoseconds("1403636579.763555584"));
     EXPECT_EQ(3000000000, *nanoseconds("0003"));
     EXPECT_FALSE(nanoseconds("left_0003"));
-    for (const char* late : {"9999999999999999999", "9223372036854775807"})  // differences would overflow
-        EXPECT_FALSE(nanoseconds(late));
+    // differences would overflow; milliseconds
+    for (const char* other : {"9999999999999999999", "9223372036854775807", "1403636579763", "99999999999"})
+        EXPECT_FALSE(nanoseconds(other));
     EXPECT_FALSE(nanoseconds(""));
 }
 
