@@ -27,10 +27,7 @@ const double FAILED = std::numeric_limits<double>::infinity();
 struct Points
 {
     std::vector<cv::Point2d> reference, target;
-    double scale;  // of findRelativePose
 };
-
-const double DETECTED = .5, REFINED = .25;  // scales, pixels
 
 //! What an estimate from matches errs, and how many of them agree with it.
 struct Outcome
@@ -86,7 +83,7 @@ bool isJudgedWhole(const std::string& descriptor, const Detector& detector)
 
 Points pointsOf(const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target)
 {
-    Points points = {{}, {}, DETECTED};
+    Points points;
     for (const cv::DMatch& m : matches)
     {
         points.reference.push_back(reference.keypoints[m.queryIdx].pt);
@@ -108,7 +105,7 @@ std::vector<cv::Point2d> normalizedPoints(const std::vector<cv::Point2d>& points
 Points refined(const cv::Mat& referenceImage, const cv::Mat& targetImage,
         const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target)
 {
-    Points points = {{}, {}, REFINED};
+    Points points;
     if (matches.empty())
         return points;
     std::vector<cv::KeyPoint> first = reference.keypoints, second = target.keypoints;
@@ -138,7 +135,7 @@ Outcome byFindRelativePose(const Points& points, const ViewPair& pair)
 {
     cv::Mat rotation, translation, mask;
     if (!cv::iib::findRelativePose(points.reference, points.target, pair.referenceCamera, pair.targetCamera,
-                rotation, translation, mask, points.scale))
+                rotation, translation, mask))
         return {FAILED, 0};
     return {poseError(rotation, translation, pair), cv::countNonZero(mask)};
 }
