@@ -2,7 +2,7 @@
 # pin WIDEST=DISABLED; a smoke run of the perf tests; the README on the installation; the demo. Those with the label
 # `nightly` are for scripts/test.sh --all.
 if(CMAKE_CROSSCOMPILING)
-  return()  # scripts/helpers/arm64.sh runs the test program in an emulator
+  return()  # scripts/helpers/emulated.sh and scripts/windows.sh run the programs in an emulator
 endif()
 set(pins "")
 if(IIB_DISPATCH)

@@ -20,7 +20,6 @@ fi
 check_options "$root/tools/benchmark/benchmark.cpp" "$@"
 [ "$operands" = 0 ] || fail "takes options alone (--help tells more)"
 document="${results#"$build"}"
-# shellcheck disable=SC2086
 need $build_packages python3 ${document:+python3-matplotlib}
 [ -z "$contrib" ] || contrib=$(contrib_argument)
 build_tools ${contrib:+"$contrib"} iib_benchmark

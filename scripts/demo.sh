@@ -27,7 +27,6 @@ case $operands in
 *) fail "two images are needed, not $operands (--help)" ;;
 esac
 
-# shellcheck disable=SC2086
 need $build_packages
 build_library iib_demo
 exec "$build/iib_demo" "$@"

@@ -33,7 +33,6 @@ for argument in "$@"; do
 done
 pairs="$out/pairs"
 
-# shellcheck disable=SC2086
 need $build_packages python3-jinja2
 [ -z "$contrib" ] || contrib=$(contrib_argument)
 build_tools ${contrib:+"$contrib" -DIIB_CONTRIB_NONFREE=$nonfree} iib_evaluation

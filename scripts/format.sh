@@ -33,5 +33,4 @@ else
     fi
 fi
 cd "$root"
-# shellcheck disable=SC2086
 git ls-files -z '*.cpp' '*.hpp' | grep -zv '\.generated\.hpp$' | xargs -0 "$clang_format" $mode

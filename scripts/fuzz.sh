@@ -21,7 +21,6 @@ if [ "${1:-}" = -s ]; then
     shift 2
 fi
 known=$(sed -n 's/^set(fuzz_targets \(.*\))$/\1/p' "$root/fuzz/CMakeLists.txt")
-# shellcheck disable=SC2086
 [ $# -gt 0 ] || set -- $known
 for target in "$@"; do
     case " $known " in
@@ -29,7 +28,6 @@ for target in "$@"; do
     *) fail "there is no target $target; there are: $known" ;;
     esac
 done
-# shellcheck disable=SC2086
 need $build_packages clang llvm xz-utils
 if [ -n "$plain" ]; then
     build="$root/build-fuzz-plain" longest=40
@@ -73,7 +71,6 @@ for target in "$@"; do
     options="-entropic=0 -detect_leaks=0 -timeout=60 -rss_limit_mb=4096 -max_len=$longest -artifact_prefix=$failures/$target-"
     mkdir -p "$corpus/$target"
     say "$target, $seconds s"
-    # shellcheck disable=SC2086
     LLVM_PROFILE_FILE=/dev/null "$build/fuzz/iib_fuzz_$target" -max_total_time="$seconds" -print_final_stats=1 \
         $options "$corpus/$target" "$root/fuzz/corpus/$target" >"$build/$target.log" 2>&1 || {
         failed="$failed $target"
@@ -83,7 +80,6 @@ for target in "$@"; do
     executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$target.log")
     lines=""
     if [ -z "$plain" ]; then
-        # shellcheck disable=SC2086
         replay "$target" || {
             failed="$failed $target"
             tail -n 30 "$build/$target.log"

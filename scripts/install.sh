@@ -17,7 +17,6 @@ case "$prefix" in
 *) prefix="$PWD/$prefix" ;;
 esac
 
-# shellcheck disable=SC2086
 need $build_packages
 build_library iib_installed
 

@@ -49,7 +49,7 @@ contrib | contrib-5)
     need $build_packages libpng-dev libjpeg-dev zlib1g-dev python3-dev python3-numpy python3-venv
     major=4
     [ "$kind" = contrib ] || major=5
-    source=$("$root/scripts/helpers/opencv_contrib_source.sh" "$major")
+    source=$("$root/scripts/helpers/opencv_contrib_source.py" "$major")
     build="$source.intree$short"
     # Only xfeatures2d of opencv_contrib: CMake looks at every module of a folder that it is given.
     mkdir -p "$source/chosen"
@@ -72,7 +72,6 @@ flock 8
 
 say "building OpenCV with the module in $build (minutes for the first time)"
 # OFF: formats and back ends that nothing here reads. AVX512_ICL (VPOPCNTDQ) is not in OpenCV's default list.
-# shellcheck disable=SC2086
 cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
     -DOPENCV_EXTRA_MODULES_PATH="$extra_modules" -DBUILD_LIST="$list" \
     -DPYTHON3_EXECUTABLE=/usr/bin/python3 \

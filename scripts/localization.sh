@@ -10,7 +10,6 @@
 case "${1:-}" in -*) fail "unknown option $1; the one argument is a folder" ;; esac
 out=${1:-$root/results-localization}
 data="$cache/localization" environment="$cache/localization-environment"
-# shellcheck disable=SC2086
 need $build_packages povray python3-opencv python3-venv python3-dev
 /usr/bin/python3 "$root/tools/synthetic/localization.py" "$data"
 say "installing the Python package in $environment"

@@ -15,7 +15,6 @@ run() {
     cmake --build "$build"
     [ -n "${OPENCV_TEST_DATA_PATH:-}" ] || say "OPENCV_TEST_DATA_PATH is not set: tests on real images skip"
     status=0
-    # shellcheck disable=SC2086
     ctest --test-dir "$build" --output-on-failure --parallel "$jobs" $chosen || status=$?
     say "skipped, and why"
     # GoogleTest's tests by name, and what scripts say.
@@ -59,7 +58,6 @@ case "${1:-}" in
 esac
 [ -z "$kind" ] || shift
 check_definitions "$@"
-# shellcheck disable=SC2086
 need $build_packages xz-utils
 case "$kind" in
 every)

@@ -13,7 +13,6 @@ if [ "${1:-}" = --presets ]; then
 fi
 check_options "$root/tools/training/train.cpp" "$@"
 [ "$operands" != 0 ] || fail "a FOLDER to train on is needed (--help tells more)"
-# shellcheck disable=SC2086
 need $build_packages
 build_tools iib_train
 exec "$build/tools/training/iib_train" "$@"

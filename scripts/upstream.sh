@@ -11,7 +11,6 @@ folder=$1
 git -C "$folder" rev-parse --verify -q HEAD >/dev/null || fail "$folder is no git repository with a commit"
 [ -z "$(git -C "$folder" status --porcelain)" ] || fail "$folder has changes that are not committed"
 ! git -C "$folder" rev-parse --verify -q iib >/dev/null || fail "$folder has a branch iib already: delete it"
-# shellcheck disable=SC2086
 need $build_packages doxygen git python3 xz-utils
 source=$("$root/scripts/helpers/opencv_source.sh")
 work=$(mktemp -d)

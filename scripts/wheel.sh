@@ -87,7 +87,6 @@ ls "$wheels"
 check() {
     say "Python 3.$(minor "$1") with $3 ${4:-} ${2:-}"
     rm -rf "$work/environment"
-    # shellcheck disable=SC2086
     quietly "$1" -m venv $2 "$work/environment"
     shift 2
     quietly "$work/environment/bin/pip" install --no-index --no-deps --find-links "$wheels" opencv-iib

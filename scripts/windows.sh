@@ -12,7 +12,7 @@ for argument in "$@"; do
     esac
 done
 need $compiler_packages g++-mingw-w64-x86-64-posix wine64 wine libz-mingw-w64-dev python3-venv
-source="$("$root/scripts/helpers/opencv_contrib_source.sh" 4)/opencv"
+source="$("$root/scripts/helpers/opencv_contrib_source.py" 4)/opencv"
 toolchain="-DCMAKE_TOOLCHAIN_FILE=$root/cmake/mingw.cmake"
 opencv="$cache/opencv-windows"
 
@@ -27,7 +27,6 @@ if [ ! -d "$opencv" ]; then
         off="$off -DBUILD_$part=OFF"
     done
     {
-        # shellcheck disable=SC2086
         cmake -S "$source" -B "$opencv.build" -G Ninja "$toolchain" $off -DCMAKE_BUILD_TYPE=Release \
             -DBUILD_LIST=core,imgproc,features2d,flann,calib3d,imgcodecs,videoio,highgui -DBUILD_PNG=ON -DBUILD_ZLIB=ON \
             -DCPU_DISPATCH= -DOPENCV_GENERATE_PKGCONFIG=OFF &&
@@ -44,7 +43,6 @@ fi
 build="$root/build-windows"
 configure "$toolchain" "-DOPENCV_SOURCE_DIR=$source" "-DOpenCV_DIR=$opencv" -DIIB_BUILD_TESTS=ON -DIIB_BUILD_TOOLS=OFF
 programs="opencv_test_iib opencv_test_iib_index opencv_test_iib_geometry"
-# shellcheck disable=SC2086
 build_targets $programs
 
 # Where Windows looks for libraries: the build, OpenCV, and the compiler's own.

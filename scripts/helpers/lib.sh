@@ -126,7 +126,6 @@ need() {
     fi
     say "installing with apt:$missing"
     $as_root apt-get -q update
-    # shellcheck disable=SC2086
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -y install --no-install-recommends $missing
 }
 
@@ -140,7 +139,6 @@ build="$root/build"
 # configure CMAKE_ARGUMENT...: says only what a person should read. A folder that exists keeps its generator and what it builds.
 new_folder=""
 configure() {
-    # shellcheck disable=SC2086
     [ -f "$build/CMakeCache.txt" ] || set -- -G Ninja $new_folder "$@"
     say "configuring $build"
     cmake -S "$root" -B "$build" --log-level=NOTICE "$@"
@@ -162,7 +160,7 @@ build_library() {
 # The argument of configure with which the tools have the descriptors of opencv_contrib.
 contrib_argument() {
     need python3-venv >&2
-    contrib=$("$root/scripts/helpers/opencv_contrib_source.sh" 4)
+    contrib=$("$root/scripts/helpers/opencv_contrib_source.py" 4)
     echo "-DIIB_CONTRIB_SOURCE=$contrib"
 }
 
@@ -174,7 +172,6 @@ build_tools() {
         definitions="$definitions $1"
         shift
     done
-    # shellcheck disable=SC2086
     configure -DIIB_BUILD_TOOLS=ON $definitions
     build_targets "$@"
 }

@@ -10,6 +10,5 @@ for name in "$@"; do
     [ "$name" = --only ] || grep -q "^$name: " "$root/tools/mutation/mutants.txt" ||
         fail "there is no mutant $name in tools/mutation/mutants.txt"
 done
-# shellcheck disable=SC2086
 need $build_packages python3
 exec python3 "$root/tools/mutation/mutate.py" --source "$root" --work "$cache/mutation" "$@"

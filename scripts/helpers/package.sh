@@ -4,7 +4,6 @@
 . "$(dirname "$0")/lib.sh"
 
 [ $# = 0 ] || fail "takes no argument"
-# shellcheck disable=SC2086
 need $build_packages debhelper dpkg-dev fakeroot lintian
 folder="$build/debian"
 rm -rf "$folder"

@@ -17,14 +17,13 @@ for argument in "$@"; do
     *) fail "unknown option $argument; there are --mapped=, --rounds=" ;;
     esac
 done
-# shellcheck disable=SC2086
 need $build_packages python3-venv python3-dev
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$build"
 say "building the package"
 /usr/bin/python3 -m venv "$work/environment"
-"$work/environment/bin/pip" install --quiet "$root[distributed]" opencv-python-headless faiss-cpu
+"$work/environment/bin/pip" install --quiet "${root}[distributed]" opencv-python-headless faiss-cpu
 say "measuring"
 "$work/environment/bin/python" "$root/tools/scale/measure.py" --out "$out" "$@"
 [ "$out" = "$build/scale.json" ] || /usr/bin/python3 "$root/scripts/helpers/figures.py" --write

@@ -55,12 +55,13 @@ refused scripts/train.sh --bits=few .
 refused scripts/train.sh --bits=-3 .
 refused scripts/upstream.sh no-such-folder
 refused scripts/wheel.sh no-such-python
-refused scripts/helpers/arm64.sh unknown
+refused scripts/windows.sh unknown
+refused scripts/helpers/emulated.sh s390x
+refused scripts/helpers/emulated.sh arm64 unknown
 refused scripts/helpers/mutation.sh --only
 refused scripts/helpers/mutation.sh --only no-such-mutant
 refused scripts/helpers/network_test.sh no-such-python
 refused scripts/helpers/newcomer.sh bookworm trixie
-refused scripts/helpers/opencv_contrib_source.sh 3
 refused scripts/helpers/opencv_source.sh unknown
 refused scripts/helpers/postgres_test.sh no-such-python
 refused scripts/helpers/python_test.sh no-such-library

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Prints the folder of a small static OpenCV (core, imgproc, features2d, flann, calib3d) for the Python package, and builds it into
-# the cache the first time, from the source that scripts/helpers/opencv_contrib_source.sh brings. Installs nothing with apt.
+# the cache the first time, from the source that scripts/helpers/opencv_contrib_source.py brings. Installs nothing with apt.
 #   scripts/helpers/static_opencv.sh [CMAKE_ARGUMENT...]
 # CMAKE in the environment names another cmake. Delete the folder from the cache to build a newer one.
 . "$(dirname "$0")/lib.sh"
@@ -22,7 +22,7 @@ flock 8
 
 if [ ! -d "$prefix" ]; then
     # pip's isolated build hides other packages from every Python it starts, those of a new environment too.
-    source=$(env -u PYTHONPATH "$root/scripts/helpers/opencv_contrib_source.sh" 4)
+    source=$(env -u PYTHONPATH "$root/scripts/helpers/opencv_contrib_source.py" 4)
     work="$prefix.build"  # stays if this is interrupted, so that the next call goes on from there
     # What CMake would look for on this machine, download, or build beside these modules.
     for feature in IPP ITT OPENCL LAPACK EIGEN VA KLEIDICV PROTOBUF FLATBUFFERS ADE QUIRC OBSENSOR 1394 FFMPEG GSTREAMER \

@@ -1,0 +1,66 @@
+#!/bin/sh
+# Cross-compiles the modules and their tests for another processor and runs those of descriptors, matching and files under
+# qemu-user: golden hashes included.
+#   scripts/helpers/emulated.sh arm64|armhf [--gtest_...]      64 bits with NEON; 32 bits without
+# The packages of the architecture come from the machine's own apt mirror and are unpacked in the cache; the system's
+# package database does not change. The options go to the test programs: scripts/helpers/emulated.sh arm64 --gtest_filter='IIB_Golden*'
+. "$(dirname "$0")/lib.sh"
+
+architecture="${1:-}"
+case "$architecture" in
+arm64) processor=aarch64 triplet=aarch64-linux-gnu qemu=qemu-aarch64-static ;;
+armhf) processor=armv7l triplet=arm-linux-gnueabihf qemu=qemu-arm-static ;;
+*) fail "takes arm64 or armhf, not '$architecture'" ;;
+esac
+shift
+for argument in "$@"; do
+    case "$argument" in
+    --gtest_?*) ;;
+    *) fail "$argument is no option --gtest_... of the test programs" ;;
+    esac
+done
+need $build_packages "g++-$triplet" qemu-user-static xz-utils
+version=$(dpkg-query -W -f '${source:Version}' libopencv-core-dev)
+sysroot="$cache/$architecture-$version"
+
+if [ ! -d "$sysroot" ]; then
+    say "fetching libopencv-dev for $architecture"
+    work=$(mktemp -d "$cache/$architecture.XXXXXX")
+    trap 'rm -rf "$work"' EXIT
+    mkdir -p "$work/lists/partial" "$work/archives/partial" "$work/root/usr/lib" "$work/root/usr/bin"
+    : >"$work/status"
+    apt() {
+        apt-get -q -o APT::Architecture="$architecture" -o APT::Architectures="$architecture" -o Dir::State::Lists="$work/lists" \
+            -o Dir::State::status="$work/status" -o Dir::Cache="$work" -o APT::Sandbox::User="$(id -un)" \
+            -o Debug::NoLocking=1 "$@"
+    }
+    (
+        apt update || :  # one of several suites may be out of step for a while
+        apt -y --no-install-recommends --download-only install libopencv-dev
+    ) >"$work/log" 2>&1 || {
+        tail -n 5 "$work/log" >&2
+        exit 1
+    }
+    # The files alone, in the merged layout of /usr; no maintainer script runs.
+    for folder in lib bin sbin; do
+        ln -s "usr/$folder" "$work/root/$folder"
+    done
+    for package in "$work"/archives/*.deb; do
+        dpkg-deb --fsys-tarfile "$package" | tar -x -C "$work/root" --keep-directory-symlink
+    done
+    mv "$work/root" "$sysroot"
+fi
+
+libraries="$sysroot/usr/lib/$triplet"
+# Debian selects BLAS and LAPACK by alternatives, which maintainer scripts set.
+path="$libraries:$libraries/blas:$libraries/lapack:$sysroot/usr/lib"
+build="$root/build-$architecture"
+configure -DIIB_BUILD_TOOLS=OFF "-DOpenCV_DIR=$libraries/cmake/opencv4" \
+    -DCMAKE_SYSTEM_NAME=Linux "-DCMAKE_SYSTEM_PROCESSOR=$processor" "-DCMAKE_CXX_COMPILER=$triplet-g++" \
+    "-DCMAKE_EXE_LINKER_FLAGS=-Wl,-rpath-link,$path" "-DCMAKE_SHARED_LINKER_FLAGS=-Wl,-rpath-link,$path"
+programs="opencv_test_iib opencv_test_iib_index"
+build_targets $programs
+for program in $programs; do
+    say "$program under qemu"
+    "$qemu" -L "$sysroot" -E "LD_LIBRARY_PATH=$path" "$build/$program" "$@"
+done
