@@ -21,6 +21,11 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND CMAKE_SIZEOF_VOID
   set(IIB_AVX512_ICL_FEATURES ${IIB_AVX512_SKX_FEATURES} AVX512_ICL)
   set(IIB_AVX512_ICL_FLAGS
     "${IIB_AVX512_SKX_FLAGS} -mavx512ifma -mavx512vbmi -mavx512vnni -mavx512vbmi2 -mavx512bitalg -mavx512vpopcntdq")
+  if(MINGW)  # GCC takes AVX's variables on the stack for aligned, which they are not there (GCC bug 54412)
+    foreach(isa AVX2 AVX512_SKX AVX512_ICL)
+      string(APPEND IIB_${isa}_FLAGS " -Wa,-muse-unaligned-vector-move")
+    endforeach()
+  endif()
   if(MSVC)  # whose intrinsics need no flag: it tells what the compiler may use by itself
     set(IIB_SSE4_2_FLAGS "")
     set(IIB_AVX2_FLAGS /arch:AVX2)
