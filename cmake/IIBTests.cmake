@@ -45,6 +45,5 @@ function(iib_add_tool_test name target library)
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/modules")  # their support
   target_compile_features(${target} PRIVATE cxx_std_17)  # std::filesystem of their folders
   target_link_libraries(${target} PRIVATE ${library} opencv_ts)
-  target_compile_features(${target} PRIVATE cxx_std_17)  # std::filesystem, in the support of tests
   add_test(NAME ${name} COMMAND ${target})
 endfunction()
