@@ -69,13 +69,12 @@ std::FILE* create(const String& name)
 void remove(const String& name) { _wremove(systemName(name).c_str()); }
 bool flushToDisk(std::FILE* file) { return std::fflush(file) == 0 && _commit(_fileno(file)) == 0; }
 
-// Who reads the old file, or a scanner of viruses, keeps it from being replaced, for a moment.
-bool replace(const String& from, const String& to, const String&)
+// Tries again what is refused for a moment: who reads a file keeps it from being replaced, and the other way round.
+template <typename Action> bool patiently(Action action)
 {
     for (int attempt = 0; attempt < 500; attempt++)
     {
-        if (MoveFileExW(systemName(from).c_str(), systemName(to).c_str(),
-                    MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH))
+        if (action())
             return true;
         const DWORD error = GetLastError();
         if (error != ERROR_SHARING_VIOLATION && error != ERROR_ACCESS_DENIED)
@@ -84,10 +83,30 @@ bool replace(const String& from, const String& to, const String&)
     }
     return false;
 }
+
+bool replace(const String& from, const String& to, const String&)
+{
+    return patiently([&] {
+        return MoveFileExW(systemName(from).c_str(), systemName(to).c_str(),
+                       MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) != 0;
+    });
+}
+
+bool openToRead(std::filebuf& file, const String& name)
+{
+    const Present there = presentAt(name);
+    return (!there.any || there.file) && patiently([&] {  // a folder would be refused for long
+        return file.open(systemName(name).c_str(), std::ios::in | std::ios::binary) != 0;
+    });
+}
 #else
 int processId() { return (int)getpid(); }
 std::FILE* create(const String& name) { return std::fopen(name.c_str(), "wbx"); }
 void remove(const String& name) { std::remove(name.c_str()); }
+bool openToRead(std::filebuf& file, const String& name)
+{
+    return file.open(name, std::ios::in | std::ios::binary) != 0;
+}
 
 String fileOf(const String& name)
 {
@@ -284,7 +303,7 @@ void CheckedWriter::commit() { file->commit(); }
 CheckedReader::CheckedReader(const String& filename, const FileKind& kind)
     : name(checkedName(filename)), kindName(kind.name), whole(0), rest(0), format(0)
 {
-    if (!stream.rdbuf()->open(systemName(name).c_str(), std::ios::in | std::ios::binary))
+    if (!openToRead(*stream.rdbuf(), name))
         CV_Error(Error::StsError, "Cannot read " + name);
     stream.seekg(0, std::ios::end);
     const std::streamoff end = stream.tellg();
