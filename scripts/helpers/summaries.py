@@ -56,8 +56,20 @@ def pose_place(row):
     return ['buildings' if row['set'] == 'strecha' else 'facade' if row['set'] == 'walk_facade' else 'street']
 
 
+def alignment_place(row):
+    """The set of a pair, or `other scenes`; the demo's scene is one of TILDE's webcams."""
+    if row['image'] == 'same scene':
+        return [row['set']]
+    return ['other scenes'] * ({row['set'], row['image'].split('/')[0]} != {'iib_demo', 'tilde_webcam'})
+
+
 def column(name):
     return lambda row: float(row[name])
+
+
+def within(pixels):
+    """Whether the corners are that near to their places on average."""
+    return lambda row: float(row['error'] or 'inf') <= pixels
 
 
 def mean(values):
@@ -82,6 +94,7 @@ PLANS = {
     'matching.csv': (places, ('matcher',), columns('precision', 'cost', 'milliseconds', 'recall')),
     'robustness.csv': (lambda row: ['turned'] * (row['set'] not in TRAINED_ON), ('kind', 'configuration', 'target'),
                        columns('precision', 'recall')),
+    'alignment.csv': (alignment_place, (), {'found': column('found'), 'within_1': within(1), 'within_3': within(3)}),
     'whole_tasks.csv': (pose_place, ('detector', 'descriptor', 'matching'), {'score': pose_score}),
 }
 

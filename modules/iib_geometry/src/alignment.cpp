@@ -10,10 +10,10 @@ namespace {
 
 const int FEATURES = 2000;
 const double SCALE = .5;  // Cauchy's, pixels
-const int FEWEST =
-        16;  // matches that agree; images of other scenes have 9 at most (tools/evaluation, alignment)
-const double MOST_DEVIATION =
-        2;  // of a corner, pixels: what agrees is a part, such as a logo that both images hold
+//! Matches that agree. Images of other scenes have 5 at most (iib_evaluation --only alignment).
+const int FEWEST = 16;
+//! Of a corner, pixels: above it what agrees is a part, such as a logo that both images hold.
+const double MOST_DEVIATION = 2;
 const double LEAST_SHARE = .05;  // of all matches
 
 //! Refined matches, N x 2 each, CV_64F.

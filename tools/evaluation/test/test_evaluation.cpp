@@ -111,9 +111,13 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
     EXPECT_GT(recallOf("still", "IIB"), recallOf("still", "IIB g2"));
     EXPECT_GT(recallOf("still", "IIB +depth"), 0.9);
     EXPECT_GT(recallOf("still", "IIB +texture"), 0.9);
+    const std::string aligned = contents(options.out + "/alignment.csv"), still = "set,still,2,same scene,1,";
+    ASSERT_NE(std::string::npos, aligned.find(still));
+    EXPECT_LT(
+            std::atof(aligned.substr(aligned.find(',', aligned.find(still) + still.size()) + 1).c_str()), 1);
 
-    const std::vector<std::string> tables = {
-            "fixed_points", "detected_points", "whole_tasks", "matching", "robustness", "comparison"};
+    const std::vector<std::string> tables = {"fixed_points", "detected_points", "whole_tasks", "alignment",
+            "matching", "robustness", "comparison"};
     std::vector<std::string> first;
     for (const std::string& name : tables)
         first.push_back(contents(options.out + "/" + name + ".csv"));
