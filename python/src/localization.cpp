@@ -16,8 +16,6 @@ using cv::iib::Camera;
 using cv::iib::Location;
 using cv::iib::MapUpdate;
 
-std::string textOf(const nb::bytes& bytes) { return std::string(bytes.c_str(), bytes.size()); }
-
 nb::bytes bytesOf(const std::string& text) { return nb::bytes(text.data(), text.size()); }
 
 //! N x 2 or N x 3 of points.
@@ -65,8 +63,8 @@ Location localize(const cv::iib::Localizer& self, const Array& image, const Came
     return self.localize(view, camera, prior ? &pose : nullptr);
 }
 
-void buildMap(const nb::bytes& model, const nb::callable& read, const nb::bytes& map, int points,
-        const nb::callable& report)
+void buildMap(
+        nb::handle model, const nb::callable& read, nb::handle map, int points, const nb::callable& report)
 {
     const auto image = [&read](const std::string& name) {
         nb::gil_scoped_acquire gil;
@@ -76,14 +74,13 @@ void buildMap(const nb::bytes& model, const nb::callable& read, const nb::bytes&
         nb::gil_scoped_acquire gil;
         report(done, all, bytesOf(problem));
     };
-    const std::string from = textOf(model), to = textOf(map);
+    const std::string from = pathOf(model), to = pathOf(map);
     nb::gil_scoped_release release;
     cv::iib::buildMap(from, image, to, points, step);
 }
 
 //! A name, a camera, a pose and the pixels of keypoints for each image.
-void writeModel(
-        const nb::bytes& folder, const std::vector<std::tuple<std::string, Camera, Array, Array>>& images)
+void writeModel(nb::handle folder, const std::vector<std::tuple<std::string, Camera, Array, Array>>& images)
 {
     std::vector<cv::iib::PosedImage> written;
     for (const auto& [name, camera, pose, pixels] : images)
@@ -96,7 +93,7 @@ void writeModel(
         image.pixels = pointsOf<cv::Point2d>(pixels);
         image.sees.assign(image.pixels.size(), -1);
     }
-    const std::string to = textOf(folder);
+    const std::string to = pathOf(folder);
     nb::gil_scoped_release release;
     cv::iib::writeModel(to, written);
 }
@@ -149,8 +146,8 @@ void bindLocalization(nb::module_& m)
                     nb::sig("def points(self) -> NDArray"));
     nb::class_<cv::iib::Localizer>(m, "Localizer")
             .def("__init__",
-                    [](cv::iib::Localizer* self, const nb::bytes& map, int points) {
-                        const std::string folder = textOf(map);
+                    [](cv::iib::Localizer* self, nb::handle map, int points) {
+                        const std::string folder = pathOf(map);
                         nb::gil_scoped_release release;
                         new (self) cv::iib::Localizer(folder, points);
                     })
@@ -158,8 +155,8 @@ void bindLocalization(nb::module_& m)
             .def("localize", &localize);
     nb::class_<MapUpdate>(m, "MapUpdate")
             .def("__init__",
-                    [](MapUpdate* self, const nb::bytes& map, const nb::bytes& out) {
-                        const std::string from = textOf(map), to = textOf(out);
+                    [](MapUpdate* self, nb::handle map, nb::handle out) {
+                        const std::string from = pathOf(map), to = pathOf(out);
                         nb::gil_scoped_release release;
                         new (self) MapUpdate(from, to);
                     })

@@ -311,7 +311,7 @@ int main(int argc, char** argv)
             "OUT/trajectory.txt has the poses (TUM's format), OUT/frames.csv what became of each image.\n"
             "The status is 0 if all have a pose, 4 if some have, 3 if none has.",
             "{map|<none>|the map, a folder}"
-            "{model|<none>|in place of --map: COLMAP's model in binary form, a folder, which is mapped first}"
+            "{model|<none>|in place of --map: COLMAP's model, a folder, which is mapped first}"
             "{photographs|<none>|with --model: folder of the images that it was made of}"
             "{images|<none>|folder of the images}"
             "{camera|<none>|of all images, as COLMAP names models and parameters; without it, the map's of "

@@ -68,18 +68,9 @@ public:
 
     std::string cameraModel()
     {
-        const uint32_t number = next<uint32_t>();
-        if (!modelName(number))
-            CV_Error(cv::Error::StsError, cv::format("camera model %u is not known", number));
-        return modelName(number);
-    }
-
-    std::vector<double> parameters(const std::string& model)
-    {
-        std::vector<double> values;
-        for (size_t i = parametersOf(model); i > 0; i--)
-            values.push_back(next<double>());
-        return values;
+        const std::string model = modelName(next<uint32_t>());
+        items_ = parametersOf(model);
+        return model;
     }
 
     //! Of an image; its keypoints follow.
@@ -88,12 +79,12 @@ public:
         std::string letters;
         while (const char c = next<char>())
             letters += c;
-        keypoints_ = count(24);
+        items_ = count(24);
         return letters;
     }
 
-    //! Whether the image has one more keypoint.
-    bool more() { return keypoints_-- > 0; }
+    //! Whether the camera has one more parameter, or the image one more keypoint.
+    bool more() { return items_-- > 0; }
 
 private:
     //! How many things follow, each of so many bytes or more.
@@ -104,7 +95,7 @@ private:
         return things;
     }
 
-    uint64_t records_, keypoints_ = 0;
+    uint64_t records_, items_ = 0;
 };
 
 //! The same as text: a line each, but for comments, and an image's keypoints on one more.
@@ -131,14 +122,6 @@ public:
     }
 
     std::string cameraModel() { return next<std::string>(); }
-
-    std::vector<double> parameters(const std::string&)
-    {
-        std::vector<double> values;
-        while (more())
-            values.push_back(next<double>());
-        return values;
-    }
 
     std::string name()
     {
@@ -179,7 +162,8 @@ template <typename File> std::vector<PosedImage> readImages(const std::string& f
         const uint64_t width = known.template next<uint64_t>(), height = known.template next<uint64_t>();
         known.expect(std::min(width, height) > 0 && std::max(width, height) < 1 << 16);
         camera.size = cv::Size(int(width), int(height));
-        camera.parameters = known.parameters(camera.model);
+        while (known.more())
+            camera.parameters.push_back(known.template next<double>());
         Lens checked(camera);
         known.expect(cameras.emplace(id, camera).second);
     }

@@ -3,8 +3,8 @@
 
 #include <atomic>
 
+#include "map.hpp"
 #include "opencv2/iib.hpp"
-#include "refined.hpp"
 
 namespace iib_localization {
 
@@ -27,8 +27,20 @@ inline Features extract(cv::iib::IIB& iib, const cv::Mat& image)
         features.pixels.emplace_back(k.pt);
         features.sizes.push_back(k.size);
     }
+    features.codes.create(int(keypoints.size()), iib.descriptorSize(), CV_8U);  // also of none
     features.picture = pictureOf(image);
     return features;
+}
+
+//! Gives an image of a map what was found in it; it sees no points yet.
+inline void setFeatures(MapImage& image, const Features& found)
+{
+    image.pixels = found.pixels;
+    image.sizes = found.sizes;
+    image.codes = found.codes;
+    image.picture = found.picture;
+    image.sees.assign(found.pixels.size(), -1);
+    image.misses.assign(found.pixels.size(), 0);
 }
 
 //! @throws cv::Exception for an image that is not of a camera's size, or not 8-bit, grey or BGR.

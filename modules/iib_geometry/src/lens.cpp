@@ -81,12 +81,15 @@ int modelNumber(const std::string& name)
     return -1;
 }
 
-const char* modelName(uint64 number) { return number < std::size(MODELS) ? MODELS[number].name : nullptr; }
+std::string modelName(uint32_t number)
+{
+    return number < std::size(MODELS) ? MODELS[number].name : std::to_string(number);
+}
 
 size_t parametersOf(const std::string& model)
 {
-    const Model& m = MODELS[modelNumber(model)];
-    return m.focals + 2 + m.others;
+    const int number = modelNumber(model);
+    return number < 0 ? 0 : MODELS[number].focals + 2 + MODELS[number].others;
 }
 
 Camera scaled(const Camera& camera, double scale, const cv::Size& size)

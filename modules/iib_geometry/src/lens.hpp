@@ -46,10 +46,10 @@ inline size_t indexOf(const Camera& camera, const std::vector<Camera>& cameras)
 //! The camera of an image that was reduced to a size by a scale.
 Camera scaled(const Camera& camera, double scale, const cv::Size& size);
 
-//! COLMAP's number of a camera model, or -1; of a number its name, or null.
+//! COLMAP's number of a camera model, or -1; of a number its name, or the number.
 int modelNumber(const std::string& name);
-const char* modelName(uint64 number);
-//! How many parameters a model has.
+std::string modelName(uint32_t number);
+//! How many parameters a model has; 0 for one that is none.
 size_t parametersOf(const std::string& model);
 
 }  // namespace iib_localization

@@ -90,10 +90,9 @@ void describe(std::vector<MapImage>& images, const cv::iib::ImageReader& read, i
     const cv::Ptr<cv::iib::IIB> iib = cv::iib::IIB::createRecommended(points);
     inParallel(images.size(), [&](size_t i) {
         MapImage& image = images[i];
-        image.pixels.clear();
-        image.sizes.clear();
-        image.codes = cv::Mat(0, iib->descriptorSize(), CV_8U);
         const cv::Mat pixels = read(image.name);
+        Features found;
+        found.codes.create(0, iib->descriptorSize(), CV_8U);
         if (!pixels.empty())
         {
             try
@@ -104,14 +103,9 @@ void describe(std::vector<MapImage>& images, const cv::iib::ImageReader& read, i
             {
                 CV_Error(e.code, image.name + ": " + e.err + ": give the images of which the model was made");
             }
-            Features found = extract(*iib, pixels);
-            image.pixels = std::move(found.pixels);
-            image.sizes = std::move(found.sizes);
-            image.picture = found.picture;
-            image.codes = found.codes.empty() ? image.codes : found.codes;
+            found = extract(*iib, pixels);
         }
-        image.sees.assign(image.pixels.size(), -1);
-        image.misses.assign(image.pixels.size(), 0);
+        setFeatures(image, found);
         steps.step(pixels.empty() ? image.name + " cannot be read: left out of the map" : "");
     });
     if (std::all_of(images.begin(), images.end(), [](const MapImage& i) { return i.pixels.empty(); }))

@@ -223,15 +223,11 @@ cv::iib::MapUpdate::Counts cv::iib::MapUpdate::commit()
         folder = "updates/" + folder;
     for (const Seen* s : added)
     {
-        const Features& features = s->found.features;
-        const size_t count = features.pixels.size();
         MapImage image;
-        static_cast<PosedImage&>(image) = {folder + s->name, s->camera, s->found.cameraFromWorld,
-                features.pixels, std::vector<int>(count, -1)};
-        image.codes = features.codes;
-        image.sizes = features.sizes;
-        image.picture = features.picture;
-        image.misses.assign(count, 0);
+        image.name = folder + s->name;
+        image.camera = s->camera;
+        image.cameraFromWorld = s->found.cameraFromWorld;
+        setFeatures(image, s->found.features);
         image.used = map.updates;
         image.added = true;
         map.images.push_back(std::move(image));

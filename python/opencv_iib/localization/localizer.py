@@ -53,7 +53,7 @@ class Localizer:
             and finds more in hard light.
         :raises opencv_iib.error: for what is no map, or a damaged one.
         """
-        self._core = _core.Localizer(os.fsencode(map), points)
+        self._core = _core.Localizer(map, points)
 
     @property
     def cameras(self) -> list[Camera]:

@@ -72,7 +72,7 @@ def build(model: str, images: str, out: str, points: int = 2000, workers: Option
     with ThreadPoolExecutor(1) as pool:  # not in this thread, which Ctrl-C reaches
         try:
             _core.setNumThreads(thread_count(workers))
-            pool.submit(_core.buildMap, os.fsencode(model), read, os.fsencode(target), points, report).result()
+            pool.submit(_core.buildMap, model, read, target, points, report).result()
         finally:
             stop.set()
             _core.setNumThreads(threads)
@@ -96,7 +96,7 @@ def update(map: str, images: str, camera: Optional[AnyCamera] = None, out: Optio
     :raises opencv_iib.error: for what is no map, or one that another process is changing.
     """
     names = images_of(images)
-    changed = _core.MapUpdate(os.fsencode(os.path.realpath(map)), b'' if out is None else os.fsencode(os.path.realpath(out)))
+    changed = _core.MapUpdate(os.path.realpath(map), '' if out is None else os.path.realpath(out))
     for _ in locate(changed.add, changed.cameras(), images, names, camera, workers):
         pass
     localized, added, dropped = changed.commit()

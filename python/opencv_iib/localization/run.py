@@ -148,5 +148,5 @@ def localize_images(map: str, images: str, out: str, camera: Optional[AnyCamera]
                 posed.append((name, own, location.cam_from_world, location.pixels))
                 if pictures:
                     _write_picture(os.path.join(partial, 'matches', stem + '.png'), os.path.join(images, name), own, location)
-        _core.writeModel(os.fsencode(partial), posed)
+        _core.writeModel(partial, posed)
     return len(posed), len(names)
