@@ -2,7 +2,6 @@
 import contextlib
 import importlib
 import io
-import re
 import resource
 import signal
 import tempfile
@@ -103,14 +102,6 @@ def fnv1a(array):
     for byte in array.tobytes():
         value = ((value ^ byte) * 1099511628211) & ((1 << 64) - 1)
     return value
-
-
-def golden_hashes():
-    """Names and hashes (with BORDER_CLAMP, with BORDER_REFLECT) of the C++ golden test; empty outside of a clone."""
-    path = REPOSITORY / 'modules/iib/test/descriptor/test_descriptor_golden.cpp'
-    text = path.read_text() if path.exists() else ''
-    return {name: tuple(int(value, 16) for value in values)
-            for name, *values in re.findall(r'\{\s*"([^"]+)", (0x[0-9a-f]{16}), (0x[0-9a-f]{16})', text)}
 
 
 def brute_force(query, train, k):

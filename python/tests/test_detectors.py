@@ -53,12 +53,6 @@ class Recommended(unittest.TestCase):
         matches = HierarchicalMatcher.createRecommended().match(codes, codes)
         self.assertTrue(matches and all(m.queryIdx == m.trainIdx for m in matches))
 
-    def test_pickled_with_its_detector(self):
-        image = texture(160, 120)
-        iib = IIB.createRecommended(40)
-        for twin in (copy.copy(iib), pickle.loads(pickle.dumps(iib))):
-            np.testing.assert_array_equal(twin.detectAndCompute(image)[1], iib.detectAndCompute(image)[1])
-
 
 class Normalized(unittest.TestCase):
 
@@ -131,15 +125,9 @@ class Normalized(unittest.TestCase):
     def test_masks_and_images_that_are_refused(self):
         image = texture(100, 80)
         for detector in (IIB.create(), IIB.createFor(Watching()), NormalizedDetector(Watching())):
-            for culprit, arguments in (('80 x 80', (image, np.ones((80, 80), np.uint8))),
-                                       ('the mask has type CV_32F', (image, np.ones((80, 100), np.float32))),
-                                       ('2 or 3 dimensions', (image.ravel(),))):
+            for culprit, arguments in (('80 x 80', (image, np.ones((80, 80), np.uint8))), ('2 or 3 dimensions', (image.ravel(),))):
                 with self.subTest(culprit), self.assertRaisesRegex(opencv_iib.error, culprit):
                     detector.detect(*arguments)
-            mask = np.ones((80, 100), bool)
-            self.assertEqual(len(detector.detect(image, mask)), len(detector.detect(image, mask * np.uint8(255))))
-        with self.assertRaisesRegex(opencv_iib.error, '2 or 3 dimensions'):
-            IIB.create().compute(image.ravel(), [])
 
     def test_pickle_and_copy(self):
         normalized = NormalizedDetector(Watching(), 7)
@@ -209,15 +197,6 @@ class MatchRotated(unittest.TestCase):
         codes = [self.extractor.compute(image, rows)[1] for image, rows in zip(self.images, (first, second))]
         by_hand = self.matcher.match(*codes)
         self.assertEqual([(m.queryIdx, m.trainIdx, m.distance) for m in by_hand], [tuple(m) for m in matches.tolist()])
-
-    def test_objects_are_as_arrays(self):
-        keypoints = [[opencv_iib.KeyPoint(*row) for row in rows.tolist()] for rows in self.rows]
-        rotation, first, second, matches = self.call(keypoints1=keypoints[0], keypoints2=keypoints[1])
-        expected = self.call(keypoints1=self.rows[0], keypoints2=self.rows[1])
-        self.assertEqual(rotation, expected[0])
-        for objects, rows in zip((first, second), expected[1:3]):
-            np.testing.assert_array_equal(opencv_iib.keypoints_to_array(objects), rows)
-        self.assertEqual([[m.queryIdx, m.trainIdx, m.distance] for m in matches], expected[3].tolist())
 
     def test_it_detects(self):
         rotation, first, second, matches = self.call()

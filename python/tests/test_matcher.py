@@ -83,14 +83,6 @@ class MatcherTest(unittest.TestCase):
         matches = self.matcher.match(self.query, self.train)
         self.assertEqual([(m.queryIdx, m.trainIdx) for m in matches], [(i, i + 10) for i in range(50)])
 
-    def test_strided_and_read_only_descriptors(self):
-        wide = np.zeros((100, 340), np.uint8)
-        wide[::2, ::2] = self.query
-        expected = self.matcher.knnMatchArrays(self.query, self.train, k=2)
-        for query in (wide[::2, ::2], np.asfortranarray(self.query)):
-            for a, b in zip(self.matcher.knnMatchArrays(query, self.train, k=2), expected):
-                np.testing.assert_array_equal(a, b)
-
     def test_nothing_to_match(self):
         empty = np.empty((0, 170), np.uint8)
         self.assertEqual(self.matcher.match(empty, self.train), ())

@@ -4,7 +4,7 @@ import numpy as np
 from support import texture
 
 import opencv_iib
-from opencv_iib import DMatch, KeyPoint, refineMatches
+from opencv_iib import refineMatches
 
 
 class Refinement(unittest.TestCase):
@@ -32,13 +32,6 @@ class Refinement(unittest.TestCase):
         self.assertGreater(np.mean(refined), .9)
         self.assertLess(np.median(np.abs(points2 - points1 - np.float32([-2, -3]))[refined]), .05)
         self.assertTrue(np.all(covariances[refined][:, [0, 2]] > 0))
-
-    def test_objects_give_the_same(self):
-        keypoints = [[KeyPoint(*row[:4].tolist()) for row in rows] for rows in (self.rows, self.moved)]
-        matches = [DMatch(int(i), int(j), 0, 0.) for i, j in self.pairs]
-        for expected, found in zip(self.refine(), refineMatches(self.images[0], keypoints[0], self.images[1], keypoints[1],
-                                                                matches)):
-            np.testing.assert_array_equal(expected, found)
 
     def test_no_matches(self):
         found = refineMatches(self.images[0], self.rows, self.images[1], self.moved, [])
