@@ -110,6 +110,8 @@ def _add_localization(commands: Any) -> None:
     localizing = command('localize', 'find where images were taken; status 0: all, 4: some, 3: none', localizes=True)
     localizing.add_argument('--out', required=True, help='folder to write; older results there are replaced')
     localizing.add_argument('--pictures', action='store_true', help='write each image with the points that agree')
+    for each, text in ((mapping, 'map lines too'), (localizing, 'refine poses by the lines of a map that was made with --lines')):
+        each.add_argument('--lines', action='store_true', help=text + " (needs OpenCV's module line_descriptor)")
     updating = command('update', 'add the light of images to a map', localizes=True)
     updating.add_argument('--out', help='folder of the new map, instead of the old one')
 
@@ -152,12 +154,12 @@ def _share(count: int, total: int) -> int:
 def _localization(arguments: argparse.Namespace) -> int:
     if arguments.command == 'localize':
         found, count = localization.localize_images(arguments.map, arguments.images, arguments.out, arguments.camera,
-                                                    arguments.pictures, arguments.workers)
+                                                    arguments.pictures, arguments.workers, lines=arguments.lines)
         _say(f'{arguments.out}: {found} of {count} images have a pose')
         return _share(found, count)
     if arguments.command == 'map':
         counts = localization.build(arguments.model, arguments.images, arguments.out, arguments.points, arguments.workers,
-                                    arguments.force)
+                                    arguments.force, lines=arguments.lines)
     else:
         counts = localization.update(arguments.map, arguments.images, arguments.camera, arguments.out, arguments.workers)
     _say(f'{arguments.out or arguments.map}: ' + ', '.join(f'{count} {name}' for name, count in counts.items()))

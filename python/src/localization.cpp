@@ -63,8 +63,8 @@ Location localize(const cv::iib::Localizer& self, const Array& image, const Came
     return self.localize(view, camera, prior ? &pose : nullptr);
 }
 
-void buildMap(
-        nb::handle model, const nb::callable& read, nb::handle map, int points, const nb::callable& report)
+void buildMap(nb::handle model, const nb::callable& read, nb::handle map, int points, bool lines,
+        const nb::callable& report)
 {
     const auto image = [&read](const std::string& name) {
         nb::gil_scoped_acquire gil;
@@ -76,7 +76,9 @@ void buildMap(
     };
     const std::string from = pathOf(model), to = pathOf(map);
     nb::gil_scoped_release release;
-    cv::iib::buildMap(from, image, to, points, step);
+    cv::iib::MapOptions options(points);
+    options.lines = lines;
+    cv::iib::buildMap(from, image, to, options, step);
 }
 
 //! A name, a camera, a pose and the pixels of keypoints for each image.
@@ -146,10 +148,10 @@ void bindLocalization(nb::module_& m)
                     nb::sig("def points(self) -> NDArray"));
     nb::class_<cv::iib::Localizer>(m, "Localizer")
             .def("__init__",
-                    [](cv::iib::Localizer* self, nb::handle map, int points) {
+                    [](cv::iib::Localizer* self, nb::handle map, int points, bool lines) {
                         const std::string folder = pathOf(map);
                         nb::gil_scoped_release release;
-                        new (self) cv::iib::Localizer(folder, points);
+                        new (self) cv::iib::Localizer(folder, points, lines);
                     })
             .def("cameras", &cv::iib::Localizer::cameras)
             .def("localize", &localize);

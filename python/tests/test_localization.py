@@ -251,6 +251,7 @@ class Localization(unittest.TestCase):
         localize = '--map', self.map, '--images', self.dark, '--out', out
         self.check_error('camera', 'localize', *localize, '--camera', 'FISH,1,2,3')
         self.check_error('is no map', 'localize', '--map', self.images, *localize[2:])
+        self.check_error('map has no lines|lines need OpenCV', 'localize', *localize, '--lines')
         for name in ('no', os.path.join(self.map, 'map.iib')):
             self.check_error('there is no folder', 'localize', '--map', self.map, '--images', name, '--out', out)
         self.check_error('no images below', 'localize', '--map', self.map, '--images', empty, '--out', out)

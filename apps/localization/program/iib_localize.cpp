@@ -204,8 +204,11 @@ void keepFreedMemory()
 //! In the map, or in one of the model. @param points as Localizer takes them.
 Localizer open(const iib_tools::CommandLine& line, int points)
 {
+    cv::iib::MapOptions options;
+    options.lines = line.has("lines");
+    options.orbAndAkaze = line.has("orb-and-akaze");
     if (line.has("map"))
-        return Localizer(line.text("map"), points);
+        return Localizer(line.text("map"), points, options.lines);
     std::optional<Progress> progress;
     const std::string photographs = line.text("photographs");
     return Localizer(
@@ -218,7 +221,8 @@ Localizer open(const iib_tools::CommandLine& line, int points)
                     progress->step();
                 else
                     std::cerr << problem << "\n";
-            });
+            },
+            options);
 }
 
 int run(const iib_tools::CommandLine& line)
@@ -317,6 +321,8 @@ int main(int argc, char** argv)
             "{camera|<none>|of all images, as COLMAP names models and parameters; without it, the map's of "
             "the same size}"
             "{max-size|0|pixels of the longer side to which larger images are reduced; 0: they are not}"
+            "{lines||refine poses by lines too; a --map must have been made with them}"
+            "{orb-and-akaze||with --model: the paper's points and bits in place of the recommended ones}"
             "{imu|<none>|EuRoC's imu.csv; images must be named by their times}"
             "{imu-from-camera|0,0,0,0,0,0,1|where the camera is in the IMU's axes: tx,ty,tz,qx,qy,qz,qw}"
             "{pictures||write each image with the points that agree, as OUT/matches/NAME.png}"

@@ -17,6 +17,9 @@ struct Features
     Picture picture;
 };
 
+//! What finds and describes the points of a map: createRecommended, or the paper's points and descriptor.
+cv::Ptr<cv::iib::IIB> describerOf(bool orbAndAkaze, int points);
+
 inline Features extract(cv::iib::IIB& iib, const cv::Mat& image)
 {
     Features features;

@@ -26,6 +26,7 @@ constexpr double MAX_BOUND = .1;  // of the distance to the points: three standa
 constexpr double REFINED =
         .3;  // pixels: deviation of a keypoint that refineMatches placed, with that of its point
 constexpr double LEAST_DEVIATION = .7;  // of the deviations that are assumed
+constexpr int LINE_ROUNDS = 2;          // lines are looked for again after the first refinement by them
 constexpr size_t WORTH = 16;            // matches with an image of the map, for which they are refined
 
 //! What sorts first, of so many.
@@ -134,6 +135,15 @@ void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Foun
             matches = inliers;
         }
     }
+    for (int round = 0; round < LINE_ROUNDS && !found.segments.places.empty(); round++)
+    {
+        std::vector<Match> both = inliers;
+        for (const Match& m : lineMatches(map, found.compared, found.segments, lens, frame, pose, limit))
+            both.push_back(m);
+        if (!refinePose(both, lens, pose, covariance))
+            return;
+        inliers = within(limit, inliers, lens, pose);
+    }
     std::vector<double> errors = errorsOf(inliers, lens, pose);
     for (size_t i = 0; i < errors.size(); i++)
         errors[i] /= inliers[i].deviation;
@@ -191,10 +201,14 @@ double medianDistance(const std::vector<cv::Point3d>& points)
     return median(distances);
 }
 
-Finder::Finder(const Map& map, int points)
-    : map_(map), iib_(cv::iib::IIB::createRecommended(points ? points : map.keypoints)),
+Finder::Finder(const Map& map, int points, bool lines)
+    : map_(map), lines_(lines), iib_(describerOf(map.orbAndAkaze, points ? points : map.keypoints)),
       matcher_(cv::iib::HierarchicalMatcher::createRecommended()), votes_(codesOf(map))
 {
+    if (lines)
+        needLines();
+    if (lines && map.lines.empty())
+        CV_Error(cv::Error::StsError, "the map has no lines: make it with lines, or look for none");
     for (const MapImage& image : map.images)
     {
         if (image.codes.cols != iib_->descriptorSize())
@@ -261,6 +275,8 @@ Found Finder::find(const cv::Mat& image, const Camera& camera, const cv::Affine3
     found.reason = "too few matches";
     if (found.features.pixels.empty())
         return found;
+    if (lines_)
+        found.segments = findSegments(found.features.picture);
     if (prior)
     {
         found.compared = near(*prior);
@@ -280,7 +296,8 @@ using namespace iib_localization;
 
 struct cv::iib::Localizer::Impl
 {
-    Impl(Map&& read, int points) : map(std::move(read)), finder(map, points), cameras(camerasOf(map.images))
+    Impl(Map&& read, int points, bool lines)
+        : map(std::move(read)), finder(map, points, lines), cameras(camerasOf(map.images))
     {
     }
 
@@ -289,14 +306,14 @@ struct cv::iib::Localizer::Impl
     const std::vector<Camera> cameras;
 };
 
-cv::iib::Localizer::Localizer(const std::string& map, int points)
-    : impl_(std::make_unique<const Impl>(readMap(map), points))
+cv::iib::Localizer::Localizer(const std::string& map, int points, bool lines)
+    : impl_(std::make_unique<const Impl>(readMap(map), points, lines))
 {
 }
 
-cv::iib::Localizer::Localizer(
-        const std::string& model, const ImageReader& images, int points, const MappingReport& report)
-    : impl_(std::make_unique<const Impl>(makeMap(model, images, 2000, report), points))
+cv::iib::Localizer::Localizer(const std::string& model, const ImageReader& images, int points,
+        const MappingReport& report, const MapOptions& options)
+    : impl_(std::make_unique<const Impl>(makeMap(model, images, options, report), points, options.lines))
 {
 }
 

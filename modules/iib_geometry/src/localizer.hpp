@@ -2,6 +2,7 @@
 #pragma once
 
 #include "features.hpp"
+#include "lines.hpp"
 #include "map.hpp"
 #include "pose.hpp"
 #include "retrieval.hpp"
@@ -12,6 +13,7 @@ namespace iib_localization {
 struct Found : cv::iib::Location
 {
     Features features;
+    Segments segments;             //!< if lines refine the pose
     std::vector<size_t> compared;  //!< images of the map
     std::vector<Match> agreeing;   //!< every code of the map that agrees, also several of one keypoint
 };
@@ -21,7 +23,7 @@ class Finder
 {
 public:
     //! @param points keypoints that are looked for in an image; 0: as many as in the map's images.
-    Finder(const Map& map, int points);
+    Finder(const Map& map, int points, bool lines);
 
     Found find(const cv::Mat& image, const Camera& camera, const cv::Affine3d* prior) const;
 
@@ -31,6 +33,7 @@ private:
     void locate(const Camera& camera, const cv::Affine3d* prior, Found& found) const;
 
     const Map& map_;
+    const bool lines_;
     std::vector<double>
             depths_;  //!< of each image of the map, how far what it sees lies; 0 if it sees nothing
     cv::Ptr<cv::iib::IIB> iib_;

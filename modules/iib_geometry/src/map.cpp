@@ -24,7 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const char* const FILE_NAME = "/map.iib";
-const cv::iib::FileKind KIND = {"IIB_MAP_", 1, "a map of opencv_iib"};
+constexpr int LINE_BYTES = 32;  // of a code of LBD
+const cv::iib::FileKind KIND = {"IIB_MAP_", 2, "a map of opencv_iib"};
 
 //! What a folder of a map holds, and one of an earlier version; the first names tell that it is one.
 const std::vector<std::string> OWN = {"map.iib", "cameras.bin", "images.bin", "points3D.bin"};
@@ -124,6 +125,46 @@ void writeImage(cv::iib::CheckedWriter& file, const MapImage& image, size_t came
     file.number(uint64(picture.rows), 4);
     file.number(uint64(picture.cols), 4);
     file.bytes(picture.data, picture.total());
+}
+
+//! What version 2 has: which points are in use, the lines, and of each image those that it sees.
+void writeExtras(cv::iib::CheckedWriter& file, const Map& map)
+{
+    file.number(map.orbAndAkaze, 1);
+    file.number(map.lines.size(), 4);
+    for (const MapLine& line : map.lines)
+        for (const cv::Point3d& p : {line.begin, line.end})
+            for (double value : {p.x, p.y, p.z})
+                writeReal(file, value);
+    for (const MapImage& image : map.images)
+    {
+        file.list(image.lines, 4);
+        file.bytes(image.lineCodes.data, image.lineCodes.total());
+    }
+}
+
+void readExtras(cv::iib::CheckedReader& file, Map& map)
+{
+    map.orbAndAkaze = file.number(1) != 0;
+    const unsigned lines = file.word();
+    file.expect(lines, 48);
+    for (unsigned i = 0; i < lines; i++)
+    {
+        double values[6];
+        for (double& value : values)
+            value = readReal(file);
+        map.lines.push_back({{values[0], values[1], values[2]}, {values[3], values[4], values[5]}});
+    }
+    for (MapImage& image : map.images)
+    {
+        image.lines = file.list<int>(4);
+        for (int number : image.lines)
+            if (number < 0 || size_t(number) >= map.lines.size())
+                file.fail("an image sees a line that is not there");
+        file.expect(image.lines.size(), LINE_BYTES);
+        image.lineCodes.create(int(image.lines.size()), LINE_BYTES, CV_8U);
+        file.bytes(image.lineCodes.data, image.lineCodes.total());
+    }
 }
 
 MapImage readImage(cv::iib::CheckedReader& file, const std::vector<Camera>& cameras, int bytes, size_t points)
@@ -256,6 +297,8 @@ Map readMap(const std::string& folder)
         if (!names.insert(map.images.back().name).second)
             file.fail("two images have one name");
     }
+    if (file.version() > 1)
+        readExtras(file, map);
     file.seal();
     file.expectEnd();
     if (map.keypoints < 1 || map.images.empty())
@@ -292,7 +335,9 @@ MapFolder::~MapFolder() { ::close(lock_); }
 
 void MapFolder::write(const Map& map) const
 {
-    cv::iib::CheckedWriter file(folder_ + FILE_NAME, KIND);
+    cv::iib::FileKind kind = KIND;
+    kind.version = map.orbAndAkaze || !map.lines.empty() ? 2 : 1;  // earlier programs read what they can
+    cv::iib::CheckedWriter file(folder_ + FILE_NAME, kind);
     file.number(uint64(map.keypoints), 4);
     file.number(map.updates, 4);
     file.number(uint64(map.images.empty() ? 0 : map.images[0].codes.cols), 4);
@@ -307,6 +352,8 @@ void MapFolder::write(const Map& map) const
     file.number(map.images.size(), 4);
     for (const MapImage& image : map.images)
         writeImage(file, image, indexOf(image.camera, cameras));
+    if (kind.version > 1)
+        writeExtras(file, map);
     file.seal();
     cv::iib::writeModel(folder_, {map.images.begin(), map.images.end()}, map.points);
     file.commit();

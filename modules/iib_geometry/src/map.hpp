@@ -8,6 +8,12 @@
 
 namespace iib_localization {
 
+//! A straight edge in the world, directed as its segments are.
+struct MapLine
+{
+    cv::Point3d begin, end;
+};
+
 //! An image of a map; each of its keypoints sees a point, and the strongest come first.
 struct MapImage : PosedImage
 {
@@ -17,15 +23,19 @@ struct MapImage : PosedImage
     uint32_t used = 0;          //!< the last update in which the image helped
     bool added = false;         //!< by an update
     Picture picture;            //!< that keypoints of other images are refined against; may be empty
+    std::vector<int> lines;     //!< that the image sees
+    cv::Mat lineCodes;          //!< LBD, a row each
 };
 
 //! A map, in memory as on the disk.
 struct Map
 {
-    int keypoints = 2000;  //!< that are looked for in an image
-    uint32_t updates = 0;  //!< so far
+    int keypoints = 2000;      //!< that are looked for in an image
+    bool orbAndAkaze = false;  //!< the paper's points and descriptor
+    uint32_t updates = 0;      //!< so far
     std::vector<MapImage> images;
     std::vector<cv::Point3d> points;
+    std::vector<MapLine> lines;  //!< none in a map that was made without
 
     //! The points that an image's keypoints see.
     std::vector<cv::Point3d> seenBy(const MapImage& image) const;

@@ -11,6 +11,7 @@
 
 #include "colmap_model.hpp"
 #include "features.hpp"
+#include "lines.hpp"
 #include "pose.hpp"
 #include "triangulation.hpp"
 
@@ -85,9 +86,9 @@ private:
     std::mutex mutex_;
 };
 
-void describe(std::vector<MapImage>& images, const cv::iib::ImageReader& read, int points, Steps& steps)
+void describe(std::vector<MapImage>& images, const cv::iib::ImageReader& read,
+        const cv::Ptr<cv::iib::IIB>& iib, Steps& steps)
 {
-    const cv::Ptr<cv::iib::IIB> iib = cv::iib::IIB::createRecommended(points);
     inParallel(images.size(), [&](size_t i) {
         MapImage& image = images[i];
         const cv::Mat pixels = read(image.name);
@@ -114,20 +115,23 @@ void describe(std::vector<MapImage>& images, const cv::iib::ImageReader& read, i
 
 }  // namespace
 
-Map makeMap(const std::string& model, const cv::iib::ImageReader& read, int points,
+Map makeMap(const std::string& model, const cv::iib::ImageReader& read, const cv::iib::MapOptions& options,
         const cv::iib::MappingReport& report)
 {
+    if (options.lines)
+        needLines();
     const std::vector<PosedImage> known = readModel(model);
     const Pairs pairs = covisible(known);
     Steps steps(known.size() + pairs.size(), report);
     Map map;
-    map.keypoints = points;
+    map.keypoints = options.points;
+    map.orbAndAkaze = options.orbAndAkaze;
     for (const PosedImage& image : known)
     {
         map.images.emplace_back();
         static_cast<PosedImage&>(map.images.back()) = image;
     }
-    describe(map.images, read, points, steps);
+    describe(map.images, read, describerOf(options.orbAndAkaze, options.points), steps);
     const MatchedRays matched = matchPairs(map.images, pairs, [&] { steps.step(); });
     if (double(matched.links.size()) <= LEAST_FITTING * double(matched.matches))
         CV_Error(cv::Error::StsError,
@@ -137,14 +141,20 @@ Map makeMap(const std::string& model, const cv::iib::ImageReader& read, int poin
     if (map.points.empty())
         CV_Error(cv::Error::StsError, model + ": no point was seen from two places");
     map.compact();
+    if (options.lines)
+    {
+        std::vector<Segments> segments(map.images.size());
+        inParallel(segments.size(), [&](size_t i) { segments[i] = findSegments(map.images[i].picture); });
+        addLines(map, segments, pairs);
+    }
     return map;
 }
 
 }  // namespace iib_localization
 
 void cv::iib::buildMap(const std::string& model, const ImageReader& images, const std::string& map,
-        int points, const MappingReport& report)
+        const MapOptions& options, const MappingReport& report)
 {
     const iib_localization::MapFolder folder(map);
-    folder.write(iib_localization::makeMap(model, images, points, report));
+    folder.write(iib_localization::makeMap(model, images, options, report));
 }

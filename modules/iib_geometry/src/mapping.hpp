@@ -6,7 +6,7 @@
 namespace iib_localization {
 
 //! As cv::iib::buildMap does, in memory.
-Map makeMap(const std::string& model, const cv::iib::ImageReader& images, int points,
+Map makeMap(const std::string& model, const cv::iib::ImageReader& images, const cv::iib::MapOptions& options,
         const cv::iib::MappingReport& report);
 
 }  // namespace iib_localization

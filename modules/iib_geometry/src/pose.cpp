@@ -74,7 +74,7 @@ std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens
     const std::vector<cv::Point2d> mapped = lens.project(inCamera(pointsOf(matches), pose));
     std::vector<double> errors;
     for (size_t i = 0; i < matches.size(); i++)
-        errors.push_back(cv::norm(mapped[i] - matches[i].pixel));
+        errors.push_back(cv::norm(matches[i].counted * (mapped[i] - matches[i].pixel)));
     return errors;
 }
 
@@ -120,11 +120,12 @@ bool refinePose(
         cv::Vec6d gradient;
         for (size_t i = 0; i < points.size(); i++)
         {
-            const cv::Point2d error = matches[i].pixel - mapped[i];
+            const cv::Point2d error = matches[i].counted * (matches[i].pixel - mapped[i]);
             const double weight = 1 / (matches[i].deviation * matches[i].deviation + error.dot(error));
             if (std::isnan(weight))
                 continue;
-            const cv::Matx23d byMoved = byPoint[i] * rotation;  // of the point in the world's axes
+            const cv::Matx23d byMoved =
+                    matches[i].counted * byPoint[i] * rotation;  // of the point in the world's axes
             const cv::Matx23d byTurn = byMoved * cv::iib::crossProduct(cv::Vec3d(points[i]) - centre);
             cv::Matx<double, 2, 6> jacobian;
             for (int row = 0; row < 2; row++)

@@ -16,6 +16,8 @@ struct Match
     int view = 0;          //!< image of the map that sees the point so
     int row = 0;           //!< of that image's codes
     double deviation = 1;  //!< of the pixel
+    //! What of the pixel's error counts: all, or what is across a line.
+    cv::Matx22d counted = cv::Matx22d::eye();
 };
 
 //! Of a rigid motion. cv::Affine3d::inv() goes through an SVD, which far from the origin leaves no digit.

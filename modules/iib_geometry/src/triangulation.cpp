@@ -15,8 +15,6 @@ constexpr double MAX_ERROR = 4;    // pixels, of a keypoint from its point
 constexpr double MIN_ANGLE = 1.5;  // degrees between the rays of a point
 constexpr int ROUNDS = 5;          // of a point's refinement
 
-typedef std::vector<Ray> Track;
-
 double angleOf(const Ray& a, const Ray& b)
 {
     return std::atan2(cv::norm(a.direction.cross(b.direction)), a.direction.dot(b.direction));
@@ -50,7 +48,8 @@ cv::Vec3d meetingPoint(const Track& track)
     return point;
 }
 
-//! Those of two rays or more.
+}  // namespace
+
 std::vector<Track> joined(const std::vector<Ray>& rays, std::vector<Link> links)
 {
     std::stable_sort(
@@ -91,6 +90,8 @@ std::vector<Track> joined(const std::vector<Ray>& rays, std::vector<Link> links)
         }
     return found;
 }
+
+namespace {
 
 /** Moves the keypoints of each track to what the reference shows: one that sees a point already, or that which looks least
 differently from the others. Those that see a point stay. */

@@ -5,9 +5,14 @@
 
 namespace iib_localization {
 
-/** Places what the keypoints of a map's images see. The surest links first join rays to tracks, which hold one ray of an image
-and see one point at most; keypoints that see no point yet are moved to what one of their track shows, the reference.
-The rays farthest from a track's point are left out until the others agree; it has none if too few do, or look from nearly
+typedef std::vector<Ray> Track;
+
+/** The tracks of two rays or more that links join, the surest first. A track holds one ray of an image and sees one point at
+most. */
+std::vector<Track> joined(const std::vector<Ray>& rays, std::vector<Link> links);
+
+/** Places what the keypoints of a map's images see. Keypoints that see no point yet are moved to what one of their track shows,
+the reference. The rays farthest from a track's point are left out until the others agree; it has none if too few do, or look from nearly
 the same direction. */
 void triangulate(Map& map, const std::vector<Ray>& rays, const std::vector<Link>& links);
 

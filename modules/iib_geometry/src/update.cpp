@@ -163,7 +163,7 @@ using namespace iib_localization;
 struct cv::iib::MapUpdate::Impl
 {
     Impl(const std::string& from, const std::string& to)
-        : folder(to), map(readMap(from)), finder(map, 0), cameras(camerasOf(map.images))
+        : folder(to), map(readMap(from)), finder(map, 0, !map.lines.empty()), cameras(camerasOf(map.images))
     {
     }
 

@@ -34,7 +34,8 @@ points (x, y, 4 + 0.4 x) for each pixel (120 a metre) of the texture. */
 class Wall
 {
 public:
-    explicit Wall(uint64 seed) : texture_(900, 1200, CV_32F, cv::Scalar(128))
+    //! @param posters rectangles of one grey, with straight edges.
+    explicit Wall(uint64 seed, int posters = 0) : texture_(900, 1200, CV_32F, cv::Scalar(128))
     {
         cv::RNG random(seed);
         for (int cell : {3, 9, 27, 81})
@@ -43,6 +44,14 @@ public:
             random.fill(noise, cv::RNG::NORMAL, 0, 30);
             cv::resize(noise, large, texture_.size(), 0, 0, cv::INTER_CUBIC);
             texture_ += large;
+        }
+        for (int i = 0; i < posters; i++)
+        {
+            const cv::Point corner(
+                    random.uniform(0, texture_.cols - 200), random.uniform(0, texture_.rows - 200));
+            cv::rectangle(texture_,
+                    cv::Rect(corner, cv::Size(random.uniform(60, 200), random.uniform(60, 200))),
+                    cv::Scalar(random.uniform(0, 256)), cv::FILLED);
         }
         texture_.convertTo(texture_, CV_8U);
     }

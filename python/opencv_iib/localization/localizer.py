@@ -45,15 +45,17 @@ def as_pose(pose: ArrayLike) -> NDArray[np.float64]:
 class Localizer:
     """Finds images in a map. Threads may share one."""
 
-    def __init__(self, map: Union[str, os.PathLike[str]], points: int = 1000) -> None:
+    def __init__(self, map: Union[str, os.PathLike[str]], points: int = 1000, lines: bool = False) -> None:
         """Reads a map.
 
         :param map: its folder.
         :param points: keypoints that are looked for in an image; 0: as many as in the map's images, which takes twice the time
             and finds more in hard light.
-        :raises opencv_iib.error: for what is no map, or a damaged one.
+        :param lines: refine poses by lines too; the map must have been made with them.
+        :raises opencv_iib.error: for what is no map, or a damaged one; for lines of a map without them, or where OpenCV's module
+            line_descriptor was missing in the build.
         """
-        self._core = _core.Localizer(map, points)
+        self._core = _core.Localizer(map, points, lines)
 
     @property
     def cameras(self) -> list[Camera]:

@@ -25,7 +25,7 @@ def _count(file: str) -> int:
 
 
 def build(model: str, images: str, out: str, points: int = 2000, workers: Optional[int] = None, force: bool = False,
-          log: Callable[[str], None] = lambda line: print(line, file=sys.stderr)) -> dict[str, int]:
+          log: Callable[[str], None] = lambda line: print(line, file=sys.stderr), lines: bool = False) -> dict[str, int]:
     """Finds and describes points in the images of a COLMAP model, triangulates them with its poses, and writes a map.
 
     :param model: folder of a model, binary or text; its poses and cameras are taken as they are, in any unit.
@@ -35,6 +35,7 @@ def build(model: str, images: str, out: str, points: int = 2000, workers: Option
     :param workers: threads; None for one a core.
     :param force: replace a map that is there. Who reads it meanwhile gets the old one or the new one.
     :param log: told of each image that cannot be read; the map is made without it.
+    :param lines: look for straight edges too, see Localizer.
     :return: counts of images and points.
     :raises FileExistsError: if there is a map and force is not set.
     :raises FileNotFoundError: naming an image that is missing.
@@ -72,7 +73,7 @@ def build(model: str, images: str, out: str, points: int = 2000, workers: Option
     with ThreadPoolExecutor(1) as pool:  # not in this thread, which Ctrl-C reaches
         try:
             _core.setNumThreads(thread_count(workers))
-            pool.submit(_core.buildMap, model, read, target, points, report).result()
+            pool.submit(_core.buildMap, model, read, target, points, lines, report).result()
         finally:
             stop.set()
             _core.setNumThreads(threads)

@@ -112,8 +112,8 @@ def _place_and_turn(cam_from_world: NDArray[np.float64]) -> list[float]:
 
 
 def localize_images(map: str, images: str, out: str, camera: Optional[AnyCamera] = None, pictures: bool = False,
-                    workers: Optional[int] = None, log: Callable[[str], None] = lambda line: print(line, file=sys.stderr)
-                    ) -> tuple[int, int]:
+                    workers: Optional[int] = None, log: Callable[[str], None] = lambda line: print(line, file=sys.stderr),
+                    lines: bool = False) -> tuple[int, int]:
     """Localizes the images below a folder and writes what was found.
 
     :param map: folder of a map.
@@ -122,10 +122,11 @@ def localize_images(map: str, images: str, out: str, camera: Optional[AnyCamera]
     :param camera: of all images, as Localizer.localize takes it; None for each one's own, by its EXIF data or the map.
     :param workers: threads; None for one a core.
     :param log: told of each image without a pose, and why.
+    :param lines: as Localizer takes it.
     :return: how many images have a pose, and of how many.
     """
     names = images_of(images, out)
-    localizer = Localizer(map, 0)
+    localizer = Localizer(map, 0, lines)
     located = locate(lambda name, image, camera: localizer.localize(image, camera), localizer.cameras, images, names, camera, workers)
     posed: list[Any] = []
     with new_folder(out, OWN) as partial:

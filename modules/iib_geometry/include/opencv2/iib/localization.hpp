@@ -63,6 +63,19 @@ typedef std::function<Mat(const std::string& name)> ImageReader;
 an image, without which the map is made (else empty). What it throws ends the mapping. */
 typedef std::function<void(size_t done, size_t all, const std::string& problem)> MappingReport;
 
+//! @brief What a map is made of.
+struct MapOptions
+{
+    MapOptions(int keypoints = 2000) : points(keypoints) {}
+
+    int points;  //!< keypoints that are looked for in an image
+    /** Straight edges too: segments (LSD) of two images or more that look alike (LBD) and whose planes cross. They need OpenCV's
+    module line_descriptor, of opencv_contrib. */
+    bool lines = false;
+    //! The paper's points, ORB's and AKAZE's together with IIB's default bits, in place of IIBDescriptorExtractor::createRecommended.
+    bool orbAndAkaze = false;
+};
+
 /** @brief Makes a map of a COLMAP model and its images.
 
 Keypoints of each image are described, matched with those of the images that see the same, refined against one of them
@@ -73,11 +86,11 @@ images' keypoints tell which of them see the same.
 @param images gives the model's images.
 @param map folder to write: `map.iib`, and a COLMAP model of the same points. A map that is there is replaced: who reads
 meanwhile gets the old one or the new one. A folder that holds anything else is refused before work begins.
-@param points keypoints that are looked for in an image.
+@param options what it is made of; a number stands for one of keypoints alone.
 @param report if not empty: told of the progress.
-@throws cv::Exception for a model that is damaged or not that of the images. */
+@throws cv::Exception for a model that is damaged or not that of the images, and for lines without line_descriptor. */
 CV_EXPORTS void buildMap(const std::string& model, const ImageReader& images, const std::string& map,
-        int points = 2000, const MappingReport& report = MappingReport());
+        const MapOptions& options = MapOptions(), const MappingReport& report = MappingReport());
 
 //! @brief What Localizer::localize finds.
 struct Location
@@ -106,12 +119,14 @@ public:
     /** @brief Reads a map into memory.
     @param map its folder.
     @param points keypoints that are looked for in an image; 0: as many as in the map's images.
-    @throws cv::Exception for what is no map, or a damaged one. */
-    explicit Localizer(const std::string& map, int points = 1000);
+    @param lines whether poses are refined by lines too: by the distances of the ends of a line's projection from the segment
+    that shows it, of a map that was made with them.
+    @throws cv::Exception for what is no map, or a damaged one, and for lines of a map without them or without line_descriptor. */
+    explicit Localizer(const std::string& map, int points = 1000, bool lines = false);
 
-    //! @brief Makes a map in memory, as buildMap does with 2000 keypoints an image.
+    //! @brief Makes a map in memory, as buildMap does; with options.lines, they refine poses.
     Localizer(const std::string& model, const ImageReader& images, int points = 1000,
-            const MappingReport& report = MappingReport());
+            const MappingReport& report = MappingReport(), const MapOptions& options = MapOptions());
     ~Localizer();
     Localizer(const Localizer&) = delete;
     Localizer& operator=(const Localizer&) = delete;
