@@ -44,6 +44,7 @@ for selection in "$root"/doc/results/AdaBoost-*.json; do
     set -- "$@" --descriptor "$selection"
 done
 "$build/tools/evaluation/iib_evaluation" "$@" --out "$pairs"
+[ ! -e "$pairs/matched_points.csv" ] || python3 "$root/tools/evaluation/by_poselib.py" "$pairs"
 [ -z "$document" ] || out="$root/doc/results"
 {
     echo "commit $(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo unknown)"

@@ -56,6 +56,10 @@ def pose_place(row):
     return ['buildings' if row['set'] == 'strecha' else 'facade' if row['set'] == 'walk_facade' else 'street']
 
 
+def pose_area(limit):
+    return lambda row: max(0, 1 - float(row['error']) / limit)
+
+
 def alignment_place(row):
     """The set of a pair, or `other scenes`; the demo's scene is one of TILDE's webcams."""
     if row['image'] == 'same scene':
@@ -95,6 +99,9 @@ PLANS = {
     'robustness.csv': (lambda row: ['turned'] * (row['set'] not in TRAINED_ON), ('kind', 'configuration', 'target'),
                        columns('precision', 'recall')),
     'alignment.csv': (alignment_place, (), {'found': column('found'), 'within_1': within(1), 'within_3': within(3)}),
+    'estimators.csv': (lambda row: ['same light' if row['set'] == 'strecha' else 'other light'],
+                       ('detector', 'descriptor', 'points', 'estimator'),
+                       {'at_10': pose_area(10), 'at_2': pose_area(2), 'at_5': pose_area(5)}),
     'whole_tasks.csv': (pose_place, ('detector', 'descriptor', 'matching'), {'score': pose_score}),
 }
 

@@ -28,6 +28,8 @@ int fixedPoints(const Options& options, const std::vector<ImagePair>& pairs);
 int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs);
 //! Poses of the views below the roots (common/views.hpp), estimated from matches.
 int wholeTasks(const Options& options, const std::vector<ImagePair>& pairs);
+//! The same with plain and refined matches by several estimators; `<out>/matched_points.csv` holds the matches for others.
+int estimators(const Options& options, const std::vector<ImagePair>& pairs);
 //! alignImages on pairs whose light changes, the second image moved by a homography, and on images of different scenes.
 int alignment(const Options& options, const std::vector<ImagePair>& pairs);
 //! HierarchicalMatcher's modes and the paper's thresholds (paper, "Fast Hierarchical vs. Brute-force Matching").

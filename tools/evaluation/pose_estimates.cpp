@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pose_estimates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "opencv2/calib3d.hpp"
+#include "opencv2/iib.hpp"
+#include "opencv2/iib/relative_pose.hpp"
+
+namespace iib_tools {
+namespace {
+
+const double CONFIDENCE = 0.9999;
+const float RATIO_BITS = 0.9f, RATIO_FLOAT = 0.8f;  // a nearest neighbour's distance over the second's
+const double FAILED = std::numeric_limits<double>::infinity();
+
+//! Pixel to direction in the camera's axes, third coordinate 1.
+std::vector<cv::Point2d> normalizedPoints(const std::vector<cv::Point2d>& points, const cv::Matx33d& camera)
+{
+    std::vector<cv::Point2d> rays;
+    for (const cv::Point2d& p : points)
+        rays.push_back({(p.x - camera(0, 2)) / camera(0, 0), (p.y - camera(1, 2)) / camera(1, 1)});
+    return rays;
+}
+
+double degrees(double cosine) { return std::acos(std::max(-1., std::min(1., cosine))) * 180 / CV_PI; }
+
+//! The larger one of the errors in degrees of rotation and of the direction of the translation, its sign apart.
+double poseError(const cv::Mat& rotation, const cv::Mat& translation, const ViewPair& pair)
+{
+    const cv::Matx33d rest = cv::Matx33d(rotation).t() * pair.rotation;
+    const cv::Vec3d found(translation);
+    const double direction =
+            degrees(std::abs(found.dot(pair.translation)) / cv::norm(found) / cv::norm(pair.translation));
+    return std::max(degrees((cv::trace(rest) - 1) / 2), direction);
+}
+
+}  // namespace
+
+std::vector<cv::DMatch> ratioMatches(const Described& reference, const Described& target)
+{
+    std::vector<cv::DMatch> kept;
+    if (reference.descriptors.empty() || target.descriptors.rows < 2)
+        return kept;
+    std::vector<std::vector<cv::DMatch>> nearest;
+    cv::BFMatcher(reference.norm).knnMatch(reference.descriptors, target.descriptors, nearest, 2);
+    const float ratio = reference.norm == cv::NORM_HAMMING ? RATIO_BITS : RATIO_FLOAT;
+    for (const std::vector<cv::DMatch>& two : nearest)
+        if (two[0].distance < ratio * two[1].distance)
+            kept.push_back(two[0]);
+    return kept;
+}
+
+std::vector<cv::DMatch> inBoth(const std::vector<cv::DMatch>& a, const std::vector<cv::DMatch>& b)
+{
+    std::set<std::pair<int, int>> pairs;
+    for (const cv::DMatch& m : b)
+        pairs.insert({m.queryIdx, m.trainIdx});
+    std::vector<cv::DMatch> kept;
+    for (const cv::DMatch& m : a)
+        if (pairs.count({m.queryIdx, m.trainIdx}))
+            kept.push_back(m);
+    return kept;
+}
+
+Points pointsOf(const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target)
+{
+    Points points;
+    for (const cv::DMatch& m : matches)
+    {
+        points.reference.push_back(reference.keypoints[m.queryIdx].pt);
+        points.target.push_back(target.keypoints[m.trainIdx].pt);
+    }
+    return points;
+}
+
+Points refined(const cv::Mat& referenceImage, const cv::Mat& targetImage,
+        const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target)
+{
+    Points points;
+    if (matches.empty())
+        return points;
+    std::vector<cv::KeyPoint> first = reference.keypoints, second = target.keypoints;
+    for (std::vector<cv::KeyPoint>* keypoints : {&first, &second})
+        for (cv::KeyPoint& keypoint : *keypoints)
+            keypoint.angle = -1;  // described upright
+    cv::Mat moved1, moved2;
+    cv::iib::refineMatches(referenceImage, first, targetImage, second, matches, moved1, moved2);
+    moved1.reshape(2).convertTo(points.reference, CV_64F);
+    moved2.reshape(2).convertTo(points.target, CV_64F);
+    return points;
+}
+
+Outcome byFindRelativePose(const Points& points, const ViewPair& pair)
+{
+    cv::Mat rotation, translation, mask;
+    if (!cv::iib::findRelativePose(points.reference, points.target, pair.referenceCamera, pair.targetCamera,
+                rotation, translation, mask))
+        return {FAILED, 0};
+    return {poseError(rotation, translation, pair), cv::countNonZero(mask)};
+}
+
+Outcome byMagsac(const Points& points, const ViewPair& pair, double threshold)
+{
+    if (points.reference.size() < 6)
+        return {FAILED, 0};
+    const std::vector<cv::Point2d> a = normalizedPoints(points.reference, pair.referenceCamera),
+                                   b = normalizedPoints(points.target, pair.targetCamera);
+    const cv::Matx33d one = cv::Matx33d::eye();
+    cv::Mat mask, rotation, translation;
+    const cv::Mat essential = cv::findEssentialMat(
+            a, b, one, cv::USAC_MAGSAC, CONFIDENCE, threshold / pair.targetCamera(0, 0), mask);
+    if (essential.rows != 3)
+        return {FAILED, 0};
+    const int inliers = cv::countNonZero(mask);
+    cv::recoverPose(essential, a, b, one, rotation, translation, mask);
+    return {poseError(rotation, translation, pair), inliers};
+}
+
+}  // namespace iib_tools

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "common/views.hpp"
+#include "detectors.hpp"
+
+namespace iib_tools {
+
+//! Matches' points, pixels.
+struct Points
+{
+    std::vector<cv::Point2d> reference, target;
+};
+
+//! What an estimate from matches errs, infinite where there is none, and how many of them agree with it.
+struct Outcome
+{
+    double error;
+    int inliers;
+};
+
+//! Nearest neighbours under a ratio of .9 of bits, .8 of numbers; and those of them that are mutual.
+std::vector<cv::DMatch> ratioMatches(const Described& reference, const Described& target);
+std::vector<cv::DMatch> inBoth(const std::vector<cv::DMatch>& a, const std::vector<cv::DMatch>& b);
+
+Points pointsOf(const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target);
+//! The same with the target's points refined.
+Points refined(const cv::Mat& referenceImage, const cv::Mat& targetImage,
+        const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target);
+
+Outcome byFindRelativePose(const Points& points, const ViewPair& pair);
+Outcome byMagsac(const Points& points, const ViewPair& pair, double threshold);
+
+}  // namespace iib_tools
