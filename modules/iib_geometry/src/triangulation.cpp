@@ -169,7 +169,7 @@ void triangulate(Map& map, const std::vector<Ray>& rays, const std::vector<Link>
     {
         const auto known =
                 std::find_if(track.begin(), track.end(), [](const Ray& r) { return r.point >= 0; });
-        const int number = known == track.end() ? int(map.points.size()) : known->point;
+        const size_t number = known == track.end() ? map.points.size() : size_t(known->point);
         if (std::all_of(track.begin(), track.end(), [](const Ray& r) { return r.point >= 0; }))
             continue;  // nothing new
         for (const Ray& ray : track)
@@ -177,11 +177,10 @@ void triangulate(Map& map, const std::vector<Ray>& rays, const std::vector<Link>
         cv::Point3d point;
         if (!place(track, point))
             continue;
-        if (known == track.end())
-            map.points.push_back(point);
-        map.points[size_t(number)] = point;
+        map.points.resize(std::max(map.points.size(), number + 1));
+        map.points[number] = point;
         for (const Ray& ray : track)
-            map.images[ray.image].sees[size_t(ray.keypoint)] = number;
+            map.images[ray.image].sees[size_t(ray.keypoint)] = int(number);
     }
 }
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "colmap_model.hpp"
+#include "triangulation.hpp"
 #include "wall.hpp"
 
 #ifndef _WIN32
@@ -135,6 +136,30 @@ TEST_F(Mapping, images_that_share_no_points_are_paired_with_the_nearest)
     }
     write(files);
     EXPECT_EQ("", messageOf([&] { Localizer(folder.path("sparse 0"), images()); }));
+}
+
+TEST(Triangulation, a_ray_that_contradicts_the_others_is_left_out)
+{
+    Map map;
+    const cv::Point3d truth(.2, -.1, 5);
+    std::vector<Ray> rays;
+    for (int i = 0; i < 3; i++)
+    {
+        MapImage image;
+        image.camera = CAMERA;
+        image.cameraFromWorld = inverse(poseAt(i - 1., 0, 0));
+        image.pixels = CAMERA.project({image.cameraFromWorld * truth});
+        image.pixels[0].y += i == 2 ? 30 : 0;
+        image.sees = {-1};
+        map.images.push_back(image);
+        rays.push_back(raysOf(size_t(i), image)[0]);
+    }
+    triangulate(map, rays, {{1, 0, 1}, {2, 0, 2}});
+    ASSERT_EQ(1u, map.points.size());
+    EXPECT_LT(cv::norm(map.points[0] - truth), 1e-6);
+    EXPECT_EQ(0, map.images[0].sees[0]);
+    EXPECT_EQ(0, map.images[1].sees[0]);
+    EXPECT_EQ(-1, map.images[2].sees[0]);
 }
 
 TEST_F(Mapping, models_as_text)
