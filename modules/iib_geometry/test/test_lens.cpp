@@ -98,6 +98,9 @@ TEST(Lens, cameras_that_are_none)
                 error((std::string("PINHOLE,640,480,") + focal + ",320,240").c_str()));
     EXPECT_EQ("a camera's parameters must be finite, and its centre not a thousand widths away",
             error("PINHOLE,640,480,500,500,1e30,240"));
+    EXPECT_EQ("a camera's size and focal length must be positive", messageOf([] {
+        Lens({"PINHOLE", {0, 480}, {500, 500, 320, 240}});
+    }));
     EXPECT_EQ(0u, error("EQUIRECTANGULAR,640,480,1,1")
                           .find("camera model EQUIRECTANGULAR is not one of SIMPLE_PINHOLE, PINHOLE"));
 }

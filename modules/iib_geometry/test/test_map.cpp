@@ -6,6 +6,7 @@
 
 #include "colmap_model.hpp"
 #include "wall.hpp"
+#include "../../iib/src/common/checked_file.hpp"
 
 namespace opencv_test {
 namespace {
@@ -124,6 +125,16 @@ TEST_F(SmallMap, what_contradicts_itself_though_its_sum_is_right)
     EXPECT_EQ("an image has no camera or no pose",
             errorOf([](Map& m) { m.images[2].cameraFromWorld.matrix(0, 0) = 2; }));
     EXPECT_EQ("it has a number that is none", errorOf([](Map& m) { m.points[1].x = std::nan(""); }));
+
+    write(smallMap());
+    std::string bytes = textOf(name + "/map.iib");
+    bytes[bytes.find(smallMap().images[0].name) + smallMap().images[0].name.size()] = 7;  // its camera
+    cv::iib::Fnv1a hash;
+    hash.add(bytes.data(), bytes.size() - 8);
+    for (size_t i = 0; i < 8; i++)
+        bytes[bytes.size() - 8 + i] = char(hash.value() >> 8 * i);
+    folder.write("map/map.iib", bytes);
+    EXPECT_NE(std::string::npos, error().find("an image has no camera or no pose")) << error();
 }
 
 TEST_F(SmallMap, folders_that_are_no_maps)

@@ -218,6 +218,11 @@ TEST_F(Mapping, a_damaged_model)
         files[name][size_t(place)] = value;
         EXPECT_EQ(0u, error(files).find(begin)) << name << ", byte " << place;
     }
+    Files twice = whole;
+    std::string& images = twice["images.bin"];
+    images[images.find("side/1.png") + 5] = '0';  // as another image is called
+    EXPECT_EQ(begin + "images.bin is missing or damaged", error(twice));
+    write(whole);
     folder.makeFolder("above");
     std::filesystem::rename(folder.path("sparse 0"), folder.path("above/0"));
     EXPECT_EQ(folder.path("above") +

@@ -303,7 +303,8 @@ void CheckedWriter::commit() { file->commit(); }
 CheckedReader::CheckedReader(const String& filename, const FileKind& kind)
     : name(checkedName(filename)), kindName(kind.name), whole(0), rest(0), format(0)
 {
-    if (!openToRead(*stream.rdbuf(), name))
+    // A pipe would not open before somebody writes to it.
+    if (!presentAt(name).file || !openToRead(*stream.rdbuf(), name))
         CV_Error(Error::StsError, "Cannot read " + name);
     stream.seekg(0, std::ios::end);
     const std::streamoff end = stream.tellg();

@@ -172,6 +172,19 @@ TEST(IIB_IndexFile, devices_links_and_rights_stay_what_they_are)
             Error::StsError, "a folder, a device or a pipe", [&] { matcherOf(2)->saveIndex(folder.name); });
 }
 
+#ifdef __linux__
+TEST(IIB_IndexFile, pipes_and_folders_are_no_files)
+{
+    const TemporaryFolder folder;
+    const String pipe = folder.name + "/pipe";
+    ASSERT_EQ(0, mkfifo(pipe.c_str(), 0600));
+    alarm(60);  // to wait for a writer would be for ever
+    for (const String& name : {pipe, folder.name})
+        expectError(Error::StsError, "Cannot read " + name, [&] { HierarchicalMatcher::loadIndex(name); });
+    alarm(0);
+}
+#endif
+
 // A C string ends at its first zero: another file would be opened.
 TEST(IIB_IndexFile, names_are_bytes_without_a_zero)
 {

@@ -135,8 +135,7 @@ public:
     @param channels a sum of #Channel values; may be 0 if there are extra channels.
     @param mapping one of #Mapping.
     @param overlap slide the 2x2 window of cells by one cell instead of two: (2^g - 1)^2 quads a level.
-    @param useOrientation rotate ROS and gradients by KeyPoint::angle (degrees, clockwise in the image;
-    -1 means upright), see setUseOrientation.
+    @param useOrientation whether setOrientation(#ORIENTATION_KEYPOINT) is called at once.
     @param extraChannels number of maps of the image's size that computeWithChannels is given, 0 to 16.
     @throws cv::Exception (StsBadArg or StsOutOfRange) for a value outside these ranges.
      */
@@ -164,7 +163,7 @@ public:
 
     The selections were learned by tools/training on images of still cameras, those of PRESET_BALANCED, PRESET_VIEWPOINT,
     PRESET_UNIVERSAL and PRESET_SMALL on warped ones; the last two also on rendered walks, and half of their points are those
-    that HessianDetector finds in each image. No image of the figures above was among them.
+    that HessianDetector finds in each image. No image of the guide's figures was among them.
     The ROS of some is wider than `scaleFactor` says (see #Preset); getScaleFactor tells it.
 
     @param preset one of #Preset.
@@ -252,7 +251,7 @@ public:
     CV_WRAP virtual void setOverlap(bool overlap) = 0;
     CV_WRAP virtual bool getOverlap() const = 0;
 
-    //! true: #ORIENTATION_KEYPOINT, false: #ORIENTATION_NONE.
+    //! setOrientation of #ORIENTATION_KEYPOINT (true) or #ORIENTATION_NONE, for programs from before there was a third one.
     CV_WRAP virtual void setUseOrientation(bool useOrientation) = 0;
     //! Whether there is any orientation but #ORIENTATION_NONE.
     CV_WRAP virtual bool getUseOrientation() const = 0;
