@@ -11,51 +11,30 @@ namespace {
 
 const double SIGMA = 8;            //!< of the weights, in units of the patch
 const double UNITS_OF_PLACE = 16;  //!< of PatchWeights::x and y
-const int COARSE_ROW_STEP = 2;
-const int COARSE_STEPS = 6, MOST_STEPS = 12;  //!< all, and those that may look at some rows alone
+const double REACH = PATCH - 1;    //!< from the centre to the outermost samples
+const int MOST_STEPS = 10;
+const double LAST_STEP = .03;  //!< in units: the last step is not longer
 const double DEFORMATION_MARGIN =
         4;  //!< pixels that a patch may reach farther than where it starts, besides its move
-const double LAST_COARSE_STEP = .2,
-             LAST_STEP = .02;       //!< in units: no step of the same kind follows one that is shorter
 const double LEAST_DEVIATION = .5;  //!< normalized grey levels: without contrast there is nothing to match
 const double LEAST_SIMILARITY = .5;
 const double DAMPING_OF_PLACE = 1e-5, DAMPING_OF_MAP = 2e-2;
-/* Samples that count like one that is independent of all others, from their weights and from the smoothing: what makes
- covariances agree with true errors (test_refinement_accuracy.cpp). */
-const double SAMPLES_OF_INDEPENDENT = 5;
-const double LARGEST_SUM = 1 << 17;  //!< of the absolute weights of a sum, so that it fits 32 bits
-
-const double SUM_OF_WEIGHTS = 90000, SUM_OF_ROOTS = 1 << 14;
+const int LARGEST_RESIDUAL = 2047;  //!< as of the weights of a template, so that sums of squares fit 32 bits
 
 PatchWeights makeWeights()
 {
     PatchWeights w;
-    double total[2] = {0, 0};
-    for (int i = 0; i < PATCH_COLUMNS; i++)
-        w.x[i] = (float)((i - (PATCH_COLUMNS - 1) / 2.) / UNITS_OF_PLACE);
-    for (int i = 0; i < PATCH_ROWS; i++)
-        w.y[i] = (float)((i - (PATCH_ROWS - 1) / 2.) / UNITS_OF_PLACE);
-    const auto gaussian = [](float place) {
-        return std::exp(-.5 * std::pow(place * UNITS_OF_PLACE / SIGMA, 2));
-    };
-    for (float x : w.x)
-        total[0] += gaussian(x);
-    for (float y : w.y)
-        total[1] += gaussian(y);
-    // the last places of exp differ among machines: cut off
-    const auto rounded = [](double value) { return (float)(cvRound(value * (1 << 20)) / double(1 << 20)); };
-    for (int i = 0; i < PATCH_COLUMNS; i++)
-        w.columns[i] = rounded(gaussian(w.x[i]) / total[0]);
-    for (int i = 0; i < PATCH_ROWS; i++)
-        w.rows[i] = rounded(gaussian(w.y[i]) / total[1]);
-    for (int r = 0; r < PATCH_ROWS; r++)
-        for (int c = 0; c < PATCH_COLUMNS; c++)
-        {
-            const double weight = (double)w.rows[r] * w.columns[c];
-            w.samples[r * PATCH_COLUMNS + c] = (short)cvRound(weight * SUM_OF_WEIGHTS);
-            w.roots[r * PATCH_COLUMNS + c] =
-                    (short)cvRound(std::sqrt(weight * total[0] * total[1]) * SUM_OF_ROOTS);
-        }
+    const auto fixed = [](double value) { return saturate_cast<short>(cvRound(value * (1 << 15))); };
+    for (int i = 0; i < PATCH_SAMPLES; i++)
+    {
+        const double x = 2 * (i % PATCH) - REACH, y = 2 * (i / PATCH) - REACH;
+        const double gaussian = std::exp((x * x + y * y) / (-2 * SIGMA * SIGMA));
+        w.x[i] = fixed(x / UNITS_OF_PLACE);
+        w.y[i] = fixed(y / UNITS_OF_PLACE);
+        w.gaussian[i] = fixed(gaussian);
+        w.gaussianX[i] = fixed(gaussian * x / UNITS_OF_PLACE);
+        w.gaussianY[i] = fixed(gaussian * y / UNITS_OF_PLACE);
+    }
     return w;
 }
 
@@ -65,32 +44,10 @@ const PatchWeights& patchWeights()
     return weights;
 }
 
-//! The sum of a power of the values in each rowStep-th row.
-double sumOfPowers(const short* values, int power, int rowStep)
-{
-    double sum = 0;
-    for (int i = 0; i < PATCH_SAMPLES; i++)
-        if (i / PATCH_COLUMNS % rowStep == 0)
-            sum += power == 1 ? values[i] : values[i] * values[i];
-    return sum;
-}
-
-//! The sum of all samples' products from those of columns, times a power of x.
-double total(const float* columns, const PatchWeights& weights, int power)
-{
-    double sums[4] = {};
-    for (int c = 0; c < PATCH_COLUMNS; c++)
-    {
-        const double x = weights.x[c];
-        sums[c % 4] += (double)columns[c] * weights.columns[c] * (power == 0 ? 1 : power == 1 ? x : x * x);
-    }
-    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
-}
-
 //! The inverse of a positive definite matrix, by Cholesky's decomposition; false where it is not.
 bool invert(const Matx66d& m, Matx66d& inverse)
 {
-    Matx66d root;  // lower triangle; m = root * root'
+    Matx66d root;  // lower triangle, m = root * root'; the diagonal holds reciprocals
     for (int i = 0; i < 6; i++)
         for (int j = 0; j <= i; j++)
         {
@@ -99,7 +56,7 @@ bool invert(const Matx66d& m, Matx66d& inverse)
                 rest -= root(i, k) * root(j, k);
             if (i == j && !(rest > 0))
                 return false;
-            root(i, j) = i == j ? std::sqrt(rest) : rest / root(j, j);
+            root(i, j) = i == j ? 1 / std::sqrt(rest) : rest * root(j, j);
         }
     for (int column = 0; column < 6; column++)
     {
@@ -107,18 +64,65 @@ bool invert(const Matx66d& m, Matx66d& inverse)
         for (int i = 0; i < 6; i++)
         {
             y[i] = i == column;
-            for (int k = 0; k < i; k++)
+            for (int k = column; k < i; k++)
                 y[i] -= root(i, k) * y[k];
-            y[i] /= root(i, i);
+            y[i] *= root(i, i);
         }
-        for (int i = 5; i >= 0; i--)
+        for (int i = 5; i >= column; i--)
         {
             for (int k = i + 1; k < 6; k++)
                 y[i] -= root(k, i) * inverse(k, column);
-            inverse(i, column) = y[i] / root(i, i);
+            inverse(i, column) = inverse(column, i) = y[i] * root(i, i);
         }
     }
     return true;
+}
+
+//! How far a patch reaches from its centre, in x and in y.
+Vec2d reachOf(const Matx22d& map)
+{
+    return Vec2d(std::abs(map(0, 0)) + std::abs(map(0, 1)), std::abs(map(1, 0)) + std::abs(map(1, 1))) *
+           REACH;
+}
+
+/* The correlation of values with those `distance` farther; the few that are at both ends of two rows count little, as the
+ values have the patch's weights. */
+double autocorrelation(const short* values, int distance)
+{
+    int products = 0, squares = 1;
+    for (int i = 0; i < PATCH_SAMPLES - distance; i++)
+    {
+        products += values[i] * values[i + distance];
+        squares += values[i] * values[i];
+    }
+    return (double)products / squares;
+}
+
+/* How much larger the variance of a sum of residuals times derivatives is than if they were independent, if the
+ correlations of both fall by the same factor from sample to sample along rows and columns (Bartlett 1946). */
+double inflation(const short* residuals, const short* derivatives)
+{
+    double product = 1;
+    for (int distance : {1, PATCH})
+    {
+        const double r = autocorrelation(residuals, distance) * autocorrelation(derivatives, distance);
+        product *= (1 + r) / (1 - r);
+    }
+    return product;
+}
+
+//! Grey level between pixels of an image whose border is repeated.
+uchar pixelAt(const Mat& image, const Vec2d& place)
+{
+    const double x = std::min(std::max(place[0], 0.), image.cols - 1.);
+    const double y = std::min(std::max(place[1], 0.), image.rows - 1.);
+    const int left = (int)x, above = (int)y;
+    const uchar* const upper = image.ptr(above);
+    const uchar* const lower = image.ptr(std::min(above + 1, image.rows - 1));
+    const int right = std::min(left + 1, image.cols - 1);
+    const double a = upper[left] + (upper[right] - upper[left]) * (x - left);
+    const double b = lower[left] + (lower[right] - lower[left]) * (x - left);
+    return (uchar)cvRound(a + (b - a) * (y - above));
 }
 
 }  // namespace
@@ -129,11 +133,12 @@ Mat smoothedForAlignment(const Mat& normalized)
     parallel_for_(
             Range(0, result.rows),
             [&](const Range& range) {
+                AlignedBuffer<ushort> sums(result.cols + 2);
                 for (int y = range.start; y < range.end; y++)
                 {
                     const uchar* const rows[] = {normalized.ptr(std::max(y - 1, 0)), normalized.ptr(y),
                             normalized.ptr(std::min(y + 1, result.rows - 1))};
-                    refinementKernels().smooth(rows, result.ptr(y), result.cols);
+                    refinementKernels().smooth(rows, sums.data(), result.ptr(y), result.cols);
                 }
             },
             result.rows / 64.);
@@ -142,37 +147,45 @@ Mat smoothedForAlignment(const Mat& normalized)
 
 PatchAligner::PatchAligner()
     : kernels(refinementKernels()), weights(patchWeights()), window(WINDOW * WINDOW + WINDOW_PADDING),
-      samples(PATCH_SAMPLES), derivativesX(PATCH_SAMPLES), derivativesY(PATCH_SAMPLES),
-      weightsOfSums(PATCH_SAMPLES * (SUMS - SUM_TEMPLATE))
+      samples(PATCH_SAMPLES), ones(PATCH_SAMPLES)
 {
-    std::fill_n(weightsOfSums.data(), PATCH_SAMPLES * (SUMS - SUM_TEMPLATE), (short)0);
-    weightsOf[SUM_SAMPLES] = weights.samples;
-    for (int k = 0; k < SUMS - SUM_TEMPLATE; k++)
-        weightsOf[SUM_TEMPLATE + k] = templateWeights[k] = weightsOfSums.data() + k * PATCH_SAMPLES;
-    for (Level* level : {&coarse, &fine})
+    std::fill_n(ones.data(), PATCH_SAMPLES, (short)1);
+    double total = 0, squares = 0;
+    for (double weight : weights.gaussian)
     {
-        level->rowStep = level == &coarse ? COARSE_ROW_STEP : 1;
-        level->totals[SUM_SAMPLES] = sumOfPowers(weights.samples, 1, level->rowStep);
-        level->squaresOfRoots = sumOfPowers(weights.roots, 2, level->rowStep) / 65536 / 65536;
+        total += weight;
+        squares += weight * weight;
     }
+    independentSamples = total * total / squares;
 }
 
-//! How far a patch reaches from its centre, in x and in y.
-static Point2d reachOf(const Matx22d& map)
+//! Reads the patch around a point; units from its centre to the point, as pixels that need no interpolation are taken.
+Vec2d PatchAligner::readTemplate(const Mat& image, const Vec2d& point, double unit)
 {
-    const double halfColumns = (PATCH_COLUMNS - 1) / 2., halfRows = (PATCH_ROWS - 1) / 2.;
-    return Point2d(std::abs(map(0, 0)) * halfColumns + std::abs(map(0, 1)) * halfRows,
-            std::abs(map(1, 0)) * halfColumns + std::abs(map(1, 1)) * halfRows);
+    uchar values[TEMPLATE * TEMPLATE];
+    const Point nearest(cvRound(point[0]), cvRound(point[1])), corner = nearest - Point(PATCH, PATCH);
+    const bool whole =
+            unit == 1 && (Rect(corner, Size(TEMPLATE, TEMPLATE)) & Rect(Point(), image.size())).area() ==
+                                 TEMPLATE * TEMPLATE;
+    const Vec2d centre = unit == 1 ? Vec2d(nearest.x, nearest.y) : point;
+    for (int y = 0; y < TEMPLATE; y++)
+        if (whole)
+            std::copy_n(image.ptr(corner.y + y) + corner.x, TEMPLATE, values + y * TEMPLATE);
+        else
+            for (int x = 0; x < TEMPLATE; x++)
+                values[y * TEMPLATE + x] = pixelAt(image, centre + Vec2d(x - PATCH, y - PATCH) * unit);
+    kernels.makeTemplate(values, weights, patch);
+    return (point - centre) / unit;
 }
 
 //! The surroundings of a place, beyond the image those of its border.
 void PatchAligner::readWindow(const Mat& image, const PatchPlace& place, double margin)
 {
-    const Point2d reach = reachOf(place.map);
-    const int halfWidth = cvCeil(std::min(reach.x + margin, WINDOW / 2 - 1.)) + 1;
-    const int halfHeight = cvCeil(std::min(reach.y + margin, WINDOW / 2 - 1.)) + 1;
-    pixels = Rect(cvFloor(place.x) + 1 - halfWidth, cvFloor(place.y) + 1 - halfHeight, 2 * halfWidth,
-            2 * halfHeight);
+    const Vec2d reach = reachOf(place.map);
+    const int halfWidth = cvCeil(std::min(reach[0] + margin, WINDOW / 2 - 1.)) + 1;
+    const int halfHeight = cvCeil(std::min(reach[1] + margin, WINDOW / 2 - 1.)) + 1;
+    pixels = Rect(cvFloor(place.centre[0]) + 1 - halfWidth, cvFloor(place.centre[1]) + 1 - halfHeight,
+            2 * halfWidth, 2 * halfHeight);
     const bool inside = pixels.x >= 0 && pixels.x + pixels.width + WINDOW_PADDING <= image.cols;
     uchar border[2][WINDOW + WINDOW_PADDING];
     const uchar* rows[2];
@@ -192,184 +205,160 @@ void PatchAligner::readWindow(const Mat& image, const PatchPlace& place, double 
 }
 
 //! False if a sample would be outside the window.
-bool PatchAligner::sampleAt(const PatchPlace& place, const Level& level)
+bool PatchAligner::sampleAt(const PatchPlace& place)
 {
-    const double halfColumns = (PATCH_COLUMNS - 1) / 2., halfRows = (PATCH_ROWS - 1) / 2.;
-    const Matx22d& m = place.map;
-    const double x = place.x - pixels.x, y = place.y - pixels.y;
-    const Point2d reach = reachOf(m) + Point2d(.01, .01);  // for roundings of positions
-    if (!(x - reach.x >= 0 && x + reach.x < pixels.width && y - reach.y >= 0 && y + reach.y < pixels.height))
+    const Vec2d centre = place.centre - Vec2d(pixels.x, pixels.y);
+    const Vec2d reach = reachOf(place.map) + Vec2d(.01, .01);  // for roundings of positions
+    if (!(centre[0] >= reach[0] && centre[0] + reach[0] < pixels.width && centre[1] >= reach[1] &&
+                centre[1] + reach[1] < pixels.height))
         return false;
-    const auto fixed = [](double value) { return cvRound(value * (1 << POSITION_BITS)); };
-    const PatchGrid grid = {Point(fixed(x - m(0, 0) * halfColumns - m(0, 1) * halfRows),
-                                    fixed(y - m(1, 0) * halfColumns - m(1, 1) * halfRows)),
-            Point(fixed(m(0, 0)), fixed(m(1, 0))), Point(fixed(m(0, 1)), fixed(m(1, 1)))};
-    kernels.sample(window.data(), grid, level.rowStep, samples.data());
+    const auto fixed = [](const Vec2d& v) {
+        return Point(cvRound(v[0] * (1 << POSITION_BITS)), cvRound(v[1] * (1 << POSITION_BITS)));
+    };
+    const PatchGrid grid = {fixed(centre - place.map * Vec2d(REACH, REACH)), fixed(place.map * Vec2d(2, 0)),
+            fixed(place.map * Vec2d(0, 2))};
+    kernels.sample(window.data(), grid, samples.data());
     return true;
 }
 
-PatchAligner::Moments PatchAligner::momentsOf(const short* values, const Level& level) const
+PatchAligner::Moments PatchAligner::momentsOf(const short* values) const
 {
     int sums[SUMS];
-    const double squares =
-            kernels.sum(values, weightsOf, weights.roots, level.rowStep, sums) / level.squaresOfRoots;
-    const double mean = sums[SUM_SAMPLES] / level.totals[SUM_SAMPLES];
+    kernels.sum(values, weights, patch, sums);
     Moments moments;
-    moments.sums[SUM_SAMPLES] = mean;
+    const double mean = moments.mean = sums[SUM_SAMPLES] / totals[SUM_SAMPLES];
+    const double squares = sums[SUM_SQUARES] / (totals[SUM_SAMPLES] / (1 << (WEIGHT_BITS + 1)));
     for (int k = SUM_TEMPLATE; k < SUMS; k++)
-        moments.sums[k] = sums[k] - mean * level.totals[k];
+        moments.sums[k] = (sums[k] - mean * totals[k]) / totals[SUM_SAMPLES];
     moments.deviation = std::sqrt(std::max(squares - mean * mean, 0.));
     return moments;
 }
 
 //! The correlation with the template; 0 without contrast.
-double PatchAligner::similarityOf(const Moments& moments, const Level& level) const
+double PatchAligner::similarityOf(const Moments& moments) const
 {
     if (!(moments.deviation >= LEAST_DEVIATION * (1 << SAMPLE_BITS)))
         return 0;
-    return moments.sums[SUM_TEMPLATE] * level.ofTemplate.deviation /
-           (level.ofTemplate.sums[SUM_TEMPLATE] * moments.deviation);
+    return moments.sums[SUM_TEMPLATE] * ofTemplate.deviation /
+           (ofTemplate.sums[SUM_TEMPLATE] * moments.deviation);
 }
 
-//! Of the samples; false where these cannot tell a place.
-bool PatchAligner::makeTemplate()
+//! False where the template cannot tell a place.
+bool PatchAligner::solveTemplate()
 {
-    const Moments moments = momentsOf(samples.data(), fine);
-    const double deviation = moments.deviation;
-    if (!(deviation >= LEAST_DEVIATION * (1 << SAMPLE_BITS)))
+    int sums[SUMS];
+    kernels.sum(ones.data(), weights, patch, sums);
+    std::copy_n(sums, SUMS, totals);
+    ofTemplate = momentsOf(patch.samples);
+    const double variance = ofTemplate.deviation * ofTemplate.deviation;
+    if (!(ofTemplate.deviation >= LEAST_DEVIATION * (1 << SAMPLE_BITS)) ||
+            !(ofTemplate.sums[SUM_TEMPLATE] > 0))
         return false;
-    float columns[COLUMN_SUMS][PATCH_COLUMNS];
-    kernels.derive(samples.data(), derivativesX.data(), derivativesY.data());
-    kernels.sumColumns(derivativesX.data(), derivativesY.data(), weights, columns);
-    // the derivative of each parameter, and what that is multiplied by: x and y of the place, and the linear map's four
-    static const struct
-    {
-        int derivative, x, y;
-    } parameters[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {1, 0, 1}};
-    static const int products[] = {COLUMN_XX, COLUMN_XY, COLUMN_YY};
-    double means[6];
-    float scales[SUMS - SUM_TEMPLATE] = {(float)(LARGEST_SUM / deviation)};
+    int products[PARAMETERS][PARAMETERS];
+    kernels.sumProducts(patch, products);
+    const double total = totals[SUM_SAMPLES], scale = 1 << (WEIGHT_BITS + 1);
+    const double *means = totals + SUM_DERIVATIVES, *contrast = ofTemplate.sums + SUM_DERIVATIVES;
     Matx66d normal;
-    for (int i = 0; i < 6; i++)
-    {
-        const auto& a = parameters[i];
-        means[i] = total(columns[(a.derivative ? COLUMN_Y : COLUMN_X) + a.y], weights, a.x);
+    for (int i = 0; i < PARAMETERS; i++)
         for (int j = 0; j <= i; j++)
         {
-            const auto& b = parameters[j];
-            normal(i, j) =
-                    total(columns[products[a.derivative + b.derivative] + a.y + b.y], weights, a.x + b.x);
-        }
-        if (!(normal(i, i) > 0))
-            return false;
-        scales[1 + i] = (float)(LARGEST_SUM / std::sqrt(normal(i, i)));
-        factors[i] = scales[1 + i] * 2 * deviation;
-    }
-    kernels.weigh(samples.data(), derivativesX.data(), derivativesY.data(), weights,
-            (float)moments.sums[SUM_SAMPLES], scales, templateWeights);
-    for (Level* level : {&coarse, &fine})
-    {
-        // up to roundings, which count only as far as the patches' means differ, and these are small
-        level->totals[SUM_TEMPLATE] = 0;
-        for (int i = 0; i < 6; i++)
-            level->totals[SUM_DERIVATIVES + i] = means[i] * scales[1 + i] / level->rowStep;
-        level->ofTemplate = momentsOf(samples.data(), *level);
-    }
-    for (int i = 0; i < 6; i++)
-    {
-        // what a change of contrast explains, which is solved for as well
-        const double* contrast = fine.ofTemplate.sums + SUM_DERIVATIVES;
-        for (int j = 0; j <= i; j++)
-        {
-            normal(i, j) = (normal(i, j) - means[i] * means[j]) / (4 * deviation * deviation) -
-                           contrast[i] * contrast[j] / (factors[i] * factors[j] * deviation * deviation);
+            // less what changes of brightness and of contrast explain, which are solved for as well
+            const double square = products[i][j] * (j < 2 ? 1. : 2.) * scale / total;
+            const double mean = means[i] * means[j] * scale * scale / total / total;
+            normal(i, j) = (square - mean - contrast[i] * contrast[j] * scale * scale / variance) / variance;
             normal(j, i) = normal(i, j);
+            if (i == j)
+                normal(i, i) += i < 2 ? DAMPING_OF_PLACE : DAMPING_OF_MAP;
         }
-        normal(i, i) += i < 2 ? DAMPING_OF_PLACE : DAMPING_OF_MAP;
-    }
     return invert(normal, inverse);
 }
 
-//! A step of Gauss and Newton, @cite BakerMatthews2004 Eq. (35); false where the map degenerates.
-bool PatchAligner::move(PatchPlace& place, const Moments& moments, const Level& level, double& distance) const
+//! A step of Gauss and Newton: changes of the six parameters of the patch.
+Vec6d PatchAligner::step(const Moments& moments) const
 {
-    const double contrast = moments.deviation / level.ofTemplate.deviation;
-    const double similarity = similarityOf(moments, level);
-    const double scale = level.totals[SUM_SAMPLES] / fine.totals[SUM_SAMPLES] * level.ofTemplate.deviation;
+    const double similarity = similarityOf(moments), scale = 1 << (WEIGHT_BITS + 1);
     Vec6d gradient;
-    for (int i = 0; i < 6; i++)
-        gradient[i] = (moments.sums[SUM_DERIVATIVES + i] / contrast -
-                              similarity * level.ofTemplate.sums[SUM_DERIVATIVES + i]) /
-                      (factors[i] * scale);
-    const Vec6d d = inverse * gradient;
-    const Matx22d change(1 + d[2] / UNITS_OF_PLACE, d[3] / UNITS_OF_PLACE, d[4] / UNITS_OF_PLACE,
-            1 + d[5] / UNITS_OF_PLACE);
-    const double determinant = change(0, 0) * change(1, 1) - change(0, 1) * change(1, 0);
-    if (!(std::abs(determinant) > 1e-3))
-        return false;
-    const Matx22d back(change(1, 1) / determinant, -change(0, 1) / determinant, -change(1, 0) / determinant,
-            change(0, 0) / determinant);
-    place.map = place.map * back;
-    const Vec2d step = place.map * Vec2d(d[0], d[1]);
-    place.x -= step[0];
-    place.y -= step[1];
-    distance = std::sqrt(d[0] * d[0] + d[1] * d[1]);
-    return true;
+    for (int i = 0; i < PARAMETERS; i++)
+        gradient[i] = (moments.sums[SUM_DERIVATIVES + i] / moments.deviation -
+                              similarity * ofTemplate.sums[SUM_DERIVATIVES + i] / ofTemplate.deviation) *
+                      scale / ofTemplate.deviation;
+    return inverse * gradient;
 }
 
-PatchAlignment PatchAligner::align(const Mat& image1, const PatchPlace& place1, const Mat& image2,
+//! Of the point that is `beside` the patch's centre, in its units, from what remains of the samples that were taken last.
+Matx22d PatchAligner::covariance(const Moments& moments, const Vec2d& beside) const
+{
+    const double similarity = similarityOf(moments);
+    const double gain = similarity * moments.deviation / ofTemplate.deviation;
+    short residuals[PATCH_SAMPLES];
+    for (int i = 0; i < PATCH_SAMPLES; i++)
+    {
+        const double explained = moments.mean + gain * (patch.samples[i] - ofTemplate.mean);
+        const int residual = cvRound((samples.data()[i] - explained) * weights.gaussian[i] / (1 << 16));
+        residuals[i] = (short)std::min(std::max(residual, -LARGEST_RESIDUAL), LARGEST_RESIDUAL);
+    }
+    const double x = beside[0] / UNITS_OF_PLACE, y = beside[1] / UNITS_OF_PLACE;
+    const Matx<double, 2, 6> ofPoint(1, 0, x, y, 0, 0, 0, 1, 0, 0, x, y);
+    const double variance = std::max(1 / (similarity * similarity) - 1, 0.) / independentSamples;
+    const Matx22d scale(std::sqrt(inflation(residuals, patch.weights[1])), 0, 0,
+            std::sqrt(inflation(residuals, patch.weights[2])));
+    return scale * (ofPoint * inverse * ofPoint.t() * variance) * scale;
+}
+
+PatchAlignment PatchAligner::align(const Mat& image1, const Vec2d& point, double unit, const Mat& image2,
         const std::vector<PatchPlace>& starts, double limit)
 {
-    PatchPlace place = starts[0];
-    const Point2d detected(place.x, place.y);
-    const PatchAlignment refused = {false, place.x, place.y, -1, {1, 0, 1}};
-    readWindow(image1, place1, 1);
-    if (!sampleAt(place1, fine) || !makeTemplate())
+    const Vec2d detected = starts[0].centre;
+    const PatchAlignment refused = {false, detected, -1, Matx22d::eye()};
+    const Vec2d beside = readTemplate(image1, point, unit);
+    if (!solveTemplate())
         return refused;
     const auto smaller = [](const PatchPlace& a, const PatchPlace& b) {
-        return reachOf(a.map).x < reachOf(b.map).x;
+        return reachOf(a.map)[0] < reachOf(b.map)[0];
     };
     readWindow(image2, *std::max_element(starts.begin(), starts.end(), smaller), limit + DEFORMATION_MARGIN);
     double first = -2;
+    PatchPlace place = starts[0];
+    Moments moments = Moments();
     for (const PatchPlace& start : starts)
     {
-        if (!sampleAt(start, coarse))
+        const PatchPlace tried = {start.centre - start.map * beside, start.map};
+        if (!sampleAt(tried))
             continue;
-        const double similarity = similarityOf(momentsOf(samples.data(), coarse), coarse);
-        if (similarity > first)
+        const Moments found = momentsOf(samples.data());
+        if (similarityOf(found) > first)
         {
-            first = similarity;
-            place = start;
+            first = similarityOf(found);
+            place = tried;
+            moments = found;
         }
     }
-    double similarity = 0;
-    for (int step = 0; step < MOST_STEPS; step++)
+    double similarity = first;
+    for (int i = 0; i < MOST_STEPS; i++)
     {
-        Level& level = step < COARSE_STEPS ? coarse : fine;
-        if (!sampleAt(place, level))
+        if (!(similarity > 0))
             return refused;
-        const Moments moments = momentsOf(samples.data(), level);
-        similarity = similarityOf(moments, level);
-        double distance;
-        if (!(similarity > 0) || !move(place, moments, level, distance))
+        // @cite BakerMatthews2004 Eq. (35)
+        const Vec6d d = step(moments);
+        const Matx22d change(1 + d[2] / UNITS_OF_PLACE, d[3] / UNITS_OF_PLACE, d[4] / UNITS_OF_PLACE,
+                1 + d[5] / UNITS_OF_PLACE);
+        const double determinant = change(0, 0) * change(1, 1) - change(0, 1) * change(1, 0);
+        if (!(std::abs(determinant) > 1e-3))
             return refused;
-        if (distance < (step < COARSE_STEPS ? LAST_COARSE_STEP : LAST_STEP))
-        {
-            if (step >= COARSE_STEPS)
-                break;
-            step = COARSE_STEPS - 1;
-        }
+        place.map = place.map * Matx22d(change(1, 1), -change(0, 1), -change(1, 0), change(0, 0)) *
+                    (1 / determinant);
+        place.centre -= place.map * Vec2d(d[0], d[1]);
+        if (d[0] * d[0] + d[1] * d[1] < LAST_STEP * LAST_STEP)
+            break;
+        if (!sampleAt(place))
+            return refused;
+        moments = momentsOf(samples.data());
+        similarity = similarityOf(moments);
     }
-    const Point2d moved = Point2d(place.x, place.y) - detected;
+    const Vec2d found = place.centre + place.map * beside, moved = found - detected;
     if (!(moved.dot(moved) < limit * limit) || !(similarity > first) || !(similarity > LEAST_SIMILARITY))
         return refused;
-    static const double independent = std::pow(fine.totals[SUM_SAMPLES], 2) /
-                                      sumOfPowers(weights.samples, 2, 1) / SAMPLES_OF_INDEPENDENT;
-    const double variance = std::max(1 / (similarity * similarity) - 1, 0.) / independent;
-    const Matx22d ofPlace(inverse(0, 0), inverse(0, 1), inverse(1, 0), inverse(1, 1));
-    const Matx22d covariance = place.map * ofPlace * place.map.t() * variance;
-    return {true, place.x, place.y, std::min(similarity, 1.),
-            {covariance(0, 0), covariance(0, 1), covariance(1, 1)}};
+    return {true, found, std::min(similarity, 1.), place.map * covariance(moments, beside) * place.map.t()};
 }
 
 }  // namespace iib

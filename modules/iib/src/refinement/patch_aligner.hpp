@@ -13,17 +13,20 @@ namespace iib {
 //! A patch on an image: its centre, and the linear map from the patch's units to pixels.
 struct PatchPlace
 {
-    double x, y;
+    Vec2d centre;
     Matx22d map;
 };
 
 struct PatchAlignment
 {
     bool accepted;
-    double x, y;           //!< of the patch's centre in the second image, pixels
-    double similarity;     //!< correlation of the two patches
-    double covariance[3];  //!< xx, xy, yy of x and y
+    Vec2d point;        //!< in the second image, pixels
+    double similarity;  //!< correlation of the two patches
+    Matx22d covariance;
 };
+
+//! Smooths a normalized image for it.
+Mat smoothedForAlignment(const Mat& normalized);
 
 //! Least-squares matching of patches, one after the other: what a thread needs for that.
 class PatchAligner
@@ -31,49 +34,41 @@ class PatchAligner
 public:
     PatchAligner();
 
-    /** Finds where the patch of the first image is in the second one. Both images are normalized and smoothed, CV_8U.
-     @param starts places in the second image; the one that agrees best is taken.
-     @param limit pixels that it may move in the second image. */
-    PatchAlignment align(const Mat& image1, const PatchPlace& place1, const Mat& image2,
+    /** Finds where the surroundings of a point of the first image are in the second one. Both images are normalized and
+     smoothed, CV_8U.
+     @param unit of the patch, in pixels of the first image, up to 1.
+     @param starts places of the point in the second image; the one that agrees best is taken.
+     @param limit pixels that the point may move in the second image. */
+    PatchAlignment align(const Mat& image1, const Vec2d& point, double unit, const Mat& image2,
             const std::vector<PatchPlace>& starts, double limit);
 
 private:
     struct Moments
     {
-        double sums[SUMS];  //!< of the samples less their mean, times weights
-        double deviation;
+        double sums[SUMS];       //!< of the samples less their mean, times weights, from SUM_TEMPLATE on
+        double mean, deviation;  //!< of the samples
     };
 
-    //! The first steps look at every second row alone.
-    struct Level
-    {
-        int rowStep;
-        double totals[SUMS];  //!< of the weights
-        double squaresOfRoots;
-        Moments ofTemplate;
-    };
-
+    Vec2d readTemplate(const Mat& image, const Vec2d& point, double unit);
     void readWindow(const Mat& image, const PatchPlace& place, double margin);
-    bool sampleAt(const PatchPlace& place, const Level& level);
-    Moments momentsOf(const short* values, const Level& level) const;
-    double similarityOf(const Moments& moments, const Level& level) const;
-    bool makeTemplate();
-    bool move(PatchPlace& place, const Moments& moments, const Level& level, double& distance) const;
+    bool sampleAt(const PatchPlace& place);
+    Moments momentsOf(const short* values) const;
+    double similarityOf(const Moments& moments) const;
+    bool solveTemplate();
+    Vec6d step(const Moments& moments) const;
+    Matx22d covariance(const Moments& moments, const Vec2d& beside) const;
 
     const RefinementKernels& kernels;
     const PatchWeights& weights;
-    Rect pixels;  //!< of the image that the window holds
+    PatchTemplate patch;
+    Moments ofTemplate;
+    double totals[SUMS];        //!< of the weights
+    double independentSamples;  //!< as many as the weighted ones are worth
+    Matx66d inverse;            //!< of the normal matrix
+    Rect pixels;                //!< of the image that the window holds
     AlignedBuffer<int> window;
-    AlignedBuffer<short> samples, derivativesX, derivativesY, weightsOfSums;
-    const short* weightsOf[SUMS];
-    short* templateWeights[SUMS - SUM_TEMPLATE];
-    Level coarse, fine;
-    double factors[6];  //!< that weights of derivatives hold
-    Matx66d inverse;    //!< of the normal matrix
+    AlignedBuffer<short> samples, ones;
 };
-
-//! Smooths a normalized image for it.
-Mat smoothedForAlignment(const Mat& normalized);
 
 }  // namespace iib
 }  // namespace cv

@@ -44,29 +44,28 @@ bool isInside(const KeyPoint& keypoint, const Mat& image)
     return p.x >= 0 && p.y >= 0 && p.x <= image.cols - 1 && p.y <= image.rows - 1;
 }
 
-//! Places to align, the second one with all starts that are tried.
+//! Where to begin.
 struct Start
 {
-    PatchPlace first;
-    std::vector<PatchPlace> second;
-    double limit;
+    double unit, limit;
+    std::vector<PatchPlace> places;  //!< in the second image: all that are tried
 
     /* Sizes of keypoints err by more than a tenth, so that patches may also be of the same size. Neighbouring samples are
      farther apart than a pixel only if that is by little, in the second image of a pair of about the same size. */
     Start(const KeyPoint& a, const KeyPoint& b)
     {
-        const double ratio = (double)b.size / a.size, spacing = std::min(1., LARGEST_SPACING / ratio);
+        const double ratio = (double)b.size / a.size;
         const bool rotated = a.angle >= 0 && b.angle >= 0;
         const Rotation rotation(rotated ? b.angle - a.angle : 0);
-        first = {a.pt.x, a.pt.y, Matx22d(spacing, 0, 0, spacing)};
+        unit = std::min(1., LARGEST_SPACING / ratio);
+        limit = LARGEST_MOVE * std::max(ratio, 1.);
         for (double scale : {ratio, 1.})
         {
-            if (!second.empty() && std::max(ratio, 1 / ratio) < SAME_SIZE)
+            if (!places.empty() && std::max(ratio, 1 / ratio) < SAME_SIZE)
                 break;
-            const double c = scale * spacing * rotation.cosine, s = scale * spacing * rotation.sine;
-            second.push_back({b.pt.x, b.pt.y, Matx22d(c, -s, s, c)});
+            const double c = scale * unit * rotation.cosine, s = scale * unit * rotation.sine;
+            places.push_back({Vec2d(b.pt.x, b.pt.y), Matx22d(c, -s, s, c)});
         }
-        limit = LARGEST_MOVE * std::max(ratio, 1.);
     }
 };
 
@@ -96,18 +95,18 @@ void refineMatches(InputArray image1, const std::vector<KeyPoint>& keypoints1, I
                     {
                         const KeyPoint& a = keypoints1[matches1to2[i].queryIdx];
                         const KeyPoint& b = keypoints2[matches1to2[i].trainIdx];
-                        PatchAlignment found = {false, b.pt.x, b.pt.y, -1, {1, 0, 1}};
+                        PatchAlignment found = {false, Vec2d(b.pt.x, b.pt.y), -1, Matx22d::eye()};
                         if (isInside(a, prepared1) && isInside(b, prepared2))
                         {
                             const Start start(a, b);
-                            found = aligner.align(
-                                    prepared1, start.first, prepared2, start.second, start.limit);
+                            found = aligner.align(prepared1, Vec2d(a.pt.x, a.pt.y), start.unit, prepared2,
+                                    start.places, start.limit);
                         }
                         first.at<Point2f>(i) = a.pt;
-                        second.at<Point2f>(i) = Point2f((float)found.x, (float)found.y);
+                        second.at<Vec2f>(i) = found.point;
                         similarity.at<float>(i) = (float)found.similarity;
-                        for (int k = 0; k < 3; k++)
-                            covariance.at<float>(i, k) = (float)found.covariance[k];
+                        const Matx22d& c = found.covariance;
+                        covariance.at<Vec3f>(i) = Vec3d(c(0, 0), c(0, 1), c(1, 1));
                     }
                 },
                 n / MATCHES_OF_A_THREAD);

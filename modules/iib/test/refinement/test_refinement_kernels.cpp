@@ -25,14 +25,10 @@ protected:
     PatchWeights randomWeights()
     {
         PatchWeights w;
-        for (float& value : w.columns)
-            value = (float)integers.below(1000) / 16384;
-        for (float& value : w.rows)
-            value = (float)integers.below(1000) / 16384;
-        for (int i = 0; i < PATCH_COLUMNS; i++)
-            w.x[i] = (float)(i - 15.5) / 16;
-        for (int i = 0; i < PATCH_ROWS; i++)
-            w.y[i] = (float)(i - 13.5) / 16;
+        for (short* values : {w.gaussian, w.gaussianX, w.gaussianY, w.x, w.y})
+            for (int i = 0; i < PATCH_SAMPLES; i++)
+                values[i] = (short)(values == w.gaussian ? integers.below(32768)
+                                                         : integers.between(-32767, 32768));
         return w;
     }
 
@@ -50,6 +46,7 @@ TEST_F(IIB_RefinementKernels, smooth)
         const int shift = width % SHIFTS;
         const uchar* const rows[] = {&image[shift], &image[200 + shift], &image[400 + shift]};
         std::vector<uchar> actual(width + 1, 77), expected(actual);
+        std::vector<ushort> sums(width + 2);
         for (int x = 0; x < width; x++)
         {
             int sum = 8;
@@ -59,7 +56,7 @@ TEST_F(IIB_RefinementKernels, smooth)
                            rows[dy][std::min(std::max(x + dx, 0), width - 1)];
             expected[x] = (uchar)(sum / 16);
         }
-        kernels.smooth(rows, actual.data(), width);
+        kernels.smooth(rows, sums.data(), actual.data(), width);
         ASSERT_EQ(expected, actual) << width;
     }
 }
@@ -87,13 +84,13 @@ TEST_F(IIB_RefinementKernels, sample)
     for (int trial = 0; trial < 50; trial++)
     {
         const std::vector<int> window = random<int>(WINDOW * WINDOW, INT_MIN / 2, INT_MAX / 2);
-        const auto step = [&] { return trial == 0 ? 0 : integers.between(-65536, 65536); };
+        const auto step = [&] { return trial == 0 ? 0 : integers.between(-131072, 131072); };
         PatchGrid grid = {Point(), Point(step() * 2 / 3, step() / 3), Point(step() / 3, step() * 2 / 3)};
         if (trial == 1)
-            grid = {Point(), Point(65536, 0), Point(0, 65536)};
+            grid = {Point(), Point(131072, 0), Point(0, 131072)};
         Point least, most;  // of what is added to the first place
-        for (int i : {0, PATCH_COLUMNS - 1})
-            for (int j : {0, PATCH_ROWS - 1})
+        for (int i : {0, PATCH - 1})
+            for (int j : {0, PATCH - 1})
             {
                 const Point place = i * grid.column + j * grid.row;
                 least = Point(std::min(least.x, place.x), std::min(least.y, place.y));
@@ -105,103 +102,90 @@ TEST_F(IIB_RefinementKernels, sample)
                 Point(integers.between(-least.x, end - most.x), integers.between(-least.y, end - most.y));
         std::vector<short> samples(PATCH_SAMPLES + SHIFTS);
         short* const actual = &samples[trial % SHIFTS];
-        const int rowStep = 1 + trial % 2;
-        kernels.sample(window.data(), grid, rowStep, actual);
+        kernels.sample(window.data(), grid, actual);
         for (int i = 0; i < PATCH_SAMPLES; i++)
         {
-            if (i / PATCH_COLUMNS % rowStep != 0)
-                continue;
-            const Point place = grid.first + i % PATCH_COLUMNS * grid.column + i / PATCH_COLUMNS * grid.row;
+            const Point place = grid.first + i % PATCH * grid.column + i / PATCH * grid.row;
             const int pixels = window[(place.y >> 16) * WINDOW + (place.x >> 16)];
             const int right = (place.x & 65535) / 256, down = (place.y & 65535) / 256;
             const int sum = (schar)pixels * (256 - right) * (256 - down) +
                             (schar)(pixels >> 8) * (256 - right) * down +
                             (schar)(pixels >> 16) * right * (256 - down) +
                             (schar)(pixels >> 24) * right * down;
-            ASSERT_EQ((int)std::floor(sum / 1024. + .5), actual[i]) << trial << ", " << i;
+            ASSERT_EQ((int)std::floor(sum / double(1 << (16 - SAMPLE_BITS)) + .5), actual[i])
+                    << trial << ", " << i;
         }
     }
 }
 
-TEST_F(IIB_RefinementKernels, sum)
-{
-    for (int shift = 0; shift < SHIFTS; shift++)
-    {
-        const std::vector<short> samples = random<short>(PATCH_SAMPLES + SHIFTS, -8192, 8128),
-                                 roots = random<short>(PATCH_SAMPLES, 0, 16384);
-        std::vector<std::vector<short>> weights;
-        const short* pointers[SUMS];
-        for (int k = 0; k < SUMS; k++)
-        {
-            weights.push_back(random<short>(PATCH_SAMPLES + SHIFTS, -290, 290));
-            pointers[k] = &weights[k][(shift + k) % SHIFTS];
-        }
-        for (int rowStep : {1, 2})
-        {
-            int sums[SUMS], expected[SUMS] = {}, expectedSquares = 0;
-            const int squares = kernels.sum(&samples[shift], pointers, roots.data(), rowStep, sums);
-            for (int i = 0; i < PATCH_SAMPLES; i++)
-            {
-                if (i / PATCH_COLUMNS % rowStep != 0)
-                    continue;
-                expectedSquares += (int)std::pow(std::floor(samples[shift + i] * roots[i] / 65536.), 2);
-                for (int k = 0; k < SUMS; k++)
-                    expected[k] += samples[shift + i] * pointers[k][i];
-            }
-            EXPECT_EQ(expectedSquares, squares);
-            for (int k = 0; k < SUMS; k++)
-                EXPECT_EQ(expected[k], sums[k]) << k;
-        }
-    }
-}
+//! The upper half of a product of 16-bit values.
+int upperHalf(int a, int b) { return (int)std::floor(a * b / 65536.); }
 
-TEST_F(IIB_RefinementKernels, derive_sumColumns_and_weigh)
+TEST_F(IIB_RefinementKernels, makeTemplate)
 {
     for (int shift = 0; shift < SHIFTS; shift++)
     {
         const PatchWeights weights = randomWeights();
-        const std::vector<short> memory = random<short>(PATCH_SAMPLES + SHIFTS, -8192, 8128);
-        const short* const samples = &memory[shift];
-        std::vector<short> x(PATCH_SAMPLES + SHIFTS), y(x);
-        kernels.derive(samples, &x[shift], &y[shift]);
-        const auto at = [&](int row, int column) {
-            return samples[std::min(std::max(row, 0), PATCH_ROWS - 1) * PATCH_COLUMNS +
-                           std::min(std::max(column, 0), PATCH_COLUMNS - 1)];
-        };
-        float actual[COLUMN_SUMS][PATCH_COLUMNS];
-        kernels.sumColumns(&x[shift], &y[shift], weights, actual);
-        const float scales[] = {3, 2, .5f, .25f, 1, 40, 1};  // the last but one too large for 16 bits
-        std::vector<short> out(7 * (PATCH_SAMPLES + SHIFTS));
-        short* pointers[7];
-        for (int k = 0; k < 7; k++)
-            pointers[k] = &out[k * (PATCH_SAMPLES + SHIFTS) + shift];
-        kernels.weigh(samples, &x[shift], &y[shift], weights, 123.5f, scales, pointers);
-        for (int c = 0; c < PATCH_COLUMNS; c++)
+        const std::vector<uchar> memory = random<uchar>(TEMPLATE * TEMPLATE + SHIFTS, 0, 256);
+        const uchar* const pixels = &memory[shift];
+        PatchTemplate made;
+        kernels.makeTemplate(pixels, weights, made);
+        for (int i = 0; i < PATCH_SAMPLES; i++)
         {
-            float sums[COLUMN_SUMS] = {};
-            for (int r = 0; r < PATCH_ROWS; r++)
-            {
-                const int i = r * PATCH_COLUMNS + c;
-                const float dx = (float)(at(r, c + 1) - at(r, c - 1)),
-                            dy = (float)(at(r + 1, c) - at(r - 1, c));
-                ASSERT_EQ(dx, x[shift + i]) << r << ", " << c;
-                ASSERT_EQ(dy, y[shift + i]) << r << ", " << c;
-                const float wx = dx * weights.rows[r], wy = dy * weights.rows[r], place = weights.y[r];
-                const float terms[] = {wx * dx, wx * dx * place, wx * dx * place * place, wx * dy,
-                        wx * dy * place, wx * dy * place * place, wy * dy, wy * dy * place,
-                        wy * dy * place * place, wx, wx * place, wy, wy * place};
-                for (int k = 0; k < COLUMN_SUMS; k++)
-                    sums[k] += terms[k];
-                const float w = weights.columns[c] * weights.rows[r], px = weights.x[c];
-                const float values[] = {(at(r, c) - 123.5f) * w, dx * w, dy * w, dx * w * px, dx * w * place,
-                        dy * w * px, dy * w * place};
-                for (int k = 0; k < 7; k++)
-                    ASSERT_EQ(saturate_cast<short>(cvRound(values[k] * scales[k])), pointers[k][i])
-                            << k << ", " << i;
-            }
-            for (int k = 0; k < COLUMN_SUMS; k++)
-                ASSERT_EQ(sums[k], actual[k][c]) << k << ", " << c;
+            const auto at = [&](int dx, int dy) {
+                return pixels[(2 * (i / PATCH) + 1 + dy) * TEMPLATE + 2 * (i % PATCH) + 1 + dx];
+            };
+            const int sample = (at(0, 0) - 128) * (1 << SAMPLE_BITS);
+            const int x = (at(1, 0) - at(-1, 0)) * (1 << SAMPLE_BITS) / 2,
+                      y = (at(0, 1) - at(0, -1)) * (1 << SAMPLE_BITS) / 2;
+            const short w = weights.gaussian[i], wx = weights.gaussianX[i], wy = weights.gaussianY[i];
+            const int derivatives[] = {x, y, upperHalf(x, weights.x[i]), upperHalf(x, weights.y[i]),
+                    upperHalf(y, weights.x[i]), upperHalf(y, weights.y[i])};
+            const int products[] = {upperHalf(sample, w), upperHalf(x, w), upperHalf(y, w), upperHalf(x, wx),
+                    upperHalf(x, wy), upperHalf(y, wx), upperHalf(y, wy)};
+            ASSERT_EQ(sample, made.samples[i]) << i;
+            for (int k = 0; k < PARAMETERS; k++)
+                ASSERT_EQ(derivatives[k], made.derivatives[k][i]) << k << ", " << i;
+            for (int k = 0; k < SUMS - SUM_TEMPLATE; k++)
+                ASSERT_EQ(products[k], made.weights[k][i]) << k << ", " << i;
         }
+    }
+}
+
+TEST_F(IIB_RefinementKernels, sum_and_sumProducts)
+{
+    for (int shift = 0; shift < SHIFTS; shift++)
+    {
+        const PatchWeights weights = randomWeights();
+        PatchTemplate patch;
+        for (short* const values : patch.derivatives)
+            for (int i = 0; i < PATCH_SAMPLES; i++)
+                values[i] = (short)integers.between(-4096, 4096);
+        for (short* const values : patch.weights)
+            for (int i = 0; i < PATCH_SAMPLES; i++)
+                values[i] = (short)integers.between(-2048, 2048);
+        const std::vector<short> samples = random<short>(PATCH_SAMPLES + SHIFTS, -4096, 4064);
+        int sums[SUMS], expected[SUMS] = {}, products[PARAMETERS][PARAMETERS];
+        kernels.sum(&samples[shift], weights, patch, sums);
+        kernels.sumProducts(patch, products);
+        for (int i = 0; i < PATCH_SAMPLES; i++)
+        {
+            const int sample = samples[shift + i];
+            expected[SUM_SAMPLES] += sample * (weights.gaussian[i] >> (15 - WEIGHT_BITS));
+            expected[SUM_SQUARES] += sample * upperHalf(sample, weights.gaussian[i]);
+            for (int k = SUM_TEMPLATE; k < SUMS; k++)
+                expected[k] += sample * patch.weights[k - SUM_TEMPLATE][i];
+        }
+        for (int k = 0; k < SUMS; k++)
+            EXPECT_EQ(expected[k], sums[k]) << k;
+        for (int a = 0; a < PARAMETERS; a++)
+            for (int b = 0; b <= a; b++)
+            {
+                int product = 0;
+                for (int i = 0; i < PATCH_SAMPLES; i++)
+                    product += patch.weights[1 + a][i] * patch.derivatives[b][i];
+                EXPECT_EQ(product, products[a][b]) << a << ", " << b;
+            }
     }
 }
 

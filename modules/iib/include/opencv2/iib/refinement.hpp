@@ -30,7 +30,9 @@ patches do not agree better after it, or not well enough: then it stays as it wa
 @param points1 N x 2, CV_32F, a row for each match, in pixels: the first points, as they were detected.
 @param points2 N x 2, CV_32F, in pixels: the second points, refined, or as they were detected where that was refused.
 @param covariances N x 3, CV_32F: xx, xy and yy of points2 given points1, in squared pixels, from the differences that
-remain. Of refused matches 1, 0 and 1.
+remain and from how far these agree among neighbouring samples. Of refused matches 1, 0 and 1. They hold for noise; they know
+nothing of shadows that moved from one image to the other, nor of surfaces at other depths within a patch, so that errors of
+photographs are larger. They rank matches well all the same: whoever fits a model to points may weigh them so.
 @param similarities N x 1, CV_32F: the correlation of the two patches where they agree best, above 0.5 up to 1; -1 where
 the match was refused.
 @throws cv::Exception (StsOutOfRange) for indices without a keypoint, (StsBadArg) for an empty image, and as

@@ -18,35 +18,44 @@ const RefinementKernels& refinementKernels();
 namespace {
 
 constexpr int SHORTS = VTraits<v_int16>::max_nlanes, INTS = VTraits<v_int32>::max_nlanes;
+static_assert(PATCH % INTS == 0 && PATCH_SAMPLES % SHORTS == 0, "vectors fit rows and patches");
 
-void smooth(const uchar* const rows[3], uchar* out, int width)
+void smooth(const uchar* const rows[3], ushort* sums, uchar* out, int width)
 {
-    const auto sum = [&](int x) { return rows[0][x] + 2 * rows[1][x] + rows[2][x]; };
-    const auto smoothed = [&](int x) {
-        return (uchar)((sum(std::max(x - 1, 0)) + 2 * sum(x) + sum(std::min(x + 1, width - 1)) + 8) >> 4);
-    };
-    const auto sums = [&](int x) {
-        return vx_load_expand(rows[0] + x) + vx_load_expand(rows[2] + x) + (vx_load_expand(rows[1] + x) << 1);
-    };
     int x = 0;
-    for (; x < std::min(width, 1); x++)
-        out[x] = smoothed(x);
-    for (; x < width - SHORTS; x += SHORTS)
-        v_pack_store(out + x, (sums(x - 1) + sums(x + 1) + (sums(x) << 1) + vx_setall_u16(8)) >> 4);
+    for (; x <= width - SHORTS; x += SHORTS)
+        v_store(sums + 1 + x, vx_load_expand(rows[0] + x) + vx_load_expand(rows[2] + x) +
+                                      (vx_load_expand(rows[1] + x) << 1));
     for (; x < width; x++)
-        out[x] = smoothed(x);
+        sums[1 + x] = (ushort)(rows[0][x] + 2 * rows[1][x] + rows[2][x]);
+    sums[0] = sums[1];
+    sums[width + 1] = sums[width];
+    for (x = 0; x <= width - SHORTS; x += SHORTS)
+        v_pack_store(out + x, (vx_load(sums + x) + vx_load(sums + x + 2) + (vx_load(sums + x + 1) << 1) +
+                                      vx_setall_u16(8)) >>
+                                      4);
+    for (; x < width; x++)
+        out[x] = (uchar)((sums[x] + 2 * sums[x + 1] + sums[x + 2] + 8) >> 4);
 }
 
-inline v_int32 pixels(const uchar* p) { return v_reinterpret_as_s32(vx_load_expand_q(p)); }
+inline void storePixels(int* out, const v_uint16& left, const v_uint16& right)
+{
+    const v_uint16 signs = vx_setall_u16(0x8080);
+    v_uint16 first, second;
+    v_zip(left ^ signs, right ^ signs, first, second);
+    v_store(out, v_reinterpret_as_s32(first));
+    v_store(out + INTS, v_reinterpret_as_s32(second));
+}
 
 void readWindow(const uchar* upper, const uchar* lower, int* out, int width)
 {
-    const v_int32 signs = vx_setall_s32((int)0x80808080);
-    for (int x = 0; x < width; x += INTS)
+    for (int x = 0; x < width; x += 2 * SHORTS)
     {
-        const v_int32 left = pixels(upper + x) | (pixels(lower + x) << 8);
-        const v_int32 right = pixels(upper + x + 1) | (pixels(lower + x + 1) << 8);
-        v_store(out + x, (left | (right << 16)) ^ signs);
+        v_uint8 left[2], right[2];
+        v_zip(vx_load(upper + x), vx_load(lower + x), left[0], left[1]);
+        v_zip(vx_load(upper + x + 1), vx_load(lower + x + 1), right[0], right[1]);
+        for (int i = 0; i < 2; i++)
+            storePixels(out + x + i * SHORTS, v_reinterpret_as_u16(left[i]), v_reinterpret_as_u16(right[i]));
     }
 }
 
@@ -74,129 +83,96 @@ inline v_int32 samplesAt(const int* window, const v_int32& x, const v_int32& y)
     return (sample + vx_setall_s32(1 << (15 - SAMPLE_BITS))) >> (16 - SAMPLE_BITS);
 }
 
-void sample(const int* window, const PatchGrid& grid, int rowStep, short* samples)
+void sample(const int* window, const PatchGrid& grid, short* samples)
 {
     int columns[INTS];
     for (int i = 0; i < INTS; i++)
         columns[i] = i;
     const v_int32 column = vx_load(columns);
     const v_int32 x = column * vx_setall_s32(grid.column.x), y = column * vx_setall_s32(grid.column.y);
-    for (int r = 0; r < PATCH_ROWS; r += rowStep)
-    {
-        const Point row = grid.first + r * grid.row;
-        for (int c = 0; c < PATCH_COLUMNS; c += 2 * INTS)
+    const auto from = [&](int i) {
+        const Point first = grid.first + i / PATCH * grid.row + i % PATCH * grid.column;
+        return samplesAt(window, x + vx_setall_s32(first.x), y + vx_setall_s32(first.y));
+    };
+    for (int i = 0; i < PATCH_SAMPLES; i += 2 * INTS)
+        v_store(samples + i, v_pack(from(i), from(i + INTS)));
+}
+
+// The compiler makes vectors of this function's loops.
+void readTemplate(const uchar* pixels, PatchTemplate& out)
+{
+    for (int r = 0; r < PATCH; r++)
+        for (int c = 0; c < PATCH; c++)
         {
-            const Point left = row + c * grid.column, right = left + INTS * grid.column;
-            v_store(samples + r * PATCH_COLUMNS + c,
-                    v_pack(samplesAt(window, x + vx_setall_s32(left.x), y + vx_setall_s32(left.y)),
-                            samplesAt(window, x + vx_setall_s32(right.x), y + vx_setall_s32(right.y))));
+            const uchar* const p = pixels + (2 * r + 1) * TEMPLATE + 2 * c + 1;
+            const int i = r * PATCH + c;
+            out.samples[i] = (short)((p[0] - 128) * (1 << SAMPLE_BITS));
+            out.derivatives[0][i] = (short)((p[1] - p[-1]) * (1 << (SAMPLE_BITS - 1)));
+            out.derivatives[1][i] = (short)((p[TEMPLATE] - p[-TEMPLATE]) * (1 << (SAMPLE_BITS - 1)));
+        }
+}
+
+void makeTemplate(const uchar* pixels, const PatchWeights& weights, PatchTemplate& out)
+{
+    readTemplate(pixels, out);
+    for (int i = 0; i < PATCH_SAMPLES; i += SHORTS)
+    {
+        const v_int16 all[] = {vx_load(weights.gaussian + i), vx_load(weights.gaussianX + i),
+                vx_load(weights.gaussianY + i)};
+        v_store(out.weights[0] + i, v_mul_hi(vx_load(out.samples + i), all[0]));
+        for (int d = 0; d < 2; d++)
+        {
+            const v_int16 derivative = vx_load(out.derivatives[d] + i);
+            v_store(out.derivatives[2 + 2 * d] + i, v_mul_hi(derivative, vx_load(weights.x + i)));
+            v_store(out.derivatives[3 + 2 * d] + i, v_mul_hi(derivative, vx_load(weights.y + i)));
+            v_store(out.weights[1 + d] + i, v_mul_hi(derivative, all[0]));
+            v_store(out.weights[3 + 2 * d] + i, v_mul_hi(derivative, all[1]));
+            v_store(out.weights[4 + 2 * d] + i, v_mul_hi(derivative, all[2]));
         }
     }
 }
 
-int sum(const short* samples, const short* const* weights, const short* roots, int rowStep, int* sums)
+void sum(const short* samples, const PatchWeights& weights, const PatchTemplate& patch, int* sums)
 {
-    v_int32 products[SUMS], squares = vx_setzero_s32();
+    v_int32 products[SUMS];
     for (v_int32& product : products)
         product = vx_setzero_s32();
-    for (int r = 0; r < PATCH_ROWS; r += rowStep)
-        for (int i = r * PATCH_COLUMNS; i < (r + 1) * PATCH_COLUMNS; i += SHORTS)
-        {
-            const v_int16 sample = vx_load(samples + i), root = v_mul_hi(sample, vx_load(roots + i));
-            squares += v_dotprod(root, root);
-            for (int k = 0; k < SUMS; k++)
-                products[k] += v_dotprod(sample, vx_load(weights[k] + i));
-        }
+    for (int i = 0; i < PATCH_SAMPLES; i += SHORTS)
+    {
+        const v_int16 sample = vx_load(samples + i), weight = vx_load(weights.gaussian + i);
+        products[SUM_SAMPLES] += v_dotprod(sample, weight >> (15 - WEIGHT_BITS));
+        products[SUM_SQUARES] += v_dotprod(sample, v_mul_hi(sample, weight));
+        for (int k = SUM_TEMPLATE; k < SUMS; k++)
+            products[k] += v_dotprod(sample, vx_load(patch.weights[k - SUM_TEMPLATE] + i));
+    }
     for (int k = 0; k < SUMS; k++)
         sums[k] = v_reduce_sum(products[k]);
-    return v_reduce_sum(squares);
 }
 
-void derive(const short* samples, short* x, short* y)
+void sumProducts(const PatchTemplate& patch, int (*sums)[PARAMETERS])
 {
-    for (int r = 0; r < PATCH_ROWS; r++)
+    for (int i = 0; i < PARAMETERS; i++)
     {
-        const short* row = samples + r * PATCH_COLUMNS;
-        const short* above = r > 0 ? row - PATCH_COLUMNS : row;
-        const short* below = r < PATCH_ROWS - 1 ? row + PATCH_COLUMNS : row;
-        short *outX = x + r * PATCH_COLUMNS, *outY = y + r * PATCH_COLUMNS;
-        for (int c = 0; c < PATCH_COLUMNS; c++)
-            outY[c] = (short)(below[c] - above[c]);
-        for (int c = 1; c < PATCH_COLUMNS - 1; c++)
-            outX[c] = (short)(row[c + 1] - row[c - 1]);
-        outX[0] = (short)(row[1] - row[0]);
-        outX[PATCH_COLUMNS - 1] = (short)(row[PATCH_COLUMNS - 1] - row[PATCH_COLUMNS - 2]);
-    }
-}
-
-inline v_float32 floats(const short* p) { return v_cvt_f32(vx_load_expand(p)); }
-
-void sumColumns(const short* x, const short* y, const PatchWeights& weights, float (*sums)[PATCH_COLUMNS])
-{
-    for (int c = 0; c < PATCH_COLUMNS; c += INTS)
-    {
-        v_float32 s[COLUMN_SUMS];
-        for (v_float32& sum : s)
-            sum = vx_setzero_f32();
-        for (int r = 0; r < PATCH_ROWS; r++)
+        const short* const weights = patch.weights[1 + i];
+        v_int32 products[PARAMETERS];
+        for (v_int32& product : products)
+            product = vx_setzero_s32();
+        for (int s = 0; s < PATCH_SAMPLES; s += SHORTS)
         {
-            const v_float32 dx = floats(x + r * PATCH_COLUMNS + c), dy = floats(y + r * PATCH_COLUMNS + c);
-            const v_float32 w = vx_setall_f32(weights.rows[r]), place = vx_setall_f32(weights.y[r]);
-            const v_float32 x1 = dx * w, y1 = dy * w, products[] = {x1 * dx, x1 * dy, y1 * dy};
-            for (int k = 0; k < 3; k++)
-            {
-                const v_float32 once = products[k] * place;
-                s[3 * k] += products[k];
-                s[3 * k + 1] += once;
-                s[3 * k + 2] += once * place;
-            }
-            s[COLUMN_X] += x1;
-            s[COLUMN_X + 1] += x1 * place;
-            s[COLUMN_Y] += y1;
-            s[COLUMN_Y + 1] += y1 * place;
+            const v_int16 weight = vx_load(weights + s);
+            for (int j = 0; j < PARAMETERS; j++)
+                products[j] += v_dotprod(weight, vx_load(patch.derivatives[j] + s));
         }
-        for (int k = 0; k < COLUMN_SUMS; k++)
-            v_store(sums[k] + c, s[k]);
+        for (int j = 0; j <= i; j++)
+            sums[i][j] = v_reduce_sum(products[j]);
     }
-}
-
-//! The weights of INTS samples, the template's and those of the derivatives.
-struct SampleWeights
-{
-    v_int32 values[SUMS - SUM_TEMPLATE];
-
-    SampleWeights(const short* samples, const short* x, const short* y, const PatchWeights& weights, int row,
-            int column, float mean, const float* scales)
-    {
-        const int i = row * PATCH_COLUMNS + column;
-        const v_float32 w = vx_load(weights.columns + column) * vx_setall_f32(weights.rows[row]);
-        const v_float32 placeX = vx_load(weights.x + column), placeY = vx_setall_f32(weights.y[row]);
-        const v_float32 dx = floats(x + i) * w, dy = floats(y + i) * w;
-        const v_float32 all[] = {(floats(samples + i) - vx_setall_f32(mean)) * w, dx, dy, dx * placeX,
-                dx * placeY, dy * placeX, dy * placeY};
-        for (int k = 0; k < SUMS - SUM_TEMPLATE; k++)
-            values[k] = nearestInt(all[k] * vx_setall_f32(scales[k]));
-    }
-};
-
-void weigh(const short* samples, const short* x, const short* y, const PatchWeights& weights, float mean,
-        const float* scales, short* const* out)
-{
-    for (int r = 0; r < PATCH_ROWS; r++)
-        for (int c = 0; c < PATCH_COLUMNS; c += SHORTS)
-        {
-            const SampleWeights left(samples, x, y, weights, r, c, mean, scales);
-            const SampleWeights right(samples, x, y, weights, r, c + INTS, mean, scales);
-            for (int k = 0; k < SUMS - SUM_TEMPLATE; k++)
-                v_store(out[k] + r * PATCH_COLUMNS + c, v_pack(left.values[k], right.values[k]));
-        }
 }
 
 }  // namespace
 
 const RefinementKernels& refinementKernels()
 {
-    static const RefinementKernels kernels = {smooth, readWindow, sample, sum, derive, sumColumns, weigh};
+    static const RefinementKernels kernels = {smooth, readWindow, sample, makeTemplate, sum, sumProducts};
     return kernels;
 }
 
