@@ -41,12 +41,12 @@ if [ ! -d "$opencv" ]; then
 fi
 
 build="$root/build-windows"
-configure "$toolchain" "-DOPENCV_SOURCE_DIR=$source" "-DOpenCV_DIR=$opencv" -DIIB_BUILD_TESTS=ON -DIIB_BUILD_TOOLS=OFF
+configure "$toolchain" "-DOPENCV_SOURCE_DIR=$source" "-DOpenCV_DIR=$opencv/lib/cmake/opencv4" -DIIB_BUILD_TESTS=ON -DIIB_BUILD_TOOLS=OFF
 programs="opencv_test_iib opencv_test_iib_index opencv_test_iib_geometry"
 build_targets $programs
 
 # Where Windows looks for libraries: the build, OpenCV, and the compiler's own.
-WINEPATH="$build;$(dirname "$(find "$opencv" -name 'libopencv_core*.dll')");/usr/x86_64-w64-mingw32/lib"
+WINEPATH="$build;$opencv/bin;/usr/x86_64-w64-mingw32/lib"
 WINEPATH="$WINEPATH;$(dirname "$(x86_64-w64-mingw32-g++-posix -print-file-name=libstdc++-6.dll)")"
 export WINEPATH WINEDEBUG=-all WINEPREFIX="$cache/wine"
 for program in $programs; do
