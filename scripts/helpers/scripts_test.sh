@@ -67,7 +67,6 @@ refused scripts/helpers/postgres_test.sh no-such-python
 refused scripts/helpers/python_test.sh no-such-library
 refused scripts/helpers/scale.sh --mapped=many
 refused scripts/helpers/scale.sh --mapped=0
-refused scripts/helpers/static_opencv.sh unknown
 refused scripts/helpers/synthetic.sh
 refused scripts/helpers/versions.sh trixie/
 refused .ci/nightly no-such-step
