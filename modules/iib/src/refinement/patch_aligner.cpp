@@ -13,13 +13,14 @@ const double SIGMA = 8;            //!< of the weights, in units of the patch
 const double UNITS_OF_PLACE = 16;  //!< of PatchWeights::x and y
 const double REACH = PATCH - 1;    //!< from the centre to the outermost samples
 const int MOST_STEPS = 10;
-const double LAST_STEP = .03;  //!< in units: the last step is not longer
+const double LAST_STEP = .02;  //!< in units: the last step is not longer
 const double DEFORMATION_MARGIN =
         4;  //!< pixels that a patch may reach farther than where it starts, besides its move
 const double LEAST_DEVIATION = .5;  //!< normalized grey levels: without contrast there is nothing to match
 const double LEAST_SIMILARITY = .5;
-const double DAMPING_OF_PLACE = 1e-5, DAMPING_OF_MAP = 2e-2;
-const int LARGEST_RESIDUAL = 2047;  //!< as of the weights of a template, so that sums of squares fit 32 bits
+const double DAMPING_OF_PLACE = 1e-5, DAMPING_OF_MAP = 5e-3;
+const int GAIN_BITS = 8;            //!< gains are below 256, samples 2^12: products fit 32 bits
+const int LARGEST_RESIDUAL = 4095;  //!< so that sums of weighted squares fit 32 bits
 
 PatchWeights makeWeights()
 {
@@ -159,7 +160,8 @@ PatchAligner::PatchAligner()
     independentSamples = total * total / squares;
 }
 
-//! Reads the patch around a point; units from its centre to the point, as pixels that need no interpolation are taken.
+/* Reads the patch around a point. Pixels that need no interpolation are taken if that is a unit's size: returned is how far
+ the point is from the patch's centre then. */
 Vec2d PatchAligner::readTemplate(const Mat& image, const Vec2d& point, double unit)
 {
     uchar values[TEMPLATE * TEMPLATE];
@@ -175,7 +177,7 @@ Vec2d PatchAligner::readTemplate(const Mat& image, const Vec2d& point, double un
             for (int x = 0; x < TEMPLATE; x++)
                 values[y * TEMPLATE + x] = pixelAt(image, centre + Vec2d(x - PATCH, y - PATCH) * unit);
     kernels.makeTemplate(values, weights, patch);
-    return (point - centre) / unit;
+    return point - centre;
 }
 
 //! The surroundings of a place, beyond the image those of its border.
@@ -290,12 +292,15 @@ Matx22d PatchAligner::covariance(const Moments& moments, const Vec2d& beside) co
 {
     const double similarity = similarityOf(moments);
     const double gain = similarity * moments.deviation / ofTemplate.deviation;
+    const int fixedGain = cvRound(gain * (1 << GAIN_BITS));
+    const int fixedMean = cvRound((moments.mean - gain * ofTemplate.mean) * (1 << GAIN_BITS));
+    const short* const values = samples.data();
     short residuals[PATCH_SAMPLES];
     for (int i = 0; i < PATCH_SAMPLES; i++)
     {
-        const double explained = moments.mean + gain * (patch.samples[i] - ofTemplate.mean);
-        const int residual = cvRound((samples.data()[i] - explained) * weights.gaussian[i] / (1 << 16));
-        residuals[i] = (short)std::min(std::max(residual, -LARGEST_RESIDUAL), LARGEST_RESIDUAL);
+        const int residual = values[i] - ((fixedGain * patch.samples[i] + fixedMean) >> GAIN_BITS);
+        const int limited = std::min(std::max(residual, -LARGEST_RESIDUAL), LARGEST_RESIDUAL);
+        residuals[i] = (short)(limited * weights.gaussian[i] >> 16);
     }
     const double x = beside[0] / UNITS_OF_PLACE, y = beside[1] / UNITS_OF_PLACE;
     const Matx<double, 2, 6> ofPoint(1, 0, x, y, 0, 0, 0, 1, 0, 0, x, y);

@@ -58,7 +58,7 @@ public:
         }
         for (int i = 0; i < 6; i++)
             for (int j = 0; j < 6; j++)
-                normal(i, j) = sum(derivatives[i], derivatives[j]) + (i != j ? 0 : i < 2 ? 1e-5 : 2e-2);
+                normal(i, j) = sum(derivatives[i], derivatives[j]) + (i != j ? 0 : i < 2 ? 1e-5 : 5e-3);
 
         Matx22d map = none;
         Vec2d centre = point2 - beside, moved = point2;
