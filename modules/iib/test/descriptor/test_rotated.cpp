@@ -123,11 +123,11 @@ TEST(IIB_Rotated, maps_that_begin_at_the_same_byte_are_not_the_same)
             wide(size, CV_16U, memory.data, 2 * size.width);
     const Mat image = texture(size, CV_8U, 8);
     const std::vector<KeyPoint> keypoints = {KeyPoint(200, 150, 300, 20)};
-    for (const Mat& other : {odd, wide})
+    for (const std::vector<Mat>& maps : {std::vector<Mat>{even, odd}, {even, wide}, {odd, wide}})
     {
         const Ptr<IIB> iib = rotating();
         iib->setExtraChannels(2);
-        const std::vector<Mat> maps = {even, other}, clones = {even.clone(), other.clone()};
+        const std::vector<Mat> clones = {maps[0].clone(), maps[1].clone()};
         EXPECT_EQ(0, differingBits(describe(*iib, image, keypoints, clones),
                              describe(*iib, image, keypoints, maps)));
     }
