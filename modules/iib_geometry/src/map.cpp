@@ -270,9 +270,9 @@ void Map::compact()
 Map readMap(const std::string& folder)
 {
     std::error_code error;
-    if (!fs::is_regular_file(folder + FILE_NAME, error))
+    if (!fs::is_regular_file(cv::iib::systemName(folder + FILE_NAME), error))
         CV_Error(cv::Error::StsError,
-                folder + (fs::exists(folder + "/map.json", error)
+                folder + (fs::exists(cv::iib::systemName(folder + "/map.json"), error)
                                          ? " is a map of an earlier version: make it again"
                                          : " is no map: it has no map.iib"));
     cv::iib::CheckedReader file(folder + FILE_NAME, KIND);
