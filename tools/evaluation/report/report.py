@@ -13,7 +13,7 @@ from paper_orders import orders
 from results import PAPER, by, describing_times, group, paper_table, questions, read
 
 HERE = pathlib.Path(__file__).parent
-FILES = ("fixed_points", "detected_points", "matching", "curves", "whole_tasks", "robustness", "learned", "comparison")
+FILES = ("fixed_points", "detected_points", "matching", "curves", "whole_tasks", "estimators", "alignment", "robustness", "learned", "comparison")
 
 
 def number(row, column):
@@ -82,6 +82,17 @@ def poses(tables):
     return found
 
 
+def estimates(tables):
+    """Areas under the curve of the error of poses up to 5 degrees by place: a line for plain and for refined matches of each
+    method, with a column for each estimator."""
+    names = sorted({row["estimator"] for row in tables["estimators"]})
+    found = {}
+    for (place, detector, descriptor, points), rows in group(tables["estimators"], "place", "detector", "descriptor", "points").items():
+        method = descriptors.POSES.get((detector, descriptor), detector)
+        found.setdefault(place, []).append((method, points, by(rows, "estimator")))
+    return {"names": names, "places": found}
+
+
 def slider(tables):
     """The pairs of images that the slider shows, each with the matches of all methods, as the page's script takes them."""
     scenes, known, methods_known = [], list(descriptors.SCENES), list(descriptors.METHODS)
@@ -123,7 +134,8 @@ def main():
                 for line in (folder / name).read_text().splitlines() if line]
     page = environment.get_template("page.html.j2").render(
         overview=rows, networks=tables["learned"], licences=descriptors.NETWORKS, headline=headline(rows),
-        detected=detected_lines(tables), changes=changes(tables), warps=warps(tables), poses=poses(tables),
+        detected=detected_lines(tables), changes=changes(tables), warps=warps(tables), poses=poses(tables), estimates=estimates(tables), anchors=read(HERE / "anchors.csv"),
+        alignment=tables["alignment"],
         slider=slider(tables), methods=list(descriptors.METHODS.values()), curves=curves(tables), matching=group(tables["matching"], "place"),
         extras=[by(fixed, "configuration", place="rendered").get(name) for name in descriptors.EXTRAS],
         paper=[(question, paper_table(question, fixed)) for question in questions()],

@@ -18,7 +18,7 @@ matches agree with are fitted to all matches by Levenberg-Marquardt on Sampson's
 11.9) under Cauchy's loss, cut off at three scales, and the pose of the least loss is the answer. Wrong matches are expected; the same input gives the same answer, whatever the number of threads.
 
 Points must be free of lens distortion: `cv::undistortPoints(points, undistorted, K, distortion, noArray(), K)` first.
-Matches that cv::iib::refineMatches refined make the pose two to three times as accurate.
+Matches that cv::iib::refineMatches refined make the pose more accurate where the light changed.
 
 @param points1 the points in image 1: N x 2, or N of two channels, CV_32F or CV_64F; pixels, whole at the centres
 @param points2 their matches in image 2, of the same number and type
@@ -28,7 +28,7 @@ Matches that cv::iib::refineMatches refined make the pose two to three times as 
 @param t 3 x 1, CV_64F, of length 1: direction of the translation, in the axes of camera 2
 @param inliers N x 1, CV_8U: 1 for matches within three scales of the pose, and in front of both cameras; else 0
 @param scale Cauchy's scale in pixels, over 0: about the standard deviation of the points, refined or not, where the light
-    changed. In the same light refined points are better, but a smaller scale gains nothing there
+    changed; .25 for refined points of images in the same light
 @param covariance 5 x 5, CV_64F, of the errors of the pose in radians: three numbers of a rotation vector \f$w\f$ in the
     axes of camera 2, where the true rotation is \f$\exp([w]_\times) R\f$; two of the direction of t, along \f$b\f$ and
     \f$t \times b\f$, where \f$b\f$ is the unit vector along \f$t \times e\f$ and \f$e\f$ the axis along which t is
