@@ -118,6 +118,37 @@ def localization_systems():
     return table(['system', 'inputs', 'lateral', 'longitudinal', 'altitude'], [[value or '–' for value in row.values()] for row in found])
 
 
+SETUPS = {'': 'recommended chain', '--lines': 'recommended chain, lines', '--orb-and-akaze': 'ORB and AKAZE',
+          '--orb-and-akaze --lines': 'ORB and AKAZE, lines', '--orb-and-akaze --lines --imu': "the paper's: ORB and AKAZE, lines, IMU"}
+
+
+def setups(key):
+    """Rows of localization_setups.csv by `key`: images within 5 cm and 0.5 degrees, and means of the errors of those found."""
+    for names, found in grouped('localization_setups.csv', key).items():
+        images, located, near = (sum(int(row[column]) for row in found) for column in ('images', 'found', 'within_5'))
+        means = (sum(float(row[column]) * int(row['found']) for row in found if int(row['found'])) / max(located, 1)
+                 for column in ('lateral', 'longitudinal', 'altitude', 'orientation'))
+        yield [SETUPS.get(name, name) for name in names] + [str(images), '%.0f %%' % (100 * near / images),
+               *(form % mean for form, mean in zip(('%.1f cm', '%.1f cm', '%.1f cm', '%.2f°'), means))]
+
+
+SETUP_HEAD = ['images', 'within 5 cm, 0.5°', 'lateral', 'longitudinal', 'altitude', 'orientation']
+
+
+def localization_setups():
+    """Mean errors of the paper's set-up and of ours, with and without lines."""
+    return table(['map', 'set-up'] + SETUP_HEAD, setups(('map', 'setup')))
+
+
+def localization_lights():
+    """The same by light, for the page of localization, below the paper's table."""
+    systems = summaries.read(summaries.PAPER.with_name('paper_localization.csv'))
+    lines = [['map', 'set-up', 'light'] + SETUP_HEAD, *setups(('map', 'setup', 'light'))]
+    lines += [["as the paper quotes it", row['system'], row['inputs'], '', '', row['lateral'], row['longitudinal'], row['altitude'], ''] for row in systems]
+    cells = [''.join('<%s>%s</%s>' % (tag, cell, tag) for cell in line) for tag, line in zip(['th'] + ['td'] * len(lines), lines)]
+    return '\n'.join(['<div class="scroll"><table>', *('<tr>%s</tr>' % line for line in cells), '</table></div>'])
+
+
 def paper_orders():
     """Whether the orders that the paper's tables show hold for our figures."""
     natural = summaries.by(rows('fixed_points.csv'), 'configuration', place='natural')
@@ -366,7 +397,9 @@ PAGES = {'README.md': (match_claim, pose_claim, speed_claim, poses),
          'doc/guide.md': (pose_by_rule, presets),
          'doc/performance.md': (describing, chains, same_points, matching, small_work),
          'doc/scale.md': (mapped_index, flat_search),
-         'doc/paper.md': (matching_modes, operations, memory, learned_points, paper_orders, localization_systems),
+         'doc/paper.md': (matching_modes, operations, memory, learned_points, paper_orders, localization_systems, localization_setups),
+         'doc/localization/index.html': (localization_lights,),
+         'apps/localization/report/page.html.j2': (localization_lights,),
          'doc/results/README.md': (pose_rules, elsewhere, detected_points)}
 
 
