@@ -304,7 +304,9 @@ Matx22d PatchAligner::covariance(const Moments& moments, const Vec2d& beside) co
     }
     const double x = beside[0] / UNITS_OF_PLACE, y = beside[1] / UNITS_OF_PLACE;
     const Matx<double, 2, 6> ofPoint(1, 0, x, y, 0, 0, 0, 1, 0, 0, x, y);
-    const double variance = std::max(1 / (similarity * similarity) - 1, 0.) / independentSamples;
+    const double greyLevel = (1 << SAMPLE_BITS) / moments.deviation;  // both images are rounded to whole ones
+    const double variance =
+            std::max(1 / (similarity * similarity) - 1, greyLevel * greyLevel / 6) / independentSamples;
     const Matx22d scale(std::sqrt(inflation(residuals, patch.weights[1])), 0, 0,
             std::sqrt(inflation(residuals, patch.weights[2])));
     return scale * (ofPoint * inverse * ofPoint.t() * variance) * scale;
