@@ -20,7 +20,10 @@ public:
 
     std::string path(const std::string& name) const { return path_ + "/" + name; }
     void makeFolder(const std::string& name) const { cv::utils::fs::createDirectories(path(name)); }
-    void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
+    void write(const std::string& name, const std::string& text) const
+    {
+        std::ofstream(path(name), std::ios::binary) << text;
+    }
 
 private:
     std::string path_;
