@@ -1,24 +1,38 @@
 #!/bin/sh
 # Makes the site of the documentation in build/docs/html: guides, tutorials and the C++ reference with Doxygen, the reference of
-# the Python package, and the pages of results and of localization. Any warning and any dead link is an error.
+# the Python package, its examples with what they print and draw, and the pages of results and of localization. Any warning and any
+# dead link is an error. Where pip reaches no package index, the examples stand without their output.
 . "$(dirname "$0")/helpers/lib.sh"
 
 [ $# = 0 ] || fail "takes no argument"
 case "$root" in *" "*) fail "Doxygen links no pages in a folder with a blank in its path: $root" ;; esac
-need doxygen python3
+need doxygen python3 python3-venv python3-dev $build_packages
 version=$(sed -n 's/^project(opencv_iib VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
 rm -rf "$build/docs"
-mkdir -p "$build/docs"
+pictures="$build/docs/pictures" environment="$build/docs/environment" library="$build/libopencv_iib_static.a"
+mkdir -p "$pictures"
 cd "$root"
-for page in python_api python_examples; do
-    python3 "scripts/helpers/$page.py" >"$build/docs/$page.md"
-done
+python3 scripts/helpers/python_api.py >"$build/docs/python_api.md"
+# The package, linked with what the tests have built, if they have.
+[ -f "$library" ] || library=""
+/usr/bin/python3 -m venv "$environment"
+if "$environment/bin/pip" install --quiet --retries 0 --timeout 15 opencv-python-headless pycolmap; then
+    say "building the package, and running its examples"
+    "$environment/bin/pip" install --quiet "--config-settings=cmake.define.IIB_STATIC_LIBRARY=$library" "$root"
+    GLOG_minloglevel=1 "$environment/bin/python" scripts/helpers/python_examples.py "$pictures" >"$build/docs/python_examples.md"
+    "$environment/bin/opencv-iib" align tools/synthetic/view_noon.jpg tools/synthetic/view_panned.jpg --out "$build/docs/align"
+else
+    say "skipped: the examples' output (pip reaches no package index)"
+    python3 scripts/helpers/python_examples.py >"$build/docs/python_examples.md"
+fi
 {
     cat doc/Doxyfile
     echo "PROJECT_NUMBER = $version"
     echo "OUTPUT_DIRECTORY = \"$build/docs\""
     echo "INPUT += \"$build/docs/python_api.md\" \"$build/docs/python_examples.md\""
+    echo "IMAGE_PATH += \"$pictures\""
 } | doxygen -
 cp -R doc/results doc/localization CITATION.cff "$build/docs/html"
+[ ! -d "$build/docs/align" ] || cp -R "$build/docs/align" "$build/docs/html"
 python3 scripts/helpers/links_test.py "$build/docs/html"
 say "the documentation: $build/docs/html/index.html"
