@@ -13,7 +13,7 @@ endif()
 # takes ten times as long, the others run once by day, and under each pin by night.
 set(kernels_of_opencv_test_iib Kernels Hamming Bits Boxes Rotated GradientOrientation Normalization Refinement Matcher_Sizes Golden InstructionSets)
 set(kernels_of_opencv_test_iib_index MappedIndex)
-set(kernels_of_opencv_test_iib_geometry Localiz)
+set(kernels_of_opencv_test_iib_geometry "")  # has none of its own
 set(label "")
 if(IIB_SANITIZE)
   set(label nightly)
