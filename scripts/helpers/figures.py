@@ -243,9 +243,11 @@ def pose_by_rule():
 
 
 def elsewhere():
-    """Poses with learned features, which were not measured here."""
-    return table(['points', 'matches', 'at 2 px', 'at .75 px', 'ms an image', 'ms a pair'],
-                 [[row[name] or '–' for name in ('points', 'matches', 'auc_at_2_px', 'auc_at_.75_px', 'ms_an_image', 'ms_a_pair')]
+    """Poses with learned features, which were not measured here: areas up to 10, 5 and 2 degrees."""
+    areas = [[kind + limit for limit in ('_10', '_5', '_2')] for kind in ('plain', 'refined')]
+    return table(['points of', 'points', 'matches', 'plain', 'refined', 'ms a pair'],
+                 [[row['points'], row['number'], row['matches'],
+                   *('/'.join(row[name] for name in names) if row[names[0]] else '–' for names in areas), row['ms'] or '–']
                   for row in rows('elsewhere.csv')])
 
 
