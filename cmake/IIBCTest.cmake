@@ -76,7 +76,6 @@ if(IIB_PYTHON)
   add_test(NAME pages COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/pages_test.py"
     "${PROJECT_SOURCE_DIR}/doc/results/index.html" "${PROJECT_SOURCE_DIR}/doc/localization/index.html")
   set_tests_properties(pages PROPERTIES SKIP_REGULAR_EXPRESSION "is not installed")
-  add_test(NAME examples COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/examples.py")
   add_test(NAME mutants COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/tools/mutation/mutate.py"
     --source "${PROJECT_SOURCE_DIR}" --check)
 endif()

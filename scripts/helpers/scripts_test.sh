@@ -58,8 +58,6 @@ refused scripts/wheel.sh no-such-python
 refused scripts/windows.sh unknown
 refused scripts/helpers/emulated.sh s390x
 refused scripts/helpers/emulated.sh arm64 unknown
-refused scripts/helpers/mutation.sh --only
-refused scripts/helpers/mutation.sh --only no-such-mutant
 refused scripts/helpers/network_test.sh no-such-python
 refused scripts/helpers/newcomer.sh bookworm trixie
 refused scripts/helpers/opencv_source.sh unknown
