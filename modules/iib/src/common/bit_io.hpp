@@ -29,19 +29,6 @@ inline void storeBytes(uint64 word, int bytes, uchar* out)
 #endif
 }
 
-//! Eight bytes, the lowest first.
-inline uint64 loadWord(const uchar* in)
-{
-    uint64 word = 0;
-#if IIB_BIG_ENDIAN
-    for (int i = 0; i < 8; i++)
-        word |= (uint64)in[i] << 8 * i;
-#else
-    memcpy(&word, in, 8);
-#endif
-    return word;
-}
-
 /** Appends bits, the lowest bit of the lowest byte first. Keeps those of the last, unfinished word back:
  a BitWriter writes them when it ends. */
 class BitAppender

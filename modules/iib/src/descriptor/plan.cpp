@@ -9,41 +9,41 @@
 namespace cv {
 namespace iib {
 
-//! The bits that a selection chooses in a phase of a level. @param group which four of the channels.
+//! The bits of a phase of a level that are in use. @param group which four of the channels.
 static ChosenBits chosenBits(const Parameters& p, int level, int group, int index)
 {
     const QuadPhase phase(1 << level, index);
     const int planes = bitsPerQuad(p.mapping), planeBits = 8 * phase.planeBytes();
     std::vector<uint64> masks((phase.rows * planes * planeBits + 63) / 64, 0);
+    const auto choose = [&](int row, int col, int channel, int bits) {
+        for (int plane = 0; plane < planes; plane++)
+        {
+            const int bit = (row * planes + plane) * planeBits + col * GROUP_CHANNELS + channel;
+            masks[bit / 64] |= (uint64)(bits >> plane & 1) << bit % 64;
+        }
+    };
     for (int i = 0; i < p.selection.rows; i++)
     {
         const int* quad = p.selection[i];
         const int channel = quad[1], row = quad[2], col = quad[3];
-        if (quad[0] != level || channel / GROUP_CHANNELS != group || row % 2 != phase.dy ||
-                col % 2 != phase.dx)
-            continue;
-        for (int plane = 0; plane < planes; plane++)
-        {
-            const int bit = (row / 2 * planes + plane) * planeBits + col / 2 * GROUP_CHANNELS +
-                            channel % GROUP_CHANNELS;
-            masks[bit / 64] |= (uint64)(quad[4] >> plane & 1) << bit % 64;
-        }
+        if (quad[0] == level && channel / GROUP_CHANNELS == group && row % 2 == phase.dy &&
+                col % 2 == phase.dx)
+            choose(row / 2, col / 2, channel % GROUP_CHANNELS, quad[4]);
     }
+    const bool all = p.selection.empty() && (index == 0 || p.overlap);
+    const int channels = all ? std::min(p.channelCount() - group * GROUP_CHANNELS, GROUP_CHANNELS) : 0;
+    for (int row = 0; row < phase.rows; row++)
+        for (int col = 0; col < phase.quads; col++)
+            for (int channel = 0; channel < channels; channel++)
+                choose(row, col, channel, (1 << planes) - 1);
     return ChosenBits(masks);
 }
 
-static LevelShape levelShape(const Parameters& p, int finest, int level, int group, int channels)
+static LevelShape levelShape(const Parameters& p, int finest, int level, int group)
 {
-    LevelShape shape = {1 << level, 1 << (finest - level), bitOffset(p, level, group), channels,
-            p.overlap ? (1 << QuadPhase::COUNT) - 1 : 1, std::vector<ChosenBits>()};
-    if (p.selection.empty())
-        return shape;
-    shape.phases = 0;
+    LevelShape shape = {1 << level, 1 << (finest - level), bitOffset(p, level, group), {}};
     for (int phase = 0; phase < QuadPhase::COUNT; phase++)
-    {
         shape.chosen.push_back(chosenBits(p, level, group, phase));
-        shape.phases |= !shape.chosen[phase].none() << phase;
-    }
     return shape;
 }
 
@@ -56,7 +56,7 @@ static std::vector<ChannelGroup> groupsOf(const Parameters& p, int finest)
     {
         ChannelGroup group = {first, std::min(channels - first, GROUP_CHANNELS), std::vector<LevelShape>(1)};
         for (int level = 1; level <= finest; level++)
-            group.levels.push_back(levelShape(p, finest, level, first / GROUP_CHANNELS, group.count));
+            group.levels.push_back(levelShape(p, finest, level, first / GROUP_CHANNELS));
         groups.push_back(group);
     }
     return groups;

@@ -116,14 +116,11 @@ TEST(IIB_DescriptorKernels, all_types_of_sums_give_the_same_bits)
         for (int finest = 1; finest <= 6; finest++)
             for (int channels = 1; channels <= GROUP_CHANNELS; channels++)
             {
-                const int n = 1 << finest, phases = channels % 2 ? 1 : 15;
-                std::vector<LevelShape> shapes(1);
-                for (int level = 1, offset = 0; level <= finest; level++)
-                {
-                    shapes.push_back(LevelShape{1 << level, 1 << (finest - level), offset, channels, phases,
-                            std::vector<ChosenBits>()});
-                    offset += 8 * 4 * channels << 2 * level;
-                }
+                const int n = 1 << finest;
+                const std::vector<LevelShape> shapes =
+                        makePlan({1.f, finest, (1 << channels) - 1, mapping, channels % 2 == 0, 0, 0, 0, {}})
+                                ->groups[0]
+                                .levels;
                 CellEdges edges = CellEdges();
                 for (int i = 1; i < paddedEdges(n); i++)
                     edges.x[i] = edges.x[i - 1] + (i <= n ? random.between(1, 3) : 0);

@@ -26,99 +26,6 @@ template <typename V> struct Chunk
     static constexpr int LANES = VTraits<V>::max_nlanes, VECTORS = CHUNK / LANES;
 };
 
-//! Writes the bits of chunks to planes in memory, two bytes for each plane.
-struct PlaneRows
-{
-    uchar* first;
-    size_t plane, row;  //!< from a plane or row to the next one, in bytes
-
-    //! A chunk of each plane of a row.
-    template <int PLANES> void storeRow(const unsigned chunks[PLANES])
-    {
-        for (int p = 0; p < PLANES; p++)
-            storeBytes(chunks[p], CHUNK / 8, first + p * plane);
-        first += row;
-    }
-
-    void nextChunk() { first += CHUNK / 8; }
-};
-
-//! Squeezes the channels in use together, out of each group of four lanes: first neighbouring groups, then pairs of groups.
-inline unsigned dropLanes(unsigned chunk, int channels)
-{
-    if (channels == GROUP_CHANNELS)
-        return chunk;
-    const int unused = GROUP_CHANNELS - channels;
-    const unsigned groups = 0x0101 * ((1u << channels) - 1), pair = (1u << 2 * channels) - 1;
-    chunk = (chunk & groups) | (chunk >> unused & groups << channels);
-    return (chunk & pair) | (chunk >> 2 * unused & pair << 2 * channels);
-}
-
-//! Appends the lowest `lanes` bits of a chunk without those of channels that are not in use.
-inline void appendChunk(unsigned chunk, int lanes, int channels, BitAppender& out)
-{
-    const int count = lanes / GROUP_CHANNELS * channels;
-    out.append(dropLanes(chunk, channels) & ((1u << count) - 1), count);
-}
-
-//! Appends the `lanes` bits of a plane without those of channels that are not in use.
-inline void append(const uchar* plane, int lanes, int channels, BitAppender& out)
-{
-    if (channels == GROUP_CHANNELS)
-        for (int first = 0; first < lanes; first += 64)
-        {
-            const int count = std::min(lanes - first, 64);
-            out.append(loadWord(plane + first / 8) & ~(uint64)0 >> (64 - count), count);
-        }
-    else
-        for (int first = 0; first < lanes; first += CHUNK)
-        {
-            const uchar* p = plane + first / 8;
-            appendChunk(p[0] | p[1] << 8, std::min(lanes - first, CHUNK), channels, out);
-        }
-}
-
-//! Appends the comparisons of all quads of a phase.
-inline void append(PlaneRows planes, const QuadPhase& phase, int bits, int channels, BitAppender& out)
-{
-    BitAppender writer = out;  // a copy, which stores to uchar* surely do not change
-    for (int r = 0; r < phase.rows; r++, planes.first += planes.row)
-        for (int plane = 0; plane < bits; plane++)
-            append(planes.first + plane * planes.plane, phase.lanes(), channels, writer);
-    out = writer;
-}
-
-/* Where the bits of rows shorter than a chunk go, one plane after another. They stay in registers: to load a word whose
- bytes have just been stored one by one, a processor waits until the stores are done. */
-class ShortRowWriter
-{
-public:
-    ShortRowWriter(BitAppender& out_, int lanes, int channels_)
-        : out(out_), channels(channels_), count(lanes / GROUP_CHANNELS * channels), mask((1u << count) - 1)
-    {
-    }
-
-    template <int PLANES> void storeRow(const unsigned chunks[PLANES])
-    {
-        constexpr int TOGETHER =
-                PLANES % 4 == 0 ? 4 : PLANES;  // planes, of twelve bits at most, that fit a word
-        for (int p = 0; p < PLANES; p += TOGETHER)
-        {
-            uint64 bits = 0;
-            for (int i = 0; i < TOGETHER; i++)
-                bits |= (uint64)(dropLanes(chunks[p + i], channels) & mask) << i * count;
-            out.append(bits, TOGETHER * count);
-        }
-    }
-
-    void nextChunk() {}
-
-private:
-    BitAppender& out;
-    const int channels, count;
-    const unsigned mask;
-};
-
 // How cells are compared.
 
 /* Stores groups of four lanes, every other one to `even` and to `odd`; `lane` counts the lanes that were stored before, and
@@ -304,20 +211,21 @@ void parentSums(const CellGrid<Cell>& cells, CellGrid<typename BitsKernels<Cell>
     }
 }
 
-//! Compares all quads of a phase, a chunk and those below it at a time. WITH_PARENTS also stores the sums over quads.
-template <typename Mapping, bool WITH_PARENTS, typename Cell, typename Parent, typename Out>
+/** Compares all quads of a phase, a chunk and those below it at a time.
+ @param out where QuadPhase puts the comparisons. WITH_PARENTS also stores the sums over quads. */
+template <typename Mapping, bool WITH_PARENTS, typename Cell, typename Parent>
 void compareQuads(const CellGrid<Cell>& cells, const LevelShape& shape, const CellEdges& edges,
-        const QuadPhase& phase, CellGrid<Parent>& parents, Out out)
+        const QuadPhase& phase, CellGrid<Parent>& parents, uchar* out)
 {
     typedef typename QuadRows<Cell>::V V;
     const Axis axis = {edges.x, shape.step};
-    const size_t step = parents.rowStep();
-    for (int first = 0; first < phase.lanes(); first += CHUNK, out.nextChunk())
+    const size_t step = parents.rowStep(), planeBytes = phase.planeBytes();
+    for (int first = 0; first < phase.lanes(); first += CHUNK, out += CHUNK / 8)
     {
         const ColumnWeights<V> columns(axis, phase.dx + first / 2);
         QuadRows<Cell> quads(cells, phase.dy, phase.dx, first);
         Parent *even = parents.row(0, 0) + first / 2, *odd = parents.row(0, 1) + first / 2;
-        Out rows = out;
+        uchar* plane = out;
         const int* y = edges.y + phase.dy * shape.step;
         for (int r = 0; r < phase.rows; r++, y += 2 * shape.step, quads.next(), even += step, odd += step)
         {
@@ -338,7 +246,8 @@ void compareQuads(const CellGrid<Cell>& cells, const LevelShape& shape, const Ce
                 const Put put = {chunk, lane};
                 Mapping::map(weighted, put);
             }
-            rows.template storeRow<Mapping::BITS>(chunk);
+            for (int p = 0; p < Mapping::BITS; p++, plane += planeBytes)
+                storeBytes(chunk[p], CHUNK / 8, plane);
         }
     }
 }
@@ -348,21 +257,13 @@ void writePhase(const CellGrid<Cell>& cells, const LevelShape& shape, const Cell
         CellGrid<Parent>& parents, BitAppender& out)
 {
     const QuadPhase phase(shape.n, index);
-    if (phase.lanes() < CHUNK && shape.chosen.empty())
-        return compareQuads<Mapping, WITH_PARENTS>(
-                cells, shape, edges, phase, parents, ShortRowWriter(out, phase.lanes(), shape.channels));
-    const int rowBytes = Mapping::BITS * phase.planeBytes();
-    // groups of chosen bits are read beyond the last plane
-    uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8 + ChosenBits::Group::SIZE], *whole = 0;
-    // Where all bits are in use and a row fills whole chunks, they need no shifting.
-    if (shape.chosen.empty() && shape.channels == GROUP_CHANNELS && phase.lanes() % CHUNK == 0)
-        whole = out.reserve(phase.rows * rowBytes);
-    const PlaneRows planes = {whole ? whole : buffer, (size_t)phase.planeBytes(), (size_t)rowBytes};
-    compareQuads<Mapping, WITH_PARENTS>(cells, shape, edges, phase, parents, planes);
-    if (!shape.chosen.empty())
-        appendChosen(shape.chosen[index], buffer, out);
-    else if (!whole)
-        append(planes, phase, Mapping::BITS, shape.channels, out);
+    const ChosenBits& chosen = shape.chosen[index];
+    // Groups of chosen bits are read beyond the last plane.
+    uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8 + ChosenBits::Group::SIZE];
+    uchar* const whole = chosen.all() ? out.reserve(phase.rows * Mapping::BITS * phase.planeBytes()) : 0;
+    compareQuads<Mapping, WITH_PARENTS>(cells, shape, edges, phase, parents, whole ? whole : buffer);
+    if (!whole)
+        appendChosen(chosen, buffer, out);
 }
 
 template <typename Mapping, typename Cell, typename Parent>
@@ -371,12 +272,12 @@ void writeLevel(const CellGrid<Cell>& cells, const LevelShape& shape, const Cell
 {
     BitWriter out(descriptor, shape.offset);
     parents.create(shape.n / 2);
-    if (shape.uses(0))
+    if (!shape.chosen[0].none())
         writePhase<Mapping, true>(cells, shape, edges, 0, parents, out);
     else
         parentSums(cells, parents);
-    for (int i = 1; shape.phases >> i; i++)
-        if (shape.uses(i))
+    for (int i = 1; i < QuadPhase::COUNT; i++)
+        if (!shape.chosen[i].none())
             writePhase<Mapping, false>(cells, shape, edges, i, parents, out);
 }
 

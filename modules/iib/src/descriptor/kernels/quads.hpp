@@ -79,7 +79,7 @@ struct QuadPhase
     int planeBytes() const { return (lanes() + CHUNK - 1) / CHUNK * (CHUNK / 8); }
 };
 
-//! The chosen bits of a phase (paper, "Reduction of the IIB Descriptor Size"), in their order.
+//! The bits of a phase that are in use, all or some (paper, "Reduction of the IIB Descriptor Size"), in their order.
 class ChosenBits
 {
 public:
@@ -95,6 +95,7 @@ public:
 
     //! @param masks a bit for each comparison of the phase, where the comparison lies in memory.
     explicit ChosenBits(const std::vector<uint64>& masks)
+        : whole(std::count(masks.begin(), masks.end(), ~(uint64)0) == (ptrdiff_t)masks.size())
     {
         for (size_t bit = 0; bit < 64 * masks.size(); bit++)
         {
@@ -115,9 +116,12 @@ public:
     }
 
     bool none() const { return chosen.empty(); }
+    //! Whether all comparisons are: those in memory are then what the descriptor holds.
+    bool all() const { return whole; }
     const std::vector<Group>& groups() const { return chosen; }
 
 private:
+    bool whole;
     std::vector<Group> chosen;
 };
 
@@ -127,11 +131,7 @@ struct LevelShape
     int n;                           //!< cells in a row
     int step;                        //!< finest cells in a cell of this level, along an axis
     int offset;                      //!< of its first bit in the descriptor
-    int channels;                    //!< in use, of GROUP_CHANNELS
-    int phases;                      //!< bit i is set if phase i is in use
-    std::vector<ChosenBits> chosen;  //!< of each phase; empty: the bits of all quads are in use
-
-    bool uses(int phase) const { return phases >> phase & 1; }
+    std::vector<ChosenBits> chosen;  //!< of each phase
 };
 
 //! The cells of a level along one axis: between every `step`-th of the finest cells' edges.
