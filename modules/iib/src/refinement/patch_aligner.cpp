@@ -18,9 +18,8 @@ const double DEFORMATION_MARGIN =
         4;  //!< pixels that a patch may reach farther than where it starts, besides its move
 const double LEAST_DEVIATION = .5;  //!< normalized grey levels: without contrast there is nothing to match
 const double LEAST_SIMILARITY = .5;
+const double HALVED = 1 << (WEIGHT_BITS + 1);  //!< halved weights' unit over that of the sum of samples
 const double DAMPING_OF_PLACE = 1e-5, DAMPING_OF_MAP = 5e-3;
-const int GAIN_BITS = 8;            //!< gains are below 256, samples 2^12: products fit 32 bits
-const int LARGEST_RESIDUAL = 4095;  //!< so that sums of weighted squares fit 32 bits
 
 PatchWeights makeWeights()
 {
@@ -45,36 +44,25 @@ const PatchWeights& patchWeights()
     return weights;
 }
 
-//! The inverse of a positive definite matrix, by Cholesky's decomposition; false where it is not.
-bool invert(const Matx66d& m, Matx66d& inverse)
+//! Inverts a positive definite matrix in place, by Gauss and Jordan's elimination; false where it is not.
+bool invert(Matx66d& m)
 {
-    Matx66d root;  // lower triangle, m = root * root'; the diagonal holds reciprocals
-    for (int i = 0; i < 6; i++)
-        for (int j = 0; j <= i; j++)
-        {
-            double rest = m(i, j);
-            for (int k = 0; k < j; k++)
-                rest -= root(i, k) * root(j, k);
-            if (i == j && !(rest > 0))
-                return false;
-            root(i, j) = i == j ? 1 / std::sqrt(rest) : rest * root(j, j);
-        }
-    for (int column = 0; column < 6; column++)
+    for (int k = 0; k < 6; k++)
     {
-        double y[6];
+        if (!(m(k, k) > 0))
+            return false;
+        const double reciprocal = 1 / m(k, k);
+        m(k, k) = 1;
+        for (int j = 0; j < 6; j++)
+            m(k, j) *= reciprocal;
         for (int i = 0; i < 6; i++)
-        {
-            y[i] = i == column;
-            for (int k = column; k < i; k++)
-                y[i] -= root(i, k) * y[k];
-            y[i] *= root(i, i);
-        }
-        for (int i = 5; i >= column; i--)
-        {
-            for (int k = i + 1; k < 6; k++)
-                y[i] -= root(k, i) * inverse(k, column);
-            inverse(i, column) = inverse(column, i) = y[i] * root(i, i);
-        }
+            if (i != k)
+            {
+                const double factor = m(i, k);
+                m(i, k) = 0;
+                for (int j = 0; j < 6; j++)
+                    m(i, j) -= factor * m(k, j);
+            }
     }
     return true;
 }
@@ -86,64 +74,71 @@ Vec2d reachOf(const Matx22d& map)
            REACH;
 }
 
-/* The correlation of values with those `distance` farther; the few that are at both ends of two rows count little, as the
- values have the patch's weights. */
-double autocorrelation(const short* values, int distance)
-{
-    int products = 0, squares = 1;
-    for (int i = 0; i < PATCH_SAMPLES - distance; i++)
-    {
-        products += values[i] * values[i + distance];
-        squares += values[i] * values[i];
-    }
-    return (double)products / squares;
-}
-
 /* How much larger the variance of a sum of residuals times derivatives is than if they were independent, if the
  correlations of both fall by the same factor from sample to sample along rows and columns (Bartlett 1946). */
-double inflation(const short* residuals, const short* derivatives)
+double inflation(const Autocorrelation& a, const Autocorrelation& b)
 {
-    double product = 1;
-    for (int distance : {1, PATCH})
-    {
-        const double r = autocorrelation(residuals, distance) * autocorrelation(derivatives, distance);
-        product *= (1 + r) / (1 - r);
-    }
-    return product;
+    const double squares = (a.squares + 1.) * (b.squares + 1.);
+    const double right = a.right * (double)b.right / squares, below = a.below * (double)b.below / squares;
+    return (1 + right) / (1 - right) * (1 + below) / (1 - below);
 }
 
-//! Grey level between pixels of an image whose border is repeated.
-uchar pixelAt(const Mat& image, const Vec2d& place)
+//! The pixels from a place on of an image with a border, which the place may be in.
+const uchar* pixelsFrom(const Mat& image, const Point& place)
 {
-    const double x = std::min(std::max(place[0], 0.), image.cols - 1.);
-    const double y = std::min(std::max(place[1], 0.), image.rows - 1.);
-    const int left = (int)x, above = (int)y;
-    const uchar* const upper = image.ptr(above);
-    const uchar* const lower = image.ptr(std::min(above + 1, image.rows - 1));
-    const int right = std::min(left + 1, image.cols - 1);
-    const double a = upper[left] + (upper[right] - upper[left]) * (x - left);
-    const double b = lower[left] + (lower[right] - lower[left]) * (x - left);
-    return (uchar)cvRound(a + (b - a) * (y - above));
+    return image.data + place.y * (ptrdiff_t)image.step + place.x;
+}
+
+//! TEMPLATE x TEMPLATE grey levels between pixels, `unit` apart.
+void resample(const Mat& image, const Vec2d& first, double unit, uchar* values)
+{
+    const Point corner(cvFloor(first[0]), cvFloor(first[1]));
+    const auto fixed = [](double value) { return cvRound(value * 256); };
+    int columns[TEMPLATE];
+    for (int x = 0; x < TEMPLATE; x++)
+        columns[x] = fixed(first[0] - corner.x + x * unit);
+    for (int y = 0; y < TEMPLATE; y++)
+    {
+        const int row = fixed(first[1] - corner.y + y * unit), down = row & 255;
+        const uchar* const upper = pixelsFrom(image, corner + Point(0, row >> 8));
+        const uchar* const lower = upper + image.step;
+        for (int x = 0; x < TEMPLATE; x++)
+        {
+            const int left = columns[x] >> 8, right = columns[x] & 255;
+            const int a = upper[left] * (256 - right) + upper[left + 1] * right;
+            const int b = lower[left] * (256 - right) + lower[left + 1] * right;
+            *values++ = (uchar)((a * (256 - down) + b * down + (1 << 15)) >> 16);
+        }
+    }
 }
 
 }  // namespace
 
-Mat smoothedForAlignment(const Mat& normalized)
+Mat preparedForAlignment(const Mat& normalized)
 {
-    Mat result(normalized.size(), CV_8U);
+    const Rect inner(Point(IMAGE_BORDER, IMAGE_BORDER), normalized.size());
+    Mat result(inner.height + 2 * IMAGE_BORDER, inner.width + IMAGE_BORDER + WINDOW, CV_8U);
     parallel_for_(
             Range(0, result.rows),
             [&](const Range& range) {
-                AlignedBuffer<ushort> sums(result.cols + 2);
+                AlignedBuffer<ushort> sums(inner.width + 2);
                 for (int y = range.start; y < range.end; y++)
                 {
-                    const uchar* const rows[] = {normalized.ptr(std::max(y - 1, 0)), normalized.ptr(y),
-                            normalized.ptr(std::min(y + 1, result.rows - 1))};
-                    refinementKernels().smooth(rows, sums.data(), result.ptr(y), result.cols);
+                    const uchar* rows[3];
+                    for (int i = 0; i < 3; i++)
+                    {
+                        const int centre = std::min(std::max(y - inner.y, 0), inner.height - 1);
+                        rows[i] = normalized.ptr(std::min(std::max(centre + i - 1, 0), inner.height - 1));
+                    }
+                    uchar* const out = result.ptr(y);
+                    uchar* const end = out + inner.x + inner.width;
+                    refinementKernels().smooth(rows, sums.data(), out + inner.x, inner.width);
+                    std::fill_n(out, inner.x, out[inner.x]);
+                    std::fill_n(end, WINDOW, end[-1]);
                 }
             },
             result.rows / 64.);
-    return result;
+    return result(inner);
 }
 
 PatchAligner::PatchAligner()
@@ -164,23 +159,19 @@ PatchAligner::PatchAligner()
  the point is from the patch's centre then. */
 Vec2d PatchAligner::readTemplate(const Mat& image, const Vec2d& point, double unit)
 {
+    if (unit == 1)
+    {
+        const Point nearest(cvRound(point[0]), cvRound(point[1]));
+        kernels.makeTemplate(pixelsFrom(image, nearest - Point(PATCH, PATCH)), image.step, weights, patch);
+        return point - Vec2d(nearest.x, nearest.y);
+    }
     uchar values[TEMPLATE * TEMPLATE];
-    const Point nearest(cvRound(point[0]), cvRound(point[1])), corner = nearest - Point(PATCH, PATCH);
-    const bool whole =
-            unit == 1 && (Rect(corner, Size(TEMPLATE, TEMPLATE)) & Rect(Point(), image.size())).area() ==
-                                 TEMPLATE * TEMPLATE;
-    const Vec2d centre = unit == 1 ? Vec2d(nearest.x, nearest.y) : point;
-    for (int y = 0; y < TEMPLATE; y++)
-        if (whole)
-            std::copy_n(image.ptr(corner.y + y) + corner.x, TEMPLATE, values + y * TEMPLATE);
-        else
-            for (int x = 0; x < TEMPLATE; x++)
-                values[y * TEMPLATE + x] = pixelAt(image, centre + Vec2d(x - PATCH, y - PATCH) * unit);
-    kernels.makeTemplate(values, weights, patch);
-    return point - centre;
+    resample(image, point - Vec2d(PATCH, PATCH) * unit, unit, values);
+    kernels.makeTemplate(values, TEMPLATE, weights, patch);
+    return Vec2d(0, 0);
 }
 
-//! The surroundings of a place, beyond the image those of its border.
+//! The surroundings of a place.
 void PatchAligner::readWindow(const Mat& image, const PatchPlace& place, double margin)
 {
     const Vec2d reach = reachOf(place.map);
@@ -188,22 +179,7 @@ void PatchAligner::readWindow(const Mat& image, const PatchPlace& place, double 
     const int halfHeight = cvCeil(std::min(reach[1] + margin, WINDOW / 2 - 1.)) + 1;
     pixels = Rect(cvFloor(place.centre[0]) + 1 - halfWidth, cvFloor(place.centre[1]) + 1 - halfHeight,
             2 * halfWidth, 2 * halfHeight);
-    const bool inside = pixels.x >= 0 && pixels.x + pixels.width + WINDOW_PADDING <= image.cols;
-    uchar border[2][WINDOW + WINDOW_PADDING];
-    const uchar* rows[2];
-    for (int y = 0; y <= pixels.height; y++)
-    {
-        const uchar* row = image.ptr(std::min(std::max(pixels.y + y, 0), image.rows - 1));
-        rows[y & 1] = row + pixels.x;
-        if (!inside)
-        {
-            for (int x = 0; x <= pixels.width; x++)
-                border[y & 1][x] = row[std::min(std::max(pixels.x + x, 0), image.cols - 1)];
-            rows[y & 1] = border[y & 1];
-        }
-        if (y > 0)
-            kernels.readWindow(rows[~y & 1], rows[y & 1], window.data() + (y - 1) * WINDOW, pixels.width);
-    }
+    kernels.readWindow(pixelsFrom(image, pixels.tl()), image.step, pixels.size(), window.data());
 }
 
 //! False if a sample would be outside the window.
@@ -228,10 +204,11 @@ PatchAligner::Moments PatchAligner::momentsOf(const short* values) const
     int sums[SUMS];
     kernels.sum(values, weights, patch, sums);
     Moments moments;
-    const double mean = moments.mean = sums[SUM_SAMPLES] / totals[SUM_SAMPLES];
-    const double squares = sums[SUM_SQUARES] / (totals[SUM_SAMPLES] / (1 << (WEIGHT_BITS + 1)));
+    const double share = 1 / totals[SUM_SAMPLES];
+    const double mean = moments.mean = sums[SUM_SAMPLES] * share;
+    const double squares = sums[SUM_SQUARES] * share * HALVED;
     for (int k = SUM_TEMPLATE; k < SUMS; k++)
-        moments.sums[k] = (sums[k] - mean * totals[k]) / totals[SUM_SAMPLES];
+        moments.sums[k] = (sums[k] - mean * totals[k]) * share;
     moments.deviation = std::sqrt(std::max(squares - mean * mean, 0.));
     return moments;
 }
@@ -252,38 +229,37 @@ bool PatchAligner::solveTemplate()
     kernels.sum(ones.data(), weights, patch, sums);
     std::copy_n(sums, SUMS, totals);
     ofTemplate = momentsOf(patch.samples);
-    const double variance = ofTemplate.deviation * ofTemplate.deviation;
     if (!(ofTemplate.deviation >= LEAST_DEVIATION * (1 << SAMPLE_BITS)) ||
             !(ofTemplate.sums[SUM_TEMPLATE] > 0))
         return false;
     int products[PARAMETERS][PARAMETERS];
     kernels.sumProducts(patch, products);
-    const double total = totals[SUM_SAMPLES], scale = 1 << (WEIGHT_BITS + 1);
-    const double *means = totals + SUM_DERIVATIVES, *contrast = ofTemplate.sums + SUM_DERIVATIVES;
-    Matx66d normal;
+    const double scale = HALVED / totals[SUM_SAMPLES], reciprocal = 1 / ofTemplate.deviation;
+    const double variance = reciprocal * reciprocal;
+    const double* const contrast = ofTemplate.sums + SUM_DERIVATIVES;
     for (int i = 0; i < PARAMETERS; i++)
         for (int j = 0; j <= i; j++)
         {
             // less what changes of brightness and of contrast explain, which are solved for as well
-            const double square = products[i][j] * (j < 2 ? 1. : 2.) * scale / total;
-            const double mean = means[i] * means[j] * scale * scale / total / total;
-            normal(i, j) = (square - mean - contrast[i] * contrast[j] * scale * scale / variance) / variance;
-            normal(j, i) = normal(i, j);
-            if (i == j)
-                normal(i, i) += i < 2 ? DAMPING_OF_PLACE : DAMPING_OF_MAP;
+            const double square = products[i][j] * (j < 2 ? 1. : 2.) * scale;
+            const double mean = totals[SUM_DERIVATIVES + i] * totals[SUM_DERIVATIVES + j] * scale * scale;
+            const double explained = contrast[i] * contrast[j] * HALVED * HALVED * variance;
+            inverse(i, j) = inverse(j, i) = (square - mean - explained) * variance;
         }
-    return invert(normal, inverse);
+    for (int i = 0; i < PARAMETERS; i++)
+        inverse(i, i) += i < 2 ? DAMPING_OF_PLACE : DAMPING_OF_MAP;
+    return invert(inverse);
 }
 
 //! A step of Gauss and Newton: changes of the six parameters of the patch.
 Vec6d PatchAligner::step(const Moments& moments) const
 {
-    const double similarity = similarityOf(moments), scale = 1 << (WEIGHT_BITS + 1);
+    const double factor = HALVED / (ofTemplate.deviation * moments.deviation);
+    const double explained = similarityOf(moments) * moments.deviation / ofTemplate.deviation;
     Vec6d gradient;
     for (int i = 0; i < PARAMETERS; i++)
-        gradient[i] = (moments.sums[SUM_DERIVATIVES + i] / moments.deviation -
-                              similarity * ofTemplate.sums[SUM_DERIVATIVES + i] / ofTemplate.deviation) *
-                      scale / ofTemplate.deviation;
+        gradient[i] = (moments.sums[SUM_DERIVATIVES + i] - explained * ofTemplate.sums[SUM_DERIVATIVES + i]) *
+                      factor;
     return inverse * gradient;
 }
 
@@ -293,22 +269,20 @@ Matx22d PatchAligner::covariance(const Moments& moments, const Vec2d& beside) co
     const double similarity = similarityOf(moments);
     const double gain = similarity * moments.deviation / ofTemplate.deviation;
     const int fixedGain = cvRound(gain * (1 << GAIN_BITS));
-    const int fixedMean = cvRound((moments.mean - gain * ofTemplate.mean) * (1 << GAIN_BITS));
-    const short* const values = samples.data();
+    const int fixedOffset = cvRound((moments.mean - gain * ofTemplate.mean) * (1 << GAIN_BITS));
     short residuals[PATCH_SAMPLES];
-    for (int i = 0; i < PATCH_SAMPLES; i++)
-    {
-        const int residual = values[i] - ((fixedGain * patch.samples[i] + fixedMean) >> GAIN_BITS);
-        const int limited = std::min(std::max(residual, -LARGEST_RESIDUAL), LARGEST_RESIDUAL);
-        residuals[i] = (short)(limited * weights.gaussian[i] >> 16);
-    }
+    kernels.subtract(samples.data(), weights, patch, fixedGain, fixedOffset, residuals);
+    const Autocorrelation ofResiduals = kernels.autocorrelate(residuals);
     const double x = beside[0] / UNITS_OF_PLACE, y = beside[1] / UNITS_OF_PLACE;
     const Matx<double, 2, 6> ofPoint(1, 0, x, y, 0, 0, 0, 1, 0, 0, x, y);
     const double greyLevel = (1 << SAMPLE_BITS) / moments.deviation;  // both images are rounded to whole ones
     const double variance =
             std::max(1 / (similarity * similarity) - 1, greyLevel * greyLevel / 6) / independentSamples;
-    const Matx22d scale(std::sqrt(inflation(residuals, patch.weights[1])), 0, 0,
-            std::sqrt(inflation(residuals, patch.weights[2])));
+    const auto scaleOf = [&](int derivative) {
+        const Autocorrelation a = kernels.autocorrelate(patch.weights[1 + derivative]);
+        return std::sqrt(inflation(ofResiduals, a));
+    };
+    const Matx22d scale(scaleOf(0), 0, 0, scaleOf(1));
     return scale * (ofPoint * inverse * ofPoint.t() * variance) * scale;
 }
 

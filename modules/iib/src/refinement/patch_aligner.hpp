@@ -25,8 +25,8 @@ struct PatchAlignment
     Matx22d covariance;
 };
 
-//! Smooths a normalized image for it.
-Mat smoothedForAlignment(const Mat& normalized);
+//! Smooths a normalized image; the result is a part of a larger one, where its border is repeated.
+Mat preparedForAlignment(const Mat& normalized);
 
 //! Least-squares matching of patches, one after the other: what a thread needs for that.
 class PatchAligner
@@ -34,8 +34,9 @@ class PatchAligner
 public:
     PatchAligner();
 
-    /** Finds where the surroundings of a point of the first image are in the second one. Both images are normalized and
-     smoothed, CV_8U.
+    /** Finds where the surroundings of a point of the first image are in the second one. Both images are prepared by
+     preparedForAlignment().
+     @param point inside the image, as the starts.
      @param unit of the patch, in pixels of the first image, up to 1.
      @param starts places of the point in the second image; the one that agrees best is taken.
      @param limit pixels that the point may move in the second image. */

@@ -27,7 +27,7 @@ Mat preparedImage(InputArray image, int number)
         CV_Error(Error::StsBadArg,
                 format("image %d is empty, but there are matches: did imread find the file?", number));
     checkImage(pixels);
-    return smoothedForAlignment(normalizeLocally(integerMap(pixels), NORMALIZATION_SIGMA));
+    return preparedForAlignment(normalizeLocally(integerMap(pixels), NORMALIZATION_SIGMA));
 }
 
 const KeyPoint& keypointOf(const std::vector<KeyPoint>& keypoints, int index, int image)

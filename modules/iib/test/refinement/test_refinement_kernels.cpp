@@ -65,17 +65,21 @@ TEST_F(IIB_RefinementKernels, readWindow)
 {
     for (int width = 1; width <= WINDOW; width++)
     {
-        const std::vector<uchar> upper = random<uchar>(2 * WINDOW_PADDING + SHIFTS, 0, 256),
-                                 lower = random<uchar>(upper.size(), 0, 256);
-        const uchar *a = &upper[width % SHIFTS], *b = &lower[width % 3];
-        std::vector<int> window(width + WINDOW_PADDING);
-        kernels.readWindow(a, b, window.data(), width);
-        for (int x = 0; x < width; x++)
-        {
-            const uchar pixels[] = {a[x], b[x], a[x + 1], b[x + 1]};
-            for (int i = 0; i < 4; i++)
-                ASSERT_EQ(pixels[i] - 128, (schar)(window[x] >> 8 * i)) << width << ", " << x;
-        }
+        const Size size(width, width % SHIFTS + 1);
+        const size_t step = WINDOW + 1 + width % 3;
+        const std::vector<uchar> image = random<uchar>((size.height + 1) * step + SHIFTS, 0, 256);
+        const uchar* const pixels = &image[width % SHIFTS];
+        std::vector<int> window(size.height * WINDOW + WINDOW_PADDING);
+        kernels.readWindow(pixels, step, size, window.data());
+        for (int y = 0; y < size.height; y++)
+            for (int x = 0; x < width; x++)
+            {
+                const uchar* const p = pixels + y * step + x;
+                const uchar around[] = {p[0], p[step], p[1], p[step + 1]};
+                for (int i = 0; i < 4; i++)
+                    ASSERT_EQ(around[i] - 128, (schar)(window[y * WINDOW + x] >> 8 * i))
+                            << width << ", " << x;
+            }
     }
 }
 
@@ -126,14 +130,15 @@ TEST_F(IIB_RefinementKernels, makeTemplate)
     for (int shift = 0; shift < SHIFTS; shift++)
     {
         const PatchWeights weights = randomWeights();
-        const std::vector<uchar> memory = random<uchar>(TEMPLATE * TEMPLATE + SHIFTS, 0, 256);
+        const size_t step = TEMPLATE + shift;
+        const std::vector<uchar> memory = random<uchar>(TEMPLATE * step + SHIFTS, 0, 256);
         const uchar* const pixels = &memory[shift];
         PatchTemplate made;
-        kernels.makeTemplate(pixels, weights, made);
+        kernels.makeTemplate(pixels, step, weights, made);
         for (int i = 0; i < PATCH_SAMPLES; i++)
         {
             const auto at = [&](int dx, int dy) {
-                return pixels[(2 * (i / PATCH) + 1 + dy) * TEMPLATE + 2 * (i % PATCH) + 1 + dx];
+                return pixels[(2 * (i / PATCH) + 1 + dy) * step + 2 * (i % PATCH) + 1 + dx];
             };
             const int sample = (at(0, 0) - 128) * (1 << SAMPLE_BITS);
             const int x = (at(1, 0) - at(-1, 0)) * (1 << SAMPLE_BITS) / 2,
@@ -186,6 +191,36 @@ TEST_F(IIB_RefinementKernels, sum_and_sumProducts)
                     product += patch.weights[1 + a][i] * patch.derivatives[b][i];
                 EXPECT_EQ(product, products[a][b]) << a << ", " << b;
             }
+    }
+}
+
+TEST_F(IIB_RefinementKernels, subtract_and_autocorrelate)
+{
+    for (int shift = 0; shift < SHIFTS; shift++)
+    {
+        const PatchWeights weights = randomWeights();
+        PatchTemplate patch;
+        for (short& value : patch.samples)
+            value = (short)integers.between(-4096, 4065);
+        const std::vector<short> samples = random<short>(PATCH_SAMPLES + SHIFTS, -4096, 4065);
+        const int gain = integers.between(1, shift == 0 ? 65536 : 512),
+                  offset = integers.between(-9999, 9999);
+        std::vector<short> residuals(PATCH_SAMPLES + SHIFTS);
+        short* const r = &residuals[SHIFTS - shift];
+        kernels.subtract(&samples[shift], weights, patch, gain, offset, r);
+        const Autocorrelation sums = kernels.autocorrelate(r);
+        int squares = 0, right = 0, below = 0;
+        for (int i = 0; i < PATCH_SAMPLES; i++)
+        {
+            const int residual = samples[shift + i] - cvFloor((gain * patch.samples[i] + offset) / 256.);
+            ASSERT_EQ(upperHalf(std::min(std::max(residual, -4095), 4095), weights.gaussian[i]), r[i]) << i;
+            squares += r[i] * r[i];
+            right += i < PATCH_SAMPLES - PATCH ? r[i] * r[i + 1] : 0;
+            below += i < PATCH_SAMPLES - PATCH ? r[i] * r[i + PATCH] : 0;
+        }
+        EXPECT_EQ(squares, sums.squares);
+        EXPECT_EQ(right, sums.right);
+        EXPECT_EQ(below, sums.below);
     }
 }
 

@@ -47,16 +47,20 @@ inline void storePixels(int* out, const v_uint16& left, const v_uint16& right)
     v_store(out + INTS, v_reinterpret_as_s32(second));
 }
 
-void readWindow(const uchar* upper, const uchar* lower, int* out, int width)
+void readWindow(const uchar* pixels, size_t step, Size size, int* window)
 {
-    for (int x = 0; x < width; x += 2 * SHORTS)
-    {
-        v_uint8 left[2], right[2];
-        v_zip(vx_load(upper + x), vx_load(lower + x), left[0], left[1]);
-        v_zip(vx_load(upper + x + 1), vx_load(lower + x + 1), right[0], right[1]);
-        for (int i = 0; i < 2; i++)
-            storePixels(out + x + i * SHORTS, v_reinterpret_as_u16(left[i]), v_reinterpret_as_u16(right[i]));
-    }
+    for (int y = 0; y < size.height; y++, pixels += step, window += WINDOW)
+        for (int x = 0; x < size.width; x += 2 * SHORTS)
+        {
+            const uchar* const upper = pixels + x;
+            const uchar* const lower = upper + step;
+            v_uint8 left[2], right[2];
+            v_zip(vx_load(upper), vx_load(lower), left[0], left[1]);
+            v_zip(vx_load(upper + 1), vx_load(lower + 1), right[0], right[1]);
+            for (int i = 0; i < 2; i++)
+                storePixels(window + x + i * SHORTS, v_reinterpret_as_u16(left[i]),
+                        v_reinterpret_as_u16(right[i]));
+        }
 }
 
 //! Weights, in 2^-8, of two neighbours in the halves of each lane: what is left of a position below whole pixels.
@@ -98,23 +102,26 @@ void sample(const int* window, const PatchGrid& grid, short* samples)
         v_store(samples + i, v_pack(from(i), from(i + INTS)));
 }
 
-// The compiler makes vectors of this function's loops.
-void readTemplate(const uchar* pixels, PatchTemplate& out)
+//! Eight pixels, every second one from the second on, as samples.
+inline v_int16x8 everySecond(const uchar* pixels)
 {
-    for (int r = 0; r < PATCH; r++)
-        for (int c = 0; c < PATCH; c++)
-        {
-            const uchar* const p = pixels + (2 * r + 1) * TEMPLATE + 2 * c + 1;
-            const int i = r * PATCH + c;
-            out.samples[i] = (short)((p[0] - 128) * (1 << SAMPLE_BITS));
-            out.derivatives[0][i] = (short)((p[1] - p[-1]) * (1 << (SAMPLE_BITS - 1)));
-            out.derivatives[1][i] = (short)((p[TEMPLATE] - p[-TEMPLATE]) * (1 << (SAMPLE_BITS - 1)));
-        }
+    return v_reinterpret_as_s16((v_reinterpret_as_u16(v_load(pixels)) >> 8) << SAMPLE_BITS);
 }
 
-void makeTemplate(const uchar* pixels, const PatchWeights& weights, PatchTemplate& out)
+void readTemplate(const uchar* pixels, size_t step, PatchTemplate& out)
 {
-    readTemplate(pixels, out);
+    for (int i = 0; i < PATCH_SAMPLES; i += 8)
+    {
+        const uchar* const p = pixels + (2 * (i / PATCH) + 1) * step + 2 * (i % PATCH);
+        v_store(out.samples + i, everySecond(p) - v_setall_s16(128 << SAMPLE_BITS));
+        v_store(out.derivatives[0] + i, (everySecond(p + 1) - everySecond(p - 1)) >> 1);
+        v_store(out.derivatives[1] + i, (everySecond(p + step) - everySecond(p - step)) >> 1);
+    }
+}
+
+void makeTemplate(const uchar* pixels, size_t step, const PatchWeights& weights, PatchTemplate& out)
+{
+    readTemplate(pixels, step, out);
     for (int i = 0; i < PATCH_SAMPLES; i += SHORTS)
     {
         const v_int16 all[] = {vx_load(weights.gaussian + i), vx_load(weights.gaussianX + i),
@@ -168,11 +175,38 @@ void sumProducts(const PatchTemplate& patch, int (*sums)[PARAMETERS])
     }
 }
 
+// The compiler makes vectors of this and the last function's loops.
+void subtract(const short* samples, const PatchWeights& weights, const PatchTemplate& patch, int gain,
+        int offset, short* residuals)
+{
+    const int largest = 4095;  // so that sums of squares fit 32 bits
+    for (int i = 0; i < PATCH_SAMPLES; i++)
+    {
+        const int residual = samples[i] - ((gain * patch.samples[i] + offset) >> GAIN_BITS);
+        const int limited = std::min(std::max(residual, -largest), largest);
+        residuals[i] = (short)(limited * weights.gaussian[i] >> 16);
+    }
+}
+
+Autocorrelation autocorrelate(const short* values)
+{
+    Autocorrelation sums = {0, 0, 0};
+    for (int i = 0; i < PATCH_SAMPLES; i++)
+        sums.squares += values[i] * values[i];
+    for (int i = 0; i < PATCH_SAMPLES - PATCH; i++)
+    {
+        sums.right += values[i] * values[i + 1];
+        sums.below += values[i] * values[i + PATCH];
+    }
+    return sums;
+}
+
 }  // namespace
 
 const RefinementKernels& refinementKernels()
 {
-    static const RefinementKernels kernels = {smooth, readWindow, sample, makeTemplate, sum, sumProducts};
+    static const RefinementKernels kernels = {
+            smooth, readWindow, sample, makeTemplate, sum, sumProducts, subtract, autocorrelate};
     return kernels;
 }
 
