@@ -41,7 +41,6 @@ check_options() {
             continue
         fi
         case "$argument" in
-        --) return 0 ;;
         -?*) ;;
         *)
             [ -e "$argument" ] || fail "there is no $argument"

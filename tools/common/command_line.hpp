@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -14,9 +15,9 @@
 
 namespace iib_tools {
 
-/** Options of a program, by cv::CommandLineParser, which lacks what this adds: any number of positional arguments
-between the options, `--name value` beside `--name=value`, options that are repeated, and an error for what it does
-not know. */
+/** Options of a program by the keys of cv::CommandLineParser, which tells the defaults and the help. It lacks what this adds:
+any number of positional arguments between the options, `--name value` beside `--name=value`, options that are repeated, and
+an error for what it does not know. */
 class CommandLine
 {
 public:
@@ -24,65 +25,51 @@ public:
     option takes a value, `<none>` stands for no default. `help` is added, `-h` for short.
     @throws cv::Exception, code StsBadArg, for an unknown option, a missing or a superfluous value. */
     CommandLine(int argc, const char* const* argv, const std::string& about, const std::string& keys)
+        : parser_(1, argv, "{help||prints this, as -h}" + keys)
     {
-        const std::string all = "{help||prints this, as -h}" + keys;
-        const std::map<std::string, bool> options = optionsOf(all);
-        std::vector<std::string> kept(1, argc > 0 ? argv[0] : "");
-        bool optionsOver = false;
+        parser_.about(about);
+        const std::string known = "{help||}" + keys;
         for (int i = 1; i < argc; i++)
         {
             const std::string word = argv[i];
-            if (optionsOver || word.size() < 2 || word[0] != '-')
+            if (word.size() < 2 || word[0] != '-')
             {
                 positional_.push_back(word);
                 continue;
             }
-            optionsOver = word == "--";
-            if (optionsOver)
-                continue;
-            const size_t equals = word.find('=');
-            const std::string given = word.substr(0, equals);
-            const std::string name = given == "-h" ? "help" : given.substr(given[1] == '-' ? 2 : 1);
-            if (options.count(name) == 0)
+            const size_t equals = word.find('='), none = std::string::npos;
+            const std::string given = word.substr(0, equals),
+                              name = given == "-h" ? "help" : given.substr(given[1] == '-' ? 2 : 1);
+            const size_t key = std::min(known.find("{" + name + " "), known.find("{" + name + "|"));
+            if (key == none)
                 CV_Error(cv::Error::StsBadArg, "unknown option " + given + " (--help lists them)");
-            const bool takesValue = options.at(name);
-            std::string value = equals == std::string::npos ? "" : word.substr(equals + 1);
-            if (!takesValue && equals != std::string::npos)
+            const bool isSwitch = known[known.find_first_not_of(' ', known.find('|', key) + 1)] == '|';
+            if (isSwitch && equals != none)
                 CV_Error(cv::Error::StsBadArg, "option " + given + " takes no value");
-            if (takesValue && equals == std::string::npos && ++i < argc)
-                value = argv[i];
-            if (takesValue && value.empty())
+            values_[name].push_back(isSwitch         ? "true"
+                                    : equals != none ? word.substr(equals + 1)
+                                    : ++i < argc     ? argv[i]
+                                                     : "");
+            if (values_[name].back().empty())
                 CV_Error(cv::Error::StsBadArg, "option " + given + " needs a value");
-            values_[name].push_back(value);
-            kept.push_back("--" + name + (takesValue ? "=" + value : ""));
         }
-        std::vector<const char*> words;
-        for (const std::string& word : kept)
-            words.push_back(word.c_str());
-        parser_ = cv::makePtr<cv::CommandLineParser>(int(words.size()), words.data(), all);
-        parser_->about(about);
     }
 
-    //! Positional arguments in their order; after `--` everything is one.
     const std::vector<std::string>& positional() const { return positional_; }
 
     //! Whether a switch was set, or an option has a value, given or by default.
-    bool has(const std::string& name) const { return parser_->has(name); }
+    bool has(const std::string& name) const { return values_.count(name) || parser_.has(name); }
 
     //! The value of an option, the last one if it is repeated; empty without value and default.
     std::string text(const std::string& name) const
     {
-        const auto given = values_.find(name);
-        if (given != values_.end())
-            return given->second.back();
-        return parser_->has(name) ? parser_->get<std::string>(name) : std::string();
+        return values_.count(name) ? values_.at(name).back() : parser_.get<std::string>(name);
     }
 
     //! All values of an option that may be repeated, without its default.
     std::vector<std::string> all(const std::string& name) const
     {
-        const auto given = values_.find(name);
-        return given == values_.end() ? std::vector<std::string>() : given->second;
+        return values_.count(name) ? values_.at(name) : std::vector<std::string>();
     }
 
     //! A number from low to high. @throws cv::Exception, code StsBadArg, for anything else.
@@ -108,24 +95,10 @@ public:
     }
 
     //! What the program does and its options, on the standard output.
-    void printHelp() const { parser_->printMessage(); }
+    void printHelp() const { parser_.printMessage(); }
 
 private:
-    //! Whether an option takes a value, by name, from `{name|default|help}...`.
-    static std::map<std::string, bool> optionsOf(const std::string& keys)
-    {
-        std::map<std::string, bool> options;
-        for (size_t at = keys.find('{'); at != std::string::npos; at = keys.find('{', at + 1))
-        {
-            const size_t bar = keys.find('|', at), second = keys.find('|', bar + 1);
-            CV_Assert(bar != std::string::npos && second != std::string::npos);
-            options[keys.substr(at + 1, keys.find_first_of(" |", at) - at - 1)] =
-                    keys.find_first_not_of(' ', bar + 1) < second;
-        }
-        return options;
-    }
-
-    cv::Ptr<cv::CommandLineParser> parser_;
+    cv::CommandLineParser parser_;
     std::vector<std::string> positional_;
     std::map<std::string, std::vector<std::string>> values_;  // by option
 };
