@@ -98,8 +98,8 @@ say "opencv_perf_iib, in-tree, a smoke run"
 say "cv2.iib"
 export PYTHONPATH="$build/python_loader"
 /usr/bin/python3 "$root/modules/iib/misc/python/test/test_iib.py" -v
-say "the guide's Python program, on the demo's pair"
-sed -n '/^```python$/,/^```$/{/^```/!{/^import opencv_iib$/d;s/^# opencv_iib = /opencv_iib = /;p}}' "$root/doc/guide.md" >"$build/guide.py"
+say "the tutorial's Python program, on the demo's pair"
+sed -n '/^```python$/,/^```$/{/^```/!{/^import opencv_iib$/d;s/^# opencv_iib = /opencv_iib = /;p}}' "$root/modules/iib/tutorials/iib_day_night.markdown" >"$build/day_night.py"
 pair="$root/tools/synthetic"
-/usr/bin/python3 "$build/guide.py" "$pair/day.png" "$pair/night.png" | grep -x '[1-9][0-9]* matches'
+/usr/bin/python3 "$build/day_night.py" "$pair/day.png" "$pair/night.png" | grep -x '[1-9][0-9]* of [0-9]* matches agree with'
 say "done: $build"

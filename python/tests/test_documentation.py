@@ -15,7 +15,6 @@ PAGES = [REPOSITORY / 'README.md', *sorted((REPOSITORY / 'doc').glob('*.md')), *
 # it, and what that prints; or where else it is run.
 RUNS = {
     'README.md': [('day.png night.png', r'^\d{3} matches\n$')],
-    'guide.md': [('day.png night.png', r'^\d{3} matches\n$')],
     'python.md': [('', 'print(len(matches))', r'^\d{3}\n'),
                   ('image_a, image_b = day, night', 'print(len(pairs), matched_a.shape == matched_b.shape)', r'^\d{3} True\n')],
     'scale.md': [('folder, codes, queries = "codes", codes_day, codes_night', 'print(indices.shape)', r'^\(1000, 5\)\n'),
