@@ -7,7 +7,6 @@ TABLES. --write puts each anew, --check ends with an error where one differs fro
 the tables of scripts/bench.sh from results in another FOLDER.
 """
 import argparse
-import collections
 import functools
 import importlib.util
 import json
@@ -35,15 +34,6 @@ def table(head, lines):
 
 def precision_recall(row):
     return '%.3f / %.3f' % (float(row['precision']), float(row['recall'])) if row else '–'
-
-
-def grouped(name, key, chosen=lambda row: True):
-    """Rows of a file by the columns of `key`."""
-    found = collections.defaultdict(list)
-    for row in rows(name):
-        if chosen(row):
-            found[tuple(row[column] for column in key)].append(row)
-    return found
 
 
 def detected_points():
@@ -124,7 +114,7 @@ SETUPS = {'': 'recommended chain', '--lines': 'recommended chain, lines', '--orb
 
 def setups(key):
     """Rows of localization_setups.csv by `key`: images within 5 cm and 0.5 degrees, and means of the errors of those found."""
-    for names, found in grouped('localization_setups.csv', key).items():
+    for names, found in summaries.group(rows('localization_setups.csv'), *key).items():
         images, located, near = (sum(int(row[column]) for row in found) for column in ('images', 'found', 'within_5'))
         means = (sum(float(row[column]) * int(row['found']) for row in found if int(row['found'])) / max(located, 1)
                  for column in ('lateral', 'longitudinal', 'altitude', 'orientation'))
@@ -165,32 +155,9 @@ POSES = (('ORB', 'ORB'), ('AKAZE', 'AKAZE'), ('SIFT', 'SIFT'), ('SIFT normalized
 DEFAULT_RULE = 'both at 0.75 px'
 
 
-def best_poses(places=('buildings', 'street', 'facade')):
-    """For each row of poses and each place, the results under the rule that scores best there; those of HessianDetector,
-    which the README recommends, under the default rule everywhere."""
-    found = grouped('whole_tasks.csv', ('detector', 'descriptor', 'place'))
-
-    def chosen(row, place):
-        rules = found[row + (place,)]
-        if row[0].startswith('Hessian'):
-            return next(rule for rule in rules if rule['matching'] == DEFAULT_RULE)
-        return max(rules, key=lambda rule: float(rule['score']))
-
-    return [(row, [chosen(row, place) for place in places]) for row in POSES]
-
-
 def score(row):
     """With its 95 % confidence interval."""
     return '%.2f (%.2f to %.2f)' % tuple(float(row[column]) for column in ('score', 'low', 'high'))
-
-
-def pose_table(cell):
-    chosen = best_poses()
-    pairs = [best['pairs'] for best in chosen[0][1]]
-    lines = [[detector.replace('Hessian', 'HessianDetector'), descriptor] + [cell(best) for best in row]
-             for (detector, descriptor), row in chosen]
-    return table(['points of', 'descriptor', 'buildings by day, %s pairs' % pairs[0],
-                  'street, other light, %s pairs' % pairs[1], 'facade, other light, %s pairs' % pairs[2]], lines)
 
 
 def estimates():
@@ -227,18 +194,25 @@ def pose_claim():
 
 
 def pose_rules():
-    """Every method's score, and the choice of matches and the threshold behind it."""
-    return pose_table(lambda best: '%s, %s' % (score(best), best['matching']))
+    """Every method's score, and the choice of matches and the threshold behind it: the best ones, but the default for
+    HessianDetector, which the README recommends."""
+    found, lines = summaries.group(rows('whole_tasks.csv'), 'detector', 'descriptor', 'place'), []
+    for detector, descriptor in POSES:
+        best = [max(found[detector, descriptor, place], key=lambda row: (detector[:7] == 'Hessian' and row['matching'] == DEFAULT_RULE,
+                                                                         float(row['score'])))
+                for place in ('buildings', 'street', 'facade')]
+        lines.append([detector.replace('Hessian', 'HessianDetector'), descriptor] + ['%s, %s' % (score(row), row['matching']) for row in best])
+    return table(['points of', 'descriptor', *('%s, %s pairs' % (name, row['pairs']) for name, row in zip(
+        ('buildings by day', 'street, other light', 'facade, other light'), best))], lines)
 
 
 def pose_by_rule():
     """Poses of the recommended chain by the choice of matches and MAGSAC's threshold."""
-    found = grouped('whole_tasks.csv', ('detector', 'descriptor', 'place', 'matching'))
+    found = summaries.by(rows('whole_tasks.csv'), 'place', 'matching', detector='Hessian', descriptor='IIB UNIVERSAL')
     limits, lines = ('0.75', '1', '2'), []
     for place in ('buildings', 'street'):
         for label, rule in (('mutual', 'mutual'), ('a ratio of .9', 'ratio'), ('both', 'both')):
-            chosen = [found['Hessian', 'IIB UNIVERSAL', place, '%s at %s px' % (rule, limit)][0] for limit in limits]
-            lines.append([place, label] + [score(row) for row in chosen])
+            lines.append([place, label] + [score(found[place, '%s at %s px' % (rule, limit)]) for limit in limits])
     return table(['', ''] + [limit + ' px' for limit in limits], lines)
 
 
@@ -294,19 +268,22 @@ def describing():
     return table(['', 'ms', 'ratio to ORB', 'us a point more', 'ratio', 'without AVX2, times'], lines)
 
 
+def timed(what, other):
+    """Rows of iib_benchmark beside the first of them."""
+    data = benchmark(AVX2)[what]
+    return table(['', 'points', 'ms', 'ratio to ' + other],
+                 [[r['name'], str(r['points']), '%.*f' % (1 if what == 'chains' else 2, r['milliseconds']),
+                   '%.2f' % (r['milliseconds'] / data[0]['milliseconds'])] for r in data])
+
+
 def chains():
     """Finding and describing, each method on its own points of a rendered picture."""
-    data = benchmark(AVX2)['chains']
-    orb = data[0]['milliseconds']
-    return table(['', 'points', 'ms', 'ratio to ORB'],
-                 [[r['name'], str(r['points']), '%.1f' % r['milliseconds'], '%.2f' % (r['milliseconds'] / orb)] for r in data])
+    return timed('chains', 'ORB')
 
 
 def same_points():
     """Describing the same points of AKAZE."""
-    data = benchmark(AVX2)['same_points']
-    return table(['', 'points', 'ms', 'ratio to IIB'],
-                 [[r['name'], str(r['points']), '%.2f' % r['milliseconds'], '%.2f' % (r['milliseconds'] / data[0]['milliseconds'])] for r in data])
+    return timed('same_points', 'IIB')
 
 
 def speeds(name):

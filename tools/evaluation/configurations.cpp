@@ -21,29 +21,10 @@ Configuration iib(const std::string& name, int granularity = 4, int channels = I
     return {name, create, 2 * SEED_RADIUS, "FAST", extraNames, oriented};
 }
 
-Configuration withChannels(const std::string& name, int channels) { return iib(name, 4, channels); }
-
-Configuration withMapping(const std::string& name, int mapping)
-{
-    return iib(name, 4, IIB::CHANNELS_DEFAULT, mapping);
-}
-
-Configuration withExtras(const std::string& name, const std::vector<std::string>& extraNames)
-{
-    return iib(name, 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, false, extraNames);
-}
-
 Configuration withPreset(const std::string& name, int preset)
 {
     Configuration c = iib("IIB " + name);
     c.create = [preset]() -> cv::Ptr<cv::Feature2D> { return IIB::createPreset(preset, 1.f); };
-    return c;
-}
-
-Configuration onPointsOf(const std::string& detector)
-{
-    Configuration c = iib("IIB on " + detector + " points");
-    c.seeds = detector;
     return c;
 }
 
@@ -62,21 +43,26 @@ std::vector<Configuration> presetConfigurations()
 std::vector<Configuration> iibConfigurations()
 {
     const int x = IIB::CHANNEL_GRAD_X, y = IIB::CHANNEL_GRAD_Y, o = IIB::CHANNEL_ORIENTATION,
-              i = IIB::CHANNEL_INTENSITY;
-    std::vector<Configuration> all = {iib("IIB"), withChannels("IIB y", y), withChannels("IIB x", x),
-            withChannels("IIB i", i), withChannels("IIB o", o), withChannels("IIB o+i", o | i),
-            withChannels("IIB x+y", x | y), withChannels("IIB x+y+i", x | y | i),
-            withChannels("IIB x+y+o", x | y | o), withMapping("IIB max", IIB::MAPPING_MAX),
-            withMapping("IIB min", IIB::MAPPING_MIN), withMapping("IIB quartile", IIB::MAPPING_QUARTILE),
-            withMapping("IIB sort", IIB::MAPPING_SORT), withMapping("IIB haar", IIB::MAPPING_HAAR),
-            withMapping("IIB pairwise", IIB::MAPPING_PAIRWISE),
-            iib("IIB overlap", 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, true), iib("IIB g2", 2),
-            iib("IIB g3", 3), iib("IIB g5", 5), withExtras("IIB +depth", {"depth"}),
-            withExtras("IIB +labels", {"labels"}), withExtras("IIB +depth+labels", {"depth", "labels"}),
-            withExtras("IIB +texture", {TEXTURE}), onPointsOf("AKAZE"), onPointsOf("KAZE")};
+              i = IIB::CHANNEL_INTENSITY, all = IIB::CHANNELS_DEFAULT, mean = IIB::MAPPING_MEAN;
+    std::vector<Configuration> found = {iib("IIB"), iib("IIB y", 4, y), iib("IIB x", 4, x),
+            iib("IIB i", 4, i), iib("IIB o", 4, o), iib("IIB o+i", 4, o | i), iib("IIB x+y", 4, x | y),
+            iib("IIB x+y+i", 4, x | y | i), iib("IIB x+y+o", 4, x | y | o),
+            iib("IIB max", 4, all, IIB::MAPPING_MAX), iib("IIB min", 4, all, IIB::MAPPING_MIN),
+            iib("IIB quartile", 4, all, IIB::MAPPING_QUARTILE), iib("IIB sort", 4, all, IIB::MAPPING_SORT),
+            iib("IIB haar", 4, all, IIB::MAPPING_HAAR), iib("IIB pairwise", 4, all, IIB::MAPPING_PAIRWISE),
+            iib("IIB overlap", 4, all, mean, true), iib("IIB g2", 2), iib("IIB g3", 3), iib("IIB g5", 5)};
+    for (const std::vector<std::string>& extras :
+            std::vector<std::vector<std::string>>{{"depth"}, {"labels"}, {"depth", "labels"}, {TEXTURE}})
+        found.push_back(iib("IIB +" + extras[0] + (extras.size() > 1 ? "+" + extras[1] : ""), 4, all, mean,
+                false, false, extras));
+    for (const char* detector : {"AKAZE", "KAZE"})
+    {
+        found.push_back(iib(std::string("IIB on ") + detector + " points"));
+        found.back().seeds = detector;
+    }
     for (const Configuration& c : presetConfigurations())
-        all.push_back(c);
-    return all;
+        found.push_back(c);
+    return found;
 }
 
 std::vector<Configuration> generalPresets()

@@ -21,7 +21,24 @@ public:
     explicit DescribedImages(size_t most = 200) : most_(most) {}
 
     //! Of the image of a file. Two threads that ask for the same at once may both compute it.
-    Result get(const Detector& detector, const cv::Mat& image, const std::string& file);
+    Result get(const Detector& detector, const cv::Mat& image, const std::string& file)
+    {
+        const Key key(detector.name, file);
+        std::unique_lock<std::mutex> lock(mutex_);
+        if (known_.count(key))
+            return known_[key];
+        lock.unlock();
+        const Result result = std::make_shared<std::vector<Described>>(describeAll(detector, image, file));
+        lock.lock();
+        if (known_.emplace(key, result).second)
+            order_.push_back(key);
+        if (order_.size() > most_)
+        {
+            known_.erase(order_.front());
+            order_.pop_front();
+        }
+        return result;
+    }
 
 private:
     typedef std::pair<std::string, std::string> Key;  // detector, file

@@ -39,9 +39,6 @@ int robustness(const Options& options, const std::vector<ImagePair>& pairs);
 //! with N, there may be its homography, H_N; else the camera stood still.
 int comparison(const Options& options, const std::vector<ImagePair>& pairs);
 
-//! Columns of `<out>/fixed_points.csv`.
-std::vector<std::string> fixedPointsColumns();
-
 /** Runs the experiments. @return how many tasks were skipped.
 @throws cv::Exception if there is nothing to evaluate, no image pair can be read, an experiment is unknown, or the folder
 holds results of other settings. */

@@ -19,27 +19,7 @@ bool hasExtras(const Configuration& configuration, const ImagePair& pair)
     return true;
 }
 
-void evaluatePair(const Options& options, const ImagePair& pair,
-        const std::vector<Configuration>& configurations, ResultTable& table)
-{
-    const LoadedPair loaded = loadPair(pair);
-    SeedSource source(loaded.reference, options.points);
-    for (const Configuration& c : configurations)
-    {
-        const SeedPoints seeds = source.seeds(c, loaded.target.size(), loaded.homography);
-        table.append(withCounts({pair.set, pair.sequence, pair.target, c.name, pair.kind,
-                                        std::to_string(descriptorBytes(*c.create()))},
-                matchSeeds(c, loaded, seeds, options.tolerance)));
-    }
-}
-
 }  // namespace
-
-std::vector<std::string> fixedPointsColumns()
-{
-    return {"set", "sequence", "target", "configuration", "kind", "bytes", "correct", "putative",
-            "correspondences", "precision", "recall"};
-}
 
 int fixedPoints(const Options& options, const std::vector<ImagePair>& pairs)
 {
@@ -49,17 +29,19 @@ int fixedPoints(const Options& options, const std::vector<ImagePair>& pairs)
     for (const Configuration& baseline : baselineConfigurations())
         all.push_back(baseline);
 
-    ResultTable table(options.out + "/fixed_points.csv", fixedPointsColumns(), 4);
+    ResultTable table(options.out + "/fixed_points.csv", seededColumns(), 5);
     std::vector<Task> tasks;
     for (const ImagePair& pair : pairs)
     {
+        const Fields key = {pair.set, pair.sequence, pair.target, pair.kind};
         std::vector<Configuration> missing;
         for (const Configuration& c : all)
-            if (hasExtras(c, pair) && !table.has({pair.set, pair.sequence, pair.target, c.name}))
+            if (hasExtras(c, pair) && !table.has({key[0], key[1], key[2], key[3], c.name}))
                 missing.push_back(c);
         if (!missing.empty())
-            tasks.push_back({pair.name(),
-                    [&options, &table, pair, missing] { evaluatePair(options, pair, missing, table); }});
+            tasks.push_back({pair.name(), [&options, &table, pair, missing, key] {
+                                 matchSeeds(options, loadPair(pair), missing, key, table);
+                             }});
     }
     const int skipped = runTasks("fixed points", tasks);
     table.finish();

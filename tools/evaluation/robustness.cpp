@@ -47,27 +47,11 @@ LoadedPair warpedPair(const cv::Mat& reference, const Warp& warp)
     return pair;
 }
 
-void evaluateWarp(const Options& options, const LoadedPair& pair,
-        const std::vector<Configuration>& configurations, const Fields& key, ResultTable& table)
-{
-    SeedSource source(pair.reference, options.points);
-    for (const Configuration& c : configurations)
-    {
-        const SeedPoints seeds = source.seeds(c, pair.target.size(), pair.homography);
-        Fields row = key;
-        row.push_back(c.name);
-        table.append(withCounts(row, matchSeeds(c, pair, seeds, options.tolerance)));
-    }
-}
-
 }  // namespace
 
 int robustness(const Options& options, const std::vector<ImagePair>& pairs)
 {
-    ResultTable table(options.out + "/robustness.csv",
-            {"set", "sequence", "target", "kind", "configuration", "correct", "putative", "correspondences",
-                    "precision", "recall"},
-            5);
+    ResultTable table(options.out + "/robustness.csv", seededColumns(), 5);
     std::vector<Task> tasks;
     std::set<std::string> turned;  // one sequence a set
     for (const ImagePair& pair : pairs)
@@ -84,7 +68,7 @@ int robustness(const Options& options, const std::vector<ImagePair>& pairs)
             if (!missing.empty())
                 tasks.push_back({pair.set + "/" + pair.sequence + " " + warp.kind,
                         [&options, &table, pair, warp, missing, key] {
-                            evaluateWarp(
+                            matchSeeds(
                                     options, warpedPair(loadPair(pair).reference, warp), missing, key, table);
                         }});
         }

@@ -71,22 +71,35 @@ SeedPoints SeedSource::seeds(
     return projectSeeds(points, homography, reference_.size(), targetSize, SEED_RADIUS, count_);
 }
 
-Counts matchSeeds(
-        const Configuration& configuration, const LoadedPair& images, SeedPoints seeds, double tolerance)
+Fields seededColumns()
 {
-    const int correspondences = int(seeds.reference.size());
-    if (configuration.oriented)
+    return {"set", "sequence", "target", "kind", "configuration", "bytes", "correct", "putative",
+            "correspondences", "precision", "recall"};
+}
+
+void matchSeeds(const Options& options, const LoadedPair& images,
+        const std::vector<Configuration>& configurations, const Fields& key, ResultTable& table)
+{
+    SeedSource source(images.reference, options.points);
+    for (const Configuration& c : configurations)
     {
-        orientByCentroid(images.reference, SEED_RADIUS, seeds.reference);
-        orientByCentroid(images.target, SEED_RADIUS, seeds.target);
+        SeedPoints seeds = source.seeds(c, images.target.size(), images.homography);
+        const int correspondences = int(seeds.reference.size());
+        if (c.oriented)
+        {
+            orientByCentroid(images.reference, SEED_RADIUS, seeds.reference);
+            orientByCentroid(images.target, SEED_RADIUS, seeds.target);
+        }
+        const cv::Mat reference = describe(c, images.reference, images.referenceExtra, seeds.reference),
+                      target = describe(c, images.target, images.targetExtra, seeds.target);
+        const cv::Ptr<cv::Feature2D> feature = c.create();
+        const std::vector<bool> correct =
+                correctByLocation(mutualMatches(reference, target, feature->defaultNorm()), seeds.reference,
+                        seeds.target, images.homography, options.tolerance);
+        Fields row = key;
+        row.insert(row.end(), {c.name, std::to_string(descriptorBytes(*feature))});
+        table.append(withCounts(row, countsOf(correct, correspondences)));
     }
-    const cv::Mat reference =
-                          describe(configuration, images.reference, images.referenceExtra, seeds.reference),
-                  target = describe(configuration, images.target, images.targetExtra, seeds.target);
-    const std::vector<cv::DMatch> matches =
-            mutualMatches(reference, target, configuration.create()->defaultNorm());
-    return countsOf(correctByLocation(matches, seeds.reference, seeds.target, images.homography, tolerance),
-            correspondences);
 }
 
 }  // namespace iib_tools

@@ -7,6 +7,8 @@
 #include "common/dataset.hpp"
 #include "common/keypoints.hpp"
 #include "common/metrics.hpp"
+#include "experiments.hpp"
+#include "results.hpp"
 
 namespace iib_tools {
 
@@ -30,9 +32,12 @@ private:
 cv::Mat describe(const Configuration& configuration, const cv::Mat& image,
         const std::map<std::string, cv::Mat>& maps, std::vector<cv::KeyPoint>& points);
 
-/** What the mutual matches of a configuration's descriptors make of the seeds: every seed is a correspondence, whether the
-descriptor kept it or not. */
-Counts matchSeeds(
-        const Configuration& configuration, const LoadedPair& images, SeedPoints seeds, double tolerance);
+//! The columns that matchSeeds fills; `set` to `configuration`, the first five, name a row.
+Fields seededColumns();
+
+/** Appends what the mutual matches of each configuration's descriptors make of its seeds: every seed is a correspondence,
+whether the descriptor kept it or not. @param key set, sequence, target and kind. */
+void matchSeeds(const Options& options, const LoadedPair& images,
+        const std::vector<Configuration>& configurations, const Fields& key, ResultTable& table);
 
 }  // namespace iib_tools

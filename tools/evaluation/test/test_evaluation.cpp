@@ -9,6 +9,7 @@
 #include "../detectors.hpp"
 #include "../experiments.hpp"
 #include "../results.hpp"
+#include "../seeded.hpp"
 #include "../tasks.hpp"
 #include "opencv2/iib.hpp"
 #include "opencv2/imgcodecs.hpp"
@@ -75,13 +76,13 @@ protected:
 
     std::vector<Fields> fixedPointsRows() const
     {
-        return readRows(options.out + "/fixed_points.csv", fixedPointsColumns());
+        return readRows(options.out + "/fixed_points.csv", seededColumns());
     }
 
     double recallOf(const std::string& target, const std::string& configuration) const
     {
         for (const Fields& row : fixedPointsRows())
-            if (row[1] == target && row[3] == configuration)
+            if (row[1] == target && row[4] == configuration)
                 return std::atof(row[10].c_str());
         ADD_FAILURE() << "no row of " << target << ", " << configuration;
         return -1;
