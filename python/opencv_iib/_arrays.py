@@ -33,6 +33,24 @@ def as_array(value: Any, what: str) -> np.ndarray:
     return np.ascontiguousarray(array)
 
 
+def as_matrix(value: Any, what: str) -> np.ndarray:
+    """As as_array, of 2 dimensions, or of 3 with the channels last; of any if it is empty.
+
+    :raises opencv_iib.error: naming `what`, for what OpenCV's matrices cannot hold.
+    """
+    array = as_array(value, what)
+    if array.ndim > 3 or (array.ndim < 2 and array.size):
+        raise _core.error(f'{what}: an array of 2 or 3 dimensions is needed, not {array.ndim}')
+    if array.dtype not in _DEPTHS:
+        raise _core.error(f'{what}: arrays of {array.dtype} are not supported; convert it to uint8, uint16 or float32')
+    if array.size >= 1 << 31 and max(array.shape) >= 1 << 31 or array.shape[2:] > (512,):
+        raise _core.error(f'{what}: too large, or more than 512 channels')
+    return array
+
+
+_DEPTHS = frozenset(map(np.dtype, ('bool', 'uint8', 'int8', 'uint16', 'int16', 'int32', 'float32', 'float64')))
+
+
 def as_image(value: ArrayLike) -> np.ndarray:
     """An image; a tensor of torch or kornia (C x H x W or 1 x C x H x W, RGB) becomes H x W x C, BGR."""
     if value is None:
@@ -43,12 +61,12 @@ def as_image(value: ArrayLike) -> np.ndarray:
     if isinstance(value, np.ndarray) or not hasattr(value, '__dlpack__'):
         if image.ndim == 3 and image.shape[2] > 4 and len(image) in (1, 3, 4):
             raise _core.error(f'the image has the shape {image.shape}: channels come last, as np.moveaxis(image, 0, 2) has them')
-        return image
+        return as_matrix(image, 'the image')
     if image.ndim == 4 and len(image) == 1:
         image = image[0]
     if image.ndim == 3 and len(image) in (1, 3, 4) and image.shape[2] not in (1, 3, 4):
-        image = np.ascontiguousarray(np.moveaxis(image[[2, 1, 0, 3][:len(image)] if len(image) > 1 else [0]], 0, 2))
-    return image
+        image = np.moveaxis(image[[2, 1, 0, 3][:len(image)] if len(image) > 1 else [0]], 0, 2)
+    return as_matrix(image, 'the image')
 
 
 def as_codes(value: ArrayLike, what: str) -> np.ndarray:
@@ -56,13 +74,13 @@ def as_codes(value: ArrayLike, what: str) -> np.ndarray:
 
     :raises opencv_iib.error: for other numbers, such as SIFT's descriptors.
     """
-    codes = as_array(value, what)
+    codes = as_matrix(value, what)
     if codes.size and codes.dtype not in (np.uint8, bool):
         raise _core.error(f'{what}: binary codes are uint8, not {codes.dtype}; Hamming distances of other numbers mean nothing')
     return codes
 
 
-def as_arrays(values: Optional[ArrayOrArrays], what: str, check: Callable[[Any, str], np.ndarray] = as_array
+def as_arrays(values: Optional[ArrayOrArrays], what: str, check: Callable[[Any, str], np.ndarray] = as_matrix
               ) -> list[np.ndarray]:
     """One array, or a sequence of them, as a list."""
     if values is None:

@@ -1,8 +1,6 @@
 """IIBDescriptorExtractor: the class of cv2.iib, for arrays and for the objects of any cv2."""
 from __future__ import annotations
 
-import gzip
-import os
 import warnings
 from typing import Any, Optional, TypeVar, Union
 
@@ -11,8 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arguments import Path, integer, number
-from opencv_iib._arrays import ArrayOrArrays, as_array, as_arrays, as_image
-from opencv_iib._files import write_whole
+from opencv_iib._arrays import ArrayOrArrays, as_arrays, as_image, as_matrix
 from opencv_iib.detectors import Detector, HessianDetector, core_detector, for_pickle
 from opencv_iib.enums import Border, Channel, Mapping, Orientation, Preset, preset_number
 from opencv_iib.keypoints import Keypoints, as_rows
@@ -128,8 +125,7 @@ class IIBDescriptorExtractor(Detector):
         :param extraChannels: getExtraChannels() arrays, each H x W, of uint8, uint16 or float32.
         :return: as compute.
         """
-        descriptors, kept = self._core.compute(as_image(image), np.ascontiguousarray(as_rows(keypoints)),
-                                               as_arrays(extraChannels, 'an extra channel'))
+        descriptors, kept = self._core.compute(as_image(image), as_rows(keypoints), as_arrays(extraChannels, 'an extra channel'))
         if kept is None:
             return keypoints, descriptors
         indices = kept.ravel()
@@ -244,7 +240,7 @@ class IIBDescriptorExtractor(Detector):
 
         :param quads: Q x 5 int32: level, channel, row, column, bits to keep. Empty: all quads again.
         """
-        self._core.setSelection(as_array(quads, 'the selection'))
+        self._core.setSelection(as_matrix(quads, 'the selection'))
 
     def getSelection(self) -> NDArray[np.int32]:
         """Q x 5 int32, as setSelection takes it; 0 x 5 if there is no selection."""
@@ -259,13 +255,7 @@ class IIBDescriptorExtractor(Detector):
 
         :raises opencv_iib.error: if it cannot be written whole; an older file is there then as it was.
         """
-        name = os.fsdecode(fileName)
-        packed = name.endswith('.gz')
-        content = self._core.parameters(os.path.splitext(name[:-3] if packed else name)[1]).encode()
-        try:
-            write_whole(name, gzip.compress(content) if packed else content)
-        except OSError as e:
-            raise _core.error(str(e)) from None
+        self._core.save(fileName)
 
     def read(self, fileName: Path) -> None:
         """Reads what write() or C++ wrote."""
@@ -275,7 +265,7 @@ class IIBDescriptorExtractor(Detector):
         return {**super().__getstate__(), '_detector': for_pickle(self._detector)}
 
     def _parameters(self) -> str:
-        return self._core.parameters('.json')
+        return self._core.parameters()
 
     def _restored(self, parameters: str) -> Any:
         core = _core.Extractor.create(2.0, 4, 15, 0, False, False, 0)

@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arguments import integer, number
-from opencv_iib._arrays import as_array, as_image
+from opencv_iib._arrays import as_image, as_matrix
 from opencv_iib._core_object import CoreObject
-from opencv_iib.keypoints import Keypoints, array_to_keypoints, as_rows
+from opencv_iib.keypoints import array_to_keypoints, as_rows
 
 
 def detector_name(detector: Any) -> str:
@@ -43,17 +43,15 @@ def core_detector(detector: Any) -> _core.Detector:
             return detector
 
     def found(image: np.ndarray, mask: Optional[np.ndarray]) -> np.ndarray:
-        keypoints: Keypoints = kept().detect(image, mask)
-        return np.ascontiguousarray(as_rows(keypoints))
+        return as_rows(kept().detect(image, mask))
 
     return _core.Detector.foreign(found, detector_name(detector).rsplit('.', 1)[-1])
 
 
 def detect_rows(owner: Any, image: ArrayLike, mask: Optional[ArrayLike]) -> NDArray[np.float32]:
     """Keypoints of a detector or extractor of this package as N x 7, see keypoints_to_array."""
-    allowed = np.empty((0, 0), np.uint8) if mask is None else as_array(mask, 'the mask')
-    rows: NDArray[np.float32] = owner._core.detect(as_image(image), allowed)
-    return rows
+    allowed = np.empty((0, 0), np.uint8) if mask is None else as_matrix(mask, 'the mask')
+    return owner._core.detect(as_image(image), allowed)  # type: ignore[no-any-return]
 
 
 class Detector(CoreObject):

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arguments import integer, number
-from opencv_iib._arrays import as_array, as_image
+from opencv_iib._arrays import as_array, as_image, as_matrix
 from opencv_iib.enums import AlignmentModel
 
 
@@ -33,7 +33,7 @@ class Alignment(NamedTuple):
 
 def _numbers(value: ArrayLike, what: str) -> NDArray[Any]:
     array = as_array(value, what)
-    return array if array.dtype in (np.float32, np.float64) else array.astype(np.float64)
+    return as_matrix(array if array.dtype in (np.float32, np.float64) else array.astype(np.float64), what)
 
 
 def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: ArrayLike, cameraMatrix2: ArrayLike,

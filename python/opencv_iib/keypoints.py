@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
-from opencv_iib._arrays import as_array
+from opencv_iib._arrays import as_array, as_matrix
 from opencv_iib._types import KeyPointLike, keypoint_type
 
 #: A sequence of objects like cv2.KeyPoint, or an N x 3, N x 4 or N x 7 array.
@@ -37,17 +37,27 @@ def array_to_keypoints(rows: ArrayLike) -> tuple[Any, ...]:
 
 
 def as_rows(keypoints: Any) -> NDArray[np.float32]:
-    """Rows of 3, 4 or 7 float32 columns for the extension."""
+    """Rows of 3, 4 or 7 float32 columns for the extension.
+
+    :raises opencv_iib.error: for an array with other columns.
+    """
     if isinstance(keypoints, (list, tuple)) and not (len(keypoints) and isinstance(keypoints[0], np.ndarray)):
         return keypoints_to_array(keypoints)
-    return as_array(keypoints, 'keypoints').astype(np.float32, copy=False)
+    rows = as_matrix(as_array(keypoints, 'keypoints').astype(np.float32, copy=False), 'keypoints')
+    if len(rows) and rows.shape[1:] not in ((3,), (4,), (7,)):
+        raise _core.error('keypoints are objects like cv2.KeyPoint or an array of 3 columns (x, y, size), 4 (and the angle) or 7 '
+                          f'(and response, octave, class_id), not of {rows.shape[1]}')
+    return rows
 
 
 def as_pairs(matches: MatchesOfKeypoints) -> NDArray[Any]:
-    """Rows of 2 int32 columns (queryIdx, trainIdx) for the extension."""
+    """Rows of 2 int32 columns (queryIdx, trainIdx) for the extension.
+
+    :raises opencv_iib.error: for other arrays.
+    """
     if not isinstance(matches, np.ndarray):
         matches = np.array([(m.queryIdx, m.trainIdx) for m in matches], np.int32).reshape(-1, 2)
     pairs = as_array(matches, 'matches')
-    if pairs.dtype.kind in 'iu':
-        pairs = pairs.clip(-1, np.iinfo(np.int32).max).astype(np.int32)  # too large is as wrong as negative
-    return pairs
+    if pairs.size and (pairs.dtype.kind not in 'iu' or pairs.shape[1:] != (2,)):
+        raise _core.error('matches are objects like cv2.DMatch or an array of 2 columns of integers (queryIdx, trainIdx)')
+    return pairs.clip(-1, np.iinfo(np.int32).max).astype(np.int32)  # too large is as wrong as negative

@@ -1,27 +1,27 @@
 """HierarchicalMatcher: the class of cv2.iib, on arrays."""
 from __future__ import annotations
 
-from typing import Any, Iterable, Optional, Sequence
+from typing import Any, Iterable, Iterator, Optional, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arguments import Path, integer, integers, number
-from opencv_iib._arrays import ArrayOrArrays, as_array, as_arrays, as_codes
+from opencv_iib._arrays import ArrayOrArrays, as_arrays, as_codes, as_matrix
 from opencv_iib._core_object import CoreObject
 from opencv_iib._types import match_type
 from opencv_iib.enums import Mode
 
 Matches = tuple[tuple[Any, ...], ...]
+BLOCK = 512  # queries that are searched at once: with a million codes, less than a second on one core
 
 
-def _masks(masks: Any) -> Optional[list[Optional[np.ndarray]]]:
-    if masks is None:
-        return None
-    if isinstance(masks, np.ndarray):
-        masks = [masks]
-    return [None if mask is None else as_array(mask, 'a mask') for mask in masks]
+def _masks(masks: Any) -> list[np.ndarray]:
+    """One for each image that was added, empty where all is allowed; or none."""
+    if masks is None or isinstance(masks, np.ndarray):
+        return [] if masks is None else [as_matrix(masks, 'a mask')]
+    return [as_matrix(np.empty((0, 0), np.uint8) if mask is None else mask, 'a mask') for mask in masks]
 
 
 def _objects(matches: Iterable[Sequence[int]], queries: int, compact: bool) -> Matches:
@@ -111,10 +111,12 @@ class HierarchicalMatcher(CoreObject):
         """
         if isinstance(trainDescriptors, (int, float, np.number)):
             return self.radiusMatch(queryDescriptors, None, float(trainDescriptors), mask, compactResult, masks)
-        queries = as_codes(queryDescriptors, 'descriptors')
-        found = self._core.radiusMatch(queries, self._train(trainDescriptors), number(maxDistance, 'maxDistance'),
-                                       _masks(mask if masks is None else masks))
-        return _objects(found.tolist(), len(queries), compactResult)
+        queries, distance = as_codes(queryDescriptors, 'descriptors'), number(maxDistance, 'maxDistance')
+        matcher, matches = self._on(trainDescriptors), []
+        for first, block, allowed in self._blocks(queries, _masks(mask if masks is None else masks)):
+            found = matcher.radiusMatch(block, distance, allowed)
+            matches += (found + [first, 0, 0, 0]).tolist()
+        return _objects(matches, len(queries), compactResult)
 
     def knnMatchArrays(self, queryDescriptors: ArrayLike, trainDescriptors: Optional[ArrayLike] = None, k: int = 1,
                        mask: Optional[ArrayLike] = None, masks: Optional[Sequence[ArrayLike]] = None) -> tuple[NDArray[np.int32], ...]:
@@ -123,12 +125,26 @@ class HierarchicalMatcher(CoreObject):
         :return: indices and distances, queries x k int32, -1 where there is none; among the descriptors added, the
             number of the image as well.
         """
-        return self._core.knnMatchArrays(as_codes(queryDescriptors, 'descriptors'), self._train(trainDescriptors), integer(k, 'k'),
-                                         _masks(mask if masks is None else masks))
+        queries, k, matcher = as_codes(queryDescriptors, 'descriptors'), integer(k, 'k'), self._on(trainDescriptors)
+        blocks = [matcher.knnMatchArrays(block, k, allowed)
+                  for _, block, allowed in self._blocks(queries, _masks(mask if masks is None else masks))]
+        found = tuple(np.concatenate(arrays) for arrays in zip(*blocks)) if len(blocks) > 1 else blocks[0]
+        return found if trainDescriptors is None else found[:2]
 
-    @staticmethod
-    def _train(descriptors: Optional[ArrayLike]) -> Optional[np.ndarray]:
-        return None if descriptors is None else as_codes(descriptors, 'descriptors')
+    def _on(self, descriptors: Optional[ArrayLike]) -> _core.Matcher:
+        """What searches the descriptors of a call, or those added if there are none."""
+        return self._core if descriptors is None else self._core.on(as_codes(descriptors, 'descriptors'))
+
+    def _blocks(self, queries: np.ndarray, masks: list[np.ndarray]) -> Iterator[tuple[int, np.ndarray, list[np.ndarray]]]:
+        """Queries in blocks, each with the number of its first and its masks: Ctrl-C acts between two.
+
+        All are one block for a cross-check, which has to know the others, and for masks that do not fit, a mistake.
+        """
+        whole = self.getCrossCheck() or any(mask.size and len(mask) != len(queries) for mask in masks)
+        size = max(1, len(queries)) if whole else BLOCK
+        for first in range(0, max(1, len(queries)), size):
+            rows = slice(first, first + size)
+            yield first, queries[rows], [mask[rows] for mask in masks]
 
     def add(self, descriptors: ArrayOrArrays) -> None:
         """Adds the descriptors of one image (an array) or of several (a sequence of arrays); they are copied."""

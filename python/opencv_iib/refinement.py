@@ -33,7 +33,6 @@ def refineMatches(image1: ArrayLike, keypoints1: Keypoints, image2: ArrayLike, k
     :raises opencv_iib.error: for a match without a keypoint, and for images and keypoints that cannot be described.
     """
     points1, points2, covariances, similarities = _core.refineMatches(
-        as_image(image1), np.ascontiguousarray(as_rows(keypoints1)), as_image(image2),
-        np.ascontiguousarray(as_rows(keypoints2)), as_pairs(matches1to2))
+        as_image(image1), as_rows(keypoints1), as_image(image2), as_rows(keypoints2), as_pairs(matches1to2))
     # Without matches they have no columns.
     return RefinedMatches(points1.reshape(-1, 2), points2.reshape(-1, 2), covariances.reshape(-1, 3), similarities.ravel())

@@ -22,8 +22,7 @@ def estimateRotation(keypoints1: Keypoints, keypoints2: Keypoints, matches1to2: 
     :param matches1to2: objects like cv2.DMatch, or an M x 2 array of integers (queryIdx, trainIdx).
     :return: degrees, 0 to 360, clockwise in the image.
     """
-    return _core.estimateRotation(np.ascontiguousarray(as_rows(keypoints1)), np.ascontiguousarray(as_rows(keypoints2)),
-                                  as_pairs(matches1to2))
+    return _core.estimateRotation(as_rows(keypoints1), as_rows(keypoints2), as_pairs(matches1to2))
 
 
 def matchRotated(image1: Any, image2: Any, extractor: IIBDescriptorExtractor, matcher: HierarchicalMatcher,
@@ -51,13 +50,11 @@ def matchRotated(image1: Any, image2: Any, extractor: IIBDescriptorExtractor, ma
     _core.matchRotated(images[0], none, images[1], none, extractor._core, matcher._core, rotation)  # mistakes, before it detects
     points = [extractor.detect(image) if given is None else given
               for image, given in zip(images, (keypoints1, keypoints2))]
-    rows = [np.ascontiguousarray(as_rows(given)) for given in points]
-    rotation, first, second, matches = _core.matchRotated(images[0], rows[0], images[1], rows[1], extractor._core,
-                                                          matcher._core, rotation)
+    first, second = map(as_rows, points)
+    rotation, first, second, matches = _core.matchRotated(images[0], first, images[1], second, extractor._core, matcher._core, rotation)
     found = [described if isinstance(given, np.ndarray) else array_to_keypoints(described)
              for given, described in zip(points, (first, second))]
     if isinstance(keypoints1, np.ndarray):
-        return rotation, found[0], found[1], matches
+        return rotation, found[0], found[1], matches[:, [0, 1, 3]]
     make = match_type()
-    return rotation, found[0], found[1], tuple(make(query, train, 0, float(distance))
-                                               for query, train, distance in matches.tolist())
+    return rotation, found[0], found[1], tuple(make(*match) for match in matches.tolist())

@@ -6,64 +6,105 @@ namespace iib_python {
 
 namespace {
 
-int depthOf(nb::dlpack::dtype type)
+const struct
 {
-    if (type == nb::dtype<bool>())
-        return CV_8U;
-    const struct
-    {
-        nb::dlpack::dtype type;
-        int depth;
-    } known[] = {{nb::dtype<uint8_t>(), CV_8U}, {nb::dtype<int8_t>(), CV_8S}, {nb::dtype<uint16_t>(), CV_16U},
-            {nb::dtype<int16_t>(), CV_16S}, {nb::dtype<int32_t>(), CV_32S}, {nb::dtype<float>(), CV_32F},
-            {nb::dtype<double>(), CV_64F}};
-    for (const auto& k : known)
-        if (k.type == type)
-            return k.depth;
-    return -1;
-}
+    nb::dlpack::dtype type;
+    int depth;
+} DEPTHS[] = {{nb::dtype<uint8_t>(), CV_8U}, {nb::dtype<bool>(), CV_8U}, {nb::dtype<int8_t>(), CV_8S},
+        {nb::dtype<uint16_t>(), CV_16U}, {nb::dtype<int16_t>(), CV_16S}, {nb::dtype<int32_t>(), CV_32S},
+        {nb::dtype<float>(), CV_32F}, {nb::dtype<double>(), CV_64F}};
+
+constexpr int KEYPOINT_COLUMNS = 7;
 
 }  // namespace
 
-cv::Mat viewOf(const Array& array, const char* what)
+nb::object toNumpy(const cv::Mat& matrix)
+{
+    cv::Mat* const owned = new cv::Mat(matrix.isContinuous() ? matrix : matrix.clone());
+    const nb::capsule owner(owned, [](void* p) noexcept { delete static_cast<cv::Mat*>(p); });
+    const size_t shape[] = {(size_t)matrix.rows, (size_t)matrix.cols, (size_t)matrix.channels()};
+    const auto* known = DEPTHS;
+    while (known->depth != matrix.depth())
+        known++;
+    return nb::cast(nb::ndarray<nb::numpy>(
+            owned->data, matrix.channels() > 1 ? 3 : 2, shape, owner, nullptr, known->type));
+}
+
+bool read(const Array& array, cv::Mat& view)
 {
     const size_t dims = array.ndim();
-    if (dims > 3 || (dims < 2 && array.size() > 0))
-        CV_Error_(cv::Error::StsBadArg,
-                ("%s: an array of 2 or 3 dimensions is needed, not %d", what, (int)dims));
-    const int depth = depthOf(array.dtype());
-    if (depth < 0)
-        CV_Error_(cv::Error::StsUnsupportedFormat, ("%s: arrays of %d bits an element, type code %d, are not "
-                                                    "supported; convert it to uint8, uint16 "
-                                                    "or float32",
-                                                           what, array.dtype().bits, array.dtype().code));
-    const size_t channels = dims == 3 ? array.shape(2) : 1, cols = dims > 1 ? array.shape(1) : 1;
-    if (array.shape(0) > INT_MAX || cols > INT_MAX || channels > CV_CN_MAX)
-        CV_Error_(cv::Error::StsBadSize, ("%s: too large, or more than %d channels", what, CV_CN_MAX));
-    if (array.size() == 0)
-        return cv::Mat((int)array.shape(0), (int)cols, CV_MAKETYPE(depth, std::max((int)channels, 1)));
-    return cv::Mat((int)array.shape(0), (int)cols, CV_MAKETYPE(depth, (int)channels),
-            const_cast<void*>(array.data()));
+    const size_t rows = dims > 0 ? array.shape(0) : 1, cols = dims > 1 ? array.shape(1) : 1,
+                 channels = dims > 2 ? array.shape(2) : 1;
+    for (const auto& known : DEPTHS)
+        if (known.type == array.dtype() && dims <= 3 && std::max(rows, cols) <= INT_MAX &&
+                channels <= CV_CN_MAX)
+        {
+            const int type = CV_MAKETYPE(known.depth, std::max((int)channels, 1));
+            view = array.size() == 0 ? cv::Mat((int)rows, (int)cols, type)
+                                     : cv::Mat((int)rows, (int)cols, type, const_cast<void*>(array.data()));
+            return true;
+        }
+    return false;
 }
 
-std::vector<cv::Mat> viewsOf(const std::vector<Array>& arrays, const char* what)
+bool read(const Array& array, std::vector<cv::KeyPoint>& keypoints)
 {
-    std::vector<cv::Mat> views;
-    for (const Array& array : arrays)
-        views.push_back(viewOf(array, what));
-    return views;
+    cv::Mat rows;
+    if (!read(array, rows) || (rows.rows > 0 && rows.type() != CV_32F))
+        return false;
+    keypoints.resize((size_t)rows.rows);
+    for (int i = 0; i < rows.rows; i++)
+    {
+        const float* row = rows.ptr<float>(i);
+        cv::KeyPoint& k = keypoints[(size_t)i];
+        k = cv::KeyPoint(row[0], row[1], row[2], rows.cols > 3 ? row[3] : -1);
+        if (rows.cols == KEYPOINT_COLUMNS)
+        {
+            k.response = row[4];
+            k.octave = cv::saturate_cast<int>(row[5]);
+            k.class_id = cv::saturate_cast<int>(row[6]);
+        }
+    }
+    return true;
 }
 
-std::string parametersOf(const cv::Algorithm& self, const std::string& extension)
+cv::Mat matrixOf(const std::vector<cv::KeyPoint>& keypoints)
 {
-    cv::FileStorage file("parameters" + extension, cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
-    self.write(file);
-    return file.releaseAndGetString();
+    cv::Mat rows(0, KEYPOINT_COLUMNS, CV_32F);
+    rows.reserve(keypoints.size());
+    for (const cv::KeyPoint& k : keypoints)
+        rows.push_back(cv::Mat(cv::Matx<float, 1, KEYPOINT_COLUMNS>(
+                k.pt.x, k.pt.y, k.size, k.angle, k.response, (float)k.octave, (float)k.class_id)));
+    return rows;
 }
 
-void setParameters(cv::Algorithm& self, const std::string& text)
+bool read(const Array& array, std::vector<cv::DMatch>& matches)
 {
-    self.read(cv::FileStorage(text, cv::FileStorage::READ | cv::FileStorage::MEMORY).root());
+    cv::Mat pairs;
+    if (!read(array, pairs) || (!pairs.empty() && (pairs.type() != CV_32S || pairs.cols != 2)))
+        return false;
+    matches.clear();
+    for (int i = 0; i < pairs.rows; i++)
+        matches.emplace_back(pairs.at<int>(i, 0), pairs.at<int>(i, 1), 0.f);
+    return true;
+}
+
+cv::Mat matrixOf(const std::vector<cv::DMatch>& matches)
+{
+    cv::Mat rows(0, 4, CV_32S);
+    rows.reserve(matches.size());
+    for (const cv::DMatch& m : matches)
+        rows.push_back(cv::Mat(cv::Matx<int, 1, 4>(m.queryIdx, m.trainIdx, m.imgIdx, (int)m.distance)));
+    return rows;
+}
+
+bool read(const Array& array, cv::Affine3d& pose)
+{
+    cv::Mat matrix;
+    if (!read(array, matrix) || matrix.type() != CV_64F || matrix.size() != cv::Size(4, 4))
+        return false;
+    pose = cv::Affine3d(cv::Matx44d(matrix.ptr<double>()));
+    return true;
 }
 
 std::string pathOf(nb::handle path)
@@ -75,22 +116,16 @@ std::string pathOf(nb::handle path)
     return std::string(name.c_str(), name.size());
 }
 
-nb::object toNumpy(const cv::Mat& matrix)
+std::string parametersOf(const cv::Algorithm& self)
 {
-    CV_Assert(matrix.channels() == 1 && (matrix.empty() || matrix.isContinuous()));
-    cv::Mat* owned = new cv::Mat(matrix);
-    nb::capsule owner(owned, [](void* p) noexcept { delete static_cast<cv::Mat*>(p); });
-    const size_t shape[] = {(size_t)matrix.rows, (size_t)matrix.cols};
-    switch (matrix.depth())
-    {
-    case CV_8U: return nb::cast(nb::ndarray<nb::numpy, uint8_t>(owned->data, 2, shape, owner));
-    case CV_16U: return nb::cast(nb::ndarray<nb::numpy, uint16_t>(owned->data, 2, shape, owner));
-    case CV_32S: return nb::cast(nb::ndarray<nb::numpy, int32_t>(owned->data, 2, shape, owner));
-    case CV_64F: return nb::cast(nb::ndarray<nb::numpy, double>(owned->data, 2, shape, owner));
-    default:
-        CV_Assert(matrix.depth() == CV_32F);
-        return nb::cast(nb::ndarray<nb::numpy, float>(owned->data, 2, shape, owner));
-    }
+    cv::FileStorage file(".json", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+    self.write(file);
+    return file.releaseAndGetString();
+}
+
+void setParameters(cv::Algorithm& self, const std::string& text)
+{
+    self.read(cv::FileStorage(text, cv::FileStorage::READ | cv::FileStorage::MEMORY).root());
 }
 
 }  // namespace iib_python

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include "arrays.hpp"
 #include "bindings.hpp"
-#include "keypoints.hpp"
 
 #include "opencv2/iib.hpp"
 
@@ -12,16 +12,9 @@ namespace {
 typedef cv::iib::NormalizedDetector Normalized;
 typedef cv::iib::HessianDetector Hessian;
 
-//! A copy as numpy has images: rows x columns, and channels if there are several.
-nb::object imageToNumpy(const cv::Mat& image)
-{
-    nb::object array = toNumpy(image.clone().reshape(1));
-    return image.channels() == 1 ? array : array.attr("reshape")(image.rows, image.cols, image.channels());
-}
-
 /** @brief A detector of Python, for instance of a foreign cv2, as this OpenCV's Feature2D.
 
-`function(image, mask or None)` gives rows of keypoints (keypoints.hpp). Only arrays cross; the image that it gets is
+`function(image, mask or None)` gives rows of keypoints (arrays.hpp). Only arrays cross; the image that it gets is
 a copy, since a detector may keep it. Any thread may call it. It computes no descriptors.
  */
 class ForeignDetector CV_FINAL : public cv::Feature2D
@@ -38,9 +31,9 @@ public:
     {
         nb::gil_scoped_acquire gil;
         const cv::Mat allowed = mask.getMat();
-        const nb::object rows =
-                function(imageToNumpy(image.getMat()), allowed.empty() ? nb::none() : imageToNumpy(allowed));
-        keypoints = toKeyPoints(viewOf(nb::cast<Array>(rows), "keypoints"));
+        const nb::object rows = function(
+                toNumpy(image.getMat().clone()), allowed.empty() ? nb::none() : toNumpy(allowed.clone()));
+        keypoints = nb::cast<std::vector<cv::KeyPoint>>(rows);
     }
     bool empty() const CV_OVERRIDE { return false; }
     cv::String getDefaultName() const CV_OVERRIDE { return "Feature2D." + name; }
@@ -50,17 +43,13 @@ private:
     std::string name;
 };
 
-nb::object detect(cv::Feature2D& self, const Array& image, const Array& mask)
+//! @param mask empty: everywhere.
+std::vector<cv::KeyPoint> detect(cv::Feature2D& self, const cv::Mat& image, const cv::Mat& mask)
 {
-    const cv::Mat view = viewOf(image, "the image");
-    const cv::Mat allowed = viewOf(mask, "the mask");  // empty: everywhere
     std::vector<cv::KeyPoint> keypoints;
-    {
-        nb::gil_scoped_release release;
-        if (!view.empty())
-            self.detect(view, keypoints, allowed);
-    }
-    return toNumpy(toRows(keypoints));
+    if (!image.empty())
+        self.detect(image, keypoints, mask);
+    return keypoints;
 }
 
 std::shared_ptr<cv::Feature2D> foreignDetector(nb::callable function, const std::string& name)
@@ -74,7 +63,7 @@ void bindDetectors(nb::module_& m)
 {
     nb::class_<cv::Feature2D>(m, "Detector")
             .def_static("foreign", &foreignDetector)
-            .def("detect", &detect)
+            .def("detect", &detect, WithoutGil())
             .def("descriptorSize", &cv::Feature2D::descriptorSize)
             .def("descriptorType", &cv::Feature2D::descriptorType)
             .def("defaultNorm", &cv::Feature2D::defaultNorm)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include "arrays.hpp"
 #include "bindings.hpp"
-#include "keypoints.hpp"
 
 #include "opencv2/iib.hpp"
 
@@ -14,28 +14,22 @@ namespace {
 typedef cv::iib::IIBDescriptorExtractor Extractor;
 
 // The descriptors, and which keypoints were kept if not all were.
-nb::tuple compute(Extractor& self, const Array& image, const Array& keypointRows,
-        const std::vector<Array>& extraChannels)
+std::tuple<cv::Mat, std::optional<cv::Mat>> compute(Extractor& self, const cv::Mat& image,
+        std::vector<cv::KeyPoint> keypoints, const std::vector<cv::Mat>& extraChannels)
 {
-    const cv::Mat view = viewOf(image, "the image");
-    const std::vector<cv::Mat> extra = viewsOf(extraChannels, "an extra channel");
-    std::vector<cv::KeyPoint> keypoints = toKeyPoints(viewOf(keypointRows, "keypoints"));
     const size_t given = keypoints.size();
+    for (size_t i = 0; i < given; i++)
+        keypoints[i].class_id = (int)i;
     cv::Mat descriptors;
-    {
-        nb::gil_scoped_release release;
-        for (size_t i = 0; i < given; i++)
-            keypoints[i].class_id = (int)i;
-        self.compute(view, extra, keypoints, descriptors);
-    }
+    self.compute(image, extraChannels, keypoints, descriptors);
     if (descriptors.empty())
         descriptors.create(0, self.descriptorSize(), CV_8U);
     if (keypoints.size() == given)
-        return nb::make_tuple(toNumpy(descriptors), nb::none());
+        return {descriptors, std::nullopt};
     cv::Mat kept((int)keypoints.size(), 1, CV_32S);
     for (size_t i = 0; i < keypoints.size(); i++)
         kept.at<int>((int)i) = keypoints[i].class_id;
-    return nb::make_tuple(toNumpy(descriptors), toNumpy(kept));
+    return {descriptors, kept};
 }
 
 // The same without its detector, which may be an object of Python that no file can hold.
@@ -60,7 +54,7 @@ void bindExtractor(nb::module_& m)
             .def_static("scaleFactorFor", nb::overload_cast<const cv::String&>(&Extractor::scaleFactorFor))
             .def_static("scaleFactorFor",
                     nb::overload_cast<const cv::Ptr<cv::Feature2D>&>(&Extractor::scaleFactorFor))
-            .def("compute", &compute)
+            .def("compute", &compute, WithoutGil())
             .def("setDetector", &Extractor::setDetector)
             .def("levelSizes", &Extractor::levelSizes)
             .def_prop_rw("scaleFactor", &Extractor::getScaleFactor, &Extractor::setScaleFactor)
@@ -72,14 +66,11 @@ void bindExtractor(nb::module_& m)
             .def_prop_rw("orientation", &Extractor::getOrientation, &Extractor::setOrientation)
             .def_prop_rw("extraChannels", &Extractor::getExtraChannels, &Extractor::setExtraChannels)
             .def_prop_rw("border", &Extractor::getBorder, &Extractor::setBorder)
-            .def("setSelection",
-                    [](Extractor& self, const Array& quads) {
-                        self.setSelection(viewOf(quads, "the selection"));
-                    })
+            .def("setSelection", [](Extractor& self, const cv::Mat& quads) { self.setSelection(quads); })
             .def("getSelection",
                     [](const Extractor& self) {
                         const cv::Mat quads = self.getSelection();
-                        return toNumpy(quads.empty() ? cv::Mat(0, 5, CV_32S) : quads);
+                        return quads.empty() ? cv::Mat(0, 5, CV_32S) : quads;
                     })
             .def(
                     "read",
@@ -90,10 +81,11 @@ void bindExtractor(nb::module_& m)
                         static_cast<cv::Feature2D&>(self).read(name);
                     },
                     nb::arg().none())
-            .def("parameters",
-                    [](const Extractor& self, const std::string& extension) {
-                        return parametersOf(*withoutDetector(self), extension);
-                    })
+            .def(
+                    "save",
+                    [](const Extractor& self, nb::object file) { withoutDetector(self)->save(pathOf(file)); },
+                    nb::arg().none())
+            .def("parameters", [](const Extractor& self) { return parametersOf(*withoutDetector(self)); })
             .def("setParameters",
                     [](Extractor& self, const std::string& text) { setParameters(self, text); });
 }

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <nanobind/stl/optional.h>
-#include <nanobind/stl/tuple.h>
-
 #include "arrays.hpp"
 #include "bindings.hpp"
 
@@ -13,54 +10,17 @@ namespace iib_python {
 namespace {
 
 using cv::iib::Camera;
+using cv::iib::Localizer;
 using cv::iib::Location;
 using cv::iib::MapUpdate;
+using cv::iib::PosedImage;
 
 nb::bytes bytesOf(const std::string& text) { return nb::bytes(text.data(), text.size()); }
 
-//! N x 2 or N x 3 of points.
-template <typename Point> nb::object pointsToNumpy(const std::vector<Point>& points)
+Location localize(const Localizer& self, const cv::Mat& image, const Camera& camera,
+        const std::optional<cv::Affine3d>& prior)
 {
-    cv::Mat rows((int)points.size(), cv::DataType<Point>::channels, CV_64F);
-    if (!points.empty())
-        cv::Mat(points).reshape(1).copyTo(rows);
-    return toNumpy(rows);
-}
-
-template <typename Point> std::vector<Point> pointsOf(const Array& array)
-{
-    const cv::Mat rows = viewOf(array, "points");
-    CV_Assert(rows.empty() || (rows.type() == CV_64F && rows.cols == cv::DataType<Point>::channels));
-    const Point* begin = rows.ptr<Point>();
-    return std::vector<Point>(begin, begin + rows.rows);
-}
-
-cv::Affine3d poseOf(const Array& array)
-{
-    const cv::Mat matrix = viewOf(array, "a pose");
-    CV_Assert(matrix.type() == CV_64F && matrix.size() == cv::Size(4, 4));
-    return cv::Affine3d(cv::Matx44d(matrix.ptr<double>()));
-}
-
-nb::object poseToNumpy(const Location& location)
-{
-    return location.found ? toNumpy(cv::Mat(location.cameraFromWorld.matrix)) : nb::none();
-}
-
-nb::object covarianceToNumpy(const Location& location)
-{
-    return location.found ? toNumpy(cv::Mat(location.covariance)) : nb::none();
-}
-
-Location localize(const cv::iib::Localizer& self, const Array& image, const Camera& camera,
-        const std::optional<Array>& prior)
-{
-    const cv::Mat view = viewOf(image, "the image");
-    cv::Affine3d pose;
-    if (prior)
-        pose = poseOf(*prior);
-    nb::gil_scoped_release release;
-    return self.localize(view, camera, prior ? &pose : nullptr);
+    return self.localize(image, camera, prior ? &*prior : nullptr);
 }
 
 void buildMap(nb::handle model, const nb::callable& read, nb::handle map, int points, bool lines,
@@ -68,7 +28,7 @@ void buildMap(nb::handle model, const nb::callable& read, nb::handle map, int po
 {
     const auto image = [&read](const std::string& name) {
         nb::gil_scoped_acquire gil;
-        return viewOf(nb::cast<Array>(read(bytesOf(name))), "an image").clone();
+        return nb::cast<cv::Mat>(read(bytesOf(name))).clone();
     };
     const auto step = [&report](size_t done, size_t all, const std::string& problem) {
         nb::gil_scoped_acquire gil;
@@ -81,40 +41,17 @@ void buildMap(nb::handle model, const nb::callable& read, nb::handle map, int po
     cv::iib::buildMap(from, image, to, options, step);
 }
 
-//! A name, a camera, a pose and the pixels of keypoints for each image.
-void writeModel(nb::handle folder, const std::vector<std::tuple<std::string, Camera, Array, Array>>& images)
+void writeModel(nb::handle folder, const std::vector<PosedImage>& images)
 {
-    std::vector<cv::iib::PosedImage> written;
-    for (const auto& [name, camera, pose, pixels] : images)
-    {
-        written.emplace_back();
-        cv::iib::PosedImage& image = written.back();
-        image.name = name;
-        image.camera = camera;
-        image.cameraFromWorld = poseOf(pose);
-        image.pixels = pointsOf<cv::Point2d>(pixels);
-        image.sees.assign(image.pixels.size(), -1);
-    }
     const std::string to = pathOf(folder);
     nb::gil_scoped_release release;
-    cv::iib::writeModel(to, written);
+    cv::iib::writeModel(to, images);
 }
 
-Location add(MapUpdate& self, const std::string& name, const Array& image, const Camera& camera)
+std::tuple<int, int, int> commit(MapUpdate& self)
 {
-    const cv::Mat view = viewOf(image, "the image");
-    nb::gil_scoped_release release;
-    return self.add(name, view, camera);
-}
-
-nb::tuple commit(MapUpdate& self)
-{
-    MapUpdate::Counts counts;
-    {
-        nb::gil_scoped_release release;
-        counts = self.commit();
-    }
-    return nb::make_tuple(counts.localized, counts.added, counts.dropped);
+    const MapUpdate::Counts counts = self.commit();
+    return {counts.localized, counts.added, counts.dropped};
 }
 
 }  // namespace
@@ -127,34 +64,35 @@ void bindLocalization(nb::module_& m)
             .def_prop_ro("width", [](const Camera& self) { return self.size.width; })
             .def_prop_ro("height", [](const Camera& self) { return self.size.height; })
             .def_ro("params", &Camera::parameters)
-            .def(
-                    "project",
-                    [](const Camera& self, const Array& points) {
-                        return pointsToNumpy(self.project(pointsOf<cv::Point3d>(points)));
-                    },
-                    nb::sig("def project(self, points: NDArray, /) -> NDArray"));
+            .def("project", &Camera::project);
+    nb::class_<PosedImage>(m, "PosedImage")
+            .def("__init__", [](PosedImage* self, const std::string& name, const Camera& camera,
+                                     const cv::Affine3d& pose, const std::vector<cv::Point2d>& pixels) {
+                new (self) PosedImage{name, camera, pose, pixels, std::vector<int>(pixels.size(), -1)};
+            });
     nb::class_<Location>(m, "Location")
             .def_ro("reason", &Location::reason)
-            .def_prop_ro(
-                    "cam_from_world", &poseToNumpy, nb::sig("def cam_from_world(self) -> NDArray | None"))
-            .def_prop_ro("covariance", &covarianceToNumpy, nb::sig("def covariance(self) -> NDArray | None"))
+            .def_prop_ro("cam_from_world",
+                    [](const Location& self) {
+                        return self.found ? std::make_optional(self.cameraFromWorld) : std::nullopt;
+                    })
+            .def_prop_ro("covariance",
+                    [](const Location& self) {
+                        return self.found ? std::make_optional(cv::Mat(self.covariance)) : std::nullopt;
+                    })
             .def_ro("matches", &Location::matches)
             .def_ro("inliers", &Location::inliers)
-            .def_prop_ro(
-                    "pixels", [](const Location& self) { return pointsToNumpy(self.pixels); },
-                    nb::sig("def pixels(self) -> NDArray"))
-            .def_prop_ro(
-                    "points", [](const Location& self) { return pointsToNumpy(self.points); },
-                    nb::sig("def points(self) -> NDArray"));
-    nb::class_<cv::iib::Localizer>(m, "Localizer")
+            .def_ro("pixels", &Location::pixels)
+            .def_ro("points", &Location::points);
+    nb::class_<Localizer>(m, "Localizer")
             .def("__init__",
-                    [](cv::iib::Localizer* self, nb::handle map, int points, bool lines) {
+                    [](Localizer* self, nb::handle map, int points, bool lines) {
                         const std::string folder = pathOf(map);
                         nb::gil_scoped_release release;
-                        new (self) cv::iib::Localizer(folder, points, lines);
+                        new (self) Localizer(folder, points, lines);
                     })
-            .def("cameras", &cv::iib::Localizer::cameras)
-            .def("localize", &localize);
+            .def("cameras", &Localizer::cameras)
+            .def("localize", &localize, WithoutGil());
     nb::class_<MapUpdate>(m, "MapUpdate")
             .def("__init__",
                     [](MapUpdate* self, nb::handle map, nb::handle out) {
@@ -163,8 +101,13 @@ void bindLocalization(nb::module_& m)
                         new (self) MapUpdate(from, to);
                     })
             .def("cameras", &MapUpdate::cameras)
-            .def("add", &add)
-            .def("commit", &commit);
+            .def(
+                    "add",
+                    [](MapUpdate& self, const std::string& name, const cv::Mat& image, const Camera& camera) {
+                        return self.add(name, image, camera);
+                    },
+                    WithoutGil())
+            .def("commit", &commit, WithoutGil());
     m.def("buildMap", &buildMap);
     m.def("writeModel", &writeModel);
 }

@@ -11,40 +11,24 @@ namespace {
 
 typedef cv::iib::MappedIndex Index;
 
-void add(Index& self, const std::vector<Array>& arrays)
-{
-    const std::vector<cv::Mat> views = viewsOf(arrays, "descriptors");
-    nb::gil_scoped_release release;
-    self.add(views);
-}
-
-void remove(Index& self, const std::vector<int64_t>& images)
-{
-    nb::gil_scoped_release release;
-    self.remove(std::vector<int64>(images.begin(), images.end()));
-}
-
-template <typename T> nb::object matrixOf(std::vector<T>&& values, size_t columns)
+template <typename T> nb::object arrayOf(std::vector<T>&& values)
 {
     std::vector<T>* const kept = new std::vector<T>(std::move(values));
     const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-    return nb::cast(nb::ndarray<nb::numpy, T, nb::ndim<2>>(
-            kept->data(), {columns ? kept->size() / columns : 0, columns}, owner));
+    return nb::cast(nb::ndarray<nb::numpy, T, nb::ndim<1>>(kept->data(), {kept->size()}, owner));
 }
 
-nb::tuple search(const Index& self, const Array& queries_, int k, int segment)
+//! Rows and distances, one query after another.
+nb::tuple search(const Index& self, const cv::Mat& queries, int k, int segment)
 {
-    const cv::Mat queries = viewOf(queries_, "queries");
-    std::vector<int64_t> rows;
+    std::vector<int64> rows;
     std::vector<int> distances;
-    inBlocks(queries.rows, BLOCK, [&](const cv::Range& block) {
-        std::vector<int64> foundRows;
-        std::vector<int> foundDistances;
-        self.knnSearch(queries.rowRange(block), k, foundRows, foundDistances, segment);
-        rows.insert(rows.end(), foundRows.begin(), foundRows.end());
-        distances.insert(distances.end(), foundDistances.begin(), foundDistances.end());
-    });
-    return nb::make_tuple(matrixOf(std::move(rows), k), matrixOf(std::move(distances), k));
+    {
+        nb::gil_scoped_release release;
+        self.knnSearch(queries, k, rows, distances, segment);
+    }
+    return nb::make_tuple(
+            arrayOf(std::vector<int64_t>(rows.begin(), rows.end())), arrayOf(std::move(distances)));
 }
 
 }  // namespace
@@ -63,16 +47,17 @@ void bindMappedIndex(nb::module_& m)
                         return Index::open(name);
                     })
             .def("levelSizes", &Index::levelSizes)
-            .def("images", [](const Index& self) { return (int64_t)self.images(); })
-            .def("rows", [](const Index& self) { return (int64_t)self.rows(); })
+            .def("images", &Index::images)
+            .def("rows", &Index::rows)
             .def("segments", &Index::segments)
-            .def("version", [](const Index& self) { return (uint64_t)self.version(); })
-            .def("imageOf", [](const Index& self, int64_t row) { return (int64_t)self.imageOf(row); })
-            .def("firstRow", [](const Index& self, int64_t image) { return (int64_t)self.firstRow(image); })
-            .def("descriptors",
-                    [](const Index& self, int64_t image) { return toNumpy(self.descriptors(image)); })
-            .def("add", &add)
-            .def("remove", &remove)
+            .def("version", &Index::version)
+            .def("imageOf", &Index::imageOf)
+            .def("firstRow", &Index::firstRow)
+            .def("descriptors", &Index::descriptors)
+            .def(
+                    "add", [](Index& self, const std::vector<cv::Mat>& images) { self.add(images); },
+                    WithoutGil())
+            .def("remove", &Index::remove, WithoutGil())
             .def("refresh", &Index::refresh)
             .def("search", &search);
 }

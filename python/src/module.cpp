@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include "arrays.hpp"
 #include "bindings.hpp"
-#include "keypoints.hpp"
 
-namespace nb = nanobind;
 using namespace iib_python;
 
 NB_MODULE(_core, m)
@@ -30,14 +29,12 @@ NB_MODULE(_core, m)
     bindExtractor(m);
     bindMatcher(m);
     bindMappedIndex(m);
-    bindRefinement(m);
-    bindRotation(m);
+    bindFunctions(m);
     bindLocalization(m);
-    bindGeometry(m);
 
     m.attr("VERSION") = IIB_VERSION;
     m.attr("OPENCV_VERSION") = CV_VERSION;
-    m.def("readKeyPoints", [](nb::sequence keypoints) { return toNumpy(readKeyPoints(keypoints)); });
+    m.def("readKeyPoints", &readKeyPoints);
     m.def("setNumThreads", [](int threads) { cv::setNumThreads(threads); });
     m.def("getNumThreads", [] { return cv::getNumThreads(); });
 }

@@ -123,7 +123,7 @@ class Arrays(unittest.TestCase):
                 ('selection', lambda: self.iib.setSelection(np.zeros((1, 5), np.float32))),
                 ('the image is NaN', lambda: self.iib.compute(np.full((9, 9), np.nan, np.float32), grid())),
                 ('type CV_64FC1', lambda: self.iib.compute(self.image.astype(np.float64), grid())),
-                ('the image: arrays of 64 bits', lambda: self.iib.compute(self.image.astype(np.int64), grid())),
+                ('the image: arrays of int64', lambda: self.iib.compute(self.image.astype(np.int64), grid())),
                 ('the image: an array of 2 or 3', lambda: self.iib.compute(np.zeros((2, 2, 2, 2)), grid())),
                 ('extra channel', lambda: IIB.create(extraChannels=1).compute(self.image, grid())),
                 ('keypoint 0', lambda: self.iib.compute(self.image, [opencv_iib.KeyPoint(3, 3, 0)])),
@@ -194,8 +194,9 @@ class Objects(InFolder):
         iib.write(path)
         other.read(path)
         nowhere = self.folder / 'nothing' / 'iib.yml'
-        for call, wrong in ((iib.write, ': there is no folder'), (iib.save, ': there is no folder'), (iib.read, ' cannot be read')):
-            with self.assertRaisesRegex(opencv_iib.error, f'nothing/iib.yml{wrong}'):
+        for call, told in ((iib.write, 'Cannot write .*/nothing/iib.yml: check the folder'),
+                           (iib.save, 'Cannot write .*/nothing/iib.yml'), (iib.read, 'nothing/iib.yml cannot be read')):
+            with self.assertRaisesRegex(opencv_iib.error, told):
                 call(nowhere)
         for name in ('iib.xml', 'iib.json.gz', os.fsdecode(b'\xe9.yml')):
             again = IIB.create()
@@ -204,7 +205,7 @@ class Objects(InFolder):
             self.expect_same(iib, again)
         before = path.read_bytes()
         for size in (0, 100, len(before) - 1):
-            with self.subTest(size), files_end_at(size), self.assertRaisesRegex(opencv_iib.error, 'iib.yml cannot be written'):
+            with self.subTest(size), files_end_at(size), self.assertRaisesRegex(opencv_iib.error, 'Cannot write .*iib.yml'):
                 iib.save(path)
             self.assertEqual(path.read_bytes(), before)
         self.assertEqual(len(os.listdir(self.folder)), 4)

@@ -60,7 +60,7 @@ def evening(grey, noise=2):
 def write_model(folder, poses, camera=CAMERA):
     """A COLMAP model without points, of poses by name."""
     os.makedirs(folder, exist_ok=True)
-    _core.writeModel(folder, [(name, Camera.parse(camera), pose, np.empty((0, 2))) for name, pose in poses.items()])
+    _core.writeModel(folder, [_core.PosedImage(name, Camera.parse(camera), pose, np.empty((0, 2))) for name, pose in poses.items()])
 
 
 def trajectory(folder, name='trajectory.txt'):

@@ -47,7 +47,7 @@ def read_place(folder, step=1):
 def write_model(folder, camera, poses):
     """A COLMAP model without points."""
     folder.mkdir(parents=True, exist_ok=True)
-    _core.writeModel(folder, [(name, camera, pose, np.empty((0, 2))) for name, pose in poses.items()])
+    _core.writeModel(folder, [_core.PosedImage(name, camera, pose, np.empty((0, 2))) for name, pose in poses.items()])
 
 
 def chain(folder, work, step=1):

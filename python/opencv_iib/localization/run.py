@@ -146,7 +146,7 @@ def localize_images(map: str, images: str, out: str, camera: Optional[AnyCamera]
                 frames.writerow([name, 1, '', matches, inliers, *(f'{value:.6g}' for value in location.covariance[np.triu_indices(6)])])
                 stem = os.path.splitext(name)[0]
                 trajectory.write(f'{stem} {" ".join(repr(v) for v in _place_and_turn(location.cam_from_world))}\n')
-                posed.append((name, own, location.cam_from_world, location.pixels))
+                posed.append(_core.PosedImage(name, own, location.cam_from_world, location.pixels))
                 if pictures:
                     _write_picture(os.path.join(partial, 'matches', stem + '.png'), os.path.join(images, name), own, location)
         _core.writeModel(partial, posed)

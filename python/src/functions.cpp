@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+#include "opencv2/iib.hpp"
+#include "opencv2/iib_geometry.hpp"
+
+namespace iib_python {
+
+namespace {
+
+typedef std::vector<cv::KeyPoint> KeyPoints;
+typedef std::vector<cv::DMatch> Matches;
+
+// Rotation, both images' keypoints, and matches.
+std::tuple<double, KeyPoints, KeyPoints, Matches> matchRotated(const cv::Mat& image1, KeyPoints first,
+        const cv::Mat& image2, KeyPoints second, const cv::Ptr<cv::iib::IIB>& extractor,
+        const cv::Ptr<cv::iib::HierarchicalMatcher>& matcher, double rotation)
+{
+    Matches matches;
+    rotation = cv::iib::matchRotated(image1, first, image2, second, extractor, matcher, matches, rotation);
+    return {rotation, first, second, matches};
+}
+
+std::tuple<cv::Mat, cv::Mat, cv::Mat, cv::Mat> refineMatches(const cv::Mat& image1, const KeyPoints& first,
+        const cv::Mat& image2, const KeyPoints& second, const Matches& matches)
+{
+    cv::Mat points1, points2, covariances, similarities;
+    cv::iib::refineMatches(
+            image1, first, image2, second, matches, points1, points2, covariances, similarities);
+    return {points1, points2, covariances, similarities};
+}
+
+std::optional<cv::Mat> onlyIf(bool found, const cv::Mat& matrix)
+{
+    return found ? std::optional<cv::Mat>(matrix) : std::nullopt;
+}
+
+// Whether there is a pose, R, t, marks of the inliers, covariance.
+auto findRelativePose(const cv::Mat& points1, const cv::Mat& points2, const cv::Mat& camera1,
+        const cv::Mat& camera2, double scale)
+{
+    cv::Mat R, t, inliers, covariance;
+    const bool found =
+            cv::iib::findRelativePose(points1, points2, camera1, camera2, R, t, inliers, scale, covariance);
+    return std::make_tuple(found, onlyIf(found, R), onlyIf(found, t), inliers, onlyIf(found, covariance));
+}
+
+// Whether they show the same, transform, deviations of the corners, matches that agree.
+auto alignImages(const cv::Mat& reference, const cv::Mat& image, int model)
+{
+    cv::Mat transform, error, matches;
+    const bool found = cv::iib::alignImages(reference, image, transform, model, error, matches);
+    return std::make_tuple(found, onlyIf(found, transform), onlyIf(found, error), matches);
+}
+
+}  // namespace
+
+void bindFunctions(nb::module_& m)
+{
+    m.def("estimateRotation", &cv::iib::estimateRotation, WithoutGil());
+    m.def("matchRotated", &matchRotated, WithoutGil());
+    m.def("refineMatches", &refineMatches, WithoutGil());
+    m.def("findRelativePose", &findRelativePose, WithoutGil());
+    m.def("alignImages", &alignImages, WithoutGil());
+}
+
+}  // namespace iib_python
