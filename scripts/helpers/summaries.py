@@ -15,6 +15,7 @@ TRAINED_ON = {'tilde_webcam', 'amos_daynight', 'walk_room', 'walk_terrain'}  # b
 RENDERED = {'lights'}
 TRAINED_ON_RENDERED = {'IIB UNIVERSAL', 'IIB SMALL'}  # on walks through these scenes
 UNSEEN_SCENES = {'street', 'facade'}  # rendered scenes without them
+VISITS = {'dusk', 'fog', 'morning', 'night', 'overcast', 'snow', 'wet', 'winter'}  # sequences of one place in other lights
 DRAWS = 400  # of the bootstrap
 
 
@@ -54,6 +55,16 @@ def pose_place(row):
     if row['task'] != 'pose' or row['set'] in TRAINED_ON:
         return []
     return ['buildings' if row['set'] == 'strecha' else 'facade' if row['set'] == 'walk_facade' else 'street']
+
+
+def light_place(row):
+    """Poses of views in one light, or in two."""
+    return [] if row['set'] in TRAINED_ON else ['same light' if row['set'] == 'strecha' else 'other light']
+
+
+def scene(row):
+    """What intervals draw: a sequence, or a place."""
+    return row['set'], '' if row.get('sequence') in VISITS else row.get('sequence')
 
 
 def pose_area(limit):
@@ -99,8 +110,7 @@ PLANS = {
     'robustness.csv': (lambda row: ['turned'] * (row['set'] not in TRAINED_ON), ('kind', 'configuration', 'target'),
                        columns('precision', 'recall')),
     'alignment.csv': (alignment_place, (), {'found': column('found'), 'within_1': within(1), 'within_3': within(3)}),
-    'estimators.csv': (lambda row: ['same light' if row['set'] == 'strecha' else 'other light'],
-                       ('detector', 'descriptor', 'points', 'estimator'),
+    'estimators.csv': (light_place, ('detector', 'descriptor', 'points', 'estimator'),
                        {'at_10': pose_area(10), 'at_2': pose_area(2), 'at_5': pose_area(5)}),
     'whole_tasks.csv': (pose_place, ('detector', 'descriptor', 'matching'), {'score': pose_score}),
 }
@@ -120,7 +130,7 @@ def summarize(source, target, groups_of, keys, values):
     groups = collections.defaultdict(lambda: collections.defaultdict(list))
     for row in read(source):
         for place in groups_of(row):
-            groups[(place, *(row[key] for key in keys))][row['set'], row.get('sequence')].append(
+            groups[(place, *(row[key] for key in keys))][scene(row)].append(
                 [value(row) for value in values.values()])
     lines = []
     for group, scenes in sorted(groups.items()):

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <sstream>
 
 #include "opencv2/core/quaternion.hpp"
@@ -63,7 +64,8 @@ cv::Matx33d readCamera(const std::string& file)
     });
     if (count != 1)
         CV_Error(cv::Error::StsParseError, file + ": not one PINHOLE camera");
-    return camera;
+    return camera -
+           cv::Matx33d(0, 0, .5, 0, 0, .5, 0, 0, 0);  // of COLMAP, whose pixels begin at whole numbers
 }
 
 std::vector<View> readViews(const std::string& folder)
@@ -94,11 +96,33 @@ Folder readFolder(const std::string& path)
     return {lastName(path), readCamera(fs::join(path, "cameras.txt")), readViews(path)};
 }
 
+bool holdsWalk(const std::string& folder)
+{
+    return fs::exists(fs::join(folder, "camera.yml")) && fs::isDirectory(fs::join(folder, "frames"));
+}
+
+Folder readWalk(const std::string& path, const std::string& light)
+{
+    const cv::FileStorage storage(fs::join(path, "camera.yml"), cv::FileStorage::READ);
+    Folder walk = {light, cv::Matx33d(storage["camera_matrix"].mat()), {}};
+    int number = 0;
+    for (const cv::FileNode& node : storage["poses"])
+    {
+        const cv::Mat pose = node.mat();
+        const cv::Matx33d rotation = cv::Matx33d(pose.colRange(0, 3)).t();
+        const std::string name = cv::format("%02d", ++number),
+                          file = fs::join(path, cv::format("frames/%d.png", number));
+        if (fs::exists(file))
+            walk.views.push_back({name, file, rotation, -(rotation * cv::Vec3d(pose.col(3)))});
+    }
+    return walk;
+}
+
 ViewPair pairOf(const std::string& set, const Folder& from, const View& a, const Folder& to, const View& b)
 {
     const cv::Matx33d toTarget = b.rotation.t();
     return {set, to.name, a.name + "-" + b.name, a.file, b.file, from.camera, to.camera,
-            toTarget * a.rotation, toTarget * (a.position - b.position)};
+            toTarget * a.rotation, toTarget * (a.position - b.position), &from == &to};
 }
 
 void addWithin(const std::string& set, const Folder& folder, std::vector<ViewPair>& pairs)
@@ -131,11 +155,17 @@ void addAcross(const std::string& set, const Folder& map, const Folder& visit, s
 void search(const std::string& folder, int depth, std::vector<ViewPair>& pairs)
 {
     std::vector<cv::String> entries, views;
+    std::map<std::string, std::map<std::string, Folder>> walks;  // by scene and light
     fs::glob(folder, "*", entries, false, true);
     std::sort(entries.begin(), entries.end());
     for (const std::string& entry : entries)
         if (holdsViews(entry))
             views.push_back(entry);
+        else if (holdsWalk(entry))
+        {
+            const std::string name = lastName(entry), light = name.substr(name.find_last_of('_') + 1);
+            walks["walk_" + name.substr(0, name.find_last_of('_'))][light] = readWalk(entry, light);
+        }
         else if (depth > 0 && fs::isDirectory(entry))
             search(entry, depth - 1, pairs);
     const std::string map = fs::join(folder, "map");
@@ -145,6 +175,10 @@ void search(const std::string& folder, int depth, std::vector<ViewPair>& pairs)
             addWithin(lastName(folder), readFolder(view), pairs);
         else if (view != map)
             addAcross(lastName(folder), readFolder(map), readFolder(view), pairs);
+    for (auto& walk : walks)
+        for (const auto& light : walk.second)
+            if (light.first != "noon")
+                addAcross(walk.first, walk.second["noon"], light.second, pairs);
 }
 
 }  // namespace

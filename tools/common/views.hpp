@@ -18,6 +18,7 @@ struct ViewPair
     cv::Matx33d referenceCamera, targetCamera;  //!< focal lengths and centre, pixels
     cv::Matx33d rotation;                       //!< from the reference's axes to the target's
     cv::Vec3d translation;                      //!< of the same, its length unknown to the methods under test
+    bool sameLight;                             //!< whether both images are of one folder
 };
 
 //! Whether a folder holds `cameras.txt`, `poses.txt` and `images`.
@@ -26,7 +27,9 @@ bool holdsViews(const std::string& folder);
 /** Finds pairs in folders as tools/synthetic/localization.py writes them, up to four levels deep: `cameras.txt` (COLMAP,
 one PINHOLE camera), `poses.txt` (TUM, camera to world, a name a line) and `images/<name>.png` or .jpg. Names without
 an image are left out. An image is paired with the next three of its folder; where other folders lie beside a folder
-`map`, each of their images is paired with the map's next one at a distance of half a metre or more instead.
+`map`, each of their images is paired with the map's next one at a distance of half a metre or more instead. So are the
+frames of a walk of tools/synthetic in other light with those at noon: folders `<scene>_<light>` with `camera.yml` and
+`frames/k.png`; their set is `walk_<scene>`.
 @throws cv::Exception, with file and line, for a folder whose files are broken. */
 std::vector<ViewPair> findViewPairs(const std::vector<std::string>& roots);
 

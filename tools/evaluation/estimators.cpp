@@ -1,27 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <algorithm>
-
 #include "common/metrics.hpp"
-#include "common/views.hpp"
-#include "described_images.hpp"
 #include "experiments.hpp"
-#include "opencv2/imgcodecs.hpp"
 #include "pose_estimates.hpp"
 #include "results.hpp"
-#include "tasks.hpp"
+#include "view_pairs.hpp"
 
 namespace iib_tools {
 namespace {
 
 const double THRESHOLDS[] = {.75, 1};  // of MAGSAC, pixels
 const char LAST[] = "findRelativePose";
-
-//! What a detector's points are described with: its own descriptor, or what createRecommended describes with.
-std::string descriptorOf(const Detector& detector)
-{
-    return detector.descriptor.empty() ? "IIB UNIVERSAL" : detector.descriptor;
-}
 
 //! Camera matrices, rotation, translation: 9, 9, 9 and 3 numbers; x and y of each match in both images.
 std::string numbers(const ViewPair& pair, const Points& points)
@@ -39,43 +28,6 @@ std::string numbers(const ViewPair& pair, const Points& points)
     return out;
 }
 
-void evaluatePair(const ViewPair& pair, const std::vector<Detector>& detectors, DescribedImages& described,
-        ResultTable& errors, ResultTable& matched)
-{
-    const cv::Mat reference = readImage(pair.referenceFile, cv::IMREAD_GRAYSCALE),
-                  target = readImage(pair.targetFile, cv::IMREAD_GRAYSCALE);
-    for (const Detector& detector : detectors)
-    {
-        const DescribedImages::Result ofReference = described.get(detector, reference, pair.referenceFile),
-                                      ofTarget = described.get(detector, target, pair.targetFile);
-        for (size_t i = 0; i < ofReference->size(); i++)
-        {
-            const Described &r = (*ofReference)[i], &t = (*ofTarget)[i];
-            if (r.name != descriptorOf(detector))
-                continue;
-            const std::vector<cv::DMatch> matches =
-                    inBoth(ratioMatches(r, t), mutualMatches(r.descriptors, t.descriptors, r.norm));
-            const std::pair<const char*, Points> kinds[] = {{"plain", pointsOf(matches, r, t)},
-                    {"refined", refined(reference, target, matches, r, t)}};
-            for (const auto& kind : kinds)
-            {
-                const Fields key = {pair.set, pair.sequence, pair.target, detector.name, r.name, kind.first};
-                const auto tell = [&](const std::string& estimator, const Outcome& outcome) {
-                    Fields row = key;
-                    row.insert(row.end(), {estimator, text(outcome.error), std::to_string(outcome.inliers)});
-                    errors.append(row);
-                };
-                Fields row = key;
-                row.push_back(numbers(pair, kind.second));
-                matched.append(row);
-                for (double threshold : THRESHOLDS)
-                    tell(cv::format("MAGSAC %g px", threshold), byMagsac(kind.second, pair, threshold));
-                tell(LAST, byFindRelativePose(kind.second, pair));
-            }
-        }
-    }
-}
-
 }  // namespace
 
 int estimators(const Options& options, const std::vector<ImagePair>&)
@@ -83,7 +35,9 @@ int estimators(const Options& options, const std::vector<ImagePair>&)
     Options few = options;
     if (few.detectors.empty())
         few.detectors = {"ORB", "AKAZE", "SIFT", "SIFT normalized", "Hessian"};
-    const std::vector<Detector> all = detectors(few);
+    std::vector<Detector> all = detectors(few);
+    for (Detector& detector : all)
+        detector.only = detector.descriptor.empty() ? "IIB UNIVERSAL" : detector.descriptor;
     const Fields key = {"set", "sequence", "target", "detector", "descriptor", "points"};
     Fields columns = key;
     columns.insert(columns.end(), {"estimator", "error", "inliers"});
@@ -91,19 +45,33 @@ int estimators(const Options& options, const std::vector<ImagePair>&)
     columns = key;
     columns.push_back("numbers");
     ResultTable matched(options.out + "/matched_points.csv", columns, 6);
-    DescribedImages described;
-    std::vector<Task> tasks;
-    for (const ViewPair& pair : findViewPairs(options.roots))
-    {
-        std::vector<Detector> missing;
-        for (const Detector& d : all)
-            if (!errors.has({pair.set, pair.sequence, pair.target, d.name, descriptorOf(d), "refined", LAST}))
-                missing.push_back(d);
-        if (!missing.empty())
-            tasks.push_back({pair.set + "/" + pair.sequence + "/" + pair.target,
-                    [&, pair, missing] { evaluatePair(pair, missing, described, errors, matched); }});
-    }
-    const int skipped = runTasks("estimators", tasks);
+    const auto isDone = [&](const ViewPair& pair, const Detector& d) {
+        return errors.has({pair.set, pair.sequence, pair.target, d.name, d.only, "refined", LAST});
+    };
+    const auto judge = [&](const ViewPair& pair, const Detector& detector, const cv::Mat& reference,
+                               const cv::Mat& target, const Described& r, const Described& t) {
+        const std::vector<cv::DMatch> matches =
+                inBoth(ratioMatches(r, t), mutualMatches(r.descriptors, t.descriptors, r.norm));
+        const std::pair<const char*, Points> kinds[] = {
+                {"plain", pointsOf(matches, r, t)}, {"refined", refined(reference, target, matches, r, t)}};
+        for (const auto& kind : kinds)
+        {
+            const Fields pairKey = {pair.set, pair.sequence, pair.target, detector.name, r.name, kind.first};
+            const auto tell = [&](const std::string& estimator, const Outcome& outcome) {
+                Fields row = pairKey;
+                row.insert(row.end(), {estimator, text(outcome.error), std::to_string(outcome.inliers)});
+                errors.append(row);
+            };
+            Fields row = pairKey;
+            row.push_back(numbers(pair, kind.second));
+            matched.append(row);
+            for (double threshold : THRESHOLDS)
+                tell(cv::format("MAGSAC %g px", threshold), byMagsac(kind.second, pair, threshold));
+            tell(LAST, byFindRelativePose(kind.second, pair));
+        }
+    };
+    const int skipped =
+            runOnViews("estimators", withRelit(findViewPairs(options.roots)), all, {isDone, judge});
     errors.finish();
     matched.finish();
     return skipped;

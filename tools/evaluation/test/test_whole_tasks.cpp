@@ -62,15 +62,15 @@ std::map<std::string, double> poseErrors(const Options& options, const std::stri
     return found;
 }
 
-//! Errors of AKAZE's matches, plain and refined, by all estimators.
+//! Errors of AKAZE's matches, plain and refined, by all estimators, in the same light and in another.
 std::map<std::string, double> errorsOfEstimators(const Options& options)
 {
     std::map<std::string, double> found;
     for (const Fields& row :
             readRows(options.out + "/estimators.csv", {"set", "sequence", "target", "detector", "descriptor",
                                                               "points", "estimator", "error", "inliers"}))
-        found[row[5] + " " + row[6]] = std::atof(row[7].c_str());
-    EXPECT_EQ(6u, found.size());
+        found[row[0] + " " + row[5] + " " + row[6]] = std::atof(row[7].c_str());
+    EXPECT_EQ(12u, found.size());
     return found;
 }
 
@@ -88,7 +88,7 @@ TEST(WholeTasks, pose_of_two_views)
     const cv::Vec3d turn(0.02, 0.08, 0);
     cv::Rodrigues(turn, second.rotation);
     folder.makeFolder("data/walk/images");
-    folder.write("data/walk/cameras.txt", cv::format("1 PINHOLE 480 360 %g %g 240 180\n", FOCAL, FOCAL));
+    folder.write("data/walk/cameras.txt", cv::format("1 PINHOLE 480 360 %g %g 240.5 180.5\n", FOCAL, FOCAL));
     // The inverse rotation, as a quaternion.
     const double w = std::cos(cv::norm(turn) / 2), s = -std::sin(cv::norm(turn) / 2) / cv::norm(turn);
     folder.write("data/walk/poses.txt",
@@ -98,7 +98,11 @@ TEST(WholeTasks, pose_of_two_views)
     EXPECT_EQ(0, evaluate(options));
     EXPECT_LT(poseErrors(options, "IIB")["mutual at 2 px"], 4);
     for (const auto& error : errorsOfEstimators(options))
-        EXPECT_LT(error.second, error.first.find("find") != std::string::npos ? 4 : 10) << error.first;
+    {
+        const bool relit = error.first.find("relit") != std::string::npos,
+                   ours = error.first.find("find") != std::string::npos;
+        EXPECT_LT(error.second, relit ? 15 : ours ? 4 : 10) << error.first;
+    }
     for (const auto& error : poseErrors(options, "IIB VIEWPOINT"))
         EXPECT_LT(error.second, 4) << error.first;
 
