@@ -16,18 +16,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-//! Opens a file of a model and says what is wrong with it.
+/** A file of a model. Binary: numbers one after another, lowest byte first as on every machine that this runs on; before a list,
+how long it is. Text: a line each, but for comments, and an image's keypoints on one more. */
 class ModelFile
 {
 public:
-    ModelFile(const std::string& folder, const std::string& name) : name_(name)
+    //! @param leastBytes of a camera or image.
+    ModelFile(const std::string& folder, const std::string& name, bool text, uint64_t leastBytes)
+        : name_(name + (text ? ".txt" : ".bin")), text_(text)
     {
-        const fs::path path = cv::iib::systemName(folder + "/" + name);
+        const fs::path path = cv::iib::systemName(folder + "/" + name_);
         std::error_code error;
         expect(fs::is_regular_file(path, error));  // a pipe would not end
         left_ = fs::file_size(path, error);
         stream_.open(path, std::ios::binary);
         expect(!error && stream_);
+        records_ = text_ ? 0 : count(leastBytes);
     }
 
     void expect(bool valid) const
@@ -36,39 +40,38 @@ public:
             CV_Error(cv::Error::StsParseError, name_ + " is missing or damaged");
     }
 
-protected:
-    const std::string name_;
-    std::ifstream stream_;
-    uint64_t left_ = 0;
-};
-
-//! Numbers one after another, lowest byte first as on every machine that this runs on; before a list, how long it is.
-class BinaryFile : public ModelFile
-{
-public:
-    BinaryFile(const std::string& folder, const std::string& name, uint64_t leastBytes)
-        : ModelFile(folder, name + ".bin"), records_(count(leastBytes))
-    {
-    }
-
     template <typename T> T next()
     {
         T value{};
-        expect(sizeof(T) <= left_ && stream_.read(reinterpret_cast<char*>(&value), sizeof(T)));
-        left_ -= sizeof(T);
+        if (text_)
+            expect(bool(line_ >> value));
+        else
+        {
+            expect(sizeof(T) <= left_ && stream_.read(reinterpret_cast<char*>(&value), sizeof(T)));
+            left_ -= sizeof(T);
+        }
         return value;
     }
 
     //! Goes on to the next camera or image; false at the end.
     bool nextRecord()
     {
+        while (text_)
+            if (!nextLine())
+                return false;
+            else if (more())  // not blank
+                return true;
         expect(records_ > 0 || left_ == 0);
         return records_-- > 0;
     }
 
     std::string cameraModel()
     {
-        const std::string model = modelName(next<uint32_t>());
+        std::string model;
+        if (text_)
+            line_ >> model;
+        else
+            model = modelName(next<uint32_t>());
         items_ = parametersOf(model);
         return model;
     }
@@ -77,6 +80,13 @@ public:
     std::string name()
     {
         std::string letters;
+        if (text_)
+        {
+            std::getline(line_ >> std::ws, letters);  // it may have blanks
+            letters.erase(letters.find_last_not_of(" \r") + 1);
+            expect(nextLine());
+            return letters;
+        }
         while (const char c = next<char>())
             letters += c;
         items_ = count(24);
@@ -84,7 +94,7 @@ public:
     }
 
     //! Whether the camera has one more parameter, or the image one more keypoint.
-    bool more() { return items_-- > 0; }
+    bool more() { return text_ ? !(line_ >> std::ws).eof() : items_-- > 0; }
 
 private:
     //! How many things follow, each of so many bytes or more.
@@ -95,47 +105,6 @@ private:
         return things;
     }
 
-    uint64_t records_, items_ = 0;
-};
-
-//! The same as text: a line each, but for comments, and an image's keypoints on one more.
-class TextFile : public ModelFile
-{
-public:
-    TextFile(const std::string& folder, const std::string& name, uint64_t) : ModelFile(folder, name + ".txt")
-    {
-    }
-
-    template <typename T> T next()
-    {
-        T value{};
-        expect(bool(line_ >> value));
-        return value;
-    }
-
-    bool nextRecord()
-    {
-        while (nextLine())
-            if (more())  // not blank
-                return true;
-        return false;
-    }
-
-    std::string cameraModel() { return next<std::string>(); }
-
-    std::string name()
-    {
-        std::string text;
-        std::getline(line_ >> std::ws, text);  // it may have blanks
-        text.erase(text.find_last_not_of(" \r") + 1);
-        expect(nextLine());
-        return text;
-    }
-
-    //! Whether the line goes on.
-    bool more() { return !(line_ >> std::ws).eof(); }
-
-private:
     bool nextLine()
     {
         std::string text;
@@ -148,48 +117,52 @@ private:
         return true;
     }
 
+    const std::string name_;
+    const bool text_;
+    std::ifstream stream_;
     std::istringstream line_;
+    uint64_t left_ = 0, records_ = 0, items_ = 0;
 };
 
-template <typename File> std::vector<PosedImage> readImages(const std::string& folder)
+std::vector<PosedImage> readImages(const std::string& folder, bool text)
 {
     std::unordered_map<uint32_t, Camera> cameras;
-    File known(folder, "cameras", 24);
+    ModelFile known(folder, "cameras", text, 24);
     while (known.nextRecord())
     {
-        const uint32_t id = known.template next<uint32_t>();
+        const uint32_t id = known.next<uint32_t>();
         Camera camera = {known.cameraModel(), {}, {}};
-        const uint64_t width = known.template next<uint64_t>(), height = known.template next<uint64_t>();
+        const uint64_t width = known.next<uint64_t>(), height = known.next<uint64_t>();
         known.expect(std::min(width, height) > 0 && std::max(width, height) < 1 << 16);
         camera.size = cv::Size(int(width), int(height));
         while (known.more())
-            camera.parameters.push_back(known.template next<double>());
+            camera.parameters.push_back(known.next<double>());
         Lens checked(camera);
         known.expect(cameras.emplace(id, camera).second);
     }
     std::vector<PosedImage> images;
     std::unordered_map<int64_t, int> points;
     std::set<std::string> names;
-    File file(folder, "images", 73);
+    ModelFile file(folder, "images", text, 73);
     while (file.nextRecord())
     {
-        file.template next<uint32_t>();  // its id
-        double pose[7];                  // quaternion w x y z, translation
+        file.next<uint32_t>();  // its id
+        double pose[7];         // quaternion w x y z, translation
         for (double& value : pose)
         {
-            value = file.template next<double>();
+            value = file.next<double>();
             file.expect(std::isfinite(value));
         }
         const cv::Quatd rotation(pose[0], pose[1], pose[2], pose[3]);
-        const auto camera = cameras.find(file.template next<uint32_t>());
+        const auto camera = cameras.find(file.next<uint32_t>());
         const std::string name = file.name();
         file.expect(camera != cameras.end() && std::abs(rotation.norm() - 1) < 1e-2 && !name.empty() &&
                     names.insert(name).second);
         images.push_back({name, camera->second, {rotation.toRotMat3x3(), cv::Vec3d(pose + 4)}, {}, {}});
         while (file.more())
         {
-            const double x = file.template next<double>(), y = file.template next<double>();
-            const int64_t point = file.template next<int64_t>();
+            const double x = file.next<double>(), y = file.next<double>();
+            const int64_t point = file.next<int64_t>();
             images.back().pixels.emplace_back(x - .5, y - .5);
             images.back().sees.push_back(
                     point < 0 ? -1 : points.emplace(point, int(points.size())).first->second);
@@ -218,8 +191,8 @@ std::vector<PosedImage> readModel(const std::string& folder)
             hint = ": did you mean " + folder + part + "?";
     try
     {
-        const bool text = exists("/cameras.txt") && !exists("/cameras.bin");
-        std::vector<PosedImage> images = text ? readImages<TextFile>(folder) : readImages<BinaryFile>(folder);
+        std::vector<PosedImage> images =
+                readImages(folder, exists("/cameras.txt") && !exists("/cameras.bin"));
         if (images.empty())
             CV_Error(cv::Error::StsError, "no image has a pose");
         return images;

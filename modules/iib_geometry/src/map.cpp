@@ -41,172 +41,184 @@ bool isOf(const std::vector<std::string>& names, const std::string& name)
     });
 }
 
-void writeReal(cv::iib::CheckedWriter& file, double value)
+//! Reads or writes the parts of a map: the functions below name them once, in their order.
+class MapFile
 {
-    uint64 bits = 0;
-    std::memcpy(&bits, &value, sizeof(bits));
-    file.number(bits, 8);
-}
+public:
+    explicit MapFile(cv::iib::CheckedReader& file) : reader_(&file) {}
+    explicit MapFile(cv::iib::CheckedWriter& file) : writer_(&file) {}
 
-double readReal(cv::iib::CheckedReader& file)
-{
-    const uint64 bits = file.number(8);
-    double value = 0;
-    std::memcpy(&value, &bits, sizeof(value));
-    if (!std::isfinite(value))
-        file.fail("it has a number that is none");
-    return value;
-}
+    template <typename T> void integer(T& value, int size)
+    {
+        if (reader_)
+            value = T(reader_->number(size));
+        else
+            writer_->number(uint64(value), size);
+    }
 
-void writeText(cv::iib::CheckedWriter& file, const std::string& text)
-{
-    file.number(text.size(), 4);
-    file.bytes(text.data(), text.size());
-}
+    template <typename T> void single(T& value)
+    {
+        if (reader_)
+            value = reader_->real();
+        else
+            writer_->real(float(value));
+    }
 
-std::string readText(cv::iib::CheckedReader& file)
-{
-    const unsigned size = file.word();
-    file.expect(size, 1);
-    std::string text(size, ' ');
-    file.bytes(&text[0], text.size());
-    return text;
-}
+    void real(double& value)
+    {
+        uint64 bits = 0;
+        std::memcpy(&bits, &value, sizeof(bits));
+        integer(bits, 8);
+        std::memcpy(&value, &bits, sizeof(value));
+        check(std::isfinite(value), "it has a number that is none");
+    }
 
-void writeCamera(cv::iib::CheckedWriter& file, const Camera& camera)
-{
-    writeText(file, camera.model);
-    file.number(uint64(camera.size.width), 4);
-    file.number(uint64(camera.size.height), 4);
-    for (double parameter : camera.parameters)
-        writeReal(file, parameter);
-}
+    void point(cv::Point3d& p)
+    {
+        for (double* value : {&p.x, &p.y, &p.z})
+            real(*value);
+    }
 
-Camera readCamera(cv::iib::CheckedReader& file)
+    //! How many parts of a list follow, each of so many bytes or more.
+    template <typename List> void length(List& list, uint64 least, int size = 4)
+    {
+        uint64 count = list.size();
+        integer(count, size);
+        if (reader_)
+            reader_->expect(count, least);
+        list.resize(count);
+    }
+
+    template <typename List> void bytes(List& list)
+    {
+        for (auto& value : list)
+            integer(value, 1);
+    }
+
+    void matrix(cv::Mat& matrix, size_t rows, size_t cols)
+    {
+        if (reader_)
+        {
+            reader_->expect(rows, cols);
+            matrix.create(int(rows), int(cols), CV_8U);
+            reader_->bytes(matrix.data, matrix.total());
+        }
+        else
+            writer_->bytes(matrix.data, matrix.total());
+    }
+
+    void check(bool valid, const std::string& why) const
+    {
+        if (reader_ && !valid)
+            reader_->fail(why);
+    }
+
+private:
+    cv::iib::CheckedReader* const reader_ = nullptr;
+    cv::iib::CheckedWriter* const writer_ = nullptr;
+};
+
+void visit(MapFile& file, Camera& camera)
 {
-    Camera camera;
-    camera.model = readText(file);
-    camera.size.width = int(file.word());
-    camera.size.height = int(file.word());
-    if (modelNumber(camera.model) < 0)
-        file.fail("it has a camera of an unknown model");
-    for (size_t i = parametersOf(camera.model); i > 0; i--)
-        camera.parameters.push_back(readReal(file));
+    file.length(camera.model, 1);
+    file.bytes(camera.model);
+    file.integer(camera.size.width, 4);
+    file.integer(camera.size.height, 4);
+    file.check(modelNumber(camera.model) >= 0, "it has a camera of an unknown model");
+    camera.parameters.resize(parametersOf(camera.model));
+    for (double& parameter : camera.parameters)
+        file.real(parameter);
     try
     {
         Lens checked(camera);
     }
     catch (const cv::Exception& e)
     {
-        file.fail(e.err);
+        file.check(false, e.err);
     }
-    return camera;
 }
 
-void writeImage(cv::iib::CheckedWriter& file, const MapImage& image, size_t camera)
+void visit(MapFile& file, MapImage& image, const std::vector<Camera>& cameras, size_t bytes, size_t points)
 {
-    writeText(file, image.name);
-    file.number(camera, 4);
-    for (double value : cv::Matx34d(image.cameraFromWorld.matrix.get_minor<3, 4>(0, 0)).val)
-        writeReal(file, value);
-    file.number(image.used, 4);
-    file.number(image.added, 1);
-    file.number(image.sees.size(), 4);
+    file.length(image.name, 1);
+    file.bytes(image.name);
+    size_t number = indexOf(image.camera, cameras);
+    file.integer(number, 4);
+    for (int i = 0; i < 12; i++)  // three rows
+        file.real(image.cameraFromWorld.matrix.val[i]);
+    const cv::Matx33d rotation = image.cameraFromWorld.rotation();
+    file.check(number < cameras.size() && cv::norm(rotation * rotation.t() - cv::Matx33d::eye()) <= 1e-6,
+            "an image has no camera or no pose");
+    image.camera = cameras[number];
+    file.integer(image.used, 4);
+    file.integer(image.added, 1);
+    file.length(image.sees, bytes + 17);
+    image.pixels.resize(image.sees.size());
+    image.sizes.resize(image.sees.size());
+    image.misses.resize(image.sees.size());
     for (size_t k = 0; k < image.sees.size(); k++)
     {
-        file.real(float(image.pixels[k].x));
-        file.real(float(image.pixels[k].y));
-        file.real(image.sizes[k]);
-        file.number(uint64(image.sees[k]), 4);
+        cv::Point2d& pixel = image.pixels[k];
+        file.single(pixel.x);
+        file.single(pixel.y);
+        file.single(image.sizes[k]);
+        file.integer(image.sees[k], 4);
+        file.check(std::abs(pixel.x) + std::abs(pixel.y) < 1 << 20 && image.sizes[k] > 0 &&
+                           image.sizes[k] < 1 << 20 && image.sees[k] >= 0 && size_t(image.sees[k]) < points,
+                "a keypoint sees nothing");
     }
-    file.bytes(image.misses.data(), image.misses.size());
-    file.bytes(image.codes.data, image.codes.total());
-    const cv::Mat& picture = image.picture.pixels;
-    file.number(uint64(picture.rows), 4);
-    file.number(uint64(picture.cols), 4);
-    file.bytes(picture.data, picture.total());
+    file.bytes(image.misses);
+    file.matrix(image.codes, image.sees.size(), bytes);
+    cv::Mat& picture = image.picture.pixels;
+    cv::Size size = picture.size();
+    file.integer(size.height, 4);
+    file.integer(size.width, 4);
+    file.check(!((unsigned(size.height) | unsigned(size.width)) >> 16), "an image is too large");
+    file.matrix(picture, size_t(size.height), size_t(size.width));
+    image.picture.scale = double(picture.cols) / image.camera.size.width;
 }
 
-//! What version 2 has: which points are in use, the lines, and of each image those that it sees.
-void writeExtras(cv::iib::CheckedWriter& file, const Map& map)
+//! @param version of the file; the second has which points are in use, the lines, and of each image those that it sees.
+void visit(MapFile& file, Map& map, unsigned version)
 {
-    file.number(map.orbAndAkaze, 1);
-    file.number(map.lines.size(), 4);
-    for (const MapLine& line : map.lines)
-        for (const cv::Point3d& p : {line.begin, line.end})
-            for (double value : {p.x, p.y, p.z})
-                writeReal(file, value);
-    for (const MapImage& image : map.images)
+    unsigned bytes = map.images.empty() ? 0 : unsigned(map.images[0].codes.cols);
+    file.integer(map.keypoints, 4);
+    file.integer(map.updates, 4);
+    file.integer(bytes, 4);
+    file.length(map.points, 24, 8);
+    for (cv::Point3d& point : map.points)
+        file.point(point);
+    std::vector<Camera> cameras = camerasOf(map.images);
+    file.length(cameras, 12);
+    for (Camera& camera : cameras)
+        visit(file, camera);
+    file.length(map.images, 121);
+    std::set<std::string> names;
+    for (MapImage& image : map.images)
     {
-        file.list(image.lines, 4);
-        file.bytes(image.lineCodes.data, image.lineCodes.total());
+        visit(file, image, cameras, bytes, map.points.size());
+        file.check(names.insert(image.name).second, "two images have one name");
     }
-}
-
-void readExtras(cv::iib::CheckedReader& file, Map& map)
-{
-    map.orbAndAkaze = file.number(1) != 0;
-    const unsigned lines = file.word();
-    file.expect(lines, 48);
-    for (unsigned i = 0; i < lines; i++)
+    if (version < 2)
+        return;
+    file.integer(map.orbAndAkaze, 1);
+    file.length(map.lines, 48);
+    for (MapLine& line : map.lines)
     {
-        double values[6];
-        for (double& value : values)
-            value = readReal(file);
-        map.lines.push_back({{values[0], values[1], values[2]}, {values[3], values[4], values[5]}});
+        file.point(line.begin);
+        file.point(line.end);
     }
     for (MapImage& image : map.images)
     {
-        image.lines = file.list<int>(4);
-        for (int number : image.lines)
-            if (number < 0 || size_t(number) >= map.lines.size())
-                file.fail("an image sees a line that is not there");
-        file.expect(image.lines.size(), LINE_BYTES);
-        image.lineCodes.create(int(image.lines.size()), LINE_BYTES, CV_8U);
-        file.bytes(image.lineCodes.data, image.lineCodes.total());
+        file.length(image.lines, 4);
+        for (int& number : image.lines)
+        {
+            file.integer(number, 4);
+            file.check(number >= 0 && size_t(number) < map.lines.size(),
+                    "an image sees a line that is not there");
+        }
+        file.matrix(image.lineCodes, image.lines.size(), LINE_BYTES);
     }
-}
-
-MapImage readImage(cv::iib::CheckedReader& file, const std::vector<Camera>& cameras, int bytes, size_t points)
-{
-    MapImage image;
-    image.name = readText(file);
-    const unsigned camera = file.word();
-    cv::Matx34d pose;
-    for (double& value : pose.val)
-        value = readReal(file);
-    image.used = file.word();
-    image.added = file.number(1) != 0;
-    const uint64 count = file.word();
-    file.expect(count, uint64(bytes) + 17);
-    for (uint64 k = 0; k < count; k++)
-    {
-        const float x = file.real(), y = file.real();
-        image.pixels.emplace_back(x, y);
-        image.sizes.push_back(file.real());
-        image.sees.push_back(int(file.word()));
-        if (!(std::abs(x) + std::abs(y) < 1 << 20 && image.sizes.back() > 0 &&
-                    image.sizes.back() < 1 << 20) ||
-                image.sees.back() < 0 || size_t(image.sees.back()) >= points)
-            file.fail("a keypoint sees nothing");
-    }
-    image.misses.resize(count);
-    file.bytes(image.misses.data(), count);
-    image.codes.create(int(count), bytes, CV_8U);
-    file.bytes(image.codes.data, image.codes.total());
-    const cv::Matx33d rotation = pose.get_minor<3, 3>(0, 0);
-    if (camera >= cameras.size() || cv::norm(rotation * rotation.t() - cv::Matx33d::eye()) > 1e-6)
-        file.fail("an image has no camera or no pose");
-    image.camera = cameras[camera];
-    const unsigned rows = file.word(), cols = file.word();
-    if (std::max(rows, cols) >= 1 << 16)
-        file.fail("an image is too large");
-    file.expect(uint64(rows) * cols, 1);
-    image.picture.pixels.create(int(rows), int(cols), CV_8U);
-    file.bytes(image.picture.pixels.data, image.picture.pixels.total());
-    image.picture.scale = double(cols) / image.camera.size.width;
-    image.cameraFromWorld = cv::Affine3d(rotation, cv::Vec3d(pose(0, 3), pose(1, 3), pose(2, 3)));
-    return image;
 }
 
 }  // namespace
@@ -240,12 +252,8 @@ void Map::compact()
     std::vector<cv::Point3d> seen;
     for (MapImage& image : images)
     {
-        MapImage kept = image;
-        kept.pixels.clear();
-        kept.sees.clear();
-        kept.sizes.clear();
-        kept.misses.clear();
-        kept.codes = cv::Mat(0, image.codes.cols, CV_8U);
+        cv::Mat codes(0, image.codes.cols, CV_8U);
+        size_t kept = 0;
         for (size_t k = 0; k < image.sees.size(); k++)
         {
             if (image.sees[k] < 0)
@@ -256,13 +264,18 @@ void Map::compact()
                 number = int(seen.size());
                 seen.push_back(points[size_t(image.sees[k])]);
             }
-            kept.sees.push_back(number);
-            kept.pixels.push_back(image.pixels[k]);
-            kept.sizes.push_back(image.sizes[k]);
-            kept.misses.push_back(image.misses[k]);
-            kept.codes.push_back(image.codes.row(int(k)));
+            image.sees[kept] = number;
+            image.pixels[kept] = image.pixels[k];
+            image.sizes[kept] = image.sizes[k];
+            image.misses[kept] = image.misses[k];
+            codes.push_back(image.codes.row(int(k)));
+            kept++;
         }
-        image = std::move(kept);
+        image.sees.resize(kept);
+        image.pixels.resize(kept);
+        image.sizes.resize(kept);
+        image.misses.resize(kept);
+        image.codes = codes;
     }
     points = std::move(seen);
 }
@@ -277,32 +290,11 @@ Map readMap(const std::string& folder)
                                          : " is no map: it has no map.iib"));
     cv::iib::CheckedReader file(folder + FILE_NAME, KIND);
     Map map;
-    map.keypoints = int(file.word());
-    map.updates = file.word();
-    const int bytes = int(file.word());
-    const uint64 points = file.number(8);
-    file.expect(points, 24);
-    for (uint64 i = 0; i < points; i++)
-    {
-        const double x = readReal(file), y = readReal(file);
-        map.points.emplace_back(x, y, readReal(file));
-    }
-    std::vector<Camera> cameras;
-    for (unsigned left = file.word(); left > 0; left--)
-        cameras.push_back(readCamera(file));
-    std::set<std::string> names;
-    for (unsigned left = file.word(); left > 0; left--)
-    {
-        map.images.push_back(readImage(file, cameras, bytes, map.points.size()));
-        if (!names.insert(map.images.back().name).second)
-            file.fail("two images have one name");
-    }
-    if (file.version() > 1)
-        readExtras(file, map);
+    MapFile parts(file);
+    visit(parts, map, file.version());
     file.seal();
     file.expectEnd();
-    if (map.keypoints < 1 || map.images.empty())
-        file.fail("it has no images");
+    parts.check(map.keypoints > 0 && !map.images.empty(), "it has no images");
     return map;
 }
 
@@ -338,22 +330,9 @@ void MapFolder::write(const Map& map) const
     cv::iib::FileKind kind = KIND;
     kind.version = map.orbAndAkaze || !map.lines.empty() ? 2 : 1;  // earlier programs read what they can
     cv::iib::CheckedWriter file(folder_ + FILE_NAME, kind);
-    file.number(uint64(map.keypoints), 4);
-    file.number(map.updates, 4);
-    file.number(uint64(map.images.empty() ? 0 : map.images[0].codes.cols), 4);
-    file.number(map.points.size(), 8);
-    for (const cv::Point3d& p : map.points)
-        for (double value : {p.x, p.y, p.z})
-            writeReal(file, value);
-    const std::vector<Camera> cameras = camerasOf(map.images);
-    file.number(cameras.size(), 4);
-    for (const Camera& camera : cameras)
-        writeCamera(file, camera);
-    file.number(map.images.size(), 4);
-    for (const MapImage& image : map.images)
-        writeImage(file, image, indexOf(image.camera, cameras));
-    if (kind.version > 1)
-        writeExtras(file, map);
+    Map copy = map;  // of no pixels and codes; what is only written stays as it is
+    MapFile parts(file);
+    visit(parts, copy, kind.version);
     file.seal();
     cv::iib::writeModel(folder_, {map.images.begin(), map.images.end()}, map.points);
     file.commit();
