@@ -51,7 +51,7 @@ def core_detector(detector: Any) -> _core.Detector:
 def detect_rows(owner: Any, image: ArrayLike, mask: Optional[ArrayLike]) -> NDArray[np.float32]:
     """Keypoints of a detector or extractor of this package as N x 7, see keypoints_to_array."""
     allowed = np.empty((0, 0), np.uint8) if mask is None else as_matrix(mask, 'the mask')
-    return owner._core.detect(as_image(image), allowed)  # type: ignore[no-any-return]
+    return owner._core.detect(as_image(image), allowed)
 
 
 class Detector(CoreObject):

@@ -58,10 +58,6 @@ def pair_id(a: int, b: int) -> int:
     return min(a, b) * MAX_IMAGE_ID + max(a, b)
 
 
-def _array(row: Any, dtype: Any) -> np.ndarray:
-    return np.frombuffer(row[2], dtype).reshape(row[0], row[1])
-
-
 class Database(contextlib.AbstractContextManager['Database']):
     """A database in the making. One process at a time, and one thread of it, uses it."""
 
@@ -71,17 +67,15 @@ class Database(contextlib.AbstractContextManager['Database']):
         :param force: begin anew instead of raising.
         :raises SettingsChanged: if that run had other settings, or the file is no database.
         """
-        self.path = path
-        self.partial = path + '.partial'
-        self._finished = False
+        self.path, self.partial, self._finished = path, path + '.partial', False
         try:
             self._open(settings)
         except SettingsChanged:
             if not force:
                 raise
-            for log in (self.partial + '-wal', self.partial + '-shm'):
-                if os.path.exists(log):
-                    os.unlink(log)
+            for log in ('-wal', '-shm'):
+                with contextlib.suppress(FileNotFoundError):
+                    os.unlink(self.partial + log)
             os.truncate(self.partial, 0)  # the same file: it may be locked
             self._open(settings)
 
@@ -89,14 +83,11 @@ class Database(contextlib.AbstractContextManager['Database']):
         self._db = sqlite3.connect(os.fsencode(self.partial), isolation_level=None)
         try:
             self._begin(settings)
-        except sqlite3.DatabaseError as e:
+        except Exception as e:
             self._db.close()
-            if type(e) is not sqlite3.DatabaseError:  # such as a full disk
+            if type(e) is not sqlite3.DatabaseError:  # a full disk is a more special one
                 raise
             raise SettingsChanged(f'{self.partial}: {e}') from None
-        except SettingsChanged:
-            self._db.close()
-            raise
 
     def _begin(self, settings: dict[str, Any]) -> None:
         self._db.execute('PRAGMA journal_mode=WAL')
@@ -135,7 +126,7 @@ class Database(contextlib.AbstractContextManager['Database']):
                 os.fsync(file.fileno())
             os.replace(new, self.path)
         finally:
-            if os.path.exists(new):
+            with contextlib.suppress(FileNotFoundError):
                 os.unlink(new)
         self._finished = True
 
@@ -203,13 +194,15 @@ class Database(contextlib.AbstractContextManager['Database']):
 
     def load_codes(self, image: int) -> np.ndarray:
         """N x bytes uint8."""
-        return _array(self._db.execute('SELECT rows, cols, data FROM iib_codes WHERE image_id=?', (image,)).fetchone(),
-                      np.uint8)
+        return self._load('iib_codes', image, np.uint8)
 
     def load_keypoints(self, image: int) -> np.ndarray:
         """N x 4 float32."""
-        return _array(self._db.execute('SELECT rows, cols, data FROM keypoints WHERE image_id=?', (image,)).fetchone(),
-                      np.float32)
+        return self._load('keypoints', image, np.float32)
+
+    def _load(self, table: str, image: int, dtype: Any) -> np.ndarray:
+        rows, cols, data = self._db.execute(f'SELECT rows, cols, data FROM {table} WHERE image_id=?', (image,)).fetchone()
+        return np.frombuffer(data, dtype).reshape(rows, cols)
 
     # Pairs
 
