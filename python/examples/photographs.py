@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Reconstructs photographs with COLMAP (pycolmap), by the recommended chain and by SIFT: the tables of doc/colmap.md.
+"""Reconstructs photographs with COLMAP (pycolmap), by the recommended chain and by SIFT.
 
     python photographs.py SCENE... [--methods chain,SIFT] [--relit] [--other 'PATTERN,...'] [--points 4000] [--work DIR]
+
+prints CSV: the rows of doc/results/photographs.csv, from which figures.py makes the tables of doc/colmap.md.
 
 A SCENE is a folder with images/. With poses.txt too (TUM: name, camera's centre, camera to world) the cameras are compared with
 the truth, else those of two methods with each other: after a robust similarity, the medians of a centre's distance in per cent
@@ -14,6 +16,7 @@ darkened. With --other the images whose names fit no PATTERN become a map, with 
 others are looked for in it. Needs pycolmap. Work that is there is not done again.
 """
 import argparse
+import csv
 import fnmatch
 import itertools
 import sys
@@ -106,7 +109,8 @@ def true_poses(file):
 
 
 def told(found, truth):
-    """What a table says of poses of `found` beside those of `truth`, after the similarity that most of them agree on."""
+    """Errors of poses of `found` beside those of `truth`, after the similarity that most of them agree on: medians of centres in
+    per cent and of angles in degrees, and how many are close."""
     both = sorted(set(found) & set(truth))
     true, seen = np.array([truth[n].translation for n in both]), np.array([found[n][0].translation for n in both])
     depths = np.array([found[name][1] for name in both])
@@ -114,8 +118,7 @@ def told(found, truth):
     moved = pycolmap.estimate_sim3d_robust(true, seen, limit)['tgt_from_src']
     away = np.linalg.norm(moved.scale * true @ moved.rotation.matrix().T + moved.translation - seen, axis=1) / depths
     turned = np.degrees([(moved.rotation * truth[n].rotation).angle_to(found[n][0].rotation) for n in both])
-    return (f'{100 * np.median(away):.2f} | {np.median(turned):.2f} | {np.count_nonzero((away < .05) & (turned < 5))} of '
-            f'{len(both)} |')
+    return [f'{100 * np.median(away):.2f}', f'{np.median(turned):.2f}', f'{np.count_nonzero((away < .05) & (turned < 5))} of {len(both)}']
 
 
 def find_others(images, other, model, points, work):
@@ -154,8 +157,8 @@ def main():
     arguments = parser.parse_args()
     pycolmap.logging.minloglevel = pycolmap.logging.WARNING.value
     pycolmap.set_random_seed(1)
-    print('| scene | method | registered | points | track | reprojection | centres, % | degrees | within 5 % and 5 degrees |\n'
-          + '|---' * 9 + '|')
+    table = csv.writer(sys.stdout, lineterminator='\n')
+    table.writerow(['scene', 'method', 'registered', 'points', 'track', 'reprojection', 'centres', 'degrees', 'close'])
     for scene in arguments.scenes:
         images, work = scene / 'images', arguments.work / (scene.name + ' relit' * arguments.relit)
         if arguments.relit:
@@ -166,19 +169,20 @@ def main():
         truth, models = scene / 'poses.txt', {}
         for method in arguments.methods.split(','):
             model = models[method] = reconstruct(method, images, arguments.points, work)
-            errors = ' | | |'
+            errors = [''] * 3
             if truth.exists():
                 errors = told({Path(name).stem: pose for name, pose in poses(model).items()}, true_poses(truth))
-            print(f'| {work.name} | {method} | {model.num_reg_images()} of {len(list(images.iterdir()))} | {model.num_points3D()} | '
-                  f'{model.compute_mean_track_length():.2f} | {model.compute_mean_reprojection_error():.2f} | {errors}', flush=True)
+            table.writerow([work.name, method, f'{model.num_reg_images()} of {len(list(images.iterdir()))}', model.num_points3D(),
+                            f'{model.compute_mean_track_length():.2f}', f'{model.compute_mean_reprojection_error():.2f}', *errors])
+            sys.stdout.flush()
         if not truth.exists():
             for a, b in itertools.combinations(models, 2):
                 other = {name: pose for name, (pose, _) in poses(models[b]).items()}
-                print(f'| {work.name} | {a} and {b} | | | | | {told(poses(models[a]), other)}')
+                table.writerow([work.name, f'{a} and {b}', '', '', '', '', *told(poses(models[a]), other)])
         if arguments.other:
             other = {path.name for path in images.iterdir()
                      if any(fnmatch.fnmatch(path.name, pattern) for pattern in arguments.other.split(','))}
-            print('\n' + find_others(images, other, models['chain'], arguments.points, work))
+            print(find_others(images, other, models['chain'], arguments.points, work), file=sys.stderr)
 
 
 if __name__ == '__main__':

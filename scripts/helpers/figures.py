@@ -165,15 +165,30 @@ def estimates():
     return {(row['detector'], row['place'], row['points'], row['estimator']): row for row in rows('estimators.csv')}
 
 
+METHODS = {'ORB': 'ORB', 'AKAZE': 'AKAZE', 'SIFT': 'SIFT', 'SIFT normalized': 'SIFT, normalized', 'Hessian': 'recommended chain'}
+WAYS = ('plain', 'MAGSAC 0.75 px'), ('refined', 'findRelativePose')  # of others, and of this project
+
+
 def poses():
     """What others do beside what this project does for poses, for the methods on the first page."""
-    found, lines, ways = estimates(), [], (('plain', 'MAGSAC 0.75 px'), ('refined', 'findRelativePose'))
-    for detector, label in (('ORB', 'ORB'), ('AKAZE', 'AKAZE'), ('SIFT', 'SIFT'), ('SIFT normalized', 'SIFT, normalized'),
-                            ('Hessian', '**recommended chain**')):
-        lines.append([label] + ['%.2f' % float(found[(detector, place) + way]['at_10']) for place in ('same light', 'other light') for way in ways])
-    head = ['%s, %s pairs: %s' % (place, found[('ORB', place) + ways[0]]['pairs'], how)
-            for place in ('same light', 'other light') for how in ('MAGSAC', 'ours')]
+    found, places = estimates(), ('same light', 'other light')
+    lines = [['**%s**' % label if detector == 'Hessian' else label] +
+             ['%.2f' % float(found[(detector, place) + way]['at_10']) for place in places for way in WAYS]
+             for detector, label in METHODS.items()]
+    head = ['%s, %s pairs: %s' % (place, found[('ORB', place) + WAYS[0]]['pairs'], how) for place in places for how in ('MAGSAC', 'ours')]
     return table(['points and descriptor', *head], lines)
+
+
+def pose_bars():
+    """The same in other light as bars of SVG."""
+    found, lines = estimates(), []
+    for n, (detector, label) in enumerate(METHODS.items()):
+        lines.append('<text x="180" y="%d" text-anchor="end"%s>%s</text>' % (66 + 46 * n, ' font-weight="bold"' * (detector == 'Hessian'), label))
+        for k, (way, colour) in enumerate(zip(WAYS, ('#9aa5b1', '#1f6fb2'))):
+            score, y = float(found[(detector, 'other light') + way]['at_10']), 42 + 46 * n + 19 * k
+            lines.append('<rect x="190" y="%d" width="%.0f" height="17" fill="%s"/><text x="%.0f" y="%d">%.2f</text>' % (
+                y, 540 * score, colour, 196 + 540 * score, y + 13, score))
+    return '\n'.join(lines)
 
 
 def match_claim():
@@ -380,12 +395,38 @@ def mapped_index():
         ['%d queries, k = 5, one worker of one thread, s' % workers['queries'], '%.1f' % workers['one_worker_seconds']]])
 
 
+def photographs(known=True):
+    """Reconstructions of scenes with known poses, and what they keep in other light; or of one without."""
+    found = [row for row in rows('photographs.csv') if (row['scene'] != 'liberty') == known]
+    lines = table(['scene', 'method', 'registered', 'points', 'track', 'reprojection', 'centres, %', 'degrees', 'within 5 % and 5 degrees'],
+                  [list(row.values()) for row in found])
+    if not known:
+        return lines
+    kept, errors = {}, {}
+    points = {(row['scene'], row['method']): int(row['points']) for row in found}
+    for row in found:
+        errors.setdefault(row['method'], []).append(row['reprojection'])
+        if row['scene'].endswith(' relit'):
+            kept.setdefault(row['method'], []).append(round(100 * points[row['scene'], row['method']] /
+                                                            points[row['scene'][:-len(' relit')], row['method']]))
+    return '%s\n\nRelit, the chain keeps %d to %d of 100 of its points, SIFT %d to %d, normalized SIFT %d to %d. ' \
+        'SIFT\'s points lie more exactly: reprojection errors\nof %s to %s pixels, the chain\'s %s to %s.' % (
+            lines, *(end(kept[method]) for method in ('chain', 'SIFT', 'normalized') for end in (min, max)),
+            *(end(errors[method]) for method in ('SIFT', 'chain') for end in (min, max)))
+
+
+def photographs_of_many():
+    return photographs(False)
+
+
 # Tables of the paper by the questions of tools/evaluation/report/paper.csv.
 TABLES = {'paper_' + name: functools.partial(paper, question)
           for name, question in zip(('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), summaries.questions())}
 
-PAGES = {'README.md': (match_claim, pose_claim, speed_claim, poses),
+PAGES = {'doc/poses.svg': (pose_bars,),
+         'README.md': (match_claim, pose_claim, speed_claim, poses),
          'doc/guide.md': (pose_by_rule, presets),
+         'doc/colmap.md': (photographs, photographs_of_many),
          'doc/performance.md': (describing, chains, same_points, matching, small_work),
          'doc/scale.md': (mapped_index, flat_search),
          'doc/paper.md': (matching_modes, operations, memory, learned_points, paper_orders, localization_systems, localization_setups),
