@@ -5,13 +5,11 @@ lights on another path, with an IMU. See README.md."""
 import argparse
 import os
 import pathlib
-import shutil
-import sys
 
 import cv2
 import numpy as np
 
-from render import IMAGE, Task, render_all, run_quickly, write_text
+from render import IMAGE, Task, render_all, run_quickly, start, write_text
 from scenes import LIGHTS, SCENES, extrinsics, intrinsics, walk
 
 SCENE = "street"
@@ -116,14 +114,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=pathlib.Path, help="folder to render into; what is there is kept")
     out = parser.parse_args().out
-    if shutil.which("povray") is None:
-        sys.exit("povray is not installed: apt-get install povray")
     tasks = list(plan(out, KEYFRAMES, QUERIES, QUERY_LIGHTS, SIZE))
     render_all(tasks, SIZE, os.cpu_count(), run_quickly)
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except (RuntimeError, OSError) as error:
-        sys.exit(str(error))
+    start(main)

@@ -153,7 +153,17 @@ def plan(out, scenes, frames, size):
         yield from walked(folders, scene, size, frames)
 
 
+def start(main):
+    """Runs a command; what a person can put right is one line."""
+    try:
+        main()
+    except (RuntimeError, OSError) as error:
+        sys.exit(str(error))
+
+
 def render_all(tasks, size, jobs, run_task=run):
+    if shutil.which("povray") is None:
+        raise RuntimeError("povray is not installed: apt-get install povray")
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         try:
             futures = [pool.submit(run_task, task, size) for task in tasks]
@@ -178,16 +188,10 @@ def main():
     options = parser.parse_args()
     if options.frames < 0 or min(options.size) < 16 or options.jobs < 1:
         parser.error("--frames must be 0 or more, --size 16 or more each way, --jobs 1 or more")
-    if shutil.which("povray") is None:
-        sys.exit("povray is not installed: apt-get install povray")
-
     size = tuple(options.size)
     tasks = list(plan(options.out, options.scenes, options.frames, size))
     render_all(tasks, size, options.jobs, run_quickly if options.quick else run)
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except (RuntimeError, OSError) as error:
-        sys.exit(str(error))
+    start(main)

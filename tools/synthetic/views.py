@@ -4,13 +4,11 @@
 import argparse
 import os
 import pathlib
-import shutil
-import sys
 
 import numpy as np
 
 from localization import MAP_LIGHT, SIZE, cameras, tum
-from render import IMAGE, Task, render_all, run_quickly, write_text
+from render import IMAGE, Task, render_all, run_quickly, start, write_text
 from scenes import SCENES, walk
 
 LIGHTS = ["night", "dusk", "winter"]
@@ -50,13 +48,8 @@ def main():
                         help="of the instances; 0 is the scene of the other programs (1 2 3)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="renderings at a time")
     options = parser.parse_args()
-    if shutil.which("povray") is None:
-        sys.exit("povray is not installed: apt-get install povray")
     render_all(list(plan(options.out, options.scenes, options.seed)), SIZE, options.jobs, run_quickly)
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except (RuntimeError, OSError) as error:
-        sys.exit(str(error))
+    start(main)
