@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "described_pair.hpp"
+#include "samples.hpp"
 
 #include <cmath>
 #include <map>

@@ -15,10 +15,6 @@ SHOWN = {
     "not free": {"SURF": OWN}}
 NOT_LEARNED = {"IIB", "BRISK", "AKAZE-486", "KAZE", "SIFT", "BRIEF-512", "DAISY", "SURF"}
 
-# The bars of descriptors alone; of two sizes of a point, the better one.
-HEADLINE = ("IIB", "IIB COMPACT", "SIFT", "KAZE", "AKAZE-486", "BEBLID-512", "TEBLID-512", "LATCH-512", "ORB",
-            "BRIEF-512", "BRISK", "FREAK")
-
 # What changes besides light, kinds of change first, as the page calls it.
 CHANGES = {"viewpoint": "other viewpoint", "zoom": "zoom and rotation", "blur": "blur", "jpeg": "compression"}
 

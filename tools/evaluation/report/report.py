@@ -37,13 +37,6 @@ def overview(tables):
     return found
 
 
-def headline(rows):
-    """The bars of descriptors alone; of two sizes of a point, the better one."""
-    best = [max(same, key=lambda r: number(r["score"], "recall")) for same in
-            ([r for r in rows if r["name"] in (name, name + " 5x")] for name in descriptors.HEADLINE) if same]
-    return sorted(best, key=lambda r: -number(r["score"], "recall"))
-
-
 def detected_lines(tables):
     """What describes the points of each detector, in photographs and in rendered scenes."""
     rendered = by(tables["detected_points"], "detector", "descriptor", place="rendered")
@@ -133,7 +126,7 @@ def main():
     settings = [line for name in ("settings.txt", "run.txt") if (folder / name).is_file()
                 for line in (folder / name).read_text().splitlines() if line]
     page = environment.get_template("page.html.j2").render(
-        overview=rows, networks=tables["learned"], licences=descriptors.NETWORKS, headline=headline(rows),
+        overview=rows, networks=tables["learned"], licences=descriptors.NETWORKS,
         detected=detected_lines(tables), changes=changes(tables), warps=warps(tables), poses=poses(tables), estimates=estimates(tables), anchors=read(HERE / "anchors.csv"),
         alignment=tables["alignment"],
         slider=slider(tables), methods=list(descriptors.METHODS.values()), curves=curves(tables), matching=group(tables["matching"], "place"),
