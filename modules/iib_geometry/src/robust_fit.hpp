@@ -124,7 +124,10 @@ Square<typename Problem::Step> covarianceOf(const Problem& problem, const typena
 template <class Problem>
 bool robustFit(const Problem& problem, typename Problem::Model& best, std::vector<uchar>& inliers)
 {
+    typedef typename Problem::Model Model;
     const int fewestTrials = 300, mostTrials = 10000, shortPolish = 10, longPolish = 50;
+    const size_t most =
+            10;  // models polished in the end: that of the least loss need not lead to the best one
     const double missed = 1e-4;  // probability that no sample was of right matches alone
     const double none = std::numeric_limits<double>::max();
     const int count = problem.size(), size = problem.sampleSize();
@@ -133,8 +136,21 @@ bool robustFit(const Problem& problem, typename Problem::Model& best, std::vecto
         return false;
     RNG random(0x5eed);
     std::vector<int> sample(size);
-    std::vector<typename Problem::Model> models;
-    double leastLoss = none, leastVerdict = none, trials = mostTrials;
+    std::vector<Model> models;
+    std::vector<std::pair<double, Model>> least;  // losses in order, and models
+    double leastVerdict = none, trials = mostTrials;
+    const auto judge = [&](Model model) {
+        polish(problem, model, shortPolish);
+        const double verdict = problem.verdict(model);
+        if (verdict >= leastVerdict)
+            return;
+        leastVerdict = verdict;
+        best = model;
+        const double share = (double)problem.inliers(model, inliers) / count;
+        const double miss = 1 - std::pow(share, size);
+        const double wanted = share == 0 ? none : miss > 0 ? std::log(missed) / std::log(miss) : 0;
+        trials = std::max<double>(fewestTrials, std::min<double>(mostTrials, wanted));
+    };
     for (int trial = 0; trial < trials; trial++)
     {
         for (int k = 0; k < size; k++)
@@ -142,24 +158,23 @@ bool robustFit(const Problem& problem, typename Problem::Model& best, std::vecto
                 sample[k] = random.uniform(0, count);
             while (std::find(sample.begin(), sample.begin() + k, sample[k]) != sample.begin() + k);
         problem.propose(sample, models);
-        for (typename Problem::Model& model : models)
+        for (const Model& model : models)
         {
-            const double loss = problem.loss(model, leastLoss);
-            if (loss >= leastLoss)
+            const double limit = least.size() < most ? none : least.back().first,
+                         loss = problem.loss(model, limit);
+            if (loss >= limit)
                 continue;
-            leastLoss = loss;
-            polish(problem, model, shortPolish);
-            const double verdict = problem.verdict(model);
-            if (verdict >= leastVerdict)
-                continue;
-            leastVerdict = verdict;
-            best = model;
-            const double share = (double)problem.inliers(model, inliers) / count;
-            const double miss = 1 - std::pow(share, size);
-            const double wanted = share == 0 ? none : miss > 0 ? std::log(missed) / std::log(miss) : 0;
-            trials = std::max<double>(fewestTrials, std::min<double>(mostTrials, wanted));
+            if (least.size() == most)
+                least.pop_back();
+            auto place = least.begin();
+            while (place != least.end() && place->first <= loss)
+                ++place;
+            if (least.insert(place, {loss, model}) == least.begin())
+                judge(model);
         }
     }
+    for (size_t i = 1; i < least.size(); i++)
+        judge(least[i].second);
     if (leastVerdict < none)
     {
         polish(problem, best, longPolish);

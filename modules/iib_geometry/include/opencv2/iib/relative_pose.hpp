@@ -27,8 +27,8 @@ Matches that cv::iib::refineMatches refined make the pose more accurate where th
 @param R 3 x 3, CV_64F: from the axes of camera 1 to those of camera 2
 @param t 3 x 1, CV_64F, of length 1: direction of the translation, in the axes of camera 2
 @param inliers N x 1, CV_8U: 1 for matches within three scales of the pose, and in front of both cameras; else 0
-@param scale Cauchy's scale in pixels, over 0: about the standard deviation of the points, refined or not, where the light
-    changed; .25 for refined points of images in the same light
+@param scale Cauchy's scale in pixels, over 0: about the standard deviation of the points; .25 for refined points, .5 for
+    points as they were detected
 @param covariance 5 x 5, CV_64F, of the errors of the pose in radians: three numbers of a rotation vector \f$w\f$ in the
     axes of camera 2, where the true rotation is \f$\exp([w]_\times) R\f$; two of the direction of t, along \f$b\f$ and
     \f$t \times b\f$, where \f$b\f$ is the unit vector along \f$t \times e\f$ and \f$e\f$ the axis along which t is
@@ -39,7 +39,7 @@ Matches that cv::iib::refineMatches refined make the pose more accurate where th
     not a camera's, or a scale that is not over 0 */
 CV_EXPORTS_W bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraMatrix1,
         InputArray cameraMatrix2, OutputArray R, OutputArray t, OutputArray inliers = noArray(),
-        double scale = .5, OutputArray covariance = noArray());
+        double scale = .25, OutputArray covariance = noArray());
 
 //! @}
 
