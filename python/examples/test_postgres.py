@@ -23,7 +23,7 @@ def plain_votes(places, codes, count=10):
     return [(list(places)[i], int(votes[i])) for i in order if votes[i]]
 
 
-@unittest.skipUnless(SERVER, 'no server: scripts/helpers/postgres_test.sh starts one')
+@unittest.skipUnless(SERVER, 'no server: scripts/helpers/servers_test.sh starts one')
 class PlacesTest(unittest.TestCase):
 
     def setUp(self):

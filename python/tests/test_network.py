@@ -1,4 +1,4 @@
-"""Workers of Dask on machines of their own, network namespaces, whose cable is cut: scripts/helpers/network_test.sh."""
+"""Workers of Dask on machines of their own, network namespaces, whose cable is cut: scripts/helpers/servers_test.sh."""
 import io
 import os
 import signal
@@ -27,7 +27,7 @@ def ip(*arguments):
     subprocess.run(['ip', *arguments], check=True)
 
 
-@unittest.skipUnless(NAMESPACE, 'no network namespace: scripts/helpers/network_test.sh makes one')
+@unittest.skipUnless(NAMESPACE, 'no network namespace: scripts/helpers/servers_test.sh makes one')
 class NetworkTest(InFolder):
     """A scheduler here and three workers, all with a cable to the same switch."""
 

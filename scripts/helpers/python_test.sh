@@ -46,8 +46,7 @@ say "python tests with pip's newest OpenCV"
 check newest "$work"/*.whl opencv-python-headless h5py pycolmap jinja2 distributed mypy
 if [ -n "$servers" ]; then
     "$work/newest/bin/pip" install --quiet "psycopg[binary]"
-    "$root/scripts/helpers/postgres_test.sh" "$work/newest/bin/python"
-    "$root/scripts/helpers/network_test.sh" "$work/newest/bin/python"
+    "$root/scripts/helpers/servers_test.sh" "$work/newest/bin/python"
 fi
 
 if /usr/bin/python3 -c 'import cv2' 2>"$work/log"; then

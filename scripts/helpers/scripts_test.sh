@@ -58,10 +58,9 @@ refused scripts/wheel.sh no-such-python
 refused scripts/windows.sh unknown
 refused scripts/helpers/emulated.sh s390x
 refused scripts/helpers/emulated.sh arm64 unknown
-refused scripts/helpers/network_test.sh no-such-python
 refused scripts/helpers/newcomer.sh bookworm trixie
 refused scripts/helpers/opencv_source.sh unknown
-refused scripts/helpers/postgres_test.sh no-such-python
+refused scripts/helpers/servers_test.sh no-such-python
 refused scripts/helpers/python_test.sh no-such-library
 refused scripts/helpers/scale.sh --mapped=many
 refused scripts/helpers/scale.sh --mapped=0
