@@ -17,7 +17,7 @@ cv::Ptr<Matcher> clone(const Matcher& self, bool emptyTrainData)
     return self.clone(emptyTrainData).dynamicCast<Matcher>();
 }
 
-//! For a train set of a call: refers to it, and counts its cost with that of `self`.
+//! For a train set of a call: refers to it, which has to live as long, and counts its cost with that of `self`.
 cv::Ptr<Matcher> on(const Matcher& self, const cv::Mat& train)
 {
     const cv::Ptr<Matcher> given = clone(self, true);
@@ -90,7 +90,7 @@ void bindMatcher(nb::module_& m)
                     },
                     nb::arg().none())
             .def("clone", &clone)
-            .def("on", &on, WithoutGil())
+            .def("on", &on, WithoutGil(), nb::keep_alive<0, 2>())
             .def("add", &add, WithoutGil())
             .def("clear", &Matcher::clear)
             .def("empty", &Matcher::empty)

@@ -115,13 +115,6 @@ class Normalized(unittest.TestCase):
         gc.collect()
         self.assertEqual(len(copy.copy(iib).detect(texture(60, 60))), 1)
 
-    def test_an_extractor_is_not_its_own_detector(self):
-        iib, other = IIB.create(), IIB.create()
-        other.setDetector(iib)
-        for culprit in (iib, other):
-            with self.assertRaisesRegex(opencv_iib.error, 'its own detector'):
-                iib.setDetector(culprit)
-
     def test_masks_and_images_that_are_refused(self):
         image = texture(100, 80)
         for detector in (IIB.create(), IIB.createFor(Watching()), NormalizedDetector(Watching())):

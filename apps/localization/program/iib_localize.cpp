@@ -41,30 +41,19 @@ std::string quoted(const std::string& text)
     return result + "\"";
 }
 
-//! Calls what is to be done with each place and name of the upper triangle of the covariance.
-template <typename Action> void forUpper(Action action)
-{
-    static const char* const axes[] = {"x", "y", "z", "rx", "ry", "rz"};
-    for (int i = 0; i < 6; i++)
-        for (int k = i; k < 6; k++)
-            action(i, k, std::string(axes[i]) + "_" + axes[k]);
-}
-
-std::string csvHeader()
-{
-    std::string header = "name,found,reason,matches,inliers";
-    forUpper([&](int, int, const std::string& name) { header += "," + name; });
-    return header + "\n";
-}
+//! Behind the fifth name, the upper triangle of the covariance.
+const char* const CSV_HEADER = "name,found,reason,matches,inliers,x_x,x_y,x_z,x_rx,x_ry,x_rz,y_y,y_z,y_rx,y_"
+                               "ry,y_rz,z_z,z_rx,z_ry,z_rz,"
+                               "rx_rx,rx_ry,rx_rz,ry_ry,ry_rz,rz_rz\n";
 
 std::string csvRow(const std::string& name, const Location& location)
 {
     std::string row =
             quoted(name) + cv::format(",%d,%s,%d,%d", location.found, quoted(location.reason).c_str(),
                                    location.matches, location.inliers);
-    forUpper([&](int i, int k, const std::string&) {
-        row += location.found ? cv::format(",%.6g", location.covariance(i, k)) : ",";
-    });
+    for (int i = 0; i < 6; i++)
+        for (int k = i; k < 6; k++)
+            row += location.found ? cv::format(",%.6g", location.covariance(i, k)) : ",";
     return row + "\n";
 }
 
@@ -281,7 +270,7 @@ int run(const iib_tools::CommandLine& line)
             progress.step();
         }
     });
-    std::string table = csvHeader(), trajectory = "# name tx ty tz qx qy qz qw\n";
+    std::string table = CSV_HEADER, trajectory = "# name tx ty tz qx qy qz qw\n";
     for (const std::string& row : rows)
         table += row;
     std::vector<std::optional<cv::Affine3d>> poses;
