@@ -7,16 +7,15 @@
 #   scripts/bench.sh [--contrib] [--document] [--rounds=N]
 . "$(dirname "$0")/helpers/lib.sh"
 
-contrib=""
-if [ "${1:-}" = --contrib ]; then
-    contrib=yes
+contrib="" results="$build"
+while :; do
+    case "${1:-}" in
+    --contrib) contrib=yes ;;
+    --document) results="$root/doc/results" ;;
+    *) break ;;
+    esac
     shift
-fi
-results="$build"
-if [ "${1:-}" = --document ]; then
-    results="$root/doc/results"
-    shift
-fi
+done
 check_options "$root/tools/benchmark/benchmark.cpp" "$@"
 [ "$operands" = 0 ] || fail "takes options alone (--help tells more)"
 document="${results#"$build"}"

@@ -6,22 +6,17 @@
 # opencv_contrib, whose source pip brings (BEBLID, TEBLID, LATCH and more), --nonfree SURF, whose licence is not free.
 . "$(dirname "$0")/helpers/lib.sh"
 
-document=""
-if [ "${1:-}" = --document ]; then
-    document=yes
+document="" contrib="" nonfree=OFF
+while :; do
+    case "${1:-}" in
+    --document) document=yes ;;
+    --contrib) contrib=yes ;;
+    --nonfree) nonfree=ON ;;
+    *) break ;;
+    esac
     shift
-fi
-contrib=""
-if [ "${1:-}" = --contrib ]; then
-    contrib=yes
-    shift
-fi
-nonfree=OFF
-if [ "${1:-}" = --nonfree ]; then
-    [ -n "$contrib" ] || fail "--nonfree needs --contrib before it"
-    nonfree=ON
-    shift
-fi
+done
+[ "$nonfree$contrib" != ON ] || fail "--nonfree needs --contrib"
 check_options "$root/tools/evaluation/main.cpp" "$@"
 [ "$operands" != 0 ] || fail "a folder of DATA is needed (--help tells more)"
 out="$root/results"

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Looks up what doc/paper.md names: paper_test.py [PAGE]
+"""Looks up what doc/paper.md names, and what the other pages do: paper_test.py
 
 Files of links and the symbol that a link's text names in them; anchors; scripts, their options and experiments; columns of CSV files
 and rows of them, as in "rows `a.csv`: `NAME`, `NAME`"; and that the drawings are those of drawings.py. Then each kind of name is
-broken in a copy of the page, and that has to be found.
+broken in a copy of the paper's page, and that has to be found.
 """
 import pathlib
 import re
@@ -14,7 +14,7 @@ import drawings
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 OPTIONS = {'evaluate.sh': 'tools/evaluation/main.cpp', 'train.sh': 'tools/training/train.cpp', 'bench.sh': 'tools/benchmark/benchmark.cpp'}
-MANY = 40  # names that a page has at least of links
+MANY = 40  # links that the paper's page has at least
 
 
 def anchors(text):
@@ -23,7 +23,7 @@ def anchors(text):
 
 
 def wrong_links(text, page):
-    for words, target in re.findall(r'\[([^]]*)\]\(([^)]*)\)', text):
+    for words, target in re.findall(r'\[([^]]*)\]\(([^)]*)\)', re.sub(r'^```.*?^```', '', text, flags=re.M | re.S)):
         if target.startswith('http'):
             continue
         name, _, anchor = target.partition('#')
@@ -32,7 +32,7 @@ def wrong_links(text, page):
             yield 'there is no ' + target
         elif anchor and anchor not in anchors(text if file == page else file.read_text()):
             yield 'no anchor ' + target
-        elif file.suffix in ('.cpp', '.hpp') and not re.search(r'\b%s\b' % words.strip('`'), file.read_text()):
+        elif file.suffix in ('.cpp', '.hpp') and words[:1] == '`' and not re.search(r'\b%s\b' % words.strip('`'), file.read_text()):
             yield '%s is not in %s' % (words, name)
 
 
@@ -40,7 +40,8 @@ def wrong_commands(text):
     for command in re.findall(r'`(scripts/[^`]*)`', text):
         script, *words = command.split()
         if not (ROOT / script).is_file():
-            yield 'there is no ' + script
+            if not (ROOT / script).is_dir():
+                yield 'there is no ' + script
             continue
         known = (ROOT / script).read_text()
         tool = OPTIONS.get(pathlib.Path(script).name)
@@ -82,9 +83,10 @@ def broken(text):
 
 
 def main():
-    page = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / 'doc/paper.md').resolve()
+    found = ['%s: %s' % (page.relative_to(ROOT), what) for pages in ('*.md', 'doc/**/*.md', '*/*/README.md', '*/*/tutorials/*.markdown')
+             for page in ROOT.glob(pages) for what in wrong(page.read_text(), page)]
+    page = ROOT / 'doc/paper.md'
     text = page.read_text()
-    found = wrong(text, page)
     if len(re.findall(r'\]\(', text)) < MANY:
         found.append('the page names hardly anything')
     for (altered, count), said in broken(text):

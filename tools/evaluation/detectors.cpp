@@ -177,14 +177,6 @@ bool Detector::knows(const std::string& imageFile) const
     return folder.empty() || cv::utils::fs::exists(keypointFile(folder, imageFile));
 }
 
-std::vector<std::string> describedNames(const Detector& detector)
-{
-    std::vector<std::string> names;
-    for (const Configuration& c : describersOf(detector))
-        names.push_back(c.name);
-    return names;
-}
-
 std::vector<Described> describeAll(const Detector& detector, const cv::Mat& image, const std::string& file)
 {
     const Detection detection = detector.detect(image, file);

@@ -53,7 +53,4 @@ struct Described
 the same order for every image of a detector; of these Detector::only alone where it names one. */
 std::vector<Described> describeAll(const Detector& detector, const cv::Mat& image, const std::string& file);
 
-//! Names of what describeAll gives for every image, without the detector's own.
-std::vector<std::string> describedNames(const Detector& detector);
-
 }  // namespace iib_tools
