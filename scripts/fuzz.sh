@@ -28,7 +28,7 @@ for target in "$@"; do
     *) fail "there is no target $target; there are: $known" ;;
     esac
 done
-need $build_packages clang llvm xz-utils
+need $build_packages clang xz-utils
 if [ -n "$plain" ]; then
     build="$root/build-fuzz-plain" longest=40
     # Where numbers are compared is not recorded: it takes half of the time.
@@ -37,25 +37,17 @@ if [ -n "$plain" ]; then
 else
     build="$root/build-fuzz" longest=512
     # The last sanitizer finds casts of numbers too large for an integer, whose result depends on the machine.
-    configure -DCMAKE_CXX_COMPILER=clang++ -DIIB_SANITIZE=fuzzer,address,undefined,float-cast-overflow \
-        "-DCMAKE_CXX_FLAGS=-fprofile-instr-generate -fcoverage-mapping"
+    configure -DCMAKE_CXX_COMPILER=clang++ -DIIB_SANITIZE=fuzzer,address,undefined,float-cast-overflow
 fi
 say "building the targets"
 # shellcheck disable=SC2046
 cmake --build "$build" --target $(printf 'iib_fuzz_%s ' "$@")
 
-# covered PROFILE: the share of the libraries' lines that ran.
-covered() {
-    llvm-cov report "$build/libopencv_iib.so" -object "$build/libopencv_iib_index.so" -instr-profile="$1" |
-        awk '$1 == "TOTAL" { print $10 }'
-}
-
-# replay TARGET: its inputs with the kernels of each instruction set, for their profiles.
+# replay TARGET: its inputs with the kernels of each instruction set.
 replay() {
     for off in "" AVX512-SKX,AVX512-ICL AVX2,AVX512-SKX,AVX512-ICL SSE4.1,SSE4.2,AVX,AVX2,AVX512-SKX,AVX512-ICL; do
-        OPENCV_CPU_DISABLE=$off LLVM_PROFILE_FILE="$build/$1-without-$off.profraw" \
-            "$build/fuzz/iib_fuzz_$1" -runs=0 $options "$corpus/$1" "$root/fuzz/corpus/$1" >"$build/$1.log" 2>&1 ||
-            return 1
+        OPENCV_CPU_DISABLE=$off "$build/fuzz/iib_fuzz_$1" -runs=0 $options "$corpus/$1" "$root/fuzz/corpus/$1" \
+            >>"$build/$1.log" 2>&1 || return 1
     done
 }
 
@@ -71,29 +63,15 @@ for target in "$@"; do
     options="-entropic=0 -detect_leaks=0 -timeout=60 -rss_limit_mb=4096 -max_len=$longest -artifact_prefix=$failures/$target-"
     mkdir -p "$corpus/$target"
     say "$target, $seconds s"
-    LLVM_PROFILE_FILE=/dev/null "$build/fuzz/iib_fuzz_$target" -max_total_time="$seconds" -print_final_stats=1 \
-        $options "$corpus/$target" "$root/fuzz/corpus/$target" >"$build/$target.log" 2>&1 || {
+    if "$build/fuzz/iib_fuzz_$target" -max_total_time="$seconds" -print_final_stats=1 $options "$corpus/$target" \
+        "$root/fuzz/corpus/$target" >"$build/$target.log" 2>&1 && { [ -n "$plain" ] || replay "$target"; }; then
+        executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$target.log" | head -n 1)
+        echo "$target: $executions executions, $(ls "$corpus/$target" | wc -l) inputs kept"
+    else
         failed="$failed $target"
         tail -n 30 "$build/$target.log"
-        continue
-    }
-    executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$target.log")
-    lines=""
-    if [ -z "$plain" ]; then
-        replay "$target" || {
-            failed="$failed $target"
-            tail -n 30 "$build/$target.log"
-            continue
-        }
-        llvm-profdata merge -o "$build/$target.profdata" "$build/$target"-without-*.profraw
-        lines=", $(covered "$build/$target.profdata") of the library's lines"
     fi
-    echo "$target: $executions executions, $(ls "$corpus/$target" | wc -l) inputs kept$lines"
 done
-if [ -z "$plain" ]; then
-    llvm-profdata merge -o "$build/all.profdata" "$build"/*.profraw
-    echo "all targets that have run together: $(covered "$build/all.profdata") of the library's lines"
-fi
 [ -z "$failed" ] || {
     echo "failed:$failed; the inputs are in $failures" >&2
     exit 1
