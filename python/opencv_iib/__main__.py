@@ -3,10 +3,11 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import inspect
 import logging
 import sqlite3
 import sys
-from typing import Any, Optional, Sequence
+from typing import Any, Callable, Optional, Sequence
 
 from opencv_iib import __version__, error, localization
 from opencv_iib.align import align
@@ -32,9 +33,10 @@ def _features(parser: argparse.ArgumentParser, points: int) -> None:
                         help='reduce larger images to this longer side; points stay in their own pixels')
 
 
-def _feature_options(arguments: argparse.Namespace) -> FeatureOptions:
-    return FeatureOptions(arguments.detector, arguments.points, arguments.preset, arguments.orientation,
-                          arguments.max_size)
+def _call(function: Callable[..., Any], arguments: argparse.Namespace, **more: Any) -> Any:
+    """With the options of the command line that are its parameters."""
+    known = inspect.signature(function).parameters
+    return function(**{name: value for name, value in vars(arguments).items() if name in known}, **more)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -42,29 +44,34 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--version', action='version', version=f'opencv_iib {__version__}')
     commands = parser.add_subparsers(dest='command', required=True)
 
-    command = commands.add_parser('demo', help='match two images and write a picture; status 3: nothing agrees')
+    def add(name: str, run: Callable[[argparse.Namespace], int], description: str) -> argparse.ArgumentParser:
+        added: argparse.ArgumentParser = commands.add_parser(name, help=description)
+        added.set_defaults(run=run)
+        return added
+
+    command = add('demo', _demo, 'match two images and write a picture; status 3: nothing agrees')
     command.add_argument('image_a')
     command.add_argument('image_b')
     command.add_argument('--out', default='opencv_iib_demo.png', help='picture to write (%(default)s)')
     _features(command, 1000)
 
-    command = commands.add_parser('match', help='match two images to a fraction of a pixel; status 3: no matches, or no pose')
+    command = add('match', _match, 'match two images to a fraction of a pixel; status 3: no matches, or no pose')
     command.add_argument('image_a')
     command.add_argument('image_b')
     command.add_argument('--out', default='matches.csv', help='file to write, a line a match (%(default)s)')
     command.add_argument('--picture', help='picture to write')
-    command.add_argument('--camera', action='append', default=[], metavar=CAMERA,
+    command.add_argument('--camera', dest='cameras', action='append', default=[], metavar=CAMERA,
                          help="find the pose too, with COLMAP's name and parameters of the camera; twice for two cameras")
     _features(command, 2000)
 
-    command = commands.add_parser('align', help='lay images onto a reference; status 0: all, 4: some, 3: none')
+    command = add('align', _align, 'lay images onto a reference; status 0: all, 4: some, 3: none')
     command.add_argument('reference')
     command.add_argument('images', nargs='+', help='of a plane, or from the same place')
     command.add_argument('--out', required=True, help='folder to write; older results there are replaced')
     command.add_argument('--model', default='HOMOGRAPHY', choices=list(AlignmentModel.__members__), type=str.upper,
                          help='the least that holds is the most accurate (%(default)s)')
 
-    command = commands.add_parser('colmap', help='describe and match a folder, for colmap mapper')
+    command = add('colmap', _colmap, 'describe and match a folder, for colmap mapper')
     command.add_argument('images', help='folder of images')
     command.add_argument('database', help='file to write; an interrupted run goes on from NAME.partial')
     _features(command, FeatureOptions.points)
@@ -80,47 +87,41 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument('--scheduler', metavar='ADDRESS', help="have the workers of Dask's scheduler there do it")
     command.add_argument('--force', action='store_true', help='replace a database that is there')
 
-    command = commands.add_parser('hloc', help="write a database's keypoints and matches as hloc reads them")
+    command = add('hloc', _hloc, "write a database's keypoints and matches as hloc reads them")
     command.add_argument('database', help='what the command colmap wrote')
     command.add_argument('features', help='HDF5 file to write')
     command.add_argument('matches', help='HDF5 file to write')
     command.add_argument('pairs', help='list of pairs to write')
     command.add_argument('--force', action='store_true', help='replace files that are there')
-    _add_localization(commands)
-    return parser
 
-
-def _add_localization(commands: Any) -> None:
-    def command(name: str, description: str, *, localizes: bool) -> argparse.ArgumentParser:
-        parser: argparse.ArgumentParser = commands.add_parser(name, help=description)
-        if localizes:
-            parser.add_argument('--map', required=True, help='folder that the command map wrote')
-        parser.add_argument('--images', required=True, help='folder of images, also in folders below it')
-        parser.add_argument('--workers', type=int, help='threads (one a core)')
-        if localizes:
-            parser.add_argument('--camera', metavar=CAMERA,
-                                help="COLMAP's name and parameters of the camera of all images, instead of the map's or EXIF's")
-        return parser
-
-    mapping = command('map', 'make a map for localization of a COLMAP model', localizes=False)
+    mapping = add('map', _map, 'make a map for localization of a COLMAP model')
+    localizing = add('localize', _localize, 'find where images were taken; status 0: all, 4: some, 3: none')
+    updating = add('update', _update, 'add the light of images to a map')
     mapping.add_argument('--model', required=True, help='folder of a COLMAP model, binary or text')
+    for each in (localizing, updating):
+        each.add_argument('--map', required=True, help='folder that the command map wrote')
+    for each in (mapping, localizing, updating):
+        each.add_argument('--images', required=True, help='folder of images, also in folders below it')
+        each.add_argument('--workers', type=int, help='threads (one a core)')
+    for each in (localizing, updating):
+        each.add_argument('--camera', metavar=CAMERA,
+                          help="COLMAP's name and parameters of the camera of all images, instead of the map's or EXIF's")
     mapping.add_argument('--out', required=True, help='folder to write')
     mapping.add_argument('--points', type=int, default=2000, help='at most so many an image (%(default)s)')
     mapping.add_argument('--force', action='store_true', help='replace a map that is there')
-    localizing = command('localize', 'find where images were taken; status 0: all, 4: some, 3: none', localizes=True)
     localizing.add_argument('--out', required=True, help='folder to write; older results there are replaced')
     localizing.add_argument('--pictures', action='store_true', help='write each image with the points that agree')
+    updating.add_argument('--out', help='folder of the new map, instead of the old one')
     for each, text in ((mapping, 'map lines too'), (localizing, 'refine poses by the lines of a map that was made with --lines')):
         each.add_argument('--lines', action='store_true', help=text + " (needs OpenCV's module line_descriptor)")
-    updating = command('update', 'add the light of images to a map', localizes=True)
-    updating.add_argument('--out', help='folder of the new map, instead of the old one')
+    return parser
 
 
 SOME_FOUND, NONE_FOUND = 4, 3  # status of localize and align; NONE_FOUND of demo and match too
 
 
 def _demo(arguments: argparse.Namespace) -> int:
-    results = demo(arguments.image_a, arguments.image_b, arguments.out, _feature_options(arguments))
+    results = _call(demo, arguments, options=_call(FeatureOptions, arguments))
     _say(f'{", ".join(map(str, results))}\npicture: {arguments.out}')
     if results[0].good.any():
         return 0
@@ -130,10 +131,9 @@ def _demo(arguments: argparse.Namespace) -> int:
 
 
 def _match(arguments: argparse.Namespace) -> int:
-    if len(arguments.camera) > 2:
-        raise ValueError(f'{len(arguments.camera)} cameras for two images')
-    measured = match_images(arguments.image_a, arguments.image_b, arguments.out, arguments.picture, arguments.camera,
-                            _feature_options(arguments))
+    if len(arguments.cameras) > 2:
+        raise ValueError(f'{len(arguments.cameras)} cameras for two images')
+    measured = _call(match_images, arguments, options=_call(FeatureOptions, arguments))
     _say(f'{arguments.out}: {measured}')
     return 0 if measured.found else NONE_FOUND
 
@@ -151,18 +151,32 @@ def _share(count: int, total: int) -> int:
     return 0 if count == total else SOME_FOUND if count else NONE_FOUND
 
 
-def _localization(arguments: argparse.Namespace) -> int:
-    if arguments.command == 'localize':
-        found, count = localization.localize_images(arguments.map, arguments.images, arguments.out, arguments.camera,
-                                                    arguments.pictures, arguments.workers, lines=arguments.lines)
-        _say(f'{arguments.out}: {found} of {count} images have a pose')
-        return _share(found, count)
-    if arguments.command == 'map':
-        counts = localization.build(arguments.model, arguments.images, arguments.out, arguments.points, arguments.workers,
-                                    arguments.force, lines=arguments.lines)
-    else:
-        counts = localization.update(arguments.map, arguments.images, arguments.camera, arguments.out, arguments.workers)
-    _say(f'{arguments.out or arguments.map}: ' + ', '.join(f'{count} {name}' for name, count in counts.items()))
+def _colmap(arguments: argparse.Namespace) -> int:
+    with _client(arguments.scheduler) as client:
+        options = _call(Options, arguments, features=_call(FeatureOptions, arguments))
+        return _told(arguments.database, _call(build_database, arguments, options=options, client=client))
+
+
+def _hloc(arguments: argparse.Namespace) -> int:
+    return _told(arguments.matches, {'pairs': _call(hloc.export, arguments)})
+
+
+def _map(arguments: argparse.Namespace) -> int:
+    return _told(arguments.out, _call(localization.build, arguments))
+
+
+def _localize(arguments: argparse.Namespace) -> int:
+    found, count = _call(localization.localize_images, arguments)
+    _say(f'{arguments.out}: {found} of {count} images have a pose')
+    return _share(found, count)
+
+
+def _update(arguments: argparse.Namespace) -> int:
+    return _told(arguments.out or arguments.map, _call(localization.update, arguments))
+
+
+def _told(file: str, counts: dict[str, int]) -> int:
+    _say(f'{file}: ' + ', '.join(f'{count} {name}' for name, count in counts.items()))
     return 0
 
 
@@ -196,26 +210,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     """Runs a command; the exit status."""
     arguments = _parser().parse_args(argv)
     try:
-        if arguments.command == 'demo':
-            return _demo(arguments)
-        elif arguments.command == 'match':
-            return _match(arguments)
-        elif arguments.command == 'align':
-            return _align(arguments)
-        elif arguments.command in ('map', 'localize', 'update'):
-            return _localization(arguments)
-        elif arguments.command == 'hloc':
-            count = hloc.export(arguments.database, arguments.features, arguments.matches, arguments.pairs,
-                                arguments.force)
-            _say(f'{arguments.matches}: {count} pairs')
-        else:
-            options = Options(_feature_options(arguments), arguments.camera_model, arguments.focal,
-                              arguments.share_cameras, arguments.pairs, arguments.neighbours, arguments.ratio,
-                              arguments.verify)
-            with _client(arguments.scheduler) as client:
-                counts = build_database(arguments.images, arguments.database, options, arguments.force,
-                                        arguments.workers, client=client)
-            _say(f'{arguments.database}: ' + ', '.join(f'{count} {name}' for name, count in counts.items()))
+        return int(arguments.run(arguments))
     except KeyboardInterrupt:
         print('interrupted' + '; the same command goes on from here' * (arguments.command == 'colmap'), file=sys.stderr)
         return 130
@@ -224,7 +219,6 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
             raise
         print(f'{arguments.command}: {" ".join(str(e).split())}', file=sys.stderr)
         return 1
-    return 0
 
 
 if __name__ == '__main__':

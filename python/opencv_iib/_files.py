@@ -5,7 +5,7 @@ import os
 import shutil
 import sys
 import uuid
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from typing import Iterator
 
 if sys.platform == 'win32':
@@ -34,19 +34,28 @@ def write_whole(path: str, content: bytes) -> None:
     """
     target = output_file(path)
     # A device, such as /dev/stdout, is no file that could be replaced.
-    part = target if os.path.exists(target) and not os.path.isfile(target) else f'{target}.{uuid.uuid4().hex[:8]}'
+    device = os.path.exists(target) and not os.path.isfile(target)
     try:
-        with open(part, 'wb') as file:
+        with (nullcontext([target]) if device else replaced(target, suffix=f'.{uuid.uuid4().hex[:8]}')) as (part,), open(part, 'wb') as file:
             file.write(content)
-        if part != target:
-            if os.path.exists(target):
-                shutil.copymode(target, part)
-            os.replace(part, target)
     except OSError as e:
-        if part != target:
-            with suppress(OSError):
-                os.unlink(part)
         raise type(e)(f'{path} cannot be written: {e.strerror}') from None
+
+
+@contextmanager
+def replaced(*paths: str, suffix: str = '.new') -> Iterator[list[str]]:
+    """Names to write files to, which replace those at the paths when the block ends without an error."""
+    parts = [path + suffix for path in paths]
+    try:
+        yield parts
+        for part, path in zip(parts, paths):
+            if os.path.exists(path):
+                shutil.copymode(path, part)
+            os.replace(part, path)
+    finally:
+        for part in parts:
+            with suppress(FileNotFoundError):
+                os.unlink(part)
 
 
 @contextmanager

@@ -26,7 +26,16 @@ def optional(name):
 cv2 = optional('cv2')
 
 
-class InFolder(unittest.TestCase):
+class Commands(unittest.TestCase):
+
+    def check_error(self, pattern, *arguments):
+        """That opencv-iib ends with status 1, and with one line about it behind those of progress."""
+        status, _, errors = run_command(*arguments)
+        self.assertEqual(status, 1)
+        self.assertRegex(errors, rf'^(\w+ \d+.*\n)*{arguments[0]}: .*{pattern}.*\n$')
+
+
+class InFolder(Commands):
     """Each test has a folder of its own."""
 
     def setUp(self):

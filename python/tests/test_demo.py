@@ -26,9 +26,7 @@ class Demo(Collection):
         for arguments, told in (((a, b, '--points', '3000000000'), 'points is 3000000000'),
                                 ((self.images / 'gone.png', noise), 'gone.png: there is no such file'),
                                 ((noise, noise, '--out', 'x.foo'), 'x.foo: end its name in .png')):
-            status, _, error = run_command('demo', *arguments)
-            self.assertEqual(status, 1)
-            self.assertRegex(error, f'^demo: [^\n]*{told}[^\n]*\n$')
+            self.check_error(told, 'demo', *arguments)
 
     @unittest.skipUnless((REPOSITORY / 'tools/synthetic/day.png').exists(), 'the images are not beside these tests')
     def test_it_counts_as_that_of_cpp(self):

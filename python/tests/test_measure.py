@@ -90,9 +90,7 @@ class Match(Commands):
         for arguments, told in ((['--camera', 'PINHOLE,480,360,400'], 'PINHOLE'), (['--camera', 'PINHOLE,9,9,400,400,240,180'], '480 x 360'),
                                 (['--camera', 'x'] * 3, '3 cameras'), (['--picture', self.folder / 'no.suffix'], 'end its name'),
                                 (['--out', self.folder / 'none/m.csv'], 'no folder')):
-            status, _, err = run_command('match', a, a, *(['--out', out] if '--out' not in arguments else []), *arguments)
-            self.assertEqual((status, err.count('\n')), (1, 1))
-            self.assertIn(told, err)
+            self.check_error(told, 'match', a, a, *(['--out', out] if '--out' not in arguments else []), *arguments)
 
 
 class Align(Commands):
@@ -134,7 +132,6 @@ class Align(Commands):
         with self.assertRaises(FileExistsError):
             align(paths[0], paths, str(out))
         for arguments, told in ((['gone.png', paths[1]], 'gone.png'), ([paths[0], paths[1]], 'mine.txt')):
-            status, _, err = run_command('align', *arguments, '--out', out)
-            self.assertEqual((status, told in err), (1, True))
+            self.check_error(told, 'align', *arguments, '--out', out)
         self.assertEqual(run_command('align', *paths[:2], '--out', self.folder / 'new', '--model', 'similarity')[0], 0)
         self.assertEqual(run_command('align', paths[0], self.write('t.png', texture(300, 200, seed=9)), '--out', self.folder / 'n')[0], 3)

@@ -13,6 +13,8 @@ from typing import Any, Iterator, Optional
 
 import numpy as np
 
+from opencv_iib._files import replaced
+
 SCHEMA_VERSION = 3800
 MAX_IMAGE_ID = 2147483647
 
@@ -114,8 +116,7 @@ class Database(contextlib.AbstractContextManager['Database']):
 
     def finish(self) -> None:
         """Makes the file, without what COLMAP does not know. Until it is whole, a later run can still go on."""
-        new = self.path + '.new'
-        try:
+        with replaced(self.path) as (new,):
             with contextlib.closing(sqlite3.connect(os.fsencode(new), isolation_level=None)) as db:
                 self._db.backup(db)
                 db.execute('PRAGMA journal_mode=DELETE')
@@ -124,10 +125,6 @@ class Database(contextlib.AbstractContextManager['Database']):
                 db.execute('VACUUM')
             with open(new, 'rb') as file:
                 os.fsync(file.fileno())
-            os.replace(new, self.path)
-        finally:
-            with contextlib.suppress(FileNotFoundError):
-                os.unlink(new)
         self._finished = True
 
     @contextlib.contextmanager

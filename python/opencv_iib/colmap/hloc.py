@@ -1,13 +1,14 @@
 """From a COLMAP database to the HDF5 files of hloc (Hierarchical-Localization)."""
 from __future__ import annotations
 
+import contextlib
 import os
 import sqlite3
 from pathlib import Path
 
 import numpy as np
 
-from opencv_iib._files import output_file
+from opencv_iib._files import output_file, replaced
 from opencv_iib.colmap.database import MAX_IMAGE_ID
 from opencv_iib.colmap.images import is_listable
 
@@ -82,16 +83,6 @@ def export(database: str, features: str, matches: str, pairs: str, force: bool =
             raise FileExistsError(f'{path} is there already: remove it, or pass force (--force)')
     if not os.path.isfile(database):
         raise FileNotFoundError(f'no database {database}')
-    partial = [path + '.partial' for path in paths]
-    connection = sqlite3.connect(f'{Path(database).absolute().as_uri()}?mode=ro', uri=True)
-    try:
-        names, counts = _write_features(connection, partial[0])
-        total = _write_matches(connection, partial[1], partial[2], names, counts)
-        for made, path in zip(partial, paths):
-            os.replace(made, path)
-        return total
-    finally:
-        connection.close()
-        for made in partial:
-            if os.path.exists(made):
-                os.unlink(made)
+    with contextlib.closing(sqlite3.connect(f'{Path(database).absolute().as_uri()}?mode=ro', uri=True)) as connection, \
+            replaced(*paths) as (new_features, new_matches, new_pairs):
+        return _write_matches(connection, new_matches, new_pairs, *_write_features(connection, new_features))
