@@ -8,14 +8,8 @@
 
 namespace iib_localization {
 
-//! What is found in an image, the strongest first.
-struct Features
-{
-    std::vector<cv::Point2d> pixels;
-    std::vector<float> sizes;
-    cv::Mat codes;  //!< a row each
-    Picture picture;
-};
+//! What is found in an image: it has no name, camera and pose, and sees no points yet.
+typedef MapImage Features;
 
 //! What finds and describes the points of a map: createRecommended, or the paper's points and descriptor.
 cv::Ptr<cv::iib::IIB> describerOf(bool orbAndAkaze, int points);
@@ -31,19 +25,10 @@ inline Features extract(cv::iib::IIB& iib, const cv::Mat& image)
         features.sizes.push_back(k.size);
     }
     features.codes.create(int(keypoints.size()), iib.descriptorSize(), CV_8U);  // also of none
+    features.sees.assign(keypoints.size(), -1);
+    features.misses.assign(keypoints.size(), 0);
     features.picture = pictureOf(image);
     return features;
-}
-
-//! Gives an image of a map what was found in it; it sees no points yet.
-inline void setFeatures(MapImage& image, const Features& found)
-{
-    image.pixels = found.pixels;
-    image.sizes = found.sizes;
-    image.codes = found.codes;
-    image.picture = found.picture;
-    image.sees.assign(found.pixels.size(), -1);
-    image.misses.assign(found.pixels.size(), 0);
 }
 
 //! @throws cv::Exception for an image that is not of a camera's size, or not 8-bit, grey or BGR.

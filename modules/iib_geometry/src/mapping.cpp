@@ -106,7 +106,10 @@ void describe(std::vector<MapImage>& images, const cv::iib::ImageReader& read,
             }
             found = extract(*iib, pixels);
         }
-        setFeatures(image, found);
+        found.name = image.name;
+        found.camera = image.camera;
+        found.cameraFromWorld = image.cameraFromWorld;
+        image = std::move(found);
         steps.step(pixels.empty() ? image.name + " cannot be read: left out of the map" : "");
     });
     if (std::all_of(images.begin(), images.end(), [](const MapImage& i) { return i.pixels.empty(); }))

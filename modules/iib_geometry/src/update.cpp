@@ -223,11 +223,10 @@ cv::iib::MapUpdate::Counts cv::iib::MapUpdate::commit()
         folder = "updates/" + folder;
     for (const Seen* s : added)
     {
-        MapImage image;
+        MapImage image = s->found.features;
         image.name = folder + s->name;
         image.camera = s->camera;
         image.cameraFromWorld = s->found.cameraFromWorld;
-        setFeatures(image, s->found.features);
         image.used = map.updates;
         image.added = true;
         map.images.push_back(std::move(image));
