@@ -13,6 +13,9 @@ else()
   set(IIB_WARNINGS -Wall -Wextra -Wshadow -Wmissing-declarations)
 endif()
 set(IIB_FLAGS ${IIB_BIT_FLAGS})
+if(CMAKE_SIZEOF_VOID_P EQUAL 4)
+  add_compile_definitions(_FILE_OFFSET_BITS=64)  # else files with large numbers on their file system cannot be seen
+endif()
 
 # The kernels add numbers in neighbouring lanes by shifts of wider lanes: other bits where the high byte comes first.
 include(TestBigEndian)

@@ -60,6 +60,8 @@ configure -DIIB_BUILD_TOOLS=OFF "-DOpenCV_DIR=$libraries/cmake/opencv4" \
     "-DCMAKE_EXE_LINKER_FLAGS=-Wl,-rpath-link,$path" "-DCMAKE_SHARED_LINKER_FLAGS=-Wl,-rpath-link,$path"
 programs="opencv_test_iib opencv_test_iib_index"
 build_targets $programs
+# A kernel of 64 bits gives positions in folders of ext4 that C's library of 32 bits refuses; in memory they are small.
+[ ! -d /dev/shm ] || export OPENCV_TEMP_PATH=/dev/shm
 for program in $programs; do
     say "$program under qemu"
     "$qemu" -L "$sysroot" -E "LD_LIBRARY_PATH=$path" "$build/$program" "$@"

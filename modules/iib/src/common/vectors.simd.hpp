@@ -144,6 +144,7 @@ inline v_means v_setall_means(float v) { return v_setall_f32(v); }
 
 //! A bit for each lane, all of whose bits are equal.
 template <typename V> inline unsigned laneBits(const V& lanes) { return (unsigned)v_signmask(lanes); }
+inline unsigned laneBits(bool lane) { return lane; }  // where no vectors of doubles are (ARMv7, WebAssembly)
 #if CV_AVX512_SKX  // of a mask of eight lanes that it keeps in memory, GCC 12 may store one byte and read four
 inline unsigned laneBits(const v_float64& lanes)
 {

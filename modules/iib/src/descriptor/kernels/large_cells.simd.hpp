@@ -31,8 +31,6 @@ inline double repeatedDouble(double v) { return v; }
 inline void v_store(double* p, double v) { *p = v; }
 inline double v_min(double a, double b) { return std::min(a, b); }
 inline double v_max(double a, double b) { return std::max(a, b); }
-//! As if a comparison gave a lane of all ones or zeros.
-inline int v_signmask(bool comparison) { return comparison; }
 #endif
 
 CV_CPU_OPTIMIZATION_HAL_NAMESPACE_END
