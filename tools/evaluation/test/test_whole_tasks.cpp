@@ -84,7 +84,7 @@ TEST(WholeTasks, pose_of_two_views)
     options.detectors = {"AKAZE"};
     options.points = 600;
     const Camera first = {cv::Matx33d::eye(), cv::Vec3d()};
-    Camera second = {cv::Matx33d(), cv::Vec3d(0.6, 0.1, 0)};
+    Camera second = {cv::Matx33d(), cv::Vec3d(0.9, 0.1, 0)};
     const cv::Vec3d turn(0.02, 0.08, 0);
     cv::Rodrigues(turn, second.rotation);
     folder.makeFolder("data/walk/images");
@@ -92,7 +92,7 @@ TEST(WholeTasks, pose_of_two_views)
     // The inverse rotation, as a quaternion.
     const double w = std::cos(cv::norm(turn) / 2), s = -std::sin(cv::norm(turn) / 2) / cv::norm(turn);
     folder.write("data/walk/poses.txt",
-            "a 0 0 0 0 0 0 1\n" + cv::format("b 0.6 0.1 0 %.9f %.9f 0 %.9f\n", turn[0] * s, turn[1] * s, w));
+            "a 0 0 0 0 0 0 1\n" + cv::format("b 0.9 0.1 0 %.9f %.9f 0 %.9f\n", turn[0] * s, turn[1] * s, w));
     cv::imwrite(folder.path("data/walk/images/a.png"), rendered(first, 0.9));
     cv::imwrite(folder.path("data/walk/images/b.png"), rendered(second, 0.6));
     EXPECT_EQ(0, evaluate(options));
