@@ -253,7 +253,10 @@ class IIBDescriptorExtractor(Detector):
     def write(self, fileName: Path) -> None:
         """Writes the parameters, but not the detector, to a .yml, .xml or .json file, which read() and C++ read.
 
-        :raises opencv_iib.error: if it cannot be written whole; an older file is there then as it was.
+        A link is followed. An older file is replaced when the new one is whole.
+
+        :raises opencv_iib.error: if it cannot be written whole; an older file is there then as it was. Also for a link that leads to
+            no file, a folder, a device or a pipe.
         """
         self._core.save(fileName)
 

@@ -50,7 +50,7 @@ bool read(const Array& array, cv::Mat& view)
 bool read(const Array& array, std::vector<cv::KeyPoint>& keypoints)
 {
     cv::Mat rows;
-    if (!read(array, rows) || (rows.rows > 0 && rows.type() != CV_32F))
+    if (!read(array, rows) || (rows.rows > 0 && (rows.type() != CV_32F || rows.cols < 3)))
         return false;
     keypoints.resize((size_t)rows.rows);
     for (int i = 0; i < rows.rows; i++)

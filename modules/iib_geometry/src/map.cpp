@@ -152,7 +152,7 @@ void visit(MapFile& file, MapImage& image, const std::vector<Camera>& cameras, s
     image.camera = cameras[number];
     file.integer(image.used, 4);
     file.integer(image.added, 1);
-    file.length(image.sees, bytes + 17);
+    file.length(image.sees, uint64(bytes) + 17);
     image.pixels.resize(image.sees.size());
     image.sizes.resize(image.sees.size());
     image.misses.resize(image.sees.size());
@@ -330,7 +330,7 @@ void MapFolder::write(const Map& map) const
     cv::iib::FileKind kind = KIND;
     kind.version = map.orbAndAkaze || !map.lines.empty() ? 2 : 1;  // earlier programs read what they can
     cv::iib::CheckedWriter file(folder_ + FILE_NAME, kind);
-    Map copy = map;  // of no pixels and codes; what is only written stays as it is
+    Map copy = map;  // since visit() also reads, it takes no constant one; matrices are shared
     MapFile parts(file);
     visit(parts, copy, kind.version);
     file.seal();

@@ -103,7 +103,8 @@ TEST_F(SmallMap, every_altered_byte_and_every_length_is_noticed)
         file.seekp(std::streamoff(i)).put(whole[i]).flush();
     }
     EXPECT_EQ("", error());
-    file.seekp(0, std::ios::end).put(' ').flush();
+    file.seekp(0, std::ios::end).put(' ');
+    file.close();
     for (size_t size = whole.size() + 2; size-- > 0;)
     {
         std::filesystem::resize_file(name + "/map.iib", size);
