@@ -72,10 +72,11 @@ def pose_area(limit):
 
 
 def alignment_place(row):
-    """The set of a pair, or `other scenes`; the demo's scene is one of TILDE's webcams."""
+    """The set of a pair, or `other scenes`; the demo's photographs are of the webcam Courbevoie."""
     if row['image'] == 'same scene':
         return [row['set']]
-    return ['other scenes'] * ({row['set'], row['image'].split('/')[0]} != {'iib_demo', 'tilde_webcam'})
+    scenes = {row['set'] + '/' + row['sequence'], row['image'].rsplit('/', 1)[0]}
+    return ['other scenes'] * (scenes != {'iib_demo/scene', 'tilde_webcam/courbevoie'})
 
 
 def column(name):
