@@ -2,7 +2,7 @@
 # Fuzzes the library with clang's libFuzzer, address and undefined-behaviour sanitizers:
 # scripts/fuzz.sh [--plain] [-s SECONDS] [TARGET...]. By default every target of fuzz, 60 seconds each. What is
 # found on the way stays in build-fuzz/corpus and makes the next run start further on; an input that fails is
-# kept in build-fuzz/failures and belongs into fuzz/corpus, with a test, once the defect is mended. --plain leaves the
+# kept in build-fuzz/failures and belongs into fuzz/corpus, with a test, once the bug is fixed. --plain leaves the
 # sanitizers out and makes inputs smaller, so that many times as many are compared with the oracles; its corpus is the
 # same.
 . "$(dirname "$0")/helpers/lib.sh"

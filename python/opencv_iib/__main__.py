@@ -69,7 +69,7 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument('images', nargs='+', help='of a plane, or from the same place')
     command.add_argument('--out', required=True, help='folder to write; older results there are replaced')
     command.add_argument('--model', default='HOMOGRAPHY', choices=list(AlignmentModel.__members__), type=str.upper,
-                         help='the least that holds is the most accurate (%(default)s)')
+                         help='the simplest one that is true of the images gives the smallest errors (%(default)s)')
 
     command = add('colmap', _colmap, 'describe and match a folder, for colmap mapper')
     command.add_argument('images', help='folder of images')

@@ -63,7 +63,7 @@ class Preset(IntEnum, metaclass=_OnlyMembers):
 
 
 class AlignmentModel(IntEnum, metaclass=_OnlyMembers):
-    """What may lie between two images, each more than the one before: rotation and scale, shear, perspective."""
+    """Transforms between two images, each with more freedom than the one before: rotation and scale, shear, perspective."""
 
     TRANSLATION, SIMILARITY, AFFINE, HOMOGRAPHY = range(4)
 

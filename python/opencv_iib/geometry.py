@@ -62,7 +62,7 @@ def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentMo
     ``cv2.warpPerspective(image, transform, (width, height))`` has the image as the reference's camera would see it.
 
     :param reference: as IIBDescriptorExtractor takes it; so is `image`.
-    :param model: an AlignmentModel; the least that holds is the most accurate.
+    :param model: an AlignmentModel; the simplest one that is true of the images gives the smallest errors.
     :return: not found where too few matches agree for the images to show the same.
     """
     return Alignment(*_core.alignImages(as_image(reference), as_image(image), integer(model, 'model')))

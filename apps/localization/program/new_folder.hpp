@@ -22,7 +22,7 @@ public:
 
     //! Where to write until then.
     const std::string& path() const { return partial_; }
-    //! Whoever looks sees the old folder or the new one whole, or none between both. @throws cv::Exception if it cannot be moved.
+    //! Readers see the whole old folder, the whole new one, or for a moment none. @throws cv::Exception if it cannot be moved.
     void publish();
 
 private:

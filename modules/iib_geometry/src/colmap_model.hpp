@@ -9,7 +9,7 @@ using cv::iib::PosedImage;
 
 /** The images of a COLMAP model, binary or text, of all versions of COLMAP. What they see are numbers that images of one point
 share; where the points are is not read.
-@throws cv::Exception for what is none, is damaged, or has a camera that Lens does not know. */
+@throws cv::Exception if there is none, it is damaged, or it has a camera that Lens does not know. */
 std::vector<PosedImage> readModel(const std::string& folder);
 
 //! The cameras of images, each once.

@@ -13,7 +13,7 @@ using cv::iib::Camera;
 class Lens
 {
 public:
-    //! @throws cv::Exception for a camera that is none, and naming a model that is not known here.
+    //! @throws cv::Exception for invalid parameters, and for an unknown model, which it names.
     explicit Lens(const Camera& camera);
 
     //! Of a camera without distortion that undistorted() gives the pixels of.
@@ -49,7 +49,7 @@ Camera scaled(const Camera& camera, double scale, const cv::Size& size);
 //! COLMAP's number of a camera model, or -1; of a number its name, or the number.
 int modelNumber(const std::string& name);
 std::string modelName(uint32_t number);
-//! How many parameters a model has; 0 for one that is none.
+//! How many parameters a model has; 0 for an unknown one.
 size_t parametersOf(const std::string& model);
 
 }  // namespace iib_localization

@@ -70,7 +70,7 @@ public:
         std::memcpy(&bits, &value, sizeof(bits));
         integer(bits, 8);
         std::memcpy(&value, &bits, sizeof(value));
-        check(std::isfinite(value), "it has a number that is none");
+        check(std::isfinite(value), "it has a NaN or infinite number");
     }
 
     void point(cv::Point3d& p)

@@ -43,7 +43,7 @@ struct Map
     void compact();
 };
 
-//! @throws cv::Exception for what is no map, or a damaged one.
+//! @throws cv::Exception for a folder without a map, or a damaged one.
 Map readMap(const std::string& folder);
 
 //! A descriptor that keeps other processes from locking the folder until it is closed; below 0 if one has locked it.

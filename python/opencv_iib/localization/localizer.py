@@ -24,7 +24,7 @@ AnyCamera = Union[Camera, str, Any]
 def as_camera(camera: AnyCamera) -> Camera:
     """A Camera, the text of one, or an object like pycolmap.Camera, as Camera.
 
-    :raises opencv_iib.error: for one that is none.
+    :raises opencv_iib.error: for an unknown model or wrong parameters.
     """
     if isinstance(camera, Camera):
         return camera
@@ -52,7 +52,7 @@ class Localizer:
         :param points: keypoints that are looked for in an image; 0: as many as in the map's images, which takes twice the time
             and finds more in hard light.
         :param lines: refine poses by lines too; the map must have been made with them.
-        :raises opencv_iib.error: for what is no map, or a damaged one; for lines of a map without them, or where OpenCV's module
+        :raises opencv_iib.error: for a folder without a map, or a damaged one; for lines of a map without them, or where OpenCV's module
             line_descriptor was missing in the build.
         """
         self._core = _core.Localizer(map, points, lines)
@@ -70,6 +70,6 @@ class Localizer:
         :param prior: camera from world, 4 x 4 or 3 x 4, such as the last image's: only the two images of the map nearest to it
             are compared, and only points within a tenth of the longer side from where the prior has them. If that gives no
             pose, the image is looked for everywhere.
-        :raises opencv_iib.error: for an image of another size or type, or a camera that is none.
+        :raises opencv_iib.error: for an image of another size or type, or an invalid camera.
         """
         return self._core.localize(as_image(image), as_camera(camera), None if prior is None else as_pose(prior))

@@ -39,7 +39,7 @@ def build(model: str, images: str, out: str, points: int = 2000, workers: Option
     :return: counts of images and points.
     :raises FileExistsError: if there is a map and force is not set.
     :raises FileNotFoundError: naming an image that is missing.
-    :raises opencv_iib.error: for a model that is damaged or not that of the images, and for a folder that is no map's.
+    :raises opencv_iib.error: for a model that is damaged or not that of the images, and for a folder that holds other files.
     """
     target = os.path.realpath(out)
     if os.path.isdir(target) and os.listdir(target) and not force:
@@ -94,7 +94,7 @@ def update(map: str, images: str, camera: Optional[AnyCamera] = None, out: Optio
     :param camera: as localize_images takes it.
     :param out: folder for the new map; None to replace the old one.
     :return: counts of images, of those localized, of those added, and of codes dropped.
-    :raises opencv_iib.error: for what is no map, or one that another process is changing.
+    :raises opencv_iib.error: for a folder without a map, or one that another process is changing.
     """
     names = images_of(images)
     changed = _core.MapUpdate(os.path.realpath(map), '' if out is None else os.path.realpath(out))

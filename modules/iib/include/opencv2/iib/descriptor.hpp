@@ -169,7 +169,7 @@ public:
     @param preset one of #Preset.
     @param scaleFactor as in create: what a detector's keypoints need, see scaleFactorFor. The default is that of ORB, which
     detects for a new extractor: with keypoints of another detector it finds far fewer matches. createFor sets detector and
-    factor together, createRecommended takes the best ones.
+    factor together, createRecommended chooses both.
     @throws cv::Exception (StsBadArg) for an unknown preset, (StsOutOfRange) for a scale factor that is not
     positive.
      */

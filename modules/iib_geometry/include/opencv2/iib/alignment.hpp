@@ -10,7 +10,7 @@ namespace iib {
 //! @addtogroup iib_geometry
 //! @{
 
-//! What may lie between two images, each more than the one before; see alignImages.
+//! Transforms between two images, each with more freedom than the one before; see alignImages.
 enum AlignmentModel
 {
     ALIGN_TRANSLATION,
@@ -33,7 +33,7 @@ Cauchy's loss, cut off at three scales of half a pixel. The same input gives the
 
 @param reference, image of any size, of the types that IIBDescriptorExtractor::compute takes
 @param transform 3 x 3, CV_64F, last entry 1: from pixels of the image to pixels of the reference
-@param model AlignmentModel; the least that holds is the most accurate
+@param model AlignmentModel; the simplest one that is true of the images gives the smallest errors
 @param error 4 x 1, CV_64F, pixels of the reference: standard deviations of the places of the image's corners (top left,
     top right, bottom right, bottom left), as the matches around the transform tell them. What all matches have in common,
     such as the parallax of a scene that is not flat, is not in it.

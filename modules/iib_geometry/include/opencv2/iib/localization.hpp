@@ -17,7 +17,7 @@ namespace iib {
 //! @addtogroup iib_geometry
 //! @{
 
-/** @brief A camera as COLMAP describes it: any of its models that look ahead.
+/** @brief A camera as COLMAP describes it: any of its models with a field of view under 180 degrees.
 
 Images are taken as their files store them, as COLMAP does: EXIF's orientation is ignored everywhere. */
 struct CV_EXPORTS Camera
@@ -33,7 +33,7 @@ struct CV_EXPORTS Camera
     /** @brief Where points are seen.
     @param points in the camera's axes: x right, y down, z forward.
     @return pixels; here and below the centre of the first pixel is (0, 0). NaN for points that are not before the camera.
-    @throws cv::Exception (StsBadArg) for a camera that is none. */
+    @throws cv::Exception (StsBadArg) for a camera with an unknown model, or parameters that the model does not have. */
     std::vector<Point2d> project(const std::vector<Point3d>& points) const;
 };
 
@@ -121,7 +121,7 @@ public:
     @param points keypoints that are looked for in an image; 0: as many as in the map's images.
     @param lines whether poses are refined by lines too: by the distances of the ends of a line's projection from the segment
     that shows it, of a map that was made with them.
-    @throws cv::Exception for what is no map, or a damaged one, and for lines of a map without them or without line_descriptor. */
+    @throws cv::Exception for a folder without a map, for a damaged one, and for lines of a map without them or without line_descriptor. */
     explicit Localizer(const std::string& map, int points = 1000, bool lines = false);
 
     //! @brief Makes a map in memory, as buildMap does; with options.lines, they refine poses.
@@ -159,7 +159,7 @@ class CV_EXPORTS MapUpdate
 public:
     /** @brief Reads a map; until the object goes, no other process can change what will be written.
     @param map its folder. @param out folder of the new map, as buildMap takes it; empty: that of the old one.
-    @throws cv::Exception for what is no map, or one that another process is changing. */
+    @throws cv::Exception for a folder without a map, or one that another process is changing. */
     explicit MapUpdate(const std::string& map, const std::string& out = std::string());
     ~MapUpdate();
     MapUpdate(const MapUpdate&) = delete;
