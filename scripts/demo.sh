@@ -11,11 +11,15 @@ more_help() {
 
 . "$(dirname "$0")/helpers/lib.sh"
 
-check_options "$table" "$@"
+operands=0
 for argument in "$@"; do
     case "$argument" in
     --*=*) ;;
     -*) fail "$argument takes its value behind an equals sign, --option=value" ;;
+    *)
+        [ -e "$argument" ] || fail "there is no $argument"
+        operands=$((operands + 1))
+        ;;
     esac
 done
 case $operands in
