@@ -4,7 +4,7 @@
 # pip's kinds of it and Debian's, with the oldest and the newest numpy. Ten minutes or more, beside ten for the
 # static OpenCV the first time; --test takes longer.
 #   scripts/wheel.sh [--test] [PYTHON...]
-# PYTHON: interpreters to build and test with; by default those of 3.9 to 3.13 that pyenv has, else python3. From Python
+# PYTHON: interpreters to build and test with; by default those of 3.9 to 3.14 that pyenv has, else python3. From Python
 # 3.12 on one wheel serves all (the stable ABI); older ones get a wheel each.
 . "$(dirname "$0")/helpers/lib.sh"
 
@@ -17,7 +17,7 @@ for python in "$@"; do
     command -v "$python" >/dev/null 2>&1 || fail "no Python $python"
 done
 if [ $# = 0 ]; then
-    for minor in 9 10 11 12 13; do
+    for minor in 9 10 11 12 13 14; do
         # shellcheck disable=SC2046
         set -- "$@" $(ls -d "${PYENV_ROOT:-$HOME/.pyenv}/versions/3.$minor".*/bin/python 2>/dev/null | tail -n 1)
     done
