@@ -147,45 +147,46 @@ def paper_orders():
     return table(['statement', 'holds', 'figures'], [[statement, 'yes' if holds else 'no', figures] for statement, holds, figures in found])
 
 
-# Points and descriptor of a row of poses, as the results name them; as `whole_tasks` measures them.
-POSES = (('ORB', 'ORB'), ('AKAZE', 'AKAZE'), ('SIFT', 'SIFT'), ('SIFT normalized', 'SIFT'), ('SIFT normalized', 'IIB UNIVERSAL'),
-         ('Hessian', 'IIB UNIVERSAL'), ('ORB', 'BEBLID-512'), ('ORB', 'IIB'), ('AKAZE normalized', 'AKAZE'),
-         ('AKAZE normalized', 'IIB UNIVERSAL'), ('Hessian', 'IIB'), ('Hessian', 'IIB SMALL'), ('Hessian x2', 'IIB UNIVERSAL'))
-# What createRecommended() matches by, and the threshold that the tutorial names.
-DEFAULT_RULE = 'both at 0.75 px'
-
-
-def score(row):
-    """With its 95 % confidence interval."""
-    return '%.2f (%.2f to %.2f)' % tuple(float(row[column]) for column in ('score', 'low', 'high'))
-
-
 def estimates():
     """Of each method, place, kind of points and estimator, the area under the curve of the pose's error up to 10 degrees."""
-    return {(row['detector'], row['place'], row['points'], row['estimator']): row for row in rows('estimators.csv')}
+    return {((row['detector'], row['descriptor']), row['place'], row['points'], row['estimator']): row for row in rows('estimators.csv')}
 
 
-METHODS = {'ORB': 'ORB', 'AKAZE': 'AKAZE', 'SIFT': 'SIFT', 'SIFT normalized': 'SIFT, normalized', 'Hessian': 'recommended chain'}
+CHAIN, BEST = ('Hessian', 'IIB UNIVERSAL'), ('SIFT normalized', 'IIB UNIVERSAL')
+METHODS = {('ORB', 'ORB'): 'ORB', ('AKAZE', 'AKAZE'): 'AKAZE', ('SIFT', 'SIFT'): 'SIFT', ('SIFT normalized', 'SIFT'): 'SIFT, normalized',
+           CHAIN: 'recommended chain'}
 WAYS = ('plain', 'MAGSAC 0.75 px'), ('refined', 'findRelativePose')  # of others, and of this project
 
 
 def poses():
     """What others do beside what this project does for poses, for the methods on the first page."""
     found, places = estimates(), ('same light', 'other light')
-    lines = [['**%s**' % label if detector == 'Hessian' else label] +
-             ['%.2f' % float(found[(detector, place) + way]['at_10']) for place in places for way in WAYS]
-             for detector, label in METHODS.items()]
-    head = ['%s, %s pairs: %s' % (place, found[('ORB', place) + WAYS[0]]['pairs'], how) for place in places for how in ('MAGSAC', 'ours')]
+    lines = [['**%s**' % label if method == CHAIN else label] +
+             ['%.2f' % float(found[(method, place) + way]['at_10']) for place in places for way in WAYS]
+             for method, label in METHODS.items()]
+    head = ['%s, %s pairs: %s' % (place, found[(CHAIN, place) + WAYS[0]]['pairs'], how) for place in places for how in ('MAGSAC', 'ours')]
     return table(['points and descriptor', *head], lines)
+
+
+def pose_methods():
+    """All methods that were measured, by what others do, by what this project does, and by PoseLib."""
+    found, lines = estimates(), []
+    methods = sorted({key[0] for key in found}, key=lambda method: -float(found[(method, 'other light') + WAYS[1]]['at_5']))
+    for place in ('same light', 'other light'):
+        for method in methods:
+            ways = [found.get((method, place, *way)) for way in (*WAYS, ('refined', 'PoseLib 0.5 px'))]
+            lines.append([place, *method] + ['/'.join('%.2f' % float(row[area]) for area in ('at_10', 'at_5', 'at_2')) if row else '–' for row in ways])
+    text = table(['', 'points of', 'descriptor', 'plain, MAGSAC .75 px', 'refined, `findRelativePose`', 'refined, PoseLib .5 px'], lines)
+    return text + '\n\nNot measured with these points yet: UNIVERSAL at SIFT\'s points on the normalized image.' * (BEST not in methods)
 
 
 def pose_bars():
     """The same in other light as bars of SVG."""
     found, lines = estimates(), []
-    for n, (detector, label) in enumerate(METHODS.items()):
-        lines.append('<text x="180" y="%d" text-anchor="end"%s>%s</text>' % (66 + 46 * n, ' font-weight="bold"' * (detector == 'Hessian'), label))
+    for n, (method, label) in enumerate(METHODS.items()):
+        lines.append('<text x="180" y="%d" text-anchor="end"%s>%s</text>' % (66 + 46 * n, ' font-weight="bold"' * (method == CHAIN), label))
         for k, (way, colour) in enumerate(zip(WAYS, ('#9aa5b1', '#1f6fb2'))):
-            score, y = float(found[(detector, 'other light') + way]['at_10']), 42 + 46 * n + 19 * k
+            score, y = float(found[(method, 'other light') + way]['at_10']), 42 + 46 * n + 19 * k
             lines.append('<rect x="190" y="%d" width="%.0f" height="17" fill="%s"/><text x="%.0f" y="%d">%.2f</text>' % (
                 y, 540 * score, colour, 196 + 540 * score, y + 13, score))
     return '\n'.join(lines)
@@ -202,33 +203,10 @@ def match_claim():
 def pose_claim():
     """The README's sentence on poses: of others the best of all their ways."""
     found = estimates()
-    ours = float(found['Hessian', 'other light', 'refined', 'findRelativePose']['at_10'])
-    best = {name: max(float(row['at_10']) for key, row in found.items() if key[:2] == (name, 'other light')) for name in ('SIFT', 'ORB')}
+    ours = float(found[CHAIN, 'other light', 'refined', 'findRelativePose']['at_10'])
+    best = {name: max(float(row['at_10']) for key, row in found.items() if key[:2] == ((name, name), 'other light')) for name in ('SIFT', 'ORB')}
     return ('- **Better poses where the camera moves too**: a score of %.2f in other light; the best that SIFT reaches with any estimator is '
             '%.2f,\n  ORB %.2f (table below).' % (ours, best['SIFT'], best['ORB']))
-
-
-def pose_rules():
-    """Every method's score, and the choice of matches and the threshold behind it: the best ones, but the default for
-    HessianDetector, which the README recommends."""
-    found, lines = summaries.group(rows('whole_tasks.csv'), 'detector', 'descriptor', 'place'), []
-    for detector, descriptor in POSES:
-        best = [max(found[detector, descriptor, place], key=lambda row: (detector[:7] == 'Hessian' and row['matching'] == DEFAULT_RULE,
-                                                                         float(row['score'])))
-                for place in ('buildings', 'street', 'facade')]
-        lines.append([detector.replace('Hessian', 'HessianDetector'), descriptor] + ['%s, %s' % (score(row), row['matching']) for row in best])
-    return table(['points of', 'descriptor', *('%s, %s pairs' % (name, row['pairs']) for name, row in zip(
-        ('buildings by day', 'street, other light', 'facade, other light'), best))], lines)
-
-
-def pose_by_rule():
-    """Poses of the recommended chain by the choice of matches and MAGSAC's threshold."""
-    found = summaries.by(rows('whole_tasks.csv'), 'place', 'matching', detector='Hessian', descriptor='IIB UNIVERSAL')
-    limits, lines = ('0.75', '1', '2'), []
-    for place in ('buildings', 'street'):
-        for label, rule in (('mutual', 'mutual'), ('a ratio of .9', 'ratio'), ('both', 'both')):
-            lines.append([place, label] + [score(found[place, '%s at %s px' % (rule, limit)]) for limit in limits])
-    return table(['', ''] + [limit + ' px' for limit in limits], lines)
 
 
 def elsewhere():
@@ -425,14 +403,14 @@ TABLES = {'paper_' + name: functools.partial(paper, question)
 
 PAGES = {'doc/poses.svg': (pose_bars,),
          'README.md': (match_claim, pose_claim, speed_claim, poses),
-         'doc/guide.md': (pose_by_rule, presets),
+         'doc/guide.md': (presets,),
          'doc/colmap.md': (photographs, photographs_of_many),
          'doc/performance.md': (describing, chains, same_points, matching, small_work),
          'doc/scale.md': (mapped_index, flat_search),
          'doc/paper.md': (matching_modes, operations, memory, learned_points, paper_orders, localization_systems, localization_setups),
          'doc/localization/index.html': (localization_lights,),
          'apps/localization/report/page.html.j2': (localization_lights,),
-         'doc/results/README.md': (pose_rules, elsewhere, detected_points)}
+         'doc/results/README.md': (pose_methods, elsewhere, detected_points)}
 
 
 def filled(page, makers):

@@ -35,19 +35,19 @@ class Figures(unittest.TestCase):
             self.assertEqual(target.read_text().splitlines()[1:], ['light,ORB,ORB,1,2,0.5,0.05,0', 'light,ORB,ORB,2,2,6,0.4,0.25'])
 
     def test_poses_leave_out_walks_that_presets_were_trained_on(self):
-        heads = 'task', 'set', 'detector', 'descriptor', 'matching', 'sequence', 'error'
-        errors = {'strecha': (0, 5), 'walk_street': (10, 90), 'walk_facade': (2,), 'walk_room': (0,), 'walk_terrain': (0,)}
+        heads = 'set', 'detector', 'descriptor', 'points', 'estimator', 'sequence', 'error'
+        errors = {'strecha': (0, 5), 'strecha relit': (10,), 'walk_facade': (2,), 'walk_room': (0,), 'walk_terrain': (0,)}
         with tempfile.TemporaryDirectory() as folder:
             source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
             with open(source, 'w', newline='') as file:
-                csv.writer(file).writerows([heads] + [('pose', name, 'Hessian', 'IIB', 'both', error, error)
+                csv.writer(file).writerows([heads] + [(name, 'Hessian', 'IIB', 'plain', 'MAGSAC', error, error)
                                                       for name, some in errors.items() for error in some])
-            summaries.summarize(source, target, *summaries.PLANS['whole_tasks.csv'])
+            summaries.summarize(source, target, *summaries.PLANS['estimators.csv'])
             with open(target, newline='') as file:
                 found = {row['place']: row for row in csv.DictReader(file)}
-        self.assertEqual({place: (row['pairs'], round(float(row['score']), 3)) for place, row in found.items()},
-                         {'buildings': ('2', .75), 'street': ('2', 0), 'facade': ('1', .8)})
-        self.assertEqual((found['buildings']['low'], found['buildings']['high']), ('0.5', '1'))
+        self.assertEqual({place: (row['pairs'], *(round(float(row[area]), 3) for area in ('at_10', 'at_5', 'at_2'))) for place, row in found.items()},
+                         {'same light': ('2', .75, .5, .5), 'other light': ('2', .4, .3, 0)})
+        self.assertEqual((found['same light']['low'], found['same light']['high']), ('0', '1'))
 
     def test_intervals(self):
         self.assertEqual(summaries.interval([[.5]] * 9), [.5, .5])

@@ -44,19 +44,6 @@ def curve_places(row):
     return ['light'] * (row['kind'] == 'light' and row['set'] not in TRAINED_ON)
 
 
-def pose_score(row):
-    """1 for no error of a relative pose, 0 from 10 degrees on: its mean is the area under the curve."""
-    return max(0, 1 - float(row['error']) / 10)
-
-
-def pose_place(row):
-    """Photographs of buildings by day, or what a rendered walk in two lights passes: a facade is nearly a plane, from which
-    the pose is hardly known."""
-    if row['task'] != 'pose' or row['set'] in TRAINED_ON:
-        return []
-    return ['buildings' if row['set'] == 'strecha' else 'facade' if row['set'] == 'walk_facade' else 'street']
-
-
 def light_place(row):
     """Poses of views in one light, or in two."""
     return [] if row['set'] in TRAINED_ON else ['same light' if row['set'] == 'strecha' else 'other light']
@@ -68,6 +55,7 @@ def scene(row):
 
 
 def pose_area(limit):
+    """1 for no error of a relative pose, 0 from the limit on, in degrees: its mean is the area under the curve."""
     return lambda row: max(0, 1 - float(row['error']) / limit)
 
 
@@ -113,7 +101,6 @@ PLANS = {
     'alignment.csv': (alignment_place, (), {'found': column('found'), 'within_1': within(1), 'within_3': within(3)}),
     'estimators.csv': (light_place, ('detector', 'descriptor', 'points', 'estimator'),
                        {'at_10': pose_area(10), 'at_2': pose_area(2), 'at_5': pose_area(5)}),
-    'whole_tasks.csv': (pose_place, ('detector', 'descriptor', 'matching'), {'score': pose_score}),
 }
 
 

@@ -41,7 +41,7 @@ Detector classic(const std::string& name, const std::string& descriptorName,
         d.norm = own->defaultNorm();
         return d;
     };
-    return {name, descriptorName, cv::iib::IIB::scaleFactorFor(name), detect, {}, "", ""};
+    return {name, descriptorName, cv::iib::IIB::scaleFactorFor(name), detect, {}, "", {}};
 }
 
 //! Found on the locally normalized image; the plain image is described.
@@ -62,7 +62,7 @@ Detector hessian(const std::string& name, int count)
         cv::iib::HessianDetector::create(count)->detect(image, d.keypoints);
         return d;
     };
-    return {name, "", cv::iib::IIB::scaleFactorFor("Hessian"), detect, {}, "", ""};
+    return {name, "", cv::iib::IIB::scaleFactorFor("Hessian"), detect, {}, "", {}};
 }
 
 //! `<set>/<sequence>/<image>.csv` below the folder, for the image of that set and sequence.
@@ -92,7 +92,7 @@ Detector fromFiles(const std::string& folder, int count)
     };
     const std::string trimmed = folder.substr(0, folder.find_last_not_of('/') + 1),
                       name = trimmed.substr(trimmed.find_last_of('/') + 1);
-    return {name, name, 1.f, detect, {}, trimmed, ""};
+    return {name, name, 1.f, detect, {}, trimmed, {}};
 }
 
 //! What people describe ORB's points with instead; the patches that have a fixed size are of about ORB's.
@@ -181,7 +181,8 @@ std::vector<Described> describeAll(const Detector& detector, const cv::Mat& imag
 {
     const Detection detection = detector.detect(image, file);
     const auto wanted = [&](const std::string& name) {
-        return detector.only.empty() || detector.only == name;
+        return detector.only.empty() ||
+               std::find(detector.only.begin(), detector.only.end(), name) != detector.only.end();
     };
     std::vector<Described> all;
     if (!detector.descriptor.empty() && wanted(detector.descriptor) &&

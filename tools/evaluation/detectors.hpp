@@ -28,7 +28,7 @@ struct Detector
     std::function<Detection(const cv::Mat&, const std::string&)> detect;
     std::vector<Configuration> others;  //!< of other makers, described at the same points
     std::string folder;                 //!< of lists of keypoints, one an image; empty: it looks at the image
-    std::string only;                   //!< what its points are described by; empty: by all
+    std::vector<std::string> only;      //!< what its points are described by; empty: by all
 
     //! Whether it has keypoints of the image of this file.
     bool knows(const std::string& imageFile) const;
@@ -50,7 +50,7 @@ struct Described
 };
 
 /** What describes the detector's points of an image: its own descriptors if it has some, those of Detector::others, IIB's presets and last IIB's default: in
-the same order for every image of a detector; of these Detector::only alone where it names one. */
+the same order for every image of a detector; of these Detector::only alone where it names some. */
 std::vector<Described> describeAll(const Detector& detector, const cv::Mat& image, const std::string& file);
 
 }  // namespace iib_tools

@@ -1,16 +1,66 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include "common/dataset.hpp"
 #include "common/metrics.hpp"
+#include "common/views.hpp"
+#include "described_images.hpp"
 #include "experiments.hpp"
+#include "opencv2/imgcodecs.hpp"
 #include "pose_estimates.hpp"
 #include "results.hpp"
-#include "view_pairs.hpp"
+#include "tasks.hpp"
 
 namespace iib_tools {
 namespace {
 
 const double THRESHOLDS[] = {.75, 1};  // of MAGSAC, pixels
-const char LAST[] = "findRelativePose";
+const char LAST[] = "findRelativePose", UNIVERSAL[] = "IIB UNIVERSAL";
+const int LIGHTS = 3;
+
+//! Two views, and which of three other lights the second image is put into; -1: as it is.
+struct LitPair
+{
+    ViewPair views;
+    int light;
+};
+
+/** A grey image in another light: darker from left to right with deep shadows; bright; or dark from above; each with a
+sensor's noise. */
+cv::Mat relit(const cv::Mat& image, int light)
+{
+    const struct
+    {
+        double gamma, left, right, top, bottom, noise;
+    } all[LIGHTS] = {{2.2, 1, .25, 1, 1, 2}, {.45, 1, 1, 1, 1, 3}, {1.5, .3, .3, .4, 1.2, 4}}, l = all[light];
+    cv::Mat_<float> out, noise(image.size());
+    image.convertTo(out, CV_32F, 1 / 255.);
+    cv::pow(out, l.gamma, out);
+    cv::RNG(light + 1).fill(noise, cv::RNG::NORMAL, 0, l.noise);
+    for (int y = 0; y < out.rows; y++)
+        for (int x = 0; x < out.cols; x++)
+            out(y, x) = float(out(y, x) * 255 * (l.left + (l.right - l.left) * x / out.cols) *
+                                      (l.top + (l.bottom - l.top) * y / out.rows) +
+                              noise(y, x));
+    cv::Mat bytes;
+    out.convertTo(bytes, CV_8U);
+    return bytes;
+}
+
+//! Adds to each pair in one light the same in another, whose set ends in " relit".
+std::vector<LitPair> withRelit(const std::vector<ViewPair>& pairs)
+{
+    std::vector<LitPair> all;
+    int light = 0;
+    for (const ViewPair& pair : pairs)
+    {
+        all.push_back({pair, -1});
+        if (!pair.sameLight)
+            continue;
+        all.push_back({pair, light++ % LIGHTS});
+        all.back().views.set += " relit";
+    }
+    return all;
+}
 
 //! Camera matrices, rotation, translation: 9, 9, 9 and 3 numbers; x and y of each match in both images.
 std::string numbers(const ViewPair& pair, const Points& points)
@@ -28,16 +78,21 @@ std::string numbers(const ViewPair& pair, const Points& points)
     return out;
 }
 
+//! What each detector's points are described by: its own descriptor, if it has one, and UNIVERSAL.
+std::vector<Detector> describedByTwo(Options options)
+{
+    if (options.detectors.empty())
+        options.detectors = {"ORB", "AKAZE", "SIFT", "SIFT normalized", "Hessian"};
+    std::vector<Detector> all = detectors(options);
+    for (Detector& detector : all)
+        detector.only = {detector.descriptor, UNIVERSAL};
+    return all;
+}
+
 }  // namespace
 
 int estimators(const Options& options, const std::vector<ImagePair>&)
 {
-    Options few = options;
-    if (few.detectors.empty())
-        few.detectors = {"ORB", "AKAZE", "SIFT", "SIFT normalized", "Hessian"};
-    std::vector<Detector> all = detectors(few);
-    for (Detector& detector : all)
-        detector.only = detector.descriptor.empty() ? "IIB UNIVERSAL" : detector.descriptor;
     const Fields key = {"set", "sequence", "target", "detector", "descriptor", "points"};
     Fields columns = key;
     columns.insert(columns.end(), {"estimator", "error", "inliers"});
@@ -45,18 +100,15 @@ int estimators(const Options& options, const std::vector<ImagePair>&)
     columns = key;
     columns.push_back("numbers");
     ResultTable matched(options.out + "/matched_points.csv", columns, 6);
-    const auto isDone = [&](const ViewPair& pair, const Detector& d) {
-        return errors.has({pair.set, pair.sequence, pair.target, d.name, d.only, "refined", LAST});
-    };
-    const auto judge = [&](const ViewPair& pair, const Detector& detector, const cv::Mat& reference,
+
+    const auto judge = [&](const ViewPair& pair, const std::string& detector, const cv::Mat& reference,
                                const cv::Mat& target, const Described& r, const Described& t) {
-        const std::vector<cv::DMatch> matches =
-                inBoth(ratioMatches(r, t), mutualMatches(r.descriptors, t.descriptors, r.norm));
+        const std::vector<cv::DMatch> matches = mutualRatioMatches(r, t);
         const std::pair<const char*, Points> kinds[] = {
                 {"plain", pointsOf(matches, r, t)}, {"refined", refined(reference, target, matches, r, t)}};
         for (const auto& kind : kinds)
         {
-            const Fields pairKey = {pair.set, pair.sequence, pair.target, detector.name, r.name, kind.first};
+            const Fields pairKey = {pair.set, pair.sequence, pair.target, detector, r.name, kind.first};
             const auto tell = [&](const std::string& estimator, const Outcome& outcome) {
                 Fields row = pairKey;
                 row.insert(row.end(), {estimator, text(outcome.error), std::to_string(outcome.inliers)});
@@ -70,8 +122,39 @@ int estimators(const Options& options, const std::vector<ImagePair>&)
             tell(LAST, byFindRelativePose(kind.second, pair));
         }
     };
-    const int skipped =
-            runOnViews("estimators", withRelit(findViewPairs(options.roots)), all, {isDone, judge});
+
+    DescribedImages described;
+    std::vector<Task> tasks;
+    const std::vector<Detector> all = describedByTwo(options);
+    const std::vector<LitPair> pairs = withRelit(findViewPairs(options.roots));
+    for (const LitPair& pair : pairs)
+    {
+        const ViewPair& views = pair.views;
+        std::vector<Detector> missing;
+        for (const Detector& d : all)
+            if (!errors.has({views.set, views.sequence, views.target, d.name, UNIVERSAL, "refined", LAST}))
+                missing.push_back(d);
+        const auto run = [&, missing] {
+            const cv::Mat reference = readImage(views.referenceFile, cv::IMREAD_GRAYSCALE);
+            cv::Mat target = readImage(views.targetFile, cv::IMREAD_GRAYSCALE);
+            std::string name = views.targetFile;
+            if (pair.light >= 0)
+            {
+                target = relit(target, pair.light);
+                name += std::to_string(pair.light);
+            }
+            for (const Detector& detector : missing)
+            {
+                const DescribedImages::Result r = described.get(detector, reference, views.referenceFile),
+                                              t = described.get(detector, target, name);
+                for (size_t i = 0; i < r->size(); i++)
+                    judge(views, detector.name, reference, target, (*r)[i], (*t)[i]);
+            }
+        };
+        if (!missing.empty())
+            tasks.push_back({views.set + "/" + views.sequence + "/" + views.target, run});
+    }
+    const int skipped = runTasks("estimators", tasks);
     errors.finish();
     matched.finish();
     return skipped;

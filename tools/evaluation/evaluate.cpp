@@ -22,8 +22,8 @@ struct Experiment
 };
 
 const Experiment EXPERIMENTS[] = {{"fixed_points", fixedPoints}, {"detected_points", detectedPoints},
-        {"whole_tasks", wholeTasks}, {"estimators", estimators}, {"alignment", alignment},
-        {"matching", matching}, {"robustness", robustness}, {"comparison", comparison}};
+        {"estimators", estimators}, {"alignment", alignment}, {"matching", matching},
+        {"robustness", robustness}, {"comparison", comparison}};
 
 //! Results of other settings must not be mixed with these.
 void checkSettings(const Options& options)

@@ -26,9 +26,8 @@ struct Options
 int fixedPoints(const Options& options, const std::vector<ImagePair>& pairs);
 //! Of pairs whose light changes, as the paper's.
 int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs);
-//! Poses of the views below the roots (common/views.hpp), estimated from matches.
-int wholeTasks(const Options& options, const std::vector<ImagePair>& pairs);
-//! The same with plain and refined matches by several estimators; `<out>/matched_points.csv` holds the matches for others.
+//! Poses of the views below the roots (common/views.hpp) from plain and refined matches by several estimators;
+//! `<out>/matched_points.csv` holds the matches for others.
 int estimators(const Options& options, const std::vector<ImagePair>& pairs);
 //! alignImages on pairs whose light changes, the second image moved by a homography, and on images of different scenes.
 int alignment(const Options& options, const std::vector<ImagePair>& pairs);

@@ -40,29 +40,20 @@ double poseError(const cv::Mat& rotation, const cv::Mat& translation, const View
 
 }  // namespace
 
-std::vector<cv::DMatch> ratioMatches(const Described& reference, const Described& target)
+std::vector<cv::DMatch> mutualRatioMatches(const Described& reference, const Described& target)
 {
     std::vector<cv::DMatch> kept;
     if (reference.descriptors.empty() || target.descriptors.rows < 2)
         return kept;
+    const cv::BFMatcher matcher(reference.norm);
     std::vector<std::vector<cv::DMatch>> nearest;
-    cv::BFMatcher(reference.norm).knnMatch(reference.descriptors, target.descriptors, nearest, 2);
+    std::vector<cv::DMatch> back;
+    matcher.knnMatch(reference.descriptors, target.descriptors, nearest, 2);
+    matcher.match(target.descriptors, reference.descriptors, back);
     const float ratio = reference.norm == cv::NORM_HAMMING ? RATIO_BITS : RATIO_FLOAT;
     for (const std::vector<cv::DMatch>& two : nearest)
-        if (two[0].distance < ratio * two[1].distance)
+        if (two[0].distance < ratio * two[1].distance && back[two[0].trainIdx].trainIdx == two[0].queryIdx)
             kept.push_back(two[0]);
-    return kept;
-}
-
-std::vector<cv::DMatch> inBoth(const std::vector<cv::DMatch>& a, const std::vector<cv::DMatch>& b)
-{
-    std::set<std::pair<int, int>> pairs;
-    for (const cv::DMatch& m : b)
-        pairs.insert({m.queryIdx, m.trainIdx});
-    std::vector<cv::DMatch> kept;
-    for (const cv::DMatch& m : a)
-        if (pairs.count({m.queryIdx, m.trainIdx}))
-            kept.push_back(m);
     return kept;
 }
 

@@ -21,10 +21,8 @@ struct Outcome
     int inliers;
 };
 
-//! Nearest neighbours under a ratio of .9 of bits, .8 of numbers; and those of them that are mutual.
-std::vector<cv::DMatch> ratioMatches(const Described& reference, const Described& target);
-std::vector<cv::DMatch> inBoth(const std::vector<cv::DMatch>& a, const std::vector<cv::DMatch>& b);
-
+//! Mutual nearest neighbours under a ratio of .9 of bits, .8 of numbers.
+std::vector<cv::DMatch> mutualRatioMatches(const Described& reference, const Described& target);
 Points pointsOf(const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target);
 //! The same with the target's points refined.
 Points refined(const cv::Mat& referenceImage, const cv::Mat& targetImage,

@@ -30,12 +30,10 @@ NETWORKS = {"XFeat": "Apache-2.0", "SuperPoint": "noncommercial research only", 
 WARPED = ("IIB", "IIB oriented", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB oriented", "SIFT", "SIFT oriented",
           "BEBLID-512", "TEBLID-512", "LATCH-512")
 
-# Bars of poses: points of a detector and what describes them, as people call them.
-POSES = {("Hessian", "IIB UNIVERSAL"): "recommended chain", ("Hessian", "IIB SMALL"): "recommended chain, 32 bytes",
+# Rows of poses: points of a detector and what describes them, as people call them.
+POSES = {("Hessian", "IIB UNIVERSAL"): "recommended chain", ("SIFT normalized", "SIFT"): "SIFT, normalized image",
          ("SIFT normalized", "IIB UNIVERSAL"): "SIFT's points on the normalized image, UNIVERSAL",
-         ("SIFT normalized", "SIFT"): "SIFT, normalized image", ("AKAZE normalized", "AKAZE"): "AKAZE, normalized image",
-         ("SIFT", "SIFT"): "SIFT", ("AKAZE", "AKAZE"): "AKAZE", ("ORB", "BEBLID-512"): "ORB's points, BEBLID",
-         ("ORB", "ORB"): "ORB"}
+         ("SIFT", "SIFT"): "SIFT", ("AKAZE", "AKAZE"): "AKAZE", ("ORB", "ORB"): "ORB"}
 
 # Whose matches the slider draws.
 METHODS = {("Hessian", "IIB UNIVERSAL"): "recommended chain", ("AKAZE", "IIB"): "IIB at AKAZE's points", ("AKAZE", "AKAZE"): "AKAZE",

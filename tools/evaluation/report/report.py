@@ -13,7 +13,7 @@ from paper_orders import orders
 from results import PAPER, by, describing_times, group, paper_table, questions, read
 
 HERE = pathlib.Path(__file__).parent
-FILES = ("fixed_points", "detected_points", "matching", "curves", "whole_tasks", "estimators", "alignment", "robustness", "learned", "comparison")
+FILES = ("fixed_points", "detected_points", "matching", "curves", "estimators", "alignment", "robustness", "learned", "comparison")
 
 
 def number(row, column):
@@ -63,27 +63,16 @@ def warps(tables):
                       for name in descriptors.WARPED if shown and (name, *shown[0]) in scores]}
 
 
-def poses(tables):
-    """Areas under the curve of the error of poses by place, each points and descriptor with the best choice of matches."""
-    found = {}
-    for (place,), rows in group(tables["whole_tasks"], "place").items():
-        best = group(sorted(rows, key=lambda row: -number(row, "score")), "detector", "descriptor")
-        lines = [members[0] for members in best.values()]
-        found[place] = {"lines": lines, "pairs": lines[0]["pairs"],
-                        "bars": [dict(line, name=descriptors.POSES[line["detector"], line["descriptor"]]) for line in lines
-                                 if (line["detector"], line["descriptor"]) in descriptors.POSES]}
-    return found
-
-
 def estimates(tables):
     """Areas under the curve of the error of poses up to 5 degrees by place: a line for plain and for refined matches of each
     method, with a column for each estimator."""
     names = sorted({row["estimator"] for row in tables["estimators"]})
     found = {}
     for (place, detector, descriptor, points), rows in group(tables["estimators"], "place", "detector", "descriptor", "points").items():
-        method = descriptors.POSES.get((detector, descriptor), detector)
+        method = descriptors.POSES.get((detector, descriptor), "%s, %s" % (detector, descriptor))
         found.setdefault(place, []).append((method, points, by(rows, "estimator")))
-    return {"names": names, "places": found}
+    bars = [(method, line["findRelativePose"]) for method, points, line in found.get("other light", ()) if points == "refined"]
+    return {"names": names, "places": found, "bars": sorted(bars, key=lambda bar: -number(bar[1], "at_5"))}
 
 
 def slider(tables):
@@ -127,7 +116,7 @@ def main():
                 for line in (folder / name).read_text().splitlines() if line]
     page = environment.get_template("page.html.j2").render(
         overview=rows, networks=tables["learned"], licences=descriptors.NETWORKS,
-        detected=detected_lines(tables), changes=changes(tables), warps=warps(tables), poses=poses(tables), estimates=estimates(tables), anchors=read(HERE / "anchors.csv"),
+        detected=detected_lines(tables), changes=changes(tables), warps=warps(tables), estimates=estimates(tables), anchors=read(HERE / "anchors.csv"),
         alignment=tables["alignment"],
         slider=slider(tables), methods=list(descriptors.METHODS.values()), curves=curves(tables), matching=group(tables["matching"], "place"),
         extras=[by(fixed, "configuration", place="rendered").get(name) for name in descriptors.EXTRAS],

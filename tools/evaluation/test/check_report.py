@@ -20,7 +20,7 @@ subprocess.run([sys.executable, "-B", report, page], check=True, stdout=subproce
 with open(os.path.join(page, "index.html")) as file:
     text = file.read()
 assert "recall %.3f</b>" % (sum(recalls) / len(recalls)) in text, recalls
-for section in ("all", "detectors", "curves", "pictures", "moved", "tasks", "paper", "run"):
+for section in ("all", "detectors", "curves", "pictures", "moved", "poses", "paper", "run"):
     assert 'id="%s"' % section in text, section
 for name in ("IIB", "IIB BALANCED", "ORB", "SIFT", "AKAZE-486"):
     assert re.search(r'<td>%s( <span class="tag">learned</span>)?</td><td>\d+</td><td data-value="[\d.]+">' % name,

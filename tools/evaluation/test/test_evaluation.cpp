@@ -116,7 +116,7 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
     EXPECT_LT(
             std::atof(aligned.substr(aligned.find(',', aligned.find(still) + still.size()) + 1).c_str()), 1);
 
-    const std::vector<std::string> tables = {"fixed_points", "detected_points", "whole_tasks", "alignment",
+    const std::vector<std::string> tables = {"fixed_points", "detected_points", "estimators", "alignment",
             "matching", "robustness", "comparison"};
     std::vector<std::string> first;
     for (const std::string& name : tables)

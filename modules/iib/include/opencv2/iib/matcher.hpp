@@ -94,8 +94,7 @@ public:
 
     /** @brief What suits IIB best where light and view change: #EXACT, with cross-check and a maximal ratio of 0.9.
 
-    Poses from such matches were more accurate than from those of the cross-check alone. Otherwise as create() without
-    level sizes: for descriptors of any width.
+    Otherwise as create() without level sizes: for descriptors of any width.
      */
     CV_WRAP static Ptr<HierarchicalMatcher> createRecommended();
 
