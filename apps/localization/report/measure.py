@@ -119,6 +119,14 @@ def street(data, work, lights):
     return rows, seen, ours
 
 
+def run_program(path, model, place, images, out, options=()):
+    """The poses that iib_localize finds of a folder's images, by their names, in a model of another folder's."""
+    subprocess.run([path, '--model', model, '--photographs', place / 'images', '--images', images / 'images', '--out', out, *options],
+                   check=False, stdout=subprocess.DEVNULL)
+    names = {image.stem: image.name for image in (images / 'images').iterdir()}
+    return {names[line.split()[0]]: pose_of(line.split()[1:]) for line in (out / 'trajectory.txt').read_text().splitlines()[1:]}
+
+
 def program(path, data, work, lights):
     """Rows of iib_localize in the chain's map, alone and where there is an IMU also with it; milliseconds of the whole run."""
     rows = []
@@ -127,15 +135,10 @@ def program(path, data, work, lights):
         if imu and not readings.exists():
             continue
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        subprocess.run([path, '--model', work / 'recommended chain/model', '--photographs', data / 'map/images', '--images', data / light / 'images', '--out', out,
-                        *(('--imu', readings) if imu else ())], check=False, stdout=subprocess.DEVNULL)
+        found = run_program(path, work / 'recommended chain/model', data / 'map', data / light, out, ('--imu', readings) if imu else ())
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         used = 1000 * (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / len(poses)
-        errors = {}
-        for line in (out / 'trajectory.txt').read_text().splitlines()[1:]:
-            stem, *numbers = line.split()
-            name = next(name for name in poses if name.rpartition('.')[0] == stem)
-            errors[name] = error(pose_of(numbers), poses[name])
+        errors = {name: error(pose, poses[name]) for name, pose in found.items()}
         with open(out / 'frames.csv', encoding='utf-8', newline='') as file:
             located = [(row['name'], Found(inliers=int(row['inliers'])), errors.get(row['name']), used) for row in csv.DictReader(file)]
         rows.append({'place': 'program', 'method': 'iib_localize' + imu, 'light': light, **summary(located)})
