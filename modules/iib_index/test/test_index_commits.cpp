@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "failing_allocation.hpp"
 #include "index_fixture.hpp"
 
 #include <atomic>
-#include <functional>
 #include <thread>
 
 #ifdef __linux__
@@ -101,43 +99,6 @@ TEST_F(IIB_MappedIndex_Commits, remove_looks_at_the_last_commit)
     EXPECT_EQ(1, index->images());
     EXPECT_EQ(-1, search(*index, queries, 1).rows[0]);
 }
-
-#ifdef IIB_ALLOCATIONS_CAN_FAIL
-TEST_F(IIB_MappedIndex_Commits, what_is_committed_does_not_throw)
-{
-    const int threads = getNumThreads();
-    setNumThreads(1);  // a pool's own allocations are not the library's
-    int64 hidden = 0;
-    const std::function<void()> add = [&] { index->add(images); }, remove = [&] {
-        index->remove({hidden});
-        hidden++;
-    };
-    for (const std::function<void()>& call : {add, remove})
-        for (long count = 0, failures = 1; failures > 0; count++)
-        {
-            SCOPED_TRACE(format("allocation %ld", count));
-            const uint64 before = MappedIndex::open(folder.name)->version();
-            bool thrown = false;
-            {
-                const FailingAllocation failing(count);
-                try
-                {
-                    call();
-                }
-                catch (const std::exception&)
-                {
-                    thrown = true;
-                }
-                failures = failing.happened();
-            }
-            const uint64 after = MappedIndex::open(folder.name)->version();
-            ASSERT_EQ(thrown, before == after);
-            ASSERT_EQ(after, index->version());
-        }
-    setNumThreads(threads);
-}
-
-#endif
 
 #ifdef __linux__
 // It keeps the files that were open: the lock too.

@@ -5,6 +5,9 @@
 
 #include "stress.hpp"
 
+#include "opencv2/core/utils/filesystem.hpp"
+#include "opencv2/iib_index.hpp"
+
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -50,6 +53,7 @@ namespace {
 using namespace cv;
 using cv::iib::HierarchicalMatcher;
 using cv::iib::IIB;
+using cv::iib::MappedIndex;
 
 /** Calls `step` with its first allocation failing, then its second and so on, up to none; after each, `check` looks
  whether all is as before. Once with one failure, and once with all allocations failing from there. */
@@ -199,6 +203,36 @@ void changeMatcher()
             "read", [&] { matcher->read(fs.root()); }, check);
 }
 
+void commitToIndex()
+{
+    const String folder = tempfile("");
+    const Ptr<MappedIndex> index = MappedIndex::create(folder, {2, 8});
+    const std::vector<Mat> images(3, noise(Size(10, 4), CV_8U, 5));
+    std::vector<int64> hidden(1, 0);
+    uint64 before = 0;
+    bool done = false;
+    const auto check = [&] {
+        const uint64 after = MappedIndex::open(folder)->version();
+        EXPECT_EQ(after, index->version()) << "not what is in the folder";
+        EXPECT_EQ(done, after != before) << "a call that threw has committed, or the other way round";
+    };
+    const auto committing = [&](const std::function<void()>& call) {
+        return [&, call] {
+            before = index->version();
+            done = false;
+            call();
+            done = true;
+        };
+    };
+    failEachAllocation("MappedIndex::add", committing([&] { index->add(images); }), check);
+    failEachAllocation("MappedIndex::remove", committing([&] {
+        index->remove(hidden);
+        hidden[0]++;
+    }),
+            check);
+    utils::fs::remove_all(folder);
+}
+
 TEST(Stress, allocations)
 {
     const int threads = getNumThreads();
@@ -214,6 +248,7 @@ TEST(Stress, allocations)
     addToMatcher(10);
     addToMatcher(600);
     changeMatcher();
+    commitToIndex();
     setNumThreads(threads);
 }
 
