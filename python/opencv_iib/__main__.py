@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import inspect
+import dataclasses
 import logging
 import sqlite3
 import sys
@@ -33,10 +33,15 @@ def _features(parser: argparse.ArgumentParser, points: int) -> None:
                         help='reduce larger images to this longer side; points stay in their own pixels')
 
 
+def _take(kind: Any, arguments: argparse.Namespace, **more: Any) -> Any:
+    """A dataclass of the options that are fields of it. They are taken away, so that no other call gets them."""
+    known = [field.name for field in dataclasses.fields(kind)]
+    return kind(**{name: vars(arguments).pop(name) for name in list(vars(arguments)) if name in known}, **more)
+
+
 def _call(function: Callable[..., Any], arguments: argparse.Namespace, **more: Any) -> Any:
-    """With the options of the command line that are its parameters."""
-    known = inspect.signature(function).parameters
-    return function(**{name: value for name, value in vars(arguments).items() if name in known}, **more)
+    """With every option that is left; one that is no parameter is a TypeError, and not forgotten."""
+    return function(**vars(arguments), **more)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -121,7 +126,7 @@ SOME_FOUND, NONE_FOUND = 4, 3  # status of localize and align; NONE_FOUND of dem
 
 
 def _demo(arguments: argparse.Namespace) -> int:
-    results = _call(demo, arguments, options=_call(FeatureOptions, arguments))
+    results = _call(demo, arguments, options=_take(FeatureOptions, arguments))
     _say(f'{", ".join(map(str, results))}\npicture: {arguments.out}')
     if results[0].good.any():
         return 0
@@ -133,7 +138,7 @@ def _demo(arguments: argparse.Namespace) -> int:
 def _match(arguments: argparse.Namespace) -> int:
     if len(arguments.cameras) > 2:
         raise ValueError(f'{len(arguments.cameras)} cameras for two images')
-    measured = _call(match_images, arguments, options=_call(FeatureOptions, arguments))
+    measured = _call(match_images, arguments, options=_take(FeatureOptions, arguments))
     _say(f'{arguments.out}: {measured}')
     return 0 if measured.found else NONE_FOUND
 
@@ -152,8 +157,8 @@ def _share(count: int, total: int) -> int:
 
 
 def _colmap(arguments: argparse.Namespace) -> int:
-    with _client(arguments.scheduler) as client:
-        options = _call(Options, arguments, features=_call(FeatureOptions, arguments))
+    with _client(vars(arguments).pop('scheduler')) as client:
+        options = _take(Options, arguments, features=_take(FeatureOptions, arguments))
         return _told(arguments.database, _call(build_database, arguments, options=options, client=client))
 
 
@@ -209,15 +214,16 @@ def _say(text: str) -> None:
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Runs a command; the exit status."""
     arguments = _parser().parse_args(argv)
+    command, run = (vars(arguments).pop(name) for name in ('command', 'run'))
     try:
-        return int(arguments.run(arguments))
+        return int(run(arguments))
     except KeyboardInterrupt:
-        print('interrupted' + '; the same command goes on from here' * (arguments.command == 'colmap'), file=sys.stderr)
+        print('interrupted' + '; the same command goes on from here' * (command == 'colmap'), file=sys.stderr)
         return 130
     except Exception as e:
         if not isinstance(e, (OSError, ValueError, RuntimeError, ImportError, sqlite3.Error, error, _cv2_error())):
             raise
-        print(f'{arguments.command}: {" ".join(str(e).split())}', file=sys.stderr)
+        print(f'{command}: {" ".join(str(e).split())}', file=sys.stderr)
         return 1
 
 
