@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// refineMatches with any images, keypoints and matches: a cv::Exception, or outputs of the documented shapes, where what is
-// refused stays as it was.
+// refineMatches and propagateMatches with any images, keypoints and matches: a cv::Exception, or outputs of the documented
+// shapes, where what is refused stays as it was.
 
 #include "images.hpp"
 #include "test_precomp.hpp"
@@ -83,6 +83,11 @@ void run(ByteSource& in)
         FUZZ_CHECK(covariances.at<float>(i, 0) >= 0 && covariances.at<float>(i, 2) >= 0 &&
                    checkRange(covariances));
     }
+    std::vector<DMatch> more = matches;
+    Mat first, second;
+    propagateMatches(images[0], keypoints[0], images[1], keypoints[1], more, first, second);
+    FUZZ_CHECK((int)more.size() >= n && first.rows == (int)more.size() && second.rows == first.rows);
+    FUZZ_CHECK(n == 0 || cvtest::norm(points2, second.rowRange(0, n), NORM_INF) == 0);
 }
 
 }  // namespace

@@ -15,11 +15,12 @@ else:
     a, b = scene.view('day', (0, 0)), scene.view('night', (.6, 0), -5)
 matrix = scene.camera(a)
 
-# %% Points and matches by the recommended chain, and the places of the second points to a fraction of a pixel.
+# %% Points and matches by the recommended chain, further matches that these lead to, and the places of the second points to a
+# fraction of a pixel.
 points_a, sizes_a, codes_a = opencv_iib.detect_and_describe(a, 2000)
 points_b, sizes_b, codes_b = opencv_iib.detect_and_describe(b, 2000)
 pairs, _ = opencv_iib.match(codes_a, codes_b)
-matches = opencv_iib.refineMatches(a, np.column_stack([points_a, sizes_a]), b, np.column_stack([points_b, sizes_b]), pairs)
+matches = opencv_iib.propagateMatches(a, np.column_stack([points_a, sizes_a]), b, np.column_stack([points_b, sizes_b]), pairs)
 
 # %% The pose that most matches agree with; two cameras could have two matrices.
 pose = opencv_iib.findRelativePose(matches.points1, matches.points2, matrix, matrix)
@@ -30,5 +31,5 @@ if not pose.found:
 direction = (-pose.R.T @ pose.t).ravel()
 turn = np.degrees(cv2.Rodrigues(pose.R)[0].ravel())
 errors = np.degrees(np.sqrt(np.diag(pose.covariance)))
-print(f'{len(pairs)} matches, {pose.inliers.sum()} agree: moved towards', direction.round(2), 'turned by', -turn.round(2), 'degrees,',
+print(f'{len(matches.matches)} matches, {pose.inliers.sum()} agree: moved towards', direction.round(2), 'turned by', -turn.round(2), 'degrees,',
       f'with standard deviations of {np.linalg.norm(errors[3:]):.2f} and {np.linalg.norm(errors[:3]):.2f} degrees')

@@ -25,14 +25,15 @@ from opencv_iib.geometry import Alignment, FoundPose, alignImages, findRelativeP
 from opencv_iib.keypoints import array_to_keypoints, keypoints_to_array
 from opencv_iib.mapped_index import MappedIndex
 from opencv_iib.matcher import HierarchicalMatcher
-from opencv_iib.refinement import RefinedMatches, refineMatches
+from opencv_iib.refinement import PropagatedMatches, RefinedMatches, propagateMatches, refineMatches
 from opencv_iib.rotation import estimateRotation, matchRotated
 
 __all__ = ['Alignment', 'AlignmentModel', 'Border', 'Channel', 'DMatch', 'Features', 'FoundPose', 'HessianDetector',
            'HierarchicalMatcher', 'IIB', 'IIBDescriptorExtractor', 'KeyPoint', 'MappedIndex', 'Mapping', 'Matches',
-           'Mode', 'NormalizedDetector', 'OPENCV_VERSION', 'Orientation', 'Preset', 'RefinedMatches', 'alignImages',
+           'Mode', 'NormalizedDetector', 'OPENCV_VERSION', 'Orientation', 'Preset', 'PropagatedMatches', 'RefinedMatches',
+           'alignImages',
            'array_to_keypoints', 'detect_and_describe', 'error', 'estimateRotation', 'findRelativePose', 'getNumThreads',
-           'keypoints_to_array', 'match', 'matchRotated', 'refineMatches', 'setNumThreads']
+           'keypoints_to_array', 'match', 'matchRotated', 'propagateMatches', 'refineMatches', 'setNumThreads']
 
 __version__: str = _core.VERSION
 #: Of the OpenCV inside.

@@ -13,7 +13,7 @@ from opencv_iib.demo import GOOD, INK, OTHER, draw
 from opencv_iib.functions import match
 from opencv_iib.geometry import FoundPose, findRelativePose
 from opencv_iib.localization import Camera
-from opencv_iib.refinement import RefinedMatches, refineMatches
+from opencv_iib.refinement import RefinedMatches, propagateMatches
 
 HEADER = 'x1,y1,x2,y2,xx,xy,yy,similarity,bits'
 
@@ -64,7 +64,8 @@ def rotation_vector(R: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def match_images(image_a: str, image_b: str, out: Optional[str] = None, picture: Optional[str] = None,
                  cameras: Sequence[str] = (), options: FeatureOptions = FeatureOptions(points=2000)) -> Measured:
-    """Matches two images by the recommended chain, refines the matches, and with cameras finds the pose between them.
+    """Matches two images by the recommended chain, refines the matches, adds those they lead to, and with cameras finds the pose
+    between them.
 
     :param out: file to write, a line a match: both points in pixels (the centre of the first pixel is 0), the covariance of the
         second, the patches' correlation (-1: not refined), bits that differ, and with cameras whether it agrees with the pose.
@@ -78,8 +79,9 @@ def match_images(image_a: str, image_b: str, out: Optional[str] = None, picture:
         if (lens.width, lens.height) != image.shape[1::-1]:
             raise ValueError(f'{path} has {image.shape[1]} x {image.shape[0]} pixels, its camera {lens.width} x {lens.height}')
     (rows_a, codes_a), (rows_b, codes_b) = map(Features(options), images)
-    pairs, bits = match(codes_a, codes_b)
-    matches = refineMatches(images[0], rows_a, images[1], rows_b, pairs)
+    pairs, *refined = propagateMatches(images[0], rows_a, images[1], rows_b, match(codes_a, codes_b).pairs)
+    matches = RefinedMatches(*refined)
+    bits = np.unpackbits(codes_a[pairs[:, 0]] ^ codes_b[pairs[:, 1]], axis=1).sum(axis=1, dtype=np.int32)
     pose = None
     if lenses:
         (a, matrix_a), (b, matrix_b) = (_without_distortion(points, lens) for points, lens in zip(matches[:2], lenses))

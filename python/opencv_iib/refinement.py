@@ -1,13 +1,14 @@
 """Matches refined to a fraction of a pixel."""
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arrays import as_image
+from opencv_iib._types import match_type
 from opencv_iib.keypoints import Keypoints, MatchesOfKeypoints, as_pairs, as_rows
 
 
@@ -32,7 +33,40 @@ def refineMatches(image1: ArrayLike, keypoints1: Keypoints, image2: ArrayLike, k
         :func:`opencv_iib.match`.
     :raises opencv_iib.error: for a match without a keypoint, and for images and keypoints that cannot be described.
     """
-    points1, points2, covariances, similarities = _core.refineMatches(
+    return RefinedMatches(*_rows(*_core.refineMatches(
+        as_image(image1), as_rows(keypoints1), as_image(image2), as_rows(keypoints2), as_pairs(matches1to2))))
+
+
+class PropagatedMatches(NamedTuple):
+    """What :func:`propagateMatches` gives: the matches and, a row a match, what :class:`RefinedMatches` has."""
+
+    matches: Any  #: those given, then those found: pairs of int32 where an array was given, else objects like cv2.DMatch
+    points1: NDArray[np.float32]
+    points2: NDArray[np.float32]
+    covariances: NDArray[np.float32]
+    similarities: NDArray[np.float32]
+
+
+def propagateMatches(image1: ArrayLike, keypoints1: Keypoints, image2: ArrayLike, keypoints2: Keypoints,
+                     matches1to2: MatchesOfKeypoints) -> PropagatedMatches:
+    """Refines matches as :func:`refineMatches` and adds further ones that they lead to, as ``cv2.iib.propagateMatches``.
+
+    For poses: about twice as many right matches where the views are far apart or the light is another.
+
+    :param keypoints1: as in :func:`refineMatches`, as the other parameters; of any detector.
+    :return: distances of found matches are the largest float, since no descriptors were compared.
+    :raises opencv_iib.error: as :func:`refineMatches`.
+    """
+    found, *rows = _core.propagateMatches(
         as_image(image1), as_rows(keypoints1), as_image(image2), as_rows(keypoints2), as_pairs(matches1to2))
-    # Without matches they have no columns.
-    return RefinedMatches(points1.reshape(-1, 2), points2.reshape(-1, 2), covariances.reshape(-1, 3), similarities.ravel())
+    if isinstance(matches1to2, np.ndarray):
+        return PropagatedMatches(found.reshape(-1, 4)[:, :2], *_rows(*rows))
+    make, distance = match_type(), float(np.finfo(np.float32).max)
+    added = [make(query, train, image, distance) for query, train, image in found[len(matches1to2):, :3].tolist()]
+    return PropagatedMatches((*matches1to2, *added), *_rows(*rows))
+
+
+def _rows(points1: NDArray[Any], points2: NDArray[Any], covariances: NDArray[Any],
+          similarities: NDArray[Any]) -> tuple[NDArray[Any], ...]:
+    """Without matches they have no columns."""
+    return points1.reshape(-1, 2), points2.reshape(-1, 2), covariances.reshape(-1, 3), similarities.ravel()

@@ -32,6 +32,17 @@ std::tuple<cv::Mat, cv::Mat, cv::Mat, cv::Mat> refineMatches(const cv::Mat& imag
     return {points1, points2, covariances, similarities};
 }
 
+std::tuple<Matches, cv::Mat, cv::Mat, cv::Mat, cv::Mat> propagateMatches(const cv::Mat& image1,
+        const KeyPoints& first, const cv::Mat& image2, const KeyPoints& second, Matches matches)
+{
+    cv::Mat points1, points2, covariances, similarities;
+    cv::iib::propagateMatches(
+            image1, first, image2, second, matches, points1, points2, covariances, similarities);
+    for (cv::DMatch& match : matches)
+        match.distance = 0;  // not a whole number; the caller knows them
+    return {matches, points1, points2, covariances, similarities};
+}
+
 std::optional<cv::Mat> onlyIf(bool found, const cv::Mat& matrix)
 {
     return found ? std::optional<cv::Mat>(matrix) : std::nullopt;
@@ -61,6 +72,7 @@ void bindFunctions(nb::module_& m)
 {
     m.def("estimateRotation", &cv::iib::estimateRotation, WithoutGil());
     m.def("matchRotated", &matchRotated, WithoutGil());
+    m.def("propagateMatches", &propagateMatches, WithoutGil());
     m.def("refineMatches", &refineMatches, WithoutGil());
     m.def("findRelativePose", &findRelativePose, WithoutGil());
     m.def("alignImages", &alignImages, WithoutGil());

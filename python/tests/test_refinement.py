@@ -4,7 +4,7 @@ import numpy as np
 from support import texture
 
 import opencv_iib
-from opencv_iib import refineMatches
+from opencv_iib import propagateMatches, refineMatches
 
 
 class Refinement(unittest.TestCase):
@@ -40,3 +40,21 @@ class Refinement(unittest.TestCase):
     def test_indices_that_are_none(self):
         with self.assertRaisesRegex(opencv_iib.error, 'array of 2 columns'):
             refineMatches(self.images[0], self.rows, self.images[1], self.moved, np.float32([[0, 0]]))
+
+    def test_propagation(self):
+        given = self.pairs[::4]
+        pairs, points1, points2, covariances, similarities = propagateMatches(
+            self.images[0], self.rows, self.images[1], self.moved, given)
+        n = len(pairs)
+        self.assertGreater(n, .8 * len(self.rows))
+        np.testing.assert_array_equal(pairs[:len(given)], given)
+        self.assertGreater(np.mean(pairs[:, 0] == pairs[:, 1]), .98)
+        self.assertEqual([a.shape for a in (points1, points2, covariances, similarities)], [(n, 2), (n, 2), (n, 3), (n,)])
+        np.testing.assert_array_equal(points1, self.rows[pairs[:, 0], :2])
+        matches = propagateMatches(self.images[0], self.rows, self.images[1], self.moved,
+                                   [opencv_iib.DMatch(*pair, 0, 7) for pair in given.tolist()]).matches
+        self.assertEqual([(m.queryIdx, m.trainIdx) for m in matches], [tuple(pair) for pair in pairs.tolist()])
+        self.assertEqual({m.distance for m in matches[:len(given)]}, {7})
+        self.assertGreater(min(m.distance for m in matches[len(given):]), 1e38)
+        nothing = propagateMatches(self.images[0], self.rows, self.images[1], self.moved, given[:0])
+        self.assertEqual([a.shape for a in nothing], [(0, 2), (0, 2), (0, 2), (0, 3), (0,)])

@@ -157,7 +157,7 @@ PatchAligner::PatchAligner()
 
 /* Reads the patch around a point. Pixels that need no interpolation are taken if that is a unit's size: returned is how far
  the point is from the patch's centre then. */
-Vec2d PatchAligner::readTemplate(const Mat& image, const Vec2d& point, double unit)
+Vec2d PatchAligner::readTemplate(const Mat& image, const Vec2d& point)
 {
     if (unit == 1)
     {
@@ -263,8 +263,8 @@ Vec6d PatchAligner::step(const Moments& moments) const
     return inverse * gradient;
 }
 
-//! Of the point that is `beside` the patch's centre, in its units, from what remains of the samples that were taken last.
-Matx22d PatchAligner::covariance(const Moments& moments, const Vec2d& beside) const
+//! Of the point, from what remains of the samples that were taken last.
+Matx22d PatchAligner::covariance(const Moments& moments) const
 {
     const double similarity = similarityOf(moments);
     const double gain = similarity * moments.deviation / ofTemplate.deviation;
@@ -286,19 +286,25 @@ Matx22d PatchAligner::covariance(const Moments& moments, const Vec2d& beside) co
     return scale * (ofPoint * inverse * ofPoint.t() * variance) * scale;
 }
 
-PatchAlignment PatchAligner::align(const Mat& image1, const Vec2d& point, double unit, const Mat& image2,
-        const std::vector<PatchPlace>& starts, double limit)
+void PatchAligner::take(const Mat& image1, const Vec2d& point, double unitOfPatch)
+{
+    unit = unitOfPatch;
+    beside = readTemplate(image1, point);
+    usable = solveTemplate();
+}
+
+PatchAlignment PatchAligner::align(
+        const Mat& image2, const std::vector<PatchPlace>& starts, double limit, double least)
 {
     const Vec2d detected = starts[0].centre;
-    const PatchAlignment refused = {false, detected, -1, Matx22d::eye()};
-    const Vec2d beside = readTemplate(image1, point, unit);
-    if (!solveTemplate())
+    const PatchAlignment refused = {false, detected, -1, Matx22d::eye(), Matx22d::eye()};
+    if (!usable)
         return refused;
     const auto smaller = [](const PatchPlace& a, const PatchPlace& b) {
         return reachOf(a.map)[0] < reachOf(b.map)[0];
     };
     readWindow(image2, *std::max_element(starts.begin(), starts.end(), smaller), limit + DEFORMATION_MARGIN);
-    double first = -2;
+    double first = least;
     PatchPlace place = starts[0];
     Moments moments = Moments();
     for (const PatchPlace& start : starts)
@@ -314,6 +320,8 @@ PatchAlignment PatchAligner::align(const Mat& image1, const Vec2d& point, double
             moments = found;
         }
     }
+    if (!(first > least))
+        return refused;
     double similarity = first;
     for (int i = 0; i < MOST_STEPS; i++)
     {
@@ -339,7 +347,8 @@ PatchAlignment PatchAligner::align(const Mat& image1, const Vec2d& point, double
     const Vec2d found = place.centre + place.map * beside, moved = found - detected;
     if (!(moved.dot(moved) < limit * limit) || !(similarity > first) || !(similarity > LEAST_SIMILARITY))
         return refused;
-    return {true, found, std::min(similarity, 1.), place.map * covariance(moments, beside) * place.map.t()};
+    return {true, found, std::min(similarity, 1.), place.map * covariance(moments) * place.map.t(),
+            place.map * (1 / unit)};
 }
 
 }  // namespace iib

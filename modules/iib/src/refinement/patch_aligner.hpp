@@ -23,6 +23,7 @@ struct PatchAlignment
     Vec2d point;        //!< in the second image, pixels
     double similarity;  //!< correlation of the two patches
     Matx22d covariance;
+    Matx22d map;  //!< of the surroundings, from the first image to the second
 };
 
 //! Smooths a normalized image; the result is a part of a larger one, where its border is repeated.
@@ -34,14 +35,17 @@ class PatchAligner
 public:
     PatchAligner();
 
-    /** Finds where the surroundings of a point of the first image are in the second one. Both images are prepared by
-     preparedForAlignment().
-     @param point inside the image, as the starts.
-     @param unit of the patch, in pixels of the first image, up to 1.
-     @param starts places of the point in the second image; the one that agrees best is taken.
-     @param limit pixels that the point may move in the second image. */
-    PatchAlignment align(const Mat& image1, const Vec2d& point, double unit, const Mat& image2,
-            const std::vector<PatchPlace>& starts, double limit);
+    /** Takes the surroundings of a point of the first image, which is prepared by preparedForAlignment() as the second one.
+     @param point inside the image.
+     @param unit of the patch, in pixels of the first image, up to 1. */
+    void take(const Mat& image1, const Vec2d& point, double unit);
+
+    /** Finds where these surroundings are in the second image.
+     @param starts places of the point inside the image; the one that agrees best is taken.
+     @param limit pixels that the point may move.
+     @param least similarity that the start is above, 0 or more. */
+    PatchAlignment align(
+            const Mat& image2, const std::vector<PatchPlace>& starts, double limit, double least);
 
 private:
     struct Moments
@@ -50,18 +54,21 @@ private:
         double mean, deviation;  //!< of the samples
     };
 
-    Vec2d readTemplate(const Mat& image, const Vec2d& point, double unit);
+    Vec2d readTemplate(const Mat& image, const Vec2d& point);
     void readWindow(const Mat& image, const PatchPlace& place, double margin);
     bool sampleAt(const PatchPlace& place);
     Moments momentsOf(const short* values) const;
     double similarityOf(const Moments& moments) const;
     bool solveTemplate();
     Vec6d step(const Moments& moments) const;
-    Matx22d covariance(const Moments& moments, const Vec2d& beside) const;
+    Matx22d covariance(const Moments& moments) const;
 
     const RefinementKernels& kernels;
     const PatchWeights& weights;
     PatchTemplate patch;
+    double unit;   //!< of the patch
+    Vec2d beside;  //!< where the point is from the patch's centre, in its units
+    bool usable;   //!< whether the patch can tell a place
     Moments ofTemplate;
     double totals[SUMS];        //!< of the weights
     double independentSamples;  //!< as many as the weighted ones are worth

@@ -47,6 +47,10 @@ TEST(IIB_RefinementGolden, bits)
     EXPECT_EQ(CV_BIG_UINT(0xbb5ccb69321e5e06), hashOf(points2)) << std::hex << hashOf(points2);
     EXPECT_EQ(CV_BIG_UINT(0x8ebd73d555873592), hashOf(covariances)) << std::hex << hashOf(covariances);
     EXPECT_EQ(CV_BIG_UINT(0x8af67a743e1a48ad), hashOf(similarities)) << std::hex << hashOf(similarities);
+    matches.resize(40);
+    propagateMatches(first, keypoints, second, moved, matches, points1, points2);
+    EXPECT_GT(points2.rows, 55);
+    EXPECT_EQ(CV_BIG_UINT(0x65d02d87477f2831), hashOf(points2)) << std::hex << hashOf(points2);
 }
 
 }  // namespace

@@ -42,6 +42,28 @@ CV_EXPORTS_W void refineMatches(InputArray image1, const std::vector<KeyPoint>& 
         const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches1to2, OutputArray points1,
         OutputArray points2, OutputArray covariances = noArray(), OutputArray similarities = noArray());
 
+/** @brief Refines matches as refineMatches does and adds further ones that these lead to: match propagation
+@cite LhuillierQuan2002.
+
+A refined match tells where the surroundings of its point are in the second image. Keypoints without a match that lie less than
+100 pixels from it are tried with those keypoints of the second image that are near where they should be: within 3 pixels
+and a tenth of the distance. What agrees best after least-squares matching is taken, and leads on. Only matches that two of
+the eight nearest ones confirm lead to others. For poses: twice as many right matches where the views are far apart or
+the light is another, and where there are few, poses that were not found without them.
+
+@param image1, image2, keypoints1, keypoints2 as in refineMatches; of any detector.
+@param matches1to2 on return the same matches, followed by those that were found, the most similar ones of each round first.
+Their distance is that of an empty cv::DMatch, the largest number, as no descriptors were compared; no keypoint of theirs is in
+another match.
+@param points1, points2, covariances, similarities as in refineMatches, a row for each match on return. Those that
+were found have similarities above 0.7.
+@throws cv::Exception as refineMatches. Without matches there is nothing to propagate, and all outputs are empty.
+ */
+CV_EXPORTS_W void propagateMatches(InputArray image1, const std::vector<KeyPoint>& keypoints1,
+        InputArray image2, const std::vector<KeyPoint>& keypoints2,
+        CV_IN_OUT std::vector<DMatch>& matches1to2, OutputArray points1, OutputArray points2,
+        OutputArray covariances = noArray(), OutputArray similarities = noArray());
+
 //! @}
 
 }  // namespace iib

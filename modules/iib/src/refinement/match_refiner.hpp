@@ -1,0 +1,48 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#pragma once
+
+#include "patch_aligner.hpp"
+
+namespace cv {
+namespace iib {
+
+//! A match to be refined, and what it came to.
+struct Refinement
+{
+    DMatch match;
+    double unit, limit, least;       //!< of PatchAligner
+    std::vector<PatchPlace> starts;  //!< in the second image: all that are tried
+    PatchAlignment found;
+};
+
+//! Refines matches of two images' keypoints by least-squares matching.
+class MatchRefiner
+{
+public:
+    MatchRefiner(InputArray image1, const std::vector<KeyPoint>& keypoints1, InputArray image2,
+            const std::vector<KeyPoint>& keypoints2);
+
+    //! Begins where the keypoints' angles and sizes say. Refuses what is not a match of these keypoints.
+    Refinement begin(const DMatch& match) const;
+
+    //! Begins with a linear map of the surroundings from the first image to the second.
+    Refinement begin(const DMatch& match, const Matx22d& map) const;
+
+    void refine(std::vector<Refinement>& matches) const;
+
+    //! Whether the image has the surroundings of its keypoint.
+    bool seesFirst(size_t index) const { return isInside(first[index], prepared1); }
+    bool seesSecond(size_t index) const { return isInside(second[index], prepared2); }
+
+private:
+    static bool isInside(const KeyPoint& keypoint, const Mat& image);
+
+    const std::vector<KeyPoint>&first, &second;
+    Mat prepared1, prepared2;
+};
+
+}  // namespace iib
+}  // namespace cv

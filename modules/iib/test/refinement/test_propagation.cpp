@@ -1,0 +1,207 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "../support/test_errors.hpp"
+#include "refinement_scene.hpp"
+
+#include <set>
+
+namespace opencv_test {
+namespace {
+
+//! A scene, and what propagateMatches() makes of some of its matches.
+class IIB_Propagation : public testing::Test
+{
+protected:
+    static const RefinementScene& scene()
+    {
+        static const RefinementScene made(7);
+        return made;
+    }
+
+    struct Result
+    {
+        std::vector<DMatch> matches;
+        Mat points1, points2, covariances, similarities;
+    };
+
+    static Result propagate(const std::vector<DMatch>& matches, const Mat& second,
+            const std::vector<KeyPoint>& keypoints1, const std::vector<KeyPoint>& keypoints2)
+    {
+        Result r = {matches, Mat(), Mat(), Mat(), Mat()};
+        propagateMatches(scene().images[0], keypoints1, second, keypoints2, r.matches, r.points1, r.points2,
+                r.covariances, r.similarities);
+        return r;
+    }
+
+    static Result propagate(const std::vector<DMatch>& matches)
+    {
+        return propagate(matches, scene().images[1], scene().keypoints[0], scene().keypoints[1]);
+    }
+
+    //! One match of so many.
+    static std::vector<DMatch> some(int step)
+    {
+        std::vector<DMatch> matches;
+        for (size_t i = 0; i < scene().matches.size(); i += step)
+            matches.push_back(scene().matches[i]);
+        return matches;
+    }
+
+    //! The matches nearest to the middle of the first image.
+    static std::vector<DMatch> central(int count)
+    {
+        std::vector<DMatch> matches = scene().matches;
+        const auto distance = [](const DMatch& m) {
+            return cv::norm(scene().keypoints[0][m.queryIdx].pt - Point2f(320, 240));
+        };
+        std::sort(matches.begin(), matches.end(),
+                [&](const DMatch& a, const DMatch& b) { return distance(a) < distance(b); });
+        matches.resize(count);
+        return matches;
+    }
+};
+
+// Keypoint i of one image is keypoint i of the other one.
+TEST_F(IIB_Propagation, finds_what_is_missing)
+{
+    for (const std::vector<DMatch>& given : {some(5), central(4)})
+    {
+        const Result r = propagate(given);
+        const int n = (int)r.matches.size();
+        EXPECT_GT(n, .9 * scene().matches.size());
+        std::set<int> first, second;
+        int right = 0;
+        for (int i = 0; i < n; i++)
+        {
+            const DMatch& m = r.matches[i];
+            first.insert(m.queryIdx);
+            second.insert(m.trainIdx);
+            const Point2f from = scene().keypoints[0][m.queryIdx].pt;
+            EXPECT_EQ(from, r.points1.at<Point2f>(i));
+            right += cv::norm(Point2d(r.points2.at<Point2f>(i)) - scene().truth(from)) < .5;
+            if (i < (int)given.size())
+            {
+                EXPECT_EQ(given[i].queryIdx, m.queryIdx);
+                EXPECT_EQ(given[i].distance, m.distance);
+            }
+            else
+            {
+                EXPECT_EQ(std::numeric_limits<float>::max(), m.distance);
+                EXPECT_GT(r.similarities.at<float>(i), .7);
+            }
+        }
+        EXPECT_GT(right, .98 * n);
+        EXPECT_EQ(r.matches.size(), first.size());
+        EXPECT_EQ(r.matches.size(), second.size());
+        for (const Mat& m : {r.points2, r.covariances, r.similarities})
+            EXPECT_EQ(n, m.rows);
+    }
+}
+
+TEST_F(IIB_Propagation, refines_the_given_matches_as_refineMatches_does)
+{
+    const std::vector<DMatch> given = some(5);
+    const Result r = propagate(given);
+    Mat points1, points2, covariances, similarities;
+    refineMatches(scene().images[0], scene().keypoints[0], scene().images[1], scene().keypoints[1], given,
+            points1, points2, covariances, similarities);
+    const Range rows(0, (int)given.size());
+    EXPECT_EQ(0, cvtest::norm(points1, r.points1.rowRange(rows), NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(points2, r.points2.rowRange(rows), NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(covariances, r.covariances.rowRange(rows), NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(similarities, r.similarities.rowRange(rows), NORM_INF));
+}
+
+TEST_F(IIB_Propagation, only_matches_that_two_others_confirm_lead_on)
+{
+    EXPECT_EQ(2u, propagate(central(2)).matches.size());
+    EXPECT_LT(3u, propagate(central(3)).matches.size());
+    std::vector<DMatch> far = {central(1)[0]};
+    for (const DMatch& m : scene().matches)
+    {
+        const auto isFar = [&](const DMatch& other) {
+            return cv::norm(scene().keypoints[0][m.queryIdx].pt - scene().keypoints[0][other.queryIdx].pt) >
+                   100;
+        };
+        if (std::all_of(far.begin(), far.end(), isFar))
+            far.push_back(m);
+    }
+    EXPECT_LT(4u, far.size());
+    EXPECT_EQ(far.size(), propagate(far).matches.size());
+}
+
+TEST_F(IIB_Propagation, wrong_matches_lead_nowhere)
+{
+    std::vector<DMatch> wrong = some(3);
+    for (size_t i = 0; i < wrong.size(); i++)
+        wrong[i].trainIdx = some(3)[(i + 7) % wrong.size()].trainIdx;
+    EXPECT_EQ(wrong.size(), propagate(wrong).matches.size());
+    const RefinementScene other(8);
+    EXPECT_GE(some(3).size() + 2,
+            propagate(some(3), other.images[1], scene().keypoints[0], scene().keypoints[1]).matches.size());
+}
+
+// What predicts takes turns and scales from the matches that were refined.
+TEST_F(IIB_Propagation, follows_turned_and_scaled_surroundings)
+{
+    Mat turned;
+    cv::rotate(scene().images[1], turned, ROTATE_90_CLOCKWISE);
+    cv::resize(turned, turned, Size(), .75, .75, INTER_AREA);
+    std::vector<KeyPoint> first = scene().keypoints[0], second = scene().keypoints[1];
+    for (KeyPoint& kp : first)
+        kp.angle = 20;
+    for (KeyPoint& kp : second)
+    {
+        kp.pt = (Point2f(479 - kp.pt.y, kp.pt.x) + Point2f(.5f, .5f)) * .75f - Point2f(.5f, .5f);
+        kp.size *= .75f;
+        kp.angle = 110;
+    }
+    const std::vector<DMatch> given = some(5);
+    const Result r = propagate(given, turned, first, second);
+    EXPECT_GT(r.matches.size(), .8 * scene().matches.size());
+    int right = 0;
+    for (size_t i = 0; i < r.matches.size(); i++)
+        right += r.matches[i].queryIdx == r.matches[i].trainIdx;
+    EXPECT_GT(right, .98 * r.matches.size());
+}
+
+TEST_F(IIB_Propagation, is_the_same_for_every_number_of_threads)
+{
+    const int before = getNumThreads();
+    setNumThreads(1);
+    const Result expected = propagate(some(5));
+    setNumThreads(3);
+    const Result actual = propagate(some(5));
+    setNumThreads(before);
+    ASSERT_EQ(expected.matches.size(), actual.matches.size());
+    EXPECT_EQ(0, cvtest::norm(expected.points2, actual.points2, NORM_INF));
+}
+
+TEST_F(IIB_Propagation, takes_points_anywhere)
+{
+    std::vector<KeyPoint> first = scene().keypoints[0], second = scene().keypoints[1];
+    for (const Point2f& place : {Point2f(1e30f, 2), Point2f(-3, -1e30f), Point2f(639, 479), Point2f(-1, 5)})
+    {
+        first.push_back(KeyPoint(place, 9));
+        second.push_back(KeyPoint(place, 9));
+    }
+    std::vector<DMatch> given = some(5);
+    given.push_back(DMatch((int)first.size() - 1, (int)second.size() - 4, 0));
+    const Result r = propagate(given, scene().images[1], first, second);
+    EXPECT_EQ(propagate(some(5)).matches.size() + 1, r.matches.size());
+}
+
+TEST_F(IIB_Propagation, without_matches_all_is_empty_and_errors_say_what_is_wrong)
+{
+    const Result r = propagate({}, Mat(), {}, {});
+    for (const Mat& m : {r.points1, r.points2, r.covariances, r.similarities})
+        EXPECT_TRUE(m.empty());
+    expectError(Error::StsOutOfRange, "a match is of keypoint 1 of image 2, which has 1", [] {
+        propagate({DMatch(0, 1, 0)}, scene().images[1], scene().keypoints[0], {KeyPoint(9, 9, 9)});
+    });
+}
+
+}  // namespace
+}  // namespace opencv_test
