@@ -48,7 +48,8 @@ def main():
                 readings = images / 'imu.csv'
                 for setup in SETUPS + (('--orb-and-akaze --lines --imu',) if readings.exists() else ()):
                     options, truth = setup.replace('--imu', '--imu %s' % readings).split(), measure.read_place(images)[1]
-                    found = measure.run_program(program, model, place / 'map', images, pathlib.Path(work, 'out'), options)
+                    with tempfile.TemporaryDirectory() as alone:
+                        found = measure.run_program(program, model, place / 'map', images, pathlib.Path(alone), options)
                     counts[name, setup, images.name] += len(truth)
                     errors[name, setup, images.name] += [error(pose, truth[image]) for image, pose in found.items()]
                 write(out, counts, errors)
