@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Mutation testing: builds the library once with every mutant of mutants.txt switched off, then runs the tests with
-one of them switched on at a time: those in the folder of modules/iib/test with the name of its area, or all of
-modules/iib_index. A mutant that none of them notices is a survivor.
+one of them switched on at a time: those of its area, which is a folder of modules/iib/test, another module, or
+MODULE/NAME for its test_NAME.cpp. A mutant that none of them notices is a survivor.
 
 mutate.py --source REPOSITORY --work FOLDER [--only NAME...]
 mutate.py --source REPOSITORY --check
@@ -107,11 +107,17 @@ def copy_source(repository, changed, target):
             shutil.copymode(repository / name, target / name)
 
 
+def tests_of(area):
+    """The module whose tests are to notice what is wrong in `area`, and their files."""
+    module, _, name = area.partition("/")
+    return (module, f"test_{name or '*'}.cpp") if module.startswith("iib_") else ("iib", f"{area}/*.cpp")
+
+
 def suites(source, area):
-    """A filter for the test suites in the folder of `area`, which are to notice what is wrong there."""
+    """A filter for the test suites of `area`."""
     names = set()
-    folder = "modules/iib_index/test" if area == "iib_index" else f"modules/iib/test/{area}"
-    for path in sorted((source / folder).glob("*.cpp")):
+    module, files = tests_of(area)
+    for path in sorted((source / "modules" / module / "test").glob(files)):
         text = path.read_text()
         names |= set(re.findall(r"^TEST(?:_P|_F)?\((\w+),", text, re.MULTILINE))
     if not names:
@@ -158,13 +164,14 @@ def main():
     copy_source(options.source, changed, source)
     subprocess.check_call(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DIIB_BUILD_TOOLS=OFF",
                            f"-DCMAKE_CXX_FLAGS=-include {source / 'mutation.hpp'}"], stdout=subprocess.DEVNULL)
-    subprocess.check_call(["cmake", "--build", build, "--target", "opencv_test_iib", "opencv_test_iib_index"])
+    modules = sorted({tests_of(mutant.area)[0] for mutant in mutants})
+    subprocess.check_call(["cmake", "--build", build, "--target", *(f"opencv_test_{module}" for module in modules)])
 
     chosen = [m for m in mutants if not options.only or m.name in options.only]
     programs, filters, limits = {}, {}, {}
     for area in sorted({m.area for m in chosen}):
         started = time.monotonic()
-        programs[area] = build / ("opencv_test_iib_index" if area == "iib_index" else "opencv_test_iib")
+        programs[area] = build / f"opencv_test_{tests_of(area)[0]}"
         filters[area] = suites(source, area)
         if not run_tests(programs[area], filters[area], 0, 3600):
             sys.exit(f"the tests of {area} fail without any mutant")

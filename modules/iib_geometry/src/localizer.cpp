@@ -206,7 +206,7 @@ Finder::Finder(const Map& map, int points, bool lines)
       matcher_(cv::iib::HierarchicalMatcher::createRecommended()), votes_(codesOf(map))
 {
     if (lines)
-        needLines();
+        findSegments(Picture());
     if (lines && map.lines.empty())
         CV_Error(cv::Error::StsError, "the map has no lines: make it with lines, or look for none");
     for (const MapImage& image : map.images)

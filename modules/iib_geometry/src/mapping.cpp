@@ -122,7 +122,7 @@ Map makeMap(const std::string& model, const cv::iib::ImageReader& read, const cv
         const cv::iib::MappingReport& report)
 {
     if (options.lines)
-        needLines();
+        findSegments(Picture());
     const std::vector<PosedImage> known = readModel(model);
     const Pairs pairs = covisible(known);
     Steps steps(known.size() + pairs.size(), report);

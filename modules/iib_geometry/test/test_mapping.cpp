@@ -50,6 +50,23 @@ TEST_F(Mapping, images_are_found_in_a_model)
     EXPECT_GT(location.inliers, 200);
 }
 
+#if CV_VERSION_MAJOR < 5
+TEST_F(Mapping, of_points_of_orb_and_akaze)
+{
+    write(model(1, 40));
+    cv::iib::MapOptions options;
+    options.orbAndAkaze = true;
+    const std::string made = folder.path("paper");
+    cv::iib::buildMap(folder.path("sparse 0"), images(), made, options);
+    EXPECT_TRUE(readMap(made).orbAndAkaze);
+    const cv::Affine3d truth = poseAt(0.1, -0.1, 0.1);
+    const Location location = Localizer(made).localize(wall.image(truth) * .5, CAMERA);
+    ASSERT_TRUE(location.found) << location.reason;
+    EXPECT_LT(cv::norm(inverse(location.cameraFromWorld).translation() - truth.translation()), .02);
+    EXPECT_EQ(170, readMap(made).images[0].codes.cols) << "the default's";
+}
+#endif
+
 //! Of the wall's size, 4 m: errors and deviations scale with the unit, wherever the origin is.
 TEST_F(Mapping, in_any_unit_and_far_from_the_origin)
 {
