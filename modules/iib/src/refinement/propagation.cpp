@@ -13,8 +13,7 @@ namespace {
 
 const double REACH = 100;  //!< pixels of the first image across which a match predicts others
 const double TOLERANCE = 3, TOLERANCE_BY_DISTANCE = .1;  //!< pixels between where a point is predicted and is
-const size_t PREDICTIONS = 2;                            //!< of a keypoint, by the nearest matches
-const size_t CANDIDATES = 4;  //!< keypoints of the second image for each of them, the nearest
+const size_t CANDIDATES = 4;  //!< keypoints of the second image, the nearest to where one should be
 const size_t NEIGHBOURS = 8, LEAST_AGREEING = 2;  //!< of a match that predicts others
 const double LEAST_SIMILARITY = .7;  //!< higher than of given matches, whose descriptors agreed as well
 
@@ -124,7 +123,7 @@ void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoin
             if (matched1[q] || !refiner.seesFirst(q))
                 continue;
             const Vec2d point = placeOf(keypoints1[q]);
-            for (int k : ofTrusted.find(point, REACH, PREDICTIONS))
+            for (int k : ofTrusted.find(point, REACH, 1))
             {
                 const Seed& seed = seeds[k];
                 for (int t : ofSecond.find(seed.predict(point), seed.tolerance(point), CANDIDATES))

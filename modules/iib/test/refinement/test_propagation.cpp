@@ -167,6 +167,27 @@ TEST_F(IIB_Propagation, follows_turned_and_scaled_surroundings)
     EXPECT_GT(right, .98 * r.matches.size());
 }
 
+// Two keypoints of the second image at each place, and so much noise that many patches hardly agree.
+TEST_F(IIB_Propagation, takes_a_keypoint_once_and_only_what_agrees_well)
+{
+    Mat noise(scene().images[1].size(), CV_16S), noisy;
+    RNG(5).fill(noise, RNG::NORMAL, 0, 14);
+    cv::add(scene().images[1], noise, noisy, noArray(), CV_8U);
+    std::vector<KeyPoint> second = scene().keypoints[1];
+    for (const KeyPoint& kp : scene().keypoints[1])
+        second.push_back(KeyPoint(kp.pt + Point2f(.7f, -.4f), kp.size));
+    const std::vector<DMatch> given = some(3);
+    const Result r = propagate(given, noisy, scene().keypoints[0], second);
+    EXPECT_GT(r.matches.size(), given.size() + 10);
+    EXPECT_LT(r.matches.size(), scene().matches.size());
+    std::set<int> first;
+    for (size_t i = 0; i < r.matches.size(); i++)
+    {
+        EXPECT_TRUE(first.insert(r.matches[i].queryIdx).second);
+        EXPECT_GT(i < given.size() ? 1 : r.similarities.at<float>((int)i), .7);
+    }
+}
+
 TEST_F(IIB_Propagation, is_the_same_for_every_number_of_threads)
 {
     const int before = getNumThreads();

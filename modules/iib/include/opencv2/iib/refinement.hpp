@@ -45,11 +45,12 @@ CV_EXPORTS_W void refineMatches(InputArray image1, const std::vector<KeyPoint>& 
 /** @brief Refines matches as refineMatches does and adds further ones that these lead to: match propagation
 @cite LhuillierQuan2002.
 
-A refined match tells where the surroundings of its point are in the second image. Keypoints without a match that lie less than
-100 pixels from it are tried with those keypoints of the second image that are near where they should be: within 3 pixels
+A refined match tells where the surroundings of its point are in the second image. A keypoint without a match is tried where
+the nearest refined match, less than 100 pixels away, says it should be: with the keypoints of the second image within 3 pixels
 and a tenth of the distance. What agrees best after least-squares matching is taken, and leads on. Only matches that two of
-the eight nearest ones confirm lead to others. For poses: twice as many right matches where the views are far apart or
-the light is another, and where there are few, poses that were not found without them.
+the eight nearest ones confirm lead to others. For poses from views that are far apart or in other light: half as
+many right matches again, and poses that were not found without them. Where a pattern repeats, as the windows of a block of flats do,
+wrong matches that confirm each other lead to further ones as well: there refineMatches alone gives the better poses.
 
 @param image1, image2, keypoints1, keypoints2 as in refineMatches; of any detector.
 @param matches1to2 on return the same matches, followed by those that were found, the most similar ones of each round first.
