@@ -31,10 +31,11 @@ Mat normalized(const Mat& image)
 enum
 {
     REFINE,
+    PROPAGATE,          //!< from these matches to those of the other 700 keypoints
     OPTICAL_FLOW,       //!< calcOpticalFlowPyrLK on the normalized images: the peer
     DETECT_AND_COMPUTE  //!< of one of the images: what the time is compared with
 };
-CV_ENUM(Step, REFINE, OPTICAL_FLOW, DETECT_AND_COMPUTE)
+CV_ENUM(Step, REFINE, PROPAGATE, OPTICAL_FLOW, DETECT_AND_COMPUTE)
 
 typedef perf::TestBaseWithParam<Step> IIB_Refine;
 
@@ -64,6 +65,15 @@ PERF_TEST_P(IIB_Refine, vga_300_matches, Step::all())
         Mat points1, points2, covariances, similarities;
         TEST_CYCLE()
         refineMatches(image, keypoints, other, starts, matches, points1, points2, covariances, similarities);
+    }
+    else if (GetParam() == PROPAGATE)
+    {
+        Mat points1, points2;
+        TEST_CYCLE()
+        {
+            std::vector<DMatch> more = matches;
+            propagateMatches(image, keypoints, other, starts, more, points1, points2);
+        }
     }
     else if (GetParam() == DETECT_AND_COMPUTE)
         TEST_CYCLE() iib->detectAndCompute(image, noArray(), keypoints, codes);
