@@ -82,7 +82,7 @@ void addLines(
     };
     std::vector<std::vector<Link>> found(pairs.size());
     inParallel(pairs.size(), [&](size_t n) {
-        const auto [a, b] = pairs[n];
+        const size_t a = pairs[n].first, b = pairs[n].second;
         if (segments[a].codes.empty() || segments[b].codes.empty())
             return;
         cv::Mat bits;
