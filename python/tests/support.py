@@ -2,7 +2,7 @@
 import contextlib
 import importlib
 import io
-import resource
+import shutil
 import signal
 import tempfile
 import threading
@@ -24,6 +24,7 @@ def optional(name):
 
 
 cv2 = optional('cv2')
+resource = optional('resource')  # not on Windows
 
 
 class Commands(unittest.TestCase):
@@ -39,9 +40,8 @@ class InFolder(Commands):
     """Each test has a folder of its own."""
 
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
+        self.folder = Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)  # Windows keeps files that are still mapped
 
 
 def run_command(*arguments):
@@ -122,6 +122,8 @@ def brute_force(query, train, k):
 
 def seconds_until_interrupt(call, after):
     """How long `call` takes if Ctrl-C is pressed after so many seconds; fails if it ends as if nothing had happened."""
+    if not hasattr(signal, 'SIGALRM'):
+        raise unittest.SkipTest('no signal at a chosen time on this system')
     old, begin = signal.signal(signal.SIGALRM, signal.default_int_handler), time.monotonic()
     try:
         signal.setitimer(signal.ITIMER_REAL, after)
@@ -159,6 +161,8 @@ def steps_meanwhile(call):
 @contextlib.contextmanager
 def files_end_at(size):
     """As on a full disk: no file can grow to more than so many bytes."""
+    if resource is None:
+        raise unittest.SkipTest('no limit of the size of files on this system')
     limits, old = resource.getrlimit(resource.RLIMIT_FSIZE), signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
     try:

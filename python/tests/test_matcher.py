@@ -1,15 +1,13 @@
 import copy
 import pickle
-import tempfile
 import time
 import unittest
-from pathlib import Path
 
 import numpy as np
 
 import opencv_iib
 from opencv_iib import HierarchicalMatcher, MappedIndex
-from support import brute_force, cv2, scatter, seconds_until_interrupt, steps_meanwhile, texture
+from support import InFolder, brute_force, cv2, scatter, seconds_until_interrupt, steps_meanwhile, texture
 
 LEVELS = (2, 8, 32, 128)
 
@@ -18,9 +16,10 @@ def keys(rows):
     return [[(m.queryIdx, m.trainIdx, m.imgIdx, m.distance) for m in row] for row in rows]
 
 
-class MatcherTest(unittest.TestCase):
+class MatcherTest(InFolder):
 
     def setUp(self):
+        super().setUp()
         rng = np.random.default_rng(6)
         self.query = rng.integers(0, 256, (50, 170), np.uint8)
         self.train = rng.integers(0, 256, (70, 170), np.uint8)
@@ -103,10 +102,8 @@ class MatcherTest(unittest.TestCase):
         for twin in (copy.copy(matcher), copy.deepcopy(matcher), matcher.clone()):
             self.expect_same(matcher, twin)
         self.assertTrue(matcher.clone(True).empty())
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / 'index.bin'
-            matcher.saveIndex(path)
-            self.expect_same(matcher, HierarchicalMatcher.loadIndex(path))
+        matcher.saveIndex(self.folder / 'index.bin')
+        self.expect_same(matcher, HierarchicalMatcher.loadIndex(self.folder / 'index.bin'))
 
     def test_without_level_sizes(self):
         matcher = HierarchicalMatcher.create()
@@ -128,12 +125,11 @@ class MatcherTest(unittest.TestCase):
         codes = np.random.default_rng(1).integers(0, 256, (6000, 170), np.uint8)
         self.matcher.add(codes)
         image, points, iib = np.tile(texture(320, 240), (4, 4)), np.tile(scatter(1280, 960, 5000, 3, 40, 2), (20, 1)), opencv_iib.IIB()
-        with tempfile.TemporaryDirectory() as folder:
-            index = MappedIndex.create(folder, LEVELS)
-            index.add(codes)
-            for call in (lambda: self.matcher.knnMatchArrays(codes, codes), lambda: self.matcher.knnMatchArrays(codes),
-                         lambda: index.search(codes), lambda: iib.compute(image, points)):
-                self.assertGreater(steps_meanwhile(call), 2)
+        index = MappedIndex.create(self.folder, LEVELS)
+        index.add(codes)
+        for call in (lambda: self.matcher.knnMatchArrays(codes, codes), lambda: self.matcher.knnMatchArrays(codes),
+                     lambda: index.search(codes), lambda: iib.compute(image, points)):
+            self.assertGreater(steps_meanwhile(call), 2)
 
     @unittest.skipIf(cv2 is None, 'no cv2')
     def test_matches_are_those_of_cv2(self):
@@ -178,11 +174,10 @@ class MatcherTest(unittest.TestCase):
     def test_an_interrupt_acts_promptly(self):
         rng = np.random.default_rng(5)
         queries, train = rng.integers(0, 256, (512, 32), np.uint8), rng.integers(0, 256, (100000, 32), np.uint8)
-        with tempfile.TemporaryDirectory() as folder:
-            index = MappedIndex.create(folder, [32])
-            index.add(train)
-            for search in (lambda codes: HierarchicalMatcher().knnMatchArrays(codes, train), index.search):
-                begin = time.monotonic()
-                search(queries)
-                block = time.monotonic() - begin
-                self.assertLess(seconds_until_interrupt(lambda: search(np.repeat(queries, 200, 0)), block), 60 * block)
+        index = MappedIndex.create(self.folder, [32])
+        index.add(train)
+        for search in (lambda codes: HierarchicalMatcher().knnMatchArrays(codes, train), index.search):
+            begin = time.monotonic()
+            search(queries)
+            block = time.monotonic() - begin
+            self.assertLess(seconds_until_interrupt(lambda: search(np.repeat(queries, 200, 0)), block), 60 * block)
