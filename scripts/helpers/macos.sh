@@ -19,5 +19,5 @@ for architecture in aarch64 x86_64; do
         "-DOpenCV_DIR=$(pkg-config --variable=libdir opencv4)/cmake/opencv4" \
         -DCMAKE_COMPILE_WARNING_AS_ERROR=ON -DIIB_BUILD_TESTS=OFF -DIIB_BUILD_TOOLS=OFF -DIIB_BUILD_APPS=ON
     say "compiling in $build"
-    ninja -C "$build" $(ninja -C "$build" -t targets all | sed -n 's/^\(.*\.o\): CXX_COMPILER.*/\1/p')
+    ninja -C "$build" -t targets all | sed -n 's/^\(.*\.o\): CXX_COMPILER.*/\1/p' | xargs ninja -C "$build"
 done
