@@ -17,6 +17,7 @@
 namespace opencv_test {
 namespace {
 
+#if defined(__x86_64__) || defined(_M_X64)
 //! Of those that the library has kernels for and OPENCV_CPU_DISABLE leaves.
 String widestInstructionSet()
 {
@@ -29,7 +30,6 @@ String widestInstructionSet()
     return checkHardwareSupport(CPU_AVX512_ICL) ? "AVX512_ICL" : "AVX512_SKX";
 }
 
-#if defined(__x86_64__) || defined(_M_X64)
 TEST(IIB_InstructionSets, the_widest_is_used)
 {
     EXPECT_EQ(widestInstructionSet(), descriptorKernels().instructionSet);
