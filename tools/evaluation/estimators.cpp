@@ -104,8 +104,9 @@ int estimators(const Options& options, const std::vector<ImagePair>&)
     const auto judge = [&](const ViewPair& pair, const std::string& detector, const cv::Mat& reference,
                                const cv::Mat& target, const Described& r, const Described& t) {
         const std::vector<cv::DMatch> matches = mutualRatioMatches(r, t);
-        const std::pair<const char*, Points> kinds[] = {
-                {"plain", pointsOf(matches, r, t)}, {"refined", refined(reference, target, matches, r, t)}};
+        const std::pair<const char*, Points> kinds[] = {{"plain", pointsOf(matches, r, t)},
+                {"refined", refined(reference, target, matches, r, t, false)},
+                {"propagated", refined(reference, target, matches, r, t, true)}};
         for (const auto& kind : kinds)
         {
             const Fields pairKey = {pair.set, pair.sequence, pair.target, detector, r.name, kind.first};
@@ -132,7 +133,7 @@ int estimators(const Options& options, const std::vector<ImagePair>&)
         const ViewPair& views = pair.views;
         std::vector<Detector> missing;
         for (const Detector& d : all)
-            if (!errors.has({views.set, views.sequence, views.target, d.name, UNIVERSAL, "refined", LAST}))
+            if (!errors.has({views.set, views.sequence, views.target, d.name, UNIVERSAL, "propagated", LAST}))
                 missing.push_back(d);
         const auto run = [&, missing] {
             const cv::Mat reference = readImage(views.referenceFile, cv::IMREAD_GRAYSCALE);

@@ -68,8 +68,8 @@ Points pointsOf(const std::vector<cv::DMatch>& matches, const Described& referen
     return points;
 }
 
-Points refined(const cv::Mat& referenceImage, const cv::Mat& targetImage,
-        const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target)
+Points refined(const cv::Mat& referenceImage, const cv::Mat& targetImage, std::vector<cv::DMatch> matches,
+        const Described& reference, const Described& target, bool propagated)
 {
     Points points;
     if (matches.empty())
@@ -79,7 +79,10 @@ Points refined(const cv::Mat& referenceImage, const cv::Mat& targetImage,
         for (cv::KeyPoint& keypoint : *keypoints)
             keypoint.angle = -1;  // described upright
     cv::Mat moved1, moved2;
-    cv::iib::refineMatches(referenceImage, first, targetImage, second, matches, moved1, moved2);
+    if (propagated)
+        cv::iib::propagateMatches(referenceImage, first, targetImage, second, matches, moved1, moved2);
+    else
+        cv::iib::refineMatches(referenceImage, first, targetImage, second, matches, moved1, moved2);
     moved1.reshape(2).convertTo(points.reference, CV_64F);
     moved2.reshape(2).convertTo(points.target, CV_64F);
     return points;

@@ -24,9 +24,9 @@ struct Outcome
 //! Mutual nearest neighbours under a ratio of .9 of bits, .8 of numbers.
 std::vector<cv::DMatch> mutualRatioMatches(const Described& reference, const Described& target);
 Points pointsOf(const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target);
-//! The same with the target's points refined.
-Points refined(const cv::Mat& referenceImage, const cv::Mat& targetImage,
-        const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target);
+//! The same with the target's points refined, and with the matches that these lead to if they are propagated.
+Points refined(const cv::Mat& referenceImage, const cv::Mat& targetImage, std::vector<cv::DMatch> matches,
+        const Described& reference, const Described& target, bool propagated);
 
 Outcome byFindRelativePose(const Points& points, const ViewPair& pair);
 Outcome byMagsac(const Points& points, const ViewPair& pair, double threshold);
