@@ -15,6 +15,9 @@ endif()
 set(IIB_FLAGS ${IIB_BIT_FLAGS})
 if(CMAKE_SIZEOF_VOID_P EQUAL 4)
   add_compile_definitions(_FILE_OFFSET_BITS=64)  # else files with large numbers on their file system cannot be seen
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # GCC 12 takes two shorts in a word for one number where it multiplies and shifts
+    add_compile_options(-fno-tree-vectorize)
+  endif()
 endif()
 
 # The kernels add numbers in neighbouring lanes by shifts of wider lanes: other bits where the high byte comes first.
