@@ -51,7 +51,7 @@ def propagateMatches(image1: ArrayLike, keypoints1: Keypoints, image2: ArrayLike
                      matches1to2: MatchesOfKeypoints) -> PropagatedMatches:
     """Refines matches as :func:`refineMatches` and adds further ones that they lead to, as ``cv2.iib.propagateMatches``.
 
-    For poses: about twice as many right matches where the views are far apart or the light is another.
+    For poses: half as many right matches again where the views are far apart or the light is another.
 
     :param keypoints1: as in :func:`refineMatches`, as the other parameters; of any detector.
     :return: distances of found matches are the largest float, since no descriptors were compared.
