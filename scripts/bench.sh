@@ -16,10 +16,8 @@ while :; do
     esac
     shift
 done
-case "${1:-}" in
-'' | --rounds=[1-9]*) ;;
-*) fail "unknown option $1; there are --contrib, --document and --rounds=N" ;;
-esac
+check_options "$root/tools/benchmark/benchmark.cpp" "$@"
+[ "$operands" = 0 ] || fail "takes options alone (--help tells more)"
 document="${results#"$build"}"
 need $build_packages python3 ${document:+python3-matplotlib}
 [ -z "$contrib" ] || contrib=$(contrib_argument)

@@ -11,15 +11,11 @@ more_help() {
 
 . "$(dirname "$0")/helpers/lib.sh"
 
-operands=0
+check_options "$table" "$@"
 for argument in "$@"; do
     case "$argument" in
     --*=*) ;;
     -*) fail "$argument takes its value behind an equals sign, --option=value" ;;
-    *)
-        [ -e "$argument" ] || fail "there is no $argument"
-        operands=$((operands + 1))
-        ;;
     esac
 done
 case $operands in

@@ -17,7 +17,8 @@ while :; do
     shift
 done
 [ "$nonfree$contrib" != ON ] || fail "--nonfree needs --contrib"
-[ $# != 0 ] || fail "a folder of DATA is needed (--help tells more)"
+check_options "$root/tools/evaluation/main.cpp" "$@"
+[ "$operands" != 0 ] || fail "a folder of DATA is needed (--help tells more)"
 out="$root/results"
 previous=""
 for argument in "$@"; do

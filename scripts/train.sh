@@ -11,7 +11,8 @@ if [ "${1:-}" = --presets ]; then
     set -- --presets="$root/modules/iib/src/descriptor/presets.generated.hpp" "$@" "$data/tilde_webcam" \
         "$data/amos_daynight"
 fi
-[ $# != 0 ] || fail "a FOLDER to train on is needed (--help tells more)"
+check_options "$root/tools/training/train.cpp" "$@"
+[ "$operands" != 0 ] || fail "a FOLDER to train on is needed (--help tells more)"
 need $build_packages
 build_tools iib_train
 exec "$build/tools/training/iib_train" "$@"
