@@ -59,7 +59,7 @@ PERF_TEST_P(IIB_Refine, vga_300_matches, Step::all())
         points.push_back(keypoints[i].pt);
         moved.push_back(starts[i].pt);
     }
-    setNumThreads(1);
+    const Threads one(1);
     if (GetParam() == REFINE)
     {
         Mat points1, points2, covariances, similarities;
