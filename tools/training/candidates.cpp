@@ -14,14 +14,6 @@ using cv::iib::IIB;
 
 const int CHANNEL_GROUP = 4;  // the order of bits in a descriptor, see IIBDescriptorExtractor
 
-int countBits(int mask)
-{
-    int n = 0;
-    for (; mask; mask &= mask - 1)
-        n++;
-    return n;
-}
-
 int bitsPerQuad(int mapping)
 {
     // level 3 of one channel has 16 quads
@@ -79,7 +71,6 @@ void addQuads(const PoolParameters& p, CandidatePool& pool)
 //! All bits of boxes in the order of a descriptor, see IIBDescriptorExtractor::MAPPING_BOXES.
 void addBoxes(const PoolParameters& p, CandidatePool& pool)
 {
-    const int boxesInRow[] = {3, 5, 7, 9, 7};
     const struct
     {
         int kind, bit;
@@ -99,7 +90,7 @@ void addBoxes(const PoolParameters& p, CandidatePool& pool)
     };
     for (int level = 1; level <= p.granularity; level++)
     {
-        const int n = boxesInRow[level - 1];
+        const int n = quadsInRow(p.mapping, level);
         position = (position + 7) / 8 * 8;
         for (int row = 0; row + 1 < n; row++)
             for (int bit = 0; bit < 3; bit++)
@@ -122,6 +113,20 @@ bool CandidatePool::areNeighbours(const Candidate& a, const Candidate& b) const
     const int *p = quads[a.quad], *q = quads[b.quad];
     return a.mask == b.mask && p[0] == q[0] && p[1] == q[1] && std::abs(p[2] - q[2]) <= 1 &&
            std::abs(p[3] - q[3]) <= 1;
+}
+
+int countBits(int mask)
+{
+    int n = 0;
+    for (; mask; mask &= mask - 1)
+        n++;
+    return n;
+}
+
+int quadsInRow(int mapping, int level)
+{
+    const int boxes[] = {3, 5, 7, 9, 7};
+    return mapping == IIB::MAPPING_BOXES ? boxes[level - 1] : (1 << level) - 1;
 }
 
 CandidatePool makePool(const PoolParameters& p)

@@ -2,6 +2,9 @@
 
 #include "recipe.hpp"
 
+#include <array>
+#include <cstring>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -18,13 +21,27 @@ std::set<std::string> sceneNames(const std::vector<ImagePair>& pairs)
     return names;
 }
 
-std::string tableRows(const cv::Mat_<int>& quads)
+//! The selection as presetsHeader describes it, in lines of a string.
+std::string masksOf(const IIB& preset)
 {
-    std::string text;
-    for (int row = 0; row < quads.rows; row++)
-        text += (row % 7 == 0 ? "\n    " : " ") + cv::format("{%d,%d,%d,%d,%d},", quads(row, 0),
-                                                          quads(row, 1), quads(row, 2), quads(row, 3),
-                                                          quads(row, 4));
+    std::map<std::array<int, 4>, int> masks;
+    const cv::Mat_<int> quads = preset.getSelection();
+    for (int i = 0; i < quads.rows; i++)
+        masks[{{quads(i, 0), quads(i, 2), quads(i, 3), quads(i, 1)}}] = quads(i, 4);
+    std::string digits, text;
+    for (int level = 1; level <= preset.getGranularity(); level++)
+    {
+        const int n = quadsInRow(preset.getMapping(), level);
+        for (int row = 0; row < n; row++)
+            for (int column = 0; column < n; column++)
+                for (int channel = 0; channel < countBits(preset.getChannels()); channel++)
+                    digits += "0123456789abcdefghijklmnopqrstuv"[masks[{{level, row, column, channel}}]];
+    }
+    for (const char* run : {"z0000000000000000", "y00000000", "x0000", "w00"})
+        for (size_t at; (at = digits.find(run + 1)) != std::string::npos;)
+            digits.replace(at, std::strlen(run + 1), 1, *run);
+    for (size_t i = 0; i < digits.size(); i += 96)
+        text += "\n    \"" + digits.substr(i, 96) + "\"";
     return text;
 }
 
@@ -56,18 +73,20 @@ std::string presetsHeader(const std::vector<NamedExtractor>& presets, const std:
         names.insert(walk.scene + ", where points are detected");
     for (const std::string& name : names)
         out << "//   " << name << "\n";
-    out << "// A row a quad: level, channel, row, column, bit mask.\n\n";
+    out << "// For each level, row, column and channel a digit to base 32, the bit mask; w, x, y, z for 2, "
+           "4, 8, 16 of "
+           "zero.\n\n";
 
     std::ostringstream table;
     for (const NamedExtractor& preset : presets)
     {
-        const cv::Mat_<int> quads = preset.extractor->getSelection();
-        const std::string array = quads.empty() ? "nullptr" : preset.name + "_QUADS";
-        if (!quads.empty())
-            out << "static const uchar " << array << "[][5] = {" << tableRows(quads) << "\n};\n\n";
-        table << cv::format("    {%.3ff, %d, %d, %d, %s, %d},  // %s\n", preset.extractor->getScaleFactor(),
+        const bool all = preset.extractor->getSelection().empty();
+        const std::string masks = all ? "nullptr" : preset.name + "_MASKS";
+        if (!all)
+            out << "static const char " << masks << "[] =" << masksOf(*preset.extractor) << ";\n\n";
+        table << cv::format("    {%.3ff, %d, %d, %d, %s},  // %s\n", preset.extractor->getScaleFactor(),
                 preset.extractor->getGranularity(), preset.extractor->getChannels(),
-                preset.extractor->getMapping(), array.c_str(), quads.rows, preset.name.c_str());
+                preset.extractor->getMapping(), masks.c_str(), preset.name.c_str());
     }
     out << "static const LearnedSelection PRESETS[] = {\n" << table.str() << "};\n";
     return out.str();

@@ -3,6 +3,9 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../precomp.hpp"
+#include "boxes/kernels/boxes.hpp"
+
+#include <bitset>
 
 namespace cv {
 namespace iib {
@@ -13,11 +16,33 @@ struct LearnedSelection
 {
     float scale;  // of the region of support, against the scale factor that the user gives
     int granularity, channels, mapping;
-    const uchar (*quads)[5];  // null: all of them
-    int count;
+    const char* masks;  // null: all bits
 };
 
 #include "presets.generated.hpp"
+
+//! As setSelection takes it.
+Mat selectionOf(const LearnedSelection& p)
+{
+    const int channels = (int)std::bitset<32>((unsigned)p.channels).count();
+    std::vector<int> masks, quads;
+    for (const char* c = p.masks; *c; c++)
+        if (*c > 'v')
+            masks.resize(masks.size() + (2 << (*c - 'w')), 0);
+        else
+            masks.push_back(*c - (*c <= '9' ? '0' : 'a' - 10));
+    const int* mask = masks.data();
+    for (int level = 1; level <= p.granularity; level++)
+    {
+        const int n = p.mapping == IIB::MAPPING_BOXES ? BOX_GRIDS[level - 1].n : (1 << level) - 1;
+        for (int row = 0; row < n; row++)
+            for (int col = 0; col < n; col++)
+                for (int channel = 0; channel < channels; channel++, mask++)
+                    if (*mask)
+                        quads.insert(quads.end(), {level, channel, row, col, *mask});
+    }
+    return Mat(quads, true).reshape(1, (int)quads.size() / 5);
+}
 
 }  // namespace
 
@@ -30,13 +55,8 @@ Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::createPreset(int preset, flo
     const LearnedSelection& p = PRESETS[preset];
     const Ptr<IIBDescriptorExtractor> extractor =
             create(p.scale * scaleFactor, p.granularity, p.channels, p.mapping);
-    if (p.quads)
-    {
-        Mat_<int> selection(p.count, 5);
-        for (int i = 0; i < p.count; i++)
-            std::copy(p.quads[i], p.quads[i] + 5, selection[i]);
-        extractor->setSelection(selection);
-    }
+    if (p.masks)
+        extractor->setSelection(selectionOf(p));
     return extractor;
 }
 
