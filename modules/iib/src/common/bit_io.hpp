@@ -8,25 +8,13 @@
 
 #include "../precomp.hpp"
 
-// Asks the compiler: OpenCV's generated headers know a big-endian machine only if its build was told.
-#if defined __BYTE_ORDER__ && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-#define IIB_BIG_ENDIAN 1
-#else
-#define IIB_BIG_ENDIAN 0
-#endif
-
 namespace cv {
 namespace iib {
 
 //! Stores the lowest bytes of a word, the lowest first.
 inline void storeBytes(uint64 word, int bytes, uchar* out)
 {
-#if IIB_BIG_ENDIAN
-    for (int i = 0; i < bytes; i++)
-        out[i] = (uchar)(word >> 8 * i);
-#else
-    memcpy(out, &word, bytes);
-#endif
+    memcpy(out, &word, bytes);  // of a little-endian machine, as no other is built for
 }
 
 /** Appends bits, the lowest bit of the lowest byte first. Keeps those of the last, unfinished word back:

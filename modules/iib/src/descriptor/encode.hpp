@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "workspace.hpp"
+#include "steps.hpp"
 
 namespace cv {
 namespace iib {

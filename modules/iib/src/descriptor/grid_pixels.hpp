@@ -5,8 +5,7 @@
 #pragma once
 
 #include "bands.hpp"
-#include "keypoint_batches.hpp"
-#include "workspace.hpp"
+#include "steps.hpp"
 
 namespace cv {
 namespace iib {

@@ -4,11 +4,33 @@
 
 #pragma once
 
-#include "boxes/plan.hpp"
-#include "kernels/kernels.hpp"
+#include "boxes/kernels/boxes.hpp"
+#include "parameters.hpp"
 
 namespace cv {
 namespace iib {
+
+//! Which boxes and comparisons a descriptor of MAPPING_BOXES needs.
+struct BoxPlan
+{
+    //! One that has any bit.
+    struct Level
+    {
+        BoxGridShape shape;
+        double side;                  //!< of a box, in sides of the region
+        std::vector<double> centres;  //!< along either axis, in sides of the region from its centre
+        int offset;                   //!< of the first bit in the descriptor
+        ChosenBits chosen;
+    };
+
+    std::vector<Level> levels;
+    double edges
+            [2][MAX_BOX_PLACES];  //!< where boxes begin and end, in the unit of centres; unused entries are 0
+
+    const BoxKernels& kernels;
+
+    BoxPlan() : edges(), kernels(boxKernels()) {}
+};
 
 //! Up to GROUP_CHANNELS channels, which go through the kernels together.
 struct ChannelGroup

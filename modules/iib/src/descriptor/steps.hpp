@@ -6,10 +6,38 @@
 
 #include "channels.hpp"
 #include "keypoint_batches.hpp"
-#include "workspace.hpp"
+#include "plan.hpp"
 
 namespace cv {
 namespace iib {
+
+//! Memory that one thread uses again for each batch of keypoints. What it holds means nothing between two batches.
+struct Workspace
+{
+    static constexpr int MAX_PACKS = 1 + (MAX_EXTRA_CHANNELS + GROUP_CHANNELS - 1) / GROUP_CHANNELS;
+
+    ScratchMemory channelRows, ring;
+    ScratchMemory sourceRows[MAX_PACKS], sourcePixels[MAX_PACKS], planes;  //!< of rotated regions
+    CellGrid<ushort> shortSums;                                            //!< over the finest cells
+    CellGrid<unsigned> sums[MAX_GRANULARITY + 1];                          //!< over the cells of each level
+    CellGrid<double> doubleSums[MAX_GRANULARITY + 1];
+    CellGrid<unsigned> samples;  //!< sums of rotated regions, over cells as fine as their grids
+    CellGrid<ushort>& sumsOf(ushort, int) { return shortSums; }
+    CellGrid<unsigned>& sumsOf(unsigned, int level) { return sums[level]; }
+    CellGrid<double>& sumsOf(double, int level) { return doubleSums[level]; }
+    ScratchMemory boxMeans;
+    BoxPlaces boxPlaces;
+};
+
+//! Calls work(job, workspace) for each of `count` jobs, in parallel.
+template <typename Work> void parallelJobs(int count, const Work& work)
+{
+    parallel_for_(Range(0, count), [&](const Range& range) {
+        Workspace workspace;
+        for (int job = range.start; job < range.end; job++)
+            work(job, workspace);
+    });
+}
 
 /* The steps of describing keypoints, each in a source of its own. Regions are those of all keypoints of the image, as are the
 rows of descriptors. */
