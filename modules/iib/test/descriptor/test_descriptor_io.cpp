@@ -98,5 +98,130 @@ TEST(IIB_IO, foreign_and_damaged_nodes_throw_and_change_nothing)
     EXPECT_THROW(Algorithm::loadFromString<IIB>("%YAML:1.0\n---\nBRISK:\n   threshold: 30\n"), cv::Exception);
 }
 
+//! Every detector that a file can hold, none with its default parameters, but for SIFT, which tells none.
+std::vector<Ptr<Feature2D>> detectors()
+{
+    const Ptr<ORB> orb = ORB::create(321, 1.3f, 5, 17, 1, 3, ORB::FAST_SCORE, 25, 9);
+    return {orb, NormalizedDetector::create(orb, 7.5f),
+            NormalizedDetector::create(NormalizedDetector::create(orb))};
+}
+
+String parametersOf(const Ptr<Feature2D>& detector)
+{
+    const Ptr<IIB> iib = IIB::create();
+    iib->setDetector(detector);
+    FileStorage fs(".yml", FileStorage::WRITE | FileStorage::MEMORY);
+    iib->write(fs);
+    return fs.releaseAndGetString();
+}
+
+TEST(IIB_DetectorFile, a_loaded_extractor_has_the_detector)
+{
+    const Mat image = scene(Size(320, 240), 1);
+    for (const Ptr<Feature2D>& detector : detectors())
+    {
+        SCOPED_TRACE(detector->getDefaultName());
+        const String text = parametersOf(detector);
+        const Ptr<IIB> loaded = Algorithm::loadFromString<IIB>(text);
+        EXPECT_EQ(detector->getDefaultName(), loaded->getDetector()->getDefaultName());
+        EXPECT_EQ(text, parametersOf(loaded->getDetector()));
+
+        std::vector<KeyPoint> expected, actual;
+        detector->detect(image, expected);
+        loaded->detect(image, actual);
+        expectSameKeyPoints(expected, actual);
+    }
+}
+
+TEST(IIB_DetectorFile, reading_leaves_the_callers_detector_alone)
+{
+    const Ptr<ORB> mine = ORB::create(10);
+    const Ptr<IIB> iib = IIB::create();
+    iib->setDetector(mine);
+    const FileStorage fs(parametersOf(ORB::create(20)), FileStorage::READ | FileStorage::MEMORY);
+    iib->read(fs["IIB"]);
+    EXPECT_EQ(10, mine->getMaxFeatures());
+    EXPECT_EQ(20, iib->getDetector().dynamicCast<ORB>()->getMaxFeatures());
+}
+
+//! A detector that this library does not know.
+class OwnDetector : public Feature2D
+{
+public:
+    explicit OwnDetector(int parameter_ = 0, const String& name_ = "Own") : parameter(parameter_), name(name_)
+    {
+    }
+    String getDefaultName() const CV_OVERRIDE { return "Feature2D." + name; }
+    using Feature2D::write;
+    void write(FileStorage& fs) const CV_OVERRIDE { fs << "parameter" << parameter; }
+    using Feature2D::read;
+    void read(const FileNode& fn) CV_OVERRIDE { parameter = (int)fn["parameter"]; }
+
+    int parameter;
+    const String name;
+};
+
+TEST(IIB_DetectorFile, an_unknown_detector_reads_its_parameters_or_is_an_error)
+{
+    for (const bool wrapped : {false, true})
+    {
+        const Ptr<Feature2D> written = makePtr<OwnDetector>(5);
+        const String text =
+                parametersOf(wrapped ? Ptr<Feature2D>(NormalizedDetector::create(written)) : written);
+        expectError(Error::StsParseError, "Feature2D.Own", [&] { Algorithm::loadFromString<IIB>(text); });
+
+        const FileStorage fs(text, FileStorage::READ | FileStorage::MEMORY);
+        const Ptr<OwnDetector> mine = makePtr<OwnDetector>();
+        const Ptr<IIB> iib = IIB::create();
+        iib->setDetector(wrapped ? Ptr<Feature2D>(NormalizedDetector::create(mine)) : Ptr<Feature2D>(mine));
+        iib->read(fs["IIB"]);
+        EXPECT_EQ(5, mine->parameter);
+    }
+}
+
+// OpenCV's own detectors write nothing of themselves, or not all.
+TEST(IIB_DetectorFile, detectors_of_other_classes_are_set_before_reading)
+{
+    for (const Ptr<Feature2D>& detector : {Ptr<Feature2D>(SIFT::create()),
+                 Ptr<Feature2D>(GFTTDetector::create()), Ptr<Feature2D>(FastFeatureDetector::create())})
+    {
+        SCOPED_TRACE(detector->getDefaultName());
+        const String text = parametersOf(detector);
+        expectError(Error::StsParseError, "setDetector(), then read()",
+                [&] { Algorithm::loadFromString<IIB>(text); });
+        const FileStorage fs(text, FileStorage::READ | FileStorage::MEMORY);
+        const Ptr<IIB> iib = IIB::create();
+        iib->setDetector(detector);
+        iib->read(fs["IIB"]);
+        EXPECT_EQ(detector, iib->getDetector());
+    }
+}
+
+TEST(IIB_DetectorFile, another_class_of_the_same_name)
+{
+    const String text = parametersOf(makePtr<OwnDetector>(0, "ORB"));
+    expectError(Error::StsParseError, "the ORB detector's", [&] { Algorithm::loadFromString<IIB>(text); });
+}
+
+TEST(IIB_DetectorFile, damage_throws_and_changes_nothing)
+{
+    const String good = parametersOf(NormalizedDetector::create(ORB::create(321), 7.5f));
+    const char* replacements[][2] = {{"maxFeatures: 321", "maxFeatures: many # "},
+            {"maxFeatures: 321", "maxFeatures: 3.7 # "}, {"maxFeatures: 321", "maxFeatures: 1e300 # "},
+            {"maxFeatures", "minFeatures"}, {"class: \"Feature2D.ORB\"", "class: 5"},
+            {"class: \"Feature2D.ORB\"", "glass: \"Feature2D.ORB\""}, {"sigma: 7.5", "sigma: -7.5"},
+            {"sigma: 7.5", "sigma: wide # 7.5"}};
+    for (const auto& r : replacements)
+    {
+        const Ptr<Feature2D> mine = AKAZE::create();
+        const Ptr<IIB> iib = IIB::create(3.5f);
+        iib->setDetector(mine);
+        const FileStorage fs(replaced(good, r[0], r[1]), FileStorage::READ | FileStorage::MEMORY);
+        EXPECT_THROW(iib->read(fs["IIB"]), cv::Exception) << r[1];
+        EXPECT_EQ(mine, iib->getDetector()) << r[1];
+        EXPECT_EQ(3.5f, iib->getScaleFactor()) << r[1];
+    }
+}
+
 }  // namespace
 }  // namespace opencv_test

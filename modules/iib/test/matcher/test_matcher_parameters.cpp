@@ -100,5 +100,140 @@ TEST(IIB_MatcherParameters, thresholds_of_one_level_are_checked)
     EXPECT_TRUE(matcher->getThresholds().empty());
 }
 
+// HierarchicalMatcher::create() without level sizes, in place of BFMatcher().
+
+TEST(IIB_MatcherCreate, takes_the_width_of_the_first_codes)
+{
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create();
+    EXPECT_EQ(HierarchicalMatcher::EXACT, matcher->getMode());
+    EXPECT_TRUE(matcher->levelSizes().empty());
+    EXPECT_TRUE(matcher->empty());
+    matcher->add(std::vector<Mat>{Mat(), randomDescriptors(1, 9, 32)});
+    EXPECT_EQ(std::vector<int>(1, 32), matcher->levelSizes());
+    Matches actual;
+    matcher->knnMatch(randomDescriptors(2, 7, 32), actual, 2);
+    ASSERT_EQ(7u, actual.size());
+    for (const std::vector<DMatch>& row : actual)
+        EXPECT_EQ(1, row[0].imgIdx);
+    expectError(Error::StsUnmatchedSizes, "clear()", [&] { matcher->add(randomDescriptors(3, 4, 64)); });
+    EXPECT_THROW(matcher->knnMatch(randomDescriptors(3, 4, 64), actual, 1), cv::Exception);
+    EXPECT_EQ(2u, matcher->getTrainDescriptors().size());
+    matcher->clear();
+    EXPECT_TRUE(matcher->levelSizes().empty());
+    matcher->add(randomDescriptors(3, 4, 64));
+    EXPECT_EQ(std::vector<int>(1, 64), matcher->levelSizes());
+}
+
+TEST(IIB_MatcherCreate, any_width_in_calls_with_two_sets)
+{
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create();
+    DescriptorMatcher& base = *matcher;
+    for (int bytes : {32, 64, 61, 1})
+    {
+        const Mat queries = randomDescriptors(1, 20, bytes), trains = randomDescriptors(2, 30, bytes);
+        std::vector<DMatch> expected, actual, throughBase;
+        BFMatcher(NORM_HAMMING).match(queries, trains, expected);
+        matcher->match(queries, trains, actual);
+        base.match(queries, trains, throughBase);
+        expectEqual(Matches(1, expected), Matches(1, actual));
+        expectEqual(Matches(1, expected), Matches(1, throughBase));
+        Mat indices, distances;
+        matcher->knnMatchArrays(queries, trains, indices, distances, 2);
+        EXPECT_EQ(20, indices.rows);
+        EXPECT_THROW(matcher->match(queries, randomDescriptors(2, 3, bytes + 1), actual), cv::Exception);
+        if (bytes == 64)
+            matcher->add(trains);  // its own set has no say in calls with another
+    }
+    EXPECT_EQ(std::vector<int>(1, 64), matcher->levelSizes());
+}
+
+TEST(IIB_MatcherCreate, without_rows)
+{
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create();
+    Matches matches(3);
+    matcher->knnMatch(randomDescriptors(1, 5, 32), matches, 1);
+    expectEqual(Matches(5), matches);
+    matcher->add(std::vector<Mat>(2));
+    matcher->knnMatch(randomDescriptors(1, 5, 32), matches, 1, std::vector<Mat>(2));
+    expectEqual(Matches(5), matches);
+    matcher->knnMatch(randomDescriptors(1, 5, 32), Mat(), matches, 1);
+    expectEqual(Matches(5), matches);
+    matcher->knnMatch(Mat(), Mat(), matches, 1);
+    EXPECT_TRUE(matches.empty());
+    EXPECT_EQ(2u, matcher->getTrainDescriptors().size());
+    EXPECT_TRUE(matcher->clone().dynamicCast<HierarchicalMatcher>()->levelSizes().empty());
+    EXPECT_THROW(matcher->knnMatch(Mat(3, 8, CV_32F, Scalar(0)), matches, 1), cv::Exception);
+    const TemporaryFile file;
+    expectError(Error::StsBadArg, "nothing to save", [&] { matcher->saveIndex(file.name); });
+    matcher->add(randomDescriptors(1, 4, 16));
+    matcher->saveIndex(file.name);
+    const std::vector<Mat> images = HierarchicalMatcher::loadIndex(file.name)->getTrainDescriptors();
+    ASSERT_EQ(3u, images.size());
+    EXPECT_EQ(4, images[2].rows);
+}
+
+TEST(IIB_MatcherCreate, recommended)
+{
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
+    EXPECT_TRUE(matcher->levelSizes().empty());
+    EXPECT_EQ(HierarchicalMatcher::EXACT, matcher->getMode());
+    EXPECT_TRUE(matcher->getCrossCheck());
+    EXPECT_EQ(0.9f, matcher->getMaxRatio());
+    expectSameParameters(*matcher, *matcher->copy());
+
+    MatcherOracle oracle;
+    oracle.levelSizes.assign(1, 128);
+    oracle.images.push_back(randomDescriptors(2, 70, 128));
+    oracle.crossCheck = true;
+    oracle.maxRatio = 0.9f;
+    const Mat queries = randomDescriptors(1, 50, 128);
+    matcher->add(oracle.images);
+    expectKnnAsOracle(*matcher, oracle, queries, 1);
+    EXPECT_FALSE(oracle.knn(queries, 1).empty());
+
+    const TemporaryFile file;
+    matcher->saveIndex(file.name);
+    const Ptr<HierarchicalMatcher> loaded = HierarchicalMatcher::loadIndex(file.name);
+    expectSameParameters(*matcher, *loaded);
+    expectKnnAsOracle(*loaded, oracle, queries, 1);
+}
+
+// Algorithm's convention and DescriptorMatcher's, each read by the other's call.
+TEST(IIB_MatcherCreate, save_write_load_and_read_in_all_directions)
+{
+    const Ptr<HierarchicalMatcher> unusual =
+            HierarchicalMatcher::create({8, 24}, HierarchicalMatcher::ADAPTIVE, 0.3f, true);
+    unusual->setMaxRatio(0.75f);
+    for (const Ptr<HierarchicalMatcher>& matcher :
+            {unusual, HierarchicalMatcher::create(), HierarchicalMatcher::createRecommended()})
+        for (const char* extension : {".yml", ".xml", ".json"})
+            for (bool save : {false, true})
+            {
+                SCOPED_TRACE(format("%s, save %d", extension, save));
+                const TemporaryFile file(extension);
+                if (save)
+                    matcher->save(file.name);
+                else
+                    matcher->write(file.name);
+                const Ptr<HierarchicalMatcher> loaded = Algorithm::load<HierarchicalMatcher>(file.name);
+                ASSERT_FALSE(!loaded);
+                expectSameParameters(*matcher, *loaded);
+                const Ptr<HierarchicalMatcher> parsed =
+                        Algorithm::loadFromString<HierarchicalMatcher>(file.read());
+                ASSERT_FALSE(!parsed);
+                expectSameParameters(*matcher, *parsed);
+                const Ptr<HierarchicalMatcher> other = HierarchicalMatcher::create({4});
+                other->read(file.name);
+                expectSameParameters(*matcher, *other);
+                if (save)
+                    expectSameParameters(*matcher,
+                            *Algorithm::load<HierarchicalMatcher>(file.name, "HierarchicalMatcher"));
+            }
+    EXPECT_THROW(Algorithm::load<HierarchicalMatcher>("missing.yml"), cv::Exception);
+    expectError(Error::StsParseError, "BRISK", [] {
+        Algorithm::loadFromString<HierarchicalMatcher>("%YAML:1.0\n---\nBRISK:\n   octaves: 3\n");
+    });
+}
+
 }  // namespace
 }  // namespace opencv_test

@@ -11,7 +11,6 @@
 #include <map>
 
 #include "../../src/descriptor/kernels/kernels.hpp"
-#include "box_oracle.hpp"
 
 namespace oracle {
 

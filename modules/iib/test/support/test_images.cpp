@@ -3,7 +3,6 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "test_images.hpp"
-#include "box_oracle.hpp"
 #include "descriptor_oracle.hpp"
 
 #include <fstream>
