@@ -99,7 +99,8 @@ target_link_libraries(index opencv_iib_index)
     fragment = block('doc/guide.md', 'cpp', 'BFMatcher::create')
     compile_('fragment.cpp', '#include <opencv2/iib.hpp>\nvoid fragment();\nvoid fragment()\n{\n%s}\n' % fragment, '-fsyntax-only')
     for name, (arguments, printed) in TUTORIALS.items():
-        compile_(name + '.cpp', block('modules/iib/tutorials/iib_%s.markdown' % name, 'cpp', 'int main'))
+        page, = ROOT.glob('modules/*/tutorials/iib_%s.markdown' % name)
+        compile_(name + '.cpp', block(page, 'cpp', 'int main'))
         if arguments is not None:
             run(work / name, *arguments, prints=printed)
     if not (work / 'pose.png').exists():
