@@ -3,21 +3,12 @@ set(CMAKE_CXX_STANDARD 11)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 
-# A fused multiply-add rounds once instead of twice and would change bits of the descriptor; -ffast-math in the user's
-# flags would do so too, and let NaN through all checks.
+include("${CMAKE_CURRENT_LIST_DIR}/../modules/iib/cmake/flags.cmake")
+set(IIB_FLAGS ${IIB_REQUIRED_FLAGS})
 if(MSVC)
-  set(IIB_BIT_FLAGS /fp:strict)
   set(IIB_WARNINGS /W3 /utf-8 /bigobj)
 else()
-  set(IIB_BIT_FLAGS -fno-fast-math -ffp-contract=off)
   set(IIB_WARNINGS -Wall -Wextra -Wshadow -Wmissing-declarations)
-endif()
-set(IIB_FLAGS ${IIB_BIT_FLAGS})
-if(CMAKE_SIZEOF_VOID_P EQUAL 4)
-  add_compile_definitions(_FILE_OFFSET_BITS=64)  # else files with large numbers on their file system cannot be seen
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # GCC 12 takes two shorts in a word for one number where it multiplies and shifts
-    add_compile_options(-fno-tree-vectorize)
-  endif()
 endif()
 
 # The kernels add numbers in neighbouring lanes by shifts of wider lanes: other bits where the high byte comes first.

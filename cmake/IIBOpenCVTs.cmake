@@ -18,7 +18,7 @@ else()
   set(cache "$ENV{HOME}/.cache/opencv_iib")
 endif()
 # Not under test: without sanitizers, so that one build of it serves all.
-string(REPLACE ";" " " flags "${CMAKE_CXX_FLAGS} ${IIB_BIT_FLAGS}")
+string(REPLACE ";" " " flags "${CMAKE_CXX_FLAGS} ${IIB_REQUIRED_FLAGS}")
 file(SHA1 "${PROJECT_SOURCE_DIR}/cmake/ts/CMakeLists.txt" recipe)
 string(SHA1 key "${OPENCV_SOURCE_DIR} ${OpenCV_VERSION} ${CMAKE_CXX_COMPILER} ${CMAKE_CXX_COMPILER_VERSION} ${flags} ${recipe}")
 string(SUBSTRING ${key} 0 12 key)

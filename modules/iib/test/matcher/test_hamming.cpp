@@ -140,7 +140,9 @@ TEST(IIB_Hamming, nearest_as_the_naive_loop)
                     if (masked)
                         mask = randomMask(5, mask.rows, mask.cols, 0.5);
                     const MatchKey start = before ? matchKey(bytes * 4, 0) : NO_MATCH;
-                    const size_t firstQuery = 1000, firstTrain = (size_t)1 << 33;
+                    const size_t firstQuery = 1000,  // and a number that takes more than an int
+                            firstTrain = (size_t)std::min<uint64>(
+                                    (uint64)1 << 33, std::numeric_limits<size_t>::max() / 2);
                     std::vector<MatchKey> ofQueries(queryCount, start), ofTrains(rows, start),
                             expectedOfQueries = ofQueries, expectedOfTrains = ofTrains;
                     for (int q = 0; q < queryCount; q++)

@@ -64,11 +64,11 @@ TEST(IIB_MatcherParameters, damaged_values_throw_and_are_named)
     }
 }
 
-// Unless OpenCV cuts them to 32 bits before anyone can see it.
+// Unless OpenCV makes other numbers of them, in 32 bits, before anyone can see it.
 TEST(IIB_MatcherParameters, whole_numbers_beyond_32_bits)
 {
     const FileStorage probe("%YAML:1.0\n---\nnumber: 4294967304\n", FileStorage::READ | FileStorage::MEMORY);
-    if ((double)probe["number"] == 8)
+    if ((double)probe["number"] != 4294967304.)
         return;
     expectError(
             Error::StsParseError, "levelSizes", [] { readText(replaced(GOOD, "[ 8,", "[ 4294967304,")); });

@@ -1,0 +1,14 @@
+# IIB_REQUIRED_FLAGS: what the compiler must be told in the stand-alone build and in OpenCV's own, whatever the user says.
+# A fused multiply-add rounds once instead of twice and would change bits of the descriptor; -ffast-math in the user's flags
+# (ENABLE_FAST_MATH in OpenCV's) would do so too, and let NaN through all checks.
+if(MSVC)
+  set(IIB_REQUIRED_FLAGS /fp:strict)
+else()
+  set(IIB_REQUIRED_FLAGS -fno-fast-math -ffp-contract=off)
+endif()
+if(CMAKE_SIZEOF_VOID_P EQUAL 4)
+  list(APPEND IIB_REQUIRED_FLAGS -D_FILE_OFFSET_BITS=64)  # else files with large numbers on their file system cannot be seen
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # GCC 12 takes two shorts in a word for one number where it multiplies and shifts
+    list(APPEND IIB_REQUIRED_FLAGS -fno-tree-vectorize)
+  endif()
+endif()
