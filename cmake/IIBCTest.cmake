@@ -94,7 +94,7 @@ if(UNIX AND NOT APPLE AND TARGET opencv_iib_geometry)  # which the package has, 
 endif()
 if(UNIX AND NOT APPLE)
   set(symbol_test "-DNM=${CMAKE_NM}" "-DREADELF=${CMAKE_READELF}" "-DVERSION=${PROJECT_VERSION}"
-    "-DCHANGELOG=${PROJECT_SOURCE_DIR}/CHANGELOG.md" -P "${PROJECT_SOURCE_DIR}/cmake/SymbolTest.cmake")
+    "-DROOT=${PROJECT_SOURCE_DIR}" -P "${PROJECT_SOURCE_DIR}/cmake/SymbolTest.cmake")
   add_test(NAME symbols COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib>" ${symbol_test})
   add_test(NAME symbols-index COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib_index>" ${symbol_test})
   add_test(NAME symbols-geometry COMMAND "${CMAKE_COMMAND}" "-DLIBRARY=$<TARGET_FILE:opencv_iib_geometry>" ${symbol_test})

@@ -1,5 +1,5 @@
-# The dynamic symbols of LIBRARY, one of opencv_iib, opencv_iib_index and opencv_iib_geometry, are those of the API and of what iib_index builds on alone, its soname and changelog agree on the version, and it is hardened.
-# cmake -DLIBRARY=<file> -DNM=<nm> -DREADELF=<readelf> -DVERSION=<x.y.z> -DCHANGELOG=<file> -P SymbolTest.cmake
+# The dynamic symbols of LIBRARY, one of opencv_iib, opencv_iib_index and opencv_iib_geometry, are those of the API and of what iib_index builds on alone, its soname and what names the version in ROOT agree on it, and it is hardened.
+# cmake -DLIBRARY=<file> -DNM=<nm> -DREADELF=<readelf> -DVERSION=<x.y.z> -DROOT=<repository> -P SymbolTest.cmake
 # Without VERSION, of a library that OpenCV's own build made: only its symbols, and none of the standard library's
 # templates, which OpenCV's build lets through as weak ones.
 execute_process(COMMAND "${NM}" -DC --defined-only "${LIBRARY}" OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
@@ -42,7 +42,12 @@ execute_process(COMMAND "${NM}" -D --undefined-only "${LIBRARY}" OUTPUT_VARIABLE
 if(NOT needed MATCHES "__stack_chk_fail")
   message(SEND_ERROR "${LIBRARY} is not compiled with -fstack-protector-strong")
 endif()
-file(READ "${CHANGELOG}" changelog)
-if(NOT changelog MATCHES "\n## ${VERSION}[ \n]")
-  message(SEND_ERROR "${CHANGELOG} says nothing of version ${VERSION}")
-endif()
+foreach(place "CHANGELOG.md:## ${VERSION} " "CITATION.cff:version: ${VERSION}\n" "debian/changelog:(${VERSION}) "
+    "debian/control:Package: libopencv-iib${soversion}\n")
+  string(REGEX MATCH "^([^:]*):(.*)" place "${place}")
+  file(READ "${ROOT}/${CMAKE_MATCH_1}" text)
+  string(FIND "${text}" "${CMAKE_MATCH_2}" at)
+  if(at EQUAL -1)
+    message(SEND_ERROR "${CMAKE_MATCH_1} says nothing of version ${VERSION}")
+  endif()
+endforeach()

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Builds the Debian packages libopencv-iib0.1, libopencv-iib-dev and opencv-iib-tools in build/debian from a clean copy of what git knows,
-# and checks them with lintian; an error of lintian is one here.
+# Builds the Debian packages of debian/control in build/debian from a clean copy of what git knows, and checks them with
+# lintian; an error of lintian is one here.
 . "$(dirname "$0")/lib.sh"
 
 [ $# = 0 ] || fail "takes no argument"
