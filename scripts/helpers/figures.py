@@ -411,7 +411,6 @@ PAGES = {'doc/poses.svg': (pose_bars,),
          'doc/scale.md': (mapped_index, flat_search),
          'doc/paper.md': (matching_modes, operations, memory, learned_points, paper_orders, localization_systems, localization_setups),
          'doc/localization/index.html': (localization_lights,),
-         'apps/localization/report/page.html.j2': (localization_lights,),
          'doc/results/README.md': (pose_methods, elsewhere, detected_points)}
 
 

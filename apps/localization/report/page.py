@@ -11,6 +11,7 @@ import json
 import math
 import os
 import pathlib
+import sys
 import tempfile
 
 import cv2
@@ -22,6 +23,9 @@ import measure
 import opencv_iib
 
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.append(str(HERE.parents[2] / 'scripts/helpers'))
+import figures  # noqa: E402
+
 LIGHTS = ('night', 'dusk', 'winter', 'overcast', 'fog', 'morning', 'wet')
 FRAME, VIDEO, RATE = (400, 300), (640, 240), 4  # pixels of an image in a picture, of the video (noise makes it large); frames a second
 UNKNOWN = 200  # photographs of other places
@@ -128,7 +132,8 @@ def write_page(out, results, world, pictures):
     by_light = [[row for row in results['rows'] if row['place'] == 'street' and row['light'] == light] for light in results['lights']]
     text = environment.get_template('page.html.j2').render(
         results, by_light=by_light, charts=[c for c in map(chart, by_light) if c], worst=worst(results), share=share, world=world,
-        pictures=pictures, size=CHART, photographs=sorted({row['place'] for row in results['rows']} - {'street', 'every 2', 'every 4', 'program'}))
+        pictures=pictures, size=CHART, setups=figures.localization_lights(),
+        photographs=sorted({row['place'] for row in results['rows']} - {'street', 'every 2', 'every 4', 'program'}))
     (out / 'index.html').write_text(text, encoding='utf-8')
 
 
