@@ -30,59 +30,68 @@ Mat preparedImage(InputArray image, int number)
     return preparedForAlignment(normalizeLocally(integerMap(pixels), NORMALIZATION_SIGMA));
 }
 
-const KeyPoint& keypointOf(const std::vector<KeyPoint>& keypoints, int index, int image)
+void checkIndex(const std::vector<KeyPoint>& keypoints, int index, int image)
 {
     if (index < 0 || (size_t)index >= keypoints.size())
         CV_Error(Error::StsOutOfRange, format("a match is of keypoint %d of image %d, which has %d", index,
                                                image, (int)keypoints.size()));
-    return keypoints[index];
-}
-
-/* Neighbouring samples are farther apart than a pixel only if that is by little, in the second image of a pair of about the
- same size. */
-Refinement begun(const DMatch& match, double ratio, double least)
-{
-    return {match, std::min(1., LARGEST_SPACING / ratio), LARGEST_MOVE * std::max(ratio, 1.), least, {},
-            PatchAlignment()};
 }
 
 }  // namespace
 
+//! Where a match begins: what PatchAligner asks for.
+struct MatchRefiner::Start
+{
+    double unit, limit, least;
+    PatchPlaces places;
+
+    /* Neighbouring samples are farther apart than a pixel only if that is by little, in the second image of a pair of about
+     the same size. */
+    Start(double ratio, double leastSimilarity)
+        : unit(std::min(1., LARGEST_SPACING / ratio)), limit(LARGEST_MOVE * std::max(ratio, 1.)),
+          least(leastSimilarity)
+    {
+    }
+};
+
 MatchRefiner::MatchRefiner(InputArray image1, const std::vector<KeyPoint>& keypoints1, InputArray image2,
-        const std::vector<KeyPoint>& keypoints2)
+        const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches)
     : first(keypoints1), second(keypoints2)
 {
     checkKeyPoints(first, true);
     checkKeyPoints(second, true);
+    for (const DMatch& match : matches)
+    {
+        checkIndex(first, match.queryIdx, 1);
+        checkIndex(second, match.trainIdx, 2);
+    }
     prepared1 = preparedImage(image1, 1);
     prepared2 = preparedImage(image2, 2);
 }
 
 //! Sizes of keypoints err by more than a tenth, so that patches may also be of the same size.
-Refinement MatchRefiner::begin(const DMatch& match) const
+MatchRefiner::Start MatchRefiner::begin(const Refinement& refinement) const
 {
-    const KeyPoint& a = keypointOf(first, match.queryIdx, 1);
-    const KeyPoint& b = keypointOf(second, match.trainIdx, 2);
+    const KeyPoint &a = first[refinement.match.queryIdx], &b = second[refinement.match.trainIdx];
+    const Vec2d place(b.pt.x, b.pt.y);
+    if (refinement.guided)
+    {
+        Start start(std::sqrt(std::abs(determinant(refinement.map))), LEAST_WITH_MAP);
+        start.places.add({place, refinement.map * start.unit});
+        return start;
+    }
     const double ratio = (double)b.size / a.size;
+    Start start(ratio, 0);
     const bool rotated = a.angle >= 0 && b.angle >= 0;
     const Rotation rotation(rotated ? b.angle - a.angle : 0);
-    Refinement result = begun(match, ratio, 0);
-    for (double scale : {ratio, 1.})
-    {
-        if (!result.starts.empty() && std::max(ratio, 1 / ratio) < SAME_SIZE)
-            break;
-        const double c = scale * result.unit * rotation.cosine, s = scale * result.unit * rotation.sine;
-        result.starts.push_back({Vec2d(b.pt.x, b.pt.y), Matx22d(c, -s, s, c)});
-    }
-    return result;
-}
-
-Refinement MatchRefiner::begin(const DMatch& match, const Matx22d& map) const
-{
-    const Point2f p = second[match.trainIdx].pt;
-    Refinement result = begun(match, std::sqrt(std::abs(determinant(map))), LEAST_WITH_MAP);
-    result.starts.push_back({Vec2d(p.x, p.y), map * result.unit});
-    return result;
+    const auto add = [&](double scale) {
+        const double c = scale * start.unit * rotation.cosine, s = scale * start.unit * rotation.sine;
+        start.places.add({place, Matx22d(c, -s, s, c)});
+    };
+    add(ratio);
+    if (std::max(ratio, 1 / ratio) >= SAME_SIZE)
+        add(1);
+    return start;
 }
 
 bool MatchRefiner::isInside(const KeyPoint& keypoint, const Mat& image)
@@ -103,14 +112,15 @@ void MatchRefiner::refine(std::vector<Refinement>& matches) const
                 {
                     Refinement& r = matches[i];
                     const int query = r.match.queryIdx;
-                    r.found = {false, r.starts[0].centre, -1, Matx22d::eye(), Matx22d::eye()};
+                    const Start start = begin(r);
+                    r.found = {false, start.places.begin()->centre, -1, Matx22d::eye(), Matx22d::eye()};
                     if (!seesFirst(query) || !seesSecond(r.match.trainIdx))
                         continue;
-                    if (query != taken || r.unit != unit)
-                        aligner.take(prepared1, Vec2d(first[query].pt.x, first[query].pt.y), r.unit);
+                    if (query != taken || start.unit != unit)
+                        aligner.take(prepared1, Vec2d(first[query].pt.x, first[query].pt.y), start.unit);
                     taken = query;
-                    unit = r.unit;
-                    r.found = aligner.align(prepared2, r.starts, r.limit, r.least);
+                    unit = start.unit;
+                    r.found = aligner.align(prepared2, start.places, start.limit, start.least);
                 }
             },
             matches.size() / MATCHES_OF_A_THREAD);

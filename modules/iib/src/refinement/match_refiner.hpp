@@ -13,23 +13,22 @@ namespace iib {
 struct Refinement
 {
     DMatch match;
-    double unit, limit, least;       //!< of PatchAligner
-    std::vector<PatchPlace> starts;  //!< in the second image: all that are tried
+    bool guided;  //!< begins with a map
+    Matx22d map;  //!< of the surroundings, from the first image to the second
     PatchAlignment found;
+
+    //! Begins where the keypoints' angles and sizes say.
+    explicit Refinement(const DMatch& match_) : match(match_), guided(false) {}
+    Refinement(const DMatch& match_, const Matx22d& map_) : match(match_), guided(true), map(map_) {}
 };
 
 //! Refines matches of two images' keypoints by least-squares matching.
 class MatchRefiner
 {
 public:
+    //! Refuses what is not a match of these keypoints.
     MatchRefiner(InputArray image1, const std::vector<KeyPoint>& keypoints1, InputArray image2,
-            const std::vector<KeyPoint>& keypoints2);
-
-    //! Begins where the keypoints' angles and sizes say. Refuses what is not a match of these keypoints.
-    Refinement begin(const DMatch& match) const;
-
-    //! Begins with a linear map of the surroundings from the first image to the second.
-    Refinement begin(const DMatch& match, const Matx22d& map) const;
+            const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches);
 
     void refine(std::vector<Refinement>& matches) const;
 
@@ -38,6 +37,9 @@ public:
     bool seesSecond(size_t index) const { return isInside(second[index], prepared2); }
 
 private:
+    struct Start;
+
+    Start begin(const Refinement& refinement) const;
     static bool isInside(const KeyPoint& keypoint, const Mat& image);
 
     const std::vector<KeyPoint>&first, &second;

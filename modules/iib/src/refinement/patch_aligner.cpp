@@ -293,10 +293,9 @@ void PatchAligner::take(const Mat& image1, const Vec2d& point, double unitOfPatc
     usable = solveTemplate();
 }
 
-PatchAlignment PatchAligner::align(
-        const Mat& image2, const std::vector<PatchPlace>& starts, double limit, double least)
+PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts, double limit, double least)
 {
-    const Vec2d detected = starts[0].centre;
+    const Vec2d detected = starts.begin()->centre;
     const PatchAlignment refused = {false, detected, -1, Matx22d::eye(), Matx22d::eye()};
     if (!usable)
         return refused;
@@ -305,7 +304,7 @@ PatchAlignment PatchAligner::align(
     };
     readWindow(image2, *std::max_element(starts.begin(), starts.end(), smaller), limit + DEFORMATION_MARGIN);
     double first = least;
-    PatchPlace place = starts[0];
+    PatchPlace place = *starts.begin();
     Moments moments = Moments();
     for (const PatchPlace& start : starts)
     {

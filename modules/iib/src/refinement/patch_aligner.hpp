@@ -17,6 +17,19 @@ struct PatchPlace
     Matx22d map;
 };
 
+//! One or two.
+class PatchPlaces
+{
+public:
+    void add(const PatchPlace& place) { places[count++] = place; }
+    const PatchPlace* begin() const { return places; }
+    const PatchPlace* end() const { return places + count; }
+
+private:
+    PatchPlace places[2];
+    int count = 0;
+};
+
 struct PatchAlignment
 {
     bool accepted;
@@ -44,8 +57,7 @@ public:
      @param starts places of the point inside the image; the one that agrees best is taken.
      @param limit pixels that the point may move.
      @param least similarity that the start is above, 0 or more. */
-    PatchAlignment align(
-            const Mat& image2, const std::vector<PatchPlace>& starts, double limit, double least);
+    PatchAlignment align(const Mat& image2, const PatchPlaces& starts, double limit, double least);
 
 private:
     struct Moments

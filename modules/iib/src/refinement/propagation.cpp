@@ -128,8 +128,7 @@ void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoin
                 const Seed& seed = seeds[k];
                 for (int t : ofSecond.find(seed.predict(point), seed.tolerance(point), CANDIDATES))
                     if (!matched2[t])
-                        tried.push_back(refiner.begin(
-                                DMatch((int)q, t, std::numeric_limits<float>::max()), seed.map));
+                        tried.emplace_back(DMatch((int)q, t, std::numeric_limits<float>::max()), seed.map);
             }
         }
         refiner.refine(tried);

@@ -35,9 +35,7 @@ void write(const std::vector<Refinement>& matches, const std::vector<KeyPoint>& 
 
 std::vector<Refinement> refined(const MatchRefiner& refiner, const std::vector<DMatch>& matches)
 {
-    std::vector<Refinement> all;
-    for (const DMatch& match : matches)
-        all.push_back(refiner.begin(match));
+    std::vector<Refinement> all(matches.begin(), matches.end());
     refiner.refine(all);
     return all;
 }
@@ -50,7 +48,7 @@ void refineMatches(InputArray image1, const std::vector<KeyPoint>& keypoints1, I
 {
     std::vector<Refinement> all;
     if (!matches1to2.empty())
-        all = refined(MatchRefiner(image1, keypoints1, image2, keypoints2), matches1to2);
+        all = refined(MatchRefiner(image1, keypoints1, image2, keypoints2, matches1to2), matches1to2);
     write(all, keypoints1, points1, points2, covariances, similarities);
 }
 
@@ -61,7 +59,7 @@ void propagateMatches(InputArray image1, const std::vector<KeyPoint>& keypoints1
     std::vector<Refinement> all;
     if (!matches1to2.empty())
     {
-        const MatchRefiner refiner(image1, keypoints1, image2, keypoints2);
+        const MatchRefiner refiner(image1, keypoints1, image2, keypoints2, matches1to2);
         all = refined(refiner, matches1to2);
         propagate(refiner, keypoints1, keypoints2, all);
         for (size_t i = matches1to2.size(); i < all.size(); i++)
