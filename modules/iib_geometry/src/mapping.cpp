@@ -136,10 +136,10 @@ Map makeMap(const std::string& model, const cv::iib::ImageReader& read, const cv
     }
     describe(map.images, read, describerOf(options.orbAndAkaze, options.points), steps);
     const MatchedRays matched = matchPairs(map.images, pairs, [&] { steps.step(); });
-    if (double(matched.links.size()) <= LEAST_FITTING * double(matched.matches))
+    if (double(matched.fitting) <= LEAST_FITTING * double(matched.matches))
         CV_Error(cv::Error::StsError,
                 cv::format("only %d of %d matches fit the poses: is this the model of these images?",
-                        int(matched.links.size()), int(matched.matches)));
+                        int(matched.fitting), int(matched.matches)));
     triangulate(map, matched.rays, matched.links);
     if (map.points.empty())
         CV_Error(cv::Error::StsError, model + ": no point was seen from two places");

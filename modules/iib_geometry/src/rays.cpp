@@ -2,6 +2,7 @@
 
 #include "rays.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include "features.hpp"
@@ -11,6 +12,7 @@ namespace iib_localization {
 namespace {
 
 constexpr double MAX_ERROR = 4;  // pixels, of a match from its epipolar line
+constexpr double NEAR = 2;       // pixels, within which matches are looked for once more
 constexpr double FAR = .01;      // radians between rays that do not tell on which side they meet
 
 //! Whether two rays lie in one plane with both cameras, and meet before them.
@@ -22,6 +24,19 @@ bool fitting(const Ray& a, const Ray& b)
     return a.scale * product < MAX_ERROR * cv::norm(planeA) &&
            b.scale * product < MAX_ERROR * cv::norm(planeB) &&
            (cv::norm(across) < FAR || (across.dot(planeA) > 0 && across.dot(planeB) > 0));
+}
+
+//! Which rays of two images (rows and columns) may show the same: those in one plane with both cameras.
+cv::Mat nearEpipolar(const std::vector<Ray>& a, const std::vector<Ray>& b)
+{
+    cv::Mat_<float> directions(int(a.size()), 3), planes(int(b.size()), 3);
+    for (size_t i = 0; i < a.size(); i++)
+        cv::Mat(cv::Vec3f(a[i].direction)).reshape(1, 1).copyTo(directions.row(int(i)));
+    for (size_t i = 0; i < b.size(); i++)
+        cv::Mat(cv::Vec3f(cv::normalize((b[i].centre - a[0].centre).cross(b[i].direction))))
+                .reshape(1, 1)
+                .copyTo(planes.row(int(i)));
+    return cv::abs(directions * planes.t()) < NEAR / a[0].scale;
 }
 
 }  // namespace
@@ -52,13 +67,6 @@ MatchedRays matchPairs(const std::vector<MapImage>& images,
         const std::vector<std::pair<size_t, size_t>>& pairs, const std::function<void()>& step)
 {
     const cv::Ptr<cv::iib::HierarchicalMatcher> matcher = cv::iib::HierarchicalMatcher::createRecommended();
-    std::vector<std::vector<cv::DMatch>> matches(pairs.size());
-    inParallel(pairs.size(), [&](size_t n) {
-        const cv::Mat &a = images[pairs[n].first].codes, &b = images[pairs[n].second].codes;
-        if (!a.empty() && !b.empty())
-            matcher->match(a, b, matches[n]);
-        step();
-    });
     MatchedRays found;
     std::set<size_t> involved;
     for (const auto& [a, b] : pairs)
@@ -70,15 +78,40 @@ MatchedRays matchPairs(const std::vector<MapImage>& images,
         const std::vector<Ray> own = raysOf(i, images[i]);
         found.rays.insert(found.rays.end(), own.begin(), own.end());
     }
-    for (size_t n = 0; n < pairs.size(); n++)
-        for (const cv::DMatch& m : matches[n])
+    std::vector<std::vector<Link>> links(pairs.size());
+    std::vector<std::pair<size_t, size_t>> counts(
+            pairs.size());  // of matches that the poses did not guide, and that fit
+    inParallel(pairs.size(), [&](size_t n) {
+        const size_t a = pairs[n].first, b = pairs[n].second;
+        const cv::Mat &codes = images[a].codes, &others = images[b].codes;
+        const auto raysFrom = [&](size_t i) {
+            const auto begin = found.rays.begin() + ptrdiff_t(first[i]);
+            return std::vector<Ray>(begin, begin + images[i].codes.rows);
+        };
+        std::vector<cv::DMatch> matches, guided;
+        if (!codes.empty() && !others.empty())
         {
-            const size_t a = first[pairs[n].first] + size_t(m.queryIdx),
-                         b = first[pairs[n].second] + size_t(m.trainIdx);
-            found.matches++;
-            if (fitting(found.rays[a], found.rays[b]))
-                found.links.push_back({m.distance, a, b});
+            matcher->match(codes, others, matches);
+            matcher->match(codes, others, guided, nearEpipolar(raysFrom(a), raysFrom(b)));
         }
+        const auto linkOf = [&](const cv::DMatch& m) {
+            return Link{m.distance, first[a] + size_t(m.queryIdx), first[b] + size_t(m.trainIdx)};
+        };
+        const auto fits = [&](const cv::DMatch& m) {
+            return fitting(found.rays[linkOf(m).a], found.rays[linkOf(m).b]);
+        };
+        counts[n] = {matches.size(), size_t(std::count_if(matches.begin(), matches.end(), fits))};
+        for (const cv::DMatch& m : guided)
+            if (fits(m))
+                links[n].push_back(linkOf(m));
+        step();
+    });
+    for (size_t n = 0; n < pairs.size(); n++)
+    {
+        found.matches += counts[n].first;
+        found.fitting += counts[n].second;
+        found.links.insert(found.links.end(), links[n].begin(), links[n].end());
+    }
     return found;
 }
 

@@ -34,8 +34,9 @@ struct Link
 struct MatchedRays
 {
     std::vector<Ray> rays;    //!< of the images of all pairs
-    std::vector<Link> links;  //!< the matches that fit the images' poses
-    size_t matches = 0;       //!< those that do not, too
+    std::vector<Link> links;  //!< matches among what the images' poses have near each other
+    //! Of matches among everything, and of those the ones that fit the poses: few if the poses are not those of the images.
+    size_t matches = 0, fitting = 0;
 };
 
 //! Matches keypoints of pairs of images. @param step is called after each pair, by several threads.
