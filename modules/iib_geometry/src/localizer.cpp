@@ -3,6 +3,7 @@
 #include "localizer.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -23,11 +24,12 @@ constexpr double MAX_ERROR =
         .006;  // of the longer side: an inlier's distance from where the pose has its point
 constexpr double LEAST_INLIERS = 15, LEAST_SHARE = .02;  // in an unknown place a few matches agree by chance
 constexpr double MAX_BOUND = .1;  // of the distance to the points: three standard deviations of the place
-constexpr double REFINED =
-        .3;  // pixels: deviation of a keypoint that refineMatches placed, with that of its point
-constexpr double LEAST_DEVIATION = .7;  // of the deviations that are assumed
-constexpr int LINE_ROUNDS = 2;          // lines are looked for again after the first refinement by them
-constexpr size_t WORTH = 16;            // matches with an image of the map, for which they are refined
+// Pixels: deviation of a keypoint that refineMatches placed, with that of its point, before it is learned and at least.
+constexpr double REFINED = .3, LEAST_REFINED = .03;
+constexpr int LOOKS = 2;         // along the pose, for points that no keypoint matched
+constexpr double MAX_RATIO = 3;  // of the sizes at which two images see a point
+constexpr int LINE_ROUNDS = 2;   // lines are looked for again after the first refinement by them
+constexpr size_t WORTH = 16;     // matches with an image of the map, for which they are refined
 
 //! What sorts first, of so many.
 template <typename Before> std::vector<size_t> best(size_t all, size_t count, Before before)
@@ -98,6 +100,75 @@ void refineMatches(std::vector<Match>& matches, const Map& map, const Features& 
     }
 }
 
+/** Points of some of a map's images near where a pose has them: where the picture shows what that image does which sees the
+point at the most similar size.
+@param frame of the pose. */
+std::vector<Match> seenAlong(
+        const Map& map, const Found& found, const Lens& lens, const Frame& frame, const cv::Affine3d& pose)
+{
+    const cv::Mat& pixels = found.features.picture.pixels;
+    const cv::Rect2d inside(cv::Point2d(), cv::Size2d(pixels.size()) / found.features.picture.scale);
+    std::map<int, std::pair<double, Match>> best;  // of a point: logarithm of the ratio of sizes, place
+    for (size_t view : found.compared)
+    {
+        const MapImage& image = map.images[view];
+        const double zoom = lens.matrix()(0, 0) / Lens(image.camera).matrix()(0, 0);
+        std::vector<cv::Point3d> points = map.seenBy(image);
+        const std::vector<cv::Point3d> there = inCamera(points, image.cameraFromWorld);
+        for (cv::Point3d& p : points)
+            p = frame.toLocal(p);
+        const std::vector<cv::Point3d> here = inCamera(points, pose);
+        const std::vector<cv::Point2d> places = lens.project(here);
+        for (size_t row = 0; row < places.size(); row++)
+        {
+            const double ratio = std::log(zoom * there[row].z / (here[row].z * frame.unit));
+            if (!inside.contains(places[row]) || !(std::abs(ratio) < std::log(MAX_RATIO)))
+                continue;
+            const int number = image.sees[row];
+            const auto known = best.find(number);
+            if (known == best.end() || std::abs(ratio) < std::abs(known->second.first))
+                best[number] = {ratio, {places[row], points[row], number, -1, 0, int(view), int(row)}};
+        }
+    }
+    std::vector<Match> matches;
+    for (size_t view : found.compared)
+    {
+        const MapImage& image = map.images[view];
+        KeypointPairs pairs;
+        std::vector<Match> own;
+        for (const auto& [number, sight] : best)
+            if (sight.second.view == int(view) && !image.picture.pixels.empty())
+            {
+                own.push_back(sight.second);
+                pairs.fixed.emplace_back(image.pixels[size_t(own.back().row)], 1.f);
+                pairs.moved.emplace_back(own.back().pixel, float(std::exp(sight.first)));
+            }
+        if (own.empty())
+            continue;
+        const std::vector<bool> placed = refine(image.picture, found.features.picture, pairs);
+        for (size_t i = 0; i < own.size(); i++)
+            if (placed[i])
+            {
+                own[i].pixel = pairs.moved[i].pt;
+                own[i].deviation = REFINED;
+                matches.push_back(own[i]);
+            }
+    }
+    return matches;
+}
+
+//! Gives the matches that were refined the deviation that they have of where a pose has their points.
+void learnDeviation(std::vector<Match>& matches, const Lens& lens, const cv::Affine3d& pose)
+{
+    const auto refined = [](const Match& m) { return m.deviation != Match().deviation; };
+    std::vector<Match> some;
+    std::copy_if(matches.begin(), matches.end(), std::back_inserter(some), refined);
+    const double deviation = std::max(LEAST_REFINED, deviationOf(errorsOf(some, lens, pose)));
+    for (Match& m : matches)
+        if (refined(m))
+            m.deviation = deviation;
+}
+
 //! Finds the pose that matches with points of a map agree on, and whether it is one.
 void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Found& found)
 {
@@ -135,21 +206,31 @@ void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Foun
             matches = inliers;
         }
     }
+    std::vector<Match> used;
+    for (int look = 0; look < LOOKS; look++)
+    {
+        used = within(limit, matches, lens, pose);
+        std::set<int> matched;
+        for (const Match& m : used)
+            matched.insert(m.number);
+        for (const Match& m : within(limit, seenAlong(map, found, lens, frame, pose), lens, pose))
+            if (matched.count(m.number) == 0)
+                used.push_back(m);
+        learnDeviation(used, lens, pose);
+        if (!refinePose(used, lens, pose, covariance))
+            return;
+        inliers = within(limit, used, lens, pose);
+    }
     for (int round = 0; round < LINE_ROUNDS && !found.segments.places.empty(); round++)
     {
-        std::vector<Match> both = inliers;
+        used = inliers;
         for (const Match& m : lineMatches(map, found.compared, found.segments, lens, frame, pose, limit))
-            both.push_back(m);
-        if (!refinePose(both, lens, pose, covariance))
+            used.push_back(m);
+        if (!refinePose(used, lens, pose, covariance))
             return;
         inliers = within(limit, inliers, lens, pose);
     }
-    std::vector<double> errors = errorsOf(inliers, lens, pose);
-    for (size_t i = 0; i < errors.size(); i++)
-        errors[i] /= inliers[i].deviation;
-    // By Rayleigh's distribution; not much below what is assumed: matches of an image err together with the map's points.
-    const double deviation = std::max(LEAST_DEVIATION, median(errors) / 1.1774);
-    covariance *= deviation * deviation;
+    covariance = asErrorsTell(covariance, used, lens, pose);
     cv::Vec3d variances;
     cv::eigen(covariance.get_minor<3, 3>(0, 0), variances);
     found.reason = "the pose is uncertain";
@@ -160,10 +241,11 @@ void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Foun
     found.cameraFromWorld = frame.toWorld(pose);
     found.covariance = frame.toWorld(covariance);
     for (const Match& m : inliers)
-    {
-        found.pixels.push_back(m.pixel);
-        found.points.push_back(map.points[size_t(m.number)]);
-    }
+        if (m.keypoint >= 0)
+        {
+            found.pixels.push_back(m.pixel);
+            found.points.push_back(map.points[size_t(m.number)]);
+        }
     found.agreeing = within(limit, all, lens, pose);
 }
 

@@ -2,7 +2,10 @@
 
 #include "precomp.hpp"
 
+#include <map>
+
 #include "numbers.hpp"
+#include "opencv2/imgproc.hpp"
 #include "pose.hpp"
 #include "two_views.hpp"
 
@@ -10,6 +13,45 @@ namespace iib_localization {
 namespace {
 
 constexpr int ROUNDS = 20;
+constexpr int CELLS = 4;  // a side, of what the matches span in the image
+
+//! A match near a pose.
+struct Linear
+{
+    cv::Vec2d error;
+    cv::Matx<double, 2, 6>
+            byPose;     //!< of where its point is seen, by the centre and a turn about the world's axes
+    double weight = 0;  //!< by Cauchy's loss; 0 behind the camera
+};
+
+std::vector<Linear> linear(const std::vector<Match>& matches, const Lens& lens, const cv::Affine3d& pose)
+{
+    const std::vector<cv::Point3d> points = pointsOf(matches);
+    std::vector<cv::Matx23d> byPoint;
+    const std::vector<cv::Point2d> mapped = lens.project(inCamera(points, pose), &byPoint);
+    const cv::Matx33d rotation = pose.rotation();
+    const cv::Vec3d centre = inverse(pose).translation();
+    std::vector<Linear> found(points.size());
+    for (size_t i = 0; i < points.size(); i++)
+    {
+        const cv::Point2d error = matches[i].counted * (matches[i].pixel - mapped[i]);
+        const double weight = 1 / (matches[i].deviation * matches[i].deviation + error.dot(error));
+        if (std::isnan(weight))
+            continue;
+        const cv::Matx23d byMoved =
+                matches[i].counted * byPoint[i] * rotation;  // of the point in the world's axes
+        const cv::Matx23d byTurn = byMoved * cv::iib::crossProduct(cv::Vec3d(points[i]) - centre);
+        for (int row = 0; row < 2; row++)
+            for (int column = 0; column < 3; column++)
+            {
+                found[i].byPose(row, column) = -byMoved(row, column);
+                found[i].byPose(row, 3 + column) = byTurn(row, column);
+            }
+        found[i].error = {error.x, error.y};
+        found[i].weight = weight;
+    }
+    return found;
+}
 
 }  // namespace
 
@@ -78,6 +120,8 @@ std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens
     return errors;
 }
 
+double deviationOf(const std::vector<double>& errors) { return median(errors) / 1.1774; }
+
 bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double limit, cv::Affine3d& pose)
 {
     std::vector<cv::Point2d> pixels, seen;
@@ -109,33 +153,16 @@ bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double li
 bool refinePose(
         const std::vector<Match>& matches, const Lens& lens, cv::Affine3d& pose, cv::Matx66d& covariance)
 {
-    const std::vector<cv::Point3d> points = pointsOf(matches);
     for (int round = 0; round < ROUNDS; round++)
     {
-        std::vector<cv::Matx23d> byPoint;
-        const std::vector<cv::Point2d> mapped = lens.project(inCamera(points, pose), &byPoint);
         const cv::Matx33d rotation = pose.rotation();
         const cv::Vec3d centre = inverse(pose).translation();
         cv::Matx66d normal = cv::Matx66d::zeros();
         cv::Vec6d gradient;
-        for (size_t i = 0; i < points.size(); i++)
+        for (const Linear& m : linear(matches, lens, pose))
         {
-            const cv::Point2d error = matches[i].counted * (matches[i].pixel - mapped[i]);
-            const double weight = 1 / (matches[i].deviation * matches[i].deviation + error.dot(error));
-            if (std::isnan(weight))
-                continue;
-            const cv::Matx23d byMoved =
-                    matches[i].counted * byPoint[i] * rotation;  // of the point in the world's axes
-            const cv::Matx23d byTurn = byMoved * cv::iib::crossProduct(cv::Vec3d(points[i]) - centre);
-            cv::Matx<double, 2, 6> jacobian;
-            for (int row = 0; row < 2; row++)
-                for (int column = 0; column < 3; column++)
-                {
-                    jacobian(row, column) = -byMoved(row, column);
-                    jacobian(row, 3 + column) = byTurn(row, column);
-                }
-            normal += weight * jacobian.t() * jacobian;
-            gradient += weight * (jacobian.t() * cv::Vec2d(error.x, error.y));
+            normal += m.weight * m.byPose.t() * m.byPose;
+            gradient += m.weight * (m.byPose.t() * m.error);
         }
         cv::Vec6d step;
         if (!cv::solve(normal, gradient, step, cv::DECOMP_CHOLESKY) || !cv::checkRange(step))
@@ -151,6 +178,33 @@ bool refinePose(
             break;
     }
     return true;
+}
+
+cv::Matx66d asErrorsTell(const cv::Matx66d& covariance, const std::vector<Match>& matches, const Lens& lens,
+        const cv::Affine3d& pose)
+{
+    const std::vector<Linear> near = linear(matches, lens, pose);
+    std::vector<cv::Point2f> pixels;
+    for (const Match& m : matches)
+        pixels.push_back(m.pixel);
+    const cv::Rect2d span = cv::boundingRect(pixels);
+    std::map<std::pair<int, int>, cv::Vec6d> pulls;  // of the cells
+    std::vector<double> errors;
+    cv::Matx66d curvature = cv::Matx66d::zeros(), pulled = cv::Matx66d::zeros();
+    for (size_t i = 0; i < near.size(); i++)
+    {
+        const Linear& m = near[i];
+        const double deviation = matches[i].deviation;
+        errors.push_back(cv::norm(m.error) / deviation);
+        curvature += m.weight * m.weight * deviation * deviation * m.byPose.t() * m.byPose;
+        pulls[{int(CELLS * (pixels[i].x - span.x) / span.width),
+                int(CELLS * (pixels[i].y - span.y) / span.height)}] += m.weight * (m.byPose.t() * m.error);
+    }
+    for (const auto& cell : pulls)
+        pulled += cell.second * cell.second.t();
+    const double scale = deviationOf(errors), cells = double(pulls.size());
+    const cv::Matx66d back = curvature.inv();
+    return scale * scale * covariance + cells / std::max(cells - 6, 1.) * back * pulled * back;
 }
 
 }  // namespace iib_localization

@@ -208,7 +208,7 @@ TEST_F(LinesOfMaps, are_on_the_wall_and_refine_poses)
     if (!missing().empty())
         throw SkipTestException("OpenCV's module line_descriptor is not installed");
     const Wall posters(3, 40);
-    MapOptions options;
+    MapOptions options(100);  // few, so that lines count
     options.lines = true;
     const std::string made = folder.path("lines");
     write(model(1, 40));
