@@ -136,16 +136,16 @@ std::vector<int> ranksOf(const std::vector<KeyPoint>& keypoints)
 
 template <typename T>
 void findInBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch,
-        const std::vector<int>& ranks, Workspace& workspace, std::vector<SupportRegion>& regions)
+        const std::vector<int>& ranks, const std::vector<Rect>& needed, Workspace& workspace,
+        std::vector<SupportRegion>& regions)
 {
-    const int border = plan.parameters.border;
     const std::vector<std::vector<Channel>> packs(
             1, std::vector<Channel>(1, Channel{IIB::CHANNEL_INTENSITY, grey}));
-    GridPixels<T> pixels(plan.kernels, packs, batch, border, workspace);
+    GridPixels<T> pixels(plan.kernels, packs, batch, workspace);
     for (int k : batch.keypoints)
     {
-        const SampleGrid grid = gridOf(regions[k], Rotation(0), CELLS * SUB, SUB, border, grey.size());
-        pixels.moveTo(regions[k], grid);
+        pixels.moveTo(needed[k],
+                gridOf(regions[k], Rotation(0), CELLS * SUB, SUB, plan.parameters.border, grey.size()));
         regions[k].angle = prevailingAngle(plan.kernels, pixels.pixels(0), pixels.indices(), ranks[k]);
     }
 }
@@ -164,7 +164,7 @@ void findAngles(const DescriptorPlan& plan, const Mat& grey, const std::vector<K
     const std::vector<std::vector<int>> batches = cutBatches(pixels, all, getNumThreads());
     const auto find = grey.depth() == CV_16U ? findInBatch<int> : findInBatch<short>;
     parallelJobs((int)batches.size(), [&](int i, Workspace& workspace) {
-        find(plan, grey, makeBatch(pixels, batches[i]), ranks, workspace, regions);
+        find(plan, grey, makeBatch(pixels, batches[i]), ranks, pixels, workspace, regions);
     });
 }
 

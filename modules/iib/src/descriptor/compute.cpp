@@ -80,7 +80,7 @@ void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Ma
         if (plan.isOfBoxes())
             describeBoxes(plan, grey, batch, regions, pixels, workspace, descriptors);
         else if (regions[jobs[i][0]].isRotated())
-            describeRotated(plan, channels, batch, regions, workspace, descriptors);
+            describeRotated(plan, channels, batch, regions, pixels, workspace, descriptors);
         else
             describeUpright(plan, channels, batch, regions, workspace, descriptors);
     });

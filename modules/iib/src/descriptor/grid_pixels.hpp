@@ -106,8 +106,8 @@ template <typename T> class GridPixels
 {
 public:
     GridPixels(const DescriptorKernels& all, const std::vector<std::vector<Channel>>& packs_,
-            const KeyPointBatch& batch_, int border_, Workspace& workspace_)
-        : kernels(all.pixels(T())), packs(packs_), batch(batch_), border(border_), sparse(isSparse(batch_)),
+            const KeyPointBatch& batch_, Workspace& workspace_)
+        : kernels(all.pixels(T())), packs(packs_), batch(batch_), sparse(isSparse(batch_)),
           workspace(workspace_)
     {
         if (!sparse)
@@ -120,14 +120,13 @@ public:
         }
     }
 
-    //! Moves on to a grid over this region. Regions come in the order of the batch, and each may have several grids.
-    void moveTo(const SupportRegion& region, const SampleGrid& grid)
+    //! Moves on to the grid of a keypoint, which needs these pixels. Keypoints come in the order of the batch.
+    void moveTo(const Rect& pixels, const SampleGrid& grid)
     {
         if (sparse)
             return moveToPatches(grid);
-        const int end = batch.bandEnd(rotatedPixels(region, border, grid.image).br().y);
         for (PixelBand<T>& band : bands)
-            band.advance(end);
+            band.advance(batch.bandEnd(pixels.br().y));
         kernels.rotated.indices(grid, bands[0].rows(), bands[0].oldest(), index);
     }
 
@@ -175,7 +174,6 @@ private:
     const PixelKernels<T>& kernels;
     const std::vector<std::vector<Channel>>& packs;
     const KeyPointBatch& batch;
-    const int border;
     const bool sparse;
     Workspace& workspace;
     std::vector<std::vector<Channel>> patches;  //!< as packs, of the places of one grid

@@ -51,8 +51,7 @@ static void checkSelection(const Parameters& p)
                 where + format("cell (%d, %d) is not in 0..%d", row, col, end));
         const int mask = boxes ? boxMask(kinds[channel], level, row, col) : (1 << bitsPerQuad(p.mapping)) - 1;
         require(bits > 0 && (bits & ~mask) == 0, Error::StsOutOfRange,
-                where + format("bit mask %d is not in 1..%d, or not of bits that are there (%d)", bits, mask,
-                                mask));
+                where + format("bit mask %d must have some of the bits of %d and no others", bits, mask));
         const std::array<int, 4> place = {{level, channel, row, col}};
         require(seen.insert(place).second, Error::StsBadArg, where + "the quad was given before");
         last = level;

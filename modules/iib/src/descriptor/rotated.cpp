@@ -136,14 +136,14 @@ int samplesInRow(const SupportRegion& region, int granularity)
 
 template <typename T>
 void describeBatch(const DescriptorPlan& plan, const std::vector<Channel>& channels,
-        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions, Workspace& workspace,
-        Mat& descriptors)
+        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions,
+        const std::vector<Rect>& needed, Workspace& workspace, Mat& descriptors)
 {
     const Parameters& p = plan.parameters;
     const Size image = channels[0].map.size();
     const std::vector<std::vector<Channel>> packs = packsOf(channels);
     CellSampler<T> sampler(plan, channels, workspace);
-    GridPixels<T> pixels(plan.kernels, packs, batch, p.border, workspace);
+    GridPixels<T> pixels(plan.kernels, packs, batch, workspace);
     for (int k : batch.keypoints)
     {
         const SupportRegion& region = regions[k];
@@ -152,7 +152,7 @@ void describeBatch(const DescriptorPlan& plan, const std::vector<Channel>& chann
         // Two by two samples a cell, unless the cells are fewer.
         const int sub = plan.cellsInRow() == n ? 1 : 2;
         const SampleGrid grid = gridOf(region, rotation, n, sub, p.border, image);
-        pixels.moveTo(region, grid);
+        pixels.moveTo(needed[k], grid);
         sampler.sum(pixels, packs, grid, rotation, region.angle);
         sampler.write(grid, descriptors.ptr(k));
     }
@@ -161,11 +161,11 @@ void describeBatch(const DescriptorPlan& plan, const std::vector<Channel>& chann
 }  // namespace
 
 void describeRotated(const DescriptorPlan& plan, const std::vector<Channel>& channels,
-        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions, Workspace& workspace,
-        Mat& descriptors)
+        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions,
+        const std::vector<Rect>& pixels, Workspace& workspace, Mat& descriptors)
 {
     const auto describe = is16Bit(channels) ? describeBatch<int> : describeBatch<short>;
-    describe(plan, channels, batch, regions, workspace, descriptors);
+    describe(plan, channels, batch, regions, pixels, workspace, descriptors);
 }
 
 }  // namespace iib

@@ -65,10 +65,10 @@ void describeUpright(const DescriptorPlan& plan, const std::vector<Channel>& cha
         Mat& descriptors);
 
 /** The same of regions that are all rotated. Integral images cannot serve, since |gx| does not rotate with the region: it is
- sampled on a grid of points, and the gradient is rotated at each. */
+ sampled on a grid of points, and the gradient is rotated at each. @param pixels rotatedPixels() of all regions. */
 void describeRotated(const DescriptorPlan& plan, const std::vector<Channel>& channels,
-        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions, Workspace& workspace,
-        Mat& descriptors);
+        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions,
+        const std::vector<Rect>& pixels, Workspace& workspace, Mat& descriptors);
 
 //! The pixels that the boxes of a region cover, rotated by any angle or upright, in whole cells; some may be reflected.
 Rect boxPixels(const SupportRegion& region, int border, Size image);
