@@ -7,7 +7,6 @@
 #include "byte_source.hpp"
 #include "support/matcher_oracle.hpp"
 #include "support/temporary_file.hpp"
-#include "../modules/iib/src/matcher/search.hpp"
 
 #include <numeric>
 
@@ -15,7 +14,7 @@ namespace {
 
 using namespace cv;
 using namespace opencv_test;
-using cv::iib::HierarchicalMatcher;
+using namespace cv::iib;
 
 //! Whether two answers hold the same matches in the same order.
 bool equal(const Matches& a, const Matches& b)
@@ -36,8 +35,8 @@ struct Subject
     Ptr<HierarchicalMatcher> matcher;
     MatcherOracle model;
     bool ofAnyWidth = false;  //!< create() without level sizes, which takes the width of the first codes
-    int codeBlocks = cv::iib::ScanBlocks().codeBlocksOfLimits;
-    bool isKnown = true;  //!< whether the model finds what the matcher's mode does
+    ScanBlocks blocks;        //!< in which a search beside it goes
+    bool isKnown = true;      //!< whether the model finds what the matcher's mode does
 
     //! Whether the matcher knows the level sizes already.
     bool knowsLevels() const
@@ -53,14 +52,14 @@ struct Subject
         isKnown = mode != HierarchicalMatcher::ADAPTIVE || model.levelSizes.back() > 4;
         model.thresholds =
                 mode == HierarchicalMatcher::THRESHOLD ? matcher->getThresholds() : std::vector<float>();
-        model.adaptiveBlock = mode == HierarchicalMatcher::ADAPTIVE ? 16 * codeBlocks : 0;
+        model.adaptiveBlock =
+                mode == HierarchicalMatcher::ADAPTIVE ? 16 * PruningPolicy::CODE_BLOCKS_OF_LIMITS : 0;
     }
 
     //! A new matcher of the same parameters and codes.
     void replace(const Ptr<HierarchicalMatcher>& other)
     {
         matcher = other;
-        codeBlocks = cv::iib::ScanBlocks().codeBlocksOfLimits;
         setMode(matcher->getMode());
     }
 };
@@ -200,11 +199,8 @@ private:
 
     void setBlocks(Subject& s)
     {
-        cv::iib::ScanBlocks& blocks = dynamic_cast<cv::iib::ScanBlocks&>(*s.matcher);
-        blocks.queryCount = in.between(1, 9);
-        blocks.codeBlocks = blocks.codeBlocksOfLimits = in.between(1, 3);
-        s.codeBlocks = blocks.codeBlocksOfLimits;
-        s.setMode(s.matcher->getMode());
+        s.blocks.queryCount = in.between(1, 9);
+        s.blocks.codeBlocks = s.blocks.codeBlocksOfLimits = in.between(1, 3);
     }
 
     void setParameters(Subject& s)
@@ -287,6 +283,10 @@ private:
                                    [](const std::vector<DMatch>& row) { return row.empty(); }),
                     expected.end());
         FUZZ_CHECK(!s.isKnown || equal(expected, found));
+        SearchCost cost;
+        model.adaptiveBlock = model.adaptiveBlock > 0 ? 16 * s.blocks.codeBlocksOfLimits : 0;
+        found = searched(model, queries, k, 0, s.blocks, cost);
+        FUZZ_CHECK(!s.isKnown || equal(model.knn(queries, k), found));
     }
 
     std::vector<Mat> takeMasks(const std::vector<Mat>& images, const Mat& queries)
@@ -312,8 +312,12 @@ private:
                 s.matcher->radiusMatch(queries, found, radius, model.masks);
         });
         FUZZ_CHECK(!thrown || !(radius > FLT_EPSILON));  // also one that is no number
-        if (radius > FLT_EPSILON)
-            FUZZ_CHECK(equal(model.radius(queries, cvFloor(std::min((double)radius, 8. * width))), found));
+        if (!(radius > FLT_EPSILON))
+            return;
+        const int whole = cvFloor(std::min((double)radius, 8. * width));
+        SearchCost cost;
+        FUZZ_CHECK(equal(model.radius(queries, whole), found));
+        FUZZ_CHECK(equal(found, searched(model, queries, 0, whole, s.blocks, cost)));
     }
 
     void askForBest(const Subject& s, const Mat& queries, MatcherOracle& model, bool given)

@@ -59,8 +59,8 @@ void toArrays(const PackedCodes& trains, const KnnTable& found, int k, OutputArr
         images.copyTo(imageIndices_);
 }
 
-//! Glue between DescriptorMatcher's interface and the search. Tests reach its ScanBlocks by dynamic_cast.
-class HierarchicalMatcherImpl CV_FINAL : public HierarchicalMatcher, public ScanBlocks
+//! Glue between DescriptorMatcher's interface and the search.
+class HierarchicalMatcherImpl CV_FINAL : public HierarchicalMatcher
 {
 public:
     //! @param codes null: there are none yet.
@@ -137,7 +137,6 @@ public:
     Ptr<DescriptorMatcher> clone(bool emptyTrainData) const CV_OVERRIDE
     {
         Ptr<HierarchicalMatcherImpl> result = makePtr<HierarchicalMatcherImpl>(parameters);
-        static_cast<ScanBlocks&>(*result) = *this;
         if (emptyTrainData)
             result->cost = cost;
         else
@@ -296,7 +295,7 @@ private:
         const Mat checked = checkedDescriptors(queries, layout.bytes(), parameters.levelSizes.empty());
         const bool byLevels = parameters.mode == THRESHOLD;
         return {trains, checked, byLevels ? thresholdPolicy(layout, parameters.thresholds) : policy,
-                checkedMasks(masks, checked.rows, trains), {}, 0, *this, *cost};
+                checkedMasks(masks, checked.rows, trains), {}, 0, ScanBlocks(), *cost};
     }
 
     KnnTable nearest(const PackedCodes& trains, const Mat& queries, int k, InputArrayOfArrays masks) const

@@ -23,7 +23,6 @@ they stay in a second-level cache of 512 KB while the queries, 704 KB, pass by. 
 crosses the boundaries. */
 struct ScanBlocks
 {
-    virtual ~ScanBlocks() {}
     //! CodeBlocks that are scanned at once by a policy.
     int codeBlocksFor(const PruningPolicy& policy) const
     {

@@ -3,7 +3,6 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/matcher_oracle.hpp"
-#include "../../src/matcher/search.hpp"
 
 namespace opencv_test {
 namespace {
@@ -11,10 +10,15 @@ namespace {
 // Queries and train codes are scanned in blocks; blocks of 8 and of 1 make small data cross their boundaries.
 typedef testing::TestWithParam<std::tuple<int, int>> IIB_Matcher_Blocks;  // block size, mode
 
-void setBlocks(HierarchicalMatcher& matcher, int size)
+//! The k nearest, and the share of bits that were compared.
+void expectSearchedAsOracle(MatcherOracle& oracle, const Mat& queries, int k, const ScanBlocks& blocks)
 {
-    ScanBlocks& blocks = dynamic_cast<ScanBlocks&>(matcher);
-    blocks.queryCount = blocks.codeBlocks = blocks.codeBlocksOfLimits = size;
+    SearchCost cost;
+    const Matches actual = searched(oracle, queries, k, 0, blocks, cost);
+    oracle.compared = oracle.all = 0;
+    expectEqual(oracle.knn(queries, k), actual);
+    EXPECT_EQ(oracle.compared, (double)cost.compared);
+    EXPECT_EQ(oracle.all, (double)cost.all);
 }
 
 TEST_P(IIB_Matcher_Blocks, as_the_oracle)
@@ -26,6 +30,8 @@ TEST_P(IIB_Matcher_Blocks, as_the_oracle)
     if (mode == HierarchicalMatcher::THRESHOLD)
         oracle.thresholds.assign(2, 0.35f);
     oracle.adaptiveBlock = mode == HierarchicalMatcher::ADAPTIVE ? size * 16 : 0;
+    ScanBlocks blocks;
+    blocks.queryCount = blocks.codeBlocks = blocks.codeBlocksOfLimits = size;
 
     for (int k : {1, 3, 400})
         for (int bits = 0; bits < 8; bits++)
@@ -34,15 +40,12 @@ TEST_P(IIB_Matcher_Blocks, as_the_oracle)
             oracle.crossCheck = (bits & 1) != 0;
             oracle.masks = bits & 2 ? masks : std::vector<Mat>();
             oracle.maxRatio = bits & 4 ? 0.8f : 1.f;
-            const Ptr<HierarchicalMatcher> matcher = oracle.matcher();
-            setBlocks(*matcher, size);
-            expectKnnAsOracle(*matcher, oracle, queries, k);
-            // clones keep the size of blocks
-            Matches ofClone;
-            matcher->clone(false)->knnMatch(queries, ofClone, k, oracle.masks);
-            expectEqual(oracle.knn(queries, k), ofClone);
-            if (k == 1 && mode != HierarchicalMatcher::ADAPTIVE)
-                expectRadiusAsOracle(*matcher, oracle, queries);
+            expectSearchedAsOracle(oracle, queries, k, blocks);
+            SearchCost cost;
+            for (int radius : {0, 20, 60, 336})
+                if (k == 1 && mode != HierarchicalMatcher::ADAPTIVE)
+                    expectEqual(oracle.radius(queries, radius),
+                            searched(oracle, queries, 0, radius, blocks, cost));
         }
 }
 
@@ -59,13 +62,11 @@ TEST(IIB_Matcher_Adaptive, does_not_depend_on_blocks)
     oracle.levelSizes = {16, 48};
     oracle.images.push_back(trains);
     oracle.adaptiveBlock = 2048;
-    const Ptr<HierarchicalMatcher> matcher = oracle.matcher();
     for (int size : {1, 100, 1000})
     {
-        ScanBlocks& blocks = dynamic_cast<ScanBlocks&>(*matcher);
+        ScanBlocks blocks;
         blocks.queryCount = blocks.codeBlocks = size;
-        matcher->resetCost();
-        expectKnnAsOracle(*matcher, oracle, queries, 5);
+        expectSearchedAsOracle(oracle, queries, 5, blocks);
     }
 }
 

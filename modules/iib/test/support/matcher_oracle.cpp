@@ -218,6 +218,38 @@ void expectKnnAsOracle(HierarchicalMatcher& matcher, MatcherOracle& oracle, cons
     EXPECT_EQ(oracle.compared / oracle.all, matcher.matchCost());
 }
 
+Matches searched(const MatcherOracle& oracle, const Mat& queries, int k, int radius, const ScanBlocks& blocks,
+        SearchCost& cost)
+{
+    const PackedCodes trains(oracle.levelSizes, oracle.images);
+    const CodeLayout& layout = trains.layout();
+    const PruningPolicy policy = !oracle.thresholds.empty() ? thresholdPolicy(layout, oracle.thresholds)
+                                 : k == 0                   ? radiusPolicy(layout, radius)
+                                 : oracle.adaptiveBlock > 0 ? adaptivePolicy(layout)
+                                                            : PruningPolicy();
+    const SearchInput input = {
+            trains, queries, policy, checkedMasks(oracle.masks, queries.rows, trains), {}, 0, blocks, cost};
+    Matches matches(queries.rows);
+    const auto append = [&](int query, MatchKey n) {
+        const size_t image = trains.imageOf(indexOf(n));
+        const int row = (int)(indexOf(n) - trains.start(image));
+        matches[query].push_back(DMatch(query, row, (int)image, (float)distanceOf(n)));
+    };
+    if (k == 0)
+    {
+        const std::vector<std::vector<MatchKey>> found = findWithin(input, radius);
+        for (int query = 0; query < queries.rows; query++)
+            for (MatchKey n : found[query])
+                append(query, n);
+        return matches;
+    }
+    const KnnTable found = findNearest(input, k, oracle.crossCheck, oracle.maxRatio);
+    for (int query = 0; query < queries.rows; query++)
+        for (int i = 0; i < found.size() && found[query][i] != NO_MATCH; i++)
+            append(query, found[query][i]);
+    return matches;
+}
+
 void expectRadiusAsOracle(HierarchicalMatcher& matcher, MatcherOracle& oracle, const Mat& queries)
 {
     Matches actual;

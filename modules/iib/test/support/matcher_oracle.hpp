@@ -6,6 +6,7 @@
 #define OPENCV_IIB_TEST_SUPPORT_MATCHER_ORACLE_HPP
 
 #include "../test_precomp.hpp"
+#include "../../src/matcher/search.hpp"
 #include "random_descriptors.hpp"
 
 namespace opencv_test {
@@ -37,6 +38,11 @@ private:
     bool passes(const uchar* query, const uchar* train);
     void keepAdaptive(const Mat& queries, Matches& candidates);
 };
+
+//! The k nearest, or for k = 0 all within a radius, as the library searches for them in blocks of these sizes: among the oracle's
+//! images, with its masks and by its rules.
+Matches searched(const MatcherOracle& oracle, const Mat& queries, int k, int radius, const ScanBlocks& blocks,
+        SearchCost& cost);
 
 //! Five train images of 2, 8 and 32 bytes a level, one of them empty, one of a single row.
 MatcherOracle oracleOfSeveralImages();
