@@ -3,7 +3,8 @@
 #include "lines.hpp"
 
 #include <algorithm>
-#include <cfloat>
+#include <functional>
+#include <numeric>
 #include <set>
 
 #include "features.hpp"
@@ -20,20 +21,20 @@ constexpr double MIN_SHARE = 1. / 3;             // of the shorter of both, that
 constexpr double NEAREST = .05;                  // of the farther end's depth: where lines are cut off
 constexpr int MAPPED_BITS = 60, SEEN_BITS = 80;  // in which codes of one line differ, in like and other light
 
-//! The rays to the begin and the end of each segment, by image.
-typedef std::vector<std::vector<Ray>> Ends;
-
 /** The line that a track's longest segment shows, its ends where the planes through the others cut the rays to them.
+@param rays to the begin of each segment, which are the track's, and behind each to the end.
+@param first of each image's.
 @return false if it is behind a camera, or DEVIATION would move it by more than so many parts of its distance. */
-bool placeLine(const Track& track, const Ends& ends, MapLine& line, double maxUncertainty)
+bool placeLine(const Track& track, const std::vector<Ray>& rays, const std::vector<size_t>& first,
+        MapLine& line, double maxUncertainty)
 {
-    const auto rays = [&](const Ray& r) { return &ends[r.image][2 * size_t(r.keypoint)]; };
-    const auto normal = [&](const Ray& r) { return rays(r)[0].direction.cross(rays(r)[1].direction); };
+    const auto ends = [&](const Ray& r) { return &rays[first[r.image] + size_t(r.keypoint)]; };
+    const auto normal = [&](const Ray& r) { return ends(r)[0].direction.cross(ends(r)[1].direction); };
     const Ray& longest = *std::max_element(track.begin(), track.end(),
             [&](const Ray& a, const Ray& b) { return cv::norm(normal(a)) < cv::norm(normal(b)); });
     for (int i : {0, 1})
     {
-        const Ray& ray = rays(longest)[i];
+        const Ray& ray = ends(longest)[i];
         double squares = 0, sum = 0;
         for (const Ray& other : track)
             if (&other != &longest)
@@ -50,14 +51,37 @@ bool placeLine(const Track& track, const Ends& ends, MapLine& line, double maxUn
     return true;
 }
 
+/** Pairs of lines and segments that fit, of the fewest bits that differ first, each line and each segment once.
+@param lines whose codes these are: some have several. */
+std::vector<cv::DMatch> nearest(const std::vector<int>& lines, const cv::Mat& codes, const cv::Mat& segments,
+        int maxBits, const std::function<bool(int, int)>& fit)
+{
+    std::vector<cv::DMatch> all, found;
+    cv::Mat_<int> bits;
+    if (!codes.empty() && !segments.empty())
+        cv::batchDistance(codes, segments, bits, CV_32S, cv::noArray(), cv::NORM_HAMMING);
+    for (int row = 0; row < bits.rows; row++)
+        for (int s = 0; s < bits.cols; s++)
+            if (bits(row, s) <= maxBits && fit(row, s))
+                all.emplace_back(row, s, float(bits(row, s)));
+    std::stable_sort(all.begin(), all.end());
+    std::set<int> taken, takenSegments;
+    for (const cv::DMatch& m : all)
+        if (takenSegments.count(m.trainIdx) == 0 && taken.insert(lines[size_t(m.queryIdx)]).second)
+        {
+            takenSegments.insert(m.trainIdx);
+            found.push_back(m);
+        }
+    return found;
+}
+
 }  // namespace
 
 void addLines(
         Map& map, const std::vector<Segments>& segments, const std::vector<std::pair<size_t, size_t>>& pairs)
 {
-    Ends ends;
-    std::vector<Ray> all;
-    std::vector<size_t> first;  // of each image's, among all
+    std::vector<Ray> rays;
+    std::vector<size_t> first;
     std::vector<Lens> lenses;
     for (size_t i = 0; i < map.images.size(); i++)
     {
@@ -66,58 +90,43 @@ void addLines(
         image.cameraFromWorld = map.images[i].cameraFromWorld;
         for (const Segment& s : segments[i].places)
             image.pixels.insert(image.pixels.end(), {s.begin, s.end});
-        ends.push_back(raysOf(i, image));
         lenses.emplace_back(image.camera);
-        first.push_back(all.size());
-        for (size_t s = 0; s < segments[i].places.size(); s++)
-        {
-            all.push_back(ends[i][2 * s]);
-            all.back().keypoint = int(s);
-        }
+        first.push_back(rays.size());
+        const std::vector<Ray> own = raysOf(i, image);
+        rays.insert(rays.end(), own.begin(), own.end());
     }
     const auto shows = [&](const Ray& ray, const MapLine& line) {
-        return !matchesOf(line, segments[ray.image].places[size_t(ray.keypoint)], lenses[ray.image],
+        return !matchesOf(line, segments[ray.image].places[size_t(ray.keypoint) / 2], lenses[ray.image],
                 map.images[ray.image].cameraFromWorld, MAX_ERROR)
                         .empty();
     };
     std::vector<std::vector<Link>> found(pairs.size());
     inParallel(pairs.size(), [&](size_t n) {
-        const size_t a = pairs[n].first, b = pairs[n].second;
-        if (segments[a].codes.empty() || segments[b].codes.empty())
-            return;
-        cv::Mat bits;
-        cv::batchDistance(
-                segments[a].codes, segments[b].codes, bits, CV_32S, cv::noArray(), cv::NORM_HAMMING);
-        cv::Mat_<float> away = bits, ofFirst, ofSecond;
-        const auto link = [&](int s, int t) {
-            return Link{away(s, t), first[a] + size_t(s), first[b] + size_t(t)};
+        const auto [a, b] = pairs[n];
+        std::vector<int> numbers(segments[a].places.size());
+        std::iota(numbers.begin(), numbers.end(), 0);
+        const auto link = [&, one = first[a], other = first[b]](int s, int t, float bits) {
+            return Link{bits, one + 2 * size_t(s), other + 2 * size_t(t)};
         };
-        for (int s = 0; s < away.rows; s++)
-            for (int t = 0; t < away.cols; t++)
-            {
-                const Ray &one = all[link(s, t).a], &other = all[link(s, t).b];
-                MapLine line;
-                if (away(s, t) > MAPPED_BITS || !placeLine({one, other}, ends, line, HUGE_VAL) ||
-                        !shows(one, line) || !shows(other, line))
-                    away(s, t) = FLT_MAX;
-            }
-        cv::reduce(away, ofFirst, 1, cv::REDUCE_MIN);
-        cv::reduce(away, ofSecond, 0, cv::REDUCE_MIN);
-        for (int s = 0; s < away.rows; s++)
-            for (int t = 0; t < away.cols; t++)
-                if (away(s, t) < FLT_MAX && away(s, t) == ofFirst(s) && away(s, t) == ofSecond(t))
-                    found[n].push_back(link(s, t));
+        const auto fit = [&](int s, int t) {
+            const Ray &one = rays[link(s, t, 0).a], &other = rays[link(s, t, 0).b];
+            MapLine line;
+            return placeLine({one, other}, rays, first, line, HUGE_VAL) && shows(one, line) &&
+                   shows(other, line);
+        };
+        for (const cv::DMatch& m : nearest(numbers, segments[a].codes, segments[b].codes, MAPPED_BITS, fit))
+            found[n].push_back(link(m.queryIdx, m.trainIdx, m.distance));
     });
     std::vector<Link> links;
     for (const std::vector<Link>& some : found)
         links.insert(links.end(), some.begin(), some.end());
-    for (Track& track : joined(all, links))
+    for (Track& track : joined(rays, links))
     {
         MapLine line;
         for (size_t before = 0; before != track.size() && track.size() > 1;)
         {
             before = track.size();
-            if (!placeLine(track, ends, line, MAX_UNCERTAINTY))
+            if (!placeLine(track, rays, first, line, MAX_UNCERTAINTY))
                 track.clear();
             track.erase(std::remove_if(track.begin(), track.end(),
                                 [&](const Ray& ray) { return !shows(ray, line); }),
@@ -128,7 +137,7 @@ void addLines(
         for (const Ray& ray : track)
         {
             map.images[ray.image].lines.push_back(int(map.lines.size()));
-            map.images[ray.image].lineCodes.push_back(segments[ray.image].codes.row(ray.keypoint));
+            map.images[ray.image].lineCodes.push_back(segments[ray.image].codes.row(ray.keypoint / 2));
         }
         map.lines.push_back(line);
     }
@@ -169,39 +178,23 @@ std::vector<Match> matchesOf(
 std::vector<Match> lineMatches(const Map& map, const std::vector<size_t>& images, const Segments& segments,
         const Lens& lens, const Frame& frame, const cv::Affine3d& pose, double limit)
 {
-    struct Candidate
-    {
-        int bits, line, segment;
-        std::vector<Match> ends;
-    };
-    std::vector<Candidate> candidates;
+    std::vector<int> lines;
+    cv::Mat codes;
     for (size_t i : images)
     {
-        const MapImage& image = map.images[i];
-        cv::Mat_<int> bits;
-        if (!image.lines.empty())
-            cv::batchDistance(image.lineCodes, segments.codes, bits, CV_32S, cv::noArray(), cv::NORM_HAMMING);
-        for (int row = 0; row < bits.rows; row++)
-        {
-            const int number = image.lines[size_t(row)];
-            const MapLine& line = map.lines[size_t(number)];
-            const MapLine local = {frame.toLocal(line.begin), frame.toLocal(line.end)};
-            for (int s = 0; s < bits.cols; s++)
-                if (bits(row, s) <= SEEN_BITS)
-                    candidates.push_back({bits(row, s), number, s,
-                            matchesOf(local, segments.places[size_t(s)], lens, pose, limit)});
-        }
+        lines.insert(lines.end(), map.images[i].lines.begin(), map.images[i].lines.end());
+        codes.push_back(map.images[i].lineCodes);
     }
-    std::stable_sort(candidates.begin(), candidates.end(),
-            [](const Candidate& a, const Candidate& b) { return a.bits < b.bits; });
-    std::set<int> lines, taken;
+    const auto ends = [&](int row, int segment) {
+        const MapLine& line = map.lines[size_t(lines[size_t(row)])];
+        return matchesOf({frame.toLocal(line.begin), frame.toLocal(line.end)},
+                segments.places[size_t(segment)], lens, pose, limit);
+    };
+    const auto fit = [&](int row, int segment) { return !ends(row, segment).empty(); };
     std::vector<Match> matches;
-    for (const Candidate& c : candidates)
-        if (!c.ends.empty() && taken.count(c.segment) == 0 && lines.insert(c.line).second)
-        {
-            taken.insert(c.segment);
-            matches.insert(matches.end(), c.ends.begin(), c.ends.end());
-        }
+    for (const cv::DMatch& m : nearest(lines, codes, segments.codes, SEEN_BITS, fit))
+        for (const Match& end : ends(m.queryIdx, m.trainIdx))
+            matches.push_back(end);
     return matches;
 }
 

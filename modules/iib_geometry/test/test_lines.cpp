@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <numeric>
-
 #include "lines.hpp"
 #include "wall.hpp"
 
@@ -168,30 +166,7 @@ TEST_F(Lines, and_segments_match_where_they_overlap)
     EXPECT_TRUE(ends({line.begin, {.5, .5, -1}}, segment).empty()) << "behind the camera";
 }
 
-class LinesOfMaps : public WallTest
-{
-};
-
-TEST_F(LinesOfMaps, are_saved_and_read_back)
-{
-    map.lines = {{{1, 2, 3}, {4, 5, 6}}, {{-1, 0, 1e-9}, {7, 8, 9}}};
-    map.images[1].lines = {1, 0};
-    map.images[1].lineCodes = cv::Mat(2, 32, CV_8U, cv::Scalar(7));
-    const std::string path = folder.path("lines");
-    MapFolder(path).write(map);
-    const Map back = readMap(path);
-    ASSERT_EQ(2u, back.lines.size());
-    EXPECT_EQ(map.lines[1].begin, back.lines[1].begin);
-    EXPECT_EQ(map.lines[0].end, back.lines[0].end);
-    EXPECT_EQ(map.images[1].lines, back.images[1].lines);
-    EXPECT_EQ(0, cv::norm(map.images[1].lineCodes, back.images[1].lineCodes, cv::NORM_INF));
-    EXPECT_TRUE(back.images[0].lines.empty());
-    map.images[1].lines[0] = 2;
-    MapFolder(path).write(map);
-    EXPECT_NE(std::string::npos,
-            messageOf([&] { readMap(path); }).find("an image sees a line that is not there"));
-    EXPECT_EQ(1, textOf(folder.path("map/map.iib"))[8]) << "a map without is one that earlier programs read";
-}
+typedef WallTest LinesOfMaps;
 
 TEST_F(LinesOfMaps, that_are_not_there_are_told)
 {

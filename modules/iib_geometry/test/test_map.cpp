@@ -43,6 +43,9 @@ Map smallMap()
             image.picture = pictureOf(cv::Mat(48 + i, 64, CV_8U, cv::Scalar(7 + i)));
         map.images.push_back(image);
     }
+    map.lines = {{{1, 2, 3}, {4, 5, 6}}, {{-1, 0, 1e-9}, {7, 8, 9}}};
+    map.images[1].lines = {1, 0};
+    map.images[1].lineCodes = cv::Mat(2, 32, CV_8U, cv::Scalar(7));
     return map;
 }
 
@@ -85,8 +88,20 @@ TEST_F(SmallMap, read_as_written)
         EXPECT_EQ(a.added, b.added);
         EXPECT_EQ(a.codes.size(), b.codes.size());
         EXPECT_EQ(0, a.codes.empty() ? 0 : cv::norm(a.codes, b.codes, cv::NORM_INF));
+        EXPECT_EQ(a.lines, b.lines);
+        EXPECT_EQ(0, i != 1 ? 0 : cv::norm(a.lineCodes, b.lineCodes, cv::NORM_INF));
+        EXPECT_EQ(i == 1, !b.lineCodes.empty());
     }
+    ASSERT_EQ(2u, back.lines.size());
+    EXPECT_EQ(map.lines[1].begin, back.lines[1].begin);
+    EXPECT_EQ(map.lines[0].end, back.lines[0].end);
     EXPECT_EQ(2u, camerasOf(back.images).size());
+    Map plain = smallMap();
+    plain.lines.clear();
+    plain.images[1].lines.clear();
+    plain.images[1].lineCodes.release();
+    write(plain);
+    EXPECT_EQ(1, textOf(name + "/map.iib")[8]) << "without lines it is one that earlier programs read";
 }
 
 TEST_F(SmallMap, every_altered_byte_and_every_length_is_noticed)
@@ -127,6 +142,7 @@ TEST_F(SmallMap, what_contradicts_itself_though_its_sum_is_right)
     EXPECT_EQ("a keypoint sees nothing", errorOf([](Map& m) { m.images[2].sees[0] = -1; }));
     EXPECT_EQ("an image has no camera or no pose",
             errorOf([](Map& m) { m.images[2].cameraFromWorld.matrix(0, 0) = 2; }));
+    EXPECT_EQ("an image sees a line that is not there", errorOf([](Map& m) { m.images[1].lines[0] = 2; }));
     EXPECT_EQ("it has a NaN or infinite number", errorOf([](Map& m) { m.points[1].x = std::nan(""); }));
 
     write(smallMap());
