@@ -77,7 +77,7 @@ def localize(localizer, folder, names=None, lit=lambda image, name: image):
     """Of each image of a place: its name, location, error or None, and milliseconds of processor time."""
     camera, poses = read_place(folder)
     for name in names or poses:
-        image = lit(cv2.imread(str(folder / 'images' / name)), name)
+        image = lit(cv2.imread(str(folder / 'images' / name), cv2.IMREAD_GRAYSCALE), name)  # as the programs read it
         begin = time.process_time()
         location = localizer.localize(image, camera)
         used = 1000 * (time.process_time() - begin)
@@ -87,7 +87,7 @@ def localize(localizer, folder, names=None, lit=lambda image, name: image):
 
 def relit(image, name):
     """Darkened by gamma 2.2, a ramp to a quarter, half the light, noise."""
-    light = (image / 255) ** 2.2 * np.linspace(1, .25, image.shape[1])[None, :, None] * .5
+    light = (image / 255) ** 2.2 * np.linspace(1, .25, image.shape[1]) * .5
     return np.clip(light * 255 + np.random.default_rng(sum(name.encode())).normal(0, 2, image.shape), 0, 255).astype(np.uint8)
 
 
@@ -119,10 +119,9 @@ def street(data, work, lights):
     return rows, seen, ours
 
 
-def run_program(path, model, place, images, out, options=()):
-    """The poses that iib_localize finds of a folder's images, by their names, in a model of another folder's."""
-    subprocess.run([path, '--model', model, '--photographs', place / 'images', '--images', images / 'images', '--out', out, *options],
-                   check=False, stdout=subprocess.DEVNULL)
+def run_program(path, known, images, out, options=()):
+    """The poses that iib_localize finds of a folder's images, by their names; `known` are the options that name a map."""
+    subprocess.run([path, *known, '--images', images / 'images', '--out', out, *options], check=False, stdout=subprocess.DEVNULL)
     names = {image.stem: image.name for image in (images / 'images').iterdir()}
     return {names[line.split()[0]]: pose_of(line.split()[1:]) for line in (out / 'trajectory.txt').read_text().splitlines()[1:]}
 
@@ -135,13 +134,13 @@ def program(path, data, work, lights):
         if imu and not readings.exists():
             continue
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        found = run_program(path, work / 'recommended chain/model', data / 'map', data / light, out, ('--imu', readings) if imu else ())
+        found = run_program(path, ('--map', work / 'recommended chain/map'), data / light, out, ('--imu', readings) if imu else ())
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         used = 1000 * (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / len(poses)
         errors = {name: error(pose, poses[name]) for name, pose in found.items()}
         with open(out / 'frames.csv', encoding='utf-8', newline='') as file:
             located = [(row['name'], Found(inliers=int(row['inliers'])), errors.get(row['name']), used) for row in csv.DictReader(file)]
-        rows.append({'place': 'program', 'method': 'iib_localize' + imu, 'light': light, **summary(located)})
+        rows.append({'place': 'street', 'method': 'iib_localize' + imu, 'light': light, **summary(located)})
     return rows
 
 
@@ -172,5 +171,5 @@ def photographs(data, work):
 
 def unknown(localizer, camera, paths):
     """How many photographs of other places get a pose."""
-    images = (cv2.resize(cv2.imread(str(path)), (camera.width, camera.height)) for path in paths)
+    images = (cv2.resize(cv2.imread(str(path), cv2.IMREAD_GRAYSCALE), (camera.width, camera.height)) for path in paths)
     return sum(localizer.localize(image, camera).cam_from_world is not None for image in images)

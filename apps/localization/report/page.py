@@ -7,6 +7,7 @@ DATA: what tools/synthetic/localization.py rendered. Photographs, of other place
 OPENCV_TEST_DATA_PATH names, if it is set, and iib_localize in that of IIB_PROGRAMS.
 """
 import argparse
+import datetime
 import json
 import math
 import os
@@ -52,6 +53,8 @@ def chart(rows):
 
     lines = {}
     for row in rows:
+        if row['method'] not in measure.METHODS:
+            continue
         steps = [at(e, (n + k) / row['images']) for n, e in enumerate(row['errors']) for k in (0, 1)]
         lines[row['method']] = ' '.join([*steps, *([at(10. ** high, len(row['errors']) / row['images'])] if steps else [])])
     return {'light': rows[0]['light'], 'lines': lines, 'marks': [('%g' % 10. ** e, (e - low) / (high - low or 1) * CHART[0])
@@ -133,7 +136,7 @@ def write_page(out, results, world, pictures):
     text = environment.get_template('page.html.j2').render(
         results, by_light=by_light, charts=[c for c in map(chart, by_light) if c], worst=worst(results), share=share, world=world,
         pictures=pictures, size=CHART, setups=figures.localization_lights(),
-        photographs=sorted({row['place'] for row in results['rows']} - {'street', 'every 2', 'every 4', 'program'}))
+        photographs=sorted({row['place'] for row in results['rows']} - {'street', 'every 2', 'every 4'}))
     (out / 'index.html').write_text(text, encoding='utf-8')
 
 
@@ -152,7 +155,8 @@ def main():
         rows, seen, ours = measure.street(options.data, work, lights)
         if 'IIB_PROGRAMS' in os.environ:
             rows += measure.program(pathlib.Path(os.environ['IIB_PROGRAMS'], 'iib_localize'), options.data, work, lights)
-        results = {'rows': rows, 'lights': lights, 'seasons': measure.seasons(options.data, work, lights), 'unknown': None}
+        results = {'rows': rows, 'lights': lights, 'seasons': measure.seasons(options.data, work, lights), 'unknown': None,
+                   'date': datetime.date.today().isoformat(), 'opencv': cv2.__version__}
         if given:
             rows += measure.photographs(pathlib.Path(given) / 'strecha', work)
             paths = sorted(pathlib.Path(given).glob('illumination/*/*/*.png'))

@@ -49,7 +49,8 @@ def main():
                 for setup in SETUPS + (('--orb-and-akaze --lines --imu',) if readings.exists() else ()):
                     options, truth = setup.replace('--imu', '--imu %s' % readings).split(), measure.read_place(images)[1]
                     with tempfile.TemporaryDirectory() as alone:
-                        found = measure.run_program(program, model, place / 'map', images, pathlib.Path(alone), options)
+                        found = measure.run_program(program, ('--model', model, '--photographs', place / 'map/images'), images,
+                                                    pathlib.Path(alone), options)
                     counts[name, setup, images.name] += len(truth)
                     errors[name, setup, images.name] += [error(pose, truth[image]) for image, pose in found.items()]
                 write(out, counts, errors)

@@ -108,7 +108,7 @@ class Sift:
         self._sift = cv2.SIFT_create(points)
         self._detector = opencv_iib.NormalizedDetector(self._sift) if normalized else self._sift
         model = pycolmap.Reconstruction(model)
-        found = {i: self._describe(cv2.imread(str(images / model.image(i).name))) for i in model.reg_image_ids()}
+        found = {i: self._describe(cv2.imread(str(images / model.image(i).name), cv2.IMREAD_GRAYSCALE)) for i in model.reg_image_ids()}
         for i, (places, _) in found.items():
             model.image(i).points2D = pycolmap.Point2DList([pycolmap.Point2D(place) for place in places])
         matches = []
@@ -123,8 +123,7 @@ class Sift:
             if len(seen) > 1:
                 self._images.append((codes[[row for row, _ in seen]], np.array([model.point3D(p).xyz for _, p in seen])))
 
-    def _describe(self, image):
-        grey = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
+    def _describe(self, grey):
         keypoints, codes = self._sift.compute(grey, self._detector.detect(grey, None))
         return np.array([k.pt for k in keypoints]).reshape(-1, 2) + .5, np.zeros((0, 128)) if codes is None else codes
 
