@@ -113,9 +113,9 @@ SETUPS = {'': 'recommended chain', '--lines': 'recommended chain, lines', '--orb
           '--orb-and-akaze --lines': 'ORB and AKAZE, lines', '--orb-and-akaze --lines --imu': "the paper's: ORB and AKAZE, lines, IMU"}
 
 
-def setups(key):
-    """Rows of localization_setups.csv by `key`: images within 5 cm and 0.5 degrees, and means of the errors of those found."""
-    for names, found in summaries.group(rows('localization_setups.csv'), *key).items():
+def setups(key, file=results / 'localization_setups.csv'):
+    """Rows of setups.py's file by `key`: images within 5 cm and 0.5 degrees, and means of the errors of those found."""
+    for names, found in summaries.group(summaries.read(file), *key).items():
         images, located, near = (sum(int(row[column]) for row in found) for column in ('images', 'found', 'within_5'))
         means = (sum(float(row[column]) * int(row['found']) for row in found if int(row['found'])) / max(located, 1)
                  for column in ('lateral', 'longitudinal', 'altitude', 'orientation'))
@@ -131,10 +131,10 @@ def localization_setups():
     return table(['map', 'set-up'] + SETUP_HEAD, setups(('map', 'setup')))
 
 
-def localization_lights():
-    """The same by light, for the page of localization, below the paper's table."""
+def localization_lights(*file):
+    """The same by light, for the page of localization, above the paper's table."""
     systems = summaries.read(summaries.PAPER.with_name('paper_localization.csv'))
-    lines = [['map', 'set-up', 'light'] + SETUP_HEAD, *setups(('map', 'setup', 'light'))]
+    lines = [['map', 'set-up', 'light'] + SETUP_HEAD, *setups(('map', 'setup', 'light'), *file)]
     lines += [["as the paper quotes it", row['system'], row['inputs'], '', '', row['lateral'], row['longitudinal'], row['altitude'], ''] for row in systems]
     cells = [''.join('<%s>%s</%s>' % (tag, cell, tag) for cell in line) for tag, line in zip(['th'] + ['td'] * len(lines), lines)]
     return '\n'.join(['<div class="scroll"><table>', *('<tr>%s</tr>' % line for line in cells), '</table></div>'])

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Looks up what doc/paper.md names, and what the other pages do: paper_test.py
 
-Files of links and the symbol that a link's text names in them; anchors; scripts, their options and experiments; columns of CSV files
+Files of links and the symbol that a link's text names in them; anchors; scripts and programs, their options and experiments; columns of CSV files
 and rows of them, as in "rows `a.csv`: `NAME`, `NAME`"; and that the drawings are those of drawings.py. Then each kind of name is
 broken in a copy of the paper's page, and that has to be found.
 """
@@ -13,7 +13,8 @@ import tempfile
 import drawings
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-OPTIONS = {'evaluate.sh': 'tools/evaluation/main.cpp', 'train.sh': 'tools/training/train.cpp', 'bench.sh': 'tools/benchmark/benchmark.cpp'}
+OPTIONS = {'evaluate.sh': 'tools/evaluation/main.cpp', 'train.sh': 'tools/training/train.cpp', 'bench.sh': 'tools/benchmark/benchmark.cpp',
+           'iib_localize': 'apps/localization/program/iib_localize.cpp'}
 MANY = 40  # links that the paper's page has at least
 
 
@@ -37,14 +38,15 @@ def wrong_links(text, page):
 
 
 def wrong_commands(text):
-    for command in re.findall(r'`(scripts/[^`]*)`', text):
+    for command in re.findall(r'`((?:scripts/|apps/|tools/|iib_localize )[^`]*)`', text):
         script, *words = command.split()
-        if not (ROOT / script).is_file():
-            if not (ROOT / script).is_dir():
+        tool = OPTIONS.get(pathlib.Path(script).name)
+        file = ROOT / (script if '/' in script else tool)
+        if not file.is_file():
+            if not file.is_dir():
                 yield 'there is no ' + script
             continue
-        known = (ROOT / script).read_text()
-        tool = OPTIONS.get(pathlib.Path(script).name)
+        known = file.read_text() if '/' in script else ''
         keys = (ROOT / tool).read_text() if tool else ''
         for word in words:
             option = word.partition('=')[0]
@@ -78,7 +80,8 @@ def broken(text):
                                (r'index\.html#curves', 'index.html#gone', 'no anchor'), (r'\(#fewer-bits\)', '(#gone)', 'no anchor'),
                                ('--adaboost', '--gone', 'no option'), ('--only matching', '--only gone', 'no experiment'),
                                ('`IIB quartile`', '`IIB gone`', 'no row'), ('column `cost`', 'column `gone`', 'no column'),
-                               (r'scripts/demo\.sh', 'scripts/gone.sh', 'there is no')):
+                               (r'scripts/demo\.sh', 'scripts/gone.sh', 'there is no'),
+                               (r'`apps/\S+', '`apps/gone.py', 'there is no'), ('iib_localize --imu', 'iib_localize --gone', 'no option')):
         yield re.subn(pattern, new, text, count=1), said
 
 

@@ -4,7 +4,8 @@
 """Measures localization across lights and writes OUT/index.html with pictures, a video and results.json: page.py DATA OUT
 
 DATA: what tools/synthetic/localization.py rendered. Photographs, of other places too, are in the folder that
-OPENCV_TEST_DATA_PATH names, if it is set, and iib_localize in that of IIB_PROGRAMS.
+OPENCV_TEST_DATA_PATH names, if it is set, and iib_localize in that of IIB_PROGRAMS. Shows what setups.py wrote to
+OUT/localization_setups.csv, if that is there, or the project's own file.
 """
 import argparse
 import datetime
@@ -133,9 +134,10 @@ def write_page(out, results, world, pictures):
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True, lstrip_blocks=True,
                                      undefined=jinja2.StrictUndefined)
     by_light = [[row for row in results['rows'] if row['place'] == 'street' and row['light'] == light] for light in results['lights']]
+    setups = [file for file in [out / 'localization_setups.csv'] if file.exists()]
     text = environment.get_template('page.html.j2').render(
         results, by_light=by_light, charts=[c for c in map(chart, by_light) if c], worst=worst(results), share=share, world=world,
-        pictures=pictures, size=CHART, setups=figures.localization_lights(),
+        pictures=pictures, size=CHART, setups=figures.localization_lights(*setups),
         photographs=sorted({row['place'] for row in results['rows']} - {'street', 'every 2', 'every 4'}))
     (out / 'index.html').write_text(text, encoding='utf-8')
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 
-"""Mean errors of iib_localize in each light, with the paper's points, with lines and with an IMU: setups.py IIB_LOCALIZE OUT.csv STREET VIEWS
+"""Mean errors of iib_localize in each light, with the paper's points, with lines and with an IMU: setups.py IIB_LOCALIZE OUT.csv STREET [VIEWS]
 
 Needs what page.py needs. STREET: what tools/synthetic/localization.py rendered; VIEWS: what views.py rendered, other places, whose images count together.
 """
@@ -37,8 +37,9 @@ def write(out, counts, errors):
 
 
 def main():
-    program, out, street, views = map(pathlib.Path, sys.argv[1:])
-    places = [('1.4 m apart', street, 1), *(('other places', place, 1) for place in sorted(views.iterdir())), ('5.6 m apart', street, 4)]
+    program, out, street, *views = map(pathlib.Path, sys.argv[1:])
+    others = [('other places', place, 1) for folder in views for place in sorted(folder.iterdir())]
+    places = [('1.4 m apart', street, 1), ('5.6 m apart', street, 4), *others]
     counts, errors = collections.Counter(), collections.defaultdict(list)
     for name, place, step in places:
         with tempfile.TemporaryDirectory() as work:
