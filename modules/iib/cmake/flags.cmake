@@ -11,4 +11,7 @@ if(CMAKE_SIZEOF_VOID_P EQUAL 4)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # GCC 12 takes two shorts in a word for one number where it multiplies and shifts
     list(APPEND IIB_REQUIRED_FLAGS -fno-tree-vectorize)
   endif()
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "86|amd64" AND NOT MSVC)  # x87 rounds to other bits
+    list(APPEND IIB_REQUIRED_FLAGS -msse2 -mfpmath=sse)
+  endif()
 endif()
