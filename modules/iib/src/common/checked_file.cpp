@@ -70,9 +70,9 @@ void remove(const String& name) { _wremove(systemName(name).c_str()); }
 bool flushToDisk(std::FILE* file) { return std::fflush(file) == 0 && _commit(_fileno(file)) == 0; }
 
 // Tries again what is refused for a moment: who reads a file keeps it from being replaced, and the other way round.
-template <typename Action> bool patiently(Action action)
+template <typename Action> bool patiently(int seconds, Action action)
 {
-    for (int attempt = 0; attempt < 500; attempt++)
+    for (int attempt = 0; attempt < 100 * seconds; attempt++)
     {
         if (action())
             return true;
@@ -86,7 +86,7 @@ template <typename Action> bool patiently(Action action)
 
 bool replace(const String& from, const String& to, const String&)
 {
-    return patiently([&] {
+    return patiently(60, [&] {  // readers that follow each other leave short moments
         return MoveFileExW(systemName(from).c_str(), systemName(to).c_str(),
                        MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) != 0;
     });
@@ -95,7 +95,7 @@ bool replace(const String& from, const String& to, const String&)
 bool openToRead(std::filebuf& file, const String& name)
 {
     const Present there = presentAt(name);
-    return (!there.any || there.file) && patiently([&] {  // a folder would be refused for long
+    return (!there.any || there.file) && patiently(5, [&] {  // a folder would be refused for long
         return file.open(systemName(name).c_str(), std::ios::in | std::ios::binary) != 0;
     });
 }
