@@ -12,9 +12,11 @@ zig="$cache/zig/bin/python-zig"
 }
 for architecture in aarch64 x86_64; do
     build="$root/build-macos-$architecture"
-    # The compiler is known by an object: to link, zig would compile all of libc++ first.
+    # Not as CMAKE_CXX_COMPILER, whose arguments would count as a change in a folder that exists. The compiler is known by an
+    # object: to link, zig would compile all of libc++ first.
+    export CXX="$zig c++ -target $architecture-macos.11.0"
     configure -DCMAKE_SYSTEM_NAME=Darwin -DCMAKE_SYSTEM_PROCESSOR=$architecture -DCMAKE_BUILD_TYPE=Debug \
-        "-DCMAKE_CXX_COMPILER=$zig;c++;-target;$architecture-macos.11.0" -DCMAKE_CXX_COMPILER_ID_TEST_FLAGS_FIRST=-c \
+        -DCMAKE_CXX_COMPILER_ID_TEST_FLAGS_FIRST=-c \
         -DCMAKE_TRY_COMPILE_TARGET_TYPE=STATIC_LIBRARY -DCMAKE_INSTALL_NAME_TOOL=/bin/true \
         "-DOpenCV_DIR=$(pkg-config --variable=libdir opencv4)/cmake/opencv4" \
         -DCMAKE_COMPILE_WARNING_AS_ERROR=ON -DIIB_BUILD_TESTS=OFF -DIIB_BUILD_TOOLS=OFF -DIIB_BUILD_APPS=ON
