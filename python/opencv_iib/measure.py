@@ -13,7 +13,7 @@ from opencv_iib.demo import GOOD, INK, OTHER, draw
 from opencv_iib.functions import match
 from opencv_iib.geometry import FoundPose, findRelativePose
 from opencv_iib.localization import Camera
-from opencv_iib.refinement import RefinedMatches, propagateMatches
+from opencv_iib.refinement import PropagatedMatches, RefinedMatches, propagateMatches
 
 HEADER = 'x1,y1,x2,y2,xx,xy,yy,similarity,bits'
 
@@ -79,13 +79,18 @@ def match_images(image_a: str, image_b: str, out: Optional[str] = None, picture:
         if (lens.width, lens.height) != image.shape[1::-1]:
             raise ValueError(f'{path} has {image.shape[1]} x {image.shape[0]} pixels, its camera {lens.width} x {lens.height}')
     (rows_a, codes_a), (rows_b, codes_b) = map(Features(options), images)
-    pairs, *refined = propagateMatches(images[0], rows_a, images[1], rows_b, match(codes_a, codes_b).pairs)
-    matches = RefinedMatches(*refined)
-    bits = np.unpackbits(codes_a[pairs[:, 0]] ^ codes_b[pairs[:, 1]], axis=1).sum(axis=1, dtype=np.int32)
+    given = match(codes_a, codes_b).pairs
+    propagated = propagateMatches(images[0], rows_a, images[1], rows_b, given)
     pose = None
     if lenses:
-        (a, matrix_a), (b, matrix_b) = (_without_distortion(points, lens) for points, lens in zip(matches[:2], lenses))
-        pose = findRelativePose(a, b, matrix_a, matrix_b)
+        # Where a pattern repeats, wrong matches lead to further ones, but seldom to one pose: a second try is from those alone
+        # that agree with a first one. Only where right matches are few, the first try knows more.
+        pose = _pose(propagated, lenses)
+        first = _pose(PropagatedMatches(*(rows[:len(given)] for rows in propagated)), lenses)
+        again = propagateMatches(images[0], rows_a, images[1], rows_b, given[first.inliers.ravel() > 0])
+        pose, propagated = max((pose, propagated), (_pose(again, lenses), again), key=lambda found: int(found[0].inliers.sum()))
+    pairs, matches = propagated.matches, RefinedMatches(*propagated[1:])
+    bits = np.unpackbits(codes_a[pairs[:, 0]] ^ codes_b[pairs[:, 1]], axis=1).sum(axis=1, dtype=np.int32)
     measured = Measured(matches, bits, pose)
     good = measured.refined if pose is None else pose.inliers.ravel() > 0
     if out is not None:
@@ -99,6 +104,11 @@ def match_images(image_a: str, image_b: str, out: Optional[str] = None, picture:
         write_picture(picture, draw(images, matches.points1, matches.points2, good, [
             (f'{len(bits)} matches:  ', INK), (f'{good.sum()} {what}', GOOD), (f'  {(~good).sum()} others', OTHER)]))
     return measured
+
+
+def _pose(matches: PropagatedMatches, lenses: Sequence[Camera]) -> FoundPose:
+    (a, matrix_a), (b, matrix_b) = (_without_distortion(points, lens) for points, lens in zip(matches[1:3], lenses))
+    return findRelativePose(a, b, matrix_a, matrix_b)
 
 
 def _without_distortion(points: NDArray[np.float32], camera: Camera) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

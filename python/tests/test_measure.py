@@ -4,11 +4,14 @@ import os
 import re
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
 from opencv_iib.align import align
+from opencv_iib.colmap.features import FeatureOptions
 from opencv_iib.measure import match_images
+from opencv_iib.refinement import propagateMatches
 from support import REPOSITORY, InFolder, cv2, run_command, texture
 
 SCENES = REPOSITORY / 'tools/synthetic'
@@ -69,6 +72,24 @@ class Match(Commands):
         wrong = match_images(a, b, cameras=['PINHOLE,480,360,800,800,240,180'])
         turn = np.degrees(np.arccos((np.trace(wrong.pose.R) - 1) / 2))
         self.assertGreater(abs(turn - 3), .5)
+
+    def test_the_pose_is_that_of_matches_that_agree_before_or_after_they_lead_to_others(self):
+        a, b = self.write('a.png', self.world((4, 8))), self.write('b.png', self.world((4, 8), .5, 3))
+        options = {'cameras': ['PINHOLE,480,360,400,400,240,180'], 'options': FeatureOptions(points=300)}
+        best = match_images(a, b, **options).pose.inliers.sum()
+        for misled in range(2):
+            calls = []
+
+            def propagate(*arguments):
+                calls.append(propagateMatches(*arguments))
+                if len(calls) - 1 == misled:
+                    calls[-1].points2[len(arguments[4]) // 2:] += np.random.default_rng(0).uniform(5, 50, 2).astype(np.float32)
+                return calls[-1]
+
+            with mock.patch('opencv_iib.measure.propagateMatches', propagate):
+                found = match_images(a, b, **options)
+            self.assertGreater(found.pose.inliers.sum(), .9 * best)
+            np.testing.assert_array_equal(found.matches.points2, calls[1 - misled].points2)
 
     def test_without_cameras(self):
         picture = self.world((4, 4))

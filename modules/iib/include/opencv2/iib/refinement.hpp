@@ -50,7 +50,8 @@ the nearest refined match, less than 100 pixels away, says it should be: with th
 and a tenth of the distance. What agrees best after least-squares matching is taken, and leads on. Only matches that two of
 the eight nearest ones confirm lead to others. For poses from views that are far apart or in other light: half as
 many right matches again, and poses that were not found without them. Where a pattern repeats, as the windows of a block of flats do,
-wrong matches that confirm each other lead to further ones as well: there refineMatches alone gives the better poses.
+wrong matches that confirm each other lead to further ones as well. So for a pose call it twice, with all matches and with those
+alone that agree with a first pose, and take the pose of the two that more matches agree with.
 
 @param image1, image2, keypoints1, keypoints2 as in refineMatches; of any detector.
 @param matches1to2 on return the same matches, followed by those that were found, the most similar ones of each round first.
