@@ -24,6 +24,7 @@ if [ $# = 0 ]; then
     [ $# != 0 ] || set -- python3
 fi
 need $compiler_packages binutils python3-venv python3-dev
+[ -z "$test" ] || need libgl1 libglib2.0-0 libsm6 libxext6  # which opencv-python takes for granted
 
 wheels="$build/wheel"
 mkdir -p "$wheels"
@@ -42,8 +43,10 @@ quietly() {
     }
 }
 
-# content PYTHON WHEEL: the extension needs the compiler's and C's libraries alone, and shows its entry point alone.
+# content PYTHON WHEEL: at most 8 MB; the extension needs the compiler's and C's libraries alone, and shows its entry point alone.
 content() {
+    bytes=$(wc -c <"$2")
+    [ "$bytes" -le 8000000 ] || fail "$2 has $bytes bytes"
     rm -rf "$work/content"
     "$1" -m zipfile -e "$2" "$work/content"
     for extension in "$work"/content/opencv_iib/_core*.so; do
@@ -91,7 +94,11 @@ check() {
     shift 2
     quietly "$work/environment/bin/pip" install --no-index --no-deps --find-links "$wheels" opencv-iib
     quietly "$work/environment/bin/pip" install "$@"
-    "$work/environment/bin/python" -c 'import numpy; print("numpy", numpy.__version__)
+    "$work/environment/bin/python" -c 'import time, opencv_iib
+seconds = time.process_time()
+print("imported in %.2f s" % seconds)
+assert seconds <= .3
+import numpy; print("numpy", numpy.__version__)
 try:
     import cv2; print("cv2", cv2.__version__)
 except ImportError:
