@@ -133,7 +133,8 @@ def write_pictures(out, light, drawn):
 def write_page(out, results, world, pictures):
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True, lstrip_blocks=True,
                                      undefined=jinja2.StrictUndefined)
-    by_light = [[row for row in results['rows'] if row['place'] == 'street' and row['light'] == light] for light in results['lights']]
+    rows = sorted((row for row in results['rows'] if row['place'] == 'street'), key=lambda row: row['method'].startswith('SIFT'))
+    by_light = [[row for row in rows if row['light'] == light] for light in results['lights']]
     setups = [file for file in [out / 'localization_setups.csv'] if file.exists()]
     text = environment.get_template('page.html.j2').render(
         results, by_light=by_light, charts=[c for c in map(chart, by_light) if c], worst=worst(results), share=share, world=world,
