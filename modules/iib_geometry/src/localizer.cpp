@@ -26,7 +26,8 @@ constexpr double LEAST_INLIERS = 15, LEAST_SHARE = .02;  // in an unknown place 
 constexpr double MAX_BOUND = .1;  // of the distance to the points: three standard deviations of the place
 // Pixels: deviation of a keypoint that refineMatches placed, with that of its point, before it is learned and at least.
 constexpr double REFINED = .3, LEAST_REFINED = .03;
-constexpr int LOOKS = 2;         // along the pose, for points that no keypoint matched
+constexpr int LOOKS = 8;         // at most, along the pose
+constexpr double STILL = .1;     // pixels that what is seen moves by a look, if it is the last one
 constexpr double MAX_RATIO = 3;  // of the sizes at which two images see a point
 constexpr int LINE_ROUNDS = 2;   // lines are looked for again after the first refinement by them
 constexpr size_t WORTH = 16;     // matches with an image of the map, for which they are refined
@@ -209,17 +210,17 @@ void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Foun
     std::vector<Match> used;
     for (int look = 0; look < LOOKS; look++)
     {
+        const cv::Affine3d before = pose;
         used = within(limit, matches, lens, pose);
-        std::set<int> matched;
-        for (const Match& m : used)
-            matched.insert(m.number);
         for (const Match& m : within(limit, seenAlong(map, found, lens, frame, pose), lens, pose))
-            if (matched.count(m.number) == 0)
-                used.push_back(m);
+            used.push_back(m);
         learnDeviation(used, lens, pose);
         if (!refinePose(used, lens, pose, covariance))
             return;
         inliers = within(limit, used, lens, pose);
+        const double depth = medianDistance(inCamera(pointsOf(inliers), pose));
+        if (lens.matrix()(0, 0) * distance(pose, before, depth) < STILL)
+            break;
     }
     for (int round = 0; round < LINE_ROUNDS && !found.segments.places.empty(); round++)
     {
