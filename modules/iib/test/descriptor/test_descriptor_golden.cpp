@@ -3,7 +3,6 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/test_images.hpp"
-#include "../../src/common/checked_file.hpp"
 
 /* The exact bits, which no build, machine or later version may change without a new major version: descriptors in
  files would no longer match. A test that fails prints its line of the table. All lines:
@@ -115,14 +114,6 @@ const Golden GOLDEN[] = {{"default", 0x7c4943b59e478a06, 0x2e989fe2274d8bf2, not
         {"selection", 0x4b159b8d342f9f70, 0xf4dddd863a1c586a, someQuads, CV_8UC1},
         {"selection, orientation of keypoints", 0x6358ca80c16b3c4b, 0x1660dccffba8e262, rotatedQuads,
                 CV_8UC1}};
-
-uint64 hashOf(const Mat& m)
-{
-    cv::iib::Fnv1a hash;
-    for (int y = 0; y < m.rows; y++)
-        hash.add(m.ptr(y), (size_t)m.cols);
-    return hash.value();
-}
 
 Mat image(Size size, int type)
 {

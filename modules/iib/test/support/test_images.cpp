@@ -3,6 +3,8 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "test_images.hpp"
+
+#include "../../src/common/checked_file.hpp"
 #include "descriptor_oracle.hpp"
 
 #include <fstream>
@@ -237,6 +239,14 @@ RotatedPair::RotatedPair(double degrees, double zoom) : homography(Matx33d::eye(
     images[1] = relit(rotated, 8);
     for (int i = 0; i < 2; i++)
         ORB::create(600)->detect(images[i], keypoints[i]);
+}
+
+uint64 hashOf(const Mat& m)
+{
+    cv::iib::Fnv1a hash;
+    for (int y = 0; y < m.rows; y++)
+        hash.add(m.ptr(y), m.cols * m.elemSize());
+    return hash.value();
 }
 
 int RotatedPair::correct(const std::vector<DMatch>& matches) const

@@ -59,6 +59,9 @@ int differingBits(const Mat& a, const Mat& b);
 
 void expectSameKeyPoints(const std::vector<KeyPoint>& expected, const std::vector<KeyPoint>& actual);
 
+//! FNV-1a of the bytes of all rows.
+uint64 hashOf(const Mat& m);
+
 //! How many matches lead at most 3 pixels away from where a homography takes their point.
 int countCorrect(const std::vector<DMatch>& matches, const std::vector<KeyPoint>& queries,
         const std::vector<KeyPoint>& trains, const Matx33d& homography = Matx33d::eye());

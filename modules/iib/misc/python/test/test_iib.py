@@ -82,10 +82,8 @@ class DescriptorTest(unittest.TestCase):
             path = os.path.join(folder, 'iib.yml')
             iib.write(path)
             loaded.read(path)
-        for name in ('ScaleFactor', 'Granularity', 'Channels', 'Mapping', 'Overlap', 'UseOrientation',
-                     'ExtraChannels', 'Border'):
-            self.assertEqual(getattr(iib, 'get' + name)(), getattr(loaded, 'get' + name)(), name)
-        np.testing.assert_array_equal(iib.getSelection(), loaded.getSelection())
+        for name in (name for name in dir(iib) if name.startswith('get')):
+            np.testing.assert_array_equal(getattr(iib, name)(), getattr(loaded, name)(), name)
         np.testing.assert_array_equal(iib.compute(noise(7), grid())[1], loaded.compute(noise(7), grid())[1])
 
     def test_border_drop_returns_the_keypoints_that_are_left(self):
