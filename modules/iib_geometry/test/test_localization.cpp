@@ -94,6 +94,27 @@ TEST_F(Localization, covariance_is_that_of_repeated_measurements)
     }
 }
 
+// Alone, the points that keypoints match place these images within .67 mm.
+TEST_F(Localization, looks_for_points_that_no_keypoint_matched)
+{
+    const Localizer localizer(folder.path("map"));
+    constexpr int COUNT = 12;
+    cv::RNG random(3);
+    double squares = 0;
+    for (int i = 0; i < COUNT; i++)
+    {
+        const cv::Affine3d truth = poseAt(0.1 * i - 0.6, -0.1, 0.02 * i);
+        cv::Mat noise(SIZE, CV_16S), noisy;
+        random.fill(noise, cv::RNG::NORMAL, 0, 6);
+        cv::add(wall.image(truth), noise, noisy, cv::noArray(), CV_8U);
+        const Location location = localizer.localize(noisy, CAMERA);
+        ASSERT_TRUE(location.found) << location.reason;
+        const double off = cv::norm(inverse(location.cameraFromWorld).translation() - truth.translation());
+        squares += off * off / COUNT;
+    }
+    EXPECT_LT(std::sqrt(squares), 0.00055);
+}
+
 TEST_F(Localization, threads_share_a_localizer)
 {
     const Localizer localizer(folder.path("map"));
