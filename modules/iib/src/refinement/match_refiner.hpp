@@ -18,8 +18,8 @@ struct Refinement
     PatchAlignment found;
 
     //! Begins where the keypoints' angles and sizes say.
-    explicit Refinement(const DMatch& match_) : match(match_), guided(false) {}
-    Refinement(const DMatch& match_, const Matx22d& map_) : match(match_), guided(true), map(map_) {}
+    explicit Refinement(const DMatch& match_) : match(match_), guided(false), found() {}
+    Refinement(const DMatch& match_, const Matx22d& map_) : match(match_), guided(true), map(map_), found() {}
 };
 
 //! Refines matches of two images' keypoints by least-squares matching.
