@@ -36,6 +36,22 @@ class Names(unittest.TestCase):
         for name, member in opencv_iib.Channel.__members__.items():
             self.assertIs(getattr(iib, 'CHANNELS_DEFAULT' if name == 'DEFAULT' else 'CHANNEL_' + name), member)
 
+    def test_there_are_no_others(self):
+        iib, matcher = opencv_iib.IIB(channels=59, granularity=5), opencv_iib.HierarchicalMatcher([8, 8])  # which every value suits
+        for enum, use in ((opencv_iib.Mapping, iib.setMapping), (opencv_iib.Border, iib.setBorder), (opencv_iib.Mode, matcher.setMode),
+                          (opencv_iib.Orientation, iib.setOrientation), (opencv_iib.Preset, lambda preset: iib.createPreset(preset, 2))):
+            for member in enum:
+                use(member)
+            with self.assertRaises(opencv_iib.error, msg=enum):
+                use(len(enum))
+
+    def test_presets(self):
+        for preset, *expected in (('S128', 16, 1), ('S256', 32, 1), ('S512', 64, 1), ('ACCURATE', 170, 1.25), ('COMPACT', 64, 1.25),
+                                  ('TINY', 32, 1.25), ('BALANCED', 64, 1.125), ('VIEWPOINT', 64, 1.25), ('UNIVERSAL', 128, 1.25), ('SMALL', 32, 1.25)):
+            iib = opencv_iib.IIB.createPreset(opencv_iib.Preset[preset], 1)
+            self.assertEqual([iib.descriptorSize(), iib.getScaleFactor()], expected, preset)
+            self.assertEqual(iib.getMapping() == opencv_iib.Mapping.BOXES, preset in ('VIEWPOINT', 'UNIVERSAL', 'SMALL'), preset)
+
     def test_one_version(self):
         self.assertEqual(opencv_iib.__version__, importlib.metadata.version('opencv-iib'))
         self.assertRegex(opencv_iib.OPENCV_VERSION, r'^[45]\.\d')

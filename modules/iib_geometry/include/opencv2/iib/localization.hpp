@@ -98,8 +98,9 @@ struct Location
     bool found = false;
     std::string reason;        //!< why there is no pose
     Affine3d cameraFromWorld;  //!< x right, y down, z forward; in the map's unit
-    /** Of the camera's centre (map's unit) and of a small turn about the world's axes (radians), by how far what agrees is off,
-    the more the less parts of the image agree. Wrong poses of the map's images and a wrong calibration are not in it. */
+    /** Of the camera's centre (map's unit) and of a small turn about the world's axes (radians). Estimated from how far the matches
+    that agree are from where the pose has their points, and from how much parts of the image disagree. Wrong poses of the map's images
+    and a wrong calibration are not in it. */
     Matx66d covariance;
     int matches = 0;              //!< of keypoints with points of the map
     int inliers = 0;              //!< keypoints that agree with the pose
