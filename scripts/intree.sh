@@ -98,6 +98,7 @@ say "opencv_perf_iib, in-tree, a smoke run"
 say "cv2.iib"
 export PYTHONPATH="$build/python_loader"
 /usr/bin/python3 "$root/modules/iib/misc/python/test/test_iib.py" -v
+/usr/bin/python3 "$root/python/tests/cv2_more.py" -v
 say "the names that python/tests/test_names.py looks for"
 /usr/bin/python3 "$root/python/tests/cv2_names.py" | diff "$root/python/tests/cv2_names.txt" -
 say "the tutorial's Python program, on the demo's pair"
