@@ -9,20 +9,16 @@ if(IIB_DISPATCH)
   set(pins AVX512_SKX=AVX512-ICL AVX2=AVX512-SKX,AVX512-ICL SSE4_2=AVX2,AVX512-SKX,AVX512-ICL
     baseline=SSE4.1,SSE4.2,AVX,AVX2,AVX512-SKX,AVX512-ICL)
 endif()
-# Suites of kernels, which compare every instruction set with naive code over sizes and alignments. Sanitized, where all
-# takes ten times as long, the others run once by day, and under each pin by night.
+# Suites of kernels, which compare every instruction set with naive code over sizes and alignments, run under each pin by
+# day; the others, whose answers cannot differ where those agree, once by day and under each pin by night.
 set(kernels_of_opencv_test_iib Kernels Hamming Bits Boxes Rotated GradientOrientation Normalization Refinement Matcher_Sizes Golden InstructionSets)
 set(kernels_of_opencv_test_iib_index MappedIndex)
 set(kernels_of_opencv_test_iib_geometry "")  # has none of its own
-set(label "")
-if(IIB_SANITIZE)
-  set(label nightly)
-endif()
-foreach(program opencv_test_iib opencv_test_iib_index opencv_test_iib_geometry)
+foreach(program opencv_test_iib_geometry opencv_test_iib opencv_test_iib_index)  # the longest suites first
   set(suites "${PROJECT_BINARY_DIR}/${program}.suites.cmake")
   add_custom_command(TARGET ${program} POST_BUILD
     COMMAND "${CMAKE_COMMAND}" "-DEXE=$<TARGET_FILE:${program}>" "-DOUT=${suites}" "-DPINS=${pins}"
-      "-DKERNELS=${kernels_of_${program}}" "-DLABEL=${label}" -P "${PROJECT_SOURCE_DIR}/cmake/ListSuites.cmake"
+      "-DKERNELS=${kernels_of_${program}}" -P "${PROJECT_SOURCE_DIR}/cmake/ListSuites.cmake"
     BYPRODUCTS "${suites}" VERBATIM)
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${suites}")
 endforeach()

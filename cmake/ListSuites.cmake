@@ -1,5 +1,5 @@
 # Writes add_test for each suite of the test program EXE to OUT, and again for each pin WIDEST=DISABLED in PINS. Pins of
-# suites that match nothing in the list KERNELS get the label LABEL, if it is not empty.
+# suites that match nothing in the list KERNELS get the label `nightly`.
 execute_process(COMMAND "${EXE}" --gtest_list_tests OUTPUT_VARIABLE list COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "(^|\n)[A-Za-z0-9_/]+\\." suites "${list}")
 foreach(kernel IN LISTS KERNELS)
@@ -14,8 +14,8 @@ foreach(suite IN LISTS suites)
   string(REGEX REPLACE "\\.$" "" name "${suite}")
   string(APPEND content "add_test([[${name}]] [[${EXE}]] [[--gtest_filter=${suite}*]])\n")
   set(label "")
-  if(LABEL AND NOT (KERNELS AND name MATCHES "${kernels}"))
-    set(label "LABELS ${LABEL} ")
+  if(NOT (KERNELS AND name MATCHES "${kernels}"))
+    set(label "LABELS nightly ")
   endif()
   foreach(pin IN LISTS PINS)
     string(REGEX MATCH "(.*)=(.*)" pin "${pin}")

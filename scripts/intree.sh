@@ -11,7 +11,7 @@
 . "$(dirname "$0")/helpers/lib.sh"
 
 dispatch="SSE4_1;SSE4_2;AVX;FP16;AVX2;AVX512_SKX;AVX512_ICL"
-flags=-O3 tests="*" short=""
+flags=-O3 tests="*" geometry="*" short=""
 if [ "${1:-}" = --short ]; then
     # The widest that this machine has, which a test asks for.
     dispatch="AVX2"
@@ -20,6 +20,7 @@ if [ "${1:-}" = --short ]; then
     flags=-O1 short=.short
     tests="IIB_Golden*:IIB_IO*:IIB_Errors*:IIB_Input*:IIB_KeyPoints*:IIB_MatcherCreate*:IIB_MatcherEdges*:IIB_IndexFile*:IIB_InstructionSets*"
     tests="$tests-*upper_halves*" # which compilers free from -O2 on
+    geometry="RelativePose*:Alignment*:Localization*"
     shift
 fi
 kind=debian
@@ -92,7 +93,7 @@ done
 say "the modules' tests, in-tree"
 "$build/bin/opencv_test_iib" --gtest_filter="$tests"
 "$build/bin/opencv_test_iib_index"
-"$build/bin/opencv_test_iib_geometry"
+"$build/bin/opencv_test_iib_geometry" --gtest_filter="$geometry"
 say "opencv_perf_iib, in-tree, a smoke run"
 "$build/bin/opencv_perf_iib" --perf_min_samples=1 --perf_force_samples=1
 say "cv2.iib"
