@@ -69,44 +69,46 @@ std::FILE* create(const String& name)
 void remove(const String& name) { _wremove(systemName(name).c_str()); }
 bool flushToDisk(std::FILE* file) { return std::fflush(file) == 0 && _commit(_fileno(file)) == 0; }
 
-// Tries again what is refused for a moment: who reads a file keeps it from being replaced, and the other way round.
+// Tries again what is refused for a moment: who reads a file keeps it from being replaced, and vice versa.
 template <typename Action> bool patiently(int seconds, Action action)
 {
-    for (int attempt = 0; attempt < 100 * seconds; attempt++)
+    for (int left = 100 * seconds; !action(); left--)
     {
-        if (action())
-            return true;
         const DWORD error = GetLastError();
-        if (error != ERROR_SHARING_VIOLATION && error != ERROR_ACCESS_DENIED)
+        if (left == 0 || (error != ERROR_SHARING_VIOLATION && error != ERROR_ACCESS_DENIED))
             return false;
         Sleep(10);
     }
-    return false;
+    return true;
 }
 
 bool replace(const String& from, const String& to, const String&)
 {
-    return patiently(60, [&] {  // readers that follow each other leave short moments
-        return MoveFileExW(systemName(from).c_str(), systemName(to).c_str(),
+    const std::wstring target = systemName(to);
+    const auto move = [&] {
+        return MoveFileExW(systemName(from).c_str(), target.c_str(),
                        MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH) != 0;
-    });
+    };
+    if (patiently(1, move))
+        return true;
+    // Readers in turn leave moments; rights that lack, whose error is the same, are not waited for.
+    const HANDLE file = CreateFileW(target.c_str(), GENERIC_WRITE | DELETE, 0, 0, OPEN_EXISTING, 0, 0);
+    if (file != INVALID_HANDLE_VALUE)
+        CloseHandle(file);
+    else if (GetLastError() == ERROR_ACCESS_DENIED)
+        return false;
+    return patiently(60, move);
 }
 
-bool openToRead(std::filebuf& file, const String& name)
+void openToRead(std::filebuf& file, const String& name)
 {
-    const Present there = presentAt(name);
-    return (!there.any || there.file) && patiently(5, [&] {  // a folder would be refused for long
-        return file.open(systemName(name).c_str(), std::ios::in | std::ios::binary) != 0;
-    });
+    patiently(5, [&] { return file.open(systemName(name).c_str(), std::ios::in | std::ios::binary) != 0; });
 }
 #else
 int processId() { return (int)getpid(); }
 std::FILE* create(const String& name) { return std::fopen(name.c_str(), "wbx"); }
 void remove(const String& name) { std::remove(name.c_str()); }
-bool openToRead(std::filebuf& file, const String& name)
-{
-    return file.open(name, std::ios::in | std::ios::binary) != 0;
-}
+void openToRead(std::filebuf& file, const String& name) { file.open(name, std::ios::in | std::ios::binary); }
 
 String fileOf(const String& name)
 {
@@ -303,9 +305,8 @@ void CheckedWriter::commit() { file->commit(); }
 CheckedReader::CheckedReader(const String& filename, const FileKind& kind)
     : name(checkedName(filename)), kindName(kind.name), whole(0), rest(0), format(0)
 {
-    // A pipe would not open before somebody writes to it.
-    if (!presentAt(name).file || !openToRead(*stream.rdbuf(), name))
-        CV_Error(Error::StsError, "Cannot read " + name);
+    if (presentAt(name).file)  // a pipe would not open before somebody writes to it
+        openToRead(*stream.rdbuf(), name);
     stream.seekg(0, std::ios::end);
     const std::streamoff end = stream.tellg();
     stream.seekg(0);
