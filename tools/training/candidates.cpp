@@ -7,18 +7,12 @@
 #include <cstdlib>
 #include <map>
 
+#include "iib/src/descriptor/parameters.hpp"
+
 namespace iib_tools {
 namespace {
 
-using cv::iib::IIB;
-
-const int CHANNEL_GROUP = 4;  // the order of bits in a descriptor, see IIBDescriptorExtractor
-
-int bitsPerQuad(int mapping)
-{
-    // level 3 of one channel has 16 quads
-    return IIB::create(1.f, 3, IIB::CHANNEL_GRAD_X, mapping)->levelSizes()[2] * 8 / 16;
-}
+using namespace cv::iib;
 
 //! In the order of a descriptor's bits, so that a quad's place is that of its bits.
 cv::Mat_<int> allQuads(const PoolParameters& p, int mask)
@@ -28,11 +22,11 @@ cv::Mat_<int> allQuads(const PoolParameters& p, int mask)
     for (int level = 1; level <= p.granularity; level++)
     {
         const int windows = p.windows[std::min(level, int(p.windows.size())) - 1];
-        for (int group = 0; group < channels; group += CHANNEL_GROUP)
+        for (int group = 0; group < channels; group += GROUP_CHANNELS)
             for (int window = 0; window < 4; window++)
                 for (int row = window / 2; (windows >> window & 1) && row + 1 < 1 << level; row += 2)
                     for (int column = window % 2; column + 1 < 1 << level; column += 2)
-                        for (int channel = group; channel < std::min(group + CHANNEL_GROUP, channels);
+                        for (int channel = group; channel < std::min(group + GROUP_CHANNELS, channels);
                                 channel++)
                             quads.push_back(cv::Mat_<int>({level, channel, row, column, mask}).reshape(1, 1));
     }
@@ -42,7 +36,7 @@ cv::Mat_<int> allQuads(const PoolParameters& p, int mask)
 //! Whether the bits of two quads of a level are in one row of planes.
 bool inOneRow(const int* p, const int* q)
 {
-    return p[0] == q[0] && p[1] / CHANNEL_GROUP == q[1] / CHANNEL_GROUP && p[2] == q[2] &&
+    return p[0] == q[0] && p[1] / GROUP_CHANNELS == q[1] / GROUP_CHANNELS && p[2] == q[2] &&
            p[3] % 2 == q[3] % 2;
 }
 
@@ -90,7 +84,7 @@ void addBoxes(const PoolParameters& p, CandidatePool& pool)
     };
     for (int level = 1; level <= p.granularity; level++)
     {
-        const int n = quadsInRow(p.mapping, level);
+        const int n = placesInRow(p.mapping, level);
         position = (position + 7) / 8 * 8;
         for (int row = 0; row + 1 < n; row++)
             for (int bit = 0; bit < 3; bit++)
@@ -121,12 +115,6 @@ int countBits(int mask)
     for (; mask; mask &= mask - 1)
         n++;
     return n;
-}
-
-int quadsInRow(int mapping, int level)
-{
-    const int boxes[] = {3, 5, 7, 9, 7};
-    return mapping == IIB::MAPPING_BOXES ? boxes[level - 1] : (1 << level) - 1;
 }
 
 CandidatePool makePool(const PoolParameters& p)

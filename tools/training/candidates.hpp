@@ -40,9 +40,6 @@ struct CandidatePool
 
 int countBits(int mask);
 
-//! Places of quads, or of boxes, in a row of a level.
-int quadsInRow(int mapping, int level);
-
 CandidatePool makePool(const PoolParameters& parameters);
 
 //! The rows for setSelection, by level, channel and place, the chosen bits of a quad in one mask.

@@ -8,6 +8,8 @@
 #include <set>
 #include <sstream>
 
+#include "iib/src/descriptor/parameters.hpp"
+
 namespace iib_tools {
 namespace {
 
@@ -31,7 +33,7 @@ std::string masksOf(const IIB& preset)
     std::string digits, text;
     for (int level = 1; level <= preset.getGranularity(); level++)
     {
-        const int n = quadsInRow(preset.getMapping(), level);
+        const int n = cv::iib::placesInRow(preset.getMapping(), level);
         for (int row = 0; row < n; row++)
             for (int column = 0; column < n; column++)
                 for (int channel = 0; channel < countBits(preset.getChannels()); channel++)

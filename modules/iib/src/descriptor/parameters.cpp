@@ -9,7 +9,6 @@
 #include <set>
 
 #include "../common/file_numbers.hpp"
-#include "boxes/kernels/boxes.hpp"
 
 namespace cv {
 namespace iib {
@@ -45,23 +44,17 @@ static void checkSelection(const Parameters& p)
                                 p.granularity));
         require(channel >= 0 && channel < channels, Error::StsOutOfRange,
                 where + format("channel %d is not in 0..%d", channel, channels - 1));
-        const bool boxes = p.mapping == IIB::MAPPING_BOXES;
-        const int end = boxes ? BOX_GRIDS[level - 1].n - 1 : (1 << level) - 2;
-        require(row >= 0 && row <= end && col >= 0 && col <= end, Error::StsOutOfRange,
-                where + format("cell (%d, %d) is not in 0..%d", row, col, end));
-        const int mask = boxes ? boxMask(kinds[channel], level, row, col) : (1 << bitsPerQuad(p.mapping)) - 1;
+        const int n = placesInRow(p.mapping, level);
+        require(row >= 0 && row < n && col >= 0 && col < n, Error::StsOutOfRange,
+                where + format("cell (%d, %d) is not in 0..%d", row, col, n - 1));
+        const int mask = p.mapping == IIB::MAPPING_BOXES ? boxMask(kinds[channel], level, row, col)
+                                                         : (1 << bitsPerQuad(p.mapping)) - 1;
         require(bits > 0 && (bits & ~mask) == 0, Error::StsOutOfRange,
                 where + format("bit mask %d must have some of the bits of %d and no others", bits, mask));
         const std::array<int, 4> place = {{level, channel, row, col}};
         require(seen.insert(place).second, Error::StsBadArg, where + "the quad was given before");
         last = level;
     }
-}
-
-int bitsPerQuad(int mapping)
-{
-    static const int bits[] = {4, 4, 4, 8, 8, 3, 4};  // in the order of IIB::Mapping
-    return bits[mapping];
 }
 
 std::vector<int> Parameters::channelKinds() const
@@ -100,14 +93,12 @@ void Parameters::check() const
 //! Bits of all quads or boxes of one channel at a level.
 static int bitsOfChannel(const Parameters& p, int level, int kind)
 {
+    const int n = placesInRow(p.mapping, level);
     if (p.mapping != IIB::MAPPING_BOXES)
-    {
-        const int side = p.overlap ? (1 << level) - 1 : 1 << (level - 1);  // quads in a row
-        return side * side * bitsPerQuad(p.mapping);
-    }
+        return (p.overlap ? n * n : 1 << 2 * (level - 1)) * bitsPerQuad(p.mapping);
     int bits = 0;
-    for (int row = 0; row < BOX_GRIDS[level - 1].n; row++)
-        for (int col = 0; col < BOX_GRIDS[level - 1].n; col++)
+    for (int row = 0; row < n; row++)
+        for (int col = 0; col < n; col++)
             bits += (int)std::bitset<32>((unsigned)boxMask(kind, level, row, col)).count();
     return bits;
 }

@@ -4,8 +4,7 @@
 
 #pragma once
 
-#include "../precomp.hpp"
-#include "kernels/quads.hpp"
+#include "boxes/kernels/boxes.hpp"
 
 namespace cv {
 namespace iib {
@@ -36,7 +35,17 @@ struct Parameters
 };
 
 //! Bits that a mapping makes of one quad.
-int bitsPerQuad(int mapping);
+inline int bitsPerQuad(int mapping)
+{
+    static const int bits[] = {4, 4, 4, 8, 8, 3, 4};  // in the order of IIB::Mapping
+    return bits[mapping];
+}
+
+//! Rows, and columns, of the places that a selection names at a level: quads, also between siblings, or boxes.
+inline int placesInRow(int mapping, int level)
+{
+    return mapping == IIB::MAPPING_BOXES ? BOX_GRIDS[level - 1].n : (1 << level) - 1;
+}
 
 //! Bytes of each level that has any, coarse first; the order of the bits is in descriptor.hpp.
 std::vector<int> levelBytes(const Parameters& parameters);

@@ -4,7 +4,6 @@
 
 #pragma once
 
-#include "boxes/kernels/boxes.hpp"
 #include "parameters.hpp"
 
 namespace cv {

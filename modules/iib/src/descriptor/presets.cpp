@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../precomp.hpp"
-#include "boxes/kernels/boxes.hpp"
+#include "parameters.hpp"
 
 #include <bitset>
 
@@ -34,7 +33,7 @@ Mat selectionOf(const LearnedSelection& p)
     const int* mask = masks.data();
     for (int level = 1; level <= p.granularity; level++)
     {
-        const int n = p.mapping == IIB::MAPPING_BOXES ? BOX_GRIDS[level - 1].n : (1 << level) - 1;
+        const int n = placesInRow(p.mapping, level);
         for (int row = 0; row < n; row++)
             for (int col = 0; col < n; col++)
                 for (int channel = 0; channel < channels; channel++, mask++)
