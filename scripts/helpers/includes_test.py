@@ -17,10 +17,6 @@ for wing in ('detector', 'refinement'):
     ALLOWED[wing].add('normalization')
 ALLOWED['detector'].add('normalization/kernels')  # halves the normalized image, too
 ALLOWED['descriptor'].add('detector')  # an extractor writes and reads the file of its detector
-# The boxes are a room of the descriptor: they use its channels and regions, and compute uses them.
-ALLOWED['descriptor'] |= {'descriptor/boxes', 'descriptor/boxes/kernels'}
-ALLOWED['descriptor/boxes'] = ALLOWED['descriptor']
-ALLOWED['descriptor/boxes/kernels'] = ALLOWED['descriptor/kernels'] | {'descriptor/boxes/kernels'}
 INTRINSICS = re.compile(r'(?:^|[^a-zA-Z_])(?:_mm[0-9]*_|__m(?:128|256|512)|v[a-z]+q_[a-z]*[0-9])', re.MULTILINE)
 
 

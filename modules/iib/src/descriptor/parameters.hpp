@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "boxes/kernels/boxes.hpp"
+#include "kernels/boxes.hpp"
 
 namespace cv {
 namespace iib {

@@ -15,5 +15,7 @@ const DescriptorKernels& descriptorKernels()
     CV_CPU_DISPATCH(descriptorKernels, (), CV_CPU_DISPATCH_MODES_ALL);
 }
 
+const BoxKernels& boxKernels() { CV_CPU_DISPATCH(boxKernels, (), CV_CPU_DISPATCH_MODES_ALL); }
+
 }  // namespace iib
 }  // namespace cv

@@ -4,10 +4,11 @@
 
 // The one dispatched file of the descriptor: the chapters below are compiled with it for each instruction set.
 
-#include "kernels.hpp"
+#include "boxes.hpp"
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "bits.simd.hpp"
+#include "boxes.simd.hpp"
 #include "columns.simd.hpp"
 #include "rotated_samples.simd.hpp"
 #endif
@@ -18,6 +19,7 @@ namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 const DescriptorKernels& descriptorKernels();
+const BoxKernels& boxKernels();
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -28,6 +30,12 @@ const DescriptorKernels& descriptorKernels()
             {rowKernels<int>(), rotatedSampleKernels<int>()}, {sumRow16, cellSums<ushort>},
             {sumRow32, cellSums<unsigned>}, {sumRowOf16Bit, cellSums<unsigned>}, columnCells,
             bitsKernels<ushort>(), bitsKernels<unsigned>(), bitsKernels<double>(), cellEdges};
+    return table;
+}
+
+const BoxKernels& boxKernels()
+{
+    static const BoxKernels table = {boxSumKernels<short>(), boxSumKernels<int>(), boxEdges, boxPlaces};
     return table;
 }
 

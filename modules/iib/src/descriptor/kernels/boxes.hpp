@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "../../kernels/kernels.hpp"
+#include "kernels.hpp"
 
 namespace cv {
 namespace iib {

@@ -2,20 +2,15 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "boxes.hpp"
+#pragma once
 
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-#include "../../kernels/chosen_bits.simd.hpp"
-#endif
+#include "boxes.hpp"
+#include "chosen_bits.simd.hpp"
 
 namespace cv {
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
-const BoxKernels& boxKernels();
-
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
 
@@ -384,14 +379,6 @@ template <typename T> BoxSumKernels<T> boxSumKernels()
 }
 
 }  // namespace
-
-const BoxKernels& boxKernels()
-{
-    static const BoxKernels table = {boxSumKernels<short>(), boxSumKernels<int>(), boxEdges, boxPlaces};
-    return table;
-}
-
-#endif
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 

@@ -2,9 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../steps.hpp"
+#include "steps.hpp"
 
-#include "../bands.hpp"
+#include "bands.hpp"
 
 namespace cv {
 namespace iib {
