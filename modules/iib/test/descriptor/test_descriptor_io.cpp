@@ -40,22 +40,14 @@ TEST(IIB_IO, file_holds_every_parameter)
     const Ptr<IIB> plain = IIB::create(), gradient = unusual();
     gradient->setOrientation(IIB::ORIENTATION_GRADIENT);
     for (const Ptr<IIB>& iib : {unusual(), gradient, plain})
-        for (const char* extension : {".yml", ".xml", ".json"})
-            for (bool save : {false, true})
-            {
-                // Algorithm's pair of calls and Feature2D's, each read by the other too
-                const TemporaryFile file(extension);
-                if (save)
-                    iib->save(file.name);
-                else
-                    static_cast<const Feature2D&>(*iib).write(file.name);
-                const Ptr<IIB> loaded = Algorithm::load<IIB>(file.name);
-                ASSERT_FALSE(!loaded);
-                expectSame(*iib, *loaded);
-                const Ptr<IIB> other = iib == plain ? unusual() : IIB::create(1.f, 2);
-                static_cast<Feature2D&>(*other).read(file.name);
-                expectSame(*iib, *other);
-            }
+        forEachFileOf<Feature2D>(*iib, [&](const String& file) {
+            const Ptr<IIB> loaded = Algorithm::load<IIB>(file);
+            ASSERT_FALSE(!loaded);
+            expectSame(*iib, *loaded);
+            const Ptr<IIB> other = iib == plain ? unusual() : IIB::create(1.f, 2);
+            static_cast<Feature2D&>(*other).read(file);
+            expectSame(*iib, *other);
+        });
 }
 
 //! As format 1 was written first: later versions must read it.

@@ -315,21 +315,12 @@ TEST(IIB_HessianDetector, parameters_and_files)
         EXPECT_EQ(7.f, copy->getNormalizationSigma());
         EXPECT_EQ(1500, copy->getWorkingSize());
     };
-    for (bool saved : {true, false})
-    {
-        const TemporaryFile file(".yml");
-        if (saved)
-            detector->save(file.name);
-        else
-            detector->Feature2D::write(file.name);
+    forEachFileOf<Feature2D>(*detector, [&](const String& file) {
         const Ptr<HessianDetector> copy = HessianDetector::create();
-        copy->Feature2D::read(file.name);
+        copy->Feature2D::read(file);
         expectSame(copy);
-        const FileStorage fs(file.name, FileStorage::READ);
-        const Ptr<HessianDetector> other = HessianDetector::create();
-        other->read(fs.getFirstTopLevelNode());
-        expectSame(other);
-    }
+        expectSame(Algorithm::load<HessianDetector>(file));
+    });
     const Ptr<HessianDetector> other = HessianDetector::create();
     expectError(Error::StsParseError, "HessianDetector", [&] { other->read(FileNode()); });
     FileStorage wrong("{\"format\": 1, \"scales\": 99}", FileStorage::READ | FileStorage::MEMORY);

@@ -95,14 +95,8 @@ TEST(IIB_NormalizedDetector, parameters_and_files)
     EXPECT_EQ("Feature2D.NormalizedDetector", detector->getDefaultName());
 
     const Ptr<NormalizedDetector> copy = NormalizedDetector::create(ORB::create());
-    for (bool saved : {true, false})
-    {
-        const TemporaryFile file(".yml");
-        if (saved)
-            detector->save(file.name);
-        else
-            detector->Feature2D::write(file.name);
-        const FileStorage fs(file.name, FileStorage::READ);
+    forEachFileOf<Feature2D>(*detector, [&](const String& file) {
+        const FileStorage fs(file, FileStorage::READ);
         for (const FileNode& node : {fs.root(), fs.getFirstTopLevelNode()})
         {
             copy->setSigma(1);
@@ -112,7 +106,7 @@ TEST(IIB_NormalizedDetector, parameters_and_files)
             ASSERT_TRUE(orb);
             EXPECT_EQ(77, orb->getMaxFeatures());
         }
-    }
+    });
     expectError(Error::StsParseError, "NormalizedDetector", [&] { copy->read(FileNode()); });
     const FileStorage other(
             "{\"format\": 1, \"class\": \"Feature2D.ORB\"}", FileStorage::READ | FileStorage::MEMORY);

@@ -47,6 +47,19 @@ struct TemporaryFolder
     ~TemporaryFolder() { utils::fs::remove_all(name); }
 };
 
+//! Calls check(name) for files that hold an object, of every format: as save() writes them, and write() of its class.
+template <typename Class, typename Check> void forEachFileOf(const Class& object, const Check& check)
+{
+    for (const char* extension : {".yml", ".xml", ".json"})
+        for (bool save : {false, true})
+        {
+            SCOPED_TRACE(format("%s, save %d", extension, save));
+            const TemporaryFile file(extension);
+            save ? object.save(file.name) : object.write(file.name);
+            check(file.name);
+        }
+}
+
 //! A file that is as it was at the end, whatever is written to it meanwhile.
 struct RestoredFile
 {
