@@ -1,19 +1,17 @@
 #!/usr/bin/env python3
 """Of cv2.iib, what misc/python/test/test_iib.py has no room for: scripts/intree.sh runs it. A patch of opencv_contrib may have a
 million bytes."""
+import os
+import pathlib
+import sys
+import tempfile
 import unittest
 
 import cv2
 import numpy as np
 
-
-def noise(seed, shape=(120, 160)):
-    image = np.random.default_rng(seed).integers(0, 256, shape, np.uint8)
-    return cv2.GaussianBlur(image, (5, 5), 0)
-
-
-def grid(size=10.0):
-    return [cv2.KeyPoint(x, y, size) for y in range(0, 120, 20) for x in range(0, 160, 20)]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'modules/iib/misc/python/test'))
+from test_iib import Codes, grid, noise  # noqa: E402
 
 
 class DescriptorTest(unittest.TestCase):
@@ -40,15 +38,39 @@ class DescriptorTest(unittest.TestCase):
             with self.assertRaisesRegex(cv2.error, culprit):
                 call()
 
+    def test_maps_are_in_a_list(self):
+        iib = cv2.iib.IIBDescriptorExtractor.create(extraChannels=1)
+        with self.assertRaisesRegex(cv2.error, 'a list of maps'):
+            iib.computeWithChannels(noise(1), noise(3), grid())
 
-class MatcherTest(unittest.TestCase):
+    def test_short_names_are_the_same_objects(self):
+        self.assertIs(cv2.iib.IIB, cv2.iib.IIBDescriptorExtractor)
+        self.assertEqual(cv2.iib.IIB_create(granularity=2).getGranularity(), 2)
+        self.assertEqual(cv2.iib.IIB_createPreset(cv2.iib.IIB_PRESET_BALANCED).descriptorSize(), 64)
 
-    def setUp(self):
-        rng = np.random.default_rng(6)
-        self.query = rng.integers(0, 256, (50, 170), np.uint8)
-        self.train = rng.integers(0, 256, (70, 170), np.uint8)
-        self.train[10:60] = self.query ^ (rng.random((50, 170)) < 0.1)
-        self.levels = cv2.iib.IIBDescriptorExtractor.create().levelSizes()
+    def test_parameters_survive_a_file(self):
+        iib = cv2.iib.IIBDescriptorExtractor.create(
+            scaleFactor=3.5, granularity=3, channels=51, mapping=cv2.iib.IIBDescriptorExtractor_MAPPING_PAIRWISE,
+            useOrientation=True)
+        iib.setSelection(np.array([[1, 0, 0, 0, 5], [3, 3, 6, 1, 8]], np.int32))
+        loaded = cv2.iib.IIBDescriptorExtractor.create()
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, 'iib.yml')
+            iib.write(path)
+            loaded.read(path)
+        for name in (name for name in dir(iib) if name.startswith('get') and name != 'getDetector'):
+            np.testing.assert_array_equal(getattr(iib, name)(), getattr(loaded, name)(), name)
+        np.testing.assert_array_equal(iib.compute(noise(7), grid())[1], loaded.compute(noise(7), grid())[1])
+
+    def test_the_image_may_be_the_output(self):
+        iib = cv2.iib.IIBDescriptorExtractor.create()
+        image = noise(12, (48, iib.descriptorSize()))
+        expected = iib.compute(image, grid())[1]
+        self.assertEqual(expected.shape, image.shape)
+        np.testing.assert_array_equal(iib.compute(image, grid(), image)[1], expected)
+
+
+class MatcherTest(Codes):
 
     def test_match_equals_brute_force(self):
         for cross_check in (False, True):
@@ -84,6 +106,16 @@ class MatcherTest(unittest.TestCase):
             self.levels, mode=cv2.iib.HierarchicalMatcher_THRESHOLD)
         matcher.match(self.query, self.train)
         self.assertTrue(0 < matcher.matchCost() < 1)
+
+    def test_index_survives_a_file(self):
+        matcher = cv2.iib.HierarchicalMatcher.create(self.levels)
+        matcher.add([self.train])
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, 'index.bin')
+            matcher.saveIndex(path)
+            loaded = cv2.iib.HierarchicalMatcher.loadIndex(path)
+        self.assertEqual([m.trainIdx for m in loaded.match(self.query)],
+                         [m.trainIdx for m in matcher.match(self.query)])
 
 
 if __name__ == '__main__':
