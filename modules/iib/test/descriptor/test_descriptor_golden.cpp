@@ -17,13 +17,54 @@ struct Golden
 {
     const char* name;
     uint64 clamped, reflected;  //!< with each #Border that keeps all keypoints
-    void (*set)(IIB& iib);
     int type;
+    struct
+    {
+        int granularity, channels, mapping;
+        bool overlap, useOrientation;
+        int extraChannels;
+    } parameters;  //!< of create()
+    bool selected;
 };
 
-void nothing(IIB&) {}
+const Golden GOLDEN[] = {{"default", 0x7c4943b59e478a06, 0x2e989fe2274d8bf2, CV_8UC1, {4, 15}},
+        {"mapping max", 0x40d0d530ef404756, 0x6f1e2f008211b314, CV_8UC1, {4, 15, IIB::MAPPING_MAX}},
+        {"mapping min", 0xcecf80374d6189d5, 0x1166efbb3e6630fe, CV_8UC1, {4, 15, IIB::MAPPING_MIN}},
+        {"mapping quartile", 0x012bfe1b74cbb35c, 0x1abdc4b0d0b8ac66, CV_8UC1, {4, 15, IIB::MAPPING_QUARTILE}},
+        {"mapping sort", 0x2c9dffdd4a509c8f, 0x6518c482f51ed635, CV_8UC1, {4, 15, IIB::MAPPING_SORT}},
+        {"mapping haar", 0x0c7717b926942607, 0x98ff44bc0e4ebbd9, CV_8UC1, {4, 15, IIB::MAPPING_HAAR}},
+        {"mapping pairwise", 0xcd3c1fb23c418b3a, 0x7eed83a5daee609b, CV_8UC1, {4, 15, IIB::MAPPING_PAIRWISE}},
+        {"mapping boxes", 0xcad76b68589c37fa, 0x35fcadab22d3f94b, CV_8UC1, {5, 59, IIB::MAPPING_BOXES}},
+        {"mapping boxes, orientation of keypoints", 0xa9296c8b035f5704, 0xf32b3d751c69e7bc, CV_8UC1,
+                {5, 59, IIB::MAPPING_BOXES, false, true}},
+        {"gradient x", 0x9bf9c215914d0cc5, 0xc11d46de728f8b7c, CV_8UC1, {4, 1}},
+        {"gradient y", 0xb7821168e4920a80, 0x2716add01922d585, CV_8UC1, {4, 2}},
+        {"orientation", 0x1257bf40469fba74, 0xa490c5b82813dace, CV_8UC1, {4, 4}},
+        {"intensity", 0x5ccb1e57398af58b, 0xcd05d999878cc505, CV_8UC1, {4, 8}},
+        {"signed gradient x", 0x515a05677ff21834, 0x921175f76b8a16aa, CV_8UC1, {4, 16}},
+        {"signed gradient y", 0xb3d9120c4f31769f, 0x874380f23165ad56, CV_8UC1, {4, 32}},
+        {"all channels", 0x7533fec7ca149e12, 0xba5b3811ad475236, CV_8UC1, {4, 63}},
+        {"overlap", 0x00d9099cf996758a, 0xb6fd87a0cae57e55, CV_8UC1, {4, 15, 0, true}},
+        {"granularity 1", 0xde85d223b5ebe44c, 0x4798df25809b6a14, CV_8UC1, {1, 15}},
+        {"granularity 2", 0x2b3e3b7e2247a78b, 0xe5f6c202dde19d6f, CV_8UC1, {2, 15}},
+        {"granularity 3", 0x76c690f21057f720, 0x9c9d12c8f749de7c, CV_8UC1, {3, 15}},
+        {"granularity 5", 0x335d65f21031895e, 0x14a38de43d3cffd2, CV_8UC1, {5, 15}},
+        {"granularity 6", 0xc8b98b604530e595, 0x469d9af574fa958b, CV_8UC1, {6, 15}},
+        {"extra channels", 0x3ad673a19c71489b, 0xd050ead518708479, CV_8UC1, {4, 15, 0, false, false, 3}},
+        {"extra channels alone", 0x2384ba4913fccf32, 0x46edd4bcef271ae3, CV_8UC1, {4, 0, 0, false, false, 5}},
+        {"orientation of keypoints", 0xc9b6b569adef32d3, 0xcf5d28d3a6d3c3cf, CV_8UC1,
+                {4, 15, 0, false, true}},
+        {"16U", 0x3a73cd0cc49a4d35, 0xacd8eaffd184a7b8, CV_16UC1, {4, 15}},
+        {"16U, orientation of keypoints", 0x244c6a56586d3caa, 0xed9b15a2a6529935, CV_16UC1,
+                {4, 15, 0, false, true}},
+        {"32F", 0xe2fae45b47d39a52, 0xf7c8c748aa6ac915, CV_32FC1, {4, 15}},
+        {"8U colour", 0x5f19de037522b744, 0xb45d221b4e67cc73, CV_8UC3, {4, 15}},
+        {"32F colour", 0x5dbab4a1ac078b99, 0x2f0bca6c2417e44b, CV_32FC3, {4, 15}},
+        {"selection", 0x4b159b8d342f9f70, 0xf4dddd863a1c586a, CV_8UC1, {4, 15}, true},
+        {"selection, orientation of keypoints", 0x6358ca80c16b3c4b, 0x1660dccffba8e262, CV_8UC1,
+                {4, 15, 0, false, true}, true}};
 
-void someQuads(IIB& iib)
+Mat someQuads()
 {
     Mat_<int> quads;
     for (int level = 1; level <= 4; level++)
@@ -34,86 +75,8 @@ void someQuads(IIB& iib)
             if (i < 1 || level > 1)
                 quads.push_back(quad);
         }
-    iib.setSelection(quads);
+    return quads;
 }
-
-void rotatedQuads(IIB& iib)
-{
-    someQuads(iib);
-    iib.setUseOrientation(true);
-}
-
-const Golden GOLDEN[] = {{"default", 0x7c4943b59e478a06, 0x2e989fe2274d8bf2, nothing, CV_8UC1},
-        {"mapping max", 0x40d0d530ef404756, 0x6f1e2f008211b314,
-                [](IIB& i) { i.setMapping(IIB::MAPPING_MAX); }, CV_8UC1},
-        {"mapping min", 0xcecf80374d6189d5, 0x1166efbb3e6630fe,
-                [](IIB& i) { i.setMapping(IIB::MAPPING_MIN); }, CV_8UC1},
-        {"mapping quartile", 0x012bfe1b74cbb35c, 0x1abdc4b0d0b8ac66,
-                [](IIB& i) { i.setMapping(IIB::MAPPING_QUARTILE); }, CV_8UC1},
-        {"mapping sort", 0x2c9dffdd4a509c8f, 0x6518c482f51ed635,
-                [](IIB& i) { i.setMapping(IIB::MAPPING_SORT); }, CV_8UC1},
-        {"mapping haar", 0x0c7717b926942607, 0x98ff44bc0e4ebbd9,
-                [](IIB& i) { i.setMapping(IIB::MAPPING_HAAR); }, CV_8UC1},
-        {"mapping pairwise", 0xcd3c1fb23c418b3a, 0x7eed83a5daee609b,
-                [](IIB& i) { i.setMapping(IIB::MAPPING_PAIRWISE); }, CV_8UC1},
-        {"mapping boxes", 0xcad76b68589c37fa, 0x35fcadab22d3f94b,
-                [](IIB& i) {
-                    i.setChannels(59);
-                    i.setGranularity(5);
-                    i.setMapping(IIB::MAPPING_BOXES);
-                },
-                CV_8UC1},
-        {"mapping boxes, orientation of keypoints", 0xa9296c8b035f5704, 0xf32b3d751c69e7bc,
-                [](IIB& i) {
-                    i.setChannels(59);
-                    i.setGranularity(5);
-                    i.setMapping(IIB::MAPPING_BOXES);
-                    i.setUseOrientation(true);
-                },
-                CV_8UC1},
-        {"gradient x", 0x9bf9c215914d0cc5, 0xc11d46de728f8b7c,
-                [](IIB& i) { i.setChannels(IIB::CHANNEL_GRAD_X); }, CV_8UC1},
-        {"gradient y", 0xb7821168e4920a80, 0x2716add01922d585,
-                [](IIB& i) { i.setChannels(IIB::CHANNEL_GRAD_Y); }, CV_8UC1},
-        {"orientation", 0x1257bf40469fba74, 0xa490c5b82813dace,
-                [](IIB& i) { i.setChannels(IIB::CHANNEL_ORIENTATION); }, CV_8UC1},
-        {"intensity", 0x5ccb1e57398af58b, 0xcd05d999878cc505,
-                [](IIB& i) { i.setChannels(IIB::CHANNEL_INTENSITY); }, CV_8UC1},
-        {"signed gradient x", 0x515a05677ff21834, 0x921175f76b8a16aa,
-                [](IIB& i) { i.setChannels(IIB::CHANNEL_SIGNED_GRAD_X); }, CV_8UC1},
-        {"signed gradient y", 0xb3d9120c4f31769f, 0x874380f23165ad56,
-                [](IIB& i) { i.setChannels(IIB::CHANNEL_SIGNED_GRAD_Y); }, CV_8UC1},
-        {"all channels", 0x7533fec7ca149e12, 0xba5b3811ad475236, [](IIB& i) { i.setChannels(63); }, CV_8UC1},
-        {"overlap", 0x00d9099cf996758a, 0xb6fd87a0cae57e55, [](IIB& i) { i.setOverlap(true); }, CV_8UC1},
-        {"granularity 1", 0xde85d223b5ebe44c, 0x4798df25809b6a14, [](IIB& i) { i.setGranularity(1); },
-                CV_8UC1},
-        {"granularity 2", 0x2b3e3b7e2247a78b, 0xe5f6c202dde19d6f, [](IIB& i) { i.setGranularity(2); },
-                CV_8UC1},
-        {"granularity 3", 0x76c690f21057f720, 0x9c9d12c8f749de7c, [](IIB& i) { i.setGranularity(3); },
-                CV_8UC1},
-        {"granularity 5", 0x335d65f21031895e, 0x14a38de43d3cffd2, [](IIB& i) { i.setGranularity(5); },
-                CV_8UC1},
-        {"granularity 6", 0xc8b98b604530e595, 0x469d9af574fa958b, [](IIB& i) { i.setGranularity(6); },
-                CV_8UC1},
-        {"extra channels", 0x3ad673a19c71489b, 0xd050ead518708479, [](IIB& i) { i.setExtraChannels(3); },
-                CV_8UC1},
-        {"extra channels alone", 0x2384ba4913fccf32, 0x46edd4bcef271ae3,
-                [](IIB& i) {
-                    i.setExtraChannels(5);
-                    i.setChannels(0);
-                },
-                CV_8UC1},
-        {"orientation of keypoints", 0xc9b6b569adef32d3, 0xcf5d28d3a6d3c3cf,
-                [](IIB& i) { i.setUseOrientation(true); }, CV_8UC1},
-        {"16U", 0x3a73cd0cc49a4d35, 0xacd8eaffd184a7b8, nothing, CV_16UC1},
-        {"16U, orientation of keypoints", 0x244c6a56586d3caa, 0xed9b15a2a6529935,
-                [](IIB& i) { i.setUseOrientation(true); }, CV_16UC1},
-        {"32F", 0xe2fae45b47d39a52, 0xf7c8c748aa6ac915, nothing, CV_32FC1},
-        {"8U colour", 0x5f19de037522b744, 0xb45d221b4e67cc73, nothing, CV_8UC3},
-        {"32F colour", 0x5dbab4a1ac078b99, 0x2f0bca6c2417e44b, nothing, CV_32FC3},
-        {"selection", 0x4b159b8d342f9f70, 0xf4dddd863a1c586a, someQuads, CV_8UC1},
-        {"selection, orientation of keypoints", 0x6358ca80c16b3c4b, 0x1660dccffba8e262, rotatedQuads,
-                CV_8UC1}};
 
 Mat image(Size size, int type)
 {
@@ -132,8 +95,11 @@ TEST_P(IIB_Golden, bits)
 {
     const Golden golden = GetParam();
     const Size size(320, 240);
-    const Ptr<IIB> iib = IIB::create(2.f);
-    golden.set(*iib);
+    const auto& p = golden.parameters;
+    const Ptr<IIB> iib = IIB::create(
+            2.f, p.granularity, p.channels, p.mapping, p.overlap, p.useOrientation, p.extraChannels);
+    if (golden.selected)
+        iib->setSelection(someQuads());
     std::vector<Mat> extra;
     for (int i = 0; i < iib->getExtraChannels(); i++)
         extra.push_back(texture(size, i % 2 ? CV_16U : CV_8U, 100 + i));
