@@ -31,14 +31,12 @@ std::string masksOf(const IIB& preset)
     for (int i = 0; i < quads.rows; i++)
         masks[{{quads(i, 0), quads(i, 2), quads(i, 3), quads(i, 1)}}] = quads(i, 4);
     std::string digits, text;
+    const cv::iib::Parameters all = {
+            1.f, preset.getGranularity(), preset.getChannels(), preset.getMapping(), true, 0, 0, 0, {}};
     for (int level = 1; level <= preset.getGranularity(); level++)
-    {
-        const int n = cv::iib::placesInRow(preset.getMapping(), level);
-        for (int row = 0; row < n; row++)
-            for (int column = 0; column < n; column++)
-                for (int channel = 0; channel < countBits(preset.getChannels()); channel++)
-                    digits += "0123456789abcdefghijklmnopqrstuv"[masks[{{level, row, column, channel}}]];
-    }
+        cv::iib::forEachPlace(all, level, [&](int channel, int row, int column, int) {
+            digits += "0123456789abcdefghijklmnopqrstuv"[masks[{{level, row, column, channel}}]];
+        });
     for (const char* run : {"z0000000000000000", "y00000000", "x0000", "w00"})
         for (size_t at; (at = digits.find(run + 1)) != std::string::npos;)
             digits.replace(at, std::strlen(run + 1), 1, *run);

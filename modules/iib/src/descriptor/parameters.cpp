@@ -47,24 +47,13 @@ static void checkSelection(const Parameters& p)
         const int n = placesInRow(p.mapping, level);
         require(row >= 0 && row < n && col >= 0 && col < n, Error::StsOutOfRange,
                 where + format("cell (%d, %d) is not in 0..%d", row, col, n - 1));
-        const int mask = p.mapping == IIB::MAPPING_BOXES ? boxMask(kinds[channel], level, row, col)
-                                                         : (1 << bitsPerQuad(p.mapping)) - 1;
+        const int mask = bitsOfPlace(p.mapping, kinds[channel], level, row, col);
         require(bits > 0 && (bits & ~mask) == 0, Error::StsOutOfRange,
                 where + format("bit mask %d must have some of the bits of %d and no others", bits, mask));
         const std::array<int, 4> place = {{level, channel, row, col}};
         require(seen.insert(place).second, Error::StsBadArg, where + "the quad was given before");
         last = level;
     }
-}
-
-std::vector<int> Parameters::channelKinds() const
-{
-    std::vector<int> kinds;
-    for (int kind = 1; kind <= ALL_CHANNELS; kind <<= 1)
-        if (channels & kind)
-            kinds.push_back(kind);
-    kinds.resize(kinds.size() + extraChannels, 0);
-    return kinds;
 }
 
 void Parameters::check() const
@@ -90,33 +79,14 @@ void Parameters::check() const
     checkSelection(*this);
 }
 
-//! Bits of all quads or boxes of one channel at a level.
-static int bitsOfChannel(const Parameters& p, int level, int kind)
-{
-    const int n = placesInRow(p.mapping, level);
-    if (p.mapping != IIB::MAPPING_BOXES)
-        return (p.overlap ? n * n : 1 << 2 * (level - 1)) * bitsPerQuad(p.mapping);
-    int bits = 0;
-    for (int row = 0; row < n; row++)
-        for (int col = 0; col < n; col++)
-            bits += (int)std::bitset<32>((unsigned)boxMask(kind, level, row, col)).count();
-    return bits;
-}
-
 //! Bits of a level that the channels before `end` make.
 static int bitsBefore(const Parameters& p, int level, int end)
 {
-    int bits = 0;
-    if (p.selection.empty())
-    {
-        const std::vector<int> kinds = p.channelKinds();
-        for (int channel = 0; channel < end; channel++)
-            bits += bitsOfChannel(p, level, kinds[channel]);
-    }
-    for (int i = 0; i < p.selection.rows; i++)
-        if (p.selection(i, 0) == level && p.selection(i, 1) < end)
-            bits += (int)std::bitset<32>((unsigned)p.selection(i, 4)).count();
-    return bits;
+    size_t bits = 0;
+    forEachPlace(p, level, [&](int channel, int, int, int mask) {
+        bits += channel < end ? std::bitset<32>((unsigned)mask).count() : 0;
+    });
+    return (int)bits;
 }
 
 //! Before they are padded to whole bytes.

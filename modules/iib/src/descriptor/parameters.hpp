@@ -31,7 +31,15 @@ struct Parameters
     int channelCount() const { return (int)channelKinds().size(); }
 
     //! Those channels: an IIB::Channel each, or 0 for an extra one.
-    std::vector<int> channelKinds() const;
+    std::vector<int> channelKinds() const
+    {
+        std::vector<int> kinds;
+        for (int kind = 1; kind <= ALL_CHANNELS; kind <<= 1)
+            if (channels & kind)
+                kinds.push_back(kind);
+        kinds.resize(kinds.size() + extraChannels, 0);
+        return kinds;
+    }
 };
 
 //! Bits that a mapping makes of one quad.
@@ -45,6 +53,29 @@ inline int bitsPerQuad(int mapping)
 inline int placesInRow(int mapping, int level)
 {
     return mapping == IIB::MAPPING_BOXES ? BOX_GRIDS[level - 1].n : (1 << level) - 1;
+}
+
+//! The bits that there are at a place, as in the mask of a selection. @param kind of the channel.
+inline int bitsOfPlace(int mapping, int kind, int level, int row, int col)
+{
+    return mapping == IIB::MAPPING_BOXES ? boxMask(kind, level, row, col) : (1 << bitsPerQuad(mapping)) - 1;
+}
+
+/** Calls visit(channel, row, column, bits) for each place of a level: those of the selection, or all, row by row, where boxes may
+ have no bits in some channels. */
+template <typename Visit> void forEachPlace(const Parameters& p, int level, const Visit& visit)
+{
+    for (int i = 0; i < p.selection.rows; i++)
+        if (p.selection(i, 0) == level)
+            visit(p.selection(i, 1), p.selection(i, 2), p.selection(i, 3), p.selection(i, 4));
+    if (!p.selection.empty())
+        return;
+    const std::vector<int> kinds = p.channelKinds();
+    const int n = placesInRow(p.mapping, level), step = p.overlap || p.mapping == IIB::MAPPING_BOXES ? 1 : 2;
+    for (int row = 0; row < n; row += step)
+        for (int col = 0; col < n; col += step)
+            for (int channel = 0; channel < (int)kinds.size(); channel++)
+                visit(channel, row, col, bitsOfPlace(p.mapping, kinds[channel], level, row, col));
 }
 
 //! Bytes of each level that has any, coarse first; the order of the bits is in descriptor.hpp.

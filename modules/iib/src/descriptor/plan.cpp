@@ -15,27 +15,16 @@ static ChosenBits chosenBits(const Parameters& p, int level, int group, int inde
     const QuadPhase phase(1 << level, index);
     const int planes = bitsPerQuad(p.mapping), planeBits = 8 * phase.planeBytes();
     std::vector<uint64> masks((phase.rows * planes * planeBits + 63) / 64, 0);
-    const auto choose = [&](int row, int col, int channel, int bits) {
+    forEachPlace(p, level, [&](int channel, int row, int col, int bits) {
+        if (channel / GROUP_CHANNELS != group || row % 2 != phase.dy || col % 2 != phase.dx)
+            return;
         for (int plane = 0; plane < planes; plane++)
         {
-            const int bit = (row * planes + plane) * planeBits + col * GROUP_CHANNELS + channel;
+            const int bit = (row / 2 * planes + plane) * planeBits + col / 2 * GROUP_CHANNELS +
+                            channel % GROUP_CHANNELS;
             masks[bit / 64] |= (uint64)(bits >> plane & 1) << bit % 64;
         }
-    };
-    for (int i = 0; i < p.selection.rows; i++)
-    {
-        const int* quad = p.selection[i];
-        const int channel = quad[1], row = quad[2], col = quad[3];
-        if (quad[0] == level && channel / GROUP_CHANNELS == group && row % 2 == phase.dy &&
-                col % 2 == phase.dx)
-            choose(row / 2, col / 2, channel % GROUP_CHANNELS, quad[4]);
-    }
-    const bool all = p.selection.empty() && (index == 0 || p.overlap);
-    const int channels = all ? std::min(p.channelCount() - group * GROUP_CHANNELS, GROUP_CHANNELS) : 0;
-    for (int row = 0; row < phase.rows; row++)
-        for (int col = 0; col < phase.quads; col++)
-            for (int channel = 0; channel < channels; channel++)
-                choose(row, col, channel, (1 << planes) - 1);
+    });
     return ChosenBits(masks);
 }
 
@@ -80,8 +69,9 @@ static ChosenBits chosenOf(const Parameters& p, int level, const BoxGridShape& s
 {
     std::vector<uint64> masks((shape.comparisonBytes() + 7) / 8, 0);
     const auto choose = [&](int byte, int lane) { masks[byte / 8] |= (uint64)1 << (8 * (byte % 8) + lane); };
-    const auto add = [&](int kind, int row, int col, int mask) {
-        const int lane = laneOf(kind);
+    const std::vector<int> kinds = p.channelKinds();
+    forEachPlace(p, level, [&](int channel, int row, int col, int mask) {
+        const int lane = laneOf(kinds[channel]);
         for (int bit = 0; bit < BOX_HAAR_BITS; bit++)
             if (mask >> bit & 1)
                 choose((BOX_HAAR_BITS * row + bit) * shape.quadBytes() + col, lane);
@@ -90,16 +80,7 @@ static ChosenBits chosenOf(const Parameters& p, int level, const BoxGridShape& s
             choose(own, lane == LANE_GRADIENT_X ? (int)LANE_GRADIENT_X_AGAIN : lane);
         if (mask & BOX_SECOND_OWN_BIT)
             choose(own, lane == LANE_GRADIENT_Y ? (int)LANE_GRADIENT_SUM : lane);
-    };
-    const std::vector<int> kinds = p.channelKinds();
-    for (int i = 0; i < p.selection.rows; i++)
-        if (p.selection(i, 0) == level)
-            add(kinds[p.selection(i, 1)], p.selection(i, 2), p.selection(i, 3), p.selection(i, 4));
-    if (p.selection.empty())
-        for (int kind : kinds)
-            for (int row = 0; row < shape.n; row++)
-                for (int col = 0; col < shape.n; col++)
-                    add(kind, row, col, boxMask(kind, level, row, col));
+    });
     return ChosenBits(masks);
 }
 

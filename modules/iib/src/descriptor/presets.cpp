@@ -4,8 +4,6 @@
 
 #include "parameters.hpp"
 
-#include <bitset>
-
 namespace cv {
 namespace iib {
 
@@ -23,7 +21,7 @@ struct LearnedSelection
 //! As setSelection takes it.
 Mat selectionOf(const LearnedSelection& p)
 {
-    const int channels = (int)std::bitset<32>((unsigned)p.channels).count();
+    const Parameters all = {1.f, p.granularity, p.channels, p.mapping, true, 0, 0, 0, Mat_<int>()};
     std::vector<int> masks, quads;
     for (const char* c = p.masks; *c; c++)
         if (*c > 'v')
@@ -32,14 +30,11 @@ Mat selectionOf(const LearnedSelection& p)
             masks.push_back(*c - (*c <= '9' ? '0' : 'a' - 10));
     const int* mask = masks.data();
     for (int level = 1; level <= p.granularity; level++)
-    {
-        const int n = placesInRow(p.mapping, level);
-        for (int row = 0; row < n; row++)
-            for (int col = 0; col < n; col++)
-                for (int channel = 0; channel < channels; channel++, mask++)
-                    if (*mask)
-                        quads.insert(quads.end(), {level, channel, row, col, *mask});
-    }
+        forEachPlace(all, level, [&](int channel, int row, int col, int) {
+            if (*mask)
+                quads.insert(quads.end(), {level, channel, row, col, *mask});
+            mask++;
+        });
     return Mat(quads, true).reshape(1, (int)quads.size() / 5);
 }
 

@@ -282,40 +282,25 @@ std::vector<bool> quadBits(const IIB& iib, const Cells& cells, int channel, int 
     return mapQuad(iib.getMapping(), comparable(q));
 }
 
-//! The bits of all quads of a level, in the order the header gives.
+//! The bits of a level, of all quads or those of the selection, in the order the header gives.
 std::vector<bool> levelBits(const IIB& iib, const Cells& cells, int channels, int level)
 {
-    std::vector<bool> bits;
-    const int n = 1 << level;
-    for (int group = 0; group < channels; group += 4)
-        for (int dy = 0; dy <= (int)iib.getOverlap(); dy++)
-            for (int dx = 0; dx <= (int)iib.getOverlap(); dx++)
-                for (int row = dy; row + 1 < n; row += 2)
-                {
-                    std::vector<std::vector<bool>> quads;
-                    for (int col = dx; col + 1 < n; col += 2)
-                        for (int c = group; c < std::min(group + 4, channels); c++)
-                            quads.push_back(quadBits(iib, cells, c, level, row, col));
-                    for (size_t bit = 0; !quads.empty() && bit < quads[0].size(); bit++)
-                        for (size_t i = 0; i < quads.size(); i++)
-                            bits.push_back(quads[i][bit]);
-                }
-    return bits;
-}
-
-std::vector<bool> selectedBits(const IIB& iib, const Cells& cells, const Mat_<int>& selection, int level)
-{
-    // group of channels, window, row, bit, column, channel: the order of the header
-    std::map<std::array<int, 6>, bool> bits;
+    std::map<std::array<int, 6>, bool> bits;  // by group of channels, window, row, bit, column, channel
+    const auto add = [&](int channel, int row, int col, int mask) {
+        const std::vector<bool> quad = quadBits(iib, cells, channel, level, row, col);
+        for (int bit = 0; bit < (int)quad.size(); bit++)
+            if (mask >> bit & 1)
+                bits[{{channel / 4, row % 2 * 2 + col % 2, row, bit, col, channel}}] = quad[bit];
+    };
+    const Mat_<int> selection = iib.getSelection();
     for (int i = 0; i < selection.rows; i++)
-        for (int bit = 0; bit < 8; bit++)
-            if (selection(i, 0) == level && (selection(i, 4) >> bit & 1))
-            {
-                const int channel = selection(i, 1), row = selection(i, 2), col = selection(i, 3);
-                const std::array<int, 6> place = {
-                        {channel / 4, row % 2 * 2 + col % 2, row, bit, col, channel}};
-                bits[place] = quadBits(iib, cells, channel, level, row, col)[bit];
-            }
+        if (selection(i, 0) == level)
+            add(selection(i, 1), selection(i, 2), selection(i, 3), selection(i, 4));
+    const int end = selection.empty() ? (1 << level) - 1 : 0, step = iib.getOverlap() ? 1 : 2;
+    for (int row = 0; row < end; row += step)
+        for (int col = 0; col < end; col += step)
+            for (int channel = 0; channel < channels; channel++)
+                add(channel, row, col, 255);
     std::vector<bool> result;
     for (const auto& b : bits)
         result.push_back(b.second);
@@ -376,7 +361,6 @@ Mat describe(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra,
         const std::vector<KeyPoint>& keypoints)
 {
     const std::vector<Channel> channels = channelsOf(iib, grey, extra);
-    const Mat_<int> selection = iib.getSelection();
     Mat descriptors;
     for (size_t k = 0; k < keypoints.size(); k++)
     {
@@ -391,8 +375,7 @@ Mat describe(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra,
         for (int level = 1; level <= iib.getGranularity(); level++)
             appendLevel(bytes, iib.getMapping() == IIB::MAPPING_BOXES
                                        ? boxLevelBits(iib, grey, keypoints[k], angle, level)
-                               : selection.empty() ? levelBits(iib, cells, (int)channels.size(), level)
-                                                   : selectedBits(iib, cells, selection, level));
+                                       : levelBits(iib, cells, (int)channels.size(), level));
         descriptors.push_back(Mat(bytes).reshape(1, 1).clone());
     }
     return descriptors;
