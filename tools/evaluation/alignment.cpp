@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "opencv2/iib/alignment.hpp"
 
+#include <set>
+
 #include "experiments.hpp"
 #include "opencv2/imgproc.hpp"
 #include "results.hpp"
@@ -9,7 +11,7 @@
 namespace iib_tools {
 namespace {
 
-const int OTHER_SCENES = 500;    // pairs of images that do not show the same, in all
+const int OTHER_SCENES = 520;    // pairs of images of different sets, in all
 const double MOST_MOVED = 0.06;  // of a corner, in parts of the image's size
 
 std::vector<cv::Point2d> corners(const cv::Size& size)
@@ -82,13 +84,14 @@ int alignment(const Options& options, const std::vector<ImagePair>& all)
         if (!table.has({pairs[i].set, pairs[i].sequence, pairs[i].target, "same scene"}))
             tasks.push_back({pairs[i].name(), [&, i] { alignPair(pairs[i], i + 1, table); }});
     cv::RNG random(1);
-    for (int n = 0, drawn = 0; n < OTHER_SCENES && drawn < 10 * OTHER_SCENES && !pairs.empty(); drawn++)
+    std::set<std::pair<const ImagePair*, std::string>> others;
+    for (int drawn = 0; others.size() < OTHER_SCENES && drawn < 10 * OTHER_SCENES && !pairs.empty(); drawn++)
     {
         const ImagePair &pair = pairs[random.uniform(0, (int)pairs.size())],
                         &other = pairs[random.uniform(0, (int)pairs.size())];
-        if (pair.set == other.set)  // two sequences of a set may be of one camera
+        // Two sequences of a set may be of one camera.
+        if (pair.set == other.set || !others.insert({&pair, other.name()}).second)
             continue;
-        n++;
         if (!table.has({pair.set, pair.sequence, pair.target, other.name()}))
             tasks.push_back({pair.name() + " and " + other.name(),
                     [&pair, &other, &table] { alignOthers(pair, other, table); }});
