@@ -20,14 +20,14 @@ const double LARGEST_MOVE = 2;     //!< in pixels
 const double LEAST_WITH_MAP = .3;  //!< similarity at the start: most tries are wrong, and end here
 const double MATCHES_OF_A_THREAD = 8;
 
-Mat preparedImage(InputArray image, int number)
+Mat checked(InputArray image, int number)
 {
     const Mat pixels = image.getMat();
     if (pixels.empty())
         CV_Error(Error::StsBadArg,
                 format("image %d is empty, but there are matches: did imread find the file?", number));
     checkImage(pixels);
-    return preparedForAlignment(normalizeLocally(integerMap(pixels), NORMALIZATION_SIGMA));
+    return pixels;
 }
 
 void checkIndex(const std::vector<KeyPoint>& keypoints, int index, int image)
@@ -56,7 +56,7 @@ struct MatchRefiner::Start
 
 MatchRefiner::MatchRefiner(InputArray image1, const std::vector<KeyPoint>& keypoints1, InputArray image2,
         const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches)
-    : first(keypoints1), second(keypoints2)
+    : first(keypoints1), second(keypoints2), prepared{checked(image1, 1), checked(image2, 2)}
 {
     checkKeyPoints(first, true);
     checkKeyPoints(second, true);
@@ -65,8 +65,15 @@ MatchRefiner::MatchRefiner(InputArray image1, const std::vector<KeyPoint>& keypo
         checkIndex(first, match.queryIdx, 1);
         checkIndex(second, match.trainIdx, 2);
     }
-    prepared1 = preparedImage(image1, 1);
-    prepared2 = preparedImage(image2, 2);
+    const auto prepare = [&](const Range& range) {
+        for (int i = range.start; i < range.end; i++)
+            prepared[i] =
+                    preparedForAlignment(normalizeLocally(integerMap(prepared[i]), NORMALIZATION_SIGMA));
+    };
+    if (getNumThreads() > 2)
+        prepare(Range(0, 2));  // each by all threads
+    else
+        parallel_for_(Range(0, 2), prepare);
 }
 
 //! Sizes of keypoints err by more than a tenth, so that patches may also be of the same size.
@@ -117,10 +124,10 @@ void MatchRefiner::refine(std::vector<Refinement>& matches) const
                     if (!seesFirst(query) || !seesSecond(r.match.trainIdx))
                         continue;
                     if (query != taken || start.unit != unit)
-                        aligner.take(prepared1, Vec2d(first[query].pt.x, first[query].pt.y), start.unit);
+                        aligner.take(prepared[0], Vec2d(first[query].pt.x, first[query].pt.y), start.unit);
                     taken = query;
                     unit = start.unit;
-                    r.found = aligner.align(prepared2, start.places, start.limit, start.least);
+                    r.found = aligner.align(prepared[1], start.places, start.limit, start.least);
                 }
             },
             matches.size() / MATCHES_OF_A_THREAD);

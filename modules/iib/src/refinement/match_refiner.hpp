@@ -33,8 +33,8 @@ public:
     void refine(std::vector<Refinement>& matches) const;
 
     //! Whether the image has the surroundings of its keypoint.
-    bool seesFirst(size_t index) const { return isInside(first[index], prepared1); }
-    bool seesSecond(size_t index) const { return isInside(second[index], prepared2); }
+    bool seesFirst(size_t index) const { return isInside(first[index], prepared[0]); }
+    bool seesSecond(size_t index) const { return isInside(second[index], prepared[1]); }
 
 private:
     struct Start;
@@ -43,7 +43,7 @@ private:
     static bool isInside(const KeyPoint& keypoint, const Mat& image);
 
     const std::vector<KeyPoint>&first, &second;
-    Mat prepared1, prepared2;
+    Mat prepared[2];
 };
 
 }  // namespace iib
