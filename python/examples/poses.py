@@ -20,10 +20,16 @@ matrix = scene.camera(a)
 points_a, sizes_a, codes_a = opencv_iib.detect_and_describe(a, 2000)
 points_b, sizes_b, codes_b = opencv_iib.detect_and_describe(b, 2000)
 pairs, _ = opencv_iib.match(codes_a, codes_b)
-matches = opencv_iib.propagateMatches(a, np.column_stack([points_a, sizes_a]), b, np.column_stack([points_b, sizes_b]), pairs)
+rows_a, rows_b = np.column_stack([points_a, sizes_a]), np.column_stack([points_b, sizes_b])
+found = opencv_iib.propagateMatches(a, rows_a, b, rows_b, pairs)
+
+# %% Where a pattern repeats, wrong matches lead to further ones, too: once more from those alone that agree with a first pose.
+first = opencv_iib.findRelativePose(found.points1[:len(pairs)], found.points2[:len(pairs)], matrix, matrix)
+again = opencv_iib.propagateMatches(a, rows_a, b, rows_b, pairs[first.inliers.ravel() > 0])
 
 # %% The pose that most matches agree with; two cameras could have two matrices.
-pose = opencv_iib.findRelativePose(matches.points1, matches.points2, matrix, matrix)
+pose, matches = max(((opencv_iib.findRelativePose(tried.points1, tried.points2, matrix, matrix), tried) for tried in (found, again)),
+                    key=lambda both: int(both[0].inliers.sum()))
 if not pose.found:
     sys.exit('no pose')
 
