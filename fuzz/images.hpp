@@ -64,7 +64,9 @@ inline Mat takeImage(ByteSource& in, Size size, bool odd)
 
 inline bool isMap(const Mat& m)
 {
-    return (m.depth() == CV_8U || m.depth() == CV_16U || m.depth() == CV_32F) && checkRange(m);
+    // m * 0, since checkRange() takes the largest float for infinity.
+    return (m.depth() == CV_8U || m.depth() == CV_16U || m.depth() == CV_32F) &&
+           (m.empty() || checkRange(m * 0));
 }
 
 inline bool isImage(const Mat& m) { return isMap(m) && m.channels() != 2 && m.channels() <= 4; }
