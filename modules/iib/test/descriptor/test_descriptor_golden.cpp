@@ -18,13 +18,7 @@ struct Golden
     const char* name;
     uint64 clamped, reflected;  //!< with each #Border that keeps all keypoints
     int type;
-    struct
-    {
-        int granularity, channels, mapping;
-        bool overlap, useOrientation;
-        int extraChannels;
-    } parameters;  //!< of create()
-    bool selected;
+    int parameters[7];  //!< of create() after the scale factor; whether someQuads() are selected
 };
 
 const Golden GOLDEN[] = {{"default", 0x7c4943b59e478a06, 0x2e989fe2274d8bf2, CV_8UC1, {4, 15}},
@@ -60,9 +54,9 @@ const Golden GOLDEN[] = {{"default", 0x7c4943b59e478a06, 0x2e989fe2274d8bf2, CV_
         {"32F", 0xe2fae45b47d39a52, 0xf7c8c748aa6ac915, CV_32FC1, {4, 15}},
         {"8U colour", 0x5f19de037522b744, 0xb45d221b4e67cc73, CV_8UC3, {4, 15}},
         {"32F colour", 0x5dbab4a1ac078b99, 0x2f0bca6c2417e44b, CV_32FC3, {4, 15}},
-        {"selection", 0x4b159b8d342f9f70, 0xf4dddd863a1c586a, CV_8UC1, {4, 15}, true},
+        {"selection", 0x4b159b8d342f9f70, 0xf4dddd863a1c586a, CV_8UC1, {4, 15, 0, false, false, 0, true}},
         {"selection, orientation of keypoints", 0x6358ca80c16b3c4b, 0x1660dccffba8e262, CV_8UC1,
-                {4, 15, 0, false, true}, true}};
+                {4, 15, 0, false, true, 0, true}}};
 
 Mat someQuads()
 {
@@ -95,10 +89,9 @@ TEST_P(IIB_Golden, bits)
 {
     const Golden golden = GetParam();
     const Size size(320, 240);
-    const auto& p = golden.parameters;
-    const Ptr<IIB> iib = IIB::create(
-            2.f, p.granularity, p.channels, p.mapping, p.overlap, p.useOrientation, p.extraChannels);
-    if (golden.selected)
+    const int* p = golden.parameters;
+    const Ptr<IIB> iib = IIB::create(2.f, p[0], p[1], p[2], p[3] != 0, p[4] != 0, p[5]);
+    if (p[6])
         iib->setSelection(someQuads());
     std::vector<Mat> extra;
     for (int i = 0; i < iib->getExtraChannels(); i++)
