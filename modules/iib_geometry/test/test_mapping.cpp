@@ -179,6 +179,43 @@ TEST(Triangulation, a_ray_that_contradicts_the_others_is_left_out)
     EXPECT_EQ(-1, map.images[2].sees[0]);
 }
 
+// In the second image a keypoint 20 pixels above each point has its very code, and the point's own differs in some bits.
+TEST(Rays, keypoints_are_matched_along_epipolar_lines)
+{
+    constexpr size_t COUNT = 40;
+    cv::RNG random(1);
+    std::vector<MapImage> images(2);
+    for (int i : {0, 1})
+    {
+        images[size_t(i)].camera = CAMERA;
+        images[size_t(i)].cameraFromWorld = inverse(poseAt(.5 * i, 0, 0));
+    }
+    for (size_t n = 0; n < COUNT; n++)
+    {
+        const cv::Point3d point(random.uniform(-1., 1.), random.uniform(-1., 1.), random.uniform(4., 6.));
+        cv::Mat code(1, 64, CV_8U);
+        random.fill(code, cv::RNG::UNIFORM, 0, 256);
+        const cv::Mat changed = code ^ cv::Mat(1, 64, CV_8U, cv::Scalar(1));
+        for (MapImage& image : images)
+        {
+            const bool second = &image == &images[1];
+            image.pixels.push_back(CAMERA.project({image.cameraFromWorld * point})[0]);
+            image.codes.push_back(second ? changed : code);
+            if (second)
+            {
+                image.pixels.push_back(image.pixels.back() - cv::Point2d(0, 20));
+                image.codes.push_back(code);
+            }
+        }
+    }
+    const MatchedRays found = matchPairs(images, {{0, 1}});
+    EXPECT_EQ(COUNT, found.matches);
+    EXPECT_EQ(0u, found.fitting) << "without the poses";
+    ASSERT_EQ(COUNT, found.links.size());
+    for (const Link& link : found.links)
+        EXPECT_EQ(2 * found.rays[link.a].keypoint, found.rays[link.b].keypoint);
+}
+
 TEST_F(Mapping, models_as_text)
 {
     const std::string sparse = folder.path("text");
