@@ -231,7 +231,7 @@ void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Foun
             return;
         inliers = within(limit, inliers, lens, pose);
     }
-    covariance = asErrorsTell(covariance, used, lens, pose);
+    covariance = clusteredCovariance(covariance, used, lens, pose);
     cv::Vec3d variances;
     cv::eigen(covariance.get_minor<3, 3>(0, 0), variances);
     found.reason = "the pose is uncertain";

@@ -180,8 +180,8 @@ bool refinePose(
     return true;
 }
 
-cv::Matx66d asErrorsTell(const cv::Matx66d& covariance, const std::vector<Match>& matches, const Lens& lens,
-        const cv::Affine3d& pose)
+cv::Matx66d clusteredCovariance(const cv::Matx66d& covariance, const std::vector<Match>& matches,
+        const Lens& lens, const cv::Affine3d& pose)
 {
     const std::vector<Linear> near = linear(matches, lens, pose);
     std::vector<cv::Point2f> pixels;

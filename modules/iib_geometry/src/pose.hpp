@@ -55,10 +55,11 @@ deviation, which cv::solvePnPRefineLM has not.
 bool refinePose(
         const std::vector<Match>& matches, const Lens& lens, cv::Affine3d& pose, cv::Matx66d& covariance);
 
-/** A covariance of refinePose by the errors that the matches have, in place of those assumed. Matches near each other in the
-image err together, as the map does there: the more the pulls of parts of the image differ, the less certain is the pose. */
-cv::Matx66d asErrorsTell(const cv::Matx66d& covariance, const std::vector<Match>& matches, const Lens& lens,
-        const cv::Affine3d& pose);
+/** The covariance of a pose by the errors that its matches have, in place of those that refinePose assumed. Matches near each
+other in the image, a cluster, err together, as the map does there: the more the pulls of clusters differ, the less certain is the pose.
+@param covariance of refinePose. */
+cv::Matx66d clusteredCovariance(const cv::Matx66d& covariance, const std::vector<Match>& matches,
+        const Lens& lens, const cv::Affine3d& pose);
 
 //! How far each match is from where a pose has its point, in pixels; NaN behind the camera.
 std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens, const cv::Affine3d& pose);
