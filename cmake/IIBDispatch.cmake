@@ -65,7 +65,8 @@ function(iib_add_dispatched_file target src_dir name)
 #define CV_CPU_OPTIMIZATION_NAMESPACE_END }
 ")
   set(modes BASELINE)
-  set_source_files_properties("${src_dir}/${name}.dispatch.cpp" PROPERTIES COMPILE_OPTIONS "${IIB_ADDRESS_ALONE}")
+  set_source_files_properties("${src_dir}/${name}.dispatch.cpp" PROPERTIES COMPILE_OPTIONS "${IIB_ADDRESS_ALONE}"
+    SKIP_PRECOMPILE_HEADERS ON)  # made with other flags
   foreach(isa IN LISTS IIB_DISPATCH)
     string(TOLOWER ${isa} suffix)
     set(file "${gen}/${name}.${suffix}.cpp")
@@ -81,6 +82,7 @@ function(iib_add_dispatched_file target src_dir name)
     set_source_files_properties("${file}" PROPERTIES
       COMPILE_FLAGS "${IIB_${isa}_FLAGS} ${quiet}"
       COMPILE_OPTIONS "${IIB_ADDRESS_ALONE}"
+      SKIP_PRECOMPILE_HEADERS ON
       COMPILE_DEFINITIONS "CV_CPU_DISPATCH_MODE=${isa};${features}")
     target_sources(${target} PRIVATE "${file}")
     string(APPEND declarations "#define CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN namespace opt_${isa} {

@@ -10,6 +10,7 @@ function(iib_add_test_program kind name)
   set(target opencv_${kind}_${name})
   add_executable(${target} ${sources})
   target_include_directories(${target} PRIVATE "${dir}" "${OPENCV_SOURCE_DIR}/modules")
+  target_precompile_headers(${target} PRIVATE "${dir}/${kind}_precomp.hpp")
   target_compile_options(${target} PRIVATE ${IIB_ADDRESS_ALONE})
   target_link_libraries(${target} PRIVATE opencv_${name} opencv_ts opencv_calib3d)
 endfunction()
@@ -34,7 +35,7 @@ target_compile_features(opencv_test_iib_geometry PRIVATE cxx_std_17)
 if(IIB_SANITIZE)
   set_target_properties(opencv_perf_iib PROPERTIES EXCLUDE_FROM_ALL ON)
   set_source_files_properties("${IIB_DIR}/test/support/box_oracle.cpp" "${IIB_DIR}/test/support/descriptor_oracle.cpp"
-    "${IIB_DIR}/test/support/matcher_oracle.cpp" PROPERTIES COMPILE_OPTIONS -fno-sanitize=all)
+    "${IIB_DIR}/test/support/matcher_oracle.cpp" PROPERTIES COMPILE_OPTIONS -fno-sanitize=all SKIP_PRECOMPILE_HEADERS ON)
 endif()
 
 # A test program of a tool: the sources in test/ beside the caller, with the tools' main, and its entry in ctest.
@@ -46,5 +47,6 @@ function(iib_add_tool_test name target library)
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/modules")  # their support
   target_compile_features(${target} PRIVATE cxx_std_17)  # std::filesystem of their folders
   target_link_libraries(${target} PRIVATE ${library} opencv_ts)
+  target_precompile_headers(${target} PRIVATE <opencv2/ts.hpp>)
   add_test(NAME ${name} COMMAND ${target})
 endfunction()

@@ -19,7 +19,7 @@ for architecture in aarch64 x86_64; do
         -DCMAKE_CXX_COMPILER_ID_TEST_FLAGS_FIRST=-c \
         -DCMAKE_TRY_COMPILE_TARGET_TYPE=STATIC_LIBRARY -DCMAKE_INSTALL_NAME_TOOL=/bin/true \
         "-DOpenCV_DIR=$(pkg-config --variable=libdir opencv4)/cmake/opencv4" \
-        -DCMAKE_COMPILE_WARNING_AS_ERROR=ON -DIIB_BUILD_TESTS=OFF -DIIB_BUILD_TOOLS=OFF -DIIB_BUILD_APPS=ON
+        -DCMAKE_COMPILE_WARNING_AS_ERROR=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DIIB_BUILD_TESTS=OFF -DIIB_BUILD_TOOLS=OFF -DIIB_BUILD_APPS=ON
     say "compiling in $build"
     ninja -C "$build" -t targets all | sed -n 's/^\(.*\.o\): CXX_COMPILER.*/\1/p' | xargs ninja -C "$build"
 done
