@@ -28,7 +28,6 @@ constexpr double MAX_BOUND = .1;  // of the distance to the points: three standa
 constexpr double REFINED = .3, LEAST_REFINED = .03;
 constexpr int LOOKS = 8;         // at most, along the pose
 constexpr double STILL = .1;     // pixels that what is seen moves by a look, if it is the last one
-constexpr double AGAIN = .25;    // pixels from where a point was looked for, at which it is once more
 constexpr double MAX_RATIO = 3;  // of the sizes at which two images see a point
 constexpr int LINE_ROUNDS = 2;   // lines are looked for again after the first refinement by them
 constexpr size_t WORTH = 16;     // matches with an image of the map, for which they are refined
@@ -43,9 +42,10 @@ template <typename Before> std::vector<size_t> best(size_t all, size_t count, Be
     return order;
 }
 
-//! The first match of each key, in the keys' order.
-template <typename Key> std::vector<Match> firstOfEach(std::vector<Match> matches, Key key)
+//! Keypoints that match a point in several images of the map count once.
+std::vector<Match> withoutRepeated(std::vector<Match> matches)
 {
+    const auto key = [](const Match& m) { return std::make_pair(m.keypoint, m.number); };
     std::stable_sort(
             matches.begin(), matches.end(), [&](const Match& a, const Match& b) { return key(a) < key(b); });
     const auto repeated = [&](const Match& a, const Match& b) { return key(a) == key(b); };
@@ -73,14 +73,13 @@ int keypointsOf(const std::vector<Match>& matches)
     return int(keypoints.size());
 }
 
-/** Moves matches to what the map's images show, where WORTH of them share one.
-@param some indices of matches, by the image of the map.
-@param start of such an index: where it is looked for, its size in units of that in the map's image. */
-template <typename Start>
-void refineMatches(std::vector<Match>& matches, const std::map<int, std::vector<size_t>>& some,
-        const Map& map, const Picture& picture, Start start)
+//! Moves the keypoints of matches to what the map's images show.
+void refineMatches(std::vector<Match>& matches, const Map& map, const Features& features)
 {
-    for (const auto& [view, numbers] : some)
+    std::map<int, std::vector<size_t>> byView;
+    for (size_t i = 0; i < matches.size(); i++)
+        byView[matches[i].view].push_back(i);
+    for (const auto& [view, numbers] : byView)
     {
         const MapImage& image = map.images[size_t(view)];
         if (numbers.size() < WORTH || image.picture.pixels.empty())
@@ -88,96 +87,86 @@ void refineMatches(std::vector<Match>& matches, const std::map<int, std::vector<
         KeypointPairs pairs;
         for (size_t i : numbers)
         {
-            pairs.fixed.emplace_back(image.pixels[size_t(matches[i].row)], 1.f);
-            pairs.moved.push_back(start(i));
+            const Match& m = matches[i];
+            pairs.fixed.emplace_back(image.pixels[size_t(m.row)], image.sizes[size_t(m.row)]);
+            pairs.moved.emplace_back(features.pixels[size_t(m.keypoint)], features.sizes[size_t(m.keypoint)]);
         }
-        const std::vector<bool> placed = refine(image.picture, picture, pairs);
+        const std::vector<bool> placed = refine(image.picture, features.picture, pairs);
         for (size_t k = 0; k < numbers.size(); k++)
-        {
-            matches[numbers[k]].pixel = pairs.moved[k].pt;
-            matches[numbers[k]].deviation = placed[k] ? REFINED : Match().deviation;
-        }
+            if (placed[k])
+            {
+                matches[numbers[k]].pixel = pairs.moved[k].pt;
+                matches[numbers[k]].deviation = REFINED;
+            }
     }
 }
 
-bool isRefined(const Match& match) { return match.deviation != Match().deviation; }
-
-/** What some of a map's images see, looked for in another one where a pose has it: each point by the image that sees it at the most
-similar size. */
-class Sights
+/** Points of some of a map's images near where a pose has them: where the picture shows what that image does which sees the
+point at the most similar size.
+@param frame of the pose. */
+std::vector<Match> seenAlong(
+        const Map& map, const Found& found, const Lens& lens, const Frame& frame, const cv::Affine3d& pose)
 {
-public:
-    //! @param frame of the poses. @param pose about that which look() is called with.
-    Sights(const Map& map, const Found& found, const Lens& lens, const Frame& frame, const cv::Affine3d& pose)
-        : map_(map), picture_(found.features.picture), lens_(lens)
+    const cv::Mat& pixels = found.features.picture.pixels;
+    const cv::Rect2d inside(cv::Point2d(), cv::Size2d(pixels.size()) / found.features.picture.scale);
+    std::map<int, std::pair<double, Match>> best;  // of a point: logarithm of the ratio of sizes, place
+    for (size_t view : found.compared)
     {
-        struct Sight
+        const MapImage& image = map.images[view];
+        const double zoom = lens.matrix()(0, 0) / Lens(image.camera).matrix()(0, 0);
+        std::vector<cv::Point3d> points = map.seenBy(image);
+        const std::vector<cv::Point3d> there = inCamera(points, image.cameraFromWorld);
+        for (cv::Point3d& p : points)
+            p = frame.toLocal(p);
+        const std::vector<cv::Point3d> here = inCamera(points, pose);
+        const std::vector<cv::Point2d> places = lens.project(here);
+        for (size_t row = 0; row < places.size(); row++)
         {
-            double ratio, depth;
-            Match match;
-        };
-        std::map<int, Sight> best;  // of each point
-        for (size_t view : found.compared)
-        {
-            const MapImage& image = map.images[view];
-            const double zoom = lens.matrix()(0, 0) / Lens(image.camera).matrix()(0, 0);
-            const std::vector<cv::Point3d> points = map.seenBy(image),
-                                           there = inCamera(points, image.cameraFromWorld);
-            for (size_t row = 0; row < points.size(); row++)
-            {
-                const cv::Point3d point = frame.toLocal(points[row]);
-                const double depth = zoom * there[row].z / frame.unit;
-                const double ratio = std::abs(std::log(depth / (pose * point).z));
-                const int number = image.sees[row];
-                const auto known = best.find(number);
-                if (ratio < std::log(MAX_RATIO) && (known == best.end() || ratio < known->second.ratio))
-                    best[number] = {ratio, depth, {{}, point, number, -1, 0, int(view), int(row)}};
-            }
+            const double ratio = std::log(zoom * there[row].z / (here[row].z * frame.unit));
+            if (!inside.contains(places[row]) || !(std::abs(ratio) < std::log(MAX_RATIO)))
+                continue;
+            const int number = image.sees[row];
+            const auto known = best.find(number);
+            if (known == best.end() || std::abs(ratio) < std::abs(known->second.first))
+                best[number] = {ratio, {places[row], points[row], number, -1, 0, int(view), int(row)}};
         }
+    }
+    std::vector<Match> matches;
+    for (size_t view : found.compared)
+    {
+        const MapImage& image = map.images[view];
+        KeypointPairs pairs;
+        std::vector<Match> own;
         for (const auto& [number, sight] : best)
-        {
-            matches_.push_back(sight.match);
-            depths_.push_back(sight.depth);
-        }
-        starts_.assign(matches_.size(), {HUGE_VAL, HUGE_VAL});
+            if (sight.second.view == int(view) && !image.picture.pixels.empty())
+            {
+                own.push_back(sight.second);
+                pairs.fixed.emplace_back(image.pixels[size_t(own.back().row)], 1.f);
+                pairs.moved.emplace_back(own.back().pixel, float(std::exp(sight.first)));
+            }
+        if (own.empty())
+            continue;
+        const std::vector<bool> placed = refine(image.picture, found.features.picture, pairs);
+        for (size_t i = 0; i < own.size(); i++)
+            if (placed[i])
+            {
+                own[i].pixel = pairs.moved[i].pt;
+                own[i].deviation = REFINED;
+                matches.push_back(own[i]);
+            }
     }
-
-    //! Points and where they are found; they are looked for where the pose has them, unless that has been done near there.
-    std::vector<Match> look(const cv::Affine3d& pose)
-    {
-        const cv::Rect2d inside(cv::Point2d(), cv::Size2d(picture_.pixels.size()) / picture_.scale);
-        const std::vector<cv::Point3d> here = inCamera(pointsOf(matches_), pose);
-        const std::vector<cv::Point2d> places = lens_.project(here);
-        std::map<int, std::vector<size_t>> moved;
-        for (size_t i = 0; i < places.size(); i++)
-            if (inside.contains(places[i]) && cv::norm(places[i] - starts_[i]) >= AGAIN)
-                moved[matches_[i].view].push_back(i);
-        refineMatches(matches_, moved, map_, picture_, [&](size_t i) {
-            starts_[i] = places[i];
-            return cv::KeyPoint(places[i], float(depths_[i] / here[i].z));
-        });
-        std::vector<Match> found;
-        std::copy_if(matches_.begin(), matches_.end(), std::back_inserter(found), isRefined);
-        return found;
-    }
-
-private:
-    const Map& map_;
-    const Picture& picture_;
-    const Lens& lens_;
-    std::vector<Match> matches_;
-    std::vector<double> depths_;       //!< in the other image, at which both see the point at one size
-    std::vector<cv::Point2d> starts_;  //!< where they were looked for the last time
-};
+    return matches;
+}
 
 //! Gives the matches that were refined the deviation that they have of where a pose has their points.
 void learnDeviation(std::vector<Match>& matches, const Lens& lens, const cv::Affine3d& pose)
 {
-    std::vector<Match> refined;
-    std::copy_if(matches.begin(), matches.end(), std::back_inserter(refined), isRefined);
-    const double deviation = std::max(LEAST_REFINED, deviationOf(errorsOf(refined, lens, pose)));
+    const auto refined = [](const Match& m) { return m.deviation != Match().deviation; };
+    std::vector<Match> some;
+    std::copy_if(matches.begin(), matches.end(), std::back_inserter(some), refined);
+    const double deviation = std::max(LEAST_REFINED, deviationOf(errorsOf(some, lens, pose)));
     for (Match& m : matches)
-        if (isRefined(m))
+        if (refined(m))
             m.deviation = deviation;
 }
 
@@ -187,9 +176,7 @@ void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Foun
     const Frame frame(all);
     for (Match& m : all)
         m.point = frame.toLocal(m.point);
-    // Keypoints that match a point in several images of the map count once.
-    std::vector<Match> matches =
-            firstOfEach(all, [](const Match& m) { return std::make_pair(m.keypoint, m.number); });
+    std::vector<Match> matches = withoutRepeated(all);
     found.matches = int(matches.size());
     const Lens lens(camera);
     const double limit = MAX_ERROR * std::max(camera.size.width, camera.size.height);
@@ -216,26 +203,17 @@ void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Foun
             return;
         if (round == 1)
         {
-            std::map<int, std::vector<size_t>> byView;
-            for (size_t i = 0; i < inliers.size(); i++)
-                byView[inliers[i].view].push_back(i);
-            refineMatches(inliers, byView, map, found.features.picture, [&](size_t i) {
-                const Match& m = inliers[i];
-                const float size = map.images[size_t(m.view)].sizes[size_t(m.row)];
-                return cv::KeyPoint(m.pixel, found.features.sizes[size_t(m.keypoint)] / size);
-            });
+            refineMatches(inliers, map, found.features);
             matches = inliers;
         }
     }
-    Sights sights(map, found, lens, frame, pose);
     std::vector<Match> used;
     for (int look = 0; look < LOOKS; look++)
     {
         const cv::Affine3d before = pose;
-        used = within(limit, sights.look(pose), lens, pose);
-        for (const Match& m : within(limit, matches, lens, pose))
+        used = within(limit, matches, lens, pose);
+        for (const Match& m : within(limit, seenAlong(map, found, lens, frame, pose), lens, pose))
             used.push_back(m);
-        used = firstOfEach(used, [](const Match& m) { return m.number; });  // an image sees a point once
         learnDeviation(used, lens, pose);
         if (!refinePose(used, lens, pose, covariance))
             return;
@@ -263,13 +241,12 @@ void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Foun
     found.reason = "";
     found.cameraFromWorld = frame.toWorld(pose);
     found.covariance = frame.toWorld(covariance);
-    inliers = within(limit, matches, lens, pose);
-    found.inliers = keypointsOf(inliers);
     for (const Match& m : inliers)
-    {
-        found.pixels.push_back(m.pixel);
-        found.points.push_back(map.points[size_t(m.number)]);
-    }
+        if (m.keypoint >= 0)
+        {
+            found.pixels.push_back(m.pixel);
+            found.points.push_back(map.points[size_t(m.number)]);
+        }
     found.agreeing = within(limit, all, lens, pose);
 }
 
