@@ -6,6 +6,9 @@ execute_process(COMMAND "${CMAKE_COMMAND}" -E env --unset=PYTHONPATH  # which hi
   OUTPUT_STRIP_TRAILING_WHITESPACE OUTPUT_VARIABLE source COMMAND_ERROR_IS_FATAL ANY)
 file(TO_CMAKE_PATH "${source}/opencv" source)
 get_filename_component(static_opencv "${source}/../../opencv-static-4" ABSOLUTE)
+if(CMAKE_CROSSCOMPILING)
+  string(APPEND static_opencv "-${CMAKE_SYSTEM_PROCESSOR}")
+endif()
 
 # step ARGUMENT...: of CMake; what it prints goes to a file, whose end is shown if it fails.
 function(step)

