@@ -2,7 +2,7 @@
 # Cross-compiles the modules and their tests for another processor and runs those of descriptors, matching and files under
 # qemu-user: golden hashes included.
 #   scripts/helpers/emulated.sh arm64|armhf [--gtest_...]      64 bits with NEON; 32 bits without
-#   scripts/helpers/emulated.sh arm64|armhf --wheel            the wheel for Debian's Python, and python/tests with it
+#   scripts/helpers/emulated.sh arm64 --wheel                  the wheel for Debian's Python, and python/tests with it
 # The packages of the architecture come from the machine's own apt mirror and are unpacked in the cache; the system's
 # package database does not change. The options go to the test programs: scripts/helpers/emulated.sh arm64 --gtest_filter='IIB_Golden*'
 . "$(dirname "$0")/lib.sh"
@@ -15,14 +15,14 @@ armhf) processor=armv7l triplet=arm-linux-gnueabihf qemu=qemu-arm-static ;;
 esac
 shift
 packages=libopencv-dev wheel=""
-if [ "$*" = --wheel ]; then
+if [ "$architecture $*" = "arm64 --wheel" ]; then
     packages="python3-venv libpython3-dev libstdc++6" wheel=-python
     shift
 fi
 for argument in "$@"; do
     case "$argument" in
     --gtest_?*) ;;
-    *) fail "$argument is no option --gtest_... of the test programs" ;;
+    *) fail "$argument is neither an option --gtest_... of the test programs nor, with arm64, --wheel" ;;
     esac
 done
 need $build_packages "g++-$triplet" qemu-user-static xz-utils
