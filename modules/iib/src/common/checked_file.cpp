@@ -91,7 +91,7 @@ bool replace(const String& from, const String& to, const String&)
     };
     if (patiently(1, move))
         return true;
-    // Readers in turn leave moments; rights that lack, whose error is the same, are not waited for.
+    // Readers in turn leave moments; missing rights, which give the same error, are not waited for.
     const HANDLE file = CreateFileW(target.c_str(), GENERIC_WRITE | DELETE, 0, 0, OPEN_EXISTING, 0, 0);
     if (file != INVALID_HANDLE_VALUE)
         CloseHandle(file);
