@@ -79,7 +79,7 @@ TEST_F(Mapping, in_any_unit_and_far_from_the_origin)
             SCOPED_TRACE(cv::format("unit %g, %g away, %d points", unit, far, points));
             const cv::Vec3d origin(far, -.7 * far, .3 * far);
             write(model(unit, points, 1, origin));
-            const Localizer localizer(folder.path("sparse 0"), images());
+            const Localizer localizer(folder.path("sparse 0"), images(), 400, {}, cv::iib::MapOptions(400));
             const Location location = localizer.localize(image, CAMERA);
             ASSERT_TRUE(location.found) << location.reason;
             const cv::Vec3d away =

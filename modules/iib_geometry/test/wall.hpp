@@ -89,13 +89,11 @@ template <typename T> void put(std::string& file, T value)
 //! Files and what is in them.
 typedef std::map<std::string, std::string> Files;
 
-//! Six images along the wall, some below a folder, and a map of them whose points lie on it.
-class WallTest : public testing::Test
+//! Six images along a wall, some below a folder, and a map of them whose points lie on it.
+struct WallScene
 {
-protected:
-    WallTest() : wall(1)
+    WallScene() : wall(1)
     {
-        folder.makeFolder("images/left side");
         map.keypoints = 1000;
         const auto iib = cv::iib::IIB::createRecommended(map.keypoints);
         for (int i = 0; i < 6; i++)
@@ -106,7 +104,6 @@ protected:
             image.name = (i < 3 ? "left side/" : "") + std::to_string(i) + ".png";
             image.camera = CAMERA;
             image.cameraFromWorld = inverse(pose);
-            cv::imwrite(folder.path("images/" + image.name), picture);
             std::vector<cv::KeyPoint> keypoints;
             iib->detectAndCompute(picture, cv::noArray(), keypoints, image.codes);
             for (const cv::KeyPoint& k : keypoints)
@@ -119,8 +116,34 @@ protected:
             image.misses.assign(keypoints.size(), 0);
             image.picture = pictureOf(picture);
             map.images.push_back(image);
+            pictures.push_back(picture);
+        }
+    }
+
+    const Wall wall;
+    Map map;
+    std::vector<cv::Mat> pictures;
+};
+
+//! The scene, made once for all tests, with its images and its map in a folder of each test.
+class WallTest : public testing::Test
+{
+protected:
+    WallTest() : wall(scene().wall), map(scene().map)
+    {
+        folder.makeFolder("images/left side");
+        for (size_t i = 0; i < map.images.size(); i++)
+        {
+            cv::imwrite(folder.path("images/" + map.images[i].name), scene().pictures[i]);
+            map.images[i].codes = map.images[i].codes.clone();  // which a test may change
         }
         MapFolder(folder.path("map")).write(map);
+    }
+
+    static const WallScene& scene()
+    {
+        static const WallScene made;
+        return made;
     }
 
     //! Gives the images below a folder.
@@ -174,7 +197,7 @@ protected:
     }
 
     const TestFolder folder;
-    const Wall wall;
+    const Wall& wall;
     Map map;
 };
 
