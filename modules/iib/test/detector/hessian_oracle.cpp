@@ -175,15 +175,37 @@ std::vector<KeyPoint> findBlobs(const Mat& grey, const iib::HessianDetector& p)
     return keypoints;
 }
 
-Mat responsesByDefinition(const Mat& normalized, double sigma)
+std::vector<KeyPoint> blobsByDefinition(const Mat& grey, const iib::HessianDetector& p)
 {
     Mat image, xx, yy, xy;
-    normalized.convertTo(image, CV_32F, sigma * sigma / 40);
-    GaussianBlur(image, image, Size(), sigma, 0, BORDER_REPLICATE);
-    filter2D(image, xx, CV_32F, Matx13f(1, -2, 1));
-    filter2D(image, yy, CV_32F, Matx31f(1, -2, 1));
-    filter2D(image, xy, CV_32F, Matx33f(.25f, 0, -.25f, 0, 0, 0, -.25f, 0, .25f));
-    return xx.mul(yy) - xy.mul(xy);
+    normalizeByDefinition(grey, p.getNormalizationSigma()).convertTo(image, CV_32F, 1. / 40);
+    std::vector<Mat> responses, largest;
+    std::vector<double> sigmas;
+    for (int scale = 0; scale < p.getScales(); scale++)
+    {
+        sigmas.push_back(p.getSigma() * std::pow(2., scale / 2.));
+        Mat smooth;
+        GaussianBlur(image, smooth, Size(), sigmas[scale], 0, BORDER_REPLICATE);
+        filter2D(smooth, xx, CV_32F, Matx13f(1, -2, 1));
+        filter2D(smooth, yy, CV_32F, Matx31f(1, -2, 1));
+        filter2D(smooth, xy, CV_32F, Matx33f(.25f, 0, -.25f, 0, 0, 0, -.25f, 0, .25f));
+        responses.push_back(std::pow(sigmas[scale], 4) * (xx.mul(yy) - xy.mul(xy)));
+        largest.push_back(Mat());
+        dilate(responses[scale], largest[scale], Mat());
+    }
+    std::vector<KeyPoint> blobs;
+    for (int scale = 0; scale < p.getScales(); scale++)
+    {
+        Mat above = largest[scale].clone();
+        for (int other : {std::max(scale - 1, 0), std::min(scale + 1, p.getScales() - 1)})
+            above = cv::max(above, largest[other]);
+        std::vector<Point> places;
+        findNonZero((responses[scale] >= above) & (responses[scale] > 0), places);
+        for (const Point& place : places)
+            blobs.push_back(KeyPoint(
+                    place, (float)(2 * sigmas[scale]), -1, responses[scale].at<float>(place), scale));
+    }
+    return blobs;
 }
 
 }  // namespace oracle

@@ -9,11 +9,14 @@
 
 namespace oracle {
 
-//! HessianDetector once more, a whole image a scale and pixel by pixel: the same keypoints, of CV_8U or CV_16U.
+//! The bits of HessianDetector, a whole image a scale and pixel by pixel with its integers, of CV_8U or CV_16U. What a
+//! keypoint is says blobsByDefinition.
 std::vector<cv::KeyPoint> findBlobs(const cv::Mat& grey, const cv::iib::HessianDetector& parameters);
 
-//! sigma^4 (Ixx Iyy - Ixy^2) of a normalized image, CV_8U, smoothed by a Gaussian; in units of 40 grey levels. CV_32F.
-cv::Mat responsesByDefinition(const cv::Mat& normalized, double sigma);
+/* The definition in the header of HessianDetector, with OpenCV's Gaussians and floating point, at the image's resolution:
+ largest values of sigma^4 (Ixx Iyy - Ixy^2), in units of 40 grey levels of the normalized image, among their neighbours in
+ place and scale. All of them, in any order, of whole pixels and scales. */
+std::vector<cv::KeyPoint> blobsByDefinition(const cv::Mat& grey, const cv::iib::HessianDetector& parameters);
 
 }  // namespace oracle
 
