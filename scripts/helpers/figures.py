@@ -17,11 +17,11 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'tools/evaluation/report'))
-import paper_orders as orders  # noqa: E402
 import results as summaries  # noqa: E402
 
-ROOT = summaries.ROOT
-results = ROOT / 'doc/results'
+ROOT, results = summaries.ROOT, summaries.RESULTS
+PAPER = summaries.read(ROOT / 'tools/evaluation/report/paper.csv')  # the paper's figures, by the questions of its tables and our names
+LOCALIZATION = summaries.read(ROOT / 'tools/evaluation/report/paper_localization.csv')
 
 
 def rows(name):
@@ -58,12 +58,15 @@ def learned_points():
 
 
 def paper(question):
-    """One of the paper's tables: our figures beside its own."""
-    def both(pair):
-        return ' / '.join(pair) if all(pair) else '–'
-    lines = [[plain or name, '`%s`' % name, (natural or rendered or {}).get('bytes', '–'), precision_recall(natural), both(theirs[0]),
-              precision_recall(rendered), both(theirs[1])]
-             for name, plain, natural, rendered, theirs in summaries.paper_table(question, rows('fixed_points.csv'))]
+    """One of the paper's tables: our figures beside its own. Where bits were learned, on scenes that they were not learned on."""
+    natural, light, rendered = (summaries.by(rows('fixed_points.csv'), 'configuration', place=place) for place in ('natural', 'light', 'rendered'))
+    photographs, lines = light if 'learning' in question else {**light, **natural}, []
+    for row in (row for row in PAPER if row['question'] == question):
+        name = row['configuration']
+        line = [row['plain'] or name, '`%s`' % name, {**rendered, **photographs}.get(name, {}).get('bytes', '–')]
+        for ours, theirs in ((photographs, 'natural'), (rendered, 'synthetic')):
+            line += [precision_recall(ours.get(name)), row[theirs + '_map'] and '%s / %s' % (row[theirs + '_map'], row[theirs + '_mar']) or '–']
+        lines.append(line)
     return table([question.lower(), 'row', 'bytes', 'photographs', 'paper, natural', 'rendered', 'paper, synthetic'], lines)
 
 
@@ -105,8 +108,7 @@ def memory():
 
 def localization_systems():
     """The paper's table of localization systems, as it quotes them."""
-    found = summaries.read(summaries.PAPER.with_name('paper_localization.csv'))
-    return table(['system', 'inputs', 'lateral', 'longitudinal', 'altitude'], [[value or '–' for value in row.values()] for row in found])
+    return table(['system', 'inputs', 'lateral', 'longitudinal', 'altitude'], [[value or '–' for value in row.values()] for row in LOCALIZATION])
 
 
 SETUPS = {'': 'recommended chain', '--lines': 'recommended chain, lines', '--orb-and-akaze': 'ORB and AKAZE',
@@ -133,19 +135,33 @@ def localization_setups():
 
 def localization_lights(*file):
     """The same by light, for the page of localization, above the paper's table."""
-    systems = summaries.read(summaries.PAPER.with_name('paper_localization.csv'))
     lines = [['map', 'set-up', 'light'] + SETUP_HEAD, *setups(('map', 'setup', 'light'), *file)]
-    lines += [["as the paper quotes it", row['system'], row['inputs'], '', '', row['lateral'], row['longitudinal'], row['altitude'], ''] for row in systems]
+    lines += [["as the paper quotes it", row['system'], row['inputs'], '', '', row['lateral'], row['longitudinal'], row['altitude'], ''] for row in LOCALIZATION]
     cells = [''.join('<%s>%s</%s>' % (tag, cell, tag) for cell in line) for tag, line in zip(['th'] + ['td'] * len(lines), lines)]
     return '\n'.join(['<div class="scroll"><table>', *('<tr>%s</tr>' % line for line in cells), '</table></div>'])
+
+
+ONE, TWO, THREE = ('IIB x', 'IIB y', 'IIB i', 'IIB o'), ('IIB x+y', 'IIB o+i'), ('IIB x+y+i', 'IIB x+y+o')
+# The best of each group finds more than the best of the next one.
+ORDERS = {'x+y above every single channel': (('IIB x+y',), ONE), '4 channels above 3 above 2 above 1': (('IIB',), THREE, TWO, ONE),
+          'QUARTILE above MEAN': (('IIB quartile',), ('IIB',)), 'overlap above none': (('IIB overlap',), ('IIB',)),
+          'SORT below MEAN': (('IIB',), ('IIB sort',)),
+          'MAX below MEAN': (('IIB',), ('IIB max',)), 'MIN below MEAN': (('IIB',), ('IIB min',)),
+          'g5 above g4 above g3 above g2': (('IIB g5',), ('IIB',), ('IIB g3',), ('IIB g2',))}
 
 
 def paper_orders():
     """Whether the orders that the paper's tables show hold for our figures."""
     natural = summaries.by(rows('fixed_points.csv'), 'configuration', place='natural')
-    found = orders.orders({n: float(r['recall']) for n, r in natural.items()}, {n: float(r['precision']) for n, r in natural.items()},
-                          [row['configuration'] for row in summaries.read(summaries.PAPER)])
-    return table(['statement', 'holds', 'figures'], [[statement, 'yes' if holds else 'no', figures] for statement, holds, figures in found])
+    recall, precision = ({name: float(row[column]) for name, row in natural.items()} for column in ('recall', 'precision'))
+
+    def line(statement, values, chosen, margin=0):
+        holds = all(values[a] - values[b] > margin for a, b in zip(chosen, chosen[1:]))
+        return [statement, 'yes' if holds else 'no', ', '.join('%s %.3f' % (name, values[name]) for name in chosen)]
+    others = [row['configuration'] for row in PAPER if row['configuration'] in natural and not row['configuration'].startswith('IIB')]
+    return table(['statement', 'holds', 'figures'], [
+        *(line(statement, recall, [max(members, key=recall.get) for members in groups]) for statement, groups in ORDERS.items()),
+        line('0.1 precision above every other descriptor', precision, ['IIB', max(others, key=precision.get)], .1)])
 
 
 def estimates():
@@ -400,8 +416,9 @@ def photographs_of_many():
 
 
 # Tables of the paper by the questions of tools/evaluation/report/paper.csv.
+QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 TABLES = {'paper_' + name: functools.partial(paper, question)
-          for name, question in zip(('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), summaries.questions())}
+          for name, question in zip(('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)}
 
 PAGES = {'doc/poses.svg': (pose_bars,),
          'README.md': (match_claim, pose_claim, speed_claim, poses),

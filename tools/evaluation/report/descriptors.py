@@ -43,9 +43,6 @@ METHODS = {("Hessian", "IIB UNIVERSAL"): "recommended chain", ("AKAZE", "IIB"): 
 # The paper's nine detectors as far as they, or the next of their kind, can be had.
 SUITS = ("AKAZE", "ORB", "BRISK", "SIFT", "SURF", "KAZE", "superpoint", "alike-n", "aliked-n16", "xfeat")
 
-# Bars of further channels.
-EXTRAS = ("IIB", "IIB +depth", "IIB +labels", "IIB +depth+labels", "IIB +texture")
-
 # Pairs of the slider by their second image: title, and what is to be said of it.
 SCENES = {
     "view_overcast": ("street, sun and clouds", "The light is much the same, and soft: what the paper's first picture shows beside the next scene."),

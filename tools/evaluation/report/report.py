@@ -9,11 +9,10 @@ import sys
 import jinja2
 
 import descriptors
-from paper_orders import orders
-from results import PAPER, by, describing_times, group, paper_table, questions, read
+from results import by, describing_times, group, read
 
 HERE = pathlib.Path(__file__).parent
-FILES = ("fixed_points", "detected_points", "matching", "curves", "estimators", "alignment", "robustness", "learned", "comparison")
+FILES = ("fixed_points", "detected_points", "curves", "estimators", "alignment", "robustness", "learned", "comparison")
 
 
 def number(row, column):
@@ -108,22 +107,16 @@ def main():
     tables = {name: read(folder / (name + ".csv")) for name in FILES}
     if not tables["fixed_points"]:
         sys.exit("%s: no results of iib_evaluation" % folder)
-    rows, fixed = overview(tables), tables["fixed_points"]
-    natural = by(fixed, "configuration", place="natural")
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     settings = [line for name in ("settings.txt", "run.txt") if (folder / name).is_file()
                 for line in (folder / name).read_text().splitlines() if line]
     page = environment.get_template("page.html.j2").render(
-        overview=rows, networks=tables["learned"], licences=descriptors.NETWORKS,
+        overview=overview(tables), networks=tables["learned"], licences=descriptors.NETWORKS,
         detected=detected_lines(tables), changes=changes(tables), warps=warps(tables), estimates=estimates(tables), anchors=read(HERE / "anchors.csv"),
         alignment=tables["alignment"],
-        slider=slider(tables), methods=list(descriptors.METHODS.values()), curves=curves(tables), matching=group(tables["matching"], "place"),
-        extras=[by(fixed, "configuration", place="rendered").get(name) for name in descriptors.EXTRAS],
-        paper=[(question, paper_table(question, fixed)) for question in questions()],
-        orders=orders({n: number(r, "recall") for n, r in natural.items()},
-                      {n: number(r, "precision") for n, r in natural.items()}, [row["configuration"] for row in read(PAPER)]),
-        all_pairs=natural.get("IIB"), settings=settings, files=[name + ".csv" for name in FILES if tables[name]])
+        slider=slider(tables), methods=list(descriptors.METHODS.values()), curves=curves(tables),
+        settings=settings, files=[name + ".csv" for name in FILES if tables[name]])
     path = folder / "index.html"
     path.write_text(page)
     print(path)

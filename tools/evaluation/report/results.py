@@ -7,9 +7,6 @@ import pathlib
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 RESULTS = ROOT / "doc/results"
-# The figures of Lin et al., "Illumination-insensitive Binary Descriptor for Visual Measurement Based on Local Inter-patch
-# Invariance", by the questions that its tables answer and the names of our results; those that it lacks are empty.
-PAPER = pathlib.Path(__file__).with_name("paper.csv")
 
 
 def read(file):
@@ -38,17 +35,3 @@ def describing_times(file=RESULTS / "benchmark.json"):
     """Milliseconds for 1000 points, by the names of the evaluation's configurations; of scripts/bench.sh."""
     return {row["name"].replace("cv::", "").replace("default", "IIB").replace("PRESET_", "IIB "): row["milliseconds"][0]
             for row in json.loads(file.read_text())["rows"]}
-
-
-def paper_table(question, fixed):
-    """Lines of one of the paper's tables: name, in plain words, our rows of photographs and of rendered scenes, and the paper's
-    means (precision, recall) of natural and synthetic images. Where bits were learned, on scenes that they were not learned on."""
-    natural, light, rendered = (by(fixed, "configuration", place=place) for place in ("natural", "light", "rendered"))
-    natural = light if "learning" in question else {**light, **natural}
-    return [(row["configuration"], row["plain"], natural.get(row["configuration"]), rendered.get(row["configuration"]),
-             [[row[data + measure] for measure in ("_map", "_mar")] for data in ("natural", "synthetic")])
-            for row in read(PAPER) if row["question"] == question]
-
-
-def questions():
-    return [question for question, in group(read(PAPER), "question")]
