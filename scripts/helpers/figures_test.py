@@ -35,12 +35,12 @@ class Figures(unittest.TestCase):
             self.assertEqual(target.read_text().splitlines()[1:], ['light,ORB,ORB,1,2,0.5,0.05,0', 'light,ORB,ORB,2,2,6,0.4,0.25'])
 
     def test_poses_are_judged_where_nothing_was_trained_or_chosen(self):
-        heads = 'set', 'detector', 'descriptor', 'points', 'estimator', 'sequence', 'error'
+        heads = 'set', 'detector', 'descriptor', 'points', 'estimator', 'sequence', 'error', 'inliers'
         errors = {'strecha': (0, 5), 'strecha relit': (10,), 'facade_2': (2,), 'facade_1': (0,), 'walk_facade': (5,), 'walk_room': (0,), 'walk_terrain': (0,)}
         with tempfile.TemporaryDirectory() as folder:
             source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
             with open(source, 'w', newline='') as file:
-                csv.writer(file).writerows([heads] + [(name, 'Hessian', 'IIB', 'plain', 'MAGSAC', error, error)
+                csv.writer(file).writerows([heads] + [(name, 'Hessian', 'IIB', 'plain', 'MAGSAC', error, error, 9)
                                                       for name, some in errors.items() for error in some])
             summaries.summarize(source, target, *summaries.PLANS['estimators.csv'])
             with open(target, newline='') as file:

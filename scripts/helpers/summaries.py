@@ -104,7 +104,7 @@ PLANS = {
                        columns('precision', 'recall')),
     'alignment.csv': (alignment_place, (), {'found': column('found'), 'within_1': within(1), 'within_3': within(3)}),
     'estimators.csv': (light_place, ('detector', 'descriptor', 'points', 'estimator'),
-                       {'at_10': pose_area(10), 'at_2': pose_area(2), 'at_5': pose_area(5)}),
+                       {'inliers': column('inliers'), 'at_10': pose_area(10), 'at_2': pose_area(2), 'at_5': pose_area(5)}),
 }
 
 
