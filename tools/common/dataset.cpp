@@ -18,21 +18,6 @@ namespace {
 
 namespace fs = cv::utils::fs;
 
-std::string join(const std::string& folder, const std::string& name) { return fs::join(folder, name); }
-
-std::string baseName(const std::string& path)
-{
-    const size_t end = path.find_last_not_of('/');
-    const size_t slash = path.find_last_of('/', end);
-    return path.substr(slash + 1, end - slash);
-}
-
-std::string folderOf(const std::string& path)
-{
-    const size_t slash = path.find_last_of('/', path.find_last_not_of('/'));
-    return slash == std::string::npos ? "." : path.substr(0, slash);
-}
-
 Kind kindOf(const std::string& sequence)
 {
     static const std::map<std::string, Kind> oxford = {{"bark", "zoom"}, {"boat", "zoom"},
@@ -77,12 +62,12 @@ bool addSequence(const std::string& folder, std::vector<ImagePair>& pairs)
         return false;
 
     ImagePair common;
-    common.set = baseName(folderOf(folder));
+    common.set = baseName(fs::getParent(folder));
     common.sequence = baseName(folder);
     common.kind = kindOf(common.sequence);
     common.referenceFile = images[1];
     for (const char* extra : {"depth", "labels"})
-        if (fs::exists(join(join(folder, extra), "1.png")))
+        if (fs::exists(fs::join(fs::join(folder, extra), "1.png")))
             common.extraNames.push_back(extra);
 
     std::vector<cv::String> homographies;
@@ -95,30 +80,28 @@ bool addSequence(const std::string& folder, std::vector<ImagePair>& pairs)
         pair.target = std::to_string(image.first);
         pair.targetFile = image.second;
         if (!homographies.empty())
-            pair.homographyFile = join(folder, oxford ? "H1to" + pair.target + "p" : "H_1_" + pair.target);
+            pair.homographyFile =
+                    fs::join(folder, oxford ? "H1to" + pair.target + "p" : "H_1_" + pair.target);
         pairs.push_back(pair);
     }
     return true;
 }
 
-void search(const std::string& folder, int depth, std::vector<ImagePair>& pairs)
+void search(const std::string& folder, int depth, const std::function<bool(const std::string&)>& visit)
 {
-    const bool isWalk = fs::isDirectory(join(folder, "frames"));  // of tools/synthetic: the camera moves
-    if (isWalk || holdsViews(folder) || addSequence(folder, pairs) || depth == 0)
+    if (!visit(folder) || depth == 0)
         return;
     std::vector<cv::String> entries;
     fs::glob(folder, "*", entries, false, true);
     std::sort(entries.begin(), entries.end());
     for (const std::string& entry : entries)
         if (fs::isDirectory(entry))
-            search(entry, depth - 1, pairs);
+            search(entry, depth - 1, visit);
 }
 
 cv::Mat readExtra(const std::string& imageFile, const std::string& name, cv::Size size)
 {
-    const size_t start = imageFile.find_last_of('/') + 1;
-    const std::string number = imageFile.substr(start, imageFile.find('.', start) - start);
-    const std::string file = imageFile.substr(0, start) + name + "/" + number + ".png";
+    const std::string file = fs::join(fs::getParent(imageFile), name + "/" + stem(imageFile) + ".png");
     const cv::Mat map = readImage(file, cv::IMREAD_UNCHANGED);
     if (map.size() != size || map.channels() != 1)
         CV_Error(cv::Error::StsBadSize, file + ": not one channel of the image's size");
@@ -129,15 +112,32 @@ cv::Mat readExtra(const std::string& imageFile, const std::string& name, cv::Siz
 
 std::string ImagePair::name() const { return set + "/" + sequence + "/" + target; }
 
-std::vector<ImagePair> findPairs(const std::vector<std::string>& roots)
+std::string baseName(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
+
+std::string stem(const std::string& path)
 {
-    std::vector<ImagePair> pairs;
+    const std::string name = baseName(path);
+    return name.substr(0, name.rfind('.'));
+}
+
+void visitFolders(const std::vector<std::string>& roots, const std::function<bool(const std::string&)>& visit)
+{
     for (const std::string& root : roots)
     {
         if (!fs::isDirectory(root))
             CV_Error(cv::Error::StsObjectNotFound, root + ": no such folder");
-        search(fs::canonical(root), 4, pairs);
+        search(fs::canonical(root), 4, visit);
     }
+}
+
+std::vector<ImagePair> findPairs(const std::vector<std::string>& roots)
+{
+    std::vector<ImagePair> pairs;
+    visitFolders(roots, [&](const std::string& folder) {
+        const bool isWalk =
+                fs::isDirectory(fs::join(folder, "frames"));  // of tools/synthetic: the camera moves
+        return !isWalk && !holdsViews(folder) && !addSequence(folder, pairs);
+    });
     std::set<std::string> names;
     for (const ImagePair& pair : pairs)
         if (!names.insert(pair.name()).second)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -34,6 +35,16 @@ struct LoadedPair
     cv::Matx33d homography;                                      //!< reference to target, pixels
     std::map<std::string, cv::Mat> referenceExtra, targetExtra;  //!< by ImagePair::extraNames, 8U or 16U
 };
+
+/** Calls `visit` with the folders and those up to four levels below them, in the order of the paths; it tells whether to go on
+within the one it is given. @throws cv::Exception for a root that is no folder. */
+void visitFolders(
+        const std::vector<std::string>& roots, const std::function<bool(const std::string&)>& visit);
+
+//! A path's last name.
+std::string baseName(const std::string& path);
+//! The same without its extension.
+std::string stem(const std::string& path);
 
 /** Finds all pairs (1, k) below the given folders, up to four levels deep, in the layouts
  - `1.png`, `H_1_k` (also .ppm, .pgm, .jpg, .tif: HPatches), with `depth/k.png`, `labels/k.png` if any;

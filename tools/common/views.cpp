@@ -3,12 +3,14 @@
 #include "views.hpp"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <fstream>
 #include <functional>
 #include <map>
 #include <sstream>
 
+#include "dataset.hpp"
 #include "opencv2/core/quaternion.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
 
@@ -89,33 +91,17 @@ std::vector<View> readViews(const std::string& folder)
     return views;
 }
 
-std::string lastName(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
-
-Folder readFolder(const std::string& path)
+Folder viewsOf(const Walk& walk)
 {
-    return {lastName(path), readCamera(fs::join(path, "cameras.txt")), readViews(path)};
-}
-
-bool holdsWalk(const std::string& folder)
-{
-    return fs::exists(fs::join(folder, "camera.yml")) && fs::isDirectory(fs::join(folder, "frames"));
-}
-
-Folder readWalk(const std::string& path, const std::string& light)
-{
-    const cv::FileStorage storage(fs::join(path, "camera.yml"), cv::FileStorage::READ);
-    Folder walk = {light, cv::Matx33d(storage["camera_matrix"].mat()), {}};
-    int number = 0;
-    for (const cv::FileNode& node : storage["poses"])
+    Folder folder = {walk.light, walk.camera, {}};
+    for (int k = 1; k <= int(walk.poses.size()); k++)
     {
-        const cv::Mat pose = node.mat();
-        const cv::Matx33d rotation = cv::Matx33d(pose.colRange(0, 3)).t();
-        const std::string name = cv::format("%02d", ++number),
-                          file = fs::join(path, cv::format("frames/%d.png", number));
-        if (fs::exists(file))
-            walk.views.push_back({name, file, rotation, -(rotation * cv::Vec3d(pose.col(3)))});
+        const cv::Matx33d toWorld = walk.poses[k - 1].rotation().t();
+        if (fs::exists(walk.file("frames", k)))
+            folder.views.push_back({cv::format("%02d", k), walk.file("frames", k), toWorld,
+                    -(toWorld * walk.poses[k - 1].translation())});
     }
-    return walk;
+    return folder;
 }
 
 ViewPair pairOf(const std::string& set, const Folder& from, const View& a, const Folder& to, const View& b)
@@ -132,56 +118,74 @@ void addWithin(const std::string& set, const Folder& folder, std::vector<ViewPai
             pairs.push_back(pairOf(set, folder, folder.views[i], folder, folder.views[j]));
 }
 
-void addAcross(const std::string& set, const Folder& map, const Folder& visit, std::vector<ViewPair>& pairs)
+//! Pairs the images of all folders but the one called `map` with that one's; false if it or others are missing.
+bool addAcross(const std::string& set, const std::string& map, const std::vector<Folder>& folders,
+        std::vector<ViewPair>& pairs)
 {
-    for (const View& view : visit.views)
-    {
-        const View* best = nullptr;
-        double least = 0;
-        for (const View& candidate : map.views)
+    const auto mapped = std::find_if(
+            folders.begin(), folders.end(), [&](const Folder& folder) { return folder.name == map; });
+    if (mapped == folders.end() || folders.size() == 1)
+        return false;
+    for (const Folder& visit : folders)
+        for (const View& view : visit.views)
         {
-            const double distance = cv::norm(candidate.position - view.position);
-            if (distance >= LEAST_BASELINE && (!best || distance < least))
+            const View* best = nullptr;
+            double least = DBL_MAX;
+            for (const View& candidate : mapped->views)
             {
-                best = &candidate;
-                least = distance;
+                const double distance = cv::norm(candidate.position - view.position);
+                if (distance >= LEAST_BASELINE && distance < least)
+                {
+                    best = &candidate;
+                    least = distance;
+                }
             }
+            if (best && &visit != &*mapped)
+                pairs.push_back(pairOf(set, *mapped, *best, visit, view));
         }
-        if (best)
-            pairs.push_back(pairOf(set, map, *best, visit, view));
-    }
+    return true;
 }
 
-void search(const std::string& folder, int depth, std::vector<ViewPair>& pairs)
+Walk readWalk(const std::string& folder)
 {
-    std::vector<cv::String> entries, views;
-    std::map<std::string, std::map<std::string, Folder>> walks;  // by scene and light
-    fs::glob(folder, "*", entries, false, true);
-    std::sort(entries.begin(), entries.end());
-    for (const std::string& entry : entries)
-        if (holdsViews(entry))
-            views.push_back(entry);
-        else if (holdsWalk(entry))
-        {
-            const std::string name = lastName(entry), light = name.substr(name.find_last_of('_') + 1);
-            walks["walk_" + name.substr(0, name.find_last_of('_'))][light] = readWalk(entry, light);
-        }
-        else if (depth > 0 && fs::isDirectory(entry))
-            search(entry, depth - 1, pairs);
-    const std::string map = fs::join(folder, "map");
-    const bool visited = holdsViews(map) && views.size() > 1;
-    for (const std::string& view : views)
-        if (!visited)
-            addWithin(lastName(folder), readFolder(view), pairs);
-        else if (view != map)
-            addAcross(lastName(folder), readFolder(map), readFolder(view), pairs);
-    for (auto& walk : walks)
-        for (const auto& light : walk.second)
-            if (light.first != "noon")
-                addAcross(walk.first, walk.second["noon"], light.second, pairs);
+    const std::string name = baseName(folder), file = fs::join(folder, "camera.yml");
+    const cv::FileStorage storage(file, cv::FileStorage::READ);
+    const cv::Mat camera = storage["camera_matrix"].mat();
+    Walk walk = {folder, name.substr(0, name.find_last_of('_')), name.substr(name.find_last_of('_') + 1),
+            cv::Matx33d(), storage["depth_scale"].real(), {}};
+    bool whole = camera.size() == cv::Size(3, 3) && walk.depthScale > 0;
+    for (const cv::FileNode& node : storage["poses"])
+    {
+        const cv::Mat pose = node.mat();
+        whole = whole && pose.size() == cv::Size(4, 3);
+        if (whole)
+            walk.poses.push_back(cv::Affine3d(pose));
+    }
+    if (!whole || walk.poses.empty())
+        CV_Error(cv::Error::StsParseError, file + ": not camera_matrix, depth_scale and poses of a walk");
+    walk.camera = camera;
+    return walk;
 }
 
 }  // namespace
+
+std::string Walk::file(const char* kind, int frame) const
+{
+    return fs::join(folder, cv::format("%s/%d.png", kind, frame));
+}
+
+std::vector<Walk> findWalks(const std::vector<std::string>& roots)
+{
+    std::vector<Walk> walks;
+    visitFolders(roots, [&](const std::string& folder) {
+        const bool found =
+                fs::isDirectory(fs::join(folder, "frames")) && fs::exists(fs::join(folder, "camera.yml"));
+        if (found)
+            walks.push_back(readWalk(folder));
+        return !found;
+    });
+    return walks;
+}
 
 bool holdsViews(const std::string& folder)
 {
@@ -191,10 +195,23 @@ bool holdsViews(const std::string& folder)
 
 std::vector<ViewPair> findViewPairs(const std::vector<std::string>& roots)
 {
+    std::map<std::string, std::vector<Folder>> places, scenes;  // by the path of what holds the folders
+    visitFolders(roots, [&](const std::string& folder) {
+        const bool found = holdsViews(folder);
+        if (found)
+            places[fs::getParent(folder)].push_back(
+                    {baseName(folder), readCamera(fs::join(folder, "cameras.txt")), readViews(folder)});
+        return !found;
+    });
+    for (const Walk& walk : findWalks(roots))
+        scenes[fs::join(fs::getParent(walk.folder), "walk_" + walk.scene)].push_back(viewsOf(walk));
     std::vector<ViewPair> pairs;
-    for (const std::string& root : roots)
-        if (fs::isDirectory(root))
-            search(fs::canonical(root), 3, pairs);
+    for (const auto& place : places)
+        if (!addAcross(baseName(place.first), "map", place.second, pairs))
+            for (const Folder& folder : place.second)
+                addWithin(baseName(place.first), folder, pairs);
+    for (const auto& scene : scenes)
+        addAcross(baseName(scene.first), "noon", scene.second, pairs);
     return pairs;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "opencv2/core.hpp"
+#include "opencv2/core/affine.hpp"
 
 namespace iib_tools {
 
@@ -24,12 +25,27 @@ struct ViewPair
 //! Whether a folder holds `cameras.txt`, `poses.txt` and `images`.
 bool holdsViews(const std::string& folder);
 
+//! A walk as tools/synthetic/render.py writes it: a folder `<scene>_<light>` with `camera.yml`, `frames/k.png` and `depth/k.png`.
+struct Walk
+{
+    std::string folder, scene, light;
+    cv::Matx33d camera;               //!< pixels
+    double depthScale;                //!< metres a step of depth
+    std::vector<cv::Affine3d> poses;  //!< of frames 1, 2, ...: from the world's axes to the camera's, metres
+
+    //! Of the file of a frame, "frames" or "depth", which may be missing.
+    std::string file(const char* kind, int frame) const;
+};
+
+/** The walks up to four levels below the folders.
+@throws cv::Exception for a camera file without what is needed. */
+std::vector<Walk> findWalks(const std::vector<std::string>& roots);
+
 /** Finds pairs in folders as tools/synthetic/localization.py writes them, up to four levels deep: `cameras.txt` (COLMAP,
 one PINHOLE camera), `poses.txt` (TUM, camera to world, a name a line) and `images/<name>.png` or .jpg. Names without
 an image are left out. An image is paired with the next three of its folder; where other folders lie beside a folder
 `map`, each of their images is paired with the map's next one at a distance of half a metre or more instead. So are the
-frames of a walk of tools/synthetic in other light with those at noon: folders `<scene>_<light>` with `camera.yml` and
-`frames/k.png`; their set is `walk_<scene>`.
+frames of a walk in other light with those at noon; their set is `walk_<scene>`.
 @throws cv::Exception, with file and line, for a folder whose files are broken. */
 std::vector<ViewPair> findViewPairs(const std::vector<std::string>& roots);
 

@@ -21,13 +21,6 @@ void writePicture(const std::string& file, const cv::Mat& picture)
         CV_Error(cv::Error::StsError, file + ": cannot be written");
 }
 
-//! A file's name without folder and extension.
-std::string stem(const std::string& file)
-{
-    const std::string name = file.substr(file.find_last_of('/') + 1);
-    return name.substr(0, name.rfind('.'));
-}
-
 //! Points of a detector, and what describes them.
 struct Method
 {
@@ -86,7 +79,8 @@ int comparison(const Options& options, const std::vector<ImagePair>&)
         pair.referenceFile = options.compare[i];
         pair.targetFile = options.compare[i + 1];
         const std::string& target = pair.targetFile;
-        const std::string homography = target.substr(0, target.find_last_of('/') + 1) + "H_" + stem(target);
+        const std::string homography =
+                cv::utils::fs::join(cv::utils::fs::getParent(target), "H_" + stem(target));
         if (cv::utils::fs::exists(homography))
             pair.homographyFile = homography;
         for (const std::string& image : {pair.referenceFile, pair.targetFile})

@@ -2,6 +2,7 @@
 
 #include "configurations.hpp"
 
+#include "common/dataset.hpp"
 #include "opencv2/iib.hpp"
 
 namespace iib_tools {
@@ -93,8 +94,7 @@ std::vector<Configuration> robustnessConfigurations()
 
 Configuration savedConfiguration(const std::string& file)
 {
-    const size_t start = file.find_last_of('/') + 1;
-    Configuration c = iib("IIB " + file.substr(start, file.find_last_of('.') - start));
+    Configuration c = iib("IIB " + stem(file));
     c.create = [file]() -> cv::Ptr<cv::Feature2D> {
         cv::Ptr<IIB> extractor = IIB::create();
         const cv::FileStorage storage(file, cv::FileStorage::READ);

@@ -20,9 +20,7 @@ struct WalkPair
     cv::Vec3d translation;                    //!< of the same, in steps of depth
 };
 
-/** Ordered pairs of pictures that lie up to `farthest` frames apart, in folders `<scene>_<light>` with `camera.yml`,
-`frames/k.png` and `depth/k.png`, up to four levels below the roots; k is 1, 2, 5, 6, 9, 10, ...
-@throws cv::Exception for a camera file without what is needed. */
+//! Ordered pairs of pictures of common/views.hpp's walks that lie up to `farthest` frames apart: frames 1, 2, 5, 6, 9, 10, ...
 std::vector<WalkPair> findWalkPairs(const std::vector<std::string>& roots, int farthest);
 
 //! What is seen where in the two pictures of a walk.

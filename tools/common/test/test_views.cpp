@@ -75,7 +75,8 @@ TEST_F(ViewsTest, walks_are_paired_with_noon)
             ASSERT_TRUE(
                     cv::imwrite(folder.path(walk + cv::format("/frames/%d.png", k)), cv::Mat(9, 9, CV_8U)));
         cv::FileStorage camera(folder.path(walk + "/camera.yml"), cv::FileStorage::WRITE);
-        camera << "camera_matrix" << cv::Mat(cv::Mat_<double>::eye(3, 3) * 7) << "poses"
+        camera << "camera_matrix" << cv::Mat(cv::Mat_<double>::eye(3, 3) * 7) << "depth_scale" << 0.001
+               << "poses"
                << "[" << cv::Mat(cv::Mat_<double>::eye(3, 4))
                << (cv::Mat_<double>(3, 4) << 0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 4) << "]";
     }
