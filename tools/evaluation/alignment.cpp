@@ -96,9 +96,7 @@ int alignment(const Options& options, const std::vector<ImagePair>& all)
             tasks.push_back({pair.name() + " and " + other.name(),
                     [&pair, &other, &table] { alignOthers(pair, other, table); }});
     }
-    const int skipped = runTasks("alignment", tasks);
-    table.finish();
-    return skipped;
+    return runTasks("alignment", tasks, &table);
 }
 
 }  // namespace iib_tools

@@ -90,9 +90,7 @@ int comparison(const Options& options, const std::vector<ImagePair>&)
             tasks.push_back({stem(target) + " " + detector.name,
                     [&, pair, detector] { listMatches(options, pair, detector, table); }});
     }
-    const int skipped = runTasks("comparison", tasks);
-    table.finish();
-    return skipped;
+    return runTasks("comparison", tasks, &table);
 }
 
 }  // namespace iib_tools

@@ -95,9 +95,7 @@ int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs)
             tasks.push_back({pair.name(),
                     [&, pair, missing] { evaluatePair(options, pair, missing, described, table); }});
     }
-    const int skipped = runTasks("detected points", tasks);
-    table.finish();
-    return skipped;
+    return runTasks("detected points", tasks, &table);
 }
 
 }  // namespace iib_tools

@@ -155,8 +155,7 @@ int estimators(const Options& options, const std::vector<ImagePair>&)
         if (!missing.empty())
             tasks.push_back({views.set + "/" + views.sequence + "/" + views.target, run});
     }
-    const int skipped = runTasks("estimators", tasks);
-    errors.finish();
+    const int skipped = runTasks("estimators", tasks, &errors);
     matched.finish();
     return skipped;
 }

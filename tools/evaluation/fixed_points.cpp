@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
+#include <iterator>
 
 #include "experiments.hpp"
-#include "results.hpp"
 #include "seeded.hpp"
-#include "tasks.hpp"
 
 namespace iib_tools {
 namespace {
@@ -33,19 +32,14 @@ int fixedPoints(const Options& options, const std::vector<ImagePair>& pairs)
     std::vector<Task> tasks;
     for (const ImagePair& pair : pairs)
     {
-        const Fields key = {pair.set, pair.sequence, pair.target, pair.kind};
-        std::vector<Configuration> missing;
-        for (const Configuration& c : all)
-            if (hasExtras(c, pair) && !table.has({key[0], key[1], key[2], key[3], c.name}))
-                missing.push_back(c);
-        if (!missing.empty())
-            tasks.push_back({pair.name(), [&options, &table, pair, missing, key] {
-                                 matchSeeds(options, loadPair(pair), missing, key, table);
-                             }});
+        std::vector<Configuration> possible;
+        std::copy_if(all.begin(), all.end(), std::back_inserter(possible),
+                [&](const Configuration& c) { return hasExtras(c, pair); });
+        addSeededTask(
+                options, {pair.set, pair.sequence, pair.target, pair.kind}, possible,
+                [pair] { return loadPair(pair); }, table, tasks);
     }
-    const int skipped = runTasks("fixed points", tasks);
-    table.finish();
-    return skipped;
+    return runTasks("fixed points", tasks, &table);
 }
 
 }  // namespace iib_tools

@@ -92,9 +92,7 @@ int matching(const Options& options, const std::vector<ImagePair>& pairs)
     for (const ImagePair& pair : pairs)
         if (pair.kind == "light" && !table.has({pair.set, pair.sequence, pair.target, "H-t-0.50"}))
             tasks.push_back({pair.name(), [&options, &table, pair] { evaluatePair(options, pair, table); }});
-    const int skipped = runTasks("matching", tasks);
-    table.finish();
-    return skipped;
+    return runTasks("matching", tasks, &table);
 }
 
 }  // namespace iib_tools

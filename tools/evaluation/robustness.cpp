@@ -4,9 +4,7 @@
 
 #include "experiments.hpp"
 #include "opencv2/imgproc.hpp"
-#include "results.hpp"
 #include "seeded.hpp"
-#include "tasks.hpp"
 
 namespace iib_tools {
 namespace {
@@ -59,23 +57,12 @@ int robustness(const Options& options, const std::vector<ImagePair>& pairs)
         if (!turned.insert(pair.set).second)
             continue;
         for (const Warp& warp : warps())
-        {
-            const Fields key = {pair.set, pair.sequence, text(warp.amount), warp.kind};
-            std::vector<Configuration> missing;
-            for (const Configuration& c : robustnessConfigurations())
-                if (!table.has({key[0], key[1], key[2], key[3], c.name}))
-                    missing.push_back(c);
-            if (!missing.empty())
-                tasks.push_back({pair.set + "/" + pair.sequence + " " + warp.kind,
-                        [&options, &table, pair, warp, missing, key] {
-                            matchSeeds(
-                                    options, warpedPair(loadPair(pair).reference, warp), missing, key, table);
-                        }});
-        }
+            addSeededTask(
+                    options, {pair.set, pair.sequence, text(warp.amount), warp.kind},
+                    robustnessConfigurations(),
+                    [pair, warp] { return warpedPair(loadPair(pair).reference, warp); }, table, tasks);
     }
-    const int skipped = runTasks("robustness", tasks);
-    table.finish();
-    return skipped;
+    return runTasks("robustness", tasks, &table);
 }
 
 }  // namespace iib_tools

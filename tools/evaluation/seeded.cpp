@@ -40,6 +40,31 @@ cv::Mat localBinaryPatterns(const cv::Mat& image)
     return patterns;
 }
 
+void matchSeeds(const Options& options, const LoadedPair& images,
+        const std::vector<Configuration>& configurations, const Fields& key, ResultTable& table)
+{
+    SeedSource source(images.reference, options.points);
+    for (const Configuration& c : configurations)
+    {
+        SeedPoints seeds = source.seeds(c, images.target.size(), images.homography);
+        const int correspondences = int(seeds.reference.size());
+        if (c.oriented)
+        {
+            orientByCentroid(images.reference, SEED_RADIUS, seeds.reference);
+            orientByCentroid(images.target, SEED_RADIUS, seeds.target);
+        }
+        const cv::Mat reference = describe(c, images.reference, images.referenceExtra, seeds.reference),
+                      target = describe(c, images.target, images.targetExtra, seeds.target);
+        const cv::Ptr<cv::Feature2D> feature = c.create();
+        const std::vector<bool> correct =
+                correctByLocation(mutualMatches(reference, target, feature->defaultNorm()), seeds.reference,
+                        seeds.target, images.homography, options.tolerance);
+        Fields row = key;
+        row.insert(row.end(), {c.name, std::to_string(descriptorBytes(*feature))});
+        table.append(withCounts(row, countsOf(correct, correspondences)));
+    }
+}
+
 }  // namespace
 
 cv::Mat describe(const Configuration& configuration, const cv::Mat& image,
@@ -77,29 +102,22 @@ Fields seededColumns()
             "correspondences", "precision", "recall"};
 }
 
-void matchSeeds(const Options& options, const LoadedPair& images,
-        const std::vector<Configuration>& configurations, const Fields& key, ResultTable& table)
+void addSeededTask(const Options& options, const Fields& key,
+        const std::vector<Configuration>& configurations, const std::function<LoadedPair()>& load,
+        ResultTable& table, std::vector<Task>& tasks)
 {
-    SeedSource source(images.reference, options.points);
+    std::vector<Configuration> missing;
     for (const Configuration& c : configurations)
     {
-        SeedPoints seeds = source.seeds(c, images.target.size(), images.homography);
-        const int correspondences = int(seeds.reference.size());
-        if (c.oriented)
-        {
-            orientByCentroid(images.reference, SEED_RADIUS, seeds.reference);
-            orientByCentroid(images.target, SEED_RADIUS, seeds.target);
-        }
-        const cv::Mat reference = describe(c, images.reference, images.referenceExtra, seeds.reference),
-                      target = describe(c, images.target, images.targetExtra, seeds.target);
-        const cv::Ptr<cv::Feature2D> feature = c.create();
-        const std::vector<bool> correct =
-                correctByLocation(mutualMatches(reference, target, feature->defaultNorm()), seeds.reference,
-                        seeds.target, images.homography, options.tolerance);
         Fields row = key;
-        row.insert(row.end(), {c.name, std::to_string(descriptorBytes(*feature))});
-        table.append(withCounts(row, countsOf(correct, correspondences)));
+        row.push_back(c.name);
+        if (!table.has(row))
+            missing.push_back(c);
     }
+    if (!missing.empty())
+        tasks.push_back({key[0] + "/" + key[1] + "/" + key[2], [&options, &table, key, load, missing] {
+                             matchSeeds(options, load(), missing, key, table);
+                         }});
 }
 
 }  // namespace iib_tools

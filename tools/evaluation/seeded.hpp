@@ -8,7 +8,7 @@
 #include "common/keypoints.hpp"
 #include "common/metrics.hpp"
 #include "experiments.hpp"
-#include "results.hpp"
+#include "tasks.hpp"
 
 namespace iib_tools {
 
@@ -32,12 +32,14 @@ private:
 cv::Mat describe(const Configuration& configuration, const cv::Mat& image,
         const std::map<std::string, cv::Mat>& maps, std::vector<cv::KeyPoint>& points);
 
-//! The columns that matchSeeds fills; `set` to `configuration`, the first five, name a row.
+//! The columns that addSeededTask fills; `set` to `configuration`, the first five, name a row.
 Fields seededColumns();
 
-/** Appends what the mutual matches of each configuration's descriptors make of its seeds: every seed is a correspondence,
-whether the descriptor kept it or not. @param key set, sequence, target and kind. */
-void matchSeeds(const Options& options, const LoadedPair& images,
-        const std::vector<Configuration>& configurations, const Fields& key, ResultTable& table);
+/** Adds a task that appends, for each configuration that has no row yet, what the mutual matches of its descriptors make of its
+seeds: every seed is a correspondence, whether the descriptor kept it or not.
+@param key set, sequence, target and kind. @param load gives the images. */
+void addSeededTask(const Options& options, const Fields& key,
+        const std::vector<Configuration>& configurations, const std::function<LoadedPair()>& load,
+        ResultTable& table, std::vector<Task>& tasks);
 
 }  // namespace iib_tools

@@ -9,7 +9,7 @@
 
 namespace iib_tools {
 
-int runTasks(const std::string& title, const std::vector<Task>& tasks)
+int runTasks(const std::string& title, const std::vector<Task>& tasks, ResultTable* table)
 {
     std::mutex mutex;  // of what follows, and of what is told
     int failures = 0;
@@ -39,6 +39,8 @@ int runTasks(const std::string& title, const std::vector<Task>& tasks)
         }
     };
     cv::parallel_for_(cv::Range(0, int(tasks.size())), body, double(tasks.size()));
+    if (table)
+        table->finish();
     return failures;
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "results.hpp"
+
 namespace iib_tools {
 
 //! One piece of work, such as an image pair; it throws if its data are broken.
@@ -14,9 +16,9 @@ struct Task
     std::function<void()> run;
 };
 
-/** Runs the tasks on cv::getNumThreads() threads, told on stderr by tenths. A task that throws is told
-in one line and counted, and the others go on.
+/** Runs the tasks on cv::getNumThreads() threads, told on stderr by tenths, and finishes the table that they fill. A task that
+throws is told in one line and counted, and the others go on.
 @return how many failed. */
-int runTasks(const std::string& title, const std::vector<Task>& tasks);
+int runTasks(const std::string& title, const std::vector<Task>& tasks, ResultTable* table = nullptr);
 
 }  // namespace iib_tools
