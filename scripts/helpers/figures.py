@@ -267,8 +267,8 @@ def presets():
 
 
 def benchmark(name):
-    """What iib_benchmark wrote."""
-    return json.loads((results / name).read_text())
+    """Milliseconds of iib_benchmark's rows by what, name, size and threads."""
+    return {tuple(row[key] for key in ('what', 'name', 'size', 'threads')): row['milliseconds'] for row in json.loads((results / name).read_text())['rows']}
 
 
 WIDE, AVX2, NARROW = 'benchmark.json', 'benchmark_without_avx512.json', 'benchmark_without_avx2.json'
@@ -276,83 +276,58 @@ WIDE, AVX2, NARROW = 'benchmark.json', 'benchmark_without_avx512.json', 'benchma
 
 def describing():
     """Describing beside ORB in one run, and in another one without AVX2 and AVX-512."""
-    data, narrow = benchmark(WIDE), benchmark(NARROW)
-    few, many = data['keypoints']
-    orb, lines = data['rows'][0]['milliseconds'], []
-    slow = {row['name']: row['milliseconds'][0] for row in narrow['rows']}
-    for row in data['rows']:
-        first, second = row['milliseconds']
-        lines.append([row['name'], '%.2f' % first, '%.2f' % (first / orb[0]),
-                      '%.2f' % ((second - first) * 1000 / (many - few)), '%.2f' % ((second - first) / (orb[1] - orb[0])),
-                      '%.1f' % (slow[row['name']] / first)])
+    data, narrow, lines = benchmark(WIDE), benchmark(NARROW), []
+    orb = [data['describe', 'cv::ORB', points, 1] for points in (1000, 5000)]
+    for key in (key for key in data if key[0] == 'describe' and key[2] == 1000):
+        few, many = data[key], data[(*key[:2], 5000, key[3])]
+        lines.append([key[1] + ', 2 threads' * (key[3] == 2), '%.2f' % few, '%.2f' % (few / orb[0]), '%.2f' % ((many - few) / 4),
+                      '%.2f' % ((many - few) / (orb[1] - orb[0])), '%.1f' % (narrow[key] / few)])
     return table(['', 'ms', 'ratio to ORB', 'us a point more', 'ratio', 'without AVX2, times'], lines)
 
 
-def timed(what, other):
+def timed(what, other, form):
     """Rows of iib_benchmark beside the first of them."""
-    data = benchmark(AVX2)[what]
+    found = [(key[1], key[2], time) for key, time in benchmark(AVX2).items() if key[0] == what]
     return table(['', 'points', 'ms', 'ratio to ' + other],
-                 [[r['name'], str(r['points']), '%.*f' % (1 if what == 'chains' else 2, r['milliseconds']),
-                   '%.2f' % (r['milliseconds'] / data[0]['milliseconds'])] for r in data])
+                 [[name, '%.0f' % points, form % time, '%.2f' % (time / found[0][2])] for name, points, time in found])
 
 
 def chains():
     """Finding and describing, each method on its own points of a rendered picture."""
-    return timed('chains', 'ORB')
+    return timed('chain', 'ORB', '%.1f')
 
 
 def same_points():
     """Describing the same points of AKAZE."""
-    return timed('same_points', 'IIB')
+    return timed('same points', 'IIB', '%.2f')
 
 
-def speeds(name):
-    """How many times as fast as BFMatcher, by mode, codes and cross-check."""
-    found = {(m['name'], m['codes'], m['cross_check']): m['milliseconds'] for m in benchmark(name)['matching']}
-    return {key: found['BFMatcher', key[1], key[2]] / time for key, time in found.items()}
+def faster(data, what, name, codes):
+    """How many times as fast as BFMatcher."""
+    return data[what, 'BFMatcher', codes, 1] / data[what, name, codes, 1]
 
 
 def matching():
     """Every way of matching beside BFMatcher in one run, and in another one without AVX2 and AVX-512."""
-    wide, narrow, lines = speeds(WIDE), speeds(NARROW), []
-    for m in [m for m in benchmark(WIDE)['matching'] if m['name'] != 'BFMatcher']:
-        key = m['name'], m['codes'], m['cross_check']
-        lines.append([m['name'], str(m['codes']), 'yes' if m['cross_check'] else '', '%.2f' % m['milliseconds'],
-                      '%.2f' % (1e6 * m['milliseconds'] / m['codes'] ** 2), '%.1f' % wide[key], '%.1f' % narrow[key],
-                      '%.3f' % m['right']])
-    return table(['', 'codes', 'cross-check', 'ms', 'ns a pair', 'times as fast as BFMatcher', 'the same without AVX2',
-                  'right'], lines)
+    wide, narrow, lines = benchmark(WIDE), benchmark(NARROW), []
+    for what, name, codes, _ in wide:
+        if (what, 'BFMatcher', codes, 1) in wide and name != 'BFMatcher':
+            time = wide[what, name, codes, 1]
+            lines.append([name, '%.0f' % codes, 'yes' if what == 'cross-check' else '', '%.2f' % time, '%.2f' % (1e6 * time / codes ** 2),
+                          *('%.1f' % faster(data, what, name, codes) for data in (wide, narrow))])
+    return table(['', 'codes', 'cross-check', 'ms', 'ns a pair', 'times as fast as BFMatcher', 'the same without AVX2'], lines)
 
 
 def small_work():
-    """What frames of a video ask for, in ratios of one run, with all instruction sets and with fewer."""
+    """What frames of a video ask for, in one run with all instruction sets and in others with fewer."""
     def column(name):
         data = benchmark(name)
-        frames, times = data['frames'], {row['name']: row['milliseconds'] for row in data['rows']}
-        pairs = {(m['name'], m['codes'], m['cross_check']): m['milliseconds'] / m['codes'] ** 2 for m in data['matching']}
-        faster = speeds(name)
-
-        def slowest(*presets):
-            return '%.2f' % (max(times['PRESET_' + preset][1] for preset in presets) / times['default'][1])
-
-        def further(row):
-            return times[row][1] - times[row][0]
-        return ['%.2f' % (times['default'][0] / times['cv::ORB'][0]),
-                '%.1f' % (further('useOrientation') / further('default')),
-                slowest('COMPACT', 'BALANCED'), slowest('VIEWPOINT', 'UNIVERSAL'),
-                '%.2f' % (pairs['EXACT', 500, 0] / pairs['EXACT', 10000, 0]),
-                '%.2f' % (pairs['EXACT', 1000, 0] / pairs['EXACT', 10000, 0]),
-                '%.1f' % faster['EXACT', 500, 1], '%.1f' % faster['EXACT', 1000, 1], '%.1f' % faster['EXACT', 10000, 1],
-                '%.2f' % (pairs['EXACT', 10000, 0] / pairs['ADAPTIVE', 10000, 0]),
-                '%.2f' % (frames['iib'] / frames['orb']),
-                '%.0f' % (1000 * frames['one_keypoint']), '%.0f' % (1000 * frames['one_code']),
-                '%.2f' % (frames['describe'][0] / frames['describe'][1]),
-                '%.2f' % (frames['match'][0] / frames['match'][1])]
-    labels = ('describe 1000 points, over ORB', 'a turned point more, over an upright one',
-              'describe 5000 points: COMPACT or BALANCED, the slower one, over the default', 'VIEWPOINT or UNIVERSAL, by boxes',
-              'match 500 with 500: time a pair, over that of 10,000', '1000 with 1000, the same',
-              'match 500 with 500, cross-check: times as fast as BFMatcher', '1000 with 1000', '10,000 with 10,000',
-              'ADAPTIVE: times as fast as EXACT, 10,000 codes',
+        two = ('%.2f' % (data['frame', work, 5000, 1] / data['frame', work, 5000, 2]) for work in ('5000 points', '5000 codes'))
+        return ['%.2f' % (data['describe', 'default', 1000, 1] / data['describe', 'cv::ORB', 1000, 1]),
+                '%.1f' % faster(data, 'cross-check', 'EXACT', 1000),
+                '%.2f' % (data['frame', 'default and EXACT', 1000, 2] / data['frame', 'ORB and BFMatcher', 1000, 2]),
+                '%.0f' % (1000 * data['frame', 'one point', 1, 1]), '%.0f' % (1000 * data['frame', 'one code', 1, 1]), *two]
+    labels = ('describe 1000 points, over ORB', 'match 1000 with 1000, cross-check: times as fast as BFMatcher',
               'a frame of 640 x 480: describe and match 1000 points on two threads, over ORB and BFMatcher',
               'one point of it described, us', 'one code matched with one, us',
               'describe 5000 points: times as fast on two threads', 'match 5000 with 5000, cross-check: the same')
@@ -361,13 +336,16 @@ def small_work():
 
 def speed_claim():
     """The README's sentence on time: of a machine with AVX2, in ratios, since it is shared."""
-    times = {row['name']: row['milliseconds'] for row in benchmark(AVX2)['chains']}
+    data = benchmark(AVX2)
+    times = {key[1]: time for key, time in data.items() if key[0] == 'chain'}
     return ("- **Fast**: points and descriptors of an image in %.1f of ORB's time, 1/%.0f of SIFT's; an exact matcher %.0f times as fast\n"
             '  as `cv::BFMatcher` ([one thread, AVX2](doc/performance.md)).' %
-            (times['recommended chain'] / times['ORB'], times['SIFT'] / times['recommended chain'], speeds(AVX2)['EXACT', 1000, 1]))
+            (times['recommended chain'] / times['ORB'], times['SIFT'] / times['recommended chain'], faster(data, 'cross-check', 'EXACT', 1000)))
 
 
-SCALE = 'scale.json'
+def scale():
+    """What scripts/helpers/scale.sh wrote."""
+    return json.loads((results / 'scale.json').read_text())
 
 
 def by_two(one, two):
@@ -379,7 +357,7 @@ def by_two(one, two):
 
 def flat_search():
     """Exact search beside faiss's flat index on one thread, and what a second thread brings."""
-    data, lines = benchmark(SCALE), []
+    data, lines = scale(), []
     found = {(r['bytes'], r['k'], r['threads']): r for r in data['flat']['rows']}
     for width, k in sorted({key[:2] for key in found}):
         one, two = found[width, k, 1], found[width, k, 2]
@@ -389,7 +367,7 @@ def flat_search():
 
 def mapped_index():
     """A MappedIndex opened in a fresh process, and searched by a worker of Dask."""
-    data = benchmark(SCALE)
+    data = scale()
     index, workers = data['mapped'], data['workers']
     return table(['%s codes of %d bytes' % (format(index['codes'], ','), index['bytes']), ''], [
         ['written and on the disk, s', '%.0f' % index['write_seconds']],

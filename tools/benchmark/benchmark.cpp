@@ -9,7 +9,10 @@
 using namespace cv;
 
 namespace iib_tools {
+namespace {
 
+/** Milliseconds of each task, least of all rounds. The rounds go through all tasks, so that a slow moment of the machine
+meets them alike. */
 std::vector<double> measure(const std::vector<Timed>& tasks, int rounds)
 {
     std::vector<double> least(tasks.size(), DBL_MAX);
@@ -30,7 +33,7 @@ std::vector<double> measure(const std::vector<Timed>& tasks, int rounds)
     return least;
 }
 
-static int run(const CommandLine& line)
+int run(const CommandLine& line)
 {
     if (!line.positional().empty())
         CV_Error(Error::StsBadArg, "no argument but options (--help lists them)");
@@ -39,15 +42,22 @@ static int run(const CommandLine& line)
     FileStorage fs(file, FileStorage::WRITE);
     if (!fs.isOpened())
         CV_Error(Error::StsError, "cannot write " + file);
-    fs << "opencv" << CV_VERSION << "cpu" << getCPUFeaturesLine();
-    measureDescribing(fs, rounds);
-    measureChains(fs, rounds);
-    measurePixels(fs, rounds);
-    measureMatching(fs, rounds);
-    measureFrames(fs, rounds);
+    fs << "opencv" << CV_VERSION << "cpu" << getCPUFeaturesLine() << "rows"
+       << "[";
+    for (const auto make : {describingTasks, chainTasks, pixelTasks, matchingTasks, frameTasks})
+    {
+        const std::vector<Timed> tasks = make();
+        const std::vector<double> milliseconds = measure(tasks, rounds);
+        for (size_t i = 0; i < tasks.size(); i++)
+            fs << "{"
+               << "what" << tasks[i].what << "name" << tasks[i].name << "size" << tasks[i].size << "threads"
+               << tasks[i].threads << "milliseconds" << milliseconds[i] << "}";
+    }
+    fs << "]";
     return 0;
 }
 
+}  // namespace
 }  // namespace iib_tools
 
 int main(int argc, char** argv)

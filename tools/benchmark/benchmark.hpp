@@ -8,30 +8,32 @@
 
 namespace iib_tools {
 
+//! What is measured, and how the JSON calls it.
 struct Timed
 {
-    std::function<void()> run;
+    cv::String what, name;
+    double size;  //!< points, codes on either side, or megapixels
     int threads;
     int every;  //!< 1, or a long one's: only each so many-th round
+    std::function<void()> run;
 };
 
-/** Milliseconds of each task, least of all rounds. The rounds go through all tasks, so that a slow moment of the machine
-meets them alike. */
-std::vector<double> measure(const std::vector<Timed>& tasks, int rounds);
+//! Describing keypoints of an image, with maps of it for an IIB extractor of further channels.
+Timed describing(const cv::String& what, const cv::String& name, double size,
+        const cv::Ptr<cv::Feature2D>& feature, const cv::Mat& image, const std::vector<cv::KeyPoint>& given,
+        int threads = 1, const std::vector<cv::Mat>& maps = std::vector<cv::Mat>());
 
-// Each measures its tasks and writes them.
-
-//! What descriptors cost beside cv::ORB on the same keypoints.
-void measureDescribing(cv::FileStorage& fs, int rounds);
-/** What finding points and describing them costs, each method on its own points of a rendered picture, and what describing
-the same points of AKAZE costs; on one thread. */
-void measureChains(cv::FileStorage& fs, int rounds);
-//! How the default descriptor's time grows with pixels beside ORB's, 1000 keypoints each, on one thread.
-void measurePixels(cv::FileStorage& fs, int rounds);
-//! What it costs to match an image's codes of 170 bytes with those of the same points under other light, on one thread.
-void measureMatching(cv::FileStorage& fs, int rounds);
-//! What small work costs, of which a video has much, and what a second thread brings.
-void measureFrames(cv::FileStorage& fs, int rounds);
+//! What descriptors cost beside cv::ORB on the same keypoints: "describe".
+std::vector<Timed> describingTasks();
+//! How the default descriptor's time grows with pixels beside ORB's, 1000 keypoints each: "megapixels".
+std::vector<Timed> pixelTasks();
+/** What finding points and describing them costs, each method on its own points of a rendered picture, "chain", and what
+describing the same points of AKAZE costs, "same points". */
+std::vector<Timed> chainTasks();
+//! What it costs to match an image's codes of 170 bytes with those of the same points in other light: "match", "cross-check".
+std::vector<Timed> matchingTasks();
+//! What small work costs, of which a video has much, and what a second thread brings: "frame".
+std::vector<Timed> frameTasks();
 
 //! A grey image with corners everywhere: blurred noise at two scales.
 cv::Mat cornerImage(cv::Size size);

@@ -53,51 +53,34 @@ std::vector<KeyPoint> strongest(const Ptr<Feature2D>& detector, const Mat& image
 
 }  // namespace
 
-void measureChains(FileStorage& fs, int rounds)
+std::vector<Timed> chainTasks()
 {
     const Mat image = imread(IIB_PICTURE, IMREAD_GRAYSCALE);
     if (image.empty())
         CV_Error(Error::StsObjectNotFound, IIB_PICTURE ": cannot be read");
-    const std::vector<Chain> whole = chains(), same = describers();
     const std::vector<KeyPoint> given = strongest(akaze(), image);
     std::vector<Timed> tasks;
-    Mat descriptors;
-    for (const Chain& chain : whole)
-        tasks.push_back({[&, chain] {
-                             std::vector<KeyPoint> keypoints;
+    for (const Chain& chain : chains())
+    {
+        std::vector<KeyPoint> keypoints;
+        Mat descriptors;
+        chain.detector->detect(image, keypoints);
+        tasks.push_back({"chain", chain.name, double(keypoints.size()), 1, 5, [=]() mutable {
                              if (chain.detector == chain.descriptor)
                                  chain.detector->detectAndCompute(image, noArray(), keypoints, descriptors);
                              else
                                  chain.detector->detect(image, keypoints);
                              if (chain.descriptor && chain.detector != chain.descriptor)
                                  chain.descriptor->compute(image, keypoints, descriptors);
-                         },
-                1, 5});
-    for (const Chain& chain : same)
-        tasks.push_back({[&, chain] {
-                             std::vector<KeyPoint> keypoints = given;
-                             chain.descriptor->compute(image, keypoints, descriptors);
-                         },
-                1, 5});
-    const std::vector<double> milliseconds = measure(tasks, rounds);
-    fs << "chains"
-       << "[";
-    for (size_t i = 0; i < whole.size(); i++)
-    {
-        std::vector<KeyPoint> keypoints;
-        whole[i].detector->detect(image, keypoints);
-        fs << "{"
-           << "name" << whole[i].name << "points" << int(keypoints.size()) << "milliseconds"
-           << milliseconds[i] << "}";
+                         }});
     }
-    fs << "]"
-       << "same_points"
-       << "[";
-    for (size_t i = 0; i < same.size(); i++)
-        fs << "{"
-           << "name" << same[i].name << "points" << int(given.size()) << "milliseconds"
-           << milliseconds[whole.size() + i] << "}";
-    fs << "]";
+    for (const Chain& chain : describers())
+    {
+        tasks.push_back(
+                describing("same points", chain.name, double(given.size()), chain.descriptor, image, given));
+        tasks.back().every = 5;
+    }
+    return tasks;
 }
 
 }  // namespace iib_tools

@@ -26,95 +26,72 @@ struct Codes
     std::vector<KeyPoint> keypoints;
 };
 
-//! One way to match, and on what.
-struct Row
+Timed matching(const Ptr<DescriptorMatcher>& matcher, const String& name, bool crossCheck, const Codes& codes,
+        int count, int threads = 1)
 {
-    String name;
-    Ptr<DescriptorMatcher> matcher;
-    int codes;
-    bool crossCheck;
-    double right;  //!< part of the queries that found their own point
-};
-
-std::vector<Row> allRows()
-{
-    const std::vector<int> levels = IIB::create()->levelSizes();
-    const float unused = 0.3f;  // no threshold counts in these modes
-    std::vector<Row> rows;
-    for (int codes : {100, 500, 1000, 10000})
-        for (bool crossCheck : {false, true})
-        {
-            const auto hierarchical = [&](int mode) {
-                return HierarchicalMatcher::create(levels, mode, unused, crossCheck);
-            };
-            rows.push_back({"EXACT", hierarchical(HierarchicalMatcher::EXACT), codes, crossCheck, 0});
-            if (codes == 10000)
-                rows.push_back(
-                        {"ADAPTIVE", hierarchical(HierarchicalMatcher::ADAPTIVE), codes, crossCheck, 0});
-            rows.push_back({"BFMatcher", BFMatcher::create(NORM_HAMMING, crossCheck), codes, crossCheck, 0});
-        }
-    return rows;
+    const Mat from = codes.queries.rowRange(0, count), to = codes.trains.rowRange(0, count);
+    std::vector<DMatch> matches;
+    return {crossCheck ? "cross-check" : "match", name, double(count), threads, count == 10000 ? 10 : 1,
+            [=]() mutable { matcher->match(from, to, matches); }};
 }
 
 }  // namespace
 
-void measureMatching(FileStorage& fs, int rounds)
+std::vector<Timed> matchingTasks()
 {
     const Codes codes(10000);
-    std::vector<Row> rows = allRows();
+    const std::vector<int> levels = IIB::create()->levelSizes();
+    const float unused = 0.3f;  // no threshold counts in these modes
     std::vector<Timed> tasks;
-    std::vector<DMatch> matches;
-    for (Row& row : rows)
-    {
-        const Mat from = codes.queries.rowRange(0, row.codes), to = codes.trains.rowRange(0, row.codes);
-        tasks.push_back(
-                {[=, &matches] { row.matcher->match(from, to, matches); }, 1, row.codes == 10000 ? 10 : 1});
-        tasks.back().run();
-        for (const DMatch& match : matches)
-            row.right += double(match.queryIdx == match.trainIdx) / row.codes;
-    }
-    const std::vector<double> milliseconds = measure(tasks, rounds);
-    fs << "matching"
-       << "[";
-    for (size_t i = 0; i < rows.size(); i++)
-        fs << "{"
-           << "name" << rows[i].name << "codes" << rows[i].codes << "cross_check" << rows[i].crossCheck
-           << "milliseconds" << milliseconds[i] << "right" << rows[i].right << "}";
-    fs << "]";
+    for (int count : {100, 500, 1000, 10000})
+        for (bool crossCheck : {false, true})
+        {
+            const auto add = [&](const String& name, const Ptr<DescriptorMatcher>& matcher) {
+                tasks.push_back(matching(matcher, name, crossCheck, codes, count));
+            };
+            add("EXACT", HierarchicalMatcher::create(levels, HierarchicalMatcher::EXACT, unused, crossCheck));
+            if (count == 10000)
+                add("ADAPTIVE", HierarchicalMatcher::create(
+                                        levels, HierarchicalMatcher::ADAPTIVE, unused, crossCheck));
+            add("BFMatcher", BFMatcher::create(NORM_HAMMING, crossCheck));
+        }
+    return tasks;
 }
 
-void measureFrames(FileStorage& fs, int rounds)
+std::vector<Timed> frameTasks()
 {
     const Mat image = cornerImage(Size(640, 480)), next = relit(image);
     const Ptr<ORB> orb = ORB::create(1000);
     std::vector<KeyPoint> keypoints;
     orb->detect(image, keypoints);
     const std::vector<KeyPoint> one(keypoints.begin(), keypoints.begin() + 1);
-    const Ptr<IIB> iib = IIB::createFor(orb), upright = IIB::create();
+    const Ptr<IIB> iib = IIB::createFor(orb);
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create();
     matcher->setCrossCheck(true);
-    const Ptr<BFMatcher> bruteForce = BFMatcher::create(NORM_HAMMING, true);
-    const Mat ofOrb = described(orb, image, keypoints), ofIib = described(iib, image, keypoints);
     const Codes many(5000);
-
-    std::vector<DMatch> matches;
-    const auto describeMany = [&] { described(upright, many.queryImage, many.keypoints); };
-    const auto matchMany = [&] { matcher->match(many.queries, many.trains, matches); };
-    const std::vector<double> milliseconds =
-            measure({{[&] { bruteForce->match(described(orb, next, keypoints), ofOrb, matches); }, 2, 1},
-                            {[&] { matcher->match(described(iib, next, keypoints), ofIib, matches); }, 2, 1},
-                            {[&] { described(iib, next, one); }, 1, 1},
-                            {[&] { matcher->match(ofIib.row(0), ofIib.row(1), matches); }, 1, 1},
-                            {describeMany, 1, 1}, {describeMany, 2, 1}, {matchMany, 1, 1}, {matchMany, 2, 1}},
-                    rounds);
-    fs << "frames"
-       << "{"
-       << "orb" << milliseconds[0] << "iib" << milliseconds[1] << "one_keypoint" << milliseconds[2]
-       << "one_code" << milliseconds[3] << "describe"
-       << "[" << milliseconds[4] << milliseconds[5] << "]"
-       << "match"
-       << "[" << milliseconds[6] << milliseconds[7] << "]"
-       << "}";
+    const auto frame = [&](const String& name, const Ptr<Feature2D>& feature,
+                               const Ptr<DescriptorMatcher>& by) {
+        const Mat before = described(feature, image, keypoints);
+        return Timed{"frame", name, 1000, 2, 1, [=] {
+                         std::vector<DMatch> matches;
+                         by->match(described(feature, next, keypoints), before, matches);
+                     }};
+    };
+    const auto matchingOf = [&](const String& name, int count, int threads) {
+        Timed task = matching(matcher, name, true, many, count, threads);
+        task.what = "frame";
+        return task;
+    };
+    std::vector<Timed> tasks = {frame("ORB and BFMatcher", orb, BFMatcher::create(NORM_HAMMING, true)),
+            frame("default and EXACT", iib, matcher), describing("frame", "one point", 1, iib, next, one),
+            matchingOf("one code", 1, 1)};
+    for (int threads : {1, 2})
+    {
+        tasks.push_back(describing(
+                "frame", "5000 points", 5000, IIB::create(), many.queryImage, many.keypoints, threads));
+        tasks.push_back(matchingOf("5000 codes", 5000, threads));
+    }
+    return tasks;
 }
 
 }  // namespace iib_tools

@@ -3,41 +3,12 @@
 import argparse
 import json
 
-
-def finish(axis, title, label):
-    axis.set_title(title)
-    axis.set_xlabel(label)
-    axis.set_ylabel("ms")
-    axis.grid(True, linewidth=0.4)
-    axis.legend()
-
-
-def draw_pixels(axis, data):
-    points = data["pixels"]
-    for key, label in (("milliseconds", "IIB"), ("orb_milliseconds", "ORB")):
-        axis.plot([p["megapixels"] for p in points], [p[key] for p in points], marker="o", label=label)
-    axis.set_xlim(left=0)
-    axis.set_ylim(bottom=0)
-    finish(axis, "Describe: larger images", f"megapixels ({points[0]['keypoints']} keypoints)")
-
-
-def draw_keypoints(axis, data):
-    for name, label in (("default", "IIB"), ("PRESET_UNIVERSAL", "IIB UNIVERSAL"), ("cv::ORB", "ORB"), ("BEBLID-512", "BEBLID-512")):
-        row = next(r for r in data["rows"] if r["name"] == name)
-        axis.plot(data["keypoints"], row["milliseconds"], marker="o", label=label)
-    axis.set_xlim(left=0)
-    axis.set_ylim(bottom=0)
-    finish(axis, "Describe: more points", f"keypoints ({data['width']} x {data['height']})")
-
-
-def draw_codes(axis, data):
-    """On logarithmic axes: a line parallel to another takes so many times as long for any number of codes."""
-    for name, label in (("EXACT", "IIB's matcher"), ("BFMatcher", "BFMatcher")):
-        found = [m for m in data["matching"] if m["name"] == name and m["cross_check"]]
-        axis.plot([m["codes"] for m in found], [m["milliseconds"] for m in found], marker="o", label=label)
-    axis.set_xscale("log")
-    axis.set_yscale("log")
-    finish(axis, "Match", "codes on either side, cross-check")
+# Of each chart: what is measured, its title, the label below, and names with their labels.
+CHARTS = (("megapixels", "Describe: larger images", "megapixels (1000 keypoints)", {"default": "IIB", "cv::ORB": "ORB"}),
+          ("describe", "Describe: more points", "keypoints (1280 x 720)",
+           {"default": "IIB", "PRESET_UNIVERSAL": "IIB UNIVERSAL", "cv::ORB": "ORB", "BEBLID-512": "BEBLID-512"}),
+          # On logarithmic axes: a line parallel to another takes so many times as long for any number of codes.
+          ("cross-check", "Match", "codes on either side, cross-check", {"EXACT": "IIB's matcher", "BFMatcher": "BFMatcher"}))
 
 
 def main():
@@ -51,10 +22,19 @@ def main():
     import matplotlib.pyplot as plt
 
     with open(options.source, encoding="utf-8") as file:
-        data = json.load(file)
-    figure, axes = plt.subplots(1, 3, figsize=(12, 3.4))
-    for draw, axis in zip((draw_pixels, draw_keypoints, draw_codes), axes):
-        draw(axis, data)
+        rows = [row for row in json.load(file)["rows"] if row["threads"] == 1]
+    figure, axes = plt.subplots(1, len(CHARTS), figsize=(12, 3.4))
+    for (what, title, label, names), axis in zip(CHARTS, axes):
+        for name, shown in names.items():
+            found = sorted((row["size"], row["milliseconds"]) for row in rows if (row["what"], row["name"]) == (what, name))
+            axis.plot(*zip(*found), marker="o", label=shown)
+        if what == "cross-check":
+            axis.set(xscale="log", yscale="log")
+        else:
+            axis.set(xlim=(0, None), ylim=(0, None))
+        axis.set(title=title, xlabel=label, ylabel="ms")
+        axis.grid(True, linewidth=0.4)
+        axis.legend()
     figure.tight_layout()
     figure.savefig(options.picture, metadata={"Date": None})
 

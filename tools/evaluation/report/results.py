@@ -33,5 +33,5 @@ def by(rows, *columns, **where):
 
 def describing_times(file=RESULTS / "benchmark.json"):
     """Milliseconds for 1000 points, by the names of the evaluation's configurations; of scripts/bench.sh."""
-    return {row["name"].replace("cv::", "").replace("default", "IIB").replace("PRESET_", "IIB "): row["milliseconds"][0]
-            for row in json.loads(file.read_text())["rows"]}
+    return {row["name"].replace("cv::", "").replace("default", "IIB").replace("PRESET_", "IIB "): row["milliseconds"]
+            for row in json.loads(file.read_text())["rows"] if (row["what"], row["size"], row["threads"]) == ("describe", 1000, 1)}
