@@ -16,10 +16,10 @@ import re
 import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'tools/evaluation/report'))
-import results as summaries  # noqa: E402
+import summaries
 
-ROOT, results = summaries.ROOT, summaries.RESULTS
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+results = ROOT / 'doc/results'
 PAPER = summaries.read(ROOT / 'tools/evaluation/report/paper.csv')  # the paper's figures, by the questions of its tables and our names
 LOCALIZATION = summaries.read(ROOT / 'tools/evaluation/report/paper_localization.csv')
 

@@ -109,8 +109,25 @@ PLANS = {
 
 
 def read(file):
+    """Rows of a CSV file as dictionaries; empty if there is none."""
+    if not file.is_file():
+        return []
     with open(file, newline='') as opened:
-        yield from csv.DictReader(opened)
+        return list(csv.DictReader(opened))
+
+
+def group(rows, *names):
+    """Rows by the values of columns, in the order of first appearance."""
+    groups = {}
+    for row in rows:
+        groups.setdefault(tuple(row[name] for name in names), []).append(row)
+    return groups
+
+
+def by(rows, *names, **where):
+    """The one row of each value of the columns, or of each combination of theirs, among those with the values of `where`."""
+    chosen = [row for row in rows if all(row[name] == value for name, value in where.items())]
+    return {key if len(names) > 1 else key[0]: members[0] for key, members in group(chosen, *names).items()}
 
 
 def write(file, heads, rows):
@@ -125,10 +142,10 @@ def summarize(source, target, groups_of, keys, values):
             groups[(place, *(row[key] for key in keys))][scene(row)].append(
                 [value(row) for value in values.values()])
     lines = []
-    for group, scenes in sorted(groups.items()):
+    for key, scenes in sorted(groups.items()):
         every = [pair for scene in scenes.values() for pair in scene]
         ends = interval([[pair[-1] for pair in scene] for scene in scenes.values()])
-        lines.append([*group, len(every), *('%.5g' % mean(of) for of in zip(*every)), *('%.4g' % end for end in ends)])
+        lines.append([*key, len(every), *('%.5g' % mean(of) for of in zip(*every)), *('%.4g' % end for end in ends)])
     write(target, ['place', *keys, 'pairs', *values, 'low', 'high'], lines)
 
 
@@ -162,12 +179,12 @@ def summarize_curves(source, target):
                 steps = [[int(count) for count in step.split(':')] for step in row['curve'].split()]
                 groups[place, row['detector'], row['descriptor']].append((steps, max(1, int(row['correspondences']))))
     lines = []
-    for group, pairs in sorted(groups.items()):
+    for key, pairs in sorted(groups.items()):
         for step in range(len(pairs[0][0])):
             right = [steps[step][0] for steps, _ in pairs]
             wrong = [1 - steps[step][0] / steps[step][1] if steps[step][1] else 0 for steps, _ in pairs]
             recall = [steps[step][0] / correspondences for steps, correspondences in pairs]
-            lines.append([*group, step + 1, len(pairs), *('%.4g' % mean(v) for v in (right, recall, wrong))])
+            lines.append([*key, step + 1, len(pairs), *('%.4g' % mean(v) for v in (right, recall, wrong))])
     write(target, ['place', 'detector', 'descriptor', 'threshold', 'pairs', 'right', 'recall', 'one_minus_precision'], lines)
 
 
@@ -176,24 +193,23 @@ DRAWN = 10  # one in so many matches is drawn
 
 def summarize_comparison(source, target):
     """How many matches of each method are right, and every tenth: x, y, x and y of the other image, whether it is right."""
-    heads, groups = ('reference', 'target', 'detector', 'descriptor'), collections.defaultdict(list)
-    for row in read(source):
-        groups[tuple(row[head] for head in heads)].append([row[c] for c in ('x', 'y', 'target_x', 'target_y', 'correct')])
-    write(target, [*heads, 'right', 'wrong', 'matches'], (
-        [*group, sum(m[-1] == '1' for m in rows), sum(m[-1] != '1' for m in rows), ' '.join(' '.join(m) for m in rows[::DRAWN])]
-        for group, rows in sorted(groups.items())))
+    heads, lines = ('reference', 'target', 'detector', 'descriptor'), []
+    for key, rows in sorted(group(read(source), *heads).items()):
+        right = sum(row['correct'] == '1' for row in rows)
+        drawn = (row[name] for row in rows[::DRAWN] for name in ('x', 'y', 'target_x', 'target_y', 'correct'))
+        lines.append([*key, right, len(rows) - right, ' '.join(drawn)])
+    write(target, [*heads, 'right', 'wrong', 'matches'], lines)
 
 
 def summarize_learned(source, target):
     """Puts what IIB finds at the points of learned detectors, and what their own descriptors find where files hold some, into
     the list of what these are known to find."""
-    if not target.is_file():
+    found, lines = collections.defaultdict(list), read(target)
+    if not lines:
         return
-    found = collections.defaultdict(list)
     for row in read(source):
         if 'natural' in places(row):
             found[row['detector'].lower(), row['descriptor']].append(int(row['correct']))
-    lines = list(read(target))
     for line in lines:
         name = line['detector'].lower()
         own = next((counts for (detector, descriptor), counts in found.items() if detector == descriptor.lower() == name), None)

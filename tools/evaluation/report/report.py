@@ -3,20 +3,31 @@
 
 """One page, index.html, from the summaries of an evaluation: report.py RESULTS. Needs python3-jinja2."""
 import argparse
+import json
 import pathlib
 import sys
 
 import jinja2
 
 import descriptors
-from results import by, describing_times, group, read
 
-HERE = pathlib.Path(__file__).parent
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[2]
+sys.path.insert(0, str(ROOT / "scripts/helpers"))
+from summaries import by, group, read  # noqa: E402
+
 FILES = ("fixed_points", "detected_points", "curves", "estimators", "alignment", "robustness", "learned", "comparison")
 
 
 def number(row, column):
     return float(row[column])
+
+
+def describing_times():
+    """Milliseconds for 1000 points, by the names of the evaluation's configurations; of scripts/bench.sh."""
+    return {row["name"].replace("cv::", "").replace("default", "IIB").replace("PRESET_", "IIB "): row["milliseconds"]
+            for row in json.loads((ROOT / "doc/results/benchmark.json").read_text())["rows"]
+            if (row["what"], row["size"], row["threads"]) == ("describe", 1000, 1)}
 
 
 def overview(tables):
