@@ -129,14 +129,9 @@ class Database(contextlib.AbstractContextManager['Database']):
 
     @contextlib.contextmanager
     def _transaction(self) -> Iterator[None]:
-        self._db.execute('BEGIN')
-        try:
+        with self._db:  # which commits, or rolls back where an error has not done so, as a full disk does
+            self._db.execute('BEGIN')
             yield
-            self._db.execute('COMMIT')
-        except BaseException:
-            if self._db.in_transaction:  # not after a full disk: SQLite has rolled back then
-                self._db.execute('ROLLBACK')
-            raise
 
     # Images
 
