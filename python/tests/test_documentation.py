@@ -4,10 +4,11 @@ import re
 import subprocess
 import sys
 import unittest
+from unittest import mock
 
 import numpy as np
 
-from support import REPOSITORY, InFolder, cv2
+from support import REPOSITORY, InFolder, cv2, texture
 
 PAGES = [REPOSITORY / 'README.md', *sorted((REPOSITORY / 'doc').glob('*.md')), *sorted(REPOSITORY.glob('modules/*/*.md')),
          *sorted(REPOSITORY.glob('modules/*/tutorials/*.markdown')), *sorted(REPOSITORY.glob('apps/*/*.md'))]
@@ -15,8 +16,8 @@ PAGES = [REPOSITORY / 'README.md', *sorted((REPOSITORY / 'doc').glob('*.md')), *
 # it, and what that prints; or where else it is run.
 RUNS = {
     'README.md': [('day.png night.png', r'^\d{3} matches\n$')],
-    'python.md': [('', 'print(len(matches))', r'^\d{3}\n'),
-                  ('image_a, image_b = day, night', 'print(len(pairs), matched_a.shape == matched_b.shape)', r'^\d{3} True\n')],
+    'python.md': [('image_a, image_b = day, night', 'print(len(pairs), matched_a.shape == matched_b.shape)', r'^\d{3} True\n'),
+                  ('', 'print(len(matches))', r'^\d{3}\n')],
     'scale.md': [('folder, codes, queries = "codes", codes_day, codes_night', 'print(indices.shape)', r'^\(1000, 5\)\n'),
                  ('python/examples/test_postgres.py',), ('python/examples/test_postgres.py',)],
     'colmap.md': [('import os; os.mkdir("images"); os.rename("day.png", "images/a.png"); os.rename("night.png", "images/b.png")',
@@ -38,6 +39,18 @@ codes_day, codes_night = (opencv_iib.detect_and_describe(image, 1000).codes for 
 
 def programs(page):
     return re.findall('^```(?:python|py)\n(.*?)^```', page.read_text(), re.S | re.M)
+
+
+class FirstExample(unittest.TestCase):
+
+    @unittest.skipUnless((REPOSITORY / 'doc/python.md').exists(), 'the documentation is not beside these tests')
+    def test_that_of_pypi_needs_what_pip_brings_alone(self):
+        image = texture(320, 240)
+        names = {'image_a': image, 'image_b': image // 2}
+        with mock.patch.dict(sys.modules, {'cv2': None}):
+            exec(programs(REPOSITORY / 'doc/python.md')[0], names)
+        self.assertGreater(len(names['pairs']), 100)
+        self.assertEqual(names['matched_a'].shape, names['matched_b'].shape)
 
 
 @unittest.skipIf(cv2 is None, 'no cv2')
