@@ -14,7 +14,7 @@ from opencv_iib._types import match_type
 from opencv_iib.enums import Mode
 
 Matches = tuple[tuple[Any, ...], ...]
-BLOCK = 512  # queries that are searched at once: with a million codes, less than a second on one core
+AT_ONCE = 512  # queries: with a million codes, less than a second on one core
 
 
 def _masks(masks: Any) -> list[np.ndarray]:
@@ -113,8 +113,8 @@ class HierarchicalMatcher(CoreObject):
             return self.radiusMatch(queryDescriptors, None, float(trainDescriptors), mask, compactResult, masks)
         queries, distance = as_codes(queryDescriptors, 'descriptors'), number(maxDistance, 'maxDistance')
         matcher, matches = self._on(trainDescriptors), []
-        for first, block, allowed in self._blocks(queries, _masks(mask if masks is None else masks)):
-            found = matcher.radiusMatch(block, distance, allowed)
+        for first, some, allowed in self._parts(queries, _masks(mask if masks is None else masks)):
+            found = matcher.radiusMatch(some, distance, allowed)
             matches += (found + [first, 0, 0, 0]).tolist()
         return _objects(matches, len(queries), compactResult)
 
@@ -126,22 +126,22 @@ class HierarchicalMatcher(CoreObject):
             number of the image as well.
         """
         queries, k, matcher = as_codes(queryDescriptors, 'descriptors'), integer(k, 'k'), self._on(trainDescriptors)
-        blocks = [matcher.knnMatchArrays(block, k, allowed)
-                  for _, block, allowed in self._blocks(queries, _masks(mask if masks is None else masks))]
-        found = tuple(np.concatenate(arrays) for arrays in zip(*blocks)) if len(blocks) > 1 else blocks[0]
+        parts = [matcher.knnMatchArrays(some, k, allowed)
+                 for _, some, allowed in self._parts(queries, _masks(mask if masks is None else masks))]
+        found = tuple(np.concatenate(arrays) for arrays in zip(*parts)) if len(parts) > 1 else parts[0]
         return found if trainDescriptors is None else found[:2]
 
     def _on(self, descriptors: Optional[ArrayLike]) -> _core.Matcher:
         """What searches the descriptors of a call, or those added if there are none."""
         return self._core if descriptors is None else self._core.on(as_codes(descriptors, 'descriptors'))
 
-    def _blocks(self, queries: np.ndarray, masks: list[np.ndarray]) -> Iterator[tuple[int, np.ndarray, list[np.ndarray]]]:
-        """Queries in blocks, each with the number of its first and its masks: Ctrl-C acts between two.
+    def _parts(self, queries: np.ndarray, masks: list[np.ndarray]) -> Iterator[tuple[int, np.ndarray, list[np.ndarray]]]:
+        """Queries in parts, each with the number of its first and its masks: Ctrl-C acts between two.
 
-        All are one block for a cross-check, which has to know the others, and for masks that do not fit, a mistake.
+        All are one part for a cross-check, which has to know the others, and for masks that do not fit, a mistake.
         """
         whole = self.getCrossCheck() or any(mask.size and len(mask) != len(queries) for mask in masks)
-        size = max(1, len(queries)) if whole else BLOCK
+        size = max(1, len(queries)) if whole else AT_ONCE
         for first in range(0, max(1, len(queries)), size):
             rows = slice(first, first + size)
             yield first, queries[rows], [mask[rows] for mask in masks]

@@ -143,7 +143,7 @@ class MatcherTest(InFolder):
         self.assertIsNotNone(cv2.drawMatches(image, points, image, points, ours, None))
 
     def test_many_queries(self):
-        """They are searched in blocks of 512."""
+        """They are searched by 512."""
         rng = np.random.default_rng(5)
         queries, train = rng.integers(0, 256, (1100, 4), np.uint8), rng.integers(0, 256, (60, 4), np.uint8)
         indices, distances = brute_force(queries, train, 3)

@@ -46,9 +46,9 @@ class FeatureOptions:
         if self.preset not in preset_names():
             raise ValueError(f'no preset {self.preset}: there are {", ".join(preset_names())}')
         if not 1 <= self.points <= MAX_POINTS:
-            raise ValueError(f'points is {self.points}: it has to be 1 to {MAX_POINTS}')
+            raise ValueError(f'points is {self.points}: it must be 1 to {MAX_POINTS}')
         if self.max_size and not MIN_SIZE <= self.max_size:
-            raise ValueError(f'max_size is {self.max_size}: it has to be at least {MIN_SIZE} pixels, or 0')
+            raise ValueError(f'max_size is {self.max_size}: it must be at least {MIN_SIZE} pixels, or 0')
 
 
 def make_detector(name: str, points: int) -> Any:

@@ -44,19 +44,19 @@ class Options:
         self.features.check()
         import_cv2()
         if not 0 <= self.focal < float('inf'):
-            raise ValueError(f'focal is {self.focal}: it has to be a number of pixels, or 0')
+            raise ValueError(f'focal is {self.focal}: it must be a number of pixels, or 0')
         if self.camera_model not in CAMERA_MODELS:
             raise ValueError(f'no camera model {self.camera_model}: there are {", ".join(CAMERA_MODELS)}')
         if self.pairs not in PAIRS and not os.path.isfile(self.pairs):
             raise ValueError(f'pairs: {self.pairs} is neither a file nor one of {", ".join(PAIRS)}')
         if self.verify not in VERIFIERS:
-            raise ValueError(f'verify is {self.verify}: it has to be one of {", ".join(VERIFIERS)}')
+            raise ValueError(f'verify is {self.verify}: it must be one of {", ".join(VERIFIERS)}')
         if self.verify == 'colmap' and colmap_binary() is None:
             raise ValueError('verify is colmap, but there is no program colmap: install it, or take magsac')
         if self.neighbours < 1:
-            raise ValueError(f'neighbours is {self.neighbours}: it has to be at least 1')
+            raise ValueError(f'neighbours is {self.neighbours}: it must be at least 1')
         if not 0 < self.ratio <= 1:
-            raise ValueError(f'ratio is {self.ratio}: it has to be in (0, 1]')
+            raise ValueError(f'ratio is {self.ratio}: it must be in (0, 1]')
 
 
 @functools.lru_cache(maxsize=1)
