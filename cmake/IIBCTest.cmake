@@ -68,7 +68,8 @@ if(IIB_PYTHON)
   add_test(NAME includes COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/includes_test.py" "${IIB_DIR}")
   add_test(NAME figures COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/figures.py" --check)
   add_test(NAME figures-test COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/figures_test.py")
-  add_test(NAME paper COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/paper_test.py")
+  add_test(NAME paper COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/paper_test.py"
+    "${PROJECT_BINARY_DIR}")
   add_test(NAME pages COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/pages_test.py"
     "${PROJECT_SOURCE_DIR}/doc/results/index.html" "${PROJECT_SOURCE_DIR}/doc/localization/index.html")
   set_tests_properties(pages PROPERTIES SKIP_REGULAR_EXPRESSION "is not installed")

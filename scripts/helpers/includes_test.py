@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """The picture of includes of a module: includes_test.py FOLDER
 
-Arrows between folders point downwards only, no file includes itself by way of others, where a header and the source of the same
-name count as one, nothing leaves the module, and raw intrinsics stand in vector code alone, *.simd.hpp.
+It reads the sources, since it is about them. Arrows between folders point downwards only, no file includes itself by way of
+others, where a header and the source of the same name count as one, nothing leaves the module, and raw intrinsics stand in
+vector code alone, *.simd.hpp.
 """
 import pathlib
 import re

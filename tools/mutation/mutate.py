@@ -6,8 +6,8 @@ MODULE/NAME for its test_NAME.cpp. A mutant that none of them notices is a survi
 mutate.py --source REPOSITORY --work FOLDER [--only NAME...]
 mutate.py --source REPOSITORY --check
 
-A mutant is an expression of the source with a wrong one beside it. In a copy of the source both stand in
-IIB_MUTANT(number, right, wrong), and the environment variable IIB_MUTANT chooses at run time.
+It reads the sources, since it changes them: a mutant is an expression with a wrong one beside it. In a copy of the source both
+stand in IIB_MUTANT(number, right, wrong), and the environment variable IIB_MUTANT chooses at run time.
 """
 import argparse
 import concurrent.futures
