@@ -82,30 +82,6 @@ def matching_modes():
     return table(['matcher', 'photographs', 'cost', 'time', 'rendered', 'cost', 'time'], lines)
 
 
-LEVELS = 4
-
-
-def operations():
-    """Of one channel of the default descriptor: sums of cells from an integral image, and the comparison of four with their sum."""
-    cells = 2 ** LEVELS
-    finest = (cells + 1) * cells + cells * cells  # differences along rows, then along columns
-    quads = sum(4 ** level for level in range(LEVELS))
-    lines = [('sums of the %d finest cells, by differences of %d corners' % (cells ** 2, (cells + 1) ** 2), finest),
-             ('sums of %d quads, which are those of the coarser cells' % quads, 3 * quads), ('means of the quads, by a shift', quads),
-             ('algebraic operations in all (the paper: 4 a bit; LDB: 6)', finest + 4 * quads), ('comparisons (the paper and LDB: 1)', 4 * quads)]
-    return table(['of one channel', 'operations', 'a bit'], [[what, str(n), '%.2f' % (n / (4 * quads))] for what, n in lines])
-
-
-def memory():
-    """Of channels, whole as the paper has them and as they are held here; LDB's are those of one level of AKAZE's scale space."""
-    width, height, side, channels = 1280, 720, 64, 4
-    band = 8  # BAND_ROWS in modules/iib/src/descriptor/keypoint_batches.hpp
-    lines = [('IIB here: 16-bit sums of 4 channels, a ring of %d rows' % (side + band + 1), 2 * channels, side + band + 1),
-             ('IIB, whole integral images of 32 bits', 4 * channels, height),
-             ('LDB in AKAZE: intensity and two derivatives, floats', 4 * 3, height)]
-    return table(['', 'bytes a pixel', 'kB in all'], [[what, str(size), '%.0f' % (size * width * rows / 1e3)] for what, size, rows in lines])
-
-
 def localization_systems():
     """The paper's table of localization systems, as it quotes them."""
     return table(['system', 'inputs', 'lateral', 'longitudinal', 'altitude'], [[value or '–' for value in row.values()] for row in LOCALIZATION])
@@ -234,15 +210,6 @@ def propagation():
     return ('In other light %.0f instead of %.0f matches of 1000 points agree with the pose that `findRelativePose` finds, whose score up to 5\n'
             'degrees goes from %.2f to %.2f ([means of %s pairs](results/README.md#poses)).' %
             (float(after['inliers']), float(before['inliers']), float(before['at_5']), float(after['at_5']), after['pairs']))
-
-
-def elsewhere():
-    """Poses with learned features, which were not measured here: areas up to 10, 5 and 2 degrees."""
-    areas = [[kind + limit for limit in ('_10', '_5', '_2')] for kind in ('plain', 'refined')]
-    return table(['points of', 'points', 'matches', 'plain', 'refined', 'ms a pair'],
-                 [[row['points'], row['number'], row['matches'],
-                   *('/'.join(row[name] for name in names) if row[names[0]] else '–' for names in areas), row['ms'] or '–']
-                  for row in rows('elsewhere.csv')])
 
 
 def presets():
@@ -413,9 +380,9 @@ PAGES = {'doc/poses.svg': (pose_bars,),
          'doc/colmap.md': (photographs, photographs_of_many),
          'doc/performance.md': (describing, chains, same_points, matching, small_work),
          'doc/scale.md': (mapped_index, flat_search),
-         'doc/paper.md': (matching_modes, operations, memory, learned_points, paper_orders, localization_systems, localization_setups),
+         'doc/paper.md': (matching_modes, learned_points, paper_orders, localization_systems, localization_setups),
          'doc/localization/index.html': (localization_lights,),
-         'doc/results/README.md': (pose_methods, elsewhere, detected_points)}
+         'doc/results/README.md': (pose_methods, detected_points)}
 
 
 def filled(page, makers):
