@@ -32,6 +32,7 @@ def detect_and_describe(image: ArrayLike, n: int = 1000, mask: Optional[ArrayLik
     :param image: as IIBDescriptorExtractor takes it.
     :param n: 0 keeps all.
     :param mask: H x W uint8, 0 where nothing is to be found.
+    :raises opencv_iib.error: for an image of another type, a mask of another size, and n below 0.
     """
     iib = IIBDescriptorExtractor.createRecommended(n)
     rows = detect_rows(iib, image, mask)
@@ -44,6 +45,7 @@ def match(a: ArrayLike, b: ArrayLike, matcher: Optional[HierarchicalMatcher] = N
     :param a: N x bytes uint8, of any binary descriptor.
     :param b: M x bytes uint8.
     :param matcher: None for ``HierarchicalMatcher.createRecommended()``.
+    :raises opencv_iib.error: for codes of other numbers than uint8, or of two widths.
     """
     nearest, distances = (matcher or HierarchicalMatcher.createRecommended()).knnMatchArrays(a, b)
     queries, _ = found = np.nonzero(nearest >= 0)

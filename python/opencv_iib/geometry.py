@@ -49,6 +49,7 @@ def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: Arra
     :param cameraMatrix2: of camera 2.
     :param scale: pixels: about the standard deviation of the points; .25 for refined points, .5 for points as detected.
     :return: not found with fewer than five matches, or where no pose agrees with five or more.
+    :raises opencv_iib.error: for arrays of other shapes, points that are not one for one, and a scale that is not above 0.
     """
     return FoundPose(*_core.findRelativePose(_numbers(points1, 'points1'), _numbers(points2, 'points2'),
                                              _numbers(cameraMatrix1, 'cameraMatrix1'),
@@ -64,5 +65,6 @@ def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentMo
     :param reference: as IIBDescriptorExtractor takes it; so is `image`.
     :param model: an AlignmentModel; the simplest one that is true of the images gives the smallest errors.
     :return: not found where too few matches agree for the images to show the same.
+    :raises opencv_iib.error: for images of another type, and a model that is none.
     """
     return Alignment(*_core.alignImages(as_image(reference), as_image(image), integer(model, 'model')))

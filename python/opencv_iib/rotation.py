@@ -21,6 +21,7 @@ def estimateRotation(keypoints1: Keypoints, keypoints2: Keypoints, matches1to2: 
     :param keypoints2: of the second image.
     :param matches1to2: objects like cv2.DMatch, or an M x 2 array of integers (queryIdx, trainIdx).
     :return: degrees, 0 to 360, clockwise in the image.
+    :raises opencv_iib.error: for a match without a keypoint, and without two matches whose points differ in place.
     """
     return _core.estimateRotation(as_rows(keypoints1), as_rows(keypoints2), as_pairs(matches1to2))
 
@@ -42,6 +43,7 @@ def matchRotated(image1: Any, image2: Any, extractor: IIBDescriptorExtractor, ma
     :return: the rotation; the keypoints of both images, with the angles that they were described with (-1: upright), as
         N x 7 where an array was given; matches as cv2.DMatch if cv2 is there, but M x 3 int32 (queryIdx, trainIdx,
         distance) where keypoints1 is an array.
+    :raises opencv_iib.error: for an extractor of another orientation, and a rotation out of range.
     """
     for given, name, kind in ((extractor, 'extractor', IIBDescriptorExtractor), (matcher, 'matcher', HierarchicalMatcher)):
         if not isinstance(given, kind):
