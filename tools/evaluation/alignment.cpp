@@ -6,7 +6,6 @@
 #include "experiments.hpp"
 #include "opencv2/imgproc.hpp"
 #include "results.hpp"
-#include "tasks.hpp"
 
 namespace iib_tools {
 namespace {

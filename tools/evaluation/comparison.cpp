@@ -10,7 +10,6 @@
 #include "opencv2/core/utils/filesystem.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "results.hpp"
-#include "tasks.hpp"
 
 namespace iib_tools {
 namespace {

@@ -5,7 +5,6 @@
 #include "described_images.hpp"
 #include "experiments.hpp"
 #include "results.hpp"
-#include "tasks.hpp"
 
 namespace iib_tools {
 namespace {

@@ -8,7 +8,6 @@
 #include "opencv2/imgcodecs.hpp"
 #include "pose_estimates.hpp"
 #include "results.hpp"
-#include "tasks.hpp"
 
 namespace iib_tools {
 namespace {

@@ -10,7 +10,7 @@
 #include "detectors.hpp"
 #include "experiments.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
-#include "tasks.hpp"
+#include "results.hpp"
 
 namespace iib_tools {
 namespace {

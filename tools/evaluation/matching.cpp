@@ -5,7 +5,6 @@
 #include "opencv2/iib.hpp"
 #include "results.hpp"
 #include "seeded.hpp"
-#include "tasks.hpp"
 
 namespace iib_tools {
 namespace {

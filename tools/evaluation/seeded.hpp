@@ -8,7 +8,7 @@
 #include "common/keypoints.hpp"
 #include "common/metrics.hpp"
 #include "experiments.hpp"
-#include "tasks.hpp"
+#include "results.hpp"
 
 namespace iib_tools {
 

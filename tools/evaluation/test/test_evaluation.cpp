@@ -9,7 +9,6 @@
 #include "../experiments.hpp"
 #include "../results.hpp"
 #include "../seeded.hpp"
-#include "../tasks.hpp"
 #include "opencv2/iib.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
