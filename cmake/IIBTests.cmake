@@ -33,9 +33,9 @@ target_compile_features(opencv_test_iib_geometry PRIVATE cxx_std_17)
 
 # The naive oracles are not under test; sanitized, they would take most of the time. Nobody asks for the speed then.
 if(IIB_SANITIZE)
-  set_target_properties(opencv_perf_iib PROPERTIES EXCLUDE_FROM_ALL ON)
+  set_target_properties(opencv_perf_iib opencv_perf_iib_geometry PROPERTIES EXCLUDE_FROM_ALL ON)
   set_source_files_properties("${IIB_DIR}/test/support/box_oracle.cpp" "${IIB_DIR}/test/support/descriptor_oracle.cpp"
-    "${IIB_DIR}/test/support/matcher_oracle.cpp" PROPERTIES COMPILE_OPTIONS -fno-sanitize=all SKIP_PRECOMPILE_HEADERS ON)
+    "${IIB_DIR}/test/support/matcher_oracle.cpp" PROPERTIES COMPILE_OPTIONS "-fno-sanitize=all;-O2" SKIP_PRECOMPILE_HEADERS ON)
 endif()
 
 # A test program of a tool: the sources in test/ beside the caller, with the tools' main, and its entry in ctest.

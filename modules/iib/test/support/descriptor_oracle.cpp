@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <map>
 
 #include "../../src/descriptor/kernels/kernels.hpp"
 
@@ -285,12 +284,17 @@ std::vector<bool> quadBits(const IIB& iib, const Cells& cells, int channel, int 
 //! The bits of a level, of all quads or those of the selection, in the order the header gives.
 std::vector<bool> levelBits(const IIB& iib, const Cells& cells, int channels, int level)
 {
-    std::map<std::array<int, 6>, bool> bits;  // by group of channels, window, row, bit, column, channel
+    std::vector<std::pair<uint64, bool>> bits;
     const auto add = [&](int channel, int row, int col, int mask) {
         const std::vector<bool> quad = quadBits(iib, cells, channel, level, row, col);
         for (int bit = 0; bit < (int)quad.size(); bit++)
+        {
+            uint64 place = 0;  // by group of channels, window, row, bit, column, channel
+            for (int part : {channel / 4, row % 2 * 2 + col % 2, row, bit, col, channel})
+                place = place << 10 | (uint64)part;
             if (mask >> bit & 1)
-                bits[{{channel / 4, row % 2 * 2 + col % 2, row, bit, col, channel}}] = quad[bit];
+                bits.push_back({place, quad[bit]});
+        }
     };
     const Mat_<int> selection = iib.getSelection();
     for (int i = 0; i < selection.rows; i++)
@@ -301,6 +305,7 @@ std::vector<bool> levelBits(const IIB& iib, const Cells& cells, int channels, in
         for (int col = 0; col < end; col += step)
             for (int channel = 0; channel < channels; channel++)
                 add(channel, row, col, 255);
+    std::sort(bits.begin(), bits.end());
     std::vector<bool> result;
     for (const auto& b : bits)
         result.push_back(b.second);
