@@ -2,9 +2,13 @@
 # Makes the site of the documentation in build/docs/html: guides, tutorials and the C++ reference with Doxygen, the reference of
 # the Python package, its examples with what they print and draw, and the pages of results and of localization. Any warning and any
 # dead link is an error. Where pip reaches no package index, the examples stand without their output.
+#   scripts/docs.sh [WHEEL]
+# WHEEL: the Python package, if it is built; else it is built, linked with what the tests have built, if they have.
 . "$(dirname "$0")/helpers/lib.sh"
 
-[ $# = 0 ] || fail "takes no argument"
+[ $# -le 1 ] || fail "takes one wheel, not $*"
+wheel="${1:-$root}"
+[ -e "$wheel" ] || fail "there is no wheel $wheel"
 case "$root" in *" "*) fail "Doxygen links no pages in a folder with a blank in its path: $root" ;; esac
 need doxygen python3 python3-venv python3-dev $build_packages
 version=$(sed -n 's/^project(opencv_iib VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
@@ -13,12 +17,11 @@ pictures="$build/docs/pictures" environment="$build/docs/environment" library="$
 mkdir -p "$pictures"
 cd "$root"
 python3 scripts/helpers/python_api.py >"$build/docs/python_api.md"
-# The package, linked with what the tests have built, if they have.
 [ -f "$library" ] || library=""
 /usr/bin/python3 -m venv "$environment"
 if "$environment/bin/pip" install --quiet --retries 0 --timeout 15 opencv-python-headless pycolmap; then
-    say "building the package, and running its examples"
-    "$environment/bin/pip" install --quiet "--config-settings=cmake.define.IIB_STATIC_LIBRARY=$library" "$root"
+    say "installing the package, and running its examples"
+    "$environment/bin/pip" install --quiet "--config-settings=cmake.define.IIB_STATIC_LIBRARY=$library" "$wheel"
     GLOG_minloglevel=1 "$environment/bin/python" scripts/helpers/python_examples.py "$pictures" >"$build/docs/python_examples.md"
     "$environment/bin/opencv-iib" align tools/synthetic/view_noon.jpg tools/synthetic/view_panned.jpg --out "$build/docs/align"
 else

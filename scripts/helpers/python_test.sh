@@ -4,7 +4,7 @@
 #   scripts/helpers/python_test.sh [--servers] [LIBRARY]
 # --servers: with PostgreSQL, and with Dask's workers in network namespaces, too, where these can be had.
 # LIBRARY: the module as a static library of position-independent code, built with the installed OpenCV, as ctest's entry
-# `python` has it; without it the whole package is built, which takes minutes.
+# `python` has it, beside which the wheel is left; without it the whole package is built, which takes minutes.
 . "$(dirname "$0")/lib.sh"
 
 servers=""
@@ -41,6 +41,7 @@ say "building the package"
 set -- "--config-settings=build-dir=$work/build"
 [ -z "$library" ] || set -- "$@" "--config-settings=cmake.define.IIB_STATIC_LIBRARY=$library"
 "$work/newest/bin/pip" wheel --quiet --no-deps --wheel-dir "$work" "$@" "$root"
+[ -z "$library" ] || cp "$work"/*.whl "$(dirname "$library")"
 
 say "python tests with pip's newest OpenCV"
 check newest "$work"/*.whl opencv-python-headless h5py pycolmap jinja2 distributed mypy
