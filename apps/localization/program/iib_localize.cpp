@@ -23,8 +23,7 @@
 
 namespace {
 using namespace iib_localization;
-using cv::iib::Localizer;
-using cv::iib::Location;
+using namespace cv::iib;
 
 constexpr int NOTHING_FOUND = 3, SOME_FOUND = 4;  // status
 
@@ -193,7 +192,7 @@ void keepFreedMemory()
 //! In the map, or in one of the model. @param points as Localizer takes them.
 Localizer open(const iib_tools::CommandLine& line, int points)
 {
-    cv::iib::MapOptions options;
+    MapOptions options;
     options.lines = line.has("lines");
     options.orbAndAkaze = line.has("orb-and-akaze");
     if (line.has("map"))

@@ -72,7 +72,7 @@ NewFolder::NewFolder(const std::string& target, const std::vector<std::string>& 
         if (fs::exists(target_))
             checkContents(target_, ownFiles);
         fs::create_directories(partial_);
-        lock_ = lockFolder(partial_);
+        lock_ = cv::iib::lockFolder(partial_);
         if (lock_ < 0)
             fail(target + " is being written by another process: wait until it has ended");
         for (const auto& entry : fs::directory_iterator(partial_))

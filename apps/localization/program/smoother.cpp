@@ -12,6 +12,7 @@ namespace iib_localization {
 namespace {
 
 using cv::iib::crossProduct;
+using cv::iib::inverse;
 
 // Noise densities of a good MEMS sensor (EuRoC's sensor.yaml), twice as large for what the model leaves out.
 constexpr double RATE_NOISE = 2 * 1.7e-4;              // rad/s/sqrt(Hz)

@@ -12,6 +12,9 @@
 namespace iib_localization {
 namespace {
 
+using cv::iib::numbersOf;
+using cv::iib::shortest;
+
 constexpr double MAX_LEVER = 1000;           // metres from an IMU to its camera
 constexpr int64_t MAX_TIME = int64_t(4e18);  // nanoseconds: differences of times must not overflow
 

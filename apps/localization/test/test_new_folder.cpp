@@ -13,6 +13,7 @@
 #include "iib_geometry/test/wall.hpp"
 
 namespace {
+using namespace opencv_test;
 using namespace iib_localization;
 
 const std::vector<std::string> OWN = {"index", "[a-z].part", "sub/", "sub/?.part"};

@@ -10,7 +10,7 @@
 #include "iib_geometry/test/wall.hpp"
 
 namespace {
-using namespace iib_localization;
+using namespace opencv_test;
 
 //! Lines of a text, and what stands between their separators.
 std::vector<std::string> split(const std::string& text, char separator)

@@ -4,8 +4,7 @@
 #include "opencv2/iib.hpp"
 #include "planar_problem.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv::iib {
 namespace {
 
 const int FEATURES = 2000;
@@ -110,5 +109,4 @@ bool alignImages(InputArray reference, InputArray image, OutputArray transform, 
     return false;
 }
 
-}  // namespace iib
-}  // namespace cv
+}  // namespace cv::iib

@@ -11,7 +11,7 @@
 #include "../../iib/src/common/checked_file.hpp"
 #include "opencv2/core/quaternion.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,7 +25,7 @@ public:
     ModelFile(const std::string& folder, const std::string& name, bool text, uint64_t leastBytes)
         : name_(name + (text ? ".txt" : ".bin")), text_(text)
     {
-        const fs::path path = cv::iib::systemName(folder + "/" + name_);
+        const fs::path path = systemName(folder + "/" + name_);
         std::error_code error;
         expect(fs::is_regular_file(path, error));  // a pipe would not end
         left_ = fs::file_size(path, error);
@@ -37,7 +37,7 @@ public:
     void expect(bool valid) const
     {
         if (!valid)
-            CV_Error(cv::Error::StsParseError, name_ + " is missing or damaged");
+            CV_Error(Error::StsParseError, name_ + " is missing or damaged");
     }
 
     template <typename T> T next()
@@ -134,7 +134,7 @@ std::vector<PosedImage> readImages(const std::string& folder, bool text)
         Camera camera = {known.cameraModel(), {}, {}};
         const uint64_t width = known.next<uint64_t>(), height = known.next<uint64_t>();
         known.expect(std::min(width, height) > 0 && std::max(width, height) < 1 << 16);
-        camera.size = cv::Size(int(width), int(height));
+        camera.size = Size(int(width), int(height));
         while (known.more())
             camera.parameters.push_back(known.next<double>());
         Lens checked(camera);
@@ -153,12 +153,12 @@ std::vector<PosedImage> readImages(const std::string& folder, bool text)
             value = file.next<double>();
             file.expect(std::isfinite(value));
         }
-        const cv::Quatd rotation(pose[0], pose[1], pose[2], pose[3]);
+        const Quatd rotation(pose[0], pose[1], pose[2], pose[3]);
         const auto camera = cameras.find(file.next<uint32_t>());
         const std::string name = file.name();
         file.expect(camera != cameras.end() && std::abs(rotation.norm() - 1) < 1e-2 && !name.empty() &&
                     names.insert(name).second);
-        images.push_back({name, camera->second, {rotation.toRotMat3x3(), cv::Vec3d(pose + 4)}, {}, {}});
+        images.push_back({name, camera->second, {rotation.toRotMat3x3(), Vec3d(pose + 4)}, {}, {}});
         while (file.more())
         {
             const double x = file.next<double>(), y = file.next<double>();
@@ -183,9 +183,7 @@ std::vector<PosedImage> readModel(const std::string& folder)
 {
     std::error_code error;
     std::string hint;
-    const auto exists = [&](const std::string& name) {
-        return fs::exists(cv::iib::systemName(folder + name), error);
-    };
+    const auto exists = [&](const std::string& name) { return fs::exists(systemName(folder + name), error); };
     for (const std::string part : {"/0", "/sparse/0", "/sparse"})
         if (hint.empty() && (exists(part + "/cameras.bin") || exists(part + "/cameras.txt")))
             hint = ": did you mean " + folder + part + "?";
@@ -194,21 +192,18 @@ std::vector<PosedImage> readModel(const std::string& folder)
         std::vector<PosedImage> images =
                 readImages(folder, exists("/cameras.txt") && !exists("/cameras.bin"));
         if (images.empty())
-            CV_Error(cv::Error::StsError, "no image has a pose");
+            CV_Error(Error::StsError, "no image has a pose");
         return images;
     }
-    catch (const cv::Exception& e)
+    catch (const Exception& e)
     {
-        CV_Error(cv::Error::StsError, folder + " is no COLMAP model, or a damaged one: " + e.err + hint);
+        CV_Error(Error::StsError, folder + " is no COLMAP model, or a damaged one: " + e.err + hint);
     }
 }
 
-}  // namespace iib_localization
-
-void cv::iib::writeModel(
+void writeModel(
         const std::string& folder, const std::vector<PosedImage>& images, const std::vector<Point3d>& points)
 {
-    using namespace iib_localization;
     std::string cameras, posed, seen;
     const std::vector<Camera> known = camerasOf(images);
     std::vector<std::string> tracks(points.size());
@@ -250,3 +245,5 @@ void cv::iib::writeModel(
     writeText(folder + "/images.bin", posed);
     writeText(folder + "/points3D.bin", seen);
 }
+
+}  // namespace cv::iib

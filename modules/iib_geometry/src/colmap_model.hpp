@@ -3,9 +3,7 @@
 
 #include "lens.hpp"
 
-namespace iib_localization {
-
-using cv::iib::PosedImage;
+namespace cv::iib {
 
 /** The images of a COLMAP model, binary or text, of all versions of COLMAP. What they see are numbers that images of one point
 share; where the points are is not read.
@@ -22,4 +20,4 @@ template <typename Images> std::vector<Camera> camerasOf(const Images& images)
     return cameras;
 }
 
-}  // namespace iib_localization
+}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "five_points.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv::iib {
 namespace {
 
 const int BLOCK = 32;           // matches between two looks at the limit
@@ -161,5 +160,4 @@ void EpipolarProblem::linearize(const RelativePose& pose, std::vector<Row<Step>>
     }
 }
 
-}  // namespace iib
-}  // namespace cv
+}  // namespace cv::iib

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef IIB_GEOMETRY_EPIPOLAR_PROBLEM_HPP
-#define IIB_GEOMETRY_EPIPOLAR_PROBLEM_HPP
+#pragma once
 
 #include "robust_fit.hpp"
 #include "two_views.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv::iib {
 
 /** Matches of two calibrated cameras, whose relative pose is sought (robust_fit.hpp). The error of a match is Sampson's, in
 pixels (Hartley and Zisserman 2004, equation 11.9), over the scale. */
@@ -42,7 +40,4 @@ private:
     double weights_[4];  // of the four squares in Sampson's denominator: (scale / focal length)^2
 };
 
-}  // namespace iib
-}  // namespace cv
-
-#endif
+}  // namespace cv::iib

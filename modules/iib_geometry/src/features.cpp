@@ -4,28 +4,26 @@
 
 #include <algorithm>
 
-namespace iib_localization {
+namespace cv::iib {
 namespace {
-
-using cv::iib::IIB;
 
 #if CV_VERSION_MAJOR < 5
 //! The strongest points of ORB and of AKAZE in turn, with sizes that one scale factor suits.
-class OrbAndAkaze : public cv::Feature2D
+class OrbAndAkaze : public Feature2D
 {
 public:
     explicit OrbAndAkaze(int points) : each_(size_t(points + 1) / 2) {}
 
-    void detect(cv::InputArray image, std::vector<cv::KeyPoint>& keypoints, cv::InputArray mask) override
+    void detect(InputArray image, std::vector<KeyPoint>& keypoints, InputArray mask) override
     {
-        const cv::Ptr<cv::Feature2D> detectors[] = {cv::ORB::create(int(each_)), cv::AKAZE::create()};
-        std::vector<std::pair<size_t, cv::KeyPoint>> ranked;
-        for (const cv::Ptr<cv::Feature2D>& detector : detectors)
+        const Ptr<Feature2D> detectors[] = {ORB::create(int(each_)), AKAZE::create()};
+        std::vector<std::pair<size_t, KeyPoint>> ranked;
+        for (const Ptr<Feature2D>& detector : detectors)
         {
-            std::vector<cv::KeyPoint> own;
+            std::vector<KeyPoint> own;
             detector->detect(image, own, mask);
             std::stable_sort(own.begin(), own.end(),
-                    [](const cv::KeyPoint& a, const cv::KeyPoint& b) { return a.response > b.response; });
+                    [](const KeyPoint& a, const KeyPoint& b) { return a.response > b.response; });
             const float ratio = IIB::scaleFactorFor(detector) / IIB::scaleFactorFor(detectors[0]);
             for (size_t i = 0; i < std::min(own.size(), each_); i++)
             {
@@ -47,17 +45,17 @@ private:
 
 }  // namespace
 
-cv::Ptr<IIB> describerOf(bool orbAndAkaze, int points)
+Ptr<IIB> describerOf(bool orbAndAkaze, int points)
 {
     if (!orbAndAkaze)
         return IIB::createRecommended(points);
 #if CV_VERSION_MAJOR < 5
-    const cv::Ptr<IIB> iib = IIB::create(IIB::scaleFactorFor(cv::ORB::create()));
-    iib->setDetector(cv::makePtr<OrbAndAkaze>(points));
+    const Ptr<IIB> iib = IIB::create(IIB::scaleFactorFor(ORB::create()));
+    iib->setDetector(makePtr<OrbAndAkaze>(points));
     return iib;
 #else
-    CV_Error(cv::Error::StsNotImplemented, "OpenCV 5 has no AKAZE: maps of its points need OpenCV 4");
+    CV_Error(Error::StsNotImplemented, "OpenCV 5 has no AKAZE: maps of its points need OpenCV 4");
 #endif
 }
 
-}  // namespace iib_localization
+}  // namespace cv::iib

@@ -6,20 +6,20 @@
 #include "map.hpp"
 #include "opencv2/iib.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 
 //! What is found in an image: it has no name, camera and pose, and sees no points yet.
 typedef MapImage Features;
 
 //! What finds and describes the points of a map: createRecommended, or the paper's points and descriptor.
-cv::Ptr<cv::iib::IIB> describerOf(bool orbAndAkaze, int points);
+Ptr<IIB> describerOf(bool orbAndAkaze, int points);
 
-inline Features extract(cv::iib::IIB& iib, const cv::Mat& image)
+inline Features extract(IIB& iib, const Mat& image)
 {
     Features features;
-    std::vector<cv::KeyPoint> keypoints;
-    iib.detectAndCompute(image, cv::noArray(), keypoints, features.codes);
-    for (const cv::KeyPoint& k : keypoints)
+    std::vector<KeyPoint> keypoints;
+    iib.detectAndCompute(image, noArray(), keypoints, features.codes);
+    for (const KeyPoint& k : keypoints)
     {
         features.pixels.emplace_back(k.pt);
         features.sizes.push_back(k.size);
@@ -32,21 +32,20 @@ inline Features extract(cv::iib::IIB& iib, const cv::Mat& image)
 }
 
 //! @throws cv::Exception for an image that is not of a camera's size, or not 8-bit, grey or BGR.
-inline void checkImage(const cv::Mat& image, const cv::Size& size)
+inline void checkImage(const Mat& image, const Size& size)
 {
     if (image.type() != CV_8UC1 && image.type() != CV_8UC3)
-        CV_Error(cv::Error::StsBadArg,
-                "an image is 8-bit, grey or BGR, not " + cv::typeToString(image.type()));
+        CV_Error(Error::StsBadArg, "an image is 8-bit, grey or BGR, not " + typeToString(image.type()));
     if (image.size() != size)
-        CV_Error(cv::Error::StsBadArg, cv::format("the image has %d x %d pixels and its camera %d x %d",
-                                               image.cols, image.rows, size.width, size.height));
+        CV_Error(Error::StsBadArg, format("the image has %d x %d pixels and its camera %d x %d", image.cols,
+                                           image.rows, size.width, size.height));
 }
 
 //! Calls an action with each index, several at once. What one throws is thrown, and ends the rest.
 template <typename Action> void inParallel(size_t count, Action action)
 {
     std::atomic<bool> ended(false);
-    cv::parallel_for_(cv::Range(0, int(count)), [&](const cv::Range& range) {
+    parallel_for_(Range(0, int(count)), [&](const Range& range) {
         for (int i = range.start; i < range.end && !ended; i++)
         {
             try
@@ -62,4 +61,4 @@ template <typename Action> void inParallel(size_t count, Action action)
     });
 }
 
-}  // namespace iib_localization
+}  // namespace cv::iib

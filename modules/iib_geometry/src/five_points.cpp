@@ -6,8 +6,7 @@
 
 #include "real_roots.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv::iib {
 namespace {
 
 const double SINGULAR = 1e-12;  // pivots below are 0; all entries are of the order of 1
@@ -191,5 +190,4 @@ void fivePointEssentials(const Point2d first[5], const Point2d second[5], std::v
     }
 }
 
-}  // namespace iib
-}  // namespace cv
+}  // namespace cv::iib

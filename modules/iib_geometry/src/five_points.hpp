@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef IIB_GEOMETRY_FIVE_POINTS_HPP
-#define IIB_GEOMETRY_FIVE_POINTS_HPP
+#pragma once
 
 #include <vector>
 
 #include "opencv2/core.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv::iib {
 
 /** The essential matrices, up to ten, with which five matches agree (Nister 2004).
 @param first, second directions in the two cameras, third coordinate 1
 @param essentials cleared, then filled */
 void fivePointEssentials(const Point2d first[5], const Point2d second[5], std::vector<Matx33d>& essentials);
 
-}  // namespace iib
-}  // namespace cv
-
-#endif
+}  // namespace cv::iib

@@ -7,7 +7,7 @@
 
 #include "numbers.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 namespace {
 
 enum Kind
@@ -40,7 +40,7 @@ const Model MODELS[] = {{"SIMPLE_PINHOLE", 1, 0, STRAIGHT}, {"PINHOLE", 2, 0, ST
 constexpr double MAX_RATIO = 1000;  // of a focal length and the longer side
 constexpr int ROUNDS = 50;
 
-[[noreturn]] void fail(const std::string& what) { CV_Error(cv::Error::StsBadArg, what); }
+[[noreturn]] void fail(const std::string& what) { CV_Error(Error::StsBadArg, what); }
 
 const Model& modelOf(const Camera& camera)
 {
@@ -55,8 +55,8 @@ const Model& modelOf(const Camera& camera)
     const Model& model = MODELS[number];
     const std::vector<double>& p = camera.parameters;
     if (p.size() != parametersOf(camera.model))
-        fail(cv::format("camera model %s has %d parameters, not %d", model.name,
-                int(parametersOf(camera.model)), int(p.size())));
+        fail(format("camera model %s has %d parameters, not %d", model.name, int(parametersOf(camera.model)),
+                int(p.size())));
     const double side = std::max(camera.size.width, camera.size.height);
     for (size_t i = 0; i < p.size(); i++)
     {
@@ -92,7 +92,7 @@ size_t parametersOf(const std::string& model)
     return number < 0 ? 0 : MODELS[number].focals + 2 + MODELS[number].others;
 }
 
-Camera scaled(const Camera& camera, double scale, const cv::Size& size)
+Camera scaled(const Camera& camera, double scale, const Size& size)
 {
     Camera small = camera;
     small.size = size;
@@ -112,12 +112,12 @@ Lens::Lens(const Camera& camera)
 }
 
 //! The formulas are COLMAP's (src/colmap/sensor/models.h); a ray is (x / z, y / z).
-cv::Vec2d Lens::distorted(const cv::Vec2d& ray) const
+Vec2d Lens::distorted(const Vec2d& ray) const
 {
-    const double r = cv::norm(ray), r2 = r * r;
-    const auto shifted = [](const cv::Vec2d& at, double p1, double p2) {
+    const double r = norm(ray), r2 = r * r;
+    const auto shifted = [](const Vec2d& at, double p1, double p2) {
         const double xy = 2 * at[0] * at[1], square = at.dot(at);
-        return cv::Vec2d(
+        return Vec2d(
                 p1 * xy + p2 * (square + 2 * at[0] * at[0]), p2 * xy + p1 * (square + 2 * at[1] * at[1]));
     };
     if (r == 0 || kind_ == STRAIGHT)
@@ -134,76 +134,72 @@ cv::Vec2d Lens::distorted(const cv::Vec2d& ray) const
         return ray * (2 / (1 + std::sqrt(1 - 4 * k_[0] * r2)));
     if (kind_ == UNIFIED)
         return ray * (1 / (k_[0] * std::sqrt(k_[1] * r2 + 1) + 1 - k_[0]));
-    const cv::Vec2d bent = ray * (std::atan(r) / r);  // equidistant
+    const Vec2d bent = ray * (std::atan(r) / r);  // equidistant
     const double t2 = bent.dot(bent);
     if (kind_ == FISHEYE)
         return bent * (1 + t2 * (k_[0] + t2 * (k_[1] + t2 * (k_[2] + t2 * k_[3]))));
     if (kind_ == THIN_PRISM)
         return bent * (1 + t2 * (k_[0] + t2 * (k_[1] + t2 * (k_[4] + t2 * k_[5])))) +
-               shifted(bent, k_[2], k_[3]) + cv::Vec2d(k_[6], k_[7]) * t2;
+               shifted(bent, k_[2], k_[3]) + Vec2d(k_[6], k_[7]) * t2;
     const double radial =
             1 + t2 * (k_[0] + t2 * (k_[1] + t2 * (k_[2] + t2 * (k_[3] + t2 * (k_[4] + t2 * k_[5])))));
-    const cv::Vec2d at = bent * radial;
+    const Vec2d at = bent * radial;
     const double s2 = at.dot(at);
-    return at + shifted(at, k_[7], k_[6]) + s2 * cv::Vec2d(k_[8] + s2 * k_[9], k_[10] + s2 * k_[11]);
+    return at + shifted(at, k_[7], k_[6]) + s2 * Vec2d(k_[8] + s2 * k_[9], k_[10] + s2 * k_[11]);
 }
 
 //! By central differences.
-cv::Matx22d Lens::slope(const cv::Vec2d& ray) const
+Matx22d Lens::slope(const Vec2d& ray) const
 {
     if (kind_ == STRAIGHT)
-        return cv::Matx22d::eye();
-    const double step = 1e-5 * (1 + cv::norm(ray));
-    const cv::Vec2d x(step, 0), y(0, step), byX = (distorted(ray + x) - distorted(ray - x)) / (2 * step),
-                                            byY = (distorted(ray + y) - distorted(ray - y)) / (2 * step);
+        return Matx22d::eye();
+    const double step = 1e-5 * (1 + norm(ray));
+    const Vec2d x(step, 0), y(0, step), byX = (distorted(ray + x) - distorted(ray - x)) / (2 * step),
+                                        byY = (distorted(ray + y) - distorted(ray - y)) / (2 * step);
     return {byX[0], byY[0], byX[1], byY[1]};
 }
 
-std::vector<cv::Point2d> Lens::undistorted(const std::vector<cv::Point2d>& pixels) const
+std::vector<Point2d> Lens::undistorted(const std::vector<Point2d>& pixels) const
 {
-    std::vector<cv::Point2d> straight;
-    for (const cv::Point2d& p : pixels)
+    std::vector<Point2d> straight;
+    for (const Point2d& p : pixels)
     {
-        const cv::Vec2d seen((p.x - matrix_(0, 2)) / matrix_(0, 0), (p.y - matrix_(1, 2)) / matrix_(1, 1));
-        cv::Vec2d ray = seen, step(1, 1);
-        for (int round = 0; round < ROUNDS && cv::norm(step) > 1e-12 * (1 + cv::norm(ray));
-                round++)  // Newton's
+        const Vec2d seen((p.x - matrix_(0, 2)) / matrix_(0, 0), (p.y - matrix_(1, 2)) / matrix_(1, 1));
+        Vec2d ray = seen, step(1, 1);
+        for (int round = 0; round < ROUNDS && norm(step) > 1e-12 * (1 + norm(ray)); round++)  // Newton's
         {
             step = slope(ray).inv() * (seen - distorted(ray));
             ray += step;
         }
-        if (!(cv::norm(distorted(ray) - seen) < 1e-8))
-            ray = cv::Vec2d::all(std::numeric_limits<double>::quiet_NaN());
+        if (!(norm(distorted(ray) - seen) < 1e-8))
+            ray = Vec2d::all(std::numeric_limits<double>::quiet_NaN());
         straight.emplace_back(matrix_(0, 0) * ray[0] + matrix_(0, 2), matrix_(1, 1) * ray[1] + matrix_(1, 2));
     }
     return straight;
 }
 
-std::vector<cv::Point2d> Lens::project(
-        const std::vector<cv::Point3d>& points, std::vector<cv::Matx23d>* jacobians) const
+std::vector<Point2d> Lens::project(const std::vector<Point3d>& points, std::vector<Matx23d>* jacobians) const
 {
-    std::vector<cv::Point2d> pixels;
+    std::vector<Point2d> pixels;
     if (jacobians)
         jacobians->clear();
-    for (const cv::Point3d& p : points)
+    for (const Point3d& p : points)
     {
         const double nan = std::numeric_limits<double>::quiet_NaN();
-        const cv::Vec2d ray = p.z > 0 ? cv::Vec2d(p.x / p.z, p.y / p.z) : cv::Vec2d(nan, nan);
-        const cv::Vec2d seen = distorted(ray);
+        const Vec2d ray = p.z > 0 ? Vec2d(p.x / p.z, p.y / p.z) : Vec2d(nan, nan);
+        const Vec2d seen = distorted(ray);
         pixels.emplace_back(matrix_(0, 0) * seen[0] + matrix_(0, 2), matrix_(1, 1) * seen[1] + matrix_(1, 2));
         if (jacobians)
-            jacobians->push_back(cv::Matx22d(matrix_(0, 0), 0, 0, matrix_(1, 1)) * slope(ray) *
-                                 cv::Matx23d(1, 0, -ray[0], 0, 1, -ray[1]) * (1 / p.z));
+            jacobians->push_back(Matx22d(matrix_(0, 0), 0, 0, matrix_(1, 1)) * slope(ray) *
+                                 Matx23d(1, 0, -ray[0], 0, 1, -ray[1]) * (1 / p.z));
     }
     return pixels;
 }
 
-}  // namespace iib_localization
-
-cv::iib::Camera cv::iib::Camera::parse(const std::string& text)
+Camera Camera::parse(const std::string& text)
 {
     const size_t comma = std::min(text.find(','), text.size() - 1);
-    const std::vector<double> values = iib_localization::numbersOf(text.substr(comma + 1));
+    const std::vector<double> values = numbersOf(text.substr(comma + 1));
     if (values.size() < 3)
         CV_Error(Error::StsBadArg, "camera " + text + " is not MODEL,WIDTH,HEIGHT,PARAMETERS");
     const double width = values[0], height = values[1];
@@ -212,11 +208,13 @@ cv::iib::Camera cv::iib::Camera::parse(const std::string& text)
         CV_Error(Error::StsBadArg, "camera " + text + ": width and height are whole numbers of pixels");
     const Camera camera = {text.substr(0, comma), Size(int(width), int(height)),
             std::vector<double>(values.begin() + 2, values.end())};
-    iib_localization::Lens checked(camera);
+    Lens checked(camera);
     return camera;
 }
 
-std::vector<cv::Point2d> cv::iib::Camera::project(const std::vector<Point3d>& points) const
+std::vector<Point2d> Camera::project(const std::vector<Point3d>& points) const
 {
-    return iib_localization::Lens(*this).project(points);
+    return Lens(*this).project(points);
 }
+
+}  // namespace cv::iib

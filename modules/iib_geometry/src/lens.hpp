@@ -5,9 +5,7 @@
 
 #include "opencv2/iib/localization.hpp"
 
-namespace iib_localization {
-
-using cv::iib::Camera;
+namespace cv::iib {
 
 //! What a camera does to rays. The centre of the first pixel is (0, 0), here and everywhere but in COLMAP's files.
 class Lens
@@ -17,21 +15,21 @@ public:
     explicit Lens(const Camera& camera);
 
     //! Of a camera without distortion that undistorted() gives the pixels of.
-    const cv::Matx33d& matrix() const { return matrix_; }
+    const Matx33d& matrix() const { return matrix_; }
     //! NaN for pixels that no point before the camera is seen at.
-    std::vector<cv::Point2d> undistorted(const std::vector<cv::Point2d>& pixels) const;
+    std::vector<Point2d> undistorted(const std::vector<Point2d>& pixels) const;
     /** Where points in the camera's axes are seen; NaN behind it.
     @param jacobians if not null: of the pixels by the points. */
-    std::vector<cv::Point2d> project(
-            const std::vector<cv::Point3d>& points, std::vector<cv::Matx23d>* jacobians = nullptr) const;
+    std::vector<Point2d> project(
+            const std::vector<Point3d>& points, std::vector<Matx23d>* jacobians = nullptr) const;
 
 private:
-    cv::Vec2d distorted(const cv::Vec2d& ray) const;
-    cv::Matx22d slope(const cv::Vec2d& ray) const;
+    Vec2d distorted(const Vec2d& ray) const;
+    Matx22d slope(const Vec2d& ray) const;
 
-    cv::Matx33d matrix_;
+    Matx33d matrix_;
     int kind_;
-    cv::Vec<double, 12> k_;  //!< parameters of the distortion, in COLMAP's order
+    Vec<double, 12> k_;  //!< parameters of the distortion, in COLMAP's order
 };
 
 //! Of a camera among others; how many there are, if it is not there.
@@ -44,7 +42,7 @@ inline size_t indexOf(const Camera& camera, const std::vector<Camera>& cameras)
 }
 
 //! The camera of an image that was reduced to a size by a scale.
-Camera scaled(const Camera& camera, double scale, const cv::Size& size);
+Camera scaled(const Camera& camera, double scale, const Size& size);
 
 //! COLMAP's number of a camera model, or -1; of a number its name, or the number.
 int modelNumber(const std::string& name);
@@ -52,4 +50,4 @@ std::string modelName(uint32_t number);
 //! How many parameters a model has; 0 for an unknown one.
 size_t parametersOf(const std::string& model);
 
-}  // namespace iib_localization
+}  // namespace cv::iib

@@ -10,7 +10,7 @@
 #include "features.hpp"
 #include "triangulation.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 namespace {
 
 constexpr double DEVIATION = .7;                 // pixels, of two segments' ends together
@@ -31,7 +31,7 @@ bool placeLine(const Track& track, const std::vector<Ray>& rays, const std::vect
     const auto ends = [&](const Ray& r) { return &rays[first[r.image] + size_t(r.keypoint)]; };
     const auto normal = [&](const Ray& r) { return ends(r)[0].direction.cross(ends(r)[1].direction); };
     const Ray& longest = *std::max_element(track.begin(), track.end(),
-            [&](const Ray& a, const Ray& b) { return cv::norm(normal(a)) < cv::norm(normal(b)); });
+            [&](const Ray& a, const Ray& b) { return norm(normal(a)) < norm(normal(b)); });
     for (int i : {0, 1})
     {
         const Ray& ray = ends(longest)[i];
@@ -39,7 +39,7 @@ bool placeLine(const Track& track, const std::vector<Ray>& rays, const std::vect
         for (const Ray& other : track)
             if (&other != &longest)
             {
-                const cv::Vec3d plane = cv::normalize(normal(other));
+                const Vec3d plane = normalize(normal(other));
                 squares += plane.dot(ray.direction) * plane.dot(ray.direction);
                 sum += plane.dot(ray.direction) * plane.dot(other.centre - ray.centre);
             }
@@ -53,20 +53,20 @@ bool placeLine(const Track& track, const std::vector<Ray>& rays, const std::vect
 
 /** Pairs of lines and segments that fit, of the fewest bits that differ first, each line and each segment once.
 @param lines whose codes these are: some have several. */
-std::vector<cv::DMatch> nearest(const std::vector<int>& lines, const cv::Mat& codes, const cv::Mat& segments,
-        int maxBits, const std::function<bool(int, int)>& fit)
+std::vector<DMatch> nearest(const std::vector<int>& lines, const Mat& codes, const Mat& segments, int maxBits,
+        const std::function<bool(int, int)>& fit)
 {
-    std::vector<cv::DMatch> all, found;
-    cv::Mat_<int> bits;
+    std::vector<DMatch> all, found;
+    Mat_<int> bits;
     if (!codes.empty() && !segments.empty())
-        cv::batchDistance(codes, segments, bits, CV_32S, cv::noArray(), cv::NORM_HAMMING);
+        batchDistance(codes, segments, bits, CV_32S, noArray(), NORM_HAMMING);
     for (int row = 0; row < bits.rows; row++)
         for (int s = 0; s < bits.cols; s++)
             if (bits(row, s) <= maxBits && fit(row, s))
                 all.emplace_back(row, s, float(bits(row, s)));
     std::stable_sort(all.begin(), all.end());
     std::set<int> taken, takenSegments;
-    for (const cv::DMatch& m : all)
+    for (const DMatch& m : all)
         if (takenSegments.count(m.trainIdx) == 0 && taken.insert(lines[size_t(m.queryIdx)]).second)
         {
             takenSegments.insert(m.trainIdx);
@@ -114,7 +114,7 @@ void addLines(
             return placeLine({one, other}, rays, first, line, HUGE_VAL) && shows(one, line) &&
                    shows(other, line);
         };
-        for (const cv::DMatch& m : nearest(numbers, segments[a].codes, segments[b].codes, MAPPED_BITS, fit))
+        for (const DMatch& m : nearest(numbers, segments[a].codes, segments[b].codes, MAPPED_BITS, fit))
             found[n].push_back(link(m.queryIdx, m.trainIdx, m.distance));
     });
     std::vector<Link> links;
@@ -144,20 +144,20 @@ void addLines(
 }
 
 std::vector<Match> matchesOf(
-        const MapLine& line, const Segment& segment, const Lens& lens, const cv::Affine3d& pose, double limit)
+        const MapLine& line, const Segment& segment, const Lens& lens, const Affine3d& pose, double limit)
 {
-    cv::Point3d ends[] = {pose * line.begin, pose * line.end};
+    Point3d ends[] = {pose * line.begin, pose * line.end};
     const double nearest = NEAREST * std::max(ends[0].z, ends[1].z);
     for (int i : {0, 1})  // cuts off what is behind the camera
         if (ends[i].z < nearest && nearest > 0)
             ends[i] += (ends[1 - i] - ends[i]) * ((nearest - ends[i].z) / (ends[1 - i].z - ends[i].z));
-    const std::vector<cv::Point2d> pixels = lens.project({ends[0], ends[1]});
-    const double length = cv::norm(segment.end - segment.begin);
-    const cv::Point2d along = (segment.end - segment.begin) / length, across(-along.y, along.x);
+    const std::vector<Point2d> pixels = lens.project({ends[0], ends[1]});
+    const double length = norm(segment.end - segment.begin);
+    const Point2d along = (segment.end - segment.begin) / length, across(-along.y, along.x);
     // Places along the segment from its beginning, in pixels.
     const double from = along.dot(pixels[0] - segment.begin), to = along.dot(pixels[1] - segment.begin);
     const double begin = std::max(from, 0.), end = std::min(to, length);
-    if (!(to - from > std::cos(MAX_TURN * CV_PI / 180) * cv::norm(pixels[1] - pixels[0])) ||
+    if (!(to - from > std::cos(MAX_TURN * CV_PI / 180) * norm(pixels[1] - pixels[0])) ||
             end - begin < MIN_SHARE * std::min(length, to - from))
         return {};
     std::vector<Match> matches;
@@ -165,10 +165,10 @@ std::vector<Match> matchesOf(
     {
         const double share = (place - from) / (to - from);  // in the image
         const double part = share * ends[0].z / (ends[1].z + share * (ends[0].z - ends[1].z));
-        const cv::Point3d point = ends[0] + (ends[1] - ends[0]) * part;
+        const Point3d point = ends[0] + (ends[1] - ends[0]) * part;
         matches.push_back({segment.begin + along * place, inverse(pose) * point});
-        matches.back().counted = cv::Matx22d(
-                across.x * across.x, across.x * across.y, across.x * across.y, across.y * across.y);
+        matches.back().counted =
+                Matx22d(across.x * across.x, across.x * across.y, across.x * across.y, across.y * across.y);
         if (!(std::abs(across.dot(lens.project({point})[0] - matches.back().pixel)) < limit))
             return {};
     }
@@ -176,10 +176,10 @@ std::vector<Match> matchesOf(
 }
 
 std::vector<Match> lineMatches(const Map& map, const std::vector<size_t>& images, const Segments& segments,
-        const Lens& lens, const Frame& frame, const cv::Affine3d& pose, double limit)
+        const Lens& lens, const Frame& frame, const Affine3d& pose, double limit)
 {
     std::vector<int> lines;
-    cv::Mat codes;
+    Mat codes;
     for (size_t i : images)
     {
         lines.insert(lines.end(), map.images[i].lines.begin(), map.images[i].lines.end());
@@ -192,10 +192,10 @@ std::vector<Match> lineMatches(const Map& map, const std::vector<size_t>& images
     };
     const auto fit = [&](int row, int segment) { return !ends(row, segment).empty(); };
     std::vector<Match> matches;
-    for (const cv::DMatch& m : nearest(lines, codes, segments.codes, SEEN_BITS, fit))
+    for (const DMatch& m : nearest(lines, codes, segments.codes, SEEN_BITS, fit))
         for (const Match& end : ends(m.queryIdx, m.trainIdx))
             matches.push_back(end);
     return matches;
 }
 
-}  // namespace iib_localization
+}  // namespace cv::iib

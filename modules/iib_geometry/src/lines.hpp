@@ -4,18 +4,18 @@
 #include "map.hpp"
 #include "pose.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 
 //! A straight edge in pixels of an image, as seen; the brighter side is always on the same hand.
 struct Segment
 {
-    cv::Point2d begin, end;
+    Point2d begin, end;
 };
 
 struct Segments
 {
     std::vector<Segment> places;
-    cv::Mat codes;  //!< LBD, a row of 32 bytes each
+    Mat codes;  //!< LBD, a row of 32 bytes each
 };
 
 /** Segments of 20 pixels or more (LSD), described by LBD. Threads may call it at once.
@@ -30,12 +30,12 @@ void addLines(
 /** The two places where a line and a segment begin and end to overlap, as matches of which only the error across the segment
 counts. None unless the line is seen within `limit` pixels of the segment in its direction, along a third of the shorter.
 @param line in the axes of the pose. */
-std::vector<Match> matchesOf(const MapLine& line, const Segment& segment, const Lens& lens,
-        const cv::Affine3d& pose, double limit);
+std::vector<Match> matchesOf(
+        const MapLine& line, const Segment& segment, const Lens& lens, const Affine3d& pose, double limit);
 
 /** Matches with the lines that some of a map's images see, near where a pose has them.
 @param frame of the pose. */
 std::vector<Match> lineMatches(const Map& map, const std::vector<size_t>& images, const Segments& segments,
-        const Lens& lens, const Frame& frame, const cv::Affine3d& pose, double limit);
+        const Lens& lens, const Frame& frame, const Affine3d& pose, double limit);
 
-}  // namespace iib_localization
+}  // namespace cv::iib

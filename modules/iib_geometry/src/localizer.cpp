@@ -12,7 +12,7 @@
 #include "mapping.hpp"
 #include "numbers.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 namespace {
 
 constexpr size_t SHORTLIST = 20, CANDIDATES = 5;  // of the map's images: by votes, and of these by matches
@@ -55,7 +55,7 @@ std::vector<Match> withoutRepeated(std::vector<Match> matches)
 
 //! The matches within a limit of where a pose has their points.
 std::vector<Match> within(
-        double limit, const std::vector<Match>& matches, const Lens& lens, const cv::Affine3d& pose)
+        double limit, const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)
 {
     const std::vector<double> errors = errorsOf(matches, lens, pose);
     std::vector<Match> inliers;
@@ -105,21 +105,21 @@ void refineMatches(std::vector<Match>& matches, const Map& map, const Features& 
 point at the most similar size.
 @param frame of the pose. */
 std::vector<Match> seenAlong(
-        const Map& map, const Found& found, const Lens& lens, const Frame& frame, const cv::Affine3d& pose)
+        const Map& map, const Found& found, const Lens& lens, const Frame& frame, const Affine3d& pose)
 {
-    const cv::Mat& pixels = found.features.picture.pixels;
-    const cv::Rect2d inside(cv::Point2d(), cv::Size2d(pixels.size()) / found.features.picture.scale);
+    const Mat& pixels = found.features.picture.pixels;
+    const Rect2d inside(Point2d(), Size2d(pixels.size()) / found.features.picture.scale);
     std::map<int, std::pair<double, Match>> best;  // of a point: logarithm of the ratio of sizes, place
     for (size_t view : found.compared)
     {
         const MapImage& image = map.images[view];
         const double zoom = lens.matrix()(0, 0) / Lens(image.camera).matrix()(0, 0);
-        std::vector<cv::Point3d> points = map.seenBy(image);
-        const std::vector<cv::Point3d> there = inCamera(points, image.cameraFromWorld);
-        for (cv::Point3d& p : points)
+        std::vector<Point3d> points = map.seenBy(image);
+        const std::vector<Point3d> there = inCamera(points, image.cameraFromWorld);
+        for (Point3d& p : points)
             p = frame.toLocal(p);
-        const std::vector<cv::Point3d> here = inCamera(points, pose);
-        const std::vector<cv::Point2d> places = lens.project(here);
+        const std::vector<Point3d> here = inCamera(points, pose);
+        const std::vector<Point2d> places = lens.project(here);
         for (size_t row = 0; row < places.size(); row++)
         {
             const double ratio = std::log(zoom * there[row].z / (here[row].z * frame.unit));
@@ -159,7 +159,7 @@ std::vector<Match> seenAlong(
 }
 
 //! Gives the matches that were refined the deviation that they have of where a pose has their points.
-void learnDeviation(std::vector<Match>& matches, const Lens& lens, const cv::Affine3d& pose)
+void learnDeviation(std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)
 {
     const auto refined = [](const Match& m) { return m.deviation != Match().deviation; };
     std::vector<Match> some;
@@ -184,8 +184,8 @@ void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Foun
     for (size_t i : best(matches.size(), SUREST,
                  [&](size_t a, size_t b) { return matches[a].bits < matches[b].bits; }))
         surest.push_back(matches[i]);
-    cv::Affine3d pose;
-    cv::Matx66d covariance;
+    Affine3d pose;
+    Matx66d covariance;
     found.reason = "too few matches agree";
     if (!poseByRansac(surest, lens, limit, pose))
         return;
@@ -210,7 +210,7 @@ void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Foun
     std::vector<Match> used;
     for (int look = 0; look < LOOKS; look++)
     {
-        const cv::Affine3d before = pose;
+        const Affine3d before = pose;
         used = within(limit, matches, lens, pose);
         for (const Match& m : within(limit, seenAlong(map, found, lens, frame, pose), lens, pose))
             used.push_back(m);
@@ -232,8 +232,8 @@ void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Foun
         inliers = within(limit, inliers, lens, pose);
     }
     covariance = clusteredCovariance(covariance, used, lens, pose);
-    cv::Vec3d variances;
-    cv::eigen(covariance.get_minor<3, 3>(0, 0), variances);
+    Vec3d variances;
+    eigen(covariance.get_minor<3, 3>(0, 0), variances);
     found.reason = "the pose is uncertain";
     if (!(3 * std::sqrt(variances[0]) <= MAX_BOUND * medianDistance(inCamera(pointsOf(inliers), pose))))
         return;
@@ -251,24 +251,24 @@ void findPose(std::vector<Match> all, const Map& map, const Camera& camera, Foun
 }
 
 //! Which keypoints (rows) may match which points (columns): those near where the prior has them.
-cv::Mat gate(const Features& features, const std::vector<cv::Point3d>& points, const Camera& camera,
-        const cv::Affine3d& prior)
+Mat gate(const Features& features, const std::vector<Point3d>& points, const Camera& camera,
+        const Affine3d& prior)
 {
     const double limit = std::round(GATE * std::max(camera.size.width, camera.size.height));
-    const std::vector<cv::Point2d> places = Lens(camera).project(inCamera(points, prior));
-    cv::Mat mask(int(features.pixels.size()), int(places.size()), CV_8U);
+    const std::vector<Point2d> places = Lens(camera).project(inCamera(points, prior));
+    Mat mask(int(features.pixels.size()), int(places.size()), CV_8U);
     for (int y = 0; y < mask.rows; y++)
         for (int x = 0; x < mask.cols; x++)
         {
-            const cv::Point2d way = places[size_t(x)] - features.pixels[size_t(y)];
+            const Point2d way = places[size_t(x)] - features.pixels[size_t(y)];
             mask.at<uchar>(y, x) = std::abs(way.x) < limit && std::abs(way.y) < limit ? 255 : 0;
         }
     return mask;
 }
 
-std::vector<cv::Mat> codesOf(const Map& map)
+std::vector<Mat> codesOf(const Map& map)
 {
-    std::vector<cv::Mat> codes;
+    std::vector<Mat> codes;
     for (const MapImage& image : map.images)
         codes.push_back(image.codes);
     return codes;
@@ -276,32 +276,32 @@ std::vector<cv::Mat> codesOf(const Map& map)
 
 }  // namespace
 
-double medianDistance(const std::vector<cv::Point3d>& points)
+double medianDistance(const std::vector<Point3d>& points)
 {
     std::vector<double> distances;
-    for (const cv::Point3d& p : points)
-        distances.push_back(cv::norm(p));
+    for (const Point3d& p : points)
+        distances.push_back(norm(p));
     return median(distances);
 }
 
 Finder::Finder(const Map& map, int points, bool lines)
     : map_(map), lines_(lines), iib_(describerOf(map.orbAndAkaze, points ? points : map.keypoints)),
-      matcher_(cv::iib::HierarchicalMatcher::createRecommended()), votes_(codesOf(map))
+      matcher_(HierarchicalMatcher::createRecommended()), votes_(codesOf(map))
 {
     if (lines)
         findSegments(Picture());
     if (lines && map.lines.empty())
-        CV_Error(cv::Error::StsError, "the map has no lines: make it with lines, or look for none");
+        CV_Error(Error::StsError, "the map has no lines: make it with lines, or look for none");
     for (const MapImage& image : map.images)
     {
         if (image.codes.cols != iib_->descriptorSize())
-            CV_Error(cv::Error::StsError, "the map's codes are not those of this version: make it again");
+            CV_Error(Error::StsError, "the map's codes are not those of this version: make it again");
         depths_.push_back(medianDistance(inCamera(map.seenBy(image), image.cameraFromWorld)));
     }
 }
 
 //! The images of the map nearest to a pose.
-std::vector<size_t> Finder::near(const cv::Affine3d& pose) const
+std::vector<size_t> Finder::near(const Affine3d& pose) const
 {
     std::vector<double> distances;
     for (size_t i = 0; i < depths_.size(); i++)
@@ -310,14 +310,14 @@ std::vector<size_t> Finder::near(const cv::Affine3d& pose) const
     return best(depths_.size(), NEAREST, [&](size_t a, size_t b) { return distances[a] < distances[b]; });
 }
 
-std::vector<size_t> Finder::similar(const cv::Mat& codes) const
+std::vector<size_t> Finder::similar(const Mat& codes) const
 {
     const std::vector<float> voted = votes_.vote(codes);
     std::vector<size_t> counts(voted.size());
     for (size_t k : best(counts.size(), SHORTLIST, [&](size_t a, size_t b) { return voted[a] > voted[b]; }))
         if (voted[k] > 0)
         {
-            std::vector<cv::DMatch> found;
+            std::vector<DMatch> found;
             matcher_->match(codes.rowRange(0, std::min(codes.rows, RANKING)), map_.images[k].codes, found);
             counts[k] = found.size();
         }
@@ -328,18 +328,18 @@ std::vector<size_t> Finder::similar(const cv::Mat& codes) const
     return order;
 }
 
-void Finder::locate(const Camera& camera, const cv::Affine3d* prior, Found& found) const
+void Finder::locate(const Camera& camera, const Affine3d* prior, Found& found) const
 {
     std::vector<Match> matches;
     for (size_t k : found.compared)
     {
         const MapImage& image = map_.images[k];
-        const std::vector<cv::Point3d> points = map_.seenBy(image);
-        std::vector<cv::DMatch> matched;
+        const std::vector<Point3d> points = map_.seenBy(image);
+        std::vector<DMatch> matched;
         if (!points.empty())
             matcher_->match(found.features.codes, image.codes, matched,
-                    prior ? gate(found.features, points, camera, *prior) : cv::Mat());
-        for (const cv::DMatch& m : matched)
+                    prior ? gate(found.features, points, camera, *prior) : Mat());
+        for (const DMatch& m : matched)
             matches.push_back({found.features.pixels[size_t(m.queryIdx)], points[size_t(m.trainIdx)],
                     image.sees[size_t(m.trainIdx)], m.queryIdx, int(m.distance), int(k), m.trainIdx});
     }
@@ -349,7 +349,7 @@ void Finder::locate(const Camera& camera, const cv::Affine3d* prior, Found& foun
         findPose(std::move(matches), map_, camera, found);
 }
 
-Found Finder::find(const cv::Mat& image, const Camera& camera, const cv::Affine3d* prior) const
+Found Finder::find(const Mat& image, const Camera& camera, const Affine3d* prior) const
 {
     checkImage(image, camera.size);
     const Lens checked(camera);
@@ -373,11 +373,7 @@ Found Finder::find(const cv::Mat& image, const Camera& camera, const cv::Affine3
     return found;
 }
 
-}  // namespace iib_localization
-
-using namespace iib_localization;
-
-struct cv::iib::Localizer::Impl
+struct Localizer::Impl
 {
     Impl(Map&& read, int points, bool lines)
         : map(std::move(read)), finder(map, points, lines), cameras(camerasOf(map.images))
@@ -389,23 +385,24 @@ struct cv::iib::Localizer::Impl
     const std::vector<Camera> cameras;
 };
 
-cv::iib::Localizer::Localizer(const std::string& map, int points, bool lines)
+Localizer::Localizer(const std::string& map, int points, bool lines)
     : impl_(std::make_unique<const Impl>(readMap(map), points, lines))
 {
 }
 
-cv::iib::Localizer::Localizer(const std::string& model, const ImageReader& images, int points,
+Localizer::Localizer(const std::string& model, const ImageReader& images, int points,
         const MappingReport& report, const MapOptions& options)
     : impl_(std::make_unique<const Impl>(makeMap(model, images, options, report), points, options.lines))
 {
 }
 
-cv::iib::Localizer::~Localizer() = default;
+Localizer::~Localizer() = default;
 
-const std::vector<cv::iib::Camera>& cv::iib::Localizer::cameras() const { return impl_->cameras; }
+const std::vector<Camera>& Localizer::cameras() const { return impl_->cameras; }
 
-cv::iib::Location cv::iib::Localizer::localize(
-        InputArray image, const Camera& camera, const Affine3d* prior) const
+Location Localizer::localize(InputArray image, const Camera& camera, const Affine3d* prior) const
 {
     return impl_->finder.find(image.getMat(), camera, prior);
 }
+
+}  // namespace cv::iib

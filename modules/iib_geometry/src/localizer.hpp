@@ -7,10 +7,10 @@
 #include "pose.hpp"
 #include "retrieval.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 
 //! What a Finder finds, and what of the map showed it.
-struct Found : cv::iib::Location
+struct Found : Location
 {
     Features features;
     Segments segments;             //!< if lines refine the pose
@@ -18,30 +18,30 @@ struct Found : cv::iib::Location
     std::vector<Match> agreeing;   //!< every code of the map that agrees, also several of one keypoint
 };
 
-//! Finds images in a map; what cv::iib::Localizer and MapUpdate share. Threads may share one.
+//! Finds images in a map; what Localizer and MapUpdate share. Threads may share one.
 class Finder
 {
 public:
     //! @param points keypoints that are looked for in an image; 0: as many as in the map's images.
     Finder(const Map& map, int points, bool lines);
 
-    Found find(const cv::Mat& image, const Camera& camera, const cv::Affine3d* prior) const;
+    Found find(const Mat& image, const Camera& camera, const Affine3d* prior) const;
 
 private:
-    std::vector<size_t> near(const cv::Affine3d& pose) const;
-    std::vector<size_t> similar(const cv::Mat& codes) const;
-    void locate(const Camera& camera, const cv::Affine3d* prior, Found& found) const;
+    std::vector<size_t> near(const Affine3d& pose) const;
+    std::vector<size_t> similar(const Mat& codes) const;
+    void locate(const Camera& camera, const Affine3d* prior, Found& found) const;
 
     const Map& map_;
     const bool lines_;
     std::vector<double>
             depths_;  //!< of each image of the map, how far what it sees lies; 0 if it sees nothing
-    cv::Ptr<cv::iib::IIB> iib_;
-    cv::Ptr<cv::iib::HierarchicalMatcher> matcher_;
+    Ptr<IIB> iib_;
+    Ptr<HierarchicalMatcher> matcher_;
     Retrieval votes_;
 };
 
 //! Median distance of points in a camera's axes.
-double medianDistance(const std::vector<cv::Point3d>& points);
+double medianDistance(const std::vector<Point3d>& points);
 
-}  // namespace iib_localization
+}  // namespace cv::iib

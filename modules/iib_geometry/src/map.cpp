@@ -18,14 +18,14 @@
 
 #include "../../iib/src/common/checked_file.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 namespace {
 
 namespace fs = std::filesystem;
 
 const char* const FILE_NAME = "/map.iib";
 constexpr int LINE_BYTES = 32;  // of a code of LBD
-const cv::iib::FileKind KIND = {"IIB_MAP_", 2, "a map of opencv_iib"};
+const FileKind KIND = {"IIB_MAP_", 2, "a map of opencv_iib"};
 
 //! What a folder of a map holds, and one of an earlier version; the first names tell that it is one.
 const std::vector<std::string> OWN = {"map.iib", "cameras.bin", "images.bin", "points3D.bin"};
@@ -45,8 +45,8 @@ bool isOf(const std::vector<std::string>& names, const std::string& name)
 class MapFile
 {
 public:
-    explicit MapFile(cv::iib::CheckedReader& file) : reader_(&file) {}
-    explicit MapFile(cv::iib::CheckedWriter& file) : writer_(&file) {}
+    explicit MapFile(CheckedReader& file) : reader_(&file) {}
+    explicit MapFile(CheckedWriter& file) : writer_(&file) {}
 
     template <typename T> void integer(T& value, int size)
     {
@@ -73,7 +73,7 @@ public:
         check(std::isfinite(value), "it has a NaN or infinite number");
     }
 
-    void point(cv::Point3d& p)
+    void point(Point3d& p)
     {
         for (double* value : {&p.x, &p.y, &p.z})
             real(*value);
@@ -95,7 +95,7 @@ public:
             integer(value, 1);
     }
 
-    void matrix(cv::Mat& matrix, size_t rows, size_t cols)
+    void matrix(Mat& matrix, size_t rows, size_t cols)
     {
         if (reader_)
         {
@@ -114,8 +114,8 @@ public:
     }
 
 private:
-    cv::iib::CheckedReader* const reader_ = nullptr;
-    cv::iib::CheckedWriter* const writer_ = nullptr;
+    CheckedReader* const reader_ = nullptr;
+    CheckedWriter* const writer_ = nullptr;
 };
 
 void visit(MapFile& file, Camera& camera)
@@ -132,7 +132,7 @@ void visit(MapFile& file, Camera& camera)
     {
         Lens checked(camera);
     }
-    catch (const cv::Exception& e)
+    catch (const Exception& e)
     {
         file.check(false, e.err);
     }
@@ -146,8 +146,8 @@ void visit(MapFile& file, MapImage& image, const std::vector<Camera>& cameras, s
     file.integer(number, 4);
     for (int i = 0; i < 12; i++)  // three rows
         file.real(image.cameraFromWorld.matrix.val[i]);
-    const cv::Matx33d rotation = image.cameraFromWorld.rotation();
-    file.check(number < cameras.size() && cv::norm(rotation * rotation.t() - cv::Matx33d::eye()) <= 1e-6,
+    const Matx33d rotation = image.cameraFromWorld.rotation();
+    file.check(number < cameras.size() && norm(rotation * rotation.t() - Matx33d::eye()) <= 1e-6,
             "an image has no camera or no pose");
     image.camera = cameras[number];
     file.integer(image.used, 4);
@@ -158,7 +158,7 @@ void visit(MapFile& file, MapImage& image, const std::vector<Camera>& cameras, s
     image.misses.resize(image.sees.size());
     for (size_t k = 0; k < image.sees.size(); k++)
     {
-        cv::Point2d& pixel = image.pixels[k];
+        Point2d& pixel = image.pixels[k];
         file.single(pixel.x);
         file.single(pixel.y);
         file.single(image.sizes[k]);
@@ -169,8 +169,8 @@ void visit(MapFile& file, MapImage& image, const std::vector<Camera>& cameras, s
     }
     file.bytes(image.misses);
     file.matrix(image.codes, image.sees.size(), bytes);
-    cv::Mat& picture = image.picture.pixels;
-    cv::Size size = picture.size();
+    Mat& picture = image.picture.pixels;
+    Size size = picture.size();
     file.integer(size.height, 4);
     file.integer(size.width, 4);
     file.check(!((unsigned(size.height) | unsigned(size.width)) >> 16), "an image is too large");
@@ -186,7 +186,7 @@ void visit(MapFile& file, Map& map, unsigned version)
     file.integer(map.updates, 4);
     file.integer(bytes, 4);
     file.length(map.points, 24, 8);
-    for (cv::Point3d& point : map.points)
+    for (Point3d& point : map.points)
         file.point(point);
     std::vector<Camera> cameras = camerasOf(map.images);
     file.length(cameras, 12);
@@ -238,9 +238,9 @@ int lockFolder(const fs::path& folder)
 #endif
 }
 
-std::vector<cv::Point3d> Map::seenBy(const MapImage& image) const
+std::vector<Point3d> Map::seenBy(const MapImage& image) const
 {
-    std::vector<cv::Point3d> seen;
+    std::vector<Point3d> seen;
     for (int number : image.sees)
         seen.push_back(points[size_t(number)]);
     return seen;
@@ -249,10 +249,10 @@ std::vector<cv::Point3d> Map::seenBy(const MapImage& image) const
 void Map::compact()
 {
     std::vector<int> numbers(points.size(), -1);
-    std::vector<cv::Point3d> seen;
+    std::vector<Point3d> seen;
     for (MapImage& image : images)
     {
-        cv::Mat codes(0, image.codes.cols, CV_8U);
+        Mat codes(0, image.codes.cols, CV_8U);
         size_t kept = 0;
         for (size_t k = 0; k < image.sees.size(); k++)
         {
@@ -283,12 +283,11 @@ void Map::compact()
 Map readMap(const std::string& folder)
 {
     std::error_code error;
-    if (!fs::is_regular_file(cv::iib::systemName(folder + FILE_NAME), error))
-        CV_Error(cv::Error::StsError,
-                folder + (fs::exists(cv::iib::systemName(folder + "/map.json"), error)
-                                         ? " is a map of an earlier version: make it again"
-                                         : " is no map: it has no map.iib"));
-    cv::iib::CheckedReader file(folder + FILE_NAME, KIND);
+    if (!fs::is_regular_file(systemName(folder + FILE_NAME), error))
+        CV_Error(Error::StsError, folder + (fs::exists(systemName(folder + "/map.json"), error)
+                                                           ? " is a map of an earlier version: make it again"
+                                                           : " is no map: it has no map.iib"));
+    CheckedReader file(folder + FILE_NAME, KIND);
     Map map;
     MapFile parts(file);
     visit(parts, map, file.version());
@@ -301,7 +300,7 @@ Map readMap(const std::string& folder)
 MapFolder::MapFolder(const std::string& folder) : folder_(folder)
 {
     std::error_code error;
-    const fs::path path = cv::iib::systemName(folder);
+    const fs::path path = systemName(folder);
     fs::create_directories(path, error);
     bool known = false, any = false;
     for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
@@ -310,37 +309,35 @@ MapFolder::MapFolder(const std::string& folder) : folder_(folder)
         any = true;
         known = known || isOf({OWN[0], EARLIER[0]}, name);
         if (!isOf(OWN, name) && !isOf(EARLIER, name))
-            CV_Error(
-                    cv::Error::StsError, folder + " holds " + name + " and is no map: choose another folder");
+            CV_Error(Error::StsError, folder + " holds " + name + " and is no map: choose another folder");
     }
     if (error)
-        CV_Error(cv::Error::StsError, folder + " cannot be written: " + error.message());
+        CV_Error(Error::StsError, folder + " cannot be written: " + error.message());
     if (any && !known)
-        CV_Error(cv::Error::StsError, folder + " holds a COLMAP model and is no map: choose another folder");
+        CV_Error(Error::StsError, folder + " holds a COLMAP model and is no map: choose another folder");
     lock_ = lockFolder(path);
     if (lock_ < 0)
-        CV_Error(cv::Error::StsError,
-                folder + " is being written by another process: wait until it has ended");
+        CV_Error(Error::StsError, folder + " is being written by another process: wait until it has ended");
 }
 
 MapFolder::~MapFolder() { ::close(lock_); }
 
 void MapFolder::write(const Map& map) const
 {
-    cv::iib::FileKind kind = KIND;
+    FileKind kind = KIND;
     kind.version = map.orbAndAkaze || !map.lines.empty() ? 2 : 1;  // earlier programs read what they can
-    cv::iib::CheckedWriter file(folder_ + FILE_NAME, kind);
+    CheckedWriter file(folder_ + FILE_NAME, kind);
     Map copy = map;  // since visit() also reads, it takes no constant one; matrices are shared
     MapFile parts(file);
     visit(parts, copy, kind.version);
     file.seal();
-    cv::iib::writeModel(folder_, {map.images.begin(), map.images.end()}, map.points);
+    writeModel(folder_, {map.images.begin(), map.images.end()}, map.points);
     file.commit();
     std::error_code error;
-    for (fs::directory_iterator entry(cv::iib::systemName(folder_), error), end; !error && entry != end;
+    for (fs::directory_iterator entry(systemName(folder_), error), end; !error && entry != end;
             entry.increment(error))
         if (std::count(OWN.begin(), OWN.end(), entry->path().filename().u8string()) == 0)
             fs::remove(entry->path(), error);  // of an earlier version or a killed process
 }
 
-}  // namespace iib_localization
+}  // namespace cv::iib

@@ -6,25 +6,25 @@
 #include "colmap_model.hpp"
 #include "refined.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 
 //! A straight edge in the world, directed as its segments are.
 struct MapLine
 {
-    cv::Point3d begin, end;
+    Point3d begin, end;
 };
 
 //! An image of a map; each of its keypoints sees a point, and the strongest come first.
 struct MapImage : PosedImage
 {
     std::vector<float> sizes;   //!< of its keypoints
-    cv::Mat codes;              //!< N x bytes, CV_8U
+    Mat codes;                  //!< N x bytes, CV_8U
     std::vector<uchar> misses;  //!< of each code: updates in a row that looked for it and did not find it
     uint32_t used = 0;          //!< the last update in which the image helped
     bool added = false;         //!< by an update
     Picture picture;            //!< that keypoints of other images are refined against; may be empty
     std::vector<int> lines;     //!< that the image sees
-    cv::Mat lineCodes;          //!< LBD, a row each
+    Mat lineCodes;              //!< LBD, a row each
 };
 
 //! A map, in memory as on the disk.
@@ -34,11 +34,11 @@ struct Map
     bool orbAndAkaze = false;  //!< the paper's points and descriptor
     uint32_t updates = 0;      //!< so far
     std::vector<MapImage> images;
-    std::vector<cv::Point3d> points;
+    std::vector<Point3d> points;
     std::vector<MapLine> lines;  //!< none in a map that was made without
 
     //! The points that an image's keypoints see.
-    std::vector<cv::Point3d> seenBy(const MapImage& image) const;
+    std::vector<Point3d> seenBy(const MapImage& image) const;
     //! Removes keypoints that see no point, and points that nothing sees.
     void compact();
 };
@@ -68,4 +68,4 @@ private:
     int lock_ = -1;
 };
 
-}  // namespace iib_localization
+}  // namespace cv::iib

@@ -15,7 +15,7 @@
 #include "pose.hpp"
 #include "triangulation.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 namespace {
 
 constexpr size_t NEIGHBOURS = 20;     // images that each is matched with
@@ -53,9 +53,9 @@ Pairs covisible(const std::vector<PosedImage>& images)
             others.emplace_back(-count, other);
         for (size_t other = 0; shared[i].empty() && other < images.size(); other++)
         {
-            const cv::Affine3d turn = images[i].cameraFromWorld * inverse(images[other].cameraFromWorld);
+            const Affine3d turn = images[i].cameraFromWorld * inverse(images[other].cameraFromWorld);
             if (other != i && turn.rotation()(2, 2) > .5)
-                others.emplace_back(cv::norm(turn.translation()), other);
+                others.emplace_back(norm(turn.translation()), other);
         }
         std::sort(others.begin(), others.end());
         for (size_t n = 0; n < std::min(others.size(), NEIGHBOURS); n++)
@@ -68,7 +68,7 @@ Pairs covisible(const std::vector<PosedImage>& images)
 class Steps
 {
 public:
-    Steps(size_t all, const cv::iib::MappingReport& report) : all_(all), report_(report) {}
+    Steps(size_t all, const MappingReport& report) : all_(all), report_(report) {}
 
     //! @param problem of an image that is left out, or empty.
     void step(const std::string& problem = "")
@@ -81,17 +81,16 @@ public:
 
 private:
     const size_t all_;
-    const cv::iib::MappingReport& report_;
+    const MappingReport& report_;
     size_t done_ = 0;
     std::mutex mutex_;
 };
 
-void describe(std::vector<MapImage>& images, const cv::iib::ImageReader& read,
-        const cv::Ptr<cv::iib::IIB>& iib, Steps& steps)
+void describe(std::vector<MapImage>& images, const ImageReader& read, const Ptr<IIB>& iib, Steps& steps)
 {
     inParallel(images.size(), [&](size_t i) {
         MapImage& image = images[i];
-        const cv::Mat pixels = read(image.name);
+        const Mat pixels = read(image.name);
         Features found;
         found.codes.create(0, iib->descriptorSize(), CV_8U);
         if (!pixels.empty())
@@ -100,7 +99,7 @@ void describe(std::vector<MapImage>& images, const cv::iib::ImageReader& read,
             {
                 checkImage(pixels, image.camera.size);
             }
-            catch (const cv::Exception& e)
+            catch (const Exception& e)
             {
                 CV_Error(e.code, image.name + ": " + e.err + ": give the images of which the model was made");
             }
@@ -113,13 +112,13 @@ void describe(std::vector<MapImage>& images, const cv::iib::ImageReader& read,
         steps.step(pixels.empty() ? image.name + " cannot be read: left out of the map" : "");
     });
     if (std::all_of(images.begin(), images.end(), [](const MapImage& i) { return i.pixels.empty(); }))
-        CV_Error(cv::Error::StsError, "none of the model's images can be read, or they are empty");
+        CV_Error(Error::StsError, "none of the model's images can be read, or they are empty");
 }
 
 }  // namespace
 
-Map makeMap(const std::string& model, const cv::iib::ImageReader& read, const cv::iib::MapOptions& options,
-        const cv::iib::MappingReport& report)
+Map makeMap(const std::string& model, const ImageReader& read, const MapOptions& options,
+        const MappingReport& report)
 {
     if (options.lines)
         findSegments(Picture());
@@ -137,12 +136,12 @@ Map makeMap(const std::string& model, const cv::iib::ImageReader& read, const cv
     describe(map.images, read, describerOf(options.orbAndAkaze, options.points), steps);
     const MatchedRays matched = matchPairs(map.images, pairs, [&] { steps.step(); });
     if (double(matched.fitting) <= LEAST_FITTING * double(matched.matches))
-        CV_Error(cv::Error::StsError,
-                cv::format("only %d of %d matches fit the poses: is this the model of these images?",
+        CV_Error(Error::StsError,
+                format("only %d of %d matches fit the poses: is this the model of these images?",
                         int(matched.fitting), int(matched.matches)));
     triangulate(map, matched.rays, matched.links);
     if (map.points.empty())
-        CV_Error(cv::Error::StsError, model + ": no point was seen from two places");
+        CV_Error(Error::StsError, model + ": no point was seen from two places");
     map.compact();
     if (options.lines)
     {
@@ -153,11 +152,11 @@ Map makeMap(const std::string& model, const cv::iib::ImageReader& read, const cv
     return map;
 }
 
-}  // namespace iib_localization
-
-void cv::iib::buildMap(const std::string& model, const ImageReader& images, const std::string& map,
+void buildMap(const std::string& model, const ImageReader& images, const std::string& map,
         const MapOptions& options, const MappingReport& report)
 {
-    const iib_localization::MapFolder folder(map);
-    folder.write(iib_localization::makeMap(model, images, options, report));
+    const MapFolder folder(map);
+    folder.write(makeMap(model, images, options, report));
 }
+
+}  // namespace cv::iib

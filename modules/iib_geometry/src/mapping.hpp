@@ -3,10 +3,10 @@
 
 #include "map.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 
-//! As cv::iib::buildMap does, in memory.
-Map makeMap(const std::string& model, const cv::iib::ImageReader& images, const cv::iib::MapOptions& options,
-        const cv::iib::MappingReport& report);
+//! As buildMap does, in memory.
+Map makeMap(const std::string& model, const ImageReader& images, const MapOptions& options,
+        const MappingReport& report);
 
-}  // namespace iib_localization
+}  // namespace cv::iib

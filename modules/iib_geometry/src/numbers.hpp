@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace iib_localization {
+namespace cv::iib {
 
 //! The finite numbers that a text holds, separated by commas; none if it holds anything else.
 inline std::vector<double> numbersOf(const std::string& text)
@@ -50,4 +50,4 @@ inline double median(std::vector<double> values)
     return *middle;
 }
 
-}  // namespace iib_localization
+}  // namespace cv::iib

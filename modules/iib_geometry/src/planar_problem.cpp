@@ -3,8 +3,7 @@
 
 #include "opencv2/iib/alignment.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv::iib {
 namespace {
 
 Matx33d entry(int row, int column, double value = 1)
@@ -173,5 +172,4 @@ double PlanarProblem::deviation(
     return std::sqrt(trace(place.byStep * covariance * place.byStep.t())) * unit_ * scale_;
 }
 
-}  // namespace iib
-}  // namespace cv
+}  // namespace cv::iib

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef IIB_GEOMETRY_PLANAR_PROBLEM_HPP
-#define IIB_GEOMETRY_PLANAR_PROBLEM_HPP
+#pragma once
 
 #include "robust_fit.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv::iib {
 
 /** Matches of two images between which a transform of the plane is sought (robust_fit.hpp): 3 x 3, last entry 1, mirroring
 nothing. The error of a match is the distance in the first image over the scale. */
@@ -54,7 +52,4 @@ private:
     double scale_;
 };
 
-}  // namespace iib
-}  // namespace cv
-
-#endif
+}  // namespace cv::iib

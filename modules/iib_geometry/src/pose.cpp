@@ -9,7 +9,7 @@
 #include "pose.hpp"
 #include "two_views.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 namespace {
 
 constexpr int ROUNDS = 20;
@@ -18,29 +18,29 @@ constexpr int CELLS = 4;  // a side, of what the matches span in the image
 //! A match near a pose.
 struct Linear
 {
-    cv::Vec2d error;
-    cv::Matx<double, 2, 6>
+    Vec2d error;
+    Matx<double, 2, 6>
             byPose;     //!< of where its point is seen, by the centre and a turn about the world's axes
     double weight = 0;  //!< by Cauchy's loss; 0 behind the camera
 };
 
-std::vector<Linear> linear(const std::vector<Match>& matches, const Lens& lens, const cv::Affine3d& pose)
+std::vector<Linear> linear(const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)
 {
-    const std::vector<cv::Point3d> points = pointsOf(matches);
-    std::vector<cv::Matx23d> byPoint;
-    const std::vector<cv::Point2d> mapped = lens.project(inCamera(points, pose), &byPoint);
-    const cv::Matx33d rotation = pose.rotation();
-    const cv::Vec3d centre = inverse(pose).translation();
+    const std::vector<Point3d> points = pointsOf(matches);
+    std::vector<Matx23d> byPoint;
+    const std::vector<Point2d> mapped = lens.project(inCamera(points, pose), &byPoint);
+    const Matx33d rotation = pose.rotation();
+    const Vec3d centre = inverse(pose).translation();
     std::vector<Linear> found(points.size());
     for (size_t i = 0; i < points.size(); i++)
     {
-        const cv::Point2d error = matches[i].counted * (matches[i].pixel - mapped[i]);
+        const Point2d error = matches[i].counted * (matches[i].pixel - mapped[i]);
         const double weight = 1 / (matches[i].deviation * matches[i].deviation + error.dot(error));
         if (std::isnan(weight))
             continue;
-        const cv::Matx23d byMoved =
+        const Matx23d byMoved =
                 matches[i].counted * byPoint[i] * rotation;  // of the point in the world's axes
-        const cv::Matx23d byTurn = byMoved * cv::iib::crossProduct(cv::Vec3d(points[i]) - centre);
+        const Matx23d byTurn = byMoved * crossProduct(Vec3d(points[i]) - centre);
         for (int row = 0; row < 2; row++)
             for (int column = 0; column < 3; column++)
             {
@@ -55,18 +55,18 @@ std::vector<Linear> linear(const std::vector<Match>& matches, const Lens& lens, 
 
 }  // namespace
 
-std::vector<cv::Point3d> pointsOf(const std::vector<Match>& matches)
+std::vector<Point3d> pointsOf(const std::vector<Match>& matches)
 {
-    std::vector<cv::Point3d> points;
+    std::vector<Point3d> points;
     for (const Match& m : matches)
         points.push_back(m.point);
     return points;
 }
 
-double distance(const cv::Affine3d& a, const cv::Affine3d& b, double depth)
+double distance(const Affine3d& a, const Affine3d& b, double depth)
 {
-    const cv::Affine3d turn = a * inverse(b);
-    const double way = cv::norm(inverse(a).translation() - inverse(b).translation());
+    const Affine3d turn = a * inverse(b);
+    const double way = norm(inverse(a).translation() - inverse(b).translation());
     return way / depth + std::acos(std::clamp(turn.rotation()(2, 2), -1., 1.));
 }
 
@@ -75,60 +75,57 @@ Frame::Frame(const std::vector<Match>& matches)
     std::vector<double> axes[3], distances;
     for (const Match& m : matches)
         for (int i = 0; i < 3; i++)
-            axes[i].push_back(cv::Vec3d(m.point)[i]);
+            axes[i].push_back(Vec3d(m.point)[i]);
     centre = {median(axes[0]), median(axes[1]), median(axes[2])};
     for (const Match& m : matches)
-        distances.push_back(cv::norm(cv::Vec3d(m.point) - centre));
+        distances.push_back(norm(Vec3d(m.point) - centre));
     const double typical = median(distances);
     unit = typical > 0 ? typical : 1;
 }
 
-cv::Point3d Frame::toLocal(const cv::Point3d& point) const
-{
-    return (cv::Vec3d(point) - centre) * (1 / unit);
-}
+Point3d Frame::toLocal(const Point3d& point) const { return (Vec3d(point) - centre) * (1 / unit); }
 
-cv::Affine3d Frame::toWorld(const cv::Affine3d& cameraFromLocal) const
+Affine3d Frame::toWorld(const Affine3d& cameraFromLocal) const
 {
-    const cv::Matx33d rotation = cameraFromLocal.rotation();
+    const Matx33d rotation = cameraFromLocal.rotation();
     return {rotation, cameraFromLocal.translation() * unit - rotation * centre};
 }
 
-cv::Matx66d Frame::toWorld(const cv::Matx66d& covariance) const
+Matx66d Frame::toWorld(const Matx66d& covariance) const
 {
-    cv::Matx66d scaled = covariance;
+    Matx66d scaled = covariance;
     for (int i = 0; i < 6; i++)
         for (int k = 0; k < 6; k++)
             scaled(i, k) *= (i < 3 ? unit : 1) * (k < 3 ? unit : 1);
     return scaled;
 }
 
-std::vector<cv::Point3d> inCamera(const std::vector<cv::Point3d>& points, const cv::Affine3d& pose)
+std::vector<Point3d> inCamera(const std::vector<Point3d>& points, const Affine3d& pose)
 {
-    std::vector<cv::Point3d> moved;
-    for (const cv::Point3d& p : points)
+    std::vector<Point3d> moved;
+    for (const Point3d& p : points)
         moved.push_back(pose * p);
     return moved;
 }
 
-std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens, const cv::Affine3d& pose)
+std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)
 {
-    const std::vector<cv::Point2d> mapped = lens.project(inCamera(pointsOf(matches), pose));
+    const std::vector<Point2d> mapped = lens.project(inCamera(pointsOf(matches), pose));
     std::vector<double> errors;
     for (size_t i = 0; i < matches.size(); i++)
-        errors.push_back(cv::norm(matches[i].counted * (mapped[i] - matches[i].pixel)));
+        errors.push_back(norm(matches[i].counted * (mapped[i] - matches[i].pixel)));
     return errors;
 }
 
 double deviationOf(const std::vector<double>& errors) { return median(errors) / 1.1774; }
 
-bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double limit, cv::Affine3d& pose)
+bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double limit, Affine3d& pose)
 {
-    std::vector<cv::Point2d> pixels, seen;
+    std::vector<Point2d> pixels, seen;
     for (const Match& m : matches)
         seen.push_back(m.pixel);
-    std::vector<cv::Point3d> points;
-    const std::vector<cv::Point2d> straight = lens.undistorted(seen);
+    std::vector<Point3d> points;
+    const std::vector<Point2d> straight = lens.undistorted(seen);
     for (size_t i = 0; i < matches.size(); i++)
         if (std::isfinite(straight[i].x))
         {
@@ -137,65 +134,63 @@ bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double li
         }
     if (points.size() < 4)
         return false;
-    cv::UsacParams parameters;
-    parameters.score = cv::SCORE_METHOD_MAGSAC;
+    UsacParams parameters;
+    parameters.score = SCORE_METHOD_MAGSAC;
     parameters.threshold = limit;
     parameters.confidence = .999;
     parameters.maxIterations = 10000;
-    cv::Mat matrix(lens.matrix()), rotation, translation, inliers;
-    if (!cv::solvePnPRansac(
-                points, pixels, matrix, cv::noArray(), rotation, translation, inliers, parameters))
+    Mat matrix(lens.matrix()), rotation, translation, inliers;
+    if (!solvePnPRansac(points, pixels, matrix, noArray(), rotation, translation, inliers, parameters))
         return false;
-    pose = {cv::Vec3d(rotation.ptr<double>()), cv::Vec3d(translation.ptr<double>())};
-    return cv::checkRange(cv::Mat(pose.matrix));
+    pose = {Vec3d(rotation.ptr<double>()), Vec3d(translation.ptr<double>())};
+    return checkRange(Mat(pose.matrix));
 }
 
-bool refinePose(
-        const std::vector<Match>& matches, const Lens& lens, cv::Affine3d& pose, cv::Matx66d& covariance)
+bool refinePose(const std::vector<Match>& matches, const Lens& lens, Affine3d& pose, Matx66d& covariance)
 {
     for (int round = 0; round < ROUNDS; round++)
     {
-        const cv::Matx33d rotation = pose.rotation();
-        const cv::Vec3d centre = inverse(pose).translation();
-        cv::Matx66d normal = cv::Matx66d::zeros();
-        cv::Vec6d gradient;
+        const Matx33d rotation = pose.rotation();
+        const Vec3d centre = inverse(pose).translation();
+        Matx66d normal = Matx66d::zeros();
+        Vec6d gradient;
         for (const Linear& m : linear(matches, lens, pose))
         {
             normal += m.weight * m.byPose.t() * m.byPose;
             gradient += m.weight * (m.byPose.t() * m.error);
         }
-        cv::Vec6d step;
-        if (!cv::solve(normal, gradient, step, cv::DECOMP_CHOLESKY) || !cv::checkRange(step))
+        Vec6d step;
+        if (!solve(normal, gradient, step, DECOMP_CHOLESKY) || !checkRange(step))
             return false;
-        const cv::Vec3d moved(step.val), turned(step.val + 3);
-        const cv::Matx33d next = rotation * cv::Affine3d(-turned).rotation();
+        const Vec3d moved(step.val), turned(step.val + 3);
+        const Matx33d next = rotation * Affine3d(-turned).rotation();
         pose = {next, -(next * (centre + moved))};
         bool regular = false;
-        covariance = normal.inv(cv::DECOMP_CHOLESKY, &regular);
+        covariance = normal.inv(DECOMP_CHOLESKY, &regular);
         if (!regular)
             return false;
-        if (cv::norm(turned) < 1e-8)
+        if (norm(turned) < 1e-8)
             break;
     }
     return true;
 }
 
-cv::Matx66d clusteredCovariance(const cv::Matx66d& covariance, const std::vector<Match>& matches,
-        const Lens& lens, const cv::Affine3d& pose)
+Matx66d clusteredCovariance(
+        const Matx66d& covariance, const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)
 {
     const std::vector<Linear> near = linear(matches, lens, pose);
-    std::vector<cv::Point2f> pixels;
+    std::vector<Point2f> pixels;
     for (const Match& m : matches)
         pixels.push_back(m.pixel);
-    const cv::Rect2d span = cv::boundingRect(pixels);
-    std::map<std::pair<int, int>, cv::Vec6d> pulls;  // of the cells
+    const Rect2d span = boundingRect(pixels);
+    std::map<std::pair<int, int>, Vec6d> pulls;  // of the cells
     std::vector<double> errors;
-    cv::Matx66d curvature = cv::Matx66d::zeros(), pulled = cv::Matx66d::zeros();
+    Matx66d curvature = Matx66d::zeros(), pulled = Matx66d::zeros();
     for (size_t i = 0; i < near.size(); i++)
     {
         const Linear& m = near[i];
         const double deviation = matches[i].deviation;
-        errors.push_back(cv::norm(m.error) / deviation);
+        errors.push_back(norm(m.error) / deviation);
         curvature += m.weight * m.weight * deviation * deviation * m.byPose.t() * m.byPose;
         pulls[{int(CELLS * (pixels[i].x - span.x) / span.width),
                 int(CELLS * (pixels[i].y - span.y) / span.height)}] += m.weight * (m.byPose.t() * m.error);
@@ -203,8 +198,8 @@ cv::Matx66d clusteredCovariance(const cv::Matx66d& covariance, const std::vector
     for (const auto& cell : pulls)
         pulled += cell.second * cell.second.t();
     const double scale = deviationOf(errors), cells = double(pulls.size());
-    const cv::Matx66d back = curvature.inv();
+    const Matx66d back = curvature.inv();
     return scale * scale * covariance + cells / std::max(cells - 6, 1.) * back * pulled * back;
 }
 
-}  // namespace iib_localization
+}  // namespace cv::iib

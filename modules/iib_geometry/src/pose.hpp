@@ -3,13 +3,13 @@
 
 #include "lens.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 
 //! A point of the map and where it may be seen.
 struct Match
 {
-    cv::Point2d pixel;
-    cv::Point3d point;
+    Point2d pixel;
+    Point3d point;
     int number = 0;        //!< of the point
     int keypoint = 0;      //!< the image's
     int bits = 0;          //!< in which the codes differ
@@ -17,59 +17,58 @@ struct Match
     int row = 0;           //!< of that image's codes
     double deviation = 1;  //!< of the pixel
     //! What of the pixel's error counts: all, or what is across a line.
-    cv::Matx22d counted = cv::Matx22d::eye();
+    Matx22d counted = Matx22d::eye();
 };
 
-//! Of a rigid motion. cv::Affine3d::inv() goes through an SVD, which far from the origin leaves no digit.
-inline cv::Affine3d inverse(const cv::Affine3d& pose)
+//! Of a rigid motion. Affine3d::inv() goes through an SVD, which far from the origin leaves no digit.
+inline Affine3d inverse(const Affine3d& pose)
 {
-    const cv::Matx33d back = pose.rotation().t();
+    const Matx33d back = pose.rotation().t();
     return {back, -(back * pose.translation())};
 }
 
 //! Of the cameras' centres over that of what they see, plus the angle between their directions in radians.
-double distance(const cv::Affine3d& a, const cv::Affine3d& b, double depth);
+double distance(const Affine3d& a, const Affine3d& b, double depth);
 
 //! Axes in which points lie about the origin at distances of about 1, wherever and in whatever unit they are given.
 struct Frame
 {
-    cv::Vec3d centre;
+    Vec3d centre;
     double unit = 1;
 
     explicit Frame(const std::vector<Match>& matches);
-    cv::Point3d toLocal(const cv::Point3d& point) const;
-    cv::Affine3d toWorld(const cv::Affine3d& cameraFromLocal) const;
+    Point3d toLocal(const Point3d& point) const;
+    Affine3d toWorld(const Affine3d& cameraFromLocal) const;
     //! Of the camera's centre and of a turn.
-    cv::Matx66d toWorld(const cv::Matx66d& covariance) const;
+    Matx66d toWorld(const Matx66d& covariance) const;
 };
 
 /** Camera from world that most matches agree on to `limit` pixels, not refined (USAC with MAGSAC's score). False if there is none.
 @param matches in a Frame's axes. */
-bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double limit, cv::Affine3d& pose);
+bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double limit, Affine3d& pose);
 
 /** Moves a pose to the least reprojection error with Cauchy's loss of a
 deviation, which cv::solvePnPRefineLM has not.
 @param matches in a Frame's axes.
 @param covariance of the camera's centre and of a small turn about the world's axes, for errors of the matches' deviations.
 @return false if the matches do not determine the pose. */
-bool refinePose(
-        const std::vector<Match>& matches, const Lens& lens, cv::Affine3d& pose, cv::Matx66d& covariance);
+bool refinePose(const std::vector<Match>& matches, const Lens& lens, Affine3d& pose, Matx66d& covariance);
 
 /** The covariance of a pose by the errors that its matches have, in place of those that refinePose assumed. Matches near each
 other in the image, a cluster, err together, as the map does there: the more the pulls of clusters differ, the less certain is the pose.
 @param covariance of refinePose. */
-cv::Matx66d clusteredCovariance(const cv::Matx66d& covariance, const std::vector<Match>& matches,
-        const Lens& lens, const cv::Affine3d& pose);
+Matx66d clusteredCovariance(
+        const Matx66d& covariance, const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose);
 
 //! How far each match is from where a pose has its point, in pixels; NaN behind the camera.
-std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens, const cv::Affine3d& pose);
+std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose);
 
 //! Of errors in the plane from their lengths, by their median as Rayleigh's distribution has it.
 double deviationOf(const std::vector<double>& errors);
 
-std::vector<cv::Point3d> pointsOf(const std::vector<Match>& matches);
+std::vector<Point3d> pointsOf(const std::vector<Match>& matches);
 
 //! Where a pose has points of the world, in the camera's axes.
-std::vector<cv::Point3d> inCamera(const std::vector<cv::Point3d>& points, const cv::Affine3d& pose);
+std::vector<Point3d> inCamera(const std::vector<Point3d>& points, const Affine3d& pose);
 
-}  // namespace iib_localization
+}  // namespace cv::iib

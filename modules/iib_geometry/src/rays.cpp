@@ -8,7 +8,7 @@
 #include "features.hpp"
 #include "pose.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 namespace {
 
 constexpr double MAX_ERROR = 4;  // pixels, of a match from its epipolar line
@@ -18,46 +18,45 @@ constexpr double FAR = .01;      // radians between rays that do not tell on whi
 //! Whether two rays lie in one plane with both cameras, and meet before them.
 bool fitting(const Ray& a, const Ray& b)
 {
-    const cv::Vec3d way = b.centre - a.centre, across = a.direction.cross(b.direction);
-    const cv::Vec3d planeA = way.cross(b.direction), planeB = way.cross(a.direction);
+    const Vec3d way = b.centre - a.centre, across = a.direction.cross(b.direction);
+    const Vec3d planeA = way.cross(b.direction), planeB = way.cross(a.direction);
     const double product = std::abs(a.direction.dot(planeA));
-    return a.scale * product < MAX_ERROR * cv::norm(planeA) &&
-           b.scale * product < MAX_ERROR * cv::norm(planeB) &&
-           (cv::norm(across) < FAR || (across.dot(planeA) > 0 && across.dot(planeB) > 0));
+    return a.scale * product < MAX_ERROR * norm(planeA) && b.scale * product < MAX_ERROR * norm(planeB) &&
+           (norm(across) < FAR || (across.dot(planeA) > 0 && across.dot(planeB) > 0));
 }
 
 //! Which rays of two images (rows and columns) may show the same: those in one plane with both cameras.
-cv::Mat nearEpipolar(const std::vector<Ray>& a, const std::vector<Ray>& b)
+Mat nearEpipolar(const std::vector<Ray>& a, const std::vector<Ray>& b)
 {
-    cv::Mat_<float> directions(int(a.size()), 3), planes(int(b.size()), 3);
+    Mat_<float> directions(int(a.size()), 3), planes(int(b.size()), 3);
     for (size_t i = 0; i < a.size(); i++)
-        cv::Mat(cv::Vec3f(a[i].direction)).reshape(1, 1).copyTo(directions.row(int(i)));
+        Mat(Vec3f(a[i].direction)).reshape(1, 1).copyTo(directions.row(int(i)));
     for (size_t i = 0; i < b.size(); i++)
-        cv::Mat(cv::Vec3f(cv::normalize((b[i].centre - a[0].centre).cross(b[i].direction))))
+        Mat(Vec3f(normalize((b[i].centre - a[0].centre).cross(b[i].direction))))
                 .reshape(1, 1)
                 .copyTo(planes.row(int(i)));
-    return cv::abs(directions * planes.t()) < NEAR / a[0].scale;
+    return abs(directions * planes.t()) < NEAR / a[0].scale;
 }
 
 }  // namespace
 
-double Ray::error(const cv::Vec3d& at) const
+double Ray::error(const Vec3d& at) const
 {
-    const cv::Vec3d way = at - centre;
-    return scale * std::atan2(cv::norm(way.cross(direction)), way.dot(direction));
+    const Vec3d way = at - centre;
+    return scale * std::atan2(norm(way.cross(direction)), way.dot(direction));
 }
 
 std::vector<Ray> raysOf(size_t number, const PosedImage& image)
 {
     const Lens lens(image.camera);
-    const cv::Affine3d pose = inverse(image.cameraFromWorld);
-    const cv::Matx33d toWorld = pose.rotation() * lens.matrix().inv();
+    const Affine3d pose = inverse(image.cameraFromWorld);
+    const Matx33d toWorld = pose.rotation() * lens.matrix().inv();
     std::vector<Ray> rays;
-    for (const cv::Point2d& p : lens.undistorted(image.pixels))
+    for (const Point2d& p : lens.undistorted(image.pixels))
     {
         const int keypoint = int(rays.size());
         const int point = image.sees.empty() ? -1 : image.sees[size_t(keypoint)];
-        rays.push_back({number, keypoint, pose.translation(), cv::normalize(toWorld * cv::Vec3d(p.x, p.y, 1)),
+        rays.push_back({number, keypoint, pose.translation(), normalize(toWorld * Vec3d(p.x, p.y, 1)),
                 lens.matrix()(0, 0), point});
     }
     return rays;
@@ -66,7 +65,7 @@ std::vector<Ray> raysOf(size_t number, const PosedImage& image)
 MatchedRays matchPairs(const std::vector<MapImage>& images,
         const std::vector<std::pair<size_t, size_t>>& pairs, const std::function<void()>& step)
 {
-    const cv::Ptr<cv::iib::HierarchicalMatcher> matcher = cv::iib::HierarchicalMatcher::createRecommended();
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
     MatchedRays found;
     std::set<size_t> involved;
     for (const auto& [a, b] : pairs)
@@ -83,25 +82,25 @@ MatchedRays matchPairs(const std::vector<MapImage>& images,
             pairs.size());  // of matches that the poses did not guide, and that fit
     inParallel(pairs.size(), [&](size_t n) {
         const size_t a = pairs[n].first, b = pairs[n].second;
-        const cv::Mat &codes = images[a].codes, &others = images[b].codes;
+        const Mat &codes = images[a].codes, &others = images[b].codes;
         const auto raysFrom = [&](size_t i) {
             const auto begin = found.rays.begin() + ptrdiff_t(first[i]);
             return std::vector<Ray>(begin, begin + images[i].codes.rows);
         };
-        std::vector<cv::DMatch> matches, guided;
+        std::vector<DMatch> matches, guided;
         if (!codes.empty() && !others.empty())
         {
             matcher->match(codes, others, matches);
             matcher->match(codes, others, guided, nearEpipolar(raysFrom(a), raysFrom(b)));
         }
-        const auto linkOf = [&](const cv::DMatch& m) {
+        const auto linkOf = [&](const DMatch& m) {
             return Link{m.distance, first[a] + size_t(m.queryIdx), first[b] + size_t(m.trainIdx)};
         };
-        const auto fits = [&](const cv::DMatch& m) {
+        const auto fits = [&](const DMatch& m) {
             return fitting(found.rays[linkOf(m).a], found.rays[linkOf(m).b]);
         };
         counts[n] = {matches.size(), size_t(std::count_if(matches.begin(), matches.end(), fits))};
-        for (const cv::DMatch& m : guided)
+        for (const DMatch& m : guided)
             if (fits(m))
                 links[n].push_back(linkOf(m));
         step();
@@ -115,4 +114,4 @@ MatchedRays matchPairs(const std::vector<MapImage>& images,
     return found;
 }
 
-}  // namespace iib_localization
+}  // namespace cv::iib

@@ -5,19 +5,19 @@
 
 #include "map.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 
 //! A keypoint of an image, and where it is seen from and to in the world.
 struct Ray
 {
     size_t image;
     int keypoint;
-    cv::Vec3d centre, direction;
+    Vec3d centre, direction;
     double scale;    //!< pixels a radian
     int point = -1;  //!< that the keypoint sees already
 
     //! Pixels from where the keypoint's point would be seen.
-    double error(const cv::Vec3d& at) const;
+    double error(const Vec3d& at) const;
 };
 
 //! The rays of an image's keypoints; NaN for those that its lens sees nothing at.
@@ -44,4 +44,4 @@ MatchedRays matchPairs(
         const std::vector<MapImage>& images, const std::vector<std::pair<size_t, size_t>>& pairs,
         const std::function<void()>& step = [] {});
 
-}  // namespace iib_localization
+}  // namespace cv::iib

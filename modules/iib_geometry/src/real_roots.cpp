@@ -6,8 +6,7 @@
 
 #include "opencv2/core.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv::iib {
 namespace {
 
 const int HIGHEST = 10;
@@ -88,5 +87,4 @@ int realRoots(const double* coefficients, int degree, double* roots)
     return count;
 }
 
-}  // namespace iib
-}  // namespace cv
+}  // namespace cv::iib

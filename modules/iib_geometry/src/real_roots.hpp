@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef IIB_GEOMETRY_REAL_ROOTS_HPP
-#define IIB_GEOMETRY_REAL_ROOTS_HPP
+#pragma once
 
-namespace cv {
-namespace iib {
+namespace cv::iib {
 
 /** The real roots of a polynomial of degree 1 to 10, roots of even multiplicity apart.
 @param coefficients degree + 1 numbers, the constant first
@@ -11,7 +9,4 @@ namespace iib {
 @returns the number of roots */
 int realRoots(const double* coefficients, int degree, double* roots);
 
-}  // namespace iib
-}  // namespace cv
-
-#endif
+}  // namespace cv::iib

@@ -6,16 +6,16 @@
 #include "opencv2/iib/refinement.hpp"
 #include "opencv2/imgproc.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 namespace {
 
 constexpr int LARGEST_SIDE = 1024;
 
-std::vector<cv::KeyPoint> scaled(std::vector<cv::KeyPoint> keypoints, double scale)
+std::vector<KeyPoint> scaled(std::vector<KeyPoint> keypoints, double scale)
 {
-    for (cv::KeyPoint& k : keypoints)
+    for (KeyPoint& k : keypoints)
     {
-        k.pt = cv::Point2d((k.pt.x + .5) * scale - .5, (k.pt.y + .5) * scale - .5);
+        k.pt = Point2d((k.pt.x + .5) * scale - .5, (k.pt.y + .5) * scale - .5);
         k.size = float(k.size * scale);
     }
     return keypoints;
@@ -23,41 +23,40 @@ std::vector<cv::KeyPoint> scaled(std::vector<cv::KeyPoint> keypoints, double sca
 
 }  // namespace
 
-Picture pictureOf(const cv::Mat& image)
+Picture pictureOf(const Mat& image)
 {
     Picture picture;
     if (image.channels() == 1)
         picture.pixels = image.clone();
     else
-        cv::cvtColor(image, picture.pixels, cv::COLOR_BGR2GRAY);
+        cvtColor(image, picture.pixels, COLOR_BGR2GRAY);
     const int side = std::max(image.cols, image.rows);
     if (side > LARGEST_SIDE)
     {
         picture.scale = double(LARGEST_SIDE) / side;
-        cv::resize(picture.pixels.clone(), picture.pixels, cv::Size(), picture.scale, picture.scale,
-                cv::INTER_AREA);
+        resize(picture.pixels.clone(), picture.pixels, Size(), picture.scale, picture.scale, INTER_AREA);
     }
     return picture;
 }
 
 std::vector<bool> refine(const Picture& fixed, const Picture& moved, KeypointPairs& pairs)
 {
-    std::vector<cv::DMatch> matches;
+    std::vector<DMatch> matches;
     for (size_t i = 0; i < pairs.fixed.size(); i++)
         matches.emplace_back(int(i), int(i), 0.f);
-    cv::Mat first, second, similarities;
-    cv::iib::refineMatches(fixed.pixels, scaled(pairs.fixed, fixed.scale), moved.pixels,
-            scaled(pairs.moved, moved.scale), matches, first, second, cv::noArray(), similarities);
+    Mat first, second, similarities;
+    refineMatches(fixed.pixels, scaled(pairs.fixed, fixed.scale), moved.pixels,
+            scaled(pairs.moved, moved.scale), matches, first, second, noArray(), similarities);
     std::vector<bool> found;
     for (int i = 0; i < int(matches.size()); i++)
     {
         found.push_back(similarities.at<float>(i) > 0);
-        const cv::Vec2f at = second.at<cv::Vec2f>(i);
+        const Vec2f at = second.at<Vec2f>(i);
         if (found.back())
             pairs.moved[size_t(i)].pt =
-                    cv::Point2d((at[0] + .5) / moved.scale - .5, (at[1] + .5) / moved.scale - .5);
+                    Point2d((at[0] + .5) / moved.scale - .5, (at[1] + .5) / moved.scale - .5);
     }
     return found;
 }
 
-}  // namespace iib_localization
+}  // namespace cv::iib

@@ -3,8 +3,7 @@
 
 #include "epipolar_problem.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv::iib {
 namespace {
 
 //! N x 2, CV_64F.
@@ -81,5 +80,4 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
     return true;
 }
 
-}  // namespace iib
-}  // namespace cv
+}  // namespace cv::iib

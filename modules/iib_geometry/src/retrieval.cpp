@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <random>
 
-namespace iib_localization {
+namespace cv::iib {
 namespace {
 
 constexpr int TABLES = 16;
@@ -13,7 +13,7 @@ constexpr int COARSE = 4;  // the first part of a code that bits are taken from:
 constexpr int STRONGEST = 400;     // codes an image that take part
 constexpr uint32_t FREQUENT = 64;  // of a key: what is that frequent tells nothing
 
-int participating(const cv::Mat& codes) { return std::min(codes.rows, STRONGEST); }
+int participating(const Mat& codes) { return std::min(codes.rows, STRONGEST); }
 
 }  // namespace
 
@@ -25,11 +25,11 @@ uint32_t Retrieval::keyOf(const uchar* code, const std::vector<int>& bits)
     return key;
 }
 
-Retrieval::Retrieval(const std::vector<cv::Mat>& codes) : images_(codes.size())
+Retrieval::Retrieval(const std::vector<Mat>& codes) : images_(codes.size())
 {
     size_t count = 0;
     int bytes = 0;
-    for (const cv::Mat& c : codes)
+    for (const Mat& c : codes)
     {
         count += size_t(participating(c));
         bytes = std::max(bytes, c.cols);
@@ -46,7 +46,7 @@ Retrieval::Retrieval(const std::vector<cv::Mat>& codes) : images_(codes.size())
         for (int i = 0; i < keyBits; i++)
             table.bits.push_back(int(random() % uint32_t(8 * bytes / COARSE)));
         table.begins.assign((size_t(1) << keyBits) + 1, 0);
-        for (const cv::Mat& c : codes)
+        for (const Mat& c : codes)
             for (int row = 0; row < participating(c); row++)
                 table.begins[keyOf(c.ptr(row), table.bits) + 1]++;
         for (size_t key = 1; key < table.begins.size(); key++)
@@ -60,7 +60,7 @@ Retrieval::Retrieval(const std::vector<cv::Mat>& codes) : images_(codes.size())
     }
 }
 
-std::vector<float> Retrieval::vote(const cv::Mat& codes, size_t* visited) const
+std::vector<float> Retrieval::vote(const Mat& codes, size_t* visited) const
 {
     std::vector<float> votes(images_, 0.f);
     size_t seen = 0;
@@ -80,4 +80,4 @@ std::vector<float> Retrieval::vote(const cv::Mat& codes, size_t* visited) const
     return votes;
 }
 
-}  // namespace iib_localization
+}  // namespace cv::iib

@@ -5,7 +5,7 @@
 
 #include "opencv2/core.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 
 /** Finds the images of a map that look most like another one: each of its codes votes for the images with a code that is the
 same in some bits, for several random choices of bits (locality-sensitive hashing). The more codes there are, the more
@@ -14,10 +14,10 @@ class Retrieval
 {
 public:
     //! @param codes of each image, the strongest keypoints first; may be empty.
-    explicit Retrieval(const std::vector<cv::Mat>& codes);
+    explicit Retrieval(const std::vector<Mat>& codes);
 
     //! Votes for each image. @param visited if not null: how many codes of the map were looked at.
-    std::vector<float> vote(const cv::Mat& codes, size_t* visited = nullptr) const;
+    std::vector<float> vote(const Mat& codes, size_t* visited = nullptr) const;
 
 private:
     struct Table
@@ -33,4 +33,4 @@ private:
     std::vector<Table> tables_;
 };
 
-}  // namespace iib_localization
+}  // namespace cv::iib

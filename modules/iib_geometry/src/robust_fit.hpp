@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef IIB_GEOMETRY_ROBUST_FIT_HPP
-#define IIB_GEOMETRY_ROBUST_FIT_HPP
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +8,7 @@
 
 #include "opencv2/core.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv::iib {
 
 /* Fits a model to matches many of which are wrong. Errors are divided by a scale; the loss of a match with squared error
 r^2 is Cauchy's log(1 + r^2), and from FARTHEST on that of FARTHEST: by how far a wrong match is wrong says nothing.
@@ -185,7 +183,4 @@ bool robustFit(const Problem& problem, typename Problem::Model& best, std::vecto
     return false;
 }
 
-}  // namespace iib
-}  // namespace cv
-
-#endif
+}  // namespace cv::iib

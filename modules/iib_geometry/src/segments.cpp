@@ -6,13 +6,13 @@
 #include "opencv2/line_descriptor.hpp"
 #endif
 
-namespace iib_localization {
+namespace cv::iib {
 
 Segments findSegments(const Picture& picture)
 {
     Segments segments;
 #ifdef IIB_LINE_DESCRIPTOR
-    using namespace cv::line_descriptor;
+    using namespace line_descriptor;
     // LSD looks at the image scaled by 0.8 and divides coordinates by it, as if the middle of the first pixel stayed where
     // it was; cv::resize keeps the image's corner.
     const double shift = .5 / .8 - .5, minLength = 20;
@@ -24,8 +24,7 @@ Segments findSegments(const Picture& picture)
         if (line.lineLength >= minLength)
         {
             const auto pixel = [&](float x, float y) {
-                return cv::Point2d(
-                        (x + shift + .5) / picture.scale - .5, (y + shift + .5) / picture.scale - .5);
+                return Point2d((x + shift + .5) / picture.scale - .5, (y + shift + .5) / picture.scale - .5);
             };
             segments.places.push_back(
                     {pixel(line.startPointX, line.startPointY), pixel(line.endPointX, line.endPointY)});
@@ -38,10 +37,10 @@ Segments findSegments(const Picture& picture)
     return segments;
 #else
     CV_UNUSED(picture);
-    CV_Error(cv::Error::StsNotImplemented, "lines need OpenCV's module line_descriptor, without which this "
-                                           "was built: install opencv_contrib (on Debian "
-                                           "and Ubuntu: libopencv-contrib-dev) and build again");
+    CV_Error(Error::StsNotImplemented, "lines need OpenCV's module line_descriptor, without which this "
+                                       "was built: install opencv_contrib (on Debian "
+                                       "and Ubuntu: libopencv-contrib-dev) and build again");
 #endif
 }
 
-}  // namespace iib_localization
+}  // namespace cv::iib

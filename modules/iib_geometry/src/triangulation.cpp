@@ -8,7 +8,7 @@
 
 #include "features.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 namespace {
 
 constexpr double MAX_ERROR = 4;    // pixels, of a keypoint from its point
@@ -17,30 +17,30 @@ constexpr int ROUNDS = 5;          // of a point's refinement
 
 double angleOf(const Ray& a, const Ray& b)
 {
-    return std::atan2(cv::norm(a.direction.cross(b.direction)), a.direction.dot(b.direction));
+    return std::atan2(norm(a.direction.cross(b.direction)), a.direction.dot(b.direction));
 }
 
 //! The point nearest to rays by angle, with Cauchy's loss of a pixel.
-cv::Vec3d meetingPoint(const Track& track)
+Vec3d meetingPoint(const Track& track)
 {
-    const cv::Vec3d origin = track[0].centre;  // which may lie far from the world's
-    cv::Vec3d point;
+    const Vec3d origin = track[0].centre;  // which may lie far from the world's
+    Vec3d point;
     std::vector<double> weights(track.size(), 1);
     for (int round = 0; round < ROUNDS; round++)
     {
-        cv::Matx33d normal = cv::Matx33d::zeros();
-        cv::Vec3d sum;
+        Matx33d normal = Matx33d::zeros();
+        Vec3d sum;
         for (size_t i = 0; i < track.size(); i++)
         {
-            const cv::Vec3d& along = track[i].direction;
-            const cv::Matx33d across = weights[i] / weights[0] * (cv::Matx33d::eye() - along * along.t());
+            const Vec3d& along = track[i].direction;
+            const Matx33d across = weights[i] / weights[0] * (Matx33d::eye() - along * along.t());
             normal += across;
             sum += across * (track[i].centre - origin);
         }
-        point = origin + normal.solve(sum, cv::DECOMP_LU);
+        point = origin + normal.solve(sum, DECOMP_LU);
         for (size_t i = 0; i < track.size(); i++)
         {
-            const cv::Vec3d way = point - track[i].centre;
+            const Vec3d way = point - track[i].centre;
             const double error = track[i].error(point);
             weights[i] = 1 / (way.dot(way) * (1 + error * error));
         }
@@ -141,7 +141,7 @@ void refineTracks(std::vector<Track>& tracks, std::vector<MapImage>& images)
 }
 
 //! False if too few rays agree, or look from nearly the same direction.
-bool place(Track& track, cv::Point3d& point)
+bool place(Track& track, Point3d& point)
 {
     for (; track.size() > 1;)
     {
@@ -174,7 +174,7 @@ void triangulate(Map& map, const std::vector<Ray>& rays, const std::vector<Link>
             continue;  // nothing new
         for (const Ray& ray : track)
             map.images[ray.image].sees[size_t(ray.keypoint)] = -1;
-        cv::Point3d point;
+        Point3d point;
         if (!place(track, point))
             continue;
         map.points.resize(std::max(map.points.size(), number + 1));
@@ -184,4 +184,4 @@ void triangulate(Map& map, const std::vector<Ray>& rays, const std::vector<Link>
     }
 }
 
-}  // namespace iib_localization
+}  // namespace cv::iib

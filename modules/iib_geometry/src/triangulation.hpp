@@ -3,7 +3,7 @@
 
 #include "rays.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 
 typedef std::vector<Ray> Track;
 
@@ -16,4 +16,4 @@ the reference. The rays farthest from a track's point are left out until the oth
 the same direction. */
 void triangulate(Map& map, const std::vector<Ray>& rays, const std::vector<Link>& links);
 
-}  // namespace iib_localization
+}  // namespace cv::iib

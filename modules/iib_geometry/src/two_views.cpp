@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace cv {
-namespace iib {
+namespace cv::iib {
 namespace {
 
 Vec3d row(const Matx33d& m, int r) { return Vec3d(m(r, 0), m(r, 1), m(r, 2)); }
@@ -77,5 +76,4 @@ bool inFront(const RelativePose& pose, const Point2d& first, const Point2d& seco
     return normal.dot(v.cross(pose.t)) > 0 && normal.dot(u.cross(pose.t)) > 0;
 }
 
-}  // namespace iib
-}  // namespace cv
+}  // namespace cv::iib

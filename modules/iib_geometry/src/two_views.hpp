@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#ifndef IIB_GEOMETRY_TWO_VIEWS_HPP
-#define IIB_GEOMETRY_TWO_VIEWS_HPP
+#pragma once
 
 #include "opencv2/core.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv::iib {
 
 //! From the axes of camera 1 to those of camera 2, t of length 1.
 struct RelativePose
@@ -33,7 +31,4 @@ void posesOf(const Matx33d& essential, RelativePose (&poses)[4]);
 //! Whether the point seen at `first` and `second` lies in front of both cameras.
 bool inFront(const RelativePose& pose, const Point2d& first, const Point2d& second);
 
-}  // namespace iib
-}  // namespace cv
-
-#endif
+}  // namespace cv::iib

@@ -7,7 +7,7 @@
 #include "localizer.hpp"
 #include "triangulation.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 namespace {
 
 constexpr double APART =
@@ -38,10 +38,10 @@ int countMisses(Map& map, const std::vector<Seen>& all)
     }
     for (const Seen& seen : all)
     {
-        const cv::Rect2d picture(cv::Point2d(-.5, -.5), cv::Size2d(seen.camera.size));
+        const Rect2d picture(Point2d(-.5, -.5), Size2d(seen.camera.size));
         for (size_t i : seen.found.compared)
         {
-            const std::vector<cv::Point2d> places =
+            const std::vector<Point2d> places =
                     Lens(seen.camera)
                             .project(inCamera(map.seenBy(map.images[i]), seen.found.cameraFromWorld));
             for (size_t k = 0; k < places.size(); k++)
@@ -156,11 +156,8 @@ void makeRoom(Map& map, const std::vector<const Seen*>& added)
 }
 
 }  // namespace
-}  // namespace iib_localization
 
-using namespace iib_localization;
-
-struct cv::iib::MapUpdate::Impl
+struct MapUpdate::Impl
 {
     Impl(const std::string& from, const std::string& to)
         : folder(to), map(readMap(from)), finder(map, 0, !map.lines.empty()), cameras(camerasOf(map.images))
@@ -176,16 +173,16 @@ struct cv::iib::MapUpdate::Impl
     std::vector<Seen> seen;
 };
 
-cv::iib::MapUpdate::MapUpdate(const std::string& map, const std::string& out)
+MapUpdate::MapUpdate(const std::string& map, const std::string& out)
     : impl_(std::make_unique<Impl>(map, out.empty() ? map : out))
 {
 }
 
-cv::iib::MapUpdate::~MapUpdate() = default;
+MapUpdate::~MapUpdate() = default;
 
-const std::vector<cv::iib::Camera>& cv::iib::MapUpdate::cameras() const { return impl_->cameras; }
+const std::vector<Camera>& MapUpdate::cameras() const { return impl_->cameras; }
 
-cv::iib::Location cv::iib::MapUpdate::add(const std::string& name, InputArray image, const Camera& camera)
+Location MapUpdate::add(const std::string& name, InputArray image, const Camera& camera)
 {
     {
         const std::lock_guard<std::mutex> lock(impl_->mutex);
@@ -202,7 +199,7 @@ cv::iib::Location cv::iib::MapUpdate::add(const std::string& name, InputArray im
     return found;
 }
 
-cv::iib::MapUpdate::Counts cv::iib::MapUpdate::commit()
+MapUpdate::Counts MapUpdate::commit()
 {
     Map& map = impl_->map;
     std::vector<Seen>& seen = impl_->seen;
@@ -215,7 +212,7 @@ cv::iib::MapUpdate::Counts cv::iib::MapUpdate::commit()
     counts.added = int(added.size());
     counts.dropped = countMisses(map, seen);
     const size_t first = map.images.size();
-    std::string folder = cv::format("updates/%u/", map.updates);
+    std::string folder = format("updates/%u/", map.updates);
     const auto taken = [&](const MapImage& image) {
         return image.name.compare(0, folder.size(), folder) == 0;
     };
@@ -237,3 +234,5 @@ cv::iib::MapUpdate::Counts cv::iib::MapUpdate::commit()
     impl_->folder.write(map);
     return counts;
 }
+
+}  // namespace cv::iib

@@ -6,7 +6,7 @@
 
 namespace opencv_test {
 namespace {
-using namespace iib_localization;
+using namespace cv::iib;
 
 //! Pixels of two points in cameras of 640 x 480 pixels by pycolmap 4.2.1, Camera.img_from_cam, minus half a pixel.
 TEST(Lens, of_colmaps_definitions)

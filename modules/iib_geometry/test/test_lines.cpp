@@ -6,19 +6,19 @@
 // The same file as in a build without OpenCV's module line_descriptor.
 #undef IIB_LINE_DESCRIPTOR
 namespace without_line_descriptor {
-namespace iib_localization {
-using namespace ::iib_localization;
+namespace cv {
+using namespace ::cv;
+namespace iib {
+using namespace ::cv::iib;
 Segments findSegments(const Picture&);
-}  // namespace iib_localization
+}  // namespace iib
+}  // namespace cv
 #include "../src/segments.cpp"
 }  // namespace without_line_descriptor
 
 namespace opencv_test {
 namespace {
-using namespace iib_localization;
-using cv::iib::Localizer;
-using cv::iib::Location;
-using cv::iib::MapOptions;
+using namespace cv::iib;
 
 std::string missing()
 {
@@ -170,8 +170,7 @@ typedef WallTest LinesOfMaps;
 
 TEST_F(LinesOfMaps, that_are_not_there_are_told)
 {
-    const std::string told =
-            messageOf([] { without_line_descriptor::iib_localization::findSegments(Picture()); });
+    const std::string told = messageOf([] { without_line_descriptor::cv::iib::findSegments(Picture()); });
     EXPECT_NE(std::string::npos,
             told.find("install opencv_contrib (on Debian and Ubuntu: libopencv-contrib-dev)"));
     EXPECT_EQ(missing().empty() ? "the map has no lines: make it with lines, or look for none" : told,
@@ -187,7 +186,7 @@ TEST_F(LinesOfMaps, are_on_the_wall_and_refine_poses)
     options.lines = true;
     const std::string made = folder.path("lines");
     write(model(1, 40));
-    cv::iib::buildMap(
+    buildMap(
             folder.path("sparse 0"),
             [&](const std::string& name) {
                 const int i = name[name.size() - 5] - '0';
@@ -209,7 +208,7 @@ TEST_F(LinesOfMaps, are_on_the_wall_and_refine_poses)
         EXPECT_LT(cv::norm(inverse(after.cameraFromWorld).translation() - truth.translation()), .01);
         EXPECT_LT(after.covariance(0, 0), .98 * before.covariance(0, 0));
     }
-    cv::iib::MapUpdate update(made);  // keeps them
+    MapUpdate update(made);  // keeps them
     update.add("a", posters.image(poseAt(0, -.1, 0)) * .3, CAMERA);
     update.commit();
     EXPECT_EQ(lined.lines.size(), readMap(made).lines.size());

@@ -4,9 +4,7 @@
 
 namespace opencv_test {
 namespace {
-using namespace iib_localization;
-using cv::iib::Localizer;
-using cv::iib::Location;
+using namespace cv::iib;
 
 const cv::Affine3d TRUTH = poseAt(0.1, -0.1, 0.1);
 

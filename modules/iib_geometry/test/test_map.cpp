@@ -10,7 +10,7 @@
 
 namespace opencv_test {
 namespace {
-using namespace iib_localization;
+using namespace cv::iib;
 
 Map smallMap()
 {
@@ -148,7 +148,7 @@ TEST_F(SmallMap, what_contradicts_itself_though_its_sum_is_right)
     write(smallMap());
     std::string bytes = textOf(name + "/map.iib");
     bytes[bytes.find(smallMap().images[0].name) + smallMap().images[0].name.size()] = 7;  // its camera
-    cv::iib::Fnv1a hash;
+    Fnv1a hash;
     hash.add(bytes.data(), bytes.size() - 8);
     for (size_t i = 0; i < 8; i++)
         bytes[bytes.size() - 8 + i] = char(hash.value() >> 8 * i);

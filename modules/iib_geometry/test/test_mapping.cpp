@@ -12,9 +12,7 @@
 
 namespace opencv_test {
 namespace {
-using namespace iib_localization;
-using cv::iib::Localizer;
-using cv::iib::Location;
+using namespace cv::iib;
 
 constexpr uint32_t EQUIRECTANGULAR = 17;  // COLMAP's number
 
@@ -54,10 +52,10 @@ TEST_F(Mapping, images_are_found_in_a_model)
 TEST_F(Mapping, of_points_of_orb_and_akaze)
 {
     write(model(1, 40));
-    cv::iib::MapOptions options;
+    MapOptions options;
     options.orbAndAkaze = true;
     const std::string made = folder.path("paper");
-    cv::iib::buildMap(folder.path("sparse 0"), images(), made, options);
+    buildMap(folder.path("sparse 0"), images(), made, options);
     EXPECT_TRUE(readMap(made).orbAndAkaze);
     const cv::Affine3d truth = poseAt(0.1, -0.1, 0.1);
     const Location location = Localizer(made).localize(wall.image(truth) * .5, CAMERA);
@@ -97,7 +95,7 @@ TEST_F(Mapping, a_map_on_disk_finds_what_one_in_memory_does)
 {
     write(model(1, 40));
     const std::string made = folder.path("new/map");
-    cv::iib::buildMap(folder.path("sparse 0"), images(), made);
+    buildMap(folder.path("sparse 0"), images(), made);
     const cv::Mat image = wall.image(poseAt(0.1, -0.1, 0.1));
     const Location first = Localizer(folder.path("sparse 0"), images()).localize(image, CAMERA),
                    second = Localizer(made).localize(image, CAMERA);
@@ -118,7 +116,7 @@ TEST_F(Mapping, pictures_in_the_map_make_poses_more_accurate)
 {
     write(model(1, 40));
     const std::string with = folder.path("with"), without = folder.path("without");
-    cv::iib::buildMap(folder.path("sparse 0"), images(), with);
+    buildMap(folder.path("sparse 0"), images(), with);
     Map plain = readMap(with);
     for (MapImage& image : plain.images)
         image.picture = Picture();

@@ -5,7 +5,7 @@
 
 namespace opencv_test {
 namespace {
-using namespace iib_localization;
+using namespace cv::iib;
 
 //! The codes with each bit turned over with a probability.
 cv::Mat noisy(const cv::Mat& codes, double probability, cv::RNG& random)

@@ -5,9 +5,7 @@
 
 namespace opencv_test {
 namespace {
-using namespace iib_localization;
-using cv::iib::Localizer;
-using cv::iib::MapUpdate;
+using namespace cv::iib;
 
 class Update : public WallTest
 {
@@ -58,7 +56,7 @@ TEST_F(Update, an_unknown_light_is_learnt)
     ASSERT_EQ(10u, learnt.images.size());
     EXPECT_EQ("updates/1/dusk/0.png", learnt.images[6].name);
     EXPECT_EQ(1u, learnt.updates);
-    const cv::iib::Location location = Localizer(out).localize(relit(truth, 9), CAMERA);
+    const Location location = Localizer(out).localize(relit(truth, 9), CAMERA);
     ASSERT_TRUE(location.found);
     EXPECT_GT(location.inliers, before * 5 / 4);
     EXPECT_LT(cv::norm(inverse(location.cameraFromWorld).translation() - truth.translation()), 0.01);

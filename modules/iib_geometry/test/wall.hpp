@@ -12,7 +12,8 @@
 #include "opencv2/imgproc.hpp"
 #include "pose.hpp"
 
-namespace iib_localization {
+namespace opencv_test {
+using namespace cv::iib;
 
 inline const cv::Size SIZE(320, 240);
 inline const Camera CAMERA = {"PINHOLE", SIZE, {260, 260, 160, 120}};
@@ -95,7 +96,7 @@ struct WallScene
     WallScene() : wall(1)
     {
         map.keypoints = 1000;
-        const auto iib = cv::iib::IIB::createRecommended(map.keypoints);
+        const auto iib = IIB::createRecommended(map.keypoints);
         for (int i = 0; i < 6; i++)
         {
             const cv::Affine3d pose = poseAt(0.3 * i - 0.8, 0.05 * (i % 2), 0.03 * i);
@@ -147,7 +148,7 @@ protected:
     }
 
     //! Gives the images below a folder.
-    cv::iib::ImageReader images(const std::string& below = "images") const
+    ImageReader images(const std::string& below = "images") const
     {
         return [this, below](const std::string& name) {
             const std::string path = folder.path(below + "/" + name);
@@ -201,4 +202,4 @@ protected:
     Map map;
 };
 
-}  // namespace iib_localization
+}  // namespace opencv_test
