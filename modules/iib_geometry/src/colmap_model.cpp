@@ -229,9 +229,13 @@ void writeModel(
         for (size_t k = 0; k < image.pixels.size(); k++)
         {
             const int point = k < image.sees.size() ? image.sees[k] : -1;
+            if (point >= int(points.size()))
+                CV_Error(
+                        Error::StsOutOfRange, format("a keypoint of image %s sees point %d, and there are %d",
+                                                      image.name.c_str(), point, int(points.size())));
             put(posed, image.pixels[k].x + .5, image.pixels[k].y + .5, int64_t(point < 0 ? -1 : point + 1));
             if (point >= 0)
-                put(tracks.at(size_t(point)), uint32_t(i + 1), uint32_t(k));
+                put(tracks[size_t(point)], uint32_t(i + 1), uint32_t(k));
         }
     }
     put(seen, uint64_t(points.size()));

@@ -171,6 +171,13 @@ struct MapUpdate::Impl
     std::mutex mutex;
     std::set<std::string> names;
     std::vector<Seen> seen;
+    bool committed = false;
+
+    void checkOpen() const
+    {
+        if (committed)
+            CV_Error(Error::StsError, "the update was committed already: make another MapUpdate");
+    }
 };
 
 MapUpdate::MapUpdate(const std::string& map, const std::string& out)
@@ -186,7 +193,10 @@ Location MapUpdate::add(const std::string& name, InputArray image, const Camera&
 {
     {
         const std::lock_guard<std::mutex> lock(impl_->mutex);
-        if (name.empty() || !impl_->names.insert(name).second)
+        impl_->checkOpen();
+        if (name.empty())
+            CV_Error(Error::StsBadArg, "an image of an update has no name: give it one");
+        if (!impl_->names.insert(name).second)
             CV_Error(Error::StsBadArg, "an image of the name '" + name + "' is a part of the update already");
     }
     const Found found = impl_->finder.find(image.getMat(), camera, nullptr);
@@ -201,6 +211,9 @@ Location MapUpdate::add(const std::string& name, InputArray image, const Camera&
 
 MapUpdate::Counts MapUpdate::commit()
 {
+    const std::lock_guard<std::mutex> lock(impl_->mutex);
+    impl_->checkOpen();
+    impl_->committed = true;
     Map& map = impl_->map;
     std::vector<Seen>& seen = impl_->seen;
     // The order in which threads came changes nothing.

@@ -183,6 +183,16 @@ TEST_F(SmallMap, folders_that_are_no_maps)
     EXPECT_EQ(before, textOf(name + "/map.iib"));
 }
 
+TEST_F(SmallMap, a_model_of_points_that_are_not_there)
+{
+    const MapImage image = smallMap().images[0];  // which sees points 0 and 2
+    folder.makeFolder("map");
+    EXPECT_EQ("a keypoint of image a b/0.png sees point 2, and there are 2", messageOf([&] {
+        writeModel(name, {image}, {{0, 0, 5}, {1, 0, 5}});
+    }));
+    EXPECT_FALSE(cv::utils::fs::exists(name + "/images.bin"));
+}
+
 TEST_F(SmallMap, names_in_any_language)
 {
     const std::string other = name + " \xc3\xa9\xe6\xbc\xa2\xd0\xb6";  // of no code page of Windows

@@ -129,7 +129,12 @@ TEST_F(Update, one_at_a_time)
             messageOf([&] { MapUpdate second(name); }));
     EXPECT_EQ("", messageOf([&] { MapUpdate second(name, folder.path("other")); })) << "only reads it";
     first.add("light", relit(truth, 9), CAMERA);
+    EXPECT_EQ("an image of an update has no name: give it one",
+            messageOf([&] { first.add("", relit(truth, 9), CAMERA); }));
     first.commit();
+    const std::string over = "the update was committed already: make another MapUpdate";
+    EXPECT_EQ(over, messageOf([&] { first.commit(); }));
+    EXPECT_EQ(over, messageOf([&] { first.add("more", relit(truth, 9), CAMERA); }));
     EXPECT_EQ(1u, readMap(name).updates);
 }
 

@@ -49,8 +49,9 @@ struct PosedImage
 
 /** @brief Writes a COLMAP model in binary form: `cameras.bin`, `images.bin` and `points3D.bin`, each whole or not at all.
 @param folder that is there.
-@param images with distinct names. @param points that their keypoints see.
-@throws cv::Exception for what cannot be written. */
+@param images with distinct names.
+@param points that their keypoints see.
+@throws cv::Exception for what cannot be written, and for a keypoint that sees a point which is not there. */
 CV_EXPORTS void writeModel(const std::string& folder, const std::vector<PosedImage>& images,
         const std::vector<Point3d>& points = std::vector<Point3d>());
 
@@ -172,7 +173,8 @@ public:
 
     /** @brief Localizes an image and keeps what it sees (about 0.6 MB) until commit(). Threads may call it at once.
     @param name of the image in the map, distinct among those of this update.
-    @param image, camera as Localizer::localize takes them. */
+    @param image, camera as Localizer::localize takes them.
+    @throws cv::Exception for an empty name and one that this update has already, after commit(), and as Localizer::localize. */
     Location add(const std::string& name, InputArray image, const Camera& camera);
 
     //! @brief What commit() did.
@@ -182,7 +184,8 @@ public:
         int added = 0;      //!< images, which are a part of the map now
         int dropped = 0;    //!< codes that nobody finds any more
     };
-    //! @brief Writes the map. At most once. @throws cv::Exception if it cannot be written; the old one stays then.
+    /** @brief Writes the map, once: what comes next takes another MapUpdate.
+    @throws cv::Exception if it cannot be written, when the old one stays, and if it was called before. */
     Counts commit();
 
 private:
