@@ -113,6 +113,7 @@ def _parser() -> argparse.ArgumentParser:
                           help="COLMAP's name and parameters of the camera of all images, instead of the map's or EXIF's")
     mapping.add_argument('--out', required=True, help='folder to write')
     mapping.add_argument('--points', type=int, default=2000, help='at most so many an image (%(default)s)')
+    mapping.add_argument('--orb-and-akaze', action='store_true', help="the paper's points and descriptor in place of the recommended ones")
     mapping.add_argument('--force', action='store_true', help='replace a map that is there')
     localizing.add_argument('--out', required=True, help='folder to write; older results there are replaced')
     localizing.add_argument('--pictures', action='store_true', help='write each image with the points that agree')

@@ -24,7 +24,7 @@ Location localize(const Localizer& self, const cv::Mat& image, const Camera& cam
 }
 
 void buildMap(nb::handle model, const nb::callable& read, nb::handle map, int points, bool lines,
-        const nb::callable& report)
+        bool orbAndAkaze, const nb::callable& report)
 {
     const auto image = [&read](const std::string& name) {
         nb::gil_scoped_acquire gil;
@@ -38,6 +38,7 @@ void buildMap(nb::handle model, const nb::callable& read, nb::handle map, int po
     nb::gil_scoped_release release;
     cv::iib::MapOptions options(points);
     options.lines = lines;
+    options.orbAndAkaze = orbAndAkaze;
     cv::iib::buildMap(from, image, to, options, step);
 }
 
@@ -46,6 +47,23 @@ void writeModel(nb::handle folder, const std::vector<PosedImage>& images)
     const std::string to = pathOf(folder);
     nb::gil_scoped_release release;
     cv::iib::writeModel(to, images);
+}
+
+//! @param readings rows of nanoseconds, rate and force, CV_64F.
+std::vector<std::optional<cv::Affine3d>> smoothPoses(const std::vector<int64_t>& times,
+        std::vector<Location> images, const cv::Mat& readings, const cv::Affine3d& imuFromCamera)
+{
+    std::vector<cv::iib::ImuReading> all;
+    for (int i = 0; i < readings.rows; i++)
+    {
+        const double* const row = readings.ptr<double>(i);
+        all.push_back({int64(row[0]), cv::Vec3d(row + 1), cv::Vec3d(row + 4)});
+    }
+    cv::iib::smoothPoses({times.begin(), times.end()}, images, all, imuFromCamera);
+    std::vector<std::optional<cv::Affine3d>> poses;
+    for (const Location& image : images)
+        poses.push_back(image.found ? std::make_optional(image.cameraFromWorld) : std::nullopt);
+    return poses;
 }
 
 std::tuple<int, int, int> commit(MapUpdate& self)
@@ -110,6 +128,7 @@ void bindLocalization(nb::module_& m)
             .def("commit", &commit, WithoutGil());
     m.def("buildMap", &buildMap);
     m.def("writeModel", &writeModel);
+    m.def("smoothPoses", &smoothPoses, WithoutGil());
 }
 
 }  // namespace iib_python

@@ -14,7 +14,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import _core
-from opencv_iib.localization import Camera, Localizer, build, update
+from opencv_iib.localization import Camera, Localizer, build, smooth_poses, update
 from opencv_iib.localization import maps, run as runs
 from opencv_iib.localization.folders import new_folder
 from support import REPOSITORY, Commands, cv2, files_end_at, optional, run_command, seconds_until_interrupt, steps_meanwhile, texture
@@ -165,6 +165,29 @@ class Localization(Commands):
         nothing = localizer.localize(np.zeros((HEIGHT, WIDTH), np.uint8), CAMERA)
         self.assertEqual((nothing.cam_from_world, nothing.covariance, nothing.inliers), (None, None, 0))
         self.assertRegex(nothing.reason, 'too few')
+
+    def test_an_imu_gives_poses_to_images_that_tell_nothing(self):
+        localizer = Localizer(self.map)
+        location, nothing = (localizer.localize(image, CAMERA) for image in (self.grey(), np.zeros((HEIGHT, WIDTH), np.uint8)))
+        times = [8_500_000_000 + 500_000_000 * i for i in range(6)]
+        own = location.cam_from_world
+        readings = np.zeros((1001, 7))  # of a camera that stands still
+        readings[:, 0], readings[:, 4:] = 8e9 + 5e6 * np.arange(1001), own[:3, :3] @ [0, -9.81, 0]
+        locations = [location, nothing, *[location] * 4]
+        for found in smooth_poses(np.array(times), locations, readings):
+            np.testing.assert_allclose(found, own, atol=1e-3)
+        self.assertEqual([pose is None for pose in smooth_poses(times, locations, readings[:0])], [False, True, *[False] * 4])
+        for text, wrong in (('M x 7', (times, locations, readings[:, 1:])), ('M x 7', (times, locations, readings * np.nan)),
+                            ('and rise', (times[::-1], locations, readings)), ('5 times of 6', (times[1:], locations, readings)),
+                            ('an integer', ([.5] * 6, locations, readings)), ('a pose is', (times, locations, readings, [1]))):
+            with self.assertRaisesRegex((TypeError, ValueError, opencv_iib.error), text):
+                smooth_poses(*wrong)
+
+    def test_maps_of_the_papers_points(self):
+        made = self.path('paper')
+        status, _, errors = run_command('map', '--model', self.model, '--images', self.images, '--out', made, '--orb-and-akaze')
+        self.assertEqual(status, 0, errors)
+        self.check(Localizer(made).localize(self.grey(), CAMERA))
 
     def test_the_gil_is_released(self):
         localizer, image = Localizer(self.map, 400), self.grey()

@@ -12,13 +12,10 @@
 
 #include "common/command_line.hpp"
 #include "images.hpp"
-#include "lens.hpp"
 #include "new_folder.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
-#include "pose.hpp"
 #include "progress.hpp"
-#include "smoother.hpp"
 #include "trajectory.hpp"
 
 namespace {
@@ -70,8 +67,9 @@ void writePicture(
 {
     cv::Mat picture;
     cv::cvtColor(grey, picture, cv::COLOR_GRAY2BGR);
-    const std::vector<cv::Point2d> mapped =
-            camera.project(inCamera(location.points, location.cameraFromWorld));
+    std::vector<cv::Point3d> points;
+    cv::transform(location.points, points, location.cameraFromWorld.matrix.get_minor<3, 4>(0, 0));
+    const std::vector<cv::Point2d> mapped = camera.project(points);
     for (size_t i = 0; i < mapped.size(); i++)
     {
         cv::line(picture, location.pixels[i], mapped[i], {0, 0, 255});
@@ -98,7 +96,7 @@ Location localize(const Localizer& localizer, const cv::Mat& grey, const Camera&
         return localizer.localize(grey, camera, prior);
     cv::Mat small;
     cv::resize(grey, small, cv::Size(), scale, scale, cv::INTER_AREA);
-    Location location = localizer.localize(small, scaled(camera, scale, small.size()), prior);
+    Location location = localizer.localize(small, camera.resized(small.size()), prior);
     for (cv::Point2d& pixel : location.pixels)  // whose first one has its centre at 0
         pixel = (pixel + cv::Point2d(.5, .5)) / scale - cv::Point2d(.5, .5);
     return location;
@@ -140,7 +138,7 @@ int stream(const Localizer& localizer, const std::vector<Camera>& cameras, int m
         else
             location = locate(localizer, cameras, readImage(path), maxSize, last ? &*last : nullptr, camera);
         if (location.found)
-            std::cout << trajectoryLine(path, inverse(location.cameraFromWorld));
+            std::cout << trajectoryLine(path, location.cameraFromWorld);
         else
             std::cout << "# " << path << ": " << location.reason << "\n";
         if (!(std::cout << std::flush))
@@ -248,7 +246,7 @@ int run(const iib_tools::CommandLine& line)
 
     NewFolder results(
             line.text("out"), {"frames.csv", "trajectory.txt", "matches/", "matches/*/", "matches/*.png"});
-    std::vector<VisualFrame> frames(names.size());
+    std::vector<Location> locations(names.size());
     std::vector<std::string> rows(names.size());
     Progress progress("localizing", names.size());
     // Several images at once: the steps of one leave most threads idle.
@@ -257,31 +255,26 @@ int run(const iib_tools::CommandLine& line)
         {
             const cv::Mat grey = readImage(folder + "/" + names[i]);
             Camera camera;
-            const Location location = locate(localizer, cameras, grey, maxSize, nullptr, camera);
-            if (imu)
-                frames[i].nanoseconds = times[i];
-            if (location.found)
-                frames[i].pose = inverse(location.cameraFromWorld);
-            frames[i].covariance = location.covariance;
+            Location location = locate(localizer, cameras, grey, maxSize, nullptr, camera);
             rows[i] = csvRow(names[i], location);
             if (line.has("pictures") && location.found)
                 writePicture(results.path() + "/matches/" + names[i] + ".png", grey, location, camera);
+            location.pixels.clear();
+            location.points.clear();
+            locations[i] = location;
             progress.step();
         }
     });
     std::string table = CSV_HEADER, trajectory = "# name tx ty tz qx qy qz qw\n";
     for (const std::string& row : rows)
         table += row;
-    std::vector<std::optional<cv::Affine3d>> poses;
-    for (const VisualFrame& frame : frames)
-        poses.push_back(frame.pose);
     if (imu)
-        poses = smooth(frames, readings, imuFromCamera);
+        smoothPoses(times, locations, readings, imuFromCamera);
     size_t found = 0;
     for (size_t i = 0; i < names.size(); i++)
-        if (poses[i])
+        if (locations[i].found)
         {
-            trajectory += trajectoryLine(withoutExtension(names[i]), *poses[i]);
+            trajectory += trajectoryLine(withoutExtension(names[i]), locations[i].cameraFromWorld);
             found++;
         }
     write(results.path() + "/frames.csv", table);

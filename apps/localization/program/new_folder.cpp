@@ -4,13 +4,14 @@
 
 #include <fcntl.h>
 #include <fnmatch.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "map.hpp"
+#include "opencv2/core.hpp"
 
 namespace iib_localization {
 namespace {
@@ -72,8 +73,8 @@ NewFolder::NewFolder(const std::string& target, const std::vector<std::string>& 
         if (fs::exists(target_))
             checkContents(target_, ownFiles);
         fs::create_directories(partial_);
-        lock_ = cv::iib::lockFolder(partial_);
-        if (lock_ < 0)
+        lock_ = ::open(partial_.c_str(), O_RDONLY | O_CLOEXEC);
+        if (::flock(lock_, LOCK_EX | LOCK_NB) != 0)
             fail(target + " is being written by another process: wait until it has ended");
         for (const auto& entry : fs::directory_iterator(partial_))
             fs::remove_all(entry.path());

@@ -4,26 +4,50 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 
-#include "numbers.hpp"
 #include "opencv2/core/quaternion.hpp"
 
 namespace iib_localization {
 namespace {
 
-using cv::iib::numbersOf;
-using cv::iib::shortest;
-
 constexpr double MAX_LEVER = 1000;           // metres from an IMU to its camera
 constexpr int64_t MAX_TIME = int64_t(4e18);  // nanoseconds: differences of times must not overflow
 
+//! The finite numbers that a text holds, separated by commas; none if it holds anything else.
+std::vector<double> numbersOf(const std::string& text)
+{
+    std::vector<double> values;
+    for (const char* at = text.c_str();; at++)
+    {
+        char* end = nullptr;
+        values.push_back(std::strtod(at, &end));
+        if (end == at || !std::isfinite(values.back()) || (*end != ',' && end != text.c_str() + text.size()))
+            return {};
+        if (*end == '\0')
+            return values;
+        at = end;
+    }
+}
+
+//! The decimal of the fewest digits, 15 at least but for zeros, that reads back as the same number.
+std::string shortest(double value)
+{
+    std::string text;
+    for (int digits = 15; digits <= 17 && (text.empty() || std::strtod(text.c_str(), nullptr) != value);
+            digits++)
+        text = cv::format("%.*g", digits, value);
+    return text;
+}
+
 }  // namespace
 
-std::string trajectoryLine(const std::string& name, const cv::Affine3d& worldFromCamera)
+std::string trajectoryLine(const std::string& name, const cv::Affine3d& cameraFromWorld)
 {
-    const cv::Quatd q = cv::Quatd::createFromRotMat(worldFromCamera.rotation());
-    const cv::Vec3d t = worldFromCamera.translation();
+    const cv::Matx33d turn = cameraFromWorld.rotation().t();
+    const cv::Quatd q = cv::Quatd::createFromRotMat(turn);
+    const cv::Vec3d t = -(turn * cameraFromWorld.translation());
     std::string line = name;
     for (double v : {t[0], t[1], t[2], q.x, q.y, q.z, q.w})
         line += " " + shortest(v);
@@ -58,12 +82,12 @@ std::optional<int64_t> nanoseconds(const std::string& name)
     return std::stoll(whole) * 1000000000 + std::stoll((fraction + "000000000").substr(0, 9));
 }
 
-std::vector<ImuReading> readImu(const std::string& path)
+std::vector<cv::iib::ImuReading> readImu(const std::string& path)
 {
     std::ifstream stream(path);
     if (!stream || stream.peek() == EOF)
         CV_Error(cv::Error::StsError, path + " cannot be opened, or is empty");
-    std::vector<ImuReading> readings;
+    std::vector<cv::iib::ImuReading> readings;
     int number = 0;
     for (std::string line; std::getline(stream, line);)
     {

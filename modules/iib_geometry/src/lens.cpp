@@ -3,9 +3,10 @@
 #include "lens.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
-
-#include "numbers.hpp"
+#include <locale>
+#include <sstream>
 
 namespace cv::iib {
 namespace {
@@ -39,6 +40,22 @@ const Model MODELS[] = {{"SIMPLE_PINHOLE", 1, 0, STRAIGHT}, {"PINHOLE", 2, 0, ST
         {"FISHEYE", 2, 0, FISHEYE}, {"EUCM", 2, 2, UNIFIED}};
 constexpr double MAX_RATIO = 1000;  // of a focal length and the longer side
 constexpr int ROUNDS = 50;
+
+//! The finite numbers that a text holds, separated by commas; none if it holds anything else.
+std::vector<double> numbersOf(const std::string& text)
+{
+    std::istringstream stream(text);  // no std::from_chars: before macOS 26 it reads no numbers with a point
+    stream.imbue(std::locale::classic());
+    std::vector<double> values;
+    do
+    {
+        double value = 0;
+        if (!(stream >> std::noskipws >> value) || !std::isfinite(value))
+            return {};
+        values.push_back(value);
+    } while (stream.get() == ',');
+    return stream.eof() ? values : std::vector<double>();
+}
 
 [[noreturn]] void fail(const std::string& what) { CV_Error(Error::StsBadArg, what); }
 
@@ -90,15 +107,6 @@ size_t parametersOf(const std::string& model)
 {
     const int number = modelNumber(model);
     return number < 0 ? 0 : MODELS[number].focals + 2 + MODELS[number].others;
-}
-
-Camera scaled(const Camera& camera, double scale, const Size& size)
-{
-    Camera small = camera;
-    small.size = size;
-    for (size_t i = 0; i < modelOf(camera).focals + 2; i++)
-        small.parameters[i] *= scale;
-    return small;
 }
 
 Lens::Lens(const Camera& camera)
@@ -215,6 +223,15 @@ Camera Camera::parse(const std::string& text)
 std::vector<Point2d> Camera::project(const std::vector<Point3d>& points) const
 {
     return Lens(*this).project(points);
+}
+
+Camera Camera::resized(const Size& to) const
+{
+    Camera small = *this;
+    small.size = to;
+    for (size_t i = 0; i < modelOf(*this).focals + 2; i++)
+        small.parameters[i] *= double(std::max(to.width, to.height)) / std::max(size.width, size.height);
+    return small;
 }
 
 }  // namespace cv::iib

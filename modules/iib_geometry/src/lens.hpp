@@ -41,9 +41,6 @@ inline size_t indexOf(const Camera& camera, const std::vector<Camera>& cameras)
     }) - cameras.begin());
 }
 
-//! The camera of an image that was reduced to a size by a scale.
-Camera scaled(const Camera& camera, double scale, const Size& size);
-
 //! COLMAP's number of a camera model, or -1; of a number its name, or the number.
 int modelNumber(const std::string& name);
 std::string modelName(uint32_t number);

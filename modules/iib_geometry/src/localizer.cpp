@@ -10,7 +10,6 @@
 #include <set>
 
 #include "mapping.hpp"
-#include "numbers.hpp"
 
 namespace cv::iib {
 namespace {

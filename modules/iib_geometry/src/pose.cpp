@@ -2,9 +2,9 @@
 
 #include "precomp.hpp"
 
+#include <algorithm>
 #include <map>
 
-#include "numbers.hpp"
 #include "opencv2/imgproc.hpp"
 #include "pose.hpp"
 #include "two_views.hpp"
@@ -61,6 +61,15 @@ std::vector<Point3d> pointsOf(const std::vector<Match>& matches)
     for (const Match& m : matches)
         points.push_back(m.point);
     return points;
+}
+
+double median(std::vector<double> values)
+{
+    if (values.empty())
+        return 0;
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
 }
 
 double distance(const Affine3d& a, const Affine3d& b, double depth)

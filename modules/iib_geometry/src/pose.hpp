@@ -27,6 +27,9 @@ inline Affine3d inverse(const Affine3d& pose)
     return {back, -(back * pose.translation())};
 }
 
+//! Of one number or more; of none, 0.
+double median(std::vector<double> values);
+
 //! Of the cameras' centres over that of what they see, plus the angle between their directions in radians.
 double distance(const Affine3d& a, const Affine3d& b, double depth);
 

@@ -57,7 +57,7 @@ TEST(Lens, of_colmaps_definitions)
         const Camera camera = Camera::parse(c.camera);
         const Lens lens(camera);
         const std::vector<cv::Point2d> seen = camera.project(points),
-                                       half = scaled(camera, .5, {320, 240}).project(points);
+                                       half = camera.resized({320, 240}).project(points);
         for (size_t i = 0; i < 2; i++)
         {
             EXPECT_NEAR(c.seen[2 * i], seen[i].x, 1e-8);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "numbers.hpp"
 #include "wall.hpp"
 
 namespace opencv_test {

@@ -2,5 +2,6 @@
 from opencv_iib.localization.localizer import Camera, Localizer, Location
 from opencv_iib.localization.maps import build, update
 from opencv_iib.localization.run import find_camera, localize_images
+from opencv_iib.localization.smoothing import smooth_poses
 
-__all__ = ['Camera', 'Localizer', 'Location', 'build', 'find_camera', 'localize_images', 'update']
+__all__ = ['Camera', 'Localizer', 'Location', 'build', 'find_camera', 'localize_images', 'smooth_poses', 'update']

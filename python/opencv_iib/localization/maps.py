@@ -25,7 +25,8 @@ def _count(file: str) -> int:
 
 
 def build(model: str, images: str, out: str, points: int = 2000, workers: Optional[int] = None, force: bool = False,
-          log: Callable[[str], None] = lambda line: print(line, file=sys.stderr), lines: bool = False) -> dict[str, int]:
+          log: Callable[[str], None] = lambda line: print(line, file=sys.stderr), lines: bool = False,
+          orb_and_akaze: bool = False) -> dict[str, int]:
     """Finds and describes points in the images of a COLMAP model, triangulates them with its poses, and writes a map.
 
     :param model: folder of a model, binary or text; its poses and cameras are taken as they are, in any unit.
@@ -36,6 +37,7 @@ def build(model: str, images: str, out: str, points: int = 2000, workers: Option
     :param force: replace a map that is there. Who reads it meanwhile gets the old one or the new one.
     :param log: told of each image that cannot be read; the map is made without it.
     :param lines: look for straight edges too, see Localizer.
+    :param orb_and_akaze: the paper's points and descriptor in place of the recommended ones; images are then looked for by them.
     :return: counts of images and points.
     :raises FileExistsError: if there is a map and force is not set.
     :raises FileNotFoundError: naming an image that is missing.
@@ -73,7 +75,7 @@ def build(model: str, images: str, out: str, points: int = 2000, workers: Option
     with ThreadPoolExecutor(1) as pool:  # not in this thread, which Ctrl-C reaches
         try:
             _core.setNumThreads(thread_count(workers))
-            pool.submit(_core.buildMap, model, read, target, points, lines, report).result()
+            pool.submit(_core.buildMap, model, read, target, points, lines, orb_and_akaze, report).result()
         finally:
             stop.set()
             _core.setNumThreads(threads)

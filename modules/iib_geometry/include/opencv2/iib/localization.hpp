@@ -35,6 +35,10 @@ struct CV_EXPORTS Camera
     @return pixels; here and below the centre of the first pixel is (0, 0). NaN for points that are not before the camera.
     @throws cv::Exception (StsBadArg) for a camera with an unknown model, or parameters that the model does not have. */
     std::vector<Point2d> project(const std::vector<Point3d>& points) const;
+
+    /** @brief The camera of images that were resized to a size of the same shape, as cv::resize does.
+    @throws cv::Exception as project(). */
+    Camera resized(const Size& to) const;
 };
 
 //! @brief An image of a COLMAP model.
@@ -150,6 +154,28 @@ private:
     struct Impl;
     std::unique_ptr<const Impl> impl_;
 };
+
+//! @brief What an inertial measurement unit (IMU) tells, in its axes.
+struct ImuReading
+{
+    int64 nanoseconds;
+    Vec3d rate;   //!< radians a second
+    Vec3d force;  //!< m/s^2: acceleration without gravity's
+};
+
+/** @brief Smooths the poses of a camera's images by the readings of an IMU that moves with it.
+
+A Kalman filter forwards and the smoother of Rauch, Tung and Striebel backwards; gravity's direction and the IMU's biases are
+found from the first poses. Images without a pose get one too, if they come after one with a pose, by three seconds at most. Where
+the readings have a gap, or the poses contradict gravity, the images' own poses stay.
+@param times of the images, nanoseconds, rising.
+@param images what Localizer::localize found of each, in a map in metres. Of those that get a pose `found`, `reason` and
+`cameraFromWorld` are set; the rest, the covariance too, stays that of the image alone.
+@param readings in the order of their times, on the images' clock.
+@param imuFromCamera where the camera is in the IMU's axes (EuRoC's `T_BS`).
+@throws cv::Exception for other numbers of times and images, times that do not rise, and readings that are not finite. */
+CV_EXPORTS void smoothPoses(const std::vector<int64>& times, std::vector<Location>& images,
+        const std::vector<ImuReading>& readings, const Affine3d& imuFromCamera = Affine3d());
 
 /** @brief Adds to a map what images see in their light.
 

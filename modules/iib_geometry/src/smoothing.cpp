@@ -1,29 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "smoother.hpp"
+#include "opencv2/iib/localization.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "pose.hpp"
 #include "two_views.hpp"
 
-namespace iib_localization {
+namespace cv::iib {
 namespace {
-
-using cv::iib::crossProduct;
-using cv::iib::inverse;
 
 // Noise densities of a good MEMS sensor (EuRoC's sensor.yaml), twice as large for what the model leaves out.
 constexpr double RATE_NOISE = 2 * 1.7e-4;              // rad/s/sqrt(Hz)
 constexpr double FORCE_NOISE = 2 * 2.0e-3;             // m/s^2/sqrt(Hz)
 constexpr double RATE_WALK = 1e-4, FORCE_WALK = 2e-3;  // of the biases in a second
-constexpr int64_t MAX_GAP = 100000000,
-                  MAX_ALONE = int64_t(3e9);           // nanoseconds: between readings, without an image
+constexpr int64 MAX_GAP = 100000000,
+                MAX_ALONE = int64(3e9);  // nanoseconds: between readings, without an image
+constexpr int64 MAX_TIME = int64(4e18);
 constexpr size_t FIRST_FRAMES = 8, LEAST_FRAMES = 4;  // with poses, that the start is found from
 constexpr double GRAVITY = 9.81;                      // m/s^2
 constexpr double TOGETHER = 5;        // points of the map err together: variances are so many times as large
 constexpr double MAX_SQUARED = 16.8;  // of six standard normal numbers: one in a hundred is larger
+
+//! What an image tells of the IMU.
+struct ImuFrame
+{
+    int64 nanoseconds;
+    std::optional<Affine3d> pose;  //!< world from IMU
+    Matx66d covariance;
+};
 
 //! Places of an error's parts: turn about the world's axes, position, velocity, biases of rate and force, gravity.
 enum Part
@@ -36,50 +43,49 @@ enum Part
     DOWN = 15,
     SIZE = 18
 };
-typedef cv::Vec<double, SIZE> Error;
-typedef cv::Matx<double, SIZE, SIZE> Square;
+typedef Vec<double, SIZE> Errors;
+typedef Matx<double, SIZE, SIZE> Square;
 
 struct State
 {
-    cv::Matx33d rotation = cv::Matx33d::eye();  // world from IMU
-    cv::Vec3d position, velocity, rate, force, gravity;
+    Matx33d rotation = Matx33d::eye();  // world from IMU
+    Vec3d position, velocity, rate, force, gravity;
 };
 
-cv::Matx33d turnBy(const cv::Vec3d& vector) { return cv::Affine3d(vector).rotation(); }
+Matx33d turnBy(const Vec3d& vector) { return Affine3d(vector).rotation(); }
 
-void setBlock(Square& matrix, int row, int column, const cv::Matx33d& block)
+void setBlock(Square& matrix, int row, int column, const Matx33d& block)
 {
     for (int y = 0; y < 3; y++)
         for (int x = 0; x < 3; x++)
             matrix(row + y, column + x) = block(y, x);
 }
 
-cv::Vec3d part(const Error& error, int begin) { return cv::Vec3d(error.val + begin); }
+Vec3d part(const Errors& error, int begin) { return Vec3d(error.val + begin); }
 
-State plus(const State& s, const Error& e)
+State plus(const State& s, const Errors& e)
 {
     return {turnBy(part(e, TURN)) * s.rotation, s.position + part(e, POSITION),
             s.velocity + part(e, VELOCITY), s.rate + part(e, RATE), s.force + part(e, FORCE),
             s.gravity + part(e, DOWN)};
 }
 
-Error minus(const State& a, const State& b)
+Errors minus(const State& a, const State& b)
 {
-    Error e;
-    const cv::Vec3d parts[] = {cv::Affine3d(a.rotation * b.rotation.t(), cv::Vec3d()).rvec(),
-            a.position - b.position, a.velocity - b.velocity, a.rate - b.rate, a.force - b.force,
-            a.gravity - b.gravity};
+    Errors e;
+    const Vec3d parts[] = {Affine3d(a.rotation * b.rotation.t(), Vec3d()).rvec(), a.position - b.position,
+            a.velocity - b.velocity, a.rate - b.rate, a.force - b.force, a.gravity - b.gravity};
     for (int i = 0; i < SIZE; i++)
         e[i] = parts[i / 3][i % 3];
     return e;
 }
 
 //! Moves a state by a reading that holds for dt seconds; `change` gets how errors change.
-void move(State& s, const cv::Vec3d& rate, const cv::Vec3d& force, double dt, Square& change)
+void move(State& s, const Vec3d& rate, const Vec3d& force, double dt, Square& change)
 {
-    const cv::Vec3d turn = (rate - s.rate) * dt;
-    const cv::Matx33d middle = s.rotation * turnBy(turn / 2), one = cv::Matx33d::eye();
-    const cv::Vec3d felt = middle * (force - s.force);
+    const Vec3d turn = (rate - s.rate) * dt;
+    const Matx33d middle = s.rotation * turnBy(turn / 2), one = Matx33d::eye();
+    const Vec3d felt = middle * (force - s.force);
     change = Square::eye();
     setBlock(change, TURN, RATE, -dt * middle);
     setBlock(change, POSITION, TURN, -dt * dt / 2 * crossProduct(felt));
@@ -89,7 +95,7 @@ void move(State& s, const cv::Vec3d& rate, const cv::Vec3d& force, double dt, Sq
     setBlock(change, VELOCITY, TURN, -dt * crossProduct(felt));
     setBlock(change, VELOCITY, FORCE, -dt * middle);
     setBlock(change, VELOCITY, DOWN, dt * one);
-    const cv::Vec3d acceleration = felt + s.gravity;
+    const Vec3d acceleration = felt + s.gravity;
     s.position += s.velocity * dt + acceleration * (dt * dt / 2);
     s.velocity += acceleration * dt;
     s.rotation = s.rotation * turnBy(turn);
@@ -97,18 +103,18 @@ void move(State& s, const cv::Vec3d& rate, const cv::Vec3d& force, double dt, Sq
 
 /** Moves a state and its covariance from one time to another; readings are linear between their times. False if they do not
 reach that far or have a gap. @param change how errors change on the way. */
-bool follow(const std::vector<ImuReading>& readings, int64_t from, int64_t to, State& state,
-        Square& covariance, Square& change)
+bool follow(const std::vector<ImuReading>& readings, int64 from, int64 to, State& state, Square& covariance,
+        Square& change)
 {
     change = Square::eye();
     if (readings.empty() || readings.front().nanoseconds > from || readings.back().nanoseconds < to)
         return false;
-    const auto later = [](int64_t time, const ImuReading& r) { return time < r.nanoseconds; };
+    const auto later = [](int64 time, const ImuReading& r) { return time < r.nanoseconds; };
     auto next = std::upper_bound(readings.begin(), readings.end(), from, later);
-    for (int64_t now = from; now < to; ++next)
+    for (int64 now = from; now < to; ++next)
     {
         const ImuReading &a = *(next - 1), &b = *next;
-        const int64_t end = std::min(to, b.nanoseconds);
+        const int64 end = std::min(to, b.nanoseconds);
         if (b.nanoseconds - a.nanoseconds > MAX_GAP)
             return false;
         // the mean over the step of what is linear is its value in the middle
@@ -139,15 +145,15 @@ struct Step
 };
 
 //! Takes a measured pose into a state: position and turn about the world's axes with their covariance.
-void update(const cv::Affine3d& pose, const cv::Matx66d& measured, State& state, Square& covariance)
+void update(const Affine3d& pose, const Matx66d& measured, State& state, Square& covariance)
 {
     State seen = state;
     seen.rotation = pose.rotation();
     seen.position = pose.translation();
-    const Error difference = minus(seen, state);
-    cv::Matx66d sum;
-    cv::Matx<double, SIZE, 6> columns;
-    cv::Vec6d offset;
+    const Errors difference = minus(seen, state);
+    Matx66d sum;
+    Matx<double, SIZE, 6> columns;
+    Vec6d offset;
     const auto place = [](int i) {
         return i < 3 ? POSITION + i : TURN + i - 3;
     };  // in the order of `measured`
@@ -159,11 +165,11 @@ void update(const cv::Affine3d& pose, const cv::Matx66d& measured, State& state,
         for (int k = 0; k < 6; k++)
             sum(i, k) = covariance(place(i), place(k)) + TOGETHER * measured(i, k);
     }
-    cv::Matx66d inverse = sum.inv(cv::DECOMP_CHOLESKY);
+    Matx66d inverse = sum.inv(DECOMP_CHOLESKY);
     // A pose that is too far off counts as little as it takes to be likely.
     if (const double squared = offset.dot(inverse * offset); squared > MAX_SQUARED)
         inverse *= MAX_SQUARED / squared;
-    const cv::Matx<double, SIZE, 6> gain = columns * inverse;
+    const Matx<double, SIZE, 6> gain = columns * inverse;
     state = plus(state, gain * offset);
     covariance -= gain * columns.t();
     covariance = .5 * (covariance + covariance.t());
@@ -171,14 +177,14 @@ void update(const cv::Affine3d& pose, const cv::Matx66d& measured, State& state,
 
 /** Gravity and the first velocity, by linear least squares: rotations are known, and positions and velocities are linear in
 both. */
-bool findStart(const std::vector<int64_t>& times, const std::vector<cv::Affine3d>& poses,
+bool findStart(const std::vector<int64>& times, const std::vector<Affine3d>& poses,
         const std::vector<ImuReading>& readings, State& start)
 {
     const int n = int(times.size());
-    cv::Mat a(6 * (n - 1), 3 * n + 3, CV_64F, cv::Scalar(0)), b(6 * (n - 1), 1, CV_64F), x;
+    Mat a(6 * (n - 1), 3 * n + 3, CV_64F, Scalar(0)), b(6 * (n - 1), 1, CV_64F), x;
     for (int i = 0; i + 1 < n; i++)
     {
-        const cv::Affine3d &from = poses[size_t(i)], &to = poses[size_t(i) + 1];
+        const Affine3d &from = poses[size_t(i)], &to = poses[size_t(i) + 1];
         State moved;  // without gravity and velocity
         moved.rotation = from.rotation();
         moved.position = from.translation();
@@ -198,22 +204,22 @@ bool findStart(const std::vector<int64_t>& times, const std::vector<cv::Affine3d
             b.at<double>(row + 3) = moved.velocity[axis];
         }
     }
-    if (!cv::solve(a, b, x, cv::DECOMP_SVD))
+    if (!solve(a, b, x, DECOMP_SVD))
         return false;
-    start.velocity = cv::Vec3d(x.ptr<double>(0));
-    start.gravity = cv::Vec3d(x.ptr<double>(3 * n));
+    start.velocity = Vec3d(x.ptr<double>(0));
+    start.gravity = Vec3d(x.ptr<double>(3 * n));
     // far from what it should be, the poses are wrong, or the IMU has other axes
-    const double length = cv::norm(start.gravity);
+    const double length = norm(start.gravity);
     start.gravity *= GRAVITY / length;
     return std::abs(length - GRAVITY) <= 2;
 }
 
 //! Smooths frames from `first` on, which has a pose; poses are those of the IMU. Returns where it had to stop.
-size_t smoothRun(const std::vector<VisualFrame>& frames, const std::vector<ImuReading>& readings,
-        size_t first, std::vector<std::optional<cv::Affine3d>>& poses)
+size_t smoothRun(const std::vector<ImuFrame>& frames, const std::vector<ImuReading>& readings, size_t first,
+        std::vector<std::optional<Affine3d>>& poses)
 {
-    std::vector<int64_t> times;
-    std::vector<cv::Affine3d> seen;
+    std::vector<int64> times;
+    std::vector<Affine3d> seen;
     for (size_t i = first; i < frames.size() && seen.size() < FIRST_FRAMES; i++)
         if (frames[i].pose)
         {
@@ -231,7 +237,7 @@ size_t smoothRun(const std::vector<VisualFrame>& frames, const std::vector<ImuRe
         step.covariance(i, i) = ofParts[i / 3] * ofParts[i / 3];
     update(seen[0], frames[first].covariance, step.state, step.covariance);
     std::vector<Step> steps = {step};
-    int64_t last = frames[first].nanoseconds;
+    int64 last = frames[first].nanoseconds;
     for (size_t i = first + 1; i < frames.size() && frames[i].nanoseconds - last <= MAX_ALONE; i++)
     {
         if (!follow(readings, frames[i - 1].nanoseconds, frames[i].nanoseconds, step.state, step.covariance,
@@ -253,45 +259,68 @@ size_t smoothRun(const std::vector<VisualFrame>& frames, const std::vector<ImuRe
         {
             const Step& next = steps[i + 1];
             const Square gain =
-                    steps[i].covariance * next.change.t() * next.expectedCovariance.inv(cv::DECOMP_CHOLESKY);
+                    steps[i].covariance * next.change.t() * next.expectedCovariance.inv(DECOMP_CHOLESKY);
             state = plus(state, gain * minus(next.state, next.expected));
         }
-        poses[first + i] = cv::Affine3d(state.rotation, state.position);
+        poses[first + i] = Affine3d(state.rotation, state.position);
     }
     return first + steps.size();
 }
 
-//! A frame's pose as the IMU's.
-VisualFrame imuFrame(const VisualFrame& frame, const cv::Affine3d& cameraFromImu)
+//! Where the image's pose has the IMU.
+ImuFrame imuFrame(int64 time, const Location& image, const Affine3d& cameraFromImu)
 {
-    VisualFrame moved = frame;
-    if (!frame.pose)
-        return moved;
-    moved.pose = *frame.pose * cameraFromImu;
-    const cv::Matx33d lever = -crossProduct(frame.pose->rotation() * cameraFromImu.translation());
-    cv::Matx66d byCamera = cv::Matx66d::eye();
+    if (!image.found)
+        return {time, std::nullopt, {}};
+    const Affine3d camera = inverse(image.cameraFromWorld);
+    const Matx33d lever = -crossProduct(camera.rotation() * cameraFromImu.translation());
+    Matx66d byCamera = Matx66d::eye();
     for (int y = 0; y < 3; y++)
         for (int x = 0; x < 3; x++)
             byCamera(y, 3 + x) = lever(y, x);
-    moved.covariance = byCamera * frame.covariance * byCamera.t();
-    return moved;
+    return {time, camera * cameraFromImu, byCamera * image.covariance * byCamera.t()};
+}
+
+//! Also that their differences do not overflow.
+void checkTimes(const std::vector<int64>& times, const char* what)
+{
+    for (size_t i = 0; i < times.size(); i++)
+        if (std::abs(times[i]) > MAX_TIME || (i > 0 && times[i] <= times[i - 1]))
+            CV_Error(Error::StsBadArg,
+                    format("%s %d has the time %s: times are nanoseconds, of at most 19 digits, and rise",
+                            what, int(i), std::to_string(times[i]).c_str()));
 }
 
 }  // namespace
 
-std::vector<std::optional<cv::Affine3d>> smooth(const std::vector<VisualFrame>& frames,
-        const std::vector<ImuReading>& readings, const cv::Affine3d& imuFromCamera)
+void smoothPoses(const std::vector<int64>& times, std::vector<Location>& images,
+        const std::vector<ImuReading>& readings, const Affine3d& imuFromCamera)
 {
-    std::vector<VisualFrame> moved;
-    for (const VisualFrame& frame : frames)
-        moved.push_back(imuFrame(frame, inverse(imuFromCamera)));
-    std::vector<std::optional<cv::Affine3d>> poses(frames.size());
+    if (times.size() != images.size())
+        CV_Error(Error::StsUnmatchedSizes,
+                format("there are %d times of %d images", int(times.size()), int(images.size())));
+    checkTimes(times, "image");
+    std::vector<int64> measured;
+    for (const ImuReading& reading : readings)
+    {
+        measured.push_back(reading.nanoseconds);
+        if (!checkRange(reading.rate) || !checkRange(reading.force))
+            CV_Error(Error::StsBadArg, "a reading of the IMU is not finite");
+    }
+    checkTimes(measured, "reading");
+    std::vector<ImuFrame> frames;
+    for (size_t i = 0; i < images.size(); i++)
+        frames.push_back(imuFrame(times[i], images[i], inverse(imuFromCamera)));
+    std::vector<std::optional<Affine3d>> poses(frames.size());
     for (size_t i = 0; i < frames.size();)
-        i = moved[i].pose ? smoothRun(moved, readings, i, poses) : i + 1;
-    for (std::optional<cv::Affine3d>& pose : poses)
-        if (pose)
-            pose = *pose * imuFromCamera;
-    return poses;
+        i = frames[i].pose ? smoothRun(frames, readings, i, poses) : i + 1;
+    for (size_t i = 0; i < images.size(); i++)
+        if (poses[i])
+        {
+            images[i].found = true;
+            images[i].reason = "";
+            images[i].cameraFromWorld = inverse(*poses[i] * imuFromCamera);
+        }
 }
 
-}  // namespace iib_localization
+}  // namespace cv::iib

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <random>
+
+#include "opencv2/iib_geometry.hpp"
+#include "opencv2/ts.hpp"
+#include "test_folder.hpp"
+
+namespace opencv_test {
+namespace {
+using namespace cv::iib;
+
+const cv::Vec3d GRAVITY(0, 9.81 * 0.8, 9.81 * 0.6);  // no axis of the world
+const cv::Vec3d RATE_BIAS(0.003, -0.002, 0.004), FORCE_BIAS(0.03, -0.02, 0.04);
+
+//! A smooth path of the IMU, as a function of seconds.
+cv::Affine3d poseAt(double t)
+{
+    const cv::Matx33d turn = cv::Affine3d(cv::Vec3d(0, 0.3 * std::sin(0.9 * t), 0)).rotation() *
+                             cv::Affine3d(cv::Vec3d(0.1 * std::sin(1.7 * t), 0, 0)).rotation();
+    return {turn, cv::Vec3d(0.5 * std::sin(0.8 * t), 0.1 * std::sin(2 * t), 1.2 * t + 0.2 * std::sin(t))};
+}
+
+std::vector<ImuReading> readingsUntil(double seconds)
+{
+    std::vector<ImuReading> readings;
+    const double h = 1e-4;
+    for (int64 time = 0; time <= int64(seconds * 1e9); time += 5000000)
+    {
+        const double t = double(time) * 1e-9;
+        const cv::Affine3d before = poseAt(t - h), now = poseAt(t), after = poseAt(t + h);
+        const cv::Vec3d turn = cv::Affine3d(before.rotation().t() * after.rotation()).rvec();
+        const cv::Vec3d acceleration =
+                (before.translation() - 2 * now.translation() + after.translation()) / (h * h);
+        readings.push_back({time, turn / (2 * h) + RATE_BIAS,
+                now.rotation().t() * (acceleration - GRAVITY) + FORCE_BIAS});
+    }
+    return readings;
+}
+
+//! Images and their times.
+struct Drive
+{
+    std::vector<int64> times;
+    std::vector<Location> images;
+
+    void forget(size_t from, size_t to)
+    {
+        for (size_t i = from; i < to; i++)
+            images[i].found = false;
+    }
+
+    //! But for every fourth.
+    void forgetMost()
+    {
+        for (size_t i = 0; i < images.size(); i += 4)
+            forget(i + 1, std::min(i + 4, images.size()));
+    }
+
+    std::vector<Location> smoothed(const std::vector<ImuReading>& readings,
+            const cv::Affine3d& imuFromCamera = cv::Affine3d::Identity()) const
+    {
+        std::vector<Location> result = images;
+        smoothPoses(times, result, readings, imuFromCamera);
+        return result;
+    }
+
+    //! Metres; a kilometre without a pose.
+    double errorOf(size_t i, const Location& image,
+            const cv::Affine3d& imuFromCamera = cv::Affine3d::Identity()) const
+    {
+        const cv::Affine3d imu = (imuFromCamera * image.cameraFromWorld).inv();
+        return image.found ? cv::norm(imu.translation() - poseAt(double(times[i]) * 1e-9).translation())
+                           : 1000;
+    }
+
+    double meanError(const std::vector<Location>& found,
+            const cv::Affine3d& imuFromCamera = cv::Affine3d::Identity()) const
+    {
+        double sum = 0;
+        for (size_t i = 0; i < found.size(); i++)
+            sum += errorOf(i, found[i], imuFromCamera);
+        return sum / double(found.size());
+    }
+};
+
+//! Images half a second apart with poses about a centimetre and a tenth of a degree off.
+Drive driveOf(double seconds, const cv::Affine3d& imuFromCamera = cv::Affine3d::Identity())
+{
+    std::mt19937 random(1);
+    std::normal_distribution<double> metres(0, 0.006), radians(0, 0.0015);
+    Drive drive;
+    for (int64 time = 0; time <= int64(seconds * 1e9); time += 500000000)
+    {
+        const cv::Affine3d truth = poseAt(double(time) * 1e-9) * imuFromCamera;
+        const cv::Vec3d moved(metres(random), metres(random), metres(random));
+        const cv::Vec3d turned(radians(random), radians(random), radians(random));
+        Location image;
+        image.found = true;
+        image.cameraFromWorld =
+                cv::Affine3d(cv::Affine3d(turned).rotation() * truth.rotation(), truth.translation() + moved)
+                        .inv();
+        for (int i = 0; i < 6; i++)  // points of the map err together: told as less than it is
+            image.covariance(i, i) = (i < 3 ? 0.006 * 0.006 : 0.0015 * 0.0015) / 5;
+        drive.times.push_back(time);
+        drive.images.push_back(image);
+    }
+    return drive;
+}
+
+TEST(Smoothing, images_without_a_pose_get_one)
+{
+    Drive drive = driveOf(14);
+    drive.forgetMost();
+    drive.images[1].reason = "too few matches";
+    const std::vector<Location> found = drive.smoothed(readingsUntil(14));
+    EXPECT_LT(drive.meanError(found), 0.03);
+    EXPECT_EQ("", found[1].reason);
+}
+
+TEST(Smoothing, images_and_imu_are_better_than_images)
+{
+    const Drive drive = driveOf(14);
+    EXPECT_LT(drive.meanError(drive.smoothed(readingsUntil(14))), 0.7 * drive.meanError(drive.images));
+}
+
+TEST(Smoothing, no_pose_long_after_the_last_image_nor_before_the_first)
+{
+    Drive drive = driveOf(14);
+    drive.forget(0, 1);
+    drive.forget(12, drive.images.size());
+    const std::vector<Location> found = drive.smoothed(readingsUntil(14));
+    EXPECT_FALSE(found[0].found);
+    EXPECT_LT(drive.errorOf(13, found[13]), 0.05);
+    EXPECT_TRUE(found[17].found) << "three seconds after the last image";
+    EXPECT_FALSE(found[18].found);
+}
+
+TEST(Smoothing, no_pose_across_a_gap_of_the_readings)
+{
+    std::vector<ImuReading> readings = readingsUntil(14);
+    readings.erase(readings.begin() + 1220, readings.begin() + 1260);  // 0.2 seconds, after 6.1
+    Drive drive = driveOf(14);
+    drive.forget(12, drive.images.size());
+    const std::vector<Location> found = drive.smoothed(readings);
+    EXPECT_TRUE(found[12].found) << "at 6 seconds";
+    EXPECT_FALSE(found[13].found);
+}
+
+TEST(Smoothing, without_readings_the_images_poses_stay)
+{
+    Drive drive = driveOf(4);
+    drive.forget(3, 4);
+    const std::vector<Location> found = drive.smoothed({});
+    for (size_t i = 0; i < found.size(); i++)
+        EXPECT_NEAR(drive.errorOf(i, drive.images[i]), drive.errorOf(i, found[i]), 1e-12);
+}
+
+TEST(Smoothing, the_camera_is_elsewhere_on_the_imu)
+{
+    const cv::Affine3d imuFromCamera(cv::Vec3d(1.2, -1.1, 1.3), cv::Vec3d(0.3, -0.2, 0.5));
+    Drive drive = driveOf(14, imuFromCamera);
+    drive.forgetMost();
+    const std::vector<ImuReading> readings = readingsUntil(14);
+    EXPECT_LT(drive.meanError(drive.smoothed(readings, imuFromCamera), imuFromCamera), 0.03);
+    EXPECT_GT(drive.meanError(drive.smoothed(readings), imuFromCamera), 0.1);
+}
+
+TEST(Smoothing, a_wrong_pose_counts_little)
+{
+    Drive drive = driveOf(14);
+    cv::Affine3d& wrong = drive.images[12].cameraFromWorld;
+    wrong = wrong.translate(wrong.rotation() * cv::Vec3d(-.8, 0, 0));
+    EXPECT_GT(drive.errorOf(12, drive.images[12]), .7);
+    EXPECT_LT(drive.errorOf(12, drive.smoothed(readingsUntil(14))[12]), 0.1);
+}
+
+TEST(Smoothing, refuses_what_has_no_order)
+{
+    Drive drive = driveOf(2);
+    std::vector<ImuReading> readings = readingsUntil(2);
+    const auto error = [&] { return messageOf([&] { drive.smoothed(readings); }); };
+    readings[3].force[1] = NAN;
+    EXPECT_EQ("a reading of the IMU is not finite", error());
+    readings[3] = readings[2];
+    EXPECT_EQ("reading 3 has the time 10000000: times are nanoseconds, of at most 19 digits, and rise",
+            error());
+    drive.times[1] = int64(5e18);
+    EXPECT_EQ("image 1 has the time 5000000000000000000: times are nanoseconds, of at most 19 digits, and "
+              "rise",
+            error());
+    drive.times.pop_back();
+    EXPECT_EQ("there are 4 times of 5 images", error());
+}
+
+}  // namespace
+}  // namespace opencv_test

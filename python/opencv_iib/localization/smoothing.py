@@ -1,0 +1,34 @@
+"""Poses of images, smoothed by an IMU."""
+from __future__ import annotations
+
+from typing import Any, Optional, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from opencv_iib import _core
+from opencv_iib._arguments import integers
+from opencv_iib.localization.localizer import Location, as_pose
+
+MAX_TIME = 4e18  #: nanoseconds
+
+
+def smooth_poses(times: Sequence[Any], locations: Sequence[Location], readings: ArrayLike,
+                 imu_from_camera: ArrayLike = np.eye(4)) -> list[Optional[NDArray[np.float64]]]:
+    """Smooths poses by the readings of an IMU that moves with the camera, as ``cv::iib::smoothPoses``.
+
+    Images without a pose get one too, if they come after one with a pose, by three seconds at most; gravity's direction and
+    the IMU's biases are found from the first poses.
+
+    :param times: of the images, nanoseconds, rising.
+    :param locations: what Localizer.localize found of each, in a map in metres.
+    :param readings: M x 7: nanoseconds, rad/s about x, y, z and m/s^2 along them, acceleration without gravity's, in the IMU's
+        axes, as ``numpy.loadtxt('imu.csv', delimiter=',')`` reads EuRoC's file; on the images' clock.
+    :param imu_from_camera: where the camera is in the IMU's axes (EuRoC's ``T_BS``), 4 x 4 or 3 x 4.
+    :return: of each image camera from world, 4 x 4, or None.
+    :raises opencv_iib.error: for times that do not rise.
+    """
+    rows = np.ascontiguousarray(readings, np.float64)
+    if rows.ndim != 2 or rows.shape[1] != 7 or not np.isfinite(rows).all() or np.abs(rows).max(initial=0) > MAX_TIME:
+        raise ValueError(f'readings are M x 7 finite numbers: nanoseconds, rate and force, not {rows.shape}')
+    return _core.smoothPoses(integers(times, 'times', 64), list(locations), rows, as_pose(imu_from_camera))
