@@ -1,22 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "features.hpp"
-#include "lines.hpp"
-#include "map.hpp"
-#include "pose.hpp"
+#include "pose_search.hpp"
 #include "retrieval.hpp"
 
 namespace cv::iib {
-
-//! What a Finder finds, and what of the map showed it.
-struct Found : Location
-{
-    Features features;
-    Segments segments;             //!< if lines refine the pose
-    std::vector<size_t> compared;  //!< images of the map
-    std::vector<Match> agreeing;   //!< every code of the map that agrees, also several of one keypoint
-};
 
 //! Finds images in a map; what Localizer and MapUpdate share. Threads may share one.
 class Finder
@@ -40,8 +28,5 @@ private:
     Ptr<HierarchicalMatcher> matcher_;
     Retrieval votes_;
 };
-
-//! Median distance of points in a camera's axes.
-double medianDistance(const std::vector<Point3d>& points);
 
 }  // namespace cv::iib

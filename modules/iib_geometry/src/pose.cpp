@@ -126,6 +126,25 @@ std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens
     return errors;
 }
 
+std::vector<Match> within(
+        double limit, const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)
+{
+    const std::vector<double> errors = errorsOf(matches, lens, pose);
+    std::vector<Match> inliers;
+    for (size_t i = 0; i < matches.size(); i++)
+        if (errors[i] < limit)  // not NaN, behind the camera
+            inliers.push_back(matches[i]);
+    return inliers;
+}
+
+double medianDistance(const std::vector<Point3d>& points)
+{
+    std::vector<double> distances;
+    for (const Point3d& p : points)
+        distances.push_back(norm(p));
+    return median(distances);
+}
+
 double deviationOf(const std::vector<double>& errors) { return median(errors) / 1.1774; }
 
 bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double limit, Affine3d& pose)

@@ -10,12 +10,13 @@ struct Match
 {
     Point2d pixel;
     Point3d point;
-    int number = 0;        //!< of the point
-    int keypoint = 0;      //!< the image's
-    int bits = 0;          //!< in which the codes differ
-    int view = 0;          //!< image of the map that sees the point so
-    int row = 0;           //!< of that image's codes
-    double deviation = 1;  //!< of the pixel
+    int number = 0;             //!< of the point
+    int keypoint = 0;           //!< the image's
+    int bits = 0;               //!< in which the codes differ
+    int view = 0;               //!< image of the map that sees the point so
+    int row = 0;                //!< of that image's codes
+    Vec2f sizes = Vec2f(1, 1);  //!< at which that image and this one see it; their ratio counts
+    double deviation = 1;       //!< of the pixel
     //! What of the pixel's error counts: all, or what is across a line.
     Matx22d counted = Matx22d::eye();
 };
@@ -65,6 +66,13 @@ Matx66d clusteredCovariance(
 
 //! How far each match is from where a pose has its point, in pixels; NaN behind the camera.
 std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose);
+
+//! The matches within so many pixels of where a pose has their points.
+std::vector<Match> within(
+        double limit, const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose);
+
+//! Median distance of points in a camera's axes.
+double medianDistance(const std::vector<Point3d>& points);
 
 //! Of errors in the plane from their lengths, by their median as Rayleigh's distribution has it.
 double deviationOf(const std::vector<double>& errors);

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "looks.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+
+namespace cv::iib {
+namespace {
+
+// Pixels: deviation of a keypoint that refineMatches placed, with that of its point, before it is learned and at least.
+constexpr double REFINED = .3, LEAST_REFINED = .03;
+constexpr double MAX_RATIO = 3;  // of the sizes at which two images see a point
+
+}  // namespace
+
+std::vector<bool> refineAgainstViews(
+        std::vector<Match>& matches, const Map& map, const Picture& picture, size_t least)
+{
+    std::map<int, std::vector<size_t>> byView;
+    for (size_t i = 0; i < matches.size(); i++)
+        byView[matches[i].view].push_back(i);
+    std::vector<bool> moved(matches.size());
+    for (const auto& [view, numbers] : byView)
+    {
+        const MapImage& image = map.images[size_t(view)];
+        if (numbers.size() < least || image.picture.pixels.empty())
+            continue;
+        KeypointPairs pairs;
+        for (size_t i : numbers)
+        {
+            const Match& m = matches[i];
+            pairs.fixed.emplace_back(image.pixels[size_t(m.row)], m.sizes[0]);
+            pairs.moved.emplace_back(m.pixel, m.sizes[1]);
+        }
+        const std::vector<bool> placed = refine(image.picture, picture, pairs);
+        for (size_t k = 0; k < numbers.size(); k++)
+            if (placed[k])
+            {
+                matches[numbers[k]].pixel = pairs.moved[k].pt;
+                matches[numbers[k]].deviation = REFINED;
+                moved[numbers[k]] = true;
+            }
+    }
+    return moved;
+}
+
+std::vector<Match> seenAlong(const Map& map, const std::vector<size_t>& views, const Picture& picture,
+        const Lens& lens, const Frame& frame, const Affine3d& pose)
+{
+    const Rect2d inside(Point2d(), Size2d(picture.pixels.size()) / picture.scale);
+    std::map<int, std::pair<double, Match>> best;  // of a point: logarithm of the ratio of sizes, place
+    for (size_t view : views)
+    {
+        const MapImage& image = map.images[view];
+        const double zoom = lens.matrix()(0, 0) / Lens(image.camera).matrix()(0, 0);
+        std::vector<Point3d> points = map.seenBy(image);
+        const std::vector<Point3d> there = inCamera(points, image.cameraFromWorld);
+        for (Point3d& p : points)
+            p = frame.toLocal(p);
+        const std::vector<Point3d> here = inCamera(points, pose);
+        const std::vector<Point2d> places = lens.project(here);
+        for (size_t row = 0; row < places.size(); row++)
+        {
+            const double ratio = std::log(zoom * there[row].z / (here[row].z * frame.unit));
+            if (!inside.contains(places[row]) || !(std::abs(ratio) < std::log(MAX_RATIO)))
+                continue;
+            const int number = image.sees[row];
+            const auto known = best.find(number);
+            if (known == best.end() || std::abs(ratio) < std::abs(known->second.first))
+                best[number] = {ratio, {places[row], points[row], number, -1, 0, int(view), int(row),
+                                               Vec2f(1, float(std::exp(ratio)))}};
+        }
+    }
+    std::vector<Match> matches, seen;
+    for (size_t view : views)
+        for (const auto& [number, sight] : best)
+            if (sight.second.view == int(view))
+                matches.push_back(sight.second);
+    const std::vector<bool> moved = refineAgainstViews(matches, map, picture, 1);
+    for (size_t i = 0; i < matches.size(); i++)
+        if (moved[i])
+            seen.push_back(matches[i]);
+    return seen;
+}
+
+void learnDeviation(std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)
+{
+    const auto refined = [](const Match& m) { return m.deviation != Match().deviation; };
+    std::vector<Match> some;
+    std::copy_if(matches.begin(), matches.end(), std::back_inserter(some), refined);
+    const double deviation = std::max(LEAST_REFINED, deviationOf(errorsOf(some, lens, pose)));
+    for (Match& m : matches)
+        if (refined(m))
+            m.deviation = deviation;
+}
+
+}  // namespace cv::iib

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "map.hpp"
+#include "pose.hpp"
+
+namespace cv::iib {
+
+/** Moves the pixels of matches to where a picture shows what the map's images show, and gives those the deviation REFINED.
+@param least matches with an image of the map, for which it is done.
+@return which were moved. */
+std::vector<bool> refineAgainstViews(
+        std::vector<Match>& matches, const Map& map, const Picture& picture, size_t least);
+
+/** Points of some of a map's images near where a pose has them: where the picture shows what that image does which sees the
+point at the most similar size.
+@param views these images. @param frame of the pose. */
+std::vector<Match> seenAlong(const Map& map, const std::vector<size_t>& views, const Picture& picture,
+        const Lens& lens, const Frame& frame, const Affine3d& pose);
+
+//! Gives the matches that were refined the deviation that they have of where a pose has their points.
+void learnDeviation(std::vector<Match>& matches, const Lens& lens, const Affine3d& pose);
+
+}  // namespace cv::iib

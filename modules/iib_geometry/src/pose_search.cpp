@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "pose_search.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "looks.hpp"
+
+namespace cv::iib {
+namespace {
+
+constexpr size_t SUREST = 300;  // matches of the fewest different bits, among which the pose is looked for
+constexpr double MAX_ERROR =
+        .006;  // of the longer side: an inlier's distance from where the pose has its point
+constexpr double LEAST_SHARE = .02;  // in an unknown place a few matches agree by chance
+constexpr double MAX_BOUND = .1;     // of the distance to the points: three standard deviations of the place
+constexpr size_t WORTH = 16;         // matches with an image of the map, for which they are refined
+constexpr int ROUNDS = 4;            // what agrees is looked for again after each refinement
+constexpr int LOOKS = 8;             // at most, along the pose
+constexpr double STILL = .1;         // pixels that what is seen moves by a look, if it is the last one
+constexpr int LINE_ROUNDS = 2;       // lines are looked for again after the first refinement by them
+
+//! Keypoints that match a point in several images of the map count once.
+std::vector<Match> withoutRepeated(std::vector<Match> matches)
+{
+    const auto key = [](const Match& m) { return std::make_pair(m.keypoint, m.number); };
+    std::stable_sort(
+            matches.begin(), matches.end(), [&](const Match& a, const Match& b) { return key(a) < key(b); });
+    const auto repeated = [&](const Match& a, const Match& b) { return key(a) == key(b); };
+    matches.erase(std::unique(matches.begin(), matches.end(), repeated), matches.end());
+    return matches;
+}
+
+int keypointsOf(const std::vector<Match>& matches)
+{
+    std::set<int> keypoints;
+    for (const Match& m : matches)
+        keypoints.insert(m.keypoint);
+    return int(keypoints.size());
+}
+
+//! A pose in the making, in its Frame's axes. Each step says whether there still is one; if not, found.reason says why.
+class PoseSearch
+{
+public:
+    PoseSearch(const std::vector<Match>& all, const Map& map, const Camera& camera, Found& found)
+        : map_(map), found_(found), frame_(all), lens_(camera),
+          limit_(MAX_ERROR * std::max(camera.size.width, camera.size.height)), all_(all)
+    {
+        for (Match& m : all_)
+            m.point = frame_.toLocal(m.point);
+        matches_ = withoutRepeated(all_);
+        found.matches = int(matches_.size());
+    }
+
+    //! By the keypoints that match, which are refined on the way.
+    bool byKeypoints()
+    {
+        std::vector<Match> surest;
+        for (size_t i : best(matches_.size(), SUREST,
+                     [&](size_t a, size_t b) { return matches_[a].bits < matches_[b].bits; }))
+            surest.push_back(matches_[i]);
+        found_.reason = "too few matches agree";
+        if (!poseByRansac(surest, lens_, limit_, pose_))
+            return false;
+        for (int round = 0; round < ROUNDS; round++)
+        {
+            if (round > 0 && !refined(inliers_))
+                return false;
+            inliers_ = near(matches_);
+            found_.inliers = keypointsOf(inliers_);
+            if (found_.inliers < LEAST_INLIERS + LEAST_SHARE * double(found_.matches))
+                return false;
+            if (round == 1)
+            {
+                refineAgainstViews(inliers_, map_, found_.features.picture, WORTH);
+                matches_ = inliers_;
+            }
+        }
+        return true;
+    }
+
+    //! And by what is seen where the pose has the map's points.
+    bool byLooks()
+    {
+        double moved = STILL;
+        for (int look = 0; look < LOOKS && !(moved < STILL); look++)
+        {
+            const Affine3d before = pose_;
+            used_ = near(matches_);
+            for (const Match& m :
+                    near(seenAlong(map_, found_.compared, found_.features.picture, lens_, frame_, pose_)))
+                used_.push_back(m);
+            learnDeviation(used_, lens_, pose_);
+            if (!refined(used_))
+                return false;
+            inliers_ = near(used_);
+            moved = lens_.matrix()(0, 0) * distance(pose_, before, depth());
+        }
+        return true;
+    }
+
+    bool byLines()
+    {
+        for (int round = 0; round < LINE_ROUNDS && !found_.segments.places.empty(); round++)
+        {
+            used_ = inliers_;
+            for (const Match& m :
+                    lineMatches(map_, found_.compared, found_.segments, lens_, frame_, pose_, limit_))
+                used_.push_back(m);
+            if (!refined(used_))
+                return false;
+            inliers_ = near(inliers_);
+        }
+        return true;
+    }
+
+    bool isCertain()
+    {
+        covariance_ = clusteredCovariance(covariance_, used_, lens_, pose_);
+        Vec3d variances;
+        eigen(covariance_.get_minor<3, 3>(0, 0), variances);
+        found_.reason = "the pose is uncertain";
+        return 3 * std::sqrt(variances[0]) <= MAX_BOUND * depth();
+    }
+
+    void tell() const
+    {
+        found_.found = true;
+        found_.reason = "";
+        found_.cameraFromWorld = frame_.toWorld(pose_);
+        found_.covariance = frame_.toWorld(covariance_);
+        for (const Match& m : inliers_)
+            if (m.keypoint >= 0)
+            {
+                found_.pixels.push_back(m.pixel);
+                found_.points.push_back(map_.points[size_t(m.number)]);
+            }
+        found_.agreeing = near(all_);
+    }
+
+private:
+    std::vector<Match> near(const std::vector<Match>& matches) const
+    {
+        return within(limit_, matches, lens_, pose_);
+    }
+
+    double depth() const { return medianDistance(inCamera(pointsOf(inliers_), pose_)); }
+
+    bool refined(const std::vector<Match>& matches)
+    {
+        const bool determined = refinePose(matches, lens_, pose_, covariance_);
+        if (!determined)
+            found_.reason = "the points do not determine the pose";
+        return determined;
+    }
+
+    const Map& map_;
+    Found& found_;
+    const Frame frame_;
+    const Lens lens_;
+    const double limit_;  //!< pixels
+    std::vector<Match> all_, matches_, inliers_,
+            used_;  //!< every code's; each keypoint's once; near the pose; that made it
+    Affine3d pose_;
+    Matx66d covariance_;
+};
+
+}  // namespace
+
+void findPose(const std::vector<Match>& matches, const Map& map, const Camera& camera, Found& found)
+{
+    PoseSearch search(matches, map, camera, found);
+    if (search.byKeypoints() && search.byLooks() && search.byLines() && search.isCertain())
+        search.tell();
+}
+
+}  // namespace cv::iib
