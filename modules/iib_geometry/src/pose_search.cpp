@@ -137,6 +137,7 @@ public:
                 found_.pixels.push_back(m.pixel);
                 found_.points.push_back(map_.points[size_t(m.number)]);
             }
+        found_.depth = medianDistance(inCamera(found_.points, found_.cameraFromWorld));
         found_.agreeing = near(all_);
     }
 

@@ -16,6 +16,7 @@ struct Found : Location
     Features features;             //!< with the camera and, if it is found, the pose
     Segments segments;             //!< if lines refine the pose
     std::vector<size_t> compared;  //!< images of the map
+    double depth = 0;              //!< median distance of what it sees
     std::vector<Match> agreeing;   //!< every code of the map that agrees, also several of one keypoint
 };
 

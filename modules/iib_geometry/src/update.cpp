@@ -18,17 +18,13 @@ constexpr uchar PATIENCE =
         8;  // updates in a row that look for a code and do not find it, before it is dropped
 constexpr size_t NEIGHBOURS = 10;  // added images that each is matched with
 
-//! An image of an update that was found in the map.
-struct Seen
+bool atOnePlace(const Found& seen, const PosedImage& other)
 {
-    std::string name;
-    Camera camera;
-    Found found;
-    double depth;  //!< median distance of what it sees
-};
+    return distance(seen.cameraFromWorld, other.cameraFromWorld, seen.depth) <= APART;
+}
 
 //! Counts for each code whether this update looked for it and found it; returns how many nobody finds any more.
-int countMisses(Map& map, const std::vector<Seen>& all)
+int countMisses(Map& map, const std::vector<Found>& all)
 {
     std::vector<std::vector<uchar>> looked, hit;
     for (const MapImage& image : map.images)
@@ -36,18 +32,18 @@ int countMisses(Map& map, const std::vector<Seen>& all)
         looked.emplace_back(image.sees.size(), uchar(0));
         hit.emplace_back(image.sees.size(), uchar(0));
     }
-    for (const Seen& seen : all)
+    for (const Found& seen : all)
     {
-        const Rect2d picture(Point2d(-.5, -.5), Size2d(seen.camera.size));
-        for (size_t i : seen.found.compared)
+        const Rect2d picture(Point2d(-.5, -.5), Size2d(seen.features.camera.size));
+        for (size_t i : seen.compared)
         {
             const std::vector<Point2d> places =
-                    Lens(seen.camera)
-                            .project(inCamera(map.seenBy(map.images[i]), seen.found.cameraFromWorld));
+                    Lens(seen.features.camera)
+                            .project(inCamera(map.seenBy(map.images[i]), seen.cameraFromWorld));
             for (size_t k = 0; k < places.size(); k++)
                 looked[i][k] |= picture.contains(places[k]);  // not NaN, behind the camera
         }
-        for (const Match& m : seen.found.agreeing)
+        for (const Match& m : seen.agreeing)
             hit[size_t(m.view)][size_t(m.row)] = 1;
     }
     int dropped = 0;
@@ -69,25 +65,24 @@ int countMisses(Map& map, const std::vector<Seen>& all)
     return dropped;
 }
 
-bool isKnown(const Map& map, const Seen& seen)
+bool isKnown(const Map& map, const Found& seen)
 {
     std::vector<size_t> hits(map.images.size());
-    for (const Match& m : seen.found.agreeing)
+    for (const Match& m : seen.agreeing)
         hits[size_t(m.view)]++;
     for (size_t i = 0; i < hits.size(); i++)
-        if (double(hits[i]) > KNOWN * double(map.images[i].sees.size()) &&
-                distance(seen.found.cameraFromWorld, map.images[i].cameraFromWorld, seen.depth) <= APART)
+        if (double(hits[i]) > KNOWN * double(map.images[i].sees.size()) && atOnePlace(seen, map.images[i]))
             return true;
     return false;
 }
 
 //! Those in a light that the map does not know, APART from each other.
-std::vector<const Seen*> chosen(const Map& map, const std::vector<Seen>& all)
+std::vector<const Found*> chosen(const Map& map, const std::vector<Found>& all)
 {
-    std::vector<const Seen*> result;
-    for (const Seen& seen : all)
-        if (!isKnown(map, seen) && std::all_of(result.begin(), result.end(), [&](const Seen* other) {
-                return distance(seen.found.cameraFromWorld, other->found.cameraFromWorld, seen.depth) > APART;
+    std::vector<const Found*> result;
+    for (const Found& seen : all)
+        if (!isKnown(map, seen) && std::all_of(result.begin(), result.end(), [&](const Found* other) {
+                return !atOnePlace(seen, other->features);
             }))
             result.push_back(&seen);
     return result;
@@ -96,7 +91,7 @@ std::vector<const Seen*> chosen(const Map& map, const std::vector<Seen>& all)
 /** Pairs of images to be matched: each added one with those of the map that it was compared with and with added ones near it.
 @param first of the added images, which are the map's last. */
 std::vector<std::pair<size_t, size_t>> pairsOf(
-        const Map& map, size_t first, const std::vector<const Seen*>& added)
+        const Map& map, size_t first, const std::vector<const Found*>& added)
 {
     std::vector<std::pair<size_t, size_t>> pairs;
     for (size_t n = 0; n < added.size(); n++)
@@ -107,7 +102,7 @@ std::vector<std::pair<size_t, size_t>> pairsOf(
                                       map.images[first + other].cameraFromWorld, added[n]->depth),
                     first + other);
         std::sort(near.begin(), near.end());
-        for (size_t k : added[n]->found.compared)
+        for (size_t k : added[n]->compared)
             pairs.emplace_back(first + n, k);
         for (size_t k = 0; k < std::min(near.size(), NEIGHBOURS); k++)
             pairs.emplace_back(first + n, near[k].second);
@@ -139,14 +134,13 @@ void addPoints(Map& map, const std::vector<std::pair<size_t, size_t>>& pairs)
 }
 
 //! Of more than LIGHTS added images at one place, removes the one that has not helped for longest.
-void makeRoom(Map& map, const std::vector<const Seen*>& added)
+void makeRoom(Map& map, const std::vector<const Found*>& added)
 {
-    for (const Seen* seen : added)
+    for (const Found* seen : added)
     {
         std::vector<std::pair<uint32_t, std::string>> here;
         for (const MapImage& image : map.images)
-            if (image.added &&
-                    distance(seen->found.cameraFromWorld, image.cameraFromWorld, seen->depth) <= APART)
+            if (image.added && atOnePlace(*seen, image))
                 here.emplace_back(image.used, image.name);
         std::sort(here.begin(), here.end());
         for (size_t n = 0; n + LIGHTS < here.size(); n++)
@@ -170,7 +164,7 @@ struct MapUpdate::Impl
     const std::vector<Camera> cameras;
     std::mutex mutex;
     std::set<std::string> names;
-    std::vector<Seen> seen;
+    std::vector<Found> seen;
     bool committed = false;
 
     void checkOpen() const
@@ -199,12 +193,12 @@ Location MapUpdate::add(const std::string& name, InputArray image, const Camera&
         if (!impl_->names.insert(name).second)
             CV_Error(Error::StsBadArg, "an image of the name '" + name + "' is a part of the update already");
     }
-    const Found found = impl_->finder.find(image.getMat(), camera, nullptr);
+    Found found = impl_->finder.find(image.getMat(), camera, nullptr);
+    found.features.name = name;
     if (found.found)
     {
-        const double depth = medianDistance(inCamera(found.points, found.cameraFromWorld));
         const std::lock_guard<std::mutex> lock(impl_->mutex);
-        impl_->seen.push_back({name, camera, found, depth});
+        impl_->seen.push_back(found);
     }
     return found;
 }
@@ -215,13 +209,14 @@ MapUpdate::Counts MapUpdate::commit()
     impl_->checkOpen();
     impl_->committed = true;
     Map& map = impl_->map;
-    std::vector<Seen>& seen = impl_->seen;
+    std::vector<Found>& seen = impl_->seen;
     // The order in which threads came changes nothing.
-    std::sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) { return a.name < b.name; });
+    std::sort(seen.begin(), seen.end(),
+            [](const Found& a, const Found& b) { return a.features.name < b.features.name; });
     Counts counts;
     counts.localized = int(seen.size());
     map.updates++;
-    const std::vector<const Seen*> added = chosen(map, seen);
+    const std::vector<const Found*> added = chosen(map, seen);
     counts.added = int(added.size());
     counts.dropped = countMisses(map, seen);
     const size_t first = map.images.size();
@@ -231,12 +226,10 @@ MapUpdate::Counts MapUpdate::commit()
     };
     while (std::any_of(map.images.begin(), map.images.end(), taken))  // the model's own may be called so
         folder = "updates/" + folder;
-    for (const Seen* s : added)
+    for (const Found* s : added)
     {
-        MapImage image = s->found.features;
-        image.name = folder + s->name;
-        image.camera = s->camera;
-        image.cameraFromWorld = s->found.cameraFromWorld;
+        MapImage image = s->features;
+        image.name = folder + image.name;
         image.used = map.updates;
         image.added = true;
         map.images.push_back(std::move(image));
