@@ -14,9 +14,8 @@ typedef MapImage Features;
 //! What finds and describes the points of a map: createRecommended, or the paper's points and descriptor.
 Ptr<IIB> describerOf(bool orbAndAkaze, int points);
 
-inline Features extract(IIB& iib, const Mat& image)
+inline void extract(IIB& iib, const Mat& image, Features& features)
 {
-    Features features;
     std::vector<KeyPoint> keypoints;
     iib.detectAndCompute(image, noArray(), keypoints, features.codes);
     for (const KeyPoint& k : keypoints)
@@ -24,11 +23,9 @@ inline Features extract(IIB& iib, const Mat& image)
         features.pixels.emplace_back(k.pt);
         features.sizes.push_back(k.size);
     }
-    features.codes.create(int(keypoints.size()), iib.descriptorSize(), CV_8U);  // also of none
     features.sees.assign(keypoints.size(), -1);
     features.misses.assign(keypoints.size(), 0);
     features.picture = pictureOf(image);
-    return features;
 }
 
 //! @throws cv::Exception for an image that is not of a camera's size, or not 8-bit, grey or BGR.

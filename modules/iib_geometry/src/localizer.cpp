@@ -112,7 +112,7 @@ Found Finder::find(const Mat& image, const Camera& camera, const Affine3d* prior
     checkImage(image, camera.size);
     const Lens checked(camera);
     Found found;
-    found.features = extract(*iib_, image);
+    extract(*iib_, image, found.features);
     found.features.camera = camera;
     found.reason = "too few matches";
     if (found.features.pixels.empty())

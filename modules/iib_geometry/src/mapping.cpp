@@ -91,8 +91,6 @@ void describe(std::vector<MapImage>& images, const ImageReader& read, const Ptr<
     inParallel(images.size(), [&](size_t i) {
         MapImage& image = images[i];
         const Mat pixels = read(image.name);
-        Features found;
-        found.codes.create(0, iib->descriptorSize(), CV_8U);
         if (!pixels.empty())
         {
             try
@@ -103,12 +101,9 @@ void describe(std::vector<MapImage>& images, const ImageReader& read, const Ptr<
             {
                 CV_Error(e.code, image.name + ": " + e.err + ": give the images of which the model was made");
             }
-            found = extract(*iib, pixels);
+            extract(*iib, pixels, image);
         }
-        found.name = image.name;
-        found.camera = image.camera;
-        found.cameraFromWorld = image.cameraFromWorld;
-        image = std::move(found);
+        image.codes.create(int(image.pixels.size()), iib->descriptorSize(), CV_8U);  // also of none
         steps.step(pixels.empty() ? image.name + " cannot be read: left out of the map" : "");
     });
     if (std::all_of(images.begin(), images.end(), [](const MapImage& i) { return i.pixels.empty(); }))
@@ -131,7 +126,9 @@ Map makeMap(const std::string& model, const ImageReader& read, const MapOptions&
     for (const PosedImage& image : known)
     {
         map.images.emplace_back();
-        static_cast<PosedImage&>(map.images.back()) = image;
+        map.images.back().name = image.name;
+        map.images.back().camera = image.camera;
+        map.images.back().cameraFromWorld = image.cameraFromWorld;
     }
     describe(map.images, read, describerOf(options.orbAndAkaze, options.points), steps);
     const MatchedRays matched = matchPairs(map.images, pairs, [&] { steps.step(); });

@@ -12,8 +12,11 @@ namespace cv::iib {
 namespace {
 
 constexpr double MAX_ERROR = 4;  // pixels, of a match from its epipolar line
+constexpr int BAND = 32;         // rows of a mask that are made at once
 constexpr double NEAR = 2;       // pixels, within which matches are looked for once more
-constexpr double FAR = .01;      // radians between rays that do not tell on which side they meet
+constexpr int STRONGEST =
+        200;  // codes of an image, whose matches tell whether the poses are those of the images
+constexpr double FAR = .01;  // radians between rays that do not tell on which side they meet
 
 //! Whether two rays lie in one plane with both cameras, and meet before them.
 bool fitting(const Ray& a, const Ray& b)
@@ -35,8 +38,17 @@ Mat nearEpipolar(const std::vector<Ray>& a, const std::vector<Ray>& b)
         Mat(Vec3f(normalize((b[i].centre - a[0].centre).cross(b[i].direction))))
                 .reshape(1, 1)
                 .copyTo(planes.row(int(i)));
-    return abs(directions * planes.t()) < NEAR / a[0].scale;
+    Mat mask(directions.rows, planes.rows, CV_8U), products;
+    for (int row = 0; row < mask.rows; row += BAND)  // all at once would be too much memory for the caches
+    {
+        const Range band(row, std::min(row + BAND, mask.rows));
+        gemm(directions.rowRange(band), planes, 1, noArray(), 0, products, GEMM_2_T);
+        compare(abs(products), NEAR / a[0].scale, mask.rowRange(band), CMP_LT);
+    }
+    return mask;
 }
+
+Mat strongest(const Mat& codes) { return codes.rowRange(0, std::min(codes.rows, STRONGEST)); }
 
 }  // namespace
 
@@ -90,7 +102,7 @@ MatchedRays matchPairs(const std::vector<MapImage>& images,
         std::vector<DMatch> matches, guided;
         if (!codes.empty() && !others.empty())
         {
-            matcher->match(codes, others, matches);
+            matcher->match(strongest(codes), strongest(others), matches);
             matcher->match(codes, others, guided, nearEpipolar(raysFrom(a), raysFrom(b)));
         }
         const auto linkOf = [&](const DMatch& m) {

@@ -35,7 +35,7 @@ struct MatchedRays
 {
     std::vector<Ray> rays;    //!< of the images of all pairs
     std::vector<Link> links;  //!< matches among what the images' poses have near each other
-    //! Of matches among everything, and of those the ones that fit the poses: few if the poses are not those of the images.
+    //! Of matches of each image's strongest codes, and of those the ones that fit the poses: few if the poses are not those of the images.
     size_t matches = 0, fitting = 0;
 };
 
