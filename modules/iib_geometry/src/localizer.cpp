@@ -69,7 +69,7 @@ std::vector<size_t> Finder::near(const Affine3d& pose) const
 
 std::vector<size_t> Finder::similar(const Mat& codes) const
 {
-    const std::vector<float> voted = votes_.vote(codes);
+    const std::vector<float> voted = votes_.vote(codes).ofImages;
     std::vector<size_t> counts(voted.size());
     for (size_t k : best(counts.size(), SHORTLIST, [&](size_t a, size_t b) { return voted[a] > voted[b]; }))
         if (voted[k] > 0)

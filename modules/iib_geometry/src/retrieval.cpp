@@ -60,10 +60,9 @@ Retrieval::Retrieval(const std::vector<Mat>& codes) : images_(codes.size())
     }
 }
 
-std::vector<float> Retrieval::vote(const Mat& codes, size_t* visited) const
+Retrieval::Votes Retrieval::vote(const Mat& codes) const
 {
-    std::vector<float> votes(images_, 0.f);
-    size_t seen = 0;
+    Votes votes = {std::vector<float>(images_, 0.f), 0};
     for (const Table& table : tables_)
         for (int row = 0; row < codes.rows; row++)
         {
@@ -71,12 +70,10 @@ std::vector<float> Retrieval::vote(const Mat& codes, size_t* visited) const
             const uint32_t begin = table.begins[key], end = table.begins[key + 1];
             if (end - begin > FREQUENT)
                 continue;
-            seen += end - begin;
+            votes.visited += end - begin;
             for (uint32_t i = begin; i < end; i++)
-                votes[table.images[i]] += 1.f / float(end - begin);
+                votes.ofImages[table.images[i]] += 1.f / float(end - begin);
         }
-    if (visited)
-        *visited = seen;
     return votes;
 }
 

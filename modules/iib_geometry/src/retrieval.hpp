@@ -16,8 +16,12 @@ public:
     //! @param codes of each image, the strongest keypoints first; may be empty.
     explicit Retrieval(const std::vector<Mat>& codes);
 
-    //! Votes for each image. @param visited if not null: how many codes of the map were looked at.
-    std::vector<float> vote(const Mat& codes, size_t* visited = nullptr) const;
+    struct Votes
+    {
+        std::vector<float> ofImages;
+        size_t visited;  //!< codes of the map that were looked at
+    };
+    Votes vote(const Mat& codes) const;
 
 private:
     struct Table

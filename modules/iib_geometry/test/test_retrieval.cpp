@@ -31,7 +31,7 @@ TEST(Retrieval, finds_the_image_of_noisy_codes_among_many)
     const Retrieval retrieval(images);
     for (size_t k : {0, 151, 299})
     {
-        const std::vector<float> votes = retrieval.vote(noisy(images[k], 0.12, random));
+        const std::vector<float> votes = retrieval.vote(noisy(images[k], 0.12, random)).ofImages;
         EXPECT_EQ(std::ptrdiff_t(k), std::max_element(votes.begin(), votes.end()) - votes.begin());
         EXPECT_EQ(0, votes[3]) << "has no codes";
     }
@@ -49,19 +49,17 @@ TEST(Retrieval, looks_at_no_more_codes_of_ten_thousand_images)
     }
     const Retrieval large(images), small(std::vector<cv::Mat>(images.begin(), images.begin() + 100));
     const cv::Mat query = noisy(images[50], 0.1, random);
-    size_t visited = 0, manyVisited = 0;
-    small.vote(query, &visited);
-    const std::vector<float> manyVotes = large.vote(query, &manyVisited);
-    EXPECT_GT(visited, 0u);
-    EXPECT_LT(double(manyVisited), 1.5 * double(visited));
-    EXPECT_EQ(50, std::max_element(manyVotes.begin(), manyVotes.end()) - manyVotes.begin());
+    const Retrieval::Votes few = small.vote(query), many = large.vote(query);
+    EXPECT_GT(few.visited, 0u);
+    EXPECT_LT(double(many.visited), 1.5 * double(few.visited));
+    EXPECT_EQ(50, std::max_element(many.ofImages.begin(), many.ofImages.end()) - many.ofImages.begin());
 }
 
 TEST(Retrieval, without_codes_there_are_no_votes)
 {
     const cv::Mat none, some(5, 64, CV_8U, cv::Scalar(1));
-    EXPECT_EQ(std::vector<float>(2), Retrieval({none, none}).vote(some));
-    EXPECT_EQ(std::vector<float>(2), Retrieval({some, some}).vote(none));
+    EXPECT_EQ(std::vector<float>(2), Retrieval({none, none}).vote(some).ofImages);
+    EXPECT_EQ(std::vector<float>(2), Retrieval({some, some}).vote(none).ofImages);
 }
 
 }  // namespace
