@@ -4,17 +4,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
 #include <set>
-
-#include <fcntl.h>
-#ifdef _WIN32
-#include <io.h>
-#include <share.h>
-#include <sys/stat.h>
-#else
-#include <sys/file.h>
-#include <unistd.h>
-#endif
 
 #include "../../iib/src/common/checked_file.hpp"
 
@@ -26,20 +17,6 @@ namespace fs = std::filesystem;
 const char* const FILE_NAME = "/map.iib";
 constexpr int LINE_BYTES = 32;  // of a code of LBD
 const FileKind KIND = {"IIB_MAP_", 2, "a map of opencv_iib"};
-
-//! What a folder of a map holds, and one of an earlier version; the first names tell that it is one.
-const std::vector<std::string> OWN = {"map.iib", "cameras.bin", "images.bin", "points3D.bin"};
-const std::vector<std::string> EARLIER = {"map.json", "codes.npy", "misses.npy", "points.npy", "sees.npy",
-        "views.npy", "rigs.bin", "frames.bin"};
-
-//! Whether a file has one of these names, or that of one which a killed process has not finished.
-bool isOf(const std::vector<std::string>& names, const std::string& name)
-{
-    const bool unfinished = fs::path(name).extension() == ".tmp";
-    return std::any_of(names.begin(), names.end(), [&](const std::string& own) {
-        return name == own || (unfinished && name.compare(0, own.size() + 1, own + ".") == 0);
-    });
-}
 
 //! Reads or writes the parts of a map: the functions below name them once, in their order.
 class MapFile
@@ -223,21 +200,6 @@ void visit(MapFile& file, Map& map, unsigned version)
 
 }  // namespace
 
-int lockFolder(const fs::path& folder)
-{
-#ifdef _WIN32  // where no folder is locked: a file beside it, which goes when it is closed
-    return ::_wsopen((folder.wstring() + L".lock").c_str(), _O_CREAT | _O_RDWR | _O_TEMPORARY | _O_NOINHERIT,
-            _SH_DENYRW, _S_IREAD | _S_IWRITE);
-#else
-    const int lock = ::open(folder.c_str(), O_RDONLY | O_CLOEXEC);
-    if (lock >= 0 && ::flock(lock, LOCK_EX | LOCK_NB) == 0)
-        return lock;
-    if (lock >= 0)
-        ::close(lock);
-    return -1;
-#endif
-}
-
 std::vector<Point3d> Map::seenBy(const MapImage& image) const
 {
     std::vector<Point3d> seen;
@@ -297,47 +259,17 @@ Map readMap(const std::string& folder)
     return map;
 }
 
-MapFolder::MapFolder(const std::string& folder) : folder_(folder)
-{
-    std::error_code error;
-    const fs::path path = systemName(folder);
-    fs::create_directories(path, error);
-    bool known = false, any = false;
-    for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
-    {
-        const std::string name = entry->path().filename().u8string();
-        any = true;
-        known = known || isOf({OWN[0], EARLIER[0]}, name);
-        if (!isOf(OWN, name) && !isOf(EARLIER, name))
-            CV_Error(Error::StsError, folder + " holds " + name + " and is no map: choose another folder");
-    }
-    if (error)
-        CV_Error(Error::StsError, folder + " cannot be written: " + error.message());
-    if (any && !known)
-        CV_Error(Error::StsError, folder + " holds a COLMAP model and is no map: choose another folder");
-    lock_ = lockFolder(path);
-    if (lock_ < 0)
-        CV_Error(Error::StsError, folder + " is being written by another process: wait until it has ended");
-}
-
-MapFolder::~MapFolder() { ::close(lock_); }
-
-void MapFolder::write(const Map& map) const
+void writeMap(const std::string& folder, const Map& map, const std::function<void()>& last)
 {
     FileKind kind = KIND;
     kind.version = map.orbAndAkaze || !map.lines.empty() ? 2 : 1;  // earlier programs read what they can
-    CheckedWriter file(folder_ + FILE_NAME, kind);
+    CheckedWriter file(folder + FILE_NAME, kind);
     Map copy = map;  // since visit() also reads, it takes no constant one; matrices are shared
     MapFile parts(file);
     visit(parts, copy, kind.version);
     file.seal();
-    writeModel(folder_, {map.images.begin(), map.images.end()}, map.points);
+    last();
     file.commit();
-    std::error_code error;
-    for (fs::directory_iterator entry(systemName(folder_), error), end; !error && entry != end;
-            entry.increment(error))
-        if (std::count(OWN.begin(), OWN.end(), entry->path().filename().u8string()) == 0)
-            fs::remove(entry->path(), error);  // of an earlier version or a killed process
 }
 
 }  // namespace cv::iib

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
+#include <functional>
 
 #include "colmap_model.hpp"
 #include "refined.hpp"
@@ -46,26 +46,8 @@ struct Map
 //! @throws cv::Exception for a folder without a map, or a damaged one.
 Map readMap(const std::string& folder);
 
-//! A descriptor that keeps other processes from locking the folder until it is closed; below 0 if one has locked it.
-int lockFolder(const std::filesystem::path& folder);
-
-//! A folder that a map is written to; no other process can write it meanwhile.
-class MapFolder
-{
-public:
-    //! @throws cv::Exception if the folder holds anything but a map, cannot be made, or is locked.
-    explicit MapFolder(const std::string& folder);
-    ~MapFolder();
-    MapFolder(const MapFolder&) = delete;
-    MapFolder& operator=(const MapFolder&) = delete;
-
-    /** Writes the map's file and, for other programs, a COLMAP model. Who reads the map meanwhile gets the old one or the new.
-    @throws cv::Exception if it cannot be written; the old map stays then. */
-    void write(const Map& map) const;
-
-private:
-    const std::string folder_;
-    int lock_ = -1;
-};
+/** Writes a map's file.
+@param last is called when all of it is on the disk, before it takes the place of the old one. */
+void writeMap(const std::string& folder, const Map& map, const std::function<void()>& last);
 
 }  // namespace cv::iib

@@ -12,6 +12,7 @@
 #include "colmap_model.hpp"
 #include "features.hpp"
 #include "lines.hpp"
+#include "map_folder.hpp"
 #include "pose.hpp"
 #include "triangulation.hpp"
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "localizer.hpp"
+#include "map_folder.hpp"
 #include "triangulation.hpp"
 
 namespace cv::iib {

@@ -5,7 +5,7 @@
 
 #include "test_folder.hpp"
 #include "lens.hpp"
-#include "map.hpp"
+#include "map_folder.hpp"
 #include "opencv2/core/quaternion.hpp"
 #include "opencv2/iib.hpp"
 #include "opencv2/imgcodecs.hpp"
