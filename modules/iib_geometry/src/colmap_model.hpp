@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+
 #include "lens.hpp"
 
 namespace cv::iib {
@@ -9,6 +11,15 @@ namespace cv::iib {
 share; where the points are is not read.
 @throws cv::Exception if there is none, it is damaged, or it has a camera that Lens does not know. */
 std::vector<PosedImage> readModel(const std::string& folder);
+
+//! Of a camera among others; how many there are, if it is not there.
+inline size_t indexOf(const Camera& camera, const std::vector<Camera>& cameras)
+{
+    return size_t(std::find_if(cameras.begin(), cameras.end(), [&](const Camera& other) {
+        return camera.model == other.model && camera.size == other.size &&
+               camera.parameters == other.parameters;
+    }) - cameras.begin());
+}
 
 //! The cameras of images, each once.
 template <typename Images> std::vector<Camera> camerasOf(const Images& images)

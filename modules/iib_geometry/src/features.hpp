@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
-
 #include "map.hpp"
 #include "opencv2/iib.hpp"
 
@@ -29,33 +27,13 @@ inline void extract(IIB& iib, const Mat& image, Features& features)
 }
 
 //! @throws cv::Exception for an image that is not of a camera's size, or not 8-bit, grey or BGR.
-inline void checkImage(const Mat& image, const Size& size)
+inline void checkPhotograph(const Mat& image, const Size& size)
 {
     if (image.type() != CV_8UC1 && image.type() != CV_8UC3)
         CV_Error(Error::StsBadArg, "an image is 8-bit, grey or BGR, not " + typeToString(image.type()));
     if (image.size() != size)
         CV_Error(Error::StsBadArg, format("the image has %d x %d pixels and its camera %d x %d", image.cols,
                                            image.rows, size.width, size.height));
-}
-
-//! Calls an action with each index, several at once. What one throws is thrown, and ends the rest.
-template <typename Action> void inParallel(size_t count, Action action)
-{
-    std::atomic<bool> ended(false);
-    parallel_for_(Range(0, int(count)), [&](const Range& range) {
-        for (int i = range.start; i < range.end && !ended; i++)
-        {
-            try
-            {
-                action(size_t(i));
-            }
-            catch (...)
-            {
-                ended = true;
-                throw;
-            }
-        }
-    });
 }
 
 }  // namespace cv::iib

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-
 #include "opencv2/iib/localization.hpp"
 
 namespace cv::iib {
@@ -31,15 +29,6 @@ private:
     int kind_;
     Vec<double, 12> k_;  //!< parameters of the distortion, in COLMAP's order
 };
-
-//! Of a camera among others; how many there are, if it is not there.
-inline size_t indexOf(const Camera& camera, const std::vector<Camera>& cameras)
-{
-    return size_t(std::find_if(cameras.begin(), cameras.end(), [&](const Camera& other) {
-        return camera.model == other.model && camera.size == other.size &&
-               camera.parameters == other.parameters;
-    }) - cameras.begin());
-}
 
 //! COLMAP's number of a camera model, or -1; of a number its name, or the number.
 int modelNumber(const std::string& name);

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-#include "features.hpp"
+#include "parallel.hpp"
 #include "triangulation.hpp"
 
 namespace cv::iib {
@@ -120,7 +120,7 @@ void addLines(
     std::vector<Link> links;
     for (const std::vector<Link>& some : found)
         links.insert(links.end(), some.begin(), some.end());
-    for (Track& track : joined(rays, links))
+    for (Track& track : tracksOf(rays, links))
     {
         MapLine line;
         for (size_t before = 0; before != track.size() && track.size() > 1;)

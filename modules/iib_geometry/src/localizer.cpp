@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "mapping.hpp"
-
 namespace cv::iib {
 namespace {
 
@@ -109,7 +107,7 @@ void Finder::locate(const Camera& camera, const Affine3d* prior, Found& found) c
 
 Found Finder::find(const Mat& image, const Camera& camera, const Affine3d* prior) const
 {
-    checkImage(image, camera.size);
+    checkPhotograph(image, camera.size);
     const Lens checked(camera);
     Found found;
     extract(*iib_, image, found.features);

@@ -2,7 +2,7 @@
 
 #include "precomp.hpp"
 
-#include "mapping.hpp"
+#include "map.hpp"
 
 #include <algorithm>
 #include <map>
@@ -11,6 +11,7 @@
 
 #include "colmap_model.hpp"
 #include "features.hpp"
+#include "parallel.hpp"
 #include "lines.hpp"
 #include "map_folder.hpp"
 #include "pose.hpp"
@@ -96,7 +97,7 @@ void describe(std::vector<MapImage>& images, const ImageReader& read, const Ptr<
         {
             try
             {
-                checkImage(pixels, image.camera.size);
+                checkPhotograph(pixels, image.camera.size);
             }
             catch (const Exception& e)
             {

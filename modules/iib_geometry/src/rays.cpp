@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <set>
 
-#include "features.hpp"
+#include "opencv2/iib.hpp"
+#include "parallel.hpp"
 #include "pose.hpp"
 
 namespace cv::iib {

@@ -6,7 +6,7 @@
 #include <map>
 #include <numeric>
 
-#include "features.hpp"
+#include "parallel.hpp"
 
 namespace cv::iib {
 namespace {
@@ -50,7 +50,7 @@ Vec3d meetingPoint(const Track& track)
 
 }  // namespace
 
-std::vector<Track> joined(const std::vector<Ray>& rays, std::vector<Link> links)
+std::vector<Track> tracksOf(const std::vector<Ray>& rays, std::vector<Link> links)
 {
     std::stable_sort(
             links.begin(), links.end(), [](const Link& a, const Link& b) { return a.bits < b.bits; });
@@ -163,7 +163,7 @@ bool place(Track& track, Point3d& point)
 
 void triangulate(Map& map, const std::vector<Ray>& rays, const std::vector<Link>& links)
 {
-    std::vector<Track> tracks = joined(rays, links);
+    std::vector<Track> tracks = tracksOf(rays, links);
     refineTracks(tracks, map.images);
     for (Track& track : tracks)
     {

@@ -9,7 +9,7 @@ typedef std::vector<Ray> Track;
 
 /** The tracks of two rays or more that links join, the surest first. A track holds one ray of an image and sees one point at
 most. */
-std::vector<Track> joined(const std::vector<Ray>& rays, std::vector<Link> links);
+std::vector<Track> tracksOf(const std::vector<Ray>& rays, std::vector<Link> links);
 
 /** Places what the keypoints of a map's images see. Keypoints that see no point yet are moved to what one of their track shows,
 the reference. The rays farthest from a track's point are left out until the others agree; it has none if too few do, or look from nearly
