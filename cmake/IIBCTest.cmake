@@ -65,7 +65,8 @@ add_test(NAME fast-math-undone COMMAND ${fast_math} ${IIB_FLAGS} ${source})
 if(IIB_PYTHON)
   add_test(NAME readme COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/readme_test.py" "${PROJECT_BINARY_DIR}"
     "${CMAKE_CXX_COMPILER}" "${CMAKE_CXX_FLAGS}" "${CMAKE_GENERATOR}")
-  add_test(NAME includes COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/includes_test.py" "${IIB_DIR}")
+  add_test(NAME includes COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/includes_test.py" "${IIB_DIR}"
+    "${PROJECT_SOURCE_DIR}/modules/iib_index" "${IIB_GEOMETRY_DIR}")
   add_test(NAME figures COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/figures.py" --check)
   add_test(NAME figures-test COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/figures_test.py")
   add_test(NAME paper COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/paper_test.py"

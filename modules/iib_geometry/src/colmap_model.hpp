@@ -12,7 +12,7 @@ share; where the points are is not read.
 @throws cv::Exception if there is none, it is damaged, or it has a camera that Lens does not know. */
 std::vector<PosedImage> readModel(const std::string& folder);
 
-//! Of a camera among others; how many there are, if it is not there.
+//! The index of a camera among others; how many there are, if it is not there.
 inline size_t indexOf(const Camera& camera, const std::vector<Camera>& cameras)
 {
     return size_t(std::find_if(cameras.begin(), cameras.end(), [&](const Camera& other) {

@@ -9,7 +9,7 @@
 namespace cv::iib {
 namespace {
 
-const int BLOCK = 32;           // matches between two looks at the limit
+const int STRIDE = 32;          // matches between two looks at the limit
 const double NOWHERE = 1e-300;  // keeps an error of 0 / 0, at the epipoles, finite
 
 std::vector<Point2d> directions(const Mat& points, const Matx33d& camera)
@@ -81,10 +81,10 @@ double EpipolarProblem::loss(const RelativePose& pose, double limit) const
 {
     const Matx33d essential = essentialOf(pose);
     double loss = 0;
-    for (int begin = 0; begin < size() && loss <= limit; begin += BLOCK)
+    for (int begin = 0; begin < size() && loss <= limit; begin += STRIDE)
     {
-        double product = 1;  // one logarithm for a block
-        for (int i = begin; i < std::min(begin + BLOCK, size()); i++)
+        double product = 1;  // one logarithm for them
+        for (int i = begin; i < std::min(begin + STRIDE, size()); i++)
             product *= 1 + std::min(squaredError(essential, i), FARTHEST);
         loss += std::log(product);
     }

@@ -22,7 +22,7 @@ public:
     int sampleSize() const { return 5; }
     int parameters() const { return 5; }
 
-    //! Those that see the sample in front of both cameras.
+    //! The poses that see the sample in front of both cameras.
     void propose(const std::vector<int>& sample, std::vector<RelativePose>& poses) const;
 
     //! Blind to points behind a camera, which have an epipolar line all the same.

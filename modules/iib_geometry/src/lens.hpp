@@ -12,7 +12,7 @@ public:
     //! @throws cv::Exception for invalid parameters, and for an unknown model, which it names.
     explicit Lens(const Camera& camera);
 
-    //! Of a camera without distortion that undistorted() gives the pixels of.
+    //! The matrix of the camera without distortion whose pixels undistorted() gives.
     const Matx33d& matrix() const { return matrix_; }
     //! NaN for pixels that no point before the camera is seen at.
     std::vector<Point2d> undistorted(const std::vector<Point2d>& pixels) const;

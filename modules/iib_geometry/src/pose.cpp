@@ -13,7 +13,7 @@ namespace cv::iib {
 namespace {
 
 constexpr int ROUNDS = 20;
-constexpr int CELLS = 4;  // a side, of what the matches span in the image
+constexpr int CLUSTERS = 4;  // a side, of what the matches span in the image
 
 //! A match near a pose.
 struct Linear
@@ -211,7 +211,7 @@ Matx66d clusteredCovariance(
     for (const Match& m : matches)
         pixels.push_back(m.pixel);
     const Rect2d span = boundingRect(pixels);
-    std::map<std::pair<int, int>, Vec6d> pulls;  // of the cells
+    std::map<std::pair<int, int>, Vec6d> pulls;  // of the clusters
     std::vector<double> errors;
     Matx66d curvature = Matx66d::zeros(), pulled = Matx66d::zeros();
     for (size_t i = 0; i < near.size(); i++)
@@ -220,14 +220,14 @@ Matx66d clusteredCovariance(
         const double deviation = matches[i].deviation;
         errors.push_back(norm(m.error) / deviation);
         curvature += m.weight * m.weight * deviation * deviation * m.byPose.t() * m.byPose;
-        pulls[{int(CELLS * (pixels[i].x - span.x) / span.width),
-                int(CELLS * (pixels[i].y - span.y) / span.height)}] += m.weight * (m.byPose.t() * m.error);
+        pulls[{int(CLUSTERS * (pixels[i].x - span.x) / span.width),
+                int(CLUSTERS * (pixels[i].y - span.y) / span.height)}] += m.weight * (m.byPose.t() * m.error);
     }
-    for (const auto& cell : pulls)
-        pulled += cell.second * cell.second.t();
-    const double scale = deviationOf(errors), cells = double(pulls.size());
+    for (const auto& cluster : pulls)
+        pulled += cluster.second * cluster.second.t();
+    const double scale = deviationOf(errors), clusters = double(pulls.size());
     const Matx66d back = curvature.inv();
-    return scale * scale * covariance + cells / std::max(cells - 6, 1.) * back * pulled * back;
+    return scale * scale * covariance + clusters / std::max(clusters - 6, 1.) * back * pulled * back;
 }
 
 }  // namespace cv::iib

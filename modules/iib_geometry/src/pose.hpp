@@ -21,17 +21,17 @@ struct Match
     Matx22d counted = Matx22d::eye();
 };
 
-//! Of a rigid motion. Affine3d::inv() goes through an SVD, which far from the origin leaves no digit.
+//! The inverse of a rigid motion. Affine3d::inv() goes through an SVD, which far from the origin leaves no digit.
 inline Affine3d inverse(const Affine3d& pose)
 {
     const Matx33d back = pose.rotation().t();
     return {back, -(back * pose.translation())};
 }
 
-//! Of one number or more; of none, 0.
+//! The median of numbers; 0 of none.
 double median(std::vector<double> values);
 
-//! Of the cameras' centres over that of what they see, plus the angle between their directions in radians.
+//! How far two cameras are apart: the distance of their centres over that of what they see, plus the angle between their directions in radians.
 double distance(const Affine3d& a, const Affine3d& b, double depth);
 
 //! Axes in which points lie about the origin at distances of about 1, wherever and in whatever unit they are given.
@@ -43,7 +43,7 @@ struct Frame
     explicit Frame(const std::vector<Match>& matches);
     Point3d toLocal(const Point3d& point) const;
     Affine3d toWorld(const Affine3d& cameraFromLocal) const;
-    //! Of the camera's centre and of a turn.
+    //! The covariance of a camera's centre and of a turn, from these axes to the world's.
     Matx66d toWorld(const Matx66d& covariance) const;
 };
 

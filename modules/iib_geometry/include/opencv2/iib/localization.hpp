@@ -131,7 +131,10 @@ public:
     @throws cv::Exception for a folder without a map, for a damaged one, and for lines of a map without them or without line_descriptor. */
     explicit Localizer(const std::string& map, int points = 1000, bool lines = false);
 
-    //! @brief Makes a map in memory, as buildMap does; with options.lines, they refine poses.
+    /** @brief Makes a map in memory.
+    @param model, images, report, options as buildMap takes them; with options.lines, lines refine poses.
+    @param points keypoints that are looked for in an image; 0: as many as in the map's images.
+    @throws cv::Exception as buildMap. */
     Localizer(const std::string& model, const ImageReader& images, int points = 1000,
             const MappingReport& report = MappingReport(), const MapOptions& options = MapOptions());
     ~Localizer();
@@ -165,7 +168,7 @@ struct ImuReading
 
 /** @brief Smooths the poses of a camera's images by the readings of an IMU that moves with it.
 
-A Kalman filter forwards and the smoother of Rauch, Tung and Striebel backwards; gravity's direction and the IMU's biases are
+A Kalman filter forwards and a smoother backwards @cite RauchTungStriebel1965; gravity's direction and the IMU's biases are
 found from the first poses. Images without a pose get one too, if they come after one with a pose, by three seconds at most. Where
 the readings have a gap, or the poses contradict gravity, the images' own poses stay.
 @param times of the images, nanoseconds, rising.

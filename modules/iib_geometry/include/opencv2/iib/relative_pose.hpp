@@ -13,9 +13,10 @@ namespace iib {
 /** @brief Finds where camera 2 stands, seen from camera 1, from matched points.
 
 A point \f$X\f$ in the axes of camera 1 is \f$RX + \lambda t\f$ in those of camera 2; matches do not tell the length
-\f$\lambda\f$. Samples of five matches propose poses (Nister, PAMI 2004). Those that many
-matches agree with are fitted to all matches by Levenberg-Marquardt on Sampson's error (Hartley and Zisserman 2004, equation
-11.9) under Cauchy's loss, cut off at three scales, and the pose of the least loss is the answer. Wrong matches are expected; the same input gives the same answer, whatever the number of threads.
+\f$\lambda\f$. Samples of five matches propose poses @cite Nister2004. Those that many matches agree with are fitted to all
+matches by Levenberg-Marquardt on Sampson's error (@cite HartleyZisserman2004, equation 11.9) under Cauchy's loss, cut off at
+three scales, and the pose of the least loss is the answer. Wrong matches are expected; the same input gives the same answer,
+whatever the number of threads.
 
 Points must be free of lens distortion: `cv::undistortPoints(points, undistorted, K, distortion, noArray(), K)` first.
 Matches that cv::iib::refineMatches refined make the pose more accurate where the light changed.
