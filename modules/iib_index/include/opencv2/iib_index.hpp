@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
+
+#ifndef OPENCV_IIB_INDEX_HPP
+#define OPENCV_IIB_INDEX_HPP
 
 #include "opencv2/core.hpp"
 
@@ -105,3 +107,5 @@ public:
 
 }  // namespace iib
 }  // namespace cv
+
+#endif
