@@ -34,7 +34,7 @@ fi
     echo "OUTPUT_DIRECTORY = \"$build/docs\""
     echo "INPUT += \"$build/docs/python_api.md\" \"$build/docs/python_examples.md\""
     echo "IMAGE_PATH += \"$pictures\""
-} | doxygen -
+} | root=$(pwd -P) doxygen -
 cp -R doc/results doc/localization CITATION.cff "$build/docs/html"
 [ ! -d "$build/docs/align" ] || cp -R "$build/docs/align" "$build/docs/html"
 python3 scripts/helpers/links_test.py "$build/docs/html"
