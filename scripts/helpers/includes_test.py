@@ -10,8 +10,9 @@ import re
 import sys
 
 # What a folder below src may include, besides precomp.hpp; the rest of the module includes what it likes.
-ALLOWED = {'': set(), 'common': {'common'}, 'rotation': {'rotation', 'common'}}
+ALLOWED = {'': {'common'}, 'common': {'common'}, 'rotation': {'rotation', 'common'}}
 for wing in ('descriptor', 'matcher', 'detector', 'normalization', 'refinement'):
+    ALLOWED[''].add(wing + '/kernels')
     ALLOWED[wing + '/kernels'] = {wing + '/kernels', 'common'}
     ALLOWED[wing] = {wing, wing + '/kernels', 'common'}
 for wing in ('detector', 'refinement'):

@@ -2,18 +2,14 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "vectors.simd.hpp"
+#pragma once
 
-#include "opencv2/core.hpp"
+#include "vectors.simd.hpp"
 
 namespace cv {
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
-void greyRows(const Mat& image, Mat& grey, const Range& rows);
-
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
 
@@ -100,8 +96,6 @@ void greyRows(const Mat& image, Mat& grey, const Range& rows)
 {
     (image.depth() == CV_8U ? greyRowsOf<uchar> : greyRowsOf<ushort>)(image, grey, rows);
 }
-
-#endif
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 

@@ -90,6 +90,9 @@ template <typename V> inline auto operator~(const V& a) -> decltype(v_not(a)) { 
 #undef IIB_VECTOR_ASSIGNMENT
 #undef IIB_VECTOR_SHIFT
 
+//! Lanes of a vector.
+constexpr int SHORTS = VTraits<v_int16>::max_nlanes, INTS = VTraits<v_int32>::max_nlanes;
+
 inline v_int16 absolute(const v_int16& v) { return v_reinterpret_as_s16(v_abs(v)); }
 inline v_int32 absolute(const v_int32& v) { return v_reinterpret_as_s32(v_abs(v)); }
 

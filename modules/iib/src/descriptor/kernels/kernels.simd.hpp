@@ -2,26 +2,17 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// The one dispatched file of the descriptor: the chapters below are compiled with it for each instruction set.
+#pragma once
 
-#include "boxes.hpp"
-
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "bits.simd.hpp"
 #include "boxes.simd.hpp"
 #include "columns.simd.hpp"
 #include "rotated_samples.simd.hpp"
-#endif
 
 namespace cv {
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
-const DescriptorKernels& descriptorKernels();
-const BoxKernels& boxKernels();
-
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 const DescriptorKernels& descriptorKernels()
 {
@@ -38,8 +29,6 @@ const BoxKernels& boxKernels()
     static const BoxKernels table = {boxSumKernels<short>(), boxSumKernels<int>(), boxEdges, boxPlaces};
     return table;
 }
-
-#endif
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 

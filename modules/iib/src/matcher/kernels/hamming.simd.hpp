@@ -2,19 +2,13 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "hamming.hpp"
+#pragma once
 
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 #include "scan_pruned.simd.hpp"
-#endif
 
 namespace cv {
 namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
-const HammingKernels& hammingKernels();
-
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 namespace {
 
@@ -126,8 +120,6 @@ const HammingKernels& hammingKernels()
     static const HammingKernels kernels = {PACKING, scanNearest, scanPruned, IIB_INSTRUCTION_SET};
     return kernels;
 }
-
-#endif
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 }  // namespace iib

@@ -2,8 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../../common/vectors.simd.hpp"
+#pragma once
 
+#include "../../common/vectors.simd.hpp"
 #include "kernels.hpp"
 
 namespace cv {
@@ -11,13 +12,7 @@ namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-const NormalizationKernels& normalizationKernels();
-
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-
 namespace {
-
-constexpr int SHORTS = VTraits<v_int16>::max_nlanes, INTS = VTraits<v_int32>::max_nlanes;
 
 void widen(const uchar* pixels, short* out, int width)
 {
@@ -164,8 +159,6 @@ const NormalizationKernels& normalizationKernels()
             widen, halveShorts, halveInts, interpolate, upsample, blur, subtract, halveSquares, gain, scale};
     return kernels;
 }
-
-#endif
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 

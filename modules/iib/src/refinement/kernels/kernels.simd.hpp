@@ -2,8 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../../common/vectors.simd.hpp"
+#pragma once
 
+#include "../../common/vectors.simd.hpp"
 #include "kernels.hpp"
 
 namespace cv {
@@ -11,13 +12,8 @@ namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
-const RefinementKernels& refinementKernels();
-
-#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
-
 namespace {
 
-constexpr int SHORTS = VTraits<v_int16>::max_nlanes, INTS = VTraits<v_int32>::max_nlanes;
 static_assert(PATCH % INTS == 0 && PATCH_SAMPLES % SHORTS == 0, "vectors fit rows and patches");
 
 void smooth(const uchar* const rows[3], ushort* sums, uchar* out, int width)
@@ -209,8 +205,6 @@ const RefinementKernels& refinementKernels()
             smooth, readWindow, sample, makeTemplate, sum, sumProducts, subtract, autocorrelate};
     return kernels;
 }
-
-#endif
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
