@@ -46,5 +46,9 @@ private:
     Mat prepared[2];
 };
 
+//! Adds the matches of further keypoints that the refined ones lead to.
+void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoints1,
+        const std::vector<KeyPoint>& keypoints2, std::vector<Refinement>& matches);
+
 }  // namespace iib
 }  // namespace cv

@@ -4,11 +4,36 @@
 
 #pragma once
 
-#include "chosen_bits.simd.hpp"
-#include "large_cells.simd.hpp"
+#include "../../common/vectors.simd.hpp"
+#include "kernels.hpp"
 #include "mappings.hpp"
 
 namespace cv {
+
+CV_CPU_OPTIMIZATION_HAL_NAMESPACE_BEGIN
+
+/* Doubles, or one of them where there are no such vectors (ARMv7, WebAssembly). */
+#if CV_SIMD_64F
+typedef v_float64 v_doubles;
+
+inline v_doubles loadDoubles(const double* p) { return vx_load(p); }
+inline v_doubles repeatedDouble(double v) { return vx_setall_f64(v); }
+#else
+typedef double v_doubles;
+
+template <> struct VTraits<double>
+{
+    static constexpr int max_nlanes = 1;
+};
+inline double loadDoubles(const double* p) { return *p; }
+inline double repeatedDouble(double v) { return v; }
+inline void v_store(double* p, double v) { *p = v; }
+inline double v_min(double a, double b) { return std::min(a, b); }
+inline double v_max(double a, double b) { return std::max(a, b); }
+#endif
+
+CV_CPU_OPTIMIZATION_HAL_NAMESPACE_END
+
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
@@ -25,6 +50,38 @@ template <typename V> struct Chunk
 {
     static constexpr int LANES = VTraits<V>::max_nlanes, VECTORS = CHUNK / LANES;
 };
+
+//! Packed at the low end. @param comparisons readable up to Group::SIZE bytes behind the group's first.
+inline unsigned bitsOf(const ChosenBits::Group& group, const uchar* comparisons)
+{
+    const uchar* const bytes = comparisons + group.byte;
+#if CV_SSSE3 || (CV_NEON && defined __aarch64__)
+    const v_uint8x16 masks = v_load(group.masks);
+#if CV_SSSE3
+    const v_uint8x16 found(_mm_shuffle_epi8(v_load(bytes).val, v_load(group.places).val));
+#else
+    const v_uint8x16 found(vqtbl1q_u8(v_load(bytes).val, v_load(group.places).val));
+#endif
+    return (unsigned)v_signmask((found & masks) == masks);
+#else
+    unsigned bits = 0;
+    for (int i = 0; i < group.count; i++)
+        bits |= (unsigned)((bytes[group.places[i]] & group.masks[i]) != 0) << i;
+    return bits;
+#endif
+}
+
+//! Appends the chosen bits of a phase.
+inline void appendChosen(const ChosenBits& chosen, const uchar* comparisons, BitAppender& out)
+{
+#if CV_AVX512_SKX  // GCC 12 leaves upper halves in use; code without AVX that follows, also a user's, runs at half the speed
+    _mm256_zeroupper();
+#endif
+    BitAppender writer = out;  // a copy, which stores to uchar* surely do not change
+    for (const ChosenBits::Group& group : chosen.groups())
+        writer.append(bitsOf(group, comparisons), group.count);
+    out = writer;
+}
 
 // How cells are compared.
 
@@ -68,6 +125,21 @@ inline v_int32 loadCells(const ushort* p) { return v_reinterpret_as_s32(vx_load_
 inline v_int32 loadCells(const unsigned* p) { return v_reinterpret_as_s32(vx_load(p)); }
 
 inline v_int32 repeated(int v, const v_int32&) { return vx_setall_s32(v); }
+
+// The same of doubles, where products of 32 bits are too small.
+
+inline v_doubles loadCells(const double* p) { return loadDoubles(p); }
+inline v_doubles repeated(int v, const v_doubles&) { return repeatedDouble(v); }
+
+inline void storeAlternately(double* even, double* odd, int lane, const v_doubles& v)
+{
+#if CV_AVX512_SKX
+    v_store_low(even + lane / 2, v);
+    v_store_high(odd + lane / 2, v);
+#else
+    v_store((lane % 8 < 4 ? even : odd) + lane / 8 * 4 + lane % 4, v);
+#endif
+}
 
 //! A vector whose comparisons are bits, a bit a lane.
 template <typename V> struct Lanes

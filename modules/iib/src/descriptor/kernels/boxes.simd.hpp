@@ -4,8 +4,8 @@
 
 #pragma once
 
+#include "bits.simd.hpp"
 #include "boxes.hpp"
-#include "chosen_bits.simd.hpp"
 
 namespace cv {
 namespace iib {

@@ -281,6 +281,54 @@ void sumRow16(const short* const planes[GROUP_CHANNELS], int width, const ushort
     }
 }
 
+// Where 16 bits are too small for the sums over cells.
+
+inline v_uint32 repeatLastFour(const v_uint32& v)
+{
+#if CV_AVX512_SKX
+    return v_uint32(_mm512_shuffle_i32x4(v.val, v.val, 0xff));
+#elif CV_AVX2
+    return v_uint32(_mm256_permute2x128_si256(v.val, v.val, 0x11));
+#else
+    return v;
+#endif
+}
+
+void sumRow32(const short* const planes[GROUP_CHANNELS], int width, const unsigned* above, unsigned* out)
+{
+    const int step = VTraits<v_uint16>::max_nlanes, pixelsInVector = step / GROUP_CHANNELS / 2;
+    v_uint32 carry = vx_setzero_u32();
+    for (int x = 0; x < width; x += step)
+    {
+        v_uint16 pixels[4];
+        interleave(planes, x, pixels);
+        for (int i = 0; i < 8; i += 2)
+        {
+            v_uint32 sums[2];
+            v_expand(pixels[i / 2], sums[0], sums[1]);
+            for (int j = 0; j < 2; j++)
+            {
+                const int at = (x + (i + j) * pixelsInVector + 1) * GROUP_CHANNELS;
+                v_store(out + at, sums[j] + carry + vx_load(above + at));
+                if ((i + j + 1) * pixelsInVector % 4 == 0)
+                    carry = carry + repeatLastFour(sums[j]);
+            }
+        }
+    }
+}
+
+//! Of 16-bit images, whose sums over four pixels exceed 16 bits. A pixel is one 128-bit vector here, on every machine.
+void sumRowOf16Bit(const int* const planes[GROUP_CHANNELS], int width, const unsigned* above, unsigned* out)
+{
+    v_uint32x4 sum = v_setzero_u32();
+    for (int x = 0; x < width; x++)
+    {
+        sum = sum + v_uint32x4((unsigned)planes[0][x], (unsigned)planes[1][x], (unsigned)planes[2][x],
+                            (unsigned)planes[3][x]);
+        v_store(out + 4 * (x + 1), sum + v_load(above + 4 * (x + 1)));
+    }
+}
+
 template <typename T> RowKernels<T> rowKernels()
 {
     const RowKernels<T> k = {imageChannelRows<T>, widenRow, widenRow};
