@@ -17,8 +17,7 @@ Range extent(const Rect& r, bool vertical)
 }
 
 //! Splits at gaps along one axis. Linear in the keypoints and in the axis.
-std::vector<Indices> splitAtGaps(
-        const std::vector<Rect>& regions, const Indices& keypoints, bool vertical, int64& visits)
+std::vector<Indices> splitAtGaps(const std::vector<Rect>& regions, const Indices& keypoints, bool vertical)
 {
     Range all(INT_MAX, INT_MIN);
     for (int k : keypoints)
@@ -34,7 +33,6 @@ std::vector<Indices> splitAtGaps(
         part[e.start - all.start]++;
         part[e.end - all.start]--;
     }
-    visits += 3 * (int64)keypoints.size() + all.size();
     int open = 0, parts = 0;
     for (int& p : part)
     {
@@ -53,7 +51,7 @@ std::vector<Indices> splitAtGaps(
 }
 
 //! Splits along both axes in turn until there is no gap left or enough rounds have passed.
-std::vector<Indices> splitInRounds(const std::vector<Rect>& regions, const Indices& keypoints, int64& visits)
+std::vector<Indices> splitInRounds(const std::vector<Rect>& regions, const Indices& keypoints)
 {
     std::vector<Indices> parts(1, keypoints);
     bool lastSplit = true;  // whether the round before did
@@ -61,7 +59,7 @@ std::vector<Indices> splitInRounds(const std::vector<Rect>& regions, const Indic
     {
         std::vector<Indices> next;
         for (const Indices& part : parts)
-            for (Indices& piece : splitAtGaps(regions, part, round % 2 == 0, visits))
+            for (Indices& piece : splitAtGaps(regions, part, round % 2 == 0))
                 next.push_back(std::move(piece));
         const bool split = next.size() > parts.size();
         parts.swap(next);
@@ -114,15 +112,11 @@ void cutStrips(const std::vector<Rect>& regions, const Indices& keypoints, Rect 
 
 }  // namespace
 
-std::vector<Indices> cutBatches(
-        const std::vector<Rect>& regions, const Indices& keypoints, int workers, int64* visits)
+std::vector<Indices> cutBatches(const std::vector<Rect>& regions, const Indices& keypoints, int workers)
 {
     if (keypoints.empty())
         return std::vector<Indices>();
-    int64 count = 0;
-    const std::vector<Indices> parts = splitInRounds(regions, keypoints, count);
-    if (visits)
-        *visits = count;
+    const std::vector<Indices> parts = splitInRounds(regions, keypoints);
     std::vector<Indices> batches;
 
     std::vector<Rect> areas;

@@ -36,10 +36,9 @@ static constexpr int MAX_CUTS = 8;
 
  @param regions the pixels that each keypoint of an image needs, not empty.
  @param keypoints indices of those to cut.
- @param visits if not null, gets the number of keypoints and of positions along an axis that were looked at.
  @return indices of the keypoints of each batch. */
 std::vector<std::vector<int>> cutBatches(
-        const std::vector<Rect>& regions, const std::vector<int>& keypoints, int workers, int64* visits = 0);
+        const std::vector<Rect>& regions, const std::vector<int>& keypoints, int workers);
 
 //! @param regions of all keypoints of an image. @param keypoints their indices, one or more.
 KeyPointBatch makeBatch(const std::vector<Rect>& regions, const std::vector<int>& keypoints);
