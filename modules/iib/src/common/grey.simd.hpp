@@ -36,7 +36,7 @@ inline v_uint16 weighted(const v_uint16& b, const v_uint16& g, const v_uint16& r
     return v_pack(halves[0], halves[1]);
 }
 
-inline void greyOf(const v_uint8& b, const v_uint8& g, const v_uint8& r, uchar* out)
+inline void storeGrey(const v_uint8& b, const v_uint8& g, const v_uint8& r, uchar* out)
 {
     v_uint16 bs[2], gs[2], rs[2];
     v_expand(b, bs[0], bs[1]);
@@ -45,7 +45,7 @@ inline void greyOf(const v_uint8& b, const v_uint8& g, const v_uint8& r, uchar* 
     v_store(out, v_pack(weighted(bs[0], gs[0], rs[0]), weighted(bs[1], gs[1], rs[1])));
 }
 
-inline void greyOf(const v_uint16& b, const v_uint16& g, const v_uint16& r, ushort* out)
+inline void storeGrey(const v_uint16& b, const v_uint16& g, const v_uint16& r, ushort* out)
 {
     v_uint32 bs[2], gs[2], rs[2], sums[2];
     v_expand(b, bs[0], bs[1]);
@@ -71,7 +71,7 @@ template <int CHANNELS, typename T> void greyRow(const T* in, T* out, int width)
             v_load_deinterleave(in + 3 * x, b, g, r);
         else
             v_load_deinterleave(in + 4 * x, b, g, r, a);
-        greyOf(b, g, r, out + x);
+        storeGrey(b, g, r, out + x);
     };
     for (int x = 0; x <= width - N; x += N)
         vector(x);

@@ -34,8 +34,9 @@ void saveCodes(const String& filename, const MatcherParameters& p, const PackedC
     file.commit();
 }
 
-static MatcherParameters readParameters(CheckedReader& file)
+Ptr<PackedCodes> loadCodes(const String& filename, MatcherParameters& parameters)
 {
+    CheckedReader file(filename, KIND);
     MatcherParameters p;
     p.levelSizes = file.list<int>(4);
     p.mode = (int)file.word();
@@ -43,16 +44,10 @@ static MatcherParameters readParameters(CheckedReader& file)
     p.maxRatio = file.real();
     for (size_t i = 0; i < p.stages(); i++)
         p.thresholds.push_back(file.real());
-    return p;
-}
-
-Ptr<PackedCodes> loadCodes(const String& filename, MatcherParameters& parameters)
-{
-    CheckedReader file(filename, KIND);
-    parameters = readParameters(file);
-    checkLevelSizesGiven(parameters.levelSizes);
-    check(parameters);
-    const Ptr<PackedCodes> codes = makePtr<PackedCodes>(parameters.levelSizes);
+    checkLevelSizesGiven(p.levelSizes);
+    check(p);
+    parameters = p;
+    const Ptr<PackedCodes> codes = makePtr<PackedCodes>(p.levelSizes);
     const int width = codes->layout().bytes();
     const std::vector<uint64> rows = file.list<uint64>(8);
     uint64 total = 0;

@@ -104,20 +104,20 @@ template <class S> void scanAll(S&& scanner, int queryCount)
         scanner.template row<1>(q);
 }
 
-void scanNearest(const NearestScan& scan)
+void nearest(const NearestScan& scan)
 {
     NearestScanner scanner(scan);
     scanAll(scanner, scan.pairs.queries.rows);
     scanner.keepOfTrains();
 }
 
-void scanPruned(const PrunedScan& scan) { scanAll(PrunedScanner(scan), scan.pairs.queries.rows); }
+void pruned(const PrunedScan& scan) { scanAll(PrunedScanner(scan), scan.pairs.queries.rows); }
 
 }  // namespace
 
 const HammingKernels& hammingKernels()
 {
-    static const HammingKernels kernels = {PACKING, scanNearest, scanPruned, IIB_INSTRUCTION_SET};
+    static const HammingKernels kernels = {PACKING, nearest, pruned, IIB_INSTRUCTION_SET};
     return kernels;
 }
 
