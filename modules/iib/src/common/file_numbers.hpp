@@ -10,6 +10,15 @@
 namespace cv {
 namespace iib {
 
+//! Throws "NAME is VALUE; it must be WHAT" unless that holds.
+inline void require(
+        bool holds, const char* name, double value, const char* what, int code = Error::StsOutOfRange)
+{
+    if (!holds)
+        CV_Error(code, format(value == std::floor(value) ? "%s is %.0f; it must be %s" : "%s is %g; it must be %s",
+                               name, value, what));
+}
+
 //! What a node is, for errors.
 inline String describeNode(const FileNode& node)
 {

@@ -13,19 +13,14 @@
 namespace cv {
 namespace iib {
 
-static void require(bool ok, Error::Code code, const String& message)
-{
-    if (!ok)
-        CV_Error(code, message);
-}
-
 static void checkBoxes(const Parameters& p)
 {
-    require(p.granularity <= BOX_LEVELS, Error::StsOutOfRange,
-            format("granularity is %d; of MAPPING_BOXES it must be 1 to %d", p.granularity, BOX_LEVELS));
-    require((p.channels & IIB::CHANNEL_ORIENTATION) == 0 && p.extraChannels == 0, Error::StsBadArg,
-            "MAPPING_BOXES takes neither CHANNEL_ORIENTATION nor extra channels; set others first");
-    require(!p.overlap, Error::StsBadArg, "boxes always overlap; set overlap to false for MAPPING_BOXES");
+    require(p.granularity <= BOX_LEVELS, "granularity", p.granularity, "1 to 5 with MAPPING_BOXES");
+    if ((p.channels & IIB::CHANNEL_ORIENTATION) || p.extraChannels != 0)
+        CV_Error(Error::StsBadArg,
+                "MAPPING_BOXES takes neither CHANNEL_ORIENTATION nor extra channels; set others first");
+    if (p.overlap)
+        CV_Error(Error::StsBadArg, "boxes always overlap; set overlap to false for MAPPING_BOXES");
 }
 
 static void checkSelection(const Parameters& p)
@@ -38,42 +33,42 @@ static void checkSelection(const Parameters& p)
     {
         const int* quad = p.selection[i];
         const int level = quad[0], channel = quad[1], row = quad[2], col = quad[3], bits = quad[4];
-        const String where = format("selection, row %d: ", i);
-        require(level >= last && level <= p.granularity, Error::StsOutOfRange,
-                where + format("level %d is not in %d..%d (levels must not descend)", level, last,
-                                p.granularity));
-        require(channel >= 0 && channel < channels, Error::StsOutOfRange,
-                where + format("channel %d is not in 0..%d", channel, channels - 1));
+        const auto refuse = [i](const String& why) {
+            CV_Error(Error::StsOutOfRange, format("selection, row %d: ", i) + why);
+        };
+        if (level < last || level > p.granularity)
+            refuse(format("level %d is not in %d..%d (levels must not descend)", level, last, p.granularity));
+        if (channel < 0 || channel >= channels)
+            refuse(format("channel %d is not in 0..%d", channel, channels - 1));
         const int n = placesInRow(p.mapping, level);
-        require(row >= 0 && row < n && col >= 0 && col < n, Error::StsOutOfRange,
-                where + format("cell (%d, %d) is not in 0..%d", row, col, n - 1));
+        if (row < 0 || row >= n || col < 0 || col >= n)
+            refuse(format("cell (%d, %d) is not in 0..%d", row, col, n - 1));
         const int mask = bitsOfPlace(p.mapping, kinds[channel], level, row, col);
-        require(bits > 0 && (bits & ~mask) == 0, Error::StsOutOfRange,
-                where + format("bit mask %d must have some of the bits of %d and no others", bits, mask));
-        const std::array<int, 4> place = {{level, channel, row, col}};
-        require(seen.insert(place).second, Error::StsBadArg, where + "the quad was given before");
+        if (bits <= 0 || (bits & ~mask) != 0)
+            refuse(format("bit mask %d must have some of the bits of %d and no others", bits, mask));
+        if (!seen.insert(std::array<int, 4>{{level, channel, row, col}}).second)
+            CV_Error(Error::StsBadArg, format("selection, row %d: the quad was given before", i));
         last = level;
     }
 }
 
 void Parameters::check() const
 {
-    require(scaleFactor > 0 && scaleFactor <= FLT_MAX, Error::StsOutOfRange,
-            format("scaleFactor is %g; it must be positive and finite (see scaleFactorFor)", scaleFactor));
-    require(granularity >= 1 && granularity <= MAX_GRANULARITY, Error::StsOutOfRange,
-            format("granularity is %d; it must be 1 to %d", granularity, MAX_GRANULARITY));
-    require((channels & ~ALL_CHANNELS) == 0, Error::StsBadArg,
-            format("channels is %d, with unknown bits; it must be a sum of CHANNEL_ values", channels));
-    require(mapping >= IIB::MAPPING_MEAN && mapping <= IIB::MAPPING_BOXES, Error::StsBadArg,
-            format("mapping is %d; it must be one of the MAPPING_ values", mapping));
-    require(extraChannels >= 0 && extraChannels <= MAX_EXTRA_CHANNELS, Error::StsOutOfRange,
-            format("extraChannels is %d; it must be 0 to %d", extraChannels, MAX_EXTRA_CHANNELS));
-    require(channelCount() > 0, Error::StsBadArg, "there are neither channels nor extraChannels to describe");
-    require(border >= IIB::BORDER_CLAMP && border <= IIB::BORDER_REFLECT, Error::StsBadArg,
-            format("border is %d; it must be one of the BORDER_ values", border));
-    require(orientation >= IIB::ORIENTATION_NONE && orientation <= IIB::ORIENTATION_GRADIENT,
-            Error::StsBadArg,
-            format("orientation is %d; it must be one of the ORIENTATION_ values", orientation));
+    require(scaleFactor > 0 && scaleFactor <= FLT_MAX, "scaleFactor", scaleFactor,
+            "positive and finite (see scaleFactorFor)");
+    require(granularity >= 1 && granularity <= MAX_GRANULARITY, "granularity", granularity, "1 to 6");
+    require((channels & ~ALL_CHANNELS) == 0, "channels", channels, "a sum of CHANNEL_ values",
+            Error::StsBadArg);
+    require(mapping >= IIB::MAPPING_MEAN && mapping <= IIB::MAPPING_BOXES, "mapping", mapping,
+            "one of the MAPPING_ values", Error::StsBadArg);
+    require(extraChannels >= 0 && extraChannels <= MAX_EXTRA_CHANNELS, "extraChannels", extraChannels,
+            "0 to 16");
+    if (channelCount() == 0)
+        CV_Error(Error::StsBadArg, "there are neither channels nor extraChannels to describe");
+    require(border >= IIB::BORDER_CLAMP && border <= IIB::BORDER_REFLECT, "border", border,
+            "one of the BORDER_ values", Error::StsBadArg);
+    require(orientation >= IIB::ORIENTATION_NONE && orientation <= IIB::ORIENTATION_GRADIENT, "orientation",
+            orientation, "one of the ORIENTATION_ values", Error::StsBadArg);
     if (mapping == IIB::MAPPING_BOXES)
         checkBoxes(*this);
     checkSelection(*this);

@@ -17,10 +17,6 @@ namespace iib {
 
 void HessianParameters::check() const
 {
-    const auto require = [](bool holds, const char* name, double value, const char* range) {
-        if (!holds)
-            CV_Error(Error::StsOutOfRange, format("%s is %g; it must be %s", name, value, range));
-    };
     require(maxFeatures >= 0, "maxFeatures", maxFeatures, "0 (all) or more");
     require(threshold >= 0 && threshold < std::numeric_limits<float>::infinity(), "threshold", threshold,
             "0 or more, and finite");

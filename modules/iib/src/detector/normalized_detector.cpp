@@ -15,11 +15,7 @@ namespace iib {
 
 namespace {
 
-void checkSigma(float sigma)
-{
-    if (!(sigma >= 1 && sigma <= 256))
-        CV_Error(Error::StsOutOfRange, format("sigma is %g; it must be 1 to 256 pixels", sigma));
-}
+void checkSigma(float sigma) { require(sigma >= 1 && sigma <= 256, "sigma", sigma, "1 to 256 pixels"); }
 
 class NormalizedDetector_Impl CV_FINAL : public NormalizedDetector, public AnyImage
 {

@@ -203,8 +203,7 @@ public:
     void radiusMatch(InputArray queries_, std::vector<std::vector<DMatch>>& matches, float maxDistance,
             InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE
     {
-        if (!(maxDistance > std::numeric_limits<float>::epsilon()))
-            CV_Error_(Error::StsOutOfRange, ("maxDistance is %g: it has to be > 0", maxDistance));
+        require(maxDistance > FLT_EPSILON, "maxDistance", maxDistance, "above 0");
         const Mat queries = queries_.getMat();
         const Ptr<const PackedCodes> trains = trainCodes(queries);
         const CodeLayout& layout = trains->layout();
@@ -300,8 +299,7 @@ private:
 
     KnnTable nearest(const PackedCodes& trains, const Mat& queries, int k, InputArrayOfArrays masks) const
     {
-        if (k <= 0)
-            CV_Error_(Error::StsOutOfRange, ("k is %d: it has to be > 0", k));
+        require(k > 0, "k", k, "above 0");
         const PruningPolicy policy =
                 parameters.mode == ADAPTIVE ? adaptivePolicy(trains.layout()) : PruningPolicy();
         return findNearest(

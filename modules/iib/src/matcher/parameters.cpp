@@ -11,8 +11,7 @@ namespace iib {
 
 void checkThreshold(float threshold)
 {
-    if (!(threshold >= 0 && threshold <= 1))
-        CV_Error_(Error::StsOutOfRange, ("the threshold is %g: it has to be 0 to 1", threshold));
+    require(threshold >= 0 && threshold <= 1, "the threshold", threshold, "0 to 1");
 }
 
 void checkLevelSizesGiven(const std::vector<int>& levelSizes)
@@ -29,14 +28,13 @@ void check(const MatcherParameters& p)
     {
         if (p.levelSizes[i] <= 0)
             CV_Error_(Error::StsOutOfRange,
-                    ("levelSizes[%d] is %d: each has to be > 0", (int)i, p.levelSizes[i]));
+                    ("levelSizes[%d] is %d; each must be above 0", (int)i, p.levelSizes[i]));
         width += p.levelSizes[i];
     }
     if (width > 1 << 20)
         CV_Error(Error::StsOutOfRange, "levelSizes: descriptors of more than 1 MB are not supported");
-    if (p.mode != HierarchicalMatcher::EXACT && p.mode != HierarchicalMatcher::THRESHOLD &&
-            p.mode != HierarchicalMatcher::ADAPTIVE)
-        CV_Error_(Error::StsBadArg, ("mode is %d: use EXACT, THRESHOLD or ADAPTIVE", p.mode));
+    require(p.mode >= HierarchicalMatcher::EXACT && p.mode <= HierarchicalMatcher::ADAPTIVE, "mode", p.mode,
+            "EXACT, THRESHOLD or ADAPTIVE", Error::StsBadArg);
     if (p.thresholds.size() != p.stages())
         CV_Error_(Error::StsBadArg,
                 ("%d thresholds for %d levels: give one for each level but the last, or a single "
@@ -44,8 +42,7 @@ void check(const MatcherParameters& p)
                         (int)p.thresholds.size(), (int)p.levelSizes.size()));
     for (size_t i = 0; i < p.thresholds.size(); i++)
         checkThreshold(p.thresholds[i]);
-    if (!(p.maxRatio > 0 && p.maxRatio <= 1))
-        CV_Error_(Error::StsOutOfRange, ("maxRatio is %g: it has to be above 0 and at most 1", p.maxRatio));
+    require(p.maxRatio > 0 && p.maxRatio <= 1, "maxRatio", p.maxRatio, "above 0 and at most 1");
 }
 
 std::vector<Mat> imagesOf(InputArrayOfArrays descriptors)
@@ -64,7 +61,7 @@ Mat checkedDescriptors(const Mat& descriptors, int width, bool byFirstCodes)
         return Mat(0, width, CV_8U);
     if (descriptors.dims != 2 || descriptors.type() != CV_8U)
         CV_Error(Error::StsUnsupportedFormat,
-                "Descriptors have to be a matrix of type CV_8U (uint8), a row a descriptor, not " +
+                "Descriptors must be a matrix of type CV_8U (uint8), a row a descriptor, not " +
                         typeToString(descriptors.type()) + "; for floats, as of SIFT, take BFMatcher");
     if (descriptors.cols != width)
         CV_Error_(Error::StsUnmatchedSizes,

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <numeric>
 
+#include "../common/file_numbers.hpp"
 #include "parameters.hpp"
 
 namespace cv {
@@ -99,7 +100,7 @@ std::vector<Mat> checkedMasks(InputArrayOfArrays masks_, int queries, const Pack
         if (!masks[i].empty() && (masks[i].type() != CV_8UC1 || masks[i].rows != queries ||
                                          (size_t)masks[i].cols != index.rows(i)))
             CV_Error_(Error::StsBadMask,
-                    ("masks[%d] has to be CV_8UC1 with %d rows (queries) and %d columns (train "
+                    ("masks[%d] must be CV_8UC1 with %d rows (queries) and %d columns (train "
                      "rows)",
                             (int)i, queries, (int)index.rows(i)));
     }
@@ -165,8 +166,7 @@ void PackedCodes::findNearest(const std::vector<int>& levelSizes, const std::vec
 {
     const int width = std::accumulate(levelSizes.begin(), levelSizes.end(), 0);
     const Mat queries = checkedDescriptors(queries_.getMat(), width, false);
-    if (k <= 0)
-        CV_Error_(Error::StsOutOfRange, ("k is %d: it has to be > 0", k));
+    require(k > 0, "k", k, "above 0");
     size_t count = 0;
     for (const CodePart& part : parts)
         count += part.codes->rows();
