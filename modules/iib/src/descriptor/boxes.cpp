@@ -113,32 +113,32 @@ double cellsInSide(double side, const BoxPlan::Level& level)
     return std::max(std::floor(side / BOX_CELL * level.side + 0.5), 1.);
 }
 
-template <typename T>
-void describeBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch,
-        const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels, Workspace& workspace,
-        Mat& descriptors)
+template <typename T> void describeBatch(const BatchJob& job)
 {
-    const bool rotated = regions[batch.keypoints[0]].isRotated();
+    const DescriptorPlan& plan = job.plan;
+    const KeyPointBatch& batch = job.batch;
+    const Mat& grey = job.grey;
+    const bool rotated = job.regions[batch.keypoints[0]].isRotated();
     const BoxKernels& kernels = plan.boxes.kernels;
     const BoxSumKernels<T>& sums = kernels.sums(T());
     const std::vector<Channel> source = {{IIB::CHANNEL_SIGNED_GRAD_X, grey},
             {IIB::CHANNEL_SIGNED_GRAD_Y, grey}, {IIB::CHANNEL_INTENSITY, grey}};
-    CellBand<T> band(source, batch.area, batch.rows + KeyPointBatch::BAND_ROWS, plan, rotated, workspace);
+    CellBand<T> band(source, batch.area, batch.rows + KeyPointBatch::BAND_ROWS, plan, rotated, job.workspace);
     const auto& integral = band.integral();
-    T* const means = workspace.boxMeans.get<T>(MAX_BOX_MEANS);
+    T* const means = job.workspace.boxMeans.get<T>(MAX_BOX_MEANS);
     BoxFrame frame;
     frame.bounds = boundsOf(plan.parameters.border, grey.size());
     frame.left = integral.origin.x;
     frame.count = integral.count;
     BoxEdges edges;
+    BoxPlaces& places = job.workspace.boxPlaces;
     const Rotation upright(0);
     float matrix[BOX_LANES][BOX_LANES];
-
     for (int k : batch.keypoints)
     {
-        const SupportRegion& region = regions[k];
+        const SupportRegion& region = job.regions[k];
         const Rotation rotation = rotated ? Rotation(region.angle) : upright;
-        band.advance(batch.bandEnd(pixels[k].br().y));
+        band.advance(batch.bandEnd(job.pixels[k].br().y));
         frame.centre = Point2d((region.centre.x + 0.5) / BOX_CELL, (region.centre.y + 0.5) / BOX_CELL);
         frame.side = region.side / BOX_CELL;
         frame.shift = integral.shift(band.oldest());
@@ -152,23 +152,23 @@ void describeBatch(const DescriptorPlan& plan, const Mat& grey, const KeyPointBa
             {
                 kernels.places(frame, level.shape, level.centres.data(),
                         Point2d(rotation.cosine, rotation.sine), cellsInSide(region.side, level),
-                        (int)integral.step / BOX_LANES, workspace.boxPlaces);
-                sums.rotatedMeans(integral, level.shape, workspace.boxPlaces, matrix, means);
+                        (int)integral.step / BOX_LANES, places);
+                sums.rotatedMeans(integral, level.shape, places, matrix, means);
             }
             else
                 sums.means(integral, level.shape, edges, means);
-            sums.bits(means, level.shape, level.chosen, level.offset, descriptors.ptr(k));
+            sums.bits(means, level.shape, level.chosen, level.offset, job.descriptors.ptr(k));
         }
     }
 }
 
 //! Whether 32 bits hold the sums over all boxes of a batch of 8-bit pixels.
-bool sumsAreShort(const BoxPlan& plan, const KeyPointBatch& batch, const std::vector<SupportRegion>& regions)
+bool sumsAreShort(const BatchJob& job)
 {
     const double largest = 6 * 255 * BOX_CELL * BOX_CELL;  // |gx + gy| of a cell
     double cells = 0;
-    for (int k : batch.keypoints)
-        cells = std::max(cells, cellsInSide(regions[k].side, plan.levels[0]) + 1);
+    for (int k : job.batch.keypoints)
+        cells = std::max(cells, cellsInSide(job.regions[k].side, job.plan.boxes.levels[0]) + 1);
     return largest * cells * cells <= INT_MAX;
 }
 
@@ -181,13 +181,9 @@ Rect boxPixels(const SupportRegion& region, int border, Size image)
     return pixelsOf(cellsOf(extent.pixels(pixelsOf(boundsOf(border, image)))));
 }
 
-void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch,
-        const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels, Workspace& workspace,
-        Mat& descriptors)
+void describeBoxes(const BatchJob& job)
 {
-    const bool isShort = grey.depth() == CV_8U && sumsAreShort(plan.boxes, batch, regions);
-    const auto describe = isShort ? describeBatch<short> : describeBatch<int>;
-    describe(plan, grey, batch, regions, pixels, workspace, descriptors);
+    (job.grey.depth() == CV_8U && sumsAreShort(job) ? describeBatch<short> : describeBatch<int>)(job);
 }
 
 }  // namespace iib

@@ -77,12 +77,13 @@ void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Ma
     const std::vector<Indices> jobs = cutJobs(regions, pixels);
     parallelJobs((int)jobs.size(), [&](int i, Workspace& workspace) {
         const KeyPointBatch batch = makeBatch(pixels, jobs[i]);
+        const BatchJob job = {plan, grey, channels, regions, pixels, batch, workspace, descriptors};
         if (plan.isOfBoxes())
-            describeBoxes(plan, grey, batch, regions, pixels, workspace, descriptors);
+            describeBoxes(job);
         else if (regions[jobs[i][0]].isRotated())
-            describeRotated(plan, channels, batch, regions, pixels, workspace, descriptors);
+            describeRotated(job);
         else
-            describeUpright(plan, channels, batch, regions, workspace, descriptors);
+            describeUpright(job);
     });
 }
 

@@ -35,15 +35,15 @@ inline double largestWeight(const LevelShape& shape, const CellEdges& edges)
     return largestWeight(x, shape.n) * largestWeight(y, shape.n);
 }
 
-//! The bits of a group of channels of one keypoint, where the values of a pixel of four cells sum up to `largest` at most.
+/** The bits of a group of channels of one keypoint, level by level, from the sums over its finest cells. Products of sums and
+ weights are integers of 32 bits at the finest levels, as far as these surely fit, and doubles at the others. */
 struct LevelWriter
 {
-    const DescriptorPlan& plan;
+    const BatchJob& job;
     const ChannelGroup& group;
     const CellEdges& edges;
-    const double largest;
-    Workspace& workspace;
-    uchar* const descriptor;
+    const double largest;     //!< what the values of a pixel of four cells sum up to at most
+    uchar* const descriptor;  //!< which has the bits of the groups before
 
     //! Whether the largest weighted sum of a level surely fits an int, where no cell is longer than `longest`.
     bool fitsInt(int level, double longest) const
@@ -55,19 +55,19 @@ struct LevelWriter
     //! A level and all coarser ones.
     template <typename Sum> void write(int level, const CellGrid<Sum>& cells, double longest) const
     {
-        auto& parents = workspace.sumsOf(typename BitsKernels<Sum>::Parent(), level - 1);
-        plan.kernels.bits(Sum()).write[plan.parameters.mapping](
+        auto& parents = job.workspace.sumsOf(typename BitsKernels<Sum>::Parent(), level - 1);
+        job.plan.kernels.bits(Sum()).write[job.plan.parameters.mapping](
                 cells, group.levels[level], edges, parents, descriptor);
         if (level > 1)
             writeFitting(level - 1, parents, 2 * longest);
     }
 
-    //! The same, in doubles where integers are too small.
+    //! The same, in doubles where integers are too small. @param longest a bound of the difference of neighbouring edges.
     template <typename Sum> void writeFitting(int level, const CellGrid<Sum>& cells, double longest) const
     {
         if (fitsInt(level, longest))
             return write(level, cells, longest);
-        CellGrid<double>& wide = workspace.sumsOf(double(), level);
+        CellGrid<double>& wide = job.workspace.sumsOf(double(), level);
         widen(cells, wide);
         write(level, wide, longest);
     }
@@ -76,21 +76,6 @@ struct LevelWriter
         write(level, cells, longest);
     }
 };
-
-/** The bits of one group of channels, level by level, from the sums over the finest cells of a keypoint; the groups before
- have written theirs. Products of sums and weights are integers of 32 bits at the finest levels, as far as these surely fit,
- and doubles at the others.
-
-@param cells of ushort, unsigned, or double where no unsigned holds the sums.
-@param longestCell a bound of the difference of neighbouring edges.
-@param maxValue the largest value that is summed. */
-template <typename Sum>
-void writeBits(const DescriptorPlan& plan, const ChannelGroup& group, const CellGrid<Sum>& cells,
-        const CellEdges& edges, double longestCell, int maxValue, Workspace& workspace, uchar* descriptor)
-{
-    const LevelWriter writer = {plan, group, edges, 4. * maxValue, workspace, descriptor};
-    writer.writeFitting(plan.finest, cells, longestCell);
-}
 
 }  // namespace iib
 }  // namespace cv

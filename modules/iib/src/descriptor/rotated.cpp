@@ -44,8 +44,8 @@ CellEdges equalEdges(int n, int cell)
 template <typename T> class CellSampler
 {
 public:
-    CellSampler(const DescriptorPlan& plan_, const std::vector<Channel>& channels_, Workspace& workspace_)
-        : plan(plan_), channels(channels_), workspace(workspace_), kernels(plan_.kernels.pixels(T()).rotated)
+    explicit CellSampler(const BatchJob& job_)
+        : job(job_), channels(job.channels), kernels(job.plan.kernels.pixels(T()).rotated)
     {
         const int kinds = (int)channels.size();
         for (int i = 0, maps = IMAGE_PLANES; i < kinds; i++)
@@ -55,7 +55,7 @@ public:
                 place++;
             planeOf[i] = channels[i].kind ? place : maps++;
         }
-        sums = workspace.planes.get<int>((size_t)(IMAGE_PLANES + kinds + GROUP_CHANNELS) * MAX_SAMPLES);
+        sums = job.workspace.planes.get<int>((size_t)(IMAGE_PLANES + kinds + GROUP_CHANNELS) * MAX_SAMPLES);
     }
 
     //! All planes of sums. @param points of the grid. @param angle of its rotation, in degrees.
@@ -84,16 +84,18 @@ public:
     //! The bits of all groups of channels.
     void write(const SampleGrid& grid, uchar* descriptor)
     {
+        const DescriptorPlan& plan = job.plan;
         const int n = plan.cellsInRow(), cell = grid.n / n;
         const CellEdges edges = equalEdges(n, cell);
         const auto parentSums = plan.kernels.longBits.parentSums;
         for (const ChannelGroup& group : plan.groups)
         {
-            CellGrid<unsigned>* cells[2] = {&workspace.samples, &workspace.sums[plan.finest]};
+            CellGrid<unsigned>* cells[2] = {&job.workspace.samples, &job.workspace.sums[plan.finest]};
             const int largest = interleave(group, grid, *cells[0]);
             for (; cells[0]->size() > n; std::swap(cells[0], cells[1]))
                 parentSums(*cells[0], *cells[1]);
-            writeBits(plan, group, *cells[0], edges, cell, largest, workspace, descriptor);
+            const LevelWriter writer = {job, group, edges, 4. * largest, descriptor};
+            writer.writeFitting(plan.finest, *cells[0], cell);
         }
     }
 
@@ -121,9 +123,8 @@ private:
         return maxValue(&channels[group.first], group.count, gradient);
     }
 
-    const DescriptorPlan& plan;
+    const BatchJob& job;
     const std::vector<Channel>& channels;
-    Workspace& workspace;
     const RotatedSampleKernels<T>& kernels;
     int planeOf[IMAGE_PLANES + MAX_EXTRA_CHANNELS];  //!< of each channel, in the planes of sums
     int* sums;
@@ -134,38 +135,32 @@ int samplesInRow(const SupportRegion& region, int granularity)
     return region.side <= 64 && granularity <= 5 ? 32 : 64;
 }
 
-template <typename T>
-void describeBatch(const DescriptorPlan& plan, const std::vector<Channel>& channels,
-        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions,
-        const std::vector<Rect>& needed, Workspace& workspace, Mat& descriptors)
+template <typename T> void describeBatch(const BatchJob& job)
 {
+    const DescriptorPlan& plan = job.plan;
     const Parameters& p = plan.parameters;
-    const Size image = channels[0].map.size();
-    const std::vector<std::vector<Channel>> packs = packsOf(channels);
-    CellSampler<T> sampler(plan, channels, workspace);
-    GridPixels<T> pixels(plan.kernels, packs, batch, workspace);
-    for (int k : batch.keypoints)
+    const std::vector<std::vector<Channel>> packs = packsOf(job.channels);
+    CellSampler<T> sampler(job);
+    GridPixels<T> pixels(plan.kernels, packs, job.batch, job.workspace);
+    for (int k : job.batch.keypoints)
     {
-        const SupportRegion& region = regions[k];
+        const SupportRegion& region = job.regions[k];
         const Rotation rotation(region.angle);
         const int n = samplesInRow(region, p.granularity);
         // Two by two samples a cell, unless the cells are fewer.
         const int sub = plan.cellsInRow() == n ? 1 : 2;
-        const SampleGrid grid = gridOf(region, rotation, n, sub, p.border, image);
-        pixels.moveTo(needed[k], grid);
+        const SampleGrid grid = gridOf(region, rotation, n, sub, p.border, job.grey.size());
+        pixels.moveTo(job.pixels[k], grid);
         sampler.sum(pixels, packs, grid, rotation, region.angle);
-        sampler.write(grid, descriptors.ptr(k));
+        sampler.write(grid, job.descriptors.ptr(k));
     }
 }
 
 }  // namespace
 
-void describeRotated(const DescriptorPlan& plan, const std::vector<Channel>& channels,
-        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions,
-        const std::vector<Rect>& pixels, Workspace& workspace, Mat& descriptors)
+void describeRotated(const BatchJob& job)
 {
-    const auto describe = is16Bit(channels) ? describeBatch<int> : describeBatch<short>;
-    describe(plan, channels, batch, regions, pixels, workspace, descriptors);
+    (is16Bit(job.channels) ? describeBatch<int> : describeBatch<short>)(job);
 }
 
 }  // namespace iib

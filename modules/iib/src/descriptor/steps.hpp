@@ -39,8 +39,7 @@ template <typename Work> void parallelJobs(int count, const Work& work)
     });
 }
 
-/* The steps of describing keypoints, each in a source of its own. Regions are those of all keypoints of the image, as are the
-rows of descriptors. */
+/* The steps of describing keypoints, each in a source of its own. */
 
 //! Whether the keypoint's support region, upright or rotated, lies inside the image.
 bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image);
@@ -59,29 +58,36 @@ directions, and so on. */
 void findAngles(const DescriptorPlan& plan, const Mat& grey, const std::vector<KeyPoint>& keypoints,
         std::vector<SupportRegion>& regions);
 
-//! The bits of the keypoints of a batch, all of whose regions are upright. @param channels all of the descriptor.
-void describeUpright(const DescriptorPlan& plan, const std::vector<Channel>& channels,
-        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions, Workspace& workspace,
-        Mat& descriptors);
-
-/** The same of regions that are all rotated. Integral images cannot serve, since |gx| does not rotate with the region: it is
- sampled on a grid of points, and the gradient is rotated at each. @param pixels rotatedPixels() of all regions. */
-void describeRotated(const DescriptorPlan& plan, const std::vector<Channel>& channels,
-        const KeyPointBatch& batch, const std::vector<SupportRegion>& regions,
-        const std::vector<Rect>& pixels, Workspace& workspace, Mat& descriptors);
-
 //! The pixels that the boxes of a region cover, rotated by any angle or upright, in whole cells; some may be reflected.
 Rect boxPixels(const SupportRegion& region, int border, Size image);
 
-/** The descriptors of a batch by MAPPING_BOXES, whose regions are all upright or all rotated.
+/** A batch of keypoints that are described together, and what that takes. Their regions are all upright or all rotated.
+ Regions, pixels and rows of descriptors are those of all keypoints of the image. */
+struct BatchJob
+{
+    const DescriptorPlan& plan;
+    const Mat& grey;                       //!< the image, CV_8U or CV_16U
+    const std::vector<Channel>& channels;  //!< all of the descriptor
+    const std::vector<SupportRegion>& regions;
+    const std::vector<Rect>& pixels;  //!< that each keypoint needs
+    const KeyPointBatch& batch;
+    Workspace& workspace;
+    Mat& descriptors;
+};
+
+//! By sums over cells, where regions are upright.
+void describeUpright(const BatchJob& job);
+
+/** The same where regions are rotated. Integral images cannot serve, since |gx| does not rotate with the region: it is sampled on
+ a grid of points, and the gradient is rotated at each. */
+void describeRotated(const BatchJob& job);
+
+/** By MAPPING_BOXES.
 
 Upright boxes lie on a grid, whose edges many of them share. A rotated keypoint needs no samples: the means of gx and gy
 are linear in them and so rotate as they do, and those of |gx| and |gy| come from the means of |gx|, |gy|, |gx + gy| and
-|gx - gy|, that is, of the gradient's magnitude in four directions. Boxes stay upright; only their centres turn.
-@param grey the image, CV_8U or CV_16U. @param pixels boxPixels() of all regions. */
-void describeBoxes(const DescriptorPlan& plan, const Mat& grey, const KeyPointBatch& batch,
-        const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels, Workspace& workspace,
-        Mat& descriptors);
+|gx - gy|, that is, of the gradient's magnitude in four directions. Boxes stay upright; only their centres turn. */
+void describeBoxes(const BatchJob& job);
 
 }  // namespace iib
 }  // namespace cv
