@@ -7,7 +7,8 @@
 #include "../src/matcher/kernels/hamming.hpp"
 #include "support/test_images.hpp"
 
-// Compilers free the upper halves where they optimize for speed, and that is when it counts: not in sanitized builds (-O1).
+// Compilers free the upper halves where they optimize for speed, and that is when it counts: not in sanitized builds
+// (-O1).
 #if defined(__x86_64__) && defined(__GNUC__) && defined(NDEBUG) && !defined(__OPTIMIZE_SIZE__)
 #define IIB_UPPER_HALVES_ARE_FREED
 #include <cpuid.h>

@@ -47,8 +47,8 @@ inline const String& checkedName(const String& name)
     return name;
 }
 
-//! Writes a whole file as CheckedWriter does, packed by gzip if its name ends in .gz. @throws cv::Exception if it cannot; the old
-//! file is then as it was.
+//! Writes a whole file as CheckedWriter does, packed by gzip if its name ends in .gz. @throws cv::Exception if it
+//! cannot; the old file is then as it was.
 CV_EXPORTS void writeText(const String& filename, const String& text);
 
 class ReplacedFile;
@@ -61,9 +61,9 @@ struct FileKind
     const char* name;
 };
 
-/** Writes beside the file of that name, which stays as it is until commit(), and if anything fails: who reads meanwhile gets
-the old one or the new one. A symbolic link is followed: the file that it leads to is replaced. A link that leads to none is
-refused, and so is what is no regular file: a folder, a device, a pipe. */
+/** Writes beside the file of that name, which stays as it is until commit(), and if anything fails: who reads meanwhile
+gets the old one or the new one. A symbolic link is followed: the file that it leads to is replaced. A link that leads
+to none is refused, and so is what is no regular file: a folder, a device, a pipe. */
 class CV_EXPORTS CheckedWriter
 {
 public:
@@ -118,8 +118,8 @@ public:
     uint64 position() const { return whole - rest; }
     //! Throws if there is more to read.
     void expectEnd() const;
-    //! Throws if so many things of that size cannot be in what is left: whatever the file claims, no more memory is asked
-    //! for than it has bytes.
+    //! Throws if so many things of that size cannot be in what is left: whatever the file claims, no more memory is
+    //! asked for than it has bytes.
     void expect(uint64 count, uint64 size) const;
     //! @throws cv::Exception that names the file, what it should be, and why it is not.
     void fail(const String& why) const;

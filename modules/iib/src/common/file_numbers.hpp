@@ -81,8 +81,8 @@ inline FileNode nodeOfFormat1(const FileNode& node, const char* name)
     return fn;
 }
 
-/** Algorithm::save() that fails loudly, where OpenCV's own leaves half a file on a full disk. @param name of the node around
- what write() writes; empty: none, for names that no node may have. */
+/** Algorithm::save() that fails loudly, where OpenCV's own leaves half a file on a full disk. @param name of the node
+ around what write() writes; empty: none, for names that no node may have. */
 inline void saveWhole(const Algorithm& algorithm, const String& filename, const String& name = String())
 {
     FileStorage fs(filename, FileStorage::WRITE + FileStorage::MEMORY);

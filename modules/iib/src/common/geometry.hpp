@@ -47,7 +47,7 @@ struct Rotation
     }
 
 private:
-    //! Taylor's, on [0, pi / 4]: from last = 14 on that of sin(x) / x, from 15 on cos(x), where the first term left out is below 1e-16.
+    //! Taylor's series on [0, pi / 4], to 1e-16: from last = 14 on that of sin(x) / x, from 15 on that of cos(x).
     static double series(double x, int last)
     {
         double sum = 1;

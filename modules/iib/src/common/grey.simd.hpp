@@ -15,7 +15,7 @@ namespace {
 
 constexpr int BLUE = 3735, GREEN = 19235, RED = 9798, SHIFT = 15;  // as 15-bit fractions their sum is 1
 
-//! Of the lower or the upper half of 16-bit values below 2^15.
+//! The grey of half a vector of pixels, whose values are below 2^15. @param redHalf red beside the 1 that rounds.
 inline v_uint32 weighted(const v_int16& blueGreen, const v_int16& redHalf)
 {
     const v_int32 first = v_reinterpret_as_s32(vx_setall_u32((unsigned)GREEN << 16 | BLUE)),

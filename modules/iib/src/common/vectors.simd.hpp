@@ -96,8 +96,8 @@ constexpr int SHORTS = VTraits<v_int16>::max_nlanes, INTS = VTraits<v_int32>::ma
 inline v_int16 absolute(const v_int16& v) { return v_reinterpret_as_s16(v_abs(v)); }
 inline v_int32 absolute(const v_int32& v) { return v_reinterpret_as_s32(v_abs(v)); }
 
-/* Quotients, roots and nearest integers as IEEE 754 says. On ARMv7 the vectors' first two are estimates, and v_round rounds
- halves up; scalars are exact there. */
+/* Quotients, roots and nearest integers as IEEE 754 says. On ARMv7 the vectors' first two are estimates, and v_round
+ rounds halves up; scalars are exact there. */
 #if CV_NEON && !defined __aarch64__ && !defined _M_ARM64
 inline v_float32 exactQuotient(const v_float32& a, const v_float32& b)
 {

@@ -27,8 +27,8 @@ enum
     SMOOTHED = 5
 };
 
-/* round(32 exp(-2 u^2)) for u = (2 i + 1) / 32, the distances of cells from the centre in radii: products are a Gaussian
- of half a radius, at most 1024. */
+/* round(32 exp(-2 u^2)) for u = (2 i + 1) / 32, the distances of cells from the centre in radii: products are a
+ Gaussian of half a radius, at most 1024. */
 const int GAUSSIAN[CELLS / 2 - 1] = {32, 31, 30, 29, 27, 25, 23, 21, 18, 16, 14, 11, 9, 8, 6};
 
 //! The weight of each inner cell, 0 outside the circle.

@@ -11,8 +11,8 @@ namespace iib {
 
 /* Bands: the last rows of what is made of an image's channels, as much as fits the cache. */
 
-/** Rows of sums that are made one after another, each from the one above it, in a ring that keeps the last of them. The ring
- stays in the cache while the keypoints that it holds are described. */
+/** Rows of sums that are made one after another, each from the one above it, in a ring that keeps the last of them. The
+ ring stays in the cache while the keypoints that it holds are described. */
 template <typename Sum> class RowRing
 {
 public:
@@ -117,12 +117,12 @@ private:
     const int longestPart;  //!< side of the largest square whose sum surely fits a Sum
 };
 
-/** Sums down the columns of the last rows of an image's channels. They are cheaper to make than integral images, and to add
- up where cells are narrow. */
+/** Sums down the columns of the last rows of an image's channels. They are cheaper to make than integral images, and to
+ add up where cells are narrow. */
 class ColumnBand
 {
 public:
-    //! As IntegralBand, of channels of the image.
+    //! The arguments are as IntegralBand has them; the channels are of the image, none is an extra one.
     ColumnBand(const std::vector<Channel>& channels, const ChannelBounds& bounds, Rect area, int rows,
             const DescriptorKernels& kernels_, ScratchMemory& rowMemory, ScratchMemory& ringMemory)
         : channelRows(channels, area, bounds.gradient, kernels_.pixels(short()).rows, rowMemory),

@@ -11,34 +11,34 @@ namespace iib {
 
 namespace {
 
-/** The last rows of an integral image over cells of BOX_CELL x BOX_CELL pixels, from the top of a rectangle of the image,
- reflected at its border, to its bottom. */
-template <typename T> class CellBand
+/** The last rows of an integral image over squares of BOX_SQUARE x BOX_SQUARE pixels, from the top of a rectangle of the
+ image, reflected at its border, to its bottom. */
+template <typename T> class SquareBand
 {
 public:
     typedef typename BoxSumKernels<T>::Sum Sum;
 
     //! @param source gx, gy and intensity of the image; outlives the band, as do the kernels and the workspace.
-    //! @param area of whole cells. @param rows of pixels, how many, the newest included, a reader looks at.
-    CellBand(const std::vector<Channel>& source, Rect area, int rows, const DescriptorPlan& plan,
+    //! @param area of whole squares. @param rows of pixels, how many, the newest included, a reader looks at.
+    SquareBand(const std::vector<Channel>& source, Rect area, int rows, const DescriptorPlan& plan,
             bool rotated, Workspace& workspace)
         : channelRows(source, area, 0, plan.kernels.pixels(T()).rows, workspace.channelRows),
-          sumRow(plan.boxes.kernels.sums(T()).sumRow[rotated]), width(area.width / BOX_CELL),
-          ring(area.tl() / BOX_CELL, std::min(rows / BOX_CELL + 2, area.height / BOX_CELL + 1),
+          sumRow(plan.boxes.kernels.sums(T()).sumRow[rotated]), width(area.width / BOX_SQUARE),
+          ring(area.tl() / BOX_SQUARE, std::min(rows / BOX_SQUARE + 2, area.height / BOX_SQUARE + 1),
                   ((size_t)width + 1) * BOX_LANES, BOX_LANES, workspace.ring),
-          planes(workspace.planes.get<T>(BOX_CELL * channelRows.rowSize()))
+          planes(workspace.planes.get<T>(BOX_SQUARE * channelRows.rowSize()))
     {
     }
 
     //! Adds the image's rows up to and without `end`, which does not decrease from call to call.
     void advance(int end)
     {
-        ring.advance(end / BOX_CELL, [&](int y, const Sum* above, Sum* out) {
-            const T* rows[BOX_CELL][BOX_PLANES];
-            for (int r = 0; r < BOX_CELL; r++)
+        ring.advance(end / BOX_SQUARE, [&](int y, const Sum* above, Sum* out) {
+            const T* rows[BOX_SQUARE][BOX_PLANES];
+            for (int r = 0; r < BOX_SQUARE; r++)
             {
                 T* const row = planes + r * channelRows.rowSize();
-                channelRows.compute(y * BOX_CELL + r, row);
+                channelRows.compute(y * BOX_SQUARE + r, row);
                 for (int i = 0; i < BOX_PLANES; i++)
                     rows[r][i] = row + channelRows.places()[i];
             }
@@ -48,40 +48,42 @@ public:
 
     const RingRows<Sum>& integral() const { return ring.rows(); }
 
-    //! The first row of cells whose sums are at hand.
+    //! The first row of squares whose sums are at hand.
     int oldest() const { return ring.oldest(); }
 
 private:
     ChannelRows<T> channelRows;
-    void (*const sumRow)(const T* const rows[BOX_CELL][BOX_PLANES], int cells, const Sum* above, Sum* out);
-    const int width;  //!< in cells
+    void (*const sumRow)(
+            const T* const rows[BOX_SQUARE][BOX_PLANES], int squares, const Sum* above, Sum* out);
+    const int width;  //!< in squares
     RowRing<Sum> ring;
     T* const planes;
 };
 
 int floorHalf(int v) { return v >= 0 ? v / 2 : -((1 - v) / 2); }
 
-//! The whole cells that hold some pixels.
-Rect cellsOf(Rect pixels)
+//! The whole squares that hold some pixels.
+Rect squaresOf(Rect pixels)
 {
     const Point first(floorHalf(pixels.x), floorHalf(pixels.y));
     return Rect(
             first, Point(floorHalf(pixels.x + pixels.width + 1), floorHalf(pixels.y + pixels.height + 1)));
 }
 
-//! The pixels of whole cells.
-Rect pixelsOf(Rect cells) { return Rect(cells.tl() * (int)BOX_CELL, cells.size() * (int)BOX_CELL); }
+//! The pixels of whole squares.
+Rect pixelsOf(Rect squares) { return Rect(squares.tl() * (int)BOX_SQUARE, squares.size() * (int)BOX_SQUARE); }
 
-//! The cells that count, for a region that may leave the image by a rounding.
+//! The squares that count, for a region that may leave the image by a rounding.
 Rect boundsOf(int border, Size image)
 {
-    if (border == IIB::BORDER_CLAMP)  // without the cells that an odd image cuts, unless there are no others
-        return Rect(0, 0, std::max(image.width / BOX_CELL, 1), std::max(image.height / BOX_CELL, 1));
-    return cellsOf(border == IIB::BORDER_REFLECT ? reflectedImage(image) : Rect(Point(), image));
+    // BORDER_CLAMP leaves out the squares that an odd image cuts, unless there are no others.
+    if (border == IIB::BORDER_CLAMP)
+        return Rect(0, 0, std::max(image.width / BOX_SQUARE, 1), std::max(image.height / BOX_SQUARE, 1));
+    return squaresOf(border == IIB::BORDER_REFLECT ? reflectedImage(image) : Rect(Point(), image));
 }
 
-/* The matrix that turns means, a row for each lane that is read. The mean of |gx cos a + gy sin a| has period 180 degrees;
- from its values at 0, 45, 90 and 135 degrees it is interpolated by 1, cos 2a, sin 2a and cos 4a. */
+/* The matrix that turns means, a row for each lane that is read. The mean of |gx cos a + gy sin a| has period 180
+ degrees; from its values at 0, 45, 90 and 135 degrees it is interpolated by 1, cos 2a, sin 2a and cos 4a. */
 void rotationMatrix(const Rotation& rotation, float matrix[BOX_LANES][BOX_LANES])
 {
     const double c = rotation.cosine, s = rotation.sine;
@@ -107,10 +109,10 @@ void rotationMatrix(const Rotation& rotation, float matrix[BOX_LANES][BOX_LANES]
     matrix[LANE_INTENSITY][LANE_INTENSITY] = 1;
 }
 
-//! Cells along the side of a rotated keypoint's box, at least one.
-double cellsInSide(double side, const BoxPlan::Level& level)
+//! Squares along the side of a rotated keypoint's box, at least one.
+double squaresInSide(double side, const BoxPlan::Level& level)
 {
-    return std::max(std::floor(side / BOX_CELL * level.side + 0.5), 1.);
+    return std::max(std::floor(side / BOX_SQUARE * level.side + 0.5), 1.);
 }
 
 template <typename T> void describeBatch(const BatchJob& job)
@@ -123,7 +125,8 @@ template <typename T> void describeBatch(const BatchJob& job)
     const BoxSumKernels<T>& sums = kernels.sums(T());
     const std::vector<Channel> source = {{IIB::CHANNEL_SIGNED_GRAD_X, grey},
             {IIB::CHANNEL_SIGNED_GRAD_Y, grey}, {IIB::CHANNEL_INTENSITY, grey}};
-    CellBand<T> band(source, batch.area, batch.rows + KeyPointBatch::BAND_ROWS, plan, rotated, job.workspace);
+    SquareBand<T> band(
+            source, batch.area, batch.rows + KeyPointBatch::BAND_ROWS, plan, rotated, job.workspace);
     const auto& integral = band.integral();
     T* const means = job.workspace.boxMeans.get<T>(MAX_BOX_MEANS);
     BoxFrame frame;
@@ -139,8 +142,8 @@ template <typename T> void describeBatch(const BatchJob& job)
         const SupportRegion& region = job.regions[k];
         const Rotation rotation = rotated ? Rotation(region.angle) : upright;
         band.advance(batch.bandEnd(job.pixels[k].br().y));
-        frame.centre = Point2d((region.centre.x + 0.5) / BOX_CELL, (region.centre.y + 0.5) / BOX_CELL);
-        frame.side = region.side / BOX_CELL;
+        frame.centre = Point2d((region.centre.x + 0.5) / BOX_SQUARE, (region.centre.y + 0.5) / BOX_SQUARE);
+        frame.side = region.side / BOX_SQUARE;
         frame.shift = integral.shift(band.oldest());
         if (rotated)
             rotationMatrix(rotation, matrix);
@@ -151,7 +154,7 @@ template <typename T> void describeBatch(const BatchJob& job)
             if (rotated)
             {
                 kernels.places(frame, level.shape, level.centres.data(),
-                        Point2d(rotation.cosine, rotation.sine), cellsInSide(region.side, level),
+                        Point2d(rotation.cosine, rotation.sine), squaresInSide(region.side, level),
                         (int)integral.step / BOX_LANES, places);
                 sums.rotatedMeans(integral, level.shape, places, matrix, means);
             }
@@ -165,20 +168,20 @@ template <typename T> void describeBatch(const BatchJob& job)
 //! Whether 32 bits hold the sums over all boxes of a batch of 8-bit pixels.
 bool sumsAreShort(const BatchJob& job)
 {
-    const double largest = 6 * 255 * BOX_CELL * BOX_CELL;  // |gx + gy| of a cell
-    double cells = 0;
+    const double largest = 6 * 255 * BOX_SQUARE * BOX_SQUARE;  // |gx + gy| of a square
+    double squares = 0;
     for (int k : job.batch.keypoints)
-        cells = std::max(cells, cellsInSide(job.regions[k].side, job.plan.boxes.levels[0]) + 1);
-    return largest * cells * cells <= INT_MAX;
+        squares = std::max(squares, squaresInSide(job.regions[k].side, job.plan.boxes.levels[0]) + 1);
+    return largest * squares * squares <= INT_MAX;
 }
 
 }  // namespace
 
 Rect boxPixels(const SupportRegion& region, int border, Size image)
 {
-    // Corners of the outermost grids, whose boxes do not turn: (28 sqrt(2) + 12) / 40 at most. Four pixels more for roundings.
+    // Corners of the outermost grids, whose boxes do not turn: (28 sqrt(2) + 12) / 40 at most; 4 pixels for roundings
     const SupportRegion extent(region.centre, region.side * (region.isRotated() ? 1.3 : 1) + 8);
-    return pixelsOf(cellsOf(extent.pixels(pixelsOf(boundsOf(border, image)))));
+    return pixelsOf(squaresOf(extent.pixels(pixelsOf(boundsOf(border, image)))));
 }
 
 void describeBoxes(const BatchJob& job)

@@ -126,7 +126,7 @@ template <typename T> void ChannelRows<T>::reflect(T* out) const
 {
     const int width = channels[0].map.cols, end = area.x + area.width;
     T* const pixels = out - origin;
-    // Reflected once, by copies that the compiler makes vectors of. Cells at the bounds may hold a pixel that is so twice.
+    // Reflected once, by fast copies; a cell at the bounds may hold a pixel that is reflected twice.
     const int left = std::min(-area.x, width - 1), right = std::min(end - width, width - 1);
     if (left > 0)
         std::reverse_copy(pixels + 1, pixels + 1 + left, pixels - left);

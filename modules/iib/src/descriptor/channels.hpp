@@ -46,8 +46,8 @@ struct ChannelBounds
     explicit ChannelBounds(const std::vector<Channel>& channels);
 };
 
-/** The rows of a group of channels over a rectangle, one at a time from the top. Where the rectangle leaves the image, the
- channels are reflected (BORDER_REFLECT_101). */
+/** The rows of a group of channels over a rectangle, one at a time from the top. Where the rectangle leaves the image,
+ the channels are reflected (BORDER_REFLECT_101). */
 template <typename T> class ChannelRows
 {
 public:

@@ -29,7 +29,7 @@ Rect pixelsOf(const DescriptorPlan& plan, const SupportRegion& region, Size imag
                               : region.pixels(region.bounds(image, border));
 }
 
-//! Keypoints near each other that are described together, all upright or all rotated. @param pixels that each keypoint needs.
+//! Keypoints near each other, all upright or all rotated, are one job. @param pixels that each keypoint needs.
 std::vector<Indices> cutJobs(const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels)
 {
     Indices members[2];  // upright, rotated

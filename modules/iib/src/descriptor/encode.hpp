@@ -35,8 +35,8 @@ inline double largestWeight(const LevelShape& shape, const CellEdges& edges)
     return largestWeight(x, shape.n) * largestWeight(y, shape.n);
 }
 
-/** The bits of a group of channels of one keypoint, level by level, from the sums over its finest cells. Products of sums and
- weights are integers of 32 bits at the finest levels, as far as these surely fit, and doubles at the others. */
+/** The bits of a group of channels of one keypoint, level by level, from the sums over its finest cells. Products of
+ sums and weights are integers of 32 bits at the finest levels, where these surely fit, and doubles at the others. */
 struct LevelWriter
 {
     const BatchJob& job;
@@ -62,7 +62,7 @@ struct LevelWriter
             writeFitting(level - 1, parents, 2 * longest);
     }
 
-    //! The same, in doubles where integers are too small. @param longest a bound of the difference of neighbouring edges.
+    //! The same, in doubles where integers are too small. @param longest a bound of the length of cells.
     template <typename Sum> void writeFitting(int level, const CellGrid<Sum>& cells, double longest) const
     {
         if (fitsInt(level, longest))

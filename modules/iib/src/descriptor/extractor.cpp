@@ -14,8 +14,8 @@ namespace iib {
 
 namespace {
 
-/** The maps that users pass beside the image. Throws unless there are `expected` single-channel maps of the image's size,
- 8U, 16U or 32F and finite. */
+/** The maps that users pass beside the image. Throws unless there are `expected` single-channel maps of the image's
+ size, 8U, 16U or 32F and finite. */
 std::vector<Mat> extraMaps(InputArrayOfArrays arrays, int expected, Size imageSize)
 {
     std::vector<Mat> maps;

@@ -35,7 +35,7 @@ inline SampleGrid gridOf(
     return g;
 }
 
-//! The last rows of GROUP_CHANNELS channels, side by side in each pixel, from the top of a rectangle of the image to its bottom.
+//! The last rows of GROUP_CHANNELS channels over a rectangle of the image, side by side in each pixel.
 template <typename T> class PixelBand
 {
 public:
@@ -92,16 +92,16 @@ inline bool isSame(const Mat& a, const Mat& b)
     return a.data == b.data && a.step == b.step && a.type() == b.type();
 }
 
-/* A pixel of a band costs about a sixteenth of what a point costs whose patch is copied. The limit on the band keeps memory and
- indices small: a few large regions may span billions of pixels. */
+/* A pixel of a band costs about a sixteenth of what a point costs whose patch is copied. The limit on the band keeps
+ memory and indices small: a few large regions may span billions of pixels. */
 inline bool isSparse(const KeyPointBatch& batch)
 {
     const double samples = (double)batch.keypoints.size() * MAX_SAMPLES, width = batch.area.width;
     return width * batch.area.height > 16 * samples || width * batch.rows > 1 << 24;
 }
 
-/** The pixels of a batch at the points of one grid after another: from bands of the image, or, where grids touch few pixels of
- the area that they span, from patches around the points. */
+/** The pixels of a batch at the points of one grid after another: from bands of the image, or, where grids touch few
+ pixels of the area that they span, from patches around the points. */
 template <typename T> class GridPixels
 {
 public:

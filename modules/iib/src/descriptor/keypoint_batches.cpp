@@ -92,7 +92,7 @@ Rect unionOf(const std::vector<Rect>& regions, const Indices& keypoints)
     return all;
 }
 
-//! Cuts keypoints across the longer side of their area, where fewer regions are cut, into strips of equal height or width.
+//! Cuts keypoints across the longer side of their area, where fewer regions are cut, into strips of equal size.
 void cutStrips(const std::vector<Rect>& regions, const Indices& keypoints, Rect area, int strips,
         std::vector<Indices>& batches)
 {

@@ -61,8 +61,8 @@ inline int bitsOfPlace(int mapping, int kind, int level, int row, int col)
     return mapping == IIB::MAPPING_BOXES ? boxMask(kind, level, row, col) : (1 << bitsPerQuad(mapping)) - 1;
 }
 
-/** Calls visit(channel, row, column, bits) for each place of a level: those of the selection, or all, row by row, where boxes may
- have no bits in some channels. */
+/** Calls visit(channel, row, column, bits) for each place of a level: those of the selection, or all, row by row, where
+ boxes may have no bits in some channels. */
 template <typename Visit> void forEachPlace(const Parameters& p, int level, const Visit& visit)
 {
     for (int i = 0; i < p.selection.rows; i++)

@@ -51,7 +51,7 @@ static std::vector<ChannelGroup> groupsOf(const Parameters& p, int finest)
     return groups;
 }
 
-//! Of a channel's kind.
+//! The lane in which a channel of this kind is.
 static int laneOf(int kind)
 {
     switch (kind)

@@ -62,9 +62,9 @@ struct DetectorScale
     float scaleFactor;
 };
 
-/* Paper, "Experiments Combined with Feature Detectors", for AKAZE to SURF. FAST, AGAST (size 7) and GFTT
- (size 3) find corners of one size: a region of 64 pixels, as in "Predefined Feature Points". The sizes of MSER
- and SimpleBlob are the diameters of what they found; the region of support takes in its surroundings. HessianDetector: the right matches of
+/* Paper, "Experiments Combined with Feature Detectors", for AKAZE to SURF. FAST, AGAST (size 7) and GFTT (size 3) find
+ corners of one size: a region of 64 pixels, as in "Predefined Feature Points". The sizes of MSER and SimpleBlob are the
+ diameters of what they found; the region of support takes in its surroundings. HessianDetector: the right matches of
  PRESET_UNIVERSAL where light and camera change (16 and 20 are as good). */
 const DetectorScale detectorScales[] = {{"akaze", 12.f}, {"orb", 2.f}, {"brisk", 4.f}, {"sift", 20.f},
         {"kaze", 20.f}, {"surf", 4.f}, {"fast", 64.f / 7}, {"agast", 64.f / 7}, {"gftt", 64.f / 3},

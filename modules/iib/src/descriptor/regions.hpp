@@ -13,7 +13,7 @@ namespace iib {
 //! A bound of the lengths of the n cells in a row of a support region.
 inline double longestCell(double side, int n) { return std::ceil(side / n); }
 
-//! The pixels of an image reflected once at each side: three times as many in a row and in a column, less those of the border.
+//! The pixels of an image that is reflected once at each side, without its border a second time.
 inline Rect reflectedImage(Size image)
 {
     return Rect(1 - image.width, 1 - image.height, 3 * image.width - 2, 3 * image.height - 2);
@@ -61,7 +61,7 @@ struct SupportRegion
     }
 };
 
-//! Of a keypoint; with ORIENTATION_GRADIENT still upright.
+//! A keypoint's region, with ORIENTATION_GRADIENT still upright.
 inline SupportRegion regionOf(const KeyPoint& keypoint, const Parameters& p)
 {
     const double side = std::max((double)p.scaleFactor * keypoint.size, (double)(1 << p.granularity));

@@ -12,8 +12,8 @@ namespace iib {
 
 namespace {
 
-/** What the channels of a descriptor are sampled from, up to GROUP_CHANNELS values to a pixel: first what those of the image are
- made of, if there are any, then extra maps. @param channels of the image before the extra ones. */
+/** What the channels of a descriptor are sampled from, up to GROUP_CHANNELS values to a pixel: first what those of the
+ image are made of, if there are any, then extra maps. @param channels of the image before the extra ones. */
 std::vector<std::vector<Channel>> packsOf(const std::vector<Channel>& channels)
 {
     std::vector<std::vector<Channel>> packs;

@@ -53,12 +53,12 @@ void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Ma
 /** Sets the angles of regions as ORIENTATION_GRADIENT: the direction that prevails among the gradients between 32 x 32
  cells, each of which counts by its magnitude and by a Gaussian of half the region's radius around the centre.
 @param grey CV_8U or CV_16U.
-@param keypoints of the regions: of those with the same position and size, the second gets the second highest peak of the
-directions, and so on. */
+@param keypoints of the regions: of those with the same position and size, the second gets the second highest peak of
+the directions, and so on. */
 void findAngles(const DescriptorPlan& plan, const Mat& grey, const std::vector<KeyPoint>& keypoints,
         std::vector<SupportRegion>& regions);
 
-//! The pixels that the boxes of a region cover, rotated by any angle or upright, in whole cells; some may be reflected.
+//! The pixels that the boxes of a region cover, rotated by any angle or upright, in whole squares; some may be reflected.
 Rect boxPixels(const SupportRegion& region, int border, Size image);
 
 /** A batch of keypoints that are described together, and what that takes. Their regions are all upright or all rotated.
@@ -78,8 +78,8 @@ struct BatchJob
 //! By sums over cells, where regions are upright.
 void describeUpright(const BatchJob& job);
 
-/** The same where regions are rotated. Integral images cannot serve, since |gx| does not rotate with the region: it is sampled on
- a grid of points, and the gradient is rotated at each. */
+/** The same where regions are rotated. Integral images cannot serve, since |gx| does not rotate with the region: it is
+ sampled on a grid of points, and the gradient is rotated at each. */
 void describeRotated(const BatchJob& job);
 
 /** By MAPPING_BOXES.

@@ -25,7 +25,7 @@ bool columnsAreFaster(const BatchJob& job, const std::vector<Channel>& channels,
            pixelsOfKeyPoint * (double)job.batch.keypoints.size() <= (double)area.width * area.height;
 }
 
-//! By sums over cells that a Band makes.
+//! Describes the keypoints for a group of channels, by sums over cells that a Band makes.
 template <typename Band, typename Sum>
 void describeBatch(const BatchJob& job, const ChannelGroup& group, const std::vector<Channel>& channels,
         const ChannelBounds& bounds)

@@ -15,8 +15,8 @@ namespace iib {
 //! Writes class and parameters as keys of the map that is open in `fs`.
 void writeDetector(FileStorage& fs, const Feature2D& detector);
 
-/** Creates the ORB, HessianDetector or NormalizedDetector that writeDetector wrote. For any other class `present` must be of it: it reads
- the parameters and is returned. @throws cv::Exception (StsParseError) that tells what to do if it is not. */
+/** Creates the ORB, HessianDetector or NormalizedDetector that writeDetector wrote. For any other class `present` must
+ be of it: it reads the parameters and is returned. @throws cv::Exception (StsParseError) that tells what to do. */
 Ptr<Feature2D> readDetector(const FileNode& node, const Ptr<Feature2D>& present);
 
 }  // namespace iib

@@ -33,8 +33,8 @@ struct Octave
     Octave(const std::vector<double>& scales, int begin, int end, bool halved, Size imageSize);
 };
 
-/** Responses of an octave's scales for a range of rows, from top to bottom. Only the rows that are still needed are held: they
- stay in the processor's cache. */
+/** Responses of an octave's scales for a range of rows, from top to bottom. Only the rows that are still needed are
+ held: they stay in the processor's cache. */
 class ScaleSpace
 {
 public:

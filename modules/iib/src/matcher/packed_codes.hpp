@@ -19,8 +19,8 @@ struct CodePart
     std::vector<bool> hidden;  //!< of each image, whether it is left out; empty: none is
 };
 
-/** Train codes of several images, one after the other. Those that are added are packed for the kernels that were the best
-when it was made. The module iib_index keeps such codes in files. */
+/** Train codes of several images, one after the other. Those that are added are packed for the kernels that were the
+best when it was made. The module iib_index keeps such codes in files. */
 class CV_EXPORTS PackedCodes
 {
 public:
@@ -32,10 +32,10 @@ public:
     static size_t blockBytes(const std::vector<int>& levelSizes, unsigned packing);
 
     explicit PackedCodes(const std::vector<int>& levelSizes);
-    //! Those of CV_8U descriptors, a matrix for each image or a single one. @throws cv::Exception if their width is wrong.
+    //! Those of CV_8U descriptors, a matrix for each image or one. @throws cv::Exception if their width is wrong.
     PackedCodes(const std::vector<int>& levelSizes, InputArrayOfArrays descriptors);
-    /** Codes that lie elsewhere, and stay there if they are packed as the kernels want them; if not, they are copied. They
-    are only read.
+    /** Codes that lie elsewhere, and stay there if they are packed as the kernels want them; if not, they are copied.
+    They are only read.
     @param packing a known one
     @param starts first row of each image, and the number of all rows
     @param blocks a row a CodeBlock, CV_32S, aligned to 64 bytes */

@@ -102,7 +102,7 @@ private:
     std::vector<uchar> flags;
 };
 
-//! Calls found(query, train, distance) for the pairs of a block that are below a threshold; thresholds as HammingSink's.
+//! Calls found(query, train, distance) for the pairs of a block that are below a threshold, as HammingSink has them.
 template <class Found>
 void scanPruned(const SearchInput& input, PairBlocks& block, const int* queryThresholds,
         const int* trainThresholds, const Found& report)

@@ -42,9 +42,9 @@ void writeParameters(FileStorage& fs, const MatcherParameters& p);
 //! writes it. What the node does not have stays as it was; levelSizes it must have.
 MatcherParameters readParameters(const FileNode& node, const char* name, const MatcherParameters& before);
 
-/* Format 1 of an index, a checked file: u32: number of levels, each level's bytes, mode, cross-check; f32: maximal ratio,
-each threshold; u64: number of images, each image's rows; the descriptors of all images. Descriptors pass through in
-pieces, so that no second copy of them is in memory. */
+/* Format 1 of an index, a checked file: u32: number of levels, each level's bytes, mode, cross-check; f32: maximal
+ratio, each threshold; u64: number of images, each image's rows; the descriptors of all images. Descriptors pass through
+in pieces, so that no second copy of them is in memory. */
 
 //! @param parameters with or without level sizes; the file gets those of the codes.
 void saveCodes(const String& filename, const MatcherParameters& parameters, const PackedCodes& codes);

@@ -18,9 +18,9 @@ struct SearchCost
     std::atomic<uint64> compared{0}, all{0};
 };
 
-/** How many queries and CodeBlocks of train codes are scanned at once. The train codes of 170 bytes fill 352 KB, so that
-they stay in a second-level cache of 512 KB while the queries, 704 KB, pass by. Tests take fewer, so that small data
-crosses the boundaries. */
+/** How many queries and CodeBlocks of train codes are scanned at once. The train codes of 170 bytes fill 352 KB, so
+that they stay in a second-level cache of 512 KB while the queries, 704 KB, pass by. Tests take fewer, so that small
+data crosses the boundaries. */
 struct ScanBlocks
 {
     //! CodeBlocks that are scanned at once by a policy.

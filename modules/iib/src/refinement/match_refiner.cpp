@@ -45,8 +45,8 @@ struct MatchRefiner::Start
     double unit, limit, least;
     PatchPlaces places;
 
-    /* Neighbouring samples are farther apart than a pixel only if that is by little, in the second image of a pair of about
-     the same size. */
+    /* Neighbouring samples are farther apart than a pixel only if that is by little, in the second image of a pair of
+     about the same size. */
     Start(double ratio, double leastSimilarity)
         : unit(std::min(1., LARGEST_SPACING / ratio)), limit(LARGEST_MOVE * std::max(ratio, 1.)),
           least(leastSimilarity)

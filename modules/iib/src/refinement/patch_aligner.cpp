@@ -155,8 +155,8 @@ PatchAligner::PatchAligner()
     independentSamples = total * total / squares;
 }
 
-/* Reads the patch around a point. Pixels that need no interpolation are taken if that is a unit's size: returned is how far
- the point is from the patch's centre then. */
+/* Reads the patch around a point. Pixels that need no interpolation are taken if that is a unit's size: returned is how
+ far the point is from the patch's centre then. */
 Vec2d PatchAligner::readTemplate(const Mat& image, const Vec2d& point)
 {
     if (unit == 1)
@@ -263,7 +263,7 @@ Vec6d PatchAligner::step(const Moments& moments) const
     return inverse * gradient;
 }
 
-//! Of the point, from what remains of the samples that were taken last.
+//! The point's covariance, from the residuals of the samples that were taken last.
 Matx22d PatchAligner::covariance(const Moments& moments) const
 {
     const double similarity = similarityOf(moments);

@@ -17,7 +17,7 @@ struct PatchPlace
     Matx22d map;
 };
 
-//! One or two.
+//! One or two places where a patch may begin.
 class PatchPlaces
 {
 public:
@@ -48,7 +48,8 @@ class PatchAligner
 public:
     PatchAligner();
 
-    /** Takes the surroundings of a point of the first image, which is prepared by preparedForAlignment() as the second one.
+    /** Takes the surroundings of a point of the first image, which is prepared by preparedForAlignment() as the second
+     one.
      @param point inside the image.
      @param unit of the patch, in pixels of the first image, up to 1. */
     void take(const Mat& image1, const Vec2d& point, double unit);

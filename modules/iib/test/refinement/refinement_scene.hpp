@@ -9,8 +9,9 @@
 
 namespace opencv_test {
 
-/** Two views of one scene, 640 x 480: the second is deformed by an affine map (10 %, 5 degrees) and darker, with a gradient
- of light and an offset; both with noise of 2 grey levels. Matches of true places, moved by up to .6 pixels in x and y. */
+/** Two views of one scene, 640 x 480: the second is deformed by an affine map (10 %, 5 degrees) and darker, with a
+ gradient of light and an offset; both with noise of 2 grey levels. Matches of true places, moved by up to .6 pixels in
+ x and y. */
 struct RefinementScene
 {
     Mat images[2];

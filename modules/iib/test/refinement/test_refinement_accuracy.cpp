@@ -21,8 +21,8 @@ double inSigmas(const Point2d& error, const Point3d& c)
                      (c.x * c.z - c.y * c.y));
 }
 
-// All bars of this suite are of issue "From matches to measurements"; 39 and 86 % of normally distributed errors are inside
-// the ellipses of one and two sigma.
+// All bars of this suite are of issue "From matches to measurements"; 39 and 86 % of normally distributed errors are
+// inside the ellipses of one and two sigma.
 TEST(IIB_RefinementAccuracy, errors_bias_and_covariances)
 {
     std::vector<double> errors, x, y, plain;
@@ -68,8 +68,8 @@ TEST(IIB_RefinementAccuracy, errors_bias_and_covariances)
     EXPECT_LT(inside[1] / n, .95);
 }
 
-/* Photographs of one camera under another exposure, so that the truth is known: errors and ellipses. Their errors are larger
- than noise explains. Clouds and leaves that moved are in them too. */
+/* Photographs of one camera under another exposure, so that the truth is known: errors and ellipses. Their errors are
+ larger than noise explains. Clouds and leaves that moved are in them too. */
 TEST(IIB_RefinementAccuracy, photographs_in_other_exposure)
 {
     const Ptr<IIB> iib = IIB::createRecommended(1000);

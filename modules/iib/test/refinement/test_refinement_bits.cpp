@@ -184,8 +184,8 @@ TEST(IIB_RefinementOracle, agrees_with_the_documentation)
     EXPECT_GE(near, .97 * accepted);
 }
 
-// The same bits on every machine and build. Images and keypoints are made of integers alone. A change of the algorithm may
-// change them; then the numbers are those that a failure prints.
+// The same bits on every machine and build. Images and keypoints are made of integers alone. A change of the algorithm
+// may change them; then the numbers are those that a failure prints.
 TEST(IIB_RefinementGolden, bits)
 {
     const Mat whole = texture(Size(330, 250), CV_8U, 11);

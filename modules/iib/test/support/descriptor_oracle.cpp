@@ -132,8 +132,8 @@ int insideOf(const IIB& iib, int64 place, int limit)
     return (int)(iib.getBorder() == IIB::BORDER_REFLECT ? reflectTo(place, limit) : clampTo(place, limit));
 }
 
-//! A peak of the directions of gradients between 32 x 32 cells in a circle, 64 bins weighted by magnitude and a Gaussian,
-//! smoothed.
+//! A peak of the directions of gradients between 32 x 32 cells in a circle, 64 bins weighted by magnitude and a
+//! Gaussian, smoothed.
 float prevailingAngle(const IIB& iib, const Mat& grey, const KeyPoint& kp, size_t rank)
 {
     const int samples = 64, n = 32, bins = 64;

@@ -42,7 +42,8 @@ Mat relit(const Mat& image, int seed);
 //! Keypoints in and around an image, of all sizes and directions, some of them -1. Quarters of pixels, whole degrees.
 std::vector<KeyPoint> scatter(Size size, int count, float smallest, float largest, int seed);
 
-//! For setSelection(): up to `count` quads of levels 1 to 5, each with some of the bits that its channel may have there.
+//! For setSelection(): up to `count` quads of levels 1 to 5, each with some of the bits that its channel may have
+//! there.
 //! @param ends of their rows and columns on each level
 Mat_<int> randomSelection(int count, const std::vector<int>& ends, const std::vector<int>& masksOfChannels);
 

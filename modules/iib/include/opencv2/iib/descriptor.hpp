@@ -21,8 +21,8 @@ Each keypoint has a region of support (ROS): a square with centre KeyPoint::pt a
 a *quad*, and a mapping turns their four mean values into bits, in each image channel. Light changes
 the values, but seldom the order among neighbours.
 
-A ROS side under 2^G pixels is raised to 2^G, so that no cell is empty. #Border says what becomes of a ROS that leaves the
-image. If a cell has no pixel at all, its quad gets the bits of four equal means.
+A ROS side under 2^G pixels is raised to 2^G, so that no cell is empty. #Border says what becomes of a ROS that leaves
+the image. If a cell has no pixel at all, its quad gets the bits of four equal means.
 
 **Bits.** Levels come coarse first, each padded with zeros to a whole byte, bit 0 of byte 0 first. So
 the descriptor of granularity G-1 is a prefix of the one of G, unless the ROS is so small that G raises it
@@ -38,9 +38,9 @@ first:
 With a selection (see setSelection) the order is the same, whatever that of the selection, and the bits that were not
 chosen are left out; quads in odd rows or columns belong to the windows of 2.
 
-**Boxes.** With #MAPPING_BOXES, level g = 1..5 has n x n upright square boxes that overlap, so that a moved camera does not
-shift what a quad compares from one cell to the next. Sides, and the distance of the outermost centres from the keypoint,
-are in 80ths of the ROS:
+**Boxes.** With #MAPPING_BOXES, level g = 1..5 has n x n upright square boxes that overlap, so that a moved camera does
+not shift what a quad compares from one cell to the next. Sides, and the distance of the outermost centres from the
+keypoint, are in 80ths of the ROS:
 
 | level | n | side | distance |
 |---|---|---|---|
@@ -50,10 +50,10 @@ are in 80ths of the ROS:
 | 4 | 9 | 8 | 32 |
 | 5 | 7 | 6 | 12 |
 
-A box is made of whole squares of 2 x 2 pixels at even coordinates; each of its edges is the nearest to its place. A square
-that an odd image cuts is completed by reflection, but with #BORDER_CLAMP it does not count. What is
-compared are means over the pixels that count, rounded to an eighth of a grey level or of a Sobel gradient (which is 8 times
-the difference of neighbouring pixels). A box without pixels has mean 0.
+A box is made of whole squares of 2 x 2 pixels at even coordinates; each of its edges is the nearest to its place. A
+square that an odd image cuts is completed by reflection, but with #BORDER_CLAMP it does not count. What is compared are
+means over the pixels that count, rounded to an eighth of a grey level or of a Sobel gradient (which is 8 times the
+difference of neighbouring pixels). A box without pixels has mean 0.
 
 A box has up to five bits in a channel:
  - 0 to 2 are the bits of #MAPPING_HAAR. The four means are those of the box, the next box in its row, and the two boxes
@@ -62,26 +62,26 @@ A box has up to five bits in a channel:
    |gx| > |gy| in #CHANNEL_GRAD_X;
  - 4 compares them too: gx > gy in #CHANNEL_SIGNED_GRAD_X and gx + gy > 0 in #CHANNEL_SIGNED_GRAD_Y.
 
-Within a level the order is, outermost first: bits 0 to 2 by row, bit, column and channel (|gx|, |gy|, gx, gy, intensity);
-then by row and column |gx| > |gy|, gx > gy, gy > 0, gx + gy > 0, gx > 0. #CHANNEL_ORIENTATION, `overlap` and extra channels
-do not go with boxes.
+Within a level the order is, outermost first: bits 0 to 2 by row, bit, column and channel (|gx|, |gy|, gx, gy,
+intensity); then by row and column |gx| > |gy|, gx > gy, gy > 0, gx + gy > 0, gx > 0. #CHANNEL_ORIENTATION, `overlap`
+and extra channels do not go with boxes.
 
-Rotated boxes stay upright and take no samples: only their centres turn around the keypoint, with sides of whole squares; the
-means of gx and gy are rotated as gradients are, and those of |gx| and |gy| are interpolated from four directions. So angle 0
-does not give the bits of angle -1.
+Rotated boxes stay upright and take no samples: only their centres turn around the keypoint, with sides of whole
+squares; the means of gx and gy are rotated as gradients are, and those of |gx| and |gy| are interpolated from four
+directions. So angle 0 does not give the bits of angle -1.
 
-**Pixels.** Colour is turned to grey by whole numbers, (3735 B + 19235 G + 9798 R + 2^14) >> 15. Gradients are Sobel 3x3; at
-the image's edge its outermost pixels are repeated (BORDER_REPLICATE).
+**Pixels.** Colour is turned to grey by whole numbers, (3735 B + 19235 G + 9798 R + 2^14) >> 15. Gradients are Sobel
+3x3; at the image's edge its outermost pixels are repeated (BORDER_REPLICATE).
 
 The descriptors are CV_8U and compared with NORM_HAMMING. The same input gives the same bits for
 every instruction set, thread count and build. One object may serve several threads as long as none
 changes its parameters. As everywhere in OpenCV, cv::setNumThreads is not to be called meanwhile.
 
-**Files.** Algorithm::save and Feature2D::write store the parameters and the detector. save fails where the disk is full, and
-leaves the old file; write(filename) is OpenCV's own, which does not check what it writes. Algorithm::load and
-Feature2D::read take either kind of file. ORB, HessianDetector and NormalizedDetector come back with their parameters. A detector of any
-other class must be set by setDetector before read: files hold its name and what its own write() tells, which its
-read() gets; read throws a cv::Exception if the detector that is set is of another class.
+**Files.** Algorithm::save and Feature2D::write store the parameters and the detector. save fails where the disk is
+full, and leaves the old file; write(filename) is OpenCV's own, which does not check what it writes. Algorithm::load and
+Feature2D::read take either kind of file. ORB, HessianDetector and NormalizedDetector come back with their parameters. A
+detector of any other class must be set by setDetector before read: files hold its name and what its own write() tells,
+which its read() gets; read throws a cv::Exception if the detector that is set is of another class.
  */
 class CV_EXPORTS_W IIBDescriptorExtractor : public Feature2D
 {
@@ -161,15 +161,15 @@ public:
 
     /** @brief Creates an extractor with a selection that comes with the library.
 
-    The selections were learned by tools/training on images of still cameras, those of PRESET_BALANCED, PRESET_VIEWPOINT,
-    PRESET_UNIVERSAL and PRESET_SMALL on warped ones; the last two also on rendered walks, and half of their points are those
-    that HessianDetector finds in each image. No image of the guide's figures was among them.
-    The ROS of some is wider than `scaleFactor` says (see #Preset); getScaleFactor tells it.
+    The selections were learned by tools/training on images of still cameras, those of PRESET_BALANCED,
+    PRESET_VIEWPOINT, PRESET_UNIVERSAL and PRESET_SMALL on warped ones; the last two also on rendered walks, and half of
+    their points are those that HessianDetector finds in each image. No image of the guide's figures was among them. The
+    ROS of some is wider than `scaleFactor` says (see #Preset); getScaleFactor tells it.
 
     @param preset one of #Preset.
-    @param scaleFactor as in create: what a detector's keypoints need, see scaleFactorFor. The default is that of ORB, which
-    detects for a new extractor: with keypoints of another detector it finds far fewer matches. createFor sets detector and
-    factor together, createRecommended chooses both.
+    @param scaleFactor as in create: what a detector's keypoints need, see scaleFactorFor. The default is that of ORB,
+    which detects for a new extractor: with keypoints of another detector it finds far fewer matches. createFor sets
+    detector and factor together, createRecommended chooses both.
     @throws cv::Exception (StsBadArg) for an unknown preset, (StsOutOfRange) for a scale factor that is not
     positive.
      */
@@ -180,19 +180,22 @@ public:
 
     @param detector one that scaleFactorFor knows, also within NormalizedDetector.
     @param preset one of #Preset, or -1 for the paper's default descriptor (as create). Take #PRESET_UNIVERSAL first: it
-    stands changed light nearly as well and moved cameras much better, in 128 bytes, but takes more time. At the points of
-    HessianDetector it also has more right matches than #PRESET_ACCURATE where cameras stand still, at a lower precision.
-    @throws cv::Exception (StsBadArg) for an unknown detector or preset, (StsNullPtr) for no detector. For a detector that
-    is not known use create(scaleFactor), with the side of the ROS by KeyPoint::size as its factor, and setDetector.
+    stands changed light nearly as well and moved cameras much better, in 128 bytes, but takes more time. At the points
+    of HessianDetector it also has more right matches than #PRESET_ACCURATE where cameras stand still, at a lower
+    precision.
+    @throws cv::Exception (StsBadArg) for an unknown detector or preset, (StsNullPtr) for no detector. For a detector
+    that is not known use create(scaleFactor), with the side of the ROS by KeyPoint::size as its factor, and
+    setDetector.
      */
     CV_WRAP static Ptr<IIBDescriptorExtractor> createFor(const Ptr<Feature2D>& detector, int preset = -1);
 
     /** @brief Creates what to take first, where light, place or both change: HessianDetector and #PRESET_UNIVERSAL.
 
-    detectAndCompute() finds and describes; match the codes with HierarchicalMatcher::createRecommended(). Photographs of
-    many megapixels are searched at a reduced size, see HessianDetector::setWorkingSize.
+    detectAndCompute() finds and describes; match the codes with HierarchicalMatcher::createRecommended(). Photographs
+    of many megapixels are searched at a reduced size, see HessianDetector::setWorkingSize.
 
-    @param maxFeatures keypoints of an image, the strongest; 0 keeps all. 2000 give a little more accurate poses than 1000.
+    @param maxFeatures keypoints of an image, the strongest; 0 keeps all. 2000 give a little more accurate poses than
+    1000.
     @throws cv::Exception (StsOutOfRange) for a negative number.
      */
     CV_WRAP static Ptr<IIBDescriptorExtractor> createRecommended(int maxFeatures = 1000);
@@ -224,12 +227,12 @@ public:
     @param extraChannels as many single-channel maps as getExtraChannels(), each of the image's size, 8U,
     16U or 32F; in C++ a single one needs no list. A cell's value is the mean of the map.
     @param keypoints their order is kept; none is removed but by #BORDER_DROP.
-    @param descriptors keypoints.size() x descriptorSize(), CV_8U. Empty if the image or the keypoints are: after an image
-    that is empty ask whether imread found the file. It may be the matrix of the image or of a map.
-    @throws cv::Exception for a wrong type, size or number of maps, for pixels that are NaN or infinite,
-    and for keypoints with a NaN or infinite coordinate, a size that is not positive, or with #ORIENTATION_KEYPOINT such an
-    angle: such a keypoint has no region, and to leave it out would break the correspondence of keypoints and rows that the
-    caller counts on.
+    @param descriptors keypoints.size() x descriptorSize(), CV_8U. Empty if the image or the keypoints are: after an
+    image that is empty ask whether imread found the file. It may be the matrix of the image or of a map.
+    @throws cv::Exception for a wrong type, size or number of maps, for pixels that are NaN or infinite, and for
+    keypoints with a NaN or infinite coordinate, a size that is not positive, or with #ORIENTATION_KEYPOINT such an
+    angle: such a keypoint has no region, and to leave it out would break the correspondence of keypoints and rows that
+    the caller counts on.
      */
     CV_WRAP_AS(computeWithChannels)
     virtual void compute(InputArray image, InputArrayOfArrays extraChannels,
@@ -251,7 +254,7 @@ public:
     CV_WRAP virtual void setOverlap(bool overlap) = 0;
     CV_WRAP virtual bool getOverlap() const = 0;
 
-    //! setOrientation of #ORIENTATION_KEYPOINT (true) or #ORIENTATION_NONE, for programs from before there was a third one.
+    //! setOrientation of #ORIENTATION_KEYPOINT (true) or #ORIENTATION_NONE, for programs that know only these two.
     CV_WRAP virtual void setUseOrientation(bool useOrientation) = 0;
     //! Whether there is any orientation but #ORIENTATION_NONE.
     CV_WRAP virtual bool getUseOrientation() const = 0;
@@ -259,9 +262,9 @@ public:
     /** @brief Sets how ROS and gradients are rotated: one of #Orientation, #ORIENTATION_NONE by default.
 
     Rotation costs matches by changed light, since the angles change with the light as well. So where cameras stay
-    upright, none is best. Where they turn, the best angles are those that do not come from single keypoints: matchRotated
-    finds one angle between two images; or set KeyPoint::angle to the direction of gravity (from an IMU), and use
-    #ORIENTATION_KEYPOINT.
+    upright, none is best. Where they turn, the best angles are those that do not come from single keypoints:
+    matchRotated finds one angle between two images; or set KeyPoint::angle to the direction of gravity (from an IMU),
+    and use #ORIENTATION_KEYPOINT.
 
     #ORIENTATION_GRADIENT ignores KeyPoint::angle and leaves it as it is. The angle is the peak of a smoothed histogram
     of the directions of gradients in the circle within the ROS, weighted by their magnitudes and by a Gaussian of half
@@ -295,11 +298,11 @@ public:
 
     /** @brief Restricts the descriptor to chosen quads (paper, "Reduction of the IIB Descriptor Size").
 
-    @param quads CV_32S, a row a quad, each at most once: level g (1..G, not descending), channel (its place among the channels
-    in use, extra channels last), row and column of the quad's top left cell in the level's grid
-    (0..2^g - 2; odd positions, between siblings, are allowed and need no `overlap`), and a bit mask of the
-    mapping's bits to keep (bit 0 is the first). With #MAPPING_BOXES row and column are those of a box, 0..n - 1. Empty: all
-    quads or boxes again.
+    @param quads CV_32S, a row a quad, each at most once: level g (1..G, not descending), channel (its place among the
+    channels in use, extra channels last), row and column of the quad's top left cell in the level's grid (0..2^g - 2;
+    odd positions, between siblings, are allowed and need no `overlap`), and a bit mask of the mapping's bits to keep
+    (bit 0 is the first). With #MAPPING_BOXES row and column are those of a box, 0..n - 1. Empty: all quads or boxes
+    again.
     @throws cv::Exception for another type or shape, levels out of order or values out of range.
      */
     CV_WRAP virtual void setSelection(InputArray quads) = 0;

@@ -44,11 +44,11 @@ within a radius of the query has the query within that radius.
    one is at most threshold * bits of that level; pairs that reach the last level are ranked by the
    distance over all levels. Fast, and it loses whole keypoints in hard scenes. The comparison is distance <=
    threshold * (1 + 2^-23) * bits in double, so that a decimal number keeps its ties: at 0.35, 56 of 160 bits go on.
- - #ADAPTIVE: approximate. Stops at 25 % of the last level if the partial distance exceeds the query's best by more
-   than 1.75 sigma (sigma = sqrt(n) / 2 for n bits so far). Train descriptors are compared in groups of 2048, in the
-   order in which they were added; the best is that of the group and of those before. Distances are exact; neighbours
-   may be missed, and nothing is promised for a single query. Of the right matches of #EXACT (170 bytes, k = 1) it keeps
-   at least 98 % on the images of the test IIB_Real.adaptive_keeps_the_correct_matches, on which the bound was not tuned.
+ - #ADAPTIVE: approximate. Stops at 25 % of the last level if the partial distance exceeds the query's best by more than
+   1.75 sigma (sigma = sqrt(n) / 2 for n bits so far). Train descriptors are compared in groups of 2048, in the order in
+   which they were added; the best is that of the group and of those before. Distances are exact; neighbours may be
+   missed, and nothing is promised for a single query. Of the right matches of #EXACT (170 bytes, k = 1) it keeps at
+   least 98 % on the images of the test IIB_Real.adaptive_keeps_the_correct_matches, on which the bound was not tuned.
    Descriptors of up to 4 bytes are compared as in #EXACT, and so is radiusMatch.
 
 **Threads.** Calls run on cv::parallel_for_; results are the same for every number of threads and every
@@ -113,9 +113,9 @@ public:
     createRecommended, for instance): code that takes two of each row needs a matcher of create().
 
     As in DescriptorMatcher, whose documentation holds, but old results never survive a call, and arguments are checked
-    also where there is nothing to match. Rows of knnMatch have 0 to k matches: a cross-check, a ratio, a mask or few train
-    descriptors leave fewer, so look at a row's size before taking its second match. createRecommended() has
-    done the ratio test already: match() gives what passes. */
+    also where there is nothing to match. Rows of knnMatch have 0 to k matches: a cross-check, a ratio, a mask or few
+    train descriptors leave fewer, so look at a row's size before taking its second match. createRecommended() has done
+    the ratio test already: match() gives what passes. */
     //! @{
     CV_WRAP virtual void match(InputArray queryDescriptors, InputArray trainDescriptors,
             CV_OUT std::vector<DMatch>& matches, InputArray mask = noArray()) const = 0;
@@ -152,11 +152,11 @@ public:
 
     /** @brief Ratio test inside match, knnMatch and knnMatchArrays, over the same pairs as the search.
 
-    @param maxRatio in (0, 1]. A query keeps its matches only if its least distance is less than maxRatio
-    times its second least: least < maxRatio * (1 - 2^-23) * second in double, with maxRatio as a float. So exact ties of a
-    decimal number do not pass, such as 6 and 10 bits at 0.6 or 9 and 10 at 0.9, in C++ and Python alike. A query with a single candidate keeps it. 1, the default, turns the test off. The
-    0.75 to 0.8 that suit SIFT throw most right matches of long binary codes away where the view moves: take 0.9 to 0.95,
-    or setCrossCheck instead.
+    @param maxRatio in (0, 1]. A query keeps its matches only if its least distance is less than maxRatio times its
+    second least: least < maxRatio * (1 - 2^-23) * second in double, with maxRatio as a float. So exact ties of a
+    decimal number do not pass, such as 6 and 10 bits at 0.6 or 9 and 10 at 0.9, in C++ and Python alike. A query with a
+    single candidate keeps it. 1, the default, turns the test off. The 0.75 to 0.8 that suit SIFT throw most right
+    matches of long binary codes away where the view moves: take 0.9 to 0.95, or setCrossCheck instead.
      */
     CV_WRAP virtual void setMaxRatio(float maxRatio) = 0;
     CV_WRAP virtual float getMaxRatio() const = 0;
@@ -211,8 +211,8 @@ public:
 
     /** @brief Reads what saveIndex wrote, by this version of the module or an older one.
 
-    A file has level sizes: a matcher that was made without them (createRecommended) takes codes of any width, but what is
-    loaded of it only those of the width that was saved.
+    A file has level sizes: a matcher that was made without them (createRecommended) takes codes of any width, but what
+    is loaded of it only those of the width that was saved.
 
     @throws cv::Exception for a file that is missing, truncated, altered, of another kind or of a newer
     version.

@@ -85,8 +85,8 @@ inline void appendChosen(const ChosenBits& chosen, const uchar* comparisons, Bit
 
 // How cells are compared.
 
-/* Stores groups of four lanes, every other one to `even` and to `odd`; `lane` counts the lanes that were stored before, and
- a vector may be as small as one. */
+/* Stores groups of four lanes, every other one to `even` and to `odd`; `lane` counts the lanes that were stored before,
+ and a vector may be as small as one. */
 inline void storeAlternately(unsigned* even, unsigned* odd, int lane, const v_int32& v)
 {
     const v_uint32 u = v_reinterpret_as_u32(v);

@@ -9,8 +9,9 @@
 namespace cv {
 namespace iib {
 
-/* MAPPING_BOXES: means over boxes on overlapping grids, from an integral image over cells of BOX_CELL x BOX_CELL pixels
- with BOX_LANES values side by side, so that one vector (or two) holds a corner of a box in all channels. RingRows of it count rows and columns in cells. */
+/* MAPPING_BOXES: means over boxes on overlapping grids, from an integral image over squares of BOX_SQUARE x BOX_SQUARE pixels
+ with BOX_LANES values side by side, so that one vector (or two) holds a corner of a box in all channels. RingRows of it
+ count rows and columns in squares. */
 
 //! n x n boxes, in 80ths of the region's side.
 struct BoxGrid
@@ -34,7 +35,7 @@ static constexpr int BOX_LEVELS = 5;
 //! Level g is BOX_GRIDS[g - 1].
 static const BoxGrid BOX_GRIDS[BOX_LEVELS] = {{3, 32, 24}, {5, 24, 28}, {7, 16, 30}, {9, 8, 32}, {7, 6, 12}};
 
-// Bits of a box in a channel, as in the mask of a selection: those of MAPPING_HAAR, and the comparisons of its own means.
+// Bits of a box in a channel, as in a selection's mask: those of MAPPING_HAAR, and the comparisons of its own means.
 static constexpr int BOX_HAAR_BITS = 3, BOX_HAAR_MASK = 7, BOX_FIRST_OWN_BIT = 8, BOX_SECOND_OWN_BIT = 16;
 
 //! The bits that a box has. @param kind of the channel, one of IIB::Channel.
@@ -73,21 +74,21 @@ enum RotatedBoxLane
 
 enum
 {
-    BOX_CELL = 2,        //!< pixels along the side of a cell
+    BOX_SQUARE = 2,      //!< pixels along the side of a square
     BOX_PLANES = 3,      //!< gx, gy and intensity of a row of pixels
-    BOX_MEAN_STEPS = 2,  //!< to one in the sum of a cell: means of 8-bit images, and sums of two, fit 16 bits
+    BOX_MEAN_STEPS = 2,  //!< to one in a square's sum: means of 8-bit images, and sums of two, fit 16 bits
     MAX_BOXES_IN_ROW = 9,
     BOXES_TOGETHER = 4,  //!< kernels may work on that many in a row at a time
     MAX_BOX_STRIDE = (MAX_BOXES_IN_ROW + BOXES_TOGETHER - 1) / BOXES_TOGETHER * BOXES_TOGETHER,
     MAX_BOX_MEANS = (MAX_BOXES_IN_ROW * MAX_BOX_STRIDE + BOXES_TOGETHER) * BOX_LANES
 };
 
-/** n x n boxes. Means are in rows of stride() boxes, of which the last ones mean nothing, as do BOXES_TOGETHER boxes behind
- the last row.
+/** n x n boxes. Means are in rows of stride() boxes, of which the last ones mean nothing, as do BOXES_TOGETHER boxes
+ behind the last row.
 
- Comparisons lie in memory as bytes, with a bit for each lane: for each row of quads three times quadBytes(), one for each bit
- of MAPPING_HAAR and in it a byte for each quad; then a byte for each mean, with |gx| > |gy|, gx > gy, gy > 0, gx + gy > 0
- and gx > 0 in bits 0, 2, 3, 5 and 6. */
+ Comparisons lie in memory as bytes, with a bit for each lane: for each row of quads three times quadBytes(), one for
+ each bit of MAPPING_HAAR and in it a byte for each quad; then a byte for each mean, with |gx| > |gy|, gx > gy, gy > 0,
+ gx + gy > 0 and gx > 0 in bits 0, 2, 3, 5 and 6. */
 struct BoxGridShape
 {
     int n;
@@ -110,12 +111,12 @@ struct BoxEdges
     float xWeights[MAX_BOX_PLACES], yWeights[MAX_BOX_PLACES];
 };
 
-//! A keypoint's region, in cells.
+//! A keypoint's region, in squares.
 struct BoxFrame
 {
     Point2d centre;
     double side;
-    Rect bounds;  //!< the cells that count
+    Rect bounds;  //!< the squares that count
     int left;     //!< column of the integral image that is its first
     int count;    //!< its rows in the ring, and
     int shift;    //!< where they are there, see RingRows
@@ -125,21 +126,21 @@ struct BoxFrame
 struct BoxPlaces
 {
     static constexpr int CAPACITY = MAX_BOXES_IN_ROW * MAX_BOXES_IN_ROW;
-    int above[CAPACITY];  //!< its top left corner in the integral image, in cells
+    int above[CAPACITY];  //!< its top left corner in the integral image, in squares
     int below[CAPACITY];  //!< bottom left
-    int right[CAPACITY];  //!< cells from there to the right corners
+    int right[CAPACITY];  //!< squares from there to the right corners
     float weight[CAPACITY];
 };
 
-/** Of pixels' values T, short or int: means are T as well, and sums unsigned, as long as 32 bits hold those of all boxes
- in 8-bit images, or 64-bit integers. */
+/** Of pixels' values T, short or int: means are T as well, and sums unsigned, as long as 32 bits hold those of all
+ boxes in 8-bit images, or 64-bit integers. */
 template <typename T> struct BoxSumKernels
 {
     typedef typename std::conditional<std::is_same<T, short>::value, unsigned, int64>::type Sum;
 
-    /** Of upright and of rotated regions: a row of the integral image from two rows of pixels, out = above + sums along the row;
-     both begin left of the first cell. @param rows ROW_PADDING values longer than the cells. */
-    void (*sumRow[2])(const T* const rows[BOX_CELL][BOX_PLANES], int cells, const Sum* above, Sum* out);
+    /** Of upright and of rotated regions: a row of the integral image from two rows of pixels, out = above + sums along
+     the row; both begin left of the first square. @param rows ROW_PADDING values longer than the squares. */
+    void (*sumRow[2])(const T* const rows[BOX_SQUARE][BOX_PLANES], int squares, const Sum* above, Sum* out);
 
     void (*means)(const RingRows<Sum>& integral, const BoxGridShape& grid, const BoxEdges& edges, T* means);
 
@@ -162,12 +163,12 @@ struct BoxKernels
     //! @param offsets of begins and ends from the region's centre, in its sides.
     void (*edges)(const BoxFrame& frame, const double (&offsets)[2][MAX_BOX_PLACES], BoxEdges& edges);
 
-    //! @param centres of the boxes from the region's, as offsets; (cosine, sine) of the angle. @param side of a box, in cells.
+    //! @param centres of boxes from the region's, as offsets. @param direction cosine and sine. @param side in squares.
     void (*places)(const BoxFrame& frame, const BoxGridShape& grid, const double* centres, Point2d direction,
             double side, int step, BoxPlaces& places);
 };
 
-//! As descriptorKernels().
+//! The kernels for this machine, as descriptorKernels() chooses them.
 const BoxKernels& boxKernels();
 
 }  // namespace iib

@@ -30,13 +30,13 @@ inline void zipPairs(const v_uint32& a, const v_uint32& b, v_uint32& low, v_uint
 
 //! Sums that 32 bits do not hold: rare, so written plainly.
 template <bool ROTATED>
-void sumCellRow(const int* const rows[BOX_CELL][BOX_PLANES], int cells, const int64* above, int64* out)
+void sumSquareRow(const int* const rows[BOX_SQUARE][BOX_PLANES], int squares, const int64* above, int64* out)
 {
     int64 sums[BOX_LANES] = {};
-    for (int c = 0; c < cells; c++)
+    for (int c = 0; c < squares; c++)
     {
-        for (int r = 0; r < BOX_CELL; r++)
-            for (int x = BOX_CELL * c; x < BOX_CELL * (c + 1); x++)
+        for (int r = 0; r < BOX_SQUARE; r++)
+            for (int x = BOX_SQUARE * c; x < BOX_SQUARE * (c + 1); x++)
             {
                 const int64 gx = rows[r][0][x], gy = rows[r][1][x];
                 sums[LANE_ABSOLUTE_X] += std::abs(gx);
@@ -69,8 +69,8 @@ inline v_uint32 pairSums(const v_int16& low, const v_int16& high)
            (v_reinterpret_as_u32(v_dotprod(high, ones)) << 16);
 }
 
-//! Four vectors' lanes side by side, a cell in 128 bits.
-inline void storeCells(const v_uint32 pairs[BOX_LANES / 2], short* out)
+//! Four vectors' lanes side by side, a square in 128 bits.
+inline void storeSquares(const v_uint32 pairs[BOX_LANES / 2], short* out)
 {
     v_uint32 a[2], b[2];
     v_zip(pairs[0], pairs[1], a[0], a[1]);
@@ -88,20 +88,20 @@ inline void storeCells(const v_uint32 pairs[BOX_LANES / 2], short* out)
 constexpr int SAMPLE_LANES = VTraits<v_samples>::max_nlanes, LANE_VECTORS = BOX_LANES / SAMPLE_LANES;
 
 template <bool ROTATED>
-void sumCellRow(
-        const short* const rows[BOX_CELL][BOX_PLANES], int cells, const unsigned* above, unsigned* out)
+void sumSquareRow(
+        const short* const rows[BOX_SQUARE][BOX_PLANES], int squares, const unsigned* above, unsigned* out)
 {
-    constexpr int CELLS = VTraits<v_int16>::max_nlanes / BOX_CELL;
-    short CV_DECL_ALIGNED(CACHE_LINE) values[CELLS * BOX_LANES];
+    constexpr int SQUARES = VTraits<v_int16>::max_nlanes / BOX_SQUARE;
+    short CV_DECL_ALIGNED(CACHE_LINE) values[SQUARES * BOX_LANES];
     v_samples sums[LANE_VECTORS];
     for (v_samples& sum : sums)
         sum = v_setall_samples(0);
-    for (int first = 0; first < cells; first += CELLS)
+    for (int first = 0; first < squares; first += SQUARES)
     {
         v_int16 plane[2][BOX_PLANES];
-        for (int r = 0; r < BOX_CELL; r++)
+        for (int r = 0; r < BOX_SQUARE; r++)
             for (int i = 0; i < BOX_PLANES; i++)
-                plane[r][i] = vx_load(rows[r][i] + BOX_CELL * first);
+                plane[r][i] = vx_load(rows[r][i] + BOX_SQUARE * first);
         const v_int16 gx = plane[0][0] + plane[1][0], gy = plane[0][1] + plane[1][1];
         v_uint32 pairs[BOX_LANES / 2] = {pairSums(absolute(plane[0][0]) + absolute(plane[1][0]),
                                                  absolute(plane[0][1]) + absolute(plane[1][1])),
@@ -110,7 +110,7 @@ void sumCellRow(
         if (ROTATED)
         {
             v_int16 sum = vx_setzero_s16(), difference = sum;
-            for (int r = 0; r < BOX_CELL; r++)
+            for (int r = 0; r < BOX_SQUARE; r++)
             {
                 sum += absolute(v_int16(plane[r][0] + plane[r][1]));
                 difference += absolute(v_int16(plane[r][0] - plane[r][1]));
@@ -123,8 +123,8 @@ void sumCellRow(
             pairs[2] = pairSums(intensity, v_int16(gx + gy));
             pairs[3] = pairSums(gx, vx_setzero_s16());
         }
-        storeCells(pairs, values);
-        const int count = std::min(CELLS, cells - first);
+        storeSquares(pairs, values);
+        const int count = std::min(SQUARES, squares - first);
         for (int c = 0; c < count; c++)
         {
             const int at = BOX_LANES * (first + c + 1);
@@ -328,7 +328,7 @@ void compareBoxes(const short* means, const BoxGridShape& grid, uchar* out)
     }
 }
 
-//! Plainly.
+//! The same of 16-bit images, which are rare: written plainly.
 void compareBoxes(const int* means, const BoxGridShape& grid, uchar* out)
 {
     const int bytes = grid.quadBytes(), below = grid.stride() * BOX_LANES;
@@ -374,7 +374,7 @@ template <typename T> BoxSumKernels<T> boxSumKernels()
 {
     typedef typename BoxSumKernels<T>::Sum Sum;
     const BoxSumKernels<T> k = {
-            {sumCellRow<false>, sumCellRow<true>}, boxMeans<Sum, T>, rotatedBoxMeans<Sum, T>, boxBits<T>};
+            {sumSquareRow<false>, sumSquareRow<true>}, boxMeans<Sum, T>, rotatedBoxMeans<Sum, T>, boxBits<T>};
     return k;
 }
 

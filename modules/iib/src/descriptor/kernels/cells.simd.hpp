@@ -14,9 +14,9 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-/* A group is the four channels of a pixel. loadGroups() loads groups from several places into one vector, nextGroups() shifts
- a vector by one group. Vectors have 256 bits at most: the offsets of a 512-bit one need too many registers. v_lut_quads is
- not used, since gather instructions are slow on many machines. */
+/* A group is the four channels of a pixel. loadGroups() loads groups from several places into one vector, nextGroups()
+ shifts a vector by one group. Vectors have 256 bits at most: the offsets of a 512-bit one need too many registers.
+ v_lut_quads is not used, since gather instructions are slow on many machines. */
 #if CV_AVX2
 typedef v_uint16x16 v_groups16;
 typedef v_uint32x8 v_groups32;

@@ -26,10 +26,10 @@ static const float ATAN_A = 162.218109f;
 static const float ATAN_B = -47.0491257f;
 static const float ATAN_C = 12.9301834f;
 
-/** What a reader sees of the last rows of GROUP_CHANNELS channels, in a ring. Row (y - origin.y) % count holds the pixels of row y
- of the image, side by side; or the sums over its rows [origin.y, y): those of an integral image, side by side in each pixel, left of the pixels origin.x,
- origin.x + 1, ...; or those down the columns, a plane for each channel. A cell's sum, as the difference of its corners, is
- right if a Sum can hold it, however large the image. */
+/** What a reader sees of the last rows of GROUP_CHANNELS channels, in a ring. Row (y - origin.y) % count holds the
+ pixels of row y of the image, side by side; or the sums over its rows [origin.y, y): those of an integral image, side
+ by side in each pixel, left of the pixels origin.x, origin.x + 1, ...; or those down the columns, a plane for each
+ channel. A cell's sum, as the difference of its corners, is right if a Sum can hold it, however large the image. */
 template <typename Sum> struct RingRows
 {
     const Sum* data;
@@ -100,7 +100,7 @@ struct GradientRotation
  column, and the column, as in a CellGrid. Sums are in planes, with cells in the same order. */
 template <typename T> struct RotatedSampleKernels
 {
-    //! The places of the pixels nearest to the points among those of `rows`, which hold them all. @param oldest row at hand.
+    //! The places of the pixels nearest to the points among those of `rows`, of which `oldest` is the first at hand.
     void (*indices)(const SampleGrid& grid, const RingRows<T>& rows, int oldest, int* index);
 
     /** Rotates gradients: x' = c x + s y, y' = c y - s x, rounded. The orientation becomes (steps + its own) modulo
@@ -163,8 +163,8 @@ struct DescriptorKernels
     IntegralKernels<short, ushort> shortIntegral;
     IntegralKernels<short, unsigned> longIntegral;
     IntegralKernels<int, unsigned> intIntegral;
-    /** As shortIntegral.cells, from the sums down the columns, modulo 2^16. Null where it would be slow, as it is for cells
-     wider than NARROW_CELL. May read ROW_PADDING values past the end of a row.
+    /** As shortIntegral.cells, from the sums down the columns, modulo 2^16. Null where it would be slow, as it is for
+     cells wider than NARROW_CELL. May read ROW_PADDING values past the end of a row.
      @param channels where in a row each channel has its pixel origin.x. @param n a multiple of 8. */
     void (*columnCells)(const RingRows<short>& rows, const size_t channels[GROUP_CHANNELS], const int* xEdges,
             const int* yEdges, int n, CellGrid<ushort>& cells);

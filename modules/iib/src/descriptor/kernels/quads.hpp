@@ -155,7 +155,7 @@ struct Weights
 
     //! @param a, b lengths of the first and second cell.
     CV_ALWAYS_INLINE Weights(int a, int b) : first(a == b ? 1 : b), second(a == b ? 1 : a) {}
-    //! Of cells i and i + 1.
+    //! For cells i and i + 1 of an axis.
     CV_ALWAYS_INLINE Weights(const Axis& axis, int i) : Weights(axis.length(i), axis.length(i + 1)) {}
 
     bool equal() const { return first == second; }

@@ -61,7 +61,7 @@ inline void loadPixels(const T* pixels, const int* i, v_samples& a, v_samples& b
 }
 #endif
 
-//! Products of values and a factor that fit 16 bits; `factor` comes from sampleFactor(). Whole 32-bit products are slow.
+//! Products of values and a sampleFactor() of 16 bits each, since those of 32 bits are slow.
 inline v_samples sampleFactor(short factor) { return v_setall_samples((int)(ushort)factor); }
 inline v_samples sampleFactor(int factor) { return v_setall_samples(factor); }
 inline v_samples multiplySamples(const v_samples& v, const v_samples& factor, short)
@@ -90,7 +90,7 @@ void sampleIndices(const SampleGrid& grid, const RingRows<T>& rows, int oldest, 
                     bottom = v_setall_samples(g.image.height - 1);
     const v_samples left = v_setall_samples(rows.origin.x), shift = v_setall_samples(rows.shift(oldest)),
                     step = v_setall_samples((int)rows.step / GROUP_CHANNELS);
-    // place - count wraps to a large number if the place is already in the ring, so that the minimum of both is the place.
+    // place - count wraps to a large number if the place is in the ring already: the minimum of both is the place.
     const auto count = v_reinterpret_as_u32(v_setall_samples(rows.count));
     // along a row, in the order of the points: first by dx, then by the parity of the cell
     int alongX[MAX_SAMPLES_IN_ROW], alongY[MAX_SAMPLES_IN_ROW];

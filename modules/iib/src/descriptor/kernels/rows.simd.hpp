@@ -33,8 +33,8 @@ inline v_int32 addModulo(const v_int32& a, const v_int32& b) { return a + b; }
 inline v_int16 setAll(short v) { return vx_setall_s16(v); }
 inline v_int32 setAll(int v) { return vx_setall_s32(v); }
 
-/* ORIENTATION_STEPS / 8 steps for equal sides, of 16-bit lanes or 32-bit ones that are 0 or greater. Other work finds room
- between the division and what follows it. */
+/* ORIENTATION_STEPS / 8 steps for equal sides, of 16-bit lanes or 32-bit ones that are 0 or greater. Other work finds
+ room between the division and what follows it. */
 class OctantSteps32
 {
 public:
@@ -179,8 +179,8 @@ template <typename Pixel, typename T> void widenRow(const Pixel* in, T* out, int
         out[x] = (T)in[x];
 }
 
-/* Interleaves four planes; out[0] gets the first pixels. Zipping is cheap only within 128 bits, so that wider vectors are
- first permuted. */
+/* Interleaves four planes; out[0] gets the first pixels. Zipping is cheap only within 128 bits, so that wider vectors
+ are first permuted. */
 inline void interleaveFour(const v_uint16 planes[4], v_uint16 out[4])
 {
 #if CV_AVX512_SKX

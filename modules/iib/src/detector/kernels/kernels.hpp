@@ -11,13 +11,13 @@ namespace iib {
 
 constexpr int CONTRAST_BITS = 6;  //!< smoothed rows are normalized grey levels in 2^-6
 
-//! Weights of a five-tap filter, in 2^-16, each 0 to 16384: of the two pixels 1 spacing away (near) and 2 spacings away (far).
+//! Weights of a five-tap filter, in 2^-16, each 0 to 16384: of the pixels one spacing away, and two.
 struct SmoothingWeights
 {
     short near, far;
 };
 
-/* What the detector does with rows. Pixels of 8 bits have no padding. Responses are floats in one order of operations. */
+/* What the detector does with rows. Pixels of 8 bits have no padding. Responses are floats in one order. */
 struct DetectorKernels
 {
     //! Normalized 8-bit pixels around 128 to -127..127 in 2^-6.
@@ -29,8 +29,8 @@ struct DetectorKernels
     void (*response)(const short* const rows[3], int distance, float factor, float* out, int width);
     //! The largest of 3 x 3 values.
     void (*largest)(const float* const rows[3], float* out, int width);
-    /** Columns from `begin` to before `end` where the value is at least `threshold`, which is positive, and at least what
-     three rows hold there. Returns their number. */
+    /** Columns from `begin` to before `end` where the value is at least `threshold`, which is positive, and at least
+     what three rows hold there. Returns their number. */
     int (*maxima)(const float* values, const float* const bounds[3], float threshold, int begin, int end,
             int* columns);
 };

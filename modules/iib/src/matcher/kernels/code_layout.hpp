@@ -9,8 +9,8 @@
 namespace cv {
 namespace iib {
 
-//! How codes are kept so that a kernel compares one query with many of them at once. The numbers stand in files: what a number
-//! means, and what CodeLayout makes of it, never changes.
+//! How codes are kept so that a kernel compares one query with many of them at once. The numbers stand in files: what a
+//! number means, and what CodeLayout makes of it, never changes.
 enum CodePacking
 {
     /** Words combined so that half as many population counts do. With c the plain words, word 0 is c[0], then

@@ -14,8 +14,8 @@ namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
-/* Each primitive is chosen by instruction set, never by the width of vectors, which different architectures share; where
- there is no portable form, a macro says whether it exists. */
+/* Each primitive is chosen by instruction set, never by the width of vectors, which different architectures share;
+ where there is no portable form, a macro says whether it exists. */
 
 //! Number of set bits.
 inline int countBits(uint64 word)

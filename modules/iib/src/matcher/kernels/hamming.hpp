@@ -13,7 +13,7 @@
 namespace cv {
 namespace iib {
 
-//! Of the number of a train code among all images.
+//! Bits of a MatchKey that hold a train code's number among all images.
 static constexpr int INDEX_BITS = 40;
 
 //! A neighbour as one number: distance above, index below, so that ties go to the lowest index.
@@ -87,8 +87,8 @@ struct PruneStage
 //! Where pairs are given up on the way from coarse to fine; without stages, never.
 struct PruningPolicy
 {
-    //! With a margin, limits are lowered after each 128 CodeBlocks (2048 train codes). ADAPTIVE's answers depend on this
-    //! number, so it must not be tuned for speed.
+    //! With a margin, limits are lowered after each 128 CodeBlocks (2048 train codes). ADAPTIVE's answers depend on
+    //! this number, so it must not be tuned for speed.
     static constexpr int CODE_BLOCKS_OF_LIMITS = 128;
 
     std::vector<PruneStage> stages;

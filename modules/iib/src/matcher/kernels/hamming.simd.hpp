@@ -12,8 +12,8 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-/** The nearest of each query and, if wanted, of each train code. A pair's key is its distance, followed by an index in the
-low bits: the least key is that of the nearest pair, and of the first one if there are several. So no tile needs a
+/** The nearest of each query and, if wanted, of each train code. A pair's key is its distance, followed by an index in
+the low bits: the least key is that of the nearest pair, and of the first one if there are several. So no tile needs a
 branch on what it found. */
 class NearestScanner : public Scanner
 {

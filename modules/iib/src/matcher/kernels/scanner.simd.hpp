@@ -10,7 +10,8 @@
 #include "hamming.hpp"
 
 // Tile compares some queries with a CodeBlock, TileQueries prepares these queries, PACKING is the packing that both
-// understand: by tables in registers where bytes are looked up faster than the bits of words are counted, else by adders.
+// understand: by tables in registers where bytes are looked up faster than the bits of words are counted, else by
+// adders.
 #if (CV_SSSE3 || (CV_NEON && defined __aarch64__)) && IIB_NATIVE_VECTORS && !IIB_COUNTS_LANES
 #include "tile_tables.simd.hpp"
 #else

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Comparison of codes packed as PACKING_ADDERS, for instruction sets that count the bits of a word fast, or that have no
-// tables in registers.
+// Comparison of codes packed as PACKING_ADDERS, for instruction sets that count the bits of a word fast, or that have
+// no tables in registers.
 
 #pragma once
 

@@ -13,9 +13,9 @@ namespace iib {
 constexpr int GREY_BITS = 7;
 constexpr int WHITE = 255 << GREY_BITS;
 
-/* What local normalization does with rows. Pixels of 8 bits have no padding. A `half` row has half as many values as those
- it comes from or goes to. All is on integers but gain, floats in one order of operations, whose square root and quotient
- IEEE 754 rounds in one way. */
+/* What local normalization does with rows. Pixels of 8 bits have no padding. A `half` row has half as many values as
+ those it comes from or goes to. All is on integers but gain, floats in one order of operations, whose square root and
+ quotient IEEE 754 rounds in one way. */
 struct NormalizationKernels
 {
     //! Grey levels from 8-bit pixels.

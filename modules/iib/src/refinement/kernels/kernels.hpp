@@ -9,8 +9,8 @@
 namespace cv {
 namespace iib {
 
-/* A patch is PATCH x PATCH samples, 2 units apart: images are smoothed so that nothing is lost between them. All is exact on
- integers. */
+/* A patch is PATCH x PATCH samples, 2 units apart: images are smoothed so that nothing is lost between them. All is
+ exact on integers. */
 constexpr int PATCH = 16, PATCH_SAMPLES = PATCH * PATCH;
 constexpr int TEMPLATE = 2 * PATCH + 1;  //!< pixels in rows and columns: samples and their neighbours
 constexpr int WINDOW_BITS = 6, WINDOW = 1 << WINDOW_BITS;  //!< most pixels in rows and columns around a point
@@ -21,7 +21,8 @@ constexpr int SAMPLE_BITS = 5;                //!< samples are normalized grey l
 constexpr int WEIGHT_BITS = 11;               //!< of the sum of samples
 constexpr int GAIN_BITS = 8;                  //!< gains are below 256, samples 2^12: products fit 32 bits
 
-//! Derivatives of samples by the six parameters: x, y, and the four of a linear map, d/dx and d/dy times places x and y.
+//! Derivatives of samples by the six parameters: x, y, and the four of a linear map, d/dx and d/dy times places x and
+//! y.
 constexpr int PARAMETERS = 6;
 
 //! What is summed over samples, each times a weight: its own, itself, the template's, and that of each derivative.
@@ -54,8 +55,8 @@ struct PatchTemplate
     short weights[SUMS - SUM_TEMPLATE][PATCH_SAMPLES];  //!< of SUM_TEMPLATE and after, halved
 };
 
-/* Sums of products of values with themselves, with their right neighbours, and with those below. Neighbours of the last row
- are left out, and the few that are at both ends of two rows count little, as the values have a patch's weights. */
+/* Sums of products of values with themselves, with their right neighbours, and with those below. Neighbours of the last
+ row are left out, and the few that are at both ends of two rows count little, as the values have a patch's weights. */
 struct Autocorrelation
 {
     int squares, right, below;
@@ -65,8 +66,8 @@ struct RefinementKernels
 {
     //! (1 2 1) / 4 in both directions; the ends of rows are repeated. `sums` has room for 2 more than `width`.
     void (*smooth)(const uchar* const rows[3], ushort* sums, uchar* out, int width);
-    /** A window: four bytes of the image a pixel, each less 128: its own, the one below, the one to the right, the one below
-     that. Reads a row more, and of each WINDOW + 1 pixels; writes full vectors. */
+    /** A window: four bytes of the image a pixel, each less 128: its own, the one below, the one to the right, the one
+     below that. Reads a row more, and of each WINDOW + 1 pixels; writes full vectors. */
     void (*readWindow)(const uchar* pixels, size_t step, Size size, int* window);
     //! Samples of a window, bilinear; all must be inside.
     void (*sample)(const int* window, const PatchGrid& grid, short* samples);
@@ -76,7 +77,8 @@ struct RefinementKernels
     void (*sum)(const short* samples, const PatchWeights& weights, const PatchTemplate& patch, int* sums);
     //! The sums of weighted derivatives times derivatives, j <= i, in rows.
     void (*sumProducts)(const PatchTemplate& patch, int (*sums)[PARAMETERS]);
-    //! What gain (in 2^-GAIN_BITS) times the template plus offset (so, too) leaves of samples, times half their weights.
+    //! What gain (in 2^-GAIN_BITS) times the template plus offset (so, too) leaves of samples, times half their
+    //! weights.
     void (*subtract)(const short* samples, const PatchWeights& weights, const PatchTemplate& patch, int gain,
             int offset, short* residuals);
     Autocorrelation (*autocorrelate)(const short* values);
