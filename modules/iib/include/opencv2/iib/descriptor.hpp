@@ -238,6 +238,7 @@ public:
     virtual void compute(InputArray image, InputArrayOfArrays extraChannels,
             CV_OUT CV_IN_OUT std::vector<KeyPoint>& keypoints, OutputArray descriptors) = 0;
 
+    //! Setters take what create() takes, and throw a cv::Exception where it does; the old value then stays.
     CV_WRAP virtual void setScaleFactor(float scaleFactor) = 0;
     CV_WRAP virtual float getScaleFactor() const = 0;
 

@@ -65,6 +65,7 @@ public:
     CV_WRAP static Ptr<HessianDetector> create(int maxFeatures = 1000, float threshold = 0.f, int scales = 5,
             float sigma = 2.2f, float normalizationSigma = 5.f, int workingSize = 1024);
 
+    //! Setters take what create() takes, and throw a cv::Exception where it does; the old value then stays.
     CV_WRAP virtual void setMaxFeatures(int maxFeatures) = 0;
     CV_WRAP virtual int getMaxFeatures() const = 0;
     CV_WRAP virtual void setThreshold(float threshold) = 0;

@@ -109,13 +109,10 @@ public:
     CV_WRAP virtual std::vector<Mat> getTrainDescriptors() const = 0;
 
     /** @name Matching
-    A query's row is shorter than `k`, or empty, where fewer pass masks, cross-check and maximal ratio (those of
-    createRecommended, for instance): code that takes two of each row needs a matcher of create().
-
     As in DescriptorMatcher, whose documentation holds, but old results never survive a call, and arguments are checked
-    also where there is nothing to match. Rows of knnMatch have 0 to k matches: a cross-check, a ratio, a mask or few
-    train descriptors leave fewer, so look at a row's size before taking its second match. createRecommended() has done
-    the ratio test already: match() gives what passes. */
+    also where there is nothing to match. Rows of knnMatch have 0 to k matches: masks, cross-check, maximal ratio or few
+    train descriptors leave fewer. Code that takes two of each row needs a matcher of create(); match() of one of
+    createRecommended() gives what passes its ratio test. */
     //! @{
     CV_WRAP virtual void match(InputArray queryDescriptors, InputArray trainDescriptors,
             CV_OUT std::vector<DMatch>& matches, InputArray mask = noArray()) const = 0;
@@ -135,6 +132,7 @@ public:
             InputArrayOfArrays masks = noArray(), bool compactResult = false) = 0;
     //! @}
 
+    //! Setters take what create() takes, and throw a cv::Exception where it does; the old value then stays.
     CV_WRAP virtual void setMode(int mode) = 0;
     CV_WRAP virtual int getMode() const = 0;
 

@@ -47,6 +47,7 @@ public:
     //! The detector inside.
     CV_WRAP virtual Ptr<Feature2D> getDetector() const = 0;
 
+    //! In pixels; as create() takes it, and throws a cv::Exception where it does.
     CV_WRAP virtual void setSigma(float sigma) = 0;
     CV_WRAP virtual float getSigma() const = 0;
 };

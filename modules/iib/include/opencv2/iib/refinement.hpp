@@ -33,9 +33,9 @@ the patches do not agree better after it, or not well enough: then it stays as i
 @param covariances N x 3, CV_32F: xx, xy and yy of points2 given points1, in squared pixels, from the differences that
 remain and from how far these agree among neighbouring samples. Of refused matches 1, 0 and 1. They hold for noise; they
 know nothing of shadows that moved from one image to the other, nor of surfaces at other depths within a patch, so that
-errors of photographs are larger: under another exposure 30 and 67 % of them lie inside the ellipses of one and two
-standard deviations, where 39 and 86 % would. They still rank matches well, and can serve as weights when a model is
-fitted to points.
+errors of photographs are larger: under another exposure (test IIB_RefinementAccuracy) 30 and 67 % of them lie inside
+the ellipses of one and two standard deviations, where 39 and 86 % would. They still rank matches well, and can serve as
+weights when a model is fitted to points.
 @param similarities N x 1, CV_32F: the correlation of the two patches where they agree best, above 0.5 up to 1; -1 where
 the match was refused.
 @throws cv::Exception (StsOutOfRange) for indices without a keypoint, (StsBadArg) for an empty image, and as

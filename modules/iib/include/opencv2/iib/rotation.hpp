@@ -57,7 +57,7 @@ CV_EXPORTS_W double matchRotated(InputArray image1, CV_OUT CV_IN_OUT std::vector
         const Ptr<IIBDescriptorExtractor>& extractor, const Ptr<DescriptorMatcher>& matcher,
         CV_OUT std::vector<DMatch>& matches1to2, double rotation = -1);
 /** @overload
-With the keypoints that the extractor's detector finds. */
+With the keypoints that the extractor's detector finds: like all results, they come after what is given. */
 CV_EXPORTS_W double matchRotated(InputArray image1, InputArray image2,
         const Ptr<IIBDescriptorExtractor>& extractor, const Ptr<DescriptorMatcher>& matcher,
         CV_OUT std::vector<KeyPoint>& keypoints1, CV_OUT std::vector<KeyPoint>& keypoints2,
