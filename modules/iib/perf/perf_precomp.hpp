@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_PERF_PRECOMP_HPP
-#define OPENCV_IIB_PERF_PRECOMP_HPP
+#pragma once
 
 #include "opencv2/ts.hpp"
 #include "opencv2/iib.hpp"
@@ -20,5 +19,3 @@ struct Threads
     ~Threads() { setNumThreads(before); }
 };
 }  // namespace opencv_test
-
-#endif

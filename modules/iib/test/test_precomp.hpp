@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_TEST_PRECOMP_HPP
-#define OPENCV_IIB_TEST_PRECOMP_HPP
+#pragma once
 
 #include "opencv2/ts.hpp"
 #include "opencv2/iib.hpp"
@@ -22,5 +21,3 @@ using cv::xfeatures2d::BRISK;
 using cv::xfeatures2d::KAZE;
 #endif
 }  // namespace opencv_test
-
-#endif

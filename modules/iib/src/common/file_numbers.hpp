@@ -15,8 +15,9 @@ inline void require(
         bool holds, const char* name, double value, const char* what, int code = Error::StsOutOfRange)
 {
     if (!holds)
-        CV_Error(code, format(value == std::floor(value) ? "%s is %.0f; it must be %s" : "%s is %g; it must be %s",
-                               name, value, what));
+        CV_Error(code,
+                format(value == std::floor(value) ? "%s is %.0f; it must be %s" : "%s is %g; it must be %s",
+                        name, value, what));
 }
 
 //! What a node is, for errors.

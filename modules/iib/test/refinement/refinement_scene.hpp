@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_TEST_REFINEMENT_SCENE_HPP
-#define OPENCV_IIB_TEST_REFINEMENT_SCENE_HPP
+#pragma once
 
 #include "../test_precomp.hpp"
 
@@ -26,5 +25,3 @@ struct RefinementScene
 };
 
 }  // namespace opencv_test
-
-#endif

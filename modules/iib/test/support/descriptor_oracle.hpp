@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_TEST_SUPPORT_DESCRIPTOR_ORACLE_HPP
-#define OPENCV_IIB_TEST_SUPPORT_DESCRIPTOR_ORACLE_HPP
+#pragma once
 
 #include "opencv2/core.hpp"
 #include "opencv2/iib/features.hpp"
@@ -44,5 +43,3 @@ std::vector<bool> boxLevelBits(const cv::iib::IIBDescriptorExtractor& iib, const
         const cv::KeyPoint& keypoint, float angle, int level);
 
 }  // namespace oracle
-
-#endif

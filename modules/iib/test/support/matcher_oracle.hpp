@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_TEST_SUPPORT_MATCHER_ORACLE_HPP
-#define OPENCV_IIB_TEST_SUPPORT_MATCHER_ORACLE_HPP
+#pragma once
 
 #include "../test_precomp.hpp"
 #include "../../src/matcher/search.hpp"
@@ -61,5 +60,3 @@ void expectKnnAsOracle(HierarchicalMatcher& matcher, MatcherOracle& oracle, cons
 void expectRadiusAsOracle(HierarchicalMatcher& matcher, MatcherOracle& oracle, const Mat& queries);
 
 }  // namespace opencv_test
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_TEST_SUPPORT_RANDOM_DESCRIPTORS_HPP
-#define OPENCV_IIB_TEST_SUPPORT_RANDOM_DESCRIPTORS_HPP
+#pragma once
 
 #include "test_precomp.hpp"
 
@@ -33,5 +32,3 @@ inline int hammingDistance(const uchar* a, const uchar* b, int bytes)
 }
 
 }  // namespace opencv_test
-
-#endif

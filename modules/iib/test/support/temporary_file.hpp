@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_TEST_SUPPORT_TEMPORARY_FILE_HPP
-#define OPENCV_IIB_TEST_SUPPORT_TEMPORARY_FILE_HPP
+#pragma once
 
 #include "test_precomp.hpp"
 
@@ -88,5 +87,3 @@ struct FullDisk
 #endif
 
 }  // namespace opencv_test
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_TEST_SUPPORT_TEST_ERRORS_HPP
-#define OPENCV_IIB_TEST_SUPPORT_TEST_ERRORS_HPP
+#pragma once
 
 #include "test_precomp.hpp"
 
@@ -36,5 +35,3 @@ inline String replaced(String text, const String& from, const String& to)
 }
 
 }  // namespace opencv_test
-
-#endif

@@ -2,8 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_IIB_TEST_SUPPORT_TEST_IMAGES_HPP
-#define OPENCV_IIB_TEST_SUPPORT_TEST_IMAGES_HPP
+#pragma once
 
 #include "../test_precomp.hpp"
 
@@ -90,5 +89,3 @@ struct RotatedPair
 };
 
 }  // namespace opencv_test
-
-#endif
