@@ -171,10 +171,7 @@ unsigned crc32(const String& bytes)
 String gzipped(const String& text)
 {
     String file("\x1f\x8b\x08\0\0\0\0\0\0\xff", 10);
-    const auto number = [&](size_t value, int bytes) {
-        for (int i = 0; i < bytes; i++)
-            file += (char)(value >> 8 * i);
-    };
+    const auto number = [&](size_t value, int bytes) { file.append((const char*)&value, bytes); };
     size_t at = 0;
     do
     {
@@ -278,20 +275,10 @@ void CheckedWriter::unchecked(const void* data, size_t size)
     written += size;
 }
 
-void CheckedWriter::number(uint64 value, int size)
-{
-    uchar data[8];
-    for (int i = 0; i < size; i++)
-        data[i] = (uchar)(value >> 8 * i);
-    bytes(data, size);
-}
+// Files are little-endian, as are all machines that this is built for.
+void CheckedWriter::number(uint64 value, int size) { bytes(&value, size); }
 
-void CheckedWriter::real(float value)
-{
-    Cv32suf bits;
-    bits.f = value;
-    number(bits.u, 4);
-}
+void CheckedWriter::real(float value) { bytes(&value, sizeof(value)); }
 
 uint64 CheckedWriter::seal()
 {
@@ -356,19 +343,16 @@ void CheckedReader::bytes(void* data, size_t size)
 
 uint64 CheckedReader::number(int size)
 {
-    uchar data[8];
-    bytes(data, size);
     uint64 value = 0;
-    for (int i = 0; i < size; i++)
-        value |= (uint64)data[i] << 8 * i;
+    bytes(&value, size);
     return value;
 }
 
 float CheckedReader::real()
 {
-    Cv32suf bits;
-    bits.u = word();
-    return bits.f;
+    float value = 0;
+    bytes(&value, sizeof(value));
+    return value;
 }
 
 void CheckedReader::fail(const String& why) const
