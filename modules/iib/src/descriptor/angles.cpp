@@ -102,7 +102,8 @@ float prevailingAngle(const DescriptorKernels& kernels, const T* pixels, const i
     for (int row = 0; row < INNER; row++)
     {
         const int* const above = cells + row * CELLS;
-        const ImageChannelRows<int> out = {0, gx + row * INNER, gy + row * INNER, 0, 0, steps + row * INNER};
+        const ImageChannelRows<int> out = {
+                {0, 0, steps + row * INNER, 0, gx + row * INNER, gy + row * INNER}};
         rows.imageChannels({above, above + CELLS, above + 2 * CELLS}, 0, out, 0, INNER);
     }
     kernels.pixels(T()).rotated.gradientVotes(gx, gy, weights.data(), VOTES, votes);

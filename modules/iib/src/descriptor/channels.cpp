@@ -85,19 +85,8 @@ template <typename T> ImageChannelRows<T> ChannelRows<T>::imageChannels(T* out) 
 {
     ImageChannelRows<T> rows = ImageChannelRows<T>();
     for (size_t i = 0; i < channels.size(); i++)
-    {
-        T* const plane = out + i * step + (source.start - origin);
-        switch (channels[i].kind)
-        {
-        case IIB::CHANNEL_GRAD_X: rows.absoluteX = plane; break;
-        case IIB::CHANNEL_GRAD_Y: rows.absoluteY = plane; break;
-        case IIB::CHANNEL_ORIENTATION: rows.steps = plane; break;
-        case IIB::CHANNEL_SIGNED_GRAD_X: rows.x = plane; break;
-        case IIB::CHANNEL_SIGNED_GRAD_Y: rows.y = plane; break;
-        case IIB::CHANNEL_INTENSITY: rows.pixels = plane; break;
-        default: break;
-        }
-    }
+        if (channels[i].kind)
+            rows.of[planeOf(channels[i].kind)] = out + i * step + (source.start - origin);
     return rows;
 }
 

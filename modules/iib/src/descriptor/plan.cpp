@@ -54,14 +54,9 @@ static std::vector<ChannelGroup> groupsOf(const Parameters& p, int finest)
 //! The lane in which a channel of this kind is.
 static int laneOf(int kind)
 {
-    switch (kind)
-    {
-    case IIB::CHANNEL_GRAD_X: return LANE_ABSOLUTE_X;
-    case IIB::CHANNEL_GRAD_Y: return LANE_ABSOLUTE_Y;
-    case IIB::CHANNEL_SIGNED_GRAD_X: return LANE_GRADIENT_X;
-    case IIB::CHANNEL_SIGNED_GRAD_Y: return LANE_GRADIENT_Y;
-    default: return LANE_INTENSITY;
-    }
+    const int lanes[IMAGE_PLANES] = {
+            LANE_ABSOLUTE_X, LANE_ABSOLUTE_Y, -1, LANE_INTENSITY, LANE_GRADIENT_X, LANE_GRADIENT_Y};
+    return lanes[planeOf(kind)];
 }
 
 //! Which comparisons are chosen, where they lie in memory.

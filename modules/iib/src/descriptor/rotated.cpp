@@ -49,12 +49,7 @@ public:
     {
         const int kinds = (int)channels.size();
         for (int i = 0, maps = IMAGE_PLANES; i < kinds; i++)
-        {
-            int place = 0;  // of a kind, in the order of IIB::Channel
-            while (channels[i].kind >> place > 1)
-                place++;
-            planeOf[i] = channels[i].kind ? place : maps++;
-        }
+            places[i] = channels[i].kind ? planeOf(channels[i].kind) : maps++;
         sums = job.workspace.planes.get<int>((size_t)(IMAGE_PLANES + kinds + GROUP_CHANNELS) * MAX_SAMPLES);
     }
 
@@ -110,7 +105,7 @@ private:
         for (int i = 0; i < GROUP_CHANNELS; i++)
         {
             const int c = group.first + std::min(i, group.count - 1);
-            planes[i] = plane(planeOf[c]);
+            planes[i] = plane(places[c]);
             const int kind = channels[c].kind;
             const bool isSigned = kind == IIB::CHANNEL_SIGNED_GRAD_X || kind == IIB::CHANNEL_SIGNED_GRAD_Y;
             // Both components are 4 times the largest pixel at most; rotated, one is sqrt(2) times that at most.
@@ -126,7 +121,7 @@ private:
     const BatchJob& job;
     const std::vector<Channel>& channels;
     const RotatedSampleKernels<T>& kernels;
-    int planeOf[IMAGE_PLANES + MAX_EXTRA_CHANNELS];  //!< of each channel, in the planes of sums
+    int places[IMAGE_PLANES + MAX_EXTRA_CHANNELS];  //!< of each channel, in the planes of sums
     int* sums;
 };
 

@@ -37,7 +37,7 @@ template <typename T> void checkAddedChannels(int limit)
         std::vector<T> alone(6 * step), sums = randomRow<T>(random, 12 * (int)step, 30000);
         const auto planes = [&](T* p) {
             const ImageChannelRows<T> out = {
-                    p, p + step, p + 2 * step, p + 3 * step, p + 4 * step, p + 5 * step};
+                    {p, p + step, p + 2 * step, p + 3 * step, p + 4 * step, p + 5 * step}};
             return out;
         };
         kernels.imageChannels(rows, (T)(4 * limit), planes(alone.data()), 0, width);

@@ -43,7 +43,8 @@ TEST(IIB_Orientation, kernel_for_all_gradients_of_8_bits)
             below[3 * i + 2] = (short)odd;
         }
         cv::iib::descriptorKernels().shortPixels.rows.imageChannels(
-                {above.data(), middle.data(), below.data()}, 0, {0, 0, 0, 0, 0, steps.data()}, 0, 3 * count);
+                {above.data(), middle.data(), below.data()}, 0, {{0, 0, steps.data(), 0, 0, 0}}, 0,
+                3 * count);
         for (int i = 0; i < count - odd; i++)
             ASSERT_EQ(oracle::orientation(2 * i - largest + odd, gy), steps[3 * i]) << i << ", " << gy;
     }

@@ -357,13 +357,11 @@ void writeLevel(const CellGrid<Cell>& cells, const LevelShape& shape, const Cell
 template <typename Cell> BitsKernels<Cell> bitsKernels()
 {
     typedef typename BitsKernels<Cell>::Parent Parent;
-    const BitsKernels<Cell> k = {
-            {writeLevel<MeanMapping, Cell, Parent>, writeLevel<ExtremeMapping<true>, Cell, Parent>,
+    return {{writeLevel<MeanMapping, Cell, Parent>, writeLevel<ExtremeMapping<true>, Cell, Parent>,
                     writeLevel<ExtremeMapping<false>, Cell, Parent>,
                     writeLevel<QuartileMapping, Cell, Parent>, writeLevel<SortMapping, Cell, Parent>,
                     writeLevel<HaarMapping, Cell, Parent>, writeLevel<PairwiseMapping, Cell, Parent>},
             parentSums<Cell>};
-    return k;
 }
 
 }  // namespace

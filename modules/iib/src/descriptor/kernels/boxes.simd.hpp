@@ -373,9 +373,7 @@ void boxBits(
 template <typename T> BoxSumKernels<T> boxSumKernels()
 {
     typedef typename BoxSumKernels<T>::Sum Sum;
-    const BoxSumKernels<T> k = {
-            {sumSquareRow<false>, sumSquareRow<true>}, boxMeans<Sum, T>, rotatedBoxMeans<Sum, T>, boxBits<T>};
-    return k;
+    return {{sumSquareRow<false>, sumSquareRow<true>}, boxMeans<Sum, T>, rotatedBoxMeans<Sum, T>, boxBits<T>};
 }
 
 }  // namespace

@@ -49,13 +49,21 @@ template <typename T> struct ImageRows
     const T *above, *middle, *below;
 };
 
-//! Where a row of an image's channels goes; null for what is not wanted.
+constexpr int IMAGE_PLANES = 6;  //!< the kinds of channels that an image has, in the order of IIB::Channel
+
+//! The place of a kind in that order.
+inline int planeOf(int kind)
+{
+    int place = 0;
+    while (kind >> place > 1)
+        place++;
+    return place;
+}
+
+//! Where a row of each channel of an image goes; null for what is not wanted. Orientation is that of atan2(-gy, gx).
 template <typename T> struct ImageChannelRows
 {
-    T* pixels;                 //!< those of the middle row
-    T *x, *y;                  //!< with signs
-    T *absoluteX, *absoluteY;  //!< without
-    T* steps;                  //!< orientation: atan2(-gy, gx) in ORIENTATION_STEPS a turn
+    T* of[IMAGE_PLANES];
 };
 
 //! What a row of pixels goes through. Rows begin anywhere and have ROW_PADDING values more than `width`.
@@ -88,7 +96,6 @@ struct SampleGrid
 
 constexpr int MAX_SAMPLES_IN_ROW = 64;  //!< of a grid
 constexpr int MAX_SAMPLES = MAX_SAMPLES_IN_ROW * MAX_SAMPLES_IN_ROW;
-constexpr int IMAGE_PLANES = 6;  //!< the kinds of channels that an image has, in the order of IIB::Channel
 
 //! An angle, in 2^-12, and in ORIENTATION_STEPS a turn.
 struct GradientRotation

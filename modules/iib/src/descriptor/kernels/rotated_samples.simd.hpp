@@ -217,9 +217,7 @@ template <typename T> void interleaveRow(const T* const planes[GROUP_CHANNELS], 
 
 template <typename T> RotatedSampleKernels<T> rotatedSampleKernels()
 {
-    const RotatedSampleKernels<T> k = {
-            sampleIndices<T>, imageSums<T>, gradientVotes, mapSums<T>, interleaveSums, interleaveRow<T>};
-    return k;
+    return {sampleIndices<T>, imageSums<T>, gradientVotes, mapSums<T>, interleaveSums, interleaveRow<T>};
 }
 
 }  // namespace

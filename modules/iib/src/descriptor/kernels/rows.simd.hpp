@@ -122,12 +122,13 @@ template <typename T, typename V> struct Gradient
 //! Two vectors at once, so that their divisions overlap.
 template <typename T>
 void imageChannelRows(
-        const ImageRows<T>& in, T signedOffset, const ImageChannelRows<T>& to, ptrdiff_t above, int width)
+        const ImageRows<T>& in, T signedOffset, const ImageChannelRows<T>& out, ptrdiff_t above, int width)
 {
     typedef decltype(setAll(T())) V;
     constexpr int N = VTraits<V>::max_nlanes;
     const ImageRows<T> rows = in;  // copies, which stores surely do not change
-    const ImageChannelRows<T> out = to;
+    T *const absoluteX = out.of[0], *const absoluteY = out.of[1], *const steps = out.of[2],
+             *const pixels = out.of[3], *const signedX = out.of[4], *const signedY = out.of[5];
     const V offset = setAll(signedOffset);
     for (int x = 0; x < width; x += 2 * N)
     {
@@ -141,20 +142,20 @@ void imageChannelRows(
             put(row + x, first);
             put(row + x + N, second);
         };
-        if (out.pixels)
-            putBoth(out.pixels, vx_load(middle + 1), vx_load(middle + N + 1));
-        if (out.x)
-            putBoth(out.x, g.x + offset, h.x + offset);
-        if (out.y)
-            putBoth(out.y, g.y + offset, h.y + offset);
-        if (out.absoluteX)
-            putBoth(out.absoluteX, g.absoluteX, h.absoluteX);
-        if (out.absoluteY)
-            putBoth(out.absoluteY, g.absoluteY, h.absoluteY);
-        if (out.steps)
+        if (pixels)
+            putBoth(pixels, vx_load(middle + 1), vx_load(middle + N + 1));
+        if (signedX)
+            putBoth(signedX, g.x + offset, h.x + offset);
+        if (signedY)
+            putBoth(signedY, g.y + offset, h.y + offset);
+        if (absoluteX)
+            putBoth(absoluteX, g.absoluteX, h.absoluteX);
+        if (absoluteY)
+            putBoth(absoluteY, g.absoluteY, h.absoluteY);
+        if (steps)
         {
             const auto first = g.octant(), second = h.octant();
-            putBoth(out.steps, g.orientation(first()), h.orientation(second()));
+            putBoth(steps, g.orientation(first()), h.orientation(second()));
         }
     }
 }
@@ -329,11 +330,7 @@ void sumRowOf16Bit(const int* const planes[GROUP_CHANNELS], int width, const uns
     }
 }
 
-template <typename T> RowKernels<T> rowKernels()
-{
-    const RowKernels<T> k = {imageChannelRows<T>, widenRow, widenRow};
-    return k;
-}
+template <typename T> RowKernels<T> rowKernels() { return {imageChannelRows<T>, widenRow, widenRow}; }
 
 }  // namespace
 
