@@ -222,9 +222,8 @@ void IIBDescriptorExtractor_Impl::write(FileStorage& fs) const
 
 void IIBDescriptorExtractor_Impl::read(const FileNode& node)
 {
-    const FileNode fn = nodeNamed(node, "IIB");
-    const Parameters parameters = readParameters(fn, plan->parameters);
-    const FileNode detectorNode = fn["detector"];  // not in files of the first versions
+    const Parameters parameters = readParameters(node, plan->parameters);
+    const FileNode detectorNode = nodeNamed(node, "IIB")["detector"];  // not in files of the first versions
     const Ptr<Feature2D> d = detectorNode.empty() ? detector : readDetector(detectorNode, detector);
     plan = makePlan(parameters);
     detector = d;

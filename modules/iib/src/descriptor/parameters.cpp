@@ -5,7 +5,6 @@
 #include "parameters.hpp"
 
 #include <array>
-#include <bitset>
 #include <set>
 
 #include "../common/file_numbers.hpp"
@@ -74,36 +73,6 @@ void Parameters::check() const
     checkSelection(*this);
 }
 
-//! Bits of a level that the channels before `end` make.
-static int bitsBefore(const Parameters& p, int level, int end)
-{
-    size_t bits = 0;
-    forEachPlace(p, level, [&](int channel, int, int, int mask) {
-        bits += channel < end ? std::bitset<32>((unsigned)mask).count() : 0;
-    });
-    return (int)bits;
-}
-
-//! Before they are padded to whole bytes.
-static int bitsOfLevel(const Parameters& p, int level) { return bitsBefore(p, level, p.channelCount()); }
-
-std::vector<int> levelBytes(const Parameters& p)
-{
-    std::vector<int> bytes;
-    for (int level = 1; level <= p.granularity; level++)
-        if (const int bits = bitsOfLevel(p, level))
-            bytes.push_back((bits + 7) / 8);
-    return bytes;
-}
-
-int bitOffset(const Parameters& p, int level, int group)
-{
-    int bytes = 0;
-    for (int coarser = 1; coarser < level; coarser++)
-        bytes += (bitsOfLevel(p, coarser) + 7) / 8;
-    return 8 * bytes + bitsBefore(p, level, GROUP_CHANNELS * group);
-}
-
 void writeParameters(FileStorage& fs, const Parameters& p)
 {
     fs << "format" << 1 << "scaleFactor" << p.scaleFactor << "granularity" << p.granularity << "channels"
@@ -130,17 +99,9 @@ static Mat_<int> readSelection(const FileNode& node)
     return quads;
 }
 
-Parameters readParameters(const FileNode& fn, const Parameters& present)
+Parameters readParameters(const FileNode& node, const Parameters& present)
 {
-    const FileNode version = fn.isMap() ? fn["format"] : FileNode();
-    if (version.empty())
-        CV_Error(Error::StsParseError, "the node holds no IIB parameters: it is " + describeNode(fn) +
-                                               ", without a format; give it the node that write() wrote");
-    int format = 0;
-    readNumber(fn, "format", format);
-    if (format != 1)
-        CV_Error(Error::StsParseError,
-                cv::format("the node has format %d; this version reads IIB parameters of format 1", format));
+    const FileNode fn = nodeOfFormat1(node, "IIB");
     Parameters p = present;
     readNumber(fn, "scaleFactor", p.scaleFactor);
     readNumber(fn, "granularity", p.granularity);

@@ -78,12 +78,6 @@ template <typename Visit> void forEachPlace(const Parameters& p, int level, cons
                 visit(channel, row, col, bitsOfPlace(p.mapping, kinds[channel], level, row, col));
 }
 
-//! Bytes of each level that has any, coarse first; the order of the bits is in descriptor.hpp.
-std::vector<int> levelBytes(const Parameters& parameters);
-
-//! The place in the descriptor of the first bit of a group of GROUP_CHANNELS channels at a level.
-int bitOffset(const Parameters& parameters, int level, int group);
-
 //! As keys of the map that is open in `fs`.
 void writeParameters(FileStorage& fs, const Parameters& parameters);
 

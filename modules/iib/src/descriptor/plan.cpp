@@ -4,8 +4,6 @@
 
 #include "plan.hpp"
 
-#include <numeric>
-
 namespace cv {
 namespace iib {
 
@@ -28,27 +26,21 @@ static ChosenBits chosenBits(const Parameters& p, int level, int group, int inde
     return ChosenBits(masks);
 }
 
-static LevelShape levelShape(const Parameters& p, int finest, int level, int group)
+//! Adds a level to the groups of channels, at this bit of the descriptor. @return how many bits it has.
+static int addQuads(const Parameters& p, int finest, int level, int offset, std::vector<ChannelGroup>& groups)
 {
-    LevelShape shape = {1 << level, 1 << (finest - level), bitOffset(p, level, group), {}};
-    for (int phase = 0; phase < QuadPhase::COUNT; phase++)
-        shape.chosen.push_back(chosenBits(p, level, group, phase));
-    return shape;
-}
-
-//! The groups of channels of a descriptor of quads.
-static std::vector<ChannelGroup> groupsOf(const Parameters& p, int finest)
-{
-    std::vector<ChannelGroup> groups;
-    const int channels = p.channelCount();
-    for (int first = 0; first < channels; first += GROUP_CHANNELS)
+    int bits = 0;
+    for (ChannelGroup& group : groups)
     {
-        ChannelGroup group = {first, std::min(channels - first, GROUP_CHANNELS), std::vector<LevelShape>(1)};
-        for (int level = 1; level <= finest; level++)
-            group.levels.push_back(levelShape(p, finest, level, first / GROUP_CHANNELS));
-        groups.push_back(group);
+        LevelShape shape = {1 << level, 1 << (finest - level), offset + bits, {}};
+        for (int phase = 0; phase < QuadPhase::COUNT; phase++)
+        {
+            shape.chosen.push_back(chosenBits(p, level, group.first / GROUP_CHANNELS, phase));
+            bits += shape.chosen.back().count();
+        }
+        group.levels.push_back(shape);
     }
-    return groups;
+    return bits;
 }
 
 //! The lane in which a channel of this kind is.
@@ -79,37 +71,44 @@ static ChosenBits chosenOf(const Parameters& p, int level, const BoxGridShape& s
     return ChosenBits(masks);
 }
 
-static BoxPlan makeBoxPlan(const Parameters& p)
+//! The same for boxes.
+static int addBoxes(const Parameters& p, int level, int offset, BoxPlan& plan)
 {
-    BoxPlan plan;
-    int places = 0;
-    for (int level = 1; level <= p.granularity; level++)
+    const BoxGrid& grid = BOX_GRIDS[level - 1];
+    int place = plan.levels.empty() ? 0 : plan.levels.back().shape.first + plan.levels.back().shape.n;
+    const BoxGridShape shape = {grid.n, place};
+    BoxPlan::Level l = {shape, grid.side / 80., {}, offset, chosenOf(p, level, shape)};
+    if (l.chosen.none())
+        return 0;
+    for (int i = 0; i < grid.n; i++, place++)
     {
-        const BoxGrid& grid = BOX_GRIDS[level - 1];
-        const BoxGridShape shape = {grid.n, places};
-        BoxPlan::Level l = {shape, grid.side / 80., {}, bitOffset(p, level, 0), chosenOf(p, level, shape)};
-        if (l.chosen.none())
-            continue;
-        for (int i = 0; i < grid.n; i++)
-        {
-            l.centres.push_back(grid.centre(i));
-            plan.edges[0][places] = grid.edge(i, -1);
-            plan.edges[1][places++] = grid.edge(i, 1);
-        }
-        plan.levels.push_back(l);
+        l.centres.push_back(grid.centre(i));
+        plan.edges[0][place] = grid.edge(i, -1);
+        plan.edges[1][place] = grid.edge(i, 1);
     }
-    return plan;
+    plan.levels.push_back(l);
+    return l.chosen.count();
 }
 
 Ptr<const DescriptorPlan> makePlan(const Parameters& p)
 {
-    const std::vector<int> bytes = levelBytes(p);
     const Mat_<int>& s = p.selection;  // levels do not descend
-    DescriptorPlan plan = {p, s.empty() ? p.granularity : s(s.rows - 1, 0), bytes,
-            std::accumulate(bytes.begin(), bytes.end(), 0), {},
-            p.mapping == IIB::MAPPING_BOXES ? makeBoxPlan(p) : BoxPlan(), descriptorKernels()};
-    if (!plan.isOfBoxes())
-        plan.groups = groupsOf(p, plan.finest);
+    DescriptorPlan plan = {
+            p, s.empty() ? p.granularity : s(s.rows - 1, 0), {}, 0, {}, BoxPlan(), descriptorKernels()};
+    const int channels = p.channelCount();
+    for (int first = 0; first < channels && !plan.isOfBoxes(); first += GROUP_CHANNELS)
+        plan.groups.push_back(
+                {first, std::min(channels - first, GROUP_CHANNELS), std::vector<LevelShape>(1)});
+    for (int level = 1; level <= plan.finest; level++)
+    {
+        const int offset = 8 * plan.bytes;
+        const int bits = plan.isOfBoxes() ? addBoxes(p, level, offset, plan.boxes)
+                                          : addQuads(p, plan.finest, level, offset, plan.groups);
+        if (bits == 0)
+            continue;
+        plan.levelBytes.push_back((bits + 7) / 8);
+        plan.bytes += plan.levelBytes.back();
+    }
     return makePtr<const DescriptorPlan>(plan);
 }
 

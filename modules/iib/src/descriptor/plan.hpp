@@ -42,8 +42,8 @@ struct ChannelGroup
 struct DescriptorPlan
 {
     Parameters parameters;
-    int finest;  //!< the finest level that has bits
-    std::vector<int> levelBytes;
+    int finest;                        //!< the finest level that has bits
+    std::vector<int> levelBytes;       //!< of each level that has any, coarse first
     int bytes;                         //!< of a descriptor
     std::vector<ChannelGroup> groups;  //!< of quads, unless isOfBoxes()
     BoxPlan boxes;                     //!< if isOfBoxes()

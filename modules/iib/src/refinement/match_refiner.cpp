@@ -56,8 +56,9 @@ struct MatchRefiner::Start
 
 MatchRefiner::MatchRefiner(InputArray image1, const std::vector<KeyPoint>& keypoints1, InputArray image2,
         const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches)
-    : first(keypoints1), second(keypoints2), prepared{checked(image1, 1), checked(image2, 2)}
+    : first(keypoints1), second(keypoints2)
 {
+    const Mat images[] = {checked(image1, 1), checked(image2, 2)};
     checkKeyPoints(first, true);
     checkKeyPoints(second, true);
     for (const DMatch& match : matches)
@@ -67,8 +68,7 @@ MatchRefiner::MatchRefiner(InputArray image1, const std::vector<KeyPoint>& keypo
     }
     const auto prepare = [&](const Range& range) {
         for (int i = range.start; i < range.end; i++)
-            prepared[i] =
-                    preparedForAlignment(normalizeLocally(integerMap(prepared[i]), NORMALIZATION_SIGMA));
+            prepared[i] = preparedForAlignment(normalizeLocally(integerMap(images[i]), NORMALIZATION_SIGMA));
     };
     if (getNumThreads() > 2)
         prepare(Range(0, 2));  // each by all threads

@@ -4,6 +4,8 @@
 
 #pragma once
 
+#include <numeric>
+
 #include "../../common/aligned_buffer.hpp"
 #include "../../common/bit_io.hpp"
 
@@ -116,6 +118,11 @@ public:
     }
 
     bool none() const { return chosen.empty(); }
+    int count() const
+    {
+        return std::accumulate(chosen.begin(), chosen.end(), 0,
+                [](int bits, const Group& group) { return bits + group.count; });
+    }
     //! Whether all comparisons are: those in memory are then what the descriptor holds.
     bool all() const { return whole; }
     const std::vector<Group>& groups() const { return chosen; }
