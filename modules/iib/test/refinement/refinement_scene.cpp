@@ -78,4 +78,35 @@ Point2d RefinementScene::truth(const Point2f& point) const
     return Point2d(linear * Vec2d(point.x, point.y) + shift);
 }
 
+const RefinementScene& RefinementScene::seven()
+{
+    static const RefinementScene made(7);
+    return made;
+}
+
+Refined refine(const Mat& image1, const std::vector<KeyPoint>& keypoints1, const Mat& image2,
+        const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches)
+{
+    Refined r;
+    r.matches = matches;
+    refineMatches(image1, keypoints1, image2, keypoints2, matches, r.points1, r.points2, r.covariances,
+            r.similarities);
+    return r;
+}
+
+Refined refine(const RefinementScene& scene)
+{
+    return refine(scene.images[0], scene.keypoints[0], scene.images[1], scene.keypoints[1], scene.matches);
+}
+
+void expectSame(const Refined& expected, const Refined& actual)
+{
+    const int n = expected.points1.rows;
+    ASSERT_LE(n, actual.points1.rows);
+    EXPECT_EQ(0, cvtest::norm(expected.points1, actual.points1.rowRange(0, n), NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(expected.points2, actual.points2.rowRange(0, n), NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(expected.covariances, actual.covariances.rowRange(0, n), NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(expected.similarities, actual.similarities.rowRange(0, n), NORM_INF));
+}
+
 }  // namespace opencv_test

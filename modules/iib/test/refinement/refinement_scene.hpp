@@ -22,6 +22,23 @@ struct RefinementScene
     explicit RefinementScene(int seed);
     //! Where a point of the first image is in the second.
     Point2d truth(const Point2f& point) const;
+
+    //! The scene of seed 7, which is made once.
+    static const RefinementScene& seven();
 };
+
+//! What refineMatches() and propagateMatches() give, with the matches that it is of.
+struct Refined
+{
+    std::vector<DMatch> matches;
+    Mat points1, points2, covariances, similarities;
+};
+
+Refined refine(const Mat& image1, const std::vector<KeyPoint>& keypoints1, const Mat& image2,
+        const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches);
+Refined refine(const RefinementScene& scene);
+
+//! That the first of `actual` are as expected.
+void expectSame(const Refined& expected, const Refined& actual);
 
 }  // namespace opencv_test

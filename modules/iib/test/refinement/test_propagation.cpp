@@ -14,28 +14,18 @@ namespace {
 class IIB_Propagation : public testing::Test
 {
 protected:
-    static const RefinementScene& scene()
-    {
-        static const RefinementScene made(7);
-        return made;
-    }
+    static const RefinementScene& scene() { return RefinementScene::seven(); }
 
-    struct Result
-    {
-        std::vector<DMatch> matches;
-        Mat points1, points2, covariances, similarities;
-    };
-
-    static Result propagate(const std::vector<DMatch>& matches, const Mat& second,
+    static Refined propagate(const std::vector<DMatch>& matches, const Mat& second,
             const std::vector<KeyPoint>& keypoints1, const std::vector<KeyPoint>& keypoints2)
     {
-        Result r = {matches, Mat(), Mat(), Mat(), Mat()};
+        Refined r = {matches, Mat(), Mat(), Mat(), Mat()};
         propagateMatches(scene().images[0], keypoints1, second, keypoints2, r.matches, r.points1, r.points2,
                 r.covariances, r.similarities);
         return r;
     }
 
-    static Result propagate(const std::vector<DMatch>& matches)
+    static Refined propagate(const std::vector<DMatch>& matches)
     {
         return propagate(matches, scene().images[1], scene().keypoints[0], scene().keypoints[1]);
     }
@@ -68,7 +58,7 @@ TEST_F(IIB_Propagation, finds_what_is_missing)
 {
     for (const std::vector<DMatch>& given : {some(5), central(4)})
     {
-        const Result r = propagate(given);
+        const Refined r = propagate(given);
         const int n = (int)r.matches.size();
         EXPECT_GT(n, .9 * scene().matches.size());
         std::set<int> first, second;
@@ -103,15 +93,9 @@ TEST_F(IIB_Propagation, finds_what_is_missing)
 TEST_F(IIB_Propagation, refines_the_given_matches_as_refineMatches_does)
 {
     const std::vector<DMatch> given = some(5);
-    const Result r = propagate(given);
-    Mat points1, points2, covariances, similarities;
-    refineMatches(scene().images[0], scene().keypoints[0], scene().images[1], scene().keypoints[1], given,
-            points1, points2, covariances, similarities);
-    const Range rows(0, (int)given.size());
-    EXPECT_EQ(0, cvtest::norm(points1, r.points1.rowRange(rows), NORM_INF));
-    EXPECT_EQ(0, cvtest::norm(points2, r.points2.rowRange(rows), NORM_INF));
-    EXPECT_EQ(0, cvtest::norm(covariances, r.covariances.rowRange(rows), NORM_INF));
-    EXPECT_EQ(0, cvtest::norm(similarities, r.similarities.rowRange(rows), NORM_INF));
+    expectSame(
+            refine(scene().images[0], scene().keypoints[0], scene().images[1], scene().keypoints[1], given),
+            propagate(given));
 }
 
 TEST_F(IIB_Propagation, only_matches_that_two_others_confirm_lead_on)
@@ -159,7 +143,7 @@ TEST_F(IIB_Propagation, follows_turned_and_scaled_surroundings)
         kp.angle = 110;
     }
     const std::vector<DMatch> given = some(5);
-    const Result r = propagate(given, turned, first, second);
+    const Refined r = propagate(given, turned, first, second);
     EXPECT_GT(r.matches.size(), .8 * scene().matches.size());
     int right = 0;
     for (size_t i = 0; i < r.matches.size(); i++)
@@ -177,7 +161,7 @@ TEST_F(IIB_Propagation, takes_a_keypoint_once_and_only_what_agrees_well)
     for (const KeyPoint& kp : scene().keypoints[1])
         second.push_back(KeyPoint(kp.pt + Point2f(.7f, -.4f), kp.size));
     const std::vector<DMatch> given = some(3);
-    const Result r = propagate(given, noisy, scene().keypoints[0], second);
+    const Refined r = propagate(given, noisy, scene().keypoints[0], second);
     EXPECT_GT(r.matches.size(), given.size() + 10);
     EXPECT_LT(r.matches.size(), scene().matches.size());
     std::set<int> first;
@@ -192,9 +176,9 @@ TEST_F(IIB_Propagation, is_the_same_for_every_number_of_threads)
 {
     const int before = getNumThreads();
     setNumThreads(1);
-    const Result expected = propagate(some(5));
+    const Refined expected = propagate(some(5));
     setNumThreads(3);
-    const Result actual = propagate(some(5));
+    const Refined actual = propagate(some(5));
     setNumThreads(before);
     ASSERT_EQ(expected.matches.size(), actual.matches.size());
     EXPECT_EQ(0, cvtest::norm(expected.points2, actual.points2, NORM_INF));
@@ -210,13 +194,13 @@ TEST_F(IIB_Propagation, takes_points_anywhere)
     }
     std::vector<DMatch> given = some(5);
     given.push_back(DMatch((int)first.size() - 1, (int)second.size() - 4, 0));
-    const Result r = propagate(given, scene().images[1], first, second);
+    const Refined r = propagate(given, scene().images[1], first, second);
     EXPECT_EQ(propagate(some(5)).matches.size() + 1, r.matches.size());
 }
 
 TEST_F(IIB_Propagation, without_matches_all_is_empty_and_errors_say_what_is_wrong)
 {
-    const Result r = propagate({}, Mat(), {}, {});
+    const Refined r = propagate({}, Mat(), {}, {});
     for (const Mat& m : {r.points1, r.points2, r.covariances, r.similarities})
         EXPECT_TRUE(m.empty());
     expectError(Error::StsOutOfRange, "a match is of keypoint 1 of image 2, which has 1", [] {

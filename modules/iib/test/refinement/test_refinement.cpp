@@ -10,62 +10,29 @@
 namespace opencv_test {
 namespace {
 
-//! A part of a scene, and what refineMatches() makes of its matches.
-class IIB_Refinement : public testing::Test
+const RefinementScene& scene() { return RefinementScene::seven(); }
+
+//! Of the scene's matches in other images.
+Refined refineIn(const Mat& image1, const Mat& image2)
 {
-protected:
-    static const RefinementScene& scene()
-    {
-        static const RefinementScene made(7);
-        return made;
-    }
+    return refine(image1, scene().keypoints[0], image2, scene().keypoints[1], scene().matches);
+}
 
-    struct Result
-    {
-        Mat points1, points2, covariances, similarities;
-    };
-
-    static Result refine(const Mat& image1, const Mat& image2, const std::vector<KeyPoint>& keypoints1,
-            const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches)
-    {
-        Result r;
-        refineMatches(image1, keypoints1, image2, keypoints2, matches, r.points1, r.points2, r.covariances,
-                r.similarities);
-        return r;
-    }
-
-    static Result refine(const Mat& image1, const Mat& image2)
-    {
-        return refine(image1, image2, scene().keypoints[0], scene().keypoints[1], scene().matches);
-    }
-
-    static Result refine() { return refine(scene().images[0], scene().images[1]); }
-
-    static void expectSame(const Result& expected, const Result& actual)
-    {
-        EXPECT_EQ(0, cvtest::norm(expected.points1, actual.points1, NORM_INF));
-        EXPECT_EQ(0, cvtest::norm(expected.points2, actual.points2, NORM_INF));
-        EXPECT_EQ(0, cvtest::norm(expected.covariances, actual.covariances, NORM_INF));
-        EXPECT_EQ(0, cvtest::norm(expected.similarities, actual.similarities, NORM_INF));
-    }
-
-    //! How many of the refined points are within a quarter of a pixel of the truth, of those that should be.
-    static double rightShare(const Result& r, const Matx22d& linear, const Vec2d& shift)
-    {
-        int right = 0;
-        for (int i = 0; i < r.points2.rows; i++)
-        {
-            const Vec2d truth = linear * Vec2d(r.points1.at<float>(i, 0), r.points1.at<float>(i, 1)) + shift;
-            const Vec2d found(r.points2.at<float>(i, 0), r.points2.at<float>(i, 1));
-            right += r.similarities.at<float>(i) > 0 && cv::norm(found - truth) < .25;
-        }
-        return right / (double)r.points2.rows;
-    }
-};
-
-TEST_F(IIB_Refinement, has_the_documented_types_and_keeps_the_first_points)
+//! How many of the refined points are within a quarter of a pixel of the truth, of those that should be.
+double rightShare(const Refined& r, const Matx22d& linear, const Vec2d& shift)
 {
-    const Result r = refine();
+    int right = 0;
+    for (int i = 0; i < r.points2.rows; i++)
+    {
+        const Vec2d truth = linear * Vec2d(r.points1.at<float>(i, 0), r.points1.at<float>(i, 1)) + shift;
+        const Vec2d found(r.points2.at<float>(i, 0), r.points2.at<float>(i, 1));
+        right += r.similarities.at<float>(i) > 0 && cv::norm(found - truth) < .25;
+    }
+    return right / (double)r.points2.rows;
+}
+TEST(IIB_Refinement, has_the_documented_types_and_keeps_the_first_points)
+{
+    const Refined r = refine(scene());
     const int n = (int)scene().matches.size();
     ASSERT_GT(n, 100);
     EXPECT_EQ(Size(2, n), r.points1.size());
@@ -79,28 +46,28 @@ TEST_F(IIB_Refinement, has_the_documented_types_and_keeps_the_first_points)
     EXPECT_GT(rightShare(r, scene().linear, scene().shift), .95);
 }
 
-TEST_F(IIB_Refinement, is_the_same_for_every_number_of_threads_and_alone)
+TEST(IIB_Refinement, is_the_same_for_every_number_of_threads_and_alone)
 {
     const int before = getNumThreads();
     setNumThreads(1);
-    const Result expected = refine();
+    const Refined expected = refine(scene());
     for (int threads : {2, 5})
     {
         setNumThreads(threads);
-        expectSame(expected, refine());
+        expectSame(expected, refine(scene()));
     }
     setNumThreads(before);
     for (int i : {0, 17})
     {
-        const Result alone = refine(scene().images[0], scene().images[1], scene().keypoints[0],
+        const Refined alone = refine(scene().images[0], scene().keypoints[0], scene().images[1],
                 scene().keypoints[1], {scene().matches[i]});
         EXPECT_EQ(expected.points2.at<Point2f>(i), alone.points2.at<Point2f>(0));
     }
 }
 
-TEST_F(IIB_Refinement, takes_all_types_of_images)
+TEST(IIB_Refinement, takes_all_types_of_images)
 {
-    const Result expected = refine();
+    const Refined expected = refine(scene());
     Mat colours[2], floats[2], sixteen[2];
     for (int i = 0; i < 2; i++)
     {
@@ -108,12 +75,12 @@ TEST_F(IIB_Refinement, takes_all_types_of_images)
         scene().images[i].convertTo(floats[i], CV_32F, 3, -70);
         scene().images[i].convertTo(sixteen[i], CV_16U, 200);
     }
-    expectSame(expected, refine(colours[0], colours[1]));
-    EXPECT_LT(cvtest::norm(expected.points2, refine(floats[0], sixteen[1]).points2, NORM_INF), 2);
-    EXPECT_GT(rightShare(refine(floats[0], sixteen[1]), scene().linear, scene().shift), .95);
+    expectSame(expected, refineIn(colours[0], colours[1]));
+    EXPECT_LT(cvtest::norm(expected.points2, refineIn(floats[0], sixteen[1]).points2, NORM_INF), 2);
+    EXPECT_GT(rightShare(refineIn(floats[0], sixteen[1]), scene().linear, scene().shift), .95);
 }
 
-TEST_F(IIB_Refinement, starts_with_the_difference_of_angles)
+TEST(IIB_Refinement, starts_with_the_difference_of_angles)
 {
     Mat turned;
     cv::rotate(scene().images[1], turned, ROTATE_90_CLOCKWISE);
@@ -127,14 +94,14 @@ TEST_F(IIB_Refinement, starts_with_the_difference_of_angles)
     const Matx22d linear = quarter * scene().linear;
     const Vec2d shift = quarter * scene().shift + Vec2d(turned.cols - 1, 0);
     EXPECT_LT(
-            rightShare(refine(scene().images[0], turned, first, second, scene().matches), linear, shift), .1);
+            rightShare(refine(scene().images[0], first, turned, second, scene().matches), linear, shift), .1);
     for (KeyPoint& kp : first)
         kp.angle = 40;
-    EXPECT_GT(rightShare(refine(scene().images[0], turned, first, second, scene().matches), linear, shift),
+    EXPECT_GT(rightShare(refine(scene().images[0], first, turned, second, scene().matches), linear, shift),
             .95);
 }
 
-TEST_F(IIB_Refinement, starts_with_the_ratio_of_sizes)
+TEST(IIB_Refinement, starts_with_the_ratio_of_sizes)
 {
     for (double scale : {.5, .7})
     {
@@ -150,24 +117,24 @@ TEST_F(IIB_Refinement, starts_with_the_ratio_of_sizes)
         const Matx22d linear = scene().linear * scale;
         const Vec2d shift = (scene().shift + half) * scale - half;
         EXPECT_GT(
-                rightShare(refine(scene().images[0], smaller, first, second, scene().matches), linear, shift),
+                rightShare(refine(scene().images[0], first, smaller, second, scene().matches), linear, shift),
                 .9)
                 << scale;
         // and from the smaller image to the larger one
-        std::vector<DMatch> matches = scene().matches;
         const Matx22d back = linear.inv();
-        EXPECT_GT(rightShare(refine(smaller, scene().images[0], second, first, matches), back,
+        EXPECT_GT(rightShare(refine(smaller, second, scene().images[0], first, scene().matches), back,
                           back * shift * -1.),
                 .7)
                 << scale;
     }
 }
 
-TEST_F(IIB_Refinement, refuses_what_does_not_agree_and_leaves_it)
+TEST(IIB_Refinement, refuses_what_does_not_agree_and_leaves_it)
 {
     const RefinementScene other(8);
     const Mat flat(scene().images[1].size(), CV_8U, Scalar(90));
-    const Result foreign = refine(scene().images[0], other.images[1]), none = refine(scene().images[0], flat);
+    const Refined foreign = refineIn(scene().images[0], other.images[1]),
+                  none = refineIn(scene().images[0], flat);
     int refused = 0;
     for (int i = 0; i < none.points2.rows; i++)
     {
@@ -179,7 +146,7 @@ TEST_F(IIB_Refinement, refuses_what_does_not_agree_and_leaves_it)
     EXPECT_GT(refused, .8 * none.points2.rows);
 }
 
-TEST_F(IIB_Refinement, takes_points_anywhere)
+TEST(IIB_Refinement, takes_points_anywhere)
 {
     const std::vector<KeyPoint> places = {KeyPoint(0, 0, 9), KeyPoint(639, 479, 9), KeyPoint(-5, 3, 9),
             KeyPoint(1e30f, 2, 9), KeyPoint(320, -1e30f, 1e-30f), KeyPoint(300, 200, 1e30f),
@@ -188,29 +155,29 @@ TEST_F(IIB_Refinement, takes_points_anywhere)
     for (int i = 0; i < (int)places.size(); i++)
         for (int j = 0; j < (int)places.size(); j++)
             matches.push_back(DMatch(i, j, 0));
-    const Result r = refine(scene().images[0], scene().images[0], places, places, matches);
+    const Refined r = refine(scene().images[0], places, scene().images[0], places, matches);
     for (size_t i = 0; i < matches.size(); i++)
         EXPECT_LE(cv::norm(r.points2.at<Point2f>((int)i) - places[matches[i].trainIdx].pt),
                 r.similarities.at<float>((int)i) < 0 ? 0 : 1e30);
     const Mat pixel(1, 1, CV_8U, Scalar(7));
-    EXPECT_EQ(-1, refine(pixel, pixel, {KeyPoint(0, 0, 5)}, {KeyPoint(0, 0, 5)}, {DMatch(0, 0, 0)})
+    EXPECT_EQ(-1, refine(pixel, {KeyPoint(0, 0, 5)}, pixel, {KeyPoint(0, 0, 5)}, {DMatch(0, 0, 0)})
                           .similarities.at<float>(0));
 }
 
-TEST_F(IIB_Refinement, without_matches_all_is_empty)
+TEST(IIB_Refinement, without_matches_all_is_empty)
 {
-    const Result r = refine(Mat(), Mat(), {}, {}, {});
+    const Refined r = refine(Mat(), {}, Mat(), {}, {});
     for (const Mat& m : {r.points1, r.points2, r.covariances, r.similarities})
         EXPECT_TRUE(m.empty());
 }
 
-TEST_F(IIB_Refinement, errors_say_what_is_wrong)
+TEST(IIB_Refinement, errors_say_what_is_wrong)
 {
     const Mat image = scene().images[0];
     const std::vector<KeyPoint> keypoints = {KeyPoint(50, 50, 9)};
     const std::vector<DMatch> match = {DMatch(0, 0, 0)};
     const auto call = [&](const Mat& a, const Mat& b, const std::vector<KeyPoint>& points, const DMatch& m) {
-        return [=] { refine(a, b, keypoints, points, {m}); };
+        return [=] { refine(a, keypoints, b, points, {m}); };
     };
     expectError(Error::StsOutOfRange, "a match is of keypoint 1 of image 2, which has 1",
             call(image, image, keypoints, DMatch(0, 1, 0)));

@@ -30,15 +30,10 @@ TEST(IIB_RefinementAccuracy, errors_bias_and_covariances)
     for (int seed = 1; seed <= 4; seed++)
     {
         const RefinementScene scene(seed);
-        Mat_<Point2f> points1, points2;
-        Mat_<Point3f> covariances;
-        Mat_<float> similarities;
-        Mat first, second, covariance;
-        refineMatches(scene.images[0], scene.keypoints[0], scene.images[1], scene.keypoints[1], scene.matches,
-                first, second, covariance, similarities);
-        points1 = first.reshape(2);
-        points2 = second.reshape(2);
-        covariances = covariance.reshape(3);
+        const Refined r = refine(scene);
+        const Mat_<Point2f> points1 = r.points1.reshape(2), points2 = r.points2.reshape(2);
+        const Mat_<Point3f> covariances = r.covariances.reshape(3);
+        const Mat_<float> similarities = r.similarities;
         matches += similarities.rows;
         for (int i = 0; i < similarities.rows; i++)
         {
@@ -76,7 +71,7 @@ TEST(IIB_RefinementAccuracy, photographs_in_other_exposure)
     std::vector<double> plain, errors, sigmas;
     for (const char* name : {"Bathtub", "BelgiumHouse", "Candle", "Cave", "Church", "Farmhouse"})
     {
-        Mat images[2], codes[2], first, second, covariances, similarities;
+        Mat images[2], codes[2];
         std::vector<KeyPoint> keypoints[2];
         std::vector<DMatch> matches;
         for (int i = 0; i < 2; i++)
@@ -85,17 +80,16 @@ TEST(IIB_RefinementAccuracy, photographs_in_other_exposure)
             iib->detectAndCompute(images[i], noArray(), keypoints[i], codes[i]);
         }
         HierarchicalMatcher::createRecommended()->match(codes[0], codes[1], matches);
-        refineMatches(images[0], keypoints[0], images[1], keypoints[1], matches, first, second, covariances,
-                similarities);
-        for (int i = 0; i < second.rows; i++)
+        const Refined r = refine(images[0], keypoints[0], images[1], keypoints[1], matches);
+        for (int i = 0; i < r.points2.rows; i++)
         {
-            const Point2f truth = first.at<Point2f>(i), error = second.at<Point2f>(i) - truth;
+            const Point2f truth = r.points1.at<Point2f>(i), error = r.points2.at<Point2f>(i) - truth;
             const double before = cv::norm(keypoints[1][matches[i].trainIdx].pt - truth);
-            if (before > 2 || similarities.at<float>(i) < 0)
+            if (before > 2 || r.similarities.at<float>(i) < 0)
                 continue;
             plain.push_back(before);
             errors.push_back(cv::norm(error));
-            sigmas.push_back(inSigmas(error, covariances.at<Point3f>(i)));
+            sigmas.push_back(inSigmas(error, r.covariances.at<Point3f>(i)));
         }
     }
     const auto inside = [&](double sigma) {

@@ -151,7 +151,7 @@ private:
 // similarities within .06: integers and the last steps, which the library leaves out, are the difference.
 TEST(IIB_RefinementOracle, agrees_with_the_documentation)
 {
-    const RefinementScene scene(7);
+    const RefinementScene& scene = RefinementScene::seven();
     const Oracle oracle(scene.images[0], scene.images[1]);
     std::vector<KeyPoint> first, second;
     std::vector<DMatch> matches;
@@ -163,20 +163,18 @@ TEST(IIB_RefinementOracle, agrees_with_the_documentation)
         second.push_back(KeyPoint(scene.keypoints[1][other].pt + (i % 3 == 1 ? wrong : Point2f()), 8));
         matches.push_back(DMatch(i, i, 0));
     }
-    Mat points1, points2, covariances, similarities;
-    refineMatches(scene.images[0], first, scene.images[1], second, matches, points1, points2, covariances,
-            similarities);
+    const Refined actual = refine(scene.images[0], first, scene.images[1], second, matches);
     int agreed = 0, accepted = 0, near = 0;
     for (int i = 0; i < 120; i++)
     {
         const Oracle::Result expected = oracle.align(first[i].pt, second[i].pt);
-        const bool found = similarities.at<float>(i) > 0;
+        const bool found = actual.similarities.at<float>(i) > 0;
         agreed += expected.accepted == found;
         if (!expected.accepted || !found)
             continue;
         accepted++;
-        near += cv::norm(expected.point - Vec2d(points2.at<Vec2f>(i))) < .05 &&
-                std::abs(expected.similarity - similarities.at<float>(i)) < .06;
+        near += cv::norm(expected.point - Vec2d(actual.points2.at<Vec2f>(i))) < .05 &&
+                std::abs(expected.similarity - actual.similarities.at<float>(i)) < .06;
     }
     EXPECT_GE(agreed, 116);
     EXPECT_GT(accepted, 70);
@@ -204,16 +202,19 @@ TEST(IIB_RefinementGolden, bits)
         moved[i].angle += i % 7 == 0 && moved[i].angle >= 0 ? 3 : 0;
         matches.push_back(DMatch(i, i, 0));
     }
-    Mat points1, points2, covariances, similarities;
-    refineMatches(first, keypoints, second, moved, matches, points1, points2, covariances, similarities);
-    EXPECT_GT(countNonZero(similarities > 0), 60);
-    EXPECT_EQ(CV_BIG_UINT(0xbb5ccb69321e5e06), hashOf(points2)) << std::hex << hashOf(points2);
-    EXPECT_EQ(CV_BIG_UINT(0x8ebd73d555873592), hashOf(covariances)) << std::hex << hashOf(covariances);
-    EXPECT_EQ(CV_BIG_UINT(0x8af67a743e1a48ad), hashOf(similarities)) << std::hex << hashOf(similarities);
+    const auto expectHash = [](uint64 expected, const Mat& m) {
+        EXPECT_EQ(expected, hashOf(m)) << std::hex << hashOf(m);
+    };
+    const Refined r = refine(first, keypoints, second, moved, matches);
+    EXPECT_GT(countNonZero(r.similarities > 0), 60);
+    expectHash(CV_BIG_UINT(0xbb5ccb69321e5e06), r.points2);
+    expectHash(CV_BIG_UINT(0x8ebd73d555873592), r.covariances);
+    expectHash(CV_BIG_UINT(0x8af67a743e1a48ad), r.similarities);
+    Mat points1, points2;
     matches.resize(40);
     propagateMatches(first, keypoints, second, moved, matches, points1, points2);
     EXPECT_GT(points2.rows, 55);
-    EXPECT_EQ(CV_BIG_UINT(0xe176db79d01a2067), hashOf(points2)) << std::hex << hashOf(points2);
+    expectHash(CV_BIG_UINT(0xe176db79d01a2067), points2);
 }
 
 }  // namespace
