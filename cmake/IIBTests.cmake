@@ -12,6 +12,9 @@ function(iib_add_test_program kind name)
   target_include_directories(${target} PRIVATE "${dir}" "${OPENCV_SOURCE_DIR}/modules")
   target_precompile_headers(${target} PRIVATE "${dir}/${kind}_precomp.hpp")
   target_compile_options(${target} PRIVATE ${IIB_ADDRESS_ALONE})
+  if(kind STREQUAL "test" AND NOT MSVC)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)  # compiled for longer than it runs, but for the oracles
+  endif()
   target_link_libraries(${target} PRIVATE opencv_${name} opencv_ts opencv_calib3d)
 endfunction()
 iib_add_test_program(test iib)
@@ -32,11 +35,13 @@ target_include_directories(opencv_test_iib_geometry PRIVATE "${IIB_GEOMETRY_DIR}
 target_compile_features(opencv_test_iib_geometry PRIVATE cxx_std_17)
 
 # The naive oracles are not under test; sanitized, they would take most of the time. Nobody asks for the speed then.
+set(options $<$<CONFIG:Release>:-O2>)
 if(IIB_SANITIZE)
   set_target_properties(opencv_perf_iib opencv_perf_iib_geometry PROPERTIES EXCLUDE_FROM_ALL ON)
-  set_source_files_properties("${IIB_DIR}/test/support/box_oracle.cpp" "${IIB_DIR}/test/support/descriptor_oracle.cpp"
-    "${IIB_DIR}/test/support/matcher_oracle.cpp" PROPERTIES COMPILE_OPTIONS "-fno-sanitize=all;-O2" SKIP_PRECOMPILE_HEADERS ON)
+  list(APPEND options -fno-sanitize=all)
 endif()
+set_source_files_properties("${IIB_DIR}/test/support/box_oracle.cpp" "${IIB_DIR}/test/support/descriptor_oracle.cpp"
+  "${IIB_DIR}/test/support/matcher_oracle.cpp" PROPERTIES COMPILE_OPTIONS "${options}" SKIP_PRECOMPILE_HEADERS ON)
 
 # A test program of a tool: the sources in test/ beside the caller, with the tools' main, and its entry in ctest.
 function(iib_add_tool_test name target library)
