@@ -22,6 +22,7 @@ public:
     void makeFolder(const std::string& name) const { cv::utils::fs::createDirectories(path(name)); }
     void write(const std::string& name, const std::string& text) const
     {
+        std::filesystem::remove(path(name));  // ext4 waits for the disk where a file is written over
         std::ofstream(path(name), std::ios::binary) << text;
     }
 

@@ -15,6 +15,7 @@ namespace {
 using namespace cv::iib;
 
 constexpr uint32_t EQUIRECTANGULAR = 17;  // COLMAP's number
+const cv::iib::MapOptions FEW(400);       // points an image, since pairs take time by their square
 
 class Mapping : public WallTest
 {
@@ -77,7 +78,7 @@ TEST_F(Mapping, in_any_unit_and_far_from_the_origin)
             SCOPED_TRACE(cv::format("unit %g, %g away, %d points", unit, far, points));
             const cv::Vec3d origin(far, -.7 * far, .3 * far);
             write(model(unit, points, 1, origin));
-            const Localizer localizer(folder.path("sparse 0"), images(), 400, {}, cv::iib::MapOptions(400));
+            const Localizer localizer(folder.path("sparse 0"), images(), 400, {}, FEW);
             const Location location = localizer.localize(image, CAMERA);
             ASSERT_TRUE(location.found) << location.reason;
             const cv::Vec3d away =
@@ -95,10 +96,10 @@ TEST_F(Mapping, a_map_on_disk_finds_what_one_in_memory_does)
 {
     write(model(1, 40));
     const std::string made = folder.path("new/map");
-    buildMap(folder.path("sparse 0"), images(), made);
+    buildMap(folder.path("sparse 0"), images(), made, FEW);
     const cv::Mat image = wall.image(poseAt(0.1, -0.1, 0.1));
-    const Location first = Localizer(folder.path("sparse 0"), images()).localize(image, CAMERA),
-                   second = Localizer(made).localize(image, CAMERA);
+    const Location first = Localizer(folder.path("sparse 0"), images(), 400, {}, FEW).localize(image, CAMERA),
+                   second = Localizer(made, 400).localize(image, CAMERA);
     EXPECT_TRUE(first.found);
     EXPECT_EQ(first.cameraFromWorld.matrix, second.cameraFromWorld.matrix);
     EXPECT_EQ(first.covariance, second.covariance);
@@ -116,7 +117,7 @@ TEST_F(Mapping, pictures_in_the_map_make_poses_more_accurate)
 {
     write(model(1, 40));
     const std::string with = folder.path("with"), without = folder.path("without");
-    buildMap(folder.path("sparse 0"), images(), with);
+    buildMap(folder.path("sparse 0"), images(), with, FEW);
     Map plain = readMap(with);
     for (MapImage& image : plain.images)
         image.picture = Picture();
@@ -150,7 +151,7 @@ TEST_F(Mapping, images_that_share_no_points_are_paired_with_the_nearest)
         at += 8;
     }
     write(files);
-    EXPECT_EQ("", messageOf([&] { Localizer(folder.path("sparse 0"), images()); }));
+    EXPECT_EQ("", messageOf([&] { Localizer(folder.path("sparse 0"), images(), 400, {}, FEW); }));
 }
 
 TEST(Triangulation, a_ray_that_contradicts_the_others_is_left_out)
@@ -235,7 +236,9 @@ TEST_F(Mapping, models_as_text)
     EXPECT_TRUE(read[2].sees.empty());
     EXPECT_EQ((std::vector<int>{0, -1}), read[3].sees);
     EXPECT_EQ(cv::Point2d(7, 7.75), read[3].pixels[0]);
-    EXPECT_TRUE(Localizer(sparse, images()).localize(wall.image(poseAt(0.1, -0.1, 0.1)), CAMERA).found);
+    EXPECT_TRUE(Localizer(sparse, images(), 400, {}, FEW)
+                        .localize(wall.image(poseAt(0.1, -0.1, 0.1)), CAMERA)
+                        .found);
     for (const auto& [part, other] :
             {std::make_pair("5 3.png", "6 3.png"), {"5 3.png", "5 4.png"}, {"9 9 -1", "9 9"},
                     {"5 5.png\r\n7.5 8.25 3 9 9 -1\n", "5 5.png\r\n"}, {"5 5.png", "5"}, {" 8.25", " x"}})

@@ -194,7 +194,7 @@ protected:
     {
         folder.makeFolder("sparse 0");
         for (const auto& [name, content] : files)
-            std::ofstream(folder.path("sparse 0/" + name), std::ios::binary) << content;
+            folder.write("sparse 0/" + name, content);
     }
 
     const TestFolder folder;
