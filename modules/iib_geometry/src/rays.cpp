@@ -15,9 +15,8 @@ namespace {
 constexpr double MAX_ERROR = 4;  // pixels, of a match from its epipolar line
 constexpr int BAND = 32;         // rows of a mask that are made at once
 constexpr double NEAR = 2;       // pixels, within which matches are looked for once more
-constexpr int STRONGEST =
-        200;  // codes of an image, whose matches tell whether the poses are those of the images
-constexpr double FAR = .01;  // radians between rays that do not tell on which side they meet
+constexpr int STRONGEST = 200;   // codes of an image: they tell whether the poses are the images'
+constexpr double FAR = .01;      // radians between rays that do not tell on which side they meet
 
 //! Whether two rays lie in one plane with both cameras, and meet before them.
 bool fitting(const Ray& a, const Ray& b)

@@ -27,6 +27,7 @@ def smooth_poses(times: Sequence[Any], locations: Sequence[Location], readings: 
     :param imu_from_camera: where the camera is in the IMU's axes (EuRoC's ``T_BS``), 4 x 4 or 3 x 4.
     :return: of each image camera from world, 4 x 4, or None.
     :raises opencv_iib.error: for times that do not rise.
+    :raises ValueError: for readings that are not M x 7 finite numbers.
     """
     rows = np.ascontiguousarray(readings, np.float64)
     if rows.ndim != 2 or rows.shape[1] != 7 or not np.isfinite(rows).all() or np.abs(rows).max(initial=0) > MAX_TIME:
