@@ -208,7 +208,7 @@ class Objects(InFolder):
                            (iib.save, 'Cannot write .*/nothing/iib.yml'), (iib.read, 'nothing/iib.yml cannot be read')):
             with self.assertRaisesRegex(opencv_iib.error, told):
                 call(nowhere)
-        for name in ('iib.xml', 'iib.json.gz', os.fsdecode(b'\xe9.yml')):
+        for name in ('iib.xml', 'iib.json', os.fsdecode(b'\xe9.yml')):
             again = IIB.create()
             iib.save(self.folder / name)
             again.read(self.folder / name)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "map.hpp"
+#include "output_folder.hpp"
 
 namespace cv::iib {
 
@@ -11,17 +12,14 @@ class MapFolder
 public:
     //! @throws cv::Exception if the folder holds anything but a map, cannot be made, or is locked.
     explicit MapFolder(const std::string& folder);
-    ~MapFolder();
-    MapFolder(const MapFolder&) = delete;
-    MapFolder& operator=(const MapFolder&) = delete;
 
     /** Writes the map's file and, for other programs, a COLMAP model. Who reads the map meanwhile gets the old one or the new.
     @throws cv::Exception if it cannot be written; the old map stays then. */
     void write(const Map& map) const;
 
 private:
-    const std::string folder_;
-    int lock_ = -1;
+    std::vector<std::string> replaced_;  // files that were there, of an earlier version or a killed process
+    const OutputFolder folder_;
 };
 
 }  // namespace cv::iib

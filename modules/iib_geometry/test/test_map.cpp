@@ -171,16 +171,55 @@ TEST_F(SmallMap, folders_that_are_no_maps)
     EXPECT_TRUE(cv::utils::fs::exists(name + "/points3D.bin"));
     const std::string before = textOf(name + "/map.iib");
     folder.write("map/thesis.tex", "precious");
-    EXPECT_EQ(name + " holds thesis.tex and is no map: choose another folder",
+    EXPECT_EQ(name + " holds thesis.tex, which is of no earlier run: choose another folder",
             messageOf([&] { write(smallMap()); }));
+    std::filesystem::remove(name + "/thesis.tex");
+    folder.write("map/points.npy", "precious");  // though one of an earlier version had such a file
+    EXPECT_NE(std::string::npos, messageOf([&] { write(smallMap()); }).find("holds points.npy"));
+    std::filesystem::remove(name + "/points.npy");
+    folder.write("map/map.iib.notes.tmp", "precious");
+    EXPECT_NE(std::string::npos, messageOf([&] { write(smallMap()); }).find("holds map.iib.notes.tmp"));
+    std::filesystem::remove(name + "/map.iib.notes.tmp");
     folder.makeFolder("sparse");
     folder.write("sparse/cameras.bin", "precious");
-    EXPECT_EQ(folder.path("sparse") + " holds a COLMAP model and is no map: choose another folder",
+    EXPECT_EQ(folder.path("sparse") + " holds cameras.bin and no map.iib: choose another folder",
             messageOf([&] { MapFolder other(folder.path("sparse")); }));
     folder.write("file", "precious");
     EXPECT_NE("", messageOf([&] { MapFolder other(folder.path("file")); }));
     EXPECT_EQ("precious", textOf(folder.path("file")));
     EXPECT_EQ(before, textOf(name + "/map.iib"));
+}
+
+TEST_F(SmallMap, one_process_writes_at_a_time_and_what_comes_meanwhile_stays)
+{
+    {
+        const MapFolder made(name);
+        EXPECT_EQ(name + " is being written by another process: wait until it has ended",
+                messageOf([&] { MapFolder other(name); }));
+    }
+    EXPECT_FALSE(cv::utils::fs::exists(name)) << "nothing was written";
+    const MapFolder made(name);
+    folder.write("map/thesis.tex", "precious");
+    folder.write("map/points.npy", "precious");
+    made.write(smallMap());
+    EXPECT_EQ(3u, readMap(name).images.size());
+    for (const char* file : {"/thesis.tex", "/points.npy"})
+        EXPECT_EQ("precious", textOf(name + file));
+}
+
+TEST_F(SmallMap, links_are_followed)
+{
+    folder.makeFolder("disk");
+    for (const char* link : {"there", "new/"})
+    {
+        const std::string path = folder.path(link), bare = path.substr(0, path.find_last_not_of('/') + 1);
+        std::filesystem::create_symlink("disk/" + bare.substr(bare.rfind('/') + 1), bare);
+        MapFolder(path).write(smallMap());
+        EXPECT_TRUE(std::filesystem::is_symlink(bare));
+        EXPECT_EQ(3u, readMap(bare).images.size());
+    }
+    std::filesystem::create_symlink("circle", folder.path("circle"));
+    EXPECT_NE("", messageOf([&] { MapFolder other(folder.path("circle")); }));
 }
 
 TEST_F(SmallMap, a_model_of_points_that_are_not_there)
@@ -199,13 +238,6 @@ TEST_F(SmallMap, names_in_any_language)
     MapFolder(other).write(smallMap());
     EXPECT_EQ(3u, readMap(other).images.size());
     EXPECT_EQ(3u, readModel(other).size());
-}
-
-TEST_F(SmallMap, one_process_writes_at_a_time)
-{
-    const MapFolder one(name);
-    EXPECT_EQ(name + " is being written by another process: wait until it has ended",
-            messageOf([&] { MapFolder other(name); }));
 }
 
 TEST_F(SmallMap, a_reader_gets_one_of_two_maps_that_replace_each_other)

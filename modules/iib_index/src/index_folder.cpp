@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "precomp.hpp"
 #include "index_folder.hpp"
+#include "../../iib/src/common/files.hpp"
 
 #ifdef _WIN32
-#include "../../iib/src/common/checked_file.hpp"
-
 #define NOMINMAX 1  // as libstdc++ has it
 #include <windows.h>
 #else
@@ -28,19 +27,11 @@ String segmentOf(const String& folder, uint64 number)
 
 String lockOf(const String& folder) { return folder + "/" + LOCK; }
 
-// CheckedWriter writes NAME.PROCESS-NUMBER.tmp. Formatted again, the numbers have to give the same name.
 static bool isUnfinished(const String& name)
 {
-    const size_t end = name.find(".iib.");
-    if (end == String::npos)
-        return false;
-    const String target = name.substr(0, end + 4), rest = name.substr(end + 4);
-    int process = 0, number = 0;
     unsigned long long segment = 0;
-    std::sscanf(rest.c_str(), ".%d-%d.tmp", &process, &number);
-    std::sscanf(target.c_str(), "segment-%llu.iib", &segment);
-    return rest == format(".%d-%d.tmp", process, number) &&
-           (target == MANIFEST || target == format(SEGMENT, segment));
+    std::sscanf(name.c_str(), "segment-%llu.iib", &segment);
+    return isPartOf(MANIFEST, name) || isPartOf(format(SEGMENT, segment), name);
 }
 
 #ifdef _WIN32  // OpenCV's own functions take no name outside of the code page

@@ -2,15 +2,13 @@
 
 #include "precomp.hpp"
 #include "mapped_file.hpp"
-#include "../../iib/src/common/checked_file.hpp"
+#include "../../iib/src/common/files.hpp"
 
 #ifdef _WIN32
 #define NOMINMAX 1  // as libstdc++ has it
 #include <windows.h>
 #else
-#include <cerrno>
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -42,19 +40,6 @@ MappedFile::MappedFile(const String& filename) : bytes(0), length(0)
 
 MappedFile::~MappedFile() { UnmapViewOfFile(bytes); }
 
-FileLock::FileLock(const String& filename)
-{
-    while ((file = CreateFileW(systemName(filename).c_str(), GENERIC_WRITE, 0, 0, OPEN_ALWAYS,
-                    FILE_ATTRIBUTE_NORMAL, 0)) == INVALID_HANDLE_VALUE)
-    {
-        if (GetLastError() != ERROR_SHARING_VIOLATION)
-            CV_Error(Error::StsError, "Cannot write " + filename + ": check the folder and its rights");
-        Sleep(10);
-    }
-}
-
-FileLock::~FileLock() { CloseHandle(file); }
-
 #else
 
 MappedFile::MappedFile(const String& filename) : bytes(0), length(0)
@@ -73,25 +58,6 @@ MappedFile::MappedFile(const String& filename) : bytes(0), length(0)
 }
 
 MappedFile::~MappedFile() { munmap((void*)bytes, length); }
-
-FileLock::FileLock(const String& filename) : file(open(filename.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666))
-{
-    int result = file < 0 ? -1 : flock(file, LOCK_EX);
-    while (file >= 0 && result != 0 && errno == EINTR)
-        result = flock(file, LOCK_EX);
-    if (result == 0)
-        return;
-    if (file >= 0)
-        close(file);
-    CV_Error(Error::StsError, "Cannot write " + filename + ": check the folder and its rights");
-}
-
-FileLock::~FileLock()
-{
-    flock(file,
-            LOCK_UN);  // closing is not enough: a process that was forked meanwhile holds the same open file
-    close(file);
-}
 
 #endif
 

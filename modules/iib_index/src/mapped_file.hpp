@@ -24,23 +24,5 @@ private:
     size_t length;
 };
 
-//! Holds a lock among processes and threads from its creation, for which it waits, to its end. The file is made if it is
-//! missing, and stays. The system gives the lock of a killed process back.
-class FileLock
-{
-public:
-    explicit FileLock(const String& filename);
-    ~FileLock();
-    FileLock(const FileLock&) = delete;
-    FileLock& operator=(const FileLock&) = delete;
-
-private:
-#ifdef _WIN32
-    void* file;
-#else
-    int file;
-#endif
-};
-
 }  // namespace iib
 }  // namespace cv

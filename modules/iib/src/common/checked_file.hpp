@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "opencv2/core.hpp"
+#include "files.hpp"
 
 #include <fstream>
 
@@ -14,13 +14,6 @@ namespace iib {
 /* For this library and for the module iib_index. Binary files that do not depend on the machine and
 tell when they are altered: eight letters that name the kind of file, u32 version, little-endian numbers and bytes, u64
 FNV-1a hash of all before. */
-
-//! A file's name as the system takes it. Windows: from UTF-8, as Python has it, else from the code page.
-#ifdef _WIN32
-CV_EXPORTS std::wstring systemName(const String& name);
-#else
-inline const String& systemName(const String& name) { return name; }
-#endif
 
 //! The 64-bit FNV-1a hash of a sequence of bytes.
 class Fnv1a
@@ -38,21 +31,6 @@ private:
     uint64 state;
 };
 
-//! The name. @throws cv::Exception for one with a zero byte: who opens it by a C string would open another file.
-inline const String& checkedName(const String& name)
-{
-    if (name.find('\0') != String::npos)
-        CV_Error(Error::StsBadArg,
-                format("the name of a file that begins with %s holds a zero byte", name.c_str()));
-    return name;
-}
-
-//! Writes a whole file as CheckedWriter does, packed by gzip if its name ends in .gz. @throws cv::Exception if it
-//! cannot; the old file is then as it was.
-CV_EXPORTS void writeText(const String& filename, const String& text);
-
-class ReplacedFile;
-
 //! The eight letters, the newest version that is understood, and what errors call such a file.
 struct FileKind
 {
@@ -61,9 +39,7 @@ struct FileKind
     const char* name;
 };
 
-/** Writes beside the file of that name, which stays as it is until commit(), and if anything fails: who reads meanwhile
-gets the old one or the new one. A symbolic link is followed: the file that it leads to is replaced. A link that leads
-to none is refused, and so is what is no regular file: a folder, a device, a pipe. */
+//! Writes such a file, as a WholeFile.
 class CV_EXPORTS CheckedWriter
 {
 public:
@@ -88,7 +64,7 @@ public:
     void commit();
 
 private:
-    Ptr<ReplacedFile> file;
+    Ptr<WholeFile> file;
     Fnv1a hash;
     uint64 written;
 };

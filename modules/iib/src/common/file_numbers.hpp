@@ -5,7 +5,7 @@
 #pragma once
 
 #include "../precomp.hpp"
-#include "checked_file.hpp"
+#include "files.hpp"
 
 namespace cv {
 namespace iib {
@@ -86,6 +86,10 @@ inline FileNode nodeOfFormat1(const FileNode& node, const char* name)
  around what write() writes; empty: none, for names that no node may have. */
 inline void saveWhole(const Algorithm& algorithm, const String& filename, const String& name = String())
 {
+    if (filename.size() > 3 && filename.compare(filename.size() - 3, 3, ".gz") == 0)
+        CV_Error(
+                Error::StsBadArg, "Cannot write " + filename +
+                                          ": parameters are not packed; end its name in .yml, .xml or .json");
     FileStorage fs(filename, FileStorage::WRITE + FileStorage::MEMORY);
     CV_Assert(fs.isOpened());
     if (!name.empty())
