@@ -1,6 +1,6 @@
 #!/bin/sh
-# What describing costs beside cv::ORB on this machine, what matching costs beside BFMatcher and, where python3 has faiss and
-# opencv_iib, beside faiss's flat index, what small work costs, and how much slower all that is without AVX-512 and without
+# What describing costs beside cv::ORB on this machine, what matching costs beside BFMatcher and, where Python (IIB_PYTHON,
+# if that is set) has faiss and opencv_iib, beside faiss's flat index, what small work costs, and how much slower all that is without AVX-512 and without
 # AVX2: prints tables and writes build/benchmark*.json. With --document the results go to
 # doc/results, from where the tables of README.md and doc/performance.md and their picture are made anew. --contrib adds
 # BEBLID, TEBLID and LATCH of opencv_contrib, whose source pip brings.
@@ -26,11 +26,11 @@ for without in "" _without_avx512:AVX512-SKX,AVX512-ICL _without_avx2:AVX2,AVX51
     say "measuring${without:+ without ${without#*:}}"
     OPENCV_CPU_DISABLE=${without#*:} "$build/tools/benchmark/iib_benchmark" "$@" --json="$results/benchmark${without%:*}.json"
 done
-/usr/bin/python3 "$root/scripts/helpers/figures.py" --print "$results"
-if python3 -c "import faiss, opencv_iib" 2>/dev/null; then
-    python3 "$root/tools/scale/measure.py" --flat
+"$python3" "$root/scripts/helpers/figures.py" --print "$results"
+if "$python3" -c "import faiss, opencv_iib" 2>/dev/null; then
+    "$python3" "$root/tools/scale/measure.py" --flat
 fi
 if [ -n "$document" ]; then
-    /usr/bin/python3 "$root/tools/benchmark/plot.py" "$results/benchmark.json" "$root/doc/speed.svg"
-    /usr/bin/python3 "$root/scripts/helpers/figures.py" --write
+    "$python3" "$root/tools/benchmark/plot.py" "$results/benchmark.json" "$root/doc/speed.svg"
+    "$python3" "$root/scripts/helpers/figures.py" --write
 fi

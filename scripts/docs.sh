@@ -16,9 +16,9 @@ rm -rf "$build/docs"
 pictures="$build/docs/pictures" environment="$build/docs/environment" library="$build/libopencv_iib_static.a"
 mkdir -p "$pictures"
 cd "$root"
-python3 scripts/helpers/python_api.py >"$build/docs/python_api.md"
+"$python3" scripts/helpers/python_api.py >"$build/docs/python_api.md"
 [ -f "$library" ] || library=""
-/usr/bin/python3 -m venv "$environment"
+"$python3" -m venv "$environment"
 if "$environment/bin/pip" install --quiet --retries 0 --timeout 15 opencv-python-headless pycolmap; then
     say "installing the package, and running its examples"
     "$environment/bin/pip" install --quiet "--config-settings=cmake.define.IIB_STATIC_LIBRARY=$library" "$wheel"
@@ -26,7 +26,7 @@ if "$environment/bin/pip" install --quiet --retries 0 --timeout 15 opencv-python
     "$environment/bin/opencv-iib" align tools/synthetic/view_noon.jpg tools/synthetic/view_panned.jpg --out "$build/docs/align"
 else
     say "skipped: the examples' output (pip reaches no package index)"
-    python3 scripts/helpers/python_examples.py >"$build/docs/python_examples.md"
+    "$python3" scripts/helpers/python_examples.py >"$build/docs/python_examples.md"
 fi
 {
     cat doc/Doxyfile
@@ -37,5 +37,5 @@ fi
 } | root=$(pwd -P) doxygen -
 cp -R doc/results doc/localization CITATION.cff "$build/docs/html"
 [ ! -d "$build/docs/align" ] || cp -R "$build/docs/align" "$build/docs/html"
-python3 scripts/helpers/links_test.py "$build/docs/html"
+"$python3" scripts/helpers/links_test.py "$build/docs/html"
 say "the documentation: $build/docs/html/index.html"

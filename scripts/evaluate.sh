@@ -28,7 +28,7 @@ for argument in "$@"; do
 done
 pairs="$out/pairs"
 
-need $build_packages python3-jinja2
+need $build_packages python3-jinja2 python3-numpy
 [ -z "$contrib" ] || contrib=$(contrib_argument)
 build_tools ${contrib:+"$contrib" -DIIB_CONTRIB_NONFREE=$nonfree} iib_evaluation
 
@@ -39,7 +39,7 @@ for selection in "$root"/doc/results/AdaBoost-*.json; do
     set -- "$@" --descriptor "$selection"
 done
 "$build/tools/evaluation/iib_evaluation" "$@" --out "$pairs"
-[ ! -e "$pairs/matched_points.csv" ] || python3 "$root/tools/evaluation/by_poselib.py" "$pairs"
+[ ! -e "$pairs/matched_points.csv" ] || "$python3" "$root/tools/evaluation/by_poselib.py" "$pairs"
 [ -z "$document" ] || out="$root/doc/results"
 {
     echo "commit $(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo unknown)"
@@ -51,6 +51,6 @@ done
 for file in settings.txt pictures; do
     [ ! -e "$pairs/$file" ] || cp -r "$pairs/$file" "$out"
 done
-/usr/bin/python3 "$root/scripts/helpers/summaries.py" "$pairs" "$out"
-say "results and page: $(/usr/bin/python3 "$root/tools/evaluation/report/report.py" "$out"), of each pair of images: $pairs"
-[ -z "$document" ] || /usr/bin/python3 "$root/scripts/helpers/figures.py" --write
+"$python3" "$root/scripts/helpers/summaries.py" "$pairs" "$out"
+say "results and page: $("$python3" "$root/tools/evaluation/report/report.py" "$out"), of each pair of images: $pairs"
+[ -z "$document" ] || "$python3" "$root/scripts/helpers/figures.py" --write

@@ -25,7 +25,7 @@ else
     clang_format=$pinned
     if ! has "$pinned"; then
         need python3-venv
-        python3 -m venv "$cache/clang-format-$version"
+        "$python3" -m venv "$cache/clang-format-$version"
         "$cache/clang-format-$version/bin/pip" --retries 0 --timeout 15 install --quiet "clang-format==$version" || {
             say "skipped: the format (there is no clang-format $version, neither here nor from pip)"
             exit 0

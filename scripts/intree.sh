@@ -52,7 +52,7 @@ contrib | contrib-5)
     need $build_packages libpng-dev libjpeg-dev zlib1g-dev python3-dev python3-numpy python3-venv
     major=4
     [ "$kind" = contrib ] || major=5
-    source=$("$root/scripts/helpers/opencv_contrib_source.py" "$major")
+    source=$("$python3" "$root/scripts/helpers/opencv_contrib_source.py" "$major")
     build="$source.intree$short"
     # Only xfeatures2d of opencv_contrib: CMake looks at every module of a folder that it is given.
     mkdir -p "$source/chosen"
@@ -77,7 +77,7 @@ say "building OpenCV with the module in $build (minutes for the first time)"
 # OFF: formats and back ends that nothing here reads. AVX512_ICL (VPOPCNTDQ) is not in OpenCV's default list.
 cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
     -DOPENCV_EXTRA_MODULES_PATH="$extra_modules" -DBUILD_LIST="$list" \
-    -DPYTHON3_EXECUTABLE=/usr/bin/python3 \
+    "-DPYTHON3_EXECUTABLE=$python3" \
     -DCPU_DISPATCH="$dispatch" -DCMAKE_CXX_FLAGS_RELEASE="$flags -DNDEBUG" $options $quick \
     -DWITH_IPP=OFF -DWITH_ITT=OFF \
     -DWITH_TIFF=OFF -DWITH_WEBP=OFF -DWITH_OPENJPEG=OFF -DWITH_JASPER=OFF -DWITH_OPENEXR=OFF \
@@ -102,12 +102,12 @@ say "the modules' tests, in-tree"
 }
 say "cv2.iib"
 export PYTHONPATH="$build/python_loader"
-/usr/bin/python3 "$root/modules/iib/misc/python/test/test_iib.py" -v
-/usr/bin/python3 "$root/python/tests/cv2_more.py" -v
+"$python3" "$root/modules/iib/misc/python/test/test_iib.py" -v
+"$python3" "$root/python/tests/cv2_more.py" -v
 say "the names that python/tests/test_names.py looks for"
-/usr/bin/python3 "$root/python/tests/cv2_names.py" | diff "$root/python/tests/cv2_names.txt" -
+"$python3" "$root/python/tests/cv2_names.py" | diff "$root/python/tests/cv2_names.txt" -
 say "the tutorial's Python program, on the demo's pair"
 sed -n '/^```python$/,/^```$/{/^```/!{/^import opencv_iib$/d;s/^# opencv_iib = /opencv_iib = /;p}}' "$root/modules/iib/tutorials/iib_day_night.markdown" >"$build/day_night.py"
 pair="$root/tools/synthetic"
-/usr/bin/python3 "$build/day_night.py" "$pair/day.png" "$pair/night.png" | grep -x '[1-9][0-9]* of [0-9]* matches agree with'
+"$python3" "$build/day_night.py" "$pair/day.png" "$pair/night.png" | grep -x '[1-9][0-9]* of [0-9]* matches agree with'
 say "done: $build"

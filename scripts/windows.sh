@@ -12,7 +12,7 @@ for argument in "$@"; do
     esac
 done
 need $compiler_packages g++-mingw-w64-x86-64-posix wine64 wine libz-mingw-w64-dev python3-venv
-source="$("$root/scripts/helpers/opencv_contrib_source.py" 4)/opencv"
+source="$("$python3" "$root/scripts/helpers/opencv_contrib_source.py" 4)/opencv"
 toolchain="-DCMAKE_TOOLCHAIN_FILE=$root/cmake/mingw.cmake"
 opencv="$cache/opencv-windows"
 

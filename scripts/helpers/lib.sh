@@ -9,6 +9,10 @@ root=${root%/*}  # of scripts/ or .ci/
 cache="${XDG_CACHE_HOME:-$HOME/.cache}/opencv_iib"
 jobs=$(getconf _NPROCESSORS_ONLN)
 
+# The Python of every script: the system's, for which apt installs packages, whichever pyenv or conda puts first in the PATH.
+python3=${IIB_PYTHON:-/usr/bin/python3}
+[ -n "${IIB_PYTHON:-}" ] || [ -x "$python3" ] || python3=python3
+
 for argument in "$@"; do
     case "$argument" in
     -h | --help)
@@ -129,7 +133,8 @@ need() {
 }
 
 # The stand-alone build of the whole project.
-compiler_packages="g++ cmake ninja-build"
+# With make, which CMake takes by default, as README's own project does.
+compiler_packages="g++ cmake make ninja-build"
 build_packages="$compiler_packages pkg-config libopencv-dev"
 
 # The one build folder of demo, installation, tests and tools, so that the library is compiled once.
@@ -159,7 +164,7 @@ build_library() {
 # The argument of configure with which the tools have the descriptors of opencv_contrib.
 contrib_argument() {
     need python3-venv >&2
-    contrib=$("$root/scripts/helpers/opencv_contrib_source.py" 4)
+    contrib=$("$python3" "$root/scripts/helpers/opencv_contrib_source.py" 4)
     echo "-DIIB_CONTRIB_SOURCE=$contrib"
 }
 

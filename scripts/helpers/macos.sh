@@ -7,7 +7,7 @@
 need $build_packages python3-venv
 zig="$cache/zig/bin/python-zig"
 [ -x "$zig" ] || {
-    python3 -m venv "$cache/zig"
+    "$python3" -m venv "$cache/zig"
     "$cache/zig/bin/pip" install --quiet ziglang
 }
 for architecture in aarch64 x86_64; do

@@ -35,7 +35,7 @@ git -C "$root" ls-files -z --cached --others --exclude-standard | tar -C "$root"
     tar -C "$home/the repository" -x
 cp "$root/tools/synthetic/day.png" "$root/tools/synthetic/night.png" "$home/my project"
 # The blocks as files: commands that speak of match_pair belong to the user's own project.
-python3 - "$root/README.md" "$home" <<'PYTHON'
+"$python3" - "$root/README.md" "$home" <<'PYTHON'
 import pathlib
 import re
 import sys

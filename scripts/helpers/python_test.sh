@@ -33,7 +33,7 @@ skip() {
     exit 0
 }
 
-/usr/bin/python3 -m venv "$work/newest" 2>"$work/log" || skip "no virtual environments: python3-venv is missing"
+"$python3" -m venv "$work/newest" 2>"$work/log" || skip "no virtual environments: python3-venv is missing"
 "$work/newest/bin/pip" --retries 0 --timeout 15 download --quiet --no-deps --dest "$work/probe" nanobind 2>"$work/log" ||
     skip "pip reaches no package index"
 
@@ -50,9 +50,9 @@ if [ -n "$servers" ]; then
     "$root/scripts/helpers/servers_test.sh" "$work/newest/bin/python"
 fi
 
-if /usr/bin/python3 -c 'import cv2' 2>"$work/log"; then
+if "$python3" -c 'import cv2' 2>"$work/log"; then
     say "python tests with Debian's OpenCV"
-    /usr/bin/python3 -m venv --system-site-packages "$work/debian"
+    "$python3" -m venv --system-site-packages "$work/debian"
     check debian "$work"/*.whl
 else
     say "skipped: python tests with Debian's OpenCV (python3-opencv is missing)"

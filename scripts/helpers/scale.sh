@@ -22,8 +22,8 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$build"
 say "building the package"
-/usr/bin/python3 -m venv "$work/environment"
+"$python3" -m venv "$work/environment"
 "$work/environment/bin/pip" install --quiet "${root}[distributed]" opencv-python-headless faiss-cpu
 say "measuring"
 "$work/environment/bin/python" "$root/tools/scale/measure.py" --out "$out" "$@"
-[ "$out" = "$build/scale.json" ] || /usr/bin/python3 "$root/scripts/helpers/figures.py" --write
+[ "$out" = "$build/scale.json" ] || "$python3" "$root/scripts/helpers/figures.py" --write

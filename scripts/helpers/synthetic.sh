@@ -13,4 +13,4 @@ for argument in "$@"; do
     esac
 done
 need povray python3-opencv
-exec /usr/bin/python3 "$root/tools/synthetic/render.py" "$@"
+exec "$python3" "$root/tools/synthetic/render.py" "$@"
