@@ -1,7 +1,8 @@
 #!/bin/sh
 # Runs every command of README.md, in its order, on a bare Debian made by debootstrap, as someone would who has just
 # cloned the repository: what is in the `sh` blocks, with the files of the `cmake`, `cpp` and `python` blocks beside it.
-# Blocks with a <placeholder> are left out. The paths hold spaces. Needs root; the bare system stays in the cache.
+# Blocks with a <placeholder> are left out. What README says of the packages of its first command must be within 5 % of
+# what apt prints of them. The paths hold spaces. Needs root; the bare system stays in the cache.
 #   scripts/helpers/newcomer.sh [SUITE]    by default bookworm
 . "$(dirname "$0")/lib.sh"
 
@@ -53,7 +54,13 @@ for language, text in re.findall(r'^```(sh|cmake|cpp|python)\n(.*?)^```$', readm
 PYTHON
 say "running the README's commands in $work/root"
 # A mount namespace of its own, so that nothing stays mounted.
-unshare --mount sh -c 'mount -t proc proc "$1/proc" && exec chroot "$1" /usr/bin/env -i HOME=/root \
+(unshare --mount sh -c 'mount -t proc proc "$1/proc" && exec chroot "$1" /usr/bin/env -i HOME=/root \
     XDG_CACHE_HOME="/root/a cache" PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
-    sh /root/commands.sh' sh "$work/root" </dev/null
+    sh /root/commands.sh' sh "$work/root" </dev/null 2>&1 || touch "$work/failed") | tee "$work/log"
+[ ! -e "$work/failed" ] || exit 1
+printed=$(sed -n 's/^Need to get \([0-9]*\) MB of archives.*/\1/p; s/^After this operation, \([0-9]*\) MB of additional.*/\1/p' "$work/log" |
+    head -n 2 | paste -sd ' ')
+said=$(sed -n 's/.* \([0-9]*\) MB to fetch, \([0-9]*\) MB on disk.*/\1 \2/p' "$root/README.md")
+echo "$printed $said" | awk '{ exit !(NF == 4 && $1 < 1.05 * $3 && $3 < 1.05 * $1 && $2 < 1.05 * $4 && $4 < 1.05 * $2) }' ||
+    fail "README says $said of what apt fetches and takes, in MB, and apt says $printed"
 say "every command of the README ran"
