@@ -17,16 +17,6 @@ DMatch toMatch(const PackedCodes& trains, int query, MatchKey n)
     return DMatch(query, (int)(indexOf(n) - trains.start(image)), (int)image, (float)distanceOf(n));
 }
 
-//! The nearest of each query that has one.
-void toBestMatches(const PackedCodes& trains, const KnnTable& found, std::vector<DMatch>& matches)
-{
-    matches.clear();
-    matches.reserve(found.rows());
-    for (int query = 0; query < (int)found.rows(); query++)
-        if (found[query][0] != NO_MATCH)
-            matches.push_back(toMatch(trains, query, found[query][0]));
-}
-
 //! Adds a row of the matches of a query; with `compact`, only if it has any.
 void addMatches(const PackedCodes& trains, int query, const MatchKey* begin, const MatchKey* end,
         bool compact, std::vector<std::vector<DMatch>>& matches)
@@ -172,18 +162,24 @@ public:
         saveCodes(filename, parameters, *index);
     }
 
-    void match(InputArray queries_, std::vector<DMatch>& matches, InputArrayOfArrays masks) CV_OVERRIDE
+    void knnMatchArrays(InputArray queries_, OutputArray indices, OutputArray distances, int k,
+            InputArrayOfArrays masks, OutputArray imageIndices) const CV_OVERRIDE
     {
         const Mat queries = queries_.getMat();
         const Ptr<const PackedCodes> trains = trainCodes(queries);
-        toBestMatches(*trains, nearest(*trains, queries, 1, masks), matches);
+        toArrays(*trains, nearest(*trains, queries, k, masks), k, indices, distances, imageIndices);
     }
-    void match(InputArray queries, InputArray trains, std::vector<DMatch>& matches,
-            InputArray mask) const CV_OVERRIDE
+    void knnMatchArrays(InputArray queries, InputArray trains, OutputArray indices, OutputArray distances,
+            int k, InputArray mask) const CV_OVERRIDE
     {
-        with(trains)->match(queries, matches, singleMask(mask));
+        const Ptr<HierarchicalMatcher> other = copy(true);
+        other->add(trains);
+        other->knnMatchArrays(
+                queries, indices, distances, k, std::vector<Mat>(mask.empty() ? 0 : 1, mask.getMat()));
     }
-    void knnMatch(InputArray queries_, std::vector<std::vector<DMatch>>& matches, int k,
+
+protected:
+    void knnMatchImpl(InputArray queries_, std::vector<std::vector<DMatch>>& matches, int k,
             InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE
     {
         const Mat queries = queries_.getMat();
@@ -195,15 +191,9 @@ public:
             addMatches(*trains, query, found[query],
                     std::find(found[query], found[query] + found.size(), NO_MATCH), compactResult, matches);
     }
-    void knnMatch(InputArray queries, InputArray trains, std::vector<std::vector<DMatch>>& matches, int k,
-            InputArray mask, bool compactResult) const CV_OVERRIDE
-    {
-        with(trains)->knnMatch(queries, matches, k, singleMask(mask), compactResult);
-    }
-    void radiusMatch(InputArray queries_, std::vector<std::vector<DMatch>>& matches, float maxDistance,
+    void radiusMatchImpl(InputArray queries_, std::vector<std::vector<DMatch>>& matches, float maxDistance,
             InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE
     {
-        require(maxDistance > FLT_EPSILON, "maxDistance", maxDistance, "above 0");
         const Mat queries = queries_.getMat();
         const Ptr<const PackedCodes> trains = trainCodes(queries);
         const CodeLayout& layout = trains->layout();
@@ -214,35 +204,6 @@ public:
         for (int query = 0; query < (int)found.size(); query++)
             addMatches(*trains, query, found[query].data(), found[query].data() + found[query].size(),
                     compactResult, matches);
-    }
-    void radiusMatch(InputArray queries, InputArray trains, std::vector<std::vector<DMatch>>& matches,
-            float maxDistance, InputArray mask, bool compactResult) const CV_OVERRIDE
-    {
-        with(trains)->radiusMatch(queries, matches, maxDistance, singleMask(mask), compactResult);
-    }
-    void knnMatchArrays(InputArray queries_, OutputArray indices, OutputArray distances, int k,
-            InputArrayOfArrays masks, OutputArray imageIndices) const CV_OVERRIDE
-    {
-        const Mat queries = queries_.getMat();
-        const Ptr<const PackedCodes> trains = trainCodes(queries);
-        toArrays(*trains, nearest(*trains, queries, k, masks), k, indices, distances, imageIndices);
-    }
-    void knnMatchArrays(InputArray queries, InputArray trains, OutputArray indices, OutputArray distances,
-            int k, InputArray mask) const CV_OVERRIDE
-    {
-        with(trains)->knnMatchArrays(queries, indices, distances, k, singleMask(mask), noArray());
-    }
-
-protected:
-    void knnMatchImpl(InputArray queries, std::vector<std::vector<DMatch>>& matches, int k,
-            InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE
-    {
-        knnMatch(queries, matches, k, masks, compactResult);
-    }
-    void radiusMatchImpl(InputArray queries, std::vector<std::vector<DMatch>>& matches, float maxDistance,
-            InputArrayOfArrays masks, bool compactResult) CV_OVERRIDE
-    {
-        radiusMatch(queries, matches, maxDistance, masks, compactResult);
     }
 
 private:
@@ -270,20 +231,6 @@ private:
     Ptr<const PackedCodes> trainCodes(const Mat& queries) const
     {
         return index ? index : indexFor(std::max(queries.cols, 1));
-    }
-
-    //! A matcher that has these train descriptors in place of its own.
-    Ptr<HierarchicalMatcher> with(InputArrayOfArrays trains) const
-    {
-        const Ptr<HierarchicalMatcher> other = copy(true);
-        other->add(trains);
-        return other;
-    }
-
-    //! The masks of a call with two sets: one or none.
-    static std::vector<Mat> singleMask(InputArray mask)
-    {
-        return std::vector<Mat>(mask.empty() ? 0 : 1, mask.getMat());
     }
 
     //! Checked. The policy is that of the mode if it is THRESHOLD, else the given one.

@@ -279,18 +279,18 @@ TEST(IIB_MatcherEdges, long_codes_take_no_second_copy)
 }
 #endif
 
-// Calls without train descriptors or queries: DescriptorMatcher returns before it looks at anything.
+// Calls without queries or train descriptors: of a matcher without images, and of one with an image that has no rows.
 const Mat SOME = randomDescriptors(1, 5, 42), NONE;
 
 Ptr<HierarchicalMatcher> createMatcher() { return HierarchicalMatcher::create({2, 8, 32}); }
 
-//! Results of an earlier call, which must not survive.
+//! Results of an earlier call.
 const std::vector<DMatch> OLD(7);
 const Matches OLD_ROWS(7, std::vector<DMatch>(2));
 
-TEST(IIB_MatcherEmpty, without_train_descriptors_rows_are_empty)
+TEST(IIB_MatcherEmpty, without_train_rows_the_rows_are_empty)
 {
-    const Ptr<HierarchicalMatcher> matcher = createMatcher();
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({NONE});
     std::vector<DMatch> best;
     matcher->match(SOME, best = OLD);
     EXPECT_TRUE(best.empty());
@@ -310,55 +310,63 @@ TEST(IIB_MatcherEmpty, without_train_descriptors_rows_are_empty)
     EXPECT_EQ(0, cvtest::norm(indices, Mat(5, 2, CV_32S, Scalar(-1)), NORM_INF));
 }
 
-TEST(IIB_MatcherEmpty, without_queries_nothing_is_left)
+// As BFMatcher, also where knnMatch leaves its results as they were.
+TEST(IIB_MatcherEmpty, without_queries_or_images_as_every_matcher)
 {
-    const Ptr<HierarchicalMatcher> matcher = createMatcher();
-    for (bool trained : {false, true})
-    {
-        if (trained)
-            matcher->add(SOME);
-        std::vector<DMatch> best = OLD;
-        matcher->match(NONE, best);
-        EXPECT_TRUE(best.empty());
-        Matches rows = OLD_ROWS;
-        matcher->knnMatch(NONE, rows, 2);
-        EXPECT_TRUE(rows.empty());
-        matcher->knnMatch(NONE, SOME, rows = OLD_ROWS, 2);
-        EXPECT_TRUE(rows.empty());
-        matcher->radiusMatch(NONE, SOME, rows = OLD_ROWS, 3);
-        EXPECT_TRUE(rows.empty());
-    }
+    const Ptr<DescriptorMatcher> matchers[] = {createMatcher(), BFMatcher::create(NORM_HAMMING)};
+    for (const Ptr<DescriptorMatcher>& matcher : matchers)
+        for (bool trained : {false, true})
+        {
+            if (trained)
+                matcher->add(SOME);
+            const Mat queries = trained ? NONE : SOME;
+            std::vector<DMatch> best = OLD;
+            matcher->match(queries, best);
+            EXPECT_TRUE(best.empty());
+            Matches rows;
+            matcher->knnMatch(queries, rows = OLD_ROWS, 2);
+            EXPECT_EQ(OLD_ROWS.size(), rows.size());
+            matcher->radiusMatch(queries, rows = OLD_ROWS, 3);
+            EXPECT_TRUE(rows.empty());
+            matcher->match(NONE, SOME, best = OLD);
+            EXPECT_TRUE(best.empty());
+            matcher->radiusMatch(NONE, SOME, rows = OLD_ROWS, 3);
+            EXPECT_TRUE(rows.empty());
+        }
 }
 
-TEST(IIB_MatcherEmpty, arguments_are_checked_all_the_same)
+// A DescriptorMatcher has one behaviour, whatever its static type.
+TEST(IIB_MatcherEmpty, arguments_are_checked_the_same_through_the_base)
 {
-    const Ptr<HierarchicalMatcher> matcher = createMatcher();
+    const Ptr<HierarchicalMatcher> matcher = matcherOf({NONE});
+    DescriptorMatcher& base = *matcher;
     Matches rows;
     const Mat wrong(3, 41, CV_8U, Scalar(0)), floats(3, 42, CV_32F, Scalar(0));
+    const std::vector<Mat> mask(1, Mat(5, 5, CV_8U, Scalar(1)));
+    const float notANumber = std::numeric_limits<float>::quiet_NaN();
+    const std::function<void()> calls[] = {[&] { matcher->knnMatch(SOME, rows, 0); },
+            [&] { base.knnMatch(SOME, rows, 0); }, [&] { matcher->knnMatch(SOME, SOME, rows, -1); },
+            [&] { matcher->radiusMatch(SOME, rows, 0.f); }, [&] { base.radiusMatch(SOME, rows, notANumber); },
+            [&] { matcher->knnMatch(SOME, rows, 1, mask); }, [&] { base.knnMatch(SOME, rows, 1, mask); },
+            [&] { matcher->knnMatch(SOME, wrong, rows, 1); }, [&] { matcher->knnMatch(wrong, rows, 1); },
+            [&] { base.knnMatch(floats, rows, 1); }, [&] { base.radiusMatch(wrong, rows, 3.f); }};
+    for (const std::function<void()>& call : calls)
+        EXPECT_THROW(call(), cv::Exception);
+    Mat indices, distances;
     for (const Mat& queries : {SOME, NONE})
     {
-        EXPECT_THROW(matcher->knnMatch(queries, rows, 0), cv::Exception);
-        EXPECT_THROW(matcher->knnMatch(queries, rows, -1), cv::Exception);
-        EXPECT_THROW(matcher->knnMatch(queries, SOME, rows, 0), cv::Exception);
-        EXPECT_THROW(matcher->radiusMatch(queries, rows, 0.f), cv::Exception);
-        EXPECT_THROW(
-                matcher->radiusMatch(queries, rows, std::numeric_limits<float>::quiet_NaN()), cv::Exception);
-        EXPECT_THROW(matcher->knnMatch(queries, rows, 1, std::vector<Mat>(1, Mat(5, 5, CV_8U, Scalar(1)))),
-                cv::Exception);
-        EXPECT_THROW(matcher->knnMatch(queries, wrong, rows, 1), cv::Exception);
+        EXPECT_THROW(matcher->knnMatchArrays(queries, indices, distances, 0), cv::Exception);
+        EXPECT_THROW(matcher->knnMatchArrays(queries, wrong, indices, distances), cv::Exception);
     }
-    EXPECT_THROW(matcher->knnMatch(wrong, rows, 1), cv::Exception);
-    EXPECT_THROW(matcher->knnMatch(floats, rows, 1), cv::Exception);
-    EXPECT_THROW(matcher->radiusMatch(wrong, rows, 3.f), cv::Exception);
 }
 
 TEST(IIB_MatcherEmpty, masks_of_no_rows_fit)
 {
     const Ptr<HierarchicalMatcher> matcher = createMatcher();
     matcher->add(SOME);
-    Matches rows = OLD_ROWS;
-    matcher->knnMatch(Mat(0, 42, CV_8U), rows, 2, std::vector<Mat>(1, Mat(0, 5, CV_8U)));
-    EXPECT_TRUE(rows.empty());
+    Mat indices, distances;
+    matcher->knnMatchArrays(Mat(0, 42, CV_8U), indices, distances, 2, std::vector<Mat>(1, Mat(0, 5, CV_8U)));
+    EXPECT_EQ(0, indices.rows);
 }
 
 }  // namespace

@@ -150,16 +150,15 @@ TEST(IIB_MatcherCreate, any_width_in_calls_with_two_sets)
 TEST(IIB_MatcherCreate, without_rows)
 {
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create();
-    Matches matches(3);
-    matcher->knnMatch(randomDescriptors(1, 5, 32), matches, 1);
-    expectEqual(Matches(5), matches);
+    Matches matches;
     matcher->add(std::vector<Mat>(2));
     matcher->knnMatch(randomDescriptors(1, 5, 32), matches, 1, std::vector<Mat>(2));
     expectEqual(Matches(5), matches);
     matcher->knnMatch(randomDescriptors(1, 5, 32), Mat(), matches, 1);
     expectEqual(Matches(5), matches);
-    matcher->knnMatch(Mat(), Mat(), matches, 1);
-    EXPECT_TRUE(matches.empty());
+    std::vector<DMatch> best(3);
+    matcher->match(Mat(), Mat(), best);
+    EXPECT_TRUE(best.empty());
     EXPECT_EQ(2u, matcher->getTrainDescriptors().size());
     EXPECT_TRUE(matcher->clone().dynamicCast<HierarchicalMatcher>()->levelSizes().empty());
     EXPECT_THROW(matcher->knnMatch(Mat(3, 8, CV_32F, Scalar(0)), matches, 1), cv::Exception);

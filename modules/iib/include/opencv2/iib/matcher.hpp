@@ -24,14 +24,17 @@ All that cv::DescriptorMatcher offers works here, in any combination: several tr
 queries x train rows, one for each image, or an empty one for "all allowed"), `k`, radius, `crossCheck`,
 `compactResult`. Where BFMatcher does otherwise:
  - results are in the order of distance, then image, then train index; that order decides ties;
- - train images without rows are skipped; without any train rows the rows of the result are empty; without queries
-   the result is empty; arguments are checked in any case (through a DescriptorMatcher reference, OpenCV's own calls
-   return before that and leave the caller's old results in place);
+ - train images without rows are skipped; without any train rows the rows of the result are empty;
  - `k` is met over all the images together, not up to the smallest image's rows;
  - `compactResult` drops every query without a match, whatever the reason;
  - rows and images are limited by memory alone, which holds the packed codes (levels padded to 4 or 8 bytes)
    and the results. The matrices added are copied and not referred to: later changes to them have no effect, and
    they may be released.
+
+As with every DescriptorMatcher, knnMatch without queries, or before an image was added, returns at once: its arguments
+are not looked at, and what the vector held stays; match and radiusMatch empty it. Rows of knnMatch have 0 to k matches:
+masks, cross-check, maximal ratio or few train descriptors leave fewer. Code that takes two of each row needs a matcher of
+create(); match() of one of createRecommended() gives what passes its ratio test.
 
 **Cross-check.** With `crossCheck`, a pair is reported only if each is among the `k` nearest of the other,
 among the pairs that masks and mode allow, over all images; for k = 1 that is the mutual nearest neighbour.
@@ -108,30 +111,6 @@ public:
      */
     CV_WRAP virtual std::vector<Mat> getTrainDescriptors() const = 0;
 
-    /** @name Matching
-    As in DescriptorMatcher, whose documentation holds, but old results never survive a call, and arguments are checked
-    also where there is nothing to match. Rows of knnMatch have 0 to k matches: masks, cross-check, maximal ratio or few
-    train descriptors leave fewer. Code that takes two of each row needs a matcher of create(); match() of one of
-    createRecommended() gives what passes its ratio test. */
-    //! @{
-    CV_WRAP virtual void match(InputArray queryDescriptors, InputArray trainDescriptors,
-            CV_OUT std::vector<DMatch>& matches, InputArray mask = noArray()) const = 0;
-    CV_WRAP virtual void knnMatch(InputArray queryDescriptors, InputArray trainDescriptors,
-            CV_OUT std::vector<std::vector<DMatch>>& matches, int k, InputArray mask = noArray(),
-            bool compactResult = false) const = 0;
-    CV_WRAP virtual void radiusMatch(InputArray queryDescriptors, InputArray trainDescriptors,
-            CV_OUT std::vector<std::vector<DMatch>>& matches, float maxDistance, InputArray mask = noArray(),
-            bool compactResult = false) const = 0;
-    CV_WRAP virtual void match(InputArray queryDescriptors, CV_OUT std::vector<DMatch>& matches,
-            InputArrayOfArrays masks = noArray()) = 0;
-    CV_WRAP virtual void knnMatch(InputArray queryDescriptors,
-            CV_OUT std::vector<std::vector<DMatch>>& matches, int k, InputArrayOfArrays masks = noArray(),
-            bool compactResult = false) = 0;
-    CV_WRAP virtual void radiusMatch(InputArray queryDescriptors,
-            CV_OUT std::vector<std::vector<DMatch>>& matches, float maxDistance,
-            InputArrayOfArrays masks = noArray(), bool compactResult = false) = 0;
-    //! @}
-
     //! Setters take what create() takes, and throw a cv::Exception where it does; the old value then stays.
     CV_WRAP virtual void setMode(int mode) = 0;
     CV_WRAP virtual int getMode() const = 0;
@@ -159,7 +138,8 @@ public:
     CV_WRAP virtual void setMaxRatio(float maxRatio) = 0;
     CV_WRAP virtual float getMaxRatio() const = 0;
 
-    /** @brief knnMatch with matrices for results: in Python many times faster than lists of DMatch.
+    /** @brief knnMatch with matrices for results: in Python many times faster than lists of DMatch, and what is quickest for
+small sets in C++. Arguments are checked also where there is nothing to match, and old results never survive.
 
     This overload is declared before the one for the train set that was added: Python takes the first overload that
     fits, and train descriptors fit an output as well.
