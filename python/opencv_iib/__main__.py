@@ -118,6 +118,7 @@ def _parser() -> argparse.ArgumentParser:
     localizing.add_argument('--out', required=True, help='folder to write; older results there are replaced')
     localizing.add_argument('--pictures', action='store_true', help='write each image with the points that agree')
     updating.add_argument('--out', help='folder of the new map, instead of the old one')
+    updating.add_argument('--force', action='store_true', help='replace a map that is in --out')
     for each, text in ((mapping, 'map lines too'), (localizing, 'refine poses by the lines of a map that was made with --lines')):
         each.add_argument('--lines', action='store_true', help=text + " (needs OpenCV's module line_descriptor)")
     return parser

@@ -1,17 +1,16 @@
-"""Files that are written: where, and by one process at a time."""
+"""Files and folders that are written: where, whole, and by one process at a time."""
 from __future__ import annotations
 
 import os
+import re
 import shutil
-import sys
-import uuid
-from contextlib import contextmanager, nullcontext, suppress
-from typing import Iterator
+import tempfile
+from contextlib import contextmanager, suppress
+from typing import Callable, Iterable, Iterator
 
-if sys.platform == 'win32':
-    import msvcrt
-else:
-    import fcntl
+from opencv_iib import _core
+
+PART = '.iib-'  #: how the folder's name begins that results are written to, within that of the results
 
 
 def output_file(path: str) -> str:
@@ -27,55 +26,125 @@ def output_file(path: str) -> str:
     return target
 
 
+def is_same(path: str, other: str) -> bool:
+    """Whether two names are of one file."""
+    if os.path.exists(path) and os.path.exists(other):
+        return os.path.samefile(path, other)
+    return os.path.realpath(path) == os.path.realpath(other)
+
+
+def check_outputs(outputs: Iterable[str], inputs: Iterable[str]) -> None:
+    """:raises FileExistsError: for a file to be written that is read, by whatever name, or that is written twice."""
+    taken = {path: 'an input' for path in inputs}
+    for path in outputs:
+        for other, what in taken.items():
+            if is_same(path, other):
+                raise FileExistsError(f'{path} is {what} too: give what is written a name of its own')
+        taken[path] = 'another output'
+
+
 def write_whole(path: str, content: bytes) -> None:
     """Writes a file beside the old one, and puts it in its place when all of it is on the disk.
 
     :raises OSError: for a full disk too; the old file stays.
     """
     target = output_file(path)
-    # A device, such as /dev/stdout, is no file that could be replaced.
-    device = os.path.exists(target) and not os.path.isfile(target)
     try:
-        with (nullcontext([target]) if device else replaced(target, suffix=f'.{uuid.uuid4().hex[:8]}')) as (part,), open(part, 'wb') as file:
-            file.write(content)
+        if os.path.exists(target) and not os.path.isfile(target):  # a device, such as /dev/stdout, which cannot be replaced
+            with open(target, 'wb') as file:
+                file.write(content)
+        else:
+            with replaced(target) as (part,), open(part, 'wb') as file:
+                file.write(content)
     except OSError as e:
-        raise type(e)(f'{path} cannot be written: {e.strerror}') from None
+        raise type(e)(f'{path} cannot be written: {e.strerror or e}') from None
 
 
 @contextmanager
-def replaced(*paths: str, suffix: str = '.new') -> Iterator[list[str]]:
-    """Names to write files to, which replace those at the paths when the block ends without an error."""
-    parts = [path + suffix for path in paths]
+def replaced(*paths: str) -> Iterator[list[str]]:
+    """Names that nothing has, to write files to, which replace those at the paths when the block ends without an error."""
+    parts: list[_core.WholeFile] = []
     try:
-        yield parts
-        for part, path in zip(parts, paths):
-            if os.path.exists(path):
-                shutil.copymode(path, part)
-            os.replace(part, path)
+        for path in paths:
+            parts.append(_core.WholeFile(path))
+        yield [os.fsdecode(part.part) for part in parts]
+        for part in parts:
+            part.commit()
+    except _core.error as e:
+        raise OSError(str(e)) from None
     finally:
         for part in parts:
-            with suppress(FileNotFoundError):
-                os.unlink(part)
+            part.discard()
 
 
 @contextmanager
 def only_writer(path: str) -> Iterator[None]:
     """Locks a folder, or a file, which is made if it is missing.
 
+    :raises FileExistsError: for a link, which could lead to files of others.
     :raises BlockingIOError: if another process has it locked.
     """
-    if sys.platform == 'win32':  # where no folder is locked: a file beside it, which goes with its last descriptor
-        descriptor = os.open(path + '.lock', os.O_RDWR | os.O_CREAT | os.O_TEMPORARY)
-    else:
-        descriptor = os.open(path, os.O_RDONLY if os.path.isdir(path) else os.O_RDWR | os.O_CREAT)
+    if os.path.islink(path):
+        raise FileExistsError(f'{path} is a link: remove it, or choose another name')
     try:
-        try:
-            if sys.platform == 'win32':
-                msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
-            else:
-                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except (BlockingIOError, PermissionError):
-            raise BlockingIOError(f'{path} is being written by another process: wait until it has ended') from None
+        lock = _core.FileLock(path)
+    except _core.error as e:
+        raise BlockingIOError(str(e)) from None
+    try:
         yield
     finally:
-        os.close(descriptor)
+        del lock
+
+
+def _files_below(folder: str) -> list[str]:
+    """Their names relative to it, with '/'."""
+    return [os.path.relpath(os.path.join(root, name), folder).replace(os.sep, '/') for root, folders, files in os.walk(folder)
+            for name in files + [name for name in folders if os.path.islink(os.path.join(root, name))]]
+
+
+@contextmanager
+def new_results(out: str, mark: str, earlier: Callable[[str], Iterable[str]]) -> Iterator[str]:
+    """A folder to write to, whose files take their place in that of the results when the block ends without an error.
+
+    Until then earlier results stay there. Nothing is removed or replaced but these.
+
+    :param out: made if it is missing; a link is followed, also if nothing is at its end yet.
+    :param mark: file that results always hold.
+    :param earlier: names of the files of earlier results besides it, told by the folder.
+    :raises FileExistsError: for a folder that holds something else, or that another process is writing.
+    """
+    target = os.path.realpath(out)
+    there = _files_below(target)
+    listed = {mark, *earlier(target)} if mark in there else set()
+    old = {name for name in there if name in listed}
+    killed = {name for name in (os.listdir(target) if there else ()) if re.fullmatch(re.escape(PART) + r'\w{8}', name)}
+    own = old.union(name for name in there if '/' in name and name.split('/')[0] in killed)
+    try:
+        lock = _core.OutputFolder(target, [os.fsencode(name) for name in own])
+    except _core.error as e:
+        raise FileExistsError(str(e)) from None
+    for folder in killed:
+        shutil.rmtree(os.path.join(target, folder), ignore_errors=True)
+    part = tempfile.mkdtemp(prefix=PART, dir=target)
+    try:
+        yield part
+        _publish(part, target, mark, old)
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+        del lock
+
+
+def _publish(part: str, target: str, mark: str, old: set[str]) -> None:
+    new = sorted(_files_below(part), key=lambda name: name == mark)
+    for name in new:
+        if name not in old and os.path.lexists(os.path.join(target, name)):
+            raise FileExistsError(f'{os.path.join(target, name)} has come there meanwhile: remove it, or choose another folder')
+    for name in new:
+        os.makedirs(os.path.dirname(os.path.join(target, name)), exist_ok=True)
+        os.replace(os.path.join(part, name), os.path.join(target, name))
+    for name in old.difference(new):
+        with suppress(OSError):  # of a folder, what else is in it stays
+            os.unlink(os.path.join(target, name))
+            while os.path.dirname(name):
+                name = os.path.dirname(name)
+                os.rmdir(os.path.join(target, name))

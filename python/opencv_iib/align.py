@@ -3,13 +3,16 @@ from __future__ import annotations
 
 import csv
 import html
+import itertools
 import os
-from typing import NamedTuple, Sequence, TextIO
+import re
+from typing import NamedTuple, Optional, Sequence, TextIO
 from urllib.parse import quote
 
 import numpy as np
 from numpy.typing import NDArray
 
+from opencv_iib._files import is_same, new_results
 from opencv_iib.colmap.images import import_cv2, read_colour, write_picture
 from opencv_iib.colmap.progress import Progress
 from opencv_iib.enums import AlignmentModel
@@ -19,26 +22,29 @@ CORNERS = ('top_left', 'top_right', 'bottom_right', 'bottom_left')
 HEADER = ['image', 'verdict', 'matches', *(f'error_{corner}' for corner in CORNERS),
           *(f't{row}{column}' for row in '123' for column in '123'), 'file']
 PAGE = '''<!DOCTYPE html>
-<html lang="en"><meta charset="utf-8"><title>Aligned with {reference}</title>
-<style>body {{ font: 16px sans-serif; margin: 2em auto; max-width: {width}px; background: #1c1a20; color: #ebebeb }}
-figure {{ position: relative; margin: 0 0 2em }} img {{ display: block; width: 100% }}
+<html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Aligned with {reference}</title>
+<style>body {{ font: 16px sans-serif; margin: 2em auto; max-width: {width}px; padding: 0 1em; background: #1c1a20; color: #ebebeb }}
+h1, p, figcaption {{ overflow-wrap: anywhere }} figure {{ position: relative; margin: 0 0 2em }} img {{ display: block; width: 100%; height: auto }}
 div {{ position: relative }} div img + img {{ position: absolute; top: 0; clip-path: inset(0 0 0 50%) }}
-input {{ width: 100% }}</style>
+input {{ width: 100%; margin: .5em 0 }}</style>
 <h1>Aligned with {reference}</h1>
 {figures}
 <script>for (const slider of document.querySelectorAll('input')) slider.oninput = () => slider.parentNode.querySelector(
 'img + img').style.clipPath = `inset(0 0 0 ${{slider.value}}%)`</script></html>
 '''
-FIGURE = '''<figure><div><img src="reference.png" alt="the reference"><img src="{file}" alt="{name}, aligned"></div>
+FIGURE = '''<figure><div><img src="reference.png" alt="the reference" loading="lazy" width="{width}" height="{height}"><img src="{file}"
+alt="{name}, aligned" loading="lazy" width="{width}" height="{height}"></div>
 <input type="range" value="50" aria-label="border between the reference, left, and {name}">
 <figcaption>{name}: {verdict}</figcaption></figure>'''
+LARGEST_SIDE = 32766  #: pixels that cv2.warpPerspective takes
+LONGEST_STEM = 200  #: bytes of a file's name, with room for a number and the suffix
 
 
 class Aligned(NamedTuple):
     """What became of an image."""
 
-    name: str
-    verdict: str  #: 'aligned', 'nothing in common', or why it cannot be read
+    name: str  #: path, as it was given
+    verdict: str  #: 'aligned', 'nothing in common', or why it cannot be read or laid onto the reference
     matches: int = 0  #: that agree with the transform
     errors: Sequence[float] = ()  #: standard deviations of the places of its corners in pixels, in the order of CORNERS
     transform: Sequence[float] = ()  #: 3 x 3, row by row: from its pixels to those of the reference
@@ -54,51 +60,91 @@ def align(reference: str, images: Sequence[str], out: str, model: int = Alignmen
     """Aligns images with a reference, and writes them as its camera would see them: NAME.png, ``transforms.csv`` and
     ``index.html``, in which a slider moves the border between the reference and each.
 
-    :param images: of a plane, or of anything by a camera that stays where it is.
+    An interruption keeps what is done until then.
+
+    :param images: of a plane, or of anything by a camera that stays where it is. The reference among them is left out.
     :param out: folder to write; results of an earlier call are replaced.
-    :raises ValueError: for a reference that is no image.
-    :raises FileExistsError: for a folder with other files.
+    :return: of each image but the reference.
+    :raises ValueError: for a reference that is no image or too large, or no image beside it.
+    :raises FileExistsError: for a folder with other files, or with an image to be aligned.
     """
-    from opencv_iib.localization.folders import new_folder
-    first, done = read_colour(reference), []
-    with new_folder(out, ['transforms.csv', 'index.html', '*.png']) as folder:
+    first, done = _read(reference), []
+    images = [path for path in images if not is_same(path, reference)]
+    if not images:
+        raise ValueError(f'no image to align but the reference, {reference}')
+    for path in (reference, *images):
+        if os.path.realpath(path).startswith(os.path.join(os.path.realpath(out), '')):
+            raise FileExistsError(f'{path} is in {out}, whose files would be replaced: choose another folder')
+    stopped: Optional[BaseException] = None
+    with new_results(out, 'transforms.csv', _earlier) as folder:
         write_picture(os.path.join(folder, 'reference.png'), first)
         progress = Progress('aligning', len(images))
         taken = {'reference.png'}
-        for path in images:
-            done.append(_aligned(first, path, folder, taken, model))
-            progress.step()
+        try:
+            for path in images:
+                done.append(_aligned(first, path, folder, taken, model))
+                progress.step()
+        except (Exception, KeyboardInterrupt) as e:
+            if not done:
+                raise
+            stopped = e
         progress.close()
         with _file(os.path.join(folder, 'transforms.csv')) as table:
             csv.writer(table).writerows([HEADER, *map(_row, done)])
-        figures = '\n'.join(FIGURE.format(file=quote(os.fsencode(each.file)), name=html.escape(each.name), verdict=each)
-                            if each.file else f'<p>{html.escape(each.name)}: {html.escape(each.verdict)}</p>' for each in done)
         with _file(os.path.join(folder, 'index.html')) as page:
-            page.write(PAGE.format(reference=html.escape(os.path.basename(reference)), width=first.shape[1], figures=figures))
+            page.write(_page(os.path.basename(reference), done, *first.shape[1::-1]))
+    if stopped is not None:
+        raise stopped
     return done
+
+
+def _page(reference: str, done: Sequence[Aligned], width: int, height: int) -> str:
+    """In the order of people: 2 before 10."""
+    ordered = sorted(done, key=lambda each: [(int(part), '') if n % 2 else (-1, part) for n, part in enumerate(re.split('([0-9]+)', each.name))])
+    figures = (FIGURE.format(file=quote(each.file), name=html.escape(each.name), verdict=each, width=width, height=height)
+               if each.file else f'<p>{html.escape(each.name)}: {html.escape(each.verdict)}</p>' for each in ordered)
+    return PAGE.format(reference=html.escape(reference), width=width, figures='\n'.join(figures))
+
+
+def _earlier(folder: str) -> list[str]:
+    """Files that an earlier call has written, by its table."""
+    with open(os.path.join(folder, 'transforms.csv'), encoding='utf-8', errors='replace', newline='') as table:
+        return ['reference.png', 'index.html', *(row.get('file') or '' for row in csv.DictReader(table))]
 
 
 def _file(path: str) -> TextIO:
     return open(path, 'w', encoding='utf-8', errors='backslashreplace', newline='')
 
 
+def _read(path: str) -> NDArray[np.uint8]:
+    """:raises ValueError: also for an image that cv2 cannot lay onto another, or others onto it."""
+    image = read_colour(path)
+    if max(image.shape[:2]) > LARGEST_SIDE:
+        raise ValueError(f'{path}: {image.shape[1]} x {image.shape[0]} pixels, and cv2 lays sides of up to {LARGEST_SIDE} onto others: reduce it')
+    return image
+
+
+def _file_name(path: str, taken: set[str]) -> str:
+    """Of the aligned image, which all systems and pages can name."""
+    stem = ''.join('_' if '\ud800' <= letter <= '\udfff' else letter for letter in os.path.splitext(os.path.basename(path))[0])
+    stem = stem.encode()[:LONGEST_STEM].decode(errors='ignore')
+    names = (f'{stem}_{count}.png' if count > 1 else f'{stem}.png' for count in itertools.count(1))
+    return next(name for name in names if name.lower() not in taken)  # some systems know no difference
+
+
 def _aligned(reference: NDArray[np.uint8], path: str, folder: str, taken: set[str], model: int) -> Aligned:
-    cv2, name = import_cv2(), os.path.basename(path)
+    cv2 = import_cv2()
     try:
-        image = read_colour(path)
-    except ValueError as e:
-        return Aligned(name, str(e))
+        image = _read(path)
+    except (ValueError, OSError) as e:
+        return Aligned(path, getattr(e, 'strerror', None) or str(e))
     found = alignImages(reference, image, model)
     if found.transform is None or found.error is None:
-        return Aligned(name, 'nothing in common', len(found.matches))
-    stem, count = os.path.splitext(name)[0], 1
-    file = stem + '.png'
-    while file in taken:
-        count += 1
-        file = f'{stem}_{count}.png'
-    taken.add(file)
+        return Aligned(path, 'nothing in common', len(found.matches))
+    file = _file_name(path, taken)
+    taken.add(file.lower())
     write_picture(os.path.join(folder, file), cv2.warpPerspective(image, found.transform, reference.shape[1::-1]))
-    return Aligned(name, 'aligned', len(found.matches), found.error.ravel().tolist(), found.transform.ravel().tolist(), file)
+    return Aligned(path, 'aligned', len(found.matches), found.error.ravel().tolist(), found.transform.ravel().tolist(), file)
 
 
 def _row(each: Aligned) -> list[str]:

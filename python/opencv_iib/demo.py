@@ -5,6 +5,7 @@ from typing import Any, NamedTuple, Optional
 
 import numpy as np
 
+from opencv_iib._files import check_outputs
 from opencv_iib.colmap.features import FeatureOptions, Features, make_detector
 from opencv_iib.colmap.images import import_cv2, read_colour, write_picture
 from opencv_iib.functions import match
@@ -38,7 +39,9 @@ def demo(image_a: str, image_b: str, out: str, options: FeatureOptions = Feature
     :param out: picture to write.
     :return: of IIB first.
     :raises ValueError: for a file that is no image, or one that cannot be written.
+    :raises FileExistsError: for an image as the picture to write.
     """
+    check_outputs([out], (image_a, image_b))
     images = [read_colour(path) for path in (image_a, image_b)]
     described = list(map(Features(options), images))
     results = [_result('IIB', [rows for rows, _ in described], match(described[0][1], described[1][1]).pairs)]

@@ -6,7 +6,7 @@ from typing import NamedTuple, Optional, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from opencv_iib._files import write_whole
+from opencv_iib._files import check_outputs, write_whole
 from opencv_iib.colmap.features import FeatureOptions, Features
 from opencv_iib.colmap.images import import_cv2, read_colour, write_picture
 from opencv_iib.demo import GOOD, INK, OTHER, draw
@@ -72,7 +72,9 @@ def match_images(image_a: str, image_b: str, out: Optional[str] = None, picture:
     :param picture: picture to write.
     :param cameras: one for both images, or one each: ``'MODEL,WIDTH,HEIGHT,PARAMS'`` with COLMAP's names and parameters.
     :raises ValueError: for a file that is no image, or a camera of another size.
+    :raises FileExistsError: for an image as a file to write.
     """
+    check_outputs([path for path in (out, picture) if path is not None], (image_a, image_b))
     images = [read_colour(path) for path in (image_a, image_b)]
     lenses = [Camera.parse(text) for text in (cameras[0], cameras[-1])] if cameras else []
     for path, image, lens in zip((image_a, image_b), images, lenses):

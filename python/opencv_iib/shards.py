@@ -35,12 +35,12 @@ def write(folder: Path, codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per
     :param rows_per_shard: a shard ends with the image that brings it to so many rows. One shard is in memory at a time.
     :param level_sizes: bytes of each level, coarse first; None: one level.
     :raises ValueError: if ``folder.partial`` was begun with other codes or other sizes, or there are no codes.
-    :raises FileExistsError: if the folder is there.
+    :raises FileExistsError: if the folder is there, or ``folder.partial`` is a link.
     :raises BlockingIOError: if another process is writing it.
     """
     if rows_per_shard < 1:
         raise ValueError(f'rows_per_shard is {rows_per_shard}: at least 1 is needed')
-    folder = os.path.normpath(folder)  # without a slash at its end
+    folder = os.path.realpath(folder)  # links cannot be replaced
     if os.path.exists(folder) and (not os.path.isdir(folder) or os.listdir(folder)):
         raise FileExistsError(f'{folder} is there already: choose another folder, or add to it with MappedIndex')
     partial = folder + '.partial'

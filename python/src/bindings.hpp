@@ -14,5 +14,6 @@ void bindMatcher(nanobind::module_& m);
 void bindMappedIndex(nanobind::module_& m);
 void bindFunctions(nanobind::module_& m);
 void bindLocalization(nanobind::module_& m);
+void bindFiles(nanobind::module_& m);
 
 }  // namespace iib_python

@@ -31,6 +31,7 @@ NB_MODULE(_core, m)
     bindMappedIndex(m);
     bindFunctions(m);
     bindLocalization(m);
+    bindFiles(m);
 
     m.attr("VERSION") = IIB_VERSION;
     m.attr("OPENCV_VERSION") = CV_VERSION;

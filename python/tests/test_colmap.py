@@ -11,6 +11,7 @@ from unittest import mock
 import numpy as np
 
 from collection import Collection
+from opencv_iib import _core
 from opencv_iib._files import only_writer
 from opencv_iib.colmap import SettingsChanged, build_database, parallel, pipeline
 from opencv_iib.colmap.database import MAX_IMAGE_ID, Database, pair_id
@@ -87,7 +88,7 @@ class Runs(Collection):
         self.assertEqual(described, [])
         self.assertLess(len(matched), 3)
         self.assertEqual((counts['images'], counts['pairs']), (3, 3))
-        with self.ended_in(os, 'replace'):  # the file is complete but for its name
+        with self.ended_in(_core.WholeFile, 'commit'):  # the file is complete but for its name
             self.build(force=True)
         self.assertEqual(self.build(force=True), counts)
         self.assertEqual(self.files(), ['database.db', 'images'])
@@ -123,19 +124,34 @@ class Runs(Collection):
             self.build()
         self.assertEqual(self.build()['images'], 3)
 
-    def test_an_unfinished_database_that_is_none(self):
+    def test_what_no_unfinished_run_has_left_stays(self):
         partial = self.folder / 'database.db.partial'
-        for junk in (partial, self.folder / 'database.db.partial-wal'):
-            junk.write_bytes(b'junk' * 1000)
-        with self.assertRaisesRegex(SettingsChanged, 'not a database.*--force'):
-            self.build()
-        self.assertEqual(self.build(force=True)['images'], 3)
+        self.database.write_bytes(b'precious')
+
+        def expect_kept(path, told='not of an unfinished run'):
+            content = path.read_bytes()
+            for force in (True, False):
+                if not force:
+                    self.database.unlink(missing_ok=True)
+                with self.assertRaisesRegex(FileExistsError, told):
+                    self.build(force=force)
+            self.assertEqual(path.read_bytes(), content)
+            path.unlink()
+        for name in ('.partial', '.partial-wal', '.partial-journal'):
+            (self.folder / f'database.db{name}').write_bytes(b'precious' * 1000)
+            expect_kept(self.folder / f'database.db{name}')
         with closing(sqlite3.connect(partial)) as other:
             other.execute('CREATE TABLE images (name_of_another_program TEXT)')
-        self.database.unlink()
-        with self.assertRaisesRegex(SettingsChanged, 'another database.*--force'):
-            self.build()
-        self.assertEqual(self.build(force=True)['images'], 3)
+        expect_kept(partial)
+        (self.folder / 'mine').write_bytes(b'precious')
+        partial.symlink_to('mine')
+        expect_kept(partial, 'is a link')
+        self.assertEqual((self.folder / 'mine').read_bytes(), b'precious')
+        (self.folder / 'database.db.new').write_bytes(b'precious')
+        self.assertEqual(self.build()['images'], 3)
+        self.assertEqual(self.files(), ['database.db', 'database.db.new', 'images', 'mine'])
+        with self.assertRaisesRegex(FileExistsError, 'an input too'):
+            build_database(str(self.images), str(self.images / 'a.png'), force=True)
 
     def test_other_settings_do_not_go_on_by_accident(self):
         with self.ended_in(pipeline, 'match_pairs'):

@@ -87,6 +87,8 @@ class Export(Collection):
         self.assertEqual([file.read_bytes() for file in self.hloc], [b'precious'] * 3)
         with self.assertRaisesRegex(ValueError, 'three files'):
             self.export(self.hloc[:1] * 3, force=True)
+        with self.assertRaisesRegex(FileExistsError, 'an input too'):
+            self.export([self.database, *self.hloc[1:]], force=True)
         self.assertEqual(self.files(), before)
 
     def test_what_is_written(self):

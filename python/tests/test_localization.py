@@ -6,7 +6,7 @@ import shutil
 import tempfile
 import threading
 import unittest
-from contextlib import redirect_stderr, suppress
+from contextlib import redirect_stderr
 from pathlib import Path
 from unittest import mock
 
@@ -16,7 +16,6 @@ import opencv_iib
 from opencv_iib import _core
 from opencv_iib.localization import Camera, Localizer, build, smooth_poses, update
 from opencv_iib.localization import maps, run as runs
-from opencv_iib.localization.folders import new_folder
 from support import REPOSITORY, Commands, cv2, files_end_at, optional, run_command, seconds_until_interrupt, steps_meanwhile, texture
 
 pycolmap = optional('pycolmap')
@@ -244,11 +243,29 @@ class Localization(Commands):
         Path(mixed, 'broken.png').write_bytes(b'nothing')
         status, errors = self.localize(out, '--camera', CAMERA, images=mixed)
         self.assertEqual((status, errors.count('not an image')), (3, 1))
-        for name, culprit in (('broken.jpg', 'broken.jpg and broken.png would have one pose'), ('#1.png', "'#1.png': rename it"),
-                              ('caf\udce9.png', 'rename it, in UTF-8')):
-            Path(mixed, name).touch()
-            self.check_error(culprit, 'localize', '--map', self.map, '--images', mixed, '--out', out)
-            os.unlink(os.path.join(mixed, name))
+
+    @unittest.skipIf(os.name == 'nt', 'such names cannot be had there')
+    def test_one_image_ends_nothing(self):
+        mixed, out = self.path('mixed'), self.path('out')
+        os.makedirs(os.path.join(mixed, 'locked'))
+        names = ['c.png', 'c.jpg', 'c.jpg.png', '#1.png', 'a\nb.png', 'caf\udce9.png', 'x' * 251 + '.png']
+        for name in names:
+            shutil.copy(os.path.join(self.dark, 'c.png'), os.path.join(mixed, name))
+        os.symlink('loop.png', os.path.join(mixed, 'loop.png'))
+        os.mkfifo(os.path.join(mixed, 'pipe.png'))
+        for _ in range(2):
+            self.assertEqual(self.localize(out, '--camera', CAMERA, '--pictures', images=mixed)[0], 4)
+        with open(os.path.join(out, 'frames.csv'), newline='') as file:
+            rows = {row['name']: row for row in csv.DictReader(file)}
+        self.assertEqual(sorted(trajectory(out)), ['c.jpg', 'c.jpg.png', 'c.png', 'x' * 251])
+        self.assertEqual(sorted(os.listdir(os.path.join(out, 'matches'))), ['c.jpg.png', 'c.jpg.png.png', 'c.png.png', 'x' * 251 + '.png'])
+        self.assertEqual([row['found'] for row in rows.values()].count('1'), 4)
+        for name in ('#1.png', 'a\nb.png', 'caf\\udce9.png'):
+            self.assertRegex(rows[name]['reason'], 'rename it')
+        self.assertRegex(rows['pipe.png']['reason'], 'not a file')
+        self.assertEqual(run_command('update', '--map', self.map, '--images', mixed, '--camera', CAMERA, '--out', self.path('map'))[0], 0)
+        with mock.patch('os.scandir', side_effect=PermissionError(13, 'Permission denied', 'x/locked')):
+            self.check_error('x/locked cannot be read: Permission denied', 'localize', '--map', self.map, '--images', mixed, '--out', out)
 
     def test_an_image_without_exif_takes_the_maps_only_camera_of_its_size(self):
         out, images = self.path('out'), self.path('images')
@@ -298,26 +315,49 @@ class Localization(Commands):
         Path(foreign, 'letter.txt').touch()
         self.check_error('letter.txt', *arguments, foreign, '--force')
         self.check_error('holds letter.txt', 'localize', '--map', self.map, '--images', self.dark, '--out', foreign)
-        with self.assertRaisesRegex(RuntimeError, 'middle'), new_folder(self.path('new'), ['a']) as partial:
-            Path(partial, 'half').touch()
-            raise RuntimeError('middle')
-        with self.assertRaises(KeyboardInterrupt), new_folder(partial[:-len('.partial')], ['a']) as folder:
-            self.assertEqual((folder, os.listdir(folder)), (partial, []))
-            raise KeyboardInterrupt
 
-    def test_a_folder_that_cannot_be_moved_leaves_the_old_one(self):
-        def rename(source, target, rename=os.rename):
-            if fails and source.endswith('.partial'):
-                raise OSError('full')
-            rename(source, target)
+    def test_what_the_user_puts_beside_results_stays(self):
+        out = self.path('out')
+        self.assertEqual(self.localize(out, '--pictures')[0], 0)
+        self.assertEqual(self.localize(out, '--pictures')[0], 0)
+        for name in ('matches/notes.txt', 'matches/mine.png'):
+            Path(out, name).write_text('precious')
+            self.check_error('holds ' + name, 'localize', '--map', self.map, '--images', self.dark, '--out', out)
+            self.assertEqual(Path(out, name).read_text(), 'precious')
+            os.unlink(os.path.join(out, name))
+        for beside in ('.partial', '.partial.old', '.new', '.iib_partial'):
+            os.makedirs(out + beside)
+            Path(out + beside, 'thesis').write_text('precious')
+        self.assertEqual(self.localize(out)[0], 0)
+        self.assertFalse(os.path.exists(os.path.join(out, 'matches')))
+        for beside in ('.partial', '.partial.old', '.new', '.iib_partial'):
+            self.assertEqual(Path(out + beside, 'thesis').read_text(), 'precious')
 
-        target = self.path('new')
-        with mock.patch('os.rename', rename):
-            for text, fails in ('old', False), ('new', False), ('lost', True):
-                with suppress(OSError), new_folder(target, ['a']) as partial:
-                    Path(partial, 'a').write_text(text)
-            self.assertEqual(Path(target, 'a').read_text(), 'new')
-            self.assertEqual(Path(partial, 'a').read_text(), 'lost')
+    def test_an_update_replaces_another_map_by_force_alone(self):
+        other = self.path('other')
+        shutil.copytree(self.map, other)
+        before = Path(other, 'map.iib').read_bytes()
+        arguments = 'update', '--map', self.map, '--images', self.dark, '--out', other
+        self.check_error('--force', *arguments)
+        self.assertEqual(Path(other, 'map.iib').read_bytes(), before)
+        self.assertEqual(run_command(*arguments, '--force')[0], 0)
+        self.assertNotEqual(Path(other, 'map.iib').read_bytes(), before)
+
+    def test_refusals_come_before_work(self):
+        out = self.path('out')
+        with mock.patch.object(_core, 'Localizer', side_effect=AssertionError):
+            self.check_error('FISH', 'localize', '--map', self.map, '--images', self.dark, '--out', out, '--camera', 'FISH,1,2,3')
+            self.check_error('holds .*png', 'localize', '--map', self.map, '--images', self.dark, '--out', self.images)
+        with mock.patch.object(maps, 'read_grey', side_effect=AssertionError):
+            self.check_error('points is 0', 'map', '--model', self.model, '--images', self.images, '--out', out, '--points', '0')
+            self.check_error('points is -1', 'map', '--model', self.model, '--images', self.images, '--out', out, '--points', '-1', '--orb-and-akaze')
+        self.assertFalse(os.path.exists(out))
+        if os.getuid():  # root may write everywhere
+            closed = self.path('map')
+            shutil.copytree(self.map, closed)
+            os.chmod(closed, 0o500)
+            with mock.patch.object(runs, 'decode_grey', side_effect=AssertionError):
+                self.check_error('check the folder and its rights', 'update', '--map', closed, '--images', self.dark)
 
     def test_links_are_followed_and_results_are_no_images(self):
         folder = self.path('disk')

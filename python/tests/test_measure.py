@@ -11,6 +11,7 @@ import numpy as np
 from opencv_iib.align import align
 from opencv_iib.colmap.features import FeatureOptions
 from opencv_iib.measure import match_images
+from opencv_iib.geometry import alignImages
 from opencv_iib.refinement import propagateMatches
 from support import REPOSITORY, InFolder, cv2, run_command, texture
 
@@ -114,6 +115,16 @@ class Match(Commands):
             self.check_error(told, 'match', a, a, *(['--out', out] if '--out' not in arguments else []), *arguments)
 
 
+    def test_nothing_is_written_over_an_image(self):
+        a, b = (self.write(f'{name}.png', self.world((4, 4))) for name in 'ab')
+        before = Path(a).read_bytes()
+        (self.folder / 'link.png').symlink_to('a.png')
+        for arguments in (['--out', a], ['--out', self.folder / 'link.png'], ['--picture', a], ['--out', 'x.png', '--picture', 'x.png']):
+            self.check_error('give what is written a name of its own', 'match', a, b, *arguments)
+        self.check_error('give what is written a name of its own', 'demo', a, b, '--out', a)
+        self.assertEqual(Path(a).read_bytes(), before)
+
+
 class Align(Commands):
 
     @unittest.skipUnless((SCENES / 'H_view_panned').exists(), 'the scenes are not beside these tests')
@@ -125,7 +136,7 @@ class Align(Commands):
         self.assertEqual(status, 4)
         self.assertIn('2 of 4 images are aligned', out)
         rows = self.rows('out/transforms.csv')
-        self.assertEqual([row['image'] for row in rows], [path.name if isinstance(path, Path) else 'other.png' for path in images])
+        self.assertEqual([row['image'] for row in rows], list(map(str, images)))
         self.assertEqual([row['verdict'] for row in rows][:3], ['aligned', 'aligned', 'nothing in common'])
         true = np.linalg.inv(np.loadtxt(SCENES / 'H_view_panned'))
         for row, expected in zip(rows, (true, np.eye(3))):
@@ -140,19 +151,79 @@ class Align(Commands):
         page = (self.folder / 'out/index.html').read_text()
         self.assertEqual((page.count('type="range"'), page.count('<p>')), (2, 2))
 
-    def test_names_and_folders(self):
+    def pictures(self, *names):
+        """One picture by several names, in folders."""
         picture = cv2.resize(texture(160, 120, seed=3), (640, 480), interpolation=cv2.INTER_CUBIC)
-        os.mkdir(self.folder / 'more')
-        paths = [self.write(name, picture) for name in ('reference.png', 'a&b.png', 'more/a&b.jpg')]
+        for name in names:
+            (self.folder / name).parent.mkdir(exist_ok=True)
+        return [self.write(name, picture) for name in names]
+
+    def test_names_and_folders(self):
+        paths = self.pictures('reference.png', 'a&b.png', 'more/a&b.jpg', 'more/reference.png')
         out = self.folder / 'out'
         for _ in range(2):
             done = align(paths[0], paths, str(out), 0)
-            self.assertEqual([each.file for each in done], ['reference_2.png', 'a&b.png', 'a&b_2.png'])
-        self.assertIn('src="a%26b_2.png" alt="a&amp;b.jpg', (out / 'index.html').read_text())
-        (out / 'mine.txt').touch()
+            self.assertEqual([each.name for each in done], paths[1:], 'the reference is not compared with itself')
+            self.assertEqual([each.file for each in done], ['a&b.png', 'a&b_2.png', 'reference_2.png'])
+        self.assertEqual(sorted(os.listdir(out)), ['a&b.png', 'a&b_2.png', 'index.html', 'reference.png', 'reference_2.png', 'transforms.csv'])
+        page = (out / 'index.html').read_text()
+        self.assertIn('a%26b_2.png', page)
+        self.assertIn('more/a&amp;b.jpg, aligned', page)
+        self.assertLess(page.index('name="viewport"'), page.index('loading="lazy"'))
+        mine = out / 'mine.png'
+        mine.write_text('precious')
         with self.assertRaises(FileExistsError):
             align(paths[0], paths, str(out))
-        for arguments, told in ((['gone.png', paths[1]], 'gone.png'), ([paths[0], paths[1]], 'mine.txt')):
+        for arguments, told in ((['gone.png', paths[1]], 'gone.png'), ([paths[0], paths[1]], 'holds mine.png'), (paths[:1] * 2, 'but the reference')):
             self.check_error(told, 'align', *arguments, '--out', out)
+        self.assertEqual(mine.read_text(), 'precious')
+        mine.unlink()
+        self.check_error('would be replaced', 'align', paths[0], out / 'a&b.png', '--out', out)
         self.assertEqual(run_command('align', *paths[:2], '--out', self.folder / 'new', '--model', 'similarity')[0], 0)
         self.assertEqual(run_command('align', paths[0], self.write('t.png', texture(300, 200, seed=9)), '--out', self.folder / 'n')[0], 3)
+
+    def test_the_page_is_in_the_order_of_people(self):
+        paths = self.pictures('r.png', '1.png', '10.png', '2.png')
+        align(paths[0], paths[1:], str(self.folder / 'out'))
+        self.assertEqual(re.findall(r'src="(\d+\.png)', (self.folder / 'out/index.html').read_text()), ['1.png', '2.png', '10.png'])
+        self.assertEqual([row['file'] for row in self.rows('out/transforms.csv')], ['1.png', '10.png', '2.png'])
+
+    @unittest.skipIf(os.name == 'nt', 'such names cannot be had there')
+    def test_one_image_ends_nothing(self):
+        paths = self.pictures('r.png', 'a.png', 'b.png', 'x' * 251 + '.png')
+        bytes_ = Path(paths[1]).read_bytes()
+        paths.append(str(self.folder / 'caf\udce9.png'))
+        paths.append(str(self.folder / ('\u00e9' * 127)))  # 254 bytes without a suffix
+        for path in paths[-2:]:
+            Path(path).write_bytes(bytes_)
+        long = self.write('long.png', np.zeros((2, 32767), np.uint8))
+
+        def opened(path, *arguments, real=open):
+            if path == paths[1]:
+                raise PermissionError(13, 'Permission denied', path)
+            return real(path, *arguments)
+        with mock.patch('opencv_iib.colmap.images.open', opened, create=True):
+            status, out, _ = run_command('align', paths[0], *paths[1:], long, '--out', self.folder / 'out')
+        self.assertEqual(status, 4)
+        verdicts = [row['verdict'] for row in self.rows('out/transforms.csv')]
+        self.assertEqual(verdicts[:5], ['Permission denied', *['aligned'] * 4])
+        self.assertRegex(verdicts[5], '32767 x 2 pixels.*32766')
+        self.check_error('32767 x 2 pixels', 'align', long, *paths, '--out', self.folder / 'out')
+
+    def test_an_interruption_keeps_what_is_done(self):
+        paths = self.pictures('r.png', 'a.png', 'b.png', 'c.png')
+        for stop, status in ((KeyboardInterrupt, 130), (OSError('the disk has gone'), 1)):
+            calls = []
+
+            def found(*arguments):
+                calls.append(arguments)
+                if len(calls) == 3:
+                    raise stop
+                return alignImages(*arguments)
+            with mock.patch('opencv_iib.align.alignImages', found):
+                self.assertEqual(run_command('align', *paths, '--out', self.folder / 'out')[0], status)
+            self.assertEqual([row['file'] for row in self.rows('out/transforms.csv')], ['a.png', 'b.png'])
+            self.assertEqual(sorted(os.listdir(self.folder / 'out')), ['a.png', 'b.png', 'index.html', 'reference.png', 'transforms.csv'])
+        with mock.patch('opencv_iib.align.alignImages', side_effect=KeyboardInterrupt):
+            self.assertEqual(run_command('align', *paths, '--out', self.folder / 'out')[0], 130)
+        self.assertEqual(len(self.rows('out/transforms.csv')), 2)

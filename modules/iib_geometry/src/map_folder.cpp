@@ -29,13 +29,16 @@ bool isUnfinished(const std::string& name)
 }  // namespace
 
 MapFolder::MapFolder(const std::string& folder)
-    : folder_(folder, {OWN[0], EARLIER[0]}, [&](const std::string& name) {
-          std::error_code error;
-          const bool earlier = isOneOf(EARLIER, name) &&
-                               fs::exists(systemName(endOfLinks(folder) + "/" + EARLIER[0]), error);
-          if (earlier || isUnfinished(name))
+    : folder_(folder, [&](const std::string& name) {
+          const auto has = [&](const std::string& mark) {
+              std::error_code error;
+              return fs::exists(systemName(endOfLinks(folder) + "/" + mark), error);
+          };
+          if (isUnfinished(name) || (isOneOf(EARLIER, name) && has(EARLIER[0])))
               replaced_.push_back(name);
-          return earlier || isUnfinished(name) || isOneOf(OWN, name);
+          else
+              return isOneOf(OWN, name) && (has(OWN[0]) || has(EARLIER[0]));
+          return true;
       })
 {
 }

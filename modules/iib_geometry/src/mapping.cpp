@@ -117,6 +117,8 @@ void describe(std::vector<MapImage>& images, const ImageReader& read, const Ptr<
 Map makeMap(const std::string& model, const ImageReader& read, const MapOptions& options,
         const MappingReport& report)
 {
+    if (options.points < 1)
+        CV_Error(Error::StsBadArg, format("points is %d: at least 1 an image is needed", options.points));
     if (options.lines)
         findSegments(Picture());
     const std::vector<PosedImage> known = readModel(model);

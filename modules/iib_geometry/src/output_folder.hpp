@@ -4,7 +4,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "../../iib/src/common/files.hpp"
 
@@ -15,11 +14,9 @@ class OutputFolder
 {
 public:
     /** Makes the folder if it is missing. A link is followed, also if nothing is at its end yet.
-    @param marks files one of which results always hold.
-    @param isOwn whether a file may be there, by its name relative to the folder: of earlier results.
+    @param isOwn whether a file may be there, by its name relative to the folder: of earlier results. Empty folders may.
     @throws cv::Exception if it holds anything else, cannot be written, or is being written by another process. */
-    OutputFolder(const std::string& folder, const std::vector<std::string>& marks,
-            const std::function<bool(const std::string&)>& isOwn);
+    OutputFolder(const std::string& folder, const std::function<bool(const std::string&)>& isOwn);
     //! Removes the folder if it was made here and is empty.
     ~OutputFolder();
     OutputFolder(const OutputFolder&) = delete;
@@ -28,9 +25,6 @@ public:
     const std::string& path() const { return path_; }
 
 private:
-    void check(const std::vector<std::string>& marks,
-            const std::function<bool(const std::string&)>& isOwn) const;
-
     std::string path_;
     bool made_ = false;
     std::unique_ptr<FileLock> lock_;

@@ -182,7 +182,7 @@ TEST_F(SmallMap, folders_that_are_no_maps)
     std::filesystem::remove(name + "/map.iib.notes.tmp");
     folder.makeFolder("sparse");
     folder.write("sparse/cameras.bin", "precious");
-    EXPECT_EQ(folder.path("sparse") + " holds cameras.bin and no map.iib: choose another folder",
+    EXPECT_EQ(folder.path("sparse") + " holds cameras.bin, which is of no earlier run: choose another folder",
             messageOf([&] { MapFolder other(folder.path("sparse")); }));
     folder.write("file", "precious");
     EXPECT_NE("", messageOf([&] { MapFolder other(folder.path("file")); }));

@@ -9,7 +9,7 @@ import contextlib
 import json
 import os
 import sqlite3
-from typing import Any, Iterator, Optional
+from typing import Any, Iterator, NoReturn, Optional
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from opencv_iib._files import replaced
 
 SCHEMA_VERSION = 3800
 MAX_IMAGE_ID = 2147483647
+LOGS = ('-wal', '-shm', '-journal')  # that SQLite writes beside a database
 
 SCHEMA = '''
 CREATE TABLE IF NOT EXISTS iib_settings (settings TEXT NOT NULL);
@@ -49,7 +50,7 @@ UNCALIBRATED = 3  # COLMAP's TwoViewGeometry::UNCALIBRATED
 
 
 class SettingsChanged(ValueError):
-    """An unfinished database cannot be gone on with: it was begun with other settings or images, or is none."""
+    """An unfinished database cannot be gone on with: it was begun with other settings or images."""
 
     def __init__(self, why: str) -> None:
         super().__init__(f'{why}: go on as it was begun, or begin anew with force (--force)')
@@ -67,19 +68,27 @@ class Database(contextlib.AbstractContextManager['Database']):
         """Opens ``path.partial``, new or as an interrupted run left it.
 
         :param force: begin anew instead of raising.
-        :raises SettingsChanged: if that run had other settings, or the file is no database.
+        :raises SettingsChanged: if that run had other settings.
+        :raises FileExistsError: for a file that no such run has left.
         """
         self.path, self.partial, self._finished = path, path + '.partial', False
+        if not os.path.exists(self.partial) or not os.path.getsize(self.partial):
+            for log in LOGS:
+                if os.path.lexists(self.partial + log):
+                    self._refuse(log)
         try:
             self._open(settings)
         except SettingsChanged:
             if not force:
                 raise
-            for log in ('-wal', '-shm'):
+            for log in LOGS:
                 with contextlib.suppress(FileNotFoundError):
                     os.unlink(self.partial + log)
             os.truncate(self.partial, 0)  # the same file: it may be locked
             self._open(settings)
+
+    def _refuse(self, log: str = '') -> NoReturn:
+        raise FileExistsError(f'{self.partial}{log} is there and not of an unfinished run: remove it, or give the database another name')
 
     def _open(self, settings: dict[str, Any]) -> None:
         self._db = sqlite3.connect(os.fsencode(self.partial), isolation_level=None)
@@ -89,14 +98,14 @@ class Database(contextlib.AbstractContextManager['Database']):
             self._db.close()
             if type(e) is not sqlite3.DatabaseError:  # a full disk is a more special one
                 raise
-            raise SettingsChanged(f'{self.partial}: {e}') from None
+            self._refuse()
 
     def _begin(self, settings: dict[str, Any]) -> None:
-        self._db.execute('PRAGMA journal_mode=WAL')
-        self._db.execute('PRAGMA synchronous=NORMAL')
         tables = {name for name, in self._db.execute('SELECT name FROM sqlite_master')}
         if tables and 'iib_settings' not in tables:
-            raise SettingsChanged(f'{self.partial} is another database')
+            self._refuse()
+        self._db.execute('PRAGMA journal_mode=WAL')
+        self._db.execute('PRAGMA synchronous=NORMAL')
         self._db.executescript(SCHEMA)
         if self._db.execute('PRAGMA user_version').fetchone()[0] == 0:  # not where a newer COLMAP has been at it
             self._db.execute(f'PRAGMA user_version={SCHEMA_VERSION}')
@@ -123,8 +132,6 @@ class Database(contextlib.AbstractContextManager['Database']):
                 for table in ('iib_codes', 'iib_files', 'iib_settings'):
                     db.execute(f'DROP TABLE {table}')
                 db.execute('VACUUM')
-            with open(new, 'rb') as file:
-                os.fsync(file.fileno())
         self._finished = True
 
     @contextlib.contextmanager

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from opencv_iib._files import output_file, replaced
+from opencv_iib._files import check_outputs, output_file, replaced
 from opencv_iib.colmap.database import MAX_IMAGE_ID
 from opencv_iib.colmap.images import is_listable
 
@@ -70,7 +70,7 @@ def export(database: str, features: str, matches: str, pairs: str, force: bool =
         second image, int32 above) and ``matching_scores0`` (N).
     :param pairs: text file to write, two names a line.
     :return: number of pairs.
-    :raises FileExistsError: for a file that is there, unless force is set.
+    :raises FileExistsError: for a file that is there, unless force is set, and for the database.
     :raises ValueError: for an image's name that the list of pairs cannot hold, or one file given twice.
 
     Files that are there are replaced when all three are complete.
@@ -78,6 +78,7 @@ def export(database: str, features: str, matches: str, pairs: str, force: bool =
     paths = [output_file(path) for path in (features, matches, pairs)]
     if len(set(paths)) < 3:
         raise ValueError('features, matches and pairs are three files: give each a name of its own')
+    check_outputs(paths, [database])
     for path in paths:
         if os.path.exists(path) and not force:
             raise FileExistsError(f'{path} is there already: remove it, or pass force (--force)')

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 import struct
-from typing import Any, Iterator, Optional
+from typing import Any, Iterator, NoReturn, Optional
 
 import numpy as np
 
@@ -18,9 +18,15 @@ START_OF_SCAN, APP1 = 0xda, 0xe1  # JPEG's markers
 
 
 def find_images(folder: str) -> list[str]:
-    """Paths of images below `folder`, relative to it, with '/', sorted: COLMAP's names."""
+    """Paths of images below `folder`, relative to it, with '/', sorted: COLMAP's names.
+
+    :raises OSError: for a folder that cannot be read.
+    """
+    def fail(why: OSError) -> NoReturn:
+        raise type(why)(f'{why.filename} cannot be read: {why.strerror}')
+
     names = []
-    for root, _, files in os.walk(folder):
+    for root, _, files in os.walk(folder, onerror=fail):
         for file in files:
             if file.lower().endswith(SUFFIXES):
                 names.append(os.path.relpath(os.path.join(root, file), folder).replace(os.sep, '/'))

@@ -11,7 +11,7 @@ from typing import Any, Callable, Iterable, Iterator, Optional
 import numpy as np
 
 import opencv_iib
-from opencv_iib._files import only_writer, output_file
+from opencv_iib._files import check_outputs, only_writer, output_file
 from opencv_iib.colmap import pairs as pair_lists
 from opencv_iib.colmap.database import CAMERA_MODELS, Database
 from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
@@ -211,6 +211,7 @@ def build_database(images: str, database: str, options: Options = Options(), for
     :raises FileExistsError: if the database is there and force is not set.
     :raises ValueError: for options that are none, and for a folder without images.
     :raises SettingsChanged: if an unfinished database had other options and force is not set.
+    :raises FileExistsError: if what is at ``database.partial`` is of no unfinished run.
     :raises BlockingIOError: if another process is writing the database.
     """
     options.check()
@@ -234,8 +235,10 @@ def build_database(images: str, database: str, options: Options = Options(), for
                          'verify by magsac (--verify)')
     settings = {**dataclasses.asdict(options), 'verify': verify, 'images': os.path.abspath(images),
                 'version': opencv_iib.__version__}
-    if os.path.exists(database) and not force:
-        raise FileExistsError(f'{database} is there already: remove it, or pass force (--force)')
+    if os.path.exists(database):
+        if not force:
+            raise FileExistsError(f'{database} is there already: remove it, or pass force (--force)')
+        check_outputs([database], [options.pairs, *(os.path.join(images, name) for name in names)])
     sizes = _features(options.features).level_sizes()  # raises for a detector that cv2 lacks
     with only_writer(database + '.partial'), Database(database, settings, force) as target:
         failed = describe_images(target, images, names, options, crew, log)

@@ -24,6 +24,11 @@ def _count(file: str) -> int:
         return int.from_bytes(opened.read(8), 'little')
 
 
+def _check_new(out: str, force: bool) -> None:
+    if os.path.isdir(out) and os.listdir(out) and not force:
+        raise FileExistsError(f'{out} is there already: choose another folder, or pass force (--force) to replace a map')
+
+
 def build(model: str, images: str, out: str, points: int = 2000, workers: Optional[int] = None, force: bool = False,
           log: Callable[[str], None] = lambda line: print(line, file=sys.stderr), lines: bool = False,
           orb_and_akaze: bool = False) -> dict[str, int]:
@@ -44,8 +49,7 @@ def build(model: str, images: str, out: str, points: int = 2000, workers: Option
     :raises opencv_iib.error: for a model that is damaged or not that of the images, and for a folder that holds other files.
     """
     target = os.path.realpath(out)
-    if os.path.isdir(target) and os.listdir(target) and not force:
-        raise FileExistsError(f'{out} is there already: choose another folder, or pass force (--force) to replace a map')
+    _check_new(out, force)
     if not os.path.isdir(images):
         raise FileNotFoundError(f'there is no folder {images}')
     stop = threading.Event()
@@ -85,7 +89,7 @@ def build(model: str, images: str, out: str, points: int = 2000, workers: Option
 
 
 def update(map: str, images: str, camera: Optional[AnyCamera] = None, out: Optional[str] = None,
-           workers: Optional[int] = None) -> dict[str, int]:
+           workers: Optional[int] = None, force: bool = False) -> dict[str, int]:
     """Localizes the images below a folder; those that show the map in a light that it does not know become a part of it.
 
     Their own points are matched with each other's and the map's and triangulated. Codes that eight updates in a row looked
@@ -95,9 +99,13 @@ def update(map: str, images: str, camera: Optional[AnyCamera] = None, out: Optio
     :param map: folder of a map.
     :param camera: as localize_images takes it.
     :param out: folder for the new map; None to replace the old one.
+    :param force: replace a map that is in `out`.
     :return: counts of images, of those localized, of those added, and of codes dropped.
+    :raises FileExistsError: if there is a map in `out` and force is not set.
     :raises opencv_iib.error: for a folder without a map, or one that another process is changing.
     """
+    if out is not None:
+        _check_new(out, force)
     names = images_of(images)
     changed = _core.MapUpdate(os.path.realpath(map), '' if out is None else os.path.realpath(out))
     for _ in locate(changed.add, changed.cameras(), images, names, camera, workers):

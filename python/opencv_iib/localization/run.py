@@ -1,6 +1,7 @@
 """A folder of images, localized in a map; what is written about it."""
 from __future__ import annotations
 
+import collections
 import csv
 import functools
 import os
@@ -11,15 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import _core, error
+from opencv_iib._files import new_results
 from opencv_iib.colmap.images import (decode_grey, exif_focal_length, find_images, import_cv2, is_utf8, read_bytes, read_grey,
                                      write_picture)
 from opencv_iib.colmap.parallel import Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
-from opencv_iib.localization.folders import new_folder
 from opencv_iib.localization.localizer import AnyCamera, Camera, Localizer, Location, as_camera
 
-#: What it writes; COLMAP 4 also wrote rigs and frames.
-OWN = ('frames.csv', 'trajectory.txt', 'cameras.bin', 'images.bin', 'points3D.bin', 'rigs.bin', 'frames.bin', 'matches')
+#: What it writes beside frames.csv and pictures; COLMAP 4 also wrote rigs and frames.
+OWN = ('trajectory.txt', 'cameras.bin', 'images.bin', 'points3D.bin', 'rigs.bin', 'frames.bin')
 SAME_FOCAL = .05  #: of focal lengths, which EXIF tells roughly
 AXES = ('x', 'y', 'z', 'rx', 'ry', 'rz')
 
@@ -44,6 +45,7 @@ def find_camera(data: bytes, width: int, height: int, known: Sequence[Camera] = 
 
 
 def _locate(find: Find, known: Sequence[Camera], folder: str, camera: Optional[Camera], name: str) -> tuple[Camera, Location]:
+    check_name(name)
     data = read_bytes(os.path.join(folder, name))
     grey = decode_grey(data)
     own = camera or find_camera(data, grey.shape[1], grey.shape[0], known)
@@ -72,22 +74,35 @@ def locate(find: Find, known: Sequence[Camera], folder: str, names: Sequence[str
 def images_of(folder: str, out: str = '') -> list[str]:
     """Names of the images below a folder, but for those in `out`, where results are.
 
-    :raises ValueError: if there are none, and for names that results cannot hold.
+    :raises ValueError: if there are none.
     """
     if not os.path.isdir(folder):
         raise FileNotFoundError(f'there is no folder {folder}')
-    inside = os.path.relpath(os.path.realpath(out), os.path.realpath(folder)) if out else '..'
-    names = [name for name in find_images(folder) if not name.startswith(tuple(inside + end for end in ('/', '.partial/', '.partial.old/')))]
+    inside = os.path.relpath(os.path.realpath(out), os.path.realpath(folder)).replace(os.sep, '/') if out else '..'
+    names = [name for name in find_images(folder) if not name.startswith(inside + '/')]
     if not names:
         raise ValueError(f'no images below {folder}')
-    known: dict[str, str] = {}
-    for name in names:
-        if not is_utf8(name) or name.startswith('#') or len(name.splitlines()) > 1:
-            raise ValueError(f'{name!r}: rename it, in UTF-8, without a leading # and line breaks: a trajectory cannot hold these')
-        other = known.setdefault(os.path.splitext(name)[0], name)
-        if other != name:
-            raise ValueError(f'{other} and {name} would have one pose: rename one of them')
     return names
+
+
+def check_name(name: str) -> None:
+    """:raises ValueError: for one that results cannot hold."""
+    if not is_utf8(name) or name.startswith('#') or len(name.splitlines()) > 1:
+        raise ValueError('rename it, in UTF-8, without a leading # and line breaks: a trajectory cannot hold these')
+
+
+def labels_of(names: Sequence[str]) -> dict[str, str]:
+    """What stands for images in trajectories: names without extension, or with it where another would have the same."""
+    stems = {name: os.path.splitext(name)[0] for name in names}
+    count = collections.Counter(stems.values())
+    return {name: name if count[stem] > 1 or stem in stems else stem for name, stem in stems.items()}
+
+
+def _earlier(folder: str) -> list[str]:
+    """Files that an earlier call has written, by its table."""
+    with open(os.path.join(folder, 'frames.csv'), encoding='utf-8', errors='replace', newline='') as table:
+        names = [row.get('name') or '' for row in csv.DictReader(table)]
+    return [*OWN, *(f'matches/{stem}.png' for name in names for stem in (name, os.path.splitext(name)[0]))]
 
 
 def _write_picture(path: str, image: str, camera: Camera, location: Location) -> None:
@@ -126,12 +141,14 @@ def localize_images(map: str, images: str, out: str, camera: Optional[AnyCamera]
     :return: how many images have a pose, and of how many.
     """
     names = images_of(images, out)
-    localizer = Localizer(map, 0, lines)
-    located = locate(lambda name, image, camera: localizer.localize(image, camera), localizer.cameras, images, names, camera, workers)
+    labels = labels_of(names)
+    given = None if camera is None else as_camera(camera)
     posed: list[Any] = []
-    with new_folder(out, OWN) as partial:
-        with open(os.path.join(partial, 'trajectory.txt'), 'w', encoding='utf-8') as trajectory, \
-                open(os.path.join(partial, 'frames.csv'), 'w', encoding='utf-8', newline='') as file:
+    with new_results(out, 'frames.csv', _earlier) as part:
+        localizer = Localizer(map, 0, lines)
+        located = locate(lambda name, image, camera: localizer.localize(image, camera), localizer.cameras, images, names, given, workers)
+        with open(os.path.join(part, 'trajectory.txt'), 'w', encoding='utf-8') as trajectory, \
+                open(os.path.join(part, 'frames.csv'), 'w', encoding='utf-8', errors='backslashreplace', newline='') as file:
             frames = csv.writer(file)
             trajectory.write('# name tx ty tz qx qy qz qw\n')
             frames.writerow(['name', 'found', 'reason', 'matches', 'inliers',
@@ -144,10 +161,9 @@ def localize_images(map: str, images: str, out: str, camera: Optional[AnyCamera]
                     log(f'{name}: {problem}')
                     continue
                 frames.writerow([name, 1, '', matches, inliers, *(f'{value:.6g}' for value in location.covariance[np.triu_indices(6)])])
-                stem = os.path.splitext(name)[0]
-                trajectory.write(f'{stem} {" ".join(repr(v) for v in _place_and_turn(location.cam_from_world))}\n')
+                trajectory.write(f'{labels[name]} {" ".join(repr(v) for v in _place_and_turn(location.cam_from_world))}\n')
                 posed.append(_core.PosedImage(name, own, location.cam_from_world, location.pixels))
                 if pictures:
-                    _write_picture(os.path.join(partial, 'matches', stem + '.png'), os.path.join(images, name), own, location)
-        _core.writeModel(partial, posed)
+                    _write_picture(os.path.join(part, 'matches', labels[name] + '.png'), os.path.join(images, name), own, location)
+        _core.writeModel(part, posed)
     return len(posed), len(names)
