@@ -50,8 +50,9 @@ void writeModel(nb::handle folder, const std::vector<PosedImage>& images)
 }
 
 //! @param readings rows of nanoseconds, rate and force, CV_64F.
-std::vector<std::optional<cv::Affine3d>> smoothPoses(const std::vector<int64_t>& times,
-        std::vector<Location> images, const cv::Mat& readings, const cv::Affine3d& imuFromCamera)
+std::tuple<std::vector<std::optional<cv::Affine3d>>, std::string> smoothPoses(
+        const std::vector<int64_t>& times, std::vector<Location> images, const cv::Mat& readings,
+        const cv::Affine3d& imuFromCamera)
 {
     std::vector<cv::iib::ImuReading> all;
     for (int i = 0; i < readings.rows; i++)
@@ -59,11 +60,11 @@ std::vector<std::optional<cv::Affine3d>> smoothPoses(const std::vector<int64_t>&
         const double* const row = readings.ptr<double>(i);
         all.push_back({int64(row[0]), cv::Vec3d(row + 1), cv::Vec3d(row + 4)});
     }
-    cv::iib::smoothPoses({times.begin(), times.end()}, images, all, imuFromCamera);
+    const std::string reason = cv::iib::smoothPoses({times.begin(), times.end()}, images, all, imuFromCamera);
     std::vector<std::optional<cv::Affine3d>> poses;
     for (const Location& image : images)
         poses.push_back(image.found ? std::make_optional(image.cameraFromWorld) : std::nullopt);
-    return poses;
+    return {poses, reason};
 }
 
 std::tuple<int, int, int> commit(MapUpdate& self)
@@ -82,7 +83,9 @@ void bindLocalization(nb::module_& m)
             .def_prop_ro("width", [](const Camera& self) { return self.size.width; })
             .def_prop_ro("height", [](const Camera& self) { return self.size.height; })
             .def_ro("params", &Camera::parameters)
-            .def("project", &Camera::project);
+            .def("project", &Camera::project)
+            .def("undistorted", &Camera::undistorted)
+            .def_prop_ro("matrix", [](const Camera& self) { return cv::Mat(self.matrix()); });
     nb::class_<PosedImage>(m, "PosedImage")
             .def("__init__", [](PosedImage* self, const std::string& name, const Camera& camera,
                                      const cv::Affine3d& pose, const std::vector<cv::Point2d>& pixels) {

@@ -39,7 +39,8 @@ const Model MODELS[] = {{"SIMPLE_PINHOLE", 1, 0, STRAIGHT}, {"PINHOLE", 2, 0, ST
         {"SIMPLE_DIVISION", 1, 1, DIVISION}, {"DIVISION", 2, 1, DIVISION}, {"SIMPLE_FISHEYE", 1, 0, FISHEYE},
         {"FISHEYE", 2, 0, FISHEYE}, {"EUCM", 2, 2, UNIFIED}};
 constexpr double MAX_RATIO = 1000;  // of a focal length and the longer side
-constexpr int ROUNDS = 50;
+constexpr int ROUNDS = 100;
+constexpr int DIRECTIONS = 8, ANGLES = 64;  // of rays, by which a lens's range is found
 
 //! The finite numbers that a text holds, separated by commas; none if it holds anything else.
 std::vector<double> numbersOf(const std::string& text)
@@ -117,6 +118,7 @@ Lens::Lens(const Camera& camera)
     matrix_ = {p[0], 0, centre[0] - .5, 0, p[model.focals - 1], centre[1] - .5, 0, 0, 1};
     kind_ = model.kind;
     std::copy(others, others + model.others, k_.val);
+    range_ = findRange();
 }
 
 //! The formulas are COLMAP's (src/colmap/sensor/models.h); a ray is (x / z, y / z).
@@ -167,19 +169,62 @@ Matx22d Lens::slope(const Vec2d& ray) const
     return {byX[0], byY[0], byX[1], byY[1]};
 }
 
+/** Beyond the angle at which a polynomial is largest it would have points back in the image, which no lens does. Where distortion
+is not symmetric, the least of several directions. */
+double Lens::findRange() const
+{
+    double range = std::numeric_limits<double>::infinity();
+    for (int d = 0; d < DIRECTIONS && kind_ != STRAIGHT; d++)
+    {
+        const Vec2d direction(std::cos(2 * CV_PI * d / DIRECTIONS), std::sin(2 * CV_PI * d / DIRECTIONS));
+        const auto seen = [&](double angle) { return direction.dot(distorted(std::tan(angle) * direction)); };
+        const double step = CV_PI / 2 / ANGLES;
+        double last = 0;
+        for (int k = 1; k < ANGLES && std::tan((k - 1) * step) < range; k++)
+        {
+            const double next = seen(k * step);
+            if (!(next > last))  // the largest lies between k - 2 and k
+            {
+                double begin = std::max(k - 2, 0) * step, end = k * step;
+                while (end - begin > 1e-7)
+                {
+                    const double a = begin + (end - begin) / 3, b = end - (end - begin) / 3;
+                    if (seen(b) > seen(a))
+                        begin = a;
+                    else
+                        end = b;
+                }
+                range = std::min(range, std::tan(begin));
+                break;
+            }
+            last = next;
+        }
+    }
+    return range;
+}
+
 std::vector<Point2d> Lens::undistorted(const std::vector<Point2d>& pixels) const
 {
     std::vector<Point2d> straight;
     for (const Point2d& p : pixels)
     {
         const Vec2d seen((p.x - matrix_(0, 2)) / matrix_(0, 0), (p.y - matrix_(1, 2)) / matrix_(1, 1));
-        Vec2d ray = seen, step(1, 1);
-        for (int round = 0; round < ROUNDS && norm(step) > 1e-12 * (1 + norm(ray)); round++)  // Newton's
+        Vec2d ray = seen * std::min(1., .9 * range_ / norm(seen)), step(1, 1);
+        double error = norm(distorted(ray) - seen);
+        for (int round = 0; round < ROUNDS && norm(step) > 1e-12 * (1 + norm(ray)); round++)
         {
-            step = slope(ray).inv() * (seen - distorted(ray));
-            ray += step;
+            step = slope(ray).inv() * (seen - distorted(ray));  // Newton's, shortened until it leads nearer
+            double next = norm(distorted(ray + step) - seen);
+            for (; !(next < error && norm(ray + step) <= range_) && norm(step) > 1e-12 * (1 + norm(ray));
+                    next = norm(distorted(ray + step) - seen))
+                step *= .5;
+            if (next < error)
+            {
+                ray += step;
+                error = next;
+            }
         }
-        if (!(norm(distorted(ray) - seen) < 1e-8))
+        if (!(error < 1e-8))
             ray = Vec2d::all(std::numeric_limits<double>::quiet_NaN());
         straight.emplace_back(matrix_(0, 0) * ray[0] + matrix_(0, 2), matrix_(1, 1) * ray[1] + matrix_(1, 2));
     }
@@ -194,7 +239,9 @@ std::vector<Point2d> Lens::project(const std::vector<Point3d>& points, std::vect
     for (const Point3d& p : points)
     {
         const double nan = std::numeric_limits<double>::quiet_NaN();
-        const Vec2d ray = p.z > 0 ? Vec2d(p.x / p.z, p.y / p.z) : Vec2d(nan, nan);
+        Vec2d ray(p.x / p.z, p.y / p.z);
+        if (!(p.z > 0 && norm(ray) <= range_))
+            ray = {nan, nan};
         const Vec2d seen = distorted(ray);
         pixels.emplace_back(matrix_(0, 0) * seen[0] + matrix_(0, 2), matrix_(1, 1) * seen[1] + matrix_(1, 2));
         if (jacobians)
@@ -225,12 +272,25 @@ std::vector<Point2d> Camera::project(const std::vector<Point3d>& points) const
     return Lens(*this).project(points);
 }
 
+std::vector<Point2d> Camera::undistorted(const std::vector<Point2d>& pixels) const
+{
+    return Lens(*this).undistorted(pixels);
+}
+
+Matx33d Camera::matrix() const { return Lens(*this).matrix(); }
+
 Camera Camera::resized(const Size& to) const
 {
+    const size_t scaled = modelOf(*this).focals + 2;
+    const double scale = double(std::max(to.width, to.height)) / std::max(size.width, size.height);
+    if (to.empty() || std::abs(to.width - scale * size.width) > 1 ||
+            std::abs(to.height - scale * size.height) > 1)
+        fail(format("a camera of %d x %d pixels cannot be resized to %d x %d: give a size of the same shape",
+                size.width, size.height, to.width, to.height));
     Camera small = *this;
     small.size = to;
-    for (size_t i = 0; i < modelOf(*this).focals + 2; i++)
-        small.parameters[i] *= double(std::max(to.width, to.height)) / std::max(size.width, size.height);
+    for (size_t i = 0; i < scaled; i++)
+        small.parameters[i] *= scale;
     return small;
 }
 

@@ -14,9 +14,9 @@ public:
 
     //! The matrix of the camera without distortion whose pixels undistorted() gives.
     const Matx33d& matrix() const { return matrix_; }
-    //! NaN for pixels that no point before the camera is seen at.
+    //! As Camera::undistorted has it.
     std::vector<Point2d> undistorted(const std::vector<Point2d>& pixels) const;
-    /** Where points in the camera's axes are seen; NaN behind it.
+    /** Where points in the camera's axes are seen; NaN behind it and beyond what the lens shows.
     @param jacobians if not null: of the pixels by the points. */
     std::vector<Point2d> project(
             const std::vector<Point3d>& points, std::vector<Matx23d>* jacobians = nullptr) const;
@@ -24,10 +24,12 @@ public:
 private:
     Vec2d distorted(const Vec2d& ray) const;
     Matx22d slope(const Vec2d& ray) const;
+    double findRange() const;
 
     Matx33d matrix_;
     int kind_;
     Vec<double, 12> k_;  //!< parameters of the distortion, in COLMAP's order
+    double range_;       //!< tangent of the angle from the axis, up to which pixels of rays move outwards
 };
 
 //! COLMAP's number of a camera model, or -1; of a number its name, or the number.

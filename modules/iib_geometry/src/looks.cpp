@@ -54,7 +54,7 @@ std::vector<Match> seenAlong(const Map& map, const std::vector<size_t>& views, c
     for (size_t view : views)
     {
         const MapImage& image = map.images[view];
-        const double zoom = lens.matrix()(0, 0) / Lens(image.camera).matrix()(0, 0);
+        const double zoom = lens.matrix()(0, 0) / image.camera.parameters[0];
         std::vector<Point3d> points = map.seenBy(image);
         const std::vector<Point3d> there = inCamera(points, image.cameraFromWorld);
         for (Point3d& p : points)

@@ -79,6 +79,101 @@ TEST(Lens, of_colmaps_definitions)
             << "more than a right angle from the axis";
 }
 
+//! Models whose polynomials turn back, and lenses of 140 degrees and more.
+const char* const WIDE[] = {"SIMPLE_RADIAL,640,480,300,320,240,-0.3", "RADIAL,640,480,300,320,240,-0.3,0.05",
+        "OPENCV,640,480,300,310,320,240,-0.28,0.06,0.002,-0.003",
+        "FULL_OPENCV,640,480,300,310,320,240,-0.3,0.08,0.001,-0.002,-0.01,0.02,-0.01,0.005",
+        "OPENCV_FISHEYE,1280,960,400,400,640,480,0.02,-0.01,0.003,-0.001",
+        "OPENCV_FISHEYE,1280,960,400,410,640,480,-0.2,-0.05,0.01,0",
+        "THIN_PRISM_FISHEYE,640,480,180,181,320,240,0.05,-0.02,0.001,-0.002,-0.03,-0.003,0.004,-0.005",
+        "RAD_TAN_THIN_PRISM_FISHEYE,640,480,180,181,320,240,0.05,-0.02,0.01,-0.03,0,0,0.001,-0.002,0.001,0,0."
+        "001,0",
+        "FOV,640,480,200,200,320,240,1.2", "SIMPLE_DIVISION,640,480,300,320,240,-0.4",
+        "SIMPLE_DIVISION,640,480,300,320,240,0.2", "SIMPLE_FISHEYE,640,480,160,320,240",
+        "EUCM,640,480,200,200,320,240,0.7,1.3", "PINHOLE,640,480,100,100,320,240"};
+
+TEST(Lens, points_farther_from_the_axis_are_seen_farther_or_not_at_all)
+{
+    for (const char* text : WIDE)
+        for (double direction = 0; direction < 6.2; direction += .5)
+        {
+            SCOPED_TRACE(text);
+            const Lens lens(Camera::parse(text));
+            const cv::Matx33d matrix = lens.matrix();
+            double last = -1;
+            for (double degrees = 0; degrees < 89.9; degrees += .25)
+            {
+                const double angle = degrees * CV_PI / 180;
+                const cv::Point3d point(std::sin(angle) * std::cos(direction),
+                        std::sin(angle) * std::sin(direction), std::cos(angle));
+                const cv::Point2d seen = lens.project({point})[0];
+                const double far = (seen.x - matrix(0, 2)) / matrix(0, 0) * std::cos(direction) +
+                                   (seen.y - matrix(1, 2)) / matrix(1, 1) * std::sin(direction);
+                if (last < HUGE_VAL && std::isnan(far))
+                    last = HUGE_VAL;  // and no farther point is seen
+                else if (last < HUGE_VAL)
+                {
+                    EXPECT_GT(far, last) << degrees;
+                    last = far;
+                }
+                else
+                    EXPECT_TRUE(std::isnan(far)) << degrees;
+            }
+        }
+    const Camera camera = Camera::parse("SIMPLE_RADIAL,640,480,300,320,240,-0.3");
+    EXPECT_TRUE(std::isnan(camera.project({{std::tan(61 * CV_PI / 180), 0, 1}})[0].x));
+    EXPECT_NEAR(1 / std::sqrt(.9),
+            (camera.undistorted({camera.project({{1.054, 0, 1}})[0]})[0].x - 319.5) / 300, .001)
+            << "where 1 - .9 r^2 is 0";
+}
+
+TEST(Lens, every_pixel_is_where_its_ray_is_seen)
+{
+    for (const char* text : WIDE)
+    {
+        SCOPED_TRACE(text);
+        const Camera camera = Camera::parse(text);
+        const Lens lens(camera);
+        std::vector<cv::Point2d> pixels;
+        for (int y = 0; y < camera.size.height; y += 20)
+            for (int x = 0; x < camera.size.width; x += 20)
+                pixels.emplace_back(x, y);
+        const std::vector<cv::Point2d> straight = camera.undistorted(pixels);
+        const cv::Matx33d back = camera.matrix().inv();
+        // What is seen at 89 degrees or at the lens's range, whichever is less, bounds the pixels that have a ray.
+        std::vector<cv::Point3d> rim;
+        for (int degrees = 1; degrees < 90; degrees++)
+            rim.emplace_back(std::tan(degrees * CV_PI / 180), 0, 1);
+        double radius = 0;
+        for (const cv::Point2d& seen : camera.project(rim))
+            radius = std::max(radius,
+                    std::isnan(seen.x) ? 0 : (seen.x - camera.matrix()(0, 2)) / camera.matrix()(0, 0));
+        for (size_t i = 0; i < pixels.size(); i++)
+        {
+            const cv::Vec3d seen = back * cv::Vec3d(pixels[i].x, pixels[i].y, 1),
+                            ray = back * cv::Vec3d(straight[i].x, straight[i].y, 1);
+            if (std::isnan(straight[i].x))
+                EXPECT_GT(std::hypot(seen[0], seen[1]), .9 * radius) << pixels[i];
+            else
+                EXPECT_LT(cv::norm(lens.project({ray})[0] - pixels[i]), 1e-5) << pixels[i];
+        }
+    }
+}
+
+TEST(Lens, resized_to_the_same_shape)
+{
+    const Camera camera = Camera::parse("PINHOLE,641,480,500,510,320,240");
+    EXPECT_EQ(cv::Size(320, 240), camera.resized({320, 240}).size);
+    EXPECT_EQ(cv::Size(100, 75), camera.resized({100, 75}).size);
+    EXPECT_EQ("a camera of 641 x 480 pixels cannot be resized to 0 x 0: give a size of the same shape",
+            messageOf([&] {
+                camera.resized({0, 0});
+            }));
+    for (const cv::Size size :
+            {cv::Size(240, 320), cv::Size(640, 470), cv::Size(-641, -480), cv::Size(320, 0)})
+        EXPECT_NE("", messageOf([&] { camera.resized(size); })) << size;
+}
+
 TEST(Lens, cameras_that_are_none)
 {
     const auto error = [](const char* text) { return messageOf([&] { Camera::parse(text); }); };

@@ -11,7 +11,8 @@ from opencv_iib import _core
 from opencv_iib._arrays import as_image
 
 #: COLMAP's camera: ``model``, ``width``, ``height`` and ``params``; ``Camera.parse('MODEL,WIDTH,HEIGHT,PARAMS')`` makes one,
-#: and ``project`` gives the pixels of N x 3 float64 points in its axes.
+#: ``project`` gives the pixels of N x 3 float64 points in its axes (NaN for what it does not see), and ``undistorted`` of N x 2 pixels
+#: those that a camera without distortion would have, of the 3 x 3 ``matrix``.
 Camera = _core.Camera
 #: What Localizer.localize finds: ``cam_from_world`` (4 x 4 float64, or None: then ``reason`` says why), ``covariance`` (6 x 6, of
 #: the camera's centre in the map's unit and of a small turn about the world's axes in radians; or None), ``matches``,

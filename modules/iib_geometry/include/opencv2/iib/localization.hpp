@@ -32,12 +32,24 @@ struct CV_EXPORTS Camera
 
     /** @brief Where points are seen.
     @param points in the camera's axes: x right, y down, z forward.
-    @return pixels; here and below the centre of the first pixel is (0, 0). NaN for points that are not before the camera.
+    @return pixels; here and below the centre of the first pixel is (0, 0). NaN for points that are not before the camera, and for
+    those so far from its axis that the model would have them back in the image.
     @throws cv::Exception (StsBadArg) for a camera with an unknown model, or parameters that the model does not have. */
     std::vector<Point2d> project(const std::vector<Point3d>& points) const;
 
-    /** @brief The camera of images that were resized to a size of the same shape, as cv::resize does.
+    /** @brief Where a camera without distortion, of the matrix that matrix() tells, would see what this one sees at pixels: what
+    findRelativePose, cv::solvePnP and others that know no lens take.
+    @return NaN for pixels at which no point before the camera is seen.
     @throws cv::Exception as project(). */
+    std::vector<Point2d> undistorted(const std::vector<Point2d>& pixels) const;
+
+    /** @brief Focal lengths and centre; the centre of the first pixel is (0, 0), as OpenCV has it.
+    @throws cv::Exception as project(). */
+    Matx33d matrix() const;
+
+    /** @brief The camera of images that were resized as cv::resize does.
+    @param to of the same shape, but for what whole pixels take.
+    @throws cv::Exception as project(), and for a size of another shape or without pixels. */
     Camera resized(const Size& to) const;
 };
 
@@ -53,9 +65,11 @@ struct PosedImage
 
 /** @brief Writes a COLMAP model in binary form: `cameras.bin`, `images.bin` and `points3D.bin`, each whole or not at all.
 @param folder that is there.
-@param images with distinct names.
+@param images one or more, with distinct names and poses of a rotation and a translation.
 @param points that their keypoints see.
-@throws cv::Exception for what cannot be written, and for a keypoint that sees a point which is not there. */
+@throws cv::Exception for what cannot be written and, before anything is, for what no program would read: names that are equal, empty or
+have a zero byte, poses that scale or mirror, numbers that are not finite, cameras of more than 65535 pixels a side, and keypoints
+that see a point which is not there. */
 CV_EXPORTS void writeModel(const std::string& folder, const std::vector<PosedImage>& images,
         const std::vector<Point3d>& points = std::vector<Point3d>());
 
@@ -73,7 +87,7 @@ struct MapOptions
 {
     MapOptions(int keypoints = 2000) : points(keypoints) {}
 
-    int points;  //!< keypoints that are looked for in an image
+    int points;  //!< keypoints that are looked for in an image, 1 or more
     /** Straight edges too: segments (LSD) of two images or more that look alike (LBD) and whose planes cross. They need OpenCV's
     module line_descriptor, of opencv_contrib. */
     bool lines = false;
@@ -170,14 +184,18 @@ struct ImuReading
 
 A Kalman filter forwards and a smoother backwards @cite RauchTungStriebel1965; gravity's direction and the IMU's biases are
 found from the first poses. Images without a pose get one too, if they come after one with a pose, by three seconds at most. Where
-the readings have a gap, or the poses contradict gravity, the images' own poses stay.
+the readings have a gap, or contradict the images (of eight in a row most are farther from where the readings have them than one
+in a hundred would be), the images' own poses stay; if most images are contradicted, all do: the IMU's axes, its units, its clock or
+imuFromCamera are other ones.
 @param times of the images, nanoseconds, rising.
 @param images what Localizer::localize found of each, in a map in metres. Of those that get a pose `found`, `reason` and
-`cameraFromWorld` are set; the rest, the covariance too, stays that of the image alone.
+`cameraFromWorld` are set; the rest, the covariance too, stays that of the image alone. A pose counts as its covariance tells.
 @param readings in the order of their times, on the images' clock.
 @param imuFromCamera where the camera is in the IMU's axes (EuRoC's `T_BS`).
+@return a sentence if readings contradict images or an image has a covariance that is none, such as zeros, when all poses stay as
+they are; else empty.
 @throws cv::Exception for other numbers of times and images, times that do not rise, and readings that are not finite. */
-CV_EXPORTS void smoothPoses(const std::vector<int64>& times, std::vector<Location>& images,
+CV_EXPORTS std::string smoothPoses(const std::vector<int64>& times, std::vector<Location>& images,
         const std::vector<ImuReading>& readings, const Affine3d& imuFromCamera = Affine3d());
 
 /** @brief Adds to a map what images see in their light.
@@ -203,7 +221,8 @@ public:
     /** @brief Localizes an image and keeps what it sees (about 0.6 MB) until commit(). Threads may call it at once.
     @param name of the image in the map, distinct among those of this update.
     @param image, camera as Localizer::localize takes them.
-    @throws cv::Exception for an empty name and one that this update has already, after commit(), and as Localizer::localize. */
+    @throws cv::Exception for a name that is empty, has a zero byte or is one of this update already, after commit(), and as
+    Localizer::localize; the image may be given again then. */
     Location add(const std::string& name, InputArray image, const Camera& camera);
 
     //! @brief What commit() did.
@@ -214,7 +233,7 @@ public:
         int dropped = 0;    //!< codes that nobody finds any more
     };
     /** @brief Writes the map, once: what comes next takes another MapUpdate.
-    @throws cv::Exception if it cannot be written, when the old one stays, and if it was called before. */
+    @throws cv::Exception if it cannot be written, when the old one stays and it may be called again, and if it was written. */
     Counts commit();
 
 private:
