@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <locale>
 #include <set>
 #include <sstream>
 #include <unordered_map>
@@ -15,6 +16,9 @@ namespace cv::iib {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr uint64_t LARGEST_SIDE = (1 << 16) - 1;  // pixels, of an image
+constexpr double ROUNDED = 1e-4;                  // of a rotation's numbers, that a few digits may be off
 
 /** A file of a model. Binary: numbers one after another, lowest byte first as on every machine that this runs on; before a list,
 how long it is. Text: a line each, but for comments, and an image's keypoints on one more. */
@@ -30,6 +34,7 @@ public:
         expect(fs::is_regular_file(path, error));  // a pipe would not end
         left_ = fs::file_size(path, error);
         stream_.open(path, std::ios::binary);
+        line_.imbue(std::locale::classic());
         expect(!error && stream_);
         records_ = text_ ? 0 : count(leastBytes);
     }
@@ -133,7 +138,7 @@ std::vector<PosedImage> readImages(const std::string& folder, bool text)
         const uint32_t id = known.next<uint32_t>();
         Camera camera = {known.cameraModel(), {}, {}};
         const uint64_t width = known.next<uint64_t>(), height = known.next<uint64_t>();
-        known.expect(std::min(width, height) > 0 && std::max(width, height) < 1 << 16);
+        known.expect(std::min(width, height) > 0 && std::max(width, height) <= LARGEST_SIDE);
         camera.size = Size(int(width), int(height));
         while (known.more())
             camera.parameters.push_back(known.next<double>());
@@ -171,6 +176,48 @@ std::vector<PosedImage> readImages(const std::string& folder, bool text)
     return images;
 }
 
+//! That readModel takes what will be written.
+void checkModel(const std::vector<PosedImage>& images, const std::vector<Point3d>& points)
+{
+    if (images.empty())
+        CV_Error(Error::StsBadArg, "a model has one image or more, not none");
+    std::set<std::string> names;
+    for (const PosedImage& image : images)
+    {
+        checkName(image.name);
+        const auto refuse = [&](int code, const std::string& why) {
+            CV_Error(code, "image " + image.name + " " + why);
+        };
+        if (!names.insert(image.name).second)
+            refuse(Error::StsBadArg, "is there twice: names are distinct");
+        const Lens checked(image.camera);
+        if (uint64_t(std::max(image.camera.size.width, image.camera.size.height)) > LARGEST_SIDE)
+            refuse(Error::StsBadArg,
+                    format("has a camera of %d x %d pixels: a side has %d at most", image.camera.size.width,
+                            image.camera.size.height, int(LARGEST_SIDE)));
+        const Matx33d rotation = image.cameraFromWorld.rotation();
+        if (!checkRange(image.cameraFromWorld.matrix))
+            refuse(Error::StsBadArg, "has a pose that is not finite");
+        if (!(norm(rotation * rotation.t() - Matx33d::eye()) < ROUNDED && determinant(rotation) > 0))
+            refuse(Error::StsBadArg,
+                    "has a pose that scales, shears or mirrors: give a rotation and a translation");
+        if (image.sees.size() > image.pixels.size())
+            refuse(Error::StsUnmatchedSizes, format("has %d keypoints, and tells of %d what they see",
+                                                     int(image.pixels.size()), int(image.sees.size())));
+        for (const Point2d& pixel : image.pixels)
+            if (!std::isfinite(pixel.x) || !std::isfinite(pixel.y))
+                refuse(Error::StsBadArg, "has a keypoint that is not finite");
+        for (int point : image.sees)
+            if (point >= int(points.size()))
+                CV_Error(
+                        Error::StsOutOfRange, format("a keypoint of image %s sees point %d, and there are %d",
+                                                      image.name.c_str(), point, int(points.size())));
+    }
+    for (const Point3d& point : points)
+        if (!checkRange(Vec3d(point)))
+            CV_Error(Error::StsBadArg, "a point of the model is not finite");
+}
+
 //! Adds numbers to the end of a file, lowest byte first.
 template <typename... Ts> void put(std::string& file, Ts... values)
 {
@@ -201,16 +248,25 @@ std::vector<PosedImage> readModel(const std::string& folder)
     }
 }
 
+void checkName(const std::string& name)
+{
+    if (name.empty())
+        CV_Error(Error::StsBadArg, "an image has no name: give it one");
+    if (name.find('\0') != std::string::npos)
+        CV_Error(Error::StsBadArg, "the name of an image, '" + std::string(name.c_str()) +
+                                           "...', has a zero byte, which ends names in COLMAP's files");
+}
+
 void writeModel(
         const std::string& folder, const std::vector<PosedImage>& images, const std::vector<Point3d>& points)
 {
+    checkModel(images, points);
     std::string cameras, posed, seen;
     const std::vector<Camera> known = camerasOf(images);
     std::vector<std::string> tracks(points.size());
     put(cameras, uint64_t(known.size()));
     for (size_t i = 0; i < known.size(); i++)
     {
-        Lens checked(known[i]);
         put(cameras, uint32_t(i + 1), modelNumber(known[i].model), uint64_t(known[i].size.width),
                 uint64_t(known[i].size.height));
         for (double parameter : known[i].parameters)
@@ -229,10 +285,6 @@ void writeModel(
         for (size_t k = 0; k < image.pixels.size(); k++)
         {
             const int point = k < image.sees.size() ? image.sees[k] : -1;
-            if (point >= int(points.size()))
-                CV_Error(
-                        Error::StsOutOfRange, format("a keypoint of image %s sees point %d, and there are %d",
-                                                      image.name.c_str(), point, int(points.size())));
             put(posed, image.pixels[k].x + .5, image.pixels[k].y + .5, int64_t(point < 0 ? -1 : point + 1));
             if (point >= 0)
                 put(tracks[size_t(point)], uint32_t(i + 1), uint32_t(k));

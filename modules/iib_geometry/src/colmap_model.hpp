@@ -12,6 +12,9 @@ share; where the points are is not read.
 @throws cv::Exception if there is none, it is damaged, or it has a camera that Lens does not know. */
 std::vector<PosedImage> readModel(const std::string& folder);
 
+//! @throws cv::Exception for a name that no image in a COLMAP model can have.
+void checkName(const std::string& name);
+
 //! The index of a camera among others; how many there are, if it is not there.
 inline size_t indexOf(const Camera& camera, const std::vector<Camera>& cameras)
 {

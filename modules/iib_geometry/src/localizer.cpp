@@ -43,6 +43,10 @@ Finder::Finder(const Map& map, int points, bool lines)
     : map_(map), lines_(lines), iib_(describerOf(map.orbAndAkaze, points ? points : map.keypoints)),
       matcher_(HierarchicalMatcher::createRecommended()), votes_(codesOf(map))
 {
+    if (points < 0)
+        CV_Error(Error::StsBadArg, format("keypoints that are looked for are 1 or more, or 0 for as many as "
+                                          "the map's images have, not %d",
+                                           points));
     if (lines)
         findSegments(Picture());
     if (lines && map.lines.empty())

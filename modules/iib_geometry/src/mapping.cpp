@@ -112,15 +112,20 @@ void describe(std::vector<MapImage>& images, const ImageReader& read, const Ptr<
         CV_Error(Error::StsError, "none of the model's images can be read, or they are empty");
 }
 
-}  // namespace
-
-Map makeMap(const std::string& model, const ImageReader& read, const MapOptions& options,
-        const MappingReport& report)
+void checkOptions(const MapOptions& options)
 {
     if (options.points < 1)
         CV_Error(Error::StsBadArg, format("points is %d: at least 1 an image is needed", options.points));
     if (options.lines)
         findSegments(Picture());
+}
+
+}  // namespace
+
+Map makeMap(const std::string& model, const ImageReader& read, const MapOptions& options,
+        const MappingReport& report)
+{
+    checkOptions(options);
     const std::vector<PosedImage> known = readModel(model);
     const Pairs pairs = covisible(known);
     Steps steps(known.size() + pairs.size(), report);
@@ -156,6 +161,7 @@ Map makeMap(const std::string& model, const ImageReader& read, const MapOptions&
 void buildMap(const std::string& model, const ImageReader& images, const std::string& map,
         const MapOptions& options, const MappingReport& report)
 {
+    checkOptions(options);
     const MapFolder folder(map);
     folder.write(makeMap(model, images, options, report));
 }

@@ -160,7 +160,7 @@ struct MapUpdate::Impl
     }
 
     const MapFolder folder;  // is locked before the map is read
-    Map map;
+    const Map map;
     const Finder finder;
     const std::vector<Camera> cameras;
     std::mutex mutex;
@@ -189,27 +189,33 @@ Location MapUpdate::add(const std::string& name, InputArray image, const Camera&
     {
         const std::lock_guard<std::mutex> lock(impl_->mutex);
         impl_->checkOpen();
-        if (name.empty())
-            CV_Error(Error::StsBadArg, "an image of an update has no name: give it one");
+        checkName(name);
         if (!impl_->names.insert(name).second)
             CV_Error(Error::StsBadArg, "an image of the name '" + name + "' is a part of the update already");
     }
-    Found found = impl_->finder.find(image.getMat(), camera, nullptr);
-    found.features.name = name;
-    if (found.found)
+    try
+    {
+        Found found = impl_->finder.find(image.getMat(), camera, nullptr);
+        found.features.name = name;
+        const std::lock_guard<std::mutex> lock(impl_->mutex);
+        impl_->checkOpen();
+        if (found.found)
+            impl_->seen.push_back(found);
+        return found;
+    }
+    catch (...)
     {
         const std::lock_guard<std::mutex> lock(impl_->mutex);
-        impl_->seen.push_back(found);
+        impl_->names.erase(name);
+        throw;
     }
-    return found;
 }
 
 MapUpdate::Counts MapUpdate::commit()
 {
     const std::lock_guard<std::mutex> lock(impl_->mutex);
     impl_->checkOpen();
-    impl_->committed = true;
-    Map& map = impl_->map;
+    Map map = impl_->map;  // stays as it is for another try, if this one cannot be written
     std::vector<Found>& seen = impl_->seen;
     // The order in which threads came changes nothing.
     std::sort(seen.begin(), seen.end(),
@@ -239,6 +245,7 @@ MapUpdate::Counts MapUpdate::commit()
     makeRoom(map, added);
     map.compact();
     impl_->folder.write(map);
+    impl_->committed = true;
     return counts;
 }
 

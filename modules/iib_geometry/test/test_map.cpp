@@ -129,10 +129,11 @@ TEST_F(SmallMap, every_altered_byte_and_every_length_is_noticed)
 
 TEST_F(SmallMap, what_contradicts_itself_though_its_sum_is_right)
 {
+    write(smallMap());
     const auto errorOf = [&](const auto& change) {
         Map wrong = smallMap();
         change(wrong);
-        write(wrong);
+        writeMap(name, wrong, [] {});
         return error().substr(
                 name.size() + std::string("/map.iib cannot be read as a map of opencv_iib: ").size());
     };
@@ -230,6 +231,71 @@ TEST_F(SmallMap, a_model_of_points_that_are_not_there)
         writeModel(name, {image}, {{0, 0, 5}, {1, 0, 5}});
     }));
     EXPECT_FALSE(cv::utils::fs::exists(name + "/images.bin"));
+}
+
+TEST_F(SmallMap, a_model_that_nothing_would_read_is_not_written)
+{
+    folder.makeFolder("map");
+    const auto errorOf = [&](const auto& change) {
+        std::vector<PosedImage> images = {smallMap().images[0], smallMap().images[1]};
+        std::vector<cv::Point3d> points = smallMap().points;
+        change(images, points);
+        return messageOf([&] { writeModel(name, images, points); });
+    };
+    typedef std::vector<PosedImage> Images;
+    typedef std::vector<cv::Point3d> Points;
+    EXPECT_EQ("", errorOf([](Images&, Points&) {}));
+    EXPECT_EQ(2u, readModel(name).size());
+    const std::string before = textOf(name + "/images.bin");
+    EXPECT_EQ("a model has one image or more, not none", errorOf([](Images& i, Points&) { i.clear(); }));
+    EXPECT_EQ("image a b/0.png is there twice: names are distinct",
+            errorOf([](Images& i, Points&) { i[1].name = i[0].name; }));
+    EXPECT_EQ("an image has no name: give it one", errorOf([](Images& i, Points&) { i[1].name.clear(); }));
+    EXPECT_EQ("the name of an image, 'a...', has a zero byte, which ends names in COLMAP's files",
+            errorOf([](Images& i, Points&) { i[1].name = std::string("a\0b", 3); }));
+    EXPECT_EQ("image a b/0.png has a pose that is not finite",
+            errorOf([](Images& i, Points&) { i[0].cameraFromWorld.matrix(1, 3) = std::nan(""); }));
+    for (const cv::Matx33d& change : {cv::Matx33d::eye() * 1.01, cv::Matx33d(-1, 0, 0, 0, 1, 0, 0, 0, 1),
+                 cv::Matx33d(1, .01, 0, 0, 1, 0, 0, 0, 1)})
+        EXPECT_EQ("image a b/0.png has a pose that scales, shears or mirrors: give a rotation and a "
+                  "translation",
+                errorOf([&](Images& i, Points&) {
+                    i[0].cameraFromWorld.rotation(change * i[0].cameraFromWorld.rotation());
+                }));
+    EXPECT_EQ("image a b/0.png has a camera of 70000 x 480 pixels: a side has 65535 at most",
+            errorOf([](Images& i, Points&) {
+                i[0].camera = {"PINHOLE", {70000, 480}, {500, 500, 320, 240}};
+            }));
+    EXPECT_EQ("image a b/0.png has a keypoint that is not finite",
+            errorOf([](Images& i, Points&) { i[0].pixels[0].x = HUGE_VAL; }));
+    EXPECT_EQ("image a b/0.png has 2 keypoints, and tells of 3 what they see",
+            errorOf([](Images& i, Points&) { i[0].sees.push_back(0); }));
+    EXPECT_EQ(
+            "a point of the model is not finite", errorOf([](Images&, Points& p) { p[0].z = std::nan(""); }));
+    EXPECT_EQ(before, textOf(name + "/images.bin"));
+}
+
+//! Numbers of other languages, whichever the machine has.
+struct CommaForPoint : std::numpunct<char>
+{
+    char do_decimal_point() const override { return ','; }
+    char do_thousands_sep() const override { return '.'; }
+    std::string do_grouping() const override { return "\3"; }
+};
+
+TEST_F(SmallMap, text_models_have_points_in_every_language)
+{
+    folder.makeFolder("map");
+    folder.write("map/cameras.txt", "1 PINHOLE 64 48 50.5 50.25 32 24\n");
+    folder.write("map/images.txt", "1 1 0 0 0 .5 -.25 1e-1 1 a.png\n12.75 1234.5 -1\n");
+    const std::locale before = std::locale::global(std::locale(std::locale(), new CommaForPoint));
+    std::vector<PosedImage> images;
+    const std::string error = messageOf([&] { images = readModel(name); });
+    std::locale::global(before);
+    ASSERT_EQ("", error);
+    EXPECT_EQ(std::vector<double>({50.5, 50.25, 32, 24}), images[0].camera.parameters);
+    EXPECT_EQ(cv::Vec3d(.5, -.25, .1), images[0].cameraFromWorld.translation());
+    EXPECT_EQ(cv::Point2d(12.25, 1234), images[0].pixels[0]);
 }
 
 TEST_F(SmallMap, names_in_any_language)

@@ -121,6 +121,23 @@ TEST_F(Update, keeps_eight_lights_of_a_place_and_the_models_own_images)
     EXPECT_GE(added, 6u);
 }
 
+TEST_F(Update, what_failed_may_be_tried_again)
+{
+    MapUpdate update(name);
+    EXPECT_EQ("the image has 64 x 48 pixels and its camera 320 x 240",
+            messageOf([&] { update.add("light", cv::Mat(48, 64, CV_8U), CAMERA); }));
+    EXPECT_TRUE(update.add("light", relit(truth, 9), CAMERA).found) << "the name is free";
+    const std::string before = textOf(name + "/map.iib");
+    std::filesystem::remove(name + "/images.bin");
+    folder.makeFolder("map/images.bin/in the way");
+    EXPECT_NE("", messageOf([&] { update.commit(); }));
+    EXPECT_EQ(before, textOf(name + "/map.iib")) << "the old one stays";
+    std::filesystem::remove_all(name + "/images.bin");
+    const MapUpdate::Counts counts = update.commit();
+    EXPECT_EQ(1, counts.added);
+    EXPECT_EQ(1u, readMap(name).updates);
+}
+
 TEST_F(Update, one_at_a_time)
 {
     MapUpdate first(name);
@@ -128,8 +145,10 @@ TEST_F(Update, one_at_a_time)
             messageOf([&] { MapUpdate second(name); }));
     EXPECT_EQ("", messageOf([&] { MapUpdate second(name, folder.path("other")); })) << "only reads it";
     first.add("light", relit(truth, 9), CAMERA);
-    EXPECT_EQ("an image of an update has no name: give it one",
-            messageOf([&] { first.add("", relit(truth, 9), CAMERA); }));
+    EXPECT_EQ(
+            "an image has no name: give it one", messageOf([&] { first.add("", relit(truth, 9), CAMERA); }));
+    EXPECT_EQ("the name of an image, 'a...', has a zero byte, which ends names in COLMAP's files",
+            messageOf([&] { first.add(std::string("a\0b", 3), relit(truth, 9), CAMERA); }));
     first.commit();
     const std::string over = "the update was committed already: make another MapUpdate";
     EXPECT_EQ(over, messageOf([&] { first.commit(); }));
