@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <optional>
 
 #include "pose.hpp"
@@ -20,9 +21,11 @@ constexpr int64 MAX_GAP = 100000000,
                 MAX_ALONE = int64(3e9);  // nanoseconds: between readings, without an image
 constexpr int64 MAX_TIME = int64(4e18);
 constexpr size_t FIRST_FRAMES = 8, LEAST_FRAMES = 4;  // with poses, that the start is found from
+constexpr int64 APART = 200000000;                    // nanoseconds between these
 constexpr double GRAVITY = 9.81;                      // m/s^2
 constexpr double TOGETHER = 5;        // points of the map err together: variances are so many times as large
 constexpr double MAX_SQUARED = 16.8;  // of six standard normal numbers: one in a hundred is larger
+constexpr size_t IN_A_ROW = 8;  // images: if readings surprise more than half of them, they contradict them
 
 //! What an image tells of the IMU.
 struct ImuFrame
@@ -101,12 +104,13 @@ void move(State& s, const Vec3d& rate, const Vec3d& force, double dt, Square& ch
     s.rotation = s.rotation * turnBy(turn);
 }
 
-/** Moves a state and its covariance from one time to another; readings are linear between their times. False if they do not
-reach that far or have a gap. @param change how errors change on the way. */
-bool follow(const std::vector<ImuReading>& readings, int64 from, int64 to, State& state, Square& covariance,
-        Square& change)
+/** Moves a state from one time to another; readings are linear between their times. False if they do not reach that far or have a
+gap. @param covariance of the state, if not null; then change gets how errors change on the way. */
+bool follow(const std::vector<ImuReading>& readings, int64 from, int64 to, State& state, Square* covariance,
+        Square* change)
 {
-    change = Square::eye();
+    if (covariance)
+        *change = Square::eye();
     if (readings.empty() || readings.front().nanoseconds > from || readings.back().nanoseconds < to)
         return false;
     const auto later = [](int64 time, const ImuReading& r) { return time < r.nanoseconds; };
@@ -123,16 +127,19 @@ bool follow(const std::vector<ImuReading>& readings, int64 from, int64 to, State
         const double dt = double(end - now) * 1e-9;
         Square step;
         move(state, a.rate + share * (b.rate - a.rate), a.force + share * (b.force - a.force), dt, step);
-        covariance = step * covariance * step.t();
+        now = end;
+        if (!covariance)
+            continue;
+        Square& c = *covariance;
+        c = step * c * step.t();
         for (int i = 0; i < 3; i++)
         {
-            covariance(TURN + i, TURN + i) += RATE_NOISE * RATE_NOISE * dt;
-            covariance(VELOCITY + i, VELOCITY + i) += FORCE_NOISE * FORCE_NOISE * dt;
-            covariance(RATE + i, RATE + i) += RATE_WALK * RATE_WALK * dt;
-            covariance(FORCE + i, FORCE + i) += FORCE_WALK * FORCE_WALK * dt;
+            c(TURN + i, TURN + i) += RATE_NOISE * RATE_NOISE * dt;
+            c(VELOCITY + i, VELOCITY + i) += FORCE_NOISE * FORCE_NOISE * dt;
+            c(RATE + i, RATE + i) += RATE_WALK * RATE_WALK * dt;
+            c(FORCE + i, FORCE + i) += FORCE_WALK * FORCE_WALK * dt;
         }
-        change = step * change;
-        now = end;
+        *change = step * *change;
     }
     return true;
 }
@@ -144,8 +151,9 @@ struct Step
     Square expectedCovariance, covariance, change;
 };
 
-//! Takes a measured pose into a state: position and turn about the world's axes with their covariance.
-void update(const Affine3d& pose, const Matx66d& measured, State& state, Square& covariance)
+/** Takes a measured pose into a state: position and turn about the world's axes with their covariance.
+@return its innovation's squared length in standard deviations, whose square is chi^2 of six degrees of freedom. */
+double update(const Affine3d& pose, const Matx66d& measured, State& state, Square& covariance)
 {
     State seen = state;
     seen.rotation = pose.rotation();
@@ -167,16 +175,18 @@ void update(const Affine3d& pose, const Matx66d& measured, State& state, Square&
     }
     Matx66d inverse = sum.inv(DECOMP_CHOLESKY);
     // A pose that is too far off counts as little as it takes to be likely.
-    if (const double squared = offset.dot(inverse * offset); squared > MAX_SQUARED)
+    const double squared = offset.dot(inverse * offset);
+    if (squared > MAX_SQUARED)
         inverse *= MAX_SQUARED / squared;
     const Matx<double, SIZE, 6> gain = columns * inverse;
     state = plus(state, gain * offset);
     covariance -= gain * columns.t();
     covariance = .5 * (covariance + covariance.t());
+    return squared;
 }
 
 /** Gravity and the first velocity, by linear least squares: rotations are known, and positions and velocities are linear in
-both. */
+both. False if there are no readings between the images. */
 bool findStart(const std::vector<int64>& times, const std::vector<Affine3d>& poses,
         const std::vector<ImuReading>& readings, State& start)
 {
@@ -188,8 +198,7 @@ bool findStart(const std::vector<int64>& times, const std::vector<Affine3d>& pos
         State moved;  // without gravity and velocity
         moved.rotation = from.rotation();
         moved.position = from.translation();
-        Square covariance, change;
-        if (!follow(readings, times[size_t(i)], times[size_t(i) + 1], moved, covariance, change))
+        if (!follow(readings, times[size_t(i)], times[size_t(i) + 1], moved, nullptr, nullptr))
             return false;
         const double seconds = double(times[size_t(i) + 1] - times[size_t(i)]) * 1e-9;
         for (int axis = 0; axis < 3; axis++)
@@ -208,50 +217,89 @@ bool findStart(const std::vector<int64>& times, const std::vector<Affine3d>& pos
         return false;
     start.velocity = Vec3d(x.ptr<double>(0));
     start.gravity = Vec3d(x.ptr<double>(3 * n));
-    // far from what it should be, the poses are wrong, or the IMU has other axes
-    const double length = norm(start.gravity);
-    start.gravity *= GRAVITY / length;
-    return std::abs(length - GRAVITY) <= 2;
+    start.gravity *= GRAVITY / norm(start.gravity);
+    return checkRange(start.gravity);
 }
 
-//! Smooths frames from `first` on, which has a pose; poses are those of the IMU. Returns where it had to stop.
-size_t smoothRun(const std::vector<ImuFrame>& frames, const std::vector<ImuReading>& readings, size_t first,
-        std::vector<std::optional<Affine3d>>& poses)
+//! What the readings say of frames from one on, which has a pose.
+struct Run
+{
+    enum Verdict
+    {
+        NO_READINGS,  //!< between the first frames
+        SHORT,        //!< fewer poses than a start takes
+        CONTRADICTS,
+        AGREES
+    } verdict;
+    std::vector<Step> steps;  //!< of frames in order, if it agrees
+};
+
+//! The filter. A run ends where readings have a gap, three seconds after the last pose, and before poses that they contradict.
+Run filtered(const std::vector<ImuFrame>& frames, const std::vector<ImuReading>& readings, size_t first)
 {
     std::vector<int64> times;
     std::vector<Affine3d> seen;
     for (size_t i = first; i < frames.size() && seen.size() < FIRST_FRAMES; i++)
-        if (frames[i].pose)
+        if (frames[i].pose && (times.empty() || frames[i].nanoseconds - times.back() >= APART))
         {
             times.push_back(frames[i].nanoseconds);
             seen.push_back(*frames[i].pose);
         }
-    poses[first] = seen[0];
     Step step;
     step.state.rotation = seen[0].rotation();
     step.state.position = seen[0].translation();
-    if (seen.size() < LEAST_FRAMES || !findStart(times, seen, readings, step.state))
-        return first + 1;
+    if (seen.size() < LEAST_FRAMES)
+        return {Run::SHORT, {}};
+    if (!findStart(times, seen, readings, step.state))
+        return {Run::NO_READINGS, {}};
     const double ofParts[] = {1, 1, 1, .02, .2, .2};
     for (int i = 0; i < SIZE; i++)
         step.covariance(i, i) = ofParts[i / 3] * ofParts[i / 3];
     update(seen[0], frames[first].covariance, step.state, step.covariance);
-    std::vector<Step> steps = {step};
+    Run run = {Run::AGREES, {step}};
     int64 last = frames[first].nanoseconds;
+    std::deque<bool> surprised;  // the last images
+    size_t images = 1;           // with poses
+    size_t agreed = 1,
+           agreedSteps = 1;  // of these, up to the last one that was not surprised; steps until then
+    const auto surprises = [&] { return size_t(std::count(surprised.begin(), surprised.end(), true)); };
     for (size_t i = first + 1; i < frames.size() && frames[i].nanoseconds - last <= MAX_ALONE; i++)
     {
-        if (!follow(readings, frames[i - 1].nanoseconds, frames[i].nanoseconds, step.state, step.covariance,
-                    step.change))
+        if (!follow(readings, frames[i - 1].nanoseconds, frames[i].nanoseconds, step.state, &step.covariance,
+                    &step.change))
             break;
         step.expected = step.state;
         step.expectedCovariance = step.covariance;
-        if (frames[i].pose)
+        run.steps.push_back(step);
+        if (!frames[i].pose)
+            continue;
+        surprised.push_back(
+                !(update(*frames[i].pose, frames[i].covariance, step.state, step.covariance) < MAX_SQUARED));
+        run.steps.back() = step;
+        last = frames[i].nanoseconds;
+        if (surprised.size() > IN_A_ROW)
+            surprised.pop_front();
+        images++;
+        if (!surprised.back())
         {
-            update(*frames[i].pose, frames[i].covariance, step.state, step.covariance);
-            last = frames[i].nanoseconds;
+            agreed = images;
+            agreedSteps = run.steps.size();
         }
-        steps.push_back(step);
+        if (2 * surprises() > IN_A_ROW)
+            break;
     }
+    if (2 * surprises() > IN_A_ROW || (surprised.size() < IN_A_ROW && surprises() > 1))
+    {
+        run.steps.resize(agreedSteps);
+        run.verdict = agreed > IN_A_ROW ? Run::AGREES : Run::CONTRADICTS;
+    }
+    return run;
+}
+
+//! The smoother: poses of the IMU in the frames of a run.
+std::vector<Affine3d> smoothed(std::vector<Step> steps)
+{
+    std::vector<Affine3d> poses(steps.size());
     for (size_t i = steps.size(); i-- > 0;)
     {
         State& state = steps[i].state;
@@ -262,9 +310,9 @@ size_t smoothRun(const std::vector<ImuFrame>& frames, const std::vector<ImuReadi
                     steps[i].covariance * next.change.t() * next.expectedCovariance.inv(DECOMP_CHOLESKY);
             state = plus(state, gain * minus(next.state, next.expected));
         }
-        poses[first + i] = Affine3d(state.rotation, state.position);
+        poses[i] = Affine3d(state.rotation, state.position);
     }
-    return first + steps.size();
+    return poses;
 }
 
 //! Where the image's pose has the IMU.
@@ -281,11 +329,19 @@ ImuFrame imuFrame(int64 time, const Location& image, const Affine3d& cameraFromI
     return {time, camera * cameraFromImu, byCamera * image.covariance * byCamera.t()};
 }
 
+//! Whether an image's pose is one, and its covariance tells how much it counts.
+bool isWeighed(const Location& image)
+{
+    Vec6d variances;
+    return checkRange(image.cameraFromWorld.matrix) && checkRange(image.covariance) &&
+           eigen(image.covariance, variances) && variances[5] > 0;
+}
+
 //! Also that their differences do not overflow.
 void checkTimes(const std::vector<int64>& times, const char* what)
 {
     for (size_t i = 0; i < times.size(); i++)
-        if (std::abs(times[i]) > MAX_TIME || (i > 0 && times[i] <= times[i - 1]))
+        if (times[i] > MAX_TIME || times[i] < -MAX_TIME || (i > 0 && times[i] <= times[i - 1]))
             CV_Error(Error::StsBadArg,
                     format("%s %d has the time %s: times are nanoseconds, of at most 19 digits, and rise",
                             what, int(i), std::to_string(times[i]).c_str()));
@@ -293,7 +349,7 @@ void checkTimes(const std::vector<int64>& times, const char* what)
 
 }  // namespace
 
-void smoothPoses(const std::vector<int64>& times, std::vector<Location>& images,
+std::string smoothPoses(const std::vector<int64>& times, std::vector<Location>& images,
         const std::vector<ImuReading>& readings, const Affine3d& imuFromCamera)
 {
     if (times.size() != images.size())
@@ -310,17 +366,53 @@ void smoothPoses(const std::vector<int64>& times, std::vector<Location>& images,
     checkTimes(measured, "reading");
     std::vector<ImuFrame> frames;
     for (size_t i = 0; i < images.size(); i++)
+    {
+        if (images[i].found && !isWeighed(images[i]))
+            return format("image %d has a pose or a covariance that is none (not finite, or zero), so that "
+                          "it cannot be weighed "
+                          "against the readings: all poses stay as they are",
+                    int(i));
         frames.push_back(imuFrame(times[i], images[i], inverse(imuFromCamera)));
+    }
     std::vector<std::optional<Affine3d>> poses(frames.size());
+    size_t agree = 0, contradict = 0, tooFew = 0;  // images with poses; too few in a row agree by chance too
     for (size_t i = 0; i < frames.size();)
-        i = frames[i].pose ? smoothRun(frames, readings, i, poses) : i + 1;
-    for (size_t i = 0; i < images.size(); i++)
+    {
+        size_t end = i + 1;
+        if (frames[i].pose)
+        {
+            const Run run = filtered(frames, readings, i);
+            contradict += run.verdict == Run::CONTRADICTS;
+            tooFew += run.verdict == Run::SHORT;
+            if (run.verdict == Run::AGREES)
+            {
+                end = i + run.steps.size();
+                const auto count =
+                        size_t(std::count_if(frames.begin() + ptrdiff_t(i), frames.begin() + ptrdiff_t(end),
+                                [](const ImuFrame& f) { return f.pose.has_value(); }));
+                (count > IN_A_ROW ? agree : tooFew) += count;
+                const std::vector<Affine3d> smooth = smoothed(run.steps);
+                std::copy(smooth.begin(), smooth.end(), poses.begin() + ptrdiff_t(i));
+            }
+        }
+        i = end;
+    }
+    const bool most = contradict > 0 && agree <= contradict + tooFew;
+    for (size_t i = 0; i < images.size() && !most; i++)
         if (poses[i])
         {
             images[i].found = true;
             images[i].reason = "";
             images[i].cameraFromWorld = inverse(*poses[i] * imuFromCamera);
         }
+    if (most)
+        return "the readings of the IMU contradict the images, whose poses stay as they are: check the IMU's "
+               "axes and units (radians a second, m/s^2), its clock, imuFromCamera and that the map is in "
+               "metres";
+    if (contradict > 0)
+        return format("the readings of the IMU contradict %d of %d images, whose poses stay as they are",
+                int(contradict), int(contradict + agree + tooFew));
+    return "";
 }
 
 }  // namespace cv::iib

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <functional>
+#include <limits>
+#include <map>
 #include <random>
 
 #include "opencv2/iib_geometry.hpp"
@@ -58,10 +61,14 @@ struct Drive
     }
 
     std::vector<Location> smoothed(const std::vector<ImuReading>& readings,
-            const cv::Affine3d& imuFromCamera = cv::Affine3d::Identity()) const
+            const cv::Affine3d& imuFromCamera = cv::Affine3d::Identity(), std::string* said = nullptr) const
     {
         std::vector<Location> result = images;
-        smoothPoses(times, result, readings, imuFromCamera);
+        const std::string reason = smoothPoses(times, result, readings, imuFromCamera);
+        if (said)
+            *said = reason;
+        else
+            EXPECT_EQ("", reason);
         return result;
     }
 
@@ -84,13 +91,14 @@ struct Drive
     }
 };
 
-//! Images half a second apart with poses about a centimetre and a tenth of a degree off.
-Drive driveOf(double seconds, const cv::Affine3d& imuFromCamera = cv::Affine3d::Identity())
+//! Images, half a second apart, with poses about a centimetre and a tenth of a degree off.
+Drive driveOf(
+        double seconds, const cv::Affine3d& imuFromCamera = cv::Affine3d::Identity(), int64 step = 500000000)
 {
     std::mt19937 random(1);
     std::normal_distribution<double> metres(0, 0.006), radians(0, 0.0015);
     Drive drive;
-    for (int64 time = 0; time <= int64(seconds * 1e9); time += 500000000)
+    for (int64 time = 0; time <= int64(seconds * 1e9); time += step)
     {
         const cv::Affine3d truth = poseAt(double(time) * 1e-9) * imuFromCamera;
         const cv::Vec3d moved(metres(random), metres(random), metres(random));
@@ -106,6 +114,20 @@ Drive driveOf(double seconds, const cv::Affine3d& imuFromCamera = cv::Affine3d::
         drive.images.push_back(image);
     }
     return drive;
+}
+
+const char* const CONTRADICTS =
+        "the readings of the IMU contradict the images, whose poses stay as they are: check the IMU's axes "
+        "and units "
+        "(radians a second, m/s^2), its clock, imuFromCamera and that the map is in metres";
+
+void expectUnchanged(const Drive& drive, const std::vector<Location>& found)
+{
+    for (size_t i = 0; i < found.size(); i++)
+    {
+        EXPECT_EQ(drive.images[i].found, found[i].found) << i;
+        EXPECT_EQ(drive.images[i].cameraFromWorld.matrix, found[i].cameraFromWorld.matrix) << i;
+    }
 }
 
 TEST(Smoothing, images_without_a_pose_get_one)
@@ -163,7 +185,9 @@ TEST(Smoothing, the_camera_is_elsewhere_on_the_imu)
     drive.forgetMost();
     const std::vector<ImuReading> readings = readingsUntil(14);
     EXPECT_LT(drive.meanError(drive.smoothed(readings, imuFromCamera), imuFromCamera), 0.03);
-    EXPECT_GT(drive.meanError(drive.smoothed(readings), imuFromCamera), 0.1);
+    std::string said;
+    expectUnchanged(drive, drive.smoothed(readings, cv::Affine3d::Identity(), &said));
+    EXPECT_EQ(CONTRADICTS, said);
 }
 
 TEST(Smoothing, a_wrong_pose_counts_little)
@@ -173,6 +197,107 @@ TEST(Smoothing, a_wrong_pose_counts_little)
     wrong = wrong.translate(wrong.rotation() * cv::Vec3d(-.8, 0, 0));
     EXPECT_GT(drive.errorOf(12, drive.images[12]), .7);
     EXPECT_LT(drive.errorOf(12, drive.smoothed(readingsUntil(14))[12]), 0.1);
+}
+
+TEST(Smoothing, readings_that_contradict_the_images_change_nothing)
+{
+    const auto swap = [](ImuReading& r, int a, int b) {
+        std::swap(r.rate[a], r.rate[b]);
+        std::swap(r.force[a], r.force[b]);
+    };
+    const auto halfTurn = [](ImuReading& r, int about) {
+        for (int i : {(about + 1) % 3, (about + 2) % 3})
+        {
+            r.rate[i] *= -1;
+            r.force[i] *= -1;
+        }
+    };
+    const std::map<std::string, std::function<void(ImuReading&)>> mistakes = {
+            {"force in g", [](ImuReading& r) { r.force *= 1 / 9.81; }},
+            {"rate in degrees", [](ImuReading& r) { r.rate *= 180 / CV_PI; }},
+            {"y and z exchanged", [&](ImuReading& r) { swap(r, 1, 2); }},
+            {"x and y exchanged", [&](ImuReading& r) { swap(r, 0, 1); }},
+            {"axes in another order",
+                    [&](ImuReading& r) {
+                        swap(r, 0, 1);
+                        swap(r, 1, 2);
+                    }},
+            {"half a turn about x", [&](ImuReading& r) { halfTurn(r, 0); }},
+            {"half a turn about y", [&](ImuReading& r) { halfTurn(r, 1); }},
+            {"force of the other sign", [](ImuReading& r) { r.force *= -1; }},
+            {"rate of the other sign", [](ImuReading& r) { r.rate *= -1; }},
+            {"half a second late", [](ImuReading& r) { r.nanoseconds += 500000000; }}};
+    const Drive all = driveOf(7);
+    Drive few = driveOf(10);
+    few.forgetMost();
+    for (const auto& [name, change] : mistakes)
+    {
+        SCOPED_TRACE(name);
+        std::vector<ImuReading> readings = readingsUntil(10);
+        for (ImuReading& reading : readings)
+            change(reading);
+        for (const Drive& drive : {all, few})
+        {
+            std::string said;
+            expectUnchanged(drive, drive.smoothed(readings, cv::Affine3d::Identity(), &said));
+            EXPECT_EQ(CONTRADICTS, said);
+        }
+    }
+}
+
+TEST(Smoothing, covariances_that_are_none_change_nothing)
+{
+    for (const double value : {0., double(NAN), -1., HUGE_VAL})
+    {
+        Drive drive = driveOf(4);
+        drive.forget(2, 3);
+        drive.images[3].covariance = cv::Matx66d::eye() * value;
+        std::string said;
+        expectUnchanged(drive, drive.smoothed(readingsUntil(4), cv::Affine3d::Identity(), &said));
+        EXPECT_EQ("image 3 has a pose or a covariance that is none (not finite, or zero), so that it cannot "
+                  "be weighed against the "
+                  "readings: all poses stay as they are",
+                said);
+    }
+}
+
+TEST(Smoothing, readings_that_go_wrong_count_until_then)
+{
+    std::vector<ImuReading> readings = readingsUntil(20);
+    for (ImuReading& reading : readings)
+        if (reading.nanoseconds > int64(14.2e9))
+            reading.rate *= -1;
+    Drive drive = driveOf(20);
+    drive.forget(5, 6);
+    drive.forget(31, 32);
+    std::string said;
+    const std::vector<Location> found = drive.smoothed(readings, cv::Affine3d::Identity(), &said);
+    EXPECT_EQ(0u, said.find("the readings of the IMU contradict ")) << said;
+    EXPECT_NE(CONTRADICTS, said);
+    EXPECT_LT(drive.errorOf(5, found[5]), .03);
+    EXPECT_FALSE(found[31].found);
+    for (size_t i = 0; i < found.size(); i++)
+    {
+        EXPECT_LT(drive.errorOf(i, found[i]), i == 31 ? 1001 : .04) << i;
+    }
+}
+
+TEST(Smoothing, many_images_a_second_and_a_wrong_one_at_the_start)
+{
+    Drive drive = driveOf(4, cv::Affine3d::Identity(), 50000000);
+    cv::Affine3d& wrong = drive.images[4].cameraFromWorld;
+    wrong = wrong.translate(wrong.rotation() * cv::Vec3d(-.8, 0, 0));
+    std::string said;
+    const std::vector<Location> found = drive.smoothed(readingsUntil(4), cv::Affine3d::Identity(), &said);
+    EXPECT_NE(CONTRADICTS, said);
+    EXPECT_LT(drive.errorOf(4, found[4]), 0.9);
+    double sum = 0, before = 0;
+    for (size_t i = 5; i < found.size(); i++)
+    {
+        sum += drive.errorOf(i, found[i]);
+        before += drive.errorOf(i, drive.images[i]);
+    }
+    EXPECT_LT(sum, .6 * before);
 }
 
 TEST(Smoothing, refuses_what_has_no_order)
@@ -187,6 +312,10 @@ TEST(Smoothing, refuses_what_has_no_order)
             error());
     drive.times[1] = int64(5e18);
     EXPECT_EQ("image 1 has the time 5000000000000000000: times are nanoseconds, of at most 19 digits, and "
+              "rise",
+            error());
+    drive.times[1] = std::numeric_limits<int64>::min();
+    EXPECT_EQ("image 1 has the time -9223372036854775808: times are nanoseconds, of at most 19 digits, and "
               "rise",
             error());
     drive.times.pop_back();
