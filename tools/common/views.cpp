@@ -22,20 +22,6 @@ namespace fs = cv::utils::fs;
 const int NEIGHBOURS = 3;           // pairs an image in its own folder
 const double LEAST_BASELINE = 0.5;  // metres, so that the direction of the movement can be seen
 
-struct View
-{
-    std::string name, file;
-    cv::Matx33d rotation;  // camera to world
-    cv::Vec3d position;
-};
-
-struct Folder
-{
-    std::string name;
-    cv::Matx33d camera;
-    std::vector<View> views;
-};
-
 //! Calls `line` with each line but empty ones and comments; it returns false for what it does not understand.
 void eachLine(const std::string& file, const std::function<bool(std::istringstream&)>& line)
 {
@@ -91,9 +77,9 @@ std::vector<View> readViews(const std::string& folder)
     return views;
 }
 
-Folder viewsOf(const Walk& walk)
+ViewFolder viewsOf(const Walk& walk)
 {
-    Folder folder = {walk.light, walk.camera, {}};
+    ViewFolder folder = {walk.light, walk.camera, {}};
     for (int k = 1; k <= int(walk.poses.size()); k++)
     {
         const cv::Matx33d toWorld = walk.poses[k - 1].rotation().t();
@@ -104,14 +90,15 @@ Folder viewsOf(const Walk& walk)
     return folder;
 }
 
-ViewPair pairOf(const std::string& set, const Folder& from, const View& a, const Folder& to, const View& b)
+ViewPair pairOf(
+        const std::string& set, const ViewFolder& from, const View& a, const ViewFolder& to, const View& b)
 {
     const cv::Matx33d toTarget = b.rotation.t();
     return {set, to.name, a.name + "-" + b.name, a.file, b.file, from.camera, to.camera,
             toTarget * a.rotation, toTarget * (a.position - b.position), &from == &to};
 }
 
-void addWithin(const std::string& set, const Folder& folder, std::vector<ViewPair>& pairs)
+void addWithin(const std::string& set, const ViewFolder& folder, std::vector<ViewPair>& pairs)
 {
     for (size_t i = 0; i < folder.views.size(); i++)
         for (size_t j = i + 1; j < std::min(folder.views.size(), i + 1 + NEIGHBOURS); j++)
@@ -119,14 +106,14 @@ void addWithin(const std::string& set, const Folder& folder, std::vector<ViewPai
 }
 
 //! Pairs the images of all folders but the one called `map` with that one's; false if it or others are missing.
-bool addAcross(const std::string& set, const std::string& map, const std::vector<Folder>& folders,
+bool addAcross(const std::string& set, const std::string& map, const std::vector<ViewFolder>& folders,
         std::vector<ViewPair>& pairs)
 {
     const auto mapped = std::find_if(
-            folders.begin(), folders.end(), [&](const Folder& folder) { return folder.name == map; });
+            folders.begin(), folders.end(), [&](const ViewFolder& folder) { return folder.name == map; });
     if (mapped == folders.end() || folders.size() == 1)
         return false;
-    for (const Folder& visit : folders)
+    for (const ViewFolder& visit : folders)
         for (const View& view : visit.views)
         {
             const View* best = nullptr;
@@ -193,9 +180,9 @@ bool holdsViews(const std::string& folder)
            fs::isDirectory(fs::join(folder, "images"));
 }
 
-std::vector<ViewPair> findViewPairs(const std::vector<std::string>& roots)
+std::map<std::string, std::vector<ViewFolder>> findViewFolders(const std::vector<std::string>& roots)
 {
-    std::map<std::string, std::vector<Folder>> places, scenes;  // by the path of what holds the folders
+    std::map<std::string, std::vector<ViewFolder>> places;
     visitFolders(roots, [&](const std::string& folder) {
         const bool found = holdsViews(folder);
         if (found)
@@ -203,12 +190,18 @@ std::vector<ViewPair> findViewPairs(const std::vector<std::string>& roots)
                     {baseName(folder), readCamera(fs::join(folder, "cameras.txt")), readViews(folder)});
         return !found;
     });
+    return places;
+}
+
+std::vector<ViewPair> findViewPairs(const std::vector<std::string>& roots)
+{
+    std::map<std::string, std::vector<ViewFolder>> scenes;
     for (const Walk& walk : findWalks(roots))
         scenes[fs::join(fs::getParent(walk.folder), "walk_" + walk.scene)].push_back(viewsOf(walk));
     std::vector<ViewPair> pairs;
-    for (const auto& place : places)
+    for (const auto& place : findViewFolders(roots))
         if (!addAcross(baseName(place.first), "map", place.second, pairs))
-            for (const Folder& folder : place.second)
+            for (const ViewFolder& folder : place.second)
                 addWithin(baseName(place.first), folder, pairs);
     for (const auto& scene : scenes)
         addAcross(baseName(scene.first), "noon", scene.second, pairs);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,28 @@
 #include "opencv2/core/affine.hpp"
 
 namespace iib_tools {
+
+//! An image from a known place.
+struct View
+{
+    std::string name, file;
+    cv::Matx33d rotation;  //!< camera to world
+    cv::Vec3d position;
+};
+
+//! Images of one light and one camera.
+struct ViewFolder
+{
+    std::string name;
+    cv::Matx33d camera;  //!< focal lengths and centre, pixels
+    std::vector<View> views;
+};
+
+/** The folders as tools/synthetic/localization.py writes them, up to four levels below the roots, by what holds them:
+`cameras.txt` (COLMAP, one PINHOLE camera), `poses.txt` (TUM, camera to world, a name a line) and `images/<name>.png` or .jpg. Names
+without an image are left out.
+@throws cv::Exception, with file and line, for a folder whose files are broken. */
+std::map<std::string, std::vector<ViewFolder>> findViewFolders(const std::vector<std::string>& roots);
 
 //! Two images of one scene from known places.
 struct ViewPair
@@ -41,12 +64,10 @@ struct Walk
 @throws cv::Exception for a camera file without what is needed. */
 std::vector<Walk> findWalks(const std::vector<std::string>& roots);
 
-/** Finds pairs in folders as tools/synthetic/localization.py writes them, up to four levels deep: `cameras.txt` (COLMAP,
-one PINHOLE camera), `poses.txt` (TUM, camera to world, a name a line) and `images/<name>.png` or .jpg. Names without
-an image are left out. An image is paired with the next three of its folder; where other folders lie beside a folder
-`map`, each of their images is paired with the map's next one at a distance of half a metre or more instead. So are the
-frames of a walk in other light with those at noon; their set is `walk_<scene>`.
-@throws cv::Exception, with file and line, for a folder whose files are broken. */
+/** Finds pairs in the folders of findViewFolders. An image is paired with the next three of its folder; where other folders lie
+beside a folder `map`, each of their images is paired with the map's next one at a distance of half a metre or more instead. So are
+the frames of a walk in other light with those at noon; their set is `walk_<scene>`.
+@throws cv::Exception as findViewFolders. */
 std::vector<ViewPair> findViewPairs(const std::vector<std::string>& roots);
 
 }  // namespace iib_tools

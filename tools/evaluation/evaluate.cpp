@@ -23,7 +23,8 @@ struct Experiment
 
 const Experiment EXPERIMENTS[] = {{"fixed_points", fixedPoints}, {"detected_points", detectedPoints},
         {"estimators", estimators}, {"alignment", alignment}, {"matching", matching},
-        {"robustness", robustness}, {"comparison", comparison}};
+        {"robustness", robustness}, {"comparison", comparison},
+        {"localization_uncertainty", localizationUncertainty}};
 
 //! Results of other settings must not be mixed with these.
 void checkSettings(const Options& options)

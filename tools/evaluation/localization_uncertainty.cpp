@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "common/dataset.hpp"
+#include "common/views.hpp"
+#include "experiments.hpp"
+#include "opencv2/core/utils/filesystem.hpp"
+#include "opencv2/iib/localization.hpp"
+#include "opencv2/imgcodecs.hpp"
+#include "results.hpp"
+
+namespace iib_tools {
+namespace {
+
+namespace fs = cv::utils::fs;
+using cv::iib::Localizer;
+using cv::iib::PosedImage;
+
+//! A map of some views, and others that are looked for in it.
+struct Search
+{
+    std::string set, map, light;
+    ViewFolder mapped, sought;
+
+    Fields key(const View& view) const { return {set, map, light, view.name}; }
+};
+
+/** In a folder `map`, the views of those beside it. Where there is none, each folder's own: one that is left out, every other one in a
+map of the rest, and two of three. */
+std::vector<Search> searchesOf(const std::string& set, const std::vector<ViewFolder>& folders)
+{
+    std::vector<Search> all;
+    const auto mapped = std::find_if(
+            folders.begin(), folders.end(), [](const ViewFolder& folder) { return folder.name == "map"; });
+    for (const ViewFolder& folder : folders)
+    {
+        const int count = int(folder.views.size());
+        if (mapped != folders.end() && &folder != &*mapped)
+            all.push_back({set, "map", folder.name, *mapped, folder});
+        for (int step : {2, 3, count})
+            for (int part = 0; part < step && mapped == folders.end(); part++)
+            {
+                Search search = {set, cv::format("%s without %d of %d", folder.name.c_str(), part + 1, step),
+                        "same", folder, folder};
+                search.mapped.views.clear();
+                search.sought.views.clear();
+                for (int i = 0; i < count; i++)
+                    (i % step == part ? search.sought : search.mapped).views.push_back(folder.views[i]);
+                all.push_back(search);
+            }
+    }
+    return all;
+}
+
+cv::iib::Camera cameraOf(const cv::Matx33d& m, const cv::Size& size)
+{
+    return {"PINHOLE", size, {m(0, 0), m(1, 1), m(0, 2) + .5, m(1, 2) + .5}};
+}
+
+//! How many standard deviations an error is off, squared.
+template <int N> double squared(const cv::Vec<double, N>& error, const cv::Matx<double, N, N>& covariance)
+{
+    return error.dot(covariance.inv(cv::DECOMP_CHOLESKY) * error);
+}
+
+//! A map in memory.
+std::unique_ptr<Localizer> localizerOf(const ViewFolder& mapped, int points)
+{
+    std::map<std::string, std::string> files;
+    std::vector<PosedImage> images;
+    for (const View& view : mapped.views)
+    {
+        PosedImage image;
+        image.name = baseName(view.file);
+        image.camera = cameraOf(mapped.camera, readImage(view.file, cv::IMREAD_GRAYSCALE).size());
+        image.cameraFromWorld = cv::Affine3d(view.rotation.t(), -(view.rotation.t() * view.position));
+        images.push_back(image);
+        files[image.name] = view.file;
+    }
+    const std::string model = cv::tempfile();
+    fs::createDirectories(model);
+    cv::iib::writeModel(model, images);
+    const auto read = [&](const std::string& name) {
+        return readImage(files.at(name), cv::IMREAD_GRAYSCALE);
+    };
+    std::unique_ptr<Localizer> localizer(new Localizer(model, read, points));
+    fs::remove_all(model);
+    return localizer;
+}
+
+//! Its error, what it tells of it, and how many standard deviations it is off, squared: of the centre, the turn and both.
+std::vector<double> judged(const cv::iib::Location& found, const View& truth)
+{
+    const cv::Matx33d toWorld = found.cameraFromWorld.rotation().t();
+    const cv::Vec3d moved = -(toWorld * found.cameraFromWorld.translation()) - truth.position,
+                    turned = cv::Affine3d(toWorld * truth.rotation.t()).rvec();
+    const cv::Matx33d centre = found.covariance.get_minor<3, 3>(0, 0),
+                      turn = found.covariance.get_minor<3, 3>(3, 3);
+    return {cv::norm(moved), std::sqrt(cv::trace(centre)), cv::norm(turned) * 180 / CV_PI,
+            std::sqrt(cv::trace(turn)) * 180 / CV_PI, squared(moved, centre), squared(turned, turn),
+            squared(cv::Vec6d(moved[0], moved[1], moved[2], turned[0], turned[1], turned[2]),
+                    found.covariance)};
+}
+
+}  // namespace
+
+int localizationUncertainty(const Options& options, const std::vector<ImagePair>&)
+{
+    const Fields columns = {"set", "map", "light", "query", "matches", "inliers", "centre", "told_centre",
+            "rotation", "told_rotation", "squared_centre", "squared_rotation", "squared_pose"};
+    ResultTable table(options.out + "/localization_uncertainty.csv", columns, 4);
+    std::vector<Task> tasks;
+    for (const auto& place : findViewFolders(options.roots))
+        for (const Search& search : searchesOf(baseName(place.first), place.second))
+        {
+            const auto known = [&](const View& view) { return table.has(search.key(view)); };
+            const std::vector<View>& sought = search.sought.views;
+            if (search.mapped.views.size() < 2 || std::all_of(sought.begin(), sought.end(), known))
+                continue;
+            const auto run = [&, search] {
+                const std::unique_ptr<Localizer> localizer = localizerOf(search.mapped, options.points);
+                for (const View& view : search.sought.views)
+                {
+                    const cv::Mat image = readImage(view.file, cv::IMREAD_GRAYSCALE);
+                    const cv::iib::Location found =
+                            localizer->localize(image, cameraOf(search.sought.camera, image.size()));
+                    Fields row = search.key(view);
+                    row.insert(row.end(), {std::to_string(found.matches), std::to_string(found.inliers)});
+                    if (found.found)
+                        for (double value : judged(found, view))
+                            row.push_back(text(value));
+                    row.resize(columns.size());  // empty where nothing is found
+                    table.append(row);
+                }
+            };
+            tasks.push_back({search.set + "/" + search.map + "/" + search.light, run});
+        }
+    return runTasks("localization_uncertainty", tasks, &table);
+}
+
+}  // namespace iib_tools
