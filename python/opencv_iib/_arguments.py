@@ -9,6 +9,10 @@ from typing import Any, Iterable, Union
 Path = Union[str, os.PathLike[str]]
 
 
+class InvalidOption(ValueError):
+    """A value that an option cannot have: commands end with status 2."""
+
+
 def integer(value: Any, name: str, bits: int = 32) -> int:
     """:raises TypeError: if it is no integer. :raises ValueError: if it has more than so many bits."""
     try:

@@ -10,12 +10,15 @@ import opencv_iib
 from collection import Collection
 from opencv_iib.colmap import FeatureOptions
 from opencv_iib.colmap.features import DETECTORS, Features, to_colmap
-from opencv_iib.colmap.images import exif_focal_length, read_grey
+from opencv_iib.colmap.images import exif_focal_length, read_colour, read_grey
 from support import cv2, texture
 
 
-def encoded(image, suffix):
-    return cv2.imencode(suffix, image)[1].tobytes()
+PLAIN = 259, 1  # TIFF's compression: cv2's own loses some of floats
+
+
+def encoded(image, suffix, *options):
+    return cv2.imencode(suffix, image, options)[1].tobytes()
 
 
 class Files(Collection):
@@ -36,8 +39,36 @@ class Files(Collection):
         (self.images / 'good.jpg').write_bytes(whole[:2] + b'\xff' + thumbnail + whole[2:] + b'trailer \xff\xda')
         counts = self.build()
         self.assertEqual((counts['images'], counts['failed'], len(self.lines)), (4, 10, 10))
-        for told in ('its name is not UTF-8', 'broken.jpg: ', 'huge.png: not an image'):
+        for told in ('its name is not UTF-8', 'broken.jpg: not an image that cv2 reads', 'empty.jpg: the file is empty', 'half.jpg: the file is cut off',
+                     'half.png: the image is damaged or cut off', 'huge.png: not an image that cv2 reads: of more than 2^30 pixels'):
             self.assertTrue(any(told in line for line in self.lines), told)
+
+    def test_other_depths_are_scaled_by_their_own_range(self):
+        grey = cv2.resize(texture(160, 120, seed=3), (640, 480), interpolation=cv2.INTER_CUBIC)
+        grey = ((grey - grey.min()) * (255 / np.ptp(grey))).astype(np.uint8)
+        for plain in (grey, np.dstack([grey, grey[::-1], grey[:, ::-1]])):
+            others = [np.dstack([plain, np.full_like(grey, 255)]).astype(np.uint16) * 257] if plain.ndim == 3 else [plain.astype(float)]
+            short, file = plain.astype(np.uint16), self.folder / 'other'
+            expected = []
+            for image in (plain, short, short * 16, short * 257, short * 9 + 300, plain / np.float32(255), plain.astype(np.float32), *others):
+                for suffix in ('.tif', '.png') if image.dtype == np.uint16 else ('.tif',):
+                    file.write_bytes(encoded(image, suffix, *PLAIN * (suffix == '.tif')))
+                    found = read_grey(file), read_colour(str(file))
+                    expected = expected or found
+                    for one, other, exact in zip(found, expected, (plain.ndim == 2, True)):  # grey of colours is rounded in two ways
+                        self.assertEqual((one.dtype, one.shape), (np.uint8, other.shape))
+                        np.testing.assert_allclose(one.astype(int), other, atol=0 if exact else 2)
+        hot = grey.astype(np.uint16) * 9 + 300
+        hot[5, 5:9] = 65535
+        file.write_bytes(encoded(hot, '.tif'))
+        np.testing.assert_allclose(np.delete(read_grey(file), 5, 0).astype(int), np.delete(grey, 5, 0), atol=2)
+        holed = grey.astype(np.float32)
+        holed[:9] = np.nan
+        file.write_bytes(encoded(holed, '.tif'))
+        self.assertEqual((read_grey(file)[:9].max(), read_grey(file)[9:].max()), (0, 255))
+        file.write_bytes(encoded(np.full((40, 40), np.nan, np.float32), '.tif'))
+        with self.assertRaisesRegex(ValueError, 'other: the image holds no finite number'):
+            read_colour(file)
 
     def test_exif(self):
         # little-endian TIFF: one entry that points to the EXIF directory, and there a focal length of 28 mm

@@ -7,6 +7,7 @@ from typing import Any, Iterator, NoReturn, Optional
 
 import numpy as np
 
+from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._files import write_whole
 
 SUFFIXES = ('.jpg', '.jpeg', '.png', '.tif', '.tiff', '.bmp', '.webp', '.ppm', '.pgm')
@@ -15,9 +16,11 @@ EXIF_IFD, FOCAL_LENGTH, FOCAL_LENGTH_35MM, PLANE_X_RESOLUTION, PLANE_UNIT = 0x87
 MILLIMETRES = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}  # of EXIF's units of resolution
 SHORT, LONG, RATIONAL = 3, 4, 5  # EXIF's types of numbers
 START_OF_SCAN, APP1 = 0xda, 0xe1  # JPEG's markers
+TIFF = (b'II*\0', b'MM\0*', b'II+\0', b'MM\0+')  # how files begin
+IMAGES = (*TIFF, b'\xff\xd8', b'\x89PNG', b'RIFF', b'BM', *(b'P%d' % kind for kind in range(1, 8)))
 
 
-def find_images(folder: str) -> list[str]:
+def find_images(folder: Path) -> list[str]:
     """Paths of images below `folder`, relative to it, with '/', sorted: COLMAP's names.
 
     :raises OSError: for a folder that cannot be read.
@@ -65,7 +68,7 @@ def import_cv2() -> Any:
     return cv2
 
 
-def read_bytes(path: str) -> bytes:
+def read_bytes(path: Path) -> bytes:
     """:raises ValueError: for what is no file, such as a FIFO, which would never end."""
     if not os.path.isfile(path):
         raise ValueError('not a file' if os.path.lexists(path) else 'there is no such file')
@@ -73,12 +76,15 @@ def read_bytes(path: str) -> bytes:
         return file.read()
 
 
-def read_grey(path: str) -> np.ndarray:
-    """H x W uint8, as the file has it: like COLMAP, not turned as EXIF may ask."""
+def read_grey(path: Path) -> np.ndarray:
+    """H x W uint8, as the file has it: like COLMAP, not turned as EXIF may ask. What is not of 8 bits is scaled by its own range.
+
+    :raises ValueError: saying what is wrong with the file.
+    """
     return decode_grey(read_bytes(path))
 
 
-def read_colour(path: str) -> np.ndarray:
+def read_colour(path: Path) -> np.ndarray:
     """H x W x 3 uint8, BGR; otherwise as read_grey.
 
     :raises ValueError: naming the file.
@@ -86,7 +92,7 @@ def read_colour(path: str) -> np.ndarray:
     try:
         return _decode(read_bytes(path), colour=True)
     except ValueError as e:
-        raise ValueError(f'{path}: {e}') from None
+        raise ValueError(f'{os.fspath(path)}: {e}') from None
 
 
 def decode_grey(data: bytes) -> np.ndarray:
@@ -95,30 +101,63 @@ def decode_grey(data: bytes) -> np.ndarray:
 
 
 def _decode(data: bytes, colour: bool) -> np.ndarray:
-    """:raises ValueError: if it cannot be read, also if it is a JPEG without its end, which cv2 would fill with grey.
-    """
+    """:raises ValueError: if it cannot be read, also if it is a JPEG without its end, which cv2 would fill with grey."""
     cv2 = import_cv2()
-    image = None
-    if data and not _is_cut_off(data):
-        try:
-            image = cv2.imdecode(np.frombuffer(data, np.uint8),
-                                 (cv2.IMREAD_COLOR if colour else cv2.IMREAD_GRAYSCALE) | cv2.IMREAD_IGNORE_ORIENTATION)
-        except cv2.error:  # such as more pixels than it takes
-            pass
+    if not data:
+        raise ValueError('the file is empty')
+    if _is_cut_off(data):
+        raise ValueError('the file is cut off: a JPEG without its end')
+    mode = (cv2.IMREAD_COLOR if colour else cv2.IMREAD_GRAYSCALE) | cv2.IMREAD_IGNORE_ORIENTATION | cv2.IMREAD_ANYDEPTH
+    try:
+        # What is not of 8 bits as the file has it. Of TIFF first, where cv2 gives floats in no other way, and prints of that.
+        for flags in (cv2.IMREAD_UNCHANGED, mode) if data.startswith(TIFF) else (mode, cv2.IMREAD_UNCHANGED):
+            image = cv2.imdecode(np.frombuffer(data, np.uint8), flags)
+            if (flags == mode) == (image is None or image.dtype == np.uint8):
+                break
+    except cv2.error as e:
+        why = 'of more than 2^30 pixels' if 'MAX_IMAGE' in str(e) else str(e).splitlines()[0]
+        raise ValueError(f'not an image that cv2 reads: {why}') from None
     if image is None:
-        raise ValueError('not an image that cv2 reads, cut off, or of more than 2^30 pixels')
-    return np.asarray(image)
+        raise ValueError('the image is damaged or cut off' if data.startswith(IMAGES) else 'not an image that cv2 reads')
+    return _with_channels(_in_8_bits(image), colour)
 
 
-def write_picture(path: str, picture: np.ndarray) -> None:
-    """:raises ValueError: for a suffix of no format that cv2 writes."""
-    cv2 = import_cv2()
+def _in_8_bits(image: np.ndarray) -> np.ndarray:
+    """Other numbers scaled from their own range, of which a few dead pixels are no part; NaN becomes 0."""
+    if image.dtype == np.uint8:
+        return image
+    colours = image[..., :3] if image.ndim == 3 else image
+    values = colours[np.isfinite(colours)]
+    if not values.size:
+        raise ValueError('the image holds no finite number')
+    low, high = np.percentile(values[::1 + values.size // 1000000], (.01, 99.99))
+    if high > low:
+        values = values[(values >= 2 * low - high) & (values <= 2 * high - low)]
+    low, high = float(values.min()), float(values.max())
+    with np.errstate(invalid='ignore'):
+        return np.nan_to_num(np.rint((image - low) * (255 / ((high - low) or 1))).clip(0, 255)).astype(np.uint8)
+
+
+def _with_channels(image: np.ndarray, colour: bool) -> np.ndarray:
+    """H x W, or with colour H x W x 3, of as many as there are."""
+    cv2, channels = import_cv2(), image.shape[2] if image.ndim == 3 else 1
+    if channels > 4:
+        raise ValueError(f'the image has {channels} channels: grey ones and those of three colours are read')
+    if channels in (3, 4):
+        return image[..., :3] if colour else cv2.cvtColor(image[..., :3], cv2.COLOR_BGR2GRAY)
+    grey = image if image.ndim == 2 else np.ascontiguousarray(image[..., 0])
+    return cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR) if colour else grey
+
+
+def write_picture(path: Path, picture: np.ndarray) -> None:
+    """:raises InvalidOption: for a suffix of no format that cv2 writes."""
+    cv2, path = import_cv2(), os.fspath(path)
     try:
         written, data = cv2.imencode(os.path.splitext(path)[1] or '.', picture)
     except cv2.error:
         written = False
     if not written:
-        raise ValueError(f'{path}: end its name in .png or .jpg')
+        raise InvalidOption(f'{path}: end its name in .png or .jpg')
     write_whole(path, data.tobytes())
 
 
