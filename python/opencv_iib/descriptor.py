@@ -1,7 +1,9 @@
 """IIBDescriptorExtractor: the class of cv2.iib, for arrays and for the objects of any cv2."""
 from __future__ import annotations
 
+import contextlib
 import warnings
+import zlib
 from typing import Any, Optional, TypeVar, Union
 
 import numpy as np
@@ -10,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from opencv_iib import _core
 from opencv_iib._arguments import Path, integer, number
 from opencv_iib._arrays import ArrayOrArrays, as_arrays, as_image, as_matrix
+from opencv_iib._parameter_file import check_nesting
 from opencv_iib.detectors import Detector, HessianDetector, core_detector, for_pickle
 from opencv_iib.enums import Border, Channel, Mapping, Orientation, Preset, preset_number
 from opencv_iib.keypoints import Keypoints, as_rows
@@ -262,6 +265,8 @@ class IIBDescriptorExtractor(Detector):
 
     def read(self, fileName: Path) -> None:
         """Reads what write() or C++ wrote."""
+        with contextlib.suppress(OSError, EOFError, zlib.error):  # which the extension tells
+            check_nesting(fileName)
         self._core.read(fileName)
 
     def __getstate__(self) -> dict[str, Any]:

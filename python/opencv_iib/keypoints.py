@@ -41,7 +41,7 @@ def as_rows(keypoints: Any) -> NDArray[np.float32]:
 
     :raises opencv_iib.error: for an array with other columns.
     """
-    if isinstance(keypoints, (list, tuple)) and not (len(keypoints) and isinstance(keypoints[0], np.ndarray)):
+    if isinstance(keypoints, (list, tuple)) and not (len(keypoints) and isinstance(keypoints[0], (np.ndarray, list, tuple))):
         return keypoints_to_array(keypoints)
     rows = as_matrix(as_array(keypoints, 'keypoints').astype(np.float32, copy=False), 'keypoints')
     if len(rows) and rows.shape[1:] not in ((3,), (4,), (7,)):

@@ -66,8 +66,13 @@ def _images(codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per_shard: int)
 def _write(folder: str, images: Iterator[np.ndarray], rows_per_shard: int,
            level_sizes: Optional[Sequence[int]]) -> MappedIndex:
     index: Optional[MappedIndex] = None
-    if os.path.exists(os.path.join(folder, 'manifest.iib')):
+    manifest = os.path.join(folder, 'manifest.iib')
+    if os.path.exists(manifest):
         index = MappedIndex(folder)
+    if index is not None and not index.images():  # of a call that failed: nothing to go on from
+        index = None
+        os.unlink(manifest)
+    if index is not None:
         if level_sizes is not None and index.levelSizes() != tuple(level_sizes):
             raise ValueError(f'{folder} was begun with level sizes {index.levelSizes()}: remove it, or go on with these')
         _skip(index, images, folder)

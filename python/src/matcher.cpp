@@ -17,20 +17,12 @@ cv::Ptr<Matcher> clone(const Matcher& self, bool emptyTrainData)
     return self.clone(emptyTrainData).dynamicCast<Matcher>();
 }
 
-//! For a train set of a call: refers to it, which has to live as long, and counts its cost with that of `self`.
+//! For a train set of a call: counts its cost with that of `self`.
 cv::Ptr<Matcher> on(const Matcher& self, const cv::Mat& train)
 {
     const cv::Ptr<Matcher> given = clone(self, true);
     given->add(Mats{train});
     return given;
-}
-
-void add(Matcher& self, const Mats& descriptors)
-{
-    Mats copies;  // the matcher refers to what it is given, and Python may free or change it
-    for (const cv::Mat& d : descriptors)
-        copies.push_back(d.clone());
-    self.add(copies);
 }
 
 Mats trainDescriptors(const Matcher& self)
@@ -90,8 +82,10 @@ void bindMatcher(nb::module_& m)
                     },
                     nb::arg().none())
             .def("clone", &clone)
-            .def("on", &on, WithoutGil(), nb::keep_alive<0, 2>())
-            .def("add", &add, WithoutGil())
+            .def("on", &on, WithoutGil())
+            .def(
+                    "add", [](Matcher& self, const Mats& descriptors) { self.add(descriptors); },
+                    WithoutGil())
             .def("clear", &Matcher::clear)
             .def("empty", &Matcher::empty)
             .def("getTrainDescriptors", &trainDescriptors)

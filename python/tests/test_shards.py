@@ -96,6 +96,15 @@ class ShardsTest(InFolder):
             self.assertFalse(os.path.exists(name + '.partial'))
         self.expect_found(shards.search(self.folder, self.queries), 5)
 
+    def test_a_call_with_wrong_sizes_is_not_in_the_way_of_a_right_one(self):
+        for wrong in ((6,), (2, 7)):
+            with self.assertRaises(opencv_iib.error):
+                shards.write(self.folder, self.codes, level_sizes=wrong)
+        with self.assertRaises(opencv_iib.error):
+            shards.write(self.folder, [self.codes[:5, :3], self.codes])
+        self.assertEqual(shards.write(self.folder, self.codes, level_sizes=(2, 6)).levelSizes(), (2, 6))
+        self.expect_found(shards.search(self.folder, self.queries), 5)
+
     def test_a_slash_at_the_end(self):
         self.assertEqual(shards.write(self.folder + os.sep, self.codes).rows(), 400)
         self.assertEqual(os.listdir(os.path.dirname(self.folder)), [os.path.basename(self.folder)])
