@@ -8,18 +8,18 @@ import opencv_iib
 import scene
 
 # %% Two images of a camera that stayed where it is: yours, or a rendered street at noon and, the camera turned, at dusk.
-reference, image = map(cv2.imread, sys.argv[1:3] or [str(scene.FOLDER / name) for name in ('view_noon.jpg', 'view_panned.jpg')])
+reference, image = map(scene.read, sys.argv[1:3] or [str(scene.FOLDER / name) for name in ('view_noon.jpg', 'view_panned.jpg')])
 
 # %% Points, matches, refinement and a robust homography, in one call.
-found, transform, error, matches = opencv_iib.alignImages(reference, image)
-if not found:
-    sys.exit('the images do not show the same')
-print(f'{len(matches)} matches agree; the corners are off by {error.max():.2f} pixels at most (standard deviation)')
+found = opencv_iib.alignImages(reference, image)
+if not found.found:
+    sys.exit(found.reason)
+print(f'{len(found.matches)} matches agree; the corners are off by {found.error.max():.2f} pixels at most (standard deviation)')
 
 # %% What the reference's camera would have seen; black where the image does not reach.
 size = reference.shape[1::-1]
-aligned = cv2.warpPerspective(image, transform, size)
-inside = cv2.warpPerspective(np.ones(image.shape[:2], np.uint8), transform, size) > 0
+aligned = cv2.warpPerspective(image, found.transform, size)
+inside = cv2.warpPerspective(np.ones(image.shape[:2], np.uint8), found.transform, size) > 0
 
 # %% A picture: both images, and stripes of both by turns. Edges that run on across the stripes are aligned.
 stripes = np.arange(size[0]) // 64 % 2 == 1

@@ -8,7 +8,7 @@ import opencv_iib
 import scene
 
 # %% Two images: yours, or a rendered street by day and by night.
-a, b = map(cv2.imread, sys.argv[1:3]) if len(sys.argv) > 2 else scene.PICTURES.values()
+a, b = map(scene.read, sys.argv[1:3]) if len(sys.argv) > 2 else scene.PICTURES.values()
 
 # %% 1000 points each, described by 128 bytes. All three results are arrays with a row a point.
 points_a, sizes_a, codes_a = opencv_iib.detect_and_describe(a, 1000)
@@ -19,8 +19,10 @@ pairs, distances = opencv_iib.match(codes_a, codes_b)
 from_a, from_b = points_a[pairs[:, 0]], points_b[pairs[:, 1]]
 
 # %% What agrees with one geometry of the two cameras: needed, since some matches are always wrong.
-_, agree = cv2.findFundamentalMat(from_a, from_b, cv2.USAC_MAGSAC, .75, .999, 10000)
-agree = agree.ravel() > 0
+if len(pairs) < 8:
+    sys.exit(f'only {len(pairs)} matches')
+_, mask = cv2.findFundamentalMat(from_a, from_b, cv2.USAC_MAGSAC, .75, .999, 10000)
+agree = np.ravel(mask) > 0
 print(f'{len(pairs)} matches, {agree.sum()} agree')
 
 # %% A picture of every fifth of them.

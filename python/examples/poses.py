@@ -9,7 +9,7 @@ import scene
 
 # %% Two images and a camera: yours, or a drawn scene by day, and by night from 0.6 m to the right, turned to the left by 5 degrees.
 if len(sys.argv) > 3:
-    a, b = map(cv2.imread, sys.argv[1:3])
+    a, b = map(scene.read, sys.argv[1:3])
     scene.FOCAL = float(sys.argv[3])
 else:
     a, b = scene.view('day', (0, 0)), scene.view('night', (.6, 0), -5)
@@ -31,7 +31,7 @@ again = opencv_iib.propagateMatches(a, rows_a, b, rows_b, pairs[first.inliers.ra
 pose, matches = max(((opencv_iib.findRelativePose(tried.points1, tried.points2, matrix, matrix), tried) for tried in (found, again)),
                     key=lambda both: int(both[0].inliers.sum()))
 if not pose.found:
-    sys.exit('no pose')
+    sys.exit(pose.reason)
 
 # %% Two images do not tell how far the camera moved, but whereto, in the axes of the first camera: right, down, ahead.
 direction = (-pose.R.T @ pose.t).ravel()

@@ -23,7 +23,7 @@ else:
 build_database(str(images), str(out / 'database.db'), options)
 
 # %% Poses and points by pycolmap. The largest of the models is kept.
-models = pycolmap.incremental_mapping(out / 'database.db', images, out / 'models', {'random_seed': 1})
+models = pycolmap.incremental_mapping(out / 'database.db', images, out / 'models', pycolmap.IncrementalPipelineOptions(random_seed=1))
 model = max(models.values(), key=lambda m: m.num_reg_images())
 print(model.summary())
 

@@ -1,12 +1,22 @@
 """Views of a drawn scene with known poses, for examples that are given no images."""
+import sys
 from pathlib import Path
 
 import cv2
 import numpy as np
 
+
+def read(path):
+    """An image, BGR."""
+    image = cv2.imread(str(path))
+    if image is None:
+        sys.exit(f'{path} is no image that can be read')
+    return image
+
+
 FOCAL = 400.
 FOLDER = Path(__file__).parents[2] / 'tools/synthetic'
-PICTURES = {light: cv2.imread(str(FOLDER / f'{light}.png')) for light in ('day', 'night')}
+PICTURES = {light: read(FOLDER / f'{light}.png') for light in ('day', 'night')}
 
 
 def camera(picture):

@@ -13,6 +13,7 @@ The same from arrays to arrays:
 Classes, their methods and constants have the names of ``cv2.iib``; functions from arrays to arrays have Python's. The OpenCV
 inside is its own: nothing but arrays and plain values passes between it and cv2.
 """
+from opencv_iib import _start  # first: the rest takes longer
 from opencv_iib import _core
 from opencv_iib._core import error
 from opencv_iib._arguments import integer
@@ -21,7 +22,7 @@ from opencv_iib.descriptor import IIB, IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector, NormalizedDetector
 from opencv_iib.enums import AlignmentModel, Border, Channel, Mapping, Mode, Orientation, Preset
 from opencv_iib.functions import Features, Matches, detect_and_describe, match
-from opencv_iib.geometry import Alignment, FoundPose, alignImages, findRelativePose
+from opencv_iib.geometry import Alignment, FoundPose, NoAlignment, NoPose, alignImages, findRelativePose
 from opencv_iib.keypoints import array_to_keypoints, keypoints_to_array
 from opencv_iib.mapped_index import MappedIndex
 from opencv_iib.matcher import HierarchicalMatcher
@@ -30,9 +31,8 @@ from opencv_iib.rotation import estimateRotation, matchRotated
 
 __all__ = ['Alignment', 'AlignmentModel', 'Border', 'Channel', 'DMatch', 'Features', 'FoundPose', 'HessianDetector',
            'HierarchicalMatcher', 'IIB', 'IIBDescriptorExtractor', 'KeyPoint', 'MappedIndex', 'Mapping', 'Matches',
-           'Mode', 'NormalizedDetector', 'OPENCV_VERSION', 'Orientation', 'Preset', 'PropagatedMatches', 'RefinedMatches',
-           'alignImages',
-           'array_to_keypoints', 'detect_and_describe', 'error', 'estimateRotation', 'findRelativePose', 'getNumThreads',
+           'Mode', 'NoAlignment', 'NoPose', 'NormalizedDetector', 'OPENCV_VERSION', 'Orientation', 'Preset', 'PropagatedMatches',
+           'RefinedMatches', 'alignImages', 'array_to_keypoints', 'detect_and_describe', 'error', 'estimateRotation', 'findRelativePose', 'getNumThreads',
            'keypoints_to_array', 'match', 'matchRotated', 'propagateMatches', 'refineMatches', 'setNumThreads']
 
 __version__: str = _core.VERSION

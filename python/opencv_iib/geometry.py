@@ -1,7 +1,7 @@
 """Where a second camera stands, and where a second image lies."""
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Optional
+from typing import Any, Literal, NamedTuple, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,23 +12,61 @@ from opencv_iib._arrays import as_array, as_image, as_matrix
 from opencv_iib.enums import AlignmentModel
 
 
-class FoundPose(NamedTuple):
-    """What :func:`findRelativePose` finds. Without a pose, R, t and covariance are None."""
-
+class _Pose(NamedTuple):
     found: bool
-    R: Optional[NDArray[np.float64]]  #: 3 x 3: from the axes of camera 1 to those of camera 2
-    t: Optional[NDArray[np.float64]]  #: 3 x 1, of length 1: direction of the translation, in the axes of camera 2
+    R: Optional[NDArray[np.float64]]
+    t: Optional[NDArray[np.float64]]
+    inliers: NDArray[np.uint8]
+    covariance: Optional[NDArray[np.float64]]
+
+
+class FoundPose(_Pose):
+    """What :func:`findRelativePose` finds; `reason` is ''."""
+
+    __slots__ = ()
+    found: Literal[True]
+    R: NDArray[np.float64]  #: 3 x 3: from the axes of camera 1 to those of camera 2
+    t: NDArray[np.float64]  #: 3 x 1, of length 1: direction of the translation, in the axes of camera 2
     inliers: NDArray[np.uint8]  #: N x 1: 1 for matches that agree with the pose
-    covariance: Optional[NDArray[np.float64]]  #: 5 x 5, radians: of the rotation, and of the direction of t
+    covariance: NDArray[np.float64]  #: 5 x 5, radians: of the rotation, and of the direction of t
+    reason = ''
 
 
-class Alignment(NamedTuple):
-    """What :func:`alignImages` finds. Where the images do not show the same, transform and error are None."""
+class NoPose(_Pose):
+    """What :func:`findRelativePose` gives where it finds none: R, t and covariance are None, and `reason` is a sentence."""
 
+    found: Literal[False]
+    R: None
+    t: None
+    covariance: None
+    reason: str = ''
+
+
+class _Alignment(NamedTuple):
     found: bool
-    transform: Optional[NDArray[np.float64]]  #: 3 x 3: from pixels of the image to pixels of the reference
-    error: Optional[NDArray[np.float64]]  #: 4 x 1: standard deviations of the places of the image's corners, pixels
+    transform: Optional[NDArray[np.float64]]
+    error: Optional[NDArray[np.float64]]
+    matches: NDArray[np.float32]
+
+
+class Alignment(_Alignment):
+    """What :func:`alignImages` finds; `reason` is ''."""
+
+    __slots__ = ()
+    found: Literal[True]
+    transform: NDArray[np.float64]  #: 3 x 3: from pixels of the image to pixels of the reference
+    error: NDArray[np.float64]  #: 4 x 1: standard deviations of the places of the image's corners, pixels
     matches: NDArray[np.float32]  #: M x 4: those that agree, x and y in the reference, x and y in the image
+    reason = ''
+
+
+class NoAlignment(_Alignment):
+    """What :func:`alignImages` gives where images do not show the same: transform and error are None, and `reason` is a sentence."""
+
+    found: Literal[False]
+    transform: None
+    error: None
+    reason: str = ''
 
 
 def _numbers(value: ArrayLike, what: str) -> NDArray[Any]:
@@ -37,7 +75,7 @@ def _numbers(value: ArrayLike, what: str) -> NDArray[Any]:
 
 
 def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: ArrayLike, cameraMatrix2: ArrayLike,
-                     scale: float = .25) -> FoundPose:
+                     scale: float = .25) -> Union[FoundPose, NoPose]:
     """Finds where camera 2 stands, seen from camera 1, from matched points of which many may be wrong.
 
     As ``cv2.iib.findRelativePose``. Points must be free of lens distortion:
@@ -48,15 +86,20 @@ def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: Arra
     :param cameraMatrix1: 3 x 3, [fx 0 cx; 0 fy cy; 0 0 1], of camera 1.
     :param cameraMatrix2: of camera 2.
     :param scale: pixels: about the standard deviation of the points; .25 for refined points, .5 for points as detected.
-    :return: not found with fewer than five matches, or where no pose agrees with five or more.
+    :return: a tuple (found, R, t, inliers, covariance): a NoPose with fewer than five matches, or where no pose agrees with five
+        or more. Once `found` is checked, type checkers know that R, t and covariance are there.
     :raises opencv_iib.error: for arrays of other shapes, points that are not one for one, and a scale that is not above 0.
     """
-    return FoundPose(*_core.findRelativePose(_numbers(points1, 'points1'), _numbers(points2, 'points2'),
-                                             _numbers(cameraMatrix1, 'cameraMatrix1'),
-                                             _numbers(cameraMatrix2, 'cameraMatrix2'), number(scale, 'scale')))
+    pose = _core.findRelativePose(_numbers(points1, 'points1'), _numbers(points2, 'points2'), _numbers(cameraMatrix1, 'cameraMatrix1'),
+                                  _numbers(cameraMatrix2, 'cameraMatrix2'), number(scale, 'scale'))
+    if pose[0]:
+        return FoundPose(*pose)
+    none = NoPose(*pose)
+    none.reason = f'fewer than five of {len(none.inliers)} matches agree with one pose'
+    return none
 
 
-def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentModel.HOMOGRAPHY) -> Alignment:
+def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentModel.HOMOGRAPHY) -> Union[Alignment, NoAlignment]:
     """Aligns an image with a reference that was taken in another light, as ``cv2.iib.alignImages``.
 
     For images of a plane, or of anything by a camera that stays where it is, though it may turn and zoom. With cv2,
@@ -64,7 +107,12 @@ def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentMo
 
     :param reference: as IIBDescriptorExtractor takes it; so is `image`.
     :param model: an AlignmentModel; the simplest one that is true of the images gives the smallest errors.
-    :return: not found where too few matches agree for the images to show the same.
+    :return: a tuple (found, transform, error, matches): a NoAlignment where too few matches agree for the images to show the same.
     :raises opencv_iib.error: for images of another type, and a model that is none.
     """
-    return Alignment(*_core.alignImages(as_image(reference), as_image(image), integer(model, 'model')))
+    alignment = _core.alignImages(as_image(reference), as_image(image), integer(model, 'model'))
+    if alignment[0]:
+        return Alignment(*alignment)
+    none = NoAlignment(*alignment)
+    none.reason = f'only {len(none.matches)} matches agree: too few for the images to show the same'
+    return none

@@ -23,6 +23,15 @@ Location localize(const Localizer& self, const cv::Mat& image, const Camera& cam
     return self.localize(image, camera, prior ? &*prior : nullptr);
 }
 
+void newLocation(Location* self, const std::optional<cv::Affine3d>& pose,
+        const std::optional<cv::Mat>& covariance, const std::string& reason, int matches, int inliers,
+        const std::vector<cv::Point2d>& pixels, const std::vector<cv::Point3d>& points)
+{
+    new (self) Location{pose.has_value(), reason, pose.value_or(cv::Affine3d()),
+            covariance ? cv::Matx66d(covariance->ptr<double>()) : cv::Matx66d(), matches, inliers, pixels,
+            points};
+}
+
 void buildMap(nb::handle model, const nb::callable& read, nb::handle map, int points, bool lines,
         bool orbAndAkaze, const nb::callable& report)
 {
@@ -78,6 +87,7 @@ std::tuple<int, int, int> commit(MapUpdate& self)
 void bindLocalization(nb::module_& m)
 {
     nb::class_<Camera>(m, "Camera")
+            .def(nb::init<const Camera&>())
             .def_static("parse", &Camera::parse)
             .def_ro("model", &Camera::model)
             .def_prop_ro("width", [](const Camera& self) { return self.size.width; })
@@ -92,6 +102,9 @@ void bindLocalization(nb::module_& m)
                 new (self) PosedImage{name, camera, pose, pixels, std::vector<int>(pixels.size(), -1)};
             });
     nb::class_<Location>(m, "Location")
+            .def(nb::init<const Location&>())
+            .def("__init__", &newLocation)
+            .def_ro("found", &Location::found)
             .def_ro("reason", &Location::reason)
             .def_prop_ro("cam_from_world",
                     [](const Location& self) {

@@ -82,6 +82,23 @@ class Documentation(InFolder):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stdout, run[-1])
 
+    def test_programs_say_what_is_wrong(self):
+        cv2.imwrite(str(self.folder / 'flat.png'), np.full_like(self.images['day'], 77))
+        pages = {page.name: page for page in reversed(PAGES)}
+        for name, arguments, told in (
+                ('README.md', '', 'two images'), ('README.md', 'gone.png day.png', 'gone.png'), ('iib_day_night.markdown', 'day.png gone.png', 'gone.png'),
+                ('iib_day_night.markdown', 'day.png flat.png', 'only 0 matches'), ('iib_align.markdown', 'day.png gone.png a.png', 'gone.png'),
+                ('iib_align.markdown', 'day.png flat.png a.png', 'nothing in common'), ('iib_saving_index.markdown', 'gone.png day.png', 'gone.png'),
+                ('iib_localization.markdown', 'day.png depth.png gone.png 400', 'gone.png'),
+                ('iib_localization.markdown', 'day.png depth.png flat.png 400', 'only 0 matches'),
+                ('iib_relative_pose.markdown', 'day.png gone.png 400 a.png', 'gone.png'),
+                ('iib_relative_pose.markdown', 'day.png flat.png 400 a.png', 'no pose agrees')):
+            with self.subTest(page=name, arguments=arguments):
+                (self.folder / 'program.py').write_text(programs(pages[name])[0])
+                done = subprocess.run([sys.executable, 'program.py', *arguments.split()], capture_output=True, text=True, cwd=self.folder)
+                self.assertEqual(done.returncode, 1)
+                self.assertRegex(done.stderr, rf'^(\[ *WARN.*\n)?[^\n]*{told}[^\n]*\n$')
+
     def test_every_program_is_known(self):
         self.assertGreater(len(PAGES), 15)
         self.assertEqual({page.name: len(programs(page)) for page in PAGES if programs(page)},

@@ -1,4 +1,5 @@
 """Poses and alignment, from arrays."""
+import pickle
 import unittest
 
 import numpy as np
@@ -24,6 +25,7 @@ class RelativePose(unittest.TestCase):
         second[:30] = second[29::-1]
         found, R, t, inliers, covariance = opencv_iib.findRelativePose(first, second, CAMERA, CAMERA)
         self.assertTrue(found)
+        self.assertEqual(opencv_iib.findRelativePose(first, second, CAMERA, CAMERA).reason, '')
         np.testing.assert_allclose(R, np.eye(3), atol=1e-3)
         np.testing.assert_allclose(t, [[-1], [0], [0]], atol=3e-3)
         self.assertEqual((inliers.shape, covariance.shape), ((100, 1), (5, 5)))
@@ -35,6 +37,9 @@ class RelativePose(unittest.TestCase):
         pose = opencv_iib.findRelativePose(first, second, CAMERA, CAMERA.tolist())
         self.assertEqual((pose.found, pose.R, pose.t, pose.covariance), (False, None, None, None))
         self.assertEqual(pose.inliers.tolist(), [[0]] * 4)
+        self.assertRegex(pose.reason, r'^[a-z].* matches .*')
+        again = pickle.loads(pickle.dumps(pose))
+        self.assertEqual((type(again), again.reason, tuple(again[:3])), (opencv_iib.NoPose, pose.reason, (False, None, None)))
 
 
 class Alignment(unittest.TestCase):
@@ -52,3 +57,4 @@ class Alignment(unittest.TestCase):
     def test_other_pictures(self):
         alignment = opencv_iib.alignImages(*(texture(640, 480, seed=seed)[290:] for seed in (1, 2)))  # below their rectangle
         self.assertEqual((alignment.found, alignment.transform, alignment.error), (False, None, None))
+        self.assertRegex(alignment.reason, r'^[a-z].*')

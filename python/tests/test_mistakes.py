@@ -8,6 +8,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import HessianDetector, HierarchicalMatcher, IIB, MappedIndex, NormalizedDetector
+from opencv_iib.localization import Camera, Localizer, Location, smooth_poses
 from support import InFolder, cv2, grid, texture
 
 
@@ -76,6 +77,35 @@ class Texts(InFolder):
         points = grid()
         for index in (1 << 32, -(1 << 32)):
             self.expect(opencv_iib.error, 'match', lambda: opencv_iib.estimateRotation(points, points, np.array([[0, 0], [1, 1], [index, 2]])))
+
+    def test_keypoints_in_lists(self):
+        image, rows = texture(60, 60), [[20, 20, 5], (30, 30, 6)]
+        np.testing.assert_array_equal(opencv_iib.refineMatches(image, rows, image, rows, np.array([[0, 0], [1, 1]])).points1,
+                                      [[20, 20], [30, 30]])
+        self.expect(opencv_iib.error, 'keypoints are objects', lambda: opencv_iib.refineMatches(image, [[20, 20]], image, rows, []))
+        self.expect(TypeError, 'keypoints: an array of numbers', lambda: opencv_iib.refineMatches(image, [[1, 2, 'x']], image, rows, []))
+
+    def test_cameras_and_places(self):
+        camera = Camera.parse('PINHOLE,640,480,500,500,320,240')
+        for wrong in (3, None, b'PINHOLE'):
+            self.expect(TypeError, "'MODEL,WIDTH,HEIGHT,PARAMS' is needed", lambda: Camera.parse(wrong))
+        self.expect(ValueError, 'points: an array of N x 3 is needed, not of 1 x 2', lambda: camera.project([[0, 0]]))
+        self.expect(TypeError, 'points: an array of numbers', lambda: camera.project('x'))
+        np.testing.assert_array_equal(camera.project([[0, 0, 1]]), [[319.5, 239.5]])
+        self.expect(TypeError, 'PathLike', lambda: Localizer(None))
+        self.expect(TypeError, 'points: an integer', lambda: Localizer(self.folder, 'x'))
+        self.expect(ValueError, 'points is 3000000000', lambda: Localizer(self.folder, 3000000000))
+        self.expect(TypeError, "locations: what Localizer.localize finds is needed, not 'x'", lambda: smooth_poses([1], ['x'], np.zeros((1, 7))))
+        self.expect(TypeError, 'readings', lambda: smooth_poses([], [], 'x'))
+        self.expect(ValueError, 'come together', lambda: Location(np.eye(4)))
+
+    def test_files_that_nest_without_end(self):
+        deep = 100000
+        for name, text in (('a.json', '{"a":' + '[' * deep + ']' * deep + '}'), ('b.json', '{"a":' * deep + '1' + '}' * deep),
+                           ('a.yml', '%YAML:1.0\n---\na: ' + '[' * deep), ('b.yml', '%YAML:1.0\n---\na:\n   ' + '- ' * deep + '1\n'),
+                           ('a.xml', '<?xml version="1.0"?>\n<opencv_storage>' + '<a>' * deep + '</a>' * deep + '</opencv_storage>')):
+            (self.folder / name).write_text(text)
+            self.expect(opencv_iib.error, f'{name} nests 100 levels deep', lambda: IIB().read(self.folder / name))
 
     def test_presets_by_name(self):
         for name in ('COMPACT', 'compact', 'PRESET_Compact'):

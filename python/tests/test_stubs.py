@@ -1,21 +1,25 @@
 """The type stubs say what is there: mypy's stubtest. Those of the extension itself are nanobind's."""
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+from pathlib import Path
 
 import opencv_iib
-from support import optional
+from support import REPOSITORY, optional
 
 mypy = optional('mypy')
 
-# What nanobind's functions and classes are not, of what stubtest looks for; and lru_cache.
+# What nanobind's functions and classes are not, of what stubtest looks for; lru_cache; and tuples with a reason beside them.
 UNREADABLE = re.compile(r'opencv_iib\._core\.\S+ (is not a function|is inconsistent, stub is a staticmethod but runtime is '
                         r'not|is inconsistent, metaclass differs|is a disjoint base at runtime|'
                         r'is inconsistent, stub does not have \*args parameter "args"|'
                         r'is inconsistent, stub does not have \*\*kwargs parameter "kwargs")'
-                        r'|opencv_iib\.(_types\._cv2|colmap\.pipeline\.(_features|_matcher)) is inconsistent')
+                        r'|opencv_iib\.(_types\._cv2|colmap\.pipeline\.(_features|_matcher)|localization\.run\._common_camera) is inconsistent'
+                        r'|opencv_iib\.localization\.localizer\.(Camera|Location) is inconsistent, metaclass differs'
+                        r'|opencv_iib\.geometry\.No(Pose|Alignment) is a disjoint base at runtime')
 
 
 class Stubs(unittest.TestCase):
@@ -23,14 +27,23 @@ class Stubs(unittest.TestCase):
     @unittest.skipIf(mypy is None, 'no mypy')
     def test_a_strict_program_sees_the_names_and_types(self):
         program = '''
+import pathlib
 import numpy as np
 import opencv_iib
+import opencv_iib.localization
 from numpy.typing import NDArray
 iib: opencv_iib.IIB = opencv_iib.IIB.createPreset(opencv_iib.Preset.UNIVERSAL, 18)
 codes: NDArray[np.uint8] = iib.detectAndCompute(np.zeros((9, 9), np.uint8))[1]
 rows: NDArray[np.float32] = iib.compute([[0, 0, 0]], np.zeros((9, 3), np.float32))[0]
 pairs: NDArray[np.int32] = opencv_iib.match(codes, codes).pairs
 mode: opencv_iib.Mode = opencv_iib.HierarchicalMatcher.createRecommended().getMode()
+pose, alignment = opencv_iib.findRelativePose([], [], [], []), opencv_iib.alignImages([[0]], [[0]])
+if pose.found and alignment.found:
+    matrices: list[NDArray[np.float64]] = [pose.R, pose.t, pose.covariance, alignment.transform, alignment.error]
+reasons: list[str] = [pose.reason, alignment.reason]
+camera = opencv_iib.localization.Camera('PINHOLE', 9, 9, (9, 9, 4, 4))
+places: NDArray[np.float64] = camera.project([[0, 0, 1]])
+opencv_iib.localization.build(pathlib.Path('m'), pathlib.Path('i'), 'o')
 ''' + '\n'.join(f'print(opencv_iib.{name})' for name in opencv_iib.__all__)
         wrong = ("iib.setBorder('drop')", 'text: str = iib.descriptorSize()', 'iib.detect_and_compute(codes)',
                  'opencv_iib.match(codes)')
@@ -40,6 +53,20 @@ mode: opencv_iib.Mode = opencv_iib.HierarchicalMatcher.createRecommended().getMo
         first = program.count('\n') + 2
         self.assertEqual([int(line) for line in re.findall(r'^<string>:(\d+): error', done.stdout, re.M)],
                          list(range(first, first + len(wrong))), done.stdout + done.stderr)
+
+    @unittest.skipIf(mypy is None, 'no mypy')
+    @unittest.skipUnless((REPOSITORY / 'README.md').exists(), 'the documentation is not beside these tests')
+    def test_programs_of_the_readme_and_examples(self):
+        unknown = ['torch', 'hloc.utils.base_model', 'psycopg', *(name for name in ('cv2', 'pycolmap') if optional(name) is None)]
+        with tempfile.TemporaryDirectory() as folder:
+            for path in (REPOSITORY / 'python/examples').glob('*.py'):
+                shutil.copy(path, folder)
+            for n, program in enumerate(re.findall('^```python\n(.*?)^```', (REPOSITORY / 'README.md').read_text(), re.S | re.M)):
+                Path(folder, f'readme_{n}.py').write_text(program)
+            done = subprocess.run([sys.executable, '-m', 'mypy', '.'], capture_output=True, text=True, cwd=folder)
+        self.assertIn('checked', done.stdout, done.stderr)
+        missing = re.compile('|'.join(f'module named "{re.escape(name)}"|note: ' for name in unknown))
+        self.assertEqual([line for line in done.stdout.splitlines()[:-1] if not missing.search(line)], [])
 
     @unittest.skipIf(mypy is None, 'no mypy')
     def test_stubtest(self):

@@ -2,24 +2,112 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Optional, Union
+from typing import Any, Iterable, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
-from opencv_iib._arrays import as_image
+from opencv_iib._arguments import Path, integer, number
+from opencv_iib._arrays import as_array, as_image
 
-#: COLMAP's camera: ``model``, ``width``, ``height`` and ``params``; ``Camera.parse('MODEL,WIDTH,HEIGHT,PARAMS')`` makes one,
-#: ``project`` gives the pixels of N x 3 float64 points in its axes (NaN for what it does not see), and ``undistorted`` of N x 2 pixels
-#: those that a camera without distortion would have, of the 3 x 3 ``matrix``.
-Camera = _core.Camera
-#: What Localizer.localize finds: ``cam_from_world`` (4 x 4 float64, or None: then ``reason`` says why), ``covariance`` (6 x 6, of
-#: the camera's centre in the map's unit and of a small turn about the world's axes in radians; or None), ``matches``,
-#: ``inliers``, their ``pixels`` (N x 2, the centre of the first pixel is 0) and the ``points`` of the map seen there (N x 3).
-Location = _core.Location
 
-AnyCamera = Union[Camera, str, Any]
+
+class Camera(_core.Camera):
+    """A camera as COLMAP describes it, of the attributes ``model``, ``width``, ``height`` and ``params``.
+
+    ``Camera.parse('PINHOLE,640,480,500,500,320,240')`` makes one too. The centre of the first pixel is (0, 0), but in `params`
+    (.5, .5), as COLMAP has it.
+    """
+
+    def __init__(self, model: str, width: int, height: int, params: Iterable[float]) -> None:
+        """Creates a camera.
+
+        :param model: COLMAP's name of it, in any case.
+        :param params: COLMAP's, in its order.
+        :raises opencv_iib.error: for an unknown model or wrong parameters.
+        """
+        values = [str(model).upper(), integer(width, 'width'), integer(height, 'height'), *(number(value, 'params') for value in params)]
+        super().__init__(_core.Camera.parse(','.join(map(str, values))))
+
+    @classmethod
+    def parse(cls, text: str) -> Camera:
+        """From ``'MODEL,WIDTH,HEIGHT,PARAMS'``.
+
+        :raises opencv_iib.error: as for the class itself.
+        """
+        if not isinstance(text, str):
+            raise TypeError(f"camera: a text 'MODEL,WIDTH,HEIGHT,PARAMS' is needed, not {text!r}")
+        model, comma, rest = text.partition(',')
+        return cls._of(_core.Camera.parse(model.strip().upper() + comma + rest))
+
+    @classmethod
+    def _of(cls, core: _core.Camera) -> Camera:
+        return cls(core.model, core.width, core.height, core.params)
+
+    def project(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Pixels, N x 2, of points in the camera's axes (x right, y down, z ahead), N x 3; NaN for those that it does not see."""
+        return super().project(as_rows_of(points, 3, 'points'))
+
+    def _values(self) -> tuple[str, int, int, tuple[float, ...]]:
+        return self.model, self.width, self.height, tuple(self.params)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Camera) and self._values() == other._values()
+
+    def __hash__(self) -> int:
+        return hash(self._values())
+
+    def __reduce__(self) -> Any:
+        return Camera, self._values()
+
+    def __repr__(self) -> str:
+        return f'Camera({self.model!r}, {self.width}, {self.height}, {self.params})'
+
+
+class Location(_core.Location):
+    """What :meth:`Localizer.localize` finds: whether there is a pose (`found`), or why not (`reason`).
+
+    ``cam_from_world`` is 4 x 4, ``covariance`` 6 x 6, of the camera's centre (map's unit) and of a small turn about the world's
+    axes (radians); both are None without a pose. Of the `matches`, `inliers` agree: ``pixels``, N x 2 (the centre of the first pixel
+    is 0), show the ``points`` of the map, N x 3.
+    """
+
+    def __init__(self, cam_from_world: Optional[ArrayLike] = None, covariance: Optional[ArrayLike] = None, reason: str = '',
+                 matches: int = 0, inliers: int = 0, pixels: ArrayLike = (), points: ArrayLike = ()) -> None:
+        """A pose and its covariance that were found otherwise, for :func:`smooth_poses`; or none of them."""
+        if (cam_from_world is None) != (covariance is None):
+            raise ValueError('a pose and its covariance come together, or none of them')
+        super().__init__(None if cam_from_world is None else as_pose(cam_from_world),
+                         None if covariance is None else as_rows_of(np.reshape(covariance, (6, 6)), 6, 'covariance'), str(reason),
+                         integer(matches, 'matches'), integer(inliers, 'inliers'), as_rows_of(pixels, 2, 'pixels'),
+                         as_rows_of(points, 3, 'points'))
+
+    @classmethod
+    def _of(cls, core: _core.Location) -> Location:
+        made = cls.__new__(cls)
+        _core.Location.__init__(made, core)
+        return made
+
+    def _values(self) -> tuple[Any, ...]:
+        return self.cam_from_world, self.covariance, self.reason, self.matches, self.inliers, self.pixels, self.points
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Location) and all(map(np.array_equal, self._values(), other._values()))
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> Any:
+        return Location, self._values()
+
+    def __repr__(self) -> str:
+        if self.cam_from_world is None:
+            return f'Location(reason={self.reason!r})'
+        place = -self.cam_from_world[:3, :3].T @ self.cam_from_world[:3, 3]
+        return f'Location(centre {place.round(3).tolist()}, {self.inliers} of {self.matches} matches agree)'
+
+
+AnyCamera = Union[_core.Camera, str, Any]
 
 
 def as_camera(camera: AnyCamera) -> Camera:
@@ -27,12 +115,22 @@ def as_camera(camera: AnyCamera) -> Camera:
 
     :raises opencv_iib.error: for an unknown model or wrong parameters.
     """
-    if isinstance(camera, Camera):
-        return camera
-    if not isinstance(camera, str):
-        params = (repr(float(value)) for value in camera.params)
-        camera = ','.join((camera.model_name, str(camera.width), str(camera.height), *params))
-    return Camera.parse(camera)
+    if isinstance(camera, _core.Camera):
+        return camera if isinstance(camera, Camera) else Camera._of(camera)
+    if isinstance(camera, str) or not hasattr(camera, 'model_name'):
+        return Camera.parse(camera)
+    return Camera(camera.model_name, camera.width, camera.height, camera.params)
+
+
+def as_rows_of(values: ArrayLike, columns: int, what: str) -> NDArray[np.float64]:
+    """Rows of so many columns, float64.
+
+    :raises ValueError: for another shape.
+    """
+    rows = as_array(values, what)
+    if rows.size and rows.shape[1:] != (columns,):
+        raise ValueError(f'{what}: an array of N x {columns} is needed, not of {" x ".join(map(str, rows.shape))}')
+    return rows.reshape(-1, columns).astype(np.float64, copy=False)
 
 
 def as_pose(pose: ArrayLike) -> NDArray[np.float64]:
@@ -44,9 +142,9 @@ def as_pose(pose: ArrayLike) -> NDArray[np.float64]:
 
 
 class Localizer:
-    """Finds images in a map. Threads may share one."""
+    """Finds images in a map. Threads may share one; a pickle holds the map's name, and reads it anew."""
 
-    def __init__(self, map: Union[str, os.PathLike[str]], points: int = 1000, lines: bool = False) -> None:
+    def __init__(self, map: Path, points: int = 1000, lines: bool = False) -> None:
         """Reads a map.
 
         :param map: its folder.
@@ -56,12 +154,13 @@ class Localizer:
         :raises opencv_iib.error: for a folder without a map, or a damaged one; for lines of a map without them, or where OpenCV's module
             line_descriptor was missing in the build.
         """
-        self._core = _core.Localizer(map, points, lines)
+        self._arguments = os.path.abspath(map), integer(points, 'points'), bool(lines)
+        self._core = _core.Localizer(*self._arguments)
 
     @property
     def cameras(self) -> list[Camera]:
         """Of the map's images, each once."""
-        return self._core.cameras()
+        return [Camera._of(camera) for camera in self._core.cameras()]
 
     def localize(self, image: ArrayLike, camera: AnyCamera, prior: Optional[ArrayLike] = None) -> Location:
         """Where an image was taken. The GIL is released meanwhile.
@@ -73,4 +172,16 @@ class Localizer:
             pose, the image is looked for everywhere.
         :raises opencv_iib.error: for an image of another size or type, or an invalid camera.
         """
-        return self._core.localize(as_image(image), as_camera(camera), None if prior is None else as_pose(prior))
+        return Location._of(self._core.localize(as_image(image), as_camera(camera), None if prior is None else as_pose(prior)))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Localizer) and self._arguments == other._arguments
+
+    def __hash__(self) -> int:
+        return hash(self._arguments)
+
+    def __reduce__(self) -> Any:
+        return Localizer, self._arguments
+
+    def __repr__(self) -> str:
+        return 'Localizer({!r}, points={}, lines={})'.format(*self._arguments)
