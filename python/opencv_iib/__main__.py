@@ -5,11 +5,15 @@ import argparse
 import contextlib
 import dataclasses
 import logging
+import os
 import sqlite3
 import sys
-from typing import Any, Callable, Optional, Sequence
+from typing import Any, Callable, NoReturn, Optional, Sequence
 
 from opencv_iib import __version__, error, localization
+from opencv_iib._arguments import InvalidOption
+from opencv_iib._start import end_of_start
+from opencv_iib._streams import STANDARD_OUTPUT, is_quiet, note, put, quiet
 from opencv_iib.align import align
 from opencv_iib.colmap import hloc
 from opencv_iib.colmap.database import CAMERA_MODELS
@@ -17,10 +21,24 @@ from opencv_iib.colmap.features import DETECTORS, FeatureOptions, preset_names
 from opencv_iib.colmap.pipeline import PAIRS, VERIFIERS, Options, build_database
 from opencv_iib.demo import demo
 from opencv_iib.enums import AlignmentModel
+from opencv_iib.localization import Camera
 from opencv_iib.measure import match_images
 
-
 CAMERA = 'MODEL,WIDTH,HEIGHT,PARAMS'
+
+
+class _Parser(argparse.ArgumentParser):
+
+    def error(self, message: str) -> NoReturn:
+        """Instead of the usage: a line, as for other mistakes."""
+        raise InvalidOption(f'{message} ({self.prog} --help tells more)')
+
+
+def _camera(text: str) -> Camera:
+    try:
+        return Camera.parse(text)
+    except error as e:
+        raise argparse.ArgumentTypeError(str(e)) from None
 
 
 def _features(parser: argparse.ArgumentParser, points: int) -> None:
@@ -45,13 +63,14 @@ def _call(function: Callable[..., Any], arguments: argparse.Namespace, **more: A
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='opencv-iib', description=__doc__)
+    parser = _Parser(prog='opencv-iib', description=__doc__)
     parser.add_argument('--version', action='version', version=f'opencv_iib {__version__}')
     commands = parser.add_subparsers(dest='command', required=True)
 
     def add(name: str, run: Callable[[argparse.Namespace], int], description: str) -> argparse.ArgumentParser:
         added: argparse.ArgumentParser = commands.add_parser(name, help=description)
         added.set_defaults(run=run)
+        added.add_argument('--quiet', action='store_true', help='say only what is wrong')
         return added
 
     command = add('demo', _demo, 'match two images and write a picture; status 3: nothing agrees')
@@ -63,9 +82,9 @@ def _parser() -> argparse.ArgumentParser:
     command = add('match', _match, 'match two images to a fraction of a pixel; status 3: no matches, or no pose')
     command.add_argument('image_a')
     command.add_argument('image_b')
-    command.add_argument('--out', default='matches.csv', help='file to write, a line a match (%(default)s)')
+    command.add_argument('--out', default='matches.csv', help='file to write, a line a match; also .json and .npz, and - for standard output (%(default)s)')
     command.add_argument('--picture', help='picture to write')
-    command.add_argument('--camera', dest='cameras', action='append', default=[], metavar=CAMERA,
+    command.add_argument('--camera', dest='cameras', action='append', default=[], metavar=CAMERA, type=_camera,
                          help="find the pose too, with COLMAP's name and parameters of the camera; twice for two cameras")
     _features(command, 2000)
 
@@ -80,14 +99,14 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument('images', help='folder of images')
     command.add_argument('database', help='file to write; an interrupted run goes on from NAME.partial')
     _features(command, FeatureOptions.points)
-    command.add_argument('--camera-model', default='SIMPLE_RADIAL', choices=CAMERA_MODELS, help='(%(default)s)')
+    command.add_argument('--camera-model', default='SIMPLE_RADIAL', choices=CAMERA_MODELS, type=str.upper, help='(%(default)s)')
     command.add_argument('--focal', type=float, default=0, help='focal length in pixels, instead of EXIF')
     command.add_argument('--share-cameras', action='store_true', help='one camera for images of one size and focal')
     command.add_argument('--pairs', default='exhaustive',
                          help=f'{", ".join(PAIRS)}, or a file with two names a line (%(default)s)')
     command.add_argument('--neighbours', type=int, default=20, help='of sequential and retrieval (%(default)s)')
     command.add_argument('--ratio', type=float, default=.9, help='ratio test beside the cross-check (%(default)s; 1: none)')
-    command.add_argument('--verify', default='auto', choices=VERIFIERS, help='two-view geometry (%(default)s)')
+    command.add_argument('--verify', default='auto', choices=VERIFIERS, type=str.lower, help='two-view geometry (%(default)s)')
     command.add_argument('--workers', type=int, help='threads (one a core)')
     command.add_argument('--scheduler', metavar='ADDRESS', help="have the workers of Dask's scheduler there do it")
     command.add_argument('--force', action='store_true', help='replace a database that is there')
@@ -101,7 +120,7 @@ def _parser() -> argparse.ArgumentParser:
 
     mapping = add('map', _map, 'make a map for localization of a COLMAP model')
     localizing = add('localize', _localize, 'find where images were taken; status 0: all, 4: some, 3: none')
-    updating = add('update', _update, 'add the light of images to a map')
+    updating = add('update', _update, 'add the light of images to a map; status as of localize')
     mapping.add_argument('--model', required=True, help='folder of a COLMAP model, binary or text')
     for each in (localizing, updating):
         each.add_argument('--map', required=True, help='folder that the command map wrote')
@@ -109,7 +128,7 @@ def _parser() -> argparse.ArgumentParser:
         each.add_argument('--images', required=True, help='folder of images, also in folders below it')
         each.add_argument('--workers', type=int, help='threads (one a core)')
     for each in (localizing, updating):
-        each.add_argument('--camera', metavar=CAMERA,
+        each.add_argument('--camera', metavar=CAMERA, type=_camera,
                           help="COLMAP's name and parameters of the camera of all images, instead of the map's or EXIF's")
     mapping.add_argument('--out', required=True, help='folder to write')
     mapping.add_argument('--points', type=int, default=2000, help='at most so many an image (%(default)s)')
@@ -124,7 +143,8 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-SOME_FOUND, NONE_FOUND = 4, 3  # status of localize and align; NONE_FOUND of demo and match too
+SOME_FOUND, NONE_FOUND = 4, 3  # status of localize, update and align; NONE_FOUND of demo and match too
+MISTAKE = 2
 
 
 def _demo(arguments: argparse.Namespace) -> int:
@@ -132,16 +152,14 @@ def _demo(arguments: argparse.Namespace) -> int:
     _say(f'{", ".join(map(str, results))}\npicture: {arguments.out}')
     if results[0].good.any():
         return 0
-    print('demo: nothing agrees; do both images show the same place? Try --max-size 1000 if they are large, more --points, '
-          'or --orientation if one of them is turned', file=sys.stderr)
+    note('demo: nothing agrees; do both images show the same place? Try --max-size 1000 if they are large, more --points, '
+         'or --orientation if one of them is turned')
     return NONE_FOUND
 
 
 def _match(arguments: argparse.Namespace) -> int:
-    if len(arguments.cameras) > 2:
-        raise ValueError(f'{len(arguments.cameras)} cameras for two images')
     measured = _call(match_images, arguments, options=_take(FeatureOptions, arguments))
-    _say(f'{arguments.out}: {measured}')
+    _say(f'{arguments.out}: {measured}', arguments.out)
     return 0 if measured.found else NONE_FOUND
 
 
@@ -179,7 +197,9 @@ def _localize(arguments: argparse.Namespace) -> int:
 
 
 def _update(arguments: argparse.Namespace) -> int:
-    return _told(arguments.out or arguments.map, _call(localization.update, arguments))
+    counts = _call(localization.update, arguments)
+    _told(arguments.out or arguments.map, counts)
+    return _share(counts['localized'], counts['images'])
 
 
 def _told(file: str, counts: dict[str, int]) -> int:
@@ -208,25 +228,35 @@ def _cv2_error() -> type[Exception]:
     return cv2.error
 
 
-def _say(text: str) -> None:
-    """Prints, also paths that are not UTF-8."""
-    print(text.encode('utf-8', 'backslashreplace').decode())
+def _say(text: str, out: str = '') -> None:
+    """A line about what was done, beside standard output if that is what was written; nothing with --quiet."""
+    if out in STANDARD_OUTPUT and not is_quiet():
+        note(text)
+    elif not is_quiet():
+        put(text + '\n', sys.stdout)
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Runs a command; the exit status."""
-    arguments = _parser().parse_args(argv)
-    command, run = (vars(arguments).pop(name) for name in ('command', 'run'))
+    words = sys.argv[1:] if argv is None else argv
+    command = words[0] if words and words[0].isalpha() else 'opencv-iib'
     try:
-        return int(run(arguments))
+        end_of_start()
+        arguments = _parser().parse_args(words)
+        command, run, silent = (vars(arguments).pop(name) for name in ('command', 'run', 'quiet'))
+        with quiet(silent):
+            return int(run(arguments))
     except KeyboardInterrupt:
-        print('interrupted' + '; the same command goes on from here' * (command == 'colmap'), file=sys.stderr)
+        note('interrupted' + '; the same command goes on from here' * (command == 'colmap'))
         return 130
+    except BrokenPipeError:  # such as head's, which has what it wants
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # of what is flushed at the end
+        return 1
     except Exception as e:
         if not isinstance(e, (OSError, ValueError, RuntimeError, ImportError, sqlite3.Error, error, _cv2_error())):
             raise
-        print(f'{command}: {" ".join(str(e).split())}', file=sys.stderr)
-        return 1
+        note(f'{command}: {" ".join(str(e).split())}')
+        return MISTAKE if isinstance(e, InvalidOption) else 1
 
 
 if __name__ == '__main__':

@@ -9,6 +9,8 @@ from contextlib import contextmanager, suppress
 from typing import Callable, Iterable, Iterator
 
 from opencv_iib import _core
+from opencv_iib._arguments import Path
+from opencv_iib._streams import is_open_file, write_to_open_file
 
 PART = '.iib-'  #: how the folder's name begins that results are written to, within that of the results
 
@@ -26,14 +28,14 @@ def output_file(path: str) -> str:
     return target
 
 
-def is_same(path: str, other: str) -> bool:
+def is_same(path: Path, other: Path) -> bool:
     """Whether two names are of one file."""
     if os.path.exists(path) and os.path.exists(other):
         return os.path.samefile(path, other)
     return os.path.realpath(path) == os.path.realpath(other)
 
 
-def check_outputs(outputs: Iterable[str], inputs: Iterable[str]) -> None:
+def check_outputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
     """:raises FileExistsError: for a file to be written that is read, by whatever name, or that is written twice."""
     taken = {path: 'an input' for path in inputs}
     for path in outputs:
@@ -48,9 +50,11 @@ def write_whole(path: str, content: bytes) -> None:
 
     :raises OSError: for a full disk too; the old file stays.
     """
-    target = output_file(path)
+    target = '' if is_open_file(path) else output_file(path)
     try:
-        if os.path.exists(target) and not os.path.isfile(target):  # a device, such as /dev/stdout, which cannot be replaced
+        if not target:
+            write_to_open_file(path, content)
+        elif os.path.exists(target) and not os.path.isfile(target):  # a device, which cannot be replaced
             with open(target, 'wb') as file:
                 file.write(content)
         else:

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple, Optional
 
 import numpy as np
 
+from opencv_iib._arguments import Path
 from opencv_iib._files import check_outputs
 from opencv_iib.colmap.features import FeatureOptions, Features, make_detector
 from opencv_iib.colmap.images import import_cv2, read_colour, write_picture
@@ -13,7 +14,7 @@ from opencv_iib.keypoints import keypoints_to_array
 
 MAX_ERROR = 3  # pixels from the homography, in the second image
 MIN_CONSISTENT = 10  # a homography agrees with up to 6 of matches drawn at random
-HALF_WIDTH, MAX_DRAWN, CAPTION_HEIGHT = 640, 100, 44  # of the picture, in pixels; lines, since more would hide the images
+HALF_WIDTH, MAX_HEIGHT, MAX_DRAWN, CAPTION_HEIGHT = 640, 1280, 100, 44  # of the picture, in pixels; lines, since more would hide the images
 GOOD, OTHER, PAPER, INK = (150, 220, 60), (40, 90, 255), (32, 28, 26), (235, 235, 235)  # distinct for colour-blind eyes too
 
 
@@ -31,7 +32,7 @@ class Result(NamedTuple):
         return f'{self.name}: no homography found in {len(self.good)} matches'
 
 
-def demo(image_a: str, image_b: str, out: str, options: FeatureOptions = FeatureOptions(points=1000)) -> list[Result]:
+def demo(image_a: Path, image_b: Path, out: Path, options: FeatureOptions = FeatureOptions(points=1000)) -> list[Result]:
     """Matches two images by the recommended chain, and by SIFT and ORB or what the detector has; draws all, IIB below.
 
     *Consistent* are matches within 3 pixels of the homography that most agree with, if those are ten.
@@ -41,6 +42,7 @@ def demo(image_a: str, image_b: str, out: str, options: FeatureOptions = Feature
     :raises ValueError: for a file that is no image, or one that cannot be written.
     :raises FileExistsError: for an image as the picture to write.
     """
+    options.check()
     check_outputs([out], (image_a, image_b))
     images = [read_colour(path) for path in (image_a, image_b)]
     described = list(map(Features(options), images))
@@ -94,13 +96,13 @@ def _caption(result: Result) -> Caption:
 def draw(images: list[np.ndarray], points_a: np.ndarray, points_b: np.ndarray, good: np.ndarray, caption: Caption) -> np.ndarray:
     """Both images side by side under a caption, a line for each match; good ones lie above the others."""
     cv2 = import_cv2()
-    scales = [HALF_WIDTH / image.shape[1] for image in images]
-    halves = [cv2.resize(image, (HALF_WIDTH, max(1, round(image.shape[0] * scale))), interpolation=cv2.INTER_AREA)
+    scales = [min(HALF_WIDTH / image.shape[1], MAX_HEIGHT / image.shape[0]) for image in images]
+    halves = [cv2.resize(image, [max(1, round(side * scale)) for side in image.shape[1::-1]], interpolation=cv2.INTER_AREA)
               for image, scale in zip(images, scales)]
     canvas: Any = np.full((CAPTION_HEIGHT + max(map(len, halves)), 2 * HALF_WIDTH, 3), PAPER, np.uint8)
     for side, half in enumerate(halves):
-        canvas[CAPTION_HEIGHT:CAPTION_HEIGHT + len(half), side * HALF_WIDTH:(side + 1) * HALF_WIDTH] = half
-    drawn = np.arange(0, len(good), max(1, len(good) / MAX_DRAWN)).astype(int)  # a fair choice: strongest first
+        canvas[CAPTION_HEIGHT:CAPTION_HEIGHT + len(half), side * HALF_WIDTH:side * HALF_WIDTH + half.shape[1]] = half
+    drawn = np.linspace(0, len(good), min(len(good), MAX_DRAWN), endpoint=False).astype(int)  # a fair choice: strongest first
     ends = [np.rint(points * scale + (side * HALF_WIDTH, CAPTION_HEIGHT)).astype(int)
             for side, (points, scale) in enumerate(zip((points_a, points_b), scales))]
     for colour, opacity, wanted in ((OTHER, .6, False), (GOOD, .8, True)):

@@ -1,21 +1,25 @@
 """Matches of two images to a fraction of a pixel, and the pose between their cameras."""
 from __future__ import annotations
 
-from typing import NamedTuple, Optional, Sequence
+import io
+import json
+import os
+from typing import NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
+from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._files import check_outputs, write_whole
 from opencv_iib.colmap.features import FeatureOptions, Features
 from opencv_iib.colmap.images import import_cv2, read_colour, write_picture
 from opencv_iib.demo import GOOD, INK, OTHER, draw
 from opencv_iib.functions import match
-from opencv_iib.geometry import FoundPose, findRelativePose
-from opencv_iib.localization import Camera
+from opencv_iib.geometry import FoundPose, NoPose, findRelativePose
+from opencv_iib.localization.localizer import AnyCamera, Camera, as_camera
 from opencv_iib.refinement import PropagatedMatches, RefinedMatches, propagateMatches
 
-HEADER = 'x1,y1,x2,y2,xx,xy,yy,similarity,bits'
+COLUMNS = ('x1', 'y1', 'x2', 'y2', 'xx', 'xy', 'yy', 'similarity', 'bits')
 
 
 class Measured(NamedTuple):
@@ -23,12 +27,17 @@ class Measured(NamedTuple):
 
     matches: RefinedMatches
     bits: NDArray[np.int32]  #: of each match, that differ
-    pose: Optional[FoundPose]  #: None without cameras
+    pose: Union[FoundPose, NoPose, None]  #: None without cameras
 
     @property
     def refined(self) -> NDArray[np.bool_]:
         """Of each match, whether it could be refined."""
         return self.matches.similarities >= 0
+
+    @property
+    def agree(self) -> NDArray[np.bool_]:
+        """Of each match, whether it agrees with the pose; without cameras, whether it could be refined."""
+        return self.refined if self.pose is None else self.pose.inliers.ravel() > 0
 
     @property
     def deviations(self) -> NDArray[np.float64]:
@@ -40,6 +49,33 @@ class Measured(NamedTuple):
         """Whether there are matches, and with cameras a pose."""
         return self.pose.found if self.pose is not None else len(self.bits) > 0
 
+    def save(self, file: Path) -> None:
+        """Writes matches and pose to a file that is replaced when the new one is whole, by its suffix: .json, .npz, or else CSV.
+
+        A row a match: both points in pixels (the centre of the first pixel is 0), the covariance of the second, the patches'
+        correlation (-1: not refined), bits that differ, and with cameras whether it agrees with the pose. JSON and NPZ have the pose
+        too; in JSON it is null without cameras, and ``matches`` are objects. '-' is standard output.
+        """
+        path, pose = os.fspath(file), None
+        table = np.column_stack([self.matches.points1, self.matches.points2, self.matches.covariances, self.matches.similarities, self.bits])
+        rows = [[f'{value:.10g}' for value in row] for row in table.astype(float).tolist()]
+        if self.pose is not None:
+            pose = {name: None if value is None else np.squeeze(value) for name, value in self.pose._asdict().items()}
+            pose.update(found=self.pose.found, reason=self.pose.reason, inliers=self.agree)
+        if path.lower().endswith('.npz'):
+            arrays = io.BytesIO()
+            known = {name: value for name, value in (pose or {}).items() if value is not None}
+            np.savez_compressed(arrays, **self.matches._asdict(), bits=self.bits, **known)
+            content = arrays.getvalue()
+        elif path.lower().endswith('.json'):
+            matches = [dict(zip(COLUMNS, map(json.loads, row))) for row in rows]
+            content = json.dumps({'matches': matches, 'pose': pose}, default=np.ndarray.tolist).encode()
+        else:
+            header = [*COLUMNS, 'agrees'] if pose else COLUMNS
+            rows = [[*row, f'{agrees:d}'] for row, agrees in zip(rows, self.agree.tolist())] if pose else rows
+            content = ''.join(','.join(row) + '\n' for row in (header, *rows)).encode()
+        write_whole(path, content)
+
     def __str__(self) -> str:
         count = int(self.refined.sum())
         text = f'{len(self.bits)} matches, {count} refined'
@@ -47,8 +83,8 @@ class Measured(NamedTuple):
             text += f' to {np.median(self.deviations[self.refined]):.2f} pixels (median standard deviation)'
         if self.pose is None:
             return text
-        if self.pose.R is None or self.pose.t is None or self.pose.covariance is None:
-            return text + '\nno pose'
+        if not self.pose.found:
+            return f'{text}\nno pose: {self.pose.reason}'
         turn, towards = rotation_vector(self.pose.R), -self.pose.R.T @ self.pose.t.ravel()
         errors = np.degrees(np.sqrt(np.diag(self.pose.covariance)))
         return (f'{text}\npose: {int(self.pose.inliers.sum())} agree; the second camera stands towards {towards.round(3)} of the '
@@ -62,24 +98,30 @@ def rotation_vector(R: NDArray[np.float64]) -> NDArray[np.float64]:
     return vector
 
 
-def match_images(image_a: str, image_b: str, out: Optional[str] = None, picture: Optional[str] = None,
-                 cameras: Sequence[str] = (), options: FeatureOptions = FeatureOptions(points=2000)) -> Measured:
+def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, picture: Optional[Path] = None,
+                 cameras: Sequence[AnyCamera] = (), options: FeatureOptions = FeatureOptions(points=2000)) -> Measured:
     """Matches two images by the recommended chain, refines the matches, adds those they lead to, and with cameras finds the pose
     between them.
 
-    :param out: file to write, a line a match: both points in pixels (the centre of the first pixel is 0), the covariance of the
-        second, the patches' correlation (-1: not refined), bits that differ, and with cameras whether it agrees with the pose.
+    :param out: file to write, as :meth:`Measured.save` does.
     :param picture: picture to write.
-    :param cameras: one for both images, or one each: ``'MODEL,WIDTH,HEIGHT,PARAMS'`` with COLMAP's names and parameters.
+    :param cameras: one for both images, or one each: ``'MODEL,WIDTH,HEIGHT,PARAMS'`` with COLMAP's names and parameters, or as
+        :meth:`opencv_iib.localization.Localizer.localize` takes it.
     :raises ValueError: for a file that is no image, or a camera of another size.
     :raises FileExistsError: for an image as a file to write.
     """
+    options.check()
+    if len(cameras) > 2:
+        raise InvalidOption(f'{len(cameras)} cameras for two images')
     check_outputs([path for path in (out, picture) if path is not None], (image_a, image_b))
     images = [read_colour(path) for path in (image_a, image_b)]
-    lenses = [Camera.parse(text) for text in (cameras[0], cameras[-1])] if cameras else []
+    lenses = [as_camera(camera) for camera in (cameras[0], cameras[-1])] if len(cameras) else []
     for path, image, lens in zip((image_a, image_b), images, lenses):
-        if (lens.width, lens.height) != image.shape[1::-1]:
-            raise ValueError(f'{path} has {image.shape[1]} x {image.shape[0]} pixels, its camera {lens.width} x {lens.height}')
+        height, width = image.shape[:2]
+        if (lens.width, lens.height) != (width, height):
+            raise InvalidOption(f'{os.fspath(path)} has {width} x {height} pixels, its camera {lens.width} x {lens.height}: give the '
+                                f"image's own camera, PINHOLE,{width},{height},F,F,{width / 2:g},{height / 2:g} with its focal length F in "
+                                'pixels')
     (rows_a, codes_a), (rows_b, codes_b) = map(Features(options), images)
     given = match(codes_a, codes_b).pairs
     propagated = propagateMatches(images[0], rows_a, images[1], rows_b, given)
@@ -94,21 +136,16 @@ def match_images(image_a: str, image_b: str, out: Optional[str] = None, picture:
     pairs, matches = propagated.matches, RefinedMatches(*propagated[1:])
     bits = np.unpackbits(codes_a[pairs[:, 0]] ^ codes_b[pairs[:, 1]], axis=1).sum(axis=1, dtype=np.int32)
     measured = Measured(matches, bits, pose)
-    good = measured.refined if pose is None else pose.inliers.ravel() > 0
     if out is not None:
-        columns = [*matches.points1.T, *matches.points2.T, *matches.covariances.T, matches.similarities, bits]
-        lines = [HEADER + ',agrees' * (pose is not None)]
-        lines += [','.join(f'{value:.5g}' for value in row) + f',{agrees:d}' * (pose is not None)
-                  for row, agrees in zip(np.column_stack(columns).astype(float).tolist(), good.tolist())]
-        write_whole(out, ('\n'.join(lines) + '\n').encode())
+        measured.save(out)
     if picture is not None:
         what = 'refined' if pose is None else 'agree with the pose'
-        write_picture(picture, draw(images, matches.points1, matches.points2, good, [
-            (f'{len(bits)} matches:  ', INK), (f'{good.sum()} {what}', GOOD), (f'  {(~good).sum()} others', OTHER)]))
+        write_picture(picture, draw(images, matches.points1, matches.points2, measured.agree, [
+            (f'{len(bits)} matches:  ', INK), (f'{measured.agree.sum()} {what}', GOOD), (f'  {(~measured.agree).sum()} others', OTHER)]))
     return measured
 
 
-def _pose(matches: PropagatedMatches, lenses: Sequence[Camera]) -> FoundPose:
+def _pose(matches: PropagatedMatches, lenses: Sequence[Camera]) -> Union[FoundPose, NoPose]:
     (a, matrix_a), (b, matrix_b) = (_without_distortion(points, lens) for points, lens in zip(matches[1:3], lenses))
     return findRelativePose(a, b, matrix_a, matrix_b)
 

@@ -29,10 +29,14 @@ resource = optional('resource')  # not on Windows
 
 class Commands(unittest.TestCase):
 
-    def check_error(self, pattern, *arguments):
-        """That opencv-iib ends with status 1, and with one line about it behind those of progress."""
+    def check_mistake(self, pattern, *arguments):
+        """That it is told as a mistake in the command line."""
+        self.check_error(pattern, *arguments, expected=2)
+
+    def check_error(self, pattern, *arguments, expected=1):
+        """That opencv-iib ends with this status, and with one line about it behind those of progress."""
         status, _, errors = run_command(*arguments)
-        self.assertEqual(status, 1)
+        self.assertEqual(status, expected)
         self.assertRegex(errors, rf'^(\w+ \d+.*\n)*{arguments[0]}: .*{pattern}.*\n$')
 
 

@@ -240,12 +240,11 @@ class Mistakes(Collection):
         small = self.folder / 'small.png'
         cv2.imwrite(str(small), np.zeros((1, 1), np.uint8))
         (self.folder / 'other.db.partial').write_bytes(b'junk' * 1000)
-        for wrong in (['colmap', self.images / 'none', 'x.db'], ['colmap', self.images, 'x.db', '--ratio', '0'],
-                      ['colmap', self.images, 'x.db', '--neighbours', '-1'], ['colmap', self.images, 'x.db', '--workers', '0'],
-                      ['colmap', self.images, 'x.db', '--focal', '-3'], ['colmap', self.images, 'x.db', '--focal', 'nan'],
-                      ['colmap', self.images, self.folder / 'other.db'],
-                      ['demo', small, small, '--out', self.folder / 'no.suffix']):
-            self.check_error('', *wrong)
+        for wrong in ([self.images / 'none', 'x.db'], [self.images, self.folder / 'other.db']):
+            self.check_error('', 'colmap', *wrong)
+        for wrong in (['--ratio', '0'], ['--neighbours', '-1'], ['--workers', '0'], ['--focal', '-3'], ['--focal', 'nan']):
+            self.check_mistake(wrong[0][2:], 'colmap', self.images, 'x.db', *wrong)
+        self.check_error('', 'demo', small, small)
 
     def test_paths_that_are_not_utf8(self):
         folder = Path(os.fsdecode(os.fsencode(self.folder) + b'/caf\xe9'))

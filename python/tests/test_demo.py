@@ -5,7 +5,7 @@ import unittest
 import numpy as np
 
 from collection import Collection
-from opencv_iib.demo import demo
+from opencv_iib.demo import demo, draw
 from support import REPOSITORY, cv2, run_command
 
 
@@ -23,10 +23,17 @@ class Demo(Collection):
         self.assertEqual(status, 3)
         self.assertRegex(text, r'^IIB: no homography found in \d+ matches, SIFT.*, ORB')
         self.assertIn('same place', hint)
+        self.check_error('gone.png: there is no such file', 'demo', self.images / 'gone.png', noise)
         for arguments, told in (((a, b, '--points', '3000000000'), 'points is 3000000000'),
-                                ((self.images / 'gone.png', noise), 'gone.png: there is no such file'),
                                 ((noise, noise, '--out', 'x.foo'), 'x.foo: end its name in .png')):
-            self.check_error(told, 'demo', *arguments)
+            self.check_mistake(told, 'demo', *arguments)
+
+    def test_a_strip_of_an_image_makes_no_picture_without_end(self):
+        images = [np.zeros(shape, np.uint8) for shape in ((60000, 30, 3), (30, 60000, 3))]
+        points = np.array([[15, 59999], [0, 0]], np.float32)
+        for count in (1, 577):
+            picture = draw(images, np.repeat(points[:1], count, 0), np.repeat(points[1:], count, 0), np.ones(count, bool), [])
+            self.assertEqual(picture.shape, (44 + 1280, 2 * 640, 3))
 
     @unittest.skipUnless((REPOSITORY / 'tools/synthetic/day.png').exists(), 'the images are not beside these tests')
     def test_it_counts_as_that_of_cpp(self):

@@ -1,6 +1,8 @@
+import copy
 import csv
 import io
 import os
+import pickle
 import re
 import shutil
 import tempfile
@@ -14,7 +16,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import _core
-from opencv_iib.localization import Camera, Localizer, build, smooth_poses, update
+from opencv_iib.localization import Camera, Localizer, Location, build, smooth_poses, update
 from opencv_iib.localization import maps, run as runs
 from support import REPOSITORY, Commands, cv2, files_end_at, optional, run_command, seconds_until_interrupt, steps_meanwhile, texture
 
@@ -134,6 +136,8 @@ class Localization(Commands):
         self.assertEqual([row['found'] for row in rows], ['1'] * 3)
         self.assertGreater(int(rows[0]['inliers']), 15)
         self.assertLess(float(rows[0]['x_x']) ** .5, .05)
+        for row in rows:
+            np.testing.assert_array_equal([float(row[column]) for column in runs.POSE], found[os.path.splitext(row['name'])[0]])
 
     @unittest.skipIf(pycolmap is None, 'no pycolmap')
     def test_colmap_reads_what_is_written_and_its_objects_are_taken(self):
@@ -164,6 +168,25 @@ class Localization(Commands):
         nothing = localizer.localize(np.zeros((HEIGHT, WIDTH), np.uint8), CAMERA)
         self.assertEqual((nothing.cam_from_world, nothing.covariance, nothing.inliers), (None, None, 0))
         self.assertRegex(nothing.reason, 'too few')
+
+    def test_values_are_shown_compared_sent_and_made(self):
+        camera = Camera('pinhole', WIDTH, HEIGHT, (300, 300, 160, 120))
+        localizer = Localizer(self.map)
+        found, nothing = localizer.localize(self.grey(), camera), localizer.localize(np.zeros((HEIGHT, WIDTH), np.uint8), camera)
+        self.assertEqual((camera, {camera}), (Camera.parse(CAMERA.lower()), set(localizer.cameras)))
+        self.assertNotEqual(camera, Camera('PINHOLE', WIDTH, HEIGHT, (300, 300, 160, 121)))
+        self.assertEqual((repr(camera), eval(repr(camera))), ("Camera('PINHOLE', 320, 240, [300.0, 300.0, 160.0, 120.0])", camera))
+        self.assertTrue(found.found and not nothing.found)
+        self.assertNotEqual(found, nothing)
+        self.assertRegex(repr(found), rf'^Location\(centre \[.*\], {found.inliers} of {found.matches} matches agree\)$')
+        self.assertEqual(repr(nothing), f'Location(reason={nothing.reason!r})')
+        self.assertEqual(repr(localizer), f'Localizer({os.path.abspath(self.map)!r}, points=1000, lines=False)')
+        made = Location(found.cam_from_world[:3], found.covariance, '', found.matches, found.inliers, found.pixels, found.points)
+        for value, same in ((camera, camera), (found, made), (nothing, nothing), (localizer, Localizer(Path(self.map)))):
+            self.assertEqual((copy.copy(value), pickle.loads(pickle.dumps(value))), (same, same))
+            self.assertNotEqual(value, 'another')
+        self.check(pickle.loads(pickle.dumps(localizer)).localize(self.grey(), pickle.loads(pickle.dumps(camera))))
+        self.assertEqual(len(smooth_poses([0, 1], [made, Location()], np.zeros((0, 7)))), 2)
 
     def test_an_imu_gives_poses_to_images_that_tell_nothing(self):
         localizer = Localizer(self.map)
@@ -263,7 +286,7 @@ class Localization(Commands):
         for name in ('#1.png', 'a\nb.png', 'caf\\udce9.png'):
             self.assertRegex(rows[name]['reason'], 'rename it')
         self.assertRegex(rows['pipe.png']['reason'], 'not a file')
-        self.assertEqual(run_command('update', '--map', self.map, '--images', mixed, '--camera', CAMERA, '--out', self.path('map'))[0], 0)
+        self.assertEqual(run_command('update', '--map', self.map, '--images', mixed, '--camera', CAMERA, '--out', self.path('map'))[0], 4)
         with mock.patch('os.scandir', side_effect=PermissionError(13, 'Permission denied', 'x/locked')):
             self.check_error('x/locked cannot be read: Permission denied', 'localize', '--map', self.map, '--images', mixed, '--out', out)
 
@@ -284,7 +307,7 @@ class Localization(Commands):
         out, empty = self.path('out'), self.path('empty')
         os.makedirs(empty)
         localize = '--map', self.map, '--images', self.dark, '--out', out
-        self.check_error('camera', 'localize', *localize, '--camera', 'FISH,1,2,3')
+        self.check_mistake('camera', 'localize', *localize, '--camera', 'FISH,1,2,3')
         self.check_error('is no map', 'localize', '--map', self.images, *localize[2:])
         self.check_error('(map has no lines|lines need OpenCV)', 'localize', *localize, '--lines')
         for name in ('no', os.path.join(self.map, 'map.iib')):
@@ -346,10 +369,10 @@ class Localization(Commands):
     def test_refusals_come_before_work(self):
         out = self.path('out')
         with mock.patch.object(_core, 'Localizer', side_effect=AssertionError):
-            self.check_error('FISH', 'localize', '--map', self.map, '--images', self.dark, '--out', out, '--camera', 'FISH,1,2,3')
+            self.check_mistake('FISH', 'localize', '--map', self.map, '--images', self.dark, '--out', out, '--camera', 'FISH,1,2,3')
             self.check_error('holds .*png', 'localize', '--map', self.map, '--images', self.dark, '--out', self.images)
         with mock.patch.object(maps, 'read_grey', side_effect=AssertionError):
-            self.check_error('points is 0', 'map', '--model', self.model, '--images', self.images, '--out', out, '--points', '0')
+            self.check_mistake('points is 0', 'map', '--model', self.model, '--images', self.images, '--out', out, '--points', '0')
             self.check_error('points is -1', 'map', '--model', self.model, '--images', self.images, '--out', out, '--points', '-1', '--orb-and-akaze')
         self.assertFalse(os.path.exists(out))
         if os.getuid():  # root may write everywhere
@@ -414,6 +437,18 @@ class Localization(Commands):
             self.assertGreater(new, 1.2 * old)
             again = update(out, night)
         self.assertEqual((again['localized'], again['added']), (3, 0))
+
+    def test_an_update_says_why_an_image_has_no_pose(self):
+        mixed, out = self.path('mixed'), self.path('new')
+        os.makedirs(mixed)
+        cv2.imwrite(os.path.join(mixed, 'elsewhere.png'), photograph(wall(9), pose(0, 0)))
+        Path(mixed, 'broken.png').touch()
+        arguments = 'update', '--map', self.map, '--images', mixed, '--out', out, '--camera', CAMERA
+        status, text, errors = run_command(*arguments)
+        self.assertEqual((status, '2 images, 0 localized' in text), (3, True))
+        self.assertRegex(errors, r'broken.png: the file is empty\nelsewhere.png: too few matches')
+        shutil.copy(os.path.join(self.dark, 'c.png'), mixed)
+        self.assertEqual(run_command(*arguments, '--force')[0], 4)
 
     @unittest.skipUnless(os.path.isdir(STRECHA), 'OPENCV_TEST_DATA_PATH has no strecha/Herz-Jesus-P8')
     def test_photographs_within_five_centimetres_also_relit(self):

@@ -1,5 +1,6 @@
 """The commands match and align."""
 import csv
+import json
 import os
 import re
 import unittest
@@ -10,6 +11,7 @@ import numpy as np
 
 from opencv_iib.align import align
 from opencv_iib.colmap.features import FeatureOptions
+from opencv_iib.localization import Camera
 from opencv_iib.measure import match_images
 from opencv_iib.geometry import alignImages
 from opencv_iib.refinement import propagateMatches
@@ -108,11 +110,50 @@ class Match(Commands):
         self.assertEqual(run_command('match', a, flat, '--out', out)[0], 3)
         self.assertEqual(self.rows('m.csv'), [])
         status, text, _ = run_command('match', a, flat, '--out', out, '--camera', 'PINHOLE,480,360,400,400,240,180')
-        self.assertEqual((status, text.splitlines()[-1]), (3, 'no pose'))
+        self.assertEqual((status, text.splitlines()[-1]), (3, 'no pose: fewer than five of 0 matches agree with one pose'))
+        self.check_error('no folder', 'match', a, a, '--out', self.folder / 'none/m.csv')
         for arguments, told in ((['--camera', 'PINHOLE,480,360,400'], 'PINHOLE'), (['--camera', 'PINHOLE,9,9,400,400,240,180'], '480 x 360'),
-                                (['--camera', 'x'] * 3, '3 cameras'), (['--picture', self.folder / 'no.suffix'], 'end its name'),
-                                (['--out', self.folder / 'none/m.csv'], 'no folder')):
-            self.check_error(told, 'match', a, a, *(['--out', out] if '--out' not in arguments else []), *arguments)
+                                (['--camera', 'simple_pinhole,480,360,400,240,180'] * 3, '3 cameras'),
+                                (['--picture', self.folder / 'no.suffix'], 'end its name')):
+            self.check_mistake(told, 'match', a, a, '--out', out, *arguments)
+
+    def test_what_is_written_is_what_was_measured(self):
+        picture = cv2.resize(texture(200, 150, seed=4), (6200, 300), interpolation=cv2.INTER_CUBIC)
+        a, b = self.write('a.png', picture[:, :6100]), self.write('b.png', picture[:, 100:])
+        camera = 'PINHOLE,6100,300,6000,6000,3050,150'
+        for name in ('m.csv', 'm.JSON', 'n.json'):
+            found = match_images(Path(a), Path(b), self.folder / name, cameras=[Camera.parse(camera)] * (name[0] == 'm'))
+            points = np.column_stack([found.matches.points1, found.matches.points2])
+            self.assertGreater(points.max(), 6000)
+            if name == 'm.csv':
+                written = np.array([[row[column] for column in ('x1', 'y1', 'x2', 'y2')] for row in self.rows(name)], float)
+            else:
+                content = json.loads((self.folder / name).read_text())
+                written = np.array([[row[column] for column in ('x1', 'y1', 'x2', 'y2')] for row in content['matches']])
+            np.testing.assert_allclose(written, points, rtol=5e-10)
+        self.assertIsNone(content['pose'])
+
+    def test_the_pose_in_files(self):
+        a, b, flat = self.write('a.png', self.world((4, 8))), self.write('b.png', self.world((4, 8), .5, 3)), self.write('f.png', np.zeros((360, 480), np.uint8))
+        for other in (b, flat):
+            for suffix in ('json', 'npz'):
+                out = self.folder / f'm.{suffix}'
+                found = match_images(a, other, out, cameras=['PINHOLE,480,360,400,400,240,180'])
+                if suffix == 'json':
+                    content = json.loads(out.read_text())
+                    pose, count = content['pose'], len(content['matches'])
+                else:
+                    pose = {'R': None, 't': None, 'covariance': None, **np.load(out)}
+                    count = len(pose['points1'])
+                    np.testing.assert_array_equal(pose['points2'], found.matches.points2)
+                self.assertEqual((bool(pose['found']), str(pose['reason'])), (other == b, found.pose.reason))
+                np.testing.assert_array_equal(pose['inliers'], found.pose.inliers.ravel() > 0)
+                self.assertEqual(count, len(found.bits))
+                for name in ('R', 't', 'covariance'):
+                    value = getattr(found.pose, name)
+                    self.assertEqual(value is None, pose[name] is None)
+                    if value is not None:
+                        np.testing.assert_array_equal(pose[name], np.squeeze(value))
 
 
     def test_nothing_is_written_over_an_image(self):

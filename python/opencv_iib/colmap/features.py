@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from opencv_iib._arguments import InvalidOption
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector
 from opencv_iib.enums import Orientation, Preset
@@ -40,15 +41,15 @@ class FeatureOptions:
             object.__setattr__(self, field, getattr(name, 'name', str(name)).upper())
 
     def check(self) -> None:
-        """:raises ValueError: naming what is wrong, and what there is."""
+        """:raises InvalidOption: naming what is wrong, and what there is."""
         if self.detector not in DETECTORS:
-            raise ValueError(f'no detector {self.detector}: there are {", ".join(DETECTORS)}')
+            raise InvalidOption(f'no detector {self.detector}: there are {", ".join(DETECTORS)}')
         if self.preset not in preset_names():
-            raise ValueError(f'no preset {self.preset}: there are {", ".join(preset_names())}')
+            raise InvalidOption(f'no preset {self.preset}: there are {", ".join(preset_names())}')
         if not 1 <= self.points <= MAX_POINTS:
-            raise ValueError(f'points is {self.points}: it must be 1 to {MAX_POINTS}')
+            raise InvalidOption(f'points is {self.points}: it must be 1 to {MAX_POINTS}')
         if self.max_size and not MIN_SIZE <= self.max_size:
-            raise ValueError(f'max_size is {self.max_size}: it must be at least {MIN_SIZE} pixels, or 0')
+            raise InvalidOption(f'max_size is {self.max_size}: it must be at least {MIN_SIZE} pixels, or 0')
 
 
 def make_detector(name: str, points: int) -> Any:
@@ -59,7 +60,7 @@ def make_detector(name: str, points: int) -> Any:
     function = ('FastFeatureDetector' if name == 'FAST' else name) + '_create'
     create = getattr(cv2, function, None) or getattr(getattr(cv2, 'xfeatures2d', None), function, None)
     if create is None:
-        raise ValueError(f'cv2 {cv2.__version__} has no {name}: take another detector, or OpenCV 4 or opencv_contrib')
+        raise InvalidOption(f'cv2 {cv2.__version__} has no {name}: take another detector, or OpenCV 4 or opencv_contrib')
     return create(points) if name in ('ORB', 'SIFT') else create()
 
 

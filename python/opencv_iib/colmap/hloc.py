@@ -3,11 +3,12 @@ from __future__ import annotations
 
 import contextlib
 import os
+import pathlib
 import sqlite3
-from pathlib import Path
 
 import numpy as np
 
+from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._files import check_outputs, output_file, replaced
 from opencv_iib.colmap.database import MAX_IMAGE_ID
 from opencv_iib.colmap.images import is_listable
@@ -60,7 +61,7 @@ def _write_matches(connection: sqlite3.Connection, path: str, pairs: str, names:
     return total
 
 
-def export(database: str, features: str, matches: str, pairs: str, force: bool = False) -> int:
+def export(database: Path, features: Path, matches: Path, pairs: Path, force: bool = False) -> int:
     """Writes keypoints, matches and the list of pairs as hloc's reconstruction and localization read them.
 
     :param database: what build_database wrote; its verified matches are taken if there are any, else all.
@@ -75,15 +76,15 @@ def export(database: str, features: str, matches: str, pairs: str, force: bool =
 
     Files that are there are replaced when all three are complete.
     """
-    paths = [output_file(path) for path in (features, matches, pairs)]
+    paths = [output_file(os.fspath(path)) for path in (features, matches, pairs)]
     if len(set(paths)) < 3:
-        raise ValueError('features, matches and pairs are three files: give each a name of its own')
+        raise InvalidOption('features, matches and pairs are three files: give each a name of its own')
     check_outputs(paths, [database])
     for path in paths:
         if os.path.exists(path) and not force:
             raise FileExistsError(f'{path} is there already: remove it, or pass force (--force)')
     if not os.path.isfile(database):
         raise FileNotFoundError(f'no database {database}')
-    with contextlib.closing(sqlite3.connect(f'{Path(database).absolute().as_uri()}?mode=ro', uri=True)) as connection, \
+    with contextlib.closing(sqlite3.connect(f'{pathlib.Path(database).absolute().as_uri()}?mode=ro', uri=True)) as connection, \
             replaced(*paths) as (new_features, new_matches, new_pairs):
         return _write_matches(connection, new_matches, new_pairs, *_write_features(connection, new_features))

@@ -7,6 +7,7 @@ from typing import Callable, Iterable, Iterator, Mapping, Optional, Sequence
 
 import numpy as np
 
+from opencv_iib._arguments import Path
 from opencv_iib.matcher import HierarchicalMatcher
 
 Pair = tuple[int, int]
@@ -50,7 +51,7 @@ def sequential(count: int, overlap: int) -> Iterator[Pair]:
             yield a, b
 
 
-def from_file(path: str, numbers: Mapping[str, Optional[int]]) -> Iterator[Pair]:
+def from_file(path: Path, numbers: Mapping[str, Optional[int]]) -> Iterator[Pair]:
     """Pairs of a text file with two names a line, as COLMAP and hloc write them; '#' begins a line of comment.
 
     :param numbers: of the images by name; None for those that could not be described, whose pairs are left out.

@@ -5,13 +5,14 @@ import dataclasses
 import functools
 import os
 import socket
-import sys
 from typing import Any, Callable, Iterable, Iterator, Optional
 
 import numpy as np
 
 import opencv_iib
+from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._files import check_outputs, only_writer, output_file
+from opencv_iib._streams import note
 from opencv_iib.colmap import pairs as pair_lists
 from opencv_iib.colmap.database import CAMERA_MODELS, Database
 from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
@@ -34,29 +35,35 @@ class Options:
     camera_model: str = 'SIMPLE_RADIAL'  #: one of database.CAMERA_MODELS
     focal: float = 0  #: pixels, of all images; 0: by EXIF, else 1.2 times the longer side without prior
     share_cameras: bool = False  #: one camera for all images of the same size and focal length
-    pairs: str = 'exhaustive'  #: one of PAIRS, or the name of a file with two names a line
+    pairs: Path = 'exhaustive'  #: one of PAIRS, or the name of a file with two names a line
     neighbours: int = 20  #: images that each is paired with (sequential, retrieval)
     ratio: float = .9  #: ratio test, as HierarchicalMatcher.setMaxRatio; 1: none. Matches are always mutual.
     verify: str = 'auto'  #: one of VERIFIERS; auto: COLMAP's program if it is there, else MAGSAC
 
+    def __post_init__(self) -> None:
+        pairs = os.fspath(self.pairs)
+        for field, name in (('camera_model', self.camera_model.upper()), ('verify', self.verify.lower()),
+                            ('pairs', pairs.lower() if pairs.lower() in PAIRS else pairs)):  # in any case
+            object.__setattr__(self, field, name)
+
     def check(self) -> None:
-        """:raises ValueError: naming what is wrong, and what there is."""
+        """:raises InvalidOption: naming what is wrong, and what there is."""
         self.features.check()
         import_cv2()
         if not 0 <= self.focal < float('inf'):
-            raise ValueError(f'focal is {self.focal}: it must be a number of pixels, or 0')
+            raise InvalidOption(f'focal is {self.focal}: it must be a number of pixels, or 0')
         if self.camera_model not in CAMERA_MODELS:
-            raise ValueError(f'no camera model {self.camera_model}: there are {", ".join(CAMERA_MODELS)}')
+            raise InvalidOption(f'no camera model {self.camera_model}: there are {", ".join(CAMERA_MODELS)}')
         if self.pairs not in PAIRS and not os.path.isfile(self.pairs):
-            raise ValueError(f'pairs: {self.pairs} is neither a file nor one of {", ".join(PAIRS)}')
+            raise InvalidOption(f'pairs: {self.pairs} is neither a file nor one of {", ".join(PAIRS)}')
         if self.verify not in VERIFIERS:
-            raise ValueError(f'verify is {self.verify}: it must be one of {", ".join(VERIFIERS)}')
+            raise InvalidOption(f'verify is {self.verify}: it must be one of {", ".join(VERIFIERS)}')
         if self.verify == 'colmap' and colmap_binary() is None:
-            raise ValueError('verify is colmap, but there is no program colmap: install it, or take magsac')
+            raise InvalidOption('verify is colmap, but there is no program colmap: install it, or take magsac')
         if self.neighbours < 1:
-            raise ValueError(f'neighbours is {self.neighbours}: it must be at least 1')
+            raise InvalidOption(f'neighbours is {self.neighbours}: it must be at least 1')
         if not 0 < self.ratio <= 1:
-            raise ValueError(f'ratio is {self.ratio}: it must be in (0, 1]')
+            raise InvalidOption(f'ratio is {self.ratio}: it must be in (0, 1]')
 
 
 @functools.lru_cache(maxsize=1)
@@ -195,9 +202,8 @@ def verify_pairs(database: Database, binary: Optional[str], log: Callable[[str],
         matches_importer(binary, database.partial, ((names[a], names[b]) for a, b in database.pairs()))
 
 
-def build_database(images: str, database: str, options: Options = Options(), force: bool = False,
-                   workers: Optional[int] = None, log: Callable[[str], None] = lambda line: print(line, file=sys.stderr),
-                   client: Any = None) -> dict[str, int]:
+def build_database(images: Path, database: Path, options: Options = Options(), force: bool = False,
+                   workers: Optional[int] = None, log: Callable[[str], None] = note, client: Any = None) -> dict[str, int]:
     """Describes and matches the images below a folder and writes COLMAP's database.
 
     :param images: folder; names in the database are relative to it.
@@ -216,7 +222,7 @@ def build_database(images: str, database: str, options: Options = Options(), for
     """
     options.check()
     crew = Threads(thread_count(workers)) if client is None else Cluster(client)
-    database = output_file(database)
+    images, database = os.fspath(images), output_file(os.fspath(database))
     if not os.path.isdir(images):
         raise ValueError(f'{images} is no folder')
     names = find_images(images)

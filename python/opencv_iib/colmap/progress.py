@@ -1,10 +1,13 @@
 """One line that says how far it is and how long it will take."""
 from __future__ import annotations
 
+import contextlib
 import sys
 import time
 from datetime import timedelta
 from typing import Optional, TextIO
+
+from opencv_iib._streams import is_quiet, put
 
 
 class Progress:
@@ -13,7 +16,12 @@ class Progress:
     def __init__(self, title: str, total: Optional[int], done: int = 0, stream: Optional[TextIO] = None) -> None:
         self.title, self.total, self.first, self.done = title, total, done, done
         self.stream = sys.stderr if stream is None else stream
-        self.live = self.stream.isatty()
+        self.live = False
+        if is_quiet():
+            self.stream = None
+        elif self.stream is not None:
+            with contextlib.suppress(ValueError):  # closed
+                self.live = self.stream.isatty()
         self.start = self.shown = time.monotonic()
 
     def step(self, count: int = 1) -> None:
@@ -36,5 +44,5 @@ class Progress:
             fresh = self.done - self.first
             if fresh and self.done < self.total:
                 text += f', {timedelta(seconds=round(passed / fresh * (self.total - self.done)))} left'
-        self.stream.write(f'{begin}{text}, {timedelta(seconds=round(passed))}   {end}')
-        self.stream.flush()
+        with contextlib.suppress(OSError, ValueError):  # full, closed: no reason to end the work
+            put(f'{begin}{text}, {timedelta(seconds=round(passed))}   {end}', self.stream)

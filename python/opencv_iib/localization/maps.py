@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import os
-import sys
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from typing import Callable, Optional
@@ -11,6 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import _core
+from opencv_iib._arguments import InvalidOption, Path, integer
+from opencv_iib._streams import note
+from opencv_iib.colmap.features import MAX_POINTS
 from opencv_iib.colmap.images import read_grey
 from opencv_iib.colmap.parallel import thread_count
 from opencv_iib.colmap.progress import Progress
@@ -24,14 +26,13 @@ def _count(file: str) -> int:
         return int.from_bytes(opened.read(8), 'little')
 
 
-def _check_new(out: str, force: bool) -> None:
+def _check_new(out: Path, force: bool) -> None:
     if os.path.isdir(out) and os.listdir(out) and not force:
         raise FileExistsError(f'{out} is there already: choose another folder, or pass force (--force) to replace a map')
 
 
-def build(model: str, images: str, out: str, points: int = 2000, workers: Optional[int] = None, force: bool = False,
-          log: Callable[[str], None] = lambda line: print(line, file=sys.stderr), lines: bool = False,
-          orb_and_akaze: bool = False) -> dict[str, int]:
+def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Optional[int] = None, force: bool = False,
+          log: Callable[[str], None] = note, lines: bool = False, orb_and_akaze: bool = False) -> dict[str, int]:
     """Finds and describes points in the images of a COLMAP model, triangulates them with its poses, and writes a map.
 
     :param model: folder of a model, binary or text; its poses and cameras are taken as they are, in any unit.
@@ -44,10 +45,14 @@ def build(model: str, images: str, out: str, points: int = 2000, workers: Option
     :param lines: look for straight edges too, see Localizer.
     :param orb_and_akaze: the paper's points and descriptor in place of the recommended ones; images are then looked for by them.
     :return: counts of images and points.
+    :raises InvalidOption: for no points, or more than an image can have.
     :raises FileExistsError: if there is a map and force is not set.
     :raises FileNotFoundError: naming an image that is missing.
     :raises opencv_iib.error: for a model that is damaged or not that of the images, and for a folder that holds other files.
     """
+    if not 1 <= integer(points, 'points', 64) <= MAX_POINTS:
+        raise InvalidOption(f'points is {points}: it must be 1 to {MAX_POINTS}')
+    threads, used = _core.getNumThreads(), thread_count(workers)
     target = os.path.realpath(out)
     _check_new(out, force)
     if not os.path.isdir(images):
@@ -75,11 +80,10 @@ def build(model: str, images: str, out: str, points: int = 2000, workers: Option
         progress = progress or Progress('mapping', total)
         progress.step(done - progress.done)
 
-    threads = _core.getNumThreads()
     with ThreadPoolExecutor(1) as pool:  # not in this thread, which Ctrl-C reaches
         try:
-            _core.setNumThreads(thread_count(workers))
-            pool.submit(_core.buildMap, model, read, target, points, lines, orb_and_akaze, report).result()
+            _core.setNumThreads(used)
+            pool.submit(_core.buildMap, os.fspath(model), read, target, points, lines, orb_and_akaze, report).result()
         finally:
             stop.set()
             _core.setNumThreads(threads)
@@ -88,8 +92,8 @@ def build(model: str, images: str, out: str, points: int = 2000, workers: Option
     return {'images': _count(os.path.join(target, 'images.bin')), 'points': _count(os.path.join(target, 'points3D.bin'))}
 
 
-def update(map: str, images: str, camera: Optional[AnyCamera] = None, out: Optional[str] = None,
-           workers: Optional[int] = None, force: bool = False) -> dict[str, int]:
+def update(map: Path, images: Path, camera: Optional[AnyCamera] = None, out: Optional[Path] = None,
+           workers: Optional[int] = None, force: bool = False, log: Callable[[str], None] = note) -> dict[str, int]:
     """Localizes the images below a folder; those that show the map in a light that it does not know become a part of it.
 
     Their own points are matched with each other's and the map's and triangulated. Codes that eight updates in a row looked
@@ -100,15 +104,18 @@ def update(map: str, images: str, camera: Optional[AnyCamera] = None, out: Optio
     :param camera: as localize_images takes it.
     :param out: folder for the new map; None to replace the old one.
     :param force: replace a map that is in `out`.
+    :param log: told of each image without a pose, and why.
     :return: counts of images, of those localized, of those added, and of codes dropped.
     :raises FileExistsError: if there is a map in `out` and force is not set.
     :raises opencv_iib.error: for a folder without a map, or one that another process is changing.
     """
+    workers = thread_count(workers)
     if out is not None:
         _check_new(out, force)
     names = images_of(images)
     changed = _core.MapUpdate(os.path.realpath(map), '' if out is None else os.path.realpath(out))
-    for _ in locate(changed.add, changed.cameras(), images, names, camera, workers):
-        pass
+    for name, own, location in locate(changed.add, changed.cameras(), images, names, camera, workers):
+        if own is None or location.reason:
+            log(f'{name}: {location if own is None else location.reason}')
     localized, added, dropped = changed.commit()
     return {'images': len(names), 'localized': localized, 'added': added, 'codes dropped': dropped}

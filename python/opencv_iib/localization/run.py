@@ -5,14 +5,15 @@ import collections
 import csv
 import functools
 import os
-import sys
 from typing import Any, Callable, Iterator, Optional, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import _core, error
+from opencv_iib._arguments import Path
 from opencv_iib._files import new_results
+from opencv_iib._streams import note
 from opencv_iib.colmap.images import (decode_grey, exif_focal_length, find_images, import_cv2, is_utf8, read_bytes, read_grey,
                                      write_picture)
 from opencv_iib.colmap.parallel import Threads, in_parallel, thread_count
@@ -22,9 +23,10 @@ from opencv_iib.localization.localizer import AnyCamera, Camera, Localizer, Loca
 #: What it writes beside frames.csv and pictures; COLMAP 4 also wrote rigs and frames.
 OWN = ('trajectory.txt', 'cameras.bin', 'images.bin', 'points3D.bin', 'rigs.bin', 'frames.bin')
 SAME_FOCAL = .05  #: of focal lengths, which EXIF tells roughly
+POSE = ('tx', 'ty', 'tz', 'qx', 'qy', 'qz', 'qw')  # the camera's centre, and camera to world
 AXES = ('x', 'y', 'z', 'rx', 'ry', 'rz')
 
-Find = Callable[[str, NDArray[np.uint8], Camera], Location]
+Find = Callable[[str, NDArray[np.uint8], Camera], _core.Location]
 
 
 def find_camera(data: bytes, width: int, height: int, known: Sequence[Camera] = ()) -> Camera:
@@ -40,11 +42,11 @@ def find_camera(data: bytes, width: int, height: int, known: Sequence[Camera] = 
         return same[0]
     if focal is None:
         raise ValueError(f'its EXIF data tell no focal length, and {len(same)} cameras of the map have its size: give '
-                         '--camera MODEL,WIDTH,HEIGHT,PARAMS')
+                         f'--camera PINHOLE,{width},{height},F,F,{width / 2:g},{height / 2:g} with its focal length F in pixels')
     return Camera.parse(f'SIMPLE_PINHOLE,{width},{height},{focal!r},{width / 2},{height / 2}')
 
 
-def _locate(find: Find, known: Sequence[Camera], folder: str, camera: Optional[Camera], name: str) -> tuple[Camera, Location]:
+def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[Camera], name: str) -> tuple[Camera, _core.Location]:
     check_name(name)
     data = read_bytes(os.path.join(folder, name))
     grey = decode_grey(data)
@@ -52,7 +54,7 @@ def _locate(find: Find, known: Sequence[Camera], folder: str, camera: Optional[C
     return own, find(name, grey, own)
 
 
-def locate(find: Find, known: Sequence[Camera], folder: str, names: Sequence[str], camera: Optional[AnyCamera],
+def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence[str], camera: Optional[AnyCamera],
            workers: Optional[int]) -> Iterator[tuple[str, Optional[Camera], Any]]:
     """Of each image in order its name, its camera and Location; None and what is wrong if it cannot be read or has no camera.
 
@@ -60,18 +62,19 @@ def locate(find: Find, known: Sequence[Camera], folder: str, names: Sequence[str
     :param known: cameras of the map.
     """
     import_cv2()
-    given = None if camera is None else as_camera(camera)
+    given, cameras = None if camera is None else as_camera(camera), list(map(as_camera, known))
     progress = Progress('localizing', len(names))
-    job = functools.partial(_locate, find, known, folder, given)
+    job = functools.partial(_locate, find, cameras, folder, given)
     for name, result in in_parallel(job, names, Threads(thread_count(workers))):
         if isinstance(result, Exception) and not isinstance(result, (ValueError, OSError, error)):
             raise result
-        yield (name, None, str(result)) if isinstance(result, Exception) else (name, *result)
+        own, location = (None, str(result)) if isinstance(result, Exception) else result
+        yield name, own, location
         progress.step()
     progress.close()
 
 
-def images_of(folder: str, out: str = '') -> list[str]:
+def images_of(folder: Path, out: Path = '') -> list[str]:
     """Names of the images below a folder, but for those in `out`, where results are.
 
     :raises ValueError: if there are none.
@@ -126,9 +129,8 @@ def _place_and_turn(cam_from_world: NDArray[np.float64]) -> list[float]:
     return [*place.tolist(), *(vector * np.sinc(half / np.pi) / 2).tolist(), float(np.cos(half))]
 
 
-def localize_images(map: str, images: str, out: str, camera: Optional[AnyCamera] = None, pictures: bool = False,
-                    workers: Optional[int] = None, log: Callable[[str], None] = lambda line: print(line, file=sys.stderr),
-                    lines: bool = False) -> tuple[int, int]:
+def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCamera] = None, pictures: bool = False,
+                    workers: Optional[int] = None, log: Callable[[str], None] = note, lines: bool = False) -> tuple[int, int]:
     """Localizes the images below a folder and writes what was found.
 
     :param map: folder of a map.
@@ -140,19 +142,20 @@ def localize_images(map: str, images: str, out: str, camera: Optional[AnyCamera]
     :param lines: as Localizer takes it.
     :return: how many images have a pose, and of how many.
     """
+    workers = thread_count(workers)
     names = images_of(images, out)
     labels = labels_of(names)
     given = None if camera is None else as_camera(camera)
     posed: list[Any] = []
-    with new_results(out, 'frames.csv', _earlier) as part:
+    with new_results(os.fspath(out), 'frames.csv', _earlier) as part:
         localizer = Localizer(map, 0, lines)
         located = locate(lambda name, image, camera: localizer.localize(image, camera), localizer.cameras, images, names, given, workers)
         with open(os.path.join(part, 'trajectory.txt'), 'w', encoding='utf-8') as trajectory, \
                 open(os.path.join(part, 'frames.csv'), 'w', encoding='utf-8', errors='backslashreplace', newline='') as file:
             frames = csv.writer(file)
-            trajectory.write('# name tx ty tz qx qy qz qw\n')
+            trajectory.write(f'# name {" ".join(POSE)}\n')
             frames.writerow(['name', 'found', 'reason', 'matches', 'inliers',
-                             *(f'{a}_{b}' for n, a in enumerate(AXES) for b in AXES[n:])])
+                             *(f'{a}_{b}' for n, a in enumerate(AXES) for b in AXES[n:]), *POSE])
             for name, own, location in located:
                 problem = location if own is None else location.reason
                 matches, inliers = (0, 0) if own is None else (location.matches, location.inliers)
@@ -160,8 +163,9 @@ def localize_images(map: str, images: str, out: str, camera: Optional[AnyCamera]
                     frames.writerow([name, 0, problem, matches, inliers])
                     log(f'{name}: {problem}')
                     continue
-                frames.writerow([name, 1, '', matches, inliers, *(f'{value:.6g}' for value in location.covariance[np.triu_indices(6)])])
-                trajectory.write(f'{labels[name]} {" ".join(repr(v) for v in _place_and_turn(location.cam_from_world))}\n')
+                covariance, numbers = location.covariance[np.triu_indices(6)], [repr(v) for v in _place_and_turn(location.cam_from_world)]
+                frames.writerow([name, 1, '', matches, inliers, *(f'{value:.6g}' for value in covariance), *numbers])
+                trajectory.write(f'{labels[name]} {" ".join(numbers)}\n')
                 posed.append(_core.PosedImage(name, own, location.cam_from_world, location.pixels))
                 if pictures:
                     _write_picture(os.path.join(part, 'matches', labels[name] + '.png'), os.path.join(images, name), own, location)

@@ -1,0 +1,143 @@
+"""Standard output and error of the commands, and how these end."""
+import io
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import numpy as np
+
+from opencv_iib import _streams
+from opencv_iib.colmap.progress import Progress
+from support import InFolder, cv2, run_command, texture
+
+
+def command(*arguments, **options):
+    """A program of its own, with what the shell or the desktop gives it."""
+    return subprocess.run([sys.executable, '-m', 'opencv_iib', *map(str, arguments)], capture_output='stdout' not in options, **options)
+
+
+class Telling(unittest.TestCase):
+
+    def test_work_goes_on_where_nobody_can_read_of_it(self):
+        closed = io.StringIO()
+        closed.close()
+        streams = [None, closed]
+        if os.path.exists('/dev/full'):
+            streams.append(open('/dev/full', 'w'))
+        for stream in streams:
+            with self.subTest(stream), mock.patch('sys.stderr', stream):
+                progress = Progress('working', 2)
+                progress.shown = -100
+                progress.step()
+                progress.close()
+                _streams.note('a line')
+        with open(os.devnull, 'w') as null, mock.patch('os.close', lambda descriptor: None):
+            os.dup2(null.fileno(), streams[-1].fileno()) if len(streams) == 3 else None  # so that it can be closed
+        for stream in streams[2:]:
+            stream.close()
+
+    def test_letters_that_an_encoding_lacks(self):
+        stream = io.TextIOWrapper(io.BytesIO(), 'cp1252')
+        _streams.put('caf\xe9 \u65e5 \udce9\n', stream)
+        self.assertEqual(stream.buffer.getvalue(), b'caf\xe9 \\u65e5 \\udce9\n')
+
+
+@unittest.skipIf(cv2 is None, 'no cv2')
+class Commands(InFolder):
+
+    def setUp(self):
+        super().setUp()
+        picture = cv2.resize(texture(160, 120, seed=3), (320, 240), interpolation=cv2.INTER_CUBIC)
+        self.a, self.b = (str(self.folder / name) for name in ('a.png', 'b.png'))
+        cv2.imwrite(self.a, picture[:200, :300])
+        cv2.imwrite(self.b, picture[20:220, 10:310])
+        self.match = 'match', self.a, self.b, '--points', '200'
+        self.out = self.folder / 'm.csv'
+        self.assertEqual(run_command(*self.match, '--out', self.out)[0], 0)
+        self.table = self.out.read_bytes()
+
+    def test_a_name_that_the_terminal_cannot_show(self):
+        out = self.folder / '\u65e5\u672c.csv'
+        done = command(*self.match, '--out', out, env={**os.environ, 'PYTHONIOENCODING': 'cp1252'})
+        self.assertEqual((done.returncode, done.stderr), (0, b''))
+        self.assertIn(rb'\u65e5\u672c.csv', done.stdout)
+        self.assertEqual(out.read_bytes(), self.table)
+
+    def test_to_standard_output(self):
+        for name in ('-', '/dev/stdout'):
+            done = command(*self.match, '--out', name)
+            self.assertEqual((done.returncode, done.stdout), (0, self.table))
+            self.assertRegex(done.stderr.decode(), r'\d+ matches, \d+ refined')
+            status, out, _ = run_command(*self.match, '--out', name)
+            self.assertEqual((status, out), (0, self.table.decode()))
+        for mode, before in (('wb', b''), ('ab', b'a line\n')):
+            self.out.write_bytes(b'a line\n')
+            with open(self.out, mode) as file:
+                self.assertEqual(command(*self.match, '--out', '/dev/stdout', '--quiet', stdout=file).returncode, 0)
+            self.assertEqual(self.out.read_bytes(), before + self.table)
+
+    @unittest.skipIf(shutil.which('bash') is None, 'no bash')
+    def test_to_the_shells_pipe(self):
+        arguments = ' '.join([sys.executable, '-m', 'opencv_iib', *self.match])
+        done = subprocess.run(['bash', '-c', f'{arguments} --out >(cat > {self.folder}/piped); wait $!'], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ''))
+        self.assertEqual((self.folder / 'piped').read_bytes(), self.table)
+        done = subprocess.run(['bash', '-c', f'{arguments} --out - | head -n 1; exit ${{PIPESTATUS[1]}}'], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (0, self.table.decode().splitlines()[0] + '\n'))
+        self.assertNotIn('Traceback', done.stderr)
+
+    def test_quiet(self):
+        out = self.folder / 'out'
+        for arguments in ((*self.match, '--out', self.out), ('demo', self.a, self.b, '--out', self.out.with_suffix('.png')),
+                          ('align', self.a, self.b, '--out', out)):
+            self.assertEqual(run_command(*arguments, '--quiet'), (0, '', ''))
+        self.assertEqual(run_command('colmap', self.folder, self.folder / 'c.db', '--points', '200', '--quiet', '--verify', 'magsac')[1:],
+                         ('', ''))
+        self.assertRegex(run_command('match', self.a, self.folder / 'gone', '--quiet')[2], '^match: .*gone')
+
+    @unittest.skipUnless(os.path.exists('/dev/full'), 'no full device')
+    def test_a_full_disk_behind_standard_output(self):
+        with open('/dev/full', 'w') as full:
+            done = command(*self.match, '--out', '-', stdout=full, stderr=subprocess.PIPE)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr.decode(), r'^match: - cannot be written: No space left[^\n]*\n$')
+
+    @unittest.skipUnless(hasattr(sys, 'orig_argv') and os.name == 'posix', 'no words of the command, or no signals')
+    def test_ctrl_c_while_it_begins(self):
+        (self.folder / 'numpy.py').write_text(f'import os, signal\nos.kill(os.getpid(), signal.SIGINT)\n')
+        done = command(*self.match, env={**os.environ, 'PYTHONPATH': os.pathsep.join([str(self.folder), os.environ.get('PYTHONPATH', '')])})
+        self.assertEqual((done.returncode, done.stderr), (-signal.SIGINT, b''))
+        done = subprocess.run([sys.executable, '-c', 'try: import opencv_iib\nexcept KeyboardInterrupt: print("raised")'], capture_output=True,
+                              env={**os.environ, 'PYTHONPATH': os.pathsep.join([str(self.folder), os.environ.get('PYTHONPATH', '')])})
+        self.assertEqual((done.returncode, done.stdout), (0, b'raised\n'))
+
+
+class Mistakes(InFolder):
+
+    def test_in_options_end_with_2(self):
+        place = ['--images', self.folder, '--out', self.folder / 'out']
+        for told, *arguments in (
+                ('invalid choice', 'nothing'), ('workers is 3000000000', 'map', '--model', 'm', *place, '--workers', '3000000000'),
+                ('points is 3000000000', 'map', '--model', 'm', *place, '--points', '3000000000'),
+                ('points is 0', 'map', '--model', 'm', *place, '--points', '0'), ("invalid int value: 'many'", 'match', 'a', 'b', '--points', 'many'),
+                ('points is -1', 'match', 'a', 'b', '--points', '-1'), ('max_size is 5', 'demo', 'a', 'b', '--max-size', '5'),
+                ('MODEL,WIDTH,HEIGHT', 'match', 'a', 'b', '--camera', 'x'), ('FISH is not one of', 'localize', '--map', 'm', *place, '--camera', 'FISH,1,2,3'),
+                ('3 cameras', 'match', 'a', 'b', *['--camera', 'simple_pinhole,9,9,9,4,4'] * 3),
+                ('invalid choice', 'match', 'a', 'b', '--detector', 'eyes'), ('ratio is 2', 'colmap', self.folder, 'x.db', '--ratio', '2'),
+                ('focal is -1', 'colmap', self.folder, 'x.db', '--focal=-1'), ('neither a file nor one of', 'colmap', self.folder, 'x.db', '--pairs', 'none'),
+                ('invalid choice', 'colmap', self.folder, 'x.db', '--verify', 'no'), ('workers is 0', 'colmap', self.folder, 'x.db', '--workers', '0'),
+                ('workers is 0', 'localize', '--map', 'm', *place, '--workers', '0'), ('arguments are required', 'update')):
+            with self.subTest(arguments):
+                status, out, errors = run_command(*arguments)
+                self.assertEqual((status, out), (2, ''))
+                self.assertRegex(errors, rf'^(opencv-iib|{arguments[0]}): [^\n]*{re.escape(told)}[^\n]*\n$')
+
+
+if __name__ == '__main__':
+    unittest.main()
