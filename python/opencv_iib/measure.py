@@ -123,15 +123,23 @@ def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, pictu
                                 f"image's own camera, PINHOLE,{width},{height},F,F,{width / 2:g},{height / 2:g} with its focal length F in "
                                 'pixels')
     (rows_a, codes_a), (rows_b, codes_b) = map(Features(options), images)
-    given = match(codes_a, codes_b).pairs
-    propagated = propagateMatches(images[0], rows_a, images[1], rows_b, given)
+
+    def propagate(given: NDArray[np.int32]) -> tuple[PropagatedMatches, int]:
+        """What cameras see of what matches lead to, and how many of them were given: a lens shows nothing beyond its range."""
+        found = propagateMatches(images[0], rows_a, images[1], rows_b, given)
+        seen = np.ones(len(found.matches), bool)
+        for points, lens in zip(found[1:3], lenses):
+            seen &= np.isfinite(lens.undistorted(points)).all(axis=1)
+        return PropagatedMatches(*(rows[seen] for rows in found)), int(seen[:len(given)].sum())
+
+    propagated, count = propagate(match(codes_a, codes_b).pairs)
     pose = None
     if lenses:
         # Where a pattern repeats, wrong matches lead to further ones, but seldom to one pose: a second try is from those alone
         # that agree with a first one. Only where right matches are few, the first try knows more.
         pose = _pose(propagated, lenses)
-        first = _pose(PropagatedMatches(*(rows[:len(given)] for rows in propagated)), lenses)
-        again = propagateMatches(images[0], rows_a, images[1], rows_b, given[first.inliers.ravel() > 0])
+        first = _pose(PropagatedMatches(*(rows[:count] for rows in propagated)), lenses)
+        again, _ = propagate(propagated.matches[:count][first.inliers.ravel() > 0])
         pose, propagated = max((pose, propagated), (_pose(again, lenses), again), key=lambda found: int(found[0].inliers.sum()))
     pairs, matches = propagated.matches, RefinedMatches(*propagated[1:])
     bits = np.unpackbits(codes_a[pairs[:, 0]] ^ codes_b[pairs[:, 1]], axis=1).sum(axis=1, dtype=np.int32)
@@ -146,16 +154,5 @@ def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, pictu
 
 
 def _pose(matches: PropagatedMatches, lenses: Sequence[Camera]) -> Union[FoundPose, NoPose]:
-    (a, matrix_a), (b, matrix_b) = (_without_distortion(points, lens) for points, lens in zip(matches[1:3], lenses))
-    return findRelativePose(a, b, matrix_a, matrix_b)
-
-
-def _without_distortion(points: NDArray[np.float32], camera: Camera) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Where a camera without distortion has the points, and its matrix."""
-    step = 1e-6
-    centre, right, down = camera.project(np.array([[0, 0, 1], [step, 0, 1], [0, step, 1]]))
-    focal = np.array([right[0] - centre[0], down[1] - centre[1]]) / step
-    rays = (points - centre) / focal
-    for _ in range(50):
-        rays -= (camera.project(np.column_stack([rays, np.ones(len(rays))])) - points) / focal
-    return rays * focal + centre, np.array([[focal[0], 0, centre[0]], [0, focal[1], centre[1]], [0, 0, 1]])
+    a, b = (lens.undistorted(points) for points, lens in zip(matches[1:3], lenses))
+    return findRelativePose(a, b, lenses[0].matrix, lenses[1].matrix)

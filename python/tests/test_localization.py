@@ -303,6 +303,26 @@ class Localization(Commands):
                 self.assertEqual(runs.find_camera(b'', WIDTH, HEIGHT, known).params[0], taken)
                 self.assertEqual(runs.find_camera(b'', 640, 480, known).params, [told, 320, 240])
 
+    def test_cameras_of_a_map_that_agree_are_one(self):
+        model, made, out = self.path('model'), self.path('map'), self.path('out')
+
+        def build_with(focals):
+            os.makedirs(model, exist_ok=True)
+            images = [_core.PosedImage(name, Camera('SIMPLE_RADIAL', WIDTH, HEIGHT, (focal, 160, 120, focal / 3e4 - .01)), place,
+                                       np.empty((0, 2))) for (name, place), focal in zip(self.poses.items(), focals)]
+            _core.writeModel(model, images)
+            status, _, errors = run_command('map', '--model', model, '--images', self.images, '--out', made, '--points', '400', '--force')
+            self.assertEqual(status, 0, errors)
+        build_with((297, 298, 300, 301, 302, 303))
+        status, errors = self.localize(out, map=made)
+        self.assertEqual((status, errors.count('the middle one of 6 cameras of the map, which agree')), (0, 1))
+        self.assertIn('[301.0, 160.0, 120.0', errors)
+        self.assertIn('which agree', run_command('update', '--map', made, '--images', self.dark, '--out', self.path('new'))[2])
+        build_with((297, 298, 300, 301, 302, 330))
+        status, errors = self.localize(out, map=made)
+        self.assertEqual((status, errors.count('6 cameras of the map have its size, which differ: give --camera PINHOLE,320,240,F,F,160,120')),
+                         (3, 3))
+
     def test_mistakes_get_one_line(self):
         out, empty = self.path('out'), self.path('empty')
         os.makedirs(empty)
@@ -373,7 +393,7 @@ class Localization(Commands):
             self.check_error('holds .*png', 'localize', '--map', self.map, '--images', self.dark, '--out', self.images)
         with mock.patch.object(maps, 'read_grey', side_effect=AssertionError):
             self.check_mistake('points is 0', 'map', '--model', self.model, '--images', self.images, '--out', out, '--points', '0')
-            self.check_error('points is -1', 'map', '--model', self.model, '--images', self.images, '--out', out, '--points', '-1', '--orb-and-akaze')
+            self.check_mistake('points is -1', 'map', '--model', self.model, '--images', self.images, '--out', out, '--points', '-1', '--orb-and-akaze')
         self.assertFalse(os.path.exists(out))
         if os.getuid():  # root may write everywhere
             closed = self.path('map')

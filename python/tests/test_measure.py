@@ -165,6 +165,19 @@ class Match(Commands):
         self.check_error('give what is written a name of its own', 'demo', a, b, '--out', a)
         self.assertEqual(Path(a).read_bytes(), before)
 
+    def test_a_wide_lens_and_what_lies_beyond_it(self):
+        wide = Camera('opencv_fisheye', 1280, 960, (400, 400, 640, 480, .02, -.01, 0, 0))
+        angles = np.linspace(0, 1.4, 40)
+        rays = np.column_stack([np.sin(angles), np.zeros(40), np.cos(angles)])
+        seen = wide.undistorted(wide.project(rays))
+        np.testing.assert_allclose((seen[:, 0] - wide.matrix[0, 2]) / wide.matrix[0, 0], np.tan(angles), rtol=1e-6)
+        a, b = self.write('a.png', self.world((4, 8))), self.write('b.png', self.world((4, 8), .5, 3))
+        every = match_images(a, b)
+        narrow = 'SIMPLE_RADIAL,480,360,400,240,180,-.9'  # its image ends 163 pixels from the centre
+        some = match_images(a, b, cameras=[narrow])
+        self.assertTrue(0 < len(some.bits) < len(every.bits))
+        self.assertLess(np.linalg.norm(some.matches.points1 - [239.5, 179.5], axis=1).max(), 170)
+
 
 class Align(Commands):
 

@@ -90,7 +90,7 @@ class Texts(InFolder):
         for wrong in (3, None, b'PINHOLE'):
             self.expect(TypeError, "'MODEL,WIDTH,HEIGHT,PARAMS' is needed", lambda: Camera.parse(wrong))
         self.expect(ValueError, 'points: an array of N x 3 is needed, not of 1 x 2', lambda: camera.project([[0, 0]]))
-        self.expect(TypeError, 'points: an array of numbers', lambda: camera.project('x'))
+        self.expect(TypeError, 'pixels: an array of numbers', lambda: camera.undistorted('x'))
         np.testing.assert_array_equal(camera.project([[0, 0, 1]]), [[319.5, 239.5]])
         self.expect(TypeError, 'PathLike', lambda: Localizer(None))
         self.expect(TypeError, 'points: an integer', lambda: Localizer(self.folder, 'x'))

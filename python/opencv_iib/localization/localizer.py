@@ -49,6 +49,11 @@ class Camera(_core.Camera):
         """Pixels, N x 2, of points in the camera's axes (x right, y down, z ahead), N x 3; NaN for those that it does not see."""
         return super().project(as_rows_of(points, 3, 'points'))
 
+    def undistorted(self, pixels: ArrayLike) -> NDArray[np.float64]:
+        """Where a camera of the same `matrix` and no distortion would see what this one sees at pixels, N x 2: what
+        :func:`opencv_iib.findRelativePose` takes. NaN for pixels at which it sees nothing."""
+        return super().undistorted(as_rows_of(pixels, 2, 'pixels'))
+
     def _values(self) -> tuple[str, int, int, tuple[float, ...]]:
         return self.model, self.width, self.height, tuple(self.params)
 

@@ -114,7 +114,7 @@ def update(map: Path, images: Path, camera: Optional[AnyCamera] = None, out: Opt
         _check_new(out, force)
     names = images_of(images)
     changed = _core.MapUpdate(os.path.realpath(map), '' if out is None else os.path.realpath(out))
-    for name, own, location in locate(changed.add, changed.cameras(), images, names, camera, workers):
+    for name, own, location in locate(changed.add, changed.cameras(), images, names, camera, workers, log):
         if own is None or location.reason:
             log(f'{name}: {location if own is None else location.reason}')
     localized, added, dropped = changed.commit()

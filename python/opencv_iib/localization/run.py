@@ -22,7 +22,7 @@ from opencv_iib.localization.localizer import AnyCamera, Camera, Localizer, Loca
 
 #: What it writes beside frames.csv and pictures; COLMAP 4 also wrote rigs and frames.
 OWN = ('trajectory.txt', 'cameras.bin', 'images.bin', 'points3D.bin', 'rigs.bin', 'frames.bin')
-SAME_FOCAL = .05  #: of focal lengths, which EXIF tells roughly
+SAME_FOCAL = .05  #: of focal lengths, which EXIF tells roughly, and COLMAP of a camera an image
 POSE = ('tx', 'ty', 'tz', 'qx', 'qy', 'qz', 'qw')  # the camera's centre, and camera to world
 AXES = ('x', 'y', 'z', 'rx', 'ry', 'rz')
 
@@ -30,20 +30,38 @@ Find = Callable[[str, NDArray[np.uint8], Camera], _core.Location]
 
 
 def find_camera(data: bytes, width: int, height: int, known: Sequence[Camera] = ()) -> Camera:
-    """The camera of the focal length that an image's EXIF data tell, or the only one of that size that is known.
+    """The camera of the focal length that an image's EXIF data tell, or that of its size which is known.
 
     :param data: of the image's file.
-    :param known: cameras of a map; one is taken if EXIF tells no focal length, or nearly the same.
+    :param known: cameras of a map. One of the image's size is taken, or of several that agree the middle one, if EXIF tells no focal
+        length or nearly the same.
     :raises ValueError: if there is none.
     """
     focal = exif_focal_length(data, width, height)
-    same = [camera for camera in known if (camera.width, camera.height) == (width, height)]
-    if len(same) == 1 and (focal is None or abs(focal / same[0].params[0] - 1) < SAME_FOCAL):
-        return same[0]
+    same = tuple(camera for camera in known if (camera.width, camera.height) == (width, height))
+    common = _common_camera(same)
+    if common is not None and (focal is None or abs(focal / common.params[0] - 1) < SAME_FOCAL):
+        return common
     if focal is None:
-        raise ValueError(f'its EXIF data tell no focal length, and {len(same)} cameras of the map have its size: give '
+        differ = ', which differ' if len(same) > 1 else ''
+        raise ValueError(f'its EXIF data tell no focal length, and {len(same)} cameras of the map have its size{differ}: give '
                          f'--camera PINHOLE,{width},{height},F,F,{width / 2:g},{height / 2:g} with its focal length F in pixels')
     return Camera.parse(f'SIMPLE_PINHOLE,{width},{height},{focal!r},{width / 2},{height / 2}')
+
+
+@functools.lru_cache
+def _common_camera(cameras: tuple[Camera, ...]) -> Optional[Camera]:
+    """Of cameras of one size that of the middle focal length, if all have the image's corners where it has them."""
+    if not cameras:
+        return None
+    middle = sorted(cameras, key=lambda camera: camera.params[0])[len(cameras) // 2]
+    for camera in cameras:
+        right, bottom = camera.width - 1, camera.height - 1
+        corners = np.array([(0, 0), (right, 0), (0, bottom), (right, bottom)], float)
+        rays = np.column_stack([middle.undistorted(corners), np.ones(4)]) @ np.linalg.inv(middle.matrix).T
+        if not np.abs(camera.project(rays) - corners).max() < SAME_FOCAL * max(right, bottom) / 2:
+            return None
+    return middle
 
 
 def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[Camera], name: str) -> tuple[Camera, _core.Location]:
@@ -55,20 +73,26 @@ def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[
 
 
 def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence[str], camera: Optional[AnyCamera],
-           workers: Optional[int]) -> Iterator[tuple[str, Optional[Camera], Any]]:
+           workers: Optional[int], log: Callable[[str], None]) -> Iterator[tuple[str, Optional[Camera], Any]]:
     """Of each image in order its name, its camera and Location; None and what is wrong if it cannot be read or has no camera.
 
     :param find: gives the Location; threads call it.
     :param known: cameras of the map.
+    :param log: told of cameras that were taken for others.
     """
     import_cv2()
-    given, cameras = None if camera is None else as_camera(camera), list(map(as_camera, known))
+    given, cameras, told = None if camera is None else as_camera(camera), list(map(as_camera, known)), set()
     progress = Progress('localizing', len(names))
     job = functools.partial(_locate, find, cameras, folder, given)
     for name, result in in_parallel(job, names, Threads(thread_count(workers))):
         if isinstance(result, Exception) and not isinstance(result, (ValueError, OSError, error)):
             raise result
         own, location = (None, str(result)) if isinstance(result, Exception) else result
+        if given is None and own in cameras and own not in told:
+            told.add(own)
+            alike = sum((other.width, other.height) == (own.width, own.height) for other in cameras)
+            if alike > 1:
+                log(f'{own.width} x {own.height} pixels: {own}, the middle one of {alike} cameras of the map, which agree')
         yield name, own, location
         progress.step()
     progress.close()
@@ -149,7 +173,7 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     posed: list[Any] = []
     with new_results(os.fspath(out), 'frames.csv', _earlier) as part:
         localizer = Localizer(map, 0, lines)
-        located = locate(lambda name, image, camera: localizer.localize(image, camera), localizer.cameras, images, names, given, workers)
+        located = locate(lambda name, image, camera: localizer.localize(image, camera), localizer.cameras, images, names, given, workers, log)
         with open(os.path.join(part, 'trajectory.txt'), 'w', encoding='utf-8') as trajectory, \
                 open(os.path.join(part, 'frames.csv'), 'w', encoding='utf-8', errors='backslashreplace', newline='') as file:
             frames = csv.writer(file)
@@ -169,5 +193,6 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
                 posed.append(_core.PosedImage(name, own, location.cam_from_world, location.pixels))
                 if pictures:
                     _write_picture(os.path.join(part, 'matches', labels[name] + '.png'), os.path.join(images, name), own, location)
-        _core.writeModel(part, posed)
+        if posed:  # no reader takes a model of none
+            _core.writeModel(part, posed)
     return len(posed), len(names)
