@@ -11,6 +11,8 @@ import sys
 
 # What a folder below src may include, besides precomp.hpp; the rest of the module includes what it likes.
 ALLOWED = {'': {'common'}, 'common': {'common'}, 'rotation': {'rotation', 'common'}}
+ALLOWED['pose'] = {'pose'}  # of iib_geometry
+ALLOWED[''].add('pose')
 for wing in ('descriptor', 'matcher', 'detector', 'normalization', 'refinement'):
     ALLOWED[''].add(wing + '/kernels')
     ALLOWED[wing + '/kernels'] = {wing + '/kernels', 'common'}

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "pose.hpp"
-#include "two_views.hpp"
+#include "pose/two_views.hpp"
 
 namespace cv::iib {
 namespace {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "opencv2/imgproc.hpp"
-#include "planar_problem.hpp"
+#include "pose/planar_problem.hpp"
+#include "pose/uncertainty.hpp"
 #include "test_precomp.hpp"
 
 namespace opencv_test {
@@ -164,18 +165,18 @@ TEST(Alignment, deviation_foretells_the_errors_of_the_corners)
                     reference.at<double>(i, c) =
                             i < 20 ? random.uniform(0., 300.) : image.at<double>(i, c) + random.gaussian(.4);
                 }
-            const PlanarProblem problem(reference, image, kind, .5);
-            Matx33d model;
-            std::vector<uchar> inliers;
-            ASSERT_TRUE(robustFit(problem, model, inliers));
+            const PlanarProblem problem(reference, image, kind);
+            const Fit<PlanarProblem> fit = robustFit(problem, 0);
+            ASSERT_FALSE(fit.squared.empty());
+            const Matx33d model = fit.model;
             const Vec3d place = problem.inPixels(model) * Vec3d(300, 300, 1);
             const double error = std::hypot(place[0] / place[2] - 300, place[1] / place[2] - 300);
-            const double deviation =
-                    problem.deviation(model, covarianceOf(problem, model), Point2d(300, 300));
+            const double deviation = problem.deviation(
+                    model, covarianceOf(problem, fit, partsOf(reference), 1e3), Point2d(300, 300));
             squares += error * error / (deviation * deviation) / trials;
         }
-        EXPECT_GT(squares, .6) << kind;
-        EXPECT_LT(squares, 1.6) << kind;
+        EXPECT_GT(squares, .2) << kind;
+        EXPECT_LT(squares, 1) << kind;
     }
 }
 
@@ -186,19 +187,19 @@ TEST(Alignment, derivatives_are_those_of_finite_differences)
     random.fill(image, RNG::UNIFORM, 0, 300);
     random.fill(reference, RNG::NORMAL, 0, 3);
     reference += image;
-    const PlanarProblem problem(reference, image, ALIGN_HOMOGRAPHY, 5);
+    const PlanarProblem problem(reference, image, ALIGN_HOMOGRAPHY);
     const Matx33d model(1.01, .02, .01, -.01, .99, -.01, .01, .02, 1);
     std::vector<Row<PlanarProblem::Step>> rows;
-    problem.linearize(model, rows);
+    problem.linearize(model, 9 * 25, rows);
     PlanarProblem::Step gradient;
     for (const Row<PlanarProblem::Step>& row : rows)
-        gradient += 2 * row.r / (1 + row.r2) * row.J;
+        gradient += 2 * row.r / (25 + row.r2) * row.J;
     for (int k = 0; k < 8; k++)
     {
         PlanarProblem::Step step;
         step[k] = 1e-6;
-        const double up = problem.verdict(problem.moved(model, step)),
-                     down = problem.verdict(problem.moved(model, -step));
+        const double up = problem.loss(problem.moved(model, step), 5, DBL_MAX),
+                     down = problem.loss(problem.moved(model, -step), 5, DBL_MAX);
         EXPECT_NEAR((up - down) / 2e-6, gradient[k], 1e-3 * (1 + std::abs(gradient[k]))) << k;
     }
 }

@@ -13,10 +13,13 @@ namespace iib {
 /** @brief Finds where camera 2 stands, seen from camera 1, from matched points.
 
 A point \f$X\f$ in the axes of camera 1 is \f$RX + \lambda t\f$ in those of camera 2; matches do not tell the length
-\f$\lambda\f$. Samples of five matches propose poses @cite Nister2004. Those that many matches agree with are fitted to all
-matches by Levenberg-Marquardt on Sampson's error (@cite HartleyZisserman2004, equation 11.9) under Cauchy's loss, cut off at
-three scales, and the pose of the least loss is the answer. Wrong matches are expected; the same input gives the same answer,
-whatever the number of threads.
+\f$\lambda\f$. Samples of five matches propose poses @cite Nister2004. Those that agree best are polished by Levenberg-Marquardt on
+Sampson's error (@cite HartleyZisserman2004, equation 11.9) under Cauchy's loss, cut off at three scales. Wrong matches are
+expected; the same input gives the same answer, whatever the number of threads.
+
+Where the matches that agree are not more than chance there is no pose: if poses that agree as well are expected more than once
+in a thousand tries among matches that are anywhere (the number of false alarms, @cite MoisanStival2004, counted in cells of a 32nd
+of the diagonal of what the points span, since matches beside each other are right or wrong together).
 
 Points must be free of lens distortion: `cv::undistortPoints(points, undistorted, K, distortion, noArray(), K)` first.
 Matches that cv::iib::refineMatches refined make the pose more accurate where the light changed.
@@ -27,20 +30,22 @@ Matches that cv::iib::refineMatches refined make the pose more accurate where th
 @param cameraMatrix2 the same of camera 2
 @param R 3 x 3, CV_64F: from the axes of camera 1 to those of camera 2
 @param t 3 x 1, CV_64F, of length 1: direction of the translation, in the axes of camera 2
-@param inliers N x 1, CV_8U: 1 for matches within three scales of the pose, and in front of both cameras; else 0
-@param scale Cauchy's scale in pixels, over 0: about the standard deviation of the points; .25 for refined points, .5 for
-    points as they were detected
+@param inliers N x 1, CV_8U: 1 for matches within three scales of the pose (three quarters of a pixel at least), and in front of both
+    cameras unless they are too far away to tell; else 0. Without a pose, those that agreed best
+@param scale Cauchy's scale in pixels: about the standard deviation of the points; 0: the residuals tell it, from .1 pixels on
 @param covariance 5 x 5, CV_64F, of the errors of the pose in radians: three numbers of a rotation vector \f$w\f$ in the
     axes of camera 2, where the true rotation is \f$\exp([w]_\times) R\f$; two of the direction of t, along \f$b\f$ and
     \f$t \times b\f$, where \f$b\f$ is the unit vector along \f$t \times e\f$ and \f$e\f$ the axis along which t is
-    shortest. Where the cameras hardly moved apart, or all the points are far away, the last two are large.
-@return false, with R, t and covariance empty and all inliers 0, if there are fewer than five matches, or no pose that
-    five matches or more agree with
+    shortest. It tells by how much parts of the image disagree, so that it knows of shadows that move a region; what all matches have
+    in common, such as a wrong camera matrix, is not in it. A number that nothing tells, such as the direction of t where the camera
+    only turned or all the points are far away, has a deviation of a radian or more
+@param reason if not null: why there is no pose, a sentence; empty if there is one
+@return false, with R, t and covariance empty, if the matches that agree are not more than chance
 @throws cv::Exception for points of a wrong type or of different numbers, points that are not finite, matrices that are
-    not a camera's, or a scale that is not over 0 */
+    not a camera's, or a scale that is negative or not finite */
 CV_EXPORTS_W bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraMatrix1,
         InputArray cameraMatrix2, OutputArray R, OutputArray t, OutputArray inliers = noArray(),
-        double scale = .25, OutputArray covariance = noArray());
+        double scale = 0, OutputArray covariance = noArray(), CV_OUT String* reason = nullptr);
 
 //! @}
 

@@ -3,6 +3,8 @@
 
 #include "opencv2/iib.hpp"
 #include "planar_problem.hpp"
+#include "uncertainty.hpp"
+#include "verdict.hpp"
 
 namespace cv::iib {
 namespace {
@@ -13,6 +15,7 @@ const double SCALE = .5;  // Cauchy's, pixels
 const int FEWEST = 16;
 //! Of a corner, pixels: above it what agrees is a part, such as a logo that both images hold.
 const double MOST_DEVIATION = 2;
+const double ANY = 1e3;          // deviation of a number of a transform that nothing tells
 const double LEAST_SHARE = .05;  // of all matches
 
 //! Refined matches, N x 2 each, CV_64F.
@@ -50,14 +53,14 @@ Matches match(const Mat& reference, const Mat& image, bool rotated)
 }
 
 //! N x 4, CV_32F, of those that are marked.
-Mat rowsOf(const Matches& matches, const std::vector<uchar>& marked)
+Mat rowsOf(const Matches& matches, const Verdict::Marks& marked)
 {
     Mat both, result(0, 4, CV_32F);
     hconcat(matches.reference, matches.image, both);
     both.convertTo(both, CV_32F);
-    for (int i = 0; i < both.rows; i++)
+    for (size_t i = 0; i < marked.size(); i++)
         if (marked[i])
-            result.push_back(both.row(i));
+            result.push_back(both.row((int)i));
     return result;
 }
 
@@ -78,24 +81,23 @@ bool alignImages(InputArray reference, InputArray image, OutputArray transform, 
         if (rotated && model == ALIGN_TRANSLATION)
             break;
         const Matches all = match(first, second, rotated);
-        const PlanarProblem problem(all.reference, all.image, model, SCALE);
-        Matx33d found;
-        std::vector<uchar> inliers;
-        robustFit(problem, found, inliers);
-        const Mat agree = rowsOf(all, inliers);
+        const PlanarProblem problem(all.reference, all.image, model);
+        const Fit<PlanarProblem> fit = robustFit(problem, SCALE);
+        const Mat agree = rowsOf(all, within(3 * SCALE, fit.squared));
         if (agree.rows > agreed.rows)
             agreed = agree;
         if (agree.rows < FEWEST || agree.rows < LEAST_SHARE * all.image.rows)
             continue;
-        const Square<PlanarProblem::Step> covariance = covarianceOf(problem, found);
+        const Square<PlanarProblem::Step> covariance =
+                covarianceOf(problem, fit, partsOf(all.reference), ANY);
         const double right = second.cols - 1, bottom = second.rows - 1;
         const Point2d corners[] = {{0, 0}, {right, 0}, {right, bottom}, {0, bottom}};
         Mat deviations(4, 1, CV_64F);
         for (int k = 0; k < 4; k++)
-            deviations.at<double>(k) = problem.deviation(found, covariance, corners[k]);
+            deviations.at<double>(k) = problem.deviation(fit.model, covariance, corners[k]);
         if (!checkRange(deviations, true, nullptr, 0, MOST_DEVIATION))
             continue;
-        Mat(problem.inPixels(found)).copyTo(transform);
+        Mat(problem.inPixels(fit.model)).copyTo(transform);
         if (error.needed())
             deviations.copyTo(error);
         if (matches.needed())

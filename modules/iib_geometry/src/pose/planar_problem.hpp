@@ -6,29 +6,31 @@
 namespace cv::iib {
 
 /** Matches of two images between which a transform of the plane is sought (robust_fit.hpp): 3 x 3, last entry 1, mirroring
-nothing. The error of a match is the distance in the first image over the scale. */
+nothing. The error of a match is the distance in the first image, pixels. */
 class PlanarProblem
 {
 public:
     typedef Matx33d Model;
     typedef Vec<double, 8> Step;
 
-    //! Both N x 2, CV_64F, pixels; kind of AlignmentModel; scale in pixels.
-    PlanarProblem(const Mat& reference, const Mat& image, int kind, double scale);
+    //! Both N x 2, CV_64F, pixels; kind of AlignmentModel.
+    PlanarProblem(const Mat& reference, const Mat& image, int kind);
 
     int size() const { return (int)image_.size(); }
     int sampleSize() const { return parameters() / 2; }
     int parameters() const { return (int)basis_.size(); }
 
     void propose(const std::vector<int>& sample, std::vector<Matx33d>& transforms) const;
-    double loss(const Matx33d& transform, double limit) const;
-    double verdict(const Matx33d& transform) const
-    {
-        return loss(transform, std::numeric_limits<double>::max());
-    }
-    void linearize(const Matx33d& transform, std::vector<Row<Step>>& rows) const;
+    double loss(const Matx33d& transform, double scale, double limit) const;
+    void squaredErrors(const Matx33d& transform, std::vector<double>& errors) const;
+    void linearize(const Matx33d& transform, double limit, std::vector<Row<Step>>& rows) const;
     Matx33d moved(const Matx33d& transform, const Step& step) const;
-    int inliers(const Matx33d& transform, std::vector<uchar>& mask) const;
+
+    //! Next to none.
+    Square<Step> noiseInDerivatives(const Matx33d&, const std::vector<Row<Step>>&, double) const
+    {
+        return Square<Step>::zeros();
+    }
 
     //! The same transform between pixels, and that of a model between pixels.
     Matx33d inPixels(const Matx33d& transform) const;
@@ -48,8 +50,7 @@ private:
     std::vector<Matx33d> basis_;            // a step adds multiples of them
     std::vector<Vec3d> reference_, image_;  // centred, of the order of one, third coordinate 1
     Matx33d fromReference_, fromImage_;     // pixels to these
-    double unit_;                           // one of them in scales
-    double scale_;
+    double unit_;                           // one of them in pixels
 };
 
 }  // namespace cv::iib

@@ -41,8 +41,7 @@ std::vector<Vec3d> transformed(const Mat& points, const Matx33d& by)
 
 }  // namespace
 
-PlanarProblem::PlanarProblem(const Mat& reference, const Mat& image, int kind, double scale)
-    : basis_(basisOf(kind))
+PlanarProblem::PlanarProblem(const Mat& reference, const Mat& image, int kind) : basis_(basisOf(kind))
 {
     if (image.empty())
         return;
@@ -55,8 +54,7 @@ PlanarProblem::PlanarProblem(const Mat& reference, const Mat& image, int kind, d
     fromImage_ = Matx33d(1 / spread, 0, -to[0] / spread, 0, 1 / spread, -to[1] / spread, 0, 0, 1);
     reference_ = transformed(reference, fromReference_);
     image_ = transformed(image, fromImage_);
-    unit_ = spread / scale;
-    scale_ = scale;
+    unit_ = spread;
 }
 
 // Of T p = w r, with T = 1 + sum of s_k G_k, two equations a match are linear in s, and w drops out.
@@ -82,7 +80,7 @@ void PlanarProblem::propose(const std::vector<int>& sample, std::vector<Matx33d>
     std::copy(s.ptr<double>(), s.ptr<double>() + n, step.val);
     const Matx33d transform = moved(Matx33d::eye(), step);
     for (int i : sample)
-        if (squaredError(transform, i) >= FARTHEST)
+        if (!(squaredError(transform, i) < 1))
             return;  // beyond the horizon, or mirrored
     transforms.push_back(transform);
 }
@@ -106,31 +104,40 @@ double PlanarProblem::squaredError(const Matx33d& T, int i) const
     const Vec3d q = T * image_[i];
     // the sign of the determinant of the derivatives by the point is that of det T / w^3
     if (!(q[2] > 1e-6) || !(determinant(T) > 0))
-        return FARTHEST;
+        return std::numeric_limits<double>::infinity();
     const double x = q[0] / q[2] - reference_[i][0], y = q[1] / q[2] - reference_[i][1];
     return unit_ * unit_ * (x * x + y * y);
 }
 
-double PlanarProblem::loss(const Matx33d& transform, double limit) const
+double PlanarProblem::loss(const Matx33d& transform, double scale, double limit) const
 {
+    const double perScale2 = 1 / square(scale);
     double sum = 0;
     for (int i = 0; i < size() && sum <= limit; i++)
-        sum += std::log1p(std::min(squaredError(transform, i), FARTHEST));
+        sum += std::log1p(std::min(squaredError(transform, i) * perScale2, FARTHEST));
     return sum;
 }
 
-void PlanarProblem::linearize(const Matx33d& transform, std::vector<Row<Step>>& rows) const
+void PlanarProblem::squaredErrors(const Matx33d& transform, std::vector<double>& errors) const
+{
+    errors.resize(size());
+    for (int i = 0; i < size(); i++)
+        errors[i] = squaredError(transform, i);
+}
+
+void PlanarProblem::linearize(const Matx33d& transform, double limit, std::vector<Row<Step>>& rows) const
 {
     rows.clear();
     for (int i = 0; i < size(); i++)
     {
         const double r2 = squaredError(transform, i);
-        if (r2 >= FARTHEST)
+        if (!(r2 < limit))
             continue;
         const Place place = placeOf(transform, image_[i]);
         for (int c = 0; c < 2; c++)
         {
             Row<Step> row;
+            row.match = i;
             row.r = unit_ * (place.at[c] - reference_[i][c]);
             row.r2 = r2;
             for (int k = 0; k < parameters(); k++)
@@ -148,17 +155,6 @@ Matx33d PlanarProblem::moved(const Matx33d& transform, const Step& step) const
     return result;
 }
 
-int PlanarProblem::inliers(const Matx33d& transform, std::vector<uchar>& mask) const
-{
-    int count = 0;
-    for (int i = 0; i < size(); i++)
-    {
-        mask[i] = squaredError(transform, i) < FARTHEST;
-        count += mask[i];
-    }
-    return count;
-}
-
 Matx33d PlanarProblem::inPixels(const Matx33d& transform) const
 {
     const Matx33d pixels = fromReference_.inv() * transform * fromImage_;
@@ -169,7 +165,7 @@ double PlanarProblem::deviation(
         const Matx33d& transform, const Square<Step>& covariance, const Point2d& pixel) const
 {
     const Place place = placeOf(transform, fromImage_ * Vec3d(pixel.x, pixel.y, 1));
-    return std::sqrt(trace(place.byStep * covariance * place.byStep.t())) * unit_ * scale_;
+    return std::sqrt(trace(place.byStep * covariance * place.byStep.t())) * unit_;
 }
 
 }  // namespace cv::iib

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "epipolar_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "five_points.hpp"
+
+namespace cv::iib {
+namespace {
+
+const int STRIDE = 32;          // matches between two looks at the limit
+const double NO_PARALLAX = 1;   // pixels: of a point so far away that noise may put it behind a camera
+const double NOWHERE = 1e-300;  // keeps an error of 0 / 0, at the epipoles, finite
+
+std::vector<Point2d> directions(const Mat& points, const Matx33d& camera)
+{
+    std::vector<Point2d> rays(points.rows);
+    for (int i = 0; i < points.rows; i++)
+    {
+        const double* p = points.ptr<double>(i);
+        rays[i] = Point2d((p[0] - camera(0, 2)) / camera(0, 0), (p[1] - camera(1, 2)) / camera(1, 1));
+    }
+    return rays;
+}
+
+}  // namespace
+
+EpipolarProblem::EpipolarProblem(
+        const Mat& points1, const Mat& points2, const Matx33d& camera1, const Matx33d& camera2)
+    : first_(directions(points1, camera1)),
+      second_(directions(points2, camera2)), pixels_{1 / camera2(0, 0), 1 / camera2(1, 1), 1 / camera1(0, 0),
+                                                     1 / camera1(1, 1)}
+{
+    std::transform(pixels_, pixels_ + 4, weights_, square);
+}
+
+namespace {
+
+//! The rotation from five directions to others (Kabsch 1976).
+Matx33d rotationBetween(const Point2d (&first)[5], const Point2d (&second)[5])
+{
+    Matx33d products = Matx33d::zeros(), U, Vt;
+    for (int k = 0; k < 5; k++)
+        products += normalize(Vec3d(second[k].x, second[k].y, 1)) *
+                    normalize(Vec3d(first[k].x, first[k].y, 1)).t();
+    Vec3d values;
+    SVD::compute(products, values, U, Vt);
+    return U * Matx33d::diag(Vec3d(1, 1, determinant(U * Vt))) * Vt;
+}
+
+}  // namespace
+
+double EpipolarProblem::squaredError(const Matx33d& E, int i) const
+{
+    const Point2d &u = first_[i], &v = second_[i];
+    const double line0 = E(0, 0) * u.x + E(0, 1) * u.y + E(0, 2),
+                 line1 = E(1, 0) * u.x + E(1, 1) * u.y + E(1, 2),
+                 line2 = E(2, 0) * u.x + E(2, 1) * u.y + E(2, 2),
+                 back0 = E(0, 0) * v.x + E(1, 0) * v.y + E(2, 0),
+                 back1 = E(0, 1) * v.x + E(1, 1) * v.y + E(2, 1);
+    const double error = v.x * line0 + v.y * line1 + line2;
+    const double length2 = weights_[0] * line0 * line0 + weights_[1] * line1 * line1 +
+                           weights_[2] * back0 * back0 + weights_[3] * back1 * back1;
+    return error * error / (length2 + NOWHERE);
+}
+
+void EpipolarProblem::propose(const std::vector<int>& sample, std::vector<RelativePose>& poses) const
+{
+    Point2d first[5], second[5];
+    for (int k = 0; k < 5; k++)
+    {
+        first[k] = first_[sample[k]];
+        second[k] = second_[sample[k]];
+    }
+    poses.clear();
+    std::vector<Matx33d> essentials;
+    fivePointEssentials(first, second, essentials);
+    if (essentials.empty())  // as where no point has parallax: any t will do
+        poses.push_back({rotationBetween(first, second), Vec3d(0, 0, 1)});
+    for (const Matx33d& essential : essentials)
+    {
+        RelativePose four[4];
+        posesOf(essential, four);
+        for (const RelativePose& pose : four)
+        {
+            int k = 0;
+            while (k < 5 && inFront(pose, first[k], second[k]))
+                k++;
+            if (k == 5)
+                poses.push_back(pose);
+        }
+    }
+}
+
+double EpipolarProblem::loss(const RelativePose& pose, double scale, double limit) const
+{
+    const Matx33d essential = essentialOf(pose);
+    const double perScale2 = 1 / square(scale);
+    double loss = 0;
+    for (int begin = 0; begin < size() && loss <= limit; begin += STRIDE)
+    {
+        double factors[STRIDE];
+        const int count = std::min(STRIDE, size() - begin);
+        for (int i = 0; i < count; i++)
+            factors[i] = 1 + std::min(squaredError(essential, begin + i) * perScale2, FARTHEST);
+        loss += std::log(std::accumulate(factors, factors + count, 1., std::multiplies<double>()));
+    }
+    return loss;
+}
+
+void EpipolarProblem::squaredErrors(const RelativePose& pose, std::vector<double>& errors) const
+{
+    const Matx33d essential = essentialOf(pose);
+    errors.resize(size());
+    for (int i = 0; i < size(); i++)
+        errors[i] = inFront(pose, first_[i], second_[i]) || parallax(pose, i) < NO_PARALLAX
+                            ? squaredError(essential, i)
+                            : std::numeric_limits<double>::infinity();
+}
+
+double EpipolarProblem::parallax(const RelativePose& pose, int i) const
+{
+    const Vec3d far = pose.R * Vec3d(first_[i].x, first_[i].y, 1);
+    return far[2] > 0 ? std::hypot((far[0] / far[2] - second_[i].x) / pixels_[0],
+                                (far[1] / far[2] - second_[i].y) / pixels_[1])
+                      : std::numeric_limits<double>::infinity();
+}
+
+//! A pose and its derivatives.
+struct EpipolarProblem::Linear
+{
+    Matx33d E;
+    Matx33d byStep[5];  //!< of E: [t]x [e]x R, and [b]x R
+
+    explicit Linear(const RelativePose& pose) : E(essentialOf(pose))
+    {
+        const Matx33d cross = crossProduct(pose.t);
+        const Matx<double, 3, 2> tangents = tangentsOf(pose.t);
+        for (int k = 0; k < 3; k++)
+        {
+            Vec3d axis;
+            axis[k] = 1;
+            byStep[k] = cross * crossProduct(axis) * pose.R;
+        }
+        for (int k = 0; k < 2; k++)
+            byStep[3 + k] = crossProduct(Vec3d(tangents(0, k), tangents(1, k), tangents(2, k))) * pose.R;
+    }
+};
+
+Row<EpipolarProblem::Step> EpipolarProblem::row(
+        const Linear& linear, const Point2d& first, const Point2d& second) const
+{
+    const Vec3d u(first.x, first.y, 1), v(second.x, second.y, 1);
+    const Vec3d line = linear.E * u, back = linear.E.t() * v;
+    const Vec3d weightedLine(weights_[0] * line[0], weights_[1] * line[1], 0),
+            weightedBack(weights_[2] * back[0], weights_[3] * back[1], 0);
+    const double length2 = weightedLine.dot(line) + weightedBack.dot(back) + NOWHERE;
+    const double inverse = 1 / std::sqrt(length2), r = v.dot(line) * inverse;
+    // dr = (v' dE u) / length - r (line' W dE u + back' W dE' v) / length^2: both are sums over dE's entries
+    double byE[9];
+    for (int k = 0; k < 9; k++)
+        byE[k] = (v[k / 3] * u[k % 3] -
+                         r * inverse * (weightedLine[k / 3] * u[k % 3] + weightedBack[k % 3] * v[k / 3])) *
+                 inverse;
+    Row<Step> row;
+    row.r = r;
+    row.r2 = r * r;
+    for (int k = 0; k < 5; k++)
+    {
+        row.J[k] = 0;
+        for (int e = 0; e < 9; e++)
+            row.J[k] += byE[e] * linear.byStep[k].val[e];
+    }
+    return row;
+}
+
+void EpipolarProblem::linearize(const RelativePose& pose, double limit, std::vector<Row<Step>>& rows) const
+{
+    rows.clear();
+    const Linear linear(pose);
+    for (int i = 0; i < size(); i++)
+        if (squaredError(linear.E, i) < limit)
+        {
+            rows.push_back(row(linear, first_[i], second_[i]));
+            rows.back().match = i;
+        }
+}
+
+Square<EpipolarProblem::Step> EpipolarProblem::noiseInDerivatives(
+        const RelativePose& pose, const std::vector<Row<Step>>& rows, double noise2) const
+{
+    const double little = .01;  // pixels, for differences
+    const Linear linear(pose);
+    Square<Step> sum = Square<Step>::zeros();
+    for (const Row<Step>& r : rows)
+        for (int coordinate = 0; coordinate < 4; coordinate++)
+        {
+            Point2d first = first_[r.match], second = second_[r.match];
+            double* const moved[] = {&second.x, &second.y, &first.x, &first.y};
+            *moved[coordinate] += little * pixels_[coordinate];
+            const Step change = row(linear, first, second).J - r.J;
+            addProduct(change, noise2 / square(little), sum);
+        }
+    mirror(sum);
+    return sum * (1 + 2 * std::sqrt(2. / std::max<double>((double)rows.size(), 1)));
+}
+
+}  // namespace cv::iib

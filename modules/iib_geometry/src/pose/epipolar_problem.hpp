@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "robust_fit.hpp"
+#include "two_views.hpp"
+
+namespace cv::iib {
+
+/** Matches of two calibrated cameras, whose relative pose is sought (robust_fit.hpp). The error of a match is Sampson's, in
+pixels (Hartley and Zisserman 2004, equation 11.9). */
+class EpipolarProblem
+{
+public:
+    typedef RelativePose Model;
+    typedef Vec<double, 5> Step;
+
+    //! Both N x 2, CV_64F, pixels; matrices of cameras without skew.
+    EpipolarProblem(const Mat& points1, const Mat& points2, const Matx33d& camera1, const Matx33d& camera2);
+
+    int size() const { return (int)first_.size(); }
+    int sampleSize() const { return 5; }
+    int parameters() const { return 5; }
+
+    //! The poses that see the sample in front of both cameras.
+    void propose(const std::vector<int>& sample, std::vector<RelativePose>& poses) const;
+
+    //! Blind to points behind a camera, which have an epipolar line all the same.
+    double loss(const RelativePose& pose, double scale, double limit) const;
+
+    void squaredErrors(const RelativePose& pose, std::vector<double>& errors) const;
+    //! How far a match is from where a point at infinity would be seen, pixels.
+    double parallax(const RelativePose& pose, int i) const;
+
+    void linearize(const RelativePose& pose, double limit, std::vector<Row<Step>>& rows) const;
+    RelativePose moved(const RelativePose& pose, const Step& step) const { return iib::moved(pose, step); }
+
+    /** The part of the rows' sum of J J' / (1 + r^2 / scale^2) that noise of the points alone makes: of points without parallax all
+    that there is for the direction of t. Rather too much than too little of it.
+    @param noise2 variance of a coordinate, pixels^2. */
+    Square<Step> noiseInDerivatives(
+            const RelativePose& pose, const std::vector<Row<Step>>& rows, double noise2) const;
+
+private:
+    struct Linear;
+    double squaredError(const Matx33d& essential, int i) const;
+    Row<Step> row(const Linear& linear, const Point2d& first, const Point2d& second) const;
+
+    std::vector<Point2d> first_, second_;  // directions, third coordinate 1
+    double pixels_[4];                     // of v and of u: one over the focal lengths
+    double weights_[4];                    // their squares, of the four squares in Sampson's denominator
+};
+
+}  // namespace cv::iib

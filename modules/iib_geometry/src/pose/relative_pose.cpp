@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "opencv2/iib/relative_pose.hpp"
+
+#include "epipolar_problem.hpp"
+#include "outputs.hpp"
+#include "uncertainty.hpp"
+#include "verdict.hpp"
+
+namespace cv::iib {
+namespace {
+
+const double FARTHEST_PIXEL = 1e9;
+const double REFINED = .25;  // least scale by which matches count as agreeing, pixels
+
+//! N x 2, CV_64F.
+Mat pixels(InputArray points, const char* name)
+{
+    Mat given = points.getMat();
+    if (given.empty())
+        return Mat(0, 2, CV_64F);
+    if (!given.isContinuous())
+        given = given.clone();
+    const int count = given.checkVector(2);
+    if (count < 0 || (given.depth() != CV_32F && given.depth() != CV_64F))
+        CV_Error(Error::StsBadArg,
+                format("findRelativePose: %s must be N x 2 numbers, CV_32F or CV_64F", name));
+    Mat rows;
+    given.reshape(1, count).convertTo(rows, CV_64F);
+    if (!checkRange(rows, true, nullptr, -FARTHEST_PIXEL, FARTHEST_PIXEL))
+        CV_Error(Error::StsBadArg,
+                format("findRelativePose: %s has numbers that are no pixels: not finite, or beyond %g", name,
+                        FARTHEST_PIXEL));
+    return rows;
+}
+
+Matx33d cameraMatrix(InputArray matrix, const char* name)
+{
+    const Mat given = matrix.getMat();
+    bool good = given.dims == 2 && given.rows == 3 && given.cols == 3 && given.channels() == 1 &&
+                (given.depth() == CV_32F || given.depth() == CV_64F);
+    Matx33d K;
+    if (good)
+    {
+        Mat doubles;
+        given.convertTo(doubles, CV_64F);
+        K = Matx33d(doubles);
+        good = checkRange(doubles) && K(0, 0) > 0 && K(1, 1) > 0 && K(0, 1) == 0 && K(1, 0) == 0 &&
+               K(2, 0) == 0 && K(2, 1) == 0 && K(2, 2) == 1;
+    }
+    if (!good)
+        CV_Error(Error::StsBadArg, format("findRelativePose: %s must be 3 x 3, CV_32F or CV_64F, [fx 0 cx; 0 "
+                                          "fy cy; 0 0 1] in pixels, with "
+                                          "fx and fy over 0",
+                                           name));
+    return K;
+}
+
+//! Why the matches tell no pose; empty if they do.
+std::string reasonAgainst(const Fit<EpipolarProblem>& fit, const Verdict& verdict)
+{
+    if (fit.squared.empty())
+        return "no pose agrees with five matches or more";
+    std::vector<double> limits;
+    for (double scales : {1.5, 3., 6., 12.})
+        limits.push_back(scales * std::max(fit.scale, REFINED));
+    if (verdict.logFalseAlarms(fit.squared, Verdict::FROM_LINE, 5, limits) > Verdict::CERTAIN)
+        return format(
+                "the pose that agrees best has matches in %d places of the image, no more than chance may "
+                "give: the images may not show the same",
+                verdict.places(within(limits[1], fit.squared)));
+    return "";
+}
+
+/** Whether the direction of t is more than chance. Matches without parallax say nothing of it; of the others one whose parallax is
+much longer than the limit agrees with a wrong direction by the chance asin(limit / parallax) 2 / pi. */
+bool tellsDirection(const EpipolarProblem& problem, const Fit<EpipolarProblem>& fit, const Verdict& verdict)
+{
+    const double limit = 1.5 * fit.scale;
+    const int matchesOfDirection = 2;
+    Verdict::Marks seen(fit.squared.size()), agree = seen;
+    double chances = 0, count = 0;
+    for (int i = 0; i < problem.size(); i++)
+    {
+        const double parallax = problem.parallax(fit.model, i);
+        if (parallax < 2 * limit)
+            continue;
+        seen[i] = true;
+        agree[i] = fit.squared[i] < limit * limit;
+        chances += std::asin(limit / parallax) * 2 / CV_PI;
+        count++;
+    }
+    return verdict.logFalseAlarms(seen, agree, matchesOfDirection, chances / std::max(count, 1.)) <
+           Verdict::CERTAIN;
+}
+
+}  // namespace
+
+bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraMatrix1,
+        InputArray cameraMatrix2, OutputArray R, OutputArray t, OutputArray inliers, double scale,
+        OutputArray covariance, String* reason)
+{
+    const Mat first = pixels(points1, "points1"), second = pixels(points2, "points2");
+    if (first.rows != second.rows)
+        CV_Error(Error::StsUnmatchedSizes,
+                format("findRelativePose: points1 has %d points, points2 %d; they must be "
+                       "matches, one for one",
+                        first.rows, second.rows));
+    if (!(scale >= 0) || cvIsInf(scale))
+        CV_Error(Error::StsOutOfRange,
+                "findRelativePose: scale, in pixels, must be finite and over 0, or 0, to be chosen");
+    const EpipolarProblem problem(first, second, cameraMatrix(cameraMatrix1, "cameraMatrix1"),
+            cameraMatrix(cameraMatrix2, "cameraMatrix2"));
+    const Fit<EpipolarProblem> fit = robustFit(problem, scale);
+    if (inliers.needed())
+    {
+        Mat agree(first.rows, 1, CV_8U, Scalar(0));
+        const Verdict::Marks near = within(3 * std::max(fit.scale, REFINED), fit.squared);
+        std::copy(near.begin(), near.end(), agree.begin<uchar>());
+        agree.copyTo(inliers);
+    }
+    const Verdict verdict(first, second);
+    const std::string why = reasonAgainst(fit, verdict);
+    if (reason)
+        *reason = why;
+    if (!why.empty())
+    {
+        for (const _OutputArray* output : {&R, &t, &covariance})
+            clear(*output);
+        return false;
+    }
+    Mat(fit.model.R).copyTo(R);
+    Mat(fit.model.t).copyTo(t);
+    if (covariance.needed())
+    {
+        Square<EpipolarProblem::Step> errors = covarianceOf(problem, fit, partsOf(first), LARGEST_DEVIATION);
+        if (!tellsDirection(problem, fit, verdict))
+            for (int k = 3; k < 5; k++)
+                errors(k, k) += square(LARGEST_DEVIATION);
+        Mat(errors).copyTo(covariance);
+    }
+    return true;
+}
+
+}  // namespace cv::iib

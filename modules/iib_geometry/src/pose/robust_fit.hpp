@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "opencv2/core.hpp"
+
+namespace cv::iib {
+
+/* Fits a model to matches many of which are wrong. The loss of a match with squared error r^2 is Cauchy's log(1 + r^2 / scale^2),
+and from FARTHEST scales^2 on that of FARTHEST: by how far a wrong match is wrong says nothing.
+
+A class Problem holds the matches and has
+    Model, Step     what is sought, and a Vec<double, N> of changes to it
+    int size()      number of matches
+    int sampleSize(), parameters()     matches that give a model; its degrees of freedom, N at most
+    propose(sample, models)            models that agree with a sample: indices of sampleSize() matches
+    double loss(model, scale, limit)   the sum over all matches, or anything over the limit
+    squaredErrors(model, errors)       of all matches, pixels^2; infinite where the model forbids the match
+    linearize(model, limit, rows)      the rows of matches whose squared error is below the limit
+    Model moved(model, step) */
+
+const double FARTHEST = 9;  // three scales
+
+//! One coordinate of a match's error in pixels, its derivatives, and the squared length of the whole error.
+template <class Step> struct Row
+{
+    int match;
+    double r;
+    Step J;
+    double r2;
+};
+
+template <class Step> using Square = Matx<double, Step::channels, Step::channels>;
+
+inline double square(double x) { return x * x; }
+
+//! Adds weight J J' to the lower triangle of a sum.
+template <class Step> void addProduct(const Step& J, double weight, Square<Step>& sum)
+{
+    for (int a = 0; a < Step::channels; a++)
+        for (int b = 0; b <= a; b++)
+            sum(a, b) += weight * J[a] * J[b];
+}
+
+//! Copies the lower triangle of a matrix to the upper one.
+template <int N> void mirror(Matx<double, N, N>& m)
+{
+    for (int a = 0; a < N; a++)
+        for (int b = a + 1; b < N; b++)
+            m(a, b) = m(b, a);
+}
+
+//! Lowers the loss by Levenberg and Marquardt's steps, until one lowers it by less than `enough` of it.
+template <class Problem>
+void polish(const Problem& problem, double scale, double enough, typename Problem::Model& model)
+{
+    typedef typename Problem::Step Step;
+    const int rounds = 50;
+    const double most = 1e6;     // of the damping
+    const double least = 1e-12;  // on the diagonal, where the rows do not tell a number at all
+    const double perScale2 = 1 / (scale * scale);
+    double damping = 1e-3, loss = problem.loss(model, scale, std::numeric_limits<double>::max());
+    std::vector<Row<Step>> rows;
+    for (int round = 0; round < rounds; round++)
+    {
+        problem.linearize(model, FARTHEST * scale * scale, rows);
+        Square<Step> hessian = Square<Step>::eye() * least;
+        Step gradient, step;
+        for (const Row<Step>& row : rows)
+        {
+            const double weight = perScale2 / (1 + row.r2 * perScale2);
+            addProduct(row.J, weight, hessian);
+            gradient += weight * row.r * row.J;
+        }
+        mirror(hessian);
+        const double before = loss;
+        for (bool lower = false; !lower; damping *= lower ? .1 : 10)
+        {
+            if (damping > most)
+                return;
+            Square<Step> damped = hessian;
+            for (int k = 0; k < Step::channels; k++)
+                damped(k, k) *= 1 + damping;
+            solve(damped, gradient, step, DECOMP_CHOLESKY);
+            const typename Problem::Model next = problem.moved(model, -step);
+            const double loss2 = problem.loss(next, scale, loss);
+            lower = loss2 < loss;
+            if (lower)
+            {
+                model = next;
+                loss = loss2;
+            }
+        }
+        if (before - loss < enough * before)
+            return;
+    }
+}
+
+//! What robustFit finds.
+template <class Problem> struct Fit
+{
+    typename Problem::Model model;
+    double scale = 0;             //!< under which the model was polished, pixels
+    std::vector<double> squared;  //!< errors of the matches, pixels^2; of none if there is no model
+};
+
+/** The model that most matches agree with. The same in every run.
+
+Samples propose models, and those of the least loss under a narrow scale are kept. Each is polished under twice the scale, and
+the one with the least sum of squared errors, cut off at four scales, is chosen: at the narrow scale a model that a cluster of wrong
+matches has drawn to itself may win. Then it is polished under the final scale.
+@param scale of Cauchy's loss, pixels; 0: the errors tell it. */
+template <class Problem> Fit<Problem> robustFit(const Problem& problem, double scale)
+{
+    typedef typename Problem::Model Model;
+    const int fewestTrials = 150, mostTrials = 10000;
+    const double roughly = 1e-3, finely = 1e-9;  // how much less of its loss a model is polished for
+    const size_t most =
+            10;  // models polished in the end: that of the least loss need not lead to the best one
+    const double missed = 1e-4;  // probability that no sample was of right matches alone
+    const double refined = .25,
+                 least = .1;   // scales of refined matches: to search, and the finest one, pixels
+    const double coarse = .3;  // of the width that counts: above it errors are wider than that
+    const double none = std::numeric_limits<double>::max();
+    Fit<Problem> fit;
+    const int count = problem.size(), size = problem.sampleSize();
+    if (count < size)
+        return fit;
+
+    const double narrow = scale > 0 ? scale : refined, wide = 2 * narrow, farthest = 4 * narrow;
+    const double farthest2 = farthest * farthest;
+    RNG random(0x5eed);
+    std::vector<int> sample(size);
+    std::vector<Model> models;
+    std::vector<std::pair<double, Model>> best;  // losses in order, and models
+    std::vector<double> squared;
+    double leastLoss = none, trials = mostTrials;
+    const auto expect = [&](Model model) {
+        polish(problem, narrow, roughly, model);
+        const double loss = problem.loss(model, narrow, leastLoss);
+        if (loss >= leastLoss)
+            return;
+        leastLoss = loss;
+        problem.squaredErrors(model, squared);
+        const double inside = FARTHEST * narrow * narrow;
+        const auto near = std::count_if(squared.begin(), squared.end(), [&](double e) { return e < inside; });
+        const double right = std::pow((double)near / count, size);  // probability of a sample of such alone
+        const double wanted = right > 0 ? std::log(missed) / std::log1p(-std::min(right, .999)) : none;
+        trials = std::max<double>(fewestTrials, std::min<double>(mostTrials, wanted));
+    };
+    for (int trial = 0; trial < trials; trial++)
+    {
+        for (int k = 0; k < size; k++)
+            do
+                sample[k] = random.uniform(0, count);
+            while (std::find(sample.begin(), sample.begin() + k, sample[k]) != sample.begin() + k);
+        problem.propose(sample, models);
+        for (const Model& model : models)
+        {
+            const double limit = best.size() < most ? none : best.back().first,
+                         loss = problem.loss(model, narrow, limit);
+            if (loss >= limit)
+                continue;
+            if (best.size() == most)
+                best.pop_back();
+            auto place = best.begin();
+            while (place != best.end() && place->first <= loss)
+                ++place;
+            if (best.insert(place, {loss, model}) == best.begin())
+                expect(model);
+        }
+    }
+
+    double leastSum = none;
+    for (std::pair<double, Model>& candidate : best)
+    {
+        polish(problem, wide, roughly, candidate.second);
+        problem.squaredErrors(candidate.second, squared);
+        double sum = 0;
+        for (double error : squared)
+            sum += std::min(error, farthest2);
+        if (sum >= leastSum)
+            continue;
+        leastSum = sum;
+        fit.model = candidate.second;
+        fit.squared = squared;
+    }
+    if (leastSum == none)
+        return fit;
+
+    fit.scale = scale;
+    if (scale == 0)
+    {
+        std::vector<double> near;
+        for (double error : fit.squared)
+            if (error < farthest2)
+                near.push_back(error);
+        if (near.empty())
+            return Fit<Problem>();
+        const auto middle = near.begin() + near.size() / 2;
+        std::nth_element(near.begin(), middle, near.end());
+        const double median = std::sqrt(*middle);
+        fit.scale = std::max(1.4826 * median, least);
+        if (median > coarse * farthest)  // as of points that were not refined
+            return robustFit(problem, wide);
+    }
+    polish(problem, fit.scale, finely, fit.model);
+    problem.squaredErrors(fit.model, fit.squared);
+    return fit;
+}
+
+}  // namespace cv::iib

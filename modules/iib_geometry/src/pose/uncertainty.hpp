@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "robust_fit.hpp"
+
+namespace cv::iib {
+
+/* How far off a fitted model may be. Matches beside each other err together, since their patches overlap and since a shadow moves
+them all, so that their number says little. The covariance has three parts:
+- what the matches' own noise makes of it, as if they were independent: that of an M-estimator (Huber 1981, equation 7.6.2);
+- how much the model changes when a part of the image is left out (delete-a-group jackknife; Shao and Tu 1995, section 2.3), with
+  one step of Newton's from the model in place of a new fit, and a factor for the few parts;
+- what a shift that all matches of a part have in common makes of it, which leaving out parts shows with much chance: SHARED of the
+  matches' variance. It was chosen on rendered places in other light (views.py --seed 21 22 23).
+What all matches have in common is in none of them. */
+
+const int PARTS_ACROSS = 4, PARTS_DOWN = 3;
+const double FEW_PARTS = 1.5;        // for a variance that a dozen parts tell
+const double SHARED = .1;            // of the variance of a match
+const double LEAST_NOISE = .02;      // pixels: nothing is located more exactly
+const double TINY = 1e-30;           // variance
+const double LARGEST_DEVIATION = 3;  // of what nothing tells, radians: it may be anywhere
+
+//! Which part of what points span each of them is in, N x 2, CV_64F.
+inline std::vector<int> partsOf(const Mat& points)
+{
+    double least[2], span[2];
+    for (int c = 0; c < 2; c++)
+    {
+        double most;
+        minMaxLoc(points.col(c), &least[c], &most);
+        span[c] = std::max(most - least[c], 1e-9);
+    }
+    std::vector<int> parts(points.rows);
+    for (int i = 0; i < points.rows; i++)
+    {
+        const double* p = points.ptr<double>(i);
+        parts[i] = std::min(int((p[0] - least[0]) * PARTS_ACROSS / span[0]), PARTS_ACROSS - 1) +
+                   std::min(int((p[1] - least[1]) * PARTS_DOWN / span[1]), PARTS_DOWN - 1) * PARTS_ACROSS;
+    }
+    return parts;
+}
+
+/** The inverse of a symmetric matrix whose eigenvalues below `least` are raised to it.
+@param unknown if not null: the sum of v v' over the eigenvectors of these, as far as they were raised. */
+template <int N>
+Matx<double, N, N> inverseWithFloor(
+        const Matx<double, N, N>& m, double least, Matx<double, N, N>* unknown = nullptr)
+{
+    Matx<double, N, 1> values;
+    Matx<double, N, N> vectors, scaled, raised;
+    eigen(m, values, vectors);
+    for (int r = 0; r < N; r++)
+    {
+        const double share = std::clamp(1 - values(r) / least, 0., 1.);
+        for (int c = 0; c < N; c++)
+        {
+            scaled(r, c) = vectors(r, c) / std::max(values(r), least);
+            raised(r, c) = vectors(r, c) * share;
+        }
+    }
+    if (unknown)
+        *unknown = vectors.t() * raised;
+    return vectors.t() * scaled;
+}
+
+/** Covariance of the numbers of a step from a fitted model to the true one.
+@param parts of the image, of each match.
+@param largest deviation of a number, in its unit: what nothing tells has it. */
+template <class Problem>
+Square<typename Problem::Step> covarianceOf(
+        const Problem& problem, const Fit<Problem>& fit, const std::vector<int>& parts, double largest)
+{
+    typedef typename Problem::Step Step;
+    const double leastBend = .2;  // the noise is far over the scale
+    std::vector<Row<Step>> rows;
+    const double perScale2 = 1 / square(fit.scale);
+    problem.linearize(fit.model, FARTHEST * square(fit.scale), rows);
+
+    // With the weight 1 / (1 + r^2 / scale^2): psi, which is weight times r, squared; its slope; in all.
+    double influence2 = 0, slope = 0, weights = 0;
+    for (const Row<Step>& row : rows)
+    {
+        const double weight = 1 / (1 + row.r2 * perScale2), psi = weight * row.r;
+        influence2 += psi * psi;
+        slope += weight - 2 * psi * psi * perScale2;
+        weights += weight;
+    }
+    const double count = (double)rows.size(), freedom = std::max(count - problem.parameters(), 1.);
+    const double bend = std::max(slope / weights, leastBend), meanSlope = bend * weights / count;
+    const double noise2 = std::max(influence2 / freedom / square(meanSlope), square(LEAST_NOISE));
+
+    struct Part
+    {
+        Square<Step> bends = Square<Step>::zeros();
+        Step pull, along;  //!< sums of weight r J, and of weight J
+    };
+    std::vector<Part> all(PARTS_ACROSS * PARTS_DOWN);
+    Square<Step> hessian = Square<Step>::zeros(), pulls = hessian;
+    for (const Row<Step>& row : rows)
+    {
+        Part& part = all[parts[row.match]];
+        const double weight = 1 / (1 + row.r2 * perScale2);
+        addProduct(row.J, bend * weight, part.bends);
+        addProduct(row.J, noise2 * square(meanSlope), pulls);
+        part.pull += weight * row.r * row.J;
+        part.along += weight * row.J;
+    }
+    for (Part& part : all)
+    {
+        mirror(part.bends);
+        hessian += part.bends;
+        addProduct(part.along, SHARED * noise2, pulls);
+    }
+    mirror(pulls);
+    hessian -= problem.noiseInDerivatives(fit.model, rows, noise2) * bend;
+    const double least = noise2 / square(largest);
+    Square<Step> unknown;
+    const Square<Step> inverse = inverseWithFloor(hessian, least, &unknown);
+
+    std::vector<Step> changes;
+    Step mean;
+    for (const Part& part : all)
+        if (part.bends != Square<Step>::zeros())
+        {
+            changes.push_back(inverseWithFloor(hessian - part.bends, least) * part.pull);
+            mean += changes.back();
+        }
+    const double groups = (double)changes.size();
+    Square<Step> spread = Square<Step>::zeros();
+    for (const Step& change : changes)
+        addProduct(Step(change - mean * (1 / groups)), FEW_PARTS * (groups - 1) / groups, spread);
+    mirror(spread);
+    // No number errs by more than by chance alone.
+    const Square<Step> all2 = inverse * pulls * inverse + spread + unknown * square(largest);
+    return inverseWithFloor(inverseWithFloor(all2, TINY), 1 / square(largest));
+}
+
+}  // namespace cv::iib

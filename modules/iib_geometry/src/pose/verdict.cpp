@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace cv::iib {
+namespace {
+
+const int CELLS = 32;  // of the diagonal of what the points span
+const double LARGEST_CHANCE = .5;
+const double MODELS = 10;  // that a sample proposes, at most
+
+double logBinomial(int n, int k)
+{
+    return (std::lgamma(n + 1.) - std::lgamma(k + 1.) - std::lgamma(n - k + 1.)) / std::log(10.);
+}
+
+Rect2d spanOf(const Mat& points)
+{
+    double left = 0, right = 0, top = 0, bottom = 0;
+    if (!points.empty())
+    {
+        minMaxLoc(points.col(0), &left, &right);
+        minMaxLoc(points.col(1), &top, &bottom);
+    }
+    return Rect2d(left, top, std::max(right - left, 1.), std::max(bottom - top, 1.));
+}
+
+double diagonal(const Size2d& size) { return std::hypot(size.width, size.height); }
+
+}  // namespace
+
+Verdict::Verdict(const Mat& points1, const Mat& points2)
+{
+    const Mat* const all[] = {&points1, &points2};
+    for (int image = 0; image < 2; image++)
+    {
+        const Mat& points = *all[image];
+        const Rect2d span = spanOf(points);
+        const double cell = diagonal(span.size()) / CELLS;
+        for (int i = 0; i < points.rows; i++)
+        {
+            const double* p = points.ptr<double>(i);
+            cells_[image].push_back(int((p[1] - span.y) / cell) * (CELLS + 1) + int((p[0] - span.x) / cell));
+        }
+        span_ = span.size();
+    }
+}
+
+int Verdict::places(const Marks& matches, int image) const
+{
+    std::set<int> cells;
+    for (size_t i = 0; i < matches.size(); i++)
+        if (matches[i])
+            cells.insert(cells_[image][i]);
+    return (int)cells.size();
+}
+
+int Verdict::places(const Marks& matches) const { return std::min(places(matches, 0), places(matches, 1)); }
+
+double Verdict::logFalseAlarms(const Marks& all, const Marks& agreeing, int sampleSize, double chance) const
+{
+    double most = -std::numeric_limits<double>::infinity();
+    for (int image = 0; image < 2; image++)
+    {
+        const int n = places(all, image), k = places(agreeing, image);
+        if (k <= sampleSize)
+            return std::numeric_limits<double>::infinity();
+        most = std::max(most, std::log10(MODELS * (n - sampleSize)) + logBinomial(n, k) +
+                                      logBinomial(k, sampleSize) +
+                                      (k - sampleSize) * std::log10(std::min(chance, LARGEST_CHANCE)));
+    }
+    return most;
+}
+
+double Verdict::logFalseAlarms(const std::vector<double>& squared, Distance distance, int sampleSize,
+        const std::vector<double>& limits) const
+{
+    double least = std::numeric_limits<double>::infinity();
+    for (double limit : limits)
+    {
+        const double area = distance == FROM_LINE ? 2 * limit * diagonal(span_) : CV_PI * limit * limit;
+        least = std::min(least, logFalseAlarms(Marks(squared.size(), true), within(limit, squared),
+                                        sampleSize, area / span_.area()));
+    }
+    return least + std::log10((double)limits.size());
+}
+
+Verdict::Marks within(double limit, const std::vector<double>& squared)
+{
+    Verdict::Marks marks(squared.size());
+    for (size_t i = 0; i < squared.size(); i++)
+        marks[i] = squared[i] < limit * limit;
+    return marks;
+}
+
+}  // namespace cv::iib

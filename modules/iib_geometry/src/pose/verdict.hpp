@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "opencv2/core.hpp"
+
+namespace cv::iib {
+
+/** Tells whether matches agree with a model by more than chance, by the number of false alarms: how many models that agree as well
+are expected among matches of which each is anywhere in its image (Moisan and Stival 2004, section 3). Places are counted, cells of a
+32nd of the diagonal of what the points span, since matches beside each other are right or wrong together. */
+class Verdict
+{
+public:
+    typedef std::vector<bool> Marks;  //!< of the matches
+
+    //! Both N x 2, CV_64F, pixels.
+    Verdict(const Mat& points1, const Mat& points2);
+
+    //! What a match's error is the distance from.
+    enum Distance
+    {
+        FROM_POINT,
+        FROM_LINE
+    };
+
+    /** Logarithm to base 10 of the number of false alarms, at that limit of the errors at which it is least.
+    @param squared errors of the matches, pixels^2.
+    @param sampleSize matches that give a model.
+    @param limits to try, pixels. */
+    double logFalseAlarms(const std::vector<double>& squared, Distance distance, int sampleSize,
+            const std::vector<double>& limits) const;
+
+    /** The same of matches that agree or not.
+    @param chance that a wrong match agrees. */
+    double logFalseAlarms(const Marks& all, const Marks& agreeing, int sampleSize, double chance) const;
+
+    //! Number of places of the matches, in the image where they have fewer.
+    int places(const Marks& matches) const;
+
+    //! Above this, a model may be chance.
+    static constexpr double CERTAIN = -3;
+
+private:
+    int places(const Marks& matches, int image) const;
+
+    std::vector<int> cells_[2];  // of the matches
+    Size2d span_;                // of points2
+};
+
+//! Which squared errors are below limit^2.
+Verdict::Marks within(double limit, const std::vector<double>& squared);
+
+}  // namespace cv::iib
