@@ -75,7 +75,7 @@ def _numbers(value: ArrayLike, what: str) -> NDArray[Any]:
 
 
 def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: ArrayLike, cameraMatrix2: ArrayLike,
-                     scale: float = .25) -> Union[FoundPose, NoPose]:
+                     scale: float = 0) -> Union[FoundPose, NoPose]:
     """Finds where camera 2 stands, seen from camera 1, from matched points of which many may be wrong.
 
     As ``cv2.iib.findRelativePose``. Points must be free of lens distortion:
@@ -85,17 +85,17 @@ def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: Arra
     :param points2: N x 2: their matches in image 2.
     :param cameraMatrix1: 3 x 3, [fx 0 cx; 0 fy cy; 0 0 1], of camera 1.
     :param cameraMatrix2: of camera 2.
-    :param scale: pixels: about the standard deviation of the points; .25 for refined points, .5 for points as detected.
-    :return: a tuple (found, R, t, inliers, covariance): a NoPose with fewer than five matches, or where no pose agrees with five
-        or more. Once `found` is checked, type checkers know that R, t and covariance are there.
-    :raises opencv_iib.error: for arrays of other shapes, points that are not one for one, and a scale that is not above 0.
+    :param scale: pixels: about the standard deviation of the points; 0: the residuals tell it.
+    :return: a tuple (found, R, t, inliers, covariance): a NoPose where the matches that agree are not more than chance.
+        Once `found` is checked, type checkers know that R, t and covariance are there.
+    :raises opencv_iib.error: for arrays of other shapes, points that are not one for one, and a scale below 0.
     """
-    pose = _core.findRelativePose(_numbers(points1, 'points1'), _numbers(points2, 'points2'), _numbers(cameraMatrix1, 'cameraMatrix1'),
-                                  _numbers(cameraMatrix2, 'cameraMatrix2'), number(scale, 'scale'))
+    pose, reason = _core.findRelativePose(_numbers(points1, 'points1'), _numbers(points2, 'points2'), _numbers(cameraMatrix1, 'cameraMatrix1'),
+                                          _numbers(cameraMatrix2, 'cameraMatrix2'), number(scale, 'scale'))
     if pose[0]:
         return FoundPose(*pose)
     none = NoPose(*pose)
-    none.reason = f'fewer than five of {len(none.inliers)} matches agree with one pose'
+    none.reason = reason
     return none
 
 

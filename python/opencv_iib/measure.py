@@ -37,7 +37,7 @@ class Measured(NamedTuple):
     @property
     def agree(self) -> NDArray[np.bool_]:
         """Of each match, whether it agrees with the pose; without cameras, whether it could be refined."""
-        return self.refined if self.pose is None else self.pose.inliers.ravel() > 0
+        return self.refined if self.pose is None else (self.pose.inliers.ravel() > 0) & self.pose.found
 
     @property
     def deviations(self) -> NDArray[np.float64]:
@@ -84,7 +84,7 @@ class Measured(NamedTuple):
         if self.pose is None:
             return text
         if not self.pose.found:
-            return f'{text}\nno pose: {self.pose.reason}'
+            return f'{text}\nno pose: {self.pose.reason}'.replace('no pose: no pose', 'no pose')
         turn, towards = rotation_vector(self.pose.R), -self.pose.R.T @ self.pose.t.ravel()
         errors = np.degrees(np.sqrt(np.diag(self.pose.covariance)))
         return (f'{text}\npose: {int(self.pose.inliers.sum())} agree; the second camera stands towards {towards.round(3)} of the '
@@ -140,7 +140,7 @@ def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, pictu
         pose = _pose(propagated, lenses)
         first = _pose(PropagatedMatches(*(rows[:count] for rows in propagated)), lenses)
         again, _ = propagate(propagated.matches[:count][first.inliers.ravel() > 0])
-        pose, propagated = max((pose, propagated), (_pose(again, lenses), again), key=lambda found: int(found[0].inliers.sum()))
+        pose, propagated = max((pose, propagated), (_pose(again, lenses), again), key=lambda found: (found[0].found, int(found[0].inliers.sum())))
     pairs, matches = propagated.matches, RefinedMatches(*propagated[1:])
     bits = np.unpackbits(codes_a[pairs[:, 0]] ^ codes_b[pairs[:, 1]], axis=1).sum(axis=1, dtype=np.int32)
     measured = Measured(matches, bits, pose)

@@ -110,7 +110,7 @@ class Match(Commands):
         self.assertEqual(run_command('match', a, flat, '--out', out)[0], 3)
         self.assertEqual(self.rows('m.csv'), [])
         status, text, _ = run_command('match', a, flat, '--out', out, '--camera', 'PINHOLE,480,360,400,400,240,180')
-        self.assertEqual((status, text.splitlines()[-1]), (3, 'no pose: fewer than five of 0 matches agree with one pose'))
+        self.assertEqual((status, text.splitlines()[-1]), (3, 'no pose agrees with five matches or more'))
         self.check_error('no folder', 'match', a, a, '--out', self.folder / 'none/m.csv')
         for arguments, told in ((['--camera', 'PINHOLE,480,360,400'], 'PINHOLE'), (['--camera', 'PINHOLE,9,9,400,400,240,180'], '480 x 360'),
                                 (['--camera', 'simple_pinhole,480,360,400,240,180'] * 3, '3 cameras'),
@@ -147,7 +147,7 @@ class Match(Commands):
                     count = len(pose['points1'])
                     np.testing.assert_array_equal(pose['points2'], found.matches.points2)
                 self.assertEqual((bool(pose['found']), str(pose['reason'])), (other == b, found.pose.reason))
-                np.testing.assert_array_equal(pose['inliers'], found.pose.inliers.ravel() > 0)
+                np.testing.assert_array_equal(pose['inliers'], found.agree)
                 self.assertEqual(count, len(found.bits))
                 for name in ('R', 't', 'covariance'):
                     value = getattr(found.pose, name)
