@@ -163,6 +163,8 @@ class Localization(Commands):
         own = location.cam_from_world
         seen = Camera.parse(CAMERA).project(location.points @ own[:3, :3].T + own[:3, 3])
         self.assertLess(np.abs(seen - location.pixels).max(), 2)
+        np.testing.assert_allclose(Camera.parse(CAMERA).undistorted(location.pixels), location.pixels, atol=1e-9)
+        np.testing.assert_allclose(Camera.parse(CAMERA).matrix, [[300, 0, 159.5], [0, 300, 119.5], [0, 0, 1]])
         near = localizer.localize(cv2.cvtColor(self.grey(), cv2.COLOR_GRAY2BGR), localizer.cameras[0], prior=own[:3])
         self.check(near)
         nothing = localizer.localize(np.zeros((HEIGHT, WIDTH), np.uint8), CAMERA)
@@ -196,8 +198,13 @@ class Localization(Commands):
         readings = np.zeros((1001, 7))  # of a camera that stands still
         readings[:, 0], readings[:, 4:] = 8e9 + 5e6 * np.arange(1001), own[:3, :3] @ [0, -9.81, 0]
         locations = [location, nothing, *[location] * 4]
-        for found in smooth_poses(np.array(times), locations, readings):
+        smoothed = smooth_poses(np.array(times), locations, readings)
+        self.assertEqual(smoothed.reason, '')
+        for found in smoothed:
             np.testing.assert_allclose(found, own, atol=1e-3)
+        wrong = smooth_poses(times, locations, readings * ([1] + [30] * 6))
+        self.assertRegex(wrong.reason, 'contradict the images')
+        self.assertEqual([pose is None for pose in wrong], [False, True, *[False] * 4])
         self.assertEqual([pose is None for pose in smooth_poses(times, locations, readings[:0])], [False, True, *[False] * 4])
         for text, wrong in (('M x 7', (times, locations, readings[:, 1:])), ('M x 7', (times, locations, readings * np.nan)),
                             ('and rise', (times[::-1], locations, readings)), ('5 times of 6', (times[1:], locations, readings)),

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "map_error.hpp"
+
 namespace cv::iib {
 namespace {
 
@@ -41,7 +43,7 @@ std::vector<Mat> codesOf(const Map& map)
 
 Finder::Finder(const Map& map, int points, bool lines)
     : map_(map), lines_(lines), iib_(describerOf(map.orbAndAkaze, points ? points : map.keypoints)),
-      matcher_(HierarchicalMatcher::createRecommended()), votes_(codesOf(map))
+      matcher_(HierarchicalMatcher::createRecommended()), votes_(codesOf(map)), mapError_(mapError(map))
 {
     if (points < 0)
         CV_Error(Error::StsBadArg, format("keypoints that are looked for are 1 or more, or 0 for as many as "
@@ -131,6 +133,8 @@ Found Finder::find(const Mat& image, const Camera& camera, const Affine3d* prior
         found.compared = similar(found.features.codes);
         locate(camera, nullptr, found);
     }
+    if (found.found)
+        found.covariance += inWorld(mapError_, found.cameraFromWorld, found.depth);
     found.features.cameraFromWorld = found.cameraFromWorld;
     return found;
 }

@@ -27,6 +27,7 @@ private:
     Ptr<IIB> iib_;
     Ptr<HierarchicalMatcher> matcher_;
     Retrieval votes_;
+    Matx66d mapError_;  //!< which is no reason to doubt that an image was found
 };
 
 }  // namespace cv::iib

@@ -94,6 +94,12 @@ Frame::Frame(const std::vector<Match>& matches)
 
 Point3d Frame::toLocal(const Point3d& point) const { return (Vec3d(point) - centre) * (1 / unit); }
 
+Affine3d Frame::toLocal(const Affine3d& cameraFromWorld) const
+{
+    const Matx33d rotation = cameraFromWorld.rotation();
+    return {rotation, (cameraFromWorld.translation() + rotation * centre) * (1 / unit)};
+}
+
 Affine3d Frame::toWorld(const Affine3d& cameraFromLocal) const
 {
     const Matx33d rotation = cameraFromLocal.rotation();

@@ -42,6 +42,8 @@ struct Frame
 
     explicit Frame(const std::vector<Match>& matches);
     Point3d toLocal(const Point3d& point) const;
+    //! A camera from these axes, and from the world's.
+    Affine3d toLocal(const Affine3d& cameraFromWorld) const;
     Affine3d toWorld(const Affine3d& cameraFromLocal) const;
     //! The covariance of a camera's centre and of a turn, from these axes to the world's.
     Matx66d toWorld(const Matx66d& covariance) const;

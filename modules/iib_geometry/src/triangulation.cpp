@@ -140,7 +140,8 @@ void refineTracks(std::vector<Track>& tracks, std::vector<MapImage>& images)
         }
 }
 
-//! False if too few rays agree, or look from nearly the same direction.
+}  // namespace
+
 bool place(Track& track, Point3d& point)
 {
     for (; track.size() > 1;)
@@ -158,8 +159,6 @@ bool place(Track& track, Point3d& point)
             widest = std::max(widest, angleOf(a, b));
     return widest * 180 / CV_PI >= MIN_ANGLE;
 }
-
-}  // namespace
 
 void triangulate(Map& map, const std::vector<Ray>& rays, const std::vector<Link>& links)
 {

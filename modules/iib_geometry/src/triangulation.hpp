@@ -11,6 +11,10 @@ typedef std::vector<Ray> Track;
 most. */
 std::vector<Track> tracksOf(const std::vector<Ray>& rays, std::vector<Link> links);
 
+/** Places the point of a track, without the rays that are farthest from it until the others agree.
+@return false if too few rays agree, or look from nearly the same direction. */
+bool place(Track& track, Point3d& point);
+
 /** Places what the keypoints of a map's images see. Keypoints that see no point yet are moved to what one of their track shows,
 the reference. The rays farthest from a track's point are left out until the others agree; it has none if too few do, or look from nearly
 the same direction. */

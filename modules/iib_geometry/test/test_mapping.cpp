@@ -92,6 +92,42 @@ TEST_F(Mapping, in_any_unit_and_far_from_the_origin)
         }
 }
 
+// The poses of its images are off by 2 mm and .06 degrees, and so is what they place: by its matches alone a pose would tell a
+// twentieth of its error.
+TEST_F(Mapping, the_maps_own_error_is_told)
+{
+    double told[2] = {0, 0}, squared = 0;
+    constexpr int COUNT = 8;
+    for (int wrong = 0; wrong < 2; wrong++)
+    {
+        cv::RNG random(7);
+        std::vector<PosedImage> model;
+        for (const MapImage& image : map.images)
+        {
+            const cv::Vec3d moved(random.gaussian(.002), random.gaussian(.002), random.gaussian(.002)),
+                    turned(random.gaussian(.001), random.gaussian(.001), random.gaussian(.001));
+            const cv::Affine3d off(turned * wrong, moved * wrong);
+            model.push_back({image.name, CAMERA, off * image.cameraFromWorld, {}, {}});
+        }
+        folder.makeFolder("off");
+        writeModel(folder.path("off"), model);
+        const Localizer localizer(folder.path("off"), images());
+        for (int i = 0; i < COUNT; i++)
+        {
+            const cv::Affine3d truth = poseAt(.1 * i - .5, -.05, .01 * i);
+            const Location found = localizer.localize(wall.image(truth), CAMERA);
+            ASSERT_TRUE(found.found) << found.reason;
+            const cv::Matx33d covariance = found.covariance.get_minor<3, 3>(0, 0);
+            const cv::Vec3d error = inverse(found.cameraFromWorld).translation() - truth.translation();
+            told[wrong] += cv::trace(covariance) / COUNT;
+            squared += wrong * error.dot(covariance.inv() * error) / COUNT;
+        }
+    }
+    EXPECT_LT(squared, 3 * 3) << "of three degrees of freedom";
+    EXPECT_GT(squared, 3 * .1);
+    EXPECT_GT(told[1], 10 * told[0]);
+}
+
 TEST_F(Mapping, a_map_on_disk_finds_what_one_in_memory_does)
 {
     write(model(1, 40));

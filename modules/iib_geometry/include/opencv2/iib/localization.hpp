@@ -118,8 +118,10 @@ struct Location
     std::string reason;        //!< why there is no pose
     Affine3d cameraFromWorld;  //!< x right, y down, z forward; in the map's unit
     /** Of the camera's centre (map's unit) and of a small turn about the world's axes (radians). Estimated from how far the matches
-    that agree are from where the pose has their points, and from how much parts of the image disagree. Wrong poses of the map's images
-    and a wrong calibration are not in it. */
+    that agree are from where the pose has their points, from how much parts of the image disagree, and from the map's own error,
+    poses and calibration of its images: how far from where the map has them its images come to lie, if the others alone place
+    what they see. What all images of the map share, such as a scale or a shift of the model, is not in it, nor is it where no point
+    is seen by three images. */
     Matx66d covariance;
     int matches = 0;              //!< of keypoints with points of the map
     int inliers = 0;              //!< keypoints that agree with the pose
