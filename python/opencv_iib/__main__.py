@@ -49,6 +49,11 @@ def _features(parser: argparse.ArgumentParser, points: int) -> None:
     parser.add_argument('--orientation', action='store_true', help='turn what is described by its direction')
     parser.add_argument('--max-size', type=int, default=0, metavar='PIXELS',
                         help='reduce larger images to this longer side; points stay in their own pixels')
+    _exif(parser)
+
+
+def _exif(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('--no-exif', dest='exif', action='store_false', help='for files whose EXIF data tell a wrong orientation')
 
 
 def _take(kind: Any, arguments: argparse.Namespace, **more: Any) -> Any:
@@ -92,6 +97,7 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument('reference')
     command.add_argument('images', nargs='+', help='of a plane, or from the same place')
     command.add_argument('--out', required=True, help='folder to write; older results there are replaced')
+    _exif(command)
     command.add_argument('--model', default='HOMOGRAPHY', choices=list(AlignmentModel.__members__), type=str.upper,
                          help='the simplest one that is true of the images gives the smallest errors (%(default)s)')
 
@@ -164,7 +170,7 @@ def _match(arguments: argparse.Namespace) -> int:
 
 
 def _align(arguments: argparse.Namespace) -> int:
-    done = align(arguments.reference, arguments.images, arguments.out, AlignmentModel[arguments.model])
+    done = align(arguments.reference, arguments.images, arguments.out, AlignmentModel[arguments.model], arguments.exif)
     count = sum(bool(each.file) for each in done)
     for each in done:
         _say(f'{each.name}: {each}')

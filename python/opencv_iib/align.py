@@ -13,7 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib._files import is_same, new_results
-from opencv_iib.colmap.images import import_cv2, read_colour, write_picture
+from opencv_iib._arguments import Path
+from opencv_iib._turns import Turn, upright
+from opencv_iib.colmap.images import import_cv2, read_with_orientation, write_picture
 from opencv_iib.colmap.progress import Progress
 from opencv_iib.enums import AlignmentModel
 from opencv_iib.geometry import alignImages
@@ -56,7 +58,7 @@ class Aligned(NamedTuple):
         return f'{self.matches} matches agree, its corners are known to {max(self.errors):.2f} pixels'
 
 
-def align(reference: str, images: Sequence[str], out: str, model: int = AlignmentModel.HOMOGRAPHY) -> list[Aligned]:
+def align(reference: Path, images: Sequence[Path], out: Path, model: int = AlignmentModel.HOMOGRAPHY, exif: bool = True) -> list[Aligned]:
     """Aligns images with a reference, and writes them as its camera would see them: NAME.png, ``transforms.csv`` and
     ``index.html``, in which a slider moves the border between the reference and each.
 
@@ -64,25 +66,27 @@ def align(reference: str, images: Sequence[str], out: str, model: int = Alignmen
 
     :param images: of a plane, or of anything by a camera that stays where it is. The reference among them is left out.
     :param out: folder to write; results of an earlier call are replaced.
+    :param exif: images are compared as upright as their EXIF data say; pixels, transforms and what is written are those of the files.
     :return: of each image but the reference.
     :raises ValueError: for a reference that is no image or too large, or no image beside it.
     :raises FileExistsError: for a folder with other files, or with an image to be aligned.
     """
-    first, done = _read(reference), []
-    images = [path for path in images if not is_same(path, reference)]
-    if not images:
+    reference, out = os.fspath(reference), os.fspath(out)
+    first, done = _read(reference, exif), []
+    paths = [os.fspath(path) for path in images if not is_same(path, reference)]
+    if not paths:
         raise ValueError(f'no image to align but the reference, {reference}')
-    for path in (reference, *images):
+    for path in (reference, *paths):
         if os.path.realpath(path).startswith(os.path.join(os.path.realpath(out), '')):
             raise FileExistsError(f'{path} is in {out}, whose files would be replaced: choose another folder')
     stopped: Optional[BaseException] = None
     with new_results(out, 'transforms.csv', _earlier) as folder:
-        write_picture(os.path.join(folder, 'reference.png'), first)
-        progress = Progress('aligning', len(images))
+        write_picture(os.path.join(folder, 'reference.png'), first[0])
+        progress = Progress('aligning', len(paths))
         taken = {'reference.png'}
         try:
-            for path in images:
-                done.append(_aligned(first, path, folder, taken, model))
+            for path in paths:
+                done.append(_aligned(first, path, folder, taken, model, exif))
                 progress.step()
         except (Exception, KeyboardInterrupt) as e:
             if not done:
@@ -92,7 +96,7 @@ def align(reference: str, images: Sequence[str], out: str, model: int = Alignmen
         with _file(os.path.join(folder, 'transforms.csv')) as table:
             csv.writer(table).writerows([HEADER, *map(_row, done)])
         with _file(os.path.join(folder, 'index.html')) as page:
-            page.write(_page(os.path.basename(reference), done, *first.shape[1::-1]))
+            page.write(_page(os.path.basename(reference), done, *first[0].shape[1::-1]))
     if stopped is not None:
         raise stopped
     return done
@@ -116,12 +120,14 @@ def _file(path: str) -> TextIO:
     return open(path, 'w', encoding='utf-8', errors='backslashreplace', newline='')
 
 
-def _read(path: str) -> NDArray[np.uint8]:
-    """:raises ValueError: also for an image that cv2 cannot lay onto another, or others onto it."""
-    image = read_colour(path)
+def _read(path: str, exif: bool) -> tuple[NDArray[np.uint8], int]:
+    """The image, and how its file stores it.
+
+    :raises ValueError: also for an image that cv2 cannot lay onto another, or others onto it."""
+    image, orientation = read_with_orientation(path, exif)
     if max(image.shape[:2]) > LARGEST_SIDE:
         raise ValueError(f'{path}: {image.shape[1]} x {image.shape[0]} pixels, and cv2 lays sides of up to {LARGEST_SIDE} onto others: reduce it')
-    return image
+    return image, orientation
 
 
 def _file_name(path: str, taken: set[str]) -> str:
@@ -132,19 +138,22 @@ def _file_name(path: str, taken: set[str]) -> str:
     return next(name for name in names if name.lower() not in taken)  # some systems know no difference
 
 
-def _aligned(reference: NDArray[np.uint8], path: str, folder: str, taken: set[str], model: int) -> Aligned:
-    cv2 = import_cv2()
+def _aligned(first: tuple[NDArray[np.uint8], int], path: str, folder: str, taken: set[str], model: int, exif: bool) -> Aligned:
+    cv2, reference = import_cv2(), first[0]
     try:
-        image = _read(path)
+        image, orientation = _read(path, exif)
     except (ValueError, OSError) as e:
         return Aligned(path, getattr(e, 'strerror', None) or str(e))
-    found = alignImages(reference, image, model)
+    found = alignImages(upright(*first), upright(image, orientation), model)
     if found.transform is None or found.error is None:
         return Aligned(path, 'nothing in common', len(found.matches))
     file = _file_name(path, taken)
     taken.add(file.lower())
-    write_picture(os.path.join(folder, file), cv2.warpPerspective(image, found.transform, reference.shape[1::-1]))
-    return Aligned(path, 'aligned', len(found.matches), found.error.ravel().tolist(), found.transform.ravel().tolist(), file)
+    onto, turn = Turn(first[1], *reference.shape[1::-1]), Turn(orientation, *image.shape[1::-1])
+    transform = onto.matrix @ found.transform @ np.linalg.inv(turn.matrix)
+    transform /= transform[2, 2]
+    write_picture(os.path.join(folder, file), cv2.warpPerspective(image, transform, reference.shape[1::-1]))
+    return Aligned(path, 'aligned', len(found.matches), turn.corners(found.error.ravel()).tolist(), transform.ravel().tolist(), file)
 
 
 def _row(each: Aligned) -> list[str]:

@@ -1,14 +1,14 @@
 """Two images matched by IIB and, beside it, by SIFT and ORB or the detector's own descriptor: a picture and a line, as scripts/demo.sh's."""
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Optional
+from typing import Any, NamedTuple, Optional, Sequence
 
 import numpy as np
 
 from opencv_iib._arguments import Path
 from opencv_iib._files import check_outputs
 from opencv_iib.colmap.features import FeatureOptions, Features, make_detector
-from opencv_iib.colmap.images import import_cv2, read_colour, write_picture
+from opencv_iib.colmap.images import import_cv2, read_with_orientation, write_picture
 from opencv_iib.functions import match
 from opencv_iib.keypoints import keypoints_to_array
 
@@ -44,8 +44,8 @@ def demo(image_a: Path, image_b: Path, out: Path, options: FeatureOptions = Feat
     """
     options.check()
     check_outputs([out], (image_a, image_b))
-    images = [read_colour(path) for path in (image_a, image_b)]
-    described = list(map(Features(options), images))
+    images, orientations = zip(*(read_with_orientation(path, options.exif) for path in (image_a, image_b)))
+    described = list(map(Features(options), images, orientations))
     results = [_result('IIB', [rows for rows, _ in described], match(described[0][1], described[1][1]).pairs)]
     for name in ('SIFT', 'ORB') if options.detector == 'HESSIAN' else (options.detector,):
         other = _own_descriptor(name, images, options.points)
@@ -66,7 +66,7 @@ def _result(name: str, rows: list[np.ndarray], pairs: np.ndarray) -> Result:
     return Result(name, a, b, good if good.sum() >= MIN_CONSISTENT else np.zeros_like(good))
 
 
-def _own_descriptor(name: str, images: list[np.ndarray], points: int) -> Optional[Result]:
+def _own_descriptor(name: str, images: Sequence[np.ndarray], points: int) -> Optional[Result]:
     cv2 = import_cv2()
     detector = make_detector(name, points)
     if not detector.descriptorSize():
@@ -93,7 +93,7 @@ def _caption(result: Result) -> Caption:
     return [name, (f'{good} consistent', GOOD), (f'  {count - good} others', OTHER), (f'  {100 * good / count:.0f} %', INK)]
 
 
-def draw(images: list[np.ndarray], points_a: np.ndarray, points_b: np.ndarray, good: np.ndarray, caption: Caption) -> np.ndarray:
+def draw(images: Sequence[np.ndarray], points_a: np.ndarray, points_b: np.ndarray, good: np.ndarray, caption: Caption) -> np.ndarray:
     """Both images side by side under a caption, a line for each match; good ones lie above the others."""
     cv2 = import_cv2()
     scales = [min(HALF_WIDTH / image.shape[1], MAX_HEIGHT / image.shape[0]) for image in images]

@@ -6,6 +6,8 @@ from typing import NamedTuple, Optional
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from opencv_iib._arrays import as_array, as_image
+from opencv_iib._turns import Turn, upright
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import detect_rows
 from opencv_iib.matcher import HierarchicalMatcher
@@ -26,17 +28,21 @@ class Matches(NamedTuple):
     distances: NDArray[np.int32]  #: M: bits that differ
 
 
-def detect_and_describe(image: ArrayLike, n: int = 1000, mask: Optional[ArrayLike] = None) -> Features:
+def detect_and_describe(image: ArrayLike, n: int = 1000, mask: Optional[ArrayLike] = None, orientation: int = 1) -> Features:
     """Finds and describes the n strongest points of an image: ``IIB.createRecommended(n)``.
 
     :param image: as IIBDescriptorExtractor takes it.
     :param n: 0 keeps all.
     :param mask: H x W uint8, 0 where nothing is to be found.
+    :param orientation: how the image is stored, by EXIF, 1 to 8: it is described upright, the points are those of the array.
     :raises opencv_iib.error: for an image of another type, a mask of another size, and n below 0.
     """
     iib = IIBDescriptorExtractor.createRecommended(n)
-    rows = detect_rows(iib, image, mask)
-    return Features(rows[:, :2], rows[:, 2], iib.compute(image, rows)[1])
+    stored = as_image(image)
+    turned = upright(stored, orientation)
+    rows = detect_rows(iib, turned, mask if mask is None else upright(as_array(mask, 'the mask'), orientation))
+    points = Turn(orientation, *stored.shape[1::-1]).points(rows[:, :2])
+    return Features(points, rows[:, 2], iib.compute(turned, rows)[1])
 
 
 def match(a: ArrayLike, b: ArrayLike, matcher: Optional[HierarchicalMatcher] = None) -> Matches:

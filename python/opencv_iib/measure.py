@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._files import check_outputs, write_whole
+from opencv_iib._turns import Turn, upright
 from opencv_iib.colmap.features import FeatureOptions, Features
-from opencv_iib.colmap.images import import_cv2, read_colour, write_picture
+from opencv_iib.colmap.images import import_cv2, read_with_orientation, write_picture
 from opencv_iib.demo import GOOD, INK, OTHER, draw
 from opencv_iib.functions import match
 from opencv_iib.geometry import FoundPose, NoPose, findRelativePose
@@ -114,19 +115,22 @@ def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, pictu
     if len(cameras) > 2:
         raise InvalidOption(f'{len(cameras)} cameras for two images')
     check_outputs([path for path in (out, picture) if path is not None], (image_a, image_b))
-    images = [read_colour(path) for path in (image_a, image_b)]
+    stored, orientations = zip(*(read_with_orientation(path, options.exif) for path in (image_a, image_b)))
     lenses = [as_camera(camera) for camera in (cameras[0], cameras[-1])] if len(cameras) else []
-    for path, image, lens in zip((image_a, image_b), images, lenses):
+    for path, image, lens in zip((image_a, image_b), stored, lenses):
         height, width = image.shape[:2]
         if (lens.width, lens.height) != (width, height):
             raise InvalidOption(f'{os.fspath(path)} has {width} x {height} pixels, its camera {lens.width} x {lens.height}: give the '
                                 f"image's own camera, PINHOLE,{width},{height},F,F,{width / 2:g},{height / 2:g} with its focal length F in "
                                 'pixels')
+    images, turns = list(map(upright, stored, orientations)), [Turn(o, *image.shape[1::-1]) for image, o in zip(stored, orientations)]
     (rows_a, codes_a), (rows_b, codes_b) = map(Features(options), images)
 
     def propagate(given: NDArray[np.int32]) -> tuple[PropagatedMatches, int]:
         """What cameras see of what matches lead to, and how many of them were given: a lens shows nothing beyond its range."""
         found = propagateMatches(images[0], rows_a, images[1], rows_b, given)
+        found = found._replace(points1=turns[0].points(found.points1), points2=turns[1].points(found.points2),
+                               covariances=turns[1].covariances(found.covariances))
         seen = np.ones(len(found.matches), bool)
         for points, lens in zip(found[1:3], lenses):
             seen &= np.isfinite(lens.undistorted(points)).all(axis=1)
@@ -148,7 +152,7 @@ def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, pictu
         measured.save(out)
     if picture is not None:
         what = 'refined' if pose is None else 'agree with the pose'
-        write_picture(picture, draw(images, matches.points1, matches.points2, measured.agree, [
+        write_picture(picture, draw(stored, matches.points1, matches.points2, measured.agree, [
             (f'{len(bits)} matches:  ', INK), (f'{measured.agree.sum()} {what}', GOOD), (f'  {(~measured.agree).sum()} others', OTHER)]))
     return measured
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from opencv_iib._arguments import InvalidOption
+from opencv_iib._turns import Turn, upright
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector
 from opencv_iib.enums import Orientation, Preset
@@ -34,6 +35,7 @@ class FeatureOptions:
     #: turn the regions by the keypoints' angles, or by the gradients within them for detectors that tell no angle
     orientation: bool = False
     max_size: int = 0  #: pixels of the longer side to which larger images are reduced; 0: they are not
+    exif: bool = True  #: images are described as upright as their EXIF data say; points stay in the file's pixels
 
     def __post_init__(self) -> None:
         for field in ('detector', 'preset'):  # in any case, and members of Preset
@@ -90,8 +92,10 @@ class Features:
         self._local = threading.local()
         self._local.detector = make_detector(options.detector, options.points)  # raises here, not at the first image
 
-    def __call__(self, image: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """:return: N x 7 float32 keypoints (see keypoints_to_array), strongest first, and N x bytes codes."""
+    def __call__(self, image: np.ndarray, orientation: int = 1) -> tuple[np.ndarray, np.ndarray]:
+        """:param orientation: how the image is stored, by EXIF.
+        :return: N x 7 float32 keypoints (see keypoints_to_array), strongest first, and N x bytes codes."""
+        turn, image = Turn(orientation, *image.shape[1::-1]), upright(image, orientation)
         if not hasattr(self._local, 'detector'):
             self._local.detector = make_detector(self.options.detector, self.options.points)
         small = _reduced(image, self.options.max_size)
@@ -101,7 +105,7 @@ class Features:
             scale = np.array(image.shape[1::-1]) / small.shape[1::-1]
             rows[:, :2] = (rows[:, :2] + .5) * scale - .5  # the centre of the first pixel is 0
             rows[:, 2] *= scale.max()
-        return rows, codes
+        return turn.keypoints(rows), codes
 
     def level_sizes(self) -> tuple[int, ...]:
         """Bytes of each level of the codes, coarse first."""

@@ -12,6 +12,7 @@ from opencv_iib._files import write_whole
 
 SUFFIXES = ('.jpg', '.jpeg', '.png', '.tif', '.tiff', '.bmp', '.webp', '.ppm', '.pgm')
 # Numbers of EXIF tags.
+ORIENTATION = 0x0112
 EXIF_IFD, FOCAL_LENGTH, FOCAL_LENGTH_35MM, PLANE_X_RESOLUTION, PLANE_UNIT = 0x8769, 0x920A, 0xA405, 0xA20E, 0xA210
 MILLIMETRES = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}  # of EXIF's units of resolution
 SHORT, LONG, RATIONAL = 3, 4, 5  # EXIF's types of numbers
@@ -89,8 +90,14 @@ def read_colour(path: Path) -> np.ndarray:
 
     :raises ValueError: naming the file.
     """
+    return read_with_orientation(path)[0]
+
+
+def read_with_orientation(path: Path, exif: bool = True) -> tuple[np.ndarray, int]:
+    """As read_colour, and how the file stores the image, by its EXIF data; without `exif`, 1."""
     try:
-        return _decode(read_bytes(path), colour=True)
+        data = read_bytes(path)
+        return _decode(data, colour=True), exif_orientation(data) if exif else 1
     except ValueError as e:
         raise ValueError(f'{os.fspath(path)}: {e}') from None
 
@@ -215,6 +222,16 @@ def _numbers(tiff: bytes, at: int) -> dict[int, float]:
             above, below = struct.unpack_from(order + 'II', tiff, struct.unpack(order + 'I', value)[0])
             found[tag] = above / below if below else 0
     return found
+
+
+def exif_orientation(data: bytes) -> int:
+    """How a file's EXIF data say that the image is stored, 1 (upright) to 8; 1 if they tell nothing."""
+    tiff = _exif(data)
+    try:
+        told = int(_numbers(tiff, struct.unpack_from('<I' if tiff[:1] == b'I' else '>I', tiff, 4)[0]).get(ORIENTATION, 1))
+    except struct.error:
+        return 1
+    return told if 1 <= told <= 8 else 1
 
 
 def exif_focal_length(data: bytes, width: int, height: int) -> Optional[float]:

@@ -16,7 +16,7 @@ from opencv_iib._streams import note
 from opencv_iib.colmap import pairs as pair_lists
 from opencv_iib.colmap.database import CAMERA_MODELS, Database
 from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
-from opencv_iib.colmap.images import (decode_grey, exif_focal_length, find_images, import_cv2, is_listable, is_utf8,
+from opencv_iib.colmap.images import (decode_grey, exif_focal_length, exif_orientation, find_images, import_cv2, is_listable, is_utf8,
                                      read_bytes, stamp)
 from opencv_iib.colmap.parallel import Cluster, Crew, Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
@@ -82,7 +82,7 @@ def describe_image(folder: str, options: Options, name: str
         raise ValueError('its name is not UTF-8')
     data = read_bytes(os.path.join(folder, name))
     image = decode_grey(data)
-    rows, codes = _features(options.features)(image)
+    rows, codes = _features(options.features)(image, exif_orientation(data) if options.features.exif else 1)
     height, width = image.shape
     return to_colmap(rows), codes, width, height, options.focal or exif_focal_length(data, width, height)
 

@@ -1,0 +1,128 @@
+"""Images that their files store turned, as telephones write them."""
+import struct
+import unittest
+import zlib
+
+import numpy as np
+
+import opencv_iib
+from collection import Collection
+from opencv_iib import _turns
+from opencv_iib.align import align
+from opencv_iib.colmap import FeatureOptions
+from opencv_iib.colmap.features import Features
+from opencv_iib.colmap.images import exif_orientation, read_with_orientation
+from opencv_iib.measure import match_images
+from support import cv2, run_command, texture
+
+STORED = {1: 1, 2: 2, 3: 3, 4: 4, 5: 5, 6: 8, 7: 7, 8: 6}  # what turns an upright image to one that is upright by this orientation
+TURNED = [6, 3, 8, 2, 4, 5, 7]
+
+
+def png(image, orientation):
+    data = cv2.imencode('.png', image)[1].tobytes()
+    exif = b'eXIf' + struct.pack('<4sIHHHIHHI', b'II*\0', 8, 1, 0x112, 3, 1, orientation, 0, 0)
+    return data[:33] + struct.pack('>I', len(exif) - 4) + exif + struct.pack('>I', zlib.crc32(exif)) + data[33:]
+
+
+def stored(image, orientation):
+    return _turns.upright(image, STORED[orientation])
+
+
+class Pixels(unittest.TestCase):
+
+    def test_of_files_and_of_upright_images(self):
+        image = np.arange(20 * 30, dtype=np.uint16).reshape(20, 30)
+        expected = {1: image, 2: np.fliplr(image), 3: np.rot90(image, 2), 4: np.flipud(image), 5: image.T, 6: np.rot90(image, -1),
+                    7: np.rot90(image, 2).T, 8: np.rot90(image)}
+        for orientation, turned in expected.items():
+            np.testing.assert_array_equal(_turns.upright(image, orientation), turned)
+            np.testing.assert_array_equal(_turns.upright(stored(image, orientation), orientation), image)
+            turn = _turns.Turn(orientation, 30, 20)
+            y, x = np.mgrid[:turned.shape[0], :turned.shape[1]].reshape(2, -1)
+            at = turn.points(np.column_stack([x, y]).astype(np.float32)).astype(int)
+            np.testing.assert_array_equal(image[at[:, 1], at[:, 0]], turned.ravel())
+            right, bottom = turned.shape[1] - 1, turned.shape[0] - 1
+            corners = turned[[0, 0, bottom, bottom], [0, right, right, 0]]
+            np.testing.assert_array_equal(turn.corners(corners), image[[0, 0, 19, 19], [0, 29, 29, 0]])
+        for wrong in (0, 9):
+            with self.assertRaisesRegex(ValueError, '1 to 8'):
+                opencv_iib.detect_and_describe(image.astype(np.uint8), orientation=wrong)
+
+    def test_points_are_those_of_the_array_and_codes_those_of_the_upright_image(self):
+        image = texture(200, 150)
+        mask = np.zeros_like(image)
+        mask[:, 60:] = 1
+        expected = opencv_iib.detect_and_describe(image, 100, mask)
+        for orientation in STORED:
+            turned = stored(image, orientation)
+            found = opencv_iib.detect_and_describe(turned, 100, stored(mask, orientation), orientation)
+            np.testing.assert_array_equal(found.codes, expected.codes)
+            at, whence = np.rint(found.points).astype(int), np.rint(expected.points).astype(int)
+            np.testing.assert_array_equal(turned[at[:, 1], at[:, 0]], image[whence[:, 1], whence[:, 0]])
+
+
+class Commands(Collection):
+
+    def setUp(self):
+        super().setUp()
+        world = cv2.resize(texture(160, 120, seed=3), (640, 480), interpolation=cv2.INTER_CUBIC)
+        self.a, self.b = world[:300, :400], world[20:320, 30:430]
+        self.first = self.write(self.a, 1).rename(self.folder / 'first.png')
+
+    def write(self, image, orientation):
+        path = self.folder / f'{orientation}.png'
+        path.write_bytes(png(stored(image, orientation), orientation))
+        return path
+
+    def test_keypoints(self):
+        features = Features(FeatureOptions(points=200))
+        rows, codes = features(self.a)
+        for orientation in STORED:
+            image, told = read_with_orientation(self.write(self.a, orientation))
+            self.assertEqual((told, read_with_orientation(self.folder / f'{orientation}.png', False)[1]), (orientation, 1))
+            turned, same = features(image, told)
+            np.testing.assert_array_equal(same, codes)
+            np.testing.assert_array_equal(turned[:, 2], rows[:, 2])
+        self.assertEqual([Features(FeatureOptions(points=9))(stored(self.a, o), o)[0][0, 3] for o in (1, 3, 6, 8)], [-1, 180, 270, 90])
+        for broken in (b'', png(self.a, 9), png(self.a, 1)[:60]):
+            self.assertEqual(exif_orientation(broken), 1)
+
+    def test_match(self):
+        expected = match_images(self.first, self.write(self.b, 1), options=FeatureOptions(points=300))
+        for orientation in TURNED:
+            path = self.write(self.b, orientation)
+            found = match_images(self.first, path, options=FeatureOptions(points=300))
+            at = _turns.Turn(orientation, *stored(self.b, orientation).shape[1::-1]).points(expected.matches.points2)
+            np.testing.assert_allclose(found.matches.points2, at, atol=1e-3)
+            np.testing.assert_array_equal(found.matches.points1, expected.matches.points1)
+            swapped = expected.matches.covariances[:, [2, 1, 0] if orientation > 4 else [0, 1, 2]]
+            np.testing.assert_allclose(np.abs(found.matches.covariances), np.abs(swapped), rtol=1e-5)
+            arguments = 'match', self.first, path, '--points', '300', '--out', self.folder / 'm.csv'
+            right, wrong = (run_command(*arguments, *more)[1] for more in ((), ('--no-exif',)))
+            self.assertGreater(int(right.split()[1]), 4 * int(wrong.split()[1]))
+
+    def test_align(self):
+        done = align(self.first, [self.write(self.b, orientation) for orientation in TURNED], self.folder / 'out', 1)
+        for orientation, each in zip(TURNED, done):
+            turn = _turns.Turn(orientation, *stored(self.b, orientation).shape[1::-1])
+            back = np.reshape(each.transform, (3, 3)) @ turn.matrix  # from the upright image
+            np.testing.assert_allclose(back, [[1, 0, 30], [0, 1, 20], [0, 0, 1]], atol=.1)
+            picture = cv2.imread(str(self.folder / 'out' / each.file), cv2.IMREAD_GRAYSCALE)
+            self.assertLess(np.abs(picture[25:295, 35:395].astype(int) - self.a[25:295, 35:395]).mean(), 1)
+        done = align(self.write(self.b, 6), [self.first], self.folder / 'other', 1)
+        self.assertEqual(cv2.imread(str(self.folder / 'other' / done[0].file)).shape, (400, 300, 3))
+        np.testing.assert_allclose(np.reshape(done[0].transform, (3, 3)) @ [130, 70, 1],
+                                   _turns.Turn(6, 300, 400).matrix @ [100, 50, 1], atol=.2)
+
+    def test_colmap(self):
+        for name, orientation in (('b.png', 6), ('more/c.png', 3)):
+            image = cv2.imread(str(self.images / name))
+            (self.images / name).write_bytes(png(stored(image, orientation), orientation))
+        self.assertEqual(self.build()['verified pairs'], 3)
+        size = dict(self.query('SELECT name, width FROM images NATURAL JOIN cameras'))
+        self.assertEqual(size, {'a.png': 400, 'b.png': 300, 'more/c.png': 400})
+
+
+if __name__ == '__main__':
+    unittest.main()
