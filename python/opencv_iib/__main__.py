@@ -134,6 +134,7 @@ def _parser() -> argparse.ArgumentParser:
         each.add_argument('--images', required=True, help='folder of images, also in folders below it')
         each.add_argument('--workers', type=int, help='threads (one a core)')
     for each in (localizing, updating):
+        _exif(each)
         each.add_argument('--camera', metavar=CAMERA, type=_camera,
                           help="COLMAP's name and parameters of the camera of all images, instead of the map's or EXIF's")
     mapping.add_argument('--out', required=True, help='folder to write')

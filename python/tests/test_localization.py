@@ -15,7 +15,7 @@ from unittest import mock
 import numpy as np
 
 import opencv_iib
-from opencv_iib import _core
+from opencv_iib import _core, _turns
 from opencv_iib.localization import Camera, Localizer, Location, build, smooth_poses, update
 from opencv_iib.localization import maps, run as runs
 from support import REPOSITORY, Commands, cv2, files_end_at, optional, run_command, seconds_until_interrupt, steps_meanwhile, texture
@@ -189,6 +189,32 @@ class Localization(Commands):
             self.assertNotEqual(value, 'another')
         self.check(pickle.loads(pickle.dumps(localizer)).localize(self.grey(), pickle.loads(pickle.dumps(camera))))
         self.assertEqual(len(smooth_poses([0, 1], [made, Location()], np.zeros((0, 7)))), 2)
+
+    def test_photographs_that_are_stored_turned(self):
+        from test_turns import STORED, png, stored
+        folder, out, localizer = self.path('turned'), self.path('out'), Localizer(self.map)
+        os.makedirs(folder)
+        found = {}
+        for orientation in STORED:
+            turn = _turns.Turn(orientation, *stored(self.grey(), orientation).shape[1::-1])
+            Path(folder, f'{orientation}.png').write_bytes(png(stored(self.grey(), orientation), orientation))
+            if orientation in (1, 3, 6, 8):
+                width, height = stored(self.grey(), orientation).shape[::-1]
+                camera = Camera('PINHOLE', width, height, (300, 300, width / 2, height / 2))
+                location = found[orientation] = localizer.localize(stored(self.grey(), orientation), camera, None, orientation)
+                moved = np.eye(4)
+                moved[:2, :2] = turn.matrix[:2, :2].T
+                self.check(Location(moved @ location.cam_from_world, location.covariance))
+                seen = camera.project(location.points @ location.cam_from_world[:3, :3].T + location.cam_from_world[:3, 3])
+                self.assertLess(np.abs(seen - location.pixels).max(), 2)
+                near = localizer.localize(stored(self.grey(), orientation), camera, location.cam_from_world, orientation)
+                np.testing.assert_allclose(near.cam_from_world, location.cam_from_world, atol=.02)
+        status, errors = self.localize(out, '--camera', 'SIMPLE_PINHOLE,240,320,300,120,160', images=folder)
+        self.assertEqual((status, sorted(trajectory(out))), (4, ['6', '8']))
+        np.testing.assert_allclose(trajectory(out)['6'][:3], -found[6].cam_from_world[:3, :3].T @ found[6].cam_from_world[:3, 3], atol=.01)
+        self.assertEqual(self.localize(out, '--camera', 'SIMPLE_PINHOLE,240,320,300,120,160', '--no-exif', images=folder)[0], 3)
+        status, text, _ = run_command('update', '--map', self.map, '--images', folder, '--out', self.path('new'), '--camera', CAMERA)
+        self.assertEqual((status, '2 localized' in text), (4, True))
 
     def test_an_imu_gives_poses_to_images_that_tell_nothing(self):
         localizer = Localizer(self.map)

@@ -13,6 +13,8 @@ from opencv_iib.colmap import FeatureOptions
 from opencv_iib.colmap.features import Features
 from opencv_iib.colmap.images import exif_orientation, read_with_orientation
 from opencv_iib.measure import match_images
+from opencv_iib.localization import Camera
+from opencv_iib.localization.localizer import upright_camera
 from support import cv2, run_command, texture
 
 STORED = {1: 1, 2: 2, 3: 3, 4: 4, 5: 5, 6: 8, 7: 7, 8: 6}  # what turns an upright image to one that is upright by this orientation
@@ -48,6 +50,21 @@ class Pixels(unittest.TestCase):
         for wrong in (0, 9):
             with self.assertRaisesRegex(ValueError, '1 to 8'):
                 opencv_iib.detect_and_describe(image.astype(np.uint8), orientation=wrong)
+
+    def test_cameras_of_upright_images(self):
+        points = np.random.default_rng(1).uniform([-.5, -.4, .8], [.5, .4, 1.5], (50, 3))
+        others = [.02, -.03, .004, -.006, .01, .02, .003, .004, .005, .006, .007, .008]
+        for model, focals, more in (('SIMPLE_PINHOLE', 1, 0), ('PINHOLE', 2, 0), ('SIMPLE_RADIAL', 1, 1), ('RADIAL', 1, 2), ('OPENCV', 2, 4),
+                                    ('OPENCV_FISHEYE', 2, 4), ('FULL_OPENCV', 2, 8), ('FOV', 2, 1), ('SIMPLE_RADIAL_FISHEYE', 1, 1),
+                                    ('RADIAL_FISHEYE', 1, 2), ('THIN_PRISM_FISHEYE', 2, 8), ('RAD_TAN_THIN_PRISM_FISHEYE', 2, 12),
+                                    ('SIMPLE_DIVISION', 1, 1), ('DIVISION', 2, 1), ('SIMPLE_FISHEYE', 1, 0), ('FISHEYE', 2, 0), ('EUCM', 2, 2)):
+            camera = Camera(model, 640, 480, [300, 310][:focals] + [330, 230] + others[:more])
+            for orientation in _turns.ROTATIONS:
+                turn = _turns.Turn(orientation, 640, 480)
+                upright = upright_camera(camera, turn)
+                self.assertEqual((upright.width, upright.height), (640, 480) if orientation == 3 else (480, 640))
+                stored = np.column_stack([points[:, :2] @ turn.matrix[:2, :2].T, points[:, 2]])
+                np.testing.assert_allclose(turn.points(upright.project(points)), camera.project(stored), atol=1e-9)
 
     def test_points_are_those_of_the_array_and_codes_those_of_the_upright_image(self):
         image = texture(200, 150)

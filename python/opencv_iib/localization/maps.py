@@ -16,7 +16,7 @@ from opencv_iib.colmap.features import MAX_POINTS
 from opencv_iib.colmap.images import read_grey
 from opencv_iib.colmap.parallel import thread_count
 from opencv_iib.colmap.progress import Progress
-from opencv_iib.localization.localizer import AnyCamera
+from opencv_iib.localization.localizer import AnyCamera, Camera, Location, locate_upright
 from opencv_iib.localization.run import images_of, locate
 
 
@@ -93,7 +93,7 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
 
 
 def update(map: Path, images: Path, camera: Optional[AnyCamera] = None, out: Optional[Path] = None,
-           workers: Optional[int] = None, force: bool = False, log: Callable[[str], None] = note) -> dict[str, int]:
+           workers: Optional[int] = None, force: bool = False, log: Callable[[str], None] = note, exif: bool = True) -> dict[str, int]:
     """Localizes the images below a folder; those that show the map in a light that it does not know become a part of it.
 
     Their own points are matched with each other's and the map's and triangulated. Codes that eight updates in a row looked
@@ -105,6 +105,7 @@ def update(map: Path, images: Path, camera: Optional[AnyCamera] = None, out: Opt
     :param out: folder for the new map; None to replace the old one.
     :param force: replace a map that is in `out`.
     :param log: told of each image without a pose, and why.
+    :param exif: as localize_images takes it; what is added is upright.
     :return: counts of images, of those localized, of those added, and of codes dropped.
     :raises FileExistsError: if there is a map in `out` and force is not set.
     :raises opencv_iib.error: for a folder without a map, or one that another process is changing.
@@ -114,7 +115,11 @@ def update(map: Path, images: Path, camera: Optional[AnyCamera] = None, out: Opt
         _check_new(out, force)
     names = images_of(images)
     changed = _core.MapUpdate(os.path.realpath(map), '' if out is None else os.path.realpath(out))
-    for name, own, location in locate(changed.add, changed.cameras(), images, names, camera, workers, log):
+
+    def add(name: str, image: NDArray[np.uint8], camera: Camera, orientation: int) -> Location:
+        return locate_upright(lambda image, camera, prior: changed.add(name, image, camera), image, camera, None, orientation)
+
+    for name, own, location in locate(add, changed.cameras(), images, names, camera, workers, log, exif):
         if own is None or location.reason:
             log(f'{name}: {location if own is None else location.reason}')
     localized, added, dropped = changed.commit()

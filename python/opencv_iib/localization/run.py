@@ -14,7 +14,7 @@ from opencv_iib import _core, error
 from opencv_iib._arguments import Path
 from opencv_iib._files import new_results
 from opencv_iib._streams import note
-from opencv_iib.colmap.images import (decode_grey, exif_focal_length, find_images, import_cv2, is_utf8, read_bytes, read_grey,
+from opencv_iib.colmap.images import (decode_grey, exif_focal_length, exif_orientation, find_images, import_cv2, is_utf8, read_bytes, read_grey,
                                      write_picture)
 from opencv_iib.colmap.parallel import Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
@@ -26,7 +26,7 @@ SAME_FOCAL = .05  #: of focal lengths, which EXIF tells roughly, and COLMAP of a
 POSE = ('tx', 'ty', 'tz', 'qx', 'qy', 'qz', 'qw')  # the camera's centre, and camera to world
 AXES = ('x', 'y', 'z', 'rx', 'ry', 'rz')
 
-Find = Callable[[str, NDArray[np.uint8], Camera], _core.Location]
+Find = Callable[[str, NDArray[np.uint8], Camera, int], Location]
 
 
 def find_camera(data: bytes, width: int, height: int, known: Sequence[Camera] = ()) -> Camera:
@@ -64,26 +64,26 @@ def _common_camera(cameras: tuple[Camera, ...]) -> Optional[Camera]:
     return middle
 
 
-def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[Camera], name: str) -> tuple[Camera, _core.Location]:
+def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[Camera], exif: bool, name: str) -> tuple[Camera, Location]:
     check_name(name)
     data = read_bytes(os.path.join(folder, name))
     grey = decode_grey(data)
     own = camera or find_camera(data, grey.shape[1], grey.shape[0], known)
-    return own, find(name, grey, own)
+    return own, find(name, grey, own, exif_orientation(data) if exif else 1)
 
 
 def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence[str], camera: Optional[AnyCamera],
-           workers: Optional[int], log: Callable[[str], None]) -> Iterator[tuple[str, Optional[Camera], Any]]:
+           workers: Optional[int], log: Callable[[str], None], exif: bool) -> Iterator[tuple[str, Optional[Camera], Any]]:
     """Of each image in order its name, its camera and Location; None and what is wrong if it cannot be read or has no camera.
 
-    :param find: gives the Location; threads call it.
+    :param find: gives the Location, also of an image that is stored by another of EXIF's orientations; threads call it.
     :param known: cameras of the map.
     :param log: told of cameras that were taken for others.
     """
     import_cv2()
     given, cameras, told = None if camera is None else as_camera(camera), list(map(as_camera, known)), set()
     progress = Progress('localizing', len(names))
-    job = functools.partial(_locate, find, cameras, folder, given)
+    job = functools.partial(_locate, find, cameras, folder, given, exif)
     for name, result in in_parallel(job, names, Threads(thread_count(workers))):
         if isinstance(result, Exception) and not isinstance(result, (ValueError, OSError, error)):
             raise result
@@ -154,7 +154,7 @@ def _place_and_turn(cam_from_world: NDArray[np.float64]) -> list[float]:
 
 
 def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCamera] = None, pictures: bool = False,
-                    workers: Optional[int] = None, log: Callable[[str], None] = note, lines: bool = False) -> tuple[int, int]:
+                    workers: Optional[int] = None, log: Callable[[str], None] = note, lines: bool = False, exif: bool = True) -> tuple[int, int]:
     """Localizes the images below a folder and writes what was found.
 
     :param map: folder of a map.
@@ -164,6 +164,7 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     :param workers: threads; None for one a core.
     :param log: told of each image without a pose, and why.
     :param lines: as Localizer takes it.
+    :param exif: images are looked for as upright as their EXIF data say; poses and cameras are those of the files' pixels.
     :return: how many images have a pose, and of how many.
     """
     workers = thread_count(workers)
@@ -173,7 +174,8 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     posed: list[Any] = []
     with new_results(os.fspath(out), 'frames.csv', _earlier) as part:
         localizer = Localizer(map, 0, lines)
-        located = locate(lambda name, image, camera: localizer.localize(image, camera), localizer.cameras, images, names, given, workers, log)
+        located = locate(lambda name, image, camera, orientation: localizer.localize(image, camera, None, orientation), localizer.cameras,
+                         images, names, given, workers, log, exif)
         with open(os.path.join(part, 'trajectory.txt'), 'w', encoding='utf-8') as trajectory, \
                 open(os.path.join(part, 'frames.csv'), 'w', encoding='utf-8', errors='backslashreplace', newline='') as file:
             frames = csv.writer(file)
