@@ -57,5 +57,55 @@ private:
     }
 };
 
+//! Votes of angles, whole degrees apart; with the sums of their parts of degrees.
+class RotationVotes
+{
+public:
+    RotationVotes() : counts(BINS), sums(BINS) {}
+
+    //! @param degrees from 0 to 360.
+    void add(double degrees)
+    {
+        const int bin = std::min((int)degrees, BINS - 1);
+        counts[bin]++;
+        sums[bin] += degrees - bin;
+    }
+
+    //! Degrees, 0 or more and less than 360: the mean of the votes around the peak; -1 without votes.
+    double peak() const
+    {
+        int best = -1;
+        double most = 0;
+        for (int i = 0; i < BINS; i++)
+        {
+            double score = 0;
+            for (int j = -REACH; j <= REACH; j++)
+                score += (REACH + 1 - std::abs(j)) * counts[(i + j + BINS) % BINS];
+            if (score > most)
+            {
+                most = score;
+                best = i;
+            }
+        }
+        if (best < 0)
+            return -1;
+        double count = 0, sum = 0;
+        for (int j = -REACH; j <= REACH; j++)
+        {
+            const int bin = (best + j + BINS) % BINS;
+            count += counts[bin];
+            sum += counts[bin] * j + sums[bin];
+        }
+        const double angle = std::fmod(best + sum / count + 360, 360);
+        return angle < 360 ? angle : 0;
+    }
+
+private:
+    static constexpr int BINS = 360;
+    static constexpr int REACH = 4;  //!< a vote counts for the bins this near, less for farther ones
+
+    std::vector<double> counts, sums;
+};
+
 }  // namespace iib
 }  // namespace cv

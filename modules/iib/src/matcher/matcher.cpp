@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../common/file_numbers.hpp"
+#include "../common/outputs.hpp"
 #include "parameters.hpp"
 #include "search.hpp"
 
@@ -43,10 +44,9 @@ void toArrays(const PackedCodes& trains, const KnnTable& found, int k, OutputArr
             distances.at<int>(query, i) = distanceOf(found[query][i]);
             images.at<int>(query, i) = m.imgIdx;
         }
-    indices.copyTo(indices_);
-    distances.copyTo(distances_);
-    if (imageIndices_.needed())
-        images.copyTo(imageIndices_);
+    writeRows(indices, indices_);
+    writeRows(distances, distances_);
+    writeRows(images, imageIndices_);
 }
 
 //! Glue between DescriptorMatcher's interface and the search.

@@ -16,7 +16,8 @@ namespace {
 const double NORMALIZATION_SIGMA = 8;
 const double LARGEST_SPACING = 1.25;  //!< pixels from one sample to the next
 const double SAME_SIZE = 1.1;
-const double LARGEST_MOVE = 2;     //!< in pixels
+const int SAME_TURN = 10;          //!< degrees: patches that are turned by less agree without that
+const size_t VOTING_MATCHES = 64;  //!< for the turn, each with each other
 const double LEAST_WITH_MAP = .3;  //!< similarity at the start: most tries are wrong, and end here
 const double MATCHES_OF_A_THREAD = 8;
 
@@ -37,19 +38,20 @@ void checkIndex(const std::vector<KeyPoint>& keypoints, int index, int image)
                                                image, (int)keypoints.size()));
 }
 
+bool hasAngle(const KeyPoint& keypoint) { return keypoint.angle >= 0; }
+
 }  // namespace
 
 //! Where a match begins: what PatchAligner asks for.
 struct MatchRefiner::Start
 {
-    double unit, limit, least;
+    double unit, least;
     PatchPlaces places;
 
     /* Neighbouring samples are farther apart than a pixel only if that is by little, in the second image of a pair of
      about the same size. */
     Start(double ratio, double leastSimilarity)
-        : unit(std::min(1., LARGEST_SPACING / ratio)), limit(LARGEST_MOVE * std::max(ratio, 1.)),
-          least(leastSimilarity)
+        : unit(std::min(1., LARGEST_SPACING / ratio)), least(leastSimilarity)
     {
     }
 };
@@ -74,6 +76,29 @@ MatchRefiner::MatchRefiner(InputArray image1, const std::vector<KeyPoint>& keypo
         prepare(Range(0, 2));  // each by all threads
     else
         parallel_for_(Range(0, 2), prepare);
+    turn = turnOf(matches);
+}
+
+//! Whole degrees; 0 where nothing tells.
+int MatchRefiner::turnOf(const std::vector<DMatch>& matches) const
+{
+    std::vector<const DMatch*> voting;
+    for (const DMatch& match : matches)
+        if (!hasAngle(first[match.queryIdx]) && !hasAngle(second[match.trainIdx]) &&
+                seesFirst(match.queryIdx) && seesSecond(match.trainIdx))
+            voting.push_back(&match);
+    RotationVotes votes;
+    const size_t n = std::min(voting.size(), VOTING_MATCHES);
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < i; j++)
+        {
+            const DMatch &a = *voting[i * voting.size() / n], &b = *voting[j * voting.size() / n];
+            const Point2f from = first[b.queryIdx].pt - first[a.queryIdx].pt;
+            const Point2f to = second[b.trainIdx].pt - second[a.trainIdx].pt;
+            if (from != Point2f() && to != Point2f())
+                votes.add(fastAtan2((float)from.cross(to), (float)from.ddot(to)));
+        }
+    return std::max(cvRound(votes.peak()), 0);
 }
 
 //! Sizes of keypoints err by more than a tenth, so that patches may also be of the same size.
@@ -89,15 +114,19 @@ MatchRefiner::Start MatchRefiner::begin(const Refinement& refinement) const
     }
     const double ratio = (double)b.size / a.size;
     Start start(ratio, 0);
-    const bool rotated = a.angle >= 0 && b.angle >= 0;
-    const Rotation rotation(rotated ? b.angle - a.angle : 0);
-    const auto add = [&](double scale) {
-        const double c = scale * start.unit * rotation.cosine, s = scale * start.unit * rotation.sine;
-        start.places.add({place, Matx22d(c, -s, s, c)});
+    const auto addTurned = [&](float degrees) {
+        const Rotation rotation(degrees);
+        const auto add = [&](double scale) {
+            const double c = scale * start.unit * rotation.cosine, s = scale * start.unit * rotation.sine;
+            start.places.add({place, Matx22d(c, -s, s, c)});
+        };
+        add(ratio);
+        if (std::max(ratio, 1 / ratio) >= SAME_SIZE)
+            add(1);
     };
-    add(ratio);
-    if (std::max(ratio, 1 / ratio) >= SAME_SIZE)
-        add(1);
+    addTurned(hasAngle(a) || hasAngle(b) ? std::max(b.angle, 0.f) - std::max(a.angle, 0.f) : 0);
+    if (!hasAngle(a) && !hasAngle(b) && std::min(turn, 360 - turn) >= SAME_TURN)
+        addTurned((float)turn);
     return start;
 }
 
@@ -127,7 +156,7 @@ void MatchRefiner::refine(std::vector<Refinement>& matches) const
                         aligner.take(prepared[0], Vec2d(first[query].pt.x, first[query].pt.y), start.unit);
                     taken = query;
                     unit = start.unit;
-                    r.found = aligner.align(prepared[1], start.places, start.limit, start.least);
+                    r.found = aligner.align(prepared[1], start.places, start.least);
                 }
             },
             matches.size() / MATCHES_OF_A_THREAD);

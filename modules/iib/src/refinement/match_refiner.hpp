@@ -39,11 +39,13 @@ public:
 private:
     struct Start;
 
+    int turnOf(const std::vector<DMatch>& matches) const;
     Start begin(const Refinement& refinement) const;
     static bool isInside(const KeyPoint& keypoint, const Mat& image);
 
     const std::vector<KeyPoint>&first, &second;
     Mat prepared[2];
+    int turn;  //!< of the second image, as the given matches of keypoints without angles tell it; degrees, to 360
 };
 
 //! Adds the matches of further keypoints that the refined ones lead to.

@@ -13,12 +13,14 @@ const double SIGMA = 8;            //!< of the weights, in units of the patch
 const double UNITS_OF_PLACE = 16;  //!< of PatchWeights::x and y
 const double REACH = PATCH - 1;    //!< from the centre to the outermost samples
 const int MOST_STEPS = 10;
-const double LAST_STEP = .02;  //!< in units: the last step is not longer
-const double DEFORMATION_MARGIN =
-        4;  //!< pixels that a patch may reach farther than where it starts, besides its move
+const double LAST_STEP = .02;            //!< in units: the last step is not longer
+const double SETTLED_STEP = .1;          //!< but after MOST_STEPS
+const double LARGEST_MOVE = 2;           //!< in pixels
+const double MARGIN = LARGEST_MOVE + 4;  //!< pixels that a patch may reach farther than where it starts
 const double LEAST_DEVIATION = .5;  //!< normalized grey levels: without contrast there is nothing to match
 const double LEAST_SIMILARITY = .5;
-const double HALVED = 1 << (WEIGHT_BITS + 1);  //!< halved weights' unit over that of the sum of samples
+const double HALVED = 1 << (WEIGHT_BITS + 1);     //!< halved weights' unit over that of the sum of samples
+const double LIGHT = .05, SHARED_BY_NOISE = .25;  //!< of errors by other light: see covariance()
 const double DAMPING_OF_PLACE = 1e-5, DAMPING_OF_MAP = 5e-3;
 
 PatchWeights makeWeights()
@@ -87,6 +89,21 @@ double inflation(const Autocorrelation& a, const Autocorrelation& b)
 const uchar* pixelsFrom(const Mat& image, const Point& place)
 {
     return image.data + place.y * (ptrdiff_t)image.step + place.x;
+}
+
+//! Of the waves that tell a place along a direction, from second differences of TEMPLATE x TEMPLATE pixels and first ones.
+double squaredFrequency(const uchar* pixels, size_t step, ptrdiff_t next)
+{
+    int first = 0, second = 0;
+    for (int y = 1; y < TEMPLATE - 1; y++)
+        for (int x = 1; x < TEMPLATE - 1; x++)
+        {
+            const uchar* const p = pixels + y * step + x;
+            const int before = p[0] - p[-next], after = p[next] - p[0];
+            first += after * after;
+            second += (after - before) * (after - before);
+        }
+    return second / (first + 1.);
 }
 
 //! TEMPLATE x TEMPLATE grey levels between pixels, `unit` apart.
@@ -162,21 +179,24 @@ Vec2d PatchAligner::readTemplate(const Mat& image, const Vec2d& point)
     if (unit == 1)
     {
         const Point nearest(cvRound(point[0]), cvRound(point[1]));
-        kernels.makeTemplate(pixelsFrom(image, nearest - Point(PATCH, PATCH)), image.step, weights, patch);
+        pixels1 = pixelsFrom(image, nearest - Point(PATCH, PATCH));
+        step1 = image.step;
+        kernels.makeTemplate(pixels1, step1, weights, patch);
         return point - Vec2d(nearest.x, nearest.y);
     }
-    uchar values[TEMPLATE * TEMPLATE];
-    resample(image, point - Vec2d(PATCH, PATCH) * unit, unit, values);
-    kernels.makeTemplate(values, TEMPLATE, weights, patch);
+    resample(image, point - Vec2d(PATCH, PATCH) * unit, unit, resampled);
+    pixels1 = resampled;
+    step1 = TEMPLATE;
+    kernels.makeTemplate(pixels1, step1, weights, patch);
     return Vec2d(0, 0);
 }
 
 //! The surroundings of a place.
-void PatchAligner::readWindow(const Mat& image, const PatchPlace& place, double margin)
+void PatchAligner::readWindow(const Mat& image, const PatchPlace& place)
 {
     const Vec2d reach = reachOf(place.map);
-    const int halfWidth = cvCeil(std::min(reach[0] + margin, WINDOW / 2 - 1.)) + 1;
-    const int halfHeight = cvCeil(std::min(reach[1] + margin, WINDOW / 2 - 1.)) + 1;
+    const int halfWidth = cvCeil(std::min(reach[0] + MARGIN, WINDOW / 2 - 1.)) + 1;
+    const int halfHeight = cvCeil(std::min(reach[1] + MARGIN, WINDOW / 2 - 1.)) + 1;
     pixels = Rect(cvFloor(place.centre[0]) + 1 - halfWidth, cvFloor(place.centre[1]) + 1 - halfHeight,
             2 * halfWidth, 2 * halfHeight);
     kernels.readWindow(pixelsFrom(image, pixels.tl()), image.step, pixels.size(), window.data());
@@ -193,8 +213,10 @@ bool PatchAligner::sampleAt(const PatchPlace& place)
     const auto fixed = [](const Vec2d& v) {
         return Point(cvRound(v[0] * (1 << POSITION_BITS)), cvRound(v[1] * (1 << POSITION_BITS)));
     };
-    const PatchGrid grid = {fixed(centre - place.map * Vec2d(REACH, REACH)), fixed(place.map * Vec2d(2, 0)),
-            fixed(place.map * Vec2d(0, 2))};
+    const Point rounding(
+            1 << (POSITION_BITS - 9), 1 << (POSITION_BITS - 9));  // to the parts of a pixel that are read
+    const PatchGrid grid = {fixed(centre - place.map * Vec2d(REACH, REACH)) + rounding,
+            fixed(place.map * Vec2d(2, 0)), fixed(place.map * Vec2d(0, 2))};
     kernels.sample(window.data(), grid, samples.data());
     return true;
 }
@@ -263,10 +285,35 @@ Vec6d PatchAligner::step(const Moments& moments) const
     return inverse * gradient;
 }
 
-//! The point's covariance, from the residuals of the samples that were taken last.
+/* How far the interpolation of samples has moved the patch. Between two pixels, a part p from one to the next, a wave of
+ frequency w seems p (1 - p) (1 - 2p) w^2 / 6 less far along. */
+Vec2d PatchAligner::interpolationError(const PatchPlace& place) const
+{
+    Vec2d sum(0, 0);
+    double total = 0;
+    for (int i = 0; i < PATCH_SAMPLES; i++)
+    {
+        const Vec2d sample =
+                place.centre + place.map * Vec2d(2 * (i % PATCH) - REACH, 2 * (i / PATCH) - REACH);
+        total += weights.gaussian[i];
+        for (int axis = 0; axis < 2; axis++)
+        {
+            const double part = sample[axis] - cvFloor(sample[axis]);
+            sum[axis] += weights.gaussian[i] * part * (1 - part) * (1 - 2 * part);
+        }
+    }
+    const double scale = 6 * total * std::abs(determinant(place.map));
+    return Vec2d(squaredFrequency(pixels1, step1, 1) * sum[0],
+                   squaredFrequency(pixels1, step1, step1) * sum[1]) *
+           (1 / scale);
+}
+
+/* The point's covariance, from the residuals of the samples that were taken last. As far as these are noise, it is that of
+ a sum of so many. Light that comes from elsewhere leaves residuals that neighbours share: then it is also what was
+ measured on photographs of still cameras by other lamps. */
 Matx22d PatchAligner::covariance(const Moments& moments) const
 {
-    const double similarity = similarityOf(moments);
+    const double similarity = std::min(similarityOf(moments), 1.);
     const double gain = similarity * moments.deviation / ofTemplate.deviation;
     const int fixedGain = cvRound(gain * (1 << GAIN_BITS));
     const int fixedOffset = cvRound((moments.mean - gain * ofTemplate.mean) * (1 << GAIN_BITS));
@@ -275,15 +322,20 @@ Matx22d PatchAligner::covariance(const Moments& moments) const
     const Autocorrelation ofResiduals = kernels.autocorrelate(residuals);
     const double x = beside[0] / UNITS_OF_PLACE, y = beside[1] / UNITS_OF_PLACE;
     const Matx<double, 2, 6> ofPoint(1, 0, x, y, 0, 0, 0, 1, 0, 0, x, y);
+    const Matx22d ofUnit = ofPoint * inverse * ofPoint.t();
+    const double remaining =
+            1 / (similarity * similarity) - 1;  // squared, in parts of what the template explains
     const double greyLevel = (1 << SAMPLE_BITS) / moments.deviation;  // both images are rounded to whole ones
-    const double variance =
-            std::max(1 / (similarity * similarity) - 1, greyLevel * greyLevel / 6) / independentSamples;
+    const double noise = std::max(remaining, greyLevel * greyLevel / 6) / independentSamples;
     const auto scaleOf = [&](int derivative) {
         const Autocorrelation a = kernels.autocorrelate(patch.weights[1 + derivative]);
         return std::sqrt(inflation(ofResiduals, a));
     };
     const Matx22d scale(scaleOf(0), 0, 0, scaleOf(1));
-    return scale * (ofPoint * inverse * ofPoint.t() * variance) * scale;
+    const double shared = (ofResiduals.right + ofResiduals.below) / (2 * (ofResiduals.squares + 1.));
+    const double light =
+            LIGHT * std::max(shared - SHARED_BY_NOISE, 0.) * std::sqrt(remaining * trace(ofUnit) / 2);
+    return scale * ofUnit * scale * noise + ofUnit * light;
 }
 
 void PatchAligner::take(const Mat& image1, const Vec2d& point, double unitOfPatch)
@@ -293,7 +345,7 @@ void PatchAligner::take(const Mat& image1, const Vec2d& point, double unitOfPatc
     usable = solveTemplate();
 }
 
-PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts, double limit, double least)
+PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts, double least)
 {
     const Vec2d detected = starts.begin()->centre;
     const PatchAlignment refused = {false, detected, -1, Matx22d::eye(), Matx22d::eye()};
@@ -302,8 +354,8 @@ PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts,
     const auto smaller = [](const PatchPlace& a, const PatchPlace& b) {
         return reachOf(a.map)[0] < reachOf(b.map)[0];
     };
-    readWindow(image2, *std::max_element(starts.begin(), starts.end(), smaller), limit + DEFORMATION_MARGIN);
-    double first = least;
+    readWindow(image2, *std::max_element(starts.begin(), starts.end(), smaller));
+    double similarity = least;
     PatchPlace place = *starts.begin();
     Moments moments = Moments();
     for (const PatchPlace& start : starts)
@@ -312,17 +364,18 @@ PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts,
         if (!sampleAt(tried))
             continue;
         const Moments found = momentsOf(samples.data());
-        if (similarityOf(found) > first)
+        if (similarityOf(found) > similarity)
         {
-            first = similarityOf(found);
+            similarity = similarityOf(found);
             place = tried;
             moments = found;
         }
     }
-    if (!(first > least))
+    if (!(similarity > least))
         return refused;
-    double similarity = first;
-    for (int i = 0; i < MOST_STEPS; i++)
+    if (starts.end() - starts.begin() > 1)
+        sampleAt(place);
+    for (int i = 1;; i++)
     {
         if (!(similarity > 0))
             return refused;
@@ -336,15 +389,19 @@ PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts,
         place.map = place.map * Matx22d(change(1, 1), -change(0, 1), -change(1, 0), change(0, 0)) *
                     (1 / determinant);
         place.centre -= place.map * Vec2d(d[0], d[1]);
-        if (d[0] * d[0] + d[1] * d[1] < LAST_STEP * LAST_STEP)
+        const double settled = i < MOST_STEPS ? LAST_STEP : SETTLED_STEP;
+        if (d[0] * d[0] + d[1] * d[1] < settled * settled)
             break;
-        if (!sampleAt(place))
+        if (i == MOST_STEPS || !sampleAt(place))
             return refused;
         moments = momentsOf(samples.data());
         similarity = similarityOf(moments);
     }
+    if (!(similarity > LEAST_SIMILARITY))
+        return refused;
+    place.centre -= interpolationError(place);
     const Vec2d found = place.centre + place.map * beside, moved = found - detected;
-    if (!(moved.dot(moved) < limit * limit) || !(similarity > first) || !(similarity > LEAST_SIMILARITY))
+    if (!(moved.dot(moved) < LARGEST_MOVE * LARGEST_MOVE))
         return refused;
     return {true, found, std::min(similarity, 1.), place.map * covariance(moments) * place.map.t(),
             place.map * (1 / unit)};

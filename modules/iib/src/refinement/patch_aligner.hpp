@@ -17,7 +17,7 @@ struct PatchPlace
     Matx22d map;
 };
 
-//! One or two places where a patch may begin.
+//! One place or more where a patch may begin.
 class PatchPlaces
 {
 public:
@@ -26,7 +26,7 @@ public:
     const PatchPlace* end() const { return places + count; }
 
 private:
-    PatchPlace places[2];
+    PatchPlace places[4];
     int count = 0;
 };
 
@@ -56,9 +56,8 @@ public:
 
     /** Finds where these surroundings are in the second image.
      @param starts places of the point inside the image; the one that agrees best is taken.
-     @param limit pixels that the point may move.
      @param least similarity that the start is above, 0 or more. */
-    PatchAlignment align(const Mat& image2, const PatchPlaces& starts, double limit, double least);
+    PatchAlignment align(const Mat& image2, const PatchPlaces& starts, double least);
 
 private:
     struct Moments
@@ -68,17 +67,21 @@ private:
     };
 
     Vec2d readTemplate(const Mat& image, const Vec2d& point);
-    void readWindow(const Mat& image, const PatchPlace& place, double margin);
+    void readWindow(const Mat& image, const PatchPlace& place);
     bool sampleAt(const PatchPlace& place);
     Moments momentsOf(const short* values) const;
     double similarityOf(const Moments& moments) const;
     bool solveTemplate();
     Vec6d step(const Moments& moments) const;
+    Vec2d interpolationError(const PatchPlace& place) const;
     Matx22d covariance(const Moments& moments) const;
 
     const RefinementKernels& kernels;
     const PatchWeights& weights;
     PatchTemplate patch;
+    const uchar* pixels1;  //!< that it was made of, TEMPLATE x TEMPLATE
+    size_t step1;
+    uchar resampled[TEMPLATE * TEMPLATE];
     double unit;   //!< of the patch
     Vec2d beside;  //!< where the point is from the patch's centre, in its units
     bool usable;   //!< whether the patch can tell a place

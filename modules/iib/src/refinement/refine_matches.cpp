@@ -2,6 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
+#include "../common/outputs.hpp"
 #include "match_refiner.hpp"
 
 #include "opencv2/iib/refinement.hpp"
@@ -25,12 +26,10 @@ void write(const std::vector<Refinement>& matches, const std::vector<KeyPoint>& 
         const Matx22d& c = found.covariance;
         covariance.at<Vec3f>(i) = Vec3d(c(0, 0), c(0, 1), c(1, 1));
     }
-    first.copyTo(points1);
-    second.copyTo(points2);
-    if (covariances.needed())
-        covariance.copyTo(covariances);
-    if (similarities.needed())
-        similarity.copyTo(similarities);
+    writeRows(first, points1);
+    writeRows(second, points2);
+    writeRows(covariance, covariances);
+    writeRows(similarity, similarities);
 }
 
 std::vector<Refinement> refined(const MatchRefiner& refiner, const std::vector<DMatch>& matches)

@@ -109,4 +109,10 @@ void expectSame(const Refined& expected, const Refined& actual)
     EXPECT_EQ(0, cvtest::norm(expected.similarities, actual.similarities.rowRange(0, n), NORM_INF));
 }
 
+double inSigmas(const Point2d& error, const Point3d& c)
+{
+    return std::sqrt((c.z * error.x * error.x - 2 * c.y * error.x * error.y + c.x * error.y * error.y) /
+                     (c.x * c.z - c.y * c.y));
+}
+
 }  // namespace opencv_test

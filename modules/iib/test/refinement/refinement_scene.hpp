@@ -41,4 +41,7 @@ Refined refine(const RefinementScene& scene);
 //! That the first of `actual` are as expected.
 void expectSame(const Refined& expected, const Refined& actual);
 
+//! How many standard deviations an error is long, Mahalanobis' distance. @param c xx, xy and yy.
+double inSigmas(const Point2d& error, const Point3d& c);
+
 }  // namespace opencv_test

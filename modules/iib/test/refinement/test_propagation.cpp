@@ -90,6 +90,17 @@ TEST_F(IIB_Propagation, finds_what_is_missing)
     }
 }
 
+// Right starts are no reason to stop.
+TEST_F(IIB_Propagation, leads_on_in_identical_images)
+{
+    const std::vector<KeyPoint>& keypoints = scene().keypoints[0];
+    Refined r = {some(5), Mat(), Mat(), Mat(), Mat()};
+    propagateMatches(scene().images[0], keypoints, scene().images[0], keypoints, r.matches, r.points1,
+            r.points2, r.covariances, r.similarities);
+    EXPECT_GT(r.matches.size(), .95 * keypoints.size());
+    EXPECT_EQ(0, cvtest::norm(r.points1, r.points2, NORM_INF));
+}
+
 TEST_F(IIB_Propagation, refines_the_given_matches_as_refineMatches_does)
 {
     const std::vector<DMatch> given = some(5);

@@ -5,6 +5,7 @@
 #include "../support/test_errors.hpp"
 #include "refinement_scene.hpp"
 
+#include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
 
 namespace opencv_test {
@@ -101,6 +102,56 @@ TEST(IIB_Refinement, starts_with_the_difference_of_angles)
             .95);
 }
 
+// Angle -1, as matchRotated leaves it in the first image, is upright.
+TEST(IIB_Refinement, a_keypoint_without_an_angle_is_upright)
+{
+    Mat turned;
+    cv::rotate(scene().images[1], turned, ROTATE_90_CLOCKWISE);
+    std::vector<KeyPoint> second = scene().keypoints[1];
+    for (KeyPoint& kp : second)
+    {
+        kp.pt = Point2f(turned.cols - 1 - kp.pt.y, kp.pt.x);
+        kp.angle = 90;
+    }
+    const Matx22d quarter(0, -1, 1, 0);
+    const Refined r = refine(scene().images[0], scene().keypoints[0], turned, second, scene().matches);
+    EXPECT_GT(rightShare(r, quarter * scene().linear, quarter * scene().shift + Vec2d(turned.cols - 1, 0)),
+            .95);
+}
+
+// What matchRotated finds, and what codes of the gradients' direction match, whose keypoints tell no angle.
+TEST(IIB_Refinement, follows_turned_images_that_are_matched_in_either_way)
+{
+    for (double degrees : {0., 30., 90., 135., 200.})
+        for (int orientation : {IIB::ORIENTATION_KEYPOINT, IIB::ORIENTATION_GRADIENT})
+        {
+            const Point2f centre((float)scene().images[0].cols / 2, (float)scene().images[0].rows / 2);
+            Matx23d turn;
+            Mat(getRotationMatrix2D(centre, -degrees, 1)).copyTo(turn);
+            Mat turned;
+            warpAffine(scene().images[0], turned, turn, scene().images[0].size(), INTER_LANCZOS4,
+                    BORDER_REFLECT_101);
+            const Ptr<IIB> iib = IIB::createRecommended(1000);
+            const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
+            iib->setOrientation(orientation);
+            std::vector<KeyPoint> keypoints[2];
+            std::vector<DMatch> matches;
+            if (orientation == IIB::ORIENTATION_KEYPOINT)
+                matchRotated(scene().images[0], turned, iib, matcher, keypoints[0], keypoints[1], matches);
+            else
+            {
+                Mat codes[2];
+                iib->detectAndCompute(scene().images[0], noArray(), keypoints[0], codes[0]);
+                iib->detectAndCompute(turned, noArray(), keypoints[1], codes[1]);
+                matcher->match(codes[0], codes[1], matches);
+            }
+            const Refined r = refine(scene().images[0], keypoints[0], turned, keypoints[1], matches);
+            ASSERT_GT(r.points2.rows, 100);
+            EXPECT_GT(rightShare(r, turn.get_minor<2, 2>(0, 0), Vec2d(turn(0, 2), turn(1, 2))), .9)
+                    << degrees << ", " << orientation;
+        }
+}
+
 TEST(IIB_Refinement, starts_with_the_ratio_of_sizes)
 {
     for (double scale : {.5, .7})
@@ -127,6 +178,110 @@ TEST(IIB_Refinement, starts_with_the_ratio_of_sizes)
                 .7)
                 << scale;
     }
+}
+
+// Sizes of keypoints differ by up to eight times, so that patches may be larger than moves.
+TEST(IIB_Refinement, no_point_moves_by_two_pixels)
+{
+    std::vector<KeyPoint> second = scene().keypoints[1];
+    for (size_t i = 0; i < second.size(); i++)
+    {
+        second[i].pt += Point2f((float)(i % 7) - 3, (float)(i % 5) - 2);
+        second[i].size *= (float)std::pow(2, (int)(i % 7) - 3);
+    }
+    const Refined r =
+            refine(scene().images[0], scene().keypoints[0], scene().images[1], second, scene().matches);
+    for (int i = 0; i < r.points2.rows; i++)
+        EXPECT_LT(cv::norm(r.points2.at<Point2f>(i) - second[i].pt), 2) << i;
+    EXPECT_GT(countNonZero(r.similarities > 0), .3 * r.points2.rows);
+}
+
+// Identical images, and a camera that moved by whole pixels: nothing is left to refine, and nothing is as sure.
+TEST(IIB_Refinement, right_starts_are_the_best_there_are)
+{
+    const Mat image = scene().images[0];
+    const Rect part(40, 30, 560, 400);
+    for (const Point& shift : {Point(), Point(3, -5), Point(0, 1)})
+    {
+        const bool identical = shift == Point();
+        const Mat fixed = identical ? image : image(part), moved = identical ? image : image(part - shift);
+        std::vector<KeyPoint> first = scene().keypoints[0];
+        for (KeyPoint& kp : first)
+            kp.pt -= identical ? Point2f() : Point2f(part.tl());
+        std::vector<KeyPoint> second = first;
+        for (KeyPoint& kp : second)
+            kp.pt += Point2f(shift);
+        const Refined r = refine(fixed, first, moved, second, scene().matches);
+        int exact = 0, inside = 0;
+        for (int i = 0; i < r.points2.rows; i++)
+        {
+            if (!Rect2f(50, 50, (float)fixed.cols - 100, (float)fixed.rows - 100).contains(first[i].pt))
+                continue;
+            inside++;
+            const Point3f covariance = r.covariances.at<Point3f>(i);
+            const double error = cv::norm(r.points2.at<Point2f>(i) - second[i].pt);
+            EXPECT_GT(r.similarities.at<float>(i), .99) << i;
+            EXPECT_LT(error, .05);
+            EXPECT_GT(std::min(covariance.x, covariance.z), 1e-7);
+            EXPECT_GT((double)covariance.x * covariance.z, (double)covariance.y * covariance.y);
+            EXPECT_LT(std::sqrt(std::max(covariance.x, covariance.z)), .06);
+            exact += error == 0 && r.similarities.at<float>(i) == 1;
+        }
+        EXPECT_GT(inside, 100);
+        EXPECT_EQ(identical ? inside : exact, exact);
+    }
+}
+
+// A still camera, one of its pictures through JPEG: starts are right to the last digit.
+TEST(IIB_Refinement, right_starts_of_a_compressed_image)
+{
+    for (int quality : {95, 80, 50})
+    {
+        std::vector<uchar> file;
+        imencode(".jpg", scene().images[0], file, {IMWRITE_JPEG_QUALITY, quality});
+        const Mat image = imdecode(file, IMREAD_GRAYSCALE);
+        std::vector<KeyPoint> keypoints = scene().keypoints[0];
+        const Refined r = refine(scene().images[0], keypoints, image, keypoints, scene().matches);
+        double squares = 0;
+        const int n = countNonZero(r.similarities > .5);
+        for (int i = 0; i < r.points2.rows; i++)
+        {
+            const double sigmas =
+                    inSigmas(r.points2.at<Point2f>(i) - keypoints[i].pt, r.covariances.at<Point3f>(i));
+            squares += sigmas * sigmas / 2;
+        }
+        EXPECT_GT(n, .98 * r.points2.rows) << quality;
+        EXPECT_LT(squares / n, 2.5) << quality;
+    }
+}
+
+TEST(IIB_Refinement, gives_vectors_and_numbers_of_any_kind)
+{
+    const Refined expected = refine(scene());
+    const auto call = [](OutputArray a, OutputArray b, OutputArray c, OutputArray d) {
+        refineMatches(scene().images[0], scene().keypoints[0], scene().images[1], scene().keypoints[1],
+                scene().matches, a, b, c, d);
+    };
+    std::vector<Point2f> points1, points2(3);
+    std::vector<Vec3f> covariances;
+    std::vector<float> similarities;
+    call(points1, points2, covariances, similarities);
+    EXPECT_EQ(0, cvtest::norm(expected.points1.reshape(2), Mat(points1), NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(expected.points2.reshape(2), Mat(points2), NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(expected.covariances.reshape(3), Mat(covariances), NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(expected.similarities, Mat(similarities), NORM_INF));
+    std::vector<Point2d> doubles;
+    Mat_<Vec3d> wide;
+    UMat onDevice;
+    std::vector<double> all;
+    call(doubles, onDevice, wide, all);
+    EXPECT_EQ(Point2d(points1[5]), doubles[5]);
+    EXPECT_EQ(Vec3d(covariances[5]), wide(5));
+    EXPECT_EQ(similarities[5], all[5]);
+    EXPECT_EQ(0, cvtest::norm(expected.points2, onDevice.getMat(ACCESS_READ), NORM_INF));
+    std::vector<DMatch> none;
+    propagateMatches(Mat(), {}, Mat(), {}, none, points1, doubles, wide, similarities);
+    EXPECT_TRUE(points1.empty() && doubles.empty() && wide.empty() && similarities.empty());
 }
 
 TEST(IIB_Refinement, refuses_what_does_not_agree_and_leaves_it)
