@@ -92,11 +92,7 @@ endif()
 if(UNIX AND NOT APPLE AND TARGET opencv_iib_geometry)  # which the package has, and whose OpenCV may be missing
   add_library(opencv_iib_static STATIC $<TARGET_OBJECTS:opencv_iib> $<TARGET_OBJECTS:opencv_iib_index>
     $<TARGET_OBJECTS:opencv_iib_geometry>)
-  set(programs "")
-  if(IIB_BUILD_APPS)
-    set(programs "IIB_PROGRAMS=${PROJECT_BINARY_DIR}/apps/localization")
-  endif()
-  add_test(NAME python COMMAND "${CMAKE_COMMAND}" -E env "OpenCV_DIR=${OpenCV_DIR}" ${programs}
+  add_test(NAME python COMMAND "${CMAKE_COMMAND}" -E env "OpenCV_DIR=${OpenCV_DIR}"
     "${PROJECT_SOURCE_DIR}/scripts/helpers/python_test.sh" "$<TARGET_FILE:opencv_iib_static>")
   set_tests_properties(python PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: python tests \\("
     COST 1000)  # begun first, so that nothing waits for it at the end

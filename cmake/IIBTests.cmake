@@ -33,6 +33,10 @@ target_sources(opencv_test_iib_geometry PRIVATE $<TARGET_OBJECTS:opencv_iib_geom
 target_link_libraries(opencv_test_iib_geometry PRIVATE ${IIB_GEOMETRY_OPENCV})
 target_include_directories(opencv_test_iib_geometry PRIVATE "${IIB_GEOMETRY_DIR}/src")
 target_compile_features(opencv_test_iib_geometry PRIVATE cxx_std_17)
+if(TARGET iib_sample_localize)
+  target_compile_definitions(opencv_test_iib_geometry PRIVATE "IIB_SAMPLE_LOCALIZE=\"$<TARGET_FILE:iib_sample_localize>\"")
+  add_dependencies(opencv_test_iib_geometry iib_sample_localize)
+endif()
 
 # The naive oracles are not under test; sanitized, they would take most of the time. Nobody asks for the speed then.
 set(options $<$<CONFIG:Release>:-O2>)

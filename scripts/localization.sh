@@ -1,7 +1,7 @@
 #!/bin/sh
 # Shows long-term localization: scripts/localization.sh [OUT]
 # Renders the synthetic walk (once, about an hour of processor time, kept in the user's cache folder), maps it at noon, finds
-# the images of other lights by the Python package, by iib_localize and, in the same protocol, by SIFT, also with the paper's
+# the images of other lights by the Python package, by its command and, in the same protocol, by SIFT, also with the paper's
 # points, lines and an IMU, and writes index.html with pictures, a video, results.json and localization_setups.csv to OUT
 # (results-localization). With OPENCV_TEST_DATA_PATH set, also finds real photographs (strecha) and looks for photographs of
 # other places. pip brings pycolmap.
@@ -16,8 +16,7 @@ need $build_packages povray python3-opencv python3-venv python3-dev
 say "installing the Python package in $environment"
 "$python3" -m venv "$environment"
 "$environment/bin/pip" install --quiet "$root" opencv-python-headless pycolmap jinja2
-build_tools -DIIB_BUILD_APPS=ON iib_localize
 mkdir -p "$out"
-"$environment/bin/python" -B "$root/apps/localization/report/setups.py" "$build/apps/localization/iib_localize" "$out/localization_setups.csv" "$data"
-page=$(IIB_PROGRAMS="$build/apps/localization" "$environment/bin/python" -B "$root/apps/localization/report/page.py" "$data" "$out")
+"$environment/bin/python" -B "$root/tools/pages/localization/setups.py" "$out/localization_setups.csv" "$data"
+page=$("$environment/bin/python" -B "$root/tools/pages/localization/page.py" "$data" "$out")
 say "results and page: $page"

@@ -4,11 +4,15 @@ from __future__ import annotations
 import argparse
 import contextlib
 import dataclasses
+import io
 import logging
 import os
 import sqlite3
 import sys
 from typing import Any, Callable, NoReturn, Optional, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
 
 from opencv_iib import __version__, error, localization
 from opencv_iib._arguments import InvalidOption
@@ -22,6 +26,7 @@ from opencv_iib.colmap.pipeline import PAIRS, VERIFIERS, Options, build_database
 from opencv_iib.demo import demo
 from opencv_iib.enums import AlignmentModel
 from opencv_iib.localization import Camera
+from opencv_iib.localization.imu import parse_pose
 from opencv_iib.measure import match_images
 
 CAMERA = 'MODEL,WIDTH,HEIGHT,PARAMS'
@@ -38,6 +43,13 @@ def _camera(text: str) -> Camera:
     try:
         return Camera.parse(text)
     except error as e:
+        raise argparse.ArgumentTypeError(str(e)) from None
+
+
+def _pose(text: str) -> NDArray[np.float64]:
+    try:
+        return parse_pose(text)
+    except ValueError as e:
         raise argparse.ArgumentTypeError(str(e)) from None
 
 
@@ -131,7 +143,8 @@ def _parser() -> argparse.ArgumentParser:
     for each in (localizing, updating):
         each.add_argument('--map', required=True, help='folder that the command map wrote')
     for each in (mapping, localizing, updating):
-        each.add_argument('--images', required=True, help='folder of images, also in folders below it')
+        each.add_argument('--images', required=True, help='folder of images, also in folders below it' + (
+            '; or -: paths from standard input, a line each, answered at once by a line on standard output' if each is localizing else ''))
         each.add_argument('--workers', type=int, help='threads (one a core)')
     for each in (localizing, updating):
         _exif(each)
@@ -141,8 +154,12 @@ def _parser() -> argparse.ArgumentParser:
     mapping.add_argument('--points', type=int, default=2000, help='at most so many an image (%(default)s)')
     mapping.add_argument('--orb-and-akaze', action='store_true', help="the paper's points and descriptor in place of the recommended ones")
     mapping.add_argument('--force', action='store_true', help='replace a map that is there')
-    localizing.add_argument('--out', required=True, help='folder to write; older results there are replaced')
+    localizing.add_argument('--out', help='folder to write; older results there are replaced')
     localizing.add_argument('--pictures', action='store_true', help='write each image with the points that agree')
+    localizing.add_argument('--max-size', type=int, default=0, metavar='PIXELS', help='reduce larger images to this longer side')
+    localizing.add_argument('--imu', metavar='IMU.CSV', help="smooth poses by an IMU, EuRoC's file; images must be named by their times")
+    localizing.add_argument('--imu-from-camera', type=_pose, metavar='TX,TY,TZ,QX,QY,QZ,QW', default=np.eye(4),
+                            help="where the camera is in the IMU's axes (0,0,0,0,0,0,1)")
     updating.add_argument('--out', help='folder of the new map, instead of the old one')
     updating.add_argument('--force', action='store_true', help='replace a map that is in --out')
     for each, text in ((mapping, 'map lines too'), (localizing, 'refine poses by the lines of a map that was made with --lines')):
@@ -198,9 +215,27 @@ def _map(arguments: argparse.Namespace) -> int:
 
 
 def _localize(arguments: argparse.Namespace) -> int:
+    if arguments.images == '-':
+        return _localize_stream(arguments)
+    if arguments.out is None:
+        raise InvalidOption('--out is needed, but for --images -')
     found, count = _call(localization.localize_images, arguments)
     _say(f'{arguments.out}: {found} of {count} images have a pose')
     return _share(found, count)
+
+
+def _localize_stream(arguments: argparse.Namespace) -> int:
+    for option in ('out', 'imu', 'pictures'):
+        if getattr(arguments, option):
+            raise InvalidOption(f'--images - goes without --{option}')
+    for stream in (sys.stdin, sys.stdout):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors='surrogateescape')  # a path may be any bytes
+    count = total = 0
+    for line, found in localization.localize_stream(arguments.map, sys.stdin, arguments.camera, arguments.lines, arguments.max_size, arguments.exif):
+        print(line, flush=True)
+        count, total = count + found, total + 1
+    return _share(count, total)
 
 
 def _update(arguments: argparse.Namespace) -> int:

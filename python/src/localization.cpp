@@ -93,6 +93,10 @@ void bindLocalization(nb::module_& m)
             .def_prop_ro("width", [](const Camera& self) { return self.size.width; })
             .def_prop_ro("height", [](const Camera& self) { return self.size.height; })
             .def_ro("params", &Camera::parameters)
+            .def("resized",
+                    [](const Camera& self, int width, int height) {
+                        return self.resized({width, height});
+                    })
             .def("project", &Camera::project)
             .def("undistorted", &Camera::undistorted)
             .def_prop_ro("matrix", [](const Camera& self) { return cv::Mat(self.matrix()); });

@@ -11,7 +11,7 @@ import numpy as np
 from support import REPOSITORY, InFolder, cv2, texture
 
 PAGES = [REPOSITORY / 'README.md', *sorted((REPOSITORY / 'doc').glob('*.md')), *sorted(REPOSITORY.glob('modules/*/*.md')),
-         *sorted(REPOSITORY.glob('modules/*/tutorials/*.markdown')), *sorted(REPOSITORY.glob('apps/*/*.md'))]
+         *sorted(REPOSITORY.glob('modules/*/tutorials/*.markdown'))]
 # Of each page, for each of its programs: arguments and what it prints; or of a piece of one: what stands before it, what after
 # it, and what that prints; or where else it is run.
 RUNS = {

@@ -131,7 +131,7 @@ class Localization(Commands):
             half = cv2.Rodrigues(true[:3, :3].T)[0].ravel() / 2
             self.assertGreater(found[name][3:] @ [*half, 1] / np.linalg.norm([*half, 1]), .9999)  # of small angles
         lines = Path(out, 'frames.csv').read_text().splitlines()
-        self.assertRegex(lines[0], '^name,found,reason,matches,inliers,x_x,x_y,x_z,x_rx,')  # as iib_localize's
+        self.assertRegex(lines[0], '^name,found,reason,matches,inliers,x_x,x_y,x_z,x_rx,')
         rows = list(csv.DictReader(lines))
         self.assertEqual([row['found'] for row in rows], ['1'] * 3)
         self.assertGreater(int(rows[0]['inliers']), 15)

@@ -1,4 +1,4 @@
-"""The page of apps/localization/report: what it counts, and a whole run on pictures of a wall."""
+"""The page of tools/pages/localization: what it counts, and a whole run on pictures of a wall."""
 import importlib.util
 import json
 import os
@@ -17,7 +17,7 @@ from test_localization import CAMERA, PLACES, evening, photograph, pose, wall
 
 MISSING = [name for name in ('cv2', 'jinja2', 'pycolmap') if importlib.util.find_spec(name) is None]
 if not MISSING:
-    sys.path.insert(0, str(REPOSITORY / 'apps/localization/report'))
+    sys.path.insert(0, str(REPOSITORY / 'tools/pages/localization'))
     import measure
     import page
     from sift import Found
@@ -72,11 +72,10 @@ class Page(unittest.TestCase):
             self.assertGreater(np.std(video.read()[1]), 10)
             self.assertEqual(cv2.imread(str(out / 'night.jpg')).shape, (300, 800, 3))
         rows = [r for r in results['rows'] if r['place'] == 'street']
-        program = ['iib_localize'] if 'IIB_PROGRAMS' in os.environ else []
-        self.assertEqual([r['method'] for r in rows], [*measure.METHODS, *program])
+        self.assertEqual([r['method'] for r in rows], [*measure.METHODS, 'opencv-iib localize'])
         self.assertEqual([r['within_5'] for r in rows if r['method'] == 'recommended chain'], [2])
         for r in rows[len(measure.METHODS):]:
-            np.testing.assert_allclose(r['errors'], rows[0]['errors'], atol=1e-4, err_msg='both programs find the same')
+            np.testing.assert_allclose(r['errors'], rows[0]['errors'], atol=1e-4, err_msg='the command finds the same')
         self.assertEqual(len(results['seasons']), 1)
         self.assertIn('<b>100 %</b> of 2 images taken at night', text)
         self.assertIn('"told": "0.png, night: ', text)

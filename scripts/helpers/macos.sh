@@ -1,5 +1,5 @@
 #!/bin/sh
-# Compiles every source of the modules and of iib_localize for macOS, arm64 and x86-64, with the clang of PyPI's ziglang and
+# Compiles every source of the modules and their samples for macOS, arm64 and x86-64, with the clang of PyPI's ziglang and
 # the headers of the installed OpenCV. Nothing is linked or run: scripts/helpers/macos.sh
 . "$(dirname "$0")/lib.sh"
 
@@ -19,7 +19,7 @@ for architecture in aarch64 x86_64; do
         -DCMAKE_CXX_COMPILER_ID_TEST_FLAGS_FIRST=-c \
         -DCMAKE_TRY_COMPILE_TARGET_TYPE=STATIC_LIBRARY -DCMAKE_INSTALL_NAME_TOOL=/bin/true \
         "-DOpenCV_DIR=$(pkg-config --variable=libdir opencv4)/cmake/opencv4" \
-        -DCMAKE_COMPILE_WARNING_AS_ERROR=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DIIB_BUILD_TESTS=OFF -DIIB_BUILD_TOOLS=OFF -DIIB_BUILD_APPS=ON
+        -DCMAKE_COMPILE_WARNING_AS_ERROR=ON -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DIIB_BUILD_TESTS=OFF -DIIB_BUILD_TOOLS=OFF
     say "compiling in $build"
     ninja -C "$build" -t targets all | sed -n 's/^\(.*\.o\): CXX_COMPILER.*/\1/p' | xargs ninja -C "$build"
 done

@@ -17,8 +17,8 @@ import drawings
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(sys.argv[1])
-PROGRAMS = {'evaluate.sh': 'tools/evaluation/iib_evaluation', 'train.sh': 'tools/training/iib_train', 'bench.sh': 'tools/benchmark/iib_benchmark',
-            'iib_localize': 'apps/localization/iib_localize'}
+PROGRAMS = {'evaluate.sh': 'tools/evaluation/iib_evaluation', 'train.sh': 'tools/training/iib_train', 'bench.sh': 'tools/benchmark/iib_benchmark'}
+COMMANDS = '--help' + (ROOT / 'python/opencv_iib/__main__.py').read_text()  # has the options of opencv-iib
 EVALUATION = BUILD / PROGRAMS['evaluate.sh']
 MANY = 40  # links that the paper's page has at least
 
@@ -49,14 +49,14 @@ def help_of(program):
 
 
 def wrong_commands(text):
-    for command in re.findall(r'`((?:scripts/|apps/|tools/|iib_localize )[^`]*)`', text):
+    for command in re.findall(r'`((?:scripts/|tools/|opencv-iib )[^`]*)`', text):
         script, *words = command.split()
         program = BUILD / PROGRAMS.get(pathlib.Path(script).name, '')
         if '/' in script and not (ROOT / script).exists():
             yield 'there is no ' + script
             continue
         options = {word.partition('=')[0] for word in words if word.startswith('--')}
-        known = (help_of(ROOT / script) if options and '/' in script else '') + help_of(program)
+        known = COMMANDS if script == 'opencv-iib' else (help_of(ROOT / script) if options else '') + help_of(program)
         for option in options if program == BUILD or program.is_file() else ():
             if not re.search(option + r'\b', known):
                 yield '%s has no option %s' % (script, option)
@@ -89,8 +89,8 @@ def broken(text):
                                ('--adaboost', '--gone', 'no option'), ('--only matching', '--only gone', 'no experiment'),
                                ('`IIB quartile`', '`IIB gone`', 'no row'), ('column `cost`', 'column `gone`', 'no column'),
                                (r'scripts/demo\.sh', 'scripts/gone.sh', 'there is no'),
-                               (r'`apps/\S+', '`apps/gone.py', 'there is no'), ('iib_localize --imu', 'iib_localize --gone', 'no option')):
-        needed = {'no experiment': 'evaluate.sh', 'no option': 'train.sh' if 'adaboost' in pattern else 'iib_localize'}.get(said)
+                               (r'`tools/pages\S+', '`tools/gone.py', 'there is no'), ('localize --imu', 'localize --gone', 'no option')):
+        needed = 'train.sh' if 'adaboost' in pattern else 'evaluate.sh' if said == 'no experiment' else None
         if not needed or (BUILD / PROGRAMS[needed]).is_file():
             yield re.subn(pattern, new, text, count=1), said
 

@@ -50,8 +50,7 @@ class FeatureOptions:
             raise InvalidOption(f'no preset {self.preset}: there are {", ".join(preset_names())}')
         if not 1 <= self.points <= MAX_POINTS:
             raise InvalidOption(f'points is {self.points}: it must be 1 to {MAX_POINTS}')
-        if self.max_size and not MIN_SIZE <= self.max_size:
-            raise InvalidOption(f'max_size is {self.max_size}: it must be at least {MIN_SIZE} pixels, or 0')
+        check_max_size(self.max_size)
 
 
 def make_detector(name: str, points: int) -> Any:
@@ -66,7 +65,14 @@ def make_detector(name: str, points: int) -> Any:
     return create(points) if name in ('ORB', 'SIFT') else create()
 
 
-def _reduced(image: np.ndarray, max_size: int) -> np.ndarray:
+def check_max_size(max_size: int) -> None:
+    """:raises InvalidOption: for fewer pixels than show anything."""
+    if max_size and not MIN_SIZE <= max_size:
+        raise InvalidOption(f'max_size is {max_size}: it must be at least {MIN_SIZE} pixels, or 0')
+
+
+def reduced(image: np.ndarray, max_size: int) -> np.ndarray:
+    """Of so many pixels at the longer side, if it has more and `max_size` is not 0."""
     height, width = image.shape[:2]
     longer = max(width, height)
     if not 0 < max_size < longer:
@@ -98,7 +104,7 @@ class Features:
         turn, image = Turn(orientation, *image.shape[1::-1]), upright(image, orientation)
         if not hasattr(self._local, 'detector'):
             self._local.detector = make_detector(self.options.detector, self.options.points)
-        small = _reduced(image, self.options.max_size)
+        small = reduced(image, self.options.max_size)
         found = sorted(self._local.detector.detect(small), key=lambda keypoint: -keypoint.response)[:self.options.points]
         rows, codes = self.extractor.compute(small, keypoints_to_array(found))
         if small is not image:

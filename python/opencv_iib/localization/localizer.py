@@ -55,6 +55,10 @@ class Camera(_core.Camera):
         :func:`opencv_iib.findRelativePose` takes. NaN for pixels at which it sees nothing."""
         return super().undistorted(as_rows_of(pixels, 2, 'pixels'))
 
+    def resized(self, width: int, height: int) -> Camera:
+        """Of its images, resized by an interpolation that keeps the corners of the picture, as all of OpenCV's do."""
+        return Camera._of(super().resized(integer(width, 'width'), integer(height, 'height')))
+
     def _values(self) -> tuple[str, int, int, tuple[float, ...]]:
         return self.model, self.width, self.height, tuple(self.params)
 

@@ -5,20 +5,23 @@ import collections
 import csv
 import functools
 import os
-from typing import Any, Callable, Iterator, Optional, Sequence
+from typing import Any, Callable, Iterable, Iterator, Optional, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core, error
 from opencv_iib._arguments import Path
 from opencv_iib._files import new_results
 from opencv_iib._streams import note
+from opencv_iib.colmap.features import check_max_size, reduced
 from opencv_iib.colmap.images import (decode_grey, exif_focal_length, exif_orientation, find_images, import_cv2, is_utf8, read_bytes, read_grey,
                                      write_picture)
 from opencv_iib.colmap.parallel import Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
+from opencv_iib.localization.imu import by_time, read_imu
 from opencv_iib.localization.localizer import AnyCamera, Camera, Localizer, Location, as_camera
+from opencv_iib.localization.smoothing import smooth_poses
 
 #: What it writes beside frames.csv and pictures; COLMAP 4 also wrote rigs and frames.
 OWN = ('trajectory.txt', 'cameras.bin', 'images.bin', 'points3D.bin', 'rigs.bin', 'frames.bin')
@@ -65,7 +68,6 @@ def _common_camera(cameras: tuple[Camera, ...]) -> Optional[Camera]:
 
 
 def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[Camera], exif: bool, name: str) -> tuple[Camera, Location]:
-    check_name(name)
     data = read_bytes(os.path.join(folder, name))
     grey = decode_grey(data)
     own = camera or find_camera(data, grey.shape[1], grey.shape[0], known)
@@ -83,7 +85,11 @@ def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence
     import_cv2()
     given, cameras, told = None if camera is None else as_camera(camera), list(map(as_camera, known)), set()
     progress = Progress('localizing', len(names))
-    job = functools.partial(_locate, find, cameras, folder, given, exif)
+
+    def job(name: str) -> tuple[Camera, Location]:
+        check_name(name)
+        return _locate(find, cameras, folder, given, exif, name)
+
     for name, result in in_parallel(job, names, Threads(thread_count(workers))):
         if isinstance(result, Exception) and not isinstance(result, (ValueError, OSError, error)):
             raise result
@@ -153,48 +159,113 @@ def _place_and_turn(cam_from_world: NDArray[np.float64]) -> list[float]:
     return [*place.tolist(), *(vector * np.sinc(half / np.pi) / 2).tolist(), float(np.cos(half))]
 
 
+def _numbers(cam_from_world: NDArray[np.float64]) -> list[str]:
+    return [repr(value) for value in _place_and_turn(cam_from_world)]
+
+
+def _finder(localizer: Localizer, max_size: int) -> Callable[..., Location]:
+    """Localizes an image by its camera, a prior or None, and its orientation; larger images are reduced to that longer side, and places are in their own pixels."""
+    check_max_size(max_size)
+
+    def find(image: NDArray[np.uint8], camera: Camera, prior: Optional[NDArray[np.float64]], orientation: int) -> Location:
+        small = reduced(image, max_size)
+        if small is image:
+            return localizer.localize(image, camera, prior, orientation)
+        size = np.array(small.shape[1::-1])
+        found = localizer.localize(small, camera.resized(*size), prior, orientation)
+        pixels = (found.pixels + .5) * (np.array(image.shape[1::-1]) / size) - .5  # the centre of the first one is 0
+        return Location(found.cam_from_world, found.covariance, found.reason, found.matches, found.inliers, pixels, found.points)
+    return find
+
+
+def localize_stream(map: Path, paths: Iterable[str], camera: Optional[AnyCamera] = None, lines: bool = False,
+                    max_size: int = 0, exif: bool = True) -> Iterator[tuple[str, bool]]:
+    """Localizes images one after another, each first where the last one was.
+
+    :param paths: of the images, which may come from a pipe; line ends behind them are dropped.
+    :param camera: as of localize_images; so are `lines`, `max_size` and `exif`.
+    :return: of each image a line, ``PATH tx ty tz qx qy qz qw`` or ``# PATH: why there is no pose``, and whether there is one.
+    """
+    localizer = Localizer(map, 1000, lines)
+    find, known, given, last = _finder(localizer, max_size), localizer.cameras, None if camera is None else as_camera(camera), None
+    for path in paths:
+        path = path.rstrip('\r\n')
+        try:
+            if path.startswith('#'):  # would look like a failure
+                raise ValueError('a path must not begin with #: write ./ before it')
+            location = _locate(lambda name, image, own, orientation: find(image, own, last, orientation), known, '', given, exif, path)[1]
+            last, problem = location.cam_from_world, location.reason
+        except (ValueError, OSError, error) as e:
+            last, problem = None, str(e)
+        yield f'# {path}: {problem}' if last is None else f'{path} {" ".join(_numbers(last))}', last is not None
+
+
 def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCamera] = None, pictures: bool = False,
-                    workers: Optional[int] = None, log: Callable[[str], None] = note, lines: bool = False, exif: bool = True) -> tuple[int, int]:
+                    workers: Optional[int] = None, log: Callable[[str], None] = note, lines: bool = False, max_size: int = 0,
+                    imu: Optional[Path] = None, imu_from_camera: ArrayLike = np.eye(4), exif: bool = True) -> tuple[int, int]:
     """Localizes the images below a folder and writes what was found.
 
     :param map: folder of a map.
     :param out: folder to write: ``trajectory.txt``, ``frames.csv``, a COLMAP model of the localized images and, with
-        `pictures`, ``matches/``. It appears whole; older results there are replaced.
+        `pictures`, ``matches/``. Results come there when all are complete; older ones are replaced.
     :param camera: of all images, as Localizer.localize takes it; None for each one's own, by its EXIF data or the map.
     :param workers: threads; None for one a core.
     :param log: told of each image without a pose, and why.
     :param lines: as Localizer takes it.
+    :param max_size: pixels of the longer side to which larger images are reduced; 0: they are not.
+    :param imu: EuRoC's imu.csv, in a map in metres, of images that are named by their times: poses are smoothed by it, see smooth_poses.
+    :param imu_from_camera: as smooth_poses takes it.
     :param exif: images are looked for as upright as their EXIF data say; poses and cameras are those of the files' pixels.
     :return: how many images have a pose, and of how many.
     """
     workers = thread_count(workers)
-    names = images_of(images, out)
+    names, times, readings = images_of(images, out), {}, None
+    if imu is not None:
+        readings = read_imu(os.fspath(imu))
+        times = by_time(names, readings)
+        names = list(times)
     labels = labels_of(names)
     given = None if camera is None else as_camera(camera)
-    posed: list[Any] = []
+    check_max_size(max_size)
+    frames: list[list[Any]] = []
+    cameras: list[Optional[Camera]] = []
+    found: list[Location] = []  # with their pixels alone, and not the points, which are many
     with new_results(os.fspath(out), 'frames.csv', _earlier) as part:
         localizer = Localizer(map, 0, lines)
-        located = locate(lambda name, image, camera, orientation: localizer.localize(image, camera, None, orientation), localizer.cameras,
-                         images, names, given, workers, log, exif)
-        with open(os.path.join(part, 'trajectory.txt'), 'w', encoding='utf-8') as trajectory, \
-                open(os.path.join(part, 'frames.csv'), 'w', encoding='utf-8', errors='backslashreplace', newline='') as file:
-            frames = csv.writer(file)
-            trajectory.write(f'# name {" ".join(POSE)}\n')
-            frames.writerow(['name', 'found', 'reason', 'matches', 'inliers',
-                             *(f'{a}_{b}' for n, a in enumerate(AXES) for b in AXES[n:]), *POSE])
-            for name, own, location in located:
-                problem = location if own is None else location.reason
-                matches, inliers = (0, 0) if own is None else (location.matches, location.inliers)
-                if own is None or problem:
-                    frames.writerow([name, 0, problem, matches, inliers])
-                    log(f'{name}: {problem}')
-                    continue
-                covariance, numbers = location.covariance[np.triu_indices(6)], [repr(v) for v in _place_and_turn(location.cam_from_world)]
-                frames.writerow([name, 1, '', matches, inliers, *(f'{value:.6g}' for value in covariance), *numbers])
-                trajectory.write(f'{labels[name]} {" ".join(numbers)}\n')
-                posed.append(_core.PosedImage(name, own, location.cam_from_world, location.pixels))
+        find = _finder(localizer, max_size)
+        for name, own, location in locate(lambda name, image, camera, orientation: find(image, camera, None, orientation), localizer.cameras,
+                                          images, names, given, workers, log, exif):
+            location = Location(reason=location) if own is None else location
+            row = [name, int(location.found), location.reason, location.matches, location.inliers]
+            if own is not None and location.covariance is not None:
+                row += [f'{value:.6g}' for value in location.covariance[np.triu_indices(6)]]
                 if pictures:
                     _write_picture(os.path.join(part, 'matches', labels[name] + '.png'), os.path.join(images, name), own, location)
+            else:
+                log(f'{name}: {location.reason}')
+            frames.append(row)
+            cameras.append(own)
+            found.append(Location(location.cam_from_world, location.covariance, location.reason, pixels=location.pixels))
+        poses = [location.cam_from_world for location in found]
+        if readings is not None:
+            poses = smooth_poses(list(times.values()), found, readings, imu_from_camera)
+        _write(part, frames, poses, [labels[name] for name in names])
+        posed = [_core.PosedImage(name, own, pose, location.pixels) for name, own, pose, location in zip(names, cameras, poses, found)
+                 if pose is not None and own is not None]
         if posed:  # no reader takes a model of none
             _core.writeModel(part, posed)
-    return len(posed), len(names)
+    return sum(pose is not None for pose in poses), len(names)
+
+
+def _write(folder: str, frames: Sequence[list[Any]], poses: Sequence[Optional[NDArray[np.float64]]], labels: Sequence[str]) -> None:
+    """The table and the trajectory."""
+    with open(os.path.join(folder, 'trajectory.txt'), 'w', encoding='utf-8') as trajectory, \
+            open(os.path.join(folder, 'frames.csv'), 'w', encoding='utf-8', errors='backslashreplace', newline='') as file:
+        table, covariance = csv.writer(file), [f'{a}_{b}' for n, a in enumerate(AXES) for b in AXES[n:]]
+        table.writerow(['name', 'found', 'reason', 'matches', 'inliers', *covariance, *POSE])
+        trajectory.write(f'# name {" ".join(POSE)}\n')
+        for row, pose, label in zip(frames, poses, labels):
+            numbers = [] if pose is None else _numbers(pose)
+            table.writerow([*row, *[''] * (5 + len(covariance) - len(row)), *numbers] if numbers else row)
+            if numbers:
+                trajectory.write(f'{label} {" ".join(numbers)}\n')

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 
-"""Mean errors of iib_localize in each light, with the paper's points, with lines and with an IMU: setups.py IIB_LOCALIZE OUT.csv STREET [VIEWS]
+"""Mean errors of `opencv-iib localize` in each light, with the paper's points, with lines and with an IMU: setups.py OUT.csv STREET [VIEWS]
 
 Needs what page.py needs. STREET: what tools/synthetic/localization.py rendered; VIEWS: what views.py rendered, other places, whose images count together.
 """
@@ -15,6 +15,7 @@ import cv2
 import numpy as np
 
 import measure
+from opencv_iib.localization import build
 
 SETUPS = ('', '--lines', '--orb-and-akaze', '--orb-and-akaze --lines')
 
@@ -37,21 +38,24 @@ def write(out, counts, errors):
 
 
 def main():
-    program, out, street, *views = map(pathlib.Path, sys.argv[1:])
+    out, street, *views = map(pathlib.Path, sys.argv[1:])
     others = [('other places', place, 1) for folder in views for place in sorted(folder.iterdir())]
     places = [('1.4 m apart', street, 1), ('5.6 m apart', street, 4), *others]
     counts, errors = collections.Counter(), collections.defaultdict(list)
     for name, place, step in places:
         with tempfile.TemporaryDirectory() as work:
-            model = pathlib.Path(work, 'model')
-            measure.write_model(model, *measure.read_place(place / 'map', step))
+            work = pathlib.Path(work)
+            measure.write_model(work / 'model', *measure.read_place(place / 'map', step))
+            for setup in SETUPS:
+                build(str(work / 'model'), str(place / 'map/images'), str(work / f'map{setup}'), lines='--lines' in setup,
+                      orb_and_akaze='--orb-and-akaze' in setup)
             for images in sorted((path.parent for path in place.glob('*/images') if path.parent.name != 'map'), key=lambda path: path.name != 'night'):
                 readings = images / 'imu.csv'
                 for setup in SETUPS + (('--orb-and-akaze --lines --imu',) if readings.exists() else ()):
-                    options, truth = setup.replace('--imu', '--imu %s' % readings).split(), measure.read_place(images)[1]
+                    options = ['--lines'] * ('--lines' in setup) + (['--imu', readings] if '--imu' in setup else [])
+                    truth, known = measure.read_place(images)[1], work / f'map{setup.replace(" --imu", "")}'
                     with tempfile.TemporaryDirectory() as alone:
-                        found = measure.run_program(program, ('--model', model, '--photographs', place / 'map/images'), images,
-                                                    pathlib.Path(alone), options)
+                        found = measure.run_command(known, images, pathlib.Path(alone), options)
                     counts[name, setup, images.name] += len(truth)
                     errors[name, setup, images.name] += [error(pose, truth[image]) for image, pose in found.items()]
                 write(out, counts, errors)

@@ -4,8 +4,8 @@
 """Measures localization across lights and writes OUT/index.html with pictures, a video and results.json: page.py DATA OUT
 
 DATA: what tools/synthetic/localization.py rendered. Photographs, of other places too, are in the folder that
-OPENCV_TEST_DATA_PATH names, if it is set, and iib_localize in that of IIB_PROGRAMS. Shows what setups.py wrote to
-OUT/localization_setups.csv, if that is there, or the project's own file.
+OPENCV_TEST_DATA_PATH names, if it is set. Shows what setups.py wrote to OUT/localization_setups.csv, if that is there, or the
+project's own file.
 """
 import argparse
 import datetime
@@ -156,8 +156,7 @@ def main():
     with tempfile.TemporaryDirectory() as work:
         work = pathlib.Path(work)
         rows, seen, ours = measure.street(options.data, work, lights)
-        if 'IIB_PROGRAMS' in os.environ:
-            rows += measure.program(pathlib.Path(os.environ['IIB_PROGRAMS'], 'iib_localize'), options.data, work, lights)
+        rows += measure.command(options.data, work, lights)
         results = {'rows': rows, 'lights': lights, 'seasons': measure.seasons(options.data, work, lights), 'unknown': None,
                    'date': datetime.date.today().isoformat(), 'opencv': cv2.__version__}
         if given:

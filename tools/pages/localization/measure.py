@@ -9,6 +9,7 @@ import functools
 import itertools
 import resource
 import subprocess
+import sys
 import time
 
 import cv2
@@ -119,28 +120,29 @@ def street(data, work, lights):
     return rows, seen, ours
 
 
-def run_program(path, known, images, out, options=()):
-    """The poses that iib_localize finds of a folder's images, by their names; `known` are the options that name a map."""
-    subprocess.run([path, *known, '--images', images / 'images', '--out', out, *options], check=False, stdout=subprocess.DEVNULL)
+def run_command(known, images, out, options=()):
+    """The poses that `opencv-iib localize` finds of a folder's images in a map, by their names."""
+    subprocess.run([sys.executable, '-m', 'opencv_iib', 'localize', '--map', known, '--images', images / 'images', '--out', out, *options],
+                   check=False, stdout=subprocess.DEVNULL)
     names = {image.stem: image.name for image in (images / 'images').iterdir()}
     return {names[line.split()[0]]: pose_of(line.split()[1:]) for line in (out / 'trajectory.txt').read_text().splitlines()[1:]}
 
 
-def program(path, data, work, lights):
-    """Rows of iib_localize in the chain's map, alone and where there is an IMU also with it; milliseconds of the whole run."""
+def command(data, work, lights):
+    """Rows of `opencv-iib localize` in the chain's map, alone and where there is an IMU also with it; milliseconds of the whole run."""
     rows = []
     for light, imu in itertools.product(lights, ('', ' --imu')):
         readings, out, poses = data / light / 'imu.csv', work / (light + imu), read_place(data / light)[1]
         if imu and not readings.exists():
             continue
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        found = run_program(path, ('--map', work / 'recommended chain/map'), data / light, out, ('--imu', readings) if imu else ())
+        found = run_command(work / 'recommended chain/map', data / light, out, ('--imu', readings) if imu else ())
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         used = 1000 * (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / len(poses)
         errors = {name: error(pose, poses[name]) for name, pose in found.items()}
         with open(out / 'frames.csv', encoding='utf-8', newline='') as file:
             located = [(row['name'], Found(inliers=int(row['inliers'])), errors.get(row['name']), used) for row in csv.DictReader(file)]
-        rows.append({'place': 'street', 'method': 'iib_localize' + imu, 'light': light, **summary(located)})
+        rows.append({'place': 'street', 'method': 'opencv-iib localize' + imu, 'light': light, **summary(located)})
     return rows
 
 
