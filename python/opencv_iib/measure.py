@@ -1,6 +1,7 @@
 """Matches of two images to a fraction of a pixel, and the pose between their cameras."""
 from __future__ import annotations
 
+import copy
 import io
 import json
 import os
@@ -14,11 +15,15 @@ from opencv_iib._files import check_outputs, write_whole
 from opencv_iib._turns import Turn, upright
 from opencv_iib.colmap.features import FeatureOptions, Features
 from opencv_iib.colmap.images import import_cv2, read_with_orientation, write_picture
+from opencv_iib.colmap.verify import magsac
 from opencv_iib.demo import GOOD, INK, OTHER, draw
+from opencv_iib.enums import Orientation
 from opencv_iib.functions import match
 from opencv_iib.geometry import FoundPose, NoPose, findRelativePose
 from opencv_iib.localization.localizer import AnyCamera, Camera, as_camera
+from opencv_iib.matcher import HierarchicalMatcher
 from opencv_iib.refinement import PropagatedMatches, RefinedMatches, propagateMatches
+from opencv_iib.rotation import matchRotated
 
 COLUMNS = ('x1', 'y1', 'x2', 'y2', 'xx', 'xy', 'yy', 'similarity', 'bits')
 
@@ -29,6 +34,7 @@ class Measured(NamedTuple):
     matches: RefinedMatches
     bits: NDArray[np.int32]  #: of each match, that differ
     pose: Union[FoundPose, NoPose, None]  #: None without cameras
+    rotation: float = 0  #: degrees by which the second image had to be turned, clockwise, to be matched
 
     @property
     def refined(self) -> NDArray[np.bool_]:
@@ -49,6 +55,11 @@ class Measured(NamedTuple):
     def found(self) -> bool:
         """Whether there are matches, and with cameras a pose."""
         return self.pose.found if self.pose is not None else len(self.bits) > 0
+
+    @property
+    def consistent(self) -> bool:
+        """Whether it is known that they show the same: there is a pose, or without cameras one geometry that fifteen matches agree with."""
+        return self.pose.found if self.pose is not None else bool(magsac(self.matches.points1, self.matches.points2)[0].any())
 
     def save(self, file: Path) -> None:
         """Writes matches and pose to a file that is replaced when the new one is whole, by its suffix: .json, .npz, or else CSV.
@@ -82,8 +93,10 @@ class Measured(NamedTuple):
         text = f'{len(self.bits)} matches, {count} refined'
         if count:
             text += f' to {np.median(self.deviations[self.refined]):.2f} pixels (median standard deviation)'
+        if self.rotation:
+            text += f', one image turned by {self.rotation:.0f} degrees'
         if self.pose is None:
-            return text
+            return text + '\nthe images may not show the same: fewer than 15 matches agree with one geometry' * (not self.consistent)
         if not self.pose.found:
             return f'{text}\nno pose: {self.pose.reason}'.replace('no pose: no pose', 'no pose')
         turn, towards = rotation_vector(self.pose.R), -self.pose.R.T @ self.pose.t.ravel()
@@ -123,40 +136,61 @@ def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, pictu
             raise InvalidOption(f'{os.fspath(path)} has {width} x {height} pixels, its camera {lens.width} x {lens.height}: give the '
                                 f"image's own camera, PINHOLE,{width},{height},F,F,{width / 2:g},{height / 2:g} with its focal length F in "
                                 'pixels')
-    images, turns = list(map(upright, stored, orientations)), [Turn(o, *image.shape[1::-1]) for image, o in zip(stored, orientations)]
-    (rows_a, codes_a), (rows_b, codes_b) = map(Features(options), images)
-
-    def propagate(given: NDArray[np.int32]) -> tuple[PropagatedMatches, int]:
-        """What cameras see of what matches lead to, and how many of them were given: a lens shows nothing beyond its range."""
-        found = propagateMatches(images[0], rows_a, images[1], rows_b, given)
-        found = found._replace(points1=turns[0].points(found.points1), points2=turns[1].points(found.points2),
-                               covariances=turns[1].covariances(found.covariances))
-        seen = np.ones(len(found.matches), bool)
-        for points, lens in zip(found[1:3], lenses):
-            seen &= np.isfinite(lens.undistorted(points)).all(axis=1)
-        return PropagatedMatches(*(rows[seen] for rows in found)), int(seen[:len(given)].sum())
-
-    propagated, count = propagate(match(codes_a, codes_b).pairs)
-    pose = None
-    if lenses:
-        # Where a pattern repeats, wrong matches lead to further ones, but seldom to one pose: a second try is from those alone
-        # that agree with a first one. Only where right matches are few, the first try knows more.
-        pose = _pose(propagated, lenses)
-        first = _pose(PropagatedMatches(*(rows[:count] for rows in propagated)), lenses)
-        again, _ = propagate(propagated.matches[:count][first.inliers.ravel() > 0])
-        pose, propagated = max((pose, propagated), (_pose(again, lenses), again), key=lambda found: (found[0].found, int(found[0].inliers.sum())))
-    pairs, matches = propagated.matches, RefinedMatches(*propagated[1:])
-    bits = np.unpackbits(codes_a[pairs[:, 0]] ^ codes_b[pairs[:, 1]], axis=1).sum(axis=1, dtype=np.int32)
-    measured = Measured(matches, bits, pose)
+    pair, features = _Pair(stored, orientations, lenses), Features(options)
+    (rows_a, codes_a), (rows_b, codes_b) = map(features, pair.images)
+    measured = pair.measured((rows_a, rows_b), (codes_a, codes_b), match(codes_a, codes_b).pairs)
+    if not options.orientation and len(rows_a) and len(rows_b) and not measured.consistent:  # EXIF may tell nothing of a turned camera
+        extractor = copy.copy(features.extractor)
+        extractor.setOrientation(Orientation.KEYPOINT)
+        rotation, *rows, matches = matchRotated(pair.images[0], pair.images[1], extractor, HierarchicalMatcher.createRecommended(), -1,
+                                                rows_a, rows_b)
+        codes = [extractor.compute(image, some)[1] for image, some in zip(pair.images, rows)]
+        turned = pair.measured(rows, codes, matches[:, :2])
+        if turned.consistent:
+            measured = turned._replace(rotation=rotation)
     if out is not None:
         measured.save(out)
     if picture is not None:
-        what = 'refined' if pose is None else 'agree with the pose'
-        write_picture(picture, draw(stored, matches.points1, matches.points2, measured.agree, [
-            (f'{len(bits)} matches:  ', INK), (f'{measured.agree.sum()} {what}', GOOD), (f'  {(~measured.agree).sum()} others', OTHER)]))
+        what = 'refined' if measured.pose is None else 'agree with the pose'
+        write_picture(picture, draw(stored, measured.matches.points1, measured.matches.points2, measured.agree, [
+            (f'{len(measured.bits)} matches:  ', INK), (f'{measured.agree.sum()} {what}', GOOD), (f'  {(~measured.agree).sum()} others', OTHER)]))
     return measured
 
 
-def _pose(matches: PropagatedMatches, lenses: Sequence[Camera]) -> Union[FoundPose, NoPose]:
-    a, b = (lens.undistorted(points) for points, lens in zip(matches[1:3], lenses))
-    return findRelativePose(a, b, lenses[0].matrix, lenses[1].matrix)
+class _Pair:
+    """Two images as people see them, and the cameras of their files, if these are known."""
+
+    def __init__(self, stored: Sequence[np.ndarray], orientations: Sequence[int], lenses: Sequence[Camera]) -> None:
+        self.images, self.lenses = list(map(upright, stored, orientations)), lenses
+        self._turns = [Turn(orientation, *image.shape[1::-1]) for image, orientation in zip(stored, orientations)]
+
+    def measured(self, rows: Sequence[np.ndarray], codes: Sequence[np.ndarray], given: np.ndarray) -> Measured:
+        """From keypoints of the upright images, their codes and matches of them."""
+        propagated, count = self._propagated(rows, given)
+        pose = None
+        if self.lenses:
+            # Where a pattern repeats, wrong matches lead to further ones, but seldom to one pose: a second try is from those alone
+            # that agree with a first one. Only where right matches are few, the first try knows more.
+            pose = self._pose(propagated)
+            first = self._pose(PropagatedMatches(*(each[:count] for each in propagated)))
+            again, _ = self._propagated(rows, propagated.matches[:count][first.inliers.ravel() > 0])
+            pose, propagated = max((pose, propagated), (self._pose(again), again),
+                                   key=lambda found: (found[0].found, int(found[0].inliers.sum())))
+        a, b = (some[propagated.matches[:, side]] for side, some in enumerate(codes))
+        bits = np.unpackbits(a ^ b, axis=1).sum(axis=1, dtype=np.int32)
+        return Measured(RefinedMatches(*propagated[1:]), bits, pose)
+
+    def _propagated(self, rows: Sequence[np.ndarray], given: np.ndarray) -> tuple[PropagatedMatches, int]:
+        """What cameras see of what matches lead to, in the files' pixels, and how many of them were given: a lens shows nothing beyond
+        its range."""
+        found = propagateMatches(self.images[0], rows[0], self.images[1], rows[1], given)
+        found = found._replace(points1=self._turns[0].points(found.points1), points2=self._turns[1].points(found.points2),
+                               covariances=self._turns[1].covariances(found.covariances))
+        seen = np.ones(len(found.matches), bool)
+        for points, lens in zip(found[1:3], self.lenses):
+            seen &= np.isfinite(lens.undistorted(points)).all(axis=1)
+        return PropagatedMatches(*(each[seen] for each in found)), int(seen[:len(given)].sum())
+
+    def _pose(self, matches: PropagatedMatches) -> Union[FoundPose, NoPose]:
+        a, b = (lens.undistorted(points) for points, lens in zip(matches[1:3], self.lenses))
+        return findRelativePose(a, b, self.lenses[0].matrix, self.lenses[1].matrix)

@@ -117,7 +117,24 @@ class Commands(Collection):
             np.testing.assert_allclose(np.abs(found.matches.covariances), np.abs(swapped), rtol=1e-5)
             arguments = 'match', self.first, path, '--points', '300', '--out', self.folder / 'm.csv'
             right, wrong = (run_command(*arguments, *more)[1] for more in ((), ('--no-exif',)))
-            self.assertGreater(int(right.split()[1]), 4 * int(wrong.split()[1]))
+            self.assertNotIn('turned', right)
+            if orientation in _turns.ROTATIONS:  # which the images themselves tell
+                self.assertRegex(wrong, rf'one image turned by {dict(zip(_turns.ROTATIONS, (180, 270, 90)))[orientation]} degrees')
+                self.assertGreater(int(wrong.split()[1]), .7 * int(right.split()[1]))
+            else:
+                self.assertRegex(wrong, 'may not show the same')
+
+    def test_a_pose_of_turned_images_without_exif(self):
+        a, b = self.folder / 'a.png', self.folder / 'b.png'
+        cv2.imwrite(str(a), self.a)
+        cv2.imwrite(str(b), stored(self.b, 6))
+        turned = match_images(a, b, cameras=['SIMPLE_PINHOLE,400,300,500,200,150', 'SIMPLE_PINHOLE,300,400,500,150,200'],
+                              options=FeatureOptions(points=300))
+        self.assertAlmostEqual(turned.rotation % 360, 270, delta=10)
+        self.assertGreater(turned.agree.sum(), 100)
+        noise = np.random.default_rng(1).integers(0, 256, self.a.shape, np.uint8)
+        cv2.imwrite(str(b), noise)
+        self.assertEqual(match_images(a, b).rotation, 0)
 
     def test_align(self):
         done = align(self.first, [self.write(self.b, orientation) for orientation in TURNED], self.folder / 'out', 1)
