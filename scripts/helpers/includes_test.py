@@ -12,7 +12,9 @@ import sys
 # What a folder below src may include, besides precomp.hpp; the rest of the module includes what it likes.
 ALLOWED = {'': {'common'}, 'common': {'common'}, 'rotation': {'rotation', 'common'}}
 ALLOWED['pose'] = {'pose'}  # of iib_geometry
-ALLOWED[''].add('pose')
+ALLOWED['map'] = {'map', 'pose'}
+ALLOWED['locate'] = {'locate', 'map', 'pose'}
+ALLOWED[''].update(ALLOWED['locate'])
 for wing in ('descriptor', 'matcher', 'detector', 'normalization', 'refinement'):
     ALLOWED[''].add(wing + '/kernels')
     ALLOWED[wing + '/kernels'] = {wing + '/kernels', 'common'}

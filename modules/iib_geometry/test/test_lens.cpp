@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "lens.hpp"
-#include "pose.hpp"
+#include "map/lens.hpp"
+#include "map/camera_pose.hpp"
 #include "wall.hpp"
 
 namespace opencv_test {

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <thread>
 
-#include "colmap_model.hpp"
+#include "map/colmap_model.hpp"
 #include "wall.hpp"
 #include "../../iib/src/common/checked_file.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "colmap_model.hpp"
-#include "triangulation.hpp"
+#include "map/colmap_model.hpp"
+#include "map/triangulation.hpp"
 #include "wall.hpp"
 
 #ifndef _WIN32
@@ -247,7 +247,7 @@ TEST(Rays, keypoints_are_matched_along_epipolar_lines)
     EXPECT_EQ(COUNT, found.matches);
     EXPECT_EQ(0u, found.fitting) << "without the poses";
     ASSERT_EQ(COUNT, found.links.size());
-    for (const Link& link : found.links)
+    for (const RayMatch& link : found.links)
         EXPECT_EQ(2 * found.rays[link.a].keypoint, found.rays[link.b].keypoint);
 }
 

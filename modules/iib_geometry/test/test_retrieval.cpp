@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "retrieval.hpp"
+#include "locate/retrieval.hpp"
 #include "opencv2/ts.hpp"
 
 namespace opencv_test {

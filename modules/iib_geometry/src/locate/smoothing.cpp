@@ -7,8 +7,8 @@
 #include <deque>
 #include <optional>
 
-#include "pose.hpp"
-#include "pose/two_views.hpp"
+#include "../map/camera_pose.hpp"
+#include "../pose/two_views.hpp"
 
 namespace cv::iib {
 namespace {

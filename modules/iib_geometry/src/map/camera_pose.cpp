@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "precomp.hpp"
+#include "../precomp.hpp"
 
 #include <algorithm>
 #include <map>
 
 #include "opencv2/imgproc.hpp"
-#include "pose.hpp"
-#include "pose/two_views.hpp"
+#include "camera_pose.hpp"
+#include "../pose/two_views.hpp"
 
 namespace cv::iib {
 namespace {
@@ -34,12 +34,12 @@ std::vector<Linear> linear(const std::vector<Match>& matches, const Lens& lens, 
     std::vector<Linear> found(points.size());
     for (size_t i = 0; i < points.size(); i++)
     {
-        const Point2d error = matches[i].counted * (matches[i].pixel - mapped[i]);
+        const Point2d error = matches[i].errorProjection * (matches[i].pixel - mapped[i]);
         const double weight = 1 / (matches[i].deviation * matches[i].deviation + error.dot(error));
         if (std::isnan(weight))
             continue;
         const Matx23d byMoved =
-                matches[i].counted * byPoint[i] * rotation;  // of the point in the world's axes
+                matches[i].errorProjection * byPoint[i] * rotation;  // of the point in the world's axes
         const Matx23d byTurn = byMoved * crossProduct(Vec3d(points[i]) - centre);
         for (int row = 0; row < 2; row++)
             for (int column = 0; column < 3; column++)
@@ -128,7 +128,7 @@ std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens
     const std::vector<Point2d> mapped = lens.project(inCamera(pointsOf(matches), pose));
     std::vector<double> errors;
     for (size_t i = 0; i < matches.size(); i++)
-        errors.push_back(norm(matches[i].counted * (mapped[i] - matches[i].pixel)));
+        errors.push_back(norm(matches[i].errorProjection * (mapped[i] - matches[i].pixel)));
     return errors;
 }
 
@@ -217,7 +217,7 @@ Matx66d clusteredCovariance(
     for (const Match& m : matches)
         pixels.push_back(m.pixel);
     const Rect2d span = boundingRect(pixels);
-    std::map<std::pair<int, int>, Vec6d> pulls;  // of the clusters
+    std::map<std::pair<int, int>, Vec6d> gradients;  // of the clusters
     std::vector<double> errors;
     Matx66d curvature = Matx66d::zeros(), pulled = Matx66d::zeros();
     for (size_t i = 0; i < near.size(); i++)
@@ -226,12 +226,12 @@ Matx66d clusteredCovariance(
         const double deviation = matches[i].deviation;
         errors.push_back(norm(m.error) / deviation);
         curvature += m.weight * m.weight * deviation * deviation * m.byPose.t() * m.byPose;
-        pulls[{int(CLUSTERS * (pixels[i].x - span.x) / span.width),
+        gradients[{int(CLUSTERS * (pixels[i].x - span.x) / span.width),
                 int(CLUSTERS * (pixels[i].y - span.y) / span.height)}] += m.weight * (m.byPose.t() * m.error);
     }
-    for (const auto& cluster : pulls)
+    for (const auto& cluster : gradients)
         pulled += cluster.second * cluster.second.t();
-    const double scale = deviationOf(errors), clusters = double(pulls.size());
+    const double scale = deviationOf(errors), clusters = double(gradients.size());
     const Matx66d back = curvature.inv();
     return scale * scale * covariance + clusters / std::max(clusters - 6, 1.) * back * pulled * back;
 }

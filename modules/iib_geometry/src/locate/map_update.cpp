@@ -5,8 +5,8 @@
 #include <set>
 
 #include "localizer.hpp"
-#include "map_folder.hpp"
-#include "triangulation.hpp"
+#include "../map/map_folder.hpp"
+#include "../map/triangulation.hpp"
 
 namespace cv::iib {
 namespace {
@@ -19,13 +19,13 @@ constexpr uchar PATIENCE =
         8;  // updates in a row that look for a code and do not find it, before it is dropped
 constexpr size_t NEIGHBOURS = 10;  // added images that each is matched with
 
-bool atOnePlace(const Found& seen, const PosedImage& other)
+bool atOnePlace(const LocatedImage& seen, const PosedImage& other)
 {
     return distance(seen.cameraFromWorld, other.cameraFromWorld, seen.depth) <= APART;
 }
 
 //! Counts for each code whether this update looked for it and found it; returns how many nobody finds any more.
-int countMisses(Map& map, const std::vector<Found>& all)
+int countMisses(Map& map, const std::vector<LocatedImage>& all)
 {
     std::vector<std::vector<uchar>> looked, hit;
     for (const MapImage& image : map.images)
@@ -33,7 +33,7 @@ int countMisses(Map& map, const std::vector<Found>& all)
         looked.emplace_back(image.sees.size(), uchar(0));
         hit.emplace_back(image.sees.size(), uchar(0));
     }
-    for (const Found& seen : all)
+    for (const LocatedImage& seen : all)
     {
         const Rect2d picture(Point2d(-.5, -.5), Size2d(seen.features.camera.size));
         for (size_t i : seen.compared)
@@ -66,7 +66,7 @@ int countMisses(Map& map, const std::vector<Found>& all)
     return dropped;
 }
 
-bool isKnown(const Map& map, const Found& seen)
+bool isKnown(const Map& map, const LocatedImage& seen)
 {
     std::vector<size_t> hits(map.images.size());
     for (const Match& m : seen.agreeing)
@@ -78,11 +78,11 @@ bool isKnown(const Map& map, const Found& seen)
 }
 
 //! Those in a light that the map does not know, APART from each other.
-std::vector<const Found*> chosen(const Map& map, const std::vector<Found>& all)
+std::vector<const LocatedImage*> chosen(const Map& map, const std::vector<LocatedImage>& all)
 {
-    std::vector<const Found*> result;
-    for (const Found& seen : all)
-        if (!isKnown(map, seen) && std::all_of(result.begin(), result.end(), [&](const Found* other) {
+    std::vector<const LocatedImage*> result;
+    for (const LocatedImage& seen : all)
+        if (!isKnown(map, seen) && std::all_of(result.begin(), result.end(), [&](const LocatedImage* other) {
                 return !atOnePlace(seen, other->features);
             }))
             result.push_back(&seen);
@@ -92,7 +92,7 @@ std::vector<const Found*> chosen(const Map& map, const std::vector<Found>& all)
 /** Pairs of images to be matched: each added one with those of the map that it was compared with and with added ones near it.
 @param first of the added images, which are the map's last. */
 std::vector<std::pair<size_t, size_t>> pairsOf(
-        const Map& map, size_t first, const std::vector<const Found*>& added)
+        const Map& map, size_t first, const std::vector<const LocatedImage*>& added)
 {
     std::vector<std::pair<size_t, size_t>> pairs;
     for (size_t n = 0; n < added.size(); n++)
@@ -119,7 +119,7 @@ void addPoints(Map& map, const std::vector<std::pair<size_t, size_t>>& pairs)
     for (const auto& [a, b] : pairs)
         involved.insert({a, b});
     std::set<int> touched;  // points that new keypoints may see
-    for (const Link& link : matched.links)
+    for (const RayMatch& link : matched.links)
         touched.insert(matched.rays[link.b].point);
     touched.erase(-1);
     for (size_t i = 0; i < map.images.size(); i++)
@@ -135,9 +135,9 @@ void addPoints(Map& map, const std::vector<std::pair<size_t, size_t>>& pairs)
 }
 
 //! Of more than LIGHTS added images at one place, removes the one that has not helped for longest.
-void makeRoom(Map& map, const std::vector<const Found*>& added)
+void makeRoom(Map& map, const std::vector<const LocatedImage*>& added)
 {
-    for (const Found* seen : added)
+    for (const LocatedImage* seen : added)
     {
         std::vector<std::pair<uint32_t, std::string>> here;
         for (const MapImage& image : map.images)
@@ -161,11 +161,11 @@ struct MapUpdate::Impl
 
     const MapFolder folder;  // is locked before the map is read
     const Map map;
-    const Finder finder;
+    const ImageLocator finder;
     const std::vector<Camera> cameras;
     std::mutex mutex;
     std::set<std::string> names;
-    std::vector<Found> seen;
+    std::vector<LocatedImage> seen;
     bool committed = false;
 
     void checkOpen() const
@@ -195,7 +195,7 @@ Location MapUpdate::add(const std::string& name, InputArray image, const Camera&
     }
     try
     {
-        Found found = impl_->finder.find(image.getMat(), camera, nullptr);
+        LocatedImage found = impl_->finder.find(image.getMat(), camera, nullptr);
         found.features.name = name;
         const std::lock_guard<std::mutex> lock(impl_->mutex);
         impl_->checkOpen();
@@ -216,14 +216,14 @@ MapUpdate::Counts MapUpdate::commit()
     const std::lock_guard<std::mutex> lock(impl_->mutex);
     impl_->checkOpen();
     Map map = impl_->map;  // stays as it is for another try, if this one cannot be written
-    std::vector<Found>& seen = impl_->seen;
+    std::vector<LocatedImage>& seen = impl_->seen;
     // The order in which threads came changes nothing.
     std::sort(seen.begin(), seen.end(),
-            [](const Found& a, const Found& b) { return a.features.name < b.features.name; });
+            [](const LocatedImage& a, const LocatedImage& b) { return a.features.name < b.features.name; });
     Counts counts;
     counts.localized = int(seen.size());
     map.updates++;
-    const std::vector<const Found*> added = chosen(map, seen);
+    const std::vector<const LocatedImage*> added = chosen(map, seen);
     counts.added = int(added.size());
     counts.dropped = countMisses(map, seen);
     const size_t first = map.images.size();
@@ -233,7 +233,7 @@ MapUpdate::Counts MapUpdate::commit()
     };
     while (std::any_of(map.images.begin(), map.images.end(), taken))  // the model's own may be called so
         folder = "updates/" + folder;
-    for (const Found* s : added)
+    for (const LocatedImage* s : added)
     {
         MapImage image = s->features;
         image.name = folder + image.name;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "precomp.hpp"
+#include "../precomp.hpp"
 
 #include "map.hpp"
 
@@ -11,10 +11,10 @@
 
 #include "colmap_model.hpp"
 #include "features.hpp"
-#include "parallel.hpp"
+#include "../parallel.hpp"
 #include "lines.hpp"
 #include "map_folder.hpp"
-#include "pose.hpp"
+#include "camera_pose.hpp"
 #include "triangulation.hpp"
 
 namespace cv::iib {

@@ -18,7 +18,7 @@ struct Match
     Vec2f sizes = Vec2f(1, 1);  //!< at which that image and this one see it; their ratio counts
     double deviation = 1;       //!< of the pixel
     //! What of the pixel's error counts: all, or what is across a line.
-    Matx22d counted = Matx22d::eye();
+    Matx22d errorProjection = Matx22d::eye();
 };
 
 //! The inverse of a rigid motion. Affine3d::inv() goes through an SVD, which far from the origin leaves no digit.
@@ -61,7 +61,7 @@ deviation, which cv::solvePnPRefineLM has not.
 bool refinePose(const std::vector<Match>& matches, const Lens& lens, Affine3d& pose, Matx66d& covariance);
 
 /** The covariance of a pose by the errors that its matches have, in place of those that refinePose assumed. Matches near each
-other in the image, a cluster, err together, as the map does there: the more the pulls of clusters differ, the less certain is the pose.
+other in the image, a cluster, err together, as the map does there: the more the gradients of clusters differ, the less certain is the pose.
 @param covariance of refinePose. */
 Matx66d clusteredCovariance(
         const Matx66d& covariance, const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose);

@@ -6,7 +6,7 @@
 #include <map>
 #include <numeric>
 
-#include "parallel.hpp"
+#include "../parallel.hpp"
 
 namespace cv::iib {
 namespace {
@@ -50,10 +50,10 @@ Vec3d meetingPoint(const Track& track)
 
 }  // namespace
 
-std::vector<Track> tracksOf(const std::vector<Ray>& rays, std::vector<Link> links)
+std::vector<Track> tracksOf(const std::vector<Ray>& rays, std::vector<RayMatch> links)
 {
     std::stable_sort(
-            links.begin(), links.end(), [](const Link& a, const Link& b) { return a.bits < b.bits; });
+            links.begin(), links.end(), [](const RayMatch& a, const RayMatch& b) { return a.bits < b.bits; });
     std::vector<size_t> trackOf(rays.size());
     std::iota(trackOf.begin(), trackOf.end(), size_t(0));
     std::vector<std::vector<size_t>> tracks;
@@ -78,7 +78,7 @@ std::vector<Track> tracksOf(const std::vector<Ray>& rays, std::vector<Link> link
     for (size_t k = 0; k < rays.size(); k++)
         if (rays[k].point >= 0)
             join(known.emplace(rays[k].point, k).first->second, k);
-    for (const Link& link : links)
+    for (const RayMatch& link : links)
         join(link.a, link.b);
     std::vector<Track> found;
     for (const std::vector<size_t>& track : tracks)
@@ -160,7 +160,7 @@ bool place(Track& track, Point3d& point)
     return widest * 180 / CV_PI >= MIN_ANGLE;
 }
 
-void triangulate(Map& map, const std::vector<Ray>& rays, const std::vector<Link>& links)
+void triangulate(Map& map, const std::vector<Ray>& rays, const std::vector<RayMatch>& links)
 {
     std::vector<Track> tracks = tracksOf(rays, links);
     refineTracks(tracks, map.images);

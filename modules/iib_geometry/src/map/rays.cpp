@@ -6,8 +6,8 @@
 #include <set>
 
 #include "opencv2/iib.hpp"
-#include "parallel.hpp"
-#include "pose.hpp"
+#include "../parallel.hpp"
+#include "camera_pose.hpp"
 
 namespace cv::iib {
 namespace {
@@ -89,7 +89,7 @@ MatchedRays matchPairs(const std::vector<MapImage>& images,
         const std::vector<Ray> own = raysOf(i, images[i]);
         found.rays.insert(found.rays.end(), own.begin(), own.end());
     }
-    std::vector<std::vector<Link>> links(pairs.size());
+    std::vector<std::vector<RayMatch>> links(pairs.size());
     std::vector<std::pair<size_t, size_t>> counts(
             pairs.size());  // of matches that the poses did not guide, and that fit
     inParallel(pairs.size(), [&](size_t n) {
@@ -106,7 +106,7 @@ MatchedRays matchPairs(const std::vector<MapImage>& images,
             matcher->match(codes, others, guided, nearEpipolar(raysFrom(a), raysFrom(b)));
         }
         const auto linkOf = [&](const DMatch& m) {
-            return Link{m.distance, first[a] + size_t(m.queryIdx), first[b] + size_t(m.trainIdx)};
+            return RayMatch{m.distance, first[a] + size_t(m.queryIdx), first[b] + size_t(m.trainIdx)};
         };
         const auto fits = [&](const DMatch& m) {
             return fitting(found.rays[linkOf(m).a], found.rays[linkOf(m).b]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "refined.hpp"
+#include "picture.hpp"
 
 #include "opencv2/iib.hpp"
 #include "opencv2/iib/refinement.hpp"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "parallel.hpp"
-#include "pose_search.hpp"
+#include "../parallel.hpp"
+#include "camera_pose.hpp"
 #include "triangulation.hpp"
 
 namespace cv::iib {
@@ -15,7 +15,8 @@ namespace {
 constexpr size_t IMAGES = 32, KEYPOINTS = 500;  // at most: of a map, evenly, and the strongest of each
 constexpr double MAX_ERROR = 4;                 // pixels, of a keypoint from its point
 constexpr double LEAST_DEVIATION = .03;         // pixels
-constexpr int ROUNDS = 3;                       // of a pose, each with the deviation that the last one left
+constexpr size_t LEAST_POINTS = 15;
+constexpr int ROUNDS = 3;  // of a pose, each with the deviation that the last one left
 
 //! The rays that see each point of a map.
 typedef std::vector<std::vector<Ray>> Sights;
@@ -109,7 +110,7 @@ std::optional<Vec6d> strayOf(const MapImage& image, std::vector<Match> matches)
         for (Match& m : matches)
             m.deviation = deviation;
         Matx66d covariance;
-        if (matches.size() < LEAST_INLIERS || !refinePose(matches, lens, pose, covariance))
+        if (matches.size() < LEAST_POINTS || !refinePose(matches, lens, pose, covariance))
             return std::nullopt;
     }
     const double depth = medianDistance(inCamera(pointsOf(matches), pose));

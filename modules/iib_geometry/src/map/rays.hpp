@@ -24,7 +24,7 @@ struct Ray
 std::vector<Ray> raysOf(size_t number, const PosedImage& image);
 
 //! Two rays, by their indices, that match.
-struct Link
+struct RayMatch
 {
     float bits;
     size_t a, b;
@@ -33,8 +33,8 @@ struct Link
 //! What matching of images gives.
 struct MatchedRays
 {
-    std::vector<Ray> rays;    //!< of the images of all pairs
-    std::vector<Link> links;  //!< matches among what the images' poses have near each other
+    std::vector<Ray> rays;        //!< of the images of all pairs
+    std::vector<RayMatch> links;  //!< matches among what the images' poses have near each other
     //! Of matches of each image's strongest codes, and of those the ones that fit the poses: few if the poses are not those of the images.
     size_t matches = 0, fitting = 0;
 };

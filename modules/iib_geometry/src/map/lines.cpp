@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-#include "parallel.hpp"
+#include "../parallel.hpp"
 #include "triangulation.hpp"
 
 namespace cv::iib {
@@ -100,13 +100,13 @@ void addLines(
                 map.images[ray.image].cameraFromWorld, MAX_ERROR)
                         .empty();
     };
-    std::vector<std::vector<Link>> found(pairs.size());
+    std::vector<std::vector<RayMatch>> found(pairs.size());
     inParallel(pairs.size(), [&](size_t n) {
         const auto [a, b] = pairs[n];
         std::vector<int> numbers(segments[a].places.size());
         std::iota(numbers.begin(), numbers.end(), 0);
         const auto link = [&, one = first[a], other = first[b]](int s, int t, float bits) {
-            return Link{bits, one + 2 * size_t(s), other + 2 * size_t(t)};
+            return RayMatch{bits, one + 2 * size_t(s), other + 2 * size_t(t)};
         };
         const auto fit = [&](int s, int t) {
             const Ray &one = rays[link(s, t, 0).a], &other = rays[link(s, t, 0).b];
@@ -117,8 +117,8 @@ void addLines(
         for (const DMatch& m : nearest(numbers, segments[a].codes, segments[b].codes, MAPPED_BITS, fit))
             found[n].push_back(link(m.queryIdx, m.trainIdx, m.distance));
     });
-    std::vector<Link> links;
-    for (const std::vector<Link>& some : found)
+    std::vector<RayMatch> links;
+    for (const std::vector<RayMatch>& some : found)
         links.insert(links.end(), some.begin(), some.end());
     for (Track& track : tracksOf(rays, links))
     {
@@ -167,7 +167,7 @@ std::vector<Match> matchesOf(
         const double part = share * ends[0].z / (ends[1].z + share * (ends[0].z - ends[1].z));
         const Point3d point = ends[0] + (ends[1] - ends[0]) * part;
         matches.push_back({segment.begin + along * place, inverse(pose) * point});
-        matches.back().counted =
+        matches.back().errorProjection =
                 Matx22d(across.x * across.x, across.x * across.y, across.x * across.y, across.y * across.y);
         if (!(std::abs(across.dot(lens.project({point})[0] - matches.back().pixel)) < limit))
             return {};

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "map_error.hpp"
+#include "../map/map_error.hpp"
 
 namespace cv::iib {
 namespace {
@@ -41,7 +41,7 @@ std::vector<Mat> codesOf(const Map& map)
 
 }  // namespace
 
-Finder::Finder(const Map& map, int points, bool lines)
+ImageLocator::ImageLocator(const Map& map, int points, bool lines)
     : map_(map), lines_(lines), iib_(describerOf(map.orbAndAkaze, points ? points : map.keypoints)),
       matcher_(HierarchicalMatcher::createRecommended()), votes_(codesOf(map)), mapError_(mapError(map))
 {
@@ -62,7 +62,7 @@ Finder::Finder(const Map& map, int points, bool lines)
 }
 
 //! The images of the map nearest to a pose.
-std::vector<size_t> Finder::near(const Affine3d& pose) const
+std::vector<size_t> ImageLocator::near(const Affine3d& pose) const
 {
     std::vector<double> distances;
     for (size_t i = 0; i < depths_.size(); i++)
@@ -71,7 +71,7 @@ std::vector<size_t> Finder::near(const Affine3d& pose) const
     return best(depths_.size(), NEAREST, [&](size_t a, size_t b) { return distances[a] < distances[b]; });
 }
 
-std::vector<size_t> Finder::similar(const Mat& codes) const
+std::vector<size_t> ImageLocator::similar(const Mat& codes) const
 {
     const std::vector<float> voted = votes_.vote(codes).ofImages;
     std::vector<size_t> counts(voted.size());
@@ -89,7 +89,7 @@ std::vector<size_t> Finder::similar(const Mat& codes) const
     return order;
 }
 
-void Finder::locate(const Camera& camera, const Affine3d* prior, Found& found) const
+void ImageLocator::locate(const Camera& camera, const Affine3d* prior, LocatedImage& found) const
 {
     std::vector<Match> matches;
     for (size_t k : found.compared)
@@ -111,11 +111,11 @@ void Finder::locate(const Camera& camera, const Affine3d* prior, Found& found) c
         findPose(matches, map_, camera, found);
 }
 
-Found Finder::find(const Mat& image, const Camera& camera, const Affine3d* prior) const
+LocatedImage ImageLocator::find(const Mat& image, const Camera& camera, const Affine3d* prior) const
 {
     checkPhotograph(image, camera.size);
     const Lens checked(camera);
-    Found found;
+    LocatedImage found;
     extract(*iib_, image, found.features);
     found.features.camera = camera;
     found.reason = "too few matches";
@@ -147,7 +147,7 @@ struct Localizer::Impl
     }
 
     const Map map;
-    const Finder finder;
+    const ImageLocator finder;
     const std::vector<Camera> cameras;
 };
 

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "colmap_model.hpp"
-#include "refined.hpp"
+#include "picture.hpp"
 
 namespace cv::iib {
 

@@ -7,18 +7,18 @@
 namespace cv::iib {
 
 //! Finds images in a map; what Localizer and MapUpdate share. Threads may share one.
-class Finder
+class ImageLocator
 {
 public:
     //! @param points keypoints that are looked for in an image; 0: as many as in the map's images.
-    Finder(const Map& map, int points, bool lines);
+    ImageLocator(const Map& map, int points, bool lines);
 
-    Found find(const Mat& image, const Camera& camera, const Affine3d* prior) const;
+    LocatedImage find(const Mat& image, const Camera& camera, const Affine3d* prior) const;
 
 private:
     std::vector<size_t> near(const Affine3d& pose) const;
     std::vector<size_t> similar(const Mat& codes) const;
-    void locate(const Camera& camera, const Affine3d* prior, Found& found) const;
+    void locate(const Camera& camera, const Affine3d* prior, LocatedImage& found) const;
 
     const Map& map_;
     const bool lines_;

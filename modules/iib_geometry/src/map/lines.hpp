@@ -2,7 +2,7 @@
 #pragma once
 
 #include "map.hpp"
-#include "pose.hpp"
+#include "camera_pose.hpp"
 
 namespace cv::iib {
 

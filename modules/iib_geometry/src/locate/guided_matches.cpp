@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "looks.hpp"
+#include "guided_matches.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -46,7 +46,7 @@ std::vector<bool> refineAgainstViews(
     return moved;
 }
 
-std::vector<Match> seenAlong(const Map& map, const std::vector<size_t>& views, const Picture& picture,
+std::vector<Match> guidedMatches(const Map& map, const std::vector<size_t>& views, const Picture& picture,
         const Lens& lens, const Frame& frame, const Affine3d& pose)
 {
     const Rect2d inside(Point2d(), Size2d(picture.pixels.size()) / picture.scale);

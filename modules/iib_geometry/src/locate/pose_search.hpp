@@ -3,15 +3,15 @@
 
 #include <numeric>
 
-#include "features.hpp"
-#include "lines.hpp"
+#include "../map/features.hpp"
+#include "../map/lines.hpp"
 
 namespace cv::iib {
 
 constexpr size_t LEAST_INLIERS = 15;
 
 //! What is found of an image, and what of the map showed it.
-struct Found : Location
+struct LocatedImage : Location
 {
     Features features;             //!< with the camera and, if it is found, the pose
     Segments segments;             //!< if lines refine the pose
@@ -23,7 +23,7 @@ struct Found : Location
 /** Finds the pose that matches with points of a map agree on: by them, by what the map's images show along it, and by lines.
 Then it judges whether it is one.
 @param found has the image's features, its segments and the map's images that it was compared with. */
-void findPose(const std::vector<Match>& matches, const Map& map, const Camera& camera, Found& found);
+void findPose(const std::vector<Match>& matches, const Map& map, const Camera& camera, LocatedImage& found);
 
 //! What sorts first, of so many.
 template <typename Before> std::vector<size_t> best(size_t all, size_t count, Before before)

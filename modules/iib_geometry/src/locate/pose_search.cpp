@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "looks.hpp"
+#include "guided_matches.hpp"
 
 namespace cv::iib {
 namespace {
@@ -17,7 +17,7 @@ constexpr double LEAST_SHARE = .02;  // in an unknown place a few matches agree 
 constexpr double MAX_BOUND = .1;     // of the distance to the points: three standard deviations of the place
 constexpr size_t WORTH = 16;         // matches with an image of the map, for which they are refined
 constexpr int ROUNDS = 4;            // what agrees is looked for again after each refinement
-constexpr int LOOKS = 8;             // at most, along the pose
+constexpr int GUIDED_ROUNDS = 8;     // at most, along the pose
 constexpr double STILL = .1;         // pixels that what is seen moves by a look, if it is the last one
 constexpr int LINE_ROUNDS = 2;       // lines are looked for again after the first refinement by them
 
@@ -44,7 +44,7 @@ int keypointsOf(const std::vector<Match>& matches)
 class PoseSearch
 {
 public:
-    PoseSearch(const std::vector<Match>& all, const Map& map, const Camera& camera, Found& found)
+    PoseSearch(const std::vector<Match>& all, const Map& map, const Camera& camera, LocatedImage& found)
         : map_(map), found_(found), frame_(all), lens_(camera),
           limit_(MAX_ERROR * std::max(camera.size.width, camera.size.height)), all_(all)
     {
@@ -82,15 +82,15 @@ public:
     }
 
     //! And by what is seen where the pose has the map's points.
-    bool byLooks()
+    bool byGuidedMatches()
     {
         double moved = STILL;
-        for (int look = 0; look < LOOKS && !(moved < STILL); look++)
+        for (int look = 0; look < GUIDED_ROUNDS && !(moved < STILL); look++)
         {
             const Affine3d before = pose_;
             used_ = near(matches_);
             for (const Match& m :
-                    near(seenAlong(map_, found_.compared, found_.features.picture, lens_, frame_, pose_)))
+                    near(guidedMatches(map_, found_.compared, found_.features.picture, lens_, frame_, pose_)))
                 used_.push_back(m);
             learnDeviation(used_, lens_, pose_);
             if (!refined(used_))
@@ -125,7 +125,7 @@ public:
         return 3 * std::sqrt(variances[0]) <= MAX_BOUND * depth();
     }
 
-    void tell() const
+    void writeResult() const
     {
         found_.found = true;
         found_.reason = "";
@@ -158,7 +158,7 @@ private:
     }
 
     const Map& map_;
-    Found& found_;
+    LocatedImage& found_;
     const Frame frame_;
     const Lens lens_;
     const double limit_;  //!< pixels
@@ -170,11 +170,11 @@ private:
 
 }  // namespace
 
-void findPose(const std::vector<Match>& matches, const Map& map, const Camera& camera, Found& found)
+void findPose(const std::vector<Match>& matches, const Map& map, const Camera& camera, LocatedImage& found)
 {
     PoseSearch search(matches, map, camera, found);
-    if (search.byKeypoints() && search.byLooks() && search.byLines() && search.isCertain())
-        search.tell();
+    if (search.byKeypoints() && search.byGuidedMatches() && search.byLines() && search.isCertain())
+        search.writeResult();
 }
 
 }  // namespace cv::iib

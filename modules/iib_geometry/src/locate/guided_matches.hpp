@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "map.hpp"
-#include "pose.hpp"
+#include "../map/map.hpp"
+#include "../map/camera_pose.hpp"
 
 namespace cv::iib {
 
@@ -15,7 +15,7 @@ std::vector<bool> refineAgainstViews(
 /** Points of some of a map's images near where a pose has them: where the picture shows what that image does which sees the
 point at the most similar size.
 @param views these images. @param frame of the pose. */
-std::vector<Match> seenAlong(const Map& map, const std::vector<size_t>& views, const Picture& picture,
+std::vector<Match> guidedMatches(const Map& map, const std::vector<size_t>& views, const Picture& picture,
         const Lens& lens, const Frame& frame, const Affine3d& pose);
 
 //! Gives the matches that were refined the deviation that they have of where a pose has their points.
