@@ -84,6 +84,10 @@ class Imu(Options):
             rows = list(csv.DictReader(file))
         self.assertEqual([(row['name'], row['found'], bool(row['x_x']), bool(row['tx'])) for row in rows][:2],
                          [('8.500000.png', '1', True, True), ('9.500000.png', '0', False, True)])
+        contradicting = self.write(''.join(f'{time},0,0,0,0,{30 * felt[1]:.9f},0\n' for time in range(8000000000, 14000000001, 5000000)))
+        status, out, errors = self.localize('--imu', contradicting)
+        self.assertEqual((status, '5 of 6 images have a pose' in out), (4, True))
+        self.assertRegex(errors, 'the readings of the IMU contradict the images, whose poses stay as they are')
         self.image('08.5.png')
         self.check_error('08.5.png and 8.500000.png have one time', 'localize', *self.arguments(imu))
         shutil.rmtree(self.images)

@@ -248,7 +248,9 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
             found.append(Location(location.cam_from_world, location.covariance, location.reason, pixels=location.pixels))
         poses = [location.cam_from_world for location in found]
         if readings is not None:
-            poses = smooth_poses(list(times.values()), found, readings, imu_from_camera)
+            poses = smoothed = smooth_poses(list(times.values()), found, readings, imu_from_camera)
+            if smoothed.reason:
+                log(smoothed.reason)
         _write(part, frames, poses, [labels[name] for name in names])
         posed = [_core.PosedImage(name, own, pose, location.pixels) for name, own, pose, location in zip(names, cameras, poses, found)
                  if pose is not None and own is not None]
