@@ -16,12 +16,14 @@ from typing import Any, Callable, Iterable, Iterator, Optional, Sequence, Union
 
 import numpy as np
 
-from opencv_iib._arguments import Path
+from opencv_iib import _core
+from opencv_iib._arguments import Path, integer
 from opencv_iib._arrays import as_array
 from opencv_iib._files import only_writer
 from opencv_iib.mapped_index import MappedIndex
 
 Arrays = tuple[np.ndarray, np.ndarray]
+MAX_PADDED = 1 << 26  #: neighbours that are answered with -1 where there are fewer
 
 
 def write(folder: Path, codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per_shard: int = 1 << 20,
@@ -111,13 +113,18 @@ def search(folder: Path, queries: Any, k: int = 5, client: Any = None) -> Arrays
     :param client: None to search in this process; or a ``distributed.Client``, whose workers read the folder by the same
         name. Each shard goes to the same worker as before if that is there, which has it mapped already.
     :return: indices (int64) and distances (int32), queries x k, -1 where there are fewer.
-    :raises opencv_iib.error: for a shard that is missing, truncated or altered; it is named.
+    :raises opencv_iib.error: for a shard that is missing, truncated or altered; it is named. Also for a k of more than there are
+        codes that would fill the memory.
     :raises RuntimeError: if the client has had no worker for a minute.
     """
     queries = as_array(queries, 'queries')
     index = _opened(os.path.abspath(os.fspath(folder)))
-    if client is None or index.segments() == 0:
+    k, rows = integer(k, 'k'), index.rows()
+    if client is None or index.segments() == 0 or k < 1:
         return index.search(queries, k)
+    if k > rows and len(queries) * k > MAX_PADDED:  # as in the C++ library
+        raise _core.error(f'k is {k}, but there are {rows} descriptors to find: ask for at most as many for each of {len(queries)} queries')
+    wanted, k = k, max(min(k, rows), 1)
     search_shard = functools.partial(_search_shard, os.path.abspath(os.fspath(folder)), index.version(), queries, k)
     best = np.full((len(queries), k), -1), np.full((len(queries), k), -1, np.int32)
     for found in _by_workers(client, search_shard, range(index.segments())):
@@ -125,7 +132,8 @@ def search(folder: Path, queries: Any, k: int = 5, client: Any = None) -> Arrays
         # As in the C++ library: ties go to the lowest index; -1, where there are fewer, comes last.
         order = np.lexsort((indices, np.where(indices < 0, np.iinfo(np.int32).max, distances)))[:, :k]
         best = np.take_along_axis(indices, order, 1), np.take_along_axis(distances, order, 1)
-    return best
+    missing = (0, 0), (0, wanted - k)
+    return np.pad(best[0], missing, constant_values=-1), np.pad(best[1], missing, constant_values=-1)
 
 
 def _by_workers(client: Any, call: Callable[[int], Arrays], shards: Iterable[int]) -> Iterator[Arrays]:

@@ -143,6 +143,11 @@ class ShardsTest(InFolder):
             for k in (1, 100):
                 self.expect_found(shards.search(self.folder, self.queries, k, client), k)
             self.assertEqual(shards.search(self.folder + '0', self.queries, 2, client)[0].tolist(), [[-1, -1]] * 30)
+            for array, same in zip(shards.search(self.folder, self.queries, 500, client), shards.search(self.folder, self.queries, 500)):
+                np.testing.assert_array_equal(array, same)
+            for k in (10 ** 9, 0):
+                with self.assertRaises(opencv_iib.error):
+                    shards.search(self.folder, self.queries, k, client)
             with self.assertRaises(opencv_iib.error):
                 shards.search(self.folder, self.queries[:, 1:], 5, client)
             self.expect_found(self.while_workers_die(client, 1), 5)
