@@ -36,9 +36,15 @@ def is_same(path: Path, other: Path) -> bool:
 
 
 def check_outputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
-    """:raises FileExistsError: for a file to be written that is read, by whatever name, or that is written twice."""
+    """What can be told before there is work to lose.
+
+    :raises FileExistsError: for a file to be written that is read, by whatever name, or that is written twice.
+    :raises OSError: as output_file.
+    """
     taken = {path: 'an input' for path in inputs}
     for path in outputs:
+        if not is_open_file(os.fspath(path)):
+            output_file(os.fspath(path))
         for other, what in taken.items():
             if is_same(path, other):
                 raise FileExistsError(f'{path} is {what} too: give what is written a name of its own')

@@ -8,7 +8,7 @@ import numpy as np
 from opencv_iib._arguments import Path
 from opencv_iib._files import check_outputs
 from opencv_iib.colmap.features import FeatureOptions, Features, make_detector
-from opencv_iib.colmap.images import import_cv2, read_with_orientation, write_picture
+from opencv_iib.colmap.images import check_picture, import_cv2, read_with_orientation, write_picture
 from opencv_iib.functions import match
 from opencv_iib.keypoints import keypoints_to_array
 
@@ -44,6 +44,7 @@ def demo(image_a: Path, image_b: Path, out: Path, options: FeatureOptions = Feat
     """
     options.check()
     check_outputs([out], (image_a, image_b))
+    check_picture(out)
     images, orientations = zip(*(read_with_orientation(path, options.exif) for path in (image_a, image_b)))
     described = list(map(Features(options), images, orientations))
     results = [_result('IIB', [rows for rows, _ in described], match(described[0][1], described[1][1]).pairs)]

@@ -14,7 +14,7 @@ from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._files import check_outputs, write_whole
 from opencv_iib._turns import Turn, upright
 from opencv_iib.colmap.features import FeatureOptions, Features
-from opencv_iib.colmap.images import import_cv2, read_with_orientation, write_picture
+from opencv_iib.colmap.images import check_picture, import_cv2, read_with_orientation, write_picture
 from opencv_iib.colmap.verify import magsac
 from opencv_iib.demo import GOOD, INK, OTHER, draw
 from opencv_iib.enums import Orientation
@@ -128,6 +128,8 @@ def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, pictu
     if len(cameras) > 2:
         raise InvalidOption(f'{len(cameras)} cameras for two images')
     check_outputs([path for path in (out, picture) if path is not None], (image_a, image_b))
+    if picture is not None:
+        check_picture(picture)
     stored, orientations = zip(*(read_with_orientation(path, options.exif) for path in (image_a, image_b)))
     lenses = [as_camera(camera) for camera in (cameras[0], cameras[-1])] if len(cameras) else []
     for path, image, lens in zip((image_a, image_b), stored, lenses):

@@ -164,6 +164,14 @@ class Match(Commands):
             self.check_error('give what is written a name of its own', 'match', a, b, *arguments)
         self.check_error('give what is written a name of its own', 'demo', a, b, '--out', a)
         self.assertEqual(Path(a).read_bytes(), before)
+        # and what cannot be written is told before work
+        with mock.patch('opencv_iib.colmap.features.Features.__call__', side_effect=AssertionError):
+            self.check_error('no folder', 'match', a, b, '--out', self.folder / 'none/m.csv')
+            self.check_error('no folder', 'match', a, b, '--picture', self.folder / 'none/m.png')
+            self.check_mistake('end its name in', 'match', a, b, '--picture', self.folder / 'm.foo')
+            self.check_mistake('end its name in', 'demo', a, b, '--out', self.folder / 'm.foo')
+            for out, told in (('none/m.png', 'no folder'), ('.', 'is a folder')):
+                self.check_error(told, 'demo', a, b, '--out', self.folder / out)
 
     def test_a_wide_lens_and_what_lies_beyond_it(self):
         wide = Camera('opencv_fisheye', 1280, 960, (400, 400, 640, 480, .02, -.01, 0, 0))

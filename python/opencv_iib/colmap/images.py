@@ -156,16 +156,17 @@ def _with_channels(image: np.ndarray, colour: bool) -> np.ndarray:
     return cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR) if colour else grey
 
 
-def write_picture(path: Path, picture: np.ndarray) -> None:
+def check_picture(path: Path) -> None:
     """:raises InvalidOption: for a suffix of no format that cv2 writes."""
-    cv2, path = import_cv2(), os.fspath(path)
-    try:
-        written, data = cv2.imencode(os.path.splitext(path)[1] or '.', picture)
-    except cv2.error:
-        written = False
-    if not written:
+    if not import_cv2().haveImageWriter('x' + os.path.splitext(os.fspath(path))[1]):
         raise InvalidOption(f'{path}: end its name in .png or .jpg')
-    write_whole(path, data.tobytes())
+
+
+def write_picture(path: Path, picture: np.ndarray) -> None:
+    """:raises InvalidOption: as check_picture."""
+    check_picture(path)
+    path = os.fspath(path)
+    write_whole(path, import_cv2().imencode(os.path.splitext(path)[1], picture)[1].tobytes())
 
 
 def _jpeg_segments(data: bytes) -> Iterator[tuple[int, int, int]]:
