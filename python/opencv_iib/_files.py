@@ -1,12 +1,13 @@
 """Files and folders that are written: where, whole, and by one process at a time."""
 from __future__ import annotations
 
+import csv
 import os
 import re
 import shutil
 import tempfile
 from contextlib import contextmanager, suppress
-from typing import Callable, Iterable, Iterator
+from typing import Callable, Iterable, Iterator, Optional, Sequence
 
 from opencv_iib import _core
 from opencv_iib._arguments import Path
@@ -112,20 +113,30 @@ def _files_below(folder: str) -> list[str]:
             for name in files + [name for name in folders if os.path.islink(os.path.join(root, name))]]
 
 
+def rows_of(path: str, columns: Sequence[str]) -> Optional[list[dict[str, str]]]:
+    """Of a CSV file that begins with these columns; None for another file."""
+    with open(path, encoding='utf-8', errors='replace', newline='') as file, suppress(csv.Error):
+        table = csv.DictReader(file)
+        if list(table.fieldnames or ())[:len(columns)] == list(columns):
+            return list(table)
+    return None
+
+
 @contextmanager
-def new_results(out: str, mark: str, earlier: Callable[[str], Iterable[str]]) -> Iterator[str]:
+def new_results(out: str, mark: str, earlier: Callable[[str], Optional[Iterable[str]]]) -> Iterator[str]:
     """A folder to write to, whose files take their place in that of the results when the block ends without an error.
 
     Until then earlier results stay there. Nothing is removed or replaced but these.
 
     :param out: made if it is missing; a link is followed, also if nothing is at its end yet.
     :param mark: file that results always hold.
-    :param earlier: names of the files of earlier results besides it, told by the folder.
+    :param earlier: names of the files of earlier results besides it, told by the folder; None if the file of that name is another.
     :raises FileExistsError: for a folder that holds something else, or that another process is writing.
     """
     target = os.path.realpath(out)
     there = _files_below(target)
-    listed = {mark, *earlier(target)} if mark in there else set()
+    others = earlier(target) if os.path.isfile(os.path.join(target, mark)) else None
+    listed = set() if others is None else {mark, *others}
     old = {name for name in there if name in listed}
     killed = {name for name in (os.listdir(target) if there else ()) if re.fullmatch(re.escape(PART) + r'\w{8}', name)}
     own = old.union(name for name in there if '/' in name and name.split('/')[0] in killed)

@@ -12,7 +12,7 @@ from urllib.parse import quote
 import numpy as np
 from numpy.typing import NDArray
 
-from opencv_iib._files import is_same, new_results
+from opencv_iib._files import is_same, new_results, rows_of
 from opencv_iib._arguments import Path
 from opencv_iib._turns import Turn, upright
 from opencv_iib.colmap.images import import_cv2, read_with_orientation, write_picture
@@ -110,10 +110,10 @@ def _page(reference: str, done: Sequence[Aligned], width: int, height: int) -> s
     return PAGE.format(reference=html.escape(reference), width=width, figures='\n'.join(figures))
 
 
-def _earlier(folder: str) -> list[str]:
+def _earlier(folder: str) -> Optional[list[str]]:
     """Files that an earlier call has written, by its table."""
-    with open(os.path.join(folder, 'transforms.csv'), encoding='utf-8', errors='replace', newline='') as table:
-        return ['reference.png', 'index.html', *(row.get('file') or '' for row in csv.DictReader(table))]
+    rows = rows_of(os.path.join(folder, 'transforms.csv'), HEADER)
+    return None if rows is None else ['reference.png', 'index.html', *(row['file'] or '' for row in rows)]
 
 
 def _file(path: str) -> TextIO:

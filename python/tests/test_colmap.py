@@ -140,6 +140,11 @@ class Runs(Collection):
         for name in ('.partial', '.partial-wal', '.partial-journal'):
             (self.folder / f'database.db{name}').write_bytes(b'precious' * 1000)
             expect_kept(self.folder / f'database.db{name}')
+        partial.unlink()  # empty, of the refused runs
+        partial.mkdir()
+        with self.assertRaisesRegex(FileExistsError, 'not of an unfinished run'):
+            self.build(force=True)
+        partial.rmdir()
         with closing(sqlite3.connect(partial)) as other:
             other.execute('CREATE TABLE images (name_of_another_program TEXT)')
         expect_kept(partial)

@@ -401,6 +401,12 @@ class Localization(Commands):
             self.check_error('holds ' + name, 'localize', '--map', self.map, '--images', self.dark, '--out', out)
             self.assertEqual(Path(out, name).read_text(), 'precious')
             os.unlink(os.path.join(out, name))
+        foreign = self.path('foreign')
+        os.makedirs(foreign)
+        for text in ('name,camera\na,b\n', 'x\0' * 200000, ''):
+            Path(foreign, 'frames.csv').write_text(text)
+            self.check_error('holds frames.csv', 'localize', '--map', self.map, '--images', self.dark, '--out', foreign)
+            self.assertEqual(Path(foreign, 'frames.csv').read_text(), text)
         for beside in ('.partial', '.partial.old', '.new', '.iib_partial'):
             os.makedirs(out + beside)
             Path(out + beside, 'thesis').write_text('precious')

@@ -240,6 +240,10 @@ class Align(Commands):
             self.check_error(told, 'align', *arguments, '--out', out)
         self.assertEqual(mine.read_text(), 'precious')
         mine.unlink()
+        foreign = self.folder / 'foreign'
+        foreign.mkdir()
+        (foreign / 'transforms.csv').write_text('image,verdict\n')
+        self.check_error('holds transforms.csv', 'align', *paths[:2], '--out', foreign)
         self.check_error('would be replaced', 'align', paths[0], out / 'a&b.png', '--out', out)
         self.assertEqual(run_command('align', *paths[:2], '--out', self.folder / 'new', '--model', 'similarity')[0], 0)
         self.assertEqual(run_command('align', paths[0], self.write('t.png', texture(300, 200, seed=9)), '--out', self.folder / 'n')[0], 3)

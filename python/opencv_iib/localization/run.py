@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core, error
 from opencv_iib._arguments import Path
-from opencv_iib._files import new_results
+from opencv_iib._files import new_results, rows_of
 from opencv_iib._streams import note
 from opencv_iib.colmap.features import check_max_size, reduced
 from opencv_iib.colmap.images import (decode_grey, exif_focal_length, exif_orientation, find_images, import_cv2, is_utf8, read_bytes, read_grey,
@@ -27,6 +27,7 @@ from opencv_iib.localization.smoothing import smooth_poses
 OWN = ('trajectory.txt', 'cameras.bin', 'images.bin', 'points3D.bin', 'rigs.bin', 'frames.bin')
 SAME_FOCAL = .05  #: of focal lengths, which EXIF tells roughly, and COLMAP of a camera an image
 POSE = ('tx', 'ty', 'tz', 'qx', 'qy', 'qz', 'qw')  # the camera's centre, and camera to world
+FRAME = ('name', 'found', 'reason', 'matches', 'inliers')  # with which frames.csv begins
 AXES = ('x', 'y', 'z', 'rx', 'ry', 'rz')
 
 Find = Callable[[str, NDArray[np.uint8], Camera, int], Location]
@@ -131,11 +132,10 @@ def labels_of(names: Sequence[str]) -> dict[str, str]:
     return {name: name if count[stem] > 1 or stem in stems else stem for name, stem in stems.items()}
 
 
-def _earlier(folder: str) -> list[str]:
+def _earlier(folder: str) -> Optional[list[str]]:
     """Files that an earlier call has written, by its table."""
-    with open(os.path.join(folder, 'frames.csv'), encoding='utf-8', errors='replace', newline='') as table:
-        names = [row.get('name') or '' for row in csv.DictReader(table)]
-    return [*OWN, *(f'matches/{stem}.png' for name in names for stem in (name, os.path.splitext(name)[0]))]
+    rows = rows_of(os.path.join(folder, 'frames.csv'), FRAME)
+    return None if rows is None else [*OWN, *(f'matches/{stem}.png' for row in rows for stem in (row['name'], os.path.splitext(row['name'])[0]))]
 
 
 def _write_picture(path: str, image: str, camera: Camera, location: Location) -> None:
@@ -264,7 +264,7 @@ def _write(folder: str, frames: Sequence[list[Any]], poses: Sequence[Optional[ND
     with open(os.path.join(folder, 'trajectory.txt'), 'w', encoding='utf-8') as trajectory, \
             open(os.path.join(folder, 'frames.csv'), 'w', encoding='utf-8', errors='backslashreplace', newline='') as file:
         table, covariance = csv.writer(file), [f'{a}_{b}' for n, a in enumerate(AXES) for b in AXES[n:]]
-        table.writerow(['name', 'found', 'reason', 'matches', 'inliers', *covariance, *POSE])
+        table.writerow([*FRAME, *covariance, *POSE])
         trajectory.write(f'# name {" ".join(POSE)}\n')
         for row, pose, label in zip(frames, poses, labels):
             numbers = [] if pose is None else _numbers(pose)
