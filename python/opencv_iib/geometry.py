@@ -107,12 +107,13 @@ def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentMo
 
     :param reference: as IIBDescriptorExtractor takes it; so is `image`.
     :param model: an AlignmentModel; the simplest one that is true of the images gives the smallest errors.
-    :return: a tuple (found, transform, error, matches): a NoAlignment where too few matches agree for the images to show the same.
+    :return: a tuple (found, transform, error, matches): a NoAlignment where the matches are not more than chance, where
+        they span a small part of what both show, as a logo does, or where the images differ by more than the model.
     :raises opencv_iib.error: for images of another type, and a model that is none.
     """
-    alignment = _core.alignImages(as_image(reference), as_image(image), integer(model, 'model'))
+    alignment, reason = _core.alignImages(as_image(reference), as_image(image), integer(model, 'model'))
     if alignment[0]:
         return Alignment(*alignment)
     none = NoAlignment(*alignment)
-    none.reason = f'only {len(none.matches)} matches agree: too few for the images to show the same'
+    none.reason = reason
     return none

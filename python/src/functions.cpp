@@ -61,12 +61,14 @@ auto findRelativePose(const cv::Mat& points1, const cv::Mat& points2, const cv::
             std::string(reason));
 }
 
-// Whether they show the same, transform, deviations of the corners, matches that agree.
+// Whether they show the same, transform, deviations of the corners, matches that agree; and why not.
 auto alignImages(const cv::Mat& reference, const cv::Mat& image, int model)
 {
     cv::Mat transform, error, matches;
-    const bool found = cv::iib::alignImages(reference, image, transform, model, error, matches);
-    return std::make_tuple(found, onlyIf(found, transform), onlyIf(found, error), matches);
+    cv::String reason;
+    const bool found = cv::iib::alignImages(reference, image, transform, model, error, matches, &reason);
+    return std::make_tuple(std::make_tuple(found, onlyIf(found, transform), onlyIf(found, error), matches),
+            std::string(reason));
 }
 
 }  // namespace

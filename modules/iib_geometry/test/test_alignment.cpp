@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include "opencv2/core/affine.hpp"
 #include "opencv2/imgproc.hpp"
 #include "pose/planar_problem.hpp"
 #include "pose/uncertainty.hpp"
@@ -129,14 +130,100 @@ TEST(Alignment, refuses_images_of_other_scenes_and_without_points)
     EXPECT_FALSE(alignImages(Mat(), picture(3), transform));
 }
 
-TEST(Alignment, refuses_pictures_that_share_a_part_alone)
+TEST(Alignment, refuses_pictures_that_share_a_part_alone_in_any_model)
 {
     Mat first = picture(11), second = picture(12), transform;
     picture(13)(Rect(0, 0, 80, 80)).copyTo(first(Rect(10, 10, 80, 80)));
     picture(13)(Rect(0, 0, 80, 80)).copyTo(second(Rect(10, 10, 80, 80)));
-    Mat matches;
-    EXPECT_FALSE(alignImages(first, second, transform, ALIGN_HOMOGRAPHY, noArray(), matches));
-    EXPECT_GE(matches.rows, 16) << "the part has enough of them";
+    for (int model : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE, ALIGN_HOMOGRAPHY})
+    {
+        Mat matches;
+        String reason;
+        EXPECT_FALSE(alignImages(first, second, transform, model, noArray(), matches, &reason)) << model;
+        EXPECT_GE(matches.rows, 16) << "the part has enough of them";
+        EXPECT_NE(reason.find("a logo"), String::npos) << reason;
+    }
+}
+
+//! A part of the picture as large as a third of it is no logo.
+TEST(Alignment, finds_a_part_of_a_picture)
+{
+    const Mat whole = picture(14);
+    Mat transform, error;
+    ASSERT_TRUE(alignImages(
+            whole, inOtherLight(whole(Rect(150, 40, 200, 200))), transform, ALIGN_TRANSLATION, error));
+    EXPECT_NEAR(150, transform.at<double>(0, 2), .1);
+    EXPECT_NEAR(40, transform.at<double>(1, 2), .1);
+}
+
+TEST(Alignment, refuses_a_model_that_is_not_true_and_tells_the_one_that_is)
+{
+    const Mat reference = picture(15);
+    const Matx33d camera(360, 0, 200, 0, 360, 150, 0, 0, 1);
+    const Matx33d turned = Affine3d(Vec3d(.02, .12, .01)).rotation();
+    const Mat by = getRotationMatrix2D(Point2f(200, 150), 1, 1);
+    Matx33d degree = Matx33d::eye();
+    by.copyTo(Mat(degree, false).rowRange(0, 2));
+    const struct
+    {
+        Matx33d truth;
+        int model;
+        const char* other;
+        int right;
+    } cases[] = {{camera * turned * camera.inv(), ALIGN_SIMILARITY, "HOMOGRAPHY agrees", ALIGN_HOMOGRAPHY},
+            {HOMOGRAPHY, ALIGN_TRANSLATION, "agrees with", ALIGN_HOMOGRAPHY},
+            {degree, ALIGN_TRANSLATION, "SIMILARITY agrees", ALIGN_SIMILARITY},
+            {AFFINE, ALIGN_SIMILARITY, "AFFINE agrees", ALIGN_AFFINE}};
+    for (const auto& c : cases)
+    {
+        const Mat image = moved(reference, c.truth);
+        Mat transform, error;
+        String reason;
+        EXPECT_FALSE(alignImages(reference, image, transform, c.model, error, noArray(), &reason)) << c.other;
+        EXPECT_TRUE(transform.empty() && error.empty());
+        EXPECT_NE(reason.find(c.other), String::npos) << reason;
+        EXPECT_TRUE(alignImages(reference, image, transform, c.right, error, noArray(), &reason)) << reason;
+        EXPECT_EQ("", reason);
+        EXPECT_LT(cornerError(transform, c.truth.inv()), .3) << c.other;
+    }
+}
+
+//! The upper half is a wall that is twice as near as the lower one's.
+TEST(Alignment, tells_a_camera_that_moved)
+{
+    const Mat wall = picture(16);
+    Mat image = inOtherLight(wall), transform;
+    wall(Rect(40, 0, 360, 150)).copyTo(image(Rect(0, 0, 360, 150)));
+    wall(Rect(20, 150, 380, 150)).copyTo(image(Rect(0, 150, 380, 150)));
+    String reason;
+    EXPECT_FALSE(alignImages(wall, image, transform, ALIGN_AFFINE, noArray(), noArray(), &reason));
+    EXPECT_NE(reason.find("parallax"), String::npos) << reason;
+}
+
+//! Of many pixels, and blurred: what the working size finds is refined as far as there is something to refine.
+TEST(Alignment, finds_large_and_blurred_images)
+{
+    Mat large, blurred, transform, error;
+    resize(picture(17), large, Size(2400, 1800), 0, 0, INTER_CUBIC);
+    const Mat image = large(Rect(40, 60, 2300, 1700));
+    ASSERT_TRUE(alignImages(large, image, transform, ALIGN_SIMILARITY, error));
+    EXPECT_NEAR(40, transform.at<double>(0, 2), .3);
+    EXPECT_NEAR(60, transform.at<double>(1, 2), .3);
+    GaussianBlur(image, blurred, Size(), 20);
+    ASSERT_TRUE(alignImages(large, blurred, transform, ALIGN_SIMILARITY, error));
+    EXPECT_NEAR(40, transform.at<double>(0, 2), 6);
+    EXPECT_NEAR(60, transform.at<double>(1, 2), 6);
+}
+
+TEST(Alignment, gives_fixed_sizes)
+{
+    Matx33d transform;
+    Vec4d error;
+    ASSERT_TRUE(alignImages(picture(18), picture(18), transform, ALIGN_TRANSLATION, error));
+    EXPECT_NEAR(0, transform(0, 2), 1e-3);
+    EXPECT_GT(error[0], 0);
+    EXPECT_FALSE(alignImages(picture(18), picture(19), transform, ALIGN_TRANSLATION, error));
+    EXPECT_TRUE(std::isnan(transform(1, 1)) && std::isnan(error[3]));
 }
 
 TEST(Alignment, mistakes_are_told)

@@ -1,73 +1,186 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "opencv2/iib/alignment.hpp"
 
-#include "opencv2/iib.hpp"
+#include "opencv2/imgproc.hpp"
+#include "outputs.hpp"
+#include "parallax.hpp"
 #include "planar_problem.hpp"
 #include "uncertainty.hpp"
 #include "verdict.hpp"
+#include "working_pair.hpp"
 
 namespace cv::iib {
 namespace {
 
-const int FEATURES = 2000;
-const double SCALE = .5;  // Cauchy's, pixels
-//! Matches that agree. Images of other scenes have 5 at most (iib_evaluation --only alignment).
-const int FEWEST = 16;
-//! Of a corner, pixels: above it what agrees is a part, such as a logo that both images hold.
-const double MOST_DEVIATION = 2;
-const double ANY = 1e3;          // deviation of a number of a transform that nothing tells
-const double LEAST_SHARE = .05;  // of all matches
+const double LEAST_SCALE = .25;   // by which matches count as agreeing, working pixels
+const double LEAST_SPREAD = .12;  // of what has points, that the agreeing matches span: a logo spans less
+const double RICHER = 1.25;       // times as many places agree with a model that is true
+const double MOST_PARALLAX =
+        .25;  // of the places that agree with the transform may move as if the camera had moved
+const double LEAST_PARALLAX = 6;  // working pixels: shadows of another light move by less
+const int WORKING_SIZE = 1024;    // as HessianDetector has it
+const double ANY = 1e3;           // deviation of a number of a transform
 
-//! Refined matches, N x 2 each, CV_64F.
-struct Matches
+const double LEAST_REFINED = .5;  // of the matches that agree at the working size
+/* Of a match's deviation: what light and lens shift in all matches alike, as far as pairs under other lamps and exposures show it
+(guide, "how sure"). */
+const double COMMON = .4;
+
+struct Attempt
 {
-    Mat reference, image;
+    int workingSize;  //!< pixels of the longer side
+    bool rotated;
 };
 
-Matches match(const Mat& reference, const Mat& image, bool rotated)
+const char* const MODELS[] = {"TRANSLATION", "SIMILARITY", "AFFINE", "HOMOGRAPHY"};
+const char* const NAMES[] = {"a translation", "a similarity", "an affine transform", "a homography"};
+
+//! A transform of two images' matches, in working pixels, and how they lie around it.
+struct Aligned
 {
-    const Ptr<IIBDescriptorExtractor> extractor = IIBDescriptorExtractor::createRecommended(FEATURES);
-    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
-    std::vector<KeyPoint> keypoints1, keypoints2;
-    std::vector<DMatch> matches;
-    if (rotated)
+    PlanarProblem problem;
+    Fit<PlanarProblem> fit;
+    Verdict::Marks agree;
+    double limit;  //!< of those that agree
+
+    Aligned(const AlignedPoints& points, int model)
+        : problem(points.reference, points.image, model), fit(robustFit(problem, 0)),
+          limit(3 * std::max(fit.scale, LEAST_SCALE))
     {
-        extractor->setOrientation(IIBDescriptorExtractor::ORIENTATION_KEYPOINT);
-        matchRotated(reference, image, extractor, matcher, keypoints1, keypoints2, matches);
+        agree = within(limit, fit.squared);
+        agree.resize(problem.size());
     }
-    else
-    {
-        Mat codes1, codes2;
-        extractor->detectAndCompute(reference, noArray(), keypoints1, codes1);
-        extractor->detectAndCompute(image, noArray(), keypoints2, codes2);
-        matcher->match(codes1, codes2, matches);
-    }
-    Mat points1, points2;
-    Matches result = {Mat(0, 2, CV_64F), Mat(0, 2, CV_64F)};
-    if (matches.empty())
-        return result;
-    refineMatches(reference, keypoints1, image, keypoints2, matches, points1, points2);
-    points1.convertTo(result.reference, CV_64F);
-    points2.convertTo(result.image, CV_64F);
-    return result;
+
+    int count() const { return (int)std::count(agree.begin(), agree.end(), true); }
+};
+
+bool isCertain(const Aligned& aligned, const Verdict& verdict)
+{
+    std::vector<double> limits;
+    for (double limit : {.5, 1., 2., 4.})
+        limits.push_back(limit * aligned.limit);
+    return verdict.logFalseAlarms(aligned.fit.squared, Verdict::FROM_POINT, aligned.problem.sampleSize(),
+                   limits) < Verdict::CERTAIN;
 }
 
-//! N x 4, CV_32F, of those that are marked.
-Mat rowsOf(const Matches& matches, const Verdict::Marks& marked)
+//! Standard deviations of the places of the image's corners, 4 x 1, CV_64F, working pixels.
+Mat deviationsOf(const Aligned& aligned, const AlignedPoints& points, const Size& size)
 {
-    Mat both, result(0, 4, CV_32F);
-    hconcat(matches.reference, matches.image, both);
-    both.convertTo(both, CV_32F);
-    for (size_t i = 0; i < marked.size(); i++)
-        if (marked[i])
-            result.push_back(both.row((int)i));
-    return result;
+    const Square<PlanarProblem::Step> covariance =
+            covarianceOf(aligned.problem, aligned.fit, partsOf(points.reference), ANY);
+    const double right = size.width - 1, bottom = size.height - 1;
+    const Point2d corners[] = {{0, 0}, {right, 0}, {right, bottom}, {0, bottom}};
+    Mat deviations(4, 1, CV_64F);
+    for (int k = 0; k < 4; k++)
+        deviations.at<double>(k) =
+                std::hypot(aligned.problem.deviation(aligned.fit.model, covariance, corners[k]),
+                        std::sqrt(2) * COMMON * aligned.fit.scale);
+    return deviations;
+}
+
+double areaOf(const std::vector<Point2f>& points)
+{
+    std::vector<Point2f> hull;
+    if (points.size() < 3)
+        return 0;
+    convexHull(points, hull);
+    return contourArea(hull);
+}
+
+//! How much of what has points in both images the agreeing matches span.
+double spreadOf(const Aligned& aligned, const AlignedPoints& points, const Size& size)
+{
+    std::vector<Point2f> agreeing, common;
+    for (size_t i = 0; i < aligned.agree.size(); i++)
+        if (aligned.agree[i])
+            agreeing.push_back(Point2f(points.reference.at<Point2d>((int)i)));
+    const Matx33d toImage = aligned.problem.inPixels(aligned.fit.model).inv();
+    for (const KeyPoint& keypoint : points.keypoints)
+    {
+        const Vec3d there = toImage * Vec3d(keypoint.pt.x, keypoint.pt.y, 1);
+        if (Rect2d(Point2d(), Size2d(size)).contains({there[0] / there[2], there[1] / there[2]}))
+            common.push_back(keypoint.pt);
+    }
+    const double all = areaOf(common);
+    return all > 0 ? areaOf(agreeing) / all : 0;
+}
+
+std::vector<Attempt> attemptsFor(const Mat& first, const Mat& second, int model)
+{
+    std::vector<Attempt> attempts = {{WORKING_SIZE, false}};
+    if (std::max({first.rows, first.cols, second.rows, second.cols}) > WORKING_SIZE / 2)
+        attempts.push_back(
+                {WORKING_SIZE / 2, false});  // blurred images, as of a focus stack, are sharper there
+    if (model != ALIGN_TRANSLATION)
+        attempts.push_back({WORKING_SIZE, true});
+    return attempts;
+}
+
+int countOf(const Verdict::Marks& marks) { return (int)std::count(marks.begin(), marks.end(), true); }
+
+//! Why the model is not that of the images; empty if it is.
+std::string reasonAgainstModel(
+        const Aligned& aligned, const AlignedPoints& points, int model, const Verdict& verdict)
+{
+    std::vector<Aligned> richer;
+    for (int other = model + 1; other <= ALIGN_HOMOGRAPHY; other++)
+        richer.emplace_back(points, other);
+    const Aligned& richest = richer.empty() ? aligned : richer.back();
+    const auto near = [&](const Aligned& a) { return within(richest.limit, a.fit.squared); };
+    const int most = verdict.places(near(richest));
+    if (isCertain(richest, verdict) && most > RICHER * verdict.places(near(aligned)))
+        for (size_t k = 0; k < richer.size(); k++)
+            if (RICHER * verdict.places(near(richer[k])) >= most)
+                return format("the images differ by more than %s: %s agrees with %d matches in place of %d",
+                        NAMES[model], MODELS[model + 1 + k], countOf(near(richer[k])),
+                        countOf(near(aligned)));
+    if (!isCertain(aligned, verdict))
+        return "";
+    const Verdict::Marks moved = movedByParallax(points.reference, points.image,
+            richest.problem.inPixels(richest.fit.model),
+            within(std::max(2 * richest.limit, LEAST_PARALLAX), richest.fit.squared), richest.limit, verdict);
+    if (verdict.places(moved) > MOST_PARALLAX * most)
+        return format(
+                "the camera moved through a scene that is not flat: %d matches agree with one transform, and "
+                "%d more are beside it along lines through one point (parallax); findRelativePose is for "
+                "such images",
+                richest.count(), countOf(moved));
+    return "";
+}
+
+struct Judgement
+{
+    std::string against;  //!< why the images have no such transform; empty if they have
+    bool isLast;          //!< whether another attempt can say nothing else
+};
+
+Judgement judge(const Aligned& aligned, const AlignedPoints& points, int model, const Size& size)
+{
+    if (aligned.fit.squared.empty())
+        return {"the images have too few matches", false};
+    const Verdict verdict(points.reference, points.image);
+    const std::string wrongModel = reasonAgainstModel(aligned, points, model, verdict);
+    if (!wrongModel.empty())
+        return {wrongModel, true};
+    if (!isCertain(aligned, verdict))
+        return {format("the transform that agrees best has %d of %d matches, no more than chance may give: "
+                       "the images "
+                       "may not show the same",
+                        aligned.count(), aligned.problem.size()),
+                false};
+    const double spread = spreadOf(aligned, points, size);
+    if (spread < LEAST_SPREAD)
+        return {format("the images share %.0f %% of what both could show and nothing else: a logo, a "
+                       "caption?",
+                        100 * spread),
+                false};
+    return {"", true};
 }
 
 }  // namespace
 
 bool alignImages(InputArray reference, InputArray image, OutputArray transform, int model, OutputArray error,
-        OutputArray matches)
+        OutputArray matches, String* reason)
 {
     if (model < ALIGN_TRANSLATION || model > ALIGN_HOMOGRAPHY)
         CV_Error(Error::StsBadArg,
@@ -75,39 +188,48 @@ bool alignImages(InputArray reference, InputArray image, OutputArray transform, 
                        "ALIGN_AFFINE or ALIGN_HOMOGRAPHY",
                         model));
     const Mat first = reference.getMat(), second = image.getMat();
-    Mat agreed(0, 4, CV_32F);
-    for (bool rotated : {false, true})
+    Mat agreeing;
+    std::string against;
+    for (const Attempt& attempt : attemptsFor(first, second, model))
     {
-        if (rotated && model == ALIGN_TRANSLATION)
+        const WorkingPair pair(first, second, attempt.workingSize);
+        AlignedPoints points = pair.match(attempt.rotated);
+        Aligned aligned(points, model);
+        const Judgement now = judge(aligned, points, model, pair.size());
+        if (now.against.empty() && pair.isReduced())
+        {
+            const AlignedPoints fine =
+                    pair.refined(points, aligned.agree, aligned.problem.inPixels(aligned.fit.model));
+            const Aligned again(fine, model);
+            if (again.count() > LEAST_REFINED * aligned.count())  // else too blurred
+            {
+                aligned = again;
+                points = fine;
+            }
+        }
+        const Mat agree = pair.inPixels(points, aligned.agree);
+        if (now.isLast || agreeing.empty() || agree.rows > agreeing.rows)
+        {
+            agreeing = agree;
+            against = now.against;
+        }
+        if (!now.isLast)
+            continue;
+        if (!against.empty())
             break;
-        const Matches all = match(first, second, rotated);
-        const PlanarProblem problem(all.reference, all.image, model);
-        const Fit<PlanarProblem> fit = robustFit(problem, SCALE);
-        const Mat agree = rowsOf(all, within(3 * SCALE, fit.squared));
-        if (agree.rows > agreed.rows)
-            agreed = agree;
-        if (agree.rows < FEWEST || agree.rows < LEAST_SHARE * all.image.rows)
-            continue;
-        const Square<PlanarProblem::Step> covariance =
-                covarianceOf(problem, fit, partsOf(all.reference), ANY);
-        const double right = second.cols - 1, bottom = second.rows - 1;
-        const Point2d corners[] = {{0, 0}, {right, 0}, {right, bottom}, {0, bottom}};
-        Mat deviations(4, 1, CV_64F);
-        for (int k = 0; k < 4; k++)
-            deviations.at<double>(k) = problem.deviation(fit.model, covariance, corners[k]);
-        if (!checkRange(deviations, true, nullptr, 0, MOST_DEVIATION))
-            continue;
-        Mat(problem.inPixels(fit.model)).copyTo(transform);
+        Mat(pair.inPixels(aligned.problem.inPixels(aligned.fit.model))).copyTo(transform);
         if (error.needed())
-            deviations.copyTo(error);
-        if (matches.needed())
-            agreed.copyTo(matches);
-        return true;
+            Mat(deviationsOf(aligned, points, pair.size()) * pair.inPixels(1)).copyTo(error);
+        break;
     }
-    transform.release();
-    error.release();
     if (matches.needed())
-        agreed.copyTo(matches);
+        agreeing.copyTo(matches);
+    if (reason)
+        *reason = against;
+    if (against.empty())
+        return true;
+    clear(transform);
+    clear(error);
     return false;
 }
 

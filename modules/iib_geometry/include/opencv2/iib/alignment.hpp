@@ -24,8 +24,15 @@ enum AlignmentModel
 For images of a plane, or of anything by a camera that stays where it is, though it may turn and zoom, by day and by night.
 Images from two places of a scene that is not flat have no such transform; findRelativePose is for them. Points are detected
 in both images and matched, in a second attempt also by images that are turned by any angle (matchRotated); the matches are
-refined (refineMatches), and the transform that most of them agree with is fitted to them by Levenberg-Marquardt under
-Cauchy's loss, cut off at three scales of half a pixel. The same input gives the same answer, whatever the number of threads.
+refined (refineMatches), and the transform that most of them agree with is fitted to them as findRelativePose fits a pose. Images
+whose longer side has more than 1024 pixels are reduced for that; the matches that agree are then refined at full size, where the
+images are sharp enough for it. The same input gives the same answer, whatever the number of threads.
+
+There is no transform, and `reason` says which of these it was,
+- where the matches that agree are no more than chance (the number of false alarms, as of findRelativePose);
+- where they span less than 12 % of what has points in both images, as a logo or a caption that both hold;
+- where a transform of more freedom agrees with a quarter more places of the image;
+- where a quarter as many places as agree lie beside the transform as if the camera had moved (parallax).
 
     cv::Mat transform, aligned;
     if (cv::iib::alignImages(reference, image, transform))
@@ -33,18 +40,18 @@ Cauchy's loss, cut off at three scales of half a pixel. The same input gives the
 
 @param reference, image of any size, of the types that IIBDescriptorExtractor::compute takes
 @param transform 3 x 3, CV_64F, last entry 1: from pixels of the image to pixels of the reference
-@param model AlignmentModel; the simplest one that is true of the images gives the smallest errors
+@param model AlignmentModel; the simplest one that is true of the images gives the smallest errors, one that is not is refused
 @param error 4 x 1, CV_64F, pixels of the reference: standard deviations of the places of the image's corners (top left,
-    top right, bottom right, bottom left), as the matches around the transform tell them. What all matches have in common,
-    such as the parallax of a scene that is not flat, is not in it.
+    top right, bottom right, bottom left), as parts of the image and the matches around the transform tell them; large for corners
+    far from what both images show. What all matches have in common is not in it.
 @param matches N x 4, CV_32F: the matches that agree with the transform, x and y in the reference, x and y in the image,
     pixels; where the answer is false, those that agreed best
-@return false, with transform and error empty, if too few matches agree for the images to show the same, which are fewer
-    than 16 or than one in twenty, or if a corner's deviation is over 2 pixels, as where they share
-    nothing but a logo; also for images without points
+@param reason if not null: why there is no transform, a sentence; empty if there is one
+@return false, with transform and error empty, if there is none
 @throws cv::Exception for an unknown model, and as IIBDescriptorExtractor::compute for images */
 CV_EXPORTS_W bool alignImages(InputArray reference, InputArray image, OutputArray transform,
-        int model = ALIGN_HOMOGRAPHY, OutputArray error = noArray(), OutputArray matches = noArray());
+        int model = ALIGN_HOMOGRAPHY, OutputArray error = noArray(), OutputArray matches = noArray(),
+        CV_OUT String* reason = nullptr);
 
 //! @}
 

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "opencv2/iib.hpp"
+
+namespace cv::iib {
+
+//! Refined matches of two images, N x 2 each, CV_64F, in working pixels, and what they come from.
+struct AlignedPoints
+{
+    Mat reference, image;
+    std::vector<KeyPoint> keypoints;  //!< of the reference, all that were looked for
+};
+
+/** Two images that are matched at a working size, at which large ones have something to match by, and whose matches are refined at
+full size afterwards. Working pixels are those of images that are reduced by whole factors. */
+class WorkingPair
+{
+public:
+    //! @param workingSize pixels of the longer side, at most.
+    WorkingPair(const Mat& reference, const Mat& image, int workingSize);
+
+    //! @param rotated whether the image may be turned by any angle (matchRotated).
+    AlignedPoints match(bool rotated) const;
+
+    bool isReduced() const { return factors_[0] > 1 || factors_[1] > 1; }
+
+    /** Matches again, at full size, those that agree with a transform of working pixels, from where it has them; without those that
+    cannot be refined, as where the images are blurred. */
+    AlignedPoints refined(
+            const AlignedPoints& points, const std::vector<bool>& agree, const Matx33d& transform) const;
+
+    //! Of the image, working pixels.
+    Size size() const { return working_[1].size(); }
+
+    //! A transform between the images' own pixels, and a distance in the reference's.
+    Matx33d inPixels(const Matx33d& transform) const;
+    double inPixels(double distance) const { return distance * factors_[0]; }
+
+    //! Those that agree, M x 4, CV_32F: x and y in the reference, x and y in the image, their own pixels.
+    Mat inPixels(const AlignedPoints& points, const std::vector<bool>& agree) const;
+
+private:
+    Mat full_[2], working_[2];
+    int factors_[2];
+};
+
+}  // namespace cv::iib
