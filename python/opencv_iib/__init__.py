@@ -32,8 +32,8 @@ from opencv_iib.rotation import estimateRotation, matchRotated
 __all__ = ['Alignment', 'AlignmentModel', 'Border', 'Channel', 'DMatch', 'Features', 'FoundPose', 'HessianDetector',
            'HierarchicalMatcher', 'IIB', 'IIBDescriptorExtractor', 'KeyPoint', 'MappedIndex', 'Mapping', 'Matches',
            'Mode', 'NoAlignment', 'NoPose', 'NormalizedDetector', 'OPENCV_VERSION', 'Orientation', 'Preset', 'PropagatedMatches',
-           'RefinedMatches', 'alignImages', 'array_to_keypoints', 'detect_and_describe', 'error', 'estimateRotation', 'findRelativePose', 'getNumThreads',
-           'keypoints_to_array', 'match', 'matchRotated', 'propagateMatches', 'refineMatches', 'setNumThreads']
+           'RefinedMatches', 'alignImages', 'array_to_keypoints', 'detect_and_describe', 'error', 'estimateRotation',
+           'findRelativePose', 'getNumThreads', 'keypoints_to_array', 'match', 'matchRotated', 'propagateMatches', 'refineMatches', 'setNumThreads']
 
 __version__: str = _core.VERSION
 #: Of the OpenCV inside.

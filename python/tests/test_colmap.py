@@ -242,6 +242,9 @@ class Mistakes(Collection):
         arguments = 'colmap', self.images, self.database, '--points', '200', '--verify', 'magsac', '--workers', '2'
         self.assertEqual(run_command(*arguments)[0], 0)
         self.check_error('--force', *arguments)
+        small = 'colmap', self.images, self.folder / 'small.db', '--points', '200', '--workers', '2'
+        any_case = '--verify', 'MAGSAC', '--camera-model', 'opencv', '--pairs', 'Sequential', '--detector', 'hessian', '--preset', 'Small'
+        self.assertEqual(run_command(*small, *any_case)[0], 0)
         small = self.folder / 'small.png'
         cv2.imwrite(str(small), np.zeros((1, 1), np.uint8))
         (self.folder / 'other.db.partial').write_bytes(b'junk' * 1000)
