@@ -46,7 +46,7 @@ class Aligned(NamedTuple):
     """What became of an image."""
 
     name: str  #: path, as it was given
-    verdict: str  #: 'aligned', 'nothing in common', or why it cannot be read or laid onto the reference
+    verdict: str  #: 'aligned', or why it cannot be read or laid onto the reference
     matches: int = 0  #: that agree with the transform
     errors: Sequence[float] = ()  #: standard deviations of the places of its corners in pixels, in the order of CORNERS
     transform: Sequence[float] = ()  #: 3 x 3, row by row: from its pixels to those of the reference
@@ -145,8 +145,8 @@ def _aligned(first: tuple[NDArray[np.uint8], int], path: str, folder: str, taken
     except (ValueError, OSError) as e:
         return Aligned(path, getattr(e, 'strerror', None) or str(e))
     found = alignImages(upright(*first), upright(image, orientation), model)
-    if found.transform is None or found.error is None:
-        return Aligned(path, 'nothing in common', len(found.matches))
+    if not found.found:
+        return Aligned(path, found.reason, len(found.matches))
     file = _file_name(path, taken)
     taken.add(file.lower())
     onto, turn = Turn(first[1], *reference.shape[1::-1]), Turn(orientation, *image.shape[1::-1])

@@ -199,7 +199,10 @@ class Align(Commands):
         self.assertIn('2 of 4 images are aligned', out)
         rows = self.rows('out/transforms.csv')
         self.assertEqual([row['image'] for row in rows], list(map(str, images)))
-        self.assertEqual([row['verdict'] for row in rows][:3], ['aligned', 'aligned', 'nothing in common'])
+        self.assertEqual([row['verdict'] for row in rows][:2], ['aligned', 'aligned'])
+        self.assertRegex(rows[2]['verdict'], '^the images ')
+        status, out, _ = run_command('align', SCENES / 'view_noon.jpg', images[0], '--out', self.folder / 'wrong', '--model', 'translation')
+        self.assertEqual((status, 'differ by more than a translation' in out), (3, True))
         true = np.linalg.inv(np.loadtxt(SCENES / 'H_view_panned'))
         for row, expected in zip(rows, (true, np.eye(3))):
             found = np.array([row[f't{r}{c}'] for r in '123' for c in '123'], float).reshape(3, 3)
