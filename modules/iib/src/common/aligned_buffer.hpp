@@ -10,8 +10,8 @@ namespace cv {
 namespace iib {
 
 constexpr int CACHE_LINE = 64;
-constexpr int ROW_PADDING =
-        64;  //!< values that kernels may read and write past a row, and before a PaddedRows row
+//! Values that kernels may read and write past a row, and before a PaddedRows row.
+constexpr int ROW_PADDING = 64;
 
 //! n rounded up to fill whole cache lines of T.
 template <typename T> inline size_t wholeLines(size_t n)

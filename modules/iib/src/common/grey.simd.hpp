@@ -2,7 +2,17 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#pragma once
+#include "../precomp.hpp"
+
+namespace cv {
+namespace iib {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+void greyRows(const Mat& image, Mat& grey, const Range& rows);
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}  // namespace iib
+}  // namespace cv
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 #include "vectors.simd.hpp"
 
@@ -101,3 +111,5 @@ CV_CPU_OPTIMIZATION_NAMESPACE_END
 
 }  // namespace iib
 }  // namespace cv
+
+#endif

@@ -23,9 +23,8 @@ struct BoxPlan
     };
 
     std::vector<Level> levels;
-    double edges
-            [2][MAX_BOX_PLACES];  //!< where boxes begin and end, in the unit of centres; unused entries are 0
-
+    //! Where boxes begin and end, in the unit of centres; unused entries are 0.
+    double edges[2][MAX_BOX_PLACES];
     const BoxKernels& kernels;
 
     BoxPlan() : edges(), kernels(boxKernels()) {}

@@ -11,7 +11,7 @@
 namespace cv {
 namespace iib {
 
-//! Memory that one thread uses again for each batch of keypoints. What it holds means nothing between two batches.
+//! Memory that a thread reuses for each batch of keypoints. No batch reads what another has left there.
 struct Workspace
 {
     static constexpr int MAX_PACKS = 1 + (MAX_EXTRA_CHANNELS + GROUP_CHANNELS - 1) / GROUP_CHANNELS;

@@ -50,6 +50,13 @@ void describeBatch(const BatchJob& job, const ChannelGroup& group, const std::ve
     }
 }
 
+//! How sums over cells are made, and whether that serves: whether pixels and sums fit its types.
+struct Summation
+{
+    bool serves;
+    void (*describe)(const BatchJob&, const ChannelGroup&, const std::vector<Channel>&, const ChannelBounds&);
+};
+
 }  // namespace
 
 void describeUpright(const BatchJob& job)
@@ -66,13 +73,19 @@ void describeUpright(const BatchJob& job)
         const ChannelBounds bounds(channels);
         const double largestSum = bounds.value * pixels;
         const bool fits16Bits = largestSum <= USHRT_MAX, fits32Bits = largestSum <= UINT_MAX;
-        const auto describe = !fits32Bits         ? describeBatch<IntegralBand<int, unsigned>, double>
-                              : is16Bit(channels) ? describeBatch<IntegralBand<int, unsigned>, unsigned>
-                              : !fits16Bits       ? describeBatch<IntegralBand<short, unsigned>, unsigned>
-                              : columnsAreFaster(job, channels, bounds.gradient > 0, side)
-                                      ? describeBatch<ColumnBand, ushort>
-                                      : describeBatch<IntegralBand<short, ushort>, ushort>;
-        describe(job, group, channels, bounds);
+        const bool ofBytes = !is16Bit(channels);
+        // the quickest first; the last one is always right
+        const Summation ways[] = {
+                {ofBytes && fits16Bits && columnsAreFaster(job, channels, bounds.gradient > 0, side),
+                        describeBatch<ColumnBand, ushort>},
+                {ofBytes && fits16Bits, describeBatch<IntegralBand<short, ushort>, ushort>},
+                {ofBytes && fits32Bits, describeBatch<IntegralBand<short, unsigned>, unsigned>},
+                {fits32Bits, describeBatch<IntegralBand<int, unsigned>, unsigned>},
+                {true, describeBatch<IntegralBand<int, unsigned>, double>}};
+        const Summation* way = ways;
+        while (!way->serves)
+            way++;
+        way->describe(job, group, channels, bounds);
     }
 }
 

@@ -188,7 +188,7 @@ TEST(IIB_Input, descriptors_may_go_where_the_image_is)
     }
 }
 
-//! What descriptor.hpp says of colour.
+//! What doc/format.md says of colour.
 Mat plainGrey(const Mat& image)
 {
     Mat grey(image.size(), image.depth());

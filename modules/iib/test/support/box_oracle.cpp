@@ -16,7 +16,7 @@ typedef cv::iib::IIBDescriptorExtractor IIB;
 
 namespace {
 
-//! MAPPING_BOXES as its table in descriptor.hpp.
+//! MAPPING_BOXES as its table in doc/format.md.
 const struct
 {
     int n, side, reach;

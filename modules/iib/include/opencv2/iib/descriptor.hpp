@@ -24,54 +24,9 @@ the values, but seldom the order among neighbours.
 A ROS side under 2^G pixels is raised to 2^G, so that no cell is empty. #Border says what becomes of a ROS that leaves
 the image. If a cell has no pixel at all, its quad gets the bits of four equal means.
 
-**Bits.** Levels come coarse first, each padded with zeros to a whole byte, bit 0 of byte 0 first. So
-the descriptor of granularity G-1 is a prefix of the one of G, unless the ROS is so small that G raises it
-(a rotated one at G = 6: 64 pixels or less). Within a level the order is, outermost
-first:
- 1. channels in groups of four, in the order of #Channel, extra channels last;
- 2. with `overlap`, the offset of the 2x2 windows: (0,0), (0,1), (1,0), (1,1) cells in (y,x);
- 3. the row of quads;
- 4. the bit of the mapping (cells count top left, top right, bottom left, bottom right);
- 5. the column of quads;
- 6. the channel within the group.
-
-With a selection (see setSelection) the order is the same, whatever that of the selection, and the bits that were not
-chosen are left out; quads in odd rows or columns belong to the windows of 2.
-
-**Boxes.** With #MAPPING_BOXES, level g = 1..5 has n x n upright square boxes that overlap, so that a moved camera does
-not shift what a quad compares from one cell to the next. Sides, and the distance of the outermost centres from the
-keypoint, are in 80ths of the ROS:
-
-| level | n | side | distance |
-|---|---|---|---|
-| 1 | 3 | 32 | 24 |
-| 2 | 5 | 24 | 28 |
-| 3 | 7 | 16 | 30 |
-| 4 | 9 | 8 | 32 |
-| 5 | 7 | 6 | 12 |
-
-A box is made of whole squares of 2 x 2 pixels at even coordinates; each of its edges is the nearest to its place. A
-square that an odd image cuts is completed by reflection, but with #BORDER_CLAMP it does not count. What is compared are
-means over the pixels that count, rounded to an eighth of a grey level or of a Sobel gradient (which is 8 times the
-difference of neighbouring pixels). A box without pixels has mean 0.
-
-A box has up to five bits in a channel:
- - 0 to 2 are the bits of #MAPPING_HAAR. The four means are those of the box, the next box in its row, and the two boxes
-   below these; the last row and the last column have none of these bits;
- - 3 compares means of the box itself: gx > 0 in #CHANNEL_SIGNED_GRAD_X, gy > 0 in #CHANNEL_SIGNED_GRAD_Y, and
-   |gx| > |gy| in #CHANNEL_GRAD_X;
- - 4 compares them too: gx > gy in #CHANNEL_SIGNED_GRAD_X and gx + gy > 0 in #CHANNEL_SIGNED_GRAD_Y.
-
-Within a level the order is, outermost first: bits 0 to 2 by row, bit, column and channel (|gx|, |gy|, gx, gy,
-intensity); then by row and column |gx| > |gy|, gx > gy, gy > 0, gx + gy > 0, gx > 0. #CHANNEL_ORIENTATION, `overlap`
-and extra channels do not go with boxes.
-
-Rotated boxes stay upright and take no samples: only their centres turn around the keypoint, with sides of whole
-squares; the means of gx and gy are rotated as gradients are, and those of |gx| and |gy| are interpolated from four
-directions. So angle 0 does not give the bits of angle -1.
-
-**Pixels.** Colour is turned to grey by whole numbers, (3735 B + 19235 G + 9798 R + 2^14) >> 15. Gradients are Sobel
-3x3; at the image's edge its outermost pixels are repeated (BORDER_REPLICATE).
+Levels come coarse first, in whole bytes: the descriptor of granularity G-1 is a prefix of the one of G, unless the ROS is so
+small that G raises it. The order of bits within a level, #MAPPING_BOXES and what becomes of pixels are in the module's
+doc/format.md, bit by bit.
 
 The descriptors are CV_8U and compared with NORM_HAMMING. The same input gives the same bits for
 every instruction set, thread count and build. One object may serve several threads as long as none
@@ -108,7 +63,7 @@ public:
         MAPPING_SORT,      //!< 8 bits: the rank of x_i, ties by cell index; high bit first
         MAPPING_HAAR,      //!< 3 bits: left > right, top > bottom, main diagonal > other diagonal
         MAPPING_PAIRWISE,  //!< 4 bits: x_0 > x_1, x_1 > x_3, x_3 > x_2, x_2 > x_0, around the quad
-        MAPPING_BOXES      //!< boxes on overlapping grids instead of cells, see above; granularity 1 to 5
+        MAPPING_BOXES  //!< boxes on overlapping grids instead of cells, see doc/format.md; granularity 1 to 5
     };
 
     //! What becomes of a keypoint whose ROS leaves the image. Inside, all give the same bits.

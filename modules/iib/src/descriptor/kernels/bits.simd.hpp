@@ -9,31 +9,6 @@
 #include "mappings.hpp"
 
 namespace cv {
-
-CV_CPU_OPTIMIZATION_HAL_NAMESPACE_BEGIN
-
-/* Doubles, or one of them where there are no such vectors (ARMv7, WebAssembly). */
-#if CV_SIMD_64F
-typedef v_float64 v_doubles;
-
-inline v_doubles loadDoubles(const double* p) { return vx_load(p); }
-inline v_doubles repeatedDouble(double v) { return vx_setall_f64(v); }
-#else
-typedef double v_doubles;
-
-template <> struct VTraits<double>
-{
-    static constexpr int max_nlanes = 1;
-};
-inline double loadDoubles(const double* p) { return *p; }
-inline double repeatedDouble(double v) { return v; }
-inline void v_store(double* p, double v) { *p = v; }
-inline double v_min(double a, double b) { return std::min(a, b); }
-inline double v_max(double a, double b) { return std::max(a, b); }
-#endif
-
-CV_CPU_OPTIMIZATION_HAL_NAMESPACE_END
-
 namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
@@ -55,13 +30,8 @@ template <typename V> struct Chunk
 inline unsigned bitsOf(const ChosenBits::Group& group, const uchar* comparisons)
 {
     const uchar* const bytes = comparisons + group.byte;
-#if CV_SSSE3 || (CV_NEON && defined __aarch64__)
-    const v_uint8x16 masks = v_load(group.masks);
-#if CV_SSSE3
-    const v_uint8x16 found(_mm_shuffle_epi8(v_load(bytes).val, v_load(group.places).val));
-#else
-    const v_uint8x16 found(vqtbl1q_u8(v_load(bytes).val, v_load(group.places).val));
-#endif
+#if IIB_LOOKS_UP_BYTES
+    const v_uint8x16 masks = v_load(group.masks), found = lookUp(v_load(bytes), v_load(group.places));
     return (unsigned)v_signmask((found & masks) == masks);
 #else
     unsigned bits = 0;
@@ -74,9 +44,7 @@ inline unsigned bitsOf(const ChosenBits::Group& group, const uchar* comparisons)
 //! Appends the chosen bits of a phase.
 inline void appendChosen(const ChosenBits& chosen, const uchar* comparisons, BitAppender& out)
 {
-#if CV_AVX512_SKX  // GCC 12 leaves upper halves in use; code without AVX that follows, also a user's, runs at half the speed
-    _mm256_zeroupper();
-#endif
+    freeUpperHalves();
     BitAppender writer = out;  // a copy, which stores to uchar* surely do not change
     for (const ChosenBits::Group& group : chosen.groups())
         writer.append(bitsOf(group, comparisons), group.count);
@@ -84,42 +52,6 @@ inline void appendChosen(const ChosenBits& chosen, const uchar* comparisons, Bit
 }
 
 // How cells are compared.
-
-/* Stores groups of four lanes, every other one to `even` and to `odd`; `lane` counts the lanes that were stored before,
- and a vector may be as small as one. */
-inline void storeAlternately(unsigned* even, unsigned* odd, int lane, const v_int32& v)
-{
-    const v_uint32 u = v_reinterpret_as_u32(v);
-#if CV_AVX512_SKX
-    const v_uint32 sorted(_mm512_shuffle_i32x4(u.val, u.val, 0xd8));  // groups 0, 2, 1, 3
-    v_store_low(even + lane / 2, sorted);
-    v_store_high(odd + lane / 2, sorted);
-#elif CV_AVX2
-    v_store_low(even + lane / 2, u);
-    v_store_high(odd + lane / 2, u);
-#else
-    v_store((lane % 8 < 4 ? even : odd) + lane / 8 * 4, u);
-#endif
-}
-
-/* Four numbers, each repeated four times, as 16 / v_int32 lanes vectors. Not by way of memory, where what was stored in
- parts could not be read whole until all stores before it are done. */
-inline void repeatEachFourTimes(const v_int32x4& n, v_int32 out[])
-{
-#if CV_AVX512_SKX
-    const __m512i places = _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
-    out[0] = v_int32(_mm512_permutexvar_epi32(places, _mm512_castsi128_si512(n.val)));
-#elif CV_AVX2
-    const __m256i twice = _mm256_broadcastsi128_si256(n.val);
-    out[0] = v_int32(_mm256_permutevar8x32_epi32(twice, _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1)));
-    out[1] = v_int32(_mm256_permutevar8x32_epi32(twice, _mm256_setr_epi32(2, 2, 2, 2, 3, 3, 3, 3)));
-#else
-    out[0] = v_broadcast_element<0>(n);
-    out[1] = v_broadcast_element<1>(n);
-    out[2] = v_broadcast_element<2>(n);
-    out[3] = v_broadcast_element<3>(n);
-#endif
-}
 
 inline v_int32 loadCells(const ushort* p) { return v_reinterpret_as_s32(vx_load_expand(p)); }
 inline v_int32 loadCells(const unsigned* p) { return v_reinterpret_as_s32(vx_load(p)); }
@@ -130,16 +62,6 @@ inline v_int32 repeated(int v, const v_int32&) { return vx_setall_s32(v); }
 
 inline v_doubles loadCells(const double* p) { return loadDoubles(p); }
 inline v_doubles repeated(int v, const v_doubles&) { return repeatedDouble(v); }
-
-inline void storeAlternately(double* even, double* odd, int lane, const v_doubles& v)
-{
-#if CV_AVX512_SKX
-    v_store_low(even + lane / 2, v);
-    v_store_high(odd + lane / 2, v);
-#else
-    v_store((lane % 8 < 4 ? even : odd) + lane / 8 * 4 + lane % 4, v);
-#endif
-}
 
 //! A vector whose comparisons are bits, a bit a lane.
 template <typename V> struct Lanes

@@ -274,19 +274,6 @@ void rotatedBoxMeans(const RingRows<Sum>& integral, const BoxGridShape& grid, co
         }
 }
 
-//! The boxes right of those of a vector. @param next the vector behind it.
-inline v_int16 nextBoxes(const v_int16& boxes, const v_int16& next)
-{
-#if CV_AVX512_SKX
-    return v_int16(_mm512_alignr_epi64(next.val, boxes.val, BOX_LANES / 4));
-#elif CV_AVX2
-    return v_int16(_mm256_permute2x128_si256(boxes.val, next.val, 0x21));
-#else
-    (void)boxes;  // one box
-    return next;
-#endif
-}
-
 //! A bit for each lane of as many boxes as make a vector.
 inline void storeGreater(const v_int16& a, const v_int16& b, uchar* out)
 {
@@ -312,8 +299,8 @@ void compareBoxes(const short* means, const BoxGridShape& grid, uchar* out)
             m += LANES;
             const v_int16 nextSum = v_add_wrap(vx_load(m), vx_load(m + below));
             const v_int16 nextDifference = v_sub_wrap(vx_load(m), vx_load(m + below));
-            const v_int16 right = nextBoxes(difference, nextDifference);
-            storeGreater(sum, nextBoxes(sum, nextSum), out + col);
+            const v_int16 right = eightBehind(difference, nextDifference);
+            storeGreater(sum, eightBehind(sum, nextSum), out + col);
             storeGreater(difference, v_sub_wrap(vx_setzero_s16(), right), out + bytes + col);
             storeGreater(difference, right, out + 2 * bytes + col);
             sum = nextSum;

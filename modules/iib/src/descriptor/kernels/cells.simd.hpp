@@ -14,60 +14,6 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-/* A group is the four channels of a pixel. loadGroups() loads groups from several places into one vector, nextGroups()
- shifts a vector by one group. Vectors have 256 bits at most: the offsets of a 512-bit one need too many registers.
- v_lut_quads is not used, since gather instructions are slow on many machines. */
-#if CV_AVX2
-typedef v_uint16x16 v_groups16;
-typedef v_uint32x8 v_groups32;
-
-//! Four places: row + at[0], at[2], at[4], at[6].
-inline v_groups16 loadGroups(const ushort* row, const size_t* at)
-{
-    const __m128i low = v_load_halves(row + at[0], row + at[2]).val;
-    return v_groups16(_mm256_inserti128_si256(
-            _mm256_castsi128_si256(low), v_load_halves(row + at[4], row + at[6]).val, 1));
-}
-
-//! Two places: row + at[0], at[2].
-inline v_groups32 loadGroups(const unsigned* row, const size_t* at)
-{
-    const __m256i low = _mm256_castsi128_si256(v_load(row + at[0]).val);
-    return v_groups32(_mm256_inserti128_si256(low, v_load(row + at[2]).val, 1));
-}
-
-//! Drops the first group and appends the one at `more`.
-inline v_groups16 nextGroups(const v_groups16& v, const ushort* more)
-{
-    return v_rotate_right<4>(v, v_groups16(_mm256_castsi128_si256(v_load_low(more).val)));
-}
-
-inline v_groups32 nextGroups(const v_groups32& v, const unsigned* more)
-{
-    return v_rotate_right<4>(v, v_groups32(_mm256_castsi128_si256(v_load(more).val)));
-}
-#else
-typedef v_uint16x8 v_groups16;
-typedef v_uint32x4 v_groups32;
-
-//! Two places: row + at[0], at[2].
-inline v_groups16 loadGroups(const ushort* row, const size_t* at)
-{
-    return v_load_halves(row + at[0], row + at[2]);
-}
-
-//! One place: row + at[0].
-inline v_groups32 loadGroups(const unsigned* row, const size_t* at) { return v_load(row + at[0]); }
-
-//! Drops the first group and appends the one at `more`.
-inline v_groups16 nextGroups(const v_groups16& v, const ushort* more)
-{
-    return v_rotate_right<4>(v, v_groups16(v_load_low(more)));
-}
-
-inline v_groups32 nextGroups(const v_groups32&, const unsigned* more) { return v_load(more); }
-#endif
-
 inline v_groups16 subtractModulo(const v_groups16& a, const v_groups16& b) { return v_sub_wrap(a, b); }
 inline v_groups32 subtractModulo(const v_groups32& a, const v_groups32& b) { return a - b; }
 
@@ -132,6 +78,54 @@ void cellSums(const RingRows<Sum>& rows, const int* xEdges, const int* yEdges, i
         }
     }
 }
+
+#if IIB_SUMS_SEGMENTS
+//! Adds a pixel column, all channels of it, to a column of cells.
+void addColumn(const ushort* const* lines, const size_t channels[GROUP_CHANNELS], int x, int c,
+        CellGrid<ushort>& cells)
+{
+    for (int r = 0; r < cells.size(); r++)
+        for (int i = 0; i < GROUP_CHANNELS; i++)
+        {
+            const size_t at = channels[i] + x;
+            ushort& sum = cells.cell(r, c)[i];
+            sum = (ushort)(sum + lines[r + 1][at] - lines[r][at]);
+        }
+}
+
+void columnCells(const RingRows<short>& rows, const size_t channels[GROUP_CHANNELS], const int* xEdges,
+        const int* yEdges, int n, CellGrid<ushort>& cells)
+{
+    static_assert(NARROW_CELL == SegmentSums::LONGEST, "wider cells take longer");
+    const int shift = rows.shift(yEdges[0]);
+    AutoBuffer<const ushort*, 72> lines(n + 1);
+    for (int r = 0; r <= n; r++)
+        lines[r] = reinterpret_cast<const ushort*>(
+                rows.data + rows.place(yEdges[r] + shift, rows.count) * rows.step);
+    cells.create(n);
+    const size_t step = cells.row(0, 1) - cells.row(0, 0);
+    for (int c = 0; c < n; c += SegmentSums::COUNT)
+    {
+        const SegmentSums segments(xEdges + c);
+        const size_t first = (size_t)(xEdges[c] - rows.origin.x);
+        const size_t at[GROUP_CHANNELS] = {
+                channels[0] + first, channels[1] + first, channels[2] + first, channels[3] + first};
+        ushort* out = cells.row(0, 0) + c / 2 * GROUP_CHANNELS;
+        v_uint16 above = segments(lines[0], at);
+        for (int r = 0; r < n; r++, out += 2 * step)
+        {
+            const v_uint16 below = segments(lines[r + 1], at);
+            segments.store(out, out + step, v_sub_wrap(below, above));
+            above = below;
+        }
+        for (int k = 0; k < SegmentSums::COUNT && !segments.areComplete(); k++)
+            for (int x = SegmentSums::reached(xEdges + c, k); x < xEdges[c + k + 1]; x++)
+                addColumn(lines.data(), channels, x - rows.origin.x, c + k, cells);
+    }
+}
+#else
+constexpr decltype(DescriptorKernels::columnCells) columnCells = 0;
+#endif
 
 }  // namespace
 

@@ -37,7 +37,7 @@ template <typename Sum> struct RingRows
     int count;     //!< rows in the ring
     Point origin;  //!< in the image
 
-    //! What to add to rows of the image from `oldest` on, the first at hand, before place() puts them into the ring.
+    //! Makes a row of the image an argument of place(): add this to its y. @param oldest the first row in the ring.
     int shift(int oldest) const { return (oldest - origin.y) % count - oldest; }
 
     static int place(int shifted, int count) { return shifted < count ? shifted : shifted - count; }
@@ -153,7 +153,7 @@ template <typename Sum> struct BitsKernels
 {
     typedef typename std::conditional<std::is_same<Sum, double>::value, double, unsigned>::type Parent;
 
-    /** By mapping: write the bits of a level, in the order of descriptor.hpp.
+    /** By mapping: write the bits of a level, in the order of doc/format.md.
      @param parents gets the sums over quads, which are the cells of the next coarser level. */
     void (*write[MAPPINGS])(const CellGrid<Sum>& cells, const LevelShape& shape, const CellEdges& edges,
             CellGrid<Parent>& parents, uchar* descriptor);

@@ -2,11 +2,22 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#pragma once
+#include "boxes.hpp"
+
+namespace cv {
+namespace iib {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+const DescriptorKernels& descriptorKernels();
+const BoxKernels& boxKernels();
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}  // namespace iib
+}  // namespace cv
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 #include "bits.simd.hpp"
 #include "boxes.simd.hpp"
-#include "columns.simd.hpp"
+#include "cells.simd.hpp"
 #include "rotated_samples.simd.hpp"
 
 namespace cv {
@@ -34,3 +45,5 @@ CV_CPU_OPTIMIZATION_NAMESPACE_END
 
 }  // namespace iib
 }  // namespace cv
+
+#endif

@@ -13,54 +13,6 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-/* Pixels of four values from anywhere: loadPixels() loads as many as v_samples has lanes, at
- these indices, and takes their values apart. */
-#if CV_AVX2
-inline void loadPixels(
-        const short* pixels, const int* i, v_samples& a, v_samples& b, v_samples& c, v_samples& d)
-{
-    const auto twoPixels = [&](int k) {
-        return v_load_halves(pixels + (size_t)4 * i[k], pixels + (size_t)4 * i[k + 1]).val;
-    };
-    const __m256i even = _mm256_inserti128_si256(_mm256_castsi128_si256(twoPixels(0)), twoPixels(4), 1);
-    const __m256i odd = _mm256_inserti128_si256(_mm256_castsi128_si256(twoPixels(2)), twoPixels(6), 1);
-    // pairs of values: the first two of each pixel, and the last two
-    const __m256 e = _mm256_castsi256_ps(even), o = _mm256_castsi256_ps(odd);
-    const __m256i first = _mm256_castps_si256(_mm256_shuffle_ps(e, o, 0x88));
-    const __m256i last = _mm256_castps_si256(_mm256_shuffle_ps(e, o, 0xdd));
-    a = v_samples(_mm256_srai_epi32(_mm256_slli_epi32(first, 16), 16));
-    b = v_samples(_mm256_srai_epi32(first, 16));
-    c = v_samples(_mm256_srai_epi32(_mm256_slli_epi32(last, 16), 16));
-    d = v_samples(_mm256_srai_epi32(last, 16));
-}
-
-inline void loadPixels(
-        const int* pixels, const int* i, v_samples& a, v_samples& b, v_samples& c, v_samples& d)
-{
-    v_int32x4 v[4], low[4], high[4];
-    for (int k = 0; k < 4; k++)
-        v[k] = v_load(pixels + (size_t)4 * i[k]);
-    v_transpose4x4(v[0], v[1], v[2], v[3], low[0], low[1], low[2], low[3]);
-    for (int k = 0; k < 4; k++)
-        v[k] = v_load(pixels + (size_t)4 * i[4 + k]);
-    v_transpose4x4(v[0], v[1], v[2], v[3], high[0], high[1], high[2], high[3]);
-    v_samples* const out[] = {&a, &b, &c, &d};
-    for (int k = 0; k < 4; k++)
-        *out[k] = v_samples(_mm256_inserti128_si256(_mm256_castsi128_si256(low[k].val), high[k].val, 1));
-}
-#else
-inline v_int32x4 loadPixel(const short* p) { return v_load_expand(p); }
-inline v_int32x4 loadPixel(const int* p) { return v_load(p); }
-
-template <typename T>
-inline void loadPixels(const T* pixels, const int* i, v_samples& a, v_samples& b, v_samples& c, v_samples& d)
-{
-    v_int32x4 v0 = loadPixel(pixels + (size_t)4 * i[0]), v1 = loadPixel(pixels + (size_t)4 * i[1]),
-              v2 = loadPixel(pixels + (size_t)4 * i[2]), v3 = loadPixel(pixels + (size_t)4 * i[3]);
-    v_transpose4x4(v0, v1, v2, v3, a, b, c, d);
-}
-#endif
-
 //! Products of values and a sampleFactor() of 16 bits each, since those of 32 bits are slow.
 inline v_samples sampleFactor(short factor) { return v_setall_samples((int)(ushort)factor); }
 inline v_samples sampleFactor(int factor) { return v_setall_samples(factor); }

@@ -14,19 +14,6 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-//! `whole` - v where a < b, else v.
-template <typename V> inline V subtractWhereLess(const V& a, const V& b, const V& whole, const V& v)
-{
-    return v_select(a < b, whole - v, v);
-}
-
-#if CV_AVX512_SKX  // the above turns its masks into vectors and back
-inline v_int16 subtractWhereLess(const v_int16& a, const v_int16& b, const v_int16& whole, const v_int16& v)
-{
-    return v_int16(_mm512_mask_sub_epi16(v.val, _mm512_cmplt_epi16_mask(a.val, b.val), whole.val, v.val));
-}
-#endif
-
 inline v_int16 addModulo(const v_int16& a, const v_int16& b) { return v_add_wrap(a, b); }
 inline v_int32 addModulo(const v_int32& a, const v_int32& b) { return a + b; }
 
@@ -47,7 +34,8 @@ public:
         return nearestInt(((c() * t2 + b()) * t2 + a()) * t);
     }
 
-    //! The same for sides of up to 11 bits, where a rounding less changes no step.
+    //! The same for sides below 2^11. Products and sums are fused where the processor can: the one rounding less changes
+    //! the result for no two such sides.
     v_int32 ofShortSides() const
     {
         const v_float32 t2 = t * t;
@@ -180,73 +168,12 @@ template <typename Pixel, typename T> void widenRow(const Pixel* in, T* out, int
         out[x] = (T)in[x];
 }
 
-/* Interleaves four planes; out[0] gets the first pixels. Zipping is cheap only within 128 bits, so that wider vectors
- are first permuted. */
-inline void interleaveFour(const v_uint16 planes[4], v_uint16 out[4])
-{
-#if CV_AVX512_SKX
-    const __m512i places = _mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15);
-    __m512i p[4];
-    for (int i = 0; i < 4; i++)
-        p[i] = _mm512_permutexvar_epi32(places, planes[i].val);
-    const __m512i low01 = _mm512_unpacklo_epi16(p[0], p[1]), high01 = _mm512_unpackhi_epi16(p[0], p[1]);
-    const __m512i low23 = _mm512_unpacklo_epi16(p[2], p[3]), high23 = _mm512_unpackhi_epi16(p[2], p[3]);
-    out[0] = v_uint16(_mm512_unpacklo_epi32(low01, low23));
-    out[1] = v_uint16(_mm512_unpackhi_epi32(low01, low23));
-    out[2] = v_uint16(_mm512_unpacklo_epi32(high01, high23));
-    out[3] = v_uint16(_mm512_unpackhi_epi32(high01, high23));
-#elif CV_AVX2
-    const __m256i places = _mm256_setr_epi32(0, 2, 4, 6, 1, 3, 5, 7);
-    __m256i p[4];
-    for (int i = 0; i < 4; i++)
-        p[i] = _mm256_permutevar8x32_epi32(planes[i].val, places);
-    const __m256i low01 = _mm256_unpacklo_epi16(p[0], p[1]), high01 = _mm256_unpackhi_epi16(p[0], p[1]);
-    const __m256i low23 = _mm256_unpacklo_epi16(p[2], p[3]), high23 = _mm256_unpackhi_epi16(p[2], p[3]);
-    out[0] = v_uint16(_mm256_unpacklo_epi32(low01, low23));
-    out[1] = v_uint16(_mm256_unpackhi_epi32(low01, low23));
-    out[2] = v_uint16(_mm256_unpacklo_epi32(high01, high23));
-    out[3] = v_uint16(_mm256_unpackhi_epi32(high01, high23));
-#else
-    v_uint16 low01, high01, low23, high23;
-    v_zip(planes[0], planes[1], low01, high01);
-    v_zip(planes[2], planes[3], low23, high23);
-    v_uint32 pixels[4];
-    v_zip(v_reinterpret_as_u32(low01), v_reinterpret_as_u32(low23), pixels[0], pixels[1]);
-    v_zip(v_reinterpret_as_u32(high01), v_reinterpret_as_u32(high23), pixels[2], pixels[3]);
-    for (int i = 0; i < 4; i++)
-        out[i] = v_reinterpret_as_u16(pixels[i]);
-#endif
-}
-
 //! Adds to each value those before it in its group of four, modulo 2^16.
 inline v_uint16 prefixSumsOfFour(const v_uint16& v)
 {
     // Added in 16 bits: valgrind takes a whole 64-bit sum for undefined where the last pixels of four are.
     const v_uint16 two = v_add_wrap(v, v_reinterpret_as_u16(v_reinterpret_as_u64(v) << 16));
     return v_add_wrap(two, v_reinterpret_as_u16(v_reinterpret_as_u64(two) << 32));
-}
-
-//! In vectors of 512 bits, adds the fourth 64-bit element to the four after it, in 16-bit lanes.
-inline v_uint16 addFourthToUpper(const v_uint16& v)
-{
-#if CV_AVX512_SKX
-    return v_uint16(
-            _mm512_add_epi16(v.val, _mm512_maskz_permutexvar_epi64(0xf0, _mm512_set1_epi64(3), v.val)));
-#else
-    return v;
-#endif
-}
-
-//! Repeats the last four values; universal intrinsics have this for 128 bits only.
-inline v_uint16 repeatLastFour(const v_uint16& v)
-{
-#if CV_AVX512_SKX
-    return v_uint16(_mm512_permutexvar_epi64(_mm512_set1_epi64(7), v.val));
-#elif CV_AVX2
-    return v_uint16(_mm256_permute4x64_epi64(v.val, 0xff));
-#else
-    return v_combine_high(v, v);
-#endif
 }
 
 //! Running sums within each four pixels of a plane, from pixel x on.
@@ -283,17 +210,6 @@ void sumRow16(const short* const planes[GROUP_CHANNELS], int width, const ushort
 }
 
 // Where 16 bits are too small for the sums over cells.
-
-inline v_uint32 repeatLastFour(const v_uint32& v)
-{
-#if CV_AVX512_SKX
-    return v_uint32(_mm512_shuffle_i32x4(v.val, v.val, 0xff));
-#elif CV_AVX2
-    return v_uint32(_mm256_permute2x128_si256(v.val, v.val, 0x11));
-#else
-    return v;
-#endif
-}
 
 void sumRow32(const short* const planes[GROUP_CHANNELS], int width, const unsigned* above, unsigned* out)
 {

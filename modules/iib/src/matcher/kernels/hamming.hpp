@@ -93,8 +93,8 @@ struct PruningPolicy
 
     std::vector<PruneStage> stages;
     int limit = INT_MAX;  //!< with a single stage, the most bits that may differ there
-    int margin =
-            -1;  //!< if >= 0, the limit of a query is lowered to its least difference at the stage plus this
+    //! If >= 0, the limit of a query is lowered to its least difference at the stage plus this.
+    int margin = -1;
 };
 
 //! Finds all pairs that are near enough and that no stage gives up. Without stages, all are compared to the end.
@@ -104,7 +104,7 @@ struct PrunedScan
     const PruningPolicy& policy;
     HammingSink& sink;
     int64* passed;  //!< for each stage: adds up the pairs that went on there
-    int* limits;    //!< null, or with a single stage: for each query the most bits that may differ there
+    int* limits;    //!< with a single stage, the most bits of each query that may differ there; else null
 };
 
 /** The scans of one instruction set, and how they want their train codes packed: both belong together.

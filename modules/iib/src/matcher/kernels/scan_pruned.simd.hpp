@@ -17,8 +17,8 @@ const int NEVER = INT_MAX;  // the distance of pairs that ended
 //! Writes the values of some lanes, and may write CODES_PER_BLOCK values whatever their number.
 CV_ALWAYS_INLINE void storeLanes(int* to, const Counts* values, int lanes)
 {
-#if CV_AVX512_SKX && IIB_NATIVE_VECTORS
-    v_store(to, v_int32(_mm512_maskz_compress_epi32((__mmask16)lanes, values[0].val)));
+#if IIB_COMPRESSES_LANES
+    v_store(to, compressed(values[0], lanes));
 #else
     int all[CODES_PER_BLOCK];
     for (int v = 0; v < VECTORS; v++)

@@ -12,7 +12,7 @@
 // Tile compares some queries with a CodeBlock, TileQueries prepares these queries, PACKING is the packing that both
 // understand: by tables in registers where bytes are looked up faster than the bits of words are counted, else by
 // adders.
-#if (CV_SSSE3 || (CV_NEON && defined __aarch64__)) && IIB_NATIVE_VECTORS && !IIB_COUNTS_LANES
+#if IIB_LOOKS_UP_BYTES && !IIB_COUNTS_LANES
 #include "tile_tables.simd.hpp"
 #else
 #include "tile_adders.simd.hpp"

@@ -22,20 +22,6 @@ const int QUERIES = 4;
 typedef v_uint8 Bytes;
 const int BYTES = VTraits<Bytes>::max_nlanes, POSITIONS = BYTES / CODES_PER_BLOCK;
 
-//! Picks bytes out of tables of 16, a table for each 16 bytes of the vector; an index is 0 to 15.
-inline v_uint8 lookUp16(const v_uint8& table, const v_uint8& index)
-{
-#if CV_AVX512_SKX
-    return v_uint8(_mm512_shuffle_epi8(table.val, index.val));
-#elif CV_AVX2
-    return v_uint8(_mm256_shuffle_epi8(table.val, index.val));
-#elif CV_SSSE3
-    return v_uint8(_mm_shuffle_epi8(table.val, index.val));
-#else
-    return v_uint8(vqtbl1q_u8(table.val, index.val));
-#endif
-}
-
 inline Bytes lowHalves(const Bytes& x) { return x & vx_setall_u8(15); }
 inline Bytes highHalves(const Bytes& x)
 {
@@ -165,9 +151,9 @@ private:
             for (int half = 0; half < 2; half++)
             {
                 const uchar* tables = queries[pair] + (2 * v + half) * BYTES;
-                Bytes both = lookUp16(vx_load(tables), index[half][0]);
+                Bytes both = lookUp(vx_load(tables), index[half][0]);
                 for (int n = 1; n < N; n++)
-                    both += lookUp16(vx_load(tables + 2 * n * BYTES), index[half][n]);
+                    both += lookUp(vx_load(tables + 2 * n * BYTES), index[half][n]);
                 low[pair] += lowHalves(both);
                 if (2 * pair + 1 < Q)
                     high[pair] = v_add_wrap(high[pair], v_reinterpret_as_u16(both) >> 4);

@@ -2,10 +2,19 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#pragma once
+#include "kernels.hpp"
+
+namespace cv {
+namespace iib {
+CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
+const RefinementKernels& refinementKernels();
+CV_CPU_OPTIMIZATION_NAMESPACE_END
+}  // namespace iib
+}  // namespace cv
+
+#ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 #include "../../common/vectors.simd.hpp"
-#include "kernels.hpp"
 
 namespace cv {
 namespace iib {
@@ -210,3 +219,5 @@ CV_CPU_OPTIMIZATION_NAMESPACE_END
 
 }  // namespace iib
 }  // namespace cv
+
+#endif

@@ -1,0 +1,17 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#include "kernels.simd.hpp"
+#include "refinement/kernels/kernels.simd_declarations.hpp"
+
+namespace cv {
+namespace iib {
+
+const RefinementKernels& refinementKernels()
+{
+    CV_CPU_DISPATCH(refinementKernels, (), CV_CPU_DISPATCH_MODES_ALL);
+}
+
+}  // namespace iib
+}  // namespace cv
