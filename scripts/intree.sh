@@ -1,10 +1,11 @@
 #!/bin/sh
 # Builds OpenCV's own source with these modules through OPENCV_EXTRA_MODULES_PATH, and runs the tests of C++, of speed
 # (a smoke run) and of Python there.
-#   scripts/intree.sh [--short] [--source debian|contrib|contrib-5] [options of CMake]
+#   scripts/intree.sh [--short] [--modules FOLDER] [--source debian|contrib|contrib-5] [options of CMake]
 # --short: what scripts/test.sh has not shown of the same sources: that they build here, give the same bits (golden tests)
 # and the API of C++ and Python; OpenCV is built with little optimization, for AVX512_ICL alone, for which it has no code
 # itself.
+# --modules: the module iib of another folder, alone, and its tests of C++ alone.
 # debian: the distribution's source of its OpenCV. contrib: the newest OpenCV 4 with opencv_contrib's xfeatures2d,
 # from the source distribution of opencv-contrib-python; contrib-5: the newest OpenCV 5 in the same way.
 # JOBS limits the parallel jobs. The last line tells the build's folder.
@@ -25,6 +26,12 @@ if [ "${1:-}" = --short ]; then
     quick="-DENABLE_PRECOMPILED_HEADERS=ON -DENABLE_CCACHE=OFF -DCMAKE_CXX_COMPILER_LAUNCHER= -DWITH_OPENCL=OFF"
     shift
 fi
+modules=""
+if [ "${1:-}" = --modules ]; then
+    modules=${2:-}
+    [ -d "$modules/iib" ] || fail "there is no module iib in '$modules'"
+    shift 2
+fi
 kind=debian
 case "${1:-}" in
 --source)
@@ -38,8 +45,9 @@ case "${1:-}" in
 esac
 check_definitions "$@"
 
-extra_modules="$root/modules"
-list=iib,iib_index,iib_geometry,ts,python3,flann,calib3d,imgcodecs
+extra_modules="${modules:-$root/modules}"
+list=iib,ts,flann,calib3d,imgcodecs
+[ -n "$modules" ] || list=$list,iib_index,iib_geometry,python3
 case "$kind" in
 debian)
     need $build_packages xz-utils libpng-dev zlib1g-dev python3-dev python3-numpy
@@ -86,6 +94,11 @@ cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
     tail -n 30 "$build.log" >&2
     exit 1
 }
+if [ -n "$modules" ]; then
+    cmake --build "$build" --parallel "${JOBS:-$jobs}" --target opencv_test_iib opencv_perf_iib
+    "$build/bin/opencv_test_iib"
+    exit 0
+fi
 cmake --build "$build" --parallel "${JOBS:-$jobs}" --target opencv_test_iib opencv_test_iib_index opencv_test_iib_geometry opencv_perf_iib opencv_python3
 
 say "the libraries' symbols, in-tree"

@@ -5,7 +5,7 @@
 #include "test_precomp.hpp"
 #include "../src/descriptor/kernels/kernels.hpp"
 #include "../src/matcher/kernels/hamming.hpp"
-#include "support/test_images.hpp"
+#include "support/describe.hpp"
 
 // Compilers free the upper halves where they optimize for speed, and that is when it counts: not in sanitized builds
 // (-O1).

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/test_errors.hpp"
-#include "../support/test_images.hpp"
+#include "../support/describe.hpp"
 
 namespace opencv_test {
 namespace {

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../support/test_images.hpp"
+#include "../support/describe.hpp"
 
 /* The exact bits, which no build, machine or later version may change without a new major version: descriptors in
  files would no longer match. A test that fails prints its line of the table. All lines:

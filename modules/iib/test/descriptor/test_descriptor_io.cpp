@@ -4,7 +4,7 @@
 
 #include "../support/temporary_file.hpp"
 #include "../support/test_errors.hpp"
-#include "../support/test_images.hpp"
+#include "../support/describe.hpp"
 
 namespace opencv_test {
 namespace {

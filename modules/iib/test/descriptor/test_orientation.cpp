@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/descriptor_oracle.hpp"
-#include "../support/test_images.hpp"
+#include "../support/describe.hpp"
 #include "../support/test_errors.hpp"
 #include "../../src/descriptor/kernels/kernels.hpp"
 

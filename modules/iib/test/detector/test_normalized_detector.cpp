@@ -113,35 +113,5 @@ TEST(IIB_NormalizedDetector, parameters_and_files)
     EXPECT_THROW(copy->read(other.root()), cv::Exception);
 }
 
-struct DetectorGain
-{
-    Ptr<Feature2D> detector;
-    double gain;  //!< right matches at normalized points by those at plain points, a little less than was measured
-};
-
-// Real images by day and night, below OPENCV_TEST_DATA_PATH; without them the test skips.
-TEST(IIB_NormalizedDetector, right_matches_by_changed_light)
-{
-    const DetectorGain detectors[] = {
-            {AKAZE::create(AKAZE::DESCRIPTOR_MLDB, 0, 3, 0.0003f), 1.05}, {ORB::create(1000), 1.15}};
-    const char* pairs[][2] = {{"amos_daynight/cam01/1.png", "amos_daynight/cam01/4.png"},
-            {"amos_daynight/cam04/1.png", "amos_daynight/cam04/3.png"},
-            {"tilde_webcam/chamonix/1.png", "tilde_webcam/chamonix/5.png"},
-            {"tilde_webcam/courbevoie/1.png", "tilde_webcam/courbevoie/6.png"}};
-    for (const DetectorGain& d : detectors)
-    {
-        int plain = 0, normalizedPoints = 0;
-        for (const auto& pair : pairs)
-        {
-            const Mat images[] = {readIllumination(pair[0]), readIllumination(pair[1])};
-            plain += matchDetected(d.detector, images, 1000).correct;
-            normalizedPoints += matchDetected(NormalizedDetector::create(d.detector), images, 1000).correct;
-        }
-        std::cout << format("[          ] %s: %d right matches at plain points, %d at normalized ones\n",
-                d.detector->getDefaultName().c_str(), plain, normalizedPoints);
-        EXPECT_GE(normalizedPoints, d.gain * plain);
-    }
-}
-
 }  // namespace
 }  // namespace opencv_test

@@ -5,7 +5,7 @@
 #ifndef OPENCV_IIB_TEST_NORMALIZATION_ORACLE_HPP
 #define OPENCV_IIB_TEST_NORMALIZATION_ORACLE_HPP
 
-#include "../support/descriptor_oracle.hpp"
+#include "../support/oracle_pixels.hpp"
 #include "../test_precomp.hpp"
 
 namespace oracle {

@@ -31,15 +31,6 @@ int orientation(int gx, int gy)
     return steps % turn;
 }
 
-int pixel(const Mat& m, int y, int x)
-{
-    y = std::min(std::max(y, 0), m.rows - 1);
-    x = std::min(std::max(x, 0), m.cols - 1);
-    return m.depth() == CV_8U    ? m.at<uchar>(y, x)
-           : m.depth() == CV_16U ? m.at<ushort>(y, x)
-                                 : m.at<int>(y, x);
-}
-
 Point gradient(const Mat& m, int y, int x)
 {
     Point g;

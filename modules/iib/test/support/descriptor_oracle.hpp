@@ -4,8 +4,7 @@
 
 #pragma once
 
-#include "opencv2/core.hpp"
-#include "opencv2/iib/features.hpp"
+#include "oracle_pixels.hpp"
 #include "opencv2/iib/descriptor.hpp"
 
 /*
@@ -28,9 +27,6 @@ std::vector<Channel> channelsOf(
 //! keypoints.size() descriptors, for the extractor's parameters but BORDER_DROP.
 cv::Mat describe(const cv::iib::IIBDescriptorExtractor& iib, const cv::Mat& grey,
         const std::vector<cv::Mat>& extra, const std::vector<cv::KeyPoint>& keypoints);
-
-//! The nearest pixel of an image, CV_8U, CV_16U or CV_32S.
-int pixel(const cv::Mat& image, int y, int x);
 
 //! Sobel's, of such pixels.
 cv::Point gradient(const cv::Mat& image, int y, int x);

@@ -8,8 +8,6 @@
 
 namespace opencv_test {
 
-using cv::iib::IIB;
-
 //! Pseudorandom integers, the same everywhere (SplitMix64).
 class Integers
 {
@@ -46,14 +44,6 @@ std::vector<KeyPoint> scatter(Size size, int count, float smallest, float larges
 //! @param ends of their rows and columns on each level
 Mat_<int> randomSelection(int count, const std::vector<int>& ends, const std::vector<int>& masksOfChannels);
 
-//! Computes descriptors and expects that the keypoints stay as they are.
-Mat describe(IIB& iib, InputArray image, const std::vector<KeyPoint>& keypoints,
-        InputArrayOfArrays extra = noArray());
-
-//! Describes the keypoints as the oracle does, and expects the same bits.
-void expectOracle(IIB& iib, const Mat& image, const std::vector<KeyPoint>& keypoints,
-        const std::vector<Mat>& extra = std::vector<Mat>());
-
 //! Number of bits that differ; fails if the sizes or types do.
 int differingBits(const Mat& a, const Mat& b);
 
@@ -65,17 +55,6 @@ uint64 hashOf(const Mat& m);
 //! How many matches lead at most 3 pixels away from where a homography takes their point.
 int countCorrect(const std::vector<DMatch>& matches, const std::vector<KeyPoint>& queries,
         const std::vector<KeyPoint>& trains, const Matx33d& homography = Matx33d::eye());
-
-//! What matching two images of the same view gave.
-struct DetectedMatches
-{
-    size_t keypoints[2];
-    size_t matches;
-    int correct;
-};
-
-//! Detects up to `most` points in both images, describes them with the detector's scale factor, matches mutually.
-DetectedMatches matchDetected(const Ptr<Feature2D>& detector, const Mat images[2], int most);
 
 //! A scene, and the same by other light, rotated clockwise about its centre; 600 of ORB's points in each.
 struct RotatedPair

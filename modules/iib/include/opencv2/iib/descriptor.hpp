@@ -266,7 +266,7 @@ public:
     CV_WRAP virtual Mat getSelection() const = 0;
 };
 
-typedef IIBDescriptorExtractor IIB;
+typedef IIBDescriptorExtractor IIB;  //!< the paper's name
 
 //! @}
 

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/matcher_oracle.hpp"
-#include "../support/test_images.hpp"
+#include "../support/describe.hpp"
 
 /* The matcher on descriptors of real images, below OPENCV_TEST_DATA_PATH; without them these tests skip. */
 namespace opencv_test {
