@@ -28,7 +28,7 @@ iib_add_test_program(test iib_geometry)
 iib_add_test_program(perf iib_geometry)
 
 # Suites of internals link what the library does not show.
-target_sources(opencv_test_iib PRIVATE "$<FILTER:$<TARGET_OBJECTS:opencv_iib>,INCLUDE,/(kernels/.*|matcher/(pair_scan|parameters|search)|descriptor/(keypoint_batches|parameters|plan))[.]>")
+target_sources(opencv_test_iib PRIVATE "$<FILTER:$<TARGET_OBJECTS:opencv_iib>,INCLUDE,/(common/grey|kernels/.*|matcher/(pair_scan|parameters|search)|descriptor/(keypoint_batches|parameters|plan))[.]>")
 target_sources(opencv_test_iib_geometry PRIVATE $<TARGET_OBJECTS:opencv_iib_geometry>)
 target_link_libraries(opencv_test_iib_geometry PRIVATE ${IIB_GEOMETRY_OPENCV})
 target_include_directories(opencv_test_iib_geometry PRIVATE "${IIB_GEOMETRY_DIR}/src")
