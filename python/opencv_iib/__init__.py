@@ -22,7 +22,7 @@ from opencv_iib.descriptor import IIB, IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector, NormalizedDetector
 from opencv_iib.enums import AlignmentModel, Border, Channel, Mapping, Mode, Orientation, Preset
 from opencv_iib.functions import Features, Matches, detect_and_describe, match
-from opencv_iib.geometry import Alignment, FoundPose, NoAlignment, NoPose, alignImages, findRelativePose
+from opencv_iib.geometry import Alignment, FoundPose, NoAlignment, NoPose, alignImages, findRelativePose, logFalseAlarms
 from opencv_iib.keypoints import array_to_keypoints, keypoints_to_array
 from opencv_iib.mapped_index import MappedIndex
 from opencv_iib.matcher import HierarchicalMatcher
@@ -33,7 +33,8 @@ __all__ = ['Alignment', 'AlignmentModel', 'Border', 'Channel', 'DMatch', 'Featur
            'HierarchicalMatcher', 'IIB', 'IIBDescriptorExtractor', 'KeyPoint', 'MappedIndex', 'Mapping', 'Matches',
            'Mode', 'NoAlignment', 'NoPose', 'NormalizedDetector', 'OPENCV_VERSION', 'Orientation', 'Preset', 'PropagatedMatches',
            'RefinedMatches', 'alignImages', 'array_to_keypoints', 'detect_and_describe', 'error', 'estimateRotation',
-           'findRelativePose', 'getNumThreads', 'keypoints_to_array', 'match', 'matchRotated', 'propagateMatches', 'refineMatches', 'setNumThreads']
+           'findRelativePose', 'getNumThreads', 'keypoints_to_array', 'logFalseAlarms', 'match', 'matchRotated',
+           'propagateMatches', 'refineMatches', 'setNumThreads']
 
 __version__: str = _core.VERSION
 #: Of the OpenCV inside.

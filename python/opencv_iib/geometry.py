@@ -117,3 +117,19 @@ def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentMo
     none = NoAlignment(*alignment)
     none.reason = reason
     return none
+
+
+def logFalseAlarms(points1: ArrayLike, points2: ArrayLike, inliers: ArrayLike, epipolar: bool, threshold: float) -> float:
+    """Whether matches agree with a fundamental matrix or a homography by more than chance, as ``cv2.iib.logFalseAlarms``.
+
+    :param points1: N x 2: pixels of image 1, of right and wrong matches.
+    :param points2: N x 2: their matches in image 2.
+    :param inliers: N marks, not 0 for matches that agree, such as ``cv2.findHomography`` gives.
+    :param epipolar: whether they agree with a fundamental matrix, in place of a homography.
+    :param threshold: pixels: the largest distance of a match that agrees.
+    :return: logarithm to base 10 of the number of models that agree as well by chance; above -3 it may be chance.
+    :raises opencv_iib.error: for arrays of other shapes, and a threshold that is not above 0.
+    """
+    marks = np.ascontiguousarray(as_array(inliers, 'inliers').astype(bool), np.uint8).reshape(-1, 1)
+    return float(_core.logFalseAlarms(_numbers(points1, 'points1'), _numbers(points2, 'points2'), marks, bool(epipolar),
+                                      number(threshold, 'threshold')))

@@ -15,7 +15,7 @@ from opencv_iib._files import check_outputs, write_whole
 from opencv_iib._turns import Turn, upright
 from opencv_iib.colmap.features import FeatureOptions, Features
 from opencv_iib.colmap.images import check_picture, import_cv2, read_with_orientation, write_picture
-from opencv_iib.colmap.verify import magsac
+from opencv_iib.colmap.verify import show_the_same
 from opencv_iib.demo import GOOD, INK, OTHER, draw
 from opencv_iib.enums import Orientation
 from opencv_iib.functions import match
@@ -53,13 +53,9 @@ class Measured(NamedTuple):
 
     @property
     def found(self) -> bool:
-        """Whether there are matches, and with cameras a pose."""
-        return self.pose.found if self.pose is not None else len(self.bits) > 0
-
-    @property
-    def consistent(self) -> bool:
-        """Whether it is known that they show the same: there is a pose, or without cameras one geometry that fifteen matches agree with."""
-        return self.pose.found if self.pose is not None else bool(magsac(self.matches.points1, self.matches.points2)[0].any())
+        """Whether they show the same: there is a pose, or without cameras more matches than chance may give agree with one epipolar
+        geometry or homography."""
+        return self.pose.found if self.pose is not None else show_the_same(self.matches.points1, self.matches.points2)
 
     def save(self, file: Path) -> None:
         """Writes matches and pose to a file that is replaced when the new one is whole, by its suffix: .json, .npz, or else CSV.
@@ -96,7 +92,7 @@ class Measured(NamedTuple):
         if self.rotation:
             text += f', one image turned by {self.rotation:.0f} degrees'
         if self.pose is None:
-            return text + '\nthe images may not show the same: fewer than 15 matches agree with one geometry' * (not self.consistent)
+            return text + '\nthese may not show the same: no more matches agree with one geometry than chance may give' * (not self.found)
         if not self.pose.found:
             return f'{text}\nno pose: {self.pose.reason}'.replace('no pose: no pose', 'no pose')
         turn, towards = rotation_vector(self.pose.R), -self.pose.R.T @ self.pose.t.ravel()
@@ -141,14 +137,14 @@ def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, pictu
     pair, features = _Pair(stored, orientations, lenses), Features(options)
     (rows_a, codes_a), (rows_b, codes_b) = map(features, pair.images)
     measured = pair.measured((rows_a, rows_b), (codes_a, codes_b), match(codes_a, codes_b).pairs)
-    if not options.orientation and len(rows_a) and len(rows_b) and not measured.consistent:  # EXIF may tell nothing of a turned camera
+    if not options.orientation and len(rows_a) and len(rows_b) and not measured.found:  # EXIF may tell nothing of a turned camera
         extractor = copy.copy(features.extractor)
         extractor.setOrientation(Orientation.KEYPOINT)
         rotation, *rows, matches = matchRotated(pair.images[0], pair.images[1], extractor, HierarchicalMatcher.createRecommended(), -1,
                                                 rows_a, rows_b)
         codes = [extractor.compute(image, some)[1] for image, some in zip(pair.images, rows)]
         turned = pair.measured(rows, codes, matches[:, :2])
-        if turned.consistent:
+        if turned.found:
             measured = turned._replace(rotation=rotation)
     if out is not None:
         measured.save(out)

@@ -80,6 +80,13 @@ void bindFunctions(nb::module_& m)
     m.def("propagateMatches", &propagateMatches, WithoutGil());
     m.def("refineMatches", &refineMatches, WithoutGil());
     m.def("findRelativePose", &findRelativePose, WithoutGil());
+    m.def(
+            "logFalseAlarms",
+            [](const cv::Mat& points1, const cv::Mat& points2, const cv::Mat& inliers, bool epipolar,
+                    double threshold) {
+                return cv::iib::logFalseAlarms(points1, points2, inliers, epipolar, threshold);
+            },
+            WithoutGil());
     m.def("alignImages", &alignImages, WithoutGil());
 }
 

@@ -263,6 +263,29 @@ TEST(RelativePose, what_nothing_tells_has_a_large_deviation)
     }
 }
 
+TEST(RelativePose, false_alarms_are_few_of_right_matches_and_many_of_wrong_ones)
+{
+    RNG random(11);
+    const Views right(random, randomPose(random, .1), 60, 0, 0),
+            wrong(random, randomPose(random, .1), 60, 60, 0);
+    Mat some(60, 1, CV_8U, Scalar(0)), none = some.clone();
+    some.rowRange(0, 30) = 1;
+    EXPECT_LT(logFalseAlarms(right.points1, right.points2, some, true, 1), -20);
+    EXPECT_LT(logFalseAlarms(right.points1, right.points2, some, false, 1), -20);
+    none.rowRange(0, 8) = 1;  // as many of 60 as are often near a line
+    EXPECT_GT(logFalseAlarms(wrong.points1, wrong.points2, none, true, 1), -3);
+    none.rowRange(4, 8) = 0;
+    EXPECT_TRUE(cvIsInf(logFalseAlarms(wrong.points1, wrong.points2, none, false, 1)));
+    // Thirty matches in one place are one.
+    Mat beside = right.points1.clone();
+    beside.rowRange(0, 30) = 100;
+    EXPECT_TRUE(cvIsInf(logFalseAlarms(beside, right.points2, some, true, 1)));
+    EXPECT_THROW(logFalseAlarms(beside, right.points2, Mat(59, 1, CV_8U), true, 1), cv::Exception);
+    EXPECT_THROW(logFalseAlarms(beside, right.points2, Mat(60, 1, CV_32S), true, 1), cv::Exception);
+    EXPECT_THROW(logFalseAlarms(beside, right.points2, some, true, 0), cv::Exception);
+    EXPECT_THROW(logFalseAlarms(beside.rowRange(1, 60), right.points2, some, true, 1), cv::Exception);
+}
+
 TEST(RelativePose, matches_drawn_at_random_have_none)
 {
     RNG random(9);

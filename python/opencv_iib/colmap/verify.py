@@ -9,7 +9,10 @@ from typing import Iterable, Optional
 
 import numpy as np
 
+from opencv_iib.geometry import logFalseAlarms
+
 MIN_INLIERS = 15  # COLMAP's
+CERTAIN = -3  # logFalseAlarms above it may be chance
 
 
 def magsac(points_a: np.ndarray, points_b: np.ndarray, threshold: float = 1.5
@@ -33,7 +36,20 @@ def magsac(points_a: np.ndarray, points_b: np.ndarray, threshold: float = 1.5
     if matrix is None or matrix.shape != (3, 3) or mask is None:
         return none, None
     inliers = mask.ravel() > 0
-    return (inliers, matrix) if inliers.sum() >= MIN_INLIERS else (none, None)
+    certain = inliers.sum() >= MIN_INLIERS and logFalseAlarms(points_a, points_b, inliers, True, threshold) < CERTAIN
+    return (inliers, matrix) if certain else (none, None)
+
+
+def show_the_same(points_a: np.ndarray, points_b: np.ndarray, threshold: float = 1.5) -> bool:
+    """Whether more matches than chance may give agree with one fundamental matrix or one homography."""
+    import cv2
+    if magsac(points_a, points_b, threshold)[0].any():
+        return True
+    if len(points_a) < 4:
+        return False
+    _, mask = cv2.findHomography(np.ascontiguousarray(points_b, np.float64), np.ascontiguousarray(points_a, np.float64),
+                                 cv2.USAC_MAGSAC, threshold, maxIters=10000, confidence=.9999)
+    return mask is not None and logFalseAlarms(points_a, points_b, mask, False, threshold) < CERTAIN
 
 
 def colmap_binary() -> Optional[str]:

@@ -6,6 +6,7 @@
 #include "opencv2/iib/alignment.hpp"
 #include "opencv2/iib/localization.hpp"
 #include "opencv2/iib/relative_pose.hpp"
+#include "opencv2/iib/verdict.hpp"
 
 /** @defgroup iib_geometry Poses from matches of the illumination-insensitive binary descriptor */
 

@@ -2,9 +2,9 @@
 #include "opencv2/iib/alignment.hpp"
 
 #include "opencv2/imgproc.hpp"
-#include "outputs.hpp"
 #include "parallax.hpp"
 #include "planar_problem.hpp"
+#include "points.hpp"
 #include "uncertainty.hpp"
 #include "verdict.hpp"
 #include "working_pair.hpp"

@@ -2,36 +2,14 @@
 #include "opencv2/iib/relative_pose.hpp"
 
 #include "epipolar_problem.hpp"
-#include "outputs.hpp"
+#include "points.hpp"
 #include "uncertainty.hpp"
 #include "verdict.hpp"
 
 namespace cv::iib {
 namespace {
 
-const double FARTHEST_PIXEL = 1e9;
 const double REFINED = .25;  // least scale by which matches count as agreeing, pixels
-
-//! N x 2, CV_64F.
-Mat pixels(InputArray points, const char* name)
-{
-    Mat given = points.getMat();
-    if (given.empty())
-        return Mat(0, 2, CV_64F);
-    if (!given.isContinuous())
-        given = given.clone();
-    const int count = given.checkVector(2);
-    if (count < 0 || (given.depth() != CV_32F && given.depth() != CV_64F))
-        CV_Error(Error::StsBadArg,
-                format("findRelativePose: %s must be N x 2 numbers, CV_32F or CV_64F", name));
-    Mat rows;
-    given.reshape(1, count).convertTo(rows, CV_64F);
-    if (!checkRange(rows, true, nullptr, -FARTHEST_PIXEL, FARTHEST_PIXEL))
-        CV_Error(Error::StsBadArg,
-                format("findRelativePose: %s has numbers that are no pixels: not finite, or beyond %g", name,
-                        FARTHEST_PIXEL));
-    return rows;
-}
 
 Matx33d cameraMatrix(InputArray matrix, const char* name)
 {
@@ -99,12 +77,9 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
         InputArray cameraMatrix2, OutputArray R, OutputArray t, OutputArray inliers, double scale,
         OutputArray covariance, String* reason)
 {
-    const Mat first = pixels(points1, "points1"), second = pixels(points2, "points2");
-    if (first.rows != second.rows)
-        CV_Error(Error::StsUnmatchedSizes,
-                format("findRelativePose: points1 has %d points, points2 %d; they must be "
-                       "matches, one for one",
-                        first.rows, second.rows));
+    const Mat first = pointsOf(points1, "findRelativePose", "points1"),
+              second = pointsOf(points2, "findRelativePose", "points2");
+    checkMatched(first, second, "findRelativePose");
     if (!(scale >= 0) || cvIsInf(scale))
         CV_Error(Error::StsOutOfRange,
                 "findRelativePose: scale, in pixels, must be finite and over 0, or 0, to be chosen");

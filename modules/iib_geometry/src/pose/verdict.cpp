@@ -6,6 +6,9 @@
 #include <limits>
 #include <set>
 
+#include "opencv2/iib/verdict.hpp"
+#include "points.hpp"
+
 namespace cv::iib {
 namespace {
 
@@ -61,6 +64,12 @@ int Verdict::places(const Marks& matches, int image) const
 
 int Verdict::places(const Marks& matches) const { return std::min(places(matches, 0), places(matches, 1)); }
 
+double Verdict::chance(Distance distance, double limit) const
+{
+    const double area = distance == FROM_LINE ? 2 * limit * diagonal(span_) : CV_PI * limit * limit;
+    return area / span_.area();
+}
+
 double Verdict::logFalseAlarms(const Marks& all, const Marks& agreeing, int sampleSize, double chance) const
 {
     double most = -std::numeric_limits<double>::infinity();
@@ -95,6 +104,27 @@ Verdict::Marks within(double limit, const std::vector<double>& squared)
     for (size_t i = 0; i < squared.size(); i++)
         marks[i] = squared[i] < limit * limit;
     return marks;
+}
+
+double logFalseAlarms(
+        InputArray points1, InputArray points2, InputArray inliers, bool epipolar, double threshold)
+{
+    const Mat first = pointsOf(points1, "logFalseAlarms", "points1"),
+              second = pointsOf(points2, "logFalseAlarms", "points2"), marks = inliers.getMat();
+    checkMatched(first, second, "logFalseAlarms");
+    if (!marks.empty() && marks.type() != CV_8U)
+        CV_Error(Error::StsBadArg, "logFalseAlarms: inliers must be CV_8U, a mark for each match");
+    if ((int)marks.total() != first.rows)
+        CV_Error(Error::StsUnmatchedSizes, format("logFalseAlarms: inliers has %d marks for %d matches",
+                                                   (int)marks.total(), first.rows));
+    if (!(threshold > 0) || cvIsInf(threshold))
+        CV_Error(Error::StsOutOfRange, "logFalseAlarms: threshold, in pixels, must be over 0 and finite");
+    Verdict::Marks agreeing(first.rows);
+    std::transform(
+            marks.begin<uchar>(), marks.end<uchar>(), agreeing.begin(), [](uchar mark) { return mark != 0; });
+    const Verdict verdict(first, second);
+    return verdict.logFalseAlarms(Verdict::Marks(first.rows, true), agreeing, epipolar ? 7 : 4,
+            verdict.chance(epipolar ? Verdict::FROM_LINE : Verdict::FROM_POINT, threshold));
 }
 
 }  // namespace cv::iib

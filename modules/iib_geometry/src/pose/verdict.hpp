@@ -32,6 +32,9 @@ public:
     double logFalseAlarms(const std::vector<double>& squared, Distance distance, int sampleSize,
             const std::vector<double>& limits) const;
 
+    //! Chance that a wrong match is so near.
+    double chance(Distance distance, double limit) const;
+
     /** The same of matches that agree or not.
     @param chance that a wrong match agrees. */
     double logFalseAlarms(const Marks& all, const Marks& agreeing, int sampleSize, double chance) const;

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#ifndef OPENCV_IIB_VERDICT_HPP
+#define OPENCV_IIB_VERDICT_HPP
+
+#include "opencv2/core.hpp"
+
+namespace cv {
+namespace iib {
+
+//! @addtogroup iib_geometry
+//! @{
+
+/** @brief Whether matches agree with a fundamental matrix or a homography by more than chance, such as those that
+cv::findFundamentalMat and cv::findHomography call inliers.
+
+The number of false alarms (@cite MoisanStival2004, section 3) is how many models that agree as well are expected among matches that
+are anywhere in their images. It is counted in places, cells of a 32nd of the diagonal of what the points span, since matches beside
+each other are right or wrong together. findRelativePose and alignImages take it for no more than chance above -3, one in a thousand.
+
+@param points1, points2 the matches, right and wrong ones: N x 2, or N of two channels, CV_32F or CV_64F; pixels
+@param inliers N x 1 or 1 x N, CV_8U: not 0 for matches that agree
+@param epipolar whether they agree with a fundamental matrix, in place of a homography
+@param threshold largest distance of a match that agrees from its epipolar line, or from where the homography has it, pixels
+@return logarithm to base 10; infinite for as few as tell a model, seven of a fundamental matrix and four of a homography
+@throws cv::Exception for points of a wrong type, of different numbers or not finite, for marks of other numbers, and for a threshold
+    that is not over 0 */
+CV_EXPORTS_W double logFalseAlarms(
+        InputArray points1, InputArray points2, InputArray inliers, bool epipolar, double threshold);
+
+//! @}
+
+}  // namespace iib
+}  // namespace cv
+
+#endif
