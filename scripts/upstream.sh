@@ -32,7 +32,7 @@ branch_of() {
     /test/real/*) ;;
     */matcher[/.]* | */rotation[/.]* | *_matcher.cpp | */matcher_oracle.* | */random_descriptors.hpp) echo matcher ;;
     */test_match_rotated.cpp | */test_orientation.cpp | */test_instruction_sets.cpp | */test_detectors.cpp | */*_fixtures.cpp) echo matcher ;;
-    *refinement* | /README.md | /misc/* | /samples/* | /tutorials/*) echo refinement ;;
+    *refinement* | */prepared_image.hpp | /README.md | /misc/* | /samples/* | /tutorials/*) echo refinement ;;
     */descriptor[/.]* | *_descriptor.cpp | */descriptor_oracle.* | */box_oracle.cpp | */describe.* | */format.md) echo descriptor ;;
     *) echo detector ;;
     esac

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include "opencv2/iib/refinement.hpp"
 #include "wall.hpp"
 
 namespace opencv_test {
@@ -111,6 +112,29 @@ TEST_F(Localization, looks_for_points_that_no_keypoint_matched)
         squares += off * off / COUNT;
     }
     EXPECT_LT(std::sqrt(squares), 0.00055);
+}
+
+TEST_F(Localization, prepared_images_are_refined_as_images_are)
+{
+    const cv::Mat one = wall.image(TRUTH), other = wall.image(poseAt(.12, -.1, .1));
+    std::vector<cv::KeyPoint> keypoints[2];
+    std::vector<cv::DMatch> matches;
+    for (int i = 0; i < 50; i++)
+    {
+        for (std::vector<cv::KeyPoint>& k : keypoints)
+            k.emplace_back(cv::Point2f(float(20 + 5 * i), float(30 + 3 * i)), 12.f);
+        matches.emplace_back(i, i, 0.f);
+    }
+    cv::Mat expected[4], found[4];
+    cv::iib::refineMatches(one, keypoints[0], other, keypoints[1], matches, expected[0], expected[1],
+            expected[2], expected[3]);
+    const cv::iib::PreparedImage first(one), second(other);
+    cv::iib::refineMatches(
+            first, keypoints[0], second, keypoints[1], matches, found[0], found[1], found[2], found[3]);
+    EXPECT_GT(cv::countNonZero(expected[3] > 0), 10);
+    for (int i = 0; i < 4; i++)
+        EXPECT_EQ(0, cv::norm(expected[i], found[i], cv::NORM_INF)) << i;
+    EXPECT_NE("", messageOf([] { cv::iib::PreparedImage(cv::Mat()); }));
 }
 
 TEST_F(Localization, threads_share_a_localizer)

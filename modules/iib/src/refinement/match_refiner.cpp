@@ -56,11 +56,28 @@ struct MatchRefiner::Start
     }
 };
 
-MatchRefiner::MatchRefiner(InputArray image1, const std::vector<KeyPoint>& keypoints1, InputArray image2,
-        const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches)
-    : first(keypoints1), second(keypoints2)
+PreparedImage::PreparedImage(InputArray image)
+    : pixels(preparedForAlignment(normalizeLocally(integerMap(checked(image, 1)), NORMALIZATION_SIGMA)))
 {
-    const Mat images[] = {checked(image1, 1), checked(image2, 2)};
+}
+
+PreparedPair::PreparedPair(InputArray image1, InputArray image2)
+{
+    const Mat pixels[] = {checked(image1, 1), checked(image2, 2)};
+    const auto prepare = [&](const Range& range) {
+        for (int i = range.start; i < range.end; i++)
+            images[i] = PreparedImage(pixels[i]);
+    };
+    if (getNumThreads() > 2)
+        prepare(Range(0, 2));  // each by all threads
+    else
+        parallel_for_(Range(0, 2), prepare);
+}
+
+MatchRefiner::MatchRefiner(const PreparedImage (&images_)[2], const std::vector<KeyPoint>& keypoints1,
+        const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches)
+    : first(keypoints1), second(keypoints2), images{images_[0], images_[1]}
+{
     checkKeyPoints(first, true);
     checkKeyPoints(second, true);
     for (const DMatch& match : matches)
@@ -68,14 +85,6 @@ MatchRefiner::MatchRefiner(InputArray image1, const std::vector<KeyPoint>& keypo
         checkIndex(first, match.queryIdx, 1);
         checkIndex(second, match.trainIdx, 2);
     }
-    const auto prepare = [&](const Range& range) {
-        for (int i = range.start; i < range.end; i++)
-            prepared[i] = preparedForAlignment(normalizeLocally(integerMap(images[i]), NORMALIZATION_SIGMA));
-    };
-    if (getNumThreads() > 2)
-        prepare(Range(0, 2));  // each by all threads
-    else
-        parallel_for_(Range(0, 2), prepare);
     turn = turnOf(matches);
 }
 
@@ -153,10 +162,11 @@ void MatchRefiner::refine(std::vector<Refinement>& matches) const
                     if (!seesFirst(query) || !seesSecond(r.match.trainIdx))
                         continue;
                     if (query != taken || start.unit != unit)
-                        aligner.take(prepared[0], Vec2d(first[query].pt.x, first[query].pt.y), start.unit);
+                        aligner.take(
+                                images[0].pixels, Vec2d(first[query].pt.x, first[query].pt.y), start.unit);
                     taken = query;
                     unit = start.unit;
-                    r.found = aligner.align(prepared[1], start.places, start.least);
+                    r.found = aligner.align(images[1].pixels, start.places, start.least);
                 }
             },
             matches.size() / MATCHES_OF_A_THREAD);

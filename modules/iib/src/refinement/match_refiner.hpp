@@ -6,6 +6,8 @@
 
 #include "patch_aligner.hpp"
 
+#include "opencv2/iib/detail/prepared_image.hpp"
+
 namespace cv {
 namespace iib {
 
@@ -27,14 +29,14 @@ class MatchRefiner
 {
 public:
     //! Refuses what is not a match of these keypoints.
-    MatchRefiner(InputArray image1, const std::vector<KeyPoint>& keypoints1, InputArray image2,
+    MatchRefiner(const PreparedImage (&images)[2], const std::vector<KeyPoint>& keypoints1,
             const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches);
 
     void refine(std::vector<Refinement>& matches) const;
 
     //! Whether the image has the surroundings of its keypoint.
-    bool seesFirst(size_t index) const { return isInside(first[index], prepared[0]); }
-    bool seesSecond(size_t index) const { return isInside(second[index], prepared[1]); }
+    bool seesFirst(size_t index) const { return isInside(first[index], images[0].pixels); }
+    bool seesSecond(size_t index) const { return isInside(second[index], images[1].pixels); }
 
 private:
     struct Start;
@@ -44,8 +46,16 @@ private:
     static bool isInside(const KeyPoint& keypoint, const Mat& image);
 
     const std::vector<KeyPoint>&first, &second;
-    Mat prepared[2];
+    const PreparedImage images[2];
     int turn;  //!< of the second image, as the given matches of keypoints without angles tell it; degrees, to 360
+};
+
+//! The images of a pair, prepared by two threads, after both were checked.
+struct PreparedPair
+{
+    PreparedImage images[2];
+
+    PreparedPair(InputArray image1, InputArray image2);
 };
 
 //! Adds the matches of further keypoints that the refined ones lead to.

@@ -47,7 +47,22 @@ void refineMatches(InputArray image1, const std::vector<KeyPoint>& keypoints1, I
 {
     std::vector<Refinement> all;
     if (!matches1to2.empty())
-        all = refined(MatchRefiner(image1, keypoints1, image2, keypoints2, matches1to2), matches1to2);
+    {
+        const PreparedPair pair(image1, image2);
+        all = refined(MatchRefiner(pair.images, keypoints1, keypoints2, matches1to2), matches1to2);
+    }
+    write(all, keypoints1, points1, points2, covariances, similarities);
+}
+
+void refineMatches(const PreparedImage& image1, const std::vector<KeyPoint>& keypoints1,
+        const PreparedImage& image2, const std::vector<KeyPoint>& keypoints2,
+        const std::vector<DMatch>& matches1to2, OutputArray points1, OutputArray points2,
+        OutputArray covariances, OutputArray similarities)
+{
+    const PreparedImage images[] = {image1, image2};
+    std::vector<Refinement> all;
+    if (!matches1to2.empty())
+        all = refined(MatchRefiner(images, keypoints1, keypoints2, matches1to2), matches1to2);
     write(all, keypoints1, points1, points2, covariances, similarities);
 }
 
@@ -58,7 +73,8 @@ void propagateMatches(InputArray image1, const std::vector<KeyPoint>& keypoints1
     std::vector<Refinement> all;
     if (!matches1to2.empty())
     {
-        const MatchRefiner refiner(image1, keypoints1, image2, keypoints2, matches1to2);
+        const PreparedPair pair(image1, image2);
+        const MatchRefiner refiner(pair.images, keypoints1, keypoints2, matches1to2);
         all = refined(refiner, matches1to2);
         propagate(refiner, keypoints1, keypoints2, all);
         for (size_t i = matches1to2.size(); i < all.size(); i++)

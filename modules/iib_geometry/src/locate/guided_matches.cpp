@@ -15,8 +15,7 @@ constexpr double MAX_RATIO = 3;  // of the sizes at which two images see a point
 
 }  // namespace
 
-std::vector<bool> refineAgainstViews(
-        std::vector<Match>& matches, const Map& map, const Picture& picture, size_t least)
+std::vector<bool> refineAgainstViews(std::vector<Match>& matches, const Views& views, size_t least)
 {
     std::map<int, std::vector<size_t>> byView;
     for (size_t i = 0; i < matches.size(); i++)
@@ -24,7 +23,7 @@ std::vector<bool> refineAgainstViews(
     std::vector<bool> moved(matches.size());
     for (const auto& [view, numbers] : byView)
     {
-        const MapImage& image = map.images[size_t(view)];
+        const MapImage& image = views.map.images[size_t(view)];
         if (numbers.size() < least || image.picture.pixels.empty())
             continue;
         KeypointPairs pairs;
@@ -34,7 +33,8 @@ std::vector<bool> refineAgainstViews(
             pairs.fixed.emplace_back(image.pixels[size_t(m.row)], m.sizes[0]);
             pairs.moved.emplace_back(m.pixel, m.sizes[1]);
         }
-        const std::vector<bool> placed = refine(image.picture, picture, pairs);
+        const std::vector<bool> placed =
+                refine(views.pictures.of(size_t(view), image.picture), views.own, pairs);
         for (size_t k = 0; k < numbers.size(); k++)
             if (placed[k])
             {
@@ -46,16 +46,16 @@ std::vector<bool> refineAgainstViews(
     return moved;
 }
 
-std::vector<Match> guidedMatches(const Map& map, const std::vector<size_t>& views, const Picture& picture,
-        const Lens& lens, const Frame& frame, const Affine3d& pose)
+std::vector<Match> guidedMatches(const Views& views, const std::vector<size_t>& compared, const Lens& lens,
+        const Frame& frame, const Affine3d& pose)
 {
-    const Rect2d inside(Point2d(), Size2d(picture.pixels.size()) / picture.scale);
+    const Rect2d inside(Point2d(), Size2d(views.own.image.pixels.size()) / views.own.scale);
     std::map<int, std::pair<double, Match>> best;  // of a point: logarithm of the ratio of sizes, place
-    for (size_t view : views)
+    for (size_t view : compared)
     {
-        const MapImage& image = map.images[view];
+        const MapImage& image = views.map.images[view];
         const double zoom = lens.matrix()(0, 0) / image.camera.parameters[0];
-        std::vector<Point3d> points = map.seenBy(image);
+        std::vector<Point3d> points = views.map.seenBy(image);
         const std::vector<Point3d> there = inCamera(points, image.cameraFromWorld);
         for (Point3d& p : points)
             p = frame.toLocal(p);
@@ -74,11 +74,11 @@ std::vector<Match> guidedMatches(const Map& map, const std::vector<size_t>& view
         }
     }
     std::vector<Match> matches, seen;
-    for (size_t view : views)
+    for (size_t view : compared)
         for (const auto& [number, sight] : best)
             if (sight.second.view == int(view))
                 matches.push_back(sight.second);
-    const std::vector<bool> moved = refineAgainstViews(matches, map, picture, 1);
+    const std::vector<bool> moved = refineAgainstViews(matches, views, 1);
     for (size_t i = 0; i < matches.size(); i++)
         if (moved[i])
             seen.push_back(matches[i]);

@@ -43,7 +43,8 @@ std::vector<Mat> codesOf(const Map& map)
 
 ImageLocator::ImageLocator(const Map& map, int points, bool lines)
     : map_(map), lines_(lines), iib_(describerOf(map.orbAndAkaze, points ? points : map.keypoints)),
-      matcher_(HierarchicalMatcher::createRecommended()), votes_(codesOf(map)), mapError_(mapError(map))
+      matcher_(HierarchicalMatcher::createRecommended()), votes_(codesOf(map)), pictures_(map.images.size()),
+      mapError_(mapError(map))
 {
     if (points < 0)
         CV_Error(Error::StsBadArg, format("keypoints that are looked for are 1 or more, or 0 for as many as "
@@ -108,7 +109,7 @@ void ImageLocator::locate(const Camera& camera, const Affine3d* prior, LocatedIm
     found.reason = "too few matches";
     found.matches = found.inliers = 0;
     if (matches.size() >= LEAST_INLIERS)
-        findPose(matches, map_, camera, found);
+        findPose(matches, map_, pictures_, camera, found);
 }
 
 LocatedImage ImageLocator::find(const Mat& image, const Camera& camera, const Affine3d* prior) const

@@ -27,7 +27,8 @@ private:
     Ptr<IIB> iib_;
     Ptr<HierarchicalMatcher> matcher_;
     Retrieval votes_;
-    Matx66d mapError_;  //!< which is no reason to doubt that an image was found
+    mutable PreparedPictures pictures_;  //!< of the map's images that were compared so far
+    Matx66d mapError_;                   //!< which is no reason to doubt that an image was found
 };
 
 }  // namespace cv::iib

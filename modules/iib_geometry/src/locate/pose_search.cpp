@@ -44,8 +44,9 @@ int keypointsOf(const std::vector<Match>& matches)
 class PoseSearch
 {
 public:
-    PoseSearch(const std::vector<Match>& all, const Map& map, const Camera& camera, LocatedImage& found)
-        : map_(map), found_(found), frame_(all), lens_(camera),
+    PoseSearch(const std::vector<Match>& all, const Map& map, PreparedPictures& pictures,
+            const Camera& camera, LocatedImage& found)
+        : map_(map), views_{map, pictures, {}}, found_(found), frame_(all), lens_(camera),
           limit_(MAX_ERROR * std::max(camera.size.width, camera.size.height)), all_(all)
     {
         for (Match& m : all_)
@@ -74,7 +75,8 @@ public:
                 return false;
             if (round == 1)
             {
-                refineAgainstViews(inliers_, map_, found_.features.picture, WORTH);
+                views_.own = PreparedPicture(found_.features.picture);
+                refineAgainstViews(inliers_, views_, WORTH);
                 matches_ = inliers_;
             }
         }
@@ -89,8 +91,7 @@ public:
         {
             const Affine3d before = pose_;
             used_ = near(matches_);
-            for (const Match& m :
-                    near(guidedMatches(map_, found_.compared, found_.features.picture, lens_, frame_, pose_)))
+            for (const Match& m : near(guidedMatches(views_, found_.compared, lens_, frame_, pose_)))
                 used_.push_back(m);
             learnDeviation(used_, lens_, pose_);
             if (!refined(used_))
@@ -158,6 +159,7 @@ private:
     }
 
     const Map& map_;
+    Views views_;
     LocatedImage& found_;
     const Frame frame_;
     const Lens lens_;
@@ -170,9 +172,10 @@ private:
 
 }  // namespace
 
-void findPose(const std::vector<Match>& matches, const Map& map, const Camera& camera, LocatedImage& found)
+void findPose(const std::vector<Match>& matches, const Map& map, PreparedPictures& pictures,
+        const Camera& camera, LocatedImage& found)
 {
-    PoseSearch search(matches, map, camera, found);
+    PoseSearch search(matches, map, pictures, camera, found);
     if (search.byKeypoints() && search.byGuidedMatches() && search.byLines() && search.isCertain())
         search.writeResult();
 }

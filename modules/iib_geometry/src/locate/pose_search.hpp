@@ -22,8 +22,10 @@ struct LocatedImage : Location
 
 /** Finds the pose that matches with points of a map agree on: by them, by what the map's images show along it, and by lines.
 Then it judges whether it is one.
+@param pictures of the map's images.
 @param found has the image's features, its segments and the map's images that it was compared with. */
-void findPose(const std::vector<Match>& matches, const Map& map, const Camera& camera, LocatedImage& found);
+void findPose(const std::vector<Match>& matches, const Map& map, PreparedPictures& pictures,
+        const Camera& camera, LocatedImage& found);
 
 //! What sorts first, of so many.
 template <typename Before> std::vector<size_t> best(size_t all, size_t count, Before before)

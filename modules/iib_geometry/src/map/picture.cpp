@@ -3,7 +3,6 @@
 #include "picture.hpp"
 
 #include "opencv2/iib.hpp"
-#include "opencv2/iib/refinement.hpp"
 #include "opencv2/imgproc.hpp"
 
 namespace cv::iib {
@@ -39,13 +38,25 @@ Picture pictureOf(const Mat& image)
     return picture;
 }
 
-std::vector<bool> refine(const Picture& fixed, const Picture& moved, KeypointPairs& pairs)
+PreparedPicture PreparedPictures::of(size_t number, const Picture& picture)
+{
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (!prepared_[number].image.pixels.empty())
+            return prepared_[number];
+    }
+    const PreparedPicture made(picture);  // others need not wait; two may make the same
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return prepared_[number] = made;
+}
+
+std::vector<bool> refine(const PreparedPicture& fixed, const PreparedPicture& moved, KeypointPairs& pairs)
 {
     std::vector<DMatch> matches;
     for (size_t i = 0; i < pairs.fixed.size(); i++)
         matches.emplace_back(int(i), int(i), 0.f);
     Mat first, second, similarities;
-    refineMatches(fixed.pixels, scaled(pairs.fixed, fixed.scale), moved.pixels,
+    refineMatches(fixed.image, scaled(pairs.fixed, fixed.scale), moved.image,
             scaled(pairs.moved, moved.scale), matches, first, second, noArray(), similarities);
     std::vector<bool> found;
     for (int i = 0; i < int(matches.size()); i++)

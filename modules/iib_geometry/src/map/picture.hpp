@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "opencv2/core.hpp"
+#include <mutex>
+
+#include "opencv2/iib/detail/prepared_image.hpp"
 
 namespace cv::iib {
 
@@ -14,6 +16,28 @@ struct Picture
 
 Picture pictureOf(const Mat& image);
 
+//! A picture as refinement looks at it, a byte a pixel.
+struct PreparedPicture
+{
+    PreparedImage image;
+    double scale = 1;
+
+    PreparedPicture() = default;
+    explicit PreparedPicture(const Picture& picture) : image(picture.pixels), scale(picture.scale) {}
+};
+
+//! Pictures of a map's images, each prepared when it is first asked for. Threads may share one.
+class PreparedPictures
+{
+public:
+    explicit PreparedPictures(size_t count) : prepared_(count) {}
+    PreparedPicture of(size_t number, const Picture& picture);
+
+private:
+    std::mutex mutex_;
+    std::vector<PreparedPicture> prepared_;
+};
+
 //! Keypoints of two images that show the same, one for one, in pixels of the images.
 struct KeypointPairs
 {
@@ -22,6 +46,6 @@ struct KeypointPairs
 
 /** Moves the second keypoint of each pair to what the first one shows (refineMatches).
 @return whether that was found; the others stay. */
-std::vector<bool> refine(const Picture& fixed, const Picture& moved, KeypointPairs& pairs);
+std::vector<bool> refine(const PreparedPicture& fixed, const PreparedPicture& moved, KeypointPairs& pairs);
 
 }  // namespace cv::iib

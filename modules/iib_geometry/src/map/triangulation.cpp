@@ -114,6 +114,7 @@ void refineTracks(std::vector<Track>& tracks, std::vector<MapImage>& images)
     }
     const std::vector<std::pair<std::pair<size_t, size_t>, std::vector<std::pair<int, int>>>> list(
             jobs.begin(), jobs.end());
+    PreparedPictures prepared(images.size());
     inParallel(list.size(), [&](size_t n) {
         const MapImage& fixed = images[list[n].first.first];
         MapImage& moved = images[list[n].first.second];
@@ -125,7 +126,8 @@ void refineTracks(std::vector<Track>& tracks, std::vector<MapImage>& images)
             pairs.fixed.emplace_back(fixed.pixels[size_t(a)], fixed.sizes[size_t(a)]);
             pairs.moved.emplace_back(moved.pixels[size_t(b)], moved.sizes[size_t(b)]);
         }
-        refine(fixed.picture, moved.picture, pairs);
+        refine(prepared.of(list[n].first.first, fixed.picture),
+                prepared.of(list[n].first.second, moved.picture), pairs);
         for (size_t i = 0; i < pairs.moved.size(); i++)  // each keypoint is of one track
             moved.pixels[size_t(list[n].second[i].second)] = pairs.moved[i].pt;
     });
