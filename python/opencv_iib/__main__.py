@@ -283,8 +283,9 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     words = sys.argv[1:] if argv is None else argv
     command = words[0] if words and words[0].isalpha() else 'opencv-iib'
     try:
-        end_of_start()
         arguments = _parser().parse_args(words)
+        _cv2_error()  # the import of cv2 swallows Ctrl-C
+        end_of_start()
         command, run, silent = (vars(arguments).pop(name) for name in ('command', 'run', 'quiet'))
         with quiet(silent):
             return int(run(arguments))
