@@ -20,6 +20,7 @@ if not MISSING:
     sys.path.insert(0, str(REPOSITORY / 'tools/pages/localization'))
     import measure
     import page
+    import setups
     from sift import Found
 
 
@@ -67,6 +68,11 @@ class Page(unittest.TestCase):
                     redirect_stdout(StringIO()), mock.patch.dict(os.environ), mock.patch.object(measure, 'POINTS', 400):
                 os.environ.pop('OPENCV_TEST_DATA_PATH', None)
                 page.main()
+            with mock.patch.object(sys, 'argv', ['setups.py', str(out / 'setups.csv'), str(data)]), mock.patch.object(setups, 'SETUPS', ('',)), \
+                    redirect_stderr(StringIO()):
+                setups.main()
+            self.assertEqual([line.split(',')[:6] for line in (out / 'setups.csv').read_text().splitlines()[1:2]],
+                             [['1.4 m apart', '', 'night', '2', '2', '2']])
             results, text = json.loads((out / 'results.json').read_text()), (out / 'index.html').read_text()
             video = cv2.VideoCapture(str(out / 'night.webm'))
             self.assertGreater(np.std(video.read()[1]), 10)
