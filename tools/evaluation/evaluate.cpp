@@ -23,7 +23,7 @@ struct Experiment
 
 const Experiment EXPERIMENTS[] = {{"fixed_points", fixedPoints}, {"detected_points", detectedPoints},
         {"estimators", estimators}, {"alignment", alignment}, {"matching", matching},
-        {"robustness", robustness}, {"comparison", comparison},
+        {"robustness", robustness}, {"comparison", comparison}, {"uncertainty", uncertainty},
         {"localization_uncertainty", localizationUncertainty}};
 
 //! Results of other settings must not be mixed with these.

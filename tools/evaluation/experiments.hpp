@@ -33,6 +33,8 @@ int estimators(const Options& options, const std::vector<ImagePair>& pairs);
 int alignment(const Options& options, const std::vector<ImagePair>& pairs);
 //! HierarchicalMatcher's modes and the paper's thresholds (paper, "Fast Hierarchical vs. Brute-force Matching").
 int matching(const Options& options, const std::vector<ImagePair>& pairs);
+//! How many of the errors of poses, alignments and refined points are inside what was told of them.
+int uncertainty(const Options& options, const std::vector<ImagePair>& pairs);
 //! Whether Localizer finds images where it says, as surely as it says, in maps of the other views below the roots.
 int localizationUncertainty(const Options& options, const std::vector<ImagePair>& pairs);
 int robustness(const Options& options, const std::vector<ImagePair>& pairs);

@@ -14,7 +14,7 @@ const char ABOUT[] = "The paper's experiments, and more, on image sequences: iib
 const char KEYS[] =
         "{out         |<none>|folder of the results; a run that was interrupted goes on there}"
         "{only        |<none>|fixed_points, detected_points, estimators, alignment, matching, "
-        "robustness, comparison or localization_uncertainty; may be repeated}"
+        "robustness, comparison, uncertainty or localization_uncertainty; may be repeated}"
         "{compare     |<none>|image; given twice for each pair of which the matches of IIB and others are "
         "listed}"
         "{points      |1000  |keypoints an image}"

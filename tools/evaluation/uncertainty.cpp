@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "common/views.hpp"
+#include "experiments.hpp"
+#include "opencv2/core/affine.hpp"
+#include "opencv2/iib.hpp"
+#include "opencv2/iib/alignment.hpp"
+#include "opencv2/iib/relative_pose.hpp"
+#include "opencv2/imgcodecs.hpp"
+#include "opencv2/imgproc.hpp"
+#include "results.hpp"
+#include "uncertainty.hpp"
+
+namespace iib_tools {
+namespace {
+
+using cv::iib::HierarchicalMatcher;
+using cv::iib::IIBDescriptorExtractor;
+
+const double MOST_MOVED = .06;  // of a corner, in parts of the image's size
+const double FAR = 3;           // pixels from the truth: a wrong match, whose place no deviation tells
+
+struct Matched
+{
+    std::vector<cv::KeyPoint> first, second;
+    std::vector<cv::DMatch> matches;
+};
+
+Matched matched(const cv::Mat& first, const cv::Mat& second, int points)
+{
+    const cv::Ptr<IIBDescriptorExtractor> extractor = IIBDescriptorExtractor::createRecommended(points);
+    Matched m;
+    cv::Mat codes1, codes2;
+    extractor->detectAndCompute(first, cv::noArray(), m.first, codes1);
+    extractor->detectAndCompute(second, cv::noArray(), m.second, codes2);
+    HierarchicalMatcher::createRecommended()->match(codes1, codes2, m.matches);
+    return m;
+}
+
+//! Rows of the table, one for a quantity of a pair.
+class Told
+{
+public:
+    Told(ResultTable& table_, const Fields& pair_) : table(table_), pair(pair_) {}
+
+    //! @param squared errors in standard deviations, with so many degrees of freedom.
+    void add(const std::string& quantity, const std::vector<double>& squared, int freedom) const
+    {
+        Fields row = pair;
+        row.insert(row.end(), {quantity, std::to_string(squared.size())});
+        for (double level : LEVELS)
+            row.push_back(std::to_string(std::count_if(
+                    squared.begin(), squared.end(), [&](double e) { return chanceOf(e, freedom) < level; })));
+        table.append(row);
+    }
+
+private:
+    ResultTable& table;
+    Fields pair;
+};
+
+void judgePose(const ViewPair& pair, int points, const Told& told)
+{
+    const cv::Mat first = readImage(pair.referenceFile, cv::IMREAD_GRAYSCALE),
+                  second = readImage(pair.targetFile, cv::IMREAD_GRAYSCALE);
+    Matched m = matched(first, second, points);
+    cv::Mat points1, points2, R, t, covariance;
+    cv::iib::propagateMatches(first, m.first, second, m.second, m.matches, points1, points2);
+    std::vector<double> rotation, direction;
+    if (cv::iib::findRelativePose(points1, points2, pair.referenceCamera, pair.targetCamera, R, t,
+                cv::noArray(), 0, covariance))
+    {
+        const cv::Matx33d turnedBack = cv::Matx33d(R).t();
+        const cv::Vec3d found(t), truth = cv::normalize(pair.translation);
+        const cv::Matx<double, 5, 5> all(covariance);
+        rotation.push_back(
+                squaredOf(cv::Affine3d(pair.rotation * turnedBack).rvec(), all.get_minor<3, 3>(0, 0)));
+        direction.push_back(squaredOf(alongTangents(found, truth), all.get_minor<2, 2>(3, 3)));
+    }
+    told.add("rotation of findRelativePose", rotation, 3);
+    told.add("direction of findRelativePose", direction, 2);
+}
+
+void judgePoints(const ImagePair& pair, int points, const Told& told)
+{
+    const LoadedPair loaded = loadPair(pair);
+    const Matched m = matched(loaded.reference, loaded.target, points);
+    cv::Mat points1, points2, covariances, similarities;
+    cv::iib::refineMatches(loaded.reference, m.first, loaded.target, m.second, m.matches, points1, points2,
+            covariances, similarities);
+    std::vector<double> squared;
+    for (int i = 0; i < points1.rows; i++)
+    {
+        const cv::Vec2f a = points1.at<cv::Vec2f>(i), b = points2.at<cv::Vec2f>(i);
+        const cv::Vec3f c = covariances.at<cv::Vec3f>(i);
+        const cv::Vec3d there = loaded.homography * cv::Vec3d(a[0], a[1], 1);
+        const cv::Vec2d error(b[0] - there[0] / there[2], b[1] - there[1] / there[2]);
+        if (similarities.at<float>(i) >= 0 && cv::norm(error) < FAR)
+            squared.push_back(squaredOf(error, cv::Matx22d(c[0], c[1], c[1], c[2])));
+    }
+    told.add("points of refineMatches", squared, 2);
+}
+
+void judgeAlignment(const ImagePair& pair, uint64 seed, const Told& told)
+{
+    const LoadedPair loaded = loadPair(pair);
+    cv::RNG random(seed);
+    const cv::Size size = loaded.target.size();
+    const float right = float(size.width - 1), bottom = float(size.height - 1);
+    const std::vector<cv::Point2f> from = {{0, 0}, {right, 0}, {right, bottom}, {0, bottom}};
+    std::vector<cv::Point2f> to = from, places, trueOnes;
+    for (cv::Point2f& corner : to)
+        corner += cv::Point2f(float(random.uniform(-MOST_MOVED, MOST_MOVED) * size.width),
+                float(random.uniform(-MOST_MOVED, MOST_MOVED) * size.height));
+    const cv::Matx33d moved = cv::getPerspectiveTransform(from, to);
+    cv::Mat image, transform, error;
+    cv::warpPerspective(loaded.target, image, moved, size, cv::INTER_CUBIC, cv::BORDER_REFLECT);
+    std::vector<double> squared;
+    if (cv::iib::alignImages(loaded.reference, image, transform, cv::iib::ALIGN_HOMOGRAPHY, error))
+    {
+        cv::perspectiveTransform(from, places, transform);
+        cv::perspectiveTransform(from, trueOnes, (moved * loaded.homography).inv());
+        for (int k = 0; k < 4; k++)  // told is the deviation of a length, of two coordinates
+            squared.push_back(2 * std::pow(cv::norm(places[k] - trueOnes[k]) / error.at<double>(k), 2));
+    }
+    told.add("corners of alignImages", squared, 2);
+}
+
+}  // namespace
+
+int uncertainty(const Options& options, const std::vector<ImagePair>& pairs)
+{
+    Fields columns = {"set", "sequence", "target", "quantity", "count"};
+    for (double level : LEVELS)
+        columns.push_back(cv::format("%g", level));
+    ResultTable table(options.out + "/uncertainty.csv", columns, 4);
+    std::vector<Task> tasks;
+    for (const ViewPair& pair : findViewPairs(options.roots))
+    {
+        const Fields key = {pair.set, pair.sequence, pair.target};
+        if (!table.has({pair.set, pair.sequence, pair.target, "direction of findRelativePose"}))
+            tasks.push_back({pair.set + "/" + pair.sequence + "/" + pair.target,
+                    [&options, &table, pair, key] { judgePose(pair, options.points, Told(table, key)); }});
+    }
+    for (size_t i = 0; i < pairs.size(); i++)
+    {
+        const ImagePair& pair = pairs[i];
+        const Fields key = {pair.set, pair.sequence, pair.target};
+        if (pair.kind != "light" ||
+                table.has({pair.set, pair.sequence, pair.target, "corners of alignImages"}))
+            continue;
+        tasks.push_back({pair.name(), [&options, &table, &pair, key, i] {
+                             judgePoints(pair, options.points, Told(table, key));
+                             judgeAlignment(pair, i + 1, Told(table, key));
+                         }});
+    }
+    return runTasks("uncertainty", tasks, &table);
+}
+
+}  // namespace iib_tools
