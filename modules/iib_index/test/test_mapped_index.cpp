@@ -34,6 +34,23 @@ TEST_F(IIB_MappedIndex, one_segment_alone)
     EXPECT_THROW(search(*index, queries.colRange(0, 41), 1), cv::Exception);
 }
 
+// The rows and distances of a thousand million neighbours would take 12 GB for each query.
+TEST_F(IIB_MappedIndex, more_neighbours_than_there_can_be_are_refused)
+{
+    expectError(Error::StsOutOfRange, "k is 1000000000, but there are 2163 descriptors",
+            [&] { search(*index, queries, 1000000000); });
+}
+
+TEST_F(IIB_MappedIndex, codes_and_queries_may_be_views)
+{
+    Mat wide(queries.rows, queries.cols + 9, CV_8U, Scalar(7));
+    queries.copyTo(wide.colRange(4, 4 + queries.cols));
+    const Mat view = wide.colRange(4, 4 + queries.cols);
+    EXPECT_TRUE(search(*index, queries, 3) == search(*index, view, 3));
+    index->add(view);
+    EXPECT_EQ(0, cvtest::norm(queries, index->descriptors(8), NORM_INF));
+}
+
 TEST_F(IIB_MappedIndex, images_and_rows)
 {
     int64 row = 0;

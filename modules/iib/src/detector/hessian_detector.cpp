@@ -55,6 +55,14 @@ template <typename T> Mat reduced(const Mat& grey, int factor)
     return result;
 }
 
+//! By how much images are reduced. Long and narrow ones keep a quarter of the working size across.
+int reductionOf(Size image, int workingSize)
+{
+    const int64 longer = std::max(image.width, image.height), shorter = std::min(image.width, image.height);
+    return (int)std::min(
+            (longer + workingSize - 1) / workingSize, std::max(4 * shorter / workingSize, (int64)1));
+}
+
 class HessianDetector_Impl CV_FINAL : public HessianDetector, public AnyImage
 {
 public:
@@ -75,9 +83,7 @@ public:
         checkImage(image);
         const Mat mask = maskFor(maskArray, image.size());
         Mat grey = integerMap(image);
-        const int longer = std::max(grey.cols, grey.rows), shorter = std::min(grey.cols, grey.rows);
-        const int wanted = p.workingSize ? (int)(((int64)longer + p.workingSize - 1) / p.workingSize) : 1;
-        const int reduction = std::min(wanted, shorter);
+        const int reduction = p.workingSize ? reductionOf(grey.size(), p.workingSize) : 1;
         if (reduction > 1)
             grey = grey.depth() == CV_8U ? reduced<uchar>(grey, reduction) : reduced<ushort>(grey, reduction);
         keypoints = findBlobs(normalizeLocally(grey, p.normalizationSigma), p, mask, reduction);

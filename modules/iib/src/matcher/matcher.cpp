@@ -34,6 +34,7 @@ void addMatches(const PackedCodes& trains, int query, const MatchKey* begin, con
 void toArrays(const PackedCodes& trains, const KnnTable& found, int k, OutputArray indices_,
         OutputArray distances_, OutputArray imageIndices_)
 {
+    checkPadding(k, found.rows(), trains.rows());
     Mat indices((int)found.rows(), k, CV_32S, Scalar(-1)), distances = indices.clone(),
                                                            images = indices.clone();
     for (int query = 0; query < indices.rows; query++)

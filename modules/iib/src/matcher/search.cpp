@@ -161,6 +161,15 @@ KnnTable findNearest(const SearchInput& input, int k, bool mutual, float maxRati
     return forQueries;
 }
 
+void checkPadding(int k, size_t queries, size_t rows)
+{
+    const uint64 most = 1 << 26;  // neighbours, 12 bytes each
+    if ((size_t)std::max(k, 0) > rows && (uint64)queries * k > most)
+        CV_Error_(Error::StsOutOfRange, ("k is %d, but there are %llu descriptors to find: ask for at most "
+                                         "as many for each of %llu queries",
+                                                k, (unsigned long long)rows, (unsigned long long)queries));
+}
+
 void PackedCodes::findNearest(const std::vector<int>& levelSizes, const std::vector<CodePart>& parts,
         InputArray queries_, int k, std::vector<int64>& rows, std::vector<int>& distances)
 {
@@ -170,6 +179,7 @@ void PackedCodes::findNearest(const std::vector<int>& levelSizes, const std::vec
     size_t count = 0;
     for (const CodePart& part : parts)
         count += part.codes->rows();
+    checkPadding(k, queries.rows, count);
     KnnTable found(queries.rows, (int)std::min((size_t)k, std::max(count, (size_t)1)));
     SearchCost cost;
     for (const CodePart& part : parts)

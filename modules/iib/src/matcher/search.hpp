@@ -63,6 +63,10 @@ template <typename T> std::vector<T> forNeighbours(size_t rows, int k, T value)
                                      k, (unsigned long long)rows));
 }
 
+/** Throws StsOutOfRange where results of k columns would be much memory that mostly says that there is no neighbour.
+ @param rows that are searched. */
+void checkPadding(int k, size_t queries, size_t rows);
+
 //! The k nearest neighbours of each of many codes, in ascending order; NO_MATCH where there are fewer.
 class KnnTable
 {

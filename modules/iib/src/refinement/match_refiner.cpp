@@ -18,7 +18,7 @@ const double LARGEST_SPACING = 1.25;  //!< pixels from one sample to the next
 const double SAME_SIZE = 1.1;
 const int SAME_TURN = 10;          //!< degrees: patches that are turned by less agree without that
 const size_t VOTING_MATCHES = 64;  //!< for the turn, each with each other
-const double LEAST_WITH_MAP = .3;  //!< similarity at the start: most tries are wrong, and end here
+const double LEAST_WITH_MAP = .4;  //!< similarity at the start: most tries are wrong, and end here
 const double MATCHES_OF_A_THREAD = 8;
 
 Mat checked(InputArray image, int number)
@@ -143,6 +143,12 @@ bool MatchRefiner::isInside(const KeyPoint& keypoint, const Mat& image)
 {
     const Point2f p = keypoint.pt;
     return p.x >= 0 && p.y >= 0 && p.x <= image.cols - 1 && p.y <= image.rows - 1;
+}
+
+bool MatchRefiner::mayMatch(int query, int train, const Matx22d& map) const
+{
+    const Point2f a = first[query].pt, b = second[train].pt;
+    return mayAgree(images[0].pixels, Vec2d(a.x, a.y), images[1].pixels, Vec2d(b.x, b.y), map);
 }
 
 void MatchRefiner::refine(std::vector<Refinement>& matches) const

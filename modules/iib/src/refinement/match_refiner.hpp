@@ -34,6 +34,11 @@ public:
 
     void refine(std::vector<Refinement>& matches) const;
 
+    //! Whether a match may be one, after a coarse look. @param map of the surroundings, from the first image to the second.
+    bool mayMatch(int query, int train, const Matx22d& map) const;
+
+    Size firstSize() const { return images[0].pixels.size(); }
+    Size secondSize() const { return images[1].pixels.size(); }
     //! Whether the image has the surroundings of its keypoint.
     bool seesFirst(size_t index) const { return isInside(first[index], images[0].pixels); }
     bool seesSecond(size_t index) const { return isInside(second[index], images[1].pixels); }

@@ -14,11 +14,13 @@ const double UNITS_OF_PLACE = 16;  //!< of PatchWeights::x and y
 const double REACH = PATCH - 1;    //!< from the centre to the outermost samples
 const int MOST_STEPS = 10;
 const double LAST_STEP = .02;            //!< in units: the last step is not longer
-const double SETTLED_STEP = .1;          //!< but after MOST_STEPS
 const double LARGEST_MOVE = 2;           //!< in pixels
 const double MARGIN = LARGEST_MOVE + 4;  //!< pixels that a patch may reach farther than where it starts
 const double LEAST_DEVIATION = .5;  //!< normalized grey levels: without contrast there is nothing to match
 const double LEAST_SIMILARITY = .5;
+const double LEAST_AT_A_LOOK = .3;  //!< similarity of few pixels: see mayAgree()
+const double LEAST_UNDERWAY = .5;   //!< similarity of a guided try after STEPS_OF_A_TRY
+const int STEPS_OF_A_TRY = 3;
 const double HALVED = 1 << (WEIGHT_BITS + 1);     //!< halved weights' unit over that of the sum of samples
 const double LIGHT = .05, SHARED_BY_NOISE = .25;  //!< of errors by other light: see covariance()
 const double DAMPING_OF_PLACE = 1e-5, DAMPING_OF_MAP = 5e-3;
@@ -91,11 +93,11 @@ const uchar* pixelsFrom(const Mat& image, const Point& place)
     return image.data + place.y * (ptrdiff_t)image.step + place.x;
 }
 
-//! Of the waves that tell a place along a direction, from second differences of TEMPLATE x TEMPLATE pixels and first ones.
+//! Of the waves that tell a place along a direction, from second differences of pixels of a template and first ones.
 double squaredFrequency(const uchar* pixels, size_t step, ptrdiff_t next)
 {
     int first = 0, second = 0;
-    for (int y = 1; y < TEMPLATE - 1; y++)
+    for (int y = 2; y < TEMPLATE - 1; y += 4)
         for (int x = 1; x < TEMPLATE - 1; x++)
         {
             const uchar* const p = pixels + y * step + x;
@@ -156,6 +158,46 @@ Mat preparedForAlignment(const Mat& normalized)
             },
             result.rows / 64.);
     return result(inner);
+}
+
+bool mayAgree(
+        const Mat& image1, const Vec2d& point1, const Mat& image2, const Vec2d& point2, const Matx22d& map)
+{
+    const int side = 8, apart = 4, first = -apart * (side - 1) / 2;  // samples, in pixels
+    static const int weights[side] = {1, 2, 3, 4, 4, 3, 2, 1};       // about a Gaussian of 8 pixels
+    const Vec2d reach = reachOf(map);
+    if (!(std::max(reach[0], reach[1]) < IMAGE_BORDER - 2))
+        return true;  // it is more than the borders of images hold
+    const Point centre1(cvRound(point1[0]), cvRound(point1[1]));
+    const Vec2d centre2 = point2 + map * (Vec2d(centre1.x, centre1.y) - point1);
+    const auto fixed = [](double value) { return cvRound(value * (1 << POSITION_BITS)); };
+    const Point base(cvFloor(centre2[0]), cvFloor(centre2[1]));
+    const uchar* const pixels2 = pixelsFrom(image2, base);
+    const int step = (int)image2.step, half = 1 << (POSITION_BITS - 1);
+    const int columnX = fixed(map(0, 0) * apart), columnY = fixed(map(1, 0) * apart);
+    int all = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+    for (int y = 0; y < side; y++)
+    {
+        const uchar* const row = pixelsFrom(image1, centre1 + Point(first, first + apart * y));
+        const Vec2d begin = map * Vec2d(first, first + apart * y);
+        int placeX = fixed(centre2[0] - base.x + begin[0]) + half;
+        int placeY = fixed(centre2[1] - base.y + begin[1]) + half;
+        for (int x = 0; x < side; x++, placeX += columnX, placeY += columnY)
+        {
+            const int weight = weights[x] * weights[y], one = row[apart * x] - 128;
+            const int other = pixels2[(placeY >> POSITION_BITS) * step + (placeX >> POSITION_BITS)] - 128;
+            all += weight;
+            a += weight * one;
+            b += weight * other;
+            aa += weight * one * one;
+            bb += weight * other * other;
+            ab += weight * one * other;
+        }
+    }
+    const double covariance = ab * (double)all - a * (double)b;
+    const double variance1 = aa * (double)all - a * (double)a, variance2 = bb * (double)all - b * (double)b;
+    return covariance > 0 &&
+           covariance * covariance >= LEAST_AT_A_LOOK * LEAST_AT_A_LOOK * variance1 * variance2;
 }
 
 PatchAligner::PatchAligner()
@@ -286,26 +328,25 @@ Vec6d PatchAligner::step(const Moments& moments) const
 }
 
 /* How far the interpolation of samples has moved the patch. Between two pixels, a part p from one to the next, a wave of
- frequency w seems p (1 - p) (1 - 2p) w^2 / 6 less far along. */
+ frequency w seems p (1 - p) (1 - 2p) w^2 / 6 less far along. Some samples around the centre tell the mean. */
 Vec2d PatchAligner::interpolationError(const PatchPlace& place) const
 {
+    const int places[] = {-9, -3, 3, 9};
     Vec2d sum(0, 0);
-    double total = 0;
-    for (int i = 0; i < PATCH_SAMPLES; i++)
-    {
-        const Vec2d sample =
-                place.centre + place.map * Vec2d(2 * (i % PATCH) - REACH, 2 * (i / PATCH) - REACH);
-        total += weights.gaussian[i];
-        for (int axis = 0; axis < 2; axis++)
+    for (int y : places)
+        for (int x : places)
         {
-            const double part = sample[axis] - cvFloor(sample[axis]);
-            sum[axis] += weights.gaussian[i] * part * (1 - part) * (1 - 2 * part);
+            const Vec2d sample = place.centre + place.map * Vec2d(x, y);
+            for (int axis = 0; axis < 2; axis++)
+            {
+                const double part = sample[axis] - cvFloor(sample[axis]);
+                sum[axis] += part * (1 - part) * (1 - 2 * part) / 16;
+            }
         }
-    }
-    const double scale = 6 * total * std::abs(determinant(place.map));
+    const double pixelsOfUnits = std::abs(determinant(place.map));  // squared
     return Vec2d(squaredFrequency(pixels1, step1, 1) * sum[0],
                    squaredFrequency(pixels1, step1, step1) * sum[1]) *
-           (1 / scale);
+           (1 / (6 * pixelsOfUnits));
 }
 
 /* The point's covariance, from the residuals of the samples that were taken last. As far as these are noise, it is that of
@@ -375,6 +416,7 @@ PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts,
         return refused;
     if (starts.end() - starts.begin() > 1)
         sampleAt(place);
+    const double first = similarity;
     for (int i = 1;; i++)
     {
         if (!(similarity > 0))
@@ -389,13 +431,14 @@ PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts,
         place.map = place.map * Matx22d(change(1, 1), -change(0, 1), -change(1, 0), change(0, 0)) *
                     (1 / determinant);
         place.centre -= place.map * Vec2d(d[0], d[1]);
-        const double settled = i < MOST_STEPS ? LAST_STEP : SETTLED_STEP;
-        if (d[0] * d[0] + d[1] * d[1] < settled * settled)
+        if (d[0] * d[0] + d[1] * d[1] < LAST_STEP * LAST_STEP || (i == MOST_STEPS && similarity > first))
             break;
         if (i == MOST_STEPS || !sampleAt(place))
             return refused;
         moments = momentsOf(samples.data());
         similarity = similarityOf(moments);
+        if (i == STEPS_OF_A_TRY && least > 0 && similarity < LEAST_UNDERWAY)
+            return refused;
     }
     if (!(similarity > LEAST_SIMILARITY))
         return refused;

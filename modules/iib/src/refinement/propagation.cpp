@@ -4,8 +4,6 @@
 
 #include "match_refiner.hpp"
 
-#include <map>
-
 namespace cv {
 namespace iib {
 
@@ -16,53 +14,104 @@ const double TOLERANCE = 3, TOLERANCE_BY_DISTANCE = .1;  //!< pixels between whe
 const size_t CANDIDATES = 4;  //!< keypoints of the second image, the nearest to where one should be
 const size_t NEIGHBOURS = 8, LEAST_AGREEING = 2;  //!< of a match that predicts others
 const double LEAST_SIMILARITY = .7;  //!< higher than of given matches, whose descriptors agreed as well
+const int MOST_TRIES = 4;            //!< of a keypoint, each from another match
+const int PART = 64;                 //!< keypoints that a thread looks at
 
-//! Finds points of a plane near a place.
+const double LEAST_CELL = 3;  //!< pixels
+
+//! Points of an image in square cells, about as many as points, so that those near a place are found in few steps.
 class NearPoints
 {
 public:
-    //! @param reach the largest radius asked for.
-    explicit NearPoints(double reach) : cell(reach) {}
-
-    void add(const Vec2d& point, int index) { cells[cellOf(point)].push_back({point, index}); }
-
-    //! Indices of up to `most` points nearer than a radius, the nearest first.
-    std::vector<int> find(const Vec2d& place, double radius, size_t most) const
+    //! @param mostOfCell of the points of a cell that are looked at: the first ones.
+    NearPoints(Size image, const std::vector<Vec2d>& points, const std::vector<int>& chosen, int mostOfCell)
+        : all(points), most(mostOfCell),
+          cell(std::max(std::sqrt((double)image.width * image.height / (chosen.size() + 1)), LEAST_CELL)),
+          size(cvCeil(image.width / cell), cvCeil(image.height / cell)), begins(size.area() + 1)
     {
-        std::vector<std::pair<double, int>> near;
-        const Cell centre = cellOf(place);
-        for (int y = -1; y <= 1; y++)
-            for (int x = -1; x <= 1; x++)
+        for (int index : chosen)
+            begins[cellOf(points[index]) + 1]++;
+        for (size_t i = 1; i < begins.size(); i++)
+            begins[i] += begins[i - 1];
+        std::vector<int> next(begins.begin(), begins.end() - 1);
+        indices.resize(chosen.size());
+        for (int index : chosen)
+            indices[next[cellOf(points[index])]++] = index;
+    }
+
+    //! Finds up to `count` points nearer than a radius, the nearest first. @param found squared distances and indices.
+    void find(
+            const Vec2d& place, double radius, size_t count, std::vector<std::pair<double, int>>& found) const
+    {
+        found.clear();
+        double limit = radius * radius;
+        const Point centre(column(place[0]), row(place[1]));
+        for (int ring = 0; ring <= std::max(size.width, size.height); ring++)
+        {
+            const double least = std::max(ring - 1, 0) * cell;  // nothing of the ring is nearer
+            if (least * least >= limit)
+                break;
+            for (int y = std::max(centre.y - ring, 0); y <= std::min(centre.y + ring, size.height - 1); y++)
             {
-                const auto found = cells.find({centre.first + y, centre.second + x});
-                if (found == cells.end())
-                    continue;
-                for (const std::pair<Vec2d, int>& point : found->second)
-                {
-                    const Vec2d beside = point.first - place;
-                    if (beside.dot(beside) < radius * radius)
-                        near.push_back({beside.dot(beside), point.second});
-                }
+                const bool edge = std::abs(y - centre.y) == ring;
+                for (int x = centre.x - ring; x <= centre.x + ring; x += edge ? 1 : std::max(2 * ring, 1))
+                    if (x >= 0 && x < size.width)
+                        limit = addNearer(place, y * size.width + x, limit, count, found);
             }
-        most = std::min(near.size(), most);
-        std::partial_sort(near.begin(), near.begin() + most, near.end());
-        near.resize(most);
-        std::vector<int> indices;
-        for (const std::pair<double, int>& point : near)
-            indices.push_back(point.second);
-        return indices;
+        }
     }
 
 private:
-    typedef std::pair<int, int> Cell;
+    double addNearer(const Vec2d& place, int i, double limit, size_t count,
+            std::vector<std::pair<double, int>>& found) const
+    {
+        for (int k = begins[i]; k < std::min(begins[i + 1], begins[i] + most); k++)
+        {
+            const Vec2d beside = all[indices[k]] - place;
+            const std::pair<double, int> point(beside.dot(beside), indices[k]);
+            if (!(point.first < limit))
+                continue;
+            found.insert(std::upper_bound(found.begin(), found.end(), point), point);
+            if (found.size() > count)
+                found.pop_back();
+            if (found.size() == count)
+                limit = found.back().first;
+        }
+        return limit;
+    }
 
-    Cell cellOf(const Vec2d& point) const { return {cvFloor(point[1] / cell), cvFloor(point[0] / cell)}; }
+    //! Places outside of the image are nearest to its edge.
+    static int limited(double place, int end) { return (int)std::min(std::max(place, 0.), end - 1.); }
+    int column(double x) const { return limited(x / cell, size.width); }
+    int row(double y) const { return limited(y / cell, size.height); }
+    int cellOf(const Vec2d& point) const { return row(point[1]) * size.width + column(point[0]); }
 
+    const std::vector<Vec2d>& all;
+    int most;
     double cell;
-    std::map<Cell, std::vector<std::pair<Vec2d, int>>> cells;
+    Size size;
+    std::vector<int> begins, indices;  //!< of the points of each cell
 };
 
-Vec2d placeOf(const KeyPoint& keypoint) { return Vec2d(keypoint.pt.x, keypoint.pt.y); }
+const int MOST_MATCHES = 8, MOST_KEYPOINTS = 64;  //!< of a cell that are looked at
+
+std::vector<Vec2d> placesOf(const std::vector<KeyPoint>& keypoints)
+{
+    std::vector<Vec2d> places;
+    for (const KeyPoint& keypoint : keypoints)
+        places.push_back(Vec2d(keypoint.pt.x, keypoint.pt.y));
+    return places;
+}
+
+//! The indices below `end` that are not marked.
+template <class Marked> std::vector<int> unmarked(size_t end, const Marked& isMarked)
+{
+    std::vector<int> indices;
+    for (size_t i = 0; i < end; i++)
+        if (!isMarked(i))
+            indices.push_back((int)i);
+    return indices;
+}
 
 //! A refined match: where a point of the first image is in the second one, and the surroundings with it.
 struct Seed
@@ -77,13 +126,18 @@ struct Seed
     }
 };
 
-//! Whether others near it predict it.
-bool isTrusted(int seed, const std::vector<Seed>& seeds, const NearPoints& ofSeeds)
+//! Whether others near it predict it. @param near room for these.
+bool isTrusted(int seed, const std::vector<Seed>& seeds, const NearPoints& ofSeeds,
+        std::vector<std::pair<double, int>>& near)
 {
     const Seed& s = seeds[seed];
+    ofSeeds.find(s.first, REACH, NEIGHBOURS + 1, near);
     size_t agreeing = 0;
-    for (int k : ofSeeds.find(s.first, REACH, NEIGHBOURS + 1))
-        agreeing += k != seed && norm(seeds[k].predict(s.first) - s.second) < seeds[k].tolerance(s.first);
+    for (const std::pair<double, int>& k : near)
+    {
+        const Seed& other = seeds[k.second];
+        agreeing += k.second != seed && norm(other.predict(s.first) - s.second) < other.tolerance(s.first);
+    }
     return agreeing >= LEAST_AGREEING;
 }
 
@@ -95,12 +149,11 @@ void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoin
     std::vector<bool> matched1(keypoints1.size()), matched2(keypoints2.size());
     for (const Refinement& r : matches)
         matched1[r.match.queryIdx] = matched2[r.match.trainIdx] = true;
-    NearPoints ofSecond(TOLERANCE + TOLERANCE_BY_DISTANCE * REACH), ofSeeds(REACH);
-    for (size_t t = 0; t < keypoints2.size(); t++)
-        if (refiner.seesSecond(t))
-            ofSecond.add(placeOf(keypoints2[t]), (int)t);
-
+    const std::vector<Vec2d> places1 = placesOf(keypoints1), places2 = placesOf(keypoints2);
+    std::vector<int> triesOf(keypoints1.size());
     std::vector<Seed> seeds;
+    std::vector<Vec2d> seedPlaces;
+    std::vector<std::pair<double, int>> near;
     for (size_t done = 0; done < matches.size();)
     {
         const size_t before = seeds.size();
@@ -109,33 +162,51 @@ void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoin
             const Refinement& r = matches[done];
             if (!r.found.accepted)
                 continue;
-            seeds.push_back({placeOf(keypoints1[r.match.queryIdx]), r.found.point, r.found.map});
-            ofSeeds.add(seeds.back().first, (int)seeds.size() - 1);
+            seeds.push_back({places1[r.match.queryIdx], r.found.point, r.found.map});
+            seedPlaces.push_back(seeds.back().first);
         }
-        NearPoints ofTrusted(REACH);  // of the last round
-        for (size_t i = before; i < seeds.size(); i++)
-            if (isTrusted((int)i, seeds, ofSeeds))
-                ofTrusted.add(seeds[i].first, (int)i);
+        const NearPoints ofSeeds(refiner.firstSize(), seedPlaces,
+                unmarked(seeds.size(), [](size_t) { return false; }), MOST_MATCHES);
+        const std::vector<int> trusted = unmarked(seeds.size(),
+                [&](size_t i) { return i < before || !isTrusted((int)i, seeds, ofSeeds, near); });
+        const NearPoints ofTrusted(
+                refiner.firstSize(), seedPlaces, trusted, MOST_MATCHES);  // of the last round
+        const NearPoints ofSecond(refiner.secondSize(), places2,
+                unmarked(places2.size(), [&](size_t t) { return matched2[t] || !refiner.seesSecond(t); }),
+                MOST_KEYPOINTS);
 
-        std::vector<Refinement> tried;
-        for (size_t q = 0; q < keypoints1.size(); q++)
-        {
-            if (matched1[q] || !refiner.seesFirst(q))
-                continue;
-            const Vec2d point = placeOf(keypoints1[q]);
-            for (int k : ofTrusted.find(point, REACH, 1))
+        const int parts = ((int)keypoints1.size() + PART - 1) / PART;
+        std::vector<std::vector<Refinement>> ofParts(parts);
+        const auto listTries = [&](int part) {
+            std::vector<std::pair<double, int>> nearest, candidates;
+            for (int q = part * PART; q < std::min((part + 1) * PART, (int)keypoints1.size()); q++)
             {
-                const Seed& seed = seeds[k];
-                for (int t : ofSecond.find(seed.predict(point), seed.tolerance(point), CANDIDATES))
-                    if (!matched2[t])
-                        tried.emplace_back(DMatch((int)q, t, std::numeric_limits<float>::max()), seed.map);
+                if (matched1[q] || triesOf[q] == MOST_TRIES || !refiner.seesFirst(q))
+                    continue;
+                ofTrusted.find(places1[q], REACH, 1, nearest);
+                if (nearest.empty())
+                    continue;
+                triesOf[q]++;
+                const Seed& seed = seeds[nearest[0].second];
+                ofSecond.find(seed.predict(places1[q]), seed.tolerance(places1[q]), CANDIDATES, candidates);
+                for (const std::pair<double, int>& t : candidates)
+                    if (refiner.mayMatch(q, t.second, seed.map))
+                        ofParts[part].emplace_back(
+                                DMatch(q, t.second, std::numeric_limits<float>::max()), seed.map);
             }
-        }
-        refiner.refine(tried);
-        std::stable_sort(tried.begin(), tried.end(), [](const Refinement& a, const Refinement& b) {
+        };
+        parallel_for_(Range(0, parts), [&](const Range& range) {
+            for (int part = range.start; part < range.end; part++)
+                listTries(part);
+        });
+        std::vector<Refinement> tries;
+        for (const std::vector<Refinement>& some : ofParts)
+            tries.insert(tries.end(), some.begin(), some.end());
+        refiner.refine(tries);
+        std::stable_sort(tries.begin(), tries.end(), [](const Refinement& a, const Refinement& b) {
             return a.found.similarity > b.found.similarity;
         });
-        for (const Refinement& r : tried)
+        for (const Refinement& r : tries)
             if (r.found.similarity > LEAST_SIMILARITY && !matched1[r.match.queryIdx] &&
                     !matched2[r.match.trainIdx])
             {

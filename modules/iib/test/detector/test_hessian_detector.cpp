@@ -220,6 +220,20 @@ TEST(IIB_HessianDetector, large_images_are_searched_at_the_working_size)
     }
 }
 
+// The longer side alone would leave nothing of them.
+TEST(IIB_HessianDetector, long_and_narrow_images_have_keypoints)
+{
+    const Ptr<HessianDetector> detector = HessianDetector::create(0, 0, 5, 2.2f, 5, 64);
+    const Mat image = texture(Size(2000, 40), CV_8U, 7);
+    detector->setWorkingSize(0);
+    const std::vector<KeyPoint> whole = found(*detector, image);
+    EXPECT_GT(whole.size(), 100u);
+    detector->setWorkingSize(64);  // a quarter of it is in the shorter side twice
+    EXPECT_GT(found(*detector, image).size(), 10u);
+    detector->setWorkingSize(160);
+    expectSameKeyPoints(whole, found(*detector, image));
+}
+
 TEST(IIB_HessianDetector, strongest_first_and_fewer_are_the_first_of_more)
 {
     const Mat image = texture(Size(320, 240), CV_8U, 5);

@@ -369,5 +369,39 @@ TEST(IIB_MatcherEmpty, masks_of_no_rows_fit)
     EXPECT_EQ(0, indices.rows);
 }
 
+// Rows of a thousand million of -1 would take all memory.
+TEST(IIB_MatcherEdges, more_neighbours_than_there_can_be_are_refused)
+{
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create();
+    Mat indices, distances;
+    expectError(Error::StsOutOfRange, "k is 1000000000, but there are 3 descriptors",
+            [&] { matcher->knnMatchArrays(ladder(0, 2), ladder(0, 3), indices, distances, 1000000000); });
+    matcher->knnMatchArrays(ladder(0, 2), ladder(0, 3), indices, distances, 100);
+    EXPECT_EQ(Size(100, 2), indices.size());
+}
+
+// Columns of wider matrices, and results as numbers and rows of any kind.
+TEST(IIB_MatcherEdges, takes_views_and_gives_vectors)
+{
+    Mat wide(40, 100, CV_8U);
+    randu(wide, 0, 256);
+    const Mat view = wide.colRange(20, 62), whole = view.clone();
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
+    Mat indices, distances, expectedIndices, expectedDistances;
+    matcher->knnMatchArrays(whole.rowRange(0, 9), whole, expectedIndices, expectedDistances, 2);
+    matcher->knnMatchArrays(view.rowRange(0, 9), view, indices, distances, 2);
+    EXPECT_EQ(0, cvtest::norm(expectedIndices, indices, NORM_INF));
+    std::vector<Vec2i> pairs;
+    std::vector<Vec2d> bits;
+    matcher->knnMatchArrays(view.rowRange(0, 9), view, pairs, bits, 2);
+    EXPECT_EQ(0, cvtest::norm(expectedIndices.reshape(2), Mat(pairs), NORM_INF));
+    EXPECT_EQ(expectedDistances.at<int>(8, 0), bits[8][0]);
+    std::vector<int> nearest, distance;
+    matcher->add(std::vector<Mat>(1, view));
+    matcher->knnMatchArrays(view, nearest, distance);
+    EXPECT_EQ(40u, nearest.size());
+    EXPECT_EQ(39, nearest[39]);
+}
+
 }  // namespace
 }  // namespace opencv_test

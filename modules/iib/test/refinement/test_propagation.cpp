@@ -183,6 +183,23 @@ TEST_F(IIB_Propagation, takes_a_keypoint_once_and_only_what_agrees_well)
     }
 }
 
+// Far more keypoints than the image can hold: work grows with them, not with their square (40 seconds for these).
+TEST_F(IIB_Propagation, many_keypoints_at_one_place_take_no_time)
+{
+    std::vector<KeyPoint> first = scene().keypoints[0], second = scene().keypoints[1];
+    const Point2f centre = first[central(1)[0].queryIdx].pt;
+    for (int i = 0; i < 32000; i++)
+    {
+        const Point2f place = centre + Point2f(i % 200 * .2f - 20, i / 200 * .25f - 20);
+        first.push_back(KeyPoint(place, 8));
+        second.push_back(KeyPoint(Point2f(scene().truth(place)), 8));
+    }
+    const int64 begin = getTickCount();
+    const Refined r = propagate(central(20), scene().images[1], first, second);
+    RecordProperty("seconds", format("%.1f", (getTickCount() - begin) / getTickFrequency()));
+    EXPECT_GT(r.matches.size(), 500u);
+}
+
 TEST_F(IIB_Propagation, is_the_same_for_every_number_of_threads)
 {
     const int before = getNumThreads();

@@ -21,9 +21,9 @@ together. The image is normalized locally as NormalizedDetector does it (sigma o
 and smoothed by Gaussians of `sigma`, `sigma` * sqrt(2), `sigma` * 2, ..., one for each scale. The response is
 `sigma^4 (Ixx Iyy - Ixy^2)` in units of the local standard deviation. A keypoint is a pixel whose response is positive, at least
 `threshold`, and the largest among its neighbours in place (3 x 3) and in the scales before and after; of neighbours
-with the same response, one stays. Scales of less than 4 pixels are searched at the image's resolution, so that a
-picture moved by a pixel has the same keypoints, moved by a pixel; larger scales at half the resolution, which is enough
-for them.
+with the same response, one stays. Scales of less than 4 pixels are searched at the image's resolution, larger scales at
+half of it, which is enough for them. Of a picture moved by a pixel 97 of 100 keypoints move by a pixel, to a tenth; all
+do where it moves by a multiple of 16 pixels, the steps of the local normalization.
 
 Of a keypoint
 - `pt` is refined to fractions of a pixel by a quadratic fit of the response;
@@ -32,11 +32,12 @@ Of a keypoint
 - `angle` is -1 (none), `octave` the number of the scale, `response` the response.
 
 Images whose longer side has more than `workingSize` pixels are reduced first, by the smallest whole factor that is
-enough (means of its square of pixels): on photographs of many megapixels the smallest scales find noise and grass, and
+enough, but long and narrow ones by no more than leaves a quarter of `workingSize` to the shorter side (means of the
+factor's square of pixels): on photographs of many megapixels the smallest scales find noise and grass, and
 take most of the time. Keypoints are in the image's own pixels all the same.
 
-Keypoints come strongest first, those of the same response by scale, row and column. None lie within about 2 sigma + 4
-pixels of the border. They are the same on every instruction set and for every number of threads.
+Keypoints come strongest first, those of the same response by scale, row and column. None lie nearer to
+the border than 2 sigma. They are the same on every instruction set and for every number of threads.
 
 Images may be 8U, 16U or 32F with 1, 3 (BGR) or 4 (BGRA) channels, ROIs and UMats too. Only differences relative to the
 local contrast count; the largest value of 16-bit images stands for white, and float values are taken between the

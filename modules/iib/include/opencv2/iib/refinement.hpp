@@ -21,9 +21,9 @@ is. It is laid onto the second image, turned and scaled as the keypoints' angles
 (six parameters of an affine map, besides contrast and brightness) until the squared differences are least: the
 adjustment of
 @cite Foerstner1982 and @cite Gruen1985, solved with the matrix of the first patch alone, as the inverse compositional
-algorithm of @cite BakerMatthews2004 does. A match is refused where that moves its point by 2 pixels or more, does not
-settle within ten steps, or where the patches do not agree well enough after it: then it stays as it was detected. A
-point that was right before stays, and is the surest.
+algorithm of @cite BakerMatthews2004 does. A match is refused where that moves its point by 2 pixels or more, or where
+the patches do not agree well enough after it, or no better than before and ten steps do not settle it: then it stays as
+it was detected. A point that was right before stays, and is the surest.
 
 @param image1, image2 as in IIBDescriptorExtractor::compute.
 @param keypoints1, keypoints2 of the first and the second image. Only the difference of their angles counts, as only the
@@ -37,8 +37,8 @@ turned so: whichever agrees better.
 remain and from how far these agree among neighbouring samples; never 0. Of refused matches 1, 0 and 1. 39 and 86 % of
 the errors should lie inside the ellipses of one and two standard deviations. Of white noise and JPEG it is 38 to 49 and
 83 to 87 %. Another light leaves differences that neighbours share, and is told by a term of its own: by other lamps 52
-and 76 % (0.6 pixels in the median, since shading moves; `photographs_by_other_lamps` of IIB_RefinementAccuracy), by
-webcams over seasons and between day and night 33 and 66 %, where cameras move by half a pixel as well. Under another
+and 75 % (0.6 pixels in the median, since shading moves; `photographs_by_other_lamps` of IIB_RefinementAccuracy), by
+webcams over seasons and between day and night 35 and 68 %, where cameras move by half a pixel as well. Under another
 exposure alone it is twice as large as need be (80 and 96 %). What all matches of a pair share is not in it: a camera that
 moved by a tenth of a pixel, light that moved every shadow.
 @param similarities N x 1, CV_32F: the correlation of the two patches where they agree best, above 0.5 up to 1; -1 where
@@ -56,8 +56,9 @@ CV_EXPORTS_W void refineMatches(InputArray image1, const std::vector<KeyPoint>& 
 
 A refined match tells where the surroundings of its point are in the second image. A keypoint without a match is tried
 where the nearest refined match, less than 100 pixels away, says it should be: with the keypoints of the second image
-within 3 pixels and a tenth of the distance. What agrees best after least-squares matching is taken, and leads on. Only
-matches that two of the eight nearest ones confirm lead to others. For poses from views that are far apart or in other
+within 3 pixels and a tenth of the distance, four of them, and four times at most, from new matches. What agrees best
+after least-squares matching is taken, and leads on. Only matches that two of the eight nearest ones confirm lead to
+others. For poses from views that are far apart or in other
 light: half as many right matches again, and poses that were not found without them. Where a pattern repeats, as the
 windows of a block of flats do, wrong matches that confirm each other lead to further ones as well. So for a pose call
 it twice, with all matches and with those alone that agree with a first pose, and take the pose of the two that more
