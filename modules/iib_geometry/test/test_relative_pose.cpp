@@ -263,6 +263,42 @@ TEST(RelativePose, what_nothing_tells_has_a_large_deviation)
     }
 }
 
+//! Two poses explain a plane. Where nothing but chance decides between them there is no pose.
+TEST(RelativePose, of_a_plane_is_right_or_refused)
+{
+    int refused = 0, found = 0;
+    for (int trial = 0; trial < 30; trial++)
+    {
+        RNG random(100 + trial);
+        const RelativePose truth = randomPose(random, .1);
+        Mat first(200, 2, CV_64F), second(200, 2, CV_64F), R, t;
+        for (int i = 0; i < 200; i++)
+        {
+            const Vec3d ray = CAMERA.inv() * Vec3d(random.uniform(0., 640.), random.uniform(0., 480.), 1);
+            const Vec3d X = ray * (8 / (1 + .2 * ray[0] + .1 * ray[1])), a = CAMERA * X,
+                        b = CAMERA * (truth.R * X + truth.t);
+            for (int c = 0; c < 2; c++)
+            {
+                first.at<double>(i, c) = a[c] / a[2] + random.gaussian(.2);
+                second.at<double>(i, c) = b[c] / b[2] + random.gaussian(.2);
+            }
+        }
+        String reason;
+        if (findRelativePose(first, second, CAMERA, CAMERA, R, t, noArray(), 0, noArray(), &reason))
+        {
+            found++;
+            EXPECT_LT(cv::norm(errorOf({R, Vec3d(t)}, truth)), .1) << trial;
+        }
+        else
+        {
+            refused++;
+            EXPECT_NE(reason.find("plane"), String::npos) << reason;
+        }
+    }
+    EXPECT_GT(found, 10);
+    EXPECT_GT(refused, 3);
+}
+
 TEST(RelativePose, false_alarms_are_few_of_right_matches_and_many_of_wrong_ones)
 {
     RNG random(11);

@@ -176,6 +176,13 @@ Row<EpipolarProblem::Step> EpipolarProblem::row(
     return row;
 }
 
+bool EpipolarProblem::areApart(const RelativePose& pose, const RelativePose& other) const
+{
+    const double turned = .05, moved = .25;  // radians
+    const Step between = stepBetween(pose, other);
+    return norm(Vec3d(between.val)) > turned || norm(Vec2d(between.val + 3)) > moved;
+}
+
 void EpipolarProblem::linearize(const RelativePose& pose, double limit, std::vector<Row<Step>>& rows) const
 {
     rows.clear();

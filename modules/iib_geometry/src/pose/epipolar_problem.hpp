@@ -31,6 +31,7 @@ public:
     //! How far a match is from where a point at infinity would be seen, pixels.
     double parallax(const RelativePose& pose, int i) const;
 
+    bool areApart(const RelativePose& pose, const RelativePose& other) const;
     void linearize(const RelativePose& pose, double limit, std::vector<Row<Step>>& rows) const;
     RelativePose moved(const RelativePose& pose, const Step& step) const { return iib::moved(pose, step); }
 

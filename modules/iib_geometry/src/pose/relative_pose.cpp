@@ -49,6 +49,21 @@ std::string reasonAgainst(const Fit<EpipolarProblem>& fit, const Verdict& verdic
     return "";
 }
 
+//! Why one of two poses cannot be told from the other, by errors as the matches around the pose tell them.
+std::string reasonAgainst(const Fit<EpipolarProblem>& fit, const Square<EpipolarProblem::Step>& errors)
+{
+    const double level = 5;  // standard deviations: another pose within them is told by the covariance
+    if (fit.lead >= 1)
+        return "";
+    const EpipolarProblem::Step between = stepBetween(fit.model, fit.other);
+    if (between.dot(errors.inv(DECOMP_CHOLESKY) * between) < square(level))
+        return "";
+    return format("two poses explain the matches as well, turned by %.0f and moved in directions by %.0f "
+                  "degrees against "
+                  "each other: the points may lie on a plane",
+            norm(Vec3d(between.val)) * 180 / CV_PI, norm(Vec2d(between.val + 3)) * 180 / CV_PI);
+}
+
 /** Whether the direction of t is more than chance. Matches without parallax say nothing of it; of the others one whose parallax is
 much longer than the limit agrees with a wrong direction by the chance asin(limit / parallax) 2 / pi. */
 bool tellsDirection(const EpipolarProblem& problem, const Fit<EpipolarProblem>& fit, const Verdict& verdict)
@@ -94,7 +109,16 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
         agree.copyTo(inliers);
     }
     const Verdict verdict(first, second);
-    const std::string why = reasonAgainst(fit, verdict);
+    std::string why = reasonAgainst(fit, verdict);
+    Square<EpipolarProblem::Step> errors;
+    if (why.empty())
+    {
+        errors = covarianceOf(problem, fit, partsOf(first), LARGEST_DEVIATION);
+        if (!tellsDirection(problem, fit, verdict))
+            for (int k = 3; k < 5; k++)
+                errors(k, k) += square(LARGEST_DEVIATION);
+        why = reasonAgainst(fit, errors);
+    }
     if (reason)
         *reason = why;
     if (!why.empty())
@@ -106,13 +130,7 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
     Mat(fit.model.R).copyTo(R);
     Mat(fit.model.t).copyTo(t);
     if (covariance.needed())
-    {
-        Square<EpipolarProblem::Step> errors = covarianceOf(problem, fit, partsOf(first), LARGEST_DEVIATION);
-        if (!tellsDirection(problem, fit, verdict))
-            for (int k = 3; k < 5; k++)
-                errors(k, k) += square(LARGEST_DEVIATION);
         Mat(errors).copyTo(covariance);
-    }
     return true;
 }
 

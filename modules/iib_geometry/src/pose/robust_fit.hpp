@@ -20,6 +20,7 @@ A class Problem holds the matches and has
     propose(sample, models)            models that agree with a sample: indices of sampleSize() matches
     double loss(model, scale, limit)   the sum over all matches, or anything over the limit
     squaredErrors(model, errors)       of all matches, pixels^2; infinite where the model forbids the match
+    bool areApart(model, other)        whether they are other answers, and not the same one found twice
     linearize(model, limit, rows)      the rows of matches whose squared error is below the limit
     Model moved(model, step) */
 
@@ -106,6 +107,10 @@ template <class Problem> struct Fit
     typename Problem::Model model;
     double scale = 0;             //!< under which the model was polished, pixels
     std::vector<double> squared;  //!< errors of the matches, pixels^2; of none if there is no model
+    /** How many matches more the model has than the next best one apart from it, `other`, in loss: where it is less than one, both
+    explain the matches as well. */
+    double lead = std::numeric_limits<double>::infinity();
+    typename Problem::Model other;
 };
 
 /** The model that most matches agree with. The same in every run.
@@ -180,7 +185,7 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem, double s
     {
         polish(problem, wide, roughly, candidate.second);
         problem.squaredErrors(candidate.second, squared);
-        double sum = 0;
+        double& sum = candidate.first = 0;
         for (double error : squared)
             sum += std::min(error, farthest2);
         if (sum >= leastSum)
@@ -191,6 +196,13 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem, double s
     }
     if (leastSum == none)
         return fit;
+    for (const std::pair<double, Model>& candidate : best)
+        if ((candidate.first - leastSum) / farthest2 < fit.lead &&
+                problem.areApart(candidate.second, fit.model))
+        {
+            fit.lead = (candidate.first - leastSum) / farthest2;
+            fit.other = candidate.second;
+        }
 
     fit.scale = scale;
     if (scale == 0)

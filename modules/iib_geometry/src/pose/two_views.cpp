@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "opencv2/core/affine.hpp"
+
 namespace cv::iib {
 namespace {
 
@@ -44,6 +46,16 @@ RelativePose moved(const RelativePose& pose, const Vec<double, 5>& step)
 {
     const Vec3d along = tangentsOf(pose.t) * Vec2d(step[3], step[4]);
     return {orthonormal(rotationBy(Vec3d(step[0], step[1], step[2])) * pose.R), normalize(pose.t + along)};
+}
+
+Vec<double, 5> stepBetween(const RelativePose& pose, const RelativePose& other)
+{
+    const Vec3d turn = Affine3d(other.R * pose.R.t()).rvec();
+    Vec2d along = tangentsOf(pose.t).t() * other.t;
+    const double sine = norm(along);
+    if (sine > 0)
+        along *= std::atan2(sine, pose.t.dot(other.t)) / sine;
+    return Vec<double, 5>(turn[0], turn[1], turn[2], along[0], along[1]);
 }
 
 // Horn, Recovering baseline and orientation from essential matrix, 1990: with E = [t]x R, t t' = tr(EE')/2 - EE',

@@ -25,6 +25,9 @@ Matx<double, 3, 2> tangentsOf(const Vec3d& t);
 //! The pose moved by a rotation vector in the axes of camera 2, and by two angles along the tangents of t.
 RelativePose moved(const RelativePose& pose, const Vec<double, 5>& step);
 
+//! The step by which a pose is moved to another one.
+Vec<double, 5> stepBetween(const RelativePose& pose, const RelativePose& other);
+
 //! The four poses of an essential matrix.
 void posesOf(const Matx33d& essential, RelativePose (&poses)[4]);
 

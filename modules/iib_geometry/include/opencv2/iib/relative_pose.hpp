@@ -21,6 +21,9 @@ Where the matches that agree are not more than chance there is no pose: if poses
 in a thousand tries among matches that are anywhere (the number of false alarms, @cite MoisanStival2004, counted in cells of a 32nd
 of the diagonal of what the points span, since matches beside each other are right or wrong together).
 
+There is none either where a second pose, far outside of the covariance, explains the matches as well to the worth of one
+match, as two do of a plane.
+
 Points must be free of lens distortion: `cv::undistortPoints(points, undistorted, K, distortion, noArray(), K)` first.
 Matches that cv::iib::refineMatches refined make the pose more accurate where the light changed.
 
@@ -40,7 +43,7 @@ Matches that cv::iib::refineMatches refined make the pose more accurate where th
     in common, such as a wrong camera matrix, is not in it. A number that nothing tells, such as the direction of t where the camera
     only turned or all the points are far away, has a deviation of a radian or more
 @param reason if not null: why there is no pose, a sentence; empty if there is one
-@return false, with R, t and covariance empty, if the matches that agree are not more than chance
+@return false, with R, t and covariance empty, if the matches that agree are not more than chance, or two poses explain them as well
 @throws cv::Exception for points of a wrong type or of different numbers, points that are not finite, matrices that are
     not a camera's, or a scale that is negative or not finite */
 CV_EXPORTS_W bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraMatrix1,
