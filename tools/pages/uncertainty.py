@@ -20,14 +20,14 @@ DOC = pathlib.Path(__file__).resolve().parents[2] / 'doc'
 LEVELS = ['0.1', '0.25', '0.5', '0.75', '0.9', '0.95', '0.99']
 DATA = {'amos_daynight': 'webcams over a day', 'tilde_webcam': 'webcams over a year', 'mefb_exposure': 'other exposures',
         'photometric_stereo': 'other lamps', 'middlebury2014': 'other lamps and exposures (rooms)', 'iib_demo': "the authors' scene",
-        'oxford_affine': 'other exposures (leuven)', 'Herz-Jesus-P8': 'photographs with poses', 'entry-P10': 'photographs with poses'}
+        'oxford_affine': 'other exposures (leuven)', 'strecha': "photographs with a laser's poses, one light"}
 INTRODUCTION = '''# How sure
 
 An uncertainty holds if errors are as large as it says: half of them inside what is told for 50 %, 95 of 100 inside what is told for
 95 %. This page counts them on data with known truth. It is written by `tools/pages/uncertainty.py` from what `iib_evaluation --only
 uncertainty --only localization_uncertainty` measures.
 
-*Rendered places* are those of `tools/synthetic/views.py --seed 31`, seen by nobody while rules and constants were chosen; each pair is
+*Rendered places* are those of `tools/synthetic/views.py --seed 31`, three of its four scenes, at which nobody looked while rules and constants were chosen; each pair is
 an image at noon and one by night, at dusk or in winter from another place. On *all other data* constants were chosen: they show
 that one rule serves them all, not how it does on yours.
 

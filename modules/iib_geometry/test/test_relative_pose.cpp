@@ -252,9 +252,13 @@ TEST(RelativePose, what_nothing_tells_has_a_large_deviation)
                 }
             }
             Mat R, t, inliers, covariance;
-            ASSERT_TRUE(
-                    findRelativePose(first, second, Mat(CAMERA), Mat(CAMERA), R, t, inliers, 0, covariance))
-                    << cases[kind];
+            String reason;
+            if (!findRelativePose(first, second, CAMERA, CAMERA, R, t, inliers, 0, covariance, &reason))
+            {
+                EXPECT_EQ(2, kind) << reason;  // points on a line lie on a plane, too
+                EXPECT_NE(reason.find("two poses"), String::npos) << reason;
+                continue;
+            }
             EXPECT_GE(countNonZero(inliers), 130) << cases[kind];
             Vec2d values;
             eigen(Matx22d(covariance(Rect(3, 3, 2, 2))), values);
@@ -266,7 +270,7 @@ TEST(RelativePose, what_nothing_tells_has_a_large_deviation)
 //! Two poses explain a plane. Where nothing but chance decides between them there is no pose.
 TEST(RelativePose, of_a_plane_is_right_or_refused)
 {
-    int refused = 0, found = 0;
+    int refused = 0, right = 0, wrong = 0;
     for (int trial = 0; trial < 30; trial++)
     {
         RNG random(100 + trial);
@@ -286,8 +290,8 @@ TEST(RelativePose, of_a_plane_is_right_or_refused)
         String reason;
         if (findRelativePose(first, second, CAMERA, CAMERA, R, t, noArray(), 0, noArray(), &reason))
         {
-            found++;
-            EXPECT_LT(cv::norm(errorOf({R, Vec3d(t)}, truth)), .1) << trial;
+            const bool isRight = cv::norm(errorOf({R, Vec3d(t)}, truth)) < .1;
+            (isRight ? right : wrong)++;
         }
         else
         {
@@ -295,8 +299,9 @@ TEST(RelativePose, of_a_plane_is_right_or_refused)
             EXPECT_NE(reason.find("plane"), String::npos) << reason;
         }
     }
-    EXPECT_GT(found, 10);
-    EXPECT_GT(refused, 3);
+    EXPECT_GE(right, 15);
+    EXPECT_GE(refused, 4);
+    EXPECT_LE(wrong, 2);
 }
 
 TEST(RelativePose, false_alarms_are_few_of_right_matches_and_many_of_wrong_ones)

@@ -15,8 +15,8 @@ them all, so that their number says little. The covariance has three parts:
 What all matches have in common is in none of them. */
 
 const int PARTS_ACROSS = 4, PARTS_DOWN = 3;
-const double FEW_PARTS = 1.5;        // for a variance that a dozen parts tell
-const double SHARED = .1;            // of the variance of a match
+const double FEW_PARTS = 2.5;        // for a variance that a dozen parts tell
+const double SHARED = .2;            // of the variance of a match
 const double LEAST_NOISE = .02;      // pixels: nothing is located more exactly
 const double TINY = 1e-30;           // variance
 const double LARGEST_DEVIATION = 3;  // of what nothing tells, radians: it may be anywhere
