@@ -27,6 +27,10 @@ An uncertainty holds if errors are as large as it says: half of them inside what
 95 %. This page counts them on data with known truth. It is written by `tools/pages/uncertainty.py` from what `iib_evaluation --only
 uncertainty --only localization_uncertainty` measures.
 
+    tools/synthetic/views.py views --seed 31 --scenes street facade room
+    build/tools/evaluation/iib_evaluation --only uncertainty --only localization_uncertainty --points 2000 --out FOLDER views DATA...
+    tools/pages/uncertainty.py FOLDER
+
 *Rendered places* are those of `tools/synthetic/views.py --seed 31`, three of its four scenes, at which nobody looked while rules and constants were chosen; each pair is
 an image at noon and one by night, at dusk or in winter from another place. On *all other data* constants were chosen: they show
 that one rule serves them all, not how it does on yours.
