@@ -364,6 +364,41 @@ TEST(RelativePose, is_the_same_again_in_both_depths_and_layouts)
     EXPECT_EQ(0, cvtest::norm(t[0], t[1], NORM_INF));
 }
 
+//! Ten thousand matches of which two agree with whatever is proposed.
+struct HopelessProblem
+{
+    typedef double Model;
+    typedef Vec<double, 1> Step;
+
+    mutable int trials = 0;
+
+    int size() const { return 10000; }
+    int sampleSize() const { return 5; }
+    int parameters() const { return 1; }
+    void propose(const std::vector<int>&, std::vector<double>& models) const
+    {
+        trials++;
+        models = {0};
+    }
+    double loss(double, double, double) const { return size() - 2; }
+    void squaredErrors(double, std::vector<double>& errors) const
+    {
+        errors.assign(size(), 1e6);
+        errors[0] = errors[1] = 0;
+    }
+    bool areApart(double, double) const { return false; }
+    void linearize(double, double, std::vector<Row<Step>>& rows) const { rows.clear(); }
+    double moved(double model, const Step&) const { return model; }
+};
+
+// Of so few right matches no sample of five can be expected: 1 - share^5 is 1 in double precision.
+TEST(RelativePose, hopeless_matches_are_tried_as_often_as_any)
+{
+    const HopelessProblem problem;
+    robustFit(problem, 1);
+    EXPECT_EQ(10000, problem.trials);
+}
+
 TEST(RelativePose, takes_columns_of_a_matrix_and_gives_fixed_sizes)
 {
     RNG random(10);
