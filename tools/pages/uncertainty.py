@@ -2,7 +2,7 @@
 """Writes doc/uncertainty.md and doc/uncertainty.svg: how many errors are inside what was told.
 
     build/tools/evaluation/iib_evaluation --only uncertainty --only localization_uncertainty --points 2000 --out FOLDER DATA...
-    tools/pages/uncertainty.py FOLDER
+    python3 tools/pages/uncertainty.py FOLDER
 
 The tables are of uncertainty.csv and localization_uncertainty.csv in FOLDER. Needs pandas, SciPy and matplotlib.
 """
@@ -27,11 +27,11 @@ An uncertainty holds if errors are as large as it says: half of them inside what
 95 %. This page counts them on data with known truth. It is written by `tools/pages/uncertainty.py` from what `iib_evaluation --only
 uncertainty --only localization_uncertainty` measures.
 
-    tools/synthetic/views.py views --seed 31 --scenes street facade room
+    python3 tools/synthetic/views.py views --seed 31 --scenes street facade room
     build/tools/evaluation/iib_evaluation --only uncertainty --only localization_uncertainty --points 2000 --out FOLDER views DATA...
-    tools/pages/uncertainty.py FOLDER
+    python3 tools/pages/uncertainty.py FOLDER
 
-*Rendered places* are those of `tools/synthetic/views.py --seed 31`, three of its four scenes, at which nobody looked while rules and constants were chosen; each pair is
+*Rendered places* are those of seed 31, three of its four scenes, at which nobody looked while rules and constants were chosen; each pair is
 an image at noon and one by night, at dusk or in winter from another place. On *all other data* constants were chosen: they show
 that one rule serves them all, not how it does on yours.
 
