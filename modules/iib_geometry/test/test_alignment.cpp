@@ -215,6 +215,20 @@ TEST(Alignment, finds_large_and_blurred_images)
     EXPECT_NEAR(60, transform.at<double>(1, 2), 6);
 }
 
+TEST(Alignment, keeps_the_scales_of_images_of_other_sizes)
+{
+    Mat large, transform;
+    resize(picture(20), large, Size(1100, 825), 0, 0, INTER_CUBIC);
+    ASSERT_TRUE(alignImages(large, large(Rect(60, 40, 1000, 700)), transform, ALIGN_TRANSLATION));
+    EXPECT_NEAR(60, transform.at<double>(0, 2), .1);
+    EXPECT_NEAR(40, transform.at<double>(1, 2), .1);
+    Mat strip;
+    resize(picture(21), strip, Size(7000, 100), 0, 0, INTER_CUBIC);
+    ASSERT_TRUE(alignImages(strip, strip.colRange(500, 6500), transform, ALIGN_TRANSLATION));
+    EXPECT_NEAR(500, transform.at<double>(0, 2), 2);
+    EXPECT_THROW(alignImages(Mat(1100, 1100, CV_32S), large, transform), cv::Exception);
+}
+
 TEST(Alignment, gives_fixed_sizes)
 {
     Matx33d transform;

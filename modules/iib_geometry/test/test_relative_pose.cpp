@@ -399,6 +399,26 @@ TEST(RelativePose, hopeless_matches_are_tried_as_often_as_any)
     EXPECT_EQ(10000, problem.trials);
 }
 
+TEST(RelativePose, one_match_far_away_changes_little)
+{
+    RNG random(12);
+    const RelativePose truth = randomPose(random, .1);
+    Views views(random, truth, 300, 20, .2);
+    Mat R, t, covariance, withFar;
+    ASSERT_TRUE(
+            findRelativePose(views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), 0, covariance));
+    views.points1.at<Vec2d>(0) = views.points2.at<Vec2d>(0) = Vec2d(5e4, -2e4);
+    ASSERT_TRUE(findRelativePose(views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), 0, withFar));
+    EXPECT_LT(cv::norm(errorOf({R, Vec3d(t)}, truth)), .03);
+    EXPECT_NEAR(1, std::sqrt(cv::trace(withFar)[0] / cv::trace(covariance)[0]), .5);
+    for (double scale : {1e-200, 1e-3})  // as .1
+    {
+        ASSERT_TRUE(findRelativePose(
+                views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), scale, covariance));
+        EXPECT_LT(std::sqrt(cv::trace(covariance)[0]), .2);
+    }
+}
+
 TEST(RelativePose, takes_columns_of_a_matrix_and_gives_fixed_sizes)
 {
     RNG random(10);

@@ -47,8 +47,11 @@ def show_the_same(points_a: np.ndarray, points_b: np.ndarray, threshold: float =
         return True
     if len(points_a) < 4:
         return False
-    _, mask = cv2.findHomography(np.ascontiguousarray(points_b, np.float64), np.ascontiguousarray(points_a, np.float64),
-                                 cv2.USAC_MAGSAC, threshold, maxIters=10000, confidence=.9999)
+    try:
+        _, mask = cv2.findHomography(np.ascontiguousarray(points_a, np.float64), np.ascontiguousarray(points_b, np.float64),
+                                     cv2.USAC_MAGSAC, threshold, maxIters=10000, confidence=.9999)
+    except cv2.error:  # degenerate points, for some versions
+        return False
     return mask is not None and logFalseAlarms(points_a, points_b, mask, False, threshold) < CERTAIN
 
 

@@ -158,7 +158,7 @@ Judgement judge(const Aligned& aligned, const AlignedPoints& points, int model, 
 {
     if (aligned.fit.squared.empty())
         return {"the images have too few matches", false};
-    const Verdict verdict(points.reference, points.image);
+    const Verdict verdict(points.image, points.reference);  // errors are in the reference
     const std::string wrongModel = reasonAgainstModel(aligned, points, model, verdict);
     if (!wrongModel.empty())
         return {wrongModel, true};
@@ -192,7 +192,7 @@ bool alignImages(InputArray reference, InputArray image, OutputArray transform, 
     std::string against;
     for (const Attempt& attempt : attemptsFor(first, second, model))
     {
-        const WorkingPair pair(first, second, attempt.workingSize);
+        const WorkingPair pair(first, second, attempt.workingSize, model == ALIGN_TRANSLATION);
         AlignedPoints points = pair.match(attempt.rotated);
         Aligned aligned(points, model);
         const Judgement now = judge(aligned, points, model, pair.size());
@@ -201,7 +201,9 @@ bool alignImages(InputArray reference, InputArray image, OutputArray transform, 
             const AlignedPoints fine =
                     pair.refined(points, aligned.agree, aligned.problem.inPixels(aligned.fit.model));
             const Aligned again(fine, model);
-            if (again.count() > LEAST_REFINED * aligned.count())  // else too blurred
+            // Else they are too blurred, or sharp in a part alone.
+            if (again.count() > LEAST_REFINED * aligned.count() &&
+                    judge(again, fine, model, pair.size()).against.empty())
             {
                 aligned = again;
                 points = fine;

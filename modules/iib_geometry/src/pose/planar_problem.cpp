@@ -164,7 +164,10 @@ Matx33d PlanarProblem::inPixels(const Matx33d& transform) const
 double PlanarProblem::deviation(
         const Matx33d& transform, const Square<Step>& covariance, const Point2d& pixel) const
 {
-    const Place place = placeOf(transform, fromImage_ * Vec3d(pixel.x, pixel.y, 1));
+    const Vec3d point = fromImage_ * Vec3d(pixel.x, pixel.y, 1);
+    if (!((transform * point)[2] > 1e-6))
+        return std::numeric_limits<double>::infinity();  // beyond the horizon
+    const Place place = placeOf(transform, point);
     return std::sqrt(trace(place.byStep * covariance * place.byStep.t())) * unit_;
 }
 

@@ -33,6 +33,22 @@ void checkMatched(const Mat& points1, const Mat& points2, const char* function)
                         points1.rows, points2.rows));
 }
 
+Rect2d spanOf(const Mat& points)
+{
+    if (points.empty())
+        return Rect2d(0, 0, 1, 1);
+    const int count = points.rows, outermost = count < 20 ? 0 : std::max(count / 50, 1);
+    double least[2], most[2];
+    for (int c = 0; c < 2; c++)
+    {
+        Mat sorted;
+        cv::sort(points.col(c), sorted, SORT_EVERY_COLUMN);
+        least[c] = sorted.at<double>(outermost);
+        most[c] = std::max(sorted.at<double>(count - 1 - outermost), least[c] + 1);
+    }
+    return Rect2d(least[0], least[1], most[0] - least[0], most[1] - least[1]);
+}
+
 void clear(OutputArray output)
 {
     if (output.fixedSize())

@@ -9,7 +9,8 @@
 namespace cv::iib {
 namespace {
 
-const double REFINED = .25;  // least scale by which matches count as agreeing, pixels
+const double LEAST_SCALE = .1, MOST_SCALE = 1000;  // pixels
+const double REFINED = .25;                        // least scale by which matches count as agreeing, pixels
 
 Matx33d cameraMatrix(InputArray matrix, const char* name)
 {
@@ -56,7 +57,7 @@ std::string reasonAgainst(const Fit<EpipolarProblem>& fit, const Square<Epipolar
     if (fit.lead >= 1)
         return "";
     const EpipolarProblem::Step between = stepBetween(fit.model, fit.other);
-    if (between.dot(errors.inv(DECOMP_CHOLESKY) * between) < square(level))
+    if (between.dot(errors.inv(DECOMP_SVD) * between) < square(level))
         return "";
     return format("two poses explain the matches as well, turned by %.0f and moved in directions by %.0f "
                   "degrees against "
@@ -68,7 +69,7 @@ std::string reasonAgainst(const Fit<EpipolarProblem>& fit, const Square<Epipolar
 much longer than the limit agrees with a wrong direction by the chance asin(limit / parallax) 2 / pi. */
 bool tellsDirection(const EpipolarProblem& problem, const Fit<EpipolarProblem>& fit, const Verdict& verdict)
 {
-    const double limit = 1.5 * fit.scale;
+    const double limit = 1.5 * std::max(fit.scale, LEAST_SCALE);
     const int matchesOfDirection = 2;
     Verdict::Marks seen(fit.squared.size()), agree = seen;
     double chances = 0, count = 0;
@@ -100,7 +101,8 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
                 "findRelativePose: scale, in pixels, must be finite and over 0, or 0, to be chosen");
     const EpipolarProblem problem(first, second, cameraMatrix(cameraMatrix1, "cameraMatrix1"),
             cameraMatrix(cameraMatrix2, "cameraMatrix2"));
-    const Fit<EpipolarProblem> fit = robustFit(problem, scale);
+    const Fit<EpipolarProblem> fit =
+            robustFit(problem, scale > 0 ? std::clamp(scale, LEAST_SCALE, MOST_SCALE) : 0);
     if (inliers.needed())
     {
         Mat agree(first.rows, 1, CV_8U, Scalar(0));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "points.hpp"
 #include "robust_fit.hpp"
 
 namespace cv::iib {
@@ -24,19 +25,14 @@ const double LARGEST_DEVIATION = 3;  // of what nothing tells, radians: it may b
 //! Which part of what points span each of them is in, N x 2, CV_64F.
 inline std::vector<int> partsOf(const Mat& points)
 {
-    double least[2], span[2];
-    for (int c = 0; c < 2; c++)
-    {
-        double most;
-        minMaxLoc(points.col(c), &least[c], &most);
-        span[c] = std::max(most - least[c], 1e-9);
-    }
+    const Rect2d span = spanOf(points);
+    const auto part = [](double place, int parts) { return (int)std::clamp(place * parts, 0., parts - 1.); };
     std::vector<int> parts(points.rows);
     for (int i = 0; i < points.rows; i++)
     {
         const double* p = points.ptr<double>(i);
-        parts[i] = std::min(int((p[0] - least[0]) * PARTS_ACROSS / span[0]), PARTS_ACROSS - 1) +
-                   std::min(int((p[1] - least[1]) * PARTS_DOWN / span[1]), PARTS_DOWN - 1) * PARTS_ACROSS;
+        parts[i] = part((p[0] - span.x) / span.width, PARTS_ACROSS) +
+                   part((p[1] - span.y) / span.height, PARTS_DOWN) * PARTS_ACROSS;
     }
     return parts;
 }
@@ -76,6 +72,8 @@ Square<typename Problem::Step> covarianceOf(
     std::vector<Row<Step>> rows;
     const double perScale2 = 1 / square(fit.scale);
     problem.linearize(fit.model, FARTHEST * square(fit.scale), rows);
+    if (rows.empty())
+        return Square<Step>::eye() * square(largest);
 
     // With the weight 1 / (1 + r^2 / scale^2): psi, which is weight times r, squared; its slope; in all.
     double influence2 = 0, slope = 0, weights = 0;

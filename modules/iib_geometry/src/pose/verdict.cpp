@@ -21,17 +21,6 @@ double logBinomial(int n, int k)
     return (std::lgamma(n + 1.) - std::lgamma(k + 1.) - std::lgamma(n - k + 1.)) / std::log(10.);
 }
 
-Rect2d spanOf(const Mat& points)
-{
-    double left = 0, right = 0, top = 0, bottom = 0;
-    if (!points.empty())
-    {
-        minMaxLoc(points.col(0), &left, &right);
-        minMaxLoc(points.col(1), &top, &bottom);
-    }
-    return Rect2d(left, top, std::max(right - left, 1.), std::max(bottom - top, 1.));
-}
-
 double diagonal(const Size2d& size) { return std::hypot(size.width, size.height); }
 
 }  // namespace
@@ -47,7 +36,10 @@ Verdict::Verdict(const Mat& points1, const Mat& points2)
         for (int i = 0; i < points.rows; i++)
         {
             const double* p = points.ptr<double>(i);
-            cells_[image].push_back(int((p[1] - span.y) / cell) * (CELLS + 1) + int((p[0] - span.x) / cell));
+            const auto within = [&](double place) {
+                return (int)std::clamp(place / cell, 0., (double)CELLS);
+            };
+            cells_[image].push_back(within(p[1] - span.y) * (CELLS + 1) + within(p[0] - span.x));
         }
         span_ = span.size();
     }

@@ -7,6 +7,7 @@ namespace cv::iib {
 namespace {
 
 const int FEATURES = 2000;
+const int LEAST_SIDE = 64;  // pixels that are left of a reduced image
 
 //! From pixels of a reduced image to those of the whole one: the centres of pixels are at whole numbers in both.
 Matx33d enlarging(int factor)
@@ -19,6 +20,14 @@ Point2d moved(const Matx33d& by, const Point2d& point)
 {
     const Vec3d q = by * Vec3d(point.x, point.y, 1);
     return {q[0] / q[2], q[1] / q[2]};
+}
+
+//! Of a type that can be matched; others are left to the extractor, which says what is wrong with them.
+bool isReducible(const Mat& image)
+{
+    const int depth = image.depth(), channels = image.channels();
+    return !image.empty() && (depth == CV_8U || depth == CV_16U || depth == CV_32F) &&
+           (channels == 1 || channels == 3 || channels == 4);
 }
 
 Point2d rowOf(const Mat& points, int i) { return points.at<Vec2d>(i); }
@@ -34,18 +43,28 @@ Mat moved(const Matx33d& by, const Mat& points)
 
 }  // namespace
 
-WorkingPair::WorkingPair(const Mat& reference, const Mat& image, int workingSize)
+WorkingPair::WorkingPair(const Mat& reference, const Mat& image, int workingSize, bool sameScale)
+    : full_{reference, image}
 {
-    const Mat* const images[] = {&reference, &image};
+    int most[2];
     for (int i = 0; i < 2; i++)
     {
-        const Mat& whole = full_[i] = *images[i];
-        const int longer = std::max(whole.rows, whole.cols);
-        factors_[i] = std::max((longer + workingSize - 1) / workingSize, 1);
-        working_[i] = whole;
-        const Size size(whole.cols / factors_[i], whole.rows / factors_[i]);
-        if (factors_[i] > 1 && !size.empty())  // what is left at the right and below a multiple is left out
-            resize(whole(Rect(Point(), size * factors_[i])), working_[i], size, 0, 0, INTER_AREA);
+        const int longer = std::max(full_[i].rows, full_[i].cols),
+                  shorter = std::min(full_[i].rows, full_[i].cols);
+        most[i] = isReducible(full_[i]) ? std::max(shorter / LEAST_SIDE, 1) : 1;
+        factors_[i] = std::min((longer + workingSize - 1) / workingSize, most[i]);
+    }
+    // Images of about one size keep their scales to each other, and a translation stays one.
+    const int larger = std::max(factors_[0], factors_[1]), smaller = std::min(factors_[0], factors_[1]);
+    if (sameScale || larger <= 2 * smaller)
+        factors_[0] = factors_[1] = std::min({larger, most[0], most[1]});
+    for (int i = 0; i < 2; i++)
+    {
+        working_[i] = full_[i];
+        const Size size(full_[i].cols / std::max(factors_[i], 1), full_[i].rows / std::max(factors_[i], 1));
+        if (factors_[i] > 1)  // what is left at the right and below a multiple is left out
+            resize(full_[i](Rect(Point(), size * factors_[i])), working_[i], size, 0, 0, INTER_AREA);
+        factors_[i] = std::max(factors_[i], 1);  // of an empty image
     }
 }
 

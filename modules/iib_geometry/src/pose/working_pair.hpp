@@ -17,8 +17,9 @@ full size afterwards. Working pixels are those of images that are reduced by who
 class WorkingPair
 {
 public:
-    //! @param workingSize pixels of the longer side, at most.
-    WorkingPair(const Mat& reference, const Mat& image, int workingSize);
+    /** @param workingSize pixels of the longer side, at most.
+    @param sameScale whether both are reduced by one factor, however their sizes differ. */
+    WorkingPair(const Mat& reference, const Mat& image, int workingSize, bool sameScale);
 
     //! @param rotated whether the image may be turned by any angle (matchRotated).
     AlignedPoints match(bool rotated) const;

@@ -23,9 +23,10 @@ enum AlignmentModel
 
 For images of a plane, or of anything by a camera that stays where it is, though it may turn and zoom, by day and by night.
 Images from two places of a scene that is not flat have no such transform; findRelativePose is for them. Points are detected
-in both images and matched, in a second attempt also by images that are turned by any angle (matchRotated); the matches are
+in both images and matched, in the last attempt also by images that are turned by any angle (matchRotated, for all models but
+ALIGN_TRANSLATION); the matches are
 refined (refineMatches), and the transform that most of them agree with is fitted to them as findRelativePose fits a pose. Images
-whose longer side has more than 1024 pixels are reduced for that; the matches that agree are then refined at full size, where the
+whose longer side has more than 1024 pixels are reduced for that, in a second attempt to 512, where blurred ones are sharper; the matches that agree are then refined at full size, where the
 images are sharp enough for it. The same input gives the same answer, whatever the number of threads.
 
 There is no transform, and `reason` says which of these it was,
@@ -43,11 +44,11 @@ There is no transform, and `reason` says which of these it was,
 @param model AlignmentModel; the simplest one that is true of the images gives the smallest errors, one that is not is refused
 @param error 4 x 1, CV_64F, pixels of the reference: standard deviations of the places of the image's corners (top left,
     top right, bottom right, bottom left), as parts of the image and the matches around the transform tell them; large for corners
-    far from what both images show. What all matches have in common is not in it.
+    far from what both images show. Of what all matches have in common .4 of the matches' deviation is in it, which other lamps show
 @param matches N x 4, CV_32F: the matches that agree with the transform, x and y in the reference, x and y in the image,
     pixels; where the answer is false, those that agreed best
 @param reason if not null: why there is no transform, a sentence; empty if there is one
-@return false, with transform and error empty, if there is none
+@return false, with transform and error empty (NaN where their size is fixed), if there is none
 @throws cv::Exception for an unknown model, and as IIBDescriptorExtractor::compute for images */
 CV_EXPORTS_W bool alignImages(InputArray reference, InputArray image, OutputArray transform,
         int model = ALIGN_HOMOGRAPHY, OutputArray error = noArray(), OutputArray matches = noArray(),

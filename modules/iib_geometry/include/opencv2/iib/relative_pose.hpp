@@ -35,7 +35,8 @@ Matches that cv::iib::refineMatches refined make the pose more accurate where th
 @param t 3 x 1, CV_64F, of length 1: direction of the translation, in the axes of camera 2
 @param inliers N x 1, CV_8U: 1 for matches within three scales of the pose (three quarters of a pixel at least), and in front of both
     cameras unless they are too far away to tell; else 0. Without a pose, those that agreed best
-@param scale Cauchy's scale in pixels: about the standard deviation of the points; 0: the residuals tell it, from .1 pixels on
+@param scale Cauchy's scale in pixels: about the standard deviation of the points; 0: the residuals tell it; less than .1 counts as
+    .1
 @param covariance 5 x 5, CV_64F, of the errors of the pose in radians: three numbers of a rotation vector \f$w\f$ in the
     axes of camera 2, where the true rotation is \f$\exp([w]_\times) R\f$; two of the direction of t, along \f$b\f$ and
     \f$t \times b\f$, where \f$b\f$ is the unit vector along \f$t \times e\f$ and \f$e\f$ the axis along which t is
@@ -43,7 +44,7 @@ Matches that cv::iib::refineMatches refined make the pose more accurate where th
     in common, such as a wrong camera matrix, is not in it. A number that nothing tells, such as the direction of t where the camera
     only turned or all the points are far away, has a deviation of a radian or more
 @param reason if not null: why there is no pose, a sentence; empty if there is one
-@return false, with R, t and covariance empty, if the matches that agree are not more than chance, or two poses explain them as well
+@return false, with R, t and covariance empty (NaN where their size is fixed), if the matches that agree are not more than chance, or two poses explain them as well
 @throws cv::Exception for points of a wrong type or of different numbers, points that are not finite, matrices that are
     not a camera's, or a scale that is negative or not finite */
 CV_EXPORTS_W bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraMatrix1,

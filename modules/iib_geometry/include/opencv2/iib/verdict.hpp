@@ -20,8 +20,10 @@ each other are right or wrong together. findRelativePose and alignImages take it
 @param points1, points2 the matches, right and wrong ones: N x 2, or N of two channels, CV_32F or CV_64F; pixels
 @param inliers N x 1 or 1 x N, CV_8U: not 0 for matches that agree
 @param epipolar whether they agree with a fundamental matrix, in place of a homography
-@param threshold largest distance of a match that agrees from its epipolar line, or from where the homography has it, pixels
-@return logarithm to base 10; infinite for as few as tell a model, seven of a fundamental matrix and four of a homography
+@param threshold largest distance of a match that agrees from its epipolar line, or from where the homography has it,
+    pixels of image 2
+@return logarithm to base 10; infinite where the matches that agree are in no more places than tell a model: seven
+    of a fundamental matrix, four of a homography
 @throws cv::Exception for points of a wrong type, of different numbers or not finite, for marks of other numbers, and for a threshold
     that is not over 0 */
 CV_EXPORTS_W double logFalseAlarms(
