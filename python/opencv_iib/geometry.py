@@ -130,6 +130,9 @@ def logFalseAlarms(points1: ArrayLike, points2: ArrayLike, inliers: ArrayLike, e
     :return: logarithm to base 10 of the number of models that agree as well by chance; above -3 it may be chance.
     :raises opencv_iib.error: for arrays of other shapes, and a threshold that is not above 0.
     """
-    marks = np.ascontiguousarray(as_array(inliers, 'inliers').astype(bool), np.uint8).reshape(-1, 1)
+    given = as_array(inliers, 'inliers')
+    if given.size != max(given.shape, default=0):
+        raise _core.error(f'logFalseAlarms: inliers must be a mark for each match, not of shape {given.shape}')
+    marks = np.ascontiguousarray(given.astype(bool), np.uint8).reshape(-1, 1)
     return float(_core.logFalseAlarms(_numbers(points1, 'points1'), _numbers(points2, 'points2'), marks, bool(epipolar),
                                       number(threshold, 'threshold')))

@@ -23,7 +23,7 @@ const double ANY = 1e3;           // deviation of a number of a transform
 
 const double LEAST_REFINED = .5;  // of the matches that agree at the working size
 /* Of a match's deviation: what light and lens shift in all matches alike, as far as pairs under other lamps and exposures show it
-(guide, "how sure"). */
+(doc/uncertainty.md). */
 const double COMMON = .4;
 
 struct Attempt
