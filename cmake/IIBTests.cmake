@@ -19,13 +19,20 @@ function(iib_add_test_program kind name)
 endfunction()
 iib_add_test_program(test iib)
 iib_add_test_program(perf iib)
-if(OpenCV_video_FOUND)  # has a peer of the refinement
+if(OpenCV_video_FOUND)  # has a peer of the refinement, as iib_contrib has of the descriptor
   target_link_libraries(opencv_perf_iib PRIVATE opencv_video)
   target_compile_definitions(opencv_perf_iib PRIVATE IIB_PERF_VIDEO)
 endif()
 iib_add_test_program(test iib_index)
 iib_add_test_program(test iib_geometry)
 iib_add_test_program(perf iib_geometry)
+foreach(program opencv_perf_iib opencv_perf_iib_geometry)
+  target_compile_definitions(${program} PRIVATE "IIB_PERF_PICTURES=\"${PROJECT_SOURCE_DIR}/tools/synthetic\"")
+endforeach()
+if(TARGET iib_contrib)
+  target_link_libraries(opencv_perf_iib PRIVATE iib_contrib)
+  target_compile_definitions(opencv_perf_iib PRIVATE IIB_PERF_XFEATURES2D)
+endif()
 
 # Suites of internals link what the library does not show.
 target_sources(opencv_test_iib PRIVATE "$<FILTER:$<TARGET_OBJECTS:opencv_iib>,INCLUDE,/(common/grey|kernels/.*|matcher/(pair_scan|parameters|search)|descriptor/(keypoint_batches|parameters|plan))[.]>")

@@ -15,38 +15,84 @@ public:
     void detect(InputArray, std::vector<KeyPoint>& keypoints, InputArray) CV_OVERRIDE { keypoints.clear(); }
 };
 
-enum
+//! What a program does with an image: finds points by itself and describes them, if it has what describes.
+struct Chain
 {
-    PEER_ORB,
-    NORMALIZATION,
-    NORMALIZED_ORB,
-    HESSIAN
-};
-CV_ENUM(Detector, PEER_ORB, NORMALIZATION, NORMALIZED_ORB, HESSIAN)
+    Ptr<Feature2D> detector, descriptor;
 
-Ptr<Feature2D> createDetector(int detector)
-{
-    switch (detector)
+    explicit Chain(const std::string& name, int points)
     {
-    case NORMALIZATION: return NormalizedDetector::create(makePtr<FindsNothing>());
-    case HESSIAN: return HessianDetector::create(1000);
-    case NORMALIZED_ORB: return NormalizedDetector::create(ORB::create(1000));
-    default: return ORB::create(1000);
+        if (name == "normalization")
+            detector = NormalizedDetector::create(makePtr<FindsNothing>());
+        else if (name == "HessianDetector" || name == "recommended chain")
+            detector = HessianDetector::create(points);
+        else if (name == "SIFT")
+            detector = SIFT::create(points);
+#if CV_VERSION_MAJOR < 5
+        else if (name == "AKAZE")
+            detector = AKAZE::create(AKAZE::DESCRIPTOR_MLDB_UPRIGHT);
+        else if (name == "BRISK")
+            detector = BRISK::create();
+        else if (name == "KAZE")
+            detector = KAZE::create(false, true);
+#endif
+        else
+            detector = ORB::create(points);
+        if (name == "recommended chain")
+            descriptor = IIB::createFor(detector, IIB::PRESET_UNIVERSAL);
+        else if (name == "IIB, points of ORB")
+            descriptor = IIB::createFor(detector);
+        else if (name != "normalization" && name != "HessianDetector" && name != "ORB, points alone")
+            descriptor = detector;
     }
+
+    void run(const Mat& image)
+    {
+        if (detector == descriptor)
+            return detector->detectAndCompute(image, noArray(), keypoints, descriptors);
+        detector->detect(image, keypoints);
+        if (descriptor)
+            descriptor->compute(image, keypoints, descriptors);
+    }
+
+    std::vector<KeyPoint> keypoints;
+    Mat descriptors;
+};
+
+class IIB_Chain
+    : public perf::TestBaseWithParam<tuple<std::string, std::string, int>>  // picture, method, points
+{
+protected:
+    void time()
+    {
+        const Mat image = picture(get<0>(GetParam()));
+        Chain chain(get<1>(GetParam()), get<2>(GetParam()));
+        chain.run(image);
+        RecordProperty("points", (int)chain.keypoints.size());
+        const Threads one(1);
+        TEST_CYCLE() chain.run(image);
+        SANITY_CHECK_NOTHING();
+    }
+};
+
+PERF_TEST_P(IIB_Chain, vga,
+        testing::Combine(testing::Values("scene", "street_noon"),
+                testing::Values("ORB, points alone", "HessianDetector", "ORB", "recommended chain"),
+                testing::Values(1000, 2000)))
+{
+    time();
 }
 
-typedef perf::TestBaseWithParam<Detector> IIB_Detect;
+const std::string OTHERS[] = {"normalization", "IIB, points of ORB", "SIFT",
+#if CV_VERSION_MAJOR < 5
+        "BRISK", "AKAZE", "KAZE"
+#endif
+};
 
-PERF_TEST_P(IIB_Detect, hd, Detector::all())
+PERF_TEST_P(IIB_Chain, others,
+        testing::Combine(testing::Values("street_noon"), testing::ValuesIn(OTHERS), testing::Values(1000)))
 {
-    Mat image(720, 1280, CV_8U);
-    randu(image, 0, 256);
-    GaussianBlur(image, image, Size(5, 5), 1.);
-    const Ptr<Feature2D> detector = createDetector(GetParam());
-    std::vector<KeyPoint> keypoints;
-    const Threads one(1);
-    TEST_CYCLE() detector->detect(image, keypoints);
-    SANITY_CHECK_NOTHING();
+    time();
 }
 
 }  // namespace

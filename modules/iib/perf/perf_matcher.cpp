@@ -4,44 +4,36 @@
 
 #include "perf_precomp.hpp"
 
+#include <numeric>
+
 namespace opencv_test {
 namespace {
 
-// Descriptors of the same 10,000 FAST points in two images of iib_demo, or random ones where it is missing.
-struct Pair
+//! Codes of the same 10,000 points in a large image and in other light: darker, with a ramp of light and noise.
+struct Codes
 {
     Mat queries, trains;
-    std::vector<int> levels;
 
-    Pair()
+    Codes()
     {
-        const Ptr<IIB> iib = IIB::create(IIB::scaleFactorFor("FAST"));
-        levels = iib->levelSizes();
-        const char* root = getenv("OPENCV_TEST_DATA_PATH");
-        const String folder = String(root ? root : "") + "/illumination/iib_demo/scene/";
-        const Mat first = imread(folder + "1.png", IMREAD_GRAYSCALE);
-        const Mat second = imread(folder + "2.png", IMREAD_GRAYSCALE);
-        if (first.empty() || second.empty())
-        {
-            std::cout << "[          ] No iib_demo below OPENCV_TEST_DATA_PATH: RANDOM descriptors\n";
-            queries.create(10000, 170, CV_8U);
-            trains.create(10000, 170, CV_8U);
-            randu(queries, 0, 256);
-            randu(trains, 0, 256);
-            return;
-        }
-        std::vector<KeyPoint> all, points;
-        FAST(first, all, 1);
-        for (size_t i = 0; i < 10000; i++)
-            points.push_back(all[i * all.size() / 10000]);
-        iib->compute(first, points, queries);
-        iib->compute(second, points, trains);
+        const Mat image = cornerImage(Size(2560, 1440));
+        Mat ramp(1, image.cols, CV_32F), relit, noise(image.size(), CV_32F);
+        for (int x = 0; x < image.cols; x++)
+            ramp.at<float>(x) = 0.3f + 0.5f * float(x) / float(image.cols);
+        image.convertTo(relit, CV_32F);
+        RNG(4).fill(noise, RNG::NORMAL, 0, 6);
+        relit = relit.mul(repeat(ramp, image.rows, 1)) + noise;
+        relit.convertTo(relit, CV_8U);
+        std::vector<KeyPoint> keypoints = corners(image, 10000);
+        const Ptr<IIB> iib = IIB::create();
+        iib->compute(image, keypoints, trains);
+        iib->compute(relit, keypoints, queries);
     }
 
-    static const Pair& get()
+    static const Codes& get()
     {
-        static const Pair pair;
-        return pair;
+        static const Codes codes;
+        return codes;
     }
 };
 
@@ -59,81 +51,109 @@ Ptr<DescriptorMatcher> createMatcher(int method, const std::vector<int>& levels,
     return HierarchicalMatcher::create(levels, method, 0.35f, crossCheck);
 }
 
-typedef perf::TestBaseWithParam<tuple<Method, bool, int>> IIB_Match;  // method, crossCheck, threads
-
-PERF_TEST_P(IIB_Match, match_10000, testing::Combine(Method::all(), testing::Bool(), testing::Values(1, 2)))
+class IIB_Match
+    : public perf::TestBaseWithParam<tuple<Method, bool, int>>  // method, crossCheck, codes on either side
 {
-    const Pair& pair = Pair::get();
-    const Ptr<DescriptorMatcher> matcher = createMatcher(get<0>(GetParam()), pair.levels, get<1>(GetParam()));
-    const Threads threads(get<2>(GetParam()));
-    std::vector<DMatch> matches;
-    declare.time(60);
-    TEST_CYCLE() matcher->match(pair.queries, pair.trains, matches);
-    SANITY_CHECK_NOTHING();
-}
-
-// The points of a video frame against those of the last one.
-typedef perf::TestBaseWithParam<tuple<Method, bool, int>> IIB_MatchFrame;  // method, crossCheck, points
-
-PERF_TEST_P(
-        IIB_MatchFrame, match, testing::Combine(Method::all(), testing::Bool(), testing::Values(500, 1000)))
-{
-    const int points = get<2>(GetParam()), step = Pair::get().queries.rows / points;
-    Mat queries, trains;
-    for (int i = 0; i < points; i++)
+protected:
+    void time(const std::vector<int>& levels, int threads)
     {
-        queries.push_back(Pair::get().queries.row(i * step));
-        trains.push_back(Pair::get().trains.row(i * step));
+        const int count = get<2>(GetParam());
+        const Ptr<DescriptorMatcher> matcher = createMatcher(get<0>(GetParam()), levels, get<1>(GetParam()));
+        const Rect part(0, 0, std::accumulate(levels.begin(), levels.end(), 0), count);
+        const Mat queries = Codes::get().queries(part).clone(), trains = Codes::get().trains(part).clone();
+        std::vector<DMatch> matches;
+        const Threads some(threads);
+        declare.time(60);
+        TEST_CYCLE() matcher->match(queries, trains, matches);
+        SANITY_CHECK_NOTHING();
     }
-    const Ptr<DescriptorMatcher> matcher =
-            createMatcher(get<0>(GetParam()), Pair::get().levels, get<1>(GetParam()));
+};
+
+PERF_TEST_P(IIB_Match, match,
+        testing::Combine(Method::all(), testing::Bool(), testing::Values(1, 100, 500, 1000, 5000, 10000)))
+{
+    time(IIB::create()->levelSizes(), 1);
+}
+
+PERF_TEST_P(IIB_Match, on_two_threads,
+        testing::Combine(testing::Values((int)HierarchicalMatcher::EXACT), testing::Values(true),
+                testing::Values(5000)))
+{
+    time(IIB::create()->levelSizes(), 2);
+}
+
+PERF_TEST_P(IIB_Match, of_32_bytes,
+        testing::Combine(testing::Values((int)BRUTE_FORCE, (int)HierarchicalMatcher::EXACT),
+                testing::Values(false), testing::Values(500, 10000)))
+{
+    time(std::vector<int>(1, 32), 1);
+}
+
+// Mutual best matches that pass the ratio test, as for a pose, of codes of 128 bytes.
+typedef perf::TestBaseWithParam<tuple<Method, int>> IIB_MatchPair;  // method, points
+
+PERF_TEST_P(IIB_MatchPair, mutual_and_ratio,
+        testing::Combine(testing::Values((int)BRUTE_FORCE, (int)HierarchicalMatcher::EXACT),
+                testing::Values(1000, 2000, 4000)))
+{
+    const PicturePair pair(get<1>(GetParam()));
+    const Mat &queries = pair.codes[0], &trains = pair.codes[1];
+    std::vector<DMatch> matches, back;
+    std::vector<std::vector<DMatch>> two;
     const Threads one(1);
-    std::vector<DMatch> matches;
-    TEST_CYCLE() matcher->match(queries, trains, matches);
+    if (get<0>(GetParam()) != BRUTE_FORCE)
+    {
+        const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
+        TEST_CYCLE() matcher->match(queries, trains, matches);
+    }
+    else
+        TEST_CYCLE()  // BFMatcher has no cross-check of two nearest ones
+        {
+            const BFMatcher matcher(NORM_HAMMING);
+            matcher.knnMatch(queries, trains, two, 2);
+            matcher.match(trains, queries, back);
+            matches.clear();
+            for (const std::vector<DMatch>& m : two)
+                if (m[0].distance < .9f * m[1].distance && back[m[0].trainIdx].trainIdx == m[0].queryIdx)
+                    matches.push_back(m[0]);
+        }
+    EXPECT_EQ(pair.matches.size(), matches.size());
     SANITY_CHECK_NOTHING();
 }
 
-typedef perf::TestBaseWithParam<Method> IIB_MatchTwo;
+// What a video does for each image of 640 x 480 pixels on two threads: describes 1000 points of ORB, matches them with the last ones.
+typedef perf::TestBaseWithParam<std::string> IIB_Frame;
 
-PERF_TEST_P(IIB_MatchTwo, two_nearest_with_ratio,
-        testing::Values((int)BRUTE_FORCE, (int)HierarchicalMatcher::EXACT))
+PERF_TEST_P(IIB_Frame, vga, testing::Values("ORB", "default"))
 {
-    const Pair& pair = Pair::get();
-    const Ptr<DescriptorMatcher> matcher = createMatcher(GetParam(), pair.levels, false);
-    if (GetParam() != BRUTE_FORCE)
-        matcher.dynamicCast<HierarchicalMatcher>()->setMaxRatio(0.8f);
-    const Threads one(1);
-    std::vector<std::vector<DMatch>> matches;
-    declare.time(60);
-    TEST_CYCLE() matcher->knnMatch(pair.queries, pair.trains, matches, 2);
-    SANITY_CHECK_NOTHING();
-}
-
-typedef perf::TestBaseWithParam<tuple<Method, int>> IIB_MatchShort;  // method, bytes
-
-PERF_TEST_P(IIB_MatchShort, match_10000,
-        testing::Combine(
-                testing::Values((int)BRUTE_FORCE, (int)HierarchicalMatcher::EXACT), testing::Values(32, 64)))
-{
-    const int bytes = get<1>(GetParam());
-    const Mat queries = Pair::get().queries.colRange(0, bytes).clone();
-    const Mat trains = Pair::get().trains.colRange(0, bytes).clone();
-    const Ptr<DescriptorMatcher> matcher =
-            createMatcher(get<0>(GetParam()), std::vector<int>(1, bytes), false);
-    const Threads one(1);
+    const bool peer = GetParam() == "ORB";
+    const Mat image = cornerImage(Size(640, 480));
+    const Ptr<ORB> orb = ORB::create(1000);
+    const Ptr<Feature2D> feature = peer ? Ptr<Feature2D>(orb) : Ptr<Feature2D>(IIB::createFor(orb));
+    const Ptr<DescriptorMatcher> matcher = createMatcher(
+            peer ? BRUTE_FORCE : (int)HierarchicalMatcher::EXACT, IIB::create()->levelSizes(), true);
+    std::vector<KeyPoint> keypoints;
+    Mat last, codes;
+    orb->detect(image, keypoints);
+    feature->compute(image, keypoints, last);
     std::vector<DMatch> matches;
-    declare.time(60);
-    TEST_CYCLE() matcher->match(queries, trains, matches);
+    const Threads two(2);
+    TEST_CYCLE()
+    {
+        feature->compute(image, keypoints, codes);
+        matcher->match(codes, last, matches);
+    }
     SANITY_CHECK_NOTHING();
 }
 
 // A hundredth of the pairs of 1,000 queries against 1,000,000: 10 queries, so that a smoke run stays short.
 PERF_TEST(IIB_MatchMany, ten_against_a_million)
 {
-    Mat trains(1000000, 170, CV_8U), queries(10, 170, CV_8U);
+    const Ptr<IIB> iib = IIB::create();
+    Mat trains(1000000, iib->descriptorSize(), CV_8U), queries(10, trains.cols, CV_8U);
     randu(trains, 0, 256);
     randu(queries, 0, 256);
-    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(Pair::get().levels);
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(iib->levelSizes());
     matcher->add(trains);
     const Threads one(1);
     std::vector<DMatch> matches;

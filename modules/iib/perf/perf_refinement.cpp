@@ -31,11 +31,10 @@ Mat normalized(const Mat& image)
 enum
 {
     REFINE,
-    PROPAGATE,          //!< from these matches to those of the other 700 keypoints
     OPTICAL_FLOW,       //!< calcOpticalFlowPyrLK on the normalized images: the peer
     DETECT_AND_COMPUTE  //!< of one of the images: what the time is compared with
 };
-CV_ENUM(Step, REFINE, PROPAGATE, OPTICAL_FLOW, DETECT_AND_COMPUTE)
+CV_ENUM(Step, REFINE, OPTICAL_FLOW, DETECT_AND_COMPUTE)
 
 typedef perf::TestBaseWithParam<Step> IIB_Refine;
 
@@ -66,15 +65,6 @@ PERF_TEST_P(IIB_Refine, vga_300_matches, Step::all())
         TEST_CYCLE()
         refineMatches(image, keypoints, other, starts, matches, points1, points2, covariances, similarities);
     }
-    else if (GetParam() == PROPAGATE)
-    {
-        Mat points1, points2;
-        TEST_CYCLE()
-        {
-            std::vector<DMatch> more = matches;
-            propagateMatches(image, keypoints, other, starts, more, points1, points2);
-        }
-    }
     else if (GetParam() == DETECT_AND_COMPUTE)
         TEST_CYCLE() iib->detectAndCompute(image, noArray(), keypoints, codes);
     else
@@ -93,6 +83,26 @@ PERF_TEST_P(IIB_Refine, vga_300_matches, Step::all())
         throw SkipTestException("built without opencv_video");
 #endif
     }
+    SANITY_CHECK_NOTHING();
+}
+
+// From the matches of two pictures to further ones.
+typedef perf::TestBaseWithParam<int> IIB_Propagate;  // points
+
+PERF_TEST_P(IIB_Propagate, moved_and_by_night, testing::Values(1000, 2000, 4000))
+{
+    const PicturePair pair(GetParam());
+    std::vector<DMatch> matches;
+    Mat points1, points2, covariances;
+    const Threads one(1);
+    TEST_CYCLE()
+    {
+        matches = pair.matches;
+        propagateMatches(pair.images[0], pair.keypoints[0], pair.images[1], pair.keypoints[1], matches,
+                points1, points2, covariances);
+    }
+    RecordProperty("matches", (int)pair.matches.size());
+    RecordProperty("propagated", (int)matches.size());
     SANITY_CHECK_NOTHING();
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "../../iib/perf/perf_precomp.hpp"
 #include "opencv2/iib_geometry.hpp"
-#include "opencv2/ts.hpp"
 
 #if CV_VERSION_MAJOR >= 5
 #include "opencv2/geometry.hpp"

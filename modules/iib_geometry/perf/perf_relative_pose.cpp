@@ -3,7 +3,6 @@
 
 namespace opencv_test {
 namespace {
-using namespace perf;
 
 const Matx33d CAMERA(500, 0, 320, 0, 500, 240, 0, 0, 1);
 
@@ -25,9 +24,11 @@ void makeMatches(Mat& points1, Mat& points2)
 
 PERF_TEST(RelativePose, findRelativePose)
 {
-    Mat points1, points2, R, t;
+    Mat points1, points2, R, t, covariance;
     makeMatches(points1, points2);
-    TEST_CYCLE() ASSERT_TRUE(cv::iib::findRelativePose(points1, points2, CAMERA, CAMERA, R, t));
+    const Threads one(1);
+    TEST_CYCLE()
+    ASSERT_TRUE(findRelativePose(points1, points2, CAMERA, CAMERA, R, t, noArray(), 0, covariance));
     SANITY_CHECK_NOTHING();
 }
 
@@ -36,6 +37,7 @@ PERF_TEST(RelativePose, findEssentialMat_MAGSAC)
 {
     Mat points1, points2, R, t;
     makeMatches(points1, points2);
+    const Threads one(1);
     TEST_CYCLE()
     {
         const Mat E = findEssentialMat(points1, points2, Mat(CAMERA), USAC_MAGSAC, .9999, .35);
