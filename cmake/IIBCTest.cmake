@@ -78,13 +78,13 @@ if(IIB_PYTHON)
     "${CMAKE_CXX_COMPILER}" "${CMAKE_CXX_FLAGS}" "${CMAKE_GENERATOR}")
   add_test(NAME includes COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/includes_test.py" "${IIB_DIR}"
     "${PROJECT_SOURCE_DIR}/modules/iib_index" "${IIB_GEOMETRY_DIR}")
-  add_test(NAME figures COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/figures.py" --check)
-  add_test(NAME figures-test COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/figures_test.py")
-  add_test(NAME paper COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/paper_test.py"
-    "${PROJECT_BINARY_DIR}")
-  add_test(NAME pages COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/pages_test.py"
+  set(pages "${PROJECT_SOURCE_DIR}/tools/pages")
+  add_test(NAME pages COMMAND "${IIB_PYTHON}" -B "${pages}/pages.py" --check)  # writing them anew changes nothing
+  add_test(NAME pages-test COMMAND "${IIB_PYTHON}" -B "${pages}/test/test_pages.py")
+  add_test(NAME pages-names COMMAND "${IIB_PYTHON}" -B "${pages}/test/check_names.py" "${PROJECT_BINARY_DIR}")
+  add_test(NAME pages-used COMMAND "${IIB_PYTHON}" -B "${pages}/test/use_pages.py"
     "${PROJECT_SOURCE_DIR}/doc/results/index.html" "${PROJECT_SOURCE_DIR}/doc/localization/index.html")
-  set_tests_properties(pages PROPERTIES SKIP_REGULAR_EXPRESSION "is not installed")
+  set_tests_properties(pages pages-test pages-used PROPERTIES SKIP_REGULAR_EXPRESSION "is not installed|No module named")
   add_test(NAME mutants COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/tools/mutation/mutate.py"
     --source "${PROJECT_SOURCE_DIR}" --check)
 endif()

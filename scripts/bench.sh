@@ -1,36 +1,42 @@
 #!/bin/sh
-# What describing costs beside cv::ORB on this machine, what matching costs beside BFMatcher and, where Python (IIB_PYTHON,
-# if that is set) has faiss and opencv_iib, beside faiss's flat index, what small work costs, and how much slower all that is without AVX-512 and without
-# AVX2: prints tables and writes build/benchmark*.json. With --document the results go to
-# doc/results, from where the tables of README.md and doc/performance.md and their picture are made anew. --contrib adds
-# BEBLID, TEBLID and LATCH of opencv_contrib, whose source pip brings.
+# What each step from an image to a pose costs on this machine, beside ORB, BFMatcher, optical flow and MAGSAC: opencv_perf_iib and
+# opencv_perf_iib_geometry, several times, with all instruction sets in turn, with AVX2 and with SSE4.2; the least time of each test
+# counts. Prints tables and writes build/speed.csv; the programs' own XML stays in build/speed. With --document the result goes to
+# doc/results, from where the tables of README.md and doc/performance.md and their picture are made anew. --contrib adds BEBLID,
+# TEBLID and LATCH of opencv_contrib, whose source pip brings.
 #   scripts/bench.sh [--contrib] [--document] [--rounds=N]
 . "$(dirname "$0")/helpers/lib.sh"
 
-contrib="" results="$build"
-while :; do
-    case "${1:-}" in
+contrib="" out="$build" rounds=3
+for argument in "$@"; do
+    case "$argument" in
     --contrib) contrib=yes ;;
-    --document) results="$root/doc/results" ;;
-    *) break ;;
+    --document) out="$root/doc/results" ;;
+    --rounds=0 | --rounds=*[!0-9]* | --rounds=) fail "$argument is no number above 0" ;;
+    --rounds=*) rounds=${argument#*=} ;;
+    *) fail "unknown option $argument; there are --contrib, --document, --rounds=" ;;
     esac
-    shift
 done
-check_options "$root/tools/benchmark/benchmark.cpp" "$@"
-[ "$operands" = 0 ] || fail "takes options alone (--help tells more)"
-document="${results#"$build"}"
-need $build_packages python3 ${document:+python3-matplotlib}
+need $build_packages xz-utils $pages_packages
 [ -z "$contrib" ] || contrib=$(contrib_argument)
-build_tools ${contrib:+"$contrib"} iib_benchmark
-for without in "" _without_avx512:AVX512-SKX,AVX512-ICL _without_avx2:AVX2,AVX512-SKX,AVX512-ICL; do
-    say "measuring${without:+ without ${without#*:}}"
-    OPENCV_CPU_DISABLE=${without#*:} "$build/tools/benchmark/iib_benchmark" "$@" --json="$results/benchmark${without%:*}.json"
+find_data
+configure -DIIB_BUILD_TESTS=ON $contrib
+build_targets opencv_perf_iib opencv_perf_iib_geometry
+rm -rf "$build/speed"
+mkdir -p "$build/speed"
+for round in $(seq "$rounds"); do
+    for without in "" AVX512-SKX,AVX512-ICL AVX2,AVX512-SKX,AVX512-ICL; do
+        say "round $round of $rounds${without:+, without $without}"
+        for program in opencv_perf_iib opencv_perf_iib_geometry; do
+            OPENCV_CPU_DISABLE=$without "$build/$program" --perf_min_samples=3 --perf_time_limit=1 \
+                --gtest_output="xml:$build/speed/$program.$round.${without%%,*}.xml" >"$build/speed/log" 2>&1 || {
+                cat "$build/speed/log" >&2
+                exit 1
+            }
+        done
+    done
 done
-"$python3" "$root/scripts/helpers/figures.py" --print "$results"
-if "$python3" -c "import faiss, opencv_iib" 2>/dev/null; then
-    "$python3" "$root/tools/scale/measure.py" --flat
-fi
-if [ -n "$document" ]; then
-    "$python3" "$root/tools/benchmark/plot.py" "$results/benchmark.json" "$root/doc/speed.svg"
-    "$python3" "$root/scripts/helpers/figures.py" --write
-fi
+machine=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
+"$python3" "$root/tools/pages/speed.py" "$out/speed.csv" "$machine, $(date -u +%Y-%m-%d)" "$build"/speed/*.xml
+"$python3" -B "$root/tools/pages/tables.py" "$out"
+[ "$out" = "$build" ] || "$python3" -B "$root/tools/pages/pages.py"

@@ -28,7 +28,7 @@ for argument in "$@"; do
 done
 pairs="$out/pairs"
 
-need $build_packages python3-jinja2 python3-numpy
+need $build_packages $pages_packages
 [ -z "$contrib" ] || contrib=$(contrib_argument)
 build_tools ${contrib:+"$contrib" -DIIB_CONTRIB_NONFREE=$nonfree} iib_evaluation
 
@@ -41,16 +41,19 @@ done
 "$build/tools/evaluation/iib_evaluation" "$@" --out "$pairs"
 [ ! -e "$pairs/matched_points.csv" ] || "$python3" "$root/tools/evaluation/by_poselib.py" "$pairs"
 [ -z "$document" ] || out="$root/doc/results"
-{
+[ ! -e "$pairs/fixed_points.csv" ] || {
     echo "commit $(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo unknown)"
     echo "date $(date -u +%Y-%m-%d)"
     echo "machine $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $jobs threads"
     [ -z "$contrib" ] ||
         echo "opencv_contrib $(sed -n 's/^Version: \([0-9]*[.][0-9]*[.][0-9]*\).*/\1/p' "${contrib#*=}/PKG-INFO")"
+    cp "$pairs/settings.txt" "$out"
 } >"$out/run.txt"
-for file in settings.txt pictures; do
-    [ ! -e "$pairs/$file" ] || cp -r "$pairs/$file" "$out"
-done
-"$python3" "$root/scripts/helpers/summaries.py" "$pairs" "$out"
-say "results and page: $("$python3" "$root/tools/evaluation/report/report.py" "$out"), of each pair of images: $pairs"
-[ -z "$document" ] || "$python3" "$root/scripts/helpers/figures.py" --write
+[ ! -e "$pairs/pictures" ] || cp -r "$pairs/pictures" "$out"
+"$python3" -B "$root/tools/pages/summaries.py" "$pairs" "$out"
+if [ -n "$document" ]; then
+    "$python3" -B "$root/tools/pages/pages.py"
+elif [ -e "$out/fixed_points.csv" ]; then
+    "$python3" -B "$root/tools/pages/pages.py" --results "$out"
+fi
+say "results: $out, of each pair of images: $pairs"

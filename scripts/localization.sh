@@ -11,12 +11,13 @@
 case "${1:-}" in -*) fail "unknown option $1; the one argument is a folder" ;; esac
 out=${1:-$root/results-localization}
 data="$cache/localization" environment="$cache/localization-environment"
-need $build_packages povray python3-opencv python3-venv python3-dev
+need $build_packages povray python3-opencv python3-venv python3-dev $pages_packages
 "$python3" "$root/tools/synthetic/localization.py" "$data"
 say "installing the Python package in $environment"
 "$python3" -m venv "$environment"
-"$environment/bin/pip" install --quiet "$root" opencv-python-headless pycolmap jinja2
+"$environment/bin/pip" install --quiet "$root" opencv-python-headless pycolmap
 mkdir -p "$out"
-"$environment/bin/python" -B "$root/tools/pages/localization/setups.py" "$out/localization_setups.csv" "$data"
-page=$("$environment/bin/python" -B "$root/tools/pages/localization/page.py" "$data" "$out")
-say "results and page: $page"
+"$environment/bin/python" -B "$root/tools/localization/setups.py" "$out/localization_setups.csv" "$data"
+"$environment/bin/python" -B "$root/tools/localization/measure.py" "$data" "$out"
+"$python3" -B "$root/tools/pages/pages.py" --localization "$out"
+say "results and page: $out/index.html"

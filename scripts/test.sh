@@ -69,7 +69,7 @@ valgrind) memcheck "$@" ;;
 ?*) sanitize "$kind" "$@" ;;
 *)
     # the synthetic data, the evaluation's report, and the Python package are tested where these are
-    need povray python3-opencv python3-jinja2 python3-venv python3-dev python3-numpy
+    need povray python3-opencv $pages_packages python3-venv python3-dev python3-numpy
     run "$root/build" -DIIB_BUILD_TOOLS=ON "$@"
     ;;
 esac

@@ -3,7 +3,7 @@
 
     python photographs.py SCENE... [--methods chain,SIFT] [--relit] [--other 'PATTERN,...'] [--points 4000] [--work DIR]
 
-prints CSV: the rows of doc/results/photographs.csv, from which figures.py makes the tables of doc/colmap.md.
+prints CSV: the rows of doc/results/photographs.csv, from which tools/pages makes the tables of doc/colmap.md.
 
 A SCENE is a folder with images/. With poses.txt too (TUM: name, camera's centre, camera to world) the cameras are compared with
 the truth, else those of two methods with each other: after a robust similarity, the medians of a centre's distance in per cent

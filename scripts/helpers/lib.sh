@@ -136,6 +136,7 @@ need() {
 # With make, which CMake takes by default, as README's own project does.
 compiler_packages="g++ cmake make ninja-build"
 build_packages="$compiler_packages pkg-config libopencv-dev"
+pages_packages="python3-pandas python3-jinja2 python3-matplotlib"  # of tools/pages
 
 # The one build folder of demo, installation, tests and tools, so that the library is compiled once.
 build="$root/build"

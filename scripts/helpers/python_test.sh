@@ -44,7 +44,7 @@ set -- "--config-settings=build-dir=$work/build"
 [ -z "$library" ] || cp "$work"/*.whl "$(dirname "$library")"
 
 say "python tests with pip's newest OpenCV"
-check newest "$work"/*.whl opencv-python-headless h5py pycolmap jinja2 distributed mypy
+check newest "$work"/*.whl opencv-python-headless h5py pycolmap distributed mypy
 if [ -n "$servers" ]; then
     "$work/newest/bin/pip" install --quiet "psycopg[binary]"
     "$root/scripts/helpers/servers_test.sh" "$work/newest/bin/python"

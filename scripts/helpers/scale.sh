@@ -17,7 +17,7 @@ for argument in "$@"; do
     *) fail "unknown option $argument; there are --mapped=, --rounds=" ;;
     esac
 done
-need $build_packages python3-venv python3-dev
+need $build_packages python3-venv python3-dev $pages_packages
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$build"
@@ -26,4 +26,4 @@ say "building the package"
 "$work/environment/bin/pip" install --quiet "${root}[distributed]" opencv-python-headless faiss-cpu
 say "measuring"
 "$work/environment/bin/python" "$root/tools/scale/measure.py" --out "$out" "$@"
-[ "$out" = "$build/scale.json" ] || "$python3" "$root/scripts/helpers/figures.py" --write
+[ "$out" = "$build/scale.json" ] || "$python3" -B "$root/tools/pages/pages.py"

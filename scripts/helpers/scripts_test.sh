@@ -87,7 +87,7 @@ chmod +x "$work/bin/program"
 for program in apt-get dpkg-query sudo cmake ctest ninja pip python3 debootstrap clang-format doxygen povray unshare git; do
     ln -s program "$work/bin/$program"
 done
-for program in demo tools/benchmark/iib_benchmark tools/evaluation/iib_evaluation; do
+for program in demo opencv_perf_iib opencv_perf_iib_geometry tools/evaluation/iib_evaluation; do
     mkdir -p "$(dirname "$work/copy/build/$program")"
     cp "$work/bin/program" "$work/copy/build/$program"
 done

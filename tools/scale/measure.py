@@ -3,7 +3,7 @@
 
 Writes JSON: exact search at several widths, the folder of a MappedIndex of --mapped codes, and Dask's workers on it.
 Everything that is compared takes turns, with one thread and with two; the median counts. A result in which two threads
-are more than twice as fast as one is refused: the machine was not idle. --flat prints the exact search alone.
+are more than twice as fast as one is refused: the machine was not idle.
 """
 import argparse
 import json
@@ -14,6 +14,7 @@ import sys
 import tempfile
 import time
 
+import distributed
 import faiss
 import numpy as np
 import opencv_iib
@@ -109,7 +110,6 @@ def mapped(folder, codes):
 
 def workers(folder, queries, rounds):
     """The same search by one worker and by two, each of one thread."""
-    import distributed  # which the exact search alone does not need
     query, calls, clusters = random_codes(2, queries), [], []
     for count in (1, 2):
         cluster = distributed.LocalCluster(n_workers=count, threads_per_worker=1, dashboard_address=None, silence_logs=50)
@@ -129,15 +129,10 @@ def workers(folder, queries, rounds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    wanted = parser.add_mutually_exclusive_group(required=True)
-    wanted.add_argument('--out', metavar='FILE')
-    wanted.add_argument('--flat', action='store_true')
+    parser.add_argument('--out', required=True, metavar='FILE')
     parser.add_argument('--mapped', type=int, default=10**7, help='in the MappedIndex (%(default)s)')
     parser.add_argument('--rounds', type=int, default=15, help='(%(default)s)')
     arguments = parser.parse_args()
-    if arguments.flat:
-        flat(100000, 512, arguments.rounds)
-        return
     result = {'faiss': faiss.__version__, 'faiss_options': faiss.get_compile_options().strip(),
               'flat': flat(100000, 512, arguments.rounds)}
     with tempfile.TemporaryDirectory() as folder:

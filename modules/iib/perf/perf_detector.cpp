@@ -40,9 +40,9 @@ struct Chain
             detector = ORB::create(points);
         if (name == "recommended chain")
             descriptor = IIB::createFor(detector, IIB::PRESET_UNIVERSAL);
-        else if (name == "IIB, points of ORB")
+        else if (name == "IIB at ORB's points")
             descriptor = IIB::createFor(detector);
-        else if (name != "normalization" && name != "HessianDetector" && name != "ORB, points alone")
+        else if (name != "normalization" && name != "HessianDetector" && name != "ORB detects")
             descriptor = detector;
     }
 
@@ -77,13 +77,13 @@ protected:
 
 PERF_TEST_P(IIB_Chain, vga,
         testing::Combine(testing::Values("scene", "street_noon"),
-                testing::Values("ORB, points alone", "HessianDetector", "ORB", "recommended chain"),
+                testing::Values("ORB detects", "HessianDetector", "ORB", "recommended chain"),
                 testing::Values(1000, 2000)))
 {
     time();
 }
 
-const std::string OTHERS[] = {"normalization", "IIB, points of ORB", "SIFT",
+const std::string OTHERS[] = {"normalization", "IIB at ORB's points", "SIFT",
 #if CV_VERSION_MAJOR < 5
         "BRISK", "AKAZE", "KAZE"
 #endif

@@ -1,11 +1,16 @@
 #!/usr/bin/env python3
-"""Tests of summaries.py: which rows count where, and how sure the means are."""
+"""Which rows count where, how sure means are, what is said of speed and of localization; needs pandas."""
 import csv
 import pathlib
+import sys
 import tempfile
 import unittest
+import unittest.mock
 
-import summaries
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import localization  # noqa: E402
+import speed  # noqa: E402
+import summaries  # noqa: E402
 
 
 class Figures(unittest.TestCase):
@@ -67,6 +72,37 @@ class Figures(unittest.TestCase):
                 csv.writer(file).writerows([heads, *rows, ('graf', 1, 'ORB', 'ORB', 'viewpoint', 9, 's')])
             summaries.summarize_gains(source, target)
             self.assertEqual(target.read_text().splitlines()[1:], ['ORB,2,1.2500,1.0000,2.0000'])
+
+    def test_uncertainty(self):
+        with tempfile.TemporaryDirectory() as folder:
+            source, target = pathlib.Path(folder, 'uncertainty.csv'), pathlib.Path(folder, 'out.csv')
+            source.write_text('set,quantity,count,0.1,0.25,0.5,0.75,0.9,0.95,0.99\nstrecha,points,4,0,0,1,2,3,4,4\nstrecha,points,4,0,0,1,2,3,4,4\n')
+            pathlib.Path(folder, 'localization_uncertainty.csv').write_text('set,squared_centre,squared_rotation\nroom_31,2.3,11.4\nroom_31,,\n')
+            summaries.summarize_uncertainty(source, target)
+            self.assertEqual([line.split(',')[-8:] for line in target.read_text().splitlines()[1:]], [
+                ['8', '0', '0', '0.25', '0.5', '0.75', '1', '1'], ['1', '0', '0', '1', '1', '1', '1', '1'], ['1'] + 7 * ['0']])
+
+    def test_the_least_time_of_each_instruction_set_counts(self):
+        case = '<testcase classname="%s" name="%s" value_param="%s"><properties><property name="min" value="%d"/>' \
+            '<property name="frequency" value="1000"/></properties></testcase>'
+        with tempfile.TemporaryDirectory() as folder:
+            files = []
+            for n, (features, time) in enumerate((('SSE2 *SSE4.2 *AVX2', 9), ('SSE2 *SSE4.2 *AVX2', 7), ('SSE2 *SSE4.2 *AVX2?', 11))):
+                files.append(pathlib.Path(folder, '%d.xml' % n))
+                files[-1].write_text('<testsuites cv_version="4" cv_cpu_features="%s">%s%s</testsuites>' % (
+                    features, case % ('A_b', 'b/0', '(HierarchicalMatcher::EXACT, &quot;x y&quot;, 3)', time), case % ('C', 'd', '', time)))
+            with unittest.mock.patch.object(sys, 'argv', ['speed.py', folder + '/out.csv', 'a machine', *map(str, files)]):
+                speed.main()
+            self.assertEqual(pathlib.Path(folder, 'out.csv').read_text(), '# OpenCV 4, a machine\ntest,parameters,points,AVX2,SSE4.2\n'
+                             'A_b,EXACT/x y/3,,7,11\nC_d,,,7,11\n')
+
+    def test_the_worst_light_counts(self):
+        rows = [{'place': place, 'method': 'recommended chain', 'light': light, 'images': 20, 'within_5': 20, 'within_25': 20}
+                for place in ('street', 'every 2', 'every 4') for light in ('night', 'fog')]
+        rows[3]['within_5'] = 17
+        self.assertEqual([found for _, found in localization.worst({'rows': rows, 'unknown': (3, 200)})],
+                         ['100 %', '100 %', '85 %', '100 %', localization.share(3, 200)])
+        self.assertEqual([localization.share(20, 20), localization.share(0, 10)], ['100 % (84 to 100)', '0 % (0 to 28)'])
 
 
 if __name__ == '__main__':

@@ -1,31 +1,27 @@
-#!/usr/bin/env python3
-"""Tables of README.md and of pages in doc, and the page doc/results/index.html, from the committed results in doc/results:
-figures.py --check | --write | --print FOLDER
+"""Tables and sentences of figures in README.md and in pages of doc, of the results in doc/results, as Markdown.
 
-A table stands between the lines `<!-- figures NAME -->` and `<!-- end of figures -->`, NAME being a function below or one of
-TABLES. --write puts each anew, --check ends with an error where one differs from the results, which ctest runs. --print prints
-the tables of scripts/bench.sh from results in another FOLDER.
+They stand between the lines `<!-- figures NAME -->` and `<!-- end of figures -->`, NAME being a function below or one of the paper's
+tables. PAGES has all of them.
 """
-import argparse
 import functools
-import importlib.util
 import itertools
 import json
 import pathlib
-import re
-import subprocess
 import sys
+
+import pandas as pd
 
 import summaries
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-results = ROOT / 'doc/results'
-PAPER = summaries.read(ROOT / 'tools/evaluation/report/paper.csv')  # the paper's figures, by the questions of its tables and our names
-LOCALIZATION = summaries.read(ROOT / 'tools/evaluation/report/paper_localization.csv')
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+RESULTS = ROOT / 'doc/results'
+PAPER = summaries.read(HERE / 'paper.csv')  # the paper's figures, by the questions of its tables and our names
+LOCALIZATION = summaries.read(HERE / 'paper_localization.csv')
 
 
 def rows(name):
-    return summaries.read(results / name)
+    return summaries.read(RESULTS / name)
 
 
 def table(head, lines):
@@ -91,7 +87,7 @@ SETUPS = {'': 'recommended chain', '--lines': 'recommended chain, lines', '--orb
           '--orb-and-akaze --lines': 'ORB and AKAZE, lines', '--orb-and-akaze --lines --imu': "the paper's: ORB and AKAZE, lines, IMU"}
 
 
-def setups(key, file=results / 'localization_setups.csv'):
+def setups(key, file=RESULTS / 'localization_setups.csv'):
     """Rows of setups.py's file by `key`: images within 5 cm and 0.5 degrees, and means of the errors of those found."""
     for names, found in summaries.group(summaries.read(file), *key).items():
         images, located, near = (sum(int(row[column]) for row in found) for column in ('images', 'found', 'within_5'))
@@ -174,18 +170,6 @@ def pose_methods():
                   'propagated, `findRelativePose`', 'propagated, PoseLib .5 px'], lines)
 
 
-def pose_bars():
-    """The same in other light as bars of SVG."""
-    found, lines = estimates(), []
-    for n, (method, label) in enumerate(METHODS.items()):
-        lines.append('<text x="180" y="%d" text-anchor="end"%s>%s</text>' % (66 + 46 * n, ' font-weight="bold"' * (method == CHAIN), label))
-        for k, (way, colour) in enumerate(zip(WAYS, ('#9aa5b1', '#1f6fb2'))):
-            score, y = float(found[(method, 'other light') + way]['at_10']), 42 + 46 * n + 19 * k
-            lines.append('<rect x="190" y="%d" width="%.0f" height="17" fill="%s"/><text x="%.0f" y="%d">%.2f</text>' % (
-                y, 540 * score, colour, 196 + 540 * score, y + 13, score))
-    return '\n'.join(lines)
-
-
 def match_claim():
     """The README's sentence on right matches."""
     found = {row['detector']: row for row in rows('gains.csv')}
@@ -233,86 +217,142 @@ def presets():
     return table(['preset', 'bytes', 'light', 'rendered', 'wall', 'graf', 'turned', 'when'], lines)
 
 
-def benchmark(name):
-    """Milliseconds of iib_benchmark's rows by what, name, size and threads."""
-    return {tuple(row[key] for key in ('what', 'name', 'size', 'threads')): row['milliseconds'] for row in json.loads((results / name).read_text())['rows']}
+@functools.lru_cache(None)
+def speed():
+    """What scripts/bench.sh measured: points and milliseconds by test and parameters, a column an instruction set, the widest first."""
+    found = pd.read_csv(RESULTS / 'speed.csv', comment='#', dtype={'parameters': str, 'points': str})
+    return found.fillna({'parameters': '', 'points': ''}).set_index(['test', 'parameters'])
 
 
-WIDE, AVX2, NARROW = 'benchmark.json', 'benchmark_without_avx512.json', 'benchmark_without_avx2.json'
+def sets():
+    return list(speed().columns[1:])
+
+
+def ms(test, *parameters):
+    """By instruction set; NaN where it was not measured."""
+    key = test, '/'.join(map(str, parameters))
+    return speed().loc[key][1:].astype(float) if key in speed().index else pd.Series(float('nan'), sets())
+
+
+def methods(test, position=0):
+    """The values of a parameter of a test."""
+    return dict.fromkeys(parameters.split('/')[position] for parameters in speed().loc[test].index)
+
+
+def shown(form, row):
+    return ['–' if pd.isna(value) else form % value for value in row]
+
+
+def machine():
+    """Where, when and with which OpenCV."""
+    return (RESULTS / 'speed.csv').read_text().partition('\n')[0][2:] + '.'
 
 
 def describing():
-    """Describing beside ORB in one run, and in another one without AVX2 and AVX-512."""
-    data, narrow, lines = benchmark(WIDE), benchmark(NARROW), []
-    orb = [data['describe', 'cv::ORB', points, 1] for points in (1000, 5000)]
-    for key in (key for key in data if key[0] == 'describe' and key[2] == 1000):
-        few, many = data[key], data[(*key[:2], 5000, key[3])]
-        lines.append([key[1] + ', 2 threads' * (key[3] == 2), '%.2f' % few, '%.2f' % (few / orb[0]), '%.2f' % ((many - few) / 4),
-                      '%.2f' % ((many - few) / (orb[1] - orb[0])), '%.1f' % (narrow[key] / few)])
-    return table(['', 'ms', 'ratio to ORB', 'us a point more', 'ratio', 'without AVX2, times'], lines)
+    """Describing beside ORB."""
+    orb, widest = [ms('IIB_Describe_hd', 'ORB', points) for points in (1000, 5000)], sets()[0]
+    tests = [('IIB_Describe_hd', name, '') for name in methods('IIB_Describe_hd')] + [('IIB_Describe_hd_on_two_threads', 'default', ', 2 threads')]
+    lines = []
+    for test, name, threads in tests:
+        few, many = (ms(test, name, points) for points in (1000, 5000))
+        more = (many - few) / 4, (many - few) / (orb[1] - orb[0])
+        lines.append([name + threads, *shown('%.2f', [few[widest], *few / orb[0], more[0][widest], more[1][widest]])])
+    return table(['', 'ms, ' + widest, *('over ORB, ' + name for name in sets()), 'us a point more, ' + widest, 'over ORB'], lines)
 
 
-def timed(what, other, form):
-    """Rows of iib_benchmark beside the first of them."""
-    found = [(key[1], key[2], time) for key, time in benchmark(AVX2).items() if key[0] == what]
-    return table(['', 'points', 'ms', 'ratio to ' + other],
-                 [[name, '%.0f' % points, form % time, '%.2f' % (time / found[0][2])] for name, points, time in found])
+def beside(peer, tests, form):
+    """Rows of tests, labelled, over the one that is called `peer`."""
+    first = next(ms(*test) for label, test in tests if label == peer)
+    lines = [[label, speed().loc[test[0], '/'.join(test[1:])]['points'], *shown(form, ms(*test)), *shown('%.2f', ms(*test) / first)]
+             for label, test in tests if (test[0], '/'.join(test[1:])) in speed().index]
+    return table(['', 'points', *('ms, ' + name for name in sets()), *('over %s, %s' % (peer, name) for name in sets())], lines)
 
 
 def chains():
     """Finding and describing, each method on its own points of a rendered picture."""
-    return timed('chain', 'ORB', '%.1f')
+    return beside('ORB', [(name, (test, 'street_noon', name, '1000')) for test in ('IIB_Chain_vga', 'IIB_Chain_others') for name in methods(test, 1)],
+                  '%.1f')
 
 
 def same_points():
     """Describing the same points of AKAZE."""
-    return timed('same points', 'IIB', '%.2f')
+    return beside('IIB', [(name, ('IIB_DescribeAkaze_street', name)) for name in methods('IIB_DescribeAkaze_street')], '%.2f')
 
 
-def faster(data, what, name, codes):
+def faster(name, check, codes):
     """How many times as fast as BFMatcher."""
-    return data[what, 'BFMatcher', codes, 1] / data[what, name, codes, 1]
+    return ms('IIB_Match_match', 'BRUTE_FORCE', check, codes) / ms('IIB_Match_match', name, check, codes)
 
 
 def matching():
-    """Every way of matching beside BFMatcher in one run, and in another one without AVX2 and AVX-512."""
-    wide, narrow, lines = benchmark(WIDE), benchmark(NARROW), []
-    for what, name, codes, _ in wide:
-        if (what, 'BFMatcher', codes, 1) in wide and name != 'BFMatcher':
-            time = wide[what, name, codes, 1]
-            lines.append([name, '%.0f' % codes, 'yes' if what == 'cross-check' else '', '%.2f' % time, '%.2f' % (1e6 * time / codes ** 2),
-                          *('%.1f' % faster(data, what, name, codes) for data in (wide, narrow))])
-    return table(['', 'codes', 'cross-check', 'ms', 'ns a pair', 'times as fast as BFMatcher', 'the same without AVX2'], lines)
+    """Every way of matching beside BFMatcher."""
+    widest, lines = sets()[0], []
+    for name, check, codes in (key.split('/') for key in speed().loc['IIB_Match_match'].index):
+        times = faster(name, check, codes)
+        if (name == 'EXACT' or codes == '10000') and name != 'BRUTE_FORCE' and codes != '1' and not times.isna().all():
+            time = ms('IIB_Match_match', name, check, codes)[widest]
+            lines.append([name, codes, 'yes' if check == 'true' else '', *shown('%.2f', [time, 1e6 * time / int(codes) ** 2]), *shown('%.1f', times)])
+    return table(['', 'codes', 'cross-check', 'ms, ' + widest, 'ns a pair', *('times as fast as BFMatcher, ' + name for name in sets())], lines)
 
 
-def small_work():
-    """What frames of a video ask for, in one run with all instruction sets and in others with fewer."""
-    def column(name):
-        data = benchmark(name)
-        two = ('%.2f' % (data['frame', work, 5000, 1] / data['frame', work, 5000, 2]) for work in ('5000 points', '5000 codes'))
-        return ['%.2f' % (data['describe', 'default', 1000, 1] / data['describe', 'cv::ORB', 1000, 1]),
-                '%.1f' % faster(data, 'cross-check', 'EXACT', 1000),
-                '%.2f' % (data['frame', 'default and EXACT', 1000, 2] / data['frame', 'ORB and BFMatcher', 1000, 2]),
-                '%.0f' % (1000 * data['frame', 'one point', 1, 1]), '%.0f' % (1000 * data['frame', 'one code', 1, 1]), *two]
-    labels = ('describe 1000 points, over ORB', 'match 1000 with 1000, cross-check: times as fast as BFMatcher',
-              'a frame of 640 x 480: describe and match 1000 points on two threads, over ORB and BFMatcher',
-              'one point of it described, us', 'one code matched with one, us',
-              'describe 5000 points: times as fast on two threads', 'match 5000 with 5000, cross-check: the same')
-    return table(['', 'AVX-512', 'AVX2', 'SSE4.2'], zip(labels, *(column(name) for name in (WIDE, AVX2, NARROW))))
+def steps():
+    """What issue and page judge speed by, from an image to a pose: rows, how they are written, and what is divided by what."""
+    pictures = {'scene': "the authors' scene", 'street_noon': 'a rendered street'}
+    for method, peer, what in (('HessianDetector', 'ORB detects', 'find points, over ORB'), ('recommended chain', 'ORB', 'find and describe, over ORB')):
+        for points, (picture, shown) in itertools.product((1000, 2000), pictures.items()):
+            yield '%s: %d points, %s' % (what, points, shown), '%.2f', ms('IIB_Chain_vga', picture, method, points) / ms('IIB_Chain_vga', picture, peer, points)
+    for name in ('default', 'PRESET_UNIVERSAL'):
+        yield 'describe 1000 points of 1280 x 720, %s, over ORB' % name, '%.2f', ms('IIB_Describe_hd', name, 1000) / ms('IIB_Describe_hd', 'ORB', 1000)
+    yield 'match 1000 with 1000, cross-check: times as fast as BFMatcher', '%.1f', faster('EXACT', 'true', 1000)
+    for points in (1000, 2000, 4000):
+        ours, theirs = (ms('IIB_MatchPair_mutual_and_ratio', name, points) for name in ('EXACT', 'BRUTE_FORCE'))
+        yield 'match %d with %d of 128 bytes, mutual, ratio, ms' % (points, points), '%.1f', ours
+        yield 'the same: times as fast as BFMatcher', '%.1f', theirs / ours
+    yield 'refine 300 matches, over `calcOpticalFlowPyrLK`', '%.2f', ms('IIB_Refine_vga_300_matches', 'REFINE') / ms('IIB_Refine_vga_300_matches', 'OPTICAL_FLOW')
+    for points in (1000, 2000, 4000):
+        yield '`propagateMatches`, %d points, ms' % points, '%.1f', ms('IIB_Propagate_moved_and_by_night', points)
+    for points in (1000, 2000, 4000):
+        yield '`findRelativePose` with covariance of them, ms', '%.1f', ms('IIB_PairPose_findRelativePose', points)
+    yield ('of 200 matches, a fifth of them wrong: over MAGSAC', '%.2f',
+           ms('RelativePose_findRelativePose') / ms('RelativePose_findEssentialMat_MAGSAC'))
+    for points in (1000, 2000, 4000):
+        yield 'from two images to a pose, %d points, ms' % points, '%.1f', ms('IIB_Pair_pose', points, 1)
+        yield "the same, over ORB's points and codes of the two", '%.2f', ms('IIB_Pair_pose', points, 1) / ms('IIB_Pair_orb', points, 1)
+        yield 'the same: times as fast on two threads', '%.2f', ms('IIB_Pair_pose', points, 1) / ms('IIB_Pair_pose', points, 2)
+    yield '`Localizer::localize`, 768 x 512, ten images in the map, 1000 points, ms', '%.0f', ms('IIB_Localize_relit_among_ten', 1000)
+    yield ('a frame of 640 x 480: describe and match 1000 points on two threads, over ORB and BFMatcher', '%.2f',
+           ms('IIB_Frame_vga', 'default') / ms('IIB_Frame_vga', 'ORB'))
+    yield 'one point described, us', '%.0f', 1000 * ms('IIB_Describe_hd_on_two_threads', 'default', 1)
+    yield 'one code matched with one, us', '%.0f', 1000 * ms('IIB_Match_match', 'EXACT', 'true', 1)
+    yield ('describe 5000 points: times as fast on two threads', '%.2f',
+           ms('IIB_Describe_hd', 'default', 5000) / ms('IIB_Describe_hd_on_two_threads', 'default', 5000))
+    yield ('match 5000 with 5000, cross-check: the same', '%.2f',
+           ms('IIB_Match_match', 'EXACT', 'true', 5000) / ms('IIB_Match_on_two_threads', 'EXACT', 'true', 5000))
+
+
+def step_by_step():
+    """From an image to a pose, with each instruction set; steps that were not measured are left out."""
+    return table(['', *sets()], [[label, *shown(form, row)] for label, form, row in steps() if not row.isna().all()])
 
 
 def speed_claim():
-    """The README's sentence on time: of a machine with AVX2, in ratios, since it is shared."""
-    data = benchmark(AVX2)
-    times = {key[1]: time for key, time in data.items() if key[0] == 'chain'}
+    """The README's sentence on time: with AVX2, in ratios."""
+    chain, orb, sift = (ms(test, 'street_noon', name, 1000)['AVX2'] for test, name in (
+        ('IIB_Chain_vga', 'recommended chain'), ('IIB_Chain_vga', 'ORB'), ('IIB_Chain_others', 'SIFT')))
     return ("- **Fast**: points and descriptors of an image in %.1f of ORB's time, 1/%.0f of SIFT's; an exact matcher %.0f times as fast\n"
-            '  as `cv::BFMatcher` ([one thread, AVX2](doc/performance.md)).' %
-            (times['recommended chain'] / times['ORB'], times['SIFT'] / times['recommended chain'], faster(data, 'cross-check', 'EXACT', 1000)))
+            '  as `cv::BFMatcher` ([one thread, AVX2](doc/performance.md)).' % (chain / orb, sift / chain, faster('EXACT', 'true', 1000)['AVX2']))
+
+
+def uncertainty():
+    """How many errors are inside what was told."""
+    return table(['', 'data', 'errors', 'inside 50 %', '95 %', '99 %'],
+                 [[row['quantity'], row['data'], row['errors'], *('%.0f' % (100 * float(row[level])) for level in ('0.5', '0.95', '0.99'))]
+                  for row in rows('uncertainty.csv')])
 
 
 def scale():
     """What scripts/helpers/scale.sh wrote."""
-    return json.loads((results / 'scale.json').read_text())
+    return json.loads((RESULTS / 'scale.json').read_text())
 
 
 def by_two(one, two):
@@ -369,64 +409,15 @@ def photographs_of_many():
     return photographs(False)
 
 
-# Tables of the paper by the questions of tools/evaluation/report/paper.csv.
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
-TABLES = {'paper_' + name: functools.partial(paper, question)
-          for name, question in zip(('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)}
-
-PAGES = {'doc/poses.svg': (pose_bars,),
-         'README.md': (match_claim, pose_claim, speed_claim, poses),
-         'doc/guide.md': (presets, propagation),
-         'doc/colmap.md': (photographs, photographs_of_many),
-         'doc/performance.md': (describing, chains, same_points, matching, small_work),
-         'doc/scale.md': (mapped_index, flat_search),
-         'doc/paper.md': (matching_modes, learned_points, paper_orders, localization_systems, localization_setups),
-         'doc/localization/index.html': (localization_lights,),
-         'doc/results/README.md': (pose_methods, detected_points)}
+ALL = {function.__name__: function for function in (
+    match_claim, pose_claim, speed_claim, poses, presets, propagation, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
+    step_by_step, mapped_index, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, pose_methods,
+    detected_points, uncertainty)}
+ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
+    ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
 
 
-def filled(page, makers):
-    """The page's text, before and with its tables made anew."""
-    before = (ROOT / page).read_text()
-    named = {**{function.__name__: function for function in makers}, **TABLES}
-    after, count = re.subn(r'(<!-- figures (\w+) -->\n).*?(?=<!-- end of figures -->)',
-                           lambda match: match[1] + named[match[2]]() + '\n', before, flags=re.DOTALL)
-    if count != len(makers) + sum('<!-- figures %s -->' % name in before for name in TABLES):
-        sys.exit('%s holds %d tables of figures, not %d' % (page, count, len(makers)))
-    return before, after
-
-
-def write_page():
-    """doc/results/index.html; whether it differs from what was there. Without jinja2 it stays."""
-    page = results / 'index.html'
-    before = page.read_text()
-    if importlib.util.find_spec('jinja2'):
-        subprocess.run([sys.executable, '-B', ROOT / 'tools/evaluation/report/report.py', results], check=True,
-                       stdout=subprocess.DEVNULL)
-    return page.read_text() != before
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    mode = parser.add_mutually_exclusive_group(required=True)
-    mode.add_argument('--check', action='store_true')
-    mode.add_argument('--write', action='store_true')
-    mode.add_argument('--print', type=pathlib.Path, metavar='FOLDER')
-    arguments = parser.parse_args()
-    if arguments.print:
-        global results
-        results = arguments.print
-        print(*(make() for make in (describing, chains, same_points, matching, small_work)), sep='\n\n')
-        return
-    for page, makers in PAGES.items():
-        before, after = filled(page, makers)
-        if arguments.write:
-            (ROOT / page).write_text(after)
-        elif after != before:
-            sys.exit(page + ' differs from doc/results: run scripts/helpers/figures.py --write')
-    if write_page() and arguments.check:
-        sys.exit('doc/results/index.html differed from its results, and was written anew')
-
-
-if __name__ == '__main__':
-    main()
+if __name__ == '__main__':  # tables.py FOLDER: those of scripts/bench.sh, of the folder's speed.csv
+    RESULTS = pathlib.Path(sys.argv[1])
+    print(*(make() for make in (machine, describing, chains, same_points, matching, step_by_step)), sep='\n\n')

@@ -1,20 +1,9 @@
-#!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 
-"""One page, index.html, from the summaries of an evaluation: report.py RESULTS. Needs python3-jinja2."""
-import argparse
-import json
-import pathlib
-import sys
-
-import jinja2
-
+"""The page of an evaluation's results, of summaries.py's files and of what is told of descriptors."""
 import descriptors
-
-HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parents[2]
-sys.path.insert(0, str(ROOT / "scripts/helpers"))
-from summaries import by, group, read  # noqa: E402
+from summaries import by, group, read
+from tables import HERE, methods, ms
 
 FILES = ("fixed_points", "detected_points", "curves", "estimators", "alignment", "robustness", "learned", "comparison")
 
@@ -25,9 +14,7 @@ def number(row, column):
 
 def describing_times():
     """Milliseconds for 1000 points, by the names of the evaluation's configurations; of scripts/bench.sh."""
-    return {row["name"].replace("cv::", "").replace("default", "IIB").replace("PRESET_", "IIB "): row["milliseconds"]
-            for row in json.loads((ROOT / "doc/results/benchmark.json").read_text())["rows"]
-            if (row["what"], row["size"], row["threads"]) == ("describe", 1000, 1)}
+    return {name.replace("default", "IIB").replace("PRESET_", "IIB "): ms("IIB_Describe_hd", name, 1000).iloc[0] for name in methods("IIB_Describe_hd")}
 
 
 def overview(tables):
@@ -111,27 +98,13 @@ def curves(tables):
     return found
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("results", type=pathlib.Path, help="folder of summaries")
-    folder = parser.parse_args().results
+def context(folder):
+    """What the template takes, of a folder of summaries; nothing without those of given points."""
     tables = {name: read(folder / (name + ".csv")) for name in FILES}
-    if not tables["fixed_points"]:
-        sys.exit("%s: no results of iib_evaluation" % folder)
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
-                                     lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     settings = [line for name in ("settings.txt", "run.txt") if (folder / name).is_file()
                 for line in (folder / name).read_text().splitlines() if line]
-    page = environment.get_template("page.html.j2").render(
-        overview=overview(tables), networks=tables["learned"], licences=descriptors.NETWORKS,
-        detected=detected_lines(tables), changes=changes(tables), warps=warps(tables), estimates=estimates(tables), anchors=read(HERE / "anchors.csv"),
-        alignment=tables["alignment"],
-        slider=slider(tables), methods=list(descriptors.METHODS.values()), curves=curves(tables),
-        settings=settings, files=[name + ".csv" for name in FILES if tables[name]])
-    path = folder / "index.html"
-    path.write_text(page)
-    print(path)
-
-
-if __name__ == "__main__":
-    main()
+    return tables["fixed_points"] and {
+        "overview": overview(tables), "networks": tables["learned"], "licences": descriptors.NETWORKS, "detected": detected_lines(tables),
+        "changes": changes(tables), "warps": warps(tables), "estimates": estimates(tables), "anchors": read(HERE / "anchors.csv"),
+        "alignment": tables["alignment"], "slider": slider(tables), "methods": list(descriptors.METHODS.values()), "curves": curves(tables),
+        "settings": settings, "files": [name + ".csv" for name in FILES if tables[name]]}

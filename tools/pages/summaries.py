@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Summaries of an evaluation, from which figures.py and the page are made: summaries.py PAIRS OUT
+"""Summaries of an evaluation, from which tables and pages are made: summaries.py PAIRS OUT
 
 PAIRS: the folder of iib_evaluation's results, with a row for each pair of images. OUT gets means over the pairs of a group, one
 row each, with their number and the ends of the 95 % confidence interval of what is named last (low, high; bootstrap over scenes).
@@ -220,8 +220,32 @@ def summarize_learned(source, target):
     write(target, list(lines[0]), (line.values() for line in lines))
 
 
+LEVELS = {'0.1': .584, '0.25': 1.213, '0.5': 2.366, '0.75': 4.108, '0.9': 6.251, '0.95': 7.815, '0.99': 11.345}  # chi-square, 3 degrees of freedom
+DATA = {'amos_daynight': 'webcams over a day', 'tilde_webcam': 'webcams over a year', 'mefb_exposure': 'other exposures',
+        'photometric_stereo': 'other lamps', 'middlebury2014': 'other lamps and exposures (rooms)', 'iib_demo': "the authors' scene",
+        'oxford_affine': 'other exposures (leuven)', 'strecha': "photographs with a laser's poses, one light"}
+
+
+def summarize_uncertainty(source, target):
+    """Of each quantity and kind of data: how many errors, and which share of them is inside what was told for a level."""
+    found = {}
+    for row in read(source):
+        found.setdefault((row['quantity'], row['set']), []).append([int(row['count'])] + [int(row[level]) for level in LEVELS])
+    for row in read(source.with_name('localization_uncertainty.csv')):
+        for what in ('centre', 'rotation'):
+            if row['squared_' + what]:
+                inside = [float(row['squared_' + what]) < limit for limit in LEVELS.values()]
+                found.setdefault((what + ' of Localizer', row['set']), []).append([1, *inside])
+    sums = collections.defaultdict(list)
+    for (quantity, name), counts in found.items():
+        sums[quantity, DATA.get(name, 'rendered places, other light')] += counts
+    lines = [[*key, *map(sum, zip(*counts))] for key, counts in sorted(sums.items(), key=lambda item: ('Localizer' in item[0][0], item[0]))]
+    write(target, ['quantity', 'data', 'errors', *LEVELS], ([*line[:3], *('%.5g' % (n / line[2]) for n in line[3:])] for line in lines))
+
+
 OTHERS = {'gains.csv': ('detected_points.csv', summarize_gains), 'curves.csv': ('detected_points.csv', summarize_curves),
-          'learned.csv': ('detected_points.csv', summarize_learned), 'comparison.csv': ('comparison.csv', summarize_comparison)}
+          'learned.csv': ('detected_points.csv', summarize_learned), 'comparison.csv': ('comparison.csv', summarize_comparison),
+          'uncertainty.csv': ('uncertainty.csv', summarize_uncertainty)}
 
 
 def main():

@@ -1,22 +1,23 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 
-"""check_report.py REPORT SUMMARIES RESULTS: the page of a reduced run has its sections and figures, fetches nothing from
+"""check_results.py RESULTS: the page of a reduced run has its sections and figures, fetches nothing from
 elsewhere, and its links lead to files."""
 import csv
 import os
+import pathlib
 import re
 import shutil
 import subprocess
 import sys
 
-report, summaries, results = sys.argv[1:]
+results, tools = sys.argv[1], pathlib.Path(__file__).resolve().parents[1]
 with open(os.path.join(results, "fixed_points.csv")) as file:
     recalls = [float(r["recall"]) for r in csv.DictReader(file) if r["configuration"] == "IIB" and r["kind"] == "light"]
 page = os.path.join(results, "page")
 shutil.copytree(os.path.join(results, "pictures"), os.path.join(page, "pictures"), dirs_exist_ok=True)
-subprocess.run([sys.executable, "-B", summaries, results, page], check=True)
-subprocess.run([sys.executable, "-B", report, page], check=True, stdout=subprocess.DEVNULL)
+subprocess.run([sys.executable, "-B", tools / "summaries.py", results, page], check=True)
+subprocess.run([sys.executable, "-B", tools / "pages.py", "--results", page], check=True)
 with open(os.path.join(page, "index.html")) as file:
     text = file.read()
 assert re.search("<td>IIB</td>.*<td[^>]*>%.3f " % (sum(recalls) / len(recalls)), text), recalls
@@ -33,6 +34,6 @@ for link in re.findall(r'(?:src|href)="([^"#]+)"', text):
     assert os.path.exists(os.path.join(page, link)), link
 assert len(text) < 200000, len(text)
 
-empty = subprocess.run([sys.executable, "-B", report, os.path.join(results, "pictures")], stderr=subprocess.PIPE,
+empty = subprocess.run([sys.executable, "-B", tools / "pages.py", "--results", os.path.join(results, "pictures")], stderr=subprocess.PIPE,
                        text=True)
 assert empty.returncode != 0 and "no results" in empty.stderr and len(empty.stderr.splitlines()) == 1

@@ -1,26 +1,39 @@
+#!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 
-"""Maps made by day and images found in them in other lights, by opencv_iib.localization and by SIFT in its place.
+"""Maps made by day and images found in them in other lights, by opencv_iib.localization and by SIFT in its place: measure.py DATA OUT
 
-A place is a folder with images/, cameras.txt (COLMAP, one camera) and poses.txt (TUM: image, camera's centre, camera to world).
+DATA: what tools/synthetic/localization.py rendered. Photographs, of other places too, are in the folder that OPENCV_TEST_DATA_PATH
+names, if it is set. OUT gets results.json, world.js, pictures and a video, of which tools/pages makes the page. A place is a folder with images/, cameras.txt (COLMAP, one camera) and poses.txt (TUM: image, camera's centre, camera to world).
 """
+import argparse
 import csv
+import datetime
 import functools
 import itertools
+import json
+import os
+import pathlib
 import resource
 import subprocess
 import sys
+import tempfile
 import time
 
 import cv2
 import numpy as np
 import pycolmap
 
+import opencv_iib
 from opencv_iib import _core
 from opencv_iib.localization import Camera, Localizer, build, update
 from sift import Found, Sift
 
+LIGHTS = ('night', 'dusk', 'winter', 'overcast', 'fog', 'morning', 'wet')
 POINTS = 2000  # an image
+FRAME, VIDEO, RATE = (400, 300), (640, 240), 4  # pixels of an image in a picture, of the video (noise makes it large); frames a second
+UNKNOWN = 200  # photographs of other places
+DRAWN = 6000  # points of the map
 SEASONS = ('morning', 'overcast', 'dusk')  # updates, in the order of a day
 
 
@@ -175,3 +188,92 @@ def unknown(localizer, camera, paths):
     """How many photographs of other places get a pose."""
     images = (cv2.resize(cv2.imread(str(path), cv2.IMREAD_GRAYSCALE), (camera.width, camera.height)) for path in paths)
     return sum(localizer.localize(image, camera).cam_from_world is not None for image in images)
+
+
+def scene(model, folder, seen):
+    """The map in 3-D: points with grey values, and the pyramids of the keyframes' and the found images' cameras."""
+    model.extract_colors_for_all_images(str(folder / 'images'))
+    points = [[*(round(float(v), 2) for v in p.xyz), int(p.color.mean())] for p in model.points3D.values() if p.track.length() > 2]
+    cameras = []
+
+    def add(light, name, pose, told):
+        inverse, corners = np.linalg.inv(pose), np.array([[0, 0, 0], [-.4, -.3, .5], [.4, -.3, .5], [.4, .3, .5], [-.4, .3, .5]])
+        cameras.append({'light': light, 'told': '%s, %s' % (name, told), 'corners': (
+            corners @ inverse[:3, :3].T + inverse[:3, 3]).round(2).tolist()})
+
+    for image in model.images.values():
+        add('noon', image.name, np.concatenate([image.cam_from_world().matrix(), [[0, 0, 0, 1]]]), 'of the map')
+    for light, located in seen.items():
+        for name, location, error, _ in located:
+            if error:
+                add(light, name, location.cam_from_world, '%s: %.1f cm off, %d points agree' % (light, error[0], location.inliers))
+    return {'points': points[::len(points) // DRAWN + 1], 'cameras': cameras, 'lights': ['noon', *seen]}
+
+
+def pairs(model, folder, data, located):
+    """Of each image that was found: its number of inliers, and a picture of the nearest keyframe beside it."""
+    camera = read_place(data)[0]
+    for name, location, error, _ in located:
+        if not error:
+            continue
+        image = cv2.imread(str(data / 'images' / name))
+        pose = location.cam_from_world
+        places = camera.project(location.points @ pose[:3, :3].T + pose[:3, 3])
+        for seen, mapped in zip(location.pixels, places):
+            begin, end = (tuple(int(v) for v in place) for place in (seen, mapped))
+            cv2.line(image, begin, end, (0, 0, 255), 2, cv2.LINE_AA)
+            cv2.circle(image, begin, 3, (0, 220, 0), 1, cv2.LINE_AA)
+        centre = np.linalg.inv(pose)[:3, 3]
+        nearest = min(model.images.values(), key=lambda i: np.linalg.norm(i.projection_center() - centre)).name
+        pair = [cv2.resize(p, FRAME, interpolation=cv2.INTER_AREA) for p in (cv2.imread(str(folder / 'images' / nearest)), image)]
+        text = '%d points agree, %.1f cm off' % (location.inliers, error[0])
+        cv2.putText(pair[1], text, (8, 20), cv2.FONT_HERSHEY_SIMPLEX, .5, (255, 255, 255), 1, cv2.LINE_AA)
+        yield location.inliers, np.hstack(pair)
+
+
+def write_pictures(out, light, drawn):
+    """The pair with the median number of inliers; of the night also all, as VP9, which browsers play."""
+    in_order = sorted(drawn, key=lambda pair: pair[0])
+    cv2.imwrite(str(out / (light + '.jpg')), in_order[len(in_order) // 2][1], [cv2.IMWRITE_JPEG_QUALITY, 70])
+    if light == 'night':
+        writer = cv2.VideoWriter(str(out / 'night.webm'), cv2.VideoWriter_fourcc(*'VP90'), RATE, VIDEO)
+        for _, picture in drawn:
+            writer.write(cv2.resize(picture, VIDEO, interpolation=cv2.INTER_AREA))
+        writer.release()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('data', type=pathlib.Path)
+    parser.add_argument('out', type=pathlib.Path)
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    opencv_iib.setNumThreads(1)
+    cv2.setNumThreads(1)
+    lights = [light for light in LIGHTS if any((options.data / light / 'images').glob('[0-9]*.png'))]
+    folder, given = options.data / 'map', os.environ.get('OPENCV_TEST_DATA_PATH')
+    with tempfile.TemporaryDirectory() as work:
+        work = pathlib.Path(work)
+        rows, seen, ours = street(options.data, work, lights)
+        rows += command(options.data, work, lights)
+        results = {'rows': rows, 'lights': lights, 'seasons': seasons(options.data, work, lights), 'unknown': None,
+                   'date': datetime.date.today().isoformat(), 'opencv': cv2.__version__}
+        if given:
+            rows += photographs(pathlib.Path(given) / 'strecha', work)
+            paths = sorted(pathlib.Path(given).glob('illumination/*/*/*.png'))
+            paths = paths[::len(paths) // UNKNOWN + 1]
+            results['unknown'] = unknown(ours, read_place(folder)[0], paths), len(paths)
+        model = pycolmap.Reconstruction(work / 'recommended chain/map')
+        (options.out / 'world.js').write_text('const world = %s;\n' % json.dumps(scene(model, folder, seen), separators=(',', ':')))
+        results['pictures'] = []
+        for light in lights:
+            drawn = list(pairs(model, folder, options.data / light, seen[light]))
+            if drawn:
+                write_pictures(options.out, light, drawn)
+                results['pictures'].append(light)
+    lines = ',\n'.join('"%s": %s' % (name, json.dumps(value)) for name, value in results.items())
+    (options.out / 'results.json').write_text('{\n%s\n}\n' % lines)
+
+
+if __name__ == '__main__':
+    main()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Uses pages as a reader does, in headless Chromium without a network: pages_test.py PAGE...
+"""Uses pages as a reader does, in headless Chromium without a network: use_pages.py PAGE...
 
 At 1400 and 400 pixels: nothing is wider than the window, every column of a table can be scrolled to, every head of a sortable
 table sorts both ways, a slider slides, matches answer to clicks, a map in 3-D turns, nothing is fetched but files, no script

@@ -3,7 +3,7 @@
 
 """Mean errors of `opencv-iib localize` in each light, with the paper's points, with lines and with an IMU: setups.py OUT.csv STREET [VIEWS]
 
-Needs what page.py needs. STREET: what tools/synthetic/localization.py rendered; VIEWS: what views.py rendered, other places, whose images count together.
+Needs what measure.py needs. STREET: what tools/synthetic/localization.py rendered; VIEWS: what views.py rendered, other places, whose images count together.
 """
 import collections
 import csv

@@ -1,0 +1,113 @@
+"""Charts of the results as SVG, by matplotlib."""
+import io
+import re
+
+import matplotlib
+import numpy as np
+import pandas as pd
+
+import tables
+
+matplotlib.use('svg')
+matplotlib.rcParams.update({'svg.hashsalt': 'iib', 'svg.fonttype': 'none', 'axes.grid': True, 'grid.linewidth': .4})
+import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib import ticker  # noqa: E402
+
+GREY, RED, BLUE = '#64748b', '#b91c1c', '#1d4ed8'
+FAR = 1000  # centimetres
+
+
+def svg(figure):
+    """The text of a figure, the same whenever it is drawn by the same matplotlib."""
+    text = io.StringIO()
+    figure.savefig(text, format='svg', metadata={'Date': None})
+    plt.close(figure)
+    return re.sub(r'\s*\n(?=[LMQCz"])', ' ', text.getvalue())  # a path a line
+
+
+def speed():
+    """Time over pixels, keypoints and codes."""
+    figure, axes = plt.subplots(1, 3, figsize=(12, 3.4), layout='constrained')
+
+    def draw(axis, test, form, sizes, labels):
+        for name, label in labels.items():
+            values = [tables.ms(test, *form(name, size)).iloc[0] for size in sizes]
+            axis.plot(list(sizes.values()), values, marker='o', label=label)
+
+    draw(axes[0], 'IIB_Describe_large', lambda name, size: (name, size), {k: 24 * (k / 8) ** 2 for k in (1, 2, 3, 4, 6, 8)}, {'default': 'IIB', 'ORB': 'ORB'})
+    draw(axes[1], 'IIB_Describe_hd', lambda name, size: (name, size), {size: size for size in (1000, 5000)},
+         {'default': 'IIB', 'PRESET_UNIVERSAL': 'IIB UNIVERSAL', 'ORB': 'ORB', 'BEBLID-512': 'BEBLID-512'})
+    draw(axes[2], 'IIB_Match_match', lambda name, size: (name, 'true', size), {size: size for size in (100, 500, 1000, 10000)},
+         {'EXACT': "IIB's matcher", 'BRUTE_FORCE': 'BFMatcher'})
+    axes[2].set(xscale='log', yscale='log')  # a line parallel to another takes so many times as long for any number of codes
+    for axis, title, label in zip(axes, ('Describe: larger images', 'Describe: more points', 'Match'), (
+            'megapixels (1000 keypoints)', 'keypoints (1280 x 720)', 'codes on either side, cross-check')):
+        axis.set(title=title, xlabel=label, ylabel='ms')
+        axis.legend()
+        if axis is not axes[2]:
+            axis.set(xlim=(0, None), ylim=(0, None))
+    return svg(figure)
+
+
+def poses():
+    """What others do for poses beside what this project does, in other light."""
+    found, names = tables.estimates(), list(tables.METHODS.values())
+    figure, axis = plt.subplots(figsize=(8, 2.8), layout='constrained')
+    for k, (way, label, colour) in enumerate(zip(tables.WAYS, ("matches as they are, OpenCV's MAGSAC", 'propagateMatches and findRelativePose'), ('#9aa5b1', '#1f6fb2'))):
+        scores = [float(found[(method, 'other light') + way]['at_10']) for method in tables.METHODS]
+        axis.bar_label(axis.barh(np.arange(len(names)) + .4 * k, scores, .38, label=label, color=colour), fmt='%.2f', padding=3)
+    axis.set(xlim=(0, 1), yticks=np.arange(len(names)) + .2, yticklabels=names, xlabel='score of the pose in other light')
+    axis.grid(False)
+    axis.invert_yaxis()
+    axis.legend(loc='upper right', frameon=False)
+    return svg(figure)
+
+
+def scores(bars):
+    """Scores from 0 to 1 of methods, with their confidence intervals."""
+    names, rows = zip(*bars)
+    values = np.array([[float(row[name]) for name in ('at_5', 'low', 'high')] for row in rows]).T
+    figure, axis = plt.subplots(figsize=(9, .4 * len(names) + .6), layout='constrained')
+    axis.barh(names, values[0], xerr=[values[0] - values[1], values[2] - values[0]], color=[RED if name == 'recommended chain' else GREY for name in names])
+    axis.set(xlim=(0, 1), xlabel='score of poses')
+    axis.xaxis.set_major_formatter(ticker.PercentFormatter(1))
+    axis.grid(False)
+    axis.invert_yaxis()
+    return svg(figure)
+
+
+def uncertainty():
+    """A curve a quantity over all its data: told chance, and share of the errors that are inside."""
+    rows = pd.read_csv(tables.RESULTS / 'uncertainty.csv')
+    levels = list(rows.columns[3:])
+    figure, axis = plt.subplots(figsize=(7, 5), layout='constrained')
+    for quantity, each in rows.groupby('quantity'):
+        shares = each[levels].mul(each['errors'], axis=0).sum() / each['errors'].sum()
+        axis.plot([float(level) for level in levels], shares, marker='o', label=quantity)
+    axis.plot([0, 1], [0, 1], color='grey', linestyle='--', label='as told')
+    axis.set(xlabel='told chance', ylabel='share of errors inside', xlim=(0, 1), ylim=(0, 1))
+    axis.legend(frameon=False)
+    return svg(figure)
+
+
+def localization(results):
+    """Share of images by error, in centimetres: a chart a light, a line a method."""
+    colours = {'recommended chain': RED, 'SIFT, normalized image': BLUE, 'SIFT, plain image': GREY}
+    rows = [row for row in results['rows'] if row['place'] == 'street' and row['method'] in colours]
+    lights = [light for light in results['lights'] if any(row['errors'] for row in rows if row['light'] == light)]
+    figure, axes = plt.subplots(-(-len(lights) // 3) or 1, 3, figsize=(11, 2.4 * (-(-len(lights) // 3) or 1)), layout='constrained', sharex=True, sharey=True,
+                                squeeze=False)
+    for axis, light in zip(axes.flat, lights):
+        for row in (row for row in rows if row['light'] == light and row['errors']):
+            shares = [n / row['images'] for n in range(len(row['errors']) + 1)]
+            axis.step([row['errors'][0], *row['errors'], FAR], [*shares, shares[-1]], where='post', color=colours[row['method']], label=row['method'])
+        axis.set(xscale='log', title=light, xlabel='cm', xlim=(.1, FAR), ylim=(0, 1.02))
+        axis.xaxis.set_major_formatter('{x:g}')
+        axis.yaxis.set_major_formatter(ticker.PercentFormatter(1))
+        axis.minorticks_off()
+        axis.tick_params(labelbottom=True)
+    for axis in axes.flat[len(lights):]:
+        axis.axis('off')
+    lines = dict(zip(*axes.flat[0].get_legend_handles_labels()[::-1]))
+    figure.legend(lines.values(), lines.keys(), loc='lower right')
+    return svg(figure)
