@@ -1,9 +1,8 @@
 """IIBDescriptorExtractor: the class of cv2.iib, for arrays and for the objects of any cv2."""
 from __future__ import annotations
 
-import contextlib
+import os
 import warnings
-import zlib
 from typing import Any, Optional, TypeVar, Union
 
 import numpy as np
@@ -12,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from opencv_iib import _core
 from opencv_iib._arguments import Path, integer, number
 from opencv_iib._arrays import ArrayOrArrays, as_arrays, as_image, as_matrix
-from opencv_iib._parameter_file import check_nesting
+from opencv_iib._parameter_file import text_of
 from opencv_iib.detectors import Detector, HessianDetector, core_detector, for_pickle
 from opencv_iib.enums import Border, Channel, Mapping, Orientation, Preset, preset_number
 from opencv_iib.keypoints import Keypoints, as_rows
@@ -265,9 +264,11 @@ class IIBDescriptorExtractor(Detector):
 
     def read(self, fileName: Path) -> None:
         """Reads what write() or C++ wrote."""
-        with contextlib.suppress(OSError, EOFError, zlib.error):  # which the extension tells
-            check_nesting(fileName)
-        self._core.read(fileName)
+        text = text_of(fileName)
+        try:
+            self._core.setParameters(text)
+        except _core.error as e:
+            raise _core.error(f'{os.fsdecode(fileName)} holds no parameters that can be read: {e}') from None
 
     def __getstate__(self) -> dict[str, Any]:
         return {**super().__getstate__(), '_detector': for_pickle(self._detector)}

@@ -5,8 +5,6 @@
 
 #include "opencv2/iib.hpp"
 
-#include <fstream>
-
 namespace iib_python {
 
 namespace {
@@ -72,15 +70,6 @@ void bindExtractor(nb::module_& m)
                         const cv::Mat quads = self.getSelection();
                         return quads.empty() ? cv::Mat(0, 5, CV_32S) : quads;
                     })
-            .def(
-                    "read",
-                    [](Extractor& self, nb::object file) {
-                        const std::string name = pathOf(file);
-                        if (!std::ifstream(name))  // OpenCV goes on where it cannot open a file
-                            CV_Error_(cv::Error::StsError, ("%s cannot be read", name.c_str()));
-                        static_cast<cv::Feature2D&>(self).read(name);
-                    },
-                    nb::arg().none())
             .def(
                     "save",
                     [](const Extractor& self, nb::object file) { withoutDetector(self)->save(pathOf(file)); },

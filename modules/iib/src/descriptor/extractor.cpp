@@ -189,6 +189,8 @@ void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArr
         keypoints.erase(std::remove_if(keypoints.begin(), keypoints.end(),
                                 [&](const KeyPoint& kp) { return !isInside(*plan, kp, image.size()); }),
                 keypoints.end());
+    if (!descriptors.needed())
+        return;
     if (keypoints.empty())
     {
         descriptors.release();

@@ -86,6 +86,36 @@ TEST(IIB_KeyPoints, nothing_to_describe_releases_the_output)
     EXPECT_TRUE(udescriptors.empty());
 }
 
+// As ORB takes them.
+TEST(IIB_KeyPoints, lists_of_images_and_kinds_of_outputs)
+{
+    const Ptr<IIB> iib = IIB::create();
+    const std::vector<Mat> images = {texture(SIZE, CV_8U, 5), Mat(), texture(SIZE, CV_8U, 6)};
+    std::vector<std::vector<KeyPoint>> keypoints = {
+            scatter(SIZE, 9, 8.f, 30.f, 1), {}, scatter(SIZE, 5, 8.f, 30.f, 2)};
+    std::vector<Mat> codes;
+    std::vector<UMat> ucodes;
+    iib->compute(images, keypoints, codes);
+    iib->compute(images, keypoints, ucodes);
+    iib->compute(images, keypoints, noArray());
+    iib->compute(images[0], keypoints[0], noArray());
+    for (int i : {0, 2})
+    {
+        const Mat expected = describe(*iib, images[(size_t)i], keypoints[(size_t)i]);
+        EXPECT_EQ(0, differingBits(expected, codes[(size_t)i]));
+        EXPECT_EQ(0, differingBits(expected, ucodes[(size_t)i].getMat(ACCESS_READ)));
+    }
+    EXPECT_TRUE(codes[1].empty() && ucodes[1].empty());
+    std::vector<uchar> bytes;
+    EXPECT_THROW(iib->compute(images[0], keypoints[0], bytes), cv::Exception);
+    keypoints[0].resize(1);
+    iib->compute(images[0], keypoints[0], bytes);
+    EXPECT_EQ(0, differingBits(codes[0].row(0), Mat(bytes).reshape(1, 1)));
+    Matx<uchar, 1, 170> row;
+    iib->compute(images[0], keypoints[0], row);
+    EXPECT_EQ(0, differingBits(codes[0].row(0), Mat(row)));
+}
+
 // Small ones are raised to a pixel a cell.
 TEST(IIB_KeyPoints, tiny_and_huge_sizes)
 {

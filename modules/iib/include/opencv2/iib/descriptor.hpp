@@ -34,7 +34,8 @@ changes its parameters. As everywhere in OpenCV, cv::setNumThreads is not to be 
 
 **Files.** Algorithm::save and Feature2D::write store the parameters and the detector. save fails where the disk is
 full, and leaves the old file; write(filename) is OpenCV's own, which does not check what it writes. Algorithm::load and
-Feature2D::read take either kind of file. ORB, HessianDetector and NormalizedDetector come back with their parameters. A
+Feature2D::read take either kind of file, but on Windows, where save takes names in UTF-8 as well, only by names of the
+code page: loadFromString takes what a file of another name holds. ORB, HessianDetector and NormalizedDetector come back with their parameters. A
 detector of any other class must be set by setDetector before read: files hold its name and what its own write() tells,
 which its read() gets; read throws a cv::Exception if the detector that is set is of another class.
  */
