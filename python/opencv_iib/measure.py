@@ -62,7 +62,7 @@ class Measured(NamedTuple):
 
         A row a match: both points in pixels (the centre of the first pixel is 0), the covariance of the second, the patches'
         correlation (-1: not refined), bits that differ, and with cameras whether it agrees with the pose. JSON and NPZ have the pose
-        too; in JSON it is null without cameras, and ``matches`` are objects. '-' is standard output.
+        too; in JSON it is null without cameras, as is a number that is not finite, and ``matches`` are objects. '-' is standard output.
         """
         path, pose = os.fspath(file), None
         table = np.column_stack([self.matches.points1, self.matches.points2, self.matches.covariances, self.matches.similarities, self.bits])
@@ -76,8 +76,9 @@ class Measured(NamedTuple):
             np.savez_compressed(arrays, **self.matches._asdict(), bits=self.bits, **known)
             content = arrays.getvalue()
         elif path.lower().endswith('.json'):
-            matches = [dict(zip(COLUMNS, map(json.loads, row))) for row in rows]
-            content = json.dumps({'matches': matches, 'pose': pose}, default=np.ndarray.tolist).encode()
+            matches = [dict(zip(COLUMNS, (json.loads(text) if np.isfinite(float(text)) else None for text in row))) for row in rows]
+            content = json.dumps({'matches': matches, 'pose': pose}, allow_nan=False, default=lambda array:
+                                 np.where(np.isfinite(array), array.astype(object), None).tolist()).encode()
         else:
             header = [*COLUMNS, 'agrees'] if pose else COLUMNS
             rows = [[*row, f'{agrees:d}'] for row, agrees in zip(rows, self.agree.tolist())] if pose else rows

@@ -37,7 +37,7 @@ class RelativePose(unittest.TestCase):
         pose = opencv_iib.findRelativePose(first, second, CAMERA, CAMERA.tolist())
         self.assertEqual((pose.found, pose.R, pose.t, pose.covariance), (False, None, None, None))
         self.assertEqual(pose.inliers.tolist(), [[0]] * 4)
-        self.assertRegex(pose.reason, r'^[a-z].* matches .*')
+        self.assertEqual(pose.reason, 'no pose agrees with five matches or more')
         again = pickle.loads(pickle.dumps(pose))
         self.assertEqual((type(again), again.reason, tuple(again[:3])), (opencv_iib.NoPose, pose.reason, (False, None, None)))
 
@@ -57,4 +57,4 @@ class Alignment(unittest.TestCase):
     def test_other_pictures(self):
         alignment = opencv_iib.alignImages(*(texture(640, 480, seed=seed)[290:] for seed in (1, 2)))  # below their rectangle
         self.assertEqual((alignment.found, alignment.transform, alignment.error), (False, None, None))
-        self.assertRegex(alignment.reason, r'^[a-z].*')
+        self.assertRegex(alignment.reason, '^the images have too few matches$|no more than chance may give')

@@ -155,6 +155,16 @@ class Match(Commands):
                     if value is not None:
                         np.testing.assert_array_equal(pose[name], np.squeeze(value))
 
+    def test_numbers_that_are_not_finite_are_null_in_json(self):
+        a, b = self.write('a.png', self.world((4, 8))), self.write('b.png', self.world((4, 8), .5, 3))
+        found, out = match_images(a, b, cameras=['PINHOLE,480,360,400,400,240,180']), self.folder / 'm.json'
+        found.matches.covariances[:2] = [[np.inf, np.nan, np.inf], [1, -np.inf, 2]]
+        found.pose.covariance[1] = np.inf, np.nan, -np.inf, 1, 2
+        found.save(out)
+        content = json.loads(out.read_text(), parse_constant=self.fail)
+        for row, expected in ((content['matches'][0], [None] * 3), (content['matches'][1], [1, None, 2])):
+            self.assertEqual([row[name] for name in ('xx', 'xy', 'yy')], expected)
+        self.assertEqual(content['pose']['covariance'][1], [None, None, None, 1, 2])
 
     def test_nothing_is_written_over_an_image(self):
         a, b = (self.write(f'{name}.png', self.world((4, 4))) for name in 'ab')
