@@ -2,15 +2,17 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Callable, Optional, Sequence, Union
+from typing import Any, Callable, Iterable, Optional, Sequence, Union
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 
 #: An array, or a sequence of them.
 ArrayOrArrays = Union[ArrayLike, Sequence[ArrayLike]]
+#: What OpenCV's classes take in place of one image.
+Images = Union[list[NDArray[Any]], tuple[NDArray[Any], ...]]
 
 
 def as_array(value: Any, what: str) -> np.ndarray:
@@ -67,6 +69,21 @@ def as_image(value: ArrayLike) -> np.ndarray:
     if image.ndim == 3 and len(image) in (1, 3, 4) and image.shape[2] not in (1, 3, 4):
         image = np.moveaxis(image[[2, 1, 0, 3][:len(image)] if len(image) > 1 else [0]], 0, 2)
     return as_matrix(image, 'the image')
+
+
+def are_images(value: Any) -> bool:
+    """Whether it is a list of images, and not one."""
+    return isinstance(value, (list, tuple)) and any(getattr(each, 'ndim', 0) > 1 for each in value)
+
+
+def with_images(images: Images, others: Sequence[Any], what: str) -> Iterable[tuple[Any, Any]]:
+    """Each image with its own of the others.
+
+    :raises opencv_iib.error: if there are more or fewer, naming `what`.
+    """
+    if len(images) != len(others):
+        raise _core.error(f'{len(images)} images, but {what} of {len(others)}')
+    return zip(images, others)
 
 
 def as_codes(value: ArrayLike, what: str) -> np.ndarray:

@@ -3,14 +3,14 @@ from __future__ import annotations
 
 import os
 import warnings
-from typing import Any, Optional, TypeVar, Union
+from typing import Any, Optional, Sequence, TypeVar, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arguments import Path, integer, number
-from opencv_iib._arrays import ArrayOrArrays, as_arrays, as_image, as_matrix
+from opencv_iib._arrays import ArrayOrArrays, Images, are_images, as_arrays, as_image, as_matrix, with_images
 from opencv_iib._parameter_file import text_of
 from opencv_iib.detectors import Detector, HessianDetector, core_detector, for_pickle
 from opencv_iib.enums import Border, Channel, Mapping, Orientation, Preset, preset_number
@@ -113,12 +113,19 @@ class IIBDescriptorExtractor(Detector):
         known = detectorName if detector is None else detector
         return _core.Extractor.scaleFactorFor(known if isinstance(known, str) else core_detector(known))
 
-    def compute(self, image: ArrayLike, keypoints: K) -> tuple[K, NDArray[np.uint8]]:
-        """Describes keypoints.
+    @overload
+    def compute(self, image: Images, keypoints: Sequence[K]) -> tuple[tuple[K, ...], tuple[NDArray[np.uint8], ...]]: ...
+    @overload
+    def compute(self, image: ArrayLike, keypoints: K) -> tuple[K, NDArray[np.uint8]]: ...
+
+    def compute(self, image: Any, keypoints: Any) -> Any:
+        """Describes keypoints; with a list of images, those of each.
 
         :return: the keypoints as they were given (those left, if BORDER_DROP removed some), and N x
             descriptorSize() uint8. Without keypoints, or with an empty image, there are 0 descriptors.
         """
+        if are_images(image):
+            return tuple(zip(*(self.compute(*each) for each in with_images(image, keypoints, 'keypoints'))))
         return self.computeWithChannels(image, [], keypoints)
 
     def computeWithChannels(self, image: ArrayLike, extraChannels: ArrayOrArrays, keypoints: K) -> tuple[K, NDArray[np.uint8]]:

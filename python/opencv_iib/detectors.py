@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arguments import integer, number
-from opencv_iib._arrays import as_image, as_matrix
+from opencv_iib._arrays import are_images, as_image, as_matrix, with_images
 from opencv_iib._core_object import CoreObject
 from opencv_iib.keypoints import array_to_keypoints, as_rows
 
@@ -60,10 +60,14 @@ class Detector(CoreObject):
     _detector: Any = None  #: what its user gave it
 
     def detect(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> tuple[Any, ...]:
-        """Keypoints, as cv2.KeyPoint if cv2 is there.
+        """Keypoints, as cv2.KeyPoint if cv2 is there; of a list of images, such a tuple for each.
 
-        :param mask: H x W uint8, 0 where nothing is to be found.
+        :param mask: H x W uint8, 0 where nothing is to be found; a list with a list of images.
         """
+        if are_images(image):
+            given: Any = image
+            masks: Any = [None] * len(given) if mask is None else mask
+            return tuple(self.detect(*each) for each in with_images(given, masks, 'masks'))
         return array_to_keypoints(detect_rows(self, image, mask))
 
     def descriptorSize(self) -> int:

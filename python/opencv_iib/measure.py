@@ -5,7 +5,7 @@ import copy
 import io
 import json
 import os
-from typing import NamedTuple, Optional, Sequence, Union
+from typing import Any, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,8 +77,7 @@ class Measured(NamedTuple):
             content = arrays.getvalue()
         elif path.lower().endswith('.json'):
             matches = [dict(zip(COLUMNS, (json.loads(text) if np.isfinite(float(text)) else None for text in row))) for row in rows]
-            content = json.dumps({'matches': matches, 'pose': pose}, allow_nan=False, default=lambda array:
-                                 np.where(np.isfinite(array), array.astype(object), None).tolist()).encode()
+            content = json.dumps({'matches': matches, 'pose': pose}, default=_finite, allow_nan=False).encode()
         else:
             header = [*COLUMNS, 'agrees'] if pose else COLUMNS
             rows = [[*row, f'{agrees:d}'] for row, agrees in zip(rows, self.agree.tolist())] if pose else rows
@@ -101,6 +100,13 @@ class Measured(NamedTuple):
         return (f'{text}\npose: {int(self.pose.inliers.sum())} agree; the second camera stands towards {towards.round(3)} of the '
                 f'first (right, down, ahead; +-{np.linalg.norm(errors[3:]):.2g} degrees), and is turned by '
                 f'{np.degrees(-turn).round(2)} degrees (+-{np.linalg.norm(errors[:3]):.2g})')
+
+
+def _finite(array: NDArray[Any]) -> Any:
+    """As lists, with None for the numbers that JSON has not."""
+    numbers = array.astype(object)
+    numbers[~np.isfinite(array)] = None
+    return numbers.tolist()
 
 
 def rotation_vector(R: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -232,6 +232,23 @@ class Objects(InFolder):
         self.assertEqual(len(os.listdir(self.folder)), 2 + len(names))
         self.expect_same(iib, other)
 
+    def test_lists_of_images(self):
+        iib, images = IIB.createRecommended(30), [texture(160, 120), texture(90, 80, seed=3)]
+        masks = [np.zeros_like(image) for image in images]
+        masks[1][:40] = 1
+        for given in (images, tuple(images)):
+            found = iib.detect(given)
+            keypoints, codes = iib.compute(given, found)
+            for image, some, same, rows, (points, expected) in zip(images, found, keypoints, codes, map(iib.detectAndCompute, images)):
+                self.assertEqual([[k.pt for k in each] for each in (some, same)], [[k.pt for k in points]] * 2)
+                np.testing.assert_array_equal(rows, expected)
+            self.assertEqual([len(some) for some in iib.detect(given, masks)], [0, len(iib.detect(images[1], masks[1]))])
+        for mistake, told in ((lambda: iib.compute(images, found[:1]), '2 images, but keypoints of 1'), (lambda: iib.detect(images, masks * 2), 'masks of 4')):
+            with self.assertRaisesRegex(opencv_iib.error, told):
+                mistake()
+        with self.assertRaisesRegex(TypeError, 'did cv2.imread find'):
+            iib.detect([images[0], None])
+
     def test_a_pickled_detector_says_that_it_is_missing(self):
         class Nothing:
             def detect(self, image, mask):
