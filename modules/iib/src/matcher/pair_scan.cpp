@@ -135,10 +135,10 @@ void scanPruned(const SearchInput& input, PairBlocks& block, const int* queryThr
     input.cost.compared += alive * (8 * layout.bytes() - bits);
 }
 
-// For tables of a single column, without stages.
-void scanSingle(const SearchInput& input, const PairBlocks& block, KnnTable& forQueries, KnnTable* forTrains)
+// For tables of one or two columns, the other one of a single column, without stages.
+void scanFew(const SearchInput& input, const PairBlocks& block, KnnTable& forQueries, KnnTable* forTrains)
 {
-    const NearestScan scan = {block.pairs, forQueries[block.firstQuery],
+    const NearestScan scan = {block.pairs, forQueries[block.firstQuery], forQueries.size(),
             forTrains ? (*forTrains)[block.firstTrain] : 0, (size_t)block.firstQuery, block.firstIndex()};
     input.trains.kernels().nearest(scan);
     const uint64 bits = (uint64)block.pairCount * 8 * input.trains.layout().bytes();
@@ -150,11 +150,11 @@ void scanSingle(const SearchInput& input, const PairBlocks& block, KnnTable& for
 
 void scanNearest(const SearchInput& input, const Range& queries, KnnTable& forQueries, KnnTable* forTrains)
 {
-    const bool single =
-            forQueries.size() == 1 && (!forTrains || forTrains->size() == 1) && input.policy.stages.empty();
+    const bool few =
+            forQueries.size() <= 2 && (!forTrains || forTrains->size() == 1) && input.policy.stages.empty();
     for (PairBlocks block(input, queries); block.next();)
-        if (single && NearestScan::fits(block.pairs))
-            scanSingle(input, block, forQueries, forTrains);
+        if (few && NearestScan::fits(block.pairs))
+            scanFew(input, block, forQueries, forTrains);
         else
             scanPruned(input, block, forQueries.thresholds() + block.firstQuery,
                     forTrains ? forTrains->thresholds() + block.firstTrain : 0,

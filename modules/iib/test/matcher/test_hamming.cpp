@@ -123,16 +123,18 @@ TEST(IIB_Hamming, scan_as_the_naive_loop)
                 }
 }
 
-// The nearest in both directions, ties included, from what was known before on; without and with masks.
+// The nearest or the two nearest, and the nearest in the other direction, ties included, from what was known before on;
+// without and with masks.
 TEST(IIB_Hamming, nearest_as_the_naive_loop)
 {
     for (int bytes : {1, 5, 32, 64, 68, 170})
         for (int rows : {16, 17, 31, 80, 400})
             for (int queryCount : {1, 4, 5, 9})
-                for (int setting = 0; setting < 8; setting++)
+                for (int setting = 0; setting < 16; setting++)
                 {
                     const bool both = (setting & 1) != 0, masked = (setting & 2) != 0,
                                before = (setting & 4) != 0;
+                    const int count = setting & 8 ? 2 : 1;
                     SCOPED_TRACE(format(
                             "%d bytes, %d rows, %d queries, setting %d", bytes, rows, queryCount, setting));
                     const ScanData data(bytes, queryCount, rows);
@@ -143,21 +145,25 @@ TEST(IIB_Hamming, nearest_as_the_naive_loop)
                     const size_t firstQuery = 1000,  // and a number that takes more than an int
                             firstTrain = (size_t)std::min<uint64>(
                                     (uint64)1 << 33, std::numeric_limits<size_t>::max() / 2);
-                    std::vector<MatchKey> ofQueries(queryCount, start), ofTrains(rows, start),
-                            expectedOfQueries = ofQueries, expectedOfTrains = ofTrains;
+                    std::vector<MatchKey> ofQueries(queryCount * count, start), ofTrains(rows, start),
+                            expectedOfQueries, expectedOfTrains = ofTrains;
                     for (int q = 0; q < queryCount; q++)
+                    {
+                        std::vector<MatchKey> all(count, start);
                         for (int t = 0; t < rows; t++)
                         {
                             const int d = hammingDistance(data.queries.ptr(q), data.trains.ptr(t), bytes);
                             if (!mask.at<uchar>(q, t))
                                 continue;
-                            expectedOfQueries[q] =
-                                    std::min(expectedOfQueries[q], matchKey(d, firstTrain + t));
+                            all.push_back(matchKey(d, firstTrain + t));
                             if (both)
                                 expectedOfTrains[t] =
                                         std::min(expectedOfTrains[t], matchKey(d, firstQuery + q));
                         }
-                    NearestScan scan = {data.pairs(), ofQueries.data(), both ? ofTrains.data() : 0,
+                        std::sort(all.begin(), all.end());
+                        expectedOfQueries.insert(expectedOfQueries.end(), all.begin(), all.begin() + count);
+                    }
+                    NearestScan scan = {data.pairs(), ofQueries.data(), count, both ? ofTrains.data() : 0,
                             firstQuery, firstTrain};
                     if (masked)
                         scan.pairs.allowed = mask.data;

@@ -33,7 +33,7 @@ TEST_P(IIB_Matcher_Blocks, as_the_oracle)
     ScanBlocks blocks;
     blocks.queryCount = blocks.codeBlocks = blocks.codeBlocksOfLimits = size;
 
-    for (int k : {1, 3, 400})
+    for (int k : {1, 2, 3, 400})
         for (int bits = 0; bits < 8; bits++)
         {
             SCOPED_TRACE(format("k %d, setting %d", k, bits));

@@ -44,7 +44,7 @@ struct CodePairs
     const uchar* allowed;  //!< queries.rows x paddedTrains(), 0 for pairs that are masked; null: none is
 };
 
-//! Finds the nearest train code of each query. Only for pairs that fit.
+//! Finds the nearest or the two nearest train codes of each query. Only for pairs that fit.
 struct NearestScan
 {
     static constexpr int SMALL_INDEX_BITS = 12;  //!< of the 31 that index and distance share
@@ -55,8 +55,9 @@ struct NearestScan
                pairs.layout.bytes() < 1 << (31 - SMALL_INDEX_BITS - 3);
     }
     CodePairs pairs;
-    MatchKey* ofQueries;            //!< the nearest of each so far, which a nearer one replaces
-    MatchKey* ofTrains;             //!< the same of train codes; null: not wanted
+    MatchKey* ofQueries;  //!< the nearest of each so far in ascending order, which nearer ones replace
+    int count;            //!< of these, a query: 1 or 2
+    MatchKey* ofTrains;   //!< the nearest query of each train code so far; null: not wanted
     size_t firstQuery, firstTrain;  //!< the first indices in keys
 };
 

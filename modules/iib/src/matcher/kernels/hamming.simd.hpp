@@ -22,10 +22,10 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-/** The nearest of each query and, if wanted, of each train code. A pair's key is its distance, followed by an index in
-the low bits: the least key is that of the nearest pair, and of the first one if there are several. So no tile needs a
-branch on what it found. */
-class NearestScanner : public Scanner
+/** The COUNT nearest of each query and, if wanted, the nearest of each train code. A pair's key is its distance, followed
+by an index in the low bits: the least key is that of the nearest pair, and of the first one if there are several. So no
+tile needs a branch on what it found. */
+template <int COUNT> class NearestScanner : public Scanner
 {
 public:
     explicit NearestScanner(const NearestScan& s)
@@ -38,27 +38,29 @@ public:
     template <int Q> void row(int query)
     {
         setQueries<Q>(query);
-        Counts nearest[Tile<Q>::SIZE];
-        for (int i = 0; i < Tile<Q>::SIZE; i++)
-            nearest[i] = vx_setall_s32(NO_KEY);
+        Counts nearest[COUNT][Tile<Q>::SIZE];
+        for (int i = 0; i < COUNT * Tile<Q>::SIZE; i++)
+            nearest[i / Tile<Q>::SIZE][i % Tile<Q>::SIZE] = vx_setall_s32(NO_KEY);
         for (int block = 0; block < blocks; block++)
             compare<Q>(query, block, nearest);
-        for (int q = 0; q < Q; q++)
-            keepOfQuery(query + q, nearest + q * VECTORS);
+        for (int n = 0; n < COUNT; n++)
+            for (int i = 0; i < Tile<Q>::SIZE; i++)
+                keepOfQuery(query + i / VECTORS, i % VECTORS * WIDTH, nearest[n][i]);
     }
 
     //! After the last row.
     void keepOfTrains() const
     {
         for (int train = 0; trains > 0 && train < pairs.trainCount; train++)
-            keep(scan.ofTrains[train], trainKeys.data()[train],
+            keep(scan.ofTrains + train, 1, trainKeys.data()[train],
                     scan.firstQuery + (trainKeys.data()[train] & INDEX_MASK));
     }
 
 private:
     static constexpr int BITS = NearestScan::SMALL_INDEX_BITS, INDEX_MASK = (1 << BITS) - 1, NO_KEY = INT_MAX;
 
-    template <int Q> CV_ALWAYS_INLINE void compare(int query, int block, Counts* nearest)
+    template <int Q>
+    CV_ALWAYS_INLINE void compare(int query, int block, Counts (&nearest)[COUNT][Tile<Q>::SIZE])
     {
         Tile<Q> tile;
         Counts keys[Tile<Q>::SIZE];
@@ -71,7 +73,12 @@ private:
                 keys[i] = v_select(missing(query + i / VECTORS, block, i % VECTORS) < vx_setzero_s32(),
                         vx_setall_s32(NO_KEY), keys[i]);
         for (int i = 0; i < Tile<Q>::SIZE; i++)
-            nearest[i] = v_min(nearest[i], keys[i] | vx_setall_s32(block));
+        {
+            const Counts key = keys[i] | vx_setall_s32(block);
+            if (COUNT > 1)
+                nearest[COUNT - 1][i] = v_min(nearest[COUNT - 1][i], v_max(nearest[0][i], key));
+            nearest[0][i] = v_min(nearest[0][i], key);
+        }
         for (int v = 0; v < VECTORS && trains > 0; v++)
         {
             int* const ofTrains = trainKeys.data() + block * CODES_PER_BLOCK + v * WIDTH;
@@ -82,22 +89,25 @@ private:
         }
     }
 
-    void keepOfQuery(int query, const Counts* keys) const
+    void keepOfQuery(int query, int firstLane, const Counts& keys) const
     {
-        Counts nearest = keys[0], others[VECTORS];
-        for (int v = 1; v < VECTORS; v++)
-            nearest = v_min(nearest, keys[v]);
-        const int least = v_reduce_min(nearest);
-        for (int v = 0; v < VECTORS; v++)
-            others[v] = vx_setall_s32(least) - keys[v];
-        const int lane = trailingZeros32(ALL_LANES & ~negativeLanes(others));
-        keep(scan.ofQueries[query], least, scan.firstTrain + (least & INDEX_MASK) * CODES_PER_BLOCK + lane);
+        int all[WIDTH];
+        v_store(all, keys);
+        for (int lane = 0; lane < WIDTH; lane++)
+            keep(scan.ofQueries + (size_t)query * COUNT, COUNT, all[lane],
+                    scan.firstTrain + (all[lane] & INDEX_MASK) * CODES_PER_BLOCK + firstLane + lane);
     }
 
-    static void keep(MatchKey& nearest, int key, size_t index)
+    //! Puts a pair among the `count` nearest ones.
+    static void keep(MatchKey* nearest, int count, int key, size_t index)
     {
-        if (key != NO_KEY)
-            nearest = std::min(nearest, matchKey(key >> BITS, index));
+        MatchKey n = key == NO_KEY ? NO_MATCH : matchKey(key >> BITS, index);
+        for (int i = 0; i < count; i++)
+        {
+            const MatchKey before = nearest[i];
+            nearest[i] = std::min(before, n);
+            n = std::max(before, n);
+        }
     }
 
     const NearestScan& scan;
@@ -105,23 +115,28 @@ private:
     AlignedBuffer<int> trainKeys;
 };
 
-template <class S> void scanAll(S&& scanner, int queryCount)
+//! In rows of Q queries, what is left in smaller ones.
+template <int Q, class S> void scanAll(S&& scanner, int queryCount)
 {
     int q = 0;
-    for (; q + QUERIES <= queryCount; q += QUERIES)
-        scanner.template row<QUERIES>(q);
+    for (; q + Q <= queryCount; q += Q)
+        scanner.template row<Q>(q);
+    for (; q + LISTED_QUERIES <= queryCount; q += LISTED_QUERIES)
+        scanner.template row<LISTED_QUERIES>(q);
     for (; q < queryCount; q++)
         scanner.template row<1>(q);
 }
 
-void nearest(const NearestScan& scan)
+template <int COUNT> void nearestOfEach(const NearestScan& scan)
 {
-    NearestScanner scanner(scan);
-    scanAll(scanner, scan.pairs.queries.rows);
+    NearestScanner<COUNT> scanner(scan);
+    scanAll<QUERIES>(scanner, scan.pairs.queries.rows);
     scanner.keepOfTrains();
 }
 
-void pruned(const PrunedScan& scan) { scanAll(PrunedScanner(scan), scan.pairs.queries.rows); }
+void nearest(const NearestScan& scan) { scan.count == 1 ? nearestOfEach<1>(scan) : nearestOfEach<2>(scan); }
+
+void pruned(const PrunedScan& scan) { scanAll<LISTED_QUERIES>(PrunedScanner(scan), scan.pairs.queries.rows); }
 
 }  // namespace
 

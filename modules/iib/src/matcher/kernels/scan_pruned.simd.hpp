@@ -34,7 +34,7 @@ class Shortlists
 public:
     explicit Shortlists(int blocks_)
         : blocks(blocks_), rowSize((size_t)blocks * CODES_PER_BLOCK), listSize(rowSize + CODES_PER_BLOCK),
-          values(QUERIES * rowSize), lists(QUERIES * listSize)
+          values(LISTED_QUERIES * rowSize), lists(LISTED_QUERIES * listSize)
     {
     }
 
@@ -298,8 +298,8 @@ private:
     const int stageCount;
     Shortlists lists;
     PlainCodes trains;
-    AutoBuffer<int> words;  // up to each stage, and in all
-    int least[QUERIES];     // of the distances that compareTo() has left
+    AutoBuffer<int> words;      // up to each stage, and in all
+    int least[LISTED_QUERIES];  // of the distances that compareTo() has left
 };
 
 }  // namespace

@@ -35,10 +35,8 @@ protected:
     template <int Q> void setQueries(int query)
     {
         for (int q = 0; q < Q; q++)
-        {
             layout.arrange(pairs.queries.ptr(query + q), plain.data() + q * layout.words());
-            queries.set(q, plainQuery(q));
-        }
+        queries.set<Q>(plain.data());
     }
     //! The plain words of one of the queries that were set.
     const unsigned* plainQuery(int q) const { return plain.data() + q * layout.words(); }

@@ -17,7 +17,7 @@ namespace {
 const CodePacking PACKING = PACKING_ADDERS;
 
 // Queries compared at once with a CodeBlock: as many as the registers hold.
-const int QUERIES = WIDTH >= 16 ? 4 : WIDTH >= 8 ? 2 : 1;
+const int QUERIES = WIDTH >= 16 ? 4 : WIDTH >= 8 ? 2 : 1, LISTED_QUERIES = QUERIES;
 
 // Bit counts of words, in a form that is cheap to compute; up to MOST may be added before total().
 const int MOST = 31;
@@ -37,18 +37,19 @@ inline Counts total(const Partial& x) { return v_reinterpret_as_s32(v_dotprod_ex
 class TileQueries
 {
 public:
-    explicit TileQueries(const CodeLayout& l) : layout(l), memory(QUERIES * l.words())
+    explicit TileQueries(const CodeLayout& l) : layout(l), codes(QUERIES * l.words()) {}
+
+    //! @param plain words of the first Q queries.
+    template <int Q> void set(const unsigned* plain)
     {
-        for (int i = 0; i < QUERIES; i++)
-            codes[i] = memory.data() + i * l.words();
+        for (int i = 0; i < Q * layout.words(); i += layout.words())
+            layout.pack(plain + i, codes.data() + i);
     }
-    void set(int i, const unsigned* plain) { layout.pack(plain, codes[i]); }
-    const unsigned* operator[](int i) const { return codes[i]; }
+    const unsigned* operator[](int i) const { return codes.data() + i * layout.words(); }
 
 private:
     const CodeLayout& layout;
-    AutoBuffer<unsigned> memory;
-    unsigned* codes[QUERIES];
+    AutoBuffer<unsigned> codes;
 };
 
 //! Q queries against a CodeBlock, compared up to some word. Its loops run over all vectors in one go, so that

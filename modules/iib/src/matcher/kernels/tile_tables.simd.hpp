@@ -16,7 +16,8 @@ CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
 const CodePacking PACKING = PACKING_TABLES;
-const int QUERIES = 4;
+// Compared at once with a CodeBlock: as many as the registers hold sums of. Where lists are kept of each, fewer.
+const int QUERIES = 8, LISTED_QUERIES = 4;
 
 // A vector takes POSITIONS bytes of each of the CODES_PER_BLOCK codes.
 typedef v_uint8 Bytes;
@@ -28,13 +29,14 @@ inline Bytes highHalves(const Bytes& x)
     return lowHalves(v_reinterpret_as_u8(v_reinterpret_as_u16(x) >> 4));
 }
 
+//! The distances of half a byte to all others, for two queries: that of the second one in the high half.
 struct HalfDistances
 {
-    uchar of[16][16];
+    uchar of[256][16];  //!< by the query's half byte, and 16 times the second query's
     HalfDistances()
     {
-        for (int i = 0; i < 256; i++)
-            of[i / 16][i % 16] = (uchar)countBits(i / 16 ^ i % 16);
+        for (int i = 0; i < 256 * 16; i++)
+            of[i / 16][i % 16] = (uchar)(countBits(i / 16 % 16 ^ i % 16) | countBits(i / 256 ^ i % 16) << 4);
     }
 };
 
@@ -44,44 +46,35 @@ struct HalfDistances
 class TileQueries
 {
 public:
-    explicit TileQueries(const CodeLayout& l) : layout(l), tables(QUERIES / 2 * pairSize())
-    {
-        for (int pair = 0; pair < QUERIES / 2; pair++)
-            pairs[pair] = tables.data() + pair * pairSize();
-    }
+    explicit TileQueries(const CodeLayout& l) : bytes(4 * l.words()), tables(QUERIES / 2 * pairSize()) {}
 
-    void set(int i, const unsigned* plain)
+    //! @param plain words of the first Q queries.
+    template <int Q> void set(const unsigned* plain)
     {
-        if (i % 2 == 0)
-            fill<false>(pairs[i / 2], (const uchar*)plain);
-        else
-            fill<true>(pairs[i / 2], (const uchar*)plain);
+        static const HalfDistances distances;
+        for (int q = 0; q < Q; q += 2)
+        {
+            const uchar* const first = (const uchar*)plain + q * bytes;
+            const uchar* const second = q + 1 < Q ? first + bytes : first;
+            uchar* table = tables.data() + q / 2 * pairSize();
+            for (int from = 0; from < bytes; from += POSITIONS, table += 2 * BYTES)
+                for (int p = 0; p < POSITIONS; p++)
+                {
+                    const int a = first[from + p], b = second[from + p];
+                    v_store(table + p * 16, v_load(distances.of[(a & 15) | (b & 15) << 4]));
+                    v_store(table + p * 16 + BYTES, v_load(distances.of[a >> 4 | (b & 240)]));
+                }
+        }
     }
 
     //! The tables of two queries.
-    const uchar* operator[](int pair) const { return pairs[pair]; }
+    const uchar* operator[](int pair) const { return tables.data() + pair * pairSize(); }
 
 private:
-    size_t pairSize() const { return (size_t)layout.words() * 4 * 2 * 16; }
+    size_t pairSize() const { return (size_t)bytes * 2 * 16; }
 
-    //! Writes the distances of each half byte to all others, or puts them into the high halves of what is there.
-    template <bool SECOND> void fill(uchar* table, const uchar* code)
-    {
-        static const HalfDistances distances;
-        const uchar(&of)[16][16] = distances.of;
-        for (int from = 0; from < 4 * layout.words(); from += POSITIONS)
-            for (int shift = 0; shift < 8; shift += 4)
-                for (int p = from; p < from + POSITIONS; p++, table += 16)
-                {
-                    const v_uint8x16 d = v_load(of[code[p] >> shift & 15]);
-                    v_store(table,
-                            SECOND ? v_load(table) | v_reinterpret_as_u8(v_reinterpret_as_u16(d) << 4) : d);
-                }
-    }
-
-    const CodeLayout& layout;
+    const int bytes;
     AlignedBuffer<uchar> tables;
-    uchar* pairs[QUERIES / 2];
 };
 
 //! Q queries against a CodeBlock, compared up to some word.
@@ -138,26 +131,25 @@ private:
     static CV_ALWAYS_INLINE void addUp(
             Bytes* low, v_uint16* high, const TileQueries& queries, const unsigned* block, int v)
     {
-        Bytes code[N];
-        for (int n = 0; n < N; n++)
-            code[n] = vx_load((const uchar*)block + (v + n) * BYTES);
-        Bytes index[2][N];
-        for (int n = 0; n < N; n++)
+        for (int half = 0; half < 2; half++)
         {
-            index[0][n] = lowHalves(code[n]);
-            index[1][n] = highHalves(code[n]);
-        }
-        for (int pair = 0; pair < PAIRS; pair++)
-            for (int half = 0; half < 2; half++)
+            Bytes index[N];
+            for (int n = 0; n < N; n++)
+            {
+                const Bytes code = vx_load((const uchar*)block + (v + n) * BYTES);
+                index[n] = half == 0 ? lowHalves(code) : highHalves(code);
+            }
+            for (int pair = 0; pair < PAIRS; pair++)
             {
                 const uchar* tables = queries[pair] + (2 * v + half) * BYTES;
-                Bytes both = lookUp(vx_load(tables), index[half][0]);
+                Bytes both = lookUp(vx_load(tables), index[0]);
                 for (int n = 1; n < N; n++)
-                    both += lookUp(vx_load(tables + 2 * n * BYTES), index[half][n]);
-                low[pair] += lowHalves(both);
+                    both = v_add_wrap(both, lookUp(vx_load(tables + 2 * n * BYTES), index[n]));
+                low[pair] = v_add_wrap(low[pair], lowHalves(both));
                 if (2 * pair + 1 < Q)
                     high[pair] = v_add_wrap(high[pair], v_reinterpret_as_u16(both) >> 4);
             }
+        }
     }
 
     // addUp() shifts the high halves but does not mask them, which is cheaper, so each sum also has 16 times the low
