@@ -1,10 +1,10 @@
-"""Ctrl-C ends a command without a traceback while its modules are being imported, too."""
+"""Ctrl-C ends a command without a traceback while its modules are being imported, too: all but what Python and pip's script import
+themselves, ``site`` and ``re``, before any module of a package."""
 from __future__ import annotations
 
 import os
 import signal
 import sys
-import threading
 
 
 def _is_command() -> bool:
@@ -13,10 +13,12 @@ def _is_command() -> bool:
             or ('-m', 'opencv_iib') in zip(words, words[1:]))
 
 
-_ends_at_once = (_is_command() and threading.current_thread() is threading.main_thread()
-                 and signal.getsignal(signal.SIGINT) is signal.default_int_handler)
+_ends_at_once = _is_command() and signal.getsignal(signal.SIGINT) is signal.default_int_handler
 if _ends_at_once:
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    try:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    except ValueError:  # in another thread than the main one
+        _ends_at_once = False
 
 
 def end_of_start() -> None:
