@@ -1,5 +1,7 @@
+import atexit
 import copy
 import csv
+import functools
 import io
 import os
 import pickle
@@ -76,29 +78,36 @@ def dimmed(picture, seed):
     return np.clip(light + np.random.default_rng(seed).normal(0, 2, picture.shape), 0, 255).astype(np.uint8)
 
 
+NAMES = [*(f'left side/{i} of 6.png' for i in range(3)), '0.png', '1.png', '2.png']  #: of the images at these places
+TRUTH = {'a/b': (-.8, .1), 'a-b': (-.2, .2), 'c': (.3, .1)}  #: where those in the dark are
+
+
+@functools.lru_cache(maxsize=None)
+def mapped():
+    """A folder with `images` of the wall, their `model`, its `map`, and other images in the `dark`."""
+    folder = tempfile.mkdtemp()
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    images, model, picture = os.path.join(folder, 'images'), os.path.join(folder, 'model'), wall(3)
+    for name in ('images/left side', 'dark/a'):
+        os.makedirs(os.path.join(folder, name))
+    for name, place in zip(NAMES, PLACES):
+        cv2.imwrite(os.path.join(images, name), photograph(picture, pose(*place)))
+    for name, place in TRUTH.items():
+        cv2.imwrite(os.path.join(folder, 'dark', name + '.png'), photograph(picture, pose(*place), evening))
+    write_model(model, {name: pose(*place) for name, place in zip(NAMES, PLACES)})
+    status, _, errors = run_command('map', '--model', model, '--images', images, '--out', os.path.join(folder, 'map'), '--points', '400')
+    assert status == 0, errors
+    return folder
+
+
 @unittest.skipIf(cv2 is None, 'no cv2')
 class Localization(Commands):
 
     @classmethod
     def setUpClass(cls):
-        temporary = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(temporary.cleanup)
-        cls.folder = temporary.name
-        cls.images, cls.model, cls.map, cls.dark = (os.path.join(cls.folder, name) for name in
-                                                    ('images', 'model', 'map', 'dark'))
-        cls.poses = dict(zip([*(f'left side/{i} of 6.png' for i in range(3)), '0.png', '1.png', '2.png'],
-                             (pose(*place) for place in PLACES)))
-        os.makedirs(os.path.join(cls.images, 'left side'))
-        os.makedirs(os.path.join(cls.dark, 'a'))
-        picture = wall(3)
-        for name, place in cls.poses.items():
-            cv2.imwrite(os.path.join(cls.images, name), photograph(picture, place))
-        cls.truth = {'a/b': (-.8, .1), 'a-b': (-.2, .2), 'c': (.3, .1)}
-        for name, place in cls.truth.items():
-            cv2.imwrite(os.path.join(cls.dark, name + '.png'), photograph(picture, pose(*place), evening))
-        write_model(cls.model, cls.poses)
-        status, _, errors = run_command('map', '--model', cls.model, '--images', cls.images, '--out', cls.map, '--points', '400')
-        assert status == 0, errors
+        cls.folder, cls.truth = mapped(), TRUTH
+        cls.images, cls.model, cls.map, cls.dark = (os.path.join(cls.folder, name) for name in ('images', 'model', 'map', 'dark'))
+        cls.poses = {name: pose(*place) for name, place in zip(NAMES, PLACES)}
 
     def path(self, name):
         return os.path.join(tempfile.mkdtemp(dir=self.folder), name)

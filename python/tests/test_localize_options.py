@@ -3,7 +3,6 @@ import csv
 import io
 import os
 import shutil
-import tempfile
 import unittest
 from pathlib import Path
 from unittest import mock
@@ -13,7 +12,7 @@ import numpy as np
 from opencv_iib.localization import Localizer
 from opencv_iib.localization.imu import parse_pose, read_imu, time_of
 from support import InFolder, cv2, run_command
-from test_localization import CAMERA, PLACES, SIZE, WIDTH, HEIGHT, evening, photograph, pose, trajectory, wall, write_model
+from test_localization import CAMERA, SIZE, WIDTH, HEIGHT, evening, mapped, photograph, pose, trajectory, wall
 
 PLACE = (.3, .1)
 
@@ -21,24 +20,9 @@ PLACE = (.3, .1)
 @unittest.skipIf(cv2 is None, 'no cv2')
 class Options(InFolder):
 
-    @classmethod
-    def setUpClass(cls):
-        temporary = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(temporary.cleanup)
-        cls.common = Path(temporary.name)
-        (cls.common / 'images').mkdir()
-        poses = {f'{n}.png': pose(*place) for n, place in enumerate(PLACES)}
-        for name, place in poses.items():
-            cv2.imwrite(str(cls.common / 'images' / name), photograph(wall(3), place))
-        write_model(cls.common / 'model', poses)
-        cls.map = cls.common / 'map'
-        status, _, errors = run_command('map', '--model', cls.common / 'model', '--images', cls.common / 'images', '--out', cls.map,
-                                        '--points', '400')
-        assert status == 0, errors
-
     def setUp(self):
         super().setUp()
-        self.images, self.out = self.folder / 'images', self.folder / 'out'
+        self.images, self.out, self.map = self.folder / 'images', self.folder / 'out', os.path.join(mapped(), 'map')
         self.images.mkdir()
         self.picture = photograph(wall(3), pose(*PLACE), evening)
 
