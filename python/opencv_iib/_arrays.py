@@ -81,8 +81,9 @@ def with_images(images: Images, others: Sequence[Any], what: str) -> Iterable[tu
 
     :raises opencv_iib.error: if there are more or fewer, naming `what`.
     """
-    if len(images) != len(others):
-        raise _core.error(f'{len(images)} images, but {what} of {len(others)}')
+    count = len(others) if isinstance(others, (Sequence, np.ndarray)) else others
+    if len(images) != count:
+        raise _core.error(f'{len(images)} images, but {what} of {count}')
     return zip(images, others)
 
 

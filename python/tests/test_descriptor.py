@@ -243,7 +243,8 @@ class Objects(InFolder):
                 self.assertEqual([[k.pt for k in each] for each in (some, same)], [[k.pt for k in points]] * 2)
                 np.testing.assert_array_equal(rows, expected)
             self.assertEqual([len(some) for some in iib.detect(given, masks)], [0, len(iib.detect(images[1], masks[1]))])
-        for mistake, told in ((lambda: iib.compute(images, found[:1]), '2 images, but keypoints of 1'), (lambda: iib.detect(images, masks * 2), 'masks of 4')):
+        for mistake, told in ((lambda: iib.compute(images, found[:1]), '2 images, but keypoints of 1'), (lambda: iib.detect(images, masks * 2), 'masks of 4'),
+                             (lambda: iib.compute(images, None), 'keypoints of None')):
             with self.assertRaisesRegex(opencv_iib.error, told):
                 mistake()
         with self.assertRaisesRegex(TypeError, 'did cv2.imread find'):
