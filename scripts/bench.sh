@@ -20,7 +20,7 @@ done
 need $build_packages xz-utils $pages_packages
 [ -z "$contrib" ] || contrib=$(contrib_argument)
 find_data
-configure -DIIB_BUILD_TESTS=ON $contrib
+configure -DIIB_BUILD_TESTS=ON ${contrib:+"$contrib"}
 build_targets opencv_perf_iib opencv_perf_iib_geometry
 rm -rf "$build/speed"
 mkdir -p "$build/speed"

@@ -3,10 +3,10 @@
 // Every allocation of the library, and of OpenCV beneath it, fails in turn: the call that needed it throws, and the object
 // goes on as if it had not been called.
 
-#include "stress.hpp"
-
 #include "opencv2/core/utils/filesystem.hpp"
+#include "opencv2/iib.hpp"
 #include "opencv2/iib_index.hpp"
+#include "opencv2/ts.hpp"
 
 #include <cerrno>
 #include <cstdio>
@@ -54,6 +54,18 @@ using namespace cv;
 using cv::iib::HierarchicalMatcher;
 using cv::iib::IIB;
 using cv::iib::MappedIndex;
+
+bool equal(const Mat& a, const Mat& b)
+{
+    return a.size() == b.size() && (a.empty() || cv::norm(a, b, NORM_INF) == 0);
+}
+
+Mat noise(Size size, int type, int seed)
+{
+    Mat image(size, type);
+    RNG(seed).fill(image, RNG::UNIFORM, 0, CV_MAT_DEPTH(type) == CV_8U ? 256 : 65536);
+    return image;
+}
 
 /** Calls `step` with its first allocation failing, then its second and so on, up to none; after each, `check` looks
  whether all is as before. Once with one failure, and once with all allocations failing from there. */
