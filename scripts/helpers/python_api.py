@@ -6,14 +6,24 @@ import pathlib
 PACKAGE = pathlib.Path(__file__).resolve().parents[2] / 'python/opencv_iib'
 
 
-def entry(node, owner=''):
-    """Signature and docstring as text, since Doxygen would read more into them."""
-    doc = ast.get_docstring(node) or ''
+def signature(node, owner):
     if isinstance(node, ast.ClassDef):
-        head = 'class %s%s' % (node.name, '(%s)' % ', '.join(map(ast.unparse, node.bases)) if node.bases else '')
-    else:
-        head = '%s%s(%s)%s' % (owner, node.name, ast.unparse(node.args), ' -> ' + ast.unparse(node.returns) if node.returns else '')
-    print('```text\n%s\n\n%s\n```\n' % (head, doc))
+        return 'class %s%s' % (node.name, '(%s)' % ', '.join(map(ast.unparse, node.bases)) if node.bases else '')
+    return '%s%s(%s)%s' % (owner, node.name, ast.unparse(node.args), ' -> ' + ast.unparse(node.returns) if node.returns else '')
+
+
+def entries(nodes, owner=''):
+    """Signatures, a line for each overload, and docstrings as text, since Doxygen would read more into them."""
+    heads = []
+    for node in nodes:
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef)) and not node.name.startswith('_'):
+            if 'overload' in map(ast.unparse, node.decorator_list):
+                heads.append(signature(node, owner))
+                continue
+            print('```text\n%s\n\n%s\n```\n' % ('\n'.join(heads or [signature(node, owner)]), ast.get_docstring(node) or ''))
+            heads = []
+            if isinstance(node, ast.ClassDef):
+                entries((member for member in node.body if isinstance(member, ast.FunctionDef)), node.name + '.')
 
 
 def main():
@@ -24,12 +34,7 @@ def main():
         tree = ast.parse(path.read_text(encoding='utf-8'))
         name = '.'.join(path.relative_to(PACKAGE.parent).with_suffix('').parts).replace('.__init__', '')
         print('## %s\n\n```text\n%s\n```\n' % (name, ast.get_docstring(tree) or ''))
-        for node in tree.body:
-            if isinstance(node, (ast.ClassDef, ast.FunctionDef)) and not node.name.startswith('_'):
-                entry(node)
-                for member in node.body if isinstance(node, ast.ClassDef) else ():
-                    if isinstance(member, ast.FunctionDef) and not member.name.startswith('_'):
-                        entry(member, node.name + '.')
+        entries(tree.body)
 
 
 if __name__ == '__main__':
