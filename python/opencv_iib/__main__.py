@@ -18,10 +18,11 @@ from opencv_iib import __version__, error, localization
 from opencv_iib._arguments import InvalidOption
 from opencv_iib._start import end_of_start
 from opencv_iib._streams import STANDARD_OUTPUT, is_quiet, note, put, quiet
-from opencv_iib.align import align
+from opencv_iib.align import INTERPOLATIONS, align
 from opencv_iib.colmap import hloc
 from opencv_iib.colmap.database import CAMERA_MODELS
 from opencv_iib.colmap.features import DETECTORS, FeatureOptions, preset_names
+from opencv_iib.colmap.images import FORMATS
 from opencv_iib.colmap.pipeline import PAIRS, VERIFIERS, Options, build_database
 from opencv_iib.demo import demo
 from opencv_iib.enums import AlignmentModel
@@ -59,12 +60,14 @@ def _features(parser: argparse.ArgumentParser, points: int) -> None:
     parser.add_argument('--points', type=int, default=points, help='at most so many an image (%(default)s)')
     parser.add_argument('--preset', default=FeatureOptions.preset, choices=sorted(preset_names()), type=str.upper, help='descriptor (%(default)s)')
     parser.add_argument('--orientation', action='store_true', help='turn what is described by its direction')
+    _seen(parser)
+
+
+def _seen(parser: argparse.ArgumentParser) -> None:
+    """What of images is described, and how large."""
     parser.add_argument('--max-size', type=int, default=0, metavar='PIXELS',
                         help='reduce larger images to this longer side; points stay in their own pixels')
-    _exif(parser)
-
-
-def _exif(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('--mask', metavar='FILE_OR_FOLDER', help='describe nothing where it is 0; in a folder, NAME.jpg.png is the mask of NAME.jpg')
     parser.add_argument('--no-exif', dest='exif', action='store_false', help='for files whose EXIF data tell a wrong orientation')
 
 
@@ -107,11 +110,15 @@ def _parser() -> argparse.ArgumentParser:
 
     command = add('align', _align, 'lay images onto a reference; status 0: all, 4: some, 3: none')
     command.add_argument('reference')
-    command.add_argument('images', nargs='+', help='of a plane, or from the same place')
+    command.add_argument('images', nargs='+', help='of a plane, or from the same place: files, folders, patterns; those that are done stay')
     command.add_argument('--out', required=True, help='folder to write; older results there are replaced')
-    _exif(command)
     command.add_argument('--model', default='HOMOGRAPHY', choices=list(AlignmentModel.__members__), type=str.upper,
                          help='the simplest one that is true of the images gives the smallest errors (%(default)s)')
+    command.add_argument('--format', choices=FORMATS, type=str.upper, help="of what is written (that of each image's file)")
+    command.add_argument('--crop', action='store_true', help='write what all show, instead of what the reference shows')
+    command.add_argument('--interpolation', default='LINEAR', choices=INTERPOLATIONS, type=str.upper, help='(%(default)s)')
+    command.add_argument('--workers', type=int, help='threads (one a core)')
+    _seen(command)
 
     command = add('colmap', _colmap, 'describe and match a folder, for colmap mapper')
     command.add_argument('images', help='folder of images')
@@ -147,7 +154,7 @@ def _parser() -> argparse.ArgumentParser:
             '; or -: paths from standard input, a line each, answered at once by a line on standard output' if each is localizing else ''))
         each.add_argument('--workers', type=int, help='threads (one a core)')
     for each in (localizing, updating):
-        _exif(each)
+        _seen(each)
         each.add_argument('--camera', metavar=CAMERA, type=_camera,
                           help="COLMAP's name and parameters of the camera of all images, instead of the map's or EXIF's")
     mapping.add_argument('--out', required=True, help='folder to write')
@@ -156,7 +163,6 @@ def _parser() -> argparse.ArgumentParser:
     mapping.add_argument('--force', action='store_true', help='replace a map that is there')
     localizing.add_argument('--out', help='folder to write; older results there are replaced')
     localizing.add_argument('--pictures', action='store_true', help='write each image with the points that agree')
-    localizing.add_argument('--max-size', type=int, default=0, metavar='PIXELS', help='reduce larger images to this longer side')
     localizing.add_argument('--imu', metavar='IMU.CSV', help="smooth poses by an IMU, EuRoC's file; images must be named by their times")
     localizing.add_argument('--imu-from-camera', type=_pose, metavar='TX,TY,TZ,QX,QY,QZ,QW', default=np.eye(4),
                             help="where the camera is in the IMU's axes (0,0,0,0,0,0,1)")
@@ -188,7 +194,7 @@ def _match(arguments: argparse.Namespace) -> int:
 
 
 def _align(arguments: argparse.Namespace) -> int:
-    done = align(arguments.reference, arguments.images, arguments.out, AlignmentModel[arguments.model], arguments.exif)
+    done = _call(align, arguments, model=AlignmentModel[vars(arguments).pop('model')])
     count = sum(bool(each.file) for each in done)
     for each in done:
         _say(f'{each.name}: {each}')

@@ -2,23 +2,30 @@
 from __future__ import annotations
 
 import csv
+import glob
 import html
 import itertools
+import json
 import os
 import re
-from typing import NamedTuple, Optional, Sequence, TextIO
+import shutil
+from typing import Any, Callable, Iterable, NamedTuple, Optional, Sequence, TextIO
 from urllib.parse import quote
 
 import numpy as np
 from numpy.typing import NDArray
 
+from opencv_iib import __version__
 from opencv_iib._files import is_same, new_results, rows_of
-from opencv_iib._arguments import Path
+from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._turns import Turn, upright
-from opencv_iib.colmap.images import import_cv2, read_with_orientation, write_picture
+from opencv_iib.colmap.features import check_max_size
+from opencv_iib.colmap.images import (FORMATS, TIFF, Masks, decode_pages, exif_orientation, find_images, holds, import_cv2, in_8_bits, no_data,
+                                     read_bytes, stamp, write_picture)
+from opencv_iib.colmap.parallel import Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
 from opencv_iib.enums import AlignmentModel
-from opencv_iib.geometry import alignImages
+from opencv_iib.geometry import ImageAligner
 
 CORNERS = ('top_left', 'top_right', 'bottom_right', 'bottom_left')
 HEADER = ['image', 'verdict', 'matches', *(f'error_{corner}' for corner in CORNERS),
@@ -34,10 +41,13 @@ input {{ width: 100%; margin: .5em 0 }}</style>
 <script>for (const slider of document.querySelectorAll('input')) slider.oninput = () => slider.parentNode.querySelector(
 'img + img').style.clipPath = `inset(0 0 0 ${{slider.value}}%)`</script></html>
 '''
-FIGURE = '''<figure><div><img src="reference.png" alt="the reference" loading="lazy" width="{width}" height="{height}"><img src="{file}"
+FIGURE = '''<figure><div><img src="{reference}" alt="the reference" loading="lazy" width="{width}" height="{height}"><img src="{file}"
 alt="{name}, aligned" loading="lazy" width="{width}" height="{height}"></div>
 <input type="range" value="50" aria-label="border between the reference, left, and {name}">
 <figcaption>{name}: {verdict}</figcaption></figure>'''
+INTERPOLATIONS = ('NEAREST', 'LINEAR', 'CUBIC', 'LANCZOS4')  #: of cv2, by their names there
+STATE, VIEWS = 'align.json', 'views'  #: what a later call goes on from; pictures that browsers show, of those that they do not
+WARPED = tuple(map(np.dtype, ('u1', 'u2', 'i2', 'f4', 'f8')))  #: what cv2.warpPerspective takes
 LARGEST_SIDE = 32766  #: pixels that cv2.warpPerspective takes
 LONGEST_STEM = 200  #: bytes of a file's name, with room for a number and the suffix
 
@@ -51,6 +61,7 @@ class Aligned(NamedTuple):
     errors: Sequence[float] = ()  #: standard deviations of the places of its corners in pixels, in the order of CORNERS
     transform: Sequence[float] = ()  #: 3 x 3, row by row: from its pixels to those of the reference
     file: str = ''  #: as the reference's camera would see it
+    size: Sequence[int] = ()  #: its width and height; none if it cannot be read
 
     def __str__(self) -> str:
         if not self.file:
@@ -58,102 +69,335 @@ class Aligned(NamedTuple):
         return f'{self.matches} matches agree, its corners are known to {max(self.errors):.2f} pixels'
 
 
-def align(reference: Path, images: Sequence[Path], out: Path, model: int = AlignmentModel.HOMOGRAPHY, exif: bool = True) -> list[Aligned]:
-    """Aligns images with a reference, and writes them as its camera would see them: NAME.png, ``transforms.csv`` and
-    ``index.html``, in which a slider moves the border between the reference and each.
+class _Options(NamedTuple):
+    """Of align, which tells what they are."""
 
-    An interruption keeps what is done until then.
+    model: int
+    exif: bool
+    mask: Optional[str]
+    max_size: int
+    format: Optional[str]
+    crop: bool
+    interpolation: str
 
-    :param images: of a plane, or of anything by a camera that stays where it is. The reference among them is left out.
+    def check(self) -> None:
+        """:raises InvalidOption: naming what is wrong, and what there is."""
+        check_max_size(self.max_size)
+        for name, value, known in (('format', self.format or 'PNG', FORMATS), ('interpolation', self.interpolation, INTERPOLATIONS)):
+            if value not in known:
+                raise InvalidOption(f'no {name} {value}: there are {", ".join(known)}')
+
+
+def align(reference: Path, images: Sequence[Path], out: Path, model: int = AlignmentModel.HOMOGRAPHY, exif: bool = True,
+          mask: Optional[Path] = None, max_size: int = 0, format: Optional[str] = None, crop: bool = False, interpolation: str = 'LINEAR',
+          workers: Optional[int] = None) -> list[Aligned]:
+    """Aligns images with a reference, and writes them as its camera would see them, in their own depth, channels and pages: NAME.png, .jpg or
+    .tif, ``transforms.csv``, ``align.json``, and ``index.html``, in which a slider moves the border between the reference and each.
+
+    Pixels, transforms and what is written are those of the files, not turned as EXIF may ask. An interruption keeps what is done
+    until then. Images that an earlier call with the same reference and options has aligned are not read again, if their files are the same.
+
+    :param images: of a plane, or of anything by a camera that stays where it is: files, folders, and patterns such as ``*.jpg``. The
+        reference among them is left out.
     :param out: folder to write; results of an earlier call are replaced.
-    :param exif: images are compared as upright as their EXIF data say; pixels, transforms and what is written are those of the files.
+    :param exif: images are compared as upright as their EXIF data say.
+    :param mask: a picture, or a folder with NAME.png for an image called NAME: where it is 0, nothing is compared.
+    :param max_size: pixels of the longer side to which larger images are reduced to be compared; 0: they are not.
+    :param format: one of FORMATS; None: that of each image's file, or PNG, or TIFF where that alone holds all of it.
+    :param crop: write what all that are aligned show, instead of what the reference shows.
+    :param interpolation: one of INTERPOLATIONS.
+    :param workers: threads; None for one a core.
     :return: of each image but the reference.
-    :raises ValueError: for a reference that is no image or too large, or no image beside it.
+    :raises ValueError: for a reference that is no image or too large, no image beside it, or with `crop` none that all show a part of.
     :raises FileExistsError: for a folder with other files, or with an image to be aligned.
     """
     reference, out = os.fspath(reference), os.fspath(out)
-    first, done = _read(reference, exif), []
-    paths = [os.fspath(path) for path in images if not is_same(path, reference)]
+    options = _Options(model, exif, None if mask is None else os.path.abspath(mask), max_size, format, crop, interpolation)
+    options.check()
+    crew, masks = Threads(thread_count(workers)), Masks(options.mask)
+    paths = [path for path in _expanded(images, out) if not is_same(path, reference)]
     if not paths:
         raise ValueError(f'no image to align but the reference, {reference}')
     for path in (reference, *paths):
-        if os.path.realpath(path).startswith(os.path.join(os.path.realpath(out), '')):
+        if _is_in(path, out):
             raise FileExistsError(f'{path} is in {out}, whose files would be replaced: choose another folder')
+    masks.check([os.path.basename(path) for path in (reference, *paths)])
+    work = _Work(reference, options, masks)
+    settings = [*options, os.path.abspath(reference), work.stamp(reference), __version__]
+    stamps = {path: work.stamp(path) for path in paths}
     stopped: Optional[BaseException] = None
     with new_results(out, 'transforms.csv', _earlier) as folder:
-        write_picture(os.path.join(folder, 'reference.png'), first[0])
-        progress = Progress('aligning', len(paths))
-        taken = {'reference.png'}
+        done, old_part = _known(out, settings, stamps)
+        known, names = list(done), _file_names(paths, done)
+        part, progress = None if crop else work.whole, Progress('aligning', len(paths), len(done))
+
+        def do(job: Callable[[str], Aligned], missing: list[str]) -> None:
+            for path, found in in_parallel(job, missing, crew):
+                if isinstance(found, Exception):
+                    raise found
+                done[path] = found
+
+        def align_one(path: str) -> Aligned:
+            found = work.align(path, os.path.join(folder, names[path]), part)
+            progress.step()
+            return found
         try:
-            for path in paths:
-                done.append(_aligned(first, path, folder, taken, model, exif))
-                progress.step()
+            do(align_one, [path for path in paths if path not in done])
+            part = part or _common(work.whole, done.values())
         except (Exception, KeyboardInterrupt) as e:
-            if not done:
+            if not done or part is None:
                 raise
             stopped = e
         progress.close()
-        with _file(os.path.join(folder, 'transforms.csv')) as table:
-            csv.writer(table).writerows([HEADER, *map(_row, done)])
-        with _file(os.path.join(folder, 'index.html')) as page:
-            page.write(_page(os.path.basename(reference), done, *first[0].shape[1::-1]))
+        if part == old_part:
+            for path in known:
+                _keep(out, folder, done[path].file)
+        do(lambda path: work.write(path, done[path], os.path.join(folder, names[path]), part),
+           [path for path, each in done.items() if each.transform and not os.path.exists(os.path.join(folder, each.file or names[path]))])
+        ordered = [done[path] for path in paths if path in done]
+        _write_tables(folder, work.write_reference(folder, part), os.path.basename(reference), ordered, part)
+        with _file(os.path.join(folder, STATE)) as state:
+            json.dump({'settings': settings, 'part': part, 'images': [[stamps[each.name], each] for each in ordered if each.size]}, state)
     if stopped is not None:
         raise stopped
-    return done
+    return ordered
 
 
-def _page(reference: str, done: Sequence[Aligned], width: int, height: int) -> str:
-    """In the order of people: 2 before 10."""
+def _expanded(images: Sequence[Path], out: str) -> list[str]:
+    """Files of names, folders and patterns, each once. Those that earlier calls have written below such a folder are left out.
+
+    :raises FileNotFoundError: for a pattern that nothing has.
+    """
+    paths: dict[str, None] = {}
+    for image in images:
+        given = os.fspath(image)
+        found = [given]
+        if os.path.isdir(given):
+            found = [path for path in (os.path.join(given, name) for name in find_images(given)) if not _is_in(path, out)]
+        elif not os.path.lexists(given) and glob.escape(given) != given:
+            found = sorted(glob.glob(given, recursive=True))
+            if not found:
+                raise FileNotFoundError(f'no image is called {given}')
+        paths.update(dict.fromkeys(found))
+    return list(paths)
+
+
+def _is_in(path: str, out: str) -> bool:
+    return os.path.realpath(path).startswith(os.path.join(os.path.realpath(out), ''))
+
+
+def _known(out: str, settings: list[Any], stamps: dict[str, str]) -> tuple[dict[str, Aligned], Optional[list[int]]]:
+    """By path what an earlier call has found in the same files, and what it has written of them."""
+    try:
+        with open(os.path.join(out, STATE), encoding='utf-8') as file:
+            state = json.load(file)
+        if state['settings'] != json.loads(json.dumps(settings)):
+            return {}, None
+        found = [Aligned(*each) for was, each in state['images'] if stamps.get(each[0]) == was]
+        return {each.name: each for each in found}, state['part']
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}, None
+
+
+def _keep(out: str, folder: str, file: str) -> None:
+    """What an earlier call has written."""
+    for name in filter(None, (file, file and f'{VIEWS}/{file}.jpg')):
+        if os.path.exists(os.path.join(out, name)):
+            os.makedirs(os.path.dirname(os.path.join(folder, name)), exist_ok=True)
+            try:
+                os.link(os.path.join(out, name), os.path.join(folder, name))
+            except OSError:  # of a file system without links
+                shutil.copy2(os.path.join(out, name), os.path.join(folder, name))
+
+
+def _common(whole: list[int], images: Iterable[Aligned]) -> list[int]:
+    """The largest part of the reference that all aligned images show: x, y, width, height.
+
+    :raises ValueError: if there is none.
+    """
+    cv2, (_, _, width, height) = import_cv2(), whole
+    shown = np.full((height, width), 1, np.uint8)
+    for each in images:
+        if each.transform:
+            inside = np.ones(each.size[::-1], np.uint8)
+            shown &= cv2.warpPerspective(inside, np.reshape(each.transform, (3, 3)), (width, height), flags=cv2.INTER_NEAREST)
+    # What all show is convex: a rectangle is in it if its left and its right side are.
+    columns = np.flatnonzero(shown.any(axis=0))
+    columns = columns[::1 + len(columns) // 2000]
+    top = shown[:, columns].argmax(axis=0)
+    bottom = height - shown[::-1, columns].argmax(axis=0)
+    heights = np.minimum(bottom[:, None], bottom) - np.maximum(top[:, None], top)
+    areas = np.maximum(heights, 0) * (columns - columns[:, None] + 1)
+    if not areas.size or areas.max() <= 0:
+        raise ValueError('the aligned images have no part that all show: align fewer, or do without crop (--crop)')
+    left, right = np.unravel_index(areas.argmax(), areas.shape)
+    return [int(columns[left]), int(max(top[left], top[right])), int(columns[right] - columns[left] + 1), int(heights[left, right])]
+
+
+def _write_tables(folder: str, reference: str, title: str, done: Sequence[Aligned], part: list[int]) -> None:
+    """The table and the page, on which images are in the order of people: 2 before 10."""
+    with _file(os.path.join(folder, 'transforms.csv')) as table:
+        csv.writer(table).writerows([HEADER, *map(_row, done)])
+
+    def shown(file: str) -> str:
+        view = f'{VIEWS}/{file}.jpg'
+        return quote(view if os.path.exists(os.path.join(folder, view)) else file)
     ordered = sorted(done, key=lambda each: [(int(part), '') if n % 2 else (-1, part) for n, part in enumerate(re.split('([0-9]+)', each.name))])
-    figures = (FIGURE.format(file=quote(each.file), name=html.escape(each.name), verdict=each, width=width, height=height)
+    width, height = part[2:]
+    figures = (FIGURE.format(reference=shown(reference), file=shown(each.file), name=html.escape(each.name), verdict=each, width=width, height=height)
                if each.file else f'<p>{html.escape(each.name)}: {html.escape(each.verdict)}</p>' for each in ordered)
-    return PAGE.format(reference=html.escape(reference), width=width, figures='\n'.join(figures))
+    with _file(os.path.join(folder, 'index.html')) as page:
+        page.write(PAGE.format(reference=html.escape(title), width=width, figures='\n'.join(figures)))
 
 
 def _earlier(folder: str) -> Optional[list[str]]:
     """Files that an earlier call has written, by its table."""
     rows = rows_of(os.path.join(folder, 'transforms.csv'), HEADER)
-    return None if rows is None else ['reference.png', 'index.html', *(row['file'] or '' for row in rows)]
+    if rows is None:
+        return None
+    pictures = [*(f'reference{suffix}' for suffix in FORMATS.values()), *(row['file'] or '' for row in rows)]
+    return [STATE, 'index.html', *pictures, *(f'{VIEWS}/{file}.jpg' for file in pictures)]
 
 
 def _file(path: str) -> TextIO:
     return open(path, 'w', encoding='utf-8', errors='backslashreplace', newline='')
 
 
-def _read(path: str, exif: bool) -> tuple[NDArray[np.uint8], int]:
-    """The image, and how its file stores it.
-
-    :raises ValueError: also for an image that cv2 cannot lay onto another, or others onto it."""
-    image, orientation = read_with_orientation(path, exif)
-    if max(image.shape[:2]) > LARGEST_SIDE:
-        raise ValueError(f'{path}: {image.shape[1]} x {image.shape[0]} pixels, and cv2 lays sides of up to {LARGEST_SIDE} onto others: reduce it')
-    return image, orientation
-
-
-def _file_name(path: str, taken: set[str]) -> str:
-    """Of the aligned image, which all systems and pages can name."""
-    stem = ''.join('_' if '\ud800' <= letter <= '\udfff' else letter for letter in os.path.splitext(os.path.basename(path))[0])
-    stem = stem.encode()[:LONGEST_STEM].decode(errors='ignore')
-    names = (f'{stem}_{count}.png' if count > 1 else f'{stem}.png' for count in itertools.count(1))
-    return next(name for name in names if name.lower() not in taken)  # some systems know no difference
+def _file_names(paths: Sequence[str], known: dict[str, Aligned]) -> dict[str, str]:
+    """Of the aligned images, without suffixes, which all systems and pages can name; of those that are known, as they have them."""
+    names = {path: os.path.splitext(each.file)[0] for path, each in known.items() if each.file}
+    taken = {'reference', *(name.lower() for name in names.values())}  # some systems know no difference
+    for path in paths:
+        if path not in names:
+            stem = ''.join('_' if '\ud800' <= letter <= '\udfff' else letter for letter in os.path.splitext(os.path.basename(path))[0])
+            stem = stem.encode()[:LONGEST_STEM].decode(errors='ignore')
+            names[path] = next(name for name in (f'{stem}_{count}' if count > 1 else stem for count in itertools.count(1))
+                               if name.lower() not in taken)
+            taken.add(names[path].lower())
+    return names
 
 
-def _aligned(first: tuple[NDArray[np.uint8], int], path: str, folder: str, taken: set[str], model: int, exif: bool) -> Aligned:
-    cv2, reference = import_cv2(), first[0]
-    try:
-        image, orientation = _read(path, exif)
-    except (ValueError, OSError) as e:
-        return Aligned(path, getattr(e, 'strerror', None) or str(e))
-    found = alignImages(upright(*first), upright(image, orientation), model)
-    if not found.found:
-        return Aligned(path, found.reason, len(found.matches))
-    file = _file_name(path, taken)
-    taken.add(file.lower())
-    onto, turn = Turn(first[1], *reference.shape[1::-1]), Turn(orientation, *image.shape[1::-1])
-    transform = onto.matrix @ found.transform @ np.linalg.inv(turn.matrix)
-    transform /= transform[2, 2]
-    write_picture(os.path.join(folder, file), cv2.warpPerspective(image, transform, reference.shape[1::-1]))
-    return Aligned(path, 'aligned', len(found.matches), turn.corners(found.error.ravel()).tolist(), transform.ravel().tolist(), file)
+class _View:
+    """An image, and how it is compared: upright, perhaps reduced, without what is masked or holds no data."""
+
+    def __init__(self, path: str, options: _Options, masks: Masks, factor: int = 0) -> None:
+        """:param factor: to reduce by; 0: the least whole one for the largest size, which keeps the centres of pixels.
+        :raises ValueError: also for an image that cv2 cannot lay onto another, or others onto it."""
+        data = read_bytes(path)
+        self.pages, self.no_data = decode_pages(data), no_data(data)
+        self.suffix = '.jpg' if data.startswith(b'\xff\xd8') else '.tif' if data.startswith(TIFF) else '.png'
+        first = self.pages[0]
+        self.size = list(first.shape[1::-1])
+        if max(self.size) > LARGEST_SIDE:
+            raise ValueError(f'{self.size[0]} x {self.size[1]} pixels, and cv2 lays sides of up to {LARGEST_SIDE} onto others: reduce it')
+        mask, holes = masks.of(os.path.basename(path), first), self.holes(first)
+        if holes is not None:
+            mask = (~holes if mask is None else mask * ~holes).astype(np.uint8)
+            first = np.where(holes if first.ndim == 2 else holes[..., None], np.nan, first)
+        orientation = exif_orientation(data) if options.exif else 1
+        turn, turned = Turn(orientation, *self.size), upright(in_8_bits(first, False), orientation)
+        self.turn, self.factor = turn, factor or -(-max(self.size) // (options.max_size or max(self.size)))
+        self.grey = self._reduced(turned)
+        self.mask = None if mask is None else self._reduced(upright(mask, orientation))
+        #: from pixels of what is compared to those of the file
+        self.matrix = turn.matrix @ [[self.factor, 0, (self.factor - 1) / 2], [0, self.factor, (self.factor - 1) / 2], [0, 0, 1]]
+
+    def _reduced(self, image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        height, width = (side // self.factor for side in image.shape)
+        if self.factor == 1 or not height * width:
+            return image
+        whole = image[:height * self.factor, :width * self.factor]
+        return np.asarray(import_cv2().resize(whole, (width, height), interpolation=import_cv2().INTER_AREA))
+
+    def holes(self, page: NDArray[Any]) -> Optional[NDArray[np.bool_]]:
+        """Where it holds no data; None if it does everywhere."""
+        value = float(self.no_data or 'nan')
+        if not self.no_data and page.dtype.kind != 'f':
+            return None
+        none = np.isnan(page) if np.isnan(value) else page == value
+        none = none if page.ndim == 2 else none.any(axis=2)
+        return none if none.any() else None
+
+
+class _Work:
+    """What is done with each image. Threads share it."""
+
+    def __init__(self, reference: str, options: _Options, masks: Masks) -> None:
+        self._options, self._masks = options, masks
+        try:
+            self._reference = _View(reference, options, masks)
+        except (ValueError, OSError) as e:
+            raise ValueError(f'{reference}: {e}') from None
+        if options.format not in (None, 'TIFF') and not (len(self._reference.pages) == 1 and holds(FORMATS[options.format], self._reference.pages[0])):
+            raise InvalidOption(f'{reference}: {options.format} cannot hold all of it: take TIFF')
+        self._aligner = ImageAligner(self._reference.grey, options.model, self._reference.mask)
+        self.whole = [0, 0, *self._reference.size]
+
+    def stamp(self, path: str) -> str:
+        """Of an image's file and that of its mask."""
+        return ' '.join(map(stamp, filter(None, (path, self._masks.file(os.path.basename(path))))))
+
+    def align(self, path: str, name: str, part: Optional[list[int]]) -> Aligned:
+        """:param name: path of what is written, without suffix; nothing is without `part`, what of the reference is shown: x, y, width, height."""
+        try:
+            view = _View(path, self._options, self._masks, self._reference.factor if self._options.model == AlignmentModel.TRANSLATION else 0)
+        except (ValueError, OSError) as e:
+            return Aligned(path, getattr(e, 'strerror', None) or str(e))
+        found = self._aligner.align(view.grey, view.mask)
+        if not found.found:
+            return Aligned(path, found.reason, len(found.matches), size=view.size)
+        transform = self._reference.matrix @ found.transform @ np.linalg.inv(view.matrix)
+        transform /= transform[2, 2]
+        errors = view.turn.corners(found.error.ravel()) * self._reference.factor
+        aligned = Aligned(path, 'aligned', len(found.matches), errors.tolist(), transform.ravel().tolist(), '', view.size)
+        return aligned if part is None else self._written(view, aligned, name, part)
+
+    def write(self, path: str, aligned: Aligned, name: str, part: list[int]) -> Aligned:
+        """The same for one whose transform is known."""
+        return self._written(_View(path, self._options, Masks(None)), aligned, name, part)
+
+    def write_reference(self, folder: str, part: list[int]) -> str:
+        """:return: the name of its file."""
+        x, y, width, height = part
+        return self._write(self._reference, [page[y:y + height, x:x + width] for page in self._reference.pages], os.path.join(folder, 'reference'))
+
+    def _written(self, view: _View, aligned: Aligned, name: str, part: list[int]) -> Aligned:
+        onto = np.array([[1, 0, -part[0]], [0, 1, -part[1]], [0, 0, 1]]) @ np.reshape(aligned.transform, (3, 3))
+        try:
+            file = self._write(view, [self._warped(view, page, onto, part[2:]) for page in view.pages], name)
+        except ValueError as e:  # of a format that cannot hold it
+            return aligned._replace(verdict=str(e), transform=())
+        return aligned._replace(file=file)
+
+    def _write(self, view: _View, pages: Sequence[NDArray[Any]], name: str) -> str:
+        whole = len(pages) == 1 and holds(view.suffix, pages[0])
+        suffix = FORMATS[self._options.format] if self._options.format else view.suffix if whole else '.tif'
+        write_picture(name + suffix, *pages, no_data=view.no_data)
+        folder, file = os.path.split(name + suffix)
+        if suffix == '.tif' or pages[0].dtype != np.uint8:  # which browsers do not show, or too dark
+            os.makedirs(os.path.join(folder, VIEWS), exist_ok=True)
+            write_picture(os.path.join(folder, VIEWS, file + '.jpg'), in_8_bits(np.nan_to_num(pages[0]), True))
+        return file
+
+    def _warped(self, view: _View, page: NDArray[Any], onto: NDArray[Any], size: Sequence[int]) -> NDArray[Any]:
+        """Of the same numbers. Beside the image, and where pixels without data have a part in one, it is without data, else 0."""
+        cv2 = import_cv2()
+
+        def warp(values: NDArray[Any]) -> NDArray[Any]:
+            warped: NDArray[Any] = cv2.warpPerspective(values, onto, tuple(size), flags=getattr(cv2, 'INTER_' + self._options.interpolation))
+            return warped if warped.ndim == values.ndim else warped[..., None]
+        holes, values = view.holes(page), page
+        if holes is not None:
+            values = np.where(holes if page.ndim == 2 else holes[..., None], page.dtype.type(0), page)
+        if page.dtype not in WARPED:
+            values = values.astype(float)
+        warped = warp(values)
+        if page.dtype not in WARPED:
+            warped = np.rint(warped).clip(np.iinfo(page.dtype).min, np.iinfo(page.dtype).max).astype(page.dtype)
+        if holes is not None or view.no_data:
+            shown = warp(np.ones(page.shape[:2], np.float32) if holes is None else (~holes).astype(np.float32))
+            warped[np.abs(shown - 1) > 1e-3] = float(view.no_data or 'nan')
+        return warped
 
 
 def _row(each: Aligned) -> list[str]:

@@ -8,7 +8,7 @@ import numpy as np
 from opencv_iib._arguments import Path
 from opencv_iib._files import check_outputs
 from opencv_iib.colmap.features import FeatureOptions, Features, make_detector
-from opencv_iib.colmap.images import check_picture, import_cv2, read_with_orientation, write_picture
+from opencv_iib.colmap.images import Masks, check_picture, import_cv2, read_with_orientation, write_picture
 from opencv_iib.functions import match
 from opencv_iib.keypoints import keypoints_to_array
 
@@ -46,10 +46,11 @@ def demo(image_a: Path, image_b: Path, out: Path, options: FeatureOptions = Feat
     check_outputs([out], (image_a, image_b))
     check_picture(out)
     images, orientations = zip(*(read_with_orientation(path, options.exif) for path in (image_a, image_b)))
-    described = list(map(Features(options), images, orientations))
+    masks = Masks(options.mask).all_of((image_a, image_b), images)
+    described = list(map(Features(options), images, orientations, masks))
     results = [_result('IIB', [rows for rows, _ in described], match(described[0][1], described[1][1]).pairs)]
     for name in ('SIFT', 'ORB') if options.detector == 'HESSIAN' else (options.detector,):
-        other = _own_descriptor(name, images, options.points)
+        other = _own_descriptor(name, images, masks, options.points)
         if other is not None:
             results.append(other)
     write_picture(out, np.vstack([draw(images, result.points_a, result.points_b, result.good, _caption(result))
@@ -67,14 +68,14 @@ def _result(name: str, rows: list[np.ndarray], pairs: np.ndarray) -> Result:
     return Result(name, a, b, good if good.sum() >= MIN_CONSISTENT else np.zeros_like(good))
 
 
-def _own_descriptor(name: str, images: Sequence[np.ndarray], points: int) -> Optional[Result]:
+def _own_descriptor(name: str, images: Sequence[np.ndarray], masks: Sequence[Optional[np.ndarray]], points: int) -> Optional[Result]:
     cv2 = import_cv2()
     detector = make_detector(name, points)
     if not detector.descriptorSize():
         return None
     rows, codes = [], []
-    for image in images:
-        found = sorted(detector.detect(image), key=lambda keypoint: -keypoint.response)[:points]
+    for image, mask in zip(images, masks):
+        found = sorted(detector.detect(image, mask), key=lambda keypoint: -keypoint.response)[:points]
         found, described = detector.compute(image, found)
         rows.append(keypoints_to_array(found))
         codes.append(np.zeros((0, detector.descriptorSize()), np.uint8) if described is None else described)

@@ -111,12 +111,40 @@ def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentMo
         they span a small part of what both show, as a logo does, or where the images differ by more than the model.
     :raises opencv_iib.error: for images of another type, and a model that is none.
     """
-    alignment, reason = _core.alignImages(as_image(reference), as_image(image), integer(model, 'model'))
-    if alignment[0]:
-        return Alignment(*alignment)
-    none = NoAlignment(*alignment)
-    none.reason = reason
-    return none
+    images = as_image(reference), as_image(image)  # mistakes of both, before either is described
+    return ImageAligner(images[0], model).align(images[1])
+
+
+class ImageAligner:
+    """Aligns many images with one reference as :func:`alignImages` does, and describes the reference once. Threads may share one."""
+
+    def __init__(self, reference: ArrayLike, model: int = AlignmentModel.HOMOGRAPHY, mask: Optional[ArrayLike] = None) -> None:
+        """:param reference: as of alignImages; so is `model`.
+        :param mask: H x W uint8, 0 where nothing is to be found.
+        :raises opencv_iib.error: for a mask of another size or type, and a model that is none."""
+        self._reference = as_image(reference)  # which the core looks at, and does not copy
+        self._core = _core.ImageAligner.create(self._reference, integer(model, 'model'), _mask(mask))
+
+    @staticmethod
+    def create(reference: ArrayLike, model: int = AlignmentModel.HOMOGRAPHY, mask: Optional[ArrayLike] = None) -> ImageAligner:
+        """As the class itself."""
+        return ImageAligner(reference, model, mask)
+
+    def align(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> Union[Alignment, NoAlignment]:
+        """As alignImages. The GIL is released meanwhile.
+
+        :param mask: of the image.
+        :raises opencv_iib.error: for an image of another type, and a mask of another size or type."""
+        alignment, reason = self._core.align(as_image(image), _mask(mask))
+        if alignment[0]:
+            return Alignment(*alignment)
+        none = NoAlignment(*alignment)
+        none.reason = reason
+        return none
+
+
+def _mask(mask: Optional[ArrayLike]) -> NDArray[Any]:
+    return np.empty((0, 0), np.uint8) if mask is None else as_matrix(mask, 'the mask')
 
 
 def logFalseAlarms(points1: ArrayLike, points2: ArrayLike, inliers: ArrayLike, epipolar: bool, threshold: float) -> float:

@@ -14,7 +14,7 @@ from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._files import check_outputs, write_whole
 from opencv_iib._turns import Turn, upright
 from opencv_iib.colmap.features import FeatureOptions, Features
-from opencv_iib.colmap.images import check_picture, import_cv2, read_with_orientation, write_picture
+from opencv_iib.colmap.images import Masks, check_picture, import_cv2, read_with_orientation, write_picture
 from opencv_iib.colmap.verify import show_the_same
 from opencv_iib.demo import GOOD, INK, OTHER, draw
 from opencv_iib.enums import Orientation
@@ -142,7 +142,9 @@ def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, pictu
                                 f"image's own camera, PINHOLE,{width},{height},F,F,{width / 2:g},{height / 2:g} with its focal length F in "
                                 'pixels')
     pair, features = _Pair(stored, orientations, lenses), Features(options)
-    (rows_a, codes_a), (rows_b, codes_b) = map(features, pair.images)
+    masks = [mask if mask is None else upright(mask, orientation)
+             for mask, orientation in zip(Masks(options.mask).all_of((image_a, image_b), stored), orientations)]
+    (rows_a, codes_a), (rows_b, codes_b) = (features(image, mask=mask) for image, mask in zip(pair.images, masks))
     measured = pair.measured((rows_a, rows_b), (codes_a, codes_b), match(codes_a, codes_b).pairs)
     if not options.orientation and len(rows_a) and len(rows_b) and not measured.found:  # EXIF may tell nothing of a turned camera
         extractor = copy.copy(features.extractor)

@@ -61,12 +61,14 @@ auto findRelativePose(const cv::Mat& points1, const cv::Mat& points2, const cv::
             std::string(reason));
 }
 
+typedef cv::iib::ImageAligner Aligner;
+
 // Whether they show the same, transform, deviations of the corners, matches that agree; and why not.
-auto alignImages(const cv::Mat& reference, const cv::Mat& image, int model)
+auto align(const Aligner& aligner, const cv::Mat& image, const cv::Mat& mask)
 {
     cv::Mat transform, error, matches;
     cv::String reason;
-    const bool found = cv::iib::alignImages(reference, image, transform, model, error, matches, &reason);
+    const bool found = aligner.align(image, transform, error, matches, &reason, mask);
     return std::make_tuple(std::make_tuple(found, onlyIf(found, transform), onlyIf(found, error), matches),
             std::string(reason));
 }
@@ -87,7 +89,14 @@ void bindFunctions(nb::module_& m)
                 return cv::iib::logFalseAlarms(points1, points2, inliers, epipolar, threshold);
             },
             WithoutGil());
-    m.def("alignImages", &alignImages, WithoutGil());
+    nb::class_<Aligner>(m, "ImageAligner")  // which holds a view of the reference
+            .def_static(
+                    "create",
+                    [](const cv::Mat& reference, int model, const cv::Mat& mask) {
+                        return Aligner::create(reference, model, mask);
+                    },
+                    WithoutGil())
+            .def("align", &align, WithoutGil());
 }
 
 }  // namespace iib_python

@@ -11,11 +11,12 @@ import numpy as np
 
 from opencv_iib.align import align
 from opencv_iib.colmap.features import FeatureOptions
+from opencv_iib.colmap.images import decode_pages, no_data, write_picture
 from opencv_iib.localization import Camera
 from opencv_iib.measure import match_images
-from opencv_iib.geometry import alignImages
+from opencv_iib.geometry import ImageAligner
 from opencv_iib.refinement import propagateMatches
-from support import REPOSITORY, InFolder, cv2, run_command, texture
+from support import REPOSITORY, InFolder, cv2, optional, run_command, texture
 
 SCENES = REPOSITORY / 'tools/synthetic'
 
@@ -222,7 +223,7 @@ class Align(Commands):
             self.assertGreater(int(row['matches']), 50)
             self.assertLess(float(row['error_top_left']), 1.25)  # off by .52
             self.assertEqual(cv2.imread(str(self.folder / 'out' / row['file'])).shape,
-                             cv2.imread(str(self.folder / 'out/reference.png')).shape)
+                             cv2.imread(str(self.folder / 'out/reference.jpg')).shape)
         page = (self.folder / 'out/index.html').read_text()
         self.assertEqual((page.count('type="range"'), page.count('<p>')), (2, 2))
 
@@ -234,16 +235,16 @@ class Align(Commands):
         return [self.write(name, picture) for name in names]
 
     def test_names_and_folders(self):
-        paths = self.pictures('reference.png', 'a&b.png', 'more/a&b.jpg', 'more/reference.png')
+        paths = self.pictures('reference.png', 'a&b.png', 'more/a&b.png', 'more/reference.png')
         out = self.folder / 'out'
         for _ in range(2):
             done = align(paths[0], paths, str(out), 0)
             self.assertEqual([each.name for each in done], paths[1:], 'the reference is not compared with itself')
             self.assertEqual([each.file for each in done], ['a&b.png', 'a&b_2.png', 'reference_2.png'])
-        self.assertEqual(sorted(os.listdir(out)), ['a&b.png', 'a&b_2.png', 'index.html', 'reference.png', 'reference_2.png', 'transforms.csv'])
+        self.assertEqual(sorted(os.listdir(out)), ['a&b.png', 'a&b_2.png', 'align.json', 'index.html', 'reference.png', 'reference_2.png', 'transforms.csv'])
         page = (out / 'index.html').read_text()
         self.assertIn('a%26b_2.png', page)
-        self.assertIn('more/a&amp;b.jpg, aligned', page)
+        self.assertIn('more/a&amp;b.png, aligned', page)
         self.assertLess(page.index('name="viewport"'), page.index('loading="lazy"'))
         mine = out / 'mine.png'
         mine.write_text('precious')
@@ -289,20 +290,162 @@ class Align(Commands):
         self.assertRegex(verdicts[5], '32767 x 2 pixels.*32766')
         self.check_error('32767 x 2 pixels', 'align', long, *paths, '--out', self.folder / 'out')
 
-    def test_an_interruption_keeps_what_is_done(self):
-        paths = self.pictures('r.png', 'a.png', 'b.png', 'c.png')
-        for stop, status in ((KeyboardInterrupt, 130), (OSError('the disk has gone'), 1)):
-            calls = []
+    def align(self, *arguments, status=0, calls=None, stop=None):
+        """Runs the command on one thread, of which so many images are looked at until something stops it."""
+        seen = []
 
-            def found(*arguments):
-                calls.append(arguments)
-                if len(calls) == 3:
-                    raise stop
-                return alignImages(*arguments)
-            with mock.patch('opencv_iib.align.alignImages', found):
-                self.assertEqual(run_command('align', *paths, '--out', self.folder / 'out')[0], status)
-            self.assertEqual([row['file'] for row in self.rows('out/transforms.csv')], ['a.png', 'b.png'])
-            self.assertEqual(sorted(os.listdir(self.folder / 'out')), ['a.png', 'b.png', 'index.html', 'reference.png', 'transforms.csv'])
-        with mock.patch('opencv_iib.align.alignImages', side_effect=KeyboardInterrupt):
-            self.assertEqual(run_command('align', *paths, '--out', self.folder / 'out')[0], 130)
-        self.assertEqual(len(self.rows('out/transforms.csv')), 2)
+        def found(*more, real=ImageAligner.align):
+            seen.append(more)
+            if stop is not None and len(seen) > calls:
+                raise stop
+            return real(*more)
+        with mock.patch('opencv_iib.align.ImageAligner.align', found):
+            self.assertEqual(run_command('align', *arguments, '--out', self.folder / 'out', '--workers', 1)[0], status)
+        self.assertTrue(stop is not None or calls in (None, len(seen)), len(seen))
+        return self.rows('out/transforms.csv')
+
+    def test_an_interruption_keeps_what_is_done_and_the_same_call_goes_on(self):
+        paths = self.pictures('r.png', 'a.png', 'b.png', 'c.png', 'd.png')
+        rows = self.align(*paths, calls=2, stop=KeyboardInterrupt, status=130)
+        self.assertEqual([row['file'] for row in rows], ['a.png', 'b.png'])
+        self.assertEqual(sorted(os.listdir(self.folder / 'out')), ['a.png', 'align.json', 'b.png', 'index.html', 'reference.png', 'transforms.csv'])
+        first = (self.folder / 'out/a.png').stat().st_ino
+        rows = self.align(*paths, calls=1, stop=OSError('the disk has gone'), status=1)
+        self.assertEqual([row['file'] for row in rows], ['a.png', 'b.png', 'c.png'])
+        rows = self.align(*paths, calls=1)
+        self.assertEqual([row['file'] for row in rows], ['a.png', 'b.png', 'c.png', 'd.png'])
+        self.assertEqual((self.folder / 'out/a.png').stat().st_ino, first)
+        os.utime(paths[1], (1, 1))
+        self.align(*paths, calls=1)
+        self.align(*paths, '--model', 'affine', calls=4)
+        self.assertEqual(len(self.align(*paths[:2], '--model', 'affine', calls=0)), 1)
+        self.assertEqual(sorted(os.listdir(self.folder / 'out')), ['a.png', 'align.json', 'index.html', 'reference.png', 'transforms.csv'])
+
+    def test_folders_and_patterns(self):
+        paths = self.pictures('r.png', 'f/1.png', 'f/2.png', 'f/more/1.png', '[x].png')
+        for images, count in (([self.folder / 'f'], 3), ([self.folder / 'f/*.png', paths[1]], 2), ([paths[4], self.folder / '[f]/**/*.png'], 4)):
+            self.assertEqual(len(self.align(paths[0], *images)), count)
+        self.check_error('no image is called', 'align', paths[0], self.folder / '*.jpg', '--out', self.folder / 'out')
+        self.assertEqual(run_command('align', paths[0], self.folder / 'f', '--out', self.folder / 'f/out')[0], 0)
+        status, out, _ = run_command('align', paths[0], self.folder / 'f', '--out', self.folder / 'f/out')
+        self.assertEqual((status, out.splitlines()[-1][-25:]), (0, '3 of 3 images are aligned'))
+
+    def shifted(self, *kinds, suffix='.tif'):
+        """A picture, and a part of it 30 right and 20 down, each as these make them of values from 0 to 255."""
+        picture = cv2.resize(texture(160, 120, seed=3), (640, 480), interpolation=cv2.INTER_CUBIC).astype(float)
+        picture = np.rint((picture - picture.min()) * (255 / np.ptp(picture)))
+        for n, kind in enumerate(kinds):
+            pages = [part.astype(kind) if isinstance(kind, type) else kind(part) for part in (picture, picture[20:, 30:])]
+            for name, page in zip((f'r{n}{suffix}', f'i{n}{suffix}'), pages):
+                write_picture(self.folder / name, *(page if isinstance(page, list) else [page]))
+            yield self.folder / f'r{n}{suffix}', self.folder / f'i{n}{suffix}', *(page if isinstance(page, list) else [page] for page in pages)
+
+    def check_shifted(self, pair, *options):
+        """That the part is written as it is, where it is in the picture. Its transform."""
+        reference, image, pages, parts = pair
+        row, = self.align(reference, image, '--model', 'translation', *options)
+        self.assertEqual(row['verdict'], 'aligned')
+        written = decode_pages((self.folder / 'out' / row['file']).read_bytes())
+        self.assertEqual([(page.dtype, page.shape) for page in written], [(page.dtype, page.shape) for page in pages])
+        for page, part in zip(written, parts):
+            inside = page[40:-10, 50:-10]
+            expected = part[20:-10, 20:-10]
+            self.assertLess(np.abs(inside.astype(float) - expected).max() / np.ptp(part.astype(float)), .1)
+            self.assertFalse(np.nan_to_num(page[:15, :20]).any())
+        return row, written
+
+    def test_six_encodings_give_the_same_transform_and_are_written_as_they_were_read(self):
+        kinds = (np.uint8, lambda a: a.astype(np.uint16) * 16, np.uint16, lambda a: a.astype(np.uint16) * 257,
+                 lambda a: (a / 255).astype(np.float32), np.float32)
+        rows = [self.check_shifted(pair)[0] for pair in self.shifted(*kinds)]
+        transforms = np.array([[float(row[f't{r}{c}']) for r in '123' for c in '123'] for row in rows])
+        np.testing.assert_allclose(transforms, transforms[:1].repeat(6, 0), atol=.001)  # a part has less than the range of all
+        for pair in self.shifted(*kinds[:4], suffix='.png'):
+            self.assertEqual(self.check_shifted(pair)[0]['file'][-4:], '.png')
+
+    def test_channels_and_pages_are_written_as_they_were_read(self):
+        def alpha(depth):
+            return lambda a: np.dstack([a, a, a, np.full_like(a, 255)]).astype(depth)
+        others = [alpha(np.uint8), alpha(np.uint16), lambda a: np.dstack([a, 255 - a, a / 2]).astype(np.float32), lambda a: a.astype(np.int16) - 100,
+                  lambda a: [a.astype(np.uint16), (255 - a).astype(np.uint16), a.astype(np.uint16) * 100], float,
+                  lambda a: a.astype(np.int32) * 100000]
+        if optional('tifffile'):
+            others += [lambda a: np.dstack([a, a, a, a, a]).astype(np.uint16), lambda a: np.dstack([a, np.full_like(a, 255)]).astype(np.uint8)]
+        for n, pair in enumerate(self.shifted(*others)):
+            with self.subTest(n):
+                self.check_shifted(pair)
+                self.assertTrue((self.folder / f'out/views/i{n}.tif.jpg').exists())
+        pair, = self.shifted(alpha(np.uint8), suffix='.png')
+        _, (written,) = self.check_shifted(pair)
+        self.assertEqual((written[..., 3].min(), written[30:, 40:, 3].min()), (0, 255))
+
+    def test_pixels_without_data_stay_without(self):
+        pair, = self.shifted(np.float32)
+        reference, image, (whole,), (part,) = pair
+        for text, value in (('', np.nan), ('-9999', -9999)):
+            part = part.copy()
+            part[100:130, 100:150] = value
+            write_picture(image, part, no_data=text)
+            row, = self.align(reference, image, '--model', 'translation', '--interpolation', 'cubic')
+            data = (self.folder / 'out' / row['file']).read_bytes()
+            page = decode_pages(data)[0]
+            self.assertEqual((no_data(data), row['verdict']), (text, 'aligned'))
+            np.testing.assert_array_equal(page[[125, 5], [150, 5]], [value, value])
+            known = page[np.isfinite(page) & (page != -9999)]
+            self.assertTrue(-40 < known.min() and known.max() < 300 and .8 < known.size / whole.size < .93)
+
+    def test_formats_and_interpolation(self):
+        pair, = self.shifted(np.uint8, suffix='.jpg')
+        self.assertEqual([self.check_shifted(pair, *options)[0]['file'] for options in ((), ('--format', 'png'), ('--format', 'TIFF'))],
+                         ['i0.jpg', 'i0.png', 'i0.tif'])
+        written = []
+        cv2.imwrite(str(pair[1]), cv2.resize(pair[3][0], None, fx=.9, fy=.9, interpolation=cv2.INTER_AREA))
+        for name in ('nearest', 'LINEAR', 'cubic', 'lanczos4'):
+            row, = self.align(*pair[:2], '--interpolation', name, '--format', 'png')
+            written.append((self.folder / 'out' / row['file']).read_bytes())
+        self.assertEqual(len(set(written)), 4)
+        for short in self.shifted(np.uint16):
+            self.check_mistake('JPEG cannot hold all of it: take TIFF', 'align', *short[:2], '--out', self.folder / 'out', '--format', 'jpeg')
+            row, = self.align(pair[0], short[1], '--format', 'jpeg', status=3)
+            self.assertRegex(row['verdict'], 'JPG cannot hold 1 x .* of uint16')
+
+    def test_crop_is_what_all_show(self):
+        pairs = list(self.shifted(np.uint8, lambda a: np.rot90(a, 2).astype(np.uint8), suffix='.png'))  # the second one shows the other corner
+        reference, image, (whole,), _ = pairs[0]
+        cv2.imwrite(str(self.folder / 'left.png'), whole[:450, :600])
+        rows = self.align(reference, image, self.folder / 'left.png', '--model', 'translation', '--crop')
+        for name, at in ((rows[0]['file'], 1), (rows[1]['file'], 1), ('reference.png', 0)):
+            picture = cv2.imread(str(self.folder / 'out' / name), -1)
+            self.assertTrue(all(abs(size - expected) < 3 for size, expected in zip(picture.shape, (430, 570))), picture.shape)
+            self.assertGreater(np.corrcoef(picture[2:-2, 2:-2].ravel(), whole[22:22 + picture.shape[0] - 4, 32:32 + picture.shape[1] - 4].ravel())[0, 1], .95)
+        before = (self.folder / 'out' / rows[0]['file']).stat().st_ino
+        self.align(reference, image, self.folder / 'left.png', '--model', 'translation', '--crop', calls=0)
+        self.assertEqual((self.folder / 'out' / rows[0]['file']).stat().st_ino, before)
+        self.align(reference, image, '--model', 'translation', '--crop', calls=0)  # all show more now
+        self.assertGreater(cv2.imread(str(self.folder / 'out' / rows[0]['file'])).shape[1], 600)
+
+    def test_masks_and_reduced_images(self):
+        picture = cv2.resize(texture(160, 120, seed=3), (640, 480), interpolation=cv2.INTER_CUBIC)
+        other, masks = picture[20:, 30:].copy(), self.folder / 'masks'
+        banner = cv2.resize(texture(100, 70, seed=8), (400, 280), interpolation=cv2.INTER_CUBIC)
+        first = picture.copy()
+        for image in (first, other):  # which stays where it is
+            image[:280, :400] = banner
+        paths = [self.write(name, image) for name, image in (('r.png', first), ('i.png', other))]
+        masks.mkdir()
+        self.check_mistake('has no mask of any image: that of r.png would be r.png.png', 'align', *paths, '--out', self.folder / 'out', '--mask', masks)
+        for name, image in (('r.png.png', first), ('i.png.png', other)):
+            mask = np.full(image.shape, 255, np.uint8)
+            mask[:300, :420] = 0
+            cv2.imwrite(str(masks / name), mask)
+        for options in ((), ('--max-size', '320')):
+            row, = self.align(*paths, '--model', 'translation', '--mask', masks, *options)
+            np.testing.assert_allclose([float(row['t13']), float(row['t23'])], [30, 20], atol=.3)
+        self.assertRegex(self.align(*paths, status=3)[0]['verdict'], 'parallax')
+        cv2.imwrite(str(masks / 'r.png.png'), mask)
+        self.check_error('its mask .* has 610 x 460 pixels, and the image 640 x 480', 'align', *paths, '--out', self.folder / 'out', '--mask', masks)
+        self.check_error('there is no mask', 'align', *paths, '--out', self.folder / 'out', '--mask', self.folder / 'gone')
+
+
+if __name__ == '__main__':
+    unittest.main()

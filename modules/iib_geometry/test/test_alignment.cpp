@@ -249,6 +249,42 @@ TEST(Alignment, mistakes_are_told)
 }
 
 // The errors of the corners are as large as it says, on average over many noisy sets of matches.
+TEST(Alignment, one_reference_serves_many_images_as_each_alone)
+{
+    const Mat reference = picture(1);
+    const Ptr<ImageAligner> aligner = ImageAligner::create(reference, ALIGN_SIMILARITY);
+    for (double angle : {3., 40., 5.})
+    {
+        const Mat turn = getRotationMatrix2D(Point2f(200, 150), angle, 1.05);
+        const Mat image = moved(reference,
+                Matx33d(turn.at<double>(0, 0), turn.at<double>(0, 1), turn.at<double>(0, 2),
+                        turn.at<double>(1, 0), turn.at<double>(1, 1), turn.at<double>(1, 2), 0, 0, 1));
+        Mat transform, error, matches, alone, aloneError, aloneMatches;
+        ASSERT_TRUE(aligner->align(image, transform, error, matches));
+        ASSERT_TRUE(alignImages(reference, image, alone, ALIGN_SIMILARITY, aloneError, aloneMatches));
+        EXPECT_EQ(0, cvtest::norm(transform, alone, NORM_INF));
+        EXPECT_EQ(0, cvtest::norm(error, aloneError, NORM_INF));
+        EXPECT_EQ(0, cvtest::norm(matches, aloneMatches, NORM_INF));
+    }
+}
+
+TEST(Alignment, looks_at_what_masks_allow)
+{
+    Mat reference = picture(1), image = moved(reference, Matx33d(1, 0, -30, 0, 1, -20, 0, 0, 1));
+    const Rect banner(0, 0, 240, 180);  // which stays where it is
+    picture(2)(banner).copyTo(reference(banner));
+    picture(2)(banner).copyTo(image(banner));
+    Mat mask(SIZE, CV_8U, Scalar(1)), transform;
+    mask(Rect(0, 0, 250, 190)) = 0;
+    EXPECT_FALSE(alignImages(reference, image, transform, ALIGN_TRANSLATION));
+    const Ptr<ImageAligner> aligner = ImageAligner::create(reference, ALIGN_TRANSLATION, mask);
+    ASSERT_TRUE(aligner->align(image, transform, noArray(), noArray(), nullptr, mask));
+    EXPECT_NEAR(30, transform.at<double>(0, 2), .2);
+    EXPECT_NEAR(20, transform.at<double>(1, 2), .2);
+    for (const Mat& wrong : {Mat(mask(Rect(0, 0, 9, 9))), Mat(SIZE, CV_32F, Scalar(1))})
+        EXPECT_ANY_THROW(ImageAligner::create(reference, ALIGN_TRANSLATION, wrong));
+}
+
 TEST(Alignment, deviation_foretells_the_errors_of_the_corners)
 {
     RNG random(6);

@@ -3,11 +3,11 @@ from __future__ import annotations
 
 import dataclasses
 import threading
-from typing import Any
+from typing import Any, Optional
 
 import numpy as np
 
-from opencv_iib._arguments import InvalidOption
+from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._turns import Turn, upright
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector
@@ -36,6 +36,7 @@ class FeatureOptions:
     orientation: bool = False
     max_size: int = 0  #: pixels of the longer side to which larger images are reduced; 0: they are not
     exif: bool = True  #: images are described as upright as their EXIF data say; points stay in the file's pixels
+    mask: Optional[Path] = None  #: what is described, as of images.Masks
 
     def __post_init__(self) -> None:
         for field in ('detector', 'preset'):  # in any case, and members of Preset
@@ -82,6 +83,14 @@ def reduced(image: np.ndarray, max_size: int) -> np.ndarray:
     return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA))
 
 
+def resized_mask(mask: np.ndarray, image: np.ndarray) -> np.ndarray:
+    """Of the size that the image was reduced to."""
+    if mask.shape == image.shape[:2]:
+        return mask
+    import cv2
+    return np.asarray(cv2.resize(mask, image.shape[1::-1], interpolation=cv2.INTER_NEAREST))
+
+
 class Features:
     """Detects and describes; one object serves all threads, each with a detector of its own."""
 
@@ -98,14 +107,15 @@ class Features:
         self._local = threading.local()
         self._local.detector = make_detector(options.detector, options.points)  # raises here, not at the first image
 
-    def __call__(self, image: np.ndarray, orientation: int = 1) -> tuple[np.ndarray, np.ndarray]:
-        """:param orientation: how the image is stored, by EXIF.
+    def __call__(self, image: np.ndarray, orientation: int = 1, mask: Optional[np.ndarray] = None) -> tuple[np.ndarray, np.ndarray]:
+        """:param orientation: how the image is stored, by EXIF; so is the mask.
         :return: N x 7 float32 keypoints (see keypoints_to_array), strongest first, and N x bytes codes."""
         turn, image = Turn(orientation, *image.shape[1::-1]), upright(image, orientation)
         if not hasattr(self._local, 'detector'):
             self._local.detector = make_detector(self.options.detector, self.options.points)
         small = reduced(image, self.options.max_size)
-        found = sorted(self._local.detector.detect(small), key=lambda keypoint: -keypoint.response)[:self.options.points]
+        allowed = mask if mask is None else resized_mask(upright(mask, orientation), small)
+        found = sorted(self._local.detector.detect(small, allowed), key=lambda keypoint: -keypoint.response)[:self.options.points]
         rows, codes = self.extractor.compute(small, keypoints_to_array(found))
         if small is not image:
             scale = np.array(image.shape[1::-1]) / small.shape[1::-1]

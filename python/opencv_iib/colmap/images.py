@@ -1,9 +1,12 @@
-"""Image files: which there are, their grey values, and the focal length that their EXIF data tell."""
+"""Image files: which there are, what is read of them, masks, and what their EXIF data tell; and how pictures are written."""
 from __future__ import annotations
 
+import contextlib
 import os
 import struct
-from typing import Any, Iterator, NoReturn, Optional
+import tempfile
+import zlib
+from typing import Any, Iterable, Iterator, NoReturn, Optional, Sequence
 
 import numpy as np
 
@@ -11,11 +14,12 @@ from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._files import write_whole
 
 SUFFIXES = ('.jpg', '.jpeg', '.png', '.tif', '.tiff', '.bmp', '.webp', '.ppm', '.pgm')
-# Numbers of EXIF tags.
-ORIENTATION = 0x0112
+# Numbers of TIFF's and EXIF's tags.
+SAMPLES, ORIENTATION, NO_DATA = 0x0115, 0x0112, 0xA481  # the last one is GDAL's
 EXIF_IFD, FOCAL_LENGTH, FOCAL_LENGTH_35MM, PLANE_X_RESOLUTION, PLANE_UNIT = 0x8769, 0x920A, 0xA405, 0xA20E, 0xA210
 MILLIMETRES = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}  # of EXIF's units of resolution
-SHORT, LONG, RATIONAL = 3, 4, 5  # EXIF's types of numbers
+ASCII, SHORT, LONG, RATIONAL = 2, 3, 4, 5  # EXIF's types
+FORMATS = {'PNG': '.png', 'TIFF': '.tif', 'JPEG': '.jpg'}  #: that pictures are written in, and their suffixes
 START_OF_SCAN, APP1 = 0xda, 0xe1  # JPEG's markers
 TIFF = (b'II*\0', b'MM\0*', b'II+\0', b'MM\0+')  # how files begin
 IMAGES = (*TIFF, b'\xff\xd8', b'\x89PNG', b'RIFF', b'BM', *(b'P%d' % kind for kind in range(1, 8)))
@@ -109,27 +113,79 @@ def decode_grey(data: bytes) -> np.ndarray:
 
 def _decode(data: bytes, colour: bool) -> np.ndarray:
     """:raises ValueError: if it cannot be read, also if it is a JPEG without its end, which cv2 would fill with grey."""
+    cv2, image = import_cv2(), None
+    _check(data)
+    mode = (cv2.IMREAD_COLOR if colour else cv2.IMREAD_GRAYSCALE) | cv2.IMREAD_IGNORE_ORIENTATION | cv2.IMREAD_ANYDEPTH
+    # What is not of 8 bits as the file has it. Of TIFF first, where cv2 gives floats in no other way, and prints of that.
+    if data.startswith(TIFF):
+        image = decode_pages(data)[0]
+    if image is None or (image.dtype == np.uint8 and image.shape[2:] < (5,)):
+        image = _imdecode(data, mode)
+    if image.dtype != np.uint8 and not data.startswith(TIFF):
+        image = _imdecode(data, cv2.IMREAD_UNCHANGED)
+    return in_8_bits(image, colour)
+
+
+def decode_pages(data: bytes) -> list[np.ndarray]:
+    """As a file has it: H x W, or with the channels last, BGR and alpha where they are 3 or 4; of a TIFF all pages of one shape.
+
+    :raises ValueError: as _decode.
+    """
     cv2 = import_cv2()
+    _check(data)
+    pages, samples = _pages_of_tiff(data)
+    if samples in (1, 3, 4) and pages == 1:
+        return [_imdecode(data, cv2.IMREAD_UNCHANGED)]
+    with tempfile.TemporaryDirectory() as folder:  # cv2 reads pages of files alone, and none of a path that is not UTF-8
+        path = os.path.join(folder, 'pages.tif')
+        with open(path, 'wb') as file:
+            file.write(data)
+        if samples in (1, 3, 4):
+            read = list(cv2.imreadmulti(path, flags=cv2.IMREAD_UNCHANGED)[1])
+        else:
+            try:
+                import tifffile  # type: ignore[import-not-found,unused-ignore]
+            except ImportError:
+                raise ValueError(f'a TIFF of {samples} channels, which cv2 cannot read: pip install tifffile, or store each as a page') from None
+            try:
+                with tifffile.TiffFile(path) as tiff:
+                    read = [page.asarray() for page in tiff.pages]
+            except Exception as e:  # of many kinds
+                raise ValueError(f'not an image that tifffile reads: {e}') from None
+            read = [page if page.shape[0] != samples else np.moveaxis(page, 0, 2) for page in read]
+    if not read:
+        raise ValueError('the image is damaged or cut off')
+    return [page for page in read if page.shape == read[0].shape and page.dtype == read[0].dtype]  # not thumbnails
+
+
+def _check(data: bytes) -> None:
     if not data:
         raise ValueError('the file is empty')
     if _is_cut_off(data):
         raise ValueError('the file is cut off: a JPEG without its end')
-    mode = (cv2.IMREAD_COLOR if colour else cv2.IMREAD_GRAYSCALE) | cv2.IMREAD_IGNORE_ORIENTATION | cv2.IMREAD_ANYDEPTH
+
+
+def _imdecode(data: bytes, flags: int) -> np.ndarray:
+    cv2 = import_cv2()
     try:
-        # What is not of 8 bits as the file has it. Of TIFF first, where cv2 gives floats in no other way, and prints of that.
-        for flags in (cv2.IMREAD_UNCHANGED, mode) if data.startswith(TIFF) else (mode, cv2.IMREAD_UNCHANGED):
-            image = cv2.imdecode(np.frombuffer(data, np.uint8), flags)
-            if (flags == mode) == (image is None or image.dtype == np.uint8):
-                break
+        image = cv2.imdecode(np.frombuffer(data, np.uint8), flags)
     except cv2.error as e:
         why = 'of more than 2^30 pixels' if 'MAX_IMAGE' in str(e) else str(e).splitlines()[0]
         raise ValueError(f'not an image that cv2 reads: {why}') from None
     if image is None:
         raise ValueError('the image is damaged or cut off' if data.startswith(IMAGES) else 'not an image that cv2 reads')
-    return _with_channels(_in_8_bits(image), colour)
+    return np.asarray(image)
 
 
-def _in_8_bits(image: np.ndarray) -> np.ndarray:
+def in_8_bits(image: np.ndarray, colour: bool) -> np.ndarray:
+    """What is described of an image as its file has it: H x W, or with `colour` H x W x 3, uint8; of other numbers by their own range.
+
+    :raises ValueError: for one without a finite number.
+    """
+    return _with_channels(_scaled(image), colour)
+
+
+def _scaled(image: np.ndarray) -> np.ndarray:
     """Other numbers scaled from their own range, of which a few dead pixels are no part; NaN becomes 0."""
     if image.dtype == np.uint8:
         return image
@@ -148,12 +204,57 @@ def _in_8_bits(image: np.ndarray) -> np.ndarray:
 def _with_channels(image: np.ndarray, colour: bool) -> np.ndarray:
     """H x W, or with colour H x W x 3, of as many as there are."""
     cv2, channels = import_cv2(), image.shape[2] if image.ndim == 3 else 1
-    if channels > 4:
-        raise ValueError(f'the image has {channels} channels: grey ones and those of three colours are read')
     if channels in (3, 4):
         return image[..., :3] if colour else cv2.cvtColor(image[..., :3], cv2.COLOR_BGR2GRAY)
     grey = image if image.ndim == 2 else np.ascontiguousarray(image[..., 0])
+    if channels > 4:  # of bands, all together
+        grey = np.rint(image.mean(axis=2)).astype(np.uint8)
     return cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR) if colour else grey
+
+
+class Masks:
+    """Which pixels of images are described: those that are not 0 in masks by COLMAP's names, ``more/a.jpg.png`` in their folder for the
+    image more/a.jpg. An image without one is described as a whole."""
+
+    def __init__(self, path: Optional[Path]) -> None:
+        """:param path: folder, or a file for all images; None: no masks.
+        :raises FileNotFoundError: if there is nothing."""
+        self.path = None if path is None else os.fspath(path)
+        if self.path is not None and not os.path.exists(self.path):
+            raise FileNotFoundError(f'there is no mask {self.path}')
+
+    def file(self, name: str) -> str:
+        """Of an image's mask, if there is one; else ''."""
+        if self.path is None or not os.path.isdir(self.path):
+            return self.path or ''
+        path = os.path.join(self.path, name + '.png')
+        return path if os.path.exists(path) else ''
+
+    def check(self, names: Iterable[str]) -> None:
+        """:raises InvalidOption: for a folder without a mask of any image."""
+        names = list(names)
+        if self.path is not None and not any(map(self.file, names)):
+            raise InvalidOption(f'{self.path} has no mask of any image: that of {names[0]} would be {names[0]}.png')
+
+    def of(self, name: str, image: np.ndarray) -> Optional[np.ndarray]:
+        """:raises ValueError: for a mask of another size than the image."""
+        path = self.file(name)
+        if not path:
+            return None
+        try:
+            mask = decode_pages(read_bytes(path))[0]
+        except ValueError as e:
+            raise ValueError(f'its mask {path}: {e}') from None
+        mask = (mask if mask.ndim == 2 else mask[..., :3].any(axis=2)).astype(bool).astype(np.uint8)
+        if mask.shape != image.shape[:2]:
+            raise ValueError(f'its mask {path} has {mask.shape[1]} x {mask.shape[0]} pixels, and the image {image.shape[1]} x {image.shape[0]}')
+        return mask
+
+    def all_of(self, paths: Sequence[Path], images: Sequence[np.ndarray]) -> list[Optional[np.ndarray]]:
+        """Of images that are called as their files, whatever their folders. Raises as `check` and `of`."""
+        names = [os.path.basename(os.fspath(path)) for path in paths]
+        self.check(names)
+        return list(map(self.of, names, images))
 
 
 def check_picture(path: Path) -> None:
@@ -162,11 +263,71 @@ def check_picture(path: Path) -> None:
         raise InvalidOption(f'{path}: end its name in .png or .jpg')
 
 
-def write_picture(path: Path, picture: np.ndarray) -> None:
-    """:raises InvalidOption: as check_picture."""
+def write_picture(path: Path, picture: np.ndarray, *pages: np.ndarray, no_data: str = '') -> None:
+    """An image as decode_pages gives it, by the suffix of the name.
+
+    :param pages: of a TIFF, further ones.
+    :param no_data: of a TIFF, what GDAL_NODATA tells.
+    :raises InvalidOption: as check_picture.
+    :raises ValueError: for what the format cannot hold.
+    """
     check_picture(path)
     path = os.fspath(path)
-    write_whole(path, import_cv2().imencode(os.path.splitext(path)[1], picture)[1].tobytes())
+    suffix = os.path.splitext(path)[1].lower()
+    if suffix in ('.tif', '.tiff'):
+        write_whole(path, _tiff([picture, *pages], no_data))
+    elif pages or not holds(suffix, picture):
+        raise ValueError(f'{suffix[1:].upper()} cannot hold {1 + len(pages)} x {" x ".join(map(str, picture.shape))} of {picture.dtype}: take TIFF')
+    else:
+        write_whole(path, import_cv2().imencode(suffix, picture)[1].tobytes())
+
+
+def holds(suffix: str, picture: np.ndarray) -> bool:
+    """Whether files of a suffix keep all of a picture of one page."""
+    depths = {'.png': (np.uint8, np.uint16), '.tif': (picture.dtype,)}.get(suffix, (np.uint8,))
+    channels = {'.png': (1, 3, 4), '.tif': picture.shape[2:]}.get(suffix, (1, 3))
+    return picture.dtype in depths and (picture.ndim == 2 or picture.shape[2] in channels)
+
+
+STRIP = 1 << 18  # bytes that are compressed together
+
+
+def _tiff(pages: Sequence[np.ndarray], no_data: str) -> bytes:
+    """Without loss, of any depth and channels: what cv2 writes loses some of floats, and is of 4 channels at most."""
+    content = bytearray(b'II*\0\0\0\0\0')
+    link = 4  # where the place of the next directory stands
+    for page in pages:
+        height, width, samples = (*page.shape, 1)[:3]
+        if samples in (3, 4):
+            page = page[..., [2, 1, 0, 3][:samples]]
+        rows = max(1, STRIP // (page[0].nbytes or 1))
+        strips = [zlib.compress(np.ascontiguousarray(page[at:at + rows], page.dtype.newbyteorder('<')).tobytes(), 1)
+                  for at in range(0, height, rows)]
+        begins = np.cumsum([len(content), *map(len, strips)]).tolist()
+        content += b''.join(strips)
+        kind = {'u': 1, 'i': 2, 'f': 3}[page.dtype.kind]
+        colours = 3 if samples in (3, 4) else 1
+        entries: list[tuple[int, int, Sequence[int]]] = [
+            (256, LONG, [width]), (257, LONG, [height]), (258, SHORT, [page.dtype.itemsize * 8] * samples), (259, SHORT, [8]),
+            (262, SHORT, [2 if colours == 3 else 1]), (273, LONG, begins[:-1]), (SAMPLES, SHORT, [samples]), (278, LONG, [rows]),
+            (279, LONG, list(map(len, strips))), (339, SHORT, [kind] * samples)]
+        if samples > colours:
+            entries.insert(-1, (338, SHORT, [2 if samples in (2, 4) else 0] * (samples - colours)))
+        if no_data:
+            entries.append((NO_DATA, ASCII, no_data.encode() + b'\0'))
+        directory = struct.pack('<H', len(entries))
+        for tag, kind, values in entries:
+            packed = struct.pack(f'<{len(values)}{"BHI"[kind - ASCII]}', *values)
+            content += bytes(len(content) % 2)
+            if len(packed) > 4:
+                content += packed
+                packed = struct.pack('<I', len(content) - len(packed))
+            directory += struct.pack('<HHI', tag, kind, len(values)) + packed.ljust(4, b'\0')
+        content += bytes(len(content) % 2)
+        struct.pack_into('<I', content, link, len(content))
+        link = len(content) + len(directory)
+        content += directory + bytes(4)
+    return bytes(content)
 
 
 def _jpeg_segments(data: bytes) -> Iterator[tuple[int, int, int]]:
@@ -208,28 +369,63 @@ def _exif(data: bytes) -> bytes:
     return b''
 
 
-def _numbers(tiff: bytes, at: int) -> dict[int, float]:
-    """By tag, the first number of each entry of a TIFF directory.
+def _directory(tiff: bytes, at: int) -> tuple[dict[int, Any], int]:
+    """By tag, the numbers or the text of each entry of a TIFF directory, and where the next one begins, or 0.
 
     :raises struct.error: for one that is cut off.
     """
     order = '<' if tiff[:1] == b'I' else '>'
-    found: dict[int, float] = {}
-    for entry in range(struct.unpack_from(order + 'H', tiff, at)[0]):
-        tag, kind, _, value = struct.unpack_from(order + 'HHI4s', tiff, at + 2 + 12 * entry)
-        if kind in (SHORT, LONG):
-            found[tag], = struct.unpack_from(order + ('H' if kind == SHORT else 'I'), value)
-        elif kind == RATIONAL:
-            above, below = struct.unpack_from(order + 'II', tiff, struct.unpack(order + 'I', value)[0])
-            found[tag] = above / below if below else 0
-    return found
+    count, = struct.unpack_from(order + 'H', tiff, at)
+    found: dict[int, Any] = {}
+    for entry in range(at + 2, at + 2 + 12 * count, 12):
+        tag, kind, length = struct.unpack_from(order + 'HHI', tiff, entry)
+        form = {ASCII: f'{length}s', SHORT: f'{length}H', LONG: f'{length}I', RATIONAL: f'{2 * length}I'}.get(kind)
+        with contextlib.suppress(struct.error):  # of an entry that leads nowhere
+            if form is not None and length:
+                size = struct.calcsize(order + form)
+                place, = (entry + 8,) if size <= 4 else struct.unpack_from(order + 'I', tiff, entry + 8)
+                values: Any = struct.unpack_from(order + form, tiff, place)
+                if kind == RATIONAL:
+                    values = [above / below if below else 0 for above, below in zip(values[::2], values[1::2])]
+                found[tag] = values[0].split(b'\0')[0].decode('latin-1').strip() if kind == ASCII else values
+    following = tiff[at + 2 + 12 * count:at + 6 + 12 * count]
+    return found, struct.unpack(order + 'I', following)[0] if len(following) == 4 else 0
+
+
+def _first_directory(tiff: bytes) -> dict[int, Any]:
+    """:raises struct.error: if there is none."""
+    return _directory(tiff, struct.unpack_from('<I' if tiff[:1] == b'I' else '>I', tiff, 4)[0])[0]
+
+
+def _pages_of_tiff(data: bytes) -> tuple[int, int]:
+    """How many, and channels of the first; 1 of each for other files, and for the 64-bit kind, whose pages are not counted."""
+    if data[:4] not in TIFF[:2]:
+        return 1, 1
+    samples, seen = 1, set[int]()
+    with contextlib.suppress(struct.error):
+        at, = struct.unpack_from('<I' if data[:1] == b'I' else '>I', data, 4)
+        while at and at not in seen:
+            entries, following = _directory(data, at)
+            samples = samples if seen else entries.get(SAMPLES, [1])[0]
+            seen.add(at)
+            at = following
+    return max(len(seen), 1), samples
+
+
+def no_data(data: bytes) -> str:
+    """What GDAL has written of a TIFF's pixels without data: a number, or ''."""
+    with contextlib.suppress(struct.error, ValueError):
+        if data[:4] in TIFF[:2]:
+            text = str(_first_directory(data)[NO_DATA]) if NO_DATA in _first_directory(data) else ''
+            float(text)
+            return text
+    return ''
 
 
 def exif_orientation(data: bytes) -> int:
     """How a file's EXIF data say that the image is stored, 1 (upright) to 8; 1 if they tell nothing."""
-    tiff = _exif(data)
     try:
-        told = int(_numbers(tiff, struct.unpack_from('<I' if tiff[:1] == b'I' else '>I', tiff, 4)[0]).get(ORIENTATION, 1))
+        told = int(_first_directory(_exif(data)).get(ORIENTATION, [1])[0])
     except struct.error:
         return 1
     return told if 1 <= told <= 8 else 1
@@ -239,10 +435,10 @@ def exif_focal_length(data: bytes, width: int, height: int) -> Optional[float]:
     """Focal length in pixels by a file's EXIF data, by COLMAP's rules; None if they tell none."""
     tiff = _exif(data)
     try:
-        first = _numbers(tiff, struct.unpack_from('<I' if tiff[:1] == b'I' else '>I', tiff, 4)[0])
-        exif = _numbers(tiff, int(first[EXIF_IFD]))
+        entries = _directory(tiff, int(_first_directory(tiff)[EXIF_IFD][0]))[0]
     except (struct.error, KeyError):
         return None
+    exif: dict[int, float] = {tag: values[0] for tag, values in entries.items() if not isinstance(values, str)}
     if exif.get(FOCAL_LENGTH_35MM, 0) > 0:
         return exif[FOCAL_LENGTH_35MM] / 35.0 * max(width, height)
     focal, resolution = exif.get(FOCAL_LENGTH, 0), exif.get(PLANE_X_RESOLUTION, 0)

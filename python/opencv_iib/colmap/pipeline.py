@@ -5,7 +5,7 @@ import dataclasses
 import functools
 import os
 import socket
-from typing import Any, Callable, Iterable, Iterator, Optional
+from typing import Any, Callable, Iterable, Iterator, Optional, Sequence
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from opencv_iib._streams import note
 from opencv_iib.colmap import pairs as pair_lists
 from opencv_iib.colmap.database import CAMERA_MODELS, Database
 from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
-from opencv_iib.colmap.images import (decode_grey, exif_focal_length, exif_orientation, find_images, import_cv2, is_listable, is_utf8,
+from opencv_iib.colmap.images import (Masks, decode_grey, exif_focal_length, exif_orientation, find_images, import_cv2, is_listable, is_utf8,
                                      read_bytes, stamp)
 from opencv_iib.colmap.parallel import Cluster, Crew, Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
@@ -82,19 +82,22 @@ def describe_image(folder: str, options: Options, name: str
         raise ValueError('its name is not UTF-8')
     data = read_bytes(os.path.join(folder, name))
     image = decode_grey(data)
-    rows, codes = _features(options.features)(image, exif_orientation(data) if options.features.exif else 1)
+    rows, codes = _features(options.features)(image, exif_orientation(data) if options.features.exif else 1,
+                                              Masks(options.features.mask).of(name, image))
     height, width = image.shape
     return to_colmap(rows), codes, width, height, options.focal or exif_focal_length(data, width, height)
 
 
-def describe_images(database: Database, folder: str, names: Iterable[str], options: Options, crew: Crew,
+def describe_images(database: Database, folder: str, names: Sequence[str], options: Options, crew: Crew,
                     log: Callable[[str], None]) -> int:
     """Describes the images that the database does not know, and removes those that were changed or are gone.
 
     :param names: of images in the folder.
     :return: how many are broken; each is a line in `log`.
     """
-    stamps = {name: stamp(os.path.join(folder, name)) for name in names}
+    masks = Masks(options.features.mask)
+    masks.check(names)
+    stamps = {name: ' '.join(map(stamp, filter(None, (os.path.join(folder, name), masks.file(name))))) for name in names}
     for name, known in database.stamps().items():
         if stamps.get(name) != known:
             database.forget(name)

@@ -105,10 +105,10 @@ double spreadOf(const Aligned& aligned, const AlignedPoints& points, const Size&
     return all > 0 ? areaOf(agreeing) / all : 0;
 }
 
-std::vector<Attempt> attemptsFor(const Mat& first, const Mat& second, int model)
+std::vector<Attempt> attemptsFor(const Size& first, const Size& second, int model)
 {
     std::vector<Attempt> attempts = {{WORKING_SIZE, false}};
-    if (std::max({first.rows, first.cols, second.rows, second.cols}) > WORKING_SIZE / 2)
+    if (std::max({first.width, first.height, second.width, second.height}) > WORKING_SIZE / 2)
         attempts.push_back(
                 {WORKING_SIZE / 2, false});  // blurred images, as of a focus stack, are sharper there
     if (model != ALIGN_TRANSLATION)
@@ -177,62 +177,86 @@ Judgement judge(const Aligned& aligned, const AlignedPoints& points, int model, 
     return {"", true};
 }
 
+class ImageAlignerImpl : public ImageAligner
+{
+public:
+    ImageAlignerImpl(const Mat& reference, int model, const Mat& mask)
+        : model_(model), reference_(reference, mask)
+    {
+    }
+
+    bool align(InputArray image, OutputArray transform, OutputArray error, OutputArray matches,
+            String* reason, InputArray mask) const override
+    {
+        const WorkingImage second(image.getMat(), mask.getMat());
+        Mat agreeing;
+        std::string against;
+        for (const Attempt& attempt : attemptsFor(reference_.size(), second.size(), model_))
+        {
+            const WorkingPair pair(reference_, second, attempt.workingSize, model_ == ALIGN_TRANSLATION);
+            AlignedPoints points = pair.match(attempt.rotated);
+            Aligned aligned(points, model_);
+            const Judgement now = judge(aligned, points, model_, pair.size());
+            if (now.against.empty() && pair.isReduced())
+            {
+                const AlignedPoints fine =
+                        pair.refined(points, aligned.agree, aligned.problem.inPixels(aligned.fit.model));
+                const Aligned again(fine, model_);
+                // Else they are too blurred, or sharp in a part alone.
+                if (again.count() > LEAST_REFINED * aligned.count() &&
+                        judge(again, fine, model_, pair.size()).against.empty())
+                {
+                    aligned = again;
+                    points = fine;
+                }
+            }
+            const Mat agree = pair.inPixels(points, aligned.agree);
+            if (now.isLast || agreeing.empty() || agree.rows > agreeing.rows)
+            {
+                agreeing = agree;
+                against = now.against;
+            }
+            if (!now.isLast)
+                continue;
+            if (!against.empty())
+                break;
+            Mat(pair.inPixels(aligned.problem.inPixels(aligned.fit.model))).copyTo(transform);
+            if (error.needed())
+                Mat(deviationsOf(aligned, points, pair.size()) * pair.inPixels(1)).copyTo(error);
+            break;
+        }
+        if (matches.needed())
+            agreeing.copyTo(matches);
+        if (reason)
+            *reason = against;
+        if (against.empty())
+            return true;
+        clear(transform);
+        clear(error);
+        return false;
+    }
+
+private:
+    int model_;
+    WorkingImage reference_;
+};
+
 }  // namespace
 
-bool alignImages(InputArray reference, InputArray image, OutputArray transform, int model, OutputArray error,
-        OutputArray matches, String* reason)
+Ptr<ImageAligner> ImageAligner::create(InputArray reference, int model, InputArray mask)
 {
     if (model < ALIGN_TRANSLATION || model > ALIGN_HOMOGRAPHY)
         CV_Error(Error::StsBadArg,
                 format("alignImages: model is %d; it must be ALIGN_TRANSLATION, ALIGN_SIMILARITY, "
                        "ALIGN_AFFINE or ALIGN_HOMOGRAPHY",
                         model));
-    const Mat first = reference.getMat(), second = image.getMat();
-    Mat agreeing;
-    std::string against;
-    for (const Attempt& attempt : attemptsFor(first, second, model))
-    {
-        const WorkingPair pair(first, second, attempt.workingSize, model == ALIGN_TRANSLATION);
-        AlignedPoints points = pair.match(attempt.rotated);
-        Aligned aligned(points, model);
-        const Judgement now = judge(aligned, points, model, pair.size());
-        if (now.against.empty() && pair.isReduced())
-        {
-            const AlignedPoints fine =
-                    pair.refined(points, aligned.agree, aligned.problem.inPixels(aligned.fit.model));
-            const Aligned again(fine, model);
-            // Else they are too blurred, or sharp in a part alone.
-            if (again.count() > LEAST_REFINED * aligned.count() &&
-                    judge(again, fine, model, pair.size()).against.empty())
-            {
-                aligned = again;
-                points = fine;
-            }
-        }
-        const Mat agree = pair.inPixels(points, aligned.agree);
-        if (now.isLast || agreeing.empty() || agree.rows > agreeing.rows)
-        {
-            agreeing = agree;
-            against = now.against;
-        }
-        if (!now.isLast)
-            continue;
-        if (!against.empty())
-            break;
-        Mat(pair.inPixels(aligned.problem.inPixels(aligned.fit.model))).copyTo(transform);
-        if (error.needed())
-            Mat(deviationsOf(aligned, points, pair.size()) * pair.inPixels(1)).copyTo(error);
-        break;
-    }
-    if (matches.needed())
-        agreeing.copyTo(matches);
-    if (reason)
-        *reason = against;
-    if (against.empty())
-        return true;
-    clear(transform);
-    clear(error);
-    return false;
+    return makePtr<ImageAlignerImpl>(reference.getMat(), model, mask.getMat());
+}
+
+bool alignImages(InputArray reference, InputArray image, OutputArray transform, int model, OutputArray error,
+        OutputArray matches, String* reason)
+{
+    return ImageAligner::create(reference, model)->align(image, transform, error, matches, reason);
 }
 
 }  // namespace cv::iib

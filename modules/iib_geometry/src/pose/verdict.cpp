@@ -2,9 +2,9 @@
 #include "verdict.hpp"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include "opencv2/iib/verdict.hpp"
 #include "points.hpp"
@@ -47,11 +47,11 @@ Verdict::Verdict(const Mat& points1, const Mat& points2)
 
 int Verdict::places(const Marks& matches, int image) const
 {
-    std::set<int> cells;
+    std::bitset<(CELLS + 1) * (CELLS + 1)> cells;
     for (size_t i = 0; i < matches.size(); i++)
         if (matches[i])
-            cells.insert(cells_[image][i]);
-    return (int)cells.size();
+            cells.set(cells_[image][i]);
+    return (int)cells.count();
 }
 
 int Verdict::places(const Marks& matches) const { return std::min(places(matches, 0), places(matches, 1)); }

@@ -30,6 +30,16 @@ bool isReducible(const Mat& image)
            (channels == 1 || channels == 3 || channels == 4);
 }
 
+Mat reduced(const Mat& image, int factor)
+{
+    if (factor <= 1)
+        return image;
+    Mat result;
+    const Size size(image.cols / factor, image.rows / factor);
+    resize(image(Rect(Point(), size * factor)), result, size, 0, 0, INTER_AREA);
+    return result;
+}
+
 Point2d rowOf(const Mat& points, int i) { return points.at<Vec2d>(i); }
 
 //! Moves both images' points, N x 2, CV_64F.
@@ -43,54 +53,85 @@ Mat moved(const Matx33d& by, const Mat& points)
 
 }  // namespace
 
-WorkingPair::WorkingPair(const Mat& reference, const Mat& image, int workingSize, bool sameScale)
-    : full_{reference, image}
+WorkingImage::WorkingImage(const Mat& image, const Mat& mask) : full_(image)
 {
-    int most[2];
+    if (mask.empty())
+        return;
+    if (mask.type() != CV_8UC1 || mask.size() != image.size())
+        CV_Error(Error::StsBadArg, "alignImages: masks are CV_8UC1 of the image's size");
+    mask_ = mask != 0;
+}
+
+int WorkingImage::factorFor(int workingSize) const
+{
+    const int longer = std::max(full_.rows, full_.cols);
+    return std::min((longer + workingSize - 1) / workingSize, largestFactor());
+}
+
+int WorkingImage::largestFactor() const
+{
+    return isReducible(full_) ? std::max(std::min(full_.rows, full_.cols) / LEAST_SIDE, 1) : 1;
+}
+
+//! What is left at the right and below a multiple of the factor is left out.
+Mat WorkingImage::pixels(int factor) const { return reduced(full_, factor); }
+
+const WorkingImage::Described& WorkingImage::described(int factor) const
+{
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto known = described_.find(factor);
+    if (known != described_.end())
+        return known->second;
+    Described found;
+    const Mat mask = mask_.empty() ? Mat() : Mat(reduced(mask_, factor) == 255);
+    IIBDescriptorExtractor::createRecommended(FEATURES)->detectAndCompute(
+            pixels(factor), mask, found.keypoints, found.codes);
+    return described_[factor] = found;
+}
+
+const PreparedImage& WorkingImage::prepared(int factor) const
+{
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto known = prepared_.find(factor);
+    return known != prepared_.end() ? known->second : prepared_[factor] = PreparedImage(pixels(factor));
+}
+
+WorkingPair::WorkingPair(
+        const WorkingImage& reference, const WorkingImage& image, int workingSize, bool sameScale)
+    : images_{&reference, &image}
+{
     for (int i = 0; i < 2; i++)
-    {
-        const int longer = std::max(full_[i].rows, full_[i].cols),
-                  shorter = std::min(full_[i].rows, full_[i].cols);
-        most[i] = isReducible(full_[i]) ? std::max(shorter / LEAST_SIDE, 1) : 1;
-        factors_[i] = std::min((longer + workingSize - 1) / workingSize, most[i]);
-    }
+        factors_[i] = images_[i]->factorFor(workingSize);
     // Images of about one size keep their scales to each other, and a translation stays one.
     const int larger = std::max(factors_[0], factors_[1]), smaller = std::min(factors_[0], factors_[1]);
     if (sameScale || larger <= 2 * smaller)
-        factors_[0] = factors_[1] = std::min({larger, most[0], most[1]});
-    for (int i = 0; i < 2; i++)
-    {
-        working_[i] = full_[i];
-        const Size size(full_[i].cols / std::max(factors_[i], 1), full_[i].rows / std::max(factors_[i], 1));
-        if (factors_[i] > 1)  // what is left at the right and below a multiple is left out
-            resize(full_[i](Rect(Point(), size * factors_[i])), working_[i], size, 0, 0, INTER_AREA);
-        factors_[i] = std::max(factors_[i], 1);  // of an empty image
-    }
+        factors_[0] = factors_[1] = std::min({larger, reference.largestFactor(), image.largestFactor()});
+    for (int& factor : factors_)
+        factor = std::max(factor, 1);  // of an empty image
 }
 
 AlignedPoints WorkingPair::match(bool rotated) const
 {
-    const Ptr<IIBDescriptorExtractor> extractor = IIBDescriptorExtractor::createRecommended(FEATURES);
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
-    AlignedPoints result = {Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {}};
-    std::vector<KeyPoint> keypoints;
+    const WorkingImage::Described &first = images_[0]->described(factors_[0]),
+                                  &second = images_[1]->described(factors_[1]);
+    AlignedPoints result = {Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), first.keypoints};
+    std::vector<KeyPoint> keypoints = second.keypoints;
     std::vector<DMatch> matches;
-    if (rotated)
+    if (!rotated)
+        matcher->match(first.codes, second.codes, matches);
+    else if (!keypoints.empty() && !result.keypoints.empty())
     {
+        const Ptr<IIBDescriptorExtractor> extractor = IIBDescriptorExtractor::createRecommended(FEATURES);
         extractor->setOrientation(IIBDescriptorExtractor::ORIENTATION_KEYPOINT);
-        matchRotated(working_[0], working_[1], extractor, matcher, result.keypoints, keypoints, matches);
-    }
-    else
-    {
-        Mat codes1, codes2;
-        extractor->detectAndCompute(working_[0], noArray(), result.keypoints, codes1);
-        extractor->detectAndCompute(working_[1], noArray(), keypoints, codes2);
-        matcher->match(codes1, codes2, matches);
+        matchRotated(images_[0]->pixels(factors_[0]), images_[1]->pixels(factors_[1]), extractor, matcher,
+                result.keypoints, keypoints, matches);
     }
     if (matches.empty())
         return result;
     Mat points1, points2;
-    refineMatches(working_[0], result.keypoints, working_[1], keypoints, matches, points1, points2);
+    refineMatches(images_[0]->prepared(factors_[0]), result.keypoints, images_[1]->prepared(factors_[1]),
+            keypoints, matches, points1, points2);
     points1.convertTo(result.reference, CV_64F);
     points2.convertTo(result.image, CV_64F);
     return result;
@@ -115,7 +156,8 @@ AlignedPoints WorkingPair::refined(
         matches.emplace_back((int)matches.size(), (int)matches.size(), 0.f);
     }
     Mat points1, points2, similarities;
-    refineMatches(full_[0], first, full_[1], second, matches, points1, points2, noArray(), similarities);
+    refineMatches(images_[0]->prepared(1), first, images_[1]->prepared(1), second, matches, points1, points2,
+            noArray(), similarities);
     AlignedPoints result = {Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), points.keypoints};
     for (size_t i = 0; i < matches.size(); i++)
         if (similarities.at<float>((int)i) >= 0)

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
+#include <mutex>
+
 #include "opencv2/iib.hpp"
+#include "opencv2/iib/detail/prepared_image.hpp"
 
 namespace cv::iib {
 
@@ -12,14 +16,44 @@ struct AlignedPoints
     std::vector<KeyPoint> keypoints;  //!< of the reference, all that were looked for
 };
 
+/** An image at working sizes, reduced by whole factors; what is found in it is kept. Threads may share one. */
+class WorkingImage
+{
+public:
+    struct Described
+    {
+        std::vector<KeyPoint> keypoints;
+        Mat codes;
+    };
+
+    /** @param mask CV_8UC1 of the image's size, 0 where no points are to be found, or empty.
+    @throws cv::Exception (StsBadArg) for another mask */
+    WorkingImage(const Mat& image, const Mat& mask);
+
+    Size size() const { return full_.size(); }
+    Size size(int factor) const { return {full_.cols / factor, full_.rows / factor}; }
+    int factorFor(int workingSize) const;
+    int largestFactor() const;  //!< that leaves something to match by
+
+    Mat pixels(int factor) const;
+    const Described& described(int factor) const;
+    const PreparedImage& prepared(int factor) const;
+
+private:
+    Mat full_, mask_;
+    mutable std::mutex mutex_;
+    mutable std::map<int, Described> described_;
+    mutable std::map<int, PreparedImage> prepared_;
+};
+
 /** Two images that are matched at a working size, at which large ones have something to match by, and whose matches are refined at
-full size afterwards. Working pixels are those of images that are reduced by whole factors. */
+full size afterwards. Working pixels are those of the reduced images. */
 class WorkingPair
 {
 public:
     /** @param workingSize pixels of the longer side, at most.
     @param sameScale whether both are reduced by one factor, however their sizes differ. */
-    WorkingPair(const Mat& reference, const Mat& image, int workingSize, bool sameScale);
+    WorkingPair(const WorkingImage& reference, const WorkingImage& image, int workingSize, bool sameScale);
 
     //! @param rotated whether the image may be turned by any angle (matchRotated).
     AlignedPoints match(bool rotated) const;
@@ -32,7 +66,7 @@ public:
             const AlignedPoints& points, const std::vector<bool>& agree, const Matx33d& transform) const;
 
     //! Of the image, working pixels.
-    Size size() const { return working_[1].size(); }
+    Size size() const { return images_[1]->size(factors_[1]); }
 
     //! A transform between the images' own pixels, and a distance in the reference's.
     Matx33d inPixels(const Matx33d& transform) const;
@@ -42,7 +76,7 @@ public:
     Mat inPixels(const AlignedPoints& points, const std::vector<bool>& agree) const;
 
 private:
-    Mat full_[2], working_[2];
+    const WorkingImage* images_[2];
     int factors_[2];
 };
 

@@ -54,6 +54,25 @@ CV_EXPORTS_W bool alignImages(InputArray reference, InputArray image, OutputArra
         int model = ALIGN_HOMOGRAPHY, OutputArray error = noArray(), OutputArray matches = noArray(),
         CV_OUT String* reason = nullptr);
 
+/** @brief Aligns many images with one reference as alignImages does, and describes the reference once.
+
+The reference is not copied; its pixels must stay. Threads may share one. */
+class CV_EXPORTS_W ImageAligner
+{
+public:
+    /** @param reference, model as in alignImages
+    @param mask CV_8UC1 of the reference's size, 0 where no points are to be found; empty: everywhere */
+    CV_WRAP static Ptr<ImageAligner> create(
+            InputArray reference, int model = ALIGN_HOMOGRAPHY, InputArray mask = noArray());
+
+    virtual ~ImageAligner() {}
+
+    //! As alignImages; `mask` is that of the image.
+    CV_WRAP virtual bool align(InputArray image, OutputArray transform, OutputArray error = noArray(),
+            OutputArray matches = noArray(), CV_OUT String* reason = nullptr,
+            InputArray mask = noArray()) const = 0;
+};
+
 //! @}
 
 }  // namespace iib
