@@ -63,10 +63,11 @@ def _features(parser: argparse.ArgumentParser, points: int) -> None:
     _seen(parser)
 
 
-def _seen(parser: argparse.ArgumentParser) -> None:
+def _seen(parser: argparse.ArgumentParser, reduced: bool = True) -> None:
     """What of images is described, and how large."""
-    parser.add_argument('--max-size', type=int, default=0, metavar='PIXELS',
-                        help='reduce larger images to this longer side; points stay in their own pixels')
+    if reduced:
+        parser.add_argument('--max-size', type=int, default=0, metavar='PIXELS',
+                            help='reduce larger images to this longer side; points stay in their own pixels')
     parser.add_argument('--mask', metavar='FILE_OR_FOLDER', help='describe nothing where it is 0; in a folder, NAME.jpg.png is the mask of NAME.jpg')
     parser.add_argument('--no-exif', dest='exif', action='store_false', help='for files whose EXIF data tell a wrong orientation')
 
@@ -153,8 +154,8 @@ def _parser() -> argparse.ArgumentParser:
         each.add_argument('--images', required=True, help='folder of images, also in folders below it' + (
             '; or -: paths from standard input, a line each, answered at once by a line on standard output' if each is localizing else ''))
         each.add_argument('--workers', type=int, help='threads (one a core)')
+        _seen(each, each is not mapping)
     for each in (localizing, updating):
-        _seen(each)
         each.add_argument('--camera', metavar=CAMERA, type=_camera,
                           help="COLMAP's name and parameters of the camera of all images, instead of the map's or EXIF's")
     mapping.add_argument('--out', required=True, help='folder to write')
@@ -238,7 +239,8 @@ def _localize_stream(arguments: argparse.Namespace) -> int:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors='surrogateescape')  # a path may be any bytes
     count = total = 0
-    for line, found in localization.localize_stream(arguments.map, sys.stdin, arguments.camera, arguments.lines, arguments.max_size, arguments.exif):
+    for line, found in localization.localize_stream(
+            arguments.map, sys.stdin, arguments.camera, arguments.lines, arguments.max_size, arguments.exif, arguments.mask):
         print(line, flush=True)
         count, total = count + found, total + 1
     return _share(count, total)

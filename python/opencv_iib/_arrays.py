@@ -87,6 +87,11 @@ def with_images(images: Images, others: Sequence[Any], what: str) -> Iterable[tu
     return zip(images, others)
 
 
+def as_mask(value: Optional[ArrayLike]) -> np.ndarray:
+    """Of an image; an empty one for None."""
+    return np.empty((0, 0), np.uint8) if value is None else as_matrix(value, 'the mask')
+
+
 def as_codes(value: ArrayLike, what: str) -> np.ndarray:
     """Rows of bytes.
 

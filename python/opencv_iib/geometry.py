@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arguments import integer, number
-from opencv_iib._arrays import as_array, as_image, as_matrix
+from opencv_iib._arrays import as_array, as_image, as_mask, as_matrix
 from opencv_iib.enums import AlignmentModel
 
 
@@ -123,7 +123,7 @@ class ImageAligner:
         :param mask: H x W uint8, 0 where nothing is to be found.
         :raises opencv_iib.error: for a mask of another size or type, and a model that is none."""
         self._reference = as_image(reference)  # which the core looks at, and does not copy
-        self._core = _core.ImageAligner.create(self._reference, integer(model, 'model'), _mask(mask))
+        self._core = _core.ImageAligner.create(self._reference, integer(model, 'model'), as_mask(mask))
 
     @staticmethod
     def create(reference: ArrayLike, model: int = AlignmentModel.HOMOGRAPHY, mask: Optional[ArrayLike] = None) -> ImageAligner:
@@ -135,16 +135,12 @@ class ImageAligner:
 
         :param mask: of the image.
         :raises opencv_iib.error: for an image of another type, and a mask of another size or type."""
-        alignment, reason = self._core.align(as_image(image), _mask(mask))
+        alignment, reason = self._core.align(as_image(image), as_mask(mask))
         if alignment[0]:
             return Alignment(*alignment)
         none = NoAlignment(*alignment)
         none.reason = reason
         return none
-
-
-def _mask(mask: Optional[ArrayLike]) -> NDArray[Any]:
-    return np.empty((0, 0), np.uint8) if mask is None else as_matrix(mask, 'the mask')
 
 
 def logFalseAlarms(points1: ArrayLike, points2: ArrayLike, inliers: ArrayLike, epipolar: bool, threshold: float) -> float:

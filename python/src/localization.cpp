@@ -18,9 +18,9 @@ using cv::iib::PosedImage;
 nb::bytes bytesOf(const std::string& text) { return nb::bytes(text.data(), text.size()); }
 
 Location localize(const Localizer& self, const cv::Mat& image, const Camera& camera,
-        const std::optional<cv::Affine3d>& prior)
+        const std::optional<cv::Affine3d>& prior, int orientation, const cv::Mat& mask)
 {
-    return self.localize(image, camera, prior ? &*prior : nullptr);
+    return self.localize(image, camera, prior ? &*prior : nullptr, orientation, mask);
 }
 
 void newLocation(Location* self, const std::optional<cv::Affine3d>& pose,
@@ -37,7 +37,9 @@ void buildMap(nb::handle model, const nb::callable& read, nb::handle map, int po
 {
     const auto image = [&read](const std::string& name) {
         nb::gil_scoped_acquire gil;
-        return nb::cast<cv::Mat>(read(bytesOf(name))).clone();
+        const auto [pixels, orientation, mask] =
+                nb::cast<std::tuple<cv::Mat, int, cv::Mat>>(read(bytesOf(name)));
+        return cv::iib::Photograph(pixels.clone(), orientation, mask.clone());
     };
     const auto step = [&report](size_t done, size_t all, const std::string& problem) {
         nb::gil_scoped_acquire gil;
@@ -97,6 +99,7 @@ void bindLocalization(nb::module_& m)
                     [](const Camera& self, int width, int height) {
                         return self.resized({width, height});
                     })
+            .def("upright", &Camera::upright)
             .def("project", &Camera::project)
             .def("undistorted", &Camera::undistorted)
             .def_prop_ro("matrix", [](const Camera& self) { return cv::Mat(self.matrix()); });
@@ -141,9 +144,9 @@ void bindLocalization(nb::module_& m)
             .def("cameras", &MapUpdate::cameras)
             .def(
                     "add",
-                    [](MapUpdate& self, const std::string& name, const cv::Mat& image, const Camera& camera) {
-                        return self.add(name, image, camera);
-                    },
+                    [](MapUpdate& self, const std::string& name, const cv::Mat& image, const Camera& camera,
+                            int orientation,
+                            const cv::Mat& mask) { return self.add(name, image, camera, orientation, mask); },
                     WithoutGil())
             .def("commit", &commit, WithoutGil());
     m.def("buildMap", &buildMap);

@@ -225,6 +225,48 @@ class Localization(Commands):
         status, text, _ = run_command('update', '--map', self.map, '--images', folder, '--out', self.path('new'), '--camera', CAMERA)
         self.assertEqual((status, '2 localized' in text), (4, True))
 
+    def test_maps_of_photographs_that_are_stored_turned(self):
+        from test_turns import png, stored
+        model, images, out = self.path('model'), self.path('images'), self.path('map')
+        posed, turns = [], dict(zip(self.poses, (1, 6, 8, 3, 6, 1)))
+        for name, orientation in turns.items():
+            image = stored(cv2.imread(os.path.join(self.images, name), cv2.IMREAD_GRAYSCALE), orientation)
+            os.makedirs(os.path.dirname(os.path.join(images, name)), exist_ok=True)
+            Path(images, name).write_bytes(png(image, orientation))
+            turned = np.eye(4)
+            turned[:2, :2] = _turns.Turn(orientation, *image.shape[::-1]).matrix[:2, :2]
+            camera = Camera.parse(CAMERA).upright({6: 8, 8: 6}.get(orientation, orientation))
+            posed.append(_core.PosedImage(name, camera, turned @ self.poses[name], np.empty((0, 2))))
+        os.makedirs(model)
+        _core.writeModel(model, posed)
+        self.assertEqual(run_command('map', '--model', model, '--images', images, '--out', out, '--points', '400')[0], 0)
+        self.check(Localizer(out).localize(self.grey(), CAMERA))
+        Path(images, 'query.png').write_bytes(png(stored(self.grey(), 6), 6))
+        for name in turns:
+            os.unlink(os.path.join(images, name))
+        self.assertEqual(self.localize(self.path('out'), map=out, images=images)[0], 0)  # by the map's camera, turned
+
+    def test_masks(self):
+        masks, out, found = self.path('masks'), self.path('map'), self.path('out')
+        mask = np.full((HEIGHT, WIDTH), 255, np.uint8)
+        mask[:, :WIDTH // 2] = 0
+        for name in [*self.poses, 'c.png']:
+            os.makedirs(os.path.dirname(os.path.join(masks, name)), exist_ok=True)
+            cv2.imwrite(os.path.join(masks, name + '.png'), mask)
+        status, text, _ = run_command('map', '--model', self.model, '--images', self.images, '--out', out, '--points', '400', '--mask', masks)
+        self.assertEqual(status, 0)
+        location = Localizer(out).localize(self.grey(), CAMERA)
+        self.check(location)
+        seen = Localizer(self.map).localize(self.grey(), CAMERA, mask=mask)
+        self.assertGreaterEqual(seen.pixels[:, 0].min(), WIDTH // 2 - 1)
+        self.assertLess(Localizer(self.map).localize(self.grey(), CAMERA).pixels[:, 0].min(), WIDTH // 2 - 9)
+        with self.assertRaisesRegex(opencv_iib.error, "a mask is CV_8UC1"):
+            Localizer(self.map).localize(self.grey(), CAMERA, mask=mask[1:])
+        status, _ = self.localize(found, '--camera', CAMERA, '--mask', masks, '--max-size', '300')
+        self.assertEqual(status, 0)
+        self.assertEqual(run_command('update', '--map', self.map, '--images', self.dark, '--camera', CAMERA, '--mask', masks, '--max-size', '300',
+                                     '--out', self.path('new'))[0], 0)
+
     def test_an_imu_gives_poses_to_images_that_tell_nothing(self):
         localizer = Localizer(self.map)
         location, nothing = (localizer.localize(image, CAMERA) for image in (self.grey(), np.zeros((HEIGHT, WIDTH), np.uint8)))
@@ -285,12 +327,12 @@ class Localization(Commands):
         view = photograph(wall(3), pose(0, 0))
         for name, _ in images:
             cv2.imwrite(os.path.join(folder, name), view)
-        read = maps.read_grey
+        read = maps.decode_grey
 
         def slowly(path):
             threading.Event().wait(.2)
             return read(path)
-        with mock.patch.object(maps, 'read_grey', slowly), redirect_stderr(io.StringIO()):
+        with mock.patch.object(maps, 'decode_grey', slowly), redirect_stderr(io.StringIO()):
             self.assertLess(seconds_until_interrupt(lambda: build(model, folder, out, workers=1), .5), 2)
         self.assertEqual(self.localize(self.path('out'), map=out)[0], 1)  # there is no map
 
@@ -439,7 +481,7 @@ class Localization(Commands):
         with mock.patch.object(_core, 'Localizer', side_effect=AssertionError):
             self.check_mistake('FISH', 'localize', '--map', self.map, '--images', self.dark, '--out', out, '--camera', 'FISH,1,2,3')
             self.check_error('holds .*png', 'localize', '--map', self.map, '--images', self.dark, '--out', self.images)
-        with mock.patch.object(maps, 'read_grey', side_effect=AssertionError):
+        with mock.patch.object(maps, 'decode_grey', side_effect=AssertionError):
             self.check_mistake('points is 0', 'map', '--model', self.model, '--images', self.images, '--out', out, '--points', '0')
             self.check_mistake('points is -1', 'map', '--model', self.model, '--images', self.images, '--out', out, '--points', '-1', '--orb-and-akaze')
         self.assertFalse(os.path.exists(out))

@@ -163,9 +163,10 @@ class Stream(Options):
     def test_the_last_pose_is_the_prior_of_the_next(self):
         a, none, priors = self.image('a.png'), self.image('none.png', np.zeros((HEIGHT, WIDTH), np.uint8)), []
 
-        def localize(localizer, image, camera, prior, orientation, real=Localizer.localize):
+        def localize(localizer, image, camera, prior, *more):
             priors.append(prior is not None)
-            return real(localizer, image, camera, prior, orientation)
+            return real(localizer, image, camera, prior, *more)
+        real = Localizer.localize
         with mock.patch.object(Localizer, 'localize', localize):
             self.stream('\n'.join((a, a, none, a)), '--camera', CAMERA)
         self.assertEqual(priors, [False, True, True, False])

@@ -14,7 +14,6 @@ from opencv_iib.colmap.features import Features
 from opencv_iib.colmap.images import exif_orientation, read_with_orientation
 from opencv_iib.measure import match_images
 from opencv_iib.localization import Camera
-from opencv_iib.localization.localizer import upright_camera
 from support import cv2, run_command, texture
 
 STORED = {1: 1, 2: 2, 3: 3, 4: 4, 5: 5, 6: 8, 7: 7, 8: 6}  # what turns an upright image to one that is upright by this orientation
@@ -61,7 +60,8 @@ class Pixels(unittest.TestCase):
             camera = Camera(model, 640, 480, [300, 310][:focals] + [330, 230] + others[:more])
             for orientation in _turns.ROTATIONS:
                 turn = _turns.Turn(orientation, 640, 480)
-                upright = upright_camera(camera, turn)
+                upright = camera.upright(orientation)
+                np.testing.assert_allclose(upright.upright({3: 3, 6: 8, 8: 6}[orientation]).params, camera.params, atol=1e-12)
                 self.assertEqual((upright.width, upright.height), (640, 480) if orientation == 3 else (480, 640))
                 stored = np.column_stack([points[:, :2] @ turn.matrix[:2, :2].T, points[:, 2]])
                 np.testing.assert_allclose(turn.points(upright.project(points)), camera.project(stored), atol=1e-9)

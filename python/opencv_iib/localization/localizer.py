@@ -2,16 +2,14 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Callable, Iterable, Optional, Union
+from typing import Any, Iterable, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arguments import Path, integer, number
-from opencv_iib._arrays import as_array, as_image
-from opencv_iib._turns import ROTATIONS, Turn, upright
-
+from opencv_iib._arrays import as_array, as_image, as_mask
 
 
 class Camera(_core.Camera):
@@ -58,6 +56,10 @@ class Camera(_core.Camera):
     def resized(self, width: int, height: int) -> Camera:
         """Of its images, resized by an interpolation that keeps the corners of the picture, as all of OpenCV's do."""
         return Camera._of(super().resized(integer(width, 'width'), integer(height, 'height')))
+
+    def upright(self, orientation: int) -> Camera:
+        """Of its images, turned upright as EXIF's orientation asks, 1 to 8; of mirrored ones itself."""
+        return Camera._of(super().upright(integer(orientation, 'orientation')))
 
     def _values(self) -> tuple[str, int, int, tuple[float, ...]]:
         return self.model, self.width, self.height, tuple(self.params)
@@ -151,44 +153,6 @@ def as_pose(pose: ArrayLike) -> NDArray[np.float64]:
     return np.concatenate([matrix[:3], [[0, 0, 0, 1]]])
 
 
-#: Of models with parameters that turn with the image, after the centre: pairs of what lies along x and along y.
-ACROSS = {'OPENCV': [(3, 2)], 'FULL_OPENCV': [(3, 2)], 'THIN_PRISM_FISHEYE': [(3, 2), (6, 7)],
-          'RAD_TAN_THIN_PRISM_FISHEYE': [(6, 7), (8, 10), (9, 11)]}
-
-
-def upright_camera(camera: Camera, turn: Turn) -> Camera:
-    """That of the upright image of a camera's images."""
-    across, params = turn.matrix[:2, :2], list(camera.params)
-    width, height = (camera.height, camera.width) if across[0, 0] == 0 else (camera.width, camera.height)
-    focals = 1 if camera.model.startswith('SIMPLE') or camera.model in ('RADIAL', 'RADIAL_FISHEYE') else 2
-    if across[0, 0] == 0:
-        params[:focals] = params[:focals][::-1]
-    centre = np.array(params[focals:focals + 2]) - .5  # the centre of the first pixel is 0
-    params[focals:focals + 2] = ((centre - turn.matrix[:2, 2]) @ across + .5).tolist()
-    for pair in ACROSS.get(camera.model, ()):
-        for value, place in zip((np.array([params[focals + 2 + k] for k in pair]) @ across).tolist(), pair):
-            params[focals + 2 + place] = value
-    return Camera(camera.model, width, height, params)
-
-
-def locate_upright(find: Callable[[NDArray[Any], Camera, Optional[NDArray[np.float64]]], _core.Location], image: NDArray[Any], camera: Camera,
-                   prior: Optional[NDArray[np.float64]], orientation: int) -> Location:
-    """Has the upright image looked for, and gives the pose and pixels of the one that is stored.
-
-    :param orientation: EXIF's; for a mirrored image, which no camera sees, as if it were 1.
-    """
-    if orientation not in ROTATIONS:
-        return Location._of(find(image, camera, prior))
-    turn = Turn(orientation, camera.width, camera.height)
-    stored_from_upright = np.eye(4)
-    stored_from_upright[:2, :2] = turn.matrix[:2, :2]
-    found = find(upright(image, orientation), upright_camera(camera, turn), None if prior is None else stored_from_upright.T @ prior)
-    if found.cam_from_world is None:
-        return Location._of(found)
-    return Location(stored_from_upright @ found.cam_from_world, found.covariance, '', found.matches, found.inliers, turn.points(found.pixels),
-                    found.points)
-
-
 class Localizer:
     """Finds images in a map. Threads may share one; a pickle holds the map's name, and reads it anew."""
 
@@ -210,7 +174,8 @@ class Localizer:
         """Of the map's images, each once."""
         return [Camera._of(camera) for camera in self._core.cameras()]
 
-    def localize(self, image: ArrayLike, camera: AnyCamera, prior: Optional[ArrayLike] = None, orientation: int = 1) -> Location:
+    def localize(self, image: ArrayLike, camera: AnyCamera, prior: Optional[ArrayLike] = None, orientation: int = 1,
+                 mask: Optional[ArrayLike] = None) -> Location:
         """Where an image was taken. The GIL is released meanwhile.
 
         :param image: H x W or H x W x 3 (BGR) uint8, as its file stores it, not turned as EXIF may ask; so are pose and pixels.
@@ -219,9 +184,11 @@ class Localizer:
             are compared, and only points within a tenth of the longer side from where the prior has them. If that gives no
             pose, the image is looked for everywhere.
         :param orientation: how the image is stored, by EXIF, 1 to 8: maps hold upright codes.
-        :raises opencv_iib.error: for an image of another size or type, or an invalid camera.
+        :param mask: H x W uint8, 0 where no points are to be found.
+        :raises opencv_iib.error: for an image or mask of another size or type, or an invalid camera.
         """
-        return locate_upright(self._core.localize, as_image(image), as_camera(camera), None if prior is None else as_pose(prior), orientation)
+        return Location._of(self._core.localize(as_image(image), as_camera(camera), None if prior is None else as_pose(prior),
+                                                integer(orientation, 'orientation'), as_mask(mask)))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Localizer) and self._arguments == other._arguments

@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 
 from opencv_iib import _core
 from opencv_iib._arguments import InvalidOption, Path, integer
+from opencv_iib._arrays import as_mask
 from opencv_iib._streams import note
-from opencv_iib.colmap.features import MAX_POINTS
-from opencv_iib.colmap.images import read_grey
+from opencv_iib.colmap.features import MAX_POINTS, check_max_size
+from opencv_iib.colmap.images import Masks, decode_grey, exif_orientation, read_bytes
 from opencv_iib.colmap.parallel import thread_count
 from opencv_iib.colmap.progress import Progress
-from opencv_iib.localization.localizer import AnyCamera, Camera, Location, locate_upright
-from opencv_iib.localization.run import images_of, locate
+from opencv_iib.localization.localizer import AnyCamera, Camera, Location
+from opencv_iib.localization.run import at_size, images_of, locate
 
 
 def _count(file: str) -> int:
@@ -32,7 +33,8 @@ def _check_new(out: Path, force: bool) -> None:
 
 
 def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Optional[int] = None, force: bool = False,
-          log: Callable[[str], None] = note, lines: bool = False, orb_and_akaze: bool = False) -> dict[str, int]:
+          log: Callable[[str], None] = note, lines: bool = False, orb_and_akaze: bool = False, exif: bool = True,
+          mask: Optional[Path] = None) -> dict[str, int]:
     """Finds and describes points in the images of a COLMAP model, triangulates them with its poses, and writes a map.
 
     :param model: folder of a model, binary or text; its poses and cameras are taken as they are, in any unit.
@@ -44,6 +46,8 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
     :param log: told of each image that cannot be read; the map is made without it.
     :param lines: look for straight edges too, see Localizer.
     :param orb_and_akaze: the paper's points and descriptor in place of the recommended ones; images are then looked for by them.
+    :param exif: images are described as upright as their EXIF data say; of those that are turned the map has the upright cameras and poses.
+    :param mask: what is described, as of Masks.
     :return: counts of images and points.
     :raises InvalidOption: for no points, or more than an image can have.
     :raises FileExistsError: if there is a map and force is not set.
@@ -60,16 +64,20 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
     stop = threading.Event()
     progress: Optional[Progress] = None
 
-    def read(name: bytes) -> NDArray[np.uint8]:
+    masks = Masks(mask)
+
+    def read(name: bytes) -> tuple[NDArray[np.uint8], int, NDArray[np.uint8]]:
         if stop.is_set():
             raise KeyboardInterrupt
         path = os.path.join(images, os.fsdecode(name))
         if not os.path.exists(path):
             raise FileNotFoundError(f'{path} is missing, an image of the model')
         try:
-            return read_grey(path)
+            data = read_bytes(path)
+            image = decode_grey(data)
         except ValueError:
-            return np.empty((0, 0), np.uint8)
+            return as_mask(None), 1, as_mask(None)
+        return image, exif_orientation(data) if exif else 1, as_mask(masks.of(os.fsdecode(name), image))
 
     def report(done: int, total: int, problem: bytes) -> None:
         nonlocal progress
@@ -93,7 +101,8 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
 
 
 def update(map: Path, images: Path, camera: Optional[AnyCamera] = None, out: Optional[Path] = None,
-           workers: Optional[int] = None, force: bool = False, log: Callable[[str], None] = note, exif: bool = True) -> dict[str, int]:
+           workers: Optional[int] = None, force: bool = False, log: Callable[[str], None] = note, exif: bool = True,
+           mask: Optional[Path] = None, max_size: int = 0) -> dict[str, int]:
     """Localizes the images below a folder; those that show the map in a light that it does not know become a part of it.
 
     Their own points are matched with each other's and the map's and triangulated. Codes that eight updates in a row looked
@@ -105,21 +114,23 @@ def update(map: Path, images: Path, camera: Optional[AnyCamera] = None, out: Opt
     :param out: folder for the new map; None to replace the old one.
     :param force: replace a map that is in `out`.
     :param log: told of each image without a pose, and why.
-    :param exif: as localize_images takes it; what is added is upright.
+    :param exif: as localize_images takes it; so are `mask` and `max_size`. What is added is upright, and reduced.
     :return: counts of images, of those localized, of those added, and of codes dropped.
     :raises FileExistsError: if there is a map in `out` and force is not set.
     :raises opencv_iib.error: for a folder without a map, or one that another process is changing.
     """
     workers = thread_count(workers)
+    check_max_size(max_size)
     if out is not None:
         _check_new(out, force)
     names = images_of(images)
     changed = _core.MapUpdate(os.path.realpath(map), '' if out is None else os.path.realpath(out))
 
-    def add(name: str, image: NDArray[np.uint8], camera: Camera, orientation: int) -> Location:
-        return locate_upright(lambda image, camera, prior: changed.add(name, image, camera), image, camera, None, orientation)
+    def add(name: str, image: NDArray[np.uint8], camera: Camera, orientation: int, mask: Optional[NDArray[np.uint8]]) -> Location:
+        return at_size(max_size, lambda image, camera, mask: Location._of(changed.add(name, image, camera, orientation, as_mask(mask))),
+                       image, camera, mask)
 
-    for name, own, location in locate(add, changed.cameras(), images, names, camera, workers, log, exif):
+    for name, own, location in locate(add, changed.cameras(), images, names, camera, workers, log, exif, mask):
         if own is None or location.reason:
             log(f'{name}: {location if own is None else location.reason}')
     localized, added, dropped = changed.commit()

@@ -14,8 +14,8 @@ from opencv_iib import _core, error
 from opencv_iib._arguments import Path
 from opencv_iib._files import new_results, rows_of
 from opencv_iib._streams import note
-from opencv_iib.colmap.features import check_max_size, reduced
-from opencv_iib.colmap.images import (decode_grey, exif_focal_length, exif_orientation, find_images, import_cv2, is_utf8, read_bytes, read_grey,
+from opencv_iib.colmap.features import check_max_size, reduced, resized_mask
+from opencv_iib.colmap.images import (Masks, decode_grey, exif_focal_length, exif_orientation, find_images, import_cv2, is_utf8, read_bytes, read_grey,
                                      write_picture)
 from opencv_iib.colmap.parallel import Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
@@ -30,17 +30,21 @@ POSE = ('tx', 'ty', 'tz', 'qx', 'qy', 'qz', 'qw')  # the camera's centre, and ca
 FRAME = ('name', 'found', 'reason', 'matches', 'inliers')  # with which frames.csv begins
 AXES = ('x', 'y', 'z', 'rx', 'ry', 'rz')
 
-Find = Callable[[str, NDArray[np.uint8], Camera, int], Location]
+#: What finds an image: its name, pixels as its file has them, camera, EXIF's orientation and mask.
+Find = Callable[[str, NDArray[np.uint8], Camera, int, Optional[NDArray[np.uint8]]], Location]
+BACK = {6: 8, 8: 6}  # orientations that turn back what these turn upright
 
 
-def find_camera(data: bytes, width: int, height: int, known: Sequence[Camera] = ()) -> Camera:
+def find_camera(data: bytes, width: int, height: int, known: Sequence[Camera] = (), orientation: int = 1) -> Camera:
     """The camera of the focal length that an image's EXIF data tell, or that of its size which is known.
 
     :param data: of the image's file.
     :param known: cameras of a map. One of the image's size is taken, or of several that agree the middle one, if EXIF tells no focal
         length or nearly the same.
+    :param orientation: of the image, by EXIF: a map's cameras are of upright images.
     :raises ValueError: if there is none.
     """
+    known = [*known, *(camera.upright(BACK[orientation]) for camera in known if orientation in BACK)]
     focal = exif_focal_length(data, width, height)
     same = tuple(camera for camera in known if (camera.width, camera.height) == (width, height))
     common = _common_camera(same)
@@ -68,28 +72,31 @@ def _common_camera(cameras: tuple[Camera, ...]) -> Optional[Camera]:
     return middle
 
 
-def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[Camera], exif: bool, name: str) -> tuple[Camera, Location]:
+def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[Camera], exif: bool, masks: Masks, name: str
+            ) -> tuple[Camera, Location]:
     data = read_bytes(os.path.join(folder, name))
-    grey = decode_grey(data)
-    own = camera or find_camera(data, grey.shape[1], grey.shape[0], known)
-    return own, find(name, grey, own, exif_orientation(data) if exif else 1)
+    grey, orientation = decode_grey(data), exif_orientation(data) if exif else 1
+    own = camera or find_camera(data, grey.shape[1], grey.shape[0], known, orientation)
+    return own, find(name, grey, own, orientation, masks.of(name, grey))
 
 
 def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence[str], camera: Optional[AnyCamera],
-           workers: Optional[int], log: Callable[[str], None], exif: bool) -> Iterator[tuple[str, Optional[Camera], Any]]:
+           workers: Optional[int], log: Callable[[str], None], exif: bool, mask: Optional[Path] = None) -> Iterator[tuple[str, Optional[Camera], Any]]:
     """Of each image in order its name, its camera and Location; None and what is wrong if it cannot be read or has no camera.
 
-    :param find: gives the Location, also of an image that is stored by another of EXIF's orientations; threads call it.
+    :param find: threads call it.
     :param known: cameras of the map.
     :param log: told of cameras that were taken for others.
     """
     import_cv2()
+    masks = Masks(mask)
+    masks.check(names)
     given, cameras, told = None if camera is None else as_camera(camera), list(map(as_camera, known)), set()
     progress = Progress('localizing', len(names))
 
     def job(name: str) -> tuple[Camera, Location]:
         check_name(name)
-        return _locate(find, cameras, folder, given, exif, name)
+        return _locate(find, cameras, folder, given, exif, masks, name)
 
     for name, result in in_parallel(job, names, Threads(thread_count(workers))):
         if isinstance(result, Exception) and not isinstance(result, (ValueError, OSError, error)):
@@ -163,37 +170,44 @@ def _numbers(cam_from_world: NDArray[np.float64]) -> list[str]:
     return [repr(value) for value in _place_and_turn(cam_from_world)]
 
 
+def at_size(max_size: int, find: Callable[..., Location], image: NDArray[np.uint8], camera: Camera, mask: Optional[NDArray[np.uint8]]
+            ) -> Location:
+    """What `find` finds in an image, with its camera and mask, that is reduced to this longer side if it is larger; pixels are its own."""
+    small = reduced(image, max_size)
+    if small is image:
+        return find(image, camera, mask)
+    size = np.array(small.shape[1::-1])
+    found = find(small, camera.resized(*size), None if mask is None else resized_mask(mask, small))
+    pixels = (found.pixels + .5) * (np.array(image.shape[1::-1]) / size) - .5  # the centre of the first one is 0
+    return Location(found.cam_from_world, found.covariance, found.reason, found.matches, found.inliers, pixels, found.points)
+
+
 def _finder(localizer: Localizer, max_size: int) -> Callable[..., Location]:
-    """Localizes an image by its camera, a prior or None, and its orientation; larger images are reduced to that longer side, and places are in their own pixels."""
+    """Localizer.localize, of larger images reduced to that longer side."""
     check_max_size(max_size)
 
-    def find(image: NDArray[np.uint8], camera: Camera, prior: Optional[NDArray[np.float64]], orientation: int) -> Location:
-        small = reduced(image, max_size)
-        if small is image:
-            return localizer.localize(image, camera, prior, orientation)
-        size = np.array(small.shape[1::-1])
-        found = localizer.localize(small, camera.resized(*size), prior, orientation)
-        pixels = (found.pixels + .5) * (np.array(image.shape[1::-1]) / size) - .5  # the centre of the first one is 0
-        return Location(found.cam_from_world, found.covariance, found.reason, found.matches, found.inliers, pixels, found.points)
+    def find(image: NDArray[np.uint8], camera: Camera, prior: Optional[NDArray[np.float64]], orientation: int, mask: Optional[NDArray[np.uint8]]
+             ) -> Location:
+        return at_size(max_size, lambda image, camera, mask: localizer.localize(image, camera, prior, orientation, mask), image, camera, mask)
     return find
 
 
 def localize_stream(map: Path, paths: Iterable[str], camera: Optional[AnyCamera] = None, lines: bool = False,
-                    max_size: int = 0, exif: bool = True) -> Iterator[tuple[str, bool]]:
+                    max_size: int = 0, exif: bool = True, mask: Optional[Path] = None) -> Iterator[tuple[str, bool]]:
     """Localizes images one after another, each first where the last one was.
 
     :param paths: of the images, which may come from a pipe; line ends behind them are dropped.
-    :param camera: as of localize_images; so are `lines`, `max_size` and `exif`.
+    :param camera: as of localize_images; so are `lines`, `max_size`, `exif` and `mask`.
     :return: of each image a line, ``PATH tx ty tz qx qy qz qw`` or ``# PATH: why there is no pose``, and whether there is one.
     """
-    localizer = Localizer(map, 1000, lines)
+    localizer, masks = Localizer(map, 1000, lines), Masks(mask)
     find, known, given, last = _finder(localizer, max_size), localizer.cameras, None if camera is None else as_camera(camera), None
     for path in paths:
         path = path.rstrip('\r\n')
         try:
             if path.startswith('#'):  # would look like a failure
                 raise ValueError('a path must not begin with #: write ./ before it')
-            location = _locate(lambda name, image, own, orientation: find(image, own, last, orientation), known, '', given, exif, path)[1]
+            location = _locate(lambda name, image, own, *more: find(image, own, last, *more), known, '', given, exif, masks, path)[1]
             last, problem = location.cam_from_world, location.reason
         except (ValueError, OSError, error) as e:
             last, problem = None, str(e)
@@ -202,7 +216,8 @@ def localize_stream(map: Path, paths: Iterable[str], camera: Optional[AnyCamera]
 
 def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCamera] = None, pictures: bool = False,
                     workers: Optional[int] = None, log: Callable[[str], None] = note, lines: bool = False, max_size: int = 0,
-                    imu: Optional[Path] = None, imu_from_camera: ArrayLike = np.eye(4), exif: bool = True) -> tuple[int, int]:
+                    imu: Optional[Path] = None, imu_from_camera: ArrayLike = np.eye(4), exif: bool = True,
+                    mask: Optional[Path] = None) -> tuple[int, int]:
     """Localizes the images below a folder and writes what was found.
 
     :param map: folder of a map.
@@ -216,6 +231,7 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     :param imu: EuRoC's imu.csv, in a map in metres, of images that are named by their times: poses are smoothed by it, see smooth_poses.
     :param imu_from_camera: as smooth_poses takes it.
     :param exif: images are looked for as upright as their EXIF data say; poses and cameras are those of the files' pixels.
+    :param mask: what is described, as of Masks.
     :return: how many images have a pose, and of how many.
     """
     workers = thread_count(workers)
@@ -233,8 +249,8 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     with new_results(os.fspath(out), 'frames.csv', _earlier) as part:
         localizer = Localizer(map, 0, lines)
         find = _finder(localizer, max_size)
-        for name, own, location in locate(lambda name, image, camera, orientation: find(image, camera, None, orientation), localizer.cameras,
-                                          images, names, given, workers, log, exif):
+        for name, own, location in locate(lambda name, image, camera, *more: find(image, camera, None, *more), localizer.cameras,
+                                          images, names, given, workers, log, exif, mask):
             location = Location(reason=location) if own is None else location
             row = [name, int(location.found), location.reason, location.matches, location.inliers]
             if own is not None and location.covariance is not None:

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "../map/map_error.hpp"
+#include "../map/upright.hpp"
 
 namespace cv::iib {
 namespace {
@@ -112,12 +113,17 @@ void ImageLocator::locate(const Camera& camera, const Affine3d* prior, LocatedIm
         findPose(matches, map_, pictures_, camera, found);
 }
 
-LocatedImage ImageLocator::find(const Mat& image, const Camera& camera, const Affine3d* prior) const
+LocatedImage ImageLocator::find(
+        const Photograph& image, const Camera& storedCamera, const Affine3d* storedPrior) const
 {
-    checkPhotograph(image, camera.size);
-    const Lens checked(camera);
+    checkPhotograph(image.pixels, image.mask, storedCamera.size);
+    const Lens checked(storedCamera);
+    const Upright upright(image.pixels.size(), image.orientation);
+    const Camera camera = upright.camera(storedCamera);
+    const Affine3d turned = storedPrior ? upright.pose(*storedPrior) : Affine3d();
+    const Affine3d* const prior = storedPrior ? &turned : nullptr;
     LocatedImage found;
-    extract(*iib_, image, found.features);
+    extract(*iib_, upright.image(image.pixels), upright.image(image.mask), found.features);
     found.features.camera = camera;
     found.reason = "too few matches";
     if (found.features.pixels.empty())
@@ -138,6 +144,16 @@ LocatedImage ImageLocator::find(const Mat& image, const Camera& camera, const Af
         found.covariance += inWorld(mapError_, found.cameraFromWorld, found.depth);
     found.features.cameraFromWorld = found.cameraFromWorld;
     return found;
+}
+
+Location inFile(Location location, const Photograph& image)
+{
+    const Upright upright(image.pixels.size(), image.orientation);
+    if (location.found)
+        location.cameraFromWorld = upright.storedPose(location.cameraFromWorld);
+    for (Point2d& pixel : location.pixels)
+        pixel = upright.storedPixel(pixel);
+    return location;
 }
 
 struct Localizer::Impl
@@ -167,9 +183,11 @@ Localizer::~Localizer() = default;
 
 const std::vector<Camera>& Localizer::cameras() const { return impl_->cameras; }
 
-Location Localizer::localize(InputArray image, const Camera& camera, const Affine3d* prior) const
+Location Localizer::localize(
+        InputArray image, const Camera& camera, const Affine3d* prior, int orientation, InputArray mask) const
 {
-    return impl_->finder.find(image.getMat(), camera, prior);
+    const Photograph photograph(image.getMat(), orientation, mask.getMat());
+    return inFile(impl_->finder.find(photograph, camera, prior), photograph);
 }
 
 }  // namespace cv::iib

@@ -13,7 +13,8 @@ public:
     //! @param points keypoints that are looked for in an image; 0: as many as in the map's images.
     ImageLocator(const Map& map, int points, bool lines);
 
-    LocatedImage find(const Mat& image, const Camera& camera, const Affine3d* prior) const;
+    //! Of the image that is turned upright.
+    LocatedImage find(const Photograph& image, const Camera& camera, const Affine3d* prior = nullptr) const;
 
 private:
     std::vector<size_t> near(const Affine3d& pose) const;
@@ -30,5 +31,8 @@ private:
     mutable PreparedPictures pictures_;  //!< of the map's images that were compared so far
     Matx66d mapError_;                   //!< which is no reason to doubt that an image was found
 };
+
+//! A location of the image that is turned upright, for that of the file.
+Location inFile(Location location, const Photograph& image);
 
 }  // namespace cv::iib

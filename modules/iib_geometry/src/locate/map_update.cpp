@@ -184,8 +184,10 @@ MapUpdate::~MapUpdate() = default;
 
 const std::vector<Camera>& MapUpdate::cameras() const { return impl_->cameras; }
 
-Location MapUpdate::add(const std::string& name, InputArray image, const Camera& camera)
+Location MapUpdate::add(
+        const std::string& name, InputArray image, const Camera& camera, int orientation, InputArray mask)
 {
+    const Photograph photograph(image.getMat(), orientation, mask.getMat());
     {
         const std::lock_guard<std::mutex> lock(impl_->mutex);
         impl_->checkOpen();
@@ -195,13 +197,13 @@ Location MapUpdate::add(const std::string& name, InputArray image, const Camera&
     }
     try
     {
-        LocatedImage found = impl_->finder.find(image.getMat(), camera, nullptr);
+        LocatedImage found = impl_->finder.find(photograph, camera);
         found.features.name = name;
         const std::lock_guard<std::mutex> lock(impl_->mutex);
         impl_->checkOpen();
         if (found.found)
             impl_->seen.push_back(found);
-        return found;
+        return inFile(found, photograph);
     }
     catch (...)
     {

@@ -12,10 +12,10 @@ typedef MapImage Features;
 //! What finds and describes the points of a map: createRecommended, or the paper's points and descriptor.
 Ptr<IIB> describerOf(bool orbAndAkaze, int points);
 
-inline void extract(IIB& iib, const Mat& image, Features& features)
+inline void extract(IIB& iib, const Mat& image, const Mat& mask, Features& features)
 {
     std::vector<KeyPoint> keypoints;
-    iib.detectAndCompute(image, noArray(), keypoints, features.codes);
+    iib.detectAndCompute(image, mask, keypoints, features.codes);
     for (const KeyPoint& k : keypoints)
     {
         features.pixels.emplace_back(k.pt);
@@ -26,9 +26,11 @@ inline void extract(IIB& iib, const Mat& image, Features& features)
     features.picture = pictureOf(image);
 }
 
-//! @throws cv::Exception for an image that is not of a camera's size, or not 8-bit, grey or BGR.
-inline void checkPhotograph(const Mat& image, const Size& size)
+//! @throws cv::Exception for an image that is not of a camera's size, or not 8-bit, grey or BGR, and another mask.
+inline void checkPhotograph(const Mat& image, const Mat& mask, const Size& size)
 {
+    if (!mask.empty() && (mask.type() != CV_8UC1 || mask.size() != image.size()))
+        CV_Error(Error::StsBadArg, "a mask is CV_8UC1, of its image's size");
     if (image.type() != CV_8UC1 && image.type() != CV_8UC3)
         CV_Error(Error::StsBadArg, "an image is 8-bit, grey or BGR, not " + typeToString(image.type()));
     if (image.size() != size)

@@ -16,6 +16,7 @@
 #include "map_folder.hpp"
 #include "camera_pose.hpp"
 #include "triangulation.hpp"
+#include "upright.hpp"
 
 namespace cv::iib {
 namespace {
@@ -92,21 +93,24 @@ void describe(std::vector<MapImage>& images, const ImageReader& read, const Ptr<
 {
     inParallel(images.size(), [&](size_t i) {
         MapImage& image = images[i];
-        const Mat pixels = read(image.name);
-        if (!pixels.empty())
+        const Photograph photograph = read(image.name);
+        if (!photograph.pixels.empty())
         {
             try
             {
-                checkPhotograph(pixels, image.camera.size);
+                checkPhotograph(photograph.pixels, photograph.mask, image.camera.size);
             }
             catch (const Exception& e)
             {
                 CV_Error(e.code, image.name + ": " + e.err + ": give the images of which the model was made");
             }
-            extract(*iib, pixels, image);
+            const Upright upright(photograph.pixels.size(), photograph.orientation);
+            image.camera = upright.camera(image.camera);
+            image.cameraFromWorld = upright.pose(image.cameraFromWorld);
+            extract(*iib, upright.image(photograph.pixels), upright.image(photograph.mask), image);
         }
         image.codes.create(int(image.pixels.size()), iib->descriptorSize(), CV_8U);  // also of none
-        steps.step(pixels.empty() ? image.name + " cannot be read: left out of the map" : "");
+        steps.step(photograph.pixels.empty() ? image.name + " cannot be read: left out of the map" : "");
     });
     if (std::all_of(images.begin(), images.end(), [](const MapImage& i) { return i.pixels.empty(); }))
         CV_Error(Error::StsError, "none of the model's images can be read, or they are empty");

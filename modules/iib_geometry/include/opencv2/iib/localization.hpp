@@ -51,6 +51,9 @@ struct CV_EXPORTS Camera
     @param to of the same shape, but for what whole pixels take.
     @throws cv::Exception as project(), and for a size of another shape or without pixels. */
     Camera resized(const Size& to) const;
+
+    //! The camera of images that were turned upright, as EXIF's orientation asks, 1 to 8; of mirrored ones itself.
+    Camera upright(int orientation) const;
 };
 
 //! @brief An image of a COLMAP model.
@@ -73,10 +76,25 @@ that see a point which is not there. */
 CV_EXPORTS void writeModel(const std::string& folder, const std::vector<PosedImage>& images,
         const std::vector<Point3d>& points = std::vector<Point3d>());
 
-/** @brief Gives an image by its name in a model: 8-bit, grey or BGR, as its file stores it, such as
-`cv::imread(folder + "/" + name, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION)`; empty for one that cannot be read. Threads
+//! An image as its file stores it: pixels, cameras and poses are those of the file.
+struct Photograph
+{
+    Mat pixels;           //!< 8-bit, grey or BGR; empty for one that cannot be read
+    int orientation = 1;  //!< by EXIF, 1 to 8: points are described upright
+    Mat mask;             //!< CV_8UC1 of the same size, 0 where no points are to be found, or empty
+
+    Photograph() = default;
+    //! From an image alone too.
+    Photograph(const Mat& pixels_, int orientation_ = 1, const Mat& mask_ = Mat())
+        : pixels(pixels_), orientation(orientation_), mask(mask_)
+    {
+    }
+};
+
+/** @brief Gives an image by its name in a model, such as
+`cv::imread(folder + "/" + name, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION)`. Threads
 call it at once. What it throws ends the mapping. */
-typedef std::function<Mat(const std::string& name)> ImageReader;
+typedef std::function<Photograph(const std::string& name)> ImageReader;
 
 /** @brief Told by one thread at a time of each step in the making of a map: how many of all are done, and what is wrong with
 an image, without which the map is made (else empty). What it throws ends the mapping. */
@@ -166,8 +184,10 @@ public:
     @param prior camera from world, such as the last image's: only the two images of the map nearest to it are compared, and
     only points within a tenth of the longer side from where the prior has them. If that gives no pose, the image is looked for
     everywhere. Null: everywhere at once.
+    @param orientation, mask as of Photograph.
     @throws cv::Exception for an image of another size or type, or a camera of an unknown model. */
-    Location localize(InputArray image, const Camera& camera, const Affine3d* prior = nullptr) const;
+    Location localize(InputArray image, const Camera& camera, const Affine3d* prior = nullptr,
+            int orientation = 1, InputArray mask = noArray()) const;
 
 private:
     struct Impl;
@@ -222,10 +242,11 @@ public:
 
     /** @brief Localizes an image and keeps what it sees (about 0.6 MB) until commit(). Threads may call it at once.
     @param name of the image in the map, distinct among those of this update.
-    @param image, camera as Localizer::localize takes them.
+    @param image, camera, orientation, mask as Localizer::localize takes them; what becomes a part of the map is upright.
     @throws cv::Exception for a name that is empty, has a zero byte or is one of this update already, after commit(), and as
     Localizer::localize; the image may be given again then. */
-    Location add(const std::string& name, InputArray image, const Camera& camera);
+    Location add(const std::string& name, InputArray image, const Camera& camera, int orientation = 1,
+            InputArray mask = noArray());
 
     //! @brief What commit() did.
     struct Counts

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "upright.hpp"
+
+namespace cv::iib {
+namespace {
+
+struct Pair
+{
+    const char* model;
+    size_t x,
+            y;  //!< parameters after the centre of what turns with the image: what lies along x, and along y
+};
+
+const Pair PAIRS[] = {{"OPENCV", 3, 2}, {"FULL_OPENCV", 3, 2}, {"THIN_PRISM_FISHEYE", 3, 2},
+        {"THIN_PRISM_FISHEYE", 6, 7}, {"RAD_TAN_THIN_PRISM_FISHEYE", 6, 7},
+        {"RAD_TAN_THIN_PRISM_FISHEYE", 8, 10}, {"RAD_TAN_THIN_PRISM_FISHEYE", 9, 11}};
+
+size_t focalsOf(const std::string& model)
+{
+    return model.compare(0, 6, "SIMPLE") == 0 || model == "RADIAL" || model == "RADIAL_FISHEYE" ? 1 : 2;
+}
+
+}  // namespace
+
+Upright::Upright(const Size& size, int orientation)
+    : orientation_(orientation), size_(size), fromStored_(Matx33d::eye())
+{
+    if (orientation < 1 || orientation > 8)
+        CV_Error(Error::StsBadArg, format("orientation is %d: it must be one of EXIF, 1 to 8", orientation));
+    if (orientation == 3)
+        fromStored_ = Matx33d(-1, 0, 0, 0, -1, 0, 0, 0, 1);
+    else if (orientation == 6)
+        fromStored_ = Matx33d(0, -1, 0, 1, 0, 0, 0, 0, 1);
+    else if (orientation == 8)
+        fromStored_ = Matx33d(0, 1, 0, -1, 0, 0, 0, 0, 1);
+    else
+        orientation_ = 1;
+}
+
+Mat Upright::image(const Mat& stored) const
+{
+    if (orientation_ == 1 || stored.empty())
+        return stored;
+    Mat upright;
+    rotate(stored, upright,
+            orientation_ == 3   ? ROTATE_180
+            : orientation_ == 6 ? ROTATE_90_CLOCKWISE
+                                : ROTATE_90_COUNTERCLOCKWISE);
+    return upright;
+}
+
+Point2d Upright::storedPixel(const Point2d& upright) const
+{
+    const Vec3d turned = fromStored_.t() * Vec3d(upright.x, upright.y, 1);
+    return {turned[0] + (fromStored_(0, 0) + fromStored_(1, 0) < 0 ? size_.width - 1 : 0),
+            turned[1] + (fromStored_(0, 1) + fromStored_(1, 1) < 0 ? size_.height - 1 : 0)};
+}
+
+Camera Upright::camera(const Camera& stored) const
+{
+    Camera upright = stored;
+    std::vector<double>& values = upright.parameters;
+    const size_t focals = focalsOf(stored.model);
+    if (orientation_ == 1 || values.size() < focals + 2)
+        return upright;
+    if (orientation_ != 3)
+    {
+        std::swap(upright.size.width, upright.size.height);
+        std::swap(values[0], values[focals - 1]);
+    }
+    const auto turn = [&](size_t x, size_t y) {
+        const Vec3d turned = fromStored_ * Vec3d(values[x], values[y], 0);
+        values[x] = turned[0];
+        values[y] = turned[1];
+    };
+    for (const Pair& pair : PAIRS)
+        if (stored.model == pair.model && std::max(pair.x, pair.y) + focals + 2 < values.size())
+            turn(focals + 2 + pair.x, focals + 2 + pair.y);
+    turn(focals, focals + 1);  // from a corner of the picture, which turns to another one
+    values[focals] += fromStored_(0, 0) + fromStored_(0, 1) < 0 ? upright.size.width : 0;
+    values[focals + 1] += fromStored_(1, 0) + fromStored_(1, 1) < 0 ? upright.size.height : 0;
+    return upright;
+}
+
+Camera Camera::upright(int orientation) const { return Upright(size, orientation).camera(*this); }
+
+}  // namespace cv::iib

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "opencv2/iib/localization.hpp"
+
+namespace cv::iib {
+
+//! Images that their files store turned, as EXIF's orientation tells: upright, as maps have them, and back.
+class Upright
+{
+public:
+    /** @param size of the image in its file.
+    @param orientation 1 to 8; of a mirrored image, which no camera sees, as if it were 1. */
+    Upright(const Size& size, int orientation);
+
+    Mat image(const Mat& stored) const;
+    Camera camera(const Camera& stored) const;
+    Affine3d pose(const Affine3d& stored) const { return Affine3d(fromStored_) * stored; }
+
+    Affine3d storedPose(const Affine3d& upright) const { return Affine3d(fromStored_.t()) * upright; }
+    Point2d storedPixel(const Point2d& upright) const;
+
+private:
+    int orientation_;
+    Size size_;
+    Matx33d fromStored_;  //!< turn about the optical axis
+};
+
+}  // namespace cv::iib
