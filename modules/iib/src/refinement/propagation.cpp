@@ -19,65 +19,104 @@ const int PART = 64;                 //!< keypoints that a thread looks at
 
 const double LEAST_CELL = 3;  //!< pixels
 
+//! A squared distance, and the index of the point so far away.
+typedef std::pair<double, int> Near;
+
+//! The nearest points of some, nearest first.
+class Nearest
+{
+public:
+    static constexpr size_t MOST = 9;
+
+    //! @param count of the points, up to MOST; they are nearer than a radius.
+    Nearest(size_t count_, double radius) : count(count_), found(0), limit(radius * radius) {}
+
+    //! The square of what points that are still to come have to be nearer than.
+    double squaredLimit() const { return limit; }
+    void add(const Near& point)
+    {
+        if (!(point.first < limit))
+            return;
+        size_t place = found < count ? found++ : count - 1;
+        for (; place > 0 && points[place - 1] > point; place--)
+            points[place] = points[place - 1];
+        points[place] = point;
+        if (found == count)
+            limit = points[count - 1].first;
+    }
+    const Near* begin() const { return points; }
+    const Near* end() const { return points + found; }
+
+private:
+    size_t count, found;
+    double limit;
+    Near points[MOST];
+};
+
 //! Points of an image in square cells, about as many as points, so that those near a place are found in few steps.
 class NearPoints
 {
 public:
     //! @param mostOfCell of the points of a cell that are looked at: the first ones.
-    NearPoints(Size image, const std::vector<Vec2d>& points, const std::vector<int>& chosen, int mostOfCell)
-        : all(points), most(mostOfCell),
-          cell(std::max(std::sqrt((double)image.width * image.height / (chosen.size() + 1)), LEAST_CELL)),
+    NearPoints(Size image, const std::vector<Vec2d>& all, const std::vector<int>& chosen, int mostOfCell)
+        : cell(std::max(std::sqrt((double)image.width * image.height / (chosen.size() + 1)), LEAST_CELL)),
           size(cvCeil(image.width / cell), cvCeil(image.height / cell)), begins(size.area() + 1)
     {
         for (int index : chosen)
-            begins[cellOf(points[index]) + 1]++;
+            begins[cellOf(all[index]) + 1]++;
         for (size_t i = 1; i < begins.size(); i++)
-            begins[i] += begins[i - 1];
+            begins[i] = begins[i - 1] + std::min(begins[i], mostOfCell);
         std::vector<int> next(begins.begin(), begins.end() - 1);
-        indices.resize(chosen.size());
+        points.resize(begins.back());
         for (int index : chosen)
-            indices[next[cellOf(points[index])]++] = index;
+        {
+            const int i = cellOf(all[index]);
+            if (next[i] < begins[i + 1])
+                points[next[i]++] = {all[index], index};
+        }
     }
 
-    //! Finds up to `count` points nearer than a radius, the nearest first. @param found squared distances and indices.
-    void find(
-            const Vec2d& place, double radius, size_t count, std::vector<std::pair<double, int>>& found) const
+    //! The nearest points, up to `count`, that are nearer than a radius.
+    Nearest find(const Vec2d& place, double radius, size_t count) const
     {
-        found.clear();
-        double limit = radius * radius;
+        Nearest nearest(count, radius);
         const Point centre(column(place[0]), row(place[1]));
         for (int ring = 0; ring <= std::max(size.width, size.height); ring++)
         {
             const double least = std::max(ring - 1, 0) * cell;  // nothing of the ring is nearer
-            if (least * least >= limit)
+            if (least * least >= nearest.squaredLimit())
                 break;
+            const int left = centre.x - ring, right = centre.x + ring;
             for (int y = std::max(centre.y - ring, 0); y <= std::min(centre.y + ring, size.height - 1); y++)
-            {
-                const bool edge = std::abs(y - centre.y) == ring;
-                for (int x = centre.x - ring; x <= centre.x + ring; x += edge ? 1 : std::max(2 * ring, 1))
-                    if (x >= 0 && x < size.width)
-                        limit = addNearer(place, y * size.width + x, limit, count, found);
-            }
+                if (std::abs(y - centre.y) == ring)
+                    addCells(place, y, std::max(left, 0), std::min(right, size.width - 1), nearest);
+                else
+                {
+                    if (left >= 0)
+                        addCells(place, y, left, left, nearest);
+                    if (right < size.width)
+                        addCells(place, y, right, right, nearest);
+                }
         }
+        return nearest;
     }
 
 private:
-    double addNearer(const Vec2d& place, int i, double limit, size_t count,
-            std::vector<std::pair<double, int>>& found) const
+    struct Place
     {
-        for (int k = begins[i]; k < std::min(begins[i + 1], begins[i] + most); k++)
+        Vec2d point;
+        int index;
+    };
+
+    //! The points of a row's cells, which lie side by side.
+    void addCells(const Vec2d& place, int y, int left, int right, Nearest& nearest) const
+    {
+        const int* const row = &begins[y * size.width];
+        for (int i = row[left]; i < row[right + 1]; i++)
         {
-            const Vec2d beside = all[indices[k]] - place;
-            const std::pair<double, int> point(beside.dot(beside), indices[k]);
-            if (!(point.first < limit))
-                continue;
-            found.insert(std::upper_bound(found.begin(), found.end(), point), point);
-            if (found.size() > count)
-                found.pop_back();
-            if (found.size() == count)
-                limit = found.back().first;
+            const Vec2d beside = points[i].point - place;
+            nearest.add(Near(beside.dot(beside), points[i].index));
         }
-        return limit;
     }
 
     //! Places outside of the image are nearest to its edge.
@@ -86,11 +125,10 @@ private:
     int row(double y) const { return limited(y / cell, size.height); }
     int cellOf(const Vec2d& point) const { return row(point[1]) * size.width + column(point[0]); }
 
-    const std::vector<Vec2d>& all;
-    int most;
     double cell;
     Size size;
-    std::vector<int> begins, indices;  //!< of the points of each cell
+    std::vector<int> begins;  //!< of each cell's points
+    std::vector<Place> points;
 };
 
 const int MOST_MATCHES = 8, MOST_KEYPOINTS = 64;  //!< of a cell that are looked at
@@ -126,17 +164,16 @@ struct Seed
     }
 };
 
-//! Whether others near it predict it. @param near room for these.
-bool isTrusted(int seed, const std::vector<Seed>& seeds, const NearPoints& ofSeeds,
-        std::vector<std::pair<double, int>>& near)
+//! Whether others near it predict it.
+bool isTrusted(int seed, const std::vector<Seed>& seeds, const NearPoints& ofSeeds)
 {
+    static_assert(NEIGHBOURS < Nearest::MOST && CANDIDATES <= Nearest::MOST, "there is room");
     const Seed& s = seeds[seed];
-    ofSeeds.find(s.first, REACH, NEIGHBOURS + 1, near);
     size_t agreeing = 0;
-    for (const std::pair<double, int>& k : near)
+    for (const Near& near : ofSeeds.find(s.first, REACH, NEIGHBOURS + 1))
     {
-        const Seed& other = seeds[k.second];
-        agreeing += k.second != seed && norm(other.predict(s.first) - s.second) < other.tolerance(s.first);
+        const Seed& other = seeds[near.second];
+        agreeing += near.second != seed && norm(other.predict(s.first) - s.second) < other.tolerance(s.first);
     }
     return agreeing >= LEAST_AGREEING;
 }
@@ -153,7 +190,6 @@ void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoin
     std::vector<int> triesOf(keypoints1.size());
     std::vector<Seed> seeds;
     std::vector<Vec2d> seedPlaces;
-    std::vector<std::pair<double, int>> near;
     for (size_t done = 0; done < matches.size();)
     {
         const size_t before = seeds.size();
@@ -167,8 +203,8 @@ void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoin
         }
         const NearPoints ofSeeds(refiner.firstSize(), seedPlaces,
                 unmarked(seeds.size(), [](size_t) { return false; }), MOST_MATCHES);
-        const std::vector<int> trusted = unmarked(seeds.size(),
-                [&](size_t i) { return i < before || !isTrusted((int)i, seeds, ofSeeds, near); });
+        const std::vector<int> trusted = unmarked(
+                seeds.size(), [&](size_t i) { return i < before || !isTrusted((int)i, seeds, ofSeeds); });
         const NearPoints ofTrusted(
                 refiner.firstSize(), seedPlaces, trusted, MOST_MATCHES);  // of the last round
         const NearPoints ofSecond(refiner.secondSize(), places2,
@@ -178,18 +214,17 @@ void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoin
         const int parts = ((int)keypoints1.size() + PART - 1) / PART;
         std::vector<std::vector<Refinement>> ofParts(parts);
         const auto listTries = [&](int part) {
-            std::vector<std::pair<double, int>> nearest, candidates;
             for (int q = part * PART; q < std::min((part + 1) * PART, (int)keypoints1.size()); q++)
             {
                 if (matched1[q] || triesOf[q] == MOST_TRIES || !refiner.seesFirst(q))
                     continue;
-                ofTrusted.find(places1[q], REACH, 1, nearest);
-                if (nearest.empty())
+                const Nearest trust = ofTrusted.find(places1[q], REACH, 1);
+                if (trust.begin() == trust.end())
                     continue;
                 triesOf[q]++;
-                const Seed& seed = seeds[nearest[0].second];
-                ofSecond.find(seed.predict(places1[q]), seed.tolerance(places1[q]), CANDIDATES, candidates);
-                for (const std::pair<double, int>& t : candidates)
+                const Seed& seed = seeds[trust.begin()->second];
+                for (const Near& t :
+                        ofSecond.find(seed.predict(places1[q]), seed.tolerance(places1[q]), CANDIDATES))
                     if (refiner.mayMatch(q, t.second, seed.map))
                         ofParts[part].emplace_back(
                                 DMatch(q, t.second, std::numeric_limits<float>::max()), seed.map);
