@@ -6,6 +6,8 @@
 
 #include "opencv2/core/version.hpp"
 
+#include <cstring>
+
 // The vocabulary of all vector code: OpenCV's universal intrinsics, and what they lack, under names of its own. Raw intrinsics
 // stand nowhere else. Each is chosen by instruction set, never by the width of vectors, which different architectures share;
 // where there is no portable form, a macro says whether it exists.
@@ -155,6 +157,7 @@ typedef v_float32x8 v_means;
 
 inline v_samples v_load_samples(const int* p) { return v256_load(p); }
 inline v_samples v_load_samples(const short* p) { return v256_load_expand(p); }
+inline v_samples v_load_words(const uchar* p) { return v_reinterpret_as_s32(v256_load(p)); }
 inline v_samples v_setall_samples(int v) { return v256_setall_s32(v); }
 inline v_means v_load_means(const float* p) { return v256_load(p); }
 inline v_means v_setall_means(float v) { return v256_setall_f32(v); }
@@ -164,9 +167,33 @@ typedef v_float32x4 v_means;
 
 inline v_samples v_load_samples(const int* p) { return v_load(p); }
 inline v_samples v_load_samples(const short* p) { return v_load_expand(p); }
+inline v_samples v_load_words(const uchar* p) { return v_reinterpret_as_s32(v_load(p)); }
 inline v_samples v_setall_samples(int v) { return v_setall_s32(v); }
 inline v_means v_load_means(const float* p) { return v_load(p); }
 inline v_means v_setall_means(float v) { return v_setall_f32(v); }
+#endif
+
+//! Words of four bytes, each SCALE times an offset from `base`, wherever that is.
+#if CV_AVX2
+template <int SCALE> inline v_int32x8 gatherWords(const void* base, const v_int32x8& offsets)
+{
+    return v_int32x8(_mm256_i32gather_epi32(static_cast<const int*>(base), offsets.val, SCALE));
+}
+#else
+template <int SCALE> inline v_int32x4 gatherWords(const void* base, const v_int32x4& offsets)
+{
+    int at[4], words[4];
+    v_store(at, offsets);
+    for (int i = 0; i < 4; i++)
+        std::memcpy(words + i, static_cast<const uchar*>(base) + (ptrdiff_t)SCALE * at[i], sizeof(int));
+    return v_int32x4(words[0], words[1], words[2], words[3]);
+}
+#endif
+#if CV_AVX512_SKX
+template <int SCALE> inline v_int32x16 gatherWords(const void* base, const v_int32x16& offsets)
+{
+    return v_int32x16(_mm512_i32gather_epi32(offsets.val, base, SCALE));
+}
 #endif
 
 //! A bit for each lane, all of whose bits are equal.

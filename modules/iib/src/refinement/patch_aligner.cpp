@@ -93,21 +93,6 @@ const uchar* pixelsFrom(const Mat& image, const Point& place)
     return image.data + place.y * (ptrdiff_t)image.step + place.x;
 }
 
-//! Of the waves that tell a place along a direction, from second differences of pixels of a template and first ones.
-double squaredFrequency(const uchar* pixels, size_t step, ptrdiff_t next)
-{
-    int first = 0, second = 0;
-    for (int y = 2; y < TEMPLATE - 1; y += 4)
-        for (int x = 1; x < TEMPLATE - 1; x++)
-        {
-            const uchar* const p = pixels + y * step + x;
-            const int before = p[0] - p[-next], after = p[next] - p[0];
-            first += after * after;
-            second += (after - before) * (after - before);
-        }
-    return second / (first + 1.);
-}
-
 //! TEMPLATE x TEMPLATE grey levels between pixels, `unit` apart.
 void resample(const Mat& image, const Vec2d& first, double unit, uchar* values)
 {
@@ -163,45 +148,34 @@ Mat preparedForAlignment(const Mat& normalized)
 bool mayAgree(
         const Mat& image1, const Vec2d& point1, const Mat& image2, const Vec2d& point2, const Matx22d& map)
 {
-    const int side = 8, apart = 4, first = -apart * (side - 1) / 2;  // samples, in pixels
-    static const int weights[side] = {1, 2, 3, 4, 4, 3, 2, 1};       // about a Gaussian of 8 pixels
+    const int corner = -LOOK_APART * (LOOK - 1) / 2;
     const Vec2d reach = reachOf(map);
     if (!(std::max(reach[0], reach[1]) < IMAGE_BORDER - 2))
         return true;  // it is more than the borders of images hold
     const Point centre1(cvRound(point1[0]), cvRound(point1[1]));
     const Vec2d centre2 = point2 + map * (Vec2d(centre1.x, centre1.y) - point1);
     const auto fixed = [](double value) { return cvRound(value * (1 << POSITION_BITS)); };
-    const Point base(cvFloor(centre2[0]), cvFloor(centre2[1]));
-    const uchar* const pixels2 = pixelsFrom(image2, base);
-    const int step = (int)image2.step, half = 1 << (POSITION_BITS - 1);
-    const int columnX = fixed(map(0, 0) * apart), columnY = fixed(map(1, 0) * apart);
-    int all = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
-    for (int y = 0; y < side; y++)
+    const Point base(cvFloor(centre2[0]), cvFloor(centre2[1])),
+            half(1 << (POSITION_BITS - 1), 1 << (POSITION_BITS - 1));
+    Point rows[LOOK];
+    for (int y = 0; y < LOOK; y++)
     {
-        const uchar* const row = pixelsFrom(image1, centre1 + Point(first, first + apart * y));
-        const Vec2d begin = map * Vec2d(first, first + apart * y);
-        int placeX = fixed(centre2[0] - base.x + begin[0]) + half;
-        int placeY = fixed(centre2[1] - base.y + begin[1]) + half;
-        for (int x = 0; x < side; x++, placeX += columnX, placeY += columnY)
-        {
-            const int weight = weights[x] * weights[y], one = row[apart * x] - 128;
-            const int other = pixels2[(placeY >> POSITION_BITS) * step + (placeX >> POSITION_BITS)] - 128;
-            all += weight;
-            a += weight * one;
-            b += weight * other;
-            aa += weight * one * one;
-            bb += weight * other * other;
-            ab += weight * one * other;
-        }
+        const Vec2d begin = map * Vec2d(corner, corner + LOOK_APART * y);
+        rows[y] = Point(fixed(centre2[0] - base.x + begin[0]), fixed(centre2[1] - base.y + begin[1])) + half;
     }
-    const double covariance = ab * (double)all - a * (double)b;
-    const double variance1 = aa * (double)all - a * (double)a, variance2 = bb * (double)all - b * (double)b;
+    const LookSums s = refinementKernels().look(pixelsFrom(image1, centre1 + Point(corner, corner)),
+            image1.step, pixelsFrom(image2, base), image2.step, rows,
+            Point(fixed(map(0, 0) * LOOK_APART), fixed(map(1, 0) * LOOK_APART)));
+    const double all = LookSums::WEIGHTS;
+    const double covariance = s.products * all - s.first * (double)s.second;
+    const double variance1 = s.firstSquares * all - s.first * (double)s.first;
+    const double variance2 = s.secondSquares * all - s.second * (double)s.second;
     return covariance > 0 &&
            covariance * covariance >= LEAST_AT_A_LOOK * LEAST_AT_A_LOOK * variance1 * variance2;
 }
 
 PatchAligner::PatchAligner()
-    : kernels(refinementKernels()), weights(patchWeights()), window(WINDOW * WINDOW + WINDOW_PADDING),
+    : kernels(refinementKernels()), weights(patchWeights()), window(WINDOW * WINDOW_STEP),
       samples(PATCH_SAMPLES), ones(PATCH_SAMPLES)
 {
     std::fill_n(ones.data(), PATCH_SAMPLES, (short)1);
@@ -286,16 +260,22 @@ double PatchAligner::similarityOf(const Moments& moments) const
            (ofTemplate.sums[SUM_TEMPLATE] * moments.deviation);
 }
 
-//! False where the template cannot tell a place.
-bool PatchAligner::solveTemplate()
+//! Of the template; its sums are known then.
+bool PatchAligner::hasContrast()
 {
     int sums[SUMS];
     kernels.sum(ones.data(), weights, patch, sums);
     std::copy_n(sums, SUMS, totals);
     ofTemplate = momentsOf(patch.samples);
-    if (!(ofTemplate.deviation >= LEAST_DEVIATION * (1 << SAMPLE_BITS)) ||
-            !(ofTemplate.sums[SUM_TEMPLATE] > 0))
-        return false;
+    return ofTemplate.deviation >= LEAST_DEVIATION * (1 << SAMPLE_BITS) && ofTemplate.sums[SUM_TEMPLATE] > 0;
+}
+
+//! False where the template cannot tell a place. Most tries end before they ask.
+bool PatchAligner::solve()
+{
+    if (solved)
+        return usable;
+    solved = true;
     int products[PARAMETERS][PARAMETERS];
     kernels.sumProducts(patch, products);
     const double scale = HALVED / totals[SUM_SAMPLES], reciprocal = 1 / ofTemplate.deviation;
@@ -312,7 +292,7 @@ bool PatchAligner::solveTemplate()
         }
     for (int i = 0; i < PARAMETERS; i++)
         inverse(i, i) += i < 2 ? DAMPING_OF_PLACE : DAMPING_OF_MAP;
-    return invert(inverse);
+    return usable = invert(inverse);
 }
 
 //! A step of Gauss and Newton: changes of the six parameters of the patch.
@@ -344,8 +324,11 @@ Vec2d PatchAligner::interpolationError(const PatchPlace& place) const
             }
         }
     const double pixelsOfUnits = std::abs(determinant(place.map));  // squared
-    return Vec2d(squaredFrequency(pixels1, step1, 1) * sum[0],
-                   squaredFrequency(pixels1, step1, step1) * sum[1]) *
+    const auto squaredFrequency = [&](ptrdiff_t next) {  // of the waves that tell a place along a direction
+        const SquaredDifferences squares = kernels.squareDifferences(pixels1, step1, next);
+        return squares.second / (squares.first + 1.);
+    };
+    return Vec2d(squaredFrequency(1) * sum[0], squaredFrequency((ptrdiff_t)step1) * sum[1]) *
            (1 / (6 * pixelsOfUnits));
 }
 
@@ -383,7 +366,8 @@ void PatchAligner::take(const Mat& image1, const Vec2d& point, double unitOfPatc
 {
     unit = unitOfPatch;
     beside = readTemplate(image1, point);
-    usable = solveTemplate();
+    usable = hasContrast();
+    solved = false;
 }
 
 PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts, double least)
@@ -412,7 +396,7 @@ PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts,
             moments = found;
         }
     }
-    if (!(similarity > least))
+    if (!(similarity > least) || !solve())
         return refused;
     if (starts.end() - starts.begin() > 1)
         sampleAt(place);

@@ -76,7 +76,8 @@ private:
     bool sampleAt(const PatchPlace& place);
     Moments momentsOf(const short* values) const;
     double similarityOf(const Moments& moments) const;
-    bool solveTemplate();
+    bool hasContrast();
+    bool solve();
     Vec6d step(const Moments& moments) const;
     Vec2d interpolationError(const PatchPlace& place) const;
     Matx22d covariance(const Moments& moments) const;
@@ -89,13 +90,14 @@ private:
     uchar resampled[TEMPLATE * TEMPLATE];
     double unit;   //!< of the patch
     Vec2d beside;  //!< where the point is from the patch's centre, in its units
-    bool usable;   //!< whether the patch can tell a place
+    bool usable;   //!< whether the patch can tell a place, as far as is known
+    bool solved;   //!< whether `inverse` is known
     Moments ofTemplate;
     double totals[SUMS];        //!< of the weights
     double independentSamples;  //!< as many as the weighted ones are worth
     Matx66d inverse;            //!< of the normal matrix
     Rect pixels;                //!< of the image that the window holds
-    AlignedBuffer<int> window;
+    AlignedBuffer<ushort> window;
     AlignedBuffer<short> samples, ones;
 };
 

@@ -69,16 +69,15 @@ TEST_F(IIB_RefinementKernels, readWindow)
         const size_t step = WINDOW + 1 + width % 3;
         const std::vector<uchar> image = random<uchar>((size.height + 1) * step + SHIFTS, 0, 256);
         const uchar* const pixels = &image[width % SHIFTS];
-        std::vector<int> window(size.height * WINDOW + WINDOW_PADDING);
+        std::vector<ushort> window(size.height * WINDOW_STEP);
         kernels.readWindow(pixels, step, size, window.data());
         for (int y = 0; y < size.height; y++)
-            for (int x = 0; x < width; x++)
+            for (int x = 0; x <= width; x++)
             {
                 const uchar* const p = pixels + y * step + x;
-                const uchar around[] = {p[0], p[step], p[1], p[step + 1]};
-                for (int i = 0; i < 4; i++)
-                    ASSERT_EQ(around[i] - 128, (schar)(window[y * WINDOW + x] >> 8 * i))
-                            << width << ", " << x;
+                const int both = window[y * WINDOW_STEP + x];
+                ASSERT_EQ(p[0] - 128, (schar)both) << width << ", " << x;
+                ASSERT_EQ(p[step] - 128, (schar)(both >> 8)) << width << ", " << x;
             }
     }
 }
@@ -87,7 +86,7 @@ TEST_F(IIB_RefinementKernels, sample)
 {
     for (int trial = 0; trial < 50; trial++)
     {
-        const std::vector<int> window = random<int>(WINDOW * WINDOW, INT_MIN / 2, INT_MAX / 2);
+        const std::vector<ushort> window = random<ushort>(WINDOW * WINDOW_STEP, 0, 65536);
         const auto step = [&] { return trial == 0 ? 0 : integers.between(-131072, 131072); };
         PatchGrid grid = {Point(), Point(step() * 2 / 3, step() / 3), Point(step() / 3, step() * 2 / 3)};
         if (trial == 1)
@@ -110,14 +109,78 @@ TEST_F(IIB_RefinementKernels, sample)
         for (int i = 0; i < PATCH_SAMPLES; i++)
         {
             const Point place = grid.first + i % PATCH * grid.column + i / PATCH * grid.row;
-            const int pixels = window[(place.y >> 16) * WINDOW + (place.x >> 16)];
+            const ushort* const columns = &window[(place.y >> 16) * WINDOW_STEP + (place.x >> 16)];
             const int right = (place.x & 65535) / 256, down = (place.y & 65535) / 256;
-            const int sum = (schar)pixels * (256 - right) * (256 - down) +
-                            (schar)(pixels >> 8) * (256 - right) * down +
-                            (schar)(pixels >> 16) * right * (256 - down) +
-                            (schar)(pixels >> 24) * right * down;
+            const int sum = (schar)columns[0] * (256 - right) * (256 - down) +
+                            (schar)(columns[0] >> 8) * (256 - right) * down +
+                            (schar)columns[1] * right * (256 - down) +
+                            (schar)(columns[1] >> 8) * right * down;
             ASSERT_EQ((int)std::floor(sum / double(1 << (16 - SAMPLE_BITS)) + .5), actual[i])
                     << trial << ", " << i;
+        }
+    }
+}
+
+TEST_F(IIB_RefinementKernels, look)
+{
+    const int side = 64, weights[] = {1, 2, 3, 4, 4, 3, 2, 1};
+    for (int trial = 0; trial < 50; trial++)
+    {
+        const std::vector<uchar> first = random<uchar>(side * side, trial == 1 ? 255 : 0, 256),
+                                 second = random<uchar>(side * side, 0, trial == 2 ? 1 : 256);
+        const Point corner(20 + trial % SHIFTS, 20);
+        const auto step = [&] { return integers.between(-131072, 131072); };
+        const Point column(step(), step());
+        Point rows[LOOK];
+        for (Point& row : rows)
+            row = Point(step(), step());
+        const uchar* const pixels1 = &first[trial % SHIFTS];
+        const uchar* const pixels2 = &second[corner.y * side + corner.x];
+        const LookSums actual = kernels.look(pixels1, side, pixels2, side, rows, column);
+        int a = 0, b = 0, aa = 0, bb = 0, ab = 0, all = 0;
+        for (int y = 0; y < LOOK; y++)
+            for (int x = 0; x < LOOK; x++)
+            {
+                const Point place = rows[y] + x * column;
+                const int weight = weights[x] * weights[y];
+                const int one = pixels1[(LOOK_APART * y) * side + LOOK_APART * x] - 128;
+                const int other = pixels2[(place.y >> 16) * side + (place.x >> 16)] - 128;
+                all += weight;
+                a += weight * one;
+                b += weight * other;
+                aa += weight * one * one;
+                bb += weight * other * other;
+                ab += weight * one * other;
+            }
+        EXPECT_EQ(int(LookSums::WEIGHTS), all);
+        EXPECT_EQ(a, actual.first);
+        EXPECT_EQ(b, actual.second);
+        EXPECT_EQ(aa, actual.firstSquares);
+        EXPECT_EQ(bb, actual.secondSquares);
+        EXPECT_EQ(ab, actual.products);
+    }
+}
+
+TEST_F(IIB_RefinementKernels, squareDifferences)
+{
+    for (int shift = 0; shift < SHIFTS; shift++)
+    {
+        const size_t step = TEMPLATE + shift;
+        const std::vector<uchar> memory = random<uchar>(TEMPLATE * step + SHIFTS, 0, 256);
+        for (ptrdiff_t next : {(ptrdiff_t)1, (ptrdiff_t)step})
+        {
+            int first = 0, second = 0;
+            for (int y = 2; y < TEMPLATE - 1; y += 4)
+                for (int x = 1; x < TEMPLATE - 1; x++)
+                {
+                    const uchar* const p = &memory[shift + y * step + x];
+                    const int before = p[0] - p[-next], after = p[next] - p[0];
+                    first += after * after;
+                    second += (after - before) * (after - before);
+                }
+            const SquaredDifferences actual = kernels.squareDifferences(&memory[shift], step, next);
+            EXPECT_EQ(first, actual.first);
+            EXPECT_EQ(second, actual.second);
         }
     }
 }

@@ -14,12 +14,12 @@ namespace iib {
 constexpr int PATCH = 16, PATCH_SAMPLES = PATCH * PATCH;
 constexpr int TEMPLATE = 2 * PATCH + 1;  //!< pixels in rows and columns: samples and their neighbours
 constexpr int WINDOW_BITS = 6, WINDOW = 1 << WINDOW_BITS;  //!< most pixels in rows and columns around a point
-constexpr int WINDOW_PADDING = 64;            //!< ints that full vectors may write behind a window
-constexpr int IMAGE_BORDER = WINDOW / 2 + 1;  //!< pixels that windows reach beyond an image
-constexpr int POSITION_BITS = 16;             //!< positions in a window are pixels in 2^-16
-constexpr int SAMPLE_BITS = 5;                //!< samples are normalized grey levels of -128..127 in 2^-5
-constexpr int WEIGHT_BITS = 11;               //!< of the sum of samples
-constexpr int GAIN_BITS = 8;                  //!< gains are below 256, samples 2^12: products fit 32 bits
+constexpr int WINDOW_STEP = 2 * WINDOW;                    //!< from a row of a window to the next, in pixels
+constexpr int IMAGE_BORDER = WINDOW / 2 + 1;               //!< pixels that windows reach beyond an image
+constexpr int POSITION_BITS = 16;                          //!< positions in a window are pixels in 2^-16
+constexpr int SAMPLE_BITS = 5;   //!< samples are normalized grey levels of -128..127 in 2^-5
+constexpr int WEIGHT_BITS = 11;  //!< of the sum of samples
+constexpr int GAIN_BITS = 8;     //!< gains are below 256, samples 2^12: products fit 32 bits
 
 //! Derivatives of samples by the six parameters: x, y, and the four of a linear map, d/dx and d/dy times places x and
 //! y.
@@ -62,15 +62,37 @@ struct Autocorrelation
     int squares, right, below;
 };
 
+//! A coarse look takes LOOK x LOOK pixels of the first image, so many pixels apart.
+constexpr int LOOK = 8, LOOK_APART = 4;
+
+//! Of a look's pixels less 128, each times a weight, which add up to WEIGHTS.
+struct LookSums
+{
+    static constexpr int WEIGHTS = 400;
+    int first, second, firstSquares, secondSquares, products;
+};
+
+//! Of differences of neighbouring pixels, and of these differences' differences.
+struct SquaredDifferences
+{
+    int first, second;
+};
+
 struct RefinementKernels
 {
     //! (1 2 1) / 4 in both directions; the ends of rows are repeated. `sums` has room for 2 more than `width`.
     void (*smooth)(const uchar* const rows[3], ushort* sums, uchar* out, int width);
-    /** A window: four bytes of the image a pixel, each less 128: its own, the one below, the one to the right, the one
-     below that. Reads a row more, and of each WINDOW + 1 pixels; writes full vectors. */
-    void (*readWindow)(const uchar* pixels, size_t step, Size size, int* window);
+    /** A window: two bytes of the image a pixel, each less 128: its own and the one below; of a column more than size,
+     so that four bytes are what a sample lies between. Reads a row more, and of each WINDOW + 1 pixels. */
+    void (*readWindow)(const uchar* pixels, size_t step, Size size, ushort* window);
     //! Samples of a window, bilinear; all must be inside.
-    void (*sample)(const int* window, const PatchGrid& grid, short* samples);
+    void (*sample)(const ushort* window, const PatchGrid& grid, short* samples);
+    /** A coarse look. Reads three bytes more behind each pixel.
+    @param rows of the second image: where the first pixel of each is, and what a column adds, in 2^-POSITION_BITS */
+    LookSums (*look)(const uchar* pixels1, size_t step1, const uchar* pixels2, size_t step2,
+            const Point (&rows)[LOOK], const Point& column);
+    //! Of every fourth row of TEMPLATE x TEMPLATE pixels. @param next from a pixel to its neighbour.
+    SquaredDifferences (*squareDifferences)(const uchar* pixels, size_t step, ptrdiff_t next);
     //! Samples of TEMPLATE x TEMPLATE pixels, their derivatives, and these times weights.
     void (*makeTemplate)(const uchar* pixels, size_t step, const PatchWeights& weights, PatchTemplate& out);
     //! The sums of samples.

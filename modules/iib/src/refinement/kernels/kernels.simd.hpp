@@ -43,84 +43,138 @@ void smooth(const uchar* const rows[3], ushort* sums, uchar* out, int width)
         out[x] = (uchar)((sums[x] + 2 * sums[x + 1] + sums[x + 2] + 8) >> 4);
 }
 
-inline void storePixels(int* out, const v_uint16& left, const v_uint16& right)
+void readWindow(const uchar* pixels, size_t step, Size size, ushort* window)
 {
-    const v_uint16 signs = vx_setall_u16(0x8080);
-    v_uint16 first, second;
-    v_zip(left ^ signs, right ^ signs, first, second);
-    v_store(out, v_reinterpret_as_s32(first));
-    v_store(out + INTS, v_reinterpret_as_s32(second));
-}
-
-void readWindow(const uchar* pixels, size_t step, Size size, int* window)
-{
-    for (int y = 0; y < size.height; y++, pixels += step, window += WINDOW)
-        for (int x = 0; x < size.width; x += 2 * SHORTS)
+    const v_uint8 signs = vx_setall_u8(128);
+    for (int y = 0; y < size.height; y++, pixels += step, window += WINDOW_STEP)
+    {
+        int x = 0;
+        for (; x < size.width; x += 2 * SHORTS)
         {
-            const uchar* const upper = pixels + x;
-            const uchar* const lower = upper + step;
-            v_uint8 left[2], right[2];
-            v_zip(vx_load(upper), vx_load(lower), left[0], left[1]);
-            v_zip(vx_load(upper + 1), vx_load(lower + 1), right[0], right[1]);
-            for (int i = 0; i < 2; i++)
-                storePixels(window + x + i * SHORTS, v_reinterpret_as_u16(left[i]),
-                        v_reinterpret_as_u16(right[i]));
+            v_uint8 first, second;
+            v_zip(vx_load(pixels + x) ^ signs, vx_load(pixels + step + x) ^ signs, first, second);
+            v_store(window + x, v_reinterpret_as_u16(first));
+            v_store(window + x + SHORTS, v_reinterpret_as_u16(second));
         }
+        if (x == size.width)
+            window[x] = (ushort)((pixels[x] | pixels[step + x] << 8) ^ 0x8080);
+    }
 }
 
-//! Weights, in 2^-8, of two neighbours in the halves of each lane: what is left of a position below whole pixels.
-inline v_int32 weightsOf(const v_int32& position)
+inline v_int32 samplesAt(const ushort* window, const v_int32& x, const v_int32& y)
 {
-    const v_int32 part = (position >> (POSITION_BITS - 8)) & vx_setall_s32(255);
-    return (part << 16) + (vx_setall_s32(256) - part);
-}
-
-inline v_int32 dotProduct(const v_int16& a, const v_int32& pairs)
-{
-    return v_dotprod(a, v_reinterpret_as_s16(pairs));
-}
-
-inline v_int32 samplesAt(const int* window, const v_int32& x, const v_int32& y)
-{
-    const v_int32 rows = (y >> (POSITION_BITS - WINDOW_BITS)) & vx_setall_s32(-WINDOW);
+    const v_int32 rows = (y >> (POSITION_BITS - WINDOW_BITS - 1)) & vx_setall_s32(-WINDOW_STEP);
     const v_int32 places = rows + (x >> POSITION_BITS);
-    const v_int16 four = v_reinterpret_as_s16(v_lut(window, places));
-    const v_int32 weightsX = weightsOf(x);
-    const v_int32 upper = dotProduct((four << 8) >> 8, weightsX), lower = dotProduct(four >> 8, weightsX);
-    const v_int32 both = (upper & vx_setall_s32(0xffff)) | (lower << 16);
-    const v_int32 sample = dotProduct(v_reinterpret_as_s16(both), weightsOf(y));
+    // two columns, each a pixel and the one below; what is left of positions below whole pixels, in 2^-8
+    const v_int16 four = v_reinterpret_as_s16(gatherWords<sizeof(*window)>(window, places));
+    const v_int32 right = x & vx_setall_s32(0xff00), down = y & vx_setall_s32(0xff00);
+    // 256 times the upper pixels, and so many times what the lower ones are more, modulo 2^16, which the sum fits
+    const v_int16 upper = four << 8, difference = v_sub_wrap(four >> 8, upper >> 8);
+    const v_int16 columns =
+            v_add_wrap(upper, v_mul_wrap(difference, v_reinterpret_as_s16((down << 8) | (down >> 8))));
+    const v_int32 weights = (right << 8) + (vx_setall_s32(256) - (right >> 8));
+    const v_int32 sample = v_dotprod(columns, v_reinterpret_as_s16(weights));
     return (sample + vx_setall_s32(1 << (15 - SAMPLE_BITS))) >> (16 - SAMPLE_BITS);
 }
 
-void sample(const int* window, const PatchGrid& grid, short* samples)
+void sample(const ushort* window, const PatchGrid& grid, short* samples)
 {
-    int columns[INTS];
-    for (int i = 0; i < INTS; i++)
-        columns[i] = i;
-    const v_int32 column = vx_load(columns);
-    const v_int32 x = column * vx_setall_s32(grid.column.x), y = column * vx_setall_s32(grid.column.y);
-    const auto from = [&](int i) {
-        const Point first = grid.first + i / PATCH * grid.row + i % PATCH * grid.column;
-        return samplesAt(window, x + vx_setall_s32(first.x), y + vx_setall_s32(first.y));
+    const int VECTORS = PATCH / INTS;  // of a row
+    v_int32 x[VECTORS], y[VECTORS];
+    for (int i = 0; i < VECTORS; i++)
+    {
+        int columns[INTS];
+        for (int k = 0; k < INTS; k++)
+            columns[k] = i * INTS + k;
+        x[i] = vx_setall_s32(grid.first.x) + vx_load(columns) * vx_setall_s32(grid.column.x);
+        y[i] = vx_setall_s32(grid.first.y) + vx_load(columns) * vx_setall_s32(grid.column.y);
+    }
+    const v_int32 rowX = vx_setall_s32(grid.row.x), rowY = vx_setall_s32(grid.row.y);
+    const auto next = [&](int i) {
+        const v_int32 result = samplesAt(window, x[i], y[i]);
+        x[i] += rowX;
+        y[i] += rowY;
+        return result;
     };
-    for (int i = 0; i < PATCH_SAMPLES; i += 2 * INTS)
-        v_store(samples + i, v_pack(from(i), from(i + INTS)));
+    for (const short* end = samples + PATCH_SAMPLES; samples < end;)
+        for (int i = 0; i < std::max(VECTORS, 2); i += 2, samples += SHORTS)
+        {
+            const v_int32 first = next(i % VECTORS), second = next((i + 1) % VECTORS);
+            v_store(samples, v_pack(first, second));
+        }
 }
 
-//! Eight pixels, every second one from the second on, as samples.
-inline v_int16x8 everySecond(const uchar* pixels)
+LookSums look(const uchar* pixels1, size_t step1, const uchar* pixels2, size_t step2,
+        const Point (&rows)[LOOK], const Point& column)
 {
-    return v_reinterpret_as_s16((v_reinterpret_as_u16(v_load(pixels)) >> 8) << SAMPLE_BITS);
+    static const int WEIGHTS[LOOK] = {1, 2, 3, 4, 4, 3, 2, 1};  // about a Gaussian of 8 pixels
+    static const int COLUMNS[LOOK] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const v_samples byte = v_setall_samples(255), middle = v_setall_samples(128);
+    const auto product = [](const v_samples& a, const v_samples& b) {  // of 16 bits, where b is not negative
+        return v_dotprod(v_reinterpret_as_s16(a), v_reinterpret_as_s16(b));
+    };
+    const auto positive = [](const v_samples& v) { return v & v_setall_samples(0xffff); };
+    v_samples sums[5];
+    for (v_samples& sum : sums)
+        sum = v_setall_samples(0);
+    for (int y = 0; y < LOOK; y++, pixels1 += LOOK_APART * step1)
+        for (int x = 0; x < LOOK; x += VTraits<v_samples>::max_nlanes)
+        {
+            const v_samples columns = v_load_samples(COLUMNS + x);
+            const v_samples weights = v_load_samples(WEIGHTS + x) * v_setall_samples(WEIGHTS[y]);
+            const auto place = [&](int first, int step) {
+                return (v_setall_samples(first) + columns * v_setall_samples(step)) >> POSITION_BITS;
+            };
+            const v_samples offsets =
+                    place(rows[y].y, column.y) * v_setall_samples((int)step2) + place(rows[y].x, column.x);
+            const v_samples first = (v_load_words(pixels1 + LOOK_APART * x) & byte) - middle;
+            const v_samples second = (gatherWords<1>(pixels2, offsets) & byte) - middle;
+            const v_samples weighted1 = product(first, weights), weighted2 = product(second, weights);
+            sums[0] += weighted1;
+            sums[1] += weighted2;
+            sums[2] += product(first, positive(weighted1));
+            sums[3] += product(second, positive(weighted2));
+            sums[4] += product(second, positive(weighted1));
+        }
+    return {v_reduce_sum(sums[0]), v_reduce_sum(sums[1]), v_reduce_sum(sums[2]), v_reduce_sum(sums[3]),
+            v_reduce_sum(sums[4])};
+}
+
+SquaredDifferences squareDifferences(const uchar* pixels, size_t step, ptrdiff_t next)
+{
+    static const short INSIDE[] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1,
+            -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, 0};
+    v_int32 first = vx_setzero_s32(), second = vx_setzero_s32();
+    for (int y = 2; y < TEMPLATE - 1; y += 4)
+        for (int x = 1; x < TEMPLATE - 1; x += SHORTS)
+        {
+            const auto pixelsAt = [&](ptrdiff_t beside) {
+                return v_reinterpret_as_s16(vx_load_expand(pixels + y * step + x + beside));
+            };
+            const v_int16 inside = vx_load(INSIDE + x - 1), centre = pixelsAt(0);
+            const v_int16 before = (centre - pixelsAt(-next)) & inside;
+            const v_int16 after = (pixelsAt(next) - centre) & inside;
+            first += v_dotprod(after, after);
+            second += v_dotprod(after - before, after - before);
+        }
+    return {v_reduce_sum(first), v_reduce_sum(second)};
+}
+
+//! Every second pixel, from the second on.
+inline auto everySecond(const uchar* pixels) -> decltype(v_reinterpret_as_s16(v_load_words(pixels)))
+{
+    return v_reinterpret_as_s16(v_reinterpret_as_u16(v_load_words(pixels)) >> 8);
 }
 
 void readTemplate(const uchar* pixels, size_t step, PatchTemplate& out)
 {
-    for (int i = 0; i < PATCH_SAMPLES; i += 8)
+    const auto middle = v_reinterpret_as_s16(v_setall_samples((128 << SAMPLE_BITS) * 0x10001));
+    for (int i = 0; i < PATCH_SAMPLES; i += 2 * VTraits<v_samples>::max_nlanes)
     {
         const uchar* const p = pixels + (2 * (i / PATCH) + 1) * step + 2 * (i % PATCH);
-        v_store(out.samples + i, everySecond(p) - v_setall_s16(128 << SAMPLE_BITS));
-        v_store(out.derivatives[0] + i, (everySecond(p + 1) - everySecond(p - 1)) >> 1);
-        v_store(out.derivatives[1] + i, (everySecond(p + step) - everySecond(p - step)) >> 1);
+        v_store(out.samples + i, (everySecond(p) << SAMPLE_BITS) - middle);
+        v_store(out.derivatives[0] + i, (everySecond(p + 1) - everySecond(p - 1)) << (SAMPLE_BITS - 1));
+        v_store(out.derivatives[1] + i, (everySecond(p + step) - everySecond(p - step)) << (SAMPLE_BITS - 1));
     }
 }
 
@@ -161,23 +215,30 @@ void sum(const short* samples, const PatchWeights& weights, const PatchTemplate&
         sums[k] = v_reduce_sum(products[k]);
 }
 
+//! A row of sumProducts(), whose number compilers know.
+template <int I> void sumProductsOf(const PatchTemplate& patch, int (*sums)[PARAMETERS])
+{
+    v_int32 products[I + 1];
+    for (v_int32& product : products)
+        product = vx_setzero_s32();
+    for (int s = 0; s < PATCH_SAMPLES; s += SHORTS)
+    {
+        const v_int16 weight = vx_load(patch.weights[1 + I] + s);
+        for (int j = 0; j <= I; j++)
+            products[j] += v_dotprod(weight, vx_load(patch.derivatives[j] + s));
+    }
+    for (int j = 0; j <= I; j++)
+        sums[I][j] = v_reduce_sum(products[j]);
+}
+
 void sumProducts(const PatchTemplate& patch, int (*sums)[PARAMETERS])
 {
-    for (int i = 0; i < PARAMETERS; i++)
-    {
-        const short* const weights = patch.weights[1 + i];
-        v_int32 products[PARAMETERS];
-        for (v_int32& product : products)
-            product = vx_setzero_s32();
-        for (int s = 0; s < PATCH_SAMPLES; s += SHORTS)
-        {
-            const v_int16 weight = vx_load(weights + s);
-            for (int j = 0; j < PARAMETERS; j++)
-                products[j] += v_dotprod(weight, vx_load(patch.derivatives[j] + s));
-        }
-        for (int j = 0; j <= i; j++)
-            sums[i][j] = v_reduce_sum(products[j]);
-    }
+    sumProductsOf<0>(patch, sums);
+    sumProductsOf<1>(patch, sums);
+    sumProductsOf<2>(patch, sums);
+    sumProductsOf<3>(patch, sums);
+    sumProductsOf<4>(patch, sums);
+    sumProductsOf<5>(patch, sums);
 }
 
 // The compiler makes vectors of this and the last function's loops.
@@ -210,8 +271,8 @@ Autocorrelation autocorrelate(const short* values)
 
 const RefinementKernels& refinementKernels()
 {
-    static const RefinementKernels kernels = {
-            smooth, readWindow, sample, makeTemplate, sum, sumProducts, subtract, autocorrelate};
+    static const RefinementKernels kernels = {smooth, readWindow, sample, look, squareDifferences,
+            makeTemplate, sum, sumProducts, subtract, autocorrelate};
     return kernels;
 }
 
