@@ -63,7 +63,6 @@ protected:
         const Mat queries = Codes::get().queries(part).clone(), trains = Codes::get().trains(part).clone();
         std::vector<DMatch> matches;
         const Threads some(threads);
-        declare.time(60);
         TEST_CYCLE() matcher->match(queries, trains, matches);
         SANITY_CHECK_NOTHING();
     }
@@ -109,6 +108,8 @@ PERF_TEST_P(IIB_MatchPair, mutual_and_ratio,
     else
         TEST_CYCLE()  // BFMatcher has no cross-check of two nearest ones
         {
+            two.clear();  // BFMatcher appends
+            back.clear();
             const BFMatcher matcher(NORM_HAMMING);
             matcher.knnMatch(queries, trains, two, 2);
             matcher.match(trains, queries, back);
