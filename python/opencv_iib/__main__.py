@@ -162,7 +162,8 @@ def _parser() -> argparse.ArgumentParser:
     mapping.add_argument('--points', type=int, default=2000, help='at most so many an image (%(default)s)')
     mapping.add_argument('--orb-and-akaze', action='store_true', help="the paper's points and descriptor in place of the recommended ones")
     mapping.add_argument('--force', action='store_true', help='replace a map that is there')
-    localizing.add_argument('--out', help='folder to write; older results there are replaced')
+    localizing.add_argument('--out', help='folder to write, older results there are replaced; or X.csv or - for a table alone')
+    localizing.add_argument('--sequence', action='store_true', help='images follow each other: look for each where the last one was')
     localizing.add_argument('--pictures', action='store_true', help='write each image with the points that agree')
     localizing.add_argument('--imu', metavar='IMU.CSV', help="smooth poses by an IMU, EuRoC's file; images must be named by their times")
     localizing.add_argument('--imu-from-camera', type=_pose, metavar='TX,TY,TZ,QX,QY,QZ,QW', default=np.eye(4),
@@ -227,12 +228,12 @@ def _localize(arguments: argparse.Namespace) -> int:
     if arguments.out is None:
         raise InvalidOption('--out is needed, but for --images -')
     found, count = _call(localization.localize_images, arguments)
-    _say(f'{arguments.out}: {found} of {count} images have a pose')
+    _say(f'{arguments.out}: {found} of {count} images have a pose', arguments.out)
     return _share(found, count)
 
 
 def _localize_stream(arguments: argparse.Namespace) -> int:
-    for option in ('out', 'imu', 'pictures'):
+    for option in ('out', 'imu', 'pictures', 'sequence'):
         if getattr(arguments, option):
             raise InvalidOption(f'--images - goes without --{option}')
     for stream in (sys.stdin, sys.stdout):

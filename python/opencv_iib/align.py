@@ -7,7 +7,6 @@ import html
 import itertools
 import json
 import os
-import re
 import shutil
 from typing import Any, Callable, Iterable, NamedTuple, Optional, Sequence, TextIO
 from urllib.parse import quote
@@ -20,7 +19,7 @@ from opencv_iib._files import is_same, new_results, rows_of
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._turns import Turn, upright
 from opencv_iib.colmap.features import check_max_size
-from opencv_iib.colmap.images import (FORMATS, TIFF, Masks, decode_pages, exif_orientation, find_images, holds, import_cv2, in_8_bits, no_data,
+from opencv_iib.colmap.images import (FORMATS, TIFF, Masks, decode_pages, exif_orientation, find_images, holds, import_cv2, in_8_bits, in_order, no_data,
                                      read_bytes, stamp, write_picture)
 from opencv_iib.colmap.parallel import Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
@@ -235,14 +234,14 @@ def _common(whole: list[int], images: Iterable[Aligned]) -> list[int]:
 
 
 def _write_tables(folder: str, reference: str, title: str, done: Sequence[Aligned], part: list[int]) -> None:
-    """The table and the page, on which images are in the order of people: 2 before 10."""
+    """The table and the page."""
     with _file(os.path.join(folder, 'transforms.csv')) as table:
         csv.writer(table).writerows([HEADER, *map(_row, done)])
 
     def shown(file: str) -> str:
         view = f'{VIEWS}/{file}.jpg'
         return quote(view if os.path.exists(os.path.join(folder, view)) else file)
-    ordered = sorted(done, key=lambda each: [(int(part), '') if n % 2 else (-1, part) for n, part in enumerate(re.split('([0-9]+)', each.name))])
+    ordered = sorted(done, key=lambda each: in_order(each.name))
     width, height = part[2:]
     figures = (FIGURE.format(reference=shown(reference), file=shown(each.file), name=html.escape(each.name), verdict=each, width=width, height=height)
                if each.file else f'<p>{html.escape(each.name)}: {html.escape(each.verdict)}</p>' for each in ordered)

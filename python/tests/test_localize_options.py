@@ -132,6 +132,45 @@ class LargeImages(Options):
         self.expect_mistake('at least 32 pixels, or 0', '--max-size', 31)
 
 
+class Sequence(Options):
+
+    def test_each_image_is_looked_for_where_the_last_one_was(self):
+        priors, real = [], Localizer.localize
+        for name in ('10.png', '9.png', '11.png', 'x.png'):
+            self.image(name, np.zeros((HEIGHT, WIDTH), np.uint8) if name == '10.png' else None)
+
+        def localize(localizer, image, camera, prior, *more):
+            priors.append((int(image.any()), prior is not None))
+            return real(localizer, image, camera, prior, *more)
+        with mock.patch.object(Localizer, 'localize', localize):
+            self.assertEqual(self.localize('--camera', CAMERA, '--sequence')[0], 4)
+        self.assertEqual(priors, [(1, False), (0, True), (1, False), (1, True)])
+        self.check(trajectory(self.out)['x'])
+        priors.clear()
+        with mock.patch.object(Localizer, 'localize', localize):
+            self.localize('--camera', CAMERA)
+        self.assertFalse(any(prior for _, prior in priors))
+
+
+class Table(Options):
+
+    def test_one_csv_has_verdicts_covariances_and_poses(self):
+        self.image('a.png')
+        self.image('b.png', np.zeros((HEIGHT, WIDTH), np.uint8))
+        self.assertEqual(self.localize('--camera', CAMERA)[0], 4)
+        expected = (self.out / 'frames.csv').read_bytes().decode()
+        for out in ('-', self.folder / 'x.csv'):
+            status, text, errors = run_command('localize', '--map', self.map, '--images', self.images, '--camera', CAMERA, '--out', out)
+            written = text if out == '-' else out.read_bytes().decode()
+            self.assertEqual((status, written), (4, expected))
+            self.assertIn('1 of 2 images have a pose', errors if out == '-' else text)
+        found, missing = csv.DictReader(io.StringIO(expected))
+        self.check(np.array([found[name] for name in ('tx', 'ty', 'tz', 'qx', 'qy', 'qz', 'qw')], float))
+        self.assertTrue(float(found['x_x']) > 0 and missing['reason'] and not missing['tx'])
+        self.assertEqual(sorted(os.listdir(self.folder)), ['images', 'out', 'x.csv'])
+        self.check_mistake('is no folder', 'localize', '--map', self.map, '--images', self.images, '--out', 'x.csv', '--pictures')
+
+
 class Stream(Options):
 
     def stream(self, text, *more):
@@ -172,7 +211,7 @@ class Stream(Options):
         self.assertEqual(priors, [False, True, True, False])
 
     def test_mistakes(self):
-        for option in (['--out', self.out], ['--pictures'], ['--imu', 'x.csv']):
+        for option in (['--out', self.out], ['--pictures'], ['--imu', 'x.csv'], ['--sequence']):
             status, _, errors = self.stream('', *option)
             self.assertEqual((status, errors), (2, f'localize: --images - goes without {option[0]}\n'))
         status, _, errors = run_command('localize', '--map', self.map, '--images', self.images)

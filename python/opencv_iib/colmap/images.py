@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import struct
 import tempfile
 import zlib
@@ -39,6 +40,11 @@ def find_images(folder: Path) -> list[str]:
             if file.lower().endswith(SUFFIXES):
                 names.append(os.path.relpath(os.path.join(root, file), folder).replace(os.sep, '/'))
     return sorted(names)
+
+
+def in_order(name: str) -> list[tuple[int, str]]:
+    """A key to sort names by as people do: 2 before 10."""
+    return [(int(part), '') if n % 2 else (-1, part) for n, part in enumerate(re.split('([0-9]+)', name))]
 
 
 def stamp(path: str) -> str:

@@ -2,8 +2,10 @@
 from __future__ import annotations
 
 import collections
+import contextlib
 import csv
 import functools
+import io
 import os
 from typing import Any, Callable, Iterable, Iterator, Optional, Sequence
 
@@ -11,11 +13,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core, error
-from opencv_iib._arguments import Path
-from opencv_iib._files import new_results, rows_of
-from opencv_iib._streams import note
+from opencv_iib._arguments import InvalidOption, Path
+from opencv_iib._files import check_outputs, new_results, rows_of, write_whole
+from opencv_iib._streams import is_open_file, note
 from opencv_iib.colmap.features import check_max_size, reduced, resized_mask
-from opencv_iib.colmap.images import (Masks, decode_grey, exif_focal_length, exif_orientation, find_images, import_cv2, is_utf8, read_bytes, read_grey,
+from opencv_iib.colmap.images import (Masks, decode_grey, exif_focal_length, exif_orientation, find_images, import_cv2, in_order, is_utf8, read_bytes, read_grey,
                                      write_picture)
 from opencv_iib.colmap.parallel import Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
@@ -217,11 +219,12 @@ def localize_stream(map: Path, paths: Iterable[str], camera: Optional[AnyCamera]
 def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCamera] = None, pictures: bool = False,
                     workers: Optional[int] = None, log: Callable[[str], None] = note, lines: bool = False, max_size: int = 0,
                     imu: Optional[Path] = None, imu_from_camera: ArrayLike = np.eye(4), exif: bool = True,
-                    mask: Optional[Path] = None) -> tuple[int, int]:
+                    mask: Optional[Path] = None, sequence: bool = False) -> tuple[int, int]:
     """Localizes the images below a folder and writes what was found.
 
     :param map: folder of a map.
-    :param out: folder to write: ``trajectory.txt``, ``frames.csv``, a COLMAP model of the localized images and, with
+    :param out: a name in .csv, or '-' for standard output, for the table ``frames.csv`` alone: of each image whether there is a pose, or why
+        not, its covariance and the pose. Else a folder to write: ``trajectory.txt``, ``frames.csv``, a COLMAP model of the localized images and, with
         `pictures`, ``matches/``. Results come there when all are complete; older ones are replaced.
     :param camera: of all images, as Localizer.localize takes it; None for each one's own, by its EXIF data or the map.
     :param workers: threads; None for one a core.
@@ -232,10 +235,18 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     :param imu_from_camera: as smooth_poses takes it.
     :param exif: images are looked for as upright as their EXIF data say; poses and cameras are those of the files' pixels.
     :param mask: what is described, as of Masks.
+    :param sequence: images follow each other in the order of their names (2 before 10) or times: each is first looked for where the last one was.
     :return: how many images have a pose, and of how many.
     """
-    workers = thread_count(workers)
-    names, times, readings = images_of(images, out), {}, None
+    workers, out = thread_count(workers), os.fspath(out)
+    table_alone = out.lower().endswith('.csv') or is_open_file(out)
+    names, times, readings = images_of(images, '' if table_alone else out), {}, None
+    if sequence:
+        names, workers = sorted(names, key=in_order), 1
+    if table_alone:
+        if pictures:
+            raise InvalidOption(f'{out} is no folder, which pictures need')
+        check_outputs([out], [])
     if imu is not None:
         readings = read_imu(os.fspath(imu))
         times = by_time(names, readings)
@@ -246,11 +257,17 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     frames: list[list[Any]] = []
     cameras: list[Optional[Camera]] = []
     found: list[Location] = []  # with their pixels alone, and not the points, which are many
-    with new_results(os.fspath(out), 'frames.csv', _earlier) as part:
+    last: Optional[NDArray[np.float64]] = None
+
+    def find_next(name: str, image: NDArray[np.uint8], camera: Camera, *more: Any) -> Location:
+        nonlocal last
+        location = find(image, camera, last, *more)
+        last = location.cam_from_world if sequence else None
+        return location
+    with contextlib.nullcontext('') if table_alone else new_results(out, 'frames.csv', _earlier) as part:
         localizer = Localizer(map, 0, lines)
         find = _finder(localizer, max_size)
-        for name, own, location in locate(lambda name, image, camera, *more: find(image, camera, None, *more), localizer.cameras,
-                                          images, names, given, workers, log, exif, mask):
+        for name, own, location in locate(find_next, localizer.cameras, images, names, given, workers, log, exif, mask):
             location = Location(reason=location) if own is None else location
             row = [name, int(location.found), location.reason, location.matches, location.inliers]
             if own is not None and location.covariance is not None:
@@ -267,7 +284,14 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
             poses = smoothed = smooth_poses(list(times.values()), found, readings, imu_from_camera)
             if smoothed.reason:
                 log(smoothed.reason)
-        _write(part, frames, poses, [labels[name] for name in names])
+        table = _table(frames, poses)
+        if table_alone:
+            write_whole(out, table)
+            return sum(pose is not None for pose in poses), len(names)
+        write_whole(os.path.join(part, 'frames.csv'), table)
+        with open(os.path.join(part, 'trajectory.txt'), 'w', encoding='utf-8') as trajectory:
+            trajectory.write(f'# name {" ".join(POSE)}\n')
+            trajectory.writelines(f'{labels[name]} {" ".join(_numbers(pose))}\n' for name, pose in zip(names, poses) if pose is not None)
         posed = [_core.PosedImage(name, own, pose, location.pixels) for name, own, pose, location in zip(names, cameras, poses, found)
                  if pose is not None and own is not None]
         if posed:  # no reader takes a model of none
@@ -275,15 +299,11 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     return sum(pose is not None for pose in poses), len(names)
 
 
-def _write(folder: str, frames: Sequence[list[Any]], poses: Sequence[Optional[NDArray[np.float64]]], labels: Sequence[str]) -> None:
-    """The table and the trajectory."""
-    with open(os.path.join(folder, 'trajectory.txt'), 'w', encoding='utf-8') as trajectory, \
-            open(os.path.join(folder, 'frames.csv'), 'w', encoding='utf-8', errors='backslashreplace', newline='') as file:
-        table, covariance = csv.writer(file), [f'{a}_{b}' for n, a in enumerate(AXES) for b in AXES[n:]]
-        table.writerow([*FRAME, *covariance, *POSE])
-        trajectory.write(f'# name {" ".join(POSE)}\n')
-        for row, pose, label in zip(frames, poses, labels):
-            numbers = [] if pose is None else _numbers(pose)
-            table.writerow([*row, *[''] * (5 + len(covariance) - len(row)), *numbers] if numbers else row)
-            if numbers:
-                trajectory.write(f'{label} {" ".join(numbers)}\n')
+def _table(frames: Sequence[list[Any]], poses: Sequence[Optional[NDArray[np.float64]]]) -> bytes:
+    """A CSV of the frames, with the poses."""
+    text = io.StringIO(newline='')
+    table, covariance = csv.writer(text), [f'{a}_{b}' for n, a in enumerate(AXES) for b in AXES[n:]]
+    table.writerow([*FRAME, *covariance, *POSE])
+    for row, pose in zip(frames, poses):
+        table.writerow(row if pose is None else [*row, *[''] * (len(FRAME) + len(covariance) - len(row)), *_numbers(pose)])
+    return text.getvalue().encode(errors='backslashreplace')
