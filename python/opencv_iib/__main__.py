@@ -123,14 +123,16 @@ def _parser() -> argparse.ArgumentParser:
 
     command = add('colmap', _colmap, 'describe and match a folder, for colmap mapper')
     command.add_argument('images', help='folder of images')
-    command.add_argument('database', help='file to write; an interrupted run goes on from NAME.partial')
+    command.add_argument('database', help='file to write, or to add new images to; an interrupted run goes on from NAME.partial')
     _features(command, FeatureOptions.points)
     command.add_argument('--camera-model', default='SIMPLE_RADIAL', choices=CAMERA_MODELS, type=str.upper, help='(%(default)s)')
     command.add_argument('--focal', type=float, default=0, help='focal length in pixels, instead of EXIF')
+    command.add_argument('--camera', metavar=CAMERA, help="COLMAP's name and parameters of the camera of all images")
+    command.add_argument('--camera-of', action='append', default=[], metavar=f'FOLDER={CAMERA}', help='of the images below a folder; also several times')
     command.add_argument('--share-cameras', action='store_true', help='one camera for images of one size and focal')
     command.add_argument('--pairs', default='exhaustive',
                          help=f'{", ".join(PAIRS)}, or a file with two names a line (%(default)s)')
-    command.add_argument('--neighbours', type=int, default=20, help='of sequential and retrieval (%(default)s)')
+    command.add_argument('--neighbours', type=int, default=20, help='of sequential, retrieval and gps (%(default)s)')
     command.add_argument('--ratio', type=float, default=.9, help='ratio test beside the cross-check (%(default)s; 1: none)')
     command.add_argument('--verify', default='auto', choices=VERIFIERS, type=str.lower, help='two-view geometry (%(default)s)')
     command.add_argument('--workers', type=int, help='threads (one a core)')

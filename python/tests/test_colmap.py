@@ -33,7 +33,8 @@ class WhatIsWritten(Collection):
         params = np.frombuffer(self.query('SELECT params FROM cameras')[0][0])
         np.testing.assert_allclose(params, [1.2 * 400, 200, 150, 0])
         self.assertEqual(self.query('PRAGMA user_version'), [(3800,)])
-        self.assertFalse([name for name, in self.query('SELECT name FROM sqlite_master') if name and 'iib' in name])
+        self.assertEqual(sorted(name for name, in self.query("SELECT name FROM sqlite_master WHERE type='table'") if 'iib' in name),
+                         ['iib_files', 'iib_settings'], 'what a later run grows from, without the codes')
         self.assertEqual(self.files(), ['database.db', 'images'])
         # verified matches are the known shift
         points = {number: np.frombuffer(data, np.float32).reshape(rows, 4)
@@ -43,6 +44,20 @@ class WhatIsWritten(Collection):
         errors = np.abs(points[1][found[:, 0], :2] - points[2][found[:, 1], :2] - (30, 20)).max(axis=1)
         self.assertGreater(rows, 30)
         self.assertGreater((errors < 2).mean(), .8)
+
+    def test_cameras_that_are_known(self):
+        camera = 'opencv,400,300,500,501,200,150,.1,.01,0,0'
+        for name in ('a.png', 'b.png'):
+            shutil.copy(self.images / name, self.images / 'more' / name)
+        self.assertEqual(run_command('colmap', self.images, self.database, '--points', '300', '--verify', 'magsac', '--camera', camera,
+                                     '--camera-of', 'more=OPENCV_FISHEYE,400,300,400,400,200,150,0,0,0,0')[0], 0)
+        rows = self.query('SELECT name, camera_id, model, prior_focal_length, params FROM images NATURAL JOIN cameras ORDER BY name')
+        self.assertEqual([row[:4] for row in rows], [('a.png', 1, 4, 1), ('b.png', 1, 4, 1), *((f'more/{n}.png', 2, 5, 1) for n in 'abc')])
+        self.assertEqual(np.frombuffer(rows[0][4]).tolist(), [500, 501, 200, 150, .1, .01, 0, 0])
+        for wrong in (['--camera', 'PINHOLE,9'], ['--camera-of', 'more'], ['--camera-of', 'more=FISH,1,2,3']):
+            self.check_mistake('', 'colmap', self.images, self.folder / 'x.db', *wrong)
+        self.assertRaisesRegex(ValueError, 'none of the 5 images', self.build, force=True, camera='PINHOLE,300,400,9,9,150,200')
+        self.assertEqual(self.lines[0], 'a.png: it has 400 x 300 pixels, its camera 300 x 400')
 
     def test_pairs_stored_the_other_way_round(self):
         self.assertEqual((pair_id(1, 2), pair_id(2, 1)), (2147483647 + 2,) * 2)
@@ -77,6 +92,49 @@ class Runs(Collection):
         self.assertEqual(self.database.read_bytes(), b'precious')
         self.build(force=True)
         self.assertEqual(self.query('SELECT COUNT(*) FROM images'), [(3,)])
+
+    def grow(self, described, **options):
+        """Builds again; which images are described, and which pairs are matched."""
+        seen, pairs = [], []
+        describe, match = pipeline.describe_image, pipeline.match_pair
+        with mock.patch.object(pipeline, 'describe_image', lambda folder, options, name: seen.append(name) or describe(folder, options, name)), \
+                mock.patch.object(pipeline, 'match_pair', lambda *a: pairs.append(1) or match(*a)):
+            counts = self.build(**options)
+        self.assertEqual(sorted(seen), described)
+        return counts, len(pairs)
+
+    def test_a_finished_database_grows(self):
+        self.build()
+        old = {table: self.query(f'SELECT * FROM {table}') for table in ('cameras', 'images', 'keypoints', 'matches', 'two_view_geometries')}
+        with closing(sqlite3.connect(self.database)) as connection:  # as a newer COLMAP does when it opens it
+            connection.execute('ALTER TABLE images ADD COLUMN frame INTEGER')
+            connection.execute('PRAGMA user_version=4000')
+        self.assertEqual(self.grow([])[1], 0)
+        self.assertEqual(self.query('PRAGMA user_version'), [(3800,)])
+        shutil.copy(self.images / 'a.png', self.images / 'd.png')
+        counts, matched = self.grow(['a.png', 'b.png', 'd.png', 'more/c.png'])
+        self.assertEqual((counts['images'], counts['pairs'], matched), (4, 6, 3))
+        for table, rows in old.items():
+            self.assertLessEqual(set(rows), set(self.query(f'SELECT * FROM {table}')))
+        grown = {row[1]: row[2:] for row in self.query('SELECT name, rows, data FROM images NATURAL JOIN keypoints')}
+        os.utime(self.images / 'more/c.png', (1, 1))
+        (self.images / 'b.png').unlink()
+        self.assertEqual(self.grow(['a.png', 'd.png', 'more/c.png'])[0]['pairs'], 3)
+        self.database.unlink()
+        self.build(workers=1)
+        self.assertEqual({row[1]: row[2:] for row in self.query('SELECT name, rows, data FROM images NATURAL JOIN keypoints')},
+                         {name: row for name, row in grown.items() if name != 'b.png'})
+
+    def test_only_images_of_new_pairs_are_described_again(self):
+        self.build(pairs='sequential', neighbours=1)
+        shutil.copy(self.images / 'a.png', self.images / 'z.png')
+        self.assertEqual(self.grow(['more/c.png', 'z.png'], pairs='sequential', neighbours=1)[1], 1)
+        with self.assertRaisesRegex(SettingsChanged, '--force'):
+            self.build(pairs='sequential', neighbours=2)
+        with self.ended_in(pipeline, 'match_pairs'):
+            shutil.copy(self.images / 'a.png', self.images / 'y.png')
+            self.build(pairs='sequential', neighbours=1)
+        self.assertEqual(self.build(pairs='sequential', neighbours=1)['images'], 5)
 
     def test_an_interrupted_run_goes_on(self):
         self.interrupt()
@@ -241,7 +299,7 @@ class Mistakes(Collection):
     def test_command_line(self):
         arguments = 'colmap', self.images, self.database, '--points', '200', '--verify', 'magsac', '--workers', '2'
         self.assertEqual(run_command(*arguments)[0], 0)
-        self.check_error('--force', *arguments)
+        self.check_error('other settings.*--force', *arguments, '--ratio', '.8')
         small = 'colmap', self.images, self.folder / 'small.db', '--points', '200', '--workers', '2'
         any_case = '--verify', 'MAGSAC', '--camera-model', 'opencv', '--pairs', 'Sequential', '--detector', 'hessian', '--preset', 'Small'
         self.assertEqual(run_command(*small, *any_case)[0], 0)

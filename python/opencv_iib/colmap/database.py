@@ -1,15 +1,16 @@
 """COLMAP's database file: the schema of COLMAP 3.8, which every later version upgrades when it opens it.
 
 While it is made it is called ``NAME.partial`` and has tables of its own, for the codes, the state of the image files and
-the settings; finish() makes a copy without them, which gets the name in one step.
+the settings; finish() makes a copy without the codes, which gets the name in one step. A later run grows from that.
 """
 from __future__ import annotations
 
 import contextlib
 import json
 import os
+import pathlib
 import sqlite3
-from typing import Any, Iterator, NoReturn, Optional
+from typing import Any, Iterator, NoReturn, Optional, Sequence
 
 import numpy as np
 
@@ -42,18 +43,30 @@ CREATE TABLE IF NOT EXISTS iib_codes (image_id INTEGER PRIMARY KEY NOT NULL, row
 CREATE TABLE IF NOT EXISTS iib_files (name TEXT PRIMARY KEY NOT NULL, stamp TEXT NOT NULL);
 '''
 
-#: COLMAP's camera models that a prior focal length alone fills: number, parameters after the focal length(s).
-CAMERA_MODELS = {'SIMPLE_PINHOLE': (0, 1, 0), 'PINHOLE': (1, 2, 0), 'SIMPLE_RADIAL': (2, 1, 1), 'RADIAL': (3, 1, 2),
-                 'OPENCV': (4, 2, 4)}
+#: COLMAP's names of camera models, by their numbers.
+MODELS = ('SIMPLE_PINHOLE', 'PINHOLE', 'SIMPLE_RADIAL', 'RADIAL', 'OPENCV', 'OPENCV_FISHEYE', 'FULL_OPENCV', 'FOV', 'SIMPLE_RADIAL_FISHEYE',
+          'RADIAL_FISHEYE', 'THIN_PRISM_FISHEYE', 'RAD_TAN_THIN_PRISM_FISHEYE', 'SIMPLE_DIVISION', 'DIVISION', 'SIMPLE_FISHEYE', 'FISHEYE', 'EUCM')
+
+#: COLMAP's camera models that a prior focal length alone fills: how many of these, and parameters after the centre.
+CAMERA_MODELS = {'SIMPLE_PINHOLE': (1, 0), 'PINHOLE': (2, 0), 'SIMPLE_RADIAL': (1, 1), 'RADIAL': (1, 2), 'OPENCV': (2, 4)}
 
 UNCALIBRATED = 3  # COLMAP's TwoViewGeometry::UNCALIBRATED
 
 
 class SettingsChanged(ValueError):
-    """An unfinished database cannot be gone on with: it was begun with other settings or images."""
+    """A database cannot be gone on with: it was begun with other settings or images."""
 
-    def __init__(self, why: str) -> None:
-        super().__init__(f'{why}: go on as it was begun, or begin anew with force (--force)')
+    def __init__(self, path: str, settings: str) -> None:
+        super().__init__(f'{path} was begun with other settings, {settings}: go on as it was begun, or begin anew with force (--force)')
+
+
+def settings_of(path: str) -> Optional[str]:
+    """What a finished database was made with; None of another file."""
+    try:
+        with contextlib.closing(sqlite3.connect(f'{pathlib.Path(path).absolute().as_uri()}?mode=ro', uri=True)) as db:
+            return str(db.execute('SELECT settings FROM iib_settings').fetchone()[0])
+    except (sqlite3.Error, TypeError):
+        return None
 
 
 def pair_id(a: int, b: int) -> int:
@@ -65,10 +78,10 @@ class Database(contextlib.AbstractContextManager['Database']):
     """A database in the making. One process at a time, and one thread of it, uses it."""
 
     def __init__(self, path: str, settings: dict[str, Any], force: bool = False) -> None:
-        """Opens ``path.partial``, new or as an interrupted run left it.
+        """Opens ``path.partial``, as an interrupted run left it, or new: with what the finished database holds, or with `force` empty.
 
         :param force: begin anew instead of raising.
-        :raises SettingsChanged: if that run had other settings.
+        :raises SettingsChanged: if these had other settings.
         :raises FileExistsError: for a file that no such run has left.
         """
         self.path, self.partial, self._finished = path, path + '.partial', False
@@ -88,6 +101,8 @@ class Database(contextlib.AbstractContextManager['Database']):
                     os.unlink(self.partial + log)
             os.truncate(self.partial, 0)  # the same file: it may be locked
             self._open(settings)
+        if not force and os.path.exists(path) and not self.stamps():
+            self._grow()
 
     def _refuse(self, log: str = '') -> NoReturn:
         raise FileExistsError(f'{self.partial}{log} is there and not of an unfinished run: remove it, or give the database another name')
@@ -116,7 +131,17 @@ class Database(contextlib.AbstractContextManager['Database']):
         if row is None:
             self._db.execute('INSERT INTO iib_settings VALUES (?)', (text,))
         elif row[0] != text:
-            raise SettingsChanged(f'{self.partial} was begun with other settings, {row[0]}')
+            raise SettingsChanged(self.partial, row[0])
+
+    def _grow(self) -> None:
+        """Takes what the finished database holds, but not what a newer COLMAP has made of it when it opened it."""
+        self._db.execute('ATTACH ? AS old', (os.fsencode(self.path),))
+        with self._transaction():
+            for table, columns in (('cameras', 'camera_id, model, width, height, params, prior_focal_length'), ('images', 'image_id, name, camera_id'),
+                                   ('keypoints', 'image_id, rows, cols, data'), ('matches', 'pair_id, rows, cols, data'),
+                                   ('two_view_geometries', 'pair_id, rows, cols, data, config, F, E, H, qvec, tvec'), ('iib_files', 'name, stamp')):
+                self._db.execute(f'INSERT INTO {table} ({columns}) SELECT {columns} FROM old.{table}')
+        self._db.execute('DETACH old')
 
     def __exit__(self, *exc: Any) -> None:
         """Closes the file, and removes it if there is nothing to go on from."""
@@ -126,13 +151,12 @@ class Database(contextlib.AbstractContextManager['Database']):
             os.unlink(self.partial)
 
     def finish(self) -> None:
-        """Makes the file, without what COLMAP does not know. Until it is whole, a later run can still go on."""
+        """Makes the file, without the codes. Until it is whole, a later run can still go on."""
         with replaced(self.path) as (new,):
             with contextlib.closing(sqlite3.connect(os.fsencode(new), isolation_level=None)) as db:
                 self._db.backup(db)
                 db.execute('PRAGMA journal_mode=DELETE')
-                for table in ('iib_codes', 'iib_files', 'iib_settings'):
-                    db.execute(f'DROP TABLE {table}')
+                db.execute('DROP TABLE iib_codes')
                 db.execute('VACUUM')
         self._finished = True
 
@@ -169,18 +193,28 @@ class Database(contextlib.AbstractContextManager['Database']):
         """Name, width and height of each image."""
         yield from self._db.execute('SELECT name, width, height FROM images NATURAL JOIN cameras ORDER BY name')
 
-    def add_image(self, name: str, stamp: str, width: int, height: int, model: str, focal: float, prior: bool,
+    def without_codes(self) -> dict[str, int]:
+        """Numbers by name of images that were described in an earlier run, whose codes are not there."""
+        return dict(self._db.execute('SELECT name, image_id FROM images WHERE image_id NOT IN (SELECT image_id FROM iib_codes) ORDER BY name'))
+
+    def add_codes(self, image: int, keypoints: np.ndarray, codes: np.ndarray) -> bool:
+        """Of an image that was described in an earlier run; False, and nothing is added, if its keypoints are others now."""
+        same = np.array_equal(self.load_keypoints(image), keypoints)
+        if same:
+            self._db.execute('INSERT INTO iib_codes VALUES (?, ?, ?, ?)', (image, *codes.shape, codes.tobytes()))
+        return same
+
+    def add_image(self, name: str, stamp: str, width: int, height: int, model: str, params: Sequence[float], prior: bool,
                   shared: bool, keypoints: np.ndarray, codes: np.ndarray) -> None:
         """An image with its camera, keypoints and codes, in one transaction.
 
         :param stamp: tells whether the file is the same later.
+        :param model: one of MODELS.
         :param shared: use a camera that is there already, if it is the same in all.
         :param keypoints: N x 4 float32: x, y (pixels; the centre of the first pixel is .5), scale, angle (radians).
         :param codes: N x bytes uint8.
         """
-        number, focals, others = CAMERA_MODELS[model]
-        params = np.array([focal] * focals + [width / 2, height / 2] + [0] * others, np.float64)
-        values = number, width, height, params.tobytes(), int(prior)
+        values = MODELS.index(model), width, height, np.array(params, np.float64).tobytes(), int(prior)
         with self._transaction():
             same = self._db.execute('SELECT camera_id FROM cameras WHERE (model, width, height, params, prior_focal_length) = '
                                     '(?, ?, ?, ?, ?)', values).fetchone() if shared else None

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 import threading
 from typing import Any, Optional
 
@@ -42,6 +43,7 @@ class FeatureOptions:
         for field in ('detector', 'preset'):  # in any case, and members of Preset
             name = getattr(self, field)
             object.__setattr__(self, field, getattr(name, 'name', str(name)).upper())
+        object.__setattr__(self, 'mask', None if self.mask is None else os.fspath(self.mask))
 
     def check(self) -> None:
         """:raises InvalidOption: naming what is wrong, and what there is."""

@@ -19,7 +19,9 @@ SUFFIXES = ('.jpg', '.jpeg', '.png', '.tif', '.tiff', '.bmp', '.webp', '.ppm', '
 SAMPLES, ORIENTATION, NO_DATA = 0x0115, 0x0112, 0xA481  # the last one is GDAL's
 EXIF_IFD, FOCAL_LENGTH, FOCAL_LENGTH_35MM, PLANE_X_RESOLUTION, PLANE_UNIT = 0x8769, 0x920A, 0xA405, 0xA20E, 0xA210
 MILLIMETRES = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}  # of EXIF's units of resolution
-ASCII, SHORT, LONG, RATIONAL = 2, 3, 4, 5  # EXIF's types
+GPS_IFD, LATITUDE_REF, LATITUDE, LONGITUDE_REF, LONGITUDE, ALTITUDE_REF, ALTITUDE = 0x8825, 1, 2, 3, 4, 5, 6
+EARTH = 6371000  # metres, the radius
+BYTE, ASCII, SHORT, LONG, RATIONAL = 1, 2, 3, 4, 5  # EXIF's types
 FORMATS = {'PNG': '.png', 'TIFF': '.tif', 'JPEG': '.jpg'}  #: that pictures are written in, and their suffixes
 START_OF_SCAN, APP1 = 0xda, 0xe1  # JPEG's markers
 TIFF = (b'II*\0', b'MM\0*', b'II+\0', b'MM\0+')  # how files begin
@@ -385,7 +387,7 @@ def _directory(tiff: bytes, at: int) -> tuple[dict[int, Any], int]:
     found: dict[int, Any] = {}
     for entry in range(at + 2, at + 2 + 12 * count, 12):
         tag, kind, length = struct.unpack_from(order + 'HHI', tiff, entry)
-        form = {ASCII: f'{length}s', SHORT: f'{length}H', LONG: f'{length}I', RATIONAL: f'{2 * length}I'}.get(kind)
+        form = {BYTE: f'{length}B', ASCII: f'{length}s', SHORT: f'{length}H', LONG: f'{length}I', RATIONAL: f'{2 * length}I'}.get(kind)
         with contextlib.suppress(struct.error):  # of an entry that leads nowhere
             if form is not None and length:
                 size = struct.calcsize(order + form)
@@ -449,3 +451,16 @@ def exif_focal_length(data: bytes, width: int, height: int) -> Optional[float]:
         return exif[FOCAL_LENGTH_35MM] / 35.0 * max(width, height)
     focal, resolution = exif.get(FOCAL_LENGTH, 0), exif.get(PLANE_X_RESOLUTION, 0)
     return focal * resolution / MILLIMETRES.get(int(exif.get(PLANE_UNIT, 2)), 25.4) or None
+
+
+def gps_place(path: str) -> Optional[np.ndarray]:
+    """Where a file's EXIF data say that it was taken, metres from the Earth's centre; None if they do not."""
+    try:
+        tiff = _exif(read_bytes(path))
+        gps = _directory(tiff, int(_first_directory(tiff)[GPS_IFD][0]))[0]
+        latitude, longitude = (np.radians(np.dot(gps[tag], (1, 1 / 60, 1 / 3600)) * (-1 if gps.get(ref) in ('S', 'W') else 1))
+                               for tag, ref in ((LATITUDE, LATITUDE_REF), (LONGITUDE, LONGITUDE_REF)))
+        height = gps.get(ALTITUDE, [0])[0] * (-1 if gps.get(ALTITUDE_REF, [0])[0] == 1 else 1)
+    except (struct.error, KeyError, ValueError, OSError):
+        return None
+    return np.array([np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)]) * float(EARTH + height)

@@ -51,6 +51,16 @@ def sequential(count: int, overlap: int) -> Iterator[Pair]:
             yield a, b
 
 
+def nearest(places: Sequence[Optional[np.ndarray]], neighbours: int) -> Iterator[Pair]:
+    """Each image with those nearest to it; images without a place are in no pair."""
+    placed = [i for i, place in enumerate(places) if place is not None]
+    known = np.array([places[i] for i in placed], float)
+    for a, place in zip(placed, known):
+        for b in np.argsort(np.linalg.norm(known - place, axis=1), kind='stable')[:neighbours + 1]:
+            if placed[b] != a:
+                yield a, placed[b]
+
+
 def from_file(path: Path, numbers: Mapping[str, Optional[int]]) -> Iterator[Pair]:
     """Pairs of a text file with two names a line, as COLMAP and hloc write them; '#' begins a line of comment.
 

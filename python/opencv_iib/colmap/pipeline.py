@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import json
 import os
 import socket
 from typing import Any, Callable, Iterable, Iterator, Optional, Sequence
@@ -14,16 +15,17 @@ from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._files import check_outputs, only_writer, output_file
 from opencv_iib._streams import note
 from opencv_iib.colmap import pairs as pair_lists
-from opencv_iib.colmap.database import CAMERA_MODELS, Database
+from opencv_iib.colmap.database import CAMERA_MODELS, Database, SettingsChanged, settings_of
 from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
-from opencv_iib.colmap.images import (Masks, decode_grey, exif_focal_length, exif_orientation, find_images, import_cv2, is_listable, is_utf8,
-                                     read_bytes, stamp)
+from opencv_iib.colmap.images import (Masks, decode_grey, exif_focal_length, exif_orientation, find_images, gps_place, import_cv2, is_listable,
+                                     is_utf8, read_bytes, stamp)
 from opencv_iib.colmap.parallel import Cluster, Crew, Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
 from opencv_iib.colmap.verify import colmap_binary, magsac, matches_importer
+from opencv_iib.localization.localizer import Camera
 from opencv_iib.matcher import HierarchicalMatcher
 
-PAIRS = ('exhaustive', 'sequential', 'retrieval')
+PAIRS = ('exhaustive', 'sequential', 'retrieval', 'gps')
 VERIFIERS = ('auto', 'colmap', 'magsac', 'none')
 
 
@@ -34,9 +36,11 @@ class Options:
     features: FeatureOptions = FeatureOptions()
     camera_model: str = 'SIMPLE_RADIAL'  #: one of database.CAMERA_MODELS
     focal: float = 0  #: pixels, of all images; 0: by EXIF, else 1.2 times the longer side without prior
+    camera: Optional[str] = None  #: of all images, ``'MODEL,WIDTH,HEIGHT,PARAMS'`` with COLMAP's names and parameters, in place of these
+    camera_of: Sequence[str] = ()  #: ``'FOLDER=MODEL,WIDTH,HEIGHT,PARAMS'``: of the images below a folder of the images'
     share_cameras: bool = False  #: one camera for all images of the same size and focal length
     pairs: Path = 'exhaustive'  #: one of PAIRS, or the name of a file with two names a line
-    neighbours: int = 20  #: images that each is paired with (sequential, retrieval)
+    neighbours: int = 20  #: images that each is paired with (sequential, retrieval, gps)
     ratio: float = .9  #: ratio test, as HierarchicalMatcher.setMaxRatio; 1: none. Matches are always mutual.
     verify: str = 'auto'  #: one of VERIFIERS; auto: COLMAP's program if it is there, else MAGSAC
 
@@ -46,6 +50,15 @@ class Options:
                             ('pairs', pairs.lower() if pairs.lower() in PAIRS else pairs)):  # in any case
             object.__setattr__(self, field, name)
 
+    def camera_for(self, name: str) -> Optional[Camera]:
+        """That of the longest folder that an image is in, or of all images; None if neither is known.
+
+        :raises opencv_iib.error: for one that is none."""
+        given = [('', self.camera)] if self.camera is not None else []
+        given += [(folder.strip('/') + '/', camera) for folder, _, camera in (text.partition('=') for text in self.camera_of)]
+        inside = [(folder, camera) for folder, camera in given if name.startswith(folder)]
+        return Camera.parse(max(inside)[1]) if inside else None
+
     def check(self) -> None:
         """:raises InvalidOption: naming what is wrong, and what there is."""
         self.features.check()
@@ -54,6 +67,14 @@ class Options:
             raise InvalidOption(f'focal is {self.focal}: it must be a number of pixels, or 0')
         if self.camera_model not in CAMERA_MODELS:
             raise InvalidOption(f'no camera model {self.camera_model}: there are {", ".join(CAMERA_MODELS)}')
+        for text in self.camera_of:
+            if not text.partition('=')[1]:
+                raise InvalidOption(f'camera_of is {text}: it must be FOLDER=MODEL,WIDTH,HEIGHT,PARAMS')
+        for camera in [*self.camera_of, *([] if self.camera is None else [self.camera])]:
+            try:
+                Camera.parse(camera.rpartition('=')[2])
+            except opencv_iib.error as e:
+                raise InvalidOption(str(e)) from None
         if self.pairs not in PAIRS and not os.path.isfile(self.pairs):
             raise InvalidOption(f'pairs: {self.pairs} is neither a file nor one of {", ".join(PAIRS)}')
         if self.verify not in VERIFIERS:
@@ -73,8 +94,8 @@ def _features(options: FeatureOptions) -> Features:
 
 
 def describe_image(folder: str, options: Options, name: str
-                   ) -> tuple[np.ndarray, np.ndarray, int, int, Optional[float]]:
-    """COLMAP's keypoints, codes, width, height, and the focal length if it is known."""
+                   ) -> tuple[np.ndarray, np.ndarray, int, int, str, Sequence[float], bool]:
+    """COLMAP's keypoints, codes, width and height; model and parameters of the camera, and whether its focal length is known."""
     if not os.path.isdir(folder):
         raise FileNotFoundError(f'{folder} is not there on {socket.gethostname()}: all workers have to read the images '
                                 'by the same name')
@@ -85,7 +106,15 @@ def describe_image(folder: str, options: Options, name: str
     rows, codes = _features(options.features)(image, exif_orientation(data) if options.features.exif else 1,
                                               Masks(options.features.mask).of(name, image))
     height, width = image.shape
-    return to_colmap(rows), codes, width, height, options.focal or exif_focal_length(data, width, height)
+    camera = options.camera_for(name)
+    if camera is not None and (camera.width, camera.height) != (width, height):
+        raise ValueError(f'it has {width} x {height} pixels, its camera {camera.width} x {camera.height}')
+    if camera is not None:
+        return to_colmap(rows), codes, width, height, camera.model, camera.params, True
+    focal = options.focal or exif_focal_length(data, width, height)
+    focals, others = CAMERA_MODELS[options.camera_model]
+    params = [focal or 1.2 * max(width, height)] * focals + [width / 2, height / 2] + [0] * others
+    return to_colmap(rows), codes, width, height, options.camera_model, params, bool(focal)
 
 
 def describe_images(database: Database, folder: str, names: Sequence[str], options: Options, crew: Crew,
@@ -114,15 +143,36 @@ def describe_images(database: Database, folder: str, names: Sequence[str], optio
             failed += 1
             log(f'{name}: {reason}')
         else:
-            keypoints, codes, width, height, focal = result
-            database.add_image(name, stamps[name], width, height, options.camera_model, focal or 1.2 * max(width, height),
-                               bool(focal), options.share_cameras, keypoints, codes)
+            keypoints, codes, width, height, model, params, prior = result
+            shared = options.share_cameras or options.camera_for(name) is not None
+            database.add_image(name, stamps[name], width, height, model, params, prior, shared, keypoints, codes)
         progress.step()
     progress.close()
     return failed
 
 
-def list_pairs(database: Database, names: Iterable[str], options: Options, level_sizes: tuple[int, ...]
+def describe_again(database: Database, folder: str, names: Sequence[str], options: Options, level_sizes: tuple[int, ...], crew: Crew) -> None:
+    """Gives the images of a finished database their codes again, if they are of a pair that it does not hold."""
+    without = database.without_codes()
+    if not without:
+        return
+    needed = set(without.values())
+    if options.pairs != 'retrieval':
+        pairs, _ = list_pairs(database, folder, names, options, level_sizes)
+        needed &= {image for pair in pairs if not database.has_pair(*pair) for image in pair}
+    missing = [name for name, image in without.items() if image in needed]
+    progress = Progress('describing again', len(missing))
+    for name, result in in_parallel(functools.partial(describe_image, os.path.abspath(folder), options), missing, crew):
+        if isinstance(result, Exception):
+            raise result
+        if not database.add_codes(without[name], *result[:2]):
+            raise ValueError(f'{name} has other points than when the database was made, by another version of OpenCV perhaps: begin anew with '
+                             'force (--force)')
+        progress.step()
+    progress.close()
+
+
+def list_pairs(database: Database, folder: str, names: Iterable[str], options: Options, level_sizes: tuple[int, ...]
                ) -> tuple[Iterator[tuple[int, int]], Optional[int]]:
     """Pairs of image ids, and how many there are if that is known."""
     numbers = database.image_ids()
@@ -136,6 +186,9 @@ def list_pairs(database: Database, names: Iterable[str], options: Options, level
     elif options.pairs == 'retrieval':
         chosen, total = pair_lists.distinct(pair_lists.retrieval(
             count, lambda i: database.load_codes(ids[i]), level_sizes, options.neighbours)), None
+    elif options.pairs == 'gps':
+        places = [gps_place(os.path.join(folder, name)) for name in numbers]
+        chosen, total = pair_lists.distinct(pair_lists.nearest(places, options.neighbours)), None
     else:
         return pair_lists.distinct(pair_lists.from_file(options.pairs, {**dict.fromkeys(names), **numbers})), None
     return ((ids[a], ids[b]) for a, b in chosen), total
@@ -211,15 +264,16 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
 
     :param images: folder; names in the database are relative to it.
     :param database: file to write. Until all is done it is ``database.partial``; a call after an interrupted one
-        goes on from there, if the options are the same.
+        goes on from there, if the options are the same. One that an earlier call has finished grows: new images and their pairs are added,
+        those that were changed or are gone are described anew or left out, and all others stay, with their numbers.
     :param force: replace a database that is there, and begin anew if an unfinished one had other options.
     :param workers: threads; None for one a core.
     :param client: a ``distributed.Client`` whose workers describe and match instead. They read the images by the same
         name; the database is written here, and is the same row for row.
     :return: counts of images, keypoints, pairs, matches, and of images that failed; see Database.counts.
-    :raises FileExistsError: if the database is there and force is not set.
+    :raises FileExistsError: if there is a file that is no database of this function, and force is not set.
     :raises ValueError: for options that are none, and for a folder without images.
-    :raises SettingsChanged: if an unfinished database had other options and force is not set.
+    :raises SettingsChanged: if the database had other options and force is not set.
     :raises FileExistsError: if what is at ``database.partial`` is of no unfinished run.
     :raises BlockingIOError: if another process is writing the database.
     """
@@ -234,6 +288,8 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
     if options.pairs not in PAIRS:
         for _ in pair_lists.from_file(options.pairs, dict.fromkeys(names)):
             pass  # a mistake in it is told before work begins
+    if options.pairs == 'gps' and all(gps_place(os.path.join(images, name)) is None for name in names):
+        raise ValueError(f'no image below {images} has a place by GPS in its EXIF data')
     verify = options.verify
     if verify == 'auto':
         verify = 'colmap' if colmap_binary() and all(map(is_listable, names)) else 'magsac'
@@ -245,15 +301,19 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
     settings = {**dataclasses.asdict(options), 'verify': verify, 'images': os.path.abspath(images),
                 'version': opencv_iib.__version__}
     if os.path.exists(database):
-        if not force:
-            raise FileExistsError(f'{database} is there already: remove it, or pass force (--force)')
+        made = None if force else settings_of(database)
+        if made is None and not force:
+            raise FileExistsError(f'{database} is there already, and not of this command: remove it, or pass force (--force)')
+        if made is not None and json.loads(made) != json.loads(json.dumps(settings)):
+            raise SettingsChanged(database, made)
         check_outputs([database], [options.pairs, *(os.path.join(images, name) for name in names)])
     sizes = _features(options.features).level_sizes()  # raises for a detector that cv2 lacks
     with only_writer(database + '.partial'), Database(database, settings, force) as target:
         failed = describe_images(target, images, names, options, crew, log)
         if failed == len(names):
             raise ValueError(f'none of the {failed} images below {images} can be described')
-        match_pairs(target, list_pairs(target, names, options, sizes), options.ratio, sizes, verify, crew)
+        describe_again(target, images, names, options, sizes, crew)
+        match_pairs(target, list_pairs(target, images, names, options, sizes), options.ratio, sizes, verify, crew)
         verify_pairs(target, binary, log)
         counts = {**target.counts(), 'failed': failed}
         target.finish()
