@@ -28,19 +28,10 @@ struct Extremum
     float smaller, larger;
 };
 
-/** Leaves the strongest, of which those of the same response are ordered by scale and place: at most `most`, or all if
- that is 0. They are sorted. */
-void keepStrongest(std::vector<Extremum>& extrema, size_t most)
+//! Stronger ones come first; those of the same response are ordered by scale and place.
+bool isBefore(const Extremum& a, const Extremum& b)
 {
-    const auto before = [](const Extremum& a, const Extremum& b) {
-        return std::tie(b.response, a.scale, a.y, a.x) < std::tie(a.response, b.scale, b.y, b.x);
-    };
-    if (most > 0 && extrema.size() > most)
-    {
-        std::nth_element(extrema.begin(), extrema.begin() + most, extrema.end(), before);
-        extrema.resize(most);
-    }
-    std::sort(extrema.begin(), extrema.end(), before);
+    return std::tie(b.response, a.scale, a.y, a.x) < std::tie(a.response, b.scale, b.y, b.x);
 }
 
 class BlobFinder
@@ -148,8 +139,10 @@ private:
             }
             if (most > 0 && found.size() >= 2 * most)
             {
-                keepStrongest(found, most);
-                least = std::max(least, found.back().response);
+                const auto weakest = found.begin() + (most - 1);
+                std::nth_element(found.begin(), weakest, found.end(), isBefore);
+                least = std::max(least, weakest->response);
+                found.resize(most);
             }
         }
     }
@@ -200,14 +193,20 @@ std::vector<KeyPoint> findBlobs(
         const Mat& normalized, const HessianParameters& parameters, const Mat& mask, int reduction)
 {
     const BlobFinder finder(normalized, parameters, mask, reduction);
-    std::vector<Extremum> found;
-    for (const std::vector<Extremum>& part : finder.extrema())
-        found.insert(found.end(), part.begin(), part.end());
-    keepStrongest(found, parameters.maxFeatures);
+    const std::vector<std::vector<Extremum>> parts = finder.extrema();
+    std::vector<const Extremum*> found;
+    for (const std::vector<Extremum>& part : parts)
+        for (const Extremum& e : part)
+            found.push_back(&e);
+    const auto before = [](const Extremum* a, const Extremum* b) { return isBefore(*a, *b); };
+    const size_t most = parameters.maxFeatures > 0 ? parameters.maxFeatures : found.size();
+    std::nth_element(found.begin(), found.begin() + std::min(most, found.size()), found.end(), before);
+    found.resize(std::min(most, found.size()));
+    std::sort(found.begin(), found.end(), before);
     std::vector<KeyPoint> keypoints;
     keypoints.reserve(found.size());
-    for (const Extremum& e : found)
-        keypoints.push_back(finder.refined(e));
+    for (const Extremum* e : found)
+        keypoints.push_back(finder.refined(*e));
     return keypoints;
 }
 

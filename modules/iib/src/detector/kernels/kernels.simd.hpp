@@ -35,15 +35,22 @@ void centre(const uchar* pixels, short* out, int width)
         out[x] = (short)(std::max(pixels[x] - 128, -127) * (1 << CONTRAST_BITS));
 }
 
+// Sums of four contrasts, and rounding, fit 16 bits: adding without saturation is cheaper on some machines.
+inline v_int16 plus(const v_int16& a, const v_int16& b) { return v_add_wrap(a, b); }
+inline v_int16 minus(const v_int16& a, const v_int16& b) { return v_sub_wrap(a, b); }
+
 void smooth(const short* const rows[5], SmoothingWeights weights, short* out, int width)
 {
     const v_int16 near = vx_setall_s16(weights.near), far = vx_setall_s16(weights.far);
+    // copies: compilers think that stores of vectors change what `rows` holds
+    const short *const a = rows[0], *const b = rows[1], *const m = rows[2], *const d = rows[3],
+                       *const e = rows[4];
     for (int x = 0; x < width; x += SHORTS)
     {
-        const v_int16 c = vx_load(rows[2] + x), twice = c + c;
-        const v_int16 nearer = vx_load(rows[1] + x) + vx_load(rows[3] + x) - twice;
-        const v_int16 farther = vx_load(rows[0] + x) + vx_load(rows[4] + x) - twice;
-        v_store(out + x, c + v_mul_hi(nearer, near) + v_mul_hi(farther, far));
+        const v_int16 c = vx_load(m + x), twice = plus(c, c);
+        const v_int16 nearer = minus(plus(vx_load(b + x), vx_load(d + x)), twice);
+        const v_int16 farther = minus(plus(vx_load(a + x), vx_load(e + x)), twice);
+        v_store(out + x, plus(c, plus(v_mul_hi(nearer, near), v_mul_hi(farther, far))));
     }
 }
 
@@ -54,12 +61,12 @@ void response(const short* const rows[3], int distance, float factor, float* out
     for (int x = 0; x < width; x += SHORTS)
     {
         const int l = x - distance, r = x + distance;
-        const v_int16 c = vx_load(row + x), twice = c + c;
-        const v_int16 xx = vx_load(row + l) + vx_load(row + r) - twice;
-        const v_int16 yy = vx_load(above + x) + vx_load(below + x) - twice;
-        const v_int16 xy =
-                (vx_load(above + l) + vx_load(below + r)) - (vx_load(above + r) + vx_load(below + l));
-        const v_int16 mixed = (xy + vx_setall_s16(2)) >> 2;
+        const v_int16 c = vx_load(row + x), twice = plus(c, c);
+        const v_int16 xx = minus(plus(vx_load(row + l), vx_load(row + r)), twice);
+        const v_int16 yy = minus(plus(vx_load(above + x), vx_load(below + x)), twice);
+        const v_int16 xy = minus(
+                plus(vx_load(above + l), vx_load(below + r)), plus(vx_load(above + r), vx_load(below + l)));
+        const v_int16 mixed = plus(xy, vx_setall_s16(2)) >> 2;
         v_int16 first0, first1, second0, second1;
         v_zip(xx, mixed, first0, first1);
         v_zip(yy, vx_setzero_s16() - mixed, second0, second1);
@@ -68,17 +75,16 @@ void response(const short* const rows[3], int distance, float factor, float* out
     }
 }
 
-inline v_float32 largestOfColumn(const float* const rows[3], int x)
-{
-    return v_max(v_max(vx_load(rows[0] + x), vx_load(rows[1] + x)), vx_load(rows[2] + x));
-}
-
 void largest(const float* const rows[3], float* out, int width)
 {
-    v_float32 before = largestOfColumn(rows, -INTS), columns = largestOfColumn(rows, 0);
+    const float *const above = rows[0], *const row = rows[1], *const below = rows[2];
+    const auto ofColumn = [&](int x) {
+        return v_max(v_max(vx_load(above + x), vx_load(row + x)), vx_load(below + x));
+    };
+    v_float32 before = ofColumn(-INTS), columns = ofColumn(0);
     for (int x = 0; x < width; x += INTS)
     {
-        const v_float32 after = largestOfColumn(rows, x + INTS);
+        const v_float32 after = ofColumn(x + INTS);
         const v_float32 left = v_extract<INTS - 1>(before, columns), right = v_extract<1>(columns, after);
         v_store(out + x, v_max(v_max(left, columns), right));
         before = columns;
