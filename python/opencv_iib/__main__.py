@@ -28,8 +28,11 @@ from opencv_iib.demo import demo
 from opencv_iib.enums import AlignmentModel
 from opencv_iib.localization import Camera
 from opencv_iib.localization.imu import parse_pose
+from opencv_iib.match_list import match_list
 from opencv_iib.measure import match_images
 
+STATUS = ('status: 0; 1 for an error; 2 for a mistake in the command line; 3 where nothing was found (no match, no pose, no image aligned or '
+          'localized), 4 where some images or pairs were; 130 after Ctrl-C')
 CAMERA = 'MODEL,WIDTH,HEIGHT,PARAMS'
 
 
@@ -84,32 +87,40 @@ def _call(function: Callable[..., Any], arguments: argparse.Namespace, **more: A
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog='opencv-iib', description=__doc__)
+    parser = _Parser(prog='opencv-iib', description=__doc__, epilog=STATUS)
     parser.add_argument('--version', action='version', version=f'opencv_iib {__version__}')
     commands = parser.add_subparsers(dest='command', required=True)
 
-    def add(name: str, run: Callable[[argparse.Namespace], int], description: str) -> argparse.ArgumentParser:
-        added: argparse.ArgumentParser = commands.add_parser(name, help=description)
+    def add(name: str, run: Callable[[argparse.Namespace], int], description: str, needed: str, example: str) -> argparse.ArgumentParser:
+        added: argparse.ArgumentParser = commands.add_parser(
+            name, help=description, description=f'{description[0].upper()}{description[1:]}.', usage=f'opencv-iib {name} {needed} [options]',
+            epilog=f'example: opencv-iib {name} {example}', formatter_class=argparse.RawDescriptionHelpFormatter)
         added.set_defaults(run=run)
         added.add_argument('--quiet', action='store_true', help='say only what is wrong')
         return added
 
-    command = add('demo', _demo, 'match two images and write a picture; status 3: nothing agrees')
+    command = add('demo', _demo, 'match two images and write a picture',
+                  'IMAGE IMAGE', 'day.jpg night.jpg --out matches.png')
     command.add_argument('image_a')
     command.add_argument('image_b')
     command.add_argument('--out', default='opencv_iib_demo.png', help='picture to write (%(default)s)')
     _features(command, 1000)
 
-    command = add('match', _match, 'match two images to a fraction of a pixel; status 3: no matches, or no pose')
-    command.add_argument('image_a')
-    command.add_argument('image_b')
-    command.add_argument('--out', default='matches.csv', help='file to write, a line a match; also .json and .npz, and - for standard output (%(default)s)')
+    command = add('match', _match, 'match two images, or pairs of a list, to a fraction of a pixel',
+                  'IMAGE IMAGE', 'day.jpg night.jpg --out matches.json --camera PINHOLE,640,480,500,500,320,240')
+    command.add_argument('pair', nargs='*', metavar='image', help='two of them')
+    command.add_argument('--pairs', metavar='LIST', help='instead, a file with two names a line: each pair is kept when it is done')
+    command.add_argument('--images', metavar='FOLDER', help='that the names are of')
+    command.add_argument('--workers', type=int, help='threads, of a list (one a core)')
+    command.add_argument('--out', default='matches.csv', help='file to write, a line a match; also .json and .npz, and - for standard output '
+                         '(%(default)s); of a list a folder, or a file in .h5')
     command.add_argument('--picture', help='picture to write')
     command.add_argument('--camera', dest='cameras', action='append', default=[], metavar=CAMERA, type=_camera,
                          help="find the pose too, with COLMAP's name and parameters of the camera; twice for two cameras")
     _features(command, 2000)
 
-    command = add('align', _align, 'lay images onto a reference; status 0: all, 4: some, 3: none')
+    command = add('align', _align, 'lay images onto a reference',
+                  'REFERENCE IMAGES... --out FOLDER', 'noon.jpg webcam/ --out aligned --crop')
     command.add_argument('reference')
     command.add_argument('images', nargs='+', help='of a plane, or from the same place: files, folders, patterns; those that are done stay')
     command.add_argument('--out', required=True, help='folder to write; older results there are replaced')
@@ -121,7 +132,8 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument('--workers', type=int, help='threads (one a core)')
     _seen(command)
 
-    command = add('colmap', _colmap, 'describe and match a folder, for colmap mapper')
+    command = add('colmap', _colmap, 'describe and match a folder, for colmap mapper',
+                  'IMAGES DATABASE', 'photos/ database.db --pairs retrieval --camera-of drone=OPENCV,4000,3000,3100,3100,2000,1500,0,0,0,0')
     command.add_argument('images', help='folder of images')
     command.add_argument('database', help='file to write, or to add new images to; an interrupted run goes on from NAME.partial')
     _features(command, FeatureOptions.points)
@@ -139,16 +151,20 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument('--scheduler', metavar='ADDRESS', help="have the workers of Dask's scheduler there do it")
     command.add_argument('--force', action='store_true', help='replace a database that is there')
 
-    command = add('hloc', _hloc, "write a database's keypoints and matches as hloc reads them")
+    command = add('hloc', _hloc, "write a database's keypoints and matches as hloc reads them",
+                  'DATABASE FEATURES MATCHES PAIRS', 'database.db features.h5 matches.h5 pairs.txt')
     command.add_argument('database', help='what the command colmap wrote')
     command.add_argument('features', help='HDF5 file to write')
     command.add_argument('matches', help='HDF5 file to write')
     command.add_argument('pairs', help='list of pairs to write')
     command.add_argument('--force', action='store_true', help='replace files that are there')
 
-    mapping = add('map', _map, 'make a map for localization of a COLMAP model')
-    localizing = add('localize', _localize, 'find where images were taken; status 0: all, 4: some, 3: none')
-    updating = add('update', _update, 'add the light of images to a map; status as of localize')
+    mapping = add('map', _map, 'make a map for localization of a COLMAP model',
+                  '--model MODEL --images FOLDER --out MAP', '--model sparse/0 --images photos/ --out map')
+    localizing = add('localize', _localize, 'find where images were taken',
+                  '--map MAP --images FOLDER --out OUT', '--map map --images evening/ --out poses.csv --sequence')
+    updating = add('update', _update, 'add the light of images to a map',
+                  '--map MAP --images FOLDER', '--map map --images evening/')
     mapping.add_argument('--model', required=True, help='folder of a COLMAP model, binary or text')
     for each in (localizing, updating):
         each.add_argument('--map', required=True, help='folder that the command map wrote')
@@ -192,7 +208,19 @@ def _demo(arguments: argparse.Namespace) -> int:
 
 
 def _match(arguments: argparse.Namespace) -> int:
-    measured = _call(match_images, arguments, options=_take(FeatureOptions, arguments))
+    pair, options = vars(arguments).pop('pair'), _take(FeatureOptions, arguments)
+    if arguments.pairs is not None:
+        cameras, picture = vars(arguments).pop('cameras'), vars(arguments).pop('picture')
+        if pair or picture is not None or len(cameras) > 1 or arguments.images is None or arguments.out == 'matches.csv':
+            raise InvalidOption('--pairs LIST goes with --images FOLDER, --out and one --camera, and without images and --picture')
+        found, count = _call(match_list, arguments, camera=cameras[0] if cameras else None, options=options)
+        _say(f'{arguments.out}: {found} of {count} pairs show the same')
+        return _share(found, count)
+    if len(pair) != 2 or arguments.images is not None:
+        raise InvalidOption('two images are needed, or --pairs LIST --images FOLDER')
+    for name in ('pairs', 'images', 'workers'):
+        del vars(arguments)[name]
+    measured = _call(match_images, arguments, image_a=pair[0], image_b=pair[1], options=options)
     _say(f'{arguments.out}: {measured}', arguments.out)
     return 0 if measured.found else NONE_FOUND
 

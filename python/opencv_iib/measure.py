@@ -133,43 +133,70 @@ def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, pictu
     check_outputs([path for path in (out, picture) if path is not None], (image_a, image_b))
     if picture is not None:
         check_picture(picture)
-    stored, orientations = zip(*(read_with_orientation(path, options.exif) for path in (image_a, image_b)))
-    lenses = [as_camera(camera) for camera in (cameras[0], cameras[-1])] if len(cameras) else []
-    for path, image, lens in zip((image_a, image_b), stored, lenses):
-        height, width = image.shape[:2]
-        if (lens.width, lens.height) != (width, height):
-            raise InvalidOption(f'{os.fspath(path)} has {width} x {height} pixels, its camera {lens.width} x {lens.height}: give the '
-                                f"image's own camera, PINHOLE,{width},{height},F,F,{width / 2:g},{height / 2:g} with its focal length F in "
-                                'pixels')
-    pair, features = _Pair(stored, orientations, lenses), Features(options)
-    masks = [mask if mask is None else upright(mask, orientation)
-             for mask, orientation in zip(Masks(options.mask).all_of((image_a, image_b), stored), orientations)]
-    (rows_a, codes_a), (rows_b, codes_b) = (features(image, mask=mask) for image, mask in zip(pair.images, masks))
-    measured = pair.measured((rows_a, rows_b), (codes_a, codes_b), match(codes_a, codes_b).pairs)
-    if not options.orientation and len(rows_a) and len(rows_b) and not measured.found:  # EXIF may tell nothing of a turned camera
-        extractor = copy.copy(features.extractor)
-        extractor.setOrientation(Orientation.KEYPOINT)
-        rotation, *rows, matches = matchRotated(pair.images[0], pair.images[1], extractor, HierarchicalMatcher.createRecommended(), -1,
-                                                rows_a, rows_b)
-        codes = [extractor.compute(image, some)[1] for image, some in zip(pair.images, rows)]
-        turned = pair.measured(rows, codes, matches[:, :2])
-        if turned.found:
-            measured = turned._replace(rotation=rotation)
+    lenses = [as_camera(camera) for camera in (cameras[0], cameras[-1])] if len(cameras) else [None, None]
+    masks, features, paths = Masks(options.mask), Features(options), [os.fspath(image_a), os.fspath(image_b)]
+    masks.check([os.path.basename(path) for path in paths])
+    views = [View.of(path, masks, features, lens, os.path.basename(path)) for path, lens in zip(paths, lenses)]
+    measured = measure(views[0], views[1], features)
     if out is not None:
         measured.save(out)
     if picture is not None:
         what = 'refined' if measured.pose is None else 'agree with the pose'
-        write_picture(picture, draw(stored, measured.matches.points1, measured.matches.points2, measured.agree, [
+        write_picture(picture, draw([view.stored for view in views], measured.matches.points1, measured.matches.points2, measured.agree, [
             (f'{len(measured.bits)} matches:  ', INK), (f'{measured.agree.sum()} {what}', GOOD), (f'  {(~measured.agree).sum()} others', OTHER)]))
     return measured
+
+
+class View(NamedTuple):
+    """An image, and what is found in it."""
+
+    stored: np.ndarray  #: as its file has it, BGR
+    image: np.ndarray  #: as people see it
+    turn: Turn
+    lens: Optional[Camera]  #: of the file
+    rows: np.ndarray  #: keypoints of the upright image
+    codes: np.ndarray
+
+    @classmethod
+    def of(cls, path: str, masks: Masks, features: Features, lens: Optional[Camera], name: str,
+           described: Optional[tuple[np.ndarray, np.ndarray]] = None) -> View:
+        """:param name: by which it has its mask.
+        :param described: its rows and codes, if they are known.
+        :raises ValueError: for a file that is no image, or of another size than its camera's or its mask."""
+        stored, orientation = read_with_orientation(path, features.options.exif)
+        height, width = stored.shape[:2]
+        if lens is not None and (lens.width, lens.height) != (width, height):
+            raise InvalidOption(f'{path} has {width} x {height} pixels, its camera {lens.width} x {lens.height}: give the '
+                                f"image's own camera, PINHOLE,{width},{height},F,F,{width / 2:g},{height / 2:g} with its focal length F in "
+                                'pixels')
+        image = upright(stored, orientation)
+        if described is None:
+            mask = masks.of(name, stored)
+            described = features(image, mask=mask if mask is None else upright(mask, orientation))
+        return cls(stored, image, Turn(orientation, width, height), lens, *described)
+
+
+def measure(first: View, second: View, features: Features) -> Measured:
+    """What match_images does, of images that were described by these features."""
+    pair = _Pair(first, second)
+    measured = pair.measured((first.rows, second.rows), (first.codes, second.codes), match(first.codes, second.codes).pairs)
+    if features.options.orientation or not len(first.rows) or not len(second.rows) or measured.found:
+        return measured
+    extractor = copy.copy(features.extractor)  # EXIF may tell nothing of a turned camera
+    extractor.setOrientation(Orientation.KEYPOINT)
+    rotation, *rows, matches = matchRotated(first.image, second.image, extractor, HierarchicalMatcher.createRecommended(), -1, first.rows,
+                                            second.rows)
+    codes = [extractor.compute(image, some)[1] for image, some in zip(pair.images, rows)]
+    turned = pair.measured(rows, codes, matches[:, :2])
+    return turned._replace(rotation=rotation) if turned.found else measured
 
 
 class _Pair:
     """Two images as people see them, and the cameras of their files, if these are known."""
 
-    def __init__(self, stored: Sequence[np.ndarray], orientations: Sequence[int], lenses: Sequence[Camera]) -> None:
-        self.images, self.lenses = list(map(upright, stored, orientations)), lenses
-        self._turns = [Turn(orientation, *image.shape[1::-1]) for image, orientation in zip(stored, orientations)]
+    def __init__(self, *views: View) -> None:
+        self.images, self._turns = [view.image for view in views], [view.turn for view in views]
+        self.lenses = [view.lens for view in views if view.lens is not None]
 
     def measured(self, rows: Sequence[np.ndarray], codes: Sequence[np.ndarray], given: np.ndarray) -> Measured:
         """From keypoints of the upright images, their codes and matches of them."""

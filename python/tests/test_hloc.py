@@ -82,7 +82,7 @@ class Export(Collection):
         for file in self.hloc:
             file.write_bytes(b'precious')
         before = self.files()
-        with mock.patch.object(hloc, '_pair', side_effect=OSError('no space left')), self.assertRaises(OSError):
+        with mock.patch.object(hloc, 'pair_name', side_effect=OSError('no space left')), self.assertRaises(OSError):
             self.export(self.hloc, force=True)
         self.assertEqual([file.read_bytes() for file in self.hloc], [b'precious'] * 3)
         with self.assertRaisesRegex(ValueError, 'three files'):

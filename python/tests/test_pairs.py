@@ -1,4 +1,6 @@
 """Which pairs of images are matched."""
+import csv
+import os
 import shutil
 import struct
 import zlib
@@ -8,11 +10,75 @@ import numpy as np
 
 from collection import Collection
 from opencv_iib.colmap import pairs as pair_lists
-from opencv_iib.colmap import hloc, pipeline
+from opencv_iib import match_list
+from opencv_iib.colmap import FeatureOptions, hloc, pipeline
 from opencv_iib.colmap.images import gps_place
-from support import optional
+from opencv_iib.measure import match_images
+from support import optional, run_command
 
 h5py = optional('h5py')
+
+
+class Lists(Collection):
+    """The command match with --pairs."""
+
+    def match(self, out, text='a.png more/c.png\nb.png a.png\na.png b.png\n', status=0, *more, described=None):
+        listing = self.folder / 'pairs.txt'
+        listing.write_text(text)
+        with mock.patch.object(match_list.View, 'of', wraps=match_list.View.of) as of:
+            self.assertEqual(run_command('match', '--pairs', listing, '--images', self.images, '--out', out, '--points', 300, *more)[0], status)
+        known = [call for call in of.call_args_list if call.args[-1] is None]
+        if described is not None:
+            self.assertEqual(sorted(call.args[-2] for call in known), described)
+
+    def test_a_folder_of_tables_goes_on_where_it_was(self):
+        out, camera = self.folder / 'out', ('--camera', 'SIMPLE_PINHOLE,400,300,500,200,150')
+        self.match(out, 'a.png more/c.png\n', 0, described=['a.png', 'more/c.png'])
+        before = (out / 'a.png/more-c.png.csv').stat().st_ino
+        (out / 'pairs.csv').write_bytes((out / 'pairs.csv').read_bytes() + b'b.png,a.png,1')  # as a killed run leaves it
+        self.match(out, described=['a.png', 'b.png'])
+        self.assertEqual((out / 'a.png/more-c.png.csv').stat().st_ino, before)
+        self.match(out, described=[])
+        with open(out / 'pairs.csv', newline='') as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([(row['image_a'], row['image_b'], row['found']) for row in rows], [('a.png', 'more/c.png', '1'), ('a.png', 'b.png', '1')])
+        alone = match_images(self.images / 'a.png', self.images / 'b.png', self.folder / 'alone.csv', options=FeatureOptions(points=300))
+        self.assertEqual((out / 'a.png/b.png.csv').read_text(), (self.folder / 'alone.csv').read_text())
+        self.assertEqual(rows[1]['matches'], str(len(alone.bits)))
+        os.utime(self.images / 'b.png', (1, 1))
+        self.match(out, described=['a.png', 'b.png'])
+        self.match(self.folder / 'posed', 'a.png b.png\n', 0, *camera)
+        with open(self.folder / 'posed/pairs.csv', newline='') as file:
+            self.assertAlmostEqual(float(next(csv.DictReader(file))['r11']), 1, delta=.01)
+
+    def test_hloc_reads_the_file(self):
+        if h5py is None:
+            self.skipTest('no h5py')
+        out = self.folder / 'x.h5'
+        self.match(out, described=['a.png', 'b.png', 'more/c.png'])
+        self.match(out, described=[])
+        alone = match_images(self.images / 'a.png', self.images / 'more/c.png', options=FeatureOptions(points=300))
+        with h5py.File(out) as file:
+            group = file['a.png/more-c.png']
+            np.testing.assert_array_equal(group['keypoints1'][:], alone.matches.points2)
+            self.assertEqual(group['scores'].shape, (len(alone.bits),))
+            self.assertEqual(sorted(file['a.png']), ['b.png', 'more-c.png'])
+        with h5py.File(self.folder / 'mine.h5', 'w') as file:
+            file['precious'] = 1
+        self.match(self.folder / 'mine.h5', status=1)
+        (self.folder / 'text.h5').write_text('precious')
+        self.match(self.folder / 'text.h5', status=1)
+
+    def test_images_that_cannot_be_read_and_mistakes(self):
+        (self.images / 'broken.png').write_bytes(b'no image')
+        out = self.folder / 'out'
+        self.match(out, 'a.png broken.png\nb.png broken.png\na.png b.png\n', 4)
+        (out / 'mine').write_text('precious')
+        self.check_error('holds other files', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', self.images)
+        self.check_error('not the names of two images', 'match', '--pairs', self.images / 'broken.png', '--images', self.images, '--out', out)
+        for wrong in ([], ['--images', self.images], ['--images', self.images, '--out', out, 'a.png'], ['--images', self.images, '--out', out, '--picture', 'x']):
+            self.check_mistake('goes with', 'match', '--pairs', self.folder / 'pairs.txt', *wrong)
+        self.check_mistake('two images are needed', 'match', self.images / 'a.png')
 
 
 class Pairs(Collection):

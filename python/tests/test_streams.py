@@ -2,17 +2,20 @@
 import io
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
 import sys
 import unittest
+from contextlib import redirect_stdout
 from pathlib import Path
 from unittest import mock
 
 import numpy as np
 
 from opencv_iib import _streams
+from opencv_iib.__main__ import _parser
 from opencv_iib.colmap.progress import Progress
 from support import InFolder, cv2, run_command, texture
 
@@ -119,6 +122,18 @@ class Commands(InFolder):
         done = subprocess.run([sys.executable, '-c', 'try: import opencv_iib\nexcept KeyboardInterrupt: print("raised")'], capture_output=True,
                               env=environment)
         self.assertEqual((done.returncode, done.stdout), (0, b'raised\n'))
+
+
+class Help(unittest.TestCase):
+
+    def test_it_fits_on_a_screen_and_has_an_example_that_can_be_run(self):
+        for command in ('demo', 'match', 'align', 'colmap', 'hloc', 'map', 'localize', 'update'):
+            with self.subTest(command), mock.patch.dict(os.environ, COLUMNS='80'), redirect_stdout(io.StringIO()) as out:
+                self.assertRaises(SystemExit, _parser().parse_args, [command, '--help'])
+            lines = out.getvalue().splitlines()
+            self.assertLess(len(lines), 50)
+            self.assertRegex(lines[-1], f'^example: opencv-iib {command} ')
+            self.assertEqual(_parser().parse_args(shlex.split(lines[-1])[2:]).command, command)
 
 
 class Mistakes(InFolder):

@@ -16,7 +16,8 @@ from opencv_iib.colmap.images import is_listable
 SHORT = 2 ** 15 - 1  # hloc's own files hold int16; its readers take any integers
 
 
-def _pair(a: str, b: str) -> str:
+def pair_name(a: str, b: str) -> str:
+    """Of a pair of images, in hloc's files."""
     return '/'.join(name.replace('/', '-') for name in (a, b))
 
 
@@ -53,7 +54,7 @@ def _write_matches(connection: sqlite3.Connection, path: str, pairs: str, names:
             found = np.frombuffer(data, np.uint32).reshape(-1, 2)
             nearest: np.ndarray = np.full(counts[a], -1, np.int16 if counts[b] <= SHORT else np.int32)
             nearest[found[:, 0]] = found[:, 1]
-            group = file.create_group(_pair(names[a], names[b]))
+            group = file.create_group(pair_name(names[a], names[b]))
             group['matches0'] = nearest
             group['matching_scores0'] = (nearest >= 0).astype(np.float16)
             listing.write(f'{names[a]} {names[b]}\n')
