@@ -6,7 +6,7 @@
 #include "byte_source.hpp"
 #include "support/temporary_file.hpp"
 
-#include "../modules/iib/src/common/checked_file.hpp"
+#include "opencv2/iib/detail/checked_file.hpp"
 #include "opencv2/iib.hpp"
 
 namespace {

@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "iib/src/common/files.hpp"
+#include "opencv2/iib/detail/files.hpp"
 #include "iib_geometry/src/output_folder.hpp"
 
 namespace iib_python {

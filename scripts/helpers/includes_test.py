@@ -2,7 +2,7 @@
 """The picture of includes of modules: includes_test.py FOLDER...
 
 It reads the sources, since it is about them. Arrows between folders point downwards only, no file includes itself by way of
-others, where a header and the source of the same name count as one, nothing leaves the module but for what iib shares, and raw
+others, where a header and the source of the same name count as one, nothing leaves the module but for what tests share (what modules share is in opencv2/iib/detail), and raw
 intrinsics stand in one file.
 """
 import pathlib
@@ -23,9 +23,8 @@ for wing in ('detector', 'refinement'):
     ALLOWED[wing].add('normalization')
 ALLOWED['detector'].add('normalization/kernels')  # halves the normalized image, too
 ALLOWED['descriptor'].add('detector')  # an extractor writes and reads the file of its detector
-#: What other modules may include of iib, and how many files each has at least.
-SHARED = ('iib/src/common/checked_file.hpp', 'iib/src/common/files.hpp', 'iib/src/matcher/packed_codes.hpp', 'iib/test/support/*.hpp',
-          'iib/perf/perf_precomp.hpp')
+#: What tests of other modules may include of iib, and how many files each module has at least.
+SHARED = ('iib/test/support/*.hpp', 'iib/perf/perf_precomp.hpp')
 FILES = {'iib': 80, 'iib_index': 10, 'iib_geometry': 50}
 INTRINSICS = re.compile(r'(?:^|[^a-zA-Z_])(?:_mm[0-9]*_|__m(?:128|256|512)|v[a-z]+q_[a-z]*[0-9])', re.MULTILINE)
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "../../iib/src/common/files.hpp"
+#include "opencv2/iib/detail/files.hpp"
 
 namespace cv::iib {
 

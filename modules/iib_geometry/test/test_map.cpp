@@ -6,7 +6,7 @@
 
 #include "map/colmap_model.hpp"
 #include "wall.hpp"
-#include "../../iib/src/common/checked_file.hpp"
+#include "opencv2/iib/detail/checked_file.hpp"
 
 namespace opencv_test {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "precomp.hpp"
 #include "code_segment.hpp"
-#include "../../iib/src/common/checked_file.hpp"
+#include "opencv2/iib/detail/checked_file.hpp"
 
 namespace cv {
 namespace iib {

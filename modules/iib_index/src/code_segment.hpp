@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mapped_file.hpp"
-#include "../../iib/src/matcher/packed_codes.hpp"
+#include "opencv2/iib/detail/packed_codes.hpp"
 
 #include <mutex>
 

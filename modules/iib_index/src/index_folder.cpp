@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "precomp.hpp"
 #include "index_folder.hpp"
-#include "../../iib/src/common/files.hpp"
+#include "opencv2/iib/detail/files.hpp"
 
 #ifdef _WIN32
 #define NOMINMAX 1  // as libstdc++ has it

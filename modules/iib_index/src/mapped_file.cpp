@@ -2,7 +2,7 @@
 
 #include "precomp.hpp"
 #include "mapped_file.hpp"
-#include "../../iib/src/common/files.hpp"
+#include "opencv2/iib/detail/files.hpp"
 
 #ifdef _WIN32
 #define NOMINMAX 1  // as libstdc++ has it

@@ -2,7 +2,7 @@
 
 #include "index_fixture.hpp"
 
-#include "../../iib/src/common/checked_file.hpp"
+#include "opencv2/iib/detail/checked_file.hpp"
 
 namespace opencv_test {
 namespace {

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../precomp.hpp"
-#include "checked_file.hpp"
+#include "opencv2/iib/detail/checked_file.hpp"
 
 #include <cstring>
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "../precomp.hpp"
-#include "files.hpp"
+#include "opencv2/iib/detail/files.hpp"
 
 namespace cv {
 namespace iib {

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../precomp.hpp"
-#include "files.hpp"
+#include "opencv2/iib/detail/files.hpp"
 
 #include <atomic>
 #include <fstream>

@@ -3,9 +3,10 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../precomp.hpp"
-#include "packed_codes.hpp"
-
+#include "kernels/hamming.hpp"
 #include "parameters.hpp"
+
+#include "opencv2/iib/detail/packed_codes.hpp"
 
 namespace cv {
 namespace iib {
@@ -20,6 +21,8 @@ void PackedCodes::check(const std::vector<int>& levelSizes)
     p.thresholds.assign(p.stages(), 0.f);
     iib::check(p);
 }
+
+CodePacking PackedCodes::packing() const { return scans.packing; }
 
 bool PackedCodes::knows(unsigned packing) { return packing == PACKING_ADDERS || packing == PACKING_TABLES; }
 

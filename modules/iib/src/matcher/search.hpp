@@ -4,7 +4,9 @@
 
 #pragma once
 
-#include "packed_codes.hpp"
+#include "kernels/hamming.hpp"
+
+#include "opencv2/iib/detail/packed_codes.hpp"
 
 #include <atomic>
 #include <new>

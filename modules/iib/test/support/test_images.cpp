@@ -4,7 +4,7 @@
 
 #include "test_images.hpp"
 
-#include "../../src/common/checked_file.hpp"
+#include "opencv2/iib/detail/checked_file.hpp"
 #include "oracle_pixels.hpp"
 
 #include <fstream>

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <unordered_map>
 
-#include "../../../iib/src/common/files.hpp"
+#include "opencv2/iib/detail/files.hpp"
 #include "opencv2/core/quaternion.hpp"
 
 namespace cv::iib {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <set>
 
-#include "../../../iib/src/common/checked_file.hpp"
+#include "opencv2/iib/detail/checked_file.hpp"
 
 namespace cv::iib {
 namespace {

@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "code_layout.hpp"
+#include "opencv2/iib/detail/code_layout.hpp"
 
 #include <algorithm>
 #include <climits>
@@ -13,10 +13,7 @@
 namespace cv {
 namespace iib {
 
-//! Bits of a MatchKey that hold a train code's number among all images.
-static constexpr int INDEX_BITS = 40;
-
-//! A neighbour as one number: distance above, index below, so that ties go to the lowest index.
+//! A neighbour as one number: distance above, INDEX_BITS of index below, so that ties go to the lowest index.
 typedef uint64 MatchKey;
 const MatchKey NO_MATCH = ~(MatchKey)0;
 

@@ -6,17 +6,8 @@
 
 #pragma once
 
-#include "count_vectors.simd.hpp"
 #include "hamming.hpp"
-
-// Tile compares some queries with a CodeBlock, TileQueries prepares these queries, PACKING is the packing that both
-// understand: by tables in registers where bytes are looked up faster than the bits of words are counted, else by
-// adders.
-#if IIB_LOOKS_UP_BYTES && !IIB_COUNTS_LANES
-#include "tile_tables.simd.hpp"
-#else
-#include "tile_adders.simd.hpp"
-#endif
+#include "tiles.simd.hpp"
 
 namespace cv {
 namespace iib {

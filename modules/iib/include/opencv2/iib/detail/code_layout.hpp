@@ -2,12 +2,16 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#pragma once
+#ifndef OPENCV_IIB_DETAIL_CODE_LAYOUT_HPP
+#define OPENCV_IIB_DETAIL_CODE_LAYOUT_HPP
 
 #include "opencv2/core.hpp"
 
 namespace cv {
 namespace iib {
+
+//! Of rows, among all images of a search.
+static constexpr int INDEX_BITS = 40;
 
 //! How codes are kept so that a kernel compares one query with many of them at once. The numbers stand in files: what a
 //! number means, and what CodeLayout makes of it, never changes.
@@ -85,3 +89,5 @@ private:
 
 }  // namespace iib
 }  // namespace cv
+
+#endif

@@ -2,14 +2,16 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#pragma once
+#ifndef OPENCV_IIB_DETAIL_PACKED_CODES_HPP
+#define OPENCV_IIB_DETAIL_PACKED_CODES_HPP
 
-#include "kernels/hamming.hpp"
+#include "opencv2/iib/detail/code_layout.hpp"
 
 namespace cv {
 namespace iib {
 
 class PackedCodes;
+struct HammingKernels;
 
 //! Some codes of a search over several.
 struct CodePart
@@ -47,7 +49,7 @@ public:
     const CodeLayout& layout() const { return format; }
     //! The kernels that layout() is for; others would misread it.
     const HammingKernels& kernels() const { return scans; }
-    CodePacking packing() const { return scans.packing; }
+    CodePacking packing() const;
 
     size_t rows() const { return starts.back(); }
     size_t images() const { return starts.size() - 1; }
@@ -99,3 +101,5 @@ private:
 
 }  // namespace iib
 }  // namespace cv
+
+#endif

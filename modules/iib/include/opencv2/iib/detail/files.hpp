@@ -2,7 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#pragma once
+#ifndef OPENCV_IIB_DETAIL_FILES_HPP
+#define OPENCV_IIB_DETAIL_FILES_HPP
 
 #include "opencv2/core.hpp"
 
@@ -96,3 +97,5 @@ private:
 
 }  // namespace iib
 }  // namespace cv
+
+#endif

@@ -2,9 +2,10 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#pragma once
+#ifndef OPENCV_IIB_DETAIL_CHECKED_FILE_HPP
+#define OPENCV_IIB_DETAIL_CHECKED_FILE_HPP
 
-#include "files.hpp"
+#include "opencv2/iib/detail/files.hpp"
 
 #include <fstream>
 
@@ -111,3 +112,5 @@ private:
 
 }  // namespace iib
 }  // namespace cv
+
+#endif
