@@ -31,8 +31,8 @@ branch_of() {
     case "/${1#modules/iib/}" in
     /test/real/*) ;;
     */matcher[/.]* | */rotation[/.]* | *_matcher.cpp | */matcher_oracle.* | */random_descriptors.hpp) echo matcher ;;
-    */test_match_rotated.cpp | */test_orientation.cpp | */test_instruction_sets.cpp | */test_detectors.cpp | */*_fixtures.cpp) echo matcher ;;
-    *refinement* | */prepared_image.hpp | /README.md | /misc/* | /samples/* | /tutorials/*) echo refinement ;;
+    */test_match_rotated.cpp | */test_rotated.cpp | */test_orientation.cpp | */test_instruction_sets.cpp | */test_stress.cpp | */test_detectors.cpp | */*_fixtures.cpp) echo matcher ;;
+    *refinement* | */perf_chains.cpp | */prepared_image.hpp | /README.md | /misc/* | /samples/* | /tutorials/*) echo refinement ;;
     */descriptor[/.]* | *_descriptor.cpp | */descriptor_oracle.* | */box_oracle.cpp | */describe.* | */format.md) echo descriptor ;;
     *) echo detector ;;
     esac

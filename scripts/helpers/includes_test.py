@@ -24,7 +24,7 @@ for wing in ('detector', 'refinement'):
 ALLOWED['detector'].add('normalization/kernels')  # halves the normalized image, too
 ALLOWED['descriptor'].add('detector')  # an extractor writes and reads the file of its detector
 #: What tests of other modules may include of iib, and how many files each module has at least.
-SHARED = ('iib/test/support/*.hpp', 'iib/perf/perf_precomp.hpp')
+SHARED = ('iib/test/support/*.hpp', 'iib/perf/matcher.hpp')
 FILES = {'iib': 80, 'iib_index': 10, 'iib_geometry': 50}
 INTRINSICS = re.compile(r'(?:^|[^a-zA-Z_])(?:_mm[0-9]*_|__m(?:128|256|512)|v[a-z]+q_[a-z]*[0-9])', re.MULTILINE)
 

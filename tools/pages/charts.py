@@ -35,8 +35,8 @@ def speed():
             axis.plot(list(sizes.values()), values, marker='o', label=label)
 
     draw(axes[0], 'IIB_Describe_large', lambda name, size: (name, size), {k: 24 * (k / 8) ** 2 for k in (1, 2, 3, 4, 6, 8)}, {'default': 'IIB', 'ORB': 'ORB'})
-    draw(axes[1], 'IIB_Describe_hd', lambda name, size: (name, size), {size: size for size in (1000, 5000)},
-         {'default': 'IIB', 'PRESET_UNIVERSAL': 'IIB UNIVERSAL', 'ORB': 'ORB', 'BEBLID-512': 'BEBLID-512'})
+    for test, labels in zip(tables.DESCRIBED, ({'default': 'IIB', 'PRESET_UNIVERSAL': 'IIB UNIVERSAL', 'ORB': 'ORB'}, {'BEBLID-512': 'BEBLID-512'})):
+        draw(axes[1], test, lambda name, size: (name, size), {size: size for size in (1000, 5000)}, labels)
     draw(axes[2], 'IIB_Match_match', lambda name, size: (name, 'true', size), {size: size for size in (100, 500, 1000, 10000)},
          {'EXACT': "IIB's matcher", 'BRUTE_FORCE': 'BFMatcher'})
     axes[2].set(xscale='log', yscale='log')  # a line parallel to another takes so many times as long for any number of codes

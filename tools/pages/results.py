@@ -3,7 +3,7 @@
 """The page of an evaluation's results, of summaries.py's files and of what is told of descriptors."""
 import descriptors
 from summaries import by, group, read
-from tables import HERE, methods, ms
+from tables import DESCRIBED, HERE, methods, ms
 
 FILES = ("fixed_points", "detected_points", "curves", "estimators", "alignment", "robustness", "learned", "comparison")
 
@@ -14,7 +14,7 @@ def number(row, column):
 
 def describing_times():
     """Milliseconds for 1000 points, by the names of the evaluation's configurations; of scripts/bench.sh."""
-    return {name.replace("default", "IIB").replace("PRESET_", "IIB "): ms("IIB_Describe_hd", name, 1000).iloc[0] for name in methods("IIB_Describe_hd")}
+    return {name.replace("default", "IIB").replace("PRESET_", "IIB "): ms(test, name, 1000).iloc[0] for test in DESCRIBED for name in methods(test)}
 
 
 def overview(tables):

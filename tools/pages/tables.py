@@ -248,10 +248,13 @@ def machine():
     return (RESULTS / 'speed.csv').read_text().partition('\n')[0][2:] + '.'
 
 
+DESCRIBED = 'IIB_Describe_hd', 'IIB_Describe_contrib'
+
+
 def describing():
     """Describing beside ORB."""
     orb, widest = [ms('IIB_Describe_hd', 'ORB', points) for points in (1000, 5000)], sets()[0]
-    tests = [('IIB_Describe_hd', name, '') for name in methods('IIB_Describe_hd')] + [('IIB_Describe_hd_on_two_threads', 'default', ', 2 threads')]
+    tests = [(test, name, '') for test in DESCRIBED for name in methods(test)] + [('IIB_Describe_hd_on_two_threads', 'default', ', 2 threads')]
     lines = []
     for test, name, threads in tests:
         few, many = (ms(test, name, points) for points in (1000, 5000))
@@ -270,7 +273,8 @@ def beside(peer, tests, form):
 
 def chains():
     """Finding and describing, each method on its own points of a rendered picture."""
-    return beside('ORB', [(name, (test, 'street_noon', name, '1000')) for test in ('IIB_Chain_vga', 'IIB_Chain_others') for name in methods(test, 1)],
+    return beside('ORB', [(name, (test, 'street_noon', name, '1000')) for test in ('IIB_Detect_vga', 'IIB_Chain_vga', 'IIB_Chain_others')
+                          for name in methods(test, 1)],
                   '%.1f')
 
 
@@ -298,9 +302,10 @@ def matching():
 def steps():
     """What issue and page judge speed by, from an image to a pose: rows, how they are written, and what is divided by what."""
     pictures = {'scene': "the authors' scene", 'street_noon': 'a rendered street'}
-    for method, peer, what in (('HessianDetector', 'ORB detects', 'find points, over ORB'), ('recommended chain', 'ORB', 'find and describe, over ORB')):
+    for test, method, peer, what in (('IIB_Detect_vga', 'HessianDetector', 'ORB detects', 'find points, over ORB'),
+                                     ('IIB_Chain_vga', 'recommended chain', 'ORB', 'find and describe, over ORB')):
         for points, (picture, shown) in itertools.product((1000, 2000), pictures.items()):
-            yield '%s: %d points, %s' % (what, points, shown), '%.2f', ms('IIB_Chain_vga', picture, method, points) / ms('IIB_Chain_vga', picture, peer, points)
+            yield '%s: %d points, %s' % (what, points, shown), '%.2f', ms(test, picture, method, points) / ms(test, picture, peer, points)
     for name in ('default', 'PRESET_UNIVERSAL'):
         yield 'describe 1000 points of 1280 x 720, %s, over ORB' % name, '%.2f', ms('IIB_Describe_hd', name, 1000) / ms('IIB_Describe_hd', 'ORB', 1000)
     yield 'match 1000 with 1000, cross-check: times as fast as BFMatcher', '%.1f', faster('EXACT', 'true', 1000)

@@ -73,23 +73,4 @@ inline std::vector<KeyPoint> corners(const Mat& image, size_t count)
     return chosen;
 }
 
-//! Points and codes of two pictures by the recommended chain, and their matches: the demo's street at noon, by night from beside.
-struct PicturePair
-{
-    explicit PicturePair(int points)
-    {
-        const Ptr<IIB> iib = IIB::createRecommended(points);
-        for (int i = 0; i < 2; i++)
-        {
-            images[i] = picture(i ? "moved_night" : "moved_noon");
-            iib->detectAndCompute(images[i], noArray(), keypoints[i], codes[i]);
-        }
-        HierarchicalMatcher::createRecommended()->match(codes[0], codes[1], matches);
-    }
-
-    Mat images[2], codes[2];
-    std::vector<KeyPoint> keypoints[2];
-    std::vector<DMatch> matches;
-};
-
 }  // namespace opencv_test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "../../iib/perf/perf_precomp.hpp"
+#include "../../iib/perf/matcher.hpp"
 #include "opencv2/iib_geometry.hpp"
 
 #if CV_VERSION_MAJOR >= 5
