@@ -12,6 +12,8 @@
 namespace cv {
 namespace iib {
 
+//! @cond IGNORED
+
 /* For this library and for the module iib_index. Binary files that do not depend on the machine and
 tell when they are altered: eight letters that name the kind of file, u32 version, little-endian numbers and bytes, u64
 FNV-1a hash of all before. */
@@ -109,6 +111,8 @@ private:
     uint64 whole, rest;
     unsigned format;
 };
+
+//! @endcond
 
 }  // namespace iib
 }  // namespace cv

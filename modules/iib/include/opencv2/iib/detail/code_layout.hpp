@@ -10,6 +10,8 @@
 namespace cv {
 namespace iib {
 
+//! @cond IGNORED
+
 //! Of rows, among all images of a search.
 static constexpr int INDEX_BITS = 40;
 
@@ -86,6 +88,8 @@ private:
     int width;
     CodePacking packing;
 };
+
+//! @endcond
 
 }  // namespace iib
 }  // namespace cv

@@ -13,6 +13,8 @@
 namespace cv {
 namespace iib {
 
+//! @cond IGNORED
+
 // For this library, the modules beside it and the Python package: whoever writes files does it by these.
 
 //! A file's name as the system takes it. Windows: from UTF-8, as Python has it, else from the code page.
@@ -94,6 +96,8 @@ private:
     int file;
 #endif
 };
+
+//! @endcond
 
 }  // namespace iib
 }  // namespace cv

@@ -10,6 +10,8 @@
 namespace cv {
 namespace iib {
 
+//! @cond IGNORED
+
 class PackedCodes;
 struct HammingKernels;
 
@@ -98,6 +100,8 @@ private:
     Mat codes;                   //!< a row a CodeBlock, which makes them aligned
     int filled;                  //!< of these rows
 };
+
+//! @endcond
 
 }  // namespace iib
 }  // namespace cv

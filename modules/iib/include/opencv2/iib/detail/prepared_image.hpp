@@ -12,6 +12,8 @@
 namespace cv {
 namespace iib {
 
+//! @cond IGNORED
+
 //! An image as refineMatches looks at it, for modules that refine its keypoints more than once.
 struct CV_EXPORTS PreparedImage
 {
@@ -28,6 +30,8 @@ CV_EXPORTS void refineMatches(const PreparedImage& image1, const std::vector<Key
         const PreparedImage& image2, const std::vector<KeyPoint>& keypoints2,
         const std::vector<DMatch>& matches1to2, OutputArray points1, OutputArray points2,
         OutputArray covariances = noArray(), OutputArray similarities = noArray());
+
+//! @endcond
 
 }  // namespace iib
 }  // namespace cv
