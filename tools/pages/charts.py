@@ -9,7 +9,8 @@ import pandas as pd
 import tables
 
 matplotlib.use('svg')
-matplotlib.rcParams.update({'svg.hashsalt': 'iib', 'svg.fonttype': 'none', 'axes.grid': True, 'grid.linewidth': .4})
+matplotlib.rcParams.update({'svg.hashsalt': 'iib', 'svg.fonttype': 'none', 'axes.grid': True, 'grid.linewidth': .4,
+                            'figure.constrained_layout.h_pad': .1})
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib import ticker  # noqa: E402
 
@@ -22,7 +23,7 @@ def svg(figure):
     text = io.StringIO()
     figure.savefig(text, format='svg', metadata={'Date': None})
     plt.close(figure)
-    return re.sub(r'\s*\n(?=[LMQCz"])', ' ', text.getvalue())  # a path a line
+    return re.sub(r'(?<!>)\s+', ' ', re.sub(r'>\s+<(?!g |/svg)', '><', text.getvalue()))  # a group a line
 
 
 def speed():
@@ -59,7 +60,7 @@ def poses():
     axis.set(xlim=(0, 1), yticks=np.arange(len(names)) + .2, yticklabels=names, xlabel='score of the pose in other light')
     axis.grid(False)
     axis.invert_yaxis()
-    axis.legend(loc='upper right', frameon=False)
+    axis.legend(loc='upper right', frameon=False, fontsize='small')
     return svg(figure)
 
 

@@ -300,7 +300,7 @@ def matching():
 
 
 def steps():
-    """What issue and page judge speed by, from an image to a pose: rows, how they are written, and what is divided by what."""
+    """What speed is judged by, from an image to a pose: labels, how values are written, and the values."""
     pictures = {'scene': "the authors' scene", 'street_noon': 'a rendered street'}
     for test, method, peer, what in (('IIB_Detect_vga', 'HessianDetector', 'ORB detects', 'find points, over ORB'),
                                      ('IIB_Chain_vga', 'recommended chain', 'ORB', 'find and describe, over ORB')):
@@ -318,7 +318,7 @@ def steps():
         yield '`propagateMatches`, %d points, ms' % points, '%.1f', ms('IIB_Propagate_moved_and_by_night', points)
     for points in (1000, 2000, 4000):
         yield '`findRelativePose` with covariance, %d points, ms' % points, '%.1f', ms('IIB_PairPose_findRelativePose', points)
-    yield ('of 200 matches, a fifth of them wrong: over MAGSAC', '%.2f',
+    yield ('`findRelativePose`, 200 matches, a fifth of them wrong: over MAGSAC', '%.2f',
            ms('RelativePose_findRelativePose') / ms('RelativePose_findEssentialMat_MAGSAC'))
     for points in (1000, 2000, 4000):
         yield 'from two images to a pose, %d points, ms' % points, '%.1f', ms('IIB_Pair_pose', points, 1)
