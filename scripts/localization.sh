@@ -1,15 +1,18 @@
 #!/bin/sh
-# Shows long-term localization: scripts/localization.sh [OUT]
+# Shows long-term localization: scripts/localization.sh [--document | OUT]
 # Renders the synthetic walk (once, about an hour of processor time, kept in the user's cache folder), maps it at noon, finds
 # the images of other lights by the Python package, by its command and, in the same protocol, by SIFT, also with the paper's
 # points, lines and an IMU, and writes index.html with pictures, a video, results.json and localization_setups.csv to OUT
-# (results-localization). With OPENCV_TEST_DATA_PATH set, also finds real photographs (strecha) and looks for photographs of
-# other places. pip brings pycolmap.
+# (results-localization), --document to doc/localization, from where the tables of doc/paper.md are made anew. With
+# OPENCV_TEST_DATA_PATH set, also finds real photographs (strecha) and looks for photographs of other places. pip brings pycolmap.
 . "$(dirname "$0")/helpers/lib.sh"
 
 [ $# -le 1 ] || fail "one folder at most, not $#"
-case "${1:-}" in -*) fail "unknown option $1; the one argument is a folder" ;; esac
-out=${1:-$root/results-localization}
+out=${1:-$root/results-localization} page="--localization"
+case "${1:-}" in
+--document) out="$root/doc/localization" page="" ;;
+-*) fail "unknown option $1; there is --document, or a folder" ;;
+esac
 data="$cache/localization" environment="$cache/localization-environment"
 need $build_packages povray python3-opencv python3-venv python3-dev $pages_packages
 "$python3" "$root/tools/synthetic/localization.py" "$data"
@@ -19,5 +22,5 @@ say "installing the Python package in $environment"
 mkdir -p "$out"
 "$environment/bin/python" -B "$root/tools/localization/setups.py" "$out/localization_setups.csv" "$data"
 "$environment/bin/python" -B "$root/tools/localization/measure.py" "$data" "$out"
-"$python3" -B "$root/tools/pages/pages.py" --localization "$out"
+"$python3" -B "$root/tools/pages/pages.py" ${page:+"$page" "$out"}
 say "results and page: $out/index.html"

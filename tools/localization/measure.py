@@ -4,7 +4,8 @@
 """Maps made by day and images found in them in other lights, by opencv_iib.localization and by SIFT in its place: measure.py DATA OUT
 
 DATA: what tools/synthetic/localization.py rendered. Photographs, of other places too, are in the folder that OPENCV_TEST_DATA_PATH
-names, if it is set. OUT gets results.json, world.js, pictures and a video, of which tools/pages makes the page. A place is a folder with images/, cameras.txt (COLMAP, one camera) and poses.txt (TUM: image, camera's centre, camera to world).
+names, if it is set. OUT gets results.json, world.js, pictures and a video, of which tools/pages makes the page. A place is a folder
+with images/, cameras.txt (COLMAP, one camera) and poses.txt (TUM: image, camera's centre, camera to world).
 """
 import argparse
 import csv

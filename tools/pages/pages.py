@@ -21,7 +21,6 @@ import results
 import tables
 
 ROOT = tables.ROOT
-SETUPS = tables.RESULTS / 'localization_setups.csv'
 
 
 def rendered(template, context):
@@ -41,8 +40,8 @@ def results_page(folder):
 
 def localization_page(folder):
     """The files that show localization, of what was measured."""
-    found, setups = json.loads((folder / 'results.json').read_text()), folder / 'localization_setups.csv'
-    return {folder / 'index.html': rendered('localization.html.j2', localization.context(found, setups if setups.exists() else SETUPS)),
+    found = json.loads((folder / 'results.json').read_text())
+    return {folder / 'index.html': rendered('localization.html.j2', localization.context(found, folder / 'localization_setups.csv')),
             folder / 'errors.svg': charts.localization(found)}
 
 

@@ -87,7 +87,7 @@ SETUPS = {'': 'recommended chain', '--lines': 'recommended chain, lines', '--orb
           '--orb-and-akaze --lines': 'ORB and AKAZE, lines', '--orb-and-akaze --lines --imu': "the paper's: ORB and AKAZE, lines, IMU"}
 
 
-def setups(key, file=RESULTS / 'localization_setups.csv'):
+def setups(key, file=ROOT / 'doc/localization/localization_setups.csv'):
     """Rows of setups.py's file by `key`: images within 5 cm and 0.5 degrees, and means of the errors of those found."""
     for names, found in summaries.group(summaries.read(file), *key).items():
         images, located, near = (sum(int(row[column]) for row in found) for column in ('images', 'found', 'within_5'))
@@ -105,12 +105,10 @@ def localization_setups():
     return table(['map', 'set-up'] + SETUP_HEAD, setups(('map', 'setup')))
 
 
-def localization_lights(*file):
-    """The same by light, for the page of localization, above the paper's table."""
-    lines = [['map', 'set-up', 'light'] + SETUP_HEAD, *setups(('map', 'setup', 'light'), *file)]
-    lines += [["as the paper quotes it", row['system'], row['inputs'], '', '', row['lateral'], row['longitudinal'], row['altitude'], ''] for row in LOCALIZATION]
-    cells = [''.join('<%s>%s</%s>' % (tag, cell, tag) for cell in line) for tag, line in zip(['th'] + ['td'] * len(lines), lines)]
-    return '\n'.join(['<div class="scroll"><table>', *('<tr>%s</tr>' % line for line in cells), '</table></div>'])
+def localization_lights(file):
+    """The same by light, for the page of localization, above the paper's table: the head and the lines."""
+    return [['map', 'set-up', 'light'] + SETUP_HEAD, *setups(('map', 'setup', 'light'), file), *(
+        ['as the paper quotes it', row['system'], row['inputs'], '', '', row['lateral'], row['longitudinal'], row['altitude'], ''] for row in LOCALIZATION)]
 
 
 ONE, TWO, THREE = ('IIB x', 'IIB y', 'IIB i', 'IIB o'), ('IIB x+y', 'IIB o+i'), ('IIB x+y+i', 'IIB x+y+o')

@@ -64,13 +64,13 @@ def wrong_commands(text):
 
 def wrong_rows(text):
     for name, listed in re.findall(r'rows? `(\w+\.csv)`: ((?:`[^`]+`(?:, )?)+)', text):
-        file = ROOT / 'doc/results' / name
+        file = next(ROOT.glob('doc/*/' + name), ROOT / name)
         fields = {field for line in file.read_text().splitlines() for field in line.split(',')} if file.is_file() else set()
         for row in re.findall('`([^`]+)`', listed):
             if row not in fields:
                 yield '%s has no row %s' % (name, row)
     for column, name in re.findall(r'column `(\w+)` of `(\w+\.csv)`', text):
-        file = ROOT / 'doc/results' / name
+        file = next(ROOT.glob('doc/*/' + name), ROOT / name)
         if not file.is_file() or column not in file.read_text().split('\n', 1)[0].split(','):
             yield '%s has no column %s' % (name, column)
 
