@@ -91,12 +91,12 @@ struct Drive
     }
 };
 
-//! Images, half a second apart, with poses about a centimetre and a tenth of a degree off.
-Drive driveOf(
-        double seconds, const cv::Affine3d& imuFromCamera = cv::Affine3d::Identity(), int64 step = 500000000)
+//! Images, half a second apart, with poses about a centimetre and a tenth of a degree off, or `times` as much.
+Drive driveOf(double seconds, const cv::Affine3d& imuFromCamera = cv::Affine3d::Identity(),
+        int64 step = 500000000, double times = 1)
 {
     std::mt19937 random(1);
-    std::normal_distribution<double> metres(0, 0.006), radians(0, 0.0015);
+    std::normal_distribution<double> metres(0, 0.006 * times), radians(0, 0.0015 * times);
     Drive drive;
     for (int64 time = 0; time <= int64(seconds * 1e9); time += step)
     {
@@ -109,7 +109,7 @@ Drive driveOf(
                 cv::Affine3d(cv::Affine3d(turned).rotation() * truth.rotation(), truth.translation() + moved)
                         .inv();
         for (int i = 0; i < 6; i++)  // points of the map err together: told as less than it is
-            image.covariance(i, i) = (i < 3 ? 0.006 * 0.006 : 0.0015 * 0.0015) / 5;
+            image.covariance(i, i) = std::pow((i < 3 ? 0.006 : 0.0015) * times, 2) / 5;
         drive.times.push_back(time);
         drive.images.push_back(image);
     }
@@ -230,19 +230,70 @@ TEST(Smoothing, readings_that_contradict_the_images_change_nothing)
     const Drive all = driveOf(7);
     Drive few = driveOf(10);
     few.forgetMost();
+    Drive wide = driveOf(7, cv::Affine3d::Identity(), 250000000);
+    for (Location& image : wide.images)
+        image.covariance *= 4500;  // thirty times what it should be
     for (const auto& [name, change] : mistakes)
     {
         SCOPED_TRACE(name);
         std::vector<ImuReading> readings = readingsUntil(10);
         for (ImuReading& reading : readings)
             change(reading);
-        for (const Drive& drive : {all, few})
+        for (const Drive& drive : {all, few, wide})
         {
             std::string said;
             expectUnchanged(drive, drive.smoothed(readings, cv::Affine3d::Identity(), &said));
             EXPECT_EQ(CONTRADICTS, said);
         }
     }
+}
+
+// The images are five times as uncertain, as well as they are told: each reading alone seems likely.
+TEST(Smoothing, readings_that_surprise_a_little_but_always_change_nothing)
+{
+    Drive drive = driveOf(10, cv::Affine3d::Identity(), 250000000, 5);
+    for (Location& image : drive.images)
+        image.covariance *= 5;
+    std::vector<ImuReading> readings = readingsUntil(11), late = readings;
+    for (ImuReading& reading : late)
+        reading.nanoseconds += 500000000;
+    late.erase(late.begin() + 2000, late.end());
+    std::string said;
+    drive.smoothed(readings);
+    expectUnchanged(drive, drive.smoothed(readings, cv::Affine3d(cv::Vec3d(.42, .31, 0)), &said));
+    EXPECT_EQ(CONTRADICTS, said) << "turned by 30 degrees";
+    expectUnchanged(drive, drive.smoothed(late, cv::Affine3d::Identity(), &said));
+    EXPECT_EQ(CONTRADICTS, said) << "late";
+}
+
+TEST(Smoothing, what_is_told_of_images_without_a_pose_holds)
+{
+    int inside = 0, all = 0;
+    double sum = 0;
+    for (const double times : {1, 2, 4})
+    {
+        Drive drive = driveOf(14, cv::Affine3d::Identity(), 500000000, times);
+        drive.forgetMost();
+        const std::vector<ImuReading> readings = readingsUntil(14);
+        std::vector<Location> found = drive.smoothed(readings);
+        for (size_t i = 0; i < found.size(); i++)
+        {
+            if (drive.images[i].found)
+            {
+                EXPECT_EQ(drive.images[i].covariance, found[i].covariance) << i;
+                continue;
+            }
+            const cv::Vec3d error = found[i].cameraFromWorld.inv().translation() -
+                                    poseAt(double(drive.times[i]) * 1e-9).translation();
+            const double squared = error.dot(found[i].covariance.get_minor<3, 3>(0, 0).inv() * error);
+            inside += squared < 7.81;
+            sum += squared / 3;
+            all++;
+        }
+        EXPECT_EQ("", smoothPoses(drive.times, found, readings)) << "smoothed again";
+    }
+    EXPECT_GT(inside, .9 * all);
+    EXPECT_GT(sum, .2 * all) << "nor are they told to be less certain than they are";
 }
 
 TEST(Smoothing, covariances_that_are_none_change_nothing)
@@ -307,6 +358,11 @@ TEST(Smoothing, refuses_what_has_no_order)
     const auto error = [&] { return messageOf([&] { drive.smoothed(readings); }); };
     readings[3].force[1] = NAN;
     EXPECT_EQ("a reading of the IMU is not finite", error());
+    readings = readingsUntil(2);
+    for (const double turn : {double(NAN), 2.})
+        EXPECT_EQ("imuFromCamera is not a turn and a shift, or not finite", messageOf([&] {
+            drive.smoothed(readings, cv::Affine3d(cv::Matx33d::eye() * turn, cv::Vec3d()));
+        }));
     readings[3] = readings[2];
     EXPECT_EQ("reading 3 has the time 10000000: times are nanoseconds, of at most 19 digits, and rise",
             error());

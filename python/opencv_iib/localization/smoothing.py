@@ -37,7 +37,7 @@ def smooth_poses(times: Sequence[Any], locations: Sequence[Location], readings: 
     :param imu_from_camera: where the camera is in the IMU's axes (EuRoC's ``T_BS``), 4 x 4 or 3 x 4.
     :return: a list: of each image camera from world, 4 x 4, or None; its ``reason`` tells whether readings contradict images, or
         a covariance is none, such as zeros; else it is ''.
-    :raises opencv_iib.error: for times that do not rise.
+    :raises opencv_iib.error: for times that do not rise, or an imu_from_camera that is not a turn and a shift.
     :raises ValueError: for readings that are not M x 7 finite numbers.
     """
     rows = as_array(readings, 'readings').astype(np.float64, copy=False)

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <optional>
 
 #include "../map/camera_pose.hpp"
@@ -23,9 +22,16 @@ constexpr int64 MAX_TIME = int64(4e18);
 constexpr size_t FIRST_FRAMES = 8, LEAST_FRAMES = 4;  // with poses, that the start is found from
 constexpr int64 APART = 200000000;                    // nanoseconds between these
 constexpr double GRAVITY = 9.81;                      // m/s^2
-constexpr double TOGETHER = 5;        // points of the map err together: variances are so many times as large
-constexpr double MAX_SQUARED = 16.8;  // of six standard normal numbers: one in a hundred is larger
-constexpr size_t IN_A_ROW = 8;  // images: if readings surprise more than half of them, they contradict them
+constexpr double TOGETHER = 5;  // points of the map err together: variances are so many times as large
+constexpr double MEDIAN_SQUARED = 2.37;  // of three standard normal numbers
+constexpr double SLOWLY = 2;             // variance over that of what scatters from image to image
+constexpr double LEAST_SCALE = .01;      // of deviations, also of images that do not scatter at all
+// Of six standard normal numbers one in a hundred is larger; one in eight.
+constexpr double MAX_SQUARED = 16.8, USUAL_SQUARED = 10;
+// So much more than usual, summed: four surprises in a row end a run. At its end two of six images do, or three of more.
+constexpr double MOST_EXCESS = 27, EXCESS_AT_END = 2;
+constexpr size_t FEW = 8;    // images that agree by chance
+constexpr size_t MANY = 20;  // images that agree because readings were right until then
 
 //! What an image tells of the IMU.
 struct ImuFrame
@@ -151,6 +157,9 @@ struct Step
     Square expectedCovariance, covariance, change;
 };
 
+//! Where a number of a pose, position and turn as in covariances of images, is in a state's error.
+int place(int i) { return i < 3 ? POSITION + i : TURN + i - 3; }
+
 /** Takes a measured pose into a state: position and turn about the world's axes with their covariance.
 @return its innovation's squared length in standard deviations, whose square is chi^2 of six degrees of freedom. */
 double update(const Affine3d& pose, const Matx66d& measured, State& state, Square& covariance)
@@ -162,9 +171,6 @@ double update(const Affine3d& pose, const Matx66d& measured, State& state, Squar
     Matx66d sum;
     Matx<double, SIZE, 6> columns;
     Vec6d offset;
-    const auto place = [](int i) {
-        return i < 3 ? POSITION + i : TURN + i - 3;
-    };  // in the order of `measured`
     for (int i = 0; i < 6; i++)
     {
         offset[i] = difference[place(i)];
@@ -230,8 +236,9 @@ struct Run
         SHORT,        //!< fewer poses than a start takes
         CONTRADICTS,
         AGREES
-    } verdict;
+    } verdict = NO_READINGS;
     std::vector<Step> steps;  //!< of frames in order, if it agrees
+    bool ended = false;       //!< by images that readings contradict
 };
 
 //! The filter. A run ends where readings have a gap, three seconds after the last pose, and before poses that they contradict.
@@ -248,21 +255,21 @@ Run filtered(const std::vector<ImuFrame>& frames, const std::vector<ImuReading>&
     Step step;
     step.state.rotation = seen[0].rotation();
     step.state.position = seen[0].translation();
+    Run run;
     if (seen.size() < LEAST_FRAMES)
-        return {Run::SHORT, {}};
-    if (!findStart(times, seen, readings, step.state))
-        return {Run::NO_READINGS, {}};
+        run.verdict = Run::SHORT;
+    else if (findStart(times, seen, readings, step.state))
+        run.verdict = Run::AGREES;
+    if (run.verdict != Run::AGREES)
+        return run;
     const double ofParts[] = {1, 1, 1, .02, .2, .2};
     for (int i = 0; i < SIZE; i++)
         step.covariance(i, i) = ofParts[i / 3] * ofParts[i / 3];
     update(seen[0], frames[first].covariance, step.state, step.covariance);
-    Run run = {Run::AGREES, {step}};
+    run.steps.push_back(step);
     int64 last = frames[first].nanoseconds;
-    std::deque<bool> surprised;  // the last images
-    size_t images = 1;           // with poses
-    size_t agreed = 1,
-           agreedSteps = 1;  // of these, up to the last one that was not surprised; steps until then
-    const auto surprises = [&] { return size_t(std::count(surprised.begin(), surprised.end(), true)); };
+    double excess = 0;                               // Page's cumulative sum (1954) of innovations
+    size_t images = 1, agreed = 1, agreedSteps = 1;  // with poses; of these and of steps until the sum rose
     for (size_t i = first + 1; i < frames.size() && frames[i].nanoseconds - last <= MAX_ALONE; i++)
     {
         if (!follow(readings, frames[i - 1].nanoseconds, frames[i].nanoseconds, step.state, &step.covariance,
@@ -273,46 +280,93 @@ Run filtered(const std::vector<ImuFrame>& frames, const std::vector<ImuReading>&
         run.steps.push_back(step);
         if (!frames[i].pose)
             continue;
-        surprised.push_back(
-                !(update(*frames[i].pose, frames[i].covariance, step.state, step.covariance) < MAX_SQUARED));
+        const double squared = update(*frames[i].pose, frames[i].covariance, step.state, step.covariance);
         run.steps.back() = step;
         last = frames[i].nanoseconds;
-        if (surprised.size() > IN_A_ROW)
-            surprised.pop_front();
         images++;
-        if (!surprised.back())
+        excess = std::max(excess + std::min(MAX_SQUARED, squared) - USUAL_SQUARED, 0.);
+        if (excess == 0)
         {
             agreed = images;
             agreedSteps = run.steps.size();
         }
-        if (2 * surprises() > IN_A_ROW)
+        if (excess > MOST_EXCESS)
             break;
     }
-    if (2 * surprises() > IN_A_ROW || (surprised.size() < IN_A_ROW && surprises() > 1))
+    run.ended = excess > EXCESS_AT_END * double(std::min(images, FEW));
+    if (run.ended)
     {
         run.steps.resize(agreedSteps);
-        run.verdict = agreed > IN_A_ROW ? Run::AGREES : Run::CONTRADICTS;
+        run.verdict = agreed > MANY ? Run::AGREES : Run::CONTRADICTS;
     }
     return run;
 }
 
-//! The smoother: poses of the IMU in the frames of a run.
-std::vector<Affine3d> smoothed(std::vector<Step> steps)
+//! The smoother: states of a run by all of its images, in place.
+void smooth(std::vector<Step>& steps)
 {
-    std::vector<Affine3d> poses(steps.size());
-    for (size_t i = steps.size(); i-- > 0;)
+    for (size_t i = steps.size() - 1; i-- > 0;)
     {
-        State& state = steps[i].state;
-        if (i + 1 < steps.size())
-        {
-            const Step& next = steps[i + 1];
-            const Square gain =
-                    steps[i].covariance * next.change.t() * next.expectedCovariance.inv(DECOMP_CHOLESKY);
-            state = plus(state, gain * minus(next.state, next.expected));
-        }
-        poses[i] = Affine3d(state.rotation, state.position);
+        Step& step = steps[i];
+        const Step& next = steps[i + 1];
+        const Square gain = step.covariance * next.change.t() * next.expectedCovariance.inv(DECOMP_CHOLESKY);
+        step.state = plus(step.state, gain * minus(next.state, next.expected));
+        step.covariance += gain * (next.covariance - next.expectedCovariance) * gain.t();
     }
-    return poses;
+}
+
+//! A turn of a pose from another as a vector about the world's axes.
+Vec3d turnFrom(const Affine3d& from, const Affine3d& to)
+{
+    return Affine3d(to.rotation() * from.rotation().t(), Vec3d()).rvec();
+}
+
+/* Images that scatter less than their covariances tell would agree with any readings: then variances are what they scatter about
+ parabolas through four in a row, and motion adds to that. Errors that change slowly do not scatter, so several times as much. */
+void limitToScatter(std::vector<ImuFrame>& frames)
+{
+    std::vector<const ImuFrame*> seen;
+    for (const ImuFrame& frame : frames)
+        if (frame.pose)
+            seen.push_back(&frame);
+    std::vector<double> squared[2];  // of positions and of turns, in what is told
+    for (size_t i = 0; i + 3 < seen.size(); i++)
+    {
+        const ImuFrame* const* const four = &seen[i];
+        Vec3d off[2];
+        Matx66d told = Matx66d::zeros();
+        for (int a = 0; a < 4; a++)
+        {
+            double weight = 1;
+            for (int b = 0; b < 4; b++)
+                if (b != a)
+                    weight *= 1e9 / double(four[a]->nanoseconds - four[b]->nanoseconds);
+            off[0] += weight * (four[a]->pose->translation() - four[0]->pose->translation());
+            off[1] += weight * turnFrom(*four[0]->pose, *four[a]->pose);
+            told += weight * weight * four[a]->covariance;
+        }
+        for (int k = 0; k < 2; k++)
+            squared[k].push_back(
+                    off[k].dot(told.get_minor<3, 3>(3 * k, 3 * k).inv(DECOMP_CHOLESKY) * off[k]));
+    }
+    Matx66d scale = Matx66d::eye();
+    for (int k = 0; k < 6; k++)
+        if (!squared[k / 3].empty())
+            scale(k, k) =
+                    std::clamp(std::sqrt(SLOWLY * median(squared[k / 3]) / MEDIAN_SQUARED), LEAST_SCALE, 1.);
+    for (ImuFrame& frame : frames)
+        frame.covariance = scale * frame.covariance * scale;
+}
+
+//! The covariance of a place and of a turn, that of another place of the same body. @param way there, along the world's axes.
+Matx66d carried(const Matx66d& covariance, const Vec3d& way)
+{
+    const Matx33d lever = -crossProduct(way);
+    Matx66d change = Matx66d::eye();
+    for (int y = 0; y < 3; y++)
+        for (int x = 0; x < 3; x++)
+            change(y, 3 + x) = lever(y, x);
+    return change * covariance * change.t();
 }
 
 //! Where the image's pose has the IMU.
@@ -321,12 +375,18 @@ ImuFrame imuFrame(int64 time, const Location& image, const Affine3d& cameraFromI
     if (!image.found)
         return {time, std::nullopt, {}};
     const Affine3d camera = inverse(image.cameraFromWorld);
-    const Matx33d lever = -crossProduct(camera.rotation() * cameraFromImu.translation());
-    Matx66d byCamera = Matx66d::eye();
-    for (int y = 0; y < 3; y++)
-        for (int x = 0; x < 3; x++)
-            byCamera(y, 3 + x) = lever(y, x);
-    return {time, camera * cameraFromImu, byCamera * image.covariance * byCamera.t()};
+    return {time, camera * cameraFromImu,
+            carried(image.covariance, camera.rotation() * cameraFromImu.translation())};
+}
+
+//! The covariance of the camera's pose by a state's.
+Matx66d ofCamera(const Step& step, const Affine3d& imuFromCamera)
+{
+    Matx66d covariance;
+    for (int i = 0; i < 6; i++)
+        for (int k = 0; k < 6; k++)
+            covariance(i, k) = step.covariance(place(i), place(k));
+    return carried(covariance, step.state.rotation * imuFromCamera.translation());
 }
 
 //! Whether an image's pose is one, and its covariance tells how much it counts.
@@ -364,46 +424,60 @@ std::string smoothPoses(const std::vector<int64>& times, std::vector<Location>& 
             CV_Error(Error::StsBadArg, "a reading of the IMU is not finite");
     }
     checkTimes(measured, "reading");
+    const Matx33d turn = imuFromCamera.rotation();
+    if (!checkRange(imuFromCamera.matrix) || !(norm(turn * turn.t() - Matx33d::eye()) < .01) ||
+            determinant(turn) < 0)
+        CV_Error(Error::StsBadArg, "imuFromCamera is not a turn and a shift, or not finite");
     std::vector<ImuFrame> frames;
     for (size_t i = 0; i < images.size(); i++)
     {
         if (images[i].found && !isWeighed(images[i]))
             return format("image %d has a pose or a covariance that is none (not finite, or zero), so that "
-                          "it cannot be weighed "
-                          "against the readings: all poses stay as they are",
+                          "it cannot be weighed against the readings: all poses stay as they are",
                     int(i));
         frames.push_back(imuFrame(times[i], images[i], inverse(imuFromCamera)));
     }
-    std::vector<std::optional<Affine3d>> poses(frames.size());
+    limitToScatter(frames);
+    struct Smooth
+    {
+        Affine3d cameraFromWorld;
+        Matx66d covariance;
+    };
+    std::vector<std::optional<Smooth>> smoothed(frames.size());
     size_t agree = 0, contradict = 0, tooFew = 0;  // images with poses; too few in a row agree by chance too
     for (size_t i = 0; i < frames.size();)
     {
-        size_t end = i + 1;
+        Run run;
         if (frames[i].pose)
+            run = filtered(frames, readings, i);
+        contradict += run.ended;
+        tooFew += run.verdict == Run::SHORT;
+        const size_t first = i++;
+        if (run.verdict != Run::AGREES)
+            continue;
+        smooth(run.steps);
+        size_t count = 0;
+        Matx66d ofImages;  // of the last image with a pose: no filter tells what images have in common
+        for (i = first; i < first + run.steps.size(); i++)
         {
-            const Run run = filtered(frames, readings, i);
-            contradict += run.verdict == Run::CONTRADICTS;
-            tooFew += run.verdict == Run::SHORT;
-            if (run.verdict == Run::AGREES)
-            {
-                end = i + run.steps.size();
-                const auto count =
-                        size_t(std::count_if(frames.begin() + ptrdiff_t(i), frames.begin() + ptrdiff_t(end),
-                                [](const ImuFrame& f) { return f.pose.has_value(); }));
-                (count > IN_A_ROW ? agree : tooFew) += count;
-                const std::vector<Affine3d> smooth = smoothed(run.steps);
-                std::copy(smooth.begin(), smooth.end(), poses.begin() + ptrdiff_t(i));
-            }
+            const Step& step = run.steps[i - first];
+            count += images[i].found;
+            if (images[i].found)
+                ofImages = images[i].covariance;
+            smoothed[i] = {inverse(Affine3d(step.state.rotation, step.state.position) * imuFromCamera),
+                    images[i].found ? ofImages : ofImages + ofCamera(step, imuFromCamera)};
         }
-        i = end;
+        (count > FEW ? agree : tooFew) += count;
+        i += run.ended;  // its image is contradicted
     }
     const bool most = contradict > 0 && agree <= contradict + tooFew;
     for (size_t i = 0; i < images.size() && !most; i++)
-        if (poses[i])
+        if (smoothed[i])
         {
             images[i].found = true;
             images[i].reason = "";
-            images[i].cameraFromWorld = inverse(*poses[i] * imuFromCamera);
+            images[i].cameraFromWorld = smoothed[i]->cameraFromWorld;
+            images[i].covariance = smoothed[i]->covariance;
         }
     if (most)
         return "the readings of the IMU contradict the images, whose poses stay as they are: check the IMU's "

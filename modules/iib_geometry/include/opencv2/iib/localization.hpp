@@ -206,17 +206,23 @@ struct ImuReading
 
 A Kalman filter forwards and a smoother backwards @cite RauchTungStriebel1965; gravity's direction and the IMU's biases are
 found from the first poses. Images without a pose get one too, if they come after one with a pose, by three seconds at most. Where
-the readings have a gap, or contradict the images (of eight in a row most are farther from where the readings have them than one
-in a hundred would be), the images' own poses stay; if most images are contradicted, all do: the IMU's axes, its units, its clock or
-imuFromCamera are other ones.
+the readings have a gap, or contradict the images (which are farther from where the readings have them than is usual, summed over
+images: four surprises in a row are enough), the images' own poses stay; if most images are contradicted, or fewer than twenty had
+agreed before, all do: the IMU's axes, its units, its clock or imuFromCamera are other ones. An image counts as its covariance
+tells, and more where images scatter about a smooth path by less than they tell: wide covariances do not make wrong readings
+likely. What is wrong by little, such as imuFromCamera by a few degrees, or hardly shows, since the camera hardly turns, is not
+noticed.
 @param times of the images, nanoseconds, rising.
 @param images what Localizer::localize found of each, in a map in metres. Of those that get a pose `found`, `reason` and
-`cameraFromWorld` are set; the rest, the covariance too, stays that of the image alone. A pose counts as its covariance tells.
+`cameraFromWorld` are set. The covariance of an image that had a pose stays that of the image alone. One that had none gets
+that of the last image with a pose before it, since what the map's images have in common no readings tell, and the smoother's on
+top. Both are upper bounds.
 @param readings in the order of their times, on the images' clock.
 @param imuFromCamera where the camera is in the IMU's axes (EuRoC's `T_BS`).
 @return a sentence if readings contradict images or an image has a covariance that is none, such as zeros, when all poses stay as
 they are; else empty.
-@throws cv::Exception for other numbers of times and images, times that do not rise, and readings that are not finite. */
+@throws cv::Exception for other numbers of times and images, times that do not rise, readings that are not finite, and an
+imuFromCamera that is not a turn and a shift. */
 CV_EXPORTS std::string smoothPoses(const std::vector<int64>& times, std::vector<Location>& images,
         const std::vector<ImuReading>& readings, const Affine3d& imuFromCamera = Affine3d());
 
