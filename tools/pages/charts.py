@@ -12,16 +12,17 @@ matplotlib.use('svg')
 matplotlib.rcParams.update({'svg.hashsalt': 'iib', 'svg.fonttype': 'none', 'axes.grid': True, 'grid.linewidth': .4,
                             'figure.constrained_layout.h_pad': .1})
 import matplotlib.pyplot as plt  # noqa: E402
-from matplotlib import ticker  # noqa: E402
+from matplotlib import ft2font, ticker  # noqa: E402
 
 GREY, RED, BLUE = '#64748b', '#b91c1c', '#1d4ed8'
 FAR = 1000  # centimetres
+MAKER = 'Matplotlib %s, FreeType %s' % (matplotlib.__version__, ft2font.__freetype_version__)  # on which places of texts depend
 
 
 def svg(figure):
-    """The text of a figure, the same whenever it is drawn by the same matplotlib."""
+    """The text of a figure, the same whenever it is drawn by the same MAKER."""
     text = io.StringIO()
-    figure.savefig(text, format='svg', metadata={'Date': None})
+    figure.savefig(text, format='svg', metadata={'Date': None, 'Creator': MAKER})
     plt.close(figure)
     return re.sub(r'(?<!>)\s+', ' ', re.sub(r'>\s+<(?!g |/svg)', '><', text.getvalue()))  # a group a line
 
