@@ -49,6 +49,24 @@ class Examples(unittest.TestCase):
         images, = self.run_example('reconstruction.py', r'num_reg_frames = (\d+)', needs=('cv2', 'pycolmap'))
         self.assertEqual(images, 9)
 
+    def test_webcam_year(self):
+        aligned, of, sharper = self.run_example('webcam_year.py', r'(\d+) of (\d+) pictures are aligned\n(?:.*\n)*.* is ([\d.]+) times as sharp')
+        self.assertEqual((aligned, of), (23, 23))
+        self.assertGreater(sharper, 1.2)
+
+    def test_two_flights(self):
+        morning, both, registered, points, shared = self.run_example(
+            'two_flights.py', r'morning: (\d+) images(?:.*\n)*and evening: (\d+) images(?:.*\n)*(\d+) images in one model; of (\d+) points (\d+)',
+            needs=('cv2', 'pycolmap'))
+        self.assertEqual((morning, both, registered), (7, 14, 14))
+        self.assertGreater(shared, .2 * points)
+
+    def test_robot_at_night(self):
+        found, centimetres = self.run_example('robot_at_night.py', r'(\d+) of 20 places are found, half of them within ([\d.]+) cm',
+                                              needs=('cv2', 'pycolmap'))
+        self.assertGreaterEqual(found, 19)
+        self.assertLess(centimetres, 5)
+
     def test_million_codes(self):
         best, of, votes, next_, same = self.run_example(
             'million_codes.py', r'image (\d+) of (\d+) has (\d+) votes, the next (\d+); (\d+) are', '20000')

@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / 'python/examples'
-NAMES = ('day_night', 'align', 'poses', 'reconstruction', 'million_codes')
+NAMES = ('day_night', 'align', 'webcam_year', 'poses', 'reconstruction', 'two_flights', 'robot_at_night', 'million_codes')
 
 
 def run(code, variables, pictures):
@@ -24,7 +24,7 @@ def run(code, variables, pictures):
         exec(code, variables)
     text = printed.getvalue().rstrip()
     print('```text\n%s\n```\n' % text if text else '')
-    for name in sorted(set(os.listdir()) - before):
+    for name in sorted(name for name in set(os.listdir()) - before if os.path.isfile(name)):
         shutil.copy(name, pictures / ('output_' + name))  # Doxygen takes all pictures of a site for one folder
         print('![What it draws](output_%s)\n' % name)
 

@@ -1,0 +1,50 @@
+"""A robot that finds itself by night in a map that was made by day: python robot_at_night.py"""
+import tempfile
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pycolmap
+
+import scene
+from opencv_iib.colmap import FeatureOptions, Options, build_database
+from opencv_iib.localization import Camera, Localizer, build
+
+# %% By day: images of a drawn street along a way, and where they were taken, in metres: right and down.
+folder = Path(tempfile.mkdtemp())
+images = folder / 'images'
+height, width = scene.PICTURES['day'].shape[:2]
+camera = Camera('PINHOLE', width, height, (scene.FOCAL, scene.FOCAL, width / 2, height / 2))
+way = {f'{k}.png': (.25 * k - 1, .1 * (k % 3)) for k in range(9)}
+images.mkdir()
+for name, place in way.items():
+    cv2.imwrite(str(images / name), scene.view('day', place))
+
+# %% Poses by pycolmap, from our matches, in a unit of its own: what it is in metres, the known places tell.
+text = ','.join(map(str, (camera.model, width, height, *camera.params)))
+build_database(images, folder / 'database.db', Options(FeatureOptions(points=1500), camera=text, verify='magsac'))
+models = pycolmap.incremental_mapping(folder / 'database.db', images, folder, pycolmap.IncrementalPipelineOptions(random_seed=1))
+number, model = max(models.items(), key=lambda item: item[1].num_reg_images())
+centres = np.array([[*image.projection_center(), 1] for image in model.images.values()])
+to_metres = np.linalg.lstsq(centres, np.array([way[image.name] for image in model.images.values()]), rcond=None)[0]
+unit = np.linalg.norm(to_metres[:3], axis=0).mean()
+
+# %% A map of it: points with codes that the night does not change.
+print(build(folder / str(number), images, folder / 'map'))
+
+# %% By night: each image is first looked for where the robot was last.
+localizer, last, errors = Localizer(folder / 'map'), None, []
+for k in range(20):
+    at = (.09 * k - .9, .05)
+    location = localizer.localize(scene.view('night', at), camera, last)
+    last = location.cam_from_world
+    if last is None or location.covariance is None:
+        print(f'{k}: {location.reason}')
+        continue
+    errors.append(np.linalg.norm([*(-last[:3, :3].T @ last[:3, 3]), 1] @ to_metres - at))
+    sigma = unit * np.sqrt(np.trace(location.covariance[:3, :3]))
+    if k % 5 == 0:
+        print(f'{k}: {location.inliers} matches agree, off by {100 * errors[-1]:.1f} cm, told +-{100 * sigma:.1f} cm')
+
+# %% How well.
+print(f'{len(errors)} of 20 places are found, half of them within {100 * np.median(errors):.1f} cm')

@@ -1,0 +1,43 @@
+"""Two flights over one place, in the morning and in the evening, in one reconstruction: python two_flights.py [PHOTOS OUT], a folder a flight"""
+import sys
+import tempfile
+from pathlib import Path
+
+import cv2
+import pycolmap
+
+import scene
+from opencv_iib.colmap import FeatureOptions, Options, build_database
+
+# %% The morning's photographs: yours, or seven of a drawn scene by day. The camera is known, in COLMAP's words.
+photos, out = map(Path, sys.argv[1:3] if len(sys.argv) > 2 else [tempfile.mkdtemp(), tempfile.mkdtemp()])
+height, width = scene.PICTURES['day'].shape[:2]
+camera = f'PINHOLE,{width},{height},{scene.FOCAL},{scene.FOCAL},{width / 2},{height / 2}'
+options = Options(FeatureOptions(points=1500), camera=None if len(sys.argv) > 2 else camera, verify='magsac')
+
+
+def fly(flight, light, shift):
+    (photos / flight).mkdir()
+    for k in range(7):
+        cv2.imwrite(str(photos / flight / f'{k}.png'), scene.view(light, (.3 * k - 1 + shift, .1 * (k % 3)), 1.5 * (k - 3)))
+
+
+if len(sys.argv) <= 2:
+    fly('morning', 'day', 0)
+
+# %% Their database.
+counts = build_database(photos, out / 'database.db', options)
+print(f'morning: {counts["images"]} images, {counts["verified pairs"]} pairs')
+
+# %% In the evening: the same call again adds the new images and their pairs; what the morning's are and have stays as it is.
+if len(sys.argv) <= 2:
+    fly('evening', 'night', .15)
+counts = build_database(photos, out / 'database.db', options)
+print(f'and evening: {counts["images"]} images, {counts["verified pairs"]} pairs')
+
+# %% One model of both, by pycolmap: how many images of each flight it has, and how many of its points both flights saw.
+models = pycolmap.incremental_mapping(out / 'database.db', photos, out, pycolmap.IncrementalPipelineOptions(random_seed=1))
+model = max(models.values(), key=lambda m: m.num_reg_images())
+flights = {number: image.name.split('/')[0] for number, image in model.images.items()}
+seen = [{flights[element.image_id] for element in point.track.elements} for point in model.points3D.values()]
+print(f'{model.num_reg_images()} images in one model; of {len(seen)} points {sum(len(each) > 1 for each in seen)} are seen by both flights')
