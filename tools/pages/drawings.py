@@ -32,7 +32,7 @@ def gradients(image):
 def quad(image):
     """Means of the four patches of the square, row by row, and the bits of equation (1)."""
     means = image[TOP:TOP + SIDE, LEFT:LEFT + SIDE].reshape(2, SIDE // 2, 2, SIDE // 2).mean(axis=(1, 3)).ravel()
-    return means, ''.join('01'[value > means.mean()] for value in means)
+    return means, ''.join('1' if value > means.mean() else '0' for value in means)
 
 
 def axes(columns, rows=1, size=2.4):
