@@ -145,6 +145,43 @@ TEST(Alignment, refuses_pictures_that_share_a_part_alone_in_any_model)
     }
 }
 
+//! As with a logo in one corner and a caption, or two stamps, between which nothing agrees.
+TEST(Alignment, refuses_pictures_that_share_two_parts_alone)
+{
+    Mat first = picture(11), second = picture(12), transform;
+    for (const Rect& part : {Rect(10, 10, 70, 70), Rect(320, 225, 70, 70)})
+        for (const Mat& image : {first, second})
+            picture(13)(part).copyTo(image(part));
+    for (int model : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE, ALIGN_HOMOGRAPHY})
+    {
+        String reason;
+        EXPECT_FALSE(alignImages(first, second, transform, model, noArray(), noArray(), &reason)) << model;
+        EXPECT_NE(reason.find("logos"), String::npos) << reason;
+    }
+}
+
+//! Squares of another depth, by a few pixels: the transform of one depth is as wrong of the other.
+TEST(Alignment, tells_what_a_part_of_the_images_is_beside_by)
+{
+    const Mat reference = picture(16);
+    const double beside = 4;
+    Mat image = reference.clone(), transform, error;
+    for (int y = 0; y < reference.rows; y += 60)
+        for (int x = 0; x < reference.cols; x += 120)
+        {
+            const int column = x + (y / 60 % 2) * 60;
+            const Rect square(column, y, std::min(60, reference.cols - (int)beside - column), 60);
+            if (square.width <= 0)
+                continue;
+            reference(square + Point((int)beside, 0)).copyTo(image(square));
+        }
+    String reason;
+    ASSERT_TRUE(alignImages(reference, image, transform, ALIGN_HOMOGRAPHY, error, noArray(), &reason))
+            << reason;
+    for (int k = 0; k < 4; k++)
+        EXPECT_GT(error.at<double>(k), beside / 2);
+}
+
 //! A part of the picture as large as a third of it is no logo.
 TEST(Alignment, finds_a_part_of_a_picture)
 {

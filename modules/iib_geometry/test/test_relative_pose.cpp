@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include "opencv2/calib3d.hpp"
 #include "pose/epipolar_problem.hpp"
 #include "pose/five_points.hpp"
 #include "pose/real_roots.hpp"
@@ -345,6 +346,121 @@ TEST(RelativePose, matches_drawn_at_random_have_none)
         }
 }
 
+Mat anywhere(RNG& random, int count, double width, double height)
+{
+    Mat points(count, 2, CV_64F);
+    random.fill(points.col(0), RNG::UNIFORM, 0, width);
+    random.fill(points.col(1), RNG::UNIFORM, 0, height);
+    return points;
+}
+
+// Where points gather, more wrong matches agree with a pose than if they were anywhere.
+TEST(RelativePose, wrong_matches_of_a_skyline_or_a_strip_have_none)
+{
+    RNG random(17);
+    for (int count : {100, 400})
+        for (double height : {2., 5.})
+        {
+            Mat points[2];
+            for (Mat& image : points)
+            {
+                image = anywhere(random, count, 640, 480);
+                for (int i = 0; i < count * 4 / 5; i++)
+                    image.at<double>(i, 1) = 240 + random.gaussian(height);
+            }
+            Mat R, t, agree(count, 1, CV_8U, Scalar(1));
+            EXPECT_FALSE(findRelativePose(points[0], points[1], Mat(CAMERA), Mat(CAMERA), R, t)) << count;
+            Mat F = findFundamentalMat(points[0], points[1], USAC_MAGSAC, 1.5, .9999, 10000, agree);
+            EXPECT_GT(logFalseAlarms(points[0], points[1], agree, true, 1.5), -3) << count;
+            const Mat a = anywhere(random, count, 640, 8), b = anywhere(random, count, 640, 8);
+            EXPECT_FALSE(findRelativePose(a, b, Mat(CAMERA), Mat(CAMERA), R, t)) << count;
+        }
+}
+
+// Sampson's error is small wherever it is so in one of the images.
+TEST(RelativePose, wrong_matches_of_a_small_image_and_a_large_one_have_none)
+{
+    RNG random(18);
+    const Matx33d small(80, 0, 40, 0, 80, 30, 0, 0, 1), large(4000, 0, 2000, 0, 4000, 1500, 0, 0, 1);
+    for (int count : {200, 400})
+    {
+        const Mat a = anywhere(random, count, 80, 60), b = anywhere(random, count, 4000, 3000);
+        Mat R, t;
+        EXPECT_FALSE(findRelativePose(a, b, Mat(small), Mat(large), R, t)) << count;
+        EXPECT_FALSE(findRelativePose(b, a, Mat(large), Mat(small), R, t)) << count;
+    }
+    const Mat all = Mat::ones(300, 1, CV_8U);
+    EXPECT_GT(
+            logFalseAlarms(anywhere(random, 300, 640, 480), anywhere(random, 300, 640, 480), all, true, 1e4),
+            0);
+}
+
+TEST(RelativePose, wide_scales_make_no_pose_of_wrong_matches)
+{
+    RNG random(19);
+    for (double scale : {5., 20., 30., 200.})
+        for (int count : {30, 300})
+        {
+            const Mat a = anywhere(random, count, 640, 480), b = anywhere(random, count, 640, 480);
+            Mat R, t;
+            EXPECT_FALSE(findRelativePose(a, b, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), scale)) << scale;
+        }
+}
+
+// Matches that were not refined, or of large images.
+TEST(RelativePose, the_residuals_tell_a_scale_of_any_size)
+{
+    RNG random(20);
+    for (double noise : {1., 3., 5.})
+    {
+        int inside50 = 0, inside95 = 0;
+        const int trials = 20;
+        for (int trial = 0; trial < trials; trial++)
+        {
+            const RelativePose truth = randomPose(random, .2);
+            const Views views(random, truth, 200, 0, noise);
+            RelativePose pose;
+            Mat covariance;
+            ASSERT_TRUE(findRelativePose(views.points1, views.points2, Mat(CAMERA), Mat(CAMERA), pose.R,
+                    pose.t, noArray(), 0, covariance));
+            const Vec<double, 5> error = errorOf(pose, truth);
+            const double chi2 = error.dot(Matx<double, 5, 5>(covariance).inv() * error);
+            inside50 += chi2 < 4.35;
+            inside95 += chi2 < 11.07;
+        }
+        EXPECT_GE(inside50, .4 * trials) << noise;
+        EXPECT_GE(inside95, .85 * trials) << noise;
+    }
+}
+
+TEST(RelativePose, covariances_have_an_inverse)
+{
+    RNG random(21);
+    int found = 0;
+    for (int trial = 0; trial < 10; trial++)
+    {
+        const RelativePose truth = randomPose(random, .1);
+        Mat points[2] = {Mat(200, 2, CV_64F), Mat(200, 2, CV_64F)};
+        for (int i = 0; i < 200; i++)
+        {
+            const double u = random.uniform(-1., 1.);
+            const Vec3d X(u * 2, .5 + u * .7, 7 + 2 * u);  // on a line, which tells no rotation about it
+            const Vec3d seen[] = {CAMERA * X, CAMERA * (truth.R * X + truth.t)};
+            for (int k = 0; k < 2; k++)
+                for (int c = 0; c < 2; c++)
+                    points[k].at<double>(i, c) = seen[k][c] / seen[k][2] + random.gaussian(.2);
+        }
+        Mat R, t, covariance, values;
+        if (!findRelativePose(points[0], points[1], Mat(CAMERA), Mat(CAMERA), R, t, noArray(), 0, covariance))
+            continue;
+        found++;
+        eigen(covariance, values);
+        EXPECT_GT(values.at<double>(4), 0);
+        EXPECT_GT(values.at<double>(0), 1) << "a rotation that nothing tells";
+    }
+    EXPECT_GE(found, 1);
+}
+
 TEST(RelativePose, is_the_same_again_in_both_depths_and_layouts)
 {
     RNG random(6);
@@ -367,6 +483,7 @@ TEST(RelativePose, is_the_same_again_in_both_depths_and_layouts)
 //! Ten thousand matches of which two agree with whatever is proposed.
 struct HopelessProblem
 {
+    double mostScale() const { return 1; }
     typedef double Model;
     typedef Vec<double, 1> Step;
 

@@ -14,7 +14,11 @@ namespace {
 
 const double LEAST_SCALE = .25;   // by which matches count as agreeing, working pixels
 const double LEAST_SPREAD = .12;  // of what has points, that the agreeing matches span: a logo spans less
-const double RICHER = 1.25;       // times as many places agree with a model that is true
+/* Of the cells that matches of any points would be in, those that agreeing ones are in. Captions and logos at two ends of a picture
+have .2 at most, pairs under other light .41 at least. */
+const double LEAST_SCATTER = .33;
+const int CELLS_ACROSS = 8;
+const double RICHER = 1.25;  // times as many places agree with a model that is true
 const double MOST_PARALLAX =
         .25;  // of the places that agree with the transform may move as if the camera had moved
 const double LEAST_PARALLAX = 6;  // working pixels: shadows of another light move by less
@@ -59,12 +63,14 @@ bool isCertain(const Aligned& aligned, const Verdict& verdict)
     std::vector<double> limits;
     for (double limit : {.5, 1., 2., 4.})
         limits.push_back(limit * aligned.limit);
-    return verdict.logFalseAlarms(aligned.fit.squared, Verdict::FROM_POINT, aligned.problem.sampleSize(),
-                   limits) < Verdict::CERTAIN;
+    return verdict.logFalseAlarms(aligned.fit.squared,
+                   errorsOfWrongMatches(aligned.problem, aligned.fit.model), Verdict::FROM_POINT,
+                   aligned.problem.sampleSize(), limits) < Verdict::CERTAIN;
 }
 
-//! Standard deviations of the places of the image's corners, 4 x 1, CV_64F, working pixels.
-Mat deviationsOf(const Aligned& aligned, const AlignedPoints& points, const Size& size)
+/** Standard deviations of the places of the image's corners, 4 x 1, CV_64F, working pixels.
+@param beside what parts of the images differ by from the transform. */
+Mat deviationsOf(const Aligned& aligned, const AlignedPoints& points, const Size& size, double beside)
 {
     const Square<PlanarProblem::Step> covariance =
             covarianceOf(aligned.problem, aligned.fit, partsOf(points.reference), ANY);
@@ -74,7 +80,7 @@ Mat deviationsOf(const Aligned& aligned, const AlignedPoints& points, const Size
     for (int k = 0; k < 4; k++)
         deviations.at<double>(k) =
                 std::hypot(aligned.problem.deviation(aligned.fit.model, covariance, corners[k]),
-                        std::sqrt(2) * COMMON * aligned.fit.scale);
+                        std::hypot(std::sqrt(2) * COMMON * aligned.fit.scale, beside));
     return deviations;
 }
 
@@ -87,23 +93,48 @@ double areaOf(const std::vector<Point2f>& points)
     return contourArea(hull);
 }
 
-//! How much of what has points in both images the agreeing matches span.
-double spreadOf(const Aligned& aligned, const AlignedPoints& points, const Size& size)
+//! Whether the agreeing matches are all over what has points in both images.
+struct Spread
 {
-    std::vector<Point2f> agreeing, common;
-    for (size_t i = 0; i < aligned.agree.size(); i++)
-        if (aligned.agree[i])
-            agreeing.push_back(Point2f(points.reference.at<Point2d>((int)i)));
-    const Matx33d toImage = aligned.problem.inPixels(aligned.fit.model).inv();
-    for (const KeyPoint& keypoint : points.keypoints)
+    double area;     //!< that they span, over that of the points
+    double scatter;  //!< cells that they are in, over those in which as many of the points would be
+
+    Spread(const Aligned& aligned, const AlignedPoints& points, const Size& size)
     {
-        const Vec3d there = toImage * Vec3d(keypoint.pt.x, keypoint.pt.y, 1);
-        if (Rect2d(Point2d(), Size2d(size)).contains({there[0] / there[2], there[1] / there[2]}))
-            common.push_back(keypoint.pt);
+        std::vector<Point2f> agreeing, common;
+        for (size_t i = 0; i < aligned.agree.size(); i++)
+            if (aligned.agree[i])
+                agreeing.push_back(Point2f(points.reference.at<Point2d>((int)i)));
+        const Matx33d toImage = aligned.problem.inPixels(aligned.fit.model).inv();
+        for (const KeyPoint& keypoint : points.keypoints)
+        {
+            const Vec3d there = toImage * Vec3d(keypoint.pt.x, keypoint.pt.y, 1);
+            if (Rect2d(Point2d(), Size2d(size)).contains({there[0] / there[2], there[1] / there[2]}))
+                common.push_back(keypoint.pt);
+        }
+        const double all = areaOf(common);
+        area = all > 0 ? areaOf(agreeing) / all : 0;
+        const Rect box = boundingRect(common);
+        const std::vector<int> matches = countsOfCells(agreeing, box), of = countsOfCells(common, box);
+        double expected = 0;
+        for (int count : of)
+            expected += 1 - std::pow(1 - (double)count / std::max<size_t>(common.size(), 1), agreeing.size());
+        scatter = (double)(matches.size() - std::count(matches.begin(), matches.end(), 0)) /
+                  std::max(expected, 1.);
     }
-    const double all = areaOf(common);
-    return all > 0 ? areaOf(agreeing) / all : 0;
-}
+
+private:
+    static std::vector<int> countsOfCells(const std::vector<Point2f>& points, const Rect& box)
+    {
+        std::vector<int> counts(CELLS_ACROSS * CELLS_ACROSS);
+        const auto cell = [](float place, int length) {
+            return std::clamp((int)(place / std::max(length, 1) * CELLS_ACROSS), 0, CELLS_ACROSS - 1);
+        };
+        for (const Point2f& p : points)
+            counts[cell(p.y - box.y, box.height) * CELLS_ACROSS + cell(p.x - box.x, box.width)]++;
+        return counts;
+    }
+};
 
 std::vector<Attempt> attemptsFor(const Size& first, const Size& second, int model)
 {
@@ -117,6 +148,28 @@ std::vector<Attempt> attemptsFor(const Size& first, const Size& second, int mode
 }
 
 int countOf(const Verdict::Marks& marks) { return (int)std::count(marks.begin(), marks.end(), true); }
+
+//! The matches beside a transform by so much, working pixels, or more, that the camera's motion explains.
+Verdict::Marks movedBeside(
+        const Aligned& aligned, const AlignedPoints& points, double distance, const Verdict& verdict)
+{
+    return movedByParallax(points.reference, points.image, aligned.problem.inPixels(aligned.fit.model),
+            within(std::max(2 * aligned.limit, distance), aligned.fit.squared), aligned.limit, verdict);
+}
+
+/** By how much a part of the images is beside the transform, as by light that moves shadows or by a camera that moved little, working
+pixels; 0 if it is no larger than what makes no parallax. */
+double deviationBeside(const Aligned& aligned, const AlignedPoints& points)
+{
+    const Verdict verdict(points.image, points.reference);
+    const Verdict::Marks moved = movedBeside(aligned, points, 0, verdict);
+    if (verdict.places(moved) <= MOST_PARALLAX * verdict.places(aligned.agree))
+        return 0;
+    double sum = 0;
+    for (size_t i = 0; i < moved.size(); i++)
+        sum += moved[i] ? aligned.fit.squared[i] : 0;
+    return std::sqrt(sum / std::max(countOf(moved), 1));
+}
 
 //! Why the model is not that of the images; empty if it is.
 std::string reasonAgainstModel(
@@ -136,9 +189,7 @@ std::string reasonAgainstModel(
                         countOf(near(aligned)));
     if (!isCertain(aligned, verdict))
         return "";
-    const Verdict::Marks moved = movedByParallax(points.reference, points.image,
-            richest.problem.inPixels(richest.fit.model),
-            within(std::max(2 * richest.limit, LEAST_PARALLAX), richest.fit.squared), richest.limit, verdict);
+    const Verdict::Marks moved = movedBeside(richest, points, LEAST_PARALLAX, verdict);
     if (verdict.places(moved) > MOST_PARALLAX * most)
         return format(
                 "the camera moved through a scene that is not flat: %d matches agree with one transform, and "
@@ -168,11 +219,17 @@ Judgement judge(const Aligned& aligned, const AlignedPoints& points, int model, 
                        "may not show the same",
                         aligned.count(), aligned.problem.size()),
                 false};
-    const double spread = spreadOf(aligned, points, size);
-    if (spread < LEAST_SPREAD)
+    const Spread spread(aligned, points, size);
+    if (spread.area < LEAST_SPREAD)
         return {format("the images share %.0f %% of what both could show and nothing else: a logo, a "
                        "caption?",
-                        100 * spread),
+                        100 * spread.area),
+                false};
+    if (spread.scatter < LEAST_SCATTER)
+        return {format("the images share a few small parts, with %d matches, and nothing between these: "
+                       "logos, "
+                       "captions?",
+                        aligned.count()),
                 false};
     return {"", true};
 }
@@ -222,7 +279,9 @@ public:
                 break;
             Mat(pair.inPixels(aligned.problem.inPixels(aligned.fit.model))).copyTo(transform);
             if (error.needed())
-                Mat(deviationsOf(aligned, points, pair.size()) * pair.inPixels(1)).copyTo(error);
+                Mat(deviationsOf(aligned, points, pair.size(), deviationBeside(aligned, points)) *
+                        pair.inPixels(1))
+                        .copyTo(error);
             break;
         }
         if (matches.needed())

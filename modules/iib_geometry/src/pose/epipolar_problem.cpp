@@ -6,11 +6,13 @@
 #include <numeric>
 
 #include "five_points.hpp"
+#include "points.hpp"
 
 namespace cv::iib {
 namespace {
 
 const int STRIDE = 32;          // matches between two looks at the limit
+const double MOST_SCALE = .01;  // of what the points span: wider, few wrong poses can be told from right ones
 const double NO_PARALLAX = 1;   // pixels: of a point so far away that noise may put it behind a camera
 const double NOWHERE = 1e-300;  // keeps an error of 0 / 0, at the epipoles, finite
 
@@ -29,11 +31,21 @@ std::vector<Point2d> directions(const Mat& points, const Matx33d& camera)
 
 EpipolarProblem::EpipolarProblem(
         const Mat& points1, const Mat& points2, const Matx33d& camera1, const Matx33d& camera2)
-    : first_(directions(points1, camera1)),
-      second_(directions(points2, camera2)), pixels_{1 / camera2(0, 0), 1 / camera2(1, 1), 1 / camera1(0, 0),
-                                                     1 / camera1(1, 1)}
+    : first_(directions(points1, camera1)), second_(directions(points2, camera2)),
+      mostScale_(MOST_SCALE * norm(spanOf(points2).br() - spanOf(points2).tl())), pixels_{1 / camera2(0, 0),
+                                                                                          1 / camera2(1, 1),
+                                                                                          1 / camera1(0, 0),
+                                                                                          1 / camera1(1, 1)}
 {
     std::transform(pixels_, pixels_ + 4, weights_, square);
+}
+
+EpipolarProblem EpipolarProblem::mixed(const std::vector<int>& order) const
+{
+    EpipolarProblem other = *this;
+    for (size_t i = 0; i < order.size(); i++)
+        other.second_[i] = second_[order[i]];
+    return other;
 }
 
 namespace {

@@ -17,7 +17,11 @@ public:
     //! Both N x 2, CV_64F, pixels; matrices of cameras without skew.
     EpipolarProblem(const Mat& points1, const Mat& points2, const Matx33d& camera1, const Matx33d& camera2);
 
+    //! The same first points, and the second ones in another order.
+    EpipolarProblem mixed(const std::vector<int>& order) const;
+
     int size() const { return (int)first_.size(); }
+    double mostScale() const { return mostScale_; }
     int sampleSize() const { return 5; }
     int parameters() const { return 5; }
 
@@ -47,8 +51,9 @@ private:
     Row<Step> row(const Linear& linear, const Point2d& first, const Point2d& second) const;
 
     std::vector<Point2d> first_, second_;  // directions, third coordinate 1
-    double pixels_[4];                     // of v and of u: one over the focal lengths
-    double weights_[4];                    // their squares, of the four squares in Sampson's denominator
+    double mostScale_;
+    double pixels_[4];   // of v and of u: one over the focal lengths
+    double weights_[4];  // their squares, of the four squares in Sampson's denominator
 };
 
 }  // namespace cv::iib

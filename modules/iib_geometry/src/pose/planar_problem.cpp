@@ -58,6 +58,14 @@ PlanarProblem::PlanarProblem(const Mat& reference, const Mat& image, int kind) :
 }
 
 // Of T p = w r, with T = 1 + sum of s_k G_k, two equations a match are linear in s, and w drops out.
+PlanarProblem PlanarProblem::mixed(const std::vector<int>& order) const
+{
+    PlanarProblem other = *this;
+    for (size_t i = 0; i < order.size(); i++)
+        other.image_[i] = image_[order[i]];
+    return other;
+}
+
 void PlanarProblem::propose(const std::vector<int>& sample, std::vector<Matx33d>& transforms) const
 {
     transforms.clear();

@@ -16,7 +16,11 @@ public:
     //! Both N x 2, CV_64F, pixels; kind of AlignmentModel.
     PlanarProblem(const Mat& reference, const Mat& image, int kind);
 
+    //! The same points of the reference, and those of the image in another order.
+    PlanarProblem mixed(const std::vector<int>& order) const;
+
     int size() const { return (int)image_.size(); }
+    double mostScale() const { return .5; }  // its matches are refined
     int sampleSize() const { return parameters() / 2; }
     int parameters() const { return (int)basis_.size(); }
 

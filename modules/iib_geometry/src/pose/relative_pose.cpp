@@ -35,14 +35,16 @@ Matx33d cameraMatrix(InputArray matrix, const char* name)
 }
 
 //! Why the matches tell no pose; empty if they do.
-std::string reasonAgainst(const Fit<EpipolarProblem>& fit, const Verdict& verdict)
+std::string reasonAgainst(
+        const EpipolarProblem& problem, const Fit<EpipolarProblem>& fit, const Verdict& verdict)
 {
     if (fit.squared.empty())
         return "no pose agrees with five matches or more";
     std::vector<double> limits;
     for (double scales : {1.5, 3., 6., 12.})
         limits.push_back(scales * std::max(fit.scale, REFINED));
-    if (verdict.logFalseAlarms(fit.squared, Verdict::FROM_LINE, 5, limits) > Verdict::CERTAIN)
+    if (verdict.logFalseAlarms(fit.squared, errorsOfWrongMatches(problem, fit.model), Verdict::FROM_LINE, 5,
+                limits) > Verdict::CERTAIN)
         return format(
                 "the pose that agrees best has matches in %d places of the image, no more than chance may "
                 "give: the images may not show the same",
@@ -111,14 +113,17 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
         agree.copyTo(inliers);
     }
     const Verdict verdict(first, second);
-    std::string why = reasonAgainst(fit, verdict);
+    std::string why = reasonAgainst(problem, fit, verdict);
     Square<EpipolarProblem::Step> errors;
     if (why.empty())
     {
         errors = covarianceOf(problem, fit, partsOf(first), LARGEST_DEVIATION);
         if (!tellsDirection(problem, fit, verdict))
+        {
             for (int k = 3; k < 5; k++)
                 errors(k, k) += square(LARGEST_DEVIATION);
+            errors = limited(errors, LARGEST_DEVIATION);
+        }
         why = reasonAgainst(fit, errors);
     }
     if (reason)

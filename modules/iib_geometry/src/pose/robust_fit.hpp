@@ -16,6 +16,7 @@ and from FARTHEST scales^2 on that of FARTHEST: by how far a wrong match is wron
 A class Problem holds the matches and has
     Model, Step     what is sought, and a Vec<double, N> of changes to it
     int size()      number of matches
+    double mostScale()                 by which models are looked for, pixels
     int sampleSize(), parameters()     matches that give a model; its degrees of freedom, N at most
     propose(sample, models)            models that agree with a sample: indices of sampleSize() matches
     double loss(model, scale, limit)   the sum over all matches, or anything over the limit
@@ -24,7 +25,8 @@ A class Problem holds the matches and has
     linearize(model, limit, rows)      the rows of matches whose squared error is below the limit
     Model moved(model, step) */
 
-const double FARTHEST = 9;  // three scales
+const double FARTHEST = 9;            // three scales
+const double FARTHEST_OF_CHOICE = 4;  // scales at which squared errors are cut off when a model is chosen
 
 //! One coordinate of a match's error in pixels, its derivatives, and the squared length of the whole error.
 template <class Step> struct Row
@@ -111,33 +113,28 @@ template <class Problem> struct Fit
     explain the matches as well. */
     double lead = std::numeric_limits<double>::infinity();
     typename Problem::Model other;
+    bool wantsMore = false;  //!< whether more samples might find a better one
 };
 
-/** The model that most matches agree with. The same in every run.
+/** The model that most matches agree with under one scale, pixels, not polished finely. The same in every run.
 
-Samples propose models, and those of the least loss under a narrow scale are kept. Each is polished under twice the scale, and
-the one with the least sum of squared errors, cut off at four scales, is chosen: at the narrow scale a model that a cluster of wrong
-matches has drawn to itself may win. Then it is polished under the final scale.
-@param scale of Cauchy's loss, pixels; 0: the errors tell it. */
-template <class Problem> Fit<Problem> robustFit(const Problem& problem, double scale)
+Samples propose models, and those of the least loss are kept. Each is polished under twice the scale, and the one with the least
+sum of squared errors, cut off at four scales, is chosen: at the narrow scale a model that a cluster of wrong matches has drawn to
+itself may win. */
+template <class Problem> Fit<Problem> search(const Problem& problem, double scale, int mostTrials)
 {
     typedef typename Problem::Model Model;
-    const int fewestTrials = 150, mostTrials = 10000;
-    const double roughly = 1e-3, finely = 1e-9;  // how much less of its loss a model is polished for
+    const int fewestTrials = 150;
+    const double roughly = 1e-3;  // how much less of its loss a model is polished for
     const size_t most =
             10;  // models polished in the end: that of the least loss need not lead to the best one
     const double missed = 1e-4;  // probability that no sample was of right matches alone
-    const double refined = .25,
-                 least = .1;   // scales of refined matches: to search, and the finest one, pixels
-    const double coarse = .3;  // of the width that counts: above it errors are wider than that
     const double none = std::numeric_limits<double>::max();
     Fit<Problem> fit;
     const int count = problem.size(), size = problem.sampleSize();
     if (count < size)
         return fit;
 
-    const double narrow = scale > 0 ? scale : refined, wide = 2 * narrow, farthest = 4 * narrow;
-    const double farthest2 = farthest * farthest;
     RNG random(0x5eed);
     std::vector<int> sample(size);
     std::vector<Model> models;
@@ -145,13 +142,13 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem, double s
     std::vector<double> squared;
     double leastLoss = none, trials = mostTrials;
     const auto expect = [&](Model model) {
-        polish(problem, narrow, roughly, model);
-        const double loss = problem.loss(model, narrow, leastLoss);
+        polish(problem, scale, roughly, model);
+        const double loss = problem.loss(model, scale, leastLoss);
         if (loss >= leastLoss)
             return;
         leastLoss = loss;
         problem.squaredErrors(model, squared);
-        const double inside = FARTHEST * narrow * narrow;
+        const double inside = FARTHEST * scale * scale;
         const auto near = std::count_if(squared.begin(), squared.end(), [&](double e) { return e < inside; });
         const double right = std::pow((double)near / count, size);  // probability of a sample of such alone
         const double wanted = right > 0 ? std::log(missed) / std::log1p(-std::min(right, .999)) : none;
@@ -167,7 +164,7 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem, double s
         for (const Model& model : models)
         {
             const double limit = best.size() < most ? none : best.back().first,
-                         loss = problem.loss(model, narrow, limit);
+                         loss = problem.loss(model, scale, limit);
             if (loss >= limit)
                 continue;
             if (best.size() == most)
@@ -180,10 +177,12 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem, double s
         }
     }
 
+    fit.wantsMore = trials == mostTrials;
     double leastSum = none;
+    const double farthest2 = square(FARTHEST_OF_CHOICE * scale);
     for (std::pair<double, Model>& candidate : best)
     {
-        polish(problem, wide, roughly, candidate.second);
+        polish(problem, 2 * scale, roughly, candidate.second);
         problem.squaredErrors(candidate.second, squared);
         double& sum = candidate.first = 0;
         for (double error : squared)
@@ -194,8 +193,6 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem, double s
         fit.model = candidate.second;
         fit.squared = squared;
     }
-    if (leastSum == none)
-        return fit;
     for (const std::pair<double, Model>& candidate : best)
         if ((candidate.first - leastSum) / farthest2 < fit.lead &&
                 problem.areApart(candidate.second, fit.model))
@@ -203,23 +200,58 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem, double s
             fit.lead = (candidate.first - leastSum) / farthest2;
             fit.other = candidate.second;
         }
+    return fit;
+}
 
-    fit.scale = scale;
-    if (scale == 0)
+/** Whether the errors within a distance are those of right matches: most of them far below it, and few others around it. Else matches
+err by more, or are wrong.
+@param scale that the errors within it tell. */
+inline bool settles(const std::vector<double>& squared, double distance, double& scale)
+{
+    const double most = .3;                  // of the distance: the median error
+    const double wider = 4, mostMore = 1.5;  // of those within the distance are within so many of it
+    const double least = .1;                 // scale, pixels: of refined matches
+    std::vector<double> near;
+    double around = 0;
+    for (double error : squared)
     {
-        std::vector<double> near;
-        for (double error : fit.squared)
-            if (error < farthest2)
-                near.push_back(error);
-        if (near.empty())
-            return Fit<Problem>();
-        const auto middle = near.begin() + near.size() / 2;
-        std::nth_element(near.begin(), middle, near.end());
-        const double median = std::sqrt(*middle);
-        fit.scale = std::max(1.4826 * median, least);
-        if (median > coarse * farthest)  // as of points that were not refined
-            return robustFit(problem, wide);
+        if (error < square(distance))
+            near.push_back(error);
+        around += error < square(wider * distance);
     }
+    if (near.empty())
+        return false;
+    const auto middle = near.begin() + near.size() / 2;
+    std::nth_element(near.begin(), middle, near.end());
+    const double median = std::sqrt(*middle);
+    scale = std::max(1.4826 * median, least);
+    return median < most * distance && around < mostMore * near.size();
+}
+
+/** The model that most matches agree with. The same in every run.
+@param scale of Cauchy's loss, pixels; 0: the errors tell it. Then scales from that of refined matches upwards are tried, each twice
+    the one before, with few samples, until the errors settle. */
+template <class Problem> Fit<Problem> robustFit(const Problem& problem, double scale)
+{
+    const double finely = 1e-9, refined = .25;
+    const int fewTrials = 1000, mostTrials = 10000;
+    Fit<Problem> fit;
+    double narrow = scale > 0 ? scale : refined, told = scale;
+    bool settled = scale > 0;
+    for (; !settled && narrow <= problem.mostScale(); narrow *= settled ? 1 : 2)
+    {
+        fit = search(problem, narrow, fewTrials);
+        settled = settles(fit.squared, FARTHEST_OF_CHOICE * narrow, told);
+    }
+    if (!settled)
+        narrow = 2 * refined;
+    if (fit.wantsMore || fit.squared.empty() || !settled)
+        fit = search(problem, narrow, mostTrials);
+    if (fit.squared.empty())
+        return fit;
+    if (scale == 0 && !settles(fit.squared, FARTHEST_OF_CHOICE * narrow, told))
+        told = narrow;
+    fit.scale = told;
     polish(problem, fit.scale, finely, fit.model);
     problem.squaredErrors(fit.model, fit.squared);
     return fit;

@@ -16,11 +16,11 @@ them all, so that their number says little. The covariance has three parts:
 What all matches have in common is in none of them. */
 
 const int PARTS_ACROSS = 4, PARTS_DOWN = 3;
-const double FEW_PARTS = 2.5;        // for a variance that a dozen parts tell
-const double SHARED = .2;            // of the variance of a match
-const double LEAST_NOISE = .02;      // pixels: nothing is located more exactly
-const double TINY = 1e-30;           // variance
-const double LARGEST_DEVIATION = 3;  // of what nothing tells, radians: it may be anywhere
+const double FEW_PARTS = 2.5;         // for a variance that a dozen parts tell
+const double SHARED = .2;             // of the variance of a match
+const double LEAST_NOISE = .02;       // pixels: nothing is located more exactly
+const double LEAST_DEVIATION = 1e-9;  // of a number, so that a covariance has an inverse
+const double LARGEST_DEVIATION = 3;   // of what nothing tells, radians: it may be anywhere
 
 //! Which part of what points span each of them is in, N x 2, CV_64F.
 inline std::vector<int> partsOf(const Mat& points)
@@ -57,6 +57,18 @@ Matx<double, N, N> inverseWithFloor(
     }
     if (unknown)
         *unknown = vectors.t() * raised;
+    return vectors.t() * scaled;
+}
+
+//! A covariance with no deviation above the largest one, or under the least.
+template <int N> Matx<double, N, N> limited(const Matx<double, N, N>& covariance, double largest)
+{
+    Matx<double, N, 1> values;
+    Matx<double, N, N> vectors, scaled;
+    eigen(covariance, values, vectors);
+    for (int r = 0; r < N; r++)
+        for (int c = 0; c < N; c++)
+            scaled(r, c) = vectors(r, c) * std::clamp(values(r), square(LEAST_DEVIATION), square(largest));
     return vectors.t() * scaled;
 }
 
@@ -129,9 +141,7 @@ Square<typename Problem::Step> covarianceOf(
     for (const Step& change : changes)
         addProduct(Step(change - mean * (1 / groups)), FEW_PARTS * (groups - 1) / groups, spread);
     mirror(spread);
-    // No number errs by more than by chance alone.
-    const Square<Step> all2 = inverse * pulls * inverse + spread + unknown * square(largest);
-    return inverseWithFloor(inverseWithFloor(all2, TINY), 1 / square(largest));
+    return limited(inverse * pulls * inverse + spread + unknown * square(largest), largest);
 }
 
 }  // namespace cv::iib

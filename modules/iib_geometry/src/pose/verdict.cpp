@@ -6,20 +6,81 @@
 #include <cmath>
 #include <limits>
 
+#include "opencv2/calib3d.hpp"
 #include "opencv2/iib/verdict.hpp"
 #include "points.hpp"
 
 namespace cv::iib {
 namespace {
 
-const int CELLS = 32;  // of the diagonal of what the points span
-const double LARGEST_CHANCE = .5;
+double square(double x) { return x * x; }
+
+const int CELLS = 32;      // of the diagonal of what the points span
 const double MODELS = 10;  // that a sample proposes, at most
 
 double logBinomial(int n, int k)
 {
     return (std::lgamma(n + 1.) - std::lgamma(k + 1.) - std::lgamma(n - k + 1.)) / std::log(10.);
 }
+
+//! Matches of which some agree with a fundamental matrix or a homography, as errorsOfWrongMatches() has them.
+class MarkedMatches
+{
+public:
+    typedef Matx33d Model;
+
+    MarkedMatches(const Mat& points1, const Mat& points2, bool epipolar)
+        : first_(points1), second_(points2), epipolar_(epipolar)
+    {
+    }
+
+    int size() const { return first_.rows; }
+
+    MarkedMatches mixed(const std::vector<int>& order) const
+    {
+        MarkedMatches other(first_, second_.clone(), epipolar_);
+        for (int i = 0; i < size(); i++)
+            second_.row(order[i]).copyTo(other.second_.row(i));
+        return other;
+    }
+
+    //! The one of those that are marked; false where these are too few or tell none.
+    bool fit(const Verdict::Marks& marks, Matx33d& model) const
+    {
+        Mat chosen[2];
+        for (int i = 0; i < size(); i++)
+            if (marks[i])
+            {
+                chosen[0].push_back(first_.row(i));
+                chosen[1].push_back(second_.row(i));
+            }
+        if (chosen[0].rows < (epipolar_ ? 8 : 4))
+            return false;
+        const Mat found = epipolar_ ? findFundamentalMat(chosen[0], chosen[1], FM_8POINT)
+                                    : findHomography(chosen[0], chosen[1], 0);
+        if (found.size() != Size(3, 3))
+            return false;
+        model = found;
+        return true;
+    }
+
+    void squaredErrors(const Matx33d& model, std::vector<double>& errors) const
+    {
+        errors.resize(size());
+        for (int i = 0; i < size(); i++)
+        {
+            const Point2d &a = first_.at<Point2d>(i), &b = second_.at<Point2d>(i);
+            const Vec3d p(a.x, a.y, 1), q(b.x, b.y, 1), there = model * p, back = model.t() * q;
+            const double line2 = square(there[0]) + square(there[1]) + square(back[0]) + square(back[1]);
+            const Point2d beside(b.x - there[0] / there[2], b.y - there[1] / there[2]);
+            errors[i] = epipolar_ ? square(q.dot(there)) / line2 : beside.ddot(beside);
+        }
+    }
+
+private:
+    Mat first_, second_;
+    bool epipolar_;
+};
 
 double diagonal(const Size2d& size) { return std::hypot(size.width, size.height); }
 
@@ -41,7 +102,7 @@ Verdict::Verdict(const Mat& points1, const Mat& points2)
             };
             cells_[image].push_back(within(p[1] - span.y) * (CELLS + 1) + within(p[0] - span.x));
         }
-        span_ = span.size();
+        spans_[image] = span.size();
     }
 }
 
@@ -56,37 +117,35 @@ int Verdict::places(const Marks& matches, int image) const
 
 int Verdict::places(const Marks& matches) const { return std::min(places(matches, 0), places(matches, 1)); }
 
-double Verdict::chance(Distance distance, double limit) const
+double Verdict::chance(Distance distance, double limit, const std::vector<double>& wrong) const
 {
-    const double area = distance == FROM_LINE ? 2 * limit * diagonal(span_) : CV_PI * limit * limit;
-    return area / span_.area();
+    // Of a line, the nearer of two distances counts, in either image; of a point, that in the second one.
+    const auto along = [&](const Size2d& span) { return 2 * limit * diagonal(span) / span.area(); };
+    const double anywhere = distance == FROM_LINE ? std::max(along(spans_[0]), along(spans_[1]))
+                                                  : CV_PI * limit * limit / spans_[1].area();
+    const auto near = std::count_if(wrong.begin(), wrong.end(), [&](double e) { return e < limit * limit; });
+    return std::clamp((double)near / std::max<size_t>(wrong.size(), 1), std::min(anywhere, 1.), 1.);
 }
 
 double Verdict::logFalseAlarms(const Marks& all, const Marks& agreeing, int sampleSize, double chance) const
 {
-    double most = -std::numeric_limits<double>::infinity();
-    for (int image = 0; image < 2; image++)
-    {
-        const int n = places(all, image), k = places(agreeing, image);
-        if (k <= sampleSize)
-            return std::numeric_limits<double>::infinity();
-        most = std::max(most, std::log10(MODELS * (n - sampleSize)) + logBinomial(n, k) +
-                                      logBinomial(k, sampleSize) +
-                                      (k - sampleSize) * std::log10(std::min(chance, LARGEST_CHANCE)));
-    }
-    return most;
+    const auto of = [&](int n, int k) {
+        return k > sampleSize ? std::log10(MODELS * (n - sampleSize)) + logBinomial(n, k) +
+                                        logBinomial(k, sampleSize) + (k - sampleSize) * std::log10(chance)
+                              : std::numeric_limits<double>::infinity();
+    };
+    const auto count = [](const Marks& marks) { return (int)std::count(marks.begin(), marks.end(), true); };
+    return std::max({of(count(all), count(agreeing)), of(places(all, 0), places(agreeing, 0)),
+            of(places(all, 1), places(agreeing, 1))});
 }
 
-double Verdict::logFalseAlarms(const std::vector<double>& squared, Distance distance, int sampleSize,
-        const std::vector<double>& limits) const
+double Verdict::logFalseAlarms(const std::vector<double>& squared, const std::vector<double>& wrong,
+        Distance distance, int sampleSize, const std::vector<double>& limits) const
 {
     double least = std::numeric_limits<double>::infinity();
     for (double limit : limits)
-    {
-        const double area = distance == FROM_LINE ? 2 * limit * diagonal(span_) : CV_PI * limit * limit;
         least = std::min(least, logFalseAlarms(Marks(squared.size(), true), within(limit, squared),
-                                        sampleSize, area / span_.area()));
-    }
+                                        sampleSize, chance(distance, limit, wrong)));
     return least + std::log10((double)limits.size());
 }
 
@@ -114,9 +173,14 @@ double logFalseAlarms(
     Verdict::Marks agreeing(first.rows);
     std::transform(
             marks.begin<uchar>(), marks.end<uchar>(), agreeing.begin(), [](uchar mark) { return mark != 0; });
+    const MarkedMatches matches(first, second, epipolar);
+    Matx33d model;
+    std::vector<double> wrong;
+    if (matches.fit(agreeing, model))
+        wrong = errorsOfWrongMatches(matches, model);
     const Verdict verdict(first, second);
     return verdict.logFalseAlarms(Verdict::Marks(first.rows, true), agreeing, epipolar ? 7 : 4,
-            verdict.chance(epipolar ? Verdict::FROM_LINE : Verdict::FROM_POINT, threshold));
+            verdict.chance(epipolar ? Verdict::FROM_LINE : Verdict::FROM_POINT, threshold, wrong));
 }
 
 }  // namespace cv::iib

@@ -8,8 +8,8 @@
 namespace cv::iib {
 
 /** Tells whether matches agree with a model by more than chance, by the number of false alarms: how many models that agree as well
-are expected among matches of which each is anywhere in its image (Moisan and Stival 2004, section 3). Places are counted, cells of a
-32nd of the diagonal of what the points span, since matches beside each other are right or wrong together. */
+are expected among wrong matches (Moisan and Stival 2004, section 3). It is counted in matches and in places, cells of a 32nd of the
+diagonal of what the points span, since matches beside each other may be wrong together; the larger one counts. */
 class Verdict
 {
 public:
@@ -27,13 +27,14 @@ public:
 
     /** Logarithm to base 10 of the number of false alarms, at that limit of the errors at which it is least.
     @param squared errors of the matches, pixels^2.
+    @param wrong such errors of wrong matches: see errorsOfWrongMatches().
     @param sampleSize matches that give a model.
     @param limits to try, pixels. */
-    double logFalseAlarms(const std::vector<double>& squared, Distance distance, int sampleSize,
-            const std::vector<double>& limits) const;
+    double logFalseAlarms(const std::vector<double>& squared, const std::vector<double>& wrong,
+            Distance distance, int sampleSize, const std::vector<double>& limits) const;
 
-    //! Chance that a wrong match is so near.
-    double chance(Distance distance, double limit) const;
+    /** Chance that a wrong match is so near: as of points that are anywhere, or, where points gather, as those errors tell. */
+    double chance(Distance distance, double limit, const std::vector<double>& wrong) const;
 
     /** The same of matches that agree or not.
     @param chance that a wrong match agrees. */
@@ -49,8 +50,27 @@ private:
     int places(const Marks& matches, int image) const;
 
     std::vector<int> cells_[2];  // of the matches
-    Size2d span_;                // of points2
+    Size2d spans_[2];
 };
+
+/** Squared errors of matches between points of different matches, about 4000: what a model makes of matches that are wrong, where
+the points are. */
+template <class Problem>
+std::vector<double> errorsOfWrongMatches(const Problem& problem, const typename Problem::Model& model)
+{
+    const int enough = 4096, n = problem.size();
+    RNG random(0x5eed);
+    std::vector<int> order(n);
+    std::vector<double> all, errors;
+    for (int round = 1; round < n && (int)all.size() < enough; round++)
+    {
+        for (int i = 0; i < n; i++)
+            order[i] = (i + random.uniform(1, n)) % n;
+        problem.mixed(order).squaredErrors(model, errors);
+        all.insert(all.end(), errors.begin(), errors.end());
+    }
+    return all;
+}
 
 //! Which squared errors are below limit^2.
 Verdict::Marks within(double limit, const std::vector<double>& squared);

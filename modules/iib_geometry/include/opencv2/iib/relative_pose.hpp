@@ -18,8 +18,9 @@ Sampson's error (@cite HartleyZisserman2004, equation 11.9) under Cauchy's loss,
 expected; the same input gives the same answer, whatever the number of threads.
 
 Where the matches that agree are not more than chance there is no pose: if poses that agree as well are expected more than once
-in a thousand tries among matches that are anywhere (the number of false alarms, @cite MoisanStival2004, counted in cells of a 32nd
-of the diagonal of what the points span, since matches beside each other are right or wrong together).
+in a thousand tries among wrong matches (the number of false alarms, @cite MoisanStival2004). It is counted in matches, and in cells
+of a 32nd of the diagonal of what the points span, since matches beside each other may be wrong together; the larger number counts. How
+often a wrong match agrees is what points of different matches do with the pose, so that a skyline is no pose.
 
 There is none either where a second pose, far outside of the covariance, explains the matches as well to the worth of one
 match, as two do of a plane.
@@ -35,8 +36,8 @@ Matches that cv::iib::refineMatches refined make the pose more accurate where th
 @param t 3 x 1, CV_64F, of length 1: direction of the translation, in the axes of camera 2
 @param inliers N x 1, CV_8U: 1 for matches within three scales of the pose (three quarters of a pixel at least), and in front of both
     cameras unless they are too far away to tell; else 0. Without a pose, those that agreed best
-@param scale Cauchy's scale in pixels: about the standard deviation of the points; 0: the residuals tell it; less than .1 counts as
-    .1
+@param scale Cauchy's scale in pixels: about the standard deviation of the points; 0: the residuals tell it, from .1 pixel to a
+    hundredth of the diagonal of what the points span; less than .1 counts as .1
 @param covariance 5 x 5, CV_64F, of the errors of the pose in radians: three numbers of a rotation vector \f$w\f$ in the
     axes of camera 2, where the true rotation is \f$\exp([w]_\times) R\f$; two of the direction of t, along \f$b\f$ and
     \f$t \times b\f$, where \f$b\f$ is the unit vector along \f$t \times e\f$ and \f$e\f$ the axis along which t is
