@@ -196,6 +196,10 @@ class Stream(Options):
         status, out, _ = self.stream(other + '\n', '--camera', CAMERA)
         self.assertEqual((status, out.rsplit(' ', 7)[0]), (0, other))
         self.assertEqual(self.stream(a + '\r\n', '--camera', CAMERA, '--max-size', 250)[0], 0)
+        nothing = self.folder / 'masks'
+        nothing.mkdir()
+        cv2.imwrite(str(nothing / (os.path.basename(a) + '.png')), np.zeros((HEIGHT, WIDTH), np.uint8))
+        self.assertEqual(self.stream(a, '--camera', CAMERA, '--mask', nothing)[0], 3)
         self.assertEqual(self.stream(none)[0], 3)
         self.assertEqual(self.stream('')[0], 0)
 

@@ -37,6 +37,43 @@ TEST_F(Localization, in_another_light)
     EXPECT_EQ(CAMERA.parameters, localizer.cameras()[0].parameters);
 }
 
+TEST_F(Localization, of_files_that_store_the_image_turned)
+{
+    const Localizer localizer(folder.path("map"));
+    const cv::Mat image = wall.image(TRUTH);
+    for (int orientation : {3, 6, 8})
+    {
+        cv::Mat stored;
+        cv::rotate(image, stored,
+                orientation == 3   ? cv::ROTATE_180
+                : orientation == 6 ? cv::ROTATE_90_COUNTERCLOCKWISE
+                                   : cv::ROTATE_90_CLOCKWISE);
+        const Camera camera = CAMERA.upright(orientation == 3 ? 3 : 14 - orientation);  // turned back
+        const Location location = localizer.localize(stored, camera, nullptr, orientation);
+        ASSERT_TRUE(location.found) << location.reason;
+        EXPECT_LT(cv::norm(inverse(location.cameraFromWorld).translation() - TRUTH.translation()), 0.01);
+        const std::vector<cv::Point2d> seen =
+                camera.project(inCamera(location.points, location.cameraFromWorld));
+        for (size_t i = 0; i < seen.size(); i++)
+            EXPECT_LT(cv::norm(seen[i] - location.pixels[i]), 2);
+        EXPECT_FALSE(localizer.localize(stored, camera).found);
+    }
+    EXPECT_NE("", messageOf([&] { localizer.localize(image, CAMERA, nullptr, 9); }));
+}
+
+TEST_F(Localization, looks_at_what_a_mask_allows)
+{
+    const Localizer localizer(folder.path("map"));
+    cv::Mat mask(SIZE, CV_8U, cv::Scalar(1));
+    mask.colRange(0, SIZE.width / 2) = 0;
+    const Location location = localizer.localize(wall.image(TRUTH), CAMERA, nullptr, 1, mask);
+    expectAt(TRUTH, location, 0.05);
+    for (const cv::Point2d& pixel : location.pixels)
+        EXPECT_GE(pixel.x, SIZE.width / 2 - 1);
+    EXPECT_EQ("a mask is CV_8UC1, of its image's size",
+            messageOf([&] { localizer.localize(wall.image(TRUTH), CAMERA, nullptr, 1, mask.t()); }));
+}
+
 TEST_F(Localization, with_distorted_cameras)
 {
     const Localizer localizer(folder.path("map"));

@@ -79,7 +79,7 @@ def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[
     data = read_bytes(os.path.join(folder, name))
     grey, orientation = decode_grey(data), exif_orientation(data) if exif else 1
     own = camera or find_camera(data, grey.shape[1], grey.shape[0], known, orientation)
-    return own, find(name, grey, own, orientation, masks.of(name, grey))
+    return own, find(name, grey, own, orientation, masks.of(name if folder else os.path.basename(name), grey))
 
 
 def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence[str], camera: Optional[AnyCamera],
@@ -199,7 +199,8 @@ def localize_stream(map: Path, paths: Iterable[str], camera: Optional[AnyCamera]
     """Localizes images one after another, each first where the last one was.
 
     :param paths: of the images, which may come from a pipe; line ends behind them are dropped.
-    :param camera: as of localize_images; so are `lines`, `max_size`, `exif` and `mask`.
+    :param camera: as of localize_images; so are `lines`, `max_size` and `exif`.
+    :param mask: what is described, as of Masks, by the names of images without their folders.
     :return: of each image a line, ``PATH tx ty tz qx qy qz qw`` or ``# PATH: why there is no pose``, and whether there is one.
     """
     localizer, masks = Localizer(map, 1000, lines), Masks(mask)
