@@ -6,6 +6,7 @@
 #include <set>
 
 #include "guided_matches.hpp"
+#include "pose/verdict.hpp"
 
 namespace cv::iib {
 namespace {
@@ -72,6 +73,8 @@ public:
             inliers_ = near(matches_);
             found_.inliers = keypointsOf(inliers_);
             if (found_.inliers < LEAST_INLIERS + LEAST_SHARE * double(found_.matches))
+                return false;
+            if (round == 0 && !isMoreThanChance())
                 return false;
             if (round == 1)
             {
@@ -146,6 +149,31 @@ private:
     std::vector<Match> near(const std::vector<Match>& matches) const
     {
         return within(limit_, matches, lens_, pose_);
+    }
+
+    //! Whether the matches that agree are not what points of different matches might give, or are in a few places alone.
+    bool isMoreThanChance() const
+    {
+        const int count = int(matches_.size()), sampleSize = 4;
+        Mat pixels(count, 2, CV_64F);
+        std::vector<Match> mixed = matches_;
+        std::set<std::pair<int, int>> agreeing;
+        for (const Match& m : inliers_)
+            agreeing.insert({m.keypoint, m.number});
+        Verdict::Marks agree(matches_.size());
+        RNG random(0x5eed);
+        for (int i = 0; i < count; i++)
+        {
+            const Match& m = matches_[size_t(i)];
+            pixels.at<Point2d>(i) = m.pixel;
+            agree[size_t(i)] = agreeing.count({m.keypoint, m.number}) > 0;
+            mixed[size_t(i)].point = matches_[size_t(random.uniform(0, count))].point;
+        }
+        const Verdict verdict(pixels, pixels);
+        const double chance =
+                std::max(verdict.chance(Verdict::FROM_POINT, limit_, {}), double(near(mixed).size()) / count);
+        return verdict.logFalseAlarms(Verdict::Marks(matches_.size(), true), agree, sampleSize, chance) <
+               Verdict::CERTAIN;
     }
 
     double depth() const { return medianDistance(inCamera(pointsOf(inliers_), pose_)); }
