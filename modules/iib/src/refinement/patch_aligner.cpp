@@ -23,6 +23,8 @@ const double LEAST_UNDERWAY = .5;   //!< similarity of a guided try after STEPS_
 const int STEPS_OF_A_TRY = 3;
 const double HALVED = 1 << (WEIGHT_BITS + 1);     //!< halved weights' unit over that of the sum of samples
 const double LIGHT = .05, SHARED_BY_NOISE = .25;  //!< of errors by other light: see covariance()
+const double NOISE_BY_CHANCE = 1.15;              //!< over its mean, so that it is not taken for what is seen
+const double LEAST_SIGNAL = .1;                   //!< in what a patch seems to tell
 const double DAMPING_OF_PLACE = 1e-5, DAMPING_OF_MAP = 5e-3;
 
 PatchWeights makeWeights()
@@ -186,6 +188,9 @@ PatchAligner::PatchAligner()
         squares += weight * weight;
     }
     independentSamples = total * total / squares;
+    squaredPlace = 0;
+    for (int i = 0; i < PATCH_SAMPLES; i++)
+        squaredPlace += weights.gaussian[i] / total * weights.x[i] * weights.x[i] / (1 << 30);
 }
 
 /* Reads the patch around a point. Pixels that need no interpolation are taken if that is a unit's size: returned is how
@@ -332,6 +337,34 @@ Vec2d PatchAligner::interpolationError(const PatchPlace& place) const
            (1 / (6 * pixelsOfUnits));
 }
 
+/* The covariance of a point, of residuals with variance 1, if the normal matrix had no noise. The template's own is in its
+ derivatives, and adds to their squares as if it told a place: on a straight edge nothing else does, along it.
+ @param noise variance in the template's samples.
+ @param ofResiduals tells how alike the noise of neighbours is, and so that of differences. */
+Matx22d PatchAligner::withoutNoise(const Matx22d& ofPoint, const Matx<double, 6, 2>& ofParameters,
+        double noise, const Autocorrelation& ofResiduals) const
+{
+    const double perSquare = noise / (2 * (ofResiduals.squares + 1.));
+    const double across = perSquare * (ofResiduals.squares - ofResiduals.right);
+    const double down = perSquare * (ofResiduals.squares - ofResiduals.below);
+    const double ofMap[] = {across * squaredPlace, down * squaredPlace};
+    const double inDerivatives[] = {across, down, ofMap[0], ofMap[0], ofMap[1], ofMap[1]};
+    Matx22d sum = Matx22d::zeros();
+    for (int i = 0; i < PARAMETERS; i++)
+        for (int j = 0; j < 2; j++)
+            for (int k = 0; k < 2; k++)
+                sum(j, k) += ofParameters(i, j) * inDerivatives[i] * ofParameters(i, k);
+    // of noise in what the patch tells; by its eigenvalues errors are larger
+    const Matx22d share = sum * ofPoint.inv();
+    const double mean = trace(share) / 2;
+    const double apart = std::sqrt(std::max(mean * mean - determinant(share), 0.));
+    const auto larger = [](double s) { return 1 / std::max(1 - s, LEAST_SIGNAL); };
+    const double most = larger(mean + apart);
+    const double slope = apart > 1e-9 ? (most - larger(mean - apart)) / (2 * apart) : 0;
+    const Matx22d factor = (most - slope * (mean + apart)) * Matx22d::eye() + slope * share;
+    return factor * ofPoint * factor.t();
+}
+
 /* The point's covariance, from the residuals of the samples that were taken last. As far as these are noise, it is that of
  a sum of so many. Light that comes from elsewhere leaves residuals that neighbours share: then it is also what was
  measured on photographs of still cameras by other lamps. */
@@ -346,7 +379,8 @@ Matx22d PatchAligner::covariance(const Moments& moments) const
     const Autocorrelation ofResiduals = kernels.autocorrelate(residuals);
     const double x = beside[0] / UNITS_OF_PLACE, y = beside[1] / UNITS_OF_PLACE;
     const Matx<double, 2, 6> ofPoint(1, 0, x, y, 0, 0, 0, 1, 0, 0, x, y);
-    const Matx22d ofUnit = ofPoint * inverse * ofPoint.t();
+    const Matx<double, 6, 2> ofParameters = inverse * ofPoint.t();
+    const Matx22d ofUnit = ofPoint * ofParameters;
     const double remaining =
             1 / (similarity * similarity) - 1;  // squared, in parts of what the template explains
     const double greyLevel = (1 << SAMPLE_BITS) / moments.deviation;  // both images are rounded to whole ones
@@ -357,9 +391,12 @@ Matx22d PatchAligner::covariance(const Moments& moments) const
     };
     const Matx22d scale(scaleOf(0), 0, 0, scaleOf(1));
     const double shared = (ofResiduals.right + ofResiduals.below) / (2 * (ofResiduals.squares + 1.));
-    const double light =
-            LIGHT * std::max(shared - SHARED_BY_NOISE, 0.) * std::sqrt(remaining * trace(ofUnit) / 2);
-    return scale * ofUnit * scale * noise + ofUnit * light;
+    const double sharedByLight = std::max(shared - SHARED_BY_NOISE, 0.);
+    const double light = LIGHT * sharedByLight * std::sqrt(remaining * trace(ofUnit) / 2);
+    // both images have their noise; what neighbours share is of light
+    const double ofTemplateAlone = NOISE_BY_CHANCE * (1 - similarity) * std::max(1 - 2 * sharedByLight, 0.);
+    const Matx22d ofSignal = withoutNoise(ofUnit, ofParameters, ofTemplateAlone, ofResiduals);
+    return scale * ofSignal * scale * noise + ofUnit * light;
 }
 
 void PatchAligner::take(const Mat& image1, const Vec2d& point, double unitOfPatch)

@@ -80,6 +80,8 @@ private:
     bool solve();
     Vec6d step(const Moments& moments) const;
     Vec2d interpolationError(const PatchPlace& place) const;
+    Matx22d withoutNoise(const Matx22d& ofPoint, const Matx<double, 6, 2>& ofParameters, double noise,
+            const Autocorrelation& ofResiduals) const;
     Matx22d covariance(const Moments& moments) const;
 
     const RefinementKernels& kernels;
@@ -95,6 +97,7 @@ private:
     Moments ofTemplate;
     double totals[SUMS];        //!< of the weights
     double independentSamples;  //!< as many as the weighted ones are worth
+    double squaredPlace;        //!< weighted mean of PatchWeights::x squared
     Matx66d inverse;            //!< of the normal matrix
     Rect pixels;                //!< of the image that the window holds
     AlignedBuffer<ushort> window;

@@ -124,19 +124,26 @@ TEST(IIB_RefinementAccuracy, is_drawn_to_no_part_of_a_pixel)
     }
 }
 
+//! An image and noise, twice.
+std::vector<Mat> withNoise(const Mat& image, double sigma)
+{
+    std::vector<Mat> images(2);
+    RNG rng(cvRound(sigma));
+    for (Mat& noisy : images)
+    {
+        Mat noise(image.size(), CV_16S);
+        rng.fill(noise, RNG::NORMAL, 0, sigma);
+        cv::add(image, noise, noisy, noArray(), CV_8U);
+    }
+    return images;
+}
+
 TEST(IIB_RefinementAccuracy, white_noise)
 {
     const Mat image = scene(Size(660, 500), 9);
-    for (int sigma : {1, 3, 6})
+    for (int sigma : {1, 3, 6, 10, 20, 30})
     {
-        Mat images[2];
-        RNG rng(sigma);
-        for (Mat& noisy : images)
-        {
-            Mat noise(image.size(), CV_16S);
-            rng.fill(noise, RNG::NORMAL, 0, sigma);
-            cv::add(image, noise, noisy, noArray(), CV_8U);
-        }
+        const std::vector<Mat> images = withNoise(image, sigma);
         Errors errors;
         std::vector<double> plain;
         addStill(images[0](Rect(10, 10, 640, 480)), images[1](Rect(7, 15, 640, 480)), Point2f(3, -5), errors,
@@ -148,7 +155,45 @@ TEST(IIB_RefinementAccuracy, white_noise)
         EXPECT_GT(errors.inside(1), .3) << sigma;
         EXPECT_LT(errors.inside(1), .55) << sigma;
         EXPECT_GT(errors.inside(2), .75) << sigma;
+        EXPECT_LT(errors.inside(2), .95) << sigma;
     }
+}
+
+// Along a straight edge there is noise alone to match: points stay about where they begin, half a pixel off, and say so.
+TEST(IIB_RefinementAccuracy, along_straight_edges)
+{
+    for (double degrees : {0., 30., 90.})
+        for (double sigma : {2., 4., 16.})
+        {
+            Mat_<uchar> image(480, 640);
+            const Point2d across(std::cos(degrees * CV_PI / 180), std::sin(degrees * CV_PI / 180));
+            for (int y = 0; y < image.rows; y++)
+                for (int x = 0; x < image.cols; x++)
+                    image(y, x) = saturate_cast<uchar>(
+                            20 + 200 / (1 + std::exp(-across.dot(Point2d(x - 320, y - 240)) / 1.5)));
+            const std::vector<Mat> images = withNoise(image, sigma);
+            RNG rng(1);
+            std::vector<KeyPoint> keypoints[2];
+            std::vector<DMatch> matches;
+            for (int i = 0; i < 300; i++)
+            {
+                const double along = rng.uniform(-150., 150.), beside = rng.uniform(-3., 3.);
+                const Point2f place(
+                        Point2d(320, 240) + across * beside + Point2d(-across.y, across.x) * along);
+                const Point2f off((float)rng.gaussian(.7), (float)rng.gaussian(.7));
+                keypoints[0].push_back(KeyPoint(place, 20));
+                keypoints[1].push_back(KeyPoint(place + off, 20));
+                matches.push_back(DMatch(i, i, 0));
+            }
+            const Refined r = refine(images[0], keypoints[0], images[1], keypoints[1], matches);
+            Errors errors;
+            for (int i = 0; i < r.points2.rows; i++)
+                if (r.similarities.at<float>(i) > 0)
+                    errors.add(r.points2.at<Point2f>(i) - r.points1.at<Point2f>(i),
+                            r.covariances.at<Point3f>(i));
+            EXPECT_GT(errors.inside(1), .25) << degrees << ", noise " << sigma;
+            EXPECT_GT(errors.inside(2), .65) << degrees << ", noise " << sigma;
+        }
 }
 
 /* Photographs of one camera under another exposure, so that the truth is known: errors and ellipses. Their errors are
