@@ -268,6 +268,16 @@ TEST(Alignment, keeps_the_scales_of_images_of_other_sizes)
 
 TEST(Alignment, gives_fixed_sizes)
 {
+    std::vector<Vec4f> matches(1);
+    Mat all, found;
+    ASSERT_TRUE(alignImages(picture(9), inOtherLight(picture(9)), found, ALIGN_HOMOGRAPHY, noArray(), all));
+    ASSERT_TRUE(
+            alignImages(picture(9), inOtherLight(picture(9)), found, ALIGN_HOMOGRAPHY, noArray(), matches));
+    EXPECT_EQ(0, cvtest::norm(all, Mat(matches).reshape(1), NORM_INF));
+    EXPECT_FALSE(alignImages(
+            picture(9), Mat(SIZE, CV_8U, Scalar(90)), found, ALIGN_HOMOGRAPHY, noArray(), matches));
+    EXPECT_TRUE(matches.empty());
+
     Matx33d transform;
     Vec4d error;
     ASSERT_TRUE(alignImages(picture(18), picture(18), transform, ALIGN_TRANSLATION, error));

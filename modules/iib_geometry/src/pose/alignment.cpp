@@ -285,7 +285,8 @@ public:
             break;
         }
         if (matches.needed())
-            agreeing.copyTo(matches);
+            (CV_MAT_CN(matches.fixedType() ? matches.type() : CV_32F) == 4 ? agreeing.reshape(4) : agreeing)
+                    .copyTo(matches);  // a matrix, or std::vector<Vec4f>
         if (reason)
             *reason = against;
         if (against.empty())
