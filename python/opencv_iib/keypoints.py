@@ -1,6 +1,7 @@
 """Keypoints: objects like cv2.KeyPoint, or arrays with a row a keypoint."""
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any, Iterable, Sequence, Union
 
 import numpy as np
@@ -12,7 +13,7 @@ from opencv_iib._types import KeyPointLike, keypoint_type
 
 #: A sequence of objects like cv2.KeyPoint, or an N x 3, N x 4 or N x 7 array.
 Keypoints = Union[Sequence[KeyPointLike], ArrayLike]
-#: A sequence of objects like cv2.DMatch, or an M x 2 array of integers (queryIdx, trainIdx).
+#: A sequence of objects like cv2.DMatch, or M x 2 integers (queryIdx, trainIdx), an array or a sequence of pairs.
 MatchesOfKeypoints = Union[Sequence[Any], NDArray[Any]]
 
 
@@ -54,9 +55,11 @@ def as_pairs(matches: MatchesOfKeypoints) -> NDArray[Any]:
     """Rows of 2 int32 columns (queryIdx, trainIdx) for the extension.
 
     :raises opencv_iib.error: for other arrays.
+    :raises TypeError: for what is none of them.
     """
     if not isinstance(matches, np.ndarray):
-        matches = np.array([(m.queryIdx, m.trainIdx) for m in matches], np.int32).reshape(-1, 2)
+        with suppress(AttributeError, TypeError):  # pairs of integers, or a mistake
+            matches = np.array([(m.queryIdx, m.trainIdx) for m in matches], np.int32).reshape(-1, 2)
     pairs = as_array(matches, 'matches')
     if pairs.size and (pairs.dtype.kind not in 'iu' or pairs.shape[1:] != (2,)):
         raise _core.error('matches are objects like cv2.DMatch or an array of 2 columns of integers (queryIdx, trainIdx)')

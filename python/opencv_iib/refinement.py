@@ -29,9 +29,10 @@ def refineMatches(image1: ArrayLike, keypoints1: Keypoints, image2: ArrayLike, k
     :param image1: as IIBDescriptorExtractor takes it.
     :param keypoints1: objects like cv2.KeyPoint, or an array with 3, 4 or 7 columns: x, y, size, angle. Only differences of
         angles and ratios of sizes count.
-    :param matches1to2: objects like cv2.DMatch, or an M x 2 array of integers (queryIdx, trainIdx), as the pairs of
+    :param matches1to2: objects like cv2.DMatch, or M x 2 integers (queryIdx, trainIdx), as the pairs of
         :func:`opencv_iib.match`.
     :raises opencv_iib.error: for a match without a keypoint, and for images and keypoints that cannot be described.
+    :raises TypeError: for matches that are neither.
     """
     return RefinedMatches(*_rows(*_core.refineMatches(
         as_image(image1), as_rows(keypoints1), as_image(image2), as_rows(keypoints2), as_pairs(matches1to2))))
@@ -40,7 +41,7 @@ def refineMatches(image1: ArrayLike, keypoints1: Keypoints, image2: ArrayLike, k
 class PropagatedMatches(NamedTuple):
     """What :func:`propagateMatches` gives: the matches and, a row a match, what :class:`RefinedMatches` has."""
 
-    matches: Any  #: those given, then those found: pairs of int32 where an array was given, else objects like cv2.DMatch
+    matches: Any  #: those given, then those found: pairs of int32 where integers were given, else objects like cv2.DMatch
     points1: NDArray[np.float32]
     points2: NDArray[np.float32]
     covariances: NDArray[np.float32]
@@ -59,7 +60,7 @@ def propagateMatches(image1: ArrayLike, keypoints1: Keypoints, image2: ArrayLike
     """
     found, *rows = _core.propagateMatches(
         as_image(image1), as_rows(keypoints1), as_image(image2), as_rows(keypoints2), as_pairs(matches1to2))
-    if isinstance(matches1to2, np.ndarray):
+    if isinstance(matches1to2, np.ndarray) or (len(matches1to2) and not hasattr(matches1to2[0], 'queryIdx')):
         return PropagatedMatches(found.reshape(-1, 4)[:, :2], *_rows(*rows))
     make, distance = match_type(), float(np.finfo(np.float32).max)
     added = [make(query, train, image, distance) for query, train, image in found[len(matches1to2):, :3].tolist()]
@@ -68,5 +69,6 @@ def propagateMatches(image1: ArrayLike, keypoints1: Keypoints, image2: ArrayLike
 
 def _rows(points1: NDArray[Any], points2: NDArray[Any], covariances: NDArray[Any],
           similarities: NDArray[Any]) -> tuple[NDArray[Any], ...]:
-    """Without matches they have no columns."""
-    return points1.reshape(-1, 2), points2.reshape(-1, 2), covariances.reshape(-1, 3), similarities.ravel()
+    """Without matches they have no columns and no type."""
+    return tuple(rows.astype(np.float32, copy=False).reshape(shape)
+                 for rows, shape in ((points1, (-1, 2)), (points2, (-1, 2)), (covariances, (-1, 3)), (similarities, -1)))
