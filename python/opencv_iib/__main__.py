@@ -268,7 +268,7 @@ def _localize_stream(arguments: argparse.Namespace) -> int:
             raise InvalidOption(f'--images - goes without --{option}')
     for stream in (sys.stdin, sys.stdout):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors='surrogateescape')  # a path may be any bytes
+            stream.reconfigure(encoding=sys.getfilesystemencoding(), errors=sys.getfilesystemencodeerrors())  # a path may be any bytes
     count = total = 0
     for line, found in localization.localize_stream(
             arguments.map, sys.stdin, arguments.camera, arguments.lines, arguments.max_size, arguments.exif, arguments.mask):

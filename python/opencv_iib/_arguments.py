@@ -13,6 +13,10 @@ class InvalidOption(ValueError):
     """A value that an option cannot have: commands end with status 2."""
 
 
+class MissingFile(InvalidOption, FileNotFoundError):
+    """An option names a file that is not there."""
+
+
 def integer(value: Any, name: str, bits: int = 32) -> int:
     """:raises TypeError: if it is no integer. :raises ValueError: if it has more than so many bits."""
     try:

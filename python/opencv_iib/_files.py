@@ -14,14 +14,21 @@ from opencv_iib._arguments import Path
 from opencv_iib._streams import is_open_file, write_to_open_file
 
 PART = '.iib-'  #: how the folder's name begins that results are written to, within that of the results
+MADE = '.made-by-opencv-iib'  #: a file in that folder: without it, it is the user's
 
 
 def output_file(path: str) -> str:
     """Where a file is written: at the end of a link, also if nothing is there yet.
 
-    :raises OSError: for a folder, or within a folder that is missing.
+    :raises OSError: for a folder, within a folder that is missing, and for a name that is too long.
     """
     target = os.path.realpath(path)
+    try:
+        os.lstat(target)
+    except FileNotFoundError:
+        pass
+    except OSError as e:
+        raise type(e)(f'{path} cannot be written: {e.strerror}') from None
     if os.path.isdir(target):
         raise IsADirectoryError(f'{path or target} is a folder: give the name of a file')
     if not os.path.isdir(os.path.dirname(target)):
@@ -36,20 +43,36 @@ def is_same(path: Path, other: Path) -> bool:
     return os.path.realpath(path) == os.path.realpath(other)
 
 
+def is_in(path: Path, folder: Path) -> bool:
+    """Whether a file is below a folder, where links lead."""
+    return os.path.realpath(path).startswith(os.path.join(os.path.realpath(folder), ''))
+
+
 def check_outputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
     """What can be told before there is work to lose.
 
     :raises FileExistsError: for a file to be written that is read, by whatever name, or that is written twice.
-    :raises OSError: as output_file.
+    :raises OSError: as output_file, and where no file can be made.
     """
     taken = {path: 'an input' for path in inputs}
     for path in outputs:
-        if not is_open_file(os.fspath(path)):
-            output_file(os.fspath(path))
         for other, what in taken.items():
             if is_same(path, other):
                 raise FileExistsError(f'{path} is {what} too: give what is written a name of its own')
         taken[path] = 'another output'
+        target = '' if is_open_file(os.fspath(path)) else output_file(os.fspath(path))
+        if target and (os.path.isfile(target) or not os.path.exists(target)):
+            try:
+                _core.WholeFile(target).discard()
+            except _core.error as e:
+                raise OSError(str(e)) from None
+
+
+def check_folder(out: Path, inputs: Iterable[Path]) -> None:
+    """:raises FileExistsError: for a folder of results, which are replaced, with something in it that is read."""
+    for path in inputs:
+        if is_in(path, out):
+            raise FileExistsError(f'{path} is in {out}, whose files would be replaced: choose another folder')
 
 
 def write_whole(path: str, content: bytes) -> None:
@@ -138,7 +161,7 @@ def new_results(out: str, mark: str, earlier: Callable[[str], Optional[Iterable[
     others = earlier(target) if os.path.isfile(os.path.join(target, mark)) else None
     listed = set() if others is None else {mark, *others}
     old = {name for name in there if name in listed}
-    killed = {name for name in (os.listdir(target) if there else ()) if re.fullmatch(re.escape(PART) + r'\w{8}', name)}
+    killed = {name.split('/')[0] for name in there if re.fullmatch(re.escape(PART) + r'\w{8}/' + re.escape(MADE), name)}
     own = old.union(name for name in there if '/' in name and name.split('/')[0] in killed)
     try:
         lock = _core.OutputFolder(target, [os.fsencode(name) for name in own])
@@ -148,6 +171,8 @@ def new_results(out: str, mark: str, earlier: Callable[[str], Optional[Iterable[
         shutil.rmtree(os.path.join(target, folder), ignore_errors=True)
     part = tempfile.mkdtemp(prefix=PART, dir=target)
     try:
+        with open(os.path.join(part, MADE), 'wb'):
+            pass
         yield part
         _publish(part, target, mark, old)
     finally:
@@ -156,7 +181,7 @@ def new_results(out: str, mark: str, earlier: Callable[[str], Optional[Iterable[
 
 
 def _publish(part: str, target: str, mark: str, old: set[str]) -> None:
-    new = sorted(_files_below(part), key=lambda name: name == mark)
+    new = sorted({*_files_below(part)} - {MADE}, key=lambda name: name == mark)
     for name in new:
         if name not in old and os.path.lexists(os.path.join(target, name)):
             raise FileExistsError(f'{os.path.join(target, name)} has come there meanwhile: remove it, or choose another folder')

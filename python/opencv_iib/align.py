@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import __version__
-from opencv_iib._files import is_same, new_results, rows_of
+from opencv_iib._files import check_folder, is_in, is_same, new_results, rows_of
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._turns import Turn, upright
 from opencv_iib.colmap.features import check_max_size
@@ -117,10 +117,7 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     paths = [path for path in _expanded(images, out) if not is_same(path, reference)]
     if not paths:
         raise ValueError(f'no image to align but the reference, {reference}')
-    for path in (reference, *paths):
-        if _is_in(path, out):
-            raise FileExistsError(f'{path} is in {out}, whose files would be replaced: choose another folder')
-    masks.check([os.path.basename(path) for path in (reference, *paths)])
+    check_folder(out, (reference, *paths, *masks.check([os.path.basename(path) for path in (reference, *paths)])))
     work = _Work(reference, options, masks)
     settings = [*options, os.path.abspath(reference), work.stamp(reference), __version__]
     stamps = {path: work.stamp(path) for path in paths}
@@ -172,17 +169,13 @@ def _expanded(images: Sequence[Path], out: str) -> list[str]:
         given = os.fspath(image)
         found = [given]
         if os.path.isdir(given):
-            found = [path for path in (os.path.join(given, name) for name in find_images(given)) if not _is_in(path, out)]
+            found = [path for path in (os.path.join(given, name) for name in find_images(given)) if not is_in(path, out)]
         elif not os.path.lexists(given) and glob.escape(given) != given:
             found = sorted(glob.glob(given, recursive=True))
             if not found:
                 raise FileNotFoundError(f'no image is called {given}')
         paths.update(dict.fromkeys(found))
     return list(paths)
-
-
-def _is_in(path: str, out: str) -> bool:
-    return os.path.realpath(path).startswith(os.path.join(os.path.realpath(out), ''))
 
 
 def _known(out: str, settings: list[Any], stamps: dict[str, str]) -> tuple[dict[str, Aligned], Optional[list[int]]]:

@@ -1,6 +1,7 @@
 """Two images matched by IIB and, beside it, by SIFT and ORB or the detector's own descriptor: a picture and a line, as scripts/demo.sh's."""
 from __future__ import annotations
 
+import os
 from typing import Any, NamedTuple, Optional, Sequence
 
 import numpy as np
@@ -43,10 +44,11 @@ def demo(image_a: Path, image_b: Path, out: Path, options: FeatureOptions = Feat
     :raises FileExistsError: for an image as the picture to write.
     """
     options.check()
-    check_outputs([out], (image_a, image_b))
+    names, masked = [os.path.basename(os.fspath(path)) for path in (image_a, image_b)], Masks(options.mask)
+    check_outputs([out], (image_a, image_b, *masked.check(names)))
     check_picture(out)
     images, orientations = zip(*(read_with_orientation(path, options.exif) for path in (image_a, image_b)))
-    masks = Masks(options.mask).all_of((image_a, image_b), images)
+    masks = list(map(masked.of, names, images))
     described = list(map(Features(options), images, orientations, masks))
     results = [_result('IIB', [rows for rows, _ in described], match(described[0][1], described[1][1]).pairs)]
     for name in ('SIFT', 'ORB') if options.detector == 'HESSIAN' else (options.detector,):
@@ -79,7 +81,9 @@ def _own_descriptor(name: str, images: Sequence[np.ndarray], masks: Sequence[Opt
         found, described = detector.compute(image, found)
         rows.append(keypoints_to_array(found))
         codes.append(np.zeros((0, detector.descriptorSize()), np.uint8) if described is None else described)
-    if codes[0].dtype == np.uint8 or not len(codes[0]) * len(codes[1]):
+    if not all(map(len, codes)):
+        return _result(name, rows, np.empty((0, 2), int))
+    if codes[0].dtype == np.uint8:
         return _result(name, rows, match(codes[0], codes[1]).pairs)
     nearest = cv2.BFMatcher(detector.defaultNorm(), crossCheck=True).match(*codes)
     return _result(name, rows, np.array([(m.queryIdx, m.trainIdx) for m in nearest]).reshape(-1, 2))

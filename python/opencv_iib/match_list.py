@@ -14,11 +14,11 @@ import numpy as np
 
 from opencv_iib import __version__, error
 from opencv_iib._arguments import InvalidOption, Path
-from opencv_iib._files import only_writer, output_file, write_whole
+from opencv_iib._files import check_outputs, only_writer, output_file, write_whole
 from opencv_iib._streams import note
 from opencv_iib.colmap.features import FeatureOptions, Features
 from opencv_iib.colmap.hloc import pair_name
-from opencv_iib.colmap.images import Masks, find_images, stamp
+from opencv_iib.colmap.images import Masks, check_sizes, find_images, stamp
 from opencv_iib.colmap.pairs import from_file, tiles
 from opencv_iib.colmap.parallel import Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
@@ -36,6 +36,8 @@ class _Folder(contextlib.AbstractContextManager[Any]):
     """A CSV file a pair, ``A/B.csv``, and a table of all, to which each pair adds a line when it is done."""
 
     def __init__(self, path: str) -> None:
+        if os.path.isfile(path):
+            raise InvalidOption(f'{path} is a file: give the name of a folder, or one in .h5')
         self._path, table = path, os.path.join(path, TABLE)
         os.makedirs(path, exist_ok=True)
         self._lock = contextlib.ExitStack()
@@ -143,7 +145,11 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
     names = find_images(folder)
     listed = {frozenset(pair): pair for pair in from_file(pairs, {name: number for number, name in enumerate(names)})}
     used = {names[number] for pair in listed.values() for number in pair}
-    masks.check(sorted(used))
+    masked = masks.check(sorted(used))
+    if lens is not None:
+        check_sizes(folder, sorted(used), lens.width, lens.height)
+    if out.lower().endswith(HDF5):
+        check_outputs([out], (pairs, *masked, *(os.path.join(folder, name) for name in used)))
     if len({pair_name(names[a], names[b]) for a, b in listed.values()}) < len(listed):
         raise InvalidOption(f'{os.fspath(pairs)}: two pairs would have one name, with - in place of /')
     settings = json.dumps([*map(str, vars(options).values()), str(lens), __version__])

@@ -130,12 +130,12 @@ def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, pictu
     options.check()
     if len(cameras) > 2:
         raise InvalidOption(f'{len(cameras)} cameras for two images')
-    check_outputs([path for path in (out, picture) if path is not None], (image_a, image_b))
+    masks, features, paths = Masks(options.mask), Features(options), [os.fspath(image_a), os.fspath(image_b)]
+    masked = masks.check([os.path.basename(path) for path in paths])
+    check_outputs([path for path in (out, picture) if path is not None], (*paths, *masked))
     if picture is not None:
         check_picture(picture)
     lenses = [as_camera(camera) for camera in (cameras[0], cameras[-1])] if len(cameras) else [None, None]
-    masks, features, paths = Masks(options.mask), Features(options), [os.fspath(image_a), os.fspath(image_b)]
-    masks.check([os.path.basename(path) for path in paths])
     views = [View.of(path, masks, features, lens, os.path.basename(path)) for path, lens in zip(paths, lenses)]
     measured = measure(views[0], views[1], features)
     if out is not None:

@@ -311,6 +311,9 @@ class Mistakes(Collection):
         for wrong in (['--ratio', '0'], ['--neighbours', '-1'], ['--workers', '0'], ['--focal', '-3'], ['--focal', 'nan']):
             self.check_mistake(wrong[0][2:], 'colmap', self.images, 'x.db', *wrong)
         self.check_error('', 'demo', small, small)
+        before = small.read_bytes()
+        self.check_error('is an input too', 'colmap', self.images, small, '--force', '--mask', small)
+        self.assertEqual(small.read_bytes(), before)
 
     def test_paths_that_are_not_utf8(self):
         folder = Path(os.fsdecode(os.fsencode(self.folder) + b'/caf\xe9'))

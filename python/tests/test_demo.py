@@ -23,6 +23,11 @@ class Demo(Collection):
         self.assertEqual(status, 3)
         self.assertRegex(text, r'^IIB: no homography found in \d+ matches, SIFT.*, ORB')
         self.assertIn('same place', hint)
+        cv2.imwrite(str(noise), np.full((200, 200), 7, np.uint8))
+        for detector in ('hessian', 'sift'):
+            status, text, hint = run_command('demo', noise, b, '--out', out, '--detector', detector)
+            self.assertEqual((status, hint.count('\n')), (3, 1))
+            self.assertIn('IIB: no homography found in 0 matches, SIFT: no homography found in 0 matches', text)
         self.check_error('gone.png: there is no such file', 'demo', self.images / 'gone.png', noise)
         for arguments, told in (((a, b, '--points', '3000000000'), 'points is 3000000000'),
                                 ((noise, noise, '--out', 'x.foo'), 'x.foo: end its name in .png')):

@@ -86,7 +86,12 @@ class Files(InFolder):
                 check_outputs([str(self.folder / name)], inputs)
         with self.assertRaisesRegex(FileExistsError, 'another output too'):
             check_outputs([str(self.folder / 'c.jpg')] * 2, inputs)
-        check_outputs([str(self.folder / 'c.jpg'), str(self.folder / 'c.csv')], inputs)
+        check_outputs([str(self.folder / 'c.jpg'), str(self.folder / 'c.csv'), '/dev/null', '-'], inputs)
+        self.assertEqual(self.names(), ['a.jpg', 'b.jpg', 'hard.jpg', 'link.jpg'])
+        with self.assertRaisesRegex(OSError, 'x cannot be written'):
+            check_outputs([str(self.folder / ('x' * 300))], [])
+        with mock.patch.object(_core, 'WholeFile', side_effect=_core.error('check the folder and its rights')), self.assertRaises(OSError):
+            check_outputs([str(self.folder / 'c.jpg')], [])
 
     @WITH_LINKS
     def test_results_replace_their_like(self):
@@ -112,7 +117,7 @@ class Files(InFolder):
         self.write(*mine)
         self.results('sub/a')
         self.expect_precious(*mine)
-        for name in ('out/a.png', 'out/sub/notes', 'out/.hidden', 'out/.iib-abcdefgh.txt', 'out/.iib-x/a'):
+        for name in ('out/a.png', 'out/sub/notes', 'out/.hidden', 'out/.iib-abcdefgh.txt', 'out/.iib-x/a', 'out/.iib-mybackup/a'):
             self.write(name)
             with self.assertRaisesRegex(FileExistsError, '.*out holds .*, which is of no earlier run'):
                 self.results('sub/a')
@@ -143,6 +148,7 @@ class Files(InFolder):
             Path(part, 'sub').mkdir()
             Path(part, 'sub/a').touch()
             raise RuntimeError
+        self.assertTrue(list(self.folder.glob('out/.iib-*/sub/a')))
         self.results('b')
         self.assertEqual(sorted(os.listdir(self.folder / 'out')), ['b', 'index'])
 

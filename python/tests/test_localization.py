@@ -401,6 +401,9 @@ class Localization(Commands):
         status, errors = self.localize(out, map=made)
         self.assertEqual((status, errors.count('the middle one of 6 cameras of the map, which agree')), (0, 1))
         self.assertIn('[301.0, 160.0, 120.0', errors)
+        told = []
+        list(runs.localize_stream(made, [os.path.join(self.dark, name) for name in os.listdir(self.dark)], log=told.append))
+        self.assertRegex('|'.join(told), r'^[^|]*the middle one of 6 cameras of the map, which agree$')
         self.assertIn('which agree', run_command('update', '--map', made, '--images', self.dark, '--out', self.path('new'))[2])
         build_with((297, 298, 300, 301, 302, 330))
         status, errors = self.localize(out, map=made)
@@ -413,7 +416,7 @@ class Localization(Commands):
         localize = '--map', self.map, '--images', self.dark, '--out', out
         self.check_mistake('camera', 'localize', *localize, '--camera', 'FISH,1,2,3')
         self.check_error('is no map', 'localize', '--map', self.images, *localize[2:])
-        self.check_error('(map has no lines|lines need OpenCV)', 'localize', *localize, '--lines')
+        self.check_mistake('(map has no lines|lines need OpenCV)', 'localize', *localize, '--lines')
         for name in ('no', os.path.join(self.map, 'map.iib')):
             self.check_error('there is no folder', 'localize', '--map', self.map, '--images', name, '--out', out)
         self.check_error('no images below', 'localize', '--map', self.map, '--images', empty, '--out', out)

@@ -3,6 +3,8 @@ import csv
 import io
 import os
 import shutil
+import subprocess
+import sys
 import unittest
 from pathlib import Path
 from unittest import mock
@@ -96,7 +98,7 @@ class Imu(Options):
                 read_imu(str(self.write(text)))
         for path in (self.folder / 'none.csv', self.folder):
             self.image('1.5.png')
-            self.check_error(path.name, 'localize', *self.arguments(path))
+            self.check_mistake('there is no file .*' + path.name, 'localize', *self.arguments(path))
         self.assertFalse(self.out.exists())
 
     def test_names_that_are_times(self):
@@ -171,6 +173,30 @@ class Table(Options):
         self.check_mistake('is no folder', 'localize', '--map', self.map, '--images', self.images, '--out', 'x.csv', '--pictures')
 
 
+class Mistakes(Options):
+
+    def test_what_is_read_is_not_replaced(self):
+        a = Path(self.image('a.png'))
+        shutil.copy(a, self.folder / 'mask.csv')
+        (self.folder / 'link.csv').symlink_to('images/a.png')
+        for out, option in (('imu.csv', ('--imu', self.folder / 'imu.csv')), ('mask.csv', ('--mask', self.folder / 'mask.csv')), ('link.csv', ())):
+            (self.folder / 'imu.csv').write_text('1,0,0,0,0,0,9.81\n')
+            self.check_error('is an input too', 'localize', '--map', self.map, '--images', self.images, '--out', self.folder / out, *option)
+        self.assertEqual(self.localize('--pictures')[0], 0)
+        masks = self.out / 'matches'
+        os.rename(masks / 'a.png', masks / 'a.png.png')
+        self.check_error('is in .*, whose files', 'localize', '--map', self.map, '--images', self.images, '--out', self.out, '--mask', masks)
+
+    def test_a_camera_of_another_size_leaves_good_results(self):
+        self.image('a.png')
+        (self.images / 'broken.png').write_bytes(b'no image')
+        self.localize()
+        before = (self.out / 'frames.csv').read_bytes()
+        with mock.patch.object(Localizer, 'localize', side_effect=AssertionError):
+            self.expect_mistake('no image has the 640 x 480 pixels of the camera', '--camera', 'PINHOLE,640,480,500,500,320,240')
+        self.assertEqual((self.out / 'frames.csv').read_bytes(), before)
+
+
 class Stream(Options):
 
     def stream(self, text, *more):
@@ -213,6 +239,13 @@ class Stream(Options):
         with mock.patch.object(Localizer, 'localize', localize):
             self.stream('\n'.join((a, a, none, a)), '--camera', CAMERA)
         self.assertEqual(priors, [False, True, True, False])
+
+    def test_names_are_bytes_whatever_the_encoding_of_the_pipes(self):
+        name = os.path.join(os.fsencode(self.images), 'žluť.png'.encode())
+        shutil.copy(self.image('a.png'), name)
+        found = subprocess.run([sys.executable, '-m', 'opencv_iib', 'localize', '--map', self.map, '--images', '-', '--camera', CAMERA],
+                               input=name + b'\n', capture_output=True, env={**os.environ, 'PYTHONIOENCODING': 'cp1252'})
+        self.assertEqual((found.returncode, found.stdout.rsplit(b' ', 7)[0]), (0, name))
 
     def test_mistakes(self):
         for option in (['--out', self.out], ['--pictures'], ['--imu', 'x.csv'], ['--sequence']):

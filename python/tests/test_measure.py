@@ -174,6 +174,8 @@ class Match(Commands):
         for arguments in (['--out', a], ['--out', self.folder / 'link.png'], ['--picture', a], ['--out', 'x.png', '--picture', 'x.png']):
             self.check_error('give what is written a name of its own', 'match', a, b, *arguments)
         self.check_error('give what is written a name of its own', 'demo', a, b, '--out', a)
+        for command, option in (('match', '--picture'), ('match', '--out'), ('demo', '--out')):
+            self.check_error('is an input too', command, b, b, '--mask', a, option, a)
         self.assertEqual(Path(a).read_bytes(), before)
         # and what cannot be written is told before work
         with mock.patch('opencv_iib.colmap.features.Features.__call__', side_effect=AssertionError):
@@ -181,7 +183,7 @@ class Match(Commands):
             self.check_error('no folder', 'match', a, b, '--picture', self.folder / 'none/m.png')
             self.check_mistake('end its name in', 'match', a, b, '--picture', self.folder / 'm.foo')
             self.check_mistake('end its name in', 'demo', a, b, '--out', self.folder / 'm.foo')
-            for out, told in (('none/m.png', 'no folder'), ('.', 'is a folder')):
+            for out, told in (('none/m.png', 'no folder'), ('.', 'is a folder'), ('m' * 300 + '.png', 'm.png cannot be written')):
                 self.check_error(told, 'demo', a, b, '--out', self.folder / out)
 
     def test_a_wide_lens_and_what_lies_beyond_it(self):
@@ -444,7 +446,7 @@ class Align(Commands):
         self.assertRegex(self.align(*paths, status=3)[0]['verdict'], 'parallax')
         cv2.imwrite(str(masks / 'r.png.png'), mask)
         self.check_error('its mask .* has 610 x 460 pixels, and the image 640 x 480', 'align', *paths, '--out', self.folder / 'out', '--mask', masks)
-        self.check_error('there is no mask', 'align', *paths, '--out', self.folder / 'out', '--mask', self.folder / 'gone')
+        self.check_mistake('there is no mask', 'align', *paths, '--out', self.folder / 'out', '--mask', self.folder / 'gone')
 
 
 if __name__ == '__main__':

@@ -11,7 +11,7 @@ from typing import Any, Iterable, Iterator, NoReturn, Optional, Sequence
 
 import numpy as np
 
-from opencv_iib._arguments import InvalidOption, Path
+from opencv_iib._arguments import InvalidOption, MissingFile, Path
 from opencv_iib._files import write_whole
 
 SUFFIXES = ('.jpg', '.jpeg', '.png', '.tif', '.tiff', '.bmp', '.webp', '.ppm', '.pgm')
@@ -226,10 +226,10 @@ class Masks:
 
     def __init__(self, path: Optional[Path]) -> None:
         """:param path: folder, or a file for all images; None: no masks.
-        :raises FileNotFoundError: if there is nothing."""
+        :raises MissingFile: if there is nothing."""
         self.path = None if path is None else os.fspath(path)
         if self.path is not None and not os.path.exists(self.path):
-            raise FileNotFoundError(f'there is no mask {self.path}')
+            raise MissingFile(f'there is no mask {self.path}')
 
     def file(self, name: str) -> str:
         """Of an image's mask, if there is one; else ''."""
@@ -238,11 +238,14 @@ class Masks:
         path = os.path.join(self.path, name + '.png')
         return path if os.path.exists(path) else ''
 
-    def check(self, names: Iterable[str]) -> None:
-        """:raises InvalidOption: for a folder without a mask of any image."""
+    def check(self, names: Iterable[str]) -> list[str]:
+        """:return: the files of the images' masks.
+        :raises InvalidOption: for a folder without a mask of any image."""
         names = list(names)
-        if self.path is not None and not any(map(self.file, names)):
+        files = list(filter(None, map(self.file, names)))
+        if self.path is not None and not files:
             raise InvalidOption(f'{self.path} has no mask of any image: that of {names[0]} would be {names[0]}.png')
+        return files
 
     def of(self, name: str, image: np.ndarray) -> Optional[np.ndarray]:
         """:raises ValueError: for a mask of another size than the image."""
@@ -258,11 +261,18 @@ class Masks:
             raise ValueError(f'its mask {path} has {mask.shape[1]} x {mask.shape[0]} pixels, and the image {image.shape[1]} x {image.shape[0]}')
         return mask
 
-    def all_of(self, paths: Sequence[Path], images: Sequence[np.ndarray]) -> list[Optional[np.ndarray]]:
-        """Of images that are called as their files, whatever their folders. Raises as `check` and `of`."""
-        names = [os.path.basename(os.fspath(path)) for path in paths]
-        self.check(names)
-        return list(map(self.of, names, images))
+
+def check_sizes(folder: Path, names: Sequence[str], width: int, height: int) -> None:
+    """:raises InvalidOption: if images can be read, but none is of the size of the camera that was given for all."""
+    other = ''
+    for name in names:
+        with contextlib.suppress(ValueError, OSError):
+            image = read_grey(os.path.join(folder, name))
+            if image.shape[:2] == (height, width):
+                return
+            other = other or f'{name} has {image.shape[1]} x {image.shape[0]}'
+    if other:
+        raise InvalidOption(f"no image has the {width} x {height} pixels of the camera, {other}: give the images' own camera")
 
 
 def check_picture(path: Path) -> None:

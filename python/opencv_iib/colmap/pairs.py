@@ -2,12 +2,13 @@
 from __future__ import annotations
 
 import itertools
+import os
 import re
 from typing import Callable, Iterable, Iterator, Mapping, Optional, Sequence
 
 import numpy as np
 
-from opencv_iib._arguments import Path
+from opencv_iib._arguments import MissingFile, Path
 from opencv_iib.matcher import HierarchicalMatcher
 
 Pair = tuple[int, int]
@@ -66,7 +67,10 @@ def from_file(path: Path, numbers: Mapping[str, Optional[int]]) -> Iterator[Pair
 
     :param numbers: of the images by name; None for those that could not be described, whose pairs are left out.
     :raises ValueError: naming file and line, for a line that is not the names of two images.
+    :raises MissingFile: if the file is not there.
     """
+    if not os.path.exists(path):
+        raise MissingFile(f'there is no list of pairs {os.fspath(path)}')
     with open(path, encoding='utf-8-sig') as file:
         for number, line in enumerate(map(str.strip, file), 1):
             cuts = ((line[:blank.start()], line[blank.end():]) for blank in re.finditer(r'\s+', line))  # names may have blanks

@@ -125,7 +125,6 @@ def describe_images(database: Database, folder: str, names: Sequence[str], optio
     :return: how many are broken; each is a line in `log`.
     """
     masks = Masks(options.features.mask)
-    masks.check(names)
     stamps = {name: ' '.join(map(stamp, filter(None, (os.path.join(folder, name), masks.file(name))))) for name in names}
     for name, known in database.stamps().items():
         if stamps.get(name) != known:
@@ -298,6 +297,8 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
     if unlistable:
         raise ValueError(f'{unlistable[0]}: matches_importer reads no names with blanks or a leading #; rename it, or '
                          'verify by magsac (--verify)')
+    lists = [] if options.pairs in PAIRS else [options.pairs]
+    check_outputs([database], [*lists, *(os.path.join(images, name) for name in names), *Masks(options.features.mask).check(names)])
     settings = {**dataclasses.asdict(options), 'verify': verify, 'images': os.path.abspath(images),
                 'version': opencv_iib.__version__}
     if os.path.exists(database):
@@ -306,7 +307,6 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
             raise FileExistsError(f'{database} is there already, and not of this command: remove it, or pass force (--force)')
         if made is not None and json.loads(made) != json.loads(json.dumps(settings)):
             raise SettingsChanged(database, made)
-        check_outputs([database], [options.pairs, *(os.path.join(images, name) for name in names)])
     sizes = _features(options.features).level_sizes()  # raises for a detector that cv2 lacks
     with only_writer(database + '.partial'), Database(database, settings, force) as target:
         failed = describe_images(target, images, names, options, crew, log)

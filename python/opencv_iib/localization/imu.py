@@ -8,6 +8,7 @@ from typing import Optional, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from opencv_iib._arguments import MissingFile
 from opencv_iib.localization.smoothing import MAX_TIME
 
 MAX_LEVER = 1000  #: metres from an IMU to its camera
@@ -18,7 +19,10 @@ def read_imu(path: str) -> NDArray[np.float64]:
     """EuRoC's imu.csv, M x 7, as smooth_poses takes it.
 
     :raises ValueError: naming file and line.
+    :raises MissingFile: if it is not there.
     """
+    if os.path.isdir(path) or not os.path.exists(path):
+        raise MissingFile(f'there is no file {path}')
     rows: list[list[float]] = []
     with open(path, encoding='utf-8', errors='replace') as file:
         for number, line in enumerate(file, 1):

@@ -7,6 +7,7 @@ import csv
 import functools
 import io
 import os
+import re
 from typing import Any, Callable, Iterable, Iterator, Optional, Sequence
 
 import numpy as np
@@ -14,10 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core, error
 from opencv_iib._arguments import InvalidOption, Path
-from opencv_iib._files import check_outputs, new_results, rows_of, write_whole
+from opencv_iib._files import check_folder, check_outputs, new_results, rows_of, write_whole
 from opencv_iib._streams import is_open_file, note
 from opencv_iib.colmap.features import check_max_size, reduced, resized_mask
-from opencv_iib.colmap.images import (Masks, decode_grey, exif_focal_length, exif_orientation, find_images, import_cv2, in_order, is_utf8, read_bytes, read_grey,
+from opencv_iib.colmap.images import (Masks, check_sizes, decode_grey, exif_focal_length, exif_orientation, find_images, import_cv2, in_order, is_utf8, read_bytes, read_grey,
                                      write_picture)
 from opencv_iib.colmap.parallel import Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
@@ -82,6 +83,18 @@ def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[
     return own, find(name, grey, own, orientation, masks.of(name if folder else os.path.basename(name), grey))
 
 
+def _teller(cameras: Sequence[Camera], log: Callable[[str], None]) -> Callable[[Camera], None]:
+    """What tells, once, of a camera that was taken for others of the map."""
+    told = set()
+
+    def tell(own: Camera) -> None:
+        alike = sum((other.width, other.height) == (own.width, own.height) for other in cameras)
+        if own in cameras and own not in told and alike > 1:
+            log(f'{own.width} x {own.height} pixels: {own}, the middle one of {alike} cameras of the map, which agree')
+        told.add(own)
+    return tell
+
+
 def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence[str], camera: Optional[AnyCamera],
            workers: Optional[int], log: Callable[[str], None], exif: bool, mask: Optional[Path] = None) -> Iterator[tuple[str, Optional[Camera], Any]]:
     """Of each image in order its name, its camera and Location; None and what is wrong if it cannot be read or has no camera.
@@ -93,7 +106,10 @@ def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence
     import_cv2()
     masks = Masks(mask)
     masks.check(names)
-    given, cameras, told = None if camera is None else as_camera(camera), list(map(as_camera, known)), set()
+    given, cameras = None if camera is None else as_camera(camera), list(map(as_camera, known))
+    if given is not None:
+        check_sizes(folder, names, given.width, given.height)
+    tell = _teller(cameras, log)
     progress = Progress('localizing', len(names))
 
     def job(name: str) -> tuple[Camera, Location]:
@@ -104,11 +120,8 @@ def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence
         if isinstance(result, Exception) and not isinstance(result, (ValueError, OSError, error)):
             raise result
         own, location = (None, str(result)) if isinstance(result, Exception) else result
-        if given is None and own in cameras and own not in told:
-            told.add(own)
-            alike = sum((other.width, other.height) == (own.width, own.height) for other in cameras)
-            if alike > 1:
-                log(f'{own.width} x {own.height} pixels: {own}, the middle one of {alike} cameras of the map, which agree')
+        if given is None and own is not None:
+            tell(own)
         yield name, own, location
         progress.step()
     progress.close()
@@ -184,6 +197,16 @@ def at_size(max_size: int, find: Callable[..., Location], image: NDArray[np.uint
     return Location(found.cam_from_world, found.covariance, found.reason, found.matches, found.inliers, pixels, found.points)
 
 
+def _localizer(map: Path, points: int, lines: bool) -> Localizer:
+    """:raises InvalidOption: for lines of a map without them, or where OpenCV finds none."""
+    try:
+        return Localizer(map, points, lines)
+    except error as e:
+        if re.search("the map has no lines|lines need OpenCV's module", str(e)):
+            raise InvalidOption(str(e)) from None
+        raise
+
+
 def _finder(localizer: Localizer, max_size: int) -> Callable[..., Location]:
     """Localizer.localize, of larger images reduced to that longer side."""
     check_max_size(max_size)
@@ -195,22 +218,26 @@ def _finder(localizer: Localizer, max_size: int) -> Callable[..., Location]:
 
 
 def localize_stream(map: Path, paths: Iterable[str], camera: Optional[AnyCamera] = None, lines: bool = False,
-                    max_size: int = 0, exif: bool = True, mask: Optional[Path] = None) -> Iterator[tuple[str, bool]]:
+                    max_size: int = 0, exif: bool = True, mask: Optional[Path] = None, log: Callable[[str], None] = note) -> Iterator[tuple[str, bool]]:
     """Localizes images one after another, each first where the last one was.
 
     :param paths: of the images, which may come from a pipe; line ends behind them are dropped.
     :param camera: as of localize_images; so are `lines`, `max_size` and `exif`.
     :param mask: what is described, as of Masks, by the names of images without their folders.
+    :param log: told of cameras that were taken for others.
     :return: of each image a line, ``PATH tx ty tz qx qy qz qw`` or ``# PATH: why there is no pose``, and whether there is one.
     """
-    localizer, masks = Localizer(map, 1000, lines), Masks(mask)
+    localizer, masks = _localizer(map, 1000, lines), Masks(mask)
     find, known, given, last = _finder(localizer, max_size), localizer.cameras, None if camera is None else as_camera(camera), None
+    tell = _teller(known, log)
     for path in paths:
         path = path.rstrip('\r\n')
         try:
             if path.startswith('#'):  # would look like a failure
                 raise ValueError('a path must not begin with #: write ./ before it')
-            location = _locate(lambda name, image, own, *more: find(image, own, last, *more), known, '', given, exif, masks, path)[1]
+            own, location = _locate(lambda name, image, own, *more: find(image, own, last, *more), known, '', given, exif, masks, path)
+            if given is None:
+                tell(own)
             last, problem = location.cam_from_world, location.reason
         except (ValueError, OSError, error) as e:
             last, problem = None, str(e)
@@ -247,7 +274,11 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     if table_alone:
         if pictures:
             raise InvalidOption(f'{out} is no folder, which pictures need')
-        check_outputs([out], [])
+    read = [os.path.join(images, name) for name in names] + Masks(mask).check(names) + ([] if imu is None else [os.fspath(imu)])
+    if table_alone:
+        check_outputs([out], read)
+    else:
+        check_folder(out, read)
     if imu is not None:
         readings = read_imu(os.fspath(imu))
         times = by_time(names, readings)
@@ -266,7 +297,7 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
         last = location.cam_from_world if sequence else None
         return location
     with contextlib.nullcontext('') if table_alone else new_results(out, 'frames.csv', _earlier) as part:
-        localizer = Localizer(map, 0, lines)
+        localizer = _localizer(map, 0, lines)
         find = _finder(localizer, max_size)
         for name, own, location in locate(find_next, localizer.cameras, images, names, given, workers, log, exif, mask):
             location = Location(reason=location) if own is None else location
