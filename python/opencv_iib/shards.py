@@ -123,7 +123,8 @@ def search(folder: Path, queries: Any, k: int = 5, client: Any = None) -> Arrays
     if client is None or index.segments() == 0 or k < 1:
         return index.search(queries, k)
     if k > rows and len(queries) * k > MAX_PADDED:  # as in the C++ library
-        raise _core.error(f'k is {k}, but there are {rows} descriptors to find: ask for at most as many for each of {len(queries)} queries')
+        raise _core.error(f'k is {k}, but there are {rows} descriptors to find: ask for at most {max(rows, MAX_PADDED // len(queries))} for each '
+                          f'of {len(queries)} queries')
     wanted, k = k, max(min(k, rows), 1)
     search_shard = functools.partial(_search_shard, os.path.abspath(os.fspath(folder)), index.version(), queries, k)
     best = np.full((len(queries), k), -1), np.full((len(queries), k), -1, np.int32)

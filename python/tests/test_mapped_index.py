@@ -2,7 +2,7 @@ import pickle
 
 import numpy as np
 
-from opencv_iib import MappedIndex
+from opencv_iib import MappedIndex, error
 from support import InFolder, brute_force
 
 
@@ -36,6 +36,8 @@ class MappedIndexTest(InFolder):
         np.testing.assert_array_equal(rows[:, :180], brute_force(self.queries, self.codes[120:], 180)[0] + 120)
         self.assertTrue((rows[:, 180] == -1).all())
         self.assertEqual(index.search(self.queries[:0], 3)[0].shape, (0, 3))
+        with self.assertRaisesRegex(error, r'are 300 descriptors to find: ask for at most 3355443 for each of 20 queries'):
+            index.search(self.queries, 3355444)
 
     def test_removed_images(self):
         reader = MappedIndex(self.folder)

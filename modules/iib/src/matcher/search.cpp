@@ -166,8 +166,10 @@ void checkPadding(int k, size_t queries, size_t rows)
     const uint64 most = 1 << 26;  // neighbours, 12 bytes each
     if ((size_t)std::max(k, 0) > rows && (uint64)queries * k > most)
         CV_Error_(Error::StsOutOfRange, ("k is %d, but there are %llu descriptors to find: ask for at most "
-                                         "as many for each of %llu queries",
-                                                k, (unsigned long long)rows, (unsigned long long)queries));
+                                         "%llu for each of %llu queries",
+                                                k, (unsigned long long)rows,
+                                                (unsigned long long)std::max((uint64)rows, most / queries),
+                                                (unsigned long long)queries));
 }
 
 void PackedCodes::findNearest(const std::vector<int>& levelSizes, const std::vector<CodePart>& parts,
