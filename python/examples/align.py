@@ -8,7 +8,7 @@ import opencv_iib
 import scene
 
 # %% Two images of a camera that stayed where it is: yours, or a rendered street at noon and, the camera turned, at dusk.
-reference, image = map(scene.read, sys.argv[1:3] or [str(scene.FOLDER / name) for name in ('view_noon.jpg', 'view_panned.jpg')])
+reference, image = map(scene.read, sys.argv[1:3] if len(sys.argv) > 2 else [scene.FOLDER / f'view_{name}.jpg' for name in ('noon', 'panned')])
 
 # %% Points, matches, refinement and a robust homography, in one call.
 found = opencv_iib.alignImages(reference, image)

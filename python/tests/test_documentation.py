@@ -86,7 +86,8 @@ class Documentation(InFolder):
         cv2.imwrite(str(self.folder / 'flat.png'), np.full_like(self.images['day'], 77))
         pages = {page.name: page for page in reversed(PAGES)}
         for name, arguments, told in (
-                ('README.md', '', 'two images'), ('README.md', 'gone.png day.png', 'gone.png'), ('iib_day_night.markdown', 'day.png gone.png', 'gone.png'),
+                ('README.md', '', 'two images'), *((name, '', 'usage: ') for name, run in RUNS.items() if name.startswith('iib_') and run[0][0]),
+                ('iib_saving_index.markdown', 'day.png flat.png', 'no keypoints in flat.png'), ('README.md', 'gone.png day.png', 'gone.png'), ('iib_day_night.markdown', 'day.png gone.png', 'gone.png'),
                 ('iib_day_night.markdown', 'day.png flat.png', 'only 0 matches'), ('iib_align.markdown', 'day.png gone.png a.png', 'gone.png'),
                 ('iib_align.markdown', 'day.png flat.png a.png', 'nothing in common'), ('iib_saving_index.markdown', 'gone.png day.png', 'gone.png'),
                 ('iib_localization.markdown', 'day.png depth.png gone.png 400', 'gone.png'),
