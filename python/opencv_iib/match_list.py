@@ -146,8 +146,7 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
     listed = {frozenset(pair): pair for pair in from_file(pairs, {name: number for number, name in enumerate(names)})}
     used = {names[number] for pair in listed.values() for number in pair}
     masked = masks.check(sorted(used))
-    if lens is not None:
-        check_sizes(folder, sorted(used), lens.width, lens.height)
+    check_sizes(folder, sorted(used), masks, lens)
     if out.lower().endswith(HDF5):
         check_outputs([out], (pairs, *masked, *(os.path.join(folder, name) for name in used)))
     if len({pair_name(names[a], names[b]) for a, b in listed.values()}) < len(listed):

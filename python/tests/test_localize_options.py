@@ -187,13 +187,17 @@ class Mistakes(Options):
         os.rename(masks / 'a.png', masks / 'a.png.png')
         self.check_error('is in .*, whose files', 'localize', '--map', self.map, '--images', self.images, '--out', self.out, '--mask', masks)
 
-    def test_a_camera_of_another_size_leaves_good_results(self):
+    def test_a_camera_or_mask_of_another_size_leaves_good_results(self):
         self.image('a.png')
         (self.images / 'broken.png').write_bytes(b'no image')
         self.localize()
         before = (self.out / 'frames.csv').read_bytes()
         with mock.patch.object(Localizer, 'localize', side_effect=AssertionError):
-            self.expect_mistake('no image has the 640 x 480 pixels of the camera', '--camera', 'PINHOLE,640,480,500,500,320,240')
+            self.expect_mistake('a.png.*: its camera has 640 x 480 pixels, and the image 320 x 240', '--camera', 'PINHOLE,640,480,500,500,320,240')
+            cv2.imwrite(str(self.folder / 'mask.png'), np.ones((9, 9), np.uint8))
+            self.expect_mistake('a.png.*: its mask .* has 9 x 9 pixels, and the image 320 x 240', '--mask', self.folder / 'mask.png')
+            status, _, errors = run_command('update', '--map', self.map, '--images', self.images, '--mask', self.folder / 'mask.png', '--out', self.folder / 'new')
+            self.assertEqual((status, errors.count('\n'), (self.folder / 'new').exists()), (2, 1, False))
         self.assertEqual((self.out / 'frames.csv').read_bytes(), before)
 
 

@@ -76,7 +76,7 @@ class Lists(Collection):
         (out / 'mine').write_text('precious')
         self.check_error('holds other files', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', self.images)
         self.check_mistake('is a file: give the name of a folder', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', self.folder / 'pairs.txt')
-        self.check_mistake('no image has the 9 x 9 pixels of the camera', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images,
+        self.check_mistake('its camera has 9 x 9 pixels', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images,
                            '--out', self.folder / 'new', '--camera', 'PINHOLE,9,9,5,5,4,4')
         self.assertFalse((self.folder / 'new').exists())
         self.check_mistake('there is no list', 'match', '--pairs', self.folder / 'gone', '--images', self.images, '--out', out)

@@ -262,17 +262,25 @@ class Masks:
         return mask
 
 
-def check_sizes(folder: Path, names: Sequence[str], width: int, height: int) -> None:
-    """:raises InvalidOption: if images can be read, but none is of the size of the camera that was given for all."""
-    other = ''
-    for name in names:
+def check_sizes(folder: Path, names: Sequence[str], masks: Masks, camera: Any) -> None:
+    """Of what was given for all images: masks and a camera, if there is one.
+
+    :raises InvalidOption: if images can be read, but none is of these sizes.
+    """
+    why = ''
+    for name in names if camera is not None or masks.path is not None else ():
         with contextlib.suppress(ValueError, OSError):
             image = read_grey(os.path.join(folder, name))
-            if image.shape[:2] == (height, width):
-                return
-            other = other or f'{name} has {image.shape[1]} x {image.shape[0]}'
-    if other:
-        raise InvalidOption(f"no image has the {width} x {height} pixels of the camera, {other}: give the images' own camera")
+            height, width = image.shape
+            try:
+                if camera is None or (camera.width, camera.height) == (width, height):
+                    masks.of(name, image)
+                    return
+                why = why or f'{name}: its camera has {camera.width} x {camera.height} pixels, and the image {width} x {height}'
+            except ValueError as e:
+                why = why or f'{name}: {e}'
+    if why:
+        raise InvalidOption(f"{why}, and so it is with all others: give the images' own")
 
 
 def check_picture(path: Path) -> None:

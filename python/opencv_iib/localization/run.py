@@ -107,8 +107,7 @@ def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence
     masks = Masks(mask)
     masks.check(names)
     given, cameras = None if camera is None else as_camera(camera), list(map(as_camera, known))
-    if given is not None:
-        check_sizes(folder, names, given.width, given.height)
+    check_sizes(folder, names, masks, given)
     tell = _teller(cameras, log)
     progress = Progress('localizing', len(names))
 
