@@ -16,11 +16,10 @@ them all, so that their number says little. The covariance has three parts:
 What all matches have in common is in none of them. */
 
 const int PARTS_ACROSS = 4, PARTS_DOWN = 3;
-const double FEW_PARTS = 2.5;         // for a variance that a dozen parts tell
-const double SHARED = .2;             // of the variance of a match
-const double LEAST_NOISE = .02;       // pixels: nothing is located more exactly
-const double LEAST_DEVIATION = 1e-9;  // of a number, so that a covariance has an inverse
-const double LARGEST_DEVIATION = 3;   // of what nothing tells, radians: it may be anywhere
+const double FEW_PARTS = 2.5;        // for a variance that a dozen parts tell
+const double SHARED = .2;            // of the variance of a match
+const double LEAST_NOISE = .02;      // pixels: nothing is located more exactly
+const double LARGEST_DEVIATION = 3;  // of what nothing tells, radians: it may be anywhere
 
 //! Which part of what points span each of them is in, N x 2, CV_64F.
 inline std::vector<int> partsOf(const Mat& points)
@@ -60,15 +59,17 @@ Matx<double, N, N> inverseWithFloor(
     return vectors.t() * scaled;
 }
 
-//! A covariance with no deviation above the largest one, or under the least.
+//! A covariance with no deviation above the largest one, and of full rank in double precision, so that it has an inverse.
 template <int N> Matx<double, N, N> limited(const Matx<double, N, N>& covariance, double largest)
 {
+    const double rank = 1e-13;  // least eigenvalue, of the largest one
     Matx<double, N, 1> values;
     Matx<double, N, N> vectors, scaled;
     eigen(covariance, values, vectors);
+    const double most = std::min(values(0), square(largest));
     for (int r = 0; r < N; r++)
         for (int c = 0; c < N; c++)
-            scaled(r, c) = vectors(r, c) * std::clamp(values(r), square(LEAST_DEVIATION), square(largest));
+            scaled(r, c) = vectors(r, c) * std::clamp(values(r), rank * most, most);
     return vectors.t() * scaled;
 }
 
