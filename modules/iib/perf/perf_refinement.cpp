@@ -11,6 +11,7 @@
 namespace opencv_test {
 namespace {
 
+#ifdef IIB_PERF_VIDEO
 //! Keeps the image that it is given: the normalized one, if NormalizedDetector asks.
 class KeepsImage : public Feature2D
 {
@@ -27,6 +28,7 @@ Mat normalized(const Mat& image)
     NormalizedDetector::create(keeper, 8)->detect(image, none);
     return keeper->kept;
 }
+#endif
 
 enum
 {
