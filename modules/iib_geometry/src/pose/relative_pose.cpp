@@ -10,6 +10,7 @@ namespace cv::iib {
 namespace {
 
 const double LEAST_SCALE = .1, MOST_SCALE = 1000;  // pixels
+const double RANK = 1e-13;                         // of covariances in double precision
 const double REFINED = .25;                        // least scale by which matches count as agreeing, pixels
 
 Matx33d cameraMatrix(InputArray matrix, const char* name)
@@ -119,11 +120,9 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
     {
         errors = covarianceOf(problem, fit, partsOf(first), LARGEST_DEVIATION);
         if (!tellsDirection(problem, fit, verdict))
-        {
             for (int k = 3; k < 5; k++)
                 errors(k, k) += square(LARGEST_DEVIATION);
-            errors = limited(errors, LARGEST_DEVIATION);
-        }
+        errors = limited(errors, LARGEST_DEVIATION, RANK);
         why = reasonAgainst(fit, errors);
     }
     if (reason)

@@ -59,17 +59,17 @@ Matx<double, N, N> inverseWithFloor(
     return vectors.t() * scaled;
 }
 
-//! A covariance with no deviation above the largest one, and of full rank in double precision, so that it has an inverse.
-template <int N> Matx<double, N, N> limited(const Matx<double, N, N>& covariance, double largest)
+/** A covariance with no deviation above the largest one.
+@param rank least eigenvalue, of the square of the largest deviation: over 1e-15, the covariance has an inverse. */
+template <int N>
+Matx<double, N, N> limited(const Matx<double, N, N>& covariance, double largest, double rank = 0)
 {
-    const double rank = 1e-13;  // least eigenvalue, of the largest one
     Matx<double, N, 1> values;
     Matx<double, N, N> vectors, scaled;
     eigen(covariance, values, vectors);
-    const double most = std::min(values(0), square(largest));
     for (int r = 0; r < N; r++)
         for (int c = 0; c < N; c++)
-            scaled(r, c) = vectors(r, c) * std::clamp(values(r), rank * most, most);
+            scaled(r, c) = vectors(r, c) * std::clamp(values(r), rank * square(largest), square(largest));
     return vectors.t() * scaled;
 }
 
