@@ -274,8 +274,8 @@ class Workers(Collection):
             with mock.patch.object(parallel.Cluster, 'ahead', side_effect=concurrent.futures.CancelledError), \
                     self.assertRaisesRegex(ConnectionError, 'the scheduler has gone'):
                 self.build(client=client)
-            moved = f'{self.images}-moved'
-            with mock.patch.object(pipeline.os.path, 'abspath', return_value=moved), \
+            moved, absolute = f'{self.images}-moved', os.path.abspath
+            with mock.patch.object(pipeline.os.path, 'abspath', lambda path: moved if path == str(self.images) else absolute(path)), \
                     self.assertRaisesRegex(FileNotFoundError, moved):
                 self.build(client=client)
 
