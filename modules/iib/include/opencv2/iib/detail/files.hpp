@@ -72,6 +72,7 @@ CV_EXPORTS void writeText(const String& filename, const String& text);
 //! Opens a file, if it is a regular one.
 void openToRead(std::filebuf& file, const String& name);
 
+#ifndef OPENCV_BINDING_PARSER  // its numbers are nothing for Python
 /** Holds a lock among processes and threads to its end. The system gives the lock of a killed process back.
 Two uses: a file that is made for it if it is missing, and stays, whose lock is waited for; and a folder, or a file that others
 write, whose lock is refused while another holds it (Windows: by a file NAME.lock beside it, which goes with the lock). */
@@ -96,6 +97,7 @@ private:
     int file;
 #endif
 };
+#endif
 
 //! @endcond
 
