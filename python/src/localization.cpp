@@ -37,8 +37,8 @@ void buildMap(nb::handle model, const nb::callable& read, nb::handle map, int po
 {
     const auto image = [&read](const std::string& name) {
         nb::gil_scoped_acquire gil;
-        const auto [pixels, orientation, mask] =
-                nb::cast<std::tuple<cv::Mat, int, cv::Mat>>(read(bytesOf(name)));
+        const nb::object answer = read(bytesOf(name));  // owns the arrays until they are copied
+        const auto [pixels, orientation, mask] = nb::cast<std::tuple<cv::Mat, int, cv::Mat>>(answer);
         return cv::iib::Photograph(pixels.clone(), orientation, mask.clone());
     };
     const auto step = [&report](size_t done, size_t all, const std::string& problem) {
