@@ -21,7 +21,7 @@ if [ "${1:-}" = --short ]; then
     flags=-O1 short=.short
     tests="IIB_Golden*:IIB_IO*:IIB_Errors*:IIB_Input*:IIB_KeyPoints*:IIB_MatcherCreate*:IIB_MatcherEdges*:IIB_IndexFile*:IIB_InstructionSets*"
     tests="$tests-*upper_halves*" # which compilers free from -O2 on
-    geometry="RelativePose*:Alignment*:Localization*"
+    geometry="RelativePose*:Verdict*:Alignment*:Localization*"
     # Most of the time of OpenCV's objects goes into its headers; it precompiles none where it finds ccache.
     quick="-DENABLE_PRECOMPILED_HEADERS=ON -DENABLE_CCACHE=OFF -DCMAKE_CXX_COMPILER_LAUNCHER= -DWITH_OPENCL=OFF"
     shift

@@ -1,51 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "opencv2/calib3d.hpp"
 #include "pose/epipolar_problem.hpp"
 #include "pose/five_points.hpp"
 #include "pose/real_roots.hpp"
-#include "test_precomp.hpp"
+#include "two_cameras.hpp"
 
 namespace opencv_test {
 namespace {
 using namespace cv::iib;
-
-const Matx33d CAMERA(500, 0, 320, 0, 510, 240, 0, 0, 1);
-
-RelativePose randomPose(RNG& random, double turn)
-{
-    Vec3d w, t;
-    random.fill(w, RNG::UNIFORM, -turn, turn);
-    random.fill(t, RNG::NORMAL, 0, 1);
-    Vec<double, 5> step(w[0], w[1], w[2]);
-    return moved({Matx33d::eye(), normalize(t)}, step);
-}
-
-//! Points in front of both cameras, 4 to 12 lengths of t away, seen with noise; `wrong` of them anywhere.
-struct Views
-{
-    Views(RNG& random, const RelativePose& pose, int count, int wrong, double noise)
-        : points1(count, 2, CV_64F), points2(count, 2, CV_64F)
-    {
-        for (int i = 0; i < count;)
-        {
-            const double depth = random.uniform(4., 12.);
-            const Vec3d pixel(random.uniform(0., 640.), random.uniform(0., 480.), 1);
-            const Vec3d X = depth * (CAMERA.inv() * pixel), Y = pose.R * X + pose.t, seen = CAMERA * Y;
-            if (Y[2] < 1)
-                continue;
-            const bool astray = i < wrong;
-            for (int k = 0; k < 2; k++)
-            {
-                points1.at<double>(i, k) = pixel[k] + random.gaussian(noise);
-                points2.at<double>(i, k) =
-                        astray ? random.uniform(0., 480.) : seen[k] / seen[2] + random.gaussian(noise);
-            }
-            i++;
-        }
-    }
-    Mat points1, points2;
-};
 
 //! The step of `moved` from a pose to the truth.
 Vec<double, 5> errorOf(const RelativePose& pose, const RelativePose& truth)
@@ -305,109 +267,6 @@ TEST(RelativePose, of_a_plane_is_right_or_refused)
     EXPECT_LE(wrong, 2);
 }
 
-TEST(RelativePose, false_alarms_are_few_of_right_matches_and_many_of_wrong_ones)
-{
-    RNG random(11);
-    const Views right(random, randomPose(random, .1), 60, 0, 0),
-            wrong(random, randomPose(random, .1), 60, 60, 0);
-    Mat some(60, 1, CV_8U, Scalar(0)), none = some.clone();
-    some.rowRange(0, 30) = 1;
-    EXPECT_LT(logFalseAlarms(right.points1, right.points2, some, true, 1), -20);
-    EXPECT_LT(logFalseAlarms(right.points1, right.points2, some, false, 1), -20);
-    none.rowRange(0, 8) = 1;  // as many of 60 as are often near a line
-    EXPECT_GT(logFalseAlarms(wrong.points1, wrong.points2, none, true, 1), -3);
-    none.rowRange(4, 8) = 0;
-    EXPECT_TRUE(cvIsInf(logFalseAlarms(wrong.points1, wrong.points2, none, false, 1)));
-    // Thirty matches in one place are one.
-    Mat beside = right.points1.clone();
-    beside.rowRange(0, 30) = 100;
-    EXPECT_TRUE(cvIsInf(logFalseAlarms(beside, right.points2, some, true, 1)));
-    EXPECT_THROW(logFalseAlarms(beside, right.points2, Mat(59, 1, CV_8U), true, 1), cv::Exception);
-    EXPECT_THROW(logFalseAlarms(beside, right.points2, Mat(60, 1, CV_32S), true, 1), cv::Exception);
-    EXPECT_THROW(logFalseAlarms(beside, right.points2, some, true, 0), cv::Exception);
-    EXPECT_THROW(logFalseAlarms(beside.rowRange(1, 60), right.points2, some, true, 1), cv::Exception);
-}
-
-TEST(RelativePose, matches_drawn_at_random_have_none)
-{
-    RNG random(9);
-    for (int count : {5, 6, 10, 20, 50, 100, 300})
-        for (int trial = 0; trial < (count < 100 ? 6 : 2); trial++)
-        {
-            const Views views(random, randomPose(random, .2), count, count, 0);
-            Mat R, t, inliers, covariance;
-            String reason;
-            EXPECT_FALSE(findRelativePose(views.points1, views.points2, Mat(CAMERA), Mat(CAMERA), R, t,
-                    inliers, 0, covariance, &reason))
-                    << count;
-            EXPECT_TRUE(R.empty() && t.empty() && covariance.empty());
-            EXPECT_FALSE(reason.empty());
-            EXPECT_EQ(count, inliers.rows);
-        }
-}
-
-Mat anywhere(RNG& random, int count, double width, double height)
-{
-    Mat points(count, 2, CV_64F);
-    random.fill(points.col(0), RNG::UNIFORM, 0, width);
-    random.fill(points.col(1), RNG::UNIFORM, 0, height);
-    return points;
-}
-
-// Where points gather, more wrong matches agree with a pose than if they were anywhere.
-TEST(RelativePose, wrong_matches_of_a_skyline_or_a_strip_have_none)
-{
-    RNG random(17);
-    for (int count : {100, 400})
-        for (double height : {2., 5.})
-        {
-            Mat points[2];
-            for (Mat& image : points)
-            {
-                image = anywhere(random, count, 640, 480);
-                for (int i = 0; i < count * 4 / 5; i++)
-                    image.at<double>(i, 1) = 240 + random.gaussian(height);
-            }
-            Mat R, t, agree(count, 1, CV_8U, Scalar(1));
-            EXPECT_FALSE(findRelativePose(points[0], points[1], Mat(CAMERA), Mat(CAMERA), R, t)) << count;
-            Mat F = findFundamentalMat(points[0], points[1], USAC_MAGSAC, 1.5, .9999, 10000, agree);
-            EXPECT_GT(logFalseAlarms(points[0], points[1], agree, true, 1.5), -3) << count;
-            const Mat a = anywhere(random, count, 640, 8), b = anywhere(random, count, 640, 8);
-            EXPECT_FALSE(findRelativePose(a, b, Mat(CAMERA), Mat(CAMERA), R, t)) << count;
-        }
-}
-
-// Sampson's error is small wherever it is so in one of the images.
-TEST(RelativePose, wrong_matches_of_a_small_image_and_a_large_one_have_none)
-{
-    RNG random(18);
-    const Matx33d small(80, 0, 40, 0, 80, 30, 0, 0, 1), large(4000, 0, 2000, 0, 4000, 1500, 0, 0, 1);
-    for (int count : {200, 400})
-    {
-        const Mat a = anywhere(random, count, 80, 60), b = anywhere(random, count, 4000, 3000);
-        Mat R, t;
-        EXPECT_FALSE(findRelativePose(a, b, Mat(small), Mat(large), R, t)) << count;
-        EXPECT_FALSE(findRelativePose(b, a, Mat(large), Mat(small), R, t)) << count;
-    }
-    const Mat all = Mat::ones(300, 1, CV_8U);
-    EXPECT_GT(
-            logFalseAlarms(anywhere(random, 300, 640, 480), anywhere(random, 300, 640, 480), all, true, 1e4),
-            0);
-}
-
-TEST(RelativePose, wide_scales_make_no_pose_of_wrong_matches)
-{
-    RNG random(19);
-    for (double scale : {5., 20., 30., 200.})
-        for (int count : {30, 300})
-        {
-            const Mat a = anywhere(random, count, 640, 480), b = anywhere(random, count, 640, 480);
-            Mat R, t;
-            EXPECT_FALSE(findRelativePose(a, b, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), scale)) << scale;
-        }
-}
-
-// Matches that were not refined, or of large images.
 TEST(RelativePose, the_residuals_tell_a_scale_of_any_size)
 {
     RNG random(20);
@@ -575,13 +434,20 @@ TEST(RelativePose, degenerate_matches_end_without_nonsense)
     Mat line(50, 2, CV_32F), R, t, covariance;
     for (int i = 0; i < 50; i++)
         line.at<Point2f>(i) = Point2f(10.f * i, 5.f * i);
-    for (const Mat& points : {one, line})  // the same point over and over, and a camera that did not move
+    String reason;
+    EXPECT_FALSE(findRelativePose(
+            one, one, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), .25, covariance, &reason));  // one place
+    EXPECT_FALSE(reason.empty());
+    // A camera that did not move, and points on a line: nothing tells a rotation about it, nor t.
+    if (findRelativePose(line, line, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), .25, covariance, &reason))
     {
-        if (findRelativePose(points, points, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), .25, covariance))
-        {
-            EXPECT_TRUE(checkRange(R) && checkRange(t) && checkRange(covariance));
-        }
+        Mat values;
+        ASSERT_TRUE(checkRange(R) && checkRange(t) && checkRange(covariance));
+        eigen(covariance, values);
+        EXPECT_GT(values.at<double>(1), 1);
     }
+    else
+        EXPECT_FALSE(reason.empty());
 }
 
 TEST(RelativePose, mistakes_are_told)

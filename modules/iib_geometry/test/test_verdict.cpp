@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "opencv2/calib3d.hpp"
+#include "two_cameras.hpp"
+
+namespace opencv_test {
+namespace {
+using namespace cv::iib;
+
+TEST(Verdict, false_alarms_are_few_of_right_matches_and_many_of_wrong_ones)
+{
+    RNG random(11);
+    const Views right(random, randomPose(random, .1), 60, 0, 0),
+            wrong(random, randomPose(random, .1), 60, 60, 0);
+    Mat some(60, 1, CV_8U, Scalar(0)), none = some.clone();
+    some.rowRange(0, 30) = 1;
+    EXPECT_LT(logFalseAlarms(right.points1, right.points2, some, true, 1), -20);
+    EXPECT_LT(logFalseAlarms(right.points1, right.points2, some, false, 1), -20);
+    none.rowRange(0, 8) = 1;  // as many of 60 as are often near a line
+    EXPECT_GT(logFalseAlarms(wrong.points1, wrong.points2, none, true, 1), -3);
+    none.rowRange(4, 8) = 0;
+    EXPECT_TRUE(cvIsInf(logFalseAlarms(wrong.points1, wrong.points2, none, false, 1)));
+    // Thirty matches in one place are one.
+    Mat beside = right.points1.clone();
+    beside.rowRange(0, 30) = 100;
+    EXPECT_TRUE(cvIsInf(logFalseAlarms(beside, right.points2, some, true, 1)));
+    EXPECT_THROW(logFalseAlarms(beside, right.points2, Mat(59, 1, CV_8U), true, 1), cv::Exception);
+    EXPECT_THROW(logFalseAlarms(beside, right.points2, Mat(60, 1, CV_32S), true, 1), cv::Exception);
+    EXPECT_THROW(logFalseAlarms(beside, right.points2, some, true, 0), cv::Exception);
+    EXPECT_THROW(logFalseAlarms(beside.rowRange(1, 60), right.points2, some, true, 1), cv::Exception);
+}
+
+TEST(Verdict, matches_drawn_at_random_have_none)
+{
+    RNG random(9);
+    for (int count : {5, 6, 10, 20, 50, 100, 300})
+        for (int trial = 0; trial < (count < 100 ? 6 : 2); trial++)
+        {
+            const Views views(random, randomPose(random, .2), count, count, 0);
+            Mat R, t, inliers, covariance;
+            String reason;
+            EXPECT_FALSE(findRelativePose(views.points1, views.points2, Mat(CAMERA), Mat(CAMERA), R, t,
+                    inliers, 0, covariance, &reason))
+                    << count;
+            EXPECT_TRUE(R.empty() && t.empty() && covariance.empty());
+            EXPECT_FALSE(reason.empty());
+            EXPECT_EQ(count, inliers.rows);
+        }
+}
+
+// Where points gather, more wrong matches agree with a pose than if they were anywhere.
+TEST(Verdict, wrong_matches_of_a_skyline_or_a_strip_have_none)
+{
+    RNG random(17);
+    for (int count : {100, 400})
+        for (double height : {2., 5.})
+        {
+            Mat points[2];
+            for (Mat& image : points)
+            {
+                image = anywhere(random, count, 640, 480);
+                for (int i = 0; i < count * 4 / 5; i++)
+                    image.at<double>(i, 1) = 240 + random.gaussian(height);
+            }
+            Mat R, t, agree(count, 1, CV_8U, Scalar(1));
+            EXPECT_FALSE(findRelativePose(points[0], points[1], Mat(CAMERA), Mat(CAMERA), R, t)) << count;
+            Mat F = findFundamentalMat(points[0], points[1], USAC_MAGSAC, 1.5, .9999, 10000, agree);
+            EXPECT_GT(logFalseAlarms(points[0], points[1], agree, true, 1.5), -3) << count;
+            const Mat a = anywhere(random, count, 640, 8), b = anywhere(random, count, 640, 8);
+            EXPECT_FALSE(findRelativePose(a, b, Mat(CAMERA), Mat(CAMERA), R, t)) << count;
+        }
+}
+
+// Sampson's error is small wherever it is so in one of the images.
+TEST(Verdict, wrong_matches_of_a_small_image_and_a_large_one_have_none)
+{
+    RNG random(18);
+    const Matx33d small(80, 0, 40, 0, 80, 30, 0, 0, 1), large(4000, 0, 2000, 0, 4000, 1500, 0, 0, 1);
+    for (int count : {200, 400})
+    {
+        const Mat a = anywhere(random, count, 80, 60), b = anywhere(random, count, 4000, 3000);
+        Mat R, t;
+        EXPECT_FALSE(findRelativePose(a, b, Mat(small), Mat(large), R, t)) << count;
+        EXPECT_FALSE(findRelativePose(b, a, Mat(large), Mat(small), R, t)) << count;
+    }
+    const Mat all = Mat::ones(300, 1, CV_8U);
+    EXPECT_GT(
+            logFalseAlarms(anywhere(random, 300, 640, 480), anywhere(random, 300, 640, 480), all, true, 1e4),
+            0);
+}
+
+TEST(Verdict, wide_scales_make_no_pose_of_wrong_matches)
+{
+    RNG random(19);
+    for (double scale : {5., 20., 30., 200.})
+        for (int count : {30, 300})
+        {
+            const Mat a = anywhere(random, count, 640, 480), b = anywhere(random, count, 640, 480);
+            Mat R, t;
+            EXPECT_FALSE(findRelativePose(a, b, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), scale)) << scale;
+        }
+}
+
+// Matches that were not refined, or of large images.
+
+}  // namespace
+}  // namespace opencv_test

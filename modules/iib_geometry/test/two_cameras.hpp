@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pose/two_views.hpp"
+#include "test_precomp.hpp"
+
+namespace opencv_test {
+
+using cv::iib::RelativePose;
+
+const Matx33d CAMERA(500, 0, 320, 0, 510, 240, 0, 0, 1);
+
+inline RelativePose randomPose(RNG& random, double turn)
+{
+    Vec3d w, t;
+    random.fill(w, RNG::UNIFORM, -turn, turn);
+    random.fill(t, RNG::NORMAL, 0, 1);
+    Vec<double, 5> step(w[0], w[1], w[2]);
+    return cv::iib::moved({Matx33d::eye(), normalize(t)}, step);
+}
+
+//! Points in front of both cameras, 4 to 12 lengths of t away, seen with noise; `wrong` of them anywhere.
+struct Views
+{
+    Views(RNG& random, const RelativePose& pose, int count, int wrong, double noise)
+        : points1(count, 2, CV_64F), points2(count, 2, CV_64F)
+    {
+        for (int i = 0; i < count;)
+        {
+            const double depth = random.uniform(4., 12.);
+            const Vec3d pixel(random.uniform(0., 640.), random.uniform(0., 480.), 1);
+            const Vec3d X = depth * (CAMERA.inv() * pixel), Y = pose.R * X + pose.t, seen = CAMERA * Y;
+            if (Y[2] < 1)
+                continue;
+            const bool astray = i < wrong;
+            for (int k = 0; k < 2; k++)
+            {
+                points1.at<double>(i, k) = pixel[k] + random.gaussian(noise);
+                points2.at<double>(i, k) =
+                        astray ? random.uniform(0., 480.) : seen[k] / seen[2] + random.gaussian(noise);
+            }
+            i++;
+        }
+    }
+    Mat points1, points2;
+};
+
+//! N x 2, CV_64F: points that are anywhere in an image.
+inline Mat anywhere(RNG& random, int count, double width, double height)
+{
+    Mat points(count, 2, CV_64F);
+    random.fill(points.col(0), RNG::UNIFORM, 0, width);
+    random.fill(points.col(1), RNG::UNIFORM, 0, height);
+    return points;
+}
+
+}  // namespace opencv_test
