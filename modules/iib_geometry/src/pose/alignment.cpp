@@ -39,6 +39,8 @@ struct Attempt
 const char* const MODELS[] = {"TRANSLATION", "SIMILARITY", "AFFINE", "HOMOGRAPHY"};
 const char* const NAMES[] = {"a translation", "a similarity", "an affine transform", "a homography"};
 
+int countOf(const Verdict::Marks& marks) { return (int)std::count(marks.begin(), marks.end(), true); }
+
 //! A transform of two images' matches, in working pixels, and how they lie around it.
 struct Aligned
 {
@@ -55,7 +57,7 @@ struct Aligned
         agree.resize(problem.size());
     }
 
-    int count() const { return (int)std::count(agree.begin(), agree.end(), true); }
+    int count() const { return countOf(agree); }
 };
 
 bool isCertain(const Aligned& aligned, const Verdict& verdict)
@@ -147,8 +149,6 @@ std::vector<Attempt> attemptsFor(const Size& first, const Size& second, int mode
     return attempts;
 }
 
-int countOf(const Verdict::Marks& marks) { return (int)std::count(marks.begin(), marks.end(), true); }
-
 //! The matches beside a transform by so much, working pixels, or more, that the camera's motion explains.
 Verdict::Marks movedBeside(
         const Aligned& aligned, const AlignedPoints& points, double distance, const Verdict& verdict)
@@ -171,9 +171,10 @@ double deviationBeside(const Aligned& aligned, const AlignedPoints& points)
     return std::sqrt(sum / std::max(countOf(moved), 1));
 }
 
-//! Why the model is not that of the images; empty if it is.
+/** Why the model is not that of the images; empty if it is.
+@param certain whether the transform is more than chance. */
 std::string reasonAgainstModel(
-        const Aligned& aligned, const AlignedPoints& points, int model, const Verdict& verdict)
+        const Aligned& aligned, const AlignedPoints& points, int model, const Verdict& verdict, bool certain)
 {
     std::vector<Aligned> richer;
     for (int other = model + 1; other <= ALIGN_HOMOGRAPHY; other++)
@@ -181,13 +182,13 @@ std::string reasonAgainstModel(
     const Aligned& richest = richer.empty() ? aligned : richer.back();
     const auto near = [&](const Aligned& a) { return within(richest.limit, a.fit.squared); };
     const int most = verdict.places(near(richest));
-    if (isCertain(richest, verdict) && most > RICHER * verdict.places(near(aligned)))
+    if (most > RICHER * verdict.places(near(aligned)) && isCertain(richest, verdict))
         for (size_t k = 0; k < richer.size(); k++)
             if (RICHER * verdict.places(near(richer[k])) >= most)
                 return format("the images differ by more than %s: %s agrees with %d matches in place of %d",
                         NAMES[model], MODELS[model + 1 + k], countOf(near(richer[k])),
                         countOf(near(aligned)));
-    if (!isCertain(aligned, verdict))
+    if (!certain)
         return "";
     const Verdict::Marks moved = movedBeside(richest, points, LEAST_PARALLAX, verdict);
     if (verdict.places(moved) > MOST_PARALLAX * most)
@@ -210,13 +211,13 @@ Judgement judge(const Aligned& aligned, const AlignedPoints& points, int model, 
     if (aligned.fit.squared.empty())
         return {"the images have too few matches", false};
     const Verdict verdict(points.image, points.reference);  // errors are in the reference
-    const std::string wrongModel = reasonAgainstModel(aligned, points, model, verdict);
+    const bool certain = isCertain(aligned, verdict);
+    const std::string wrongModel = reasonAgainstModel(aligned, points, model, verdict, certain);
     if (!wrongModel.empty())
         return {wrongModel, true};
-    if (!isCertain(aligned, verdict))
+    if (!certain)
         return {format("the transform that agrees best has %d of %d matches, no more than chance may give: "
-                       "the images "
-                       "may not show the same",
+                       "the images may not show the same",
                         aligned.count(), aligned.problem.size()),
                 false};
     const Spread spread(aligned, points, size);
@@ -227,8 +228,7 @@ Judgement judge(const Aligned& aligned, const AlignedPoints& points, int model, 
                 false};
     if (spread.scatter < LEAST_SCATTER)
         return {format("the images share a few small parts, with %d matches, and nothing between these: "
-                       "logos, "
-                       "captions?",
+                       "logos, captions?",
                         aligned.count()),
                 false};
     return {"", true};

@@ -31,13 +31,13 @@ std::vector<Point2d> directions(const Mat& points, const Matx33d& camera)
 
 EpipolarProblem::EpipolarProblem(
         const Mat& points1, const Mat& points2, const Matx33d& camera1, const Matx33d& camera2)
-    : first_(directions(points1, camera1)), second_(directions(points2, camera2)),
-      mostScale_(MOST_SCALE * norm(spanOf(points2).br() - spanOf(points2).tl())), pixels_{1 / camera2(0, 0),
-                                                                                          1 / camera2(1, 1),
-                                                                                          1 / camera1(0, 0),
-                                                                                          1 / camera1(1, 1)}
+    : first_(directions(points1, camera1)),
+      second_(directions(points2, camera2)), pixels_{1 / camera2(0, 0), 1 / camera2(1, 1), 1 / camera1(0, 0),
+                                                     1 / camera1(1, 1)}
 {
     std::transform(pixels_, pixels_ + 4, weights_, square);
+    const Rect2d span = spanOf(points2);
+    mostScale_ = MOST_SCALE * std::hypot(span.width, span.height);
 }
 
 EpipolarProblem EpipolarProblem::mixed(const std::vector<int>& order) const

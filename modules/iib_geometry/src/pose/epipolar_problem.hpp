@@ -51,9 +51,9 @@ private:
     Row<Step> row(const Linear& linear, const Point2d& first, const Point2d& second) const;
 
     std::vector<Point2d> first_, second_;  // directions, third coordinate 1
+    double pixels_[4];                     // of v and of u: one over the focal lengths
+    double weights_[4];                    // their squares, of the four squares in Sampson's denominator
     double mostScale_;
-    double pixels_[4];   // of v and of u: one over the focal lengths
-    double weights_[4];  // their squares, of the four squares in Sampson's denominator
 };
 
 }  // namespace cv::iib

@@ -57,7 +57,6 @@ PlanarProblem::PlanarProblem(const Mat& reference, const Mat& image, int kind) :
     unit_ = spread;
 }
 
-// Of T p = w r, with T = 1 + sum of s_k G_k, two equations a match are linear in s, and w drops out.
 PlanarProblem PlanarProblem::mixed(const std::vector<int>& order) const
 {
     PlanarProblem other = *this;
@@ -66,6 +65,7 @@ PlanarProblem PlanarProblem::mixed(const std::vector<int>& order) const
     return other;
 }
 
+// Of T p = w r, with T = 1 + sum of s_k G_k, two equations a match are linear in s, and w drops out.
 void PlanarProblem::propose(const std::vector<int>& sample, std::vector<Matx33d>& transforms) const
 {
     transforms.clear();
