@@ -104,6 +104,18 @@ TEST_F(SmallMap, read_as_written)
     EXPECT_EQ(1, textOf(name + "/map.iib")[8]) << "without lines it is one that earlier programs read";
 }
 
+// The shorter side of a reduced picture was rounded: it tells no scale.
+TEST_F(SmallMap, pictures_of_portraits_keep_their_scale)
+{
+    Map map = smallMap();
+    map.images[0].camera = map.images[1].camera = {"PINHOLE", {4000, 6000}, {5000, 5000, 2000, 3000}};
+    for (int i = 0; i < 2; i++)
+        map.images[size_t(i)].picture = pictureOf(cv::Mat(6000, 4000, CV_8U, cv::Scalar(7)));
+    write(map);
+    EXPECT_DOUBLE_EQ(1024. / 6000, map.images[0].picture.scale);
+    EXPECT_DOUBLE_EQ(1024. / 6000, readMap(name).images[0].picture.scale);
+}
+
 TEST_F(SmallMap, every_altered_byte_and_every_length_is_noticed)
 {
     write(smallMap());
@@ -139,6 +151,10 @@ TEST_F(SmallMap, what_contradicts_itself_though_its_sum_is_right)
     };
     EXPECT_EQ("it has no images", errorOf([](Map& m) { m.keypoints = 0; }));
     EXPECT_EQ("it has no images", errorOf([](Map& m) { m.images.clear(); }));
+    EXPECT_EQ("its images have no codes", errorOf([](Map& m) {
+        for (MapImage& image : m.images)
+            image.codes = image.codes.colRange(0, 0).clone();
+    }));
     EXPECT_EQ("two images have one name", errorOf([](Map& m) { m.images[1].name = m.images[0].name; }));
     EXPECT_EQ("a keypoint sees nothing", errorOf([](Map& m) { m.images[2].sees[0] = -1; }));
     EXPECT_EQ("an image has no camera or no pose",

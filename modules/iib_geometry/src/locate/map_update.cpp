@@ -36,11 +36,11 @@ int countMisses(Map& map, const std::vector<LocatedImage>& all)
     for (const LocatedImage& seen : all)
     {
         const Rect2d picture(Point2d(-.5, -.5), Size2d(seen.features.camera.size));
+        const Lens lens(seen.features.camera);
         for (size_t i : seen.compared)
         {
             const std::vector<Point2d> places =
-                    Lens(seen.features.camera)
-                            .project(inCamera(map.seenBy(map.images[i]), seen.cameraFromWorld));
+                    lens.project(inCamera(map.seenBy(map.images[i]), seen.cameraFromWorld));
             for (size_t k = 0; k < places.size(); k++)
                 looked[i][k] |= picture.contains(places[k]);  // not NaN, behind the camera
         }
@@ -60,6 +60,7 @@ int countMisses(Map& map, const std::vector<LocatedImage>& all)
             else if (looked[i][k] && ++misses >= PATIENCE)
             {
                 map.images[i].sees[k] = -1;
+                misses = 0;  // it may see another point
                 dropped++;
             }
         }

@@ -110,6 +110,12 @@ size_t parametersOf(const std::string& model)
     return number < 0 ? 0 : MODELS[number].focals + 2 + MODELS[number].others;
 }
 
+size_t focalsOf(const std::string& model)
+{
+    const int number = modelNumber(model);
+    return number < 0 ? 0 : MODELS[number].focals;
+}
+
 Lens::Lens(const Camera& camera)
 {
     const Model& model = modelOf(camera);

@@ -38,4 +38,7 @@ std::string modelName(uint32_t number);
 //! How many parameters a model has; 0 for an unknown one.
 size_t parametersOf(const std::string& model);
 
+//! How many of a model's parameters are focal lengths, 1 or 2; 0 if it is none.
+size_t focalsOf(const std::string& model);
+
 }  // namespace cv::iib

@@ -152,7 +152,8 @@ void visit(MapFile& file, MapImage& image, const std::vector<Camera>& cameras, s
     file.integer(size.width, 4);
     file.check(!((unsigned(size.height) | unsigned(size.width)) >> 16), "an image is too large");
     file.matrix(picture, size_t(size.height), size_t(size.width));
-    image.picture.scale = double(picture.cols) / image.camera.size.width;
+    const Size& whole = image.camera.size;  // of the longer sides alone, since the shorter one was rounded
+    image.picture.scale = double(std::max(picture.cols, picture.rows)) / std::max(whole.width, whole.height);
 }
 
 //! @param version of the file; the second has which points are in use, the lines, and of each image those that it sees.
@@ -170,6 +171,7 @@ void visit(MapFile& file, Map& map, unsigned version)
     for (Camera& camera : cameras)
         visit(file, camera);
     file.length(map.images, 121);
+    file.check(map.images.empty() || bytes > 0, "its images have no codes");
     std::set<std::string> names;
     for (MapImage& image : map.images)
     {

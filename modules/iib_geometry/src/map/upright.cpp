@@ -2,6 +2,8 @@
 
 #include "upright.hpp"
 
+#include "lens.hpp"
+
 namespace cv::iib {
 namespace {
 
@@ -15,11 +17,6 @@ struct Pair
 const Pair PAIRS[] = {{"OPENCV", 3, 2}, {"FULL_OPENCV", 3, 2}, {"THIN_PRISM_FISHEYE", 3, 2},
         {"THIN_PRISM_FISHEYE", 6, 7}, {"RAD_TAN_THIN_PRISM_FISHEYE", 6, 7},
         {"RAD_TAN_THIN_PRISM_FISHEYE", 8, 10}, {"RAD_TAN_THIN_PRISM_FISHEYE", 9, 11}};
-
-size_t focalsOf(const std::string& model)
-{
-    return model.compare(0, 6, "SIMPLE") == 0 || model == "RADIAL" || model == "RADIAL_FISHEYE" ? 1 : 2;
-}
 
 }  // namespace
 

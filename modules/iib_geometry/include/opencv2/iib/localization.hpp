@@ -19,7 +19,8 @@ namespace iib {
 
 /** @brief A camera as COLMAP describes it: any of its models with a field of view under 180 degrees.
 
-Images are taken as their files store them, as COLMAP does: EXIF's orientation is ignored everywhere. */
+Cameras, pixels and poses are those of images as their files store them, as COLMAP has them; EXIF's orientation only tells how points are
+described. */
 struct CV_EXPORTS Camera
 {
     std::string model;  //!< COLMAP's name of it, such as `PINHOLE`
