@@ -19,8 +19,8 @@ from opencv_iib._files import check_folder, is_in, is_same, new_results, rows_of
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._turns import Turn, upright
 from opencv_iib.colmap.features import check_max_size
-from opencv_iib.colmap.images import (FORMATS, TIFF, Masks, decode_pages, exif_orientation, find_images, holds, import_cv2, in_8_bits, in_order, no_data,
-                                     read_bytes, stamp, write_picture)
+from opencv_iib.colmap.images import (FORMATS, TIFF, Masks, can_be, decode_pages, exif_orientation, find_images, holds, import_cv2, in_8_bits, in_order, no_data,
+                                     read_bytes, write_picture)
 from opencv_iib.colmap.parallel import Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
 from opencv_iib.enums import AlignmentModel
@@ -277,6 +277,8 @@ class _View:
         :raises ValueError: also for an image that cv2 cannot lay onto another, or others onto it."""
         data = read_bytes(path)
         self.pages, self.no_data = decode_pages(data), no_data(data)
+        if self.no_data and not all(can_be(self.no_data, page.dtype) for page in self.pages):
+            self.no_data = ''
         self.suffix = '.jpg' if data.startswith(b'\xff\xd8') else '.tif' if data.startswith(TIFF) else '.png'
         first = self.pages[0]
         self.size = list(first.shape[1::-1])
@@ -327,7 +329,7 @@ class _Work:
 
     def stamp(self, path: str) -> str:
         """Of an image's file and that of its mask."""
-        return ' '.join(map(stamp, filter(None, (path, self._masks.file(os.path.basename(path))))))
+        return self._masks.stamp(path, os.path.basename(path))
 
     def align(self, path: str, name: str, part: Optional[list[int]]) -> Aligned:
         """:param name: path of what is written, without suffix; nothing is without `part`, what of the reference is shown: x, y, width, height."""

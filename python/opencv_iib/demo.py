@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, Optional, Sequence
 
 import numpy as np
 
-from opencv_iib._arguments import Path
+from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._files import check_outputs
 from opencv_iib.colmap.features import FeatureOptions, Features, make_detector
 from opencv_iib.colmap.images import Masks, check_picture, import_cv2, read_with_orientation, write_picture
@@ -48,7 +48,10 @@ def demo(image_a: Path, image_b: Path, out: Path, options: FeatureOptions = Feat
     check_outputs([out], (image_a, image_b, *masked.check(names)))
     check_picture(out)
     images, orientations = zip(*(read_with_orientation(path, options.exif) for path in (image_a, image_b)))
-    masks = list(map(masked.of, names, images))
+    try:
+        masks = list(map(masked.of, names, images))
+    except ValueError as e:
+        raise InvalidOption(str(e)) from None
     described = list(map(Features(options), images, orientations, masks))
     results = [_result('IIB', [rows for rows, _ in described], match(described[0][1], described[1][1]).pairs)]
     for name in ('SIFT', 'ORB') if options.detector == 'HESSIAN' else (options.detector,):

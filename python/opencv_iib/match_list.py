@@ -18,7 +18,7 @@ from opencv_iib._files import check_outputs, only_writer, output_file, write_who
 from opencv_iib._streams import note
 from opencv_iib.colmap.features import FeatureOptions, Features
 from opencv_iib.colmap.hloc import pair_name
-from opencv_iib.colmap.images import Masks, check_sizes, find_images, stamp
+from opencv_iib.colmap.images import Masks, check_sizes, find_images
 from opencv_iib.colmap.pairs import from_file, tiles
 from opencv_iib.colmap.parallel import Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
@@ -152,7 +152,7 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
     if len({pair_name(names[a], names[b]) for a, b in listed.values()}) < len(listed):
         raise InvalidOption(f'{os.fspath(pairs)}: two pairs would have one name, with - in place of /')
     settings = json.dumps([*map(str, vars(options).values()), str(lens), __version__])
-    stamps = {name: ' '.join(map(stamp, filter(None, (os.path.join(folder, name), masks.file(name))))) for name in used}
+    stamps = {name: masks.stamp(os.path.join(folder, name), name) for name in used}
     views, found, failed = _Views(folder, masks, features, lens), 0, set[str]()
     with _Hdf5(output_file(out)) if out.lower().endswith(HDF5) else _Folder(out) as target:
         missing = []

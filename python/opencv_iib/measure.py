@@ -171,7 +171,10 @@ class View(NamedTuple):
                                 'pixels')
         image = upright(stored, orientation)
         if described is None:
-            mask = masks.of(name, stored)
+            try:
+                mask = masks.of(name, stored)
+            except ValueError as e:
+                raise InvalidOption(f'{path}: {e}') from None
             described = features(image, mask=mask if mask is None else upright(mask, orientation))
         return cls(stored, image, Turn(orientation, width, height), lens, *described)
 

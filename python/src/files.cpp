@@ -29,8 +29,6 @@ void bindFiles(nb::module_& m)
             .def("__init__", [](WholeFile* self, nb::handle path) { new (self) WholeFile(pathOf(path)); })
             .def_prop_ro("part",
                     [](const WholeFile& self) { return nb::bytes(self.part().data(), self.part().size()); })
-            .def("write",
-                    [](WholeFile& self, const nb::bytes& data) { self.write(data.c_str(), data.size()); })
             .def("commit", &WholeFile::commit, WithoutGil())
             .def("discard", &WholeFile::discard);
     nb::class_<FileLock>(m, "FileLock").def("__init__", [](FileLock* self, nb::handle path) {

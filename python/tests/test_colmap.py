@@ -54,7 +54,8 @@ class WhatIsWritten(Collection):
         rows = self.query('SELECT name, camera_id, model, prior_focal_length, params FROM images NATURAL JOIN cameras ORDER BY name')
         self.assertEqual([row[:4] for row in rows], [('a.png', 1, 4, 1), ('b.png', 1, 4, 1), *((f'more/{n}.png', 2, 5, 1) for n in 'abc')])
         self.assertEqual(np.frombuffer(rows[0][4]).tolist(), [500, 501, 200, 150, .1, .01, 0, 0])
-        for wrong in (['--camera', 'PINHOLE,9'], ['--camera-of', 'more'], ['--camera-of', 'more=FISH,1,2,3']):
+        for wrong in (['--camera', 'PINHOLE,9'], ['--camera-of', 'more'], ['--camera-of', 'more=FISH,1,2,3'],
+                      ['--camera', 'x=PINHOLE,400,300,400,400,200,150'], ['--camera-of', 'mroe=PINHOLE,400,300,400,400,200,150']):
             self.check_mistake('', 'colmap', self.images, self.folder / 'x.db', *wrong)
         self.assertRaisesRegex(ValueError, 'none of the 5 images', self.build, force=True, camera='PINHOLE,300,400,9,9,150,200')
         self.assertEqual(self.lines[0], 'a.png: it has 400 x 300 pixels, its camera 300 x 400')

@@ -1,6 +1,7 @@
 """What is read of image files, and what is found in them."""
 import os
 import struct
+import tempfile
 import zlib
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import opencv_iib
 from collection import Collection
 from opencv_iib.colmap import FeatureOptions
 from opencv_iib.colmap.features import DETECTORS, Features, to_colmap
-from opencv_iib.colmap.images import exif_focal_length, read_colour, read_grey
+from opencv_iib.colmap.images import exif_focal_length, exif_orientation, gps_place, read_colour, read_grey
 from support import cv2, texture
 
 
@@ -85,6 +86,15 @@ class Files(Collection):
                     self.assertAlmostEqual(exif_focal_length(data, 600, 400), focal)
         for data in (png, jpeg, webp, b'', tiff[:-9], big[:-1], b'II*\0' + b'\xff' * 90, jpeg[:2] + b'\xff\xe1\0\x08Exif\0\0'):
             self.assertIsNone(exif_focal_length(data, 600, 400))
+
+    def test_exif_of_wrong_types_tells_nothing(self):
+        for tag in (0x112, 0x8769, 0x8825):
+            for text in (b'x\0\0\0', bytes(4)):  # a text, where numbers belong
+                data = struct.pack('<4sIHHHI', b'II*\0', 8, 1, tag, 2, 4) + text + bytes(4)
+                with self.subTest(tag=tag), tempfile.TemporaryDirectory() as folder:
+                    self.assertEqual((exif_orientation(data), exif_focal_length(data, 60, 40)), (1, None))
+                    Path(folder, 'a.tif').write_bytes(data)
+                    self.assertIsNone(gps_place(f'{folder}/a.tif'))
 
 
 class Found(Collection):

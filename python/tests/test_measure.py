@@ -396,6 +396,14 @@ class Align(Commands):
             known = page[np.isfinite(page) & (page != -9999)]
             self.assertTrue(-40 < known.min() and known.max() < 300 and .8 < known.size / whole.size < .93)
 
+    def test_no_data_that_no_pixel_can_have_tells_nothing(self):
+        for dtype, text in ((np.uint8, '-9999'), (np.uint8, 'nan'), (np.float32, '1e39')):
+            pair, = self.shifted(dtype)
+            reference, image, _, (part,) = pair
+            write_picture(image, part, no_data=text)
+            row, = self.align(reference, image, '--model', 'translation')
+            self.assertEqual(row['verdict'], 'aligned')
+
     def test_formats_and_interpolation(self):
         pair, = self.shifted(np.uint8, suffix='.jpg')
         self.assertEqual([self.check_shifted(pair, *options)[0]['file'] for options in ((), ('--format', 'png'), ('--format', 'TIFF'))],

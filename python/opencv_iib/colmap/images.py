@@ -19,6 +19,7 @@ SUFFIXES = ('.jpg', '.jpeg', '.png', '.tif', '.tiff', '.bmp', '.webp', '.ppm', '
 SAMPLES, ORIENTATION, NO_DATA = 0x0115, 0x0112, 0xA481  # the last one is GDAL's
 EXIF_IFD, FOCAL_LENGTH, FOCAL_LENGTH_35MM, PLANE_X_RESOLUTION, PLANE_UNIT = 0x8769, 0x920A, 0xA405, 0xA20E, 0xA210
 MILLIMETRES = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}  # of EXIF's units of resolution
+NOWHERE = 2**32 - 1  #: of a directory: behind the end of any file
 GPS_IFD, LATITUDE_REF, LATITUDE, LONGITUDE_REF, LONGITUDE, ALTITUDE_REF, ALTITUDE = 0x8825, 1, 2, 3, 4, 5, 6
 EARTH = 6371000  # metres, the radius
 BYTE, ASCII, SHORT, LONG, RATIONAL = 1, 2, 3, 4, 5  # EXIF's types
@@ -238,6 +239,10 @@ class Masks:
         path = os.path.join(self.path, name + '.png')
         return path if os.path.exists(path) else ''
 
+    def stamp(self, path: str, name: str) -> str:
+        """Of an image's file and that of its mask, as :func:`stamp`."""
+        return ' '.join(map(stamp, filter(None, (path, self.file(name)))))
+
     def check(self, names: Iterable[str]) -> list[str]:
         """:return: the files of the images' masks.
         :raises InvalidOption: for a folder without a mask of any image."""
@@ -423,6 +428,12 @@ def _first_directory(tiff: bytes) -> dict[int, Any]:
     return _directory(tiff, struct.unpack_from('<I' if tiff[:1] == b'I' else '>I', tiff, 4)[0])[0]
 
 
+def _number(entries: dict[int, Any], tag: int, default: float) -> float:
+    """The first one of an entry; the default where there is none, or a text that some program wrote there."""
+    values = entries.get(tag, '')
+    return default if isinstance(values, str) else values[0]
+
+
 def _pages_of_tiff(data: bytes) -> tuple[int, int]:
     """How many, and channels of the first; 1 of each for other files, and for the 64-bit kind, whose pages are not counted."""
     if data[:4] not in TIFF[:2]:
@@ -432,7 +443,7 @@ def _pages_of_tiff(data: bytes) -> tuple[int, int]:
         at, = struct.unpack_from('<I' if data[:1] == b'I' else '>I', data, 4)
         while at and at not in seen:
             entries, following = _directory(data, at)
-            samples = samples if seen else entries.get(SAMPLES, [1])[0]
+            samples = samples if seen else int(_number(entries, SAMPLES, 1))
             seen.add(at)
             at = following
     return max(len(seen), 1), samples
@@ -448,10 +459,18 @@ def no_data(data: bytes) -> str:
     return ''
 
 
+def can_be(text: str, dtype: np.dtype) -> bool:
+    """Whether a pixel of this type can have a value: -9999 is none of 8 bits without a sign."""
+    value = float(text)
+    if dtype.kind == 'f':
+        return bool(np.isnan(value) or abs(value) <= np.finfo(dtype).max)
+    return value.is_integer() and np.iinfo(dtype).min <= value <= np.iinfo(dtype).max
+
+
 def exif_orientation(data: bytes) -> int:
     """How a file's EXIF data say that the image is stored, 1 (upright) to 8; 1 if they tell nothing."""
     try:
-        told = int(_first_directory(_exif(data)).get(ORIENTATION, [1])[0])
+        told = int(_number(_first_directory(_exif(data)), ORIENTATION, 1))
     except struct.error:
         return 1
     return told if 1 <= told <= 8 else 1
@@ -461,8 +480,8 @@ def exif_focal_length(data: bytes, width: int, height: int) -> Optional[float]:
     """Focal length in pixels by a file's EXIF data, by COLMAP's rules; None if they tell none."""
     tiff = _exif(data)
     try:
-        entries = _directory(tiff, int(_first_directory(tiff)[EXIF_IFD][0]))[0]
-    except (struct.error, KeyError):
+        entries = _directory(tiff, int(_number(_first_directory(tiff), EXIF_IFD, NOWHERE)))[0]
+    except struct.error:
         return None
     exif: dict[int, float] = {tag: values[0] for tag, values in entries.items() if not isinstance(values, str)}
     if exif.get(FOCAL_LENGTH_35MM, 0) > 0:
@@ -475,10 +494,10 @@ def gps_place(path: str) -> Optional[np.ndarray]:
     """Where a file's EXIF data say that it was taken, metres from the Earth's centre; None if they do not."""
     try:
         tiff = _exif(read_bytes(path))
-        gps = _directory(tiff, int(_first_directory(tiff)[GPS_IFD][0]))[0]
+        gps = _directory(tiff, int(_number(_first_directory(tiff), GPS_IFD, NOWHERE)))[0]
         latitude, longitude = (np.radians(np.dot(gps[tag], (1, 1 / 60, 1 / 3600)) * (-1 if gps.get(ref) in ('S', 'W') else 1))
                                for tag, ref in ((LATITUDE, LATITUDE_REF), (LONGITUDE, LONGITUDE_REF)))
-        height = gps.get(ALTITUDE, [0])[0] * (-1 if gps.get(ALTITUDE_REF, [0])[0] == 1 else 1)
-    except (struct.error, KeyError, ValueError, OSError):
+        height = _number(gps, ALTITUDE, 0) * (-1 if _number(gps, ALTITUDE_REF, 0) == 1 else 1)
+    except (struct.error, KeyError, TypeError, ValueError, OSError):
         return None
     return np.array([np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)]) * float(EARTH + height)

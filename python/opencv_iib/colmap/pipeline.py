@@ -18,7 +18,7 @@ from opencv_iib.colmap import pairs as pair_lists
 from opencv_iib.colmap.database import CAMERA_MODELS, Database, SettingsChanged, settings_of
 from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
 from opencv_iib.colmap.images import (Masks, decode_grey, exif_focal_length, exif_orientation, find_images, gps_place, import_cv2, is_listable,
-                                     is_utf8, read_bytes, stamp)
+                                     is_utf8, read_bytes)
 from opencv_iib.colmap.parallel import Cluster, Crew, Threads, in_parallel, thread_count
 from opencv_iib.colmap.progress import Progress
 from opencv_iib.colmap.verify import colmap_binary, magsac, matches_importer
@@ -55,7 +55,7 @@ class Options:
 
         :raises opencv_iib.error: for one that is none."""
         given = [('', self.camera)] if self.camera is not None else []
-        given += [(folder.strip('/') + '/', camera) for folder, _, camera in (text.partition('=') for text in self.camera_of)]
+        given += [(folder.strip('/') + '/', camera) for folder, _, camera in (text.rpartition('=') for text in self.camera_of)]
         inside = [(folder, camera) for folder, camera in given if name.startswith(folder)]
         return Camera.parse(max(inside)[1]) if inside else None
 
@@ -68,11 +68,11 @@ class Options:
         if self.camera_model not in CAMERA_MODELS:
             raise InvalidOption(f'no camera model {self.camera_model}: there are {", ".join(CAMERA_MODELS)}')
         for text in self.camera_of:
-            if not text.partition('=')[1]:
+            if '=' not in text:
                 raise InvalidOption(f'camera_of is {text}: it must be FOLDER=MODEL,WIDTH,HEIGHT,PARAMS')
-        for camera in [*self.camera_of, *([] if self.camera is None else [self.camera])]:
+        for camera in [*(text.rpartition('=')[2] for text in self.camera_of), *([] if self.camera is None else [self.camera])]:
             try:
-                Camera.parse(camera.rpartition('=')[2])
+                Camera.parse(camera)
             except opencv_iib.error as e:
                 raise InvalidOption(str(e)) from None
         if self.pairs not in PAIRS and not os.path.isfile(self.pairs):
@@ -125,7 +125,7 @@ def describe_images(database: Database, folder: str, names: Sequence[str], optio
     :return: how many are broken; each is a line in `log`.
     """
     masks = Masks(options.features.mask)
-    stamps = {name: ' '.join(map(stamp, filter(None, (os.path.join(folder, name), masks.file(name))))) for name in names}
+    stamps = {name: masks.stamp(os.path.join(folder, name), name) for name in names}
     for name, known in database.stamps().items():
         if stamps.get(name) != known:
             database.forget(name)
@@ -297,6 +297,10 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
     if unlistable:
         raise ValueError(f'{unlistable[0]}: matches_importer reads no names with blanks or a leading #; rename it, or '
                          'verify by magsac (--verify)')
+    for text in options.camera_of:
+        below = text.rpartition('=')[0].strip('/') + '/'
+        if not any(name.startswith(below) for name in names):
+            raise InvalidOption(f'camera_of is {text}: no image is below {os.path.join(images, below)}')
     lists = [] if options.pairs in PAIRS else [options.pairs]
     check_outputs([database], [*lists, *(os.path.join(images, name) for name in names), *Masks(options.features.mask).check(names)])
     settings = {**dataclasses.asdict(options), 'verify': verify, 'images': os.path.abspath(images),
