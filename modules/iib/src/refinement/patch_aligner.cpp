@@ -22,7 +22,7 @@ const double LEAST_AT_A_LOOK = .3;  //!< similarity of few pixels: see mayAgree(
 const double LEAST_UNDERWAY = .5;   //!< similarity of a guided try after STEPS_OF_A_TRY
 const int STEPS_OF_A_TRY = 3;
 const double HALVED = 1 << (WEIGHT_BITS + 1);     //!< halved weights' unit over that of the sum of samples
-const double LIGHT = .05, SHARED_BY_NOISE = .25;  //!< of errors by other light: see covariance()
+const double LIGHT = .06, SHARED_BY_NOISE = .28;  //!< of errors by other light: see covariance()
 const double NOISE_BY_CHANCE = 1.15;              //!< over its mean, so that it is not taken for what is seen
 const double LEAST_SIGNAL = .1;                   //!< in what a patch seems to tell
 const double DAMPING_OF_PLACE = 1e-5, DAMPING_OF_MAP = 5e-3;

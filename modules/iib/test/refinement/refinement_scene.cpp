@@ -35,19 +35,22 @@ Mat noisy(const Mat& image, int seed)
 
 RefinementScene::RefinementScene(int seed)
 {
-    Mat fine, grain;
-    resize(scene(SIZE * 2, seed), fine, SIZE * FINE, 0, 0, INTER_CUBIC);
-    resize(texture(SIZE * 2, CV_8U, seed), grain, SIZE * FINE, 0, 0, INTER_CUBIC);
-    addWeighted(fine, .8, grain, .4, 0, fine, CV_32F);
+    Mat shapes, grain(SIZE * 2, CV_8U), fine;
+    RNG(seed).fill(grain, RNG::UNIFORM, 0, 256);
+    resize(scene(SIZE * 2, seed), shapes, SIZE * FINE, 0, 0, INTER_CUBIC);
+    resize(grain, grain, SIZE * FINE, 0, 0, INTER_CUBIC);
+    // Into a matrix of its own: in place, to another depth, addWeighted() would read what it writes.
+    addWeighted(shapes, .3, grain, .6, 0, fine, CV_32F);
     GaussianBlur(fine, fine, Size(), 2);
     images[0] = noisy(photographed(fine), 2 * seed + 1);
 
     Integers integers(seed);
     const auto upTo = [&](double limit) { return limit * integers.between(-1000, 1001) / 1000; };
     const double angle = upTo(5) * CV_PI / 180, c = std::cos(angle), s = std::sin(angle);
-    linear = Matx22d(c, -s, s, c) * Matx22d(1 + upTo(.1), upTo(.1), upTo(.1), 1 + upTo(.1));
+    // In braces, since the order in which a call's arguments are drawn is the compiler's.
+    linear = Matx22d(c, -s, s, c) * (Matx22d::eye() + Matx22d{upTo(.1), upTo(.1), upTo(.1), upTo(.1)});
     const Vec2d centre(SIZE.width / 2., SIZE.height / 2.);
-    shift = centre + Vec2d(upTo(3), upTo(3)) - linear * centre;
+    shift = centre + Vec2d{upTo(3), upTo(3)} - linear * centre;
     // the same between fine pixels, whose centres are at (x + .5) / FINE - .5
     const Vec2d half((FINE - 1) / 2., (FINE - 1) / 2.), fineShift = shift * FINE + half - linear * half;
     const Matx23d map(linear(0, 0), linear(0, 1), fineShift[0], linear(1, 0), linear(1, 1), fineShift[1]);
@@ -68,7 +71,7 @@ RefinementScene::RefinementScene(int seed)
             continue;
         matches.push_back(DMatch((int)matches.size(), (int)matches.size(), 0));
         keypoints[0].push_back(keypoint);
-        keypoint.pt = place + Point2f((float)upTo(.6), (float)upTo(.6));
+        keypoint.pt = place + Point2f(Point2d{upTo(.6), upTo(.6)});
         keypoints[1].push_back(keypoint);
     }
 }

@@ -38,7 +38,7 @@ remain and from how far these agree among neighbouring samples; never 0. Of refu
 the errors should lie inside the ellipses of one and two standard deviations. Of white noise of 1 to 20 grey levels it is
 34 to 52 and 76 to 91 % (four pictures), of JPEG's errors, qualities 30 to 90, 27 to 68 and 66 to 93 %. On a straight edge
 noise alone tells the place along it: that is told as a pixel and more. Another light leaves differences that neighbours
-share, and is told by a term of its own: by other lamps 53 and 77 % of matches that begin within 2 pixels of the truth
+share, and is told by a term of its own: by other lamps 54 and 77 % of matches that begin within 2 pixels of the truth
 (0.6 pixels off in the median, since shading moves; `photographs_by_other_lamps` of IIB_RefinementAccuracy, two objects).
 Under another exposure alone it is twice as large as need be (85 and 98 %). The documentation's page "How sure" counts
 more kinds of light, whatever ends within 3 pixels of the truth, wrong matches too, and so has lower shares. What all
