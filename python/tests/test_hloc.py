@@ -11,7 +11,7 @@ import numpy as np
 import opencv_iib
 from collection import Collection
 from opencv_iib.colmap import hloc
-from support import REPOSITORY, optional, run_command, texture
+from support import REPOSITORY, cv2, optional, run_command, texture
 
 h5py = optional('h5py')
 EXAMPLE = REPOSITORY / 'python/examples/hloc_iib.py'
@@ -105,3 +105,13 @@ class Export(Collection):
             self.assertEqual((nearest.dtype, nearest.shape), (np.int16, (rows,)))
             self.assertTrue((nearest[:] >= -1).all())
         self.assertEqual(len(self.hloc[2].read_text().splitlines()), 3)
+
+    def test_nothing_is_written_of_pairs_that_verification_refused(self):
+        for seed, name in enumerate(('a.png', 'b.png', 'more/c.png')):
+            cv2.imwrite(str(self.images / name), cv2.resize(texture(100, 75, seed=seed + 20), (400, 300), interpolation=cv2.INTER_CUBIC))
+        for verify, expected in (('none', 3), ('magsac', 0)):
+            self.build(force=True, verify=verify)
+            self.assertEqual(self.query('SELECT COUNT(*) FROM matches WHERE rows > 0'), [(3,)])
+            self.assertEqual(self.export(self.hloc, force=True), expected)
+        with h5py.File(self.hloc[1]) as matches:
+            self.assertEqual((list(matches), self.hloc[2].read_text()), ([], ''))

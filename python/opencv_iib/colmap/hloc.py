@@ -45,7 +45,7 @@ def _write_matches(connection: sqlite3.Connection, path: str, pairs: str, names:
                    ) -> int:
     """:return: number of pairs."""
     import h5py
-    verified = connection.execute('SELECT COUNT(*) FROM two_view_geometries WHERE rows > 0').fetchone()[0]
+    verified = connection.execute('SELECT COUNT(*) FROM two_view_geometries').fetchone()[0]  # of refused pairs too
     table = 'two_view_geometries' if verified else 'matches'
     total = 0
     with h5py.File(path, 'w') as file, open(pairs, 'w', encoding='utf-8') as listing:
@@ -65,7 +65,8 @@ def _write_matches(connection: sqlite3.Connection, path: str, pairs: str, names:
 def export(database: Path, features: Path, matches: Path, pairs: Path, force: bool = False) -> int:
     """Writes keypoints, matches and the list of pairs as hloc's reconstruction and localization read them.
 
-    :param database: what build_database wrote; its verified matches are taken if there are any, else all.
+    :param database: what build_database wrote; of verified pairs the matches that agree, none of a pair that was refused; all
+        where nothing was verified.
     :param features: HDF5 to write: for each image ``keypoints`` (N x 2; the centre of the first pixel is 0),
         ``scores`` (N, ones) and ``image_size`` (width, height).
     :param matches: HDF5 to write: for each pair ``matches0`` (N; index or -1; int16 up to 32767 keypoints in the
