@@ -160,26 +160,31 @@ TEST(Alignment, refuses_pictures_that_share_two_parts_alone)
     }
 }
 
-//! Squares of another depth, by a few pixels: the transform of one depth is as wrong of the other.
+/** Squares of another depth, by a few pixels: the transform of one depth is as wrong of the other. Above the working size as well, where
+matches of one depth alone are refined. */
 TEST(Alignment, tells_what_a_part_of_the_images_is_beside_by)
 {
-    const Mat reference = picture(16);
-    const double beside = 4;
-    Mat image = reference.clone(), transform, error;
-    for (int y = 0; y < reference.rows; y += 60)
-        for (int x = 0; x < reference.cols; x += 120)
-        {
-            const int column = x + (y / 60 % 2) * 60;
-            const Rect square(column, y, std::min(60, reference.cols - (int)beside - column), 60);
-            if (square.width <= 0)
-                continue;
-            reference(square + Point((int)beside, 0)).copyTo(image(square));
-        }
-    String reason;
-    ASSERT_TRUE(alignImages(reference, image, transform, ALIGN_HOMOGRAPHY, error, noArray(), &reason))
-            << reason;
-    for (int k = 0; k < 4; k++)
-        EXPECT_GT(error.at<double>(k), beside / 2);
+    for (int times : {1, 4})
+    {
+        Mat reference;
+        resize(picture(16), reference, Size(), times, times, INTER_CUBIC);
+        const int beside = std::max(4, 2 * times), side = 60 * times;
+        Mat image = reference.clone(), transform, error;
+        for (int y = 0; y < reference.rows; y += side)
+            for (int x = 0; x < reference.cols; x += 2 * side)
+            {
+                const int column = x + (y / side % 2) * side;
+                const Rect square(column, y, std::min(side, reference.cols - beside - column), side);
+                if (square.width <= 0)
+                    continue;
+                reference(square + Point(beside, 0)).copyTo(image(square));
+            }
+        String reason;
+        ASSERT_TRUE(alignImages(reference, image, transform, ALIGN_HOMOGRAPHY, error, noArray(), &reason))
+                << reason;
+        for (int k = 0; k < 4; k++)
+            EXPECT_GT(error.at<double>(k), beside / 2.) << times;
+    }
 }
 
 //! A part of the picture as large as a third of it is no logo.

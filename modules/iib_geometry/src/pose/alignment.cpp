@@ -254,6 +254,8 @@ public:
             AlignedPoints points = pair.match(attempt.rotated);
             Aligned aligned(points, model_);
             const Judgement now = judge(aligned, points, model_, pair.size());
+            const double beside =  // of all matches: only those that agree are refined
+                    error.needed() && now.against.empty() ? deviationBeside(aligned, points) : 0;
             if (now.against.empty() && pair.isReduced())
             {
                 const AlignedPoints fine =
@@ -279,9 +281,7 @@ public:
                 break;
             Mat(pair.inPixels(aligned.problem.inPixels(aligned.fit.model))).copyTo(transform);
             if (error.needed())
-                Mat(deviationsOf(aligned, points, pair.size(), deviationBeside(aligned, points)) *
-                        pair.inPixels(1))
-                        .copyTo(error);
+                Mat(deviationsOf(aligned, points, pair.size(), beside) * pair.inPixels(1)).copyTo(error);
             break;
         }
         if (matches.needed())
