@@ -21,7 +21,7 @@ done
 case $operands in
 0)
     pair="$root/tools/synthetic"
-    set -- "$pair/moved_noon.jpg" "$pair/moved_night.jpg" --fundamental="$pair/F_moved" "$@"
+    set -- "$pair/demo_noon.jpg" "$pair/demo_night.jpg" --homography="$pair/H_demo" --depth="$pair/demo_depth.png" "$@"
     ;;
 2) ;;
 *) fail "two images are needed, not $operands (--help)" ;;

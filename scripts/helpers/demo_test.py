@@ -10,19 +10,20 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAIR = ROOT / 'tools/synthetic'
 DAY, NIGHT = str(PAIR / 'day.png'), str(PAIR / 'night.png')
-MOVED = [str(PAIR / name) for name in ('moved_noon.jpg', 'moved_night.jpg')]
+MOVED = [str(PAIR / name) for name in ('demo_noon.jpg', 'demo_night.jpg')]
+TRUTH = ['--homography=' + str(PAIR / 'H_demo'), '--depth=' + str(PAIR / 'demo_depth.png')]
 FILES = {'text.png': 'not an image', 'flat.pgm': 'P2 64 64 1\n' + 64 * 64 * '0 ', 'singular.txt': '1 0 0 0 1 0 0 0 0',
          'noise.pgm': 'P2 160 120 255\n' + ' '.join(str(i * i * 7919 % 9973 % 256) for i in range(160 * 120)) + '\n',
          'short.txt': '1 0 0 0', 'true.txt': (PAIR / 'H_day_night').read_text()}
 MISTAKES = [[], [DAY], ['missing.png', NIGHT], ['text.png', NIGHT], ['flat.pgm', 'flat.pgm']] + [
     [DAY, NIGHT, option] for option in (
-        '--homography=missing.txt', '--homography=short.txt', '--homography=singular.txt', '--fundamental=short.txt', '--out=no-such-folder/picture.png',
+        '--homography=missing.txt', '--homography=short.txt', '--homography=singular.txt', '--depth=' + DAY, '--out=no-such-folder/picture.png',
         '--out=picture.unknown')]
 # Judged by the truth, matches are correct; by an estimated homography, consistent. The chain wins in each.
 LINE = r'\nIIB ([1-9]\d+) of \d+ {0}, SIFT (\d+) of \d+ {0}, ORB (\d+) of \d+ {0}\n'
 EXPECTED = [([DAY, NIGHT], r'consistent: within 3 pixels of a MAGSAC homography' + LINE.format('consistent')),
             ([DAY, NIGHT, '--homography=true.txt'], r'correct: within 3 pixels of the truth' + LINE.format('correct')),
-            ([*MOVED, '--fundamental=' + str(PAIR / 'F_moved')], r'correct: within 3 pixels of the truth' + LINE.format('correct'))]
+            ([*MOVED, *TRUTH], r'correct: within 3 pixels of the truth' + LINE.format('correct'))]
 
 
 
@@ -49,7 +50,7 @@ with tempfile.TemporaryDirectory() as name:
         done = run(*mistake)
         if done.returncode != 2 or done.stdout or not re.fullmatch('iib_demo: [^\n]+\n', done.stderr):
             wrong.append(f'a mistake: {done}')
-    if not re.search('--fundamental.*--homography.*--out', run('--help').stdout, re.DOTALL):
+    if not re.search('--depth.*--homography.*--out', run('--help').stdout, re.DOTALL):
         wrong.append('--help does not list the options')
     for arguments, pattern in EXPECTED:
         found = re.search(pattern, shown(arguments))

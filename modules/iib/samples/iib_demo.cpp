@@ -19,9 +19,9 @@ using namespace cv;
 // One line an option, since scripts/demo.sh reads them too.
 static const char* const KEYS =
         "{help h | | print this}{@imageA | | }{@imageB | | the other image of the place}"
-        "{homography  | <none>       | file of 3x3 numbers from A to B; else MAGSAC estimates one}"
-        "{fundamental | <none>       | file of 3x3 numbers if the camera moved: b' F a = 0}"
-        "{out         | iib_demo.png | the picture}";
+        "{homography | <none>       | file of 3x3 numbers from A to B; else MAGSAC estimates one}"
+        "{depth      | <none>       | A's depth d, 16 bits, if the camera moved: b = H (a, 1 / d), H 3x4}"
+        "{out        | iib_demo.png | the picture}";
 static const int MAX_KEYPOINTS = 1000, MAX_ERROR = 3, MIN_CONSISTENT = 10;  // fewer agree by chance
 
 //! Mutual nearest neighbours under a ratio: the recommended .9 for bits, Lowe's .8 for SIFT's numbers.
@@ -41,8 +41,9 @@ static std::vector<DMatch> match(const Mat& a, const Mat& b)
     return matches;
 }
 
-//! 1 for each pair that agrees with the truth, a fundamental matrix if the camera moved; else with MAGSAC's homography.
-static std::vector<char> judge(const Mat_<Point2f>& a, const Mat_<Point2f>& b, Mat truth, bool moved)
+//! 1 for each pair that agrees with the truth, by A's depth if the camera moved; else with MAGSAC's homography.
+static std::vector<char> judge(
+        const Mat_<Point2f>& a, const Mat_<Point2f>& b, Mat truth, const Mat_<ushort>& depth)
 {
     const bool estimated = truth.empty();
     if (estimated && a.rows >= 4)
@@ -50,9 +51,12 @@ static std::vector<char> judge(const Mat_<Point2f>& a, const Mat_<Point2f>& b, M
     std::vector<char> good(a.rows, 0);
     for (int i = 0; i < a.rows && !truth.empty(); i++)
     {
-        const Vec3d point(b(i).x, b(i).y, 1), there = Matx33d(truth) * Vec3d(a(i).x, a(i).y, 1);
-        good[i] = (moved ? std::abs(there.dot(point)) / std::hypot(there[0], there[1])
-                         : norm(there / there[2] - point)) <= MAX_ERROR;
+        Vec3d there = Matx33d(truth.colRange(0, 3)) * Vec3d(a(i).x, a(i).y, 1);
+        const Point pixel(
+                std::min(cvRound(a(i).x), depth.cols - 1), std::min(cvRound(a(i).y), depth.rows - 1));
+        if (!depth.empty() && depth(pixel))  // the sky has none: only the camera's turn moves it
+            there += Vec3d(truth.col(3)) / double(depth(pixel));
+        good[i] = norm(there / there[2] - Vec3d(b(i).x, b(i).y, 1)) <= MAX_ERROR;
     }
     return estimated && countNonZero(good) < MIN_CONSISTENT ? std::vector<char>(a.rows, 0) : good;
 }
@@ -68,18 +72,21 @@ try
     for (int i = 0; i < 2; i++)
         if ((images[i] = imread(parser.get<String>(i), IMREAD_COLOR | IMREAD_IGNORE_ORIENTATION)).empty())
             CV_Error(Error::StsBadArg, "two images are needed; cannot read '" + parser.get<String>(i) + "'");
-    const bool moved = parser.has("fundamental");
-    const String known = parser.get<String>(moved ? "fundamental" : "homography");  // the truth, to judge by
+    const String known = parser.get<String>("homography"), depths = parser.get<String>("depth");  // the truth
+    const Mat depth = depths.empty() ? Mat() : imread(depths, IMREAD_UNCHANGED);
+    if (!depths.empty() && (depth.type() != CV_16U || depth.size() != images[0].size() || known.empty()))
+        CV_Error(
+                Error::StsBadArg, depths + " is no depth of A in 16 bits, or there is no homography with it");
     std::ifstream file(known.c_str());
-    Mat_<double> truth(known.empty() ? 0 : 3, 3);
+    Mat_<double> truth(known.empty() ? 0 : 3, depth.empty() ? 3 : 4);
     for (double& value : truth)
         file >> value;
-    if (!known.empty() && (!file || (!moved && determinant(truth) == 0)))
-        CV_Error(Error::StsBadArg, "the file " + known + " has no 3x3 numbers, or no homography");
+    if (!known.empty() && (!file || determinant(truth.colRange(0, 3)) == 0))
+        CV_Error(Error::StsBadArg, "the file " + known + " has not all numbers of a homography");
     const String out = parser.get<String>("out"), word = truth.empty() ? "consistent" : "correct";
-    const String names[] = {"ORB", "SIFT", "IIB"};
-    const Ptr<Feature2D> features[] = {ORB::create(MAX_KEYPOINTS), SIFT::create(MAX_KEYPOINTS),
-            iib::IIBDescriptorExtractor::createRecommended(MAX_KEYPOINTS)};
+    const String names[] = {"IIB", "SIFT", "ORB"};
+    const Ptr<Feature2D> features[] = {iib::IIBDescriptorExtractor::createRecommended(MAX_KEYPOINTS),
+            SIFT::create(MAX_KEYPOINTS), ORB::create(MAX_KEYPOINTS)};
     String summary;
     int found = 0;
     for (int k = 0; k < 3; k++)
@@ -92,10 +99,11 @@ try
             CV_Error(Error::StsBadArg, "there is no keypoint of " + names[k] + " in one of the images");
         const std::vector<DMatch> matches = match(codes[0], codes[1]);
         iib::refineMatches(images[0], keypoints[0], images[1], keypoints[1], matches, a, b);
-        const std::vector<char> good = judge(a.reshape(2), b.reshape(2), truth, moved);
-        found = countNonZero(good);
-        const String score = names[k] + format(" %d of %d ", found, (int)matches.size()) + word;
-        summary = score + (k ? ", " : "") + summary;
+        const std::vector<char> good = judge(a.reshape(2), b.reshape(2), truth, depth);
+        const int right = countNonZero(good);
+        found = k ? found : right;
+        const String score = names[k] + format(" %d of %d ", right, (int)matches.size()) + word;
+        summary += (k ? ", " : "") + score;
         // Orange and green, which colour-blind eyes tell apart; what is right lies above the rest.
         const DrawMatchesFlags lines = DrawMatchesFlags::NOT_DRAW_SINGLE_POINTS;
         drawMatches(images[0], keypoints[0], images[1], keypoints[1], matches, rows[k], Scalar(40, 90, 255),
