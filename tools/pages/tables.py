@@ -88,16 +88,17 @@ SETUPS = {'': 'recommended chain', '--lines': 'recommended chain, lines', '--orb
 
 
 def setups(key, file=ROOT / 'doc/localization/localization_setups.csv'):
-    """Rows of setups.py's file by `key`: images within 5 cm and 0.5 degrees, and means of the errors of those found."""
+    """Rows of setups.py's file by `key`: images, those found and those within 5 cm and 0.5 degrees, and means of the errors of those found."""
     for names, found in summaries.group(summaries.read(file), *key).items():
         images, located, near = (sum(int(row[column]) for row in found) for column in ('images', 'found', 'within_5'))
-        means = (sum(float(row[column]) * int(row['found']) for row in found if int(row['found'])) / max(located, 1)
+        means = (sum(float(row[column]) * int(row['found']) for row in found) / located if located else None
                  for column in ('lateral', 'longitudinal', 'altitude', 'orientation'))
-        yield [SETUPS.get(name, name) for name in names] + [str(images), '%.0f %%' % (100 * near / images),
-               *(form % mean for form, mean in zip(('%.1f cm', '%.1f cm', '%.1f cm', '%.2f°'), means))]
+        yield [SETUPS.get(name, name) for name in names] + [
+            str(images), str(located), '%.0f %%' % (100 * near / images),
+            *('–' if mean is None else form % mean for form, mean in zip(('%.1f cm', '%.1f cm', '%.1f cm', '%.2f°'), means))]
 
 
-SETUP_HEAD = ['images', 'within 5 cm, 0.5°', 'lateral', 'longitudinal', 'altitude', 'orientation']
+SETUP_HEAD = ['images', 'with a pose', 'within 5 cm, 0.5°', 'lateral', 'longitudinal', 'altitude', 'orientation']
 
 
 def localization_setups():
@@ -105,10 +106,20 @@ def localization_setups():
     return table(['map', 'set-up'] + SETUP_HEAD, setups(('map', 'setup')))
 
 
+def localization_photographs():
+    """How many images of Strecha's scenes are near their places, by method."""
+    found, lines = [row for row in json.loads((ROOT / 'doc/localization/results.json').read_text())['rows'] if row['light'] in ('as they are', 'relit')], []
+    for method in dict.fromkeys(row['method'] for row in found):
+        of = [row for row in found if row['method'] == method]
+        both = [[sum(row[column] for row in of if row['light'] == light) for column in ('within_5', 'images')] for light in ('as they are', 'relit')]
+        lines.append([method, *('%d of %d' % tuple(one) for one in both), '%d of %d' % tuple(map(sum, zip(*both)))])
+    return table(['within 5 cm and 0.5°', 'as they are', 'relit by computation', 'both'], lines)
+
+
 def localization_lights(file):
     """The same by light, for the page of localization, above the paper's table: the head and the lines."""
     return [['map', 'set-up', 'light'] + SETUP_HEAD, *setups(('map', 'setup', 'light'), file), *(
-        ['as the paper quotes it', row['system'], row['inputs'], '', '', row['lateral'], row['longitudinal'], row['altitude'], ''] for row in LOCALIZATION)]
+        ['as the paper quotes it', row['system'], row['inputs'], '', '', '', row['lateral'], row['longitudinal'], row['altitude'], ''] for row in LOCALIZATION)]
 
 
 ONE, TWO, THREE = ('IIB x', 'IIB y', 'IIB i', 'IIB o'), ('IIB x+y', 'IIB o+i'), ('IIB x+y+i', 'IIB x+y+o')
@@ -421,7 +432,7 @@ def photographs_of_many():
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
     match_claim, pose_claim, speed_claim, poses, presets, propagation, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
-    step_by_step, mapped_index, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, pose_methods,
+    step_by_step, mapped_index, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods,
     detected_points, uncertainty)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})

@@ -11,6 +11,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import localization  # noqa: E402
 import speed  # noqa: E402
 import summaries  # noqa: E402
+import tables  # noqa: E402
 
 
 class Figures(unittest.TestCase):
@@ -103,6 +104,14 @@ class Figures(unittest.TestCase):
         self.assertEqual([found for _, found in localization.worst({'rows': rows, 'unknown': (3, 200)})],
                          ['100 %', '100 %', '85 %', '100 %', localization.share(3, 200)])
         self.assertEqual([localization.share(20, 20), localization.share(0, 10)], ['100 % (84 to 100)', '0 % (0 to 28)'])
+
+    def test_no_error_is_told_where_nothing_was_found(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, 'setups.csv')
+            file.write_text('map,setup,light,images,found,within_5,lateral,longitudinal,altitude,orientation\n'
+                            'near,,fog,30,0,0,0,0,0,0\nnear,,dusk,30,10,5,1,2,3,.5\nfar,,fog,30,0,0,0,0,0,0\n')
+            self.assertEqual(list(tables.setups(('map',), file)), [['near', '60', '10', '8 %', '1.0 cm', '2.0 cm', '3.0 cm', '0.50°'],
+                                                                   ['far', '30', '0', '0 %', '–', '–', '–', '–']])
 
 
 if __name__ == '__main__':
