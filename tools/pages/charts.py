@@ -9,13 +9,16 @@ import pandas as pd
 import tables
 
 matplotlib.use('svg')
-matplotlib.rcParams.update({'svg.hashsalt': 'iib', 'svg.fonttype': 'none', 'axes.grid': True, 'grid.linewidth': .4,
+matplotlib.rcParams.update({'svg.hashsalt': 'iib', 'axes.grid': True, 'grid.linewidth': .4,
                             'figure.constrained_layout.h_pad': .1})
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib import ft2font, ticker  # noqa: E402
 
 GREY, RED, BLUE = '#64748b', '#b91c1c', '#1d4ed8'
 FAR = 1000  # centimetres
+WIDTH = 9  # inches, of every chart
+SCORE = 'score of poses in other light: mean share of pairs within a limit, over limits up to 5 degrees'
+ENDS = {'elinewidth': .8}  # of confidence intervals
 MAKER = 'Matplotlib %s, FreeType %s' % (matplotlib.__version__, ft2font.__freetype_version__)  # on which places of texts depend
 
 
@@ -29,7 +32,7 @@ def svg(figure):
 
 def speed():
     """Time over pixels, keypoints and codes."""
-    figure, axes = plt.subplots(1, 3, figsize=(12, 3.4), layout='constrained')
+    figure, axes = plt.subplots(1, 3, figsize=(WIDTH, 3.2), layout='constrained')
 
     def draw(axis, test, form, sizes, labels):
         for name, label in labels.items():
@@ -54,27 +57,68 @@ def speed():
 def poses():
     """What others do for poses beside what this project does, in other light."""
     found, names = tables.estimates(), list(tables.METHODS.values())
-    figure, axis = plt.subplots(figsize=(8, 2.8), layout='constrained')
-    for k, (way, label, colour) in enumerate(zip(tables.WAYS, ("matches as they are, OpenCV's MAGSAC", 'propagateMatches and findRelativePose'), ('#9aa5b1', '#1f6fb2'))):
-        scores = [float(found[(method, 'other light') + way]['at_10']) for method in tables.METHODS]
-        axis.bar_label(axis.barh(np.arange(len(names)) + .4 * k, scores, .38, label=label, color=colour), fmt='%.2f', padding=3)
-    axis.set(xlim=(0, 1), yticks=np.arange(len(names)) + .2, yticklabels=names, xlabel='score of the pose in other light')
+    figure, axis = plt.subplots(figsize=(WIDTH, 3.2), layout='constrained')
+    for k, (way, label, colour) in enumerate(zip(tables.WAYS, ("matches as they are, OpenCV's MAGSAC", 'matches as they are, PoseLib', 'propagateMatches, findRelativePose'),
+                                                 ('#cbd5e1', GREY, RED))):
+        rows = [found[(method, 'other light') + way] for method in tables.METHODS]
+        values, ends = spread(rows)
+        axis.barh(np.arange(len(names)) + .28 * k, values, .26, xerr=ends, label=label, color=colour, error_kw=ENDS)
+    axis.set(xlim=(0, 1), yticks=np.arange(len(names)) + .28, yticklabels=names, xlabel=SCORE)
     axis.grid(False)
     axis.invert_yaxis()
     axis.legend(loc='upper right', frameon=False, fontsize='small')
     return svg(figure)
 
 
+def spread(rows, value='at_5'):
+    """Values of rows, and how far the ends of their confidence intervals are."""
+    values = np.array([[float(row[name]) for name in (value, 'low', 'high')] for row in rows]).T
+    return values[0], [values[0] - values[1], values[2] - values[0]]
+
+
 def scores(bars):
     """Scores from 0 to 1 of methods, with their confidence intervals."""
     names, rows = zip(*bars)
-    values = np.array([[float(row[name]) for name in ('at_5', 'low', 'high')] for row in rows]).T
-    figure, axis = plt.subplots(figsize=(9, .4 * len(names) + .6), layout='constrained')
-    axis.barh(names, values[0], xerr=[values[0] - values[1], values[2] - values[0]], color=[RED if name == 'recommended chain' else GREY for name in names])
-    axis.set(xlim=(0, 1), xlabel='score of poses')
-    axis.xaxis.set_major_formatter(ticker.PercentFormatter(1))
+    values, ends = spread(rows)
+    figure, axis = plt.subplots(figsize=(WIDTH, .4 * len(names) + .6), layout='constrained')
+    axis.barh(names, values, xerr=ends, error_kw=ENDS, color=[RED if name == 'recommended chain' else GREY for name in names])
+    axis.set(xlim=(0, 1), xlabel=SCORE)
     axis.grid(False)
     axis.invert_yaxis()
+    return svg(figure)
+
+
+def cost():
+    """Poses in other light over processor time: of what was measured here, and of learned features on pairs of their own."""
+    figure, (axis, other) = plt.subplots(1, 2, figsize=(WIDTH, 4), layout='constrained', sharey=True)
+    found, kinds = tables.estimates(), {'none': 'matches as they are', 'full': 'refined by this project'}
+
+    def point(where, time, fill, name, score, ends=None):
+        colour = RED if name.startswith('recommended chain') else GREY
+        where.errorbar([time], [score], ends, marker='o', fillstyle=fill, color=colour, linewidth=0, **ENDS)
+        if fill == 'full':
+            left, above = time > 300, name.endswith('2000') - name.endswith('1000') * (2.6 if time < 20 else 1.7 if time > 1000 else 1)
+            where.annotate(name, (time, score), (-7 if left else 7, 9 * above), textcoords='offset points', ha='right' if left else 'left', va='center',
+                           fontsize='small')
+
+    for method, name in tables.METHODS.items():
+        times = [time for test, which in (('IIB_Chain_vga', name), ('IIB_Chain_others', name)) for time in tables.ms(test, 'street_noon', which, 1000).dropna()]
+        for fill, way in zip(kinds, tables.WAYS[1:]) if times else ():
+            score, ends = spread([found[(method, 'other light') + way]])
+            point(axis, times[0], fill, name, score[0], ends)
+    for row in tables.rows('learned_poses.csv'):
+        name = '%s%s, %s' % (row['detector'].replace('-n16', ''), ' + ' + row['matches'] if row['matches'].endswith('Glue') else '', row['points'])
+        for fill, kind in zip(kinds, ('plain_5', 'refined_5')):
+            if row[kind] and row['milliseconds']:
+                point(other, float(row['milliseconds']), fill, name, float(row[kind]))
+    axis.set(xscale='log', ylim=(0, 1), xlim=(1, 1000), title='96 pairs, measured here', xlabel='ms to find and describe 1000 points of an image',
+             ylabel='score of poses')
+    other.set(xscale='log', xlim=(5, 10000), title='158 other pairs, with the networks', xlabel='ms to find, describe and match a pair')
+    for one in (axis, other):
+        one.xaxis.set_major_formatter('{x:g}')
+        one.minorticks_off()
+    other.legend(handles=[plt.Line2D([], [], marker='o', fillstyle=fill, color=GREY, linewidth=0, label=label) for fill, label in kinds.items()],
+                 loc='lower right', frameon=False, fontsize='small')
     return svg(figure)
 
 
@@ -82,7 +126,7 @@ def uncertainty():
     """A curve a quantity over all its data: told chance, and share of the errors that are inside."""
     rows = pd.read_csv(tables.RESULTS / 'uncertainty.csv')
     levels = list(rows.columns[3:])
-    figure, axis = plt.subplots(figsize=(7, 5), layout='constrained')
+    figure, axis = plt.subplots(figsize=(WIDTH, 5), layout='constrained')
     for quantity, each in rows.groupby('quantity'):
         shares = each[levels].mul(each['errors'], axis=0).sum() / each['errors'].sum()
         axis.plot([float(level) for level in levels], shares, marker='o', label=quantity)
@@ -97,7 +141,7 @@ def localization(results):
     colours = {'recommended chain': RED, 'SIFT, normalized image': BLUE, 'SIFT, plain image': GREY}
     rows = [row for row in results['rows'] if row['place'] == 'street' and row['method'] in colours]
     lights = [light for light in results['lights'] if any(row['errors'] for row in rows if row['light'] == light)]
-    figure, axes = plt.subplots(-(-len(lights) // 3) or 1, 3, figsize=(11, 2.4 * (-(-len(lights) // 3) or 1)), layout='constrained', sharex=True, sharey=True,
+    figure, axes = plt.subplots(-(-len(lights) // 3) or 1, 3, figsize=(WIDTH, 2.2 * (-(-len(lights) // 3) or 1)), layout='constrained', sharex=True, sharey=True,
                                 squeeze=False)
     for axis, light in zip(axes.flat, lights):
         for row in (row for row in rows if row['light'] == light and row['errors']):

@@ -34,7 +34,10 @@ def results_page(folder):
     context = results.context(folder)
     if not context:
         sys.exit('%s: no results of iib_evaluation' % folder)
-    page = {folder / 'index.html': rendered('results.html.j2', context)}
+    ours = folder == tables.RESULTS
+    page = {folder / 'index.html': rendered('results.html.j2', {**context, 'cost': ours})}
+    if ours:
+        page[folder / 'cost.svg'] = charts.cost()
     return {**page, folder / 'poses.svg': charts.scores(context['estimates']['bars'])} if context['estimates']['bars'] else page
 
 

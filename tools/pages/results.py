@@ -63,13 +63,15 @@ def warps(tables):
 def estimates(tables):
     """Areas under the curve of the error of poses up to 5 degrees by place: a line for plain, refined and propagated matches of
     each method, with a column for each estimator."""
-    names = sorted({row["estimator"] for row in tables["estimators"]})
-    found = {}
+    names = sorted({row["estimator"] for row in tables["estimators"]}, key=lambda name: (name != "findRelativePose", name))  # ours first
+    found = {place: [] for place in ("other light", "same light", "chosen on")}
     for (place, detector, descriptor, points), rows in group(tables["estimators"], "place", "detector", "descriptor", "points").items():
         method = descriptors.POSES.get((detector, descriptor), "%s, %s" % (detector, descriptor))
-        found.setdefault(place, []).append((method, points, by(rows, "estimator")))
-    bars = [(method, line["findRelativePose"]) for method, points, line in found.get("other light", ()) if points == "propagated"]
-    return {"names": names, "places": found, "bars": sorted(bars, key=lambda bar: -number(bar[1], "at_5"))}
+        found[place].append((method, points, by(rows, "estimator")))
+    for lines in found.values():
+        lines.sort(key=lambda line: line[0] != "recommended chain")
+    bars = [(method, line["findRelativePose"]) for method, points, line in found["other light"] if points == "propagated"]
+    return {"names": names, "places": {place: lines for place, lines in found.items() if lines}, "bars": sorted(bars, key=lambda bar: -number(bar[1], "at_5"))}
 
 
 def slider(tables):
