@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The picture of includes of modules: includes_test.py FOLDER...
+"""The picture of includes of modules, which CONTRIBUTING.md has: includes_test.py [--draw] FOLDER...; with --draw it is written anew.
 
 It reads the sources, since it is about them. Arrows between folders point downwards only, no file includes itself by way of
 others, where a header and the source of the same name count as one, nothing leaves the module but for what tests share (what modules share is in opencv2/iib/detail), and raw
@@ -68,5 +68,33 @@ def mistakes(module):
         yield 'these files include each other in a circle, or include some that do: ' + ', '.join(map(str, sorted(units)))
 
 
+def picture(modules):
+    """A line for each folder below src, with the folders that its files include."""
+    for module in modules:
+        included = {}
+        for file in sorted((module / 'src').rglob('*.[ch]pp')):
+            layer = folder(file.relative_to(module))
+            for path in re.findall(r'^#include "([^"]*)"', file.read_text(), re.MULTILINE):
+                target = (file.parent / path).resolve()
+                inside = folder(target.relative_to(module)) if module in target.parents and target.exists() else ''
+                detail = re.match('opencv2/iib/detail', path) and module.name != 'iib' and 'iib/detail'
+                included.setdefault(layer, set()).update({inside or detail or layer} - {layer})
+        yield '%s/src' % module.name
+        for layer in sorted(included, key=lambda layer: (-len(included[layer]), layer)):
+            yield ('  %-24s%s' % (layer or '.', '  '.join(sorted(included[layer])))).rstrip()
+
+
+def draw(modules, write):
+    """Compares the picture in CONTRIBUTING.md with the sources, or writes it."""
+    page = pathlib.Path(__file__).resolve().parents[2] / 'CONTRIBUTING.md'
+    before = page.read_text()
+    after = re.sub('(<!-- includes -->\n```\n)[^`]*', lambda head: head[1] + '\n'.join(picture(modules)) + '\n', before)
+    if write:
+        page.write_text(after)
+    elif before != after:
+        yield 'CONTRIBUTING.md shows other includes than these: scripts/helpers/includes_test.py --draw modules/*'
+
+
 if __name__ == '__main__':
-    sys.exit('\n'.join(mistake for folder in sys.argv[1:] for mistake in mistakes(pathlib.Path(folder).resolve())) or 0)
+    given = [pathlib.Path(folder).resolve() for folder in sys.argv[1:] if folder != '--draw']
+    sys.exit('\n'.join([*(mistake for module in given for mistake in mistakes(module)), *draw(given, '--draw' in sys.argv)]) or 0)
