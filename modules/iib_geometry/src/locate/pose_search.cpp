@@ -3,6 +3,7 @@
 #include "pose_search.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 #include "guided_matches.hpp"
@@ -41,6 +42,36 @@ int keypointsOf(const std::vector<Match>& matches)
     return int(keypoints.size());
 }
 
+//! Matches under a pose, as errorsOfWrongMatches() has them.
+class PlacedMatches
+{
+public:
+    typedef Affine3d Model;
+
+    PlacedMatches(const std::vector<Match>& matches, const Lens& lens) : matches_(matches), lens_(lens) {}
+
+    int size() const { return int(matches_.size()); }
+
+    PlacedMatches mixed(const std::vector<int>& order) const
+    {
+        PlacedMatches other = *this;
+        for (size_t i = 0; i < order.size(); i++)
+            other.matches_[i].point = matches_[size_t(order[i])].point;
+        return other;
+    }
+
+    void squaredErrors(const Affine3d& pose, std::vector<double>& errors) const
+    {
+        errors = errorsOf(matches_, lens_, pose);
+        for (double& error : errors)
+            error = std::isnan(error) ? std::numeric_limits<double>::infinity() : error * error;
+    }
+
+private:
+    std::vector<Match> matches_;
+    const Lens& lens_;
+};
+
 //! A pose in the making, in its Frame's axes. Each step says whether there still is one; if not, found.reason says why.
 class PoseSearch
 {
@@ -75,7 +106,10 @@ public:
             if (found_.inliers < LEAST_INLIERS + LEAST_SHARE * double(found_.matches))
                 return false;
             if (round == 0 && !isMoreThanChance())
+            {
+                found_.reason = "the matches that agree are no more than chance may give";
                 return false;
+            }
             if (round == 1)
             {
                 views_.own = PreparedPicture(found_.features.picture);
@@ -154,26 +188,16 @@ private:
     //! Whether the matches that agree are not what points of different matches might give, or are in a few places alone.
     bool isMoreThanChance() const
     {
-        const int count = int(matches_.size()), sampleSize = 4;
-        Mat pixels(count, 2, CV_64F);
-        std::vector<Match> mixed = matches_;
-        std::set<std::pair<int, int>> agreeing;
-        for (const Match& m : inliers_)
-            agreeing.insert({m.keypoint, m.number});
-        Verdict::Marks agree(matches_.size());
-        RNG random(0x5eed);
-        for (int i = 0; i < count; i++)
-        {
-            const Match& m = matches_[size_t(i)];
-            pixels.at<Point2d>(i) = m.pixel;
-            agree[size_t(i)] = agreeing.count({m.keypoint, m.number}) > 0;
-            mixed[size_t(i)].point = matches_[size_t(random.uniform(0, count))].point;
-        }
-        const Verdict verdict(pixels, pixels);
-        const double chance =
-                std::max(verdict.chance(Verdict::FROM_POINT, limit_, {}), double(near(mixed).size()) / count);
-        return verdict.logFalseAlarms(Verdict::Marks(matches_.size(), true), agree, sampleSize, chance) <
-               Verdict::CERTAIN;
+        const PlacedMatches matches(matches_, lens_);
+        const int sampleSize = 4;
+        Mat pixels(matches.size(), 2, CV_64F);
+        for (int i = 0; i < matches.size(); i++)
+            pixels.at<Point2d>(i) = matches_[size_t(i)].pixel;
+        std::vector<double> squared;
+        matches.squaredErrors(pose_, squared);
+        return Verdict(pixels, pixels)
+                       .logFalseAlarms(squared, errorsOfWrongMatches(matches, pose_), Verdict::FROM_POINT,
+                               sampleSize, {limit_}) < Verdict::CERTAIN;
     }
 
     double depth() const { return medianDistance(inCamera(pointsOf(inliers_), pose_)); }

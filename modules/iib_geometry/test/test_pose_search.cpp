@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "locate/pose_search.hpp"
+#include "map/camera_pose.hpp"
+#include "test_precomp.hpp"
+
+namespace opencv_test {
+namespace {
+using namespace cv::iib;
+
+const Camera VGA = {"PINHOLE", {640, 480}, {500, 500, 320, 240}};
+const Affine3d HERE(Vec3d(.1, -.2, .05), Vec3d(.3, -.1, .2));
+
+//! A map of points without pictures, and matches of an image with it.
+struct Sought
+{
+    Map map;
+    std::vector<Match> matches;
+
+    //! A match that is off by as much.
+    void add(const Point2d& pixel, double depth, const Point2d& off = Point2d())
+    {
+        const Matx33d matrix = VGA.matrix();
+        const Vec3d ray(
+                (pixel.x - matrix(0, 2)) / matrix(0, 0), (pixel.y - matrix(1, 2)) / matrix(1, 1), 1);
+        const int number = int(matches.size()), views = 4;  // of too few matches to refine
+        map.images.resize(views);
+        map.points.push_back(inverse(HERE) * Point3d(ray * depth));
+        matches.push_back({pixel + off, map.points.back(), number, number, 0, number % views, 0});
+    }
+
+    LocatedImage located() const
+    {
+        LocatedImage found;
+        found.features.picture = pictureOf(Mat(VGA.size, CV_8U, Scalar(128)));
+        PreparedPictures pictures(map.images.size());
+        findPose(matches, map, pictures, VGA, found);
+        return found;
+    }
+};
+
+Point2d anyPixel(RNG& random) { return {random.uniform(0., 640.), random.uniform(0., 480.)}; }
+
+Point2d anyError(RNG& random, double pixels) { return {random.gaussian(pixels), random.gaussian(pixels)}; }
+
+// One draw of wrong matches, which may be right ones by chance, took 17 of these 60 for chance themselves.
+TEST(PoseSearch, few_matches_that_all_agree_are_a_pose)
+{
+    RNG random(5);
+    for (int trial = 0; trial < 60; trial++)
+    {
+        Sought sought;
+        for (const Point2d& corner : {Point2d(60, 50), {560, 70}, {90, 400}, {540, 420}, {300, 220}})
+        {
+            const Point2d place = corner + anyError(random, 20);
+            for (const Point2d& beside : {Point2d(-6, -6), {6, -6}, {-6, 6}, {6, 6}})
+                sought.add(place + beside, random.uniform(3., 6.), anyError(random, .5));
+        }
+        const LocatedImage found = sought.located();
+        EXPECT_TRUE(found.found) << trial << ": " << found.reason;
+    }
+}
+
+TEST(PoseSearch, matches_in_one_window_are_no_pose)
+{
+    RNG random(6);
+    for (int trial = 0; trial < 10; trial++)
+    {
+        Sought sought;
+        for (int i = 0; i < 60; i++)
+        {
+            const bool right = i < 20;
+            const Point2d pixel =
+                    right ? Point2d(300, 200) + 4 * Point2d(i % 5, i / 5) : anyPixel(random);
+            sought.add(pixel, random.uniform(3., 6.), right ? Point2d() : anyPixel(random) - pixel);
+        }
+        const LocatedImage found = sought.located();
+        EXPECT_FALSE(found.found);
+        EXPECT_EQ("the matches that agree are no more than chance may give", found.reason);
+        EXPECT_GE(found.inliers, 16) << "which is enough";
+    }
+}
+
+}  // namespace
+}  // namespace opencv_test
