@@ -1,7 +1,7 @@
 #!/bin/sh
 # Runs every command of README.md, in its order, on a bare Debian made by debootstrap, as someone would who has just
 # cloned the repository: what is in the `sh` blocks, with the files of the `cmake`, `cpp` and `python` blocks beside it.
-# Blocks with a <placeholder> are left out. What README says of the packages of its first command must be within 5 % of
+# Blocks of pip, which Debian's Python refuses outside of an environment, are left out. What README says of the packages of its first command must be within 5 % of
 # what apt prints of them. The paths hold spaces. Needs root; the bare system stays in the cache.
 #   scripts/helpers/newcomer.sh [SUITE]    by default bookworm
 . "$(dirname "$0")/lib.sh"
@@ -46,9 +46,9 @@ names = {'cmake': 'CMakeLists.txt', 'cpp': 'match_pair.cpp', 'python': 'match_pa
 script = ['set -ex']
 for language, text in re.findall(r'^```(sh|cmake|cpp|python)\n(.*?)^```$', readme, re.MULTILINE | re.DOTALL):
     if language == 'sh':
-        if '<' not in text:
+        if not text.startswith('pip '):
             script += ['cd "$HOME/%s"' % ('my project' if 'match_pair' in text else 'the repository'), text]
-    elif not (home / 'my project' / names[language]).exists():
+    elif not (home / 'my project' / names[language]).exists() and (language != 'cpp' or 'int main' in text):
         (home / 'my project' / names[language]).write_text(text)
 (home / 'commands.sh').write_text('\n'.join(script))
 PYTHON

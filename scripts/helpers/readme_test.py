@@ -96,8 +96,9 @@ target_link_libraries(index opencv_iib_index)
     match(work / 'match_pair')
     compile_('index.cpp', INDEX)
     run(work / 'index', 'codes by pkg-config')
-    fragment = block('doc/guide.md', 'cpp', 'BFMatcher::create')
-    compile_('fragment.cpp', '#include <opencv2/iib.hpp>\nvoid fragment();\nvoid fragment()\n{\n%s}\n' % fragment, '-fsyntax-only')
+    for page in ('doc/guide.md', 'README.md'):
+        fragment = block(page, 'cpp', 'BFMatcher::create')
+        compile_('fragment.cpp', '#include <opencv2/iib.hpp>\nvoid fragment();\nvoid fragment()\n{\n%s}\n' % fragment, '-fsyntax-only')
     for name, (arguments, printed) in TUTORIALS.items():
         page, = ROOT.glob('modules/*/tutorials/iib_%s.markdown' % name)
         compile_(name + '.cpp', block(page, 'cpp', 'int main'))
