@@ -21,8 +21,7 @@ struct Sought
     void add(const Point2d& pixel, double depth, const Point2d& off = Point2d())
     {
         const Matx33d matrix = VGA.matrix();
-        const Vec3d ray(
-                (pixel.x - matrix(0, 2)) / matrix(0, 0), (pixel.y - matrix(1, 2)) / matrix(1, 1), 1);
+        const Vec3d ray((pixel.x - matrix(0, 2)) / matrix(0, 0), (pixel.y - matrix(1, 2)) / matrix(1, 1), 1);
         const int number = int(matches.size()), views = 4;  // of too few matches to refine
         map.images.resize(views);
         map.points.push_back(inverse(HERE) * Point3d(ray * depth));
@@ -70,8 +69,7 @@ TEST(PoseSearch, matches_in_one_window_are_no_pose)
         for (int i = 0; i < 60; i++)
         {
             const bool right = i < 20;
-            const Point2d pixel =
-                    right ? Point2d(300, 200) + 4 * Point2d(i % 5, i / 5) : anyPixel(random);
+            const Point2d pixel = right ? Point2d(300, 200) + 4 * Point2d(i % 5, i / 5) : anyPixel(random);
             sought.add(pixel, random.uniform(3., 6.), right ? Point2d() : anyPixel(random) - pixel);
         }
         const LocatedImage found = sought.located();
@@ -79,6 +77,56 @@ TEST(PoseSearch, matches_in_one_window_are_no_pose)
         EXPECT_EQ("the matches that agree are no more than chance may give", found.reason);
         EXPECT_GE(found.inliers, 16) << "which is enough";
     }
+}
+
+//! How many standard deviations a pose is off, squared: six in the mean, if what is told holds.
+double squaredError(const Affine3d& pose, const Matx66d& covariance)
+{
+    const Vec3d moved = inverse(HERE).translation() - inverse(pose).translation(),
+                turned = -Affine3d(pose.rotation().t() * HERE.rotation()).rvec();
+    const Vec6d error(moved[0], moved[1], moved[2], turned[0], turned[1], turned[2]);
+    return error.dot(covariance.inv(DECOMP_SVD) * error);
+}
+
+TEST(ClusteredCovariance, foretells_errors_that_neighbours_share)
+{
+    RNG random(7);
+    const int trials = 100, perSide = 4;
+    for (double shared : {0., 1.})
+    {
+        double squared = 0, unclustered = 0;
+        for (int trial = 0; trial < trials; trial++)
+        {
+            Point2d ofCell[perSide * perSide];
+            for (Point2d& error : ofCell)
+                error = anyError(random, shared);
+            Sought sought;
+            for (int i = 0; i < 240; i++)
+            {
+                const Point2d pixel = anyPixel(random);
+                sought.add(pixel, random.uniform(3., 6.),
+                        ofCell[int(pixel.x / 160) + perSide * int(pixel.y / 120)] + anyError(random, .5));
+            }
+            Affine3d pose = HERE;
+            Matx66d covariance;
+            ASSERT_TRUE(refinePose(sought.matches, Lens(VGA), pose, covariance));
+            unclustered += squaredError(pose, covariance) / trials;
+            ASSERT_TRUE(clusteredCovariance(sought.matches, Lens(VGA), pose, covariance));
+            squared += squaredError(pose, covariance) / trials;
+        }
+        EXPECT_GT(squared, 6 * .4) << shared;
+        EXPECT_LT(squared, 6 * 1.5) << shared;
+        EXPECT_TRUE(shared == 0 || unclustered > 6 * 4) << unclustered << ", without clusters";
+    }
+}
+
+TEST(ClusteredCovariance, is_none_of_matches_that_do_not_determine_the_pose)
+{
+    Sought sought;
+    for (const Point2d& pixel : {Point2d(100, 100), {500, 300}})
+        sought.add(pixel, 4);
+    Matx66d covariance = Matx66d::eye();
+    EXPECT_FALSE(clusteredCovariance(sought.matches, Lens(VGA), HERE, covariance));
 }
 
 }  // namespace

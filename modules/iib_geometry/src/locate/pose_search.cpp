@@ -156,7 +156,8 @@ public:
 
     bool isCertain()
     {
-        covariance_ = clusteredCovariance(covariance_, used_, lens_, pose_);
+        if (!determined(clusteredCovariance(used_, lens_, pose_, covariance_)))
+            return false;
         Vec3d variances;
         eigen(covariance_.get_minor<3, 3>(0, 0), variances);
         found_.reason = "the pose is uncertain";
@@ -204,10 +205,14 @@ private:
 
     bool refined(const std::vector<Match>& matches)
     {
-        const bool determined = refinePose(matches, lens_, pose_, covariance_);
-        if (!determined)
+        return determined(refinePose(matches, lens_, pose_, covariance_));
+    }
+
+    bool determined(bool is)
+    {
+        if (!is)
             found_.reason = "the points do not determine the pose";
-        return determined;
+        return is;
     }
 
     const Map& map_;

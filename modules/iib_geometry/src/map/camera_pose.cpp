@@ -13,7 +13,8 @@ namespace cv::iib {
 namespace {
 
 constexpr int ROUNDS = 20;
-constexpr int CLUSTERS = 4;  // a side, of what the matches span in the image
+constexpr int CLUSTERS = 4;           // a side, of what the matches span in the image
+constexpr double LEAST_TOLD = 1e-12;  // of the least direction of a pose over the one that is told best
 
 //! A match near a pose.
 struct Linear
@@ -209,8 +210,8 @@ bool refinePose(const std::vector<Match>& matches, const Lens& lens, Affine3d& p
     return true;
 }
 
-Matx66d clusteredCovariance(
-        const Matx66d& covariance, const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)
+bool clusteredCovariance(
+        const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose, Matx66d& covariance)
 {
     const std::vector<Linear> near = linear(matches, lens, pose);
     std::vector<Point2f> pixels;
@@ -231,9 +232,13 @@ Matx66d clusteredCovariance(
     }
     for (const auto& cluster : gradients)
         pulled += cluster.second * cluster.second.t();
+    Vec6d told;
+    if (!eigen(curvature, told) || !(told[5] > LEAST_TOLD * told[0]))
+        return false;
     const double scale = deviationOf(errors), clusters = double(gradients.size());
-    const Matx66d back = curvature.inv();
-    return scale * scale * covariance + clusters / std::max(clusters - 6, 1.) * back * pulled * back;
+    const Matx66d back = curvature.inv(DECOMP_CHOLESKY);
+    covariance = scale * scale * covariance + clusters / std::max(clusters - 6, 1.) * back * pulled * back;
+    return true;
 }
 
 }  // namespace cv::iib

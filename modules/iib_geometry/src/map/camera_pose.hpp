@@ -62,9 +62,10 @@ bool refinePose(const std::vector<Match>& matches, const Lens& lens, Affine3d& p
 
 /** The covariance of a pose by the errors that its matches have, in place of those that refinePose assumed. Matches near each
 other in the image, a cluster, err together, as the map does there: the more the gradients of clusters differ, the less certain is the pose.
-@param covariance of refinePose. */
-Matx66d clusteredCovariance(
-        const Matx66d& covariance, const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose);
+@param covariance of refinePose, which this replaces.
+@return false if the matches do not determine the pose. */
+bool clusteredCovariance(
+        const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose, Matx66d& covariance);
 
 //! How far each match is from where a pose has its point, in pixels; NaN behind the camera.
 std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose);
