@@ -41,16 +41,13 @@ done
 "$build/tools/evaluation/iib_evaluation" "$@" --out "$pairs"
 [ ! -e "$pairs/matched_points.csv" ] || "$python3" "$root/tools/evaluation/by_poselib.py" "$pairs"
 [ -z "$document" ] || out="$root/doc/results"
-[ ! -e "$pairs/fixed_points.csv" ] || {
-    echo "commit $(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo unknown)"
-    echo "date $(date -u +%Y-%m-%d)"
-    echo "machine $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $jobs threads"
-    [ -z "$contrib" ] ||
-        echo "opencv_contrib $(sed -n 's/^Version: \([0-9]*[.][0-9]*[.][0-9]*\).*/\1/p' "${contrib#*=}/PKG-INFO")"
-    cp "$pairs/settings.txt" "$out"
-} >"$out/run.txt"
+[ ! -e "$pairs/fixed_points.csv" ] || cp "$pairs/settings.txt" "$out"
+commit=$(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo unknown)
+machine="$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $jobs threads"
+[ -z "$contrib" ] ||
+    machine="$machine, opencv_contrib $(sed -n 's/^Version: \([0-9]*[.][0-9]*[.][0-9]*\).*/\1/p' "${contrib#*=}/PKG-INFO")"
 [ ! -e "$pairs/pictures" ] || cp -r "$pairs/pictures" "$out"
-"$python3" -B "$root/tools/pages/summaries.py" "$pairs" "$out"
+"$python3" -B "$root/tools/pages/summaries.py" "$pairs" "$out" "$commit" "$machine"
 if [ -n "$document" ]; then
     "$python3" -B "$root/tools/pages/pages.py"
 elif [ -e "$out/fixed_points.csv" ]; then

@@ -103,10 +103,10 @@ def curves(tables):
 def context(folder):
     """What the template takes, of a folder of summaries; nothing without those of given points."""
     tables = {name: read(folder / (name + ".csv")) for name in FILES}
-    settings = [line for name in ("settings.txt", "run.txt") if (folder / name).is_file()
-                for line in (folder / name).read_text().splitlines() if line]
+    settings = folder / "settings.txt"
     return tables["fixed_points"] and {
         "overview": overview(tables), "networks": tables["learned"], "licences": descriptors.NETWORKS, "detected": detected_lines(tables),
         "changes": changes(tables), "warps": warps(tables), "estimates": estimates(tables), "anchors": read(HERE / "anchors.csv"),
         "alignment": tables["alignment"], "slider": slider(tables), "methods": list(descriptors.METHODS.values()), "curves": curves(tables),
-        "settings": settings, "files": [name + ".csv" for name in FILES if tables[name]]}
+        "settings": settings.read_text().splitlines() if settings.is_file() else [], "runs": read(folder / "runs.csv"),
+        "files": [name + ".csv" for name in FILES if tables[name]]}

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Summaries of an evaluation, from which tables and pages are made: summaries.py PAIRS OUT
+"""Summaries of an evaluation, from which tables and pages are made: summaries.py PAIRS OUT [COMMIT MACHINE]
 
 PAIRS: the folder of iib_evaluation's results, with a row for each pair of images. OUT gets means over the pairs of a group, one
 row each, with their number and the ends of the 95 % confidence interval of what is named last (low, high; bootstrap over scenes).
+With COMMIT and MACHINE, runs.csv tells of each file that was written of which run it is.
 """
 import collections
 import csv
+import datetime
 import pathlib
 import random
 import re
@@ -248,17 +250,27 @@ OTHERS = {'gains.csv': ('detected_points.csv', summarize_gains), 'curves.csv': (
           'uncertainty.csv': ('uncertainty.csv', summarize_uncertainty)}
 
 
+def remember(file, names, commit, machine):
+    """Of which run files are, beside what the list tells of others."""
+    runs = {row['file']: row for row in read(file)}
+    runs.update((name, {'file': name, 'commit': commit, 'date': str(datetime.date.today()), 'machine': machine}) for name in names)
+    write(file, ['file', 'commit', 'date', 'machine'], (runs[name].values() for name in sorted(runs)))
+
+
 def main():
-    if len(sys.argv) != 3 or not pathlib.Path(sys.argv[1]).is_dir():
+    if len(sys.argv) not in (3, 5) or not pathlib.Path(sys.argv[1]).is_dir():
         print(__doc__.split('\n\n')[0] + '; PAIRS must be one', file=sys.stderr)
         return 2
-    pairs, out = map(pathlib.Path, sys.argv[1:])
-    for name, plan in PLANS.items():
-        if (pairs / name).is_file():
-            summarize(pairs / name, out / name, *plan)
-    for name, (source, make) in OTHERS.items():
-        if (pairs / source).is_file():
-            make(pairs / source, out / name)
+    pairs, out = map(pathlib.Path, sys.argv[1:3])
+    summarized = [name for name in PLANS if (pairs / name).is_file()]
+    for name in summarized:
+        summarize(pairs / name, out / name, *PLANS[name])
+    others = [name for name, (source, _) in OTHERS.items() if (pairs / source).is_file()]
+    for name in others:
+        source, make = OTHERS[name]
+        make(pairs / source, out / name)
+    if sys.argv[3:]:
+        remember(out / 'runs.csv', summarized + others, *sys.argv[3:])
     return 0
 
 

@@ -105,6 +105,18 @@ class Figures(unittest.TestCase):
                          ['100 %', '100 %', '85 %', '100 %', localization.share(3, 200)])
         self.assertEqual([localization.share(20, 20), localization.share(0, 10)], ['100 % (84 to 100)', '0 % (0 to 28)'])
 
+    def test_each_file_is_known_by_its_run(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pairs, out = pathlib.Path(folder, 'pairs'), pathlib.Path(folder, 'out')
+            pairs.mkdir(), out.mkdir()
+            (pairs / 'comparison.csv').write_text('reference,target,detector,descriptor,x,y,target_x,target_y,correct\n')
+            (out / 'runs.csv').write_text('file,commit,date,machine\ncomparison.csv,old,1999-01-01,m\nmatching.csv,old,1999-01-01,m\n')
+            with unittest.mock.patch.object(sys, 'argv', ['summaries.py', str(pairs), str(out), 'new', 'a machine']):
+                self.assertEqual(summaries.main(), 0)
+            runs = summaries.by(summaries.read(out / 'runs.csv'), 'file')
+        self.assertEqual([(row['commit'], row['machine']) for row in runs.values()], [('new', 'a machine'), ('old', 'm')])
+        self.assertNotEqual(runs['comparison.csv']['date'], '1999-01-01')
+
     def test_no_error_is_told_where_nothing_was_found(self):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder, 'setups.csv')
