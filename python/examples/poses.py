@@ -27,9 +27,16 @@ found = opencv_iib.propagateMatches(a, rows_a, b, rows_b, pairs)
 first = opencv_iib.findRelativePose(found.points1[:len(pairs)], found.points2[:len(pairs)], matrix, matrix)
 again = opencv_iib.propagateMatches(a, rows_a, b, rows_b, pairs[first.inliers.ravel() > 0])
 
-# %% The pose that most matches agree with; two cameras could have two matrices.
-pose, matches = max(((opencv_iib.findRelativePose(tried.points1, tried.points2, matrix, matrix), tried) for tried in (found, again)),
-                    key=lambda both: int(both[0].inliers.sum()))
+# %% The pose that most matches agree with under one scale, since the less exact of two scales takes in more; two cameras could have two
+# matrices.
+
+
+def pose_of(tried, scale=0):
+    return opencv_iib.findRelativePose(tried.points1, tried.points2, matrix, matrix, scale)
+
+
+pose, matches = max(((pose_of(tried), tried) for tried in (found, again)),
+                    key=lambda both: (both[0].found, int(pose_of(both[1], .25).inliers.sum())))
 if not pose.found:
     sys.exit(pose.reason)
 

@@ -25,6 +25,7 @@ from opencv_iib.matcher import HierarchicalMatcher
 from opencv_iib.refinement import PropagatedMatches, RefinedMatches, propagateMatches
 from opencv_iib.rotation import matchRotated
 
+COMPARED = .25  # pixels: one scale of poses whose matches are counted, since under scales of their own the looser one has more
 COLUMNS = ('x1', 'y1', 'x2', 'y2', 'xx', 'xy', 'yy', 'similarity', 'bits')
 
 
@@ -212,7 +213,7 @@ class _Pair:
             first = self._pose(PropagatedMatches(*(each[:count] for each in propagated)))
             again, _ = self._propagated(rows, propagated.matches[:count][first.inliers.ravel() > 0])
             pose, propagated = max((pose, propagated), (self._pose(again), again),
-                                   key=lambda found: (found[0].found, int(found[0].inliers.sum())))
+                                   key=lambda found: (found[0].found, int(self._pose(found[1], COMPARED).inliers.sum())))
         a, b = (some[propagated.matches[:, side]] for side, some in enumerate(codes))
         bits = np.unpackbits(a ^ b, axis=1).sum(axis=1, dtype=np.int32)
         return Measured(RefinedMatches(*propagated[1:]), bits, pose)
@@ -228,6 +229,6 @@ class _Pair:
             seen &= np.isfinite(lens.undistorted(points)).all(axis=1)
         return PropagatedMatches(*(each[seen] for each in found)), int(seen[:len(given)].sum())
 
-    def _pose(self, matches: PropagatedMatches) -> Union[FoundPose, NoPose]:
+    def _pose(self, matches: PropagatedMatches, scale: float = 0) -> Union[FoundPose, NoPose]:
         a, b = (lens.undistorted(points) for points, lens in zip(matches[1:3], self.lenses))
-        return findRelativePose(a, b, self.lenses[0].matrix, self.lenses[1].matrix)
+        return findRelativePose(a, b, self.lenses[0].matrix, self.lenses[1].matrix, scale)

@@ -64,7 +64,7 @@ others. For poses from views that are far apart or in other
 light: half as many right matches again, and poses that were not found without them. Where a pattern repeats, as the
 windows of a block of flats do, wrong matches that confirm each other lead to further ones as well. So for a pose call
 it twice, with all matches and with those alone that agree with a first pose, and take the pose of the two that more
-matches agree with.
+matches agree with under one scale, such as .25 pixels: under scales of their own the less exact pose may have more.
 
 @param image1, image2, keypoints1, keypoints2 as in refineMatches; of any detector.
 @param matches1to2 on return the same matches, followed by those that were found, the most similar ones of each round
