@@ -35,6 +35,7 @@ class Measured(NamedTuple):
     matches: RefinedMatches
     bits: NDArray[np.int32]  #: of each match, that differ
     pose: Union[FoundPose, NoPose, None]  #: None without cameras
+    found: bool  #: there is a pose, or without cameras more matches than chance may give agree with one epipolar geometry or homography
     rotation: float = 0  #: degrees by which the second image had to be turned, clockwise, to be matched
 
     @property
@@ -51,12 +52,6 @@ class Measured(NamedTuple):
     def deviations(self) -> NDArray[np.float64]:
         """Of each match, the standard deviation of its second point in pixels, a mean over both axes."""
         return np.sqrt(self.matches.covariances[:, ::2].mean(axis=1))
-
-    @property
-    def found(self) -> bool:
-        """Whether they show the same: there is a pose, or without cameras more matches than chance may give agree with one epipolar
-        geometry or homography."""
-        return self.pose.found if self.pose is not None else show_the_same(self.matches.points1, self.matches.points2)
 
     def save(self, file: Path) -> None:
         """Writes matches and pose to a file that is replaced when the new one is whole, by its suffix: .json, .npz, or else CSV.
@@ -216,7 +211,9 @@ class _Pair:
                                    key=lambda found: (found[0].found, int(self._pose(found[1], COMPARED).inliers.sum())))
         a, b = (some[propagated.matches[:, side]] for side, some in enumerate(codes))
         bits = np.unpackbits(a ^ b, axis=1).sum(axis=1, dtype=np.int32)
-        return Measured(RefinedMatches(*propagated[1:]), bits, pose)
+        matches = RefinedMatches(*propagated[1:])
+        found = pose.found if pose is not None else show_the_same(matches.points1, matches.points2)
+        return Measured(matches, bits, pose, found)
 
     def _propagated(self, rows: Sequence[np.ndarray], given: np.ndarray) -> tuple[PropagatedMatches, int]:
         """What cameras see of what matches lead to, in the files' pixels, and how many of them were given: a lens shows nothing beyond

@@ -116,6 +116,14 @@ class Match(Commands):
         self.assertGreater(len(moves), 100)
         np.testing.assert_allclose(np.median(moves, 0), [30, 20], atol=.02)
 
+    def test_the_verdict_is_sought_once(self):
+        picture = self.world((4, 4))
+        a, b = self.write('a.png', picture[:300, :400]), self.write('b.png', picture[20:320, 30:430])
+        for expected in (True, False):
+            with mock.patch('opencv_iib.measure.show_the_same', return_value=expected) as verdict:
+                status, out, _ = run_command('match', a, b, '--out', self.folder / 'm.json')
+            self.assertEqual((verdict.call_count, 'may not show the same' in out, status), (1 if expected else 2, not expected, 0 if expected else 3))
+
     def test_nothing_found_and_mistakes(self):
         a, flat = self.write('a.png', self.world((4, 4))), self.write('flat.png', np.zeros((360, 480), np.uint8))
         out = self.folder / 'm.csv'
