@@ -17,7 +17,7 @@ from matplotlib import ft2font, ticker  # noqa: E402
 GREY, RED, BLUE = '#64748b', '#b91c1c', '#1d4ed8'
 FAR = 1000  # centimetres
 WIDTH = 9  # inches, of every chart
-SCORE = 'score of poses in other light: mean share of pairs within a limit, over limits up to 5 degrees'
+SCORE = 'score of poses in other light, limits up to 5 degrees'
 ENDS = {'elinewidth': .8}  # of confidence intervals
 MAKER = 'Matplotlib %s, FreeType %s' % (matplotlib.__version__, ft2font.__freetype_version__)  # on which places of texts depend
 

@@ -256,10 +256,9 @@ def presets():
            ('IIB S128', '`PRESET_S128`', 'the default, shortened'))
     found = summaries.by(rows('fixed_points.csv'), 'configuration', 'place')
     turns = summaries.by(rows('robustness.csv'), 'configuration', 'target', kind='turn')
-    lines = [[label, found[name, 'light']['bytes']] +
-             [precision_recall(found.get((name, place))) for place in ('light', 'rendered', 'wall', 'graf')] +
-             [precision_recall(turns[name, '10']), when] for name, label, when in use if (name, 'light') in found]
-    return table(['preset', 'bytes', 'light', 'rendered', 'wall', 'graf', 'turned', 'when'], lines)
+    lines = [[label, when, found[name, 'light']['bytes'], *(precision_recall(found.get((name, place))) for place in ('light', 'rendered', 'wall', 'graf')),
+              precision_recall(turns[name, '10'])] for name, label, when in use if (name, 'light') in found]
+    return table(['preset', 'when', 'bytes', 'light', 'rendered', 'wall', 'graf', 'turned'], lines)
 
 
 @functools.lru_cache(None)
