@@ -226,10 +226,13 @@ def pose_claim():
                     all(row[key] == value for key, value in where.items())), key=lambda row: float(row['at_5']))
     sift, orb = (best('other light', descriptor=name) for name in ('SIFT', 'ORB'))
     level = estimates()[('SIFT', 'SIFT'), 'same light', *WAYS[1]]
+    keys = 'place', 'detector', 'descriptor', 'points', 'estimator'
+    less = summaries.by(rows('differences.csv'), *keys).get(tuple(sift[key] for key in keys))
+    paired = ', %.2f (%.2f to %.2f) less on the same pairs' % tuple(float(less[key]) for key in ('less', 'low', 'high')) if less else ''
     return ('In other light it has a score of %s. The most that SIFT reaches, with any estimator here, on a normalized image and refined by\n'
-            "this project, is %s, ORB %s. In the same light there is no difference: SIFT's matches as they are, by PoseLib, have %.2f, the chain's\n"
+            "this project, is %s%s, ORB %s. In the same light there is no difference: SIFT's matches as they are, by PoseLib, have %.2f, the chain's\n"
             'refined ones %.2f ([all of them](doc/results/README.md#poses)).' %
-            (score(ours), score(sift), score(orb), *(float(row['at_5']) for row in (level, estimates()[CHAIN, 'same light', *WAYS[-1]]))))
+            (score(ours), score(sift), paired, score(orb), *(float(row['at_5']) for row in (level, estimates()[CHAIN, 'same light', *WAYS[-1]]))))
 
 
 def propagation():

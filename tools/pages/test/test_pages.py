@@ -42,7 +42,7 @@ class Figures(unittest.TestCase):
 
     def test_poses_are_judged_where_nothing_was_trained_or_chosen(self):
         heads = 'set', 'detector', 'descriptor', 'points', 'estimator', 'sequence', 'error', 'inliers'
-        errors = {'strecha': (0, 5), 'strecha relit': (10,), 'facade_2': (2,), 'facade_1': (0,), 'walk_facade': (5,), 'walk_room': (0,), 'walk_terrain': (0,)}
+        errors = {'strecha': (0, 5), 'strecha relit': (10,), 'facade_2': (2,), 'facade_1': (0,), 'room_31': (3,), 'walk_facade': (5,), 'walk_room': (0,), 'walk_terrain': (0,)}
         with tempfile.TemporaryDirectory() as folder:
             source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
             with open(source, 'w', newline='') as file:
@@ -52,7 +52,7 @@ class Figures(unittest.TestCase):
             with open(target, newline='') as file:
                 found = {row['place']: row for row in csv.DictReader(file)}
         self.assertEqual({place: (row['pairs'], *(round(float(row[area]), 3) for area in ('at_10', 'at_5', 'at_2'))) for place, row in found.items()},
-                         {'same light': ('2', .75, .5, .5), 'other light': ('2', .4, .3, 0), 'chosen on': ('2', .75, .5, .5)})
+                         {'same light': ('2', .75, .5, .5), 'other light': ('1', .8, .6, 0), 'chosen on': ('4', .55, .35, .25)})
         self.assertEqual((found['same light']['low'], found['same light']['high']), ('0', '1'))
 
     def test_intervals(self):
@@ -62,6 +62,19 @@ class Figures(unittest.TestCase):
         self.assertAlmostEqual(high, .5 + 1.96 * .05, delta=.015)
         one = summaries.interval([[0] * 50, [1] * 50])  # whole scenes are drawn: two say little
         self.assertEqual(one, [0, 1])
+
+    def test_differences_are_of_the_same_pairs(self):
+        lines = ['set,sequence,target,detector,descriptor,points,estimator,error']
+        for target, ours, others in ((1, 0, 2.5), (2, 5, 5), (3, 1, None)):
+            lines.append('street_2,night,%d,Hessian,IIB UNIVERSAL,propagated,findRelativePose,%s' % (target, ours))
+            if others is not None:
+                lines.append('street_2,dusk,%d,ORB,ORB,plain,MAGSAC 1 px,0\nstreet_2,night,%d,ORB,ORB,plain,MAGSAC 1 px,%s' % (target, target, others))
+        with tempfile.TemporaryDirectory() as folder:
+            source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
+            source.write_text('\n'.join(lines))
+            summaries.summarize_differences(source, target)
+            self.assertEqual([line.split(',')[5:] for line in target.read_text().splitlines()[1:]],
+                             [['3', '0', '0', '0'], ['2', '0.25', '0.25', '0.25']])
 
     def test_gains_are_of_the_same_pairs(self):
         rows = [('tilde_webcam', target, 'ORB', descriptor, 'light', correct, target)
