@@ -30,7 +30,7 @@ def estimate(poselib, numbers, threshold):
     pose, info = poselib.estimate_relative_pose(points[:, :2].copy(), points[:, 2:].copy(), camera(cameras[:9]), camera(cameras[9:]),
                                                 {'max_epipolar_error': threshold}, {})
     turn = angle((np.trace(pose.R.T @ R) - 1) / 2)
-    return '%.6g' % max(turn, angle(abs(pose.t @ t) / np.linalg.norm(pose.t) / np.linalg.norm(t))), info['num_inliers']
+    return '%.6g' % max(turn, angle(pose.t @ t / np.linalg.norm(pose.t) / np.linalg.norm(t))), info['num_inliers']
 
 
 def main():

@@ -28,13 +28,13 @@ std::vector<cv::Point2d> normalizedPoints(const std::vector<cv::Point2d>& points
 
 double degrees(double cosine) { return std::acos(std::max(-1., std::min(1., cosine))) * 180 / CV_PI; }
 
-//! The larger one of the errors in degrees of rotation and of the direction of the translation, its sign apart.
+//! The larger one of the errors in degrees of rotation and of the direction of the translation.
 double poseError(const cv::Mat& rotation, const cv::Mat& translation, const ViewPair& pair)
 {
     const cv::Matx33d rest = cv::Matx33d(rotation).t() * pair.rotation;
     const cv::Vec3d found(translation);
     const double direction =
-            degrees(std::abs(found.dot(pair.translation)) / cv::norm(found) / cv::norm(pair.translation));
+            degrees(found.dot(pair.translation) / cv::norm(found) / cv::norm(pair.translation));
     return std::max(degrees((cv::trace(rest) - 1) / 2), direction);
 }
 

@@ -9,13 +9,10 @@ namespace opencv_test {
 namespace {
 using namespace cv::iib;
 
-//! The step of `moved` from a pose to the truth.
+//! The step from a pose that was found to the truth.
 Vec<double, 5> errorOf(const RelativePose& pose, const RelativePose& truth)
 {
-    const Matx33d rest = truth.R * pose.R.t();
-    const Vec2d along = tangentsOf(pose.t).t() * (truth.t - pose.t);
-    return Vec<double, 5>((rest(2, 1) - rest(1, 2)) / 2, (rest(0, 2) - rest(2, 0)) / 2,
-            (rest(1, 0) - rest(0, 1)) / 2, along[0], along[1]);
+    return stepBetween(pose, truth);
 }
 
 TEST(RelativePose, real_roots_are_found_inside_and_outside_of_the_unit_interval)
@@ -181,6 +178,52 @@ TEST(RelativePose, covariance_knows_of_errors_that_neighbours_share)
     }
     EXPECT_GT(within[0], .4 * trials);
     EXPECT_GT(within[1], .8 * trials);
+}
+
+// A baseline of a thousandth of the depth, as tenths of a pixel tell it and pixels do not.
+TEST(RelativePose, points_in_front_tell_the_sign_of_t)
+{
+    for (double noise : {.03, 1.})
+        for (int wrong : {0, 40})
+        {
+            RNG random(7);
+            int found = 0, certain = 0, behind = 0;
+            const int trials = 50;
+            for (int trial = 0; trial < trials; trial++)
+            {
+                const RelativePose truth = randomPose(random, .1);
+                const Views views(random, truth, 200, wrong, noise, .005);
+                RelativePose pose;
+                Mat covariance;
+                if (!findRelativePose(views.points1, views.points2, CAMERA, CAMERA, pose.R, pose.t, noArray(),
+                            0, covariance))
+                    continue;
+                found++;
+                if (cv::trace(covariance(Rect(3, 3, 2, 2)))[0] > .25)
+                    continue;
+                certain++;
+                behind += pose.t.dot(truth.t) < 0;
+            }
+            EXPECT_EQ(trials, found) << noise << ' ' << wrong;
+            EXPECT_EQ(0, behind) << noise << ' ' << wrong;
+            EXPECT_GE(certain, noise >= 1 ? 0 : wrong ? 5 : 25) << wrong;
+        }
+}
+
+// Noise may put points that are far away behind a camera.
+TEST(RelativePose, matches_of_a_camera_that_turned_agree)
+{
+    RNG random(31);
+    for (double noise : {.1, 1., 3.})
+        for (int trial = 0; trial < 5; trial++)
+        {
+            const Views views(random, randomPose(random, .1), 200, 0, noise, 0);
+            Mat R, t, inliers, covariance;
+            ASSERT_TRUE(findRelativePose(
+                    views.points1, views.points2, CAMERA, CAMERA, R, t, inliers, 0, covariance));
+            EXPECT_GE(countNonZero(inliers), 170) << noise;
+            EXPECT_GT(cv::trace(covariance(Rect(3, 3, 2, 2)))[0], 1) << noise;
+        }
 }
 
 //! Of matches whose direction of t, or more, nothing tells.
@@ -362,6 +405,7 @@ struct HopelessProblem
         errors.assign(size(), 1e6);
         errors[0] = errors[1] = 0;
     }
+    std::vector<double> alternatives(double) const { return {}; }
     bool areApart(double, double) const { return false; }
     void linearize(double, double, std::vector<Row<Step>>& rows) const { rows.clear(); }
     double moved(double model, const Step&) const { return model; }

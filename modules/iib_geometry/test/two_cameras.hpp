@@ -19,17 +19,18 @@ inline RelativePose randomPose(RNG& random, double turn)
     return cv::iib::moved({Matx33d::eye(), normalize(t)}, step);
 }
 
-//! Points in front of both cameras, 4 to 12 lengths of t away, seen with noise; `wrong` of them anywhere.
+//! Points in front of both cameras, 4 to 12 away, seen with noise, pixels; `wrong` of them anywhere. t has the length `baseline`.
 struct Views
 {
-    Views(RNG& random, const RelativePose& pose, int count, int wrong, double noise)
+    Views(RNG& random, const RelativePose& pose, int count, int wrong, double noise, double baseline = 1)
         : points1(count, 2, CV_64F), points2(count, 2, CV_64F)
     {
         for (int i = 0; i < count;)
         {
             const double depth = random.uniform(4., 12.);
             const Vec3d pixel(random.uniform(0., 640.), random.uniform(0., 480.), 1);
-            const Vec3d X = depth * (CAMERA.inv() * pixel), Y = pose.R * X + pose.t, seen = CAMERA * Y;
+            const Vec3d X = depth * (CAMERA.inv() * pixel), Y = pose.R * X + baseline * pose.t,
+                        seen = CAMERA * Y;
             if (Y[2] < 1)
                 continue;
             const bool astray = i < wrong;

@@ -13,7 +13,6 @@ namespace {
 
 const int STRIDE = 32;          // matches between two looks at the limit
 const double MOST_SCALE = .01;  // of what the points span: wider, few wrong poses can be told from right ones
-const double NO_PARALLAX = 1;   // pixels: of a point so far away that noise may put it behind a camera
 const double NOWHERE = 1e-300;  // keeps an error of 0 / 0, at the epipoles, finite
 
 std::vector<Point2d> directions(const Mat& points, const Matx33d& camera)
@@ -127,16 +126,16 @@ void EpipolarProblem::squaredErrors(const RelativePose& pose, std::vector<double
     const Matx33d essential = essentialOf(pose);
     errors.resize(size());
     for (int i = 0; i < size(); i++)
-        errors[i] = inFront(pose, first_[i], second_[i]) || parallax(pose, i) < NO_PARALLAX
+        errors[i] = inFront(pose, first_[i], second_[i])
                             ? squaredError(essential, i)
-                            : std::numeric_limits<double>::infinity();
+                            : std::max(squaredError(essential, i), square(parallax(pose, i)));
 }
 
 double EpipolarProblem::parallax(const RelativePose& pose, int i) const
 {
     const Vec3d far = pose.R * Vec3d(first_[i].x, first_[i].y, 1);
-    return far[2] > 0 ? std::hypot((far[0] / far[2] - second_[i].x) / pixels_[0],
-                                (far[1] / far[2] - second_[i].y) / pixels_[1])
+    return far[2] > 0 ? std::sqrt(square(far[0] / far[2] - second_[i].x) / (weights_[0] + weights_[2]) +
+                                  square(far[1] / far[2] - second_[i].y) / (weights_[1] + weights_[3]))
                       : std::numeric_limits<double>::infinity();
 }
 

@@ -31,10 +31,13 @@ public:
     //! Blind to points behind a camera, which have an epipolar line all the same.
     double loss(const RelativePose& pose, double scale, double limit) const;
 
+    //! Of a match behind a camera, as of a point at infinity, the nearest that may be.
     void squaredErrors(const RelativePose& pose, std::vector<double>& errors) const;
-    //! How far a match is from where a point at infinity would be seen, pixels.
+    //! How far a match is from where a point at infinity would be seen, pixels: as Sampson's error, a part of it in either image.
     double parallax(const RelativePose& pose, int i) const;
 
+    //! The same epipolar lines, and t the other way.
+    std::vector<RelativePose> alternatives(const RelativePose& pose) const { return {{pose.R, -pose.t}}; }
     bool areApart(const RelativePose& pose, const RelativePose& other) const;
     void linearize(const RelativePose& pose, double limit, std::vector<Row<Step>>& rows) const;
     RelativePose moved(const RelativePose& pose, const Step& step) const { return iib::moved(pose, step); }

@@ -11,7 +11,8 @@ namespace {
 
 const double LEAST_SCALE = .1, MOST_SCALE = 1000;  // pixels
 const double RANK = 1e-13;                         // of covariances in double precision
-const double REFINED = .25;                        // least scale by which matches count as agreeing, pixels
+const double ONE_ROTATION = .05;  // radians: less apart, two poses are told as one that is not exact
+const double REFINED = .25;       // least scale by which matches count as agreeing, pixels
 
 Matx33d cameraMatrix(InputArray matrix, const char* name)
 {
@@ -53,19 +54,14 @@ std::string reasonAgainst(
     return "";
 }
 
-//! Why one of two poses cannot be told from the other, by errors as the matches around the pose tell them.
-std::string reasonAgainst(const Fit<EpipolarProblem>& fit, const Square<EpipolarProblem::Step>& errors)
+//! Whether another pose explains the matches as well and is none that the errors tell of, as the matches around the pose tell them.
+bool hasRival(const Fit<EpipolarProblem>& fit, const Square<EpipolarProblem::Step>& errors)
 {
     const double level = 5;  // standard deviations: another pose within them is told by the covariance
     if (fit.lead >= 1)
-        return "";
+        return false;
     const EpipolarProblem::Step between = stepBetween(fit.model, fit.other);
-    if (between.dot(errors.inv(DECOMP_SVD) * between) < square(level))
-        return "";
-    return format("two poses explain the matches as well, turned by %.0f and moved in directions by %.0f "
-                  "degrees against "
-                  "each other: the points may lie on a plane",
-            norm(Vec3d(between.val)) * 180 / CV_PI, norm(Vec2d(between.val + 3)) * 180 / CV_PI);
+    return between.dot(errors.inv(DECOMP_SVD) * between) >= square(level);
 }
 
 /** Whether the direction of t is more than chance. Matches without parallax say nothing of it; of the others one whose parallax is
@@ -119,11 +115,22 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
     if (why.empty())
     {
         errors = covarianceOf(problem, fit, partsOf(first), LARGEST_DEVIATION);
-        if (!tellsDirection(problem, fit, verdict))
+        if (!tellsDirection(problem, fit, verdict) || hasRival(fit, errors))
             for (int k = 3; k < 5; k++)
                 errors(k, k) += square(LARGEST_DEVIATION);
+        if (hasRival(fit, errors))
+        {
+            const EpipolarProblem::Step between = stepBetween(fit.model, fit.other);
+            const double turned = norm(Vec3d(between.val)), moved = norm(Vec2d(between.val + 3));
+            if (turned < ONE_ROTATION)
+                errors += between * between.t();
+            else
+                why = format(
+                        "two poses explain the matches as well, turned by %.0f and moved in directions by "
+                        "%.0f degrees against each other: the points may lie on a plane",
+                        turned * 180 / CV_PI, moved * 180 / CV_PI);
+        }
         errors = limited(errors, LARGEST_DEVIATION, RANK);
-        why = reasonAgainst(fit, errors);
     }
     if (reason)
         *reason = why;

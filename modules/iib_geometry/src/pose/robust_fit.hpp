@@ -21,6 +21,7 @@ A class Problem holds the matches and has
     propose(sample, models)            models that agree with a sample: indices of sampleSize() matches
     double loss(model, scale, limit)   the sum over all matches, or anything over the limit
     squaredErrors(model, errors)       of all matches, pixels^2; infinite where the model forbids the match
+    alternatives(model)                models of the same loss that other squared errors may belong to
     bool areApart(model, other)        whether they are other answers, and not the same one found twice
     linearize(model, limit, rows)      the rows of matches whose squared error is below the limit
     Model moved(model, step) */
@@ -116,6 +117,58 @@ template <class Problem> struct Fit
     bool wantsMore = false;  //!< whether more samples might find a better one
 };
 
+//! A model by its sum of squared errors, cut off at four scales: by how far a wrong match is wrong says nothing.
+template <class Problem> struct Candidate
+{
+    typename Problem::Model model;
+    std::vector<double> squared;
+    double sum;
+
+    bool operator<(const Candidate& other) const { return sum < other.sum; }
+};
+
+//! A model and its alternatives, the best one first.
+template <class Problem>
+std::vector<Candidate<Problem>> withAlternatives(
+        const Problem& problem, double scale, const typename Problem::Model& model)
+{
+    std::vector<typename Problem::Model> models = problem.alternatives(model);
+    models.insert(models.begin(), model);
+    std::vector<Candidate<Problem>> candidates(models.size());
+    for (size_t k = 0; k < models.size(); k++)
+    {
+        Candidate<Problem>& candidate = candidates[k];
+        candidate.model = models[k];
+        candidate.sum = 0;
+        problem.squaredErrors(models[k], candidate.squared);
+        for (double error : candidate.squared)
+            candidate.sum += std::min(error, square(FARTHEST_OF_CHOICE * scale));
+    }
+    std::stable_sort(candidates.begin(), candidates.end());
+    return candidates;
+}
+
+//! Makes the first candidate the fit's model, if there is one.
+template <class Problem>
+void take(const Problem& problem, double scale, const std::vector<Candidate<Problem>>& candidates,
+        Fit<Problem>& fit)
+{
+    if (candidates.empty())
+        return;
+    const Candidate<Problem>& chosen = candidates.front();
+    fit.model = chosen.model;
+    fit.squared = chosen.squared;
+    for (const Candidate<Problem>& candidate : candidates)
+    {
+        const double lead = (candidate.sum - chosen.sum) / square(FARTHEST_OF_CHOICE * scale);
+        if (lead < fit.lead && problem.areApart(candidate.model, fit.model))
+        {
+            fit.lead = lead;
+            fit.other = candidate.model;
+        }
+    }
+}
+
 /** The model that most matches agree with under one scale, pixels, not polished finely. The same in every run.
 
 Samples propose models, and those of the least loss are kept. Each is polished under twice the scale, and the one with the least
@@ -178,28 +231,14 @@ template <class Problem> Fit<Problem> search(const Problem& problem, double scal
     }
 
     fit.wantsMore = trials == mostTrials;
-    double leastSum = none;
-    const double farthest2 = square(FARTHEST_OF_CHOICE * scale);
-    for (std::pair<double, Model>& candidate : best)
+    std::vector<Candidate<Problem>> candidates;
+    for (std::pair<double, Model>& one : best)
     {
-        polish(problem, 2 * scale, roughly, candidate.second);
-        problem.squaredErrors(candidate.second, squared);
-        double& sum = candidate.first = 0;
-        for (double error : squared)
-            sum += std::min(error, farthest2);
-        if (sum >= leastSum)
-            continue;
-        leastSum = sum;
-        fit.model = candidate.second;
-        fit.squared = squared;
+        polish(problem, 2 * scale, roughly, one.second);
+        candidates.push_back(withAlternatives(problem, scale, one.second).front());
     }
-    for (const std::pair<double, Model>& candidate : best)
-        if ((candidate.first - leastSum) / farthest2 < fit.lead &&
-                problem.areApart(candidate.second, fit.model))
-        {
-            fit.lead = (candidate.first - leastSum) / farthest2;
-            fit.other = candidate.second;
-        }
+    std::stable_sort(candidates.begin(), candidates.end());
+    take(problem, scale, candidates, fit);
     return fit;
 }
 
@@ -253,7 +292,7 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem, double s
         told = narrow;
     fit.scale = told;
     polish(problem, fit.scale, finely, fit.model);
-    problem.squaredErrors(fit.model, fit.squared);
+    take(problem, fit.scale, withAlternatives(problem, fit.scale, fit.model), fit);
     return fit;
 }
 

@@ -22,8 +22,9 @@ in a thousand tries among wrong matches (the number of false alarms, @cite Moisa
 of a 32nd of the diagonal of what the points span, since matches beside each other may be wrong together; the larger number counts. How
 often a wrong match agrees is what points of different matches do with the pose, so that a skyline is no pose.
 
-There is none either where a second pose, far outside of the covariance, explains the matches as well to the worth of one
-match, as two do of a plane.
+There is none either where a second pose, turned by 3 degrees or more and far outside of the covariance, explains the matches as
+well to the worth of one match, as two do of a plane. Where it differs in the direction of t, such as by its sign, the covariance
+is as wide as that.
 
 Points must be free of lens distortion: `cv::undistortPoints(points, undistorted, K, distortion, noArray(), K)` first.
 Matches that cv::iib::refineMatches refined make the pose more accurate where the light changed.
