@@ -112,14 +112,19 @@ def localization_setups():
     return table(['map', 'set-up'] + SETUP_HEAD, setups(('map', 'setup')))
 
 
-def localization_photographs():
-    """How many images of Strecha's scenes are near their places, by method."""
+def located_photographs():
+    """How many images of Strecha's scenes are near their places: method, as they are, relit, both."""
     found, lines = [row for row in json.loads((ROOT / 'doc/localization/results.json').read_text())['rows'] if row['light'] in ('as they are', 'relit')], []
     for method in dict.fromkeys(row['method'] for row in found):
         of = [row for row in found if row['method'] == method]
         both = [[sum(row[column] for row in of if row['light'] == light) for column in ('within_5', 'images')] for light in ('as they are', 'relit')]
         lines.append([method, *('%d of %d' % tuple(one) for one in both), '%d of %d' % tuple(map(sum, zip(*both)))])
-    return table(['within 5 cm and 0.5°', 'as they are', 'relit by computation', 'both'], lines)
+    return lines
+
+
+def localization_photographs():
+    """The same as a table."""
+    return table(['within 5 cm and 0.5°', 'as they are', 'relit by computation', 'both'], located_photographs())
 
 
 def localization_lights(file):
@@ -233,6 +238,17 @@ def pose_claim():
             "this project, is %s%s, ORB %s. In the same light there is no difference: SIFT's matches as they are, by PoseLib, have %.2f, the chain's\n"
             'refined ones %.2f ([all of them](doc/results/README.md#poses)).' %
             (score(ours), score(sift), paired, score(orb), *(float(row['at_5']) for row in (level, estimates()[CHAIN, 'same light', *WAYS[-1]]))))
+
+
+def photograph_claim():
+    """The README's sentences on photographs: a statue by many cameras, and places found in maps."""
+    statue = {row['method']: row['registered'].split(' of ') for row in rows('photographs.csv') if row['scene'] == 'liberty'}
+    near = {line[0]: line[1:] for line in located_photographs()}
+    chain, sift = near['recommended chain'], near['SIFT, normalized image']
+    return ('Of photographs alone: COLMAP brings %s of %s of one statue, by many people and cameras at noon, under clouds, at dusk and at sunset, into one\n'
+            "reconstruction with the chain's points, %s with SIFT's, %s with SIFT's of normalized images ([how](doc/colmap.md#a-comparison)). In maps of five scenes\n"
+            'of one light [`Localizer`](doc/maps.md#what-was-measured) places %s images within 5 cm and 0.5°, SIFT of normalized images %s; relit by computation %s and %s.' % (
+                *statue['chain'], statue['SIFT'][0], statue['normalized'][0], chain[0], sift[0], chain[1], sift[1]))
 
 
 def propagation():
@@ -466,7 +482,7 @@ def photographs_of_many():
 
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
-    drop_in, pose_claim, speed_claim, poses, presets, propagation, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
+    drop_in, pose_claim, photograph_claim, speed_claim, poses, presets, propagation, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
     step_by_step, mapped_index, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, learned_poses,
     detected_points, uncertainty)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
