@@ -31,8 +31,8 @@ WARPED = ("IIB", "IIB oriented", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB oriented
           "BEBLID-512", "TEBLID-512", "LATCH-512")
 
 # Rows of poses: points of a detector and what describes them, as people call them.
-POSES = {("Hessian", "IIB UNIVERSAL"): "recommended chain", ("SIFT normalized", "SIFT"): "SIFT, normalized image",
-         ("SIFT normalized", "IIB UNIVERSAL"): "SIFT's points on the normalized image, UNIVERSAL",
+POSES = {("Hessian", "IIB UNIVERSAL"): "recommended chain", ("SIFT normalized", "SIFT"): "SIFT normalized",
+         ("SIFT normalized", "IIB UNIVERSAL"): "SIFT normalized, IIB UNIVERSAL",
          ("SIFT", "SIFT"): "SIFT", ("AKAZE", "AKAZE"): "AKAZE", ("ORB", "ORB"): "ORB"}
 
 # Whose matches the slider draws.

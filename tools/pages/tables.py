@@ -174,7 +174,7 @@ def estimates():
 
 
 CHAIN = 'Hessian', 'IIB UNIVERSAL'
-METHODS = {('ORB', 'ORB'): 'ORB', ('AKAZE', 'AKAZE'): 'AKAZE', ('SIFT', 'SIFT'): 'SIFT', ('SIFT normalized', 'SIFT'): 'SIFT, normalized',
+METHODS = {('ORB', 'ORB'): 'ORB', ('AKAZE', 'AKAZE'): 'AKAZE', ('SIFT', 'SIFT'): 'SIFT', ('SIFT normalized', 'SIFT'): 'SIFT normalized',
            CHAIN: 'recommended chain'}
 WAYS = ('plain', 'MAGSAC'), ('plain', 'PoseLib'), ('propagated', 'findRelativePose')  # OpenCV's, the best of others, and this project's
 
@@ -234,7 +234,7 @@ def pose_claim():
     keys = 'place', 'detector', 'descriptor', 'points', 'estimator'
     less = summaries.by(rows('differences.csv'), *keys).get(tuple(sift[key] for key in keys))
     paired = ', %.2f (%.2f to %.2f) less on the same pairs' % tuple(float(less[key]) for key in ('less', 'low', 'high')) if less else ''
-    return ('In other light it has a score of %s. The most that SIFT reaches, with any estimator here, on a normalized image and refined by\n'
+    return ('In other light it has a score of %s. The most that SIFT reaches, with any estimator here, at points of `NormalizedDetector` and refined by\n'
             "this project, is %s%s, ORB %s. In the same light there is no difference: SIFT's matches as they are, by PoseLib, have %.2f, the chain's\n"
             'refined ones %.2f ([all of them](doc/results/README.md#poses)).' %
             (score(ours), score(sift), paired, score(orb), *(float(row['at_5']) for row in (level, estimates()[CHAIN, 'same light', *WAYS[-1]]))))
@@ -246,8 +246,8 @@ def photograph_claim():
     near = {line[0]: line[1:] for line in located_photographs()}
     chain, sift = near['recommended chain'], near['SIFT, normalized image']
     return ('Of photographs alone: COLMAP brings %s of %s of one statue, by many people and cameras at noon, under clouds, at dusk and at sunset, into one\n'
-            "reconstruction with the chain's points, %s with SIFT's, %s with SIFT's of normalized images ([how](doc/colmap.md#a-comparison)). In maps of five scenes\n"
-            'of one light [`Localizer`](doc/maps.md#what-was-measured) places %s images within 5 cm and 0.5°, SIFT of normalized images %s; relit by computation %s and %s.' % (
+            "reconstruction with the chain's points, %s with SIFT's, %s with SIFT's found on normalized images ([how](doc/colmap.md#a-comparison)). In maps of five scenes\n"
+            'of one light [`Localizer`](doc/maps.md#what-was-measured) places %s images within 5 cm and 0.5°, SIFT at such points %s; relit by computation %s and %s.' % (
                 *statue['chain'], statue['SIFT'][0], statue['normalized'][0], chain[0], sift[0], chain[1], sift[1]))
 
 
