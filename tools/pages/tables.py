@@ -414,6 +414,13 @@ def speed_claim():
                 described, faster('EXACT', 'false', 1000)['AVX2'], faster('EXACT', 'true', 1000)['AVX2'], chain, orb, sift))
 
 
+def sure_claim():
+    """The README's sentence on uncertainties."""
+    shares = [100 * float(row['0.95']) for row in rows('uncertainty.csv')]
+    return ('- Uncertainties are no guarantee: of errors that should be inside what is told for 95 %%, %.0f to %.0f of 100 were, by kind of data\n'
+            '  ([how sure](doc/uncertainty.md)).' % (min(shares), max(shares)))
+
+
 def uncertainty():
     """How many errors are inside what was told."""
     return table(['', 'data', 'errors', 'inside 50 %', '95 %', '99 %'],
@@ -482,7 +489,7 @@ def photographs_of_many():
 
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
-    drop_in, pose_claim, photograph_claim, speed_claim, poses, presets, propagation, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
+    drop_in, pose_claim, photograph_claim, speed_claim, sure_claim, poses, presets, propagation, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
     step_by_step, mapped_index, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, learned_poses,
     detected_points, uncertainty)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
