@@ -119,6 +119,16 @@ std::optional<Vec6d> strayOf(const MapImage& image, std::vector<Match> matches)
     return Vec6d(moved[0], moved[1], moved[2], turned[0], turned[1], turned[2]);
 }
 
+//! As large a covariance of the centre, and of the turn, that is the same in all directions.
+Matx66d withoutDirection(const Matx66d& covariance)
+{
+    Matx66d same = Matx66d::zeros();
+    for (int k = 0; k < 6; k++)
+        for (int axis = 0; axis < 3; axis++)
+            same(k, k) += covariance(k / 3 * 3 + axis, k / 3 * 3 + axis) / 3;
+    return same;
+}
+
 }  // namespace
 
 Matx66d mapError(const Map& map)
@@ -139,7 +149,8 @@ Matx66d mapError(const Map& map)
             sum += *stray * stray->t();
             count++;
         }
-    return sum * (1. / std::max(count, 1));
+    count = std::max(count, 1);
+    return (sum + withoutDirection(sum) * (1. / count)) * (1. / count);
 }
 
 Matx66d inWorld(const Matx66d& error, const Affine3d& cameraFromWorld, double depth)

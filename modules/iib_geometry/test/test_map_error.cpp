@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "map/camera_pose.hpp"
+#include "map/map_error.hpp"
+#include "map/triangulation.hpp"
+#include "test_precomp.hpp"
+
+namespace opencv_test {
+namespace {
+using namespace cv::iib;
+
+const Camera VGA = {"PINHOLE", {640, 480}, {500, 500, 320, 240}};
+
+Vec3d anyVector(RNG& random, double deviation)
+{
+    return {random.gaussian(deviation), random.gaussian(deviation), random.gaussian(deviation)};
+}
+
+//! Images of one place whose poses in the map are off, by `far` and by a third of it in radians; none of their pixels is.
+struct WrongMap
+{
+    Map map;
+    std::vector<Point3d> points;
+
+    WrongMap(RNG& random, int images, double far)
+    {
+        for (int i = 0; i < 60; i++)
+            points.emplace_back(random.uniform(-2., 2.), random.uniform(-1.5, 1.5), random.uniform(4., 8.));
+        map.points = points;
+        for (int i = 0; i < images; i++)
+        {
+            MapImage image;
+            image.camera = VGA;
+            const Affine3d truth(anyVector(random, .03), anyVector(random, .6));
+            image.pixels = VGA.project(inCamera(points, truth));
+            for (int k = 0; k < int(points.size()); k++)
+                image.sees.push_back(k);
+            const Affine3d wrong(anyVector(random, far / 3), anyVector(random, far));
+            image.cameraFromWorld = wrong * truth;
+            map.images.push_back(image);
+        }
+    }
+
+    //! Where the map has the points: where most of its rays meet.
+    std::vector<Match> matches(const Affine3d& truth) const
+    {
+        std::vector<Track> tracks(points.size());
+        for (size_t i = 0; i < map.images.size(); i++)
+            for (const Ray& ray : raysOf(i, map.images[i]))
+                tracks[size_t(ray.point)].push_back(ray);
+        const std::vector<Point2d> pixels = VGA.project(inCamera(points, truth));
+        std::vector<Match> found;
+        for (size_t k = 0; k < tracks.size(); k++)
+        {
+            Match match{pixels[k], {}};
+            if (place(tracks[k], match.point))
+                found.push_back(match);
+        }
+        return found;
+    }
+};
+
+// The mean of their strays' squares alone, of no full rank, has 54, 71 and 90 % inside 95 %.
+TEST(MapError, of_few_images_foretells_how_far_a_pose_in_their_map_is_off)
+{
+    RNG random(4);
+    const int trials = 100;
+    const double level50 = 2.366, level95 = 7.815;  // chi^2 of three degrees of freedom
+    for (int images : {3, 4, 6})
+    {
+        int inside50 = 0, inside95 = 0;
+        double share = 0;  // of the error's square in what is told
+        for (int trial = 0; trial < trials; trial++)
+        {
+            const WrongMap scene(random, images, .003);
+            const Affine3d truth(anyVector(random, .03), anyVector(random, .6));
+            const std::vector<Match> matches = scene.matches(truth);
+            Affine3d pose = truth;
+            Matx66d covariance;
+            ASSERT_TRUE(refinePose(matches, Lens(VGA), pose, covariance));
+            const Matx66d error =
+                    inWorld(mapError(scene.map), pose, medianDistance(inCamera(pointsOf(matches), pose)));
+            const Matx33d told = error.get_minor<3, 3>(0, 0);
+            const Vec3d moved = inverse(truth).translation() - inverse(pose).translation();
+            const double squared = moved.dot(told.inv(DECOMP_SVD) * moved);
+            inside50 += squared < level50;
+            inside95 += squared < level95;
+            share += moved.dot(moved) / trace(told) / trials;
+        }
+        EXPECT_GT(inside50, 45) << images;
+        EXPECT_GT(inside95, 90) << images;
+        EXPECT_GT(share, .2) << images;
+    }
+}
+
+TEST(MapError, of_a_map_without_errors_is_none)
+{
+    RNG random(4);
+    const Matx66d none = mapError(WrongMap(random, 5, 0).map);
+    EXPECT_LT(cv::norm(none, NORM_INF), 1e-12);
+    EXPECT_EQ(Matx66d::zeros(), mapError(WrongMap(random, 2, .01).map)) << "which nothing tells";
+}
+
+}  // namespace
+}  // namespace opencv_test
