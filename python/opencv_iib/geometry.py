@@ -86,7 +86,8 @@ def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: Arra
     :param cameraMatrix1: 3 x 3, [fx 0 cx; 0 fy cy; 0 0 1], of camera 1.
     :param cameraMatrix2: of camera 2.
     :param scale: pixels: about the standard deviation of the points; 0: the residuals tell it.
-    :return: a tuple (found, R, t, inliers, covariance): a NoPose where the matches that agree are not more than chance.
+    :return: a tuple (found, R, t, inliers, covariance): a NoPose where the matches that agree are not more than chance, or where
+        two poses explain them as well, as of a plane.
         Once `found` is checked, type checkers know that R, t and covariance are there.
     :raises opencv_iib.error: for arrays of other shapes, points that are not one for one, and a scale below 0.
     """

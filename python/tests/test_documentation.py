@@ -89,7 +89,7 @@ class Documentation(InFolder):
                 ('README.md', '', 'two images'), *((name, '', 'usage: ') for name, run in RUNS.items() if name.startswith('iib_') and run[0][0]),
                 ('iib_saving_index.markdown', 'day.png flat.png', 'no keypoints in flat.png'), ('README.md', 'gone.png day.png', 'gone.png'), ('iib_day_night.markdown', 'day.png gone.png', 'gone.png'),
                 ('iib_day_night.markdown', 'day.png flat.png', 'only 0 matches'), ('iib_align.markdown', 'day.png gone.png a.png', 'gone.png'),
-                ('iib_align.markdown', 'day.png flat.png a.png', 'nothing in common'), ('iib_saving_index.markdown', 'gone.png day.png', 'gone.png'),
+                ('iib_align.markdown', 'day.png flat.png a.png', 'too few matches'), ('iib_saving_index.markdown', 'gone.png day.png', 'gone.png'),
                 ('iib_localization.markdown', 'day.png depth.png gone.png 400', 'gone.png'),
                 ('iib_localization.markdown', 'day.png depth.png flat.png 400', 'only 0 matches'),
                 ('iib_relative_pose.markdown', 'day.png gone.png 400 a.png', 'gone.png'),

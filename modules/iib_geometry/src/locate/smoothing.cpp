@@ -470,8 +470,14 @@ std::string smoothPoses(const std::vector<int64>& times, std::vector<Location>& 
         (count > FEW ? agree : tooFew) += count;
         i += run.ended;  // its image is contradicted
     }
-    const bool most = contradict > 0 && agree <= contradict + tooFew;
-    for (size_t i = 0; i < images.size() && !most; i++)
+    if (contradict > 0 && agree <= contradict + tooFew)
+        return "the readings of the IMU contradict the images, whose poses stay as they are: check the IMU's "
+               "axes and units (radians a second, m/s^2), its clock, imuFromCamera and that the map is in "
+               "metres";
+    int poses = 0, staying = 0;
+    for (size_t i = 0; i < images.size(); i++)
+    {
+        poses += images[i].found;
         if (smoothed[i])
         {
             images[i].found = true;
@@ -479,14 +485,13 @@ std::string smoothPoses(const std::vector<int64>& times, std::vector<Location>& 
             images[i].cameraFromWorld = smoothed[i]->cameraFromWorld;
             images[i].covariance = smoothed[i]->covariance;
         }
-    if (most)
-        return "the readings of the IMU contradict the images, whose poses stay as they are: check the IMU's "
-               "axes and units (radians a second, m/s^2), its clock, imuFromCamera and that the map is in "
-               "metres";
-    if (contradict > 0)
-        return format("the readings of the IMU contradict %d of %d images, whose poses stay as they are",
-                int(contradict), int(contradict + agree + tooFew));
-    return "";
+        else
+            staying += images[i].found;
+    }
+    return contradict == 0
+                   ? ""
+                   : format("the readings of the IMU contradict images: %d of %d poses stay as they are",
+                             staying, poses);
 }
 
 }  // namespace cv::iib

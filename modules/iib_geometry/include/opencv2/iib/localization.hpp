@@ -222,8 +222,8 @@ that of the last image with a pose before it, since what the map's images have i
 top. Both are upper bounds.
 @param readings in the order of their times, on the images' clock.
 @param imuFromCamera where the camera is in the IMU's axes (EuRoC's `T_BS`).
-@return a sentence if readings contradict images or an image has a covariance that is none, such as zeros, when all poses stay as
-they are; else empty.
+@return a sentence if readings contradict images, with how many poses stay as they are (also of images that too few readings or poses
+are around), or if an image has a covariance that is none, such as zeros, when all do; else empty.
 @throws cv::Exception for other numbers of times and images, times that do not rise, readings that are not finite, and an
 imuFromCamera that is not a turn and a shift. */
 CV_EXPORTS std::string smoothPoses(const std::vector<int64>& times, std::vector<Location>& images,
