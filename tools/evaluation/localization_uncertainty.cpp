@@ -12,6 +12,7 @@
 #include "opencv2/iib/localization.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "results.hpp"
+#include "uncertainty.hpp"
 
 namespace iib_tools {
 namespace {
@@ -61,12 +62,6 @@ cv::iib::Camera cameraOf(const cv::Matx33d& m, const cv::Size& size)
     return {"PINHOLE", size, {m(0, 0), m(1, 1), m(0, 2) + .5, m(1, 2) + .5}};
 }
 
-//! How many standard deviations an error is off, squared.
-template <int N> double squared(const cv::Vec<double, N>& error, const cv::Matx<double, N, N>& covariance)
-{
-    return error.dot(covariance.inv(cv::DECOMP_CHOLESKY) * error);
-}
-
 //! A map in memory.
 std::unique_ptr<Localizer> localizerOf(const ViewFolder& mapped, int points)
 {
@@ -101,8 +96,8 @@ std::vector<double> judged(const cv::iib::Location& found, const View& truth)
     const cv::Matx33d centre = found.covariance.get_minor<3, 3>(0, 0),
                       turn = found.covariance.get_minor<3, 3>(3, 3);
     return {cv::norm(moved), std::sqrt(cv::trace(centre)), cv::norm(turned) * 180 / CV_PI,
-            std::sqrt(cv::trace(turn)) * 180 / CV_PI, squared(moved, centre), squared(turned, turn),
-            squared(cv::Vec6d(moved[0], moved[1], moved[2], turned[0], turned[1], turned[2]),
+            std::sqrt(cv::trace(turn)) * 180 / CV_PI, squaredOf(moved, centre), squaredOf(turned, turn),
+            squaredOf(cv::Vec6d(moved[0], moved[1], moved[2], turned[0], turned[1], turned[2]),
                     found.covariance)};
 }
 

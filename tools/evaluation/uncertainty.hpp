@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "opencv2/core.hpp"
 
@@ -13,16 +14,25 @@ const double LEVELS[] = {.1, .25, .5, .75, .9, .95, .99};
 //! Chance that a sum of squares of so many normal numbers, two or three, is smaller.
 inline double chanceOf(double squared, int freedom)
 {
-    const double two = 1 - std::exp(-squared / 2);
-    return freedom == 2 ? two
-                        : std::erf(std::sqrt(squared / 2)) -
-                                  std::sqrt(2 * squared / CV_PI) * std::exp(-squared / 2);
+    const double rest = std::exp(-squared / 2);
+    if (freedom == 2 || rest == 0)
+        return 1 - rest;
+    return std::erf(std::sqrt(squared / 2)) - std::sqrt(2 * squared / CV_PI) * rest;
 }
 
-//! How many standard deviations an error is off, squared.
+//! How many standard deviations an error is off, squared: infinite where it is told that there is none.
 template <int N> double squaredOf(const cv::Vec<double, N>& error, const cv::Matx<double, N, N>& covariance)
 {
-    return error.dot(covariance.inv(cv::DECOMP_SVD) * error);
+    cv::Vec<double, N> variances;
+    cv::Matx<double, N, N> axes;
+    cv::eigen(covariance, variances, axes);
+    const cv::Vec<double, N> along = axes * error;
+    double squared = 0;
+    for (int k = 0; k < N; k++)
+        if (along[k] != 0)
+            squared += variances[k] > 0 ? along[k] * along[k] / variances[k]
+                                        : std::numeric_limits<double>::infinity();
+    return squared;
 }
 
 //! The angles by which a direction errs, in the axes of findRelativePose's documentation.
@@ -36,8 +46,8 @@ inline cv::Vec2d alongTangents(const cv::Vec3d& found, const cv::Vec3d& truth)
     axis[shortest] = 1;
     const cv::Vec3d b = cv::normalize(found.cross(axis)), c = found.cross(b);
     const cv::Vec2d along(b.dot(truth), c.dot(truth));
-    const double sine = cv::norm(along);
-    return sine > 0 ? along * (std::atan2(sine, found.dot(truth)) / sine) : along;
+    const double sine = cv::norm(along), angle = std::atan2(sine, found.dot(truth));
+    return sine > 0 ? along * (angle / sine) : cv::Vec2d(angle, 0);  // of the opposite one, whichever way
 }
 
 }  // namespace iib_tools
