@@ -125,7 +125,7 @@ def cost():
 def uncertainty():
     """A curve a quantity over all its data: told chance, and share of the errors that are inside."""
     rows = pd.read_csv(tables.RESULTS / 'uncertainty.csv')
-    levels = list(rows.columns[3:])
+    levels = list(rows.columns[5:])
     figure, axis = plt.subplots(figsize=(WIDTH, 5), layout='constrained')
     for quantity, each in rows.groupby('quantity'):
         shares = each[levels].mul(each['errors'], axis=0).sum() / each['errors'].sum()

@@ -251,20 +251,23 @@ DATA = {'amos_daynight': 'webcams over a day', 'tilde_webcam': 'webcams over a y
 
 
 def summarize_uncertainty(source, target):
-    """Of each quantity and kind of data: how many errors, and which share of them is inside what was told for a level."""
+    """Of each quantity and kind of data: how many pairs or images, in how many something was found, how many errors that gives, and which
+    share of them is inside what was told for a level."""
     found = {}
     for row in read(source):
-        found.setdefault((row['quantity'], row['set']), []).append([int(row['count'])] + [int(row[level]) for level in LEVELS])
+        count = int(row['count'])
+        found.setdefault((row['quantity'], row['set']), []).append([1, count > 0, count] + [int(row[level]) for level in LEVELS])
     for row in read(source.with_name('localization_uncertainty.csv')):
         for what in ('centre', 'rotation'):
-            if row['squared_' + what]:
-                inside = [float(row['squared_' + what]) < limit for limit in LEVELS.values()]
-                found.setdefault((what + ' of Localizer', row['set']), []).append([1, *inside])
+            squared = row['squared_' + what]
+            inside = [squared != '' and float(squared) < limit for limit in LEVELS.values()]
+            found.setdefault((what + ' of Localizer', row['set']), []).append([1, squared != '', squared != '', *inside])
     sums = collections.defaultdict(list)
     for (quantity, name), counts in found.items():
         sums[quantity, DATA.get(name, 'rendered places, other light')] += counts
     lines = [[*key, *map(sum, zip(*counts))] for key, counts in sorted(sums.items(), key=lambda item: ('Localizer' in item[0][0], item[0]))]
-    write(target, ['quantity', 'data', 'errors', *LEVELS], ([*line[:3], *('%.5g' % (n / line[2]) for n in line[3:])] for line in lines))
+    write(target, ['quantity', 'data', 'pairs', 'found', 'errors', *LEVELS],
+          ([*line[:5], *('%.5g' % (n / line[4]) if line[4] else '' for n in line[5:])] for line in lines))
 
 
 OTHERS = {'differences.csv': ('estimators.csv', summarize_differences), 'gains.csv': ('detected_points.csv', summarize_gains), 'curves.csv': ('detected_points.csv', summarize_curves),

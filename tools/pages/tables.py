@@ -425,16 +425,16 @@ def speed_claim():
 
 def sure_claim():
     """The README's sentence on uncertainties."""
-    shares = [100 * float(row['0.95']) for row in rows('uncertainty.csv')]
+    shares = [100 * float(row['0.95']) for row in rows('uncertainty.csv') if row['0.95']]
     return ('- Uncertainties are no guarantee: of errors that should be inside what is told for 95 %%, %.0f to %.0f of 100 were, by kind of data\n'
             '  ([how sure](doc/uncertainty.md)).' % (min(shares), max(shares)))
 
 
 def uncertainty():
-    """How many errors are inside what was told."""
-    return table(['', 'data', 'errors', 'inside 50 %', '95 %', '99 %'],
-                 [[row['quantity'], row['data'], row['errors'], *('%.0f' % (100 * float(row[level])) for level in ('0.5', '0.95', '0.99'))]
-                  for row in rows('uncertainty.csv')])
+    """In how many pairs something was found, and how many errors are inside what was told."""
+    return table(['', 'data', 'pairs', 'found', 'errors', 'inside 50 %', '95 %', '99 %'],
+                 [[row['quantity'], row['data'], row['pairs'], row['found'], row['errors'],
+                   *('%.0f' % (100 * float(row[level])) if row[level] else '–' for level in ('0.5', '0.95', '0.99'))] for row in rows('uncertainty.csv')])
 
 
 def scale():

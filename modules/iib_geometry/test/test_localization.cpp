@@ -226,6 +226,15 @@ TEST_F(Localization, an_unknown_place_and_empty_images_get_no_pose)
                 messageOf([&] { localizer.localize(cv::Mat(SIZE, type, cv::Scalar()), CAMERA); }));
 }
 
+TEST_F(Localization, points_are_checked_before_a_map_is_read_or_made)
+{
+    const std::string told =
+            "keypoints that are looked for are 1 or more, or 0 for as many as the map's images have, not -1";
+    EXPECT_EQ(told, messageOf([&] { Localizer(folder.path("map"), -1); }));
+    EXPECT_EQ(told, messageOf([&] { Localizer(folder.path("gone"), -1); }));
+    EXPECT_EQ(told, messageOf([&] { Localizer(folder.path("gone"), images(), -1); }));
+}
+
 TEST_F(Localization, codes_of_another_descriptor_are_refused)
 {
     for (MapImage& image : map.images)

@@ -8,6 +8,7 @@ import unittest
 import unittest.mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import charts  # noqa: E402
 import localization  # noqa: E402
 import speed  # noqa: E402
 import summaries  # noqa: E402
@@ -90,11 +91,19 @@ class Figures(unittest.TestCase):
     def test_uncertainty(self):
         with tempfile.TemporaryDirectory() as folder:
             source, target = pathlib.Path(folder, 'uncertainty.csv'), pathlib.Path(folder, 'out.csv')
-            source.write_text('set,quantity,count,0.1,0.25,0.5,0.75,0.9,0.95,0.99\nstrecha,points,4,0,0,1,2,3,4,4\nstrecha,points,4,0,0,1,2,3,4,4\n')
+            source.write_text('set,quantity,count,0.1,0.25,0.5,0.75,0.9,0.95,0.99\nstrecha,points,4,0,0,1,2,3,4,4\nstrecha,points,4,0,0,1,2,3,4,4\n'
+                              'strecha,points,0,0,0,0,0,0,0,0\nfacade_31,points,0,0,0,0,0,0,0,0\n')
             pathlib.Path(folder, 'localization_uncertainty.csv').write_text('set,squared_centre,squared_rotation\nroom_31,2.3,11.4\nroom_31,,\n')
             summaries.summarize_uncertainty(source, target)
-            self.assertEqual([line.split(',')[-8:] for line in target.read_text().splitlines()[1:]], [
-                ['8', '0', '0', '0.25', '0.5', '0.75', '1', '1'], ['1', '0', '0', '1', '1', '1', '1', '1'], ['1'] + 7 * ['0']])
+            self.assertEqual([line.split(',')[-10:] for line in target.read_text().splitlines()[1:]], [
+                ['3', '2', '8', '0', '0', '0.25', '0.5', '0.75', '1', '1'], ['1', '0', '0'] + 7 * [''],
+                ['2', '1', '1', '0', '0', '1', '1', '1', '1', '1'], ['2', '1', '1'] + 7 * ['0']])
+            with unittest.mock.patch.object(tables, 'RESULTS', pathlib.Path(folder)):
+                target.replace(source)
+                self.assertIn('| 3 | 2 | 8 | 25 | 100 | 100 |', tables.uncertainty())
+                self.assertIn('| 1 | 0 | 0 | – | – | – |', tables.uncertainty())
+                self.assertIn(', 0 to 100 of 100 were', tables.sure_claim())
+                self.assertIn('<svg', charts.uncertainty())
 
     def test_the_least_time_of_each_instruction_set_counts(self):
         case = '<testcase classname="%s" name="%s" value_param="%s"><properties><property name="min" value="%d"/>' \

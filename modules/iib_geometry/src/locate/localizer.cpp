@@ -32,6 +32,29 @@ Mat gate(const Features& features, const std::vector<Point3d>& points, const Cam
     return mask;
 }
 
+void checkPoints(int points)
+{
+    if (points < 0)
+        CV_Error(Error::StsBadArg, format("keypoints that are looked for are 1 or more, or 0 for as many as "
+                                          "the map's images have, not %d",
+                                           points));
+}
+
+//! What describes images for a map, after all that may be wrong with what is asked of it.
+Ptr<IIB> checkedDescriber(const Map& map, int points, bool lines)
+{
+    checkPoints(points);
+    if (lines)
+        findSegments(Picture());
+    if (lines && map.lines.empty())
+        CV_Error(Error::StsError, "the map has no lines: make it with lines, or look for none");
+    const Ptr<IIB> iib = describerOf(map.orbAndAkaze, points ? points : map.keypoints);
+    for (const MapImage& image : map.images)
+        if (image.codes.cols != iib->descriptorSize())
+            CV_Error(Error::StsError, "the map's codes are not those of this version: make it again");
+    return iib;
+}
+
 std::vector<Mat> codesOf(const Map& map)
 {
     std::vector<Mat> codes;
@@ -43,24 +66,12 @@ std::vector<Mat> codesOf(const Map& map)
 }  // namespace
 
 ImageLocator::ImageLocator(const Map& map, int points, bool lines)
-    : map_(map), lines_(lines), iib_(describerOf(map.orbAndAkaze, points ? points : map.keypoints)),
+    : map_(map), lines_(lines), iib_(checkedDescriber(map, points, lines)),
       matcher_(HierarchicalMatcher::createRecommended()), votes_(codesOf(map)), pictures_(map.images.size()),
       mapError_(mapError(map))
 {
-    if (points < 0)
-        CV_Error(Error::StsBadArg, format("keypoints that are looked for are 1 or more, or 0 for as many as "
-                                          "the map's images have, not %d",
-                                           points));
-    if (lines)
-        findSegments(Picture());
-    if (lines && map.lines.empty())
-        CV_Error(Error::StsError, "the map has no lines: make it with lines, or look for none");
     for (const MapImage& image : map.images)
-    {
-        if (image.codes.cols != iib_->descriptorSize())
-            CV_Error(Error::StsError, "the map's codes are not those of this version: make it again");
         depths_.push_back(medianDistance(inCamera(map.seenBy(image), image.cameraFromWorld)));
-    }
 }
 
 //! The images of the map nearest to a pose.
@@ -169,14 +180,16 @@ struct Localizer::Impl
 };
 
 Localizer::Localizer(const std::string& map, int points, bool lines)
-    : impl_(std::make_unique<const Impl>(readMap(map), points, lines))
 {
+    checkPoints(points);  // before the map is read
+    impl_ = std::make_unique<const Impl>(readMap(map), points, lines);
 }
 
 Localizer::Localizer(const std::string& model, const ImageReader& images, int points,
         const MappingReport& report, const MapOptions& options)
-    : impl_(std::make_unique<const Impl>(makeMap(model, images, options, report), points, options.lines))
 {
+    checkPoints(points);  // before the map is made
+    impl_ = std::make_unique<const Impl>(makeMap(model, images, options, report), points, options.lines);
 }
 
 Localizer::~Localizer() = default;

@@ -35,10 +35,11 @@ MapFolder::MapFolder(const std::string& folder)
               return fs::exists(systemName(endOfLinks(folder) + "/" + mark), error);
           };
           if (isUnfinished(name) || (isOneOf(EARLIER, name) && has(EARLIER[0])))
+          {
               replaced_.push_back(name);
-          else
-              return isOneOf(OWN, name) && (has(OWN[0]) || has(EARLIER[0]));
-          return true;
+              return true;
+          }
+          return isOneOf(OWN, name) && (has(OWN[0]) || has(EARLIER[0]));  // a COLMAP model alone is no map
       })
 {
 }

@@ -53,7 +53,8 @@ struct CV_EXPORTS Camera
     @throws cv::Exception as project(), and for a size of another shape or without pixels. */
     Camera resized(const Size& to) const;
 
-    //! The camera of images that were turned upright, as EXIF's orientation asks, 1 to 8; of mirrored ones itself.
+    /** @brief The camera of images that were turned upright, as EXIF's orientation asks, 1 to 8; of mirrored ones itself.
+    @throws cv::Exception (StsBadArg) for another orientation. */
     Camera upright(int orientation) const;
 };
 
@@ -165,13 +166,14 @@ public:
     @param points keypoints that are looked for in an image; 0: as many as in the map's images.
     @param lines whether poses are refined by lines too: by the distances of the ends of a line's projection from the segment
     that shows it, of a map that was made with them.
-    @throws cv::Exception for a folder without a map, for a damaged one, and for lines of a map without them or without line_descriptor. */
+    @throws cv::Exception for less than 0 points, a folder without a map, a damaged one or one of another version's codes, and for lines
+    of a map without them or without line_descriptor. */
     explicit Localizer(const std::string& map, int points = 1000, bool lines = false);
 
     /** @brief Makes a map in memory.
     @param model, images, report, options as buildMap takes them; with options.lines, lines refine poses.
     @param points keypoints that are looked for in an image; 0: as many as in the map's images.
-    @throws cv::Exception as buildMap. */
+    @throws cv::Exception for less than 0 points, and as buildMap. */
     Localizer(const std::string& model, const ImageReader& images, int points = 1000,
             const MappingReport& report = MappingReport(), const MapOptions& options = MapOptions());
     ~Localizer();
@@ -188,7 +190,8 @@ public:
     only points within a tenth of the longer side from where the prior has them. If that gives no pose, the image is looked for
     everywhere. Null: everywhere at once.
     @param orientation, mask as of Photograph.
-    @throws cv::Exception for an image of another size or type, or a camera of an unknown model. */
+    @throws cv::Exception for an image or a mask of another size or type, another orientation, and a camera of an unknown model or with
+    parameters that the model does not have. */
     Location localize(InputArray image, const Camera& camera, const Affine3d* prior = nullptr,
             int orientation = 1, InputArray mask = noArray()) const;
 
