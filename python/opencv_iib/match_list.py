@@ -89,6 +89,8 @@ class _Hdf5(contextlib.AbstractContextManager[Any]):
         new = not os.path.exists(path) or not os.path.getsize(path)
         try:
             self._file = h5py.File(path, 'w' if new else 'a')
+        except BlockingIOError:
+            raise BlockingIOError(f'{path} is being read or written by another process') from None
         except OSError as e:
             raise OSError(f'{path} is no HDF5 file that can be written: {e}') from None
         if new:

@@ -3,6 +3,7 @@ import csv
 import os
 import shutil
 import struct
+import unittest
 import zlib
 from unittest import mock
 
@@ -16,7 +17,7 @@ from opencv_iib.colmap.images import gps_place
 from opencv_iib.measure import match_images
 from support import optional, run_command
 
-h5py = optional('h5py')
+fcntl, h5py = optional('fcntl'), optional('h5py')
 
 
 class Lists(Collection):
@@ -68,6 +69,15 @@ class Lists(Collection):
         self.match(self.folder / 'mine.h5', status=1)
         (self.folder / 'text.h5').write_text('precious')
         self.match(self.folder / 'text.h5', status=1)
+
+    @unittest.skipIf(h5py is None or fcntl is None, 'no h5py, or no such locks on this system')
+    def test_a_file_that_another_process_has_open(self):
+        out = self.folder / 'x.h5'
+        h5py.File(out, 'w').close()
+        with open(out, 'rb') as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            with self.assertRaisesRegex(BlockingIOError, 'x.h5 is being read or written by another process'):
+                match_list._Hdf5(str(out))
 
     def test_images_that_cannot_be_read_and_mistakes(self):
         (self.images / 'broken.png').write_bytes(b'no image')
