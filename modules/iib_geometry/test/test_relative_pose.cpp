@@ -149,6 +149,44 @@ TEST(RelativePose, covariance_foretells_the_errors)
     EXPECT_LE(far, .02 * trials);
 }
 
+// Few matches tell their own noise badly: five numbers are fitted to them, and a narrow scale is right of many poses.
+TEST(RelativePose, covariance_foretells_the_errors_of_few_matches)
+{
+    const double median = 4.351, most = 11.07,
+                 nearlyAll = 15.09;  // of chi-squared with five degrees of freedom
+    for (int count : {10, 15, 25})
+        for (double noise : {.1, .3, 1.})
+        {
+            RNG random(40);
+            const int trials = 100;
+            int found = 0, inside[3] = {};
+            for (int trial = 0; trial < trials; trial++)
+            {
+                const RelativePose truth = randomPose(random, .2);
+                const Views views(random, truth, count, 0, noise);
+                RelativePose pose;
+                Mat covariance;
+                if (!findRelativePose(views.points1, views.points2, CAMERA, CAMERA, pose.R, pose.t, noArray(),
+                            0, covariance))
+                    continue;
+                found++;
+                const Vec<double, 5> error = errorOf(pose, truth);
+                const double squared = error.dot(Matx<double, 5, 5>(covariance).inv() * error);
+                inside[0] += squared < median;
+                inside[1] += squared < most;
+                inside[2] += squared < nearlyAll;
+            }
+            EXPECT_GE(found, count == 10 ? .5 * trials : .95 * trials) << count << ' ' << noise;
+            EXPECT_GE(inside[0], .5 * found) << count << ' ' << noise;
+            EXPECT_GE(inside[1], (noise < 1 ? .87 : count == 10 ? .7 : .82) * found) << count << ' ' << noise;
+            EXPECT_GE(inside[2], (noise < 1            ? .92
+                                         : count == 10 ? .76
+                                                       : .87) *
+                                         found)
+                    << count << ' ' << noise;
+        }
+}
+
 //! The same error in all matches of a part of the image, as a shadow makes it.
 TEST(RelativePose, covariance_knows_of_errors_that_neighbours_share)
 {

@@ -36,9 +36,10 @@ Matx33d cameraMatrix(InputArray matrix, const char* name)
     return K;
 }
 
-//! Why the matches tell no pose; empty if they do.
-std::string reasonAgainst(
-        const EpipolarProblem& problem, const Fit<EpipolarProblem>& fit, const Verdict& verdict)
+/** Why the matches tell no pose; empty if they do.
+@param limit the distance, pixels, within which they agree by the least chance. */
+std::string reasonAgainst(const EpipolarProblem& problem, const Fit<EpipolarProblem>& fit,
+        const Verdict& verdict, double& limit)
 {
     if (fit.squared.empty())
         return "no pose agrees with five matches or more";
@@ -46,12 +47,24 @@ std::string reasonAgainst(
     for (double scales : {1.5, 3., 6., 12.})
         limits.push_back(scales * std::max(fit.scale, REFINED));
     if (verdict.logFalseAlarms(fit.squared, errorsOfWrongMatches(problem, fit.model), Verdict::FROM_LINE, 5,
-                limits) > Verdict::CERTAIN)
+                limits, &limit) > Verdict::CERTAIN)
         return format(
                 "the pose that agrees best has matches in %d places of the image, no more than chance may "
                 "give: the images may not show the same",
                 verdict.places(within(limits[1], fit.squared)));
     return "";
+}
+
+//! Polishes the pose under a wider scale where few matches are within the one that they told: it may be too narrow.
+void polishFew(const EpipolarProblem& problem, double scale, Fit<EpipolarProblem>& fit)
+{
+    const int few = 30;
+    const Verdict::Marks near = within(3 * fit.scale, fit.squared);
+    if (std::count(near.begin(), near.end(), true) >= few)
+        return;
+    fit.scale = scale;
+    polish(problem, scale, 1e-9, fit.model);
+    problem.squaredErrors(fit.model, fit.squared);
 }
 
 //! Whether another pose explains the matches as well and is none that the errors tell of, as the matches around the pose tell them.
@@ -100,8 +113,13 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
                 "findRelativePose: scale, in pixels, must be finite and over 0, or 0, to be chosen");
     const EpipolarProblem problem(first, second, cameraMatrix(cameraMatrix1, "cameraMatrix1"),
             cameraMatrix(cameraMatrix2, "cameraMatrix2"));
-    const Fit<EpipolarProblem> fit =
-            robustFit(problem, scale > 0 ? std::clamp(scale, LEAST_SCALE, MOST_SCALE) : 0);
+    Fit<EpipolarProblem> fit = robustFit(problem, scale > 0 ? std::clamp(scale, LEAST_SCALE, MOST_SCALE) : 0);
+    const Verdict verdict(first, second);
+    double limit = 0;
+    std::string why = reasonAgainst(problem, fit, verdict, limit);
+    const double wide = limit < 6 * fit.scale ? fit.scale : limit / 3;
+    if (why.empty() && scale == 0)
+        polishFew(problem, wide, fit);
     if (inliers.needed())
     {
         Mat agree(first.rows, 1, CV_8U, Scalar(0));
@@ -109,11 +127,10 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
         std::copy(near.begin(), near.end(), agree.begin<uchar>());
         agree.copyTo(inliers);
     }
-    const Verdict verdict(first, second);
-    std::string why = reasonAgainst(problem, fit, verdict);
     Square<EpipolarProblem::Step> errors;
     if (why.empty())
     {
+        fit.scale = wide;  // errors with long tails are told as large as they are
         errors = covarianceOf(problem, fit, partsOf(first), LARGEST_DEVIATION);
         if (!tellsDirection(problem, fit, verdict) || hasRival(fit, errors))
             for (int k = 3; k < 5; k++)

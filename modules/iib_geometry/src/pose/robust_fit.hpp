@@ -244,8 +244,9 @@ template <class Problem> Fit<Problem> search(const Problem& problem, double scal
 
 /** Whether the errors within a distance are those of right matches: most of them far below it, and few others around it. Else matches
 err by more, or are wrong.
+@param parameters of the model: so many errors are small because it was fitted to them.
 @param scale that the errors within it tell. */
-inline bool settles(const std::vector<double>& squared, double distance, double& scale)
+inline bool settles(const std::vector<double>& squared, double distance, int parameters, double& scale)
 {
     const double most = .3;                  // of the distance: the median error
     const double wider = 4, mostMore = 1.5;  // of those within the distance are within so many of it
@@ -258,13 +259,14 @@ inline bool settles(const std::vector<double>& squared, double distance, double&
             near.push_back(error);
         around += error < square(wider * distance);
     }
-    if (near.empty())
+    const double free = (double)near.size() - parameters;
+    if (free <= 0)
         return false;
     const auto middle = near.begin() + near.size() / 2;
     std::nth_element(near.begin(), middle, near.end());
-    const double median = std::sqrt(*middle);
+    const double median = std::sqrt(*middle * near.size() / free);
     scale = std::max(1.4826 * median, least);
-    return median < most * distance && around < mostMore * near.size();
+    return median < most * distance && around - parameters < mostMore * free;
 }
 
 /** The model that most matches agree with. The same in every run.
@@ -280,7 +282,7 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem, double s
     for (; !settled && narrow <= problem.mostScale(); narrow *= settled ? 1 : 2)
     {
         fit = search(problem, narrow, fewTrials);
-        settled = settles(fit.squared, FARTHEST_OF_CHOICE * narrow, told);
+        settled = settles(fit.squared, FARTHEST_OF_CHOICE * narrow, problem.parameters(), told);
     }
     if (!settled)
         narrow = 2 * refined;
@@ -288,7 +290,7 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem, double s
         fit = search(problem, narrow, mostTrials);
     if (fit.squared.empty())
         return fit;
-    if (scale == 0 && !settles(fit.squared, FARTHEST_OF_CHOICE * narrow, told))
+    if (scale == 0 && !settles(fit.squared, FARTHEST_OF_CHOICE * narrow, problem.parameters(), told))
         told = narrow;
     fit.scale = told;
     polish(problem, fit.scale, finely, fit.model);

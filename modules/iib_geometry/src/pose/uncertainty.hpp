@@ -8,7 +8,8 @@ namespace cv::iib {
 
 /* How far off a fitted model may be. Matches beside each other err together, since their patches overlap and since a shadow moves
 them all, so that their number says little. The covariance has three parts:
-- what the matches' own noise makes of it, as if they were independent: that of an M-estimator (Huber 1981, equation 7.6.2);
+- what the matches' own noise makes of it, as if they were independent: that of an M-estimator (Huber 1981, equation 7.6.2), with
+  a factor for few matches;
 - how much the model changes when a part of the image is left out (delete-a-group jackknife; Shao and Tu 1995, section 2.3), with
   one step of Newton's from the model in place of a new fit, and a factor for the few parts;
 - what a shift that all matches of a part have in common makes of it, which leaving out parts shows with much chance: SHARED of the
@@ -99,7 +100,9 @@ Square<typename Problem::Step> covarianceOf(
     }
     const double count = (double)rows.size(), freedom = std::max(count - problem.parameters(), 1.);
     const double bend = std::max(slope / weights, leastBend), meanSlope = bend * weights / count;
-    const double noise2 = std::max(influence2 / freedom / square(meanSlope), square(LEAST_NOISE));
+    // By F's quantiles over those of chi-squared, for 95 % to be inside whatever the few matches tell of their noise.
+    const double few = (std::max(freedom, 3.) + 2) / (std::max(freedom, 3.) - 2);
+    const double noise2 = std::max(influence2 / freedom / square(meanSlope) * few, square(LEAST_NOISE));
 
     struct Part
     {

@@ -140,12 +140,19 @@ double Verdict::logFalseAlarms(const Marks& all, const Marks& agreeing, int samp
 }
 
 double Verdict::logFalseAlarms(const std::vector<double>& squared, const std::vector<double>& wrong,
-        Distance distance, int sampleSize, const std::vector<double>& limits) const
+        Distance distance, int sampleSize, const std::vector<double>& limits, double* best) const
 {
     double least = std::numeric_limits<double>::infinity();
     for (double limit : limits)
-        least = std::min(least, logFalseAlarms(Marks(squared.size(), true), within(limit, squared),
-                                        sampleSize, chance(distance, limit, wrong)));
+    {
+        const double alarms = logFalseAlarms(Marks(squared.size(), true), within(limit, squared), sampleSize,
+                chance(distance, limit, wrong));
+        if (alarms >= least)
+            continue;
+        least = alarms;
+        if (best)
+            *best = limit;
+    }
     return least + std::log10((double)limits.size());
 }
 

@@ -29,9 +29,11 @@ public:
     @param squared errors of the matches, pixels^2.
     @param wrong such errors of wrong matches: see errorsOfWrongMatches().
     @param sampleSize matches that give a model.
-    @param limits to try, pixels. */
+    @param limits to try, pixels.
+    @param best if not null: that limit. */
     double logFalseAlarms(const std::vector<double>& squared, const std::vector<double>& wrong,
-            Distance distance, int sampleSize, const std::vector<double>& limits) const;
+            Distance distance, int sampleSize, const std::vector<double>& limits,
+            double* best = nullptr) const;
 
     /** Chance that a wrong match is so near: as of points that are anywhere, or, where points gather, as those errors tell. */
     double chance(Distance distance, double limit, const std::vector<double>& wrong) const;
