@@ -18,6 +18,7 @@ using cv::iib::HierarchicalMatcher;
 using cv::iib::IIBDescriptorExtractor;
 
 const double MOST_MOVED = .06;  // of a corner, in parts of the image's size
+const int BORDER = 20;          // pixels beside a rectified image's border, where nothing is looked for
 const double FAR = 3;           // pixels from the truth: a wrong match, whose place no deviation tells
 
 struct Matched
@@ -26,13 +27,14 @@ struct Matched
     std::vector<cv::DMatch> matches;
 };
 
-Matched matched(const cv::Mat& first, const cv::Mat& second, int points)
+Matched matched(const cv::Mat& first, const cv::Mat& second, int points, const cv::Mat& mask1 = cv::Mat(),
+        const cv::Mat& mask2 = cv::Mat())
 {
     const cv::Ptr<IIBDescriptorExtractor> extractor = IIBDescriptorExtractor::createRecommended(points);
     Matched m;
     cv::Mat codes1, codes2;
-    extractor->detectAndCompute(first, cv::noArray(), m.first, codes1);
-    extractor->detectAndCompute(second, cv::noArray(), m.second, codes2);
+    extractor->detectAndCompute(first, mask1, m.first, codes1);
+    extractor->detectAndCompute(second, mask2, m.second, codes2);
     HierarchicalMatcher::createRecommended()->match(codes1, codes2, m.matches);
     return m;
 }
@@ -59,13 +61,40 @@ private:
     Fields pair;
 };
 
-void judgePose(const ViewPair& pair, int points, const Told& told)
+//! A pair as one camera sees it, with masks.
+struct Stereo
 {
-    const cv::Mat first = readImage(pair.referenceFile, cv::IMREAD_GRAYSCALE),
-                  second = readImage(pair.targetFile, cv::IMREAD_GRAYSCALE);
-    Matched m = matched(first, second, points);
+    ViewPair pair;
+    cv::Mat first, second, mask1, mask2;
+};
+
+//! Both views as one camera would see them, turned so that they look across the way between them.
+Stereo rectified(const Stereo& stereo)
+{
+    Stereo turned = {stereo.pair, {}, {}, {}, {}};
+    const cv::Matx33d& camera = stereo.pair.referenceCamera;
+    const Rectification turns = rectificationOf(stereo.pair.rotation, stereo.pair.translation);
+    const cv::Size size = stereo.first.size();
+    const auto see = [&](const cv::Mat& image, const cv::Matx33d& seen, cv::Mat& result, cv::Mat& mask) {
+        cv::warpPerspective(image, result, seen, size, cv::INTER_CUBIC);
+        cv::warpPerspective(cv::Mat(image.size(), CV_8U, cv::Scalar(255)), mask, seen, size);
+        cv::erode(mask, mask, cv::Mat(), cv::Point(-1, -1), BORDER, cv::BORDER_CONSTANT, cv::Scalar(0));
+    };
+    see(stereo.first, camera * turns.first * camera.inv(), turned.first, turned.mask1);
+    see(stereo.second, camera * turns.second * stereo.pair.targetCamera.inv(), turned.second, turned.mask2);
+    turned.pair.set += " rectified";
+    turned.pair.targetCamera = camera;
+    turned.pair.rotation = cv::Matx33d::eye();
+    turned.pair.translation = turns.t;
+    return turned;
+}
+
+void judgePose(const Stereo& stereo, int points, const Told& told)
+{
+    const ViewPair& pair = stereo.pair;
+    Matched m = matched(stereo.first, stereo.second, points, stereo.mask1, stereo.mask2);
     cv::Mat points1, points2, R, t, covariance;
-    cv::iib::propagateMatches(first, m.first, second, m.second, m.matches, points1, points2);
+    cv::iib::propagateMatches(stereo.first, m.first, stereo.second, m.second, m.matches, points1, points2);
     std::vector<double> rotation, direction;
     if (cv::iib::findRelativePose(points1, points2, pair.referenceCamera, pair.targetCamera, R, t,
                 cv::noArray(), 0, covariance))
@@ -137,10 +166,19 @@ int uncertainty(const Options& options, const std::vector<ImagePair>& pairs)
     std::vector<Task> tasks;
     for (const ViewPair& pair : findViewPairs(options.roots))
     {
-        const Fields key = {pair.set, pair.sequence, pair.target};
-        if (!table.has({pair.set, pair.sequence, pair.target, "direction of findRelativePose"}))
-            tasks.push_back({pair.set + "/" + pair.sequence + "/" + pair.target,
-                    [&options, &table, pair, key] { judgePose(pair, options.points, Told(table, key)); }});
+        if (table.has({pair.set, pair.sequence, pair.target, "direction of findRelativePose"}))
+            continue;
+        const auto judge = [&](const Stereo& stereo) {
+            judgePose(stereo, options.points,
+                    Told(table, {stereo.pair.set, stereo.pair.sequence, stereo.pair.target}));
+        };
+        tasks.push_back({pair.set + "/" + pair.sequence + "/" + pair.target, [pair, judge] {
+                             const Stereo stereo = {pair, readImage(pair.referenceFile, cv::IMREAD_GRAYSCALE),
+                                     readImage(pair.targetFile, cv::IMREAD_GRAYSCALE), {}, {}};
+                             if (pair.sameLight)
+                                 judge(rectified(stereo));
+                             judge(stereo);
+                         }});
     }
     for (size_t i = 0; i < pairs.size(); i++)
     {

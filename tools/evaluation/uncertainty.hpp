@@ -50,4 +50,22 @@ inline cv::Vec2d alongTangents(const cv::Vec3d& found, const cv::Vec3d& truth)
     return sine > 0 ? along * (angle / sine) : cv::Vec2d(angle, 0);  // of the opposite one, whichever way
 }
 
+//! Turns of two cameras after which R = I, and t, of length 1, along the x axis.
+struct Rectification
+{
+    cv::Matx33d first, second;
+    cv::Vec3d t;
+};
+
+//! Of cameras with a way between them that is not the way they look. @param R, t from the first's axes to the second's
+inline Rectification rectificationOf(const cv::Matx33d& R, const cv::Vec3d& t)
+{
+    const cv::Vec3d way = cv::normalize(-(R.t() * t)),
+                    ahead = cv::Vec3d(0, 0, 1) + R.t() * cv::Vec3d(0, 0, 1);
+    const double side = way[0] < 0 ? -1 : 1;
+    const cv::Vec3d x = side * way, y = cv::normalize(ahead.cross(x)), z = x.cross(y);
+    const cv::Matx33d turn(x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2]);
+    return {turn, turn * R.t(), cv::Vec3d(-side, 0, 0)};
+}
+
 }  // namespace iib_tools

@@ -62,4 +62,26 @@ TEST(Uncertainty, directions_err_along_documented_axes)
     }
 }
 
+TEST(Uncertainty, rectified_cameras_see_points_in_one_row)
+{
+    cv::RNG random(4);
+    for (double side : {-1., 1.})
+        for (int trial = 0; trial < 20; trial++)
+        {
+            cv::Vec3d turned, X;
+            random.fill(turned, cv::RNG::UNIFORM, -.3, .3);
+            random.fill(X, cv::RNG::UNIFORM, 4, 8);
+            const cv::Matx33d R = cv::Affine3d(turned).rotation();
+            const cv::Vec3d t(side, random.uniform(-.4, .4), random.uniform(-.4, .4));
+            const Rectification turns = rectificationOf(R, t);
+            for (const cv::Matx33d& turn : {turns.first, turns.second})
+                EXPECT_LT(
+                        cv::norm(turn * turn.t() - cv::Matx33d::eye()) + std::abs(cv::determinant(turn) - 1),
+                        1e-12);
+            EXPECT_LT(cv::norm(turns.first * X + cv::norm(t) * turns.t - turns.second * (R * X + t)), 1e-12);
+            EXPECT_EQ(cv::Vec3d(side, 0, 0), turns.t);
+            EXPECT_GT((turns.first * cv::Vec3d(0, 0, 1))[2], .8) << "still ahead";
+        }
+}
+
 }  // namespace
