@@ -160,6 +160,52 @@ TEST(Alignment, refuses_pictures_that_share_two_parts_alone)
     }
 }
 
+//! What shows in one of the images alone, by the other's mask or its black sky, could not agree.
+TEST(Alignment, finds_a_part_that_is_all_that_both_images_show)
+{
+    const Mat reference = picture(1);
+    const Rect part(150, 80, 126, 95);  // a tenth
+    Mat mask = Mat::zeros(SIZE, CV_8U), night = Mat::zeros(SIZE, CV_8U), transform, error;
+    mask(part) = 1;
+    reference(part).copyTo(night(part));
+    night *= .6;
+    const auto expectFound = [&](const Mat& first, const Mat& second, int model, const Mat& allowed) {
+        String reason;
+        ASSERT_TRUE(ImageAligner::create(first, model)
+                            ->align(second, transform, error, noArray(), &reason, allowed))
+                << reason;
+        EXPECT_LT(cornerError(transform, Matx33d::eye()), 3 * cv::norm(error, NORM_INF)) << model;
+    };
+    for (int model : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE, ALIGN_HOMOGRAPHY})
+    {
+        expectFound(reference, inOtherLight(reference), model, mask);
+        expectFound(reference, night, model, Mat());
+        expectFound(night, reference, model, Mat());
+    }
+}
+
+//! A caption is no picture.
+TEST(Alignment, refuses_a_logo_that_is_all_that_an_image_shows)
+{
+    const Rect part(10, 10, 80, 80);
+    Mat transform;
+    for (bool noisy : {false, true})  // noise has points, too
+    {
+        Mat black = Mat::zeros(SIZE, CV_8U), other = picture(12);
+        for (const Mat& image : {black, other})
+            picture(13)(part).copyTo(image(part));
+        if (noisy)
+            black = inOtherLight(black);
+        for (int model : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE, ALIGN_HOMOGRAPHY})
+        {
+            String reason;
+            EXPECT_FALSE(alignImages(other, black, transform, model, noArray(), noArray(), &reason)) << model;
+            EXPECT_NE(reason.find("a logo"), String::npos) << reason;
+            EXPECT_FALSE(alignImages(black, other, transform, model)) << model;
+        }
+    }
+}
+
 /** Squares of another depth, by a few pixels: the transform of one depth is as wrong of the other. Above the working size as well, where
 matches of one depth alone are refined. */
 TEST(Alignment, tells_what_a_part_of_the_images_is_beside_by)

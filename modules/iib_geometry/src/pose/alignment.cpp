@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "opencv2/iib/alignment.hpp"
 
-#include "opencv2/imgproc.hpp"
 #include "parallax.hpp"
 #include "planar_problem.hpp"
 #include "points.hpp"
+#include "spread.hpp"
 #include "uncertainty.hpp"
 #include "verdict.hpp"
 #include "working_pair.hpp"
@@ -14,10 +14,10 @@ namespace {
 
 const double LEAST_SCALE = .25;   // by which matches count as agreeing, working pixels
 const double LEAST_SPREAD = .12;  // of what has points, that the agreeing matches span: a logo spans less
+const double LEAST_WHOLE = .05;   // of what both images have, whether it has points or not
 /* Of the cells that matches of any points would be in, those that agreeing ones are in. Captions and logos at two ends of a picture
 have .2 at most, pairs under other light .41 at least. */
 const double LEAST_SCATTER = .33;
-const int CELLS_ACROSS = 8;
 const double RICHER = 1.25;  // times as many places agree with a model that is true
 const double MOST_PARALLAX =
         .25;  // of the places that agree with the transform may move as if the camera had moved
@@ -85,58 +85,6 @@ Mat deviationsOf(const Aligned& aligned, const AlignedPoints& points, const Size
                         std::hypot(std::sqrt(2) * COMMON * aligned.fit.scale, beside));
     return deviations;
 }
-
-double areaOf(const std::vector<Point2f>& points)
-{
-    std::vector<Point2f> hull;
-    if (points.size() < 3)
-        return 0;
-    convexHull(points, hull);
-    return contourArea(hull);
-}
-
-//! Whether the agreeing matches are all over what has points in both images.
-struct Spread
-{
-    double area;     //!< that they span, over that of the points
-    double scatter;  //!< cells that they are in, over those in which as many of the points would be
-
-    Spread(const Aligned& aligned, const AlignedPoints& points, const Size& size)
-    {
-        std::vector<Point2f> agreeing, common;
-        for (size_t i = 0; i < aligned.agree.size(); i++)
-            if (aligned.agree[i])
-                agreeing.push_back(Point2f(points.reference.at<Point2d>((int)i)));
-        const Matx33d toImage = aligned.problem.inPixels(aligned.fit.model).inv();
-        for (const KeyPoint& keypoint : points.keypoints)
-        {
-            const Vec3d there = toImage * Vec3d(keypoint.pt.x, keypoint.pt.y, 1);
-            if (Rect2d(Point2d(), Size2d(size)).contains({there[0] / there[2], there[1] / there[2]}))
-                common.push_back(keypoint.pt);
-        }
-        const double all = areaOf(common);
-        area = all > 0 ? areaOf(agreeing) / all : 0;
-        const Rect box = boundingRect(common);
-        const std::vector<int> matches = countsOfCells(agreeing, box), of = countsOfCells(common, box);
-        double expected = 0;
-        for (int count : of)
-            expected += 1 - std::pow(1 - (double)count / std::max<size_t>(common.size(), 1), agreeing.size());
-        scatter = (double)(matches.size() - std::count(matches.begin(), matches.end(), 0)) /
-                  std::max(expected, 1.);
-    }
-
-private:
-    static std::vector<int> countsOfCells(const std::vector<Point2f>& points, const Rect& box)
-    {
-        std::vector<int> counts(CELLS_ACROSS * CELLS_ACROSS);
-        const auto cell = [](float place, int length) {
-            return std::clamp((int)(place / std::max(length, 1) * CELLS_ACROSS), 0, CELLS_ACROSS - 1);
-        };
-        for (const Point2f& p : points)
-            counts[cell(p.y - box.y, box.height) * CELLS_ACROSS + cell(p.x - box.x, box.width)]++;
-        return counts;
-    }
-};
 
 std::vector<Attempt> attemptsFor(const Size& first, const Size& second, int model)
 {
@@ -206,7 +154,7 @@ struct Judgement
     bool isLast;          //!< whether another attempt can say nothing else
 };
 
-Judgement judge(const Aligned& aligned, const AlignedPoints& points, int model, const Size& size)
+Judgement judge(const Aligned& aligned, const AlignedPoints& points, int model, const WorkingPair& pair)
 {
     if (aligned.fit.squared.empty())
         return {"the images have too few matches", false};
@@ -220,8 +168,8 @@ Judgement judge(const Aligned& aligned, const AlignedPoints& points, int model, 
                        "the images may not show the same",
                         aligned.count(), aligned.problem.size()),
                 false};
-    const Spread spread(aligned, points, size);
-    if (spread.area < LEAST_SPREAD)
+    const Spread spread(points, aligned.agree, aligned.problem.inPixels(aligned.fit.model), pair);
+    if (spread.area < LEAST_SPREAD || spread.whole < LEAST_WHOLE)
         return {format("the images share %.0f %% of what both could show and nothing else: a logo, a "
                        "caption?",
                         100 * spread.area),
@@ -253,7 +201,7 @@ public:
             const WorkingPair pair(reference_, second, attempt.workingSize, model_ == ALIGN_TRANSLATION);
             AlignedPoints points = pair.match(attempt.rotated);
             Aligned aligned(points, model_);
-            const Judgement now = judge(aligned, points, model_, pair.size());
+            const Judgement now = judge(aligned, points, model_, pair);
             const double beside =  // of all matches: only those that agree are refined
                     error.needed() && now.against.empty() ? deviationBeside(aligned, points) : 0;
             if (now.against.empty() && pair.isReduced())
@@ -263,7 +211,7 @@ public:
                 const Aligned again(fine, model_);
                 // Else they are too blurred, or sharp in a part alone.
                 if (again.count() > LEAST_REFINED * aligned.count() &&
-                        judge(again, fine, model_, pair.size()).against.empty())
+                        judge(again, fine, model_, pair).against.empty())
                 {
                     aligned = again;
                     points = fine;
@@ -281,7 +229,7 @@ public:
                 break;
             Mat(pair.inPixels(aligned.problem.inPixels(aligned.fit.model))).copyTo(transform);
             if (error.needed())
-                Mat(deviationsOf(aligned, points, pair.size(), beside) * pair.inPixels(1)).copyTo(error);
+                Mat(deviationsOf(aligned, points, pair.size(1), beside) * pair.inPixels(1)).copyTo(error);
             break;
         }
         if (matches.needed())

@@ -16,12 +16,6 @@ Matx33d enlarging(int factor)
     return Matx33d(factor, 0, shift, 0, factor, shift, 0, 0, 1);
 }
 
-Point2d moved(const Matx33d& by, const Point2d& point)
-{
-    const Vec3d q = by * Vec3d(point.x, point.y, 1);
-    return {q[0] / q[2], q[1] / q[2]};
-}
-
 //! Of a type that can be matched; others are left to the extractor, which says what is wrong with them.
 bool isReducible(const Mat& image)
 {
@@ -43,7 +37,7 @@ Mat reduced(const Mat& image, int factor)
 Point2d rowOf(const Mat& points, int i) { return points.at<Vec2d>(i); }
 
 //! Moves both images' points, N x 2, CV_64F.
-Mat moved(const Matx33d& by, const Mat& points)
+Mat allMoved(const Matx33d& by, const Mat& points)
 {
     Mat result = points.clone();
     for (int i = 0; i < points.rows; i++)
@@ -52,6 +46,12 @@ Mat moved(const Matx33d& by, const Mat& points)
 }
 
 }  // namespace
+
+Point2d moved(const Matx33d& by, const Point2d& point)
+{
+    const Vec3d q = by * Vec3d(point.x, point.y, 1);
+    return {q[0] / q[2], q[1] / q[2]};
+}
 
 WorkingImage::WorkingImage(const Mat& image, const Mat& mask) : full_(image)
 {
@@ -71,6 +71,13 @@ int WorkingImage::factorFor(int workingSize) const
 int WorkingImage::largestFactor() const
 {
     return isReducible(full_) ? std::max(std::min(full_.rows, full_.cols) / LEAST_SIDE, 1) : 1;
+}
+
+bool WorkingImage::shows(const Point2d& point, int factor) const
+{
+    if (!Rect2d(Point2d(), Size2d(size(factor))).contains(point))
+        return false;
+    return mask_.empty() || mask_.at<uchar>(Point(moved(enlarging(factor), point)));
 }
 
 //! What is left at the right and below a multiple of the factor is left out.
@@ -115,23 +122,22 @@ AlignedPoints WorkingPair::match(bool rotated) const
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
     const WorkingImage::Described &first = images_[0]->described(factors_[0]),
                                   &second = images_[1]->described(factors_[1]);
-    AlignedPoints result = {Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), first.keypoints};
-    std::vector<KeyPoint> keypoints = second.keypoints;
+    AlignedPoints result = {Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {first.keypoints, second.keypoints}};
     std::vector<DMatch> matches;
     if (!rotated)
         matcher->match(first.codes, second.codes, matches);
-    else if (!keypoints.empty() && !result.keypoints.empty())
+    else if (!result.keypoints[0].empty() && !result.keypoints[1].empty())
     {
         const Ptr<IIBDescriptorExtractor> extractor = IIBDescriptorExtractor::createRecommended(FEATURES);
         extractor->setOrientation(IIBDescriptorExtractor::ORIENTATION_KEYPOINT);
         matchRotated(images_[0]->pixels(factors_[0]), images_[1]->pixels(factors_[1]), extractor, matcher,
-                result.keypoints, keypoints, matches);
+                result.keypoints[0], result.keypoints[1], matches);
     }
     if (matches.empty())
         return result;
     Mat points1, points2;
-    refineMatches(images_[0]->prepared(factors_[0]), result.keypoints, images_[1]->prepared(factors_[1]),
-            keypoints, matches, points1, points2);
+    refineMatches(images_[0]->prepared(factors_[0]), result.keypoints[0], images_[1]->prepared(factors_[1]),
+            result.keypoints[1], matches, points1, points2);
     points1.convertTo(result.reference, CV_64F);
     points2.convertTo(result.image, CV_64F);
     return result;
@@ -158,7 +164,7 @@ AlignedPoints WorkingPair::refined(
     Mat points1, points2, similarities;
     refineMatches(images_[0]->prepared(1), first, images_[1]->prepared(1), second, matches, points1, points2,
             noArray(), similarities);
-    AlignedPoints result = {Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), points.keypoints};
+    AlignedPoints result = {Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {points.keypoints[0], points.keypoints[1]}};
     for (size_t i = 0; i < matches.size(); i++)
         if (similarities.at<float>((int)i) >= 0)
         {
@@ -180,8 +186,8 @@ Mat WorkingPair::inPixels(const AlignedPoints& points, const std::vector<bool>& 
     Mat both, result(0, 4, CV_32F);
     if (points.reference.empty())
         return result;
-    hconcat(moved(enlarging(factors_[0]), points.reference), moved(enlarging(factors_[1]), points.image),
-            both);
+    hconcat(allMoved(enlarging(factors_[0]), points.reference),
+            allMoved(enlarging(factors_[1]), points.image), both);
     both.convertTo(both, CV_32F);
     for (int i = 0; i < both.rows; i++)
         if (agree[i])

@@ -13,8 +13,11 @@ namespace cv::iib {
 struct AlignedPoints
 {
     Mat reference, image;
-    std::vector<KeyPoint> keypoints;  //!< of the reference, all that were looked for
+    std::vector<KeyPoint> keypoints[2];  //!< of both, all that were looked for
 };
+
+//! Where a transform has a point.
+Point2d moved(const Matx33d& by, const Point2d& point);
 
 /** An image at working sizes, reduced by whole factors; what is found in it is kept. Threads may share one. */
 class WorkingImage
@@ -34,6 +37,9 @@ public:
     Size size(int factor) const { return {full_.cols / factor, full_.rows / factor}; }
     int factorFor(int workingSize) const;
     int largestFactor() const;  //!< that leaves something to match by
+
+    //! Whether it has a pixel there that its mask allows. @param point in the reduced image.
+    bool shows(const Point2d& point, int factor) const;
 
     Mat pixels(int factor) const;
     const Described& described(int factor) const;
@@ -65,8 +71,14 @@ public:
     AlignedPoints refined(
             const AlignedPoints& points, const std::vector<bool>& agree, const Matx33d& transform) const;
 
-    //! Of the image, working pixels.
-    Size size() const { return images_[1]->size(factors_[1]); }
+    //! Of the reference, 0, or the image, 1, working pixels.
+    Size size(int which) const { return images_[which]->size(factors_[which]); }
+
+    //! Whether one of them has a working pixel there that its mask allows.
+    bool shows(int which, const Point2d& point) const
+    {
+        return images_[which]->shows(point, factors_[which]);
+    }
 
     //! A transform between the images' own pixels, and a distance in the reference's.
     Matx33d inPixels(const Matx33d& transform) const;

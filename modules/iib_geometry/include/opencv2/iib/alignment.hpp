@@ -31,7 +31,8 @@ images are sharp enough for it. The same input gives the same answer, whatever t
 
 There is no transform, and `reason` says which of these it was,
 - where the matches that agree are no more than chance (the number of false alarms, as of findRelativePose);
-- where they span less than 12 % of what has points in both images, as a logo or a caption that both hold, or lie in fewer than a
+- where they span less than 12 % of what has points in the image that has them over less of what both show (one may be masked, or black
+  elsewhere), or 5 % of all that both show and masks allow, as a logo or a caption that both hold; or where they lie in fewer than a
   third of the cells (of 8 x 8) in which as many of the points would be, as of two captions;
 - where a transform of more freedom agrees with a quarter more places of the image;
 - where a quarter as many places as agree lie beside the transform as if the camera had moved (parallax).
