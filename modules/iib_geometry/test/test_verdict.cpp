@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "opencv2/calib3d.hpp"
+#include "pose/verdict.hpp"
 #include "two_cameras.hpp"
 
 namespace opencv_test {
@@ -101,7 +102,27 @@ TEST(Verdict, wide_scales_make_no_pose_of_wrong_matches)
         }
 }
 
-// Matches that were not refined, or of large images.
+// Of many wrong matches in a place one agrees: right ones in a single place make no more of them.
+TEST(Verdict, a_place_of_many_matches_agrees_by_more_chance_than_a_match)
+{
+    RNG random(20);
+    const int wrong = 6000, right = 3000;
+    const double chance = .05;
+    Mat points[2];
+    Verdict::Marks all(wrong + right, true), agreeing(wrong + right);
+    for (Mat& image : points)
+    {
+        image = anywhere(random, wrong + right, 640, 480);
+        image.rowRange(wrong, wrong + right) = 100;
+    }
+    for (int i = 0; i < wrong + right; i++)
+        agreeing[i] = i >= wrong || random.uniform(0., 1.) < chance;
+    EXPECT_GT(Verdict(points[0], points[1]).logFalseAlarms(all, agreeing, 5, chance), -3);
+    // Four times as many are more than chance.
+    for (int i = 0; i < wrong; i++)
+        agreeing[i] = random.uniform(0., 1.) < 4 * chance;
+    EXPECT_LT(Verdict(points[0], points[1]).logFalseAlarms(all, agreeing, 5, chance), -3);
+}
 
 }  // namespace
 }  // namespace opencv_test

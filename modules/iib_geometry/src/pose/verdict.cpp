@@ -127,16 +127,34 @@ double Verdict::chance(Distance distance, double limit, const std::vector<double
     return std::clamp((double)near / std::max<size_t>(wrong.size(), 1), std::min(anywhere, 1.), 1.);
 }
 
+double Verdict::chanceOfPlaces(const Marks& all, double chance, int image) const
+{
+    std::vector<int> counts((CELLS + 1) * (CELLS + 1));
+    for (size_t i = 0; i < all.size(); i++)
+        counts[cells_[image][i]] += all[i];
+    double sum = 0, places = 0;
+    for (int count : counts)
+        if (count > 0)
+        {
+            sum += 1 - std::pow(1 - chance, count);
+            places++;
+        }
+    return places > 0 ? sum / places : 1;
+}
+
 double Verdict::logFalseAlarms(const Marks& all, const Marks& agreeing, int sampleSize, double chance) const
 {
-    const auto of = [&](int n, int k) {
+    const auto of = [&](int n, int k, double each) {
         return k > sampleSize ? std::log10(MODELS * (n - sampleSize)) + logBinomial(n, k) +
-                                        logBinomial(k, sampleSize) + (k - sampleSize) * std::log10(chance)
+                                        logBinomial(k, sampleSize) + (k - sampleSize) * std::log10(each)
                               : std::numeric_limits<double>::infinity();
     };
     const auto count = [](const Marks& marks) { return (int)std::count(marks.begin(), marks.end(), true); };
-    return std::max({of(count(all), count(agreeing)), of(places(all, 0), places(agreeing, 0)),
-            of(places(all, 1), places(agreeing, 1))});
+    double most = of(count(all), count(agreeing), chance);
+    for (int image = 0; image < 2; image++)
+        most = std::max(
+                most, of(places(all, image), places(agreeing, image), chanceOfPlaces(all, chance, image)));
+    return most;
 }
 
 double Verdict::logFalseAlarms(const std::vector<double>& squared, const std::vector<double>& wrong,

@@ -50,6 +50,8 @@ public:
 
 private:
     int places(const Marks& matches, int image) const;
+    //! That one of a place's matches agrees: the mean over all places.
+    double chanceOfPlaces(const Marks& all, double chance, int image) const;
 
     std::vector<int> cells_[2];  // of the matches
     Size2d spans_[2];
