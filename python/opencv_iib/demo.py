@@ -80,7 +80,9 @@ def _own_descriptor(name: str, images: Sequence[np.ndarray], masks: Sequence[Opt
         return None
     rows, codes = [], []
     for image, mask in zip(images, masks):
-        found = sorted(detector.detect(image, mask), key=lambda keypoint: -keypoint.response)[:points]
+        found = detector.detect(image, mask)
+        if len(found) > points:  # else in its order, by which equal distances are told apart
+            found = sorted(found, key=lambda keypoint: -keypoint.response)[:points]
         found, described = detector.compute(image, found)
         rows.append(keypoints_to_array(found))
         codes.append(np.zeros((0, detector.descriptorSize()), np.uint8) if described is None else described)

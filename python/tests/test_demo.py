@@ -42,7 +42,7 @@ class Demo(Collection):
 
     @unittest.skipUnless((REPOSITORY / 'tools/synthetic/day.png').exists(), 'the images are not beside these tests')
     def test_it_counts_as_that_of_cpp(self):
-        pair = [str(REPOSITORY / f'tools/synthetic/moved_{light}.jpg') for light in ('noon', 'night')]
+        pair = [str(REPOSITORY / f'tools/synthetic/demo_{light}.jpg') for light in ('noon', 'night')]
         iib, sift, orb = demo(*pair, str(self.folder / 'demo.png'))
         claim = re.search(r'`IIB \d+ of (\d+) correct, SIFT \d+ of \d+ correct, ORB \d+ of (\d+) correct`',
                           (REPOSITORY / 'README.md').read_text())
