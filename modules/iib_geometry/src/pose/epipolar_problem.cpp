@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "five_points.hpp"
+#include "opencv2/calib3d.hpp"
 #include "points.hpp"
 
 namespace cv::iib {
@@ -187,9 +188,93 @@ Row<EpipolarProblem::Step> EpipolarProblem::row(
     return row;
 }
 
+/** The plane that most matches lie on, if one is seen with the pose: a vector that has the product 1 with its points, in lengths of
+t. Samples of three matches propose planes; a match is as far from one as its point on the plane is seen from it, pixels as Sampson's
+error has them. */
+Vec3d EpipolarProblem::planeOf(const RelativePose& pose, double scale) const
+{
+    struct Seen
+    {
+        Vec3d ray;
+        double nearness, pixels;  // one over the depth, and pixels that one of it moves the point by
+    };
+    const int trials = 50;
+    const double farthest2 = FARTHEST * square(scale);
+    const Matx33d essential = essentialOf(pose);
+    std::vector<Seen> all;
+    for (int i = 0; i < size(); i++)
+    {
+        if (!(squaredError(essential, i) < farthest2))
+            continue;
+        const Vec3d u(first_[i].x, first_[i].y, 1), v(second_[i].x, second_[i].y, 1),
+                turned = pose.R * u, across = v.cross(pose.t);
+        const double nearness = -across.dot(v.cross(turned)) / (across.dot(across) + NOWHERE),
+                     depth = turned[2] + nearness * pose.t[2];
+        const Vec3d moves = pose.t - v * pose.t[2];
+        all.push_back({u, nearness,
+                std::hypot(moves[0], moves[1]) / std::abs(depth) / std::sqrt(weights_[0] + weights_[2])});
+    }
+    const auto distance2 = [](const Seen& seen, const Vec3d& plane) {
+        return square((seen.nearness - plane.dot(seen.ray)) * seen.pixels);
+    };
+    Vec3d best;
+    double leastSum = std::numeric_limits<double>::infinity();
+    RNG random(0x5eed);
+    for (int trial = 0; trial < trials && all.size() >= 4; trial++)
+    {
+        Matx33d rays;
+        Vec3d nearness, plane;
+        for (int k = 0; k < 3; k++)
+        {
+            const Seen& seen = all[random.uniform(0, (int)all.size())];
+            for (int c = 0; c < 3; c++)
+                rays(k, c) = seen.ray[c];
+            nearness[k] = seen.nearness;
+        }
+        if (!solve(rays, nearness, plane, DECOMP_LU))
+            continue;
+        double sum = 0;
+        for (size_t i = 0; i < all.size() && sum < leastSum; i++)
+            sum += std::min(distance2(all[i], plane), farthest2);
+        if (sum < leastSum)
+        {
+            leastSum = sum;
+            best = plane;
+        }
+    }
+    Matx33d products = Matx33d::zeros();
+    Vec3d right;
+    for (const Seen& seen : all)
+        if (distance2(seen, best) < farthest2)
+        {
+            products += square(seen.pixels) * (seen.ray * seen.ray.t());
+            right += square(seen.pixels) * seen.nearness * seen.ray;
+        }
+    Vec3d refined;
+    return solve(products, right, refined, DECOMP_CHOLESKY) ? refined : best;
+}
+
+std::vector<RelativePose> EpipolarProblem::rivals(const RelativePose& pose, double scale) const
+{
+    const Matx33d homography = pose.R + pose.t * planeOf(pose, scale).t();
+    std::vector<Mat> rotations, translations, normals;
+    std::vector<RelativePose> poses;
+    if (!checkRange(homography))
+        return poses;
+    decomposeHomographyMat(homography, Matx33d::eye(), rotations, translations, normals);
+    for (size_t k = 0; k < rotations.size(); k++)
+    {
+        const Vec3d t(translations[k]);
+        const RelativePose other = {Matx33d(rotations[k]), t * (1 / (norm(t) + NOWHERE))};
+        if (norm(t) > 0 && areApart(pose, other) && areApart(pose, {other.R, -other.t}))
+            poses.push_back(other);
+    }
+    return poses;
+}
+
 bool EpipolarProblem::areApart(const RelativePose& pose, const RelativePose& other) const
 {
-    const double turned = .05, moved = .25;  // radians
+    const double turned = .02, moved = .1;  // radians
     const Step between = stepBetween(pose, other);
     return norm(Vec3d(between.val)) > turned || norm(Vec2d(between.val + 3)) > moved;
 }

@@ -38,6 +38,8 @@ public:
 
     //! The same epipolar lines, and t the other way.
     std::vector<RelativePose> alternatives(const RelativePose& pose) const { return {{pose.R, -pose.t}}; }
+    //! What else the plane that most of the matches lie on may be seen from (Faugeras and Lustman 1988).
+    std::vector<RelativePose> rivals(const RelativePose& pose, double scale) const;
     bool areApart(const RelativePose& pose, const RelativePose& other) const;
     void linearize(const RelativePose& pose, double limit, std::vector<Row<Step>>& rows) const;
     RelativePose moved(const RelativePose& pose, const Step& step) const { return iib::moved(pose, step); }
@@ -51,6 +53,7 @@ public:
 private:
     struct Linear;
     double squaredError(const Matx33d& essential, int i) const;
+    Vec3d planeOf(const RelativePose& pose, double scale) const;
     Row<Step> row(const Linear& linear, const Point2d& first, const Point2d& second) const;
 
     std::vector<Point2d> first_, second_;  // directions, third coordinate 1

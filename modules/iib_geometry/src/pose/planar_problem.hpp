@@ -28,6 +28,7 @@ public:
     double loss(const Matx33d& transform, double scale, double limit) const;
     void squaredErrors(const Matx33d& transform, std::vector<double>& errors) const;
     std::vector<Matx33d> alternatives(const Matx33d&) const { return {}; }
+    std::vector<Matx33d> rivals(const Matx33d&, double) const { return {}; }
     bool areApart(const Matx33d&, const Matx33d&) const { return false; }  // a plane has one transform
     void linearize(const Matx33d& transform, double limit, std::vector<Row<Step>>& rows) const;
     Matx33d moved(const Matx33d& transform, const Step& step) const;

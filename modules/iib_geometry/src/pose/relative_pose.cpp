@@ -11,8 +11,9 @@ namespace {
 
 const double LEAST_SCALE = .1, MOST_SCALE = 1000;  // pixels
 const double RANK = 1e-13;                         // of covariances in double precision
-const double ONE_ROTATION = .05;  // radians: less apart, two poses are told as one that is not exact
-const double REFINED = .25;       // least scale by which matches count as agreeing, pixels
+const double ONE_ROTATION = .05,
+             ONE_DIRECTION = 1;  // radians: less apart, two poses are told as one that is not exact
+const double REFINED = .25;      // least scale by which matches count as agreeing, pixels
 
 Matx33d cameraMatrix(InputArray matrix, const char* name)
 {
@@ -67,11 +68,33 @@ void polishFew(const EpipolarProblem& problem, double scale, Fit<EpipolarProblem
     problem.squaredErrors(fit.model, fit.squared);
 }
 
+/** Whether more places agree with the pose than with the other one, by one and by more than chance. Errors are cut off at four scales,
+which is a match more; the noise of matches that agree with both, as all of a plane do, is the chance. */
+bool leads(const Fit<EpipolarProblem>& fit, const Verdict& verdict)
+{
+    const double farthest2 = square(FARTHEST_OF_CHOICE * fit.scale), inside2 = FARTHEST * square(fit.scale);
+    const double level = 2;  // standard deviations
+    std::vector<double> all(fit.squared.size()), both = all;
+    for (size_t i = 0; i < all.size(); i++)
+    {
+        all[i] = (std::min(fit.otherSquared[i], farthest2) - std::min(fit.squared[i], farthest2)) / farthest2;
+        if (std::max(fit.otherSquared[i], fit.squared[i]) < inside2)
+            both[i] = all[i];
+    }
+    double lead = 0, chance2 = 0;
+    for (double places : verdict.sumsOfPlaces(all))
+        lead += std::clamp(places, -1., 1.);
+    for (double places : verdict.sumsOfPlaces(both))
+        chance2 += square(places);
+    return lead >= 1 + level * std::sqrt(chance2);
+}
+
 //! Whether another pose explains the matches as well and is none that the errors tell of, as the matches around the pose tell them.
-bool hasRival(const Fit<EpipolarProblem>& fit, const Square<EpipolarProblem::Step>& errors)
+bool hasRival(
+        const Fit<EpipolarProblem>& fit, const Verdict& verdict, const Square<EpipolarProblem::Step>& errors)
 {
     const double level = 5;  // standard deviations: another pose within them is told by the covariance
-    if (fit.lead >= 1)
+    if (fit.otherSquared.empty() || leads(fit, verdict))
         return false;
     const EpipolarProblem::Step between = stepBetween(fit.model, fit.other);
     return between.dot(errors.inv(DECOMP_SVD) * between) >= square(level);
@@ -132,20 +155,23 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
     {
         fit.scale = wide;  // errors with long tails are told as large as they are
         errors = covarianceOf(problem, fit, partsOf(first), LARGEST_DEVIATION);
-        if (!tellsDirection(problem, fit, verdict) || hasRival(fit, errors))
-            for (int k = 3; k < 5; k++)
-                errors(k, k) += square(LARGEST_DEVIATION);
-        if (hasRival(fit, errors))
+        const bool told = tellsDirection(problem, fit, verdict);
+        const Square<EpipolarProblem::Step> anyDirection =
+                square(LARGEST_DEVIATION) * Square<EpipolarProblem::Step>::diag({0, 0, 0, 1, 1});
+        if (!told)
+            errors += anyDirection;
+        if (hasRival(fit, verdict, errors))
         {
             const EpipolarProblem::Step between = stepBetween(fit.model, fit.other);
             const double turned = norm(Vec3d(between.val)), moved = norm(Vec2d(between.val + 3));
-            if (turned < ONE_ROTATION)
-                errors += between * between.t();
-            else
+            if (told && turned >= ONE_ROTATION)
                 why = format(
                         "two poses explain the matches as well, turned by %.0f and moved in directions by "
                         "%.0f degrees against each other: the points may lie on a plane",
                         turned * 180 / CV_PI, moved * 180 / CV_PI);
+            errors += between * between.t();
+            if (moved > ONE_DIRECTION)
+                errors += anyDirection;
         }
         errors = limited(errors, LARGEST_DEVIATION, RANK);
     }

@@ -22,6 +22,7 @@ A class Problem holds the matches and has
     double loss(model, scale, limit)   the sum over all matches, or anything over the limit
     squaredErrors(model, errors)       of all matches, pixels^2; infinite where the model forbids the match
     alternatives(model)                models of the same loss that other squared errors may belong to
+    rivals(model, scale)               models, roughly, that may explain the same matches by another answer
     bool areApart(model, other)        whether they are other answers, and not the same one found twice
     linearize(model, limit, rows)      the rows of matches whose squared error is below the limit
     Model moved(model, step) */
@@ -108,13 +109,11 @@ void polish(const Problem& problem, double scale, double enough, typename Proble
 template <class Problem> struct Fit
 {
     typename Problem::Model model;
-    double scale = 0;             //!< under which the model was polished, pixels
-    std::vector<double> squared;  //!< errors of the matches, pixels^2; of none if there is no model
-    /** How many matches more the model has than the next best one apart from it, `other`, in loss: where it is less than one, both
-    explain the matches as well. */
-    double lead = std::numeric_limits<double>::infinity();
-    typename Problem::Model other;
-    bool wantsMore = false;  //!< whether more samples might find a better one
+    double scale = 0;                  //!< under which the model was polished, pixels
+    std::vector<double> squared;       //!< errors of the matches, pixels^2; of none if there is no model
+    typename Problem::Model other;     //!< the next best one that is apart from it
+    std::vector<double> otherSquared;  //!< its errors; of none if there is no other
+    bool wantsMore = false;            //!< whether more samples might find a better one
 };
 
 //! A model by its sum of squared errors, cut off at four scales: by how far a wrong match is wrong says nothing.
@@ -148,25 +147,25 @@ std::vector<Candidate<Problem>> withAlternatives(
     return candidates;
 }
 
-//! Makes the first candidate the fit's model, if there is one.
+//! Takes the best candidate and the next best one apart from it, if there are any.
 template <class Problem>
-void take(const Problem& problem, double scale, const std::vector<Candidate<Problem>>& candidates,
-        Fit<Problem>& fit)
+void take(const Problem& problem, std::vector<Candidate<Problem>>& candidates, Fit<Problem>& fit)
 {
-    if (candidates.empty())
-        return;
-    const Candidate<Problem>& chosen = candidates.front();
-    fit.model = chosen.model;
-    fit.squared = chosen.squared;
-    for (const Candidate<Problem>& candidate : candidates)
-    {
-        const double lead = (candidate.sum - chosen.sum) / square(FARTHEST_OF_CHOICE * scale);
-        if (lead < fit.lead && problem.areApart(candidate.model, fit.model))
+    std::stable_sort(candidates.begin(), candidates.end());
+    fit.squared.clear();
+    fit.otherSquared.clear();
+    for (Candidate<Problem>& candidate : candidates)
+        if (fit.squared.empty())
         {
-            fit.lead = lead;
-            fit.other = candidate.model;
+            fit.model = candidate.model;
+            fit.squared.swap(candidate.squared);
         }
-    }
+        else if (problem.areApart(candidate.model, fit.model))
+        {
+            fit.other = candidate.model;
+            fit.otherSquared.swap(candidate.squared);
+            return;
+        }
 }
 
 /** The model that most matches agree with under one scale, pixels, not polished finely. The same in every run.
@@ -237,8 +236,7 @@ template <class Problem> Fit<Problem> search(const Problem& problem, double scal
         polish(problem, 2 * scale, roughly, one.second);
         candidates.push_back(withAlternatives(problem, scale, one.second).front());
     }
-    std::stable_sort(candidates.begin(), candidates.end());
-    take(problem, scale, candidates, fit);
+    take(problem, candidates, fit);
     return fit;
 }
 
@@ -274,7 +272,7 @@ inline bool settles(const std::vector<double>& squared, double distance, int par
     the one before, with few samples, until the errors settle. */
 template <class Problem> Fit<Problem> robustFit(const Problem& problem, double scale)
 {
-    const double finely = 1e-9, refined = .25;
+    const double finely = 1e-9, roughly = 1e-4, refined = .25;
     const int fewTrials = 1000, mostTrials = 10000;
     Fit<Problem> fit;
     double narrow = scale > 0 ? scale : refined, told = scale;
@@ -294,7 +292,16 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem, double s
         told = narrow;
     fit.scale = told;
     polish(problem, fit.scale, finely, fit.model);
-    take(problem, fit.scale, withAlternatives(problem, fit.scale, fit.model), fit);
+    std::vector<Candidate<Problem>> candidates = withAlternatives(problem, fit.scale, fit.model);
+    std::vector<typename Problem::Model> rivals = problem.rivals(fit.model, fit.scale);
+    if (!fit.otherSquared.empty())
+        rivals.push_back(fit.other);
+    for (typename Problem::Model& rival : rivals)
+    {
+        polish(problem, fit.scale, roughly, rival);
+        candidates.push_back(withAlternatives(problem, fit.scale, rival).front());
+    }
+    take(problem, candidates, fit);
     return fit;
 }
 

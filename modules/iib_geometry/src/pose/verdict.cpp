@@ -115,6 +115,14 @@ int Verdict::places(const Marks& matches, int image) const
     return (int)cells.count();
 }
 
+std::vector<double> Verdict::sumsOfPlaces(const std::vector<double>& values) const
+{
+    std::vector<double> sums((CELLS + 1) * (CELLS + 1));
+    for (size_t i = 0; i < values.size(); i++)
+        sums[cells_[0][i]] += values[i];
+    return sums;
+}
+
 int Verdict::places(const Marks& matches) const { return std::min(places(matches, 0), places(matches, 1)); }
 
 double Verdict::chance(Distance distance, double limit, const std::vector<double>& wrong) const

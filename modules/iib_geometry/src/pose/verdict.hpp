@@ -42,6 +42,9 @@ public:
     @param chance that a wrong match agrees. */
     double logFalseAlarms(const Marks& all, const Marks& agreeing, int sampleSize, double chance) const;
 
+    //! Of a number of each match: the sums over places of the first image that have any.
+    std::vector<double> sumsOfPlaces(const std::vector<double>& values) const;
+
     //! Number of places of the matches, in the image where they have fewer.
     int places(const Marks& matches) const;
 

@@ -23,8 +23,9 @@ of a 32nd of the diagonal of what the points span, since matches beside each oth
 often a wrong match agrees is what points of different matches do with the pose, so that a skyline is no pose.
 
 There is none either where a second pose, turned by 3 degrees or more and far outside of the covariance, explains the matches as
-well to the worth of one match, as two do of a plane. Where it differs in the direction of t, such as by its sign, the covariance
-is as wide as that.
+well but for what noise may give, as two do of a plane: the other one of the plane that most of the matches lie on is looked for.
+Where it turns less, or nothing tells the direction of t, the covariance holds it. Of exact planes, 200 matches with noise of .2
+pixels, 58 % of the poses are right and 40 % refused.
 
 Points must be free of lens distortion: `cv::undistortPoints(points, undistorted, K, distortion, noArray(), K)` first.
 Matches that cv::iib::refineMatches refined make the pose more accurate where the light changed.
