@@ -276,6 +276,56 @@ TEST(Alignment, refuses_a_model_that_is_not_true_and_tells_the_one_that_is)
     }
 }
 
+//! With more freedom a transform comes nearer to noisy matches of whatever is true.
+TEST(Alignment, noise_makes_no_model_of_more_freedom)
+{
+    const struct
+    {
+        int seed, times;  // as large as the picture
+        double blur, noise;
+    } cases[] = {{100, 1, 5, 15}, {100, 1, 8, 30}, {104, 1, 5, 5}, {103, 2, 6, 30}, {103, 2, 16, 5}};
+    for (const auto& c : cases)
+    {
+        Mat whole, images[2], transform;
+        resize(picture(c.seed), whole, Size(), c.times, c.times, INTER_CUBIC);
+        const Rect part(0, 0, whole.cols - 20, whole.rows - 20);
+        for (int i = 0; i < 2; i++)
+        {
+            Mat image = whole(part + Point(13, 7) * i).clone(), noise(image.size(), CV_16S);
+            if (i)
+                GaussianBlur(image, image, Size(), c.blur);
+            RNG random(c.seed - 99 + i * 76);
+            random.fill(noise, RNG::NORMAL, 0, c.noise);
+            cv::add(image, noise, images[i], noArray(), CV_8U);
+        }
+        for (int model : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE})
+        {
+            String reason;
+            EXPECT_TRUE(alignImages(images[0], images[1], transform, model, noArray(), noArray(), &reason))
+                    << c.blur << " " << c.noise << ": " << reason;
+        }
+    }
+}
+
+//! By less than a pixel of the working size, or by so little that it shows at full size alone.
+TEST(Alignment, refuses_a_model_that_is_not_true_of_large_images)
+{
+    const Size size(3200, 2400);
+    for (double pixels : {2., 1.})  // at the corners
+    {
+        Mat reference, image, transform, error;
+        resize(picture(24), reference, size, 0, 0, INTER_CUBIC);
+        const Mat turn = getRotationMatrix2D(Point2f(1600, 1200), pixels / 2000 * 180 / CV_PI, 1);
+        warpAffine(reference, image, turn, size, INTER_CUBIC, BORDER_REFLECT);
+        String reason;
+        EXPECT_FALSE(alignImages(reference, image, transform, ALIGN_TRANSLATION, error, noArray(), &reason));
+        EXPECT_NE(reason.find("SIMILARITY agrees"), String::npos) << reason;
+        ASSERT_TRUE(alignImages(reference, image, transform, ALIGN_SIMILARITY, error, noArray(), &reason))
+                << reason;
+        EXPECT_LT(cv::norm(error, NORM_INF), .5);
+    }
+}
+
 //! The upper half is a wall that is twice as near as the lower one's.
 TEST(Alignment, tells_a_camera_that_moved)
 {

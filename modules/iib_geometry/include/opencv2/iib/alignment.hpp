@@ -34,7 +34,8 @@ There is no transform, and `reason` says which of these it was,
 - where they span less than 12 % of what has points in the image that has them over less of what both show (one may be masked, or black
   elsewhere), or 5 % of all that both show and masks allow, as a logo or a caption that both hold; or where they lie in fewer than a
   third of the cells (of 8 x 8) in which as many of the points would be, as of two captions;
-- where a transform of more freedom agrees with a quarter more places of the image;
+- where a transform of more freedom agrees better with the matches than noise would let it, by the likelihood of their errors, at
+  the size at which they are matched, or at full size;
 - where a quarter as many places as agree lie beside the transform as if the camera had moved (parallax).
 
     cv::Mat transform, aligned;
