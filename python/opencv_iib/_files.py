@@ -194,3 +194,11 @@ def _publish(part: str, target: str, mark: str, old: set[str]) -> None:
             while os.path.dirname(name):
                 name = os.path.dirname(name)
                 os.rmdir(os.path.join(target, name))
+
+
+def read_bytes(path: Path) -> bytes:
+    """:raises ValueError: for what is no file, such as a FIFO, which would never end."""
+    if not os.path.isfile(path):
+        raise ValueError('not a file' if os.path.lexists(path) else 'there is no such file')
+    with open(path, 'rb') as file:
+        return file.read()

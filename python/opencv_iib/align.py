@@ -15,14 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import __version__
-from opencv_iib._files import check_folder, is_in, is_same, new_results, rows_of
 from opencv_iib._arguments import InvalidOption, Path
-from opencv_iib._turns import Turn, upright
+from opencv_iib._exif import TIFF, exif_orientation, no_data
+from opencv_iib._files import check_folder, is_in, is_same, new_results, read_bytes, rows_of
+from opencv_iib._images import FORMATS, Masks, can_be, decode_pages, find_images, holds, import_cv2, in_8_bits, in_order, write_picture
+from opencv_iib._parallel import Threads, in_parallel, thread_count
+from opencv_iib._progress import Progress
+from opencv_iib._upright import Turn, upright
 from opencv_iib.colmap.features import check_max_size
-from opencv_iib.colmap.images import (FORMATS, TIFF, Masks, can_be, decode_pages, exif_orientation, find_images, holds, import_cv2, in_8_bits, in_order, no_data,
-                                     read_bytes, write_picture)
-from opencv_iib.colmap.parallel import Threads, in_parallel, thread_count
-from opencv_iib.colmap.progress import Progress
 from opencv_iib.enums import AlignmentModel
 from opencv_iib.geometry import ImageAligner
 

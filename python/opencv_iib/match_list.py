@@ -15,13 +15,13 @@ import numpy as np
 from opencv_iib import __version__, error
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._files import check_outputs, only_writer, output_file, write_whole
+from opencv_iib._images import Masks, check_sizes, find_images
+from opencv_iib._parallel import Threads, in_parallel, thread_count
+from opencv_iib._progress import Progress
 from opencv_iib._streams import note
 from opencv_iib.colmap.features import FeatureOptions, Features
 from opencv_iib.colmap.hloc import pair_name
-from opencv_iib.colmap.images import Masks, check_sizes, find_images
 from opencv_iib.colmap.pairs import from_file, tiles
-from opencv_iib.colmap.parallel import Threads, in_parallel, thread_count
-from opencv_iib.colmap.progress import Progress
 from opencv_iib.localization.localizer import AnyCamera, Camera, as_camera
 from opencv_iib.measure import Measured, View, measure
 

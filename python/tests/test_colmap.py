@@ -11,9 +11,9 @@ from unittest import mock
 import numpy as np
 
 from collection import Collection
-from opencv_iib import _core
+from opencv_iib import _core, _parallel
 from opencv_iib._files import only_writer
-from opencv_iib.colmap import SettingsChanged, build_database, parallel, pipeline
+from opencv_iib.colmap import SettingsChanged, build_database, pipeline
 from opencv_iib.colmap.database import MAX_IMAGE_ID, Database, pair_id
 from opencv_iib.colmap.verify import magsac
 from support import cv2, optional, run_command
@@ -266,13 +266,13 @@ class Workers(Collection):
         self.assertEqual((counts['pairs'], len(lines)), (10, 1))
         with distributed.LocalCluster(n_workers=2, threads_per_worker=2, dashboard_address=None,
                                       silence_logs=50) as cluster, distributed.Client(cluster) as client:
-            with mock.patch.object(parallel.Cluster, 'tile_side', 2):
+            with mock.patch.object(_parallel.Cluster, 'tile_side', 2):
                 self.assertEqual(self.build(client=client), counts)
             self.assertEqual((self.lines[1:], self.dump()), (lines, rows))
             status, _, _ = run_command('colmap', self.images, self.database, '--points', '300', '--verify', 'magsac', '--scheduler',
                                        cluster.scheduler_address)
             self.assertEqual((status, self.dump()), (0, rows))
-            with mock.patch.object(parallel.Cluster, 'ahead', side_effect=concurrent.futures.CancelledError), \
+            with mock.patch.object(_parallel.Cluster, 'ahead', side_effect=concurrent.futures.CancelledError), \
                     self.assertRaisesRegex(ConnectionError, 'the scheduler has gone'):
                 self.build(client=client)
             moved, absolute = f'{self.images}-moved', os.path.abspath

@@ -11,7 +11,8 @@ import opencv_iib
 from collection import Collection
 from opencv_iib.colmap import FeatureOptions
 from opencv_iib.colmap.features import DETECTORS, Features, to_colmap
-from opencv_iib.colmap.images import exif_focal_length, exif_orientation, gps_place, read_colour, read_grey
+from opencv_iib._exif import exif_focal_length, exif_orientation, gps_place
+from opencv_iib._images import read_colour, read_grey
 from support import cv2, texture
 
 

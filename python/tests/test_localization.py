@@ -17,7 +17,7 @@ from unittest import mock
 import numpy as np
 
 import opencv_iib
-from opencv_iib import _core, _turns
+from opencv_iib import _core, _upright
 from opencv_iib.localization import Camera, Localizer, Location, build, smooth_poses, update
 from opencv_iib.localization import maps, run as runs
 from support import REPOSITORY, Commands, cv2, files_end_at, optional, run_command, seconds_until_interrupt, steps_meanwhile, texture
@@ -200,12 +200,12 @@ class Localization(Commands):
         self.assertEqual(len(smooth_poses([0, 1], [made, Location()], np.zeros((0, 7)))), 2)
 
     def test_photographs_that_are_stored_turned(self):
-        from test_turns import STORED, png, stored
+        from test_upright import STORED, png, stored
         folder, out, localizer = self.path('turned'), self.path('out'), Localizer(self.map)
         os.makedirs(folder)
         found = {}
         for orientation in STORED:
-            turn = _turns.Turn(orientation, *stored(self.grey(), orientation).shape[1::-1])
+            turn = _upright.Turn(orientation, *stored(self.grey(), orientation).shape[1::-1])
             Path(folder, f'{orientation}.png').write_bytes(png(stored(self.grey(), orientation), orientation))
             if orientation in (1, 3, 6, 8):
                 width, height = stored(self.grey(), orientation).shape[::-1]
@@ -226,7 +226,7 @@ class Localization(Commands):
         self.assertEqual((status, '2 localized' in text), (4, True))
 
     def test_maps_of_photographs_that_are_stored_turned(self):
-        from test_turns import png, stored
+        from test_upright import png, stored
         model, images, out = self.path('model'), self.path('images'), self.path('map')
         posed, turns = [], dict(zip(self.poses, (1, 6, 8, 3, 6, 1)))
         for name, orientation in turns.items():
@@ -234,7 +234,7 @@ class Localization(Commands):
             os.makedirs(os.path.dirname(os.path.join(images, name)), exist_ok=True)
             Path(images, name).write_bytes(png(image, orientation))
             turned = np.eye(4)
-            turned[:2, :2] = _turns.Turn(orientation, *image.shape[::-1]).matrix[:2, :2]
+            turned[:2, :2] = _upright.Turn(orientation, *image.shape[::-1]).matrix[:2, :2]
             camera = Camera.parse(CAMERA).upright({6: 8, 8: 6}.get(orientation, orientation))
             posed.append(_core.PosedImage(name, camera, turned @ self.poses[name], np.empty((0, 2))))
         os.makedirs(model)

@@ -12,7 +12,7 @@ from unittest import mock
 import numpy as np
 
 from opencv_iib.localization import Localizer
-from opencv_iib.localization.imu import parse_pose, read_imu, time_of
+from opencv_iib.localization.imu_file import parse_pose, read_imu, time_of
 from support import InFolder, cv2, run_command
 from test_localization import CAMERA, SIZE, WIDTH, HEIGHT, evening, mapped, photograph, pose, trajectory, wall
 

@@ -12,7 +12,8 @@ import numpy as np
 
 from opencv_iib.align import align
 from opencv_iib.colmap.features import FeatureOptions
-from opencv_iib.colmap.images import decode_pages, no_data, write_picture
+from opencv_iib._exif import no_data
+from opencv_iib._images import decode_pages, write_picture
 from opencv_iib.localization import Camera
 from opencv_iib.measure import match_images
 from opencv_iib.geometry import ImageAligner
@@ -303,7 +304,7 @@ class Align(Commands):
             if path == paths[1]:
                 raise PermissionError(13, 'Permission denied', path)
             return real(path, *arguments)
-        with mock.patch('opencv_iib.colmap.images.open', opened, create=True):
+        with mock.patch('opencv_iib._files.open', opened, create=True):
             status, out, _ = run_command('align', paths[0], *paths[1:], long, '--out', self.folder / 'out')
         self.assertEqual(status, 4)
         verdicts = [row['verdict'] for row in self.rows('out/transforms.csv')]

@@ -107,7 +107,8 @@ class NetworkTest(InFolder):
 
     @unittest.skipIf(cv2 is None, 'no cv2')
     def test_colmap(self):
-        from opencv_iib.colmap import FeatureOptions, Options, build_database, parallel, pipeline
+        from opencv_iib import _parallel
+        from opencv_iib.colmap import FeatureOptions, Options, build_database, pipeline
         images = os.path.join(self.folder, 'images')
         os.mkdir(images)
         world = cv2.resize(texture(160, 120, seed=3), (640, 480), interpolation=cv2.INTER_CUBIC)
@@ -135,7 +136,7 @@ class NetworkTest(InFolder):
             return mock.patch.object(pipeline.Database, method, call)
 
         expected = rows(None)
-        with mock.patch.object(parallel.Cluster, 'tile_side', 2), cutting('add_image', 'one', 3), \
+        with mock.patch.object(_parallel.Cluster, 'tile_side', 2), cutting('add_image', 'one', 3), \
                 cutting('add_pair', 'two', 10):
             self.assertEqual(rows(self.client), expected)
         self.expect_left('three')

@@ -13,7 +13,7 @@ from collection import Collection
 from opencv_iib.colmap import pairs as pair_lists
 from opencv_iib import match_list
 from opencv_iib.colmap import FeatureOptions, hloc, pipeline
-from opencv_iib.colmap.images import gps_place
+from opencv_iib._exif import gps_place
 from opencv_iib.measure import match_images
 from support import optional, run_command
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from opencv_iib import _streams
 from opencv_iib.__main__ import _parser
-from opencv_iib.colmap.progress import Progress
+from opencv_iib._progress import Progress
 from support import InFolder, cv2, run_command, texture
 
 

@@ -9,7 +9,7 @@ from typing import Any, Optional
 import numpy as np
 
 from opencv_iib._arguments import InvalidOption, Path
-from opencv_iib._turns import Turn, upright
+from opencv_iib._upright import Turn, upright
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector
 from opencv_iib.enums import Orientation, Preset

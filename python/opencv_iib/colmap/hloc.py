@@ -10,8 +10,8 @@ import numpy as np
 
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._files import check_outputs, output_file, replaced
+from opencv_iib._images import is_listable
 from opencv_iib.colmap.database import MAX_IMAGE_ID
-from opencv_iib.colmap.images import is_listable
 
 SHORT = 2 ** 15 - 1  # hloc's own files hold int16; its readers take any integers
 

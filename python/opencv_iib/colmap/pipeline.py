@@ -12,15 +12,15 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib._arguments import InvalidOption, Path
-from opencv_iib._files import check_outputs, only_writer, output_file
+from opencv_iib._exif import exif_focal_length, exif_orientation, gps_place
+from opencv_iib._files import check_outputs, only_writer, output_file, read_bytes
+from opencv_iib._images import Masks, decode_grey, find_images, import_cv2, is_listable, is_utf8
+from opencv_iib._parallel import Cluster, Crew, Threads, in_parallel, thread_count
+from opencv_iib._progress import Progress
 from opencv_iib._streams import note
 from opencv_iib.colmap import pairs as pair_lists
 from opencv_iib.colmap.database import CAMERA_MODELS, Database, SettingsChanged, settings_of
 from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
-from opencv_iib.colmap.images import (Masks, decode_grey, exif_focal_length, exif_orientation, find_images, gps_place, import_cv2, is_listable,
-                                     is_utf8, read_bytes)
-from opencv_iib.colmap.parallel import Cluster, Crew, Threads, in_parallel, thread_count
-from opencv_iib.colmap.progress import Progress
 from opencv_iib.colmap.verify import colmap_binary, magsac, matches_importer
 from opencv_iib.localization.localizer import Camera
 from opencv_iib.matcher import HierarchicalMatcher

@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 from opencv_iib import _core
 from opencv_iib._arguments import InvalidOption, Path, integer
 from opencv_iib._arrays import as_mask
+from opencv_iib._exif import exif_orientation
+from opencv_iib._files import read_bytes
+from opencv_iib._images import Masks, decode_grey
+from opencv_iib._parallel import thread_count
+from opencv_iib._progress import Progress
 from opencv_iib._streams import note
 from opencv_iib.colmap.features import MAX_POINTS, check_max_size
-from opencv_iib.colmap.images import Masks, decode_grey, exif_orientation, read_bytes
-from opencv_iib.colmap.parallel import thread_count
-from opencv_iib.colmap.progress import Progress
 from opencv_iib.localization.localizer import AnyCamera, Camera, Location
 from opencv_iib.localization.run import at_size, images_of, locate
 

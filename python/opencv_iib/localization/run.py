@@ -15,14 +15,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core, error
 from opencv_iib._arguments import InvalidOption, Path
-from opencv_iib._files import check_folder, check_outputs, new_results, rows_of, write_whole
+from opencv_iib._exif import exif_focal_length, exif_orientation
+from opencv_iib._files import check_folder, check_outputs, new_results, read_bytes, rows_of, write_whole
+from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, import_cv2, in_order, is_utf8, read_grey, write_picture
+from opencv_iib._parallel import Threads, in_parallel, thread_count
+from opencv_iib._progress import Progress
 from opencv_iib._streams import is_open_file, note
 from opencv_iib.colmap.features import check_max_size, reduced, resized_mask
-from opencv_iib.colmap.images import (Masks, check_sizes, decode_grey, exif_focal_length, exif_orientation, find_images, import_cv2, in_order, is_utf8, read_bytes, read_grey,
-                                     write_picture)
-from opencv_iib.colmap.parallel import Threads, in_parallel, thread_count
-from opencv_iib.colmap.progress import Progress
-from opencv_iib.localization.imu import by_time, read_imu
+from opencv_iib.localization.imu_file import by_time, read_imu
 from opencv_iib.localization.localizer import AnyCamera, Camera, Localizer, Location, as_camera
 from opencv_iib.localization.smoothing import smooth_poses
 

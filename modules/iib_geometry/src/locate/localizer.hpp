@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pose_search.hpp"
-#include "retrieval.hpp"
+#include "image_voting.hpp"
 
 namespace cv::iib {
 
@@ -27,7 +27,7 @@ private:
             depths_;  //!< of each image of the map, how far what it sees lies; 0 if it sees nothing
     Ptr<IIB> iib_;
     Ptr<HierarchicalMatcher> matcher_;
-    Retrieval votes_;
+    ImageVoting votes_;
     mutable PreparedPictures pictures_;  //!< of the map's images that were compared so far
     Matx66d mapError_;                   //!< which is no reason to doubt that an image was found
 };

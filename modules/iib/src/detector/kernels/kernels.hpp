@@ -24,8 +24,8 @@ struct DetectorKernels
     void (*centre)(const uchar* pixels, short* out, int width);
     //! out = c + near * (b + d - 2 c) + far * (a + e - 2 c) of rows a, b, c, d, e.
     void (*smooth)(const short* const rows[5], SmoothingWeights weights, short* out, int width);
-    /** factor * (Ixx Iyy - Ixy^2) by differences over `distance` pixels; rows: `distance` above, at and below. Ixy is a
-     quarter of a difference of four values, rounded. */
+    /** The determinant of the Hessian, factor * (Ixx Iyy - Ixy^2), by differences over `distance` pixels; rows: `distance`
+     above, at and below. Ixy is a quarter of a difference of four values, rounded. */
     void (*response)(const short* const rows[3], int distance, float factor, float* out, int width);
     //! The largest of 3 x 3 values.
     void (*largest)(const float* const rows[3], float* out, int width);

@@ -7,14 +7,14 @@
 
 namespace cv::iib {
 
-/** Finds the images of a map that look most like another one: each of its codes votes for the images with a code that is the
+/** How much the images of a map look like another one: each of its codes votes for the images with a code that is the
 same in some bits, for several random choices of bits (locality-sensitive hashing). The more codes there are, the more
 bits are compared, so that a larger map takes no longer. */
-class Retrieval
+class ImageVoting
 {
 public:
     //! @param codes of each image, the strongest keypoints first; may be empty.
-    explicit Retrieval(const std::vector<Mat>& codes);
+    explicit ImageVoting(const std::vector<Mat>& codes);
 
     struct Votes
     {

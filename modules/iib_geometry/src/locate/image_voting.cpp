@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "retrieval.hpp"
+#include "image_voting.hpp"
 
 #include <algorithm>
 #include <random>
@@ -17,7 +17,7 @@ int participating(const Mat& codes) { return std::min(codes.rows, STRONGEST); }
 
 }  // namespace
 
-uint32_t Retrieval::keyOf(const uchar* code, const std::vector<int>& bits)
+uint32_t ImageVoting::keyOf(const uchar* code, const std::vector<int>& bits)
 {
     uint32_t key = 0;
     for (int bit : bits)
@@ -25,7 +25,7 @@ uint32_t Retrieval::keyOf(const uchar* code, const std::vector<int>& bits)
     return key;
 }
 
-Retrieval::Retrieval(const std::vector<Mat>& codes) : images_(codes.size())
+ImageVoting::ImageVoting(const std::vector<Mat>& codes) : images_(codes.size())
 {
     size_t count = 0;
     int bytes = 0;
@@ -60,7 +60,7 @@ Retrieval::Retrieval(const std::vector<Mat>& codes) : images_(codes.size())
     }
 }
 
-Retrieval::Votes Retrieval::vote(const Mat& codes) const
+ImageVoting::Votes ImageVoting::vote(const Mat& codes) const
 {
     Votes votes = {std::vector<float>(images_, 0.f), 0};
     for (const Table& table : tables_)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "locate/retrieval.hpp"
+#include "locate/image_voting.hpp"
 #include "opencv2/ts.hpp"
 
 namespace opencv_test {
@@ -18,7 +18,7 @@ cv::Mat noisy(const cv::Mat& codes, double probability, cv::RNG& random)
     return result;
 }
 
-TEST(Retrieval, finds_the_image_of_noisy_codes_among_many)
+TEST(ImageVoting, finds_the_image_of_noisy_codes_among_many)
 {
     cv::RNG random(1);
     std::vector<cv::Mat> images(300);
@@ -28,17 +28,17 @@ TEST(Retrieval, finds_the_image_of_noisy_codes_among_many)
         if (!images[k].empty())
             random.fill(images[k], cv::RNG::UNIFORM, 0, 256);
     }
-    const Retrieval retrieval(images);
+    const ImageVoting voting(images);
     for (size_t k : {0, 151, 299})
     {
-        const std::vector<float> votes = retrieval.vote(noisy(images[k], 0.12, random)).ofImages;
+        const std::vector<float> votes = voting.vote(noisy(images[k], 0.12, random)).ofImages;
         EXPECT_EQ(std::ptrdiff_t(k), std::max_element(votes.begin(), votes.end()) - votes.begin());
         EXPECT_EQ(0, votes[3]) << "has no codes";
     }
 }
 
 // A map a hundred times as large takes as many votes.
-TEST(Retrieval, looks_at_no_more_codes_of_ten_thousand_images)
+TEST(ImageVoting, looks_at_no_more_codes_of_ten_thousand_images)
 {
     cv::RNG random(1);
     std::vector<cv::Mat> images(10000);
@@ -47,19 +47,19 @@ TEST(Retrieval, looks_at_no_more_codes_of_ten_thousand_images)
         codes.create(40, 64, CV_8U);
         random.fill(codes, cv::RNG::UNIFORM, 0, 256);
     }
-    const Retrieval large(images), small(std::vector<cv::Mat>(images.begin(), images.begin() + 100));
+    const ImageVoting large(images), small(std::vector<cv::Mat>(images.begin(), images.begin() + 100));
     const cv::Mat query = noisy(images[50], 0.1, random);
-    const Retrieval::Votes few = small.vote(query), many = large.vote(query);
+    const ImageVoting::Votes few = small.vote(query), many = large.vote(query);
     EXPECT_GT(few.visited, 0u);
     EXPECT_LT(double(many.visited), 1.5 * double(few.visited));
     EXPECT_EQ(50, std::max_element(many.ofImages.begin(), many.ofImages.end()) - many.ofImages.begin());
 }
 
-TEST(Retrieval, without_codes_there_are_no_votes)
+TEST(ImageVoting, without_codes_there_are_no_votes)
 {
     const cv::Mat none, some(5, 64, CV_8U, cv::Scalar(1));
-    EXPECT_EQ(std::vector<float>(2), Retrieval({none, none}).vote(some).ofImages);
-    EXPECT_EQ(std::vector<float>(2), Retrieval({some, some}).vote(none).ofImages);
+    EXPECT_EQ(std::vector<float>(2), ImageVoting({none, none}).vote(some).ofImages);
+    EXPECT_EQ(std::vector<float>(2), ImageVoting({some, some}).vote(none).ofImages);
 }
 
 }  // namespace

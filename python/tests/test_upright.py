@@ -7,11 +7,12 @@ import numpy as np
 
 import opencv_iib
 from collection import Collection
-from opencv_iib import _turns
+from opencv_iib import _upright
 from opencv_iib.align import align
 from opencv_iib.colmap import FeatureOptions
 from opencv_iib.colmap.features import Features
-from opencv_iib.colmap.images import exif_orientation, read_with_orientation
+from opencv_iib._exif import exif_orientation
+from opencv_iib._images import read_with_orientation
 from opencv_iib.measure import match_images
 from opencv_iib.localization import Camera
 from support import cv2, run_command, texture
@@ -27,7 +28,7 @@ def png(image, orientation):
 
 
 def stored(image, orientation):
-    return _turns.upright(image, STORED[orientation])
+    return _upright.upright(image, STORED[orientation])
 
 
 class Pixels(unittest.TestCase):
@@ -37,9 +38,9 @@ class Pixels(unittest.TestCase):
         expected = {1: image, 2: np.fliplr(image), 3: np.rot90(image, 2), 4: np.flipud(image), 5: image.T, 6: np.rot90(image, -1),
                     7: np.rot90(image, 2).T, 8: np.rot90(image)}
         for orientation, turned in expected.items():
-            np.testing.assert_array_equal(_turns.upright(image, orientation), turned)
-            np.testing.assert_array_equal(_turns.upright(stored(image, orientation), orientation), image)
-            turn = _turns.Turn(orientation, 30, 20)
+            np.testing.assert_array_equal(_upright.upright(image, orientation), turned)
+            np.testing.assert_array_equal(_upright.upright(stored(image, orientation), orientation), image)
+            turn = _upright.Turn(orientation, 30, 20)
             y, x = np.mgrid[:turned.shape[0], :turned.shape[1]].reshape(2, -1)
             at = turn.points(np.column_stack([x, y]).astype(np.float32)).astype(int)
             np.testing.assert_array_equal(image[at[:, 1], at[:, 0]], turned.ravel())
@@ -58,8 +59,8 @@ class Pixels(unittest.TestCase):
                                     ('RADIAL_FISHEYE', 1, 2), ('THIN_PRISM_FISHEYE', 2, 8), ('RAD_TAN_THIN_PRISM_FISHEYE', 2, 12),
                                     ('SIMPLE_DIVISION', 1, 1), ('DIVISION', 2, 1), ('SIMPLE_FISHEYE', 1, 0), ('FISHEYE', 2, 0), ('EUCM', 2, 2)):
             camera = Camera(model, 640, 480, [300, 310][:focals] + [330, 230] + others[:more])
-            for orientation in _turns.ROTATIONS:
-                turn = _turns.Turn(orientation, 640, 480)
+            for orientation in _upright.ROTATIONS:
+                turn = _upright.Turn(orientation, 640, 480)
                 upright = camera.upright(orientation)
                 np.testing.assert_allclose(upright.upright({3: 3, 6: 8, 8: 6}[orientation]).params, camera.params, atol=1e-12)
                 self.assertEqual((upright.width, upright.height), (640, 480) if orientation == 3 else (480, 640))
@@ -110,7 +111,7 @@ class Commands(Collection):
         for orientation in TURNED:
             path = self.write(self.b, orientation)
             found = match_images(self.first, path, options=FeatureOptions(points=300))
-            at = _turns.Turn(orientation, *stored(self.b, orientation).shape[1::-1]).points(expected.matches.points2)
+            at = _upright.Turn(orientation, *stored(self.b, orientation).shape[1::-1]).points(expected.matches.points2)
             np.testing.assert_allclose(found.matches.points2, at, atol=1e-3)
             np.testing.assert_array_equal(found.matches.points1, expected.matches.points1)
             swapped = expected.matches.covariances[:, [2, 1, 0] if orientation > 4 else [0, 1, 2]]
@@ -118,8 +119,8 @@ class Commands(Collection):
             arguments = 'match', self.first, path, '--points', '300', '--out', self.folder / 'm.csv'
             right, wrong = (run_command(*arguments, *more)[1] for more in ((), ('--no-exif',)))
             self.assertNotIn('turned', right)
-            if orientation in _turns.ROTATIONS:  # which the images themselves tell
-                self.assertRegex(wrong, rf'one image turned by {dict(zip(_turns.ROTATIONS, (180, 270, 90)))[orientation]} degrees')
+            if orientation in _upright.ROTATIONS:  # which the images themselves tell
+                self.assertRegex(wrong, rf'one image turned by {dict(zip(_upright.ROTATIONS, (180, 270, 90)))[orientation]} degrees')
                 self.assertGreater(int(wrong.split()[1]), .7 * int(right.split()[1]))
             else:
                 self.assertRegex(wrong, 'may not show the same')
@@ -139,7 +140,7 @@ class Commands(Collection):
     def test_align(self):
         done = align(self.first, [self.write(self.b, orientation) for orientation in TURNED], self.folder / 'out', 1)
         for orientation, each in zip(TURNED, done):
-            turn = _turns.Turn(orientation, *stored(self.b, orientation).shape[1::-1])
+            turn = _upright.Turn(orientation, *stored(self.b, orientation).shape[1::-1])
             back = np.reshape(each.transform, (3, 3)) @ turn.matrix  # from the upright image
             np.testing.assert_allclose(back, [[1, 0, 30], [0, 1, 20], [0, 0, 1]], atol=.1)
             picture = cv2.imread(str(self.folder / 'out' / each.file), cv2.IMREAD_GRAYSCALE)
@@ -147,7 +148,7 @@ class Commands(Collection):
         done = align(self.write(self.b, 6), [self.first], self.folder / 'other', 1)
         self.assertEqual(cv2.imread(str(self.folder / 'other' / done[0].file)).shape, (400, 300, 3))
         np.testing.assert_allclose(np.reshape(done[0].transform, (3, 3)) @ [130, 70, 1],
-                                   _turns.Turn(6, 300, 400).matrix @ [100, 50, 1], atol=.2)
+                                   _upright.Turn(6, 300, 400).matrix @ [100, 50, 1], atol=.2)
 
     def test_colmap(self):
         for name, orientation in (('b.png', 6), ('more/c.png', 3)):

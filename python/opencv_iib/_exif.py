@@ -1,0 +1,155 @@
+"""What the heads of image files tell: EXIF data, the pages of TIFF, segments of JPEG."""
+from __future__ import annotations
+
+import contextlib
+import struct
+from typing import Any, Iterator, Optional
+
+import numpy as np
+
+from opencv_iib._files import read_bytes
+
+# Numbers of TIFF's and EXIF's tags.
+SAMPLES, ORIENTATION, NO_DATA = 0x0115, 0x0112, 0xA481  # the last one is GDAL's
+EXIF_IFD, FOCAL_LENGTH, FOCAL_LENGTH_35MM, PLANE_X_RESOLUTION, PLANE_UNIT = 0x8769, 0x920A, 0xA405, 0xA20E, 0xA210
+MILLIMETRES = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}  # of EXIF's units of resolution
+NOWHERE = 2**32 - 1  #: of a directory: behind the end of any file
+GPS_IFD, LATITUDE_REF, LATITUDE, LONGITUDE_REF, LONGITUDE, ALTITUDE_REF, ALTITUDE = 0x8825, 1, 2, 3, 4, 5, 6
+EARTH = 6371000  # metres, the radius
+BYTE, ASCII, SHORT, LONG, RATIONAL = 1, 2, 3, 4, 5  # EXIF's types
+START_OF_SCAN, APP1 = 0xda, 0xe1  # JPEG's markers
+TIFF = (b'II*\0', b'MM\0*', b'II+\0', b'MM\0+')  # how files begin
+
+
+def _jpeg_segments(data: bytes) -> Iterator[tuple[int, int, int]]:
+    """Marker, begin and end of each segment of a JPEG, up to its image data; nothing for other files."""
+    at = 2 if data.startswith(b'\xff\xd8') else len(data)
+    while data[at:at + 1] == b'\xff' and at + 4 <= len(data):
+        marker = data[at + 1]
+        end = at + 2 + int.from_bytes(data[at + 2:at + 4], 'big')
+        if marker == 0xff:  # a byte that fills
+            at += 1
+            continue
+        yield marker, at + 4, end
+        if marker == START_OF_SCAN:
+            return
+        at = end
+
+
+def is_cut_off(data: bytes) -> bool:
+    """Whether the file is a JPEG without its end. A thumbnail within a segment has an end of its own."""
+    return any(marker == START_OF_SCAN and data.find(b'\xff\xd9', begin) < 0 for marker, begin, _ in _jpeg_segments(data))
+
+
+def _exif(data: bytes) -> bytes:
+    """The TIFF structure of a file's EXIF data, in JPEG, PNG, WebP or TIFF; empty without any."""
+    if data[:4] in (b'II*\0', b'MM\0*'):
+        return data
+    for marker, begin, end in _jpeg_segments(data):
+        if marker == APP1 and data[begin:begin + 6] == b'Exif\0\0':
+            return data[begin + 6:end]
+    png, webp = data[:4] == b'\x89PNG', data[8:12] == b'WEBP'
+    at = 8 if png else 12 if webp else len(data)
+    while at + 8 <= len(data):
+        name, size = data[at + 4:at + 8], int.from_bytes(data[at:at + 4], 'big')
+        if webp:
+            name, size = data[at:at + 4], int.from_bytes(data[at + 4:at + 8], 'little')
+        if name in (b'eXIf', b'EXIF'):
+            return data[at + 8:at + 8 + size].removeprefix(b'Exif\0\0')
+        at += 8 + size + (4 if png else size % 2)
+    return b''
+
+
+def _directory(tiff: bytes, at: int) -> tuple[dict[int, Any], int]:
+    """By tag, the numbers or the text of each entry of a TIFF directory, and where the next one begins, or 0.
+
+    :raises struct.error: for one that is cut off.
+    """
+    order = '<' if tiff[:1] == b'I' else '>'
+    count, = struct.unpack_from(order + 'H', tiff, at)
+    found: dict[int, Any] = {}
+    for entry in range(at + 2, at + 2 + 12 * count, 12):
+        tag, kind, length = struct.unpack_from(order + 'HHI', tiff, entry)
+        form = {BYTE: f'{length}B', ASCII: f'{length}s', SHORT: f'{length}H', LONG: f'{length}I', RATIONAL: f'{2 * length}I'}.get(kind)
+        with contextlib.suppress(struct.error):  # of an entry that leads nowhere
+            if form is not None and length:
+                size = struct.calcsize(order + form)
+                place, = (entry + 8,) if size <= 4 else struct.unpack_from(order + 'I', tiff, entry + 8)
+                values: Any = struct.unpack_from(order + form, tiff, place)
+                if kind == RATIONAL:
+                    values = [above / below if below else 0 for above, below in zip(values[::2], values[1::2])]
+                found[tag] = values[0].split(b'\0')[0].decode('latin-1').strip() if kind == ASCII else values
+    following = tiff[at + 2 + 12 * count:at + 6 + 12 * count]
+    return found, struct.unpack(order + 'I', following)[0] if len(following) == 4 else 0
+
+
+def _first_directory(tiff: bytes) -> dict[int, Any]:
+    """:raises struct.error: if there is none."""
+    return _directory(tiff, struct.unpack_from('<I' if tiff[:1] == b'I' else '>I', tiff, 4)[0])[0]
+
+
+def _number(entries: dict[int, Any], tag: int, default: float) -> float:
+    """The first one of an entry; the default where there is none, or a text that some program wrote there."""
+    values = entries.get(tag, '')
+    return default if isinstance(values, str) else values[0]
+
+
+def pages_of_tiff(data: bytes) -> tuple[int, int]:
+    """How many, and channels of the first; 1 of each for other files, and for the 64-bit kind, whose pages are not counted."""
+    if data[:4] not in TIFF[:2]:
+        return 1, 1
+    samples, seen = 1, set[int]()
+    with contextlib.suppress(struct.error):
+        at, = struct.unpack_from('<I' if data[:1] == b'I' else '>I', data, 4)
+        while at and at not in seen:
+            entries, following = _directory(data, at)
+            samples = samples if seen else int(_number(entries, SAMPLES, 1))
+            seen.add(at)
+            at = following
+    return max(len(seen), 1), samples
+
+
+def no_data(data: bytes) -> str:
+    """What GDAL has written of a TIFF's pixels without data: a number, or ''."""
+    with contextlib.suppress(struct.error, ValueError):
+        if data[:4] in TIFF[:2]:
+            text = str(_first_directory(data)[NO_DATA]) if NO_DATA in _first_directory(data) else ''
+            float(text)
+            return text
+    return ''
+
+
+def exif_orientation(data: bytes) -> int:
+    """How a file's EXIF data say that the image is stored, 1 (upright) to 8; 1 if they tell nothing."""
+    try:
+        told = int(_number(_first_directory(_exif(data)), ORIENTATION, 1))
+    except struct.error:
+        return 1
+    return told if 1 <= told <= 8 else 1
+
+
+def exif_focal_length(data: bytes, width: int, height: int) -> Optional[float]:
+    """Focal length in pixels by a file's EXIF data, by COLMAP's rules; None if they tell none."""
+    tiff = _exif(data)
+    try:
+        entries = _directory(tiff, int(_number(_first_directory(tiff), EXIF_IFD, NOWHERE)))[0]
+    except struct.error:
+        return None
+    exif: dict[int, float] = {tag: values[0] for tag, values in entries.items() if not isinstance(values, str)}
+    if exif.get(FOCAL_LENGTH_35MM, 0) > 0:
+        return exif[FOCAL_LENGTH_35MM] / 35.0 * max(width, height)
+    focal, resolution = exif.get(FOCAL_LENGTH, 0), exif.get(PLANE_X_RESOLUTION, 0)
+    return focal * resolution / MILLIMETRES.get(int(exif.get(PLANE_UNIT, 2)), 25.4) or None
+
+
+def gps_place(path: str) -> Optional[np.ndarray]:
+    """Where a file's EXIF data say that it was taken, metres from the Earth's centre; None if they do not."""
+    try:
+        tiff = _exif(read_bytes(path))
+        gps = _directory(tiff, int(_number(_first_directory(tiff), GPS_IFD, NOWHERE)))[0]
+        latitude, longitude = (np.radians(np.dot(gps[tag], (1, 1 / 60, 1 / 3600)) * (-1 if gps.get(ref) in ('S', 'W') else 1))
+                               for tag, ref in ((LATITUDE, LATITUDE_REF), (LONGITUDE, LONGITUDE_REF)))
+        height = _number(gps, ALTITUDE, 0) * (-1 if _number(gps, ALTITUDE_REF, 0) == 1 else 1)
+    except (struct.error, KeyError, TypeError, ValueError, OSError):
+        return None
+    return np.array([np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)]) * float(EARTH + height)
