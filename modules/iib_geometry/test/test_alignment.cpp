@@ -12,18 +12,24 @@ using namespace cv::iib;
 
 const Size SIZE(400, 300);
 
+Mat spots(int seed, int count, const Size& size)
+{
+    RNG random(seed);
+    Mat image(size, CV_8U, Scalar(120));
+    for (int i = 0; i < count; i++)
+    {
+        const Point at(random.uniform(0, size.width), random.uniform(0, size.height));
+        const Size axes(random.uniform(3, 30), random.uniform(3, 30));
+        ellipse(image, at, axes, random.uniform(0., 180.), 0, 360, Scalar(random.uniform(20, 230)), FILLED,
+                LINE_AA);
+    }
+    return image;
+}
+
 //! Patches of all sizes, another picture for each seed.
 Mat picture(int seed)
 {
-    RNG random(seed);
-    Mat image(SIZE, CV_8U, Scalar(120));
-    for (int i = 0; i < 700; i++)
-    {
-        const Point at(random.uniform(0, SIZE.width), random.uniform(0, SIZE.height));
-        const Size size(random.uniform(3, 30), random.uniform(3, 30));
-        ellipse(image, at, size, random.uniform(0., 180.), 0, 360, Scalar(random.uniform(20, 230)), FILLED,
-                LINE_AA);
-    }
+    Mat image = spots(seed, 700, SIZE);
     GaussianBlur(image, image, Size(), .8);
     return image;
 }
@@ -128,6 +134,16 @@ TEST(Alignment, refuses_images_of_other_scenes_and_without_points)
     EXPECT_LT(matches.rows, 16);
     EXPECT_FALSE(alignImages(picture(3), Mat(SIZE, CV_8U, Scalar(7)), transform));
     EXPECT_FALSE(alignImages(Mat(), picture(3), transform));
+}
+
+//! Three spots each: a dozen matches are all that there is, and that no wrong one is near tells little.
+TEST(Alignment, refuses_a_few_matches_that_agree_by_chance)
+{
+    Mat images[2], transform, matches;
+    for (int i = 0; i < 2; i++)
+        GaussianBlur(spots(315 + i, 3, Size(200, 150)), images[i], Size(), 3);
+    EXPECT_FALSE(alignImages(images[0], images[1], transform, ALIGN_SIMILARITY, noArray(), matches));
+    EXPECT_GE(matches.rows, 4);
 }
 
 TEST(Alignment, refuses_pictures_that_share_a_part_alone_in_any_model)
