@@ -369,6 +369,20 @@ TEST(Alignment, finds_large_and_blurred_images)
     EXPECT_NEAR(60, transform.at<double>(1, 2), 6);
 }
 
+TEST(Alignment, finds_large_images_that_are_turned_sharp_or_blurred)
+{
+    Mat large, turned, transform, error;
+    resize(picture(17), large, Size(2400, 1800), 0, 0, INTER_CUBIC);
+    rotate(large, turned, ROTATE_90_CLOCKWISE);
+    ASSERT_TRUE(alignImages(large, turned, transform, ALIGN_SIMILARITY, error));
+    EXPECT_LT(cv::norm(Matx33d(transform), Matx33d(0, 1, 0, -1, 0, 1799, 0, 0, 1), NORM_INF), .05);
+    EXPECT_LT(cv::norm(error, NORM_INF), .5);
+    GaussianBlur(turned, turned, Size(), 40);
+    ASSERT_TRUE(alignImages(large, turned, transform, ALIGN_SIMILARITY, error));
+    EXPECT_NEAR(1, transform.at<double>(0, 1), .03);
+    EXPECT_NEAR(-1, transform.at<double>(1, 0), .03);
+}
+
 TEST(Alignment, keeps_the_scales_of_images_of_other_sizes)
 {
     Mat large, transform;
@@ -412,7 +426,6 @@ TEST(Alignment, mistakes_are_told)
     EXPECT_THROW(alignImages(picture(5), Mat(SIZE, CV_32S), transform), cv::Exception);
 }
 
-// The errors of the corners are as large as it says, on average over many noisy sets of matches.
 TEST(Alignment, one_reference_serves_many_images_as_each_alone)
 {
     const Mat reference = picture(1);
@@ -449,6 +462,7 @@ TEST(Alignment, looks_at_what_masks_allow)
         EXPECT_ANY_THROW(ImageAligner::create(reference, ALIGN_TRANSLATION, wrong));
 }
 
+//! As large as it says, on average over many noisy sets of matches.
 TEST(Alignment, deviation_foretells_the_errors_of_the_corners)
 {
     RNG random(6);

@@ -99,12 +99,16 @@ Mat deviationsOf(const Aligned& aligned, const AlignedPoints& points, const Size
 
 std::vector<Attempt> attemptsFor(const Size& first, const Size& second, int model)
 {
-    std::vector<Attempt> attempts = {{WORKING_SIZE, false}};
-    if (std::max({first.width, first.height, second.width, second.height}) > WORKING_SIZE / 2)
-        attempts.push_back(
-                {WORKING_SIZE / 2, false});  // blurred images, as of a focus stack, are sharper there
-    if (model != ALIGN_TRANSLATION)
-        attempts.push_back({WORKING_SIZE, true});
+    std::vector<Attempt> attempts;
+    const bool isLarge =
+            std::max({first.width, first.height, second.width, second.height}) > WORKING_SIZE / 2;
+    for (bool rotated : {false, true})
+        if (!rotated || model != ALIGN_TRANSLATION)
+        {
+            attempts.push_back({WORKING_SIZE, rotated});
+            if (isLarge)  // blurred images, as of a focus stack, are sharper at half the size
+                attempts.push_back({WORKING_SIZE / 2, rotated});
+        }
     return attempts;
 }
 

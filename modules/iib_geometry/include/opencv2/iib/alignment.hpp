@@ -23,11 +23,11 @@ enum AlignmentModel
 
 For images of a plane, or of anything by a camera that stays where it is, though it may turn and zoom, by day and by night.
 Images from two places of a scene that is not flat have no such transform; findRelativePose is for them. Points are detected
-in both images and matched, in the last attempt also by images that are turned by any angle (matchRotated, for all models but
-ALIGN_TRANSLATION); the matches are
-refined (refineMatches), and the transform that most of them agree with is fitted to them as findRelativePose fits a pose. Images
-whose longer side has more than 1024 pixels are reduced for that, in a second attempt to 512, where blurred ones are sharper; the matches that agree are then refined at full size, where the
-images are sharp enough for it. The same input gives the same answer, whatever the number of threads.
+in both images and matched, where that fails also by images that are turned by any angle (matchRotated, for all models but
+ALIGN_TRANSLATION); the matches are refined (refineMatches), and the transform that most of them agree with is fitted to them as
+findRelativePose fits a pose. Images whose longer side has more than 1024 pixels are reduced for that, and in a second attempt those of
+more than 512 to 512 pixels, where blurred ones are sharper; the matches that agree are then refined at full size, where the images are
+sharp enough for it. The same input gives the same answer, whatever the number of threads.
 
 There is no transform, and `reason` says which of these it was,
 - where the matches that agree are no more than chance (the number of false alarms, as of findRelativePose);
