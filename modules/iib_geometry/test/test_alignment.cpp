@@ -354,6 +354,19 @@ TEST(Alignment, tells_a_camera_that_moved)
     EXPECT_NE(reason.find("parallax"), String::npos) << reason;
 }
 
+//! A third of what a camera that stayed sees moved one way: what it sees is all that there is to tell it from the one before.
+TEST(Alignment, tells_what_may_be_shadows_that_moved)
+{
+    const Mat picture1 = picture(16);
+    Mat image = inOtherLight(picture1), transform;
+    const Mat shadows = inOtherLight(picture1(Rect(0, 0, 392, 100)));
+    shadows.copyTo(image(Rect(8, 0, 392, 100)));
+    String reason;
+    EXPECT_FALSE(alignImages(picture1, image, transform, ALIGN_HOMOGRAPHY, noArray(), noArray(), &reason));
+    EXPECT_NE(reason.find("parallax"), String::npos) << reason;
+    EXPECT_NE(reason.find("shadows"), String::npos) << reason;
+}
+
 //! Of many pixels, and blurred: what the working size finds is refined as far as there is something to refine.
 TEST(Alignment, finds_large_and_blurred_images)
 {

@@ -190,9 +190,11 @@ Judgement judge(const Aligned& aligned, const AlignedPoints& points, int model, 
     const Aligned& richest = richer.empty() || richer.back().fit.squared.empty() ? aligned : richer.back();
     const Verdict::Marks moved = movedBeside(richest, points, LEAST_PARALLAX, verdict);
     if (verdict.places(moved) > MOST_PARALLAX * verdict.places(richest.agree))
-        return {format("the camera moved through a scene that is not flat: %d matches agree with one "
-                       "transform, and %d more are beside it along lines through one point (parallax); "
-                       "findRelativePose is for such images",
+        return {format("%d matches agree with one transform, and %d more are beside it along lines through "
+                       "one "
+                       "point: the camera moved through a scene that is not flat (parallax; findRelativePose "
+                       "is "
+                       "for such images), or a part of what it sees moved one way, as shadows do",
                         richest.count(), countOf(moved)),
                 true};
     const Spread spread(points, aligned.agree, aligned.problem.inPixels(aligned.fit.model), pair);

@@ -36,7 +36,8 @@ There is no transform, and `reason` says which of these it was,
   third of the cells (of 8 x 8) in which as many of the points would be, as of two captions;
 - where a transform of more freedom agrees better with the matches than noise would let it, by the likelihood of their errors, at
   the size at which they are matched, or at full size;
-- where a quarter as many places as agree lie beside the transform as if the camera had moved (parallax).
+- where a quarter as many places as agree lie beside the transform along lines through one point, by more than 6 pixels of the size at
+  which they are matched (24 of an image of 4096): the camera moved (parallax), or shadows did. By less, `error` has it.
 
     cv::Mat transform, aligned;
     if (cv::iib::alignImages(reference, image, transform))
