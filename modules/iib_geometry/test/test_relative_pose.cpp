@@ -403,6 +403,35 @@ TEST(RelativePose, the_residuals_tell_a_scale_of_any_size)
     }
 }
 
+// Which a scale that is too narrow by far would cut the errors off at.
+TEST(RelativePose, covariance_is_that_of_the_residuals_whatever_scale_is_given)
+{
+    RNG random(22);
+    for (double noise : {.25, 2., 4.})
+    {
+        int found = 0, inside50 = 0, inside95 = 0;
+        const int trials = 30;
+        for (int trial = 0; trial < trials; trial++)
+        {
+            const RelativePose truth = randomPose(random, .2);
+            const Views views(random, truth, 150, 0, noise);
+            RelativePose pose;
+            Mat covariance;
+            if (!findRelativePose(views.points1, views.points2, CAMERA, CAMERA, pose.R, pose.t, noArray(),
+                        .25, covariance))
+                continue;
+            found++;
+            const Vec<double, 5> error = errorOf(pose, truth);
+            const double squared = error.dot(Matx<double, 5, 5>(covariance).inv() * error);
+            inside50 += squared < 4.351;
+            inside95 += squared < 11.07;
+        }
+        EXPECT_GE(found, .9 * trials) << noise;
+        EXPECT_GE(inside50, .6 * found) << noise;
+        EXPECT_GE(inside95, .9 * found) << noise;
+    }
+}
+
 TEST(RelativePose, covariances_have_an_inverse)
 {
     RNG random(21);

@@ -56,6 +56,15 @@ std::string reasonAgainst(const EpipolarProblem& problem, const Fit<EpipolarProb
     return "";
 }
 
+//! The scale that the errors tell, if it is wider than the one that was given.
+double scaleOf(const EpipolarProblem& problem, const Fit<EpipolarProblem>& fit)
+{
+    for (double scale = fit.scale, told; scale <= problem.mostScale(); scale *= 2)
+        if (settles(fit.squared, FARTHEST_OF_CHOICE * scale, problem.parameters(), told))
+            return told;
+    return fit.scale;
+}
+
 //! Polishes the pose under a wider scale where few matches are within the one that they told: it may be too narrow.
 void polishFew(const EpipolarProblem& problem, double scale, Fit<EpipolarProblem>& fit)
 {
@@ -140,9 +149,15 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
     const Verdict verdict(first, second);
     double limit = 0;
     std::string why = reasonAgainst(problem, fit, verdict, limit);
-    const double wide = limit < 6 * fit.scale ? fit.scale : limit / 3;
-    if (why.empty() && scale == 0)
-        polishFew(problem, wide, fit);
+    double wide = 0;  // errors with long tails are told as large as they are
+    if (why.empty())
+    {
+        wide = limit < 6 * fit.scale ? fit.scale : limit / 3;
+        if (scale == 0)
+            polishFew(problem, wide, fit);
+        else
+            wide = std::max(wide, scaleOf(problem, fit));
+    }
     if (inliers.needed())
     {
         Mat agree(first.rows, 1, CV_8U, Scalar(0));
@@ -153,7 +168,7 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
     Square<EpipolarProblem::Step> errors;
     if (why.empty())
     {
-        fit.scale = wide;  // errors with long tails are told as large as they are
+        fit.scale = wide;
         errors = covarianceOf(problem, fit, partsOf(first), LARGEST_DEVIATION);
         const bool told = tellsDirection(problem, fit, verdict);
         const Square<EpipolarProblem::Step> anyDirection =

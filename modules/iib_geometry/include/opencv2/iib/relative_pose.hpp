@@ -39,7 +39,8 @@ Matches that cv::iib::refineMatches refined make the pose more accurate where th
 @param inliers N x 1, CV_8U: 1 for matches within three scales of the pose (three quarters of a pixel at least), and in front of both
     cameras unless they are too far away to tell; else 0. Without a pose, those that agreed best
 @param scale Cauchy's scale in pixels: about the standard deviation of the points; 0: the residuals tell it, from .1 pixel to a
-    hundredth of the diagonal of what the points span; less than .1 counts as .1
+    hundredth of the diagonal of what the points span; less than .1 counts as .1. The covariance is that of the residuals even if
+    they are larger than a scale that is given
 @param covariance 5 x 5, CV_64F, of the errors of the pose in radians: three numbers of a rotation vector \f$w\f$ in the
     axes of camera 2, where the true rotation is \f$\exp([w]_\times) R\f$; two of the direction of t, along \f$b\f$ and
     \f$t \times b\f$, where \f$b\f$ is the unit vector along \f$t \times e\f$ and \f$e\f$ the axis along which t is
