@@ -11,7 +11,12 @@ namespace iib_tools {
 namespace {
 
 const int OTHER_SCENES = 520;    // pairs of images of different sets, in all
+const int WITH_LOGO = 36;        // of them, that are given a part in common
+const int LOGO = 100;            // pixels of its sides
 const double MOST_MOVED = 0.06;  // of a corner, in parts of the image's size
+const double NOISE = 8;          // grey levels
+const cv::Point SHIFT(17, -9);   // whole pixels, by which noisy images are moved
+const char* const MODELS[] = {"TRANSLATION", "SIMILARITY", "AFFINE", "HOMOGRAPHY"};
 
 std::vector<cv::Point2d> corners(const cv::Size& size)
 {
@@ -19,53 +24,126 @@ std::vector<cv::Point2d> corners(const cv::Size& size)
     return {{0, 0}, {right, 0}, {right, bottom}, {0, bottom}};
 }
 
-cv::Matx33d randomHomography(cv::RNG& random, const cv::Size& size)
+bool stoodStill(const ImagePair& pair)
+{
+    return pair.homographyFile.empty() ||
+           cv::norm(readHomography(pair.homographyFile), cv::Matx33d::eye(), cv::NORM_INF) == 0;
+}
+
+//! Of a model, by which corners move so far at most.
+cv::Matx33d randomTransform(cv::RNG& random, const cv::Size& size, int model)
 {
     std::vector<cv::Point2f> from, to;
     for (const cv::Point2d& corner : corners(size))
     {
+        const double x = random.uniform(-MOST_MOVED, MOST_MOVED), y = random.uniform(-MOST_MOVED, MOST_MOVED);
         from.push_back(corner);
-        to.push_back(corner + cv::Point2d(random.uniform(-MOST_MOVED, MOST_MOVED) * size.width,
-                                      random.uniform(-MOST_MOVED, MOST_MOVED) * size.height));
+        to.push_back(corner + cv::Point2d(x * size.width, y * size.height));
     }
-    return cv::getPerspectiveTransform(from, to);
+    if (model == cv::iib::ALIGN_HOMOGRAPHY)
+        return cv::getPerspectiveTransform(from, to);
+    cv::Matx23d affine(1, 0, to[0].x, 0, 1, to[0].y);
+    if (model == cv::iib::ALIGN_AFFINE)
+        affine = cv::getAffineTransform(from.data(), to.data());
+    else if (model == cv::iib::ALIGN_SIMILARITY)  // by two corners
+    {
+        const cv::Point2f before = from[2] - from[0], after = to[2] - to[0];
+        const double length2 = before.ddot(before), c = before.ddot(after) / length2,
+                     s = before.cross(after) / length2;
+        affine = cv::Matx23d(c, -s, to[0].x, s, c, to[0].y);
+    }
+    cv::Matx33d all = cv::Matx33d::eye();
+    for (int k = 0; k < 6; k++)
+        all.val[k] = affine.val[k];
+    return all;
 }
 
-//! How far the corners of the image lie from their true places in the reference on average, in pixels.
-double cornerError(const cv::Mat& found, const cv::Matx33d& truth, const cv::Size& size)
+/** Of the corners of the image: how far they lie from their true places in the reference on average, in pixels, and the mean of
+(error / told deviation)^2. */
+Fields errorsOf(const cv::Mat& found, const cv::Mat& told, const cv::Matx33d& truth, const cv::Size& size)
 {
     std::vector<cv::Point2d> places, trueOnes;
     cv::perspectiveTransform(corners(size), places, found);
     cv::perspectiveTransform(corners(size), trueOnes, truth);
-    double sum = 0;
+    double sum = 0, squares = 0;
     for (int k = 0; k < 4; k++)
-        sum += cv::norm(places[k] - trueOnes[k]);
-    return sum / 4;
+    {
+        const double error = cv::norm(places[k] - trueOnes[k]);
+        sum += error;
+        squares += std::pow(error / told.at<double>(k), 2);
+    }
+    return {text(sum / 4), text(squares / 4)};
 }
 
-void alignPair(const ImagePair& pair, uint64 seed, ResultTable& table)
+//! Rows of the table for two images, one for each model. @param truth null: none.
+void alignAll(const cv::Mat& reference, const cv::Mat& image, const Fields& key, const cv::Matx33d* truth,
+        ResultTable& table)
+{
+    for (int model = cv::iib::ALIGN_TRANSLATION; model <= cv::iib::ALIGN_HOMOGRAPHY; model++)
+    {
+        cv::Mat transform, told, matches;
+        const bool found = cv::iib::alignImages(reference, image, transform, model, told, matches);
+        Fields row = key;
+        row.insert(row.end(), {MODELS[model], std::to_string(found), std::to_string(matches.rows)});
+        const Fields errors = found && truth ? errorsOf(transform, told, *truth, image.size())
+                                             : Fields{truth ? "inf" : "", ""};
+        row.insert(row.end(), errors.begin(), errors.end());
+        table.append(row);
+    }
+}
+
+Fields keyOf(const ImagePair& pair, const std::string& image)
+{
+    return {pair.set, pair.sequence, pair.target, image};
+}
+
+std::string movedBy(int model) { return std::string("moved by a ") + MODELS[model]; }
+
+//! Under changed light, the second image moved by a transform.
+void alignMoved(const ImagePair& pair, int by, uint64 seed, ResultTable& table)
 {
     const LoadedPair loaded = loadPair(pair);
     cv::RNG random(seed);
-    const cv::Matx33d moved = randomHomography(random, loaded.target.size());
-    cv::Mat image, transform, matches;
+    const cv::Matx33d moved = randomTransform(random, loaded.target.size(), by);
+    cv::Mat image;
     cv::warpPerspective(
             loaded.target, image, moved, loaded.target.size(), cv::INTER_CUBIC, cv::BORDER_REFLECT);
-    const bool found = cv::iib::alignImages(
-            loaded.reference, image, transform, cv::iib::ALIGN_HOMOGRAPHY, cv::noArray(), matches);
     const cv::Matx33d truth = (moved * loaded.homography).inv();
-    table.append({pair.set, pair.sequence, pair.target, "same scene", std::to_string(found),
-            std::to_string(matches.rows),
-            found ? text(cornerError(transform, truth, image.size())) : std::string("inf")});
+    alignAll(loaded.reference, image, keyOf(pair, movedBy(by)), &truth, table);
+}
+
+//! Two parts of one image, by whole pixels apart, each with noise of its own.
+void alignNoisy(const ImagePair& pair, uint64 seed, ResultTable& table)
+{
+    const cv::Mat whole = loadPair(pair).reference;
+    const cv::Point margin(std::abs(SHIFT.x), std::abs(SHIFT.y));
+    const cv::Rect part(margin, cv::Size(whole.size() - cv::Size(2 * margin)));
+    cv::RNG random(seed);
+    cv::Mat images[2];
+    for (int i = 0; i < 2; i++)
+    {
+        cv::Mat noise(part.size(), CV_16S);
+        random.fill(noise, cv::RNG::NORMAL, 0, NOISE);
+        cv::add(whole(i ? part + SHIFT : part), noise, images[i], cv::noArray(), CV_8U);
+    }
+    const cv::Matx33d truth(1, 0, SHIFT.x, 0, 1, SHIFT.y, 0, 0, 1);
+    alignAll(images[0], images[1], keyOf(pair, "with noise"), &truth, table);
 }
 
 void alignOthers(const ImagePair& pair, const ImagePair& other, ResultTable& table)
 {
-    cv::Mat transform, matches;
-    const bool found = cv::iib::alignImages(loadPair(pair).reference, loadPair(other).target, transform,
-            cv::iib::ALIGN_HOMOGRAPHY, cv::noArray(), matches);
-    table.append({pair.set, pair.sequence, pair.target, other.name(), std::to_string(found),
-            std::to_string(matches.rows), ""});
+    alignAll(loadPair(pair).reference, loadPair(other).target, keyOf(pair, other.name()), nullptr, table);
+}
+
+//! Both with a part of a third image in the upper left corner.
+void alignLogos(const ImagePair& pair, const ImagePair& other, const ImagePair& logo, ResultTable& table)
+{
+    cv::Mat images[] = {loadPair(pair).reference, loadPair(other).target};
+    const cv::Mat third = loadPair(logo).reference;
+    const cv::Rect middle((third.cols - LOGO) / 2, (third.rows - LOGO) / 2, LOGO, LOGO);
+    for (cv::Mat& image : images)
+        third(middle).copyTo(image(cv::Rect(20, 20, LOGO, LOGO)));
+    alignAll(images[0], images[1], keyOf(pair, "logo " + other.name()), nullptr, table);
 }
 
 }  // namespace
@@ -77,11 +155,21 @@ int alignment(const Options& options, const std::vector<ImagePair>& all)
         if (pair.kind == "light")
             pairs.push_back(pair);
     ResultTable table(options.out + "/alignment.csv",
-            {"set", "sequence", "target", "image", "found", "matches", "error"}, 4);
+            {"set", "sequence", "target", "image", "model", "found", "matches", "error", "squares"}, 5);
     std::vector<Task> tasks;
+    const auto plan = [&](const ImagePair& pair, const std::string& image, const std::function<void()>& run) {
+        Fields last = keyOf(pair, image);
+        last.push_back(MODELS[cv::iib::ALIGN_HOMOGRAPHY]);
+        if (!table.has(last))
+            tasks.push_back({pair.name() + " and " + image, run});
+    };
     for (size_t i = 0; i < pairs.size(); i++)
-        if (!table.has({pairs[i].set, pairs[i].sequence, pairs[i].target, "same scene"}))
-            tasks.push_back({pairs[i].name(), [&, i] { alignPair(pairs[i], i + 1, table); }});
+    {
+        for (int by = cv::iib::ALIGN_TRANSLATION; by <= cv::iib::ALIGN_HOMOGRAPHY; by++)
+            if (by == cv::iib::ALIGN_HOMOGRAPHY || stoodStill(pairs[i]))
+                plan(pairs[i], movedBy(by), [&, i, by] { alignMoved(pairs[i], by, i + 1, table); });
+        plan(pairs[i], "with noise", [&, i] { alignNoisy(pairs[i], i + 1, table); });
+    }
     cv::RNG random(1);
     std::set<std::pair<const ImagePair*, std::string>> others;
     for (int drawn = 0; others.size() < OTHER_SCENES && drawn < 10 * OTHER_SCENES && !pairs.empty(); drawn++)
@@ -91,9 +179,10 @@ int alignment(const Options& options, const std::vector<ImagePair>& all)
         // Two sequences of a set may be of one camera.
         if (pair.set == other.set || !others.insert({&pair, other.name()}).second)
             continue;
-        if (!table.has({pair.set, pair.sequence, pair.target, other.name()}))
-            tasks.push_back({pair.name() + " and " + other.name(),
-                    [&pair, &other, &table] { alignOthers(pair, other, table); }});
+        plan(pair, other.name(), [&pair, &other, &table] { alignOthers(pair, other, table); });
+        const ImagePair& third = pairs[drawn % pairs.size()];
+        if (others.size() <= WITH_LOGO)
+            plan(pair, "logo " + other.name(), [&] { alignLogos(pair, other, third, table); });
     }
     return runTasks("alignment", tasks, &table);
 }

@@ -22,6 +22,7 @@ CHOSEN_ON = {'walk_facade', 'strecha relit'}
 CHOSEN_SEEDS = {'1', '21', '22', '23', '31', '32'}
 REFERENCE = 'Hessian', 'IIB UNIVERSAL', 'propagated', 'findRelativePose'  # what other ways to a pose are compared with
 VISITS = {'dusk', 'fog', 'morning', 'night', 'overcast', 'snow', 'wet', 'winter'}  # sequences of one place in other lights
+MODELS = ('TRANSLATION', 'SIMILARITY', 'AFFINE', 'HOMOGRAPHY')
 DRAWS = 400  # of the bootstrap
 
 
@@ -70,15 +71,21 @@ def pose_area(limit):
 
 
 def alignment_place(row):
-    """The set of a pair, or `other scenes`; the demo's photographs are of the webcam Courbevoie."""
-    if row['image'] == 'same scene':
-        return [row['set']]
-    scenes = {row['set'] + '/' + row['sequence'], row['image'].rsplit('/', 1)[0]}
-    return ['other scenes'] * (scenes != {'iib_demo/scene', 'tilde_webcam/courbevoie'})
+    """The set of a pair, what was made of it, or `other scenes`; the demo's photographs are of the webcam Courbevoie."""
+    if row['image'].startswith('moved by a '):
+        least, model = (MODELS.index(name) for name in (row['image'].rsplit(' ', 1)[1], row['model']))
+        return ['models too simple' if model < least else row['set'] if least == MODELS.index('HOMOGRAPHY') else 'models of more freedom'
+                if model > least else 'right models']
+    if row['image'] == 'with noise':
+        return ['with noise']
+    logo, other = ' with a logo' * row['image'].startswith('logo '), row['image'].removeprefix('logo ')
+    scenes = {row['set'] + '/' + row['sequence'], other.rsplit('/', 1)[0]}
+    return ['other scenes' + logo] * (scenes != {'iib_demo/scene', 'tilde_webcam/courbevoie'})
 
 
 def column(name):
-    return lambda row: float(row[name])
+    """None where it is empty."""
+    return lambda row: float(row[name]) if row[name] else None
 
 
 def within(pixels):
@@ -88,6 +95,12 @@ def within(pixels):
 
 def mean(values):
     return sum(values) / len(values)
+
+
+def shown(values):
+    """The mean of those that there are."""
+    known = [value for value in values if value is not None]
+    return '%.5g' % mean(known) if known else ''
 
 
 def interval(scenes, statistic=mean):
@@ -108,7 +121,7 @@ PLANS = {
     'matching.csv': (places, ('matcher',), columns('precision', 'cost', 'milliseconds', 'recall')),
     'robustness.csv': (lambda row: ['turned'] * (row['set'] not in TRAINED_ON), ('kind', 'configuration', 'target'),
                        columns('precision', 'recall')),
-    'alignment.csv': (alignment_place, (), {'found': column('found'), 'within_1': within(1), 'within_3': within(3)}),
+    'alignment.csv': (alignment_place, ('model',), {'found': column('found'), 'squares': column('squares'), 'within_1': within(1), 'within_3': within(3)}),
     'estimators.csv': (light_place, ('detector', 'descriptor', 'points', 'estimator'),
                        {'inliers': column('inliers'), 'at_10': pose_area(10), 'at_2': pose_area(2), 'at_5': pose_area(5)}),
 }
@@ -151,7 +164,7 @@ def summarize(source, target, groups_of, keys, values):
     for key, scenes in sorted(groups.items()):
         every = [pair for scene in scenes.values() for pair in scene]
         ends = interval([[pair[-1] for pair in scene] for scene in scenes.values()])
-        lines.append([*key, len(every), *('%.5g' % mean(of) for of in zip(*every)), *('%.4g' % end for end in ends)])
+        lines.append([*key, len(every), *(shown(of) for of in zip(*every)), *('%.4g' % end for end in ends)])
     write(target, ['place', *keys, 'pairs', *values, 'low', 'high'], lines)
 
 

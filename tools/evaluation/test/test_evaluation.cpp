@@ -110,10 +110,15 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
     EXPECT_GT(recallOf("still", "IIB"), recallOf("still", "IIB g2"));
     EXPECT_GT(recallOf("still", "IIB +depth"), 0.9);
     EXPECT_GT(recallOf("still", "IIB +texture"), 0.9);
-    const std::string aligned = contents(options.out + "/alignment.csv"), still = "set,still,2,same scene,1,";
+    const std::string aligned = contents(options.out + "/alignment.csv"),
+                      still = "set,still,2,moved by a HOMOGRAPHY,HOMOGRAPHY,1,";
     ASSERT_NE(std::string::npos, aligned.find(still));
     EXPECT_LT(
             std::atof(aligned.substr(aligned.find(',', aligned.find(still) + still.size()) + 1).c_str()), 1);
+
+    for (const char* row : {"moved by a TRANSLATION,TRANSLATION,1,", "moved by a SIMILARITY,AFFINE,1,",
+                 "moved by a HOMOGRAPHY,TRANSLATION,0,", "with noise,SIMILARITY,1,"})
+        EXPECT_NE(std::string::npos, aligned.find(std::string("set,still,2,") + row)) << row;
 
     const std::vector<std::string> tables = {"fixed_points", "detected_points", "estimators", "alignment",
             "matching", "robustness", "comparison"};

@@ -30,6 +30,14 @@ class Figures(unittest.TestCase):
         self.assertEqual(places('IIB SMALL', 'lights', 'street'), [])  # walks through rendered scenes were among its images
         self.assertEqual(places('SIFT', 'lights', 'room'), ['rendered'])
 
+    def test_alignments_count_by_what_was_made_of_a_pair(self):
+        for image, model, places in (('moved by a HOMOGRAPHY', 'HOMOGRAPHY', ['tilde_webcam']), ('moved by a HOMOGRAPHY', 'AFFINE', ['models too simple']),
+                                     ('moved by a SIMILARITY', 'SIMILARITY', ['right models']), ('moved by a SIMILARITY', 'AFFINE', ['models of more freedom']),
+                                     ('with noise', 'AFFINE', ['with noise']), ('d/s/2', 'AFFINE', ['other scenes']), ('iib_demo/scene/2', 'AFFINE', []),
+                                     ('logo d/s/2', 'AFFINE', ['other scenes with a logo']), ('logo iib_demo/scene/2', 'AFFINE', [])):
+            row = {'set': 'tilde_webcam', 'sequence': 'courbevoie', 'image': image, 'model': model}
+            self.assertEqual(summaries.alignment_place(row), places, (image, model))
+
     def test_curves_are_of_scenes_that_nobody_was_trained_on(self):
         for row, places in ((('lights', 'street', 'light'), ['rendered']), (('lights', 'room', 'light'), []),
                             (('tilde_webcam', 's', 'light'), []), (('iib_demo', 's', 'light'), ['light']), (('o', 'wall', 'viewpoint'), [])):
