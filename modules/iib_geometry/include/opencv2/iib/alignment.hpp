@@ -39,6 +39,11 @@ There is no transform, and `reason` says which of these it was,
 - where a quarter as many places as agree lie beside the transform along lines through one point, by more than 6 pixels of the size at
   which they are matched (24 of an image of 4096): the camera moved (parallax), or shadows did. By less, `error` has it.
 
+How often it errs, in the pairs that its limits were chosen on (iib_evaluation --only alignment): of 511 pairs of unrelated photographs none is
+found by any model, nor of 35 that share a logo of 100 pixels; of 104 photographs in other light, the second one moved by a homography, 101
+are found, and by models of less freedom than what moved them 8 of 609; by models that are true 868 of 891 of cameras that stood still, some of
+which the wind moved. Two of 21 pairs under other lamps are refused for the way in which shadows moved.
+
     cv::Mat transform, aligned;
     if (cv::iib::alignImages(reference, image, transform))
         cv::warpPerspective(image, aligned, transform, reference.size());
@@ -47,8 +52,10 @@ There is no transform, and `reason` says which of these it was,
 @param transform 3 x 3, CV_64F, last entry 1: from pixels of the image to pixels of the reference
 @param model AlignmentModel; the simplest one that is true of the images gives the smallest errors, one that is not is refused
 @param error 4 x 1, CV_64F, pixels of the reference: standard deviations of the places of the image's corners (top left,
-    top right, bottom right, bottom left), as parts of the image and the matches around the transform tell them; large for corners
-    far from what both images show. Of what all matches have in common .4 of the matches' deviation is in it, which other lamps show
+    top right, bottom right, bottom left), each of a length, the root of both coordinates' variances together, as parts of the image tell
+    them; large for corners far from what both images show. Of what all matches have in common .4 of the matches' deviation is in it, which
+    other lamps show. Where a quarter as many places as agree lie beside the transform as above, but by less, their distance from it is in
+    it as well
 @param matches N x 4, CV_32F: the matches that agree with the transform, x and y in the reference, x and y in the image,
     pixels; where the answer is false, those that agreed best
 @param reason if not null: why there is no transform, a sentence; empty if there is one
