@@ -18,6 +18,7 @@ using cv::iib::HierarchicalMatcher;
 using cv::iib::IIBDescriptorExtractor;
 
 const double MOST_MOVED = .06;  // of a corner, in parts of the image's size
+const size_t STRANGERS = 3;     // of each pair, views of other places
 const int BORDER = 20;          // pixels beside a rectified image's border, where nothing is looked for
 const double FAR = 3;           // pixels from the truth: a wrong match, whose place no deviation tells
 
@@ -110,6 +111,23 @@ void judgePose(const Stereo& stereo, int points, const Told& told)
     told.add("direction of findRelativePose", direction, 2);
 }
 
+//! Of rendered places without the number of the instance, since rooms have furniture in common, and facades windows.
+std::string kindOf(const ViewPair& pair) { return pair.set.substr(0, pair.set.find_last_of('_')); }
+
+//! Images of different places, of which no pose may be found.
+void judgeStrangers(const ViewPair& pair, const ViewPair& other, int points, const Told& told)
+{
+    const cv::Mat first = readImage(pair.referenceFile, cv::IMREAD_GRAYSCALE),
+                  second = readImage(other.targetFile, cv::IMREAD_GRAYSCALE);
+    Matched m = matched(first, second, points);
+    cv::Mat points1, points2, R, t;
+    cv::iib::propagateMatches(first, m.first, second, m.second, m.matches, points1, points2);
+    const bool found =
+            cv::iib::findRelativePose(points1, points2, pair.referenceCamera, other.targetCamera, R, t);
+    told.add("pose of findRelativePose",
+            std::vector<double>(found ? 1 : 0, std::numeric_limits<double>::infinity()), 2);
+}
+
 void judgePoints(const ImagePair& pair, int points, const Told& told)
 {
     const LoadedPair loaded = loadPair(pair);
@@ -164,7 +182,19 @@ int uncertainty(const Options& options, const std::vector<ImagePair>& pairs)
         columns.push_back(cv::format("%g", level));
     ResultTable table(options.out + "/uncertainty.csv", columns, 4);
     std::vector<Task> tasks;
-    for (const ViewPair& pair : findViewPairs(options.roots))
+    const std::vector<ViewPair> views = findViewPairs(options.roots);
+    cv::RNG random(1);
+    for (size_t i = 0; i < STRANGERS * views.size(); i++)
+    {
+        const ViewPair &pair = views[i % views.size()],
+                       &other = views[size_t(random.uniform(0, int(views.size())))];
+        const Fields key = {"strangers", pair.set + " " + std::to_string(i), other.set + " " + other.target};
+        if (kindOf(pair) != kindOf(other) && !table.has({key[0], key[1], key[2], "pose of findRelativePose"}))
+            tasks.push_back({key[1] + " and " + key[2], [&options, &table, pair, other, key] {
+                                 judgeStrangers(pair, other, options.points, Told(table, key));
+                             }});
+    }
+    for (const ViewPair& pair : views)
     {
         if (table.has({pair.set, pair.sequence, pair.target, "direction of findRelativePose"}))
             continue;

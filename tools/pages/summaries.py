@@ -260,7 +260,7 @@ def summarize_learned(source, target):
 LEVELS = {'0.1': .584, '0.25': 1.213, '0.5': 2.366, '0.75': 4.108, '0.9': 6.251, '0.95': 7.815, '0.99': 11.345}  # chi-square, 3 degrees of freedom
 DATA = {'amos_daynight': 'webcams over a day', 'tilde_webcam': 'webcams over a year', 'mefb_exposure': 'other exposures',
         'photometric_stereo': 'other lamps', 'middlebury2014': 'other lamps and exposures (rooms)', 'iib_demo': "the authors' scene",
-        'oxford_affine': 'other exposures (leuven)', 'strecha rectified': 'the same photographs, rectified', 'strecha': "photographs with a laser's poses, one light"}
+        'strangers': 'images of different places', 'oxford_affine': 'other exposures (leuven)', 'strecha rectified': 'the same photographs, rectified', 'strecha': "photographs with a laser's poses, one light"}
 
 
 def summarize_uncertainty(source, target):

@@ -27,6 +27,10 @@ well but for what noise may give, as two do of a plane: the other one of the pla
 Where it turns less, or nothing tells the direction of t, the covariance holds it. Of exact planes, 200 matches with noise of .2
 pixels, 58 % of the poses are right and 40 % refused.
 
+How often that errs, with 2000 points by the recommended chain, propagated: none of 446 pairs of images of different places had a pose; of 144
+pairs of sixteen rendered places in other light 142 had one, two of them off by more than 15 degrees (the documentation's page "How
+sure", made by `iib_evaluation --only uncertainty`, and `--only estimators`).
+
 Points must be free of lens distortion: `cv::undistortPoints(points, undistorted, K, distortion, noArray(), K)` first.
 Matches that cv::iib::refineMatches refined make the pose more accurate where the light changed.
 
