@@ -124,7 +124,7 @@ def cost():
 
 def uncertainty():
     """A curve a quantity over all its data: told chance, and share of the errors that are inside."""
-    rows = pd.read_csv(tables.RESULTS / 'uncertainty.csv')
+    rows = pd.read_csv(tables.RESULTS / 'uncertainty.csv').query('errors > 0')
     levels = list(rows.columns[5:])
     figure, axis = plt.subplots(figsize=(WIDTH, 5), layout='constrained')
     for quantity, each in rows.groupby('quantity'):
