@@ -145,7 +145,7 @@ TEST(RelativePose, covariance_foretells_the_errors)
         within += distance < 4.351 / 9;  // the median of chi-squared with five degrees of freedom
         far += distance > 15.09;         // 1 %
     }
-    EXPECT_LT(within, .62 * trials);
+    EXPECT_LT(within, .45 * trials);
     EXPECT_LE(far, .02 * trials);
 }
 

@@ -49,6 +49,58 @@ TEST(Verdict, matches_drawn_at_random_have_none)
         }
 }
 
+//! Where camera 2, of matrix K2, sees points that camera 1 sees at pixels, 4 to 12 lengths of t away.
+Mat seenAgain(RNG& random, const Mat& pixels, const Matx33d& K1, const Matx33d& K2, const RelativePose& pose,
+        double noise)
+{
+    Mat seen(pixels.size(), CV_64F);
+    for (int i = 0; i < pixels.rows; i++)
+    {
+        const double* p = pixels.ptr<double>(i);
+        const Vec3d X = random.uniform(4., 12.) * (K1.inv() * Vec3d(p[0], p[1], 1)),
+                    b = K2 * (pose.R * X + pose.t);
+        for (int c = 0; c < 2; c++)
+            seen.at<double>(i, c) = b[c] / b[2] + random.gaussian(noise);
+    }
+    return seen;
+}
+
+// What is asked of wrong matches below can be told of right ones at the same places.
+TEST(Verdict, right_matches_of_a_skyline_a_small_image_and_a_wide_scale_have_one)
+{
+    const Matx33d small(80, 0, 40, 0, 80, 30, 0, 0, 1), large(4000, 0, 2000, 0, 4000, 1500, 0, 0, 1);
+    const RelativePose pose = cv::iib::moved({Matx33d::eye(), Vec3d(.6, .8, 0)}, {.02, .03, .01, 0, 0});
+    RNG random(17);
+    Mat R, t;
+    for (int count : {20, 50, 100, 400})
+    {
+        const Mat a = anywhere(random, count, 640, 480);
+        EXPECT_TRUE(findRelativePose(a, seenAgain(random, a, CAMERA, CAMERA, pose, .2), CAMERA, CAMERA, R, t))
+                << count;
+    }
+    for (int count : {100, 400})
+        for (double height : {2., 5.})
+        {
+            Mat a = anywhere(random, count, 640, 480);
+            for (int i = 0; i < count * 4 / 5; i++)
+                a.at<double>(i, 1) = 240 + random.gaussian(height);
+            const Mat b = seenAgain(random, a, CAMERA, CAMERA, pose, .2), agree(count, 1, CV_8U, Scalar(1));
+            EXPECT_TRUE(findRelativePose(a, b, CAMERA, CAMERA, R, t)) << count << ' ' << height;
+            EXPECT_LT(logFalseAlarms(a, b, agree, true, 1.5), -3) << count << ' ' << height;
+        }
+    for (int count : {200, 400})
+    {
+        const Mat a = anywhere(random, count, 80, 60), b = seenAgain(random, a, small, large, pose, .2);
+        EXPECT_TRUE(findRelativePose(a, b, small, large, R, t)) << count;
+        EXPECT_TRUE(findRelativePose(b, a, large, small, R, t)) << count;
+    }
+    for (double scale : {5., 20., 30.})
+    {
+        const Mat a = anywhere(random, 300, 640, 480), b = seenAgain(random, a, CAMERA, CAMERA, pose, 3);
+        EXPECT_TRUE(findRelativePose(a, b, CAMERA, CAMERA, R, t, noArray(), scale)) << scale;
+    }
+}
+
 // Where points gather, more wrong matches agree with a pose than if they were anywhere.
 TEST(Verdict, wrong_matches_of_a_skyline_or_a_strip_have_none)
 {
