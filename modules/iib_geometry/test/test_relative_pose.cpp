@@ -378,6 +378,18 @@ TEST(RelativePose, of_points_about_a_plane_is_found)
     }
 }
 
+// Five errors are small since five numbers were fitted to them.
+TEST(RelativePose, a_scale_settles_by_what_no_number_was_fitted_to)
+{
+    std::vector<double> squared(12, .01);
+    double scale = 0;
+    EXPECT_TRUE(settles(squared, 1, 5, scale));
+    EXPECT_NEAR(1.4826 * .1 * std::sqrt(12. / 7), scale, 1e-9);
+    std::fill(squared.begin(), squared.begin() + 4, 4.);
+    EXPECT_FALSE(settles(squared, 1, 5, scale));
+    EXPECT_FALSE(settles(std::vector<double>(5, .01), 1, 5, scale));
+}
+
 TEST(RelativePose, the_residuals_tell_a_scale_of_any_size)
 {
     RNG random(20);

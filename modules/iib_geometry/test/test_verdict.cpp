@@ -154,6 +154,21 @@ TEST(Verdict, wide_scales_make_no_pose_of_wrong_matches)
         }
 }
 
+// Who tries ten limits finds ten times as many false alarms.
+TEST(Verdict, limits_that_are_tried_count)
+{
+    RNG random(21);
+    const Mat a = anywhere(random, 60, 640, 480), b = anywhere(random, 60, 640, 480);
+    const Verdict verdict(a, b);
+    const std::vector<double> squared(60, .01), wrong(1000, 1e4);
+    double best = 0;
+    const double once = verdict.logFalseAlarms(squared, wrong, Verdict::FROM_LINE, 5, {1.}),
+                 often = verdict.logFalseAlarms(
+                         squared, wrong, Verdict::FROM_LINE, 5, std::vector<double>(10, 1.), &best);
+    EXPECT_NEAR(once + 1, often, 1e-9);
+    EXPECT_EQ(1, best);
+}
+
 // Of many wrong matches in a place one agrees: right ones in a single place make no more of them.
 TEST(Verdict, a_place_of_many_matches_agrees_by_more_chance_than_a_match)
 {
