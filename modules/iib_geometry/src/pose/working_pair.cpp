@@ -75,9 +75,13 @@ int WorkingImage::largestFactor() const
 
 bool WorkingImage::shows(const Point2d& point, int factor) const
 {
-    if (!Rect2d(Point2d(), Size2d(size(factor))).contains(point))
+    const Rect2d squares(Point2d(-.5, -.5), Size2d(size(factor)));  // about the whole places of pixels
+    if (!squares.contains(point))
         return false;
-    return mask_.empty() || mask_.at<uchar>(Point(moved(enlarging(factor), point)));
+    if (mask_.empty())
+        return true;
+    const Point pixel(moved(enlarging(factor), point));
+    return Rect(Point(), mask_.size()).contains(pixel) && mask_.at<uchar>(pixel);
 }
 
 //! What is left at the right and below a multiple of the factor is left out.
