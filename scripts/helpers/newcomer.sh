@@ -1,12 +1,16 @@
 #!/bin/sh
 # Runs every command of README.md, in its order, on a bare Debian made by debootstrap, as someone would who has just
 # cloned the repository: what is in the `sh` blocks, with the files of the `cmake`, `cpp` and `python` blocks beside it.
-# Blocks of pip, which Debian's Python refuses outside of an environment, are left out. What README says of the packages of its first command must be within 5 % of
-# what apt prints of them. The paths hold spaces. Needs root; the bare system stays in the cache.
-#   scripts/helpers/newcomer.sh [SUITE]    by default bookworm
+# Blocks of pip, which Debian's Python refuses outside of an environment, are left out. What README says of the packages of its first
+# command, on Debian 12, must be within 5 % of what apt prints of them. The paths hold spaces. Needs root; the bare system stays in the cache.
+#   scripts/helpers/newcomer.sh [SUITE] [WHEEL]    by default bookworm
+# With a wheel, that of scripts/wheel.sh, its Python program alone, in a system without a compiler: from pip to its answer in ten seconds.
 . "$(dirname "$0")/lib.sh"
 
-[ $# -le 1 ] || fail "takes one release, not $*"
+wheel=""
+case "${1:-}" in *.whl) set -- bookworm "$1" ;; esac
+[ $# -le 2 ] || fail "takes one release and one wheel, not $*"
+[ $# -lt 2 ] || { [ -f "$2" ] && wheel=$(readlink -f "$2"); } || fail "there is no wheel $2"
 suite=${1:-bookworm}
 check_suites "$suite"
 [ "$(id -u)" = 0 ] || fail "a bare system can only be made and entered as root"
@@ -52,12 +56,30 @@ for language, text in re.findall(r'^```(sh|cmake|cpp|python)\n(.*?)^```$', readm
         (home / 'my project' / names[language]).write_text(text)
 (home / 'commands.sh').write_text('\n'.join(script))
 PYTHON
+[ -z "$wheel" ] || {
+    cp "$wheel" "$home/my project"
+    cat >"$home/commands.sh" <<'SH'
+set -ex
+apt-get update
+apt-get install --yes --no-install-recommends python3-venv
+if command -v cc; then exit 1; fi
+python3 -m venv "$HOME/an environment"
+cd "$HOME/my project"
+start=$(date +%s%N)
+"$HOME/an environment/bin/pip" install opencv_iib-*.whl opencv-python-headless
+"$HOME/an environment/bin/python" match_pair.py day.png night.png
+taken=$((($(date +%s%N) - start) / 1000000))
+echo "README's Python program ended $taken ms after pip began"
+[ $taken -lt 10000 ]
+SH
+}
 say "running the README's commands in $work/root"
 # A mount namespace of its own, so that nothing stays mounted.
 (unshare --mount sh -c 'mount -t proc proc "$1/proc" && exec chroot "$1" /usr/bin/env -i HOME=/root \
     XDG_CACHE_HOME="/root/a cache" PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
     sh /root/commands.sh' sh "$work/root" </dev/null 2>&1 || touch "$work/failed") | tee "$work/log"
 [ ! -e "$work/failed" ] || exit 1
+[ -z "$wheel" ] && [ "$suite" = bookworm ] || exit 0  # README tells its megabytes
 printed=$(sed -n 's/^Need to get \([0-9]*\) MB of archives.*/\1/p; s/^After this operation, \([0-9]*\) MB of additional.*/\1/p' "$work/log" |
     head -n 2 | paste -sd ' ')
 said=$(sed -n 's/.* \([0-9]*\) MB to fetch, \([0-9]*\) MB on disk.*/\1 \2/p' "$root/README.md")

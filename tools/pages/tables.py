@@ -442,6 +442,11 @@ def scale():
     return json.loads((RESULTS / 'scale.json').read_text())
 
 
+def night():
+    return table(('step', 'what ran', 'minutes', 'commit', 'date', 'result'), [
+        ('`%s`' % row['step'], *(str(row[key]) for key in ('counts', 'minutes', 'commit', 'date', 'result'))) for row in rows('night.csv')])
+
+
 def by_two(one, two):
     """How many times as fast two threads are; more than twice is noise, but for what a median is unsure of."""
     if one > 2.1 * two:
@@ -500,7 +505,7 @@ QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
     drop_in, pose_claim, photograph_claim, speed_claim, sure_claim, poses, presets, propagation, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
     step_by_step, mapped_index, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, learned_poses, learned_claim,
-    detected_points, uncertainty)}
+    detected_points, uncertainty, night)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
 
