@@ -261,6 +261,12 @@ LEVELS = {'0.1': .584, '0.25': 1.213, '0.5': 2.366, '0.75': 4.108, '0.9': 6.251,
 DATA = {'amos_daynight': 'webcams over a day', 'tilde_webcam': 'webcams over a year', 'mefb_exposure': 'other exposures',
         'photometric_stereo': 'other lamps', 'middlebury2014': 'other lamps and exposures (rooms)', 'iib_demo': "the authors' scene",
         'strangers': 'images of different places', 'oxford_affine': 'other exposures (leuven)', 'strecha rectified': 'the same photographs, rectified', 'strecha': "photographs with a laser's poses, one light"}
+PLACES = {'night': 'rendered places, by night', 'dusk': 'rendered places, at dusk', 'winter': 'rendered places, in winter'}
+
+
+def data_of(name, light):
+    """The kind of data that a set is of."""
+    return DATA.get(name) or PLACES.get(light, 'other data')
 
 
 def summarize_uncertainty(source, target):
@@ -269,16 +275,13 @@ def summarize_uncertainty(source, target):
     found = {}
     for row in read(source):
         count = int(row['count'])
-        found.setdefault((row['quantity'], row['set']), []).append([1, count > 0, count] + [int(row[level]) for level in LEVELS])
+        found.setdefault((row['quantity'], data_of(row['set'], row['sequence'])), []).append([1, count > 0, count] + [int(row[level]) for level in LEVELS])
     for row in read(source.with_name('localization_uncertainty.csv')):
         for what in ('centre', 'rotation'):
             squared = row['squared_' + what]
             inside = [squared != '' and float(squared) < limit for limit in LEVELS.values()]
-            found.setdefault((what + ' of Localizer', row['set']), []).append([1, squared != '', squared != '', *inside])
-    sums = collections.defaultdict(list)
-    for (quantity, name), counts in found.items():
-        sums[quantity, DATA.get(name, 'rendered places, other light')] += counts
-    lines = [[*key, *map(sum, zip(*counts))] for key, counts in sorted(sums.items(), key=lambda item: ('Localizer' in item[0][0], item[0]))]
+            found.setdefault((what + ' of Localizer', data_of(row['set'], row['light'])), []).append([1, squared != '', squared != '', *inside])
+    lines = [[*key, *map(sum, zip(*counts))] for key, counts in sorted(found.items(), key=lambda item: ('Localizer' in item[0][0], item[0]))]
     write(target, ['quantity', 'data', 'pairs', 'found', 'errors', *LEVELS],
           ([*line[:5], *('%.5g' % (n / line[4]) if line[4] else '' for n in line[5:])] for line in lines))
 

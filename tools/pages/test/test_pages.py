@@ -99,13 +99,15 @@ class Figures(unittest.TestCase):
     def test_uncertainty(self):
         with tempfile.TemporaryDirectory() as folder:
             source, target = pathlib.Path(folder, 'uncertainty.csv'), pathlib.Path(folder, 'out.csv')
-            source.write_text('set,quantity,count,0.1,0.25,0.5,0.75,0.9,0.95,0.99\nstrecha,points,4,0,0,1,2,3,4,4\nstrecha,points,4,0,0,1,2,3,4,4\n'
-                              'strecha,points,0,0,0,0,0,0,0,0\nfacade_31,points,0,0,0,0,0,0,0,0\n')
-            pathlib.Path(folder, 'localization_uncertainty.csv').write_text('set,squared_centre,squared_rotation\nroom_31,2.3,11.4\nroom_31,,\n')
+            source.write_text('set,sequence,quantity,count,0.1,0.25,0.5,0.75,0.9,0.95,0.99\nstrecha,a,points,4,0,0,1,2,3,4,4\n'
+                              'strecha,b,points,4,0,0,1,2,3,4,4\nstrecha,a,points,0,0,0,0,0,0,0,0\nfacade_31,dusk,points,0,0,0,0,0,0,0,0\n')
+            pathlib.Path(folder, 'localization_uncertainty.csv').write_text(
+                'set,light,squared_centre,squared_rotation\nroom_31,night,2.3,11.4\nroom_31,night,,\n')
             summaries.summarize_uncertainty(source, target)
             self.assertEqual([line.split(',')[-10:] for line in target.read_text().splitlines()[1:]], [
                 ['3', '2', '8', '0', '0', '0.25', '0.5', '0.75', '1', '1'], ['1', '0', '0'] + 7 * [''],
                 ['2', '1', '1', '0', '0', '1', '1', '1', '1', '1'], ['2', '1', '1'] + 7 * ['0']])
+            self.assertEqual(2, target.read_text().count('rendered places, by night'))
             with unittest.mock.patch.object(tables, 'RESULTS', pathlib.Path(folder)):
                 target.replace(source)
                 self.assertIn('| 3 | 2 | 8 | 25 | 100 | 100 |', tables.uncertainty())
