@@ -17,8 +17,8 @@ matrix = scene.camera(a)
 
 # %% Points and matches by the recommended chain, further matches that these lead to, and the places of the second points to a
 # fraction of a pixel.
-points_a, sizes_a, codes_a = opencv_iib.detect_and_describe(a, 2000)
-points_b, sizes_b, codes_b = opencv_iib.detect_and_describe(b, 2000)
+points_a, sizes_a, codes_a = opencv_iib.detect_and_describe(a, 4000)
+points_b, sizes_b, codes_b = opencv_iib.detect_and_describe(b, 4000)
 pairs, _ = opencv_iib.match(codes_a, codes_b)
 rows_a, rows_b = np.column_stack([points_a, sizes_a]), np.column_stack([points_b, sizes_b])
 found = opencv_iib.propagateMatches(a, rows_a, b, rows_b, pairs)
