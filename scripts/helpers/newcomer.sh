@@ -63,7 +63,8 @@ set -ex
 apt-get update
 apt-get install --yes --no-install-recommends python3-venv
 if command -v cc; then exit 1; fi
-python3 -m venv "$HOME/an environment"
+python=/usr/bin/python3
+"$python" -m venv "$HOME/an environment"
 cd "$HOME/my project"
 start=$(date +%s%N)
 "$HOME/an environment/bin/pip" install opencv_iib-*.whl opencv-python-headless
