@@ -96,7 +96,7 @@ cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
 }
 if [ -n "$modules" ]; then
     cmake --build "$build" --parallel "${JOBS:-$jobs}" --target opencv_test_iib opencv_perf_iib
-    "$build/bin/opencv_test_iib"
+    "$build/bin/opencv_test_iib" "--gtest_filter=*${short:+-*upper_halves*}"  # as above
     exit 0
 fi
 cmake --build "$build" --parallel "${JOBS:-$jobs}" --target opencv_test_iib opencv_test_iib_index opencv_test_iib_geometry opencv_perf_iib opencv_python3
