@@ -65,20 +65,12 @@ struct Aligned
 
 bool isCertain(const Aligned& aligned, const Verdict& verdict)
 {
-    const std::vector<double> wrong = errorsOfWrongMatches(aligned.problem, aligned.fit.model),
-                              limits = {.5, 1., 2., 4.};
-    const double least =
-            1. / (double)(wrong.size() + 1);  // if none of these is near, the chance may be as large
-    double alarms = std::numeric_limits<double>::infinity();
-    for (double of : limits)
-    {
-        const double limit = of * aligned.limit,
-                     chance = std::max(verdict.chance(Verdict::FROM_POINT, limit, wrong), least);
-        alarms = std::min(
-                alarms, verdict.logFalseAlarms(Verdict::Marks(aligned.fit.squared.size(), true),
-                                within(limit, aligned.fit.squared), aligned.problem.sampleSize(), chance));
-    }
-    return alarms + std::log10((double)limits.size()) < Verdict::CERTAIN;
+    std::vector<double> limits;
+    for (double limit : {.5, 1., 2., 4.})
+        limits.push_back(limit * aligned.limit);
+    return verdict.logFalseAlarms(aligned.fit.squared,
+                   errorsOfWrongMatches(aligned.problem, aligned.fit.model), Verdict::FROM_POINT,
+                   aligned.problem.sampleSize(), limits) < Verdict::CERTAIN;
 }
 
 /** Standard deviations of the places of the image's corners, 4 x 1, CV_64F, working pixels.

@@ -132,7 +132,10 @@ double Verdict::chance(Distance distance, double limit, const std::vector<double
     const double anywhere = distance == FROM_LINE ? std::max(along(spans_[0]), along(spans_[1]))
                                                   : CV_PI * limit * limit / spans_[1].area();
     const auto near = std::count_if(wrong.begin(), wrong.end(), [&](double e) { return e < limit * limit; });
-    return std::clamp((double)near / std::max<size_t>(wrong.size(), 1), std::min(anywhere, 1.), 1.);
+    // If none of so many is near, the chance may still be that of one more.
+    const double least = wrong.empty() ? 0 : 1. / (double)(wrong.size() + 1);
+    return std::clamp(
+            std::max((double)near / std::max<size_t>(wrong.size(), 1), least), std::min(anywhere, 1.), 1.);
 }
 
 double Verdict::chanceOfPlaces(const Marks& all, double chance, int image) const

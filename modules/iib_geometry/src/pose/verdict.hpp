@@ -35,7 +35,8 @@ public:
             Distance distance, int sampleSize, const std::vector<double>& limits,
             double* best = nullptr) const;
 
-    /** Chance that a wrong match is so near: as of points that are anywhere, or, where points gather, as those errors tell. */
+    /** Chance that a wrong match is so near, 0 to 1: as of points that are anywhere, or, where points gather, as those errors tell; at
+    least that of one in more than there are. */
     double chance(Distance distance, double limit, const std::vector<double>& wrong) const;
 
     /** The same of matches that agree or not.

@@ -28,8 +28,8 @@ Where it turns less, or nothing tells the direction of t, the covariance holds i
 pixels, 58 % of the poses are right and 40 % refused.
 
 How often that errs, with 2000 points by the recommended chain, propagated: none of 446 pairs of images of different places had a pose; of 144
-pairs of sixteen rendered places in other light 142 had one, two of them off by more than 15 degrees (the documentation's page "How
-sure", made by `iib_evaluation --only uncertainty`, and `--only estimators`).
+pairs of sixteen rendered places in other light 142 had one (the documentation's page "How sure", made by
+`iib_evaluation --only uncertainty`, which tells how many were as right as they said).
 
 Points must be free of lens distortion: `cv::undistortPoints(points, undistorted, K, distortion, noArray(), K)` first.
 Matches that cv::iib::refineMatches refined make the pose more accurate where the light changed.
