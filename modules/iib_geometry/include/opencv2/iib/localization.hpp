@@ -156,8 +156,8 @@ the points of the map that they see; the matches that agree with it are refined 
 the pose with them. It needs fifteen inliers and two in a hundred matches more, that are more than chance (poses that agree as
 well are expected less than once in a thousand tries among wrong matches, counted in matches and in places as findRelativePose
 does), and a place that is known to a tenth of the distance to its points (three standard deviations). So images of places that are
-not in the map get none: 0 of 1125 tries with six maps (225 of the other maps' places, 900 of photographs); of the 45 images of
-their own places, most in other light, 43 were found, all within 6 cm. */
+not in the map get none; how many were tried, and how many of a map's own places are found, is on the documentation's pages of maps
+and of uncertainties. */
 class CV_EXPORTS Localizer
 {
 public:
