@@ -2,9 +2,13 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "steps.hpp"
+#include "compute.hpp"
 
 #include "../common/image_input.hpp"
+#include "angles.hpp"
+#include "boxes.hpp"
+#include "rotated.hpp"
+#include "upright.hpp"
 
 namespace cv {
 namespace iib {

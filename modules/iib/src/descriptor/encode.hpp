@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "steps.hpp"
+#include "batch_job.hpp"
 
 namespace cv {
 namespace iib {

@@ -4,8 +4,8 @@
 
 #include "../common/file_numbers.hpp"
 #include "../common/image_input.hpp"
-#include "steps.hpp"
 #include "../detector/detector_file.hpp"
+#include "compute.hpp"
 
 #include "opencv2/core/utils/trace.hpp"
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "bands.hpp"
-#include "steps.hpp"
+#include "batch_job.hpp"
 
 namespace cv {
 namespace iib {

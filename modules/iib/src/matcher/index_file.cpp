@@ -2,9 +2,9 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
+#include "index_file.hpp"
+
 #include "opencv2/iib/detail/checked_file.hpp"
-#include "opencv2/iib/detail/packed_codes.hpp"
-#include "parameters.hpp"
 
 namespace cv {
 namespace iib {

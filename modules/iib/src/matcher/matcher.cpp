@@ -4,7 +4,7 @@
 
 #include "../common/file_numbers.hpp"
 #include "../common/outputs.hpp"
-#include "parameters.hpp"
+#include "index_file.hpp"
 #include "search.hpp"
 
 namespace cv {

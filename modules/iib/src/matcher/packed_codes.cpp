@@ -2,11 +2,13 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../precomp.hpp"
-#include "kernels/hamming.hpp"
-#include "parameters.hpp"
-
 #include "opencv2/iib/detail/packed_codes.hpp"
+
+#include <numeric>
+
+#include "../common/file_numbers.hpp"
+#include "parameters.hpp"
+#include "search.hpp"
 
 namespace cv {
 namespace iib {
@@ -154,6 +156,33 @@ Mat PackedCodes::descriptors(size_t image, size_t from, size_t to) const
     Mat result((int)(to - from), format.bytes(), CV_8U);
     unpack(format, codes, starts[image] + from, result);
     return result;
+}
+
+void PackedCodes::findNearest(const std::vector<int>& levelSizes, const std::vector<CodePart>& parts,
+        InputArray queries_, int k, std::vector<int64>& rows, std::vector<int>& distances)
+{
+    const int width = std::accumulate(levelSizes.begin(), levelSizes.end(), 0);
+    const Mat queries = checkedDescriptors(queries_.getMat(), width, false);
+    require(k > 0, "k", k, "above 0");
+    size_t count = 0;
+    for (const CodePart& part : parts)
+        count += part.codes->rows();
+    checkPadding(k, queries.rows, count);
+    KnnTable found(queries.rows, (int)std::min((size_t)k, std::max(count, (size_t)1)));
+    SearchCost cost;
+    for (const CodePart& part : parts)
+        iib::addNearest(
+                {*part.codes, queries, PruningPolicy(), {}, part.hidden, part.firstRow, ScanBlocks(), cost},
+                found);
+
+    rows = forNeighbours<int64>(queries.rows, k, -1);
+    distances = forNeighbours<int>(queries.rows, k, -1);
+    for (size_t query = 0; query < (size_t)queries.rows; query++)
+        for (int i = 0; i < found.size() && found[query][i] != NO_MATCH; i++)
+        {
+            rows[query * k + i] = (int64)indexOf(found[query][i]);
+            distances[query * k + i] = distanceOf(found[query][i]);
+        }
 }
 
 }  // namespace iib

@@ -9,8 +9,6 @@
 namespace cv {
 namespace iib {
 
-class PackedCodes;
-
 struct MatcherParameters
 {
     std::vector<int> levelSizes;  //!< empty: a single level, as wide as the first codes
@@ -41,16 +39,6 @@ void writeParameters(FileStorage& fs, const MatcherParameters& p);
 //! Those of a node that writeParameters filled, or of one that holds such a node under `name`, as Algorithm::save
 //! writes it. What the node does not have stays as it was; levelSizes it must have.
 MatcherParameters readParameters(const FileNode& node, const char* name, const MatcherParameters& before);
-
-/* Format 1 of an index, a checked file: u32: number of levels, each level's bytes, mode, cross-check; f32: maximal
-ratio, each threshold; u64: number of images, each image's rows; the descriptors of all images. Descriptors pass through
-in pieces, so that no second copy of them is in memory. */
-
-//! @param parameters with or without level sizes; the file gets those of the codes.
-void saveCodes(const String& filename, const MatcherParameters& parameters, const PackedCodes& codes);
-
-//! Reads what saveCodes wrote. @throws cv::Exception unless the file is whole and its parameters are valid.
-Ptr<PackedCodes> loadCodes(const String& filename, MatcherParameters& parameters);
 
 }  // namespace iib
 }  // namespace cv

@@ -63,9 +63,5 @@ struct PreparedPair
     PreparedPair(InputArray image1, InputArray image2);
 };
 
-//! Adds the matches of further keypoints that the refined ones lead to.
-void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoints1,
-        const std::vector<KeyPoint>& keypoints2, std::vector<Refinement>& matches);
-
 }  // namespace iib
 }  // namespace cv

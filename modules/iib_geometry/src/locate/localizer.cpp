@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "../map/map_error.hpp"
+#include "../map/mapping.hpp"
 #include "../map/upright.hpp"
 
 namespace cv::iib {

@@ -50,8 +50,4 @@ Map readMap(const std::string& folder);
 @param last is called when all of it is on the disk, before it takes the place of the old one. */
 void writeMap(const std::string& folder, const Map& map, const std::function<void()>& last);
 
-//! As buildMap does, in memory.
-Map makeMap(const std::string& model, const ImageReader& images, const MapOptions& options,
-        const MappingReport& report);
-
 }  // namespace cv::iib

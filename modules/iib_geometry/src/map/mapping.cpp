@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "../precomp.hpp"
-
-#include "map.hpp"
+#include "mapping.hpp"
 
 #include <algorithm>
 #include <map>
 #include <mutex>
 #include <set>
 
+#include "../parallel.hpp"
+#include "camera_pose.hpp"
 #include "colmap_model.hpp"
 #include "features.hpp"
-#include "../parallel.hpp"
 #include "lines.hpp"
 #include "map_folder.hpp"
-#include "camera_pose.hpp"
 #include "triangulation.hpp"
 #include "upright.hpp"
 

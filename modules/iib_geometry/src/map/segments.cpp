@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "lines.hpp"
+#include "segments.hpp"
 
 #ifdef IIB_LINE_DESCRIPTOR
 #include "opencv2/line_descriptor.hpp"

@@ -39,28 +39,6 @@ template <typename Work> void parallelJobs(int count, const Work& work)
     });
 }
 
-/* The steps of describing keypoints, each in a source of its own. */
-
-//! Whether the keypoint's support region, upright or rotated, lies inside the image.
-bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image);
-
-/** Describes keypoints by the other steps (paper, algorithm 1). All arguments have passed their checks.
-@param extra maps of the image's size.
-@param descriptors keypoints.size() rows of plan.bytes, CV_8U, allocated. */
-void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Mat>& extra,
-        const std::vector<KeyPoint>& keypoints, Mat& descriptors);
-
-/** Sets the angles of regions as ORIENTATION_GRADIENT: the direction that prevails among the gradients between 32 x 32
- cells, each of which counts by its magnitude and by a Gaussian of half the region's radius around the centre.
-@param grey CV_8U or CV_16U.
-@param keypoints of the regions: of those with the same position and size, the second gets the second highest peak of
-the directions, and so on. */
-void findAngles(const DescriptorPlan& plan, const Mat& grey, const std::vector<KeyPoint>& keypoints,
-        std::vector<SupportRegion>& regions);
-
-//! The pixels that the boxes of a region cover, rotated by any angle or upright, in whole squares; some may be reflected.
-Rect boxPixels(const SupportRegion& region, int border, Size image);
-
 /** A batch of keypoints that are described together, and what that takes. Their regions are all upright or all rotated.
  Regions, pixels and rows of descriptors are those of all keypoints of the image. */
 struct BatchJob
@@ -74,20 +52,6 @@ struct BatchJob
     Workspace& workspace;
     Mat& descriptors;
 };
-
-//! By sums over cells, where regions are upright.
-void describeUpright(const BatchJob& job);
-
-/** The same where regions are rotated. Integral images cannot serve, since |gx| does not rotate with the region: it is
- sampled on a grid of points, and the gradient is rotated at each. */
-void describeRotated(const BatchJob& job);
-
-/** By MAPPING_BOXES.
-
-Upright boxes lie on a grid, whose edges many of them share. A rotated keypoint needs no samples: the means of gx and gy
-are linear in them and so rotate as they do, and those of |gx| and |gy| come from the means of |gx|, |gy|, |gx + gy| and
-|gx - gy|, that is, of the gradient's magnitude in four directions. Boxes stay upright; only their centres turn. */
-void describeBoxes(const BatchJob& job);
 
 }  // namespace iib
 }  // namespace cv

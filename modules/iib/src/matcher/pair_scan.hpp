@@ -1,0 +1,120 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#pragma once
+
+#include "kernels/hamming.hpp"
+
+#include "opencv2/iib/detail/packed_codes.hpp"
+
+#include <atomic>
+#include <new>
+
+namespace cv {
+namespace iib {
+
+//! Work of searches, in bits, to which any thread adds.
+struct SearchCost
+{
+    std::atomic<uint64> compared{0}, all{0};
+};
+
+/** How many queries and CodeBlocks of train codes are scanned at once. The train codes of 170 bytes fill 352 KB, so
+that they stay in a second-level cache of 512 KB while the queries, 704 KB, pass by. Tests take fewer, so that small
+data crosses the boundaries. */
+struct ScanBlocks
+{
+    //! CodeBlocks that are scanned at once by a policy.
+    int codeBlocksFor(const PruningPolicy& policy) const
+    {
+        return policy.margin >= 0 ? codeBlocksOfLimits : codeBlocks;
+    }
+    int queryCount = 4096, codeBlocks = 128, codeBlocksOfLimits = PruningPolicy::CODE_BLOCKS_OF_LIMITS;
+};
+
+//! What a search looks for and among which pairs.
+struct SearchInput
+{
+    const PackedCodes& trains;
+    Mat queries;               //!< CV_8U, as wide as the train codes
+    PruningPolicy policy;      //!< made for the layout of the train codes
+    std::vector<Mat> masks;    //!< none, or one for each image, empty or queries x rows(image)
+    std::vector<bool> hidden;  //!< of each image, whether its rows are left out; empty: none is
+    size_t firstIndex;         //!< what the first of the train codes is called in results
+    ScanBlocks blocks;
+    SearchCost& cost;  //!< what the search takes is added to it
+};
+
+//! A value for each of k neighbours of each row; throws StsNoMem, with k, if memory does not hold them.
+template <typename T> std::vector<T> forNeighbours(size_t rows, int k, T value)
+{
+    try
+    {
+        if ((uint64)rows * k <= std::vector<T>().max_size())
+            return std::vector<T>(rows * k, value);
+    }
+    catch (const std::bad_alloc&)
+    {
+    }
+    CV_Error_(
+            Error::StsNoMem, ("k is %d: memory does not hold as many neighbours of each of %llu descriptors",
+                                     k, (unsigned long long)rows));
+}
+
+//! The k nearest neighbours of each of many codes, in ascending order; NO_MATCH where there are fewer.
+class KnnTable
+{
+public:
+    //! `padding` more entries are there for vectors that read thresholds() past the end.
+    KnnTable(size_t rows, int k_, size_t padding = 0)
+        : k(k_), keys(forNeighbours(rows, k_, NO_MATCH)), nearest(rows + padding, INT_MAX)
+    {
+    }
+
+    int size() const { return k; }
+    size_t rows() const { return keys.size() / k; }
+    MatchKey* operator[](size_t row) { return &keys[row * k]; }
+    const MatchKey* operator[](size_t row) const { return &keys[row * k]; }
+    //! For each row: a new neighbour with a higher index has to be nearer than this.
+    const int* thresholds() const { return nearest.data(); }
+    int* thresholds() { return nearest.data(); }
+
+    void insert(size_t row, MatchKey n)
+    {
+        MatchKey* first = (*this)[row];
+        MatchKey* last = first + k - 1;
+        if (n >= *last)
+            return;
+        MatchKey* place = std::upper_bound(first, last, n);
+        std::copy_backward(place, last, last + 1);
+        *place = n;
+        if (*last != NO_MATCH)
+            nearest[row] = distanceOf(*last);
+    }
+
+    void merge(const KnnTable& other)
+    {
+        for (size_t row = 0; row < rows(); row++)
+            for (int i = 0; i < k; i++)
+                insert(row, other[row][i]);
+    }
+
+private:
+    int k;
+    std::vector<MatchKey> keys;
+    std::vector<int> nearest;  // distance of the k-th
+};
+
+/* One pass over all pairs of some queries with all train codes, block by block, on one thread. */
+
+//! Puts the nearest into tables of all queries and of all train codes; forTrains is null when nobody asks for that
+//! direction, and else has room for whole CodeBlocks.
+void scanNearest(const SearchInput& input, const Range& queries, KnnTable& forQueries, KnnTable* forTrains);
+
+//! Adds the pairs within a radius to the list of each query, in the order of train codes.
+void scanWithin(const SearchInput& input, const Range& queries, int radius,
+        std::vector<std::vector<MatchKey>>& lists);
+
+}  // namespace iib
+}  // namespace cv
