@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "map/lens.hpp"
+#include "derivatives.hpp"
 #include "map/camera_pose.hpp"
+#include "map/lens.hpp"
 #include "wall.hpp"
 
 namespace opencv_test {
@@ -70,9 +71,11 @@ TEST(Lens, of_colmaps_definitions)
         EXPECT_TRUE(std::isnan(camera.project({{0, 0, -1}})[0].x)) << "behind";
         std::vector<cv::Matx23d> slopes;
         lens.project(points, &slopes);
-        const cv::Vec3d step(1e-6, -2e-6, 3e-6);
-        const cv::Point2d moved = lens.project({cv::Vec3d(points[1]) + step})[0] - seen[1];
-        EXPECT_LT(cv::norm(slopes[1] * step - cv::Vec2d(moved.x, moved.y)), 1e-7);
+        const auto seenAt = [&](const Numbers& step) {
+            const cv::Point2d at = lens.project({cv::Vec3d(points[1]) + cv::Vec3d(step.data())})[0];
+            return Numbers{at.x, at.y};
+        };
+        expectDerivatives(cv::Mat_<double>(cv::Mat(slopes[1])), seenAt, 1e-6);
     }
     EXPECT_TRUE(
             std::isnan(Lens(Camera::parse("FISHEYE,640,480,100,100,320,240")).undistorted({{700, 240}})[0].x))
@@ -198,6 +201,27 @@ TEST(Lens, cameras_that_are_none)
     }));
     EXPECT_EQ(0u, error("EQUIRECTANGULAR,640,480,1,1")
                           .find("camera model EQUIRECTANGULAR is not one of SIMPLE_PINHOLE, PINHOLE"));
+}
+
+// Of a point's place by the pose; across a line, that alone.
+TEST(Pose, derivatives_are_those_of_finite_differences)
+{
+    const Lens lens(Camera::parse("OPENCV,640,480,500,510,320,240,-0.1,0.05,0.001,-0.002"));
+    const cv::Affine3d pose(cv::Vec3d(.1, .3, -.2), cv::Vec3d(.5, -1, 2));
+    std::vector<Match> matches;
+    for (const cv::Point3d& seen : {cv::Point3d(.5, -.4, 3), {-1.2, .8, 4}, {.2, 1, 5}})
+        matches.push_back({{300, 200}, inverse(pose) * seen});
+    matches[2].errorProjection = {.36, .48, .48, .64};
+    const auto seenAt = [&](const Numbers& step) {
+        Numbers places;
+        for (const LinearMatch& m : linearize(matches, lens, moved(pose, cv::Vec6d(step.data()))))
+            places.insert(places.end(), {-m.error[0], -m.error[1]});
+        return places;
+    };
+    cv::Mat_<double> told;
+    for (const LinearMatch& m : linearize(matches, lens, pose))
+        told.push_back(cv::Mat(m.byPose));
+    expectDerivatives(told, seenAt, 1e-6);
 }
 
 TEST(Pose, refined_to_the_truth_among_wrong_matches)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include "derivatives.hpp"
 #include "pose/epipolar_problem.hpp"
 #include "pose/five_points.hpp"
 #include "pose/real_roots.hpp"
@@ -84,23 +85,9 @@ TEST(RelativePose, derivatives_are_those_of_finite_differences)
     RNG random(3);
     const RelativePose truth = randomPose(random, .3);
     const Views views(random, truth, 60, 10, .3);
-    const double scale = 40;
     const Matx33d other(700, 0, 300, 0, 650, 200, 0, 0, 1);
     const EpipolarProblem problem(views.points1, views.points2, CAMERA, other);
-    std::vector<Row<EpipolarProblem::Step>> rows;
-    problem.linearize(truth, FARTHEST * scale * scale, rows);
-    EpipolarProblem::Step gradient;
-    for (const Row<EpipolarProblem::Step>& row : rows)
-        gradient += 2 * row.r / (scale * scale + row.r * row.r) * row.J;
-    for (int k = 0; k < 5; k++)
-    {
-        const double h = 1e-6;
-        EpipolarProblem::Step step = EpipolarProblem::Step::all(0);
-        step[k] = h;
-        const double up = problem.loss(moved(truth, step), scale, DBL_MAX),
-                     down = problem.loss(moved(truth, -step), scale, DBL_MAX);
-        EXPECT_NEAR((up - down) / (2 * h), gradient[k], 1e-4 * (1 + std::abs(gradient[k])));
-    }
+    expectDerivatives(problem, truth, 40, 1e-4);
 }
 
 TEST(RelativePose, is_found_among_wrong_matches)

@@ -5,8 +5,8 @@
 #include <map>
 #include <random>
 
-#include "opencv2/iib_geometry.hpp"
-#include "opencv2/ts.hpp"
+#include "derivatives.hpp"
+#include "locate/imu_motion.hpp"
 #include "test_folder.hpp"
 
 namespace opencv_test {
@@ -128,6 +128,48 @@ void expectUnchanged(const Drive& drive, const std::vector<Location>& found)
         EXPECT_EQ(drive.images[i].found, found[i].found) << i;
         EXPECT_EQ(drive.images[i].cameraFromWorld.matrix, found[i].cameraFromWorld.matrix) << i;
     }
+}
+
+// Each block is told to its lowest order in the time: rows are divided by it, and what is left out is a thousandth.
+TEST(Smoothing, derivatives_are_those_of_finite_differences)
+{
+    typedef ImuState S;
+    S::Errors begin;
+    for (int i = 0; i < S::SIZE; i++)
+        begin[i] = .1 * (i + 1) * (i % 2 ? 1 : -1);
+    const S state = plus(S(), begin);
+    const double dt = 1e-3, times[] = {dt, dt * dt, dt, 1, 1, 1};
+    const auto movedBy = [&](const S::Errors& errors, S::Square& change) {
+        S at = plus(state, errors);
+        move(at, cv::Vec3d(1, -.5, .7), cv::Vec3d(3, -4, 8), dt, change);
+        return at;
+    };
+    S::Square change, unused;
+    const S after = movedBy(S::Errors(), change);
+    cv::Mat_<double> told = cv::Mat_<double>(cv::Mat(change));
+    for (int i = 0; i < S::SIZE; i++)
+        told.row(i) /= times[i / 3];
+    const auto errorsAt = [&](const Numbers& step) {
+        const S::Errors errors = minus(movedBy(S::Errors(step.data()), unused), after);
+        Numbers scaled;
+        for (int i = 0; i < S::SIZE; i++)
+            scaled.push_back(errors[i] / times[i / 3]);
+        return scaled;
+    };
+    expectDerivatives(told, errorsAt, .01, .05);  // Affine3d::rvec takes turns below 1e-5 for none
+}
+
+// The covariance of a place and a turn without one between them has in its corner how the turn moves the other place.
+TEST(Smoothing, the_lever_of_a_camera_on_its_imu_is_that_of_finite_differences)
+{
+    const cv::Affine3d body(cv::Vec3d(.3, -.2, .5), cv::Vec3d(1, 2, 3));
+    const cv::Vec3d lever(.4, -.3, .2);
+    const cv::Mat carriedOne(carried(cv::Matx66d::eye(), body.rotation() * lever));
+    const auto placeAt = [&](const Numbers& turn) {
+        const cv::Vec3d at = cv::Affine3d(cv::Vec3d(turn.data())).rotation() * body.rotation() * lever;
+        return Numbers{at[0], at[1], at[2]};
+    };
+    expectDerivatives(cv::Mat_<double>(carriedOne(cv::Rect(3, 0, 3, 3))), placeAt, 1e-6);
 }
 
 TEST(Smoothing, images_without_a_pose_get_one)

@@ -8,16 +8,12 @@
 
 #include "../map/camera_pose.hpp"
 #include "../pose/two_views.hpp"
+#include "imu_motion.hpp"
 
 namespace cv::iib {
 namespace {
 
-// Noise densities of a good MEMS sensor (EuRoC's sensor.yaml), twice as large for what the model leaves out.
-constexpr double RATE_NOISE = 2 * 1.7e-4;              // rad/s/sqrt(Hz)
-constexpr double FORCE_NOISE = 2 * 2.0e-3;             // m/s^2/sqrt(Hz)
-constexpr double RATE_WALK = 1e-4, FORCE_WALK = 2e-3;  // of the biases in a second
-constexpr int64 MAX_GAP = 100000000,
-                MAX_ALONE = int64(3e9);  // nanoseconds: between readings, without an image
+constexpr int64 MAX_ALONE = int64(3e9);  // nanoseconds without an image
 constexpr int64 MAX_TIME = int64(4e18);
 constexpr size_t FIRST_FRAMES = 8, LEAST_FRAMES = 4;  // with poses, that the start is found from
 constexpr int64 APART = 200000000;                    // nanoseconds between these
@@ -41,140 +37,32 @@ struct ImuFrame
     Matx66d covariance;
 };
 
-//! Places of an error's parts: turn about the world's axes, position, velocity, biases of rate and force, gravity.
-enum Part
-{
-    TURN = 0,
-    POSITION = 3,
-    VELOCITY = 6,
-    RATE = 9,
-    FORCE = 12,
-    DOWN = 15,
-    SIZE = 18
-};
-typedef Vec<double, SIZE> Errors;
-typedef Matx<double, SIZE, SIZE> Square;
-
-struct State
-{
-    Matx33d rotation = Matx33d::eye();  // world from IMU
-    Vec3d position, velocity, rate, force, gravity;
-};
-
-Matx33d turnBy(const Vec3d& vector) { return Affine3d(vector).rotation(); }
-
-void setBlock(Square& matrix, int row, int column, const Matx33d& block)
-{
-    for (int y = 0; y < 3; y++)
-        for (int x = 0; x < 3; x++)
-            matrix(row + y, column + x) = block(y, x);
-}
-
-Vec3d part(const Errors& error, int begin) { return Vec3d(error.val + begin); }
-
-State plus(const State& s, const Errors& e)
-{
-    return {turnBy(part(e, TURN)) * s.rotation, s.position + part(e, POSITION),
-            s.velocity + part(e, VELOCITY), s.rate + part(e, RATE), s.force + part(e, FORCE),
-            s.gravity + part(e, DOWN)};
-}
-
-Errors minus(const State& a, const State& b)
-{
-    Errors e;
-    const Vec3d parts[] = {Affine3d(a.rotation * b.rotation.t(), Vec3d()).rvec(), a.position - b.position,
-            a.velocity - b.velocity, a.rate - b.rate, a.force - b.force, a.gravity - b.gravity};
-    for (int i = 0; i < SIZE; i++)
-        e[i] = parts[i / 3][i % 3];
-    return e;
-}
-
-//! Moves a state by a reading that holds for dt seconds; `change` gets how errors change.
-void move(State& s, const Vec3d& rate, const Vec3d& force, double dt, Square& change)
-{
-    const Vec3d turn = (rate - s.rate) * dt;
-    const Matx33d middle = s.rotation * turnBy(turn / 2), one = Matx33d::eye();
-    const Vec3d felt = middle * (force - s.force);
-    change = Square::eye();
-    setBlock(change, TURN, RATE, -dt * middle);
-    setBlock(change, POSITION, TURN, -dt * dt / 2 * crossProduct(felt));
-    setBlock(change, POSITION, VELOCITY, dt * one);
-    setBlock(change, POSITION, FORCE, -dt * dt / 2 * middle);
-    setBlock(change, POSITION, DOWN, dt * dt / 2 * one);
-    setBlock(change, VELOCITY, TURN, -dt * crossProduct(felt));
-    setBlock(change, VELOCITY, FORCE, -dt * middle);
-    setBlock(change, VELOCITY, DOWN, dt * one);
-    const Vec3d acceleration = felt + s.gravity;
-    s.position += s.velocity * dt + acceleration * (dt * dt / 2);
-    s.velocity += acceleration * dt;
-    s.rotation = s.rotation * turnBy(turn);
-}
-
-/** Moves a state from one time to another; readings are linear between their times. False if they do not reach that far or have a
-gap. @param covariance of the state, if not null; then change gets how errors change on the way. */
-bool follow(const std::vector<ImuReading>& readings, int64 from, int64 to, State& state, Square* covariance,
-        Square* change)
-{
-    if (covariance)
-        *change = Square::eye();
-    if (readings.empty() || readings.front().nanoseconds > from || readings.back().nanoseconds < to)
-        return false;
-    const auto later = [](int64 time, const ImuReading& r) { return time < r.nanoseconds; };
-    auto next = std::upper_bound(readings.begin(), readings.end(), from, later);
-    for (int64 now = from; now < to; ++next)
-    {
-        const ImuReading &a = *(next - 1), &b = *next;
-        const int64 end = std::min(to, b.nanoseconds);
-        if (b.nanoseconds - a.nanoseconds > MAX_GAP)
-            return false;
-        // the mean over the step of what is linear is its value in the middle
-        const double share = (.5 * double(now - a.nanoseconds) + .5 * double(end - a.nanoseconds)) /
-                             double(b.nanoseconds - a.nanoseconds);
-        const double dt = double(end - now) * 1e-9;
-        Square step;
-        move(state, a.rate + share * (b.rate - a.rate), a.force + share * (b.force - a.force), dt, step);
-        now = end;
-        if (!covariance)
-            continue;
-        Square& c = *covariance;
-        c = step * c * step.t();
-        for (int i = 0; i < 3; i++)
-        {
-            c(TURN + i, TURN + i) += RATE_NOISE * RATE_NOISE * dt;
-            c(VELOCITY + i, VELOCITY + i) += FORCE_NOISE * FORCE_NOISE * dt;
-            c(RATE + i, RATE + i) += RATE_WALK * RATE_WALK * dt;
-            c(FORCE + i, FORCE + i) += FORCE_WALK * FORCE_WALK * dt;
-        }
-        *change = step * *change;
-    }
-    return true;
-}
-
 //! A frame of the IMU's, as the filter has it before and after its image, and how errors came there.
 struct Step
 {
-    State expected, state;
-    Square expectedCovariance, covariance, change;
+    ImuState expected, state;
+    ImuState::Square expectedCovariance, covariance, change;
 };
 
 //! Where a number of a pose, position and turn as in covariances of images, is in a state's error.
-int place(int i) { return i < 3 ? POSITION + i : TURN + i - 3; }
+int place(int i) { return i < 3 ? ImuState::POSITION + i : ImuState::TURN + i - 3; }
 
-/** Takes a measured pose into a state: position and turn about the world's axes with their covariance.
+/** Takes a measured pose into a state: position and turn about the world's axes with their covariance (Kalman 1960). With H the rows
+of these six and P the state's covariance, the gain is K = P H' (H P H' + R)^-1, and P' = P - K H P.
 @return its innovation's squared length in standard deviations, whose square is chi^2 of six degrees of freedom. */
-double update(const Affine3d& pose, const Matx66d& measured, State& state, Square& covariance)
+double update(const Affine3d& pose, const Matx66d& measured, ImuState& state, ImuState::Square& covariance)
 {
-    State seen = state;
+    ImuState seen = state;
     seen.rotation = pose.rotation();
     seen.position = pose.translation();
-    const Errors difference = minus(seen, state);
+    const ImuState::Errors difference = minus(seen, state);
     Matx66d sum;
-    Matx<double, SIZE, 6> columns;
+    Matx<double, ImuState::SIZE, 6> columns;
     Vec6d offset;
     for (int i = 0; i < 6; i++)
     {
         offset[i] = difference[place(i)];
-        for (int row = 0; row < SIZE; row++)
+        for (int row = 0; row < ImuState::SIZE; row++)
             columns(row, i) = covariance(row, place(i));
         for (int k = 0; k < 6; k++)
             sum(i, k) = covariance(place(i), place(k)) + TOGETHER * measured(i, k);
@@ -184,24 +72,25 @@ double update(const Affine3d& pose, const Matx66d& measured, State& state, Squar
     const double squared = offset.dot(inverse * offset);
     if (squared > MAX_SQUARED)
         inverse *= MAX_SQUARED / squared;
-    const Matx<double, SIZE, 6> gain = columns * inverse;
+    const Matx<double, ImuState::SIZE, 6> gain = columns * inverse;
     state = plus(state, gain * offset);
     covariance -= gain * columns.t();
     covariance = .5 * (covariance + covariance.t());
     return squared;
 }
 
-/** Gravity and the first velocity, by linear least squares: rotations are known, and positions and velocities are linear in
-both. False if there are no readings between the images. */
+/** Gravity g and the velocities v, by linear least squares (Qin, Li and Shen, VINS-Mono, 2018, section V), since rotations are known:
+    p' - p - moved = v T + g T^2 / 2,   v' - v - gained = g T
+of neighbours T apart, between which readings alone move by `moved` and gain a velocity. False if there are no readings. */
 bool findStart(const std::vector<int64>& times, const std::vector<Affine3d>& poses,
-        const std::vector<ImuReading>& readings, State& start)
+        const std::vector<ImuReading>& readings, ImuState& start)
 {
     const int n = int(times.size());
     Mat a(6 * (n - 1), 3 * n + 3, CV_64F, Scalar(0)), b(6 * (n - 1), 1, CV_64F), x;
     for (int i = 0; i + 1 < n; i++)
     {
         const Affine3d &from = poses[size_t(i)], &to = poses[size_t(i) + 1];
-        State moved;  // without gravity and velocity
+        ImuState moved;  // without gravity and velocity
         moved.rotation = from.rotation();
         moved.position = from.translation();
         if (!follow(readings, times[size_t(i)], times[size_t(i) + 1], moved, nullptr, nullptr))
@@ -263,7 +152,7 @@ Run filtered(const std::vector<ImuFrame>& frames, const std::vector<ImuReading>&
     if (run.verdict != Run::AGREES)
         return run;
     const double ofParts[] = {1, 1, 1, .02, .2, .2};
-    for (int i = 0; i < SIZE; i++)
+    for (int i = 0; i < ImuState::SIZE; i++)
         step.covariance(i, i) = ofParts[i / 3] * ofParts[i / 3];
     update(seen[0], frames[first].covariance, step.state, step.covariance);
     run.steps.push_back(step);
@@ -302,14 +191,16 @@ Run filtered(const std::vector<ImuFrame>& frames, const std::vector<ImuReading>&
     return run;
 }
 
-//! The smoother: states of a run by all of its images, in place.
+/** The smoother: states of a run by all of its images, in place. From the last back, x += G (x' - expected x') with
+G = P F' (expected P')^-1 and F how errors change (Rauch, Tung and Striebel 1965). */
 void smooth(std::vector<Step>& steps)
 {
     for (size_t i = steps.size() - 1; i-- > 0;)
     {
         Step& step = steps[i];
         const Step& next = steps[i + 1];
-        const Square gain = step.covariance * next.change.t() * next.expectedCovariance.inv(DECOMP_CHOLESKY);
+        const ImuState::Square gain =
+                step.covariance * next.change.t() * next.expectedCovariance.inv(DECOMP_CHOLESKY);
         step.state = plus(step.state, gain * minus(next.state, next.expected));
         step.covariance += gain * (next.covariance - next.expectedCovariance) * gain.t();
     }
@@ -356,17 +247,6 @@ void limitToScatter(std::vector<ImuFrame>& frames)
                     std::clamp(std::sqrt(SLOWLY * median(squared[k / 3]) / MEDIAN_SQUARED), LEAST_SCALE, 1.);
     for (ImuFrame& frame : frames)
         frame.covariance = scale * frame.covariance * scale;
-}
-
-//! The covariance of a place and of a turn, that of another place of the same body. @param way there, along the world's axes.
-Matx66d carried(const Matx66d& covariance, const Vec3d& way)
-{
-    const Matx33d lever = -crossProduct(way);
-    Matx66d change = Matx66d::eye();
-    for (int y = 0; y < 3; y++)
-        for (int x = 0; x < 3; x++)
-            change(y, 3 + x) = lever(y, x);
-    return change * covariance * change.t();
 }
 
 //! Where the image's pose has the IMU.

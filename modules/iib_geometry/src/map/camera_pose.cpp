@@ -16,23 +16,18 @@ constexpr int ROUNDS = 20;
 constexpr int CLUSTERS = 4;           // a side, of what the matches span in the image
 constexpr double LEAST_TOLD = 1e-12;  // of the least direction of a pose over the one that is told best
 
-//! A match near a pose.
-struct Linear
-{
-    Vec2d error;
-    Matx<double, 2, 6>
-            byPose;     //!< of where its point is seen, by the centre and a turn about the world's axes
-    double weight = 0;  //!< by Cauchy's loss; 0 behind the camera
-};
+}  // namespace
 
-std::vector<Linear> linear(const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)
+// A point X is seen where the lens has R (X - c). A turn w about the world's axes gives R (1 - [w]x), so that by the centre it
+// moves by -R dc, and by the turn by R [X - c]x dw.
+std::vector<LinearMatch> linearize(const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)
 {
     const std::vector<Point3d> points = pointsOf(matches);
     std::vector<Matx23d> byPoint;
     const std::vector<Point2d> mapped = lens.project(inCamera(points, pose), &byPoint);
     const Matx33d rotation = pose.rotation();
     const Vec3d centre = inverse(pose).translation();
-    std::vector<Linear> found(points.size());
+    std::vector<LinearMatch> found(points.size());
     for (size_t i = 0; i < points.size(); i++)
     {
         const Point2d error = matches[i].errorProjection * (matches[i].pixel - mapped[i]);
@@ -54,7 +49,12 @@ std::vector<Linear> linear(const std::vector<Match>& matches, const Lens& lens, 
     return found;
 }
 
-}  // namespace
+Affine3d moved(const Affine3d& pose, const Vec6d& step)
+{
+    const Vec3d centre = inverse(pose).translation() + Vec3d(step.val);
+    const Matx33d rotation = pose.rotation() * Affine3d(-Vec3d(step.val + 3)).rotation();
+    return {rotation, -(rotation * centre)};
+}
 
 std::vector<Point3d> pointsOf(const std::vector<Match>& matches)
 {
@@ -185,11 +185,9 @@ bool refinePose(const std::vector<Match>& matches, const Lens& lens, Affine3d& p
 {
     for (int round = 0; round < ROUNDS; round++)
     {
-        const Matx33d rotation = pose.rotation();
-        const Vec3d centre = inverse(pose).translation();
         Matx66d normal = Matx66d::zeros();
         Vec6d gradient;
-        for (const Linear& m : linear(matches, lens, pose))
+        for (const LinearMatch& m : linearize(matches, lens, pose))
         {
             normal += m.weight * m.byPose.t() * m.byPose;
             gradient += m.weight * (m.byPose.t() * m.error);
@@ -197,14 +195,12 @@ bool refinePose(const std::vector<Match>& matches, const Lens& lens, Affine3d& p
         Vec6d step;
         if (!solve(normal, gradient, step, DECOMP_CHOLESKY) || !checkRange(step))
             return false;
-        const Vec3d moved(step.val), turned(step.val + 3);
-        const Matx33d next = rotation * Affine3d(-turned).rotation();
-        pose = {next, -(next * (centre + moved))};
+        pose = moved(pose, step);
         bool regular = false;
         covariance = normal.inv(DECOMP_CHOLESKY, &regular);
         if (!regular)
             return false;
-        if (norm(turned) < 1e-8)
+        if (norm(Vec3d(step.val + 3)) < 1e-8)
             break;
     }
     return true;
@@ -213,7 +209,7 @@ bool refinePose(const std::vector<Match>& matches, const Lens& lens, Affine3d& p
 bool clusteredCovariance(
         const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose, Matx66d& covariance)
 {
-    const std::vector<Linear> near = linear(matches, lens, pose);
+    const std::vector<LinearMatch> near = linearize(matches, lens, pose);
     std::vector<Point2f> pixels;
     for (const Match& m : matches)
         pixels.push_back(m.pixel);
@@ -223,7 +219,7 @@ bool clusteredCovariance(
     Matx66d curvature = Matx66d::zeros(), pulled = Matx66d::zeros();
     for (size_t i = 0; i < near.size(); i++)
     {
-        const Linear& m = near[i];
+        const LinearMatch& m = near[i];
         const double deviation = matches[i].deviation;
         errors.push_back(norm(m.error) / deviation);
         curvature += m.weight * m.weight * deviation * deviation * m.byPose.t() * m.byPose;

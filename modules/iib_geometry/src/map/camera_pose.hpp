@@ -53,15 +53,29 @@ struct Frame
 @param matches in a Frame's axes. */
 bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double limit, Affine3d& pose);
 
-/** Moves a pose to the least reprojection error with Cauchy's loss of a
-deviation, which cv::solvePnPRefineLM has not.
+//! A match near a pose.
+struct LinearMatch
+{
+    Vec2d error;                //!< of the match's pixel from where the pose has its point
+    Matx<double, 2, 6> byPose;  //!< derivatives of that place by a step of the pose
+    double weight = 0;          //!< by Cauchy's loss; 0 behind the camera
+};
+
+std::vector<LinearMatch> linearize(const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose);
+
+//! The pose whose centre moved and which turned about the world's axes.
+Affine3d moved(const Affine3d& pose, const Vec6d& step);
+
+/** Moves a pose to the least reprojection error with Cauchy's loss of a deviation, which cv::solvePnPRefineLM has not, by
+reweighted least squares (Huber 1981, chapter 7).
 @param matches in a Frame's axes.
 @param covariance of the camera's centre and of a small turn about the world's axes, for errors of the matches' deviations.
 @return false if the matches do not determine the pose. */
 bool refinePose(const std::vector<Match>& matches, const Lens& lens, Affine3d& pose, Matx66d& covariance);
 
 /** The covariance of a pose by the errors that its matches have, in place of those that refinePose assumed. Matches near each
-other in the image, a cluster, err together, as the map does there: the more the gradients of clusters differ, the less certain is the pose.
+other in the image, a cluster, err together, as the map does there: the more the gradients g of k clusters differ, the less certain is
+the pose, by k / (k - 6) H^-1 (sum of g g') H^-1 (Liang and Zeger 1986), with H the curvature of the loss.
 @param covariance of refinePose, which this replaces.
 @return false if the matches do not determine the pose. */
 bool clusteredCovariance(

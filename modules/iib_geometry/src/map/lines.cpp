@@ -21,7 +21,8 @@ constexpr double MIN_SHARE = 1. / 3;             // of the shorter of both, that
 constexpr double NEAREST = .05;                  // of the farther end's depth: where lines are cut off
 constexpr int MAPPED_BITS = 60, SEEN_BITS = 80;  // in which codes of one line differ, in like and other light
 
-/** The line that a track's longest segment shows, its ends where the planes through the others cut the rays to them.
+/** The line that a track's longest segment shows, its ends where the planes through the others cut the rays to them: at the depth
+n (c' - c) / (n d), by least squares over the planes' normals n and centres c'.
 @param rays to the begin of each segment, which are the track's, and behind each to the end.
 @param first of each image's.
 @return false if it is behind a camera, or DEVIATION would move it by more than so many parts of its distance. */

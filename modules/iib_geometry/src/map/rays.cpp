@@ -18,7 +18,8 @@ constexpr double NEAR = 2;       // pixels, within which matches are looked for 
 constexpr int STRONGEST = 200;   // codes of an image: they tell whether the poses are the images'
 constexpr double FAR = .01;      // radians between rays that do not tell on which side they meet
 
-//! Whether two rays lie in one plane with both cameras, and meet before them.
+/** Whether two rays lie in one plane with both cameras, and meet before them: the epipolar constraint d_a (way x d_b) = 0 (Hartley and
+Zisserman 2004, section 9.6), in pixels across the planes. */
 bool fitting(const Ray& a, const Ray& b)
 {
     const Vec3d way = b.centre - a.centre, across = a.direction.cross(b.direction);

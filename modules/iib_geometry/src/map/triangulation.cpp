@@ -20,7 +20,8 @@ double angleOf(const Ray& a, const Ray& b)
     return std::atan2(norm(a.direction.cross(b.direction)), a.direction.dot(b.direction));
 }
 
-//! The point nearest to rays by angle, with Cauchy's loss of a pixel.
+/** The point x nearest to rays by angle, with Cauchy's loss of a pixel: the sum of w (1 - d d') (x - c) is 0, with the centre c and
+direction d of each ray (the midpoint method of Hartley and Sturm 1997, reweighted). */
 Vec3d meetingPoint(const Track& track)
 {
     const Vec3d origin = track[0].centre;  // which may lie far from the world's

@@ -188,8 +188,8 @@ Row<EpipolarProblem::Step> EpipolarProblem::row(
     return row;
 }
 
-/** The plane that most matches lie on, if one is seen with the pose: a vector that has the product 1 with its points, in lengths of
-t. Samples of three matches propose planes; a match is as far from one as its point on the plane is seen from it, pixels as Sampson's
+/** The plane that most matches lie on, if one is seen with the pose: a vector n that has the product 1 with its points, in lengths of
+t, so that R + t n' is its homography (Hartley and Zisserman 2004, section 13.1). Samples of three matches propose planes; a match is as far from one as its point on the plane is seen from it, pixels as Sampson's
 error has them. */
 Vec3d EpipolarProblem::planeOf(const RelativePose& pose, double scale) const
 {

@@ -65,7 +65,8 @@ PlanarProblem PlanarProblem::mixed(const std::vector<int>& order) const
     return other;
 }
 
-// Of T p = w r, with T = 1 + sum of s_k G_k, two equations a match are linear in s, and w drops out.
+// Of T p = w r, with T = 1 + sum of s_k G_k, two equations a match are linear in s, and w drops out (Hartley and Zisserman 2004,
+// section 4.1).
 void PlanarProblem::propose(const std::vector<int>& sample, std::vector<Matx33d>& transforms) const
 {
     transforms.clear();

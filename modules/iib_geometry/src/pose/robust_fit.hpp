@@ -59,7 +59,8 @@ template <int N> void mirror(Matx<double, N, N>& m)
             m(a, b) = m(b, a);
 }
 
-//! Lowers the loss by Levenberg and Marquardt's steps, until one lowers it by less than `enough` of it.
+/** Lowers the loss by Levenberg and Marquardt's steps, until one lowers it by less than `enough` of it: with H the sum of w J J',
+w = 1 / (scale^2 + r^2), (H + damping diag H) step = -(sum of w r J) (Hartley and Zisserman 2004, appendix 6.2). */
 template <class Problem>
 void polish(const Problem& problem, double scale, double enough, typename Problem::Model& model)
 {
@@ -202,7 +203,8 @@ template <class Problem> Fit<Problem> search(const Problem& problem, double scal
         problem.squaredErrors(model, squared);
         const double inside = FARTHEST * scale * scale;
         const auto near = std::count_if(squared.begin(), squared.end(), [&](double e) { return e < inside; });
-        const double right = std::pow((double)near / count, size);  // probability of a sample of such alone
+        // Fischler and Bolles (1981): samples until one in 1 / missed searches had none of right matches alone.
+        const double right = std::pow((double)near / count, size);  // probability of such a sample
         const double wanted = right > 0 ? std::log(missed) / std::log1p(-std::min(right, .999)) : none;
         trials = std::max<double>(fewestTrials, std::min<double>(mostTrials, wanted));
     };
@@ -243,7 +245,7 @@ template <class Problem> Fit<Problem> search(const Problem& problem, double scal
 /** Whether the errors within a distance are those of right matches: most of them far below it, and few others around it. Else matches
 err by more, or are wrong.
 @param parameters of the model: so many errors are small because it was fitted to them.
-@param scale that the errors within it tell. */
+@param scale that the errors within it tell, by their median (Rousseeuw and Leroy 1987). */
 inline bool settles(const std::vector<double>& squared, double distance, int parameters, double& scale)
 {
     const double most = .3;                  // of the distance: the median error
