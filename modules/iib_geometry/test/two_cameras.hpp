@@ -19,6 +19,32 @@ inline RelativePose randomPose(RNG& random, double turn)
     return cv::iib::moved({Matx33d::eye(), normalize(t)}, step);
 }
 
+//! Anywhere in an image, third coordinate 1.
+inline Vec3d anyPixel(RNG& random)
+{
+    const double y = random.uniform(0., 480.), x = random.uniform(0., 640.);
+    return {x, y, 1};
+}
+
+//! In front of the first camera, 4 to 12 away.
+inline Vec3d anyPoint(RNG& random)
+{
+    const Vec3d ray = CAMERA.inv() * anyPixel(random);
+    return random.uniform(4., 12.) * ray;
+}
+
+//! Where both cameras see a point, with noise, pixels.
+inline void see(RNG& random, const RelativePose& pose, const Vec3d& X, double noise, double* first,
+        double* second, double baseline = 1)
+{
+    const Vec3d a = CAMERA * X, b = CAMERA * (pose.R * X + baseline * pose.t);
+    for (int c = 0; c < 2; c++)
+    {
+        first[c] = a[c] / a[2] + random.gaussian(noise);
+        second[c] = b[c] / b[2] + random.gaussian(noise);
+    }
+}
+
 //! Points in front of both cameras, 4 to 12 away, seen with noise, pixels; `wrong` of them anywhere. t has the length `baseline`.
 struct Views
 {
@@ -28,7 +54,7 @@ struct Views
         for (int i = 0; i < count;)
         {
             const double depth = random.uniform(4., 12.);
-            const Vec3d pixel(random.uniform(0., 640.), random.uniform(0., 480.), 1);
+            const Vec3d pixel = anyPixel(random);
             const Vec3d X = depth * (CAMERA.inv() * pixel), Y = pose.R * X + baseline * pose.t,
                         seen = CAMERA * Y;
             if (Y[2] < 1)

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "alignment_pictures.hpp"
+#include "opencv2/core/affine.hpp"
+
+// Which alignments are refused, and what is told of those that are found.
+namespace opencv_test {
+namespace {
+using namespace cv::iib;
+
+TEST(Alignment, refuses_images_of_other_scenes_and_without_points)
+{
+    Mat transform = Mat::eye(3, 3, CV_64F), error = transform, matches;
+    EXPECT_FALSE(alignImages(picture(3), picture(4), transform, ALIGN_HOMOGRAPHY, error, matches));
+    EXPECT_TRUE(transform.empty() && error.empty());
+    EXPECT_LT(matches.rows, 16);
+    EXPECT_FALSE(alignImages(picture(3), Mat(SIZE, CV_8U, Scalar(7)), transform));
+    EXPECT_FALSE(alignImages(Mat(), picture(3), transform));
+}
+
+//! Three spots each: a dozen matches are all that there is, and that no wrong one is near tells little.
+TEST(Alignment, refuses_a_few_matches_that_agree_by_chance)
+{
+    Mat images[2], transform, matches;
+    for (int i = 0; i < 2; i++)
+        GaussianBlur(spots(315 + i, 3, Size(200, 150)), images[i], Size(), 3);
+    EXPECT_FALSE(alignImages(images[0], images[1], transform, ALIGN_SIMILARITY, noArray(), matches));
+    EXPECT_GE(matches.rows, 4);
+}
+
+TEST(Alignment, refuses_pictures_that_share_a_part_alone_in_any_model)
+{
+    for (int side : {80, 115})
+    {
+        const Rect part(10, 10, side, side);
+        Mat first = picture(11), second = picture(12), transform;
+        for (const Mat& image : {first, second})
+            picture(13)(part).copyTo(image(part));
+        for (int model : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE, ALIGN_HOMOGRAPHY})
+        {
+            Mat matches;
+            String reason;
+            EXPECT_FALSE(alignImages(first, second, transform, model, noArray(), matches, &reason))
+                    << side << " " << model;
+            EXPECT_GE(matches.rows, 16) << "the part has enough of them";
+            EXPECT_NE(reason.find("a logo"), String::npos) << reason;
+        }
+    }
+}
+
+//! As with a logo in one corner and a caption, or two stamps, between which nothing agrees.
+TEST(Alignment, refuses_pictures_that_share_two_parts_alone)
+{
+    Mat first = picture(11), second = picture(12), transform;
+    for (const Rect& part : {Rect(10, 10, 70, 70), Rect(320, 225, 70, 70)})
+        for (const Mat& image : {first, second})
+            picture(13)(part).copyTo(image(part));
+    for (int model : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE, ALIGN_HOMOGRAPHY})
+    {
+        String reason;
+        EXPECT_FALSE(alignImages(first, second, transform, model, noArray(), noArray(), &reason)) << model;
+        EXPECT_NE(reason.find("logos"), String::npos) << reason;
+    }
+}
+
+//! What shows in one of the images alone, by the other's mask or its black sky, could not agree.
+TEST(Alignment, finds_a_part_that_is_all_that_both_images_show)
+{
+    const Mat reference = picture(1);
+    const Rect part(150, 80, 126, 95);  // a tenth
+    Mat mask = Mat::zeros(SIZE, CV_8U), night = Mat::zeros(SIZE, CV_8U), transform, error;
+    mask(part) = 1;
+    reference(part).copyTo(night(part));
+    night *= .6;
+    const auto expectFound = [&](const Mat& first, const Mat& second, int model, const Mat& allowed) {
+        String reason;
+        ASSERT_TRUE(ImageAligner::create(first, model)
+                            ->align(second, transform, error, noArray(), &reason, allowed))
+                << reason;
+        EXPECT_LT(cornerError(transform, Matx33d::eye()), 3 * cv::norm(error, NORM_INF)) << model;
+    };
+    for (int model : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE, ALIGN_HOMOGRAPHY})
+    {
+        expectFound(reference, inOtherLight(reference), model, mask);
+        expectFound(reference, night, model, Mat());
+        expectFound(night, reference, model, Mat());
+    }
+}
+
+//! A caption is no picture.
+TEST(Alignment, refuses_a_logo_that_is_all_that_an_image_shows)
+{
+    const Rect part(10, 10, 80, 80);
+    Mat transform;
+    for (bool noisy : {false, true})  // noise has points, too
+    {
+        Mat black = Mat::zeros(SIZE, CV_8U), other = picture(12);
+        for (const Mat& image : {black, other})
+            picture(13)(part).copyTo(image(part));
+        if (noisy)
+            black = inOtherLight(black);
+        for (int model : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE, ALIGN_HOMOGRAPHY})
+        {
+            String reason;
+            EXPECT_FALSE(alignImages(other, black, transform, model, noArray(), noArray(), &reason)) << model;
+            EXPECT_NE(reason.find("a logo"), String::npos) << reason;
+            EXPECT_FALSE(alignImages(black, other, transform, model)) << model;
+        }
+    }
+}
+
+/** Squares of another depth, by a few pixels: the transform of one depth is as wrong of the other. Above the working size as well, where
+matches of one depth alone are refined. */
+TEST(Alignment, tells_what_a_part_of_the_images_is_beside_by)
+{
+    for (int times : {1, 4})
+    {
+        Mat reference;
+        resize(picture(16), reference, Size(), times, times, INTER_CUBIC);
+        const int beside = std::max(4, 2 * times), side = 60 * times;
+        Mat image = reference.clone(), transform, error;
+        for (int y = 0; y < reference.rows; y += side)
+            for (int x = 0; x < reference.cols; x += 2 * side)
+            {
+                const int column = x + (y / side % 2) * side;
+                const Rect square(column, y, std::min(side, reference.cols - beside - column), side);
+                if (square.width <= 0)
+                    continue;
+                reference(square + Point(beside, 0)).copyTo(image(square));
+            }
+        String reason;
+        ASSERT_TRUE(alignImages(reference, image, transform, ALIGN_HOMOGRAPHY, error, noArray(), &reason))
+                << reason;
+        for (int k = 0; k < 4; k++)
+            EXPECT_GT(error.at<double>(k), beside / 2.) << times;
+    }
+}
+
+//! A part of the picture as large as a third of it is no logo.
+TEST(Alignment, finds_a_part_of_a_picture)
+{
+    const Mat whole = picture(14);
+    Mat transform, error;
+    ASSERT_TRUE(alignImages(
+            whole, inOtherLight(whole(Rect(150, 40, 200, 200))), transform, ALIGN_TRANSLATION, error));
+    EXPECT_NEAR(150, transform.at<double>(0, 2), .1);
+    EXPECT_NEAR(40, transform.at<double>(1, 2), .1);
+}
+
+TEST(Alignment, refuses_a_model_that_is_not_true_and_tells_the_one_that_is)
+{
+    const Mat reference = picture(15);
+    const Matx33d camera(360, 0, 200, 0, 360, 150, 0, 0, 1);
+    const Matx33d turned = Affine3d(Vec3d(.02, .12, .01)).rotation();
+    const Mat by = getRotationMatrix2D(Point2f(200, 150), 1, 1);
+    Matx33d degree = Matx33d::eye();
+    by.copyTo(Mat(degree, false).rowRange(0, 2));
+    const struct
+    {
+        Matx33d truth;
+        int model;
+        const char* other;
+        int right;
+    } cases[] = {{camera * turned * camera.inv(), ALIGN_SIMILARITY, "HOMOGRAPHY agrees", ALIGN_HOMOGRAPHY},
+            {HOMOGRAPHY, ALIGN_TRANSLATION, "agrees with", ALIGN_HOMOGRAPHY},
+            {degree, ALIGN_TRANSLATION, "SIMILARITY agrees", ALIGN_SIMILARITY},
+            {AFFINE, ALIGN_SIMILARITY, "AFFINE agrees", ALIGN_AFFINE}};
+    for (const auto& c : cases)
+    {
+        const Mat image = moved(reference, c.truth);
+        Mat transform, error;
+        String reason;
+        EXPECT_FALSE(alignImages(reference, image, transform, c.model, error, noArray(), &reason)) << c.other;
+        EXPECT_TRUE(transform.empty() && error.empty());
+        EXPECT_NE(reason.find(c.other), String::npos) << reason;
+        EXPECT_TRUE(alignImages(reference, image, transform, c.right, error, noArray(), &reason)) << reason;
+        EXPECT_EQ("", reason);
+        EXPECT_LT(cornerError(transform, c.truth.inv()), .3) << c.other;
+    }
+}
+
+//! With more freedom a transform comes nearer to noisy matches of whatever is true.
+TEST(Alignment, noise_makes_no_model_of_more_freedom)
+{
+    const struct
+    {
+        int seed, times;  // as large as the picture
+        double blur, noise;
+    } cases[] = {{100, 1, 5, 15}, {100, 1, 8, 30}, {104, 1, 5, 5}, {103, 2, 6, 30}, {103, 2, 16, 5}};
+    for (const auto& c : cases)
+    {
+        Mat whole, images[2], transform;
+        resize(picture(c.seed), whole, Size(), c.times, c.times, INTER_CUBIC);
+        const Rect part(0, 0, whole.cols - 20, whole.rows - 20);
+        for (int i = 0; i < 2; i++)
+        {
+            Mat image = whole(part + Point(13, 7) * i).clone(), noise(image.size(), CV_16S);
+            if (i)
+                GaussianBlur(image, image, Size(), c.blur);
+            RNG random(c.seed - 99 + i * 76);
+            random.fill(noise, RNG::NORMAL, 0, c.noise);
+            cv::add(image, noise, images[i], noArray(), CV_8U);
+        }
+        for (int model : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE})
+        {
+            String reason;
+            EXPECT_TRUE(alignImages(images[0], images[1], transform, model, noArray(), noArray(), &reason))
+                    << c.blur << " " << c.noise << ": " << reason;
+        }
+    }
+}
+
+//! By less than a pixel of the working size, or by so little that it shows at full size alone.
+TEST(Alignment, refuses_a_model_that_is_not_true_of_large_images)
+{
+    const Size size(3200, 2400);
+    for (double pixels : {2., 1.})  // at the corners
+    {
+        Mat reference, image, transform, error;
+        resize(picture(24), reference, size, 0, 0, INTER_CUBIC);
+        const Mat turn = getRotationMatrix2D(Point2f(1600, 1200), pixels / 2000 * 180 / CV_PI, 1);
+        warpAffine(reference, image, turn, size, INTER_CUBIC, BORDER_REFLECT);
+        String reason;
+        EXPECT_FALSE(alignImages(reference, image, transform, ALIGN_TRANSLATION, error, noArray(), &reason));
+        EXPECT_NE(reason.find("SIMILARITY agrees"), String::npos) << reason;
+        ASSERT_TRUE(alignImages(reference, image, transform, ALIGN_SIMILARITY, error, noArray(), &reason))
+                << reason;
+        EXPECT_LT(cv::norm(error, NORM_INF), .5);
+    }
+}
+
+//! The upper half is a wall that is twice as near as the lower one's.
+TEST(Alignment, tells_a_camera_that_moved)
+{
+    const Mat wall = picture(16);
+    Mat image = inOtherLight(wall), transform;
+    wall(Rect(40, 0, 360, 150)).copyTo(image(Rect(0, 0, 360, 150)));
+    wall(Rect(20, 150, 380, 150)).copyTo(image(Rect(0, 150, 380, 150)));
+    String reason;
+    EXPECT_FALSE(alignImages(wall, image, transform, ALIGN_AFFINE, noArray(), noArray(), &reason));
+    EXPECT_NE(reason.find("parallax"), String::npos) << reason;
+}
+
+//! A third of what a camera that stayed sees moved one way: what it sees is all that there is to tell it from the one before.
+TEST(Alignment, tells_what_may_be_shadows_that_moved)
+{
+    const Mat picture1 = picture(16);
+    Mat image = inOtherLight(picture1), transform;
+    const Mat shadows = inOtherLight(picture1(Rect(0, 0, 392, 100)));
+    shadows.copyTo(image(Rect(8, 0, 392, 100)));
+    String reason;
+    EXPECT_FALSE(alignImages(picture1, image, transform, ALIGN_HOMOGRAPHY, noArray(), noArray(), &reason));
+    EXPECT_NE(reason.find("parallax"), String::npos) << reason;
+    EXPECT_NE(reason.find("shadows"), String::npos) << reason;
+}
+
+}  // namespace
+}  // namespace opencv_test

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "pose/robust_fit.hpp"
+#include "two_cameras.hpp"
+
+namespace opencv_test {
+namespace {
+using namespace cv::iib;
+
+const double MEDIAN = 4.351, OF_95 = 11.07, OF_99 = 15.09;  // of chi-squared with five degrees of freedom
+
+//! How far poses are from the truth, in what their covariances foretell.
+struct Coverage
+{
+    int trials;
+    std::vector<double> squared;  //!< of the poses that were found
+
+    //! @param viewsOf a pose. @param scale that is given.
+    template <class ViewsOf>
+    Coverage(RNG& random, int trials_, const ViewsOf& viewsOf, double scale = 0) : trials(trials_)
+    {
+        for (int trial = 0; trial < trials; trial++)
+        {
+            const RelativePose truth = randomPose(random, .2);
+            const Views views = viewsOf(truth);
+            RelativePose pose;
+            Matx<double, 5, 5> covariance;
+            if (!findRelativePose(views.points1, views.points2, CAMERA, CAMERA, pose.R, pose.t, noArray(),
+                        scale, covariance))
+                continue;
+            const Vec<double, 5> error = stepBetween(pose, truth);
+            squared.push_back(error.dot(covariance.inv() * error));
+        }
+    }
+
+    double found() const { return (double)squared.size() / trials; }
+    //! The share of those found.
+    double within(double limit) const
+    {
+        return (double)std::count_if(squared.begin(), squared.end(), [&](double s) { return s < limit; }) /
+               (double)squared.size();
+    }
+};
+
+/* Of independent errors the covariance foretells no less than they are, and not three times as much: it expects that matches
+beside each other err together. */
+TEST(RelativePose, covariance_foretells_the_errors)
+{
+    RNG random(5);
+    const Coverage coverage(
+            random, 200, [&](const RelativePose& truth) { return Views(random, truth, 150, 20, .2); });
+    EXPECT_EQ(1, coverage.found());
+    EXPECT_LT(coverage.within(MEDIAN / 9), .45);
+    EXPECT_GE(coverage.within(OF_99), .98);
+}
+
+// Few matches tell their own noise badly: five numbers are fitted to them, and a narrow scale is right of many poses.
+TEST(RelativePose, covariance_foretells_the_errors_of_few_matches)
+{
+    for (int count : {10, 15, 25})
+        for (double noise : {.1, .3, 1.})
+        {
+            SCOPED_TRACE(format("%d matches, noise %g", count, noise));
+            RNG random(40);
+            const Coverage coverage(random, 100,
+                    [&](const RelativePose& truth) { return Views(random, truth, count, 0, noise); });
+            EXPECT_GE(coverage.found(), count == 10 ? .5 : .95);
+            EXPECT_GE(coverage.within(MEDIAN), .5);
+            EXPECT_GE(coverage.within(OF_95), noise < 1 ? .87 : count == 10 ? .7 : .82);
+            EXPECT_GE(coverage.within(OF_99), noise < 1 ? .92 : count == 10 ? .76 : .87);
+        }
+}
+
+//! The same error in all matches of a part of the image, as a shadow makes it.
+TEST(RelativePose, covariance_knows_of_errors_that_neighbours_share)
+{
+    RNG random(8);
+    const Coverage coverage(random, 100, [&](const RelativePose& truth) {
+        Views views(random, truth, 200, 20, .1);
+        Vec2d shifts[12];
+        for (Vec2d& shift : shifts)
+            random.fill(shift, RNG::NORMAL, 0, .2);
+        for (int i = 0; i < views.points1.rows; i++)
+        {
+            const Vec2d at = views.points1.at<Vec2d>(i);
+            const int part = std::clamp(int(at[0] / 160), 0, 3) + 4 * std::clamp(int(at[1] / 160), 0, 2);
+            views.points2.at<Vec2d>(i) += shifts[part];
+        }
+        return views;
+    });
+    EXPECT_EQ(1, coverage.found());
+    EXPECT_GT(coverage.within(MEDIAN), .4);
+    EXPECT_GT(coverage.within(OF_95), .8);
+}
+
+// Five errors are small since five numbers were fitted to them.
+TEST(RelativePose, a_scale_settles_by_what_no_number_was_fitted_to)
+{
+    std::vector<double> squared(12, .01);
+    double scale = 0;
+    EXPECT_TRUE(settles(squared, 1, 5, scale));
+    EXPECT_NEAR(1.4826 * .1 * std::sqrt(12. / 7), scale, 1e-9);
+    std::fill(squared.begin(), squared.begin() + 4, 4.);
+    EXPECT_FALSE(settles(squared, 1, 5, scale));
+    EXPECT_FALSE(settles(std::vector<double>(5, .01), 1, 5, scale));
+}
+
+// The residuals tell it where none is given, and where one is given that is too narrow by far, at which it cuts errors off.
+TEST(RelativePose, covariance_is_that_of_residuals_of_any_size)
+{
+    const struct
+    {
+        double scale, noise;
+    } cases[] = {{0, 1}, {0, 3}, {0, 5}, {.25, .25}, {.25, 2}, {.25, 4}};
+    for (const auto& c : cases)
+    {
+        SCOPED_TRACE(format("scale %g, noise %g", c.scale, c.noise));
+        RNG random(22);
+        const Coverage coverage(
+                random, 30, [&](const RelativePose& truth) { return Views(random, truth, 150, 0, c.noise); },
+                c.scale);
+        EXPECT_GE(coverage.found(), c.scale == 0 ? 1 : .9);
+        EXPECT_GE(coverage.within(MEDIAN), .6);
+        EXPECT_GE(coverage.within(OF_95), .9);
+    }
+}
+
+}  // namespace
+}  // namespace opencv_test
