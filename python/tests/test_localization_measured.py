@@ -13,7 +13,7 @@ from unittest import mock
 import numpy as np
 
 from support import REPOSITORY, cv2
-from test_localization import CAMERA, PLACES, evening, photograph, pose, wall
+from wall import CAMERA, PLACES, evening, photograph, pose, wall
 
 MISSING = [name for name in ('cv2', 'pycolmap') if importlib.util.find_spec(name) is None]
 if not MISSING:

@@ -14,7 +14,7 @@ import numpy as np
 from opencv_iib.localization import Localizer
 from opencv_iib.localization.imu_file import parse_pose, read_imu, time_of
 from support import InFolder, cv2, run_command
-from test_localization import CAMERA, SIZE, WIDTH, HEIGHT, evening, mapped, photograph, pose, trajectory, wall
+from wall import CAMERA, SIZE, WIDTH, HEIGHT, evening, mapped, photograph, pose, trajectory, wall
 
 PLACE = (.3, .1)
 
