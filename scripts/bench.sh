@@ -40,5 +40,5 @@ for round in $(seq "$rounds"); do
 done
 machine=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
 "$python3" "$root/tools/pages/speed.py" "$out/speed.csv" "$machine, $(date -u +%Y-%m-%d)" "$build"/speed/*.xml
-"$python3" -B "$root/tools/pages/tables.py" "$out"
+"$python3" -B "$root/tools/pages/timings.py" "$out"
 [ "$out" = "$build" ] || "$python3" -B "$root/tools/pages/pages.py"

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 import tables
+import timings
 
 matplotlib.use('svg')
 matplotlib.rcParams.update({'svg.hashsalt': 'iib', 'axes.grid': True, 'grid.linewidth': .4,
@@ -36,11 +37,11 @@ def speed():
 
     def draw(axis, test, form, sizes, labels):
         for name, label in labels.items():
-            values = [tables.ms(test, *form(name, size)).iloc[0] for size in sizes]
+            values = [timings.ms(test, *form(name, size)).iloc[0] for size in sizes]
             axis.plot(list(sizes.values()), values, marker='o', label=label)
 
     draw(axes[0], 'IIB_Describe_large', lambda name, size: (name, size), {k: 24 * (k / 8) ** 2 for k in (1, 2, 3, 4, 6, 8)}, {'default': 'IIB', 'ORB': 'ORB'})
-    for test, labels in zip(tables.DESCRIBED, ({'default': 'IIB', 'PRESET_UNIVERSAL': 'IIB UNIVERSAL', 'ORB': 'ORB'}, {'BEBLID-512': 'BEBLID-512'})):
+    for test, labels in zip(timings.DESCRIBED, ({'default': 'IIB', 'PRESET_UNIVERSAL': 'IIB UNIVERSAL', 'ORB': 'ORB'}, {'BEBLID-512': 'BEBLID-512'})):
         draw(axes[1], test, lambda name, size: (name, size), {size: size for size in (1000, 5000)}, labels)
     draw(axes[2], 'IIB_Match_match', lambda name, size: (name, 'true', size), {size: size for size in (100, 500, 1000, 10000)},
          {'EXACT': "IIB's matcher", 'BRUTE_FORCE': 'BFMatcher'})
@@ -102,7 +103,7 @@ def cost():
                            fontsize='small')
 
     for method, name in tables.METHODS.items():
-        times = [time for test, which in (('IIB_Chain_vga', name), ('IIB_Chain_others', name)) for time in tables.ms(test, 'street_noon', which, 1000).dropna()]
+        times = [time for test, which in (('IIB_Chain_vga', name), ('IIB_Chain_others', name)) for time in timings.ms(test, 'street_noon', which, 1000).dropna()]
         for fill, way in zip(kinds, tables.WAYS[1:]) if times else ():
             score, ends = spread([found[(method, 'other light') + way]])
             point(axis, times[0], fill, name, score[0], ends)

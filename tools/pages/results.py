@@ -3,7 +3,8 @@
 """The page of an evaluation's results, of summaries.py's files and of what is told of descriptors."""
 import descriptors
 from summaries import by, group, read
-from tables import DESCRIBED, HERE, methods, ms
+from tables import HERE
+from timings import DESCRIBED, methods, ms
 
 FILES = ("fixed_points", "detected_points", "curves", "estimators", "alignment", "robustness", "learned", "comparison")
 

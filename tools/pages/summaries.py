@@ -143,6 +143,12 @@ def group(rows, *names):
     return groups
 
 
+def table(head, lines):
+    """As Markdown has one."""
+    text = ['| ' + ' | '.join(head) + ' |', '|---' * len(head) + '|']
+    return '\n'.join(text + ['| ' + ' | '.join(line) + ' |' for line in lines])
+
+
 def by(rows, *names, **where):
     """The one row of each value of the columns, or of each combination of theirs, among those with the values of `where`."""
     chosen = [row for row in rows if all(row[name] == value for name, value in where.items())]
