@@ -6,6 +6,12 @@
 namespace cv::iib {
 namespace {
 
+const int STRIDE =
+        16;  // matches between two looks at the limit; the product of what they lose is no larger than 1e16
+
+//! The sign of the determinant of the derivatives by a point before the horizon is that of det T.
+bool mirrors(const Matx33d& T) { return !(determinant(T) > 0); }
+
 Matx33d entry(int row, int column, double value = 1)
 {
     Matx33d m;
@@ -43,6 +49,11 @@ std::vector<Vec3d> transformed(const Mat& points, const Matx33d& by)
 
 PlanarProblem::PlanarProblem(const Mat& reference, const Mat& image, int kind) : basis_(basisOf(kind))
 {
+    for (int k = 0; k < parameters(); k++)
+        for (int row = 0; row < 3; row++)
+            for (int column = 0; column < 3; column++)
+                if (basis_[k](row, column) != 0)
+                    entries_.push_back({k, row, column, basis_[k](row, column)});
     if (image.empty())
         return;
     // one unit for both, so that a translation stays one
@@ -88,22 +99,28 @@ void PlanarProblem::propose(const std::vector<int>& sample, std::vector<Matx33d>
     Step step;
     std::copy(s.ptr<double>(), s.ptr<double>() + n, step.val);
     const Matx33d transform = moved(Matx33d::eye(), step);
+    if (mirrors(transform))
+        return;
     for (int i : sample)
         if (!(squaredError(transform, i) < 1))
-            return;  // beyond the horizon, or mirrored
+            return;  // beyond the horizon
     transforms.push_back(transform);
 }
 
 PlanarProblem::Place PlanarProblem::placeOf(const Matx33d& transform, const Vec3d& point) const
 {
     const Vec3d q = transform * point;
+    const double perW = 1 / q[2];
     Place place;
     place.at = Vec2d(q[0] / q[2], q[1] / q[2]);
-    for (int k = 0; k < parameters(); k++)
+    for (const Entry& entry : entries_)
     {
-        const Vec3d moved = basis_[k] * point;
-        for (int c = 0; c < 2; c++)
-            place.byStep(c, k) = (moved[c] - place.at[c] * moved[2]) / q[2];
+        const double by = entry.value * point[entry.column] * perW;
+        if (entry.row < 2)
+            place.byStep(entry.row, entry.step) += by;
+        else
+            for (int c = 0; c < 2; c++)
+                place.byStep(c, entry.step) -= place.at[c] * by;
     }
     return place;
 }
@@ -111,8 +128,7 @@ PlanarProblem::Place PlanarProblem::placeOf(const Matx33d& transform, const Vec3
 double PlanarProblem::squaredError(const Matx33d& T, int i) const
 {
     const Vec3d q = T * image_[i];
-    // the sign of the determinant of the derivatives by the point is that of det T / w^3
-    if (!(q[2] > 1e-6) || !(determinant(T) > 0))
+    if (!(q[2] > 1e-6))
         return std::numeric_limits<double>::infinity();
     const double x = q[0] / q[2] - reference_[i][0], y = q[1] / q[2] - reference_[i][1];
     return unit_ * unit_ * (x * x + y * y);
@@ -120,16 +136,25 @@ double PlanarProblem::squaredError(const Matx33d& T, int i) const
 
 double PlanarProblem::loss(const Matx33d& transform, double scale, double limit) const
 {
+    if (mirrors(transform))
+        return size() * std::log1p(FARTHEST);
     const double perScale2 = 1 / square(scale);
     double sum = 0;
-    for (int i = 0; i < size() && sum <= limit; i++)
-        sum += std::log1p(std::min(squaredError(transform, i) * perScale2, FARTHEST));
+    for (int begin = 0; begin < size() && sum <= limit; begin += STRIDE)
+    {
+        double product = 1;
+        for (int i = begin; i < std::min(begin + STRIDE, size()); i++)
+            product *= 1 + std::min(squaredError(transform, i) * perScale2, FARTHEST);
+        sum += std::log(product);
+    }
     return sum;
 }
 
 void PlanarProblem::squaredErrors(const Matx33d& transform, std::vector<double>& errors) const
 {
-    errors.resize(size());
+    errors.assign(size(), std::numeric_limits<double>::infinity());
+    if (mirrors(transform))
+        return;
     for (int i = 0; i < size(); i++)
         errors[i] = squaredError(transform, i);
 }
@@ -137,6 +162,9 @@ void PlanarProblem::squaredErrors(const Matx33d& transform, std::vector<double>&
 void PlanarProblem::linearize(const Matx33d& transform, double limit, std::vector<Row<Step>>& rows) const
 {
     rows.clear();
+    if (mirrors(transform))
+        return;
+    rows.reserve(2 * size());
     for (int i = 0; i < size(); i++)
     {
         const double r2 = squaredError(transform, i);

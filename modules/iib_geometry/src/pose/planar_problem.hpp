@@ -51,10 +51,16 @@ private:
         Vec2d at;
         Matx<double, 2, 8> byStep;
     };
+    struct Entry  // of a matrix of the basis, not 0
+    {
+        int step, row, column;
+        double value;
+    };
     Place placeOf(const Matx33d& transform, const Vec3d& point) const;
     double squaredError(const Matx33d& transform, int i) const;
 
     std::vector<Matx33d> basis_;            // a step adds multiples of them
+    std::vector<Entry> entries_;            // of all of them
     std::vector<Vec3d> reference_, image_;  // centred, of the order of one, third coordinate 1
     Matx33d fromReference_, fromImage_;     // pixels to these
     double unit_;                           // one of them in pixels
