@@ -1,20 +1,19 @@
 """Files and folders that are written: where, whole, and by one process at a time."""
 from __future__ import annotations
 
-import csv
+import json
 import os
 import re
-import shutil
 import tempfile
 from contextlib import contextmanager, suppress
-from typing import Callable, Iterable, Iterator, Optional, Sequence
+from typing import Iterable, Iterator, Optional
 
 from opencv_iib import _core
 from opencv_iib._arguments import Path
 from opencv_iib._streams import is_open_file, write_to_open_file
 
 PART = '.iib-'  #: how the folder's name begins that results are written to, within that of the results
-MADE = '.made-by-opencv-iib'  #: a file in that folder: without it, it is the user's
+RECORD = '.made-by-opencv-iib'  #: a file in both: which command has written which files, of how many bytes; all others are the user's
 
 
 def output_file(path: str) -> str:
@@ -136,64 +135,105 @@ def _files_below(folder: str) -> list[str]:
             for name in files + [name for name in folders if os.path.islink(os.path.join(root, name))]]
 
 
-def rows_of(path: str, columns: Sequence[str]) -> Optional[list[dict[str, str]]]:
-    """Of a CSV file that begins with these columns; None for another file."""
-    with open(path, encoding='utf-8', errors='replace', newline='') as file, suppress(csv.Error):
-        table = csv.DictReader(file)
-        if list(table.fieldnames or ())[:len(columns)] == list(columns):
-            return list(table)
-    return None
-
-
 @contextmanager
-def new_results(out: str, mark: str, earlier: Callable[[str], Optional[Iterable[str]]]) -> Iterator[str]:
-    """A folder to write to, whose files take their place in that of the results when the block ends without an error.
+def new_results(out: str, command: str) -> Iterator[str]:
+    """A folder to write files to that were planned, which take their place in that of the results when the block ends without an error.
 
-    Until then earlier results stay there. Nothing is removed or replaced but these.
+    Until then earlier results stay there. Nothing is removed or replaced but what the record tells, if it still is as it was written.
 
     :param out: made if it is missing; a link is followed, also if nothing is at its end yet.
-    :param mark: file that results always hold.
-    :param earlier: names of the files of earlier results besides it, told by the folder; None if the file of that name is another.
+    :param command: whose results are replaced.
     :raises FileExistsError: for a folder that holds something else, or that another process is writing.
     """
     target = os.path.realpath(out)
     there = _files_below(target)
-    others = earlier(target) if os.path.isfile(os.path.join(target, mark)) else None
-    listed = set() if others is None else {mark, *others}
-    old = {name for name in there if name in listed}
-    killed = {name.split('/')[0] for name in there if re.fullmatch(re.escape(PART) + r'\w{8}/' + re.escape(MADE), name)}
-    own = old.union(name for name in there if '/' in name and name.split('/')[0] in killed)
+    old = _recorded(target, command, there)
+    for name in old:
+        if not _is_as_written(target, name, old):
+            raise FileExistsError(f'{out} holds {name}, which was changed since it was written: move it away, or choose another folder')
+    killed = {name.split('/')[0] for name in there if re.fullmatch(re.escape(PART) + r'\w{8}/' + re.escape(RECORD), name)}
+    parts = {folder: _recorded(os.path.join(target, folder), command, [name[len(folder) + 1:] for name in there if name.startswith(folder + '/')])
+             for folder in killed}
+    own = [*old, *(f'{folder}/{name}' for folder, names in parts.items() for name in names)]
     try:
-        lock = _core.OutputFolder(target, [os.fsencode(name) for name in own])
+        lock = _core.OutputFolder(target, list(map(os.fsencode, own)))
     except _core.error as e:
         raise FileExistsError(str(e)) from None
-    for folder in killed:
-        shutil.rmtree(os.path.join(target, folder), ignore_errors=True)
+    for folder, names in parts.items():
+        _discard(os.path.join(target, folder), names)
     part = tempfile.mkdtemp(prefix=PART, dir=target)
     try:
-        with open(os.path.join(part, MADE), 'wb'):
-            pass
+        _record(part, command, [])
         yield part
-        _publish(part, target, mark, old)
+        _publish(part, target, command, old)
     finally:
-        shutil.rmtree(part, ignore_errors=True)
+        _discard(part, _recorded(part, command, _files_below(part)))
         del lock
 
 
-def _publish(part: str, target: str, mark: str, old: set[str]) -> None:
-    new = sorted({*_files_below(part)} - {MADE}, key=lambda name: name == mark)
+def plan(part: str, names: Iterable[str]) -> None:
+    """Tells which files the block of new_results may write: if the process is killed, a later one knows them by that."""
+    with open(os.path.join(part, RECORD), 'a', encoding='ascii') as file:
+        file.writelines(json.dumps([name, None]) + '\n' for name in names)
+
+
+def _record(folder: str, command: str, names: Iterable[tuple[str, Optional[int]]]) -> None:
+    lines = [json.dumps(line) + '\n' for line in (command, *names, (RECORD, None))]
+    write_whole(os.path.join(folder, RECORD), ''.join(lines).encode())
+
+
+def _recorded(folder: str, command: str, there: Iterable[str]) -> dict[str, set[Optional[int]]]:
+    """Of the files that are there, those that a command has written, or was writing, and their sizes, None if that was not known yet."""
+    sizes: dict[str, set[Optional[int]]] = {}
+    with suppress(OSError, ValueError, TypeError), open(os.path.join(folder, RECORD), encoding='ascii') as file:
+        if json.loads(next(file, 'null')) == command:
+            for line in file:  # the last one may be cut off
+                name, size = json.loads(line)
+                sizes.setdefault(name, set()).add(size)
+    whole = {name: re.sub(r'[.]\d+-\d+[.]tmp$', '', name) for name in there}  # as WholeFile calls it until then
+    return {name: sizes[whole[name]] if whole[name] == name else {None} for name in whole if whole[name] in sizes}
+
+
+def _size(folder: str, name: str) -> int:
+    return os.lstat(os.path.join(folder, name)).st_size
+
+
+def _is_as_written(folder: str, name: str, recorded: dict[str, set[Optional[int]]]) -> bool:
+    with suppress(FileNotFoundError):
+        return not recorded[name].isdisjoint({None, _size(folder, name)}) and not os.path.islink(os.path.join(folder, name))
+    return True
+
+
+def _publish(part: str, target: str, command: str, old: dict[str, set[Optional[int]]]) -> None:
+    new = {name: _size(part, name) for name in _files_below(part) if name != RECORD}
     for name in new:
-        if name not in old and os.path.lexists(os.path.join(target, name)):
+        if os.path.lexists(os.path.join(target, name)) and not (name in old and _is_as_written(target, name, old)):
             raise FileExistsError(f'{os.path.join(target, name)} has come there meanwhile: remove it, or choose another folder')
-    for name in new:
+    # Both, until all are there: a process may be killed in between.
+    _record(target, command, [*new.items(), *((name, size) for name, sizes in old.items() for size in sizes)])
+    for name in sorted(new):
         os.makedirs(os.path.dirname(os.path.join(target, name)), exist_ok=True)
         os.replace(os.path.join(part, name), os.path.join(target, name))
-    for name in old.difference(new):
+    _remove(target, [name for name in old if name not in new and name != RECORD and _is_as_written(target, name, old)])
+    _record(target, command, new.items())
+
+
+def _remove(folder: str, names: Iterable[str]) -> None:
+    """Files, and folders that become empty by that."""
+    for name in names:
         with suppress(OSError):  # of a folder, what else is in it stays
-            os.unlink(os.path.join(target, name))
+            os.unlink(os.path.join(folder, name))
             while os.path.dirname(name):
                 name = os.path.dirname(name)
-                os.rmdir(os.path.join(target, name))
+                os.rmdir(os.path.join(folder, name))
+
+
+def _discard(part: str, names: Iterable[str]) -> None:
+    """What was not published, and last by what it is known."""
+    _remove(part, sorted(names, key=lambda name: name == RECORD))
+    for root, _, _ in os.walk(part, topdown=False):
+        with suppress(OSError):
+            os.rmdir(root)
 
 
 def read_bytes(path: Path) -> bytes:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from opencv_iib import __version__
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._exif import TIFF, exif_orientation, no_data
-from opencv_iib._files import check_folder, is_in, is_same, new_results, read_bytes, rows_of
+from opencv_iib._files import check_folder, is_in, is_same, new_results, plan, read_bytes
 from opencv_iib._images import FORMATS, Masks, can_be, decode_pages, find_images, holds, import_cv2, in_8_bits, in_order, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
@@ -45,7 +45,7 @@ alt="{name}, aligned" loading="lazy" width="{width}" height="{height}"></div>
 <input type="range" value="50" aria-label="border between the reference, left, and {name}">
 <figcaption>{name}: {verdict}</figcaption></figure>'''
 INTERPOLATIONS = ('NEAREST', 'LINEAR', 'CUBIC', 'LANCZOS4')  #: of cv2, by their names there
-STATE, VIEWS = 'align.json', 'views'  #: what a later call goes on from; pictures that browsers show, of those that they do not
+STATE, VIEWS, TABLES = 'align.json', 'views', ('transforms.csv', 'index.html', 'align.json')  #: what a later call goes on from; pictures that browsers show, of those that they do not
 WARPED = tuple(map(np.dtype, ('u1', 'u2', 'i2', 'f4', 'f8')))  #: what cv2.warpPerspective takes
 LARGEST_SIDE = 32766  #: pixels that cv2.warpPerspective takes
 LONGEST_STEM = 200  #: bytes of a file's name, with room for a number and the suffix
@@ -122,9 +122,11 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     settings = [*options, os.path.abspath(reference), work.stamp(reference), __version__]
     stamps = {path: work.stamp(path) for path in paths}
     stopped: Optional[BaseException] = None
-    with new_results(out, 'transforms.csv', _earlier) as folder:
+    with new_results(out, 'align') as folder:
         done, old_part = _known(out, settings, stamps)
         known, names = list(done), _file_names(paths, done)
+        pictures = [stem + suffix for stem in ('reference', *names.values()) for suffix in FORMATS.values()]
+        plan(folder, [*TABLES, *pictures, *(f'{VIEWS}/{file}.jpg' for file in pictures)])
         part, progress = None if crop else work.whole, Progress('aligning', len(paths), len(done))
 
         def do(job: Callable[[str], Aligned], missing: list[str]) -> None:
@@ -240,15 +242,6 @@ def _write_tables(folder: str, reference: str, title: str, done: Sequence[Aligne
                if each.file else f'<p>{html.escape(each.name)}: {html.escape(each.verdict)}</p>' for each in ordered)
     with _file(os.path.join(folder, 'index.html')) as page:
         page.write(PAGE.format(reference=html.escape(title), width=width, figures='\n'.join(figures)))
-
-
-def _earlier(folder: str) -> Optional[list[str]]:
-    """Files that an earlier call has written, by its table."""
-    rows = rows_of(os.path.join(folder, 'transforms.csv'), HEADER)
-    if rows is None:
-        return None
-    pictures = [*(f'reference{suffix}' for suffix in FORMATS.values()), *(row['file'] or '' for row in rows)]
-    return [STATE, 'index.html', *pictures, *(f'{VIEWS}/{file}.jpg' for file in pictures)]
 
 
 def _file(path: str) -> TextIO:

@@ -38,7 +38,8 @@ class _Folder(contextlib.AbstractContextManager[Any]):
     def __init__(self, path: str) -> None:
         if os.path.isfile(path):
             raise InvalidOption(f'{path} is a file: give the name of a folder, or one in .h5')
-        self._path, table = path, os.path.join(path, TABLE)
+        self._path = path = os.path.realpath(path)
+        table = os.path.join(path, TABLE)
         os.makedirs(path, exist_ok=True)
         self._lock = contextlib.ExitStack()
         self._lock.enter_context(only_writer(path))
@@ -57,18 +58,25 @@ class _Folder(contextlib.AbstractContextManager[Any]):
         self._file = open(table, 'a', encoding='utf-8', newline='')
 
     def found(self, a: str, b: str, mark: list[str]) -> Optional[bool]:
-        """Whether a pair that was matched of the same files with the same settings has been found; None for another."""
+        """Whether a pair that was matched of the same files with the same settings has been found; None for another.
+
+        :raises FileExistsError: where a file that is of no pair would be replaced.
+        """
+        if (a, b) not in self._done and os.path.lexists(self._name(a, b)):
+            raise FileExistsError(f'{self._name(a, b)} is there, and of no pair of {TABLE}: move it away, or choose another folder')
         row = self._done.get((a, b), [])
         return row[2] == '1' if row[-2:] == mark and os.path.exists(self._name(a, b)) else None
 
     def put(self, a: str, b: str, mark: list[str], measured: Measured) -> None:
         os.makedirs(os.path.dirname(self._name(a, b)), exist_ok=True)
-        measured.save(self._name(a, b))
+        with contextlib.suppress(FileNotFoundError):
+            os.unlink(self._name(a, b))
         pose = measured.pose
         numbers = [f'{value:.10g}' for value in (*pose.R.ravel(), *pose.t.ravel())] if pose is not None and pose.found else [''] * len(NUMBERS)
         csv.writer(self._file).writerow([a, b, int(measured.found), pose.reason if pose is not None else '', len(measured.bits),
                                          int(measured.agree.sum()), *numbers, *mark])
         self._file.flush()
+        measured.save(self._name(a, b))  # last: without it the pair is matched again
 
     def _name(self, a: str, b: str) -> str:
         return os.path.join(self._path, pair_name(a, b) + '.csv')

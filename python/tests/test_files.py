@@ -1,4 +1,5 @@
 """What is written and where: nothing of the user's is replaced or removed."""
+import contextlib
 import os
 import unittest
 from pathlib import Path
@@ -7,7 +8,7 @@ from unittest import mock
 import numpy as np
 
 from opencv_iib import _core
-from opencv_iib._files import check_outputs, new_results, only_writer, replaced, write_whole
+from opencv_iib._files import RECORD, check_outputs, new_results, only_writer, plan, replaced, write_whole
 from support import InFolder, files_end_at
 
 
@@ -28,15 +29,18 @@ class Files(InFolder):
         for name in names:
             self.assertEqual((self.folder / name).read_text(), 'precious', name)
 
-    def results(self, *names, out='out'):
-        """Writes results called so, of which `index` tells the names."""
-        def earlier(folder):
-            return Path(folder, 'index').read_text().splitlines()
-        with new_results(str(self.folder / out), 'index', earlier) as part:
+    def results(self, *names, out='out', command='measure'):
+        """Writes results called so."""
+        with self.started(*names, out=out, command=command) as part:
             for name in names:
                 Path(part, name).parent.mkdir(exist_ok=True)
                 Path(part, name).write_text('result')
-            Path(part, 'index').write_text('\n'.join(names))
+
+    @contextlib.contextmanager
+    def started(self, *names, out='out', command='measure'):
+        with new_results(str(self.folder / out), command) as part:
+            plan(part, names)
+            yield part
 
     def test_a_file_takes_its_place_when_it_is_whole(self):
         path = self.folder / 'a'
@@ -97,14 +101,14 @@ class Files(InFolder):
     def test_results_replace_their_like(self):
         self.results('a', 'sub/b', 'more/c')
         self.results('a', 'sub/d')
-        self.assertEqual(self.names(), ['out/a', 'out/index', 'out/sub/d'])
+        self.assertEqual(self.names(), [f'out/{RECORD}', 'out/a', 'out/sub/d'])
         self.assertFalse((self.folder / 'out/more').exists())
-        with self.assertRaises(KeyboardInterrupt), new_results(str(self.folder / 'out'), 'index', lambda folder: ['a', 'sub/d']) as part:
-            Path(part, 'index').write_text('half')
+        with self.assertRaises(KeyboardInterrupt), self.started('a', 'b') as part:
+            Path(part, 'a').write_text('half')
             raise KeyboardInterrupt
-        with self.assertRaises(KeyboardInterrupt), new_results(str(self.folder / 'none'), 'index', lambda folder: []):
+        with self.assertRaises(KeyboardInterrupt), self.started('a', out='none'):
             raise KeyboardInterrupt
-        self.assertEqual((self.names(), (self.folder / 'none').exists()), (['out/a', 'out/index', 'out/sub/d'], False))
+        self.assertEqual((self.names(), (self.folder / 'none').exists()), ([f'out/{RECORD}', 'out/a', 'out/sub/d'], False))
         (self.folder / 'link').symlink_to('disk/new')  # nothing is there yet
         (self.folder / 'disk').mkdir()
         for _ in range(2):
@@ -131,32 +135,73 @@ class Files(InFolder):
                 self.results('a', out=out)
         self.expect_precious(*mine)
 
+    @WITH_LINKS
+    def test_a_name_that_results_may_have_is_not_yet_one_of_them(self):
+        self.results('a', 'b')
+        os.unlink(self.folder / 'out/b')
+        for make in (lambda path: path.write_text('precious'), lambda path: path.symlink_to('a')):
+            for name in ('b', 'c'):
+                make(self.folder / 'out' / name)
+                with self.assertRaisesRegex(FileExistsError, f'holds {name}'):
+                    self.results('a', 'b', 'c')
+                os.unlink(self.folder / 'out' / name)
+        with self.assertRaisesRegex(FileExistsError, f'holds (a|{RECORD})'):
+            self.results('a', command='another')
+        self.write('thesis')
+        for line in ('["../thesis", null]', '["a', '3'):
+            with open(self.folder / 'out' / RECORD, 'a') as record:
+                record.write(line + '\n')
+            self.results('a')
+            self.expect_precious('thesis')
+
     def test_what_comes_into_the_folder_meanwhile_stays(self):
-        self.results('sub/a', 'b')
-        with new_results(str(self.folder / 'out'), 'index', lambda folder: ['sub/a', 'b']) as part:
-            self.write('out/mine', 'out/sub/mine')
-            Path(part, 'index').touch()
-        self.assertEqual(self.names(), ['out/index', 'out/mine', 'out/sub/mine'])
-        with self.assertRaisesRegex(FileExistsError, 'new has come there'), new_results(str(self.folder / 'to'), 'index', lambda folder: []) as part:
-            for name in ('new', 'index'):
-                Path(part, name).touch()
-            self.write('to/new')
-        self.expect_precious('out/mine', 'out/sub/mine', 'to/new')
+        self.results('sub/a', 'b', 'c')
+        with self.started('c') as part:
+            self.write('out/mine', 'out/sub/mine', 'out/b')
+            Path(part, 'c').touch()
+        self.assertEqual(self.names(), [f'out/{RECORD}', 'out/b', 'out/c', 'out/mine', 'out/sub/mine'])
+        for name, out in (('new', 'to'), ('c', 'again')):
+            self.results('c', out=out)
+            with self.assertRaisesRegex(FileExistsError, name + ' has come there'), self.started('new', 'c', out=out) as part:
+                for each in ('new', 'c'):
+                    Path(part, each).touch()
+                self.write(f'{out}/{name}')
+        self.expect_precious('out/mine', 'out/sub/mine', 'out/b', 'to/new', 'again/c')
 
     def test_a_killed_run_leaves_nothing_in_the_way(self):
-        with mock.patch('shutil.rmtree'), self.assertRaises(RuntimeError), new_results(str(self.folder / 'out'), 'index', lambda folder: []) as part:
+        with mock.patch('opencv_iib._files._discard'), self.assertRaises(RuntimeError), self.started('sub/a', 'c', 'd') as part:
             Path(part, 'sub').mkdir()
-            Path(part, 'sub/a').touch()
+            Path(part, 'empty').mkdir()
+            for name in ('sub/a', 'c', 'd.12-3.tmp'):
+                Path(part, name).touch()
             raise RuntimeError
-        self.assertTrue(list(self.folder.glob('out/.iib-*/sub/a')))
+        left = Path(part).relative_to(self.folder).as_posix()
+        self.assertTrue((self.folder / left / 'sub/a').exists())
+        for mine in (f'{left}/thesis', f'{left}/e.12-3.tmp'):
+            self.write(mine)
+            with self.assertRaisesRegex(FileExistsError, 'holds .*thesis|tmp'):
+                self.results('b')
+            self.expect_precious(mine)
+            os.unlink(self.folder / mine)
         self.results('b')
-        self.assertEqual(sorted(os.listdir(self.folder / 'out')), ['b', 'index'])
+        self.assertEqual(sorted(os.listdir(self.folder / 'out')), [RECORD, 'b'])
+
+    def test_a_run_that_is_killed_while_results_take_their_places_is_gone_on_with(self):
+        self.results('a', 'b', 'd')
+        with mock.patch('os.replace', side_effect=[None, None, KeyboardInterrupt]), mock.patch('opencv_iib._files._discard'), \
+                self.assertRaises(KeyboardInterrupt), self.started('a', 'b', 'c') as part:
+            for name in ('a', 'b', 'c'):
+                Path(part, name).write_text('other')
+        os.rename(os.path.join(part, 'a'), self.folder / 'out/a')
+        os.rename(os.path.join(part, 'c'), self.folder / 'out/c')
+        self.results('a')
+        self.assertEqual(self.names(), [f'out/{RECORD}', 'out/a'])
 
     @WITH_LINKS
     def test_one_writes_at_a_time_in_python_and_cpp(self):
         out = self.folder / 'out'
         told = 'is being written by another process'
-        with new_results(str(out), 'index', lambda folder: []):
+        with new_results(str(out), 'measure'):
             with self.assertRaisesRegex(FileExistsError, told):
                 self.results('a')
             with self.assertRaisesRegex(_core.error, told):

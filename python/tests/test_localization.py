@@ -12,6 +12,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import _upright
+from opencv_iib._files import RECORD
 from opencv_iib.localization import Camera, Localizer, Location, smooth_poses
 from opencv_iib.localization import run as runs
 from support import REPOSITORY, cv2, optional, run_command, steps_meanwhile
@@ -26,7 +27,7 @@ class Localization(OnWall):
         out = self.path('out')
         for _ in range(2):  # the second replaces the first
             self.assertEqual(self.localize(out, '--camera', CAMERA, '--pictures')[0], 0)
-        self.assertEqual(sorted(os.listdir(out)), ['cameras.bin', 'frames.csv', 'images.bin', 'matches', 'points3D.bin', 'trajectory.txt'])
+        self.assertEqual(sorted(os.listdir(out)), [RECORD, 'cameras.bin', 'frames.csv', 'images.bin', 'matches', 'points3D.bin', 'trajectory.txt'])
         for name in self.truth:  # a/b and a-b stay apart
             self.assertEqual(cv2.imread(os.path.join(out, 'matches', name + '.png')).shape, (HEIGHT, WIDTH, 3))
         self.assertEqual(Path(out, 'trajectory.txt').read_text().splitlines()[0], '# name tx ty tz qx qy qz qw')
@@ -250,6 +251,19 @@ class Localization(OnWall):
             self.check_error('holds ' + name, 'localize', '--map', self.map, '--images', self.dark, '--out', out)
             self.assertEqual(Path(out, name).read_text(), 'precious')
             os.unlink(os.path.join(out, name))
+        self.assertEqual(self.localize(out)[0], 0)
+        os.makedirs(os.path.join(out, 'matches'))
+        for name in ('matches/c.png', 'rigs.bin'):  # which results have had, or may have
+            Path(out, name).write_text('precious')
+            self.check_error('holds ' + name, 'localize', '--map', self.map, '--images', self.dark, '--out', out)
+            self.assertEqual(Path(out, name).read_text(), 'precious')
+            os.unlink(os.path.join(out, name))
+        os.rmdir(os.path.join(out, 'matches'))
+        table = Path(out, 'frames.csv')
+        table.write_text(table.read_text() + 'my own remarks\n')
+        self.check_error('holds frames.csv, which was changed', 'localize', '--map', self.map, '--images', self.dark, '--out', out)
+        self.assertIn('my own remarks', table.read_text())
+        table.unlink()
         foreign = self.path('foreign')
         os.makedirs(foreign)
         for text in ('name,camera\na,b\n', 'x\0' * 200000, ''):

@@ -13,6 +13,7 @@ import numpy as np
 from opencv_iib.align import align
 from opencv_iib.colmap.features import FeatureOptions
 from opencv_iib._exif import no_data
+from opencv_iib._files import RECORD
 from opencv_iib._images import decode_pages, write_picture
 from opencv_iib.localization import Camera
 from opencv_iib.measure import match_images
@@ -263,7 +264,7 @@ class Align(Commands):
             done = align(paths[0], paths, str(out), 0)
             self.assertEqual([each.name for each in done], paths[1:], 'the reference is not compared with itself')
             self.assertEqual([each.file for each in done], ['a&b.png', 'a&b_2.png', 'reference_2.png'])
-        self.assertEqual(sorted(os.listdir(out)), ['a&b.png', 'a&b_2.png', 'align.json', 'index.html', 'reference.png', 'reference_2.png', 'transforms.csv'])
+        self.assertEqual(sorted(os.listdir(out)), [RECORD, 'a&b.png', 'a&b_2.png', 'align.json', 'index.html', 'reference.png', 'reference_2.png', 'transforms.csv'])
         page = (out / 'index.html').read_text()
         self.assertIn('a%26b_2.png', page)
         self.assertIn('more/a&amp;b.png, aligned', page)
@@ -276,6 +277,12 @@ class Align(Commands):
             self.check_error(told, 'align', *arguments, '--out', out)
         self.assertEqual(mine.read_text(), 'precious')
         mine.unlink()
+        for name in ('reference.tif', 'views/a&b.png.jpg'):  # which results of other images are called
+            (out / name).parent.mkdir(exist_ok=True)
+            (out / name).write_text('precious')
+            self.check_error('holds ' + name, 'align', *paths, '--out', out)
+            self.assertEqual((out / name).read_text(), 'precious')
+            (out / name).unlink()
         foreign = self.folder / 'foreign'
         foreign.mkdir()
         (foreign / 'transforms.csv').write_text('image,verdict\n')
@@ -300,10 +307,10 @@ class Align(Commands):
             Path(path).write_bytes(bytes_)
         long = self.write('long.png', np.zeros((2, 32767), np.uint8))
 
-        def opened(path, *arguments, real=open):
+        def opened(path, *arguments, real=open, **more):
             if path == paths[1]:
                 raise PermissionError(13, 'Permission denied', path)
-            return real(path, *arguments)
+            return real(path, *arguments, **more)
         with mock.patch('opencv_iib._files.open', opened, create=True):
             status, out, _ = run_command('align', paths[0], *paths[1:], long, '--out', self.folder / 'out')
         self.assertEqual(status, 4)
@@ -330,7 +337,7 @@ class Align(Commands):
         paths = self.pictures('r.png', 'a.png', 'b.png', 'c.png', 'd.png')
         rows = self.align(*paths, calls=2, stop=KeyboardInterrupt, status=130)
         self.assertEqual([row['file'] for row in rows], ['a.png', 'b.png'])
-        self.assertEqual(sorted(os.listdir(self.folder / 'out')), ['a.png', 'align.json', 'b.png', 'index.html', 'reference.png', 'transforms.csv'])
+        self.assertEqual(sorted(os.listdir(self.folder / 'out')), [RECORD, 'a.png', 'align.json', 'b.png', 'index.html', 'reference.png', 'transforms.csv'])
         first = (self.folder / 'out/a.png').stat().st_ino
         rows = self.align(*paths, calls=1, stop=OSError('the disk has gone'), status=1)
         self.assertEqual([row['file'] for row in rows], ['a.png', 'b.png', 'c.png'])
@@ -341,7 +348,7 @@ class Align(Commands):
         self.align(*paths, calls=1)
         self.align(*paths, '--model', 'affine', calls=4)
         self.assertEqual(len(self.align(*paths[:2], '--model', 'affine', calls=0)), 1)
-        self.assertEqual(sorted(os.listdir(self.folder / 'out')), ['a.png', 'align.json', 'index.html', 'reference.png', 'transforms.csv'])
+        self.assertEqual(sorted(os.listdir(self.folder / 'out')), [RECORD, 'a.png', 'align.json', 'index.html', 'reference.png', 'transforms.csv'])
 
     def test_folders_and_patterns(self):
         paths = self.pictures('r.png', 'f/1.png', 'f/2.png', 'f/more/1.png', '[x].png')

@@ -52,6 +52,20 @@ class Lists(Collection):
         with open(self.folder / 'posed/pairs.csv', newline='') as file:
             self.assertAlmostEqual(float(next(csv.DictReader(file))['r11']), 1, delta=.01)
 
+    @unittest.skipIf(os.name == 'nt', 'links need rights there')
+    def test_links_are_followed_and_what_is_done_stays(self):
+        out = self.folder / 'out'
+        out.symlink_to('disk')  # nothing is there yet
+        self.match(out, 'a.png more/c.png\n')
+        self.assertTrue(out.is_symlink())
+        self.match(out, 'a.png b.png\n', described=['a.png', 'b.png'])
+        self.match(out, described=[])
+        mine = self.folder / 'disk/b.png/more-c.png.csv'
+        mine.parent.mkdir()
+        mine.write_text('precious')
+        self.match(out, 'b.png more/c.png\n', 1, described=[])
+        self.assertEqual(mine.read_text(), 'precious')
+
     def test_hloc_reads_the_file(self):
         if h5py is None:
             self.skipTest('no h5py')

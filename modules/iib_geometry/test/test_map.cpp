@@ -179,12 +179,17 @@ TEST_F(SmallMap, folders_that_are_no_maps)
     folder.makeFolder("map");
     folder.write("map/map.json", "{}");
     EXPECT_EQ(name + " is a map of an earlier version: make it again", error());
-    folder.write("map/codes.npy", "");
+    for (const char* mine : {"map.json", "codes.npy", "frames.bin"})  // which no map of this version has
+    {
+        folder.write("map/" + std::string(mine), "precious");
+        EXPECT_EQ(name + " holds " + mine + ", which is of no earlier run: choose another folder",
+                messageOf([&] { write(smallMap()); }));
+        std::filesystem::remove(name + "/" + mine);
+    }
     folder.write("map/map.iib.1-0.tmp", "of a killed process");
     write(smallMap());
     EXPECT_EQ("", error()) << "is replaced";
-    for (const char* gone : {"map.json", "codes.npy", "map.iib.1-0.tmp"})
-        EXPECT_FALSE(cv::utils::fs::exists(name + "/" + gone)) << gone;
+    EXPECT_FALSE(cv::utils::fs::exists(name + "/map.iib.1-0.tmp"));
     EXPECT_TRUE(cv::utils::fs::exists(name + "/points3D.bin"));
     const std::string before = textOf(name + "/map.iib");
     folder.write("map/thesis.tex", "precious");

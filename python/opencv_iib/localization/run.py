@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from opencv_iib import _core, error
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._exif import exif_focal_length, exif_orientation
-from opencv_iib._files import check_folder, check_outputs, new_results, read_bytes, rows_of, write_whole
+from opencv_iib._files import check_folder, check_outputs, new_results, plan, read_bytes, write_whole
 from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, import_cv2, in_order, is_utf8, read_grey, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
@@ -26,8 +26,7 @@ from opencv_iib.localization.imu_file import by_time, read_imu
 from opencv_iib.localization.localizer import AnyCamera, Camera, Localizer, Location, as_camera
 from opencv_iib.localization.smoothing import smooth_poses
 
-#: What it writes beside frames.csv and pictures; COLMAP 4 also wrote rigs and frames.
-OWN = ('trajectory.txt', 'cameras.bin', 'images.bin', 'points3D.bin', 'rigs.bin', 'frames.bin')
+WRITTEN = ('frames.csv', 'trajectory.txt', 'cameras.bin', 'images.bin', 'points3D.bin')  #: beside pictures
 SAME_FOCAL = .05  #: of focal lengths, which EXIF tells roughly, and COLMAP of a camera an image
 POSE = ('tx', 'ty', 'tz', 'qx', 'qy', 'qz', 'qw')  # the camera's centre, and camera to world
 FRAME = ('name', 'found', 'reason', 'matches', 'inliers')  # with which frames.csv begins
@@ -151,12 +150,6 @@ def labels_of(names: Sequence[str]) -> dict[str, str]:
     stems = {name: os.path.splitext(name)[0] for name in names}
     count = collections.Counter(stems.values())
     return {name: name if count[stem] > 1 or stem in stems else stem for name, stem in stems.items()}
-
-
-def _earlier(folder: str) -> Optional[list[str]]:
-    """Files that an earlier call has written, by its table."""
-    rows = rows_of(os.path.join(folder, 'frames.csv'), FRAME)
-    return None if rows is None else [*OWN, *(f'matches/{stem}.png' for row in rows for stem in (row['name'], os.path.splitext(row['name'])[0]))]
 
 
 def _write_picture(path: str, image: str, camera: Camera, location: Location) -> None:
@@ -295,7 +288,9 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
         location = find(image, camera, last, *more)
         last = location.cam_from_world if sequence else None
         return location
-    with contextlib.nullcontext('') if table_alone else new_results(out, 'frames.csv', _earlier) as part:
+    with contextlib.nullcontext('') if table_alone else new_results(out, 'localize') as part:
+        if part:
+            plan(part, [*WRITTEN, *(f'matches/{label}.png' for label in labels.values())])
         localizer = _localizer(map, 0, lines)
         find = _finder(localizer, max_size)
         for name, own, location in locate(find_next, localizer.cameras, images, names, given, workers, log, exif, mask):

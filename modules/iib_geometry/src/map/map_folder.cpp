@@ -10,15 +10,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-//! What a folder of a map holds, and one of an earlier version; the first names tell that it is one.
+//! What a folder of a map holds; the first name tells that it is one.
 const std::vector<std::string> OWN = {"map.iib", "cameras.bin", "images.bin", "points3D.bin"};
-const std::vector<std::string> EARLIER = {"map.json", "codes.npy", "misses.npy", "points.npy", "sees.npy",
-        "views.npy", "rigs.bin", "frames.bin"};
-
-bool isOneOf(const std::vector<std::string>& names, const std::string& name)
-{
-    return std::count(names.begin(), names.end(), name) != 0;
-}
 
 //! Whether a killed process has left it.
 bool isUnfinished(const std::string& name)
@@ -30,16 +23,14 @@ bool isUnfinished(const std::string& name)
 
 MapFolder::MapFolder(const std::string& folder)
     : folder_(folder, [&](const std::string& name) {
-          const auto has = [&](const std::string& mark) {
-              std::error_code error;
-              return fs::exists(systemName(endOfLinks(folder) + "/" + mark), error);
-          };
-          if (isUnfinished(name) || (isOneOf(EARLIER, name) && has(EARLIER[0])))
+          if (isUnfinished(name))
           {
               replaced_.push_back(name);
               return true;
           }
-          return isOneOf(OWN, name) && (has(OWN[0]) || has(EARLIER[0]));  // a COLMAP model alone is no map
+          std::error_code error;
+          return std::count(OWN.begin(), OWN.end(), name) != 0 &&  // a COLMAP model alone is no map
+                 fs::exists(systemName(endOfLinks(folder) + "/" + OWN[0]), error);
       })
 {
 }

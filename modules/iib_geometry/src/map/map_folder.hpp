@@ -18,7 +18,7 @@ public:
     void write(const Map& map) const;
 
 private:
-    std::vector<std::string> replaced_;  // files that were there, of an earlier version or a killed process
+    std::vector<std::string> replaced_;  // files that a killed process has left
     const OutputFolder folder_;
 };
 
