@@ -220,6 +220,8 @@ std::vector<Point2d> Lens::undistorted(const std::vector<Point2d>& pixels) const
         for (int round = 0; round < ROUNDS && norm(step) > 1e-12 * (1 + norm(ray)); round++)
         {
             step = slope(ray).inv() * (seen - distorted(ray));  // Newton's, shortened until it leads nearer
+            if (!std::isfinite(norm(step)))  // of a pixel beyond the lens, which no ray reaches
+                break;
             double next = norm(distorted(ray + step) - seen);
             for (; !(next < error && norm(ray + step) <= range_) && norm(step) > 1e-12 * (1 + norm(ray));
                     next = norm(distorted(ray + step) - seen))
