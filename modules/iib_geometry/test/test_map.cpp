@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <atomic>
+#include <filesystem>
 #include <fstream>
 #include <thread>
 
@@ -294,6 +295,23 @@ TEST_F(SmallMap, a_model_that_nothing_would_read_is_not_written)
     EXPECT_EQ(
             "a point of the model is not finite", errorOf([](Images&, Points& p) { p[0].z = std::nan(""); }));
     EXPECT_EQ(before, textOf(name + "/images.bin"));
+}
+
+TEST_F(SmallMap, of_a_models_files_all_are_replaced_or_none)
+{
+    folder.makeFolder("map");
+    const Map map = smallMap();
+    const auto write = [&](size_t count) {
+        const std::vector<PosedImage> images(map.images.begin(), map.images.begin() + count);
+        return messageOf([&] { writeModel(name, images, map.points); });
+    };
+    EXPECT_EQ("", write(2));
+    std::filesystem::remove(name + "/points3D.bin");
+    std::filesystem::create_directory(name + "/points3D.bin");
+    EXPECT_EQ("Cannot write " + name + "/points3D.bin: it is a folder, a device or a pipe", write(1));
+    EXPECT_EQ(2u, readModel(name).size());
+    EXPECT_EQ(3,
+            std::distance(std::filesystem::directory_iterator(name), std::filesystem::directory_iterator()));
 }
 
 //! Numbers of other languages, whichever the machine has.

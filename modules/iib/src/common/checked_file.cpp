@@ -43,6 +43,8 @@ uint64 CheckedWriter::seal()
     return value;
 }
 
+void CheckedWriter::finish() { file->finish(); }
+
 void CheckedWriter::commit() { file->commit(); }
 
 CheckedReader::CheckedReader(const String& filename, const FileKind& kind)

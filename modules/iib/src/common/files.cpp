@@ -198,16 +198,28 @@ void WholeFile::write(const void* data, size_t size)
         std::fwrite(data, 1, size, stream);
 }
 
+[[noreturn]] static void cannotWrite(const String& name)
+{
+    CV_Error(Error::StsError, "Cannot write " + name + ": check the folder, its rights and the free space");
+}
+
+void WholeFile::finish()
+{
+    const bool good = !std::ferror(stream) && flushToDisk(stream), closed = std::fclose(stream) == 0;
+    stream = 0;
+    if (!good || !closed)
+        cannotWrite(name);
+}
+
 void WholeFile::commit()
 {
     // Before anything is done, since memory may lack.
     const size_t slash = target.rfind('/');
     const String folder = slash == String::npos ? String(".") : target.substr(0, slash + 1);
-    const bool good = !std::ferror(stream) && flushToDisk(stream), closed = std::fclose(stream) == 0;
-    stream = 0;
-    if (!good || !closed || !replace(temporary, target, folder))
-        CV_Error(Error::StsError,
-                "Cannot write " + name + ": check the folder, its rights and the free space");
+    if (stream)
+        finish();
+    if (!replace(temporary, target, folder))
+        cannotWrite(name);
     temporary.clear();
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <locale>
+#include <memory>
 #include <set>
 #include <sstream>
 #include <unordered_map>
@@ -297,9 +298,18 @@ void writeModel(
                 uint64_t(tracks[i].size() / 8));
         seen += tracks[i];
     }
-    writeText(folder + "/cameras.bin", cameras);
-    writeText(folder + "/images.bin", posed);
-    writeText(folder + "/points3D.bin", seen);
+    // All are written before one is replaced, since a model of two runs would be none.
+    const std::pair<const char*, const std::string*> contents[] = {
+            {"cameras.bin", &cameras}, {"images.bin", &posed}, {"points3D.bin", &seen}};
+    std::vector<std::unique_ptr<WholeFile>> files;
+    for (const auto& [name, bytes] : contents)
+    {
+        files.push_back(std::make_unique<WholeFile>(folder + "/" + name));
+        files.back()->write(bytes->data(), bytes->size());
+        files.back()->finish();
+    }
+    for (const auto& file : files)
+        file->commit();
 }
 
 }  // namespace cv::iib

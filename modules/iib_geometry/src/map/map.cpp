@@ -270,6 +270,7 @@ void writeMap(const std::string& folder, const Map& map, const std::function<voi
     MapFile parts(file);
     visit(parts, copy, kind.version);
     file.seal();
+    file.finish();  // a full disk ends here, while nothing is replaced yet
     last();
     file.commit();
 }

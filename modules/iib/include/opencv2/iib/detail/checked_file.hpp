@@ -63,6 +63,8 @@ public:
     void unchecked(const void* data, size_t size);
     //! Bytes so far.
     uint64 size() const { return written; }
+    //! As WholeFile's.
+    void finish();
     //! Puts the file in its place, once it is on the disk. Throws if any write failed.
     void commit();
 
