@@ -22,8 +22,8 @@ and smoothed by Gaussians of `sigma`, `sigma` * sqrt(2), `sigma` * 2, ..., one f
 `sigma^4 (Ixx Iyy - Ixy^2)` in units of the local standard deviation. A keypoint is a pixel whose response is positive, at least
 `threshold`, and the largest among its neighbours in place (3 x 3) and in the scales before and after; of neighbours
 with the same response, one stays. Scales of less than 4 pixels are searched at the image's resolution, larger scales at
-half of it, which is enough for them. Of a picture moved by a pixel 97 of 100 keypoints move by a pixel, to a tenth; all
-do where it moves by a multiple of 16 pixels, the steps of the local normalization.
+half of it, which is enough for them. Keypoints move exactly with a picture that moves by a multiple of 16 pixels, the steps of
+the local normalization; by other whole numbers of pixels most of the strong ones do, to a tenth, and fewer of the weak ones.
 
 Of a keypoint
 - `pt` is refined to fractions of a pixel by a quadratic fit of the response;
