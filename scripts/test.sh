@@ -20,7 +20,7 @@ run() {
     # GoogleTest's tests by name, and what scripts say.
     awk '/^\[ RUN / { name = $4 }
         /^\[ +SKIP +\]/ { sub(/^\[ +SKIP +\] */, ""); print name ": " $0 }
-        /skipped: / { sub(/.*skipped: /, ""); print }' "$build/Testing/Temporary/LastTest.log" | sort -u
+        /^== skipped: / { sub(/^== skipped: /, ""); print }' "$build/Testing/Temporary/LastTest.log" | sort -u
     return $status
 }
 
