@@ -266,6 +266,8 @@ def _localize_stream(arguments: argparse.Namespace) -> int:
     for option in ('out', 'imu', 'pictures', 'sequence'):
         if getattr(arguments, option):
             raise InvalidOption(f'--images - goes without --{option}')
+    if sys.stdin is None or sys.stdout is None:
+        raise InvalidOption('--images - needs standard input and output, and one is not open')
     for stream in (sys.stdin, sys.stdout):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(encoding=sys.getfilesystemencoding(), errors=sys.getfilesystemencodeerrors())  # a path may be any bytes

@@ -14,7 +14,15 @@ class InvalidOption(ValueError):
 
 
 class MissingFile(InvalidOption, FileNotFoundError):
-    """An option names a file that is not there."""
+    """An option names a file that is not there, or a folder."""
+
+
+class TakenFile(InvalidOption, FileExistsError):
+    """What would be written is read, or written twice."""
+
+
+class UnusableName(InvalidOption, OSError):
+    """An option names what cannot be read or written, whatever its rights, such as a folder in place of a file."""
 
 
 def integer(value: Any, name: str, bits: int = 32) -> int:

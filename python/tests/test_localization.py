@@ -226,11 +226,11 @@ class Localization(OnWall):
         self.check_error('is no map', 'localize', '--map', self.images, *localize[2:])
         self.check_mistake('(map has no lines|lines need OpenCV)', 'localize', *localize, '--lines')
         for name in ('no', os.path.join(self.map, 'map.iib')):
-            self.check_error('there is no folder', 'localize', '--map', self.map, '--images', name, '--out', out)
+            self.check_mistake('there is no folder', 'localize', '--map', self.map, '--images', name, '--out', out)
         self.check_error('no images below', 'localize', '--map', self.map, '--images', empty, '--out', out)
         mapping = 'map', '--images', self.images, '--out', out, '--model'
         self.check_error('model', *mapping, self.images)
-        self.check_error('there is no folder', 'map', '--images', 'no', '--out', out, '--model', self.model)
+        self.check_mistake('there is no folder', 'map', '--images', 'no', '--out', out, '--model', self.model)
         missing = self.path('model')
         write_model(missing, {**self.poses, 'missing.png': np.eye(4)})
         self.check_error('missing.png is missing', *mapping, missing)

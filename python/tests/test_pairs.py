@@ -99,7 +99,7 @@ class Lists(Collection):
         self.match(out, 'a.png broken.png\nb.png broken.png\na.png b.png\n', 4)
         (out / 'mine').write_text('precious')
         self.check_error('holds other files', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', self.images)
-        self.check_mistake('is a file: give the name of a folder', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', self.folder / 'pairs.txt')
+        self.check_mistake('cannot be a folder: .*pairs.txt is a file', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', self.folder / 'pairs.txt')
         self.check_mistake('its camera has 9 x 9 pixels', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images,
                            '--out', self.folder / 'new', '--camera', 'PINHOLE,9,9,5,5,4,4')
         self.assertFalse((self.folder / 'new').exists())

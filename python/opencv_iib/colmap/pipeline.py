@@ -13,7 +13,7 @@ import numpy as np
 import opencv_iib
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._exif import exif_focal_length, exif_orientation, gps_place
-from opencv_iib._files import check_outputs, only_writer, output_file, read_bytes
+from opencv_iib._files import check_is_folder, check_outputs, only_writer, output_file, read_bytes
 from opencv_iib._images import Masks, decode_grey, find_images, import_cv2, is_listable, is_utf8
 from opencv_iib._parallel import Cluster, Crew, Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
@@ -279,8 +279,7 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
     options.check()
     crew = Threads(thread_count(workers)) if client is None else Cluster(client)
     images, database = os.fspath(images), output_file(os.fspath(database))
-    if not os.path.isdir(images):
-        raise ValueError(f'{images} is no folder')
+    check_is_folder(images)
     names = find_images(images)
     if not names:
         raise ValueError(f'no images below {images}')

@@ -13,7 +13,7 @@ from opencv_iib import _core
 from opencv_iib._arguments import InvalidOption, Path, integer
 from opencv_iib._arrays import as_mask
 from opencv_iib._exif import exif_orientation
-from opencv_iib._files import read_bytes
+from opencv_iib._files import check_folder, check_is_folder, read_bytes
 from opencv_iib._images import Masks, decode_grey
 from opencv_iib._parallel import thread_count
 from opencv_iib._progress import Progress
@@ -30,6 +30,7 @@ def _count(file: str) -> int:
 
 
 def _check_new(out: Path, force: bool) -> None:
+    check_folder(out)
     if os.path.isdir(out) and os.listdir(out) and not force:
         raise FileExistsError(f'{out} is there already: choose another folder, or pass force (--force) to replace a map')
 
@@ -61,8 +62,8 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
     threads, used = _core.getNumThreads(), thread_count(workers)
     target = os.path.realpath(out)
     _check_new(out, force)
-    if not os.path.isdir(images):
-        raise FileNotFoundError(f'there is no folder {images}')
+    for folder in (model, images):
+        check_is_folder(folder)
     stop = threading.Event()
     progress: Optional[Progress] = None
 
@@ -123,6 +124,7 @@ def update(map: Path, images: Path, camera: Optional[AnyCamera] = None, out: Opt
     """
     workers = thread_count(workers)
     check_max_size(max_size)
+    check_is_folder(map)
     if out is not None:
         _check_new(out, force)
     names = images_of(images)
