@@ -104,8 +104,9 @@ TEST_F(Mapping, the_maps_own_error_is_told)
         std::vector<PosedImage> model;
         for (const MapImage& image : map.images)
         {
-            const cv::Vec3d moved(random.gaussian(.002), random.gaussian(.002), random.gaussian(.002)),
-                    turned(random.gaussian(.001), random.gaussian(.001), random.gaussian(.001));
+            cv::Vec3d moved, turned;
+            random.fill(moved, cv::RNG::NORMAL, 0, .002);
+            random.fill(turned, cv::RNG::NORMAL, 0, .001);
             const cv::Affine3d off(turned * wrong, moved * wrong);
             model.push_back({image.name, CAMERA, off * image.cameraFromWorld, {}, {}});
         }
@@ -227,7 +228,8 @@ TEST(Rays, keypoints_are_matched_along_epipolar_lines)
     }
     for (size_t n = 0; n < COUNT; n++)
     {
-        const cv::Point3d point(random.uniform(-1., 1.), random.uniform(-1., 1.), random.uniform(4., 6.));
+        const double z = random.uniform(4., 6.), y = random.uniform(-1., 1.), x = random.uniform(-1., 1.);
+        const cv::Point3d point(x, y, z);
         cv::Mat code(1, 64, CV_8U);
         random.fill(code, cv::RNG::UNIFORM, 0, 256);
         const cv::Mat changed = code ^ cv::Mat(1, 64, CV_8U, cv::Scalar(1));
