@@ -174,7 +174,7 @@ def _expanded(images: Sequence[Path], out: str) -> list[str]:
         if os.path.isdir(given):
             found = [path for path in (os.path.join(given, name) for name in find_images(given)) if not is_in(path, out)]
         elif not os.path.lexists(given) and glob.escape(given) != given:
-            found = sorted(glob.glob(given, recursive=True))
+            found = sorted(glob.glob(given, recursive=True), key=in_order)
             if not found:
                 raise MissingFile(f'no image is called {given}')
         else:

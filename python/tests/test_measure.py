@@ -300,6 +300,8 @@ class Align(Commands):
         align(paths[0], paths[1:], str(self.folder / 'out'))
         self.assertEqual(re.findall(r'src="(\d+\.png)', (self.folder / 'out/index.html').read_text()), ['1.png', '2.png', '10.png'])
         self.assertEqual([row['file'] for row in self.rows('out/transforms.csv')], ['1.png', '10.png', '2.png'])
+        for images in ([self.folder], [self.folder / '*.png']):
+            self.assertEqual([Path(each.name).name for each in align(paths[0], images, str(self.folder / 'out'))], ['1.png', '2.png', '10.png'])
 
     @unittest.skipIf(os.name == 'nt', 'such names cannot be had there')
     def test_one_image_ends_nothing(self):

@@ -14,6 +14,8 @@ from opencv_iib.colmap import pairs as pair_lists
 from opencv_iib import match_list
 from opencv_iib.colmap import FeatureOptions, hloc, pipeline
 from opencv_iib._exif import gps_place
+from opencv_iib._images import find_images
+from opencv_iib.colmap.database import MAX_IMAGE_ID
 from opencv_iib.measure import match_images
 from support import optional, run_command
 
@@ -130,6 +132,21 @@ class Pairs(Collection):
         self.assertEqual(list(pair_lists.tiles(pairs, 1)), [[pair] for pair in pairs])
         self.assertEqual(list(pair_lists.sequential(4, 2)), [(0, 1), (0, 2), (1, 2), (1, 3), (2, 3)])
         self.assertEqual(list(pair_lists.distinct([(1, 2), (2, 1), (0, 1), (1, 2)])), [(1, 2), (0, 1)])
+
+    def test_names_are_in_the_order_of_people(self):
+        names = ['more/im1.png', 'more/im2.png', 'more/im10.png', 'more/im010.png']
+        for name in names:
+            shutil.copy(self.images / 'a.png', self.images / name)
+        for name in ('a.png', 'b.png', 'more/c.png'):
+            (self.images / name).unlink()
+        ordered = [*names[:2], names[3], names[2]]
+        self.assertEqual(find_images(self.images), ordered)
+        self.build(pairs='sequential', neighbours=1)
+        self.assertEqual([name for name, in self.query('SELECT name FROM images ORDER BY image_id')], ordered)
+        self.assertEqual([divmod(pair, MAX_IMAGE_ID) for pair, in self.query('SELECT pair_id FROM matches')], [(1, 2), (2, 3), (3, 4)])
+        shutil.copy(self.images / names[0], self.images / 'more/im3.png')
+        self.build(pairs='sequential', neighbours=1)
+        self.assertEqual({divmod(pair, MAX_IMAGE_ID) for pair, in self.query('SELECT pair_id FROM matches')}, {(1, 2), (2, 3), (2, 5), (3, 5), (3, 4)})
 
     def test_lists(self):
         self.assertEqual(self.build_listed('# pairs\na.png more/c.png\n')['pairs'], 1)

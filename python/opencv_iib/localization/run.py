@@ -17,7 +17,7 @@ from opencv_iib import _core, error
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._exif import exif_focal_length, exif_orientation
 from opencv_iib._files import check_folder, check_is_folder, check_outputs, new_results, plan, read_bytes, write_whole
-from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, import_cv2, in_order, is_utf8, read_grey, write_picture
+from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, import_cv2, is_utf8, read_grey, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import is_open_file, note
@@ -262,7 +262,7 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     table_alone = out.lower().endswith('.csv') or is_open_file(out)
     names, times, readings = images_of(images, '' if table_alone else out), {}, None
     if sequence:
-        names, workers = sorted(names, key=in_order), 1
+        workers = 1
     if table_alone:
         if pictures:
             raise InvalidOption(f'{out} is no folder, which pictures need')
