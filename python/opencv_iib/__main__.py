@@ -32,7 +32,7 @@ from opencv_iib.match_list import match_list
 from opencv_iib.measure import match_images
 
 STATUS = ('status: 0; 1 for an error; 2 for a mistake in the command line; 3 where nothing was found (no match, no pose, no image aligned or '
-          'localized), 4 where some images or pairs were; 130 after Ctrl-C')
+          'localized), 4 where some images or pairs were, or map left some out; 130 after Ctrl-C')
 CAMERA = 'MODEL,WIDTH,HEIGHT,PARAMS'
 
 
@@ -249,7 +249,9 @@ def _hloc(arguments: argparse.Namespace) -> int:
 
 
 def _map(arguments: argparse.Namespace) -> int:
-    return _told(arguments.out, _call(localization.build, arguments))
+    counts = _call(localization.build, arguments)
+    _told(arguments.out, counts)
+    return SOME_FOUND if counts['left out'] else 0
 
 
 def _localize(arguments: argparse.Namespace) -> int:
