@@ -91,7 +91,7 @@ def check_folder(out: Path, inputs: Iterable[Path] = ()) -> None:
 def check_images(*paths: Path) -> None:
     """Of files that are given by their names. :raises InvalidOption: for one that is not there."""
     for path in paths:
-        if not os.path.exists(path):
+        if not os.path.exists(os.fspath(path)):  # which takes integers for open files
             raise MissingFile(f'there is no file {os.fspath(path)}')
         if os.path.isdir(path):
             raise UnusableName(f'{os.fspath(path)} is a folder: give the name of an image')
@@ -99,7 +99,7 @@ def check_images(*paths: Path) -> None:
 
 def check_is_folder(path: Path) -> None:
     """:raises MissingFile: for one that is not there."""
-    if not os.path.isdir(path):
+    if not os.path.isdir(os.fspath(path)):
         raise MissingFile(f'there is no folder {os.fspath(path)}')
 
 

@@ -45,9 +45,9 @@ def put(text: str, stream: Optional[TextIO]) -> None:
 
 
 def note(line: str) -> None:
-    """A line on standard error. What is told of the work does not end it where nobody can read it."""
+    """A line on standard error, one also where a file's name has two. What is told of the work does not end it where nobody can read it."""
     with contextlib.suppress(OSError, ValueError):  # full, closed
-        put(line + '\n', sys.stderr)
+        put('\\n'.join(line.splitlines()) + '\n', sys.stderr)
 
 
 STANDARD_OUTPUT = ('-', '/dev/stdout', '/dev/fd/1', '/proc/self/fd/1')

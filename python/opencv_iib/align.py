@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import __version__
-from opencv_iib._arguments import InvalidOption, MissingFile, Path
+from opencv_iib._arguments import InvalidOption, MissingFile, Path, sequence
 from opencv_iib._exif import TIFF, exif_orientation, no_data
 from opencv_iib._files import check_folder, check_images, is_in, is_same, new_results, plan, read_bytes
 from opencv_iib._images import FORMATS, Masks, can_be, decode_pages, find_images, holds, import_cv2, in_8_bits, in_order, write_picture
@@ -168,7 +168,7 @@ def _expanded(images: Sequence[Path], out: str) -> list[str]:
     :raises MissingFile: for a name or a pattern that nothing has.
     """
     paths: dict[str, None] = {}
-    for image in images:
+    for image in sequence(images, 'images', 'paths'):
         given = os.fspath(image)
         found = [given]
         if os.path.isdir(given):

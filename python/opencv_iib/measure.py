@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, Optional, Sequence, Union
 import numpy as np
 from numpy.typing import NDArray
 
-from opencv_iib._arguments import InvalidOption, Path
+from opencv_iib._arguments import InvalidOption, Path, sequence
 from opencv_iib._files import check_images, check_outputs, write_whole
 from opencv_iib._images import Masks, check_picture, import_cv2, read_with_orientation, write_picture
 from opencv_iib._upright import Turn, upright
@@ -125,6 +125,7 @@ def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, pictu
     :raises FileNotFoundError: for an image that is not there.
     """
     options.check()
+    cameras = sequence(cameras, 'cameras', 'cameras')
     if len(cameras) > 2:
         raise InvalidOption(f'{len(cameras)} cameras for two images')
     masks, features, paths = Masks(options.mask), Features(options), [os.fspath(image_a), os.fspath(image_b)]

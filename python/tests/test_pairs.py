@@ -153,6 +153,10 @@ class Pairs(Collection):
         with mock.patch.object(pipeline, 'describe_images', side_effect=AssertionError), \
                 self.assertRaisesRegex(ValueError, 'pairs.txt:1: not the names of two images'):
             self.build_listed('a.png nothing.png\n')
+        self.listing.write_bytes(b'a.png b.png\ncaf\xe9.png a.png\n')
+        for arguments in (['colmap', self.images, self.folder / 'x.db', '--pairs', self.listing],
+                          ['match', '--images', self.images, '--out', self.folder / 'x', '--pairs', self.listing]):
+            self.check_error('pairs.txt:2: not UTF-8', *arguments)
         (self.images / 'broken.png').write_bytes(b'no image')
         self.assertEqual(self.build_listed('a.png broken.png\nb.png a.png\n')['pairs'], 1)
 

@@ -45,6 +45,11 @@ class Telling(unittest.TestCase):
         for stream in streams[2:]:
             stream.close()
 
+    def test_a_name_of_two_lines_is_told_on_one(self):
+        with mock.patch('sys.stderr', io.StringIO()) as stream:
+            _streams.note('a\nb.png: what\r\nelse')
+        self.assertEqual(stream.getvalue(), 'a\\nb.png: what\\nelse\n')
+
     def test_letters_that_an_encoding_lacks(self):
         stream = io.TextIOWrapper(io.BytesIO(), 'cp1252')
         _streams.put('caf\xe9 \u65e5 \udce9\n', stream)
@@ -152,7 +157,8 @@ class Mistakes(InFolder):
     def test_in_options_end_with_2(self):
         place = ['--images', self.folder, '--out', self.folder / 'out']
         for told, *arguments in (
-                ('invalid choice', 'nothing'), ('workers is 3000000000', 'map', '--model', 'm', *place, '--workers', '3000000000'),
+                ("opencv-iib: argument command: invalid choice: 'nothing'", 'nothing'), ("--model: invalid choice: 'x' (choose from TRANSLATION, ",
+                 'align', 'a', 'b', '--out', 'c', '--model', 'x'), ('workers is 3000000000', 'map', '--model', 'm', *place, '--workers', '3000000000'),
                 ('points is 3000000000', 'map', '--model', 'm', *place, '--points', '3000000000'),
                 ('points is 0', 'map', '--model', 'm', *place, '--points', '0'), ("invalid int value: 'many'", 'match', 'a', 'b', '--points', 'many'),
                 ('points is -1', 'match', 'a', 'b', '--points', '-1'), ('max_size is 5', 'demo', 'a', 'b', '--max-size', '5'),
@@ -165,7 +171,7 @@ class Mistakes(InFolder):
             with self.subTest(arguments):
                 status, out, errors = run_command(*arguments)
                 self.assertEqual((status, out), (2, ''))
-                self.assertRegex(errors, rf'^(opencv-iib|{arguments[0]}): [^\n]*{re.escape(told)}[^\n]*\n$')
+                self.assertRegex(errors, rf'^(?=[^\n]*{re.escape(told)})(opencv-iib|{arguments[0]}): [^\n]*\n$')
 
     @unittest.skipIf(cv2 is None, 'no cv2')
     def test_files_that_cannot_be_meant_end_with_2_before_work(self):
