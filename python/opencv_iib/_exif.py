@@ -16,8 +16,11 @@ MILLIMETRES = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}  # of EXIF's units of resolut
 NOWHERE = 2**32 - 1  #: of a directory: behind the end of any file
 GPS_IFD, LATITUDE_REF, LATITUDE, LONGITUDE_REF, LONGITUDE, ALTITUDE_REF, ALTITUDE = 0x8825, 1, 2, 3, 4, 5, 6
 EARTH = 6371000  # metres, the radius
-BYTE, ASCII, SHORT, LONG, RATIONAL = 1, 2, 3, 4, 5  # EXIF's types
+BYTE, ASCII, SHORT, LONG, RATIONAL, DOUBLE = 1, 2, 3, 4, 5, 12  # TIFF's types
+# GeoTIFF's: metres of a pixel, pixels and where they are on the Earth, or a matrix for both; and the keys of its coordinates.
+PIXEL_SCALE, TIE_POINTS, TO_MODEL, *GEO_KEYS = 33550, 33922, 34264, 34735, 34736, 34737
 START_OF_SCAN, APP1 = 0xda, 0xe1  # JPEG's markers
+Entry = tuple[int, int, Any]  #: of a TIFF directory: tag, type, and numbers or text
 TIFF = (b'II*\0', b'MM\0*', b'II+\0', b'MM\0+')  # how files begin
 
 
@@ -70,7 +73,7 @@ def _directory(tiff: bytes, at: int) -> tuple[dict[int, Any], int]:
     found: dict[int, Any] = {}
     for entry in range(at + 2, at + 2 + 12 * count, 12):
         tag, kind, length = struct.unpack_from(order + 'HHI', tiff, entry)
-        form = {BYTE: f'{length}B', ASCII: f'{length}s', SHORT: f'{length}H', LONG: f'{length}I', RATIONAL: f'{2 * length}I'}.get(kind)
+        form = {BYTE: f'{length}B', ASCII: f'{length}s', SHORT: f'{length}H', LONG: f'{length}I', RATIONAL: f'{2 * length}I', DOUBLE: f'{length}d'}.get(kind)
         with contextlib.suppress(struct.error):  # of an entry that leads nowhere
             if form is not None and length:
                 size = struct.calcsize(order + form)
@@ -117,6 +120,39 @@ def no_data(data: bytes) -> str:
             float(text)
             return text
     return ''
+
+
+def packed(kind: int, values: Any) -> bytes:
+    """Numbers or a text as an entry of a TIFF directory holds them, least byte first.
+
+    :raises struct.error: for values that are not of the type."""
+    values = values.encode('latin-1') + b'\0' if kind == ASCII else values
+    return struct.pack(f'<{len(values)}{ {ASCII: "B", SHORT: "H", LONG: "I", DOUBLE: "d"}[kind]}', *values)
+
+
+def geo_entries(data: bytes) -> list[Entry]:
+    """By which a GeoTIFF tells where its pixels are on the Earth; none of other files, or those of wrong types."""
+    kinds = {PIXEL_SCALE: DOUBLE, TIE_POINTS: DOUBLE, TO_MODEL: DOUBLE, **dict(zip(GEO_KEYS, (SHORT, DOUBLE, ASCII)))}
+    found: list[Entry] = []
+    with contextlib.suppress(struct.error):
+        entries = _first_directory(data) if data[:4] in TIFF[:2] else {}
+        for tag, kind in kinds.items():
+            if tag in entries and isinstance(entries[tag], str) == (kind == ASCII):
+                packed(kind, entries[tag])
+                found.append((tag, kind, entries[tag]))
+        return found
+    return []
+
+
+def geo_entries_of_part(entries: list[Entry], x: int, y: int) -> list[Entry]:
+    """The same of a part of the image that begins at this pixel."""
+    def moved(tag: int, values: Any) -> Any:
+        if tag == TIE_POINTS:
+            return [value - (x, y, 0, 0, 0, 0)[n % 6] for n, value in enumerate(values)]
+        if tag == TO_MODEL and len(values) == 16:
+            return [value + (values[n - 3] * x + values[n - 2] * y if n % 4 == 3 else 0) for n, value in enumerate(values)]
+        return values
+    return [(tag, kind, moved(tag, values)) for tag, kind, values in entries]
 
 
 def exif_orientation(data: bytes) -> int:

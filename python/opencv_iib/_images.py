@@ -12,7 +12,7 @@ from typing import Any, Iterable, NoReturn, Optional, Sequence
 import numpy as np
 
 from opencv_iib._arguments import InvalidOption, MissingFile, Path
-from opencv_iib._exif import ASCII, LONG, NO_DATA, SAMPLES, SHORT, TIFF, exif_orientation, is_cut_off, pages_of_tiff
+from opencv_iib._exif import ASCII, LONG, NO_DATA, SAMPLES, SHORT, TIFF, Entry, exif_orientation, is_cut_off, packed, pages_of_tiff
 from opencv_iib._files import read_bytes, write_whole
 
 SUFFIXES = ('.jpg', '.jpeg', '.png', '.tif', '.tiff', '.bmp', '.webp', '.ppm', '.pgm')
@@ -21,7 +21,7 @@ IMAGES = (*TIFF, b'\xff\xd8', b'\x89PNG', b'RIFF', b'BM', *(b'P%d' % kind for ki
 
 
 def find_images(folder: Path) -> list[str]:
-    """Paths of images below `folder`, relative to it, with '/', in_order: COLMAP's names.
+    """Paths of images below `folder`, relative to it, with '/', sorted: COLMAP's names.
 
     :raises OSError: for a folder that cannot be read.
     """
@@ -33,12 +33,12 @@ def find_images(folder: Path) -> list[str]:
         for file in files:
             if file.lower().endswith(SUFFIXES):
                 names.append(os.path.relpath(os.path.join(root, file), folder).replace(os.sep, '/'))
-    return sorted(names, key=in_order)
+    return sorted(names)
 
 
-def in_order(name: str) -> tuple[list[tuple[int, str]], str]:
+def in_order(name: str) -> list[tuple[int, str]]:
     """A key to sort names by as people do: 2 before 10."""
-    return [(int(part), '') if n % 2 else (-1, part) for n, part in enumerate(re.split('([0-9]+)', name))], name
+    return [(int(part), '') if n % 2 else (-1, part) for n, part in enumerate(re.split('([0-9]+)', name))]
 
 
 def stamp(path: str) -> str:
@@ -186,11 +186,10 @@ def _scaled(image: np.ndarray) -> np.ndarray:
     if not values.size:
         raise ValueError('the image holds no finite number')
     low, high = np.percentile(values[::1 + values.size // 1000000], (.01, 99.99))
-    low, high = float(low), float(high)  # floats of 32 bits have no number for what lies between their largest ones
     if high > low:
         values = values[(values >= 2 * low - high) & (values <= 2 * high - low)]
     low, high = float(values.min()), float(values.max())
-    with np.errstate(invalid='ignore', over='ignore'):
+    with np.errstate(invalid='ignore'):
         return np.nan_to_num(np.rint((image - low) * (255 / ((high - low) or 1))).clip(0, 255)).astype(np.uint8)
 
 
@@ -278,11 +277,12 @@ def check_picture(path: Path) -> None:
         raise InvalidOption(f'{path}: end its name in .png or .jpg')
 
 
-def write_picture(path: Path, picture: np.ndarray, *pages: np.ndarray, no_data: str = '') -> None:
+def write_picture(path: Path, picture: np.ndarray, *pages: np.ndarray, no_data: str = '', geo: Sequence[Entry] = ()) -> None:
     """An image as decode_pages gives it, by the suffix of the name.
 
     :param pages: of a TIFF, further ones.
     :param no_data: of a TIFF, what GDAL_NODATA tells.
+    :param geo: of a TIFF, as geo_entries gives them.
     :raises InvalidOption: as check_picture.
     :raises ValueError: for what the format cannot hold.
     """
@@ -290,7 +290,7 @@ def write_picture(path: Path, picture: np.ndarray, *pages: np.ndarray, no_data: 
     path = os.fspath(path)
     suffix = os.path.splitext(path)[1].lower()
     if suffix in ('.tif', '.tiff'):
-        write_whole(path, _tiff([picture, *pages], no_data))
+        write_whole(path, _tiff([picture, *pages], [*geo, *([(NO_DATA, ASCII, no_data)] if no_data else [])]))
     elif pages or not holds(suffix, picture):
         raise ValueError(f'{suffix[1:].upper()} cannot hold {1 + len(pages)} x {" x ".join(map(str, picture.shape))} of {picture.dtype}: take TIFF')
     else:
@@ -315,8 +315,10 @@ def holds(suffix: str, picture: np.ndarray) -> bool:
 STRIP = 1 << 18  # bytes that are compressed together
 
 
-def _tiff(pages: Sequence[np.ndarray], no_data: str) -> bytes:
-    """Without loss, of any depth and channels: what cv2 writes loses some of floats, and is of 4 channels at most."""
+def _tiff(pages: Sequence[np.ndarray], more: Sequence[Entry]) -> bytes:
+    """Without loss, of any depth and channels: what cv2 writes loses some of floats, and is of 4 channels at most.
+
+    :param more: entries of each page, by their tags."""
     content = bytearray(b'II*\0\0\0\0\0')
     link = 4  # where the place of the next directory stands
     for page in pages:
@@ -330,22 +332,22 @@ def _tiff(pages: Sequence[np.ndarray], no_data: str) -> bytes:
         content += b''.join(strips)
         kind = {'u': 1, 'i': 2, 'f': 3}[page.dtype.kind]
         colours = 3 if samples in (3, 4) else 1
-        entries: list[tuple[int, int, Sequence[int]]] = [
+        entries: list[Entry] = [
             (256, LONG, [width]), (257, LONG, [height]), (258, SHORT, [page.dtype.itemsize * 8] * samples), (259, SHORT, [8]),
             (262, SHORT, [2 if colours == 3 else 1]), (273, LONG, begins[:-1]), (SAMPLES, SHORT, [samples]), (278, LONG, [rows]),
             (279, LONG, list(map(len, strips))), (339, SHORT, [kind] * samples)]
         if samples > colours:
             entries.insert(-1, (338, SHORT, [2 if samples in (2, 4) else 0] * (samples - colours)))
-        if no_data:
-            entries.append((NO_DATA, ASCII, no_data.encode() + b'\0'))
+        entries += more
         directory = struct.pack('<H', len(entries))
         for tag, kind, values in entries:
-            packed = struct.pack(f'<{len(values)}{"BHI"[kind - ASCII]}', *values)
+            value = packed(kind, values)
             content += bytes(len(content) % 2)
-            if len(packed) > 4:
-                content += packed
-                packed = struct.pack('<I', len(content) - len(packed))
-            directory += struct.pack('<HHI', tag, kind, len(values)) + packed.ljust(4, b'\0')
+            count = len(value) if kind == ASCII else len(values)
+            if len(value) > 4:
+                content += value
+                value = struct.pack('<I', len(content) - len(value))
+            directory += struct.pack('<HHI', tag, kind, count) + value.ljust(4, b'\0')
         content += bytes(len(content) % 2)
         struct.pack_into('<I', content, link, len(content))
         link = len(content) + len(directory)

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import __version__
-from opencv_iib._arguments import InvalidOption, MissingFile, Path, sequence
-from opencv_iib._exif import TIFF, exif_orientation, no_data
-from opencv_iib._files import check_folder, check_images, is_in, is_same, new_results, plan, read_bytes
+from opencv_iib._arguments import InvalidOption, Path
+from opencv_iib._exif import TIFF, exif_orientation, geo_entries, geo_entries_of_part, no_data
+from opencv_iib._files import check_folder, is_in, is_same, new_results, plan, read_bytes
 from opencv_iib._images import FORMATS, Masks, can_be, decode_pages, find_images, holds, import_cv2, in_8_bits, in_order, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
@@ -48,6 +48,7 @@ INTERPOLATIONS = ('NEAREST', 'LINEAR', 'CUBIC', 'LANCZOS4')  #: of cv2, by their
 STATE, VIEWS, TABLES = 'align.json', 'views', ('transforms.csv', 'index.html', 'align.json')  #: what a later call goes on from; pictures that browsers show, of those that they do not
 WARPED = tuple(map(np.dtype, ('u1', 'u2', 'i2', 'f4', 'f8')))  #: what cv2.warpPerspective takes
 LARGEST_SIDE = 32766  #: pixels that cv2.warpPerspective takes
+TOLD_ROTATION = 15  #: degrees: upright descriptors match images that are turned by less
 LONGEST_STEM = 200  #: bytes of a file's name, with room for a number and the suffix
 
 
@@ -61,11 +62,13 @@ class Aligned(NamedTuple):
     transform: Sequence[float] = ()  #: 3 x 3, row by row: from its pixels to those of the reference
     file: str = ''  #: as the reference's camera would see it
     size: Sequence[int] = ()  #: its width and height; none if it cannot be read
+    rotation: float = 0  #: degrees by which it is turned, clockwise, to lie on the reference, beside what EXIF tells
 
     def __str__(self) -> str:
         if not self.file:
             return self.verdict
-        return f'{self.matches} matches agree, its corners are known to {max(self.errors):.2f} pixels'
+        turned = f', turned by {self.rotation % 360:.0f} degrees' if abs(self.rotation) > TOLD_ROTATION else ''
+        return f'{self.matches} matches agree, its corners are known to {max(self.errors):.2f} pixels{turned}'
 
 
 class _Options(NamedTuple):
@@ -114,7 +117,6 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     options = _Options(model, exif, None if mask is None else os.path.abspath(mask), max_size, format, crop, interpolation)
     options.check()
     crew, masks = Threads(thread_count(workers)), Masks(options.mask)
-    check_images(reference)
     paths = [path for path in _expanded(images, out) if not is_same(path, reference)]
     if not paths:
         raise ValueError(f'no image to align but the reference, {reference}')
@@ -165,20 +167,18 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
 def _expanded(images: Sequence[Path], out: str) -> list[str]:
     """Files of names, folders and patterns, each once. Those that earlier calls have written below such a folder are left out.
 
-    :raises MissingFile: for a name or a pattern that nothing has.
+    :raises FileNotFoundError: for a pattern that nothing has.
     """
     paths: dict[str, None] = {}
-    for image in sequence(images, 'images', 'paths'):
+    for image in images:
         given = os.fspath(image)
         found = [given]
         if os.path.isdir(given):
             found = [path for path in (os.path.join(given, name) for name in find_images(given)) if not is_in(path, out)]
         elif not os.path.lexists(given) and glob.escape(given) != given:
-            found = sorted(glob.glob(given, recursive=True), key=in_order)
+            found = sorted(glob.glob(given, recursive=True))
             if not found:
-                raise MissingFile(f'no image is called {given}')
-        else:
-            check_images(given)
+                raise FileNotFoundError(f'no image is called {given}')
         paths.update(dict.fromkeys(found))
     return list(paths)
 
@@ -273,6 +273,7 @@ class _View:
         :raises ValueError: also for an image that cv2 cannot lay onto another, or others onto it."""
         data = read_bytes(path)
         self.pages, self.no_data = decode_pages(data), no_data(data)
+        self.geo = geo_entries(data)
         if self.no_data and not all(can_be(self.no_data, page.dtype) for page in self.pages):
             self.no_data = ''
         self.suffix = '.jpg' if data.startswith(b'\xff\xd8') else '.tif' if data.startswith(TIFF) else '.png'
@@ -339,7 +340,8 @@ class _Work:
         transform = self._reference.matrix @ found.transform @ np.linalg.inv(view.matrix)
         transform /= transform[2, 2]
         errors = view.turn.corners(found.error.ravel()) * self._reference.factor
-        aligned = Aligned(path, 'aligned', len(found.matches), errors.tolist(), transform.ravel().tolist(), '', view.size)
+        aligned = Aligned(path, 'aligned', len(found.matches), errors.tolist(), transform.ravel().tolist(), '', view.size,
+                          _rotation(found.transform, view.grey.shape))
         return aligned if part is None else self._written(view, aligned, name, part)
 
     def write(self, path: str, aligned: Aligned, name: str, part: list[int]) -> Aligned:
@@ -349,20 +351,20 @@ class _Work:
     def write_reference(self, folder: str, part: list[int]) -> str:
         """:return: the name of its file."""
         x, y, width, height = part
-        return self._write(self._reference, [page[y:y + height, x:x + width] for page in self._reference.pages], os.path.join(folder, 'reference'))
+        return self._write(self._reference, [page[y:y + height, x:x + width] for page in self._reference.pages], os.path.join(folder, 'reference'), part)
 
     def _written(self, view: _View, aligned: Aligned, name: str, part: list[int]) -> Aligned:
         onto = np.array([[1, 0, -part[0]], [0, 1, -part[1]], [0, 0, 1]]) @ np.reshape(aligned.transform, (3, 3))
         try:
-            file = self._write(view, [self._warped(view, page, onto, part[2:]) for page in view.pages], name)
+            file = self._write(view, [self._warped(view, page, onto, part[2:]) for page in view.pages], name, part)
         except ValueError as e:  # of a format that cannot hold it
             return aligned._replace(verdict=str(e), transform=())
         return aligned._replace(file=file)
 
-    def _write(self, view: _View, pages: Sequence[NDArray[Any]], name: str) -> str:
+    def _write(self, view: _View, pages: Sequence[NDArray[Any]], name: str, part: list[int]) -> str:
         whole = len(pages) == 1 and holds(view.suffix, pages[0])
         suffix = FORMATS[self._options.format] if self._options.format else view.suffix if whole else '.tif'
-        write_picture(name + suffix, *pages, no_data=view.no_data)
+        write_picture(name + suffix, *pages, no_data=view.no_data, geo=geo_entries_of_part(self._reference.geo, part[0], part[1]))
         folder, file = os.path.split(name + suffix)
         if suffix == '.tif' or pages[0].dtype != np.uint8:  # which browsers do not show, or too dark
             os.makedirs(os.path.join(folder, VIEWS), exist_ok=True)
@@ -388,6 +390,13 @@ class _Work:
             shown = warp(np.ones(page.shape[:2], np.float32) if holes is None else (~holes).astype(np.float32))
             warped[np.abs(shown - 1) > 1e-3] = float(view.no_data or 'nan')
         return warped
+
+
+def _rotation(transform: NDArray[np.float64], shape: Sequence[int]) -> float:
+    """Degrees by which an image is turned, clockwise, at its middle."""
+    middle, right = (transform @ (shape[1] / 2 + x, shape[0] / 2, 1) for x in (0, 1))
+    x, y = right[:2] / right[2] - middle[:2] / middle[2]
+    return float(np.degrees(np.arctan2(y, x)))
 
 
 def _row(each: Aligned) -> list[str]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from opencv_iib.align import align
 from opencv_iib.colmap.features import FeatureOptions
-from opencv_iib._exif import no_data
+from opencv_iib._exif import geo_entries, no_data
 from opencv_iib._files import RECORD
 from opencv_iib._images import decode_pages, write_picture
 from opencv_iib.localization import Camera
@@ -133,7 +133,7 @@ class Match(Commands):
         self.assertEqual(self.rows('m.csv'), [])
         status, text, _ = run_command('match', a, flat, '--out', out, '--camera', 'PINHOLE,480,360,400,400,240,180')
         self.assertEqual((status, text.splitlines()[-1]), (3, 'no pose agrees with five matches or more'))
-        self.check_mistake('no folder', 'match', a, a, '--out', self.folder / 'none/m.csv')
+        self.check_error('no folder', 'match', a, a, '--out', self.folder / 'none/m.csv')
         for arguments, told in ((['--camera', 'PINHOLE,480,360,400'], 'PINHOLE'), (['--camera', 'PINHOLE,9,9,400,400,240,180'], '480 x 360'),
                                 (['--camera', 'simple_pinhole,480,360,400,240,180'] * 3, '3 cameras'),
                                 (['--picture', self.folder / 'no.suffix'], 'end its name')):
@@ -193,19 +193,19 @@ class Match(Commands):
         before = Path(a).read_bytes()
         (self.folder / 'link.png').symlink_to('a.png')
         for arguments in (['--out', a], ['--out', self.folder / 'link.png'], ['--picture', a], ['--out', 'x.png', '--picture', 'x.png']):
-            self.check_mistake('give what is written a name of its own', 'match', a, b, *arguments)
-        self.check_mistake('give what is written a name of its own', 'demo', a, b, '--out', a)
+            self.check_error('give what is written a name of its own', 'match', a, b, *arguments)
+        self.check_error('give what is written a name of its own', 'demo', a, b, '--out', a)
         for command, option in (('match', '--picture'), ('match', '--out'), ('demo', '--out')):
-            self.check_mistake('is an input too', command, b, b, '--mask', a, option, a)
+            self.check_error('is an input too', command, b, b, '--mask', a, option, a)
         self.assertEqual(Path(a).read_bytes(), before)
         # and what cannot be written is told before work
         with mock.patch('opencv_iib.colmap.features.Features.__call__', side_effect=AssertionError):
-            self.check_mistake('no folder', 'match', a, b, '--out', self.folder / 'none/m.csv')
-            self.check_mistake('no folder', 'match', a, b, '--picture', self.folder / 'none/m.png')
+            self.check_error('no folder', 'match', a, b, '--out', self.folder / 'none/m.csv')
+            self.check_error('no folder', 'match', a, b, '--picture', self.folder / 'none/m.png')
             self.check_mistake('end its name in', 'match', a, b, '--picture', self.folder / 'm.foo')
             self.check_mistake('end its name in', 'demo', a, b, '--out', self.folder / 'm.foo')
             for out, told in (('none/m.png', 'no folder'), ('.', 'is a folder'), ('m' * 300 + '.png', 'm.png cannot be written')):
-                self.check_mistake(told, 'demo', a, b, '--out', self.folder / out)
+                self.check_error(told, 'demo', a, b, '--out', self.folder / out)
 
     def test_a_wide_lens_and_what_lies_beyond_it(self):
         wide = Camera('opencv_fisheye', 1280, 960, (400, 400, 640, 480, .02, -.01, 0, 0))
@@ -273,11 +273,7 @@ class Align(Commands):
         mine.write_text('precious')
         with self.assertRaises(FileExistsError):
             align(paths[0], paths, str(out))
-        for gone in (['gone.png', paths[1]], [paths[0], 'gone.png'], [*paths[:2], 'gone.png']):
-            with mock.patch('opencv_iib.align.ImageAligner', side_effect=AssertionError):
-                self.check_mistake('there is no file gone.png', 'align', *gone, '--out', self.folder / 'none')
-        self.assertFalse((self.folder / 'none').exists())
-        for arguments, told in (([paths[0], paths[1]], 'holds mine.png'), (paths[:1] * 2, 'but the reference')):
+        for arguments, told in ((['gone.png', paths[1]], 'gone.png'), ([paths[0], paths[1]], 'holds mine.png'), (paths[:1] * 2, 'but the reference')):
             self.check_error(told, 'align', *arguments, '--out', out)
         self.assertEqual(mine.read_text(), 'precious')
         mine.unlink()
@@ -291,7 +287,7 @@ class Align(Commands):
         foreign.mkdir()
         (foreign / 'transforms.csv').write_text('image,verdict\n')
         self.check_error('holds transforms.csv', 'align', *paths[:2], '--out', foreign)
-        self.check_mistake('would be replaced', 'align', paths[0], out / 'a&b.png', '--out', out)
+        self.check_error('would be replaced', 'align', paths[0], out / 'a&b.png', '--out', out)
         self.assertEqual(run_command('align', *paths[:2], '--out', self.folder / 'new', '--model', 'similarity')[0], 0)
         self.assertEqual(run_command('align', paths[0], self.write('t.png', texture(300, 200, seed=9)), '--out', self.folder / 'n')[0], 3)
 
@@ -300,8 +296,6 @@ class Align(Commands):
         align(paths[0], paths[1:], str(self.folder / 'out'))
         self.assertEqual(re.findall(r'src="(\d+\.png)', (self.folder / 'out/index.html').read_text()), ['1.png', '2.png', '10.png'])
         self.assertEqual([row['file'] for row in self.rows('out/transforms.csv')], ['1.png', '10.png', '2.png'])
-        for images in ([self.folder], [self.folder / '*.png']):
-            self.assertEqual([Path(each.name).name for each in align(paths[0], images, str(self.folder / 'out'))], ['1.png', '2.png', '10.png'])
 
     @unittest.skipIf(os.name == 'nt', 'such names cannot be had there')
     def test_one_image_ends_nothing(self):
@@ -360,7 +354,7 @@ class Align(Commands):
         paths = self.pictures('r.png', 'f/1.png', 'f/2.png', 'f/more/1.png', '[x].png')
         for images, count in (([self.folder / 'f'], 3), ([self.folder / 'f/*.png', paths[1]], 2), ([paths[4], self.folder / '[f]/**/*.png'], 4)):
             self.assertEqual(len(self.align(paths[0], *images)), count)
-        self.check_mistake('no image is called', 'align', paths[0], self.folder / '*.jpg', '--out', self.folder / 'out')
+        self.check_error('no image is called', 'align', paths[0], self.folder / '*.jpg', '--out', self.folder / 'out')
         self.assertEqual(run_command('align', paths[0], self.folder / 'f', '--out', self.folder / 'f/out')[0], 0)
         status, out, _ = run_command('align', paths[0], self.folder / 'f', '--out', self.folder / 'f/out')
         self.assertEqual((status, out.splitlines()[-1][-25:]), (0, '3 of 3 images are aligned'))
@@ -436,6 +430,33 @@ class Align(Commands):
             write_picture(image, part, no_data=text)
             row, = self.align(reference, image, '--model', 'translation')
             self.assertEqual(row['verdict'], 'aligned')
+
+    def test_pixels_keep_their_places_on_the_earth(self):
+        keys = [(34735, 3, (1, 1, 0, 1, 3072, 34737, 5, 0)), (34737, 2, 'here|')]
+        scale = [(33550, 12, (.5, .5, 0)), (33922, 12, (10, 20, 0, 4e5 + .25, 5e6, 0))]
+        matrix = [(34264, 12, (.5, .1, 0, 4e5, .1, -.5, 0, 5e6, 0, 0, 0, 0, 0, 0, 0, 1))]
+        pair, = self.shifted(np.uint16)
+        reference, image, (whole,), (part,) = pair
+        write_picture(image, part, geo=[(33550, 12, (9, 9, 0)), *keys])
+        for own in (scale, matrix, []):
+            write_picture(reference, whole, geo=[*own, *keys])
+            for crop in ((), ('--crop',)):
+                row, = self.align(reference, image, '--model', 'translation', *crop)
+                written = [geo_entries((self.folder / 'out' / name).read_bytes()) for name in (row['file'], 'reference.tif')]
+                self.assertEqual(written[0], written[1])
+                self.assertEqual(written[0][-2:], keys)
+                x, y = json.loads((self.folder / 'out/align.json').read_text())['part'][:2]
+                self.assertEqual(bool(crop), x > 20 and y > 10)
+                if own == scale:
+                    self.assertEqual(written[0][:-2], [scale[0], (33922, 12, (10. - x, 20. - y, 0, 4e5 + .25, 5e6, 0))])
+                elif own:
+                    at = np.reshape(written[0][0][2], (4, 4))
+                    np.testing.assert_allclose(at @ [7, 8, 0, 1], np.reshape(matrix[0][2], (4, 4)) @ [7 + x, 8 + y, 0, 1])
+        row, = self.align(reference, image, '--model', 'translation', '--format', 'png')
+        self.assertEqual((row['file'], geo_entries((self.folder / 'out' / row['file']).read_bytes())), ('i0.png', []))
+        data = reference.read_bytes()
+        wrong = data.replace(bytes.fromhex('af87 0300'), bytes.fromhex('af87 0c00'))  # numbers of another type
+        self.assertEqual((len(geo_entries(data)), geo_entries(wrong), geo_entries(data[:20])), (2, [], []))
 
     def test_formats_and_interpolation(self):
         pair, = self.shifted(np.uint8, suffix='.jpg')

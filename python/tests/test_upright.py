@@ -143,12 +143,24 @@ class Commands(Collection):
             turn = _upright.Turn(orientation, *stored(self.b, orientation).shape[1::-1])
             back = np.reshape(each.transform, (3, 3)) @ turn.matrix  # from the upright image
             np.testing.assert_allclose(back, [[1, 0, 30], [0, 1, 20], [0, 0, 1]], atol=.1)
+            self.assertAlmostEqual(each.rotation, 0, delta=.1)
+            self.assertNotIn('turned', str(each))
             picture = cv2.imread(str(self.folder / 'out' / each.file), cv2.IMREAD_GRAYSCALE)
             self.assertLess(np.abs(picture[25:295, 35:395].astype(int) - self.a[25:295, 35:395]).mean(), 1)
         done = align(self.write(self.b, 6), [self.first], self.folder / 'other', 1)
         self.assertEqual(cv2.imread(str(self.folder / 'other' / done[0].file)).shape, (400, 300, 3))
         np.testing.assert_allclose(np.reshape(done[0].transform, (3, 3)) @ [130, 70, 1],
                                    _upright.Turn(6, 300, 400).matrix @ [100, 50, 1], atol=.2)
+
+    def test_align_says_what_it_turned(self):
+        picture = cv2.resize(cv2.GaussianBlur(np.random.default_rng(2).integers(0, 256, (120, 160), np.uint8), (0, 0), 1), (640, 480))
+        first = self.folder / 'a.png'
+        cv2.imwrite(str(first), picture)
+        images = [self.write(picture[20:320, 30:430], orientation) for orientation in _upright.ROTATIONS]
+        for _ in range(2):  # also of those that an earlier call has aligned
+            done = align(first, images, self.folder / 'turned', exif=False)
+            self.assertEqual([str(each).split(', ')[-1] for each in done], [f'turned by {angle} degrees' for angle in (180, 90, 270)])
+        self.assertNotIn('turned', ''.join(map(str, align(first, images, self.folder / 'turned'))))
 
     def test_colmap(self):
         for name, orientation in (('b.png', 6), ('more/c.png', 3)):
