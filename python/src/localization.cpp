@@ -33,7 +33,7 @@ void newLocation(Location* self, const std::optional<cv::Affine3d>& pose,
 }
 
 void buildMap(nb::handle model, const nb::callable& read, nb::handle map, int points, bool lines,
-        bool orbAndAkaze, const nb::callable& report)
+        bool orbAndAkaze, int maxSize, const nb::callable& report)
 {
     const auto image = [&read](const std::string& name) {
         nb::gil_scoped_acquire gil;
@@ -50,6 +50,7 @@ void buildMap(nb::handle model, const nb::callable& read, nb::handle map, int po
     cv::iib::MapOptions options(points);
     options.lines = lines;
     options.orbAndAkaze = orbAndAkaze;
+    options.maxSize = maxSize;
     cv::iib::buildMap(from, image, to, options, step);
 }
 

@@ -205,7 +205,7 @@ class Files(InFolder):
             with self.assertRaisesRegex(FileExistsError, told):
                 self.results('a')
             with self.assertRaisesRegex(_core.error, told):
-                _core.buildMap(str(self.folder), lambda name: np.zeros((0, 0), np.uint8), str(out), 10, False, False, lambda *step: None)
+                _core.buildMap(str(self.folder), lambda name: np.zeros((0, 0), np.uint8), str(out), 10, False, False, 0, lambda *step: None)
         with only_writer(str(self.folder / 'a')), self.assertRaisesRegex(BlockingIOError, told), only_writer(str(self.folder / 'a')):
             pass
         (self.folder / 'link').symlink_to('a')

@@ -54,8 +54,7 @@ Regions randomRegions(int count, Size image, int side, int seed)
     for (int i = 0; i < count; i++)
     {
         const int w = random.between(1, side + 1), h = random.between(1, side + 1);
-        const int y = random.below(image.height - h), x = random.below(image.width - w);
-        regions.push_back(Rect(x, y, w, h));
+        regions.push_back(Rect(random.below(image.width - w), random.below(image.height - h), w, h));
     }
     return regions;
 }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "opencv2/imgproc.hpp"
+
 namespace cv::iib {
 namespace {
 
@@ -44,6 +46,30 @@ private:
 #endif
 
 }  // namespace
+
+void extract(IIB& iib, const Mat& image, const Mat& mask, Features& features, int maxSize)
+{
+    const int side = std::max(image.cols, image.rows);
+    const double scale = maxSize > 0 && side > maxSize ? (double)maxSize / side : 1;
+    Mat seen = image, allowed = mask;
+    if (scale < 1)
+    {
+        resize(image, seen, Size(), scale, scale, INTER_AREA);
+        if (!mask.empty())
+            resize(mask, allowed, seen.size(), 0, 0, INTER_NEAREST);
+    }
+    std::vector<KeyPoint> keypoints;
+    iib.detectAndCompute(seen, allowed, keypoints, features.codes);
+    for (const KeyPoint& k : keypoints)
+    {
+        features.pixels.emplace_back((k.pt.x + .5) / scale - .5, (k.pt.y + .5) / scale - .5);
+        features.sizes.push_back(float(k.size / scale));
+    }
+    features.sees.assign(keypoints.size(), -1);
+    features.misses.assign(keypoints.size(), 0);
+    features.picture = pictureOf(seen);
+    features.picture.scale *= scale;
+}
 
 Ptr<IIB> describerOf(bool orbAndAkaze, int points)
 {

@@ -12,19 +12,9 @@ typedef MapImage Features;
 //! What finds and describes the points of a map: createRecommended, or the paper's points and descriptor.
 Ptr<IIB> describerOf(bool orbAndAkaze, int points);
 
-inline void extract(IIB& iib, const Mat& image, const Mat& mask, Features& features)
-{
-    std::vector<KeyPoint> keypoints;
-    iib.detectAndCompute(image, mask, keypoints, features.codes);
-    for (const KeyPoint& k : keypoints)
-    {
-        features.pixels.emplace_back(k.pt);
-        features.sizes.push_back(k.size);
-    }
-    features.sees.assign(keypoints.size(), -1);
-    features.misses.assign(keypoints.size(), 0);
-    features.picture = pictureOf(image);
-}
+/** @param maxSize pixels of the longer side to which a larger image is reduced; 0: it is not. Keypoints are in the image's own pixels.
+@param features of the image. */
+void extract(IIB& iib, const Mat& image, const Mat& mask, Features& features, int maxSize = 0);
 
 //! @throws cv::Exception for an image that is not of a camera's size, or not 8-bit, grey or BGR, and another mask.
 inline void checkPhotograph(const Mat& image, const Mat& mask, const Size& size)

@@ -87,55 +87,42 @@ private:
     std::mutex mutex_;
 };
 
-//! Why an image is left out, behind its name; or nothing.
-std::string problemOf(const Photograph& photograph, const Size& size)
+void describe(std::vector<MapImage>& images, const ImageReader& read, const MapOptions& options, Steps& steps)
 {
-    if (photograph.pixels.empty())
-        return " cannot be read";
-    try
-    {
-        checkPhotograph(photograph.pixels, photograph.mask, size);
-    }
-    catch (const Exception& e)
-    {
-        return ": " + e.err;
-    }
-    return "";
-}
-
-void describe(std::vector<MapImage>& images, const ImageReader& read, const Ptr<IIB>& iib, Steps& steps)
-{
-    std::vector<std::string> problems(images.size());
+    const Ptr<IIB> iib = describerOf(options.orbAndAkaze, options.points);
     inParallel(images.size(), [&](size_t i) {
         MapImage& image = images[i];
         const Photograph photograph = read(image.name);
-        std::string& problem = problems[i] = problemOf(photograph, image.camera.size);
-        if (problem.empty())
+        if (!photograph.pixels.empty())
         {
+            try
+            {
+                checkPhotograph(photograph.pixels, photograph.mask, image.camera.size);
+            }
+            catch (const Exception& e)
+            {
+                CV_Error(e.code, image.name + ": " + e.err + ": give the images of which the model was made");
+            }
             const Upright upright(photograph.pixels.size(), photograph.orientation);
             image.camera = upright.camera(image.camera);
             image.cameraFromWorld = upright.pose(image.cameraFromWorld);
-            extract(*iib, upright.image(photograph.pixels), upright.image(photograph.mask), image);
+            extract(*iib, upright.image(photograph.pixels), upright.image(photograph.mask), image,
+                    options.maxSize);
         }
         image.codes.create(int(image.pixels.size()), iib->descriptorSize(), CV_8U);  // also of none
-        if (!problem.empty())
-            problem = image.name + problem + ": left out of the map";
-        steps.step(problem);
+        steps.step(photograph.pixels.empty() ? image.name + " cannot be read: left out of the map" : "");
     });
-    if (std::any_of(images.begin(), images.end(), [](const MapImage& i) { return !i.pixels.empty(); }))
-        return;
-    const auto first =
-            std::find_if(problems.begin(), problems.end(), [](const std::string& p) { return !p.empty(); });
-    CV_Error(Error::StsError,
-            "no point is found in any of the model's images: " +
-                    (first == problems.end() ? "they are empty"
-                                             : "give those of which it was made; " + *first));
+    if (std::all_of(images.begin(), images.end(), [](const MapImage& i) { return i.pixels.empty(); }))
+        CV_Error(Error::StsError, "none of the model's images can be read, or they are empty");
 }
 
 void checkOptions(const MapOptions& options)
 {
     if (options.points < 1)
         CV_Error(Error::StsBadArg, format("points is %d: at least 1 an image is needed", options.points));
+    if (options.maxSize != 0 && options.maxSize < 32)
+        CV_Error(Error::StsBadArg,
+                format("maxSize is %d: at least 32 pixels are needed, or 0", options.maxSize));
     if (options.lines)
         findSegments(Picture());
 }
@@ -159,7 +146,7 @@ Map makeMap(const std::string& model, const ImageReader& read, const MapOptions&
         map.images.back().camera = image.camera;
         map.images.back().cameraFromWorld = image.cameraFromWorld;
     }
-    describe(map.images, read, describerOf(options.orbAndAkaze, options.points), steps);
+    describe(map.images, read, options, steps);
     const MatchedRays matched = matchPairs(map.images, pairs, [&] { steps.step(); });
     if (double(matched.fitting) <= LEAST_FITTING * double(matched.matches))
         CV_Error(Error::StsError,

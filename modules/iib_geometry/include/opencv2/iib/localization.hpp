@@ -113,6 +113,8 @@ struct MapOptions
     bool lines = false;
     //! The paper's points, ORB's and AKAZE's together with IIB's default bits, in place of IIBDescriptorExtractor::createRecommended.
     bool orbAndAkaze = false;
+    //! Larger images are reduced to so many pixels of the longer side, 32 or more, to find and describe points; 0: they are not.
+    int maxSize = 0;
 };
 
 /** @brief Makes a map of a COLMAP model and its images.
@@ -122,7 +124,7 @@ Keypoints of each image are described, matched with those of the images that see
 image its grey pixels, reduced to 1024 on the longer side: 0.3 MB for 640 x 480.
 @param model folder of a model, binary or text, in any unit and at any distance from its origin. Its points are not read: the
 images' keypoints tell which of them see the same.
-@param images gives the model's images. Those that cannot be read or are of another size than their camera are left out.
+@param images gives the model's images.
 @param map folder to write: `map.iib`, and a COLMAP model of the same points. A map that is there is replaced: who reads
 meanwhile gets the old one or the new one. A folder that holds anything else is refused before work begins.
 @param options what it is made of; a number stands for one of keypoints alone.
