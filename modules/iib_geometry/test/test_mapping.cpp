@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "derivatives.hpp"
 #include "map/colmap_model.hpp"
 #include "map/triangulation.hpp"
 #include "wall.hpp"
@@ -245,6 +246,33 @@ TEST(Triangulation, a_ray_that_contradicts_the_others_is_left_out)
     EXPECT_EQ(0, map.images[0].sees[0]);
     EXPECT_EQ(0, map.images[1].sees[0]);
     EXPECT_EQ(-1, map.images[2].sees[0]);
+}
+
+// There the derivatives of Cauchy's loss are 0.
+TEST(Triangulation, a_point_has_the_least_loss_of_its_rays)
+{
+    const cv::Point3d truth(.2, -.1, 5);
+    const double errors[] = {1, -.7, .4, -2.5, .3};  // pixels
+    Track track;
+    for (int i = 0; i < 5; i++)
+    {
+        MapImage image;
+        image.camera = CAMERA;
+        image.cameraFromWorld = inverse(poseAt(.5 * i - 1, .2 * (i % 2), 0));
+        image.pixels = CAMERA.project({image.cameraFromWorld * truth});
+        image.pixels[0] += cv::Point2d(errors[i], errors[(i + 2) % 5]);
+        track.push_back(raysOf(size_t(i), image)[0]);
+    }
+    cv::Point3d point;
+    ASSERT_TRUE(place(track, point));
+    ASSERT_EQ(5u, track.size());
+    const auto lossAt = [&](const Numbers& step) {
+        double loss = 0;
+        for (const Ray& ray : track)
+            loss += std::log1p(std::pow(ray.error(cv::Vec3d(point) + cv::Vec3d(step.data())), 2));
+        return Numbers{loss};
+    };
+    expectDerivatives(cv::Mat_<double>(1, 3, 0.), lossAt, 5);  // within a hundredth of a pixel
 }
 
 // In the second image a keypoint 20 pixels above each point has its very code, and the point's own differs in some bits.
