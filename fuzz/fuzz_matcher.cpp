@@ -35,7 +35,7 @@ struct Subject
     Ptr<HierarchicalMatcher> matcher;
     MatcherOracle model;
     bool ofAnyWidth = false;  //!< create() without level sizes, which takes the width of the first codes
-    ScanBlocks blocks;        //!< in which a search beside it goes
+    ScanChunk chunk;          //!< in which a search beside it goes
     bool isKnown = true;      //!< whether the model finds what the matcher's mode does
 
     //! Whether the matcher knows the level sizes already.
@@ -199,8 +199,8 @@ private:
 
     void setBlocks(Subject& s)
     {
-        s.blocks.queryCount = in.between(1, 9);
-        s.blocks.codeBlocks = s.blocks.codeBlocksOfLimits = in.between(1, 3);
+        s.chunk.queryCount = in.between(1, 9);
+        s.chunk.codeBlocks = s.chunk.codeBlocksOfLimits = in.between(1, 3);
     }
 
     void setParameters(Subject& s)
@@ -286,8 +286,8 @@ private:
             expected.assign(2, std::vector<DMatch>());  // what was there before
         FUZZ_CHECK(!s.isKnown || equal(expected, found));
         SearchCost cost;
-        model.adaptiveBlock = model.adaptiveBlock > 0 ? 16 * s.blocks.codeBlocksOfLimits : 0;
-        found = searched(model, queries, k, 0, s.blocks, cost);
+        model.adaptiveBlock = model.adaptiveBlock > 0 ? 16 * s.chunk.codeBlocksOfLimits : 0;
+        found = searched(model, queries, k, 0, s.chunk, cost);
         FUZZ_CHECK(!s.isKnown || equal(model.knn(queries, k), found));
     }
 
@@ -330,7 +330,7 @@ private:
         const int whole = cvFloor(std::min((double)radius, 8. * width));
         SearchCost cost;
         FUZZ_CHECK(equal(model.radius(queries, whole), found));
-        FUZZ_CHECK(equal(found, searched(model, queries, 0, whole, s.blocks, cost)));
+        FUZZ_CHECK(equal(found, searched(model, queries, 0, whole, s.chunk, cost)));
     }
 
     void askForBest(const Subject& s, const Mat& queries, MatcherOracle& model, bool given)

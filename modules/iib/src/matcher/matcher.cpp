@@ -242,7 +242,7 @@ private:
         const Mat checked = checkedDescriptors(queries, layout.bytes(), parameters.levelSizes.empty());
         const bool byLevels = parameters.mode == THRESHOLD;
         return {trains, checked, byLevels ? thresholdPolicy(layout, parameters.thresholds) : policy,
-                checkedMasks(masks, checked.rows, trains), {}, 0, ScanBlocks(), *cost};
+                checkedMasks(masks, checked.rows, trains), {}, 0, ScanChunk(), *cost};
     }
 
     KnnTable nearest(const PackedCodes& trains, const Mat& queries, int k, InputArrayOfArrays masks) const

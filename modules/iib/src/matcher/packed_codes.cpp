@@ -172,7 +172,7 @@ void PackedCodes::findNearest(const std::vector<int>& levelSizes, const std::vec
     SearchCost cost;
     for (const CodePart& part : parts)
         iib::addNearest(
-                {*part.codes, queries, PruningPolicy(), {}, part.hidden, part.firstRow, ScanBlocks(), cost},
+                {*part.codes, queries, PruningPolicy(), {}, part.hidden, part.firstRow, ScanChunk(), cost},
                 found);
 
     rows = forNeighbours<int64>(queries.rows, k, -1);

@@ -9,24 +9,24 @@ namespace iib {
 
 namespace {
 
-/** The blocks of pairs that are scanned one after the other: some queries with all train codes in ascending order, then
+/** The chunks of pairs that are scanned one after the other: some queries with all train codes in ascending order, then
 the next queries. Indices in `pairs` count from firstQuery and firstTrain. */
-class PairBlocks
+class PairChunks
 {
 public:
-    PairBlocks(const SearchInput& input_, const Range& range_)
+    PairChunks(const SearchInput& input_, const Range& range_)
         : pairs{input_.trains.layout(), Mat(), 0, 0, 0}, firstQuery(range_.start), firstTrain(0),
-          pairCount(0), input(input_), range(range_), step(input.blocks.codeBlocksFor(input.policy)),
+          pairCount(0), input(input_), range(range_), step(input.chunk.codeBlocksFor(input.policy)),
           nextBlock(0), limits(range.size(), input.policy.limit)
     {
     }
 
-    //! Goes to the first block or to the next; false after the last.
+    //! Goes to the first chunk or to the next; false after the last.
     bool next()
     {
         if (nextBlock >= input.trains.blocks())
         {
-            firstQuery += input.blocks.queryCount;
+            firstQuery += input.chunk.queryCount;
             nextBlock = 0;
         }
         if (firstQuery >= range.end || input.trains.blocks() == 0)
@@ -34,7 +34,7 @@ public:
         const int count = std::min(step, input.trains.blocks() - nextBlock);
         firstTrain = (size_t)nextBlock * CodeLayout::CODES_PER_BLOCK;
         pairs.queries =
-                input.queries.rowRange(firstQuery, std::min(firstQuery + input.blocks.queryCount, range.end));
+                input.queries.rowRange(firstQuery, std::min(firstQuery + input.chunk.queryCount, range.end));
         pairs.trains = input.trains.block(nextBlock);
         pairs.trainCount =
                 (int)std::min(input.trains.rows() - firstTrain, (size_t)count * CodeLayout::CODES_PER_BLOCK);
@@ -48,7 +48,7 @@ public:
 
     //! What the first train code is called in results.
     size_t firstIndex() const { return input.firstIndex + firstTrain; }
-    //! Of the policy, for each query of the block.
+    //! Of the policy, for each query of the chunk.
     int* limitsOfQueries() { return &limits[firstQuery - range.start]; }
 
     CodePairs pairs;
@@ -57,7 +57,7 @@ public:
     size_t pairCount;  //!< those that are not masked
 
 private:
-    //! Whether some pairs of the block may be left out.
+    //! Whether some pairs of the chunk may be left out.
     bool needsFlags() const
     {
         if (!input.masks.empty() || input.hidden.empty())
@@ -67,7 +67,7 @@ private:
         return std::find(first, end, true) != end;
     }
 
-    //! Copies the masks of the block into rows of a whole number of CodeBlocks, and counts the pairs left.
+    //! Copies the masks of the chunk into rows of a whole number of CodeBlocks, and counts the pairs left.
     void fillFlags()
     {
         const PackedCodes& trains = input.trains;
@@ -101,9 +101,9 @@ private:
     std::vector<uchar> flags;
 };
 
-//! Calls found(query, train, distance) for the pairs of a block that are below a threshold, as HammingSink has them.
+//! Calls found(query, train, distance) for the pairs of a chunk that are below a threshold, as HammingSink has them.
 template <class Found>
-void scanPruned(const SearchInput& input, PairBlocks& block, const int* queryThresholds,
+void scanPruned(const SearchInput& input, PairChunks& chunk, const int* queryThresholds,
         const int* trainThresholds, const Found& report)
 {
     struct Sink CV_FINAL : public HammingSink
@@ -119,11 +119,11 @@ void scanPruned(const SearchInput& input, PairBlocks& block, const int* queryThr
     const CodeLayout& layout = input.trains.layout();
     std::vector<int64> passed(stages.size(), 0);
     const PrunedScan scan = {
-            block.pairs, input.policy, sink, passed.data(), stages.size() == 1 ? block.limitsOfQueries() : 0};
+            chunk.pairs, input.policy, sink, passed.data(), stages.size() == 1 ? chunk.limitsOfQueries() : 0};
     input.trains.kernels().pruned(scan);
 
-    input.cost.all += (uint64)block.pairCount * 8 * layout.bytes();
-    uint64 alive = block.pairCount;
+    input.cost.all += (uint64)chunk.pairCount * 8 * layout.bytes();
+    uint64 alive = chunk.pairCount;
     int bits = 0;
     for (size_t i = 0; i < stages.size(); i++)
     {
@@ -135,12 +135,12 @@ void scanPruned(const SearchInput& input, PairBlocks& block, const int* queryThr
 }
 
 // For tables of one or two columns, the other one of a single column, without stages.
-void scanFew(const SearchInput& input, const PairBlocks& block, KnnTable& forQueries, KnnTable* forTrains)
+void scanFew(const SearchInput& input, const PairChunks& chunk, KnnTable& forQueries, KnnTable* forTrains)
 {
-    const NearestScan scan = {block.pairs, forQueries[block.firstQuery], forQueries.size(),
-            forTrains ? (*forTrains)[block.firstTrain] : 0, (size_t)block.firstQuery, block.firstIndex()};
+    const NearestScan scan = {chunk.pairs, forQueries[chunk.firstQuery], forQueries.size(),
+            forTrains ? (*forTrains)[chunk.firstTrain] : 0, (size_t)chunk.firstQuery, chunk.firstIndex()};
     input.trains.kernels().nearest(scan);
-    const uint64 bits = (uint64)block.pairCount * 8 * input.trains.layout().bytes();
+    const uint64 bits = (uint64)chunk.pairCount * 8 * input.trains.layout().bytes();
     input.cost.compared += bits;
     input.cost.all += bits;
 }
@@ -151,28 +151,28 @@ void scanNearest(const SearchInput& input, const Range& queries, KnnTable& forQu
 {
     const bool few =
             forQueries.size() <= 2 && (!forTrains || forTrains->size() == 1) && input.policy.stages.empty();
-    for (PairBlocks block(input, queries); block.next();)
-        if (few && NearestScan::fits(block.pairs))
-            scanFew(input, block, forQueries, forTrains);
+    for (PairChunks chunk(input, queries); chunk.next();)
+        if (few && NearestScan::fits(chunk.pairs))
+            scanFew(input, chunk, forQueries, forTrains);
         else
-            scanPruned(input, block, forQueries.thresholds() + block.firstQuery,
-                    forTrains ? forTrains->thresholds() + block.firstTrain : 0,
+            scanPruned(input, chunk, forQueries.thresholds() + chunk.firstQuery,
+                    forTrains ? forTrains->thresholds() + chunk.firstTrain : 0,
                     [&](int query, int train, int distance) {
                         forQueries.insert(
-                                block.firstQuery + query, matchKey(distance, block.firstIndex() + train));
+                                chunk.firstQuery + query, matchKey(distance, chunk.firstIndex() + train));
                         if (forTrains)
                             forTrains->insert(
-                                    block.firstTrain + train, matchKey(distance, block.firstQuery + query));
+                                    chunk.firstTrain + train, matchKey(distance, chunk.firstQuery + query));
                     });
 }
 
 void scanWithin(
         const SearchInput& input, const Range& queries, int radius, std::vector<std::vector<MatchKey>>& lists)
 {
-    const std::vector<int> thresholds(std::min(queries.size(), input.blocks.queryCount), radius + 1);
-    for (PairBlocks block(input, queries); block.next();)
-        scanPruned(input, block, thresholds.data(), 0, [&](int query, int train, int distance) {
-            lists[block.firstQuery + query].push_back(matchKey(distance, block.firstIndex() + train));
+    const std::vector<int> thresholds(std::min(queries.size(), input.chunk.queryCount), radius + 1);
+    for (PairChunks chunk(input, queries); chunk.next();)
+        scanPruned(input, chunk, thresholds.data(), 0, [&](int query, int train, int distance) {
+            lists[chunk.firstQuery + query].push_back(matchKey(distance, chunk.firstIndex() + train));
         });
 }
 

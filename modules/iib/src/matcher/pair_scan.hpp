@@ -23,7 +23,7 @@ struct SearchCost
 /** How many queries and CodeBlocks of train codes are scanned at once. The train codes of 170 bytes fill 352 KB, so
 that they stay in a second-level cache of 512 KB while the queries, 704 KB, pass by. Tests take fewer, so that small
 data crosses the boundaries. */
-struct ScanBlocks
+struct ScanChunk
 {
     //! CodeBlocks that are scanned at once by a policy.
     int codeBlocksFor(const PruningPolicy& policy) const
@@ -42,7 +42,7 @@ struct SearchInput
     std::vector<Mat> masks;    //!< none, or one for each image, empty or queries x rows(image)
     std::vector<bool> hidden;  //!< of each image, whether its rows are left out; empty: none is
     size_t firstIndex;         //!< what the first of the train codes is called in results
-    ScanBlocks blocks;
+    ScanChunk chunk;
     SearchCost& cost;  //!< what the search takes is added to it
 };
 
@@ -106,7 +106,7 @@ private:
     std::vector<int> nearest;  // distance of the k-th
 };
 
-/* One pass over all pairs of some queries with all train codes, block by block, on one thread. */
+/* One pass over all pairs of some queries with all train codes, chunk by chunk, on one thread. */
 
 //! Puts the nearest into tables of all queries and of all train codes; forTrains is null when nobody asks for that
 //! direction, and else has room for whole CodeBlocks.

@@ -25,9 +25,9 @@ template <class Scan> void scanInParts(int queries, int parts, const Scan& scan)
 // Some parts for each thread, so that all are done at about the same time.
 int evenParts(const SearchInput& input)
 {
-    const int blocks = (input.queries.rows + input.blocks.queryCount - 1) / input.blocks.queryCount,
+    const int chunks = (input.queries.rows + input.chunk.queryCount - 1) / input.chunk.queryCount,
               threads = getNumThreads();
-    return std::max((blocks + threads - 1) / threads, 2) * threads;
+    return std::max((chunks + threads - 1) / threads, 2) * threads;
 }
 
 // In the other direction each part has neighbours of its own, merged by their order, so that the result does not depend

@@ -218,7 +218,7 @@ void expectKnnAsOracle(HierarchicalMatcher& matcher, MatcherOracle& oracle, cons
     EXPECT_EQ(oracle.compared / oracle.all, matcher.matchCost());
 }
 
-Matches searched(const MatcherOracle& oracle, const Mat& queries, int k, int radius, const ScanBlocks& blocks,
+Matches searched(const MatcherOracle& oracle, const Mat& queries, int k, int radius, const ScanChunk& chunk,
         SearchCost& cost)
 {
     const PackedCodes trains(oracle.levelSizes, oracle.images);
@@ -228,7 +228,7 @@ Matches searched(const MatcherOracle& oracle, const Mat& queries, int k, int rad
                                  : oracle.adaptiveBlock > 0 ? adaptivePolicy(layout)
                                                             : PruningPolicy();
     const SearchInput input = {
-            trains, queries, policy, checkedMasks(oracle.masks, queries.rows, trains), {}, 0, blocks, cost};
+            trains, queries, policy, checkedMasks(oracle.masks, queries.rows, trains), {}, 0, chunk, cost};
     Matches matches(queries.rows);
     const auto append = [&](int query, MatchKey n) {
         const size_t image = trains.imageOf(indexOf(n));

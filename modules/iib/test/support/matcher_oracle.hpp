@@ -40,7 +40,7 @@ private:
 
 //! The k nearest, or for k = 0 all within a radius, as the library searches for them in blocks of these sizes: among
 //! the oracle's images, with its masks and by its rules.
-Matches searched(const MatcherOracle& oracle, const Mat& queries, int k, int radius, const ScanBlocks& blocks,
+Matches searched(const MatcherOracle& oracle, const Mat& queries, int k, int radius, const ScanChunk& chunk,
         SearchCost& cost);
 
 //! Five train images of 2, 8 and 32 bytes a level, one of them empty, one of a single row.

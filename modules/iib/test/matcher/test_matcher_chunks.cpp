@@ -7,21 +7,21 @@
 namespace opencv_test {
 namespace {
 
-// Queries and train codes are scanned in blocks; blocks of 8 and of 1 make small data cross their boundaries.
-typedef testing::TestWithParam<std::tuple<int, int>> IIB_Matcher_Blocks;  // block size, mode
+// Queries and train codes are scanned in chunks; chunks of 8 and of 1 make small data cross their boundaries.
+typedef testing::TestWithParam<std::tuple<int, int>> IIB_Matcher_Chunks;  // size of a chunk, mode
 
 //! The k nearest, and the share of bits that were compared.
-void expectSearchedAsOracle(MatcherOracle& oracle, const Mat& queries, int k, const ScanBlocks& blocks)
+void expectSearchedAsOracle(MatcherOracle& oracle, const Mat& queries, int k, const ScanChunk& chunk)
 {
     SearchCost cost;
-    const Matches actual = searched(oracle, queries, k, 0, blocks, cost);
+    const Matches actual = searched(oracle, queries, k, 0, chunk, cost);
     oracle.compared = oracle.all = 0;
     expectEqual(oracle.knn(queries, k), actual);
     EXPECT_EQ(oracle.compared, (double)cost.compared);
     EXPECT_EQ(oracle.all, (double)cost.all);
 }
 
-TEST_P(IIB_Matcher_Blocks, as_the_oracle)
+TEST_P(IIB_Matcher_Chunks, as_the_oracle)
 {
     const int size = std::get<0>(GetParam()), mode = std::get<1>(GetParam());
     MatcherOracle oracle = oracleOfSeveralImages();
@@ -30,8 +30,8 @@ TEST_P(IIB_Matcher_Blocks, as_the_oracle)
     if (mode == HierarchicalMatcher::THRESHOLD)
         oracle.thresholds.assign(2, 0.35f);
     oracle.adaptiveBlock = mode == HierarchicalMatcher::ADAPTIVE ? size * 16 : 0;
-    ScanBlocks blocks;
-    blocks.queryCount = blocks.codeBlocks = blocks.codeBlocksOfLimits = size;
+    ScanChunk chunk;
+    chunk.queryCount = chunk.codeBlocks = chunk.codeBlocksOfLimits = size;
 
     for (int k : {1, 2, 3, 400})
         for (int bits = 0; bits < 8; bits++)
@@ -40,22 +40,22 @@ TEST_P(IIB_Matcher_Blocks, as_the_oracle)
             oracle.crossCheck = (bits & 1) != 0;
             oracle.masks = bits & 2 ? masks : std::vector<Mat>();
             oracle.maxRatio = bits & 4 ? 0.8f : 1.f;
-            expectSearchedAsOracle(oracle, queries, k, blocks);
+            expectSearchedAsOracle(oracle, queries, k, chunk);
             SearchCost cost;
             for (int radius : {0, 20, 60, 336})
                 if (k == 1 && mode != HierarchicalMatcher::ADAPTIVE)
                     expectEqual(oracle.radius(queries, radius),
-                            searched(oracle, queries, 0, radius, blocks, cost));
+                            searched(oracle, queries, 0, radius, chunk, cost));
         }
 }
 
-INSTANTIATE_TEST_CASE_P(/**/, IIB_Matcher_Blocks,
+INSTANTIATE_TEST_CASE_P(/**/, IIB_Matcher_Chunks,
         testing::Combine(testing::Values(1, 8, 128),
                 testing::Values((int)HierarchicalMatcher::EXACT, (int)HierarchicalMatcher::THRESHOLD,
                         (int)HierarchicalMatcher::ADAPTIVE)));
 
-// Blocks for the cache are no part of ADAPTIVE's answers, whose limits come down every 2048 codes.
-TEST(IIB_Matcher_Adaptive, does_not_depend_on_blocks)
+// Chunks for the cache are no part of ADAPTIVE's answers, whose limits come down every 2048 codes.
+TEST(IIB_Matcher_Adaptive, does_not_depend_on_chunks)
 {
     const Mat queries = randomDescriptors(1, 30, 64), trains = randomDescriptors(2, 5000, 64);
     MatcherOracle oracle;
@@ -64,9 +64,9 @@ TEST(IIB_Matcher_Adaptive, does_not_depend_on_blocks)
     oracle.adaptiveBlock = 2048;
     for (int size : {1, 100, 1000})
     {
-        ScanBlocks blocks;
-        blocks.queryCount = blocks.codeBlocks = size;
-        expectSearchedAsOracle(oracle, queries, 5, blocks);
+        ScanChunk chunk;
+        chunk.queryCount = chunk.codeBlocks = size;
+        expectSearchedAsOracle(oracle, queries, 5, chunk);
     }
 }
 
